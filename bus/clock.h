@@ -1,0 +1,54 @@
+// Time, as an application sees it. Control laws and the model never see a clock; applications use it for deadlines,
+// watchdogs and statistics only.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+
+namespace hydro {
+
+class Clock {
+ public:
+  using TimePoint = std::chrono::steady_clock::time_point;
+  using Duration = std::chrono::steady_clock::duration;
+
+  virtual ~Clock() = default;
+
+  // Monotonic time, for deadlines and intervals.
+  virtual TimePoint Now() const = 0;
+
+  // Microseconds since 1970-01-01 UTC, for the utime field of messages.
+  virtual int64_t Utime() const = 0;
+
+  // True when no wall time passes by itself: whoever waits on it advances it.
+  virtual bool simulated() const { return false; }
+};
+
+class WallClock : public Clock {
+ public:
+  TimePoint Now() const override { return std::chrono::steady_clock::now(); }
+  int64_t Utime() const override {
+    using namespace std::chrono;
+    return duration_cast<microseconds>(system_clock::now().time_since_epoch()).count();
+  }
+};
+
+// Starts at 0 and stands still until it is advanced.
+class SimulatedClock : public Clock {
+ public:
+  TimePoint Now() const override { return now_; }
+  int64_t Utime() const override {
+    return std::chrono::duration_cast<std::chrono::microseconds>(now_.time_since_epoch()).count();
+  }
+  bool simulated() const override { return true; }
+
+  // Moves to `time`; a time in the past leaves the clock where it is.
+  void AdvanceTo(TimePoint time) {
+    if (time > now_) now_ = time;
+  }
+
+ private:
+  TimePoint now_{};
+};
+
+}  // namespace hydro

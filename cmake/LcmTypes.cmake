@@ -1,0 +1,24 @@
+# lcm_wrap_cpp(TARGET FILES...): an interface library with the C++ classes that lcm-gen makes of the .lcm files.
+# (Debian's LCM 1.3.1 ships no CMake package and no lcm_wrap_types.)
+find_program(LCM_GEN lcm-gen REQUIRED)
+
+function(lcm_wrap_cpp target)
+  set(out ${PROJECT_BINARY_DIR}/generated/lcmtypes)
+  set(headers)
+  foreach(file ${ARGN})
+    file(STRINGS ${file} struct_line REGEX "^struct ")
+    string(REGEX REPLACE "^struct ([A-Za-z0-9_]+).*" "\\1" name "${struct_line}")
+    set(header ${out}/hydro/${name}.hpp)
+    add_custom_command(
+      OUTPUT ${header}
+      COMMAND ${LCM_GEN} -x --cpp-std c++11 --cpp-hpath ${out} ${CMAKE_CURRENT_SOURCE_DIR}/${file}
+      DEPENDS ${file}
+      COMMENT "lcm-gen ${file}")
+    list(APPEND headers ${header})
+  endforeach()
+  add_custom_target(${target}_headers DEPENDS ${headers})
+  add_library(${target} INTERFACE)
+  add_dependencies(${target} ${target}_headers)
+  target_include_directories(${target} SYSTEM INTERFACE ${out})
+  target_link_libraries(${target} INTERFACE PkgConfig::LCM)
+endfunction()

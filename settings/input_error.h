@@ -1,0 +1,14 @@
+// Bad usage, configuration or input: exit 2 and one line.
+#pragma once
+
+#include <stdexcept>
+
+namespace hydro {
+
+// what() is the one line: file, line or key, what was found, what is allowed.
+class InputError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+}  // namespace hydro

@@ -1,0 +1,63 @@
+// A prescribed signal over time: what the position loop follows, and what moves a driven shaft.
+// Pure: a function of time, built once from its specification.
+#pragma once
+
+#include <limits>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace hydro {
+
+class Trajectory {
+ public:
+  virtual ~Trajectory() = default;
+
+  // The signal at time t (s); before its start, its initial value.
+  virtual double Value(double t) const = 0;
+
+  // d Value/dt; 0 at a jump.
+  virtual double Rate(double t) const = 0;
+
+  // The first time after t at which Value jumps or its formula changes; infinity when there is none. An integrator
+  // that follows the signal stops there.
+  virtual double NextBreak(double t) const = 0;
+
+  // True when Value has no jumps, so that a shaft can be driven along it.
+  virtual bool continuous() const = 0;
+
+  // Smallest and largest value it ever takes.
+  virtual double Min() const = 0;
+  virtual double Max() const = 0;
+};
+
+struct Step {
+  double time = 0;   // s
+  double value = 0;  // the signal's unit
+};
+
+enum class Interpolation {
+  kHold,    // the newest point's value (jumps)
+  kLinear,  // straight lines
+  kCubic,   // monotone cubic (Fritsch-Carlson): smooth, never outside the points' range between two points
+};
+
+// initial before the first step, then each step's value from its time on. Times strictly increase.
+// Throws std::invalid_argument naming the step that breaks this, or a non-finite number. So do the others below.
+std::unique_ptr<Trajectory> MakeSteps(double initial, std::vector<Step> steps);
+
+// offset before start; then offset + amplitude sin(2 pi frequency (t - start) + phase).
+std::unique_ptr<Trajectory> MakeSine(double offset, double amplitude, double frequency_hz, double start,
+                                     double phase_rad);
+
+// offset before start; then offset + amplitude for the first half of each period and offset - amplitude for the second.
+std::unique_ptr<Trajectory> MakeSquare(double offset, double amplitude, double frequency_hz, double start);
+
+// offset before start; then a sine whose frequency goes linearly from first_hz to last_hz in duration s, and stays.
+std::unique_ptr<Trajectory> MakeChirp(double offset, double amplitude, double first_hz, double last_hz, double start,
+                                      double duration);
+
+// Through points (times strictly increase); the first value before them and the last after them.
+std::unique_ptr<Trajectory> MakePoints(std::vector<Step> points, Interpolation interpolation);
+
+}  // namespace hydro
