@@ -35,8 +35,6 @@ struct TrajectorySpec {
   std::vector<Step> points;      // kCsv: what the file held
 };
 
-enum class Integrator { kAuto, kFast, kErk, kCvode };  // model/integrator.h says what each is
-
 struct ModelSection {
   std::string file;                 // as given; relative to the configuration's folder
   std::string resolved_file;        // path it was read from

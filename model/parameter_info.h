@@ -1,0 +1,47 @@
+// What is known of each parameter by itself: name, unit, physical bounds, meaning. Model files are checked against it,
+// reports print it.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "model/description.h"
+
+namespace hydro {
+
+struct ParameterInfo {
+  std::string name;
+  std::string unit;         // in the paper's units
+  double min = 0;           // smallest physical value
+  double max = 0;           // largest physical value, infinity where there is none
+  bool min_allowed = true;  // false: must be above min
+  std::string says;         // one line
+  bool is_name = false;     // the value is a name, one of `names`
+  std::vector<std::string> names = {};
+};
+
+// A base parameter and where it lies.
+struct BaseParameter {
+  ParameterInfo info;
+  double Parameters::*member;
+};
+
+// All base parameters, in the order of Parameters.
+const std::vector<BaseParameter>& BaseParameters();
+
+// What the catalogue says of an effect. docs/effects.md has the same rows.
+struct EffectInfo {
+  std::string id;                         // "pump.stribeck"
+  std::string says;                       // "static friction above kinetic"
+  std::string equation;
+  std::string confused_with;
+  std::vector<ParameterInfo> parameters;  // all required
+};
+
+// The effects that this program knows, ordered by id.
+const std::vector<EffectInfo>& EffectCatalogue();
+
+// Null when no such effect is known.
+const EffectInfo* FindEffect(const std::string& id);
+
+}  // namespace hydro
