@@ -19,8 +19,8 @@ class Trajectory {
   // d Value/dt; 0 at a jump.
   virtual double Rate(double t) const = 0;
 
-  // The first time after t at which Value jumps or its formula changes; infinity when there is none. An integrator
-  // that follows the signal stops there.
+  // The first time after t at which Value jumps or its formula changes; infinity when there is none. An
+  // integrator that follows the signal stops there.
   virtual double NextBreak(double t) const = 0;
 
   // True when Value has no jumps, so that a shaft can be driven along it.
@@ -43,19 +43,22 @@ enum class Interpolation {
 };
 
 // initial before the first step, then each step's value from its time on. Times strictly increase.
-// Throws std::invalid_argument naming the step that breaks this, or a non-finite number. So do the others below.
+// Throws std::invalid_argument naming the step that breaks this, or a non-finite number. So do the others
+// below.
 std::unique_ptr<Trajectory> MakeSteps(double initial, std::vector<Step> steps);
 
 // offset before start; then offset + amplitude sin(2 pi frequency (t - start) + phase).
 std::unique_ptr<Trajectory> MakeSine(double offset, double amplitude, double frequency_hz, double start,
                                      double phase_rad);
 
-// offset before start; then offset + amplitude for the first half of each period and offset - amplitude for the second.
+// offset before start; then offset + amplitude for the first half of each period and offset - amplitude for
+// the second.
 std::unique_ptr<Trajectory> MakeSquare(double offset, double amplitude, double frequency_hz, double start);
 
-// offset before start; then a sine whose frequency goes linearly from first_hz to last_hz in duration s, and stays.
-std::unique_ptr<Trajectory> MakeChirp(double offset, double amplitude, double first_hz, double last_hz, double start,
-                                      double duration);
+// offset before start; then a sine whose frequency goes linearly from first_hz to last_hz in duration s, and
+// stays.
+std::unique_ptr<Trajectory> MakeChirp(double offset, double amplitude, double first_hz, double last_hz,
+                                      double start, double duration);
 
 // Through points (times strictly increase); the first value before them and the last after them.
 std::unique_ptr<Trajectory> MakePoints(std::vector<Step> points, Interpolation interpolation);
