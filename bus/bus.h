@@ -1,14 +1,17 @@
 // The seam between an application and the world: typed messages on named channels.
 //
-// An application takes a Bus and a Clock (clock.h), never a socket. The same application runs over LCM UDP multicast
-// (udpm_bus.h), inside one process on a simulated clock (in_process_bus.h) and on a recorded log (log_bus.h).
+// An application takes a Bus and a Clock (clock.h), never a socket. The same application runs over LCM UDP
+// multicast (udpm_bus.h), inside one process on a simulated clock (in_process_bus.h) and on a recorded log
+// (log_bus.h).
 //
 // Contract, the same for every transport:
 // - Messages on one channel from one sender arrive in the order they were sent.
-// - Handlers run only inside HandleUntil(), on the thread that calls it, one at a time. What a handler publishes is
+// - Handlers run only inside HandleUntil(), on the thread that calls it, one at a time. What a handler
+// publishes is
 //   delivered by a later turn of the same or a later HandleUntil(), never inside Publish().
 // - An exception thrown by a handler leaves HandleUntil() (it never travels through C code).
 // - A message that cannot be decoded (another type, truncated) is counted in undecodable() and not delivered.
+// - A bus is used by one thread.
 #pragma once
 
 #include <chrono>
@@ -18,11 +21,13 @@
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace hydro {
 
-// The bus cannot work here (no multicast route, bad URL, a self test that failed). what() says what to do about it.
+// The bus cannot work here (no multicast route, bad URL, a self test that failed). what() says what to do
+// about it.
 class BusError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -34,6 +39,9 @@ struct MessageType {
   int (*encoded_size)(const void* message);
   int (*encode)(const void* message, void* buffer, int capacity);
   std::shared_ptr<void> (*decode)(const void* data, int size);  // null: not a message of this type
+  std::shared_ptr<void> (*create)();                            // a message with unspecified fields
+  void (*copy)(void* to, const void* from);
+  bool (*decode_into)(void* message, const void* data, int size);  // false: not a message of this type
 };
 
 template <class Message>
@@ -47,6 +55,11 @@ const MessageType& TypeOf() {
       [](const void* data, int size) -> std::shared_ptr<void> {
         auto message = std::make_shared<Message>();
         return message->decode(data, 0, size) == size ? message : nullptr;
+      },
+      []() -> std::shared_ptr<void> { return std::make_shared<Message>(); },
+      [](void* to, const void* from) { *static_cast<Message*>(to) = *static_cast<const Message*>(from); },
+      [](void* message, const void* data, int size) {
+        return static_cast<Message*>(message)->decode(data, 0, size) == size;
       }};
   return type;
 }
@@ -57,6 +70,30 @@ struct RawMessage {
   const uint8_t* data = nullptr;
   int size = 0;
   int64_t receive_utime = 0;  // us since 1970-01-01 UTC, or simulated time, when it was received
+};
+
+// One channel that a bus has looked up already, for messages of one type. Behind Publisher.
+class Outlet {
+ public:
+  virtual ~Outlet() = default;
+  Outlet() = default;
+  Outlet(const Outlet&) = delete;
+  Outlet& operator=(const Outlet&) = delete;
+  virtual void Send(const void* message) = 0;
+};
+
+// The quick way to send many messages on one channel (Bus::Advertise). Copies send on the same channel.
+// Must not be used after its bus is gone.
+template <class Message>
+class Publisher {
+ public:
+  explicit Publisher(std::shared_ptr<Outlet> outlet) : outlet_(std::move(outlet)) {}
+
+  // The same as Bus::Publish() on the channel that was advertised.
+  void Send(const Message& message) { outlet_->Send(&message); }
+
+ private:
+  std::shared_ptr<Outlet> outlet_;
 };
 
 class Bus {
@@ -74,6 +111,13 @@ class Bus {
     PublishTyped(channel, TypeOf<Message>(), &message);
   }
 
+  // Looks `channel` up once, for what is sent in every cycle: advertise in the constructor, Send() in the
+  // loop.
+  template <class Message>
+  Publisher<Message> Advertise(const std::string& channel) {
+    return Publisher<Message>(MakeOutlet(channel, TypeOf<Message>()));
+  }
+
   // Calls `handler` for each message on exactly `channel`. Subscriptions last as long as the bus.
   template <class Message>
   void Subscribe(const std::string& channel, std::function<void(const Message&)> handler) {
@@ -89,8 +133,10 @@ class Bus {
   virtual void PublishRaw(const std::string& channel, const void* data, int size) = 0;
 
   // Handles messages until at least one was handled (then all that are waiting) or `deadline` has passed.
-  // Returns how many were handled; 0 means that the deadline passed. A bus on a simulated clock returns at once when
-  // nothing is waiting, having advanced that clock to the deadline.
+  // Returns how many were handled; 0 means that the deadline passed, or that a signal arrived: a loop that is
+  // to end on SIGINT looks at its flag after each call. A bus on a simulated clock returns at once when
+  // nothing is waiting, having advanced that clock to the deadline. A handler must not call it
+  // (std::logic_error).
   virtual int HandleUntil(TimePoint deadline) = 0;
 
   // Messages that arrived on a subscribed channel and could not be decoded as its type.
@@ -100,6 +146,24 @@ class Bus {
   virtual void PublishTyped(const std::string& channel, const MessageType& type, const void* message) = 0;
   virtual void SubscribeTyped(const std::string& channel, const MessageType& type,
                               std::function<void(const void*)> handler) = 0;
+
+  // What Advertise() hands out; by default a plain PublishTyped() on `channel`.
+  virtual std::shared_ptr<Outlet> MakeOutlet(const std::string& channel, const MessageType& type) {
+    return std::make_shared<NamedOutlet>(this, channel, type);
+  }
+
+ private:
+  class NamedOutlet : public Outlet {
+   public:
+    NamedOutlet(Bus* bus, std::string channel, const MessageType& type)
+        : bus_(bus), channel_(std::move(channel)), type_(type) {}
+    void Send(const void* message) override { bus_->PublishTyped(channel_, type_, message); }
+
+   private:
+    Bus* bus_;
+    std::string channel_;
+    const MessageType& type_;
+  };
 };
 
 }  // namespace hydro

@@ -1,5 +1,5 @@
-// Time, as an application sees it. Control laws and the model never see a clock; applications use it for deadlines,
-// watchdogs and statistics only.
+// Time, as an application sees it. Control laws and the model never see a clock; applications use it for
+// deadlines, watchdogs and statistics only.
 #pragma once
 
 #include <chrono>

@@ -1,0 +1,60 @@
+// The bus within one process: no sockets, no threads, and no encoding unless somebody listens to the bytes.
+#pragma once
+
+#include <array>
+#include <deque>
+#include <memory>
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+#include "bus/bus.h"
+#include "bus/clock.h"
+
+namespace hydro {
+
+// Messages are dispatched in the order in which they were published, on all channels together. A message that
+// nobody subscribes to is not kept. SubscribeAll() handlers see a message before the typed ones do.
+class InProcessBus : public Bus {
+ public:
+  // `clock` is advanced by HandleUntil() and stamps what SubscribeAll() sees; null: wall time, and
+  // HandleUntil() sleeps until the deadline when nothing is waiting.
+  explicit InProcessBus(SimulatedClock* clock);
+  ~InProcessBus() override;
+
+  void SubscribeAll(std::function<void(const RawMessage&)> handler) override;
+  void PublishRaw(const std::string& channel, const void* data, int size) override;
+
+  // Handles what is waiting when it is called; what handlers publish meanwhile waits for the next call.
+  int HandleUntil(TimePoint deadline) override;
+  int64_t undecodable() const override { return undecodable_; }
+
+ protected:
+  void PublishTyped(const std::string& channel, const MessageType& type, const void* message) override;
+  void SubscribeTyped(const std::string& channel, const MessageType& type,
+                      std::function<void(const void*)> handler) override;
+  std::shared_ptr<Outlet> MakeOutlet(const std::string& channel, const MessageType& type) override;
+
+ private:
+  struct Channel;
+  class ChannelOutlet;
+
+  Channel& Find(const std::string& name);
+  void Enqueue(Channel& channel, const MessageType& type, const void* message);
+  void Order(Channel* channel);
+  void Dispatch(Channel& channel);
+
+  SimulatedClock* clock_;
+  int64_t undecodable_ = 0;
+  bool handling_ = false;
+  std::unordered_map<std::string, std::unique_ptr<Channel>> channels_;
+  std::array<Channel*, 16> recent_{};  // by the address of the caller's name, checked against the name itself
+  std::deque<std::function<void(const RawMessage&)>> taps_;
+  std::vector<uint8_t> encoded_;  // used again for each message
+  std::vector<Channel*>
+      order_;         // ring: the channels of the waiting messages, oldest first; size a power of 2
+  size_t first_ = 0;  // index of the oldest; counts on, the position is modulo the size
+  size_t end_ = 0;    // one past the newest
+};
+
+}  // namespace hydro

@@ -1,0 +1,71 @@
+// The bus over LCM UDP multicast: what separate processes talk over.
+#pragma once
+
+#include <lcm/lcm.h>
+
+#include <deque>
+#include <exception>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "bus/bus.h"
+
+namespace hydro {
+
+// Apply real-time scheduling (real_time.h) before constructing it: LCM's receiving thread inherits it.
+// Nothing is dropped here: queues are unlimited, and the kernel's receive buffer is asked to be large.
+class UdpmBus : public Bus {
+ public:
+  // `url` as in udpm_url.h, or "memq://" (private to this object). Proves that multicast works before it
+  // returns. Throws InputError for a bad URL and BusError, with the cure, where multicast does not work.
+  explicit UdpmBus(const std::string& url);
+  ~UdpmBus() override;
+
+  // Does not pass on the messages by which LCM tests itself when a process starts.
+  void SubscribeAll(std::function<void(const RawMessage&)> handler) override;
+  void PublishRaw(const std::string& channel, const void* data, int size) override;
+
+  // Returns 0 early when a signal arrives. Handles at most 4096 messages a call, so that a flood cannot hold
+  // it.
+  int HandleUntil(TimePoint deadline) override;
+  int64_t undecodable() const override { return undecodable_; }
+
+  // Bytes of receive buffer that the kernel gave (it counts its own bookkeeping as well); 0 for memq.
+  int receive_buffer_bytes() const { return receive_buffer_bytes_; }
+
+  // One line on how to allow a larger receive buffer; empty when it is large enough.
+  std::string receive_buffer_hint() const;
+
+ protected:
+  void PublishTyped(const std::string& channel, const MessageType& type, const void* message) override;
+  void SubscribeTyped(const std::string& channel, const MessageType& type,
+                      std::function<void(const void*)> handler) override;
+
+ private:
+  struct Subscription {
+    UdpmBus* bus;
+    const MessageType* type = nullptr;  // null: raw
+    std::shared_ptr<void> message;      // what is decoded into, used again for each message
+    std::function<void(const void*)> typed;
+    std::function<void(const RawMessage&)> raw;
+  };
+
+  static void OnMessage(const lcm_recv_buf_t* buffer, const char* channel, void* subscription) noexcept;
+  void Deliver(const lcm_recv_buf_t& buffer, const char* channel, Subscription* subscription);
+  void AddSubscription(const std::string& pattern, Subscription* subscription);
+  void Send(const std::string& channel, const void* data, int size);
+
+  lcm_t* lcm_ = nullptr;
+  int fd_ = -1;
+  int receive_buffer_bytes_ = 0;
+  int receive_buffer_asked_ = 0;
+  int64_t undecodable_ = 0;
+  bool handling_ = false;
+  bool delivered_ = false;        // the message in hand reached a handler
+  std::exception_ptr exception_;  // thrown by a handler, kept until LCM's C code is off the stack
+  std::deque<Subscription> subscriptions_;
+  std::vector<uint8_t> encoded_;  // used again for each message
+};
+
+}  // namespace hydro

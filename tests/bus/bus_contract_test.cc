@@ -1,0 +1,307 @@
+// The contract of bus.h, held to by every transport.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "bus/channels.h"
+#include "bus/in_process_bus.h"
+#include "bus/udpm_bus.h"
+#include "hydro/motor_command_t.hpp"
+#include "hydro/run_description_t.hpp"
+#include "hydro/state_t.hpp"
+#include "tests/free_udp_port.h"
+
+namespace hydro {
+namespace {
+
+using namespace std::chrono_literals;
+using testing::ElementsAre;
+
+struct Transport {
+  std::string name;
+  bool simulated;
+  std::function<std::unique_ptr<Bus>(SimulatedClock*)> make;
+};
+
+class BusContractTest : public testing::TestWithParam<Transport> {
+ protected:
+  // Handles messages until `done` says so; gives up after a long while, for the test to fail on what is
+  // missing.
+  template <class Done>
+  void HandleWhileNot(Done done) {
+    const auto give_up = std::chrono::steady_clock::now() + 10s;
+    while (!done() && std::chrono::steady_clock::now() < give_up) bus_->HandleUntil(Soon(20ms));
+  }
+
+  // Handles what still arrives after everything expected has: for tests that something does not come.
+  void HandleRest() {
+    while (bus_->HandleUntil(Soon(50ms)) > 0) {
+    }
+  }
+
+  Bus::TimePoint Soon(std::chrono::nanoseconds delay) const {
+    return (GetParam().simulated ? clock_.Now() : std::chrono::steady_clock::now()) + delay;
+  }
+
+  void SendStates(const std::string& channel, int count) {
+    for (int i = 0; i < count; ++i) {
+      state_t state{};
+      state.tick = i;
+      bus_->Publish(channel, state);
+    }
+  }
+
+  SimulatedClock clock_;
+  std::unique_ptr<Bus> bus_ = GetParam().make(&clock_);
+};
+
+// Tests that messages on one channel arrive complete, in the order they were sent, and many at once.
+TEST_P(BusContractTest, KeepsOrder) {
+  std::vector<int64_t> ticks;
+  bus_->Subscribe<state_t>("STATE", [&](const state_t& state) { ticks.push_back(state.tick); });
+  SendStates("STATE", 2000);
+  HandleWhileNot([&] { return ticks.size() >= 2000; });
+  ASSERT_EQ(ticks.size(), 2000u);
+  for (int i = 0; i < 2000; ++i) ASSERT_EQ(ticks[i], i);
+}
+
+// Tests that every field, strings and special doubles included, arrives as it was sent.
+TEST_P(BusContractTest, CarriesEveryField) {
+  run_description_t sent{};
+  sent.session = -5;
+  sent.config_text = std::string(200'000, 'x') + "\n\"end\"";  // more than one packet
+  sent.rate_hz = 1e-310;
+  std::vector<run_description_t> received;
+  bus_->Subscribe<run_description_t>("RUN", [&](const run_description_t& run) { received.push_back(run); });
+  bus_->Publish("RUN", sent);
+  HandleWhileNot([&] { return !received.empty(); });
+  ASSERT_EQ(received.size(), 1u);
+  EXPECT_EQ(received[0].session, -5);
+  EXPECT_EQ(received[0].config_text, sent.config_text);
+  EXPECT_EQ(received[0].rate_hz, 1e-310);
+}
+
+// Tests that no handler runs inside Publish(), and that what a handler publishes comes in a later turn.
+TEST_P(BusContractTest, HandlersRunOnlyInHandleUntil) {
+  std::vector<std::string> events;
+  bool handling = false;
+  bus_->Subscribe<state_t>("STATE", [&](const state_t& state) {
+    EXPECT_TRUE(handling);
+    events.push_back("state begins");
+    motor_command_t command{};
+    command.tick = state.tick;
+    bus_->Publish("COMMAND", command);
+    events.push_back("state ends");
+  });
+  bus_->Subscribe<motor_command_t>("COMMAND", [&](const motor_command_t& command) {
+    EXPECT_TRUE(handling);
+    events.push_back("command " + std::to_string(command.tick));
+  });
+  SendStates("STATE", 1);
+  EXPECT_TRUE(events.empty());
+  handling = true;
+  HandleWhileNot([&] { return events.size() >= 3; });
+  EXPECT_THAT(events, ElementsAre("state begins", "state ends", "command 0"));
+}
+
+// Tests that handlers which answer each other go on over many turns, each HandleUntil() returning.
+TEST_P(BusContractTest, HandlersPublishBackAndForth) {
+  int64_t last = -1;
+  bus_->Subscribe<state_t>("PING", [&](const state_t& state) { bus_->Publish("PONG", state); });
+  bus_->Subscribe<state_t>("PONG", [&](const state_t& state) {
+    last = state.tick;
+    state_t next = state;
+    ++next.tick;
+    bus_->Publish("PING", next);
+  });
+  SendStates("PING", 1);
+  HandleWhileNot([&] { return last >= 100; });
+  EXPECT_GE(last, 100);
+}
+
+// Tests that an exception leaves HandleUntil(), skips nothing but that message's other handlers, and that the
+// bus works on.
+TEST_P(BusContractTest, ExceptionsLeaveHandleUntil) {
+  std::vector<int64_t> ticks;
+  bus_->Subscribe<state_t>("STATE", [&](const state_t& state) {
+    if (state.tick == 1) throw std::runtime_error("tick 1");
+    ticks.push_back(state.tick);
+  });
+  SendStates("STATE", 3);
+  int thrown = 0;
+  HandleWhileNot([&] {
+    try {
+      bus_->HandleUntil(Soon(20ms));
+    } catch (const std::runtime_error& error) {
+      EXPECT_STREQ(error.what(), "tick 1");
+      ++thrown;
+    }
+    return ticks.size() >= 2;
+  });
+  EXPECT_EQ(thrown, 1);
+  EXPECT_THAT(ticks, ElementsAre(0, 2));
+}
+
+// Tests that messages of another type, truncated ones and noise are counted and never delivered.
+TEST_P(BusContractTest, CountsUndecodable) {
+  int states = 0;
+  bus_->Subscribe<state_t>("STATE", [&](const state_t&) { ++states; });
+  state_t state{};
+  std::vector<uint8_t> bytes(state.getEncodedSize());
+  state.encode(bytes.data(), 0, static_cast<int>(bytes.size()));
+  const int size = static_cast<int>(bytes.size());
+  bus_->Publish("STATE", motor_command_t{});
+  for (int i = 1; i < size; ++i) bus_->PublishRaw("STATE", bytes.data(), i);
+  bytes.push_back(0);
+  bus_->PublishRaw("STATE", bytes.data(), size + 1);  // one byte too many
+  bus_->PublishRaw("STATE", bytes.data(), size);
+  HandleWhileNot([&] { return states > 0; });
+  EXPECT_EQ(states, 1);
+  EXPECT_EQ(bus_->undecodable(), size + 1);
+}
+
+// Tests that SubscribeAll() sees the bytes of every message of every channel, subscribed otherwise or not.
+TEST_P(BusContractTest, TapSeesAll) {
+  std::vector<std::string> seen;
+  bus_->Subscribe<state_t>("STATE", [](const state_t&) {});
+  bus_->SubscribeAll([&](const RawMessage& message) {
+    EXPECT_GE(message.receive_utime, 0);
+    state_t state{};
+    const bool decoded = state.decode(message.data, 0, message.size) == message.size;
+    seen.push_back(std::string(message.channel) + " " + (decoded ? std::to_string(state.tick) : "?"));
+  });
+  SendStates("STATE", 2);
+  SendStates("nobody.subscribes", 1);
+  bus_->PublishRaw("RAW", "abc", 3);
+  HandleWhileNot([&] { return seen.size() >= 4; });
+  EXPECT_THAT(seen, ElementsAre("STATE 0", "STATE 1", "nobody.subscribes 0", "RAW ?"));
+}
+
+// Tests that raw bytes and advertised channels reach typed subscribers like Publish() does, in order.
+TEST_P(BusContractTest, EveryWayOfSendingArrives) {
+  std::vector<int64_t> ticks;
+  Publisher<state_t> publisher = bus_->Advertise<state_t>("STATE");
+  bus_->Subscribe<state_t>("STATE", [&](const state_t& state) { ticks.push_back(state.tick); });
+  state_t state{};
+  publisher.Send(state);
+  state.tick = 1;
+  std::vector<uint8_t> bytes(state.getEncodedSize());
+  state.encode(bytes.data(), 0, static_cast<int>(bytes.size()));
+  bus_->PublishRaw("STATE", bytes.data(), static_cast<int>(bytes.size()));
+  state.tick = 2;
+  bus_->Publish("STATE", state);
+  HandleWhileNot([&] { return ticks.size() >= 3; });
+  EXPECT_THAT(ticks, ElementsAre(0, 1, 2));
+}
+
+// Tests that a channel name is taken literally: what would be a pattern matches only itself.
+TEST_P(BusContractTest, ChannelNamesAreNotPatterns) {
+  const std::vector<std::string> names = {"A.B",  "AxB", "A*",  "A",  "(A|B)", "B",
+                                          "[AB]", "A\\", "^A$", "A+", "A-B#/"};
+  std::vector<std::string> seen;
+  for (const std::string& name : names) {
+    bus_->Subscribe<state_t>(name, [&seen, name](const state_t&) { seen.push_back(name); });
+  }
+  for (const std::string& name : names) SendStates(name, 1);
+  HandleWhileNot([&] { return seen.size() >= names.size(); });
+  HandleRest();
+  EXPECT_EQ(seen, names);
+}
+
+// Tests that stacks with different channel suffixes do not hear each other.
+TEST_P(BusContractTest, SuffixesSeparate) {
+  const Channels one, two("_2");
+  std::vector<std::string> seen;
+  bus_->Subscribe<state_t>(one.state,
+                           [&](const state_t& s) { seen.push_back("one " + std::to_string(s.tick)); });
+  bus_->Subscribe<state_t>(two.state,
+                           [&](const state_t& s) { seen.push_back("two " + std::to_string(s.tick)); });
+  SendStates(one.state, 1);
+  SendStates(two.state, 2);
+  HandleWhileNot([&] { return seen.size() >= 3; });
+  HandleRest();
+  EXPECT_THAT(seen, ElementsAre("one 0", "two 0", "two 1"));
+}
+
+// Tests that every subscriber of a channel is called, in the order of subscription.
+TEST_P(BusContractTest, AllSubscribersAreCalled) {
+  std::vector<int> called;
+  for (int i = 0; i < 3; ++i)
+    bus_->Subscribe<state_t>("STATE", [&called, i](const state_t&) { called.push_back(i); });
+  SendStates("STATE", 1);
+  HandleWhileNot([&] { return called.size() >= 3; });
+  EXPECT_THAT(called, ElementsAre(0, 1, 2));
+}
+
+// Tests that a handler may subscribe, and that the new handler gets later messages.
+TEST_P(BusContractTest, HandlersMaySubscribe) {
+  int64_t late = -1;
+  bool subscribed = false;
+  bus_->Subscribe<state_t>("STATE", [&](const state_t&) {
+    if (std::exchange(subscribed, true)) return;
+    for (int i = 0; i < 100; ++i) bus_->Subscribe<state_t>("LATE", [&](const state_t& s) { late = s.tick; });
+  });
+  SendStates("STATE", 1);
+  HandleWhileNot([&] { return subscribed; });
+  SendStates("LATE", 8);
+  HandleWhileNot([&] { return late == 7; });
+  EXPECT_EQ(late, 7);
+}
+
+// Tests that without messages HandleUntil() returns 0 at the deadline and not before, and at once when it has
+// passed.
+TEST_P(BusContractTest, ReturnsAtTheDeadline) {
+  bus_->Subscribe<state_t>("STATE", [](const state_t&) {});
+  const Bus::TimePoint deadline = Soon(3ms);
+  EXPECT_EQ(bus_->HandleUntil(deadline), 0);
+  EXPECT_GE(Soon(0ms), deadline);
+  EXPECT_EQ(bus_->HandleUntil(deadline - 1ms), 0);
+  EXPECT_EQ(bus_->HandleUntil(Bus::TimePoint::min()), 0);
+  if (GetParam().simulated) {
+    EXPECT_EQ(clock_.Now(), deadline);
+  }
+}
+
+// Tests that messages that are waiting are handled even when the deadline has passed.
+TEST_P(BusContractTest, HandlesWhatWaitsAfterTheDeadline) {
+  int states = 0;
+  bus_->Subscribe<state_t>("STATE", [&](const state_t&) { ++states; });
+  SendStates("STATE", 5);
+  const auto give_up = std::chrono::steady_clock::now() + 10s;
+  while (states < 5 && std::chrono::steady_clock::now() < give_up) bus_->HandleUntil(Bus::TimePoint::min());
+  EXPECT_EQ(states, 5);
+}
+
+// Tests that a handler that calls HandleUntil() is told so.
+TEST_P(BusContractTest, HandleUntilDoesNotNest) {
+  bool thrown = false;
+  bus_->Subscribe<state_t>("STATE", [&](const state_t&) { bus_->HandleUntil(Soon(0ms)); });
+  SendStates("STATE", 1);
+  HandleWhileNot([&] {
+    try {
+      bus_->HandleUntil(Soon(20ms));
+    } catch (const std::logic_error&) {
+      thrown = true;
+    }
+    return thrown;
+  });
+  EXPECT_TRUE(thrown);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Transports, BusContractTest,
+    testing::Values(
+        Transport{"InProcess", true,
+                  [](SimulatedClock* clock) { return std::make_unique<InProcessBus>(clock); }},
+        Transport{"InProcessWall", false,
+                  [](SimulatedClock*) { return std::make_unique<InProcessBus>(nullptr); }},
+        Transport{"Udpm", false, [](SimulatedClock*) { return std::make_unique<UdpmBus>(FreeBusUrl()); }},
+        Transport{"Memq", false, [](SimulatedClock*) { return std::make_unique<UdpmBus>("memq://"); }}),
+    [](const testing::TestParamInfo<Transport>& param) { return param.param.name; });
+
+}  // namespace
+}  // namespace hydro
