@@ -1,5 +1,5 @@
-// The simulated actuator: eqs. (1) to (15) with their switches and effects, advanced in time. What the plant process,
-// the figures and the gap finder run.
+// The simulated actuator: eqs. (1) to (15) with their switches and effects, advanced in time. What the plant
+// process, the figures and the gap finder run.
 #pragma once
 
 #include <limits>
@@ -11,8 +11,8 @@
 
 namespace hydro {
 
-// The model cannot go on: V_1 or V_2 would reach 0 (what() names angle and limit), a step failed or a value is not
-// finite (what() names time and state), or the conditions contradict the model.
+// The model cannot go on: V_1 or V_2 would reach 0 (what() names angle and limit), a step failed or a value
+// is not finite (what() names time and state), or the conditions contradict the model.
 class ModelError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -20,9 +20,10 @@ class ModelError : public std::runtime_error {
 
 struct ActuatorOptions {
   Shaft shaft = Shaft::kFree;
-  double arm_angle = 0;                // rad, clamped: where; free: where the arm starts
-  const Trajectory* motion = nullptr;  // rad over s, driven: the arm's angle; must be continuous and outlive the Actuator
-  bool bypass = false;                 // the two sides are connected: p1 = p2
+  double arm_angle = 0;  // rad, clamped: where; free: where the arm starts
+  const Trajectory* motion =
+      nullptr;          // rad over s, driven: the arm's angle; must be continuous and outlive the Actuator
+  bool bypass = false;  // the two sides are connected: p1 = p2
   double initial_pressure = std::numeric_limits<double>::quiet_NaN();  // psi, both sides; NaN: p_3
   Integrator integrator = Integrator::kAuto;
   double relative_tolerance = 1e-8;
@@ -40,14 +41,15 @@ struct Measurement {
 
 class Actuator {
  public:
-  // Throws ModelError, e.g. "arm angle 1.5708 rad leaves V_1 = -2.63 in^3; V_1, V_2 > 0 needs |alpha| < 0.8578 rad".
+  // Throws ModelError, e.g. "arm angle 1.5708 rad leaves V_1 = -2.63 in^3; V_1, V_2 > 0 needs |alpha| <
+  // 0.8578 rad".
   Actuator(const ModelDescription& description, const ActuatorOptions& options);
   ~Actuator();
   Actuator(Actuator&&) noexcept;
   Actuator& operator=(Actuator&&) noexcept;
 
-  // Advances to time `until` (s, not before time()) with the amplifier voltage held. Results do not depend on anything
-  // but the sequence of calls: bit-identical for identical calls. Throws ModelError.
+  // Advances to time `until` (s, not before time()) with the amplifier voltage held. Results do not depend on
+  // anything but the sequence of calls: bit-identical for identical calls. Throws ModelError.
   void Advance(double voltage, double until);
 
   double time() const;

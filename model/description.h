@@ -29,15 +29,15 @@ struct Parameters {
 
 // An effect that a model has, as written in its file: [effects."id"].
 struct EffectDescription {
-  std::string id;                             // as in docs/effects.md
-  std::map<std::string, double> parameters;   // name -> value
-  std::map<std::string, std::string> names;   // parameters that are names (a signal)
+  std::string id;                            // as in docs/effects.md
+  std::map<std::string, double> parameters;  // name -> value
+  std::map<std::string, std::string> names;  // parameters that are names (a signal)
 };
 
 struct ModelDescription {
   std::string name;
   Parameters parameters;
-  std::vector<EffectDescription> effects;     // in the file's order
+  std::vector<EffectDescription> effects;  // in the file's order
 };
 
 // What holds the actuator's shaft.

@@ -1,5 +1,5 @@
-// What is known of each parameter by itself: name, unit, physical bounds, meaning. Model files are checked against it,
-// reports print it.
+// What is known of each parameter by itself: name, unit, physical bounds, meaning. Model files are checked
+// against it, reports print it.
 #pragma once
 
 #include <string>
@@ -31,8 +31,8 @@ const std::vector<BaseParameter>& BaseParameters();
 
 // What the catalogue says of an effect. docs/effects.md has the same rows.
 struct EffectInfo {
-  std::string id;                         // "pump.stribeck"
-  std::string says;                       // "static friction above kinetic"
+  std::string id;    // "pump.stribeck"
+  std::string says;  // "static friction above kinetic"
   std::string equation;
   std::string confused_with;
   std::vector<ParameterInfo> parameters;  // all required

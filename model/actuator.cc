@@ -1,0 +1,33 @@
+#include "model/actuator.h"
+
+#include "model/equations.h"
+#include "model/simulation.h"
+
+namespace hydro {
+
+class Actuator::Impl {
+ public:
+  Impl(const ModelDescription& description, const ActuatorOptions& options)
+      : equations(description, options) {
+    simulation = MakeFastSimulation(&equations, options.initial_pressure, options.relative_tolerance);
+  }
+
+  Equations equations;
+  std::unique_ptr<Simulation> simulation;
+};
+
+Actuator::Actuator(const ModelDescription& description, const ActuatorOptions& options)
+    : impl_(std::make_unique<Impl>(description, options)) {}
+Actuator::~Actuator() = default;
+Actuator::Actuator(Actuator&&) noexcept = default;
+Actuator& Actuator::operator=(Actuator&&) noexcept = default;
+
+void Actuator::Advance(double voltage, double until) { impl_->simulation->Advance(voltage, until); }
+
+double Actuator::time() const { return impl_->simulation->now().time; }
+
+Measurement Actuator::Measure() const {
+  return impl_->equations.Measure(time(), impl_->simulation->now().state);
+}
+
+}  // namespace hydro

@@ -1,0 +1,56 @@
+// The effects that this program knows. A new effect is a file beside this one and its name in the two lists.
+#include <algorithm>
+
+#include "model/effects/effect.h"
+#include "model/parameter_info.h"
+
+namespace hydro {
+
+CatalogueEntry AmpLag();
+CatalogueEntry LineWave();
+CatalogueEntry PumpPressureFriction();
+CatalogueEntry PumpQuadraticDrag();
+CatalogueEntry PumpStribeck();
+CatalogueEntry SensorPressureOffset();
+
+namespace {
+
+const std::vector<CatalogueEntry>& Entries() {
+  static const std::vector<CatalogueEntry> entries = {
+      AmpLag(),
+      LineWave(),
+      PumpPressureFriction(),
+      PumpQuadraticDrag(),
+      PumpStribeck(),
+      SensorPressureOffset(),
+  };
+  return entries;
+}
+
+}  // namespace
+
+const CatalogueEntry* FindCatalogueEntry(const std::string& id) {
+  for (const CatalogueEntry& entry : Entries()) {
+    if (entry.info.id == id) return &entry;
+  }
+  return nullptr;
+}
+
+const std::vector<EffectInfo>& EffectCatalogue() {
+  static const std::vector<EffectInfo> catalogue = [] {
+    std::vector<EffectInfo> infos;
+    for (const CatalogueEntry& entry : Entries()) infos.push_back(entry.info);
+    std::sort(infos.begin(), infos.end(), [](const auto& a, const auto& b) { return a.id < b.id; });
+    return infos;
+  }();
+  return catalogue;
+}
+
+const EffectInfo* FindEffect(const std::string& id) {
+  for (const EffectInfo& info : EffectCatalogue()) {
+    if (info.id == id) return &info;
+  }
+  return nullptr;
+}
+
+}  // namespace hydro

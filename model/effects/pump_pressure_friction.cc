@@ -1,0 +1,39 @@
+// pump.pressure_friction: the paper's f in eq. (4), Coulomb friction that grows with the pressures, + f (p1 +
+// p2) sgn(theta').
+#include <ceres/jet.h>
+
+#include "model/effects/effect.h"
+
+namespace hydro {
+
+namespace {
+
+class PressureFriction : public EffectOf<PressureFriction> {
+ public:
+  explicit PressureFriction(double f) : f_(f) {}
+
+  template <class T>
+  void OwnProperties(Terms<T>& x) const {
+    x.f += f_;
+  }
+
+ private:
+  double f_;
+};
+
+}  // namespace
+
+CatalogueEntry PumpPressureFriction();
+CatalogueEntry PumpPressureFriction() {
+  return {{"pump.pressure_friction",
+           "friction of the pump grows with the pressures",
+           "+ f (p1 + p2) sgn(theta')",
+           "parameter k_1 or D when only one quadrant is run",
+           {{"f", "in-lbf/psi", 0, kUnbounded, true,
+             "Coulomb friction per pressure, added to the base parameter f"}}},
+          [](const EffectDescription& description, const Parameters&) -> std::unique_ptr<Effect> {
+            return std::make_unique<PressureFriction>(description.parameters.at("f"));
+          }};
+}
+
+}  // namespace hydro

@@ -1,0 +1,38 @@
+// pump.quadratic_drag: + k theta' |theta'| in eq. (4).
+#include <ceres/jet.h>
+
+#include "model/effects/effect.h"
+
+namespace hydro {
+
+namespace {
+
+class QuadraticDrag : public EffectOf<QuadraticDrag> {
+ public:
+  explicit QuadraticDrag(double k) : k_(k) {}
+
+  template <class T>
+  void OwnTorquesAndFlows(Terms<T>& x) const {
+    // The mode knows the direction of slip, so the term stays smooth where |theta'| is not.
+    x.load += k_ * static_cast<double>(x.mode->pump) * x.motor_speed * x.motor_speed;
+  }
+
+ private:
+  double k_;
+};
+
+}  // namespace
+
+CatalogueEntry PumpQuadraticDrag();
+CatalogueEntry PumpQuadraticDrag() {
+  return {{"pump.quadratic_drag",
+           "drag of the pump grows with the square of its speed",
+           "+ k theta' abs(theta')",
+           "parameter b",
+           {{"k", "in-lbf-s^2", 0, kUnbounded, true, "drag per squared speed"}}},
+          [](const EffectDescription& description, const Parameters&) -> std::unique_ptr<Effect> {
+            return std::make_unique<QuadraticDrag>(description.parameters.at("k"));
+          }};
+}
+
+}  // namespace hydro

@@ -1,0 +1,47 @@
+// pump.stribeck: static friction above kinetic. T_s becomes T_s (1 + static_excess exp(-(theta'/speed)^2)),
+// and T_s (1 + static_excess) at rest. Each slip mode is smooth: its friction falls with speed but never
+// changes sign. Form after Armstrong-Helouvry, Dupont and Canudas de Wit 1994.
+#include <ceres/jet.h>
+
+#include <cmath>
+
+#include "model/effects/effect.h"
+
+namespace hydro {
+
+namespace {
+
+class Stribeck : public EffectOf<Stribeck> {
+ public:
+  Stribeck(double static_excess, double speed) : static_excess_(static_excess), speed_(speed) {}
+
+  template <class T>
+  void OwnTorquesAndFlows(Terms<T>& x) const {
+    using std::exp;
+    const T ratio = x.motor_speed / speed_;
+    x.coulomb += x.T_s * static_excess_ * exp(-ratio * ratio);
+    x.breakaway += x.T_s * static_excess_;
+  }
+
+ private:
+  double static_excess_;
+  double speed_;
+};
+
+}  // namespace
+
+CatalogueEntry PumpStribeck();
+CatalogueEntry PumpStribeck() {
+  return {{"pump.stribeck",
+           "static friction above kinetic",
+           "T_s becomes T_s (1 + static_excess exp(-(abs(theta')/speed)^2)), T_s (1 + static_excess) at rest",
+           "pump.friction_asymmetry",
+           {{"static_excess", "1", 0, kUnbounded, true, "static friction over kinetic, less 1"},
+            {"speed", "rad/s", 0, kUnbounded, false, "motor speed over which the excess falls off"}}},
+          [](const EffectDescription& description, const Parameters&) -> std::unique_ptr<Effect> {
+            return std::make_unique<Stribeck>(description.parameters.at("static_excess"),
+                                              description.parameters.at("speed"));
+          }};
+}
+
+}  // namespace hydro

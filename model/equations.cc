@@ -1,0 +1,242 @@
+#include "model/equations.h"
+
+#include <ceres/jet.h>
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+#include "model/evaluate.h"
+
+namespace hydro {
+
+namespace {
+
+std::string Number(double value) {
+  std::ostringstream out;
+  out.precision(6);
+  out << value;
+  return out.str();
+}
+
+void CheckBounds(const ParameterInfo& info, double value, const std::string& owner) {
+  const bool inside =
+      std::isfinite(value) && value <= info.max && (info.min_allowed ? value >= info.min : value > info.min);
+  if (inside) return;
+  throw ModelError("parameter " + owner + info.name + " = " + Number(value) + " " + info.unit +
+                   "; allowed is " + (info.min_allowed ? "from " : "above ") + Number(info.min) +
+                   (std::isfinite(info.max) ? " to " + Number(info.max) : ""));
+}
+
+}  // namespace
+
+const CatalogueEntry* FindCatalogueEntry(const std::string& id);
+
+Equations::Equations(const ModelDescription& description, const ActuatorOptions& options) {
+  data_.parameters = description.parameters;
+  data_.shaft = options.shaft;
+  data_.bypass = options.bypass;
+  data_.arm_angle = options.arm_angle;
+  data_.motion = options.shaft == Shaft::kDriven ? options.motion : nullptr;
+  const Parameters& p = data_.parameters;
+  for (const BaseParameter& parameter : BaseParameters())
+    CheckBounds(parameter.info, p.*parameter.member, "");
+  if (!std::isfinite(options.arm_angle)) throw ModelError("arm angle is not finite");
+
+  const double pressure = 0.01 * p.T_pmax / p.D;
+  const double speed = pressure * std::sqrt(2 * p.V_ms / (p.beta * p.J));
+  scales_ = {0.01 * p.V_ms / p.D, speed, pressure, pressure};
+  if (data_.shaft == Shaft::kFree) {
+    scales_.push_back(0.01 * p.V_ms / p.c);
+    scales_.push_back(speed * p.D / p.c);
+  }
+
+  std::vector<EffectDescription> effects = description.effects;
+  std::sort(effects.begin(), effects.end(), [](const auto& a, const auto& b) { return a.id < b.id; });
+  for (size_t i = 0; i < effects.size(); ++i) {
+    const EffectDescription& effect = effects[i];
+    const CatalogueEntry* entry = FindCatalogueEntry(effect.id);
+    if (entry == nullptr) throw ModelError("effect \"" + effect.id + "\" is not known");
+    if (i > 0 && effects[i - 1].id == effect.id)
+      throw ModelError("effect \"" + effect.id + "\" is there twice");
+    for (const ParameterInfo& info : entry->info.parameters) {
+      const std::string owner = effect.id + ".";
+      if (info.is_name) {
+        const auto found = effect.names.find(info.name);
+        if (found == effect.names.end()) throw ModelError("parameter " + owner + info.name + " is missing");
+        if (std::find(info.names.begin(), info.names.end(), found->second) == info.names.end()) {
+          throw ModelError("parameter " + owner + info.name + " = \"" + found->second + "\" is not known");
+        }
+      } else {
+        const auto found = effect.parameters.find(info.name);
+        if (found == effect.parameters.end())
+          throw ModelError("parameter " + owner + info.name + " is missing");
+        CheckBounds(info, found->second, owner);
+      }
+    }
+    data_.effects.push_back(entry->make(effect, p));
+    Effect& made = *data_.effects.back();
+    const int first = static_cast<int>(scales_.size());
+    made.Place(first, data_.switches - kFirstEffectSwitch);
+    scales_.resize(first + made.states());
+    data_.switches += made.switches();
+    if (scales_.size() > kMaxStates || data_.switches > kMaxSwitches) throw ModelError("too many effects");
+    made.Scales(pressure, p.D * speed, 0.01 * p.T_pmax, scales_.data() + first);
+    data_.fixed_volume += made.FixedVolume(p);
+  }
+  data_.states = static_cast<int>(scales_.size());
+
+  if (data_.shaft == Shaft::kDriven) {
+    if (data_.motion == nullptr) throw ModelError("a driven shaft needs a motion");
+    if (!data_.motion->continuous())
+      throw ModelError("a driven shaft cannot jump: its motion must be continuous");
+    CheckVolumes(data_.motion->Min());
+    CheckVolumes(data_.motion->Max());
+  } else {
+    CheckVolumes(data_.arm_angle);
+    data_.stiffness_1 = p.beta / (p.V_ms - p.c * data_.arm_angle - data_.fixed_volume);
+    data_.stiffness_2 = p.beta / (p.V_ms + p.c * data_.arm_angle - data_.fixed_volume);
+  }
+}
+
+std::vector<std::string> Equations::StateNames() const {
+  std::vector<std::string> names = {"motor_angle", "motor_speed", "p1", "p2"};
+  if (data_.shaft == Shaft::kFree) names.insert(names.end(), {"arm_angle", "arm_speed"});
+  for (const auto& effect : data_.effects) {
+    for (const std::string& name : effect->StateNames()) names.push_back(name);
+  }
+  return names;
+}
+
+void Equations::Start(double pressure, double* state, Mode* mode) const {
+  if (std::isnan(pressure)) pressure = data_.parameters.p_3;
+  if (!(pressure >= data_.parameters.p_3) || !std::isfinite(pressure)) {
+    throw ModelError("initial pressure " + Number(pressure) +
+                     " psi is below the accumulator's p_3 = " + Number(data_.parameters.p_3) + " psi");
+  }
+  *mode = Mode{};
+  std::fill(state, state + data_.states, 0.0);
+  state[kP1] = state[kP2] = pressure;
+  if (data_.shaft == Shaft::kFree) state[kArmAngle] = data_.arm_angle;
+  double rate[kMaxStates];
+  Terms<double> x;
+  Evaluate(0, 0, *mode, state, rate, &x);
+  for (const auto& effect : data_.effects) effect->Start(x, state);
+}
+
+void Equations::Rates(double time, double voltage, const Mode& mode, const double* state, double* rate,
+                      double* margin) const {
+  EvaluatePoint<Form::kGeneral>(data_, time, voltage, mode, state, rate, margin);
+}
+
+void Equations::Evaluate(double time, double voltage, const Mode& mode, const double* state, double* rate,
+                         Terms<double>* terms) const {
+  EvaluateTerms<Form::kGeneral>(data_, time, voltage, mode, state, rate, *terms);
+}
+
+void Equations::Jacobian(double time, double voltage, const Mode& mode, const double* state,
+                         double* jacobian) const {
+  const int n = data_.states;
+  Jet y[kMaxStates];
+  Jet rate[kMaxStates];
+  Terms<Jet> x;
+  for (int i = 0; i < n; ++i) y[i] = Jet(state[i]);
+  for (int first = 0; first < n; first += kJetWidth) {
+    const int last = std::min(n, first + kJetWidth);
+    for (int j = first; j < last; ++j) y[j].v[j - first] = 1;
+    EvaluateTerms<Form::kGeneral>(data_, time, voltage, mode, y, rate, x);
+    for (int j = first; j < last; ++j) {
+      for (int i = 0; i < n; ++i) jacobian[i + j * n] = rate[i].v[j - first];
+      y[j].v[j - first] = 0;
+    }
+  }
+}
+
+void Equations::Cross(int which, double time, double voltage, double* state, Mode* mode) const {
+  double rate[kMaxStates];
+  Terms<double> x;
+  if (which == kPumpSwitch) {
+    if (mode->pump != 0) state[kMotorSpeed] = 0;
+    mode->pump = 0;
+    Evaluate(time, voltage, *mode, state, rate, &x);
+    if (std::abs(x.net_torque) > x.breakaway) mode->pump = x.net_torque > 0 ? 1 : -1;
+    return;
+  }
+  if (which >= kFirstEffectSwitch) {
+    Evaluate(time, voltage, *mode, state, rate, &x);
+    for (const auto& effect : data_.effects) {
+      const int first = kFirstEffectSwitch + effect->first_switch();
+      if (which >= first && which < first + effect->switches()) effect->Cross(which - first, x, mode);
+    }
+    return;
+  }
+  int8_t& valve = which == kValve1Switch ? mode->valve_1 : mode->valve_2;
+  valve = valve == 0 ? 1 : 0;
+  if (valve == 1) {
+    Evaluate(time, voltage, *mode, state, rate, &x);
+    if (which == kValve1Switch || data_.bypass) state[kP1] = x.p_3;
+    if (which == kValve2Switch || data_.bypass) state[kP2] = x.p_3;
+  }
+}
+
+Power Equations::PowerBalance(double time, double voltage, const Mode& mode, const double* state) const {
+  double rate[kMaxStates];
+  Terms<double> x;
+  Evaluate(time, voltage, mode, state, rate, &x);
+  const Parameters& p = data_.parameters;
+  const double dp = x.p2 - x.p1;
+  Power power;
+  power.in = x.torque * x.motor_speed;
+  power.kinetic = p.J * x.motor_speed * rate[kMotorSpeed];
+  power.viscous = (x.b * x.motor_speed + x.load) * x.motor_speed;
+  power.coulomb = x.coulomb * std::abs(x.motor_speed);
+  power.leakage = x.cross_flow * (x.pump_p2 - x.pump_p1) + x.outer_flow_1 * (x.pump_p1 - x.p_3) +
+                  x.outer_flow_2 * (x.pump_p2 - x.p_3);
+  power.compression =
+      (x.p1 - x.p_3) * x.V_1 / x.beta_1 * rate[kP1] + (x.p2 - x.p_3) * x.V_2 / x.beta_2 * rate[kP2];
+  power.mismatch = (p.c - p.k_2) * dp * x.arm_speed;
+  if (data_.shaft == Shaft::kFree) {
+    power.kinetic += p.J_a * x.arm_speed * rate[kArmSpeed];
+    power.gravity = p.mgl * std::cos(x.arm_angle) * x.arm_speed;
+  } else {
+    power.shaft_in = -p.k_2 * dp * x.arm_speed;
+  }
+  for (const auto& effect : data_.effects) effect->AddPower(x, rate, &power);
+  return power;
+}
+
+Measurement Equations::Measure(double time, const double* state) const {
+  Measurement measured;
+  measured.motor_angle = state[kMotorAngle];
+  measured.motor_speed = state[kMotorSpeed];
+  measured.p1 = state[kP1];
+  measured.p2 = state[kP2];
+  if (data_.shaft == Shaft::kFree) {
+    measured.arm_angle = state[kArmAngle];
+    measured.arm_speed = state[kArmSpeed];
+  } else if (data_.shaft == Shaft::kDriven) {
+    measured.arm_angle = data_.motion->Value(time);
+    measured.arm_speed = data_.motion->Rate(time);
+  } else {
+    measured.arm_angle = data_.arm_angle;
+  }
+  for (const auto& effect : data_.effects) effect->Sense(state, &measured);
+  return measured;
+}
+
+void Equations::CheckVolumes(double arm_angle) const {
+  const Parameters& p = data_.parameters;
+  const double V_1 = p.V_ms - p.c * arm_angle - data_.fixed_volume;
+  const double V_2 = p.V_ms + p.c * arm_angle - data_.fixed_volume;
+  if (V_1 > 0 && V_2 > 0) return;
+  const bool first = !(V_1 > 0);
+  throw ModelError("arm angle " + Number(arm_angle) + " rad leaves " + (first ? "V_1 = " : "V_2 = ") +
+                   Number(first ? V_1 : V_2) + " in^3" + (data_.fixed_volume > 0 ? " at the actuator" : "") +
+                   "; V_1, V_2 > 0 needs |alpha| < " + Number((p.V_ms - data_.fixed_volume) / p.c) + " rad");
+}
+
+double Equations::NextStop(double time) const {
+  return data_.motion != nullptr ? data_.motion->NextBreak(time) : std::numeric_limits<double>::infinity();
+}
+
+}  // namespace hydro

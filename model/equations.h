@@ -1,0 +1,101 @@
+// The equations below Actuator: state vectors, modes, rates, exact Jacobians, switches. For those who
+// linearise, estimate or integrate in a way of their own; who only wants the actuator's motion uses
+// actuator.h.
+#pragma once
+
+#include <limits>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "model/actuator.h"
+#include "model/description.h"
+#include "model/effects/effect.h"
+#include "model/mode.h"
+#include "model/power.h"
+
+namespace hydro {
+
+// The state vector: theta, theta', p1, p2, then alpha, alpha' when the shaft is free, then the states of the
+// effects.
+inline constexpr int kMotorAngle = 0;
+inline constexpr int kMotorSpeed = 1;
+inline constexpr int kP1 = 2;
+inline constexpr int kP2 = 3;
+inline constexpr int kArmAngle = 4;  // free shaft only
+inline constexpr int kArmSpeed = 5;  // free shaft only
+inline constexpr int kMaxStates = 32;
+
+// What the right-hand side needs besides time, state, mode and voltage.
+struct EquationData {
+  Parameters parameters;
+  Shaft shaft = Shaft::kFree;
+  bool bypass = false;
+  double arm_angle = 0;                // clamped
+  const Trajectory* motion = nullptr;  // driven
+  double motion_limit =
+      std::numeric_limits<double>::infinity();  // s: `motion` is evaluated at times below this
+  std::vector<std::unique_ptr<Effect>> effects;
+  int states = 0;
+  int switches = kFirstEffectSwitch;
+  double fixed_volume = 0;  // in^3, of each side, not at the actuator
+  double stiffness_1 = 0;   // beta/V_1 at arm_angle, psi/in^3
+  double stiffness_2 = 0;
+};
+
+class Equations {
+ public:
+  // Throws ModelError: volumes not above 0, a motion with jumps, effects that are not known or contradict
+  // each other, parameters outside their bounds.
+  Equations(const ModelDescription& description, const ActuatorOptions& options);
+
+  const EquationData& data() const { return data_; }
+  int states() const { return data_.states; }
+  int switches() const { return data_.switches; }
+  bool plain() const { return data_.effects.empty() && !data_.bypass && data_.shaft != Shaft::kDriven; }
+  std::vector<std::string> StateNames() const;
+
+  // Sizes (per state) below which absolute errors count: error weights are relative_tolerance * (|y| +
+  // scale).
+  const std::vector<double>& scales() const { return scales_; }
+
+  // State at rest with both pressures at `pressure`, and its mode: all at rest, valves closed.
+  void Start(double pressure, double* state, Mode* mode) const;
+
+  // d state/dt. `margin` (may be null) receives switches() numbers that are positive while the switch may
+  // stay as it is and fall through 0 when it must change:
+  //   pump slips: speed in its direction; pump sticks: friction limit less net torque
+  //   valve closed: p - p_3; valve open: minus the rate that p would have with the valve closed
+  void Rates(double time, double voltage, const Mode& mode, const double* state, double* rate,
+             double* margin = nullptr) const;
+
+  // d rate_i/d state_j at jacobian[i + j * states()], exact (automatic derivatives).
+  void Jacobian(double time, double voltage, const Mode& mode, const double* state, double* jacobian) const;
+
+  // d rate_i/d voltage at derivative[i], for a torque within its limit.
+  // Changes switch `which`, whose margin has reached 0, and puts the state exactly on the boundary.
+  void Cross(int which, double time, double voltage, double* state, Mode* mode) const;
+
+  // All named quantities at one instant.
+  void Evaluate(double time, double voltage, const Mode& mode, const double* state, double* rate,
+                Terms<double>* terms) const;
+
+  Power PowerBalance(double time, double voltage, const Mode& mode, const double* state) const;
+  Measurement Measure(double time, const double* state) const;
+
+  // Throws ModelError when V_1 or V_2 is not above 0 (or above what an effect has elsewhere) at `arm_angle`.
+  void CheckVolumes(double arm_angle) const;
+
+  // First time after `time` at which the right-hand side jumps by itself (a driven shaft's motion breaks).
+  double NextStop(double time) const;
+
+  // Until when the driven motion follows its present formula; integrators set it to the next stop before
+  // stepping.
+  void SetMotionLimit(double time) { data_.motion_limit = time; }
+
+ private:
+  EquationData data_;
+  std::vector<double> scales_;
+};
+
+}  // namespace hydro

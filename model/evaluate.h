@@ -1,0 +1,136 @@
+// The right-hand side: eqs. (1) to (15) in one mode. A template, for .cc files of model/ only.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "model/equations.h"
+#include "trajectory/trajectory.h"
+
+namespace hydro {
+
+// Which terms are compiled in. The plain forms have no effects and no bypass, and are what the fast path
+// inlines.
+enum class Form { kPlainClamped, kPlainFree, kGeneral };
+
+template <Form kForm, class T>
+[[gnu::always_inline]] inline void EvaluateTerms(const EquationData& m, double time, double voltage,
+                                                 const Mode& mode, const T* y, T* rate, Terms<T>& x) {
+  using std::cos;
+  constexpr bool kGeneralForm = kForm == Form::kGeneral;
+  const Parameters& p = m.parameters;
+  x.motor_angle = y[kMotorAngle];
+  x.motor_speed = y[kMotorSpeed];
+  x.p1 = y[kP1];
+  x.p2 = y[kP2];
+  bool arm_moves_freely = false;
+  if constexpr (kForm == Form::kPlainClamped) {
+    x.arm_angle = T(m.arm_angle);
+    x.arm_speed = T(0.0);
+  } else if (kForm == Form::kPlainFree || m.shaft == Shaft::kFree) {
+    x.arm_angle = y[kArmAngle];
+    x.arm_speed = y[kArmSpeed];
+    arm_moves_freely = true;
+  } else if (m.shaft == Shaft::kDriven) {
+    const double motion_time = std::min(time, m.motion_limit);
+    x.arm_angle = T(m.motion->Value(motion_time));
+    x.arm_speed = T(m.motion->Rate(motion_time));
+  } else {
+    x.arm_angle = T(m.arm_angle);
+    x.arm_speed = T(0.0);
+  }
+
+  x.torque = T(std::clamp(p.k_1 * voltage, -p.T_pmax, p.T_pmax));  // (1)
+  x.D = T(p.D);
+  x.b = T(p.b);
+  x.T_s = T(p.T_s);
+  x.f = T(p.f);
+  x.beta_1 = x.beta_2 = T(p.beta);
+  x.c_E = T(p.c_E);
+  x.c_I = T(p.c_I);
+  x.p_3 = T(p.p_3);
+  x.pump_p1 = x.p1;
+  x.pump_p2 = x.p2;
+  if constexpr (kForm != Form::kPlainClamped) {
+    x.V_1 = p.V_ms - p.c * x.arm_angle;  // (6)
+    x.V_2 = p.V_ms + p.c * x.arm_angle;  // (7)
+  }
+  if constexpr (kGeneralForm) {
+    x.V_1 -= m.fixed_volume;
+    x.V_2 -= m.fixed_volume;
+    x.time = time;
+    x.voltage = voltage;
+    x.mode = &mode;
+    x.parameters = &p;
+    x.state = y;
+    for (const auto& effect : m.effects) effect->SetProperties(x);
+  }
+
+  const double direction = mode.pump;
+  const T dp = x.pump_p2 - x.pump_p1;
+  x.load = T(0.0);
+  x.coulomb = x.T_s + x.f * (x.pump_p1 + x.pump_p2);
+  x.breakaway = x.coulomb;
+  x.cross_flow = x.c_I * dp;
+  x.outer_flow_1 = x.c_E * (x.pump_p1 - x.p_3);
+  x.outer_flow_2 = x.c_E * (x.pump_p2 - x.p_3);
+  x.arm_torque = p.k_2 * (x.p2 - x.p1);  // (15)
+  if (arm_moves_freely) x.arm_torque -= p.mgl * cos(x.arm_angle);
+  if constexpr (kGeneralForm) {
+    for (const auto& effect : m.effects) effect->AddTorquesAndFlows(x);
+  }
+
+  x.net_torque = x.torque - x.D * dp - x.load;                   // (4)
+  x.q_1 = x.D * x.motor_speed - x.cross_flow + x.outer_flow_1;   // (11)
+  x.q_2 = -x.D * x.motor_speed + x.cross_flow + x.outer_flow_2;  // (12)
+  if constexpr (kGeneralForm) {
+    for (const auto& effect : m.effects) effect->AddStates(x, rate);
+  }
+
+  rate[kMotorAngle] = x.motor_speed;
+  rate[kMotorSpeed] =
+      mode.pump == 0 ? T(0.0) : T((x.net_torque - x.b * x.motor_speed - direction * x.coulomb) / p.J);  // (4)
+  if constexpr (kForm == Form::kPlainClamped) {
+    x.free_rate_1 = -m.stiffness_1 * x.q_1;  // (13)
+    x.free_rate_2 = -m.stiffness_2 * x.q_2;  // (14)
+  } else {
+    const T arm_flow = p.c * x.arm_speed;
+    if (kGeneralForm && m.bypass) {  // one pressure; what the arm displaces goes round
+      x.free_rate_1 = x.free_rate_2 = -(x.q_1 + x.q_2) / (x.V_1 / x.beta_1 + x.V_2 / x.beta_2);
+    } else {
+      x.free_rate_1 = -x.beta_1 / x.V_1 * (x.q_1 - arm_flow);  // (13)
+      x.free_rate_2 = -x.beta_2 / x.V_2 * (x.q_2 + arm_flow);  // (14)
+    }
+  }
+  const bool open_1 = mode.valve_1 != 0;
+  const bool open_2 = kGeneralForm && m.bypass ? open_1 : mode.valve_2 != 0;
+  rate[kP1] = open_1 ? T(0.0) : x.free_rate_1;
+  rate[kP2] = open_2 ? T(0.0) : x.free_rate_2;
+  if (arm_moves_freely) {
+    rate[kArmAngle] = x.arm_speed;
+    rate[kArmSpeed] = x.arm_torque / p.J_a;  // (15)
+  }
+}
+
+template <Form kForm>
+[[gnu::always_inline]] inline void FindMargins(const EquationData& m, const Mode& mode,
+                                               const Terms<double>& x, double* margin) {
+  margin[kPumpSwitch] = mode.pump == 0 ? x.breakaway - std::abs(x.net_torque) : mode.pump * x.motor_speed;
+  margin[kValve1Switch] = mode.valve_1 ? -x.free_rate_1 : x.p1 - x.p_3;
+  margin[kValve2Switch] = mode.valve_2 ? -x.free_rate_2 : x.p2 - x.p_3;
+  if constexpr (kForm == Form::kGeneral) {
+    if (m.bypass) margin[kValve2Switch] = 1;  // valve_1 stands for both
+    for (const auto& effect : m.effects) effect->Margins(x, margin);
+  }
+}
+
+template <Form kForm>
+[[gnu::always_inline]] inline void EvaluatePoint(const EquationData& m, double time, double voltage,
+                                                 const Mode& mode, const double* y, double* rate,
+                                                 double* margin) {
+  Terms<double> x;
+  EvaluateTerms<kForm>(m, time, voltage, mode, y, rate, x);
+  if (margin != nullptr) FindMargins<kForm>(m, mode, x, margin);
+}
+
+}  // namespace hydro

@@ -1,0 +1,33 @@
+// The positions of the model's switches. Between two changes of the mode the right-hand side is smooth.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+namespace hydro {
+
+// Most switches that effects can add to one model.
+inline constexpr int kMaxEffectSwitches = 13;
+inline constexpr int kMaxSwitches = 3 + kMaxEffectSwitches;
+
+// Numbers of the base switches, as Equations::Margins and Equations::Cross count them; those of effects
+// follow.
+inline constexpr int kPumpSwitch = 0;
+inline constexpr int kValve1Switch = 1;
+inline constexpr int kValve2Switch = 2;
+inline constexpr int kFirstEffectSwitch = 3;
+
+struct Mode {
+  // The pump: 0 sticks; +1 and -1 slips in that direction, and friction acts against it.
+  int8_t pump = 0;
+  // The one-way valves from the accumulator: 1 open (the pressure is held at p_3), 0 closed. With the bypass
+  // open, valve_1 stands for both.
+  int8_t valve_1 = 0;
+  int8_t valve_2 = 0;
+  // What effects add; each documents the meaning of its positions.
+  std::array<int8_t, kMaxEffectSwitches> effects{};
+
+  bool operator==(const Mode&) const = default;
+};
+
+}  // namespace hydro

@@ -1,0 +1,30 @@
+// What Actuator holds: one model in motion, whatever integrates it.
+#pragma once
+
+#include <memory>
+
+#include "model/equations.h"
+
+namespace hydro {
+
+// A state with all that is known at it.
+struct Point {
+  double time = 0;
+  alignas(16) double state[kMaxStates] = {};
+  alignas(16) double rate[kMaxStates] = {};
+  double margin[kMaxSwitches] = {};
+};
+
+class Simulation {
+ public:
+  virtual ~Simulation() = default;
+  virtual void Advance(double voltage, double until) = 0;
+  virtual const Point& now() const = 0;
+  virtual const Mode& mode() const = 0;
+  virtual int64_t mode_changes() const = 0;
+};
+
+std::unique_ptr<Simulation> MakeFastSimulation(Equations* equations, double initial_pressure,
+                                               double relative_tolerance);
+
+}  // namespace hydro

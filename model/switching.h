@@ -1,0 +1,265 @@
+// The mode machine: runs any stepper from event to event. A template, for .cc files of model/ only.
+//
+// A stepper integrates one smooth mode:
+//   void Restart(const Point& now)                 the state or the mode has changed
+//   void NewVoltage(const Point& now)              only the voltage has changed
+//   void Step(const Point& now, double stop, Point* next)  one step, to no later than `stop`; fills time and
+//   state of
+//                                                  next, and rate and margin too when kFillsPoint; throws
+//                                                  ModelError
+//   void Interpolate(const Point& now, const Point& next, double time, Point* at)   time and state within the
+//   step
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <sstream>
+#include <utility>
+
+#include "model/evaluate.h"
+#include "model/simulation.h"
+
+namespace hydro {
+
+// "…at t = 0.25 s, state (0, 1.5, …)".
+inline std::string Where(const Equations& equations, const Point& at) {
+  std::ostringstream out;
+  out.precision(10);
+  out << " at t = " << at.time << " s, state";
+  const auto names = equations.StateNames();
+  for (int i = 0; i < equations.states(); ++i)
+    out << (i == 0 ? " " : ", ") << names[i] << " = " << at.state[i];
+  return out.str();
+}
+
+template <Form kForm>
+struct FormSize {
+  static int states(const EquationData& m) {
+    if constexpr (kForm == Form::kPlainClamped) return 4;
+    if constexpr (kForm == Form::kPlainFree) return 6;
+    return m.states;
+  }
+  static int switches(const EquationData& m) {
+    if constexpr (kForm != Form::kGeneral) return kFirstEffectSwitch;
+    return m.switches;
+  }
+};
+
+template <Form kForm, class Stepper>
+class SwitchingSimulation final : public Simulation {
+ public:
+  SwitchingSimulation(Equations* equations, double initial_pressure, double relative_tolerance)
+      : equations_(*equations), stepper_(&mode_, &voltage_, equations, relative_tolerance) {
+    equations_.Start(initial_pressure, now_->state, &mode_);
+    FollowMotion();
+  }
+
+  const Point& now() const override { return *now_; }
+  const Mode& mode() const override { return mode_; }
+  int64_t mode_changes() const override { return mode_changes_; }
+
+  void Advance(double voltage, double until) override {
+    if (!std::isfinite(voltage)) throw ModelError("the voltage is not finite" + Where(equations_, *now_));
+    if (!(until >= now_->time) || std::isinf(until)) {
+      throw ModelError("cannot advance to t = " + std::to_string(until) + " s" + Where(equations_, *now_));
+    }
+    if (voltage != voltage_ || !started_) {
+      voltage_ = voltage;
+      EvaluateHere();
+      if (Settle() || !started_) {
+        stepper_.Restart(*now_);
+      } else {
+        stepper_.NewVoltage(*now_);
+      }
+      started_ = true;
+    }
+    while (now_->time < until) {
+      double stop = std::min(until, motion_stop_);
+      // A switch on its boundary is given a moment to show to which side it goes.
+      if (OnBoundary()) stop = std::min(stop, now_->time + kMoment);
+      stepper_.Step(*now_, stop, next_);
+      if constexpr (!Stepper::kFillsPoint) Evaluate(next_);
+      CheckFinite(*next_);
+      if constexpr (kForm != Form::kPlainClamped) {
+        if (data().shaft == Shaft::kFree) CheckArm(next_->state[kArmAngle]);
+      }
+      const double last = FirstTrouble();
+      if (last <= next_->time) {
+        ToEvent(last);
+      } else {
+        std::swap(now_, next_);
+        if (now_->time >= motion_stop_) {
+          FollowMotion();
+          EvaluateHere();
+          Settle();
+          stepper_.Restart(*now_);
+        }
+      }
+    }
+  }
+
+ private:
+  static constexpr double kMoment = 1e-6;       // s
+  static constexpr double kEventWidth = 1e-11;  // s, within which an event is located
+  static constexpr double kNever = std::numeric_limits<double>::infinity();
+
+  const EquationData& data() const { return equations_.data(); }
+  int switches() const { return FormSize<kForm>::switches(data()); }
+
+  void Evaluate(Point* at) {
+    EvaluatePoint<kForm>(data(), at->time, voltage_, mode_, at->state, at->rate, at->margin);
+  }
+  void EvaluateHere() { Evaluate(now_); }
+
+  void FollowMotion() {
+    motion_stop_ = equations_.NextStop(now_->time);
+    // Up to the break the old formula holds, also for the stage that lies on the break.
+    equations_.SetMotionLimit(std::nextafter(motion_stop_, -kNever));
+  }
+
+  void CheckFinite(const Point& at) const {
+    double sum = 0;
+    for (int i = 0; i < FormSize<kForm>::states(data()); ++i) sum += at.state[i];
+    if (!std::isfinite(sum)) throw ModelError("a state is not finite" + Where(equations_, at));
+  }
+
+  void CheckArm(double arm_angle) const {
+    const Parameters& p = data().parameters;
+    if (!(std::abs(arm_angle) * p.c < p.V_ms - data().fixed_volume)) [[unlikely]] {
+      try {
+        equations_.CheckVolumes(arm_angle);
+      } catch (const ModelError& error) {
+        throw ModelError(error.what() + Where(equations_, *now_));
+      }
+    }
+  }
+
+  bool OnBoundary() const {
+    bool on = false;
+    for (int i = 0; i < switches(); ++i) on |= now_->margin[i] == 0;
+    return on;
+  }
+
+  // The rate of a margin that is itself a state; 0 for others.
+  double MarginRate(int i, const Point& at) const {
+    if (i == kPumpSwitch) return mode_.pump * at.rate[kMotorSpeed];
+    if (i == kValve1Switch) return mode_.valve_1 ? 0 : at.rate[kP1];
+    if (i == kValve2Switch) return mode_.valve_2 ? 0 : at.rate[kP2];
+    return 0;
+  }
+
+  // Changes the switches that contradict the present state. True when any did.
+  bool Settle() {
+    bool changed = false;
+    for (int round = 0; round < 4 * kMaxSwitches; ++round) {
+      int wrong = -1;
+      for (int i = 0; i < switches() && wrong < 0; ++i) {
+        const double margin = now_->margin[i];
+        if (margin < 0 || (margin == 0 && MarginRate(i, *now_) < 0)) wrong = i;
+      }
+      if (wrong < 0) return changed;
+      equations_.Cross(wrong, now_->time, voltage_, now_->state, &mode_);
+      ++mode_changes_;
+      EvaluateHere();
+      changed = true;
+    }
+    throw ModelError("no mode fits" + Where(equations_, *now_));
+  }
+
+  // A time in the step at which some switch is past its boundary; kNever when there is none. Margins that
+  // fall and rise again within the step are looked at too.
+  double FirstTrouble() const {
+    double trouble = kNever;
+    for (int i = 0; i < switches(); ++i) {
+      if (next_->margin[i] < 0) trouble = std::min(trouble, next_->time);
+    }
+    if (trouble < kNever) return trouble;
+    for (int i = 0; i < kFirstEffectSwitch; ++i) {
+      const double slope_0 = MarginRate(i, *now_);
+      const double slope_1 = MarginRate(i, *next_);
+      if (slope_0 < 0 && slope_1 > 0) trouble = std::min(trouble, Dip(i, slope_0, slope_1));
+    }
+    return trouble;
+  }
+
+  // Where the cubic through both ends of the step has its minimum, if that is below 0.
+  double Dip(int i, double slope_0, double slope_1) const {
+    const double h = next_->time - now_->time;
+    const double g_0 = now_->margin[i];
+    const double g_1 = next_->margin[i];
+    const double a = h * slope_0;
+    const double c = 2 * (g_0 - g_1) + a + h * slope_1;
+    const double b = (g_1 - g_0) - a - c;
+    const double root = std::sqrt(std::max(0.0, b * b - 3 * a * c));
+    const double s = -a / (b + root);  // where a + 2 b s + 3 c s^2 = 0 while rising
+    if (!(s > 0 && s < 1)) return kNever;
+    return g_0 + s * (a + s * (b + s * c)) < 0 ? now_->time + s * h : kNever;
+  }
+
+  double LeastMargin(const Point& at) const { return *std::min_element(at.margin, at.margin + switches()); }
+
+  void At(double time, Point* at) {
+    stepper_.Interpolate(*now_, *next_, time, at);
+    Evaluate(at);
+  }
+
+  // Moves to the first event before `last`, where a margin is below 0, and changes the mode there.
+  void ToEvent(double last) {
+    Point& at = *spare_;
+    double a = now_->time;
+    double g_a = std::max(0.0, LeastMargin(*now_));
+    double b = last;
+    At(b, &at);
+    double g_b = LeastMargin(at);
+    if (g_b >= 0) {  // the cubic saw a dip that is not there
+      std::swap(now_, next_);
+      return;
+    }
+    int kept = 0;  // Illinois: halve the value at the end that stays
+    for (int i = 0; i < 200 && b - a > kEventWidth; ++i) {
+      double time = b - g_b * (b - a) / (g_b - g_a);
+      if (i % 8 == 7) time = 0.5 * (a + b);
+      time = std::clamp(time, a + 0.4 * kEventWidth, b - 0.4 * kEventWidth);
+      if (!(time > a && time < b)) break;  // as close as the clock can tell
+      At(time, &at);
+      const double g = LeastMargin(at);
+      if (g < 0) {
+        b = time;
+        g_b = g;
+        if (kept == 1) g_a *= 0.5;
+        kept = 1;
+      } else {
+        a = time;
+        g_a = g;
+        if (kept == -1) g_b *= 0.5;
+        kept = -1;
+      }
+    }
+    At(b, &at);  // just past the boundary
+    std::swap(now_, spare_);
+    for (int i = 0; i < switches(); ++i) {
+      if (now_->margin[i] < 0) {
+        equations_.Cross(i, now_->time, voltage_, now_->state, &mode_);
+        ++mode_changes_;
+      }
+    }
+    EvaluateHere();
+    Settle();
+    stepper_.Restart(*now_);
+  }
+
+  Equations& equations_;
+  Mode mode_;
+  double voltage_ = 0;
+  bool started_ = false;
+  double motion_stop_ = kNever;
+  int64_t mode_changes_ = 0;
+  Point points_[3];
+  Point* now_ = &points_[0];
+  Point* next_ = &points_[1];
+  Point* spare_ = &points_[2];
+  Stepper stepper_;
+};
+
+}  // namespace hydro

@@ -1,0 +1,56 @@
+// The quantities of eqs. (1) to (15) at one instant, by name: what effects read and change.
+#pragma once
+
+#include "model/description.h"
+#include "model/mode.h"
+
+namespace ceres {
+template <typename T, int N>
+struct Jet;
+}
+
+namespace hydro {
+
+// Scalar that carries derivatives along four directions at a time.
+inline constexpr int kJetWidth = 4;
+using Jet = ceres::Jet<double, kJetWidth>;
+
+// T is double, or Jet for exact derivatives. Signs are those of the paper: the pump turning forward (theta' >
+// 0) moves fluid from side 1 to side 2.
+template <class T>
+struct Terms {
+  // The instant. Given to effects, not theirs to change.
+  double time = 0;     // s
+  double voltage = 0;  // V, held
+  const Mode* mode = nullptr;
+  const Parameters* parameters = nullptr;
+  const T* state = nullptr;  // the whole state vector; an effect finds its own states from first_state() on
+  T motor_angle, motor_speed;
+  T arm_angle, arm_speed;
+  T p1, p2;  // at the actuator, where the transducers and the one-way valves are
+
+  // Properties, from the base parameters; effects change them in SetProperties.
+  T torque;            // T_p, eq. (1) with |T_p| <= T_pmax
+  T D, b, T_s, f;      // eqs. (3), (4)
+  T beta_1, beta_2;    // eq. (5)
+  T V_1, V_2;          // eqs. (6), (7): the fluid whose pressure is p1, p2
+  T c_E, c_I, p_3;     // eqs. (11), (12)
+  T pump_p1, pump_p2;  // what the pump sees of p1, p2
+
+  // Torques and flows, from the properties; effects change them in AddTorquesAndFlows.
+  T load;                        // torque against forward rotation besides D dp, b theta' and friction
+  T coulomb;                     // magnitude of the friction while the pump slips
+  T breakaway;                   // largest torque that friction holds while the pump sticks
+  T cross_flow;                  // from side 2 to side 1 at the pump
+  T outer_flow_1, outer_flow_2;  // from each side to the accumulator
+  T arm_torque;                  // on the arm, eq. (15)
+
+  // From the above; effects with states of their own may replace the flows in AddStates.
+  T net_torque;  // T_p - D dp - load: what friction has to hold when the pump is at rest
+  T q_1, q_2;    // out of each side of the actuator, eqs. (11), (12)
+
+  // The result for the switches: how p1 and p2 would move with their valve closed.
+  T free_rate_1, free_rate_2;
+};
+
+}  // namespace hydro
