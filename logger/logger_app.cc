@@ -1,0 +1,188 @@
+#include "logger/logger_app.h"
+
+#include <spdlog/fmt/fmt.h>
+#include <spdlog/spdlog.h>
+
+#include <filesystem>
+#include <hydro/log_progress_t.hpp>
+#include <hydro/motor_command_t.hpp>
+#include <hydro/pressure_command_t.hpp>
+#include <hydro/state_t.hpp>
+#include <utility>
+
+namespace hydro {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr int64_t kProgressTicks = 16;  // a quarter of the plant's window (plant_app.cc)
+constexpr auto kFarewellTime = 500ms;   // how long to wait for the others' last words after a stop
+
+// Fields common to the numbered messages, read without decoding the rest: after the 8 bytes of the type's
+// hash come utime, tick, session and sequence, 8 bytes each, big-endian (LCM's encoding).
+int64_t ReadInt64(const uint8_t* data) {
+  uint64_t value = 0;
+  for (int i = 0; i < 8; ++i) value = value << 8 | data[i];
+  return static_cast<int64_t>(value);
+}
+constexpr int kTickOffset = 16;
+constexpr int kSessionOffset = 24;
+constexpr int kSequenceOffset = 32;
+
+}  // namespace
+
+std::string RotatedName(const std::string& file, int n) {
+  if (n == 0) return file;
+  const std::filesystem::path path(file);
+  return (path.parent_path() / fmt::format("{}-{:03d}{}", path.stem().string(), n, path.extension().string()))
+      .string();
+}
+
+LoggerApp::LoggerApp(Bus& bus, Clock& clock, const StackConfig& config, const LoggerOptions& options)
+    : bus_(bus),
+      participant_(bus, clock, Channels(config.bus.channel_suffix), "logger"),
+      options_(options),
+      writer_(std::make_unique<LogWriter>(options.file, LogWriter::Opening::kDirect)) {
+  bus.SubscribeAll([this](const RawMessage& message) { OnMessage(message); });
+  bus.Subscribe<process_status_t>(participant_.channels().process_status,
+                                  [this](const process_status_t& status) {
+                                    if (status.session != participant_.session() && status.role != "logger")
+                                      others_[status.session] = status.state;
+                                  });
+  thread_ = std::thread([this] { WriteUntilClosed(); });
+  participant_.Announce(process_status_t::READY);
+}
+
+LoggerApp::~LoggerApp() {
+  {
+    const std::lock_guard lock(mutex_);
+    closing_ = true;
+  }
+  wake_.notify_one();
+  if (thread_.joinable()) thread_.join();
+}
+
+void LoggerApp::OnMessage(const RawMessage& message) {
+  Event event{
+      std::string(message.channel), {message.data, message.data + message.size}, message.receive_utime};
+  ++received_;
+  const Channels& channels = participant_.channels();
+  const bool numbered = message.channel == channels.state || message.channel == channels.motor_command ||
+                        message.channel == channels.pressure_command ||
+                        message.channel == channels.arm_reference;
+  if (numbered && message.size >= kSequenceOffset + 8) {
+    const int64_t sequence = ReadInt64(message.data + kSequenceOffset);
+    int64_t& next = next_sequence_[event.channel]
+                        .try_emplace(ReadInt64(message.data + kSessionOffset), sequence)
+                        .first->second;
+    if (sequence > next) lost_ += sequence - next;
+    if (sequence >= next) next = sequence + 1;
+  }
+  if (message.channel == channels.state && message.size >= kSequenceOffset) {
+    state_tick_ = ReadInt64(message.data + kTickOffset);
+    participant_.set_tick(state_tick_);
+    if (participant_.state() == process_status_t::READY) participant_.Announce(process_status_t::RUNNING);
+    // A state that is sent again asks for the answer again; it may have been lost.
+    if (state_tick_ >= reported_tick_ + kProgressTicks || state_tick_ <= reported_tick_) ReportProgress();
+  }
+  size_t waiting = 0;
+  {
+    const std::lock_guard lock(mutex_);
+    queue_.push_back(std::move(event));
+    waiting = queue_.size();
+  }
+  largest_queue_ = std::max(largest_queue_, static_cast<int64_t>(waiting));
+  largest_queue_total_ = std::max(largest_queue_total_, largest_queue_);
+}
+
+void LoggerApp::ReportProgress() {
+  reported_tick_ = state_tick_;
+  log_progress_t progress;
+  progress.utime = participant_.clock().Utime();
+  progress.tick = state_tick_;
+  progress.session = participant_.session();
+  progress.events = received_;
+  progress.queue_depth = largest_queue_;
+  bus_.Publish(participant_.channels().log_progress, progress);
+}
+
+// Wakes by itself every kFlushPeriod: a notification per message would cost the receiving thread a system
+// call each.
+void LoggerApp::WriteUntilClosed() {
+  try {
+    for (bool closing = false; !closing;) {
+      std::deque<Event> batch;
+      {
+        std::unique_lock lock(mutex_);
+        wake_.wait_for(lock, kFlushPeriod, [this] { return closing_; });
+        batch.swap(queue_);
+        closing = closing_;
+      }
+      WriteBatch(batch);
+    }
+  } catch (...) {
+    const std::lock_guard lock(mutex_);
+    failure_ = std::current_exception();
+    failed_ = true;
+  }
+}
+
+void LoggerApp::WriteBatch(std::deque<Event>& batch) {
+  for (Event& event : batch) {
+    if (options_.rotate_bytes > 0 && writer_->bytes() >= options_.rotate_bytes) Rotate();
+    writer_->Append(event.channel, event.data.data(), static_cast<int>(event.data.size()), event.utime);
+    if (event.channel == participant_.channels().run) descriptions_[event.channel] = std::move(event);
+  }
+  writer_->Flush();
+  bytes_ = writer_->bytes();
+}
+
+void LoggerApp::Rotate() {
+  writer_->Finish();
+  writer_ = std::make_unique<LogWriter>(RotatedName(options_.file, files_++), LogWriter::Opening::kDirect);
+  for (const auto& [channel, event] : descriptions_) {
+    writer_->Append(channel, event.data.data(), static_cast<int>(event.data.size()), event.utime);
+  }
+}
+
+void LoggerApp::Poll() {
+  participant_.statistics().set_lost_messages(lost_);
+  participant_.statistics().set_queue_depth(largest_queue_);
+  largest_queue_ = 0;
+  participant_.Poll();
+  if (state_tick_ > reported_tick_) ReportProgress();
+  if (participant_.stop() && !stop_time_) stop_time_ = participant_.clock().Now();
+}
+
+bool LoggerApp::EveryoneHasLeft() const {
+  for (const auto& [session, state] : others_) {
+    if (state != process_status_t::DONE && state != process_status_t::FAILED) return false;
+  }
+  return true;
+}
+
+bool LoggerApp::finished() const {
+  if (failed_) return true;
+  return stop_time_ && (EveryoneHasLeft() || participant_.clock().Now() - *stop_time_ > kFarewellTime);
+}
+
+int LoggerApp::Finish() {
+  int exit_code = participant_.Leave();
+  while (bus_.HandleUntil(participant_.clock().Now()) >
+         0) {  // what has arrived already, our own farewell included
+  }
+  {
+    const std::lock_guard lock(mutex_);
+    closing_ = true;
+  }
+  wake_.notify_one();
+  thread_.join();
+  if (failure_) std::rethrow_exception(failure_);
+  writer_->Finish();
+  spdlog::info("{} messages in {}{}, {} bytes in the last; at most {} waited; {} lost before they arrived",
+               received_, options_.file, files_ > 1 ? fmt::format(" and {} more files", files_ - 1) : "",
+               writer_->bytes(), largest_queue_total_, lost_);
+  return exit_code;
+}
+
+}  // namespace hydro

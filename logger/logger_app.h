@@ -1,0 +1,93 @@
+// The logger as an application: records every message on the bus.
+//
+// Messages go from the bus into an unbounded queue and from there, on a thread of its own, into the file, so
+// that a slow disk delays nobody and loses nothing. What was received is handed to the kernel at least every
+// kFlushPeriod.
+#pragma once
+
+#include <atomic>
+#include <condition_variable>
+#include <cstdint>
+#include <deque>
+#include <exception>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "logger/log_writer.h"
+#include "process/app.h"
+#include "process/participant.h"
+#include "settings/stack_config.h"
+
+namespace hydro {
+
+struct LoggerOptions {
+  std::string file;
+  int64_t rotate_bytes = 0;  // start a new file when one has grown beyond this; 0: never
+};
+
+// Name of the n-th file (n = 0 is `file` itself): run.lcmlog, run-001.lcmlog, run-002.lcmlog ...
+std::string RotatedName(const std::string& file, int n);
+
+class LoggerApp : public App {
+ public:
+  static constexpr auto kFlushPeriod = std::chrono::milliseconds(20);
+
+  // Opens the file; throws InputError when that cannot be done.
+  LoggerApp(Bus& bus, Clock& clock, const StackConfig& config, const LoggerOptions& options);
+  ~LoggerApp() override;
+
+  void Poll() override;
+  bool finished() const override;
+  int Finish() override;
+
+  int64_t events() const { return received_; }
+  int64_t largest_queue() const { return largest_queue_total_; }
+  int64_t bytes() const { return bytes_; }
+
+ private:
+  struct Event {
+    std::string channel;
+    std::vector<uint8_t> data;
+    int64_t utime = 0;
+  };
+
+  void OnMessage(const RawMessage& message);
+  void WriteUntilClosed();
+  void WriteBatch(std::deque<Event>& batch);
+  void Rotate();
+  void ReportProgress();
+  bool EveryoneHasLeft() const;
+
+  Bus& bus_;
+  Participant participant_;
+  LoggerOptions options_;
+  std::unique_ptr<LogWriter> writer_;  // the writing thread's, once it runs
+  int files_ = 1;
+  std::map<std::string, Event> descriptions_;  // newest HYDRO_RUN message by channel: opens each rotated file
+
+  std::mutex mutex_;  // guards queue_, closing_, failure_
+  std::condition_variable wake_;
+  std::deque<Event> queue_;
+  bool closing_ = false;
+  std::exception_ptr failure_;
+  std::atomic<bool> failed_ = false;
+  std::atomic<int64_t> bytes_ = 0;
+  std::thread thread_;
+
+  int64_t received_ = 0;
+  int64_t largest_queue_ = 0;  // since the last statistics report
+  int64_t largest_queue_total_ = 0;
+  int64_t state_tick_ = -1;  // newest tick received
+  int64_t reported_tick_ = -1;
+  std::map<int64_t, int8_t> others_;  // state of the other processes, by session
+  std::map<std::string, std::map<int64_t, int64_t>>
+      next_sequence_;  // by channel and session, to count losses
+  int64_t lost_ = 0;
+  std::optional<Clock::TimePoint> stop_time_;  // when the stop was heard
+};
+
+}  // namespace hydro

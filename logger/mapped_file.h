@@ -1,0 +1,31 @@
+// The bytes of a file, for reading.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace hydro {
+
+class MappedFile {
+ public:
+  // Maps a regular file into memory as long as it is now; anything else (a pipe) is read to its end. Throws
+  // InputError naming the file when it cannot be opened or read. The file must not be cut short while it is
+  // mapped.
+  explicit MappedFile(const std::string& file);
+  ~MappedFile();
+  MappedFile(const MappedFile&) = delete;
+  MappedFile& operator=(const MappedFile&) = delete;
+
+  const uint8_t* data() const { return data_; }
+  size_t size() const { return size_; }
+
+ private:
+  const uint8_t* data_ = nullptr;
+  size_t size_ = 0;
+  void* mapping_ = nullptr;
+  std::vector<uint8_t> contents_;  // of what cannot be mapped
+};
+
+}  // namespace hydro
