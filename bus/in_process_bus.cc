@@ -1,7 +1,8 @@
 #include "bus/in_process_bus.h"
 
-#include <ctime>
 #include <deque>
+
+#include "bus/sleep_until.h"
 
 namespace hydro {
 namespace {
@@ -21,15 +22,6 @@ struct Handler {
   std::shared_ptr<void> decoded;  // for raw messages
   std::function<void(const void*)> call;
 };
-
-void SleepUntil(Bus::TimePoint deadline) {
-  const auto since =
-      std::chrono::duration_cast<std::chrono::nanoseconds>(deadline.time_since_epoch()).count();
-  timespec time{};
-  time.tv_sec = since / 1'000'000'000;
-  time.tv_nsec = since % 1'000'000'000;
-  if (since > 0) clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &time, nullptr);
-}
 
 }  // namespace
 

@@ -1,0 +1,77 @@
+// The bus of a replay: what an application receives comes from a log, what it publishes goes to a comparison.
+#pragma once
+
+#include <deque>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "bus/bus.h"
+#include "bus/clock.h"
+
+namespace hydro {
+
+// Handles the events in the order of the log. Nothing that is published comes back as a message.
+class LogBus : public Bus {
+ public:
+  // Fills in the next event, whose receive_utime is the log's timestamp; its bytes and channel must last
+  // until the next call. False: there is none.
+  using EventSource = std::function<bool(RawMessage*)>;
+
+  struct Options {
+    // Advanced to each event's timestamp before it is handled, from the first event on; null: wall time.
+    SimulatedClock* clock = nullptr;
+    // Seconds of the log per second of wall time; 0: as fast as possible. With `clock` it must be 0.
+    double speed = 0;
+    // What the application publishes; one that is empty drops it.
+    std::function<void(const std::string& channel, const MessageType& type, const void* message)> published;
+    std::function<void(const std::string& channel, const void* data, int size)> published_raw;
+  };
+
+  // Throws std::invalid_argument for a speed that is negative or not possible with the clock.
+  LogBus(EventSource source, Options options);
+
+  // True when every event has been handled or passed over: HandleUntil() will only return 0.
+  bool at_end() const { return !has_next_; }
+
+  void SubscribeAll(std::function<void(const RawMessage&)> handler) override;
+  void PublishRaw(const std::string& channel, const void* data, int size) override;
+
+  // Handles the next event that somebody subscribes to (one at a time, so that the application can act in
+  // between) and returns 1, or returns 0 when it lies beyond `deadline`, at the end of the log, or at a
+  // signal.
+  int HandleUntil(TimePoint deadline) override;
+  int64_t undecodable() const override { return undecodable_; }
+
+ protected:
+  void PublishTyped(const std::string& channel, const MessageType& type, const void* message) override;
+  void SubscribeTyped(const std::string& channel, const MessageType& type,
+                      std::function<void(const void*)> handler) override;
+
+ private:
+  struct Handler {
+    std::string channel;
+    const MessageType* type;
+    std::shared_ptr<void> message;  // what is decoded into
+    std::function<void(const void*)> call;
+  };
+
+  void ReadNext();
+  TimePoint DueTime() const;
+  bool WaitUntil(TimePoint time);
+  bool Dispatch(const RawMessage& event);
+
+  EventSource source_;
+  Options options_;
+  RawMessage next_;
+  bool has_next_ = false;
+  bool handling_ = false;
+  TimePoint wall_start_;  // when the first event is due
+  int64_t first_utime_ = 0;
+  int64_t undecodable_ = 0;
+  std::deque<Handler> handlers_;  // a handler may subscribe: those before it stay where they are
+  std::deque<std::function<void(const RawMessage&)>> taps_;
+};
+
+}  // namespace hydro

@@ -1,0 +1,27 @@
+// Real-time scheduling of the calling thread and those that it starts from then on.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace hydro {
+
+struct RealTimeRequest {
+  int priority = 0;          // SCHED_FIFO priority 1..99; 0: leave the scheduling as it is
+  int cpu = -1;              // processor to run on, from 0; -1: leave it to the kernel
+  bool lock_memory = false;  // keep all memory resident, so that no page fault delays the loop
+};
+
+struct RealTimeResult {
+  bool priority = false;  // what was asked for and achieved
+  bool cpu = false;
+  bool memory_locked = false;
+  std::vector<std::string> warnings;  // one line for each thing that was refused: what, why, how to permit it
+};
+
+// Does what is asked for and nothing else. What is refused is logged as one warning each, to stderr, and the
+// program goes on without it. Call it before the bus is constructed: LCM's receiving thread inherits all of
+// it.
+RealTimeResult ApplyRealTime(const RealTimeRequest& request);
+
+}  // namespace hydro

@@ -1,0 +1,57 @@
+// Watches the session and the sequence numbers of one received channel: nothing is silently lost, and nobody
+// else silently takes over.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "bus/clock.h"
+
+namespace hydro {
+
+// Pure: time is passed in. One for each channel that has exactly one sender.
+class SequenceMonitor {
+ public:
+  enum class Verdict {
+    kAccept,        // newer than all before; gap() tells how many are missing before it
+    kDuplicate,     // seen already, or older than what was seen: not to be used again
+    kRestarted,     // the first of a new sender (or of a log that is played again), the old one being silent:
+                    // use it
+    kSecondSender,  // from another sender while the first is alive: not to be used
+  };
+
+  // A sender counts as alive for `alive` after its last message.
+  explicit SequenceMonitor(Clock::Duration alive) : alive_(alive) {}
+
+  // To be called for each message in order of arrival.
+  Verdict Observe(int64_t session, int64_t sequence, Clock::TimePoint now);
+
+  // The same, and a message whose tick is lower than that of one before is kDuplicate.
+  Verdict Observe(int64_t session, int64_t sequence, int64_t tick, Clock::TimePoint now);
+
+  // A second sender was heard within the last `alive`.
+  bool SecondSenderAlive(Clock::TimePoint now) const {
+    return second_heard_ && now - *second_heard_ <= alive_;
+  }
+
+  int64_t gap() const { return gap_; }    // messages missing just before the last observed one
+  int64_t lost() const { return lost_; }  // messages missing in all; what came before the first is not
+  int64_t duplicates() const { return duplicates_; }  // kDuplicate verdicts
+  int64_t restarts() const { return restarts_; }      // kRestarted verdicts
+  int64_t ticks_back() const { return ticks_back_; }  // messages in sequence whose tick went back
+
+ private:
+  Clock::Duration alive_;
+  std::optional<int64_t> session_;  // of the sender that is followed; none before the first message
+  int64_t sequence_ = 0;            // its newest
+  std::optional<int64_t> tick_;     // its newest
+  Clock::TimePoint heard_{};        // when it was heard last
+  std::optional<Clock::TimePoint> second_heard_;
+  int64_t gap_ = 0;
+  int64_t lost_ = 0;
+  int64_t duplicates_ = 0;
+  int64_t restarts_ = 0;
+  int64_t ticks_back_ = 0;
+};
+
+}  // namespace hydro

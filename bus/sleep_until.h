@@ -1,0 +1,19 @@
+// Sleeping on a bus that nobody else can send on.
+#pragma once
+
+#include <chrono>
+#include <ctime>
+
+namespace hydro {
+
+// True: the time has come. False: a signal arrived first.
+inline bool SleepUntil(std::chrono::steady_clock::time_point time) {
+  const auto since = std::chrono::duration_cast<std::chrono::nanoseconds>(time.time_since_epoch()).count();
+  if (since <= 0) return true;
+  timespec until{};
+  until.tv_sec = since / 1'000'000'000;
+  until.tv_nsec = since % 1'000'000'000;
+  return clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &until, nullptr) == 0;
+}
+
+}  // namespace hydro
