@@ -9,7 +9,8 @@ class Actuator::Impl {
  public:
   Impl(const ModelDescription& description, const ActuatorOptions& options)
       : equations(description, options) {
-    simulation = MakeFastSimulation(&equations, options.initial_pressure, options.relative_tolerance);
+    simulation =
+        MakeSimulation(&equations, options.integrator, options.initial_pressure, options.relative_tolerance);
   }
 
   Equations equations;

@@ -24,7 +24,7 @@ class Simulation {
   virtual int64_t mode_changes() const = 0;
 };
 
-std::unique_ptr<Simulation> MakeFastSimulation(Equations* equations, double initial_pressure,
-                                               double relative_tolerance);
+std::unique_ptr<Simulation> MakeSimulation(Equations* equations, Integrator integrator,
+                                           double initial_pressure, double relative_tolerance);
 
 }  // namespace hydro

@@ -1,14 +1,14 @@
 // The mode machine: runs any stepper from event to event. A template, for .cc files of model/ only.
 //
-// A stepper integrates one smooth mode:
-//   void Restart(const Point& now)                 the state or the mode has changed
-//   void NewVoltage(const Point& now)              only the voltage has changed
-//   void Step(const Point& now, double stop, Point* next)  one step, to no later than `stop`; fills time and
-//   state of
-//                                                  next, and rate and margin too when kFillsPoint; throws
-//                                                  ModelError
-//   void Interpolate(const Point& now, const Point& next, double time, Point* at)   time and state within the
-//   step
+// A stepper integrates one smooth mode. It is made from pointers to the mode and the voltage, which the
+// machine changes:
+//   void Restart(const Point& now)     the state or the mode has changed
+//   void NewVoltage(const Point& now)  only the voltage has changed
+//   void Step(const Point& now, double stop, Point* next)  one step, to no later than `stop`; fills all of
+//   next; throws
+//                                      ModelError
+//   void Interpolate(const Point& now, const Point& next, double time, Point* at)  time and state within the
+//   last step
 #pragma once
 
 #include <algorithm>
@@ -79,7 +79,6 @@ class SwitchingSimulation final : public Simulation {
       // A switch on its boundary is given a moment to show to which side it goes.
       if (OnBoundary()) stop = std::min(stop, now_->time + kMoment);
       stepper_.Step(*now_, stop, next_);
-      if constexpr (!Stepper::kFillsPoint) Evaluate(next_);
       CheckFinite(*next_);
       if constexpr (kForm != Form::kPlainClamped) {
         if (data().shaft == Shaft::kFree) CheckArm(next_->state[kArmAngle]);

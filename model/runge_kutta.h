@@ -1,8 +1,10 @@
-// Integrator::kFast: the classical Runge-Kutta method with its own event location, inlined for the plain
-// forms.
+// Integrator::kFast: the classical Runge-Kutta method, inlined for the plain forms. A template, for .cc files
+// of model/.
 //
 // The rate at the end of each step, which the next step starts with, also gives an embedded third-order
 // result: their difference h/6 (k4 - k5) overestimates the error of the fourth-order result that is kept.
+#pragma once
+
 #include <algorithm>
 #include <cmath>
 
@@ -10,28 +12,26 @@
 
 namespace hydro {
 
-namespace {
-
 template <Form kForm>
 class RungeKutta {
  public:
-  static constexpr bool kFillsPoint = true;
-
   RungeKutta(const Mode* mode, const double* voltage, Equations* equations, double relative_tolerance)
       : mode_(*mode), voltage_(*voltage), equations_(*equations), tolerance_(relative_tolerance) {
     for (int i = 0; i < n(); ++i) floor_[i] = relative_tolerance * equations_.scales()[i];
   }
 
-  void Restart(const Point&) {}
+  void Restart(const Point&) { unstable_steps_ = 0; }
   void NewVoltage(const Point&) {}
 
   void Step(const Point& now, double stop, Point* next) {
     for (;;) {
       const bool limited = stop - now.time > good_step_;
       const double h = limited ? good_step_ : stop - now.time;
+      double k2[kMaxStates];
+      double k3[kMaxStates];
       double k4[kMaxStates];
       next->time = limited ? now.time + h : stop;
-      Stages(now, h, next->state, k4);
+      Stages(now, h, next->state, k2, k3, k4);
       EvaluatePoint<kForm>(data(), next->time, voltage_, mode_, next->state, next->rate, next->margin);
       double excess = 0;
       bool good = true;
@@ -48,30 +48,55 @@ class RungeKutta {
       }
       const double factor = std::clamp(0.9 * std::pow(std::max(excess, 1e-12), -0.25), 0.1, good ? 4.0 : 0.8);
       good_step_ = h * factor;
-      if (good) return;
+      if (good) {
+        CountUnstable(now.rate, k2, k3);
+        return;
+      }
       if (good_step_ < 1e-14 * std::max(1.0, std::abs(now.time))) {
         throw ModelError("the step failed" + Where(equations_, now));
       }
     }
   }
 
+  // True when, for many steps in this mode, stability and not accuracy has limited the step.
+  bool stiff() const { return unstable_steps_ >= kStiffAfter; }
+
   void Interpolate(const Point& now, const Point&, double time, Point* at) {
+    double k2[kMaxStates];
+    double k3[kMaxStates];
     double k4[kMaxStates];
     at->time = time;
-    Stages(now, time - now.time, at->state, k4);
+    Stages(now, time - now.time, at->state, k2, k3, k4);
   }
 
  private:
   const EquationData& data() const { return equations_.data(); }
   int n() const { return FormSize<kForm>::states(data()); }
 
+  static constexpr int kStiffAfter = 20;
+  static constexpr double kNearlyUnstable = 2.0;  // h |lambda|; the method is stable up to 2.78
+
+  // k3 - k2 = lambda h/2 (k2 - k1) along the fastest direction.
+  void CountUnstable(const double* k1, const double* k2, const double* k3) {
+    double change = 0;
+    double cause = 0;
+    for (int i = 0; i < n(); ++i) {
+      const double scale = equations_.scales()[i];
+      change += std::abs(k3[i] - k2[i]) / scale;
+      cause += std::abs(k2[i] - k1[i]) / scale;
+    }
+    if (2 * change > kNearlyUnstable * cause) {
+      ++unstable_steps_;
+    } else if (unstable_steps_ > 0 && !stiff()) {
+      --unstable_steps_;
+    }
+  }
+
   void Rates(double time, const double* y, double* rate) const {
     EvaluatePoint<kForm>(data(), time, voltage_, mode_, y, rate, nullptr);
   }
 
-  void Stages(const Point& now, double h, double* y, double* k4) const {
-    double k2[kMaxStates];
-    double k3[kMaxStates];
+  void Stages(const Point& now, double h, double* y, double* k2, double* k3, double* k4) const {
     double stage[kMaxStates];
     const double* k1 = now.rate;
     for (int i = 0; i < n(); ++i) stage[i] = now.state[i] + 0.5 * h * k1[i];
@@ -88,25 +113,8 @@ class RungeKutta {
   Equations& equations_;
   double tolerance_;
   double floor_[kMaxStates] = {};
+  int unstable_steps_ = 0;
   double good_step_ = 1e-2;  // s, remembered between calls
 };
-
-template <Form kForm>
-using FastSimulation = SwitchingSimulation<kForm, RungeKutta<kForm>>;
-
-}  // namespace
-
-std::unique_ptr<Simulation> MakeFastSimulation(Equations* equations, double initial_pressure,
-                                               double relative_tolerance) {
-  if (!equations->plain()) {
-    return std::make_unique<FastSimulation<Form::kGeneral>>(equations, initial_pressure, relative_tolerance);
-  }
-  if (equations->data().shaft == Shaft::kFree) {
-    return std::make_unique<FastSimulation<Form::kPlainFree>>(equations, initial_pressure,
-                                                              relative_tolerance);
-  }
-  return std::make_unique<FastSimulation<Form::kPlainClamped>>(equations, initial_pressure,
-                                                               relative_tolerance);
-}
 
 }  // namespace hydro

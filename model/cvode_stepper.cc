@@ -1,0 +1,90 @@
+#include "model/cvode_stepper.h"
+
+#include <cvode/cvode.h>
+
+#include <algorithm>
+
+namespace hydro {
+
+namespace {
+
+int SundialsJacobian(double time, N_Vector state, N_Vector, SUNMatrix jacobian, void* data, N_Vector,
+                     N_Vector, N_Vector) {
+  const auto& problem = *static_cast<const SundialsProblem*>(data);
+  problem.equations->Jacobian(time, *problem.voltage, *problem.mode, N_VGetArrayPointer(state),
+                              SUNDenseMatrix_Data(jacobian));
+  return 0;
+}
+
+}  // namespace
+
+CvodeStepper::CvodeStepper(const Mode* mode, const double* voltage, Equations* equations,
+                           double relative_tolerance)
+    : problem_{equations, mode, voltage, {}},
+      context_(MakeSundialsContext()),
+      state_(MakeNVector(equations->states(), context_.get())) {
+  const int n = equations->states();
+  matrix_ = SUNDenseMatrix(n, n, context_.get());
+  solver_ = SUNLinSol_Dense(state_.get(), matrix_, context_.get());
+  memory_ = CVodeCreate(CV_BDF, context_.get());
+  NVector floor = MakeNVector(n, context_.get());
+  for (int i = 0; i < n; ++i)
+    N_VGetArrayPointer(floor.get())[i] = relative_tolerance * equations->scales()[i];
+  int flags = memory_ == nullptr || solver_ == nullptr ? -1 : 0;
+  if (flags == 0) {
+    flags |= CVodeSetErrHandlerFn(memory_, KeepComplaint, &problem_);
+    flags |= CVodeSetUserData(memory_, &problem_);
+    flags |= CVodeInit(memory_, SundialsRates, 0, state_.get());
+    flags |= CVodeSVtolerances(memory_, relative_tolerance, floor.get());
+    flags |= CVodeSetLinearSolver(memory_, solver_, matrix_);
+    flags |= CVodeSetJacFn(memory_, SundialsJacobian);
+  }
+  if (flags != 0) {
+    Free();
+    throw ModelError("CVODE could not be set up: " + problem_.complaint);
+  }
+}
+
+CvodeStepper::~CvodeStepper() { Free(); }
+
+void CvodeStepper::Free() {
+  if (memory_ != nullptr) CVodeFree(&memory_);
+  if (solver_ != nullptr) SUNLinSolFree(solver_);
+  if (matrix_ != nullptr) SUNMatDestroy(matrix_);
+}
+
+void CvodeStepper::Restart(const Point& now) {
+  std::copy_n(now.state, problem_.equations->states(), N_VGetArrayPointer(state_.get()));
+  const int flag = CVodeReInit(memory_, now.time, state_.get());
+  if (flag != CV_SUCCESS) ThrowStepFailed("CVODE", problem_, flag, now);
+}
+
+void CvodeStepper::Step(const Point& now, double stop, Point* next) {
+  stepped_by_euler_ = stop - now.time < kShortestStep;
+  if (stepped_by_euler_) {
+    EulerStep(*problem_.equations, now, stop, next);
+    FillPoint(problem_, next);
+    Restart(*next);
+    return;
+  }
+  double time = now.time;
+  int flag = CVodeSetStopTime(memory_, stop);
+  if (flag == CV_SUCCESS) flag = CVode(memory_, stop, state_.get(), &time, CV_ONE_STEP);
+  if (flag < 0) ThrowStepFailed("CVODE", problem_, flag, now);
+  next->time = flag == CV_TSTOP_RETURN ? stop : time;
+  std::copy_n(N_VGetArrayPointer(state_.get()), problem_.equations->states(), next->state);
+  FillPoint(problem_, next);
+}
+
+void CvodeStepper::Interpolate(const Point& now, const Point& /*next*/, double time, Point* at) {
+  if (stepped_by_euler_) {
+    EulerStep(*problem_.equations, now, time, at);
+    return;
+  }
+  const int flag = CVodeGetDky(memory_, time, 0, state_.get());
+  if (flag != CV_SUCCESS) ThrowStepFailed("CVODE", problem_, flag, now);
+  at->time = time;
+  std::copy_n(N_VGetArrayPointer(state_.get()), problem_.equations->states(), at->state);
+}
+
+}  // namespace hydro

@@ -1,0 +1,36 @@
+// Integrator::kCvode: CVODE's backward differences with the exact Jacobian, for stiff modes.
+#pragma once
+
+#include <sunlinsol/sunlinsol_dense.h>
+#include <sunmatrix/sunmatrix_dense.h>
+
+#include "model/simulation.h"
+#include "model/sundials.h"
+
+namespace hydro {
+
+class CvodeStepper {
+ public:
+  CvodeStepper(const Mode* mode, const double* voltage, Equations* equations, double relative_tolerance);
+  ~CvodeStepper();
+  CvodeStepper(const CvodeStepper&) = delete;
+  CvodeStepper& operator=(const CvodeStepper&) = delete;
+
+  void Restart(const Point& now);
+  void NewVoltage(const Point& now) { Restart(now); }
+  void Step(const Point& now, double stop, Point* next);
+  void Interpolate(const Point& now, const Point& next, double time, Point* at);
+
+ private:
+  void Free();
+
+  SundialsProblem problem_;
+  SundialsContext context_;
+  NVector state_;
+  SUNMatrix matrix_ = nullptr;
+  SUNLinearSolver solver_ = nullptr;
+  void* memory_ = nullptr;
+  bool stepped_by_euler_ = false;
+};
+
+}  // namespace hydro

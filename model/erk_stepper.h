@@ -1,0 +1,30 @@
+// Integrator::kErk: ARKODE's ERKStep with the Dormand-Prince pair of orders 5 and 4.
+#pragma once
+
+#include "model/simulation.h"
+#include "model/sundials.h"
+
+namespace hydro {
+
+class ErkStepper {
+ public:
+  ErkStepper(const Mode* mode, const double* voltage, Equations* equations, double relative_tolerance);
+  ~ErkStepper();
+  ErkStepper(const ErkStepper&) = delete;
+  ErkStepper& operator=(const ErkStepper&) = delete;
+
+  void Restart(const Point& now);
+  // An explicit pair keeps nothing of earlier steps that is worth more than starting afresh.
+  void NewVoltage(const Point& now) { Restart(now); }
+  void Step(const Point& now, double stop, Point* next);
+  void Interpolate(const Point& now, const Point& next, double time, Point* at);
+
+ private:
+  SundialsProblem problem_;
+  SundialsContext context_;
+  NVector state_;
+  void* memory_ = nullptr;
+  bool stepped_by_euler_ = false;
+};
+
+}  // namespace hydro

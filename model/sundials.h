@@ -1,0 +1,51 @@
+// What the two SUNDIALS steppers share. For .cc files of model/ only.
+#pragma once
+
+#include <nvector/nvector_serial.h>
+#include <sundials/sundials_context.h>
+
+#include <memory>
+#include <string>
+
+#include "model/equations.h"
+#include "model/simulation.h"
+
+namespace hydro {
+
+// What SUNDIALS' callbacks get as user data, and what it last complained of.
+struct SundialsProblem {
+  const Equations* equations;
+  const Mode* mode;
+  const double* voltage;
+  std::string complaint;
+};
+
+struct SundialsContextDeleter {
+  void operator()(SUNContext context) const { SUNContext_Free(&context); }
+};
+using SundialsContext = std::unique_ptr<_SUNContext, SundialsContextDeleter>;
+SundialsContext MakeSundialsContext();
+
+struct NVectorDeleter {
+  void operator()(N_Vector vector) const { N_VDestroy(vector); }
+};
+using NVector = std::unique_ptr<_generic_N_Vector, NVectorDeleter>;
+NVector MakeNVector(int size, SUNContext context);
+
+// Callbacks: the right-hand side of the present mode (1, "try a smaller step", when it is not finite), and
+// the messages.
+int SundialsRates(double time, N_Vector state, N_Vector rate, void* problem);
+void KeepComplaint(int code, const char* module, const char* function, char* message, void* problem);
+
+// Steps too short for SUNDIALS to start with are taken by Euler's rule; its error, of the order of their
+// square, is below rounding.
+inline constexpr double kShortestStep = 1e-11;  // s
+void EulerStep(const Equations& equations, const Point& now, double stop, Point* next);
+
+// Fills rate and margin of `at` from its time and state.
+void FillPoint(const SundialsProblem& problem, Point* at);
+
+[[noreturn]] void ThrowStepFailed(const char* integrator, const SundialsProblem& problem, int flag,
+                                  const Point& now);
+
+}  // namespace hydro
