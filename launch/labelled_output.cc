@@ -1,0 +1,66 @@
+#include "launch/labelled_output.h"
+
+#include <limits.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdlib>
+
+namespace hydro {
+namespace {
+
+// One of six terminal colours, the same for the same label in every run.
+std::string ColourOf(std::string_view label) {
+  unsigned sum = 0;
+  for (const char c : label) sum = sum * 31 + static_cast<unsigned char>(c);
+  return "\033[3" + std::to_string(1 + sum % 6) + "m";
+}
+
+}  // namespace
+
+bool LabelledOutput::WantsColour(int out_fd, int err_fd) {
+  return isatty(out_fd) && isatty(err_fd) && std::getenv("NO_COLOR") == nullptr;
+}
+
+void LabelledOutput::AnnounceLabel(std::string_view label) {
+  label_width_ = std::max(label_width_, label.size());
+}
+
+void LabelledOutput::Line(Stream stream, std::string_view label, std::string_view text) {
+  std::string line;
+  line.reserve(label_width_ + text.size() + 16);
+  if (colour_) line += ColourOf(label);
+  line.append("[").append(label).append("]");
+  if (colour_) line += "\033[0m";
+  line.append(label_width_ > label.size() ? label_width_ - label.size() : 0, ' ');
+  line.append(" ").append(text).append("\n");
+  queued_bytes_ += line.size();
+  constexpr std::size_t kChunk = 64 * 1024;
+  if (!queue_.empty() && queue_.back().stream == stream && queue_.back().bytes.size() < kChunk) {
+    queue_.back().bytes += line;
+  } else {
+    queue_.push_back({stream, std::move(line)});
+  }
+}
+
+void LabelledOutput::WriteSome() {
+  if (queue_.empty()) return;
+  Chunk& chunk = queue_.front();
+  const std::size_t left = chunk.bytes.size() - chunk.written;
+  const ssize_t n =
+      write(FdOf(chunk.stream), chunk.bytes.data() + chunk.written, std::min<std::size_t>(left, PIPE_BUF));
+  if (n < 0 && (errno == EINTR || errno == EAGAIN)) return;
+  // Whoever read our output has gone (EPIPE), or the disk is full: the stack matters more than its text, so
+  // go on without.
+  const std::size_t done = n < 0 ? left : static_cast<std::size_t>(n);
+  chunk.written += done;
+  queued_bytes_ -= done;
+  if (chunk.written == chunk.bytes.size()) queue_.pop_front();
+}
+
+void LabelledOutput::Flush() {
+  while (!queue_.empty()) WriteSome();
+}
+
+}  // namespace hydro

@@ -1,0 +1,59 @@
+// The lines of several programs on one stdout and one stderr, each with the name of where it came from.
+#pragma once
+
+#include <cstddef>
+#include <deque>
+#include <string>
+#include <string_view>
+
+namespace hydro {
+
+// Lines leave in the order in which they were added, whole: a line of one stream is finished before one of
+// the other is begun, also where both streams are the same file. Nothing is dropped; full() says when to stop
+// reading from the children until the reader of our output has caught up. Nothing here blocks except Flush().
+class LabelledOutput {
+ public:
+  enum class Stream { kOut, kErr };
+
+  // Writes to the two descriptors, which stay the caller's. `colour`: labels are coloured.
+  LabelledOutput(int out_fd, int err_fd, bool colour) : out_fd_(out_fd), err_fd_(err_fd), colour_(colour) {}
+
+  // True when labels should be coloured: both are terminals and NO_COLOR is not set.
+  static bool WantsColour(int out_fd, int err_fd);
+
+  // Labels are padded to the longest that was announced.
+  void AnnounceLabel(std::string_view label);
+
+  // Adds one line, "[label]   text". `text` has no line end.
+  void Line(Stream stream, std::string_view label, std::string_view text);
+
+  // The descriptor that must be writable for the next byte; -1: nothing waits.
+  int waiting_fd() const { return queue_.empty() ? -1 : FdOf(queue_.front().stream); }
+  bool full() const { return queued_bytes_ > kMostQueued; }
+
+  // Writes at most PIPE_BUF bytes. Called when waiting_fd() is writable it does not block, also where the
+  // descriptor is a blocking one: a pipe that polls writable has that much room.
+  void WriteSome();
+
+  // Writes all that waits, blocking.
+  void Flush();
+
+ private:
+  static constexpr std::size_t kMostQueued = 1 << 20;
+  struct Chunk {
+    Stream stream;
+    std::string bytes;
+    std::size_t written = 0;
+  };
+
+  int FdOf(Stream stream) const { return stream == Stream::kOut ? out_fd_ : err_fd_; }
+
+  int out_fd_;
+  int err_fd_;
+  bool colour_;
+  std::size_t label_width_ = 0;
+  std::deque<Chunk> queue_;
+  std::size_t queued_bytes_ = 0;
+};
+
+}  // namespace hydro

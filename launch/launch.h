@@ -1,0 +1,30 @@
+// A launch: starts the processes of a stack, watches over them until the run has ended, and ends them in
+// order.
+#pragma once
+
+#include "launch/launch_plan.h"
+#include "launch/supervisor.h"
+#include "settings/stack_config.h"
+
+namespace hydro {
+
+struct LaunchTiming {
+  Supervisor::Grace grace;
+  // After a stop was heard: how long the processes may take to end by themselves before they get SIGTERM.
+  Supervisor::Duration patience = std::chrono::seconds(3);
+  // A process ended with 0 and no stop has been heard: how long the stop may take to arrive.
+  Supervisor::Duration stop_arrival = std::chrono::milliseconds(500);
+};
+
+// Runs the plan until no process is left; the children's lines and our own go to `out_fd` and `err_fd`.
+// SIGINT, SIGTERM and SIGHUP end the run in order, a second SIGINT at once. Returns the exit code: 0 the run
+// ended in order, 1 something failed, 2 a process refused its input. Throws InputError for a bad bus URL and
+// BusError where the bus cannot work, before anything is started. Call it before the process has other
+// threads.
+int Launch(const StackConfig& config, const LaunchPlan& plan, int out_fd, int err_fd,
+           const LaunchTiming& timing = {});
+
+// All of hydro-launch behind its command line: loads the configuration, plans, launches.
+int LaunchStack(const LaunchRequest& request);
+
+}  // namespace hydro

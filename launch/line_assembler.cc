@@ -1,0 +1,32 @@
+#include "launch/line_assembler.h"
+
+namespace hydro {
+
+void LineAssembler::Feed(std::string_view bytes, const LineHandler& handler) {
+  while (!bytes.empty()) {
+    const std::size_t end = bytes.find('\n');
+    const std::size_t room = kLongestLine - begun_.size();
+    if (end == std::string_view::npos && bytes.size() < room) {
+      begun_.append(bytes);
+      return;
+    }
+    const bool whole = end != std::string_view::npos && end <= room;
+    const std::string_view piece = bytes.substr(0, whole ? end : room);
+    bytes.remove_prefix(piece.size() + (whole ? 1 : 0));
+    if (begun_.empty()) {
+      handler(piece);
+    } else {
+      begun_.append(piece);
+      handler(begun_);
+      begun_.clear();
+    }
+  }
+}
+
+void LineAssembler::Finish(const LineHandler& handler) {
+  if (begun_.empty()) return;
+  handler(begun_);
+  begun_.clear();
+}
+
+}  // namespace hydro

@@ -1,0 +1,65 @@
+#include "launch/run_summary.h"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <algorithm>
+
+namespace hydro {
+namespace {
+
+constexpr double kMostOfASecond = 0.5;
+
+}  // namespace
+
+void RunSummary::Add(const loop_statistics_t& report) {
+  auto loop = std::find_if(loops_.begin(), loops_.end(),
+                           [&](const Loop& known) { return known.shown.session == report.session; });
+  if (loop == loops_.end()) {
+    loop = loops_.insert(loops_.end(), Loop{});
+    loop->shown = report;
+  }
+  // The last report of a run covers what is left of a second, perhaps a few cycles: its percentiles say
+  // little.
+  if (report.interval_s >= kMostOfASecond || loop->shown.interval_s < kMostOfASecond) loop->shown = report;
+  loop->cycles += report.cycles;
+  loop->missed_deadlines += report.missed_deadlines;
+  loop->lost_messages += report.lost_messages;
+  loop->latency_max_us = std::max(loop->latency_max_us, report.latency_max_us);
+}
+
+void RunSummary::Add(const fault_t& fault) {
+  auto known = std::find_if(faults_.begin(), faults_.end(), [&](const Fault& other) {
+    return other.first.session == fault.session && other.first.code == fault.code;
+  });
+  if (known == faults_.end()) {
+    known = faults_.insert(faults_.end(), Fault{});
+    known->first = fault;
+  }
+  known->times += fault.active ? 1 : 0;
+  known->active = fault.active;
+}
+
+std::vector<std::string> RunSummary::Lines() const {
+  std::vector<std::string> lines;
+  if (!loops_.empty()) {
+    lines.push_back(
+        fmt::format("{:<14}{:>10}{:>20}{:>27}{:>9}{:>7}", "", "", "period us", "latency us", "", ""));
+    lines.push_back(fmt::format("{:<14}{:>10}{:>11}{:>9}{:>9}{:>9}{:>9}{:>9}{:>7}", "process", "cycles",
+                                "p50", "p99", "p50", "p99", "max", "missed", "lost"));
+  }
+  for (const Loop& loop : loops_) {
+    const loop_statistics_t& s = loop.shown;
+    lines.push_back(fmt::format("{:<14}{:>10}{:>11.0f}{:>9.0f}{:>9.0f}{:>9.0f}{:>9.0f}{:>9}{:>7}", s.role,
+                                loop.cycles, s.period_p50_us, s.period_p99_us, s.latency_p50_us,
+                                s.latency_p99_us, loop.latency_max_us, loop.missed_deadlines,
+                                loop.lost_messages));
+  }
+  for (const Fault& fault : faults_) {
+    lines.push_back(fmt::format("fault {} of {}, {}{}: {}", fault.first.code, fault.first.source,
+                                fault.times == 1 ? "once" : fmt::format("{} times", fault.times),
+                                fault.active ? ", still there at the end" : "", fault.first.text));
+  }
+  return lines;
+}
+
+}  // namespace hydro

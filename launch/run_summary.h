@@ -1,0 +1,40 @@
+// What a run's statistics and faults come down to, as a table for the end of a launch.
+#pragma once
+
+#include <cstdint>
+#include <hydro/fault_t.hpp>
+#include <hydro/loop_statistics_t.hpp>
+#include <string>
+#include <vector>
+
+namespace hydro {
+
+class RunSummary {
+ public:
+  void Add(const loop_statistics_t& report);
+  void Add(const fault_t& fault);
+
+  // One line a process, then one a kind of fault. Percentiles are those of the last report that covers most
+  // of a second; the largest latency, missed deadlines and lost messages are those of the whole run. Empty
+  // when nothing was reported. Times are in microseconds, with or without --si.
+  std::vector<std::string> Lines() const;
+
+ private:
+  struct Loop {
+    loop_statistics_t shown;  // whose percentiles are printed
+    int64_t cycles = 0;
+    int64_t missed_deadlines = 0;
+    int64_t lost_messages = 0;
+    double latency_max_us = 0;
+  };
+  struct Fault {
+    fault_t first;
+    int64_t times = 0;
+    bool active = false;
+  };
+
+  std::vector<Loop> loops_;    // by session, in order of their first report
+  std::vector<Fault> faults_;  // by sender and code, in order of their first appearance
+};
+
+}  // namespace hydro

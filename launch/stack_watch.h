@@ -1,0 +1,62 @@
+// What the processes of a stack say about themselves on the bus: who is ready, that the run ends, what went
+// wrong.
+#pragma once
+
+#include <sys/types.h>
+
+#include <cstdint>
+#include <hydro/process_status_t.hpp>
+#include <hydro/stop_t.hpp>
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "bus/bus.h"
+#include "bus/channels.h"
+#include "bus/clock.h"
+#include "launch/run_summary.h"
+
+namespace hydro {
+
+class StackWatch {
+ public:
+  // Subscribes. Create it before the processes are started, so that no announcement is missed.
+  StackWatch(Bus& bus, const Clock& clock, const Channels& channels);
+
+  // A process of ours, to be waited for.
+  void Expect(const std::string& program, pid_t pid);
+
+  // Programs that were expected and have not said that they are ready, in the order given.
+  std::vector<std::string> NotReady() const;
+
+  // Why a process of ours says it failed; empty when it has not said.
+  std::string FailureText(const std::string& program, pid_t pid) const;
+
+  // The first stop that anybody else has published.
+  const std::optional<stop_t>& stop() const { return stop_; }
+
+  // Tells every process of the stack, on every host, to end. exit_code: 0 in order, 1 something failed.
+  void PublishStop(const std::string& reason, int exit_code);
+
+  const RunSummary& summary() const { return summary_; }
+
+ private:
+  struct Expected {
+    std::string program;
+    pid_t pid;
+  };
+
+  Bus& bus_;
+  const Clock& clock_;
+  const Channels channels_;
+  const int64_t session_;
+  std::vector<Expected> expected_;
+  // The latest of each role and process id: on another host a process of another role may have the same id.
+  std::map<std::pair<std::string, pid_t>, process_status_t> statuses_;
+  std::optional<stop_t> stop_;
+  RunSummary summary_;
+};
+
+}  // namespace hydro

@@ -1,0 +1,201 @@
+#include "launch/supervisor.h"
+
+#include <poll.h>
+#include <signal.h>
+#include <string.h>
+#include <sys/signalfd.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <string_view>
+
+namespace hydro {
+namespace {
+
+using Stream = LabelledOutput::Stream;
+
+sigset_t WatchedSignals() {
+  sigset_t set;
+  sigemptyset(&set);
+  for (const int s : {SIGINT, SIGTERM, SIGHUP, SIGCHLD}) sigaddset(&set, s);
+  return set;
+}
+
+int PollTimeoutMs(Supervisor::TimePoint until) {
+  using std::chrono::milliseconds;
+  const auto left = std::chrono::ceil<milliseconds>(until - Supervisor::Clock::now()).count();
+  return static_cast<int>(std::clamp<int64_t>(left, 0, 60'000));
+}
+
+}  // namespace
+
+Supervisor::Supervisor(LabelledOutput& output, Grace grace) : output_(output), grace_(grace) {
+  const sigset_t set = WatchedSignals();
+  sigprocmask(SIG_BLOCK, &set, nullptr);
+  signal(SIGPIPE,
+         SIG_IGN);  // a reader of our output that goes away must not end us and leave the motor running
+  signal(SIGCHLD, SIG_DFL);  // where our parent ignored it, children would vanish without a status
+  signal_fd_ = signalfd(-1, &set, SFD_NONBLOCK | SFD_CLOEXEC);
+  if (signal_fd_ < 0) throw StartError(std::string("signalfd: ") + strerror(errno));
+}
+
+Supervisor::~Supervisor() {
+  Stop(Clock::now());
+  while (running() > 0) Wait(TimePoint::max());
+  close(signal_fd_);
+}
+
+pid_t Supervisor::Start(ChildSpec spec) {
+  children_.push_back(std::make_unique<Child>(std::move(spec)));
+  return children_.back()->process.pid();
+}
+
+int Supervisor::running() const {
+  return static_cast<int>(std::count_if(children_.begin(), children_.end(),
+                                        [](const auto& child) { return child->process.running(); }));
+}
+
+int Supervisor::running_first() const {
+  return static_cast<int>(std::count_if(children_.begin(), children_.end(), [](const auto& child) {
+    return child->process.running() && !child->process.spec().last;
+  }));
+}
+
+void Supervisor::Wait(TimePoint deadline) {
+  TakeStopSteps(Clock::now());
+
+  std::vector<pollfd> polled{{signal_fd_, POLLIN, 0}, {output_.waiting_fd(), POLLOUT, 0}};
+  std::vector<std::pair<Child*, Stream>> readers;
+  if (!output_.full()) {
+    for (const auto& child : children_) {
+      for (const Stream stream : {Stream::kOut, Stream::kErr}) {
+        const int fd = stream == Stream::kOut ? child->process.out_fd() : child->process.err_fd();
+        if (fd < 0) continue;
+        polled.push_back({fd, POLLIN, 0});
+        readers.emplace_back(child.get(), stream);
+      }
+    }
+  }
+  if (poll(polled.data(), polled.size(), PollTimeoutMs(std::min(deadline, NextStopStep()))) < 0) return;
+
+  for (std::size_t i = 0; i < readers.size(); ++i) {
+    if (polled[2 + i].revents != 0) Read(*readers[i].first, readers[i].second);
+  }
+  if (polled[1].revents != 0) output_.WriteSome();
+  ReadSignals();
+  Reap();
+  TakeStopSteps(Clock::now());
+}
+
+void Supervisor::ReadSignals() {
+  signalfd_siginfo info;
+  while (read(signal_fd_, &info, sizeof info) == sizeof info) {
+    if (info.ssi_signo != SIGCHLD) signals_.push_back(static_cast<int>(info.ssi_signo));
+  }
+}
+
+void Supervisor::Read(Child& child, Stream stream) {
+  const bool out = stream == Stream::kOut;
+  const int fd = out ? child.process.out_fd() : child.process.err_fd();
+  LineAssembler& lines = out ? child.out_lines : child.err_lines;
+  const auto pass_on = [&](std::string_view line) { output_.Line(stream, child.process.spec().label, line); };
+  std::array<char, 16 * 1024> buffer;
+  const ssize_t n = read(fd, buffer.data(), buffer.size());
+  if (n > 0) {
+    lines.Feed({buffer.data(), static_cast<std::size_t>(n)}, pass_on);
+  } else if (n == 0 || (errno != EAGAIN && errno != EINTR)) {
+    lines.Finish(pass_on);
+    out ? child.process.CloseOut() : child.process.CloseErr();
+  }
+}
+
+// After its end: what lies in the pipe. A pipe holds 64 KiB; more can only come from a process that the child
+// itself started and that has inherited the pipe, and we do not wait for those.
+void Supervisor::ReadRest(Child& child, Stream stream) {
+  const auto fd = [&] { return stream == Stream::kOut ? child.process.out_fd() : child.process.err_fd(); };
+  for (int i = 0; i < 16 && fd() >= 0; ++i) {
+    pollfd waiting{fd(), POLLIN, 0};
+    if (poll(&waiting, 1, 0) <= 0) break;
+    Read(child, stream);
+  }
+  const auto pass_on = [&](std::string_view line) { output_.Line(stream, child.process.spec().label, line); };
+  (stream == Stream::kOut ? child.out_lines : child.err_lines).Finish(pass_on);
+  stream == Stream::kOut ? child.process.CloseOut() : child.process.CloseErr();
+}
+
+void Supervisor::Reap() {
+  for (const auto& child : children_) {
+    if (!child->process.TryReap()) continue;
+    ReadRest(*child, Stream::kOut);
+    ReadRest(*child, Stream::kErr);
+    const ChildSpec& spec = child->process.spec();
+    ended_.push_back({spec.label, spec.program(), child->process.pid(), *child->process.end(),
+                      child->told_at.has_value(), child->hung});
+  }
+}
+
+std::optional<Supervisor::Ended> Supervisor::NextEnded() {
+  if (ended_.empty()) return std::nullopt;
+  Ended ended = ended_.front();
+  ended_.pop_front();
+  return ended;
+}
+
+std::optional<int> Supervisor::NextSignal() {
+  if (signals_.empty()) return std::nullopt;
+  const int number = signals_.front();
+  signals_.pop_front();
+  return number;
+}
+
+void Supervisor::Stop(TimePoint first_signal) {
+  stop_at_ = stop_at_ ? std::min(*stop_at_, first_signal) : first_signal;
+}
+
+void Supervisor::KillAll() {
+  Stop(Clock::now());
+  for (const auto& child : children_) child->process.Signal(SIGKILL);
+}
+
+Supervisor::Duration Supervisor::GraceOf(const Child& child) const {
+  return child.process.spec().last ? grace_.last : grace_.child;
+}
+
+void Supervisor::TakeStopSteps(TimePoint now) {
+  if (!stop_at_) return;
+  if (running_first() == 0 && !first_gone_at_) first_gone_at_ = now;
+  for (const auto& child : children_) {
+    if (!child->process.running()) continue;
+    if (!child->told_at) {
+      const bool due = child->process.spec().last
+                           ? first_gone_at_ && now >= *first_gone_at_ + grace_.before_last
+                           : now >= *stop_at_;
+      if (!due) continue;
+      child->process.Signal(SIGTERM);
+      child->told_at = now;
+    } else if (!child->hung && now >= *child->told_at + GraceOf(*child)) {
+      child->process.Signal(SIGKILL);
+      child->hung = true;
+    }
+  }
+}
+
+Supervisor::TimePoint Supervisor::NextStopStep() const {
+  TimePoint next = TimePoint::max();
+  if (!stop_at_) return next;
+  for (const auto& child : children_) {
+    if (!child->process.running() || child->hung) continue;
+    if (child->told_at) {
+      next = std::min(next, *child->told_at + GraceOf(*child));
+    } else if (!child->process.spec().last) {
+      next = std::min(next, *stop_at_);
+    } else if (first_gone_at_) {
+      next = std::min(next, *first_gone_at_ + grace_.before_last);
+    }
+  }
+  return next;
+}
+
+}  // namespace hydro
