@@ -59,6 +59,12 @@ class LogReader {
   // by the end or by another event: an event with a damaged length is not returned.
   bool Next(LogEvent& event);
 
+  // Starts again at the first event.
+  void Rewind() {
+    offset_ = 0;
+    index_ = 0;
+  }
+
   const std::string& file() const { return name_; }
   int64_t size() const { return static_cast<int64_t>(file_.size()); }  // bytes
 

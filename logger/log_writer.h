@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <stdexcept>
 #include <string>
 #include <string_view>
 
@@ -33,7 +34,9 @@ class LogWriter {
   template <class Message>
   void AppendMessage(std::string_view channel, const Message& message, int64_t utime) {
     const int size = message.getEncodedSize();
-    message.encode(Reserve(channel, static_cast<size_t>(size), utime), 0, size);
+    if (message.encode(Reserve(channel, static_cast<size_t>(size), utime), 0, size) != size) {
+      throw std::invalid_argument("message on " + std::string(channel) + " holds a string with a zero byte");
+    }
     Commit(channel.size(), static_cast<size_t>(size));
   }
 

@@ -42,7 +42,7 @@ LoggerApp::LoggerApp(Bus& bus, Clock& clock, const StackConfig& config, const Lo
     : bus_(bus),
       participant_(bus, clock, Channels(config.bus.channel_suffix), "logger"),
       options_(options),
-      writer_(std::make_unique<LogWriter>(options.file, LogWriter::Opening::kDirect)) {
+      writer_(std::make_unique<LogWriter>(options.file, Opening::kDirect)) {
   bus.SubscribeAll([this](const RawMessage& message) { OnMessage(message); });
   bus.Subscribe<process_status_t>(participant_.channels().process_status,
                                   [this](const process_status_t& status) {
@@ -130,7 +130,7 @@ void LoggerApp::WriteUntilClosed() {
 void LoggerApp::WriteBatch(std::deque<Event>& batch) {
   for (Event& event : batch) {
     if (options_.rotate_bytes > 0 && writer_->bytes() >= options_.rotate_bytes) Rotate();
-    writer_->Append(event.channel, event.data.data(), static_cast<int>(event.data.size()), event.utime);
+    writer_->Append(event.channel, event.data.data(), event.data.size(), event.utime);
     if (event.channel == participant_.channels().run) descriptions_[event.channel] = std::move(event);
   }
   writer_->Flush();
@@ -139,15 +139,15 @@ void LoggerApp::WriteBatch(std::deque<Event>& batch) {
 
 void LoggerApp::Rotate() {
   writer_->Finish();
-  writer_ = std::make_unique<LogWriter>(RotatedName(options_.file, files_++), LogWriter::Opening::kDirect);
+  writer_ = std::make_unique<LogWriter>(RotatedName(options_.file, files_++), Opening::kDirect);
   for (const auto& [channel, event] : descriptions_) {
-    writer_->Append(channel, event.data.data(), static_cast<int>(event.data.size()), event.utime);
+    writer_->Append(channel, event.data.data(), event.data.size(), event.utime);
   }
 }
 
 void LoggerApp::Poll() {
   participant_.statistics().set_lost_messages(lost_);
-  participant_.statistics().set_queue_depth(largest_queue_);
+  participant_.statistics().RecordQueueDepth(largest_queue_);
   largest_queue_ = 0;
   participant_.Poll();
   if (state_tick_ > reported_tick_) ReportProgress();

@@ -1,0 +1,25 @@
+// hydro-logger CONFIG -o FILE: records the bus.
+#include "logger/logger_app.h"
+#include "process/process_main.h"
+
+int main(int argc, char** argv) {
+  hydro::CommandLine command_line("hydro-logger", "Records every message on the bus into an LCM event log.");
+  hydro::CommonOptions options;
+  hydro::LoggerOptions logger;
+  double rotate_mb = 0;
+  command_line.AddCommon(&options);
+  command_line.AddOption("-o,--output", &logger.file, "FILE to record into (an existing file is replaced)");
+  command_line.AddOption("--rotate-mb", &rotate_mb,
+                         "start a new file (FILE-001 ...) when one is larger; 0: never");
+  if (const auto exit_code = command_line.Parse(argc, argv)) return *exit_code;
+  if (logger.file.empty()) logger.file = options.log;
+  options.log.clear();
+  return hydro::RunProcess("hydro-logger", options,
+                           [&](hydro::Bus& bus, hydro::Clock& clock, const hydro::StackConfig& config) {
+                             if (logger.file.empty()) throw hydro::InputError("-o FILE is required");
+                             if (!(rotate_mb >= 0)) throw hydro::InputError("--rotate-mb must be 0 or more");
+                             logger.rotate_bytes = static_cast<int64_t>(rotate_mb * 1e6);
+                             hydro::LoggerApp app(bus, clock, config, logger);
+                             return hydro::RunApp(bus, clock, app);
+                           });
+}
