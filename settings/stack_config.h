@@ -19,92 +19,93 @@ namespace hydro {
 struct TrajectorySpec {
   enum class Kind { kSteps, kSine, kSquare, kChirp, kCsv };
   Kind kind = Kind::kSteps;
-  double initial = 0;            // kSteps: before the first step
-  std::vector<Step> steps;       // kSteps: [[time_s, value], ...]
-  double offset = 0;             // kSine, kSquare, kChirp
-  double amplitude = 0;          // kSine, kSquare, kChirp
-  double frequency_hz = 1;       // kSine, kSquare
-  double phase_rad = 0;          // kSine
-  double start_s = 0;            // kSine, kSquare, kChirp
+  double initial = 0;               // kSteps: before the first step
+  std::vector<Step> steps;          // kSteps: [[time_s, value], ...]
+  double offset = 0;                // kSine, kSquare, kChirp
+  double amplitude = 0;             // kSine, kSquare, kChirp
+  double frequency_hz = 1;          // kSine, kSquare
+  double phase_rad = 0;             // kSine
+  double start_s = 0;               // kSine, kSquare, kChirp
   double first_frequency_hz = 0.1;  // kChirp
   double last_frequency_hz = 10;    // kChirp
-  double duration_s = 10;        // kChirp
-  std::string file;              // kCsv, relative to the configuration's folder
-  std::string column;            // kCsv: the value's column; time is the column time_s
+  double duration_s = 10;           // kChirp
+  std::string file;                 // kCsv, relative to the configuration's folder
+  std::string column;               // kCsv: the value's column; time is the column time_s
   Interpolation interpolation = Interpolation::kLinear;  // kCsv
-  std::vector<Step> points;      // kCsv: what the file held
+  std::vector<Step> points;                              // kCsv: what the file held
 };
 
 struct ModelSection {
-  std::string file;                 // as given; relative to the configuration's folder
-  std::string resolved_file;        // path it was read from
-  std::string text;                 // the file's text
+  std::string file;           // as given; relative to the configuration's folder
+  std::string resolved_file;  // path it was read from
+  std::string text;           // the file's text
   ModelDescription description;
-  Shaft shaft = Shaft::kFree;       // shaft = "free" | "clamped" | "driven"
-  double arm_angle_rad = 0;         // clamped: where; free: where the arm starts
-  bool bypass = false;              // the valve between the two sides is open: p1 = p2
+  Shaft shaft = Shaft::kFree;            // shaft = "free" | "clamped" | "driven"
+  double arm_angle_rad = 0;              // clamped: where; free: where the arm starts
+  bool bypass = false;                   // the valve between the two sides is open: p1 = p2
   std::optional<TrajectorySpec> motion;  // [model.motion], required for driven: the arm's angle over time
-  double initial_pressure_psi = std::numeric_limits<double>::quiet_NaN();  // both sides at the start; default p_3
+  double initial_pressure_psi =
+      std::numeric_limits<double>::quiet_NaN();  // both sides at the start; default p_3
 };
 
 struct BusSection {
   std::string url = "udpm://239.255.76.67:7667?ttl=0";
-  std::string channel_suffix;       // appended to every channel name
+  std::string channel_suffix;  // appended to every channel name
 };
 
 enum class TimeMode { kRealtime, kLockstep };
 
 struct TimeSection {
   TimeMode mode = TimeMode::kRealtime;
-  double speed = 1;                 // realtime: simulated seconds per wall second; lockstep always runs as fast as it can
-  double duration_s = 0;            // plant time after which the run ends; 0: until stopped
-  double start_timeout_s = 10;      // wall time the plant waits for the others to be ready
-  double stall_timeout_s = 1.5;     // lockstep: wall time the plant waits for one command; less than 2
+  double speed = 1;  // realtime: simulated seconds per wall second; lockstep always runs as fast as it can
+  double duration_s = 0;         // plant time after which the run ends; 0: until stopped
+  double start_timeout_s = 10;   // wall time the plant waits for the others to be ready
+  double stall_timeout_s = 1.5;  // lockstep: wall time the plant waits for one command; less than 2
 };
 
 struct PlantSection {
-  double rate_hz = 1000;            // ticks per second of plant time
-  int command_delay_ticks = 1;      // a command computed from tick k acts from tick k + this; 0 or 1
+  double rate_hz = 1000;        // ticks per second of plant time
+  int command_delay_ticks = 1;  // a command computed from tick k acts from tick k + this; 0 or 1
   Integrator integrator = Integrator::kAuto;  // "auto" | "fast" | "erk" | "cvode"
   double relative_tolerance = 1e-8;
 };
 
 struct PressureSection {
-  double rate_hz = 0;               // 0 (or "every_tick"): each plant tick; else it divides plant.rate_hz
-  std::optional<double> k_p;        // V/psi, eq. (16); with k_v, or else the two below
-  std::optional<double> k_v;        // psi s/rad, eq. (16)
+  double rate_hz = 0;         // 0 (or "every_tick"): each plant tick; else it divides plant.rate_hz
+  std::optional<double> k_p;  // V/psi, eq. (16); with k_v, or else the two below
+  std::optional<double> k_v;  // psi s/rad, eq. (16)
   std::optional<double> natural_frequency_rad_s;  // the gains follow from these
   std::optional<double> damping_ratio;
-  int compressed_sides = 2;         // 2: both volumes compress; 1: the other is held at p_3 by its valve
-  bool reference_feedforward = false;            // adds the voltage that holds dp_ref in the steady state
+  int compressed_sides = 2;            // 2: both volumes compress; 1: the other is held at p_3 by its valve
+  bool reference_feedforward = false;  // adds the voltage that holds dp_ref in the steady state
   std::optional<double> reference_feedforward_V_psi;  // the same with a gain of one's own
-  bool arm_speed_feedforward = false;            // takes (c/D) alpha' out of the k_v term
+  bool arm_speed_feedforward = false;                 // takes (c/D) alpha' out of the k_v term
 };
 
 struct PositionSection {
   double sample_interval_s = 0.005;  // T of eq. (17); a whole number of plant ticks
-  double c1 = 0;                    // psi/rad
-  double c2 = 0;                    // psi s/rad
+  double c1 = 0;                     // psi/rad
+  double c2 = 0;                     // psi s/rad
   bool derivative_on_error = false;  // derivative = "error" (eq. (17) as printed) | "measurement"
-  int dac_bits = 0;                 // 0: no D/A quantisation of the pressure command
-  double dac_range_psi = 2000;      // full scale of the D/A, +/-
+  int dac_bits = 0;                  // 0: no D/A quantisation of the pressure command
+  double dac_range_psi = 2000;       // full scale of the D/A, +/-
 };
 
 enum class ReferenceSignal { kArmAngle, kPressure, kTorque, kVoltage };
 
 struct ReferenceSection {
   ReferenceSignal signal = ReferenceSignal::kArmAngle;  // "arm_angle" | "pressure" | "torque" | "voltage"
-  TrajectorySpec trajectory;        // kind = "steps" | "sine" | "square" | "chirp" | "csv"
+  TrajectorySpec trajectory;  // kind = "steps" | "sine" | "square" | "chirp" | "csv"
 };
 
 struct LimitsSection {
-  double pressure_psi = 2000;       // either side; above it: zero volts, fault, end of the run
+  double pressure_psi = 2000;  // either side; above it: zero volts, fault, end of the run
   double motor_speed_rad_s = std::numeric_limits<double>::infinity();
   double arm_torque_in_lbf = std::numeric_limits<double>::infinity();  // |k_2 dp_ref| is limited to this
-  double stale_input_s = 0.1;       // older inputs give zero volts and a fault
+  double stale_input_s = 0.1;  // older inputs give zero volts and a fault
 };
 
-struct NoiseSection {               // standard deviations of what the sensors add; 0: none
+struct NoiseSection {  // standard deviations of what the sensors add; 0: none
   double p1_psi = 0;
   double p2_psi = 0;
   double motor_angle_rad = 0;
@@ -114,15 +115,15 @@ struct NoiseSection {               // standard deviations of what the sensors a
 };
 
 struct ProcessSection {
-  std::string program;              // hydro-plant, hydro-driver, hydro-pressure-ctrl, hydro-position-ctrl, hydro-logger
-  std::string host;                 // empty: any (started by a launch without --host, or on "localhost")
-  int cpu = -1;                     // processor to run on; -1: any
-  int priority = 0;                 // SCHED_FIFO priority 1..99; 0: ordinary scheduling
+  std::string program;  // hydro-plant, hydro-driver, hydro-pressure-ctrl, hydro-position-ctrl, hydro-logger
+  std::string host;     // empty: any (started by a launch without --host, or on "localhost")
+  int cpu = -1;         // processor to run on; -1: any
+  int priority = 0;     // SCHED_FIFO priority 1..99; 0: ordinary scheduling
 };
 
 struct StackConfig {
-  std::string file;                 // as given on the command line
-  std::string text;                 // effective TOML: the file with every override applied
+  std::string file;  // as given on the command line
+  std::string text;  // effective TOML: the file with every override applied
   ModelSection model;
   BusSection bus;
   TimeSection time;
@@ -132,8 +133,9 @@ struct StackConfig {
   ReferenceSection reference;
   LimitsSection limits;
   NoiseSection noise;
-  int64_t seed = 1;                 // --seed, [noise] seed
-  std::vector<ProcessSection> processes;  // default: plant, pressure-ctrl, position-ctrl, no host, no cpu, no priority
+  int64_t seed = 1;  // --seed, [noise] seed
+  std::vector<ProcessSection>
+      processes;  // default: plant, pressure-ctrl, position-ctrl, no host, no cpu, no priority
 
   // Plant ticks per sample of the position loop and of the pressure loop (whole numbers, checked when read).
   int64_t position_interval_ticks = 1;
@@ -142,8 +144,9 @@ struct StackConfig {
   int64_t last_tick = -1;
 };
 
-// Reads `file`, applies `overrides` ("section.key=value", the value in TOML or a bare word), checks everything, and
-// reads the model file it names. Throws InputError (exit 2) naming file, line or key, what was found, what is allowed.
+// Reads `file`, applies `overrides` ("section.key=value", the value in TOML or a bare word), checks
+// everything, and reads the model file it names. Throws InputError (exit 2) naming file, line or key, what
+// was found, what is allowed.
 StackConfig LoadStackConfig(const std::string& file, const std::vector<std::string>& overrides = {});
 
 // The same from text instead of a file (a log's own description); `model_text` replaces the model file.

@@ -1,0 +1,81 @@
+// The command line that every program shares.
+//
+//   int main(int argc, char** argv) {
+//     hydro::CommandLine line("hydro-plant", "The simulated actuator.");
+//     hydro::CommonOptions options;
+//     line.AddCommon(&options);
+//     if (const auto code = line.Parse(argc, argv)) return *code;
+//     return hydro::RunProgram("hydro-plant", [&] { return Run(hydro::LoadStackConfig(options.config,
+//     options.overrides)); });
+//   }
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace hydro {
+
+// The version of all programs, e.g. "0.1.0".
+std::string ProgramVersion();
+
+struct CommonOptions {
+  std::string config;  // CONFIG
+  std::vector<std::string>
+      overrides;    // --set, and --time, --duration, --seed as what they set; for LoadStackConfig
+  std::string log;  // --log; empty: not given
+  bool si = false;  // --si: figures for a person are in SI
+};
+
+// What the targets given to Add... point to is set by Parse() and must outlive it; values not on the command
+// line are left alone.
+class CommandLine {
+ public:
+  CommandLine(const std::string& program, const std::string& description);
+  ~CommandLine();
+  CommandLine(CommandLine&&) noexcept;
+  CommandLine& operator=(CommandLine&&) noexcept;
+
+  // CONFIG, --set section.key=value, --time realtime|lockstep, --duration S, --seed N, --log FILE, --si.
+  void AddCommon(CommonOptions* options);
+
+  // `names` as in "-o,--out"; `help` begins with the value's name in capitals: "FILE where to write".
+  void AddOption(const std::string& names, std::string* target, const std::string& help,
+                 bool required = false);
+  void AddOption(const std::string& names, double* target, const std::string& help, bool required = false);
+  void AddOption(const std::string& names, int* target, const std::string& help, bool required = false);
+  void AddOption(const std::string& names, int64_t* target, const std::string& help, bool required = false);
+  // May be given several times.
+  void AddOption(const std::string& names, std::vector<std::string>* target, const std::string& help,
+                 bool required = false);
+  void AddFlag(const std::string& names, bool* target, const std::string& help);
+  void AddPositional(const std::string& name, std::string* target, const std::string& help,
+                     bool required = true);
+  void AddPositional(const std::string& name, std::vector<std::string>* target, const std::string& help,
+                     bool required = true);
+
+  // A verb with options of its own, as in `hydro-log info LOG`; then exactly one verb must be given. The
+  // reference stays valid as long as this object does.
+  CommandLine& AddVerb(const std::string& name, const std::string& description);
+
+  // The verb that was given; empty before Parse() and where there are none.
+  std::string verb() const;
+
+  // Nothing when the program should go on; else the code to exit with now: 0 after --help or --version, 2 for
+  // bad usage, which one line on stderr explains.
+  std::optional<int> Parse(int argc, const char* const* argv);
+
+ private:
+  class Impl;
+  explicit CommandLine(std::unique_ptr<Impl> impl);
+  std::unique_ptr<Impl> impl_;
+};
+
+// Runs a program's body and turns what it throws into one line "program: ..." on stderr and an exit code: 2
+// for InputError, 1 for anything else.
+int RunProgram(const std::string& program, const std::function<int()>& body);
+
+}  // namespace hydro

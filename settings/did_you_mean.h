@@ -1,0 +1,15 @@
+// The name that a misspelt one was probably meant to be.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace hydro {
+
+// The entry of `names` nearest to `found` in single-character edits, or empty when none is near.
+std::string Nearest(const std::string& found, const std::vector<std::string>& names);
+
+// ", did you mean \"x\"?" or empty.
+std::string DidYouMean(const std::string& found, const std::vector<std::string>& names);
+
+}  // namespace hydro

@@ -1,0 +1,133 @@
+#include "settings/model_file.h"
+
+#include <cmath>
+
+#include "model/parameter_info.h"
+#include "settings/did_you_mean.h"
+#include "settings/section_reader.h"
+
+namespace hydro {
+namespace {
+
+NumberRange RangeOf(const ParameterInfo& info) {
+  return {.min = info.min, .max = info.max, .min_allowed = info.min_allowed};
+}
+
+std::string Wanted(const ParameterInfo& info) {
+  return RangeOf(info).Says() + " (" + info.unit + ", " + info.says + ")";
+}
+
+// c itself, or r and d that give it: c = r^2 d / 2, eqs. (6), (7).
+void ReadDisplacement(SectionReader& section, const ParameterInfo& info, double* c) {
+  double r = 0;
+  double d = 0;
+  const bool has_c = section.Number("c", c, RangeOf(info));
+  const bool has_r = section.Number("r", &r, kPositive);
+  const bool has_d = section.Number("d", &d, kPositive);
+  if (has_c && (has_r || has_d)) {
+    throw section.Error(has_r ? "r" : "d", "it beside c", "r and d, or c, not both");
+  }
+  if (has_r) section.Require("d", "a finite number above 0 (depth of the actuator; r and d give c)");
+  if (has_d) section.Require("r", "a finite number above 0 (radius of the actuator; r and d give c)");
+  if (!has_r && !has_d) section.Require("c", Wanted(info) + ", or r and d");
+  if (has_r && has_d) {
+    *c = r * r * d / 2;
+    if (!RangeOf(info).Holds(*c)) {
+      throw section.Error("r", "r^2 d / 2 = " + ShortestNumber(*c), RangeOf(info).Says());
+    }
+  }
+}
+
+EffectDescription ReadEffect(SectionReader section, const EffectInfo& info) {
+  EffectDescription effect;
+  effect.id = info.id;
+  for (const ParameterInfo& parameter : info.parameters) {
+    if (parameter.is_name) {
+      std::vector<std::pair<std::string, std::string>> choices;
+      for (const std::string& name : parameter.names) choices.emplace_back(name, name);
+      section.Choice(parameter.name, choices, &effect.names[parameter.name]);
+      section.Require(parameter.name, QuotedList(parameter.names) + " (" + parameter.says + ")");
+    } else {
+      section.Number(parameter.name, &effect.parameters[parameter.name], RangeOf(parameter));
+      section.Require(parameter.name, Wanted(parameter));
+    }
+  }
+  section.Finish();
+  return effect;
+}
+
+std::vector<EffectDescription> ReadEffects(SectionReader section, const TomlNode* table) {
+  std::vector<EffectDescription> effects;
+  if (table == nullptr) return effects;
+  std::vector<std::string> known;
+  for (const EffectInfo& info : EffectCatalogue()) known.push_back(info.id);
+  for (const auto& member : table->members) {
+    // [effects.pump.stribeck] without quotes is a table in a table.
+    if (const EffectInfo* info = FindEffect(member.first)) {
+      SectionReader reader = section.Section(member.first);
+      effects.push_back(ReadEffect(std::move(reader), *info));
+      continue;
+    }
+    std::string id = member.first;
+    if (member.second.is(TomlNode::Kind::kTable) && member.second.members.size() == 1 &&
+        FindEffect(id + "." + member.second.members[0].first) != nullptr) {
+      id += "." + member.second.members[0].first;
+      throw InputError(member.second.place + ": effects: found [effects." + id + "], allowed [effects.\"" +
+                       id + "\"]: the id needs quotes");
+    }
+    throw InputError(member.second.place + ": effects: found the unknown effect " + Quoted(id) +
+                     ", allowed " + QuotedList(known) + DidYouMean(id, known));
+  }
+  return effects;
+}
+
+}  // namespace
+
+ModelDescription ParseModel(const std::string& text, const std::string& name_for_messages) {
+  TomlNode root = ParseToml(text, name_for_messages);
+  root.place = name_for_messages;
+  SectionReader document(root, "");
+  ModelDescription description;
+  document.Text("name", &description.name);
+  SectionReader parameters = document.Section("parameters");
+  document.Require("parameters", "a section [parameters]");
+  SectionReader effects = document.Section("effects");
+  document.Finish();
+
+  for (const BaseParameter& parameter : BaseParameters()) {
+    double* value = &(description.parameters.*parameter.member);
+    if (parameter.info.name == "c") {
+      ReadDisplacement(parameters, parameter.info, value);
+    } else {
+      parameters.Number(parameter.info.name, value, RangeOf(parameter.info));
+      parameters.Require(parameter.info.name, Wanted(parameter.info));
+    }
+  }
+  parameters.Finish();
+  description.effects = ReadEffects(std::move(effects), root.Find("effects"));
+  return description;
+}
+
+ModelDescription LoadModelFile(const std::string& file) { return ParseModel(ReadTextFile(file), file); }
+
+std::string FormatModel(const ModelDescription& description) {
+  TomlNode root;
+  root.members.emplace_back("name", StringNode(description.name));
+  TomlNode parameters;
+  for (const BaseParameter& parameter : BaseParameters()) {
+    parameters.members.emplace_back(parameter.info.name,
+                                    NumberNode(description.parameters.*parameter.member));
+  }
+  root.members.emplace_back("parameters", std::move(parameters));
+  TomlNode effects;
+  for (const EffectDescription& effect : description.effects) {
+    TomlNode table;
+    for (const auto& [name, value] : effect.parameters) table.members.emplace_back(name, NumberNode(value));
+    for (const auto& [name, value] : effect.names) table.members.emplace_back(name, StringNode(value));
+    effects.members.emplace_back(effect.id, std::move(table));
+  }
+  if (!effects.members.empty()) root.members.emplace_back("effects", std::move(effects));
+  return FormatToml(root);
+}
+
+}  // namespace hydro

@@ -1,0 +1,124 @@
+#include "settings/overrides.h"
+
+#include <algorithm>
+
+#include "settings/text_file.h"
+#include "settings/trajectory_spec.h"
+
+namespace hydro {
+namespace {
+
+using Kind = TomlNode::Kind;
+
+void SetOrigin(TomlNode* node, const std::string& place) {
+  node->place = place;
+  node->from_option = true;
+  for (auto& member : node->members) SetOrigin(&member.second, place);
+  for (TomlNode& item : node->items) SetOrigin(&item, place);
+}
+
+TomlNode ParseValue(const std::string& value) {
+  try {
+    TomlNode table = ParseToml("value = " + value, "");
+    if (table.members.size() == 1) return std::move(table.members[0].second);
+  } catch (const InputError&) {
+    // Not TOML: a bare word such as lockstep or udpm://...
+  }
+  return StringNode(value);
+}
+
+void ApplyOne(const std::string& option, TomlNode* root) {
+  const std::string place = "--set " + Quoted(option).substr(1, Quoted(option).size() - 2);
+  const size_t equals = option.find('=');
+  if (equals == std::string::npos || equals == 0) {
+    throw InputError(place + ": found " + Quoted(option) + ", allowed section.key=value");
+  }
+  const std::string path = option.substr(0, equals);
+  TomlNode* node = root;
+  for (size_t begin = 0; begin <= path.size();) {
+    const size_t end = std::min(path.find('.', begin), path.size());
+    const std::string key = path.substr(begin, end - begin);
+    if (key.empty()) throw InputError(place + ": found " + Quoted(path) + ", allowed section.key=value");
+    if (!node->is(Kind::kTable)) {
+      throw InputError(place + ": " + path.substr(0, begin - 1) + ": found " + node->Shown() + " at " +
+                       node->place + ", allowed a section");
+    }
+    if (node->Find(key) == nullptr) {
+      TomlNode section;
+      section.place = place;
+      section.from_option = true;
+      node->members.emplace_back(key, std::move(section));
+    }
+    node = node->Find(key);
+    begin = end + 1;
+  }
+  *node = ParseValue(option.substr(equals + 1));
+  SetOrigin(node, place);
+}
+
+bool FromOption(const TomlNode& section, const std::string& key) {
+  const TomlNode* node = section.Find(key);
+  return node != nullptr && node->from_option;
+}
+
+bool AnyFromOption(const TomlNode& section, const std::vector<std::string>& keys) {
+  return std::any_of(keys.begin(), keys.end(), [&](const auto& key) { return FromOption(section, key); });
+}
+
+// An option that chose one of two ways drops what the file says for the other.
+void DropAlternative(const std::vector<std::string>& chosen, const std::vector<std::string>& other,
+                     TomlNode* section) {
+  if (!AnyFromOption(*section, chosen) || AnyFromOption(*section, other)) return;
+  for (const std::string& key : other) section->Erase(key);
+}
+
+void DropOtherKinds(TomlNode* section) {
+  const TomlNode* kind = section->Find("kind");
+  if (kind == nullptr || !kind->from_option || !kind->is(Kind::kString)) return;
+  const std::vector<std::string> own = KeysOfTrajectory(kind->text);
+  if (own.empty()) return;
+  for (const char* other : {"steps", "sine", "square", "chirp", "csv"}) {
+    for (const std::string& key : KeysOfTrajectory(other)) {
+      const bool fits = std::find(own.begin(), own.end(), key) != own.end();
+      if (!fits && !FromOption(*section, key)) section->Erase(key);
+    }
+  }
+}
+
+void DropAlternatives(TomlNode* root) {
+  const auto section = [](TomlNode* in, const char* key) {
+    TomlNode* node = in == nullptr ? nullptr : in->Find(key);
+    return node != nullptr && node->is(Kind::kTable) ? node : nullptr;
+  };
+  if (TomlNode* pressure = section(root, "pressure")) {
+    const std::vector<std::string> gains = {"k_p", "k_v"};
+    const std::vector<std::string> dynamics = {"natural_frequency_rad_s", "damping_ratio"};
+    DropAlternative(gains, dynamics, pressure);
+    DropAlternative(dynamics, gains, pressure);
+  }
+  TomlNode* model = section(root, "model");
+  if (model != nullptr && FromOption(*model, "shaft")) {
+    const TomlNode* shaft = model->Find("shaft");
+    const char* unfit = shaft->is(Kind::kString) && shaft->text == "driven" ? "arm_angle_rad" : "motion";
+    const TomlNode* node = model->Find(unfit);
+    const bool motion_by_option =
+        node != nullptr && std::any_of(node->members.begin(), node->members.end(),
+                                       [](const auto& member) { return member.second.from_option; });
+    if (!FromOption(*model, unfit) && !motion_by_option) model->Erase(unfit);
+  }
+  for (TomlNode* trajectory : {section(root, "reference"), section(model, "motion")}) {
+    if (trajectory == nullptr) continue;
+    DropOtherKinds(trajectory);
+    DropAlternative({"points"}, {"file", "column"}, trajectory);
+    DropAlternative({"file", "column"}, {"points"}, trajectory);
+  }
+}
+
+}  // namespace
+
+void ApplyOverrides(const std::vector<std::string>& overrides, TomlNode* root) {
+  for (const std::string& option : overrides) ApplyOne(option, root);
+  DropAlternatives(root);
+}
+
+}  // namespace hydro

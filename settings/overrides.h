@@ -1,0 +1,19 @@
+// --set section.key=value.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "settings/toml_document.h"
+
+namespace hydro {
+
+// Sets each "section.key=value" in the configuration. The value is TOML, or else taken as a string. Throws
+// InputError naming the option where it has no such form.
+//
+// Where alternatives exclude each other, choosing one by option drops the file's keys of the others: those of
+// another kind when reference.kind (or model.motion.kind) is set, k_p and k_v against natural_frequency_rad_s
+// and damping_ratio, points against file and column, motion and arm_angle_rad when model.shaft is set.
+void ApplyOverrides(const std::vector<std::string>& overrides, TomlNode* root);
+
+}  // namespace hydro

@@ -1,0 +1,148 @@
+#include "settings/stack_checks.h"
+
+#include <cmath>
+
+#include "settings/section_reader.h"
+#include "trajectory/trajectory.h"
+
+namespace hydro {
+namespace {
+
+// How many whole `unit`s `value` is; 0 when it is not a whole number of at least one. Decimal fractions such
+// as 0.005 are not exact in binary, hence the tolerance, which is far below what anyone could mean.
+int64_t WholeMultiple(double value, double unit) {
+  const double ratio = value / unit;
+  const double whole = std::round(ratio);
+  const bool fits = whole >= 1 && whole < 9e15 && std::abs(ratio - whole) <= 1e-9 * whole;
+  return fits ? static_cast<int64_t>(whole) : 0;
+}
+
+std::string Ticks(double rate_hz) {
+  return "ticks of " + ShortestNumber(1 / rate_hz) + " s (plant.rate_hz = " + ShortestNumber(rate_hz) + ")";
+}
+
+void CheckPair(const TomlNode& root, const std::string& present, const std::string& missing) {
+  throw KeyError(root, present, present.substr(present.find('.') + 1) + " without " + missing,
+                 "k_p with k_v, or natural_frequency_rad_s with damping_ratio");
+}
+
+// The arm angle that `what` takes must leave V_1, V_2 > 0: V_ms - c |alpha| > 0, eqs. (6), (7).
+void CheckAngle(const TomlNode& root, const std::string& key, double angle, const Parameters& p) {
+  const double limit = p.V_ms / p.c;
+  if (std::abs(angle) < limit) return;
+  const char* side = angle > 0 ? "V_1" : "V_2";
+  throw KeyError(root, key,
+                 "arm angle " + ShortestNumber(angle) + " rad, which leaves " + side + " = " +
+                     ShortestNumber(p.V_ms - p.c * std::abs(angle)) + " in^3",
+                 "|alpha| < V_ms/c = " + ShortestNumber(limit) + " rad, where V_1, V_2 > 0");
+}
+
+void CheckAngles(const TomlNode& root, const std::string& key, const TrajectorySpec& spec,
+                 const Parameters& p) {
+  const auto trajectory = MakeTrajectory(spec);
+  CheckAngle(root, key, trajectory->Max(), p);
+  CheckAngle(root, key, trajectory->Min(), p);
+}
+
+bool Has(const std::vector<EffectDescription>& effects, const std::string& id) {
+  for (const EffectDescription& effect : effects) {
+    if (effect.id == id) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+void CheckTimes(const TomlNode& root, StackConfig* config) {
+  const double rate = config->plant.rate_hz;
+  const PositionSection& position = config->position;
+  config->position_interval_ticks = WholeMultiple(position.sample_interval_s * rate, 1);
+  if (config->position_interval_ticks == 0) {
+    throw KeyError(root, "position.sample_interval_s",
+                   ShortestNumber(position.sample_interval_s) + " s, which is " +
+                       ShortestNumber(position.sample_interval_s * rate) + " ticks",
+                   "a whole number of " + Ticks(rate));
+  }
+  config->pressure_interval_ticks = 1;
+  if (config->pressure.rate_hz > 0) {
+    config->pressure_interval_ticks = WholeMultiple(rate, config->pressure.rate_hz);
+    if (config->pressure_interval_ticks == 0) {
+      throw KeyError(root, "pressure.rate_hz", ShortestNumber(config->pressure.rate_hz),
+                     "plant.rate_hz = " + ShortestNumber(rate) + " divided by a whole number");
+    }
+  }
+  config->last_tick = -1;
+  if (config->time.duration_s > 0) {
+    config->last_tick = WholeMultiple(config->time.duration_s * rate, 1);
+    if (config->last_tick == 0) {
+      throw KeyError(root, "time.duration_s", ShortestNumber(config->time.duration_s) + " s",
+                     "a whole number of " + Ticks(rate) + ", or 0 for a run until it is stopped");
+    }
+  }
+}
+
+void CheckChoices(const TomlNode& root, const StackConfig& config) {
+  const PressureSection& pressure = config.pressure;
+  const bool any_gain = pressure.k_p || pressure.k_v;
+  const bool any_dynamics = pressure.natural_frequency_rad_s || pressure.damping_ratio;
+  if (any_gain && any_dynamics) {
+    throw KeyError(root, pressure.k_p ? "pressure.k_p" : "pressure.k_v",
+                   "it beside natural_frequency_rad_s or damping_ratio",
+                   "k_p with k_v, or natural_frequency_rad_s with damping_ratio, not both");
+  }
+  if (!any_gain && !any_dynamics) {
+    throw KeyError(root, "pressure", "no gains",
+                   "k_p with k_v, or natural_frequency_rad_s with damping_ratio");
+  }
+  if (any_gain && !pressure.k_v) CheckPair(root, "pressure.k_p", "k_v");
+  if (any_gain && !pressure.k_p) CheckPair(root, "pressure.k_v", "k_p");
+  if (any_dynamics && !pressure.damping_ratio) {
+    CheckPair(root, "pressure.natural_frequency_rad_s", "damping_ratio");
+  }
+  if (any_dynamics && !pressure.natural_frequency_rad_s) {
+    CheckPair(root, "pressure.damping_ratio", "natural_frequency_rad_s");
+  }
+
+  const ModelSection& model = config.model;
+  const bool driven = model.shaft == Shaft::kDriven;
+  if (driven && !model.motion) {
+    throw KeyError(root, "model.shaft", "\"driven\" without [model.motion]",
+                   "\"driven\" with the arm's motion in [model.motion]");
+  }
+  if (!driven && model.motion) {
+    throw KeyError(root, "model.motion", "it with a shaft that is not driven",
+                   "[model.motion] with shaft = \"driven\" only");
+  }
+  if (driven && root.Find("model") != nullptr && root.Find("model")->Find("arm_angle_rad") != nullptr) {
+    throw KeyError(root, "model.arm_angle_rad", "it with a driven shaft",
+                   "arm_angle_rad with shaft = \"free\" or \"clamped\"; [model.motion] says where a driven "
+                   "shaft is");
+  }
+  if (driven && !MakeTrajectory(*model.motion)->continuous()) {
+    throw KeyError(root, "model.motion", "a motion that jumps",
+                   "a continuous motion: sine with phase_rad = 0, chirp, or csv with linear or cubic "
+                   "interpolation");
+  }
+}
+
+void CheckAgainstModel(const TomlNode& root, const StackConfig& config) {
+  const ModelSection& model = config.model;
+  const Parameters& p = model.description.parameters;
+  CheckAngle(root, "model.arm_angle_rad", model.arm_angle_rad, p);
+  if (model.motion) CheckAngles(root, "model.motion", *model.motion, p);
+  if (config.reference.signal == ReferenceSignal::kArmAngle) {
+    CheckAngles(root, "reference", config.reference.trajectory, p);
+  }
+  const double pressure = model.initial_pressure_psi;
+  if (pressure < 0 || (pressure < p.p_3 && !Has(model.description.effects, "valve.check"))) {
+    throw KeyError(root, "model.initial_pressure_psi", ShortestNumber(pressure),
+                   "at least p_3 = " + ShortestNumber(p.p_3) + ", below which the one-way valves open");
+  }
+  const double start = std::isnan(pressure) ? p.p_3 : pressure;
+  if (config.limits.pressure_psi <= start) {
+    throw KeyError(root, "limits.pressure_psi", ShortestNumber(config.limits.pressure_psi),
+                   "above " + ShortestNumber(start) + ", the pressure at the start");
+  }
+}
+
+}  // namespace hydro

@@ -1,0 +1,18 @@
+// What several keys of the configuration, or a key and the model, must satisfy together.
+#pragma once
+
+#include "settings/stack_config.h"
+#include "settings/toml_document.h"
+
+namespace hydro {
+
+// Checks the times against the tick and fills the intervals in ticks and the last tick. Throws InputError.
+void CheckTimes(const TomlNode& root, StackConfig* config);
+
+// Checks pressures and arm angles against the model, once its description is known. Throws InputError.
+void CheckAgainstModel(const TomlNode& root, const StackConfig& config);
+
+// Checks what holds the shaft and the gains. Throws InputError.
+void CheckChoices(const TomlNode& root, const StackConfig& config);
+
+}  // namespace hydro

@@ -1,0 +1,57 @@
+#include "settings/stack_config.h"
+
+#include "settings/model_file.h"
+#include "settings/overrides.h"
+#include "settings/stack_checks.h"
+#include "settings/stack_sections.h"
+#include "settings/text_file.h"
+#include "settings/trajectory_spec.h"
+
+namespace hydro {
+namespace {
+
+// Everything but the model file.
+StackConfig ReadDocument(TomlNode* root, const std::string& file) {
+  root->place = file;
+  StackConfig config;
+  config.file = file;
+  ReadSections(*root, file, &config);
+  CheckTimes(*root, &config);
+  CheckChoices(*root, config);
+
+  TomlNode* model = root->Find("model");
+  if (model != nullptr && config.model.motion) EmbedPoints(*config.model.motion, model->Find("motion"));
+  EmbedPoints(config.reference.trajectory, root->Find("reference"));
+  config.text = FormatToml(*root);
+  return config;
+}
+
+}  // namespace
+
+StackConfig LoadStackConfig(const std::string& file, const std::vector<std::string>& overrides) {
+  TomlNode root = ParseToml(ReadTextFile(file), file);
+  root.place = file;
+  ApplyOverrides(overrides, &root);
+  StackConfig config = ReadDocument(&root, file);
+  if (config.model.file.empty()) {
+    throw KeyError(root, "model.file", "nothing", "the path of a model file");
+  }
+  config.model.resolved_file = PathBeside(file, config.model.file);
+  config.model.text = ReadTextFile(config.model.resolved_file);
+  config.model.description = ParseModel(config.model.text, config.model.resolved_file);
+  CheckAgainstModel(root, config);
+  return config;
+}
+
+StackConfig ParseStackConfig(const std::string& config_text, const std::string& config_name,
+                             const std::string& model_text, const std::string& model_name) {
+  TomlNode root = ParseToml(config_text, config_name);
+  StackConfig config = ReadDocument(&root, config_name);
+  config.model.resolved_file = model_name;
+  config.model.text = model_text;
+  config.model.description = ParseModel(model_text, model_name);
+  CheckAgainstModel(root, config);
+  return config;
+}
+
+}  // namespace hydro

@@ -1,0 +1,213 @@
+#include "settings/stack_sections.h"
+
+#include <algorithm>
+
+#include "settings/bus_url.h"
+#include "settings/trajectory_spec.h"
+
+namespace hydro {
+namespace {
+
+constexpr NumberRange kPositiveOrNone{.min = 0, .min_allowed = false, .infinity_allowed = true};
+
+void ReadModel(SectionReader section, const std::string& config_file, ModelSection* model) {
+  section.Text("file", &model->file);
+  section.Choice<Shaft>("shaft",
+                        {{"free", Shaft::kFree}, {"clamped", Shaft::kClamped}, {"driven", Shaft::kDriven}},
+                        &model->shaft);
+  section.Number("arm_angle_rad", &model->arm_angle_rad);
+  section.Boolean("bypass", &model->bypass);
+  section.Number("initial_pressure_psi", &model->initial_pressure_psi);
+  SectionReader motion = section.Section("motion");
+  section.Finish();
+  if (!section.Has("motion")) return;
+  model->motion = ReadTrajectory(motion, config_file);
+  motion.Finish();
+  CheckedTrajectory(*model->motion, motion);
+}
+
+void ReadBus(SectionReader section, BusSection* bus) {
+  if (section.Text("url", &bus->url)) {
+    const std::string allowed = WhatIsWrongWithBusUrl(bus->url);
+    if (!allowed.empty()) throw section.Error("url", Quoted(bus->url), allowed);
+  }
+  section.Text("channel_suffix", &bus->channel_suffix);
+  section.Finish();
+  const std::string& suffix = bus->channel_suffix;
+  const bool plain = std::all_of(suffix.begin(), suffix.end(), [](unsigned char c) {
+    return (c < 0x80 && std::isalnum(c)) || c == '_' || c == '-' || c == '.';
+  });
+  // LCM's channel names end at 63 bytes.
+  if (!plain || suffix.size() > 32) {
+    throw section.Error("channel_suffix", Quoted(suffix),
+                        "up to 32 letters, digits, underscores, hyphens and dots");
+  }
+}
+
+void ReadTime(SectionReader section, TimeSection* time) {
+  section.Choice<TimeMode>("mode", {{"realtime", TimeMode::kRealtime}, {"lockstep", TimeMode::kLockstep}},
+                           &time->mode);
+  section.Number("speed", &time->speed, kPositive);
+  section.Number("duration_s", &time->duration_s, kNotNegative);
+  section.Number("start_timeout_s", &time->start_timeout_s, kPositive);
+  section.Number("stall_timeout_s", &time->stall_timeout_s,
+                 {.min = 0, .max = 2, .min_allowed = false, .max_allowed = false});
+  section.Finish();
+}
+
+void ReadPlant(SectionReader section, PlantSection* plant) {
+  section.Number("rate_hz", &plant->rate_hz, {.min = 0, .max = 1e6, .min_allowed = false});
+  section.Integer("command_delay_ticks", &plant->command_delay_ticks, 0, 1);
+  section.Choice<Integrator>("integrator",
+                             {{"auto", Integrator::kAuto},
+                              {"fast", Integrator::kFast},
+                              {"erk", Integrator::kErk},
+                              {"cvode", Integrator::kCvode}},
+                             &plant->integrator);
+  section.Number("relative_tolerance", &plant->relative_tolerance,
+                 {.min = 0, .max = 0.01, .min_allowed = false});
+  section.Finish();
+}
+
+void ReadPressure(SectionReader section, PressureSection* pressure) {
+  if (const TomlNode* rate = section.Take("rate_hz")) {
+    if (rate->is(TomlNode::Kind::kString) && rate->text == "every_tick") {
+      pressure->rate_hz = 0;
+    } else if (rate->is_number() && kPositive.Holds(rate->AsDouble())) {
+      pressure->rate_hz = rate->AsDouble();
+    } else {
+      throw section.Error("rate_hz", rate->Shown(), kPositive.Says() + " or \"every_tick\"");
+    }
+  }
+  section.Number("k_p", &pressure->k_p, kNotNegative);
+  section.Number("k_v", &pressure->k_v, kNotNegative);
+  section.Number("natural_frequency_rad_s", &pressure->natural_frequency_rad_s, kPositive);
+  section.Number("damping_ratio", &pressure->damping_ratio, kPositive);
+  section.Integer("compressed_sides", &pressure->compressed_sides, 1, 2);
+  if (const TomlNode* feedforward = section.Take("reference_feedforward")) {
+    if (feedforward->is(TomlNode::Kind::kBoolean)) {
+      pressure->reference_feedforward = feedforward->boolean;
+    } else if (feedforward->is_number() && kAnyNumber.Holds(feedforward->AsDouble())) {
+      pressure->reference_feedforward = true;
+      pressure->reference_feedforward_V_psi = feedforward->AsDouble();
+    } else {
+      throw section.Error("reference_feedforward", feedforward->Shown(),
+                          "true, false or a finite number in V/psi");
+    }
+  }
+  section.Boolean("arm_speed_feedforward", &pressure->arm_speed_feedforward);
+  section.Finish();
+}
+
+void ReadPosition(SectionReader section, PositionSection* position) {
+  section.Number("sample_interval_s", &position->sample_interval_s, kPositive);
+  section.Number("c1", &position->c1, kNotNegative);
+  section.Number("c2", &position->c2, kNotNegative);
+  section.Choice<bool>("derivative", {{"error", true}, {"measurement", false}},
+                       &position->derivative_on_error);
+  section.Integer("dac_bits", &position->dac_bits, 0, 32);
+  section.Number("dac_range_psi", &position->dac_range_psi, kPositive);
+  section.Finish();
+}
+
+void ReadReference(SectionReader section, const std::string& config_file, ReferenceSection* reference) {
+  section.Choice<ReferenceSignal>("signal",
+                                  {{"arm_angle", ReferenceSignal::kArmAngle},
+                                   {"pressure", ReferenceSignal::kPressure},
+                                   {"torque", ReferenceSignal::kTorque},
+                                   {"voltage", ReferenceSignal::kVoltage}},
+                                  &reference->signal);
+  reference->trajectory = ReadTrajectory(section, config_file);
+  section.Finish();
+  CheckedTrajectory(reference->trajectory, section);
+}
+
+void ReadLimits(SectionReader section, LimitsSection* limits) {
+  section.Number("pressure_psi", &limits->pressure_psi, kPositiveOrNone);
+  section.Number("motor_speed_rad_s", &limits->motor_speed_rad_s, kPositiveOrNone);
+  section.Number("arm_torque_in_lbf", &limits->arm_torque_in_lbf, kPositiveOrNone);
+  section.Number("stale_input_s", &limits->stale_input_s, kPositive);
+  section.Finish();
+}
+
+void ReadNoise(SectionReader section, NoiseSection* noise, int64_t* seed) {
+  section.Number("p1_psi", &noise->p1_psi, kNotNegative);
+  section.Number("p2_psi", &noise->p2_psi, kNotNegative);
+  section.Number("motor_angle_rad", &noise->motor_angle_rad, kNotNegative);
+  section.Number("motor_speed_rad_s", &noise->motor_speed_rad_s, kNotNegative);
+  section.Number("arm_angle_rad", &noise->arm_angle_rad, kNotNegative);
+  section.Number("arm_speed_rad_s", &noise->arm_speed_rad_s, kNotNegative);
+  section.Integer("seed", seed, 0, std::numeric_limits<int64_t>::max());
+  section.Finish();
+}
+
+void ReadProcess(SectionReader section, ProcessSection* process) {
+  std::vector<std::pair<std::string, std::string>> programs;
+  for (const char* name :
+       {"hydro-plant", "hydro-driver", "hydro-pressure-ctrl", "hydro-position-ctrl", "hydro-logger"}) {
+    programs.emplace_back(name, name);
+  }
+  section.Choice("program", programs, &process->program);
+  section.Require("program", "the program's name, e.g. \"hydro-plant\"");
+  section.Text("host", &process->host);
+  section.Integer("cpu", &process->cpu, -1, 1023);
+  section.Integer("priority", &process->priority, 0, 99);
+  section.Finish();
+}
+
+void ReadProcesses(SectionReader& document, std::vector<ProcessSection>* processes) {
+  const TomlNode* node = document.Take("process");
+  if (node == nullptr) {
+    for (const char* program : {"hydro-plant", "hydro-pressure-ctrl", "hydro-position-ctrl"}) {
+      processes->push_back({.program = program});
+    }
+    return;
+  }
+  if (!node->is(TomlNode::Kind::kArray)) {
+    throw document.Error("process", node->Shown(), "sections [[process]]");
+  }
+  for (const TomlNode& item : node->items) {
+    if (!item.is(TomlNode::Kind::kTable)) {
+      throw KeyError(item.place, "process", item.Shown(), "sections [[process]]");
+    }
+    ProcessSection process;
+    ReadProcess(SectionReader(item, "process"), &process);
+    const bool twice = std::any_of(processes->begin(), processes->end(),
+                                   [&](const auto& other) { return other.program == process.program; });
+    // Several loggers do no harm; two of the others would contradict each other on the bus.
+    if (twice && process.program != "hydro-logger") {
+      throw KeyError(item.place, "process.program", "a second " + process.program, "one of it in a stack");
+    }
+    processes->push_back(std::move(process));
+  }
+}
+
+}  // namespace
+
+void ReadSections(const TomlNode& root, const std::string& config_file, StackConfig* config) {
+  SectionReader document(root, "");
+  SectionReader model = document.Section("model");
+  SectionReader bus = document.Section("bus");
+  SectionReader time = document.Section("time");
+  SectionReader plant = document.Section("plant");
+  SectionReader pressure = document.Section("pressure");
+  SectionReader position = document.Section("position");
+  SectionReader reference = document.Section("reference");
+  SectionReader limits = document.Section("limits");
+  SectionReader noise = document.Section("noise");
+  document.Take("process");
+  document.Finish();
+
+  ReadModel(std::move(model), config_file, &config->model);
+  ReadBus(std::move(bus), &config->bus);
+  ReadTime(std::move(time), &config->time);
+  ReadPlant(std::move(plant), &config->plant);
+  ReadPressure(std::move(pressure), &config->pressure);
+  ReadPosition(std::move(position), &config->position);
+  ReadReference(std::move(reference), config_file, &config->reference);
+  ReadLimits(std::move(limits), &config->limits);
+  ReadNoise(std::move(noise), &config->noise, &config->seed);
+  ReadProcesses(document, &config->processes);
+}
+
+}  // namespace hydro

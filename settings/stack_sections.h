@@ -1,0 +1,13 @@
+// Reads each section of the configuration: keys, types and ranges. What concerns several keys is in
+// stack_checks.h.
+#pragma once
+
+#include "settings/section_reader.h"
+#include "settings/stack_config.h"
+
+namespace hydro {
+
+// Fills every section of `config` but the model's description from the document. Throws InputError.
+void ReadSections(const TomlNode& root, const std::string& config_file, StackConfig* config);
+
+}  // namespace hydro

@@ -1,0 +1,63 @@
+#include "settings/text_file.h"
+
+#include <charconv>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <system_error>
+
+namespace hydro {
+
+std::string ReadTextFile(const std::string& file) {
+  constexpr size_t kLargest = 64u << 20;
+  std::error_code ignored;
+  if (std::filesystem::is_directory(file, ignored)) {
+    throw InputError(file + ": found a folder, allowed: a file");
+  }
+  errno = 0;
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream) throw InputError(file + ": cannot be read: " + std::strerror(errno));
+  std::string text;
+  char block[65536];
+  while (stream.read(block, sizeof block), stream.gcount() > 0) {
+    text.append(block, static_cast<size_t>(stream.gcount()));
+    if (text.size() > kLargest) throw InputError(file + ": found more than 64 MiB, allowed: 64 MiB");
+  }
+  if (stream.bad()) throw InputError(file + ": cannot be read: " + std::strerror(errno));
+  return text;
+}
+
+std::string PathBeside(const std::string& beside, const std::string& file) {
+  return (std::filesystem::path(beside).parent_path() / file).lexically_normal().string();
+}
+
+std::string Quoted(std::string_view text) {
+  constexpr size_t kLongest = 200;
+  std::string quoted = "\"";
+  for (size_t i = 0; i < text.size(); ++i) {
+    if (text.size() > kLongest && i == kLongest / 2) {
+      quoted += " ... ";
+      i = text.size() - kLongest / 2;
+    }
+    const unsigned char c = static_cast<unsigned char>(text[i]);
+    if (c == '\n') {
+      quoted += "\\n";
+    } else if (c < 0x20 || c == 0x7f) {
+      char code[8];
+      std::snprintf(code, sizeof code, "\\x%02x", c);
+      quoted += code;
+    } else {
+      quoted += static_cast<char>(c);
+    }
+  }
+  return quoted + "\"";
+}
+
+std::string ShortestNumber(double value) {
+  char text[32];
+  const auto end = std::to_chars(text, text + sizeof text, value).ptr;
+  return std::string(text, end);
+}
+
+}  // namespace hydro

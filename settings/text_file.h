@@ -1,0 +1,36 @@
+// Reading a whole text file, and showing what was found in one.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "settings/input_error.h"
+
+namespace hydro {
+
+// The file's bytes. Throws InputError "file: ..." when it cannot be read or is larger than 64 MiB.
+std::string ReadTextFile(const std::string& file);
+
+// A path that `file` (absolute, or relative to the folder of `beside`) means.
+std::string PathBeside(const std::string& beside, const std::string& file);
+
+// `text` in double quotes on one line: control characters escaped, the middle of long texts left out.
+std::string Quoted(std::string_view text);
+
+// The shortest decimal that reads back as the same double.
+std::string ShortestNumber(double value);
+
+// "\"a\", \"b\" or \"c\"".
+template <class Names>
+std::string QuotedList(const Names& names) {
+  std::string list;
+  size_t i = 0;
+  for (const auto& name : names) {
+    if (i > 0) list += i + 1 == std::size(names) ? " or " : ", ";
+    list += Quoted(name);
+    ++i;
+  }
+  return list;
+}
+
+}  // namespace hydro

@@ -1,0 +1,26 @@
+// [reference] and [model.motion]: a trajectory as the configuration describes it.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "settings/section_reader.h"
+#include "settings/stack_config.h"
+
+namespace hydro {
+
+// The keys that belong to a kind, e.g. "sine"; empty for an unknown kind.
+std::vector<std::string> KeysOfTrajectory(const std::string& kind);
+
+// Reads the keys of a trajectory from `section` and the CSV file it names, relative to the folder of
+// `config_file`. Throws InputError.
+TrajectorySpec ReadTrajectory(SectionReader& section, const std::string& config_file);
+
+// Throws InputError unless MakeTrajectory takes `spec`.
+std::unique_ptr<Trajectory> CheckedTrajectory(const TrajectorySpec& spec, const SectionReader& section);
+
+// Puts the points of a CSV trajectory into its section in place of the file, so that the text describes
+// itself.
+void EmbedPoints(const TrajectorySpec& spec, TomlNode* section);
+
+}  // namespace hydro
