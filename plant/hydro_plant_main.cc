@@ -1,0 +1,17 @@
+// hydro-plant CONFIG: the simulated actuator.
+#include "plant/plant_app.h"
+#include "process/process_main.h"
+
+int main(int argc, char** argv) {
+  hydro::CommandLine command_line("hydro-plant",
+                                  "The simulated actuator: sets the pace, publishes states, obeys motor commands.");
+  hydro::CommonOptions options;
+  std::vector<std::string> expected;
+  command_line.AddCommon(&options);
+  command_line.AddOption("--expect", &expected, "ROLE to wait for besides the two controllers, e.g. logger");
+  if (const auto exit_code = command_line.Parse(argc, argv)) return *exit_code;
+  return hydro::RunProcess("hydro-plant", options,
+                           [&](hydro::Bus& bus, hydro::Clock& clock, const hydro::StackConfig& config) {
+                             return hydro::PlantApp(bus, clock, config, expected).Run();
+                           });
+}

@@ -1,0 +1,334 @@
+#include "plant/plant_app.h"
+
+#include <spdlog/fmt/fmt.h>
+#include <spdlog/spdlog.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "bus/fixed_rate_loop.h"
+#include "plant/sensor_noise.h"
+#include "process/stop_signal.h"
+#include "settings/input_error.h"
+
+namespace hydro {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr auto kRepeatPeriod = 100ms;       // lockstep: how often an unanswered state is sent again
+constexpr auto kDescriptionPeriod = 1s;     // so that a log or a plot that starts late describes itself too
+constexpr int64_t kLoggerWindowTicks = 64;  // lockstep: how far the plant may run ahead of a logger; about half of
+                                            // what the default receive buffer of Linux (208 KiB) holds
+
+Clock::Duration Seconds(double seconds) {
+  return std::chrono::duration_cast<Clock::Duration>(std::chrono::duration<double>(seconds));
+}
+
+double ToSeconds(Clock::Duration duration) { return std::chrono::duration<double>(duration).count(); }
+
+std::vector<std::string> WithControllers(std::vector<std::string> roles) {
+  roles.insert(roles.begin(), {"pressure_ctrl", "position_ctrl"});
+  return roles;
+}
+
+}  // namespace
+
+PlantApp::PlantApp(Bus& bus, Clock& clock, const StackConfig& config, const std::vector<std::string>& expected,
+                   const std::string& program)
+    : config_(config),
+      participant_(bus, clock, Channels(config.bus.channel_suffix), "plant"),
+      roll_call_(WithControllers(expected)),
+      program_(program),
+      motion_(config.model.motion ? MakeTrajectory(*config.model.motion) : nullptr),
+      state_publisher_(bus.Advertise<state_t>(participant_.channels().state)),
+      stale_time_(Seconds(config.limits.stale_input_s)),
+      command_monitor_(stale_time_) {
+  ActuatorOptions options;
+  options.shaft = config.model.shaft;
+  options.arm_angle = config.model.arm_angle_rad;
+  options.motion = motion_.get();
+  options.bypass = config.model.bypass;
+  options.initial_pressure = config.model.initial_pressure_psi;
+  options.integrator = config.plant.integrator;
+  options.relative_tolerance = config.plant.relative_tolerance;
+  try {
+    actuator_ = std::make_unique<Actuator>(config.model.description, options);
+  } catch (const ModelError& error) {
+    throw InputError(fmt::format("{}: {}", config.file, error.what()));
+  }
+  const Channels& channels = participant_.channels();
+  bus.Subscribe<motor_command_t>(channels.motor_command,
+                                 [this](const motor_command_t& command) { OnMotorCommand(command); });
+  bus.Subscribe<pressure_command_t>(channels.pressure_command, [this](const pressure_command_t& command) {
+    newest_pressure_command_tick_ = command.tick;
+  });
+  bus.Subscribe<process_status_t>(channels.process_status,
+                                  [this](const process_status_t& status) { roll_call_.Observe(status); });
+  bus.Subscribe<log_progress_t>(channels.log_progress, [this](const log_progress_t& progress) {
+    log_progress_[progress.session] = progress.tick;
+  });
+}
+
+int PlantApp::Run() {
+  participant_.Announce(process_status_t::READY);
+  PublishDescription();
+  if (WaitForParticipants()) {
+    participant_.Announce(process_status_t::RUNNING);
+    PublishDescription();
+    for (const int64_t session : roll_call_.Loggers()) log_progress_.emplace(session, -1);
+    try {
+      config_.time.mode == TimeMode::kLockstep ? RunLockstep() : RunRealtime();
+    } catch (const ModelError& error) {
+      participant_.Raise("model_error", error.what(), NAN, NAN, true);
+      participant_.RequestStop(error.what(), 1);
+    }
+  }
+  if (StopSignal() != 0) {
+    participant_.RequestStop(fmt::format("{} was stopped by signal {}", program_, StopSignal()), 0);
+  } else {
+    participant_.RequestStop(fmt::format("the run is complete after {} s", state_.time), 0);
+  }
+  return participant_.Leave();
+}
+
+std::string PlantApp::failure() const {
+  const auto& stop = participant_.stop();
+  return stop && stop->exit_code != 0 ? stop->source + ": " + stop->reason : "";
+}
+
+bool PlantApp::Ended() const { return participant_.stop().has_value() || StopSignal() != 0; }
+
+bool PlantApp::WaitForParticipants() {
+  const auto start = participant_.clock().Now();
+  const auto deadline = start + Seconds(config_.time.start_timeout_s);
+  auto next_word = start + 2s;
+  while (!Ended()) {
+    const std::vector<std::string> missing = roll_call_.Missing();
+    if (missing.empty()) return true;
+    const auto now = participant_.clock().Now();
+    const std::string names = fmt::format("{}", fmt::join(missing, ", "));
+    if (now >= deadline) {
+      participant_.RequestStop(
+          fmt::format("not ready after {} s (time.start_timeout_s): {}", config_.time.start_timeout_s, names), 1);
+      return false;
+    }
+    if (now >= next_word) {
+      spdlog::info("waiting for {}", names);
+      next_word = now + 2s;
+    }
+    participant_.bus().HandleUntil(std::min(now + 50ms, deadline));
+    Poll();
+  }
+  return false;
+}
+
+void PlantApp::RunLockstep() {
+  const bool simulated = participant_.clock().simulated();
+  const auto start = participant_.clock().Now();
+  const double rate = config_.plant.rate_hz;
+  PublishState(0);
+  while (AwaitAnswers() && tick_ != config_.last_tick) {
+    ChooseVoltage();
+    Advance(tick_ + 1);
+    if (simulated) {
+      // Nobody else lets simulated time pass. Each tick from the start: rounding must not add up.
+      const auto due = start + Seconds(static_cast<double>(tick_) / rate);
+      while (participant_.bus().HandleUntil(due) > 0) {
+      }
+    }
+    const auto woke = participant_.clock().Now();
+    PublishState(0);
+    if (!simulated) participant_.statistics().RecordCycle(woke, participant_.clock().Now() - woke);
+  }
+}
+
+bool PlantApp::AwaitAnswers() {
+  if (Unanswered().empty()) return true;
+  Bus& bus = participant_.bus();
+  const Clock& clock = participant_.clock();
+  // Usually the answer comes at once: no clock is read for it.
+  auto now = clock.Now();
+  const auto deadline = now + Seconds(config_.time.stall_timeout_s);
+  auto next_repeat = now + kRepeatPeriod;
+  while (!Ended()) {
+    bus.HandleUntil(std::min(next_repeat, deadline));
+    if (!roll_call_.left().empty() && !participant_.stop()) {
+      participant_.RequestStop(
+          fmt::format("{} has left the lockstep run at tick {}", roll_call_.left(), tick_), 1);
+      return false;
+    }
+    const std::string who = Unanswered();
+    now = clock.Now();
+    if (who.empty()) {
+      Poll();
+      return !Ended();
+    }
+    if (now >= deadline) {
+      participant_.RequestStop(fmt::format("{} has not answered tick {} within {} s (time.stall_timeout_s)", who,
+                                           tick_, config_.time.stall_timeout_s),
+                               1);
+      return false;
+    }
+    if (now >= next_repeat) {
+      state_publisher_.Send(state_);  // either it or its answer may have been lost
+      next_repeat = now + kRepeatPeriod;
+    }
+    Poll();
+  }
+  return false;
+}
+
+std::string PlantApp::Unanswered() const {
+  if (tick_ % config_.position_interval_ticks == 0 && newest_pressure_command_tick_ < tick_) return "position_ctrl";
+  if (tick_ % config_.pressure_interval_ticks == 0 && newest_command_tick_ < tick_) return "pressure_ctrl";
+  for (const auto& [session, tick] : log_progress_) {
+    if (tick < tick_ - kLoggerWindowTicks) return "logger";
+  }
+  return "";
+}
+
+void PlantApp::RunRealtime() {
+  const std::chrono::duration<double> period(1 / (config_.plant.rate_hz * config_.time.speed));
+  FixedRateLoop loop(participant_.bus(), participant_.clock(), period, participant_.statistics());
+  PublishState(0);
+  while (!Ended() && tick_ != config_.last_tick) {
+    int64_t elapsed = loop.Wait();
+    if (elapsed == 0) continue;  // a signal
+    if (config_.last_tick >= 0) elapsed = std::min(elapsed, config_.last_tick - tick_);
+    participant_.statistics().set_missed_deadlines(loop.skipped());
+    Advance(tick_ + elapsed);  // under the voltage that was held all that time
+    PublishState(elapsed - 1);
+    ChooseVoltage();
+    CheckCommandIsFresh();
+    Poll();
+  }
+}
+
+void PlantApp::Advance(int64_t to_tick) {
+  state_.voltage = voltage_;
+  state_.command_tick = command_tick_;
+  actuator_->Advance(voltage_, static_cast<double>(to_tick) / config_.plant.rate_hz);
+  tick_ = to_tick;
+  participant_.set_tick(tick_);
+}
+
+void PlantApp::PublishState(int64_t skipped_ticks) {
+  if (tick_ == 0) {
+    state_.voltage = 0;
+    state_.command_tick = -1;
+    state_.sequence = 0;
+    participant_.set_tick(0);
+  } else {
+    ++state_.sequence;
+  }
+  const Measurement measured = AddNoise(actuator_->Measure(), config_.noise, config_.seed, tick_);
+  state_.utime = participant_.clock().Utime();
+  state_.tick = tick_;
+  state_.session = participant_.session();
+  state_.time = static_cast<double>(tick_) / config_.plant.rate_hz;
+  state_.motor_angle = measured.motor_angle;
+  state_.motor_speed = measured.motor_speed;
+  state_.arm_angle = measured.arm_angle;
+  state_.arm_speed = measured.arm_speed;
+  state_.p1 = measured.p1;
+  state_.p2 = measured.p2;
+  state_.skipped_ticks = skipped_ticks;
+  state_publisher_.Send(state_);
+  if (!unanswered_since_ && tick_ % config_.pressure_interval_ticks == 0) {
+    unanswered_since_ = participant_.clock().Now();
+  }
+}
+
+void PlantApp::OnMotorCommand(const motor_command_t& command) {
+  const auto now = participant_.clock().Now();
+  const auto verdict = command_monitor_.Observe(command.session, command.sequence, now);
+  if (verdict == SequenceMonitor::Verdict::kDuplicate) return;
+  if (verdict == SequenceMonitor::Verdict::kSecondSender) return;  // ChooseVoltage() sees to it
+  if (verdict == SequenceMonitor::Verdict::kRestarted) waiting_commands_.clear();
+  if (command.tick > tick_) {
+    participant_.Raise("future_motor_command",
+                       fmt::format("a motor command for tick {} at tick {}; is another run's log being played?",
+                                   command.tick, tick_),
+                       static_cast<double>(command.tick), static_cast<double>(tick_), false);
+    return;
+  }
+  if (participant_.any_fault()) participant_.Clear("future_motor_command");
+  waiting_commands_.push_back(command);
+  newest_command_tick_ = command.tick;
+  unanswered_since_.reset();
+  if (command.tick < tick_) unanswered_since_ = now;
+}
+
+void PlantApp::ChooseVoltage() {
+  const int64_t newest_allowed = tick_ - config_.plant.command_delay_ticks;
+  while (!waiting_commands_.empty() && waiting_commands_.front().tick <= newest_allowed) {
+    command_ = waiting_commands_.front();
+    waiting_commands_.pop_front();
+  }
+  voltage_ = command_ ? command_->voltage : 0;
+  command_tick_ = command_ ? command_->tick : -1;
+  const auto zero = [&] {
+    voltage_ = 0;
+    command_tick_ = -1;
+  };
+  if (!std::isfinite(voltage_)) {
+    const double found = voltage_;
+    zero();
+    participant_.Raise("nonfinite_motor_command",
+                       fmt::format("tick {}: the motor command is {} V, must be finite", tick_, found), found, NAN,
+                       false);
+  } else if (participant_.any_fault()) {
+    participant_.Clear("nonfinite_motor_command");
+  }
+  if (command_monitor_.SecondSenderAlive(participant_.clock().Now())) {
+    zero();
+    participant_.Raise("second_motor_command_sender",
+                       "two processes send motor commands on this network; allowed is one", 2, 1, false);
+  } else if (participant_.any_fault()) {
+    participant_.Clear("second_motor_command_sender");
+  }
+}
+
+void PlantApp::CheckCommandIsFresh() {
+  if (!unanswered_since_) {
+    if (participant_.any_fault()) participant_.Clear("stale_motor_command");
+    return;
+  }
+  const auto age = participant_.clock().Now() - *unanswered_since_;
+  if (age <= stale_time_) return;
+  voltage_ = 0;  // zero volts first, explanation second
+  command_tick_ = -1;
+  participant_.Raise("stale_motor_command",
+                     fmt::format("tick {}: no motor command for {:.0f} ms, allowed are {:.0f} ms (limits.stale_input_s)",
+                                 tick_, 1e3 * ToSeconds(age), 1e3 * ToSeconds(stale_time_)),
+                     ToSeconds(age), config_.limits.stale_input_s, false);
+}
+
+void PlantApp::Poll() {
+  participant_.statistics().set_lost_messages(command_monitor_.lost());
+  participant_.Poll();
+  if (participant_.clock().Now() >= next_description_) PublishDescription();
+}
+
+void PlantApp::PublishDescription() {
+  next_description_ = participant_.clock().Now() + kDescriptionPeriod;
+  char host[256] = {};
+  gethostname(host, sizeof host - 1);
+  run_description_t description;
+  description.utime = participant_.clock().Utime();
+  description.session = participant_.session();
+  description.config_file = config_.file;
+  description.config_text = config_.text;
+  description.model_file = config_.model.resolved_file;
+  description.model_text = config_.model.text;
+  description.program = program_;
+  description.version = HYDRO_VERSION;
+  description.host = host;
+  description.rate_hz = config_.plant.rate_hz;
+  description.seed = config_.seed;
+  participant_.bus().Publish(participant_.channels().run, description);
+}
+
+}  // namespace hydro

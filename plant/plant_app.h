@@ -1,0 +1,87 @@
+// The simulated actuator as an application: it sets the pace of a run.
+//
+// Lockstep: publishes the state of tick k, waits for each command that is due at tick k (and for a logger that has
+// fallen behind), then advances to tick k + 1. The result does not depend on how long anybody took. A participant that
+// does not answer within time.stall_timeout_s ends the run with an error that names it.
+//
+// Real time: wakes at each tick of wall time, advances the model under the voltage it holds, publishes the state, and
+// takes the newest command. When it wakes late it integrates all the time it missed, publishes the one state it then
+// has, and counts the ticks it skipped. When commands stop coming for limits.stale_input_s, the voltage goes to zero.
+//
+// Either way the command computed from tick k acts from tick k + plant.command_delay_ticks on.
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <hydro/log_progress_t.hpp>
+#include <hydro/motor_command_t.hpp>
+#include <hydro/pressure_command_t.hpp>
+#include <hydro/run_description_t.hpp>
+#include <hydro/state_t.hpp>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "bus/sequence_monitor.h"
+#include "model/actuator.h"
+#include "plant/roll_call.h"
+#include "process/participant.h"
+#include "settings/stack_config.h"
+
+namespace hydro {
+
+class PlantApp {
+ public:
+  // `expected`: roles to wait for beside pressure_ctrl and position_ctrl ("logger").
+  // Throws InputError when the configuration and the model contradict each other.
+  PlantApp(Bus& bus, Clock& clock, const StackConfig& config, const std::vector<std::string>& expected = {},
+           const std::string& program = "hydro-plant");
+
+  // The whole run. Returns the process's exit code: 0 complete or stopped in order, 1 failed.
+  int Run();
+
+  // Why the run ended; empty when it ran to its duration.
+  std::string failure() const;
+  int64_t tick() const { return tick_; }
+
+ private:
+  bool WaitForParticipants();
+  void RunLockstep();
+  void RunRealtime();
+  bool AwaitAnswers();
+  std::string Unanswered() const;
+  void Advance(int64_t to_tick);
+  void PublishState(int64_t skipped_ticks);
+  void PublishDescription();
+  void ChooseVoltage();
+  void CheckCommandIsFresh();
+  void OnMotorCommand(const motor_command_t& command);
+  void Poll();
+  bool Ended() const;
+
+  StackConfig config_;
+  Participant participant_;
+  RollCall roll_call_;
+  std::string program_;
+  std::unique_ptr<Trajectory> motion_;  // of a driven shaft; before actuator_, which points to it
+  std::unique_ptr<Actuator> actuator_;
+  Publisher<state_t> state_publisher_;
+  const Clock::Duration stale_time_;
+
+  int64_t tick_ = 0;
+  state_t state_;
+  double voltage_ = 0;          // V, held from tick_ on
+  int64_t command_tick_ = -1;   // tick of the command that voltage_ came from
+  SequenceMonitor command_monitor_;
+  std::deque<motor_command_t> waiting_commands_;  // received, not yet in force, by tick
+  std::optional<motor_command_t> command_;        // in force
+  int64_t newest_command_tick_ = -1;
+  int64_t newest_pressure_command_tick_ = -1;
+  std::map<int64_t, int64_t> log_progress_;       // tick by logger session
+  std::optional<Clock::TimePoint> unanswered_since_;  // real time: the oldest state without an answer was sent then
+  Clock::TimePoint next_description_;
+};
+
+}  // namespace hydro

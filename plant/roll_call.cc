@@ -1,0 +1,41 @@
+#include "plant/roll_call.h"
+
+#include <algorithm>
+
+namespace hydro {
+
+void RollCall::Observe(const process_status_t& status) {
+  if (status.state == process_status_t::READY || status.state == process_status_t::RUNNING) {
+    present_[status.session] = status;
+    return;
+  }
+  const auto found = present_.find(status.session);
+  if (found == present_.end()) return;  // never took part in this run
+  present_.erase(found);
+  const bool matters = status.role == "logger" ||
+                       std::find(expected_.begin(), expected_.end(), status.role) != expected_.end();
+  if (matters && left_.empty()) {
+    left_ = status.role + " on " + status.host + " (process " + std::to_string(status.pid) + ")";
+    if (!status.text.empty()) left_ += ": " + status.text;
+  }
+}
+
+std::vector<std::string> RollCall::Missing() const {
+  std::vector<std::string> missing;
+  for (const std::string& role : expected_) {
+    const bool present = std::any_of(present_.begin(), present_.end(),
+                                     [&](const auto& entry) { return entry.second.role == role; });
+    if (!present) missing.push_back(role);
+  }
+  return missing;
+}
+
+std::vector<int64_t> RollCall::Loggers() const {
+  std::vector<int64_t> sessions;
+  for (const auto& [session, status] : present_) {
+    if (status.role == "logger") sessions.push_back(session);
+  }
+  return sessions;
+}
+
+}  // namespace hydro

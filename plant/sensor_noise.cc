@@ -1,0 +1,46 @@
+#include "plant/sensor_noise.h"
+
+#include <cmath>
+#include <numbers>
+
+namespace hydro {
+namespace {
+
+// SplitMix64's output function (Steele, Lea and Flood 2014): a bijection that scatters neighbouring inputs.
+uint64_t Scatter(uint64_t x) {
+  x += 0x9e3779b97f4a7c15u;
+  x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;
+  x = (x ^ (x >> 27)) * 0x94d049bb133111ebu;
+  return x ^ (x >> 31);
+}
+
+// In (0, 1]: never 0, whose logarithm Box-Muller could not take.
+double Unit(uint64_t x) { return (static_cast<double>(x >> 11) + 1.0) * 0x1p-53; }
+
+}  // namespace
+
+double StandardNormal(uint64_t seed, int64_t tick, int channel) {
+  const uint64_t key = Scatter(Scatter(seed) ^ static_cast<uint64_t>(tick)) + static_cast<uint64_t>(channel);
+  const uint64_t first = Scatter(key);
+  return std::sqrt(-2 * std::log(Unit(first))) * std::cos(2 * std::numbers::pi * Unit(Scatter(~first)));
+}
+
+Measurement AddNoise(const Measurement& measurement, const NoiseSection& noise, int64_t seed, int64_t tick) {
+  Measurement noisy = measurement;
+  int channel = 0;
+  const auto add = [&](double& signal, double standard_deviation) {
+    if (standard_deviation > 0) {
+      signal += standard_deviation * StandardNormal(static_cast<uint64_t>(seed), tick, channel);
+    }
+    ++channel;
+  };
+  add(noisy.p1, noise.p1_psi);
+  add(noisy.p2, noise.p2_psi);
+  add(noisy.motor_angle, noise.motor_angle_rad);
+  add(noisy.motor_speed, noise.motor_speed_rad_s);
+  add(noisy.arm_angle, noise.arm_angle_rad);
+  add(noisy.arm_speed, noise.arm_speed_rad_s);
+  return noisy;
+}
+
+}  // namespace hydro

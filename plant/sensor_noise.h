@@ -1,0 +1,18 @@
+// Measurement noise that depends on nothing but the seed, the tick and the signal: the same tick gets the same noise in
+// lockstep, in real time and in hydro-sim, whatever was skipped before.
+#pragma once
+
+#include <cstdint>
+
+#include "model/actuator.h"
+#include "settings/stack_config.h"
+
+namespace hydro {
+
+// Standard normal number for (seed, tick, channel): Box-Muller on two SplitMix64 outputs.
+double StandardNormal(uint64_t seed, int64_t tick, int channel);
+
+// `measurement` as the noisy sensors read it at `tick`.
+Measurement AddNoise(const Measurement& measurement, const NoiseSection& noise, int64_t seed, int64_t tick);
+
+}  // namespace hydro

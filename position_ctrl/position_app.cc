@@ -1,0 +1,152 @@
+#include "position_ctrl/position_app.h"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace hydro {
+namespace {
+
+using namespace std::chrono_literals;
+
+Clock::Duration Seconds(double seconds) {
+  return std::chrono::duration_cast<Clock::Duration>(std::chrono::duration<double>(seconds));
+}
+
+int8_t SignalCode(ReferenceSignal signal) {
+  switch (signal) {
+    case ReferenceSignal::kArmAngle:
+      return arm_reference_t::ARM_ANGLE;
+    case ReferenceSignal::kPressure:
+      return arm_reference_t::PRESSURE;
+    case ReferenceSignal::kTorque:
+      return arm_reference_t::TORQUE;
+    case ReferenceSignal::kVoltage:
+      return arm_reference_t::VOLTAGE;
+  }
+  return arm_reference_t::ARM_ANGLE;
+}
+
+PositionLawSettings LawSettingsFor(const StackConfig& config) {
+  PositionLawSettings settings;
+  settings.c1 = config.position.c1;
+  settings.c2 = config.position.c2;
+  settings.sample_interval = static_cast<double>(config.position_interval_ticks) / config.plant.rate_hz;
+  settings.derivative_on_error = config.position.derivative_on_error;
+  settings.pressure_limit = config.limits.arm_torque_in_lbf / config.model.description.parameters.k_2;
+  return settings;
+}
+
+}  // namespace
+
+PositionApp::PositionApp(Bus& bus, Clock& clock, const StackConfig& config)
+    : participant_(bus, clock, Channels(config.bus.channel_suffix), "position_ctrl"),
+      lockstep_(config.time.mode == TimeMode::kLockstep),
+      interval_(config.position_interval_ticks),
+      stall_time_(Seconds(config.time.stall_timeout_s) + 400ms),
+      signal_(config.reference.signal),
+      reference_(MakeTrajectory(config.reference.trajectory)),
+      torque_per_pressure_(config.model.description.parameters.k_2),
+      pressure_limit_(config.limits.arm_torque_in_lbf / config.model.description.parameters.k_2),
+      section_(config.position),
+      law_(LawSettingsFor(config)),
+      state_monitor_(Seconds(config.limits.stale_input_s)),
+      last_state_time_(clock.Now()) {
+  bus.Subscribe<state_t>(participant_.channels().state, [this](const state_t& state) { OnState(state); });
+  participant_.Announce(process_status_t::READY);
+}
+
+void PositionApp::OnState(const state_t& state) {
+  const auto now = participant_.clock().Now();
+  switch (state_monitor_.Observe(state.session, state.sequence, now)) {
+    case SequenceMonitor::Verdict::kSecondSender:
+      return;  // the pressure loop names it and goes to zero volts
+    case SequenceMonitor::Verdict::kRestarted:
+      last_sample_tick_ = -1;
+      break;
+    case SequenceMonitor::Verdict::kDuplicate:
+      if (last_sample_tick_ >= 0) Send();  // the plant asks again: the answer may have been lost
+      return;
+    case SequenceMonitor::Verdict::kAccept:
+      break;
+  }
+  last_state_time_ = now;
+  if (participant_.state() == process_status_t::READY) participant_.Announce(process_status_t::RUNNING);
+  if (state.tick <= last_sample_tick_) last_sample_tick_ = -1;  // a log is played again
+  participant_.set_tick(state.tick);
+  if (state.tick % interval_ != 0) return;
+  Answer(state);
+  participant_.statistics().RecordCycle(now, participant_.clock().Now() - now);
+}
+
+void PositionApp::Answer(const state_t& state) {
+  if (last_sample_tick_ < 0) law_.Reset();
+  const int64_t intervals = last_sample_tick_ < 0 ? 1 : (state.tick - last_sample_tick_) / interval_;
+  missed_samples_ += intervals - 1;
+  last_sample_tick_ = state.tick;
+
+  const double reference = reference_->Value(state.time);
+  arm_reference_.tick = state.tick;
+  arm_reference_.signal = SignalCode(signal_);
+  arm_reference_.value = reference;
+
+  pressure_command_.tick = state.tick;
+  pressure_command_.open_loop = signal_ == ReferenceSignal::kVoltage;
+  pressure_command_.voltage = pressure_command_.open_loop ? reference : 0;
+  double pressure_ref = 0;
+  switch (signal_) {
+    case ReferenceSignal::kArmAngle:
+      if (std::isfinite(state.arm_angle)) {
+        pressure_ref = law_.Update(state.arm_angle, reference, intervals);
+        participant_.Clear("nonfinite_arm_angle");
+      } else {
+        pressure_command_.open_loop = true;  // zero volts: without the arm's angle no pressure is safe
+        law_.Reset();
+        participant_.Raise("nonfinite_arm_angle",
+                           fmt::format("tick {}: the arm angle is {}, must be finite", state.tick, state.arm_angle),
+                           state.arm_angle, NAN, false);
+      }
+      break;
+    case ReferenceSignal::kPressure:
+      pressure_ref = reference;
+      break;
+    case ReferenceSignal::kTorque:
+      pressure_ref = reference / torque_per_pressure_;
+      break;
+    case ReferenceSignal::kVoltage:
+      break;
+  }
+  pressure_ref = std::clamp(pressure_ref, -pressure_limit_, pressure_limit_);
+  pressure_command_.pressure_ref = QuantiseDac(pressure_ref, section_.dac_bits, section_.dac_range_psi);
+
+  arm_reference_.sequence = pressure_command_.sequence = sequence_++;
+  arm_reference_.session = pressure_command_.session = participant_.session();
+  Send();
+}
+
+void PositionApp::Send() {
+  arm_reference_.utime = pressure_command_.utime = participant_.clock().Utime();
+  // The pressure command last: the plant waits for it in lockstep, and then a log has both before the next state.
+  participant_.bus().Publish(participant_.channels().arm_reference, arm_reference_);
+  participant_.bus().Publish(participant_.channels().pressure_command, pressure_command_);
+}
+
+void PositionApp::Poll() {
+  participant_.statistics().set_lost_messages(state_monitor_.lost());
+  participant_.statistics().set_missed_deadlines(missed_samples_);
+  participant_.Poll();
+  if (!lockstep_ || participant_.state() != process_status_t::RUNNING || participant_.stop()) return;
+  const auto silence = participant_.clock().Now() - last_state_time_;
+  if (silence > stall_time_) {
+    participant_.RequestStop(fmt::format("the plant has sent no state for {:.1f} s (last: tick {})",
+                                         std::chrono::duration<double>(silence).count(), participant_.tick()),
+                             1);
+  }
+}
+
+bool PositionApp::finished() const { return participant_.stop().has_value(); }
+
+int PositionApp::Finish() { return participant_.Leave(); }
+
+}  // namespace hydro

@@ -1,0 +1,54 @@
+// The sampled position loop as an application: on each tick that is a multiple of its sample interval it publishes the
+// reference and the pressure command that follows from it, eq. (17) for the arm's angle; pressure, torque and
+// open-loop voltage references pass through, limited and quantised alike.
+#pragma once
+
+#include <cstdint>
+#include <hydro/arm_reference_t.hpp>
+#include <hydro/pressure_command_t.hpp>
+#include <hydro/state_t.hpp>
+#include <memory>
+#include <optional>
+
+#include "bus/sequence_monitor.h"
+#include "position_ctrl/position_law.h"
+#include "process/app.h"
+#include "process/participant.h"
+#include "settings/stack_config.h"
+
+namespace hydro {
+
+class PositionApp : public App {
+ public:
+  PositionApp(Bus& bus, Clock& clock, const StackConfig& config);
+
+  void Poll() override;
+  bool finished() const override;
+  int Finish() override;
+
+ private:
+  void OnState(const state_t& state);
+  void Answer(const state_t& state);
+  void Send();
+
+  Participant participant_;
+  const bool lockstep_;
+  const int64_t interval_;  // ticks between two samples
+  const Clock::Duration stall_time_;
+  const ReferenceSignal signal_;
+  const std::unique_ptr<Trajectory> reference_;
+  const double torque_per_pressure_;  // k_2
+  const double pressure_limit_;       // psi, from limits.arm_torque_in_lbf
+  const PositionSection section_;
+  PositionLaw law_;
+
+  SequenceMonitor state_monitor_;
+  arm_reference_t arm_reference_;        // the newest sample's
+  pressure_command_t pressure_command_;  // the newest sample's
+  int64_t last_sample_tick_ = -1;
+  int64_t sequence_ = 0;
+  int64_t missed_samples_ = 0;
+  Clock::TimePoint last_state_time_;
+};
+
+}  // namespace hydro

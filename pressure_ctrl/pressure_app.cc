@@ -1,0 +1,278 @@
+#include "pressure_ctrl/pressure_app.h"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "settings/input_error.h"
+
+namespace hydro {
+namespace {
+
+using namespace std::chrono_literals;
+
+Clock::Duration Seconds(double seconds) {
+  return std::chrono::duration_cast<Clock::Duration>(std::chrono::duration<double>(seconds));
+}
+
+bool Finite(const state_t& state, bool with_arm_speed) {
+  return std::isfinite(state.p1) && std::isfinite(state.p2) && std::isfinite(state.motor_speed) &&
+         (!with_arm_speed || std::isfinite(state.arm_speed));
+}
+
+}  // namespace
+
+PressureLawSettings PressureLawSettingsFor(const StackConfig& config) {
+  const Parameters& parameters = config.model.description.parameters;
+  const PressureSection& section = config.pressure;
+  PressureLawSettings law;
+  try {
+    law.gains = section.k_p ? PressureGains{*section.k_p, section.k_v.value_or(0)}
+                            : DerivePressureGains(parameters, 0, section.natural_frequency_rad_s.value(),
+                                                  section.damping_ratio.value(), section.compressed_sides);
+  } catch (const std::invalid_argument& error) {
+    throw InputError(fmt::format("{}: pressure.natural_frequency_rad_s: {}", config.file, error.what()));
+  }
+  law.voltage_limit = parameters.T_pmax / parameters.k_1;
+  if (section.reference_feedforward_V_psi) {
+    law.reference_feedforward = *section.reference_feedforward_V_psi;
+  } else if (section.reference_feedforward) {
+    law.reference_feedforward = SteadyStateFeedforward(parameters, law.gains);
+  }
+  if (section.arm_speed_feedforward) law.arm_speed_ratio = parameters.c / parameters.D;
+  return law;
+}
+
+PressureApp::PressureApp(Bus& bus, Clock& clock, const StackConfig& config)
+    : participant_(bus, clock, Channels(config.bus.channel_suffix), "pressure_ctrl"),
+      lockstep_(config.time.mode == TimeMode::kLockstep),
+      interval_(config.pressure_interval_ticks),
+      position_interval_(config.position_interval_ticks),
+      delay_(config.plant.command_delay_ticks),
+      stale_ticks_(delay_ + position_interval_ +
+                   static_cast<int64_t>(std::ceil(config.limits.stale_input_s * config.plant.rate_hz))),
+      stale_time_(Seconds(config.limits.stale_input_s)),
+      // The plant itself waits stall_timeout_s for whoever is late and then says who; only after that is it silent.
+      stall_time_(Seconds(config.time.stall_timeout_s) + 400ms),
+      limits_(config.limits),
+      law_(PressureLawSettingsFor(config)),
+      state_monitor_(stale_time_),
+      command_monitor_(stale_time_),
+      last_state_time_(clock.Now()) {
+  bus.Subscribe<state_t>(participant_.channels().state, [this](const state_t& state) { OnState(state); });
+  bus.Subscribe<pressure_command_t>(participant_.channels().pressure_command,
+                                    [this](const pressure_command_t& command) { OnPressureCommand(command); });
+  participant_.Announce(process_status_t::READY);
+}
+
+void PressureApp::Restart() {
+  waiting_commands_.clear();
+  pressure_command_.reset();
+  pending_state_.reset();
+  answered_ = false;
+}
+
+void PressureApp::OnState(const state_t& state) {
+  const auto now = participant_.clock().Now();
+  switch (state_monitor_.Observe(state.session, state.sequence, now)) {
+    case SequenceMonitor::Verdict::kSecondSender:
+      participant_.Raise("second_state_sender", "two processes send states on this network; allowed is one",
+                         2, 1, false);
+      return;
+    case SequenceMonitor::Verdict::kRestarted:
+      Restart();
+      break;
+    case SequenceMonitor::Verdict::kDuplicate:
+      // The plant asks again: the answer may have been lost.
+      if (answered_ && last_command_.tick == state.tick) {
+        participant_.bus().Publish(participant_.channels().motor_command, last_command_);
+      }
+      return;
+    case SequenceMonitor::Verdict::kAccept:
+      break;
+  }
+  last_state_time_ = now;
+  if (participant_.state() == process_status_t::READY) participant_.Announce(process_status_t::RUNNING);
+  if (answered_ && state.tick <= last_command_.tick) Restart();  // a log is played again
+  participant_.set_tick(state.tick);
+  if (state.tick % interval_ != 0) return;
+  if (AwaitsPressureCommand(state.tick)) {
+    pending_state_ = state;
+    return;
+  }
+  Answer(state);
+  participant_.statistics().RecordCycle(now, participant_.clock().Now() - now);
+}
+
+void PressureApp::OnPressureCommand(const pressure_command_t& command) {
+  const auto verdict =
+      command_monitor_.Observe(command.session, command.sequence, participant_.clock().Now());
+  if (verdict == SequenceMonitor::Verdict::kSecondSender) {
+    participant_.Raise("second_pressure_command_sender",
+                       "two processes send pressure commands on this network; allowed is one", 2, 1, false);
+    return;
+  }
+  if (verdict == SequenceMonitor::Verdict::kDuplicate) return;
+  if (verdict == SequenceMonitor::Verdict::kRestarted) {
+    waiting_commands_.clear();
+    pressure_command_.reset();
+  }
+  waiting_commands_.push_back(command);
+  if (pending_state_ && !AwaitsPressureCommand(pending_state_->tick)) {
+    const state_t state = *pending_state_;
+    pending_state_.reset();
+    Answer(state);
+  }
+}
+
+// In lockstep every pressure command that is due comes, sooner or later; which one is in force must not depend on when.
+bool PressureApp::AwaitsPressureCommand(int64_t state_tick) const {
+  const int64_t newest_allowed = state_tick - delay_;
+  if (!lockstep_ || newest_allowed < 0) return false;
+  const int64_t due = newest_allowed / position_interval_ * position_interval_;
+  const int64_t known = !waiting_commands_.empty() ? waiting_commands_.back().tick
+                        : pressure_command_        ? pressure_command_->tick
+                                                   : -1;
+  return known < due;
+}
+
+void PressureApp::TakePressureCommandsUpTo(int64_t tick) {
+  while (!waiting_commands_.empty() && waiting_commands_.front().tick <= tick) {
+    pressure_command_ = waiting_commands_.front();
+    waiting_commands_.pop_front();
+  }
+}
+
+bool PressureApp::InputsAreSafe(const state_t& state) {
+  if (participant_.latched()) return false;
+  bool safe = true;
+  const auto check = [&](bool good, const char* code, double value, double limit, bool latched,
+                         auto&& describe) {
+    if (good) {
+      if (participant_.any_fault()) participant_.Clear(code);
+      return;
+    }
+    safe = false;
+    if (participant_.Raise(code, describe(), value, limit, latched) && latched) {
+      participant_.RequestStop(fmt::format("fault {}: {}", code, describe()), 1);
+    }
+  };
+  const auto now = participant_.clock().Now();
+  check(Finite(state, law_.arm_speed_ratio != 0), "nonfinite_state", NAN, NAN, false, [&] {
+    return fmt::format("tick {}: p1 {}, p2 {}, motor speed {}, arm speed {}; all must be finite", state.tick,
+                       state.p1, state.p2, state.motor_speed, state.arm_speed);
+  });
+  const double pressure = std::fmax(state.p1, state.p2);
+  check(!(pressure > limits_.pressure_psi), "pressure_limit", pressure, limits_.pressure_psi, true, [&] {
+    return fmt::format("tick {}: p{} is {:.1f} psi, allowed is {} psi (limits.pressure_psi)", state.tick,
+                       state.p1 > state.p2 ? 1 : 2, pressure, limits_.pressure_psi);
+  });
+  const double speed = std::fabs(state.motor_speed);
+  check(!(speed > limits_.motor_speed_rad_s), "motor_speed_limit", speed, limits_.motor_speed_rad_s, true, [&] {
+    return fmt::format("tick {}: the motor turns at {:.1f} rad/s, allowed is {} rad/s (limits.motor_speed_rad_s)",
+                       state.tick, speed, limits_.motor_speed_rad_s);
+  });
+  const int64_t age = state.tick - (pressure_command_ ? pressure_command_->tick : 0);
+  check(age <= stale_ticks_, "stale_pressure_command", static_cast<double>(age),
+        static_cast<double>(stale_ticks_), false, [&] {
+          return fmt::format("tick {}: the newest pressure command is {} ticks old, allowed are {} (limits.stale_input_s)",
+                             state.tick, age, stale_ticks_);
+        });
+  check(!pressure_command_ ||
+            (std::isfinite(pressure_command_->pressure_ref) && std::isfinite(pressure_command_->voltage)),
+        "nonfinite_pressure_command", NAN, NAN, false, [&] {
+          return fmt::format("tick {}: pressure reference {}, voltage {}; both must be finite",
+                             pressure_command_->tick, pressure_command_->pressure_ref,
+                             pressure_command_->voltage);
+        });
+  check(!state_monitor_.SecondSenderAlive(now), "second_state_sender", 2, 1, false,
+        [] { return "two processes send states on this network; allowed is one"; });
+  check(!command_monitor_.SecondSenderAlive(now), "second_pressure_command_sender", 2, 1, false,
+        [] { return "two processes send pressure commands on this network; allowed is one"; });
+  if (safe && participant_.any_fault()) participant_.Clear("stale_state");
+  return safe;
+}
+
+void PressureApp::Answer(const state_t& state) {
+  TakePressureCommandsUpTo(state.tick - delay_);
+  motor_command_t command;
+  command.tick = state.tick;
+  command.voltage = 0;
+  command.saturated = false;
+  command.pressure_ref = 0;
+  command.pressure_command_tick = -1;
+  if (pressure_command_) {
+    command.pressure_ref = pressure_command_->pressure_ref;
+    command.pressure_command_tick = pressure_command_->tick;
+  }
+  if (!InputsAreSafe(state)) {
+    command.status = motor_command_t::SAFE;
+  } else if (pressure_command_ && pressure_command_->open_loop) {
+    command.status = motor_command_t::OPEN_LOOP;
+    command.voltage = std::clamp(pressure_command_->voltage, -law_.voltage_limit, law_.voltage_limit);
+    command.saturated = command.voltage != pressure_command_->voltage;
+  } else {
+    command.status = motor_command_t::LAW;
+    const PressureLawOutput output =
+        PressureLaw(law_, {command.pressure_ref, state.p1, state.p2, state.motor_speed, state.arm_speed});
+    command.voltage = output.voltage;
+    command.saturated = output.saturated;
+  }
+  Send(command);
+}
+
+void PressureApp::Send(motor_command_t& command) {
+  command.utime = participant_.clock().Utime();
+  command.session = participant_.session();
+  command.sequence = sequence_++;
+  participant_.bus().Publish(participant_.channels().motor_command, command);
+  last_command_ = command;
+  answered_ = true;
+}
+
+void PressureApp::Poll() {
+  participant_.statistics().set_lost_messages(state_monitor_.lost() + command_monitor_.lost());
+  participant_.Poll();
+  if (participant_.state() != process_status_t::RUNNING || participant_.stop()) return;
+  const auto silence = participant_.clock().Now() - last_state_time_;
+  if (lockstep_) {
+    if (silence > stall_time_ && !stalled_) {
+      stalled_ = true;
+      participant_.RequestStop(fmt::format("the plant has sent no state for {:.1f} s (last: tick {})",
+                                           std::chrono::duration<double>(silence).count(), participant_.tick()),
+                               1);
+    }
+  } else if (silence > stale_time_ && !participant_.active("stale_state")) {
+    motor_command_t zero;
+    zero.tick = participant_.tick();
+    zero.voltage = 0;
+    zero.pressure_ref = 0;
+    zero.pressure_command_tick = -1;
+    zero.saturated = false;
+    zero.status = motor_command_t::SAFE;
+    Send(zero);  // zero volts first, explanation second
+    participant_.Raise("stale_state",
+                       fmt::format("no state for {:.0f} ms, allowed are {:.0f} ms (limits.stale_input_s)",
+                                   std::chrono::duration<double, std::milli>(silence).count(),
+                                   std::chrono::duration<double, std::milli>(stale_time_).count()),
+                       std::chrono::duration<double>(silence).count(), limits_.stale_input_s, false);
+  }
+}
+
+bool PressureApp::finished() const { return participant_.stop().has_value(); }
+
+int PressureApp::Finish() {
+  motor_command_t zero;
+  zero.tick = participant_.tick();
+  zero.voltage = 0;
+  zero.pressure_ref = 0;
+  zero.pressure_command_tick = -1;
+  zero.saturated = false;
+  zero.status = motor_command_t::STOPPED;
+  Send(zero);
+  return participant_.Leave();
+}
+
+}  // namespace hydro

@@ -1,0 +1,67 @@
+// The fast pressure loop as an application: a motor command for each plant tick (or each n-th), eq. (16).
+//
+// A state that is stale, not finite, beyond a limit or from a second sender gives zero volts and a named fault
+// (docs/faults.md). What it computes depends on the ticks and contents of messages only, never on when they arrived.
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <hydro/motor_command_t.hpp>
+#include <hydro/pressure_command_t.hpp>
+#include <hydro/state_t.hpp>
+#include <optional>
+
+#include "bus/sequence_monitor.h"
+#include "pressure_ctrl/pressure_law.h"
+#include "process/app.h"
+#include "process/participant.h"
+#include "settings/stack_config.h"
+
+namespace hydro {
+
+// The law's settings that a configuration asks for; derives the gains where it gives natural frequency and damping.
+// Throws InputError when they cannot be derived.
+PressureLawSettings PressureLawSettingsFor(const StackConfig& config);
+
+class PressureApp : public App {
+ public:
+  PressureApp(Bus& bus, Clock& clock, const StackConfig& config);
+
+  void Poll() override;
+  bool finished() const override;
+  int Finish() override;
+
+ private:
+  void OnState(const state_t& state);
+  void OnPressureCommand(const pressure_command_t& command);
+  void Answer(const state_t& state);
+  bool InputsAreSafe(const state_t& state);
+  void TakePressureCommandsUpTo(int64_t tick);
+  bool AwaitsPressureCommand(int64_t state_tick) const;
+  void Send(motor_command_t& command);
+  void Restart();
+
+  Participant participant_;
+  const bool lockstep_;
+  const int64_t interval_;           // ticks between two commands of this loop
+  const int64_t position_interval_;  // ticks between two pressure commands
+  const int64_t delay_;              // ticks from a command's tick to where it acts
+  const int64_t stale_ticks_;        // a pressure command is stale when this much older than it may be
+  const Clock::Duration stale_time_;
+  const Clock::Duration stall_time_;
+  const LimitsSection limits_;
+  const PressureLawSettings law_;
+
+  SequenceMonitor state_monitor_;
+  SequenceMonitor command_monitor_;
+  std::deque<pressure_command_t> waiting_commands_;     // not yet in force, by tick
+  std::optional<pressure_command_t> pressure_command_;  // in force
+  std::optional<state_t> pending_state_;                // lockstep: waits for the pressure command it needs
+  motor_command_t last_command_;
+  bool answered_ = false;
+  int64_t sequence_ = 0;
+  Clock::TimePoint last_state_time_;
+  bool stalled_ = false;  // lockstep: the plant has gone silent
+};
+
+}  // namespace hydro

@@ -1,0 +1,56 @@
+// The pressure loop's law, eq. (16), as pure functions.
+#pragma once
+
+#include "model/description.h"
+
+namespace hydro {
+
+struct PressureGains {
+  double k_p = 0;  // V/psi
+  double k_v = 0;  // psi s/rad
+};
+
+// Gains of eq. (16) that give the linearised pressure loop (eqs. (4), (13), (14) at the given arm angle, without
+// leakage and Coulomb friction) the natural frequency (rad/s) and damping ratio asked for.
+// compressed_sides: 2 when both volumes compress; 1 when side 1 is held at p_3 by its one-way valve.
+// Throws std::invalid_argument when that needs a negative k_p (natural frequency below the open loop's).
+PressureGains DerivePressureGains(const Parameters& parameters, double arm_angle, double natural_frequency,
+                                  double damping_ratio, int compressed_sides);
+
+// The loop that gains give: the inverse of DerivePressureGains.
+struct SecondOrder {
+  double natural_frequency = 0;  // rad/s
+  double damping_ratio = 0;
+};
+SecondOrder PressureLoopDynamics(const Parameters& parameters, double arm_angle, const PressureGains& gains,
+                                 int compressed_sides);
+
+// V/psi: the feed-forward "which changes linearly with dp_ref" that removes the steady-state error of a clamped
+// actuator up to Coulomb friction: the torque that holds dp_ref, D dp / k_1, and what the speed that makes up for the
+// leakage costs in viscous friction and in the k_v term. One side is taken to lie at p_3.
+double SteadyStateFeedforward(const Parameters& parameters, const PressureGains& gains);
+
+struct PressureLawSettings {
+  PressureGains gains;
+  double voltage_limit = 0;          // V, T_pmax/k_1
+  double reference_feedforward = 0;  // V/psi
+  double arm_speed_ratio = 0;        // c/D: takes the pump speed that arm motion forces out of the k_v term; 0: not
+};
+
+struct PressureLawInput {
+  double pressure_ref = 0;  // psi, dp_ref
+  double p1 = 0;            // psi
+  double p2 = 0;            // psi
+  double motor_speed = 0;   // rad/s
+  double arm_speed = 0;     // rad/s, used only with arm_speed_ratio
+};
+
+struct PressureLawOutput {
+  double voltage = 0;      // V, within +/- voltage_limit
+  bool saturated = false;  // the law asked for more
+};
+
+// v = k_p ((dp_ref - dp) - k_v (theta' - arm_speed_ratio alpha')) + reference_feedforward dp_ref, limited. Eq. (16).
+PressureLawOutput PressureLaw(const PressureLawSettings& settings, const PressureLawInput& input);
+
+}  // namespace hydro

@@ -1,0 +1,87 @@
+// What every process of a stack does beside its own work: says that it is ready, hears that the run ends, names faults
+// when they begin and when they have gone, and reports once a second how it kept time.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <hydro/fault_t.hpp>
+#include <hydro/process_status_t.hpp>
+#include <hydro/stop_t.hpp>
+#include <map>
+#include <optional>
+#include <string>
+
+#include "bus/bus.h"
+#include "bus/channels.h"
+#include "bus/clock.h"
+#include "bus/loop_statistics.h"
+
+namespace hydro {
+
+class Participant {
+ public:
+  // `role`: plant, driver, pressure_ctrl, position_ctrl or logger. Subscribes to HYDRO_STOP.
+  Participant(Bus& bus, Clock& clock, const Channels& channels, const std::string& role);
+
+  const std::string& role() const { return role_; }
+  int64_t session() const { return session_; }
+
+  // Announces a new state of this process (process_status_t::READY ...). Ready is announced again ten times a second
+  // by Poll(), so that processes may start in any order.
+  void Announce(int8_t state, const std::string& text = "");
+  int8_t state() const { return state_; }
+
+  // Publishes what is due: the ready announcement, the statistics. To be called often; cheap when nothing is due.
+  void Poll();
+
+  // The last plant tick this process knows of; -1 before the first. Written into faults and stops.
+  void set_tick(int64_t tick) { tick_ = tick; }
+  int64_t tick() const { return tick_; }
+
+  // A fault begins: publishes it once, until Clear(code). A latched one is never cleared.
+  // Returns true when it was not active before.
+  bool Raise(const std::string& code, const std::string& text, double value, double limit, bool latched);
+  void Clear(const std::string& code);
+  // Cheap: no fault is active (the usual case, asked on every tick).
+  bool any_fault() const { return !active_.empty(); }
+  bool active(const std::string& code) const { return active_.contains(code); }
+  bool latched() const { return latched_; }
+  int64_t faults_raised() const { return faults_raised_; }
+
+  // Ends the run for everyone. Only the first request of this process counts.
+  void RequestStop(const std::string& reason, int exit_code);
+
+  // The stop that was heard, from whomever, this process included.
+  const std::optional<stop_t>& stop() const { return stop_; }
+
+  // The last thing a process says, once its output is safe: DONE, or FAILED when the run ended with an error.
+  // Returns the exit code that goes with it: 1 when the run failed, whoever ended it; else 0.
+  int Leave();
+
+  LoopStatistics& statistics() { return statistics_; }
+  Bus& bus() { return bus_; }
+  const Clock& clock() const { return clock_; }
+  const Channels& channels() const { return channels_; }
+
+ private:
+  void PublishFault(const fault_t& fault);
+
+  Bus& bus_;
+  Clock& clock_;
+  Channels channels_;
+  std::string role_;
+  std::string host_;
+  int64_t session_;
+  int8_t state_ = 0;
+  std::string status_text_;
+  int64_t tick_ = -1;
+  int64_t fault_sequence_ = 0;
+  int64_t faults_raised_ = 0;
+  bool latched_ = false;
+  std::map<std::string, fault_t> active_;
+  std::optional<stop_t> stop_;
+  Clock::TimePoint next_announcement_;
+  LoopStatistics statistics_;
+};
+
+}  // namespace hydro

@@ -1,0 +1,164 @@
+#include "position_ctrl/position_app.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <hydro/fault_t.hpp>
+#include <vector>
+
+#include "bus/in_process_bus.h"
+#include "tests/stack_fixture.h"
+
+namespace hydro {
+namespace {
+
+using ::testing::ElementsAre;
+using testing::SmallStack;
+using namespace std::chrono_literals;
+
+// The position loop on an in-process bus; the test plays the plant.
+class PositionAppTest : public ::testing::Test {
+ protected:
+  void Start(const StackConfig& config) {
+    app_ = std::make_unique<PositionApp>(bus_, clock_, config);
+    bus_.Subscribe<pressure_command_t>("HYDRO_PRESSURE_COMMAND",
+                                       [this](const pressure_command_t& c) { commands_.push_back(c); });
+    bus_.Subscribe<arm_reference_t>("HYDRO_ARM_REFERENCE",
+                                    [this](const arm_reference_t& r) { references_.push_back(r); });
+    bus_.Subscribe<fault_t>("HYDRO_FAULT", [this](const fault_t& f) { faults_.push_back(f); });
+    Deliver();
+  }
+
+  void Deliver() {
+    while (bus_.HandleUntil(clock_.Now()) > 0) {
+    }
+  }
+
+  void SendState(int64_t tick, double arm_angle) {
+    state_t s{};
+    s.tick = tick;
+    s.session = 3;
+    s.sequence = tick;
+    s.time = 1e-3 * static_cast<double>(tick);
+    s.arm_angle = arm_angle;
+    bus_.Publish("HYDRO_STATE", s);
+    Deliver();
+  }
+
+  static StackConfig WithReference(ReferenceSignal signal, double value) {
+    StackConfig config = SmallStack();
+    config.reference.signal = signal;
+    config.reference.trajectory.initial = 0;
+    config.reference.trajectory.steps = {{0.005, value}};
+    return config;
+  }
+
+  SimulatedClock clock_;
+  InProcessBus bus_{&clock_};
+  std::unique_ptr<PositionApp> app_;
+  std::vector<pressure_command_t> commands_;
+  std::vector<arm_reference_t> references_;
+  std::vector<fault_t> faults_;
+};
+
+// Tests that exactly the ticks that are multiples of the sample interval get a command, with its reference.
+TEST_F(PositionAppTest, ActsEveryNthTick) {
+  Start(WithReference(ReferenceSignal::kArmAngle, 0.1));
+  for (int64_t tick = 0; tick <= 12; ++tick) SendState(tick, 0);
+  std::vector<int64_t> ticks;
+  for (const auto& c : commands_) ticks.push_back(c.tick);
+  EXPECT_THAT(ticks, ElementsAre(0, 5, 10));
+  ASSERT_EQ(references_.size(), 3u);
+  EXPECT_EQ(references_[0].value, 0);
+  EXPECT_EQ(references_[1].value, 0.1);
+  EXPECT_EQ(references_[1].signal, arm_reference_t::ARM_ANGLE);
+}
+
+// Tests eq. (17) through the messages: c1 = 1000, c2 = 30, T = 5 ms, derivative on the measurement.
+TEST_F(PositionAppTest, AppliesEquation17) {
+  Start(WithReference(ReferenceSignal::kArmAngle, 0.1));
+  SendState(0, 0.001);
+  SendState(5, 0.002);
+  ASSERT_EQ(commands_.size(), 2u);
+  EXPECT_DOUBLE_EQ(commands_[0].pressure_ref, -1000 * 0.001);
+  EXPECT_DOUBLE_EQ(commands_[1].pressure_ref, -1000 * (0.002 - 0.1) - 30 / 0.005 * 0.001);
+  EXPECT_FALSE(commands_[1].open_loop);
+}
+
+// Tests that the other references pass through: pressure as it is, torque through k_2, voltage as open loop.
+TEST_F(PositionAppTest, PassesOtherReferencesThrough) {
+  struct Case {
+    ReferenceSignal signal;
+    double pressure_ref, voltage;
+    bool open_loop;
+    int8_t code;
+  };
+  for (const Case& c : {Case{ReferenceSignal::kPressure, 184, 0, false, arm_reference_t::PRESSURE},
+                        Case{ReferenceSignal::kTorque, 50, 0, false, arm_reference_t::TORQUE},
+                        Case{ReferenceSignal::kVoltage, 0, 184, true, arm_reference_t::VOLTAGE}}) {
+    PositionAppTest one;
+    one.Start(WithReference(c.signal, 184));
+    one.SendState(5, 0);
+    ASSERT_EQ(one.commands_.size(), 1u);
+    EXPECT_DOUBLE_EQ(one.commands_[0].pressure_ref, c.pressure_ref);
+    EXPECT_EQ(one.commands_[0].voltage, c.voltage);
+    EXPECT_EQ(one.commands_[0].open_loop, c.open_loop);
+    EXPECT_EQ(one.references_[0].signal, c.code);
+    EXPECT_EQ(one.references_[0].value, 184);
+  }
+}
+
+// Tests that the torque limit holds for every kind of reference and that the D/A has its levels.
+TEST_F(PositionAppTest, LimitsAndQuantises) {
+  StackConfig config = WithReference(ReferenceSignal::kPressure, 1000);
+  config.limits.arm_torque_in_lbf = 3.68 * 300.3;
+  config.position.dac_bits = 12;
+  config.position.dac_range_psi = 2048;
+  Start(config);
+  SendState(5, 0);
+  EXPECT_DOUBLE_EQ(commands_.at(0).pressure_ref, 300);
+}
+
+// Tests that an arm angle that is not finite gives an open-loop command of zero volts and a fault, and that the loop
+// starts afresh, without a derivative across the gap, when the angle is back.
+TEST_F(PositionAppTest, NonFiniteAngleGivesZeroVolts) {
+  Start(WithReference(ReferenceSignal::kArmAngle, 0));
+  SendState(0, 0.1);
+  SendState(5, std::nan(""));
+  ASSERT_EQ(commands_.size(), 2u);
+  EXPECT_TRUE(commands_[1].open_loop);
+  EXPECT_EQ(commands_[1].voltage, 0);
+  ASSERT_EQ(faults_.size(), 1u);
+  EXPECT_EQ(faults_[0].code, "nonfinite_arm_angle");
+  SendState(10, 0.2);
+  EXPECT_FALSE(commands_.at(2).open_loop);
+  EXPECT_DOUBLE_EQ(commands_[2].pressure_ref, -1000 * 0.2);
+  EXPECT_FALSE(faults_.back().active);
+}
+
+// Tests that a state that is sent again gets the same answer again.
+TEST_F(PositionAppTest, RepeatsTheAnswerToARepeatedState) {
+  Start(WithReference(ReferenceSignal::kArmAngle, 0));
+  SendState(0, 0.1);
+  SendState(0, 0.1);
+  ASSERT_EQ(commands_.size(), 2u);
+  EXPECT_EQ(commands_[0].sequence, commands_[1].sequence);
+  EXPECT_EQ(commands_[0].pressure_ref, commands_[1].pressure_ref);
+}
+
+// Tests that in lockstep a silent plant ends this process with an error in less than 2 s.
+TEST_F(PositionAppTest, LockstepEndsWhenThePlantStalls) {
+  Start(WithReference(ReferenceSignal::kArmAngle, 0));
+  SendState(0, 0);
+  clock_.AdvanceTo(clock_.Now() + 1890ms);
+  app_->Poll();
+  EXPECT_FALSE(app_->finished());
+  clock_.AdvanceTo(clock_.Now() + 20ms);
+  app_->Poll();
+  EXPECT_TRUE(app_->finished());
+  EXPECT_EQ(app_->Finish(), 1);
+}
+
+}  // namespace
+}  // namespace hydro

@@ -1,0 +1,310 @@
+#include "pressure_ctrl/pressure_app.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <hydro/fault_t.hpp>
+#include <limits>
+#include <vector>
+
+#include "bus/in_process_bus.h"
+#include "tests/stack_fixture.h"
+
+namespace hydro {
+namespace {
+
+using ::testing::ElementsAre;
+using testing::SmallStack;
+using namespace std::chrono_literals;
+
+// The pressure loop on an in-process bus; the test plays plant and position loop.
+class PressureAppTest : public ::testing::Test {
+ protected:
+  void Start(const StackConfig& config) {
+    app_ = std::make_unique<PressureApp>(bus_, clock_, config);
+    bus_.Subscribe<motor_command_t>("HYDRO_MOTOR_COMMAND",
+                                    [this](const motor_command_t& c) { commands_.push_back(c); });
+    bus_.Subscribe<fault_t>("HYDRO_FAULT", [this](const fault_t& f) { faults_.push_back(f); });
+    bus_.Subscribe<stop_t>("HYDRO_STOP", [this](const stop_t& s) { stops_.push_back(s); });
+    Deliver();
+  }
+
+  void Deliver() {
+    while (bus_.HandleUntil(clock_.Now()) > 0) {
+    }
+  }
+
+  state_t State(int64_t tick) {
+    state_t s{};
+    s.tick = tick;
+    s.session = plant_session_;
+    s.sequence = tick;
+    s.p1 = 100;
+    s.p2 = 200;
+    s.motor_speed = 5;
+    return s;
+  }
+
+  void SendState(const state_t& s) {
+    bus_.Publish("HYDRO_STATE", s);
+    Deliver();
+  }
+
+  void SendPressure(int64_t tick, double pressure_ref) {
+    pressure_command_t c{};
+    c.tick = tick;
+    c.session = 7;
+    c.sequence = tick;
+    c.pressure_ref = pressure_ref;
+    bus_.Publish("HYDRO_PRESSURE_COMMAND", c);
+    Deliver();
+  }
+
+  static double Law(double pressure_ref) { return 0.125 * ((pressure_ref - 100) - 8 * 5); }
+
+  SimulatedClock clock_;
+  InProcessBus bus_{&clock_};
+  std::unique_ptr<PressureApp> app_;
+  std::vector<motor_command_t> commands_;
+  std::vector<fault_t> faults_;
+  std::vector<stop_t> stops_;
+  int64_t plant_session_ = 3;
+};
+
+// Tests that each tick gets one command, and that the pressure command computed from tick 0 acts from tick 1 on.
+TEST_F(PressureAppTest, PressureCommandActsOneTickLater) {
+  Start(SmallStack());
+  SendState(State(0));
+  SendPressure(0, 120);
+  SendState(State(1));
+  ASSERT_EQ(commands_.size(), 2u);
+  EXPECT_EQ(commands_[0].tick, 0);
+  EXPECT_EQ(commands_[0].pressure_command_tick, -1);
+  EXPECT_DOUBLE_EQ(commands_[0].voltage, std::max(-10.0, Law(0)));
+  EXPECT_EQ(commands_[1].tick, 1);
+  EXPECT_EQ(commands_[1].pressure_command_tick, 0);
+  EXPECT_DOUBLE_EQ(commands_[1].voltage, Law(120));
+  EXPECT_EQ(commands_[1].status, motor_command_t::LAW);
+}
+
+// Tests that with no command delay the loop waits, in lockstep, for the pressure command of the same tick.
+TEST_F(PressureAppTest, WithoutDelayTheSameTicksPressureCommandActs) {
+  StackConfig config = SmallStack();
+  config.plant.command_delay_ticks = 0;
+  Start(config);
+  SendState(State(0));
+  EXPECT_TRUE(commands_.empty());
+  SendPressure(0, 120);
+  ASSERT_EQ(commands_.size(), 1u);
+  EXPECT_DOUBLE_EQ(commands_[0].voltage, Law(120));
+}
+
+// Tests that a due pressure command that comes after its state (another route through a network) changes nothing.
+TEST_F(PressureAppTest, LockstepResultDoesNotDependOnArrivalOrder) {
+  Start(SmallStack());
+  SendState(State(0));
+  SendState(State(1));
+  EXPECT_EQ(commands_.size(), 1u);  // tick 1 waits for the pressure command of tick 0
+  SendPressure(0, 120);
+  ASSERT_EQ(commands_.size(), 2u);
+  EXPECT_DOUBLE_EQ(commands_[1].voltage, Law(120));
+}
+
+// Tests that a pressure command that comes early is not used early.
+TEST_F(PressureAppTest, EarlyPressureCommandWaits) {
+  Start(SmallStack());
+  SendPressure(0, 120);
+  SendState(State(0));
+  ASSERT_EQ(commands_.size(), 1u);
+  EXPECT_EQ(commands_[0].pressure_command_tick, -1);
+}
+
+// Tests that a state that is sent again gets the same answer again, bit for bit.
+TEST_F(PressureAppTest, RepeatsTheAnswerToARepeatedState) {
+  Start(SmallStack());
+  SendState(State(0));
+  SendState(State(0));
+  ASSERT_EQ(commands_.size(), 2u);
+  EXPECT_EQ(commands_[0].voltage, commands_[1].voltage);
+  EXPECT_EQ(commands_[0].sequence, commands_[1].sequence);
+}
+
+// Tests that each non-finite measurement gives zero volts and a fault that goes when the measurement is good again.
+TEST_F(PressureAppTest, NonFiniteStateGivesZeroVolts) {
+  Start(SmallStack());
+  SendState(State(0));
+  SendPressure(0, 120);
+  int64_t tick = 1;
+  for (double state_t::*field : {&state_t::p1, &state_t::p2, &state_t::motor_speed}) {
+    for (const double bad : {std::nan(""), std::numeric_limits<double>::infinity()}) {
+      if (bad > 0 && field != &state_t::motor_speed) continue;  // an infinite pressure is above the limit: latched
+      state_t s = State(tick++);
+      s.*field = bad;
+      faults_.clear();
+      SendState(s);
+      EXPECT_EQ(commands_.back().voltage, 0);
+      EXPECT_EQ(commands_.back().status, motor_command_t::SAFE);
+      ASSERT_EQ(faults_.size(), 1u);
+      EXPECT_EQ(faults_[0].code, "nonfinite_state");
+      EXPECT_TRUE(faults_[0].active);
+      SendState(State(tick++));
+      EXPECT_EQ(commands_.back().status, motor_command_t::LAW);
+      ASSERT_EQ(faults_.size(), 2u);
+      EXPECT_FALSE(faults_[1].active);
+      if (tick == 5) SendPressure(5, 120);
+    }
+  }
+  EXPECT_TRUE(stops_.empty());
+}
+
+// Tests that a pressure above the limit, on either side, trips: zero volts for good, one fault, the end of the run.
+TEST_F(PressureAppTest, PressureLimitTrips) {
+  for (double state_t::*side : {&state_t::p1, &state_t::p2}) {
+    commands_.clear();
+    faults_.clear();
+    stops_.clear();
+    plant_session_ += 10;
+    PressureAppTest trip;
+    trip.Start(SmallStack());
+    trip.SendState(trip.State(0));
+    state_t s = trip.State(1);
+    s.*side = 2000.5;
+    trip.SendPressure(0, 120);
+    trip.SendState(s);
+    EXPECT_EQ(trip.commands_.back().voltage, 0);
+    EXPECT_EQ(trip.commands_.back().status, motor_command_t::SAFE);
+    ASSERT_EQ(trip.faults_.size(), 1u);
+    EXPECT_EQ(trip.faults_[0].code, "pressure_limit");
+    EXPECT_TRUE(trip.faults_[0].latched);
+    EXPECT_EQ(trip.faults_[0].value, 2000.5);
+    EXPECT_EQ(trip.faults_[0].limit, 2000);
+    trip.SendState(trip.State(2));
+    EXPECT_EQ(trip.commands_.back().voltage, 0);
+    ASSERT_EQ(trip.stops_.size(), 1u);
+    EXPECT_EQ(trip.stops_[0].exit_code, 1);
+    EXPECT_TRUE(trip.app_->finished());
+    EXPECT_EQ(trip.app_->Finish(), 1);
+  }
+}
+
+// Tests that in real time a position loop that has gone silent gives zero volts after the stale-input limit, counted
+// in ticks so that a replay does the same, and that the loop resumes with the next pressure command.
+TEST_F(PressureAppTest, StalePressureCommandGivesZeroVolts) {
+  StackConfig config = SmallStack();
+  config.time.mode = TimeMode::kRealtime;
+  config.limits.stale_input_s = 0.02;  // 20 ticks, beside one sample interval of 5 and the delay of 1
+  Start(config);
+  SendPressure(0, 120);
+  for (int64_t tick = 0; tick <= 26; ++tick) SendState(State(tick));
+  EXPECT_EQ(commands_.back().status, motor_command_t::LAW);
+  SendState(State(27));
+  EXPECT_EQ(commands_.back().voltage, 0);
+  EXPECT_EQ(commands_.back().status, motor_command_t::SAFE);
+  ASSERT_EQ(faults_.size(), 1u);
+  EXPECT_EQ(faults_[0].code, "stale_pressure_command");
+  SendPressure(27, 120);
+  SendState(State(28));
+  EXPECT_EQ(commands_.back().status, motor_command_t::LAW);
+  EXPECT_EQ(faults_.size(), 2u);
+}
+
+// Tests that in real time a silent plant gives a zero-volt command first and a fault second.
+TEST_F(PressureAppTest, StaleStateGivesZeroVolts) {
+  StackConfig config = SmallStack();
+  config.time.mode = TimeMode::kRealtime;
+  Start(config);
+  SendState(State(0));
+  clock_.AdvanceTo(clock_.Now() + 99ms);
+  app_->Poll();
+  Deliver();
+  EXPECT_EQ(commands_.size(), 1u);
+  clock_.AdvanceTo(clock_.Now() + 2ms);
+  app_->Poll();
+  app_->Poll();
+  Deliver();
+  ASSERT_EQ(commands_.size(), 2u);
+  EXPECT_EQ(commands_[1].voltage, 0);
+  EXPECT_EQ(commands_[1].status, motor_command_t::SAFE);
+  ASSERT_EQ(faults_.size(), 1u);
+  EXPECT_EQ(faults_[0].code, "stale_state");
+  SendState(State(1));
+  EXPECT_EQ(commands_.back().status, motor_command_t::LAW);
+  EXPECT_FALSE(faults_.back().active);
+}
+
+// Tests that in lockstep a silent plant ends this process with an error that names it, in less than 2 s.
+TEST_F(PressureAppTest, LockstepEndsWhenThePlantStalls) {
+  Start(SmallStack());
+  SendState(State(0));
+  for (int i = 0; i < 95; ++i) {
+    EXPECT_FALSE(app_->finished());
+    clock_.AdvanceTo(clock_.Now() + 20ms);
+    app_->Poll();
+  }
+  clock_.AdvanceTo(clock_.Now() + 20ms);
+  app_->Poll();
+  Deliver();
+  ASSERT_TRUE(app_->finished());
+  ASSERT_EQ(stops_.size(), 1u);
+  EXPECT_THAT(stops_[0].reason, ::testing::HasSubstr("plant"));
+  EXPECT_EQ(app_->Finish(), 1);
+}
+
+// Tests that two plants on one network give zero volts and a named fault while the second is heard.
+TEST_F(PressureAppTest, SecondStateSenderGivesZeroVolts) {
+  StackConfig config = SmallStack();
+  config.time.mode = TimeMode::kRealtime;
+  Start(config);
+  SendState(State(0));
+  plant_session_ = 4;
+  SendState(State(0));
+  plant_session_ = 3;
+  SendState(State(1));
+  EXPECT_EQ(commands_.back().voltage, 0);
+  EXPECT_EQ(commands_.back().status, motor_command_t::SAFE);
+  ASSERT_EQ(faults_.size(), 1u);
+  EXPECT_EQ(faults_[0].code, "second_state_sender");
+}
+
+// Tests that an open-loop command passes its voltage through, limited to what the amplifier takes.
+TEST_F(PressureAppTest, OpenLoopPassesVoltageThrough) {
+  Start(SmallStack());
+  pressure_command_t c{};
+  c.open_loop = true;
+  c.voltage = 2.5;
+  bus_.Publish("HYDRO_PRESSURE_COMMAND", c);
+  SendState(State(0));
+  SendState(State(1));
+  EXPECT_EQ(commands_.back().voltage, 2.5);
+  EXPECT_EQ(commands_.back().status, motor_command_t::OPEN_LOOP);
+}
+
+// Tests that the last command of a run is zero volts, whatever came before.
+TEST_F(PressureAppTest, FinishesWithZeroVolts) {
+  Start(SmallStack());
+  SendState(State(0));
+  stop_t stop{};
+  bus_.Publish("HYDRO_STOP", stop);
+  Deliver();
+  EXPECT_TRUE(app_->finished());
+  EXPECT_EQ(app_->Finish(), 0);
+  Deliver();
+  EXPECT_EQ(commands_.back().voltage, 0);
+  EXPECT_EQ(commands_.back().status, motor_command_t::STOPPED);
+}
+
+// Tests that a loop slower than the plant acts on its own multiples only.
+TEST_F(PressureAppTest, ActsOnItsOwnMultiples) {
+  StackConfig config = SmallStack();
+  config.pressure_interval_ticks = 2;
+  Start(config);
+  SendPressure(0, 120);
+  for (int64_t tick = 0; tick < 5; ++tick) SendState(State(tick));
+  std::vector<int64_t> ticks;
+  for (const motor_command_t& c : commands_) ticks.push_back(c.tick);
+  EXPECT_THAT(ticks, ElementsAre(0, 2, 4));
+}
+
+}  // namespace
+}  // namespace hydro

@@ -1,0 +1,108 @@
+#include "pressure_ctrl/pressure_law.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <complex>
+#include <stdexcept>
+
+#include "tests/table1.h"
+
+namespace hydro {
+namespace {
+
+using testing::Table1;
+
+// Eigenvalues of the closed loop of eqs. (4), (13), (14), (16) at alpha = 0, frictionless and without leakage, written
+// out here from the equations themselves: states p1, p2, theta'; side 1 at p_3 when only one side compresses.
+SecondOrder ClosedLoop(const Parameters& p, const PressureGains& gains, int compressed_sides) {
+  const double rise2 = p.beta / p.V_ms * p.D;                             // d p2'/d theta', eq. (14)
+  const double rise1 = compressed_sides == 2 ? -p.beta / p.V_ms * p.D : 0;  // d p1'/d theta', eq. (13)
+  // dp' = (rise2 - rise1) theta';  J theta'' = -k_1 k_p dp - k_1 k_p k_v theta' - D dp - b theta'
+  const double trace = -(p.k_1 * gains.k_p * gains.k_v + p.b) / p.J;
+  const double determinant = (rise2 - rise1) * (p.k_1 * gains.k_p + p.D) / p.J;
+  const std::complex<double> root =
+      (trace + std::sqrt(std::complex<double>(trace * trace - 4 * determinant))) / 2.0;
+  return {std::abs(root), -root.real() / std::abs(root)};
+}
+
+// Tests that natural frequency 150 rad/s and damping 0.5 give the gains computed independently from the paper's
+// equations, for both volumes compressing and for one side held at p_3.
+TEST(PressureLawTest, DerivedGainsMatchThePaper) {
+  const PressureGains two = DerivePressureGains(Table1(), 0, 150, 0.5, 2);
+  EXPECT_NEAR(two.k_p, 0.1336, 5e-5);
+  EXPECT_NEAR(two.k_v, 8.39, 5e-3);
+  const PressureGains one = DerivePressureGains(Table1(), 0, 150, 0.5, 1);
+  EXPECT_NEAR(one.k_p, 0.269, 5e-4);
+  EXPECT_NEAR(one.k_v, 4.17, 5e-3);
+}
+
+// Tests that the derived gains place the linearised loop's poles where they were asked for, by eigenvalues.
+TEST(PressureLawTest, DerivedGainsGiveTheLoopAskedFor) {
+  for (const int sides : {1, 2}) {
+    for (const double omega : {60.0, 150.0, 400.0}) {
+      const SecondOrder loop = ClosedLoop(Table1(), DerivePressureGains(Table1(), 0, omega, 0.5, sides), sides);
+      EXPECT_NEAR(loop.natural_frequency, omega, 1e-9 * omega);
+      EXPECT_NEAR(loop.damping_ratio, 0.5, 1e-9);
+    }
+  }
+}
+
+// Tests that the two-sided gains leave the one-sided mode slower and better damped: 106.6 rad/s and 0.709.
+TEST(PressureLawTest, TwoSidedGainsInTheOneSidedMode) {
+  const PressureGains gains = DerivePressureGains(Table1(), 0, 150, 0.5, 2);
+  const SecondOrder loop = PressureLoopDynamics(Table1(), 0, gains, 1);
+  EXPECT_NEAR(loop.natural_frequency, 106.6, 0.05);
+  EXPECT_NEAR(loop.damping_ratio, 0.709, 5e-4);
+  const SecondOrder eigen = ClosedLoop(Table1(), gains, 1);
+  EXPECT_NEAR(loop.natural_frequency, eigen.natural_frequency, 1e-9);
+  EXPECT_NEAR(loop.damping_ratio, eigen.damping_ratio, 1e-9);
+}
+
+// Tests that gains which cannot be had are refused instead of turned into a positive feedback.
+TEST(PressureLawTest, RefusesAFrequencyBelowTheOpenLoop) {
+  EXPECT_THROW(DerivePressureGains(Table1(), 0, 15, 0.5, 2), std::invalid_argument);  // open loop: 18.2 rad/s
+  EXPECT_NO_THROW(DerivePressureGains(Table1(), 0, 15, 0.5, 1));                      // open loop: 12.9 rad/s
+  EXPECT_THROW(DerivePressureGains(Table1(), 0, 150, 0.5, 3), std::invalid_argument);
+}
+
+// Tests eq. (16) term by term against numbers worked out by hand.
+TEST(PressureLawTest, IsEquation16) {
+  PressureLawSettings settings;
+  settings.gains = {0.125, 8};
+  settings.voltage_limit = 1000;
+  // dp = 100, error = 200, minus k_v theta' = 8 * 5
+  EXPECT_DOUBLE_EQ(PressureLaw(settings, {300, 100, 200, 5, 7}).voltage, 0.125 * (200 - 40));
+  settings.reference_feedforward = 0.002;
+  EXPECT_DOUBLE_EQ(PressureLaw(settings, {300, 100, 200, 5, 7}).voltage, 0.125 * (200 - 40) + 0.6);
+  settings.arm_speed_ratio = 0.5;
+  EXPECT_DOUBLE_EQ(PressureLaw(settings, {300, 100, 200, 5, 7}).voltage, 0.125 * (200 - 8 * 1.5) + 0.6);
+}
+
+// Tests that the output saturates at +/- the voltage limit and says so.
+TEST(PressureLawTest, Saturates) {
+  PressureLawSettings settings;
+  settings.gains = {1, 0};
+  settings.voltage_limit = 10;
+  const PressureLawInput inside{10, 0, 0, 0, 0};
+  EXPECT_EQ(PressureLaw(settings, inside).voltage, 10);
+  EXPECT_FALSE(PressureLaw(settings, inside).saturated);
+  EXPECT_EQ(PressureLaw(settings, {10.5, 0, 0, 0, 0}).voltage, 10);
+  EXPECT_TRUE(PressureLaw(settings, {10.5, 0, 0, 0, 0}).saturated);
+  EXPECT_EQ(PressureLaw(settings, {-1e9, 0, 0, 0, 0}).voltage, -10);
+}
+
+// Tests that the feed-forward removes the steady-state error of the frictionless clamped actuator: at dp = dp_ref, with
+// the speed that makes up for the leakage, the law's torque is what eq. (4) needs.
+TEST(PressureLawTest, FeedforwardHoldsTheReference) {
+  Parameters p = Table1();
+  const PressureGains gains = DerivePressureGains(p, 0, 150, 0.5, 2);
+  PressureLawSettings settings{gains, 10, SteadyStateFeedforward(p, gains), 0};
+  const double dp = 300;
+  const double speed = (p.c_I * dp + p.c_E * dp) / p.D;  // eq. (14) at rest, p1 = p_3
+  const double voltage = PressureLaw(settings, {dp, p.p_3, p.p_3 + dp, speed, 0}).voltage;
+  EXPECT_NEAR(p.k_1 * voltage, p.D * dp + p.b * speed, 1e-12);
+}
+
+}  // namespace
+}  // namespace hydro
