@@ -1,0 +1,11 @@
+// Counts what a test program allocates: link count_allocations.cc into it.
+#pragma once
+
+#include <cstdint>
+
+namespace hydro {
+
+// Calls of operator new since the program began.
+int64_t AllocationCount();
+
+}  // namespace hydro

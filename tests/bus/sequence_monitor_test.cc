@@ -1,0 +1,116 @@
+#include "bus/sequence_monitor.h"
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+namespace hydro {
+namespace {
+
+using namespace std::chrono_literals;
+using Verdict = SequenceMonitor::Verdict;
+
+struct Step {
+  int64_t session;
+  int64_t sequence;
+  std::chrono::milliseconds at;
+  Verdict verdict;
+  int64_t gap;
+};
+
+void Check(const std::vector<Step>& steps, SequenceMonitor* monitor) {
+  for (size_t i = 0; i < steps.size(); ++i) {
+    const Step& step = steps[i];
+    EXPECT_EQ(monitor->Observe(step.session, step.sequence, Clock::TimePoint(step.at)), step.verdict)
+        << "step " << i;
+    EXPECT_EQ(monitor->gap(), step.gap) << "step " << i;
+  }
+}
+
+// Tests that gaps are counted, duplicates and old messages refused, and that the first message may have any
+// number.
+TEST(SequenceMonitorTest, GapsAndDuplicates) {
+  SequenceMonitor monitor(100ms);
+  Check({{1, 10, 0ms, Verdict::kAccept, 0},
+         {1, 11, 1ms, Verdict::kAccept, 0},
+         {1, 11, 2ms, Verdict::kDuplicate, 0},
+         {1, 14, 3ms, Verdict::kAccept, 2},
+         {1, 12, 4ms, Verdict::kDuplicate, 0},
+         {1, 15, 5ms, Verdict::kAccept, 0},
+         {1, 115, 900ms, Verdict::kAccept, 99}},
+        &monitor);
+  EXPECT_EQ(monitor.lost(), 101);
+  EXPECT_EQ(monitor.duplicates(), 2);
+  EXPECT_EQ(monitor.restarts(), 0);
+}
+
+// Tests that another session is a second sender while the first is alive, and says so for as long.
+TEST(SequenceMonitorTest, SecondSender) {
+  SequenceMonitor monitor(100ms);
+  EXPECT_FALSE(monitor.SecondSenderAlive(Clock::TimePoint(0ms)));
+  Check({{1, 0, 0ms, Verdict::kAccept, 0},
+         {2, 0, 50ms, Verdict::kSecondSender, 0},
+         {1, 1, 60ms, Verdict::kAccept, 0},
+         {2, 1, 160ms, Verdict::kSecondSender, 0}},  // exactly `alive` after the first: still alive
+        &monitor);
+  EXPECT_TRUE(monitor.SecondSenderAlive(Clock::TimePoint(260ms)));
+  EXPECT_FALSE(monitor.SecondSenderAlive(Clock::TimePoint(261ms)));
+  EXPECT_EQ(monitor.lost(), 0);
+}
+
+// Tests that another session after a silence is a restart, whatever its numbers, and is followed from then
+// on.
+TEST(SequenceMonitorTest, Restart) {
+  SequenceMonitor monitor(100ms);
+  Check({{1, 7, 0ms, Verdict::kAccept, 0},
+         {2, 5, 90ms, Verdict::kSecondSender, 0},
+         {2, 6, 101ms, Verdict::kRestarted, 0},
+         {2, 7, 102ms, Verdict::kAccept, 0},
+         {1, 8, 103ms, Verdict::kSecondSender, 0}},
+        &monitor);
+  EXPECT_EQ(monitor.restarts(), 1);
+  EXPECT_EQ(monitor.lost(), 0);
+}
+
+// Tests that after a takeover nobody is a second sender any more.
+TEST(SequenceMonitorTest, TakeoverEndsTheSecondSender) {
+  SequenceMonitor monitor(100ms);
+  Check({{1, 0, 0ms, Verdict::kAccept, 0},
+         {2, 0, 90ms, Verdict::kSecondSender, 0},
+         {2, 1, 110ms, Verdict::kRestarted, 0}},
+        &monitor);
+  EXPECT_FALSE(monitor.SecondSenderAlive(Clock::TimePoint(110ms)));
+}
+
+// Tests that a log that is played again after a silence is a restart, and a repeated message is not, however
+// late.
+TEST(SequenceMonitorTest, PlayedAgain) {
+  SequenceMonitor monitor(100ms);
+  Check({{1, 0, 0ms, Verdict::kAccept, 0},
+         {1, 1, 1ms, Verdict::kAccept, 0},
+         {1, 1, 500ms, Verdict::kDuplicate, 0},
+         {1, 0, 501ms, Verdict::kDuplicate, 0},
+         {1, 0, 700ms, Verdict::kRestarted, 0},
+         {1, 1, 701ms, Verdict::kAccept, 0}},
+        &monitor);
+}
+
+// Tests that a tick that goes back is refused though the sequence goes on, and is forgotten at a restart.
+TEST(SequenceMonitorTest, TicksGoingBack) {
+  SequenceMonitor monitor(100ms);
+  const auto observe = [&](int64_t session, int64_t sequence, int64_t tick, std::chrono::milliseconds at) {
+    return monitor.Observe(session, sequence, tick, Clock::TimePoint(at));
+  };
+  EXPECT_EQ(observe(1, 0, 50, 0ms), Verdict::kAccept);
+  EXPECT_EQ(observe(1, 1, 50, 1ms), Verdict::kAccept);
+  EXPECT_EQ(observe(1, 2, 49, 2ms), Verdict::kDuplicate);
+  EXPECT_EQ(observe(1, 3, 51, 3ms), Verdict::kAccept);
+  EXPECT_EQ(observe(2, 0, 1, 4ms), Verdict::kSecondSender);
+  EXPECT_EQ(observe(2, 1, 2, 400ms), Verdict::kRestarted);
+  EXPECT_EQ(observe(2, 2, 3, 401ms), Verdict::kAccept);
+  EXPECT_EQ(monitor.ticks_back(), 1);
+  EXPECT_EQ(monitor.lost(), 0);
+}
+
+}  // namespace
+}  // namespace hydro

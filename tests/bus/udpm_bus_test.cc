@@ -1,0 +1,171 @@
+#include "bus/udpm_bus.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sched.h>
+#include <sys/time.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <csignal>
+
+#include "bus/multicast_self_test.h"
+#include "hydro/state_t.hpp"
+#include "settings/input_error.h"
+#include "tests/free_udp_port.h"
+
+namespace hydro {
+namespace {
+
+using namespace std::chrono_literals;
+using testing::HasSubstr;
+
+Bus::TimePoint Soon(std::chrono::nanoseconds delay) { return std::chrono::steady_clock::now() + delay; }
+
+// Tests that two buses on one port hear each other and one on another port hears neither, in the same group.
+TEST(UdpmBusTest, PortsSeparate) {
+  const std::string url = FreeBusUrl();
+  UdpmBus one(url), two(url), other(FreeBusUrl());
+  int heard = 0;
+  int others_heard = 0;
+  two.Subscribe<state_t>("STATE", [&](const state_t&) { ++heard; });
+  other.SubscribeAll([&](const RawMessage&) { ++others_heard; });
+  one.Publish("STATE", state_t{});
+  EXPECT_EQ(two.HandleUntil(Soon(10s)), 1);
+  EXPECT_EQ(heard, 1);
+  other.HandleUntil(Soon(20ms));
+  EXPECT_EQ(others_heard, 0);
+}
+
+// Tests that the self tests of processes that start are not passed on as messages.
+TEST(UdpmBusTest, SelfTestsAreNotMessages) {
+  const std::string url = FreeBusUrl();
+  UdpmBus bus(url);
+  std::vector<std::string> seen;
+  bus.SubscribeAll([&](const RawMessage& message) { seen.emplace_back(message.channel); });
+  UdpmBus late(url);
+  late.Publish("STATE", state_t{});
+  EXPECT_EQ(bus.HandleUntil(Soon(10s)), 1);
+  EXPECT_THAT(seen, testing::ElementsAre("STATE"));
+}
+
+// Tests that nothing is dropped between two turns, however many messages wait (LCM's own default is 30).
+TEST(UdpmBusTest, QueueIsUnlimited) {
+  const std::string url = FreeBusUrl();
+  UdpmBus sender(url), receiver(url);
+  int64_t count = 0;
+  receiver.Subscribe<state_t>("STATE", [&](const state_t& state) { EXPECT_EQ(state.tick, count++); });
+  for (int i = 0; i < 10'000; ++i) {
+    state_t state{};
+    state.tick = i;
+    sender.Publish("STATE", state);
+    if (i % 100 == 99)
+      usleep(1000);  // lets LCM's receiving thread empty the kernel's buffer, whose size is not ours
+  }
+  const auto give_up = Soon(10s);
+  while (count < 10'000 && std::chrono::steady_clock::now() < give_up) receiver.HandleUntil(Soon(100ms));
+  EXPECT_EQ(count, 10'000);
+}
+
+void OnAlarm(int) {}
+
+// Tests that a signal ends HandleUntil() early with 0, so that a main can look at its stop flag.
+TEST(UdpmBusTest, SignalEndsTheWait) {
+  UdpmBus bus(FreeBusUrl());
+  struct sigaction action {};
+  action.sa_handler = OnAlarm;
+  sigaction(SIGALRM, &action, nullptr);
+  itimerval repeatedly{};
+  repeatedly.it_value.tv_usec = repeatedly.it_interval.tv_usec = 10'000;
+  setitimer(ITIMER_REAL, &repeatedly, nullptr);
+  const auto deadline = Soon(100s);
+  EXPECT_EQ(bus.HandleUntil(deadline), 0);
+  EXPECT_LT(std::chrono::steady_clock::now(), deadline);
+  const itimerval off{};
+  setitimer(ITIMER_REAL, &off, nullptr);
+}
+
+// Tests that a channel name that LCM cannot carry is refused, to send on and to listen to.
+TEST(UdpmBusTest, RefusesImpossibleChannels) {
+  UdpmBus bus(FreeBusUrl());
+  EXPECT_NO_THROW(bus.Publish(std::string(63, 'c'), state_t{}));
+  EXPECT_THROW(bus.Publish(std::string(64, 'c'), state_t{}), BusError);
+  EXPECT_THROW(bus.Publish("", state_t{}), BusError);
+  EXPECT_THROW(bus.PublishRaw(std::string(64, 'c'), "x", 1), BusError);
+  EXPECT_THROW(bus.Subscribe<state_t>(std::string(64, 'c'), [](const state_t&) {}), BusError);
+}
+
+// Tests that a bad URL is an input error, before anything is opened.
+TEST(UdpmBusTest, BadUrlIsAnInputError) {
+  EXPECT_THROW(UdpmBus("udp://239.255.76.67:7667"), InputError);
+  EXPECT_THROW(UdpmBus("udpm://10.0.0.1:7667"), InputError);
+}
+
+// Tests that a small receive buffer is reported with the way to a larger one, and a sufficient one is not.
+TEST(UdpmBusTest, ReportsTheReceiveBuffer) {
+  UdpmBus small(FreeBusUrl() + "&recv_buf_size=8192");
+  EXPECT_GE(small.receive_buffer_bytes(), 8192);
+  EXPECT_EQ(small.receive_buffer_hint(), "");
+  UdpmBus huge(FreeBusUrl() + "&recv_buf_size=1073741824");  // no machine allows this much
+  EXPECT_GT(huge.receive_buffer_bytes(), 0);
+  EXPECT_THAT(huge.receive_buffer_hint(), HasSubstr("sysctl -w net.core.rmem_max=1073741824"));
+}
+
+// Tests that a port which another program holds alone is named as such.
+TEST(UdpmBusTest, TakenPortIsABusError) {
+  const int fd = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  socklen_t length = sizeof address;
+  ASSERT_EQ(bind(fd, reinterpret_cast<sockaddr*>(&address), length), 0);
+  ASSERT_EQ(getsockname(fd, reinterpret_cast<sockaddr*>(&address), &length), 0);
+  try {
+    UdpmBus bus("udpm://239.255.76.67:" + std::to_string(ntohs(address.sin_port)));
+    ADD_FAILURE() << "the port was accepted";
+  } catch (const BusError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("choose another port"));
+  }
+  close(fd);
+}
+
+// Tests that a machine without a multicast route gives one line with the cure. In a child process, which
+// moves into a network namespace of its own that has no route at all.
+TEST(UdpmBusTest, NoRouteIsABusErrorWithTheCure) {
+  const pid_t child = fork();
+  ASSERT_GE(child, 0);
+  if (child == 0) {
+    if (unshare(CLONE_NEWNET) != 0 && unshare(CLONE_NEWUSER | CLONE_NEWNET) != 0) _exit(77);
+    try {
+      UdpmBus bus("udpm://239.255.76.67:7667?ttl=0");
+    } catch (const BusError& error) {
+      const std::string what = error.what();
+      const bool good =
+          what.find("ip route add 224.0.0.0/4 dev lo") != what.npos && what.find('\n') == what.npos;
+      if (!good) fprintf(stderr, "%s\n", error.what());
+      _exit(good ? 0 : 1);
+    }
+    _exit(2);
+  }
+  int status = 0;
+  ASSERT_EQ(waitpid(child, &status, 0), child);
+  ASSERT_TRUE(WIFEXITED(status));
+  if (WEXITSTATUS(status) == 77) GTEST_SKIP() << "network namespaces are not permitted here";
+  EXPECT_EQ(WEXITSTATUS(status), 0) << "1: the message lacks the cure, 2: no error";
+}
+
+// Tests that a group from which nothing comes back is noticed within the timeout and named: sent to one port,
+// awaited for no time at all.
+TEST(UdpmBusTest, SilenceIsABusError) {
+  UdpmUrl url;
+  url.port = static_cast<uint16_t>(FreeUdpPort());
+  try {
+    TestMulticast(url, 0ms);
+    ADD_FAILURE() << "the test passed without waiting";
+  } catch (const BusError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("did not come back"));
+    EXPECT_THAT(error.what(), HasSubstr("firewall"));
+  }
+}
+
+}  // namespace
+}  // namespace hydro
