@@ -1,6 +1,7 @@
 #include "settings/stack_sections.h"
 
 #include <algorithm>
+#include <cctype>
 
 #include "settings/bus_url.h"
 #include "settings/trajectory_spec.h"
@@ -159,7 +160,7 @@ void ReadProcesses(SectionReader& document, std::vector<ProcessSection>* process
   const TomlNode* node = document.Take("process");
   if (node == nullptr) {
     for (const char* program : {"hydro-plant", "hydro-pressure-ctrl", "hydro-position-ctrl"}) {
-      processes->push_back({.program = program});
+      processes->emplace_back().program = program;
     }
     return;
   }

@@ -1,0 +1,286 @@
+#include "settings/command_line.h"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cctype>
+#include <charconv>
+#include <cmath>
+#include <cstdio>
+#include <exception>
+#include <limits>
+
+#include "settings/did_you_mean.h"
+#include "settings/input_error.h"
+#include "settings/text_file.h"
+
+namespace hydro {
+namespace {
+
+// "FILE where to write" -> "FILE" and "where to write".
+std::pair<std::string, std::string> SplitHelp(const std::string& help) {
+  const size_t space = help.find(' ');
+  const std::string first = help.substr(0, space);
+  const bool name = first.size() > 1 || space == 1;
+  const bool capitals = std::none_of(first.begin(), first.end(),
+                                     [](unsigned char c) { return std::islower(c) || std::isspace(c); });
+  if (!name || !capitals || space == std::string::npos) return {"VALUE", help};
+  return {first, help.substr(space + 1)};
+}
+
+[[noreturn]] void Refuse(const std::string& name, const std::string& found, const std::string& allowed) {
+  throw CLI::ValidationError(name, "found " + Quoted(found) + ", allowed " + allowed);
+}
+
+// The whole of `text` as a number; CLI11's own conversion would take "nan" and "0x10", too.
+double Number(const std::string& name, const std::string& text) {
+  double value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value)) {
+    Refuse(name, text, "a finite number");
+  }
+  return value;
+}
+
+template <class Whole>
+Whole WholeNumber(const std::string& name, const std::string& text) {
+  Whole value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size()) Refuse(name, text, "a whole number");
+  return value;
+}
+
+std::vector<std::string> OptionNames(const CLI::App& app) {
+  std::vector<std::string> names;
+  for (const CLI::Option* option : app.get_options()) {
+    for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+    if (option->get_lnames().empty() && !option->get_snames().empty()) {
+      names.push_back("-" + option->get_snames().front());
+    }
+  }
+  return names;
+}
+
+// CLI11's messages in this project's form: what was found, what is allowed.
+std::string Message(const CLI::ParseError& error, const CLI::App& app) {
+  std::string text = error.what();
+  std::replace(text.begin(), text.end(), '\n', ' ');
+  if (dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr) {
+    const size_t colon = text.find("expected: ");
+    const std::string found = colon == std::string::npos ? text : text.substr(colon + 10);
+    const std::vector<std::string> names = OptionNames(app);
+    const std::string first = found.substr(0, found.find_first_of(" ="));
+    return "found the unexpected argument " + Quoted(found) + ", allowed " + QuotedList(names) +
+           (first.starts_with("--") ? DidYouMean(first, names) : "");
+  }
+  if (dynamic_cast<const CLI::RequiredError*>(&error) != nullptr) {
+    const size_t required = text.find(" is required");
+    const std::string name = text.substr(0, required);
+    const CLI::Option* option = app.get_option_no_throw(name);
+    return name + ": found nothing, allowed " +
+           (option == nullptr ? "one" : option->get_type_name() + " " + option->get_description());
+  }
+  if (dynamic_cast<const CLI::ArgumentMismatch*>(&error) != nullptr) {
+    const std::string name = text.substr(0, text.find(':'));
+    if (text.find("At Most") != std::string::npos) {
+      return name + ": found it more than once, allowed once";
+    }
+    const CLI::Option* option = app.get_option_no_throw(name);
+    return name + ": found no value, allowed " +
+           (option == nullptr ? "one" : option->get_type_name() + " " + option->get_description());
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string ProgramVersion() { return HYDRO_VERSION; }
+
+class CommandLine::Impl {
+ public:
+  Impl(const std::string& program, const std::string& description)
+      : owned_(std::make_unique<CLI::App>(description, program)), app_(owned_.get()) {
+    app_->set_version_flag("--version", program + " " + ProgramVersion(), "print the version and exit");
+    app_->set_help_flag("-h,--help", "print this and exit");
+  }
+  explicit Impl(CLI::App* verb) : app_(verb) {}
+
+  CLI::App& app() { return *app_; }
+
+  template <class Target, class Convert>
+  CLI::Option* Add(const std::string& names, Target* target, const std::string& help, bool required,
+                   Convert convert) {
+    const auto [value, rest] = SplitHelp(help);
+    const std::string shown = names.substr(names.rfind(',') + 1);
+    return app_
+        ->add_option_function<std::string>(
+            names, [=](const std::string& text) { *target = convert(shown, text); }, rest)
+        ->type_name(value)
+        ->required(required);
+  }
+
+  CLI::Option* AddList(const std::string& names, std::vector<std::string>* target, const std::string& help,
+                       bool required) {
+    const auto [value, rest] = SplitHelp(help);
+    return app_
+        ->add_option_function<std::vector<std::string>>(
+            names, [=](const std::vector<std::string>& values) { *target = values; }, rest)
+        ->type_name(value)
+        ->required(required);
+  }
+
+  std::vector<std::string> VerbNames() const {
+    std::vector<std::string> names;
+    for (const CLI::App* verb : app_->get_subcommands([](const CLI::App*) { return true; })) {
+      names.push_back(verb->get_name());
+    }
+    return names;
+  }
+
+  // The verb whose options were being read, else the program.
+  const CLI::App& Current() const {
+    const auto chosen = app_->get_subcommands();
+    return chosen.empty() ? *app_ : *chosen.front();
+  }
+
+  std::vector<std::unique_ptr<CommandLine>> verbs_;
+
+ private:
+  std::unique_ptr<CLI::App> owned_;
+  CLI::App* app_;
+};
+
+CommandLine::CommandLine(const std::string& program, const std::string& description)
+    : impl_(std::make_unique<Impl>(program, description)) {}
+CommandLine::CommandLine(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+CommandLine::~CommandLine() = default;
+CommandLine::CommandLine(CommandLine&&) noexcept = default;
+CommandLine& CommandLine::operator=(CommandLine&&) noexcept = default;
+
+void CommandLine::AddCommon(CommonOptions* options) {
+  AddPositional("CONFIG", &options->config, "FILE the stack's configuration, TOML");
+  AddOption("--set", &options->overrides,
+            "SECTION.KEY=VALUE changes one key of CONFIG, e.g. pressure.damping_ratio=0.7");
+  // The callbacks run in the order of declaration, so these have the last word over --set.
+  const auto add = [&](const std::string& name, const std::string& help, auto as_override) {
+    impl_->Add(name, options, help, false, [=](const std::string& shown, const std::string& text) {
+      CommonOptions changed = *options;
+      changed.overrides.push_back(as_override(shown, text));
+      return changed;
+    });
+  };
+  add("--time", "MODE realtime or lockstep; as --set time.mode=MODE",
+      [](const std::string& name, const std::string& text) {
+        if (text != "realtime" && text != "lockstep") Refuse(name, text, "\"realtime\" or \"lockstep\"");
+        return "time.mode=\"" + text + "\"";
+      });
+  add("--duration", "S plant time after which the run ends; as --set time.duration_s=S",
+      [](const std::string& name, const std::string& text) {
+        const double duration = Number(name, text);
+        if (duration < 0) Refuse(name, text, "a number of seconds, 0 for a run until it is stopped");
+        return "time.duration_s=" + ShortestNumber(duration);
+      });
+  add("--seed", "N seed of the measurement noise; as --set noise.seed=N",
+      [](const std::string& name, const std::string& text) {
+        const int64_t seed = WholeNumber<int64_t>(name, text);
+        if (seed < 0) Refuse(name, text, "a whole number of at least 0");
+        return "noise.seed=" + std::to_string(seed);
+      });
+  AddOption("--log", &options->log, "FILE records the run there");
+  AddFlag("--si", &options->si, "print figures in SI units");
+}
+
+void CommandLine::AddOption(const std::string& names, std::string* target, const std::string& help,
+                            bool required) {
+  impl_->Add(names, target, help, required, [](const std::string&, const std::string& text) { return text; });
+}
+
+void CommandLine::AddOption(const std::string& names, double* target, const std::string& help,
+                            bool required) {
+  impl_->Add(names, target, help, required, Number);
+}
+
+void CommandLine::AddOption(const std::string& names, int* target, const std::string& help, bool required) {
+  impl_->Add(names, target, help, required, WholeNumber<int>);
+}
+
+void CommandLine::AddOption(const std::string& names, int64_t* target, const std::string& help,
+                            bool required) {
+  impl_->Add(names, target, help, required, WholeNumber<int64_t>);
+}
+
+void CommandLine::AddOption(const std::string& names, std::vector<std::string>* target,
+                            const std::string& help, bool required) {
+  // One value each time it is given: what follows may be CONFIG.
+  impl_->AddList(names, target, help, required)->allow_extra_args(false);
+}
+
+void CommandLine::AddFlag(const std::string& names, bool* target, const std::string& help) {
+  impl_->app().add_flag_callback(
+      names, [target] { *target = true; }, help);
+}
+
+void CommandLine::AddPositional(const std::string& name, std::string* target, const std::string& help,
+                                bool required) {
+  AddOption(name, target, help, required);
+}
+
+void CommandLine::AddPositional(const std::string& name, std::vector<std::string>* target,
+                                const std::string& help, bool required) {
+  impl_->AddList(name, target, help, required);
+}
+
+CommandLine& CommandLine::AddVerb(const std::string& name, const std::string& description) {
+  CLI::App* verb = impl_->app().add_subcommand(name, description);
+  impl_->app().require_subcommand(1);
+  impl_->verbs_.push_back(std::unique_ptr<CommandLine>(new CommandLine(std::make_unique<Impl>(verb))));
+  return *impl_->verbs_.back();
+}
+
+std::string CommandLine::verb() const {
+  const auto chosen = impl_->app().get_subcommands();
+  return chosen.empty() ? "" : chosen.front()->get_name();
+}
+
+std::optional<int> CommandLine::Parse(int argc, const char* const* argv) {
+  CLI::App& app = impl_->app();
+  const std::string program = app.get_name();
+  const std::vector<std::string> verbs = impl_->VerbNames();
+  if (!verbs.empty() && (argc < 2 || argv[1][0] != '-')) {
+    const std::string found = argc < 2 ? "" : argv[1];
+    if (std::find(verbs.begin(), verbs.end(), found) == verbs.end()) {
+      std::fprintf(stderr, "%s: verb: found %s, allowed %s%s\n", program.c_str(),
+                   argc < 2 ? "nothing" : Quoted(found).c_str(), QuotedList(verbs).c_str(),
+                   DidYouMean(found, verbs).c_str());
+      return 2;
+    }
+  }
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::CallForVersion&) {
+    std::printf("%s %s\n", program.c_str(), ProgramVersion().c_str());
+    return 0;
+  } catch (const CLI::Success&) {
+    std::fputs(app.help().c_str(), stdout);
+    return 0;
+  } catch (const CLI::ParseError& error) {
+    const std::string verb_name = verb().empty() ? "" : " " + verb();
+    std::fprintf(stderr, "%s%s: %s\n", program.c_str(), verb_name.c_str(),
+                 Message(error, impl_->Current()).c_str());
+    return 2;
+  }
+  return std::nullopt;
+}
+
+int RunProgram(const std::string& program, const std::function<int()>& body) {
+  try {
+    return body();
+  } catch (const InputError& error) {
+    std::fprintf(stderr, "%s: %s\n", program.c_str(), error.what());
+    return 2;
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "%s: %s\n", program.c_str(), error.what());
+    return 1;
+  }
+}
+
+}  // namespace hydro
