@@ -1,6 +1,7 @@
 #include "process/stop_signal.h"
 
 #include <csignal>
+#include <initializer_list>
 
 namespace hydro {
 namespace {

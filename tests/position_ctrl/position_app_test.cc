@@ -86,28 +86,31 @@ TEST_F(PositionAppTest, AppliesEquation17) {
   EXPECT_FALSE(commands_[1].open_loop);
 }
 
+struct PassThrough {
+  ReferenceSignal signal;
+  double pressure_ref, voltage;
+  bool open_loop;
+  int8_t code;
+};
+class PassThroughTest : public PositionAppTest, public ::testing::WithParamInterface<PassThrough> {};
+
 // Tests that the other references pass through: pressure as it is, torque through k_2, voltage as open loop.
-TEST_F(PositionAppTest, PassesOtherReferencesThrough) {
-  struct Case {
-    ReferenceSignal signal;
-    double pressure_ref, voltage;
-    bool open_loop;
-    int8_t code;
-  };
-  for (const Case& c : {Case{ReferenceSignal::kPressure, 184, 0, false, arm_reference_t::PRESSURE},
-                        Case{ReferenceSignal::kTorque, 50, 0, false, arm_reference_t::TORQUE},
-                        Case{ReferenceSignal::kVoltage, 0, 184, true, arm_reference_t::VOLTAGE}}) {
-    PositionAppTest one;
-    one.Start(WithReference(c.signal, 184));
-    one.SendState(5, 0);
-    ASSERT_EQ(one.commands_.size(), 1u);
-    EXPECT_DOUBLE_EQ(one.commands_[0].pressure_ref, c.pressure_ref);
-    EXPECT_EQ(one.commands_[0].voltage, c.voltage);
-    EXPECT_EQ(one.commands_[0].open_loop, c.open_loop);
-    EXPECT_EQ(one.references_[0].signal, c.code);
-    EXPECT_EQ(one.references_[0].value, 184);
-  }
+TEST_P(PassThroughTest, PassesTheReferenceThrough) {
+  Start(WithReference(GetParam().signal, 184));
+  SendState(5, 0);
+  ASSERT_EQ(commands_.size(), 1u);
+  EXPECT_DOUBLE_EQ(commands_[0].pressure_ref, GetParam().pressure_ref);
+  EXPECT_EQ(commands_[0].voltage, GetParam().voltage);
+  EXPECT_EQ(commands_[0].open_loop, GetParam().open_loop);
+  EXPECT_EQ(references_[0].signal, GetParam().code);
+  EXPECT_EQ(references_[0].value, 184);
 }
+
+INSTANTIATE_TEST_SUITE_P(
+    Signals, PassThroughTest,
+    ::testing::Values(PassThrough{ReferenceSignal::kPressure, 184, 0, false, arm_reference_t::PRESSURE},
+                      PassThrough{ReferenceSignal::kTorque, 50, 0, false, arm_reference_t::TORQUE},
+                      PassThrough{ReferenceSignal::kVoltage, 0, 184, true, arm_reference_t::VOLTAGE}));
 
 // Tests that the torque limit holds for every kind of reference and that the D/A has its levels.
 TEST_F(PositionAppTest, LimitsAndQuantises) {

@@ -158,35 +158,32 @@ TEST_F(PressureAppTest, NonFiniteStateGivesZeroVolts) {
   EXPECT_TRUE(stops_.empty());
 }
 
+class PressureLimitTest : public PressureAppTest, public ::testing::WithParamInterface<double state_t::*> {};
+
 // Tests that a pressure above the limit, on either side, trips: zero volts for good, one fault, the end of the run.
-TEST_F(PressureAppTest, PressureLimitTrips) {
-  for (double state_t::*side : {&state_t::p1, &state_t::p2}) {
-    commands_.clear();
-    faults_.clear();
-    stops_.clear();
-    plant_session_ += 10;
-    PressureAppTest trip;
-    trip.Start(SmallStack());
-    trip.SendState(trip.State(0));
-    state_t s = trip.State(1);
-    s.*side = 2000.5;
-    trip.SendPressure(0, 120);
-    trip.SendState(s);
-    EXPECT_EQ(trip.commands_.back().voltage, 0);
-    EXPECT_EQ(trip.commands_.back().status, motor_command_t::SAFE);
-    ASSERT_EQ(trip.faults_.size(), 1u);
-    EXPECT_EQ(trip.faults_[0].code, "pressure_limit");
-    EXPECT_TRUE(trip.faults_[0].latched);
-    EXPECT_EQ(trip.faults_[0].value, 2000.5);
-    EXPECT_EQ(trip.faults_[0].limit, 2000);
-    trip.SendState(trip.State(2));
-    EXPECT_EQ(trip.commands_.back().voltage, 0);
-    ASSERT_EQ(trip.stops_.size(), 1u);
-    EXPECT_EQ(trip.stops_[0].exit_code, 1);
-    EXPECT_TRUE(trip.app_->finished());
-    EXPECT_EQ(trip.app_->Finish(), 1);
-  }
+TEST_P(PressureLimitTest, Trips) {
+  Start(SmallStack());
+  SendState(State(0));
+  SendPressure(0, 120);
+  state_t s = State(1);
+  s.*GetParam() = 2000.5;
+  SendState(s);
+  EXPECT_EQ(commands_.back().voltage, 0);
+  EXPECT_EQ(commands_.back().status, motor_command_t::SAFE);
+  ASSERT_EQ(faults_.size(), 1u);
+  EXPECT_EQ(faults_[0].code, "pressure_limit");
+  EXPECT_TRUE(faults_[0].latched);
+  EXPECT_EQ(faults_[0].value, 2000.5);
+  EXPECT_EQ(faults_[0].limit, 2000);
+  SendState(State(2));
+  EXPECT_EQ(commands_.back().voltage, 0);
+  ASSERT_EQ(stops_.size(), 1u);
+  EXPECT_EQ(stops_[0].exit_code, 1);
+  EXPECT_TRUE(app_->finished());
+  EXPECT_EQ(app_->Finish(), 1);
 }
+
+INSTANTIATE_TEST_SUITE_P(BothSides, PressureLimitTest, ::testing::Values(&state_t::p1, &state_t::p2));
 
 // Tests that in real time a position loop that has gone silent gives zero volts after the stale-input limit, counted
 // in ticks so that a replay does the same, and that the loop resumes with the next pressure command.
