@@ -1,0 +1,220 @@
+// What the bus costs: the round trip of a state and its command between two processes over UDP multicast,
+// beside a bare LCM echo of the same messages in the same run, and the time per message within one process.
+#include <benchmark/benchmark.h>
+
+#include <cstdio>
+#include <cstdlib>
+#include <functional>
+#include <hydro/motor_command_t.hpp>
+#include <hydro/state_t.hpp>
+#include <lcm/lcm-cpp.hpp>
+#include <string>
+
+#include "bench/child_process.h"
+#include "bus/histogram.h"
+#include "bus/in_process_bus.h"
+#include "bus/udpm_bus.h"
+#include "tests/free_udp_port.h"
+
+namespace hydro {
+namespace {
+
+using namespace std::chrono_literals;
+using SteadyClock = std::chrono::steady_clock;
+
+const std::string kState = "HYDRO_STATE";
+const std::string kCommand = "HYDRO_MOTOR_COMMAND";
+constexpr int kBlocks = 20;
+constexpr int kTripsPerBlock = 500;
+
+void EchoOnBus(const std::string& url) {
+  UdpmBus bus(url);
+  Publisher<motor_command_t> commands = bus.Advertise<motor_command_t>(kCommand);
+  bus.Subscribe<state_t>(kState, [&](const state_t& state) {
+    motor_command_t command{};
+    command.tick = state.tick;
+    commands.Send(command);
+  });
+  while (true) bus.HandleUntil(SteadyClock::now() + 1s);
+}
+
+class BareEcho {
+ public:
+  explicit BareEcho(const std::string& url) : lcm_(url) {
+    lcm_.subscribe(kState, &BareEcho::OnState, this)->setQueueCapacity(0);
+  }
+  void Run() {
+    while (lcm_.handle() == 0) {
+    }
+  }
+
+ private:
+  void OnState(const lcm::ReceiveBuffer*, const std::string&, const state_t* state) {
+    motor_command_t command{};
+    command.tick = state->tick;
+    lcm_.publish(kCommand, &command);
+  }
+  lcm::LCM lcm_;
+};
+
+class BusPinger {
+ public:
+  explicit BusPinger(const std::string& url) : bus_(url), states_(bus_.Advertise<state_t>(kState)) {
+    bus_.Subscribe<motor_command_t>(kCommand,
+                                    [this](const motor_command_t& command) { answered_ = command.tick; });
+  }
+  bool Trip(int64_t tick, std::chrono::milliseconds timeout) {
+    state_t state{};
+    state.tick = tick;
+    states_.Send(state);
+    const auto deadline = SteadyClock::now() + timeout;
+    while (answered_ != tick) {
+      if (bus_.HandleUntil(deadline) == 0) return false;
+    }
+    return true;
+  }
+
+ private:
+  UdpmBus bus_;
+  Publisher<state_t> states_;
+  int64_t answered_ = -1;
+};
+
+class BarePinger {
+ public:
+  explicit BarePinger(const std::string& url) : lcm_(url) {
+    lcm_.subscribe(kCommand, &BarePinger::OnCommand, this)->setQueueCapacity(0);
+  }
+  bool Trip(int64_t tick, std::chrono::milliseconds timeout) {
+    state_t state{};
+    state.tick = tick;
+    lcm_.publish(kState, &state);
+    while (answered_ != tick) {
+      if (lcm_.handleTimeout(static_cast<int>(timeout.count())) <= 0) return false;
+    }
+    return true;
+  }
+
+ private:
+  void OnCommand(const lcm::ReceiveBuffer*, const std::string&, const motor_command_t* command) {
+    answered_ = command->tick;
+  }
+  lcm::LCM lcm_;
+  int64_t answered_ = -1;
+};
+
+template <class Pinger>
+void RunBlock(Pinger* pinger, int64_t* tick, Histogram* histogram) {
+  for (int i = 0; i < kTripsPerBlock; ++i) {
+    const auto start = SteadyClock::now();
+    const bool answered = pinger->Trip((*tick)++, 1000ms);
+    if (answered) histogram->Record(std::chrono::nanoseconds(SteadyClock::now() - start).count());
+  }
+}
+
+template <class Pinger>
+void AwaitEcho(Pinger* pinger) {
+  for (int i = 0; i < 100; ++i) {
+    if (pinger->Trip(1'000'000'000 + i, 100ms)) return;
+  }
+  std::fprintf(stderr, "the echo does not answer\n");
+  std::exit(1);
+}
+
+void PrintRoundTrips() {
+  // The children first: a process must not fork once LCM's threads run in it.
+  const std::string bus_url = FreeBusUrl(), bare_url = FreeBusUrl();
+  const ChildProcess bus_echo([&] { EchoOnBus(bus_url); });
+  const ChildProcess bare_echo([&] { BareEcho(bare_url).Run(); });
+  BusPinger bus(bus_url);
+  BarePinger bare(bare_url);
+  AwaitEcho(&bus);
+  AwaitEcho(&bare);
+
+  Histogram bus_times, bare_times;
+  int64_t tick = 0;
+  for (int block = 0; block < kBlocks; ++block) {  // alternately, so that both meet the same neighbours
+    RunBlock(&bare, &tick, &bare_times);
+    RunBlock(&bus, &tick, &bus_times);
+  }
+  std::printf("state to command and back, two processes over UDP multicast, us\n%-12s %9s %9s %9s %9s\n", "",
+              "p50", "p99", "p99.9", "trips");
+  const auto row = [](const char* name, const Histogram& h) {
+    std::printf("%-12s %9.1f %9.1f %9.1f %9lld\n", name, 1e-3 * static_cast<double>(h.Percentile(50)),
+                1e-3 * static_cast<double>(h.Percentile(99)), 1e-3 * static_cast<double>(h.Percentile(99.9)),
+                static_cast<long long>(h.Count()));
+  };
+  row("bare LCM", bare_times);
+  row("bus", bus_times);
+  const auto ratio = [&](double percent) {
+    return static_cast<double>(bus_times.Percentile(percent)) /
+           static_cast<double>(bare_times.Percentile(percent));
+  };
+  std::printf("%-12s %9.2f %9.2f %9.2f\n\n", "ratio", ratio(50), ratio(99), ratio(99.9));
+}
+
+enum class Sending { kByName, kAdvertised };
+
+// A state and its command: two messages a turn.
+void InProcessExchange(benchmark::State& bench, Sending sending, bool tapped) {
+  SimulatedClock clock;
+  InProcessBus bus(&clock);
+  Publisher<state_t> states = bus.Advertise<state_t>(kState);
+  Publisher<motor_command_t> commands = bus.Advertise<motor_command_t>(kCommand);
+  motor_command_t command{};
+  int64_t answered = -1;
+  int64_t bytes = 0;
+  bus.Subscribe<state_t>(kState, [&](const state_t& state) {
+    command.tick = state.tick;
+    if (sending == Sending::kAdvertised) {
+      commands.Send(command);
+    } else {
+      bus.Publish(kCommand, command);
+    }
+  });
+  bus.Subscribe<motor_command_t>(kCommand, [&](const motor_command_t& c) { answered = c.tick; });
+  if (tapped) bus.SubscribeAll([&](const RawMessage& message) { bytes += message.size; });
+  state_t state{};
+  for (auto _ : bench) {
+    ++state.tick;
+    if (sending == Sending::kAdvertised) {
+      states.Send(state);
+    } else {
+      bus.Publish(kState, state);
+    }
+    while (answered != state.tick) bus.HandleUntil(Bus::TimePoint::max());
+  }
+  benchmark::DoNotOptimize(bytes);
+  bench.counters["s/message"] = benchmark::Counter(2.0 * static_cast<double>(bench.iterations()),
+                                                   benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
+}
+BENCHMARK_CAPTURE(InProcessExchange, advertised, Sending::kAdvertised, false);
+BENCHMARK_CAPTURE(InProcessExchange, by_name, Sending::kByName, false);
+BENCHMARK_CAPTURE(InProcessExchange, advertised_and_tapped, Sending::kAdvertised, true);
+
+void HistogramRecord(benchmark::State& bench) {
+  Histogram histogram;
+  int64_t value = 1;
+  for (auto _ : bench) {
+    histogram.Record(value);
+    value = (value * 6364136223846793005 + 1442695040888963407) & 0xffffff;
+  }
+  benchmark::DoNotOptimize(histogram);
+}
+BENCHMARK(HistogramRecord);
+
+}  // namespace
+}  // namespace hydro
+
+int main(int argc, char** argv) {
+  benchmark::Initialize(&argc, argv);
+  if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
+  try {
+    hydro::PrintRoundTrips();
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "%s\n", error.what());
+    return 1;
+  }
+  benchmark::RunSpecifiedBenchmarks();
+  return 0;
+}
