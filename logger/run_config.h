@@ -1,0 +1,25 @@
+// What a log's description says of the run, without the whole configuration being valid for this version.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "hydro/run_description_t.hpp"
+
+namespace hydro {
+
+// The keys of the configuration as "section.key" with their values as TOML, in the order of the text; empty
+// when it has none. `file` names the log in messages. Throws InputError when it is not TOML.
+std::vector<std::pair<std::string, std::string>> ConfigEntries(const run_description_t& description,
+                                                               const std::string& file);
+
+// plant.command_delay_ticks, 0 or 1: a command computed from tick k acts from tick k + this. 1 where it is
+// not given. Throws InputError when it is something else.
+int CommandDelayTicks(const run_description_t& description, const std::string& file);
+
+// The name that the model's text gives itself; empty when it has none.
+std::string ModelName(const run_description_t& description, const std::string& file);
+
+}  // namespace hydro

@@ -1,0 +1,52 @@
+// Tables of numbers: named columns of doubles, as CSV or MAT files.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace hydro {
+
+struct Column {
+  std::string name;
+  std::vector<double> values;  // NaN: a missing value
+};
+
+struct Table {
+  std::string file;  // where it was read from, for messages
+  bool rows_are_lines =
+      false;  // rows are named by the file's line (CSV; the names are line 1), else counted from 1
+  std::vector<Column> columns;  // all of the same length
+
+  size_t rows() const { return columns.empty() ? 0 : columns.front().values.size(); }
+  // Null when there is none of that name.
+  const Column* Find(std::string_view name) const;
+  // Where a value stands, for messages: "run.csv: line 17, column p1_psi".
+  std::string Place(size_t row, std::string_view column) const;
+};
+
+// Reads a table: a MAT file when the name ends in .mat, else CSV. Throws InputError naming file, row, column,
+// what was found and what is allowed: names that are empty or given twice, cells that are not numbers, rows
+// or columns of unequal length, a table without rows.
+Table ReadTable(const std::string& file);
+
+// Writes a table, whole or not at all. Throws InputError when the file cannot be created or its name ends
+// neither in .csv nor in .mat, WriteError when the disk is full.
+void WriteTable(const Table& table, const std::string& file);
+
+// Throws the InputError that WriteTable would for this name; for callers that want to know before they work.
+void CheckTableName(const std::string& file);
+
+// CSV: comma-separated; the first line holds the names; cells may be empty or nan (missing) and quoted; CRLF,
+// a byte order mark and blanks around cells are skipped. Written: the shortest text that reads back as the
+// same bits, missing values as empty cells.
+Table ReadCsv(const std::string& file);
+void WriteCsv(const Table& table, const std::string& file);
+
+// MAT: one real vector of numbers a column, named as the column. Written in the MAT 5 format, as column
+// vectors.
+Table ReadMat(const std::string& file);
+void WriteMat(const Table& table, const std::string& file);
+
+}  // namespace hydro
