@@ -5,11 +5,12 @@
 namespace hydro {
 
 void RollCall::Observe(const process_status_t& status) {
+  const std::pair key(status.role, status.session);  // on a simulated clock every session is 0
   if (status.state == process_status_t::READY || status.state == process_status_t::RUNNING) {
-    present_[status.session] = status;
+    present_[key] = status;
     return;
   }
-  const auto found = present_.find(status.session);
+  const auto found = present_.find(key);
   if (found == present_.end()) return;  // never took part in this run
   present_.erase(found);
   const bool matters = status.role == "logger" ||
@@ -32,8 +33,8 @@ std::vector<std::string> RollCall::Missing() const {
 
 std::vector<int64_t> RollCall::Loggers() const {
   std::vector<int64_t> sessions;
-  for (const auto& [session, status] : present_) {
-    if (status.role == "logger") sessions.push_back(session);
+  for (const auto& [key, status] : present_) {
+    if (status.role == "logger") sessions.push_back(status.session);
   }
   return sessions;
 }

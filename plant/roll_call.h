@@ -5,6 +5,7 @@
 #include <hydro/process_status_t.hpp>
 #include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace hydro {
@@ -27,7 +28,7 @@ class RollCall {
 
  private:
   std::vector<std::string> expected_;
-  std::map<int64_t, process_status_t> present_;  // by session
+  std::map<std::pair<std::string, int64_t>, process_status_t> present_;  // by role and session
   std::string left_;
 };
 
