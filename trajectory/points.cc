@@ -41,8 +41,9 @@ class Points : public Trajectory {
       const double secant =
           (points_[i].value - points_[i - 1].value) / (points_[i].time - points_[i - 1].time);
       if (interpolation_ != Interpolation::kHold && !std::isfinite(secant)) {
-        throw std::invalid_argument("point " + std::to_string(i + 1) +
-                                    ": the rate from the point before it is not finite");
+        throw std::invalid_argument(
+            "point " + std::to_string(i + 1) +
+            ": found a rate from the point before it that is not finite, allowed: a finite rate");
       }
       secants_.push_back(secant);
     }
