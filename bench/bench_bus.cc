@@ -1,6 +1,7 @@
 // What the bus costs: the round trip of a state and its command between two processes over UDP multicast,
 // beside a bare LCM echo of the same messages in the same run, and the time per message within one process.
 #include <benchmark/benchmark.h>
+#include <sched.h>
 
 #include <cstdio>
 #include <cstdlib>
@@ -24,8 +25,9 @@ using SteadyClock = std::chrono::steady_clock;
 
 const std::string kState = "HYDRO_STATE";
 const std::string kCommand = "HYDRO_MOTOR_COMMAND";
+constexpr int kRounds = 5;
 constexpr int kBlocks = 20;
-constexpr int kTripsPerBlock = 500;
+constexpr int kTripsPerBlock = 100;
 
 void EchoOnBus(const std::string& url) {
   UdpmBus bus(url);
@@ -121,34 +123,54 @@ void AwaitEcho(Pinger* pinger) {
   std::exit(1);
 }
 
-void PrintRoundTrips() {
+struct RoundTrips {
+  Histogram bare;
+  Histogram bus;
+};
+
+// One round with fresh processes. Which core the kernel gives to which thread makes a difference of a third
+// and stays for the life of a process: hence several rounds.
+void RunRound(bool one_core, RoundTrips* times) {
   // The children first: a process must not fork once LCM's threads run in it.
   const std::string bus_url = FreeBusUrl(), bare_url = FreeBusUrl();
+  if (one_core) {
+    cpu_set_t set;
+    CPU_ZERO(&set);
+    CPU_SET(static_cast<unsigned>(sched_getcpu()), &set);
+    sched_setaffinity(0, sizeof set, &set);
+  }
   const ChildProcess bus_echo([&] { EchoOnBus(bus_url); });
   const ChildProcess bare_echo([&] { BareEcho(bare_url).Run(); });
   BusPinger bus(bus_url);
   BarePinger bare(bare_url);
   AwaitEcho(&bus);
   AwaitEcho(&bare);
-
-  Histogram bus_times, bare_times;
   int64_t tick = 0;
   for (int block = 0; block < kBlocks; ++block) {  // alternately, so that both meet the same neighbours
-    RunBlock(&bare, &tick, &bare_times);
-    RunBlock(&bus, &tick, &bus_times);
+    RunBlock(&bare, &tick, &times->bare);
+    RunBlock(&bus, &tick, &times->bus);
   }
-  std::printf("state to command and back, two processes over UDP multicast, us\n%-12s %9s %9s %9s %9s\n", "",
-              "p50", "p99", "p99.9", "trips");
+}
+
+void PrintRoundTrips(bool one_core) {
+  cpu_set_t before;
+  sched_getaffinity(0, sizeof before, &before);
+  RoundTrips times;
+  for (int round = 0; round < kRounds; ++round) RunRound(one_core, &times);
+  sched_setaffinity(0, sizeof before, &before);
+
+  std::printf("state to command and back, two processes over UDP multicast%s, us\n%-12s %9s %9s %9s %9s\n",
+              one_core ? " on one core" : "", "", "p50", "p99", "p99.9", "trips");
   const auto row = [](const char* name, const Histogram& h) {
     std::printf("%-12s %9.1f %9.1f %9.1f %9lld\n", name, 1e-3 * static_cast<double>(h.Percentile(50)),
                 1e-3 * static_cast<double>(h.Percentile(99)), 1e-3 * static_cast<double>(h.Percentile(99.9)),
                 static_cast<long long>(h.Count()));
   };
-  row("bare LCM", bare_times);
-  row("bus", bus_times);
+  row("bare LCM", times.bare);
+  row("bus", times.bus);
   const auto ratio = [&](double percent) {
-    return static_cast<double>(bus_times.Percentile(percent)) /
-           static_cast<double>(bare_times.Percentile(percent));
+    return static_cast<double>(times.bus.Percentile(percent)) /
+           static_cast<double>(times.bare.Percentile(percent));
   };
   std::printf("%-12s %9.2f %9.2f %9.2f\n\n", "ratio", ratio(50), ratio(99), ratio(99.9));
 }
@@ -210,7 +232,8 @@ int main(int argc, char** argv) {
   benchmark::Initialize(&argc, argv);
   if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
   try {
-    hydro::PrintRoundTrips();
+    hydro::PrintRoundTrips(false);
+    hydro::PrintRoundTrips(true);
   } catch (const std::exception& error) {
     std::fprintf(stderr, "%s\n", error.what());
     return 1;

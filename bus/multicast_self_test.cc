@@ -20,6 +20,7 @@ namespace {
 
 constexpr const char* kCure =
     "on one machine `ip route add 224.0.0.0/4 dev lo` (as root) mends it; see Troubleshooting in README.md";
+constexpr const char* kFirewallCure = "let the firewall pass 224.0.0.0/4; see Troubleshooting in README.md";
 
 class Socket {
  public:
@@ -36,7 +37,9 @@ class Socket {
 };
 
 [[noreturn]] void Fail(const UdpmUrl& url, const std::string& what) {
-  throw BusError("multicast does not work for " + url.ToString() + ": " + what);
+  UdpmUrl shown = url;
+  shown.recv_buf_size = 0;  // not what the user wrote, and not the reason
+  throw BusError("multicast does not work for " + shown.ToString() + ": " + what);
 }
 
 [[noreturn]] void FailErrno(const UdpmUrl& url, const std::string& what, const std::string& cure) {
@@ -100,7 +103,7 @@ int TestMulticast(const UdpmUrl& url, std::chrono::milliseconds timeout) {
   while (true) {
     // Sent again and again, as one packet may be lost on a busy machine.
     if (send(sender.fd(), probe.data(), probe.size(), 0) < 0) {
-      FailErrno(url, "cannot send to the group", std::string("check the firewall; ") + kCure);
+      FailErrno(url, "cannot send to the group", kFirewallCure);
     }
     const auto next_try =
         std::min(deadline, std::chrono::steady_clock::now() + std::chrono::milliseconds(100));
@@ -118,7 +121,7 @@ int TestMulticast(const UdpmUrl& url, std::chrono::milliseconds timeout) {
     }
     if (std::chrono::steady_clock::now() >= deadline) {
       Fail(url, "a packet sent to the group did not come back within " + std::to_string(timeout.count()) +
-                    " ms; let the firewall pass 224.0.0.0/4, or " + kCure);
+                    " ms; " + kFirewallCure);
     }
   }
 }
