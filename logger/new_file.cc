@@ -48,6 +48,15 @@ void RemoveUnlessBeingWritten(const std::string& path, const std::string& name) 
 
 }  // namespace
 
+// Every NewFile holds a lock on what it writes.
+bool IsBeingWritten(const std::string& file) {
+  const int descriptor = open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+  if (descriptor < 0) return false;
+  const bool locked = flock(descriptor, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK;
+  close(descriptor);
+  return locked;
+}
+
 NewFile::NewFile(const std::string& file, Opening opening) : name_(file), path_(file) {
   if (ExistsAndIsNotRegular(file)) {
     descriptor_ = open(path_.c_str(), O_WRONLY | O_CLOEXEC);

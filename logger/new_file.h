@@ -19,6 +19,9 @@ enum class Opening {
                // under the name
 };
 
+// Whether a NewFile, of this process or another, is writing to the file under this name.
+bool IsBeingWritten(const std::string& file);
+
 class NewFile {
  public:
   // Creates the file, replacing an existing one (whoever reads that keeps the old contents). Throws

@@ -1,6 +1,9 @@
 #include "logger/repair.h"
 
+#include <unistd.h>
+
 #include <algorithm>
+#include <cerrno>
 #include <cstring>
 #include <map>
 #include <optional>
@@ -142,6 +145,28 @@ RepairResult RepairLog(const std::string& file, const std::string& out) {
       writer.Append(event.channel, event.data, static_cast<size_t>(event.size), event.utime);
     }
     writer.Finish();
+  }
+  return result;
+}
+
+RepairResult RepairInPlace(const std::string& file) {
+  if (IsBeingWritten(file)) {
+    throw InputError(file +
+                     ": found it being written by another process; a log that is finished, or -o, is needed");
+  }
+  RepairResult result = RepairLog(file, "");
+  if (result.lost.empty()) return result;
+  const std::string damaged = file + ".damaged";
+  // A second name instead of a new one: whatever happens now, there is a log under the first.
+  if (link(file.c_str(), damaged.c_str()) != 0) {
+    throw InputError(damaged + ": cannot be created: " + std::strerror(errno) +
+                     "; a name that is free for the damaged log, or -o, is needed");
+  }
+  try {
+    RepairLog(file, file);
+  } catch (...) {
+    unlink(damaged.c_str());
+    throw;
   }
   return result;
 }

@@ -31,6 +31,10 @@ struct RepairResult {
 // Throws InputError or WriteError when that fails.
 RepairResult RepairLog(const std::string& file, const std::string& out);
 
+// Repairs a log under its own name. What it was stays as FILE.damaged, which must not exist; a log that is
+// whole is left alone. Throws InputError, also when the log is still being recorded; WriteError.
+RepairResult RepairInPlace(const std::string& file);
+
 // One line for what was kept, and one for each place where something was lost.
 std::string Describe(const RepairResult& result, const std::string& file);
 

@@ -4,6 +4,7 @@
 #include "logger/message_order.h"
 #include "logger/run_config.h"
 #include "logger/run_table.h"
+#include "logger/saturating.h"
 #include "settings/input_error.h"
 
 namespace hydro {
@@ -100,10 +101,11 @@ Table ExportRun(const RunLog& log) {
   Cursor<arm_reference_t> reference(references);
   for (size_t k = 0; k < states.size(); ++k) {
     const state_t& state = *states[k];
+    const int64_t commanding_tick = SaturatingDifference(state.tick, delay);
     double voltage = kMissing;
     if (k + 1 < states.size()) {
       voltage = states[k + 1]->voltage;
-    } else if (const motor_command_t* command = acting.At(state.tick - delay)) {
+    } else if (const motor_command_t* command = acting.At(commanding_tick)) {
       voltage = command->voltage;
     }
     const arm_reference_t* arm = reference.LastUpTo(state.tick);
@@ -111,7 +113,7 @@ Table ExportRun(const RunLog& log) {
     const double values[] = {state.time,
                              static_cast<double>(state.tick),
                              voltage,
-                             PressureReference(motor.At(state.tick), pressure.LastUpTo(state.tick - delay)),
+                             PressureReference(motor.At(state.tick), pressure.LastUpTo(commanding_tick)),
                              arm != nullptr ? arm->value : kMissing,
                              state.motor_angle,
                              state.motor_speed,
