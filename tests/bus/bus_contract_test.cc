@@ -4,6 +4,7 @@
 
 #include <functional>
 #include <memory>
+#include <ostream>
 #include <string>
 #include <vector>
 
@@ -26,6 +27,8 @@ struct Transport {
   bool simulated;
   std::function<std::unique_ptr<Bus>(SimulatedClock*)> make;
 };
+
+std::ostream& operator<<(std::ostream& out, const Transport& transport) { return out << transport.name; }
 
 class BusContractTest : public testing::TestWithParam<Transport> {
  protected:
@@ -59,21 +62,24 @@ class BusContractTest : public testing::TestWithParam<Transport> {
   std::unique_ptr<Bus> bus_ = GetParam().make(&clock_);
 };
 
-// Tests that messages on one channel arrive complete, in the order they were sent, and many at once.
+// Tests that messages on one channel arrive complete and in the order they were sent, many of them waiting at
+// once: more than LCM's own queue of 30 holds, fewer than the smallest usual receive buffer.
 TEST_P(BusContractTest, KeepsOrder) {
   std::vector<int64_t> ticks;
   bus_->Subscribe<state_t>("STATE", [&](const state_t& state) { ticks.push_back(state.tick); });
-  SendStates("STATE", 2000);
-  HandleWhileNot([&] { return ticks.size() >= 2000; });
-  ASSERT_EQ(ticks.size(), 2000u);
-  for (int i = 0; i < 2000; ++i) ASSERT_EQ(ticks[i], i);
+  for (size_t round = 1; round <= 20; ++round) {
+    SendStates("STATE", 150);
+    HandleWhileNot([&] { return ticks.size() >= round * 150; });
+    ASSERT_EQ(ticks.size(), round * 150);
+  }
+  for (size_t i = 0; i < ticks.size(); ++i) ASSERT_EQ(ticks[i], static_cast<int64_t>(i % 150));
 }
 
 // Tests that every field, strings and special doubles included, arrives as it was sent.
 TEST_P(BusContractTest, CarriesEveryField) {
   run_description_t sent{};
   sent.session = -5;
-  sent.config_text = std::string(200'000, 'x') + "\n\"end\"";  // more than one packet
+  sent.config_text = std::string(100'000, 'x') + "\n\"end\"";  // more than one packet
   sent.rate_hz = 1e-310;
   std::vector<run_description_t> received;
   bus_->Subscribe<run_description_t>("RUN", [&](const run_description_t& run) { received.push_back(run); });
@@ -133,15 +139,15 @@ TEST_P(BusContractTest, ExceptionsLeaveHandleUntil) {
   });
   SendStates("STATE", 3);
   int thrown = 0;
-  HandleWhileNot([&] {
+  const auto give_up = std::chrono::steady_clock::now() + 10s;
+  while (ticks.size() < 2 && std::chrono::steady_clock::now() < give_up) {
     try {
       bus_->HandleUntil(Soon(20ms));
     } catch (const std::runtime_error& error) {
       EXPECT_STREQ(error.what(), "tick 1");
       ++thrown;
     }
-    return ticks.size() >= 2;
-  });
+  }
   EXPECT_EQ(thrown, 1);
   EXPECT_THAT(ticks, ElementsAre(0, 2));
 }
@@ -279,16 +285,15 @@ TEST_P(BusContractTest, HandlesWhatWaitsAfterTheDeadline) {
 // Tests that a handler that calls HandleUntil() is told so.
 TEST_P(BusContractTest, HandleUntilDoesNotNest) {
   bool thrown = false;
-  bus_->Subscribe<state_t>("STATE", [&](const state_t&) { bus_->HandleUntil(Soon(0ms)); });
-  SendStates("STATE", 1);
-  HandleWhileNot([&] {
+  bus_->Subscribe<state_t>("STATE", [&](const state_t&) {
     try {
-      bus_->HandleUntil(Soon(20ms));
+      bus_->HandleUntil(Soon(0ms));
     } catch (const std::logic_error&) {
       thrown = true;
     }
-    return thrown;
   });
+  SendStates("STATE", 1);
+  HandleWhileNot([&] { return thrown; });
   EXPECT_TRUE(thrown);
 }
 
