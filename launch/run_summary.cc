@@ -42,8 +42,7 @@ void RunSummary::Add(const fault_t& fault) {
 std::vector<std::string> RunSummary::Lines() const {
   std::vector<std::string> lines;
   if (!loops_.empty()) {
-    lines.push_back(
-        fmt::format("{:<14}{:>10}{:>20}{:>27}{:>9}{:>7}", "", "", "period us", "latency us", "", ""));
+    lines.push_back(fmt::format("{:>44}{:>27}", "period us", "latency us"));
     lines.push_back(fmt::format("{:<14}{:>10}{:>11}{:>9}{:>9}{:>9}{:>9}{:>9}{:>7}", "process", "cycles",
                                 "p50", "p99", "p50", "p99", "max", "missed", "lost"));
   }

@@ -1,0 +1,93 @@
+#include "launch/labelled_output.h"
+
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <limits.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <string>
+
+namespace hydro {
+namespace {
+
+using Stream = LabelledOutput::Stream;
+
+class LabelledOutputTest : public ::testing::Test {
+ protected:
+  LabelledOutputTest() {
+    EXPECT_EQ(pipe2(pipe_, O_CLOEXEC), 0);
+    fcntl(pipe_[0], F_SETFL, O_NONBLOCK);
+  }
+  ~LabelledOutputTest() override {
+    if (pipe_[0] >= 0) close(pipe_[0]);
+    close(pipe_[1]);
+  }
+  std::string Read() {
+    std::string text(1 << 20, '\0');
+    const ssize_t n = read(pipe_[0], text.data(), text.size());
+    text.resize(n > 0 ? static_cast<std::size_t>(n) : 0);
+    return text;
+  }
+
+  int pipe_[2] = {-1, -1};
+};
+
+// Tests that labels are aligned and that lines leave in the order in which they came, over both streams.
+TEST_F(LabelledOutputTest, AlignsAndKeepsOrder) {
+  LabelledOutput output(pipe_[1], pipe_[1], false);
+  output.AnnounceLabel("plant");
+  output.AnnounceLabel("position_ctrl");
+  output.Line(Stream::kOut, "plant", "one");
+  output.Line(Stream::kErr, "position_ctrl", "two");
+  output.Line(Stream::kOut, "plant", "");
+  output.Flush();
+  EXPECT_EQ(Read(), "[plant]         one\n[position_ctrl] two\n[plant]         \n");
+  EXPECT_EQ(output.waiting_fd(), -1);
+}
+
+// Tests that a line longer than one write is finished before the other stream's line is begun.
+TEST_F(LabelledOutputTest, LinesOfTwoStreamsDoNotMix) {
+  LabelledOutput output(pipe_[1], pipe_[1], false);
+  const std::string longer(3 * PIPE_BUF, 'o');
+  output.Line(Stream::kOut, "a", longer);
+  output.Line(Stream::kErr, "b", "short");
+  output.Line(Stream::kOut, "a", longer);
+  output.Flush();
+  EXPECT_EQ(Read(), "[a] " + longer + "\n[b] short\n[a] " + longer + "\n");
+}
+
+// Tests that colours surround the label only.
+TEST_F(LabelledOutputTest, ColoursTheLabel) {
+  LabelledOutput output(pipe_[1], pipe_[1], true);
+  output.Line(Stream::kOut, "plant", "text");
+  output.Flush();
+  const std::string text = Read();
+  EXPECT_EQ(text.substr(0, 3), "\033[3");
+  EXPECT_NE(text.find("m[plant]\033[0m text\n"), std::string::npos) << text;
+}
+
+// Tests that much waiting text asks for a pause, and that the pause ends when it was written.
+TEST_F(LabelledOutputTest, IsFullUntilWritten) {
+  const int null = open("/dev/null", O_WRONLY | O_CLOEXEC);
+  LabelledOutput output(null, null, false);
+  for (int i = 0; i < 2000; ++i) output.Line(Stream::kOut, "plant", std::string(1000, 'x'));
+  EXPECT_TRUE(output.full());
+  output.Flush();
+  EXPECT_FALSE(output.full());
+  close(null);
+}
+
+// Tests that a reader that has gone away neither kills us nor holds the output up.
+TEST_F(LabelledOutputTest, SurvivesAReaderThatIsGone) {
+  signal(SIGPIPE, SIG_IGN);
+  LabelledOutput output(pipe_[1], pipe_[1], false);
+  close(pipe_[0]);
+  pipe_[0] = -1;
+  output.Line(Stream::kOut, "plant", "nobody hears this");
+  output.Flush();
+  EXPECT_EQ(output.waiting_fd(), -1);
+}
+
+}  // namespace
+}  // namespace hydro

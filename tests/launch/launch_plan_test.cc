@@ -1,0 +1,165 @@
+#include "launch/launch_plan.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <stdlib.h>
+#include <sys/stat.h>
+
+#include <filesystem>
+#include <fstream>
+
+namespace hydro {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+class LaunchPlanTest : public ::testing::Test {
+ protected:
+  LaunchPlanTest() {
+    std::string name = (std::filesystem::temp_directory_path() / "hydro-plan-XXXXXX").string();
+    if (mkdtemp(name.data()) == nullptr) throw std::runtime_error("mkdtemp");
+    folder_ = name;
+    for (const char* program :
+         {"hydro-plant", "hydro-pressure-ctrl", "hydro-position-ctrl", "hydro-logger"}) {
+      MakeProgram(folder_ / program);
+    }
+    request_.config_file = "stack.toml";
+  }
+  ~LaunchPlanTest() override { std::filesystem::remove_all(folder_); }
+
+  static void MakeProgram(const std::filesystem::path& path) {
+    std::ofstream(path) << "#!/bin/sh\n";
+    chmod(path.c_str(), 0755);
+  }
+  void Processes(const std::vector<std::pair<std::string, std::string>>& program_and_host) {
+    for (const auto& [program, host] : program_and_host) config_.processes.push_back({program, host, -1, 0});
+  }
+  LaunchPlan Plan() { return PlanLaunch(config_, request_, folder_.string()); }
+  std::vector<std::string> Programs() {
+    std::vector<std::string> programs;
+    for (const ChildSpec& child : Plan().children) programs.push_back(child.program());
+    return programs;
+  }
+  std::string Error() {
+    try {
+      Plan();
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "no error";
+  }
+
+  std::filesystem::path folder_;
+  StackConfig config_;
+  LaunchRequest request_;
+};
+
+// Tests that each process gets the configuration and every override, and is found in the folder.
+TEST_F(LaunchPlanTest, PassesConfigurationAndOverrides) {
+  Processes({{"hydro-plant", ""}, {"hydro-pressure-ctrl", "localhost"}});
+  request_.overrides = {"time.mode=lockstep", "position.c1=2"};
+  const LaunchPlan plan = Plan();
+  ASSERT_EQ(plan.children.size(), 2u);
+  EXPECT_EQ(plan.children[0].label, "plant");
+  EXPECT_EQ(plan.children[1].label, "pressure_ctrl");
+  EXPECT_FALSE(plan.spread);
+  EXPECT_THAT(plan.children[1].argv, ElementsAre((folder_ / "hydro-pressure-ctrl").string(), "stack.toml",
+                                                 "--set", "time.mode=lockstep", "--set", "position.c1=2"));
+}
+
+// Tests that a logger runs only with --log, is stopped last, and that the plant is told to wait for it.
+TEST_F(LaunchPlanTest, LogAddsALogger) {
+  Processes({{"hydro-plant", ""}, {"hydro-logger", ""}});
+  EXPECT_THAT(Programs(), ElementsAre("hydro-plant"));
+  request_.log_file = "a.lcmlog";
+  const LaunchPlan plan = Plan();
+  ASSERT_EQ(plan.children.size(), 2u);
+  EXPECT_THAT(plan.children[0].argv,
+              ElementsAre((folder_ / "hydro-plant").string(), "stack.toml", "--expect", "logger"));
+  EXPECT_THAT(plan.children[1].argv,
+              ElementsAre((folder_ / "hydro-logger").string(), "stack.toml", "-o", "a.lcmlog"));
+  EXPECT_FALSE(plan.children[0].last);
+  EXPECT_TRUE(plan.children[1].last);
+}
+
+// Tests that --log also starts a logger that no section mentions.
+TEST_F(LaunchPlanTest, LogNeedsNoSection) {
+  Processes({{"hydro-plant", ""}});
+  request_.log_file = "a.lcmlog";
+  EXPECT_THAT(Programs(), ElementsAre("hydro-plant", "hydro-logger"));
+}
+
+// Tests that --host takes its own processes only.
+TEST_F(LaunchPlanTest, HostFilters) {
+  Processes({{"hydro-plant", "rig"}, {"hydro-pressure-ctrl", "rig"}, {"hydro-position-ctrl", "desk"}});
+  request_.host = "rig";
+  EXPECT_THAT(Programs(), ElementsAre("hydro-plant", "hydro-pressure-ctrl"));
+  EXPECT_TRUE(Plan().spread);
+  request_.host = "desk";
+  EXPECT_THAT(Programs(), ElementsAre("hydro-position-ctrl"));
+}
+
+// Tests that the logger runs on the host its section names, and that the launch on the other host says where.
+TEST_F(LaunchPlanTest, LoggerRunsOnItsHost) {
+  Processes({{"hydro-plant", "rig"}, {"hydro-position-ctrl", "desk"}, {"hydro-logger", "desk"}});
+  request_.log_file = "a.lcmlog";
+  request_.host = "rig";
+  const LaunchPlan plan = Plan();
+  ASSERT_EQ(plan.children.size(), 1u);
+  EXPECT_EQ(plan.children[0].argv.back(), "logger");
+  EXPECT_THAT(plan.remarks, ElementsAre(HasSubstr("host desk")));
+  request_.host = "desk";
+  EXPECT_THAT(Programs(), ElementsAre("hydro-position-ctrl", "hydro-logger"));
+}
+
+// Tests that a stack over several hosts is not started without --host, and that the hosts are listed.
+TEST_F(LaunchPlanTest, HostsNeedHost) {
+  Processes({{"hydro-plant", "rig"}, {"hydro-pressure-ctrl", ""}, {"hydro-position-ctrl", "desk"}});
+  EXPECT_THAT(Error(), HasSubstr("stack.toml: [[process]] names the hosts desk, rig; "));
+}
+
+// Tests that an unknown host is an error that lists the known ones.
+TEST_F(LaunchPlanTest, UnknownHost) {
+  Processes({{"hydro-plant", "rig"}, {"hydro-position-ctrl", "desk"}});
+  request_.host = "dek";
+  EXPECT_THAT(Error(), HasSubstr("--host dek: no such host"));
+  EXPECT_THAT(Error(), HasSubstr("allowed: desk, rig"));
+  config_.processes = {{"hydro-plant", "", -1, 0}};
+  EXPECT_THAT(Error(), HasSubstr("allowed: none is named there"));
+}
+
+// Tests that a process without a host in a stack over hosts is pointed out.
+TEST_F(LaunchPlanTest, ProcessWithoutHostIsPointedOut) {
+  Processes({{"hydro-plant", "rig"}, {"hydro-position-ctrl", ""}});
+  request_.host = "rig";
+  EXPECT_THAT(Plan().remarks, ElementsAre(HasSubstr("hydro-position-ctrl names no host")));
+}
+
+// Tests that a host that has only a logger, without --log, is an error instead of nothing at all.
+TEST_F(LaunchPlanTest, NothingToStart) {
+  Processes({{"hydro-plant", "rig"}, {"hydro-logger", "desk"}});
+  request_.host = "desk";
+  EXPECT_THAT(Error(), HasSubstr("nothing to start on host desk"));
+}
+
+// Tests that a program is looked for in the folder first, then on PATH, and that a missing one is named.
+TEST_F(LaunchPlanTest, FindsPrograms) {
+  const std::string path_before = getenv("PATH");
+  std::filesystem::create_directory(folder_ / "bin");
+  MakeProgram(folder_ / "bin" / "hydro-plant");
+  MakeProgram(folder_ / "bin" / "hydro-driver");
+  setenv("PATH", (folder_ / "bin").c_str(), 1);
+  Processes({{"hydro-plant", ""}, {"hydro-driver", ""}});
+  EXPECT_EQ(Plan().children[0].argv[0], (folder_ / "hydro-plant").string());
+  EXPECT_EQ(Plan().children[1].argv[0], (folder_ / "bin" / "hydro-driver").string());
+  chmod((folder_ / "bin" / "hydro-driver").c_str(), 0644);  // not a program any more
+  const std::string error = Error();
+  setenv("PATH", path_before.c_str(), 1);
+  EXPECT_THAT(error, HasSubstr("hydro-driver: program not found"));
+  EXPECT_THAT(error, HasSubstr(folder_.string()));
+}
+
+}  // namespace
+}  // namespace hydro

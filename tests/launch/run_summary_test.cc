@@ -1,0 +1,74 @@
+#include "launch/run_summary.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace hydro {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::Not;
+
+loop_statistics_t Report(double interval_s, int64_t cycles, double p50_us, double latency_max_us) {
+  loop_statistics_t report{};
+  report.session = 1;
+  report.role = "plant";
+  report.interval_s = interval_s;
+  report.cycles = cycles;
+  report.period_p50_us = p50_us;
+  report.latency_max_us = latency_max_us;
+  report.missed_deadlines = 2;
+  report.lost_messages = 1;
+  return report;
+}
+
+// Tests that nothing heard gives nothing to print.
+TEST(RunSummaryTest, EmptyWithoutReports) { EXPECT_THAT(RunSummary().Lines(), IsEmpty()); }
+
+// Tests that counts add up over the run while percentiles are those of the last report of a whole second.
+TEST(RunSummaryTest, CountsAddUpPercentilesAreTheLast) {
+  RunSummary summary;
+  summary.Add(Report(1.0, 1000, 1001, 345));
+  summary.Add(Report(1.0, 1000, 1003, 40));
+  summary.Add(Report(0.01, 10, 77777, 20));  // the rest of the run
+  const auto lines = summary.Lines();
+  ASSERT_EQ(lines.size(), 3u);
+  EXPECT_THAT(lines[2], AllOf(HasSubstr("plant"), HasSubstr(" 2010 "), HasSubstr(" 1003 "),
+                              HasSubstr(" 345 "), HasSubstr(" 6 "), Not(HasSubstr("77777"))));
+  EXPECT_EQ(lines[2].substr(lines[2].size() - 2), " 3");
+  EXPECT_EQ(lines[1].size(), lines[2].size());
+}
+
+// Tests that a run too short for a whole second still shows what it has.
+TEST(RunSummaryTest, ShortRunShowsItsOnlyReport) {
+  RunSummary summary;
+  summary.Add(Report(0.2, 200, 1002, 30));
+  EXPECT_THAT(summary.Lines().back(), HasSubstr(" 1002 "));
+}
+
+// Tests that repeated faults are one line with their number, and that one that has gone is told from one that
+// has not.
+TEST(RunSummaryTest, FaultsAreCounted) {
+  fault_t fault{};
+  fault.session = 1;
+  fault.source = "pressure_ctrl";
+  fault.code = "stale_state";
+  fault.text = "no state for 120 ms, allowed are 100 ms";
+  RunSummary summary;
+  for (const bool active : {true, false, true, false}) {
+    fault.active = active;
+    summary.Add(fault);
+  }
+  fault.code = "pressure_limit";
+  fault.active = true;
+  summary.Add(fault);
+  const auto lines = summary.Lines();
+  ASSERT_EQ(lines.size(), 2u);
+  EXPECT_EQ(lines[0], "fault stale_state of pressure_ctrl, 2 times: no state for 120 ms, allowed are 100 ms");
+  EXPECT_THAT(lines[1], HasSubstr("pressure_limit of pressure_ctrl, once, still there at the end"));
+}
+
+}  // namespace
+}  // namespace hydro

@@ -1,0 +1,79 @@
+// A folder with a copy of hydro-launch, fake programs beside it, and a configuration: a stack of one's own.
+#pragma once
+
+#include <gtest/gtest.h>
+#include <stdlib.h>
+
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "tests/free_udp_port.h"
+#include "tests/launch/launched_program.h"
+
+namespace hydro {
+
+class StackFolder {
+ public:
+  explicit StackFolder(const std::vector<std::string>& programs = {"hydro-plant", "hydro-pressure-ctrl",
+                                                                   "hydro-position-ctrl", "hydro-logger"}) {
+    std::string name = (std::filesystem::temp_directory_path() / "hydro-launch-XXXXXX").string();
+    if (mkdtemp(name.data()) == nullptr) throw std::runtime_error("mkdtemp");
+    folder_ = name;
+    // hydro-launch looks beside itself: it must be here, not a link to elsewhere.
+    std::filesystem::copy_file(HYDRO_LAUNCH, folder_ / "hydro-launch");
+    for (const std::string& program : programs) {
+      std::filesystem::create_symlink(HYDRO_FAKE_PROGRAM, folder_ / program);
+    }
+    environment["HYDRO_FAKE_URL"] = url_;
+    environment["HYDRO_FAKE_plant"] = "status ready;wait;status done";
+    environment["HYDRO_FAKE_pressure_ctrl"] = "status ready;wait;status done";
+    environment["HYDRO_FAKE_position_ctrl"] = "status ready;wait;status done";
+    environment["HYDRO_FAKE_logger"] = "status ready;wait-term;status done";
+    WriteConfig("");
+  }
+  ~StackFolder() { std::filesystem::remove_all(folder_); }
+  StackFolder(const StackFolder&) = delete;
+  StackFolder& operator=(const StackFolder&) = delete;
+
+  std::map<std::string, std::string> environment;
+
+  // What a fake program does; see fake_program.cc.
+  void Script(const std::string& role, const std::string& commands) {
+    environment["HYDRO_FAKE_" + role] = commands;
+  }
+
+  // A valid configuration with `more` at its end.
+  void WriteConfig(const std::string& more) {
+    std::ofstream(folder_ / "model.toml")
+        << "name = \"test\"\n[parameters]\n"
+           "k_1 = 4.0\nT_pmax = 40.0\nD = 0.00796\nJ = 0.03\nb = 0.01455\nT_s = 4.0\n"
+           "f = 0.0\nbeta = 247000.0\nV_ms = 3.16\nc = 3.68379\nc_E = 6.5e-6\n"
+           "c_I = 1.0e-6\np_3 = 100.0\nk_2 = 3.68\nJ_a = 23.3\nmgl = 0.0\n";
+    std::ofstream(config())
+        << "[model]\nfile = \"model.toml\"\n[bus]\nurl = \"" << url_
+        << "\"\n[plant]\nrate_hz = 1000\n[pressure]\nnatural_frequency_rad_s = 150.0\n"
+           "damping_ratio = 0.5\n[position]\nsample_interval_s = 0.005\nc1 = 350.0\nc2 = 11.0\n"
+           "[reference]\nsignal = \"arm_angle\"\nkind = \"steps\"\nsteps = [[0.1, 0.1]]\n"
+        << more;
+  }
+
+  std::string config() const { return (folder_ / "stack.toml").string(); }
+  std::string file(const std::string& name) const { return (folder_ / name).string(); }
+  const std::string& url() const { return url_; }
+
+  // hydro-launch stack.toml arguments...
+  std::unique_ptr<LaunchedProgram> Launch(std::vector<std::string> arguments = {}) {
+    arguments.insert(arguments.begin(), {file("hydro-launch"), config()});
+    return std::make_unique<LaunchedProgram>(arguments, environment);
+  }
+
+ private:
+  std::filesystem::path folder_;
+  std::string url_ = FreeBusUrl();
+};
+
+}  // namespace hydro
