@@ -4,6 +4,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <optional>
 #include <string>
@@ -119,8 +120,10 @@ int StackLaunch::Run() {
   }
   for (const std::string& line : watch_.summary().Lines()) Say(line);
   // The terminal may be slow or stopped; a second Ctrl-C still gets us out.
-  while (!supervisor_.finished() && !killed_) {
-    supervisor_.Wait(TimePoint::max());
+  TimePoint until = TimePoint::max();
+  while (!supervisor_.finished() && Supervisor::Clock::now() < until) {
+    if (killed_) until = std::min(until, Supervisor::Clock::now() + kLastWords);
+    supervisor_.Wait(until);
     OnSignals();
   }
   return exit_code_;
