@@ -9,6 +9,7 @@
 #include "logger/repair.h"
 #include "logger/run_log.h"
 #include "logger/run_table.h"
+#include "logger/run_verbs.h"
 #include "logger/table.h"
 #include "settings/command_line.h"
 #include "settings/input_error.h"
@@ -135,12 +136,14 @@ class RepairVerb {
 }  // namespace
 
 int RunHydroLog(int argc, const char* const* argv) {
-  CommandLine line("hydro-log", "Reads, converts, compares and repairs logs.");
+  CommandLine line("hydro-log", "Reads, converts, compares, replays and repairs logs.");
   const InfoVerb info(line);
   const ExportVerb export_verb(line);
   const ImportVerb import_verb(line);
   const CompareVerb compare(line);
   const RepairVerb repair(line);
+  const SummaryVerb summary(line);
+  const ReplayVerb replay(line);
   if (const auto exit_code = line.Parse(argc, argv)) return *exit_code;
   return RunProgram("hydro-log", [&] {
     const std::string verb = line.verb();
@@ -148,6 +151,8 @@ int RunHydroLog(int argc, const char* const* argv) {
     if (verb == "export") return export_verb.Run();
     if (verb == "import") return import_verb.Run();
     if (verb == "compare") return compare.Run();
+    if (verb == "summary") return summary.Run();
+    if (verb == "replay") return replay.Run();
     return repair.Run();
   });
 }

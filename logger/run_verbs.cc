@@ -1,0 +1,64 @@
+#include "logger/run_verbs.h"
+
+#include <cmath>
+#include <cstdio>
+
+#include "logger/new_file.h"
+#include "logger/replay.h"
+#include "logger/tracking.h"
+
+namespace hydro {
+
+SummaryVerb::SummaryVerb(CommandLine& line) {
+  CommandLine& verb = line.AddVerb("summary", "How well the arm followed its reference, loop timing, losses.");
+  verb.AddPositional("LOG", &log_, "FILE the log");
+  verb.AddOption("--json", &json_, "FILE write the same there as JSON");
+  verb.AddFlag("--si", &si_, "print figures in SI units too");
+}
+
+int SummaryVerb::Run() const {
+  const RunLog log = ReadRunLog(log_);
+  if (log.messages.states.empty()) throw InputError(log_ + ": found no state; a log of a run is needed");
+  const Tracking tracking = TrackArm(log);
+  const LogInfo info = Summarise(log, si_);
+  std::fputs(SummaryText(tracking, info, si_).c_str(), stdout);
+  if (!json_.empty()) {
+    const std::string text = SummaryJson(tracking, info);
+    NewFile file(json_, Opening::kTemporary);
+    file.Write(text.data(), text.size());
+    file.Finish();
+  }
+  return 0;
+}
+
+ReplayVerb::ReplayVerb(CommandLine& line) {
+  CommandLine& verb = line.AddVerb(
+      "replay", "Feed the recorded states through the controllers and compare their answers with the record.");
+  verb.AddPositional("LOG", &log_, "FILE the log");
+  verb.AddOption("--controller", &controller_, "NAME pressure, position or both (default)");
+  verb.AddOption("--speed", &speed_, "X recorded seconds per wall second; 0 (default): as fast as possible");
+}
+
+int ReplayVerb::Run() const {
+  if (controller_ != "pressure" && controller_ != "position" && controller_ != "both") {
+    throw InputError("--controller: found " + controller_ + ", allowed are pressure, position and both");
+  }
+  if (!(speed_ >= 0) || std::isinf(speed_)) throw InputError("--speed: must be a number of 0 or more");
+  const RunLog log = ReadRunLog(log_);
+  int exit_code = 0;
+  const auto replay = [&](ReplayedController controller, const char* name, const char* commands) {
+    const ReplayResult result = Replay(log, controller, speed_);
+    if (result.difference) {
+      std::printf("%s: %s\n", name, result.difference->c_str());
+      exit_code = 1;
+    } else {
+      std::printf("%s: identical, %lld %s from %lld states\n", name, static_cast<long long>(result.answers), commands,
+                  static_cast<long long>(result.states));
+    }
+  };
+  if (controller_ != "position") replay(ReplayedController::kPressure, "pressure", "motor commands");
+  if (controller_ != "pressure") replay(ReplayedController::kPosition, "position", "pressure commands");
+  return exit_code;
+}
+
+}  // namespace hydro

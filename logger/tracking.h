@@ -1,0 +1,42 @@
+// hydro-log summary: how well the arm followed its reference, and how the processes kept time meanwhile.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "logger/info.h"
+#include "logger/run_log.h"
+
+namespace hydro {
+
+// The answer to one step of the reference, until the next step or the end of the run.
+struct StepResponse {
+  double time_s = 0;
+  double from_rad = 0;  // reference before and after
+  double to_rad = 0;
+  double overshoot_percent = 0;           // of the step, 0 when the arm never went beyond
+  std::optional<double> settling_time_s;  // until the error stays within 2 % of the step; none: it does not
+  double final_error_rad = 0;             // arm minus reference, the mean of the last 0.1 s
+};
+
+struct Tracking {
+  bool has_reference = false;      // the log has arm-angle references and measured arm angles
+  double rms_error_rad = 0;        // over the run
+  double final_error_rad = 0;      // arm minus reference, the mean of the last 0.1 s
+  double target_rad = 0;           // last reference
+  bool at_target = false;          // |final error| within 2 % of the largest step, or of the reference's range
+  std::vector<StepResponse> steps;  // empty when the reference is not made of steps
+};
+
+// The arm's tracking in a run. A reference counts as made of steps when it changes at most 100 times and rests at least
+// 0.2 s after each change.
+Tracking TrackArm(const RunLog& log);
+
+// For a person; several lines, loop timing and losses included. With `si`, angles are also in degrees.
+std::string SummaryText(const Tracking& tracking, const LogInfo& info, bool si);
+
+// The same as JSON.
+std::string SummaryJson(const Tracking& tracking, const LogInfo& info);
+
+}  // namespace hydro
