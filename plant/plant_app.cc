@@ -292,12 +292,12 @@ void PlantApp::ChooseVoltage() {
 }
 
 void PlantApp::CheckCommandIsFresh() {
-  if (!unanswered_since_) {
+  const auto now = participant_.clock().Now();
+  const auto age = now - unanswered_since_.value_or(now);
+  if (age <= stale_time_) {
     if (participant_.any_fault()) participant_.Clear("stale_motor_command");
     return;
   }
-  const auto age = participant_.clock().Now() - *unanswered_since_;
-  if (age <= stale_time_) return;
   voltage_ = 0;  // zero volts first, explanation second
   command_tick_ = -1;
   participant_.Raise("stale_motor_command",
