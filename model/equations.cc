@@ -43,6 +43,9 @@ Equations::Equations(const ModelDescription& description, const ActuatorOptions&
     CheckBounds(parameter.info, p.*parameter.member, "");
   if (!std::isfinite(options.arm_angle)) throw ModelError("arm angle is not finite");
 
+  data_.inverse_J = 1 / p.J;
+  data_.inverse_J_a = 1 / p.J_a;
+
   const double pressure = 0.01 * p.T_pmax / p.D;
   const double speed = pressure * std::sqrt(2 * p.V_ms / (p.beta * p.J));
   scales_ = {0.01 * p.V_ms / p.D, speed, pressure, pressure};

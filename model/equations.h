@@ -38,6 +38,8 @@ struct EquationData {
   std::vector<std::unique_ptr<Effect>> effects;
   int states = 0;
   int switches = kFirstEffectSwitch;
+  double inverse_J = 0;
+  double inverse_J_a = 0;
   double fixed_volume = 0;  // in^3, of each side, not at the actuator
   double stiffness_1 = 0;   // beta/V_1 at arm_angle, psi/in^3
   double stiffness_2 = 0;
@@ -72,7 +74,6 @@ class Equations {
   // d rate_i/d state_j at jacobian[i + j * states()], exact (automatic derivatives).
   void Jacobian(double time, double voltage, const Mode& mode, const double* state, double* jacobian) const;
 
-  // d rate_i/d voltage at derivative[i], for a torque within its limit.
   // Changes switch `which`, whose margin has reached 0, and puts the state exactly on the boundary.
   void Cross(int which, double time, double voltage, double* state, Mode* mode) const;
 

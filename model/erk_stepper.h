@@ -13,6 +13,7 @@ class ErkStepper {
   ErkStepper(const ErkStepper&) = delete;
   ErkStepper& operator=(const ErkStepper&) = delete;
 
+  Integrator in_use() const { return Integrator::kErk; }
   void Restart(const Point& now);
   // An explicit pair keeps nothing of earlier steps that is worth more than starting afresh.
   void NewVoltage(const Point& now) { Restart(now); }

@@ -75,7 +75,7 @@ template <Form kForm, class T>
   x.outer_flow_1 = x.c_E * (x.pump_p1 - x.p_3);
   x.outer_flow_2 = x.c_E * (x.pump_p2 - x.p_3);
   x.arm_torque = p.k_2 * (x.p2 - x.p1);  // (15)
-  if (arm_moves_freely) x.arm_torque -= p.mgl * cos(x.arm_angle);
+  if (arm_moves_freely && p.mgl != 0) x.arm_torque -= p.mgl * cos(x.arm_angle);
   if constexpr (kGeneralForm) {
     for (const auto& effect : m.effects) effect->AddTorquesAndFlows(x);
   }
@@ -88,8 +88,11 @@ template <Form kForm, class T>
   }
 
   rate[kMotorAngle] = x.motor_speed;
+  // (4), summed so that the longest chain of operations, through the pressures, is short.
   rate[kMotorSpeed] =
-      mode.pump == 0 ? T(0.0) : T((x.net_torque - x.b * x.motor_speed - direction * x.coulomb) / p.J);  // (4)
+      mode.pump == 0
+          ? T(0.0)
+          : T(((x.torque - x.load - direction * x.coulomb - x.b * x.motor_speed) - x.D * dp) * m.inverse_J);
   if constexpr (kForm == Form::kPlainClamped) {
     x.free_rate_1 = -m.stiffness_1 * x.q_1;  // (13)
     x.free_rate_2 = -m.stiffness_2 * x.q_2;  // (14)
@@ -108,7 +111,7 @@ template <Form kForm, class T>
   rate[kP2] = open_2 ? T(0.0) : x.free_rate_2;
   if (arm_moves_freely) {
     rate[kArmAngle] = x.arm_speed;
-    rate[kArmSpeed] = x.arm_torque / p.J_a;  // (15)
+    rate[kArmSpeed] = x.arm_torque * m.inverse_J_a;  // (15)
   }
 }
 

@@ -24,8 +24,13 @@ class AutoStepper {
     fast_.Restart(now);
   }
   void NewVoltage(const Point& now) {
-    if (stiff_) cvode_->NewVoltage(now);
+    if (stiff_) {
+      cvode_->NewVoltage(now);
+    } else {
+      fast_.NewVoltage(now);
+    }
   }
+  Integrator in_use() const { return stiff_ ? Integrator::kCvode : Integrator::kFast; }
   void Step(const Point& now, double stop, Point* next) {
     if (!stiff_ && fast_.stiff()) [[unlikely]] {
       stiff_ = true;

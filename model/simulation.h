@@ -1,6 +1,7 @@
 // What Actuator holds: one model in motion, whatever integrates it.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 
 #include "model/equations.h"
@@ -18,11 +19,21 @@ struct Point {
 class Simulation {
  public:
   virtual ~Simulation() = default;
+
+  // As Actuator::Advance.
   virtual void Advance(double voltage, double until) = 0;
+
   virtual const Point& now() const = 0;
   virtual const Mode& mode() const = 0;
+
+  // Switches that have changed since the start.
   virtual int64_t mode_changes() const = 0;
+
+  // What integrates at present: kFast, kErk or kCvode.
+  virtual Integrator in_use() const = 0;
 };
+
+// `equations` must outlive it, and belongs to it while it runs (SetMotionLimit). Throws ModelError.
 
 std::unique_ptr<Simulation> MakeSimulation(Equations* equations, Integrator integrator,
                                            double initial_pressure, double relative_tolerance);

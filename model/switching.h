@@ -7,6 +7,7 @@
 //   void Step(const Point& now, double stop, Point* next)  one step, to no later than `stop`; fills all of
 //   next; throws
 //                                      ModelError
+//   Integrator in_use() const
 //   void Interpolate(const Point& now, const Point& next, double time, Point* at)  time and state within the
 //   last step
 #pragma once
@@ -58,6 +59,7 @@ class SwitchingSimulation final : public Simulation {
   const Point& now() const override { return *now_; }
   const Mode& mode() const override { return mode_; }
   int64_t mode_changes() const override { return mode_changes_; }
+  Integrator in_use() const override { return stepper_.in_use(); }
 
   void Advance(double voltage, double until) override {
     if (!std::isfinite(voltage)) throw ModelError("the voltage is not finite" + Where(equations_, *now_));
@@ -66,6 +68,7 @@ class SwitchingSimulation final : public Simulation {
     }
     if (voltage != voltage_ || !started_) {
       voltage_ = voltage;
+      fresh_ = true;
       EvaluateHere();
       if (Settle() || !started_) {
         stepper_.Restart(*now_);
@@ -74,10 +77,12 @@ class SwitchingSimulation final : public Simulation {
       }
       started_ = true;
     }
+    int events = 0;
     while (now_->time < until) {
       double stop = std::min(until, motion_stop_);
       // A switch on its boundary is given a moment to show to which side it goes.
-      if (OnBoundary()) stop = std::min(stop, now_->time + kMoment);
+      if (fresh_ && OnBoundary()) stop = std::min(stop, now_->time + kMoment);
+      fresh_ = false;
       stepper_.Step(*now_, stop, next_);
       CheckFinite(*next_);
       if constexpr (kForm != Form::kPlainClamped) {
@@ -85,11 +90,13 @@ class SwitchingSimulation final : public Simulation {
       }
       const double last = FirstTrouble();
       if (last <= next_->time) {
+        if (++events > kMostEvents) throw ModelError("the switches chatter" + Where(equations_, *now_));
         ToEvent(last);
       } else {
         std::swap(now_, next_);
         if (now_->time >= motion_stop_) {
           FollowMotion();
+          fresh_ = true;
           EvaluateHere();
           Settle();
           stepper_.Restart(*now_);
@@ -101,6 +108,7 @@ class SwitchingSimulation final : public Simulation {
  private:
   static constexpr double kMoment = 1e-6;       // s
   static constexpr double kEventWidth = 1e-11;  // s, within which an event is located
+  static constexpr int kMostEvents = 1000000;   // in one call
   static constexpr double kNever = std::numeric_limits<double>::infinity();
 
   const EquationData& data() const { return equations_.data(); }
@@ -158,6 +166,7 @@ class SwitchingSimulation final : public Simulation {
         if (margin < 0 || (margin == 0 && MarginRate(i, *now_) < 0)) wrong = i;
       }
       if (wrong < 0) return changed;
+      fresh_ = true;
       equations_.Cross(wrong, now_->time, voltage_, now_->state, &mode_);
       ++mode_changes_;
       EvaluateHere();
@@ -243,6 +252,7 @@ class SwitchingSimulation final : public Simulation {
         ++mode_changes_;
       }
     }
+    fresh_ = true;
     EvaluateHere();
     Settle();
     stepper_.Restart(*now_);
@@ -252,6 +262,7 @@ class SwitchingSimulation final : public Simulation {
   Mode mode_;
   double voltage_ = 0;
   bool started_ = false;
+  bool fresh_ = true;  // mode or voltage is new
   double motion_stop_ = kNever;
   int64_t mode_changes_ = 0;
   Point points_[3];

@@ -1,0 +1,132 @@
+// Effects against their own equations.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <set>
+
+#include "tests/model/model_case.h"
+
+namespace hydro::testing {
+namespace {
+
+// Tests that the lagged torque follows its closed form, and that the pump starts when it passes T_s.
+TEST(AmpLag, FollowsItsClosedForm) {
+  const double tau = 0.01;
+  for (const Integrator integrator : kIntegrators) {
+    Rig rig(Table1Model({Lag(tau)}), Held(Shaft::kClamped, integrator));
+    const double start = -tau * std::log(1 - 4.0 / 8.0);  // T = 8 (1 - exp(-t/tau)) reaches T_s = 4
+    rig.simulation->Advance(2, start - 1e-6);
+    EXPECT_EQ(rig.Measure().motor_speed, 0) << Name(integrator);
+    rig.simulation->Advance(2, start + 1e-5);
+    EXPECT_GT(rig.Measure().motor_speed, 0) << Name(integrator);
+    rig.simulation->Advance(2, 0.025);
+    EXPECT_NEAR(rig.simulation->now().state[4], 8 * (1 - std::exp(-2.5)), 1e-5) << Name(integrator);
+    rig.simulation->Advance(-1, 0.045);
+    const double then = 8 * (1 - std::exp(-2.5));
+    EXPECT_NEAR(rig.simulation->now().state[4], -4 + (then + 4) * std::exp(-2.0), 1e-5) << Name(integrator);
+  }
+}
+
+// Tests that the limit applies to the lagged torque: T_p stays at T_pmax while the lagged state is above it.
+TEST(AmpLag, LimitsTheTorqueItself) {
+  const double tau = 0.01;
+  Rig rig(Table1Model({Lag(tau)}), Held(Shaft::kClamped));
+  const auto torque = [&] {
+    double rate[kMaxStates];
+    Terms<double> x;
+    const Point& now = rig.simulation->now();
+    rig.equations.Evaluate(now.time, 20, rig.simulation->mode(), now.state, rate, &x);
+    return x.torque;
+  };
+  const double limit_time = -tau * std::log(1 - 0.5);  // T = 80 (1 - exp(-t/tau)) reaches 40
+  rig.simulation->Advance(20, limit_time - 1e-7);
+  EXPECT_EQ(rig.simulation->mode().effects[0], 0);
+  EXPECT_NEAR(torque(), 40, 1e-2);
+  rig.simulation->Advance(20, limit_time + 1e-7);
+  EXPECT_EQ(rig.simulation->mode().effects[0], 1);
+  EXPECT_EQ(torque(), 40);
+  rig.simulation->Advance(20, 0.03);
+  EXPECT_EQ(torque(), 40);
+  // Back within the limit: 80 (1 - exp(-3)) exp(-t/tau) falls to 40.
+  const double release = 0.03 + tau * std::log(2 * (1 - std::exp(-3.0)));
+  rig.simulation->Advance(0, release - 1e-6);
+  EXPECT_EQ(rig.simulation->mode().effects[0], 1);
+  rig.simulation->Advance(0, release + 1e-6);
+  EXPECT_EQ(rig.simulation->mode().effects[0], 0);
+}
+
+// Tests that an effect which counts for nothing changes nothing.
+TEST(Effects, VanishWithTheirSize) {
+  const std::vector<EffectDescription> none = {Stribeck(0, 3),
+                                               {"pump.pressure_friction", {{"f", 0}}, {}},
+                                               {"pump.quadratic_drag", {{"k", 0}}, {}},
+                                               {"sensor.pressure_offset", {{"p1", 0}, {"p2", 0}}, {}}};
+  for (const EffectDescription& effect : none) {
+    Actuator plain(Table1Model(), Held(Shaft::kClamped));
+    Actuator with(Table1Model({effect}), Held(Shaft::kClamped));
+    for (int tick = 0; tick < 1000; ++tick) {
+      plain.Advance(SquareWaveLoop(plain.Measure(), tick), (tick + 1) * 2e-4);
+      with.Advance(SquareWaveLoop(with.Measure(), tick), (tick + 1) * 2e-4);
+      ASSERT_NEAR(plain.Measure().p2, with.Measure().p2, 1e-8) << effect.id;
+      ASSERT_NEAR(plain.Measure().p1, with.Measure().p1, 1e-8) << effect.id;
+    }
+  }
+}
+
+// Tests that the effect's f and the base parameter f are one term.
+TEST(PressureFriction, IsThePapersF) {
+  ModelDescription base = Table1Model();
+  base.parameters.f = 0.002;
+  Actuator a(base, Held(Shaft::kClamped));
+  Actuator b(Table1Model({{"pump.pressure_friction", {{"f", 0.002}}, {}}}), Held(Shaft::kClamped));
+  Actuator without(Table1Model(), Held(Shaft::kClamped));
+  for (Actuator* actuator : {&a, &b, &without}) actuator->Advance(2.5, 0.2);
+  EXPECT_NEAR(a.Measure().p2, b.Measure().p2, 1e-6);
+  EXPECT_LT(a.Measure().p2, without.Measure().p2 - 10);
+}
+
+// Tests that quadratic drag sets the steady speed of the bypassed pump: k w^2 + b w = T_p - T_s.
+TEST(QuadraticDrag, SteadySpeed) {
+  ActuatorOptions options = Held(Shaft::kClamped);
+  options.bypass = true;
+  for (const double sign : {1.0, -1.0}) {
+    Actuator actuator(Table1Model({{"pump.quadratic_drag", {{"k", 1e-4}}, {}}}), options);
+    actuator.Advance(sign * 2.5, 60);
+    const double b = 0.01455, k = 1e-4;
+    EXPECT_NEAR(actuator.Measure().motor_speed, sign * (-b + std::sqrt(b * b + 4 * k * 6)) / (2 * k), 1e-3);
+  }
+}
+
+// Tests that offsets are in what is measured and not in what happens.
+TEST(PressureOffset, ShiftsTheMeasurementOnly) {
+  Actuator plain(Table1Model(), Held(Shaft::kClamped));
+  Actuator with(Table1Model({{"sensor.pressure_offset", {{"p1", 3}, {"p2", -2}}, {}}}),
+                Held(Shaft::kClamped));
+  plain.Advance(2.5, 0.2);
+  with.Advance(2.5, 0.2);
+  EXPECT_NEAR(with.Measure().p1, plain.Measure().p1 + 3, 1e-6);
+  EXPECT_NEAR(with.Measure().p2, plain.Measure().p2 - 2, 1e-6);
+}
+
+// Tests that the pump is where the line says: the actuator's pressure lags behind the pump's when flow
+// starts.
+TEST(LineWave, PumpSideMovesFirst) {
+  Rig rig(Table1Model({Wave(300, 0.2, 0.05)}), Held(Shaft::kClamped));
+  rig.simulation->Advance(10, 2e-4);
+  const double* state = rig.simulation->now().state;
+  EXPECT_GT(state[6] - 100, 2 * (state[kP2] - 100));
+  EXPECT_GT(state[kP2], 100);
+  EXPECT_EQ(rig.equations.StateNames()[6], "pump_p2");
+}
+
+// Tests that the order in the file does not matter.
+TEST(Effects, OrderDoesNotMatter) {
+  Actuator a(Table1Model({Stribeck(0.5, 3), Lag(2e-3), Wave(300, 0.2, 0.05)}), Held(Shaft::kFree));
+  Actuator b(Table1Model({Wave(300, 0.2, 0.05), Stribeck(0.5, 3), Lag(2e-3)}), Held(Shaft::kFree));
+  a.Advance(2.5, 0.1);
+  b.Advance(2.5, 0.1);
+  EXPECT_EQ(a.Measure().p2, b.Measure().p2);
+}
+
+}  // namespace
+}  // namespace hydro::testing

@@ -1,0 +1,71 @@
+// What is known of parameters and effects.
+#include "model/parameter_info.h"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <set>
+#include <sstream>
+
+#include "tests/table1.h"
+
+namespace hydro::testing {
+namespace {
+
+// Tests that every member of Parameters has one entry, and that Table 1 lies within all bounds.
+TEST(BaseParameters, AreComplete) {
+  std::set<std::string> names;
+  Parameters marked;
+  for (const BaseParameter& parameter : BaseParameters()) {
+    EXPECT_TRUE(names.insert(parameter.info.name).second) << parameter.info.name;
+    EXPECT_FALSE(parameter.info.unit.empty());
+    EXPECT_FALSE(parameter.info.says.empty());
+    EXPECT_EQ(marked.*parameter.member, 0) << parameter.info.name << " shares a member";
+    marked.*parameter.member = 1;
+    const double value = Table1().*parameter.member;
+    EXPECT_TRUE(parameter.info.min_allowed ? value >= parameter.info.min : value > parameter.info.min);
+    EXPECT_LE(value, parameter.info.max);
+  }
+  EXPECT_EQ(names.size() * sizeof(double), sizeof(Parameters));
+}
+
+// Tests that the catalogue is ordered, each entry says all it should, and is found by its id.
+TEST(EffectCatalogue, IsComplete) {
+  std::string previous;
+  for (const EffectInfo& effect : EffectCatalogue()) {
+    EXPECT_LT(previous, effect.id);
+    previous = effect.id;
+    EXPECT_FALSE(effect.says.empty());
+    EXPECT_FALSE(effect.equation.empty());
+    EXPECT_FALSE(effect.parameters.empty());
+    EXPECT_EQ(FindEffect(effect.id), &effect);
+  }
+  for (const char* id : {"amp.lag", "line.wave", "pump.pressure_friction", "pump.stribeck"}) {
+    EXPECT_NE(FindEffect(id), nullptr) << id;
+  }
+  EXPECT_EQ(FindEffect("pump.unknown"), nullptr);
+}
+
+// Tests that docs/effects.md has the row of each effect, with its parameters and their units.
+TEST(EffectCatalogue, IsDocumented) {
+  std::ifstream file(HYDRO_EFFECTS_DOCUMENT);
+  std::stringstream text;
+  text << file.rdbuf();
+  std::set<std::string> rows;
+  for (std::string line; std::getline(text, line);) {
+    const bool starts_with_id = line.rfind("| `", 0) == 0 && line.find('.') < line.find('`', 3);
+    if (starts_with_id) rows.insert(line);
+  }
+  EXPECT_EQ(rows.size(), EffectCatalogue().size());
+  for (const EffectInfo& effect : EffectCatalogue()) {
+    std::string row = "| `" + effect.id + "` | " + effect.says + " | " + effect.equation + " | ";
+    for (size_t i = 0; i < effect.parameters.size(); ++i) {
+      row += (i > 0 ? ", `" : "`") + effect.parameters[i].name + "` (" + effect.parameters[i].unit + ")";
+    }
+    row += " | " + effect.confused_with + " |";
+    EXPECT_TRUE(rows.contains(row)) << "docs/effects.md lacks: " << row;
+  }
+}
+
+}  // namespace
+}  // namespace hydro::testing

@@ -1,0 +1,159 @@
+// The integration paths against each other, where no reference exists: every way to hold the shaft, the
+// bypass, every effect.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <ostream>
+
+#include "tests/model/model_case.h"
+#include "trajectory/trajectory.h"
+
+namespace hydro::testing {
+namespace {
+
+struct Case {
+  std::string name;
+  ModelDescription model;
+  ActuatorOptions options;
+};
+
+std::ostream& operator<<(std::ostream& out, const Case& c) { return out << c.name; }
+
+std::vector<Case> Cases() {
+  static const auto sine = MakeSine(0, 0.008, 2, 0.02, 0);
+  static const auto zigzag = MakePoints(
+      {{0, 0}, {0.05, 0.0015}, {0.1001, -0.001}, {0.2, -0.001}, {0.31, 0.003}}, Interpolation::kLinear);
+  std::vector<Case> cases;
+  const auto add = [&](std::string name, std::vector<EffectDescription> effects, ActuatorOptions options) {
+    cases.push_back({std::move(name), Table1Model(std::move(effects)), options});
+  };
+  add("Clamped", {}, Held(Shaft::kClamped));
+  add("Free", {}, Held(Shaft::kFree));
+  add("FreeWithGravity", {}, Held(Shaft::kFree));
+  cases.back().model.parameters.mgl = 562;
+  cases.back().options.arm_angle = -0.3;
+  ActuatorOptions driven = Held(Shaft::kDriven);
+  driven.motion = sine.get();
+  add("DrivenBySine", {}, driven);
+  driven.motion = zigzag.get();
+  add("DrivenAlongLines", {}, driven);
+  ActuatorOptions bypass = Held(Shaft::kClamped);
+  bypass.bypass = true;
+  bypass.initial_pressure = 250;
+  add("Bypass", {}, bypass);
+  bypass.shaft = Shaft::kFree;
+  add("BypassFree", {}, bypass);
+  add("PressureFriction", {{"pump.pressure_friction", {{"f", 0.001}}, {}}}, Held(Shaft::kClamped));
+  add("Stribeck", {Stribeck(0.5, 3)}, Held(Shaft::kClamped));
+  add("StribeckFree", {Stribeck(0.5, 3)}, Held(Shaft::kFree));
+  add("Lag", {Lag(2e-3)}, Held(Shaft::kClamped));
+  add("Wave", {Wave(300, 0.2, 0.05)}, Held(Shaft::kClamped));
+  add("WaveFree", {Wave(300, 0.2, 0.05)}, Held(Shaft::kFree));
+  add("WaveBypass", {Wave(300, 0.2, 0.05)}, bypass);
+  add("QuadraticDrag", {{"pump.quadratic_drag", {{"k", 1e-3}}, {}}}, Held(Shaft::kClamped));
+  add("PressureOffset", {{"sensor.pressure_offset", {{"p1", 3}, {"p2", -2}}, {}}}, Held(Shaft::kClamped));
+  add("AllEffects",
+      {Stribeck(0.5, 3), Lag(2e-3), Wave(300, 0.2, 0.05), {"pump.pressure_friction", {{"f", 0.001}}, {}}},
+      Held(Shaft::kFree));
+  return cases;
+}
+
+class Paths : public ::testing::TestWithParam<Case> {};
+
+// Tests that every path gives the same motion within 1e-3 psi: square waves of open-loop voltage, so that no
+// controller hides a difference.
+TEST_P(Paths, Agree) {
+  const Case& c = GetParam();
+  ActuatorOptions tight = c.options;
+  tight.relative_tolerance = 1e-11;
+  tight.integrator = Integrator::kErk;
+  Actuator reference(c.model, tight);
+  std::vector<Actuator> actuators;
+  for (const Integrator integrator : kIntegrators) {
+    ActuatorOptions options = c.options;
+    options.integrator = integrator;
+    actuators.emplace_back(c.model, options);
+  }
+  double largest_dp = 0;
+  for (int tick = 0; tick < 1500; ++tick) {
+    const double voltage = (tick / 300 % 2 == 0 ? 2.6 : -1.7) + 0.4 * std::sin(0.1 * tick);
+    const double until = (tick + 1) * 2e-4;
+    reference.Advance(voltage, until);
+    const Measurement expected = reference.Measure();
+    largest_dp = std::max(largest_dp, std::abs(expected.p2 - expected.p1));
+    for (size_t i = 0; i < actuators.size(); ++i) {
+      actuators[i].Advance(voltage, until);
+      const Measurement m = actuators[i].Measure();
+      const std::string where = Name(kIntegrators[i]) + " at " + std::to_string(until) + " s";
+      ASSERT_NEAR(m.p1, expected.p1, 1e-3) << where;
+      ASSERT_NEAR(m.p2, expected.p2, 1e-3) << where;
+      ASSERT_NEAR(m.motor_speed, expected.motor_speed, 1e-4) << where;
+      ASSERT_NEAR(m.motor_angle, expected.motor_angle, 1e-5) << where;
+      ASSERT_NEAR(m.arm_angle, expected.arm_angle, 1e-7) << where;
+      ASSERT_NEAR(m.arm_speed, expected.arm_speed, 1e-5) << where;
+    }
+  }
+  EXPECT_TRUE(c.options.bypass || largest_dp > 5) << "it did not move";
+}
+
+// Tests that the sum of many short calls is the same motion as one long call.
+TEST_P(Paths, LongCalls) {
+  const Case& c = GetParam();
+  Actuator ticks(c.model, c.options);
+  Actuator whole(c.model, c.options);
+  for (int tick = 0; tick < 1500; ++tick) ticks.Advance(2.1, (tick + 1) * 2e-4);
+  whole.Advance(2.1, 0.3);
+  EXPECT_NEAR(whole.Measure().p1, ticks.Measure().p1, 1e-3);
+  EXPECT_NEAR(whole.Measure().p2, ticks.Measure().p2, 1e-3);
+  EXPECT_NEAR(whole.Measure().arm_angle, ticks.Measure().arm_angle, 1e-7);
+}
+
+// Tests that v -> -v swaps the sides: bit for bit on the fast path; SUNDIALS sums its norms over the states
+// in their order, so that there a rounding may choose another step or order, which the tolerance bounds.
+// Gravity and a driven shaft are not symmetric, nor unequal sensors.
+TEST_P(Paths, Mirror) {
+  const Case& c = GetParam();
+  if (c.options.shaft == Shaft::kDriven || c.model.parameters.mgl != 0) GTEST_SKIP();
+  if (c.name == "PressureOffset") GTEST_SKIP();
+  for (const Integrator integrator : kIntegrators) {
+    ActuatorOptions options = c.options;
+    options.integrator = integrator;
+    const bool exact = integrator == Integrator::kFast || integrator == Integrator::kAuto;
+    const double allowed = exact ? 0 : 1e-5;
+    Actuator a(c.model, options);
+    Actuator b(c.model, options);
+    for (int tick = 0; tick < 1000; ++tick) {
+      const double voltage = tick / 300 % 2 == 0 ? 2.6 : -1.7;
+      a.Advance(voltage, (tick + 1) * 2e-4);
+      b.Advance(-voltage, (tick + 1) * 2e-4);
+      ASSERT_NEAR(a.Measure().p1, b.Measure().p2, allowed) << Name(integrator) << " at tick " << tick;
+      ASSERT_NEAR(a.Measure().p2, b.Measure().p1, allowed) << Name(integrator) << " at tick " << tick;
+      ASSERT_NEAR(a.Measure().motor_speed, -b.Measure().motor_speed, allowed);
+      ASSERT_NEAR(a.Measure().arm_angle, -b.Measure().arm_angle, allowed);
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Cases, Paths, ::testing::ValuesIn(Cases()),
+                         [](const auto& test) { return test.param.name; });
+
+// Tests that the automatic choice leaves the explicit method when stability would hold it back, and loses no
+// accuracy.
+TEST(Auto, TakesCvodeWhereTheModelIsStiff) {
+  const ModelDescription stiff = Table1Model({Wave(2e5, 0.3, 5)});
+  Rig automatic(stiff, Held(Shaft::kClamped, Integrator::kAuto));
+  Rig explicit_pair(stiff, Held(Shaft::kClamped, Integrator::kErk));
+  EXPECT_EQ(automatic.simulation->in_use(), Integrator::kFast);
+  for (int tick = 0; tick < 50; ++tick) {
+    automatic.simulation->Advance(2.5, (tick + 1) * 2e-4);
+    explicit_pair.simulation->Advance(2.5, (tick + 1) * 2e-4);
+  }
+  EXPECT_EQ(automatic.simulation->in_use(), Integrator::kCvode);
+  EXPECT_NEAR(automatic.Measure().p2, explicit_pair.Measure().p2, 1e-3);
+  Rig plain(Table1Model(), Held(Shaft::kClamped, Integrator::kAuto));
+  plain.simulation->Advance(2.5, 0.5);
+  EXPECT_EQ(plain.simulation->in_use(), Integrator::kFast);
+}
+
+}  // namespace
+}  // namespace hydro::testing
