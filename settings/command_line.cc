@@ -65,16 +65,15 @@ std::string Message(const CLI::ParseError& error, const CLI::App& app) {
   std::string text = error.what();
   std::replace(text.begin(), text.end(), '\n', ' ');
   if (dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr) {
-    const size_t colon = text.find("expected: ");
-    const std::string found = colon == std::string::npos ? text : text.substr(colon + 10);
+    const std::vector<std::string> extras = app.remaining();
+    const std::string found = extras.empty() ? text : extras.front();
     const std::vector<std::string> names = OptionNames(app);
-    const std::string first = found.substr(0, found.find_first_of(" ="));
     return "found the unexpected argument " + Quoted(found) + ", allowed " + QuotedList(names) +
-           (first.starts_with("--") ? DidYouMean(first, names) : "");
+           (found.starts_with("--") ? DidYouMean(found.substr(0, found.find('=')), names) : "");
   }
   if (dynamic_cast<const CLI::RequiredError*>(&error) != nullptr) {
-    const size_t required = text.find(" is required");
-    const std::string name = text.substr(0, required);
+    const std::string name = text.substr(0, text.find(" is required"));
+    if (name == "A subcommand") return "verb: found nothing, allowed one of those that --help lists";
     const CLI::Option* option = app.get_option_no_throw(name);
     return name + ": found nothing, allowed " +
            (option == nullptr ? "one" : option->get_type_name() + " " + option->get_description());

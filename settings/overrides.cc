@@ -17,6 +17,11 @@ void SetOrigin(TomlNode* node, const std::string& place) {
   for (TomlNode& item : node->items) SetOrigin(&item, place);
 }
 
+std::string Trimmed(const std::string& text) {
+  const size_t first = text.find_first_not_of(' ');
+  return first == std::string::npos ? "" : text.substr(first, text.find_last_not_of(' ') - first + 1);
+}
+
 TomlNode ParseValue(const std::string& value) {
   try {
     TomlNode table = ParseToml("value = " + value, "");
@@ -24,7 +29,7 @@ TomlNode ParseValue(const std::string& value) {
   } catch (const InputError&) {
     // Not TOML: a bare word such as lockstep or udpm://...
   }
-  return StringNode(value);
+  return StringNode(Trimmed(value));
 }
 
 void ApplyOne(const std::string& option, TomlNode* root) {
@@ -33,7 +38,7 @@ void ApplyOne(const std::string& option, TomlNode* root) {
   if (equals == std::string::npos || equals == 0) {
     throw InputError(place + ": found " + Quoted(option) + ", allowed section.key=value");
   }
-  const std::string path = option.substr(0, equals);
+  const std::string path = Trimmed(option.substr(0, equals));
   TomlNode* node = root;
   for (size_t begin = 0; begin <= path.size();) {
     const size_t end = std::min(path.find('.', begin), path.size());

@@ -1,0 +1,61 @@
+#include <regex>
+#include <sstream>
+
+#include "tests/settings/texts.h"
+
+namespace hydro {
+namespace {
+
+std::string Documentation() {
+  std::ifstream stream(std::filesystem::path(HYDRO_SOURCE_DIR) / "docs" / "configuration.md");
+  std::stringstream text;
+  text << stream.rdbuf();
+  return text.str();
+}
+
+// The text under the heading "## `[section]`" of docs/configuration.md.
+std::string Chapter(const std::string& heading) {
+  const std::string text = Documentation();
+  const size_t begin = text.find("## `" + heading + "`");
+  if (begin == std::string::npos) return "";
+  return text.substr(begin, text.find("\n## ", begin + 1) - begin);
+}
+
+// The keys that a message about an unknown key lists.
+std::vector<std::string> Allowed(const std::string& error) {
+  std::vector<std::string> keys;
+  const size_t begin = error.find("allowed ");
+  const size_t end = error.find(", did you mean");
+  if (begin == std::string::npos) return keys;
+  const std::string list = error.substr(begin, end - begin);
+  const std::regex quoted("\"([^\"]*)\"");
+  for (std::sregex_iterator i(list.begin(), list.end(), quoted), none; i != none; ++i)
+    keys.push_back((*i)[1]);
+  return keys;
+}
+
+void ExpectDocumented(const std::string& heading, const std::string& config, size_t least) {
+  const std::string chapter = Chapter(heading);
+  ASSERT_NE(chapter, "") << "docs/configuration.md has no heading for " << heading;
+  const std::vector<std::string> keys = Allowed(InputErrorOf([&] { Parsed(config); }));
+  EXPECT_GE(keys.size(), least) << config;
+  for (const std::string& key : keys) {
+    EXPECT_NE(chapter.find("`" + key + "`"), std::string::npos) << heading << " does not mention " << key;
+  }
+}
+
+// Tests that every section and every key that the reader accepts is in docs/configuration.md.
+TEST(DocumentationTest, MentionsEveryKey) {
+  for (const std::string& section : Allowed(InputErrorOf([] { Parsed("zzz = 1\n"); }))) {
+    if (section == "process") continue;
+    ExpectDocumented("[" + section + "]", "[" + section + "]\nzzz = 1\n", 1);
+  }
+  ExpectDocumented("[[process]]", std::string(kConfigText) + "[[process]]\nzzz = 1\n", 4);
+  ExpectDocumented("[pressure]", "[pressure]\nzzz = 1\n", 8);
+  for (const char* kind : {"steps", "sine", "square", "chirp", "csv"}) {
+    ExpectDocumented("[reference]", std::string("[reference]\nkind = \"") + kind + "\"\nzzz = 1\n", 4);
+  }
+}
+
+}  // namespace
+}  // namespace hydro

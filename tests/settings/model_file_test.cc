@@ -1,0 +1,166 @@
+#include "settings/model_file.h"
+
+#include <cmath>
+#include <random>
+
+#include "model/parameter_info.h"
+#include "tests/settings/texts.h"
+
+namespace hydro {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+
+std::string With(const std::string& more) { return std::string(kModelText) + more; }
+std::string Changed(const std::string& from, const std::string& to) { return Replaced(kModelText, from, to); }
+
+// Tests that r and d give c = r^2 d / 2 and that all other numbers are taken as they are.
+TEST(ModelFileTest, ReadsTable1) {
+  const ModelDescription model = ParseModel(kModelText, "m.toml");
+  EXPECT_EQ(model.name, "Table 1");
+  EXPECT_DOUBLE_EQ(model.parameters.c, 3.68379);
+  EXPECT_EQ(model.parameters.beta, 247000.0);
+  EXPECT_EQ(model.parameters.c_E, 6.5e-6);
+  EXPECT_EQ(model.parameters.J_a, 23.3);
+  EXPECT_TRUE(model.effects.empty());
+}
+
+// Tests that c may be given instead of r and d.
+TEST(ModelFileTest, TakesTheDisplacementItself) {
+  EXPECT_EQ(ParseModel(Changed("r = 1.83\nd = 2.20\n", "c = 3.7\n"), "m.toml").parameters.c, 3.7);
+}
+
+// Tests that effects keep the file's order and their parameters.
+TEST(ModelFileTest, ReadsEffectsInOrder) {
+  const ModelDescription model = ParseModel(
+      With(
+          "[effects.\"pump.stribeck\"]\nspeed = 3\nstatic_excess = 0.5\n[effects.\"amp.lag\"]\ntau = 1e-3\n"),
+      "m.toml");
+  ASSERT_EQ(model.effects.size(), 2u);
+  EXPECT_EQ(model.effects[0].id, "pump.stribeck");
+  EXPECT_EQ(model.effects[0].parameters.at("speed"), 3.0);
+  EXPECT_EQ(model.effects[0].parameters.at("static_excess"), 0.5);
+  EXPECT_EQ(model.effects[1].id, "amp.lag");
+}
+
+// Tests that a written model reads back bit by bit, also with awkward numbers and every known effect.
+TEST(ModelFileTest, RoundTripsBitByBit) {
+  std::mt19937_64 random(1);
+  std::uniform_real_distribution<double> mantissa(1, 10);
+  for (int repeat = 0; repeat < 50; ++repeat) {
+    ModelDescription model;
+    model.name = "quotes \" and \\ and \xC3\xA4\n" + std::to_string(repeat);
+    const auto number = [&](const ParameterInfo& info) {
+      const double value = mantissa(random) * std::pow(10, static_cast<int>(random() % 12) - 8);
+      if (value >= info.min && value <= info.max) return value;
+      return std::isfinite(info.max) ? info.min + (info.max - info.min) * (value - std::floor(value))
+                                     : info.min + value;
+    };
+    for (const BaseParameter& parameter : BaseParameters()) {
+      model.parameters.*parameter.member = number(parameter.info);
+    }
+    for (const EffectInfo& info : EffectCatalogue()) {
+      EffectDescription effect;
+      effect.id = info.id;
+      for (const ParameterInfo& parameter : info.parameters) {
+        if (parameter.is_name) {
+          effect.names[parameter.name] = parameter.names.back();
+        } else {
+          effect.parameters[parameter.name] = number(parameter);
+        }
+      }
+      model.effects.insert(repeat % 2 == 0 ? model.effects.end() : model.effects.begin(), effect);
+    }
+    const ModelDescription back = ParseModel(FormatModel(model), "m.toml");
+    EXPECT_EQ(back.name, model.name);
+    for (const BaseParameter& parameter : BaseParameters()) {
+      EXPECT_EQ(back.parameters.*parameter.member, model.parameters.*parameter.member) << parameter.info.name;
+    }
+    ASSERT_EQ(back.effects.size(), model.effects.size());
+    for (size_t i = 0; i < model.effects.size(); ++i) {
+      EXPECT_EQ(back.effects[i].id, model.effects[i].id);
+      EXPECT_EQ(back.effects[i].parameters, model.effects[i].parameters);
+      EXPECT_EQ(back.effects[i].names, model.effects[i].names);
+    }
+  }
+}
+
+// Tests that each malformed model is refused with file and line, key, what was found and what is allowed.
+TEST(ModelFileTest, RefusesMalformedModels) {
+  const struct {
+    std::string text;
+    std::string place;
+    std::string says;
+  } models[] = {
+      {Changed("k_1 = 4.0", "k_1 = "), "m.toml:3: ", "syntax: "},
+      {Changed("k_1 = 4.0", "k_1 = 4.0\nk_1 = 5.0"), "m.toml:4: ", "syntax: "},
+      {Changed("k_1 = 4.0\n", ""),
+       "m.toml:2: ", "parameters.k_1: found nothing, allowed a finite number above 0"},
+      {Changed("k_1 = 4.0", "K_1 = 4.0"), "m.toml:3: ", "\"K_1\": found an unknown key, allowed \"k_1\""},
+      {Changed("k_1 = 4.0", "K_1 = 4.0"), "m.toml:3: ", "did you mean \"k_1\"?"},
+      {Changed("p_3 = 100.0", "p3 = 100.0"), "m.toml:16: ", "did you mean \"p_3\"?"},
+      {Changed("k_1 = 4.0", "k_1 = \"4.0\""),
+       "m.toml:3: ", "parameters.k_1: found \"4.0\", allowed a finite number"},
+      {Changed("k_1 = 4.0", "k_1 = nan"),
+       "m.toml:3: ", "parameters.k_1: found nan, allowed a finite number above 0"},
+      {Changed("k_1 = 4.0", "k_1 = inf"), "m.toml:3: ", "parameters.k_1: found inf"},
+      {Changed("k_1 = 4.0", "k_1 = 0"),
+       "m.toml:3: ", "parameters.k_1: found 0, allowed a finite number above 0"},
+      {Changed("k_1 = 4.0", "k_1 = [4.0]"), "m.toml:3: ", "parameters.k_1: found an array"},
+      {Changed("k_1 = 4.0", "k_1 = 2020-01-01"), "m.toml:3: ", "parameters.k_1: found a date or time"},
+      {Changed("b = 0.01455", "b = -1"),
+       "m.toml:7: ", "parameters.b: found -1, allowed a finite number of at least 0"},
+      {Changed("beta = 247000", "beta = -247000"), "m.toml:10: ", "parameters.beta: found -247000"},
+      {Changed("r = 1.83\n", ""), "m.toml:2: ", "parameters.r: found nothing, allowed"},
+      {Changed("d = 2.20\n", ""), "m.toml:2: ", "parameters.d: found nothing, allowed"},
+      {Changed("r = 1.83\nd = 2.20\n", ""), "m.toml:2: ", "parameters.c: found nothing, allowed"},
+      {Changed("r = 1.83", "c = 3\nr = 1.83"),
+       "m.toml:13: ", "parameters.r: found it beside c, allowed r and d, or c, not both"},
+      {Changed("r = 1.83", "c = 3"),
+       "m.toml:13: ", "parameters.d: found it beside c, allowed r and d, or c, not both"},
+      {Changed("r = 1.83", "r = -1.83"),
+       "m.toml:12: ", "parameters.r: found -1.83, allowed a finite number above 0"},
+      {Changed("r = 1.83", "r = 1e200"), "m.toml:12: ", "parameters.r: found r^2 d / 2 = inf"},
+      {Changed("name = \"Table 1\"", "name = 1"), "m.toml:1: ", "name: found 1, allowed a string"},
+      {Changed("[parameters]", "[parameter]"), "m.toml:2: ", "\"parameter\": found an unknown key, allowed"},
+      {"name = \"x\"\n", "m.toml: ", "parameters: found nothing, allowed a section [parameters]"},
+      {"", "m.toml: ", "parameters: found nothing"},
+      {"parameters = 3\n", "m.toml:1: ", "parameters: found 3, allowed a section [parameters]"},
+      {With("[effects.\"pump.stribek\"]\nspeed = 3\n"),
+       "m.toml:20: ", "unknown effect \"pump.stribek\", allowed"},
+      {With("[effects.\"pump.stribek\"]\nspeed = 3\n"), "m.toml:20: ", "did you mean \"pump.stribeck\"?"},
+      {With("[effects.pump.stribeck]\nspeed = 3\nstatic_excess = .5\n"), "m.toml:", ""},
+      {With("[effects.pump.stribeck]\nspeed = 3\nstatic_excess = 0.5\n"),
+       "m.toml:20: ", "the id needs quotes"},
+      {With("[effects.\"pump.stribeck\"]\nspeed = 3\n"),
+       "m.toml:20: ", "effects.pump.stribeck.static_excess: found nothing"},
+      {With("[effects.\"pump.stribeck\"]\nspeed = 3\nstatic_excess = 1\nx = 2\n"),
+       "m.toml:23: ", "\"x\": found an unknown key"},
+      {With("[effects.\"pump.stribeck\"]\nspeed = 0\nstatic_excess = 1\n"),
+       "m.toml:21: ", "effects.pump.stribeck.speed: found 0"},
+      {With("[effects]\n\"amp.lag\" = 3\n"), "m.toml:21: ", "effects.amp.lag: found 3, allowed a section"},
+      {With("[[effects]]\nid = \"amp.lag\"\n"), "m.toml:20: ", "effects: found an array, allowed a section"},
+      {With("[extra]\n"),
+       "m.toml:20: ", "\"extra\": found an unknown key, allowed \"name\", \"parameters\" or \"effects\""},
+  };
+  for (const auto& model : models) {
+    const std::string error = InputErrorOf([&] { ParseModel(model.text, "m.toml"); });
+    EXPECT_THAT(error, AllOf(HasSubstr(model.place), HasSubstr(model.says)));
+    EXPECT_EQ(error.find('\n'), std::string::npos) << error;
+  }
+}
+
+using ModelFileFolderTest = FolderTest;
+
+// Tests that files that cannot be read are named with the reason.
+TEST_F(ModelFileFolderTest, NamesUnreadableFiles) {
+  const std::string none = (folder_ / "none.toml").string();
+  EXPECT_EQ(InputErrorOf([&] { LoadModelFile(none); }), none + ": cannot be read: No such file or directory");
+  EXPECT_THAT(InputErrorOf([&] { LoadModelFile(folder_.string()); }),
+              HasSubstr("found a folder, allowed: a file"));
+  EXPECT_EQ(LoadModelFile(Write("m.toml", kModelText)).parameters.k_2, 3.68);
+}
+
+}  // namespace
+}  // namespace hydro

@@ -1,0 +1,261 @@
+#include "settings/stack_config.h"
+
+#include <cmath>
+
+#include "tests/settings/texts.h"
+
+namespace hydro {
+namespace {
+
+using ::testing::HasSubstr;
+
+constexpr double kInf = std::numeric_limits<double>::infinity();
+
+// Tests the defaults and what follows from the rates.
+TEST(StackConfigTest, DefaultsAndTicks) {
+  const StackConfig config = Parsed(kConfigText);
+  EXPECT_EQ(config.file, "stack.toml");
+  EXPECT_EQ(config.model.resolved_file, "model.toml");
+  EXPECT_EQ(config.model.text, kModelText);
+  EXPECT_EQ(config.model.description.name, "Table 1");
+  EXPECT_EQ(config.model.shaft, Shaft::kFree);
+  EXPECT_TRUE(std::isnan(config.model.initial_pressure_psi));
+  EXPECT_EQ(config.time.mode, TimeMode::kRealtime);
+  EXPECT_EQ(config.pressure.rate_hz, 0.0);
+  EXPECT_FALSE(config.position.derivative_on_error);
+  EXPECT_EQ(config.limits.motor_speed_rad_s, kInf);
+  EXPECT_EQ(config.seed, 1);
+  EXPECT_EQ(config.position_interval_ticks, 5);
+  EXPECT_EQ(config.pressure_interval_ticks, 1);
+  EXPECT_EQ(config.last_tick, -1);
+  ASSERT_EQ(config.processes.size(), 3u);
+  EXPECT_EQ(config.processes[0].program, "hydro-plant");
+  EXPECT_EQ(config.processes[2].program, "hydro-position-ctrl");
+  EXPECT_EQ(config.processes[2].cpu, -1);
+}
+
+const char kEveryKey[] = R"(
+[model]
+file = "models/m.toml"
+shaft = "driven"
+bypass = true
+initial_pressure_psi = 120
+[model.motion]
+kind = "chirp"
+offset = 0.1
+amplitude = 0.2
+first_frequency_hz = 0.3
+last_frequency_hz = 4
+duration_s = 5
+start_s = 0.6
+[bus]
+url = "udpm://239.255.76.68:7668?ttl=1"
+channel_suffix = "_LEFT"
+[time]
+mode = "lockstep"
+speed = 2
+duration_s = 12.5
+start_timeout_s = 3
+stall_timeout_s = 1
+[plant]
+rate_hz = 5000
+command_delay_ticks = 0
+integrator = "cvode"
+relative_tolerance = 1e-6
+[pressure]
+rate_hz = 1000
+k_p = 0.1336
+k_v = 8.39
+compressed_sides = 1
+reference_feedforward = 0.002
+arm_speed_feedforward = true
+[position]
+sample_interval_s = 0.002
+c1 = 1
+c2 = 2
+derivative = "error"
+dac_bits = 12
+dac_range_psi = 1500
+[reference]
+signal = "torque"
+kind = "square"
+offset = 1
+amplitude = 2
+frequency_hz = 3
+start_s = 4
+[limits]
+pressure_psi = 1800
+motor_speed_rad_s = 600
+arm_torque_in_lbf = 7000
+stale_input_s = 0.05
+[noise]
+p1_psi = 1
+p2_psi = 2
+motor_angle_rad = 3
+motor_speed_rad_s = 4
+arm_angle_rad = 5
+arm_speed_rad_s = 6
+seed = 7
+[[process]]
+program = "hydro-driver"
+host = "rig"
+cpu = 2
+priority = 80
+[[process]]
+program = "hydro-logger"
+)";
+
+// Tests that every key reaches its field.
+TEST(StackConfigTest, ReadsEveryKey) {
+  const StackConfig config = Parsed(kEveryKey);
+  EXPECT_EQ(config.model.file, "models/m.toml");
+  EXPECT_EQ(config.model.shaft, Shaft::kDriven);
+  EXPECT_TRUE(config.model.bypass);
+  EXPECT_EQ(config.model.initial_pressure_psi, 120);
+  ASSERT_TRUE(config.model.motion);
+  EXPECT_EQ(config.model.motion->kind, TrajectorySpec::Kind::kChirp);
+  EXPECT_EQ(config.model.motion->offset, 0.1);
+  EXPECT_EQ(config.model.motion->amplitude, 0.2);
+  EXPECT_EQ(config.model.motion->first_frequency_hz, 0.3);
+  EXPECT_EQ(config.model.motion->last_frequency_hz, 4);
+  EXPECT_EQ(config.model.motion->duration_s, 5);
+  EXPECT_EQ(config.model.motion->start_s, 0.6);
+  EXPECT_EQ(config.bus.url, "udpm://239.255.76.68:7668?ttl=1");
+  EXPECT_EQ(config.bus.channel_suffix, "_LEFT");
+  EXPECT_EQ(config.time.mode, TimeMode::kLockstep);
+  EXPECT_EQ(config.time.speed, 2);
+  EXPECT_EQ(config.time.duration_s, 12.5);
+  EXPECT_EQ(config.time.start_timeout_s, 3);
+  EXPECT_EQ(config.time.stall_timeout_s, 1);
+  EXPECT_EQ(config.plant.rate_hz, 5000);
+  EXPECT_EQ(config.plant.command_delay_ticks, 0);
+  EXPECT_EQ(config.plant.integrator, Integrator::kCvode);
+  EXPECT_EQ(config.plant.relative_tolerance, 1e-6);
+  EXPECT_EQ(config.pressure.rate_hz, 1000);
+  EXPECT_EQ(config.pressure.k_p, 0.1336);
+  EXPECT_EQ(config.pressure.k_v, 8.39);
+  EXPECT_EQ(config.pressure.compressed_sides, 1);
+  EXPECT_TRUE(config.pressure.reference_feedforward);
+  EXPECT_EQ(config.pressure.reference_feedforward_V_psi, 0.002);
+  EXPECT_TRUE(config.pressure.arm_speed_feedforward);
+  EXPECT_EQ(config.position.sample_interval_s, 0.002);
+  EXPECT_EQ(config.position.c1, 1);
+  EXPECT_EQ(config.position.c2, 2);
+  EXPECT_TRUE(config.position.derivative_on_error);
+  EXPECT_EQ(config.position.dac_bits, 12);
+  EXPECT_EQ(config.position.dac_range_psi, 1500);
+  EXPECT_EQ(config.reference.signal, ReferenceSignal::kTorque);
+  EXPECT_EQ(config.reference.trajectory.kind, TrajectorySpec::Kind::kSquare);
+  EXPECT_EQ(config.reference.trajectory.amplitude, 2);
+  EXPECT_EQ(config.reference.trajectory.frequency_hz, 3);
+  EXPECT_EQ(config.limits.pressure_psi, 1800);
+  EXPECT_EQ(config.limits.motor_speed_rad_s, 600);
+  EXPECT_EQ(config.limits.arm_torque_in_lbf, 7000);
+  EXPECT_EQ(config.limits.stale_input_s, 0.05);
+  EXPECT_EQ(config.noise.p1_psi, 1);
+  EXPECT_EQ(config.noise.p2_psi, 2);
+  EXPECT_EQ(config.noise.motor_angle_rad, 3);
+  EXPECT_EQ(config.noise.motor_speed_rad_s, 4);
+  EXPECT_EQ(config.noise.arm_angle_rad, 5);
+  EXPECT_EQ(config.noise.arm_speed_rad_s, 6);
+  EXPECT_EQ(config.seed, 7);
+  ASSERT_EQ(config.processes.size(), 2u);
+  EXPECT_EQ(config.processes[0].program, "hydro-driver");
+  EXPECT_EQ(config.processes[0].host, "rig");
+  EXPECT_EQ(config.processes[0].cpu, 2);
+  EXPECT_EQ(config.processes[0].priority, 80);
+  EXPECT_EQ(config.processes[1].program, "hydro-logger");
+  EXPECT_EQ(config.position_interval_ticks, 10);
+  EXPECT_EQ(config.pressure_interval_ticks, 5);
+  EXPECT_EQ(config.last_tick, 62500);
+}
+
+// Tests that the effective text gives the same configuration, and itself, again.
+TEST(StackConfigTest, EffectiveTextIsAFixedPoint) {
+  for (const char* text : {kConfigText, kEveryKey}) {
+    const StackConfig config = Parsed(text);
+    const StackConfig again = Parsed(config.text);
+    EXPECT_EQ(again.text, config.text);
+    EXPECT_EQ(again.last_tick, config.last_tick);
+    EXPECT_EQ(again.pressure.k_p, config.pressure.k_p);
+    EXPECT_EQ(again.reference.trajectory.steps.size(), config.reference.trajectory.steps.size());
+    EXPECT_EQ(again.model.motion.has_value(), config.model.motion.has_value());
+    EXPECT_EQ(again.processes.size(), config.processes.size());
+    EXPECT_EQ(again.seed, config.seed);
+  }
+}
+
+// Tests the other values that some keys take.
+TEST(StackConfigTest, OtherValues) {
+  EXPECT_TRUE(Parsed(Replaced(kConfigText, "[pressure]", "[pressure]\nreference_feedforward = true"))
+                  .pressure.reference_feedforward);
+  EXPECT_FALSE(Parsed(Replaced(kConfigText, "[pressure]", "[pressure]\nreference_feedforward = true"))
+                   .pressure.reference_feedforward_V_psi);
+  EXPECT_EQ(
+      Parsed(Replaced(kConfigText, "[pressure]", "[pressure]\nrate_hz = \"every_tick\"")).pressure.rate_hz,
+      0);
+  EXPECT_EQ(Parsed(std::string(kConfigText) + "[limits]\npressure_psi = inf\n").limits.pressure_psi, kInf);
+  EXPECT_TRUE(Parsed(std::string("process = []\n") + kConfigText).processes.empty());
+}
+
+// Tests that a rate that is no whole number of hertz still has whole intervals.
+TEST(StackConfigTest, TicksThatAreNotDecimal) {
+  const std::string text = Replaced(kConfigText, "rate_hz = 1000", "rate_hz = 3000");
+  EXPECT_EQ(Parsed(Replaced(text, "[position]", "[position]\nsample_interval_s = 0.333333333333"))
+                .position_interval_ticks,
+            1000);
+}
+
+using StackConfigFolderTest = FolderTest;
+
+// Tests that the model and the trajectory are found beside the configuration, wherever the program was
+// started.
+TEST_F(StackConfigFolderTest, PathsAreRelativeToTheConfiguration) {
+  Write("models/table1.toml", kModelText);
+  Write("runs/square.csv", "time_s,value\n0,0\n1,0.2\n2,-0.1\n");
+  const std::string file =
+      Write("stack/a.toml", Replaced(Replaced(kConfigText, "\"model.toml\"", "\"../models/table1.toml\""),
+                                     "kind = \"steps\"\nsteps = [[0.1, 0.1]]",
+                                     "kind = \"csv\"\nfile = \"../runs/square.csv\"\n"
+                                     "column = \"value\"\ninterpolation = \"cubic\""));
+  const StackConfig config = LoadStackConfig(file);
+  EXPECT_EQ(config.model.resolved_file, (folder_ / "models/table1.toml").string());
+  EXPECT_EQ(config.model.text, kModelText);
+  ASSERT_EQ(config.reference.trajectory.points.size(), 3u);
+  EXPECT_EQ(config.reference.trajectory.points[1].value, 0.2);
+  EXPECT_EQ(config.reference.trajectory.interpolation, Interpolation::kCubic);
+  EXPECT_EQ(MakeTrajectory(config.reference.trajectory)->Value(1), 0.2);
+
+  // A log has only the texts.
+  std::filesystem::remove_all(folder_ / "runs");
+  const StackConfig again = ParseStackConfig(config.text, "log.lcmlog", config.model.text, "log.lcmlog");
+  ASSERT_EQ(again.reference.trajectory.points.size(), 3u);
+  EXPECT_EQ(again.reference.trajectory.points[2].time, 2.0);
+  EXPECT_EQ(again.reference.trajectory.points[2].value, -0.1);
+  EXPECT_EQ(again.reference.trajectory.interpolation, Interpolation::kCubic);
+  EXPECT_EQ(again.text, config.text);
+}
+
+// Tests that errors in the files that a configuration names say which file.
+TEST_F(StackConfigFolderTest, NamesTheFileThatIsWrong) {
+  const std::string file = Write("a.toml", kConfigText);
+  EXPECT_THAT(InputErrorOf([&] { LoadStackConfig(file); }),
+              HasSubstr("model.toml: cannot be read: No such file"));
+  Write("model.toml", Replaced(kModelText, "k_1 = 4.0", "k_1 = -4.0"));
+  EXPECT_THAT(InputErrorOf([&] { LoadStackConfig(file); }),
+              HasSubstr("model.toml:3: parameters.k_1: found -4"));
+  Write("model.toml", kModelText);
+  EXPECT_EQ(InputErrorOf([&] { LoadStackConfig(file); }), "");
+  Write("p.csv", "time_s,y\n0,zero\n");
+  const std::vector<std::string> csv = {"reference.kind=csv", "reference.file=p.csv", "reference.column=y"};
+  EXPECT_THAT(InputErrorOf([&] { LoadStackConfig(file, csv); }),
+              HasSubstr("p.csv:2:y: found \"zero\", allowed"));
+  EXPECT_THAT(InputErrorOf([&] { LoadStackConfig((folder_ / "no.toml").string()); }),
+              HasSubstr("no.toml: cannot be read: No such file or directory"));
+  const std::string no_model = Write("b.toml", Replaced(kConfigText, "file = \"model.toml\"\n", ""));
+  EXPECT_THAT(InputErrorOf([&] { LoadStackConfig(no_model); }),
+              HasSubstr("b.toml:1: model.file: found nothing, allowed the path of a model file"));
+}
+
+}  // namespace
+}  // namespace hydro
