@@ -6,6 +6,7 @@
 #include "logger/new_file.h"
 #include "logger/replay.h"
 #include "logger/tracking.h"
+#include "settings/input_error.h"
 
 namespace hydro {
 
