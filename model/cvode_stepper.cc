@@ -10,7 +10,7 @@ namespace {
 
 // Backward differences let more of the local errors add up than the other paths do; with this share of the
 // tolerance the three agree alike.
-constexpr double kErrorShare = 0.1;
+constexpr double kErrorShare = 0.03;
 
 int SundialsJacobian(double time, N_Vector state, N_Vector, SUNMatrix jacobian, void* data, N_Vector,
                      N_Vector, N_Vector) {

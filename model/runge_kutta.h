@@ -87,7 +87,8 @@ class RungeKutta {
       if (change > 0) z = std::max(z, change / cause);
       const double error = std::abs(h / 6 * (k4[i] - next.rate[i]));
       const double ratio = error / (floor_[i] + tolerance_ * std::abs(next.state[i]));
-      excess = std::isnan(ratio) ? 1e30 : std::max(excess, ratio);
+      if (!std::isfinite(ratio)) return 1e30;
+      excess = std::max(excess, ratio);
     }
     return std::min(1.0, 0.6 * z) * excess;
   }

@@ -62,6 +62,33 @@ TEST(Errors, FreeArmRunsOut) {
   }
 }
 
+// Tests the same within one long call.
+TEST(Errors, FreeArmRunsOutInOneCall) {
+  for (const Integrator integrator : kIntegrators) {
+    Actuator actuator(Table1Model(), Held(Shaft::kFree, integrator));
+    EXPECT_THAT(ErrorOf([&] { actuator.Advance(10, 100); }),
+                AllOf(HasSubstr("arm angle 0.8"), HasSubstr("V_1 = "), HasSubstr(" at t = ")))
+        << Name(integrator);
+  }
+}
+
+// Tests that numbers which overflow end in an error with time and state, on every path, and not in a silent
+// wrong number.
+TEST(Errors, Overflow) {
+  ModelDescription model = Table1Model();
+  model.parameters.k_1 = 1e300;
+  model.parameters.T_pmax = 1e300;
+  model.parameters.J = 1e-300;
+  for (const Integrator integrator : kIntegrators) {
+    EXPECT_THAT(ErrorOf([&] {
+                  Actuator actuator(model, Held(Shaft::kClamped, integrator));
+                  actuator.Advance(1, 1);
+                }),
+                AllOf(HasSubstr(" at t = 0 s"), HasSubstr("motor_speed = ")))
+        << Name(integrator);
+  }
+}
+
 // Tests that a driven shaft's motion is checked before it runs.
 TEST(Errors, DrivenMotion) {
   ActuatorOptions options = Held(Shaft::kDriven);
