@@ -26,15 +26,17 @@ std::string Angle(double rad, bool si) {
 
 std::string SummaryText(const Tracking& tracking, const LogInfo& info, bool si) {
   std::string text;
-  const auto line = [&](const auto&... arguments) { text += fmt::format(arguments...) + "\n"; };
-  line(FMT_STRING("{} states over {:.3f} s of plant time, {} ticks skipped (late wake-ups), {} messages lost"),
+  const auto line = [&](fmt::string_view format, const auto&... arguments) {
+    text += fmt::vformat(format, fmt::make_format_args(arguments...)) + "\n";
+  };
+  line("{} states over {:.3f} s of plant time, {} ticks skipped (late wake-ups), {} messages lost",
        info.ticks.states, info.ticks.last_time_s - info.ticks.first_time_s, info.ticks.missing, LostMessages(info));
   if (tracking.has_reference) {
-    line(FMT_STRING("arm {} its target {}: final error {:.5f} rad, rms error over the run {:.4f} rad"),
+    line("arm {} its target {}: final error {:.5f} rad, rms error over the run {:.4f} rad",
          tracking.at_target ? "at" : "NOT at", Angle(tracking.target_rad, si), tracking.final_error_rad,
          tracking.rms_error_rad);
     for (const StepResponse& step : tracking.steps) {
-      line(FMT_STRING("  step at {:5.2f} s to {}: overshoot {:4.1f} %, {}, error at the end {:.5f} rad"), step.time_s,
+      line("  step at {:5.2f} s to {}: overshoot {:4.1f} %, {}, error at the end {:.5f} rad", step.time_s,
            Angle(step.to_rad, si), step.overshoot_percent,
            step.settling_time_s ? fmt::format("within 2 % after {:.2f} s", *step.settling_time_s)
                                 : std::string("not within 2 %"),
@@ -42,16 +44,16 @@ std::string SummaryText(const Tracking& tracking, const LogInfo& info, bool si) 
     }
   }
   if (!info.loops.empty()) {
-    line(FMT_STRING("{:<14} {:>8} {:>10} {:>10} {:>10} {:>10} {:>10} {:>7} {:>6}"), "loop (last s)", "cycles",
+    line("{:<14} {:>8} {:>10} {:>10} {:>10} {:>10} {:>10} {:>7} {:>6}", "loop (last s)", "cycles",
          "period p50", "period p99", "late p50", "late p99", "late max", "missed", "lost");
     for (const LoopInfo& loop : info.loops) {
-      line(FMT_STRING("{:<14} {:>8} {:>7.0f} us {:>7.0f} us {:>7.0f} us {:>7.0f} us {:>7.0f} us {:>7} {:>6}"),
+      line("{:<14} {:>8} {:>7.0f} us {:>7.0f} us {:>7.0f} us {:>7.0f} us {:>7.0f} us {:>7} {:>6}",
            loop.last.role, loop.cycles, loop.last.period_p50_us, loop.last.period_p99_us, loop.last.latency_p50_us,
            loop.last.latency_p99_us, loop.last.latency_max_us, loop.missed_deadlines, loop.lost_messages);
     }
   }
   for (const fault_t& fault : info.faults) {
-    line(FMT_STRING("fault at tick {}: {} {} ({})"), fault.tick, fault.code, fault.active ? "began" : "ended",
+    line("fault at tick {}: {} {} ({})", fault.tick, fault.code, fault.active ? "began" : "ended",
          fault.source);
   }
   return text;
