@@ -57,7 +57,10 @@ loop_statistics_t LoopStatistics::Total(Clock::TimePoint now) const {
   all.period.Merge(current_.period);
   all.latency.Merge(current_.latency);
   all.queue_depth = std::max(all.queue_depth, current_.queue_depth);
-  return Report(all, now);
+  loop_statistics_t report = Report(all, now);
+  report.whole_run = true;
+  report.sequence = sequence_;
+  return report;
 }
 
 loop_statistics_t LoopStatistics::Report(const Interval& interval, Clock::TimePoint now) const {

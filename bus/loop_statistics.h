@@ -34,7 +34,7 @@ class LoopStatistics {
   // The report that is due, once a second; nothing in between. The sender adds utime.
   std::optional<loop_statistics_t> Poll(Clock::TimePoint now);
 
-  // The same over the whole run so far, whenever it is asked for.
+  // The same over the whole run so far, whenever it is asked for; marked as whole_run.
   loop_statistics_t Total(Clock::TimePoint now) const;
 
  private:

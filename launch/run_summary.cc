@@ -18,8 +18,11 @@ void RunSummary::Add(const loop_statistics_t& report) {
     loop = loops_.insert(loops_.end(), Loop{});
     loop->shown = report;
   }
-  // The last report of a run covers what is left of a second, perhaps a few cycles: its percentiles say
-  // little.
+  if (report.whole_run) {
+    *loop = Loop{report, report.cycles, report.missed_deadlines, report.lost_messages, report.latency_max_us};
+    return;
+  }
+  // A process that was killed leaves only its periodic reports; one over a few cycles says little.
   if (report.interval_s >= kMostOfASecond || loop->shown.interval_s < kMostOfASecond) loop->shown = report;
   loop->cycles += report.cycles;
   loop->missed_deadlines += report.missed_deadlines;

@@ -136,6 +136,12 @@ std::vector<LoopInfo> LoopsOf(const std::vector<loop_statistics_t>& statistics) 
   for (const loop_statistics_t& report : statistics) {
     LoopInfo& loop = loops[{report.role, report.host}];
     loop.last = report;
+    if (report.whole_run) {  // the process's own sum, which also has what came after its last periodic report
+      loop.cycles = report.cycles;
+      loop.missed_deadlines = report.missed_deadlines;
+      loop.lost_messages = report.lost_messages;
+      continue;
+    }
     loop.cycles = SaturatingSum(loop.cycles, report.cycles);
     loop.missed_deadlines = SaturatingSum(loop.missed_deadlines, report.missed_deadlines);
     loop.lost_messages = SaturatingSum(loop.lost_messages, report.lost_messages);

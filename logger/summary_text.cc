@@ -44,7 +44,7 @@ std::string SummaryText(const Tracking& tracking, const LogInfo& info, bool si) 
     }
   }
   if (!info.loops.empty()) {
-    line("{:<14} {:>8} {:>10} {:>10} {:>10} {:>10} {:>10} {:>7} {:>6}", "loop (last s)", "cycles",
+    line("{:<14} {:>8} {:>10} {:>10} {:>10} {:>10} {:>10} {:>7} {:>6}", "loop", "cycles",
          "period p50", "period p99", "late p50", "late p99", "late max", "missed", "lost");
     for (const LoopInfo& loop : info.loops) {
       line("{:<14} {:>8} {:>7.0f} us {:>7.0f} us {:>7.0f} us {:>7.0f} us {:>7.0f} us {:>7} {:>6}",

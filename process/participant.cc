@@ -109,6 +109,11 @@ void Participant::RequestStop(const std::string& reason, int exit_code) {
 }
 
 int Participant::Leave() {
+  if (!clock_.simulated()) {
+    loop_statistics_t total = statistics_.Total(clock_.Now());
+    total.utime = clock_.Utime();
+    bus_.Publish(channels_.loop_statistics, total);
+  }
   const bool failed = stop_ && stop_->exit_code != 0;
   Announce(failed ? process_status_t::FAILED : process_status_t::DONE, failed ? stop_->reason : "");
   return failed ? 1 : 0;
