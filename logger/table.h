@@ -44,8 +44,8 @@ void CheckTableName(const std::string& file);
 Table ReadCsv(const std::string& file);
 void WriteCsv(const Table& table, const std::string& file);
 
-// MAT: one real vector of numbers a column, named as the column. Written in the MAT 5 format, as column
-// vectors.
+// MAT, version 5 or 7.3: one real vector of numbers a column, named as the column. Written in the MAT 5
+// format, as column vectors.
 Table ReadMat(const std::string& file);
 void WriteMat(const Table& table, const std::string& file);
 

@@ -1,7 +1,7 @@
 #include <matio.h>
 #include <sys/stat.h>
 
-#include <cmath>
+#include <cstring>
 #include <memory>
 
 #include "logger/mapped_file.h"
@@ -91,14 +91,39 @@ Column ReadColumn(mat_t* mat, matvar_t* variable, const Table& table) {
   return {name, Values(*variable, count, place)};
 }
 
+constexpr size_t kMat5HeaderSize = 128;
+constexpr size_t kMat5TagSize = 8;  // of each element below the header: its type and its number of bytes
+
+// matio gives memory that it never filled for the values that a MAT 5 file was cut off from: the elements
+// must all be there.
+void CheckMat5IsWhole(const std::string& file) {
+  const MappedFile contents(file);
+  const bool swapped = contents.size() >= kMat5HeaderSize && contents.data()[kMat5HeaderSize - 2] == 'M';
+  size_t offset = kMat5HeaderSize;
+  while (offset < contents.size()) {
+    const size_t left = contents.size() - offset;
+    uint32_t size = 0;
+    if (left >= kMat5TagSize) std::memcpy(&size, contents.data() + offset + 4, sizeof size);
+    if (swapped) size = __builtin_bswap32(size);
+    if (left < kMat5TagSize || size > left - kMat5TagSize) {
+      throw InputError(file + ": byte " + std::to_string(offset) +
+                       ": found a variable cut off by the end of the file, " + std::to_string(left) +
+                       " bytes; " + std::to_string(kMat5TagSize + size) + " are needed");
+    }
+    offset += kMat5TagSize + size;
+  }
+}
+
 }  // namespace
 
 Table ReadMat(const std::string& file) {
   SilenceMatio();
   { const MappedFile readable(file); }  // for the system's reason when it is not
   const MatFile mat(Mat_Open(file.c_str(), MAT_ACC_RDONLY));
-  if (mat == nullptr)
-    throw InputError(file + ": found no MAT file; MAT files of version 4, 5 or 7.3 are allowed");
+  if (mat == nullptr || Mat_GetVersion(mat.get()) == MAT_FT_MAT4) {
+    throw InputError(file + ": found no MAT file of version 5 or 7.3; these are allowed");
+  }
+  if (Mat_GetVersion(mat.get()) == MAT_FT_MAT5) CheckMat5IsWhole(file);
   Table table;
   table.file = file;
   while (const Variable variable{Mat_VarReadNextInfo(mat.get())}) {
