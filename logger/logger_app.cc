@@ -118,7 +118,10 @@ void LoggerApp::WriteUntilClosed() {
         batch.swap(queue_);
         closing = closing_;
       }
-      WriteBatch(batch);
+      if (batch.empty()) continue;
+      const Write write = WriteBatch(batch);
+      const std::lock_guard lock(mutex_);
+      writes_.push_back(write);
     }
   } catch (...) {
     const std::lock_guard lock(mutex_);
@@ -127,7 +130,9 @@ void LoggerApp::WriteUntilClosed() {
   }
 }
 
-void LoggerApp::WriteBatch(std::deque<Event>& batch) {
+LoggerApp::Write LoggerApp::WriteBatch(std::deque<Event>& batch) {
+  const auto began = participant_.clock().Now();
+  const int64_t oldest_utime = batch.front().utime;
   for (Event& event : batch) {
     if (options_.rotate_bytes > 0 && writer_->bytes() >= options_.rotate_bytes) Rotate();
     writer_->Append(event.channel, event.data.data(), event.data.size(), event.utime);
@@ -135,6 +140,7 @@ void LoggerApp::WriteBatch(std::deque<Event>& batch) {
   }
   writer_->Flush();
   bytes_ = writer_->bytes();
+  return {began, std::chrono::microseconds(participant_.clock().Utime() - oldest_utime)};
 }
 
 void LoggerApp::Rotate() {
@@ -149,6 +155,11 @@ void LoggerApp::Poll() {
   participant_.statistics().set_lost_messages(lost_);
   participant_.statistics().RecordQueueDepth(largest_queue_);
   largest_queue_ = 0;
+  {
+    const std::lock_guard lock(mutex_);
+    for (const Write& write : writes_) participant_.statistics().RecordCycle(write.began, write.latency);
+    writes_.clear();
+  }
   participant_.Poll();
   if (state_tick_ > reported_tick_) ReportProgress();
   if (participant_.stop() && !stop_time_) stop_time_ = participant_.clock().Now();

@@ -55,9 +55,14 @@ class LoggerApp : public App {
     int64_t utime = 0;
   };
 
+  struct Write {
+    Clock::TimePoint began;
+    Clock::Duration latency;  // since the oldest message in it had arrived
+  };
+
   void OnMessage(const RawMessage& message);
   void WriteUntilClosed();
-  void WriteBatch(std::deque<Event>& batch);
+  Write WriteBatch(std::deque<Event>& batch);
   void Rotate();
   void ReportProgress();
   bool EveryoneHasLeft() const;
@@ -69,9 +74,10 @@ class LoggerApp : public App {
   int files_ = 1;
   std::map<std::string, Event> descriptions_;  // newest HYDRO_RUN message by channel: opens each rotated file
 
-  std::mutex mutex_;  // guards queue_, closing_, failure_
+  std::mutex mutex_;  // guards queue_, writes_, closing_, failure_
   std::condition_variable wake_;
   std::deque<Event> queue_;
+  std::vector<Write> writes_;  // done since the last Poll()
   bool closing_ = false;
   std::exception_ptr failure_;
   std::atomic<bool> failed_ = false;
