@@ -1,4 +1,3 @@
-#include <regex>
 #include <sstream>
 
 #include "tests/settings/texts.h"
@@ -27,10 +26,11 @@ std::vector<std::string> Allowed(const std::string& error) {
   const size_t begin = error.find("allowed ");
   const size_t end = error.find(", did you mean");
   if (begin == std::string::npos) return keys;
-  const std::string list = error.substr(begin, end - begin);
-  const std::regex quoted("\"([^\"]*)\"");
-  for (std::sregex_iterator i(list.begin(), list.end(), quoted), none; i != none; ++i)
-    keys.push_back((*i)[1]);
+  for (size_t quote = error.find('"', begin); quote < end;) {
+    const size_t close = error.find('"', quote + 1);
+    keys.push_back(error.substr(quote + 1, close - quote - 1));
+    quote = error.find('"', close + 1);
+  }
   return keys;
 }
 
