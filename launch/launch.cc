@@ -47,7 +47,8 @@ class StackLaunch {
 
  private:
   void StartAll();
-  void HearBus(TimePoint until);
+  int HearBus(TimePoint until);
+  void HearLastReports();
   void OnSignals();
   void OnEnded(const Supervisor::Ended& ended);
   void OnStopHeard();
@@ -118,6 +119,7 @@ int StackLaunch::Run() {
     CheckEarlyEnd();
     RepeatStop();
   }
+  HearLastReports();
   for (const std::string& line : watch_.summary().Lines()) Say(line);
   // The terminal may be slow or stopped; a second Ctrl-C still gets us out.
   TimePoint until = TimePoint::max();
@@ -142,14 +144,25 @@ void StackLaunch::StartAll() {
   }
 }
 
-void StackLaunch::HearBus(TimePoint until) {
-  if (bus_failed_) return;
+int StackLaunch::HearBus(TimePoint until) {
+  if (bus_failed_) return 0;
   try {
-    bus_.HandleUntil(until);
+    return bus_.HandleUntil(until);
   } catch (const BusError& error) {
     bus_failed_ = true;
     Fail(error.what(), 1);
+    return 0;
   }
+}
+
+// A process reports on its whole run as it leaves: the report may arrive after its end was seen.
+void StackLaunch::HearLastReports() {
+  if (killed_) return;
+  const TimePoint latest = Supervisor::Clock::now() + 5 * kBusPeriod;
+  TimePoint until;
+  do {
+    until = Supervisor::Clock::now() + kBusPeriod;
+  } while (until < latest && HearBus(until) > 0);
 }
 
 void StackLaunch::OnSignals() {

@@ -14,9 +14,10 @@ class RunSummary {
   void Add(const loop_statistics_t& report);
   void Add(const fault_t& fault);
 
-  // One line a process, then one a kind of fault. Percentiles are those of the process's report over its whole
-  // run; without one, of the last report that covers most of a second; the largest latency, missed deadlines and lost messages are those of the whole run. Empty
-  // when nothing was reported. Times are in microseconds, with or without --si.
+  // One line a process, then one a kind of fault. Percentiles are those of the process's report over its
+  // whole run; without one, of the last report that covers most of a second; the largest latency, missed
+  // deadlines and lost messages are those of the whole run. Empty when nothing was reported. Times are in
+  // microseconds, with or without --si.
   std::vector<std::string> Lines() const;
 
  private:

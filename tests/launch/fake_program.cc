@@ -116,6 +116,7 @@ class FakeProgram {
     loop_statistics_t report{};
     report.session = session_;
     report.role = role_;
+    report.whole_run = true;
     report.interval_s = 1;
     report.cycles = 1000;
     report.period_p50_us = 1001;

@@ -99,7 +99,7 @@ TEST(LaunchTest, HeavyOutputKeepsItsLines) {
 // Tests that the statistics and faults of all processes are in the table at the end.
 TEST(LaunchTest, PrintsTimingAndFaults) {
   StackFolder stack;
-  stack.Script("pressure_ctrl", "status ready;statistics;fault;wait");
+  stack.Script("pressure_ctrl", "status ready;fault;wait;statistics");
   auto launch = stack.Launch();
   launch->WaitForLine("all 3 processes ready");
   launch->Signal(SIGINT);

@@ -41,6 +41,16 @@ TEST(RunSummaryTest, CountsAddUpPercentilesAreTheLast) {
   EXPECT_EQ(lines[1].size(), lines[2].size());
 }
 
+// Tests that a report over the whole run replaces what was added up.
+TEST(RunSummaryTest, WholeRunReplacesTheSum) {
+  RunSummary summary;
+  summary.Add(Report(1.0, 1000, 1001, 345));
+  loop_statistics_t total = Report(1.3, 1300, 1002, 400);
+  total.whole_run = true;
+  summary.Add(total);
+  EXPECT_THAT(summary.Lines()[2], AllOf(HasSubstr(" 1300 "), HasSubstr(" 1002 "), HasSubstr(" 400 ")));
+}
+
 // Tests that a run too short for a whole second still shows what it has.
 TEST(RunSummaryTest, ShortRunShowsItsOnlyReport) {
   RunSummary summary;
