@@ -41,6 +41,7 @@ CvodeStepper::CvodeStepper(const Mode* mode, const double* voltage, Equations* e
     flags |= CVodeSetErrHandlerFn(memory_, KeepComplaint, &problem_);
     flags |= CVodeSetUserData(memory_, &problem_);
     flags |= CVodeInit(memory_, SundialsRates, 0, state_.get());
+    flags |= CVodeSetMaxStep(memory_, kLongestStep);
     flags |= CVodeSVtolerances(memory_, local_tolerance, floor.get());
     flags |= CVodeSetLinearSolver(memory_, solver_, matrix_);
     flags |= CVodeSetJacFn(memory_, SundialsJacobian);

@@ -169,7 +169,7 @@ void Equations::Cross(int which, double time, double voltage, double* state, Mod
     Evaluate(time, voltage, *mode, state, rate, &x);
     for (const auto& effect : data_.effects) {
       const int first = kFirstEffectSwitch + effect->first_switch();
-      if (which >= first && which < first + effect->switches()) effect->Cross(which - first, x, mode);
+      if (which >= first && which < first + effect->switches()) effect->Cross(which - first, x, state, mode);
     }
     return;
   }
@@ -238,8 +238,21 @@ void Equations::CheckVolumes(double arm_angle) const {
                    "; V_1, V_2 > 0 needs |alpha| < " + Number((p.V_ms - data_.fixed_volume) / p.c) + " rad");
 }
 
+void Equations::Command(double time, double voltage) {
+  for (const auto& effect : data_.effects) effect->Command(time, voltage);
+}
+
 double Equations::NextStop(double time) const {
-  return data_.motion != nullptr ? data_.motion->NextBreak(time) : std::numeric_limits<double>::infinity();
+  double stop = std::numeric_limits<double>::infinity();
+  if (data_.motion != nullptr) stop = data_.motion->NextBreak(time);
+  for (const auto& effect : data_.effects) stop = std::min(stop, effect->NextStop(time));
+  return stop;
+}
+
+void Equations::PassStop(double time) {
+  for (const auto& effect : data_.effects) effect->PassStop(time);
+  // Up to its next break the motion keeps its formula, also for a stage that lies on the break.
+  if (data_.motion != nullptr) data_.motion_limit = std::nextafter(data_.motion->NextBreak(time), time);
 }
 
 }  // namespace hydro

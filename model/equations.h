@@ -13,18 +13,9 @@
 #include "model/effects/effect.h"
 #include "model/mode.h"
 #include "model/power.h"
+#include "model/state.h"
 
 namespace hydro {
-
-// The state vector: theta, theta', p1, p2, then alpha, alpha' when the shaft is free, then the states of the
-// effects.
-inline constexpr int kMotorAngle = 0;
-inline constexpr int kMotorSpeed = 1;
-inline constexpr int kP1 = 2;
-inline constexpr int kP2 = 3;
-inline constexpr int kArmAngle = 4;  // free shaft only
-inline constexpr int kArmSpeed = 5;  // free shaft only
-inline constexpr int kMaxStates = 32;
 
 // What the right-hand side needs besides time, state, mode and voltage.
 struct EquationData {
@@ -87,12 +78,12 @@ class Equations {
   // Throws ModelError when V_1 or V_2 is not above 0 (or above what an effect has elsewhere) at `arm_angle`.
   void CheckVolumes(double arm_angle) const;
 
-  // First time after `time` at which the right-hand side jumps by itself (a driven shaft's motion breaks).
-  double NextStop(double time) const;
-
-  // Until when the driven motion follows its present formula; integrators set it to the next stop before
-  // stepping.
-  void SetMotionLimit(double time) { data_.motion_limit = time; }
+  // Known stops: times at which the right-hand side jumps by itself. An integrator calls Command when the
+  // voltage changes, steps no further than NextStop, and calls PassStop there; until then the formulas of
+  // before hold.
+  void Command(double time, double voltage);
+  double NextStop(double time) const;  // the first one after `time`; infinity when there is none
+  void PassStop(double time);
 
  private:
   EquationData data_;

@@ -20,6 +20,7 @@ ErkStepper::ErkStepper(const Mode* mode, const double* voltage, Equations* equat
   int flags = ERKStepSetErrHandlerFn(memory_, KeepComplaint, &problem_);
   flags |= ERKStepSetUserData(memory_, &problem_);
   flags |= ERKStepSetTableNum(memory_, ARKODE_DORMAND_PRINCE_7_4_5);
+  flags |= ERKStepSetMaxStep(memory_, kLongestStep);
   flags |= ERKStepSVtolerances(memory_, relative_tolerance, floor.get());
   if (flags != 0) {
     ERKStepFree(&memory_);

@@ -61,6 +61,7 @@ template <Form kForm, class T>
     x.time = time;
     x.voltage = voltage;
     x.mode = &mode;
+    x.arm_free = arm_moves_freely;
     x.parameters = &p;
     x.state = y;
     for (const auto& effect : m.effects) effect->SetProperties(x);

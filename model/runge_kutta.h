@@ -44,7 +44,7 @@ class RungeKutta {
       good = excess <= 1;
       if (good && !limited) return;
       const double factor = std::clamp(0.9 * std::pow(std::max(excess, 1e-12), -0.2), 0.1, good ? 4.0 : 0.8);
-      good_step_ = h * factor;
+      good_step_ = std::min(h * factor, kLongestStep);
       if (good) {
         CountUnstable(now.rate, k2, k3);
         return;
@@ -131,7 +131,7 @@ class RungeKutta {
   double tolerance_;
   double floor_[kMaxStates] = {};
   int unstable_steps_ = 0;
-  double good_step_ = 1e-2;  // s, remembered between calls
+  double good_step_ = kLongestStep;  // remembered between calls
 };
 
 }  // namespace hydro

@@ -16,6 +16,9 @@ struct Point {
   double margin[kMaxSwitches] = {};
 };
 
+// No step is longer, so that a switch which changes and changes back is not stepped over.
+inline constexpr double kLongestStep = 1e-2;  // s
+
 class Simulation {
  public:
   virtual ~Simulation() = default;

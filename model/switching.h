@@ -53,7 +53,7 @@ class SwitchingSimulation final : public Simulation {
   SwitchingSimulation(Equations* equations, double initial_pressure, double relative_tolerance)
       : equations_(*equations), stepper_(&mode_, &voltage_, equations, relative_tolerance) {
     equations_.Start(initial_pressure, now_->state, &mode_);
-    FollowMotion();
+    PassStop();
   }
 
   const Point& now() const override { return *now_; }
@@ -69,6 +69,10 @@ class SwitchingSimulation final : public Simulation {
     if (voltage != voltage_ || !started_) {
       voltage_ = voltage;
       fresh_ = true;
+      if constexpr (kForm == Form::kGeneral) {
+        equations_.Command(now_->time, voltage);
+        PassStop();
+      }
       EvaluateHere();
       if (Settle() || !started_) {
         stepper_.Restart(*now_);
@@ -79,7 +83,7 @@ class SwitchingSimulation final : public Simulation {
     }
     int events = 0;
     while (now_->time < until) {
-      double stop = std::min(until, motion_stop_);
+      double stop = std::min(until, known_stop_);
       // A switch on its boundary is given a moment to show to which side it goes.
       if (fresh_ && OnBoundary()) stop = std::min(stop, now_->time + kMoment);
       fresh_ = false;
@@ -94,8 +98,8 @@ class SwitchingSimulation final : public Simulation {
         ToEvent(last);
       } else {
         std::swap(now_, next_);
-        if (now_->time >= motion_stop_) {
-          FollowMotion();
+        if (now_->time >= known_stop_) {
+          PassStop();
           fresh_ = true;
           EvaluateHere();
           Settle();
@@ -119,10 +123,9 @@ class SwitchingSimulation final : public Simulation {
   }
   void EvaluateHere() { Evaluate(now_); }
 
-  void FollowMotion() {
-    motion_stop_ = equations_.NextStop(now_->time);
-    // Up to the break the old formula holds, also for the stage that lies on the break.
-    equations_.SetMotionLimit(std::nextafter(motion_stop_, -kNever));
+  void PassStop() {
+    equations_.PassStop(now_->time);
+    known_stop_ = equations_.NextStop(now_->time);
   }
 
   void CheckFinite(const Point& at) const {
@@ -263,7 +266,7 @@ class SwitchingSimulation final : public Simulation {
   double voltage_ = 0;
   bool started_ = false;
   bool fresh_ = true;  // mode or voltage is new
-  double motion_stop_ = kNever;
+  double known_stop_ = kNever;
   int64_t mode_changes_ = 0;
   Point points_[3];
   Point* now_ = &points_[0];

@@ -20,9 +20,9 @@ using Jet = ceres::Jet<double, kJetWidth>;
 template <class T>
 struct Terms {
   // The instant. Given to effects, not theirs to change.
-  double time = 0;     // s
-  double voltage = 0;  // V, held
+  double time = 0;  // s
   const Mode* mode = nullptr;
+  bool arm_free = false;  // the shaft is neither clamped nor driven
   const Parameters* parameters = nullptr;
   const T* state = nullptr;  // the whole state vector; an effect finds its own states from first_state() on
   T motor_angle, motor_speed;
@@ -30,6 +30,7 @@ struct Terms {
   T p1, p2;  // at the actuator, where the transducers and the one-way valves are
 
   // Properties, from the base parameters; effects change them in SetProperties.
+  double voltage = 0;  // V, held; what the amplifier acts on
   T torque;            // T_p, eq. (1) with |T_p| <= T_pmax
   T D, b, T_s, f;      // eqs. (3), (4)
   T beta_1, beta_2;    // eq. (5)

@@ -36,7 +36,7 @@ class Lag : public EffectOf<Lag> {
         limit == 0 ? T_pmax - std::abs(torque) : limit * torque - T_pmax;
   }
 
-  void Cross(int, const Terms<double>& x, Mode* mode) const override {
+  void Cross(int, const Terms<double>& x, double*, Mode* mode) const override {
     int8_t& limit = mode->effects[first_switch()];
     limit = limit != 0 ? 0 : (x.state[first_state()] > 0 ? 1 : -1);
   }

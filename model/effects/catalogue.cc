@@ -6,22 +6,32 @@
 
 namespace hydro {
 
+CatalogueEntry ActuatorSealFriction();
+CatalogueEntry AmpDelay();
 CatalogueEntry AmpLag();
+CatalogueEntry FluidWarming();
 CatalogueEntry LineWave();
+CatalogueEntry PumpFrictionAsymmetry();
 CatalogueEntry PumpPressureFriction();
 CatalogueEntry PumpQuadraticDrag();
 CatalogueEntry PumpStribeck();
+CatalogueEntry SensorPressureGain();
 CatalogueEntry SensorPressureOffset();
 
 namespace {
 
 const std::vector<CatalogueEntry>& Entries() {
   static const std::vector<CatalogueEntry> entries = {
+      ActuatorSealFriction(),
+      AmpDelay(),
       AmpLag(),
+      FluidWarming(),
       LineWave(),
+      PumpFrictionAsymmetry(),
       PumpPressureFriction(),
       PumpQuadraticDrag(),
       PumpStribeck(),
+      SensorPressureGain(),
       SensorPressureOffset(),
   };
   return entries;

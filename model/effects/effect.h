@@ -17,6 +17,7 @@
 #include "model/actuator.h"
 #include "model/parameter_info.h"
 #include "model/power.h"
+#include "model/state.h"
 #include "model/terms.h"
 
 namespace hydro {
@@ -58,7 +59,13 @@ class Effect {
   // For each switch it adds: a number that is positive while the switch may stay as it is and falls through 0
   // when it must change; and the change.
   virtual void Margins(const Terms<double>& /*x*/, double* /*margin*/) const {}
-  virtual void Cross(int /*which*/, const Terms<double>& /*x*/, Mode* /*mode*/) const {}
+  virtual void Cross(int /*which*/, const Terms<double>& /*x*/, double* /*state*/, Mode* /*mode*/) const {}
+
+  // For an effect that remembers earlier commands or changes at known times: the voltage from `time` on; when
+  // its equation next jumps; and that this time has been reached. Between stops it holds still.
+  virtual void Command(double /*time*/, double /*voltage*/) {}
+  virtual double NextStop(double /*time*/) const { return kUnbounded; }
+  virtual void PassStop(double /*time*/) {}
 
   // What the sensors read.
   virtual void Sense(const double* /*state*/, Measurement*) const {}

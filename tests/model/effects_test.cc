@@ -85,6 +85,102 @@ TEST(PressureFriction, IsThePapersF) {
   EXPECT_LT(a.Measure().p2, without.Measure().p2 - 10);
 }
 
+// Tests that a delayed command acts exactly `delay` later, also when several are under way.
+TEST(AmpDelay, ShiftsTheCommand) {
+  for (const Integrator integrator : kIntegrators) {
+    Actuator plain(Table1Model(), Held(Shaft::kClamped, integrator));
+    Actuator delayed(Table1Model({{"amp.delay", {{"delay", 7.7e-4}}, {}}}),
+                     Held(Shaft::kClamped, integrator));
+    delayed.Advance(0.5, 2e-4);  // below friction
+    plain.Advance(0, 9.7e-4);
+    for (int tick = 0; tick < 300; ++tick) {
+      const double voltage = 2.6 + std::sin(tick);
+      delayed.Advance(voltage, 2e-4 * (tick + 2));
+      plain.Advance(voltage, 9.7e-4 + 2e-4 * (tick + 1));
+    }
+    delayed.Advance(0, plain.time());
+    EXPECT_NEAR(delayed.Measure().p2, plain.Measure().p2, 1e-4) << Name(integrator);
+    EXPECT_NEAR(delayed.Measure().motor_speed, plain.Measure().motor_speed, 1e-6) << Name(integrator);
+    EXPECT_GT(delayed.Measure().p2, 110);
+  }
+}
+
+// Tests that seal friction holds the arm until the torque on it passes `coulomb`, and never moves it by
+// itself.
+TEST(SealFriction, SticksAndSlips) {
+  ModelDescription model = Table1Model({{"actuator.seal_friction", {{"coulomb", 600}, {"viscous", 0}}, {}}});
+  model.parameters.mgl = 562;
+  Actuator holds(model, Held(Shaft::kFree));
+  holds.Advance(0, 10);
+  EXPECT_EQ(holds.Measure().arm_angle, 0);
+  Rig pushed(model, Held(Shaft::kFree));
+  double dp = 0;
+  for (int tick = 1; pushed.Measure().arm_speed == 0; ++tick) {
+    ASSERT_LT(tick, 100000);
+    dp = pushed.Measure().p2 - pushed.Measure().p1;
+    pushed.simulation->Advance(5, tick * 1e-5);
+  }
+  EXPECT_NEAR(3.68 * dp - 562, 600, 1);
+  EXPECT_GT(pushed.Measure().arm_speed, 0);
+}
+
+// Tests that seal friction slows a swinging arm evenly: with the bypass open it swings down by coulomb's
+// work.
+TEST(SealFriction, TakesItsWork) {
+  ModelDescription model = Table1Model({{"actuator.seal_friction", {{"coulomb", 50}, {"viscous", 0}}, {}}});
+  model.parameters.mgl = 562;
+  model.parameters.V_ms = 10;
+  ActuatorOptions options = Held(Shaft::kFree);
+  options.bypass = true;
+  options.arm_angle = -0.5;
+  Rig rig(model, options);
+  rig.simulation->Advance(0, 0.2);
+  const Measurement m = rig.Measure();
+  const double fallen = 562 * (std::sin(-0.5) - std::sin(m.arm_angle));
+  EXPECT_NEAR(0.5 * 23.3 * m.arm_speed * m.arm_speed, fallen - 50 * (-0.5 - m.arm_angle), 1e-5);
+  rig.simulation->Advance(0, 30);
+  EXPECT_EQ(rig.Measure().arm_speed, 0);  // it comes to rest where 50 in-lbf hold it
+  EXPECT_LE(std::abs(562 * std::cos(rig.Measure().arm_angle)), 50);
+}
+
+// Tests break-away and steady speed in each direction.
+TEST(FrictionAsymmetry, DiffersByDirection) {
+  ActuatorOptions options = Held(Shaft::kClamped);
+  options.bypass = true;
+  const ModelDescription model =
+      Table1Model({{"pump.friction_asymmetry", {{"coulomb", 1}, {"viscous", 0.005}}, {}}});
+  const auto speed_at = [&](double torque) {
+    Actuator actuator(model, options);
+    actuator.Advance(torque / 4, 60);
+    return actuator.Measure().motor_speed;
+  };
+  EXPECT_EQ(speed_at(4.99), 0);
+  EXPECT_NEAR(speed_at(8), (8 - 5) / (0.01455 + 0.005), 1e-4);
+  EXPECT_EQ(speed_at(-2.99), 0);
+  EXPECT_NEAR(speed_at(-8), -(8 - 3) / (0.01455 - 0.005), 1e-4);
+}
+
+// Tests that leakage drifts: with the bypass open the common pressure leaks off at a rate that grows.
+TEST(Warming, LeakageDrifts) {
+  ActuatorOptions options = Held(Shaft::kClamped);
+  options.bypass = true;
+  options.initial_pressure = 400;
+  Actuator actuator(Table1Model({{"fluid.warming", {{"rate", 0.3}}, {}}}), options);
+  actuator.Advance(0, 2);
+  const double decay = 247000 * 6.5e-6 / 3.16 * (std::exp(0.3 * 2) - 1) / 0.3;
+  EXPECT_NEAR(actuator.Measure().p1, 100 + 300 * std::exp(-decay), 1e-4);
+}
+
+// Tests that a gain is in what is measured only.
+TEST(PressureGain, ScalesTheMeasurement) {
+  Actuator plain(Table1Model(), Held(Shaft::kClamped));
+  Actuator with(Table1Model({{"sensor.pressure_gain", {{"gain", 0.02}}, {}}}), Held(Shaft::kClamped));
+  plain.Advance(2.5, 0.2);
+  with.Advance(2.5, 0.2);
+  EXPECT_NEAR(with.Measure().p1, plain.Measure().p1 * 1.02, 1e-6);
+  EXPECT_NEAR(with.Measure().p2, plain.Measure().p2 * 1.02, 1e-6);
+}
+
 // Tests that quadratic drag sets the steady speed of the bypassed pump: k w^2 + b w = T_p - T_s.
 TEST(QuadraticDrag, SteadySpeed) {
   ActuatorOptions options = Held(Shaft::kClamped);

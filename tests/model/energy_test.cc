@@ -116,11 +116,13 @@ TEST(Energy, DrivenBypassAndEffects) {
   ActuatorOptions bypass = Held(Shaft::kClamped);
   bypass.bypass = true;
   bypass.initial_pressure = 300;
-  const ModelDescription all = Table1Model({Stribeck(0.5, 3),
-                                            Lag(2e-3),
-                                            Wave(300, 0.2, 0.05),
-                                            {"pump.pressure_friction", {{"f", 0.001}}, {}},
-                                            {"pump.quadratic_drag", {{"k", 1e-3}}, {}}});
+  const ModelDescription all =
+      Table1Model({Stribeck(0.5, 3),
+                   Lag(2e-3),
+                   Wave(300, 0.2, 0.05),
+                   {"pump.pressure_friction", {{"f", 0.001}}, {}},
+                   {"pump.quadratic_drag", {{"k", 1e-3}}, {}},
+                   {"actuator.seal_friction", {{"coulomb", 30}, {"viscous", 20}}, {}}});
   for (auto [model, options] : {std::pair{Table1Model(), driven},
                                 {Table1Model(), bypass},
                                 {all, driven},

@@ -52,6 +52,16 @@ std::vector<Case> Cases() {
   add("WaveBypass", {Wave(300, 0.2, 0.05)}, bypass);
   add("QuadraticDrag", {{"pump.quadratic_drag", {{"k", 1e-3}}, {}}}, Held(Shaft::kClamped));
   add("PressureOffset", {{"sensor.pressure_offset", {{"p1", 3}, {"p2", -2}}, {}}}, Held(Shaft::kClamped));
+  add("Delay", {{"amp.delay", {{"delay", 3.33e-4}}, {}}}, Held(Shaft::kClamped));
+  add("DelayAndLag", {{"amp.delay", {{"delay", 4e-4}}, {}}, Lag(2e-3)}, Held(Shaft::kFree));
+  add("Warming", {{"fluid.warming", {{"rate", 2}}, {}}}, Held(Shaft::kClamped));
+  add("FrictionAsymmetry", {{"pump.friction_asymmetry", {{"coulomb", 1}, {"viscous", 0.01}}, {}}},
+      Held(Shaft::kClamped));
+  add("SealFriction", {{"actuator.seal_friction", {{"coulomb", 100}, {"viscous", 50}}, {}}},
+      Held(Shaft::kFree));
+  add("SealFrictionWithGravity", {{"actuator.seal_friction", {{"coulomb", 600}, {"viscous", 0}}, {}}},
+      Held(Shaft::kFree));
+  cases.back().model.parameters.mgl = 562;
   add("AllEffects",
       {Stribeck(0.5, 3), Lag(2e-3), Wave(300, 0.2, 0.05), {"pump.pressure_friction", {{"f", 0.001}}, {}}},
       Held(Shaft::kFree));
@@ -108,13 +118,22 @@ TEST_P(Paths, LongCalls) {
   EXPECT_NEAR(whole.Measure().arm_angle, ticks.Measure().arm_angle, 1e-7);
 }
 
+class SymmetricPaths : public ::testing::TestWithParam<Case> {};
+
+// Gravity and a driven shaft are not symmetric, nor are unequal sensors or directions.
+std::vector<Case> SymmetricCases() {
+  std::vector<Case> cases = Cases();
+  std::erase_if(cases, [](const Case& c) {
+    return c.options.shaft == Shaft::kDriven || c.model.parameters.mgl != 0 || c.name == "PressureOffset" ||
+           c.name == "FrictionAsymmetry";
+  });
+  return cases;
+}
+
 // Tests that v -> -v swaps the sides: bit for bit on the fast path; SUNDIALS sums its norms over the states
 // in their order, so that there a rounding may choose another step or order, which the tolerance bounds.
-// Gravity and a driven shaft are not symmetric, nor unequal sensors.
-TEST_P(Paths, Mirror) {
+TEST_P(SymmetricPaths, Mirror) {
   const Case& c = GetParam();
-  if (c.options.shaft == Shaft::kDriven || c.model.parameters.mgl != 0) GTEST_SKIP();
-  if (c.name == "PressureOffset") GTEST_SKIP();
   for (const Integrator integrator : kIntegrators) {
     ActuatorOptions options = c.options;
     options.integrator = integrator;
@@ -135,6 +154,9 @@ TEST_P(Paths, Mirror) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Cases, Paths, ::testing::ValuesIn(Cases()),
+                         [](const auto& test) { return test.param.name; });
+
+INSTANTIATE_TEST_SUITE_P(Cases, SymmetricPaths, ::testing::ValuesIn(SymmetricCases()),
                          [](const auto& test) { return test.param.name; });
 
 // Tests that the automatic choice leaves the explicit method when stability would hold it back, and loses no

@@ -1,0 +1,69 @@
+// amp.delay: T(t) = k_1 v(t - delay). The voltage is held between commands, so a delayed one is a sequence of
+// known stops.
+#include <ceres/jet.h>
+
+#include <cstddef>
+#include <vector>
+
+#include "model/effects/effect.h"
+
+namespace hydro {
+
+namespace {
+
+class Delay : public EffectOf<Delay> {
+ public:
+  explicit Delay(double delay) : delay_(delay) {}
+
+  template <class T>
+  void OwnProperties(Terms<T>& x) const {
+    const Parameters& p = *x.parameters;
+    x.voltage = voltage_;
+    const double torque = p.k_1 * voltage_;
+    x.torque = T(torque > p.T_pmax ? p.T_pmax : torque < -p.T_pmax ? -p.T_pmax : torque);
+  }
+
+  void Command(double time, double voltage) override {
+    if (first_ == waiting_.size()) {
+      waiting_.clear();
+      first_ = 0;
+    }
+    waiting_.push_back({time + delay_, voltage});
+  }
+  double NextStop(double /*time*/) const override {
+    return first_ < waiting_.size() ? waiting_[first_].time : kUnbounded;
+  }
+  void PassStop(double time) override {
+    while (first_ < waiting_.size() && waiting_[first_].time <= time) voltage_ = waiting_[first_++].voltage;
+    if (first_ > 1000) {
+      waiting_.erase(waiting_.begin(), waiting_.begin() + static_cast<std::ptrdiff_t>(first_));
+      first_ = 0;
+    }
+  }
+
+ private:
+  struct Delayed {
+    double time;
+    double voltage;
+  };
+  double delay_;
+  double voltage_ = 0;
+  std::vector<Delayed> waiting_;
+  size_t first_ = 0;
+};
+
+}  // namespace
+
+CatalogueEntry AmpDelay();
+CatalogueEntry AmpDelay() {
+  return {{"amp.delay",
+           "the motor torque follows the voltage with a delay",
+           "T(t) = k_1 v(t - delay)",
+           "amp.lag, sensor.skew",
+           {{"delay", "s", 0, kUnbounded, true, "from a change of the voltage to that of the torque"}}},
+          [](const EffectDescription& description, const Parameters&) -> std::unique_ptr<Effect> {
+            return std::make_unique<Delay>(description.parameters.at("delay"));
+          }};
+}
+
+}  // namespace hydro

@@ -1,0 +1,16 @@
+// Where each state lies.
+#pragma once
+
+namespace hydro {
+
+// The state vector: theta, theta', p1, p2, then alpha, alpha' when the shaft is free, then the states of the
+// effects.
+inline constexpr int kMotorAngle = 0;
+inline constexpr int kMotorSpeed = 1;
+inline constexpr int kP1 = 2;
+inline constexpr int kP2 = 3;
+inline constexpr int kArmAngle = 4;  // free shaft only
+inline constexpr int kArmSpeed = 5;  // free shaft only
+inline constexpr int kMaxStates = 32;
+
+}  // namespace hydro
