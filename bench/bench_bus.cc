@@ -1,4 +1,4 @@
-// What the bus costs: the round trip of a state and its command between two processes over UDP multicast,
+// What the bus costs: the round trip of a state to the pressure loop's command between two processes over UDP multicast,
 // beside a bare LCM echo of the same messages in the same run, and the time per message within one process.
 #include <benchmark/benchmark.h>
 #include <sched.h>
@@ -15,6 +15,7 @@
 #include "bus/histogram.h"
 #include "bus/in_process_bus.h"
 #include "bus/udpm_bus.h"
+#include "pressure_ctrl/pressure_app.h"
 #include "tests/free_udp_port.h"
 
 namespace hydro {
@@ -29,15 +30,13 @@ constexpr int kRounds = 5;
 constexpr int kBlocks = 20;
 constexpr int kTripsPerBlock = 100;
 
-void EchoOnBus(const std::string& url) {
+// The pressure loop as hydro-pressure-ctrl runs it.
+void AnswerOnBus(const std::string& url) {
+  StackConfig config = LoadStackConfig(HYDRO_BENCH_CONFIG, {"time.mode=realtime", "limits.stale_input_s=1e6"});
   UdpmBus bus(url);
-  Publisher<motor_command_t> commands = bus.Advertise<motor_command_t>(kCommand);
-  bus.Subscribe<state_t>(kState, [&](const state_t& state) {
-    motor_command_t command{};
-    command.tick = state.tick;
-    commands.Send(command);
-  });
-  while (true) bus.HandleUntil(SteadyClock::now() + 1s);
+  WallClock clock;
+  PressureApp app(bus, clock, config);
+  RunApp(bus, clock, app);
 }
 
 class BareEcho {
@@ -68,6 +67,8 @@ class BusPinger {
   bool Trip(int64_t tick, std::chrono::milliseconds timeout) {
     state_t state{};
     state.tick = tick;
+    state.session = 1;
+    state.sequence = sequence_++;
     states_.Send(state);
     const auto deadline = SteadyClock::now() + timeout;
     while (answered_ != tick) {
@@ -80,6 +81,7 @@ class BusPinger {
   UdpmBus bus_;
   Publisher<state_t> states_;
   int64_t answered_ = -1;
+  int64_t sequence_ = 0;
 };
 
 class BarePinger {
@@ -139,7 +141,7 @@ void RunRound(bool one_core, RoundTrips* times) {
     CPU_SET(static_cast<unsigned>(sched_getcpu()), &set);
     sched_setaffinity(0, sizeof set, &set);
   }
-  const ChildProcess bus_echo([&] { EchoOnBus(bus_url); });
+  const ChildProcess pressure_loop([&] { AnswerOnBus(bus_url); });
   const ChildProcess bare_echo([&] { BareEcho(bare_url).Run(); });
   BusPinger bus(bus_url);
   BarePinger bare(bare_url);
@@ -167,7 +169,7 @@ void PrintRoundTrips(bool one_core) {
                 static_cast<long long>(h.Count()));
   };
   row("bare LCM", times.bare);
-  row("bus", times.bus);
+  row("stack", times.bus);
   const auto ratio = [&](double percent) {
     return static_cast<double>(times.bus.Percentile(percent)) /
            static_cast<double>(times.bare.Percentile(percent));

@@ -1,6 +1,8 @@
 # What the bus costs, beside bare LCM on the same work.
 find_package(benchmark REQUIRED)
 add_executable(bench_bus ${PROJECT_SOURCE_DIR}/bench/bench_bus.cc)
-target_link_libraries(bench_bus PRIVATE hydro_bus benchmark::benchmark)
-add_executable(bench_lockstep_peer ${PROJECT_SOURCE_DIR}/bench/bench_lockstep_peer.cc)
-target_link_libraries(bench_lockstep_peer PRIVATE hydro_lcmtypes)
+target_link_libraries(bench_bus PRIVATE hydro_bus hydro_pressure_app benchmark::benchmark)
+target_compile_definitions(bench_bus PRIVATE HYDRO_BENCH_CONFIG="${PROJECT_SOURCE_DIR}/config/paper.toml")
+add_executable(bench_lockstep ${PROJECT_SOURCE_DIR}/bench/bench_lockstep.cc)
+target_link_libraries(bench_lockstep PRIVATE hydro_plant_app hydro_pressure_app hydro_position_app)
+target_compile_definitions(bench_lockstep PRIVATE HYDRO_BENCH_CONFIG="${PROJECT_SOURCE_DIR}/config/paper.toml")
