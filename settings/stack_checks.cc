@@ -37,11 +37,24 @@ void CheckAngle(const TomlNode& root, const std::string& key, double angle, cons
                  "|alpha| < V_ms/c = " + ShortestNumber(limit) + " rad, where V_1, V_2 > 0");
 }
 
-void CheckAngles(const TomlNode& root, const std::string& key, const TrajectorySpec& spec,
+// The key that gives a trajectory the value `extreme`.
+std::string KeyOf(const TrajectorySpec& spec, double extreme) {
+  switch (spec.kind) {
+    case TrajectorySpec::Kind::kSteps:
+      return spec.initial == extreme ? ".initial" : ".steps";
+    case TrajectorySpec::Kind::kCsv:
+      return ".points";
+    default:
+      return ".amplitude";
+  }
+}
+
+void CheckAngles(const TomlNode& root, const std::string& section, const TrajectorySpec& spec,
                  const Parameters& p) {
   const auto trajectory = MakeTrajectory(spec);
-  CheckAngle(root, key, trajectory->Max(), p);
-  CheckAngle(root, key, trajectory->Min(), p);
+  for (const double extreme : {trajectory->Max(), trajectory->Min()}) {
+    CheckAngle(root, section + KeyOf(spec, extreme), extreme, p);
+  }
 }
 
 bool Has(const std::vector<EffectDescription>& effects, const std::string& id) {

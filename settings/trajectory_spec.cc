@@ -129,14 +129,16 @@ std::unique_ptr<Trajectory> CheckedTrajectory(const TrajectorySpec& spec, const 
 
 void EmbedPoints(const TrajectorySpec& spec, TomlNode* section) {
   if (section == nullptr || spec.kind != Kind::kCsv) return;
-  std::vector<TomlNode> points;
+  const TomlNode* file = section->Find("file");
+  if (file == nullptr) return;  // it has them already
+  TomlNode points = ArrayNode({});
+  points.place = file->place;
   for (const Step& point : spec.points) {
-    points.push_back(ArrayNode({NumberNode(point.time), NumberNode(point.value)}));
+    points.items.push_back(ArrayNode({NumberNode(point.time), NumberNode(point.value)}));
   }
   section->Erase("file");
   section->Erase("column");
-  section->Erase("points");
-  section->members.emplace_back("points", ArrayNode(std::move(points)));
+  section->members.emplace_back("points", std::move(points));
 }
 
 std::unique_ptr<Trajectory> MakeTrajectory(const TrajectorySpec& spec) {
