@@ -4,6 +4,7 @@
 
 #include <sstream>
 
+#include "logger/number_text.h"
 #include "settings/input_error.h"
 
 namespace hydro {
@@ -19,6 +20,25 @@ toml::table Parse(const std::string& text, const std::string& file, const char* 
   }
 }
 
+// A value as TOML on one line; numbers in the shortest form, which toml++ does not write.
+std::string ValueText(const toml::node& node) {
+  if (const auto* number = node.as_floating_point()) return NumberText(number->get());
+  std::string text;
+  if (const toml::array* array = node.as_array()) {
+    for (const toml::node& element : *array) text += (text.empty() ? "" : ", ") + ValueText(element);
+    return "[" + text + "]";
+  }
+  if (const toml::table* table = node.as_table()) {
+    for (const auto& [key, value] : *table) {
+      text += (text.empty() ? "" : ", ") + std::string(key.str()) + " = " + ValueText(value);
+    }
+    return "{" + text + "}";
+  }
+  std::ostringstream stream;
+  node.visit([&](const auto& value) { stream << value; });
+  return stream.str();
+}
+
 void Flatten(const toml::table& table, const std::string& prefix,
              std::vector<std::pair<std::string, std::string>>& entries) {
   for (const auto& [key, node] : table) {
@@ -26,9 +46,7 @@ void Flatten(const toml::table& table, const std::string& prefix,
     if (const toml::table* inner = node.as_table()) {
       Flatten(*inner, name + ".", entries);
     } else {
-      std::ostringstream value;
-      node.visit([&](const auto& content) { value << content; });
-      entries.emplace_back(name, value.str());
+      entries.emplace_back(name, ValueText(node));
     }
   }
 }

@@ -10,8 +10,8 @@
 
 namespace hydro {
 
-// The keys of the configuration as "section.key" with their values as TOML, in the order of the text; empty
-// when it has none. `file` names the log in messages. Throws InputError when it is not TOML.
+// The keys of the configuration as "section.key" with their values as TOML, sorted by key; empty when it
+// has none. `file` names the log in messages. Throws InputError when it is not TOML.
 std::vector<std::pair<std::string, std::string>> ConfigEntries(const run_description_t& description,
                                                                const std::string& file);
 

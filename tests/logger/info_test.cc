@@ -81,6 +81,19 @@ TEST_F(InfoTest, SkippedTicks) {
   EXPECT_EQ(info.ticks.announced, 2);
 }
 
+// Tests that the configuration is shown key by key, with values of any kind on one line.
+TEST_F(InfoTest, ConfigurationOfTheRun) {
+  WriteRun(
+      Path("log"), SampleRun(2), "",
+      "[[process]]\nprogram = \"a\"\ncpu = 1\n[limits]\nstale_input_s = 0.1\n[time]\nmode = \"lockstep\"\n"
+      "[reference]\nsteps = [[0.2, 0.3], [2.2, -0.2]]\n");
+  using Entry = std::pair<std::string, std::string>;
+  EXPECT_THAT(Summarise(ReadRunLog(Path("log")), false).config,
+              testing::ElementsAre(
+                  Entry("limits.stale_input_s", "0.1"), Entry("process", "[{cpu = 1, program = 'a'}]"),
+                  Entry("reference.steps", "[[0.2, 0.3], [2.2, -0.2]]"), Entry("time.mode", "'lockstep'")));
+}
+
 // Tests that figures are in SI where that is asked for.
 TEST_F(InfoTest, SiUnits) {
   const LogInfo info = InfoOf(SampleRun(3), true);
