@@ -43,6 +43,7 @@ class AutoStepper {
       fast_.Step(now, stop, next);
     }
   }
+  bool Trusts(const Point& now, const Point& at) const { return stiff_ || fast_.Trusts(now, at); }
   void Interpolate(const Point& now, const Point& next, double time, Point* at) {
     if (stiff_) {
       cvode_->Interpolate(now, next, time, at);

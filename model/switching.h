@@ -7,6 +7,7 @@
 //   void Step(const Point& now, double stop, Point* next)  one step, to no later than `stop`; fills all of
 //   next; throws
 //                                      ModelError
+//   bool Trusts(const Point& now, const Point& at) const  the interpolation to `at` is accurate enough
 //   Integrator in_use() const
 //   void Interpolate(const Point& now, const Point& next, double time, Point* at)  time and state within the
 //   last step
@@ -248,6 +249,15 @@ class SwitchingSimulation final : public Simulation {
       }
     }
     At(b, &at);  // just past the boundary
+    if (b - now_->time > kMoment && !stepper_.Trusts(*now_, at)) {
+      // Half the way first, so that a shorter step goes to the event.
+      stepper_.Step(*now_, now_->time + 0.5 * (b - now_->time), next_);
+      CheckFinite(*next_);
+      if (LeastMargin(*next_) >= 0) {
+        std::swap(now_, next_);
+        return;
+      }
+    }
     std::swap(now_, spare_);
     for (int i = 0; i < switches(); ++i) {
       if (now_->margin[i] < 0) {

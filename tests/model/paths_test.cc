@@ -45,6 +45,7 @@ std::vector<Case> Cases() {
   add("BypassFree", {}, bypass);
   add("PressureFriction", {{"pump.pressure_friction", {{"f", 0.001}}, {}}}, Held(Shaft::kClamped));
   add("Stribeck", {Stribeck(0.5, 3)}, Held(Shaft::kClamped));
+  add("StribeckNarrow", {Stribeck(0.5, 0.02)}, Held(Shaft::kClamped));
   add("StribeckFree", {Stribeck(0.5, 3)}, Held(Shaft::kFree));
   add("Lag", {Lag(2e-3)}, Held(Shaft::kClamped));
   add("Wave", {Wave(300, 0.2, 0.05)}, Held(Shaft::kClamped));
