@@ -37,7 +37,7 @@ void ErkStepper::Restart(const Point& now) {
 }
 
 void ErkStepper::Step(const Point& now, double stop, Point* next) {
-  stepped_by_euler_ = stop - now.time < kShortestStep;
+  stepped_by_euler_ = TooShort(now.time, stop);
   if (stepped_by_euler_) {
     EulerStep(*problem_.equations, now, stop, next);
     FillPoint(problem_, next);

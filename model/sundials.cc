@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "model/switching.h"
 
@@ -31,6 +32,10 @@ int SundialsRates(double time, N_Vector state, N_Vector rate, void* data) {
 
 void KeepComplaint(int code, const char* /*module*/, const char* /*function*/, char* message, void* data) {
   if (code < 0) static_cast<SundialsProblem*>(data)->complaint = message;
+}
+
+bool TooShort(double from, double to) {
+  return to - from < std::max(1e-11, 64 * std::numeric_limits<double>::epsilon() * std::abs(to));
 }
 
 void EulerStep(const Equations& equations, const Point& now, double stop, Point* next) {

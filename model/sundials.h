@@ -39,7 +39,7 @@ void KeepComplaint(int code, const char* module, const char* function, char* mes
 
 // Steps too short for SUNDIALS to start with are taken by Euler's rule; its error, of the order of their
 // square, is below rounding.
-inline constexpr double kShortestStep = 1e-11;  // s
+bool TooShort(double from, double to);
 void EulerStep(const Equations& equations, const Point& now, double stop, Point* next);
 
 // Fills rate and margin of `at` from its time and state.

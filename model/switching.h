@@ -20,6 +20,7 @@
 #include <utility>
 
 #include "model/evaluate.h"
+#include "model/event_search.h"
 #include "model/simulation.h"
 
 namespace hydro {
@@ -188,25 +189,11 @@ class SwitchingSimulation final : public Simulation {
     }
     if (trouble < kNever) return trouble;
     for (int i = 0; i < kFirstEffectSwitch; ++i) {
-      const double slope_0 = MarginRate(i, *now_);
-      const double slope_1 = MarginRate(i, *next_);
-      if (slope_0 < 0 && slope_1 > 0) trouble = std::min(trouble, Dip(i, slope_0, slope_1));
+      const MarginEnds ends = {now_->margin[i], MarginRate(i, *now_), next_->margin[i],
+                               MarginRate(i, *next_)};
+      trouble = std::min(trouble, now_->time + DipWithin(next_->time - now_->time, ends));
     }
     return trouble;
-  }
-
-  // Where the cubic through both ends of the step has its minimum, if that is below 0.
-  double Dip(int i, double slope_0, double slope_1) const {
-    const double h = next_->time - now_->time;
-    const double g_0 = now_->margin[i];
-    const double g_1 = next_->margin[i];
-    const double a = h * slope_0;
-    const double c = 2 * (g_0 - g_1) + a + h * slope_1;
-    const double b = (g_1 - g_0) - a - c;
-    const double root = std::sqrt(std::max(0.0, b * b - 3 * a * c));
-    const double s = -a / (b + root);  // where a + 2 b s + 3 c s^2 = 0 while rising
-    if (!(s > 0 && s < 1)) return kNever;
-    return g_0 + s * (a + s * (b + s * c)) < 0 ? now_->time + s * h : kNever;
   }
 
   double LeastMargin(const Point& at) const { return *std::min_element(at.margin, at.margin + switches()); }
@@ -219,39 +206,21 @@ class SwitchingSimulation final : public Simulation {
   // Moves to the first event before `last`, where a margin is below 0, and changes the mode there.
   void ToEvent(double last) {
     Point& at = *spare_;
-    double a = now_->time;
-    double g_a = std::max(0.0, LeastMargin(*now_));
-    double b = last;
-    At(b, &at);
-    double g_b = LeastMargin(at);
-    if (g_b >= 0) {  // the cubic saw a dip that is not there
+    At(last, &at);
+    const double g_last = LeastMargin(at);
+    if (g_last >= 0) {  // the cubic saw a dip that is not there
       std::swap(now_, next_);
       return;
     }
-    int kept = 0;  // Illinois: halve the value at the end that stays
-    for (int i = 0; i < 200 && b - a > kEventWidth; ++i) {
-      double time = b - g_b * (b - a) / (g_b - g_a);
-      if (i % 8 == 7) time = 0.5 * (a + b);
-      time = std::clamp(time, a + 0.4 * kEventWidth, b - 0.4 * kEventWidth);
-      if (!(time > a && time < b)) break;  // as close as the clock can tell
-      At(time, &at);
-      const double g = LeastMargin(at);
-      if (g < 0) {
-        b = time;
-        g_b = g;
-        if (kept == 1) g_a *= 0.5;
-        kept = 1;
-      } else {
-        a = time;
-        g_a = g;
-        if (kept == -1) g_b *= 0.5;
-        kept = -1;
-      }
-    }
-    At(b, &at);  // just past the boundary
-    if (b - now_->time > kMoment && !stepper_.Trusts(*now_, at)) {
+    const double event = TimeJustPast(now_->time, std::max(0.0, LeastMargin(*now_)), last, g_last,
+                                      kEventWidth, [&](double time) {
+                                        At(time, &at);
+                                        return LeastMargin(at);
+                                      });
+    At(event, &at);  // just past the boundary
+    if (event - now_->time > kMoment && !stepper_.Trusts(*now_, at)) {
       // Half the way first, so that a shorter step goes to the event.
-      stepper_.Step(*now_, now_->time + 0.5 * (b - now_->time), next_);
+      stepper_.Step(*now_, now_->time + 0.5 * (event - now_->time), next_);
       CheckFinite(*next_);
       if (LeastMargin(*next_) >= 0) {
         std::swap(now_, next_);

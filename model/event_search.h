@@ -1,0 +1,63 @@
+// Where in a step a switch reaches its boundary. Pure: functions of numbers and of a margin g(t), which is
+// not negative while the switch may stay as it is.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace hydro {
+
+// A margin at both ends of a step of length h.
+struct MarginEnds {
+  double g_0, slope_0;
+  double g_1, slope_1;
+};
+
+// For a margin that falls at the start and rises at the end: the time from the start at which the cubic
+// through both ends is least, if it is below 0 there; otherwise infinity.
+inline double DipWithin(double h, const MarginEnds& ends) {
+  constexpr double kNever = std::numeric_limits<double>::infinity();
+  if (!(ends.slope_0 < 0 && ends.slope_1 > 0)) return kNever;
+  // g(s) = g_0 + a s + b s^2 + c s^3 over s = t/h.
+  const double a = h * ends.slope_0;
+  const double c = 2 * (ends.g_0 - ends.g_1) + a + h * ends.slope_1;
+  const double b = (ends.g_1 - ends.g_0) - a - c;
+  const double root = std::sqrt(std::max(0.0, b * b - 3 * a * c));
+  const double s = -a / (b + root);  // where g' = 0 while rising, without cancellation
+  if (!(s > 0 && s < 1)) return kNever;
+  return ends.g_0 + s * (a + s * (b + s * c)) < 0 ? s * h : kNever;
+}
+
+// Given g(start) = g_start >= 0 and g(end) = g_end < 0: a time t in (start, end] with g(t) < 0 and, within
+// `width` (or what the clock can tell at such times) before it, g >= 0. Illinois, regula falsi that halves
+// the value at an end that stays, with a bisection whenever two of its steps have not halved the interval.
+template <class Margin>
+double TimeJustPast(double start, double g_start, double end, double g_end, double width, Margin g) {
+  width = std::max(width, 8 * std::numeric_limits<double>::epsilon() * std::abs(end));
+  int kept = 0;
+  double wide = end - start;
+  for (int i = 1; end - start > width; ++i) {
+    double time = end - g_end * (end - start) / (g_end - g_start);
+    if (i % 3 == 0) {
+      if (end - start > 0.5 * wide) time = 0.5 * (start + end);
+      wide = end - start;
+    }
+    time = std::clamp(time, start + 0.4 * width, end - 0.4 * width);
+    const double value = g(time);
+    if (value < 0) {
+      end = time;
+      g_end = value;
+      if (kept == 1) g_start *= 0.5;
+      kept = 1;
+    } else {
+      start = time;
+      g_start = value;
+      if (kept == -1) g_end *= 0.5;
+      kept = -1;
+    }
+  }
+  return end;
+}
+
+}  // namespace hydro
