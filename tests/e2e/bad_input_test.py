@@ -1,0 +1,201 @@
+"""Bad input to the real programs: exit code 2, one line on stderr that names the place, and no output file."""
+
+import os
+import unittest
+
+import event_log
+import stack
+
+# Programs that take a CONFIG, with options that make each do something. FILE stands for an output file.
+CONFIG_PROGRAMS = {
+    "hydro-plant": ["--log", "FILE"],
+    "hydro-pressure-ctrl": ["--log", "FILE"],
+    "hydro-position-ctrl": ["--log", "FILE"],
+    "hydro-logger": ["-o", "FILE"],
+    "hydro-sim": ["-o", "FILE"],
+    "hydro-launch": ["--log", "FILE"],
+}
+LOG_VERBS = {
+    "info": ["LOG"],
+    "export": ["LOG", "-o", "FILE"],
+    "compare": ["LOG", "GOOD"],
+    "replay": ["LOG"],
+    "summary": ["LOG", "--json", "FILE"],
+}
+
+# What is done to demo.toml (text to replace, replacement), and what the message must name beside the file.
+CONFIGS = [
+    ("unknown key", "rate_hz = 1000 ", "rate_hz = 1000\nrate = 1 ", r'plant: "rate"'),
+    ("unknown section", "[plant]", "[pump]\nx = 1\n[plant]", r"pump"),
+    ("not TOML", "[plant]", "[plant", r":\d+"),
+    ("a string for a number", "rate_hz = 1000 ", 'rate_hz = "fast" ', r"plant\.rate_hz"),
+    ("negative rate", "rate_hz = 1000 ", "rate_hz = -5 ", r"plant\.rate_hz"),
+    ("interval not whole ticks", "sample_interval_s = 0.005", "sample_interval_s = 0.0053", r"sample_interval_s"),
+    ("no gains", "natural_frequency_rad_s = 150.0", "", r"pressure"),
+    ("unknown mode", 'mode = "realtime"', 'mode = "fast"', r"time\.mode"),
+    ("missing model", "models/table1.toml", "models/none.toml", r"none\.toml"),
+    ("arm beyond its range", "[2.2, -0.2]", "[2.2, -20.0]", r"reference"),
+    ("steps out of order", "[4.4, 0.1]", "[1.0, 0.1]", r"reference"),
+    ("bad url", "udpm://239.255.76.67:7667", "udpm://10.0.0.1:7667", r"url"),
+    ("url of another kind", "udpm://239.255.76.67:7667?ttl=0", "http://x", r"url"),
+]
+OVERRIDES = [
+    ("unknown key", ["--set", "plant.rat_hz=1"], r"plant\.rat_hz"),
+    ("no value", ["--set", "plant.rate_hz"], r"plant\.rate_hz"),
+    ("not a number", ["--set", "plant.rate_hz=fast"], r"plant\.rate_hz"),
+    ("not finite", ["--set", "position.c1=nan"], r"position\.c1"),
+    ("unknown mode", ["--time", "warp"], r"--time"),
+    ("bad duration", ["--duration", "long"], r"--duration"),
+    ("negative duration", ["--duration", "-1"], r"--duration"),
+    ("duration not whole ticks", ["--duration", "0.0005"], r"duration"),
+    ("bad seed", ["--seed", "1.5"], r"--seed"),
+    ("unknown option", ["--sed", "1"], r"--sed"),
+    ("an argument too many", ["more.toml"], r"more\.toml"),
+]
+
+
+class BadInputTest(stack.TestCase):
+    def setUp(self):
+        super().setUp()
+        self.out = self.path("out.csv")
+        with open(stack.config("demo.toml"), encoding="utf-8") as file:
+            self.demo = file.read().replace("models/table1.toml",
+                                            os.path.join(stack.CONFIG, "models", "table1.toml"))
+
+    def write(self, name, content):
+        path = self.path(name)
+        with open(path, "wb") as file:
+            file.write(content if isinstance(content, bytes) else content.encode())
+        return path
+
+    def assert_refused(self, name, arguments, pattern):
+        process = self.start(name, *[self.out if a == "FILE" else a for a in arguments])
+        code = process.wait()
+        said = process.stderr
+        self.assertEqual(code, 2, process.report())
+        # hydro-launch shows what a program says, and its own end, with labels; it refuses what it reads itself.
+        self.assertEqual(len(said.splitlines()), 1, process.report())
+        self.assertRegex(said, pattern, process.report())
+        self.assertEqual(process.stdout, "", process.report())
+        left = [f for f in os.listdir(self.folder) if f.startswith(os.path.basename(self.out))]
+        self.assertEqual(left, [], process.report())
+
+    def all_programs(self, arguments, pattern):
+        for name, output in CONFIG_PROGRAMS.items():
+            with self.subTest(program=name):
+                self.assert_refused(name, [*arguments, *output], pattern)
+
+    # Tests a table of malformed configurations on every program that takes one.
+    def test_configurations(self):
+        for what, old, new, pattern in CONFIGS:
+            self.assertIn(old, self.demo, what)
+            config = self.write("bad.toml", self.demo.replace(old, new))
+            with self.subTest(what):
+                self.all_programs([config], pattern)
+
+    # Tests a configuration that does not exist, a folder, an empty one, one that is not text.
+    def test_configuration_files(self):
+        self.all_programs([self.path("none.toml")], r"none\.toml")
+        self.all_programs([self.folder], os.path.basename(self.folder))
+        self.all_programs([self.write("empty.toml", "")], r"empty\.toml")
+        self.all_programs([self.write("binary.toml", bytes(range(256)))], r"binary\.toml")
+
+    # Tests malformed models: the key or line is named.
+    def test_models(self):
+        with open(os.path.join(stack.CONFIG, "models", "table1.toml"), encoding="utf-8") as file:
+            good = file.read()
+        self.assertRegex(good, r"(?m)^J = ")
+        models = [
+            ("missing parameter", "\nJ = ", "\n# J = ", r"model\.toml.*\bJ\b"),
+            ("unknown parameter", "\nJ = ", "\nJJ = 1.0\nJ = ", r"model\.toml.*JJ"),
+            ("negative inertia", "\nJ = ", "\nJ = -", r"model\.toml.*\bJ\b"),
+            ("unknown effect", "\n[parameters]", '\n[effects."pump.magic"]\nx = 1\n[parameters]', r"pump\.magic"),
+        ]
+        config = self.write("uses.toml", self.demo.replace(
+            os.path.join(stack.CONFIG, "models", "table1.toml"), "model.toml"))
+        for what, old, new, pattern in models:
+            with self.subTest(what):
+                self.assertIn(old, good)
+                self.write("model.toml", good.replace(old, new, 1))
+                self.all_programs([config], pattern)
+
+    # Tests malformed options.
+    def test_options(self):
+        for what, options, pattern in OVERRIDES:
+            with self.subTest(what):
+                self.all_programs([stack.config("demo.toml"), *options], pattern)
+        for name in CONFIG_PROGRAMS:
+            with self.subTest(program=name):
+                self.assert_refused(name, [], "CONFIG")
+        self.assert_refused("hydro-logger", [stack.config("demo.toml")], "-o")
+        self.assert_refused("hydro-logger", [stack.config("demo.toml"), "-o", "FILE", "--rotate-mb", "-1"],
+                            "rotate-mb")
+        self.assert_refused("hydro-sim", [stack.config("demo.toml"), "--duration", "0", "-o", "FILE"], "duration")
+        self.assert_refused("hydro-launch", [stack.config("demo.toml"), "--host", "nobody", "--log", "FILE"],
+                            "nobody")
+
+    # Tests outputs that cannot be written.
+    def test_outputs(self):
+        missing = self.path("none/run.lcmlog")
+        demo = stack.config("demo.toml")
+        for name, option in (("hydro-logger", "-o"), ("hydro-sim", "-o"), ("hydro-plant", "--log")):
+            with self.subTest(program=name):
+                self.assert_refused(name, [demo, "--set", f"bus.url={self.url}", option, missing],
+                                    r"none/run\.lcmlog")
+
+    # Tests damaged logs on every verb that reads one.
+    def test_logs(self):
+        good = self.path("good.lcmlog")
+        self.run_program("hydro-sim", stack.config("demo.toml"), "--duration", "0.05", "-o", good)
+        with open(good, "rb") as file:
+            data = file.read()
+        # Where the tenth event begins.
+        place = sum(event_log.HEADER.size + len(e.channel) + len(e.data) for e in event_log.read_events(good)[:9])
+        logs = {
+            "missing.lcmlog": None,
+            "random.lcmlog": bytes((i * 7919 + 13) % 251 for i in range(5000)),
+            "torn.lcmlog": data[:-3],
+            "beheaded.lcmlog": data[1:],
+            "damaged.lcmlog": data[:place] + b"\xff" * 40 + data[place + 40:],
+            "empty.lcmlog": b"",
+        }
+        for name, content in logs.items():
+            log = self.path(name) if content is None else self.write(name, content)
+            for verb, arguments in LOG_VERBS.items():
+                # What is whole of a damaged log is worth looking at: info may count instead of refusing.
+                if verb == "info" and content is not None:
+                    continue
+                with self.subTest(log=name, verb=verb):
+                    if name == "empty.lcmlog" and verb == "compare":
+                        continue  # two runs of which one is empty can be compared: they differ
+                    self.assert_refused("hydro-log", [verb, *({"LOG": log, "GOOD": good}.get(a, a) for a in arguments)],
+                                        name.replace(".", r"\."))
+
+    # Tests malformed tables for import, and verbs that are none.
+    def test_hydro_log_usage(self):
+        tables = [
+            ("no time", "voltage_V\n1\n", r"time_s"),
+            ("unknown column", "time_s,volts\n0,1\n", r"volts"),
+            ("a word", "time_s,voltage_V\n0,1\n1,high\n", r"3|high"),
+            ("a short row", "time_s,voltage_V\n0,1\n1\n", r"3"),
+            ("empty", "", r"bad\.csv"),
+        ]
+        for what, text, pattern in tables:
+            with self.subTest(what):
+                self.assert_refused("hydro-log", ["import", self.write("bad.csv", text), "-o", "FILE"], pattern)
+        self.assert_refused("hydro-log", ["play", "x"], "play")
+        self.assert_refused("hydro-log", [], "verb")
+        self.assert_refused("hydro-log", ["export", self.path("x.lcmlog")], "-o|--output")
+
+    # Tests that --help and --version succeed, and say something on stdout only.
+    def test_help_and_version(self):
+        for name in [*CONFIG_PROGRAMS, "hydro-log"]:
+            for option in ("--help", "--version"):
+                with self.subTest(program=name, option=option):
+                    process = self.run_program(name, option)
+                    self.assertEqual(process.stderr, "")
+                    self.assertIn(name, process.stdout)
+
+
+if __name__ == "__main__":
+    unittest.main()

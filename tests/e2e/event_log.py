@@ -1,0 +1,175 @@
+"""Reads LCM event logs and the messages of package hydro in them.
+
+Written from the format's and the types' descriptions alone, so that it judges the programs' own reader and writer
+instead of repeating them.
+"""
+
+import collections
+import struct
+
+SYNC_WORD = 0xEDA1DA01
+HEADER = struct.Struct(">IqqII")  # sync word, event number, timestamp us, channel length, data length
+
+# The fields after the 8 bytes of the type's hash, as in lcmtypes/: q int64, i int32, b int8 or boolean, d double,
+# s string (its length with the zero byte as int32, then the bytes).
+FIELDS = {
+    "HYDRO_STATE": "utime:q tick:q session:q sequence:q time:d motor_angle:d motor_speed:d arm_angle:d arm_speed:d "
+                   "p1:d p2:d voltage:d command_tick:q skipped_ticks:q",
+    "HYDRO_MOTOR_COMMAND": "utime:q tick:q session:q sequence:q voltage:d pressure_ref:d pressure_command_tick:q "
+                           "saturated:b status:b",
+    "HYDRO_PRESSURE_COMMAND": "utime:q tick:q session:q sequence:q pressure_ref:d voltage:d open_loop:b",
+    "HYDRO_ARM_REFERENCE": "utime:q tick:q session:q sequence:q signal:b value:d",
+    "HYDRO_FAULT": "utime:q tick:q session:q sequence:q source:s code:s text:s value:d limit:d latched:b active:b",
+    "HYDRO_STOP": "utime:q tick:q session:q source:s reason:s exit_code:i",
+    "HYDRO_PROCESS_STATUS": "utime:q session:q role:s host:s version:s pid:i state:b text:s",
+    "HYDRO_LOOP_STATISTICS": "utime:q session:q sequence:q role:s host:s whole_run:b interval_s:d cycles:q period_p50_us:d "
+                             "period_p99_us:d period_p999_us:d period_max_us:d latency_p50_us:d latency_p99_us:d "
+                             "latency_p999_us:d latency_max_us:d missed_deadlines:q lost_messages:q queue_depth:q",
+    "HYDRO_LOG_PROGRESS": "utime:q tick:q session:q events:q queue_depth:q",
+    "HYDRO_RUN": "utime:q session:q config_file:s config_text:s model_file:s model_text:s program:s version:s host:s "
+                 "rate_hz:d seed:q",
+}
+NUMBERED = ("HYDRO_STATE", "HYDRO_MOTOR_COMMAND", "HYDRO_PRESSURE_COMMAND", "HYDRO_ARM_REFERENCE")
+
+# motor_command_t.status and process_status_t.state
+LAW, OPEN_LOOP, SAFE, STOPPED = range(4)
+READY, RUNNING, DONE, FAILED = 1, 2, 3, 4
+
+
+class LogError(Exception):
+    """A log, or a message in it, is not what it should be."""
+
+
+class Type:
+    """Decodes the messages of one channel into named tuples."""
+
+    def __init__(self, channel, fields):
+        pairs = [field.split(":") for field in fields.split()]
+        self.tuple = collections.namedtuple(channel.title().replace("_", ""), [name for name, _ in pairs])
+        self.codes = [code for _, code in pairs]
+        self.fixed = struct.Struct(">" + "".join(self.codes)) if "s" not in self.codes else None
+
+    def decode(self, data):
+        if self.fixed:
+            if len(data) != 8 + self.fixed.size:
+                raise LogError(f"{self.tuple.__name__}: {len(data)} bytes, expected {8 + self.fixed.size}")
+            return self.tuple._make(self.fixed.unpack_from(data, 8))
+        values, at = [], 8
+        for code in self.codes:
+            if code == "s":
+                (length,) = struct.unpack_from(">i", data, at)
+                values.append(data[at + 4:at + 3 + length].decode())
+                at += 4 + length
+            else:
+                values.append(struct.unpack_from(">" + code, data, at)[0])
+                at += struct.calcsize(">" + code)
+        if at != len(data):
+            raise LogError(f"{self.tuple.__name__}: {len(data)} bytes, decoded {at}")
+        return self.tuple._make(values)
+
+
+TYPES = {channel: Type(channel, fields) for channel, fields in FIELDS.items()}
+
+Event = collections.namedtuple("Event", "number utime channel data")
+
+
+def kind_of(channel):
+    """HYDRO_STATE for HYDRO_STATE and HYDRO_STATE_2; None for a channel that is not of this stack."""
+    fits = [kind for kind in TYPES if channel.startswith(kind)]
+    return max(fits, key=len) if fits else None
+
+
+def _event_at(data, at):
+    """The event that begins at `at` and where the next begins; None where the data end within it."""
+    if at + HEADER.size > len(data):
+        return None
+    sync, number, utime, channel_length, data_length = HEADER.unpack_from(data, at)
+    if sync != SYNC_WORD:
+        raise LogError(f"no sync word at byte {at}")
+    body = at + HEADER.size + channel_length
+    if body + data_length > len(data):
+        return None
+    channel = data[at + HEADER.size:body].decode()
+    return Event(number, utime, channel, data[body:body + data_length]), body + data_length
+
+
+def read_events(path, torn_tail=False):
+    """All events of a log in file order. A last event that is cut off is an error unless `torn_tail`."""
+    with open(path, "rb") as file:
+        data = file.read()
+    events, at = [], 0
+    while at < len(data):
+        found = _event_at(data, at)
+        if found is None:
+            if torn_tail:
+                break
+            raise LogError(f"{path}: ends within an event that begins at byte {at} of {len(data)}")
+        events.append(found[0])
+        at = found[1]
+    return events
+
+
+class Follower:
+    """Reads a log while it is being written."""
+
+    def __init__(self, path):
+        self.path = path
+        self.rest = b""
+        self.offset = 0
+
+    def new_events(self):
+        """What has been written since the last call, in whole events."""
+        try:
+            with open(self.path, "rb") as file:
+                file.seek(self.offset)
+                more = file.read()
+        except FileNotFoundError:
+            return []
+        self.offset += len(more)
+        data, at, events = self.rest + more, 0, []
+        while (found := _event_at(data, at)) is not None:
+            events.append(found[0])
+            at = found[1]
+        self.rest = data[at:]
+        return events
+
+
+class Log:
+    """The decoded messages of a log. `items` are (kind, message) in file order; `suffix` picks one stack of several."""
+
+    def __init__(self, path, suffix="", torn_tail=False):
+        self.events = read_events(path, torn_tail)
+        self.items = []
+        self._by_kind = {kind: [] for kind in TYPES}
+        for event in self.events:
+            kind = kind_of(event.channel)
+            if kind is None or event.channel != kind + suffix:
+                continue
+            message = TYPES[kind].decode(event.data)
+            self.items.append((kind, message))
+            self._by_kind[kind].append(message)
+
+    def __getattr__(self, name):
+        table = {"states": "HYDRO_STATE", "motor_commands": "HYDRO_MOTOR_COMMAND",
+                 "pressure_commands": "HYDRO_PRESSURE_COMMAND", "arm_references": "HYDRO_ARM_REFERENCE",
+                 "faults": "HYDRO_FAULT", "stops": "HYDRO_STOP", "statuses": "HYDRO_PROCESS_STATUS",
+                 "statistics": "HYDRO_LOOP_STATISTICS", "descriptions": "HYDRO_RUN", "progress": "HYDRO_LOG_PROGRESS"}
+        if name not in table:
+            raise AttributeError(name)
+        return self._by_kind[table[name]]
+
+    def of(self, kind):
+        return self._by_kind[kind]
+
+
+def missing_numbers(messages):
+    """Sequence numbers that are absent, by session: {session: [numbers]}. A session begins with 0."""
+    by_session = {}
+    for message in messages:
+        by_session.setdefault(message.session, set()).add(message.sequence)
+    gaps = {}
+    for session, numbers in by_session.items():
+        absent = sorted(set(range(max(numbers) + 1)) - numbers)
+        if absent:
+            gaps[session] = absent
+    return gaps

@@ -1,0 +1,100 @@
+"""A recorded run through the controllers again: by lcm-logplayer over the network, and by hydro-log replay."""
+
+import shutil
+import signal
+import unittest
+
+import event_log
+import stack
+
+PLAYER = shutil.which("lcm-logplayer")
+
+
+class PlayerTest(stack.TestCase):
+    def record(self, *options, time="lockstep"):
+        log_file = self.path("recorded.lcmlog")
+        launch = self.launch(stack.config("demo.toml"), "--time", time, "--log", log_file, *options)
+        self.assertEqual(launch.wait(), 0, launch.report())
+        return log_file
+
+    def play(self, time):
+        recorded = self.record("--duration", "1.5")
+        again = self.path("again.lcmlog")
+        url = self.new_url()
+        run = self.stack(stack.config("demo.toml"), "--time", time, url=url)
+        run.start("logger", "-o", again)
+        run.start("pressure_ctrl")
+        live = stack.LiveLog(self, again)
+        live.wait_for("HYDRO_PROCESS_STATUS", lambda s: s.role == "pressure_ctrl" and s.state == event_log.READY,
+                      "a pressure loop that is ready")
+        # What the recorded pressure loop said is left out: the new one is to say it.
+        player = self.start(PLAYER, "-l", url, "-e", "HYDRO_(STATE|PRESSURE_COMMAND)$", recorded)
+        self.assertEqual(player.wait(60), 0, player.report())
+        before = event_log.Log(recorded)
+        last = before.states[-1].tick
+        live.wait_for("HYDRO_MOTOR_COMMAND", lambda c: c.tick == last, "the answer to the last state")
+        for role in ("pressure_ctrl", "logger"):
+            run[role].send(signal.SIGTERM)
+            self.assertEqual(run[role].wait(), 0, run[role].report())
+
+        after = event_log.Log(again)
+        self.assertEqual([s[1:] for s in after.states], [s[1:] for s in before.states])
+        old, new = self.answers(before), self.answers(after)
+        self.assertEqual(set(old), set(range(last + 1)))
+        self.assertEqual(old, new)
+
+    def answers(self, log):
+        """What each tick was answered with: the fields that a run decides, not those of the process or of its clock.
+        Where the player was late for longer than limits.stale_input_s the pressure loop has said zero volts in
+        between, on its own; that is no answer."""
+        found = {}
+        for c in log.motor_commands:
+            if c.status in (event_log.LAW, event_log.OPEN_LOOP):
+                self.assertNotIn(c.tick, found)
+                found[c.tick] = c._replace(utime=0, session=0, sequence=0)
+        return found
+
+    # Tests that a pressure loop in lockstep answers a played log as the recorded one did, bit by bit.
+    @unittest.skipUnless(PLAYER, "lcm-logplayer is not installed")
+    def test_played_to_lockstep(self):
+        self.play("lockstep")
+
+    # Tests the same of a pressure loop in real time: its answers depend on ticks, not on when they came.
+    @unittest.skipUnless(PLAYER, "lcm-logplayer is not installed")
+    def test_played_to_realtime(self):
+        self.play("realtime")
+
+    def assert_replays(self, log_file):
+        replay = self.run_program("hydro-log", "replay", log_file)
+        self.assertRegex(replay.stdout, r"(?m)^pressure: identical, [1-9]\d* motor commands from [1-9]\d* states$")
+        self.assertRegex(replay.stdout, r"(?m)^position: identical, [1-9]\d* pressure commands from [1-9]\d* states$")
+
+    # Tests that hydro-log replay reproduces both controllers of a lockstep run.
+    def test_replay_lockstep(self):
+        self.assert_replays(self.record())
+
+    # Tests that it reproduces those of a run in real time, whatever came late there.
+    def test_replay_realtime(self):
+        self.assert_replays(self.record("--duration", "2", time="realtime"))
+
+    # Tests that it reproduces those of a run in real time without a command delay, where what was in force at a tick
+    # depends on what had arrived.
+    def test_replay_realtime_without_delay(self):
+        self.assert_replays(self.record("--duration", "2", "--set", "plant.command_delay_ticks=0", time="realtime"))
+
+    # Tests that replay can tell: a log whose commands came from other gains than it says.
+    def test_replay_finds_a_difference(self):
+        log_file = self.record("--duration", "0.5")
+        with open(log_file, "rb") as file:
+            data = file.read()
+        changed = data.replace(b"c1 = 6000", b"c1 = 6001")
+        self.assertNotEqual(changed, data, "the description holds the gain")
+        with open(log_file, "wb") as file:
+            file.write(changed)
+        replay = self.run_program("hydro-log", "replay", log_file, expect=1)
+        self.assertRegex(replay.stdout, "(?m)^pressure: identical")
+        self.assertRegex(replay.stdout, r"(?m)^position: .*tick \d+")
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,179 @@
+"""What happens to a run in real time when one of its processes dies.
+
+Documented outcome, by hand: the others go on in a safe state and name the fault; when the process is started again the
+fault ends and the run resumes. Under hydro-launch: all are stopped, exit code 1, the dead one is named.
+"""
+
+import math
+import os
+import signal
+import unittest
+
+import event_log
+import stack
+
+ROLES = ("plant", "pressure_ctrl", "position_ctrl", "logger")
+RATE = 1000  # Hz, of demo.toml
+STALE = 0.1  # s, limits.stale_input_s of demo.toml
+
+
+def of_code(code, active):
+    return lambda fault: fault.code == code and bool(fault.active) == active
+
+
+class RealtimeKillTest(stack.TestCase):
+    def setUp(self):
+        super().setUp()
+        self.log_file = self.path("run.lcmlog")
+        self.config = self.config_with_sine()
+        self.run_ = self.stack(self.config, "--time", "realtime", "--duration", "0")
+        self.log = self.run_.start_all(log=self.log_file)
+        self.log.wait_for_tick(200)
+
+    def config_with_sine(self):
+        """demo.toml with a reference that never settles, so that the voltage of a running loop is never zero for
+        long."""
+        with open(stack.config("demo.toml"), encoding="utf-8") as file:
+            text = file.read()
+        reference = text.index("[reference]")
+        end = text.index("[limits]")
+        text = (text[:reference] + '[reference]\nsignal = "arm_angle"\nkind = "sine"\namplitude = 0.2\n'
+                "frequency_hz = 0.5\n\n" + text[end:])
+        text = text.replace("models/table1.toml", os.path.join(stack.CONFIG, "models", "table1.toml"))
+        path = self.path("sine.toml")
+        with open(path, "w", encoding="utf-8") as file:
+            file.write(text)
+        return path
+
+    def finish(self):
+        """SIGTERM to the plant ends the run in order for all."""
+        self.run_["plant"].send(signal.SIGTERM)
+        for role in ("plant", "pressure_ctrl", "position_ctrl", "logger"):
+            self.assertEqual(self.run_[role].wait(), 0, self.run_[role].report())
+        return event_log.Log(self.log_file)
+
+    def wait_for_fault(self, code, active, start=0):
+        return self.log.wait_for("HYDRO_FAULT", of_code(code, active), f"fault {code}, active {active}", start=start)
+
+    def wait_for_law(self, after_tick):
+        return self.log.wait_for("HYDRO_MOTOR_COMMAND",
+                                 lambda c: c.tick > after_tick and c.status == event_log.LAW and c.voltage != 0,
+                                 "commands of the law again", start=self.log.count("HYDRO_MOTOR_COMMAND"))
+
+    # Tests that without a pressure loop the plant goes to zero volts and says so, and that a new one takes over.
+    def test_pressure_ctrl_killed(self):
+        self.run_["pressure_ctrl"].kill()
+        self.run_["pressure_ctrl"].wait()
+        fault = self.wait_for_fault("stale_motor_command", True)
+        self.assertEqual(fault.source, "plant")
+        self.log.wait_for_tick(fault.tick + 200)
+        resumed_at = self.log.messages["HYDRO_STATE"][-1].tick
+        self.run_.start("pressure_ctrl")
+        self.wait_for_fault("stale_motor_command", False)
+        self.wait_for_law(resumed_at)
+        log = self.finish()
+
+        first_session = log.motor_commands[0].session
+        last_command = max(c.tick for c in log.motor_commands if c.session == first_session)
+        safe = [s for s in log.states if s.tick > fault.tick + 1 and s.tick <= resumed_at]
+        self.assertTrue(safe)
+        for state in safe:
+            self.assertEqual((state.voltage, state.command_tick), (0, -1), state)
+        # The voltage was held no longer than the limit and the ticks that it takes to notice: one for the command's
+        # own delay, one to act, and as many as the plant slept through.
+        held = max(s.tick for s in log.states if s.command_tick == last_command)
+        slept = max(s.skipped_ticks for s in log.states)
+        self.assertLessEqual(held - last_command, STALE * RATE + 3 + slept + 2)
+
+    # Tests that without a position loop the pressure loop goes to zero volts and says so, until there is one again.
+    def test_position_ctrl_killed(self):
+        self.run_["position_ctrl"].kill()
+        self.run_["position_ctrl"].wait()
+        fault = self.wait_for_fault("stale_pressure_command", True)
+        self.assertEqual(fault.source, "pressure_ctrl")
+        self.log.wait_for_tick(fault.tick + 200)
+        self.run_.start("position_ctrl")
+        gone = self.wait_for_fault("stale_pressure_command", False)
+        self.wait_for_law(gone.tick)
+        log = self.finish()
+        between = [c for c in log.motor_commands if fault.tick <= c.tick < gone.tick]
+        self.assertTrue(between)
+        for command in between:
+            self.assertEqual((command.status, command.voltage), (event_log.SAFE, 0), command)
+        self.assertFalse([f for f in log.faults if f.code == "stale_motor_command"])  # the pressure loop went on
+        # Both loops' clocks are the ticks: the fault came exactly where the command was too old.
+        last = max(c.tick for c in log.pressure_commands if c.tick <= fault.tick)
+        interval = 5
+        limit = 1 + interval + math.ceil(STALE * RATE)
+        first_safe = min(c.tick for c in log.motor_commands if c.status == event_log.SAFE)
+        self.assertGreater(first_safe - last, limit)
+
+    # Tests that without a plant the pressure loop says zero volts once and names the fault, and that a new plant
+    # finds everybody where it left them.
+    def test_plant_killed(self):
+        self.run_["plant"].kill()
+        self.run_["plant"].wait()
+        fault = self.wait_for_fault("stale_state", True)
+        self.assertEqual(fault.source, "pressure_ctrl")
+        self.log.update()
+        last = self.log.messages["HYDRO_MOTOR_COMMAND"][-1]
+        self.assertEqual((last.status, last.voltage), (event_log.SAFE, 0))
+        commands = self.log.count("HYDRO_MOTOR_COMMAND")
+        states = self.log.count("HYDRO_STATE")
+        self.run_.start("plant", "--expect", "logger")
+        self.wait_for_fault("stale_state", False)
+        self.log.wait_for("HYDRO_STATE", lambda s: s.tick == 200, "tick 200 of the new plant", start=states)
+        self.log.wait_for("HYDRO_MOTOR_COMMAND", lambda c: c.status == event_log.LAW and c.tick >= 200,
+                          "commands for the new plant", start=commands)
+        self.finish()
+
+    # Tests that control does not need the logger, nor notices that it is gone, and that a new one joins in.
+    def test_logger_killed(self):
+        second_file = self.path("second.lcmlog")
+        second = self.start("hydro-logger", *self.run_.arguments, "-o", second_file)
+        live = stack.LiveLog(self, second_file)
+        live.wait_for("HYDRO_STATE", lambda s: True, "a state in the second log")
+        self.run_["logger"].kill()
+        self.run_["logger"].wait()
+        live.update()
+        tick = live.messages["HYDRO_STATE"][-1].tick
+        live.wait_for_tick(tick + 500)
+        self.run_["plant"].send(signal.SIGTERM)
+        for process in (self.run_["plant"], self.run_["pressure_ctrl"], self.run_["position_ctrl"], second):
+            self.assertEqual(process.wait(), 0, process.report())
+        after = event_log.Log(second_file)
+        self.assertFalse([f for f in after.faults if f.tick >= tick and f.active], after.faults)
+        commands = {c.tick: c for c in after.motor_commands if c.status != event_log.STOPPED}
+        for state in after.states[:-1]:
+            self.assertIn(state.tick, commands)
+
+
+class LaunchedRealtimeKillTest(stack.TestCase):
+    def kill_under_launch(self, victim):
+        launch = self.launch(stack.config("demo.toml"), "--time", "realtime", "--duration", "0", "--log",
+                             self.path("run.lcmlog"))
+        log = stack.LiveLog(self, self.path("run.lcmlog"))
+        log.wait_for_tick(100)
+        pids = {status.role: status.pid for status in log.messages["HYDRO_PROCESS_STATUS"]}
+        self.assertEqual(set(pids), set(ROLES))
+        os.kill(pids[victim], signal.SIGKILL)
+        self.assertEqual(launch.wait(), 1, launch.report())
+        self.assertRegex(launch.stderr, f"{stack.PROGRAMS[victim]} was killed by signal 9")
+        self.assertEqual(stack.still_running(pids.values()), [])
+
+    # Tests the death of each process of a launched stack: hydro-launch names it, ends with 1, leaves no orphan.
+    def test_plant_killed(self):
+        self.kill_under_launch("plant")
+
+    def test_pressure_ctrl_killed(self):
+        self.kill_under_launch("pressure_ctrl")
+
+    def test_position_ctrl_killed(self):
+        self.kill_under_launch("position_ctrl")
+
+    def test_logger_killed(self):
+        self.kill_under_launch("logger")
+
+
+if __name__ == "__main__":
+    unittest.main()
