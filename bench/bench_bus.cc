@@ -1,5 +1,6 @@
-// What the bus costs: the round trip of a state to the pressure loop's command between two processes over UDP multicast,
-// beside a bare LCM echo of the same messages in the same run, and the time per message within one process.
+// What the bus costs: the round trip of a state to the pressure loop's command between two processes over UDP
+// multicast, beside a bare LCM echo of the same messages in the same run, and the time per message within one
+// process.
 #include <benchmark/benchmark.h>
 #include <sched.h>
 
@@ -32,7 +33,8 @@ constexpr int kTripsPerBlock = 100;
 
 // The pressure loop as hydro-pressure-ctrl runs it.
 void AnswerOnBus(const std::string& url) {
-  StackConfig config = LoadStackConfig(HYDRO_BENCH_CONFIG, {"time.mode=realtime", "limits.stale_input_s=1e6"});
+  StackConfig config =
+      LoadStackConfig(HYDRO_BENCH_CONFIG, {"time.mode=realtime", "limits.stale_input_s=1e6"});
   UdpmBus bus(url);
   WallClock clock;
   PressureApp app(bus, clock, config);

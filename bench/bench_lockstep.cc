@@ -1,5 +1,6 @@
-// Lockstep over three processes: the stack (plant, pressure loop, position loop) beside bare LCM that exchanges the same
-// messages in the same pattern, a state each tick answered by the fast controller, each 25th also by the slow one.
+// Lockstep over three processes: the stack (plant, pressure loop, position loop) beside bare LCM that
+// exchanges the same messages in the same pattern, a state each tick answered by the fast controller, each
+// 25th also by the slow one.
 //   bench_lockstep [TICKS]
 #include <sched.h>
 

@@ -1,4 +1,5 @@
-// How much faster than real time hydro-sim runs the whole stack at 5 kHz, with every message logged and without a log.
+// How much faster than real time hydro-sim runs the whole stack at 5 kHz, with every message logged and
+// without a log.
 #include <benchmark/benchmark.h>
 
 #include <cstdio>

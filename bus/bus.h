@@ -7,8 +7,7 @@
 // Contract, the same for every transport:
 // - Messages on one channel from one sender arrive in the order they were sent.
 // - Handlers run only inside HandleUntil(), on the thread that calls it, one at a time. What a handler
-// publishes is
-//   delivered by a later turn of the same or a later HandleUntil(), never inside Publish().
+//   publishes is delivered by a later turn of the same or a later HandleUntil(), never inside Publish().
 // - An exception thrown by a handler leaves HandleUntil() (it never travels through C code).
 // - A message that cannot be decoded (another type, truncated) is counted in undecodable() and not delivered.
 // - A bus is used by one thread.

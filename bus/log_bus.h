@@ -25,7 +25,8 @@ class LogBus : public Bus {
     // Seconds of the log per second of wall time; 0: as fast as possible. With `clock` it must be 0.
     double speed = 0;
     // What the application publishes; one that is empty drops it.
-    std::function<void(const std::string& channel, const MessageType& type, const void* message)> published = {};
+    std::function<void(const std::string& channel, const MessageType& type, const void* message)> published =
+        {};
     std::function<void(const std::string& channel, const void* data, int size)> published_raw = {};
   };
 

@@ -147,6 +147,7 @@ std::vector<LoopInfo> LoopsOf(const std::vector<loop_statistics_t>& statistics) 
     loop.lost_messages = SaturatingSum(loop.lost_messages, report.lost_messages);
   }
   std::vector<LoopInfo> list;
+  list.reserve(loops.size());
   for (auto& [key, loop] : loops) list.push_back(std::move(loop));
   return list;
 }

@@ -27,8 +27,9 @@ std::strong_ordering CompareMessages(const Message& a, const Message& b) {
   return std::apply(
       [&](const auto&... field) {
         std::strong_ordering order = std::strong_ordering::equal;
-        ((order = CompareField(a.*field.member, b.*field.member), order == std::strong_ordering::equal) &&
-         ...);
+        static_cast<void>(
+            ((order = CompareField(a.*field.member, b.*field.member), order == std::strong_ordering::equal) &&
+             ...));
         return order;
       },
       FieldsOf(static_cast<const Message*>(nullptr)));

@@ -37,12 +37,14 @@ class Replayer {
  public:
   Replayer(const RunLog& log, double speed) : speed_(speed) {
     if (log.descriptions.empty()) {
-      throw InputError(log.file + ": found no HYDRO_RUN message; a replay needs the run's configuration and model");
+      throw InputError(log.file +
+                       ": found no HYDRO_RUN message; a replay needs the run's configuration and model");
     }
     const run_description_t& description = log.descriptions.front();
-    config_ = ParseStackConfig(description.config_text, log.file + " (its configuration)", description.model_text,
-                               log.file + " (its model)");
-    config_.time.mode = TimeMode::kRealtime;  // nothing is waited for: what is in force is handed over in time
+    config_ = ParseStackConfig(description.config_text, log.file + " (its configuration)",
+                               description.model_text, log.file + " (its model)");
+    config_.time.mode =
+        TimeMode::kRealtime;  // nothing is waited for: what is in force is handed over in time
     channels_ = Channels(config_.bus.channel_suffix);
     states_ = ByTick(log.messages.states);
     if (states_.empty()) throw InputError(log.file + ": found no states to feed");
@@ -83,7 +85,8 @@ class Replayer {
   InProcessBus bus_{&clock_};
 };
 
-ReplayResult Compare(const Replayer& replayer, RunMessages recorded, RunMessages replayed, size_t answers) {
+ReplayResult Compare(const Replayer& replayer, const RunMessages& recorded, const RunMessages& replayed,
+                     size_t answers) {
   ReplayResult result;
   result.states = replayer.states();
   result.answers = static_cast<int64_t>(answers);
@@ -102,9 +105,11 @@ ReplayResult ReplayPressure(const RunLog& log, double speed) {
   Replayer replayer(log, speed);
   PressureApp app(replayer.bus(), replayer.clock(), replayer.config());
   std::map<int64_t, motor_command_t> answers;
-  replayer.bus().Subscribe<motor_command_t>(replayer.channels().motor_command, [&](const motor_command_t& command) {
-    if (recorded.contains(command.tick)) answers.emplace(command.tick, command);
-  });
+  replayer.bus().Subscribe<motor_command_t>(replayer.channels().motor_command,
+                                            [&](const motor_command_t& command) {
+                                              if (recorded.contains(command.tick))
+                                                answers.emplace(command.tick, command);
+                                            });
   auto next = pressure_commands.begin();
   replayer.Feed([&](int64_t tick) {
     const auto command = recorded.find(tick);
@@ -117,7 +122,7 @@ ReplayResult ReplayPressure(const RunLog& log, double speed) {
   RunMessages record, replay;
   record.motor_commands = Unnumbered(recorded);
   replay.motor_commands = Unnumbered(answers);
-  return Compare(replayer, std::move(record), std::move(replay), recorded.size());
+  return Compare(replayer, record, replay, recorded.size());
 }
 
 ReplayResult ReplayPosition(const RunLog& log, double speed) {
@@ -129,9 +134,11 @@ ReplayResult ReplayPosition(const RunLog& log, double speed) {
   PositionApp app(replayer.bus(), replayer.clock(), replayer.config());
   std::map<int64_t, pressure_command_t> answers;
   std::map<int64_t, arm_reference_t> answered_references;
-  replayer.bus().Subscribe<pressure_command_t>(replayer.channels().pressure_command, [&](const auto& command) {
-    if (recorded.contains(command.tick)) answers.emplace(command.tick, command);
-  });
+  replayer.bus().Subscribe<pressure_command_t>(replayer.channels().pressure_command,
+                                               [&](const auto& command) {
+                                                 if (recorded.contains(command.tick))
+                                                   answers.emplace(command.tick, command);
+                                               });
   replayer.bus().Subscribe<arm_reference_t>(replayer.channels().arm_reference, [&](const auto& reference) {
     if (references.contains(reference.tick)) answered_references.emplace(reference.tick, reference);
   });
@@ -141,13 +148,14 @@ ReplayResult ReplayPosition(const RunLog& log, double speed) {
   record.arm_references = Unnumbered(references);
   replay.pressure_commands = Unnumbered(answers);
   replay.arm_references = Unnumbered(answered_references);
-  return Compare(replayer, std::move(record), std::move(replay), recorded.size());
+  return Compare(replayer, record, replay, recorded.size());
 }
 
 }  // namespace
 
 ReplayResult Replay(const RunLog& log, ReplayedController controller, double speed) {
-  return controller == ReplayedController::kPressure ? ReplayPressure(log, speed) : ReplayPosition(log, speed);
+  return controller == ReplayedController::kPressure ? ReplayPressure(log, speed)
+                                                     : ReplayPosition(log, speed);
 }
 
 }  // namespace hydro

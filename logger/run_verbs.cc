@@ -11,7 +11,8 @@
 namespace hydro {
 
 SummaryVerb::SummaryVerb(CommandLine& line) {
-  CommandLine& verb = line.AddVerb("summary", "How well the arm followed its reference, loop timing, losses.");
+  CommandLine& verb =
+      line.AddVerb("summary", "How well the arm followed its reference, loop timing, losses.");
   verb.AddPositional("LOG", &log_, "FILE the log");
   verb.AddOption("--json", &json_, "FILE write the same there as JSON");
   verb.AddFlag("--si", &si_, "print figures in SI units too");
@@ -34,7 +35,8 @@ int SummaryVerb::Run() const {
 
 ReplayVerb::ReplayVerb(CommandLine& line) {
   CommandLine& verb = line.AddVerb(
-      "replay", "Feed the recorded states through the controllers and compare their answers with the record.");
+      "replay",
+      "Feed the recorded states through the controllers and compare their answers with the record.");
   verb.AddPositional("LOG", &log_, "FILE the log");
   verb.AddOption("--controller", &controller_, "NAME pressure, position or both (default)");
   verb.AddOption("--speed", &speed_, "X recorded seconds per wall second; 0 (default): as fast as possible");
@@ -53,8 +55,8 @@ int ReplayVerb::Run() const {
       std::printf("%s: %s\n", name, result.difference->c_str());
       exit_code = 1;
     } else {
-      std::printf("%s: identical, %lld %s from %lld states\n", name, static_cast<long long>(result.answers), commands,
-                  static_cast<long long>(result.states));
+      std::printf("%s: identical, %lld %s from %lld states\n", name, static_cast<long long>(result.answers),
+                  commands, static_cast<long long>(result.states));
     }
   };
   if (controller_ != "position") replay(ReplayedController::kPressure, "pressure", "motor commands");

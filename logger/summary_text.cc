@@ -1,7 +1,7 @@
 #include <spdlog/fmt/fmt.h>
 
-#include <numbers>
 #include <nlohmann/json.hpp>
+#include <numbers>
 
 #include "logger/tracking.h"
 
@@ -19,7 +19,8 @@ int64_t LostMessages(const LogInfo& info) {
 }
 
 std::string Angle(double rad, bool si) {
-  return si ? fmt::format("{:.4f} rad ({:.2f} deg)", rad, rad * 180 / std::numbers::pi) : fmt::format("{:.4f} rad", rad);
+  return si ? fmt::format("{:.4f} rad ({:.2f} deg)", rad, rad * 180 / std::numbers::pi)
+            : fmt::format("{:.4f} rad", rad);
 }
 
 }  // namespace
@@ -30,7 +31,8 @@ std::string SummaryText(const Tracking& tracking, const LogInfo& info, bool si) 
     text += fmt::vformat(format, fmt::make_format_args(arguments...)) + "\n";
   };
   line("{} states over {:.3f} s of plant time, {} ticks skipped (late wake-ups), {} messages lost",
-       info.ticks.states, info.ticks.last_time_s - info.ticks.first_time_s, info.ticks.missing, LostMessages(info));
+       info.ticks.states, info.ticks.last_time_s - info.ticks.first_time_s, info.ticks.missing,
+       LostMessages(info));
   if (tracking.has_reference) {
     line("arm {} its target {}: final error {:.5f} rad, rms error over the run {:.4f} rad",
          tracking.at_target ? "at" : "NOT at", Angle(tracking.target_rad, si), tracking.final_error_rad,
@@ -44,12 +46,13 @@ std::string SummaryText(const Tracking& tracking, const LogInfo& info, bool si) 
     }
   }
   if (!info.loops.empty()) {
-    line("{:<14} {:>8} {:>10} {:>10} {:>10} {:>10} {:>10} {:>7} {:>6}", "loop", "cycles",
-         "period p50", "period p99", "late p50", "late p99", "late max", "missed", "lost");
+    line("{:<14} {:>8} {:>10} {:>10} {:>10} {:>10} {:>10} {:>7} {:>6}", "loop", "cycles", "period p50",
+         "period p99", "late p50", "late p99", "late max", "missed", "lost");
     for (const LoopInfo& loop : info.loops) {
       line("{:<14} {:>8} {:>7.0f} us {:>7.0f} us {:>7.0f} us {:>7.0f} us {:>7.0f} us {:>7} {:>6}",
-           loop.last.role, loop.cycles, loop.last.period_p50_us, loop.last.period_p99_us, loop.last.latency_p50_us,
-           loop.last.latency_p99_us, loop.last.latency_max_us, loop.missed_deadlines, loop.lost_messages);
+           loop.last.role, loop.cycles, loop.last.period_p50_us, loop.last.period_p99_us,
+           loop.last.latency_p50_us, loop.last.latency_p99_us, loop.last.latency_max_us,
+           loop.missed_deadlines, loop.lost_messages);
     }
   }
   for (const fault_t& fault : info.faults) {
@@ -67,12 +70,13 @@ std::string SummaryJson(const Tracking& tracking, const LogInfo& info) {
   if (tracking.has_reference) {
     Json steps = Json::array();
     for (const StepResponse& step : tracking.steps) {
-      steps.push_back({{"time_s", step.time_s},
-                       {"from_rad", step.from_rad},
-                       {"to_rad", step.to_rad},
-                       {"overshoot_percent", step.overshoot_percent},
-                       {"settling_time_s", step.settling_time_s ? Json(*step.settling_time_s) : Json(nullptr)},
-                       {"final_error_rad", step.final_error_rad}});
+      steps.push_back(
+          {{"time_s", step.time_s},
+           {"from_rad", step.from_rad},
+           {"to_rad", step.to_rad},
+           {"overshoot_percent", step.overshoot_percent},
+           {"settling_time_s", step.settling_time_s ? Json(*step.settling_time_s) : Json(nullptr)},
+           {"final_error_rad", step.final_error_rad}});
     }
     json["tracking"] = {{"at_target", tracking.at_target},
                         {"target_rad", tracking.target_rad},
@@ -83,7 +87,11 @@ std::string SummaryJson(const Tracking& tracking, const LogInfo& info) {
   json["loops"] = Json::parse(InfoJson(info)).value("loops", Json::array());
   Json faults = Json::array();
   for (const fault_t& fault : info.faults) {
-    faults.push_back({{"tick", fault.tick}, {"source", fault.source}, {"code", fault.code}, {"active", bool(fault.active)}, {"text", fault.text}});
+    faults.push_back({{"tick", fault.tick},
+                      {"source", fault.source},
+                      {"code", fault.code},
+                      {"active", bool(fault.active)},
+                      {"text", fault.text}});
   }
   json["faults"] = faults;
   return json.dump(2) + "\n";

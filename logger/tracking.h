@@ -21,16 +21,16 @@ struct StepResponse {
 };
 
 struct Tracking {
-  bool has_reference = false;      // the log has arm-angle references and measured arm angles
-  double rms_error_rad = 0;        // over the run
-  double final_error_rad = 0;      // arm minus reference, the mean of the last 0.1 s
-  double target_rad = 0;           // last reference
-  bool at_target = false;          // |final error| within 2 % of the largest step, or of the reference's range
+  bool has_reference = false;  // the log has arm-angle references and measured arm angles
+  double rms_error_rad = 0;    // over the run
+  double final_error_rad = 0;  // arm minus reference, the mean of the last 0.1 s
+  double target_rad = 0;       // last reference
+  bool at_target = false;      // |final error| within 2 % of the largest step, or of the reference's range
   std::vector<StepResponse> steps;  // empty when the reference is not made of steps
 };
 
-// The arm's tracking in a run. A reference counts as made of steps when it changes at most 100 times and rests at least
-// 0.2 s after each change.
+// The arm's tracking in a run. A reference counts as made of steps when it changes at most 100 times and
+// rests at least 0.2 s after each change.
 Tracking TrackArm(const RunLog& log);
 
 // For a person; several lines, loop timing and losses included. With `si`, angles are also in degrees.

@@ -3,8 +3,8 @@
 #include "process/process_main.h"
 
 int main(int argc, char** argv) {
-  hydro::CommandLine command_line("hydro-plant",
-                                  "The simulated actuator: sets the pace, publishes states, obeys motor commands.");
+  hydro::CommandLine command_line(
+      "hydro-plant", "The simulated actuator: sets the pace, publishes states, obeys motor commands.");
   hydro::CommonOptions options;
   std::vector<std::string> expected;
   command_line.AddCommon(&options);

@@ -17,10 +17,11 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr auto kRepeatPeriod = 100ms;       // lockstep: how often an unanswered state is sent again
-constexpr auto kDescriptionPeriod = 1s;     // so that a log or a plot that starts late describes itself too
-constexpr int64_t kLoggerWindowTicks = 64;  // lockstep: how far the plant may run ahead of a logger; about half of
-                                            // what the default receive buffer of Linux (208 KiB) holds
+constexpr auto kRepeatPeriod = 100ms;    // lockstep: how often an unanswered state is sent again
+constexpr auto kDescriptionPeriod = 1s;  // so that a log or a plot that starts late describes itself too
+constexpr int64_t kLoggerWindowTicks =
+    64;  // lockstep: how far the plant may run ahead of a logger; about half of
+         // what the default receive buffer of Linux (208 KiB) holds
 
 Clock::Duration Seconds(double seconds) {
   return std::chrono::duration_cast<Clock::Duration>(std::chrono::duration<double>(seconds));
@@ -35,8 +36,8 @@ std::vector<std::string> WithControllers(std::vector<std::string> roles) {
 
 }  // namespace
 
-PlantApp::PlantApp(Bus& bus, Clock& clock, const StackConfig& config, const std::vector<std::string>& expected,
-                   const std::string& program)
+PlantApp::PlantApp(Bus& bus, Clock& clock, const StackConfig& config,
+                   const std::vector<std::string>& expected, const std::string& program)
     : config_(config),
       participant_(bus, clock, Channels(config.bus.channel_suffix), "plant"),
       roll_call_(WithControllers(expected)),
@@ -111,7 +112,8 @@ bool PlantApp::WaitForParticipants() {
     const std::string names = fmt::format("{}", fmt::join(missing, ", "));
     if (now >= deadline) {
       participant_.RequestStop(
-          fmt::format("not ready after {} s (time.start_timeout_s): {}", config_.time.start_timeout_s, names), 1);
+          fmt::format("not ready after {} s (time.start_timeout_s): {}", config_.time.start_timeout_s, names),
+          1);
       return false;
     }
     if (now >= next_word) {
@@ -166,8 +168,8 @@ bool PlantApp::AwaitAnswers() {
       return !Ended();
     }
     if (now >= deadline) {
-      participant_.RequestStop(fmt::format("{} has not answered tick {} within {} s (time.stall_timeout_s)", who,
-                                           tick_, config_.time.stall_timeout_s),
+      participant_.RequestStop(fmt::format("{} has not answered tick {} within {} s (time.stall_timeout_s)",
+                                           who, tick_, config_.time.stall_timeout_s),
                                1);
       return false;
     }
@@ -181,7 +183,8 @@ bool PlantApp::AwaitAnswers() {
 }
 
 std::string PlantApp::Unanswered() const {
-  if (tick_ % config_.position_interval_ticks == 0 && newest_pressure_command_tick_ < tick_) return "position_ctrl";
+  if (tick_ % config_.position_interval_ticks == 0 && newest_pressure_command_tick_ < tick_)
+    return "position_ctrl";
   if (tick_ % config_.pressure_interval_ticks == 0 && newest_command_tick_ < tick_) return "pressure_ctrl";
   for (const auto& [session, tick] : log_progress_) {
     if (tick < tick_ - kLoggerWindowTicks) return "logger";
@@ -248,10 +251,11 @@ void PlantApp::OnMotorCommand(const motor_command_t& command) {
   if (verdict == SequenceMonitor::Verdict::kSecondSender) return;  // ChooseVoltage() sees to it
   if (verdict == SequenceMonitor::Verdict::kRestarted) waiting_commands_.clear();
   if (command.tick > tick_) {
-    participant_.Raise("future_motor_command",
-                       fmt::format("a motor command for tick {} at tick {}; is another run's log being played?",
-                                   command.tick, tick_),
-                       static_cast<double>(command.tick), static_cast<double>(tick_), false);
+    participant_.Raise(
+        "future_motor_command",
+        fmt::format("a motor command for tick {} at tick {}; is another run's log being played?",
+                    command.tick, tick_),
+        static_cast<double>(command.tick), static_cast<double>(tick_), false);
     return;
   }
   if (participant_.any_fault()) participant_.Clear("future_motor_command");
@@ -277,8 +281,8 @@ void PlantApp::ChooseVoltage() {
     const double found = voltage_;
     zero();
     participant_.Raise("nonfinite_motor_command",
-                       fmt::format("tick {}: the motor command is {} V, must be finite", tick_, found), found, NAN,
-                       false);
+                       fmt::format("tick {}: the motor command is {} V, must be finite", tick_, found), found,
+                       NAN, false);
   } else if (participant_.any_fault()) {
     participant_.Clear("nonfinite_motor_command");
   }
@@ -300,10 +304,11 @@ void PlantApp::CheckCommandIsFresh() {
   }
   voltage_ = 0;  // zero volts first, explanation second
   command_tick_ = -1;
-  participant_.Raise("stale_motor_command",
-                     fmt::format("tick {}: no motor command for {:.0f} ms, allowed are {:.0f} ms (limits.stale_input_s)",
-                                 tick_, 1e3 * ToSeconds(age), 1e3 * ToSeconds(stale_time_)),
-                     ToSeconds(age), config_.limits.stale_input_s, false);
+  participant_.Raise(
+      "stale_motor_command",
+      fmt::format("tick {}: no motor command for {:.0f} ms, allowed are {:.0f} ms (limits.stale_input_s)",
+                  tick_, 1e3 * ToSeconds(age), 1e3 * ToSeconds(stale_time_)),
+      ToSeconds(age), config_.limits.stale_input_s, false);
 }
 
 void PlantApp::Poll() {

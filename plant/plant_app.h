@@ -1,12 +1,13 @@
 // The simulated actuator as an application: it sets the pace of a run.
 //
-// Lockstep: publishes the state of tick k, waits for each command that is due at tick k (and for a logger that has
-// fallen behind), then advances to tick k + 1. The result does not depend on how long anybody took. A participant that
-// does not answer within time.stall_timeout_s ends the run with an error that names it.
+// Lockstep: publishes the state of tick k, waits for each command that is due at tick k (and for a logger
+// that has fallen behind), then advances to tick k + 1. The result does not depend on how long anybody took.
+// A participant that does not answer within time.stall_timeout_s ends the run with an error that names it.
 //
-// Real time: wakes at each tick of wall time, advances the model under the voltage it holds, publishes the state, and
-// takes the newest command. When it wakes late it integrates all the time it missed, publishes the one state it then
-// has, and counts the ticks it skipped. When commands stop coming for limits.stale_input_s, the voltage goes to zero.
+// Real time: wakes at each tick of wall time, advances the model under the voltage it holds, publishes the
+// state, and takes the newest command. When it wakes late it integrates all the time it missed, publishes the
+// one state it then has, and counts the ticks it skipped. When commands stop coming for limits.stale_input_s,
+// the voltage goes to zero.
 //
 // Either way the command computed from tick k acts from tick k + plant.command_delay_ticks on.
 #pragma once
@@ -72,15 +73,16 @@ class PlantApp {
 
   int64_t tick_ = 0;
   state_t state_;
-  double voltage_ = 0;          // V, held from tick_ on
-  int64_t command_tick_ = -1;   // tick of the command that voltage_ came from
+  double voltage_ = 0;         // V, held from tick_ on
+  int64_t command_tick_ = -1;  // tick of the command that voltage_ came from
   SequenceMonitor command_monitor_;
   std::deque<motor_command_t> waiting_commands_;  // received, not yet in force, by tick
   std::optional<motor_command_t> command_;        // in force
   int64_t newest_command_tick_ = -1;
   int64_t newest_pressure_command_tick_ = -1;
-  std::map<int64_t, int64_t> log_progress_;       // tick by logger session
-  std::optional<Clock::TimePoint> unanswered_since_;  // real time: the oldest state without an answer was sent then
+  std::map<int64_t, int64_t> log_progress_;  // tick by logger session
+  std::optional<Clock::TimePoint>
+      unanswered_since_;  // real time: the oldest state without an answer was sent then
   Clock::TimePoint next_description_;
 };
 

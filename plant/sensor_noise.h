@@ -1,5 +1,5 @@
-// Measurement noise that depends on nothing but the seed, the tick and the signal: the same tick gets the same noise in
-// lockstep, in real time and in hydro-sim, whatever was skipped before.
+// Measurement noise that depends on nothing but the seed, the tick and the signal: the same tick gets the
+// same noise in lockstep, in real time and in hydro-sim, whatever was skipped before.
 #pragma once
 
 #include <cstdint>

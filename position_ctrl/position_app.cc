@@ -103,9 +103,10 @@ void PositionApp::Answer(const state_t& state) {
       } else {
         pressure_command_.open_loop = true;  // zero volts: without the arm's angle no pressure is safe
         law_.Reset();
-        participant_.Raise("nonfinite_arm_angle",
-                           fmt::format("tick {}: the arm angle is {}, must be finite", state.tick, state.arm_angle),
-                           state.arm_angle, NAN, false);
+        participant_.Raise(
+            "nonfinite_arm_angle",
+            fmt::format("tick {}: the arm angle is {}, must be finite", state.tick, state.arm_angle),
+            state.arm_angle, NAN, false);
       }
       break;
     case ReferenceSignal::kPressure:
@@ -127,7 +128,8 @@ void PositionApp::Answer(const state_t& state) {
 
 void PositionApp::Send() {
   arm_reference_.utime = pressure_command_.utime = participant_.clock().Utime();
-  // The pressure command last: the plant waits for it in lockstep, and then a log has both before the next state.
+  // The pressure command last: the plant waits for it in lockstep, and then a log has both before the next
+  // state.
   participant_.bus().Publish(participant_.channels().arm_reference, arm_reference_);
   participant_.bus().Publish(participant_.channels().pressure_command, pressure_command_);
 }

@@ -1,6 +1,6 @@
-// The sampled position loop as an application: on each tick that is a multiple of its sample interval it publishes the
-// reference and the pressure command that follows from it, eq. (17) for the arm's angle; pressure, torque and
-// open-loop voltage references pass through, limited and quantised alike.
+// The sampled position loop as an application: on each tick that is a multiple of its sample interval it
+// publishes the reference and the pressure command that follows from it, eq. (17) for the arm's angle;
+// pressure, torque and open-loop voltage references pass through, limited and quantised alike.
 #pragma once
 
 #include <cstdint>

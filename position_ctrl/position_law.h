@@ -7,10 +7,11 @@
 namespace hydro {
 
 struct PositionLawSettings {
-  double c1 = 0;                     // psi/rad
-  double c2 = 0;                     // psi s/rad
-  double sample_interval = 0.005;    // s, T
-  bool derivative_on_error = false;  // true: eq. (17) as printed; false: on the measured angle, no kick at a step
+  double c1 = 0;                   // psi/rad
+  double c2 = 0;                   // psi s/rad
+  double sample_interval = 0.005;  // s, T
+  bool derivative_on_error =
+      false;  // true: eq. (17) as printed; false: on the measured angle, no kick at a step
   double pressure_limit = std::numeric_limits<double>::infinity();  // psi, largest |dp_ref|
 };
 
@@ -18,9 +19,9 @@ class PositionLaw {
  public:
   explicit PositionLaw(const PositionLawSettings& settings) : settings_(settings) {}
 
-  // dp_ref = -c1 e - c2/T (e - e_previous), e = alpha - alpha_ref, limited; eq. (17). `intervals` is how many sample
-  // intervals have passed since the previous call (more than 1 when samples were missed). The first sample after
-  // Reset() has no derivative.
+  // dp_ref = -c1 e - c2/T (e - e_previous), e = alpha - alpha_ref, limited; eq. (17). `intervals` is how many
+  // sample intervals have passed since the previous call (more than 1 when samples were missed). The first
+  // sample after Reset() has no derivative.
   double Update(double arm_angle, double arm_ref, int64_t intervals);
 
   void Reset() { has_previous_ = false; }
@@ -31,8 +32,8 @@ class PositionLaw {
   bool has_previous_ = false;
 };
 
-// What a D/A converter of `bits` bits and a range of +/- full_scale makes of `value`: the nearest of its 2^bits levels
-// k full_scale / 2^(bits-1), k = -2^(bits-1) ... 2^(bits-1) - 1. bits = 0: value itself.
+// What a D/A converter of `bits` bits and a range of +/- full_scale makes of `value`: the nearest of its
+// 2^bits levels k full_scale / 2^(bits-1), k = -2^(bits-1) ... 2^(bits-1) - 1. bits = 0: value itself.
 double QuantiseDac(double value, int bits, double full_scale);
 
 }  // namespace hydro

@@ -54,7 +54,8 @@ PressureApp::PressureApp(Bus& bus, Clock& clock, const StackConfig& config)
       stale_ticks_(delay_ + position_interval_ +
                    static_cast<int64_t>(std::ceil(config.limits.stale_input_s * config.plant.rate_hz))),
       stale_time_(Seconds(config.limits.stale_input_s)),
-      // The plant itself waits stall_timeout_s for whoever is late and then says who; only after that is it silent.
+      // The plant itself waits stall_timeout_s for whoever is late and then says who; only after that is it
+      // silent.
       stall_time_(Seconds(config.time.stall_timeout_s) + 400ms),
       limits_(config.limits),
       law_(PressureLawSettingsFor(config)),
@@ -62,8 +63,9 @@ PressureApp::PressureApp(Bus& bus, Clock& clock, const StackConfig& config)
       command_monitor_(stale_time_),
       last_state_time_(clock.Now()) {
   bus.Subscribe<state_t>(participant_.channels().state, [this](const state_t& state) { OnState(state); });
-  bus.Subscribe<pressure_command_t>(participant_.channels().pressure_command,
-                                    [this](const pressure_command_t& command) { OnPressureCommand(command); });
+  bus.Subscribe<pressure_command_t>(
+      participant_.channels().pressure_command,
+      [this](const pressure_command_t& command) { OnPressureCommand(command); });
   participant_.Announce(process_status_t::READY);
 }
 
@@ -127,7 +129,8 @@ void PressureApp::OnPressureCommand(const pressure_command_t& command) {
   }
 }
 
-// In lockstep every pressure command that is due comes, sooner or later; which one is in force must not depend on when.
+// In lockstep every pressure command that is due comes, sooner or later; which one is in force must not
+// depend on when.
 bool PressureApp::AwaitsPressureCommand(int64_t state_tick) const {
   const int64_t newest_allowed = state_tick - delay_;
   if (!lockstep_ || newest_allowed < 0) return false;
@@ -170,15 +173,18 @@ bool PressureApp::InputsAreSafe(const state_t& state) {
                        state.p1 > state.p2 ? 1 : 2, pressure, limits_.pressure_psi);
   });
   const double speed = std::fabs(state.motor_speed);
-  check(!(speed > limits_.motor_speed_rad_s), "motor_speed_limit", speed, limits_.motor_speed_rad_s, true, [&] {
-    return fmt::format("tick {}: the motor turns at {:.1f} rad/s, allowed is {} rad/s (limits.motor_speed_rad_s)",
-                       state.tick, speed, limits_.motor_speed_rad_s);
-  });
+  check(!(speed > limits_.motor_speed_rad_s), "motor_speed_limit", speed, limits_.motor_speed_rad_s, true,
+        [&] {
+          return fmt::format(
+              "tick {}: the motor turns at {:.1f} rad/s, allowed is {} rad/s (limits.motor_speed_rad_s)",
+              state.tick, speed, limits_.motor_speed_rad_s);
+        });
   const int64_t age = state.tick - (pressure_command_ ? pressure_command_->tick : 0);
   check(age <= stale_ticks_, "stale_pressure_command", static_cast<double>(age),
         static_cast<double>(stale_ticks_), false, [&] {
-          return fmt::format("tick {}: the newest pressure command is {} ticks old, allowed are {} (limits.stale_input_s)",
-                             state.tick, age, stale_ticks_);
+          return fmt::format(
+              "tick {}: the newest pressure command is {} ticks old, allowed are {} (limits.stale_input_s)",
+              state.tick, age, stale_ticks_);
         });
   check(!pressure_command_ ||
             (std::isfinite(pressure_command_->pressure_ref) && std::isfinite(pressure_command_->voltage)),
@@ -240,9 +246,10 @@ void PressureApp::Poll() {
   if (lockstep_) {
     if (silence > stall_time_ && !stalled_) {
       stalled_ = true;
-      participant_.RequestStop(fmt::format("the plant has sent no state for {:.1f} s (last: tick {})",
-                                           std::chrono::duration<double>(silence).count(), participant_.tick()),
-                               1);
+      participant_.RequestStop(
+          fmt::format("the plant has sent no state for {:.1f} s (last: tick {})",
+                      std::chrono::duration<double>(silence).count(), participant_.tick()),
+          1);
     }
   } else if (silence > stale_time_ && !participant_.active("stale_state")) {
     motor_command_t zero;

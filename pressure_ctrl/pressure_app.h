@@ -1,7 +1,8 @@
 // The fast pressure loop as an application: a motor command for each plant tick (or each n-th), eq. (16).
 //
-// A state that is stale, not finite, beyond a limit or from a second sender gives zero volts and a named fault
-// (docs/faults.md). What it computes depends on the ticks and contents of messages only, never on when they arrived.
+// A state that is stale, not finite, beyond a limit or from a second sender gives zero volts and a named
+// fault (docs/faults.md). What it computes depends on the ticks and contents of messages only, never on when
+// they arrived.
 #pragma once
 
 #include <cstdint>
@@ -19,8 +20,8 @@
 
 namespace hydro {
 
-// The law's settings that a configuration asks for; derives the gains where it gives natural frequency and damping.
-// Throws InputError when they cannot be derived.
+// The law's settings that a configuration asks for; derives the gains where it gives natural frequency and
+// damping. Throws InputError when they cannot be derived.
 PressureLawSettings PressureLawSettingsFor(const StackConfig& config);
 
 class PressureApp : public App {

@@ -47,7 +47,8 @@ SecondOrder PressureLoopDynamics(const Parameters& p, double arm_angle, const Pr
 }
 
 double SteadyStateFeedforward(const Parameters& p, const PressureGains& gains) {
-  const double speed_per_psi = (p.c_I + p.c_E) / p.D;  // rad/s per psi, from p_2' = 0 in eq. (14) with p_1 = p_3
+  const double speed_per_psi =
+      (p.c_I + p.c_E) / p.D;  // rad/s per psi, from p_2' = 0 in eq. (14) with p_1 = p_3
   return (p.D + p.b * speed_per_psi) / p.k_1 + gains.k_p * gains.k_v * speed_per_psi;
 }
 

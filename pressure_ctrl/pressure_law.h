@@ -10,8 +10,8 @@ struct PressureGains {
   double k_v = 0;  // psi s/rad
 };
 
-// Gains of eq. (16) that give the linearised pressure loop (eqs. (4), (13), (14) at the given arm angle, without
-// leakage and Coulomb friction) the natural frequency (rad/s) and damping ratio asked for.
+// Gains of eq. (16) that give the linearised pressure loop (eqs. (4), (13), (14) at the given arm angle,
+// without leakage and Coulomb friction) the natural frequency (rad/s) and damping ratio asked for.
 // compressed_sides: 2 when both volumes compress; 1 when side 1 is held at p_3 by its one-way valve.
 // Throws std::invalid_argument when that needs a negative k_p (natural frequency below the open loop's).
 PressureGains DerivePressureGains(const Parameters& parameters, double arm_angle, double natural_frequency,
@@ -25,16 +25,16 @@ struct SecondOrder {
 SecondOrder PressureLoopDynamics(const Parameters& parameters, double arm_angle, const PressureGains& gains,
                                  int compressed_sides);
 
-// V/psi: the feed-forward "which changes linearly with dp_ref" that removes the steady-state error of a clamped
-// actuator up to Coulomb friction: the torque that holds dp_ref, D dp / k_1, and what the speed that makes up for the
-// leakage costs in viscous friction and in the k_v term. One side is taken to lie at p_3.
+// V/psi: the feed-forward "which changes linearly with dp_ref" that removes the steady-state error of a
+// clamped actuator up to Coulomb friction: the torque that holds dp_ref, D dp / k_1, and what the speed that
+// makes up for the leakage costs in viscous friction and in the k_v term. One side is taken to lie at p_3.
 double SteadyStateFeedforward(const Parameters& parameters, const PressureGains& gains);
 
 struct PressureLawSettings {
   PressureGains gains;
   double voltage_limit = 0;          // V, T_pmax/k_1
   double reference_feedforward = 0;  // V/psi
-  double arm_speed_ratio = 0;        // c/D: takes the pump speed that arm motion forces out of the k_v term; 0: not
+  double arm_speed_ratio = 0;  // c/D: takes the pump speed that arm motion forces out of the k_v term; 0: not
 };
 
 struct PressureLawInput {
@@ -50,7 +50,8 @@ struct PressureLawOutput {
   bool saturated = false;  // the law asked for more
 };
 
-// v = k_p ((dp_ref - dp) - k_v (theta' - arm_speed_ratio alpha')) + reference_feedforward dp_ref, limited. Eq. (16).
+// v = k_p ((dp_ref - dp) - k_v (theta' - arm_speed_ratio alpha')) + reference_feedforward dp_ref, limited.
+// Eq. (16).
 PressureLawOutput PressureLaw(const PressureLawSettings& settings, const PressureLawInput& input);
 
 }  // namespace hydro

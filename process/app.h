@@ -1,5 +1,5 @@
-// An application that only reacts: to messages and to time. Controllers and the logger are such; the plant, which sets
-// the pace, is not (plant/plant_app.h).
+// An application that only reacts: to messages and to time. Controllers and the logger are such; the plant,
+// which sets the pace, is not (plant/plant_app.h).
 #pragma once
 
 #include "bus/bus.h"

@@ -1,5 +1,5 @@
-// What every process of a stack does beside its own work: says that it is ready, hears that the run ends, names faults
-// when they begin and when they have gone, and reports once a second how it kept time.
+// What every process of a stack does beside its own work: says that it is ready, hears that the run ends,
+// names faults when they begin and when they have gone, and reports once a second how it kept time.
 #pragma once
 
 #include <cstdint>
@@ -26,12 +26,13 @@ class Participant {
   const std::string& role() const { return role_; }
   int64_t session() const { return session_; }
 
-  // Announces a new state of this process (process_status_t::READY ...). Ready is announced again ten times a second
-  // by Poll(), so that processes may start in any order.
+  // Announces a new state of this process (process_status_t::READY ...). Ready is announced again ten times a
+  // second by Poll(), so that processes may start in any order.
   void Announce(int8_t state, const std::string& text = "");
   int8_t state() const { return state_; }
 
-  // Publishes what is due: the ready announcement, the statistics. To be called often; cheap when nothing is due.
+  // Publishes what is due: the ready announcement, the statistics. To be called often; cheap when nothing is
+  // due.
   void Poll();
 
   // The last plant tick this process knows of; -1 before the first. Written into faults and stops.

@@ -15,9 +15,10 @@ namespace hydro {
 // A process's work, given its bus and configuration; returns the exit code.
 using ProcessBody = std::function<int(Bus&, Clock&, const StackConfig&)>;
 
-// Loads the configuration that `options` name, sets up real-time scheduling as the [[process]] entry of `program` asks,
-// opens the UDP bus and runs `body`. With --log FILE everything on the bus is recorded too. Catches stop signals.
-// Returns the process's exit code; errors are one line on stderr (2: bad input, 1: the work failed).
+// Loads the configuration that `options` name, sets up real-time scheduling as the [[process]] entry of
+// `program` asks, opens the UDP bus and runs `body`. With --log FILE everything on the bus is recorded too.
+// Catches stop signals. Returns the process's exit code; errors are one line on stderr (2: bad input, 1: the
+// work failed).
 int RunProcess(const std::string& program, const CommonOptions& options, const ProcessBody& body);
 
 }  // namespace hydro

@@ -32,7 +32,7 @@ bool IsMulticastGroup(std::string_view group) {
 
 std::string WhatIsWrongWithBusUrl(const std::string& url) {
   constexpr std::string_view kScheme = "udpm://";
-  const std::string allowed = "udpm://GROUP:PORT, e.g. udpm://239.255.76.67:7667?ttl=0";
+  std::string allowed = "udpm://GROUP:PORT, e.g. udpm://239.255.76.67:7667?ttl=0";
   std::string_view rest = url;
   if (!rest.starts_with(kScheme)) return allowed;
   rest.remove_prefix(kScheme.size());

@@ -112,21 +112,20 @@ ModelDescription LoadModelFile(const std::string& file) { return ParseModel(Read
 
 std::string FormatModel(const ModelDescription& description) {
   TomlNode root;
-  root.members.emplace_back("name", StringNode(description.name));
+  root.members.push_back({"name", StringNode(description.name)});
   TomlNode parameters;
   for (const BaseParameter& parameter : BaseParameters()) {
-    parameters.members.emplace_back(parameter.info.name,
-                                    NumberNode(description.parameters.*parameter.member));
+    parameters.members.push_back({parameter.info.name, NumberNode(description.parameters.*parameter.member)});
   }
-  root.members.emplace_back("parameters", std::move(parameters));
+  root.members.push_back({"parameters", std::move(parameters)});
   TomlNode effects;
   for (const EffectDescription& effect : description.effects) {
     TomlNode table;
-    for (const auto& [name, value] : effect.parameters) table.members.emplace_back(name, NumberNode(value));
-    for (const auto& [name, value] : effect.names) table.members.emplace_back(name, StringNode(value));
-    effects.members.emplace_back(effect.id, std::move(table));
+    for (const auto& [name, value] : effect.parameters) table.members.push_back({name, NumberNode(value)});
+    for (const auto& [name, value] : effect.names) table.members.push_back({name, StringNode(value)});
+    effects.members.push_back({effect.id, std::move(table)});
   }
-  if (!effects.members.empty()) root.members.emplace_back("effects", std::move(effects));
+  if (!effects.members.empty()) root.members.push_back({"effects", std::move(effects)});
   return FormatToml(root);
 }
 

@@ -52,7 +52,7 @@ void ApplyOne(const std::string& option, TomlNode* root) {
       TomlNode section;
       section.place = place;
       section.from_option = true;
-      node->members.emplace_back(key, std::move(section));
+      node->members.push_back({key, std::move(section)});
     }
     node = node->Find(key);
     begin = end + 1;

@@ -24,7 +24,7 @@ TomlNode Convert(const toml::node& from, const std::string& name) {
       return x.line != y.line ? x.line < y.line : x.column < y.column;
     });
     for (const auto& [key, value] : entries) {
-      node.members.emplace_back(std::string(key->str()), Convert(*value, name));
+      node.members.push_back({std::string(key->str()), Convert(*value, name)});
       node.members.back().second.place = name + ":" + std::to_string(key->source().begin.line);
     }
   } else if (const toml::array* array = from.as_array()) {

@@ -3,24 +3,25 @@
 
 #include <cstdint>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "settings/input_error.h"
 
 namespace hydro {
 
+struct TomlMember;
+
 struct TomlNode {
   enum class Kind { kTable, kArray, kString, kInteger, kFloat, kBoolean, kDate };
   Kind kind = Kind::kTable;
-  std::vector<std::pair<std::string, TomlNode>> members;  // kTable, in the document's order
-  std::vector<TomlNode> items;                            // kArray
-  std::string text;                                       // kString
-  int64_t integer = 0;                                    // kInteger
-  double number = 0;                                      // kFloat
-  bool boolean = false;                                   // kBoolean
-  std::string place;                                      // "file:line", or the option that it came from
-  bool from_option = false;                               // true: from --set
+  std::vector<TomlMember> members;  // kTable, in the document's order
+  std::vector<TomlNode> items;      // kArray
+  std::string text;                 // kString
+  int64_t integer = 0;              // kInteger
+  double number = 0;                // kFloat
+  bool boolean = false;             // kBoolean
+  std::string place;                // "file:line", or the option that it came from
+  bool from_option = false;         // true: from --set
 
   bool is(Kind k) const { return kind == k; }
   bool is_number() const { return kind == Kind::kInteger || kind == Kind::kFloat; }
@@ -32,6 +33,11 @@ struct TomlNode {
 
   // What was found, for a message: a value as it would be written, a table or an array by its kind.
   std::string Shown() const;
+};
+
+struct TomlMember {
+  std::string first;  // the key
+  TomlNode second;
 };
 
 TomlNode NumberNode(double value);

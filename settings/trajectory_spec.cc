@@ -138,7 +138,7 @@ void EmbedPoints(const TrajectorySpec& spec, TomlNode* section) {
   }
   section->Erase("file");
   section->Erase("column");
-  section->members.emplace_back("points", std::move(points));
+  section->members.push_back({"points", std::move(points)});
 }
 
 std::unique_ptr<Trajectory> MakeTrajectory(const TrajectorySpec& spec) {

@@ -1,4 +1,5 @@
-// hydro-sim CONFIG -o FILE: plant, pressure loop, position loop and logger in one process on a simulated clock.
+// hydro-sim CONFIG -o FILE: plant, pressure loop, position loop and logger in one process on a simulated
+// clock.
 #include <chrono>
 #include <cstdio>
 #include <memory>
@@ -17,7 +18,9 @@ int Run(const hydro::CommonOptions& options, const std::string& file) {
   if (!file.empty()) writer = std::make_unique<hydro::LogWriter>(file, hydro::Opening::kTemporary);
   std::function<void(const hydro::RawMessage&)> tap;
   if (writer) {
-    tap = [&](const hydro::RawMessage& m) { writer->Append(m.channel, m.data, static_cast<size_t>(m.size), m.receive_utime); };
+    tap = [&](const hydro::RawMessage& m) {
+      writer->Append(m.channel, m.data, static_cast<size_t>(m.size), m.receive_utime);
+    };
   }
   const auto start = std::chrono::steady_clock::now();
   const hydro::SimulationResult result = hydro::Simulate(config, tap);

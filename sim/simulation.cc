@@ -10,7 +10,9 @@ namespace hydro {
 
 SimulationResult Simulate(const StackConfig& config, const std::function<void(const RawMessage&)>& tap) {
   if (config.last_tick < 0) {
-    throw InputError(config.file + ": time.duration_s: found 0, a simulation needs an end: allowed is > 0 (or --duration S)");
+    throw InputError(
+        config.file +
+        ": time.duration_s: found 0, a simulation needs an end: allowed is > 0 (or --duration S)");
   }
   StackConfig lockstep = config;
   lockstep.time.mode = TimeMode::kLockstep;

@@ -80,8 +80,8 @@ class PlantAppTest : public ::testing::Test {
   int64_t sequence_ = 0;
 };
 
-// Tests that a lockstep run publishes each tick once, from 0 to the last, and that the command computed from tick k acts
-// from tick k + 1 on: over the interval that ends at tick k + 2.
+// Tests that a lockstep run publishes each tick once, from 0 to the last, and that the command computed from
+// tick k acts from tick k + 1 on: over the interval that ends at tick k + 2.
 TEST_F(PlantAppTest, LockstepAppliesCommandsOneTickLater) {
   AnswerAll();
   EXPECT_EQ(Run(SmallStack()), 0);
@@ -113,8 +113,8 @@ TEST_F(PlantAppTest, LockstepWithoutDelay) {
   for (int64_t k = 1; k <= 100; ++k) EXPECT_EQ(states_[k].command_tick, k - 1);
 }
 
-// Tests that a pressure loop that does not answer ends a lockstep run with an error that names it, that the unanswered
-// state was sent again meanwhile, and that it took less than 2 s.
+// Tests that a pressure loop that does not answer ends a lockstep run with an error that names it, that the
+// unanswered state was sent again meanwhile, and that it took less than 2 s.
 TEST_F(PlantAppTest, LockstepNamesAStalledPressureLoop) {
   on_state_ = [this](const state_t& s) {
     if (s.tick % 5 == 0) SendPressureCommand(s.tick);
@@ -205,8 +205,9 @@ TEST_F(PlantAppTest, RealtimeTakesTheNewestCommand) {
   EXPECT_TRUE(faults_.empty());
 }
 
-// Tests that a late wake-up integrates the time that was missed under the held command: the state after a gap equals
-// that of a run without the gap in which the same voltage was held, and says how many ticks were skipped.
+// Tests that a late wake-up integrates the time that was missed under the held command: the state after a gap
+// equals that of a run without the gap in which the same voltage was held, and says how many ticks were
+// skipped.
 TEST_F(PlantAppTest, LateWakeUpIntegratesWhatItMissed) {
   StackConfig config = SmallStack();
   config.time.mode = TimeMode::kRealtime;
@@ -239,8 +240,8 @@ TEST_F(PlantAppTest, LateWakeUpIntegratesWhatItMissed) {
   EXPECT_EQ(skipped, 51 - static_cast<int64_t>(states_.size()));
 }
 
-// Tests that in real time a silent pressure loop gives zero volts after the stale-input limit and a named fault, and that
-// the plant goes on and resumes when commands come again.
+// Tests that in real time a silent pressure loop gives zero volts after the stale-input limit and a named
+// fault, and that the plant goes on and resumes when commands come again.
 TEST_F(PlantAppTest, RealtimeStaleCommandGivesZeroVolts) {
   StackConfig config = SmallStack();
   config.time.mode = TimeMode::kRealtime;

@@ -42,7 +42,8 @@ TEST(RollCallTest, NamesWhoLeft) {
   EXPECT_THAT(roll.Missing(), ElementsAre("pressure_ctrl"));
 }
 
-// Tests that participants with one session, as on a simulated clock, are told apart by role; loggers are known.
+// Tests that participants with one session, as on a simulated clock, are told apart by role; loggers are
+// known.
 TEST(RollCallTest, TellsRolesApart) {
   RollCall roll({"pressure_ctrl", "position_ctrl"});
   roll.Observe(Status("pressure_ctrl", 0, process_status_t::READY));

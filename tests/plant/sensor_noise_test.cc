@@ -7,7 +7,8 @@
 namespace hydro {
 namespace {
 
-// Tests that the noise is standard normal: mean, variance, and the share beyond one and two standard deviations.
+// Tests that the noise is standard normal: mean, variance, and the share beyond one and two standard
+// deviations.
 TEST(SensorNoiseTest, IsStandardNormal) {
   const int n = 200000;
   double sum = 0, squares = 0;
@@ -42,7 +43,8 @@ TEST(SensorNoiseTest, IsUncorrelated) {
   EXPECT_NEAR(seeds / n, 0, five_sigma);
 }
 
-// Tests that noise depends on nothing but seed, tick and signal, has the size asked for and leaves the rest alone.
+// Tests that noise depends on nothing but seed, tick and signal, has the size asked for and leaves the rest
+// alone.
 TEST(SensorNoiseTest, ScalesAndLeavesTheRestAlone) {
   Measurement truth;
   truth.p1 = 100;

@@ -123,8 +123,8 @@ TEST_F(PositionAppTest, LimitsAndQuantises) {
   EXPECT_DOUBLE_EQ(commands_.at(0).pressure_ref, 300);
 }
 
-// Tests that an arm angle that is not finite gives an open-loop command of zero volts and a fault, and that the loop
-// starts afresh, without a derivative across the gap, when the angle is back.
+// Tests that an arm angle that is not finite gives an open-loop command of zero volts and a fault, and that
+// the loop starts afresh, without a derivative across the gap, when the angle is back.
 TEST_F(PositionAppTest, NonFiniteAngleGivesZeroVolts) {
   Start(WithReference(ReferenceSignal::kArmAngle, 0));
   SendState(0, 0.1);

@@ -57,7 +57,8 @@ TEST(PositionLawTest, LimitsTheCommand) {
   EXPECT_EQ(law.Update(-1, 0, 1), 20);
 }
 
-// Tests the D/A converter: nearest of 2^bits levels, one level less on the positive side, nothing with 0 bits.
+// Tests the D/A converter: nearest of 2^bits levels, one level less on the positive side, nothing with 0
+// bits.
 TEST(QuantiseDacTest, RoundsToLevels) {
   EXPECT_EQ(QuantiseDac(123.456, 0, 100), 123.456);
   EXPECT_DOUBLE_EQ(QuantiseDac(10.1, 12, 2048), 10);

@@ -72,7 +72,8 @@ class PressureAppTest : public ::testing::Test {
   int64_t plant_session_ = 3;
 };
 
-// Tests that each tick gets one command, and that the pressure command computed from tick 0 acts from tick 1 on.
+// Tests that each tick gets one command, and that the pressure command computed from tick 0 acts from tick 1
+// on.
 TEST_F(PressureAppTest, PressureCommandActsOneTickLater) {
   Start(SmallStack());
   SendState(State(0));
@@ -100,7 +101,8 @@ TEST_F(PressureAppTest, WithoutDelayTheSameTicksPressureCommandActs) {
   EXPECT_DOUBLE_EQ(commands_[0].voltage, Law(120));
 }
 
-// Tests that a due pressure command that comes after its state (another route through a network) changes nothing.
+// Tests that a due pressure command that comes after its state (another route through a network) changes
+// nothing.
 TEST_F(PressureAppTest, LockstepResultDoesNotDependOnArrivalOrder) {
   Start(SmallStack());
   SendState(State(0));
@@ -130,7 +132,8 @@ TEST_F(PressureAppTest, RepeatsTheAnswerToARepeatedState) {
   EXPECT_EQ(commands_[0].sequence, commands_[1].sequence);
 }
 
-// Tests that each non-finite measurement gives zero volts and a fault that goes when the measurement is good again.
+// Tests that each non-finite measurement gives zero volts and a fault that goes when the measurement is good
+// again.
 TEST_F(PressureAppTest, NonFiniteStateGivesZeroVolts) {
   Start(SmallStack());
   SendState(State(0));
@@ -138,7 +141,8 @@ TEST_F(PressureAppTest, NonFiniteStateGivesZeroVolts) {
   int64_t tick = 1;
   for (double state_t::*field : {&state_t::p1, &state_t::p2, &state_t::motor_speed}) {
     for (const double bad : {std::nan(""), std::numeric_limits<double>::infinity()}) {
-      if (bad > 0 && field != &state_t::motor_speed) continue;  // an infinite pressure is above the limit: latched
+      if (bad > 0 && field != &state_t::motor_speed)
+        continue;  // an infinite pressure is above the limit: latched
       state_t s = State(tick++);
       s.*field = bad;
       faults_.clear();
@@ -160,7 +164,8 @@ TEST_F(PressureAppTest, NonFiniteStateGivesZeroVolts) {
 
 class PressureLimitTest : public PressureAppTest, public ::testing::WithParamInterface<double state_t::*> {};
 
-// Tests that a pressure above the limit, on either side, trips: zero volts for good, one fault, the end of the run.
+// Tests that a pressure above the limit, on either side, trips: zero volts for good, one fault, the end of
+// the run.
 TEST_P(PressureLimitTest, Trips) {
   Start(SmallStack());
   SendState(State(0));
@@ -185,8 +190,8 @@ TEST_P(PressureLimitTest, Trips) {
 
 INSTANTIATE_TEST_SUITE_P(BothSides, PressureLimitTest, ::testing::Values(&state_t::p1, &state_t::p2));
 
-// Tests that in real time a position loop that has gone silent gives zero volts after the stale-input limit, counted
-// in ticks so that a replay does the same, and that the loop resumes with the next pressure command.
+// Tests that in real time a position loop that has gone silent gives zero volts after the stale-input limit,
+// counted in ticks so that a replay does the same, and that the loop resumes with the next pressure command.
 TEST_F(PressureAppTest, StalePressureCommandGivesZeroVolts) {
   StackConfig config = SmallStack();
   config.time.mode = TimeMode::kRealtime;

@@ -13,10 +13,11 @@ namespace {
 
 using testing::Table1;
 
-// Eigenvalues of the closed loop of eqs. (4), (13), (14), (16) at alpha = 0, frictionless and without leakage, written
-// out here from the equations themselves: states p1, p2, theta'; side 1 at p_3 when only one side compresses.
+// Eigenvalues of the closed loop of eqs. (4), (13), (14), (16) at alpha = 0, frictionless and without
+// leakage, written out here from the equations themselves: states p1, p2, theta'; side 1 at p_3 when only one
+// side compresses.
 SecondOrder ClosedLoop(const Parameters& p, const PressureGains& gains, int compressed_sides) {
-  const double rise2 = p.beta / p.V_ms * p.D;                             // d p2'/d theta', eq. (14)
+  const double rise2 = p.beta / p.V_ms * p.D;                               // d p2'/d theta', eq. (14)
   const double rise1 = compressed_sides == 2 ? -p.beta / p.V_ms * p.D : 0;  // d p1'/d theta', eq. (13)
   // dp' = (rise2 - rise1) theta';  J theta'' = -k_1 k_p dp - k_1 k_p k_v theta' - D dp - b theta'
   const double trace = -(p.k_1 * gains.k_p * gains.k_v + p.b) / p.J;
@@ -26,8 +27,8 @@ SecondOrder ClosedLoop(const Parameters& p, const PressureGains& gains, int comp
   return {std::abs(root), -root.real() / std::abs(root)};
 }
 
-// Tests that natural frequency 150 rad/s and damping 0.5 give the gains computed independently from the paper's
-// equations, for both volumes compressing and for one side held at p_3.
+// Tests that natural frequency 150 rad/s and damping 0.5 give the gains computed independently from the
+// paper's equations, for both volumes compressing and for one side held at p_3.
 TEST(PressureLawTest, DerivedGainsMatchThePaper) {
   const PressureGains two = DerivePressureGains(Table1(), 0, 150, 0.5, 2);
   EXPECT_NEAR(two.k_p, 0.1336, 5e-5);
@@ -41,7 +42,8 @@ TEST(PressureLawTest, DerivedGainsMatchThePaper) {
 TEST(PressureLawTest, DerivedGainsGiveTheLoopAskedFor) {
   for (const int sides : {1, 2}) {
     for (const double omega : {60.0, 150.0, 400.0}) {
-      const SecondOrder loop = ClosedLoop(Table1(), DerivePressureGains(Table1(), 0, omega, 0.5, sides), sides);
+      const SecondOrder loop =
+          ClosedLoop(Table1(), DerivePressureGains(Table1(), 0, omega, 0.5, sides), sides);
       EXPECT_NEAR(loop.natural_frequency, omega, 1e-9 * omega);
       EXPECT_NEAR(loop.damping_ratio, 0.5, 1e-9);
     }
@@ -56,9 +58,9 @@ TEST(PressureLawTest, TwoSidedGainsInTheOneSidedMode) {
   EXPECT_NEAR(loop.damping_ratio, 0.5 * std::sqrt(2.0), 1e-12);
 }
 
-// Tests the closed loop with leakage and the rounded gains k_p = 0.134, k_v = 8.4 in the one-sided mode against values
-// computed independently: 106.6 rad/s, damping 0.709. Leakage moves the frequency by 0.4 %, which the derivation
-// leaves out.
+// Tests the closed loop with leakage and the rounded gains k_p = 0.134, k_v = 8.4 in the one-sided mode
+// against values computed independently: 106.6 rad/s, damping 0.709. Leakage moves the frequency by 0.4 %,
+// which the derivation leaves out.
 TEST(PressureLawTest, LeakageMovesTheLoopLittle) {
   const Parameters p = Table1();
   const PressureGains gains{0.134, 8.4};
@@ -105,8 +107,8 @@ TEST(PressureLawTest, Saturates) {
   EXPECT_EQ(PressureLaw(settings, {-1e9, 0, 0, 0, 0}).voltage, -10);
 }
 
-// Tests that the feed-forward removes the steady-state error of the frictionless clamped actuator: at dp = dp_ref, with
-// the speed that makes up for the leakage, the law's torque is what eq. (4) needs.
+// Tests that the feed-forward removes the steady-state error of the frictionless clamped actuator: at dp =
+// dp_ref, with the speed that makes up for the leakage, the law's torque is what eq. (4) needs.
 TEST(PressureLawTest, FeedforwardHoldsTheReference) {
   Parameters p = Table1();
   const PressureGains gains = DerivePressureGains(p, 0, 150, 0.5, 2);
