@@ -22,9 +22,10 @@ FIELDS = {
     "HYDRO_FAULT": "utime:q tick:q session:q sequence:q source:s code:s text:s value:d limit:d latched:b active:b",
     "HYDRO_STOP": "utime:q tick:q session:q source:s reason:s exit_code:i",
     "HYDRO_PROCESS_STATUS": "utime:q session:q role:s host:s version:s pid:i state:b text:s",
-    "HYDRO_LOOP_STATISTICS": "utime:q session:q sequence:q role:s host:s whole_run:b interval_s:d cycles:q period_p50_us:d "
-                             "period_p99_us:d period_p999_us:d period_max_us:d latency_p50_us:d latency_p99_us:d "
-                             "latency_p999_us:d latency_max_us:d missed_deadlines:q lost_messages:q queue_depth:q",
+    "HYDRO_LOOP_STATISTICS": "utime:q session:q sequence:q role:s host:s whole_run:b interval_s:d cycles:q "
+                             "period_p50_us:d period_p99_us:d period_p999_us:d period_max_us:d latency_p50_us:d "
+                             "latency_p99_us:d latency_p999_us:d latency_max_us:d missed_deadlines:q lost_messages:q "
+                             "queue_depth:q",
     "HYDRO_LOG_PROGRESS": "utime:q tick:q session:q events:q queue_depth:q",
     "HYDRO_RUN": "utime:q session:q config_file:s config_text:s model_file:s model_text:s program:s version:s host:s "
                  "rate_hz:d seed:q",

@@ -14,7 +14,8 @@ import stack
 
 ROLES = ("plant", "pressure_ctrl", "position_ctrl", "logger")
 RATE = 1000  # Hz, of demo.toml
-STALE = 0.1  # s, limits.stale_input_s of demo.toml
+# s, limits.stale_input_s: above what wake-ups are late by here (up to 150 ms), so that only a dead process is stale.
+STALE = 0.3
 
 
 def of_code(code, active):
@@ -26,7 +27,8 @@ class RealtimeKillTest(stack.TestCase):
         super().setUp()
         self.log_file = self.path("run.lcmlog")
         self.config = self.config_with_sine()
-        self.run_ = self.stack(self.config, "--time", "realtime", "--duration", "0")
+        self.run_ = self.stack(self.config, "--time", "realtime", "--duration", "0", "--set",
+                               f"limits.stale_input_s={STALE}")
         self.log = self.run_.start_all(log=self.log_file)
         self.log.wait_for_tick(200)
 

@@ -1,0 +1,64 @@
+"""Starting in any order and stopping by signal, by hand and under hydro-launch."""
+
+import itertools
+import signal
+import unittest
+
+import event_log
+import stack
+
+
+class StopTest(stack.TestCase):
+    def check_end(self, log_file):
+        """The actuator's last command is zero volts, the log is whole, and it ends where the run ended."""
+        log = event_log.Log(log_file)
+        self.assertEqual((log.motor_commands[-1].status, log.motor_commands[-1].voltage), (event_log.STOPPED, 0))
+        for kind in event_log.NUMBERED:
+            self.assertEqual(event_log.missing_numbers(log.of(kind)), {}, kind)
+        self.assertEqual(log.stops[0].exit_code, 0, log.stops)
+        return log
+
+    # Tests that a signal to hydro-launch ends the stack in order, and leaves nobody behind.
+    def test_launch_stopped(self):
+        for number in (signal.SIGINT, signal.SIGTERM):
+            for mode in ("realtime", "lockstep"):
+                with self.subTest(signal=number, mode=mode):
+                    log_file = self.path(f"{mode}-{number}.lcmlog")
+                    launch = self.launch(stack.config("demo.toml"), "--time", mode, "--duration", "0", "--log",
+                                         log_file)
+                    live = stack.LiveLog(self, log_file)
+                    live.wait_for_tick(100)
+                    pids = {s.pid for s in live.messages["HYDRO_PROCESS_STATUS"]}
+                    launch.send(number)
+                    self.assertEqual(launch.wait(), 0, launch.report())
+                    self.assertEqual(len(pids), 4)
+                    self.assertEqual(stack.still_running(pids), [])
+                    self.check_end(log_file)
+
+    # Tests that the processes of a stack may start in any order: all wait until all are there, and none sleeps.
+    def test_any_order(self):
+        alone = self.path("alone.lcmlog")
+        self.run_program("hydro-sim", stack.config("demo.toml"), "--duration", "0.3", "-o", alone)
+        for number, order in enumerate(itertools.permutations(("plant", "pressure_ctrl", "position_ctrl", "logger"))):
+            with self.subTest(order=order):
+                log_file = self.path(f"{number}.lcmlog")
+                run = self.stack(stack.config("demo.toml"), "--time", "lockstep", "--duration", "0.3",
+                                 url=self.new_url())
+                for role in order:
+                    run.start(role, *{"plant": ("--expect", "logger"), "logger": ("-o", log_file)}.get(role, ()))
+                for process in run.processes.values():
+                    self.assertEqual(process.wait(), 0, process.report())
+                self.assert_identical(alone, log_file)
+
+    # Tests that the plant waits for who is missing, names it, and gives up after time.start_timeout_s.
+    def test_missing_participant(self):
+        run = self.stack(stack.config("demo.toml"), "--set", "time.start_timeout_s=2.5")
+        run.start("plant")
+        run.start("pressure_ctrl")
+        run["plant"].wait_for("waiting for position_ctrl$")
+        for role in ("plant", "pressure_ctrl"):
+            self.assertEqual(run[role].wait(), 1, run[role].report())
+
+
+if __name__ == "__main__":
+    unittest.main()
