@@ -63,6 +63,7 @@ LoggerApp::~LoggerApp() {
 }
 
 void LoggerApp::OnMessage(const RawMessage& message) {
+  if (message.channel.empty()) return;  // LCM carries such a message, but no log can hold it
   Event event{
       std::string(message.channel), {message.data, message.data + message.size}, message.receive_utime};
   ++received_;
