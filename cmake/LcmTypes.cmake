@@ -12,9 +12,9 @@ function(lcm_wrap_cpp target)
     add_custom_command(
       OUTPUT ${header}
       COMMAND ${LCM_GEN} -x --cpp-std c++11 --cpp-hpath ${out} ${CMAKE_CURRENT_SOURCE_DIR}/${file}
-      # lcm-gen 1.3.1 believes a string length of 0 or less: std::length_error, or a read out of bounds.
-      COMMAND sed -i "s/if(\\(__[a-z0-9_]*_len__\\) > maxlen - pos)/if(\\1 < 1 || \\1 > maxlen - pos)/" ${header}
-      DEPENDS ${file}
+      COMMAND sed -i -f ${PROJECT_SOURCE_DIR}/cmake/lcm_string_length.sed ${header}
+      DEPENDS ${file} ${PROJECT_SOURCE_DIR}/cmake/lcm_string_length.sed
+      VERBATIM
       COMMENT "lcm-gen ${file}")
     list(APPEND headers ${header})
   endforeach()
