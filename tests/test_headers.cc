@@ -1,0 +1,1 @@
+// Empty: CMake precompiles headers only for a target with a source file.
