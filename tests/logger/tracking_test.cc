@@ -9,8 +9,8 @@ namespace hydro {
 namespace {
 
 // A run at 1 kHz for `ticks` ticks whose arm and reference are given functions of time.
-RunLog Run(int64_t ticks, const std::function<double(double)>& arm,
-           const std::function<double(double)>& reference) {
+RunLog MakeRun(int64_t ticks, const std::function<double(double)>& arm,
+               const std::function<double(double)>& reference) {
   RunLog log;
   for (int64_t tick = 0; tick <= ticks; ++tick) {
     state_t state{};
@@ -39,7 +39,7 @@ TEST(TrackingTest, SecondOrderStep) {
     return 0.5 * (1 - std::exp(-zeta * omega * s) *
                           (std::cos(damped * s) + zeta / std::sqrt(1 - zeta * zeta) * std::sin(damped * s)));
   };
-  const Tracking tracking = TrackArm(Run(4000, arm, StepAtOne));
+  const Tracking tracking = TrackArm(MakeRun(4000, arm, StepAtOne));
   ASSERT_TRUE(tracking.has_reference);
   ASSERT_EQ(tracking.steps.size(), 1u);
   const StepResponse& step = tracking.steps[0];
@@ -60,7 +60,7 @@ TEST(TrackingTest, SecondOrderStep) {
 // Tests that an arm that stops short is not at its target, never settles, and has its error reported with its
 // sign.
 TEST(TrackingTest, StopsShort) {
-  const Tracking tracking = TrackArm(Run(
+  const Tracking tracking = TrackArm(MakeRun(
       3000, [](double t) { return t < 1 ? 0.0 : 0.48; }, StepAtOne));
   ASSERT_EQ(tracking.steps.size(), 1u);
   EXPECT_FALSE(tracking.steps[0].settling_time_s.has_value());
@@ -71,7 +71,7 @@ TEST(TrackingTest, StopsShort) {
 
 // Tests that a downward step's overshoot counts downwards.
 TEST(TrackingTest, DownwardOvershoot) {
-  const Tracking tracking = TrackArm(Run(
+  const Tracking tracking = TrackArm(MakeRun(
       3000, [](double t) { return t < 1     ? 0.5
                                   : t < 1.5 ? -0.05
                                             : 0.0; },
@@ -84,7 +84,7 @@ TEST(TrackingTest, DownwardOvershoot) {
 // Tests that a sine reference has no steps, only an error.
 TEST(TrackingTest, SineHasNoSteps) {
   const auto sine = [](double t) { return 0.3 * std::sin(6 * t); };
-  const Tracking tracking = TrackArm(Run(
+  const Tracking tracking = TrackArm(MakeRun(
       4000, [&](double t) { return sine(t) + 0.01; }, sine));
   EXPECT_TRUE(tracking.steps.empty());
   EXPECT_NEAR(tracking.rms_error_rad, 0.01, 0.002);  // the reference is held for 5 ms
@@ -92,7 +92,7 @@ TEST(TrackingTest, SineHasNoSteps) {
 
 // Tests that a run without arm-angle references says so instead of dividing by nothing.
 TEST(TrackingTest, NoReference) {
-  RunLog log = Run(
+  RunLog log = MakeRun(
       100, [](double) { return 0.0; }, StepAtOne);
   for (arm_reference_t& reference : log.messages.arm_references) reference.signal = arm_reference_t::PRESSURE;
   EXPECT_FALSE(TrackArm(log).has_reference);
