@@ -262,7 +262,16 @@ void PlantApp::OnMotorCommand(const motor_command_t& command) {
   waiting_commands_.push_back(command);
   newest_command_tick_ = command.tick;
   unanswered_since_.reset();
-  if (command.tick < tick_) unanswered_since_ = now;
+  const int64_t newest_due = tick_ / config_.pressure_interval_ticks * config_.pressure_interval_ticks;
+  if (command.tick < newest_due) unanswered_since_ = now - TimeSinceDue(command.tick);
+}
+
+// How long ago the state after that of `tick` asked for an answer: a loop that works off what has piled up,
+// or repeats itself, is not in control however often it sends.
+Clock::Duration PlantApp::TimeSinceDue(int64_t tick) const {
+  const double ticks = static_cast<double>(tick_) - static_cast<double>(tick) -
+                       static_cast<double>(config_.pressure_interval_ticks);
+  return Seconds(std::clamp(ticks / (config_.plant.rate_hz * config_.time.speed), 0.0, 1e8));
 }
 
 void PlantApp::ChooseVoltage() {

@@ -59,6 +59,7 @@ class PlantApp {
   void ChooseVoltage();
   void CheckCommandIsFresh();
   void OnMotorCommand(const motor_command_t& command);
+  Clock::Duration TimeSinceDue(int64_t tick) const;
   void Poll();
   bool Ended() const;
 

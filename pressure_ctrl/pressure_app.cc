@@ -223,8 +223,17 @@ void PressureApp::Answer(const state_t& state) {
     command.status = motor_command_t::LAW;
     const PressureLawOutput output =
         PressureLaw(law_, {command.pressure_ref, state.p1, state.p2, state.motor_speed, state.arm_speed});
-    command.voltage = output.voltage;
-    command.saturated = output.saturated;
+    if (std::isfinite(output.voltage)) {
+      command.voltage = output.voltage;
+      command.saturated = output.saturated;
+      if (participant_.any_fault()) participant_.Clear("nonfinite_motor_command");
+    } else {  // finite inputs, but gains or a reference whose products overflow
+      command.status = motor_command_t::SAFE;
+      participant_.Raise("nonfinite_motor_command",
+                         fmt::format("tick {}: eq. (16) gives {} V for a reference of {} psi, must be finite",
+                                     state.tick, output.voltage, command.pressure_ref),
+                         output.voltage, NAN, false);
+    }
   }
   Send(command);
 }

@@ -30,6 +30,11 @@ Participant::Participant(Bus& bus, Clock& clock, const Channels& channels, const
   bus_.Subscribe<stop_t>(channels_.stop, [this](const stop_t& stop) {
     if (!stop_) stop_ = stop;
   });
+  bus_.Subscribe<process_status_t>(channels_.process_status, [this](const process_status_t& status) {
+    const bool calls_the_roll = status.state == process_status_t::READY && status.session != session_ &&
+                                (status.role == "plant" || status.role == "driver");
+    if (calls_the_roll && state_ == process_status_t::RUNNING) Announce(state_, status_text_);
+  });
 }
 
 void Participant::Announce(int8_t state, const std::string& text) {

@@ -20,14 +20,16 @@ namespace hydro {
 
 class Participant {
  public:
-  // `role`: plant, driver, pressure_ctrl, position_ctrl or logger. Subscribes to HYDRO_STOP.
+  // `role`: plant, driver, pressure_ctrl, position_ctrl or logger. Subscribes to HYDRO_STOP and
+  // HYDRO_PROCESS_STATUS.
   Participant(Bus& bus, Clock& clock, const Channels& channels, const std::string& role);
 
   const std::string& role() const { return role_; }
   int64_t session() const { return session_; }
 
   // Announces a new state of this process (process_status_t::READY ...). Ready is announced again ten times a
-  // second by Poll(), so that processes may start in any order.
+  // second by Poll(), so that processes may start in any order; running once more when a plant calls for it
+  // (one that was restarted).
   void Announce(int8_t state, const std::string& text = "");
   int8_t state() const { return state_; }
 

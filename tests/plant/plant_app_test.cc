@@ -262,6 +262,42 @@ TEST_F(PlantAppTest, RealtimeStaleCommandGivesZeroVolts) {
   EXPECT_FALSE(faults_[1].active);
 }
 
+// Tests that a pressure loop that was stopped and then works off the states that have piled up moves nothing
+// with answers to states older than the stale-input limit, however many it sends.
+TEST_F(PlantAppTest, RealtimeAnswersToOldStatesGiveZeroVolts) {
+  StackConfig config = SmallStack();
+  config.time.mode = TimeMode::kRealtime;
+  config.limits.stale_input_s = 0.02;
+  on_state_ = [this](const state_t& s) {
+    if (s.tick < 30) SendVoltage(s.tick, 1.5);
+    if (s.tick >= 60 && s.tick < 80) SendVoltage(s.tick - 30, 9);
+    if (s.tick >= 80) SendVoltage(s.tick, 1.5);
+  };
+  EXPECT_EQ(Run(config), 0);
+  ASSERT_EQ(states_.size(), 101u);
+  for (const state_t& s : states_) EXPECT_NE(s.voltage, 9) << s.tick;
+  EXPECT_EQ(states_[70].voltage, 0);
+  EXPECT_EQ(states_[85].voltage, 1.5);
+  ASSERT_EQ(faults_.size(), 2u);
+  EXPECT_EQ(faults_[0].code, "stale_motor_command");
+  EXPECT_FALSE(faults_[1].active);
+}
+
+// Tests that a pressure loop slower than the stale-input limit is not called stale between its own samples,
+// even when its answers come a tick late.
+TEST_F(PlantAppTest, RealtimeSlowPressureLoopIsNotStale) {
+  StackConfig config = SmallStack();
+  config.time.mode = TimeMode::kRealtime;
+  config.limits.stale_input_s = 0.02;
+  config.pressure_interval_ticks = 50;
+  on_state_ = [this](const state_t& s) {
+    if (s.tick % 50 == 1) SendVoltage(s.tick - 1, 1.5);
+  };
+  EXPECT_EQ(Run(config), 0);
+  EXPECT_TRUE(faults_.empty());
+  EXPECT_EQ(states_[40].voltage, 1.5);
+}
+
 // Tests that a command that is not finite acts as zero volts and is named.
 TEST_F(PlantAppTest, NonFiniteCommandGivesZeroVolts) {
   StackConfig config = SmallStack();

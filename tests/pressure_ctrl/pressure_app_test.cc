@@ -162,6 +162,43 @@ TEST_F(PressureAppTest, NonFiniteStateGivesZeroVolts) {
   EXPECT_TRUE(stops_.empty());
 }
 
+// Tests that gains whose products overflow give zero volts and a named fault, never a voltage that is not a
+// number.
+TEST_F(PressureAppTest, OverflowOfTheLawGivesZeroVolts) {
+  StackConfig config = SmallStack();
+  config.pressure.k_p = 1e300;
+  config.pressure.k_v = 1e300;
+  config.pressure.reference_feedforward_V_psi = 1e308;
+  Start(config);
+  SendState(State(0));
+  SendPressure(0, 120);
+  SendState(State(1));
+  EXPECT_EQ(commands_.back().voltage, 0);
+  EXPECT_EQ(commands_.back().status, motor_command_t::SAFE);
+  ASSERT_EQ(faults_.size(), 1u);
+  EXPECT_EQ(faults_[0].code, "nonfinite_motor_command");
+  EXPECT_TRUE(faults_[0].active);
+}
+
+// Tests that a loop that is running announces itself again to a plant that was restarted and is looking for
+// it.
+TEST_F(PressureAppTest, AnswersTheRollCallOfARestartedPlant) {
+  Start(SmallStack());
+  int announcements = 0;
+  bus_.Subscribe<process_status_t>("HYDRO_PROCESS_STATUS", [&](const process_status_t& s) {
+    announcements += s.role == "pressure_ctrl" && s.state == process_status_t::RUNNING;
+  });
+  SendState(State(0));
+  EXPECT_EQ(announcements, 1);
+  process_status_t plant;
+  plant.role = "plant";
+  plant.session = plant_session_ + 1;
+  plant.state = process_status_t::READY;
+  bus_.Publish("HYDRO_PROCESS_STATUS", plant);
+  Deliver();
+  EXPECT_EQ(announcements, 2);
+}
+
 class PressureLimitTest : public PressureAppTest, public ::testing::WithParamInterface<double state_t::*> {};
 
 // Tests that a pressure above the limit, on either side, trips: zero volts for good, one fault, the end of
