@@ -84,6 +84,12 @@ void CheckTimes(const TomlNode& root, StackConfig* config) {
                      "plant.rate_hz = " + ShortestNumber(rate) + " divided by a whole number");
     }
   }
+  const double tick = 1 / (rate * config->time.speed);
+  if (config->time.mode == TimeMode::kRealtime && !(tick < config->limits.stale_input_s)) {
+    throw KeyError(root, "limits.stale_input_s", ShortestNumber(config->limits.stale_input_s) + " s",
+                   "above " + ShortestNumber(tick) +
+                       " s, in which one state follows another (1 / (plant.rate_hz time.speed))");
+  }
   config->last_tick = -1;
   if (config->time.duration_s > 0) {
     config->last_tick = WholeMultiple(config->time.duration_s * rate, 1);

@@ -10,6 +10,8 @@ namespace hydro {
 namespace {
 
 constexpr NumberRange kPositiveOrNone{.min = 0, .min_allowed = false, .infinity_allowed = true};
+// s, of wall time; the largest is far within what 64 bits of ns hold.
+constexpr NumberRange kWait{.min = 0, .max = 1e6, .min_allowed = false};
 
 void ReadModel(SectionReader section, const std::string& config_file, ModelSection* model) {
   section.Text("file", &model->file);
@@ -48,9 +50,9 @@ void ReadBus(SectionReader section, BusSection* bus) {
 void ReadTime(SectionReader section, TimeSection* time) {
   section.Choice<TimeMode>("mode", {{"realtime", TimeMode::kRealtime}, {"lockstep", TimeMode::kLockstep}},
                            &time->mode);
-  section.Number("speed", &time->speed, kPositive);
+  section.Number("speed", &time->speed, {.min = 1e-3, .max = 1e3});
   section.Number("duration_s", &time->duration_s, kNotNegative);
-  section.Number("start_timeout_s", &time->start_timeout_s, kPositive);
+  section.Number("start_timeout_s", &time->start_timeout_s, kWait);
   section.Number("stall_timeout_s", &time->stall_timeout_s,
                  {.min = 0, .max = 2, .min_allowed = false, .max_allowed = false});
   section.Finish();
@@ -127,7 +129,7 @@ void ReadLimits(SectionReader section, LimitsSection* limits) {
   section.Number("pressure_psi", &limits->pressure_psi, kPositiveOrNone);
   section.Number("motor_speed_rad_s", &limits->motor_speed_rad_s, kPositiveOrNone);
   section.Number("arm_torque_in_lbf", &limits->arm_torque_in_lbf, kPositiveOrNone);
-  section.Number("stale_input_s", &limits->stale_input_s, kPositive);
+  section.Number("stale_input_s", &limits->stale_input_s, kWait);
   section.Finish();
 }
 
