@@ -1,6 +1,7 @@
 // hydro-logger CONFIG -o FILE: records the bus.
 #include "logger/logger_app.h"
 #include "process/process_main.h"
+#include "settings/text_file.h"
 
 int main(int argc, char** argv) {
   hydro::CommandLine command_line("hydro-logger", "Records every message on the bus into an LCM event log.");
@@ -14,12 +15,15 @@ int main(int argc, char** argv) {
   if (const auto exit_code = command_line.Parse(argc, argv)) return *exit_code;
   if (logger.file.empty()) logger.file = options.log;
   options.log.clear();
-  return hydro::RunProcess("hydro-logger", options,
-                           [&](hydro::Bus& bus, hydro::Clock& clock, const hydro::StackConfig& config) {
-                             if (logger.file.empty()) throw hydro::InputError("-o FILE is required");
-                             if (!(rotate_mb >= 0)) throw hydro::InputError("--rotate-mb must be 0 or more");
-                             logger.rotate_bytes = static_cast<int64_t>(rotate_mb * 1e6);
-                             hydro::LoggerApp app(bus, clock, config, logger);
-                             return hydro::RunApp(bus, clock, app);
-                           });
+  return hydro::RunProcess(
+      "hydro-logger", options, [&](hydro::Bus& bus, hydro::Clock& clock, const hydro::StackConfig& config) {
+        if (logger.file.empty()) throw hydro::InputError("-o FILE is required");
+        if (rotate_mb != 0 && !(rotate_mb >= 0.01 && rotate_mb <= 1e9)) {
+          throw hydro::InputError("--rotate-mb: found " + hydro::ShortestNumber(rotate_mb) +
+                                  ", allowed 0 (never) and 0.01 to 1e9");
+        }
+        logger.rotate_bytes = static_cast<int64_t>(rotate_mb * 1e6);
+        hydro::LoggerApp app(bus, clock, config, logger);
+        return hydro::RunApp(bus, clock, app);
+      });
 }

@@ -98,6 +98,7 @@ void LoggerApp::OnMessage(const RawMessage& message) {
 
 void LoggerApp::ReportProgress() {
   reported_tick_ = state_tick_;
+  report_again_ = participant_.clock().Now() + kPollPeriod;
   log_progress_t progress;
   progress.utime = participant_.clock().Utime();
   progress.tick = state_tick_;
@@ -162,7 +163,7 @@ void LoggerApp::Poll() {
     writes_.clear();
   }
   participant_.Poll();
-  if (state_tick_ > reported_tick_) ReportProgress();
+  if (state_tick_ > reported_tick_ && participant_.clock().Now() >= report_again_) ReportProgress();
   if (participant_.stop() && !stop_time_) stop_time_ = participant_.clock().Now();
 }
 

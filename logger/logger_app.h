@@ -89,6 +89,7 @@ class LoggerApp : public App {
   int64_t largest_queue_total_ = 0;
   int64_t state_tick_ = -1;  // newest tick received
   int64_t reported_tick_ = -1;
+  Clock::TimePoint report_again_;     // fewer than kProgressTicks new ticks are reported from then on
   std::map<int64_t, int8_t> others_;  // state of the other processes, by session
   std::map<std::string, std::map<int64_t, int64_t>>
       next_sequence_;  // by channel and session, to count losses
