@@ -3,9 +3,11 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cctype>
+#include <cerrno>
 #include <charconv>
 #include <cmath>
 #include <cstdio>
+#include <cstring>
 #include <exception>
 #include <limits>
 
@@ -272,7 +274,11 @@ std::optional<int> CommandLine::Parse(int argc, const char* const* argv) {
 
 int RunProgram(const std::string& program, const std::function<int()>& body) {
   try {
-    return body();
+    const int exit_code = body();
+    if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return exit_code;
+    std::fprintf(stderr, "%s: standard output cannot be written: %s\n", program.c_str(),
+                 std::strerror(errno));
+    return exit_code == 0 ? 1 : exit_code;
   } catch (const InputError& error) {
     std::fprintf(stderr, "%s: %s\n", program.c_str(), error.what());
     return 2;
