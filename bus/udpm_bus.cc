@@ -109,6 +109,13 @@ UdpmBus::UdpmBus(const std::string& url) {
     lcm_destroy(lcm_);
     throw BusError("LCM's self test failed for " + lcm_url + "; see Troubleshooting in README.md");
   }
+  // LCM counts per subscription how many messages wait, and takes one off for each that is handled and
+  // matches, also when it was queued before the subscription was made; then the last of a burst is never
+  // delivered. Its self test leaves such messages, those of other processes included: take them out before
+  // anybody subscribes.
+  while (WaitReadable(fd_, TimePoint::min()) == 1) {
+    if (lcm_handle(lcm_) != 0) throw BusError("LCM cannot receive any more");
+  }
 }
 
 UdpmBus::~UdpmBus() { lcm_destroy(lcm_); }
@@ -122,15 +129,23 @@ std::string UdpmBus::receive_buffer_hint() const {
 }
 
 void UdpmBus::SubscribeAll(std::function<void(const RawMessage&)> handler) {
-  AddSubscription(".*",
-                  &subscriptions_.emplace_back(Subscription{this, nullptr, nullptr, {}, std::move(handler)}));
+  Subscription& added =
+      subscriptions_.emplace_back(Subscription{this, "", nullptr, nullptr, {}, std::move(handler)});
+  if (all_ == nullptr) AddSubscription(".*", &added);
+  all_ = all_ == nullptr ? &added : all_;
 }
 
 void UdpmBus::SubscribeTyped(const std::string& channel, const MessageType& type,
                              std::function<void(const void*)> handler) {
   CheckChannel(channel);
-  AddSubscription(EscapeRegex(channel), &subscriptions_.emplace_back(Subscription{
-                                            this, &type, type.create(), std::move(handler), {}}));
+  Subscription& added =
+      subscriptions_.emplace_back(Subscription{this, channel, &type, type.create(), std::move(handler), {}});
+  // Where all channels are subscribed already, that subscription serves this one too: two that overlap would
+  // meet the miscount described in the constructor.
+  if (all_ == nullptr) {
+    added.own = true;
+    AddSubscription(EscapeRegex(channel), &added);
+  }
 }
 
 void UdpmBus::AddSubscription(const std::string& pattern, Subscription* subscription) {
@@ -151,11 +166,21 @@ void UdpmBus::OnMessage(const lcm_recv_buf_t* buffer, const char* channel, void*
 
 void UdpmBus::Deliver(const lcm_recv_buf_t& buffer, const char* channel, Subscription* subscription) {
   const int size = static_cast<int>(buffer.data_size);
-  if (subscription->type == nullptr) {
+  if (subscription == all_) {
     const RawMessage message{channel, static_cast<const uint8_t*>(buffer.data), size, buffer.recv_utime};
     if (message.channel == kLcmSelfTest) return;
     delivered_ = true;
-    subscription->raw(message);
+    // By index: a handler may subscribe. What it adds does not get this message.
+    const size_t count = subscriptions_.size();
+    for (size_t i = 0; i < count; ++i) {
+      if (subscriptions_[i].type == nullptr) subscriptions_[i].raw(message);
+    }
+    for (size_t i = 0; i < count; ++i) {
+      Subscription& typed = subscriptions_[i];
+      if (typed.type != nullptr && !typed.own && typed.channel == message.channel) {
+        Deliver(buffer, channel, &typed);
+      }
+    }
   } else if (subscription->type->decode_into(subscription->message.get(), buffer.data, size)) {
     delivered_ = true;
     subscription->typed(subscription->message.get());

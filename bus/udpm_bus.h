@@ -45,10 +45,13 @@ class UdpmBus : public Bus {
  private:
   struct Subscription {
     UdpmBus* bus;
+    std::string channel;                // of a typed one
     const MessageType* type = nullptr;  // null: raw
     std::shared_ptr<void> message;      // what is decoded into, used again for each message
     std::function<void(const void*)> typed;
     std::function<void(const RawMessage&)> raw;
+    bool own =
+        false;  // typed: LCM calls it itself, because it was there before the subscription to all channels
   };
 
   static void OnMessage(const lcm_recv_buf_t* buffer, const char* channel, void* subscription) noexcept;
@@ -65,6 +68,7 @@ class UdpmBus : public Bus {
   bool delivered_ = false;        // the message in hand reached a handler
   std::exception_ptr exception_;  // thrown by a handler, kept until LCM's C code is off the stack
   std::deque<Subscription> subscriptions_;
+  Subscription* all_ = nullptr;   // the one that LCM knows as ".*"
   std::vector<uint8_t> encoded_;  // used again for each message
 };
 

@@ -16,6 +16,7 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr int64_t kProgressTicks = 16;  // a quarter of the plant's window (plant_app.cc)
+constexpr auto kEchoTime = 200ms;       // how long to wait for our own last words to come back
 constexpr auto kFarewellTime = 500ms;   // how long to wait for the others' last words after a stop
 
 // Fields common to the numbered messages, read without decoding the rest: after the 8 bytes of the type's
@@ -39,18 +40,19 @@ std::string RotatedName(const std::string& file, int n) {
 }
 
 LoggerApp::LoggerApp(Bus& bus, Clock& clock, const StackConfig& config, const LoggerOptions& options)
-    : bus_(bus),
+    : bus_(Tap(bus)),  // first of all: a subscription to all channels beside earlier ones could lose messages
       participant_(bus, clock, Channels(config.bus.channel_suffix), "logger"),
       options_(options),
       writer_(std::make_unique<LogWriter>(options.file, Opening::kDirect)) {
-  bus.SubscribeAll([this](const RawMessage& message) { OnMessage(message); });
   bus.Subscribe<process_status_t>(participant_.channels().process_status,
-                                  [this](const process_status_t& status) {
-                                    if (status.session != participant_.session() && status.role != "logger")
-                                      others_[status.session] = status.state;
-                                  });
+                                  [this](const process_status_t& status) { OnStatus(status); });
   thread_ = std::thread([this] { WriteUntilClosed(); });
   participant_.Announce(process_status_t::READY);
+}
+
+Bus& LoggerApp::Tap(Bus& bus) {
+  bus.SubscribeAll([this](const RawMessage& message) { OnMessage(message); });
+  return bus;
 }
 
 LoggerApp::~LoggerApp() {
@@ -94,6 +96,14 @@ void LoggerApp::OnMessage(const RawMessage& message) {
   }
   largest_queue_ = std::max(largest_queue_, static_cast<int64_t>(waiting));
   largest_queue_total_ = std::max(largest_queue_total_, largest_queue_);
+}
+
+void LoggerApp::OnStatus(const process_status_t& status) {
+  if (status.role != "logger") {
+    others_[status.session] = status.state;
+  } else if (status.session == participant_.session()) {
+    left_ = status.state == process_status_t::DONE || status.state == process_status_t::FAILED;
+  }
 }
 
 void LoggerApp::ReportProgress() {
@@ -181,9 +191,9 @@ bool LoggerApp::finished() const {
 
 int LoggerApp::Finish() {
   int exit_code = participant_.Leave();
-  while (bus_.HandleUntil(participant_.clock().Now()) >
-         0) {  // what has arrived already, our own farewell included
-  }
+  // What has been sent already, up to our own farewell, which comes back to us as everybody's.
+  const auto deadline = participant_.clock().Now() + kEchoTime;
+  while (!left_ && participant_.clock().Now() < deadline) bus_.HandleUntil(deadline);
   {
     const std::lock_guard lock(mutex_);
     closing_ = true;

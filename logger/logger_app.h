@@ -60,7 +60,9 @@ class LoggerApp : public App {
     Clock::Duration latency;  // since the oldest message in it had arrived
   };
 
+  Bus& Tap(Bus& bus);
   void OnMessage(const RawMessage& message);
+  void OnStatus(const process_status_t& status);
   void WriteUntilClosed();
   Write WriteBatch(std::deque<Event>& batch);
   void Rotate();
@@ -90,6 +92,7 @@ class LoggerApp : public App {
   int64_t state_tick_ = -1;  // newest tick received
   int64_t reported_tick_ = -1;
   Clock::TimePoint report_again_;     // fewer than kProgressTicks new ticks are reported from then on
+  bool left_ = false;                 // our own farewell has come back
   std::map<int64_t, int8_t> others_;  // state of the other processes, by session
   std::map<std::string, std::map<int64_t, int64_t>>
       next_sequence_;  // by channel and session, to count losses

@@ -111,6 +111,7 @@ void Participant::RequestStop(const std::string& reason, int exit_code) {
   stop.exit_code = exit_code;
   stop_ = stop;
   bus_.Publish(channels_.stop, stop);
+  if (exit_code != 0 && !clock_.simulated()) spdlog::error("{}", reason);
 }
 
 int Participant::Leave() {
