@@ -17,12 +17,6 @@
 namespace hydro {
 namespace {
 
-constexpr const char* kNoSuffix = "\n";  // no channel has it: the option was not given
-
-std::optional<std::string> Optional(const std::string& suffix) {
-  return suffix == kNoSuffix ? std::nullopt : std::optional(suffix);
-}
-
 class InfoVerb {
  public:
   explicit InfoVerb(CommandLine& line) {
@@ -33,7 +27,7 @@ class InfoVerb {
     verb.AddFlag("--si", &si_, "print figures in SI units");
   }
   int Run() const {
-    const LogInfo info = Summarise(ReadRunLog(log_, Optional(suffix_)), si_);
+    const LogInfo info = Summarise(ReadRunLog(log_, SuffixOption(suffix_)), si_);
     std::fputs((json_ ? InfoJson(info) : InfoText(info)).c_str(), stdout);
     return 0;
   }
@@ -53,7 +47,7 @@ class ExportVerb {
   }
   int Run() const {
     CheckTableName(out_);
-    WriteTable(ExportRun(ReadRunLog(log_, Optional(suffix_))), out_);
+    WriteTable(ExportRun(ReadRunLog(log_, SuffixOption(suffix_))), out_);
     return 0;
   }
 
@@ -99,7 +93,7 @@ class CompareVerb {
 
  private:
   RunLog ReadComparable(const std::string& file, const std::string& suffix) const {
-    RunLog log = ReadRunLog(file, Optional(suffix != kNoSuffix ? suffix : suffix_));
+    RunLog log = ReadRunLog(file, SuffixOption(suffix != kNoSuffix ? suffix : suffix_));
     // Two logs of nothing are not a run repeated.
     if (log.messages.states.empty() && log.messages.motor_commands.empty()) {
       throw InputError(file + ": found no state and no motor command; a log of a run is needed");

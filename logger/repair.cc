@@ -174,7 +174,12 @@ RepairResult RepairInPlace(const std::string& file) {
 std::string Describe(const RepairResult& result, const std::string& file) {
   std::string text = file + ": kept " + std::to_string(result.kept_events) + " events, " +
                      std::to_string(result.kept_bytes) + " bytes\n";
+  constexpr size_t kMostLines = 20;
   for (const LostBytes& lost : result.lost) {
+    if (&lost - result.lost.data() >= static_cast<std::ptrdiff_t>(kMostLines)) {
+      text += file + ": and " + std::to_string(result.lost.size() - kMostLines) + " more places\n";
+      break;
+    }
     text += file + ": lost bytes " + std::to_string(lost.begin) + " to " + std::to_string(lost.end - 1) +
             " (" + std::to_string(lost.end - lost.begin) + "): " + lost.reason + "\n";
   }

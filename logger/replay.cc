@@ -41,6 +41,10 @@ class Replayer {
                        ": found no HYDRO_RUN message; a replay needs the run's configuration and model");
     }
     const run_description_t& description = log.descriptions.front();
+    if (description.config_text.empty()) {
+      throw InputError(
+          log.file + ": its description has no configuration (an imported table); a replay needs the run's");
+    }
     config_ = ParseStackConfig(description.config_text, log.file + " (its configuration)",
                                description.model_text, log.file + " (its model)");
     config_.time.mode =
@@ -54,6 +58,7 @@ class Replayer {
   const Channels& channels() const { return channels_; }
   SimulatedClock& clock() { return clock_; }
   InProcessBus& bus() { return bus_; }
+  int64_t first_tick() const { return states_.begin()->first; }
   int64_t states() const { return static_cast<int64_t>(states_.size()); }
 
   // Sends the states one by one; `before` may send something else first.
@@ -101,6 +106,11 @@ ReplayResult ReplayPressure(const RunLog& log, double speed) {
   }
   if (recorded.empty()) throw InputError(log.file + ": found no motor commands to compare with");
   const auto pressure_commands = ByTick(log.messages.pressure_commands);
+  // A log that begins in the middle of a run: the pressure command in force then was sent before.
+  while (!recorded.empty() && recorded.begin()->second.pressure_command_tick >= 0 &&
+         !pressure_commands.contains(recorded.begin()->second.pressure_command_tick)) {
+    recorded.erase(recorded.begin());
+  }
 
   Replayer replayer(log, speed);
   PressureApp app(replayer.bus(), replayer.clock(), replayer.config());
@@ -126,11 +136,18 @@ ReplayResult ReplayPressure(const RunLog& log, double speed) {
 }
 
 ReplayResult ReplayPosition(const RunLog& log, double speed) {
-  const auto recorded = ByTick(log.messages.pressure_commands);
-  const auto references = ByTick(log.messages.arm_references);
+  auto recorded = ByTick(log.messages.pressure_commands);
+  auto references = ByTick(log.messages.arm_references);
   if (recorded.empty()) throw InputError(log.file + ": found no pressure commands to compare with");
 
   Replayer replayer(log, speed);
+  if (replayer.first_tick() > 0) {
+    // A log that begins in the middle of a run: the derivative of its first sample needs the sample before.
+    const int64_t interval = replayer.config().position_interval_ticks;
+    const int64_t first_sample = (replayer.first_tick() + interval - 1) / interval * interval;
+    recorded.erase(recorded.begin(), recorded.upper_bound(first_sample));
+    references.erase(references.begin(), references.upper_bound(first_sample));
+  }
   PositionApp app(replayer.bus(), replayer.clock(), replayer.config());
   std::map<int64_t, pressure_command_t> answers;
   std::map<int64_t, arm_reference_t> answered_references;

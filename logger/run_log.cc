@@ -25,7 +25,9 @@ std::string Hex(uint64_t value) {
   const uint64_t hash = event.size >= 8 ? LoadBigEndian64(event.data) : 0;
   if (event.size >= 8 && hash != static_cast<uint64_t>(kind.hash)) {
     throw LogError(place + "found type hash " + Hex(hash) + "; allowed " +
-                   Hex(static_cast<uint64_t>(kind.hash)) + " (" + kind.type + " of this version)");
+                   Hex(static_cast<uint64_t>(kind.hash)) + " (" + kind.type +
+                   " of this version); where others on that channel are, hydro-log repair " + file +
+                   " leaves such events out");
   }
   throw LogError(place + "found " + std::to_string(event.size) + " bytes that are not a whole " + kind.type +
                  "; hydro-log repair " + file + " leaves such events out");

@@ -10,16 +10,21 @@
 
 namespace hydro {
 
+std::optional<std::string> SuffixOption(const std::string& suffix) {
+  return suffix == kNoSuffix ? std::nullopt : std::optional(suffix);
+}
+
 SummaryVerb::SummaryVerb(CommandLine& line) {
   CommandLine& verb =
       line.AddVerb("summary", "How well the arm followed its reference, loop timing, losses.");
   verb.AddPositional("LOG", &log_, "FILE the log");
+  verb.AddOption("--suffix", &suffix_, "TEXT suffix of the channels, where the log has several");
   verb.AddOption("--json", &json_, "FILE write the same there as JSON");
   verb.AddFlag("--si", &si_, "print figures in SI units too");
 }
 
 int SummaryVerb::Run() const {
-  const RunLog log = ReadRunLog(log_);
+  const RunLog log = ReadRunLog(log_, SuffixOption(suffix_));
   if (log.messages.states.empty()) throw InputError(log_ + ": found no state; a log of a run is needed");
   const Tracking tracking = TrackArm(log);
   const LogInfo info = Summarise(log, si_);
@@ -38,6 +43,7 @@ ReplayVerb::ReplayVerb(CommandLine& line) {
       "replay",
       "Feed the recorded states through the controllers and compare their answers with the record.");
   verb.AddPositional("LOG", &log_, "FILE the log");
+  verb.AddOption("--suffix", &suffix_, "TEXT suffix of the channels, where the log has several");
   verb.AddOption("--controller", &controller_, "NAME pressure, position or both (default)");
   verb.AddOption("--speed", &speed_, "X recorded seconds per wall second; 0 (default): as fast as possible");
 }
@@ -47,7 +53,7 @@ int ReplayVerb::Run() const {
     throw InputError("--controller: found " + controller_ + ", allowed are pressure, position and both");
   }
   if (!(speed_ >= 0) || std::isinf(speed_)) throw InputError("--speed: must be a number of 0 or more");
-  const RunLog log = ReadRunLog(log_);
+  const RunLog log = ReadRunLog(log_, SuffixOption(suffix_));
   int exit_code = 0;
   const auto replay = [&](ReplayedController controller, const char* name, const char* commands) {
     const ReplayResult result = Replay(log, controller, speed_);

@@ -1,11 +1,16 @@
 // The verbs of hydro-log that look at a run as a control loop: summary and replay.
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "settings/command_line.h"
 
 namespace hydro {
+
+// Value of a --suffix option that was not given: no channel has it (an empty suffix is a suffix).
+inline constexpr const char* kNoSuffix = "\n";
+std::optional<std::string> SuffixOption(const std::string& suffix);
 
 class SummaryVerb {
  public:
@@ -13,7 +18,7 @@ class SummaryVerb {
   int Run() const;
 
  private:
-  std::string log_, json_;
+  std::string log_, json_, suffix_ = kNoSuffix;
   bool si_ = false;
 };
 
@@ -23,7 +28,7 @@ class ReplayVerb {
   int Run() const;
 
  private:
-  std::string log_, controller_ = "both";
+  std::string log_, controller_ = "both", suffix_ = kNoSuffix;
   double speed_ = 0;
 };
 

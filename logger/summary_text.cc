@@ -34,9 +34,14 @@ std::string SummaryText(const Tracking& tracking, const LogInfo& info, bool si) 
        info.ticks.states, info.ticks.last_time_s - info.ticks.first_time_s, info.ticks.missing,
        LostMessages(info));
   if (tracking.has_reference) {
-    line("arm {} its target {}: final error {:.5f} rad, rms error over the run {:.4f} rad",
-         tracking.at_target ? "at" : "NOT at", Angle(tracking.target_rad, si), tracking.final_error_rad,
-         tracking.rms_error_rad);
+    if (tracking.at_target) {
+      line("arm {} its target {}: final error {:.5f} rad, rms error over the run {:.4f} rad",
+           *tracking.at_target ? "at" : "NOT at", Angle(tracking.target_rad, si), tracking.final_error_rad,
+           tracking.rms_error_rad);
+    } else {
+      line("the reference still moves at the end: error there {:.5f} rad, rms error over the run {:.4f} rad",
+           tracking.final_error_rad, tracking.rms_error_rad);
+    }
     for (const StepResponse& step : tracking.steps) {
       line("  step at {:5.2f} s to {}: overshoot {:4.1f} %, {}, error at the end {:.5f} rad", step.time_s,
            Angle(step.to_rad, si), step.overshoot_percent,
@@ -78,7 +83,7 @@ std::string SummaryJson(const Tracking& tracking, const LogInfo& info) {
            {"settling_time_s", step.settling_time_s ? Json(*step.settling_time_s) : Json(nullptr)},
            {"final_error_rad", step.final_error_rad}});
     }
-    json["tracking"] = {{"at_target", tracking.at_target},
+    json["tracking"] = {{"at_target", tracking.at_target ? Json(*tracking.at_target) : Json(nullptr)},
                         {"target_rad", tracking.target_rad},
                         {"final_error_rad", tracking.final_error_rad},
                         {"rms_error_rad", tracking.rms_error_rad},

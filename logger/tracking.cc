@@ -6,9 +6,10 @@
 namespace hydro {
 namespace {
 
-constexpr double kSettlingBand = 0.02;  // of the step
-constexpr double kShortestRest = 0.2;   // s
-constexpr double kFinalTime = 0.1;      // s
+constexpr double kSettlingBand = 0.02;        // of the step
+constexpr double kShortestRest = 0.2;         // s
+constexpr double kFinalTime = 0.1;            // s
+constexpr double kSmallestTolerance = 0.001;  // rad
 constexpr size_t kMostSteps = 100;
 
 struct Sample {
@@ -107,7 +108,13 @@ Tracking TrackArm(const RunLog& log) {
       scale = std::max(scale, std::fabs(step.to_rad - step.from_rad));
     }
   }
-  tracking.at_target = std::fabs(tracking.final_error_rad) <= kSettlingBand * scale;
+  const bool at_rest = std::none_of(samples.begin(), samples.end(), [&](const Sample& sample) {
+    return samples.back().time - sample.time <= kFinalTime && sample.reference != tracking.target_rad;
+  });
+  if (at_rest) {
+    tracking.at_target =
+        std::fabs(tracking.final_error_rad) <= std::max(kSettlingBand * scale, kSmallestTolerance);
+  }
   return tracking;
 }
 

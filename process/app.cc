@@ -5,9 +5,14 @@
 namespace hydro {
 
 int RunApp(Bus& bus, Clock& clock, App& app) {
-  while (!app.finished() && StopSignal() == 0) {
-    bus.HandleUntil(clock.Now() + kPollPeriod);
-    app.Poll();
+  try {
+    while (!app.finished() && StopSignal() == 0) {
+      bus.HandleUntil(clock.Now() + kPollPeriod);
+      app.Poll();
+    }
+  } catch (...) {
+    app.Finish();  // zero volts first, explanation second
+    throw;
   }
   return app.Finish();
 }

@@ -3,6 +3,7 @@
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
 
+#include <chrono>
 #include <memory>
 
 #include "bus/real_time.h"
@@ -21,6 +22,47 @@ const ProcessSection& SectionOf(const StackConfig& config, const std::string& pr
   return kNone;
 }
 
+// --log of a process that has other work: a log that cannot be written any more must not end that work.
+class Recording {
+ public:
+  void Open(const std::string& file) { writer_ = std::make_unique<LogWriter>(file, Opening::kDirect); }
+
+  void Add(const RawMessage& message) {
+    if (!writer_ || message.channel.empty()) return;
+    Try([&] {
+      writer_->Append(message.channel, message.data, static_cast<size_t>(message.size),
+                      message.receive_utime);
+      const auto now = std::chrono::steady_clock::now();
+      if (now - flushed_ < kFlushPeriod) return;
+      flushed_ = now;
+      writer_->Flush();
+    });
+  }
+
+  // False when something could not be written.
+  bool Close() {
+    if (writer_) Try([&] { writer_->Finish(); });
+    return !failed_;
+  }
+
+ private:
+  static constexpr auto kFlushPeriod = std::chrono::milliseconds(20);
+
+  void Try(const std::function<void()>& write) {
+    try {
+      write();
+    } catch (const std::exception& error) {
+      failed_ = true;
+      writer_.reset();
+      spdlog::error("{}; --log ends here", error.what());
+    }
+  }
+
+  std::unique_ptr<LogWriter> writer_;
+  std::chrono::steady_clock::time_point flushed_;
+  bool failed_ = false;
+};
+
 }  // namespace
 
 int RunProcess(const std::string& program, const CommonOptions& options, const ProcessBody& body) {
@@ -38,17 +80,14 @@ int RunProcess(const std::string& program, const CommonOptions& options, const P
     ApplyRealTime(request);
     UdpmBus bus(config.bus.url);
     if (const std::string hint = bus.receive_buffer_hint(); !hint.empty()) spdlog::warn("{}", hint);
-    std::unique_ptr<LogWriter> log;
+    Recording recording;
     if (!options.log.empty()) {
-      log = std::make_unique<LogWriter>(options.log, Opening::kDirect);
-      bus.SubscribeAll([&log](const RawMessage& m) {
-        log->Append(m.channel, m.data, static_cast<size_t>(m.size), m.receive_utime);
-      });
+      recording.Open(options.log);
+      bus.SubscribeAll([&recording](const RawMessage& message) { recording.Add(message); });
     }
     WallClock clock;
     const int exit_code = body(bus, clock, config);
-    if (log) log->Finish();
-    return exit_code;
+    return recording.Close() ? exit_code : 1;
   });
 }
 

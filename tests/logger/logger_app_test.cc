@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "bus/in_process_bus.h"
-#include "logger/log_reader.h"
 #include "settings/input_error.h"
+#include "tests/logger/log_fixture.h"
 #include "tests/stack_fixture.h"
 
 namespace hydro {
@@ -20,7 +20,7 @@ namespace {
 using testing::SmallStack;
 
 // The logger on an in-process bus; the test sends what it records.
-class LoggerAppTest : public ::testing::Test {
+class LoggerAppTest : public LogTest {
  protected:
   LoggerAppTest() {
     bus_.Subscribe<log_progress_t>("HYDRO_LOG_PROGRESS",
@@ -53,7 +53,7 @@ class LoggerAppTest : public ::testing::Test {
     return ticks;
   }
 
-  std::string file_ = ::testing::TempDir() + "logger_app_test.lcmlog";
+  std::string file_ = Path("run.lcmlog");
   SimulatedClock clock_;
   InProcessBus bus_{&clock_};
   std::vector<log_progress_t> progress_;

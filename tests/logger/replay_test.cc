@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <bit>
+#include <cstdlib>
+#include <filesystem>
 
 #include "logger/log_writer.h"
 #include "settings/input_error.h"
@@ -59,7 +61,8 @@ motor_speed_rad_s = 0.1
 
 // A simulated run, recorded into a file and read back.
 RunLog Recorded() {
-  const std::string file = ::testing::TempDir() + "replay_test.lcmlog";
+  std::string folder = ::testing::TempDir() + "/hydro_replay_XXXXXX";  // tests run side by side
+  const std::string file = std::string(mkdtemp(folder.data())) + "/run.lcmlog";
   const StackConfig config = ParseStackConfig(kConfig, "test.toml", kModel, "model.toml");
   LogWriter writer(file, Opening::kTemporary);
   const SimulationResult result = Simulate(config, [&](const RawMessage& m) {
@@ -67,7 +70,9 @@ RunLog Recorded() {
   });
   writer.Finish();
   EXPECT_EQ(result.exit_code, 0) << result.failure;
-  return ReadRunLog(file);
+  RunLog log = ReadRunLog(file);
+  std::filesystem::remove_all(folder);
+  return log;
 }
 
 class ReplayTest : public ::testing::TestWithParam<ReplayedController> {};
@@ -127,6 +132,21 @@ TEST(ReplayLateTest, WhatWasInForceCounts) {
   ASSERT_TRUE(difference.has_value());
   EXPECT_NE(difference->find("tick 51"), std::string::npos) << *difference;
   EXPECT_NE(difference->find("voltage"), std::string::npos) << *difference;
+}
+
+// Tests that a log that begins in the middle of a run, as a rotated one does, replays from where it can.
+TEST_P(ReplayTest, BeginsInTheMiddle) {
+  RunLog log = Recorded();
+  const auto cut = [](auto& messages) {
+    std::erase_if(messages, [](const auto& m) { return m.tick < 103; });
+  };
+  cut(log.messages.states);
+  cut(log.messages.motor_commands);
+  cut(log.messages.pressure_commands);
+  cut(log.messages.arm_references);
+  const ReplayResult result = Replay(log, GetParam(), 0);
+  EXPECT_EQ(result.difference, std::nullopt);
+  EXPECT_EQ(result.answers, GetParam() == ReplayedController::kPressure ? 195 : 39);
 }
 
 // Tests that a log that cannot be replayed says why.

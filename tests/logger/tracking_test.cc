@@ -54,7 +54,7 @@ TEST(TrackingTest, SecondOrderStep) {
   EXPECT_LE(*step.settling_time_s, envelope + 1e-3);
   EXPECT_GE(*step.settling_time_s, envelope - M_PI / damped);
   EXPECT_NEAR(step.final_error_rad, 0, 1e-9);
-  EXPECT_TRUE(tracking.at_target);
+  EXPECT_EQ(tracking.at_target, true);
 }
 
 // Tests that an arm that stops short is not at its target, never settles, and has its error reported with its
@@ -65,7 +65,7 @@ TEST(TrackingTest, StopsShort) {
   ASSERT_EQ(tracking.steps.size(), 1u);
   EXPECT_FALSE(tracking.steps[0].settling_time_s.has_value());
   EXPECT_NEAR(tracking.final_error_rad, -0.02, 1e-12);
-  EXPECT_FALSE(tracking.at_target);
+  EXPECT_EQ(tracking.at_target, false);
   EXPECT_EQ(tracking.steps[0].overshoot_percent, 0);
 }
 
@@ -87,7 +87,21 @@ TEST(TrackingTest, SineHasNoSteps) {
   const Tracking tracking = TrackArm(MakeRun(
       4000, [&](double t) { return sine(t) + 0.01; }, sine));
   EXPECT_TRUE(tracking.steps.empty());
+  EXPECT_EQ(tracking.at_target, std::nullopt);       // it still moves
   EXPECT_NEAR(tracking.rms_error_rad, 0.01, 0.002);  // the reference is held for 5 ms
+}
+
+// Tests that an arm that holds still at a constant reference is at its target, up to a floor and not beyond.
+TEST(TrackingTest, ConstantReference) {
+  const auto constant = [](double) { return 0.2; };
+  EXPECT_EQ(TrackArm(MakeRun(
+                         500, [](double) { return 0.2001; }, constant))
+                .at_target,
+            true);
+  EXPECT_EQ(TrackArm(MakeRun(
+                         500, [](double) { return 0.202; }, constant))
+                .at_target,
+            false);
 }
 
 // Tests that a run without arm-angle references says so instead of dividing by nothing.
