@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "model/actuator.h"
+#include "tests/table1.h"
 
 namespace hydro {
 namespace {
@@ -26,24 +27,10 @@ constexpr double kReference[] = {296.568239647, -318.759357681, 320.915787611, -
                                  320.055402546, -320.055608311, 320.055715807, -320.055771898,
                                  320.055801149, -320.055816398, 320.055824347, -320.055828489};
 
-ModelDescription Table1() {
+ModelDescription Table1Model() {
   ModelDescription model;
   model.name = "Table 1";
-  Parameters& p = model.parameters;
-  p.k_1 = 4.0;
-  p.T_pmax = 40.0;
-  p.D = 0.00796;
-  p.J = 0.03;
-  p.b = 0.01455;
-  p.T_s = 4.0;
-  p.beta = 247000;
-  p.V_ms = 3.16;
-  p.c = 1.83 * 1.83 * 2.20 / 2;
-  p.c_E = 6.5e-6;
-  p.c_I = 1e-6;
-  p.p_3 = 100;
-  p.k_2 = 3.68;
-  p.J_a = 23.3;
+  model.parameters = testing::Table1();
   return model;
 }
 
@@ -114,17 +101,17 @@ class Reporter : public benchmark::ConsoleReporter {
 
 int main(int argc, char** argv) {
   using namespace hydro;
-  Register("fast", Table1(), Clamped(Integrator::kFast, 1e-8), true);
-  Register("auto", Table1(), Clamped(Integrator::kAuto, 1e-8), true);
-  Register("erk", Table1(), Clamped(Integrator::kErk, 1e-8), true);
-  Register("cvode", Table1(), Clamped(Integrator::kCvode, 1e-8), true);
+  Register("fast", Table1Model(), Clamped(Integrator::kFast, 1e-8), true);
+  Register("auto", Table1Model(), Clamped(Integrator::kAuto, 1e-8), true);
+  Register("erk", Table1Model(), Clamped(Integrator::kErk, 1e-8), true);
+  Register("cvode", Table1Model(), Clamped(Integrator::kCvode, 1e-8), true);
   ActuatorOptions free = Clamped(Integrator::kFast, 1e-8);
   free.shaft = Shaft::kFree;
-  Register("fast, free arm", Table1(), free, false);
-  ModelDescription stribeck = Table1();
+  Register("fast, free arm", Table1Model(), free, false);
+  ModelDescription stribeck = Table1Model();
   stribeck.effects.push_back({"pump.stribeck", {{"static_excess", 0.5}, {"speed", 3.0}}, {}});
   Register("fast, pump.stribeck", stribeck, Clamped(Integrator::kFast, 1e-8), false);
-  ModelDescription wave = Table1();
+  ModelDescription wave = Table1Model();
   wave.effects.push_back(
       {"line.wave", {{"frequency", 300.0}, {"volume_fraction", 0.2}, {"damping", 0.05}}, {}});
   Register("fast, line.wave", wave, Clamped(Integrator::kFast, 1e-8), false);

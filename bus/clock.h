@@ -24,6 +24,11 @@ class Clock {
   virtual bool simulated() const { return false; }
 };
 
+inline Clock::Duration FromSeconds(double seconds) {
+  return std::chrono::duration_cast<Clock::Duration>(std::chrono::duration<double>(seconds));
+}
+inline double ToSeconds(Clock::Duration duration) { return std::chrono::duration<double>(duration).count(); }
+
 class WallClock : public Clock {
  public:
   TimePoint Now() const override { return std::chrono::steady_clock::now(); }

@@ -23,10 +23,6 @@ constexpr int64_t kLoggerWindowTicks =
     64;  // lockstep: how far the plant may run ahead of a logger; about half of
          // what the default receive buffer of Linux (208 KiB) holds
 
-Clock::Duration Seconds(double seconds) {
-  return std::chrono::duration_cast<Clock::Duration>(std::chrono::duration<double>(seconds));
-}
-
 std::vector<std::string> WithControllers(std::vector<std::string> roles) {
   roles.insert(roles.begin(), {"pressure_ctrl", "position_ctrl"});
   return roles;
@@ -42,7 +38,7 @@ PlantApp::PlantApp(Bus& bus, Clock& clock, const StackConfig& config,
       program_(program),
       motion_(config.model.motion ? MakeTrajectory(*config.model.motion) : nullptr),
       state_publisher_(bus.Advertise<state_t>(participant_.channels().state)),
-      stale_time_(Seconds(config.limits.stale_input_s)),
+      stale_time_(FromSeconds(config.limits.stale_input_s)),
       command_monitor_(stale_time_) {
   ActuatorOptions options;
   options.shaft = config.model.shaft;
@@ -101,7 +97,7 @@ bool PlantApp::Ended() const { return participant_.stop().has_value() || StopSig
 
 bool PlantApp::WaitForParticipants() {
   const auto start = participant_.clock().Now();
-  const auto deadline = start + Seconds(config_.time.start_timeout_s);
+  const auto deadline = start + FromSeconds(config_.time.start_timeout_s);
   auto next_word = start + 2s;
   while (!Ended()) {
     const std::vector<std::string> missing = roll_call_.Missing();
@@ -134,7 +130,7 @@ void PlantApp::RunLockstep() {
     Advance(tick_ + 1);
     if (simulated) {
       // Nobody else lets simulated time pass. Each tick from the start: rounding must not add up.
-      const auto due = start + Seconds(static_cast<double>(tick_) / rate);
+      const auto due = start + FromSeconds(static_cast<double>(tick_) / rate);
       while (participant_.bus().HandleUntil(due) > 0) {
       }
     }
@@ -150,7 +146,7 @@ bool PlantApp::AwaitAnswers() {
   const Clock& clock = participant_.clock();
   // Usually the answer comes at once: no clock is read for it.
   auto now = clock.Now();
-  const auto deadline = now + Seconds(config_.time.stall_timeout_s);
+  const auto deadline = now + FromSeconds(config_.time.stall_timeout_s);
   auto next_repeat = now + kRepeatPeriod;
   while (!Ended()) {
     bus.HandleUntil(std::min(next_repeat, deadline));

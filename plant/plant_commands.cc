@@ -7,16 +7,6 @@
 #include "plant/plant_app.h"
 
 namespace hydro {
-namespace {
-
-Clock::Duration Seconds(double seconds) {
-  return std::chrono::duration_cast<Clock::Duration>(std::chrono::duration<double>(seconds));
-}
-
-double ToSeconds(Clock::Duration duration) { return std::chrono::duration<double>(duration).count(); }
-
-}  // namespace
-
 void PlantApp::OnMotorCommand(const motor_command_t& command) {
   const auto now = participant_.clock().Now();
   const auto verdict = command_monitor_.Observe(command.session, command.sequence, now);
@@ -44,7 +34,7 @@ void PlantApp::OnMotorCommand(const motor_command_t& command) {
 Clock::Duration PlantApp::TimeSinceDue(int64_t tick) const {
   const double ticks = static_cast<double>(tick_) - static_cast<double>(tick) -
                        static_cast<double>(config_.pressure_interval_ticks);
-  return Seconds(std::clamp(ticks / (config_.plant.rate_hz * config_.time.speed), 0.0, 1e8));
+  return FromSeconds(std::clamp(ticks / (config_.plant.rate_hz * config_.time.speed), 0.0, 1e8));
 }
 
 void PlantApp::ChooseVoltage() {

@@ -10,10 +10,6 @@ namespace {
 
 using namespace std::chrono_literals;
 
-Clock::Duration Seconds(double seconds) {
-  return std::chrono::duration_cast<Clock::Duration>(std::chrono::duration<double>(seconds));
-}
-
 int8_t SignalCode(ReferenceSignal signal) {
   switch (signal) {
     case ReferenceSignal::kArmAngle:
@@ -44,14 +40,14 @@ PositionApp::PositionApp(Bus& bus, Clock& clock, const StackConfig& config)
     : participant_(bus, clock, Channels(config.bus.channel_suffix), "position_ctrl"),
       lockstep_(config.time.mode == TimeMode::kLockstep),
       interval_(config.position_interval_ticks),
-      stall_time_(Seconds(config.time.stall_timeout_s) + 400ms),
+      stall_time_(FromSeconds(config.time.stall_timeout_s) + 400ms),
       signal_(config.reference.signal),
       reference_(MakeTrajectory(config.reference.trajectory)),
       torque_per_pressure_(config.model.description.parameters.k_2),
       pressure_limit_(config.limits.arm_torque_in_lbf / config.model.description.parameters.k_2),
       section_(config.position),
       law_(LawSettingsFor(config)),
-      state_monitor_(Seconds(config.limits.stale_input_s)),
+      state_monitor_(FromSeconds(config.limits.stale_input_s)),
       last_state_time_(clock.Now()) {
   bus.Subscribe<state_t>(participant_.channels().state, [this](const state_t& state) { OnState(state); });
   participant_.Announce(process_status_t::READY);
@@ -142,13 +138,26 @@ void PositionApp::Poll() {
   const auto silence = participant_.clock().Now() - last_state_time_;
   if (silence > stall_time_) {
     participant_.RequestStop(fmt::format("the plant has sent no state for {:.1f} s (last: tick {})",
-                                         std::chrono::duration<double>(silence).count(), participant_.tick()),
+                                         ToSeconds(silence), participant_.tick()),
                              1);
   }
 }
 
 bool PositionApp::finished() const { return participant_.stop().has_value(); }
 
-int PositionApp::Finish() { return participant_.Leave(); }
+int PositionApp::Finish() {
+  if (!participant_.stop() && participant_.tick() >= 0) {
+    // The run goes on without this loop: its last pressure must not stay in force until it is stale.
+    pressure_command_.utime = participant_.clock().Utime();
+    pressure_command_.tick = participant_.tick();
+    pressure_command_.session = participant_.session();
+    pressure_command_.sequence = sequence_++;
+    pressure_command_.open_loop = true;
+    pressure_command_.voltage = 0;
+    pressure_command_.pressure_ref = 0;
+    participant_.bus().Publish(participant_.channels().pressure_command, pressure_command_);
+  }
+  return participant_.Leave();
+}
 
 }  // namespace hydro

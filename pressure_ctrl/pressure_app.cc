@@ -13,8 +13,12 @@ namespace {
 
 using namespace std::chrono_literals;
 
-Clock::Duration Seconds(double seconds) {
-  return std::chrono::duration_cast<Clock::Duration>(std::chrono::duration<double>(seconds));
+motor_command_t ZeroVolts(int64_t tick, int8_t status) {
+  motor_command_t zero{};
+  zero.tick = tick;
+  zero.pressure_command_tick = -1;
+  zero.status = status;
+  return zero;
 }
 
 }  // namespace
@@ -48,10 +52,10 @@ PressureApp::PressureApp(Bus& bus, Clock& clock, const StackConfig& config)
       delay_(config.plant.command_delay_ticks),
       stale_ticks_(delay_ + position_interval_ +
                    static_cast<int64_t>(std::ceil(config.limits.stale_input_s * config.plant.rate_hz))),
-      stale_time_(Seconds(config.limits.stale_input_s)),
+      stale_time_(FromSeconds(config.limits.stale_input_s)),
       // The plant itself waits stall_timeout_s for whoever is late and then says who; only after that is it
       // silent.
-      stall_time_(Seconds(config.time.stall_timeout_s) + 400ms),
+      stall_time_(FromSeconds(config.time.stall_timeout_s) + 400ms),
       limits_(config.limits),
       law_(PressureLawSettingsFor(config)),
       state_monitor_(stale_time_),
@@ -145,12 +149,7 @@ void PressureApp::TakePressureCommandsUpTo(int64_t tick) {
 
 void PressureApp::Answer(const state_t& state) {
   TakePressureCommandsUpTo(state.tick - delay_);
-  motor_command_t command;
-  command.tick = state.tick;
-  command.voltage = 0;
-  command.saturated = false;
-  command.pressure_ref = 0;
-  command.pressure_command_tick = -1;
+  motor_command_t command = ZeroVolts(state.tick, motor_command_t::SAFE);
   if (pressure_command_) {
     command.pressure_ref = pressure_command_->pressure_ref;
     command.pressure_command_tick = pressure_command_->tick;
@@ -197,38 +196,24 @@ void PressureApp::Poll() {
   if (lockstep_) {
     if (silence > stall_time_ && !stalled_) {
       stalled_ = true;
-      participant_.RequestStop(
-          fmt::format("the plant has sent no state for {:.1f} s (last: tick {})",
-                      std::chrono::duration<double>(silence).count(), participant_.tick()),
-          1);
+      participant_.RequestStop(fmt::format("the plant has sent no state for {:.1f} s (last: tick {})",
+                                           ToSeconds(silence), participant_.tick()),
+                               1);
     }
   } else if (silence > stale_time_ && !participant_.active("stale_state")) {
-    motor_command_t zero;
-    zero.tick = participant_.tick();
-    zero.voltage = 0;
-    zero.pressure_ref = 0;
-    zero.pressure_command_tick = -1;
-    zero.saturated = false;
-    zero.status = motor_command_t::SAFE;
+    motor_command_t zero = ZeroVolts(participant_.tick(), motor_command_t::SAFE);
     Send(zero);  // zero volts first, explanation second
     participant_.Raise("stale_state",
                        fmt::format("no state for {:.0f} ms, allowed are {:.0f} ms (limits.stale_input_s)",
-                                   std::chrono::duration<double, std::milli>(silence).count(),
-                                   std::chrono::duration<double, std::milli>(stale_time_).count()),
-                       std::chrono::duration<double>(silence).count(), limits_.stale_input_s, false);
+                                   1e3 * ToSeconds(silence), 1e3 * ToSeconds(stale_time_)),
+                       ToSeconds(silence), limits_.stale_input_s, false);
   }
 }
 
 bool PressureApp::finished() const { return participant_.stop().has_value(); }
 
 int PressureApp::Finish() {
-  motor_command_t zero;
-  zero.tick = participant_.tick();
-  zero.voltage = 0;
-  zero.pressure_ref = 0;
-  zero.pressure_command_tick = -1;
-  zero.saturated = false;
-  zero.status = motor_command_t::STOPPED;
+  motor_command_t zero = ZeroVolts(participant_.tick(), motor_command_t::STOPPED);
   Send(zero);
   return participant_.Leave();
 }

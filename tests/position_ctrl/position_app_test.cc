@@ -150,6 +150,29 @@ TEST_F(PositionAppTest, RepeatsTheAnswerToARepeatedState) {
   EXPECT_EQ(commands_[0].pressure_ref, commands_[1].pressure_ref);
 }
 
+// Tests that a loop that leaves a run that goes on does not leave its last pressure in force, and that at the
+// end of a run, when everybody leaves, it adds nothing.
+TEST_F(PositionAppTest, LeavesWithZeroVolts) {
+  Start(WithReference(ReferenceSignal::kArmAngle, 0));
+  SendState(0, 0.1);
+  SendState(3, 0.1);
+  EXPECT_EQ(app_->Finish(), 0);
+  Deliver();
+  ASSERT_EQ(commands_.size(), 2u);
+  EXPECT_EQ(commands_[1].tick, 3);
+  EXPECT_TRUE(commands_[1].open_loop);
+  EXPECT_EQ(commands_[1].voltage, 0);
+}
+TEST_F(PositionAppTest, AddsNothingAfterTheEnd) {
+  Start(WithReference(ReferenceSignal::kArmAngle, 0));
+  SendState(0, 0.1);
+  bus_.Publish("HYDRO_STOP", stop_t{});
+  Deliver();
+  EXPECT_EQ(app_->Finish(), 0);
+  Deliver();
+  EXPECT_EQ(commands_.size(), 1u);
+}
+
 // Tests that in lockstep a silent plant ends this process with an error in less than 2 s.
 TEST_F(PositionAppTest, LockstepEndsWhenThePlantStalls) {
   Start(WithReference(ReferenceSignal::kArmAngle, 0));
