@@ -122,8 +122,9 @@ int main(int argc, char** argv) {
   for (const std::string& name : order) fastest = std::min(fastest, rows[name].us);
   std::printf("\n%-22s %12s %8s %14s\n", "path", "us per tick", "ratio", "error, psi");
   for (const std::string& name : order) {
-    std::printf("%-22s %12.4f %8.1f %14.2g\n", name.c_str(), rows[name].us, rows[name].us / fastest,
-                rows[name].error);
+    std::printf("%-22s %12.4f %8.1f", name.c_str(), rows[name].us, rows[name].us / fastest);
+    if (std::isfinite(rows[name].error)) std::printf(" %14.2g", rows[name].error);
+    std::printf("\n");
   }
   return 0;
 }
