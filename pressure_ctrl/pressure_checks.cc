@@ -36,14 +36,14 @@ bool PressureApp::InputsAreSafe(const state_t& state) {
   });
   const double pressure = std::fmax(state.p1, state.p2);
   check(!(pressure > limits_.pressure_psi), "pressure_limit", pressure, limits_.pressure_psi, true, [&] {
-    return fmt::format("tick {}: p{} is {:.1f} psi, allowed is {} psi (limits.pressure_psi)", state.tick,
+    return fmt::format("tick {}: p{} is {:.6g} psi, allowed is {} psi (limits.pressure_psi)", state.tick,
                        state.p1 > state.p2 ? 1 : 2, pressure, limits_.pressure_psi);
   });
   const double speed = std::fabs(state.motor_speed);
   check(!(speed > limits_.motor_speed_rad_s), "motor_speed_limit", speed, limits_.motor_speed_rad_s, true,
         [&] {
           return fmt::format(
-              "tick {}: the motor turns at {:.1f} rad/s, allowed is {} rad/s (limits.motor_speed_rad_s)",
+              "tick {}: the motor turns at {:.6g} rad/s, allowed is {} rad/s (limits.motor_speed_rad_s)",
               state.tick, speed, limits_.motor_speed_rad_s);
         });
   const int64_t age = state.tick - (pressure_command_ ? pressure_command_->tick : 0);
