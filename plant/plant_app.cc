@@ -144,7 +144,6 @@ bool PlantApp::AwaitAnswers() {
   if (Unanswered().empty()) return true;
   Bus& bus = participant_.bus();
   const Clock& clock = participant_.clock();
-  // Usually the answer comes at once: no clock is read for it.
   auto now = clock.Now();
   const auto deadline = now + FromSeconds(config_.time.stall_timeout_s);
   auto next_repeat = now + kRepeatPeriod;
