@@ -58,6 +58,7 @@ void PlantApp::ChooseVoltage() {
   } else if (participant_.any_fault()) {
     participant_.Clear("nonfinite_motor_command");
   }
+  if (participant_.active("future_motor_command")) zero();  // contradictory: what came before it is no better
   if (command_monitor_.SecondSenderAlive(participant_.clock().Now())) {
     zero();
     participant_.Raise("second_motor_command_sender",

@@ -339,6 +339,24 @@ TEST_F(PlantAppTest, FutureCommandIsRefused) {
   EXPECT_EQ(faults_[0].code, "future_motor_command");
 }
 
+// Tests that a command from the future also ends what acted before it, until a command that makes sense
+// comes.
+TEST_F(PlantAppTest, FutureCommandGivesZeroVolts) {
+  StackConfig config = SmallStack();
+  config.time.mode = TimeMode::kRealtime;
+  on_state_ = [this](const state_t& s) {
+    const bool future = s.tick >= 10 && s.tick < 20;
+    SendVoltage(future ? s.tick + 1 : s.tick, 1.5);
+  };
+  EXPECT_EQ(Run(config), 0);
+  EXPECT_EQ(states_[10].voltage, 1.5);
+  for (int64_t k = 13; k <= 20; ++k) EXPECT_EQ(states_[k].voltage, 0) << k;
+  EXPECT_EQ(states_[25].voltage, 1.5);
+  ASSERT_EQ(faults_.size(), 2u);
+  EXPECT_EQ(faults_[0].code, "future_motor_command");
+  EXPECT_FALSE(faults_[1].active);
+}
+
 // Tests that an arm that runs out of its volume ends the run with an error that names the angle.
 TEST_F(PlantAppTest, ModelErrorEndsTheRun) {
   StackConfig config = SmallStack();
