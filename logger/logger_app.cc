@@ -151,7 +151,6 @@ LoggerApp::Write LoggerApp::WriteBatch(std::deque<Event>& batch) {
     if (event.channel == participant_.channels().run) descriptions_[event.channel] = std::move(event);
   }
   writer_->Flush();
-  bytes_ = writer_->bytes();
   return {began, std::chrono::microseconds(participant_.clock().Utime() - oldest_utime)};
 }
 

@@ -44,10 +44,6 @@ class LoggerApp : public App {
   bool finished() const override;
   int Finish() override;
 
-  int64_t events() const { return received_; }
-  int64_t largest_queue() const { return largest_queue_total_; }
-  int64_t bytes() const { return bytes_; }
-
  private:
   struct Event {
     std::string channel;
@@ -83,7 +79,6 @@ class LoggerApp : public App {
   bool closing_ = false;
   std::exception_ptr failure_;
   std::atomic<bool> failed_ = false;
-  std::atomic<int64_t> bytes_ = 0;
   std::thread thread_;
 
   int64_t received_ = 0;

@@ -75,7 +75,6 @@ bool Participant::Raise(const std::string& code, const std::string& text, double
   fault.active = true;
   active_[code] = fault;
   latched_ = latched_ || latched;
-  ++faults_raised_;
   PublishFault(fault);
   if (!clock_.simulated()) spdlog::error("fault {}: {}", code, text);
   return true;

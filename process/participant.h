@@ -49,7 +49,6 @@ class Participant {
   bool any_fault() const { return !active_.empty(); }
   bool active(const std::string& code) const { return active_.contains(code); }
   bool latched() const { return latched_; }
-  int64_t faults_raised() const { return faults_raised_; }
 
   // Ends the run for everyone. Only the first request of this process counts.
   void RequestStop(const std::string& reason, int exit_code);
@@ -79,7 +78,6 @@ class Participant {
   std::string status_text_;
   int64_t tick_ = -1;
   int64_t fault_sequence_ = 0;
-  int64_t faults_raised_ = 0;
   bool latched_ = false;
   std::map<std::string, fault_t> active_;
   std::optional<stop_t> stop_;
