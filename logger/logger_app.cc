@@ -43,7 +43,10 @@ LoggerApp::LoggerApp(Bus& bus, Clock& clock, const StackConfig& config, const Lo
     : bus_(Tap(bus)),  // first of all: a subscription to all channels beside earlier ones could lose messages
       participant_(bus, clock, Channels(config.bus.channel_suffix), "logger"),
       options_(options),
-      writer_(std::make_unique<LogWriter>(options.file, Opening::kDirect)) {
+      writer_(std::make_unique<LogWriter>(options.file, Opening::kDirect)),
+      lockstep_(config.time.mode == TimeMode::kLockstep),
+      pressure_interval_(config.pressure_interval_ticks),
+      position_interval_(config.position_interval_ticks) {
   bus.Subscribe<process_status_t>(participant_.channels().process_status,
                                   [this](const process_status_t& status) { OnStatus(status); });
   thread_ = std::thread([this] { WriteUntilClosed(); });
@@ -88,6 +91,57 @@ void LoggerApp::OnMessage(const RawMessage& message) {
     // A state that is sent again asks for the answer again; it may have been lost.
     if (state_tick_ >= reported_tick_ + kProgressTicks || state_tick_ <= reported_tick_) ReportProgress();
   }
+  // The kernel delivers a datagram to one socket after the other: the plant may have an answer, and its next
+  // state may be here, before that answer is. In lockstep the order of cause and effect is known, and the log
+  // keeps it.
+  if (numbered && message.size >= kSequenceOffset) {
+    const int64_t tick = ReadInt64(message.data + kTickOffset);
+    if (message.channel == channels.state) {
+      if (held_) ReleaseHeld();
+      if (lockstep_ && !AnswersAreIn(tick - 1)) {
+        held_ = std::move(event);
+        held_tick_ = tick;
+        held_since_ = participant_.clock().Now();
+        return;
+      }
+    } else if (message.channel == channels.motor_command) {
+      motor_command_tick_ = tick;
+    } else if (message.channel == channels.pressure_command) {
+      pressure_command_tick_ = tick;
+    }
+    if (message.channel == channels.state) {
+      held_ = std::move(event);
+      held_tick_ = tick;
+      ReleaseHeld();
+      return;
+    }
+    if (lockstep_ && tick > queued_state_tick_) {
+      if (early_.empty() && !held_) held_since_ = participant_.clock().Now();
+      early_.push_back(std::move(event));
+      return;
+    }
+  }
+  Enqueue(std::move(event));
+  if (held_ && AnswersAreIn(held_tick_ - 1)) ReleaseHeld();
+}
+
+bool LoggerApp::AnswersAreIn(int64_t tick) const {
+  return (tick < 0 || tick % pressure_interval_ != 0 || motor_command_tick_ >= tick) &&
+         (tick < 0 || tick % position_interval_ != 0 || pressure_command_tick_ >= tick);
+}
+
+void LoggerApp::ReleaseHeld() {
+  if (held_) {
+    Event event = std::move(*held_);
+    held_.reset();
+    queued_state_tick_ = held_tick_;
+    Enqueue(std::move(event));
+  }
+  for (Event& event : early_) Enqueue(std::move(event));
+  early_.clear();
+}
+
+void LoggerApp::Enqueue(Event event) {
   size_t waiting = 0;
   {
     const std::lock_guard lock(mutex_);
@@ -163,6 +217,8 @@ void LoggerApp::Rotate() {
 }
 
 void LoggerApp::Poll() {
+  if ((held_ || !early_.empty()) && participant_.clock().Now() - held_since_ > kFlushPeriod)
+    ReleaseHeld();  // the answer was lost
   participant_.statistics().set_lost_messages(lost_);
   participant_.statistics().RecordQueueDepth(largest_queue_);
   largest_queue_ = 0;
@@ -193,6 +249,7 @@ int LoggerApp::Finish() {
   // What has been sent already, up to our own farewell, which comes back to us as everybody's.
   const auto deadline = participant_.clock().Now() + kEchoTime;
   while (!left_ && participant_.clock().Now() < deadline) bus_.HandleUntil(deadline);
+  ReleaseHeld();
   {
     const std::lock_guard lock(mutex_);
     closing_ = true;

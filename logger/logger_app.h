@@ -13,6 +13,7 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <thread>
 #include <vector>
@@ -57,6 +58,9 @@ class LoggerApp : public App {
   };
 
   Bus& Tap(Bus& bus);
+  void Enqueue(Event event);
+  bool AnswersAreIn(int64_t tick) const;
+  void ReleaseHeld();
   void OnMessage(const RawMessage& message);
   void OnStatus(const process_status_t& status);
   void WriteUntilClosed();
@@ -86,7 +90,17 @@ class LoggerApp : public App {
   int64_t largest_queue_total_ = 0;
   int64_t state_tick_ = -1;  // newest tick received
   int64_t reported_tick_ = -1;
-  Clock::TimePoint report_again_;     // fewer than kProgressTicks new ticks are reported from then on
+  Clock::TimePoint report_again_;  // fewer than kProgressTicks new ticks are reported from then on
+  const bool lockstep_;
+  const int64_t pressure_interval_;
+  const int64_t position_interval_;
+  int64_t motor_command_tick_ = -1;     // newest received
+  int64_t pressure_command_tick_ = -1;  // newest received
+  std::optional<Event> held_;           // lockstep: a state that overtook the answers it follows from
+  int64_t held_tick_ = -1;
+  Clock::TimePoint held_since_;
+  std::deque<Event> early_;  // lockstep: answers that overtook the state they answer
+  int64_t queued_state_tick_ = -1;
   bool left_ = false;                 // our own farewell has come back
   std::map<int64_t, int8_t> others_;  // state of the other processes, by session
   std::map<std::string, std::map<int64_t, int64_t>>
