@@ -1,0 +1,14 @@
+// The model files of config/models/, compiled in, so that an experiment needs no path.
+#pragma once
+
+#include <string>
+
+#include "model/description.h"
+
+namespace hydro {
+
+// The text of config/models/NAME.toml; throws std::out_of_range for another name.
+const std::string& ShippedModelText(const std::string& name);
+ModelDescription ShippedModel(const std::string& name);
+
+}  // namespace hydro
