@@ -30,6 +30,15 @@ constexpr int kTickOffset = 16;
 constexpr int kSessionOffset = 24;
 constexpr int kSequenceOffset = 32;
 
+// Which of the numbered messages lies on `channel`.
+std::optional<CausalOrder::Kind> NumberedKind(std::string_view channel, const Channels& channels) {
+  if (channel == channels.state) return CausalOrder::Kind::kState;
+  if (channel == channels.motor_command) return CausalOrder::Kind::kMotorCommand;
+  if (channel == channels.pressure_command) return CausalOrder::Kind::kPressureCommand;
+  if (channel == channels.arm_reference) return CausalOrder::Kind::kArmReference;
+  return std::nullopt;
+}
+
 }  // namespace
 
 std::string RotatedName(const std::string& file, int n) {
@@ -43,10 +52,11 @@ LoggerApp::LoggerApp(Bus& bus, Clock& clock, const StackConfig& config, const Lo
     : bus_(Tap(bus)),  // first of all: a subscription to all channels beside earlier ones could lose messages
       participant_(bus, clock, Channels(config.bus.channel_suffix), "logger"),
       options_(options),
-      writer_(std::make_unique<LogWriter>(options.file, Opening::kDirect)),
-      lockstep_(config.time.mode == TimeMode::kLockstep),
-      pressure_interval_(config.pressure_interval_ticks),
-      position_interval_(config.position_interval_ticks) {
+      writer_(std::make_unique<LogWriter>(options.file, Opening::kDirect)) {
+  if (config.time.mode == TimeMode::kLockstep) {
+    order_.emplace(config.pressure_interval_ticks, config.position_interval_ticks,
+                   [this](RecordedMessage message) { Enqueue(std::move(message)); });
+  }
   bus.Subscribe<process_status_t>(participant_.channels().process_status,
                                   [this](const process_status_t& status) { OnStatus(status); });
   thread_ = std::thread([this] { WriteUntilClosed(); });
@@ -69,14 +79,12 @@ LoggerApp::~LoggerApp() {
 
 void LoggerApp::OnMessage(const RawMessage& message) {
   if (message.channel.empty()) return;  // LCM carries such a message, but no log can hold it
-  Event event{
+  RecordedMessage event{
       std::string(message.channel), {message.data, message.data + message.size}, message.receive_utime};
   ++received_;
   const Channels& channels = participant_.channels();
-  const bool numbered = message.channel == channels.state || message.channel == channels.motor_command ||
-                        message.channel == channels.pressure_command ||
-                        message.channel == channels.arm_reference;
-  if (numbered && message.size >= kSequenceOffset + 8) {
+  const std::optional<CausalOrder::Kind> kind = NumberedKind(message.channel, channels);
+  if (kind && message.size >= kSequenceOffset + 8) {
     const int64_t sequence = ReadInt64(message.data + kSequenceOffset);
     int64_t& next = next_sequence_[event.channel]
                         .try_emplace(ReadInt64(message.data + kSessionOffset), sequence)
@@ -91,61 +99,18 @@ void LoggerApp::OnMessage(const RawMessage& message) {
     // A state that is sent again asks for the answer again; it may have been lost.
     if (state_tick_ >= reported_tick_ + kProgressTicks || state_tick_ <= reported_tick_) ReportProgress();
   }
-  // The kernel delivers a datagram to one socket after the other: the plant may have an answer, and its next
-  // state may be here, before that answer is. In lockstep the order of cause and effect is known, and the log
-  // keeps it.
-  if (numbered && message.size >= kSequenceOffset) {
-    const int64_t tick = ReadInt64(message.data + kTickOffset);
-    if (message.channel == channels.state) {
-      if (held_) ReleaseHeld();
-      if (lockstep_ && !AnswersAreIn(tick - 1)) {
-        held_ = std::move(event);
-        held_tick_ = tick;
-        held_since_ = participant_.clock().Now();
-        return;
-      }
-    } else if (message.channel == channels.motor_command) {
-      motor_command_tick_ = tick;
-    } else if (message.channel == channels.pressure_command) {
-      pressure_command_tick_ = tick;
-    }
-    if (message.channel == channels.state) {
-      held_ = std::move(event);
-      held_tick_ = tick;
-      ReleaseHeld();
-      return;
-    }
-    if (lockstep_ && tick > queued_state_tick_) {
-      if (early_.empty() && !held_) held_since_ = participant_.clock().Now();
-      early_.push_back(std::move(event));
-      return;
-    }
-  }
-  Enqueue(std::move(event));
-  if (held_ && AnswersAreIn(held_tick_ - 1)) ReleaseHeld();
-}
-
-bool LoggerApp::AnswersAreIn(int64_t tick) const {
-  return (tick < 0 || tick % pressure_interval_ != 0 || motor_command_tick_ >= tick) &&
-         (tick < 0 || tick % position_interval_ != 0 || pressure_command_tick_ >= tick);
-}
-
-void LoggerApp::ReleaseHeld() {
-  if (held_) {
-    Event event = std::move(*held_);
-    held_.reset();
-    queued_state_tick_ = held_tick_;
+  if (order_ && kind && message.size >= kSequenceOffset) {
+    order_->Take(*kind, ReadInt64(message.data + kTickOffset), std::move(event), participant_.clock().Now());
+  } else {
     Enqueue(std::move(event));
   }
-  for (Event& event : early_) Enqueue(std::move(event));
-  early_.clear();
 }
 
-void LoggerApp::Enqueue(Event event) {
+void LoggerApp::Enqueue(RecordedMessage message) {
   size_t waiting = 0;
   {
     const std::lock_guard lock(mutex_);
-    queue_.push_back(std::move(event));
+    queue_.push_back(std::move(message));
     waiting = queue_.size();
   }
   largest_queue_ = std::max(largest_queue_, static_cast<int64_t>(waiting));
@@ -177,7 +142,7 @@ void LoggerApp::ReportProgress() {
 void LoggerApp::WriteUntilClosed() {
   try {
     for (bool closing = false; !closing;) {
-      std::deque<Event> batch;
+      std::deque<RecordedMessage> batch;
       {
         std::unique_lock lock(mutex_);
         wake_.wait_for(lock, kFlushPeriod, [this] { return closing_; });
@@ -196,10 +161,10 @@ void LoggerApp::WriteUntilClosed() {
   }
 }
 
-LoggerApp::Write LoggerApp::WriteBatch(std::deque<Event>& batch) {
+LoggerApp::Write LoggerApp::WriteBatch(std::deque<RecordedMessage>& batch) {
   const auto began = participant_.clock().Now();
   const int64_t oldest_utime = batch.front().utime;
-  for (Event& event : batch) {
+  for (RecordedMessage& event : batch) {
     if (options_.rotate_bytes > 0 && writer_->bytes() >= options_.rotate_bytes) Rotate();
     writer_->Append(event.channel, event.data.data(), event.data.size(), event.utime);
     if (event.channel == participant_.channels().run) descriptions_[event.channel] = std::move(event);
@@ -217,8 +182,9 @@ void LoggerApp::Rotate() {
 }
 
 void LoggerApp::Poll() {
-  if ((held_ || !early_.empty()) && participant_.clock().Now() - held_since_ > kFlushPeriod)
-    ReleaseHeld();  // the answer was lost
+  if (order_ && order_->held_since() && participant_.clock().Now() - *order_->held_since() > kFlushPeriod) {
+    order_->Release();  // what it waits for was lost
+  }
   participant_.statistics().set_lost_messages(lost_);
   participant_.statistics().RecordQueueDepth(largest_queue_);
   largest_queue_ = 0;
@@ -249,7 +215,7 @@ int LoggerApp::Finish() {
   // What has been sent already, up to our own farewell, which comes back to us as everybody's.
   const auto deadline = participant_.clock().Now() + kEchoTime;
   while (!left_ && participant_.clock().Now() < deadline) bus_.HandleUntil(deadline);
-  ReleaseHeld();
+  if (order_) order_->Release();
   {
     const std::lock_guard lock(mutex_);
     closing_ = true;

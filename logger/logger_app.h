@@ -18,6 +18,7 @@
 #include <thread>
 #include <vector>
 
+#include "logger/causal_order.h"
 #include "logger/log_writer.h"
 #include "process/app.h"
 #include "process/participant.h"
@@ -46,25 +47,17 @@ class LoggerApp : public App {
   int Finish() override;
 
  private:
-  struct Event {
-    std::string channel;
-    std::vector<uint8_t> data;
-    int64_t utime = 0;
-  };
-
   struct Write {
     Clock::TimePoint began;
     Clock::Duration latency;  // since the oldest message in it had arrived
   };
 
   Bus& Tap(Bus& bus);
-  void Enqueue(Event event);
-  bool AnswersAreIn(int64_t tick) const;
-  void ReleaseHeld();
+  void Enqueue(RecordedMessage message);
   void OnMessage(const RawMessage& message);
   void OnStatus(const process_status_t& status);
   void WriteUntilClosed();
-  Write WriteBatch(std::deque<Event>& batch);
+  Write WriteBatch(std::deque<RecordedMessage>& batch);
   void Rotate();
   void ReportProgress();
   bool EveryoneHasLeft() const;
@@ -74,11 +67,12 @@ class LoggerApp : public App {
   LoggerOptions options_;
   std::unique_ptr<LogWriter> writer_;  // the writing thread's, once it runs
   int files_ = 1;
-  std::map<std::string, Event> descriptions_;  // newest HYDRO_RUN message by channel: opens each rotated file
+  std::map<std::string, RecordedMessage>
+      descriptions_;  // newest HYDRO_RUN message by channel: opens each rotated file
 
   std::mutex mutex_;  // guards queue_, writes_, closing_, failure_
   std::condition_variable wake_;
-  std::deque<Event> queue_;
+  std::deque<RecordedMessage> queue_;
   std::vector<Write> writes_;  // done since the last Poll()
   bool closing_ = false;
   std::exception_ptr failure_;
@@ -90,17 +84,8 @@ class LoggerApp : public App {
   int64_t largest_queue_total_ = 0;
   int64_t state_tick_ = -1;  // newest tick received
   int64_t reported_tick_ = -1;
-  Clock::TimePoint report_again_;  // fewer than kProgressTicks new ticks are reported from then on
-  const bool lockstep_;
-  const int64_t pressure_interval_;
-  const int64_t position_interval_;
-  int64_t motor_command_tick_ = -1;     // newest received
-  int64_t pressure_command_tick_ = -1;  // newest received
-  std::optional<Event> held_;           // lockstep: a state that overtook the answers it follows from
-  int64_t held_tick_ = -1;
-  Clock::TimePoint held_since_;
-  std::deque<Event> early_;  // lockstep: answers that overtook the state they answer
-  int64_t queued_state_tick_ = -1;
+  Clock::TimePoint report_again_;     // fewer than kProgressTicks new ticks are reported from then on
+  std::optional<CausalOrder> order_;  // of the numbered messages, in lockstep
   bool left_ = false;                 // our own farewell has come back
   std::map<int64_t, int8_t> others_;  // state of the other processes, by session
   std::map<std::string, std::map<int64_t, int64_t>>
