@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <functional>
+#include <ostream>
 #include <stdexcept>
 
 #include "trajectory/trajectory.h"
@@ -17,6 +18,9 @@ struct Refused {
   std::string says;
   std::function<std::unique_ptr<Trajectory>()> make;
 };
+
+// ctest names each case by this.
+void PrintTo(const Refused& refused, std::ostream* out) { *out << refused.says; }
 
 class TrajectoryErrorsTest : public ::testing::TestWithParam<Refused> {};
 
