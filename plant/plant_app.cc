@@ -219,7 +219,7 @@ void PlantApp::PublishState(int64_t skipped_ticks) {
   } else {
     ++state_.sequence;
   }
-  const Measurement measured = AddNoise(actuator_->Measure(), config_.noise, config_.seed, tick_);
+  const Measurement measured = ReadSensors(actuator_->Measure(), config_.noise, config_.seed, tick_);
   state_.utime = participant_.clock().Utime();
   state_.tick = tick_;
   state_.session = participant_.session();

@@ -25,22 +25,24 @@ double StandardNormal(uint64_t seed, int64_t tick, int channel) {
   return std::sqrt(-2 * std::log(Unit(first))) * std::cos(2 * std::numbers::pi * Unit(Scatter(~first)));
 }
 
-Measurement AddNoise(const Measurement& measurement, const NoiseSection& noise, int64_t seed, int64_t tick) {
-  Measurement noisy = measurement;
+Measurement ReadSensors(const Measurement& measurement, const NoiseSection& noise, int64_t seed,
+                        int64_t tick) {
+  Measurement reading = measurement;
   int channel = 0;
-  const auto add = [&](double& signal, double standard_deviation) {
+  const auto read = [&](double& signal, double standard_deviation, double resolution) {
     if (standard_deviation > 0) {
       signal += standard_deviation * StandardNormal(static_cast<uint64_t>(seed), tick, channel);
     }
+    if (resolution > 0) signal = std::round(signal / resolution) * resolution;
     ++channel;
   };
-  add(noisy.p1, noise.p1_psi);
-  add(noisy.p2, noise.p2_psi);
-  add(noisy.motor_angle, noise.motor_angle_rad);
-  add(noisy.motor_speed, noise.motor_speed_rad_s);
-  add(noisy.arm_angle, noise.arm_angle_rad);
-  add(noisy.arm_speed, noise.arm_speed_rad_s);
-  return noisy;
+  read(reading.p1, noise.p1_psi, noise.p1_resolution_psi);
+  read(reading.p2, noise.p2_psi, noise.p2_resolution_psi);
+  read(reading.motor_angle, noise.motor_angle_rad, noise.motor_angle_resolution_rad);
+  read(reading.motor_speed, noise.motor_speed_rad_s, noise.motor_speed_resolution_rad_s);
+  read(reading.arm_angle, noise.arm_angle_rad, noise.arm_angle_resolution_rad);
+  read(reading.arm_speed, noise.arm_speed_rad_s, noise.arm_speed_resolution_rad_s);
+  return reading;
 }
 
 }  // namespace hydro

@@ -1,5 +1,6 @@
-// Measurement noise that depends on nothing but the seed, the tick and the signal: the same tick gets the
-// same noise in lockstep, in real time and in hydro-sim, whatever was skipped before.
+// What the simulated sensors make of the truth: they add noise and round. The noise depends on nothing but
+// the seed, the tick and the signal: the same tick gets the same noise in lockstep, in real time and in
+// hydro-sim, whatever was skipped before.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +13,8 @@ namespace hydro {
 // Standard normal number for (seed, tick, channel): Box-Muller on two SplitMix64 outputs.
 double StandardNormal(uint64_t seed, int64_t tick, int channel);
 
-// `measurement` as the noisy sensors read it at `tick`.
-Measurement AddNoise(const Measurement& measurement, const NoiseSection& noise, int64_t seed, int64_t tick);
+// `measurement` as the sensors read it at `tick`: noise added, then rounded to a multiple of the resolution.
+Measurement ReadSensors(const Measurement& measurement, const NoiseSection& noise, int64_t seed,
+                        int64_t tick);
 
 }  // namespace hydro

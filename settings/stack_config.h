@@ -105,13 +105,21 @@ struct LimitsSection {
   double stale_input_s = 0.1;  // older inputs give zero volts and a fault
 };
 
-struct NoiseSection {  // standard deviations of what the sensors add; 0: none
+struct NoiseSection {
+  // Standard deviations of what the sensors add; 0: none.
   double p1_psi = 0;
   double p2_psi = 0;
   double motor_angle_rad = 0;
   double motor_speed_rad_s = 0;
   double arm_angle_rad = 0;
   double arm_speed_rad_s = 0;
+  // Readings, noise included, are rounded to multiples of these; 0: not rounded.
+  double p1_resolution_psi = 0;
+  double p2_resolution_psi = 0;
+  double motor_angle_resolution_rad = 0;
+  double motor_speed_resolution_rad_s = 0;
+  double arm_angle_resolution_rad = 0;
+  double arm_speed_resolution_rad_s = 0;
 };
 
 struct ProcessSection {

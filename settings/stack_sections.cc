@@ -140,6 +140,12 @@ void ReadNoise(SectionReader section, NoiseSection* noise, int64_t* seed) {
   section.Number("motor_speed_rad_s", &noise->motor_speed_rad_s, kNotNegative);
   section.Number("arm_angle_rad", &noise->arm_angle_rad, kNotNegative);
   section.Number("arm_speed_rad_s", &noise->arm_speed_rad_s, kNotNegative);
+  section.Number("p1_resolution_psi", &noise->p1_resolution_psi, kNotNegative);
+  section.Number("p2_resolution_psi", &noise->p2_resolution_psi, kNotNegative);
+  section.Number("motor_angle_resolution_rad", &noise->motor_angle_resolution_rad, kNotNegative);
+  section.Number("motor_speed_resolution_rad_s", &noise->motor_speed_resolution_rad_s, kNotNegative);
+  section.Number("arm_angle_resolution_rad", &noise->arm_angle_resolution_rad, kNotNegative);
+  section.Number("arm_speed_resolution_rad_s", &noise->arm_speed_resolution_rad_s, kNotNegative);
   section.Integer("seed", seed, 0, std::numeric_limits<int64_t>::max());
   section.Finish();
 }

@@ -51,14 +51,40 @@ TEST(SensorNoiseTest, ScalesAndLeavesTheRestAlone) {
   truth.p2 = 200;
   NoiseSection noise;
   noise.p2_psi = 3;
-  const Measurement a = AddNoise(truth, noise, 7, 42);
-  const Measurement b = AddNoise(truth, noise, 7, 42);
+  const Measurement a = ReadSensors(truth, noise, 7, 42);
+  const Measurement b = ReadSensors(truth, noise, 7, 42);
   EXPECT_EQ(a.p2, b.p2);
   EXPECT_DOUBLE_EQ(a.p2, 200 + 3 * StandardNormal(7, 42, 1));
   EXPECT_EQ(a.p1, 100);
   EXPECT_EQ(a.motor_speed, 0);
   noise.p1_psi = 1;
-  EXPECT_EQ(AddNoise(truth, noise, 7, 42).p2, a.p2);  // another signal's noise changes nothing
+  EXPECT_EQ(ReadSensors(truth, noise, 7, 42).p2, a.p2);  // another signal's noise changes nothing
+}
+
+// Tests that a resolution rounds the noisy reading to its nearest multiple, each signal by its own, and that
+// the rounding of much smaller noise than the resolution hides it.
+TEST(SensorNoiseTest, RoundsToTheResolution) {
+  Measurement truth;
+  truth.p1 = 100.3;
+  truth.p2 = 200.3;
+  truth.motor_angle = -1.0;
+  truth.arm_speed = 0.3;
+  NoiseSection noise;
+  noise.p2_psi = 3;
+  noise.p2_resolution_psi = 2000.0 / 4096;
+  noise.motor_angle_resolution_rad = 2 * M_PI / 16384;
+  noise.arm_speed_rad_s = 1e-6;
+  noise.arm_speed_resolution_rad_s = 0.25;
+  for (int tick = 0; tick < 100; ++tick) {
+    const Measurement reading = ReadSensors(truth, noise, 7, tick);
+    EXPECT_EQ(reading.p1, 100.3);
+    const double noisy = 200.3 + 3 * StandardNormal(7, tick, 1);
+    EXPECT_LE(std::fabs(reading.p2 - noisy), 0.5 * noise.p2_resolution_psi + 1e-9);
+    const double counts = reading.p2 / noise.p2_resolution_psi;
+    EXPECT_EQ(counts, std::round(counts));
+    EXPECT_NEAR(reading.motor_angle, -2608 * noise.motor_angle_resolution_rad, 1e-12);  // 2607.6
+    EXPECT_EQ(reading.arm_speed, 0.25);
+  }
 }
 
 }  // namespace

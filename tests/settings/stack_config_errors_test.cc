@@ -250,6 +250,8 @@ const std::vector<Malformed>& Table() {
       {With("[noise]\np1_psi = -1\n"),
        "stack.toml:16: ", "noise.p1_psi: found -1, allowed a finite number of at least 0"},
       {With("[noise]\narm_speed_rad_s = true\n"), "stack.toml:16: ", "noise.arm_speed_rad_s: found true"},
+      {With("[noise]\np2_resolution_psi = -1\n"),
+       "stack.toml:16: ", "noise.p2_resolution_psi: found -1, allowed a finite number of at least 0"},
       {With("[noise]\nseed = -1\n"),
        "stack.toml:16: ", "noise.seed: found -1, allowed a whole number of at least 0"},
       {With("[noise]\nseed = 1.5\n"), "stack.toml:16: ", "noise.seed: found 1.5"},

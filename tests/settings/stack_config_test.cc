@@ -95,6 +95,12 @@ motor_angle_rad = 3
 motor_speed_rad_s = 4
 arm_angle_rad = 5
 arm_speed_rad_s = 6
+p1_resolution_psi = 0.1
+p2_resolution_psi = 0.2
+motor_angle_resolution_rad = 0.3
+motor_speed_resolution_rad_s = 0.4
+arm_angle_resolution_rad = 0.5
+arm_speed_resolution_rad_s = 0.6
 seed = 7
 [[process]]
 program = "hydro-driver"
@@ -158,6 +164,12 @@ TEST(StackConfigTest, ReadsEveryKey) {
   EXPECT_EQ(config.noise.motor_speed_rad_s, 4);
   EXPECT_EQ(config.noise.arm_angle_rad, 5);
   EXPECT_EQ(config.noise.arm_speed_rad_s, 6);
+  EXPECT_EQ(config.noise.p1_resolution_psi, 0.1);
+  EXPECT_EQ(config.noise.p2_resolution_psi, 0.2);
+  EXPECT_EQ(config.noise.motor_angle_resolution_rad, 0.3);
+  EXPECT_EQ(config.noise.motor_speed_resolution_rad_s, 0.4);
+  EXPECT_EQ(config.noise.arm_angle_resolution_rad, 0.5);
+  EXPECT_EQ(config.noise.arm_speed_resolution_rad_s, 0.6);
   EXPECT_EQ(config.seed, 7);
   ASSERT_EQ(config.processes.size(), 2u);
   EXPECT_EQ(config.processes[0].program, "hydro-driver");
