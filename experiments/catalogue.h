@@ -1,0 +1,12 @@
+// The experiments, each a function. Experiments() lists those that there are, with their titles.
+#pragma once
+
+#include "experiments/experiment.h"
+
+namespace hydro {
+
+// In the order of the paper.
+ExperimentResult RunFig2(const ExperimentOptions& options);  // stick_slip.cc
+ExperimentResult RunFig3(const ExperimentOptions& options);  // open_loop_step.cc
+
+}  // namespace hydro
