@@ -29,15 +29,18 @@ struct ActuatorOptions {
   double relative_tolerance = 1e-8;
 };
 
-// What the sensors would read without noise. Units of the model.
-struct Measurement {
-  double motor_angle = 0;
-  double motor_speed = 0;
-  double arm_angle = 0;
-  double arm_speed = 0;
-  double p1 = 0;
-  double p2 = 0;
+// What the sensors would read without noise. Units of the model. T is double, or a scalar that carries
+// derivatives.
+template <class T>
+struct MeasurementOf {
+  T motor_angle{};
+  T motor_speed{};
+  T arm_angle{};
+  T arm_speed{};
+  T p1{};
+  T p2{};
 };
+using Measurement = MeasurementOf<double>;
 
 class Actuator {
  public:

@@ -28,6 +28,35 @@ void CheckBounds(const ParameterInfo& info, double value, const std::string& own
                    (std::isfinite(info.max) ? " to " + Number(info.max) : ""));
 }
 
+template <class T>
+MeasurementOf<T> ReadSensors(const EquationData& m, double time, const T* state) {
+  MeasurementOf<T> measured;
+  measured.motor_angle = state[kMotorAngle];
+  measured.motor_speed = state[kMotorSpeed];
+  measured.p1 = state[kP1];
+  measured.p2 = state[kP2];
+  if (m.shaft == Shaft::kFree) {
+    measured.arm_angle = state[kArmAngle];
+    measured.arm_speed = state[kArmSpeed];
+  } else if (m.shaft == Shaft::kDriven) {
+    measured.arm_angle = T(m.motion->Value(time));
+    measured.arm_speed = T(m.motion->Rate(time));
+  } else {
+    measured.arm_angle = T(m.arm_angle);
+  }
+  for (const auto& effect : m.effects) effect->Sense(state, &measured);
+  return measured;
+}
+
+// Not inlined: once for all that asks for derivatives.
+[[gnu::noinline]] void RatesWithDerivatives(const EquationData& m, double time, const Jet& voltage,
+                                            const Mode& mode, const Jet* state, bool voltage_acts,
+                                            Jet* rate) {
+  Terms<Jet> x;
+  x.voltage_acts = voltage_acts;
+  EvaluateTerms<Form::kGeneral>(m, time, voltage, mode, state, rate, x);
+}
+
 }  // namespace
 
 const CatalogueEntry* FindCatalogueEntry(const std::string& id);
@@ -142,17 +171,22 @@ void Equations::Jacobian(double time, double voltage, const Mode& mode, const do
   const int n = data_.states;
   Jet y[kMaxStates];
   Jet rate[kMaxStates];
-  Terms<Jet> x;
   for (int i = 0; i < n; ++i) y[i] = Jet(state[i]);
   for (int first = 0; first < n; first += kJetWidth) {
     const int last = std::min(n, first + kJetWidth);
     for (int j = first; j < last; ++j) y[j].v[j - first] = 1;
-    EvaluateTerms<Form::kGeneral>(data_, time, voltage, mode, y, rate, x);
+    RatesWithDerivatives(data_, time, Jet(voltage), mode, y, false, rate);
     for (int j = first; j < last; ++j) {
       for (int i = 0; i < n; ++i) jacobian[i + j * n] = rate[i].v[j - first];
       y[j].v[j - first] = 0;
     }
   }
+}
+
+void Equations::Differentiate(double time, const Jet& voltage, const Mode& mode, const Jet* state, Jet* rate,
+                              MeasurementOf<Jet>* measured) const {
+  RatesWithDerivatives(data_, time, voltage, mode, state, true, rate);
+  *measured = ReadSensors(data_, time, state);
 }
 
 void Equations::Cross(int which, double time, double voltage, double* state, Mode* mode) const {
@@ -209,22 +243,7 @@ Power Equations::PowerBalance(double time, double voltage, const Mode& mode, con
 }
 
 Measurement Equations::Measure(double time, const double* state) const {
-  Measurement measured;
-  measured.motor_angle = state[kMotorAngle];
-  measured.motor_speed = state[kMotorSpeed];
-  measured.p1 = state[kP1];
-  measured.p2 = state[kP2];
-  if (data_.shaft == Shaft::kFree) {
-    measured.arm_angle = state[kArmAngle];
-    measured.arm_speed = state[kArmSpeed];
-  } else if (data_.shaft == Shaft::kDriven) {
-    measured.arm_angle = data_.motion->Value(time);
-    measured.arm_speed = data_.motion->Rate(time);
-  } else {
-    measured.arm_angle = data_.arm_angle;
-  }
-  for (const auto& effect : data_.effects) effect->Sense(state, &measured);
-  return measured;
+  return ReadSensors(data_, time, state);
 }
 
 void Equations::CheckVolumes(double arm_angle) const {

@@ -65,6 +65,11 @@ class Equations {
   // d rate_i/d state_j at jacobian[i + j * states()], exact (automatic derivatives).
   void Jacobian(double time, double voltage, const Mode& mode, const double* state, double* jacobian) const;
 
+  // Rates and Measure with the derivatives along kJetWidth directions that `voltage` and `state` carry; what
+  // Linearise is made of. The voltage is the one that acts: amp.delay passes it on at once.
+  void Differentiate(double time, const Jet& voltage, const Mode& mode, const Jet* state, Jet* rate,
+                     MeasurementOf<Jet>* measured) const;
+
   // Changes switch `which`, whose margin has reached 0, and puts the state exactly on the boundary.
   void Cross(int which, double time, double voltage, double* state, Mode* mode) const;
 

@@ -14,7 +14,7 @@ namespace hydro {
 enum class Form { kPlainClamped, kPlainFree, kGeneral };
 
 template <Form kForm, class T>
-[[gnu::always_inline]] inline void EvaluateTerms(const EquationData& m, double time, double voltage,
+[[gnu::always_inline]] inline void EvaluateTerms(const EquationData& m, double time, T voltage,
                                                  const Mode& mode, const T* y, T* rate, Terms<T>& x) {
   using std::cos;
   constexpr bool kGeneralForm = kForm == Form::kGeneral;
@@ -40,7 +40,7 @@ template <Form kForm, class T>
     x.arm_speed = T(0.0);
   }
 
-  x.torque = T(std::clamp(p.k_1 * voltage, -p.T_pmax, p.T_pmax));  // (1)
+  x.torque = LimitedTorque(p, voltage);  // (1)
   x.D = T(p.D);
   x.b = T(p.b);
   x.T_s = T(p.T_s);

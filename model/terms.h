@@ -1,6 +1,8 @@
 // The quantities of eqs. (1) to (15) at one instant, by name: what effects read and change.
 #pragma once
 
+#include <algorithm>
+
 #include "model/description.h"
 #include "model/mode.h"
 
@@ -25,12 +27,14 @@ struct Terms {
   bool arm_free = false;  // the shaft is neither clamped nor driven
   const Parameters* parameters = nullptr;
   const T* state = nullptr;  // the whole state vector; an effect finds its own states from first_state() on
+  bool voltage_acts =
+      false;  // `voltage` is the one that acts now, whatever an effect remembers of earlier ones
   T motor_angle, motor_speed;
   T arm_angle, arm_speed;
   T p1, p2;  // at the actuator, where the transducers and the one-way valves are
 
   // Properties, from the base parameters; effects change them in SetProperties.
-  double voltage = 0;  // V, held; what the amplifier acts on
+  T voltage{};         // V, held; what the amplifier acts on
   T torque;            // T_p, eq. (1) with |T_p| <= T_pmax
   T D, b, T_s, f;      // eqs. (3), (4)
   T beta_1, beta_2;    // eq. (5)
@@ -53,5 +57,11 @@ struct Terms {
   // The result for the switches: how p1 and p2 would move with their valve closed.
   T free_rate_1, free_rate_2;
 };
+
+// T_p, eq. (1) with |T_p| <= T_pmax.
+template <class T>
+[[gnu::always_inline]] inline T LimitedTorque(const Parameters& p, const T& voltage) {
+  return std::clamp<T>(p.k_1 * voltage, T(-p.T_pmax), T(p.T_pmax));
+}
 
 }  // namespace hydro

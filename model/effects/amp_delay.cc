@@ -17,10 +17,9 @@ class Delay : public EffectOf<Delay> {
 
   template <class T>
   void OwnProperties(Terms<T>& x) const {
-    const Parameters& p = *x.parameters;
-    x.voltage = voltage_;
-    const double torque = p.k_1 * voltage_;
-    x.torque = T(torque > p.T_pmax ? p.T_pmax : torque < -p.T_pmax ? -p.T_pmax : torque);
+    if (x.voltage_acts) return;
+    x.voltage = T(voltage_);
+    x.torque = LimitedTorque(*x.parameters, x.voltage);
   }
 
   void Command(double time, double voltage) override {

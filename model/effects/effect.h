@@ -68,7 +68,8 @@ class Effect {
   virtual void PassStop(double /*time*/) {}
 
   // What the sensors read.
-  virtual void Sense(const double* /*state*/, Measurement*) const {}
+  virtual void Sense(const double* /*state*/, MeasurementOf<double>*) const {}
+  virtual void Sense(const Jet* /*state*/, MeasurementOf<Jet>*) const {}
 
   // Energy that the effect's states store and its equation dissipates, beyond the base terms.
   virtual void AddPower(const Terms<double>& /*x*/, const double* /*rate*/, Power*) const {}
@@ -88,6 +89,8 @@ class EffectOf : public Effect {
   void AddTorquesAndFlows(Terms<Jet>& x) const override { TorquesAndFlows(x); }
   void AddStates(Terms<double>& x, double* rate) const override { States(x, rate); }
   void AddStates(Terms<Jet>& x, Jet* rate) const override { States(x, rate); }
+  void Sense(const double* state, MeasurementOf<double>* measured) const override { Read(state, measured); }
+  void Sense(const Jet* state, MeasurementOf<Jet>* measured) const override { Read(state, measured); }
 
  private:
   const E& self() const { return static_cast<const E&>(*this); }
@@ -102,6 +105,10 @@ class EffectOf : public Effect {
   template <class T>
   void States(Terms<T>& x, T* rate) const {
     if constexpr (requires { self().OwnStates(x, rate); }) self().OwnStates(x, rate);
+  }
+  template <class T>
+  void Read(const T* state, MeasurementOf<T>* measured) const {
+    if constexpr (requires { self().OwnSense(state, measured); }) self().OwnSense(state, measured);
   }
 };
 

@@ -1,15 +1,18 @@
 // sensor.pressure_gain: the measured pressures are scaled by 1 + gain. The equations do not change.
+#include <ceres/jet.h>
+
 #include "model/effects/effect.h"
 
 namespace hydro {
 
 namespace {
 
-class PressureGain : public Effect {
+class PressureGain : public EffectOf<PressureGain> {
  public:
   explicit PressureGain(double gain) : gain_(gain) {}
 
-  void Sense(const double* /*state*/, Measurement* measured) const override {
+  template <class T>
+  void OwnSense(const T* /*state*/, MeasurementOf<T>* measured) const {
     measured->p1 *= 1 + gain_;
     measured->p2 *= 1 + gain_;
   }

@@ -1,15 +1,18 @@
 // sensor.pressure_offset: the measured p1, p2 are shifted. The equations do not change.
+#include <ceres/jet.h>
+
 #include "model/effects/effect.h"
 
 namespace hydro {
 
 namespace {
 
-class PressureOffset : public Effect {
+class PressureOffset : public EffectOf<PressureOffset> {
  public:
   PressureOffset(double p1, double p2) : p1_(p1), p2_(p2) {}
 
-  void Sense(const double* /*state*/, Measurement* measured) const override {
+  template <class T>
+  void OwnSense(const T* /*state*/, MeasurementOf<T>* measured) const {
     measured->p1 += p1_;
     measured->p2 += p2_;
   }

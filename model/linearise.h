@@ -1,0 +1,35 @@
+// The model near one operating point, as matrices: for poles, frequency responses and control design.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "model/equations.h"
+
+namespace hydro {
+
+// The model near one operating point in one mode, with exact derivatives:
+//   d state/dt = rate + A (x - x0) + B (u - u0),  y = output + C (x - x0) + D (u - u0)
+// It holds as long as no switch changes. States are those of Equations, those of effects included; a switch
+// that holds a state (a pump that sticks, an open valve) leaves its row of A and B at 0.
+struct LinearModel {
+  int states = 0, inputs = 0, outputs = 0;
+  std::vector<std::string> state_names, input_names, output_names;
+  std::vector<double> A, B, C, D;  // by columns: A[i + j * states], B[i], C[i + j * outputs], D[i]
+  std::vector<double> rate;        // d state/dt at the operating point
+  std::vector<double> output;      // what the sensors read there
+};
+
+// The input is the voltage (V); the outputs are what the sensors read, as in Measurement: motor_angle,
+// motor_speed, arm_angle, arm_speed, p1, p2, with the errors that effects give the sensors.
+//
+// A equals Equations::Jacobian. B is 0 where the amplifier's limit holds the torque, |k_1 voltage| > T_pmax
+// (with amp.lag: where its switch says so). No sensor reads the voltage, so D is 0.
+//
+// With amp.delay the input is the voltage that acts, v(t - delay), and `voltage` has been held for longer
+// than the delay: what lies behind the delay. As a transfer function, the whole is C (s - A)^-1 B e^(-s
+// delay).
+LinearModel Linearise(const Equations& equations, double time, double voltage, const Mode& mode,
+                      const double* state);
+
+}  // namespace hydro
