@@ -7,18 +7,9 @@
 
 #include "logger/info.h"
 #include "logger/run_log.h"
+#include "logger/step_response.h"
 
 namespace hydro {
-
-// The answer to one step of the reference, until the next step or the end of the run.
-struct StepResponse {
-  double time_s = 0;
-  double from_rad = 0;  // reference before and after
-  double to_rad = 0;
-  double overshoot_percent = 0;           // of the step, 0 when the arm never went beyond
-  std::optional<double> settling_time_s;  // until the error stays within 2 % of the step; none: it does not
-  double final_error_rad = 0;             // arm minus reference, the mean of the last 0.1 s
-};
 
 struct Tracking {
   bool has_reference = false;  // the log has arm-angle references and measured arm angles

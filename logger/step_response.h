@@ -1,0 +1,28 @@
+// How an arm answers one step of its reference: overshoot, settling, error that remains.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+namespace hydro {
+
+// The answer to one step of the reference, until the next step or the end of the run.
+struct StepResponse {
+  double time_s = 0;
+  double from_rad = 0;  // reference before and after
+  double to_rad = 0;
+  double overshoot_percent = 0;           // of the step, 0 when the arm never went beyond
+  std::optional<double> settling_time_s;  // until the error stays within 2 % of the step; none: it does not
+  double final_error_rad = 0;             // arm minus reference, the mean of the last 0.1 s
+};
+
+// Share of the step within which a response counts as settled.
+inline constexpr double kSettlingBand = 0.02;
+
+// Of the samples [begin, end) of `times` (s, increasing) and `angles` (rad), the first at the step, which
+// went from `from` to `to`.
+StepResponse MeasureStep(const std::vector<double>& times, const std::vector<double>& angles, size_t begin,
+                         size_t end, double from, double to);
+
+}  // namespace hydro
