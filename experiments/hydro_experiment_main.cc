@@ -1,11 +1,55 @@
 // hydro-experiment NAME: the paper's experiments and figures.
+#include <cstdio>
+#include <filesystem>
+
 #include "experiments/experiment.h"
+#include "experiments/run_experiments.h"
 #include "settings/command_line.h"
+#include "settings/input_error.h"
+
+namespace {
+
+int List() {
+  for (const hydro::Experiment& experiment : hydro::Experiments()) {
+    std::printf("%-10s %s\n", experiment.name.c_str(), experiment.title.c_str());
+  }
+  std::printf("%-10s %s\n", "all", "all of them, and a report, index.html");
+  return 0;
+}
+
+int Run(hydro::ExperimentRequest& request) {
+  if (request.name.empty())
+    throw hydro::InputError("NAME: found nothing, allowed one of those that --list prints");
+  if (request.jobs < 1 || request.jobs > 64) {
+    throw hydro::InputError("--jobs: found " + std::to_string(request.jobs) + ", allowed 1 to 64");
+  }
+  if (request.real_time) {
+    request.options.run_stack = hydro::SeparateProcesses(
+        std::filesystem::read_symlink("/proc/self/exe").parent_path(), request.folder + "/runs");
+  }
+  return hydro::RunExperiments(hydro::Experiments(), request, stdout, stderr);
+}
+
+}  // namespace
 
 int main(int argc, char** argv) {
-  hydro::CommandLine command_line("hydro-experiment", "The paper's experiments and figures.");
-  std::string name;
-  command_line.AddPositional("NAME", &name, "which");
-  if (const auto exit_code = command_line.Parse(argc, argv)) return *exit_code;
-  return 0;
+  hydro::CommandLine line(
+      "hydro-experiment",
+      "The paper's experiments and figures: NAME.json, NAME.csv and NAME.svg of each; for "
+      "all of them, index.html, too.");
+  hydro::ExperimentRequest request;
+  request.folder = "out/experiments";
+  bool list = false;
+  line.AddPositional("NAME", &request.name, "which one, or all", false);
+  line.AddOption("-o,--out", &request.folder, "DIR where to write (out/experiments)");
+  line.AddOption("--run", &request.options.measured_run,
+                 "FILE a measured run to analyse (friction, leakage)");
+  line.AddOption("--seed", &request.options.seed, "N of every noise (1)");
+  line.AddFlag("--noise", &request.options.noise, "sensors as noisy as the paper's plots");
+  line.AddFlag("--real-time", &request.real_time, "run the stack as separate processes on the wall clock");
+  line.AddOption("--jobs", &request.jobs, "N how many experiments at the same time (2)");
+  line.AddFlag("--si", &request.si, "print figures in SI units");
+  line.AddFlag("--list", &list, "print the names and end");
+  if (const auto code = line.Parse(argc, argv)) return *code;
+  return hydro::RunProgram("hydro-experiment", [&] { return list ? List() : Run(request); });
 }

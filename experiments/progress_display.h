@@ -1,0 +1,46 @@
+// How far a set of experiments is, for whoever watches.
+#pragma once
+
+#include <cstdio>
+#include <mutex>
+#include <string>
+#include <vector>
+
+namespace hydro {
+
+// A bar on a terminal, plain lines in a log. May be told things by several threads.
+class ProgressDisplay {
+ public:
+  // `costs`: of each task, in any unit. Writes to `out`, which stays the caller's.
+  ProgressDisplay(std::FILE* out, bool terminal, std::vector<std::string> names, std::vector<double> costs);
+  // Wipes the bar away.
+  ~ProgressDisplay();
+  ProgressDisplay(const ProgressDisplay&) = delete;
+  ProgressDisplay& operator=(const ProgressDisplay&) = delete;
+
+  void Start(size_t task);
+  // `done`: 0 to 1.
+  void Advance(size_t task, double done);
+  // `failure`: empty when it succeeded.
+  void Finish(size_t task, const std::string& failure);
+
+ private:
+  struct Task {
+    std::string name;
+    double cost = 1;
+    double done = 0;
+    bool runs = false;
+  };
+
+  void Draw();
+  void Wipe();
+
+  std::FILE* out_;
+  bool terminal_;
+  std::mutex mutex_;
+  std::vector<Task> tasks_;
+  int finished_ = 0;
+  std::string drawn_;
+};
+
+}  // namespace hydro

@@ -1,0 +1,153 @@
+#include "experiments/run_experiments.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <atomic>
+#include <exception>
+#include <filesystem>
+#include <numeric>
+#include <thread>
+
+#include "experiments/comparison_text.h"
+#include "experiments/experiment_files.h"
+#include "experiments/progress_display.h"
+#include "experiments/report.h"
+#include "logger/new_file.h"
+#include "settings/did_you_mean.h"
+#include "settings/input_error.h"
+
+namespace hydro {
+namespace {
+
+void CreateFolder(const std::string& folder) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (!error && !std::filesystem::is_directory(folder))
+    error = std::make_error_code(std::errc::not_a_directory);
+  if (!error && access(folder.c_str(), W_OK | X_OK) != 0)
+    error = std::error_code(errno, std::generic_category());
+  if (error) {
+    throw InputError("--out: the folder '" + folder + "' cannot be used: " + error.message() +
+                     "; a folder that can be created and written to is needed");
+  }
+}
+
+// How much of an experiment is done when its pictures remain to be drawn.
+constexpr double kRunShare = 0.9;
+
+// `failure` keeps the exception, for the caller to decide what it means.
+ReportEntry RunOne(const Experiment& experiment, const ExperimentRequest& request,
+                   const std::function<void(double)>& progress, std::exception_ptr& failure) {
+  ReportEntry entry{experiment, std::nullopt, {}, ""};
+  try {
+    ExperimentOptions options = request.options;
+    options.progress = [&progress](double done) { progress(kRunShare * done); };
+    ExperimentResult result = experiment.run(options);
+    progress(kRunShare);
+    entry.pictures = RenderPictures(experiment.name, result.pictures);
+    WriteExperimentFiles(request.folder, experiment.name,
+                         ExperimentJson(experiment, result, request.options, request.real_time), result.table,
+                         entry.pictures);
+    entry.result = std::move(result);
+  } catch (const std::exception& error) {
+    failure = std::current_exception();
+    entry.failure = error.what();
+    entry.pictures.clear();
+  }
+  return entry;
+}
+
+void Rethrow(const std::exception_ptr& failure) {
+  if (failure) std::rethrow_exception(failure);
+}
+
+}  // namespace
+
+std::vector<Experiment> ChooseExperiments(const std::vector<Experiment>& all,
+                                          const ExperimentRequest& request) {
+  std::vector<std::string> names;
+  std::string list;
+  std::string measured;
+  for (const Experiment& experiment : all) {
+    names.push_back(experiment.name);
+    list += experiment.name + ", ";
+    if (experiment.takes_measured_run) measured += (measured.empty() ? "" : ", ") + experiment.name;
+  }
+  names.push_back("all");
+  const auto found = std::find_if(
+      all.begin(), all.end(), [&](const Experiment& experiment) { return experiment.name == request.name; });
+  if (found == all.end() && request.name != "all") {
+    throw InputError("NAME: found '" + request.name + "', allowed " + list + "all" +
+                     DidYouMean(request.name, names));
+  }
+  if (!request.options.measured_run.empty() && (found == all.end() || !found->takes_measured_run)) {
+    throw InputError("--run: found for '" + request.name + "', allowed for " +
+                     (measured.empty() ? "none" : measured));
+  }
+  if (found != all.end()) return {*found};
+  return all;
+}
+
+int RunExperiments(const std::vector<Experiment>& all, const ExperimentRequest& request, std::FILE* out,
+                   std::FILE* errors) {
+  const std::vector<Experiment> chosen = ChooseExperiments(all, request);
+  CreateFolder(request.folder);
+
+  std::vector<std::string> names;
+  std::vector<double> costs;
+  for (const Experiment& experiment : chosen) {
+    names.push_back(experiment.name);
+    costs.push_back(experiment.cost);
+  }
+  std::vector<ReportEntry> entries(chosen.size());
+  std::vector<std::exception_ptr> failures(chosen.size());
+  {
+    ProgressDisplay display(errors, isatty(fileno(errors)) == 1, names, costs);
+    // Longest first, so that none is left alone at the end.
+    std::vector<size_t> order(chosen.size());
+    std::iota(order.begin(), order.end(), size_t{0});
+    std::stable_sort(order.begin(), order.end(), [&](size_t a, size_t b) { return costs[a] > costs[b]; });
+    std::atomic<size_t> next{0};
+    const auto work = [&] {
+      for (size_t i = 0; (i = next++) < order.size();) {
+        const size_t task = order[i];
+        display.Start(task);
+        entries[task] = RunOne(
+            chosen[task], request, [&](double done) { display.Advance(task, done); }, failures[task]);
+        display.Finish(task, entries[task].failure);
+      }
+    };
+    std::vector<std::jthread> threads;
+    const size_t count = std::min(chosen.size(), static_cast<size_t>(std::max(1, request.jobs)));
+    for (size_t i = 1; i < count; ++i) threads.emplace_back(work);
+    work();
+  }
+
+  if (request.name != "all") {
+    Rethrow(failures.front());
+  } else {
+    WriteWholeFile(request.folder + "/index.html", ReportHtml(entries, request));
+  }
+  for (const ReportEntry& entry : entries) {
+    if (!entry.result) continue;
+    std::fprintf(out, "%s\n", SummaryText(entry.experiment, *entry.result, request.si).c_str());
+  }
+  int exit_code = 0;
+  for (const ReportEntry& entry : entries) {
+    if (entry.failure.empty()) continue;
+    std::fprintf(errors, "hydro-experiment: %s failed: %s\n", entry.experiment.name.c_str(),
+                 entry.failure.c_str());
+    exit_code = 1;
+  }
+  if (request.name == "all") {
+    for (const int number : MissingFindings(entries)) {
+      std::fprintf(errors, "hydro-experiment: no experiment gave evidence for finding %d\n", number);
+      exit_code = 1;
+    }
+    std::fprintf(out, "the report is %s/index.html\n", request.folder.c_str());
+  }
+  return exit_code;
+}
+
+}  // namespace hydro

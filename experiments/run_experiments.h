@@ -1,0 +1,32 @@
+// What hydro-experiment does: runs experiments, writes their files, tells the results.
+#pragma once
+
+#include <cstdio>
+#include <string>
+#include <vector>
+
+#include "experiments/experiment.h"
+
+namespace hydro {
+
+struct ExperimentRequest {
+  std::string name;    // of an experiment, or "all"
+  std::string folder;  // is created
+  int jobs = 2;        // experiments at the same time
+  bool si = false;
+  bool real_time = false;  // for the record; options.run_stack says how
+  ExperimentOptions options;
+};
+
+// The experiments asked for. Throws InputError: no such name, or a measured run for one that takes none.
+std::vector<Experiment> ChooseExperiments(const std::vector<Experiment>& all,
+                                          const ExperimentRequest& request);
+
+// Runs them, writes NAME.json, .csv, .svg for each and, for "all", index.html; then prints what came out, in
+// the order of the report. Returns the exit code: 1 when one failed (the others are still run and the report
+// names it) or, for "all", when a finding of kFindings has no evidence. Throws InputError when the folder
+// cannot be created or written to, or, for a single experiment, when the measured run cannot be used.
+int RunExperiments(const std::vector<Experiment>& all, const ExperimentRequest& request, std::FILE* out,
+                   std::FILE* errors);
+
+}  // namespace hydro
