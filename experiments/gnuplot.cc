@@ -6,6 +6,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdlib>
 #include <stdexcept>
@@ -80,6 +81,8 @@ std::vector<std::string> Environment() {
   return variables;
 }
 
+bool IsBlank(char c) { return c == ' ' || c == '\n' || c == '\t'; }
+
 }  // namespace
 
 std::string RunGnuplot(const std::string& script) {
@@ -111,7 +114,14 @@ std::string RunGnuplot(const std::string& script) {
   while (waitpid(pid, &status, 0) < 0) {
     if (errno != EINTR) throw std::system_error(errno, std::generic_category(), "waiting for gnuplot");
   }
-  if (status != 0) throw std::runtime_error("gnuplot failed: " + errors.Text());
+  if (status != 0) {
+    std::string complaint = errors.Text();  // several lines: the command, a mark below it, what is wrong
+    complaint.erase(std::unique(complaint.begin(), complaint.end(),
+                                [](char a, char b) { return IsBlank(a) && IsBlank(b); }),
+                    complaint.end());
+    std::replace(complaint.begin(), complaint.end(), '\n', ' ');
+    throw std::runtime_error("gnuplot failed: " + complaint);
+  }
   return output.Text();
 }
 

@@ -110,6 +110,8 @@ std::string WithCaption(const std::string& drawing, const std::string& caption, 
 
 std::string RenderSvg(const Figure& figure, const std::string& name) {
   CheckName(name);
+  std::string id = name;  // gnuplot's names have no hyphens
+  std::replace(id.begin(), id.end(), '-', '_');
   if (!figure.drawing.empty()) return WithCaption(figure.drawing, figure.caption, name);
   if (figure.panels.empty()) throw std::invalid_argument(name + ": a figure without panels");
 
@@ -131,16 +133,16 @@ std::string RenderSvg(const Figure& figure, const std::string& name) {
 
   std::ostringstream script;
   script << "set encoding utf8\nset minussign\nset terminal svg size " << kWidth << ',' << height
-         << " fixed enhanced background \"#ffffff\" font \"Helvetica,12\" name \"" << name
+         << " fixed enhanced background \"#ffffff\" font \"Helvetica,12\" name \"" << id
          << "\" linewidth 1 butt\n";
   for (size_t i = 0; i < drawings.size(); ++i) drawings[i].WriteData(script, i);
   script << "set multiplot\n";
   for (size_t i = 0; i < drawings.size(); ++i) drawings[i].WritePlot(script, i, kWidth, height);
   script << "unset multiplot\n";
 
-  std::string svg = Tidy(RunGnuplot(script.str()), name);
+  std::string svg = Tidy(RunGnuplot(script.str()), id);
   std::string overlay;
-  for (PanelDrawing& drawing : drawings) overlay += drawing.Texts(name);
+  for (PanelDrawing& drawing : drawings) overlay += drawing.Texts(id);
   overlay += Caption(caption, kRight, caption_top);
   const size_t end = svg.rfind("</svg>");
   if (end == std::string::npos) throw std::runtime_error(name + ": gnuplot drew nothing");

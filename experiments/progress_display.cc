@@ -30,16 +30,17 @@ void ProgressDisplay::Advance(size_t task, double done) {
   if (terminal_) Draw();
 }
 
-void ProgressDisplay::Finish(size_t task, const std::string& failure) {
+void ProgressDisplay::Finish(size_t task, bool failed) {
   const std::lock_guard lock(mutex_);
   Task& ended = tasks_[task];
   ended.runs = false;
   ended.done = 1;
   ++finished_;
   Wipe();
-  if (!terminal_ || !failure.empty()) {
-    std::fprintf(out_, "%s %s (%d of %zu)\n", ended.name.c_str(),
-                 failure.empty() ? "done" : ("failed: " + failure).c_str(), finished_, tasks_.size());
+  // One alone speaks for itself: what failed is told by whoever started it.
+  if (tasks_.size() > 1 && (!terminal_ || failed)) {
+    std::fprintf(out_, "%s %s (%d of %zu)\n", ended.name.c_str(), failed ? "failed" : "done", finished_,
+                 tasks_.size());
     std::fflush(out_);
   }
   if (terminal_) Draw();

@@ -21,8 +21,7 @@ class ProgressDisplay {
   void Start(size_t task);
   // `done`: 0 to 1.
   void Advance(size_t task, double done);
-  // `failure`: empty when it succeeded.
-  void Finish(size_t task, const std::string& failure);
+  void Finish(size_t task, bool failed);
 
  private:
   struct Task {

@@ -115,7 +115,7 @@ int RunExperiments(const std::vector<Experiment>& all, const ExperimentRequest& 
         display.Start(task);
         entries[task] = RunOne(
             chosen[task], request, [&](double done) { display.Advance(task, done); }, failures[task]);
-        display.Finish(task, entries[task].failure);
+        display.Finish(task, !entries[task].failure.empty());
       }
     };
     std::vector<std::jthread> threads;
@@ -141,8 +141,12 @@ int RunExperiments(const std::vector<Experiment>& all, const ExperimentRequest& 
     exit_code = 1;
   }
   if (request.name == "all") {
+    std::string missing;
     for (const int number : MissingFindings(entries)) {
-      std::fprintf(errors, "hydro-experiment: no experiment gave evidence for finding %d\n", number);
+      missing += (missing.empty() ? "" : ", ") + std::to_string(number);
+    }
+    if (!missing.empty()) {
+      std::fprintf(errors, "hydro-experiment: no experiment gave evidence for finding %s\n", missing.c_str());
       exit_code = 1;
     }
     std::fprintf(out, "the report is %s/index.html\n", request.folder.c_str());

@@ -21,7 +21,7 @@
 #include "experiments/experiment_files.h"
 #include "experiments/stack_run.h"
 #include "logger/run_table.h"
-#include "settings/input_error.h"
+#include "settings/stack_config.h"
 
 namespace hydro {
 namespace {
@@ -104,6 +104,8 @@ StackRunner SeparateProcesses(const std::string& program_folder, const std::stri
   auto one_at_a_time = std::make_shared<std::mutex>();
   return [=](const StackSetup& setup) {
     const std::lock_guard lock(*one_at_a_time);
+    const StackConfig parsed =
+        ParseStackConfig(setup.config, setup.name, setup.model, setup.name + " (model)");
     std::filesystem::create_directories(folder);
     const std::string stem = folder + "/" + setup.name;
     const std::string config = stem + ".toml";
@@ -112,10 +114,20 @@ StackRunner SeparateProcesses(const std::string& program_folder, const std::stri
     WriteWholeFile(config, setup.config);
     WriteWholeFile(folder + "/" + model, setup.model);
     const ReservedPort port;
-    const int exit_code = RunToItsEnd(
-        {program_folder + "/hydro-launch", config, "--time", "realtime", "--log", log, "--set",
-         "model.file=" + model, "--set", "bus.url=" + port.url(), "--set", "plant.command_delay_ticks=1"},
-        stem + ".txt");
+    std::vector<std::string> command = {program_folder + "/hydro-launch",
+                                        config,
+                                        "--time",
+                                        "realtime",
+                                        "--log",
+                                        log,
+                                        "--set",
+                                        "model.file=" + model,
+                                        "--set",
+                                        "bus.url=" + port.url()};
+    if (parsed.plant.command_delay_ticks == 0) {  // an answer cannot act before it was computed
+      command.insert(command.end(), {"--set", "plant.command_delay_ticks=1"});
+    }
+    const int exit_code = RunToItsEnd(command, stem + ".txt");
     if (exit_code != 0) {
       throw std::runtime_error(setup.name + ": hydro-launch ended with exit code " +
                                std::to_string(exit_code) + ": " + LastLines(stem + ".txt", 3));
