@@ -24,7 +24,8 @@ struct LinearModel {
 // motor_speed, arm_angle, arm_speed, p1, p2, with the errors that effects give the sensors.
 //
 // A equals Equations::Jacobian. B is 0 where the amplifier's limit holds the torque, |k_1 voltage| > T_pmax
-// (with amp.lag: where its switch says so). No sensor reads the voltage, so D is 0.
+// (with amp.lag the voltage always moves the lag's state, and the limit cuts the pump off from that). At the
+// limit itself it is that of the inside. No sensor reads the voltage, so D is 0.
 //
 // With amp.delay the input is the voltage that acts, v(t - delay), and `voltage` has been held for longer
 // than the delay: what lies behind the delay. As a transfer function, the whole is C (s - A)^-1 B e^(-s

@@ -1,0 +1,345 @@
+// The linear model near an operating point: against difference quotients in every mode, closed forms, and the
+// model in motion.
+#include "model/linearise.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+#include <cmath>
+#include <complex>
+#include <map>
+
+#include "tests/model/model_case.h"
+#include "trajectory/trajectory.h"
+
+namespace hydro::testing {
+namespace {
+
+using Matrix = Eigen::MatrixXd;
+using Complex = std::complex<double>;
+
+Matrix Rows(const std::vector<double>& values, int rows) {
+  return Eigen::Map<const Matrix>(values.data(), rows, static_cast<int>(values.size()) / rows);
+}
+
+enum Output { kAngleOut, kSpeedOut, kArmAngleOut, kArmSpeedOut, kP1Out, kP2Out, kOutputs };
+
+std::vector<double> Outputs(const Measurement& m) {
+  return {m.motor_angle, m.motor_speed, m.arm_angle, m.arm_speed, m.p1, m.p2};
+}
+
+Mode Slip(int pump = 1, bool valve_1_open = false, bool valve_2_open = false) {
+  Mode mode;
+  mode.pump = static_cast<int8_t>(pump);
+  mode.valve_1 = valve_1_open;
+  mode.valve_2 = valve_2_open;
+  return mode;
+}
+
+// A point away from every symmetry: pressures above p_3, the pump turning as the mode says, all else moving.
+std::vector<double> Somewhere(const Equations& equations, const Mode& mode) {
+  std::vector<double> state(equations.states());
+  Mode at_rest;
+  equations.Start(300, state.data(), &at_rest);
+  for (int i = 0; i < equations.states(); ++i) state[i] += equations.scales()[i] * (1 + 0.3 * i);
+  state[kMotorSpeed] = mode.pump * 2.5;
+  return state;
+}
+
+std::vector<double> Rates(const Equations& equations, double voltage, const Mode& mode,
+                          const std::vector<double>& state) {
+  std::vector<double> rate(equations.states());
+  equations.Rates(0.03, voltage, mode, state.data(), rate.data());
+  return rate;
+}
+
+// Compares all four matrices at one point with central differences. Each error counts against the size of its
+// row when every input moves by its scale: differences see no less.
+void ExpectDifferenceQuotients(const Equations& equations, double voltage, const Mode& mode) {
+  const int n = equations.states();
+  const std::vector<double> state = Somewhere(equations, mode);
+  const LinearModel model = Linearise(equations, 0.03, voltage, mode, state.data());
+  ASSERT_EQ(model.states, n);
+  ASSERT_EQ(model.inputs, 1);
+  ASSERT_EQ(model.outputs, kOutputs);
+  EXPECT_EQ(model.state_names, equations.StateNames());
+  const std::vector<double> rate = Rates(equations, voltage, mode, state);
+  const std::vector<double> output = Outputs(equations.Measure(0.03, state.data()));
+
+  Matrix slopes(n + kOutputs, n + 1);
+  slopes << Rows(model.A, n), Rows(model.B, n), Rows(model.C, kOutputs), Rows(model.D, kOutputs);
+  std::vector<double> scale = equations.scales();
+  scale.push_back(1);  // V
+  Eigen::VectorXd size(n + kOutputs);
+  for (int i = 0; i < n + kOutputs; ++i) {
+    size[i] = 1e-12;
+    for (int j = 0; j <= n; ++j) size[i] += std::abs(slopes(i, j)) * scale[j];
+    size[i] += std::abs(i < n ? model.rate[i] : model.output[i - n]);
+  }
+  for (int i = 0; i < n; ++i) EXPECT_NEAR(model.rate[i], rate[i], 1e-13 * size[i]);  // but for rounding
+  EXPECT_EQ(model.output, output);
+  for (int j = 0; j <= n; ++j) {
+    const double h = 1e-3 * scale[j];
+    const auto sides = [&](double by) {
+      std::vector<double> moved = state;
+      if (j < n) moved[j] += by;
+      std::vector<double> values = Rates(equations, voltage + (j < n ? 0 : by), mode, moved);
+      for (const double read : Outputs(equations.Measure(0.03, moved.data()))) values.push_back(read);
+      return values;
+    };
+    const std::vector<double> up = sides(h);
+    const std::vector<double> down = sides(-h);
+    for (int i = 0; i < n + kOutputs; ++i) {
+      EXPECT_NEAR(slopes(i, j) * scale[j], (up[i] - down[i]) / 2e-3, 1e-6 * size[i])
+          << (i < n ? "rate " : "output ") << (i < n ? i : i - n) << " by " << (j < n ? "state " : "voltage ")
+          << j;
+    }
+  }
+}
+
+// Some of each effect of the catalogue but amp.delay, which remembers (tested below).
+const std::map<std::string, EffectDescription>& SomeOfEach() {
+  static const std::map<std::string, EffectDescription> effects = [] {
+    std::map<std::string, EffectDescription> by_id;
+    for (const EffectDescription& effect :
+         std::vector<EffectDescription>{{"actuator.seal_friction", {{"coulomb", 100}, {"viscous", 50}}, {}},
+                                        Lag(2e-3),
+                                        {"fluid.warming", {{"rate", 2}}, {}},
+                                        Wave(300, 0.2, 0.05),
+                                        {"pump.friction_asymmetry", {{"coulomb", 1}, {"viscous", 0.01}}, {}},
+                                        {"pump.pressure_friction", {{"f", 0.001}}, {}},
+                                        {"pump.quadratic_drag", {{"k", 1e-3}}, {}},
+                                        Stribeck(0.5, 3),
+                                        {"sensor.pressure_gain", {{"gain", 0.05}}, {}},
+                                        {"sensor.pressure_offset", {{"p1", 3}, {"p2", -2}}, {}}}) {
+      by_id[effect.id] = effect;
+    }
+    return by_id;
+  }();
+  return effects;
+}
+
+// In every mode of `model`, effects' switches included, with each way to hold the shaft and the bypass shut
+// and open.
+void ExpectDifferenceQuotientsInEveryMode(ModelDescription model) {
+  static const auto motion = MakeSine(0, 0.008, 2, 0, 0);
+  model.parameters.mgl = 562;
+  for (const Shaft shaft : {Shaft::kFree, Shaft::kClamped, Shaft::kDriven}) {
+    for (const bool bypass : {false, true}) {
+      ActuatorOptions options = Held(shaft);
+      options.arm_angle = -0.3;
+      options.motion = motion.get();
+      options.bypass = bypass;
+      const Equations equations(model, options);
+      const bool has_switches = equations.switches() > kFirstEffectSwitch;
+      for (int pump = -1; pump <= 1; ++pump) {
+        for (int valves = 0; valves < 4; ++valves) {
+          Mode mode = Slip(pump, valves & 1, valves >> 1);
+          for (int position = has_switches ? -1 : 0; position <= (has_switches ? 1 : 0); ++position) {
+            mode.effects.fill(static_cast<int8_t>(position));
+            SCOPED_TRACE("shaft " + std::to_string(static_cast<int>(shaft)) + ", bypass " +
+                         std::to_string(bypass) + ", pump " + std::to_string(pump) + ", valves " +
+                         std::to_string(valves) + ", effects' switches " + std::to_string(position));
+            ExpectDifferenceQuotients(equations, 3, mode);
+            ExpectDifferenceQuotients(equations, -30, mode);
+            if (::testing::Test::HasFailure()) return;
+          }
+        }
+      }
+    }
+  }
+}
+
+// Tests that all derivatives equal difference quotients: the paper's equations.
+TEST(Linearise, EqualsDifferenceQuotients) { ExpectDifferenceQuotientsInEveryMode(Table1Model()); }
+
+// Tests the same with each effect that the catalogue has.
+TEST(Linearise, EqualsDifferenceQuotientsWithEachEffect) {
+  for (const EffectInfo& info : EffectCatalogue()) {
+    if (info.id == "amp.delay") continue;
+    SCOPED_TRACE(info.id);
+    ASSERT_TRUE(SomeOfEach().contains(info.id)) << "this test needs a case for it";
+    ExpectDifferenceQuotientsInEveryMode(Table1Model({SomeOfEach().at(info.id)}));
+  }
+}
+
+// Tests the same with all of them at once.
+TEST(Linearise, EqualsDifferenceQuotientsWithAllEffects) {
+  std::vector<EffectDescription> all;
+  for (const auto& [id, effect] : SomeOfEach()) all.push_back(effect);
+  ExpectDifferenceQuotientsInEveryMode(Table1Model(all));
+}
+
+// Tests that A is the Jacobian that the integrators use, to the last bit.
+TEST(Linearise, HasTheJacobianAsA) {
+  const Equations equations(Table1Model({Wave(300, 0.2, 0.05), Lag(2e-3)}), Held(Shaft::kFree));
+  const std::vector<double> state = Somewhere(equations, Slip());
+  std::vector<double> jacobian(equations.states() * equations.states());
+  equations.Jacobian(0, 2, Slip(), state.data(), jacobian.data());
+  EXPECT_EQ(Linearise(equations, 0, 2, Slip(), state.data()).A, jacobian);
+}
+
+// Tests B: k_1/J while the pump slips and the amplifier is within its limit; 0 when the pump sticks or the
+// torque is at its limit.
+TEST(Linearise, VoltageActsWithinTheLimitOnly) {
+  const Equations equations(Table1Model(), Held(Shaft::kFree));
+  const std::vector<double> state = Somewhere(equations, Slip());
+  const std::vector<double> none(6, 0.0);
+  for (const double voltage : {0.0, 9.999, -9.999}) {
+    EXPECT_EQ(Linearise(equations, 0, voltage, Slip(0), state.data()).B, none);
+    const std::vector<double> B = Linearise(equations, 0, voltage, Slip(), state.data()).B;
+    EXPECT_DOUBLE_EQ(B[kMotorSpeed], 4 / 0.03) << voltage;
+    for (const int i : {kMotorAngle, kP1, kP2, kArmAngle, kArmSpeed}) EXPECT_EQ(B[i], 0);
+  }
+  for (const double voltage : {10.001, 100.0, -10.001}) {
+    const LinearModel model = Linearise(equations, 0, voltage, Slip(), state.data());
+    EXPECT_EQ(model.B, none) << voltage;
+    EXPECT_EQ(model.rate, Rates(equations, voltage < 0 ? -10 : 10, Slip(), state));
+  }
+}
+
+// Tests that with amp.lag the voltage acts on the lagged torque, whose limit then cuts it off from the pump.
+TEST(Linearise, VoltageActsThroughTheLag) {
+  const Equations equations(Table1Model({Lag(0.002)}), Held(Shaft::kClamped));
+  const std::vector<double> state = Somewhere(equations, Slip());
+  Mode mode = Slip();
+  for (const int limit : {0, 1}) {
+    mode.effects[0] = static_cast<int8_t>(limit);
+    const LinearModel model = Linearise(equations, 0, 20, mode, state.data());
+    EXPECT_EQ(model.state_names[4], "lagged_torque");
+    EXPECT_EQ(model.B, (std::vector<double>{0, 0, 0, 0, 4 / 0.002}));
+    EXPECT_DOUBLE_EQ(model.A[4 + 4 * 5], -1 / 0.002);
+    EXPECT_DOUBLE_EQ(model.A[kMotorSpeed + 4 * 5], limit == 0 ? 1 / 0.03 : 0);
+  }
+}
+
+// Tests that with amp.delay the linear model is that of a voltage which has been held for longer than the
+// delay, whatever was commanded before: what lies behind the delay.
+TEST(Linearise, TakesADelayedVoltageAsTheOneThatActs) {
+  const EffectDescription delay = {"amp.delay", {{"delay", 0.01}}, {}};
+  const Equations plain(Table1Model(), Held(Shaft::kClamped));
+  const std::vector<double> state = Somewhere(plain, Slip());
+  Equations delayed(Table1Model({delay}), Held(Shaft::kClamped));
+  for (const double voltage : {5.0, 20.0}) {
+    const LinearModel expected = Linearise(plain, 0.03, voltage, Slip(), state.data());
+    const LinearModel found = Linearise(delayed, 0.03, voltage, Slip(), state.data());
+    EXPECT_EQ(found.A, expected.A);
+    EXPECT_EQ(found.B, expected.B);
+    EXPECT_EQ(found.rate, expected.rate);
+    delayed.Command(0, voltage);
+    EXPECT_NE(Rates(delayed, voltage, Slip(), state), expected.rate);  // not yet
+    delayed.PassStop(0.01);
+    EXPECT_EQ(Rates(delayed, voltage, Slip(), state), expected.rate);
+  }
+  // Before a lag, the same: the lag then follows the delayed voltage.
+  const Equations both(Table1Model({delay, Lag(0.002)}), Held(Shaft::kClamped));
+  const std::vector<double> with_lag = Somewhere(both, Slip());
+  EXPECT_DOUBLE_EQ(Linearise(both, 0, 5, Slip(), with_lag.data()).B[4], 4 / 0.002);
+}
+
+// Tests C and the outputs: what the transducers make of the pressures, and an arm that is not a state.
+TEST(Linearise, ReadsTheSensors) {
+  const Equations equations(Table1Model({{"sensor.pressure_gain", {{"gain", 0.05}}, {}},
+                                         {"sensor.pressure_offset", {{"p1", 3}, {"p2", -2}}, {}}}),
+                            Held(Shaft::kClamped));
+  const std::vector<double> state = Somewhere(equations, Slip());
+  const LinearModel model = Linearise(equations, 0, 0, Slip(), state.data());
+  EXPECT_EQ(model.output_names,
+            (std::vector<std::string>{"motor_angle", "motor_speed", "arm_angle", "arm_speed", "p1", "p2"}));
+  Matrix expected = Matrix::Zero(kOutputs, 4);
+  expected(kAngleOut, kMotorAngle) = expected(kSpeedOut, kMotorSpeed) = 1;
+  expected(kP1Out, kP1) = expected(kP2Out, kP2) = 1.05;
+  EXPECT_EQ(Rows(model.C, kOutputs), expected);
+  EXPECT_EQ(model.D, std::vector<double>(kOutputs, 0.0));
+  EXPECT_DOUBLE_EQ(model.output[kP1Out], 1.05 * state[kP1] + 3);
+  EXPECT_DOUBLE_EQ(model.output[kP2Out], 1.05 * state[kP2] - 2);
+}
+
+// The pole of largest imaginary part.
+Complex Oscillation(const LinearModel& model) {
+  Complex found = 0;
+  const Eigen::EigenSolver<Matrix> solver(Rows(model.A, model.states), false);
+  for (const Complex& pole : solver.eigenvalues()) {
+    if (pole.imag() > found.imag()) found = pole;
+  }
+  return found;
+}
+
+// Tests the hydraulic natural frequencies against their closed forms, without losses: clamped with both sides
+// compressing, D sqrt(2 beta/(V_ms J)), and one held at p_3 by its valve, D sqrt(beta/(V_ms J)); with a free
+// arm sqrt(2 beta/V_ms (D^2/J + c k_2/J_a)).
+TEST(Linearise, HasTheHydraulicNaturalFrequencies) {
+  ModelDescription model = Table1Model();
+  Parameters& p = model.parameters;
+  p.c_E = p.c_I = p.b = 0;
+  const std::vector<double> state = {0, 0, 200, 200, 0, 0};
+  const auto frequency = [&](Shaft shaft, bool valve_1_open) {
+    return std::abs(
+        Oscillation(Linearise(Equations(model, Held(shaft)), 0, 0, Slip(1, valve_1_open), state.data())));
+  };
+  EXPECT_NEAR(frequency(Shaft::kClamped, false), p.D * std::sqrt(2 * p.beta / (p.V_ms * p.J)), 1e-9);
+  EXPECT_NEAR(frequency(Shaft::kClamped, false), 18.17, 0.005);
+  EXPECT_NEAR(frequency(Shaft::kClamped, true), p.D * std::sqrt(p.beta / (p.V_ms * p.J)), 1e-9);
+  EXPECT_NEAR(frequency(Shaft::kClamped, true), 12.85, 0.005);
+  EXPECT_NEAR(frequency(Shaft::kFree, false),
+              std::sqrt(2 * p.beta / p.V_ms * (p.D * p.D / p.J + p.c * p.k_2 / p.J_a)), 1e-8);
+  EXPECT_NEAR(frequency(Shaft::kFree, false), 302, 0.5);
+}
+
+// Tests the frequency response from voltage to pressure difference, clamped at mid-stroke, against its closed
+// form: with h = beta/V_ms, k_1 2 D h / ((J s + b)(s + h (2 c_I + c_E)) + 2 D^2 h).
+TEST(Linearise, HasTheClosedFormsFrequencyResponse) {
+  const Equations equations(Table1Model(), Held(Shaft::kClamped));
+  const std::vector<double> state = Somewhere(equations, Slip());
+  const LinearModel model = Linearise(equations, 0, 1, Slip(), state.data());
+  const Parameters p = Table1();
+  const double h = p.beta / p.V_ms;
+  const Matrix C = Rows(model.C, kOutputs);
+  for (const double omega : {0.1, 1.0, 10.0, 18.0, 100.0, 1000.0}) {
+    const Complex s(0, omega);
+    // (j omega - A)(x + j y) = B, as real equations.
+    Matrix whole = Matrix::Zero(8, 8);
+    whole.topLeftCorner(4, 4) = whole.bottomRightCorner(4, 4) = -Rows(model.A, 4);
+    whole.bottomLeftCorner(4, 4) = omega * Matrix::Identity(4, 4);
+    whole.topRightCorner(4, 4) = -omega * Matrix::Identity(4, 4);
+    Eigen::VectorXd input = Eigen::VectorXd::Zero(8);
+    input.head(4) = Rows(model.B, 4);
+    const Eigen::VectorXd x = whole.partialPivLu().solve(input);
+    const Eigen::RowVectorXd difference = C.row(kP2Out) - C.row(kP1Out);
+    const Complex found(difference * x.head(4), difference * x.tail(4));
+    const Complex expected =
+        p.k_1 * 2 * p.D * h / ((p.J * s + p.b) * (s + h * (2 * p.c_I + p.c_E)) + 2 * p.D * p.D * h);
+    EXPECT_LT(std::abs(found - expected), 1e-10 * std::abs(expected)) << omega;
+  }
+}
+
+// Tests that the linear model goes where the actuator goes: clamped, the equations of one mode are linear, so
+// the exponential series is exact for as long as no switch changes.
+TEST(Linearise, GoesWhereTheActuatorGoes) {
+  ActuatorOptions options = Held(Shaft::kClamped);
+  options.initial_pressure = 500;
+  options.arm_angle = 0.2;
+  options.relative_tolerance = 1e-11;
+  Rig rig(Table1Model(), options);
+  rig.simulation->Advance(5, 0.01);
+  ASSERT_EQ(rig.simulation->mode(), Slip());
+  const Point start = rig.simulation->now();
+  const LinearModel model = Linearise(rig.equations, start.time, 5, Slip(), start.state);
+  rig.simulation->Advance(7, 0.03);
+  ASSERT_EQ(rig.simulation->mode(), Slip());
+  // x - x0 = sum of A^(k-1) x'(0) t^k/k!
+  const Matrix A = Rows(model.A, 4);
+  Eigen::VectorXd term = 0.02 * (Rows(model.rate, 4) + Rows(model.B, 4) * (7 - 5));
+  Eigen::VectorXd moved = term;
+  for (int k = 2; k < 40; ++k) {
+    term = 0.02 / k * A * term;
+    moved += term;
+  }
+  for (int i = 0; i < 4; ++i) {
+    EXPECT_NEAR(start.state[i] + moved[i], rig.simulation->now().state[i], 1e-8) << i;
+  }
+}
+
+}  // namespace
+}  // namespace hydro::testing
