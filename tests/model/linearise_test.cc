@@ -4,7 +4,6 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <cmath>
 #include <complex>
@@ -254,37 +253,6 @@ TEST(Linearise, ReadsTheSensors) {
   EXPECT_EQ(model.D, std::vector<double>(kOutputs, 0.0));
   EXPECT_DOUBLE_EQ(model.output[kP1Out], 1.05 * state[kP1] + 3);
   EXPECT_DOUBLE_EQ(model.output[kP2Out], 1.05 * state[kP2] - 2);
-}
-
-// The pole of largest imaginary part.
-Complex Oscillation(const LinearModel& model) {
-  Complex found = 0;
-  const Eigen::EigenSolver<Matrix> solver(Rows(model.A, model.states), false);
-  for (const Complex& pole : solver.eigenvalues()) {
-    if (pole.imag() > found.imag()) found = pole;
-  }
-  return found;
-}
-
-// Tests the hydraulic natural frequencies against their closed forms, without losses: clamped with both sides
-// compressing, D sqrt(2 beta/(V_ms J)), and one held at p_3 by its valve, D sqrt(beta/(V_ms J)); with a free
-// arm sqrt(2 beta/V_ms (D^2/J + c k_2/J_a)).
-TEST(Linearise, HasTheHydraulicNaturalFrequencies) {
-  ModelDescription model = Table1Model();
-  Parameters& p = model.parameters;
-  p.c_E = p.c_I = p.b = 0;
-  const std::vector<double> state = {0, 0, 200, 200, 0, 0};
-  const auto frequency = [&](Shaft shaft, bool valve_1_open) {
-    return std::abs(
-        Oscillation(Linearise(Equations(model, Held(shaft)), 0, 0, Slip(1, valve_1_open), state.data())));
-  };
-  EXPECT_NEAR(frequency(Shaft::kClamped, false), p.D * std::sqrt(2 * p.beta / (p.V_ms * p.J)), 1e-9);
-  EXPECT_NEAR(frequency(Shaft::kClamped, false), 18.17, 0.005);
-  EXPECT_NEAR(frequency(Shaft::kClamped, true), p.D * std::sqrt(p.beta / (p.V_ms * p.J)), 1e-9);
-  EXPECT_NEAR(frequency(Shaft::kClamped, true), 12.85, 0.005);
-  EXPECT_NEAR(frequency(Shaft::kFree, false),
-              std::sqrt(2 * p.beta / p.V_ms * (p.D * p.D / p.J + p.c * p.k_2 / p.J_a)), 1e-8);
-  EXPECT_NEAR(frequency(Shaft::kFree, false), 302, 0.5);
 }
 
 // Tests the frequency response from voltage to pressure difference, clamped at mid-stroke, against its closed
