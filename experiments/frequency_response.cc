@@ -25,8 +25,14 @@ std::vector<double> HannWindow(size_t length) {
   return window;
 }
 
-double Mean(const std::vector<double>& signal) {
-  return std::accumulate(signal.begin(), signal.end(), 0.0) / static_cast<double>(signal.size());
+// The signal without its mean, with three quarters of a segment of silence before and after it, so that all
+// of it is covered by as many windows.
+std::vector<double> WithoutMean(const std::vector<double>& signal, size_t length) {
+  const double mean = std::accumulate(signal.begin(), signal.end(), 0.0) / static_cast<double>(signal.size());
+  const size_t silence = length - length / 4;
+  std::vector<double> padded(signal.size() + 2 * silence);
+  for (size_t i = 0; i < signal.size(); ++i) padded[silence + i] = signal[i] - mean;
+  return padded;
 }
 
 // The largest length up to `length` that the transform does fast: factors 2, 3 and 5 only.
@@ -48,18 +54,18 @@ struct CrossSpectra {
 
 CrossSpectra Average(const std::vector<double>& input, const std::vector<double>& output, size_t length) {
   const std::vector<double> window = HannWindow(length);
-  const double input_mean = Mean(input);
-  const double output_mean = Mean(output);
+  const std::vector<double> x_signal = WithoutMean(input, length);
+  const std::vector<double> y_signal = WithoutMean(output, length);
   CrossSpectra sums = {std::vector<double>(length / 2), std::vector<double>(length / 2),
                        Spectrum(length / 2)};
   Eigen::FFT<double> transform;
   std::vector<double> segment(length);
   Spectrum x;
   Spectrum y;
-  for (size_t first = 0; first + length <= input.size(); first += std::max<size_t>(1, length / 4)) {
-    for (size_t i = 0; i < length; ++i) segment[i] = window[i] * (input[first + i] - input_mean);
+  for (size_t first = 0; first + length <= x_signal.size(); first += std::max<size_t>(1, length / 4)) {
+    for (size_t i = 0; i < length; ++i) segment[i] = window[i] * x_signal[first + i];
     transform.fwd(x, segment);
-    for (size_t i = 0; i < length; ++i) segment[i] = window[i] * (output[first + i] - output_mean);
+    for (size_t i = 0; i < length; ++i) segment[i] = window[i] * y_signal[first + i];
     transform.fwd(y, segment);
     for (size_t k = 0; k < length / 2; ++k) {
       sums.xx[k] += std::norm(x[k]);
