@@ -6,10 +6,14 @@ namespace hydro {
 
 const std::vector<Experiment>& Experiments() {
   static const std::vector<Experiment> experiments = {
+      {"fig1", "Figure 1: the apparatus, and what its numbers amount to", RunFig1, 0.1},
+      {"friction", "Determining T_s and b", RunFriction, 1, true},
       {"fig2", "Figure 2: stick-slip at a low torque, open loop", RunFig2, 0.7},
       {"fig3", "Figure 3: response to a torque of 10 in-lb, open loop", RunFig3, 0.1},
       {"fig4", "Figure 4: the pressure loop follows a square wave", RunFig4, 0.5},
       {"fig5", "Figure 5: the pressure loop follows a sine", RunFig5, 0.2},
+      {"fig8", "Figure 8: the linear design model of the position loop", RunFig8, 0.2},
+      {"fig9", "Figure 9: root locus, and the loop sampled", RunFig9, 0.5},
   };
   return experiments;
 }
