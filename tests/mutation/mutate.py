@@ -1,0 +1,194 @@
+#!/usr/bin/env python3
+"""Shows that the tests notice wrong physics.
+
+Changes one thing at a time in the model or a control law (a sign, a dropped leakage term, a valve's direction ...), builds
+the tests and runs them: they must fail. Works on a private copy of the source tree; the checkout is not touched. A run of
+the whole list takes about half an hour on two cores, so it is no part of ./check.
+
+The tests of the folder that a mutation changes run first, up to the first that fails; those of experiments/ when none of
+them does. First of all, everything must pass without a mutation.
+
+exit: 0 every mutation was caught; 1 one survived, no longer applies (its text does not stand exactly once in its file) or
+does not build, or the tests fail without any; 2 bad usage.
+"""
+
+import argparse
+import collections
+import concurrent.futures
+import fnmatch
+import pathlib
+import queue
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+import time
+
+sys.dont_write_bytecode = True  # the checkout stays as it is
+from mutations import MUTATIONS  # noqa: E402
+
+SOURCE = pathlib.Path(__file__).resolve().parents[2]
+NOT_COPIED = shutil.ignore_patterns(".git", "build", "out", "__pycache__")
+TEST_TIMEOUT_S = 120  # a wrong sign can make a simulation run for ever: that is noticed too
+FALLBACK = "experiments"
+
+
+class Failed(Exception):
+    pass
+
+
+def programs(folder):
+    """The test programs that tests/<folder>/CMakeLists.txt declares."""
+    text = (SOURCE / "tests" / folder / "CMakeLists.txt").read_text()
+    return re.findall(r"hydro_test\((\w+)", text)
+
+
+class Tree:
+    """A private copy of the source tree with its build folder."""
+
+    def __init__(self, folder, jobs):
+        self.source = folder / "source"
+        self.build = folder / "build"
+        self.jobs = jobs
+        self.caught = collections.Counter()  # by program; those that caught most so far are run first
+        if self.source.exists():
+            shutil.rmtree(self.source)
+        # Times are kept, so that a build folder of an earlier run is still of use.
+        shutil.copytree(SOURCE, self.source, ignore=NOT_COPIED)
+        self._run(["cmake", "-S", str(self.source), "-B", str(self.build), "-G", "Ninja", "-DHYDRO_BUILD_BENCH=OFF",
+                   "-DCMAKE_BUILD_TYPE=Mutation", "-DCMAKE_CXX_FLAGS_MUTATION=-O1 -Wno-maybe-uninitialized"], "cmake")
+
+    def _run(self, command, what):
+        done = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+        if done.returncode != 0:
+            raise Failed(f"{what} failed:\n{done.stdout[-3000:]}")
+
+    def build_programs(self, *targets):
+        self._run(["cmake", "--build", str(self.build), "-j", str(self.jobs), "--target", *targets], "build")
+
+    def failing_test(self, folder):
+        """Builds and runs the tests of `folder` up to the first that fails: its name, or None."""
+        for name in sorted(programs(folder), key=lambda program: -self.caught[program]):
+            self.build_programs(name)
+            try:
+                done = subprocess.run([str(self.build / "tests" / name), "--gtest_fail_fast", "--gtest_brief=1"],
+                                      cwd=self.build, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
+                                      errors="replace", timeout=TEST_TIMEOUT_S)
+            except subprocess.TimeoutExpired:
+                return f"{name} (still running after {TEST_TIMEOUT_S} s)"
+            if done.returncode != 0:
+                self.caught[name] += 1
+                found = re.search(r"\[  FAILED  \] ([\w./]+)", done.stdout)
+                return f"{name}: {found.group(1) if found else 'ended with ' + str(done.returncode)}"
+        return None
+
+    def try_mutation(self, mutation, fallback):
+        """What caught it, or None."""
+        path = self.source / mutation.file
+        text = path.read_text()
+        path.write_text(mutated(text, mutation))
+        try:
+            caught = self.failing_test(mutation.file.split("/")[0])
+            if caught is None and fallback:
+                caught = self.failing_test(FALLBACK)
+            return caught
+        finally:
+            path.write_text(text)
+
+
+def mutated(text, mutation):
+    count = text.count(mutation.old)
+    if count != 1:
+        raise Failed(f"stands {count} times in {mutation.file}, not once: {mutation.old!r}")
+    return text.replace(mutation.old, mutation.new)
+
+
+def check_all_apply(mutations):
+    stale = 0
+    for mutation in mutations:
+        try:
+            mutated((SOURCE / mutation.file).read_text(), mutation)
+        except (Failed, OSError) as error:
+            print(f"{mutation.name}: no longer applies: {error}", file=sys.stderr)
+            stale += 1
+    return stale
+
+
+def run(mutations, work, jobs, fallback):
+    folders = sorted({mutation.file.split("/")[0] for mutation in mutations})
+    trees = queue.Queue()
+    for i in range(jobs):
+        tree = Tree(work / f"tree-{i}", max(1, 2 // jobs))
+        for folder in [*folders, *([FALLBACK] if fallback else [])]:
+            tree.build_programs(*programs(folder))
+            failing = tree.failing_test(folder)
+            if failing is not None:
+                raise Failed(f"without any mutation the tests fail: {failing}")
+        trees.put(tree)
+    print(f"without any mutation: all tests pass\n{len(mutations)} mutations", flush=True)
+
+    def one(mutation):
+        tree = trees.get()
+        start = time.monotonic()
+        try:
+            caught = tree.try_mutation(mutation, fallback)
+            verdict, says = ("killed", caught) if caught else ("SURVIVED", "no test fails")
+        except Failed as error:
+            verdict, says = "ERROR", str(error)
+        finally:
+            trees.put(tree)
+        print(f"{verdict:9}{mutation.name:32}{time.monotonic() - start:6.1f} s  {says}", flush=True)
+        return verdict
+
+    with concurrent.futures.ThreadPoolExecutor(jobs) as pool:
+        verdicts = list(pool.map(one, mutations))
+    killed = verdicts.count("killed")
+    print(f"{killed} of {len(mutations)} killed, {verdicts.count('SURVIVED')} survived, {verdicts.count('ERROR')} errors")
+    return killed == len(mutations)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--list", action="store_true", help="print the mutations and end")
+    parser.add_argument("--dry-run", action="store_true", help="only check that each mutation still applies")
+    parser.add_argument("--only", action="append", metavar="NAME", help="only these; NAME may hold * and ? (repeatable)")
+    parser.add_argument("--jobs", type=int, default=1, metavar="N",
+                        help="mutations at a time, each in a tree of its own (default 1, which builds on two cores)")
+    parser.add_argument("--work", type=pathlib.Path, metavar="DIR",
+                        help="where the trees go; kept, so that a next run builds less (default: a temporary folder)")
+    parser.add_argument("--model-only", action="store_true", help="do not run the experiments' tests when no other fails")
+    arguments = parser.parse_args()
+    if arguments.jobs < 1:
+        parser.error(f"--jobs: found {arguments.jobs}, must be at least 1")
+    mutations = MUTATIONS
+    if arguments.only:
+        for pattern in arguments.only:
+            if not any(fnmatch.fnmatchcase(mutation.name, pattern) for mutation in MUTATIONS):
+                parser.error(f"--only: no mutation is named {pattern}; --list prints them")
+        mutations = [m for m in MUTATIONS if any(fnmatch.fnmatchcase(m.name, p) for p in arguments.only)]
+    if arguments.list:
+        for mutation in mutations:
+            print(f"{mutation.name:32}{mutation.file}: {' '.join(mutation.old.split())}  ->  {' '.join(mutation.new.split())}")
+        return 0
+    if check_all_apply(mutations) > 0:
+        return 1
+    if arguments.dry_run:
+        print(f"{len(mutations)} mutations, all apply")
+        return 0
+    try:
+        if arguments.work:
+            work = arguments.work.resolve()
+            if work == SOURCE or SOURCE in work.parents:
+                parser.error("--work: must lie outside of the checkout")
+            work.mkdir(parents=True, exist_ok=True)
+            return 0 if run(mutations, work, arguments.jobs, not arguments.model_only) else 1
+        with tempfile.TemporaryDirectory(prefix="hydro-mutation-") as work:
+            return 0 if run(mutations, pathlib.Path(work), arguments.jobs, not arguments.model_only) else 1
+    except Failed as error:
+        print(f"mutate: {error}", file=sys.stderr)
+        return 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())
