@@ -51,7 +51,7 @@ class Tree:
         self.source = folder / "source"
         self.build = folder / "build"
         self.jobs = jobs
-        self.caught = collections.Counter()  # by program; those that caught most so far are run first
+        self.caught = collections.Counter()  # by file and program: those that caught most so far are run first
         if self.source.exists():
             shutil.rmtree(self.source)
         # Times are kept, so that a build folder of an earlier run is still of use.
@@ -67,9 +67,12 @@ class Tree:
     def build_programs(self, *targets):
         self._run(["cmake", "--build", str(self.build), "-j", str(self.jobs), "--target", *targets], "build")
 
-    def failing_test(self, folder):
+    def failing_test(self, folder, changed=None):
         """Builds and runs the tests of `folder` up to the first that fails: its name, or None."""
-        for name in sorted(programs(folder), key=lambda program: -self.caught[program]):
+        def usefulness(program):
+            return self.caught[changed, program], sum(n for (_, name), n in self.caught.items() if name == program)
+
+        for name in sorted(programs(folder), key=usefulness, reverse=True):
             self.build_programs(name)
             try:
                 done = subprocess.run([str(self.build / "tests" / name), "--gtest_fail_fast", "--gtest_brief=1"],
@@ -78,7 +81,7 @@ class Tree:
             except subprocess.TimeoutExpired:
                 return f"{name} (still running after {TEST_TIMEOUT_S} s)"
             if done.returncode != 0:
-                self.caught[name] += 1
+                self.caught[changed, name] += 1
                 found = re.search(r"\[  FAILED  \] ([\w./]+)", done.stdout)
                 return f"{name}: {found.group(1) if found else 'ended with ' + str(done.returncode)}"
         return None
@@ -89,9 +92,9 @@ class Tree:
         text = path.read_text()
         path.write_text(mutated(text, mutation))
         try:
-            caught = self.failing_test(mutation.file.split("/")[0])
+            caught = self.failing_test(mutation.file.split("/")[0], mutation.file)
             if caught is None and fallback:
-                caught = self.failing_test(FALLBACK)
+                caught = self.failing_test(FALLBACK, mutation.file)
             return caught
         finally:
             path.write_text(text)
@@ -169,7 +172,8 @@ def main():
         mutations = [m for m in MUTATIONS if any(fnmatch.fnmatchcase(m.name, p) for p in arguments.only)]
     if arguments.list:
         for mutation in mutations:
-            print(f"{mutation.name:32}{mutation.file}: {' '.join(mutation.old.split())}  ->  {' '.join(mutation.new.split())}")
+            old, new = (" ".join(text.split()) for text in (mutation.old, mutation.new))
+            print(f"{mutation.name:32}{mutation.file}: {old}  ->  {new}")
         return 0
     if check_all_apply(mutations) > 0:
         return 1

@@ -152,6 +152,9 @@ MUTATIONS = [
     *_rows(
         "model/effects/fluid_warming.cc",
         ("warming.sign", "std::exp(rate_ * x.time)", "std::exp(-rate_ * x.time)"),
+        ("warming.viscous", "x.b /= thinner;", "x.b *= thinner;"),
+        ("warming.c_E", "x.c_E *= thinner;", "x.c_E /= thinner;"),
+        ("warming.c_I", "x.c_I *= thinner;", "x.c_I /= thinner;"),
     ),
     *_rows(
         "model/effects/line_wave.cc",
