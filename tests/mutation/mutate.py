@@ -15,6 +15,7 @@ does not build, or the tests fail without any; 2 bad usage.
 import argparse
 import collections
 import concurrent.futures
+import filecmp
 import fnmatch
 import pathlib
 import queue
@@ -29,7 +30,7 @@ sys.dont_write_bytecode = True  # the checkout stays as it is
 from mutations import MUTATIONS  # noqa: E402
 
 SOURCE = pathlib.Path(__file__).resolve().parents[2]
-NOT_COPIED = shutil.ignore_patterns(".git", "build", "out", "__pycache__")
+NOT_COPIED = {".git", "build", "out", "__pycache__"}
 TEST_TIMEOUT_S = 120  # a wrong sign can make a simulation run for ever: that is noticed too
 FALLBACK = "experiments"
 
@@ -52,10 +53,7 @@ class Tree:
         self.build = folder / "build"
         self.jobs = jobs
         self.caught = collections.Counter()  # by file and program: those that caught most so far are run first
-        if self.source.exists():
-            shutil.rmtree(self.source)
-        # Times are kept, so that a build folder of an earlier run is still of use.
-        shutil.copytree(SOURCE, self.source, ignore=NOT_COPIED)
+        copy_what_differs(SOURCE, self.source)
         self._run(["cmake", "-S", str(self.source), "-B", str(self.build), "-G", "Ninja", "-DHYDRO_BUILD_BENCH=OFF",
                    "-DCMAKE_BUILD_TYPE=Mutation", "-DCMAKE_CXX_FLAGS_MUTATION=-O1 -Wno-maybe-uninitialized"], "cmake")
 
@@ -98,6 +96,22 @@ class Tree:
             return caught
         finally:
             path.write_text(text)
+
+
+def copy_what_differs(source, target):
+    """Makes `target` a copy of `source`. Files that are equal keep their time, so that an earlier build is of use; others
+    become new, whatever their time in `source`: what was built of a mutation must not pass for what it was made from."""
+    target.mkdir(parents=True, exist_ok=True)
+    names = {path.name for path in source.iterdir()} - NOT_COPIED
+    for path in target.iterdir():
+        if path.name not in names:
+            shutil.rmtree(path) if path.is_dir() else path.unlink()
+    for name in sorted(names):
+        if (source / name).is_dir():
+            copy_what_differs(source / name, target / name)
+        elif not (target / name).exists() or not filecmp.cmp(source / name, target / name, shallow=False):
+            shutil.copyfile(source / name, target / name)
+            shutil.copymode(source / name, target / name)
 
 
 def mutated(text, mutation):
