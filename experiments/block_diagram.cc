@@ -2,6 +2,7 @@
 
 #include <spdlog/fmt/fmt.h>
 
+#include <cctype>
 #include <string_view>
 
 namespace hydro {
@@ -10,10 +11,27 @@ namespace {
 constexpr double kAxis = 120;  // y of the forward path
 constexpr double kBlockHeight = 64;
 
+// "c_1 = 3" with the letters and digits after each underscore set lower.
+std::string WithSubscripts(std::string_view text) {
+  std::string set;
+  for (size_t i = 0; i < text.size();) {
+    if (text[i] != '_') {
+      set += text[i++];
+      continue;
+    }
+    size_t end = i + 1;
+    while (end < text.size() && std::isalnum(static_cast<unsigned char>(text[end]))) ++end;
+    set += fmt::format("<tspan dy=\"4\" font-size=\"75%\">{}</tspan><tspan dy=\"-4\">&#8203;</tspan>",
+                       text.substr(i + 1, end - i - 1));
+    i = end;
+  }
+  return set;
+}
+
 std::string Text(double x, double y, std::string_view text, double size = 15,
                  std::string_view anchor = "middle", std::string_view colour = "#222") {
   return fmt::format("<text x=\"{}\" y=\"{}\" font-size=\"{}\" text-anchor=\"{}\" fill=\"{}\">{}</text>\n", x,
-                     y, size, anchor, colour, text);
+                     y, size, anchor, colour, WithSubscripts(text));
 }
 
 // Through the points "x,y x,y ...", an arrow's head at the last one.

@@ -16,8 +16,10 @@ const std::vector<Experiment>& Experiments() {
       {"fig6", "Figure 6: frequency response of the pressure loop at mid-stroke", RunFig6, 1.5},
       {"fig7", "Figure 7: frequency response of the pressure loop at 90 degrees", RunFig7, 1},
       {"waves", "The 300 Hz pressure waves in the lines", RunWaves, 1.5},
-      {"fig8", "Figure 8: the linear design model of the position loop", RunFig8, 0.2},
-      {"fig9", "Figure 9: root locus, and the loop sampled", RunFig9, 0.5},
+      {"fig8", "Figure 8: the linear design model of the position loop", RunFig8, 0.1},
+      {"fig9", "Figure 9: root locus, and the loop sampled", RunFig9, 0.1},
+      {"fig10", "Figure 10: a step of the arm, linear and full model, and what the motor could do", RunFig10,
+       0.7},
       {"torque", "Torque control: a commanded torque at the arm, clamped and moving", RunTorque, 1.5},
   };
   return experiments;

@@ -18,6 +18,7 @@ ExperimentResult RunFig7(const ExperimentOptions& options);      // figure7.cc
 ExperimentResult RunWaves(const ExperimentOptions& options);     // line_waves.cc
 ExperimentResult RunFig8(const ExperimentOptions& options);      // figure8.cc
 ExperimentResult RunFig9(const ExperimentOptions& options);      // figure9.cc
+ExperimentResult RunFig10(const ExperimentOptions& options);     // figure10.cc
 ExperimentResult RunTorque(const ExperimentOptions& options);    // torque_control.cc
 
 }  // namespace hydro

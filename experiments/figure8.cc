@@ -109,7 +109,7 @@ ExperimentResult RunFig8(const ExperimentOptions& options) {
       "and "
       "the dominant poles are {}. With the arm's motion taken out of the flow equations (c → 0) the exact "
       "model "
-      "gives Figure 8's poles again, {} and {}: nothing else is missing.",
+      "gives Figure 8's poles again, {} and {}, but for leakage: nothing else is missing.",
       two_sided.natural_frequency, two_sided.damping_ratio, design.natural_frequency, design.damping_ratio,
       one_sided.natural_frequency, one_sided.damping_ratio, p.c / p.D, reflected, p.J_a,
       SlowestPole(exact).real(), kPaperGain, SlowestPole(Poles(design, kPaperGain)).real(),
@@ -183,7 +183,7 @@ ExperimentResult RunFig8(const ExperimentOptions& options) {
       .title = "Magnitude",
       .x = frequency,
       .y = {.label = "dB", .min = -80, .max = 60},
-      .curves = {curve("open loop, e to α", bode.open_db, 0),
+      .curves = {curve("open loop, -e to α", bode.open_db, 0),
                  curve("closed loop, α_ref to α", bode.closed_db, 1)},
       .notes = {{fmt::format("gain margin {:.2f} ({:.1f} dB)", margins.gain, 20 * std::log10(margins.gain)),
                  margins.phase_crossover, -20 * std::log10(margins.gain)}},

@@ -265,7 +265,8 @@ ExperimentResult RunFig9(const ExperimentOptions& options) {
       .curves = {},
       .notes = {{fmt::format("g = {:.1f} at {:.1f} rad/s", limit.gain, limit.frequency), 0, limit.frequency}},
       .rules = {{"", true, 0}, {"", false, 0}},
-      .equal_scales = true};
+      .equal_scales = true,
+      .height = 1.8};
   for (size_t b = 0; b < branches.size(); ++b) {
     locus.curves.push_back(Points(b == 0 ? "locus over g" : "", branches[b], 0, Stroke::kLine));
   }
@@ -295,7 +296,8 @@ ExperimentResult RunFig9(const ExperimentOptions& options) {
               .curves = {},
               .notes = {},
               .rules = {{"", true, 0}, {"", false, 0}},
-              .equal_scales = true};
+              .equal_scales = true,
+              .height = 1.8};
   std::vector<Complex> circle;
   for (int i = 0; i <= 360; ++i) circle.push_back(std::polar(1.0, i * std::numbers::pi / 180));
   plane.curves.push_back(Points("unit circle", circle, 0, Stroke::kDotted));
