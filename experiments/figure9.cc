@@ -95,8 +95,8 @@ ExperimentResult RunFig9(const ExperimentOptions& options) {
   // The locus.
   std::vector<double> gains;
   std::vector<std::vector<Complex>> poles;
-  for (int i = 0; i <= 1200; ++i) {
-    gains.push_back(1200.0 * std::pow(i / 1200.0, 2));  // dense where poles leave the origin
+  for (int i = 0; i <= 3000; ++i) {
+    gains.push_back(1200.0 * std::pow(i / 3000.0, 2));  // dense where poles leave the origin
     poles.push_back(Poles(design, gains.back()));
   }
   const auto branches = FollowBranches(poles);
