@@ -82,41 +82,46 @@ double UnlimitedSpeed(const ModelDescription& model) {
 
 std::string InSi(double torque) { return fmt::format("{:.0f} N m", torque * kNewtonMetres); }
 
-// The most the arm can do at each of its speeds: friction is taken off the motor's torque, pressure is
-// limited.
-Curve Envelope(const Parameters& p, double rpm, const std::string& label, int colour) {
+// The arm's torque at each of its speeds up to `top_speed` of the motor, rad/s, when `viscous` and `coulomb`
+// friction take their share of the motor's.
+Curve Envelope(const std::string& label, const Parameters& p, double top_speed, double viscous,
+               double coulomb) {
   Curve curve;
   curve.label = label;
-  curve.colour = colour;
-  constexpr int kPoints = 100;
-  const double top = rpm * kRpm;
-  for (int i = 0; i <= kPoints; ++i) {
-    const double speed = top * i / kPoints;
+  for (const double speed : {0.0, top_speed}) {
     curve.x.push_back(speed * p.D / p.c / kRpm);
-    curve.y.push_back((p.T_pmax - p.T_s - p.b * speed) * p.k_2 / p.D);
+    curve.y.push_back((p.T_pmax - coulomb - viscous * speed) * p.k_2 / p.D);
   }
   curve.x.push_back(curve.x.back());
   curve.y.push_back(0);
   return curve;
 }
 
-Figure Limits(const Parameters& table1, const Parameters& fast) {
+Figure Limits(const Parameters& p) {
   Panel panel;
-  panel.x = {"arm speed α', rpm", false, 0, kAutomatic};
-  panel.y = {"arm torque, in-lbf", false, 0, kAutomatic};
-  panel.curves = {Envelope(table1, kMotorRpm, fmt::format("{:.0f} rpm motor, Table 1", kMotorRpm), 0),
-                  Envelope(fast, kFastMotorRpm, fmt::format("{:.0f} rpm motor (assumed)", kFastMotorRpm), 1)};
-  panel.rules = {{fmt::format("Δp = {:.0f} psi: limit of the seals", kPressureLimit), false,
-                  kPressureLimit * table1.k_2}};
-  panel.notes = {
-      {fmt::format("printed: {:.0f} in-lb", table1.T_pmax * kPrintedRatio), 0, table1.T_pmax * kPrintedRatio},
-      {"printed: 12.4 rpm", 12.4, 0}};
-  return {
-      "The torque that the motor's limit leaves for the arm, k_2 (T_pmax - T_s - b θ')/D, up to the motor's "
-      "speed, and what the actuator's seals bear. The printed values are with the ratio 484.7 and without "
-      "friction. The faster motor is an assumption where the paper is silent (same power, same pump).",
-      {panel},
-      ""};
+  const double top_speed = kMotorRpm * kRpm;
+  panel.x = {"arm speed α', rpm", false, 0, 15};
+  panel.y = {"arm torque, in-lbf", false, 0, 22000};
+  const double printed_torque = p.T_pmax * kPrintedRatio;
+  const double printed_speed = kMotorRpm / kPrintedRatio;
+  const Curve printed{fmt::format("as printed, ratio {:g}", kPrintedRatio),
+                      {0, printed_speed, printed_speed},
+                      {printed_torque, printed_torque, 0},
+                      Stroke::kDashed,
+                      1,
+                      {},
+                      {}};
+  panel.curves = {Envelope("Table 1, with friction", p, top_speed, p.b, p.T_s), printed,
+                  Envelope("Table 1, without friction", p, top_speed, 0, 0)};
+  panel.rules = {{fmt::format("Δp = {:.0f} psi, the limit of the seals", kPressureLimit), false,
+                  kPressureLimit * p.k_2}};
+  return {fmt::format(
+              "What the motor's limits, {:g} in-lbf and {:g} rpm, leave for the arm: the torque k_2 (T_pmax "
+              "- T_s "
+              "- b θ')/D up to the speed {:g} rpm D/c, beside the printed ratio; and what the seals bear.",
+              p.T_pmax, kMotorRpm, kMotorRpm),
+          {panel},
+          ""};
 }
 
 }  // namespace
@@ -124,11 +129,13 @@ Figure Limits(const Parameters& table1, const Parameters& fast) {
 ExperimentResult RunFig1(const ExperimentOptions& options) {
   const ModelDescription model = ShippedModel("table1");
   const Parameters& p = model.parameters;
-  const Parameters fast = ShippedModel("motor_18000rpm").parameters;
+  const ModelDescription fast_model = ShippedModel("motor_18000rpm");
+  const Parameters& fast = fast_model.parameters;
   const double gravity_torque = ShippedModel("table1_gravity").parameters.mgl;
   const double top_speed = kMotorRpm * kRpm;
 
   FreeRun free = RunFree(model, top_speed);
+  const FreeRun fast_run = RunFree(fast_model, kFastMotorRpm * kRpm);
   options.progress(0.3);
   // Coulomb friction is the same in both.
   const double low_torque = 8;
@@ -200,16 +207,15 @@ ExperimentResult RunFig1(const ExperimentOptions& options) {
        fmt::format("assumed: J_a = m L^2/3 with L = {:g} in; here: table1_gravity.toml. It holds with dp = "
                    "{:.1f} psi",
                    kArmLength, gravity_torque / p.k_2)},
-      {"18000 rpm motor: peak torque at the arm", "in-lbf", "", peak / 3, fast.T_pmax * fast.k_2 / fast.D,
-       "assumed: the same power, so a third of the torque, and the same pump"},
-      {"18000 rpm motor: maximum arm speed", "rpm", "", kFastMotorRpm / displacement_ratio,
-       kFastMotorRpm * fast.D / fast.c,
-       "with the same pump; one of D/3 would give Table 1's torque and speed"},
-      {"18000 rpm motor: power", "in-lbf/s", "", p.T_pmax * top_speed, fast.T_pmax * kFastMotorRpm * kRpm,
-       fmt::format("T_pmax times top speed, {:.2f} kW; independent: the 6000 rpm motor's",
-                   fast.T_pmax * kFastMotorRpm * kRpm * kKilowatts)},
-      {"18000 rpm motor: inertia seen by the arm", "lbf-in-s^2", "", reflected * std::pow(1.0 / 3, 5.0 / 3),
-       reflected_fast, "assumed: J goes with T_pmax^{5/3} for motors of one shape"},
+      {"18000 rpm motor: transmission ratio", "", "", 3 * torque_ratio_lossless, fast.k_2 / fast.D,
+       "assumed: the same power, torque and speed at the arm, so a pump of D/3"},
+      {"18000 rpm motor: peak torque at the arm", "in-lbf", "", peak, fast.T_pmax * fast.k_2 / fast.D,
+       "independent: the 6000 rpm motor's"},
+      {"18000 rpm motor: maximum arm speed", "rpm", "", kMotorRpm * p.D / p.c, fast_run.arm_speed / kRpm,
+       "independent: 6000 rpm D/c of Table 1; here: its free arm"},
+      {"18000 rpm motor: inertia seen by the arm", "lbf-in-s^2", "", reflected * std::pow(3.0, 2 - 5.0 / 3),
+       reflected_fast,
+       "independent: J goes with T_pmax^{5/3} for motors of one shape, and with the ratio squared"},
       {"18000 rpm motor: time to full speed", "s", "", kAutomatic,
        fast.J * kFastMotorRpm * kRpm / fast.T_pmax,
        fmt::format("J θ'/T_pmax without load and friction; the 6000 rpm motor: {:.2f} s",
@@ -270,7 +276,8 @@ ExperimentResult RunFig1(const ExperimentOptions& options) {
                                 {"motor_18000rpm",
                                  {{"assumption", true},
                                   {"peak_torque_in_lbf", fast.T_pmax * fast.k_2 / fast.D},
-                                  {"maximum_speed_rpm", kFastMotorRpm * fast.D / fast.c},
+                                  {"maximum_speed_rpm", fast_run.arm_speed / kRpm},
+                                  {"ratio", fast.k_2 / fast.D},
                                   {"power_kW", fast.T_pmax * kFastMotorRpm * kRpm * kKilowatts},
                                   {"reflected_inertia_lbf_in_s2", reflected_fast}}}};
   result.numbers = numbers.dump();
@@ -282,7 +289,7 @@ ExperimentResult RunFig1(const ExperimentOptions& options) {
                        "pipes are leakages.",
                        {},
                        ApparatusDrawing(p)}},
-                     {"-limits", Limits(p, fast)}};
+                     {"-limits", Limits(p)}};
   return result;
 }
 
