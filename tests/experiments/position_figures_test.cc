@@ -91,6 +91,8 @@ TEST(PositionFigures, StepOfBothModels) {
   EXPECT_GE(settling, 1.6);
   EXPECT_LE(settling, 1.8);
   EXPECT_EQ(numbers["nonlinear"]["overshoot_percent"], 0);
+  // The step saturates the motor in either form of the derivative.
+  EXPECT_LT(numbers["largest_difference_of_derivative_forms_rad"], 1e-9);
   // T_s/(k_1 k_p c_1) = 4/(4 * 0.1336 * 10500), approached as exp(-2.5 t) for 5 s.
   EXPECT_NEAR(numbers["nonlinear"]["steady_state_error_rad"], -4 / (4 * 0.1336 * 10500), 1e-6);
 }
