@@ -128,4 +128,15 @@ double MeanError(const PressureLoopRun& run, double until, double length) {
   return sum / static_cast<double>(count);
 }
 
+Curve SignalCurve(const std::string& label, const PressureLoopRun& run, const std::vector<double>& values,
+                  int colour, double until, Stroke stroke) {
+  Curve curve{
+      .label = label, .x = {}, .y = {}, .stroke = stroke, .colour = colour, .y_low = {}, .y_high = {}};
+  for (size_t i = 0; i < run.time.size() && run.time[i] <= until + 0.5 / kLoopRate; ++i) {
+    curve.x.push_back(run.time[i]);
+    curve.y.push_back(values[i]);
+  }
+  return curve;
+}
+
 }  // namespace hydro

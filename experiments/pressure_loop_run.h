@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "experiments/plot.h"
 #include "experiments/stack_run.h"
 #include "model/description.h"
 #include "pressure_ctrl/pressure_law.h"
@@ -70,5 +71,9 @@ TrackingError MeasureTracking(const PressureLoopRun& run, double from);
 
 // Mean of reference - dp over `length` s up to `until` s.
 double MeanError(const PressureLoopRun& run, double until, double length = 0.1);
+
+// Curve of `values` over the run's time, up to `until` s.
+Curve SignalCurve(const std::string& label, const PressureLoopRun& run, const std::vector<double>& values,
+                  int colour, double until, Stroke stroke = Stroke::kLine);
 
 }  // namespace hydro

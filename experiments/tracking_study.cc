@@ -93,17 +93,6 @@ std::string WaveReference(const std::string& kind, double frequency) {
                      kWaveAmplitude, frequency);
 }
 
-Curve SignalCurve(const std::string& label, const PressureLoopRun& run, const std::vector<double>& values,
-                  int colour, double until, Stroke stroke) {
-  Curve curve{
-      .label = label, .x = {}, .y = {}, .stroke = stroke, .colour = colour, .y_low = {}, .y_high = {}};
-  for (size_t i = 0; i < run.time.size() && run.time[i] <= until + 0.5 / kLoopRate; ++i) {
-    curve.x.push_back(run.time[i]);
-    curve.y.push_back(values[i]);
-  }
-  return curve;
-}
-
 TrackingStudy RunTrackingStudy(const ExperimentOptions& options, const std::string& figure,
                                const std::string& kind) {
   const Parameters p = PressureLoopParameters();

@@ -54,8 +54,4 @@ std::string SteadyStateText(const TrackingStudy& study);
 // Keys of [reference] for the wave.
 std::string WaveReference(const std::string& kind, double frequency);
 
-// Curve of `values` over the run's time, up to `until` s.
-Curve SignalCurve(const std::string& label, const PressureLoopRun& run, const std::vector<double>& values,
-                  int colour, double until, Stroke stroke = Stroke::kLine);
-
 }  // namespace hydro
