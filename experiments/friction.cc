@@ -89,13 +89,6 @@ MeasuredRun MeasureRamps(const ExperimentOptions& options) {
 
 json Interval(const Estimate& estimate) { return {estimate.low, estimate.high}; }
 
-std::string PlusMinus(const Estimate& estimate) {
-  const double half = estimate.high - estimate.value;
-  if (!(half > 0) || std::isinf(half)) return fmt::format("{:.5g} +/- {:.2g}", estimate.value, half);
-  const int decimals = std::max(0, 1 - static_cast<int>(std::floor(std::log10(half))));
-  return fmt::format("{:.{}f} +/- {:.{}f}", estimate.value, decimals, half, decimals);
-}
-
 // "Contains" for a text.
 const char* Holds(const Estimate& estimate, double truth) {
   return estimate.low <= truth && truth <= estimate.high ? "holds" : "misses";

@@ -6,17 +6,12 @@
 #include <string>
 #include <vector>
 
+#include "experiments/estimate.h"
 #include "experiments/steady_speed.h"
 #include "logger/measured_run.h"
 #include "model/description.h"
 
 namespace hydro {
-
-struct Estimate {
-  double value = 0;
-  double low = 0;  // 95 % confidence interval
-  double high = 0;
-};
 
 struct FrictionPoint {
   SpeedWindow window;

@@ -1,0 +1,19 @@
+// A value with its 95 % confidence interval.
+#pragma once
+
+#include <string>
+
+namespace hydro {
+
+struct Estimate {
+  double value = 0;
+  double low = 0;
+  double high = 0;
+
+  double half_width() const { return (high - low) / 2; }
+};
+
+// "4.000017 +/- 0.000075": as many decimals as the interval is worth.
+std::string PlusMinus(const Estimate& estimate);
+
+}  // namespace hydro
