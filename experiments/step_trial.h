@@ -20,8 +20,9 @@ struct StepTrial {
   double duration = 0;    // s, from the step on
 };
 
-// The arm's answer, one point a tick, to a reference that steps from 0 at the first tick. Equals, bit by bit,
-// what the stack gives for the same settings and a step at a sample of the position loop. Throws ModelError.
+// The arm's answer, one point a tick, to a reference that steps from 0 at the first tick. Equals, up to
+// rounding, what the stack gives for the same settings and a step at a sample of the position loop. Throws
+// ModelError.
 Response RunStepTrial(const StepTrial& trial);
 
 }  // namespace hydro

@@ -168,7 +168,7 @@ TEST(PositionFigures, FindingsAndPictures) {
   }
 }
 
-// Tests that the search's short cut moves the arm as the stack does, bit by bit.
+// Tests that the search's short cut moves the arm as the stack does.
 TEST(StepTrial, EqualsTheStack) {
   const std::string config =
       ShippedStackText("retuned", {"reference.steps=[[0.1, 0.1]]", "time.duration_s=0.6"});
