@@ -340,6 +340,7 @@ ExperimentResult RunFig10(const ExperimentOptions& options) {
       {"exact_linearisation", AsJson(exact)},
       {"exact_linearisation_with_arm_speed_feedforward", AsJson(exact_assisted)},
       {"friction_error_rad", friction_band},
+      {"largest_difference_of_derivative_forms_rad", form_difference},
       {"bang_bang",
        {{"inertia_lb_in_s2", drive.inertia},
         {"rest_to_rest_time_s", fastest.time},
