@@ -198,6 +198,27 @@ TEST(Linearise, VoltageActsWithinTheLimitOnly) {
   }
 }
 
+// Tests that what a switch holds has no slope: the pump that sticks, the side whose valve is open, and both
+// sides when the bypass connects them.
+TEST(Linearise, HeldStatesHaveNoSlope) {
+  for (const bool bypass : {false, true}) {
+    ActuatorOptions options = Held(Shaft::kClamped);
+    options.bypass = bypass;
+    const Equations equations(Table1Model(), options);
+    const std::vector<double> state = Somewhere(equations, Slip());
+    const auto held = [&](const Mode& mode, int i) {
+      const LinearModel model = Linearise(equations, 0, 3, mode, state.data());
+      return model.rate[i] == 0 && model.B[i] == 0 && Rows(model.A, 4).row(i).isZero(0);
+    };
+    EXPECT_FALSE(held(Slip(), kMotorSpeed) || held(Slip(), kP1) || held(Slip(), kP2));
+    EXPECT_TRUE(held(Slip(0), kMotorSpeed));
+    EXPECT_TRUE(held(Slip(1, true), kP1));
+    EXPECT_EQ(held(Slip(1, true), kP2), bypass);
+    EXPECT_EQ(held(Slip(1, false, true), kP1), false);
+    EXPECT_EQ(held(Slip(1, false, true), kP2), !bypass);  // valve_1 stands for both
+  }
+}
+
 // Tests that with amp.lag the voltage acts on the lagged torque, whose limit then cuts it off from the pump.
 TEST(Linearise, VoltageActsThroughTheLag) {
   const Equations equations(Table1Model({Lag(0.002)}), Held(Shaft::kClamped));
