@@ -155,10 +155,11 @@ std::vector<double> PhasesDeg(const std::vector<ResponsePoint>& points) {
 
 double BandwidthHz(const std::vector<ResponsePoint>& points, double passband_gain) {
   const double limit = Decibels(passband_gain / std::numbers::sqrt2);
-  for (size_t i = 1; i < points.size(); ++i) {
+  for (size_t i = points.size(); i-- > 1;) {
     const double before = Decibels(points[i - 1].gain);
     const double after = Decibels(points[i].gain);
-    if (before < limit || after >= limit) continue;
+    if (after >= limit) break;
+    if (before < limit) continue;
     const double part = (before - limit) / (before - after);
     return points[i - 1].frequency_hz * std::pow(points[i].frequency_hz / points[i - 1].frequency_hz, part);
   }

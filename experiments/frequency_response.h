@@ -38,8 +38,8 @@ double Decibels(std::complex<double> gain);
 // Phases in degrees, without jumps by 360 between neighbours; the first lies in (-180, 180].
 std::vector<double> PhasesDeg(const std::vector<ResponsePoint>& points);
 
-// The lowest frequency from which the gain is 3 dB (a factor of sqrt 2) below `passband_gain`, between points
-// on straight lines in dB over log frequency; NaN when it stays above.
+// The frequency from which on the gain is more than 3 dB (a factor of sqrt 2) below `passband_gain`, between
+// points on straight lines in dB over log frequency; NaN when it never was above or is not below at the end.
 double BandwidthHz(const std::vector<ResponsePoint>& points, double passband_gain);
 
 }  // namespace hydro

@@ -95,13 +95,23 @@ Complex LinearPressureLoop::ClosedGain(const PressureGains& gains, double freque
   return gains.k_p * PressurePerVolt(frequency_hz) / (1.0 + LoopGain(gains, frequency_hz));
 }
 
-std::vector<Complex> LinearPressureLoop::Poles(const PressureGains& gains) const {
-  const Eigen::MatrixXd A = Map(A_.data(), states_, states_) -
-                            gains.k_p * Column(B_.data(), states_) *
-                                (Row(dp_.data(), states_) + gains.k_v * Row(speed_.data(), states_));
-  const Eigen::VectorXcd values = A.eigenvalues();
+std::vector<Complex> LinearPressureLoop::ClosedPoles(const PressureGains& gains, bool visible_only) const {
+  const Row dp(dp_.data(), states_);
+  const Row speed(speed_.data(), states_);
+  const Eigen::MatrixXd A =
+      Map(A_.data(), states_, states_) - gains.k_p * Column(B_.data(), states_) * (dp + gains.k_v * speed);
+  const Eigen::EigenSolver<Eigen::MatrixXd> solver(A);
+  // How much of a motion's parts is left in their sum.
+  const auto shows = [](const Row& output, const Eigen::VectorXcd& motion) {
+    const Eigen::VectorXcd parts = output.transpose().cast<Complex>().cwiseProduct(motion);
+    return std::abs(parts.sum()) > 1e-6 * parts.cwiseAbs().sum() &&
+           parts.cwiseAbs().sum() > 1e-9 * motion.norm();
+  };
   std::vector<Complex> poles;
-  for (const Complex value : values) {
+  for (Eigen::Index i = 0; i < states_; ++i) {
+    const Complex value = solver.eigenvalues()[i];
+    const Eigen::VectorXcd motion = solver.eigenvectors().col(i);
+    if (visible_only && !shows(dp, motion) && !shows(speed, motion)) continue;
     if (timing_.interval == 0) {
       poles.push_back(value);
     } else if (std::abs(value) > 1e-12) {
@@ -114,10 +124,18 @@ std::vector<Complex> LinearPressureLoop::Poles(const PressureGains& gains) const
   return poles;
 }
 
+std::vector<Complex> LinearPressureLoop::Poles(const PressureGains& gains) const {
+  return ClosedPoles(gains, false);
+}
+
+std::vector<Complex> LinearPressureLoop::VisiblePoles(const PressureGains& gains) const {
+  return ClosedPoles(gains, true);
+}
+
 double LinearPressureLoop::Growth(const PressureGains& gains) const { return Poles(gains).back().real(); }
 
 Complex LinearPressureLoop::LeastDampedPole(const PressureGains& gains) const {
-  const std::vector<Complex> poles = Poles(gains);
+  const std::vector<Complex> poles = VisiblePoles(gains);
   const auto found = std::find_if(poles.rbegin(), poles.rend(), [](Complex pole) { return pole.imag() > 0; });
   return found == poles.rend() ? 0 : *found;
 }

@@ -37,10 +37,15 @@ class LinearPressureLoop {
   // The largest real part of the closed loop's poles, 1/s: stable below 0.
   double Growth(const PressureGains& gains) const;
 
-  // Of the poles that oscillate the one that is nearest to instability (upper half plane); 0 when none does.
+  // Those of them that show in dp or in the motor's speed: without, for instance, what the two sides do in
+  // common at mid-stroke.
+  std::vector<std::complex<double>> VisiblePoles(const PressureGains& gains) const;
+
+  // Of the visible poles that oscillate the one nearest to instability (upper half plane); 0 when none does.
   std::complex<double> LeastDampedPole(const PressureGains& gains) const;
 
  private:
+  std::vector<std::complex<double>> ClosedPoles(const PressureGains& gains, bool visible_only) const;
   std::complex<double> PerVolt(const std::vector<double>& output, double frequency_hz) const;
 
   LoopTiming timing_;

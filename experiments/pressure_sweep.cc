@@ -10,7 +10,10 @@
 namespace hydro {
 namespace {
 
-constexpr double kBeyond = 1.4;  // the sine starts this factor below the band and ends it above
+// The sine starts this factor below the band, so that the valves have let in what they will, and ends above
+// it.
+constexpr double kBelow = 4;
+constexpr double kAbove = 1.4;
 
 std::string Configuration(const PressureSweep& sweep, const SweptBand& band) {
   const double initial =
@@ -46,7 +49,7 @@ pressure_psi = inf
 )",
                      sweep.arm_angle, initial, sweep.rest_s + band.duration_s, sweep.rate_hz, sweep.gains.k_p,
                      sweep.gains.k_v, 1 / sweep.rate_hz, sweep.offset, sweep.amplitude,
-                     band.first_hz / kBeyond, band.last_hz * kBeyond, sweep.rest_s, band.duration_s);
+                     band.first_hz / kBelow, band.last_hz * kAbove, sweep.rest_s, band.duration_s);
 }
 
 }  // namespace
@@ -82,10 +85,10 @@ SweptPressureLoop RunPressureSweep(const PressureSweep& sweep, const StackRunner
                                                    .segment_s = band.segment_s,
                                                    .first_hz = band.first_hz,
                                                    .last_hz = band.last_hz,
-                                                   .points_per_decade = 16});
+                                                   .points_per_decade = band.points_per_decade});
     for (const ResponsePoint& point : points) {
       const bool new_one =
-          result.points.empty() || point.frequency_hz > 1.05 * result.points.back().frequency_hz;
+          result.points.empty() || point.frequency_hz > result.points.back().frequency_hz + 0.01;
       if (new_one) result.points.push_back(point);
     }
   }

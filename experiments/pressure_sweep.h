@@ -12,12 +12,14 @@
 
 namespace hydro {
 
-// One run: a sine whose frequency rises linearly through the band and a little beyond both its ends.
+// One run: a sine whose frequency rises linearly through the band, from a quarter of its lower end to 1.4
+// times its upper.
 struct SweptBand {
   double first_hz = 0;
   double last_hz = 0;
   double duration_s = 0;
   double segment_s = 0;  // of the estimate
+  int points_per_decade = 16;
 };
 
 // Two runs, so that low frequencies get cycles enough.

@@ -7,6 +7,7 @@
 
 #include "experiments/shipped_models.h"
 #include "model/actuator.h"
+#include "tests/experiments/wave_polynomial.h"
 
 namespace hydro {
 namespace {
@@ -102,34 +103,15 @@ TEST(LinearPressureLoop, SampledLoopTendsToAnalog) {
   EXPECT_THROW(LinearPressureLoop(model, {1e-3, 2}), std::invalid_argument);
 }
 
-// Tests the largest stable gain with waves against Routh's criterion on a characteristic polynomial that was
-// derived by hand for the difference of the two sides:
-//   (J s + B) M(s) + D G(s) + k_1 k_p,  B = b + k_1 k_p k_v,
-//   pump per actuator pressure G = 1 + (I s^2 + R s)/c,  theta' per actuator pressure M = ((s + a L) G + a
-//   s/c)/(2 a D), a = beta/V_p, c = beta/(V_ms - V_p), L = 2 c_I + c_E.
+// Tests the largest stable gain with waves against Routh's criterion on a polynomial derived by hand.
 TEST(LinearPressureLoop, GainLimitWithWavesMeetsRouth) {
   for (const double volume_fraction : {0.1, 0.4}) {
     for (const double damping : {0.005, 0.02}) {
       const ModelDescription model = WithWaves(volume_fraction, damping);
-      const Parameters& p = model.parameters;
       const PressureGains gains = PaperGains(2);
       const auto routh_stable = [&](double factor) {
-        const double w = 2 * kPi * 300;
-        const double V_p = volume_fraction * p.V_ms;
-        const double a = p.beta / V_p;
-        const double c = p.beta / (p.V_ms - V_p);
-        const double I = p.beta * (1 / V_p + 1 / (p.V_ms - V_p)) / (w * w);
-        const double R = 2 * damping * I * w;
-        const double L = 2 * p.c_I + p.c_E;
-        const double kp = p.k_1 * factor * gains.k_p;
-        const double B = p.b + kp * gains.k_v;
-        const double G[3] = {1, R / c, I / c};
-        const double n = 1 / (2 * a * p.D);
-        const double M[4] = {n * a * L * G[0], n * (G[0] + a * L * G[1] + a / c), n * (G[1] + a * L * G[2]),
-                             n * G[2]};
-        const double q[5] = {B * M[0] + p.D * G[0] + kp, p.J * M[0] + B * M[1] + p.D * G[1],
-                             p.J * M[1] + B * M[2] + p.D * G[2], p.J * M[2] + B * M[3], p.J * M[3]};
-        return q[1] * q[2] * q[3] > q[4] * q[1] * q[1] + q[0] * q[3] * q[3] && q[2] * q[3] > q[4] * q[1];
+        return RouthStable(
+            WavePolynomial(model.parameters, 300, volume_fraction, damping, {factor * gains.k_p, gains.k_v}));
       };
       const LinearPressureLoop loop(Clamped(model, 0), {});
       const GainLimit limit = LargestStableFactor(loop, gains, 100);
