@@ -69,7 +69,7 @@ json StepsJson(const std::vector<TorqueStep>& steps) {
                    {"rise_time_s", step.rise_time},
                    {"overshoot_percent", step.overshoot_percent},
                    {"settling_time_s", step.settling_time ? json(*step.settling_time) : json()},
-                   {"saturated_fraction_of_0.1_s", step.saturated_fraction}});
+                   {"saturated_fraction_of_first_100_ms", step.saturated_fraction}});
   }
   return out;
 }

@@ -45,7 +45,7 @@ TEST(Torque, ClampedSteps) {
     EXPECT_NEAR(step["steady_state_error_in_lbf"].get<double>(), kK2 * kTs / (kK1 * kKp + kPerPsi), 1e-5);
   }
   // A step of k_1 k_p e <= 40 in-lbf does not saturate, and larger ones rise the slower.
-  EXPECT_EQ(clamped["steps"][0]["saturated_fraction_of_0.1_s"], 0);
+  EXPECT_EQ(clamped["steps"][0]["saturated_fraction_of_first_100_ms"], 0);
   EXPECT_GT(clamped["steps"][3]["rise_time_s"], 1.5 * clamped["steps"][0]["rise_time_s"].get<double>());
 }
 
