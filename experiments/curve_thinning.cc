@@ -11,7 +11,8 @@ namespace hydro {
 std::vector<size_t> ThinLine(std::span<const double> x, std::span<const double> y,
                              const std::function<double(double)>& column) {
   std::vector<size_t> kept;
-  const auto finite = [&](size_t i) { return std::isfinite(x[i]) && std::isfinite(y[i]); };
+  // A logarithmic axis has no column for 0 and below.
+  const auto finite = [&](size_t i) { return std::isfinite(column(x[i])) && std::isfinite(y[i]); };
   for (size_t begin = 0; begin < x.size();) {
     if (!finite(begin)) {
       kept.push_back(begin);
@@ -40,7 +41,7 @@ std::vector<size_t> ThinPoints(std::span<const double> x, std::span<const double
   std::vector<size_t> kept;
   std::set<std::pair<double, double>> taken;
   for (size_t i = 0; i < x.size(); ++i) {
-    if (!std::isfinite(x[i]) || !std::isfinite(y[i])) continue;
+    if (!std::isfinite(column(x[i])) || !std::isfinite(row(y[i]))) continue;
     if (taken.emplace(std::floor(column(x[i])), std::floor(row(y[i]))).second) kept.push_back(i);
   }
   return kept;

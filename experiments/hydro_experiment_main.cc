@@ -38,7 +38,7 @@ int main(int argc, char** argv) {
       "The paper's experiments and figures: NAME.json, NAME.csv and NAME.svg of each; for "
       "all of them, index.html, too.");
   hydro::ExperimentRequest request;
-  request.folder = "out/experiments";
+  request.name.clear();
   bool list = false;
   line.AddPositional("NAME", &request.name, "which one, or all", false);
   line.AddOption("-o,--out", &request.folder, "DIR where to write (out/experiments)");

@@ -10,12 +10,12 @@
 namespace hydro {
 
 struct ExperimentRequest {
-  std::string name;    // of an experiment, or "all"
-  std::string folder;  // is created
-  int jobs = 2;        // experiments at the same time
+  std::string name = "all";                // or of an experiment
+  std::string folder = "out/experiments";  // is created
+  int jobs = 2;                            // experiments at the same time
   bool si = false;
   bool real_time = false;  // for the record; options.run_stack says how
-  ExperimentOptions options;
+  ExperimentOptions options = {};
 };
 
 // The experiments asked for. Throws InputError: no such name, or a measured run for one that takes none.

@@ -116,7 +116,7 @@ TEST(Plot, LogarithmicAxis) {
   figure.panels[0].notes.clear();
   const std::string svg = RenderSvg(figure, "x");
   EXPECT_TRUE(IsBalanced(svg));
-  for (const char* tick : {" 4<", " 5<", " 8<"}) EXPECT_THAT(svg, HasSubstr(tick));
+  for (const char* tick : {">4<", ">5<", ">8<"}) EXPECT_THAT(svg, HasSubstr(tick));
 }
 
 // Tests that figures that cannot be drawn are refused with the panel's number and what is wrong.

@@ -70,7 +70,7 @@ class RunExperimentsTest : public ::testing::Test {
   ~RunExperimentsTest() override { fs::remove_all(folder_); }
 
   int Run(const std::vector<Experiment>& experiments, ExperimentRequest request) {
-    if (request.folder.empty()) request.folder = folder_ + "/out";
+    if (request.folder == ExperimentRequest().folder) request.folder = folder_ + "/out";
     char* out = nullptr;
     char* errors = nullptr;
     size_t out_size = 0;
