@@ -70,7 +70,8 @@ TEST(Apparatus, FindingsAndSchematic) {
   EXPECT_EQ(Result().findings[1].number, 6);
   EXPECT_NE(Result().findings[1].evidence.find("562"), std::string::npos);
   const std::string& drawing = Result().pictures.at(0).figure.drawing;
-  for (const char* symbol : {"accumulator p", "pump D", "bypass", "D θ&#39;", "J<tspan", "0.00796", "247000"}) {
+  for (const char* symbol :
+       {"accumulator p", "pump D", "bypass", "D θ&#39;", "J<tspan", "0.00796", "247000"}) {
     EXPECT_NE(drawing.find(symbol), std::string::npos) << symbol;
   }
 }
