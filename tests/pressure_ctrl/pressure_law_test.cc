@@ -6,6 +6,7 @@
 #include <complex>
 #include <stdexcept>
 
+#include "model/linearise.h"
 #include "tests/table1.h"
 
 namespace hydro {
@@ -46,6 +47,36 @@ TEST(PressureLawTest, DerivedGainsGiveTheLoopAskedFor) {
           ClosedLoop(Table1(), DerivePressureGains(Table1(), 0, omega, 0.5, sides), sides);
       EXPECT_NEAR(loop.natural_frequency, omega, 1e-9 * omega);
       EXPECT_NEAR(loop.damping_ratio, 0.5, 1e-9);
+    }
+  }
+}
+
+// Tests the same away from mid-stroke, where the two volumes differ, on the model's own linearisation.
+TEST(PressureLawTest, DerivedGainsGiveTheLoopAskedForAwayFromMidstroke) {
+  ModelDescription model;
+  model.parameters = Table1();
+  for (const double arm_angle : {0.4, -0.6}) {
+    ActuatorOptions options;
+    options.shaft = Shaft::kClamped;
+    options.arm_angle = arm_angle;
+    const Equations equations(model, options);
+    for (const int sides : {1, 2}) {
+      Mode mode;
+      mode.pump = 1;
+      mode.valve_1 = sides == 1;  // holds side 1 at p_3
+      const double state[] = {0, 1, 100, 400};
+      const LinearModel linear = Linearise(equations, 0, 0, mode, state);
+      const auto A = [&](int i, int j) { return linear.A[i + j * 4]; };
+      const PressureGains gains = DerivePressureGains(model.parameters, arm_angle, 150, 0.5, sides);
+      // v = -k_p (dp + k_v theta') closes the loop of dp' = rise theta' and theta'' = A theta' + A dp + B v.
+      const double rise = A(kP2, kMotorSpeed) - A(kP1, kMotorSpeed);
+      const double B = linear.B[kMotorSpeed];
+      const double omega = std::sqrt(rise * (B * gains.k_p - A(kMotorSpeed, kP2)));
+      EXPECT_NEAR(omega, 150, 1e-9) << arm_angle << ", " << sides;
+      EXPECT_NEAR((B * gains.k_p * gains.k_v - A(kMotorSpeed, kMotorSpeed)) / (2 * omega), 0.5, 1e-12);
+      const SecondOrder loop = PressureLoopDynamics(model.parameters, arm_angle, gains, sides);
+      EXPECT_NEAR(loop.natural_frequency, 150, 1e-9);
+      EXPECT_NEAR(loop.damping_ratio, 0.5, 1e-12);
     }
   }
 }
