@@ -1,6 +1,7 @@
 #include "experiments/report.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "experiments/comparison_text.h"
 #include "experiments/typeset.h"
@@ -32,8 +33,9 @@ th { text-align: left; font-size: .78rem; color: #333333; border-bottom: 1.5px s
 td { vertical-align: top; border-bottom: 1px solid #dcdcdc; padding: .3rem .6rem .3rem 0; }
 tr { break-inside: avoid; }
 td.number, th.number { text-align: right; font-variant-numeric: tabular-nums; white-space: nowrap; }
-td.remark { color: #444444; width: 36%; }
+td.remark { color: #444444; width: 34%; }
 td.unit { white-space: nowrap; }
+.comparisons th:first-child { width: 25%; }
 .failed { border-left: 4px solid #b3261e; padding: .4rem .8rem; background: #fbecea; }
 .finding { border-left: 4px solid #dd6b00; padding: .1rem .8rem; margin: .6rem 0; }
 sub, sup { line-height: 0; font-size: .72em; }
@@ -51,18 +53,19 @@ std::string Paragraph(const std::string& heading, const std::string& text) {
   return "<h3>" + EscapeMarkup(heading) + "</h3>\n<p>" + TypesetHtml(text) + "</p>\n";
 }
 
+std::string Shown(double value) { return std::isfinite(value) ? ShownNumber(value) : "–"; }
+
 std::string ComparisonTable(const std::vector<Comparison>& comparisons, bool si) {
   if (comparisons.empty()) return "";
   std::string out =
-      "<table>\n<thead><tr><th>quantity</th><th>the paper</th><th class=\"number\">its equations, "
-      "independently</th><th class=\"number\">this "
+      "<table class=\"comparisons\">\n<thead><tr><th>quantity</th><th>the paper</th><th "
+      "class=\"number\">independent</th><th class=\"number\">this "
       "run</th><th>unit</th><th>remark</th></tr></thead>\n<tbody>\n";
   for (const Comparison& row : si ? InSi(comparisons) : comparisons) {
     out += "<tr><td>" + TypesetHtml(row.quantity) + "</td><td>" +
            (row.paper.empty() ? "–" : TypesetHtml(row.paper)) + "</td><td class=\"number\">" +
-           EscapeMarkup(ShownNumber(row.expected)) + "</td><td class=\"number\">" +
-           EscapeMarkup(ShownNumber(row.here)) + "</td><td class=\"unit\">" + TypesetHtml(row.unit) +
-           "</td><td class=\"remark\">" + TypesetHtml(row.remark) + "</td></tr>\n";
+           Shown(row.expected) + "</td><td class=\"number\">" + Shown(row.here) + "</td><td class=\"unit\">" +
+           TypesetHtml(row.unit) + "</td><td class=\"remark\">" + TypesetHtml(row.remark) + "</td></tr>\n";
   }
   return out + "</tbody>\n</table>\n";
 }
