@@ -31,7 +31,8 @@ from mutations import MUTATIONS  # noqa: E402
 
 SOURCE = pathlib.Path(__file__).resolve().parents[2]
 NOT_COPIED = {".git", "build", "out", "__pycache__"}
-LONGER = 10  # times what a test program takes otherwise: a wrong sign can make a simulation run for ever, which is noticed too
+# Times what a test program takes otherwise: a wrong sign can make a simulation run for ever, which is noticed too.
+LONGER = 10
 FALLBACK = "experiments"
 
 
