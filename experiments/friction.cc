@@ -94,12 +94,20 @@ const char* Holds(const Estimate& estimate, double truth) {
   return estimate.low <= truth && truth <= estimate.high ? "holds" : "misses";
 }
 
-// The most that acceleration may still take at any of the points, in-lbf: what the intervals leave out.
+// The most that acceleration may still take at any of the points, in-lbf, as far as the noise lets it be
+// seen.
 double AccelerationTorque(const PumpFriction& friction, const Parameters& p) {
   double most = 0;
   for (const FrictionPoint& point : friction.points) {
     most = std::max(most, p.J * point.window.LargestAcceleration());
   }
+  return most;
+}
+
+// The most that is left of the transients at any of the points, in-lbf: the intervals are wider by it.
+double TransientTorque(const PumpFriction& friction) {
+  double most = 0;
+  for (const FrictionPoint& point : friction.points) most = std::max(most, point.transient);
   return most;
 }
 
@@ -118,6 +126,7 @@ void AddFit(const PumpFriction& friction, const Parameters& p, ExperimentResult*
               {"scatter_in_lbf", friction.scatter},
               {"degrees_of_freedom", friction.degrees_of_freedom},
               {"acceleration_may_take_in_lbf", AccelerationTorque(friction, p)},
+              {"transient_may_take_in_lbf", TransientTorque(friction)},
               {"k_1", p.k_1}};
   Curve points{.label = "steady states",
                .x = {},
@@ -285,9 +294,10 @@ ExperimentResult AnalyseMeasured(const ExperimentOptions& options) {
       "With a valve open between the two sides, constant voltages held to steady speed give T_p against "
       "speed; the slope is b, the intercept T_s.";
   result.explanation = fmt::format(
-      "{} steady states were found; the points scatter by {:.3g} in-lbf about the lines. The directions' "
-      "Coulomb frictions differ by {} in-lbf. Both values are in proportion to k_1.",
-      friction.points.size(), friction.scatter, PlusMinus(friction.difference));
+      "{} steady states were found; the points scatter by {:.3g} in-lbf about the lines, and inertia takes "
+      "{:.2g} in-lbf of one at most, by what is left of the transients: the intervals include both. The "
+      "directions' Coulomb frictions differ by {} in-lbf. Both values are in proportion to k_1.",
+      friction.points.size(), friction.scatter, TransientTorque(friction), PlusMinus(friction.difference));
   json numbers;
   AddFit(friction, p, &result, &numbers);
   numbers["source"] = run.file;
@@ -327,15 +337,15 @@ ExperimentResult RunFriction(const ExperimentOptions& options) {
   result.explanation = fmt::format(
       "The lines give T_s = {} in-lbf and b = {} in-lbf-s (95 %, Student, {} degrees of freedom), {:.2g} % "
       "at "
-      "most from the simulated rig's own. The intervals rest on the scatter of {} holds about the lines; "
-      "acceleration that the noise hides could take {:.2g} in-lbf besides. The ramp reads {:.4f} in-lbf "
+      "most from the simulated rig's own. The intervals rest on the scatter of {} holds about the lines and "
+      "on what is left of the transients, {:.2g} in-lbf at most. The ramp reads {:.4f} in-lbf "
       "forward and {:.4f} backward, {:.2g} and {:.2g} % above T_s: the motor has to have turned by {:.2g} "
       "rad "
       "to be seen moving, and a torque that rises by {:.3g} in-lbf/s has grown by (6 J θ T_p'^2)^{{1/3}} = "
       "{:.3g} in-lbf by then. From the encoder's angles in place of the speeds: T_s = {:.6f} in-lbf, b = "
       "{:.8f} in-lbf-s. The speed settles with J/b = {:.2f} s, so holds are long.",
       PlusMinus(friction.T_s), PlusMinus(friction.b), friction.degrees_of_freedom, error_percent,
-      friction.points.size(), AccelerationTorque(friction, p), readings[0].torque, readings[1].torque,
+      friction.points.size(), TransientTorque(friction), readings[0].torque, readings[1].torque,
       100 * (readings[0].torque / p.T_s - 1), 100 * (readings[1].torque / p.T_s - 1), kMoved,
       p.k_1 * kRampRate, excess, by_angle.T_s.value, by_angle.b.value, p.J / p.b);
 

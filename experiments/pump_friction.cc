@@ -66,9 +66,32 @@ void CheckSupport(const MeasuredRun& run, const SteadySpeeds& found, const std::
   }
 }
 
-Estimate Estimated(const LinearFit& fit, const std::vector<double>& weights) {
+// The most that inertia takes of the torque in a window, in-lbf: what is left, with the time constant J/b of
+// eq. (4), of the speed's difference in the first tenth of the hold; within what the window itself shows.
+double TransientTorque(const SpeedWindow& window, double J, double b) {
+  const double shown = J * window.LargestAcceleration();
+  const double surely = J * (std::abs(window.acceleration) - window.acceleration_95);
+  const double tau = J / b;
+  if (!(tau > 0) || std::isnan(window.first_speed)) return shown;
+  const double tenth = window.first_duration / tau;
+  const double at_first = std::abs(window.first_speed - window.speed) * tenth / -std::expm1(-tenth);
+  const double left = std::exp(-(window.from - window.hold_from) / tau);
+  const double expected = J * at_first * left * -std::expm1(-window.duration() / tau) / window.duration();
+  return std::min(shown, std::max(expected, surely));
+}
+
+using Regressors = std::vector<std::vector<double>>;
+
+// With `errors`, the most that each of the torques may be off by besides its scatter.
+Estimate Estimated(const LinearFit& fit, const Regressors& regressors, const std::vector<double>& errors,
+                   const std::vector<double>& weights) {
   const double value = fit.Value(weights);
-  const double half = fit.HalfWidth95(weights);
+  double half = fit.HalfWidth95(weights);
+  for (size_t i = 0; i < errors.size(); ++i) {
+    std::vector<double> unit(errors.size(), 0.0);
+    unit[i] = 1;
+    half += std::abs(FitLinear(regressors, unit).Value(weights)) * errors[i];
+  }
   return {value, value - half, value + half};
 }
 
@@ -100,12 +123,21 @@ PumpFriction FitPumpFriction(const MeasuredRun& run, SpeedSource source, const P
   }
   CheckSupport(run, found, friction.points, parameters);
 
-  const LinearFit fit = FitLinear({speed, forward, backward}, torque);
-  friction.b = Estimated(fit, {1, 0, 0});
-  friction.T_s = Estimated(fit, {0, 0.5, 0.5});
-  friction.T_s_forward = Estimated(fit, {0, 1, 0});
-  friction.T_s_backward = Estimated(fit, {0, 0, 1});
-  friction.difference = Estimated(fit, {0, 1, -1});
+  const Regressors regressors = {speed, forward, backward};
+  const LinearFit fit = FitLinear(regressors, torque);
+  std::vector<double> transients;
+  for (FrictionPoint& point : friction.points) {
+    point.transient = TransientTorque(point.window, parameters.J, fit.coefficients[0]);
+    transients.push_back(point.transient);
+  }
+  const auto estimated = [&](const std::vector<double>& weights) {
+    return Estimated(fit, regressors, transients, weights);
+  };
+  friction.b = estimated({1, 0, 0});
+  friction.T_s = estimated({0, 0.5, 0.5});
+  friction.T_s_forward = estimated({0, 1, 0});
+  friction.T_s_backward = estimated({0, 0, 1});
+  friction.difference = estimated({0, 1, -1});
   friction.scatter = fit.residual_deviation;
   friction.degrees_of_freedom = fit.degrees_of_freedom;
   for (size_t i = 0; i < friction.points.size(); ++i) {

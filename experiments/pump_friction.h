@@ -17,9 +17,13 @@ struct FrictionPoint {
   SpeedWindow window;
   double torque = 0;  // in-lbf, T_p = k_1 v within +/- T_pmax
   double fitted = 0;  // in-lbf, on the line
+  // The most that inertia still takes of it, in-lbf: the approach to a steady speed never ends.
+  double transient = 0;
 };
 
-// Torque regressed on speed, with a Coulomb friction for each direction and one slope for both.
+// Torque regressed on speed, with a Coulomb friction for each direction and one slope for both. The intervals
+// are Student's, from the points' scatter about the lines, widened by the most that what is left of the
+// transients can shift the value: all points lag in the same way, so that their scatter does not tell it.
 struct PumpFriction {
   Estimate T_s;           // in-lbf, the mean of the two directions'
   Estimate T_s_forward;   // in-lbf

@@ -116,8 +116,13 @@ SteadySpeeds FindSteadySpeeds(const MeasuredRun& run, SpeedSource source, double
     }
     const std::optional<SpeedWindow> stretch = without_trend.has_value() ? without_trend : slow;
     const double from = stretch.has_value() ? stretch->from + stretch->duration() / 2 : begin + length / 2;
-    const std::optional<SpeedWindow> window = LookAt(run, source, hold, from);
+    std::optional<SpeedWindow> window = LookAt(run, source, hold, from);
     if (!window.has_value()) continue;
+    window->hold_from = begin;
+    window->first_duration = length / kBlocks;
+    const auto tenth =
+        std::upper_bound(run.time.begin(), run.time.end(), begin + window->first_duration) - run.time.begin();
+    window->first_speed = BlockSpeed(run, source, hold.first, static_cast<size_t>(tenth));
     if (stretch.has_value()) {
       result.steady.push_back(*window);
     } else if (!result.longest_unsteady.has_value() ||

@@ -30,6 +30,9 @@ struct SpeedWindow {
   double speed_error = 0;      // rad/s, standard error of the mean
   double acceleration = 0;     // rad/s^2, of the straight line
   double acceleration_95 = 0;  // rad/s^2, half the width of its 95 % confidence interval
+  double hold_from = 0;        // s, since when the voltage is constant
+  double first_duration = 0;   // s, the hold's first tenth
+  double first_speed = 0;      // rad/s, mean over that
   double duration() const { return to - from; }
   // The most that the speed may be accelerating.
   double LargestAcceleration() const;

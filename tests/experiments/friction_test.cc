@@ -157,6 +157,25 @@ TEST(PumpFrictionTest, IntervalsAreHonest) {
   }
 }
 
+// Tests that the intervals also hold the truth where what is left of the transients, not noise, is the error:
+// it is alike at all points, so that their scatter alone would promise too much.
+TEST(PumpFrictionTest, IntervalsKnowOfTransients) {
+  int beyond_scatter = 0;
+  for (const SpeedSource source : {SpeedSource::kSpeed, SpeedSource::kAngle}) {
+    for (const double duration : {14.0, 16.0, 20.0, 30.0}) {  // 7 to 15 time constants J/b
+      const PumpFriction friction =
+          FitPumpFriction(SimulateHolds(ShippedModel("table1"), BothWays(duration), 0.02), source, Table1());
+      EXPECT_LE(friction.T_s.low, 4.0) << duration;
+      EXPECT_GE(friction.T_s.high, 4.0) << duration;
+      EXPECT_LE(friction.b.low, 0.01455) << duration;
+      EXPECT_GE(friction.b.high, 0.01455) << duration;
+      EXPECT_LT(friction.T_s.half_width(), 0.04) << duration;  // 1 %: still worth something
+      beyond_scatter += std::abs(friction.T_s.value - 4.0) > 2.4 * friction.scatter / std::sqrt(8.0);
+    }
+  }
+  EXPECT_GT(beyond_scatter, 0);
+}
+
 // Tests that without noise the fit is exact but for what is left of the transients (15 time constants).
 TEST(PumpFrictionTest, ExactWithoutNoise) {
   for (const SpeedSource source : {SpeedSource::kSpeed, SpeedSource::kAngle}) {
