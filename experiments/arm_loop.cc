@@ -1,12 +1,11 @@
 #include "experiments/arm_loop.h"
 
 #include <Eigen/Core>
-#include <Eigen/Eigenvalues>
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
+#include "experiments/matrix_functions.h"
 #include "model/linearise.h"
 
 namespace hydro {
@@ -77,11 +76,8 @@ LinearArmLoop::LinearArmLoop(const ModelDescription& model, const PressureLawSet
 }
 
 Complex LinearArmLoop::Output(size_t row, double frequency) const {
-  const auto n = static_cast<Eigen::Index>(states_);
-  const Eigen::MatrixXcd resolvent =
-      Complex(0, frequency) * Eigen::MatrixXcd::Identity(n, n) - AsMatrix(A_, states_).cast<Complex>();
   const Eigen::VectorXcd states =
-      resolvent.partialPivLu().solve(AsMatrix(B_, states_).cast<Complex>().col(0));
+      Resolvent(AsMatrix(A_, states_), Complex(0, frequency), AsMatrix(B_, states_));
   return states(static_cast<Eigen::Index>(row));
 }
 
@@ -93,7 +89,7 @@ std::vector<Complex> LinearArmLoop::Poles(double c1, double c2) const {
   Eigen::MatrixXd closed = AsMatrix(A_, states_);
   closed.col(kAlpha) -= c1 * AsMatrix(B_, states_);
   closed.col(kAlphaRate) -= c2 * AsMatrix(B_, states_);
-  const Eigen::VectorXcd values = closed.eigenvalues();
+  const Eigen::VectorXcd values = Eigenvalues(closed);
   std::vector<Complex> poles(values.begin(), values.end());
   SortPoles(&poles);
   return poles;
@@ -114,7 +110,7 @@ Response LinearArmLoop::Step(double c1, double c2, double step, double duration,
 SecondOrder ExactPressureLoop(const ModelDescription& model, const PressureLawSettings& law,
                               int compressed_sides) {
   const Loop loop = ClosePressureLoop(model, {.shaft = Shaft::kClamped}, compressed_sides, law);
-  const Eigen::VectorXcd poles = loop.A.eigenvalues();
+  const Eigen::VectorXcd poles = Eigenvalues(loop.A);
   const auto upper = std::max_element(poles.begin(), poles.end(),
                                       [](const Complex& a, const Complex& b) { return a.imag() < b.imag(); });
   if (!(upper->imag() > 0)) throw std::domain_error("the pressure loop does not oscillate");

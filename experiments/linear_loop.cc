@@ -1,11 +1,12 @@
 #include "experiments/linear_loop.h"
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
-#include <unsupported/Eigen/MatrixFunctions>
+
+#include "experiments/matrix_functions.h"
 
 namespace hydro {
 namespace {
@@ -55,7 +56,7 @@ LinearPressureLoop::LinearPressureLoop(const LinearModel& model, const LoopTimin
     Eigen::MatrixXd both = Eigen::MatrixXd::Zero(n + 1, n + 1);
     both.topLeftCorner(n, n) = A * timing.interval;
     both.topRightCorner(n, 1) = B * timing.interval;
-    const Eigen::MatrixXd exponential = both.exp();
+    const Eigen::MatrixXd exponential = Exponential(both);
     A = exponential.topLeftCorner(n, n);
     B = exponential.topRightCorner(n, 1);
     if (timing.delay_ticks == 1) {  // the voltage that acts is one more state
@@ -78,9 +79,7 @@ LinearPressureLoop::LinearPressureLoop(const LinearModel& model, const LoopTimin
 Complex LinearPressureLoop::PerVolt(const std::vector<double>& output, double frequency_hz) const {
   const double w = 2 * std::numbers::pi * frequency_hz;
   const Complex s = timing_.interval > 0 ? std::polar(1.0, w * timing_.interval) : Complex(0, w);
-  Eigen::MatrixXcd resolvent = -Map(A_.data(), states_, states_).cast<Complex>();
-  resolvent.diagonal().array() += s;
-  const Eigen::VectorXcd x = resolvent.partialPivLu().solve(Column(B_.data(), states_).cast<Complex>());
+  const Eigen::VectorXcd x = Resolvent(Map(A_.data(), states_, states_), s, Column(B_.data(), states_));
   return (Row(output.data(), states_).cast<Complex>() * x)(0);
 }
 
@@ -100,7 +99,7 @@ std::vector<Complex> LinearPressureLoop::ClosedPoles(const PressureGains& gains,
   const Row speed(speed_.data(), states_);
   const Eigen::MatrixXd A =
       Map(A_.data(), states_, states_) - gains.k_p * Column(B_.data(), states_) * (dp + gains.k_v * speed);
-  const Eigen::EigenSolver<Eigen::MatrixXd> solver(A);
+  const Eigensystem motions = Eigenvectors(A);
   // How much of a motion's parts is left in their sum.
   const auto shows = [](const Row& output, const Eigen::VectorXcd& motion) {
     const Eigen::VectorXcd parts = output.transpose().cast<Complex>().cwiseProduct(motion);
@@ -109,8 +108,8 @@ std::vector<Complex> LinearPressureLoop::ClosedPoles(const PressureGains& gains,
   };
   std::vector<Complex> poles;
   for (Eigen::Index i = 0; i < states_; ++i) {
-    const Complex value = solver.eigenvalues()[i];
-    const Eigen::VectorXcd motion = solver.eigenvectors().col(i);
+    const Complex value = motions.values[i];
+    const Eigen::VectorXcd motion = motions.vectors.col(i);
     if (visible_only && !shows(dp, motion) && !shows(speed, motion)) continue;
     if (timing_.interval == 0) {
       poles.push_back(value);

@@ -1,12 +1,14 @@
 #include "experiments/position_design.h"
 
-#include <Eigen/Eigenvalues>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <functional>
 #include <numbers>
 #include <stdexcept>
 #include <string>
+
+#include "experiments/matrix_functions.h"
 
 namespace hydro {
 namespace {
@@ -46,7 +48,7 @@ std::vector<Complex> PolynomialRoots(const std::vector<double>& coefficients) {
   for (Eigen::Index i = 0; i < degree; ++i) {
     companion(i, degree - 1) = -coefficients[static_cast<size_t>(i)] / coefficients.back();
   }
-  const Eigen::VectorXcd values = companion.eigenvalues();
+  const Eigen::VectorXcd values = Eigenvalues(companion);
   std::vector<Complex> roots(values.begin(), values.end());
   SortPoles(&roots);
   return roots;

@@ -1,0 +1,25 @@
+// The linear algebra of the linear loops: Eigen's decompositions, compiled once. They cost seconds in each
+// file that instantiates them.
+#pragma once
+
+#include <Eigen/Core>
+#include <complex>
+
+namespace hydro {
+
+struct Eigensystem {
+  Eigen::VectorXcd values;
+  Eigen::MatrixXcd vectors;  // columns, of length 1, in the order of the values
+};
+
+// Of a square matrix, in no particular order.
+Eigen::VectorXcd Eigenvalues(const Eigen::MatrixXd& A);
+Eigensystem Eigenvectors(const Eigen::MatrixXd& A);
+
+// exp(A): what x' = A x does in a unit of time.
+Eigen::MatrixXd Exponential(const Eigen::MatrixXd& A);
+
+// (s I - A)^-1 b: the states' response at s (or z) to an input that enters by b.
+Eigen::VectorXcd Resolvent(const Eigen::MatrixXd& A, std::complex<double> s, const Eigen::VectorXd& b);
+
+}  // namespace hydro
