@@ -99,8 +99,8 @@ std::string DrawPositionLoop(const DesignModel& m, double gain) {
   svg += Text(207, 196, fmt::format("c_1 = {:g}, c_2 = {:g}", m.zero * gain, gain), 13, "middle", "#555");
   svg += Legend(338, 522, "closed pressure loop, eq. (16)",
                 fmt::format("ω_n = {:g} rad/s, ζ = {:g}", m.natural_frequency, m.damping_ratio));
-  svg += Legend(572, 656, "actuator", "k_2, in-lb/psi");
-  svg += Legend(714, 806, "arm, eq. (15)", "J_a, lb-in-s²");
+  svg += Legend(572, 656, "actuator", "k_2, in-lbf/psi");
+  svg += Legend(714, 806, "arm, eq. (15)", "J_a, lbf-in-s²");
   return svg + "</svg>\n";
 }
 

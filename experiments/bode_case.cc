@@ -163,6 +163,36 @@ std::vector<Panel> BodePanels(const std::string& title, const std::vector<BodeCu
   return {magnitude, phase};
 }
 
+std::vector<Panel> WithCoherence(std::vector<Panel> panels, const std::vector<BodeCurve>& measured) {
+  Panel coherence{.title = "",
+                  .x = panels.front().x,
+                  .y = {.label = "coherence", .min = 0, .max = 1.05},
+                  .curves = {},
+                  .notes = {},
+                  .rules = {},
+                  .height = 0.6};
+  // The range of the panels above, which may have curves beyond the points.
+  std::vector<double> frequencies;
+  for (const Curve& curve : panels.front().curves) {
+    frequencies.insert(frequencies.end(), curve.x.begin(), curve.x.end());
+  }
+  const auto [least, most] = std::minmax_element(frequencies.begin(), frequencies.end());
+  coherence.x.min = *least;
+  coherence.x.max = *most;
+  for (const BodeCurve& curve : measured) {
+    const Parts parts(curve.points);
+    coherence.curves.push_back({.label = "",
+                                .x = parts.frequency,
+                                .y = parts.coherence,
+                                .stroke = Stroke::kPoints,
+                                .colour = curve.colour,
+                                .y_low = {},
+                                .y_high = {}});
+  }
+  panels.push_back(std::move(coherence));
+  return panels;
+}
+
 std::vector<ResponsePoint> Sampled(double first_hz, double last_hz,
                                    const std::function<std::complex<double>(double)>& gain) {
   constexpr int kIntervals = 300;

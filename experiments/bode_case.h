@@ -58,6 +58,8 @@ struct BodeCurve {
 };
 std::vector<Panel> BodePanels(const std::string& title, const std::vector<BodeCurve>& curves,
                               const std::vector<Rule>& vertical, double least_db);
+// The panels with one more below them: the coherence of what was measured, all points of it.
+std::vector<Panel> WithCoherence(std::vector<Panel> panels, const std::vector<BodeCurve>& measured);
 
 // A response at frequencies close enough for a smooth curve.
 std::vector<ResponsePoint> Sampled(double first_hz, double last_hz,

@@ -315,14 +315,15 @@ ExperimentResult RunFig10(const ExperimentOptions& options) {
   }
   result.findings = {
       {8, "Figure 8's linear model leaves out the pump speed that arm motion forces, θ' = (c/D) α'.",
-       fmt::format("Reflected pump inertia J (c/D)² = {:.0f} against J_a = {:g} lb-in-s². A step of {:g} rad "
-                   "at g = {:g}: the "
-                   "full model settles in {}, the linear model in {} ({} with the derivative on the "
-                   "measurement). With "
-                   "(c/D) α' fed forward into the k_v term: {:.0f} % overshoot, {}.",
-                   p.J * std::pow(p.c / p.D, 2), p.J_a, kStep, kPaperGain, Settling(nonlinear),
-                   Settling(printed.linear_step), Settling(forms[1].linear_step),
-                   step_of(4).overshoot_percent, Settling(step_of(4))),
+       fmt::format(
+           "Reflected pump inertia J (c/D)² = {:.0f} against J_a = {:g} lbf-in-s². A step of {:g} rad "
+           "at g = {:g}: the "
+           "full model settles in {}, the linear model in {} ({} with the derivative on the "
+           "measurement). With "
+           "(c/D) α' fed forward into the k_v term: {:.0f} % overshoot, {}.",
+           p.J * std::pow(p.c / p.D, 2), p.J_a, kStep, kPaperGain, Settling(nonlinear),
+           Settling(printed.linear_step), Settling(forms[1].linear_step), step_of(4).overshoot_percent,
+           Settling(step_of(4))),
        "Shows both models; pressure.arm_speed_feedforward takes (c/D) α' out of the k_v term, and "
        "config/retuned.toml uses "
        "it."}};
@@ -395,7 +396,7 @@ ExperimentResult RunFig10(const ExperimentOptions& options) {
                     .height = 1.6},
                    {.title = "Motor torque, full model",
                     .x = time,
-                    .y = {.label = "T_p, in-lb", .min = -45, .max = 45},
+                    .y = {.label = "T_p, in-lbf", .min = -45, .max = 45},
                     .curves = {Line("", full.time, full.torque, 2)},
                     .notes = {},
                     .rules = {{"", false, p.T_pmax}, {"", false, -p.T_pmax}}}},
@@ -426,13 +427,19 @@ ExperimentResult RunFig10(const ExperimentOptions& options) {
             kStep, kPaperGain),
         .panels = {slow, fast},
         .drawing = ""}});
+  // The arm's swing on the oil, over the last 0.1 s.
+  const auto tail = retuned.angle.end() - std::min<ptrdiff_t>(500, std::ssize(retuned.angle));
+  const auto [lowest, highest] = std::minmax_element(tail, retuned.angle.end());
+  const double ripple = (*highest - *lowest) / 2;
   const Axis short_time{.label = "time since the step, s", .min = 0, .max = 1};
   result.pictures.push_back(
       {"-retuned",
        {.caption = fmt::format(
             "The retuned loop of config/retuned.toml. The motor cannot bring the arm into 2 % of {:g} rad, "
-            "to stay, before {:.3f} s; the loop takes {}.",
-            kStep, shortest, Settling(retuned.response)),
+            "to stay, before {:.3f} s; the loop takes {}. The ripple of its torque after that answers the "
+            "arm "
+            "that swings on the oil by {:.0e} rad, hardly damped.",
+            kStep, shortest, Settling(retuned.response), ripple),
         .panels = {{.title = "Arm",
                     .x = short_time,
                     .y = {.label = "α, rad", .min = 0, .max = 0.15},
@@ -444,7 +451,7 @@ ExperimentResult RunFig10(const ExperimentOptions& options) {
                     .height = 1.6},
                    {.title = "Motor torque",
                     .x = short_time,
-                    .y = {.label = "T_p, in-lb", .min = -45, .max = 45},
+                    .y = {.label = "T_p, in-lbf", .min = -45, .max = 45},
                     .curves = {Line("", retuned.time, retuned.torque, 0),
                                Line("", causes[4].time, causes[4].torque, 1)},
                     .notes = {},
@@ -459,12 +466,13 @@ ExperimentResult RunFig10(const ExperimentOptions& options) {
   for (const Robustness& r : robustness) {
     std::vector<double> share = r.run.angle;
     for (double& value : share) value /= r.step;
-    steps.curves.push_back(Line(r.says, r.run.time, share, -1));
+    // Noise hardly shows: dashed, so that the curve below it is seen.
+    steps.curves.push_back(Line(r.says, r.run.time, share, -1, r.noise ? Stroke::kDashed : Stroke::kLine));
   }
   result.pictures.push_back({"-robustness",
                              {.caption = "The retuned loop on other steps, with noise and with gravity (m g "
-                                         "l = 562 in-lb, assumed), as a share of "
-                                         "the step.",
+                                         "l = 562 in-lbf, assumed: the arm "
+                                         "starts where the loop holds it), as a share of the step.",
                               .panels = {steps},
                               .drawing = ""}});
   options.progress(1);

@@ -84,7 +84,7 @@ ExperimentResult RunFig8(const ExperimentOptions& options) {
   result.conditions = fmt::format(
       "Linear: PD with c_1/c_2 = {:g} and g = {:g}, pressure loop with ω_n = {:g} rad/s and ζ = {:g}, k_2 = "
       "{:g} "
-      "in-lb/psi, J_a = {:g} lb-in-s². Beside it the exact linearisation of Table 1's model at mid-stroke, "
+      "in-lbf/psi, J_a = {:g} lbf-in-s². Beside it the exact linearisation of Table 1's model at mid-stroke, "
       "the "
       "pump slipping and both sides compressing, under eq. (16) with k_p = {:.4f} V/psi and k_v = {:.3f} psi "
       "s/rad.",
@@ -103,7 +103,8 @@ ExperimentResult RunFig8(const ExperimentOptions& options) {
       "c/D = "
       "{:.1f} times as fast, eq. (16) brakes that speed through k_v, and the arm carries the pump's inertia, "
       "J "
-      "(c/D)² = {:.0f} lb-in-s² beside J_a = {:g}. A slow pole at {:.2f} 1/s remains of the design's four at "
+      "(c/D)² = {:.0f} lbf-in-s² beside J_a = {:g}. A slow pole at {:.2f} 1/s remains of the design's four "
+      "at "
       "g = "
       "{:g} (the slowest there: {:.1f} 1/s). Feeding (c/D) α' forward takes the braking out; inertia stays, "
       "and "
@@ -125,11 +126,11 @@ ExperimentResult RunFig8(const ExperimentOptions& options) {
        PressureLoopDynamics(p, 0, law.gains, 1).natural_frequency, one_sided.natural_frequency,
        "the mode in which the loop works at rest at p_3"},
       {"gain margin at g = 350", "", "2.2 (770/350)", limit.gain / kPaperGain, margins.gain, ""},
-      {"phase margin at g = 350", "deg", "", kAutomatic, margins.phase_deg,
+      {"phase margin at g = 350", "degrees", "", kAutomatic, margins.phase_deg,
        fmt::format("at {:.1f} rad/s", margins.gain_crossover)},
       {"slowest pole at g = 350, arm free", "1/s", "", -SlowestPole(Poles(design, kPaperGain)).real(),
        -SlowestPole(exact).real(), "expected: of Figure 8's model; here: of the exact one"},
-      {"reflected inertia of the pump", "lb-in-s²", "", kAutomatic, reflected,
+      {"reflected inertia of the pump", "lbf-in-s^2", "", kAutomatic, reflected,
        fmt::format("J_a = {:g}; Figure 8 has J_a alone", p.J_a)},
   };
 

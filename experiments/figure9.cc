@@ -169,7 +169,7 @@ ExperimentResult RunFig9(const ExperimentOptions& options) {
 
   ExperimentResult result;
   result.conditions = fmt::format(
-      "Figure 8's linear model, k_2 = {:g} in-lb/psi, J_a = {:g} lb-in-s², c_1/c_2 = {:g}; g multiplies "
+      "Figure 8's linear model, k_2 = {:g} in-lbf/psi, J_a = {:g} lbf-in-s², c_1/c_2 = {:g}; g multiplies "
       "both. "
       "Sampled: eq. (17) at intervals T with its command held (zero-order hold), exact by the matrix "
       "exponential.",

@@ -141,7 +141,7 @@ ExperimentResult RunFig3(const ExperimentOptions& options) {
        "after the peak the valve closes and both sides compress: no closed form"},
       {"dp when it slips again", "psi", "", slip_dp, slip.dp, "expected: (T_p - T_s)/D"},
       {"pump slips again", "s", "", stick.time + std::log(stick.dp / slip_dp) / leak_rate, slip.time,
-       "expected: from the stick on, dp leaks at (beta/V_ms)(2 c_I + c_E)"},
+       "expected: from the stick on, dp leaks at (β/V_ms)(2 c_I + c_E)"},
       {"peak of dp without the valves", "psi", "", kAutomatic, bare_dp, ""},
       {"p_2 then", "psi", "", kAutomatic, bare.p2[bare.peak], ""},
       {"p_1 then", "psi", "", kAutomatic, bare.p1[bare.peak], "no fluid bears that: it would cavitate"},

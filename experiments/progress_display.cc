@@ -1,5 +1,7 @@
 #include "experiments/progress_display.h"
 
+#include <sys/ioctl.h>
+
 #include <algorithm>
 #include <utility>
 
@@ -7,6 +9,12 @@ namespace hydro {
 namespace {
 
 constexpr int kBarWidth = 30;
+constexpr size_t kUsualWidth = 80;  // of a terminal that does not say
+
+size_t TerminalWidth(std::FILE* out) {
+  winsize size{};
+  return ioctl(fileno(out), TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : kUsualWidth;
+}
 
 }  // namespace
 
@@ -60,6 +68,8 @@ void ProgressDisplay::Draw() {
   std::string bar = "[" + std::string(static_cast<size_t>(filled), '#') +
                     std::string(static_cast<size_t>(kBarWidth - filled), '.') + "] " +
                     std::to_string(static_cast<int>(fraction * 100)) + " %" + running;
+  // A line that wraps could not be wiped.
+  bar.resize(std::min(bar.size(), TerminalWidth(out_) - 1));
   if (bar == drawn_) return;
   Wipe();
   std::fputs(bar.c_str(), out_);

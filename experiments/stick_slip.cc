@@ -236,7 +236,7 @@ ExperimentResult RunFig2(const ExperimentOptions& options) {
       {"dp when it slips again, Table 1 alone", "psi", "", (kTorque - p.T_s) / p.D, slip.dp,
        "expected: (T_p - T_s)/D"},
       {"how long that stick lasts, Table 1 alone", "s", "", std::log(stick.dp / slip.dp) / leak_rate,
-       slip.time - stick.time, "expected: dp leaks at (beta/V_ms)(2 c_I + c_E)"},
+       slip.time - stick.time, "expected: dp leaks at (β/V_ms)(2 c_I + c_E)"},
       {"dp at the end, Table 1 alone", "psi", "", creep_dp, plain.dp.back(),
        "expected: steady creep, side 1 held at p_3"},
       {"sticks with static above kinetic friction", "", "sustained cycles", kAutomatic,

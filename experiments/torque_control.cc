@@ -133,7 +133,7 @@ Picture BandwidthPicture(const Study& study) {
              .y = {.label = "gain, dB", .min = -30, .max = 5},
              .curves = {},
              .notes = {},
-             .rules = {{"-3 dB", false, -3},
+             .rules = {{"-3 dB of the command", false, -3},
                        {fmt::format("linear, both sides: {:.1f} Hz", LinearBandwidthHz(2)), true,
                         LinearBandwidthHz(2)},
                        {fmt::format("one side: {:.1f}", LinearBandwidthHz(1)), true, LinearBandwidthHz(1)}},
@@ -158,8 +158,10 @@ Picture BandwidthPicture(const Study& study) {
     coherence.curves.push_back(std::move(coherences));
   }
   return {"-bandwidth",
-          {.caption = fmt::format("Swept sines of the commanded torque, {} to {} Hz, arm clamped at α = 0.",
-                                  kSweepFirst, kSweepLast),
+          {.caption = fmt::format(
+               "Swept sines of the commanded torque, {} to {} Hz, arm clamped at α = 0. Bandwidths are where "
+               "the gain is 3 dB below that at the lowest frequency.",
+               kSweepFirst, kSweepLast),
            .panels = {gain, coherence},
            .drawing = ""}};
 }
@@ -285,7 +287,7 @@ ExperimentResult RunTorque(const ExperimentOptions& options) {
       "Table 1, eq. (16) over the stack at {} Hz without delay, k_p = {:.4f} V/psi, k_v = {:.2f} psi s/rad; "
       "torque commands go to it as dp_ref = torque/k_2. Clamped: α = 0. Along a path: the arm is moved from "
       "-0.1 to 0.1 rad and back (quintic), and the torque commanded is J_a α'' + m g l cos α with m g l = {} "
-      "in-lbf (assumed, the shipped gravity model).",
+      "in-lbf (assumed, the shipped gravity model). Bandwidth: 3 dB below the gain at the lowest frequency.",
       kLoopRate, gains.k_p, gains.k_v, ShippedModel("table1_gravity").parameters.mgl);
   result.paper_says =
       "Torque control is needed to exert a given force or to make an arm follow a trajectory; the pressure "
@@ -296,7 +298,8 @@ ExperimentResult RunTorque(const ExperimentOptions& options) {
           "settles "
           "{:.1f} in-lbf short ({:.1f} with the feed-forward); a step of {} takes {:.0f} ms, because the "
           "motor is at its "
-          "limit. A standing pump does not answer within ±{:.1f} in-lbf, by friction. The bandwidth at the "
+          "limit. By friction a standing pump stays so within ±{:.1f} in-lbf of its balance. The bandwidth "
+          "at the "
           "arm is "
           "{:.1f} Hz for ±{} in-lbf and {:.1f} for ±{}, where the motor is at its limit {:.0f} % of the "
           "time. For {} ± "
