@@ -121,6 +121,19 @@ Case MakeCase(const MeasuredRun& run, const ModelDescription& model) {
                     "a swing of ten times the noise: torques well above T_s = {:.4g} in-lbf",
                     run.file, least_dp, most_dp, noise, p.T_s));
   }
+  // A voltage that overcomes friction raises the side that it drives the pump to. (A smaller one may stand
+  // against what is left from before.)
+  double along = 0;  // V psi
+  for (size_t i = 0; i < run.samples(); ++i) {
+    const double dp = run.p2.values[i] - run.p1.values[i];
+    if (std::isnan(dp) || std::abs(p.k_1 * run.voltage.values[i]) <= p.T_s) continue;
+    along += run.voltage.values[i] * dp;
+  }
+  if (along < 0) {
+    throw InputError(run.file +
+                     ": found p_2 - p_1 against the sign of the voltage, allowed p_2 rising under a positive "
+                     "voltage: exchange p1 and p2, or give the voltage the scale -1");
+  }
   resting = std::min<size_t>(resting, 100);
   const double p1 = StartOf(run.p1, resting), p2 = StartOf(run.p2, resting);
   // Missing first values tell nothing of the start; p_3 is what rest tends to.

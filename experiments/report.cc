@@ -41,7 +41,7 @@ td.unit { white-space: nowrap; }
 sub, sup { line-height: 0; font-size: .72em; }
 @media print {
   body { max-width: none; padding: 0; font-size: 10pt; }
-  h2 { break-after: avoid; margin-top: 1.6rem; }
+  h2 { break-after: avoid; break-inside: avoid; margin-top: 1.6rem; }
   h3 { break-after: avoid; }
   a { color: inherit; }
   @page { size: A4; margin: 16mm 15mm; }
