@@ -79,7 +79,7 @@ void Evaluate(BodeCase* out, double fit_to_hz, const StackRunner& run_stack) {
   }
 }
 
-std::string CaseJson(const BodeCase& c) {
+json CaseJson(const BodeCase& c) {
   const Parts measured(c.swept.points);
   const Parts predicted(c.predicted);
   json out = {{"key", c.key},
@@ -112,7 +112,7 @@ std::string CaseJson(const BodeCase& c) {
     out["worst_error_db"] = c.worst_error_db;
     out["worst_error_deg"] = c.worst_error_deg;
   }
-  return out.dump();
+  return out;
 }
 
 std::vector<Column> CaseColumns(const BodeCase& c) {

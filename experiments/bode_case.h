@@ -4,6 +4,7 @@
 
 #include <complex>
 #include <functional>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
@@ -43,8 +44,8 @@ LinearPressureLoop LinearLoop(const PressureSweep& sweep, const Mode& mode, cons
 // Runs the sweep and evaluates it: fills all but the first five.
 void Evaluate(BodeCase* bode_case, double fit_to_hz, const StackRunner& run_stack);
 
-// As text of a JSON object: conditions, results and the points as arrays.
-std::string CaseJson(const BodeCase& bode_case);
+// A JSON object: conditions, results and the points as arrays.
+nlohmann::json CaseJson(const BodeCase& bode_case);
 
 // frequency_hz, gain_db, phase_deg, coherence, as columns that begin with the case's key.
 std::vector<Column> CaseColumns(const BodeCase& bode_case);

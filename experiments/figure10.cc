@@ -11,6 +11,7 @@
 #include "experiments/arm_loop.h"
 #include "experiments/catalogue.h"
 #include "experiments/design_numbers.h"
+#include "experiments/json_text.h"
 #include "experiments/retuning.h"
 #include "experiments/shipped_models.h"
 #include "experiments/shipped_stacks.h"
@@ -358,7 +359,7 @@ ExperimentResult RunFig10(const ExperimentOptions& options) {
   numbers["retuned"]["saturated_time_s"] = retuned.saturated_time;
   numbers["retuned"]["highest_motor_speed_rad_s"] = retuned.highest_speed;
   numbers["retuned"]["found_by_search"] = shipped_is_best;
-  result.numbers = numbers.dump(2);
+  result.numbers = JsonText(numbers);
 
   const ArmRun& full = printed.nonlinear;
   std::vector<double> linear = printed.linear.angle, linear_measurement = forms[1].linear.angle;

@@ -10,6 +10,7 @@
 
 #include "experiments/bode_case.h"
 #include "experiments/catalogue.h"
+#include "experiments/json_text.h"
 #include "experiments/shipped_models.h"
 
 namespace hydro {
@@ -214,7 +215,7 @@ ExperimentResult RunFig6(const ExperimentOptions& options) {
        "default two; both modes are shown."}};
 
   json listed = json::array();
-  for (const BodeCase* one : all) listed.push_back(json::parse(CaseJson(*one)));
+  for (const BodeCase* one : all) listed.push_back(CaseJson(*one));
   json numbers = listed.front();
   numbers.erase("key");
   numbers.erase("title");
@@ -228,7 +229,7 @@ ExperimentResult RunFig6(const ExperimentOptions& options) {
       {"one_sided", {{"k_p_V_per_psi", one_sided.k_p}, {"k_v_psi_s_per_rad", one_sided.k_v}}}};
   numbers["linearised"] = {{"worst_error_db", worst_db}, {"worst_error_deg", worst_deg}};
   numbers["cases"] = listed;
-  result.numbers = numbers.dump(2);
+  result.numbers = JsonText(numbers);
   for (const BodeCase* one : all) {
     for (Column& column : CaseColumns(*one)) result.table.columns.push_back(std::move(column));
   }

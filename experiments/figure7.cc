@@ -10,6 +10,7 @@
 
 #include "experiments/bode_case.h"
 #include "experiments/catalogue.h"
+#include "experiments/json_text.h"
 #include "experiments/shipped_models.h"
 #include "model/actuator.h"
 
@@ -191,7 +192,7 @@ ExperimentResult RunFig7(const ExperimentOptions& options) {
                    p.V_ms, table1.parameters.c * kQuarterTurn)}};
 
   json listed = json::array();
-  for (const BodeCase* one : all) listed.push_back(json::parse(CaseJson(*one)));
+  for (const BodeCase* one : all) listed.push_back(CaseJson(*one));
   json numbers = listed.front();
   numbers.erase("key");
   numbers.erase("title");
@@ -210,7 +211,7 @@ ExperimentResult RunFig7(const ExperimentOptions& options) {
   numbers["V_ms_for_10_percent_in3"] = alike_V_ms;
   numbers["linearised"] = {{"worst_error_db", worst_db}, {"worst_error_deg", worst_deg}};
   numbers["cases"] = listed;
-  result.numbers = numbers.dump(2);
+  result.numbers = JsonText(numbers);
   for (const BodeCase* one : all) {
     for (Column& column : CaseColumns(*one)) result.table.columns.push_back(std::move(column));
   }

@@ -9,6 +9,7 @@
 #include "experiments/block_diagram.h"
 #include "experiments/catalogue.h"
 #include "experiments/design_numbers.h"
+#include "experiments/json_text.h"
 #include "experiments/shipped_models.h"
 
 namespace hydro {
@@ -134,29 +135,28 @@ ExperimentResult RunFig8(const ExperimentOptions& options) {
        fmt::format("J_a = {:g}; Figure 8 has J_a alone", p.J_a)},
   };
 
-  result.numbers = json{{"gain", kPaperGain},
-                        {"critical_gain", limit.gain},
-                        {"critical_frequency_rad_s", limit.frequency},
-                        {"poles_at_350", AsPairs(Poles(design, kPaperGain))},
-                        {"gain_margin", margins.gain},
-                        {"gain_margin_db", 20 * std::log10(margins.gain)},
-                        {"phase_margin_deg", margins.phase_deg},
-                        {"gain_crossover_rad_s", margins.gain_crossover},
-                        {"bandwidth_rad_s", margins.bandwidth},
-                        {"linearised",
-                         {{"both_sides",
-                           {{"natural_frequency_rad_s", two_sided.natural_frequency},
-                            {"damping_ratio", two_sided.damping_ratio}}},
-                          {"one_side",
-                           {{"natural_frequency_rad_s", one_sided.natural_frequency},
-                            {"damping_ratio", one_sided.damping_ratio}}}}},
-                        {"free_arm",
-                         {{"reflected_inertia_lb_in_s2", reflected},
-                          {"arm_inertia_lb_in_s2", p.J_a},
-                          {"poles_at_350", AsPairs(exact)},
-                          {"poles_at_350_with_arm_speed_feedforward", AsPairs(exact_assisted)},
-                          {"poles_at_350_without_arm_flow", AsPairs(without_motion)}}}}
-                       .dump(2);
+  result.numbers = JsonText(json{{"gain", kPaperGain},
+                                 {"critical_gain", limit.gain},
+                                 {"critical_frequency_rad_s", limit.frequency},
+                                 {"poles_at_350", AsPairs(Poles(design, kPaperGain))},
+                                 {"gain_margin", margins.gain},
+                                 {"gain_margin_db", 20 * std::log10(margins.gain)},
+                                 {"phase_margin_deg", margins.phase_deg},
+                                 {"gain_crossover_rad_s", margins.gain_crossover},
+                                 {"bandwidth_rad_s", margins.bandwidth},
+                                 {"linearised",
+                                  {{"both_sides",
+                                    {{"natural_frequency_rad_s", two_sided.natural_frequency},
+                                     {"damping_ratio", two_sided.damping_ratio}}},
+                                   {"one_side",
+                                    {{"natural_frequency_rad_s", one_sided.natural_frequency},
+                                     {"damping_ratio", one_sided.damping_ratio}}}}},
+                                 {"free_arm",
+                                  {{"reflected_inertia_lb_in_s2", reflected},
+                                   {"arm_inertia_lb_in_s2", p.J_a},
+                                   {"poles_at_350", AsPairs(exact)},
+                                   {"poles_at_350_with_arm_speed_feedforward", AsPairs(exact_assisted)},
+                                   {"poles_at_350_without_arm_flow", AsPairs(without_motion)}}}});
   result.table.columns = {{"frequency_rad_s", bode.frequency},
                           {"open_loop_db", bode.open_db},
                           {"open_loop_deg", bode.open_deg},

@@ -9,6 +9,7 @@
 
 #include "experiments/catalogue.h"
 #include "experiments/design_numbers.h"
+#include "experiments/json_text.h"
 #include "experiments/sampled_position_loop.h"
 #include "experiments/shipped_models.h"
 #include "logger/step_response.h"
@@ -236,17 +237,16 @@ ExperimentResult RunFig9(const ExperimentOptions& options) {
        "a stack is "
        "the derivative of the measurement."}};
 
-  result.numbers = json{
-      {"critical_gain", limit.gain},
-      {"critical_frequency_rad_s", limit.frequency},
-      {"paper_critical_gain", kPaperCriticalGain},
-      {"poles_at_350", AsPairs(paper_poles)},
-      {"printed_ratio", {{"k_2", printed_ratio.k_2}, {"critical_gain", printed_limit.gain}}},
-      {"continuous", continuous},
-      {"sampled", sampled},
-      {"largest_stable_interval_s", largest_stable},
-      {"largest_stable_interval_confirmed_by_simulation",
-       confirmed}}.dump(2);
+  result.numbers =
+      JsonText(json{{"critical_gain", limit.gain},
+                    {"critical_frequency_rad_s", limit.frequency},
+                    {"paper_critical_gain", kPaperCriticalGain},
+                    {"poles_at_350", AsPairs(paper_poles)},
+                    {"printed_ratio", {{"k_2", printed_ratio.k_2}, {"critical_gain", printed_limit.gain}}},
+                    {"continuous", continuous},
+                    {"sampled", sampled},
+                    {"largest_stable_interval_s", largest_stable},
+                    {"largest_stable_interval_confirmed_by_simulation", confirmed}});
   result.table.columns = {{"gain", gains}};
   for (size_t b = 0; b < branches.size(); ++b) {
     Column re{fmt::format("pole_{}_re_1_s", b + 1), {}}, im{fmt::format("pole_{}_im_rad_s", b + 1), {}};

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "experiments/catalogue.h"
+#include "experiments/json_text.h"
 #include "experiments/linear_fit.h"
 #include "experiments/pump_friction.h"
 #include "experiments/shipped_models.h"
@@ -302,7 +303,7 @@ ExperimentResult AnalyseMeasured(const ExperimentOptions& options) {
   AddFit(friction, p, &result, &numbers);
   numbers["source"] = run.file;
   numbers["model"] = model.name;
-  result.numbers = numbers.dump(2);
+  result.numbers = JsonText(numbers);
   result.comparisons = {
       {"T_s", "in-lbf", "", kAutomatic, friction.T_s.value, PlusMinus(friction.T_s) + ", 95 %"},
       {"b", "in-lbf-s", "", kAutomatic, friction.b.value, PlusMinus(friction.b) + ", 95 %"}};
@@ -360,7 +361,7 @@ ExperimentResult RunFriction(const ExperimentOptions& options) {
                            {"ramp_in_lbf_s", p.k_1 * kRampRate},
                            {"counts_as_moved_rad", kMoved},
                            {"expected_excess_in_lbf", excess}};
-  result.numbers = numbers.dump(2);
+  result.numbers = JsonText(numbers);
   result.comparisons = {
       {"T_s, intercept", "in-lbf", "4.0", p.T_s, friction.T_s.value,
        fmt::format("+/- {:.2g}: the interval {} the rig's own", friction.T_s.high - friction.T_s.value,

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "experiments/catalogue.h"
+#include "experiments/json_text.h"
 #include "experiments/leakage_fit.h"
 #include "experiments/linear_fit.h"
 #include "experiments/shipped_models.h"
@@ -241,7 +242,7 @@ ExperimentResult AnalyseMeasured(const ExperimentOptions& options) {
   json numbers = Numbers(fit);
   numbers["source"] = run.file;
   numbers["model"] = model.name;
-  result.numbers = numbers.dump(2);
+  result.numbers = JsonText(numbers);
   result.comparisons = {
       {"c_E", "in^3/(s psi)", "", kAutomatic, fit.c_E.value, PlusMinus(fit.c_E) + ", 95 %"},
       {"c_I", "in^3/(s psi)", "", kAutomatic, fit.c_I.value, PlusMinus(fit.c_I) + ", 95 %"}};
@@ -303,7 +304,7 @@ ExperimentResult RunLeakage(const ExperimentOptions& options) {
   numbers["stick_decay"] = {
       {"c_E", decay.c_E}, {"c_I", decay.c_I}, {"from_s", decay.from}, {"to_s", decay.to}};
   numbers["low_side_while_creeping_psi"] = low;
-  result.numbers = numbers.dump(2);
+  result.numbers = JsonText(numbers);
   result.comparisons = {
       {"c_E", "in^3/(s psi)", "6.5e-6", p.c_E, fit.c_E.value, PlusMinus(fit.c_E) + ", 95 %"},
       {"c_I", "in^3/(s psi)", "1.0e-6", p.c_I, fit.c_I.value, PlusMinus(fit.c_I) + ", 95 %"},

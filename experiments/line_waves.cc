@@ -10,6 +10,7 @@
 
 #include "experiments/bode_case.h"
 #include "experiments/catalogue.h"
+#include "experiments/json_text.h"
 #include "experiments/shipped_models.h"
 #include "settings/model_file.h"
 
@@ -365,7 +366,7 @@ ExperimentResult RunWaves(const ExperimentOptions& options) {
   }
   result.table.columns = {frequency, gain, phase, coherence};
   for (const Column& column : result.table.columns) numbers[column.name] = column.values;
-  result.numbers = numbers.dump(2);
+  result.numbers = JsonText(numbers);
 
   const LinearPressureLoop rigid(Linear(ShippedModel("table1")), {1 / sweep.rate_hz, 0});
   result.pictures.push_back(

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "experiments/catalogue.h"
+#include "experiments/json_text.h"
 #include "experiments/open_loop_run.h"
 #include "experiments/shipped_models.h"
 #include "model/equations.h"
@@ -147,26 +148,25 @@ ExperimentResult RunFig3(const ExperimentOptions& options) {
       {"p_1 then", "psi", "", kAutomatic, bare.p1[bare.peak], "no fluid bears that: it would cavitate"},
   };
 
-  result.numbers = json{{"torque_in_lbf", kTorque},
-                        {"peak_p2_psi", peak.p2},
-                        {"peak_dp_psi", peak.dp},
-                        {"peak_time_s", peak.time},
-                        {"stick_time_s", stick.time},
-                        {"stick_dp_psi", stick.dp},
-                        {"slip_time_s", slip.time},
-                        {"slip_dp_psi", slip.dp},
-                        {"sticks", run.sticks()},
-                        {"natural_frequency_rad_s", spring.natural_frequency},
-                        {"damping_ratio", spring.damping_ratio},
-                        {"closed_form_peak_time_s", spring.peak_time},
-                        {"closed_form_peak_dp_psi", spring.peak_dp},
-                        {"without_valves",
-                         {{"peak_dp_psi", bare_dp},
-                          {"peak_time_s", bare.time[bare.peak]},
-                          {"p2_psi", bare.p2[bare.peak]},
-                          {"p1_psi", bare.p1[bare.peak]},
-                          {"p1_negative_from_s", bare.negative_since}}}}
-                       .dump(2);
+  result.numbers = JsonText(json{{"torque_in_lbf", kTorque},
+                                 {"peak_p2_psi", peak.p2},
+                                 {"peak_dp_psi", peak.dp},
+                                 {"peak_time_s", peak.time},
+                                 {"stick_time_s", stick.time},
+                                 {"stick_dp_psi", stick.dp},
+                                 {"slip_time_s", slip.time},
+                                 {"slip_dp_psi", slip.dp},
+                                 {"sticks", run.sticks()},
+                                 {"natural_frequency_rad_s", spring.natural_frequency},
+                                 {"damping_ratio", spring.damping_ratio},
+                                 {"closed_form_peak_time_s", spring.peak_time},
+                                 {"closed_form_peak_dp_psi", spring.peak_dp},
+                                 {"without_valves",
+                                  {{"peak_dp_psi", bare_dp},
+                                   {"peak_time_s", bare.time[bare.peak]},
+                                   {"p2_psi", bare.p2[bare.peak]},
+                                   {"p1_psi", bare.p1[bare.peak]},
+                                   {"p1_negative_from_s", bare.negative_since}}}});
   result.table.columns = {{"time_s", run.time},
                           {"dp_psi", run.dp},
                           {"p1_psi", run.p1},

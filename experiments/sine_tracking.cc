@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "experiments/catalogue.h"
+#include "experiments/json_text.h"
 #include "experiments/tracking_study.h"
 
 namespace hydro {
@@ -59,12 +60,12 @@ ExperimentResult RunFig5(const ExperimentOptions& options) {
                                 std::abs(harmonic), "expected: linear, both sides compressing, no friction"});
   result.comparisons.push_back(
       {"phase of dp", "degrees", "", Degrees(std::arg(linear)), Degrees(std::arg(harmonic)), "the same"});
-  json numbers = json::parse(result.numbers);
+  json numbers = ParseJson(result.numbers);
   numbers["first_harmonic"] = {{"gain", std::abs(harmonic)},
                                {"phase_deg", Degrees(std::arg(harmonic))},
                                {"linear_gain", std::abs(linear)},
                                {"linear_phase_deg", Degrees(std::arg(linear))}};
-  result.numbers = numbers.dump(2);
+  result.numbers = JsonText(numbers);
   options.progress(1);
   return result;
 }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "experiments/catalogue.h"
+#include "experiments/json_text.h"
 #include "experiments/tracking_study.h"
 
 namespace hydro {
@@ -158,14 +159,14 @@ ExperimentResult RunFig4(const ExperimentOptions& options) {
            finer.lowest),
        "Shown in Figure 4, with the torque and its limit below the pressure."}};
 
-  json numbers = json::parse(result.numbers);
+  json numbers = ParseJson(result.numbers);
   numbers["demand_at_a_settled_jump_in_lbf"] = jump;
   numbers["at_50_khz"] = {{"highest_dp_psi", finer.highest}, {"lowest_dp_psi", finer.lowest}};
   numbers["steady_state_by_reference"] = LevelsJson(remainders[0]);
   numbers["with_feedforward"]["steady_state_by_reference"] = LevelsJson(remainders[1]);
   numbers["with_tuned_feedforward"] = {{"feedforward_V_per_psi", study.tuned_feedforward},
                                        {"steady_state_by_reference", LevelsJson(remainders[2])}};
-  result.numbers = numbers.dump(2);
+  result.numbers = JsonText(numbers);
   result.pictures.push_back(
       {"-hold",
        {.caption = "Closed pressure loop, Table 1, clamped at α = 0. Below: points are runs of the stack, "

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "experiments/catalogue.h"
+#include "experiments/json_text.h"
 #include "experiments/open_loop_run.h"
 #include "experiments/shipped_models.h"
 
@@ -272,39 +273,37 @@ ExperimentResult RunFig2(const ExperimentOptions& options) {
   for (const Scanned& scanned : at_rest) rest.push_back(Describe(scanned, p.T_s));
   json stribeck_torques = json::array();
   for (const Scanned& scanned : stribeck_scan) stribeck_torques.push_back(Describe(scanned, p.T_s));
-  result.numbers = json{
-      {"torque_in_lbf", kTorque},
-      {"duration_s", kDuration},
-      {"table1",
-       {{"sticks", plain.sticks()},
-        {"stick_time_s", stick.time},
-        {"stick_dp_psi", stick.dp},
-        {"slip_time_s", slip.time},
-        {"slip_dp_psi", slip.dp},
-        {"final_dp_psi", plain.dp.back()},
-        {"final_motor_speed_rad_s", plain.motor_speed.back()},
-        {"by_torque", by_torque}}},
-      {"stribeck",
-       {{"static_excess", excess},
-        {"speed_rad_s", speed},
-        {"static_torque_in_lbf", static_torque},
-        {"sticks", cycling.sticks()},
-        {"period_s", cycles.period},
-        {"swing_psi", cycles.high - cycles.low},
-        {"high_psi", cycles.high},
-        {"low_psi", cycles.low},
-        {"stick_dp_psi", cycles.stick_dp},
-        {"slip_dp_psi", cycles.slip_dp},
-        {"stick_duration_s", cycles.stick_time},
-        {"by_torque", stribeck_torques}}},
-      {"at_rest_only",
-       {{"speed_rad_s", kAtRestOnly},
-        {"largest_static_torque_without_cycles_in_lbf", threshold.none},
-        {"smallest_static_torque_with_cycles_in_lbf", threshold.cycles},
-        {"threshold_excess_ratio", threshold_ratio},
-        {"largest_static_torque_without_cycles_at_10_in_lbf", largest_static},
-        {"scan",
-         rest}}}}.dump(2);
+  result.numbers = JsonText(json{{"torque_in_lbf", kTorque},
+                                 {"duration_s", kDuration},
+                                 {"table1",
+                                  {{"sticks", plain.sticks()},
+                                   {"stick_time_s", stick.time},
+                                   {"stick_dp_psi", stick.dp},
+                                   {"slip_time_s", slip.time},
+                                   {"slip_dp_psi", slip.dp},
+                                   {"final_dp_psi", plain.dp.back()},
+                                   {"final_motor_speed_rad_s", plain.motor_speed.back()},
+                                   {"by_torque", by_torque}}},
+                                 {"stribeck",
+                                  {{"static_excess", excess},
+                                   {"speed_rad_s", speed},
+                                   {"static_torque_in_lbf", static_torque},
+                                   {"sticks", cycling.sticks()},
+                                   {"period_s", cycles.period},
+                                   {"swing_psi", cycles.high - cycles.low},
+                                   {"high_psi", cycles.high},
+                                   {"low_psi", cycles.low},
+                                   {"stick_dp_psi", cycles.stick_dp},
+                                   {"slip_dp_psi", cycles.slip_dp},
+                                   {"stick_duration_s", cycles.stick_time},
+                                   {"by_torque", stribeck_torques}}},
+                                 {"at_rest_only",
+                                  {{"speed_rad_s", kAtRestOnly},
+                                   {"largest_static_torque_without_cycles_in_lbf", threshold.none},
+                                   {"smallest_static_torque_with_cycles_in_lbf", threshold.cycles},
+                                   {"threshold_excess_ratio", threshold_ratio},
+                                   {"largest_static_torque_without_cycles_at_10_in_lbf", largest_static},
+                                   {"scan", rest}}}});
 
   const size_t rows = static_cast<size_t>(std::lround(kPictured / 1e-3)) + 1;
   const auto head = [&](const std::vector<double>& values) {

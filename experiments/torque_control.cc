@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "experiments/catalogue.h"
+#include "experiments/json_text.h"
 #include "experiments/shipped_models.h"
 #include "experiments/torque_clamped.h"
 #include "experiments/torque_driven.h"
@@ -352,7 +353,7 @@ ExperimentResult RunTorque(const ExperimentOptions& options) {
          "in-lbf", "", path->closed_form_at_largest_speed, path->error_at_largest_speed,
          "expected: eqs. (4) and (16) with the pump speed that the motion forces"});
   }
-  result.numbers = Numbers(study).dump(2);
+  result.numbers = JsonText(Numbers(study));
   std::vector<double> torque = without.run.dp, torque_with = with.run.dp;
   for (double& value : torque) value *= p.k_2;
   for (double& value : torque_with) value *= p.k_2;

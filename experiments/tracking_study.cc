@@ -6,6 +6,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "experiments/json_text.h"
+
 namespace hydro {
 namespace {
 
@@ -168,7 +170,7 @@ ExperimentResult DescribeTracking(const TrackingStudy& study) {
       {"time at the torque limit, with feed-forward", "%", "", kAutomatic,
        100 * study.error_with.saturated_fraction, ""},
   };
-  result.numbers = Numbers(study).dump(2);
+  result.numbers = JsonText(Numbers(study));
   result.table.columns = {{"time_s", study.wave.time},
                           {"pressure_ref_psi", study.wave.reference},
                           {"dp_psi", study.wave.dp},

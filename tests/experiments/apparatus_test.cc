@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "experiments/catalogue.h"
+#include "experiments/json_text.h"
 #include "experiments/shipped_models.h"
 
 namespace hydro {
@@ -17,7 +18,7 @@ const ExperimentResult& Result() {
 
 // Tests that both ratios are Table 1's, not the printed one, and are what the simulated rig does.
 TEST(Apparatus, Ratios) {
-  const auto numbers = nlohmann::json::parse(Result().numbers);
+  const auto numbers = ParseJson(Result().numbers);
   EXPECT_NEAR(numbers["torque_ratio"], 3.68 / 0.00796, 1e-9);
   EXPECT_NEAR(numbers["torque_ratio"], 462.3, 0.05);
   EXPECT_NEAR(numbers["displacement_ratio"], 462.8, 0.05);
@@ -30,7 +31,7 @@ TEST(Apparatus, Ratios) {
 
 // Tests torques and speeds beside the printed ones.
 TEST(Apparatus, TorquesAndSpeeds) {
-  const auto numbers = nlohmann::json::parse(Result().numbers);
+  const auto numbers = ParseJson(Result().numbers);
   EXPECT_NEAR(numbers["peak_torque_printed_in_lbf"], 19388, 0.5);
   EXPECT_NEAR(numbers["peak_torque_in_lbf"], 18492.5, 0.5);
   EXPECT_NEAR(numbers["peak_torque_N_m"], 18492.5 * 0.1129848, 0.5);
@@ -54,7 +55,7 @@ TEST(Apparatus, FastMotorIsAnAssumptionOfTheSamePower) {
        {slow.D / fast.D, slow.b / fast.b, slow.T_s / fast.T_s, slow.c_E / fast.c_E, slow.c_I / fast.c_I}) {
     EXPECT_NEAR(ratio, 3, 1e-9);
   }
-  const auto numbers = nlohmann::json::parse(Result().numbers);
+  const auto numbers = ParseJson(Result().numbers);
   EXPECT_TRUE(numbers["motor_18000rpm"]["assumption"]);
   EXPECT_NEAR(numbers["motor_18000rpm"]["maximum_speed_rpm"], 6000 / 462.79, 0.03);
   EXPECT_NE(ShippedModelText("motor_18000rpm").find("ASSUMPTION"), std::string::npos);

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "experiments/catalogue.h"
+#include "experiments/json_text.h"
 #include "experiments/linear_fit.h"
 #include "experiments/pump_friction.h"
 #include "experiments/shipped_models.h"
@@ -29,7 +30,7 @@ class FrictionTest : public testing::Test {
  protected:
   static void SetUpTestSuite() { result_ = new ExperimentResult(RunFriction({})); }
   static void TearDownTestSuite() { delete result_; }
-  static json Numbers() { return json::parse(result_->numbers); }
+  static json Numbers() { return ParseJson(result_->numbers); }
   static ExperimentResult* result_;
 };
 ExperimentResult* FrictionTest::result_ = nullptr;
@@ -271,7 +272,7 @@ TEST(FrictionRunFile, TableWithSidecar) {
     ExperimentOptions options;
     options.measured_run = stem + ".csv";
     const ExperimentResult result = RunFriction(options);
-    const json numbers = json::parse(result.numbers);
+    const json numbers = ParseJson(result.numbers);
     EXPECT_NEAR(numbers.at("T_s"), 4.0, 0.04);
     EXPECT_NEAR(numbers.at("b"), 0.01455, 0.0001455);
     EXPECT_FALSE(numbers.contains("break_away"));

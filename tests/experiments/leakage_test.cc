@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "experiments/catalogue.h"
+#include "experiments/json_text.h"
 #include "experiments/leakage_fit.h"
 #include "experiments/shipped_models.h"
 #include "plant/sensor_noise.h"
@@ -26,7 +27,7 @@ class LeakageTest : public testing::Test {
  protected:
   static void SetUpTestSuite() { result_ = new ExperimentResult(RunLeakage({})); }
   static void TearDownTestSuite() { delete result_; }
-  static json Numbers() { return json::parse(result_->numbers); }
+  static json Numbers() { return ParseJson(result_->numbers); }
   static ExperimentResult* result_;
 };
 ExperimentResult* LeakageTest::result_ = nullptr;
@@ -261,8 +262,8 @@ TEST(LeakageRunFile, TableWithSidecar) {
   ExperimentOptions options;
   options.measured_run = stem + ".csv";
   const ExperimentResult result = RunLeakage(options);
-  EXPECT_NEAR(json::parse(result.numbers).at("c_E"), 6.5e-6, 0.05 * 6.5e-6);
-  EXPECT_NEAR(json::parse(result.numbers).at("c_I"), 1e-6, 0.05 * 1e-6);
+  EXPECT_NEAR(ParseJson(result.numbers).at("c_E"), 6.5e-6, 0.05 * 6.5e-6);
+  EXPECT_NEAR(ParseJson(result.numbers).at("c_I"), 1e-6, 0.05 * 1e-6);
   EXPECT_THAT(result.conditions, HasSubstr("bench"));
   EXPECT_THAT(result.findings, IsEmpty());
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "experiments/catalogue.h"
+#include "experiments/json_text.h"
 
 namespace hydro {
 namespace {
@@ -20,11 +21,11 @@ constexpr double kD = 0.00796, kJ = 0.03, kB = 0.01455, kTs = 4, kBeta = 247000,
 constexpr double kSpring = kBeta / kVms;  // psi/in^3 of one side
 
 const json& Fig2() {
-  static const json numbers = json::parse(RunFig2({}).numbers);
+  static const json numbers = ParseJson(RunFig2({}).numbers);
   return numbers;
 }
 const json& Fig3() {
-  static const json numbers = json::parse(RunFig3({}).numbers);
+  static const json numbers = ParseJson(RunFig3({}).numbers);
   return numbers;
 }
 
@@ -164,7 +165,7 @@ TEST(Figure2, Finding) {
   EXPECT_EQ(result.findings[0].number, 3);
   EXPECT_NE(result.findings[0].evidence.find("4.203 cycles"), std::string::npos)
       << result.findings[0].evidence;
-  EXPECT_EQ(result.numbers, Fig2().dump(2));  // bit-identical
+  EXPECT_EQ(result.numbers, JsonText(Fig2()));  // bit-identical
   for (const Column& column : result.table.columns) {
     EXPECT_EQ(column.values.size(), result.table.rows()) << column.name;
   }

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "experiments/catalogue.h"
+#include "experiments/json_text.h"
 #include "experiments/retuning.h"
 #include "experiments/shipped_models.h"
 #include "experiments/shipped_stacks.h"
@@ -20,9 +21,9 @@ struct Figures {
   ExperimentResult fig8 = RunFig8({});
   ExperimentResult fig9 = RunFig9({});
   ExperimentResult fig10 = RunFig10({});
-  json numbers8 = json::parse(fig8.numbers);
-  json numbers9 = json::parse(fig9.numbers);
-  json numbers10 = json::parse(fig10.numbers);
+  json numbers8 = ParseJson(fig8.numbers);
+  json numbers9 = ParseJson(fig9.numbers);
+  json numbers10 = ParseJson(fig10.numbers);
 };
 const Figures& Outcome() {
   static const Figures figures;

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "experiments/catalogue.h"
+#include "experiments/json_text.h"
 #include "experiments/shipped_models.h"
 #include "pressure_ctrl/pressure_law.h"
 #include "tests/experiments/wave_polynomial.h"
@@ -25,7 +26,7 @@ constexpr double kPi = std::numbers::pi;
 struct Ran {
   ExperimentResult result;
   json numbers;
-  explicit Ran(const ExperimentResult& r) : result(r), numbers(json::parse(r.numbers)) {}
+  explicit Ran(const ExperimentResult& r) : result(r), numbers(ParseJson(r.numbers)) {}
   const json& Case(const std::string& key) const {
     for (const json& one : numbers.at("cases")) {
       if (one.at("key") == key) return one;

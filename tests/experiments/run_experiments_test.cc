@@ -12,6 +12,7 @@
 
 #include "experiments/comparison_text.h"
 #include "experiments/experiment_files.h"
+#include "experiments/json_text.h"
 #include "experiments/report.h"
 #include "settings/input_error.h"
 
@@ -118,7 +119,7 @@ TEST_F(RunExperimentsTest, OneExperiment) {
   EXPECT_THAT(Files(), UnorderedElementsAre("fig3.json", "fig3.csv", "fig3.svg", "fig3-more.svg"));
   EXPECT_THAT(out_, HasSubstr("peak of p_2"));
   EXPECT_THAT(out_, HasSubstr("finding 10: says"));
-  const auto json = nlohmann::json::parse(Read("fig3.json"));
+  const auto json = ParseJson(Read("fig3.json"));
   EXPECT_EQ(json["peak_p2_psi"], 1512.5);
   EXPECT_EQ(json["seed_used"], 1);
   EXPECT_EQ(json["name"], "fig3");

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "experiments/catalogue.h"
+#include "experiments/json_text.h"
 #include "experiments/torque_driven.h"
 
 namespace hydro {
@@ -24,7 +25,7 @@ const ExperimentResult& Result() {
   return result;
 }
 const json& Numbers() {
-  static const json numbers = json::parse(Result().numbers);
+  static const json numbers = ParseJson(Result().numbers);
   return numbers;
 }
 

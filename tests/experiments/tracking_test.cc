@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "experiments/catalogue.h"
+#include "experiments/json_text.h"
 #include "experiments/pressure_loop_run.h"
 #include "experiments/shipped_models.h"
 #include "model/actuator.h"
@@ -32,11 +33,11 @@ const ExperimentResult& Figure4() {
   return result;
 }
 const json& Fig4() {
-  static const json numbers = json::parse(Figure4().numbers);
+  static const json numbers = ParseJson(Figure4().numbers);
   return numbers;
 }
 const json& Fig5() {
-  static const json numbers = json::parse(RunFig5({}).numbers);
+  static const json numbers = ParseJson(RunFig5({}).numbers);
   return numbers;
 }
 
@@ -198,7 +199,7 @@ TEST(Figure4, NoiseIsAnOption) {
   EXPECT_NEAR(noisy["rms_error_psi"].get<double>(),
               std::sqrt(std::pow(Fig4()["rms_error_psi"].get<double>(), 2) + 2 * 15 * 15), 3);
   EXPECT_FALSE(Fig5().contains("with_noise"));
-  EXPECT_EQ(json::parse(RunFig4(Noisy()).numbers), Fig4());  // bit-identical
+  EXPECT_EQ(ParseJson(RunFig4(Noisy()).numbers), Fig4());  // bit-identical
 }
 
 }  // namespace

@@ -1,0 +1,16 @@
+// JSON to text and back: nlohmann's writer and parser, compiled once. They cost seconds in each file that
+// uses them.
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+
+namespace hydro {
+
+// Indented by 2; what is not finite is null.
+std::string JsonText(const nlohmann::json& value);
+
+// Throws nlohmann::json::parse_error.
+nlohmann::json ParseJson(const std::string& text);
+
+}  // namespace hydro
