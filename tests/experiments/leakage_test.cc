@@ -245,6 +245,10 @@ TEST(LeakageFitTest, Errors) {
   for (size_t i = 0; i < 50; ++i) run.p2.values[i] += 300;
   EXPECT_THAT(ErrorOf(run), HasSubstr("found a start at p_1 = "));
   run = good;
+  std::swap(run.p1, run.p2);
+  EXPECT_THAT(ErrorOf(run), AllOf(HasSubstr("found p_2 - p_1 against the sign of the voltage"),
+                                  HasSubstr("exchange p1 and p2")));
+  run = good;
   run.arm_angle_rad = 1.5;
   EXPECT_THAT(ErrorOf(run), AllOf(HasSubstr("clamped.csv: "), HasSubstr("V_1")));
 }
