@@ -24,4 +24,8 @@ std::string PoleText(const Complex& pole) {
   return fmt::format("{:.1f} ± {:.1f}j", pole.real(), std::fabs(pole.imag()));
 }
 
+std::string SettlingText(const StepResponse& response) {
+  return response.settling_time_s ? fmt::format("{:.3f} s", *response.settling_time_s) : "never";
+}
+
 }  // namespace hydro

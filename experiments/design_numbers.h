@@ -1,4 +1,4 @@
-// Poles as text and JSON, for the figures of the position loop's design.
+// Poles and settling times as text and JSON, for the figures of the position loop's design.
 #pragma once
 
 #include <string>
@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "experiments/position_design.h"
+#include "logger/step_response.h"
 
 namespace hydro {
 
@@ -16,6 +17,9 @@ std::vector<std::pair<double, double>> AsPairs(const std::vector<Complex>& poles
 
 // The pole with the largest real part, of a pair the upper one.
 Complex SlowestPole(const std::vector<Complex>& poles);
+
+// "0.312 s", or "never".
+std::string SettlingText(const StepResponse& response);
 
 // "-38.4 ± 113.1j"; of a real pole "-2.52".
 std::string PoleText(const Complex& pole);
