@@ -9,7 +9,8 @@ namespace hydro {
 
 std::string PlusMinus(const Estimate& estimate) {
   const double half = estimate.half_width();
-  if (!(half > 0) || std::isinf(half)) return fmt::format("{:.5g} +/- {:.2g}", estimate.value, half);
+  if (!std::isfinite(half)) return "not told";
+  if (!(half > 0)) return fmt::format("{:.5g} +/- {:.2g}", estimate.value, half);
   const int decimals = 1 - static_cast<int>(std::floor(std::log10(half)));
   // Small values in powers of ten: 6.502e-06 +/- 0.011e-06 is easier read than ten decimals.
   const int exponent =

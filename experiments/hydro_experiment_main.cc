@@ -45,7 +45,8 @@ int main(int argc, char** argv) {
   line.AddOption("--run", &request.options.measured_run,
                  "FILE a measured run to analyse (friction, leakage)");
   line.AddOption("--seed", &request.options.seed, "N of every noise (1)");
-  line.AddFlag("--noise", &request.options.noise, "sensors as noisy as the paper's plots");
+  line.AddFlag("--noise", &request.options.noise,
+               "sensors as noisy as the paper's plots, in pictures of their own (fig4, fig5)");
   line.AddFlag("--real-time", &request.real_time, "run the stack as separate processes on the wall clock");
   line.AddOption("--jobs", &request.jobs, "N how many experiments at the same time (2)");
   line.AddFlag("--si", &request.si, "print figures in SI units");

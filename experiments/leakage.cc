@@ -221,12 +221,20 @@ constexpr char kPaperSays[] =
     "c_E and c_I were adjusted until the simulated pressure difference agreed fairly well with that of the "
     "clamped actuator after a step of voltage.";
 
+// Residuals beyond this many standard deviations of the noise: whatever was fitted makes up for something
+// else.
+constexpr double kDescribed = 5;
+constexpr char kNotDescribed[] =
+    "NEITHER is to be believed: the model does not describe this run with any leakage. A wrong scale of a "
+    "pressure or of the voltage, a wrong k_1, T_s or beta, or an effect that the model lacks would do that.";
+
 ExperimentResult AnalyseMeasured(const ExperimentOptions& options) {
   const std::vector<MeasuredRun> runs = {ReadMeasuredRun(options.measured_run)};
   const MeasuredRun& run = runs.front();
   const ModelDescription model =
       run.model_text.empty() ? ShippedModel("table1") : ParseModel(run.model_text, run.file + " (model)");
   const LeakageFit fit = FitLeakage(model, runs);
+  const bool described = fit.rms < kDescribed;
   options.progress(0.9);
   ExperimentResult result;
   result.conditions =
@@ -235,11 +243,11 @@ ExperimentResult AnalyseMeasured(const ExperimentOptions& options) {
   result.paper_says = kPaperSays;
   result.explanation = fmt::format(
       "c_E = {}, c_I = {} in^3/(s psi) (95 %, all else known). {} The residuals are {:.2f} of the noise{}. "
-      "One "
-      "direction suffices: leakage does not know it.",
-      PlusMinus(fit.c_E), PlusMinus(fit.c_I), Identifiability(fit), fit.rms,
+      "One direction suffices: leakage does not know it.",
+      PlusMinus(fit.c_E), PlusMinus(fit.c_I), described ? Identifiability(fit) : kNotDescribed, fit.rms,
       fit.rms > 1.2 ? ", so the model lacks something, and the intervals were widened by as much" : "");
   json numbers = Numbers(fit);
+  numbers["model_describes_run"] = described;
   numbers["source"] = run.file;
   numbers["model"] = model.name;
   result.numbers = JsonText(numbers);

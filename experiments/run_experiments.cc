@@ -11,6 +11,7 @@
 
 #include "experiments/comparison_text.h"
 #include "experiments/experiment_files.h"
+#include "experiments/gnuplot.h"
 #include "experiments/progress_display.h"
 #include "experiments/report.h"
 #include "logger/new_file.h"
@@ -93,6 +94,7 @@ int RunExperiments(const std::vector<Experiment>& all, const ExperimentRequest& 
                    std::FILE* errors) {
   const std::vector<Experiment> chosen = ChooseExperiments(all, request);
   CreateFolder(request.folder);
+  RunGnuplot("");  // where it is missing, that is said once and before the work
 
   std::vector<std::string> names;
   std::vector<double> costs;

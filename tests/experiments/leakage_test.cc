@@ -270,6 +270,15 @@ TEST(LeakageRunFile, TableWithSidecar) {
   EXPECT_NEAR(ParseJson(result.numbers).at("c_I"), 1e-6, 0.05 * 1e-6);
   EXPECT_THAT(result.conditions, HasSubstr("bench"));
   EXPECT_THAT(result.findings, IsEmpty());
+  EXPECT_TRUE(ParseJson(result.numbers).at("model_describes_run"));
+
+  // Pressures of a wrong scale: numbers come out, and that they mean nothing is said.
+  std::ofstream(stem + ".toml") << "shaft = \"clamped\"\n[columns]\ntime = \"t\"\nvoltage = \"v\"\n"
+                                   "p1 = { column = \"a\", scale = 1.1, offset = -10.0 }\n"
+                                   "p2 = { column = \"b\", scale = 1.1, offset = -10.0 }\n";
+  const ExperimentResult wrong = RunLeakage(options);
+  EXPECT_FALSE(ParseJson(wrong.numbers).at("model_describes_run"));
+  EXPECT_THAT(wrong.explanation, HasSubstr("NEITHER is to be believed"));
 
   const std::filesystem::path data = std::filesystem::path(HYDRO_MEASURED_DATA) / "buoy_pto";
   if (!std::filesystem::exists(data)) GTEST_SKIP() << "no measured data at " << data;
