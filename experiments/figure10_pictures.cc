@@ -15,11 +15,6 @@ const Axis kTime{.label = "time since the step, s", .min = 0, .max = 2};
 const Axis kShortTime{.label = "time since the step, s", .min = 0, .max = 1};
 const Axis kAngle{.label = "α, rad", .min = 0};
 
-Curve Line(const std::string& label, const std::vector<double>& x, const std::vector<double>& y, int colour,
-           Stroke stroke = Stroke::kLine) {
-  return {.label = label, .x = x, .y = y, .stroke = stroke, .colour = colour, .y_low = {}, .y_high = {}};
-}
-
 Picture FormsPicture(const Figure10Runs& figure) {
   const ArmRun& full = figure.forms[0].nonlinear;
   const Parameters& p = figure.model.parameters;

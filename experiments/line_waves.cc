@@ -55,7 +55,7 @@ LinearModel Linear(const ModelDescription& model) {
 LinearModel SensedAtPump(LinearModel model) {
   for (int i = 0; i < model.states; ++i) {
     for (int output = 0; output < model.outputs; ++output) {
-      double& c = model.C[static_cast<size_t>(output + i * model.outputs)];
+      double& c = model.C[output + i * model.outputs];
       if (model.output_names[output] == "p1") c = model.state_names[i] == "pump_p1";
       if (model.output_names[output] == "p2") c = model.state_names[i] == "pump_p2";
     }
@@ -159,23 +159,12 @@ pressure_psi = inf
   return trial;
 }
 
-Curve Line(const std::string& label, std::vector<double> x, std::vector<double> y, Stroke stroke,
-           int colour) {
-  return {.label = label,
-          .x = std::move(x),
-          .y = std::move(y),
-          .stroke = stroke,
-          .colour = colour,
-          .y_low = {},
-          .y_high = {}};
-}
-
 Panel TrialPanel(const Trial& trial) {
   return {.title = fmt::format("k_p at {:.0f} % of its limit: {:+.1f} 1/s measured, {:+.1f} 1/s expected",
                                100 * trial.factor, trial.growth, trial.expected),
           .x = {.label = "time, s", .min = 0},
           .y = {.label = "dp, psi"},
-          .curves = {Line("", trial.time, trial.dp, Stroke::kLine, 0)},
+          .curves = {Line("", trial.time, trial.dp, 0)},
           .notes = {},
           .rules = {}};
 }
@@ -234,8 +223,8 @@ ExperimentResult RunWaves(const ExperimentOptions& options) {
 
   // The same line between other volumes, and other dampings.
   json by_volume = json::array();
-  Curve closed_form = Line("closed form", {}, {}, Stroke::kLine, 1);
-  Curve eigenvalues = Line("eigenvalue", {}, {}, Stroke::kPoints, 0);
+  Curve closed_form = Line("closed form", {}, {}, 1);
+  Curve eigenvalues = Line("eigenvalue", {}, {}, 0, Stroke::kPoints);
   const auto frequency_of = [&](double fraction) {  // w^2 goes with 1/V_p + 1/(V_ms - V_p)
     return kWaveHz * std::sqrt(kVolumeFraction * (1 - kVolumeFraction) / (fraction * (1 - fraction)));
   };
@@ -386,7 +375,7 @@ ExperimentResult RunWaves(const ExperimentOptions& options) {
         .drawing = ""}});
   std::vector<Curve> growth;
   const auto add = [&](const std::string& label, const LinearPressureLoop& loop) {
-    Curve curve = Line(label, {}, {}, Stroke::kLine, -1);
+    Curve curve = Line(label, {}, {}, -1);
     std::complex<double> wave = WavePole(loop, gains);
     for (int i = 1; i <= 150; ++i) {  // the pole is followed from gain to gain
       const double k_p = 0.1 * i * gains.k_p;

@@ -84,11 +84,6 @@ WithoutValves RunWithoutValves(const ModelDescription& model) {
   return run;
 }
 
-Curve Line(const std::string& label, const std::vector<double>& x, const std::vector<double>& y, int colour,
-           Stroke stroke = Stroke::kLine) {
-  return {.label = label, .x = x, .y = y, .stroke = stroke, .colour = colour, .y_low = {}, .y_high = {}};
-}
-
 }  // namespace
 
 ExperimentResult RunFig3(const ExperimentOptions& options) {

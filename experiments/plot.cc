@@ -108,6 +108,11 @@ std::string WithCaption(const std::string& drawing, const std::string& caption, 
 
 }  // namespace
 
+Curve Line(const std::string& label, const std::vector<double>& x, const std::vector<double>& y, int colour,
+           Stroke stroke) {
+  return {.label = label, .x = x, .y = y, .stroke = stroke, .colour = colour, .y_low = {}, .y_high = {}};
+}
+
 std::string RenderSvg(const Figure& figure, const std::string& name) {
   CheckName(name);
   std::string id = name;  // gnuplot's names have no hyphens

@@ -32,6 +32,10 @@ struct Curve {
   std::vector<double> y_high;
 };
 
+// y over x without bounds.
+Curve Line(const std::string& label, const std::vector<double>& x, const std::vector<double>& y, int colour,
+           Stroke stroke = Stroke::kLine);
+
 struct Axis {
   std::string label;         // quantity and unit: "pressure difference, psi"
   bool logarithmic = false;  // values that are not positive are not drawn
