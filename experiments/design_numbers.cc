@@ -9,6 +9,7 @@ namespace hydro {
 
 std::vector<std::pair<double, double>> AsPairs(const std::vector<Complex>& poles) {
   std::vector<std::pair<double, double>> pairs;
+  pairs.reserve(poles.size());
   for (const Complex& pole : poles) pairs.push_back({pole.real(), pole.imag()});
   return pairs;
 }

@@ -258,6 +258,7 @@ ExperimentResult RunFig6(const ExperimentOptions& options) {
   for (const BodeCase& one : cases.about_zero) by_amplitude.push_back(&one);
   std::sort(by_amplitude.begin(), by_amplitude.end(),
             [](const auto* a, const auto* b) { return a->sweep.amplitude < b->sweep.amplitude; });
+  family.reserve(by_amplitude.size());
   for (const BodeCase* one : by_amplitude) {
     family.push_back(
         {fmt::format("±{} psi", one->sweep.amplitude), one->swept.points, Stroke::kLinePoints, -1});

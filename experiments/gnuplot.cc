@@ -100,6 +100,7 @@ std::string RunGnuplot(const std::string& script) {
   char* const argv[] = {program.data(), defaults.data(), nullptr};
   std::vector<std::string> variables = Environment();
   std::vector<char*> environment;
+  environment.reserve(variables.size() + 1);
   for (std::string& variable : variables) environment.push_back(variable.data());
   environment.push_back(nullptr);
 

@@ -278,6 +278,7 @@ SimulatedRun SimulateClamped(const ModelDescription& model, const MeasuredRun& r
 
 LeakageFit FitLeakage(const ModelDescription& model, const std::vector<MeasuredRun>& runs) {
   std::vector<Case> cases;
+  cases.reserve(runs.size());
   for (const MeasuredRun& run : runs) cases.push_back(MakeCase(run, model));
   double logs[2];
   LeakageFit fit;

@@ -20,6 +20,7 @@ std::string Short(double value) {
 
 int DifferentSpeeds(const std::vector<FrictionPoint>& points) {
   std::vector<double> speeds;
+  speeds.reserve(points.size());
   for (const FrictionPoint& point : points) speeds.push_back(std::abs(point.window.speed));
   std::sort(speeds.begin(), speeds.end());
   int count = 0;

@@ -61,6 +61,7 @@ int RunToItsEnd(const std::vector<std::string>& command, const std::string& outp
   const int output = open(output_file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
   if (output < 0) throw std::system_error(errno, std::generic_category(), output_file);
   std::vector<char*> argv;
+  argv.reserve(command.size() + 1);
   for (const std::string& word : command) argv.push_back(const_cast<char*>(word.c_str()));
   argv.push_back(nullptr);
   const pid_t us = getpid();
