@@ -1,10 +1,12 @@
 #include "experiments/linear_fit.h"
 
-#include <Eigen/Dense>
+#include <Eigen/QR>
 #include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
+
+#include "experiments/matrix_functions.h"
 
 namespace hydro {
 
@@ -50,7 +52,7 @@ LinearFit FitLinear(const std::vector<std::vector<double>>& regressors, const st
   fit.degrees_of_freedom = static_cast<int>(rows - columns);
   fit.residual_deviation = fit.degrees_of_freedom > 0 ? std::sqrt(squares / fit.degrees_of_freedom) : 0;
   const Eigen::MatrixXd covariance =
-      (design.transpose() * design).inverse() * (fit.residual_deviation * fit.residual_deviation);
+      Inverse(design.transpose() * design) * (fit.residual_deviation * fit.residual_deviation);
   fit.covariance.assign(covariance.data(), covariance.data() + covariance.size());
   return fit;
 }

@@ -17,6 +17,8 @@ Eigensystem Eigenvectors(const Eigen::MatrixXd& A) {
 
 Eigen::MatrixXd Exponential(const Eigen::MatrixXd& A) { return A.exp(); }
 
+Eigen::MatrixXd Inverse(const Eigen::MatrixXd& A) { return A.inverse(); }
+
 Eigen::VectorXcd Resolvent(const Eigen::MatrixXd& A, std::complex<double> s, const Eigen::VectorXd& b) {
   Eigen::MatrixXcd resolvent = -A.cast<std::complex<double>>();
   resolvent.diagonal().array() += s;

@@ -1,4 +1,4 @@
-// The linear algebra of the linear loops: Eigen's decompositions, compiled once. They cost seconds in each
+// Linear algebra of matrices of any size: Eigen's decompositions, compiled once. They cost seconds in each
 // file that instantiates them.
 #pragma once
 
@@ -18,6 +18,8 @@ Eigensystem Eigenvectors(const Eigen::MatrixXd& A);
 
 // exp(A): what x' = A x does in a unit of time.
 Eigen::MatrixXd Exponential(const Eigen::MatrixXd& A);
+
+Eigen::MatrixXd Inverse(const Eigen::MatrixXd& A);
 
 // (s I - A)^-1 b: the states' response at s (or z) to an input that enters by b.
 Eigen::VectorXcd Resolvent(const Eigen::MatrixXd& A, std::complex<double> s, const Eigen::VectorXd& b);
