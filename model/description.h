@@ -8,24 +8,27 @@
 namespace hydro {
 
 // Base parameters of eqs. (1) to (15), Table 1. Units need only be coherent; those of the paper are given.
-struct Parameters {
-  double k_1 = 0;     // in-lbf/V, torque per volt, eq. (1)
-  double T_pmax = 0;  // in-lbf, limit of |T_p| set by the amplifier's current limit
-  double D = 0;       // in^3/rad, pump displacement, eq. (3)
-  double J = 0;       // lbf-in-s^2, inertia of motor and pump, eq. (4)
-  double b = 0;       // in-lbf-s, viscous friction, eq. (4)
-  double T_s = 0;     // in-lbf, Coulomb friction, eq. (4)
-  double f = 0;       // in-lbf/psi, Coulomb friction per pressure, eq. (4)
-  double beta = 0;    // psi, bulk modulus, eq. (5)
-  double V_ms = 0;    // in^3, volume of one side at mid-stroke, eqs. (6), (7)
-  double c = 0;       // in^3/rad, displacement of the actuator, r^2 d/2 in eqs. (6), (7)
-  double c_E = 0;     // in^3/(s psi), external leakage to the accumulator, eqs. (11), (12)
-  double c_I = 0;     // in^3/(s psi), internal leakage across the ports, eqs. (11), (12)
-  double p_3 = 0;     // psi, accumulator pressure
-  double k_2 = 0;     // in-lbf/psi, arm torque per pressure difference, eq. (15)
-  double J_a = 0;     // lbf-in-s^2, inertia of the arm, eq. (15)
-  double mgl = 0;     // in-lbf, gravity torque of the arm at alpha = 0, eq. (15)
+// T is double, or a scalar that carries derivatives.
+template <class T>
+struct ParametersOf {
+  T k_1{};     // in-lbf/V, torque per volt, eq. (1)
+  T T_pmax{};  // in-lbf, limit of |T_p| set by the amplifier's current limit
+  T D{};       // in^3/rad, pump displacement, eq. (3)
+  T J{};       // lbf-in-s^2, inertia of motor and pump, eq. (4)
+  T b{};       // in-lbf-s, viscous friction, eq. (4)
+  T T_s{};     // in-lbf, Coulomb friction, eq. (4)
+  T f{};       // in-lbf/psi, Coulomb friction per pressure, eq. (4)
+  T beta{};    // psi, bulk modulus, eq. (5)
+  T V_ms{};    // in^3, volume of one side at mid-stroke, eqs. (6), (7)
+  T c{};       // in^3/rad, displacement of the actuator, r^2 d/2 in eqs. (6), (7)
+  T c_E{};     // in^3/(s psi), external leakage to the accumulator, eqs. (11), (12)
+  T c_I{};     // in^3/(s psi), internal leakage across the ports, eqs. (11), (12)
+  T p_3{};     // psi, accumulator pressure
+  T k_2{};     // in-lbf/psi, arm torque per pressure difference, eq. (15)
+  T J_a{};     // lbf-in-s^2, inertia of the arm, eq. (15)
+  T mgl{};     // in-lbf, gravity torque of the arm at alpha = 0, eq. (15)
 };
+using Parameters = ParametersOf<double>;
 
 // An effect that a model has, as written in its file: [effects."id"].
 struct EffectDescription {

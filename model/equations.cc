@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <sstream>
+#include <utility>
 
+#include "model/effects/effect.h"
 #include "model/evaluate.h"
 
 namespace hydro {
@@ -28,33 +30,13 @@ void CheckBounds(const ParameterInfo& info, double value, const std::string& own
                    (std::isfinite(info.max) ? " to " + Number(info.max) : ""));
 }
 
-template <class T>
-MeasurementOf<T> ReadSensors(const EquationData& m, double time, const T* state) {
-  MeasurementOf<T> measured;
-  measured.motor_angle = state[kMotorAngle];
-  measured.motor_speed = state[kMotorSpeed];
-  measured.p1 = state[kP1];
-  measured.p2 = state[kP2];
-  if (m.shaft == Shaft::kFree) {
-    measured.arm_angle = state[kArmAngle];
-    measured.arm_speed = state[kArmSpeed];
-  } else if (m.shaft == Shaft::kDriven) {
-    measured.arm_angle = T(m.motion->Value(time));
-    measured.arm_speed = T(m.motion->Rate(time));
-  } else {
-    measured.arm_angle = T(m.arm_angle);
-  }
-  for (const auto& effect : m.effects) effect->Sense(state, &measured);
-  return measured;
-}
-
 // Not inlined: once for all that asks for derivatives.
 [[gnu::noinline]] void RatesWithDerivatives(const EquationData& m, double time, const Jet& voltage,
                                             const Mode& mode, const Jet* state, bool voltage_acts,
                                             Jet* rate) {
   Terms<Jet> x;
   x.voltage_acts = voltage_acts;
-  EvaluateTerms<Form::kGeneral>(m, time, voltage, mode, state, rate, x);
+  EvaluateTerms<Form::kGeneral, Jet>(m, *m.constants, time, voltage, mode, state, rate, x);
 }
 
 }  // namespace
@@ -71,9 +53,6 @@ Equations::Equations(const ModelDescription& description, const ActuatorOptions&
   for (const BaseParameter& parameter : BaseParameters())
     CheckBounds(parameter.info, p.*parameter.member, "");
   if (!std::isfinite(options.arm_angle)) throw ModelError("arm angle is not finite");
-
-  data_.inverse_J = 1 / p.J;
-  data_.inverse_J_a = 1 / p.J_a;
 
   const double pressure = 0.01 * p.T_pmax / p.D;
   const double speed = pressure * std::sqrt(2 * p.V_ms / (p.beta * p.J));
@@ -106,17 +85,28 @@ Equations::Equations(const ModelDescription& description, const ActuatorOptions&
         CheckBounds(info, found->second, owner);
       }
     }
-    data_.effects.push_back(entry->make(effect, p));
+    data_.effects.push_back(entry->make(effect));
+    const int first_parameter = static_cast<int>(data_.own.size());
+    for (const ParameterInfo& info : entry->info.parameters) {
+      if (!info.is_name) data_.own.push_back(effect.parameters.at(info.name));
+    }
     Effect& made = *data_.effects.back();
     const int first = static_cast<int>(scales_.size());
-    made.Place(first, data_.switches - kFirstEffectSwitch);
+    made.Place(first, data_.switches - kFirstEffectSwitch, first_parameter);
     scales_.resize(first + made.states());
     data_.switches += made.switches();
     if (scales_.size() > kMaxStates || data_.switches > kMaxSwitches) throw ModelError("too many effects");
     made.Scales(pressure, p.D * speed, 0.01 * p.T_pmax, scales_.data() + first);
-    data_.fixed_volume += made.FixedVolume(p);
   }
   data_.states = static_cast<int>(scales_.size());
+  CompleteNumbers<double>(data_, &data_);
+  auto constants = std::make_shared<NumbersOf<Jet>>();
+  for (size_t i = 0; i < BaseParameters().size(); ++i) {
+    BaseValue(constants->parameters, i) = Jet(BaseValue(data_.parameters, i));
+  }
+  for (const double value : data_.own) constants->own.emplace_back(value);
+  CompleteNumbers<Jet>(data_, constants.get());
+  data_.constants = std::move(constants);
 
   if (data_.shaft == Shaft::kDriven) {
     if (data_.motion == nullptr) throw ModelError("a driven shaft needs a motion");
@@ -126,8 +116,6 @@ Equations::Equations(const ModelDescription& description, const ActuatorOptions&
     CheckVolumes(data_.motion->Max());
   } else {
     CheckVolumes(data_.arm_angle);
-    data_.stiffness_1 = p.beta / (p.V_ms - p.c * data_.arm_angle - data_.fixed_volume);
-    data_.stiffness_2 = p.beta / (p.V_ms + p.c * data_.arm_angle - data_.fixed_volume);
   }
 }
 
@@ -153,7 +141,10 @@ void Equations::Start(double pressure, double* state, Mode* mode) const {
   double rate[kMaxStates];
   Terms<double> x;
   Evaluate(0, 0, *mode, state, rate, &x);
-  for (const auto& effect : data_.effects) effect->Start(x, state);
+  for (const auto& effect : data_.effects) {
+    x.own = data_.own.data() + effect->first_parameter();
+    effect->Start(x, state);
+  }
 }
 
 void Equations::Rates(double time, double voltage, const Mode& mode, const double* state, double* rate,
@@ -163,7 +154,7 @@ void Equations::Rates(double time, double voltage, const Mode& mode, const doubl
 
 void Equations::Evaluate(double time, double voltage, const Mode& mode, const double* state, double* rate,
                          Terms<double>* terms) const {
-  EvaluateTerms<Form::kGeneral>(data_, time, voltage, mode, state, rate, *terms);
+  EvaluateTerms<Form::kGeneral, double>(data_, data_, time, voltage, mode, state, rate, *terms);
 }
 
 void Equations::Jacobian(double time, double voltage, const Mode& mode, const double* state,
@@ -186,34 +177,11 @@ void Equations::Jacobian(double time, double voltage, const Mode& mode, const do
 void Equations::Differentiate(double time, const Jet& voltage, const Mode& mode, const Jet* state, Jet* rate,
                               MeasurementOf<Jet>* measured) const {
   RatesWithDerivatives(data_, time, voltage, mode, state, true, rate);
-  *measured = ReadSensors(data_, time, state);
+  *measured = ReadSensors<Jet>(data_, *data_.constants, time, state);
 }
 
 void Equations::Cross(int which, double time, double voltage, double* state, Mode* mode) const {
-  double rate[kMaxStates];
-  Terms<double> x;
-  if (which == kPumpSwitch) {
-    if (mode->pump != 0) state[kMotorSpeed] = 0;
-    mode->pump = 0;
-    Evaluate(time, voltage, *mode, state, rate, &x);
-    if (std::abs(x.net_torque) > x.breakaway) mode->pump = x.net_torque > 0 ? 1 : -1;
-    return;
-  }
-  if (which >= kFirstEffectSwitch) {
-    Evaluate(time, voltage, *mode, state, rate, &x);
-    for (const auto& effect : data_.effects) {
-      const int first = kFirstEffectSwitch + effect->first_switch();
-      if (which >= first && which < first + effect->switches()) effect->Cross(which - first, x, state, mode);
-    }
-    return;
-  }
-  int8_t& valve = which == kValve1Switch ? mode->valve_1 : mode->valve_2;
-  valve = valve == 0 ? 1 : 0;
-  if (valve == 1) {
-    Evaluate(time, voltage, *mode, state, rate, &x);
-    if (which == kValve1Switch || data_.bypass) state[kP1] = x.p_3;
-    if (which == kValve2Switch || data_.bypass) state[kP2] = x.p_3;
-  }
+  CrossSwitch<double>(data_, data_, which, time, voltage, state, mode);
 }
 
 Power Equations::PowerBalance(double time, double voltage, const Mode& mode, const double* state) const {
@@ -238,12 +206,15 @@ Power Equations::PowerBalance(double time, double voltage, const Mode& mode, con
   } else {
     power.shaft_in = -p.k_2 * dp * x.arm_speed;
   }
-  for (const auto& effect : data_.effects) effect->AddPower(x, rate, &power);
+  for (const auto& effect : data_.effects) {
+    x.own = data_.own.data() + effect->first_parameter();
+    effect->AddPower(x, rate, &power);
+  }
   return power;
 }
 
 Measurement Equations::Measure(double time, const double* state) const {
-  return ReadSensors(data_, time, state);
+  return ReadSensors<double>(data_, data_, time, state);
 }
 
 void Equations::CheckVolumes(double arm_angle) const {

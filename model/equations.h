@@ -10,30 +10,39 @@
 
 #include "model/actuator.h"
 #include "model/description.h"
-#include "model/effects/effect.h"
 #include "model/mode.h"
 #include "model/power.h"
 #include "model/state.h"
+#include "model/terms.h"
 
 namespace hydro {
 
+class Effect;
+
+// The numbers in the right-hand side: parameters, and what follows from them alone.
+template <class T>
+struct NumbersOf {
+  ParametersOf<T> parameters;
+  std::vector<T> own;  // the effects' parameters, each effect's from Effect::first_parameter() on
+  T inverse_J{};
+  T inverse_J_a{};
+  T fixed_volume{};  // in^3, of each side, not at the actuator
+  T stiffness_1{};   // beta/V_1 at arm_angle, psi/in^3
+  T stiffness_2{};
+};
+
 // What the right-hand side needs besides time, state, mode and voltage.
-struct EquationData {
-  Parameters parameters;
+struct EquationData : NumbersOf<double> {
   Shaft shaft = Shaft::kFree;
   bool bypass = false;
   double arm_angle = 0;                // clamped
   const Trajectory* motion = nullptr;  // driven
   double motion_limit =
       std::numeric_limits<double>::infinity();  // s: `motion` is evaluated at times below this
-  std::vector<std::unique_ptr<Effect>> effects;
+  std::vector<std::shared_ptr<Effect>> effects;
   int states = 0;
   int switches = kFirstEffectSwitch;
-  double inverse_J = 0;
-  double inverse_J_a = 0;
-  double fixed_volume = 0;  // in^3, of each side, not at the actuator
-  double stiffness_1 = 0;   // beta/V_1 at arm_angle, psi/in^3
-  double stiffness_2 = 0;
+  std::shared_ptr<const NumbersOf<Jet>> constants;  // the same numbers without derivatives
 };
 
 class Equations {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "model/effects/effect.h"
 #include "model/equations.h"
 #include "trajectory/trajectory.h"
 
@@ -14,11 +15,12 @@ namespace hydro {
 enum class Form { kPlainClamped, kPlainFree, kGeneral };
 
 template <Form kForm, class T>
-[[gnu::always_inline]] inline void EvaluateTerms(const EquationData& m, double time, T voltage,
-                                                 const Mode& mode, const T* y, T* rate, Terms<T>& x) {
+[[gnu::always_inline]] inline void EvaluateTerms(const EquationData& m, const NumbersOf<T>& n, double time,
+                                                 const T& voltage, const Mode& mode, const T* y, T* rate,
+                                                 Terms<T>& x) {
   using std::cos;
   constexpr bool kGeneralForm = kForm == Form::kGeneral;
-  const Parameters& p = m.parameters;
+  const ParametersOf<T>& p = n.parameters;
   x.motor_angle = y[kMotorAngle];
   x.motor_speed = y[kMotorSpeed];
   x.p1 = y[kP1];
@@ -41,14 +43,14 @@ template <Form kForm, class T>
   }
 
   x.torque = LimitedTorque(p, voltage);  // (1)
-  x.D = T(p.D);
-  x.b = T(p.b);
-  x.T_s = T(p.T_s);
-  x.f = T(p.f);
-  x.beta_1 = x.beta_2 = T(p.beta);
-  x.c_E = T(p.c_E);
-  x.c_I = T(p.c_I);
-  x.p_3 = T(p.p_3);
+  x.D = p.D;
+  x.b = p.b;
+  x.T_s = p.T_s;
+  x.f = p.f;
+  x.beta_1 = x.beta_2 = p.beta;
+  x.c_E = p.c_E;
+  x.c_I = p.c_I;
+  x.p_3 = p.p_3;
   x.pump_p1 = x.p1;
   x.pump_p2 = x.p2;
   if constexpr (kForm != Form::kPlainClamped) {
@@ -56,15 +58,18 @@ template <Form kForm, class T>
     x.V_2 = p.V_ms + p.c * x.arm_angle;  // (7)
   }
   if constexpr (kGeneralForm) {
-    x.V_1 -= m.fixed_volume;
-    x.V_2 -= m.fixed_volume;
+    x.V_1 -= n.fixed_volume;
+    x.V_2 -= n.fixed_volume;
     x.time = time;
     x.voltage = voltage;
     x.mode = &mode;
     x.arm_free = arm_moves_freely;
     x.parameters = &p;
     x.state = y;
-    for (const auto& effect : m.effects) effect->SetProperties(x);
+    for (const auto& effect : m.effects) {
+      x.own = n.own.data() + effect->first_parameter();
+      effect->SetProperties(x);
+    }
   }
 
   const double direction = mode.pump;
@@ -78,14 +83,20 @@ template <Form kForm, class T>
   x.arm_torque = p.k_2 * (x.p2 - x.p1);  // (15)
   if (arm_moves_freely && p.mgl != 0) x.arm_torque -= p.mgl * cos(x.arm_angle);
   if constexpr (kGeneralForm) {
-    for (const auto& effect : m.effects) effect->AddTorquesAndFlows(x);
+    for (const auto& effect : m.effects) {
+      x.own = n.own.data() + effect->first_parameter();
+      effect->AddTorquesAndFlows(x);
+    }
   }
 
   x.net_torque = x.torque - x.D * dp - x.load;                   // (4)
   x.q_1 = x.D * x.motor_speed - x.cross_flow + x.outer_flow_1;   // (11)
   x.q_2 = -x.D * x.motor_speed + x.cross_flow + x.outer_flow_2;  // (12)
   if constexpr (kGeneralForm) {
-    for (const auto& effect : m.effects) effect->AddStates(x, rate);
+    for (const auto& effect : m.effects) {
+      x.own = n.own.data() + effect->first_parameter();
+      effect->AddStates(x, rate);
+    }
   }
 
   rate[kMotorAngle] = x.motor_speed;
@@ -93,10 +104,10 @@ template <Form kForm, class T>
   rate[kMotorSpeed] =
       mode.pump == 0
           ? T(0.0)
-          : T(((x.torque - x.load - direction * x.coulomb - x.b * x.motor_speed) - x.D * dp) * m.inverse_J);
+          : T(((x.torque - x.load - direction * x.coulomb - x.b * x.motor_speed) - x.D * dp) * n.inverse_J);
   if constexpr (kForm == Form::kPlainClamped) {
-    x.free_rate_1 = -m.stiffness_1 * x.q_1;  // (13)
-    x.free_rate_2 = -m.stiffness_2 * x.q_2;  // (14)
+    x.free_rate_1 = -n.stiffness_1 * x.q_1;  // (13)
+    x.free_rate_2 = -n.stiffness_2 * x.q_2;  // (14)
   } else {
     const T arm_flow = p.c * x.arm_speed;
     if (kGeneralForm && m.bypass) {  // one pressure; what the arm displaces goes round
@@ -112,19 +123,23 @@ template <Form kForm, class T>
   rate[kP2] = open_2 ? T(0.0) : x.free_rate_2;
   if (arm_moves_freely) {
     rate[kArmAngle] = x.arm_speed;
-    rate[kArmSpeed] = x.arm_torque * m.inverse_J_a;  // (15)
+    rate[kArmSpeed] = x.arm_torque * n.inverse_J_a;  // (15)
   }
 }
 
-template <Form kForm>
-[[gnu::always_inline]] inline void FindMargins(const EquationData& m, const Mode& mode,
-                                               const Terms<double>& x, double* margin) {
-  margin[kPumpSwitch] = mode.pump == 0 ? x.breakaway - std::abs(x.net_torque) : mode.pump * x.motor_speed;
-  margin[kValve1Switch] = mode.valve_1 ? -x.free_rate_1 : x.p1 - x.p_3;
-  margin[kValve2Switch] = mode.valve_2 ? -x.free_rate_2 : x.p2 - x.p_3;
+template <Form kForm, class T>
+[[gnu::always_inline]] inline void FindMargins(const EquationData& m, const NumbersOf<T>& n, const Mode& mode,
+                                               Terms<T>& x, T* margin) {
+  using std::abs;
+  margin[kPumpSwitch] = mode.pump == 0 ? T(x.breakaway - abs(x.net_torque)) : T(mode.pump * x.motor_speed);
+  margin[kValve1Switch] = mode.valve_1 ? T(-x.free_rate_1) : T(x.p1 - x.p_3);
+  margin[kValve2Switch] = mode.valve_2 ? T(-x.free_rate_2) : T(x.p2 - x.p_3);
   if constexpr (kForm == Form::kGeneral) {
-    if (m.bypass) margin[kValve2Switch] = 1;  // valve_1 stands for both
-    for (const auto& effect : m.effects) effect->Margins(x, margin);
+    if (m.bypass) margin[kValve2Switch] = T(1.0);  // valve_1 stands for both
+    for (const auto& effect : m.effects) {
+      x.own = n.own.data() + effect->first_parameter();
+      effect->Margins(x, margin);
+    }
   }
 }
 
@@ -133,8 +148,82 @@ template <Form kForm>
                                                  const Mode& mode, const double* y, double* rate,
                                                  double* margin) {
   Terms<double> x;
-  EvaluateTerms<kForm>(m, time, voltage, mode, y, rate, x);
-  if (margin != nullptr) FindMargins<kForm>(m, mode, x, margin);
+  EvaluateTerms<kForm, double>(m, m, time, voltage, mode, y, rate, x);
+  if (margin != nullptr) FindMargins<kForm, double>(m, m, mode, x, margin);
+}
+
+// As Equations::Cross.
+template <class T>
+void CrossSwitch(const EquationData& m, const NumbersOf<T>& n, int which, double time, const T& voltage,
+                 T* state, Mode* mode) {
+  using std::abs;
+  T rate[kMaxStates];
+  Terms<T> x;
+  const auto evaluate = [&] { EvaluateTerms<Form::kGeneral, T>(m, n, time, voltage, *mode, state, rate, x); };
+  if (which == kPumpSwitch) {
+    if (mode->pump != 0) state[kMotorSpeed] = T(0.0);
+    mode->pump = 0;
+    evaluate();
+    if (abs(x.net_torque) > x.breakaway) mode->pump = x.net_torque > T(0.0) ? 1 : -1;
+    return;
+  }
+  if (which >= kFirstEffectSwitch) {
+    evaluate();
+    for (const auto& effect : m.effects) {
+      const int first = kFirstEffectSwitch + effect->first_switch();
+      x.own = n.own.data() + effect->first_parameter();
+      if (which >= first && which < first + effect->switches()) effect->Cross(which - first, x, state, mode);
+    }
+    return;
+  }
+  int8_t& valve = which == kValve1Switch ? mode->valve_1 : mode->valve_2;
+  valve = valve == 0 ? 1 : 0;
+  if (valve == 1) {
+    evaluate();
+    if (which == kValve1Switch || m.bypass) state[kP1] = x.p_3;
+    if (which == kValve2Switch || m.bypass) state[kP2] = x.p_3;
+  }
+}
+
+// As Equations::Measure.
+template <class T>
+MeasurementOf<T> ReadSensors(const EquationData& m, const NumbersOf<T>& n, double time, const T* state) {
+  MeasurementOf<T> measured;
+  measured.motor_angle = state[kMotorAngle];
+  measured.motor_speed = state[kMotorSpeed];
+  measured.p1 = state[kP1];
+  measured.p2 = state[kP2];
+  if (m.shaft == Shaft::kFree) {
+    measured.arm_angle = state[kArmAngle];
+    measured.arm_speed = state[kArmSpeed];
+  } else if (m.shaft == Shaft::kDriven) {
+    measured.arm_angle = T(m.motion->Value(time));
+    measured.arm_speed = T(m.motion->Rate(time));
+  } else {
+    measured.arm_angle = T(m.arm_angle);
+  }
+  SenseTerms<T> at;
+  at.time = time;
+  at.state = state;
+  for (const auto& effect : m.effects) {
+    at.own = n.own.data() + effect->first_parameter();
+    effect->Sense(at, &measured);
+  }
+  return measured;
+}
+
+// The numbers that follow from n.parameters and n.own.
+template <class T>
+void CompleteNumbers(const EquationData& m, NumbersOf<T>* n) {
+  const ParametersOf<T>& p = n->parameters;
+  n->inverse_J = 1.0 / p.J;
+  n->inverse_J_a = 1.0 / p.J_a;
+  n->fixed_volume = T(0.0);
+  for (const auto& effect : m.effects) {
+    n->fixed_volume += effect->FixedVolume(p, n->own.data() + effect->first_parameter());
+  }
+  n->stiffness_1 = p.beta / (p.V_ms - p.c * m.arm_angle - n->fixed_volume);
+  n->stiffness_2 = p.beta / (p.V_ms + p.c * m.arm_angle - n->fixed_volume);
 }
 
 }  // namespace hydro

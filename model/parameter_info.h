@@ -2,6 +2,7 @@
 // against it, reports print it.
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -25,6 +26,15 @@ struct BaseParameter {
   ParameterInfo info;
   double Parameters::*member;
 };
+
+// The member of ParametersOf<T> that BaseParameters() has at `index`.
+template <class T>
+T& BaseValue(ParametersOf<T>& parameters, size_t index) {
+  using P = ParametersOf<T>;
+  constexpr T P::*kMembers[] = {&P::k_1,  &P::T_pmax, &P::D,   &P::J,   &P::b,   &P::T_s, &P::f,   &P::beta,
+                                &P::V_ms, &P::c,      &P::c_E, &P::c_I, &P::p_3, &P::k_2, &P::J_a, &P::mgl};
+  return parameters.*kMembers[index];
+}
 
 // All base parameters, in the order of Parameters.
 const std::vector<BaseParameter>& BaseParameters();

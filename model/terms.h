@@ -13,8 +13,8 @@ struct Jet;
 
 namespace hydro {
 
-// Scalar that carries derivatives along four directions at a time.
-inline constexpr int kJetWidth = 4;
+// Scalar that carries derivatives along so many directions at a time.
+inline constexpr int kJetWidth = 8;
 using Jet = ceres::Jet<double, kJetWidth>;
 
 // T is double, or Jet for exact derivatives. Signs are those of the paper: the pump turning forward (theta' >
@@ -25,7 +25,8 @@ struct Terms {
   double time = 0;  // s
   const Mode* mode = nullptr;
   bool arm_free = false;  // the shaft is neither clamped nor driven
-  const Parameters* parameters = nullptr;
+  const ParametersOf<T>* parameters = nullptr;
+  const T* own = nullptr;    // the effect's parameters, in the order of its catalogue entry, names left out
   const T* state = nullptr;  // the whole state vector; an effect finds its own states from first_state() on
   bool voltage_acts =
       false;  // `voltage` is the one that acts now, whatever an effect remembers of earlier ones
@@ -58,10 +59,18 @@ struct Terms {
   T free_rate_1, free_rate_2;
 };
 
+// What the sensors' readings are computed from.
+template <class T>
+struct SenseTerms {
+  double time = 0;           // s
+  const T* state = nullptr;  // the whole state vector
+  const T* own = nullptr;    // the effect's parameters
+};
+
 // T_p, eq. (1) with |T_p| <= T_pmax.
 template <class T>
-[[gnu::always_inline]] inline T LimitedTorque(const Parameters& p, const T& voltage) {
-  return std::clamp<T>(p.k_1 * voltage, T(-p.T_pmax), T(p.T_pmax));
+[[gnu::always_inline]] inline T LimitedTorque(const ParametersOf<T>& p, const T& voltage) {
+  return std::clamp<T>(p.k_1 * voltage, -p.T_pmax, p.T_pmax);
 }
 
 }  // namespace hydro

@@ -13,8 +13,6 @@ namespace {
 
 class SealFriction : public EffectOf<SealFriction> {
  public:
-  SealFriction(double coulomb, double viscous) : coulomb_(coulomb), viscous_(viscous) {}
-
   int switches() const override { return 1; }
 
   // After every torque on the arm is known.
@@ -25,41 +23,44 @@ class SealFriction : public EffectOf<SealFriction> {
     if (direction == 0) {
       x.arm_torque = T(0.0);
     } else {
-      x.arm_torque -= direction * coulomb_ + viscous_ * x.arm_speed;
+      x.arm_torque -= static_cast<double>(direction) * x.own[0] + x.own[1] * x.arm_speed;
     }
   }
 
-  void Margins(const Terms<double>& x, double* margin) const override {
+  template <class T>
+  void OwnMargins(const Terms<T>& x, T* margin) const {
+    using std::abs;
     const int direction = x.mode->effects[first_switch()];
-    double& own = margin[kFirstEffectSwitch + first_switch()];
+    T& own = margin[kFirstEffectSwitch + first_switch()];
     if (!x.arm_free) {
-      own = 1;
+      own = T(1.0);
     } else if (direction == 0) {
-      own = coulomb_ - std::abs(NetTorque(x));
+      own = x.own[0] - abs(NetTorque(x));
     } else {
-      own = direction * x.arm_speed;
+      own = static_cast<double>(direction) * x.arm_speed;
     }
   }
 
-  void Cross(int, const Terms<double>& x, double* state, Mode* mode) const override {
+  template <class T>
+  void OwnCross(int /*which*/, const Terms<T>& x, T* state, Mode* mode) const {
+    using std::abs;
     int8_t& direction = mode->effects[first_switch()];
-    if (direction != 0) state[kArmSpeed] = 0;
-    const double torque = NetTorque(x);
-    direction = std::abs(torque) <= coulomb_ ? 0 : (torque > 0 ? 1 : -1);
+    if (direction != 0) state[kArmSpeed] = T(0.0);
+    const T torque = NetTorque(x);
+    direction = abs(torque) <= x.own[0] ? 0 : (torque > T(0.0) ? 1 : -1);
   }
 
   void AddPower(const Terms<double>& x, const double* /*rate*/, Power* power) const override {
     if (!x.arm_free) return;
-    power->effects_dissipated += coulomb_ * std::abs(x.arm_speed) + viscous_ * x.arm_speed * x.arm_speed;
+    power->effects_dissipated += x.own[0] * std::abs(x.arm_speed) + x.own[1] * x.arm_speed * x.arm_speed;
   }
 
  private:
-  static double NetTorque(const Terms<double>& x) {
-    return x.parameters->k_2 * (x.p2 - x.p1) - x.parameters->mgl * std::cos(x.arm_angle);
+  template <class T>
+  static T NetTorque(const Terms<T>& x) {
+    using std::cos;
+    return x.parameters->k_2 * (x.p2 - x.p1) - x.parameters->mgl * cos(x.arm_angle);
   }
-
-  double coulomb_;
-  double viscous_;
 };
 
 }  // namespace
@@ -72,10 +73,7 @@ CatalogueEntry ActuatorSealFriction() {
            "parameter m g l on one-way motion",
            {{"coulomb", "in-lbf", 0, kUnbounded, true, "Coulomb friction on the arm"},
             {"viscous", "in-lbf-s", 0, kUnbounded, true, "viscous friction on the arm"}}},
-          [](const EffectDescription& description, const Parameters&) -> std::unique_ptr<Effect> {
-            return std::make_unique<SealFriction>(description.parameters.at("coulomb"),
-                                                  description.parameters.at("viscous"));
-          }};
+          MakeEffect<SealFriction>};
 }
 
 }  // namespace hydro

@@ -22,6 +22,13 @@ class Delay : public EffectOf<Delay> {
     x.torque = LimitedTorque(*x.parameters, x.voltage);
   }
 
+  template <class T>
+  T OwnStopShift(const T* own) const {
+    T shift = own[0];
+    shift.a = 0;
+    return shift;
+  }
+
   void Command(double time, double voltage) override {
     if (first_ == waiting_.size()) {
       waiting_.clear();
@@ -60,7 +67,7 @@ CatalogueEntry AmpDelay() {
            "T(t) = k_1 v(t - delay)",
            "amp.lag, sensor.skew",
            {{"delay", "s", 0, kUnbounded, true, "from a change of the voltage to that of the torque"}}},
-          [](const EffectDescription& description, const Parameters&) -> std::unique_ptr<Effect> {
+          [](const EffectDescription& description) -> std::unique_ptr<Effect> {
             return std::make_unique<Delay>(description.parameters.at("delay"));
           }};
 }

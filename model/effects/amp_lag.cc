@@ -10,8 +10,6 @@ namespace {
 
 class Lag : public EffectOf<Lag> {
  public:
-  explicit Lag(double tau) : tau_(tau) {}
-
   int states() const override { return 1; }
   int switches() const override { return 1; }
   std::vector<std::string> StateNames() const override { return {"lagged_torque"}; }
@@ -20,29 +18,29 @@ class Lag : public EffectOf<Lag> {
   template <class T>
   void OwnProperties(Terms<T>& x) const {
     const int limit = x.mode->effects[first_switch()];
-    x.torque = limit == 0 ? x.state[first_state()] : T(limit * x.parameters->T_pmax);
+    x.torque = limit == 0 ? x.state[first_state()] : T(static_cast<double>(limit) * x.parameters->T_pmax);
   }
 
   template <class T>
   void OwnStates(Terms<T>& x, T* rate) const {
-    rate[first_state()] = (x.parameters->k_1 * x.voltage - x.state[first_state()]) / tau_;
+    rate[first_state()] = (x.parameters->k_1 * x.voltage - x.state[first_state()]) / x.own[0];
   }
 
-  void Margins(const Terms<double>& x, double* margin) const override {
+  template <class T>
+  void OwnMargins(const Terms<T>& x, T* margin) const {
+    using std::abs;
     const int limit = x.mode->effects[first_switch()];
-    const double torque = x.state[first_state()];
-    const double T_pmax = x.parameters->T_pmax;
+    const T& torque = x.state[first_state()];
+    const T& T_pmax = x.parameters->T_pmax;
     margin[kFirstEffectSwitch + first_switch()] =
-        limit == 0 ? T_pmax - std::abs(torque) : limit * torque - T_pmax;
+        limit == 0 ? T(T_pmax - abs(torque)) : T(static_cast<double>(limit) * torque - T_pmax);
   }
 
-  void Cross(int, const Terms<double>& x, double*, Mode* mode) const override {
+  template <class T>
+  void OwnCross(int /*which*/, const Terms<T>& x, T* /*state*/, Mode* mode) const {
     int8_t& limit = mode->effects[first_switch()];
-    limit = limit != 0 ? 0 : (x.state[first_state()] > 0 ? 1 : -1);
+    limit = limit != 0 ? 0 : (x.state[first_state()] > T(0.0) ? 1 : -1);
   }
-
- private:
-  double tau_;
 };
 
 }  // namespace
@@ -54,9 +52,7 @@ CatalogueEntry AmpLag() {
            "tau dT/dt + T = k_1 v",
            "amp.delay, sensor.pressure_lag",
            {{"tau", "s", 0, kUnbounded, false, "time constant"}}},
-          [](const EffectDescription& description, const Parameters&) -> std::unique_ptr<Effect> {
-            return std::make_unique<Lag>(description.parameters.at("tau"));
-          }};
+          MakeEffect<Lag>};
 }
 
 }  // namespace hydro

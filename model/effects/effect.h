@@ -9,6 +9,8 @@
 // Effects are applied in the order of their ids, so a model does not depend on the order of its file.
 #pragma once
 
+#include <ceres/jet.h>
+
 #include <limits>
 #include <memory>
 #include <string>
@@ -29,47 +31,61 @@ class Effect {
  public:
   virtual ~Effect() = default;
 
-  // States and switches that the effect adds; where they lie in the state vector and in Mode::effects.
+  // States and switches that the effect adds; where they, and its parameters, lie in the state vector, in
+  // Mode::effects and among those of all effects.
   virtual int states() const { return 0; }
   virtual int switches() const { return 0; }
   int first_state() const { return first_state_; }
   int first_switch() const { return first_switch_; }
-  void Place(int first_state, int first_switch) {
+  int first_parameter() const { return first_parameter_; }
+  void Place(int first_state, int first_switch, int first_parameter) {
     first_state_ = first_state;
     first_switch_ = first_switch;
+    first_parameter_ = first_parameter;
   }
 
-  // For each state it adds: name with unit, its value at the start (from `x`, which holds the base quantities
-  // then), and the size below which absolute instead of relative errors count.
+  // For each state it adds: name with unit, and the size below which absolute instead of relative errors
+  // count.
   virtual std::vector<std::string> StateNames() const { return {}; }
-  virtual void Start(const Terms<double>& /*x*/, double* /*state*/) const {}
   virtual void Scales(double /*pressure*/, double /*flow*/, double /*torque*/, double* /*scale*/) const {}
 
+  // What follows is for numbers and, with the same formulas, for numbers that carry derivatives: an effect
+  // writes it once, as templates named Own... (EffectOf).
+
   // Volume of each side that is not at the actuator: V_1 and V_2 must stay above it.
-  virtual double FixedVolume(const Parameters& /*base*/) const { return 0; }
+  virtual double FixedVolume(const ParametersOf<double>& base, const double* own) const = 0;
+  virtual Jet FixedVolume(const ParametersOf<Jet>& base, const Jet* own) const = 0;
+
+  // Its states at the start, from `x`, which holds the base quantities then.
+  virtual void Start(const Terms<double>& x, double* state) const = 0;
+  virtual void Start(const Terms<Jet>& x, Jet* state) const = 0;
 
   // The equation.
-  virtual void SetProperties(Terms<double>&) const {}
-  virtual void SetProperties(Terms<Jet>&) const {}
-  virtual void AddTorquesAndFlows(Terms<double>&) const {}
-  virtual void AddTorquesAndFlows(Terms<Jet>&) const {}
-  virtual void AddStates(Terms<double>&, double* /*rate*/) const {}
-  virtual void AddStates(Terms<Jet>&, Jet* /*rate*/) const {}
+  virtual void SetProperties(Terms<double>&) const = 0;
+  virtual void SetProperties(Terms<Jet>&) const = 0;
+  virtual void AddTorquesAndFlows(Terms<double>&) const = 0;
+  virtual void AddTorquesAndFlows(Terms<Jet>&) const = 0;
+  virtual void AddStates(Terms<double>&, double* rate) const = 0;
+  virtual void AddStates(Terms<Jet>&, Jet* rate) const = 0;
 
   // For each switch it adds: a number that is positive while the switch may stay as it is and falls through 0
   // when it must change; and the change.
-  virtual void Margins(const Terms<double>& /*x*/, double* /*margin*/) const {}
-  virtual void Cross(int /*which*/, const Terms<double>& /*x*/, double* /*state*/, Mode* /*mode*/) const {}
+  virtual void Margins(const Terms<double>& x, double* margin) const = 0;
+  virtual void Margins(const Terms<Jet>& x, Jet* margin) const = 0;
+  virtual void Cross(int which, const Terms<double>& x, double* state, Mode* mode) const = 0;
+  virtual void Cross(int which, const Terms<Jet>& x, Jet* state, Mode* mode) const = 0;
+
+  // What the sensors read.
+  virtual void Sense(const SenseTerms<double>&, MeasurementOf<double>*) const = 0;
+  virtual void Sense(const SenseTerms<Jet>&, MeasurementOf<Jet>*) const = 0;
 
   // For an effect that remembers earlier commands or changes at known times: the voltage from `time` on; when
-  // its equation next jumps; and that this time has been reached. Between stops it holds still.
+  // its equation next jumps; and that this time has been reached. Between stops it holds still. StopShift is
+  // the derivative of the stops' times: 0 with the derivatives that they take from the parameters.
   virtual void Command(double /*time*/, double /*voltage*/) {}
   virtual double NextStop(double /*time*/) const { return kUnbounded; }
   virtual void PassStop(double /*time*/) {}
-
-  // What the sensors read.
-  virtual void Sense(const double* /*state*/, MeasurementOf<double>*) const {}
-  virtual void Sense(const Jet* /*state*/, MeasurementOf<Jet>*) const {}
+  virtual Jet StopShift(const Jet* own) const = 0;
 
   // Energy that the effect's states store and its equation dissipates, beyond the base terms.
   virtual void AddPower(const Terms<double>& /*x*/, const double* /*rate*/, Power*) const {}
@@ -77,23 +93,53 @@ class Effect {
  private:
   int first_state_ = 0;
   int first_switch_ = 0;
+  int first_parameter_ = 0;
 };
 
 // Gives the two scalars' virtual functions from the templates that E has.
 template <class E>
 class EffectOf : public Effect {
  public:
+  double FixedVolume(const ParametersOf<double>& base, const double* own) const override {
+    return Volume(base, own);
+  }
+  Jet FixedVolume(const ParametersOf<Jet>& base, const Jet* own) const override { return Volume(base, own); }
+  void Start(const Terms<double>& x, double* state) const override { Begin(x, state); }
+  void Start(const Terms<Jet>& x, Jet* state) const override { Begin(x, state); }
   void SetProperties(Terms<double>& x) const override { Properties(x); }
   void SetProperties(Terms<Jet>& x) const override { Properties(x); }
   void AddTorquesAndFlows(Terms<double>& x) const override { TorquesAndFlows(x); }
   void AddTorquesAndFlows(Terms<Jet>& x) const override { TorquesAndFlows(x); }
   void AddStates(Terms<double>& x, double* rate) const override { States(x, rate); }
   void AddStates(Terms<Jet>& x, Jet* rate) const override { States(x, rate); }
-  void Sense(const double* state, MeasurementOf<double>* measured) const override { Read(state, measured); }
-  void Sense(const Jet* state, MeasurementOf<Jet>* measured) const override { Read(state, measured); }
+  void Margins(const Terms<double>& x, double* margin) const override { Switches(x, margin); }
+  void Margins(const Terms<Jet>& x, Jet* margin) const override { Switches(x, margin); }
+  void Cross(int which, const Terms<double>& x, double* state, Mode* mode) const override {
+    Change(which, x, state, mode);
+  }
+  void Cross(int which, const Terms<Jet>& x, Jet* state, Mode* mode) const override {
+    Change(which, x, state, mode);
+  }
+  void Sense(const SenseTerms<double>& at, MeasurementOf<double>* measured) const override {
+    Read(at, measured);
+  }
+  void Sense(const SenseTerms<Jet>& at, MeasurementOf<Jet>* measured) const override { Read(at, measured); }
+  Jet StopShift(const Jet* own) const override {
+    if constexpr (requires { self().OwnStopShift(own); }) return self().OwnStopShift(own);
+    return Jet(0.0);
+  }
 
  private:
   const E& self() const { return static_cast<const E&>(*this); }
+  template <class T>
+  T Volume(const ParametersOf<T>& base, const T* own) const {
+    if constexpr (requires { self().OwnFixedVolume(base, own); }) return self().OwnFixedVolume(base, own);
+    return T(0.0);
+  }
+  template <class T>
+  void Begin(const Terms<T>& x, T* state) const {
+    if constexpr (requires { self().OwnStart(x, state); }) self().OwnStart(x, state);
+  }
   template <class T>
   void Properties(Terms<T>& x) const {
     if constexpr (requires { self().OwnProperties(x); }) self().OwnProperties(x);
@@ -107,16 +153,32 @@ class EffectOf : public Effect {
     if constexpr (requires { self().OwnStates(x, rate); }) self().OwnStates(x, rate);
   }
   template <class T>
-  void Read(const T* state, MeasurementOf<T>* measured) const {
-    if constexpr (requires { self().OwnSense(state, measured); }) self().OwnSense(state, measured);
+  void Switches(const Terms<T>& x, T* margin) const {
+    if constexpr (requires { self().OwnMargins(x, margin); }) self().OwnMargins(x, margin);
+  }
+  template <class T>
+  void Change(int which, const Terms<T>& x, T* state, Mode* mode) const {
+    if constexpr (requires { self().OwnCross(which, x, state, mode); }) {
+      self().OwnCross(which, x, state, mode);
+    }
+  }
+  template <class T>
+  void Read(const SenseTerms<T>& at, MeasurementOf<T>* measured) const {
+    if constexpr (requires { self().OwnSense(at, measured); }) self().OwnSense(at, measured);
   }
 };
+
+// Makes an effect that its parameters alone describe, for CatalogueEntry.
+template <class E>
+std::unique_ptr<Effect> MakeEffect(const EffectDescription& /*description*/) {
+  return std::make_unique<E>();
+}
 
 // A row of the catalogue: what is known of the effect, and how to build it from its description (checked
 // already).
 struct CatalogueEntry {
   EffectInfo info;
-  std::unique_ptr<Effect> (*make)(const EffectDescription& description, const Parameters& base);
+  std::unique_ptr<Effect> (*make)(const EffectDescription& description);
 };
 
 }  // namespace hydro

@@ -12,18 +12,14 @@ namespace {
 
 class Warming : public EffectOf<Warming> {
  public:
-  explicit Warming(double rate) : rate_(rate) {}
-
   template <class T>
   void OwnProperties(Terms<T>& x) const {
-    const double thinner = std::exp(rate_ * x.time);
+    using std::exp;
+    const T thinner = exp(x.own[0] * x.time);
     x.b /= thinner;
     x.c_E *= thinner;
     x.c_I *= thinner;
   }
-
- private:
-  double rate_;
 };
 
 }  // namespace
@@ -35,9 +31,7 @@ CatalogueEntry FluidWarming() {
            "viscous friction and leakage drift as the oil warms: b exp(-rate t), c_E and c_I exp(+rate t)",
            "parameter b",
            {{"rate", "1/s", -kUnbounded, kUnbounded, true, "relative change per second"}}},
-          [](const EffectDescription& description, const Parameters&) -> std::unique_ptr<Effect> {
-            return std::make_unique<Warming>(description.parameters.at("rate"));
-          }};
+          MakeEffect<Warming>};
 }
 
 }  // namespace hydro

@@ -19,18 +19,12 @@ namespace {
 
 class Wave : public EffectOf<Wave> {
  public:
-  Wave(double frequency, double volume_fraction, double damping, const Parameters& base)
-      : pump_volume_(volume_fraction * base.V_ms) {
-    const double w = 2 * std::numbers::pi * frequency;
-    inertance_ = base.beta * (1 / pump_volume_ + 1 / (base.V_ms - pump_volume_)) / (w * w);
-    resistance_ = 2 * damping * inertance_ * w;
-  }
-
   int states() const override { return 4; }
   std::vector<std::string> StateNames() const override {
     return {"pump_p1", "line_flow_1", "pump_p2", "line_flow_2"};
   }
-  void Start(const Terms<double>& x, double* state) const override {
+  template <class T>
+  void OwnStart(const Terms<T>& x, T* state) const {
     state[first_state()] = x.p1;
     state[first_state() + 2] = x.p2;
   }
@@ -38,7 +32,10 @@ class Wave : public EffectOf<Wave> {
     scale[0] = scale[2] = pressure;
     scale[1] = scale[3] = flow;
   }
-  double FixedVolume(const Parameters&) const override { return pump_volume_; }
+  template <class T>
+  T OwnFixedVolume(const ParametersOf<T>& base, const T* own) const {
+    return own[1] * base.V_ms;
+  }
 
   template <class T>
   void OwnProperties(Terms<T>& x) const {
@@ -49,30 +46,40 @@ class Wave : public EffectOf<Wave> {
   template <class T>
   void OwnStates(Terms<T>& x, T* rate) const {
     const int i = first_state();
+    const Line<T> line(x);
     const T flow_1 = x.state[i + 1];
     const T flow_2 = x.state[i + 3];
-    rate[i] = -x.beta_1 / pump_volume_ * (x.q_1 + flow_1);
-    rate[i + 1] = (x.pump_p1 - x.p1 - resistance_ * flow_1) / inertance_;
-    rate[i + 2] = -x.beta_2 / pump_volume_ * (x.q_2 + flow_2);
-    rate[i + 3] = (x.pump_p2 - x.p2 - resistance_ * flow_2) / inertance_;
+    rate[i] = -x.beta_1 / line.pump_volume * (x.q_1 + flow_1);
+    rate[i + 1] = (x.pump_p1 - x.p1 - line.resistance * flow_1) / line.inertance;
+    rate[i + 2] = -x.beta_2 / line.pump_volume * (x.q_2 + flow_2);
+    rate[i + 3] = (x.pump_p2 - x.p2 - line.resistance * flow_2) / line.inertance;
     x.q_1 = -flow_1;
     x.q_2 = -flow_2;
   }
 
   void AddPower(const Terms<double>& x, const double* rate, Power* power) const override {
     const int i = first_state();
+    const Line<double> line(x);
     const double flow_1 = x.state[i + 1];
     const double flow_2 = x.state[i + 3];
-    power->effects_stored += (x.pump_p1 - x.p_3) * pump_volume_ / x.beta_1 * rate[i] +
-                             (x.pump_p2 - x.p_3) * pump_volume_ / x.beta_2 * rate[i + 2] +
-                             inertance_ * (flow_1 * rate[i + 1] + flow_2 * rate[i + 3]);
-    power->effects_dissipated += resistance_ * (flow_1 * flow_1 + flow_2 * flow_2);
+    power->effects_stored += (x.pump_p1 - x.p_3) * line.pump_volume / x.beta_1 * rate[i] +
+                             (x.pump_p2 - x.p_3) * line.pump_volume / x.beta_2 * rate[i + 2] +
+                             line.inertance * (flow_1 * rate[i + 1] + flow_2 * rate[i + 3]);
+    power->effects_dissipated += line.resistance * (flow_1 * flow_1 + flow_2 * flow_2);
   }
 
  private:
-  double pump_volume_;
-  double inertance_;
-  double resistance_;
+  template <class T>
+  struct Line {
+    explicit Line(const Terms<T>& x) {
+      const ParametersOf<T>& base = *x.parameters;
+      const T w = 2 * std::numbers::pi * x.own[0];
+      pump_volume = x.own[1] * base.V_ms;
+      inertance = base.beta * (1.0 / pump_volume + 1.0 / (base.V_ms - pump_volume)) / (w * w);
+      resistance = 2.0 * x.own[2] * inertance * w;
+    }
+    T pump_volume, inertance, resistance;
+  };
 };
 
 }  // namespace
@@ -89,10 +96,7 @@ CatalogueEntry LineWave() {
              "resonance of the two volumes of one side through the line"},
             {"volume_fraction", "1", 0, 0.999, false, "part of V_ms that is at the pump"},
             {"damping", "1", 0, kUnbounded, true, "damping ratio of the resonance"}}},
-          [](const EffectDescription& description, const Parameters& base) -> std::unique_ptr<Effect> {
-            const auto& p = description.parameters;
-            return std::make_unique<Wave>(p.at("frequency"), p.at("volume_fraction"), p.at("damping"), base);
-          }};
+          MakeEffect<Wave>};
 }
 
 }  // namespace hydro

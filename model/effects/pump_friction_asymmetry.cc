@@ -11,16 +11,10 @@ namespace {
 
 class FrictionAsymmetry : public EffectOf<FrictionAsymmetry> {
  public:
-  FrictionAsymmetry(double coulomb, double viscous) : coulomb_(coulomb), viscous_(viscous) {}
-
   template <class T>
   void OwnTorquesAndFlows(Terms<T>& x) const {
-    x.load += coulomb_ + viscous_ * static_cast<double>(x.mode->pump) * x.motor_speed;
+    x.load += x.own[0] + x.own[1] * static_cast<double>(x.mode->pump) * x.motor_speed;
   }
-
- private:
-  double coulomb_;
-  double viscous_;
 };
 
 }  // namespace
@@ -34,10 +28,7 @@ CatalogueEntry PumpFrictionAsymmetry() {
        "a torque offset, pump.quadratic_drag",
        {{"coulomb", "in-lbf", -kUnbounded, kUnbounded, true, "half the difference of Coulomb friction"},
         {"viscous", "in-lbf-s", -kUnbounded, kUnbounded, true, "half the difference of viscous friction"}}},
-      [](const EffectDescription& description, const Parameters&) -> std::unique_ptr<Effect> {
-        return std::make_unique<FrictionAsymmetry>(description.parameters.at("coulomb"),
-                                                   description.parameters.at("viscous"));
-      }};
+      MakeEffect<FrictionAsymmetry>};
 }
 
 }  // namespace hydro

@@ -10,15 +10,10 @@ namespace {
 
 class PressureFriction : public EffectOf<PressureFriction> {
  public:
-  explicit PressureFriction(double f) : f_(f) {}
-
   template <class T>
   void OwnProperties(Terms<T>& x) const {
-    x.f += f_;
+    x.f += x.own[0];
   }
-
- private:
-  double f_;
 };
 
 }  // namespace
@@ -31,9 +26,7 @@ CatalogueEntry PumpPressureFriction() {
            "parameter k_1 or D when only one quadrant is run",
            {{"f", "in-lbf/psi", 0, kUnbounded, true,
              "Coulomb friction per pressure, added to the base parameter f"}}},
-          [](const EffectDescription& description, const Parameters&) -> std::unique_ptr<Effect> {
-            return std::make_unique<PressureFriction>(description.parameters.at("f"));
-          }};
+          MakeEffect<PressureFriction>};
 }
 
 }  // namespace hydro

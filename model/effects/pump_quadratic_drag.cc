@@ -9,16 +9,11 @@ namespace {
 
 class QuadraticDrag : public EffectOf<QuadraticDrag> {
  public:
-  explicit QuadraticDrag(double k) : k_(k) {}
-
   template <class T>
   void OwnTorquesAndFlows(Terms<T>& x) const {
     // The mode knows the direction of slip, so the term stays smooth where |theta'| is not.
-    x.load += k_ * static_cast<double>(x.mode->pump) * x.motor_speed * x.motor_speed;
+    x.load += x.own[0] * static_cast<double>(x.mode->pump) * x.motor_speed * x.motor_speed;
   }
-
- private:
-  double k_;
 };
 
 }  // namespace
@@ -30,9 +25,7 @@ CatalogueEntry PumpQuadraticDrag() {
            "+ k theta' abs(theta')",
            "parameter b",
            {{"k", "in-lbf-s^2", 0, kUnbounded, true, "drag per squared speed"}}},
-          [](const EffectDescription& description, const Parameters&) -> std::unique_ptr<Effect> {
-            return std::make_unique<QuadraticDrag>(description.parameters.at("k"));
-          }};
+          MakeEffect<QuadraticDrag>};
 }
 
 }  // namespace hydro

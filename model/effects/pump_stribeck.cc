@@ -13,19 +13,15 @@ namespace {
 
 class Stribeck : public EffectOf<Stribeck> {
  public:
-  Stribeck(double static_excess, double speed) : static_excess_(static_excess), speed_(speed) {}
-
   template <class T>
   void OwnTorquesAndFlows(Terms<T>& x) const {
     using std::exp;
-    const T ratio = x.motor_speed / speed_;
-    x.coulomb += x.T_s * static_excess_ * exp(-ratio * ratio);
-    x.breakaway += x.T_s * static_excess_;
+    const T& static_excess = x.own[0];
+    const T& speed = x.own[1];
+    const T ratio = x.motor_speed / speed;
+    x.coulomb += x.T_s * static_excess * exp(-ratio * ratio);
+    x.breakaway += x.T_s * static_excess;
   }
-
- private:
-  double static_excess_;
-  double speed_;
 };
 
 }  // namespace
@@ -38,10 +34,7 @@ CatalogueEntry PumpStribeck() {
            "pump.friction_asymmetry",
            {{"static_excess", "1", 0, kUnbounded, true, "static friction over kinetic, less 1"},
             {"speed", "rad/s", 0, kUnbounded, false, "motor speed over which the excess falls off"}}},
-          [](const EffectDescription& description, const Parameters&) -> std::unique_ptr<Effect> {
-            return std::make_unique<Stribeck>(description.parameters.at("static_excess"),
-                                              description.parameters.at("speed"));
-          }};
+          MakeEffect<Stribeck>};
 }
 
 }  // namespace hydro

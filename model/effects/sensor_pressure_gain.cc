@@ -9,16 +9,11 @@ namespace {
 
 class PressureGain : public EffectOf<PressureGain> {
  public:
-  explicit PressureGain(double gain) : gain_(gain) {}
-
   template <class T>
-  void OwnSense(const T* /*state*/, MeasurementOf<T>* measured) const {
-    measured->p1 *= 1 + gain_;
-    measured->p2 *= 1 + gain_;
+  void OwnSense(const SenseTerms<T>& at, MeasurementOf<T>* measured) const {
+    measured->p1 *= 1.0 + at.own[0];
+    measured->p2 *= 1.0 + at.own[0];
   }
-
- private:
-  double gain_;
 };
 
 }  // namespace
@@ -30,9 +25,7 @@ CatalogueEntry SensorPressureGain() {
            "measured pressures scaled by 1 + gain",
            "parameters k_1, k_2",
            {{"gain", "1", -1, kUnbounded, false, "relative error of the scale"}}},
-          [](const EffectDescription& description, const Parameters&) -> std::unique_ptr<Effect> {
-            return std::make_unique<PressureGain>(description.parameters.at("gain"));
-          }};
+          MakeEffect<PressureGain>};
 }
 
 }  // namespace hydro

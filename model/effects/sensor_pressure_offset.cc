@@ -9,17 +9,11 @@ namespace {
 
 class PressureOffset : public EffectOf<PressureOffset> {
  public:
-  PressureOffset(double p1, double p2) : p1_(p1), p2_(p2) {}
-
   template <class T>
-  void OwnSense(const T* /*state*/, MeasurementOf<T>* measured) const {
-    measured->p1 += p1_;
-    measured->p2 += p2_;
+  void OwnSense(const SenseTerms<T>& at, MeasurementOf<T>* measured) const {
+    measured->p1 += at.own[0];
+    measured->p2 += at.own[1];
   }
-
- private:
-  double p1_;
-  double p2_;
 };
 
 }  // namespace
@@ -32,10 +26,7 @@ CatalogueEntry SensorPressureOffset() {
            "parameter p3",
            {{"p1", "psi", -kUnbounded, kUnbounded, true, "what p1's transducer reads too much"},
             {"p2", "psi", -kUnbounded, kUnbounded, true, "what p2's transducer reads too much"}}},
-          [](const EffectDescription& description, const Parameters&) -> std::unique_ptr<Effect> {
-            return std::make_unique<PressureOffset>(description.parameters.at("p1"),
-                                                    description.parameters.at("p2"));
-          }};
+          MakeEffect<PressureOffset>};
 }
 
 }  // namespace hydro

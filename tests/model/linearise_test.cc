@@ -1,6 +1,7 @@
 // The linear model near an operating point: against difference quotients in every mode, closed forms, and the
 // model in motion.
 #include "model/linearise.h"
+#include "model/parameter_info.h"
 
 #include <gtest/gtest.h>
 
