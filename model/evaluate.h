@@ -131,7 +131,8 @@ template <Form kForm, class T>
 [[gnu::always_inline]] inline void FindMargins(const EquationData& m, const NumbersOf<T>& n, const Mode& mode,
                                                Terms<T>& x, T* margin) {
   using std::abs;
-  margin[kPumpSwitch] = mode.pump == 0 ? T(x.breakaway - abs(x.net_torque)) : T(mode.pump * x.motor_speed);
+  margin[kPumpSwitch] =
+      mode.pump == 0 ? T(x.breakaway - abs(x.net_torque)) : T(static_cast<double>(mode.pump) * x.motor_speed);
   margin[kValve1Switch] = mode.valve_1 ? T(-x.free_rate_1) : T(x.p1 - x.p_3);
   margin[kValve2Switch] = mode.valve_2 ? T(-x.free_rate_2) : T(x.p2 - x.p_3);
   if constexpr (kForm == Form::kGeneral) {

@@ -1,0 +1,83 @@
+// What a model predicts for a run that was recorded, with exact derivatives: the simulation that fits are
+// made of. It has the equations, modes and effects of Actuator, integrated by a Runge-Kutta method whose
+// steps carry derivatives too; at an event they jump by what its time depends on.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "model/actuator.h"
+#include "model/description.h"
+
+namespace hydro {
+
+// What a response is differentiated by.
+struct Unknown {
+  enum class Kind {
+    kBase,    // a base parameter: `index` as in BaseParameters()
+    kEffect,  // a parameter of an effect: `index` as in EffectParameters()
+    kStart,   // a base state at the start: `index` as in model/state.h
+  };
+  Kind kind = Kind::kBase;
+  size_t index = 0;
+
+  bool operator==(const Unknown&) const = default;
+};
+
+// A parameter of an effect that a model has; names are left out.
+struct EffectParameter {
+  size_t effect = 0;  // in ModelDescription::effects
+  std::string name;
+};
+
+// All of a model's, effects in the order of their ids, each one's parameters in that of the catalogue. Throws
+// ModelError for an effect that is not known.
+std::vector<EffectParameter> EffectParameters(const ModelDescription& model);
+
+// What was done to the actuator in a run, and when it was looked at.
+struct Stimulus {
+  Shaft shaft = Shaft::kFree;
+  double arm_angle = 0;                // rad, clamped
+  const Trajectory* motion = nullptr;  // rad over s, driven
+  bool bypass = false;
+  std::vector<double> time;     // s, increasing
+  std::vector<double> voltage;  // V, each held from its time to the next
+};
+
+// The base states at the first time, by their places in model/state.h; the arm's are used with a free shaft.
+// Pressures below p_3 start at p_3. States of effects start from these.
+using StartState = std::array<double, 6>;
+
+// Which of the sensors; the order of Measurement.
+enum class Channel { kMotorAngle, kMotorSpeed, kArmAngle, kArmSpeed, kP1, kP2 };
+inline constexpr size_t kChannels = 6;
+using ChannelSet = std::array<bool, kChannels>;
+
+template <class T>
+const T& ChannelOf(const MeasurementOf<T>& measured, size_t channel) {
+  const T* const all[kChannels] = {&measured.motor_angle, &measured.motor_speed, &measured.arm_angle,
+                                   &measured.arm_speed,   &measured.p1,          &measured.p2};
+  return *all[channel];
+}
+
+struct Response {
+  // By channel, then sample; empty for channels that are not wanted.
+  std::array<std::vector<double>, kChannels> values;
+  // By unknown, then as values.
+  std::vector<std::array<std::vector<double>, kChannels>> derivatives;
+};
+
+struct ResponseOptions {
+  ChannelSet channels = {true, true, true, true, true, true};
+  double relative_tolerance = 1e-6;
+  size_t stride = 1;  // every stride-th sample is looked at; the command changes at all of them
+};
+
+// Throws ModelError as Actuator does. Bit-identical for identical arguments; the values do not depend on the
+// unknowns.
+Response Respond(const ModelDescription& model, const Stimulus& stimulus, const StartState& start,
+                 const std::vector<Unknown>& unknowns, const ResponseOptions& options);
+
+}  // namespace hydro
