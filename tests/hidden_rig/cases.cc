@@ -1,0 +1,205 @@
+#include "cases.h"
+
+#include <cmath>
+#include <functional>
+#include <stdexcept>
+
+#include "plans.h"
+
+namespace hidden_rig {
+
+std::vector<Case> AllCases() {
+  std::vector<Case> cases;
+  const auto add = [&](Case c) {
+    c.seed = 1000 + 37 * cases.size();
+    cases.push_back(std::move(c));
+  };
+  struct Size {
+    const char* name;
+    double gap;
+  };
+  for (const auto& form : EffectForms()) {
+    for (const Size& size : {Size{"small", 2}, Size{"medium", 5}, Size{"plain", 15}}) {
+      Case c;
+      c.name = form.id + "-" + size.name;
+      c.kind = "single";
+      c.effects = {form.id};
+      c.size = size.name;
+      c.gap = size.gap;
+      add(c);
+    }
+  }
+  const std::vector<std::vector<std::string>> sets = {
+      {"pump.stribeck", "valve.relief"},
+      {"pump.friction_asymmetry", "fluid.warming"},
+      {"fluid.entrained_air", "pump.turbulent_leakage"},
+      {"amp.lag", "sensor.pressure_offset"},
+      {"motor.speed_torque_limit", "pump.pressure_friction"},
+      {"line.wave", "pump.quadratic_drag"},
+      {"actuator.seal_friction", "amp.delay"},
+      {"motor.cogging", "accumulator.stiffness"},
+      {"valve.check", "pump.friction_asymmetry"},
+      {"sensor.skew", "pump.stribeck"},
+      {"arm.flexure", "fluid.stiffening"},
+      {"sensor.pressure_gain", "pump.turbulent_leakage"},
+      {"pump.stribeck", "valve.relief", "amp.lag"},
+      {"pump.friction_asymmetry", "fluid.entrained_air", "sensor.pressure_offset"},
+      {"motor.cogging", "pump.turbulent_leakage", "actuator.seal_friction"},
+      {"pump.pressure_friction", "valve.check", "amp.delay"},
+      {"fluid.warming", "motor.speed_torque_limit", "valve.relief"},
+      {"sensor.pressure_lag", "pump.quadratic_drag", "accumulator.stiffness"},
+      {"pump.flow_ripple", "pump.stribeck", "fluid.stiffening"},
+      {"line.wave", "pump.friction_asymmetry", "sensor.pressure_gain"},
+      {"arm.flexure", "pump.pressure_friction", "sensor.skew"},
+      {"actuator.seal_friction", "valve.relief", "sensor.pressure_offset"},
+  };
+  for (const auto& set : sets) {
+    Case c;
+    c.kind = set.size() == 2 ? "pair" : "triple";
+    c.effects = set;
+    c.size = "plain";
+    for (const auto& id : set) c.name += (c.name.empty() ? c.kind + "-" : "+") + id;
+    add(c);
+  }
+  for (int i = 0; i < 20; ++i) {
+    Case c;
+    c.kind = "nothing";
+    c.noise = i < 8 ? 1 : i < 14 ? 0.5 : 3;
+    c.name = "nothing-" + std::to_string(i + 1);
+    add(c);
+  }
+  int nth = 0;
+  for (const auto& form : BaseForms()) {
+    Case c;
+    c.kind = "parameter";
+    c.parameter = form.name;
+    c.name = "parameter-" + form.name;
+    constexpr double kFactors[] = {1.1, 0.85, 1.2, 0.75, 1.3};
+    c.factor = kFactors[nth++ % 5];
+    add(c);
+  }
+  for (size_t i = 0; i < OutsideForms().size(); ++i) {
+    Case c;
+    c.kind = "outside";
+    c.name = "outside-" + std::to_string(i + 1);
+    c.outside = static_cast<int>(i);
+    c.size = "plain";
+    c.gap = 15;
+    add(c);
+  }
+  return cases;
+}
+
+double Gap(const Truth& truth, uint64_t seed, const Options& options) {
+  Setup plain;
+  plain.base = truth.given;
+  double sum = 0;
+  double count = 0;
+  for (const Plan& plan : Plans(seed, options.seconds, options.driven)) {
+    Conditions conditions;
+    conditions.rate = options.rate;
+    conditions.seconds = options.seconds;
+    conditions.noise = 0;
+    conditions.time_of_day = 1.7 * static_cast<double>(plan.name.back() - '0');
+    const Record with = Run(truth.setup, plan, conditions);
+    conditions.voltage = &with.voltage;
+    Record without;
+    try {
+      without = Run(plain, plan, conditions);
+    } catch (const std::runtime_error&) {
+      return 1000;  // it runs away under these voltages
+    }
+    const auto add = [&](const std::vector<double>& a, const std::vector<double>& b, double noise) {
+      for (size_t i = 0; i < a.size(); ++i) sum += (a[i] - b[i]) * (a[i] - b[i]) / (noise * noise);
+      count += static_cast<double>(a.size());
+    };
+    add(with.motor_speed, without.motor_speed, kSpeedNoise);
+    add(with.p1, without.p1, kPressureNoise);
+    add(with.p2, without.p2, kPressureNoise);
+    if (plan.shaft == Shaft::kFree) add(with.arm_angle, without.arm_angle, kAngleNoise);
+  }
+  return std::sqrt(sum / count);
+}
+
+Truth Solve(const Case& c, const Options& options) {
+  Truth truth;
+  // The arm's weight differs from rig to rig.
+  truth.setup.base.mgl = truth.given.mgl = 200 + static_cast<double>(c.seed % 5) * 50;
+  if (!c.parameter.empty()) {
+    for (const auto& form : BaseForms()) {
+      if (form.name != c.parameter) continue;
+      if (c.parameter == "f") truth.setup.base.f = 8e-4;
+      truth.given.*form.value = truth.setup.base.*form.value * c.factor;
+    }
+  }
+  const auto put = [&](double size) {
+    truth.effects.clear();
+    truth.setup.effects = {};
+    truth.setup.outside = {};
+    if (c.outside >= 0) {
+      truth.setup.outside.*OutsideForms()[c.outside].value = size;
+    }
+    for (const auto& id : c.effects) {
+      const EffectForm& form = FindEffect(id);
+      truth.effects.push_back(form.put(c.gap > 0 ? size : form.plain, &truth.setup.effects));
+    }
+    if (c.effects == std::vector<std::string>{"sensor.sign"}) {
+      const bool arm = c.size == "small";
+      truth.setup.effects.sign_channel = arm                  ? Channel::kArmAngle
+                                         : c.size == "medium" ? Channel::kP1
+                                                              : Channel::kMotorSpeed;
+      truth.effects[0].channel = arm ? "arm_angle" : c.size == "medium" ? "p1" : "motor_speed";
+    }
+  };
+  put(0);
+  if (c.gap == 0 || c.effects == std::vector<std::string>{"sensor.sign"}) {
+    if (c.kind == "single") put(1);
+    truth.gap = Gap(truth, c.seed, options);
+    return truth;
+  }
+  // Gaps grow about as a power of the size: the secant in logarithms, kept within what is known to bracket
+  // it.
+  double low = c.outside >= 0 ? OutsideForms()[c.outside].smallest : FindEffect(c.effects[0]).smallest;
+  double high = c.outside >= 0 ? OutsideForms()[c.outside].largest : FindEffect(c.effects[0]).largest;
+  const auto gap_at = [&](double size) {
+    put(size);
+    try {
+      return Gap(truth, c.seed, options);
+    } catch (const std::runtime_error&) {
+      return 1000.0;
+    }
+  };
+  double low_gap = gap_at(low);
+  double high_gap = 1000;
+  double size = low;
+  truth.gap = low_gap;
+  if (low_gap >= c.gap) {
+    truth.reached = std::abs(low_gap / c.gap - 1) < 0.1;
+    return truth;
+  }
+  double guess = std::min(high, low * std::max(1.5, c.gap / std::max(low_gap, 1e-3)));
+  for (int i = 0; i < 24; ++i) {
+    size = guess;
+    truth.gap = gap_at(size);
+    if (std::abs(truth.gap / c.gap - 1) < 0.05) return truth;
+    if (truth.gap < c.gap) {
+      low = size;
+      low_gap = truth.gap;
+      if (size >= 0.999 * high) break;  // as large as it gets
+    } else {
+      high = size;
+      high_gap = truth.gap;
+    }
+    const double fraction =
+        high_gap < 999
+            ? std::log(c.gap / low_gap) / std::log(high_gap / low_gap)
+            : std::min(1.0, std::log(std::max(1.3, c.gap / std::max(low_gap, 1e-3))) / std::log(high / low));
+    guess = low * std::pow(high / low, i % 4 == 3 && high_gap < 999 ? 0.5 : std::clamp(fraction, 0.03, 1.0));
+    if (high_gap < 999) guess = std::min(guess, high * 0.995);
+    if (high / low < 1.0005) break;
+  }
+  truth.reached = false;
+  return truth;
+}
+
+}  // namespace hidden_rig
