@@ -79,6 +79,7 @@ const std::vector<EffectForm>& EffectForms() {
       {"line.wave", 1, 40, 8,
        [](double s, Effects* e) -> TrueEffect {
          e->wave_hz = 600 / s;
+         e->wave_damping = std::fmin(0.004 * s, 0.08);
          return {
              "line.wave",
              {{"frequency", e->wave_hz}, {"volume_fraction", e->wave_fraction}, {"damping", e->wave_damping}},

@@ -22,7 +22,7 @@ double Rest(const std::array<double, kLineNodes + 1>& compliance, double square)
 
 Line TuneLine(double hz, double pump_fraction, double damping, double mid_volume, double beta) {
   Line line;
-  const double small = 0.02 * mid_volume;
+  const double small = 0.01 * mid_volume;
   for (int i = 1; i < kLineNodes; ++i) line.volume[i] = small;
   line.volume[0] = pump_fraction * mid_volume - 0.5 * (kLineNodes - 1) * small;
   for (const double v : line.volume) line.fixed_volume += v;
@@ -43,7 +43,8 @@ Line TuneLine(double hz, double pump_fraction, double damping, double mid_volume
   }
   const double w = 2 * 3.14159265358979323846 * hz;
   line.inertance = low / (w * w);
-  line.resistance = 2 * damping * line.inertance * w;
+  // The resistance to a steady flow is that of one lumped inertance, which the catalogue's damping means.
+  line.resistance = 2 * damping * lumped / w;
   return line;
 }
 

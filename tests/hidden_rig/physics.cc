@@ -9,12 +9,13 @@ namespace hidden_rig {
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;
-constexpr double kAtmosphere = 14.7;  // psi
+constexpr double kAtmosphere = 14.696;  // psi
 constexpr double kPolytropic = 1.4;
 
-// LuGre friction of the pump: its bristles give 0.2 mrad, a tenth of a psi.
-constexpr double kPumpBristle = 20000;  // in-lbf/rad
-constexpr double kPumpBristleDamping = 40;
+// LuGre friction of the pump: its bristles give 5 urad. Softer ones would show: a start from rest is
+// free of friction for the time that they take to bend.
+constexpr double kPumpBristle = 800000;  // in-lbf/rad
+constexpr double kPumpBristleDamping = 217;
 constexpr double kPumpBristleSpeed = 0.05;  // rad/s, above which the bristles no longer damp
 constexpr double kSealGive = 2e-5;          // rad
 constexpr double kSealBristleSpeed = 2e-4;
@@ -343,10 +344,10 @@ void Physics::Step(double voltage) {
   for (int i = 0; i < active_; ++i) x_[i] += kStep / 6 * (k1[i] + 2 * k2[i] + 2 * k3[i] + k4[i]);
   StepBristles(0.5 * kStep);
   CloseValves();
-  if (fx_.sensor_tau <= 0 && !trivia_) {
+  if (!trivia_) x_[kTachometer] = x_[kOmega];
+  if (!trivia_ && fx_.sensor_tau <= 0) {
     x_[kSensor1] = x_[kSensor1b] = x_[kSide1];
     x_[kSensor2] = x_[kSensor2b] = x_[kSide2];
-    x_[kTachometer] = x_[kOmega];
   }
   ++steps_;
   if (!std::isfinite(x_[kOmega] + x_[kSide1] + x_[kSide2] + x_[kArm])) throw std::runtime_error("not finite");
