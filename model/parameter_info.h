@@ -10,6 +10,20 @@
 
 namespace hydro {
 
+// What a parameter's size is measured by when a fit starts from it: quantities of a model and of runs, so
+// that nothing depends on the units.
+enum class Scale {
+  kOne,       // the number itself
+  kTorque,    // T_pmax
+  kSpeed,     // the largest motor speed in the runs
+  kPressure,  // the largest pressure in the runs
+  kCharge,    // p_3
+  kSample,    // the median time between samples
+  kRate,      // one over kSample
+  kFlow,      // D kSpeed over kPressure: a conductance that passes all of the pump's flow
+  kArmRate,   // J_a over kSample^2: what resonates with the arm at kRate, in rad
+};
+
 struct ParameterInfo {
   std::string name;
   std::string unit;         // in the paper's units
@@ -19,6 +33,10 @@ struct ParameterInfo {
   std::string says;         // one line
   bool is_name = false;     // the value is a name, one of `names`
   std::vector<std::string> names = {};
+  // Where a fit of the effect starts, in `scale`s: each of them with each of the effect's other parameters'.
+  // A parameter in which the effect is linear at 0 needs 0 only.
+  std::vector<double> starts = {0};
+  Scale scale = Scale::kOne;
 };
 
 // A base parameter and where it lies.

@@ -46,10 +46,13 @@ void Pass(const ModelDescription& model, const Stimulus& stimulus, const StartSt
       seeded.v[static_cast<Eigen::Index>(u - first)] = 1;
     }
   }
+  if (stimulus.bypass) state[kP2] = state[kP1];
   CompleteNumbers<T>(equations.data(), &numbers);
 
   ResponseMachine<T> machine(&equations, numbers, options.relative_tolerance);
   machine.Start(stimulus.time.front(), state);
+  const double duration = stimulus.time.back() - stimulus.time.front();
+  machine.AllowSteps(static_cast<int64_t>(30 * stimulus.time.size() + 20000 * duration) + 1000);
   const bool values = first == 0;
   size_t row = 0;
   for (size_t k = 0; k < stimulus.time.size(); ++k) {

@@ -46,8 +46,8 @@ struct Stimulus {
   std::vector<double> voltage;  // V, each held from its time to the next
 };
 
-// The base states at the first time, by their places in model/state.h; the arm's are used with a free shaft.
-// Pressures below p_3 start at p_3. States of effects start from these.
+// The base states at the first time, by their places in model/state.h; the arm's are used with a free shaft,
+// p2 is p1 with the bypass open. Pressures below p_3 start at p_3. States of effects start from these.
 using StartState = std::array<double, 6>;
 
 // Which of the sensors; the order of Measurement.

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <string>
 #include <type_traits>
@@ -54,6 +55,9 @@ class ResponseMachine {
     mode_.pump = static_cast<int8_t>(speed > 0 ? 1 : (speed < 0 ? -1 : 0));
     known_stop_ = equations_.NextStop(time_);
   }
+
+  // So many steps are taken in all, then ModelError: a model far too stiff must not take hours.
+  void AllowSteps(int64_t steps) { steps_left_ = steps; }
 
   void Advance(double voltage, double until) {
     if (voltage != voltage_ || !started_) {
@@ -121,6 +125,7 @@ class ResponseMachine {
 
   void Step(double stop) {
     for (;;) {
+      if (--steps_left_ < 0) throw ModelError("too stiff for an explicit method");
       const bool limited = stop - time_ > good_step_;
       const double h = limited ? good_step_ : stop - time_;
       StepTo(limited ? time_ + h : stop);
@@ -308,6 +313,7 @@ class ResponseMachine {
   bool started_ = false;
   bool fresh_ = true;
   double known_stop_ = kNever;
+  int64_t steps_left_ = std::numeric_limits<int64_t>::max();
   double good_step_ = kLongest;
   double relative_[kMaxStates] = {};
   double floor_[kMaxStates] = {};

@@ -1,0 +1,208 @@
+#include "diagnose/fit.h"
+
+#include <ceres/ceres.h>
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+
+#include "diagnose/residuals.h"
+
+namespace hydro {
+
+namespace {
+
+using Eigen::Map;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+double ToFitted(const FreeParameter& parameter, double value) {
+  return parameter.logarithmic ? std::log(value) : value;
+}
+double FromFitted(const FreeParameter& parameter, double fitted) {
+  return parameter.logarithmic ? std::exp(fitted) : fitted;
+}
+
+// One run against the hypothesis. What the solver gets is not the residuals, hundred thousands of them, but a
+// square root of their normal equations: the same cost, gradient and Gauss-Newton matrix in a few numbers.
+class RunCost : public ceres::CostFunction {
+ public:
+  RunCost(const Hypothesis& hypothesis, const RunData& run, const StartState& start, size_t stride)
+      : hypothesis_(hypothesis), free_(hypothesis.Free()), run_(run), start_(start), stride_(stride) {
+    for (const FreeParameter& parameter : free_) unknowns_.push_back(parameter.unknown);
+    starts_ = StartUnknowns(run);
+    unknowns_.insert(unknowns_.end(), starts_.begin(), starts_.end());
+    if (!free_.empty()) mutable_parameter_block_sizes()->push_back(static_cast<int>(free_.size()));
+    if (!starts_.empty()) mutable_parameter_block_sizes()->push_back(static_cast<int>(starts_.size()));
+    set_num_residuals(static_cast<int>(unknowns_.size()) + 1);
+  }
+
+  bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override {
+    const auto p = static_cast<Eigen::Index>(free_.size());
+    const auto n = static_cast<Eigen::Index>(unknowns_.size());
+    Map<VectorXd> out(residuals, n + 1);
+    MatrixXd normal;
+    if (!Normal(free_.empty() ? nullptr : parameters[0],
+                starts_.empty() ? nullptr : parameters[free_.empty() ? 0 : 1], jacobians != nullptr,
+                &normal)) {
+      return false;
+    }
+    out.setZero();
+    if (jacobians == nullptr) {
+      out(0) = std::sqrt(normal(0, 0));
+      return true;
+    }
+    // [J r]' [J r] = V L V'; the rows of L^1/2 V' are as good as those of [J r].
+    const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(normal);
+    const MatrixXd root =
+        eigen.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal() * eigen.eigenvectors().transpose();
+    out = root.col(n);
+    using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+    int block = 0;
+    if (p > 0) {
+      if (jacobians[block] != nullptr) Map<RowMajor>(jacobians[block], n + 1, p) = root.leftCols(p);
+      ++block;
+    }
+    if (n > p && jacobians[block] != nullptr)
+      Map<RowMajor>(jacobians[block], n + 1, n - p) = root.middleCols(p, n - p);
+    return true;
+  }
+
+  // [J r]' [J r] at the point, or only r'r.
+  bool Normal(const double* free, const double* start, bool derivatives, MatrixXd* normal) const {
+    Hypothesis point = hypothesis_;
+    std::vector<double> values;
+    for (size_t i = 0; i < free_.size(); ++i) values.push_back(FromFitted(free_[i], free[i]));
+    point.Set(values);
+    StartState from = start_;
+    for (size_t i = 0; i < starts_.size(); ++i) from[starts_[i].index] = start[i];
+    Residuals r;
+    try {
+      r = ResidualsOf(point.model, run_, from, derivatives ? unknowns_ : std::vector<Unknown>{}, stride_);
+    } catch (const ModelError&) {
+      return false;
+    }
+    const auto rows = static_cast<Eigen::Index>(r.values.size());
+    const Map<const VectorXd> residual(r.values.data(), rows);
+    if (!derivatives) {
+      *normal = MatrixXd::Constant(1, 1, residual.squaredNorm());
+      return std::isfinite((*normal)(0, 0));
+    }
+    const auto n = static_cast<Eigen::Index>(unknowns_.size());
+    Map<MatrixXd> jacobian(r.jacobian.data(), rows, n);
+    for (size_t i = 0; i < free_.size(); ++i) {
+      if (free_[i].logarithmic) jacobian.col(static_cast<Eigen::Index>(i)) *= values[i];
+    }
+    normal->resize(n + 1, n + 1);
+    normal->topLeftCorner(n, n).setZero();
+    normal->topLeftCorner(n, n).selfadjointView<Eigen::Lower>().rankUpdate(jacobian.transpose());
+    normal->topLeftCorner(n, n).triangularView<Eigen::Upper>() = normal->topLeftCorner(n, n).transpose();
+    normal->topRightCorner(n, 1) = jacobian.transpose() * residual;
+    normal->bottomLeftCorner(1, n) = normal->topRightCorner(n, 1).transpose();
+    (*normal)(n, n) = residual.squaredNorm();
+    count_ = r.values.size();
+    return normal->allFinite();
+  }
+
+  size_t count() const { return count_; }
+  const std::vector<FreeParameter>& free() const { return free_; }
+  const std::vector<Unknown>& starts() const { return starts_; }
+
+ private:
+  const Hypothesis& hypothesis_;
+  std::vector<FreeParameter> free_;
+  const RunData& run_;
+  StartState start_;
+  size_t stride_;
+  std::vector<Unknown> unknowns_, starts_;
+  mutable size_t count_ = 0;
+};
+
+}  // namespace
+
+Fitted Fit(const Hypothesis& hypothesis, const std::vector<const RunData*>& runs,
+           const std::vector<StartState>& starts, const FitOptions& options) {
+  Fitted fitted;
+  fitted.hypothesis = hypothesis;
+  std::vector<FreeParameter> free = hypothesis.Free();
+  std::vector<double> values;
+  for (const FreeParameter& parameter : free) {
+    values.push_back(ToFitted(parameter, std::clamp(parameter.value, parameter.low, parameter.high)));
+  }
+  std::vector<std::vector<double>> start_values(runs.size());
+  std::vector<const RunCost*> costs;
+
+  ceres::Problem problem;
+  for (size_t r = 0; r < runs.size(); ++r) {
+    auto* cost = new RunCost(hypothesis, *runs[r], starts[r], options.stride);  // the problem owns it
+    costs.push_back(cost);
+    for (const Unknown& start : cost->starts()) start_values[r].push_back(starts[r][start.index]);
+    std::vector<double*> blocks;
+    if (!free.empty()) blocks.push_back(values.data());
+    if (!start_values[r].empty()) blocks.push_back(start_values[r].data());
+    if (blocks.empty()) continue;
+    problem.AddResidualBlock(cost, nullptr, blocks);
+  }
+  for (size_t i = 0; i < free.size(); ++i) {
+    const int place = static_cast<int>(i);
+    if (std::isfinite(free[i].low)) {
+      problem.SetParameterLowerBound(values.data(), place, ToFitted(free[i], free[i].low));
+    }
+    if (std::isfinite(free[i].high)) {
+      problem.SetParameterUpperBound(values.data(), place, ToFitted(free[i], free[i].high));
+    }
+  }
+  ceres::Solver::Options solver;
+  solver.linear_solver_type = ceres::DENSE_QR;
+  solver.max_num_iterations = options.most_iterations;
+  solver.function_tolerance = options.tolerance;
+  solver.parameter_tolerance = 1e-7;
+  solver.gradient_tolerance = 0;
+  solver.num_threads = options.jobs;
+  solver.logging_type = ceres::SILENT;
+  ceres::Solver::Summary summary;
+  ceres::Solve(solver, &problem, &summary);
+  if (summary.termination_type == ceres::FAILURE || summary.termination_type == ceres::USER_FAILURE) {
+    fitted.failure = "its simulation fails";
+    return fitted;
+  }
+
+  for (size_t i = 0; i < free.size(); ++i)
+    values[i] = std::clamp(FromFitted(free[i], values[i]), free[i].low, free[i].high);
+  fitted.hypothesis.Set(values);
+  std::vector<double> at;
+  for (size_t i = 0; i < free.size(); ++i) at.push_back(ToFitted(free[i], values[i]));
+  const auto p = static_cast<Eigen::Index>(free.size());
+  for (size_t r = 0; r < runs.size(); ++r) {
+    MatrixXd normal;
+    if (!costs[r]->Normal(at.data(), start_values[r].data(), true, &normal)) {
+      fitted.failure = "its simulation fails";
+      return fitted;
+    }
+    RunFit run;
+    run.start = starts[r];
+    for (size_t i = 0; i < costs[r]->starts().size(); ++i)
+      run.start[costs[r]->starts()[i].index] = start_values[r][i];
+    run.count = costs[r]->count();
+    const Eigen::Index n = normal.rows() - 1;
+    run.sum = normal(n, n);
+    // The Schur complement of the start's block.
+    MatrixXd information = normal.topLeftCorner(p, p);
+    VectorXd gradient = normal.topRightCorner(p, 1);
+    if (n > p) {
+      MatrixXd inner = normal.block(p, p, n - p, n - p);
+      inner.diagonal().array() += 1e-12 * inner.diagonal().maxCoeff() + 1e-300;
+      const Eigen::LDLT<MatrixXd> solve(inner);
+      information -= normal.block(0, p, p, n - p) * solve.solve(normal.block(p, 0, n - p, p));
+      gradient -= normal.block(0, p, p, n - p) * solve.solve(normal.block(p, n, n - p, 1));
+    }
+    run.information.assign(information.data(), information.data() + information.size());
+    run.gradient.assign(gradient.data(), gradient.data() + gradient.size());
+    fitted.sum += run.sum;
+    fitted.count += run.count;
+    fitted.runs.push_back(std::move(run));
+  }
+  return fitted;
+}
+
+}  // namespace hydro

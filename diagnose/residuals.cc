@@ -1,0 +1,47 @@
+#include "diagnose/residuals.h"
+
+#include <cmath>
+
+namespace hydro {
+
+Residuals ResidualsOf(const ModelDescription& model, const RunData& run, const StartState& start,
+                      const std::vector<Unknown>& unknowns, size_t stride) {
+  ResponseOptions options;
+  options.stride = stride;
+  options.channels = {};
+  for (const SignalData& signal : run.signals) options.channels[static_cast<size_t>(signal.channel)] = true;
+  const Response response = Respond(model, run.stimulus, start, unknowns, options);
+
+  Residuals residuals;
+  for (const SignalData& signal : run.signals) {
+    residuals.first.push_back(residuals.values.size());
+    const std::vector<double>& predicted = response.values[static_cast<size_t>(signal.channel)];
+    for (size_t row = 0; row < predicted.size(); ++row) {
+      const double measured = signal.values[row * stride];
+      if (!std::isnan(measured)) residuals.values.push_back((predicted[row] - measured) / signal.noise);
+    }
+  }
+  residuals.first.push_back(residuals.values.size());
+  residuals.jacobian.resize(unknowns.size() * residuals.values.size());
+  size_t next = 0;
+  for (size_t u = 0; u < unknowns.size(); ++u) {
+    for (const SignalData& signal : run.signals) {
+      const std::vector<double>& derivative = response.derivatives[u][static_cast<size_t>(signal.channel)];
+      for (size_t row = 0; row < derivative.size(); ++row) {
+        if (!std::isnan(signal.values[row * stride]))
+          residuals.jacobian[next++] = derivative[row] / signal.noise;
+      }
+    }
+  }
+  return residuals;
+}
+
+std::vector<Unknown> StartUnknowns(const RunData& run) {
+  std::vector<Unknown> unknowns;
+  for (size_t i = 0; i < run.start_free.size(); ++i) {
+    if (run.start_free[i]) unknowns.push_back({Unknown::Kind::kStart, i});
+  }
+  return unknowns;
+}
+
+}  // namespace hydro

@@ -1,0 +1,26 @@
+// A run's residuals against a model, in noise units, with their derivatives.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "diagnose/run_data.h"
+#include "model/response.h"
+
+namespace hydro {
+
+struct Residuals {
+  // Predicted less measured, over the noise; signal after signal, each one's valid samples in order of time.
+  std::vector<double> values;
+  std::vector<double> jacobian;  // by columns: values.size() a column, one column an unknown
+  std::vector<size_t> first;     // where each of the run's signals begins; one more, the end
+};
+
+// Throws ModelError when the model cannot be simulated.
+Residuals ResidualsOf(const ModelDescription& model, const RunData& run, const StartState& start,
+                      const std::vector<Unknown>& unknowns, size_t stride);
+
+// The unknown starts of a run.
+std::vector<Unknown> StartUnknowns(const RunData& run);
+
+}  // namespace hydro
