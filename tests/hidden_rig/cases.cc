@@ -154,7 +154,7 @@ Truth Solve(const Case& c, const Options& options) {
   put(0);
   if (c.gap == 0 || c.effects == std::vector<std::string>{"sensor.sign"}) {
     if (c.kind == "single") put(1);
-    truth.gap = Gap(truth, c.seed, options);
+    if (c.kind != "nothing") truth.gap = Gap(truth, c.seed, options);
     return truth;
   }
   // Gaps grow about as a power of the size: the secant in logarithms, kept within what is known to bracket
