@@ -1,0 +1,271 @@
+#include "diagnose/run_data.h"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <functional>
+#include <numbers>
+#include <random>
+
+#include "diagnose/smoothed_motion.h"
+#include "model/state.h"
+#include "tests/table1.h"
+
+namespace hydro {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kPi = std::numbers::pi;
+
+// Half a second of a clamped run at 1 kHz: speed decaying from 50 rad/s, pressures from 120 and 140 psi.
+MeasuredRun Clamped() {
+  MeasuredRun run;
+  run.name = "step";
+  run.file = "step.csv";
+  run.rows_are_lines = true;
+  run.shaft = Shaft::kClamped;
+  run.arm_angle_rad = 0.2;
+  std::mt19937_64 random(1);
+  std::normal_distribution<double> normal;
+  for (size_t i = 0; i < 500; ++i) {
+    const double t = 1 + 0.001 * static_cast<double>(i);
+    run.time.push_back(t);
+    run.voltage.values.push_back(2);
+    run.motor_speed.values.push_back(50 * std::exp(-(t - 1) * 5) + 0.3 * normal(random));
+    run.p1.values.push_back(120 - 50 * (t - 1) + 1.5 * normal(random));
+    run.p2.values.push_back(140 + 900 * (t - 1) + 1.5 * normal(random));
+  }
+  run.p1.noise = 1.0;
+  return run;
+}
+
+MeasuredRun WithArm(Shaft shaft) {
+  MeasuredRun run = Clamped();
+  run.shaft = shaft;
+  run.arm_angle_rad = 0;
+  for (const double t : run.time) run.arm_angle.values.push_back(0.3 * std::sin(2 * kPi * (t - 1)));
+  return run;
+}
+
+std::string ErrorOf(const std::function<void(MeasuredRun&)>& change, MeasuredRun run = Clamped()) {
+  change(run);
+  try {
+    PrepareRun(run, testing::Table1());
+  } catch (const InputError& error) {
+    EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos) << error.what();
+    return error.what();
+  }
+  return "no error";
+}
+
+// Tests what is compared, started from and known of a clamped run.
+TEST(PrepareRun, Clamped) {
+  const RunData data = PrepareRun(Clamped(), testing::Table1());
+  EXPECT_EQ(data.name, "step");
+  EXPECT_EQ(data.samples(), 500u);
+  EXPECT_NEAR(data.duration(), 0.499, 1e-9);
+  EXPECT_EQ(data.stimulus.motion, nullptr);
+  ASSERT_EQ(data.signals.size(), 3u);
+  EXPECT_EQ(data.Find(Channel::kArmAngle), nullptr);
+  const SignalData* p1 = data.Find(Channel::kP1);
+  ASSERT_NE(p1, nullptr);
+  EXPECT_NEAR(p1->noise, 1.5, 0.2);
+  EXPECT_EQ(p1->stated_noise, 1.0);
+  EXPECT_TRUE(std::isnan(data.Find(Channel::kP2)->stated_noise));
+  EXPECT_EQ(p1->valid, 500u);
+  EXPECT_NEAR(data.start[kMotorSpeed], 50, 1);
+  EXPECT_NEAR(data.start[kP1], 120, 3);
+  EXPECT_NEAR(data.start[kP2], 140, 3);
+  EXPECT_EQ(data.start[kArmAngle], 0.2);
+  EXPECT_THAT(data.start_free, ElementsAre(false, true, true, true, false, false));
+}
+
+// Tests that a free arm is compared and started, its speed from the angle's slope.
+TEST(PrepareRun, Free) {
+  const RunData data = PrepareRun(WithArm(Shaft::kFree), testing::Table1());
+  EXPECT_NE(data.Find(Channel::kArmAngle), nullptr);
+  EXPECT_NEAR(data.start[kArmSpeed], 0.3 * 2 * kPi, 0.01);
+  EXPECT_THAT(data.start_free, ElementsAre(false, true, true, true, true, true));
+}
+
+// Tests that a driven arm is imposed and not compared.
+TEST(PrepareRun, Driven) {
+  RunData data = PrepareRun(WithArm(Shaft::kDriven), testing::Table1());
+  EXPECT_EQ(data.Find(Channel::kArmAngle), nullptr);
+  const RunData moved = std::move(data);
+  ASSERT_EQ(moved.stimulus.motion, moved.motion.get());
+  EXPECT_TRUE(moved.motion->continuous());
+  EXPECT_NEAR(moved.motion->Value(1.25), 0.3, 1e-4);
+  EXPECT_NEAR(moved.start[kArmSpeed], 0.3 * 2 * kPi, 0.02);
+}
+
+// Tests that with the bypass open there is one pressure to start from.
+TEST(PrepareRun, Bypass) {
+  MeasuredRun run = Clamped();
+  run.bypass = true;
+  const RunData data = PrepareRun(run, testing::Table1());
+  EXPECT_EQ(data.start[kP1], data.start[kP2]);
+  EXPECT_NEAR(data.start[kP1], 130, 3);
+  EXPECT_THAT(data.start_free, ElementsAre(false, true, true, false, false, false));
+}
+
+// Tests that what is not measured starts from what is: speed from the angle, pressures at p_3.
+TEST(PrepareRun, StartOfWhatIsNotMeasured) {
+  MeasuredRun run = Clamped();
+  run.motor_speed = {};
+  run.p1 = run.p2 = {};
+  for (const double t : run.time) run.motor_angle.values.push_back(3 + 20 * (t - 1));
+  const RunData data = PrepareRun(run, testing::Table1());
+  EXPECT_NEAR(data.start[kMotorAngle], 3, 1e-3);
+  EXPECT_NEAR(data.start[kMotorSpeed], 20, 1e-3);
+  EXPECT_EQ(data.start[kP1], 100);
+  EXPECT_TRUE(data.start_free[kMotorAngle]);
+}
+
+// Tests that data from which nothing can be learnt are refused with run, signal and row.
+TEST(PrepareRun, Refusals) {
+  EXPECT_EQ(ErrorOf([](MeasuredRun& run) { run.time.resize(99); }),
+            "step.csv: found 99 samples, allowed 100 or more");
+  EXPECT_EQ(ErrorOf([](MeasuredRun& run) { run.p1.values.assign(500, 7.0); }),
+            "step.csv: line 2: p1: found 7 psi there and in every row after it, allowed a signal that "
+            "changes, or leave it out");
+  EXPECT_EQ(ErrorOf([](MeasuredRun& run) { run.p2.values.assign(500, kNan); }),
+            "step.csv: p2: found no value in any row, allowed 20 values or more, or leave the signal out");
+  EXPECT_EQ(ErrorOf([](MeasuredRun& run) { run.motor_speed.values[3] = -2e5; }),
+            "step.csv: line 5: motor_speed: found -200000 rad/s, allowed -100000 to 100000 with this model: "
+            "is the column in another unit?");
+  EXPECT_THAT(ErrorOf([](MeasuredRun& run) { run.p1.values[0] = 690000; }), HasSubstr("line 2: p1: found"));
+  EXPECT_THAT(ErrorOf([](MeasuredRun& run) { run.voltage.values[9] = 24000; }),
+              HasSubstr("line 11: voltage: found 24000 V, allowed -10000 to 10000"));
+  EXPECT_THAT(ErrorOf([](MeasuredRun& run) { run.motor_speed = run.p1 = run.p2 = {}; }),
+              HasSubstr("step.csv: found no signal to compare a model with"));
+  EXPECT_THAT(ErrorOf([](MeasuredRun& run) { run.arm_angle.values[50] = 0.9; }, WithArm(Shaft::kDriven)),
+              HasSubstr("line 52: arm_angle: found 0.9 rad"));
+  EXPECT_THAT(ErrorOf([](MeasuredRun& run) { run.arm_angle.values[50] = 17; }, WithArm(Shaft::kFree)),
+              HasSubstr("line 52: arm_angle: found 17 rad"));
+}
+
+// Tests that the limits are those of the model's own units: 100 bar in Pa is nothing unusual in SI.
+TEST(PrepareRun, LimitsFollowTheModelsUnits) {
+  Parameters si = testing::Table1();
+  si.beta *= 6894.757;
+  MeasuredRun run = Clamped();
+  for (double& p : run.p2.values) p *= 6894.757;
+  EXPECT_NO_THROW(PrepareRun(run, si));
+}
+
+// Tests that what may well stand still does: a voltage, a driven arm, and in a log of the stack without noise
+// a side that stays on its one-way valve.
+TEST(PrepareRun, ConstantButRight) {
+  EXPECT_EQ(ErrorOf([](MeasuredRun& run) { run.arm_angle.values.assign(500, 0.1); }, WithArm(Shaft::kDriven)),
+            "no error");
+  EXPECT_EQ(ErrorOf([](MeasuredRun& run) { run.arm_angle.values.assign(500, 0.1); }, WithArm(Shaft::kFree)),
+            "no error");
+  EXPECT_EQ(ErrorOf([](MeasuredRun& run) {
+              run.model_text = "of a log";
+              run.p1.noise.reset();
+              run.p1.values.assign(500, 100.0);
+            }),
+            "no error");
+}
+
+// Tests that a noise is never 0, by which residuals could not be divided.
+TEST(PrepareRun, NoiseIsAboveZero) {
+  MeasuredRun run = WithArm(Shaft::kFree);
+  run.arm_angle.values.assign(500, 0.1);
+  for (size_t i = 0; i < 500; ++i) run.p2.values[i] = 100 + static_cast<double>(i);
+  for (const SignalData& signal : PrepareRun(run, testing::Table1()).signals) EXPECT_GT(signal.noise, 0);
+}
+
+// Tests that runs of one name are told apart.
+TEST(NameApart, NumbersWhatIsTaken) {
+  std::vector<RunData> runs(4);
+  runs[0].name = runs[1].name = runs[3].name = "a";
+  runs[2].name = "a (2)";
+  NameApart(&runs);
+  std::vector<std::string> names;
+  for (const RunData& run : runs) names.push_back(run.name);
+  EXPECT_THAT(names, ElementsAre("a", "a (2)", "a (2) (2)", "a (3)"));
+}
+
+// The largest error of the smoothed motion's rate against 0.4 sin(2 pi f t), its ends left out, and that of
+// monotone cubics through the samples.
+struct RateErrors {
+  double smooth = 0, through = 0;
+};
+
+RateErrors ErrorsOfRate(const std::vector<double>& time, const std::vector<double>& angle, double noise,
+                        double frequency) {
+  const std::unique_ptr<Trajectory> smooth = SmoothMotion(time, angle, noise, {}, 0);
+  std::vector<Step> steps;
+  for (size_t i = 0; i < time.size(); ++i) steps.push_back({time[i], angle[i]});
+  const std::unique_ptr<Trajectory> through = MakePoints(steps, Interpolation::kCubic);
+  RateErrors errors;
+  const double w = 2 * kPi * frequency;
+  for (double t = time[20]; t < time[time.size() - 20]; t += 0.37e-3) {
+    const double rate = 0.4 * w * std::cos(w * t);
+    errors.smooth = std::max(errors.smooth, std::abs(smooth->Rate(t) - rate));
+    errors.through = std::max(errors.through, std::abs(through->Rate(t) - rate));
+  }
+  return errors;
+}
+
+// Tests that the rate of a sine read by a 14-bit encoder is far better than that of cubics through the
+// readings.
+TEST(SmoothMotion, EncoderSine) {
+  const double q = 2 * kPi / 16384;
+  std::vector<double> time, angle;
+  for (size_t i = 0; i < 3000; ++i) {
+    time.push_back(0.0005 * static_cast<double>(i));
+    angle.push_back(q * std::round(0.4 * std::sin(2 * kPi * 2 * time.back()) / q));
+  }
+  const RateErrors errors = ErrorsOfRate(time, angle, q / std::sqrt(12.0), 2);
+  EXPECT_LT(errors.smooth, 0.1);  // of 5 rad/s
+  EXPECT_GT(errors.through, 5 * errors.smooth);
+}
+
+// Tests that a motion without noise is followed exactly enough, unevenly sampled and with samples missing.
+TEST(SmoothMotion, WithoutNoise) {
+  std::vector<double> time, angle;
+  for (size_t i = 0; i < 1000; ++i) {
+    time.push_back(0.001 * static_cast<double>(i) + (i % 3 == 0 ? 3e-4 : 0));
+    angle.push_back(i % 10 == 4 ? kNan : 0.4 * std::sin(2 * kPi * 2 * time.back()));
+  }
+  const std::unique_ptr<Trajectory> motion = SmoothMotion(time, angle, 8e-6, {}, 0);
+  for (double t = 0.05; t < 0.95; t += 0.0007) {
+    EXPECT_NEAR(motion->Value(t), 0.4 * std::sin(4 * kPi * t), 3e-5);
+    EXPECT_NEAR(motion->Rate(t), 1.6 * kPi * std::cos(4 * kPi * t), 0.01);
+  }
+  EXPECT_GE(motion->Max(), 0.39999);
+  EXPECT_EQ(motion->Value(-1), motion->Value(time.front()));
+  EXPECT_EQ(motion->Rate(2), 0);
+}
+
+// Tests that a measured rate makes the motion's rate better.
+TEST(SmoothMotion, MeasuredRate) {
+  std::mt19937_64 random(2);
+  std::normal_distribution<double> normal;
+  std::vector<double> time, angle, rate;
+  for (size_t i = 0; i < 500; ++i) {
+    time.push_back(0.02 * static_cast<double>(i));
+    angle.push_back(0.4 * std::sin(2 * kPi * 0.5 * time.back()) + 0.002 * normal(random));
+    rate.push_back(0.4 * kPi * std::cos(2 * kPi * 0.5 * time.back()) + 0.005 * normal(random));
+  }
+  const auto error = [&](const Trajectory& motion) {
+    double sum = 0;
+    for (size_t i = 0; i + 1 < time.size(); ++i) {
+      sum += std::pow(motion.Rate(time[i]) - 0.4 * kPi * std::cos(kPi * time[i]), 2);
+    }
+    return std::sqrt(sum / 500);
+  };
+  const double without = error(*SmoothMotion(time, angle, 0.002, {}, 0));
+  const double with = error(*SmoothMotion(time, angle, 0.002, rate, 0.005));
+  EXPECT_LT(with, 0.005);
+  EXPECT_LT(with, 0.6 * without);
+}
+
+}  // namespace
+}  // namespace hydro
