@@ -28,7 +28,7 @@ void Actuator::Advance(double voltage, double until) { impl_->simulation->Advanc
 double Actuator::time() const { return impl_->simulation->now().time; }
 
 Measurement Actuator::Measure() const {
-  return impl_->equations.Measure(time(), impl_->simulation->now().state);
+  return impl_->equations.Measure(time(), impl_->simulation->now().state, impl_->simulation->history());
 }
 
 }  // namespace hydro

@@ -107,8 +107,11 @@ void CvodeStepper::TakeState(const Point& now, Point* at) const {
     at->state[kMotorAngle] = now.state[kMotorAngle];
     at->state[kMotorSpeed] = now.state[kMotorSpeed];
   }
-  if (mode.valve_1) at->state[kP1] = now.state[kP1];
-  if (mode.valve_2 || (problem_.equations->data().bypass && mode.valve_1)) at->state[kP2] = now.state[kP2];
+  const EquationData& data = problem_.equations->data();
+  // What an open valve holds at a p_3 that moves is at that p_3.
+  const auto held = [&](int i) { return data.p_3_state < 0 ? now.state[i] : at->state[data.p_3_state]; };
+  if (mode.valve_1) at->state[kP1] = held(kP1);
+  if (mode.valve_2 || (data.bypass && mode.valve_1)) at->state[kP2] = held(kP2);
 }
 
 }  // namespace hydro

@@ -95,6 +95,11 @@ Equations::Equations(const ModelDescription& description, const ActuatorOptions&
     made.Place(first, data_.switches - kFirstEffectSwitch, first_parameter);
     scales_.resize(first + made.states());
     data_.switches += made.switches();
+    data_.reads_late |= made.reads_late();
+    data_.reach = std::max(data_.reach, made.reach());
+    if (made.replaces_valves()) data_.ideal_valves = false;
+    if (made.p_3_state() >= 0) data_.p_3_state = made.p_3_state();
+    if (made.actuator_angle_state() >= 0) data_.actuator_angle_state = made.actuator_angle_state();
     if (scales_.size() > kMaxStates || data_.switches > kMaxSwitches) throw ModelError("too many effects");
     made.Scales(pressure, p.D * speed, 0.01 * p.T_pmax, scales_.data() + first);
   }
@@ -130,9 +135,10 @@ std::vector<std::string> Equations::StateNames() const {
 
 void Equations::Start(double pressure, double* state, Mode* mode) const {
   if (std::isnan(pressure)) pressure = data_.parameters.p_3;
-  if (!(pressure >= data_.parameters.p_3) || !std::isfinite(pressure)) {
-    throw ModelError("initial pressure " + Number(pressure) +
-                     " psi is below the accumulator's p_3 = " + Number(data_.parameters.p_3) + " psi");
+  const double least = data_.ideal_valves ? data_.parameters.p_3 : 0;
+  if (!(pressure >= least) || !std::isfinite(pressure)) {
+    throw ModelError("initial pressure " + Number(pressure) + " psi is below " +
+                     (data_.ideal_valves ? "the accumulator's p_3 = " : "") + Number(least) + " psi");
   }
   *mode = Mode{};
   std::fill(state, state + data_.states, 0.0);
@@ -199,7 +205,7 @@ Power Equations::PowerBalance(double time, double voltage, const Mode& mode, con
                   x.outer_flow_2 * (x.pump_p2 - x.p_3);
   power.compression =
       (x.p1 - x.p_3) * x.V_1 / x.beta_1 * rate[kP1] + (x.p2 - x.p_3) * x.V_2 / x.beta_2 * rate[kP2];
-  power.mismatch = (p.c - p.k_2) * dp * x.arm_speed;
+  power.mismatch = (p.c - p.k_2) * dp * x.actuator_speed;
   if (data_.shaft == Shaft::kFree) {
     power.kinetic += p.J_a * x.arm_speed * rate[kArmSpeed];
     power.gravity = p.mgl * std::cos(x.arm_angle) * x.arm_speed;
@@ -213,8 +219,8 @@ Power Equations::PowerBalance(double time, double voltage, const Mode& mode, con
   return power;
 }
 
-Measurement Equations::Measure(double time, const double* state) const {
-  return ReadSensors<double>(data_, data_, time, state);
+Measurement Equations::Measure(double time, const double* state, const StateHistory<double>* history) const {
+  return ReadSensors<double>(data_, data_, time, state, history);
 }
 
 void Equations::CheckVolumes(double arm_angle) const {

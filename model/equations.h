@@ -18,6 +18,8 @@
 namespace hydro {
 
 class Effect;
+template <class T>
+class StateHistory;
 
 // The numbers in the right-hand side: parameters, and what follows from them alone.
 template <class T>
@@ -42,6 +44,11 @@ struct EquationData : NumbersOf<double> {
   std::vector<std::shared_ptr<Effect>> effects;
   int states = 0;
   int switches = kFirstEffectSwitch;
+  bool ideal_valves = true;  // false: the one-way valves are an effect's, valve_1 and valve_2 stay closed
+  bool reads_late = false;   // some channel does, by no more than `reach`
+  double reach = 0;          // s
+  int p_3_state = -1;        // where the accumulator's pressure is a state
+  int actuator_angle_state = kArmAngle;             // free shaft: what V_1 and V_2 depend on
   std::shared_ptr<const NumbersOf<Jet>> constants;  // the same numbers without derivatives
 };
 
@@ -67,7 +74,8 @@ class Equations {
   // d state/dt. `margin` (may be null) receives switches() numbers that are positive while the switch may
   // stay as it is and fall through 0 when it must change:
   //   pump slips: speed in its direction; pump sticks: friction limit less net torque
-  //   valve closed: p - p_3; valve open: minus the rate that p would have with the valve closed
+  //   valve closed: p - p_3; valve open: p_3' (0 unless an effect moves p_3) less the rate that p would have
+  //   with the valve closed
   void Rates(double time, double voltage, const Mode& mode, const double* state, double* rate,
              double* margin = nullptr) const;
 
@@ -87,7 +95,10 @@ class Equations {
                 Terms<double>* terms) const;
 
   Power PowerBalance(double time, double voltage, const Mode& mode, const double* state) const;
-  Measurement Measure(double time, const double* state) const;
+
+  // What the sensors read. A channel that is late (sensor.skew) reads what `history` has, which needs to know
+  // the states from data().reach seconds ago on; without one it is not late.
+  Measurement Measure(double time, const double* state, const StateHistory<double>* history = nullptr) const;
 
   // Throws ModelError when V_1 or V_2 is not above 0 (or above what an effect has elsewhere) at `arm_angle`.
   void CheckVolumes(double arm_angle) const;

@@ -6,6 +6,7 @@
 
 #include "model/effects/effect.h"
 #include "model/equations.h"
+#include "model/state_history.h"
 #include "trajectory/trajectory.h"
 
 namespace hydro {
@@ -64,6 +65,8 @@ template <Form kForm, class T>
     x.voltage = voltage;
     x.mode = &mode;
     x.arm_free = arm_moves_freely;
+    x.bypass = m.bypass;
+    x.actuator_speed = x.arm_speed;
     x.parameters = &p;
     x.state = y;
     for (const auto& effect : m.effects) {
@@ -83,6 +86,7 @@ template <Form kForm, class T>
   x.arm_torque = p.k_2 * (x.p2 - x.p1);  // (15)
   if (arm_moves_freely && p.mgl != 0) x.arm_torque -= p.mgl * cos(x.arm_angle);
   if constexpr (kGeneralForm) {
+    x.valve_flow_1 = x.valve_flow_2 = T(0.0);
     for (const auto& effect : m.effects) {
       x.own = n.own.data() + effect->first_parameter();
       effect->AddTorquesAndFlows(x);
@@ -97,6 +101,8 @@ template <Form kForm, class T>
       x.own = n.own.data() + effect->first_parameter();
       effect->AddStates(x, rate);
     }
+    x.q_1 += x.valve_flow_1;
+    x.q_2 += x.valve_flow_2;
   }
 
   rate[kMotorAngle] = x.motor_speed;
@@ -109,7 +115,7 @@ template <Form kForm, class T>
     x.free_rate_1 = -n.stiffness_1 * x.q_1;  // (13)
     x.free_rate_2 = -n.stiffness_2 * x.q_2;  // (14)
   } else {
-    const T arm_flow = p.c * x.arm_speed;
+    const T arm_flow = p.c * (kGeneralForm ? x.actuator_speed : x.arm_speed);
     if (kGeneralForm && m.bypass) {  // one pressure; what the arm displaces goes round
       x.free_rate_1 = x.free_rate_2 = -(x.q_1 + x.q_2) / (x.V_1 / x.beta_1 + x.V_2 / x.beta_2);
     } else {
@@ -119,8 +125,15 @@ template <Form kForm, class T>
   }
   const bool open_1 = mode.valve_1 != 0;
   const bool open_2 = kGeneralForm && m.bypass ? open_1 : mode.valve_2 != 0;
-  rate[kP1] = open_1 ? T(0.0) : x.free_rate_1;
-  rate[kP2] = open_2 ? T(0.0) : x.free_rate_2;
+  x.p_3_rate = T(0.0);
+  if constexpr (kGeneralForm) {
+    for (const auto& effect : m.effects) {
+      x.own = n.own.data() + effect->first_parameter();
+      effect->AddBalances(x, rate);
+    }
+  }
+  rate[kP1] = open_1 ? x.p_3_rate : x.free_rate_1;
+  rate[kP2] = open_2 ? x.p_3_rate : x.free_rate_2;
   if (arm_moves_freely) {
     rate[kArmAngle] = x.arm_speed;
     rate[kArmSpeed] = x.arm_torque * n.inverse_J_a;  // (15)
@@ -133,10 +146,11 @@ template <Form kForm, class T>
   using std::abs;
   margin[kPumpSwitch] =
       mode.pump == 0 ? T(x.breakaway - abs(x.net_torque)) : T(static_cast<double>(mode.pump) * x.motor_speed);
-  margin[kValve1Switch] = mode.valve_1 ? T(-x.free_rate_1) : T(x.p1 - x.p_3);
-  margin[kValve2Switch] = mode.valve_2 ? T(-x.free_rate_2) : T(x.p2 - x.p_3);
+  margin[kValve1Switch] = mode.valve_1 ? T(x.p_3_rate - x.free_rate_1) : T(x.p1 - x.p_3);
+  margin[kValve2Switch] = mode.valve_2 ? T(x.p_3_rate - x.free_rate_2) : T(x.p2 - x.p_3);
   if constexpr (kForm == Form::kGeneral) {
-    if (m.bypass) margin[kValve2Switch] = T(1.0);  // valve_1 stands for both
+    if (m.bypass || !m.ideal_valves) margin[kValve2Switch] = T(1.0);  // bypass: valve_1 stands for both
+    if (!m.ideal_valves) margin[kValve1Switch] = T(1.0);
     for (const auto& effect : m.effects) {
       x.own = n.own.data() + effect->first_parameter();
       effect->Margins(x, margin);
@@ -179,16 +193,26 @@ void CrossSwitch(const EquationData& m, const NumbersOf<T>& n, int which, double
   }
   int8_t& valve = which == kValve1Switch ? mode->valve_1 : mode->valve_2;
   valve = valve == 0 ? 1 : 0;
-  if (valve == 1) {
+  if (valve == 1 || m.p_3_state >= 0) {
     evaluate();
     if (which == kValve1Switch || m.bypass) state[kP1] = x.p_3;
     if (which == kValve2Switch || m.bypass) state[kP2] = x.p_3;
   }
 }
 
-// As Equations::Measure.
+// The motion at a time that may have derivatives.
+inline double MotionAt(const Trajectory& motion, double time) { return motion.Value(time); }
+inline Jet MotionAt(const Trajectory& motion, const Jet& time) {
+  Jet angle(motion.Value(time.a));
+  angle.v = motion.Rate(time.a) * time.v;
+  return angle;
+}
+inline double TimeOf(double time) { return time; }
+inline double TimeOf(const Jet& time) { return time.a; }
+
+// What the sensors make of this state, none of them late.
 template <class T>
-MeasurementOf<T> ReadSensors(const EquationData& m, const NumbersOf<T>& n, double time, const T* state) {
+MeasurementOf<T> ReadPromptly(const EquationData& m, const NumbersOf<T>& n, const T& time, const T* state) {
   MeasurementOf<T> measured;
   measured.motor_angle = state[kMotorAngle];
   measured.motor_speed = state[kMotorSpeed];
@@ -198,17 +222,37 @@ MeasurementOf<T> ReadSensors(const EquationData& m, const NumbersOf<T>& n, doubl
     measured.arm_angle = state[kArmAngle];
     measured.arm_speed = state[kArmSpeed];
   } else if (m.shaft == Shaft::kDriven) {
-    measured.arm_angle = T(m.motion->Value(time));
-    measured.arm_speed = T(m.motion->Rate(time));
+    measured.arm_angle = MotionAt(*m.motion, time);
+    measured.arm_speed = T(m.motion->Rate(TimeOf(time)));
   } else {
     measured.arm_angle = T(m.arm_angle);
   }
   SenseTerms<T> at;
-  at.time = time;
+  at.time = TimeOf(time);
   at.state = state;
   for (const auto& effect : m.effects) {
     at.own = n.own.data() + effect->first_parameter();
+    effect->Transduce(at, &measured);
+  }
+  for (const auto& effect : m.effects) {
+    at.own = n.own.data() + effect->first_parameter();
     effect->Sense(at, &measured);
+  }
+  return measured;
+}
+
+// As Equations::Measure.
+template <class T>
+MeasurementOf<T> ReadSensors(const EquationData& m, const NumbersOf<T>& n, double time, const T* state,
+                             const StateHistory<T>* history = nullptr) {
+  MeasurementOf<T> measured = ReadPromptly(m, n, T(time), state);
+  if (history == nullptr || history->empty()) return measured;
+  for (const auto& effect : m.effects) {
+    if (!effect->reads_late()) continue;
+    T then = time - effect->Lateness(n.own.data() + effect->first_parameter());
+    T past[kMaxStates];
+    history->At(&then, past);
+    effect->Replace(ReadPromptly(m, n, then, past), &measured);
   }
   return measured;
 }

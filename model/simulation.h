@@ -19,6 +19,9 @@ struct Point {
 // No step is longer, so that a switch which changes and changes back is not stepped over.
 inline constexpr double kLongestStep = 1e-2;  // s
 
+// The same where states between the steps are read.
+inline constexpr double kLongestStepToRead = 2e-3;  // s
+
 class Simulation {
  public:
   virtual ~Simulation() = default;
@@ -28,6 +31,9 @@ class Simulation {
 
   virtual const Point& now() const = 0;
   virtual const Mode& mode() const = 0;
+
+  // The states that channels which read late need; null when there are none.
+  virtual const StateHistory<double>* history() const = 0;
 
   // Switches that have changed since the start.
   virtual int64_t mode_changes() const = 0;

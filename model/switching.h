@@ -53,13 +53,16 @@ template <Form kForm, class Stepper>
 class SwitchingSimulation final : public Simulation {
  public:
   SwitchingSimulation(Equations* equations, double initial_pressure, double relative_tolerance)
-      : equations_(*equations), stepper_(&mode_, &voltage_, equations, relative_tolerance) {
+      : equations_(*equations),
+        history_(equations->states(), equations->data().reach),
+        stepper_(&mode_, &voltage_, equations, relative_tolerance) {
     equations_.Start(initial_pressure, now_->state, &mode_);
     PassStop();
   }
 
   const Point& now() const override { return *now_; }
   const Mode& mode() const override { return mode_; }
+  const StateHistory<double>* history() const override { return remembers() ? &history_ : nullptr; }
   int64_t mode_changes() const override { return mode_changes_; }
   Integrator in_use() const override { return stepper_.in_use(); }
 
@@ -82,30 +85,35 @@ class SwitchingSimulation final : public Simulation {
         stepper_.NewVoltage(*now_);
       }
       started_ = true;
+      Remember();
     }
     int events = 0;
     while (now_->time < until) {
       double stop = std::min(until, known_stop_);
+      if (remembers()) stop = std::min(stop, now_->time + kLongestStepToRead);
       // A switch on its boundary is given a moment to show to which side it goes.
       if (fresh_ && OnBoundary()) stop = std::min(stop, now_->time + kMoment);
       fresh_ = false;
       stepper_.Step(*now_, stop, next_);
       CheckFinite(*next_);
       if constexpr (kForm != Form::kPlainClamped) {
-        if (data().shaft == Shaft::kFree) CheckArm(next_->state[kArmAngle]);
+        if (data().shaft == Shaft::kFree) {
+          CheckArm(next_->state[kForm == Form::kGeneral ? data().actuator_angle_state : kArmAngle]);
+        }
       }
       const double last = FirstTrouble();
       if (last <= next_->time) {
         if (++events > kMostEvents) throw ModelError("the switches chatter" + Where(equations_, *now_));
         ToEvent(last);
       } else {
-        std::swap(now_, next_);
+        GoTo(&next_);
         if (now_->time >= known_stop_) {
           PassStop();
           fresh_ = true;
           EvaluateHere();
           Settle();
           stepper_.Restart(*now_);
+          Remember();
         }
       }
     }
@@ -156,8 +164,13 @@ class SwitchingSimulation final : public Simulation {
   // The rate of a margin that is itself a state; 0 for others.
   double MarginRate(int i, const Point& at) const {
     if (i == kPumpSwitch) return mode_.pump * at.rate[kMotorSpeed];
-    if (i == kValve1Switch) return mode_.valve_1 ? 0 : at.rate[kP1];
-    if (i == kValve2Switch) return mode_.valve_2 ? 0 : at.rate[kP2];
+    double p_3_rate = 0;
+    if constexpr (kForm == Form::kGeneral) {
+      if (!data().ideal_valves) return 0;
+      if (data().p_3_state >= 0) p_3_rate = at.rate[data().p_3_state];
+    }
+    if (i == kValve1Switch) return mode_.valve_1 ? 0 : at.rate[kP1] - p_3_rate;
+    if (i == kValve2Switch) return mode_.valve_2 ? 0 : at.rate[kP2] - p_3_rate;
     return 0;
   }
 
@@ -209,7 +222,7 @@ class SwitchingSimulation final : public Simulation {
     At(last, &at);
     const double g_last = LeastMargin(at);
     if (g_last >= 0) {  // the cubic saw a dip that is not there
-      std::swap(now_, next_);
+      GoTo(&next_);
       return;
     }
     const double event = TimeJustPast(now_->time, std::max(0.0, LeastMargin(*now_)), last, g_last,
@@ -223,11 +236,11 @@ class SwitchingSimulation final : public Simulation {
       stepper_.Step(*now_, now_->time + 0.5 * (event - now_->time), next_);
       CheckFinite(*next_);
       if (LeastMargin(*next_) >= 0) {
-        std::swap(now_, next_);
+        GoTo(&next_);
         return;
       }
     }
-    std::swap(now_, spare_);
+    GoTo(&spare_);
     for (int i = 0; i < switches(); ++i) {
       if (now_->margin[i] < 0) {
         equations_.Cross(i, now_->time, voltage_, now_->state, &mode_);
@@ -238,6 +251,18 @@ class SwitchingSimulation final : public Simulation {
     EvaluateHere();
     Settle();
     stepper_.Restart(*now_);
+    Remember();
+  }
+
+  // Accepts a point.
+  void GoTo(Point** point) {
+    std::swap(now_, *point);
+    Remember();
+  }
+
+  bool remembers() const { return kForm == Form::kGeneral && data().reads_late; }
+  void Remember() {
+    if (remembers()) history_.Add(now_->time, now_->state, now_->rate);
   }
 
   Equations& equations_;
@@ -251,6 +276,7 @@ class SwitchingSimulation final : public Simulation {
   Point* now_ = &points_[0];
   Point* next_ = &points_[1];
   Point* spare_ = &points_[2];
+  StateHistory<double> history_;
   Stepper stepper_;
 };
 

@@ -25,6 +25,7 @@ struct Terms {
   double time = 0;  // s
   const Mode* mode = nullptr;
   bool arm_free = false;  // the shaft is neither clamped nor driven
+  bool bypass = false;    // the two sides are connected
   const ParametersOf<T>* parameters = nullptr;
   const T* own = nullptr;    // the effect's parameters, in the order of its catalogue entry, names left out
   const T* state = nullptr;  // the whole state vector; an effect finds its own states from first_state() on
@@ -42,6 +43,7 @@ struct Terms {
   T V_1, V_2;          // eqs. (6), (7): the fluid whose pressure is p1, p2
   T c_E, c_I, p_3;     // eqs. (11), (12)
   T pump_p1, pump_p2;  // what the pump sees of p1, p2
+  T actuator_speed;    // of the actuator's own shaft: the arm's unless something gives between the two
 
   // Torques and flows, from the properties; effects change them in AddTorquesAndFlows.
   T load;                        // torque against forward rotation besides D dp, b theta' and friction
@@ -49,14 +51,20 @@ struct Terms {
   T breakaway;                   // largest torque that friction holds while the pump sticks
   T cross_flow;                  // from side 2 to side 1 at the pump
   T outer_flow_1, outer_flow_2;  // from each side to the accumulator
+  T valve_flow_1, valve_flow_2;  // the same through valves of effects, which sit at the actuator
   T arm_torque;                  // on the arm, eq. (15)
+
+  T torque_asked;  // of the motor, where motor.speed_torque_limit gives less
 
   // From the above; effects with states of their own may replace the flows in AddStates.
   T net_torque;  // T_p - D dp - load: what friction has to hold when the pump is at rest
   T q_1, q_2;    // out of each side of the actuator, eqs. (11), (12)
 
-  // The result for the switches: how p1 and p2 would move with their valve closed.
+  // How p1 and p2 would move with their valve closed.
   T free_rate_1, free_rate_2;
+
+  // From these and the flows; an effect that moves p_3 sets it in AddBalances.
+  T p_3_rate;
 };
 
 // What the sensors' readings are computed from.

@@ -6,33 +6,59 @@
 
 namespace hydro {
 
+CatalogueEntry AccumulatorStiffness();
 CatalogueEntry ActuatorSealFriction();
 CatalogueEntry AmpDelay();
 CatalogueEntry AmpLag();
+CatalogueEntry ArmFlexure();
+CatalogueEntry FluidEntrainedAir();
+CatalogueEntry FluidStiffening();
 CatalogueEntry FluidWarming();
 CatalogueEntry LineWave();
+CatalogueEntry MotorCogging();
+CatalogueEntry MotorSpeedTorqueLimit();
+CatalogueEntry PumpFlowRipple();
 CatalogueEntry PumpFrictionAsymmetry();
 CatalogueEntry PumpPressureFriction();
 CatalogueEntry PumpQuadraticDrag();
 CatalogueEntry PumpStribeck();
+CatalogueEntry PumpTurbulentLeakage();
 CatalogueEntry SensorPressureGain();
+CatalogueEntry SensorPressureLag();
 CatalogueEntry SensorPressureOffset();
+CatalogueEntry SensorSign();
+CatalogueEntry SensorSkew();
+CatalogueEntry ValveCheck();
+CatalogueEntry ValveRelief();
 
 namespace {
 
 const std::vector<CatalogueEntry>& Entries() {
   static const std::vector<CatalogueEntry> entries = {
+      AccumulatorStiffness(),
       ActuatorSealFriction(),
       AmpDelay(),
       AmpLag(),
+      ArmFlexure(),
+      FluidEntrainedAir(),
+      FluidStiffening(),
       FluidWarming(),
       LineWave(),
+      MotorCogging(),
+      MotorSpeedTorqueLimit(),
+      PumpFlowRipple(),
       PumpFrictionAsymmetry(),
       PumpPressureFriction(),
       PumpQuadraticDrag(),
       PumpStribeck(),
+      PumpTurbulentLeakage(),
       SensorPressureGain(),
+      SensorPressureLag(),
       SensorPressureOffset(),
+      SensorSign(),
+      SensorSkew(),
+      ValveCheck(),
+      ValveRelief(),
   };
   return entries;
 }

@@ -5,7 +5,9 @@
 //   properties from the base parameters  -> SetProperties       of each effect
 //   torques and flows of eqs. (4), (11), (12) -> AddTorquesAndFlows of each effect
 //   net torque, q_1, q_2                 -> AddStates            of each effect (rates of its states; may
-//   replace q_1, q_2) rates of the base states, eqs. (4), (13), (14), (15)
+//   replace q_1, q_2)
+//   p1', p2' with closed valves, (13), (14)    -> AddBalances          of each effect (moves p_3)
+//   rates of the base states, eqs. (4), (13), (14), (15)
 // Effects are applied in the order of their ids, so a model does not depend on the order of its file.
 #pragma once
 
@@ -49,6 +51,12 @@ class Effect {
   virtual std::vector<std::string> StateNames() const { return {}; }
   virtual void Scales(double /*pressure*/, double /*flow*/, double /*torque*/, double* /*scale*/) const {}
 
+  // True when its valves take the place of the ideal one-way valves.
+  virtual bool replaces_valves() const { return false; }
+  // Which of its states takes the place of p_3, and of the arm's angle in V_1 and V_2; -1: none.
+  virtual int p_3_state() const { return -1; }
+  virtual int actuator_angle_state() const { return -1; }
+
   // What follows is for numbers and, with the same formulas, for numbers that carry derivatives: an effect
   // writes it once, as templates named Own... (EffectOf).
 
@@ -67,6 +75,8 @@ class Effect {
   virtual void AddTorquesAndFlows(Terms<Jet>&) const = 0;
   virtual void AddStates(Terms<double>&, double* rate) const = 0;
   virtual void AddStates(Terms<Jet>&, Jet* rate) const = 0;
+  virtual void AddBalances(Terms<double>&, double* rate) const = 0;
+  virtual void AddBalances(Terms<Jet>&, Jet* rate) const = 0;
 
   // For each switch it adds: a number that is positive while the switch may stay as it is and falls through 0
   // when it must change; and the change.
@@ -75,9 +85,20 @@ class Effect {
   virtual void Cross(int which, const Terms<double>& x, double* state, Mode* mode) const = 0;
   virtual void Cross(int which, const Terms<Jet>& x, Jet* state, Mode* mode) const = 0;
 
-  // What the sensors read.
+  // What the sensors read: first what the pressure transducers respond to, then what becomes of it.
+  virtual void Transduce(const SenseTerms<double>&, MeasurementOf<double>*) const = 0;
+  virtual void Transduce(const SenseTerms<Jet>&, MeasurementOf<Jet>*) const = 0;
   virtual void Sense(const SenseTerms<double>&, MeasurementOf<double>*) const = 0;
   virtual void Sense(const SenseTerms<Jet>&, MeasurementOf<Jet>*) const = 0;
+
+  // For an effect with a channel that reads late: by how much, and the channel's reading of then put in the
+  // place of that of now. `reach` is the same lateness, for those who keep the states (StateHistory).
+  virtual bool reads_late() const { return false; }
+  virtual double reach() const { return 0; }
+  virtual double Lateness(const double* own) const = 0;
+  virtual Jet Lateness(const Jet* own) const = 0;
+  virtual void Replace(const MeasurementOf<double>& then, MeasurementOf<double>*) const = 0;
+  virtual void Replace(const MeasurementOf<Jet>& then, MeasurementOf<Jet>*) const = 0;
 
   // For an effect that remembers earlier commands or changes at known times: the voltage from `time` on; when
   // its equation next jumps; and that this time has been reached. Between stops it holds still. StopShift is
@@ -112,6 +133,8 @@ class EffectOf : public Effect {
   void AddTorquesAndFlows(Terms<Jet>& x) const override { TorquesAndFlows(x); }
   void AddStates(Terms<double>& x, double* rate) const override { States(x, rate); }
   void AddStates(Terms<Jet>& x, Jet* rate) const override { States(x, rate); }
+  void AddBalances(Terms<double>& x, double* rate) const override { Balances(x, rate); }
+  void AddBalances(Terms<Jet>& x, Jet* rate) const override { Balances(x, rate); }
   void Margins(const Terms<double>& x, double* margin) const override { Switches(x, margin); }
   void Margins(const Terms<Jet>& x, Jet* margin) const override { Switches(x, margin); }
   void Cross(int which, const Terms<double>& x, double* state, Mode* mode) const override {
@@ -120,10 +143,24 @@ class EffectOf : public Effect {
   void Cross(int which, const Terms<Jet>& x, Jet* state, Mode* mode) const override {
     Change(which, x, state, mode);
   }
+  void Transduce(const SenseTerms<double>& at, MeasurementOf<double>* measured) const override {
+    Respond(at, measured);
+  }
+  void Transduce(const SenseTerms<Jet>& at, MeasurementOf<Jet>* measured) const override {
+    Respond(at, measured);
+  }
   void Sense(const SenseTerms<double>& at, MeasurementOf<double>* measured) const override {
     Read(at, measured);
   }
   void Sense(const SenseTerms<Jet>& at, MeasurementOf<Jet>* measured) const override { Read(at, measured); }
+  double Lateness(const double* own) const override { return Late(own); }
+  Jet Lateness(const Jet* own) const override { return Late(own); }
+  void Replace(const MeasurementOf<double>& then, MeasurementOf<double>* measured) const override {
+    Exchange(then, measured);
+  }
+  void Replace(const MeasurementOf<Jet>& then, MeasurementOf<Jet>* measured) const override {
+    Exchange(then, measured);
+  }
   Jet StopShift(const Jet* own) const override {
     if constexpr (requires { self().OwnStopShift(own); }) return self().OwnStopShift(own);
     return Jet(0.0);
@@ -153,6 +190,10 @@ class EffectOf : public Effect {
     if constexpr (requires { self().OwnStates(x, rate); }) self().OwnStates(x, rate);
   }
   template <class T>
+  void Balances(Terms<T>& x, T* rate) const {
+    if constexpr (requires { self().OwnBalances(x, rate); }) self().OwnBalances(x, rate);
+  }
+  template <class T>
   void Switches(const Terms<T>& x, T* margin) const {
     if constexpr (requires { self().OwnMargins(x, margin); }) self().OwnMargins(x, margin);
   }
@@ -161,6 +202,19 @@ class EffectOf : public Effect {
     if constexpr (requires { self().OwnCross(which, x, state, mode); }) {
       self().OwnCross(which, x, state, mode);
     }
+  }
+  template <class T>
+  T Late(const T* own) const {
+    if constexpr (requires { self().OwnLateness(own); }) return self().OwnLateness(own);
+    return T(0.0);
+  }
+  template <class T>
+  void Exchange(const MeasurementOf<T>& then, MeasurementOf<T>* measured) const {
+    if constexpr (requires { self().OwnReplace(then, measured); }) self().OwnReplace(then, measured);
+  }
+  template <class T>
+  void Respond(const SenseTerms<T>& at, MeasurementOf<T>* measured) const {
+    if constexpr (requires { self().OwnTransduce(at, measured); }) self().OwnTransduce(at, measured);
   }
   template <class T>
   void Read(const SenseTerms<T>& at, MeasurementOf<T>* measured) const {

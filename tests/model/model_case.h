@@ -44,7 +44,9 @@ struct Rig {
       : equations(model, options),
         simulation(MakeSimulation(&equations, options.integrator, options.initial_pressure,
                                   options.relative_tolerance)) {}
-  Measurement Measure() const { return equations.Measure(simulation->now().time, simulation->now().state); }
+  Measurement Measure() const {
+    return equations.Measure(simulation->now().time, simulation->now().state, simulation->history());
+  }
 
   Equations equations;
   std::unique_ptr<Simulation> simulation;

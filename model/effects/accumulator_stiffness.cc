@@ -1,0 +1,60 @@
+// accumulator.stiffness: p3 rises by stiffness per volume returned to the accumulator, and falls by as much
+// per volume that the one-way valves take from it. One state: p3. Its start is the base parameter p_3.
+//
+// An ideal valve that is open holds its side at the p3 that moves, and passes what this takes,
+//   u = (V/beta) p3' + flow out of the side = (V/beta)(p3' - free rate),
+// so that p3' = stiffness (flow into the accumulator - sum of u) is linear in p3' and solved for it.
+#include <ceres/jet.h>
+
+#include "model/effects/effect.h"
+
+namespace hydro {
+
+namespace {
+
+class Accumulator : public EffectOf<Accumulator> {
+ public:
+  int states() const override { return 1; }
+  int p_3_state() const override { return first_state(); }
+  std::vector<std::string> StateNames() const override { return {"p3"}; }
+  void Scales(double pressure, double, double, double* scale) const override { scale[0] = pressure; }
+
+  template <class T>
+  void OwnStart(const Terms<T>& x, T* state) const {
+    state[first_state()] = x.parameters->p_3;
+  }
+
+  template <class T>
+  void OwnProperties(Terms<T>& x) const {
+    x.p_3 = x.state[first_state()];
+  }
+
+  template <class T>
+  void OwnBalances(Terms<T>& x, T* rate) const {
+    T flow = x.outer_flow_1 + x.outer_flow_2 + (x.valve_flow_1 + x.valve_flow_2);
+    T held = T(0.0);  // in^3/psi, sides that are held at p3
+    const auto hold = [&](const T& compliance, const T& free_rate) {
+      held += compliance;
+      flow += compliance * free_rate;
+    };
+    const bool open_2 = x.bypass ? x.mode->valve_1 != 0 : x.mode->valve_2 != 0;
+    if (x.mode->valve_1 != 0) hold(x.V_1 / x.beta_1, x.free_rate_1);
+    if (open_2) hold(x.V_2 / x.beta_2, x.free_rate_2);
+    x.p_3_rate = x.own[0] * flow / (1.0 + x.own[0] * held);
+    rate[first_state()] = x.p_3_rate;
+  }
+};
+
+}  // namespace
+
+CatalogueEntry AccumulatorStiffness();
+CatalogueEntry AccumulatorStiffness() {
+  return {{"accumulator.stiffness",
+           "the accumulator's pressure rises with what is returned to it",
+           "p3 rises by stiffness per volume returned to the accumulator",
+           "parameter p3",
+           {{"stiffness", "psi/in^3", 0, kUnbounded, true, "pressure per volume"}}},
+          MakeEffect<Accumulator>};
+}
+
+}  // namespace hydro

@@ -1,0 +1,64 @@
+// arm.flexure: a spring and damper between actuator and arm. The actuator's shaft has no mass of its own, so
+// the torque that the pressures give it is what spring and damper pass on to the arm:
+//   k_2 dp = stiffness (a - alpha) + damping (a' - alpha'),
+// from which a' follows. One state: a, the angle of the actuator's shaft, which V_1, V_2 and the flow c a'
+// depend on. The arm's sensor reads alpha, and friction (actuator.seal_friction) acts on the arm. A clamped
+// or driven shaft is held at the actuator and does not feel it.
+#include <ceres/jet.h>
+
+#include "model/effects/effect.h"
+
+namespace hydro {
+
+namespace {
+
+class Flexure : public EffectOf<Flexure> {
+ public:
+  int states() const override { return 1; }
+  int actuator_angle_state() const override { return first_state(); }
+  std::vector<std::string> StateNames() const override { return {"actuator_angle"}; }
+  void Scales(double, double, double, double* scale) const override { scale[0] = 1e-3; }
+
+  template <class T>
+  void OwnStart(const Terms<T>& x, T* state) const {
+    state[first_state()] = x.arm_angle;
+    if (x.arm_free) state[first_state()] += x.parameters->k_2 * (x.p2 - x.p1) / x.own[0];  // at rest
+  }
+
+  template <class T>
+  void OwnProperties(Terms<T>& x) const {
+    if (!x.arm_free) return;
+    const T twist = x.state[first_state()] - x.arm_angle;
+    x.actuator_speed = x.arm_speed + (x.parameters->k_2 * (x.p2 - x.p1) - x.own[0] * twist) / x.own[1];
+    x.V_1 -= x.parameters->c * twist;
+    x.V_2 += x.parameters->c * twist;
+  }
+
+  template <class T>
+  void OwnStates(Terms<T>& x, T* rate) const {
+    rate[first_state()] = x.arm_free ? x.actuator_speed : T(0.0);
+  }
+
+  void AddPower(const Terms<double>& x, const double* /*rate*/, Power* power) const override {
+    if (!x.arm_free) return;
+    const double twist = x.state[first_state()] - x.arm_angle;
+    const double speed = x.actuator_speed - x.arm_speed;
+    power->effects_stored += x.own[0] * twist * speed;
+    power->effects_dissipated += x.own[1] * speed * speed;
+  }
+};
+
+}  // namespace
+
+CatalogueEntry ArmFlexure();
+CatalogueEntry ArmFlexure() {
+  return {{"arm.flexure",
+           "the arm gives between actuator and load",
+           "a spring and damper between actuator and arm",
+           "line.wave, parameter J_a",
+           {{"stiffness", "in-lbf/rad", 0, kUnbounded, false, "torque per twist"},
+            {"damping", "in-lbf-s", 0, kUnbounded, false, "torque per rate of twist"}}},
+          MakeEffect<Flexure>};
+}
+
+}  // namespace hydro

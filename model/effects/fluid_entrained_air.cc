@@ -1,0 +1,63 @@
+// fluid.entrained_air: free air is `air_fraction` of the fluid's volume at atmospheric pressure and is
+// compressed polytropically, V_air proportional to p_abs^(-1/n) with n = 1.4. On each side, with its own
+// pressure,
+//   1/beta_eff = 1/beta + air_fraction/(n p_abs) (p_atm/p_abs)^(1/n),  p_abs = p + p_atm:
+// the model's pressures count from atmospheric pressure. After Gholizadeh et al. and Merritt.
+#include <ceres/jet.h>
+
+#include <cmath>
+
+#include "model/effects/effect.h"
+
+namespace hydro {
+
+namespace {
+
+class EntrainedAir : public EffectOf<EntrainedAir> {
+ public:
+  // After every property of the liquid is known.
+  template <class T>
+  void OwnTorquesAndFlows(Terms<T>& x) const {
+    const double atmosphere = Atmosphere(*x.parameters);
+    x.beta_1 = x.beta_1 / (1.0 + x.beta_1 * x.own[0] * Compressibility(x.p1, atmosphere));
+    x.beta_2 = x.beta_2 / (1.0 + x.beta_2 * x.own[0] * Compressibility(x.p2, atmosphere));
+  }
+
+ private:
+  static constexpr double kExponent = 1.4;
+
+  // The one number with a unit in the equations: psi as in the paper, or Pa. Liquids have a beta near 2e5
+  // psi, which is 1.4e9 Pa, so that 1e7 tells the two apart.
+  template <class T>
+  static double Atmosphere(const ParametersOf<T>& base) {
+    return base.beta > T(1e7) ? 101325 : 14.6959;
+  }
+
+  // Of a volume of air that has the volume 1 at atmospheric pressure. Below p = 0 the absolute pressure goes
+  // to 0 smoothly and stays above it, so that a vacuum is soft but not an error; at p = 100 psi this adds
+  // 1e-5.
+  template <class T>
+  static T Compressibility(const T& p, double atmosphere) {
+    using std::pow;
+    using std::sqrt;
+    const T absolute = p + atmosphere;
+    const double least = 0.05 * atmosphere;
+    const T above_0 = 0.5 * (absolute + sqrt(absolute * absolute + least * least));
+    return pow(atmosphere / above_0, 1 / kExponent) / (kExponent * above_0);
+  }
+};
+
+}  // namespace
+
+CatalogueEntry FluidEntrainedAir();
+CatalogueEntry FluidEntrainedAir() {
+  return {{"fluid.entrained_air",
+           "air bubbles make the fluid soft at low pressure",
+           "1/beta_eff = 1/beta + compressibility of air that is `air_fraction` of the volume at atmospheric "
+           "pressure, compressed polytropically",
+           "parameter beta, fluid.stiffening",
+           {{"air_fraction", "1", 0, 1, true, "volume of the air at atmospheric pressure over the fluid's"}}},
+          MakeEffect<EntrainedAir>};
+}
+
+}  // namespace hydro

@@ -1,0 +1,50 @@
+// sensor.pressure_lag: what the pressure transducers read follows the pressure, tau r' + r = p on each side.
+// Gain and offset act on r. States: r of p1, r of p2.
+#include <ceres/jet.h>
+
+#include "model/effects/effect.h"
+
+namespace hydro {
+
+namespace {
+
+class PressureLag : public EffectOf<PressureLag> {
+ public:
+  int states() const override { return 2; }
+  std::vector<std::string> StateNames() const override { return {"read_p1", "read_p2"}; }
+  void Scales(double pressure, double, double, double* scale) const override {
+    scale[0] = scale[1] = pressure;
+  }
+
+  template <class T>
+  void OwnStart(const Terms<T>& x, T* state) const {
+    state[first_state()] = x.p1;
+    state[first_state() + 1] = x.p2;
+  }
+
+  template <class T>
+  void OwnStates(Terms<T>& x, T* rate) const {
+    rate[first_state()] = (x.p1 - x.state[first_state()]) / x.own[0];
+    rate[first_state() + 1] = (x.p2 - x.state[first_state() + 1]) / x.own[0];
+  }
+
+  template <class T>
+  void OwnTransduce(const SenseTerms<T>& at, MeasurementOf<T>* measured) const {
+    measured->p1 = at.state[first_state()];
+    measured->p2 = at.state[first_state() + 1];
+  }
+};
+
+}  // namespace
+
+CatalogueEntry SensorPressureLag();
+CatalogueEntry SensorPressureLag() {
+  return {{"sensor.pressure_lag",
+           "the pressure transducers read with a lag",
+           "measured pressure follows with a time constant",
+           "line.wave, amp.lag",
+           {{"tau", "s", 0, kUnbounded, false, "time constant"}}},
+          MakeEffect<PressureLag>};
+}
+
+}  // namespace hydro

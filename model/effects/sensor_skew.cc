@@ -1,0 +1,48 @@
+// sensor.skew: one channel is late by `delay` in what is measured: it reads what it would have read then. The
+// equations do not change. Before the start it reads the first value.
+#include <ceres/jet.h>
+
+#include "model/effects/effect.h"
+#include "model/effects/sensor_signal.h"
+
+namespace hydro {
+
+namespace {
+
+class Skew : public EffectOf<Skew> {
+ public:
+  Skew(Signal signal, double delay) : signal_(signal), delay_(delay) {}
+
+  bool reads_late() const override { return true; }
+  double reach() const override { return delay_; }
+
+  template <class T>
+  T OwnLateness(const T* own) const {
+    return own[0];
+  }
+  template <class T>
+  void OwnReplace(const MeasurementOf<T>& then, MeasurementOf<T>* measured) const {
+    ChangeSignal(signal_, then, measured, [](const T& value) { return value; });
+  }
+
+ private:
+  Signal signal_;
+  double delay_;
+};
+
+}  // namespace
+
+CatalogueEntry SensorSkew();
+CatalogueEntry SensorSkew() {
+  return {{"sensor.skew",
+           "one channel is recorded late",
+           "one channel is late by delay",
+           "amp.delay",
+           {{"delay", "s", 0, kUnbounded, true, "by which the channel is late"},
+            {"signal", "name", 0, 0, true, "the channel that is late", true, SignalNames()}}},
+          [](const EffectDescription& description) -> std::unique_ptr<Effect> {
+            return std::make_unique<Skew>(SignalOf(description), description.parameters.at("delay"));
+          }};
+}
+
+}  // namespace hydro

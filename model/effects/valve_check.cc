@@ -1,0 +1,61 @@
+// valve.check: the one-way valve of each side opens at p3 - cracking and passes conductance (p3 - cracking -
+// p). It takes the place of the ideal valve, so p may fall below p3. One switch a side: 0 closed, 1 open.
+#include <ceres/jet.h>
+
+#include "model/effects/effect.h"
+
+namespace hydro {
+
+namespace {
+
+class Check : public EffectOf<Check> {
+ public:
+  int switches() const override { return 2; }
+  bool replaces_valves() const override { return true; }
+
+  template <class T>
+  void OwnTorquesAndFlows(Terms<T>& x) const {
+    if (Open(x, 0)) x.valve_flow_1 -= x.own[1] * (x.p_3 - x.own[0] - x.p1);
+    if (Open(x, 1)) x.valve_flow_2 -= x.own[1] * (x.p_3 - x.own[0] - x.p2);
+  }
+
+  template <class T>
+  void OwnMargins(const Terms<T>& x, T* margin) const {
+    T* own = margin + kFirstEffectSwitch + first_switch();
+    const T opens = x.p_3 - x.own[0];
+    own[0] = Open(x, 0) ? T(opens - x.p1) : T(x.p1 - opens);
+    own[1] = Open(x, 1) ? T(opens - x.p2) : T(x.p2 - opens);
+  }
+
+  template <class T>
+  void OwnCross(int which, const Terms<T>& /*x*/, T* /*state*/, Mode* mode) const {
+    int8_t& position = mode->effects[first_switch() + which];
+    position = position == 0 ? 1 : 0;
+  }
+
+  void AddPower(const Terms<double>& x, const double* /*rate*/, Power* power) const override {
+    if (Open(x, 0)) power->effects_dissipated += x.own[1] * (x.p_3 - x.own[0] - x.p1) * (x.p_3 - x.p1);
+    if (Open(x, 1)) power->effects_dissipated += x.own[1] * (x.p_3 - x.own[0] - x.p2) * (x.p_3 - x.p2);
+  }
+
+ private:
+  template <class T>
+  bool Open(const Terms<T>& x, int side) const {
+    return x.mode->effects[first_switch() + side] != 0;
+  }
+};
+
+}  // namespace
+
+CatalogueEntry ValveCheck();
+CatalogueEntry ValveCheck() {
+  return {{"valve.check",
+           "one-way valves that need a pressure to open and resist the flow",
+           "the one-way valve opens at p3 - cracking and passes conductance (p3 - cracking - p)",
+           "parameter p3, accumulator.stiffness",
+           {{"cracking", "psi", 0, kUnbounded, true, "pressure below p3 at which the valve opens"},
+            {"conductance", "in^3/s/psi", 0, kUnbounded, true, "flow per pressure below that"}}},
+          MakeEffect<Check>};
+}
+
+}  // namespace hydro

@@ -1,0 +1,59 @@
+// valve.relief: flow conductance (p - set) out of a side above set, to the accumulator. The valves sit at the
+// actuator, as the one-way valves do. One switch a side: 0 closed, 1 open.
+#include <ceres/jet.h>
+
+#include "model/effects/effect.h"
+
+namespace hydro {
+
+namespace {
+
+class Relief : public EffectOf<Relief> {
+ public:
+  int switches() const override { return 2; }
+
+  template <class T>
+  void OwnTorquesAndFlows(Terms<T>& x) const {
+    if (Open(x, 0)) x.valve_flow_1 += x.own[1] * (x.p1 - x.own[0]);
+    if (Open(x, 1)) x.valve_flow_2 += x.own[1] * (x.p2 - x.own[0]);
+  }
+
+  template <class T>
+  void OwnMargins(const Terms<T>& x, T* margin) const {
+    T* own = margin + kFirstEffectSwitch + first_switch();
+    own[0] = Open(x, 0) ? T(x.p1 - x.own[0]) : T(x.own[0] - x.p1);
+    own[1] = Open(x, 1) ? T(x.p2 - x.own[0]) : T(x.own[0] - x.p2);
+  }
+
+  template <class T>
+  void OwnCross(int which, const Terms<T>& /*x*/, T* /*state*/, Mode* mode) const {
+    int8_t& position = mode->effects[first_switch() + which];
+    position = position == 0 ? 1 : 0;
+  }
+
+  void AddPower(const Terms<double>& x, const double* /*rate*/, Power* power) const override {
+    if (Open(x, 0)) power->effects_dissipated += x.own[1] * (x.p1 - x.own[0]) * (x.p1 - x.p_3);
+    if (Open(x, 1)) power->effects_dissipated += x.own[1] * (x.p2 - x.own[0]) * (x.p2 - x.p_3);
+  }
+
+ private:
+  template <class T>
+  bool Open(const Terms<T>& x, int side) const {
+    return x.mode->effects[first_switch() + side] != 0;
+  }
+};
+
+}  // namespace
+
+CatalogueEntry ValveRelief();
+CatalogueEntry ValveRelief() {
+  return {{"valve.relief",
+           "relief valves from each side to the accumulator",
+           "flow conductance (p - set) out of a side above set",
+           "parameter c_E",
+           {{"set", "psi", 0, kUnbounded, true, "pressure at which the valve opens"},
+            {"conductance", "in^3/s/psi", 0, kUnbounded, true, "flow per pressure above set"}}},
+          MakeEffect<Relief>};
+}
+
+}  // namespace hydro
