@@ -123,7 +123,22 @@ TEST(Energy, DrivenBypassAndEffects) {
                    {"pump.pressure_friction", {{"f", 0.001}}, {}},
                    {"pump.quadratic_drag", {{"k", 1e-3}}, {}},
                    {"actuator.seal_friction", {{"coulomb", 30}, {"viscous", 20}}, {}}});
+  const ModelDescription others =
+      Table1Model({{"accumulator.stiffness", {{"stiffness", 5e3}}, {}},
+                   {"arm.flexure", {{"stiffness", 6e3}, {"damping", 60}}, {}},
+                   {"fluid.entrained_air", {{"air_fraction", 0.005}}, {}},
+                   {"fluid.stiffening", {{"slope", 20}}, {}},
+                   {"motor.cogging", {{"amplitude", 1}, {"periods", 12}, {"phase", 0.4}}, {}},
+                   {"motor.speed_torque_limit", {{"no_load_speed", 30}}, {}},
+                   {"pump.flow_ripple", {{"amplitude", 0.05}, {"periods", 9}}, {}},
+                   {"pump.turbulent_leakage", {{"k", 1e-4}}, {}},
+                   {"valve.relief", {{"set", 200}, {"conductance", 1e-3}}, {}}});
+  const ModelDescription check = Table1Model({{"valve.check", {{"cracking", 5}, {"conductance", 1e-3}}, {}}});
   for (auto [model, options] : {std::pair{Table1Model(), driven},
+                                {others, driven},
+                                {others, bypass},
+                                {others, Held(Shaft::kFree)},
+                                {check, Held(Shaft::kClamped)},
                                 {Table1Model(), bypass},
                                 {all, driven},
                                 {all, bypass},

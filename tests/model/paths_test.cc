@@ -63,8 +63,49 @@ std::vector<Case> Cases() {
   add("SealFrictionWithGravity", {{"actuator.seal_friction", {{"coulomb", 600}, {"viscous", 0}}, {}}},
       Held(Shaft::kFree));
   cases.back().model.parameters.mgl = 562;
+  add("TurbulentLeakage", {{"pump.turbulent_leakage", {{"k", 1e-3}}, {}}}, Held(Shaft::kClamped));
+  add("Relief", {{"valve.relief", {{"set", 250}, {"conductance", 1e-3}}, {}}}, Held(Shaft::kClamped));
+  add("ReliefBypass", {{"valve.relief", {{"set", 200}, {"conductance", 1e-4}}, {}}}, bypass);
+  add("EntrainedAir", {{"fluid.entrained_air", {{"air_fraction", 0.02}}, {}}}, Held(Shaft::kClamped));
+  add("Stiffening", {{"fluid.stiffening", {{"slope", 100}}, {}}}, Held(Shaft::kFree));
+  add("SpeedTorqueLimit", {{"motor.speed_torque_limit", {{"no_load_speed", 5}}, {}}}, Held(Shaft::kClamped));
+  add("SpeedTorqueLimitAndLag", {{"motor.speed_torque_limit", {{"no_load_speed", 5}}, {}}, Lag(2e-3)},
+      Held(Shaft::kFree));
+  add("PressureLag", {{"sensor.pressure_lag", {{"tau", 3e-3}}, {}}}, Held(Shaft::kClamped));
+  add("Cogging", {{"motor.cogging", {{"amplitude", 2}, {"periods", 12}, {"phase", 0.4}}, {}}},
+      Held(Shaft::kClamped));
+  add("FlowRipple", {{"pump.flow_ripple", {{"amplitude", 0.1}, {"periods", 12}}, {}}}, Held(Shaft::kClamped));
+  add("Check", {{"valve.check", {{"cracking", 10}, {"conductance", 1e-3}}, {}}}, Held(Shaft::kClamped));
+  add("CheckFree", {{"valve.check", {{"cracking", 0}, {"conductance", 1e-2}}, {}}}, Held(Shaft::kFree));
+  add("Accumulator", {{"accumulator.stiffness", {{"stiffness", 5e3}}, {}}}, Held(Shaft::kClamped));
+  add("AccumulatorFree",
+      {{"accumulator.stiffness", {{"stiffness", 5e3}}, {}},
+       {"valve.relief", {{"set", 150}, {"conductance", 1e-3}}, {}}},
+      Held(Shaft::kFree));
+  add("AccumulatorBypass", {{"accumulator.stiffness", {{"stiffness", 5e3}}, {}}}, bypass);
+  add("Sign", {{"sensor.sign", {}, {{"signal", "motor_speed"}}}}, Held(Shaft::kClamped));
+  add("Skew", {{"sensor.skew", {{"delay", 3.33e-4}}, {{"signal", "p2"}}}}, Held(Shaft::kClamped));
+  add("Flexure", {{"arm.flexure", {{"stiffness", 2e5}, {"damping", 500}}, {}}}, Held(Shaft::kFree));
+  add("FlexureAndSealFriction",
+      {{"arm.flexure", {{"stiffness", 2e5}, {"damping", 500}}, {}},
+       {"actuator.seal_friction", {{"coulomb", 100}, {"viscous", 50}}, {}}},
+      Held(Shaft::kFree));
   add("AllEffects",
       {Stribeck(0.5, 3), Lag(2e-3), Wave(300, 0.2, 0.05), {"pump.pressure_friction", {{"f", 0.001}}, {}}},
+      Held(Shaft::kFree));
+  add("AllOtherEffects",
+      {{"accumulator.stiffness", {{"stiffness", 5e3}}, {}},
+       {"arm.flexure", {{"stiffness", 2e5}, {"damping", 500}}, {}},
+       {"fluid.entrained_air", {{"air_fraction", 0.005}}, {}},
+       {"fluid.stiffening", {{"slope", 20}}, {}},
+       Wave(300, 0.2, 0.05),
+       {"motor.cogging", {{"amplitude", 1}, {"periods", 12}, {"phase", 0.4}}, {}},
+       {"motor.speed_torque_limit", {{"no_load_speed", 30}}, {}},
+       {"pump.flow_ripple", {{"amplitude", 0.05}, {"periods", 9}}, {}},
+       {"pump.turbulent_leakage", {{"k", 1e-4}}, {}},
+       {"sensor.pressure_lag", {{"tau", 3e-3}}, {}},
+       {"valve.check", {{"cracking", 5}, {"conductance", 1e-2}}, {}},
+       {"valve.relief", {{"set", 200}, {"conductance", 1e-3}}, {}}},
       Held(Shaft::kFree));
   return cases;
 }
@@ -121,12 +162,13 @@ TEST_P(Paths, LongCalls) {
 
 class SymmetricPaths : public ::testing::TestWithParam<Case> {};
 
-// Gravity and a driven shaft are not symmetric, nor are unequal sensors or directions.
+// Gravity and a driven shaft are not symmetric, nor are unequal sensors, directions or angles.
 std::vector<Case> SymmetricCases() {
   std::vector<Case> cases = Cases();
   std::erase_if(cases, [](const Case& c) {
     return c.options.shaft == Shaft::kDriven || c.model.parameters.mgl != 0 || c.name == "PressureOffset" ||
-           c.name == "FrictionAsymmetry";
+           c.name == "FrictionAsymmetry" || c.name == "Cogging" || c.name == "Sign" || c.name == "Skew" ||
+           c.name == "AllOtherEffects";
   });
   return cases;
 }
