@@ -91,7 +91,7 @@ std::vector<Case> AllCases() {
 }
 
 double Gap(const Truth& truth, uint64_t seed, const Options& options) {
-  Setup plain;
+  RigSetup plain;
   plain.base = truth.given;
   double sum = 0;
   double count = 0;
@@ -101,11 +101,11 @@ double Gap(const Truth& truth, uint64_t seed, const Options& options) {
     conditions.seconds = options.seconds;
     conditions.noise = 0;
     conditions.time_of_day = 1.7 * static_cast<double>(plan.name.back() - '0');
-    const Record with = Run(truth.setup, plan, conditions);
+    const Record with = RecordRun(truth.setup, plan, conditions);
     conditions.voltage = &with.voltage;
     Record without;
     try {
-      without = Run(plain, plan, conditions);
+      without = RecordRun(plain, plan, conditions);
     } catch (const std::runtime_error&) {
       return 1000;  // it runs away under these voltages
     }
@@ -125,6 +125,9 @@ Truth Solve(const Case& c, const Options& options) {
   Truth truth;
   // The arm's weight differs from rig to rig.
   truth.setup.base.mgl = truth.given.mgl = 200 + static_cast<double>(c.seed % 5) * 50;
+  // Gravity would hold play to one side.
+  if (c.outside >= 0 && OutsideForms()[c.outside].value == &Outside::backlash)
+    truth.setup.base.mgl = truth.given.mgl = 20;
   if (!c.parameter.empty()) {
     for (const auto& form : BaseForms()) {
       if (form.name != c.parameter) continue;

@@ -25,7 +25,7 @@ std::vector<Case> AllCases();
 
 // A case made concrete.
 struct Truth {
-  Setup setup;
+  RigSetup setup;
   Base given;  // the model that is handed over
   std::vector<TrueEffect> effects;
   double gap = 0;       // noise units, rms over all signals; see Gap()

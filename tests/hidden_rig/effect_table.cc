@@ -8,17 +8,17 @@ namespace hidden_rig {
 const std::vector<EffectForm>& EffectForms() {
   // `plain`: where nothing else is said, what gives the case effect-plain its gap.
   static const std::vector<EffectForm> forms = {
-      {"amp.lag", 5e-5, 0.03, 0.004,
+      {"amp.lag", 5e-5, 0.03, 0.002,
        [](double s, Effects* e) -> TrueEffect {
          e->lag_tau = s;
          return {"amp.lag", {{"tau", s}}, ""};
        }},
-      {"amp.delay", 2e-5, 0.02, 0.004,
+      {"amp.delay", 2e-5, 0.02, 0.002,
        [](double s, Effects* e) -> TrueEffect {
          e->delay = s;
          return {"amp.delay", {{"delay", s}}, ""};
        }},
-      {"motor.speed_torque_limit", 0.1, 10, 1.7,
+      {"motor.speed_torque_limit", 0.005, 10, 1.7,
        [](double s, Effects* e) -> TrueEffect {
          e->no_load_speed = 1000 / s;
          return {"motor.speed_torque_limit", {{"no_load_speed", e->no_load_speed}}, ""};
@@ -91,7 +91,7 @@ const std::vector<EffectForm>& EffectForms() {
          e->check_conductance = std::fmin(3 / s, 1.0);
          return {"valve.check", {{"cracking", s}, {"conductance", e->check_conductance}}, ""};
        }},
-      {"valve.relief", 1e-6, 0.1, 3e-4,
+      {"valve.relief", 1e-7, 0.1, 1e-4,
        [](double s, Effects* e) -> TrueEffect {
          e->relief_set = 750;
          e->relief_conductance = s;
@@ -108,13 +108,13 @@ const std::vector<EffectForm>& EffectForms() {
          e->seal_viscous = 0.5 * s;
          return {"actuator.seal_friction", {{"coulomb", s}, {"viscous", e->seal_viscous}}, ""};
        }},
-      {"arm.flexure", 0.05, 60, 8,
+      {"arm.flexure", 0.005, 60, 8,
        [](double s, Effects* e) -> TrueEffect {
          e->flexure_stiffness = 1e6 / s;
          e->flexure_damping = 0.1 * std::sqrt(e->flexure_stiffness * 23.3);
          return {"arm.flexure", {{"stiffness", e->flexure_stiffness}, {"damping", e->flexure_damping}}, ""};
        }},
-      {"sensor.pressure_lag", 1e-5, 0.05, 0.004,
+      {"sensor.pressure_lag", 1e-5, 0.05, 0.002,
        [](double s, Effects* e) -> TrueEffect {
          e->sensor_tau = s;
          return {"sensor.pressure_lag", {{"tau", s}}, ""};

@@ -35,7 +35,7 @@ double SoftClamp(double x, double limit, double rounding) {
 
 }  // namespace
 
-Physics::Physics(const Setup& setup, const Plan& plan, const Conditions& conditions)
+Physics::Physics(const RigSetup& setup, const Plan& plan, const Conditions& conditions)
     : base_(setup.base),
       fx_(setup.effects),
       out_(setup.outside),
@@ -307,8 +307,8 @@ void Physics::Rates(double t, const State& x, State& rate) const {
   }
 
   // Transducers: two poles, the first of which is sensor.pressure_lag's if there is one. Tachometer: one.
-  const double slow = fx_.sensor_tau > 0 ? 0.94 * fx_.sensor_tau : kTransducer;
-  const double quick = fx_.sensor_tau > 0 ? std::max(0.06 * fx_.sensor_tau, kTransducer) : kTransducer;
+  const double slow = fx_.sensor_tau > 0 ? 0.98 * fx_.sensor_tau : kTransducer;
+  const double quick = fx_.sensor_tau > 0 ? std::max(0.02 * fx_.sensor_tau, kTransducer) : kTransducer;
   if (fx_.sensor_tau > 0 || trivia_) {
     rate[kSensor1] = (x[kSide1] - x[kSensor1]) / slow;
     rate[kSensor2] = (x[kSide2] - x[kSensor2]) / slow;

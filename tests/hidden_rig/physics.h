@@ -39,7 +39,7 @@ enum {
 
 class Physics {
  public:
-  Physics(const Setup& setup, const Plan& plan, const Conditions& conditions);
+  Physics(const RigSetup& setup, const Plan& plan, const Conditions& conditions);
 
   // One kStep under the voltage commanded now.
   void Step(double voltage);

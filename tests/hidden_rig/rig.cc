@@ -63,7 +63,7 @@ double Value(const Segment& s, double t) {
 
 }  // namespace
 
-Record Run(const Setup& setup, const Plan& plan, const Conditions& conditions) {
+Record RecordRun(const RigSetup& setup, const Plan& plan, const Conditions& conditions) {
   // Eq. (16) as an experimenter would set it for 120 rad/s, eq. (17) at 200 Hz with the paper's gains.
   constexpr double k_p = 0.08, k_v = 10.0, c1 = 10500, c2 = 350, interval = 0.005;
   constexpr double kLargestVoltage = 11.5, kVoltageStep = 1.0 / 2048, kLargestPressure = 3000;

@@ -93,13 +93,13 @@ inline constexpr double kSpeedNoise = 0.3;
 inline constexpr double kAngleStep = 6.283185307179586 / 16384;
 inline constexpr double kAngleNoise = 1.107e-4;
 
-struct Setup {
+struct RigSetup {
   Base base;
   Effects effects;
   Outside outside;
 };
 
 // Throws std::runtime_error when the rig breaks: a volume that reaches 0, a value that is not finite.
-Record Run(const Setup& setup, const Plan& plan, const Conditions& conditions);
+Record RecordRun(const RigSetup& setup, const Plan& plan, const Conditions& conditions);
 
 }  // namespace hidden_rig

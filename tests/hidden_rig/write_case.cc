@@ -54,7 +54,7 @@ void WriteRuns(const Case& c, const Truth& truth, const Options& options, const 
     conditions.noise = options.noise * c.noise;
     conditions.seed = c.seed * 1009 + number;
     conditions.time_of_day = 1.7 * number;
-    const Record record = Run(truth.setup, plan, conditions);
+    const Record record = RecordRun(truth.setup, plan, conditions);
     const bool arm = plan.shaft != Shaft::kClamped;
     const std::string stem = folder + "/run" + std::to_string(number);
 
