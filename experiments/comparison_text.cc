@@ -6,61 +6,17 @@
 #include <cstdio>
 #include <cstdlib>
 
+#include "settings/si_units.h"
+
 namespace hydro {
 namespace {
 
-constexpr double kInch = 0.0254;                            // m
-constexpr double kPoundForce = 0.45359237 * 9.80665;        // N
-constexpr double kPsi = kPoundForce / (kInch * kInch);      // Pa
-constexpr double kInchPound = kPoundForce * kInch;          // N m
-constexpr double kCubicInch = kInch * kInch * kInch * 1e6;  // cm^3
-constexpr double kKilo = 1e3;
-constexpr double kMega = 1e6;
 constexpr size_t kLineWidth = 108;
 
-struct SiUnit {
-  const char* from;
-  const char* to;
-  double factor;
-};
-
-// Unprefixed pressures are separate: kPa or MPa, whichever gives the handier numbers.
-constexpr std::array<SiUnit, 22> kSiUnits = {{
-    {"in", "mm", kInch * 1e3},
-    {"in/s", "m/s", kInch},
-    {"in^2", "cm^2", kInch* kInch * 1e4},
-    {"in^3", "cm^3", kCubicInch},
-    {"in^3/s", "cm^3/s", kCubicInch},
-    {"in^3/rad", "cm^3/rad", kCubicInch},
-    {"in^3/(s psi)", "cm^3/(s MPa)", kCubicInch* kMega / kPsi},
-    {"lbf", "N", kPoundForce},
-    {"in-lbf", "N m", kInchPound},
-    {"in-lb", "N m", kInchPound},
-    {"ft-lbf", "N m", kInchPound * 12},
-    {"in-lbf-s", "N m s", kInchPound},
-    {"in-lbf/rad", "N m/rad", kInchPound},
-    {"in-lbf/s", "N m/s", kInchPound},
-    {"in-lbf-s^2", "kg m^2", kInchPound},
-    {"lbf-in-s^2", "kg m^2", kInchPound},
-    {"in-lbf/V", "N m/V", kInchPound},
-    {"in-lbf/psi", "N m/MPa", kInchPound* kMega / kPsi},
-    {"V/psi", "V/MPa", kMega / kPsi},
-    {"psi/rad", "MPa/rad", kPsi / kMega},
-    {"psi s/rad", "kPa s/rad", kPsi / kKilo},
-    {"psi/s", "kPa/s", kPsi / kKilo},
-}};
-
-const SiUnit* FindSiUnit(const Comparison& row) {
-  static constexpr SiUnit kKilopascal{"psi", "kPa", kPsi / kKilo};
-  static constexpr SiUnit kMegapascal{"psi", "MPa", kPsi / kMega};
-  if (row.unit == "psi") {
-    // NaN compares false, so that one that does not exist decides nothing.
-    const bool large = std::abs(row.here) * kPsi >= kMega || std::abs(row.expected) * kPsi >= kMega;
-    return large ? &kMegapascal : &kKilopascal;
-  }
-  const auto* found = std::find_if(kSiUnits.begin(), kSiUnits.end(),
-                                   [&row](const SiUnit& unit) { return row.unit == unit.from; });
-  return found == kSiUnits.end() ? nullptr : found;
+const SiUnit* SiUnitOf(const Comparison& row) {
+  // NaN compares false, so that one that does not exist decides nothing.
+  const bool expected = std::abs(row.expected) > std::abs(row.here) || std::isnan(row.here);
+  return FindSiUnit(row.unit, expected ? row.expected : row.here);
 }
 
 // "about 7300" in in-lbf -> "about 824.8"; texts with more than one number, or words after it, keep theirs
@@ -120,7 +76,7 @@ std::string ShownNumber(double value) {
 std::vector<Comparison> InSi(const std::vector<Comparison>& comparisons) {
   std::vector<Comparison> converted = comparisons;
   for (Comparison& row : converted) {
-    const SiUnit* unit = FindSiUnit(row);
+    const SiUnit* unit = SiUnitOf(row);
     if (unit == nullptr) continue;
     row.paper = PaperInSi(row.paper, *unit);
     row.expected *= unit->factor;

@@ -1,0 +1,181 @@
+#include "diagnose/hydro_diagnose.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
+#include <memory>
+#include <system_error>
+#include <utility>
+
+#include "diagnose/progress_bar.h"
+#include "diagnose/report_html.h"
+#include "diagnose/report_json.h"
+#include "diagnose/terminal_summary.h"
+#include "logger/new_file.h"
+#include "model/parameter_info.h"
+#include "settings/did_you_mean.h"
+#include "settings/model_file.h"
+#include "settings/section_reader.h"
+
+namespace hydro {
+namespace {
+
+namespace fs = std::filesystem;
+
+// The folder of the report; one that was made for it goes again unless the report is in it.
+class ReportFolder {
+ public:
+  explicit ReportFolder(std::string folder) : folder_(std::move(folder)) {
+    std::error_code error;
+    fs::create_directories(folder_, error);
+    if (error || !fs::is_directory(folder_) || access(folder_.c_str(), W_OK) != 0) {
+      throw InputError("--out: found " + Quoted(folder_) + ", which is no folder that can be written" +
+                       (error ? " (" + error.message() + ")" : "") + ", allowed one that can");
+    }
+  }
+  ~ReportFolder() {
+    std::error_code error;
+    if (fs::is_empty(folder_, error) && !error) fs::remove(folder_, error);
+  }
+  ReportFolder(const ReportFolder&) = delete;
+  ReportFolder& operator=(const ReportFolder&) = delete;
+
+  // All of the files, or those of an earlier report stay.
+  void Write(const std::vector<std::pair<std::string, std::string>>& files) const {
+    std::vector<std::unique_ptr<NewFile>> open;
+    for (const auto& [name, text] : files) {
+      open.push_back(std::make_unique<NewFile>(folder_ + "/" + name, Opening::kTemporary));
+      open.back()->Write(text.data(), text.size());
+    }
+    for (const std::unique_ptr<NewFile>& file : open) file->Finish();
+  }
+  void Remove(const std::string& name) const {
+    std::error_code error;
+    fs::remove(folder_ + "/" + name, error);
+  }
+
+ private:
+  std::string folder_;
+};
+
+std::vector<MeasuredRun> ReadRuns(const std::vector<std::string>& files) {
+  std::vector<MeasuredRun> runs;
+  for (const std::string& file : files) runs.push_back(ReadMeasuredRun(file));
+  return runs;
+}
+
+bool SameFile(const std::string& a, const std::string& b) {
+  std::error_code error;
+  return a == b || (fs::equivalent(a, b, error) && !error);
+}
+
+void RequireDifferentFiles(const DiagnoseRequest& request) {
+  std::vector<std::pair<std::string, std::string>> all;
+  for (const std::string& file : request.runs) all.emplace_back("RUN", file);
+  for (const std::string& file : request.held_out) all.emplace_back("--hold-out", file);
+  for (size_t i = 0; i < all.size(); ++i) {
+    for (size_t k = 0; k < i; ++k) {
+      if (!SameFile(all[i].second, all[k].second)) continue;
+      throw InputError(all[i].first + ": found " + Quoted(all[i].second) + ", which is given as " +
+                       all[k].first + " already, allowed each run once");
+    }
+  }
+}
+
+Diagnosis Make(const DiagnoseRequest& request, const Diagnoser& diagnose, const TellProgress& tell) {
+  DiagnoseOptions options;
+  if (!request.effects.empty()) options.effects = ReadEffectList(request.effects);
+  if (!request.free.empty()) options.free = SplitFree(request.free);
+  options.jobs = request.jobs;
+  options.seed = static_cast<uint64_t>(request.seed);
+  const ModelDescription model = LoadModelFile(request.model);
+  tell({"reading the runs", 0});
+  std::vector<MeasuredRun> runs = ReadRuns(request.runs), held_out = ReadRuns(request.held_out);
+  try {
+    return diagnose(model, std::move(runs), std::move(held_out), options, tell);
+  } catch (const ModelError& error) {
+    throw InputError(request.model + ": found a model that cannot follow the runs: " + error.what() +
+                     "; allowed one that can, and runs whose shaft was held as they say");
+  }
+}
+
+}  // namespace
+
+std::vector<std::string> ReadEffectList(const std::string& file) {
+  TomlNode root = ParseToml(ReadTextFile(file), file);
+  root.place = file;
+  SectionReader document(root, "");
+  const std::string allowed = "a list of effects' ids, effects = [\"pump.stribeck\", ...]";
+  const TomlNode* list = document.Take("effects");
+  document.Require("effects", allowed);
+  document.Finish();
+  if (!list->is(TomlNode::Kind::kArray) || list->items.empty()) {
+    throw document.Error("effects", list->is(TomlNode::Kind::kArray) ? "none" : list->Shown(), allowed);
+  }
+  std::vector<std::string> known;
+  for (const EffectInfo& info : EffectCatalogue()) known.push_back(info.id);
+  std::vector<std::string> ids;
+  for (const TomlNode& item : list->items) {
+    if (!item.is(TomlNode::Kind::kString)) throw document.Error("effects", item.Shown(), allowed);
+    if (FindEffect(item.text) == nullptr) {
+      throw document.Error("effects", "the unknown effect " + Quoted(item.text),
+                           QuotedList(known) + DidYouMean(item.text, known));
+    }
+    if (std::find(ids.begin(), ids.end(), item.text) == ids.end()) ids.push_back(item.text);
+  }
+  return ids;
+}
+
+std::vector<std::string> SplitFree(const std::string& names) {
+  std::vector<std::string> known;
+  for (const BaseParameter& parameter : BaseParameters()) known.push_back(parameter.info.name);
+  std::vector<std::string> free;
+  for (size_t begin = 0; begin <= names.size();) {
+    const size_t end = std::min(names.find(',', begin), names.size());
+    const std::string name = names.substr(begin, end - begin);
+    begin = end + 1;
+    if (std::find(known.begin(), known.end(), name) == known.end()) {
+      throw InputError("--free: found " + Quoted(name) + ", allowed names with commas between them, of " +
+                       QuotedList(known) + DidYouMean(name, known));
+    }
+    if (std::find(free.begin(), free.end(), name) == free.end()) free.push_back(name);
+  }
+  return free;
+}
+
+void RunDiagnosis(const DiagnoseRequest& request, const Diagnoser& diagnose, std::FILE* out, std::FILE* err) {
+  if (request.jobs < 1 || request.jobs > 256) {
+    throw InputError("--jobs: found " + std::to_string(request.jobs) + ", allowed 1 to 256");
+  }
+  if (request.seed < 0) {
+    throw InputError("--seed: found " + std::to_string(request.seed) +
+                     ", allowed a whole number of at least 0");
+  }
+  RequireDifferentFiles(request);
+  const ReportFolder folder(request.folder);
+
+  const auto begin = std::chrono::steady_clock::now();
+  const auto elapsed = [begin] {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  };
+  Diagnosis diagnosis;
+  {
+    const bool terminal = isatty(fileno(err)) != 0;
+    ProgressBar bar(terminal ? err : out, terminal);
+    diagnosis = Make(request, diagnose, [&](const Progress& progress) { bar.Tell(progress, elapsed()); });
+    bar.Tell({"writing the report", 1}, elapsed());
+  }
+  const bool next = !diagnosis.next.config.empty();
+  std::vector<std::pair<std::string, std::string>> files;
+  files.emplace_back("report.html", ReportHtml(diagnosis, request.si));
+  files.emplace_back("model.toml", FormatModel(diagnosis.model));
+  if (next) files.emplace_back("next.toml", diagnosis.next.config);
+  files.emplace_back("report.json", ReportJson(diagnosis, next ? "next.toml" : "", elapsed()));
+  folder.Write(files);
+  if (!next) folder.Remove("next.toml");  // of an earlier report
+  std::fputs(TerminalSummary(diagnosis, request.folder, request.si).c_str(), out);
+}
+
+}  // namespace hydro

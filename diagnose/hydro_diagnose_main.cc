@@ -1,0 +1,34 @@
+// hydro-diagnose RUN...: finds, names, adds and proves what the model lacks.
+#include <algorithm>
+#include <cstdio>
+#include <thread>
+
+#include "diagnose/hydro_diagnose.h"
+#include "settings/command_line.h"
+
+int main(int argc, char** argv) {
+  hydro::CommandLine line("hydro-diagnose",
+                          "Finds where a model and measured runs disagree, names the missing effect, adds it "
+                          "to the model and shows the gap shrink on data it was not fitted to.");
+  hydro::DiagnoseRequest request;
+  request.jobs = static_cast<int>(std::clamp(std::thread::hardware_concurrency(), 1u, 256u));
+  line.AddPositional("RUN", &request.runs,
+                     "FILE a measured run: a log, or a table (csv, mat) with a sidecar");
+  line.AddOption("--model", &request.model, "MODEL.toml the model as it is", true);
+  line.AddOption("-o,--out", &request.folder,
+                 "DIR where report.html, report.json, model.toml and next.toml are written", true);
+  line.AddOption("--hold-out", &request.held_out,
+                 "RUN a run that decides and is not fitted; without any, the runs are held out in turn");
+  line.AddOption("--effects", &request.effects,
+                 "FILE the effects that may be named: TOML, effects = [\"pump.stribeck\", ...] (all)");
+  line.AddOption("--free", &request.free,
+                 "NAME,... base parameters that may be refitted (all that the runs identify)");
+  line.AddOption("--jobs", &request.jobs, "N how much is computed at the same time (the processors)");
+  line.AddOption("--seed", &request.seed, "N of all that is random (1)");
+  line.AddFlag("--si", &request.si, "print figures in SI units, in report.html too");
+  if (const auto code = line.Parse(argc, argv)) return *code;
+  return hydro::RunProgram("hydro-diagnose", [&] {
+    hydro::RunDiagnosis(request, hydro::Diagnose, stdout, stderr);
+    return 0;
+  });
+}

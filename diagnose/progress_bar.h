@@ -1,0 +1,33 @@
+// How far a diagnosis is, for whoever watches.
+#pragma once
+
+#include <cstdio>
+#include <string>
+
+#include "diagnose/progress.h"
+
+namespace hydro {
+
+// A bar with the stage and the time left on a terminal; elsewhere a line when a stage begins.
+class ProgressBar {
+ public:
+  // `out` stays the caller's.
+  ProgressBar(std::FILE* out, bool terminal) : out_(out), terminal_(terminal) {}
+  // Wipes the bar away.
+  ~ProgressBar();
+  ProgressBar(const ProgressBar&) = delete;
+  ProgressBar& operator=(const ProgressBar&) = delete;
+
+  // `elapsed`: s since the work began.
+  void Tell(const Progress& progress, double elapsed);
+
+ private:
+  void Wipe();
+
+  std::FILE* out_;
+  bool terminal_;
+  double furthest_ = 0;
+  std::string stage_, drawn_;
+};
+
+}  // namespace hydro

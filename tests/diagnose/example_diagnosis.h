@@ -1,0 +1,15 @@
+// A diagnosis as it might be, for tests of what is told of one.
+#pragma once
+
+#include "diagnose/diagnosis.h"
+
+namespace hydro::testing {
+
+// pump.stribeck named, fluid.warming tied with b drifting, J implausible; two runs of `samples` samples, the
+// second held out.
+Diagnosis ExampleDiagnosis(size_t samples = 600);
+
+// Nothing found, nothing to show.
+Diagnosis EmptyDiagnosis();
+
+}  // namespace hydro::testing

@@ -1,0 +1,270 @@
+#include "diagnose/hydro_diagnose.h"
+
+#include <gmock/gmock.h>
+#include <stdlib.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+
+#include "diagnose/progress_bar.h"
+#include "diagnose/terminal_summary.h"
+#include "settings/model_file.h"
+#include "tests/diagnose/example_diagnosis.h"
+#include "tests/table1.h"
+
+namespace hydro {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::Not;
+using ::testing::UnorderedElementsAre;
+
+namespace fs = std::filesystem;
+
+class HydroDiagnoseTest : public ::testing::Test {
+ protected:
+  HydroDiagnoseTest() {
+    std::string pattern = ::testing::TempDir() + "/hydro_diagnose_XXXXXX";
+    folder_ = mkdtemp(pattern.data());
+    Write("model.toml", FormatModel({"Table 1", testing::Table1(), {}}));
+    std::string table = "time_s,voltage_V,p1_psi\n";
+    for (int i = 0; i < 120; ++i) {
+      table += std::to_string(0.001 * i) + ",2," + std::to_string(100 + i % 7) + "\n";
+    }
+    for (const char* stem : {"a", "b"}) {
+      Write(stem + std::string(".csv"), table);
+      Write(stem + std::string(".toml"),
+            "shaft = \"clamped\"\n[columns]\ntime = \"time_s\"\nvoltage = \"voltage_V\"\np1 = \"p1_psi\"\n");
+    }
+    request_.runs = {Path("a.csv")};
+    request_.model = Path("model.toml");
+    request_.folder = Path("out");
+  }
+  ~HydroDiagnoseTest() override { fs::remove_all(folder_); }
+
+  std::string Path(const std::string& name) const { return folder_ + "/" + name; }
+  void Write(const std::string& name, const std::string& text) const { std::ofstream(Path(name)) << text; }
+  std::string Read(const std::string& name) const {
+    std::ifstream in(Path(name), std::ios::binary);
+    return {std::istreambuf_iterator<char>(in), {}};
+  }
+  std::vector<std::string> Files() const {
+    std::vector<std::string> names;
+    if (!fs::exists(Path("out"))) return names;
+    for (const auto& entry : fs::directory_iterator(Path("out"))) names.push_back(entry.path().filename());
+    return names;
+  }
+
+  // What is told on standard output, with `diagnosis` found.
+  std::string Run(const Diagnosis& diagnosis) {
+    return Run([&](const ModelDescription& model, std::vector<MeasuredRun> runs,
+                   std::vector<MeasuredRun> held_out, const DiagnoseOptions& options,
+                   const TellProgress& tell) {
+      model_ = model;
+      runs_ = std::move(runs);
+      held_out_ = std::move(held_out);
+      options_ = options;
+      tell({"trying each effect", 0.5});
+      return diagnosis;
+    });
+  }
+  std::string Run(const Diagnoser& diagnoser) {
+    std::FILE* out = std::tmpfile();
+    std::FILE* err = std::tmpfile();
+    try {
+      RunDiagnosis(request_, diagnoser, out, err);
+    } catch (...) {
+      EXPECT_EQ(std::ftell(err), 0);
+      std::fclose(out);
+      std::fclose(err);
+      throw;
+    }
+    EXPECT_EQ(std::ftell(err), 0);
+    std::string text(static_cast<size_t>(std::ftell(out)), '\0');
+    std::rewind(out);
+    EXPECT_EQ(std::fread(text.data(), 1, text.size(), out), text.size());
+    std::fclose(out);
+    std::fclose(err);
+    return text;
+  }
+  // The one line that is said of a request that cannot be met; nothing must be left behind.
+  std::string ErrorOf(const DiagnoseRequest& request) {
+    request_ = request;
+    try {
+      Run(testing::EmptyDiagnosis());
+    } catch (const InputError& error) {
+      const std::string text = error.what();
+      EXPECT_EQ(text.find('\n'), std::string::npos) << text;
+      EXPECT_FALSE(fs::exists(Path("out")));
+      return text;
+    }
+    return "no error";
+  }
+
+  std::string folder_;
+  DiagnoseRequest request_;
+  ModelDescription model_;
+  std::vector<MeasuredRun> runs_, held_out_;
+  DiagnoseOptions options_;
+};
+
+// Tests that the files named in the request reach the diagnosis, and what it finds the report.
+TEST_F(HydroDiagnoseTest, ReadsAndWrites) {
+  Write("effects.toml", "effects = [\"pump.stribeck\", \"amp.lag\", \"amp.lag\"]\n");
+  request_.held_out = {Path("b.csv")};
+  request_.effects = Path("effects.toml");
+  request_.free = "b,T_s";
+  request_.jobs = 3;
+  request_.seed = 7;
+  const std::string told = Run(testing::ExampleDiagnosis());
+  EXPECT_EQ(model_.parameters.k_1, 4.0);
+  ASSERT_EQ(runs_.size(), 1u);
+  EXPECT_EQ(runs_[0].name, "a");
+  ASSERT_EQ(held_out_.size(), 1u);
+  EXPECT_EQ(held_out_[0].name, "b");
+  EXPECT_THAT(options_.effects, ElementsAre("pump.stribeck", "amp.lag"));
+  EXPECT_THAT(options_.free, ElementsAre("b", "T_s"));
+  EXPECT_EQ(options_.jobs, 3);
+  EXPECT_EQ(options_.seed, 7u);
+
+  EXPECT_THAT(Files(), UnorderedElementsAre("report.html", "report.json", "model.toml", "next.toml"));
+  EXPECT_THAT(Read("out/report.json"), HasSubstr("\"config\": \"next.toml\""));
+  EXPECT_EQ(Read("out/next.toml"), "[model]\nfile = \"model.toml\"\n");
+  EXPECT_THAT(told, HasSubstr("trying each effect\n"));
+  EXPECT_THAT(told, HasSubstr("tied: The pump's static friction"));
+}
+
+// Tests that the model written is the one found, numbers bit by bit and names of signals too.
+TEST_F(HydroDiagnoseTest, ModelRoundTrips) {
+  const Diagnosis diagnosis = testing::ExampleDiagnosis();
+  Run(diagnosis);
+  const ModelDescription read = LoadModelFile(Path("out/model.toml"));
+  EXPECT_EQ(read.name, diagnosis.model.name);
+  EXPECT_EQ(read.parameters.c, diagnosis.model.parameters.c);
+  ASSERT_EQ(read.effects.size(), 3u);
+  for (size_t i = 0; i < 3; ++i) {
+    EXPECT_EQ(read.effects[i].id, diagnosis.model.effects[i].id);
+    EXPECT_EQ(read.effects[i].parameters, diagnosis.model.effects[i].parameters);
+    EXPECT_EQ(read.effects[i].names, diagnosis.model.effects[i].names);
+  }
+}
+
+// Tests that the next experiment of an earlier report goes when there is none now.
+TEST_F(HydroDiagnoseTest, NoStaleNextExperiment) {
+  Run(testing::ExampleDiagnosis());
+  Run(testing::EmptyDiagnosis());
+  EXPECT_THAT(Files(), UnorderedElementsAre("report.html", "report.json", "model.toml"));
+}
+
+// Tests that the same diagnosis gives the same report, page and model to the bit.
+TEST_F(HydroDiagnoseTest, Deterministic) {
+  Run(testing::ExampleDiagnosis());
+  const std::string page = Read("out/report.html"), model = Read("out/model.toml");
+  Run(testing::ExampleDiagnosis());
+  EXPECT_EQ(Read("out/report.html"), page);
+  EXPECT_EQ(Read("out/model.toml"), model);
+}
+
+// Tests that each thing wrong with a request is one line that names it, and leaves nothing behind.
+TEST_F(HydroDiagnoseTest, Errors) {
+  const DiagnoseRequest good = request_;
+  const auto error = [&](const std::function<void(DiagnoseRequest&)>& change) {
+    DiagnoseRequest request = good;
+    change(request);
+    return ErrorOf(request);
+  };
+  EXPECT_THAT(error([](DiagnoseRequest& r) { r.jobs = 0; }), HasSubstr("--jobs: found 0, allowed 1 to 256"));
+  EXPECT_THAT(error([](DiagnoseRequest& r) { r.seed = -1; }), HasSubstr("--seed: found -1"));
+  EXPECT_THAT(error([](DiagnoseRequest& r) { r.free = "b,q"; }), HasSubstr("--free: found \"q\", allowed"));
+  EXPECT_THAT(error([](DiagnoseRequest& r) { r.free = "b,"; }), HasSubstr("--free: found \"\""));
+  EXPECT_THAT(error([](DiagnoseRequest& r) { r.free = "p3"; }), HasSubstr("did you mean \"p_3\"?"));
+  EXPECT_THAT(error([&](DiagnoseRequest& r) { r.runs = {Path("none.csv")}; }), HasSubstr("none.csv: "));
+  EXPECT_THAT(error([&](DiagnoseRequest& r) { r.model = Path("a.toml"); }), HasSubstr("a.toml"));
+  EXPECT_THAT(error([&](DiagnoseRequest& r) { r.held_out = {Path("./a.csv")}; }),
+              HasSubstr("which is given as RUN already"));
+  EXPECT_THAT(error([&](DiagnoseRequest& r) { r.folder = Path("a.csv"); }),
+              HasSubstr("which is no folder that can be written"));
+  EXPECT_THAT(error([&](DiagnoseRequest& r) { r.effects = Path("none"); }), HasSubstr("none: "));
+
+  const auto effects = [&](const std::string& text) {
+    Write("effects.toml", text);
+    return error([&](DiagnoseRequest& r) { r.effects = Path("effects.toml"); });
+  };
+  EXPECT_THAT(effects("effects = [\"pump.stribek\"]\n"),
+              HasSubstr("effects: found the unknown effect \"pump.stribek\""));
+  EXPECT_THAT(effects("effects = [\"pump.stribek\"]\n"), HasSubstr("did you mean \"pump.stribeck\"?"));
+  EXPECT_THAT(effects("effects = []\n"), HasSubstr("effects: found none, allowed a list"));
+  EXPECT_THAT(effects("effects = [3]\n"), HasSubstr("effects: found 3"));
+  EXPECT_THAT(effects("effects = \"pump.stribeck\"\n"), HasSubstr("effects: found \"pump.stribeck\""));
+  EXPECT_THAT(effects("effect = []\n"), HasSubstr("effect"));
+  EXPECT_THAT(effects(""), HasSubstr("effects: found nothing"));
+}
+
+// Tests that a model that cannot follow the runs is bad input, that says which model.
+TEST_F(HydroDiagnoseTest, ModelThatCannotFollow) {
+  const Diagnoser diagnoser = [](const ModelDescription&, std::vector<MeasuredRun>, std::vector<MeasuredRun>,
+                                 const DiagnoseOptions&, const TellProgress&) -> Diagnosis {
+    throw ModelError("arm angle 1.5708 rad leaves V_1 = -2.63 in^3");
+  };
+  try {
+    Run(diagnoser);
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("model.toml: found a model that cannot follow the runs: arm angle"));
+  }
+  EXPECT_FALSE(fs::exists(Path("out")));
+}
+
+// Tests that the summary is about ten lines, and says in SI what it says in the paper's units.
+TEST(TerminalSummary, TenLines) {
+  const std::string text = TerminalSummary(testing::ExampleDiagnosis(), "out", false);
+  const auto lines = std::count(text.begin(), text.end(), '\n');
+  EXPECT_EQ(lines, 10);
+  EXPECT_THAT(text, HasSubstr("23.9 before, 19.5 refitted only, 1.06 after"));
+  EXPECT_THAT(text, HasSubstr("p1 44 -> 1.6 psi (noise 1.5)"));
+  EXPECT_THAT(text, HasSubstr("static_excess 0.52 [0.47, 0.57]"));
+  EXPECT_THAT(text, HasSubstr("delay 0.0021 [0.0019, 0.0023] s, signal = p1; tied with fluid.warming"));
+  EXPECT_THAT(text, HasSubstr("b 0.0203 [0.0199, 0.0207] in-lbf-s, was 0.01455"));
+  const std::string si = TerminalSummary(testing::ExampleDiagnosis(), "out", true);
+  EXPECT_THAT(si, HasSubstr("p1 303.4 -> 11.03 kPa (noise 10.34)"));
+  EXPECT_THAT(si, HasSubstr("b 0.002294 [0.002248, 0.002339] N m s, was 0.001644"));
+  EXPECT_LE(std::count_if(text.begin(), text.end(), [](char c) { return c == '\n'; }), 10);
+}
+
+// Tests that a summary of nothing found leaves out what there is not.
+TEST(TerminalSummary, NothingMissing) {
+  const std::string text = TerminalSummary(testing::EmptyDiagnosis(), "out", false);
+  EXPECT_THAT(text, HasSubstr("nothing_missing: The model as given"));
+  EXPECT_THAT(text, Not(HasSubstr("effects:")));
+  EXPECT_THAT(text, Not(HasSubstr("next.toml")));
+}
+
+// Tests that a bar shows stage and time left, never goes back and is wiped away, and that elsewhere each
+// stage is a line.
+TEST(ProgressBar, BarAndLines) {
+  const auto told = [](bool terminal) {
+    std::FILE* file = std::tmpfile();
+    {
+      ProgressBar bar(file, terminal);
+      bar.Tell({"reading", 0}, 0.1);
+      bar.Tell({"trying each effect", 0.25}, 10);
+      bar.Tell({"trying each effect", 0.2}, 11);
+    }
+    std::string text(static_cast<size_t>(std::ftell(file)), '\0');
+    std::rewind(file);
+    EXPECT_EQ(std::fread(text.data(), 1, text.size(), file), text.size());
+    std::fclose(file);
+    return text;
+  };
+  const std::string bar = told(true);
+  EXPECT_THAT(bar, HasSubstr("[#######.......................] 25 % trying each effect, 30 s left"));
+  EXPECT_THAT(bar, HasSubstr("25 % trying each effect, 33 s left"));
+  EXPECT_TRUE(bar.ends_with("\r\033[K"));
+  EXPECT_EQ(told(false), "reading\ntrying each effect\n");
+}
+
+}  // namespace
+}  // namespace hydro

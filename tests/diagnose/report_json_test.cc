@@ -1,0 +1,97 @@
+#include "diagnose/report_json.h"
+
+#include <gmock/gmock.h>
+
+#include <nlohmann/json.hpp>
+
+#include "tests/diagnose/example_diagnosis.h"
+
+namespace hydro {
+namespace {
+
+using ::testing::IsSupersetOf;
+using Json = nlohmann::json;
+
+std::vector<std::string> Keys(const Json& object) {
+  std::vector<std::string> keys;
+  for (const auto& item : object.items()) keys.push_back(item.key());
+  return keys;
+}
+
+// Tests that every key which programs rely on is there, by name and with the value it stands for.
+TEST(ReportJson, Keys) {
+  const Json report = Json::parse(ReportJson(testing::ExampleDiagnosis(), "next.toml", 12.5));
+  EXPECT_THAT(Keys(report), IsSupersetOf({"verdict", "location", "effects", "parameters", "gap",
+                                          "next_experiment", "candidates", "elapsed_s"}));
+  EXPECT_EQ(report["verdict"], "tied");
+  EXPECT_EQ(report["elapsed_s"], 12.5);
+
+  const Json place = report["location"][0];
+  EXPECT_EQ(place["balance"], "pump_torque");
+  EXPECT_EQ(place["share"], 0.93);
+  EXPECT_EQ(place["where"], "|motor_speed| < 5 rad/s, at reversals");
+  EXPECT_EQ(place["windows"][0], Json({{"run", "square <wave>"}, {"from_s", 1.4}, {"to_s", 1.75}}));
+
+  const Json effect = report["effects"][0];
+  EXPECT_THAT(Keys(effect), IsSupersetOf({"id", "says", "equation", "parameters", "tied_with"}));
+  EXPECT_EQ(effect["parameters"]["static_excess"],
+            Json({{"value", 0.52}, {"ci95", {0.47, 0.57}}, {"unit", "1"}}));
+  EXPECT_EQ(effect["tied_with"], Json::array());
+  EXPECT_EQ(report["effects"][1]["tied_with"], Json({"sensor.skew"}));
+
+  EXPECT_EQ(report["parameters"][0], Json({{"name", "b"},
+                                           {"model", 0.01455},
+                                           {"fitted", 0.0203},
+                                           {"ci95", {0.0199, 0.0207}},
+                                           {"unit", "in-lbf-s"},
+                                           {"implausible", false}}));
+  EXPECT_EQ(report["parameters"][1]["implausible"], true);
+
+  const Json gap = report["gap"];
+  EXPECT_EQ(gap["signals"]["p1"]["unit"], "psi");
+  EXPECT_EQ(gap["signals"]["p1"]["noise"], 1.5);
+  EXPECT_EQ(gap["signals"]["p1"]["fit"]["before"], 41.0);
+  EXPECT_EQ(gap["signals"]["p1"]["held_out"]["after"], 1.6);
+  EXPECT_EQ(gap["fit"], Json({{"before", 22.1}, {"refit_only", 18.0}, {"after", 1.04}}));
+  EXPECT_EQ(gap["held_out"], Json({{"before", 23.9}, {"refit_only", 19.5}, {"after", 1.06}}));
+
+  EXPECT_EQ(report["next_experiment"]["config"], "next.toml");
+  EXPECT_THAT(Keys(report["next_experiment"]), IsSupersetOf({"why", "config"}));
+  const Json candidate = report["candidates"][1];
+  EXPECT_EQ(candidate["id"], "pump.friction_asymmetry");
+  EXPECT_EQ(candidate["held_out"], 15.1);
+  EXPECT_EQ(candidate["p_value"], 0.002);
+  EXPECT_EQ(candidate["rejected_because"], "the held-out gap stays 13 times as large");
+}
+
+// Tests that what is not a number is null, and that there is no next experiment where none is needed.
+TEST(ReportJson, Nothing) {
+  const Json example = Json::parse(ReportJson(testing::ExampleDiagnosis(), "next.toml", 1));
+  EXPECT_TRUE(example["candidates"][2]["held_out"].is_null());
+  EXPECT_TRUE(example["parameters"][2]["ci95"][0].is_null());
+  const Json empty = Json::parse(ReportJson(testing::EmptyDiagnosis(), "", 1));
+  EXPECT_EQ(empty["verdict"], "nothing_missing");
+  EXPECT_EQ(empty["location"], Json::array());
+  EXPECT_EQ(empty["effects"], Json::array());
+  EXPECT_EQ(empty["gap"]["signals"], Json::object());
+  EXPECT_TRUE(empty["next_experiment"].is_null());
+}
+
+// Tests that a name that is no UTF-8 does not stop the report.
+TEST(ReportJson, ForeignBytes) {
+  Diagnosis diagnosis = testing::EmptyDiagnosis();
+  diagnosis.runs = {"caf\xe9"};
+  EXPECT_NO_THROW(Json::parse(ReportJson(diagnosis, "", 1)));
+}
+
+// Tests the names of verdicts.
+TEST(ReportJson, Verdicts) {
+  EXPECT_EQ(VerdictName(Verdict::kNamed), "named");
+  EXPECT_EQ(VerdictName(Verdict::kTied), "tied");
+  EXPECT_EQ(VerdictName(Verdict::kParameters), "parameters");
+  EXPECT_EQ(VerdictName(Verdict::kUnexplained), "unexplained");
+  EXPECT_EQ(VerdictName(Verdict::kNothingMissing), "nothing_missing");
+}
+
+}  // namespace
+}  // namespace hydro
