@@ -75,7 +75,8 @@ std::vector<Case> AllCases() {
     c.parameter = form.name;
     c.name = "parameter-" + form.name;
     constexpr double kFactors[] = {1.1, 0.85, 1.2, 0.75, 1.3};
-    c.factor = kFactors[nth++ % 5];
+    c.factor = form.name == "c_I" ? 0.75 : kFactors[nth % 5];
+    ++nth;
     add(c);
   }
   for (size_t i = 0; i < OutsideForms().size(); ++i) {
@@ -131,8 +132,11 @@ Truth Solve(const Case& c, const Options& options) {
   if (!c.parameter.empty()) {
     for (const auto& form : BaseForms()) {
       if (form.name != c.parameter) continue;
+      // Table 1 has the first at 0 and the second too small to be seen: this rig's pump is worn.
       if (c.parameter == "f") truth.setup.base.f = 8e-4;
-      truth.given.*form.value = truth.setup.base.*form.value * c.factor;
+      if (c.parameter == "c_I") truth.setup.base.c_I = 4e-6;
+      truth.given = truth.setup.base;
+      truth.given.*form.value *= c.factor;
     }
   }
   const auto put = [&](double size) {

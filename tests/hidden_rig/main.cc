@@ -44,7 +44,13 @@ int Main(int argc, char** argv) {
     given[option] = argv[++i];
   }
   const auto number = [&](const char* option, double otherwise) {
-    return given.contains(option) ? std::stod(given[option]) : otherwise;
+    if (!given.contains(option)) return otherwise;
+    char* end = nullptr;
+    const double value = std::strtod(given[option].c_str(), &end);
+    if (given[option].empty() || *end != '\0' || !(value > 0)) {
+      throw std::invalid_argument(std::string(option) + " " + given[option] + ": a number above 0 is needed");
+    }
+    return value;
   };
   const auto cases = hidden_rig::AllCases();
   if (given.contains("--list")) {
@@ -59,7 +65,7 @@ int Main(int argc, char** argv) {
   for (size_t i = 0; i < cases.size(); ++i) {
     if (given["--case"] != cases[i].name && given["--case"] != std::to_string(i + 1)) continue;
     hidden_rig::Case c = cases[i];
-    if (given.contains("--seed")) c.seed = std::stoull(given["--seed"]);
+    if (given.contains("--seed")) c.seed = static_cast<uint64_t>(number("--seed", 1));
     hidden_rig::Options options;
     options.rate = number("--rate", options.rate);
     options.seconds = number("--seconds", options.seconds);

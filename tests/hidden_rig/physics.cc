@@ -17,7 +17,7 @@ constexpr double kPolytropic = 1.4;
 constexpr double kPumpBristle = 800000;  // in-lbf/rad
 constexpr double kPumpBristleDamping = 217;
 constexpr double kPumpBristleSpeed = 0.05;  // rad/s, above which the bristles no longer damp
-constexpr double kSealGive = 2e-5;          // rad
+constexpr double kSealGive = 1e-6;          // rad; the fluid is so stiff that 2e-5 would be 11 psi
 constexpr double kSealBristleSpeed = 2e-4;
 
 constexpr double kTransducer = 8e-6;  // s, each of its two poles
@@ -94,7 +94,7 @@ double Physics::Volume(const State& x, int side) const {
 
 double Physics::BulkModulus(double t, double p) const {
   double beta = base_.beta + fx_.stiffening * p;
-  if (trivia_) beta *= 1 + 0.0005 * std::sin(2.1 * t + 0.4);
+  if (trivia_) beta *= 1 + 0.0002 * std::sin(2.1 * t + 0.4);
   if (fx_.air_fraction > 0) {
     const double absolute = std::max(p, 0.0) + kAtmosphere;
     const double air =
@@ -189,10 +189,10 @@ void Physics::Rates(double t, const State& x, State& rate) const {
   if (out_.torque_saturation > 0)
     torque *= 1 - out_.torque_saturation * torque * torque / (base_.T_pmax * base_.T_pmax);
   rate[kFade] = out_.torque_fade * std::abs(torque) / base_.T_pmax;
-  if (trivia_) torque *= 1 + 0.003 * std::sin(12 * x[kTheta] + 1);
+  if (trivia_) torque *= 1 + 0.001 * std::sin(12 * x[kTheta] + 1);
   if (fx_.cogging > 0) {
     const double turn = fx_.cogging_periods * x[kTheta] + fx_.cogging_phase;
-    torque -= fx_.cogging * (std::sin(turn) + 0.03 * std::sin(2 * turn));
+    torque -= fx_.cogging * (std::sin(turn) + 0.01 * std::sin(2 * turn));
   }
   if (out_.daily_torque > 0) torque -= out_.daily_torque * std::sin(2 * kPi * (t + day_) / 7.3);
 
@@ -243,8 +243,8 @@ void Physics::Rates(double t, const State& x, State& rate) const {
   }
   if (fx_.check_conductance > 0) {
     const double opens = p3 - fx_.check_cracking;
-    const double in1 = fx_.check_conductance * Softplus(opens - x[kSide1], 0.3);
-    const double in2 = fx_.check_conductance * Softplus(opens - x[kSide2], 0.3);
+    const double in1 = fx_.check_conductance * Softplus(opens - x[kSide1], 0.1);
+    const double in2 = fx_.check_conductance * Softplus(opens - x[kSide2], 0.1);
     q1 -= in1;
     q2 -= in2;
     rate[kReturned] -= in1 + in2;
