@@ -17,7 +17,7 @@ constexpr double kPolytropic = 1.4;
 constexpr double kPumpBristle = 800000;  // in-lbf/rad
 constexpr double kPumpBristleDamping = 217;
 constexpr double kPumpBristleSpeed = 0.05;  // rad/s, above which the bristles no longer damp
-constexpr double kSealGive = 1e-6;          // rad; the fluid is so stiff that 2e-5 would be 11 psi
+constexpr double kSealGive = 1e-7;          // rad; the fluid is so stiff that 2e-5 would be 11 psi
 constexpr double kSealBristleSpeed = 2e-4;
 
 constexpr double kTransducer = 8e-6;  // s, each of its two poles
