@@ -1,0 +1,198 @@
+#include "diagnose/locate.h"
+
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "diagnose/disturbance_smoother.h"
+#include "tests/diagnose/noisy_rig.h"
+#include "tests/table1.h"
+
+namespace hydro {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using testing::NoisyRig;
+
+ModelDescription Given() {
+  ModelDescription model;
+  model.parameters = testing::Table1();
+  model.parameters.mgl = 150;
+  return model;
+}
+
+ModelDescription With(const std::string& id, const std::map<std::string, double>& parameters) {
+  ModelDescription model = Given();
+  model.effects.push_back({id, parameters, {}});
+  return model;
+}
+
+ModelDescription Changed(double Parameters::*member, double factor) {
+  ModelDescription model = Given();
+  model.parameters.*member *= factor;
+  return model;
+}
+
+Localisation LocateIn(const std::vector<RunData>& runs, const ModelDescription& given = Given()) {
+  std::vector<const RunData*> all;
+  for (const RunData& run : runs) all.push_back(&run);
+  return Locate(given, all);
+}
+
+Localisation LocateOn(const ModelDescription& truth) {
+  NoisyRig rig;
+  rig.model = truth;
+  return LocateIn(rig.RecordAll());
+}
+
+struct Case {
+  std::string name;
+  ModelDescription truth;
+  std::string balance;
+  std::string where;    // part of it
+  std::string against;  // of the first table; "": none
+  double least_share = 0.85;
+};
+
+class HiddenTerm : public ::testing::TestWithParam<Case> {};
+
+// Tests that what is missing from one balance shows in that balance, and what it depends on.
+TEST_P(HiddenTerm, ShowsInItsOwnBalance) {
+  const Localisation found = LocateOn(GetParam().truth);
+  ASSERT_FALSE(found.location.empty());
+  const Location& first = found.location.front();
+  EXPECT_EQ(first.balance, GetParam().balance);
+  EXPECT_GE(first.share, GetParam().least_share);
+  EXPECT_THAT(first.where, HasSubstr(GetParam().where));
+  EXPECT_FALSE(first.windows.empty());
+  double all = 0;
+  for (const Location& location : found.location) all += location.share;
+  EXPECT_LE(all, 1 + 1e-9);
+  for (const Window& window : first.windows) EXPECT_LT(window.from, window.to) << window.run;
+  if (GetParam().against.empty()) return;
+  ASSERT_FALSE(found.missing.empty());
+  const MissingTerm& table = found.missing.front();
+  EXPECT_EQ(table.against, GetParam().against);
+  EXPECT_GE(table.at.size(), 6u);
+  EXPECT_EQ(table.at.size(), table.mean.size());
+  EXPECT_EQ(table.at.size(), table.error.size());
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Locate, HiddenTerm,
+    ::testing::Values(
+        Case{"Stribeck", With("pump.stribeck", {{"static_excess", 0.3}, {"speed", 3}}), "pump_torque",
+             "|motor_speed| < ", "motor_speed"},
+        Case{"PressureFriction", With("pump.pressure_friction", {{"f", 2e-4}}), "pump_torque", "p1 + p2",
+             "(p1 + p2) sgn(motor_speed)"},
+        Case{"QuadraticDrag", With("pump.quadratic_drag", {{"k", 2e-5}}), "pump_torque", "|motor_speed| > ",
+             "motor_speed"},
+        Case{"SealFriction", With("actuator.seal_friction", {{"coulomb", 20}, {"viscous", 5}}), "arm_torque",
+             "sign of arm_speed", "arm_speed"},
+        Case{"Lag", With("amp.lag", {{"tau", 0.004}}), "command", "change of voltage", "change of voltage"},
+        Case{"TorquePerVolt", Changed(&Parameters::k_1, 1.05), "command", "voltage", "voltage"},
+        Case{"TorqueLimit", Changed(&Parameters::T_pmax, 0.7), "command", "voltage", ""},
+        Case{"ExternalLeakage", Changed(&Parameters::c_E, 3), "flow_2", "p2 > ", "p2", 0.5},
+        Case{"InternalLeakage", Changed(&Parameters::c_I, 5), "flow_2", "|p2 - p1| > ", "p2 - p1", 0.4},
+        Case{"Gravity", Changed(&Parameters::mgl, 1.2), "arm_torque", "", ""},
+        Case{"PressureOffset", With("sensor.pressure_offset", {{"p1", 12}, {"p2", -5}}), "sensor",
+             "p1 reads +12", ""}),
+    [](const auto& test) { return test.param.name; });
+
+// Tests that nothing is located where nothing is missing, whatever the noise.
+TEST(Locate, NothingMissing) {
+  for (const double noise : {0.5, 1.0, 3.0}) {
+    NoisyRig rig;
+    rig.model = Given();
+    rig.pressure_noise *= noise;
+    rig.speed_noise *= noise;
+    rig.seed = 7;
+    const Localisation found = LocateIn(rig.RecordAll());
+    EXPECT_THAT(found.location, IsEmpty()) << noise << " " << found.location.front().balance;
+    EXPECT_THAT(found.missing, IsEmpty());
+  }
+}
+
+// Tests that the table of the missing term is the term that was hidden: friction that grows with pressure.
+TEST(Locate, TableIsTheHiddenTerm) {
+  const Localisation found = LocateOn(With("pump.pressure_friction", {{"f", 2e-4}}));
+  ASSERT_FALSE(found.missing.empty());
+  const MissingTerm& table = found.missing.front();
+  EXPECT_EQ(table.balance, "pump_torque");
+  EXPECT_EQ(table.unit, "in-lbf");
+  EXPECT_EQ(table.against_unit, "psi");
+  for (size_t i = 0; i < table.at.size(); ++i) {
+    EXPECT_NEAR(table.mean[i], -2e-4 * table.at[i],
+                5 * table.error[i] + 0.02 * std::abs(table.mean[i]) + 0.01)
+        << table.at[i];
+  }
+}
+
+// Tests that balances that the run does not measure are left out, and that a speed that only the encoder
+// tells still locates friction.
+TEST(Locate, WhatIsNotMeasured) {
+  NoisyRig rig;
+  rig.model = Changed(&Parameters::T_s, 0.85);
+  rig.speed_measured = false;
+  std::vector<RunData> runs = rig.RecordAll();
+  for (RunData& run : runs) {
+    std::erase_if(run.signals, [](const SignalData& signal) { return signal.channel == Channel::kP1; });
+  }
+  const SmoothedRun smoothed = SmoothDisturbances(Given(), runs[0], {});
+  EXPECT_TRUE(smoothed.measured[static_cast<size_t>(Balance::kPumpTorque)]);
+  EXPECT_FALSE(smoothed.measured[static_cast<size_t>(Balance::kFlow1)]);
+  EXPECT_FALSE(smoothed.measured[static_cast<size_t>(Balance::kArmTorque)]);
+  const Localisation found = LocateIn(runs);
+  ASSERT_FALSE(found.location.empty());
+  EXPECT_EQ(found.location.front().balance, "pump_torque");
+  for (const Location& location : found.location) EXPECT_NE(location.balance, "flow_1");
+}
+
+// Tests recordings slower than the pressures' dynamics, with gaps: all is finite, and a plain error shows
+// where it is.
+TEST(Locate, SlowRecordings) {
+  NoisyRig rig;
+  rig.model = Changed(&Parameters::T_s, 0.5);
+  std::vector<RunData> runs = rig.RecordAll();
+  std::vector<RunData> slow;
+  for (RunData& run : runs) {
+    MeasuredRun measured = run.measured;
+    const auto thin = [](std::vector<double>* values) {
+      for (size_t k = 0; 20 * k < values->size(); ++k) (*values)[k] = (*values)[20 * k];
+      values->resize((values->size() + 19) / 20);
+    };
+    for (std::vector<double>* values :
+         {&measured.time, &measured.voltage.values, &measured.motor_speed.values,
+          &measured.motor_angle.values, &measured.p1.values, &measured.p2.values,
+          &measured.arm_angle.values}) {
+      if (!values->empty()) thin(values);
+    }
+    for (size_t k = 40; k < 50; ++k) measured.p2.values[k] = std::nan("");
+    slow.push_back(PrepareRun(std::move(measured), Given().parameters));
+    const SmoothedRun smoothed = SmoothDisturbances(Given(), slow.back(), {});
+    for (size_t b = 0; b < kBalances; ++b) {
+      for (const double value : smoothed.disturbance[b].value) ASSERT_TRUE(std::isfinite(value)) << b;
+    }
+  }
+  const Localisation found = LocateIn(slow);
+  ASSERT_FALSE(found.location.empty());
+  const auto pump = std::find_if(found.location.begin(), found.location.end(),
+                                 [](const Location& location) { return location.balance == "pump_torque"; });
+  EXPECT_NE(pump, found.location.end());
+}
+
+// Tests that the same runs give the same localisation to the bit.
+TEST(Locate, Repeats) {
+  const Localisation a = LocateOn(With("pump.quadratic_drag", {{"k", 2e-5}}));
+  const Localisation b = LocateOn(With("pump.quadratic_drag", {{"k", 2e-5}}));
+  ASSERT_EQ(a.location.size(), b.location.size());
+  for (size_t i = 0; i < a.location.size(); ++i) EXPECT_EQ(a.location[i].share, b.location[i].share);
+  ASSERT_EQ(a.missing.size(), b.missing.size());
+  for (size_t i = 0; i < a.missing.size(); ++i) EXPECT_EQ(a.missing[i].mean, b.missing[i].mean);
+}
+
+}  // namespace
+}  // namespace hydro
