@@ -11,10 +11,12 @@ class Actuator::Impl {
       : equations(description, options) {
     simulation =
         MakeSimulation(&equations, options.integrator, options.initial_pressure, options.relative_tolerance);
+    history = simulation->history();
   }
 
   Equations equations;
   std::unique_ptr<Simulation> simulation;
+  const StateHistory<double>* history = nullptr;
 };
 
 Actuator::Actuator(const ModelDescription& description, const ActuatorOptions& options)
@@ -28,7 +30,7 @@ void Actuator::Advance(double voltage, double until) { impl_->simulation->Advanc
 double Actuator::time() const { return impl_->simulation->now().time; }
 
 Measurement Actuator::Measure() const {
-  return impl_->equations.Measure(time(), impl_->simulation->now().state, impl_->simulation->history());
+  return impl_->equations.Measure(time(), impl_->simulation->now().state, impl_->history);
 }
 
 }  // namespace hydro

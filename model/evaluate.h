@@ -125,15 +125,18 @@ template <Form kForm, class T>
   }
   const bool open_1 = mode.valve_1 != 0;
   const bool open_2 = kGeneralForm && m.bypass ? open_1 : mode.valve_2 != 0;
-  x.p_3_rate = T(0.0);
   if constexpr (kGeneralForm) {
+    x.p_3_rate = T(0.0);
     for (const auto& effect : m.effects) {
       x.own = n.own.data() + effect->first_parameter();
       effect->AddBalances(x, rate);
     }
+    rate[kP1] = open_1 ? x.p_3_rate : x.free_rate_1;
+    rate[kP2] = open_2 ? x.p_3_rate : x.free_rate_2;
+  } else {
+    rate[kP1] = open_1 ? T(0.0) : x.free_rate_1;
+    rate[kP2] = open_2 ? T(0.0) : x.free_rate_2;
   }
-  rate[kP1] = open_1 ? x.p_3_rate : x.free_rate_1;
-  rate[kP2] = open_2 ? x.p_3_rate : x.free_rate_2;
   if (arm_moves_freely) {
     rate[kArmAngle] = x.arm_speed;
     rate[kArmSpeed] = x.arm_torque * n.inverse_J_a;  // (15)
@@ -146,9 +149,12 @@ template <Form kForm, class T>
   using std::abs;
   margin[kPumpSwitch] =
       mode.pump == 0 ? T(x.breakaway - abs(x.net_torque)) : T(static_cast<double>(mode.pump) * x.motor_speed);
-  margin[kValve1Switch] = mode.valve_1 ? T(x.p_3_rate - x.free_rate_1) : T(x.p1 - x.p_3);
-  margin[kValve2Switch] = mode.valve_2 ? T(x.p_3_rate - x.free_rate_2) : T(x.p2 - x.p_3);
-  if constexpr (kForm == Form::kGeneral) {
+  if constexpr (kForm != Form::kGeneral) {
+    margin[kValve1Switch] = mode.valve_1 ? T(-x.free_rate_1) : T(x.p1 - x.p_3);
+    margin[kValve2Switch] = mode.valve_2 ? T(-x.free_rate_2) : T(x.p2 - x.p_3);
+  } else {
+    margin[kValve1Switch] = mode.valve_1 ? T(x.p_3_rate - x.free_rate_1) : T(x.p1 - x.p_3);
+    margin[kValve2Switch] = mode.valve_2 ? T(x.p_3_rate - x.free_rate_2) : T(x.p2 - x.p_3);
     if (m.bypass || !m.ideal_valves) margin[kValve2Switch] = T(1.0);  // bypass: valve_1 stands for both
     if (!m.ideal_valves) margin[kValve1Switch] = T(1.0);
     for (const auto& effect : m.effects) {
@@ -212,7 +218,8 @@ inline double TimeOf(const Jet& time) { return time.a; }
 
 // What the sensors make of this state, none of them late.
 template <class T>
-MeasurementOf<T> ReadPromptly(const EquationData& m, const NumbersOf<T>& n, const T& time, const T* state) {
+[[gnu::always_inline]] inline MeasurementOf<T> ReadPromptly(const EquationData& m, const NumbersOf<T>& n,
+                                                            const T& time, const T* state) {
   MeasurementOf<T> measured;
   measured.motor_angle = state[kMotorAngle];
   measured.motor_speed = state[kMotorSpeed];
@@ -241,20 +248,27 @@ MeasurementOf<T> ReadPromptly(const EquationData& m, const NumbersOf<T>& n, cons
   return measured;
 }
 
-// As Equations::Measure.
+// The same with late channels put back to what they read then.
 template <class T>
-MeasurementOf<T> ReadSensors(const EquationData& m, const NumbersOf<T>& n, double time, const T* state,
-                             const StateHistory<T>* history = nullptr) {
+[[gnu::noinline]] MeasurementOf<T> ReadLate(const EquationData& m, const NumbersOf<T>& n, double time,
+                                            const T* state, const StateHistory<T>& history) {
   MeasurementOf<T> measured = ReadPromptly(m, n, T(time), state);
-  if (history == nullptr || history->empty()) return measured;
   for (const auto& effect : m.effects) {
     if (!effect->reads_late()) continue;
     T then = time - effect->Lateness(n.own.data() + effect->first_parameter());
     T past[kMaxStates];
-    history->At(&then, past);
+    history.At(&then, past);
     effect->Replace(ReadPromptly(m, n, then, past), &measured);
   }
   return measured;
+}
+
+// As Equations::Measure.
+template <class T>
+MeasurementOf<T> ReadSensors(const EquationData& m, const NumbersOf<T>& n, double time, const T* state,
+                             const StateHistory<T>* history = nullptr) {
+  if (history == nullptr || history->empty()) return ReadPromptly(m, n, T(time), state);
+  return ReadLate(m, n, time, state, *history);
 }
 
 // The numbers that follow from n.parameters and n.own.

@@ -13,15 +13,16 @@ namespace hydro {
 // What a parameter's size is measured by when a fit starts from it: quantities of a model and of runs, so
 // that nothing depends on the units.
 enum class Scale {
-  kOne,       // the number itself
-  kTorque,    // T_pmax
-  kSpeed,     // the largest motor speed in the runs
-  kPressure,  // the largest pressure in the runs
-  kCharge,    // p_3
-  kSample,    // the median time between samples
-  kRate,      // one over kSample
-  kFlow,      // D kSpeed over kPressure: a conductance that passes all of the pump's flow
-  kArmRate,   // J_a over kSample^2: what resonates with the arm at kRate, in rad
+  kOne,           // the number itself
+  kTorque,        // T_pmax
+  kSpeed,         // the largest motor speed in the runs
+  kPressure,      // the largest pressure in the runs
+  kCharge,        // p_3
+  kSample,        // the median time between samples
+  kRate,          // one over kSample
+  kFlow,          // D kSpeed over kPressure: a conductance that passes all of the pump's flow
+  kArmStiffness,  // J_a over kSample^2: resonates with the arm at kRate, in rad/s
+  kArmDamping,    // J_a over kSample
 };
 
 struct ParameterInfo {

@@ -52,7 +52,7 @@ void Pass(const ModelDescription& model, const Stimulus& stimulus, const StartSt
   ResponseMachine<T> machine(&equations, numbers, options.relative_tolerance);
   machine.Start(stimulus.time.front(), state);
   const double duration = stimulus.time.back() - stimulus.time.front();
-  machine.AllowSteps(static_cast<int64_t>(30 * stimulus.time.size() + 20000 * duration) + 1000);
+  machine.AllowSteps(static_cast<int64_t>(12 * stimulus.time.size() + 12000 * duration) + 1000);
   const bool values = first == 0;
   size_t row = 0;
   for (size_t k = 0; k < stimulus.time.size(); ++k) {

@@ -25,7 +25,11 @@ template <class T>
 class ResponseMachine {
  public:
   ResponseMachine(Equations* equations, const NumbersOf<T>& numbers, double relative_tolerance)
-      : equations_(*equations), data_(equations->data()), numbers_(numbers), n_(equations->states()) {
+      : equations_(*equations),
+        data_(equations->data()),
+        numbers_(numbers),
+        n_(equations->states()),
+        history_(n_, data_.reach) {
     for (int i = 0; i < n_; ++i) {
       relative_[i] = relative_tolerance;
       floor_[i] = relative_tolerance * equations->scales()[i];
@@ -54,6 +58,8 @@ class ResponseMachine {
     const double speed = ValueOf(state_[kMotorSpeed]);
     mode_.pump = static_cast<int8_t>(speed > 0 ? 1 : (speed < 0 ? -1 : 0));
     known_stop_ = equations_.NextStop(time_);
+    Evaluate(state_, rate_, margin_);
+    Remember();
   }
 
   // So many steps are taken in all, then ModelError: a model far too stiff must not take hours.
@@ -69,6 +75,7 @@ class ResponseMachine {
       known_stop_ = equations_.NextStop(time_);
       Evaluate(state_, rate_, margin_);
       Settle();
+      Remember();
     }
     int events = 0;
     while (time_ < until) {
@@ -88,7 +95,9 @@ class ResponseMachine {
   }
 
   double time() const { return time_; }
-  MeasurementOf<T> Measure() const { return ReadSensors<T>(data_, numbers_, time_, state_); }
+  MeasurementOf<T> Measure() const {
+    return ReadSensors<T>(data_, numbers_, time_, state_, data_.reads_late ? &history_ : nullptr);
+  }
 
  private:
   static constexpr double kMoment = 1e-6;       // s; a switch on its boundary shows to which side it goes
@@ -151,12 +160,17 @@ class ResponseMachine {
     std::swap_ranges(rate_, rate_ + n_, next_rate_);
     std::swap_ranges(margin_, margin_ + data_.switches, next_margin_);
     time_ = next_time_;
+    Remember();
     if (data_.shaft == Shaft::kFree) {
       const double angle = ValueOf(state_[kArmAngle]);
       if (!(std::abs(angle) * data_.parameters.c < data_.parameters.V_ms - data_.fixed_volume)) {
         equations_.CheckVolumes(angle);
       }
     }
+  }
+
+  void Remember() {
+    if (data_.reads_late) history_.Add(time_, state_, rate_);
   }
 
   bool OnBoundary() const {
@@ -243,6 +257,7 @@ class ResponseMachine {
     fresh_ = true;
     Settle();
     MoveBack(later);
+    Remember();
   }
 
   void ToKnownStop() {
@@ -261,6 +276,7 @@ class ResponseMachine {
     Evaluate(state_, rate_, margin_);
     Settle();
     MoveBack(later);
+    Remember();
   }
 
   // The state at the event's true time, moved to time_ in the mode that follows. The value stays.
@@ -315,6 +331,7 @@ class ResponseMachine {
   double known_stop_ = kNever;
   int64_t steps_left_ = std::numeric_limits<int64_t>::max();
   double good_step_ = kLongest;
+  StateHistory<T> history_;
   double relative_[kMaxStates] = {};
   double floor_[kMaxStates] = {};
   Terms<T> terms_;

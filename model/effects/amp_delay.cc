@@ -66,7 +66,16 @@ CatalogueEntry AmpDelay() {
            "the motor torque follows the voltage with a delay",
            "T(t) = k_1 v(t - delay)",
            "amp.lag, sensor.skew",
-           {{"delay", "s", 0, kUnbounded, true, "from a change of the voltage to that of the torque"}}},
+           {{"delay",
+             "s",
+             0,
+             kUnbounded,
+             true,
+             "from a change of the voltage to that of the torque",
+             false,
+             {},
+             {2},
+             Scale::kSample}}},
           [](const EffectDescription& description) -> std::unique_ptr<Effect> {
             return std::make_unique<Delay>(description.parameters.at("delay"));
           }};

@@ -51,7 +51,7 @@ CatalogueEntry AmpLag() {
            "the motor torque follows the voltage with a time constant",
            "tau dT/dt + T = k_1 v",
            "amp.delay, sensor.pressure_lag",
-           {{"tau", "s", 0, kUnbounded, false, "time constant"}}},
+           {{"tau", "s", 0, kUnbounded, false, "time constant", false, {}, {2}, Scale::kSample}}},
           MakeEffect<Lag>};
 }
 

@@ -31,6 +31,11 @@ CatalogueEntry SensorSkew();
 CatalogueEntry ValveCheck();
 CatalogueEntry ValveRelief();
 
+const std::vector<double>& PeriodsTried() {
+  static const std::vector<double> periods = {1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 16, 18, 20, 24};
+  return periods;
+}
+
 namespace {
 
 const std::vector<CatalogueEntry>& Entries() {

@@ -29,6 +29,10 @@ namespace hydro {
 // The bound of a parameter that has none.
 inline constexpr double kUnbounded = std::numeric_limits<double>::infinity();
 
+// Periods in a revolution that fits of ripples start from: those of small numbers of poles, teeth, pistons
+// and vanes.
+const std::vector<double>& PeriodsTried();
+
 class Effect {
  public:
   virtual ~Effect() = default;

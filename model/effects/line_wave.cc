@@ -86,17 +86,26 @@ class Wave : public EffectOf<Wave> {
 
 CatalogueEntry LineWave();
 CatalogueEntry LineWave() {
-  return {{"line.wave",
-           "pressure waves in the lines between pump and actuator",
-           "a line with inertia between the pump's and the actuator's volume on each side; the transducers "
-           "sit at the "
-           "actuator",
-           "sensor.pressure_lag, pump.flow_ripple",
-           {{"frequency", "Hz", 0, kUnbounded, false,
-             "resonance of the two volumes of one side through the line"},
-            {"volume_fraction", "1", 0, 0.999, false, "part of V_ms that is at the pump"},
-            {"damping", "1", 0, kUnbounded, true, "damping ratio of the resonance"}}},
-          MakeEffect<Wave>};
+  return {
+      {"line.wave",
+       "pressure waves in the lines between pump and actuator",
+       "a line with inertia between the pump's and the actuator's volume on each side; the transducers "
+       "sit at the "
+       "actuator",
+       "sensor.pressure_lag, pump.flow_ripple",
+       {{"frequency",
+         "Hz",
+         0,
+         kUnbounded,
+         false,
+         "resonance of the two volumes of one side through the line",
+         false,
+         {},
+         {0.05, 0.15, 0.3},
+         Scale::kRate},
+        {"volume_fraction", "1", 0, 0.999, false, "part of V_ms that is at the pump", false, {}, {0.1, 0.4}},
+        {"damping", "1", 0, kUnbounded, true, "damping ratio of the resonance", false, {}, {0.05}}}},
+      MakeEffect<Wave>};
 }
 
 }  // namespace hydro

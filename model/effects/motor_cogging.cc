@@ -3,6 +3,7 @@
 #include <ceres/jet.h>
 
 #include <cmath>
+#include <numbers>
 
 #include "model/effects/effect.h"
 
@@ -35,14 +36,24 @@ class Cogging : public EffectOf<Cogging> {
 
 CatalogueEntry MotorCogging();
 CatalogueEntry MotorCogging() {
-  return {{"motor.cogging",
-           "the motor's magnets pull towards fixed angles",
-           "T -= amplitude sin(periods theta + phase)",
-           "pump.flow_ripple",
-           {{"amplitude", "in-lbf", 0, kUnbounded, true, "largest cogging torque"},
-            {"periods", "1/rev", 0, kUnbounded, false, "periods in one revolution"},
-            {"phase", "rad", -kUnbounded, kUnbounded, true, "phase at theta = 0"}}},
-          MakeEffect<Cogging>};
+  return {
+      {"motor.cogging",
+       "the motor's magnets pull towards fixed angles",
+       "T -= amplitude sin(periods theta + phase)",
+       "pump.flow_ripple",
+       {{"amplitude", "in-lbf", -kUnbounded, kUnbounded, true,
+         "largest cogging torque; negative: half a period on"},
+        {"periods", "1/rev", 0, kUnbounded, false, "periods in one revolution", false, {}, PeriodsTried()},
+        {"phase",
+         "rad",
+         -kUnbounded,
+         kUnbounded,
+         true,
+         "phase at theta = 0",
+         false,
+         {},
+         {0, std::numbers::pi / 2}}}},
+      MakeEffect<Cogging>};
 }
 
 }  // namespace hydro

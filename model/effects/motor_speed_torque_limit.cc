@@ -85,7 +85,16 @@ CatalogueEntry MotorSpeedTorqueLimit() {
            "the motor's largest torque falls with speed",
            "abs(T) <= T_max (1 - abs(theta')/no_load_speed) while driving",
            "pump.quadratic_drag",
-           {{"no_load_speed", "rad/s", 0, kUnbounded, false, "speed at which no torque is left"}}},
+           {{"no_load_speed",
+             "rad/s",
+             0,
+             kUnbounded,
+             false,
+             "speed at which no torque is left",
+             false,
+             {},
+             {1.1, 1.6, 3},
+             Scale::kSpeed}}},
           MakeEffect<SpeedTorqueLimit>};
 }
 

@@ -23,13 +23,14 @@ class FlowRipple : public EffectOf<FlowRipple> {
 
 CatalogueEntry PumpFlowRipple();
 CatalogueEntry PumpFlowRipple() {
-  return {{"pump.flow_ripple",
-           "the pump's displacement varies over a revolution",
-           "D (1 + amplitude cos(periods theta)) in flow and torque",
-           "motor.cogging, line.wave",
-           {{"amplitude", "1", -1, 1, true, "largest change of D over D; negative: least D at theta = 0"},
-            {"periods", "1/rev", 0, kUnbounded, false, "periods in one revolution"}}},
-          MakeEffect<FlowRipple>};
+  return {
+      {"pump.flow_ripple",
+       "the pump's displacement varies over a revolution",
+       "D (1 + amplitude cos(periods theta)) in flow and torque",
+       "motor.cogging, line.wave",
+       {{"amplitude", "1", -1, 1, true, "largest change of D over D; negative: least D at theta = 0"},
+        {"periods", "1/rev", 0, kUnbounded, false, "periods in one revolution", false, {}, PeriodsTried()}}},
+      MakeEffect<FlowRipple>};
 }
 
 }  // namespace hydro

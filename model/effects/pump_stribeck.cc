@@ -28,13 +28,23 @@ class Stribeck : public EffectOf<Stribeck> {
 
 CatalogueEntry PumpStribeck();
 CatalogueEntry PumpStribeck() {
-  return {{"pump.stribeck",
-           "static friction above kinetic",
-           "T_s becomes T_s (1 + static_excess exp(-(abs(theta')/speed)^2)), T_s (1 + static_excess) at rest",
-           "pump.friction_asymmetry",
-           {{"static_excess", "1", 0, kUnbounded, true, "static friction over kinetic, less 1"},
-            {"speed", "rad/s", 0, kUnbounded, false, "motor speed over which the excess falls off"}}},
-          MakeEffect<Stribeck>};
+  return {
+      {"pump.stribeck",
+       "static friction above kinetic",
+       "T_s becomes T_s (1 + static_excess exp(-(abs(theta')/speed)^2)), T_s (1 + static_excess) at rest",
+       "pump.friction_asymmetry",
+       {{"static_excess", "1", 0, kUnbounded, true, "static friction over kinetic, less 1", false, {}, {0.3}},
+        {"speed",
+         "rad/s",
+         0,
+         kUnbounded,
+         false,
+         "motor speed over which the excess falls off",
+         false,
+         {},
+         {0.005, 0.03, 0.15},
+         Scale::kSpeed}}},
+      MakeEffect<Stribeck>};
 }
 
 }  // namespace hydro

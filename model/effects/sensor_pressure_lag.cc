@@ -43,7 +43,7 @@ CatalogueEntry SensorPressureLag() {
            "the pressure transducers read with a lag",
            "measured pressure follows with a time constant",
            "line.wave, amp.lag",
-           {{"tau", "s", 0, kUnbounded, false, "time constant"}}},
+           {{"tau", "s", 0, kUnbounded, false, "time constant", false, {}, {2}, Scale::kSample}}},
           MakeEffect<PressureLag>};
 }
 

@@ -38,7 +38,16 @@ CatalogueEntry SensorSkew() {
            "one channel is recorded late",
            "one channel is late by delay",
            "amp.delay",
-           {{"delay", "s", 0, kUnbounded, true, "by which the channel is late"},
+           {{"delay",
+             "s",
+             0,
+             kUnbounded,
+             true,
+             "by which the channel is late",
+             false,
+             {},
+             {2, 20},
+             Scale::kSample},
             {"signal", "name", 0, 0, true, "the channel that is late", true, SignalNames()}}},
           [](const EffectDescription& description) -> std::unique_ptr<Effect> {
             return std::make_unique<Skew>(SignalOf(description), description.parameters.at("delay"));

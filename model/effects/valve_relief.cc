@@ -51,7 +51,16 @@ CatalogueEntry ValveRelief() {
            "relief valves from each side to the accumulator",
            "flow conductance (p - set) out of a side above set",
            "parameter c_E",
-           {{"set", "psi", 0, kUnbounded, true, "pressure at which the valve opens"},
+           {{"set",
+             "psi",
+             0,
+             kUnbounded,
+             true,
+             "pressure at which the valve opens",
+             false,
+             {},
+             {0.3, 0.5, 0.7, 0.85, 0.95},
+             Scale::kPressure},
             {"conductance", "in^3/s/psi", 0, kUnbounded, true, "flow per pressure above set"}}},
           MakeEffect<Relief>};
 }
