@@ -43,6 +43,26 @@ class Rules(unittest.TestCase):
         self.assertFalse(scored(k, report("unexplained"))["right"])
         self.assertFalse(gap_score.score(k, None, "exit 2: no", 1.0)["right"])
 
+    # Tests that an effect of one channel must be seen on that channel.
+    def test_signal(self):
+        k = key("single", ["sensor.skew"])
+        k["effects"][0]["signal"] = "p2"
+        r = report("named", [("sensor.skew", [])])
+        r["effects"][0]["names"] = ["signal = p2"]
+        self.assertTrue(scored(k, r)["right"])
+        r["effects"][0]["names"] = ["signal = p1"]
+        self.assertFalse(scored(k, r)["right"])
+
+    # Tests that nulls, which stand for numbers that are none, are misses and no crash.
+    def test_nulls(self):
+        k = key("parameter", parameters=[{"name": "b", "true": 0.02, "model": 0.03}])
+        r = report("parameters", parameters=[{"name": "b", "fitted": None, "model": 0.03, "ci95": [None, None]}], after=None)
+        outcome = scored(k, r)
+        self.assertFalse(outcome["right"])
+        self.assertEqual(outcome["coverage"], [])
+        outcome.update(number=1, name="parameter-b")
+        self.assertIn("b = -", gap_score.table([outcome], gap_score.judge([outcome]), 1.0))
+
     # Tests that pairs need the exact set, in any order, and that a tie is told apart from it.
     def test_pair(self):
         k = key("pair", ["amp.lag", "valve.relief"])
