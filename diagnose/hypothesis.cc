@@ -99,8 +99,10 @@ double Sizes::Of(Scale scale) const {
       return 1 / sample;
     case Scale::kFlow:
       return flow;
-    case Scale::kArmRate:
-      return arm_rate;
+    case Scale::kArmStiffness:
+      return arm_stiffness;
+    case Scale::kArmDamping:
+      return arm_damping;
   }
   return 1;
 }
@@ -138,7 +140,8 @@ Sizes SizesOf(const ModelDescription& model, const std::vector<const RunData*>& 
                    intervals.end());
   sizes.sample = intervals[intervals.size() / 2];
   sizes.flow = p.D * sizes.speed / sizes.pressure;
-  sizes.arm_rate = p.J_a / (sizes.sample * sizes.sample);
+  sizes.arm_stiffness = p.J_a / (sizes.sample * sizes.sample);
+  sizes.arm_damping = p.J_a / sizes.sample;
   return sizes;
 }
 

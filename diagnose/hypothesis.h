@@ -50,7 +50,7 @@ struct Hypothesis {
 // Sizes of what the runs show, by which starting values are scaled.
 struct Sizes {
   double torque = 0, speed = 0, pressure = 0, charge = 0, sample = 0;
-  double flow = 0, arm_rate = 0;
+  double flow = 0, arm_stiffness = 0, arm_damping = 0;
 
   double Of(Scale scale) const;
 };

@@ -1,0 +1,189 @@
+#include "diagnose/conclusion.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+
+#include "diagnose/intervals.h"
+#include "diagnose/locate.h"
+#include "diagnose/ranking.h"
+#include "diagnose/run_curves.h"
+
+namespace hydro {
+
+namespace {
+
+// A gap is closed when what is left is within this of the noise, or is this small a part of what there was.
+constexpr double kClosed = 1.15;
+constexpr double kClosedShare = 0.01;  // of the squared gap above the noise
+// A rival is told apart when it is worse by so many standard errors, block by block.
+constexpr double kToldApart = 2.5;
+// A base parameter that has to move by more than this factor is not believed.
+constexpr double kImplausible = 2.0;
+
+std::string Format(const char* format, double value) {
+  char text[64];
+  std::snprintf(text, sizeof text, format, value);
+  return text;
+}
+
+std::string Join(const std::vector<std::string>& parts) {
+  std::string text;
+  for (size_t i = 0; i < parts.size(); ++i) {
+    text += (i == 0 ? "" : i + 1 == parts.size() ? " and " : ", ") + parts[i];
+  }
+  return text;
+}
+
+// What stands in the place of one change of `best`, and does as well.
+std::vector<Change> Rivals(const std::vector<Explanation>& tried, const Explanation& best,
+                           const Change& change) {
+  std::vector<Change> rivals;
+  for (const Explanation& other : tried) {
+    if (other.blocks.sums.empty() || other.changes().size() != best.changes().size()) continue;
+    if (other.fitted.hypothesis.Has(change)) continue;
+    const Change* instead = nullptr;
+    size_t different = 0;
+    for (const Change& one : other.changes()) {
+      if (best.fitted.hypothesis.Has(one)) continue;
+      ++different;
+      instead = &one;
+    }
+    if (different != 1) continue;
+    const double t = TValue(other.blocks, best.blocks);
+    const double loss = other.held_out_gap() - best.held_out_gap();
+    if (t > kToldApart || loss > std::max(kLeastGain, 0.1 * (best.held_out_gap() - 1))) continue;
+    if (std::find(rivals.begin(), rivals.end(), *instead) == rivals.end()) rivals.push_back(*instead);
+  }
+  return rivals;
+}
+
+FoundEffect Describe(const Change& change, const Explanation& best, const std::vector<FreeParameter>& free,
+                     const std::vector<Interval>& intervals) {
+  const EffectInfo& info = *FindEffect(change.effect);
+  FoundEffect found;
+  found.id = info.id;
+  found.says = info.says;
+  found.equation = info.equation;
+  for (const auto& [name, value] : change.names) found.names.push_back(name + " = " + value);
+  for (const ParameterInfo& parameter : info.parameters) {
+    for (size_t i = 0; i < free.size(); ++i) {
+      if (free[i].name != info.id + "." + parameter.name) continue;
+      found.parameters.push_back(
+          {parameter.name, free[i].value, intervals[i].low, intervals[i].high, parameter.unit});
+    }
+  }
+  (void)best;
+  return found;
+}
+
+ChangedParameter DescribeParameter(const FreeParameter& fitted, const Interval& interval,
+                                   const ModelDescription& given) {
+  ChangedParameter changed;
+  changed.fitted = {fitted.name, fitted.value, interval.low, interval.high, fitted.unit};
+  changed.model = given.parameters.*BaseParameters()[fitted.unknown.index].member;
+  if (changed.model != 0) {
+    const double ratio = fitted.value / changed.model;
+    if (ratio > kImplausible || ratio < 1 / kImplausible) {
+      changed.implausible = true;
+      changed.why = "moves by a factor of " + Format("%.3g", ratio);
+    }
+  }
+  return changed;
+}
+
+std::string Sentence(const Diagnosis& d) {
+  const std::string gap = " (held-out gap " + Format("%.3g", d.held_out.before) + " to " +
+                          Format("%.3g", d.held_out.after) + " noise units).";
+  std::vector<std::string> names;
+  for (const FoundEffect& effect : d.effects) {
+    std::string name = effect.says + " [" + effect.id + "]";
+    if (!effect.tied_with.empty()) name += ", or " + Join(effect.tied_with);
+    names.push_back(name);
+  }
+  std::vector<std::string> parameters;
+  for (const ChangedParameter& changed : d.parameters) {
+    parameters.push_back(changed.fitted.name + " = " + Format("%.4g", changed.fitted.value) + " instead of " +
+                         Format("%.4g", changed.model));
+  }
+  switch (d.verdict) {
+    case Verdict::kNothingMissing:
+      return "Nothing is missing: the model as given explains the data to " +
+             Format("%.3g", d.held_out.before) + " noise units.";
+    case Verdict::kParameters:
+      return "The equations suffice with other values: " + Join(parameters) + gap;
+    case Verdict::kNamed:
+      return "Missing: " + Join(names) + (parameters.empty() ? "" : "; with " + Join(parameters)) + gap;
+    case Verdict::kTied:
+      return "Missing, but these data cannot tell which: " + Join(names) +
+             (parameters.empty() ? "" : "; with " + Join(parameters)) + gap;
+    case Verdict::kUnexplained:
+      return "Something is missing that no known effect explains" +
+             (names.empty() ? std::string() : "; the nearest is " + Join(names)) + gap;
+  }
+  return "";
+}
+
+}  // namespace
+
+Diagnosis Conclude(const SearchContext& context, SearchResult search, Explanation refit,
+                   const TellProgress& tell) {
+  const Explanation& given = search.given;
+  Explanation& best = search.best;
+  Diagnosis d;
+  d.fit = {std::sqrt(given.squared_gap()), std::sqrt(refit.squared_gap()), std::sqrt(best.squared_gap())};
+  d.held_out = {std::sqrt(given.held_out_gap()), std::sqrt(refit.held_out_gap()),
+                std::sqrt(best.held_out_gap())};
+
+  if (tell) tell({"intervals", 0.95});
+  const std::vector<FreeParameter> free = best.fitted.hypothesis.Free();
+  const std::vector<Interval> intervals =
+      free.empty() ? std::vector<Interval>{} : Intervals(best.fitted, context.runs, context.jobs);
+  bool tied = false;
+  for (const Change& change : best.changes()) {
+    if (change.effect.empty()) continue;
+    FoundEffect found = Describe(change, best, free, intervals);
+    for (const Change& rival : Rivals(search.tried, best, change)) found.tied_with.push_back(rival.Label());
+    tied |= !found.tied_with.empty();
+    d.effects.push_back(std::move(found));
+  }
+  for (size_t i = 0; i < free.size(); ++i) {
+    if (free[i].unknown.kind == Unknown::Kind::kBase) {
+      d.parameters.push_back(DescribeParameter(free[i], intervals[i], context.given));
+    }
+  }
+
+  const double left = best.held_out_gap() - 1;
+  const bool closed = d.held_out.after <= kClosed || left <= kClosedShare * (given.held_out_gap() - 1);
+  if (!closed) {
+    d.verdict = Verdict::kUnexplained;
+  } else if (best.changes().empty() && d.parameters.empty()) {
+    d.verdict = Verdict::kNothingMissing;
+  } else if (d.effects.empty()) {
+    d.verdict = Verdict::kParameters;
+  } else {
+    d.verdict = tied ? Verdict::kTied : Verdict::kNamed;
+  }
+  d.model = best.fitted.hypothesis.model;
+  d.signals = SignalGaps(context, given, refit, best);
+  d.candidates = Ranking(context, search);
+  d.curves = CurvesOf(context, given, best);
+  if (d.verdict != Verdict::kNothingMissing) {
+    if (tell) tell({"where the gap is", 0.97});
+    const ModelDescription& disagrees =
+        d.verdict == Verdict::kUnexplained ? best.fitted.hypothesis.model : context.given;
+    Localisation located = Locate(disagrees, context.runs);
+    d.location = std::move(located.location);
+    d.missing = std::move(located.missing);
+  }
+  for (const RunData* run : context.runs) {
+    d.runs.push_back(run->name);
+    d.samples += run->samples();
+  }
+  for (const RunData* run : context.held_out) d.held_out_runs.push_back(run->name);
+  d.sentence = Sentence(d);
+  return d;
+}
+
+}  // namespace hydro

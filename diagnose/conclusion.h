@@ -1,0 +1,13 @@
+// What a search's results mean: the verdict, ties, intervals, reasons.
+#pragma once
+
+#include "diagnose/diagnosis.h"
+#include "diagnose/search.h"
+
+namespace hydro {
+
+// `refit`: the given model with all identifiable base parameters fitted.
+Diagnosis Conclude(const SearchContext& context, SearchResult search, Explanation refit,
+                   const TellProgress& tell);
+
+}  // namespace hydro

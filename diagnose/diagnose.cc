@@ -1,0 +1,156 @@
+#include "diagnose/diagnose.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <utility>
+
+#include "diagnose/conclusion.h"
+#include "diagnose/identifiable.h"
+#include "diagnose/run_data.h"
+#include "diagnose/search.h"
+
+namespace hydro {
+
+namespace {
+
+constexpr int kMostChanges = 4;
+
+// A single run without others to hold out: its last third is held out.
+void SplitOff(MeasuredRun* run, std::vector<MeasuredRun>* held_out) {
+  const size_t first = run->samples() * 2 / 3;
+  MeasuredRun rest = *run;
+  rest.name += ", last third";
+  const auto cut = [&](std::vector<double>* values, bool front) {
+    if (values->empty()) return;
+    const auto at = values->begin() + static_cast<std::ptrdiff_t>(first);
+    if (front) {
+      values->erase(at, values->end());
+    } else {
+      values->erase(values->begin(), at);
+    }
+  };
+  for (const bool front : {true, false}) {
+    MeasuredRun& part = front ? *run : rest;
+    cut(&part.time, front);
+    for (MeasuredSignal* signal : {&part.voltage, &part.pressure_ref, &part.motor_speed, &part.motor_angle,
+                                   &part.arm_angle, &part.arm_speed, &part.p1, &part.p2}) {
+      cut(&signal->values, front);
+    }
+  }
+  held_out->push_back(std::move(rest));
+}
+
+std::vector<const RunData*> Pointers(const std::vector<RunData>& runs) {
+  std::vector<const RunData*> pointers;
+  for (const RunData& run : runs) pointers.push_back(&run);
+  return pointers;
+}
+
+// The effects that may be named, each with every name that it can take in these runs.
+std::vector<Change> EffectChanges(const ModelDescription& given, const std::vector<std::string>& allowed,
+                                  const std::vector<const RunData*>& runs) {
+  std::vector<Change> changes;
+  for (const EffectInfo& info : EffectCatalogue()) {
+    if (!allowed.empty() && std::find(allowed.begin(), allowed.end(), info.id) == allowed.end()) continue;
+    // With f above 0 it is the base parameter that may be wrong.
+    if (info.id == "pump.pressure_friction" && given.parameters.f != 0) continue;
+    const bool has = std::any_of(given.effects.begin(), given.effects.end(),
+                                 [&](const EffectDescription& effect) { return effect.id == info.id; });
+    if (has) continue;
+    std::vector<Change> variants = {{info.id, {}, ""}};
+    for (const ParameterInfo& parameter : info.parameters) {
+      if (!parameter.is_name) continue;
+      std::vector<Change> next;
+      for (const Change& variant : variants) {
+        for (const std::string& name : parameter.names) {
+          const bool measured = std::any_of(runs.begin(), runs.end(), [&](const RunData* run) {
+            return std::any_of(run->signals.begin(), run->signals.end(),
+                               [&](const SignalData& signal) { return ChannelName(signal.channel) == name; });
+          });
+          if (!measured) continue;
+          next.push_back(variant);
+          next.back().names[parameter.name] = name;
+        }
+      }
+      variants = std::move(next);
+    }
+    changes.insert(changes.end(), variants.begin(), variants.end());
+  }
+  return changes;
+}
+
+std::vector<size_t> AllowedBase(const ModelDescription& given, const std::vector<std::string>& names) {
+  std::vector<size_t> allowed;
+  for (size_t i = 0; i < BaseParameters().size(); ++i) {
+    const std::string& name = BaseParameters()[i].info.name;
+    if (!names.empty() && std::find(names.begin(), names.end(), name) == names.end()) continue;
+    if (name == "f" && given.parameters.f == 0 && names.empty())
+      continue;  // the effect pump.pressure_friction
+    allowed.push_back(i);
+  }
+  return allowed;
+}
+
+}  // namespace
+
+Diagnosis Diagnose(const ModelDescription& model, std::vector<MeasuredRun> runs,
+                   std::vector<MeasuredRun> held_out, const DiagnoseOptions& options,
+                   const TellProgress& tell) {
+  if (runs.size() == 1 && held_out.empty() && runs.front().samples() >= 300)
+    SplitOff(&runs.front(), &held_out);
+  std::vector<RunData> data, held_out_data;
+  for (MeasuredRun& run : runs) data.push_back(PrepareRun(std::move(run), model.parameters));
+  for (MeasuredRun& run : held_out) held_out_data.push_back(PrepareRun(std::move(run), model.parameters));
+  NameApart(&data);
+  NameApart(&held_out_data);
+
+  SearchContext context;
+  context.given = model;
+  context.runs = Pointers(data);
+  context.held_out = Pointers(held_out_data);
+  context.sizes = SizesOf(model, context.runs);
+  context.jobs = options.jobs;
+  context.tell = tell;
+  context.changes = EffectChanges(model, options.effects, context.runs);
+  const std::vector<size_t> allowed = AllowedBase(model, options.free);
+  for (const size_t i : allowed) context.changes.push_back({"", {}, BaseParameters()[i].info.name});
+
+  // Few changes to the model as given first: one wrong value or one missing effect is the likeliest.
+  Hypothesis given;
+  given.model = model;
+  for (const EffectDescription& effect : model.effects) given.effects.push_back(effect.id);
+  Hypothesis as_given = given;
+  as_given.effects.clear();
+  SearchResult search = Search(context, as_given, kMostChanges);
+  if (!search.given.fitted.ok()) {
+    throw ModelError("the model cannot follow the runs at all: " + search.given.fitted.failure +
+                     "; is a shaft's mode or a unit wrong?");
+  }
+
+  // All base parameters at once, and the search from there when that predicts better.
+  if (tell) tell({"refitting the model's own parameters", 0.92});
+  const std::vector<StartState> starts = [&] {
+    std::vector<StartState> all;
+    for (const RunFit& run : search.given.fitted.runs) all.push_back(run.start);
+    return all;
+  }();
+  Hypothesis refitted = given;
+  refitted.base = Identifiable(as_given, context.runs, starts, allowed, context.sizes, options.jobs);
+  FitOptions fine;
+  fine.tolerance = 1e-5;
+  fine.jobs = options.jobs;
+  Explanation refit = Explain(context, refitted, starts, fine);
+  if (!refit.fitted.ok()) refit = search.given;
+  if (Material(search.best.held_out_gap(), refit.held_out_gap())) {
+    SearchResult wider = Search(context, refit.fitted.hypothesis, kMostChanges);
+    if (wider.given.fitted.ok() && Material(search.best.held_out_gap(), wider.best.held_out_gap())) {
+      search.best = std::move(wider.best);
+      search.tried.insert(search.tried.end(), wider.tried.begin(), wider.tried.end());
+    }
+  }
+  return Conclude(context, std::move(search), std::move(refit), tell);
+}
+
+}  // namespace hydro

@@ -1,0 +1,103 @@
+#include "diagnose/intervals.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <boost/math/distributions/students_t.hpp>
+#include <cmath>
+
+#include "diagnose/parallel.h"
+#include "diagnose/residuals.h"
+
+namespace hydro {
+
+namespace {
+
+using Eigen::Index;
+using Eigen::Map;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr Index kBlocksPerRun = 12;
+
+// What each stretch of a run says: its gradient, with the run's start taken out.
+MatrixXd BlockGradients(const Fitted& fitted, const std::vector<FreeParameter>& free, size_t r,
+                        const RunData& run) {
+  std::vector<Unknown> unknowns;
+  for (const FreeParameter& parameter : free) unknowns.push_back(parameter.unknown);
+  for (const Unknown& start : StartUnknowns(run)) unknowns.push_back(start);
+  Residuals residuals = ResidualsOf(fitted.hypothesis.model, run, fitted.runs[r].start, unknowns, 1);
+  const auto rows = static_cast<Index>(residuals.values.size());
+  const auto p = static_cast<Index>(free.size());
+  const auto n = static_cast<Index>(unknowns.size());
+  Map<MatrixXd> jacobian(residuals.jacobian.data(), rows, n);
+  for (Index i = 0; i < p; ++i) {
+    if (free[static_cast<size_t>(i)].logarithmic) jacobian.col(i) *= free[static_cast<size_t>(i)].value;
+  }
+  MatrixXd columns = jacobian.leftCols(p);
+  if (n > p) {
+    const MatrixXd starts = jacobian.rightCols(n - p);
+    MatrixXd inner = starts.transpose() * starts;
+    inner.diagonal().array() += 1e-10 * inner.diagonal().maxCoeff() + 1e-300;
+    columns -= starts * inner.ldlt().solve(starts.transpose() * columns);
+  }
+  MatrixXd gradients = MatrixXd::Zero(p, kBlocksPerRun);
+  for (size_t s = 0; s + 1 < residuals.first.size(); ++s) {
+    const auto first = static_cast<Index>(residuals.first[s]);
+    const Index count = static_cast<Index>(residuals.first[s + 1]) - first;
+    for (Index b = 0; b < kBlocksPerRun; ++b) {
+      const Index from = first + b * count / kBlocksPerRun;
+      const Index to = first + (b + 1) * count / kBlocksPerRun;
+      const Map<const VectorXd> values(residuals.values.data() + from, to - from);
+      gradients.col(b) += columns.middleRows(from, to - from).transpose() * values;
+    }
+  }
+  return gradients;
+}
+
+}  // namespace
+
+std::vector<Interval> Intervals(const Fitted& fitted, const std::vector<const RunData*>& runs, int jobs) {
+  const std::vector<FreeParameter> free = fitted.hypothesis.Free();
+  const auto p = static_cast<Index>(free.size());
+  std::vector<MatrixXd> gradients(runs.size());
+  ParallelFor(runs.size(), jobs, [&](size_t r) { gradients[r] = BlockGradients(fitted, free, r, *runs[r]); });
+  MatrixXd information = MatrixXd::Zero(p, p);
+  MatrixXd by_block = MatrixXd::Zero(p, p);
+  MatrixXd by_run = MatrixXd::Zero(p, p);
+  for (size_t r = 0; r < runs.size(); ++r) {
+    information += Map<const MatrixXd>(fitted.runs[r].information.data(), p, p);
+    by_block += gradients[r] * gradients[r].transpose();
+    const VectorXd whole = gradients[r].rowwise().sum();
+    by_run += whole * whole.transpose();
+  }
+  const VectorXd scale = (information.diagonal().array() + 1e-300).sqrt().inverse();
+  MatrixXd scaled = scale.asDiagonal() * information * scale.asDiagonal();
+  scaled.diagonal().array() += 1e-10;
+  const MatrixXd inverse =
+      scale.asDiagonal() * scaled.ldlt().solve(MatrixXd::Identity(p, p)) * scale.asDiagonal();
+  const auto blocks = static_cast<double>(kBlocksPerRun) * static_cast<double>(runs.size());
+  const auto count = static_cast<double>(runs.size());
+  const MatrixXd block_variance = inverse * by_block * inverse * (blocks / (blocks - 1));
+  const MatrixXd run_variance = inverse * by_run * inverse;
+  const double squared_gap = std::max(1.0, fitted.squared_gap());
+  const double t_block = boost::math::quantile(boost::math::students_t(blocks - 1), 0.975);
+  std::vector<Interval> intervals;
+  for (Index i = 0; i < p; ++i) {
+    const double white = 1.96 * std::sqrt(inverse(i, i) * squared_gap);
+    const double block = t_block * std::sqrt(std::max(0.0, block_variance(i, i)));
+    double half = std::max(white, block);
+    if (runs.size() > 2) {
+      const double t_run = boost::math::quantile(boost::math::students_t(count - 1), 0.975);
+      half = std::max(half, t_run * std::sqrt(std::max(0.0, run_variance(i, i)) * count / (count - 1)));
+    }
+    const FreeParameter& parameter = free[static_cast<size_t>(i)];
+    if (parameter.logarithmic) {
+      intervals.push_back({parameter.value * std::exp(-half), parameter.value * std::exp(half)});
+    } else {
+      intervals.push_back({parameter.value - half, parameter.value + half});
+    }
+  }
+  return intervals;
+}
+
+}  // namespace hydro

@@ -1,0 +1,18 @@
+// How well fitted parameters are known.
+#pragma once
+
+#include <vector>
+
+#include "diagnose/fit.h"
+
+namespace hydro {
+
+struct Interval {
+  double low = 0, high = 0;
+};
+
+// 95 % intervals of the fit's free parameters, in the order of Free(), allowing for residuals that are not
+// independent: from the scatter of what stretches of each run, and whole runs, say of them.
+std::vector<Interval> Intervals(const Fitted& fitted, const std::vector<const RunData*>& runs, int jobs);
+
+}  // namespace hydro

@@ -1,0 +1,239 @@
+#include "diagnose/search.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "diagnose/parallel.h"
+
+namespace hydro {
+
+namespace {
+
+// How many of the score test's best are refitted: at the first step, and at later ones.
+constexpr size_t kRefitsAtFirst = 7;
+constexpr size_t kRefitsLater = 6;
+// How many hypotheses are gone on with.
+constexpr size_t kBeam = 2;
+// How many refits are compared on held-out runs at each step.
+constexpr size_t kFinalists = 4;
+// Further changes are not looked for below this squared gap on held-out runs.
+constexpr double kCloseEnough = 1 + kLeastGain;
+
+std::vector<StartState> StartsOf(const Fitted& fitted) {
+  std::vector<StartState> starts;
+  for (const RunFit& run : fitted.runs) starts.push_back(run.start);
+  return starts;
+}
+
+bool SameChanges(const Hypothesis& a, const Hypothesis& b) {
+  if (a.changes.size() != b.changes.size()) return false;
+  return std::all_of(a.changes.begin(), a.changes.end(), [&](const Change& change) { return b.Has(change); });
+}
+
+// Two of an effect cannot be in one model; nor is something changed twice.
+bool CanAdd(const Hypothesis& hypothesis, const Change& change) {
+  if (change.effect.empty()) return !hypothesis.Has(change);
+  return std::none_of(hypothesis.model.effects.begin(), hypothesis.model.effects.end(),
+                      [&](const EffectDescription& effect) { return effect.id == change.effect; });
+}
+
+class Searcher {
+ public:
+  Searcher(const SearchContext& context, int most_changes) : context_(context), most_changes_(most_changes) {
+    coarse_.most_iterations = 8;
+    coarse_.tolerance = 1e-3;
+    fine_.most_iterations = 15;
+    fine_.tolerance = 1e-5;
+  }
+
+  SearchResult Run(const Hypothesis& from) {
+    std::vector<StartState> starts;
+    for (const RunData* run : context_.runs) starts.push_back(run->start);
+    Tell("the model as given", 0);
+    result_.given = Explain(context_, from, starts, fine_);
+    if (!result_.given.fitted.ok()) return result_;
+    result_.best = result_.given;
+    std::vector<Explanation> beam = {result_.given};
+    for (int step = 0; step < most_changes_; ++step) {
+      std::vector<Explanation> next = Extend(beam, step);
+      if (next.empty()) break;
+      beam.assign(next.begin(), next.begin() + static_cast<std::ptrdiff_t>(std::min(kBeam, next.size())));
+      const auto best = std::min_element(next.begin(), next.end(), [](const auto& a, const auto& b) {
+        return a.held_out_gap() < b.held_out_gap();
+      });
+      if (!Material(result_.best.held_out_gap(), best->held_out_gap())) break;
+      result_.best = *best;
+      if (result_.best.held_out_gap() < kCloseEnough) break;
+    }
+    Exchange();
+    TakeBack();
+    return result_;
+  }
+
+ private:
+  void Tell(const std::string& stage, double fraction) const {
+    if (context_.tell) context_.tell({stage, fraction});
+  }
+
+  // Each of the beam with one more change, fitted; the best few by their fit, with their held-out prediction.
+  std::vector<Explanation> Extend(const std::vector<Explanation>& beam, int step) {
+    std::vector<Scanned> pool;
+    const double share = static_cast<double>(step) / most_changes_;
+    for (const Explanation& from : beam) {
+      Tell("judging each effect" + Step(step), share);
+      std::vector<Change> changes;
+      for (const Change& change : context_.changes) {
+        if (CanAdd(from.fitted.hypothesis, change)) changes.push_back(change);
+      }
+      auto scanned = Scan(from.fitted, context_.runs, changes, context_.sizes, 1, context_.jobs);
+      if (step == 0) {
+        for (const auto& rows : scanned) {
+          Rated rated{rows.front().change, 0, rows.front().failure};
+          rated.expected = rows.front().expected / static_cast<double>(from.fitted.count);
+          result_.rated.push_back(rated);
+        }
+      }
+      Pick(from, &scanned, step == 0 ? kRefitsAtFirst : kRefitsLater, &pool);
+    }
+    Tell("refitting the likeliest" + Step(step), share + 0.3 / most_changes_);
+    std::vector<Fitted> fits(pool.size());
+    const std::vector<StartState> starts = StartsOf(beam.front().fitted);
+    ParallelFor(pool.size(), context_.jobs,
+                [&](size_t i) { fits[i] = Fit(pool[i].start, context_.runs, starts, coarse_); });
+    // The best start of each set of changes.
+    std::vector<Fitted> best;
+    for (Fitted& fit : fits) {
+      if (!fit.ok()) {
+        NoteFailure(fit);
+        continue;
+      }
+      const auto same = std::find_if(best.begin(), best.end(), [&](const Fitted& other) {
+        return SameChanges(other.hypothesis, fit.hypothesis);
+      });
+      if (same == best.end()) {
+        best.push_back(std::move(fit));
+      } else if (fit.sum < same->sum) {
+        *same = std::move(fit);
+      }
+    }
+    std::stable_sort(best.begin(), best.end(),
+                     [](const Fitted& a, const Fitted& b) { return a.sum < b.sum; });
+    std::vector<Explanation> explained(std::min(best.size(), kFinalists));
+    Tell("refitting the likeliest" + Step(step), share + 0.6 / most_changes_);
+    ParallelFor(explained.size(), context_.jobs, [&](size_t i) {
+      explained[i] = Explain(context_, best[i].hypothesis, StartsOf(best[i]), fine_);
+    });
+    std::erase_if(explained, [](const Explanation& one) { return !one.fitted.ok(); });
+    std::stable_sort(explained.begin(), explained.end(),
+                     [](const Explanation& a, const Explanation& b) { return a.fitted.sum < b.fitted.sum; });
+    for (const Explanation& one : explained) result_.tried.push_back(one);
+    for (size_t i = kFinalists; i < best.size(); ++i) {
+      Explanation fitted_only;
+      fitted_only.fitted = best[i];
+      result_.tried.push_back(fitted_only);
+    }
+    return explained;
+  }
+
+  static std::string Step(int step) { return step == 0 ? "" : ", with " + std::to_string(step) + " found"; }
+
+  // The most promising of a score test: the best start of each of the first few changes, and a second start
+  // where it promises nearly as much.
+  void Pick(const Explanation& from, std::vector<std::vector<Scanned>>* scanned, size_t most,
+            std::vector<Scanned>* pool) const {
+    auto& rows = *scanned;
+    std::erase_if(rows, [](const auto& starts) { return starts.empty() || !starts.front().failure.empty(); });
+    std::stable_sort(rows.begin(), rows.end(),
+                     [](const auto& a, const auto& b) { return a.front().expected > b.front().expected; });
+    const double least = 0.3 * kLeastGain * static_cast<double>(from.fitted.count);
+    for (size_t i = 0; i < rows.size() && i < most; ++i) {
+      for (size_t s = 0; s < rows[i].size() && s < 2; ++s) {
+        if (s > 0 && rows[i][s].expected < 0.5 * rows[i].front().expected) break;
+        if (rows[i][s].expected < least) continue;
+        const bool there = std::any_of(pool->begin(), pool->end(), [&](const Scanned& other) {
+          return s == 0 && SameChanges(other.start, rows[i][s].start);
+        });
+        if (!there) pool->push_back(rows[i][s]);
+      }
+    }
+  }
+
+  void NoteFailure(const Fitted& fit) {
+    if (fit.hypothesis.changes.size() != 1) return;
+    for (Rated& rated : result_.rated) {
+      if (rated.change == fit.hypothesis.changes.front()) rated.failure = fit.failure;
+    }
+  }
+
+  // Each change is tried to be replaced: a greedy choice may have been second best once others are there.
+  void Exchange() {
+    if (result_.best.changes().size() < 2) return;
+    for (int round = 0; round < 2; ++round) {
+      bool better = false;
+      const std::vector<Change> changes = result_.best.changes();
+      for (const Change& change : changes) {
+        Tell("exchanging what was found", 0.9);
+        const Hypothesis less = Without(result_.best.fitted.hypothesis, change, context_.given);
+        Explanation reduced = Explain(context_, less, StartsOf(result_.best.fitted), coarse_);
+        if (!reduced.fitted.ok()) continue;
+        std::vector<Explanation> others = Extend({reduced}, most_changes_);
+        for (const Explanation& other : others) {
+          if (other.fitted.sum < 0.98 * result_.best.fitted.sum &&
+              other.held_out_gap() < result_.best.held_out_gap()) {
+            result_.best = other;
+            better = true;
+          }
+        }
+        if (better) break;
+      }
+      if (!better) return;
+    }
+  }
+
+  // What is not needed any more, now that the others are there.
+  void TakeBack() {
+    bool fewer = true;
+    while (fewer && result_.best.changes().size() > 1) {
+      fewer = false;
+      for (const Change& change : result_.best.changes()) {
+        const Hypothesis less = Without(result_.best.fitted.hypothesis, change, context_.given);
+        Explanation reduced = Explain(context_, less, StartsOf(result_.best.fitted), fine_);
+        if (!reduced.fitted.ok()) continue;
+        result_.tried.push_back(reduced);
+        if (Material(reduced.held_out_gap(), result_.best.held_out_gap())) continue;
+        result_.best = reduced;
+        fewer = true;
+        break;
+      }
+    }
+  }
+
+  const SearchContext& context_;
+  int most_changes_;
+  FitOptions coarse_, fine_;
+  SearchResult result_;
+};
+
+}  // namespace
+
+Explanation Explain(const SearchContext& context, const Hypothesis& hypothesis,
+                    const std::vector<StartState>& starts, const FitOptions& options) {
+  Explanation explanation;
+  explanation.fitted = Fit(hypothesis, context.runs, starts, options);
+  if (!explanation.fitted.ok()) return explanation;
+  if (context.held_out.empty()) {
+    explanation.held_out = PredictInTurn(explanation.fitted, context.given, context.runs, 1);
+    explanation.blocks = BlocksOf(context.runs, explanation.held_out);
+  } else {
+    explanation.held_out = Predict(explanation.fitted, context.held_out, 1);
+    explanation.blocks = BlocksOf(context.held_out, explanation.held_out);
+  }
+  return explanation;
+}
+
+SearchResult Search(const SearchContext& context, const Hypothesis& from, int most_changes) {
+  return Searcher(context, most_changes).Run(from);
+}
+
+}  // namespace hydro
