@@ -91,35 +91,106 @@ std::vector<Case> AllCases() {
   return cases;
 }
 
+namespace {
+
+// All signals of a run in noise units, one after the other.
+void Append(const Plan& plan, const Record& record, std::vector<double>* all) {
+  const auto add = [&](const std::vector<double>& signal, double noise) {
+    for (const double value : signal) all->push_back(value / noise);
+  };
+  add(record.motor_speed, kSpeedNoise);
+  add(record.p1, kPressureNoise);
+  add(record.p2, kPressureNoise);
+  if (plan.shaft == Shaft::kFree) add(record.arm_angle, kAngleNoise);
+}
+
+// The noiseless signals of all runs of `setup`, under the voltages of the true rig.
+struct Signals {
+  std::vector<Plan> plans;
+  std::vector<Conditions> conditions;
+  std::vector<std::vector<double>> voltages;
+
+  Signals(const Truth& truth, uint64_t seed, const Options& options, std::vector<double>* of_truth)
+      : plans(Plans(seed, options.seconds, options.driven)) {
+    for (const Plan& plan : plans) {
+      Conditions c;
+      c.rate = options.rate;
+      c.seconds = options.seconds;
+      c.noise = 0;
+      c.time_of_day = 1.7 * static_cast<double>(plan.name.back() - '0');
+      conditions.push_back(c);
+      Record record = RecordRun(truth.setup, plan, c);
+      Append(plan, record, of_truth);
+      voltages.push_back(std::move(record.voltage));
+    }
+  }
+  std::vector<double> Of(const RigSetup& setup) const {
+    std::vector<double> all;
+    for (size_t i = 0; i < plans.size(); ++i) {
+      Conditions c = conditions[i];
+      c.voltage = &voltages[i];
+      Append(plans[i], RecordRun(setup, plans[i], c), &all);
+    }
+    return all;
+  }
+};
+
+double RootMeanSquare(const std::vector<double>& a, const std::vector<double>& b) {
+  double sum = 0;
+  for (size_t i = 0; i < a.size(); ++i) sum += (a[i] - b[i]) * (a[i] - b[i]);
+  return std::sqrt(sum / static_cast<double>(a.size()));
+}
+
+}  // namespace
+
 double Gap(const Truth& truth, uint64_t seed, const Options& options) {
+  std::vector<double> with;
+  const Signals signals(truth, seed, options, &with);
   RigSetup plain;
   plain.base = truth.given;
-  double sum = 0;
-  double count = 0;
-  for (const Plan& plan : Plans(seed, options.seconds, options.driven)) {
-    Conditions conditions;
-    conditions.rate = options.rate;
-    conditions.seconds = options.seconds;
-    conditions.noise = 0;
-    conditions.time_of_day = 1.7 * static_cast<double>(plan.name.back() - '0');
-    const Record with = RecordRun(truth.setup, plan, conditions);
-    conditions.voltage = &with.voltage;
-    Record without;
-    try {
-      without = RecordRun(plain, plan, conditions);
-    } catch (const std::runtime_error&) {
-      return 1000;  // it runs away under these voltages
-    }
-    const auto add = [&](const std::vector<double>& a, const std::vector<double>& b, double noise) {
-      for (size_t i = 0; i < a.size(); ++i) sum += (a[i] - b[i]) * (a[i] - b[i]) / (noise * noise);
-      count += static_cast<double>(a.size());
-    };
-    add(with.motor_speed, without.motor_speed, kSpeedNoise);
-    add(with.p1, without.p1, kPressureNoise);
-    add(with.p2, without.p2, kPressureNoise);
-    if (plan.shaft == Shaft::kFree) add(with.arm_angle, without.arm_angle, kAngleNoise);
+  try {
+    return RootMeanSquare(with, signals.Of(plain));
+  } catch (const std::runtime_error&) {
+    return 1000;  // it runs away under these voltages
   }
-  return std::sqrt(sum / count);
+}
+
+double GapBeyondValues(const Truth& truth, uint64_t seed, const Options& options) {
+  std::vector<double> with;
+  const Signals signals(truth, seed, options, &with);
+  RigSetup plain;
+  plain.base = truth.given;
+  const std::vector<double> without = signals.Of(plain);
+  std::vector<double> rest(with.size());
+  for (size_t i = 0; i < rest.size(); ++i) rest[i] = with[i] - without[i];
+  // Directions of the parameters, each made orthogonal to those before (twice, for the rounding) and taken
+  // off.
+  std::vector<std::vector<double>> directions;
+  const auto take_off = [](const std::vector<double>& direction, std::vector<double>* from) {
+    double along = 0;
+    for (size_t i = 0; i < from->size(); ++i) along += direction[i] * (*from)[i];
+    for (size_t i = 0; i < from->size(); ++i) (*from)[i] -= along * direction[i];
+  };
+  for (const auto& form : BaseForms()) {
+    RigSetup changed = plain;
+    double& value = changed.base.*form.value;
+    value = value == 0 ? 1e-5 : value * 1.001;
+    std::vector<double> direction = signals.Of(changed);
+    double before = 0;
+    for (size_t i = 0; i < direction.size(); ++i) {
+      direction[i] -= without[i];
+      before += direction[i] * direction[i];
+    }
+    for (const auto& other : directions) take_off(other, &direction);
+    for (const auto& other : directions) take_off(other, &direction);
+    double length = 0;
+    for (const double d : direction) length += d * d;
+    if (length < 1e-8 * before || length == 0) continue;  // as good as a combination of the others
+    for (double& d : direction) d /= std::sqrt(length);
+    take_off(direction, &rest);
+    directions.push_back(std::move(direction));
+  }
+  return RootMeanSquare(rest, std::vector<double>(rest.size(), 0.0));
 }
 
 Truth Solve(const Case& c, const Options& options) {

@@ -28,8 +28,9 @@ struct Truth {
   RigSetup setup;
   Base given;  // the model that is handed over
   std::vector<TrueEffect> effects;
-  double gap = 0;       // noise units, rms over all signals; see Gap()
-  bool reached = true;  // the gap asked for
+  double gap = 0;             // noise units, rms over all signals; see Gap()
+  bool reached = true;        // the gap asked for
+  double beyond_values = -1;  // GapBeyondValues(), where it was asked for
 };
 struct Options {
   double rate = 1000;
@@ -42,5 +43,9 @@ Truth Solve(const Case& c, const Options& options);
 // How far the rig is, without noise, from one with Table 1's values (or those given) and nothing else under
 // the same voltages: rms over all samples of all measured signals of all runs, in stated noise units.
 double Gap(const Truth& truth, uint64_t seed, const Options& options);
+
+// What is left of the gap when the base parameters take the values that close it best, linearised at the
+// given ones: how much of an effect no other values can explain. Takes a minute.
+double GapBeyondValues(const Truth& truth, uint64_t seed, const Options& options);
 
 }  // namespace hidden_rig

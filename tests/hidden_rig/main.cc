@@ -22,7 +22,9 @@ constexpr char kHelp[] =
     "  --rate HZ    samples a second (1000)\n"
     "  --seconds T  of each run (2.5)\n"
     "  --noise X    times the case's noise (1)\n"
-    "  --driven     a seventh run whose shaft is moved from outside\n";
+    "  --driven     a seventh run whose shaft is moved from outside\n"
+    "  --beyond     the key also says how much of the gap no other values of the base parameters explain "
+    "(slow)\n";
 
 int Main(int argc, char** argv) {
   std::map<std::string, std::string> given;
@@ -32,7 +34,7 @@ int Main(int argc, char** argv) {
       std::fputs(kHelp, stdout);
       return 0;
     }
-    if (option == "--list" || option == "--driven") {
+    if (option == "--list" || option == "--driven" || option == "--beyond") {
       given[option] = "yes";
       continue;
     }
@@ -71,7 +73,8 @@ int Main(int argc, char** argv) {
     options.seconds = number("--seconds", options.seconds);
     options.noise = number("--noise", options.noise);
     options.driven = given.contains("--driven");
-    const hidden_rig::Truth truth = hidden_rig::Solve(c, options);
+    hidden_rig::Truth truth = hidden_rig::Solve(c, options);
+    if (given.contains("--beyond")) truth.beyond_values = hidden_rig::GapBeyondValues(truth, c.seed, options);
     hidden_rig::WriteRuns(c, truth, options, given["--out"]);
     if (given.contains("--key")) hidden_rig::WriteKey(c, truth, given["--key"]);
     return 0;

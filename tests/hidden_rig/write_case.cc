@@ -92,6 +92,7 @@ void WriteKey(const Case& c, const Truth& truth, const std::string& file) {
   out << "{\n  \"case\": " << quoted(c.name) << ",\n  \"class\": " << quoted(c.kind)
       << ",\n  \"seed\": " << c.seed << ",\n  \"size\": " << quoted(c.size)
       << ",\n  \"noise\": " << Text(c.noise) << ",\n  \"gap\": " << Text(truth.gap, "%.4g")
+      << (truth.beyond_values < 0 ? "" : ",\n  \"gap_beyond_values\": " + Text(truth.beyond_values, "%.4g"))
       << ",\n  \"gap_asked\": " << Text(c.gap)
       << ",\n  \"gap_reached\": " << (truth.reached ? "true" : "false") << ",\n  \"effects\": [";
   for (size_t i = 0; i < truth.effects.size(); ++i) {
