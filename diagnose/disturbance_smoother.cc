@@ -6,6 +6,7 @@
 #include <random>
 
 #include "diagnose/observed_mode.h"
+#include "diagnose/smoother_record.h"
 #include "model/equations.h"
 #include "model/linearise.h"
 
@@ -13,12 +14,12 @@ namespace hydro {
 
 namespace {
 
-constexpr int kMostStates = kMaxStates + static_cast<int>(kBalances);
-constexpr int kColumns = 1 + static_cast<int>(kNoiseDraws);  // the data, then draws of noise
-using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMostStates, kMostStates>;
-using Vector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMostStates, 1>;
-using Columns = Eigen::Matrix<double, Eigen::Dynamic, kColumns, 0, kMostStates, kColumns>;
-using RowOfColumns = Eigen::Matrix<double, 1, kColumns>;
+using smoother::Columns;
+using smoother::kColumns;
+using smoother::Matrix;
+using smoother::Record;
+using smoother::RowOfColumns;
+using smoother::Vector;
 
 // How fast a disturbance may be followed, 1/s: fast enough that friction that turns round is not taken for
 // flow.
@@ -27,6 +28,7 @@ constexpr double kBandwidthPerSample = 0.35;
 // Disturbances that vary so much more than noise explains are allowed to, in a second pass.
 constexpr double kLoosenAbove = 3;
 constexpr double kLoosenAtMost = 200;
+constexpr double kSwitching = 0.02;  // s
 
 struct Sensor {
   Channel channel = Channel::kP1;
@@ -35,65 +37,6 @@ struct Sensor {
   std::vector<float> repeats;  // samples that a reading stays the same; empty where noise hides the steps
   Vector row;                  // d reading/d state
   std::array<std::vector<float>, kNoiseDraws> noise;
-};
-
-// What the way back needs of the way forth, a sample each: flat, as the number of states is known late.
-class Record {
- public:
-  Record(size_t samples, int size)
-      : size_(size),
-        updates_(samples),
-        covariance_(samples * size * size),
-        transition_(samples * size * size),
-        state_(samples * size * kColumns),
-        informative_(samples) {}
-
-  struct Update {
-    int sensor = 0;
-    double variance = 0;
-    RowOfColumns innovation;
-  };
-
-  Eigen::Map<Eigen::MatrixXd> covariance(size_t k) {  // after the sample's readings
-    return {&covariance_[k * size_ * size_], size_, size_};
-  }
-  Eigen::Map<Eigen::MatrixXd> transition(size_t k) {  // to the next sample
-    return {&transition_[k * size_ * size_], size_, size_};
-  }
-  // After the readings: the data's state, then the draws' differences from it.
-  Eigen::Map<Eigen::Matrix<double, Eigen::Dynamic, kColumns>> state(size_t k) {
-    return {&state_[k * size_ * kColumns], size_, kColumns};
-  }
-  std::array<uint8_t, kBalances>& informative(size_t k) { return informative_[k]; }
-
-  // Readings are added in the order of samples and taken back in reverse.
-  void Add(size_t k, const Update& update, const Vector& gain) {
-    ++updates_[k];
-    update_.push_back(update);
-    gain_.insert(gain_.end(), gain.data(), gain.data() + size_);
-  }
-  bool Take(size_t k, Update* update, Vector* gain) {
-    if (updates_[k] == 0) return false;
-    --updates_[k];
-    *update = update_.back();
-    update_.pop_back();
-    *gain = Eigen::Map<const Eigen::VectorXd>(gain_.data() + gain_.size() - size_, size_);
-    gain_.resize(gain_.size() - size_);
-    return true;
-  }
-  void Forget(size_t k) {
-    Update update;
-    Vector gain;
-    while (Take(k, &update, &gain)) {
-    }
-  }
-
- private:
-  int size_;
-  std::vector<int> updates_;
-  std::vector<Update> update_;
-  std::vector<double> gain_, covariance_, transition_, state_;
-  std::vector<std::array<uint8_t, kBalances>> informative_;
 };
 
 double ChannelNoise(const SignalData& signal) {
@@ -227,10 +170,21 @@ class Smoother {
     BeginState(equations, state, &mode);
     const LinearModel linear = Linearise(equations, time_[0], 0, mode, state);
     for (Sensor& sensor : sensors_) {
+      const size_t channel = static_cast<size_t>(sensor.channel);
       sensor.row = Vector::Zero(size_);
-      for (int j = 0; j < states_; ++j) {
-        sensor.row[j] = linear.C[static_cast<size_t>(sensor.channel) + j * kChannels];
+      for (int j = 0; j < states_; ++j) sensor.row[j] = linear.C[channel + j * kChannels];
+      if (sensor.channel != Channel::kP1 && sensor.channel != Channel::kP2) continue;
+      // The valves feel the pressure, not the reading.
+      const bool first = sensor.channel == Channel::kP1;
+      const int at = first ? kP1 : kP2;
+      const double gain = sensor.row[at];
+      std::vector<double>& observed = first ? observed_.p1 : observed_.p2;
+      if (gain == 0) {
+        observed.clear();  // it reads what a state of its own has made of the pressure
+        continue;
       }
+      const double offset = linear.output[channel] - gain * state[at];
+      for (double& value : observed) value = (value - offset) / gain;
     }
   }
 
@@ -262,7 +216,7 @@ class Smoother {
     const std::vector<double>& measured = side == 0 ? observed_.p1 : observed_.p2;
     const double margin = side == 0 ? observed_.p1_margin : observed_.p2_margin;
     if (measured.empty() || std::isnan(measured[k]))
-      return pressure <= p_3 * (1 + 1e-3) ? Rest::kAt : Rest::kAbove;
+      return pressure <= p_3 + std::max(margin, 1e-3 * std::abs(p_3)) ? Rest::kAt : Rest::kAbove;
     // Below p_3 no one-way valve holds it: the flow that does is what is missing.
     if (measured[k] < p_3 - margin) return Rest::kBelow;
     if (measured[k] <= p_3 + margin) return Rest::kAt;
@@ -348,6 +302,7 @@ class Smoother {
   std::array<double, kBalances> wander_{};
   std::array<bool, 2> at_valve_{};     // near p_3: the valve may be either way
   std::array<double, 2> free_rate_{};  // of p1, p2 were it closed
+  std::vector<double> switched_;       // when a switch of an effect changed
   SmoothedRun result_;
 };
 
@@ -404,6 +359,7 @@ void Smoother::Pass() {
   Terms<double> terms;
   const std::vector<double>& scales = equations.scales();
   const double speed_wander = 0.3 * observed_.speed_margin;
+  switched_.clear();
   equations.PassStop(time_[0]);
 
   for (size_t k = 0; k < samples; ++k) {
@@ -480,7 +436,9 @@ void Smoother::Pass() {
       double margin[kMaxSwitches];
       equations.Rates(time_[k + 1], voltage, mode, state, rate, margin);
       for (int which = kFirstEffectSwitch; which < equations.switches(); ++which) {
-        if (margin[which] < 0) equations.Cross(which, time_[k + 1], voltage, state, &mode);
+        if (margin[which] >= 0) continue;
+        equations.Cross(which, time_[k + 1], voltage, state, &mode);
+        switched_.push_back(time_[k + 1]);
       }
     }
 
@@ -523,6 +481,15 @@ void Smoother::Pass() {
       const double jump = free_rate_[side] * step;
       const int at = side == 0 ? kP1 : kP2;
       covariance(at, at) += jump * jump + 0.1 * Variance(side == 0 ? Channel::kP1 : Channel::kP2);
+    }
+  }
+  if (place_[static_cast<size_t>(Balance::kArmTorque)] >= 0) {
+    // An arm that its seals hold: when it lets go is known from coarse angles only.
+    for (const double at : switched_) {
+      const auto from = std::lower_bound(time_.begin(), time_.end(), at - kSwitching);
+      for (auto t = from; t != time_.end() && *t <= at + kSwitching; ++t) {
+        record.informative(static_cast<size_t>(t - time_.begin()))[3] = 0;
+      }
     }
   }
   Smooth(record);

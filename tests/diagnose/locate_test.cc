@@ -116,6 +116,37 @@ TEST(Locate, NothingMissing) {
   }
 }
 
+// Tests that an effect that the model has is not missed, also one with states, switches or delays.
+TEST(Locate, NothingMissingWithEffects) {
+  for (const ModelDescription& model :
+       {With("amp.lag", {{"tau", 0.004}}), With("valve.relief", {{"set", 3000}, {"conductance", 1e-3}}),
+        With("line.wave", {{"frequency", 100}, {"volume_fraction", 0.3}, {"damping", 0.2}}),
+        With("amp.delay", {{"delay", 0.003}}), With("sensor.pressure_offset", {{"p1", 12}, {"p2", -5}})}) {
+    NoisyRig rig;
+    rig.model = model;
+    const Localisation found = LocateIn(rig.RecordAll(), model);
+    EXPECT_THAT(found.location, IsEmpty()) << model.effects[0].id << " " << found.location.front().balance
+                                           << " " << found.location.front().where;
+  }
+}
+
+// Tests that pressures that are recorded late are laid to the sensors.
+TEST(Locate, LateReadings) {
+  NoisyRig rig;
+  rig.model = Given();
+  std::vector<RunData> runs = rig.RecordAll();
+  for (RunData& run : runs) {
+    for (SignalData& signal : run.signals) {
+      if (signal.channel != Channel::kP1 && signal.channel != Channel::kP2) continue;
+      for (size_t k = signal.values.size(); k-- > 3;) signal.values[k] = signal.values[k - 3];
+    }
+  }
+  const Localisation found = LocateIn(runs);
+  ASSERT_FALSE(found.location.empty());
+  EXPECT_EQ(found.location.front().balance, "sensor");
+  EXPECT_GE(found.location.front().share, 0.85);
+}
+
 // Tests that the table of the missing term is the term that was hidden: friction that grows with pressure.
 TEST(Locate, TableIsTheHiddenTerm) {
   const Localisation found = LocateOn(With("pump.pressure_friction", {{"f", 2e-4}}));
