@@ -143,7 +143,7 @@ std::string DrawChart(const Chart& chart, double left, double top) {
     out += Rectangle("band", 0, frame.Y(chart.band), frame.width, frame.Y(-chart.band) - frame.Y(chart.band));
   }
   const std::vector<double> x_numbers =
-      RoundNumbers(chart.x, std::max(2, static_cast<int>(frame.width / 70)));
+      RoundNumbers(chart.x, std::max(3, static_cast<int>(frame.width / 60)));
   const std::vector<double> y_numbers =
       RoundNumbers(chart.y, std::max(2, static_cast<int>(frame.height / 28)));
   for (const double x : x_numbers) out += Stroke("grid", frame.X(x), 0, frame.X(x), frame.height);

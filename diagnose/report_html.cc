@@ -27,8 +27,9 @@ std::string Joined(const std::vector<std::string>& parts) {
 }
 
 // Columns whose names begin with '#' hold numbers.
-std::string Table(const std::vector<std::string>& columns, const std::string& rows) {
-  std::string out = "<table>\n<thead><tr>";
+std::string Table(const std::vector<std::string>& columns, const std::string& rows,
+                  const std::string& style = "") {
+  std::string out = "<table" + (style.empty() ? "" : " class=\"" + style + "\"") + ">\n<thead><tr>";
   for (const std::string& column : columns) {
     const bool number = column.starts_with('#');
     out += (number ? "<th class=\"number\">" : "<th>") + TypesetHtml(number ? column.substr(1) : column) +
@@ -97,7 +98,7 @@ std::string Effects(const Diagnosis& diagnosis) {
       rows += "<tr>" + Cell(parameter.name) + NumberCell(parameter.value) + Interval(parameter) +
               Cell(parameter.unit) + "</tr>\n";
     }
-    if (!rows.empty()) out += Table({"parameter", "#value", "#95 % interval", "unit"}, rows);
+    if (!rows.empty()) out += Table({"parameter", "#value", "#95 % interval", "unit"}, rows, "narrow");
     if (!effect.names.empty()) out += "<p>" + EscapeMarkup(Joined(effect.names)) + "</p>\n";
     if (!effect.tied_with.empty()) {
       out += "<p class=\"flag\">These data cannot tell it from " + EscapeMarkup(Joined(effect.tied_with)) +
@@ -144,17 +145,17 @@ std::string Where(const Diagnosis& diagnosis) {
   std::string out;
   if (!rows.empty()) out = Table({"balance", "#share", "where", "when"}, rows);
   for (const MissingTerm& term : diagnosis.missing) {
-    out += "<p>What the balance lacks, with its 95 % interval:</p>\n" + MissingTermPicture(term);
     std::string bins;
     for (size_t i = 0; i < std::min({term.at.size(), term.mean.size(), term.error.size()}); ++i) {
       bins +=
           "<tr>" + NumberCell(term.at[i]) + NumberCell(term.mean[i]) + NumberCell(term.error[i]) + "</tr>\n";
     }
-    out += "<details><summary>the same as a table</summary>\n" +
-           Table({"#" + term.against + " (" + term.against_unit + ")", "#mean (" + term.unit + ")",
-                  "#standard error"},
-                 bins) +
-           "</details>\n";
+    const std::string unit = term.against_unit.empty() ? "" : " (" + term.against_unit + ")";
+    out += "<p>What the balance lacks, with its 95 % interval:</p>\n<div class=\"beside\">\n" +
+           MissingTermPicture(term) +
+           Table({"#" + term.against + unit, "#mean (" + term.unit + ")", "#standard error"}, bins,
+                 "narrow small") +
+           "</div>\n";
   }
   return out;
 }
@@ -162,7 +163,7 @@ std::string Where(const Diagnosis& diagnosis) {
 // Escaped, with the line breaks of its own.
 std::string Lines(const std::string& text) {
   std::string out, line;
-  for (const char c : text + "\n") {
+  for (const char c : text) {
     if (c == '\n') {
       out += EscapeMarkup(line) + "\n";
       line.clear();
@@ -170,7 +171,7 @@ std::string Lines(const std::string& text) {
       line += c;
     }
   }
-  return out;
+  return out + EscapeMarkup(line);
 }
 
 std::string Next(const Diagnosis& diagnosis) {

@@ -102,6 +102,21 @@ ChartRange RangeOf(const ChartSeries& measured, const ChartSeries& before, const
   return range.WithMargin();
 }
 
+// Of residuals, which count up to the size of what was measured.
+ChartRange ResidualRange(const ChartSeries& before, const ChartSeries& after, double measured_size,
+                         double noise) {
+  double size = std::max(UsualSize(before.y), UsualSize(after.y));
+  if (measured_size > 0) size = std::min(size, measured_size);
+  size = std::max(size, 3 * noise);
+  return ChartRange{-size, size}.WithMargin();
+}
+
+double SizeOf(const std::vector<double>& values) {
+  ChartRange range = ChartRange::Empty();
+  range.Include(values);
+  return range.low <= range.high ? range.high - range.low : 0;
+}
+
 // What residuals may depend on, over a run's time; nothing where it was not measured.
 std::optional<std::vector<double>> Quantity(const RunCurves& run, const std::string& name) {
   if (name == "voltage") {
@@ -125,26 +140,26 @@ std::optional<std::vector<double>> Quantity(const RunCurves& run, const std::str
   return *values;
 }
 
-// Means of y in bins of x with about the same number of points.
-ChartSeries BinMeans(const std::string& style, const ChartSeries& points) {
-  constexpr size_t kBins = 15;
-  std::vector<std::pair<double, double>> sorted;
+// Means of y in bins of x, left out where there are few points.
+ChartSeries BinMeans(const std::string& style, const ChartSeries& points, const ChartRange& range) {
+  constexpr size_t kBins = 18;
+  std::array<double, kBins> x{}, y{};
+  std::array<size_t, kBins> count{};
+  size_t all = 0;
   for (size_t i = 0; i < points.x.size(); ++i) {
-    if (std::isfinite(points.x[i]) && std::isfinite(points.y[i]))
-      sorted.emplace_back(points.x[i], points.y[i]);
+    if (!std::isfinite(points.x[i]) || !std::isfinite(points.y[i])) continue;
+    const double part = (points.x[i] - range.low) / (range.high - range.low);
+    const size_t bin = std::min(kBins - 1, static_cast<size_t>(std::max(0.0, part) * kBins));
+    x[bin] += points.x[i];
+    y[bin] += points.y[i];
+    ++count[bin];
+    ++all;
   }
-  std::sort(sorted.begin(), sorted.end());
   ChartSeries means{style, {}, {}, {}};
   for (size_t bin = 0; bin < kBins; ++bin) {
-    const size_t from = bin * sorted.size() / kBins, to = (bin + 1) * sorted.size() / kBins;
-    if (from == to) continue;
-    double x = 0, y = 0;
-    for (size_t i = from; i < to; ++i) {
-      x += sorted[i].first / static_cast<double>(to - from);
-      y += sorted[i].second / static_cast<double>(to - from);
-    }
-    means.x.push_back(x);
-    means.y.push_back(y);
+    if (count[bin] == 0 || 500 * count[bin] < all) continue;
+    means.x.push_back(x[bin] / static_cast<double>(count[bin]));
+    means.y.push_back(y[bin] / static_cast<double>(count[bin]));
   }
   return means;
 }
@@ -278,9 +293,7 @@ std::string RunPicture(const Diagnosis& diagnosis, const RunCurves& run, bool si
     residuals.zero_line = true;
     residuals.lines = {series("before", Left(curve.measured, curve.before, unit.factor)),
                        series("after", Left(curve.measured, curve.after, unit.factor))};
-    const double size =
-        std::max({UsualSize(residuals.lines[0].y), UsualSize(residuals.lines[1].y), 3 * noise});
-    residuals.y = ChartRange{-size, size}.WithMargin();
+    residuals.y = ResidualRange(residuals.lines[0], residuals.lines[1], SizeOf(signals.lines[0].y), noise);
     out += DrawChart(residuals, kSignals, top);
     top += signals.height;
   }
@@ -320,9 +333,9 @@ std::string DependencePicture(const Diagnosis& diagnosis, bool si) {
 
   constexpr double kRow = 128, kNumbers = 24;
   const double width = kPageWidth / static_cast<double>(std::max<size_t>(3, columns.size()));
-  std::string out = Legend({{"dots before", "model as given"},
+  std::string out = Legend({{"dots big before", "model as given"},
                             {"line before mean", "its mean"},
-                            {"dots after", "with what was found"},
+                            {"dots big after", "with what was found"},
                             {"line after mean", "its mean"},
                             {"rect band", "twice the noise"}},
                            58);
@@ -333,11 +346,13 @@ std::string DependencePicture(const Diagnosis& diagnosis, bool si) {
     const double noise = unit.factor * NoiseOf(diagnosis, channel);
     for (size_t k = 0; k < columns.size(); ++k) {
       ChartSeries before{"before", {}, {}, {}}, after{"after", {}, {}, {}};
+      double measured_size = 0;
       for (const RunCurves& run : diagnosis.curves) {
         const std::optional<std::vector<double>> x = Quantity(run, columns[k].name);
         if (!x) continue;
         for (const RunCurves::Curve& curve : run.curves) {
           if (curve.channel != channel) continue;
+          measured_size = std::max(measured_size, unit.factor * SizeOf(curve.measured));
           const std::vector<double> scaled = Scaled(*x, columns[k].factor);
           for (auto [series, simulated] : {std::pair{&before, &curve.before}, {&after, &curve.after}}) {
             const std::vector<double> left = Left(curve.measured, *simulated, unit.factor);
@@ -356,12 +371,11 @@ std::string DependencePicture(const Diagnosis& diagnosis, bool si) {
       range.Include(before.x);
       range.Include(after.x);
       chart.x = range.WithMargin();
-      const double size = std::max({UsualSize(before.y), UsualSize(after.y), 3 * noise});
-      chart.y = ChartRange{-size, size}.WithMargin();
+      chart.y = ResidualRange(before, after, measured_size, noise);
       chart.band = 2 * noise;
       chart.zero_line = true;
       chart.dots = {Some(before, 400), Some(after, 400)};
-      chart.lines = {BinMeans("before mean", before), BinMeans("after mean", after)};
+      chart.lines = {BinMeans("before mean", before, chart.x), BinMeans("after mean", after, chart.x)};
       out += DrawChart(chart, width * static_cast<double>(k), top);
     }
     top += last ? kRow + kNumbers : kRow;

@@ -28,6 +28,12 @@ th { text-align: left; font-size: .78rem; color: #333333; border-bottom: 1.5px s
   padding: .3rem .7rem .3rem 0; vertical-align: bottom; }
 td { vertical-align: top; border-bottom: 1px solid #dcdcdc; padding: .3rem .7rem .3rem 0; }
 tr { break-inside: avoid; }
+table.narrow { width: auto; }
+table.narrow th, table.narrow td { padding-right: 1.6rem; }
+table.small { font-size: .76rem; line-height: 1.2; }
+table.small td { padding-top: .1rem; padding-bottom: .1rem; }
+.beside { display: flex; flex-wrap: wrap; gap: 1.2rem; align-items: flex-start; }
+h3 .meta { font-weight: normal; }
 td.number, th.number { text-align: right; font-variant-numeric: tabular-nums; white-space: nowrap; }
 td.unit { white-space: nowrap; }
 tr.taken td { font-weight: bold; }

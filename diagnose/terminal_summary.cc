@@ -47,7 +47,10 @@ std::string SignalsLine(const Diagnosis& diagnosis, bool si) {
 std::string ShortNumber(double value) {
   if (!std::isfinite(value)) return "-";
   char text[32];
-  std::snprintf(text, sizeof text, "%.4g", value == 0 ? 0.0 : value);  // no -0
+  const double size = std::abs(value);
+  // %g would write 81000 as 8.1e+04.
+  const char* format = size >= 1e4 && size < 1e7 ? "%.0f" : "%.4g";
+  std::snprintf(text, sizeof text, format, value == 0 ? 0.0 : value);  // no -0
   return text;
 }
 

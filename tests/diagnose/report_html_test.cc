@@ -1,0 +1,140 @@
+#include "diagnose/report_html.h"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <limits>
+#include <regex>
+
+#include "diagnose/chart.h"
+#include "tests/diagnose/example_diagnosis.h"
+
+namespace hydro {
+namespace {
+
+using ::testing::ElementsAre;
+
+// Without printing half a megabyte when it fails.
+bool Has(const std::string& page, const std::string& part) { return page.find(part) != std::string::npos; }
+
+// The first tag that is not closed, or closed without being open; "" when there is none.
+std::string UnbalancedTag(const std::string& html) {
+  std::vector<std::string> open;
+  const std::regex tag(R"(<(/?)([a-zA-Z0-9]+)((?:[^<>"]|"[^"]*")*?)(/?)>)");
+  for (std::sregex_iterator it(html.begin(), html.end(), tag), end; it != end; ++it) {
+    const std::string name = (*it)[2];
+    if ((*it)[4].length() > 0 || name == "meta") continue;
+    if ((*it)[1].length() == 0) {
+      open.push_back(name);
+    } else if (open.empty() || open.back() != name) {
+      return "</" + name + ">";
+    } else {
+      open.pop_back();
+    }
+  }
+  return open.empty() ? "" : "<" + open.back() + ">";
+}
+
+// Tests that the page needs nothing outside of it and no script.
+TEST(ReportHtml, SelfContained) {
+  const std::string page = ReportHtml(testing::ExampleDiagnosis(), false);
+  EXPECT_TRUE(page.starts_with("<!DOCTYPE html>"));
+  for (const char* outside :
+       {"http:", "https:", "src=", "href=", "<script", "<link", "@import", "url(", "onload"}) {
+    EXPECT_FALSE(Has(page, outside)) << outside;
+  }
+}
+
+// Tests that every tag is closed where it should be, with much and with little to show.
+TEST(ReportHtml, TagsAreBalanced) {
+  EXPECT_EQ(UnbalancedTag(ReportHtml(testing::ExampleDiagnosis(60), false)), "");
+  EXPECT_EQ(UnbalancedTag(ReportHtml(testing::EmptyDiagnosis(), true)), "");
+}
+
+// Tests that what comes from files is shown as text.
+TEST(ReportHtml, Escapes) {
+  Diagnosis diagnosis = testing::ExampleDiagnosis(60);
+  const std::string evil = "<script>alert(\"1\")</script>&";
+  diagnosis.model.name = diagnosis.sentence = diagnosis.next.config = diagnosis.next.why = evil;
+  diagnosis.remarks = diagnosis.runs = diagnosis.held_out_runs = {evil};
+  diagnosis.curves[0].run = diagnosis.location[0].where = diagnosis.location[0].windows[0].run = evil;
+  diagnosis.candidates[0].id = diagnosis.candidates[1].rejected_because = evil;
+  const std::string page = ReportHtml(diagnosis, false);
+  EXPECT_FALSE(Has(page, "<script"));
+  EXPECT_TRUE(Has(page, "&lt;script&gt;"));
+  EXPECT_EQ(UnbalancedTag(page), "");
+}
+
+// Tests that all of the diagnosis is there: verdict, gaps, effects, parameters, places, ties, pictures,
+// ranking, the next experiment.
+TEST(ReportHtml, Complete) {
+  const std::string page = ReportHtml(testing::ExampleDiagnosis(), false);
+  for (const char* part : {"Gap report: bench &amp; rig",
+                           ">tied</span>",
+                           "static friction exceeds",
+                           "23.9",
+                           "19.5",
+                           "1.06",
+                           "static_excess",
+                           "0.47 to 0.57",
+                           "These data cannot tell it from sensor.skew.",
+                           "signal = p1",
+                           "implausible: four times",
+                           "|motor_speed| &lt; 5 rad/s, at reversals",
+                           "square &lt;wave&gt;: 1.4 to 1.75 s",
+                           "p2 is noisier than stated",
+                           "A slow triangle",
+                           "file = &quot;model.toml&quot;",
+                           "81000",
+                           ">taken<",
+                           "the held-out gap stays 13 times",
+                           "noise floor",
+                           "class=\"span\"",
+                           "class=\"band\"",
+                           "class=\"line measured\"",
+                           "class=\"line before\"",
+                           "class=\"line after\"",
+                           "class=\"bar found\"",
+                           "motor speed (rad/s)",
+                           "voltage (V)",
+                           "@media print"}) {
+    EXPECT_TRUE(Has(page, part)) << part;
+  }
+}
+
+// Tests that SI replaces the paper's units in tables and pictures.
+TEST(ReportHtml, Si) {
+  const std::string page = ReportHtml(testing::ExampleDiagnosis(), true);
+  EXPECT_TRUE(Has(page, "p1 (kPa)"));
+  EXPECT_TRUE(Has(page, "303.4"));
+  EXPECT_TRUE(Has(page, "N m s"));
+  EXPECT_FALSE(Has(page, "p1 (psi)"));
+}
+
+// Tests that curves without values, or with a simulation that ran away or failed, are drawn as far as they
+// go.
+TEST(ReportHtml, OddCurves) {
+  Diagnosis diagnosis = testing::ExampleDiagnosis(60);
+  diagnosis.curves[0].curves[0].before.assign(60, 1e30);
+  diagnosis.curves[0].curves[1].before.clear();
+  diagnosis.curves[0].curves[2].measured.assign(60, std::numeric_limits<double>::quiet_NaN());
+  diagnosis.curves[1].voltage.clear();
+  diagnosis.curves.push_back({"nothing", false, {}, {}, {}});
+  const std::string page = ReportHtml(diagnosis, false);
+  EXPECT_EQ(UnbalancedTag(page), "");
+  EXPECT_FALSE(Has(page, "nan"));
+  EXPECT_FALSE(Has(page, "inf\""));
+  EXPECT_FALSE(Has(page, "e+"));
+}
+
+// Tests that numbers along an axis are round and within its range.
+TEST(Chart, RoundNumbers) {
+  EXPECT_THAT(RoundNumbers({-0.4, 10.2}, 5), ElementsAre(0, 5, 10));
+  EXPECT_THAT(RoundNumbers({0, 1}, 5).size(), 6u);
+  EXPECT_TRUE(RoundNumbers({1, 1}, 5).empty());
+  EXPECT_EQ(Pixels(12.345), "12.3");
+  EXPECT_EQ(Pixels(-0.01), "0");
+}
+
+}  // namespace
+}  // namespace hydro
