@@ -145,7 +145,7 @@ std::string DrawChart(const Chart& chart, double left, double top) {
   const std::vector<double> x_numbers =
       RoundNumbers(chart.x, std::max(3, static_cast<int>(frame.width / 60)));
   const std::vector<double> y_numbers =
-      RoundNumbers(chart.y, std::max(2, static_cast<int>(frame.height / 28)));
+      RoundNumbers(chart.y, std::max(2, static_cast<int>(frame.height / 22)));
   for (const double x : x_numbers) out += Stroke("grid", frame.X(x), 0, frame.X(x), frame.height);
   for (const double y : y_numbers) out += Stroke("grid", 0, frame.Y(y), frame.width, frame.Y(y));
   if (chart.zero_line) out += Stroke("zero", 0, frame.Y(0), frame.width, frame.Y(0));

@@ -71,8 +71,21 @@ Eigen::VectorXd WhitePower(const Eigen::MatrixXd& basis) {
   return Eigen::Map<const Eigen::Matrix2Xd>(each.data(), 2, kBins).colwise().sum().transpose();
 }
 
-// The standard deviation of the noise of a series without gaps.
-double SpectralNoise(const std::vector<double>& values) {
+// Where segments begin that are for the most part there, as `measured` says; all when there are none.
+std::vector<int> Segments(const std::vector<double>& measured) {
+  std::vector<int> all, whole;
+  for (int first = 0; first + kSegment + kOrder <= static_cast<int>(measured.size()); first += kHop) {
+    all.push_back(first);
+    const auto from = measured.begin() + first;
+    const auto missing =
+        std::count_if(from, from + kSegment + kOrder, [](double v) { return std::isnan(v); });
+    if (missing <= kSegment / 2) whole.push_back(first);
+  }
+  return whole.empty() ? all : whole;
+}
+
+// The standard deviation of the noise of a series without gaps, from those segments.
+double SpectralNoise(const std::vector<double>& values, const std::vector<int>& segments) {
   const int samples = static_cast<int>(values.size());
   if (samples < kSegment + kOrder) return 0;
   Eigen::VectorXd differences(samples - kOrder);
@@ -85,7 +98,7 @@ double SpectralNoise(const std::vector<double>& values) {
   const Eigen::MatrixXd basis = Basis();
   const Eigen::VectorXd white = WhitePower(basis);
   std::vector<std::vector<double>> powers(kBands);
-  for (int first = 0; first + kSegment <= differences.size(); first += kHop) {
+  for (const int first : segments) {
     const Eigen::VectorXd parts = basis * differences.segment(first, kSegment);
     for (int bin = 0; bin < kBins; ++bin) {
       powers[static_cast<size_t>(bin * kBands / kBins)].push_back(parts.segment<2>(2 * bin).squaredNorm() /
@@ -97,7 +110,8 @@ double SpectralNoise(const std::vector<double>& values) {
   std::sort(powers.begin(), powers.end(),
             [](const auto& a, const auto& b) { return NoisePower(a) < NoisePower(b); });
   // Powers a band has that are independent of each other: half the samples' over all of the spectrum.
-  const double independent = std::max(2.0, samples / (4.0 * kBands));
+  const double used = kHop * static_cast<double>(segments.size());
+  const double independent = std::max(2.0, used / (4.0 * kBands));
   std::vector<double> pooled = powers.front();
   for (size_t band = 1; band < powers.size(); ++band) {
     const double chance = std::sqrt((1 + 1 / static_cast<double>(band)) / independent);
@@ -176,6 +190,7 @@ double EstimateNoise(const std::vector<double>& values) {
   for (const Gap& gap : gaps) {
     std::pair<double, double> before = Beside(values, static_cast<std::ptrdiff_t>(gap.first) - 1, -1);
     std::pair<double, double> after = Beside(values, static_cast<std::ptrdiff_t>(gap.last), +1);
+    // Before the first value and after the last one: that one.
     if (gap.first == 0) before = {after.first - 1, after.second};
     if (gap.last == values.size()) after = {before.first + 1, before.second};
     const double slope = (after.second - before.second) / (after.first - before.first);
@@ -183,7 +198,8 @@ double EstimateNoise(const std::vector<double>& values) {
       whole[i] = before.second + slope * (static_cast<double>(i) - before.first);
     }
   }
-  double noise = SpectralNoise(whole);
+  const std::vector<int> segments = Segments(values);
+  double noise = SpectralNoise(whole, segments);
   // Bridges are quieter than the rest: they get noise as large as was found, until that is what is found.
   for (int pass = 0; pass < 4 && !gaps.empty(); ++pass) {
     std::mt19937_64 random(0x9a5);
@@ -192,7 +208,7 @@ double EstimateNoise(const std::vector<double>& values) {
     for (const Gap& gap : gaps) {
       for (size_t i = gap.first; i < gap.last; ++i) filled[i] += noise * normal(random);
     }
-    noise = SpectralNoise(filled);
+    noise = SpectralNoise(filled, segments);
   }
   return std::max(noise, rounding);
 }

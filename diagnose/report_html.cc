@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <vector>
 
 #include "diagnose/diagnosis_in_si.h"
@@ -19,6 +20,12 @@ namespace {
 
 std::string Cell(const std::string& text) { return "<td>" + TypesetHtml(text) + "</td>"; }
 std::string NumberCell(double value) { return "<td class=\"number\">" + ShortNumber(value) + "</td>"; }
+
+std::string Probability(double p) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.2g", p);
+  return "<td class=\"number\">" + std::string(std::isfinite(p) ? text : "-") + "</td>";
+}
 
 std::string Joined(const std::vector<std::string>& parts) {
   std::string joined;
@@ -209,7 +216,7 @@ std::string Ranking(const Diagnosis& diagnosis) {
     const bool taken = candidate.rejected_because.empty();
     rows += std::string(taken ? "<tr class=\"taken\">" : "<tr>") + "<td class=\"number\">" +
             std::to_string(++rank) + "</td>" + Cell(candidate.id) + NumberCell(candidate.score) +
-            NumberCell(candidate.fit) + NumberCell(candidate.held_out) + NumberCell(candidate.p_value) +
+            NumberCell(candidate.fit) + NumberCell(candidate.held_out) + Probability(candidate.p_value) +
             "<td>" + (taken ? "taken" : TypesetHtml(candidate.rejected_because)) + "</td></tr>\n";
   }
   if (rows.empty()) return "";

@@ -117,6 +117,27 @@ double SizeOf(const std::vector<double>& values) {
   return range.low <= range.high ? range.high - range.low : 0;
 }
 
+// Means over stretches of time, through which noise does not show.
+ChartSeries RunningMean(const std::string& style, const ChartSeries& series) {
+  constexpr size_t kStretches = 100;
+  ChartSeries means{style, {}, {}, {}};
+  const size_t size = series.x.size();
+  for (size_t k = 0; k < std::min(kStretches, size); ++k) {
+    const size_t from = k * size / std::min(kStretches, size);
+    const size_t to = (k + 1) * size / std::min(kStretches, size);
+    double sum = 0;
+    size_t count = 0;
+    for (size_t i = from; i < to; ++i) {
+      if (!std::isfinite(series.y[i])) continue;
+      sum += series.y[i];
+      ++count;
+    }
+    means.x.push_back((series.x[from] + series.x[to - 1]) / 2);
+    means.y.push_back(count == 0 ? std::nan("") : sum / static_cast<double>(count));
+  }
+  return means;
+}
+
 // What residuals may depend on, over a run's time; nothing where it was not measured.
 std::optional<std::vector<double>> Quantity(const RunCurves& run, const std::string& name) {
   if (name == "voltage") {
@@ -260,7 +281,8 @@ std::string RunPicture(const Diagnosis& diagnosis, const RunCurves& run, bool si
                                      {"line before", "model as given"},
                                      {"line after", "with what was found"}};
   if (!spans.empty()) legend.push_back({"rect span", "where they disagree most"});
-  std::string out = Legend(legend, 58) + Legend({{"rect band", "twice the noise"}}, kSignals + 58);
+  std::string out = Legend(legend, 58) +
+                    Legend({{"rect band", "twice the noise"}, {"line after mean", "means"}}, kSignals + 58);
   double top = kLegendHeight;
   for (size_t i = 0; i < run.curves.size(); ++i) {
     const RunCurves::Curve& curve = run.curves[i];
@@ -291,9 +313,11 @@ std::string RunPicture(const Diagnosis& diagnosis, const RunCurves& run, bool si
     residuals.y_label = "measured - model";
     residuals.band = 2 * noise;
     residuals.zero_line = true;
-    residuals.lines = {series("before", Left(curve.measured, curve.before, unit.factor)),
-                       series("after", Left(curve.measured, curve.after, unit.factor))};
+    residuals.lines = {series("before faint", Left(curve.measured, curve.before, unit.factor)),
+                       series("after faint", Left(curve.measured, curve.after, unit.factor))};
     residuals.y = ResidualRange(residuals.lines[0], residuals.lines[1], SizeOf(signals.lines[0].y), noise);
+    residuals.lines.push_back(RunningMean("before mean", residuals.lines[0]));
+    residuals.lines.push_back(RunningMean("after mean", residuals.lines[1]));
     out += DrawChart(residuals, kSignals, top);
     top += signals.height;
   }

@@ -56,6 +56,7 @@ svg path { fill: none; }
 .line.measured { stroke: #a8a8a8; stroke-width: 3; }
 .line.before { stroke: #d55e00; }
 .line.after { stroke: #0072b2; }
+.line.faint { stroke-width: .7; stroke-opacity: .4; }
 .line.mean { stroke-width: 2; }
 .line.before.mean { stroke-dasharray: 6 3; }
 .line.found { stroke: #0072b2; stroke-width: 1; }

@@ -35,6 +35,11 @@ constexpr ChannelRow kRows[kChannels] = {{"motor_angle", "rad", &MeasuredRun::mo
                    allowed);
 }
 
+struct Range {
+  double low = std::numeric_limits<double>::infinity();
+  double high = -std::numeric_limits<double>::infinity();
+};
+
 size_t CountValid(const std::vector<double>& values) {
   return static_cast<size_t>(
       std::count_if(values.begin(), values.end(), [](double value) { return !std::isnan(value); }));
@@ -85,6 +90,25 @@ void CheckSignal(const MeasuredRun& run, const ChannelRow& row, const Parameters
          "a signal that changes, or leave it out");
 }
 
+// `values` without the samples at the end of a sensor's range, if there are any. Noise makes neighbours
+// differ; where many in a row are the largest or smallest value of all, the sensor reads no further.
+std::vector<double> WithoutEnds(const std::vector<double>& values, const Range& range) {
+  constexpr size_t kInARow = 8;
+  std::vector<double> rest = values;
+  for (const double end : {range.low, range.high}) {
+    size_t longest = 0, here = 0;
+    for (const double value : values) {
+      here = value == end ? here + 1 : 0;
+      longest = std::max(longest, here);
+    }
+    if (longest < kInARow) continue;
+    for (double& value : rest) {
+      if (value == end) value = kNone;
+    }
+  }
+  return rest;
+}
+
 SignalData MakeSignal(const MeasuredRun& run, Channel channel) {
   const MeasuredSignal& measured = run.*kRows[static_cast<size_t>(channel)].signal;
   SignalData signal;
@@ -92,17 +116,30 @@ SignalData MakeSignal(const MeasuredRun& run, Channel channel) {
   signal.values = measured.values;
   signal.stated_noise = measured.noise.value_or(kNone);
   signal.resolution = EstimateResolution(measured.values);
-  signal.valid = CountValid(measured.values);
-  double low = std::numeric_limits<double>::infinity(), high = -low;
+  Range range;
   for (const double value : measured.values) {
     if (std::isnan(value)) continue;
-    low = std::min(low, value);
-    high = std::max(high, value);
+    range.low = std::min(range.low, value);
+    range.high = std::max(range.high, value);
   }
-  // Below 1e-5 of the range it is the simulation that is noisy. What never moves is as good as it is said to
-  // be.
-  signal.noise = std::max(EstimateNoise(measured.values), 1e-5 * (high - low));
-  if (high == low) signal.noise = measured.noise.value_or(1e-5 * std::max(1.0, std::abs(high)));
+  const double size = range.high - range.low;
+  if (size == 0) {
+    // What never moves is as good as it is said to be.
+    signal.noise = measured.noise.value_or(1e-5 * std::max(1.0, std::abs(range.high)));
+  } else {
+    std::vector<double> rest = WithoutEnds(measured.values, range);
+    double noise = EstimateNoise(rest);
+    // Without noise above the rounding one cannot tell: what rests at an end of its motion reads the same.
+    if (noise >= 0.6 * signal.resolution && noise >= 1e-4 * size) {
+      signal.values = std::move(rest);
+    } else {
+      noise = EstimateNoise(measured.values);
+    }
+    // Below 1e-5 of the range it is the simulation that is noisy.
+    signal.noise = std::max(noise, 1e-5 * size);
+  }
+  signal.valid = CountValid(signal.values);
+  signal.saturated = CountValid(measured.values) - signal.valid;
   return signal;
 }
 
@@ -116,6 +153,8 @@ Line FirstLine(const std::vector<double>& time, const SignalData& signal) {
   for (size_t i = 0; i < time.size() && rows.size() < 10; ++i) {
     if (!std::isnan(signal.values[i])) rows.push_back(i);
   }
+  // What begins late says nothing of the start's slope.
+  if (rows[0] > 20) return {signal.values[rows[0]], 0};
   // Fewer of them where no line passes through ten: a fast event near the start.
   for (const size_t count : {rows.size(), size_t{5}, size_t{3}}) {
     double t = 0, y = 0, tt = 0, ty = 0, off = 0;
@@ -235,7 +274,8 @@ RunData PrepareRun(MeasuredRun run, const Parameters& model) {
     CheckSignal(run, row, model);
     // The arm of a clamped shaft stands still, that of a driven one is imposed.
     if (row.arm && run.shaft != Shaft::kFree) continue;
-    data.signals.push_back(MakeSignal(run, static_cast<Channel>(channel)));
+    SignalData signal = MakeSignal(run, static_cast<Channel>(channel));
+    if (signal.valid >= kFewestValues) data.signals.push_back(std::move(signal));
   }
   if (data.signals.empty()) {
     Refuse(run.file, "", "no signal to compare a model with",

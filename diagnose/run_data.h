@@ -22,6 +22,8 @@ struct SignalData {
   double stated_noise = std::numeric_limits<double>::quiet_NaN();  // what the run says of it
   double resolution = 0;  // smallest step between values, 0 where none shows
   size_t valid = 0;       // samples that are not missing
+  // Samples at the end of the sensor's range: they say only that it was exceeded, and count as missing.
+  size_t saturated = 0;
 };
 
 struct RunData {

@@ -180,6 +180,33 @@ TEST(PrepareRun, NoiseIsAboveZero) {
   for (const SignalData& signal : PrepareRun(run, testing::Table1()).signals) EXPECT_GT(signal.noise, 0);
 }
 
+// Tests that what a saturated sensor reads counts as missing, and that a side which rests on its one-way
+// valve in a run without noise, and a coarse reading of an angle at rest, do not.
+TEST(PrepareRun, Saturation) {
+  MeasuredRun run = Clamped();
+  size_t beyond = 0;
+  for (double& p : run.p2.values) {
+    if (p <= 400) continue;
+    p = 400;
+    ++beyond;
+  }
+  ASSERT_GT(beyond, 100u);
+  const RunData data = PrepareRun(run, testing::Table1());
+  EXPECT_EQ(data.Find(Channel::kP2)->saturated, beyond);
+  EXPECT_EQ(data.Find(Channel::kP2)->valid, 500 - beyond);
+  EXPECT_NEAR(data.Find(Channel::kP2)->noise, 1.5, 0.3);
+  EXPECT_EQ(data.Find(Channel::kP1)->saturated, 0u);
+
+  MeasuredRun quiet = Clamped();
+  for (size_t i = 0; i < 500; ++i) {
+    quiet.p1.values[i] = 100 + std::max(0.0, 300 * std::sin(0.02 * static_cast<double>(i)));
+    quiet.motor_speed.values[i] = std::round(std::max(0.0, 20 * std::sin(0.02 * static_cast<double>(i))));
+  }
+  const RunData still = PrepareRun(quiet, testing::Table1());
+  EXPECT_EQ(still.Find(Channel::kP1)->saturated, 0u);
+  EXPECT_EQ(still.Find(Channel::kMotorSpeed)->saturated, 0u);
+}
+
 // Tests that runs of one name are told apart.
 TEST(NameApart, NumbersWhatIsTaken) {
   std::vector<RunData> runs(4);
