@@ -13,8 +13,13 @@ namespace hydro {
 namespace {
 
 constexpr std::array<double, 6> kDurations = {0, 0.004, 0.016, 0.064, 0.256, 1.024};  // s
-constexpr size_t kEnoughBlocks = 100;                                                 // to see a dependence
-constexpr size_t kNear = 16;  // blocks on either side whose noise is taken for one
+// So many standard deviations of what noise does, and so much of it: the smoother linearises and holds each
+// mode over a sample, and what that costs stays below.
+constexpr double kSignificant = 8;
+constexpr double kMaterial = 0.1;
+constexpr double kPlain = 25;          // standard deviations that are enough by themselves
+constexpr size_t kEnoughBlocks = 100;  // to see a dependence
+constexpr size_t kNear = 16;           // blocks on either side whose noise is taken for one
 
 Disagreement AtDuration(const std::vector<SmoothedRun>& smoothed, const std::vector<const RunData*>& runs,
                         Balance balance, double duration) {
@@ -61,9 +66,10 @@ Disagreement AtDuration(const std::vector<SmoothedRun>& smoothed, const std::vec
   const double count = static_cast<double>(blocks.size());
   if (count == 0) return result;
   result.energy = chi_squared - count;
-  result.per_block = result.energy / count;
   // The noise is known from draws only.
   result.significance = result.energy / std::sqrt(2 * count * (1 + 1.0 / kNoiseDraws));
+  result.beyond_noise = result.significance > kPlain ||
+                        (result.significance > kSignificant && result.energy > kMaterial * count);
   return result;
 }
 
@@ -83,8 +89,8 @@ Disagreement LargestDisagreement(const std::vector<SmoothedRun>& smoothed,
     }
     if (d.energy > largest.energy) {
       largest.energy = d.energy;
-      largest.per_block = d.per_block;
       largest.significance = d.significance;
+      largest.beyond_noise = d.beyond_noise;
     }
   }
   return largest;

@@ -22,10 +22,10 @@ struct Blocks {
 struct Disagreement {
   // At the length at which most shows, of one sample to a second: shorter blocks do not see what is small and
   // slow, longer ones what is quick.
-  double energy = 0;        // sum of (value/noise)^2 less what noise alone makes of it
-  double per_block = 0;     // that a block
-  double significance = 0;  // that in its standard deviations
-  Blocks blocks;            // the same, but enough of them to see what they depend on
+  double energy = 0;          // sum of (value/noise)^2 less what noise alone makes of it
+  double significance = 0;    // that in its standard deviations
+  bool beyond_noise = false;  // plainly, with room for what linearising costs
+  Blocks blocks;              // at the same length, but enough of them to see what they depend on
 };
 
 Disagreement LargestDisagreement(const std::vector<SmoothedRun>& smoothed,

@@ -109,9 +109,9 @@ class Smoother {
       if (signal.channel == Channel::kP1) sensor.offset = offsets.p1;
       if (signal.channel == Channel::kP2) sensor.offset = offsets.p2;
       const double noise = ChannelNoise(signal);
-      sensor.variance = noise * noise;
       // While a coarse reading stays the same so does its error: it counts once.
       const bool coarse = signal.resolution > 0 && noise < 0.6 * signal.resolution;
+      sensor.variance = noise * noise;
       if (coarse) sensor.repeats = Repeats(signal.values);
       std::normal_distribution<double> normal(0, noise);
       for (auto& draw : sensor.noise) {

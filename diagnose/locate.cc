@@ -19,14 +19,9 @@ namespace {
 constexpr std::array<const char*, kBalances> kNames = {"pump_torque", "flow_1", "flow_2", "arm_torque"};
 constexpr std::array<const char*, kBalances> kUnits = {"in-lbf", "in^3/s", "in^3/s", "in-lbf"};
 
-// Nothing is located below these: so many standard deviations of what noise does, and a disturbance of so
-// much against it at its best scale. The smoother linearises and holds each mode over a sample; what that
-// costs stays below.
-constexpr double kSignificant = 8;
-constexpr double kMaterial = 0.1;
 constexpr double kSmallestShare = 0.02;
 // A variable must explain so much more of the variance than a simpler one to be preferred to it.
-constexpr double kPlainly = 0.03;
+constexpr double kPlainly = 0.06;
 // A dependence that explains less is none.
 constexpr double kDependence = 0.05;
 constexpr double kQuick = 0.005;  // s: longer blocks do not see what repeats within a turn
@@ -44,7 +39,7 @@ Found Weigh(const std::vector<SmoothedRun>& smoothed, const std::vector<const Ru
   for (size_t b = 0; b < kBalances; ++b) {
     Disagreement d = LargestDisagreement(smoothed, runs, static_cast<Balance>(b));
     found.blocks[b] = std::move(d.blocks);
-    if (d.significance < kSignificant || d.per_block < kMaterial) continue;
+    if (!d.beyond_noise) continue;
     found.energy[b] = d.energy;
     found.total += d.energy;
   }
