@@ -15,7 +15,7 @@ namespace hydro {
 
 namespace {
 
-constexpr int kMostChanges = 4;
+constexpr int kMostChanges = 3;
 
 // A single run without others to hold out: its last third is held out.
 void SplitOff(MeasuredRun* run, std::vector<MeasuredRun>* held_out) {

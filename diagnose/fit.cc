@@ -1,6 +1,7 @@
 #include "diagnose/fit.h"
 
 #include <ceres/ceres.h>
+#include <glog/logging.h>
 
 #include <Eigen/Dense>
 #include <algorithm>
@@ -152,6 +153,7 @@ Fitted Fit(const Hypothesis& hypothesis, const std::vector<const RunData*>& runs
       problem.SetParameterUpperBound(values.data(), place, ToFitted(free[i], free[i].high));
     }
   }
+  FLAGS_minloglevel = google::GLOG_FATAL;  // a step that cannot be simulated is no error
   ceres::Solver::Options solver;
   solver.linear_solver_type = ceres::DENSE_QR;
   solver.max_num_iterations = options.most_iterations;

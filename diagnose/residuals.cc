@@ -4,11 +4,20 @@
 
 namespace hydro {
 
+namespace {
+
+// Of a step; a hundredth of usual noise even where all steps' errors add up.
+constexpr double kTolerance = 1e-5;
+
+}  // namespace
+
 Residuals ResidualsOf(const ModelDescription& model, const RunData& run, const StartState& start,
-                      const std::vector<Unknown>& unknowns, size_t stride) {
+                      const std::vector<Unknown>& unknowns, size_t stride, bool repeated_effects) {
   ResponseOptions options;
   options.stride = stride;
+  options.repeated_effects = repeated_effects;
   options.channels = {};
+  options.relative_tolerance = kTolerance;
   for (const SignalData& signal : run.signals) options.channels[static_cast<size_t>(signal.channel)] = true;
   const Response response = Respond(model, run.stimulus, start, unknowns, options);
 

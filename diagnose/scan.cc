@@ -6,6 +6,7 @@
 
 #include "diagnose/parallel.h"
 #include "diagnose/residuals.h"
+#include "model/jet.h"
 
 namespace hydro {
 
@@ -21,8 +22,9 @@ constexpr double kLongestStep = 1.5;
 
 // A run at the current fit: derivatives by its free numbers and its start.
 struct RunBasis {
+  VectorXd values;  // residuals
   MatrixXd columns;
-  double sum = 0;
+  MatrixXd normal;  // columns' columns
 };
 
 // The best move within the bounds, for the normal equations [A b; b' s]: s + 2 b'd + d'A d. The last `own` of
@@ -61,76 +63,76 @@ double BestMove(const MatrixXd& A, const VectorXd& b, double s, const VectorXd& 
   return s + 2 * b.dot(*move) + move->dot(A * *move);
 }
 
-Scanned Judge(const Fitted& current, const std::vector<const RunData*>& runs,
-              const std::vector<RunBasis>& bases, const std::vector<FreeParameter>& known,
-              const Change& change, Hypothesis with, size_t stride) {
-  Scanned scanned;
-  scanned.change = change;
-  const std::vector<FreeParameter> all = with.Free();
-  std::vector<FreeParameter> own;
-  std::vector<Unknown> unknowns;
-  for (const FreeParameter& parameter : all) {
-    const bool had = std::any_of(known.begin(), known.end(),
-                                 [&](const FreeParameter& other) { return other.name == parameter.name; });
-    if (had) continue;
-    own.push_back(parameter);
-    unknowns.push_back(parameter.unknown);
+// What the score test needs of one change from one run.
+struct RunColumns {
+  VectorXd values;  // the residuals with the change at its starting point
+  MatrixXd own;     // derivatives by its parameters
+};
+
+// A change at one of its starting points.
+struct Task {
+  size_t change = 0;
+  Hypothesis with;
+  std::vector<FreeParameter> own;  // free in it and not before
+};
+
+// The parameters in which it does nothing as it stands: their derivatives are all there is to it.
+std::vector<size_t> Vanishing(const Task& task) {
+  std::vector<size_t> places;
+  for (size_t i = 0; i < task.own.size(); ++i) {
+    const bool base = task.own[i].unknown.kind == Unknown::Kind::kBase;
+    if (base || (task.own[i].value == 0 && !task.own[i].logarithmic)) places.push_back(i);
   }
+  return places;
+}
+
+Scanned Judge(const std::vector<RunBasis>& bases, const std::vector<FreeParameter>& known, const Task& task,
+              const std::vector<RunColumns>& columns, size_t stride) {
+  Scanned scanned;
   const auto p = static_cast<Index>(known.size());
-  const auto e = static_cast<Index>(own.size());
+  const auto e = static_cast<Index>(task.own.size());
   MatrixXd A = MatrixXd::Zero(p + e, p + e);
   VectorXd b = VectorXd::Zero(p + e);
   double s = 0;
   double before = 0;
-  try {
-    for (size_t r = 0; r < runs.size(); ++r) {
-      Residuals residuals = ResidualsOf(with.model, *runs[r], current.runs[r].start, unknowns, stride);
-      const auto rows = static_cast<Index>(residuals.values.size());
-      const Map<const VectorXd> values(residuals.values.data(), rows);
-      Map<MatrixXd> jacobian(residuals.jacobian.data(), rows, e);
-      for (Index i = 0; i < e; ++i) {
-        if (own[static_cast<size_t>(i)].logarithmic) jacobian.col(i) *= own[static_cast<size_t>(i)].value;
-      }
-      const MatrixXd& basis = bases[r].columns;
-      const Index starts = basis.cols() - p;
-      MatrixXd normal(p + starts + e, p + starts + e);
-      normal.topLeftCorner(p + starts, p + starts) = basis.transpose() * basis;
-      normal.topRightCorner(p + starts, e) = basis.transpose() * jacobian;
-      normal.bottomLeftCorner(e, p + starts) = normal.topRightCorner(p + starts, e).transpose();
-      normal.bottomRightCorner(e, e) = jacobian.transpose() * jacobian;
-      VectorXd right(p + starts + e);
-      right << basis.transpose() * values, jacobian.transpose() * values;
-      if (!normal.allFinite() || !right.allFinite()) throw ModelError("not finite");
-      // The run's start is taken out; what is left are the known parameters and the change's own.
-      std::vector<Index> keep;
-      for (Index i = 0; i < p + starts + e; ++i) {
-        if (i < p || i >= p + starts) keep.push_back(i);
-      }
-      double sum = values.squaredNorm();
-      if (starts > 0) {
-        MatrixXd inner = normal.block(p, p, starts, starts);
-        inner.diagonal().array() += 1e-10 * inner.diagonal().maxCoeff() + 1e-300;
-        const Eigen::LDLT<MatrixXd> solve(inner);
-        const MatrixXd across = normal.middleCols(p, starts);
-        const VectorXd start_right = right.segment(p, starts);
-        const VectorXd moved = solve.solve(start_right);
-        sum -= start_right.dot(moved);
-        right -= across * moved;
-        normal -= across * solve.solve(across.transpose());
-      }
-      A += normal(keep, keep);
-      b += right(keep);
-      s += sum;
-      before += bases[r].sum;
+  for (size_t r = 0; r < bases.size(); ++r) {
+    const VectorXd& values = columns[r].values;
+    const MatrixXd& own = columns[r].own;
+    const MatrixXd& basis = bases[r].columns;
+    const Index starts = basis.cols() - p;
+    MatrixXd normal(p + starts + e, p + starts + e);
+    normal.topLeftCorner(p + starts, p + starts) = bases[r].normal;
+    normal.topRightCorner(p + starts, e) = basis.transpose() * own;
+    normal.bottomLeftCorner(e, p + starts) = normal.topRightCorner(p + starts, e).transpose();
+    normal.bottomRightCorner(e, e) = own.transpose() * own;
+    VectorXd right(p + starts + e);
+    right << basis.transpose() * values, own.transpose() * values;
+    if (!normal.allFinite() || !right.allFinite()) throw ModelError("its simulation is not finite");
+    // The run's start is taken out; what is left are the known parameters and the change's own.
+    std::vector<Index> keep;
+    for (Index i = 0; i < p + starts + e; ++i) {
+      if (i < p || i >= p + starts) keep.push_back(i);
     }
-  } catch (const ModelError& error) {
-    scanned.failure = error.what();
-    scanned.start = std::move(with);
-    return scanned;
+    double sum = values.squaredNorm();
+    if (starts > 0) {
+      MatrixXd inner = normal.block(p, p, starts, starts);
+      inner.diagonal().array() += 1e-10 * inner.diagonal().maxCoeff() + 1e-300;
+      const Eigen::LDLT<MatrixXd> solve(inner);
+      const MatrixXd across = normal.middleCols(p, starts);
+      const VectorXd start_right = right.segment(p, starts);
+      const VectorXd moved = solve.solve(start_right);
+      sum -= start_right.dot(moved);
+      right -= across * moved;
+      normal -= across * solve.solve(across.transpose());
+    }
+    A += normal(keep, keep);
+    b += right(keep);
+    s += sum;
+    before += bases[r].values.squaredNorm();
   }
   VectorXd low(e), high(e), move;
   for (Index i = 0; i < e; ++i) {
-    const FreeParameter& parameter = own[static_cast<size_t>(i)];
+    const FreeParameter& parameter = task.own[static_cast<size_t>(i)];
     low(i) = parameter.logarithmic ? -kLongestStep : parameter.low - parameter.value;
     high(i) = parameter.logarithmic ? kLongestStep : parameter.high - parameter.value;
   }
@@ -138,17 +140,90 @@ Scanned Judge(const Fitted& current, const std::vector<const RunData*>& runs,
   scanned.expected = (before - after) * static_cast<double>(stride);
   std::vector<double> values;
   size_t next = 0;
-  for (const FreeParameter& parameter : all) {
-    if (next < own.size() && own[next].name == parameter.name) {
+  for (const FreeParameter& parameter : task.with.Free()) {
+    if (next < task.own.size() && task.own[next].name == parameter.name) {
       const double moved = move(p + static_cast<Index>(next++));
       values.push_back(parameter.logarithmic ? parameter.value * std::exp(moved) : parameter.value + moved);
     } else {
       values.push_back(parameter.value);
     }
   }
-  with.Set(values);
-  scanned.start = std::move(with);
+  scanned.start = task.with;
+  scanned.start.Set(values);
   return scanned;
+}
+
+// One that acts at its starting point is simulated there by itself.
+std::vector<RunColumns> Alone(const Fitted& current, const std::vector<const RunData*>& runs,
+                              const Task& task, size_t stride) {
+  std::vector<Unknown> unknowns;
+  for (const FreeParameter& parameter : task.own) unknowns.push_back(parameter.unknown);
+  std::vector<RunColumns> columns(runs.size());
+  for (size_t r = 0; r < runs.size(); ++r) {
+    const Residuals residuals =
+        ResidualsOf(task.with.model, *runs[r], current.runs[r].start, unknowns, stride);
+    const auto rows = static_cast<Index>(residuals.values.size());
+    columns[r].values = Map<const VectorXd>(residuals.values.data(), rows);
+    columns[r].own =
+        Map<const MatrixXd>(residuals.jacobian.data(), rows, static_cast<Index>(unknowns.size()));
+    for (size_t i = 0; i < task.own.size(); ++i) {
+      if (task.own[i].logarithmic) columns[r].own.col(static_cast<Index>(i)) *= task.own[i].value;
+    }
+  }
+  return columns;
+}
+
+// Several that do nothing yet share one simulation; the result by task. False when they do something after
+// all.
+bool Together(const Fitted& current, const std::vector<const RunData*>& runs,
+              const std::vector<RunBasis>& bases, const std::vector<const Task*>& tasks, size_t stride,
+              std::vector<std::vector<RunColumns>>* columns) {
+  ModelDescription model = current.hypothesis.model;
+  for (const Task* task : tasks) {
+    if (task->own.front().unknown.kind == Unknown::Kind::kEffect) {
+      model.effects.push_back(task->with.model.effects.back());
+    }
+  }
+  // Where each task's parameters are in the common model: effects there are in the order of their ids.
+  const std::vector<EffectParameter> all = EffectParameters(model);
+  std::vector<Unknown> unknowns;
+  size_t effect = current.hypothesis.model.effects.size();
+  for (const Task* task : tasks) {
+    const bool adds = task->own.front().unknown.kind == Unknown::Kind::kEffect;
+    for (const size_t place : Vanishing(*task)) {
+      if (!adds) {
+        unknowns.push_back(task->own[place].unknown);
+        continue;
+      }
+      const std::string& name = task->own[place].name;
+      for (size_t i = 0; i < all.size(); ++i) {
+        if (all[i].effect == effect && model.effects[effect].id + "." + all[i].name == name) {
+          unknowns.push_back({Unknown::Kind::kEffect, i});
+        }
+      }
+    }
+    if (adds) ++effect;
+  }
+  columns->assign(tasks.size(), std::vector<RunColumns>(runs.size()));
+  for (size_t r = 0; r < runs.size(); ++r) {
+    const Residuals residuals = ResidualsOf(model, *runs[r], current.runs[r].start, unknowns, stride, true);
+    const auto rows = static_cast<Index>(residuals.values.size());
+    const Map<const VectorXd> values(residuals.values.data(), rows);
+    if (!((values - bases[r].values).squaredNorm() < 1e-4 * static_cast<double>(rows))) return false;
+    const Map<const MatrixXd> jacobian(residuals.jacobian.data(), rows, static_cast<Index>(unknowns.size()));
+    Index next = 0;
+    for (size_t t = 0; t < tasks.size(); ++t) {
+      RunColumns& own = (*columns)[t][r];
+      own.values = bases[r].values;
+      own.own = MatrixXd::Zero(rows, static_cast<Index>(tasks[t]->own.size()));
+      for (const size_t place : Vanishing(*tasks[t])) {
+        own.own.col(static_cast<Index>(place)) = jacobian.col(next++);
+        const FreeParameter& parameter = tasks[t]->own[place];
+        if (parameter.logarithmic) own.own.col(static_cast<Index>(place)) *= parameter.value;
+      }
+    }
+  }
+  return true;
 }
 
 }  // namespace
@@ -170,24 +245,72 @@ std::vector<std::vector<Scanned>> Scan(const Fitted& current, const std::vector<
     for (size_t i = 0; i < known.size(); ++i) {
       if (known[i].logarithmic) bases[r].columns.col(static_cast<Index>(i)) *= known[i].value;
     }
-    bases[r].sum = Map<const VectorXd>(residuals.values.data(), rows).squaredNorm();
+    bases[r].normal = bases[r].columns.transpose() * bases[r].columns;
+    bases[r].values = Map<const VectorXd>(residuals.values.data(), rows);
   });
 
-  struct Task {
-    size_t change;
-    Hypothesis with;
-  };
   std::vector<Task> tasks;
   for (size_t c = 0; c < changes.size(); ++c) {
-    for (Hypothesis& with : With(current.hypothesis, changes[c], sizes))
-      tasks.push_back({c, std::move(with)});
+    for (Hypothesis& with : With(current.hypothesis, changes[c], sizes)) {
+      Task task{c, std::move(with), {}};
+      for (const FreeParameter& parameter : task.with.Free()) {
+        const bool had = std::any_of(known.begin(), known.end(), [&](const FreeParameter& other) {
+          return other.name == parameter.name;
+        });
+        if (!had) task.own.push_back(parameter);
+      }
+      tasks.push_back(std::move(task));
+    }
+  }
+  // Those that do nothing at their starting point share simulations, as many as one pass has directions for.
+  std::vector<std::vector<size_t>> groups;
+  std::vector<size_t> single;
+  size_t directions = 0;
+  for (size_t t = 0; t < tasks.size(); ++t) {
+    const size_t own = Vanishing(tasks[t]).size();
+    if (own == 0) {
+      single.push_back(t);
+      continue;
+    }
+    if (groups.empty() || directions + own > static_cast<size_t>(kJetWidth)) {
+      groups.emplace_back();
+      directions = 0;
+    }
+    groups.back().push_back(t);
+    directions += own;
   }
   std::vector<Scanned> judged(tasks.size());
-  ParallelFor(tasks.size(), jobs, [&](size_t t) {
-    judged[t] = Judge(current, runs, bases, known, changes[tasks[t].change], tasks[t].with, stride);
+  const auto alone = [&](size_t t) {
+    try {
+      judged[t] = Judge(bases, known, tasks[t], Alone(current, runs, tasks[t], stride), stride);
+    } catch (const ModelError& error) {
+      judged[t].failure = error.what();
+      judged[t].start = tasks[t].with;
+    }
+  };
+  ParallelFor(groups.size() + single.size(), jobs, [&](size_t i) {
+    if (i >= groups.size()) return alone(single[i - groups.size()]);
+    std::vector<const Task*> members;
+    for (const size_t t : groups[i]) members.push_back(&tasks[t]);
+    std::vector<std::vector<RunColumns>> columns;
+    bool together = false;
+    try {
+      together = Together(current, runs, bases, members, stride, &columns);
+      for (size_t m = 0; together && m < members.size(); ++m) {
+        judged[groups[i][m]] = Judge(bases, known, *members[m], columns[m], stride);
+      }
+    } catch (const ModelError&) {
+      together = false;  // one of them cannot be simulated; each by itself shows which
+    }
+    if (!together) {
+      for (const size_t t : groups[i]) alone(t);
+    }
   });
   std::vector<std::vector<Scanned>> scanned(changes.size());
-  for (size_t t = 0; t < tasks.size(); ++t) scanned[tasks[t].change].push_back(std::move(judged[t]));
+  for (size_t t = 0; t < tasks.size(); ++t) {
+    judged[t].change = changes[tasks[t].change];
+    scanned[tasks[t].change].push_back(std::move(judged[t]));
+  }
   for (auto& rows : scanned) {
     std::stable_sort(rows.begin(), rows.end(),
                      [](const Scanned& a, const Scanned& b) { return a.expected > b.expected; });

@@ -13,8 +13,12 @@ namespace {
 // How many of the score test's best are refitted: at the first step, and at later ones.
 constexpr size_t kRefitsAtFirst = 7;
 constexpr size_t kRefitsLater = 6;
+// Below this share of what is expected of the best, a change is not refitted.
+constexpr double kWorthTrying = 0.15;
 // How many hypotheses are gone on with.
 constexpr size_t kBeam = 2;
+// Those are dropped whose sum of squares is so many times the best's.
+constexpr double kBehind = 2;
 // How many refits are compared on held-out runs at each step.
 constexpr size_t kFinalists = 4;
 // Further changes are not looked for below this squared gap on held-out runs.
@@ -59,6 +63,7 @@ class Searcher {
       std::vector<Explanation> next = Extend(beam, step);
       if (next.empty()) break;
       beam.assign(next.begin(), next.begin() + static_cast<std::ptrdiff_t>(std::min(kBeam, next.size())));
+      while (beam.size() > 1 && beam.back().fitted.sum > kBehind * beam.front().fitted.sum) beam.pop_back();
       const auto best = std::min_element(next.begin(), next.end(), [](const auto& a, const auto& b) {
         return a.held_out_gap() < b.held_out_gap();
       });
@@ -146,7 +151,9 @@ class Searcher {
     std::erase_if(rows, [](const auto& starts) { return starts.empty() || !starts.front().failure.empty(); });
     std::stable_sort(rows.begin(), rows.end(),
                      [](const auto& a, const auto& b) { return a.front().expected > b.front().expected; });
-    const double least = 0.3 * kLeastGain * static_cast<double>(from.fitted.count);
+    // The score test is a straight line's; a curved effect can gain several times what it expects.
+    const double least = std::max(0.3 * kLeastGain * static_cast<double>(from.fitted.count),
+                                  rows.empty() ? 0 : kWorthTrying * rows.front().front().expected);
     for (size_t i = 0; i < rows.size() && i < most; ++i) {
       for (size_t s = 0; s < rows[i].size() && s < 2; ++s) {
         if (s > 0 && rows[i][s].expected < 0.5 * rows[i].front().expected) break;

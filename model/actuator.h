@@ -27,6 +27,8 @@ struct ActuatorOptions {
   double initial_pressure = std::numeric_limits<double>::quiet_NaN();  // psi, both sides; NaN: p_3
   Integrator integrator = Integrator::kAuto;
   double relative_tolerance = 1e-8;
+  // An effect may be there more than once: for derivatives by several of them at no size.
+  bool repeated_effects = false;
 };
 
 // What the sensors would read without noise. Units of the model. T is double, or a scalar that carries

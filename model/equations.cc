@@ -1,7 +1,5 @@
 #include "model/equations.h"
 
-#include <ceres/jet.h>
-
 #include <algorithm>
 #include <cmath>
 #include <sstream>
@@ -63,12 +61,12 @@ Equations::Equations(const ModelDescription& description, const ActuatorOptions&
   }
 
   std::vector<EffectDescription> effects = description.effects;
-  std::sort(effects.begin(), effects.end(), [](const auto& a, const auto& b) { return a.id < b.id; });
+  std::stable_sort(effects.begin(), effects.end(), [](const auto& a, const auto& b) { return a.id < b.id; });
   for (size_t i = 0; i < effects.size(); ++i) {
     const EffectDescription& effect = effects[i];
     const CatalogueEntry* entry = FindCatalogueEntry(effect.id);
     if (entry == nullptr) throw ModelError("effect \"" + effect.id + "\" is not known");
-    if (i > 0 && effects[i - 1].id == effect.id)
+    if (!options.repeated_effects && i > 0 && effects[i - 1].id == effect.id)
       throw ModelError("effect \"" + effect.id + "\" is there twice");
     for (const ParameterInfo& info : entry->info.parameters) {
       const std::string owner = effect.id + ".";

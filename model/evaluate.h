@@ -84,7 +84,7 @@ template <Form kForm, class T>
   x.outer_flow_1 = x.c_E * (x.pump_p1 - x.p_3);
   x.outer_flow_2 = x.c_E * (x.pump_p2 - x.p_3);
   x.arm_torque = p.k_2 * (x.p2 - x.p1);  // (15)
-  if (arm_moves_freely && p.mgl != 0) x.arm_torque -= p.mgl * cos(x.arm_angle);
+  if (arm_moves_freely && p.mgl != T(0.0)) x.arm_torque -= p.mgl * cos(x.arm_angle);
   if constexpr (kGeneralForm) {
     x.valve_flow_1 = x.valve_flow_2 = T(0.0);
     for (const auto& effect : m.effects) {

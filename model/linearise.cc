@@ -1,7 +1,5 @@
 #include "model/linearise.h"
 
-#include <ceres/jet.h>
-
 #include <algorithm>
 
 namespace hydro {

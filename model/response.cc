@@ -30,6 +30,7 @@ void Pass(const ModelDescription& model, const Stimulus& stimulus, const StartSt
   ActuatorOptions actuator;
   actuator.shaft = stimulus.shaft;
   actuator.bypass = stimulus.bypass;
+  actuator.repeated_effects = options.repeated_effects;
   actuator.motion = stimulus.motion;
   actuator.arm_angle = stimulus.shaft == Shaft::kFree ? start[kArmAngle] : stimulus.arm_angle;
   Equations equations(model, actuator);
@@ -43,7 +44,7 @@ void Pass(const ModelDescription& model, const Stimulus& stimulus, const StartSt
       Jet& seeded = unknown.kind == Unknown::Kind::kBase     ? BaseValue(numbers.parameters, unknown.index)
                     : unknown.kind == Unknown::Kind::kEffect ? numbers.own.at(unknown.index)
                                                              : state[unknown.index];
-      seeded.v[static_cast<Eigen::Index>(u - first)] = 1;
+      seeded.v[u - first] = 1;
     }
   }
   if (stimulus.bypass) state[kP2] = state[kP1];
@@ -52,7 +53,7 @@ void Pass(const ModelDescription& model, const Stimulus& stimulus, const StartSt
   ResponseMachine<T> machine(&equations, numbers, options.relative_tolerance);
   machine.Start(stimulus.time.front(), state);
   const double duration = stimulus.time.back() - stimulus.time.front();
-  machine.AllowSteps(static_cast<int64_t>(12 * stimulus.time.size() + 12000 * duration) + 1000);
+  machine.AllowSteps(static_cast<int64_t>(20 * stimulus.time.size() + 2000 * duration) + 1000);
   const bool values = first == 0;
   size_t row = 0;
   for (size_t k = 0; k < stimulus.time.size(); ++k) {
@@ -65,7 +66,7 @@ void Pass(const ModelDescription& model, const Stimulus& stimulus, const StartSt
       if (values) response->values[c][row] = ValueOf(value);
       if constexpr (!std::is_same_v<T, double>) {
         for (size_t u = first; u < last; ++u) {
-          response->derivatives[u][c][row] = value.v[static_cast<Eigen::Index>(u - first)];
+          response->derivatives[u][c][row] = value.v[u - first];
         }
       }
     }
@@ -78,8 +79,8 @@ void Pass(const ModelDescription& model, const Stimulus& stimulus, const StartSt
 std::vector<EffectParameter> EffectParameters(const ModelDescription& model) {
   std::vector<size_t> order(model.effects.size());
   for (size_t i = 0; i < order.size(); ++i) order[i] = i;
-  std::sort(order.begin(), order.end(),
-            [&](size_t a, size_t b) { return model.effects[a].id < model.effects[b].id; });
+  std::stable_sort(order.begin(), order.end(),
+                   [&](size_t a, size_t b) { return model.effects[a].id < model.effects[b].id; });
   std::vector<EffectParameter> parameters;
   for (const size_t i : order) {
     const EffectInfo* info = FindEffect(model.effects[i].id);

@@ -72,7 +72,8 @@ struct Response {
 struct ResponseOptions {
   ChannelSet channels = {true, true, true, true, true, true};
   double relative_tolerance = 1e-6;
-  size_t stride = 1;  // every stride-th sample is looked at; the command changes at all of them
+  bool repeated_effects = false;  // as in ActuatorOptions
+  size_t stride = 1;              // every stride-th sample is looked at; the command changes at all of them
 };
 
 // Throws ModelError as Actuator does. Bit-identical for identical arguments; the values do not depend on the

@@ -1,8 +1,6 @@
 // The simulation behind Respond, for one scalar. A template, for .cc files of model/ only.
 #pragma once
 
-#include <ceres/jet.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstdint>

@@ -2,8 +2,6 @@
 // files of model/ only.
 #pragma once
 
-#include <ceres/jet.h>
-
 #include <algorithm>
 #include <cstddef>
 #include <vector>

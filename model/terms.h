@@ -4,18 +4,10 @@
 #include <algorithm>
 
 #include "model/description.h"
+#include "model/jet.h"
 #include "model/mode.h"
 
-namespace ceres {
-template <typename T, int N>
-struct Jet;
-}
-
 namespace hydro {
-
-// Scalar that carries derivatives along so many directions at a time.
-inline constexpr int kJetWidth = 8;
-using Jet = ceres::Jet<double, kJetWidth>;
 
 // T is double, or Jet for exact derivatives. Signs are those of the paper: the pump turning forward (theta' >
 // 0) moves fluid from side 1 to side 2.

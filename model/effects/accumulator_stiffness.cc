@@ -4,7 +4,6 @@
 // An ideal valve that is open holds its side at the p3 that moves, and passes what this takes,
 //   u = (V/beta) p3' + flow out of the side = (V/beta)(p3' - free rate),
 // so that p3' = stiffness (flow into the accumulator - sum of u) is linear in p3' and solved for it.
-#include <ceres/jet.h>
 
 #include "model/effects/effect.h"
 

@@ -1,6 +1,5 @@
 // amp.delay: T(t) = k_1 v(t - delay). The voltage is held between commands, so a delayed one is a sequence of
 // known stops.
-#include <ceres/jet.h>
 
 #include <cstddef>
 #include <vector>

@@ -4,7 +4,6 @@
 // from which a' follows. One state: a, the angle of the actuator's shaft, which V_1, V_2 and the flow c a'
 // depend on. The arm's sensor reads alpha, and friction (actuator.seal_friction) acts on the arm. A clamped
 // or driven shaft is held at the actuator and does not feel it.
-#include <ceres/jet.h>
 
 #include "model/effects/effect.h"
 

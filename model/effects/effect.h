@@ -11,8 +11,6 @@
 // Effects are applied in the order of their ids, so a model does not depend on the order of its file.
 #pragma once
 
-#include <ceres/jet.h>
-
 #include <limits>
 #include <memory>
 #include <string>

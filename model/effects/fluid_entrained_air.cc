@@ -3,7 +3,6 @@
 // pressure,
 //   1/beta_eff = 1/beta + air_fraction/(n p_abs) (p_atm/p_abs)^(1/n),  p_abs = p + p_atm:
 // the model's pressures count from atmospheric pressure. After Gholizadeh et al. and Merritt.
-#include <ceres/jet.h>
 
 #include <cmath>
 

@@ -1,5 +1,4 @@
 // fluid.stiffening: beta + slope p on each side, with its own pressure at the actuator.
-#include <ceres/jet.h>
 
 #include "model/effects/effect.h"
 

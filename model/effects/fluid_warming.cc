@@ -1,6 +1,5 @@
 // fluid.warming: viscous friction and leakage drift as the oil warms: b exp(-rate t), c_E and c_I exp(+rate
 // t).
-#include <ceres/jet.h>
 
 #include <cmath>
 

@@ -6,7 +6,6 @@
 // `damping`:
 //   I w^2 = beta (1/V_p + 1/(V_ms - V_p)),  R = 2 damping I w,  w = 2 pi frequency.
 // States: p_p1, Q_1, p_p2, Q_2.
-#include <ceres/jet.h>
 
 #include <cmath>
 #include <numbers>
@@ -101,9 +100,9 @@ CatalogueEntry LineWave() {
          "resonance of the two volumes of one side through the line",
          false,
          {},
-         {0.05, 0.15, 0.3},
+         {0.05, 0.2},
          Scale::kRate},
-        {"volume_fraction", "1", 0, 0.999, false, "part of V_ms that is at the pump", false, {}, {0.1, 0.4}},
+        {"volume_fraction", "1", 0, 0.999, false, "part of V_ms that is at the pump", false, {}, {0.2}},
         {"damping", "1", 0, kUnbounded, true, "damping ratio of the resonance", false, {}, {0.05}}}},
       MakeEffect<Wave>};
 }

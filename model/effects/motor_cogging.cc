@@ -1,6 +1,5 @@
 // motor.cogging: T -= amplitude sin(periods theta + phase), a conservative torque of the motor's magnets. It
 // acts on the pump at rest too, where friction holds it.
-#include <ceres/jet.h>
 
 #include <cmath>
 #include <numbers>

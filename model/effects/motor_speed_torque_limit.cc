@@ -3,7 +3,6 @@
 // limit, lag and delay. While braking (torque against speed) only T_pmax limits. One switch: 0 not limited,
 // +1 and -1 on the line in that direction, +2 and -2 turning faster than no_load_speed in that direction,
 // where there is no torque left to drive with.
-#include <ceres/jet.h>
 
 #include <cmath>
 

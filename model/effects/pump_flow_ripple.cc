@@ -1,6 +1,5 @@
 // pump.flow_ripple: D (1 + amplitude cos(periods theta)) in flow and torque: the pistons' displacement in
 // turn.
-#include <ceres/jet.h>
 
 #include <cmath>
 

@@ -1,5 +1,4 @@
 // pump.quadratic_drag: + k theta' |theta'| in eq. (4).
-#include <ceres/jet.h>
 
 #include "model/effects/effect.h"
 

@@ -1,7 +1,6 @@
 // pump.stribeck: static friction above kinetic. T_s becomes T_s (1 + static_excess exp(-(theta'/speed)^2)),
 // and T_s (1 + static_excess) at rest. Each slip mode is smooth: its friction falls with speed but never
 // changes sign. Form after Armstrong-Helouvry, Dupont and Canudas de Wit 1994.
-#include <ceres/jet.h>
 
 #include <cmath>
 
@@ -33,7 +32,7 @@ CatalogueEntry PumpStribeck() {
        "static friction above kinetic",
        "T_s becomes T_s (1 + static_excess exp(-(abs(theta')/speed)^2)), T_s (1 + static_excess) at rest",
        "pump.friction_asymmetry",
-       {{"static_excess", "1", 0, kUnbounded, true, "static friction over kinetic, less 1", false, {}, {0.3}},
+       {{"static_excess", "1", 0, kUnbounded, true, "static friction over kinetic, less 1", false, {}, {0}},
         {"speed",
          "rad/s",
          0,

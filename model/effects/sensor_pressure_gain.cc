@@ -1,5 +1,4 @@
 // sensor.pressure_gain: the measured pressures are scaled by 1 + gain. The equations do not change.
-#include <ceres/jet.h>
 
 #include "model/effects/effect.h"
 

@@ -1,5 +1,4 @@
 // sensor.pressure_offset: the measured p1, p2 are shifted. The equations do not change.
-#include <ceres/jet.h>
 
 #include "model/effects/effect.h"
 

@@ -1,5 +1,4 @@
 // sensor.sign: one channel is inverted in what is measured. The equations do not change.
-#include <ceres/jet.h>
 
 #include "model/effects/effect.h"
 #include "model/effects/sensor_signal.h"

@@ -1,6 +1,5 @@
 // sensor.skew: one channel is late by `delay` in what is measured: it reads what it would have read then. The
 // equations do not change. Before the start it reads the first value.
-#include <ceres/jet.h>
 
 #include "model/effects/effect.h"
 #include "model/effects/sensor_signal.h"
@@ -46,7 +45,7 @@ CatalogueEntry SensorSkew() {
              "by which the channel is late",
              false,
              {},
-             {2, 20},
+             {0, 10},
              Scale::kSample},
             {"signal", "name", 0, 0, true, "the channel that is late", true, SignalNames()}}},
           [](const EffectDescription& description) -> std::unique_ptr<Effect> {

@@ -1,6 +1,5 @@
 // valve.relief: flow conductance (p - set) out of a side above set, to the accumulator. The valves sit at the
 // actuator, as the one-way valves do. One switch a side: 0 closed, 1 open.
-#include <ceres/jet.h>
 
 #include "model/effects/effect.h"
 

@@ -1,0 +1,101 @@
+// A number with its derivatives along kJetWidth directions (a dual number). As fast here as ceres::Jet, whose
+// division rounds differently from that of numbers; with this one the values are those of double to the last
+// bit, so that a response with derivatives takes the same steps and events as one without. And it spares some
+// thirty files Eigen's headers.
+#pragma once
+
+#include <cmath>
+
+namespace hydro {
+
+inline constexpr int kJetWidth = 8;
+
+struct Jet {
+  // NOLINTNEXTLINE(modernize-use-using): the attribute is of GCC's and Clang's C++
+  using Vector [[gnu::vector_size(kJetWidth * sizeof(double)), gnu::aligned(16)]] = double;
+
+  Jet() : a(0), v{} {}
+  explicit Jet(double value) : a(value), v{} {}
+  Jet(double value, const Vector& derivatives) : a(value), v(derivatives) {}
+
+  Jet& operator+=(const Jet& y) {
+    a += y.a;
+    v += y.v;
+    return *this;
+  }
+  Jet& operator-=(const Jet& y) {
+    a -= y.a;
+    v -= y.v;
+    return *this;
+  }
+  Jet& operator*=(const Jet& y) {
+    v = v * y.a + a * y.v;
+    a *= y.a;
+    return *this;
+  }
+  Jet& operator/=(const Jet& y) {
+    a /= y.a;
+    v = (v - a * y.v) / y.a;
+    return *this;
+  }
+  Jet& operator+=(double y) {
+    a += y;
+    return *this;
+  }
+  Jet& operator-=(double y) {
+    a -= y;
+    return *this;
+  }
+  Jet& operator*=(double y) {
+    a *= y;
+    v *= y;
+    return *this;
+  }
+
+  double a;  // the value
+  Vector v;  // d/d each direction
+};
+
+inline Jet operator+(const Jet& x) { return x; }
+inline Jet operator-(const Jet& x) { return {-x.a, -x.v}; }
+inline Jet operator+(const Jet& x, const Jet& y) { return {x.a + y.a, x.v + y.v}; }
+inline Jet operator-(const Jet& x, const Jet& y) { return {x.a - y.a, x.v - y.v}; }
+inline Jet operator*(const Jet& x, const Jet& y) { return {x.a * y.a, x.v * y.a + x.a * y.v}; }
+inline Jet operator/(const Jet& x, const Jet& y) {
+  const double a = x.a / y.a;
+  return {a, (x.v - a * y.v) * (1 / y.a)};
+}
+inline Jet operator+(const Jet& x, double y) { return {x.a + y, x.v}; }
+inline Jet operator+(double x, const Jet& y) { return {x + y.a, y.v}; }
+inline Jet operator-(const Jet& x, double y) { return {x.a - y, x.v}; }
+inline Jet operator-(double x, const Jet& y) { return {x - y.a, -y.v}; }
+inline Jet operator*(const Jet& x, double y) { return {x.a * y, x.v * y}; }
+inline Jet operator*(double x, const Jet& y) { return {x * y.a, x * y.v}; }
+inline Jet operator/(const Jet& x, double y) { return {x.a / y, x.v * (1 / y)}; }
+inline Jet operator/(double x, const Jet& y) {
+  const double a = x / y.a;
+  return {a, (-a / y.a) * y.v};
+}
+
+inline bool operator<(const Jet& x, const Jet& y) { return x.a < y.a; }
+inline bool operator>(const Jet& x, const Jet& y) { return x.a > y.a; }
+inline bool operator==(const Jet& x, const Jet& y) { return x.a == y.a; }
+inline bool operator<=(const Jet& x, const Jet& y) { return x.a <= y.a; }
+inline bool operator>=(const Jet& x, const Jet& y) { return x.a >= y.a; }
+
+inline Jet abs(const Jet& x) { return x.a < 0 ? -x : x; }
+inline Jet sqrt(const Jet& x) {
+  const double root = std::sqrt(x.a);
+  return {root, (0.5 / root) * x.v};
+}
+inline Jet exp(const Jet& x) {
+  const double power = std::exp(x.a);
+  return {power, power * x.v};
+}
+inline Jet sin(const Jet& x) { return {std::sin(x.a), std::cos(x.a) * x.v}; }
+inline Jet cos(const Jet& x) { return {std::cos(x.a), -std::sin(x.a) * x.v}; }
+inline Jet pow(const Jet& x, double exponent) {
+  return {std::pow(x.a, exponent), (exponent * std::pow(x.a, exponent - 1)) * x.v};
+}
+
+}  // namespace hydro
