@@ -30,11 +30,14 @@ ProgressBar::~ProgressBar() { Wipe(); }
 
 void ProgressBar::Tell(const Progress& progress, double elapsed) {
   if (!terminal_) {
-    if (progress.stage != stage_) {
-      std::fprintf(out_, "%s\n", progress.stage.c_str());
-      std::fflush(out_);
-    }
+    if (progress.stage == stage_) return;
+    // The first line waits for the second: input that cannot be used ends the work before it, with one line
+    // in all.
+    if (stages_ == 1) std::fprintf(out_, "%s\n", stage_.c_str());
+    if (stages_ >= 1) std::fprintf(out_, "%s\n", progress.stage.c_str());
+    std::fflush(out_);
     stage_ = progress.stage;
+    ++stages_;
     return;
   }
   // A bar that goes back tells nobody anything.

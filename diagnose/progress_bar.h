@@ -8,7 +8,8 @@
 
 namespace hydro {
 
-// A bar with the stage and the time left on a terminal; elsewhere a line when a stage begins.
+// A bar with the stage and the time left on a terminal; elsewhere a line when a stage begins, the first one
+// when the second does.
 class ProgressBar {
  public:
   // `out` stays the caller's.
@@ -27,6 +28,7 @@ class ProgressBar {
   std::FILE* out_;
   bool terminal_;
   double furthest_ = 0;
+  int stages_ = 0;
   std::string stage_, drawn_;
 };
 

@@ -145,9 +145,9 @@ std::string Windows(const std::vector<Window>& windows) {
 std::string Where(const Diagnosis& diagnosis) {
   std::string rows;
   for (const Location& location : diagnosis.location) {
-    rows += "<tr>" + Cell(location.balance) + "<td class=\"number\">" + ShortNumber(100 * location.share) +
-            " %</td>" + Cell(location.where) + "<td>" + EscapeMarkup(Windows(location.windows)) +
-            "</td></tr>\n";
+    rows += "<tr>" + Cell(location.balance) + "<td class=\"number\">" +
+            ShortNumber(std::round(100 * location.share)) + " %</td>" + Cell(location.where) + "<td>" +
+            EscapeMarkup(Windows(location.windows)) + "</td></tr>\n";
   }
   std::string out;
   if (!rows.empty()) out = Table({"balance", "#share", "where", "when"}, rows);
@@ -158,7 +158,7 @@ std::string Where(const Diagnosis& diagnosis) {
           "<tr>" + NumberCell(term.at[i]) + NumberCell(term.mean[i]) + NumberCell(term.error[i]) + "</tr>\n";
     }
     const std::string unit = term.against_unit.empty() ? "" : " (" + term.against_unit + ")";
-    out += "<p>What the balance lacks, with its 95 % interval:</p>\n<div class=\"beside\">\n" +
+    out += "<p class=\"lead\">What the balance lacks, with its 95 % interval:</p>\n<div class=\"beside\">\n" +
            MissingTermPicture(term) +
            Table({"#" + term.against + unit, "#mean (" + term.unit + ")", "#standard error"}, bins,
                  "narrow small") +

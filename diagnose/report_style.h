@@ -71,7 +71,7 @@ svg path { fill: none; }
 @media print {
   body { max-width: none; padding: 0; font-size: 10pt; }
   h2 { break-after: avoid; margin-top: 1.4rem; }
-  h3 { break-after: avoid; }
+  h3, .lead { break-after: avoid; }
   * { print-color-adjust: exact; -webkit-print-color-adjust: exact; }
   @page { size: A4; margin: 15mm 14mm; }
 }

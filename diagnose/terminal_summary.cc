@@ -70,8 +70,8 @@ std::string TerminalSummary(const Diagnosis& given, const std::string& folder, b
   out += SignalsLine(diagnosis, si);
   if (!diagnosis.location.empty()) {
     const Location& first = diagnosis.location.front();
-    out += "where:      " + first.balance + ", " + ShortNumber(100 * first.share) + " % of the disagreement" +
-           (first.where.empty() ? "" : ": " + first.where) + "\n";
+    out += "where:      " + first.balance + ", " + ShortNumber(std::round(100 * first.share)) +
+           " % of the disagreement" + (first.where.empty() ? "" : ": " + first.where) + "\n";
   }
   std::vector<std::string> effects;
   for (const FoundEffect& effect : diagnosis.effects) effects.push_back(EffectText(effect));

@@ -264,6 +264,11 @@ TEST(ProgressBar, BarAndLines) {
   EXPECT_THAT(bar, HasSubstr("25 % trying each effect, 33 s left"));
   EXPECT_TRUE(bar.ends_with("\r\033[K"));
   EXPECT_EQ(told(false), "reading\ntrying each effect\n");
+
+  std::FILE* file = std::tmpfile();
+  ProgressBar(file, false).Tell({"reading", 0}, 0);  // what follows is an error
+  EXPECT_EQ(std::ftell(file), 0);
+  std::fclose(file);
 }
 
 }  // namespace
