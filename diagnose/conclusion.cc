@@ -7,6 +7,7 @@
 
 #include "diagnose/intervals.h"
 #include "diagnose/locate.h"
+#include "diagnose/next_experiment.h"
 #include "diagnose/ranking.h"
 #include "diagnose/run_curves.h"
 
@@ -36,10 +37,15 @@ std::string Join(const std::vector<std::string>& parts) {
   return text;
 }
 
+struct Rival {
+  Change change;
+  const Explanation* explanation = nullptr;
+};
+
 // What stands in the place of one change of `best`, and does as well.
-std::vector<Change> Rivals(const std::vector<Explanation>& tried, const Explanation& best,
-                           const Change& change) {
-  std::vector<Change> rivals;
+std::vector<Rival> Rivals(const std::vector<Explanation>& tried, const Explanation& best,
+                          const Change& change) {
+  std::vector<Rival> rivals;
   for (const Explanation& other : tried) {
     if (other.blocks.sums.empty() || other.changes().size() != best.changes().size()) continue;
     if (other.fitted.hypothesis.Has(change)) continue;
@@ -54,7 +60,9 @@ std::vector<Change> Rivals(const std::vector<Explanation>& tried, const Explanat
     const double t = TValue(other.blocks, best.blocks);
     const double loss = other.held_out_gap() - best.held_out_gap();
     if (t > kToldApart || loss > std::max(kLeastGain, 0.1 * (best.held_out_gap() - 1))) continue;
-    if (std::find(rivals.begin(), rivals.end(), *instead) == rivals.end()) rivals.push_back(*instead);
+    const bool there =
+        std::any_of(rivals.begin(), rivals.end(), [&](const Rival& had) { return had.change == *instead; });
+    if (!there) rivals.push_back({*instead, &other});
   }
   return rivals;
 }
@@ -125,6 +133,13 @@ std::string Sentence(const Diagnosis& d) {
   return "";
 }
 
+std::string WhyNext(const std::vector<FoundEffect>& effects) {
+  for (const FoundEffect& effect : effects) {
+    if (!effect.tied_with.empty()) return "tells " + effect.id + " from " + Join(effect.tied_with);
+  }
+  return "";
+}
+
 }  // namespace
 
 Diagnosis Conclude(const SearchContext& context, SearchResult search, Explanation refit,
@@ -141,10 +156,14 @@ Diagnosis Conclude(const SearchContext& context, SearchResult search, Explanatio
   const std::vector<Interval> intervals =
       free.empty() ? std::vector<Interval>{} : Intervals(best.fitted, context.runs, context.jobs);
   bool tied = false;
+  std::vector<ModelDescription> rivals = {best.fitted.hypothesis.model};
   for (const Change& change : best.changes()) {
     if (change.effect.empty()) continue;
     FoundEffect found = Describe(change, best, free, intervals);
-    for (const Change& rival : Rivals(search.tried, best, change)) found.tied_with.push_back(rival.Label());
+    for (const Rival& rival : Rivals(search.tried, best, change)) {
+      found.tied_with.push_back(rival.change.Label());
+      rivals.push_back(rival.explanation->fitted.hypothesis.model);
+    }
     tied |= !found.tied_with.empty();
     d.effects.push_back(std::move(found));
   }
@@ -176,6 +195,10 @@ Diagnosis Conclude(const SearchContext& context, SearchResult search, Explanatio
     Localisation located = Locate(disagrees, context.runs);
     d.location = std::move(located.location);
     d.missing = std::move(located.missing);
+  }
+  if (d.verdict == Verdict::kTied) {
+    if (tell) tell({"the next experiment", 0.98});
+    d.next = DesignNextExperiment(rivals, context.runs, WhyNext(d.effects));
   }
   for (const RunData* run : context.runs) {
     d.runs.push_back(run->name);
