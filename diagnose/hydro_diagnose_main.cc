@@ -14,7 +14,7 @@ int main(int argc, char** argv) {
   request.jobs = static_cast<int>(std::clamp(std::thread::hardware_concurrency(), 1u, 256u));
   line.AddPositional("RUN", &request.runs,
                      "FILE a measured run: a log, or a table (csv, mat) with a sidecar");
-  line.AddOption("--model", &request.model, "MODEL.toml the model as it is", true);
+  line.AddOption("--model", &request.model, "MODEL the model as it is, TOML", true);
   line.AddOption("-o,--out", &request.folder,
                  "DIR where report.html, report.json, model.toml and next.toml are written", true);
   line.AddOption("--hold-out", &request.held_out,
