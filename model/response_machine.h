@@ -11,6 +11,7 @@
 #include "model/evaluate.h"
 #include "model/event_search.h"
 #include "model/response.h"
+#include "model/simulation.h"
 
 namespace hydro {
 
@@ -52,6 +53,7 @@ class ResponseMachine {
     for (const auto& effect : data_.effects) {
       terms_.own = numbers_.own.data() + effect->first_parameter();
       effect->Start(terms_, state_);
+      effect->StartMode(terms_, &mode_);
     }
     const double speed = ValueOf(state_[kMotorSpeed]);
     mode_.pump = static_cast<int8_t>(speed > 0 ? 1 : (speed < 0 ? -1 : 0));
@@ -78,6 +80,7 @@ class ResponseMachine {
     int events = 0;
     while (time_ < until) {
       double stop = std::min(until, known_stop_);
+      if (data_.reads_late) stop = std::min(stop, time_ + kLongestStepToRead);
       if (fresh_ && OnBoundary()) stop = std::min(stop, time_ + kMoment);
       fresh_ = false;
       Step(stop);
@@ -160,7 +163,7 @@ class ResponseMachine {
     time_ = next_time_;
     Remember();
     if (data_.shaft == Shaft::kFree) {
-      const double angle = ValueOf(state_[kArmAngle]);
+      const double angle = ValueOf(state_[data_.actuator_angle_state]);
       if (!(std::abs(angle) * data_.parameters.c < data_.parameters.V_ms - data_.fixed_volume)) {
         equations_.CheckVolumes(angle);
       }
@@ -180,8 +183,10 @@ class ResponseMachine {
 
   double MarginRate(int i, const T* rate) const {
     if (i == kPumpSwitch) return mode_.pump * ValueOf(rate[kMotorSpeed]);
-    if (i == kValve1Switch) return mode_.valve_1 ? 0 : ValueOf(rate[kP1]);
-    if (i == kValve2Switch) return mode_.valve_2 ? 0 : ValueOf(rate[kP2]);
+    if (!data_.ideal_valves) return 0;
+    const double p_3_rate = data_.p_3_state >= 0 ? ValueOf(rate[data_.p_3_state]) : 0;
+    if (i == kValve1Switch) return mode_.valve_1 ? 0 : ValueOf(rate[kP1]) - p_3_rate;
+    if (i == kValve2Switch) return mode_.valve_2 ? 0 : ValueOf(rate[kP2]) - p_3_rate;
     return 0;
   }
 

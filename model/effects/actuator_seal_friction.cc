@@ -14,6 +14,12 @@ class SealFriction : public EffectOf<SealFriction> {
  public:
   int switches() const override { return 1; }
 
+  template <class T>
+  void OwnStartMode(const Terms<T>& x, Mode* mode) const {
+    if (!x.arm_free) return;
+    mode->effects[first_switch()] = x.arm_speed > T(0.0) ? 1 : (x.arm_speed < T(0.0) ? -1 : 0);
+  }
+
   // After every torque on the arm is known.
   template <class T>
   void OwnStates(Terms<T>& x, T* /*rate*/) const {

@@ -70,6 +70,10 @@ class Effect {
   virtual void Start(const Terms<double>& x, double* state) const = 0;
   virtual void Start(const Terms<Jet>& x, Jet* state) const = 0;
 
+  // Where its switches stand at the start, for a start in motion; those whose margins say so need nothing.
+  virtual void StartMode(const Terms<double>& x, Mode* mode) const = 0;
+  virtual void StartMode(const Terms<Jet>& x, Mode* mode) const = 0;
+
   // The equation.
   virtual void SetProperties(Terms<double>&) const = 0;
   virtual void SetProperties(Terms<Jet>&) const = 0;
@@ -129,6 +133,8 @@ class EffectOf : public Effect {
   Jet FixedVolume(const ParametersOf<Jet>& base, const Jet* own) const override { return Volume(base, own); }
   void Start(const Terms<double>& x, double* state) const override { Begin(x, state); }
   void Start(const Terms<Jet>& x, Jet* state) const override { Begin(x, state); }
+  void StartMode(const Terms<double>& x, Mode* mode) const override { Switch(x, mode); }
+  void StartMode(const Terms<Jet>& x, Mode* mode) const override { Switch(x, mode); }
   void SetProperties(Terms<double>& x) const override { Properties(x); }
   void SetProperties(Terms<Jet>& x) const override { Properties(x); }
   void AddTorquesAndFlows(Terms<double>& x) const override { TorquesAndFlows(x); }
@@ -178,6 +184,10 @@ class EffectOf : public Effect {
   template <class T>
   void Begin(const Terms<T>& x, T* state) const {
     if constexpr (requires { self().OwnStart(x, state); }) self().OwnStart(x, state);
+  }
+  template <class T>
+  void Switch(const Terms<T>& x, Mode* mode) const {
+    if constexpr (requires { self().OwnStartMode(x, mode); }) self().OwnStartMode(x, mode);
   }
   template <class T>
   void Properties(Terms<T>& x) const {
@@ -236,5 +246,13 @@ struct CatalogueEntry {
   EffectInfo info;
   std::unique_ptr<Effect> (*make)(const EffectDescription& description);
 };
+
+// Makes an effect of the user's own as good as those of the catalogue: models can have it, and the gap finder
+// looks for it. To be called before the catalogue is first used, by one thread; at namespace scope of the
+// effect's file, which is what the result is for:
+//   const bool kAdded = AddToCatalogue({{"arm.spring", ...}, MakeEffect<Spring>});
+// Returns true. Throws std::logic_error when the catalogue has been used already; an id that is there twice
+// is found at the first use.
+bool AddToCatalogue(CatalogueEntry entry);
 
 }  // namespace hydro
