@@ -67,6 +67,7 @@ class ResponseMachine {
 
   void Advance(double voltage, double until) {
     if (voltage != voltage_ || !started_) {
+      const bool at_start = !started_;
       voltage_ = voltage;
       started_ = true;
       fresh_ = true;
@@ -75,6 +76,10 @@ class ResponseMachine {
       known_stop_ = equations_.NextStop(time_);
       Evaluate(state_, rate_, margin_);
       Settle();
+      if (at_start && mode_.pump == 0) {  // it stands still, and would soon if it did not
+        state_[kMotorSpeed] = T(0.0);
+        Evaluate(state_, rate_, margin_);
+      }
       Remember();
     }
     int events = 0;
