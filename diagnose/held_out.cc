@@ -94,16 +94,21 @@ HeldOut PredictInTurn(const Fitted& fitted, const ModelDescription& given,
     information += Map<const MatrixXd>(run.information.data(), p, p);
     gradient += Map<const VectorXd>(run.gradient.data(), p);
   }
-  // What little is known beforehand: a parameter is within its own size of its neutral value.
+  // What little is known beforehand: a base parameter is within a third of what was given, the size of an
+  // effect within its own size of none.
+  constexpr double kBaseSpread = 0.3;
   VectorXd prior(p), pull(p);
   for (Index i = 0; i < p; ++i) {
     const FreeParameter& parameter = free[static_cast<size_t>(i)];
     const double neutral = Neutral(parameter, given);
+    const bool base = parameter.unknown.kind == Unknown::Kind::kBase;
     if (parameter.logarithmic) {
-      prior(i) = 1;
-      pull(i) = std::log(parameter.value / neutral);
+      const double spread = base ? kBaseSpread + std::abs(std::log(parameter.value / neutral)) : 1;
+      prior(i) = 1 / (spread * spread);
+      pull(i) = prior(i) * std::log(parameter.value / neutral);
     } else {
-      const double size = std::max({std::abs(parameter.value), std::abs(neutral), 1e-300});
+      const double size =
+          std::max({std::abs(parameter.value - neutral), kBaseSpread * std::abs(neutral), 1e-300});
       prior(i) = 1 / (size * size);
       pull(i) = prior(i) * (parameter.value - neutral);
     }

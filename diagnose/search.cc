@@ -11,8 +11,8 @@ namespace hydro {
 namespace {
 
 // How many of the score test's best are refitted: at the first step, and at later ones.
-constexpr size_t kRefitsAtFirst = 7;
-constexpr size_t kRefitsLater = 6;
+constexpr size_t kRefitsAtFirst = 6;
+constexpr size_t kRefitsLater = 5;
 // Below this share of what is expected of the best, a change is not refitted.
 constexpr double kWorthTrying = 0.15;
 // How many hypotheses are gone on with.
@@ -20,9 +20,9 @@ constexpr size_t kBeam = 2;
 // Those are dropped whose sum of squares is so many times the best's.
 constexpr double kBehind = 2;
 // How many refits are compared on held-out runs at each step.
-constexpr size_t kFinalists = 4;
+constexpr size_t kFinalists = 3;
 // Further changes are not looked for below this squared gap on held-out runs.
-constexpr double kCloseEnough = 1 + kLeastGain;
+constexpr double kCloseEnough = 1.25;
 
 std::vector<StartState> StartsOf(const Fitted& fitted) {
   std::vector<StartState> starts;
@@ -155,7 +155,7 @@ class Searcher {
     const double least = std::max(0.3 * kLeastGain * static_cast<double>(from.fitted.count),
                                   rows.empty() ? 0 : kWorthTrying * rows.front().front().expected);
     for (size_t i = 0; i < rows.size() && i < most; ++i) {
-      for (size_t s = 0; s < rows[i].size() && s < 2; ++s) {
+      for (size_t s = 0; s < rows[i].size() && s < 3; ++s) {
         if (s > 0 && rows[i][s].expected < 0.5 * rows[i].front().expected) break;
         if (rows[i][s].expected < least) continue;
         const bool there = std::any_of(pool->begin(), pool->end(), [&](const Scanned& other) {
@@ -175,7 +175,7 @@ class Searcher {
 
   // Each change is tried to be replaced: a greedy choice may have been second best once others are there.
   void Exchange() {
-    if (result_.best.changes().size() < 2) return;
+    if (result_.best.changes().size() < 2 || result_.best.held_out_gap() < kCloseEnough) return;
     for (int round = 0; round < 2; ++round) {
       bool better = false;
       const std::vector<Change> changes = result_.best.changes();

@@ -63,7 +63,7 @@ CatalogueEntry ArmFlexure() {
              "torque per twist",
              false,
              {},
-             {0.016, 0.25},
+             {0.001, 0.03},
              Scale::kArmStiffness},
             {"damping",
              "in-lbf-s",
@@ -73,7 +73,7 @@ CatalogueEntry ArmFlexure() {
              "torque per rate of twist",
              false,
              {},
-             {0.03},
+             {0.01},
              Scale::kArmDamping}}},
           MakeEffect<Flexure>};
 }

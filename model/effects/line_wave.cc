@@ -100,10 +100,10 @@ CatalogueEntry LineWave() {
          "resonance of the two volumes of one side through the line",
          false,
          {},
-         {0.05, 0.2},
+         {0.04, 0.1, 0.25},
          Scale::kRate},
-        {"volume_fraction", "1", 0, 0.999, false, "part of V_ms that is at the pump", false, {}, {0.2}},
-        {"damping", "1", 0, kUnbounded, true, "damping ratio of the resonance", false, {}, {0.05}}}},
+        {"volume_fraction", "1", 0, 0.999, false, "part of V_ms that is at the pump", false, {}, {0.1, 0.35}},
+        {"damping", "1", 0, kUnbounded, true, "damping ratio of the resonance", false, {}, {0.03}}}},
       MakeEffect<Wave>};
 }
 
