@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "diagnose/parallel.h"
 #include "diagnose/residuals.h"
 
 namespace hydro {
@@ -38,19 +39,21 @@ class RunCost : public ceres::CostFunction {
     set_num_residuals(static_cast<int>(unknowns_.size()) + 1);
   }
 
-  bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override {
+  // Simulates at the point that the solver is going to ask for.
+  void Prepare(const double* free, const double* start, bool derivatives) {
+    can_be_simulated_ = Normal(free, start, derivatives, &prepared_);
+  }
+
+  // At the prepared point.
+  bool Evaluate(double const* const* /*parameters*/, double* residuals, double** jacobians) const override {
     const auto p = static_cast<Eigen::Index>(free_.size());
     const auto n = static_cast<Eigen::Index>(unknowns_.size());
     Map<VectorXd> out(residuals, n + 1);
-    MatrixXd normal;
-    if (!Normal(free_.empty() ? nullptr : parameters[0],
-                starts_.empty() ? nullptr : parameters[free_.empty() ? 0 : 1], jacobians != nullptr,
-                &normal)) {
-      return false;
-    }
+    const MatrixXd& normal = prepared_;
+    if (!can_be_simulated_ || (jacobians != nullptr && normal.rows() != n + 1)) return false;
     out.setZero();
     if (jacobians == nullptr) {
-      out(0) = std::sqrt(normal(0, 0));
+      out(0) = std::sqrt(normal(normal.rows() - 1, normal.rows() - 1));
       return true;
     }
     // [J r]' [J r] = V L V'; the rows of L^1/2 V' are as good as those of [J r].
@@ -117,6 +120,27 @@ class RunCost : public ceres::CostFunction {
   size_t stride_;
   std::vector<Unknown> unknowns_, starts_;
   mutable size_t count_ = 0;
+  MatrixXd prepared_;
+  bool can_be_simulated_ = false;
+};
+
+// Simulates all runs when the solver goes to another point, on several threads. The solver has one: with more
+// it would add up the runs' costs in the order in which they are ready, and round differently every time.
+class AllRuns : public ceres::EvaluationCallback {
+ public:
+  AllRuns(const std::vector<double>& values, const std::vector<std::vector<double>>& starts, int jobs)
+      : values_(values), starts_(starts), jobs_(jobs) {}
+  void Add(RunCost* cost) { costs_.push_back(cost); }
+  void PrepareForEvaluation(bool derivatives, bool /*new_point*/) override {
+    ParallelFor(costs_.size(), jobs_,
+                [&](size_t r) { costs_[r]->Prepare(values_.data(), starts_[r].data(), derivatives); });
+  }
+
+ private:
+  const std::vector<double>& values_;
+  const std::vector<std::vector<double>>& starts_;
+  int jobs_;
+  std::vector<RunCost*> costs_;
 };
 
 }  // namespace
@@ -133,10 +157,14 @@ Fitted Fit(const Hypothesis& hypothesis, const std::vector<const RunData*>& runs
   std::vector<std::vector<double>> start_values(runs.size());
   std::vector<const RunCost*> costs;
 
-  ceres::Problem problem;
+  AllRuns all_runs(values, start_values, options.jobs);
+  ceres::Problem::Options with_all_runs;
+  with_all_runs.evaluation_callback = &all_runs;
+  ceres::Problem problem(with_all_runs);
   for (size_t r = 0; r < runs.size(); ++r) {
     auto* cost = new RunCost(hypothesis, *runs[r], starts[r], options.stride);  // the problem owns it
     costs.push_back(cost);
+    all_runs.Add(cost);
     for (const Unknown& start : cost->starts()) start_values[r].push_back(starts[r][start.index]);
     std::vector<double*> blocks;
     if (!free.empty()) blocks.push_back(values.data());
@@ -160,7 +188,7 @@ Fitted Fit(const Hypothesis& hypothesis, const std::vector<const RunData*>& runs
   solver.function_tolerance = options.tolerance;
   solver.parameter_tolerance = 1e-7;
   solver.gradient_tolerance = 0;
-  solver.num_threads = options.jobs;
+  solver.num_threads = 1;
   solver.logging_type = ceres::SILENT;
   ceres::Solver::Summary summary;
   ceres::Solve(solver, &problem, &summary);
@@ -175,9 +203,14 @@ Fitted Fit(const Hypothesis& hypothesis, const std::vector<const RunData*>& runs
   std::vector<double> at;
   for (size_t i = 0; i < free.size(); ++i) at.push_back(ToFitted(free[i], values[i]));
   const auto p = static_cast<Eigen::Index>(free.size());
+  std::vector<MatrixXd> normals(runs.size());
+  std::vector<char> simulated(runs.size());
+  ParallelFor(runs.size(), options.jobs, [&](size_t r) {
+    simulated[r] = costs[r]->Normal(at.data(), start_values[r].data(), true, &normals[r]);
+  });
   for (size_t r = 0; r < runs.size(); ++r) {
-    MatrixXd normal;
-    if (!costs[r]->Normal(at.data(), start_values[r].data(), true, &normal)) {
+    const MatrixXd& normal = normals[r];
+    if (!simulated[r]) {
       fitted.failure = "its simulation fails";
       return fitted;
     }

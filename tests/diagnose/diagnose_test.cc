@@ -1,0 +1,173 @@
+// The whole gap finder on short runs of rigs that the model describes, or nearly.
+#include "diagnose/diagnose.h"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+
+#include "diagnose/report_json.h"
+#include "settings/input_error.h"
+#include "tests/diagnose/small_runs.h"
+
+namespace hydro::testing {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+std::vector<MeasuredRun> Measured(std::vector<RunData> data) {
+  std::vector<MeasuredRun> runs;
+  for (RunData& run : data) runs.push_back(std::move(run.measured));
+  return runs;
+}
+
+std::vector<MeasuredRun> RunsOf(const ModelDescription& truth) { return Measured(OneOfEach(truth, 0.7, 5)); }
+
+ModelDescription Dragged() { return Table1With({{"pump.quadratic_drag", {{"k", 2e-4}}, {}}}); }
+
+std::string Json(const Diagnosis& d) { return ReportJson(d, "next.toml", 0); }
+
+// The diagnosis that several tests look at: the drag is hidden.
+const Diagnosis& OfTheDrag() {
+  static const Diagnosis diagnosis = Diagnose(Table1With(), RunsOf(Dragged()), {}, {}, {});
+  return diagnosis;
+}
+
+// Tests that a model which explains the runs is left as it is.
+TEST(Diagnose, NothingMissing) {
+  const Diagnosis d = Diagnose(Table1With(), RunsOf(Table1With()), {}, {}, {});
+  EXPECT_EQ(d.verdict, Verdict::kNothingMissing) << d.sentence;
+  EXPECT_TRUE(d.effects.empty());
+  EXPECT_TRUE(d.model.effects.empty());
+  EXPECT_NEAR(d.held_out.after, 1, 0.05);
+  EXPECT_EQ(d.runs.size(), 4);
+  EXPECT_TRUE(d.held_out_runs.empty());
+}
+
+// Tests that a hidden effect is named, with its value within the interval and the gap closed.
+TEST(Diagnose, NamesAHiddenEffect) {
+  const Diagnosis& d = OfTheDrag();
+  EXPECT_EQ(d.verdict, Verdict::kNamed) << d.sentence;
+  ASSERT_EQ(d.effects.size(), 1) << d.sentence;
+  EXPECT_EQ(d.effects[0].id, "pump.quadratic_drag");
+  ASSERT_EQ(d.effects[0].parameters.size(), 1);
+  EXPECT_LE(d.effects[0].parameters[0].low, 2e-4);
+  EXPECT_GE(d.effects[0].parameters[0].high, 2e-4);
+  EXPECT_LT(d.effects[0].parameters[0].high - d.effects[0].parameters[0].low, 0.2 * 2e-4);
+  EXPECT_GT(d.held_out.before, 2);
+  EXPECT_LT(d.held_out.after, 1.1);
+  ASSERT_FALSE(d.location.empty());
+  EXPECT_EQ(d.location[0].balance, "pump_torque");
+  ASSERT_FALSE(d.candidates.empty());
+  EXPECT_EQ(d.candidates[0].id, "pump.quadratic_drag");
+  for (size_t i = 1; i < d.candidates.size(); ++i) {
+    EXPECT_NE(d.candidates[i].rejected_because, "") << d.candidates[i].id;
+  }
+  EXPECT_EQ(d.curves.size(), 4);
+}
+
+// Tests that the model which it writes needs nothing more.
+TEST(Diagnose, ItsOwnModelNeedsNothing) {
+  const Diagnosis d = Diagnose(OfTheDrag().model, RunsOf(Dragged()), {}, {}, {});
+  EXPECT_EQ(d.verdict, Verdict::kNothingMissing) << d.sentence;
+  EXPECT_EQ(d.model.effects.size(), 1);
+}
+
+// Tests that a wrong value is told as such, and found.
+TEST(Diagnose, WrongParameter) {
+  ModelDescription truth = Table1With();
+  truth.parameters.beta *= 0.8;
+  const Diagnosis d = Diagnose(Table1With(), RunsOf(truth), {}, {}, {});
+  EXPECT_EQ(d.verdict, Verdict::kParameters) << d.sentence;
+  ASSERT_EQ(d.parameters.size(), 1) << d.sentence;
+  EXPECT_EQ(d.parameters[0].fitted.name, "beta");
+  EXPECT_NEAR(d.parameters[0].fitted.value, truth.parameters.beta, 0.02 * truth.parameters.beta);
+  EXPECT_EQ(d.parameters[0].model, 247000);
+  EXPECT_FALSE(d.parameters[0].implausible);
+  EXPECT_EQ(d.model.parameters.beta, d.parameters[0].fitted.value);
+}
+
+// Tests that the report is the same to the bit for any number of threads.
+TEST(Diagnose, SameForAnyNumberOfThreads) {
+  DiagnoseOptions options;
+  options.jobs = 2;
+  EXPECT_EQ(Json(Diagnose(Table1With(), RunsOf(Dragged()), {}, options, {})), Json(OfTheDrag()));
+}
+
+// Tests that of a single run the last third is held out.
+TEST(Diagnose, SplitsASingleRun) {
+  std::vector<MeasuredRun> runs = Measured(ClampedPair(Dragged(), 1.2, 5));
+  runs.pop_back();
+  const Diagnosis d = Diagnose(Table1With(), runs, {}, {}, {});
+  EXPECT_THAT(d.runs, ElementsAre("clamped 0"));
+  EXPECT_THAT(d.held_out_runs, ElementsAre("clamped 0, last third"));
+  EXPECT_EQ(d.samples, 800);
+  EXPECT_EQ(d.verdict, Verdict::kNamed) << d.sentence;
+}
+
+// Tests that runs that are held out are predicted, not fitted.
+TEST(Diagnose, HeldOutRuns) {
+  std::vector<MeasuredRun> runs = RunsOf(Dragged());
+  std::vector<MeasuredRun> held_out = {runs.back()};
+  runs.pop_back();
+  const Diagnosis d = Diagnose(Table1With(), runs, held_out, {}, {});
+  EXPECT_EQ(d.runs.size(), 3);
+  EXPECT_THAT(d.held_out_runs, ElementsAre("bypass 3"));
+  EXPECT_EQ(d.verdict, Verdict::kNamed) << d.sentence;
+  ASSERT_EQ(d.effects.size(), 1);
+  EXPECT_EQ(d.effects[0].id, "pump.quadratic_drag");
+  EXPECT_GT(d.held_out.before, d.held_out.after);
+  EXPECT_LT(d.held_out.after, 1.1);
+}
+
+// Tests that only what is allowed is named.
+TEST(Diagnose, NamesOnlyWhatItMay) {
+  DiagnoseOptions options;
+  options.effects = {"sensor.pressure_lag", "valve.check"};
+  const Diagnosis d = Diagnose(Table1With(), RunsOf(Dragged()), {}, options, {});
+  for (const Candidate& candidate : d.candidates) {
+    EXPECT_TRUE(candidate.id.starts_with("parameter ") || candidate.id == "sensor.pressure_lag" ||
+                candidate.id == "valve.check")
+        << candidate.id;
+  }
+  for (const FoundEffect& effect : d.effects) EXPECT_NE(effect.id, "pump.quadratic_drag");
+  EXPECT_NE(d.verdict, Verdict::kNothingMissing);
+}
+
+// Tests that only the base parameters that are allowed are changed.
+TEST(Diagnose, FreesOnlyWhatItMay) {
+  ModelDescription truth = Table1With();
+  truth.parameters.b *= 1.5;
+  DiagnoseOptions options;
+  options.effects = {"sensor.pressure_gain"};
+  options.free = {"b", "beta"};
+  const Diagnosis d = Diagnose(Table1With(), RunsOf(truth), {}, options, {});
+  EXPECT_EQ(d.verdict, Verdict::kParameters) << d.sentence;
+  ASSERT_EQ(d.parameters.size(), 1);
+  EXPECT_EQ(d.parameters[0].fitted.name, "b");
+  size_t parameters = 0;
+  for (const Candidate& candidate : d.candidates) parameters += candidate.id.starts_with("parameter ");
+  EXPECT_EQ(parameters, 2);
+}
+
+// Tests that a run whose shaft was held otherwise than it says is not explained by some physics.
+TEST(Diagnose, AWrongShaftModeIsNotExplainedAway) {
+  std::vector<MeasuredRun> runs = RunsOf(Table1With());
+  runs.erase(runs.begin() + 2);  // the free one
+  runs.pop_back();
+  RunData swing = SmallRun(Table1With(), Shaft::kFree, false, 0.7, 2, 5);
+  swing.measured.shaft = Shaft::kClamped;
+  swing.measured.arm_angle_rad = 0;
+  runs.push_back(swing.measured);
+  try {
+    const Diagnosis d = Diagnose(Table1With(), runs, {}, {}, {});
+    EXPECT_EQ(d.verdict, Verdict::kUnexplained) << d.sentence;
+  } catch (const ModelError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("shaft"));
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("arm_angle"));
+  }
+}
+
+}  // namespace
+}  // namespace hydro::testing

@@ -1,0 +1,164 @@
+// Fits find the numbers that runs were made with, keep to bounds, and are the same every time.
+#include "diagnose/fit.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+
+#include "model/state.h"
+#include "tests/diagnose/small_runs.h"
+
+namespace hydro::testing {
+namespace {
+
+Fitted FitRuns(const Hypothesis& hypothesis, const std::vector<RunData>& runs, int jobs = 1) {
+  FitOptions options;
+  options.tolerance = 1e-6;
+  options.jobs = jobs;
+  return Fit(hypothesis, PointersTo(runs), StartsOf(runs), options);
+}
+
+double ValueOf(const Fitted& fitted, const std::string& name) {
+  for (const FreeParameter& parameter : fitted.hypothesis.Free()) {
+    if (parameter.name == name) return parameter.value;
+  }
+  ADD_FAILURE() << name << " is not free";
+  return NAN;
+}
+
+// Tests that wrong base parameters are set right, to the noise.
+TEST(Fit, RecoversBaseParameters) {
+  ModelDescription truth = Table1With();
+  truth.parameters.k_1 = 4.3;
+  truth.parameters.b = 0.018;
+  truth.parameters.T_s = 4.5;
+  truth.parameters.c_E = 3e-5;
+  const std::vector<RunData> runs = OneOfEach(truth, 0.6, 1);
+  const Fitted fitted = FitRuns(WithFree(Table1With(), {"k_1", "b", "T_s", "c_E"}), runs);
+  ASSERT_TRUE(fitted.ok()) << fitted.failure;
+  EXPECT_NEAR(ValueOf(fitted, "k_1"), 4.3, 0.01 * 4.3);
+  EXPECT_NEAR(ValueOf(fitted, "b"), 0.018, 0.02 * 0.018);
+  EXPECT_NEAR(ValueOf(fitted, "T_s"), 4.5, 0.02 * 4.5);
+  EXPECT_NEAR(ValueOf(fitted, "c_E"), 3e-5, 0.05 * 3e-5);
+  EXPECT_NEAR(fitted.squared_gap(), 1, 0.1);
+  EXPECT_EQ(fitted.runs.size(), runs.size());
+}
+
+// Tests that the numbers of effects are found from where fits start.
+TEST(Fit, RecoversEffectParameters) {
+  const std::vector<RunData> runs =
+      ClampedPair(Table1With({{"pump.quadratic_drag", {{"k", 2e-4}}, {}},
+                              {"valve.relief", {{"set", 1500}, {"conductance", 3e-3}}, {}}}),
+                  0.8, 1);
+  const Fitted fitted =
+      FitRuns(WithFree(Table1With({{"pump.quadratic_drag", {{"k", 0}}, {}},
+                                   {"valve.relief", {{"set", 1300}, {"conductance", 1e-3}}, {}}}),
+                       {}),
+              runs);
+  ASSERT_TRUE(fitted.ok()) << fitted.failure;
+  EXPECT_NEAR(ValueOf(fitted, "pump.quadratic_drag.k"), 2e-4, 0.03 * 2e-4);
+  EXPECT_NEAR(ValueOf(fitted, "valve.relief.set"), 1500, 15);
+  EXPECT_NEAR(ValueOf(fitted, "valve.relief.conductance"), 3e-3, 0.05 * 3e-3);
+  EXPECT_NEAR(fitted.squared_gap(), 1, 0.1);
+}
+
+// Tests that the start of a run that begins in motion is found.
+TEST(Fit, RecoversStarts) {
+  const ModelDescription truth = Table1With();
+  RunData whole = SmallRun(truth, Shaft::kClamped, false, 0.6, 0, 1);
+  constexpr size_t kFirst = 130;
+  const Response exact = Respond(truth, whole.stimulus, {0, 0, 100, 100, 0.3, 0}, {}, {});
+  MeasuredRun rest = whole.measured;
+  for (std::vector<double>* values : {&rest.time, &rest.voltage.values, &rest.motor_speed.values,
+                                      &rest.motor_angle.values, &rest.p1.values, &rest.p2.values}) {
+    values->erase(values->begin(), values->begin() + kFirst);
+  }
+  std::vector<RunData> runs;
+  runs.push_back(PrepareRun(rest, truth.parameters));
+  const Fitted fitted = FitRuns(WithFree(truth, {}), runs);
+  ASSERT_TRUE(fitted.ok()) << fitted.failure;
+  const StartState& start = fitted.runs[0].start;
+  EXPECT_NEAR(start[kMotorAngle], exact.values[0][kFirst], 1e-3);
+  EXPECT_NEAR(start[kMotorSpeed], exact.values[1][kFirst], 1);
+  EXPECT_NEAR(start[kP1], exact.values[4][kFirst], 5);
+  EXPECT_NEAR(start[kP2], exact.values[5][kFirst], 5);
+  EXPECT_LT(std::abs(fitted.squared_gap() - 1), 0.1);
+}
+
+// Tests that an effect which would be best below its smallest physical value ends there.
+TEST(Fit, KeepsToBounds) {
+  ModelDescription truth = Table1With();
+  truth.parameters.b = 0.008;
+  const std::vector<RunData> runs = ClampedPair(truth, 0.5, 1);
+  const Fitted fitted = FitRuns(WithFree(Table1With({{"pump.quadratic_drag", {{"k", 1e-4}}, {}}}), {}), runs);
+  ASSERT_TRUE(fitted.ok()) << fitted.failure;
+  EXPECT_EQ(ValueOf(fitted, "pump.quadratic_drag.k"), 0);
+}
+
+// Tests that what must be above 0 is fitted as its logarithm, also from far away.
+TEST(Fit, PositiveParametersAreLogarithms) {
+  ModelDescription wrong = Table1With();
+  wrong.parameters.beta = 0.6 * 247000;
+  const Hypothesis hypothesis = WithFree(wrong, {"beta", "b"});
+  EXPECT_TRUE(hypothesis.Free()[0].logarithmic);
+  EXPECT_FALSE(hypothesis.Free()[1].logarithmic);  // may be 0
+  const Fitted fitted = FitRuns(hypothesis, ClampedPair(Table1With(), 0.5, 1));
+  ASSERT_TRUE(fitted.ok()) << fitted.failure;
+  EXPECT_NEAR(ValueOf(fitted, "beta"), 247000, 0.02 * 247000);
+}
+
+// Tests that a model which cannot be simulated is told, not thrown.
+TEST(Fit, FailuresAreTold) {
+  ModelDescription stiff = Table1With();
+  stiff.parameters.beta = 1e16;
+  Fitted fitted;
+  const std::vector<RunData> runs = ClampedPair(Table1With(), 0.2, 1);
+  EXPECT_NO_THROW(fitted = FitRuns(WithFree(stiff, {"b"}), runs));
+  EXPECT_FALSE(fitted.ok());
+  EXPECT_NE(fitted.failure, "");
+  EXPECT_NO_THROW(fitted = FitRuns(WithFree(stiff, {}), runs));
+  EXPECT_FALSE(fitted.ok());
+}
+
+size_t DifferentBits(const std::vector<double>& a, const std::vector<double>& b) {
+  size_t different = a.size() != b.size();
+  for (size_t i = 0; i < std::min(a.size(), b.size()); ++i) {
+    different += std::bit_cast<uint64_t>(a[i]) != std::bit_cast<uint64_t>(b[i]);
+  }
+  return different;
+}
+
+std::vector<double> AllNumbers(const Fitted& fitted) {
+  std::vector<double> numbers = {fitted.sum};
+  for (const FreeParameter& parameter : fitted.hypothesis.Free()) numbers.push_back(parameter.value);
+  for (const RunFit& run : fitted.runs) {
+    numbers.push_back(run.sum);
+    numbers.insert(numbers.end(), run.start.begin(), run.start.end());
+    numbers.insert(numbers.end(), run.information.begin(), run.information.end());
+    numbers.insert(numbers.end(), run.gradient.begin(), run.gradient.end());
+  }
+  return numbers;
+}
+
+// Tests that a fit is the same to the bit when made again, and for any number of threads.
+TEST(Fit, SameBitsEveryTime) {
+  ModelDescription truth = Table1With();
+  truth.parameters.b = 0.018;
+  truth.parameters.J = 0.026;
+  const std::vector<RunData> runs = OneOfEach(truth, 0.2, 1);
+  const Hypothesis hypothesis =
+      WithFree(Table1With({{"pump.quadratic_drag", {{"k", 0}}, {}}}), {"J", "b", "T_s", "beta"});
+  const std::vector<double> once = AllNumbers(FitRuns(hypothesis, runs));
+  ASSERT_GT(once.size(), 5);
+  EXPECT_EQ(DifferentBits(AllNumbers(FitRuns(hypothesis, runs)), once), 0);
+  for (int i = 0; i < 2; ++i) {
+    EXPECT_EQ(DifferentBits(AllNumbers(FitRuns(hypothesis, runs, 2)), once), 0) << "2 threads";
+    EXPECT_EQ(DifferentBits(AllNumbers(FitRuns(hypothesis, runs, 4)), once), 0) << "4 threads";
+  }
+}
+
+}  // namespace
+}  // namespace hydro::testing

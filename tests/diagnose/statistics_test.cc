@@ -1,0 +1,237 @@
+// What the verdict rests on: intervals, significance, what runs can tell at all.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include "diagnose/comparison.h"
+#include "diagnose/identifiable.h"
+#include "diagnose/intervals.h"
+#include "tests/diagnose/small_runs.h"
+
+namespace hydro::testing {
+namespace {
+
+// Noise in which each value keeps the part `phi` of the one before; standard deviation 1.
+std::vector<double> Noise(size_t samples, double phi, std::mt19937_64* random) {
+  std::normal_distribution<double> normal;
+  std::vector<double> noise = {normal(*random)};
+  while (noise.size() < samples)
+    noise.push_back(phi * noise.back() + std::sqrt(1 - phi * phi) * normal(*random));
+  return noise;
+}
+
+constexpr double kPressureNoise = 1.5, kSpeedNoise = 0.3;
+
+// A clamped run with such noise on pressures and speed. `exact` is Table 1's response to its stimulus.
+RunData WithNoise(const RunData& like, const Response& exact, double phi, uint64_t seed) {
+  MeasuredRun run = like.measured;
+  run.motor_angle = {};
+  std::mt19937_64 random(seed);
+  const auto noisy = [&](Channel channel, double size, MeasuredSignal* signal) {
+    signal->values = exact.values[static_cast<size_t>(channel)];
+    const std::vector<double> noise = Noise(signal->values.size(), phi, &random);
+    for (size_t i = 0; i < noise.size(); ++i) signal->values[i] += size * noise[i];
+  };
+  noisy(Channel::kMotorSpeed, kSpeedNoise, &run.motor_speed);
+  noisy(Channel::kP1, kPressureNoise, &run.p1);
+  noisy(Channel::kP2, kPressureNoise, &run.p2);
+  return PrepareRun(run, Table1());
+}
+
+// Two clamped runs of Table 1 without noise.
+struct ExactPair {
+  explicit ExactPair(double duration) : runs(ClampedPair(Table1With(), duration, 1)) {
+    for (const RunData& run : runs) exact.push_back(Respond(Table1With(), run.stimulus, Start(run), {}, {}));
+  }
+  static StartState Start(const RunData& run) { return {0, 0, 100, 100, run.stimulus.arm_angle, 0}; }
+  std::vector<RunData> With(double phi, uint64_t seed) const {
+    std::vector<RunData> noisy;
+    for (size_t r = 0; r < runs.size(); ++r) noisy.push_back(WithNoise(runs[r], exact[r], phi, 2 * seed + r));
+    return noisy;
+  }
+
+  std::vector<RunData> runs;
+  std::vector<Response> exact;
+};
+
+constexpr uint64_t kSeeds = 30;
+
+// How many of 30 noises have the true values of b, T_s and beta within their intervals.
+std::vector<int> Covered(double phi, double duration) {
+  const ExactPair pair(duration);
+  std::vector<int> covered(3, 0);
+  for (uint64_t seed = 1; seed <= kSeeds; ++seed) {
+    const std::vector<RunData> runs = pair.With(phi, seed);
+    const Fitted fitted =
+        Fit(WithFree(Table1With(), {"b", "T_s", "beta"}), PointersTo(runs), StartsOf(runs), {});
+    EXPECT_TRUE(fitted.ok());
+    const std::vector<Interval> intervals = Intervals(fitted, PointersTo(runs), 1);
+    const Parameters p = Table1();
+    const double truth[] = {p.b, p.T_s, p.beta};
+    for (size_t i = 0; i < 3; ++i) {
+      covered[i] += intervals[i].low <= truth[i] && truth[i] <= intervals[i].high;
+      const double value = fitted.hypothesis.Free()[i].value;
+      EXPECT_LT(intervals[i].high - intervals[i].low, 0.3 * value);
+    }
+  }
+  return covered;
+}
+
+// Tests that 95 % intervals hold the truth about so often; 26 of 30 are reached in 98 of 100 cases.
+TEST(Intervals, HoldTheTruth) {
+  for (const int covered : Covered(0, 0.4)) EXPECT_GE(covered, 26);
+}
+
+// Tests the same with noise that is not white.
+TEST(Intervals, HoldTheTruthWithCorrelatedNoise) {
+  for (const int covered : Covered(0.8, 1)) EXPECT_GE(covered, 26);
+}
+
+// Tests that where there is no effect p-values are uniform: of falls that chance gives, chi-squared times
+// what residuals are worth.
+TEST(PValue, IsUniformWithoutAnEffect) {
+  std::mt19937_64 random(1);
+  std::normal_distribution<double> normal;
+  for (const size_t parameters : {1, 2, 3}) {
+    constexpr int kDraws = 4000;
+    std::vector<double> p_values;
+    for (int i = 0; i < kDraws; ++i) {
+      double fall = 0;
+      for (size_t k = 0; k < parameters; ++k) fall += std::pow(normal(random), 2);
+      p_values.push_back(PValue(1.3 * 7 * fall, 1.3, 7, parameters, 1));
+    }
+    std::sort(p_values.begin(), p_values.end());
+    double worst = 0;  // Kolmogorov-Smirnov
+    for (int i = 0; i < kDraws; ++i)
+      worst = std::max(worst, std::abs(p_values[static_cast<size_t>(i)] - (i + 0.5) / kDraws));
+    EXPECT_LT(worst, 1.63 / std::sqrt(kDraws)) << parameters;  // 1 %
+  }
+}
+
+// Tests how it allows for the number tried, and its limits.
+TEST(PValue, AllowsForWhatWasTried) {
+  EXPECT_NEAR(PValue(3.841, 1, 1, 1, 1), 0.05, 1e-4);
+  EXPECT_NEAR(PValue(10.828, 1, 1, 1, 40), 0.04, 1e-4);
+  EXPECT_EQ(PValue(1, 1, 1, 1, 40), 1);
+  EXPECT_EQ(PValue(0, 1, 1, 1, 1), 1);
+  EXPECT_EQ(PValue(-5, 1, 1, 1, 1), 1);
+  // A fit better than the noise is no reason to believe more.
+  EXPECT_EQ(PValue(5, 0.5, 1, 1, 1), PValue(5, 1, 1, 1, 1));
+}
+
+// Tests the mean difference over its standard error.
+TEST(TValue, IsTheMeanOverItsError) {
+  const BlockSums worse{{11, 22, 33}, 3}, better{{10, 20, 30}, 3};
+  EXPECT_NEAR(TValue(worse, better), 2 / std::sqrt(1.0 / 3), 1e-12);
+  EXPECT_NEAR(TValue(better, worse), -2 / std::sqrt(1.0 / 3), 1e-12);
+  EXPECT_EQ(TValue(worse, worse), 0);
+}
+
+Fitted AtTheTruth(const ExactPair& pair) {
+  Fitted fitted;
+  fitted.hypothesis = WithFree(Table1With(), {});
+  for (const RunData& run : pair.runs) {
+    fitted.runs.emplace_back();
+    fitted.runs.back().start = ExactPair::Start(run);
+  }
+  return fitted;
+}
+
+// Tests that residuals of white noise count one each, and those that keep the part phi (1 + phi)/(1 - phi).
+TEST(CorrelationOf, CountsWhatIsIndependent) {
+  const ExactPair pair(2);
+  for (const double phi : {0.0, 0.5, 0.8}) {
+    const std::vector<RunData> runs = pair.With(phi, 3);
+    const double expected = (1 + phi) / (1 - phi);
+    EXPECT_NEAR(CorrelationOf(PointersTo(runs), AtTheTruth(pair)), expected, 0.25 * expected) << phi;
+  }
+}
+
+// Tests that blocks add up to the whole, in the order of time.
+TEST(BlocksOf, AddUpToTheWhole) {
+  const ExactPair pair(0.5);
+  const std::vector<RunData> runs = pair.With(0, 1);
+  HeldOut predicted;
+  for (const RunData& run : runs) {
+    predicted.starts.push_back(ExactPair::Start(run));
+    predicted.models.push_back(Table1With());
+  }
+  const BlockSums blocks = BlocksOf(PointersTo(runs), predicted);
+  double sum = 0;
+  for (const double block : blocks.sums) sum += block;
+  EXPECT_EQ(blocks.count, 2 * 3 * 500);
+  EXPECT_NEAR(sum, blocks.count, 0.1 * blocks.count);
+  predicted.models[1].parameters.k_1 *= 1.1;
+  const BlockSums worse = BlocksOf(PointersTo(runs), predicted);
+  for (size_t i = 0; i < blocks.sums.size() / 2; ++i) EXPECT_EQ(worse.sums[i], blocks.sums[i]);
+  EXPECT_GT(TValue(worse, blocks), 2);
+}
+
+std::vector<std::string> Told(const std::vector<RunData>& runs) {
+  std::vector<size_t> all;
+  for (size_t i = 0; i < BaseParameters().size(); ++i) all.push_back(i);
+  const std::vector<const RunData*> pointers = PointersTo(runs);
+  std::vector<std::string> names;
+  for (const size_t i : Identifiable(WithFree(Table1With(), {}), pointers, StartsOf(runs), all,
+                                     SizesOf(Table1With(), pointers), 1)) {
+    names.push_back(BaseParameters()[i].info.name);
+  }
+  return names;
+}
+
+int CountOf(const std::vector<std::string>& told, const std::vector<std::string>& names) {
+  return static_cast<int>(std::count_if(names.begin(), names.end(), [&](const std::string& name) {
+    return std::find(told.begin(), told.end(), name) != told.end();
+  }));
+}
+
+// Tests that clamped runs tell the pump's numbers but nothing of the arm, and that the units of torque and of
+// volume, which no run tells, are left as given.
+TEST(Identifiable, ClampedRunsTellNothingOfTheArm) {
+  const std::vector<std::string> told = Told(ClampedPair(Table1With(), 0.6, 1));
+  EXPECT_EQ(CountOf(told, {"k_2", "J_a", "mgl"}), 0);
+  EXPECT_GE(CountOf(told, {"k_1", "T_pmax", "D", "J", "b", "T_s"}), 4);
+  // Eqs. (4), (13), (14) hold for all of these times any number ...
+  EXPECT_LT(CountOf(told, {"k_1", "T_pmax", "D", "J", "b", "T_s", "c_E", "c_I"}) +
+                std::min(1, CountOf(told, {"beta", "V_ms"})),
+            9);
+  // ... and for another beta with volumes in proportion.
+  EXPECT_LT(CountOf(told, {"beta", "V_ms", "c"}), 3);
+}
+
+// Tests that a free arm tells of the arm, but not more than one unit each leaves.
+TEST(Identifiable, AFreeArmTellsOfTheArm) {
+  std::vector<RunData> runs = OneOfEach(Table1With(), 0.6, 1);
+  const std::vector<std::string> told = Told(runs);
+  EXPECT_GE(CountOf(told, {"k_2", "J_a"}), 1);
+  EXPECT_LT(CountOf(told, {"k_2", "J_a", "mgl"}), 3);  // eq. (15) holds for all times any number
+  EXPECT_LT(CountOf(told, {"k_1", "T_pmax", "D", "J", "b", "T_s", "c_E", "c_I", "V_ms", "c"}), 10);
+}
+
+// Tests that a fit of all that is identifiable ends at the truth: nothing in it is left to chance.
+TEST(Identifiable, WhatIsToldCanBeFitted) {
+  const std::vector<RunData> runs = ClampedPair(Table1With(), 0.6, 1);
+  const std::vector<std::string> told = Told(runs);
+  const Fitted fitted = Fit(WithFree(Table1With(), told), PointersTo(runs), StartsOf(runs), {});
+  ASSERT_TRUE(fitted.ok());
+  for (const FreeParameter& parameter : fitted.hypothesis.Free()) {
+    Parameters given = Table1();
+    const double truth = BaseValue(given, parameter.unknown.index);
+    EXPECT_NEAR(parameter.value, truth, std::abs(truth) + 1e-3) << parameter.name;
+  }
+}
+
+// Tests what a gain must be to count: a part of the whole and of what is above the noise.
+TEST(Material, AsksForAGainThatMatters) {
+  EXPECT_FALSE(Material(1.02, 1.00));
+  EXPECT_FALSE(Material(1.0, 1.0 - 0.5 * kLeastGain));
+  EXPECT_TRUE(Material(1 + 2 * kLeastGain, 1.0));
+  EXPECT_FALSE(Material(101, 101 - 0.5 * kLeastShare * 100));
+  EXPECT_TRUE(Material(101, 101 - 1.5 * kLeastShare * 100));
+  EXPECT_FALSE(Material(2, 3));
+}
+
+}  // namespace
+}  // namespace hydro::testing
