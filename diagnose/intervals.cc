@@ -19,9 +19,17 @@ using Eigen::VectorXd;
 
 constexpr Index kBlocksPerRun = 12;
 
-// What each stretch of a run says: its gradient, with the run's start taken out.
-MatrixXd BlockGradients(const Fitted& fitted, const std::vector<FreeParameter>& free, size_t r,
-                        const RunData& run) {
+// A block that has nearly all that is known of a number says nothing of its own scatter; it counts as if it
+// had no more than this part.
+constexpr double kMostLeverage = 0.75;
+
+// What each stretch of a run says: its gradient and its information, with the run's start taken out.
+struct BlocksOfRun {
+  MatrixXd gradients;  // a column each
+  std::vector<MatrixXd> informations;
+};
+BlocksOfRun BlocksOf(const Fitted& fitted, const std::vector<FreeParameter>& free, size_t r,
+                     const RunData& run) {
   std::vector<Unknown> unknowns;
   for (const FreeParameter& parameter : free) unknowns.push_back(parameter.unknown);
   for (const Unknown& start : StartUnknowns(run)) unknowns.push_back(start);
@@ -40,7 +48,8 @@ MatrixXd BlockGradients(const Fitted& fitted, const std::vector<FreeParameter>& 
     inner.diagonal().array() += 1e-10 * inner.diagonal().maxCoeff() + 1e-300;
     columns -= starts * inner.ldlt().solve(starts.transpose() * columns);
   }
-  MatrixXd gradients = MatrixXd::Zero(p, kBlocksPerRun);
+  BlocksOfRun blocks{MatrixXd::Zero(p, kBlocksPerRun),
+                     std::vector<MatrixXd>(kBlocksPerRun, MatrixXd::Zero(p, p))};
   for (size_t s = 0; s + 1 < residuals.first.size(); ++s) {
     const auto first = static_cast<Index>(residuals.first[s]);
     const Index count = static_cast<Index>(residuals.first[s + 1]) - first;
@@ -48,10 +57,12 @@ MatrixXd BlockGradients(const Fitted& fitted, const std::vector<FreeParameter>& 
       const Index from = first + b * count / kBlocksPerRun;
       const Index to = first + (b + 1) * count / kBlocksPerRun;
       const Map<const VectorXd> values(residuals.values.data() + from, to - from);
-      gradients.col(b) += columns.middleRows(from, to - from).transpose() * values;
+      const auto rows_of_block = columns.middleRows(from, to - from);
+      blocks.gradients.col(b) += rows_of_block.transpose() * values;
+      blocks.informations[static_cast<size_t>(b)] += rows_of_block.transpose() * rows_of_block;
     }
   }
-  return gradients;
+  return blocks;
 }
 
 }  // namespace
@@ -59,15 +70,13 @@ MatrixXd BlockGradients(const Fitted& fitted, const std::vector<FreeParameter>& 
 std::vector<Interval> Intervals(const Fitted& fitted, const std::vector<const RunData*>& runs, int jobs) {
   const std::vector<FreeParameter> free = fitted.hypothesis.Free();
   const auto p = static_cast<Index>(free.size());
-  std::vector<MatrixXd> gradients(runs.size());
-  ParallelFor(runs.size(), jobs, [&](size_t r) { gradients[r] = BlockGradients(fitted, free, r, *runs[r]); });
+  std::vector<BlocksOfRun> blocks_of(runs.size());
+  ParallelFor(runs.size(), jobs, [&](size_t r) { blocks_of[r] = BlocksOf(fitted, free, r, *runs[r]); });
   MatrixXd information = MatrixXd::Zero(p, p);
-  MatrixXd by_block = MatrixXd::Zero(p, p);
   MatrixXd by_run = MatrixXd::Zero(p, p);
   for (size_t r = 0; r < runs.size(); ++r) {
     information += Map<const MatrixXd>(fitted.runs[r].information.data(), p, p);
-    by_block += gradients[r] * gradients[r].transpose();
-    const VectorXd whole = gradients[r].rowwise().sum();
+    const VectorXd whole = blocks_of[r].gradients.rowwise().sum();
     by_run += whole * whole.transpose();
   }
   const VectorXd scale = (information.diagonal().array() + 1e-300).sqrt().inverse();
@@ -75,9 +84,29 @@ std::vector<Interval> Intervals(const Fitted& fitted, const std::vector<const Ru
   scaled.diagonal().array() += 1e-10;
   const MatrixXd inverse =
       scale.asDiagonal() * scaled.ldlt().solve(MatrixXd::Identity(p, p)) * scale.asDiagonal();
+  // The fit has followed each block as far as the block has leverage; what is left of its gradient is made up
+  // for that (as in leaving it out, the jackknife).
+  const Eigen::LLT<MatrixXd> root(scaled);
+  MatrixXd by_block = MatrixXd::Zero(p, p);
+  for (const BlocksOfRun& run : blocks_of) {
+    for (Index b = 0; b < kBlocksPerRun; ++b) {
+      MatrixXd share = scale.asDiagonal() * run.informations[static_cast<size_t>(b)] * scale.asDiagonal();
+      root.matrixL().solveInPlace(share);
+      share.transposeInPlace();
+      root.matrixL().solveInPlace(share);
+      const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(share);
+      const VectorXd left = 1 - eigen.eigenvalues().array().max(0.0).min(kMostLeverage);
+      VectorXd gradient = scale.asDiagonal() * run.gradients.col(b);
+      root.matrixL().solveInPlace(gradient);
+      gradient = eigen.eigenvectors() * (eigen.eigenvectors().transpose() * gradient).cwiseQuotient(left);
+      root.matrixU().solveInPlace(gradient);
+      gradient = scale.asDiagonal() * gradient;  // how far the block moves the fit
+      by_block += gradient * gradient.transpose();
+    }
+  }
   const auto blocks = static_cast<double>(kBlocksPerRun) * static_cast<double>(runs.size());
   const auto count = static_cast<double>(runs.size());
-  const MatrixXd block_variance = inverse * by_block * inverse * (blocks / (blocks - 1));
+  const MatrixXd block_variance = by_block * ((blocks - 1) / blocks);
   const MatrixXd run_variance = inverse * by_run * inverse;
   const double squared_gap = std::max(1.0, fitted.squared_gap());
   const double t_block = boost::math::quantile(boost::math::students_t(blocks - 1), 0.975);
