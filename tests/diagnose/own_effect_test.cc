@@ -27,7 +27,7 @@ MeasuredRun Swing(double volts, double period, uint64_t seed) {
   run.name = run.file = "swing " + std::to_string(seed);
   std::mt19937_64 random(seed);
   std::normal_distribution<double> normal;
-  for (int k = 0; k < 800; ++k) {
+  for (int k = 0; k < 600; ++k) {
     const double t = 1e-3 * k;
     if (k > 0) rig.Advance(run.voltage.values.back(), t);
     const Measurement m = rig.Measure();
