@@ -6,8 +6,11 @@
 #include <limits>
 #include <utility>
 
+#include "diagnose/alignment.h"
+#include "diagnose/clock_fit.h"
 #include "diagnose/conclusion.h"
 #include "diagnose/identifiable.h"
+#include "diagnose/recording_remarks.h"
 #include "diagnose/run_data.h"
 #include "diagnose/search.h"
 
@@ -22,6 +25,7 @@ void SplitOff(MeasuredRun* run, std::vector<MeasuredRun>* held_out) {
   const size_t first = run->samples() * 2 / 3;
   MeasuredRun rest = *run;
   rest.name += ", last third";
+  rest.first_row += first;
   const auto cut = [&](std::vector<double>* values, bool front) {
     if (values->empty()) return;
     const auto at = values->begin() + static_cast<std::ptrdiff_t>(first);
@@ -101,8 +105,13 @@ Diagnosis Diagnose(const ModelDescription& model, std::vector<MeasuredRun> runs,
   if (runs.size() == 1 && held_out.empty() && runs.front().samples() >= 300)
     SplitOff(&runs.front(), &held_out);
   std::vector<RunData> data, held_out_data;
-  for (MeasuredRun& run : runs) data.push_back(PrepareRun(std::move(run), model.parameters));
-  for (MeasuredRun& run : held_out) held_out_data.push_back(PrepareRun(std::move(run), model.parameters));
+  std::vector<ClockDelay> clocks;
+  for (MeasuredRun& run : runs) data.push_back(PrepareAligned(std::move(run), model.parameters, &clocks));
+  for (MeasuredRun& run : held_out) {
+    held_out_data.push_back(PrepareAligned(std::move(run), model.parameters, &clocks));
+  }
+  const std::vector<size_t> allowed = AllowedBase(model, options.free);
+  CorrectClocks(model, allowed, options.jobs, &data, &held_out_data, &clocks);
   NameApart(&data);
   NameApart(&held_out_data);
 
@@ -114,7 +123,6 @@ Diagnosis Diagnose(const ModelDescription& model, std::vector<MeasuredRun> runs,
   context.jobs = options.jobs;
   context.tell = tell;
   context.changes = EffectChanges(model, options.effects, context.runs);
-  const std::vector<size_t> allowed = AllowedBase(model, options.free);
   for (const size_t i : allowed) context.changes.push_back({"", {}, BaseParameters()[i].info.name});
 
   // Few changes to the model as given first: one wrong value or one missing effect is the likeliest.
@@ -150,7 +158,11 @@ Diagnosis Diagnose(const ModelDescription& model, std::vector<MeasuredRun> runs,
       search.tried.insert(search.tried.end(), wider.tried.begin(), wider.tried.end());
     }
   }
-  return Conclude(context, std::move(search), std::move(refit), tell);
+  Diagnosis diagnosis = Conclude(context, std::move(search), std::move(refit), tell);
+  const std::vector<std::string> remarks = RecordingRemarks(clocks, context.runs, context.held_out);
+  diagnosis.remarks.insert(diagnosis.remarks.begin(), remarks.begin(), remarks.end());
+  diagnosis.recording = std::move(clocks);
+  return diagnosis;
 }
 
 }  // namespace hydro

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "diagnose/alignment.h"
 #include "model/description.h"
 #include "model/response.h"
 
@@ -99,7 +100,8 @@ struct NextExperiment {
 
 struct Diagnosis {
   Verdict verdict = Verdict::kNothingMissing;
-  std::string sentence;  // the verdict, in one
+  std::string sentence;               // the verdict, in one
+  std::vector<ClockDelay> recording;  // clocks that were found apart, and put on one
   std::vector<std::string>
       remarks;  // suspects of the recording, what could not be tried, noise unlike what is stated
   std::vector<Location> location;

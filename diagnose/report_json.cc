@@ -59,6 +59,17 @@ Json Effects(const Diagnosis& diagnosis) {
   return effects;
 }
 
+Json Recording(const Diagnosis& diagnosis) {
+  Json clocks = Json::array();
+  for (const ClockDelay& clock : diagnosis.recording) {
+    clocks.push_back({{"run", clock.run},
+                      {"signals", clock.signals},
+                      {"late_s", clock.delay},
+                      {"ci95", {clock.delay - clock.error, clock.delay + clock.error}}});
+  }
+  return clocks;
+}
+
 Json ChangedParameters(const Diagnosis& diagnosis) {
   Json parameters = Json::array();
   for (const ChangedParameter& parameter : diagnosis.parameters) {
@@ -120,6 +131,7 @@ const std::string& VerdictName(Verdict verdict) {
 std::string ReportJson(const Diagnosis& diagnosis, const std::string& next_config, double elapsed_s) {
   const Json report = {{"verdict", VerdictName(diagnosis.verdict)},
                        {"sentence", diagnosis.sentence},
+                       {"recording", Recording(diagnosis)},
                        {"location", Places(diagnosis)},
                        {"missing_terms", MissingTerms(diagnosis)},
                        {"effects", Effects(diagnosis)},

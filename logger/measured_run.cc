@@ -5,6 +5,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "logger/run_delays.h"
 #include "logger/run_log.h"
 #include "logger/run_table.h"
 #include "settings/did_you_mean.h"
@@ -50,6 +51,7 @@ struct Source {
   const Column* column = nullptr;
   double scale = 1;
   double offset = 0;
+  double delay = 0;
 };
 
 std::vector<double> Values(const Table& table, const Source& source) {
@@ -115,11 +117,16 @@ std::optional<Source> ReadSource(SectionReader& columns, const std::string& key,
     section.Text("column", &name);
     section.Number("scale", &source.scale);
     section.Number("offset", &source.offset);
+    const bool delayed = section.Number("delay", &source.delay);
     section.Finish();
+    if (delayed && key == "time") {
+      throw section.Error("delay", "it with time", "delay with the signals that are late against time");
+    }
     if (source.scale == 0) throw section.Error("scale", "0", "a finite number other than 0");
   } else {
-    throw columns.Error(key, node->Shown(),
-                        "the name of a column, or { column = \"...\", scale = ..., offset = ... }");
+    throw columns.Error(
+        key, node->Shown(),
+        "the name of a column, or { column = \"...\", scale = ..., offset = ..., delay = ... }");
   }
   source.column = table.Find(name);
   if (source.column == nullptr) {
@@ -139,6 +146,7 @@ void ReadColumns(SectionReader columns, const Table& table, MeasuredRun* run) {
   columns.Finish();
 
   run->time = Times(table, *time);
+  std::vector<SignalDelay> delays;
   for (size_t i = 0; i < kSignals.size(); ++i) {
     if (!sources[i].has_value()) continue;
     if (AllMissing(sources[i]->column->values)) {
@@ -148,6 +156,11 @@ void ReadColumns(SectionReader columns, const Table& table, MeasuredRun* run) {
     }
     const bool command = kSignals[i].signal == &MeasuredRun::voltage;
     (run->*kSignals[i].signal).values = command ? Command(table, *sources[i]) : Values(table, *sources[i]);
+    if (sources[i]->delay != 0) delays.emplace_back(kSignals[i].signal, sources[i]->delay);
+  }
+  if (!RemoveDelays(delays, run)) {
+    throw columns.Error("delay", "delays that leave fewer than two samples",
+                        "delays far below the run's length");
   }
 }
 
@@ -212,8 +225,8 @@ std::optional<double> SensorNoise(SectionReader& noise, const SignalName& name) 
 }  // namespace
 
 std::string MeasuredRun::Place(size_t sample) const {
-  return file +
-         (rows_are_lines ? ": line " + std::to_string(sample + 2) : ": row " + std::to_string(sample + 1));
+  const size_t row = first_row + sample;
+  return file + (rows_are_lines ? ": line " + std::to_string(row + 2) : ": row " + std::to_string(row + 1));
 }
 
 MeasuredRun RunOfExport(const Table& table, const std::string& config_text, const std::string& model_text) {

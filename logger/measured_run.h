@@ -32,6 +32,8 @@ struct MeasuredRun {
 
   std::string model_text;  // the model that a log says it was run with (TOML); "" for tables
 
+  size_t first_row = 0;  // rows of the file before the first sample, cut off
+
   std::vector<double> time;     // s, finite and increasing, not always evenly; two samples or more
   MeasuredSignal voltage;       // command of eq. (1), held from each sample to the next; nothing is missing
   MeasuredSignal pressure_ref;  // of p2 - p1

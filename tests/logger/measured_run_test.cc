@@ -55,6 +55,26 @@ std::string With(const std::string& from, const std::string& to, std::string tex
   return text.replace(at, from.size(), to);
 }
 
+// Tests a column that was recorded late: read at the time it belongs to, at the nearest sample, the ends
+// without a reading cut off; errors still name the file's line.
+TEST_F(MeasuredRunTest, Delay) {
+  const std::string table =
+      "t,amps,rpm,p low,p high,angle\n0,1,0,10,20,0\n1,2,1,11,21,0\n2,3,2,12,22,0\n3,4,3,13,23,0\n";
+  const MeasuredRun run =
+      Read(With("p1 = \"p low\"", "p1 = { column = \"p low\", delay = 0.9 }",
+                With("scale = 2.0, offset = 0.5", "delay = -1", With("scale = 0.10471975512", "scale = 1"))),
+           table);
+  EXPECT_THAT(run.time, ElementsAre(1, 2));
+  EXPECT_THAT(run.voltage.values, ElementsAre(1, 2));
+  EXPECT_THAT(run.motor_speed.values, ElementsAre(1, 2));
+  EXPECT_THAT(run.p1.values, ElementsAre(12, 13));
+  EXPECT_THAT(run.Place(0), HasSubstr("line 3"));
+  EXPECT_THAT(ErrorOf(With("p1 = \"p low\"", "p1 = { column = \"p low\", delay = 3 }"), table),
+              HasSubstr("delays that leave fewer than two samples"));
+  EXPECT_THAT(ErrorOf(With("time = \"t\"", "time = { column = \"t\", delay = 1 }"), table),
+              HasSubstr("delay"));
+}
+
 // Tests that a table with its sidecar is read as it says: names, scale and offset, missing values, the
 // command held, noise.
 TEST_F(MeasuredRunTest, TableWithSidecar) {

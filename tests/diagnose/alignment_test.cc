@@ -1,0 +1,133 @@
+#include "diagnose/alignment.h"
+
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <random>
+
+#include "diagnose/recording_remarks.h"
+#include "logger/run_delays.h"
+#include "tests/diagnose/noisy_rig.h"
+#include "tests/table1.h"
+
+namespace hydro {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using testing::NoisyRig;
+using ::testing::UnorderedElementsAre;
+
+constexpr double kStep = 0.005;
+
+// A recorder's run: a clamped actuator at 200 Hz, its command never the same.
+MeasuredRun Recorded(double friction_per_psi = 0) {
+  NoisyRig rig;
+  rig.step = kStep;
+  rig.model.parameters = testing::Table1();
+  rig.model.parameters.f = friction_per_psi;
+  const auto waves = [](double t) {
+    return 4 * std::sin(2 * std::numbers::pi * 0.7 * t) + 3 * std::sin(2 * std::numbers::pi * 1.9 * t + 1);
+  };
+  return rig.Record("waves", Shaft::kClamped, 0.1, 25, false, waves).measured;
+}
+
+// The channels come so much later.
+MeasuredRun Late(MeasuredRun run, const std::vector<SignalDelay>& delays) {
+  std::vector<SignalDelay> back;
+  for (const auto& [signal, delay] : delays) back.emplace_back(signal, -delay);
+  EXPECT_TRUE(RemoveDelays(back, &run));
+  return run;
+}
+
+const ClockDelay* Of(const std::vector<ClockDelay>& clocks, const std::string& signal) {
+  for (const ClockDelay& clock : clocks) {
+    if (std::count(clock.signals.begin(), clock.signals.end(), signal) > 0) return &clock;
+  }
+  return nullptr;
+}
+
+// Tests that motor and command of a late clock are found with their delays and put back, whatever the model
+// has for friction.
+TEST(Alignment, FindsALateClock) {
+  const MeasuredRun whole = Recorded(0.0005);
+  MeasuredRun run = Late(
+      whole,
+      {{&MeasuredRun::voltage, 0.1}, {&MeasuredRun::motor_speed, 0.12}, {&MeasuredRun::motor_angle, 0.12}});
+  const std::vector<ClockDelay> clocks = AlignClocks(testing::Table1(), &run);
+  ASSERT_EQ(clocks.size(), 2u);
+  const ClockDelay* const command = Of(clocks, "voltage");
+  const ClockDelay* const motor = Of(clocks, "motor_speed");
+  ASSERT_TRUE(command != nullptr && motor != nullptr);
+  EXPECT_THAT(motor->signals, UnorderedElementsAre("motor_speed", "motor_angle"));
+  EXPECT_NEAR(command->delay, 0.10, 0.01);
+  EXPECT_NEAR(motor->delay, 0.12, 0.01);
+  EXPECT_LT(motor->error, 0.03);
+  EXPECT_THAT(Says(*motor), HasSubstr("motor_speed and motor_angle are late by 0.1"));
+  // What remains is a piece of what was recorded at first, the pressures untouched.
+  const auto at =
+      std::search(whole.p1.values.begin(), whole.p1.values.end(), run.p1.values.begin(), run.p1.values.end());
+  EXPECT_NE(at, whole.p1.values.end());
+  EXPECT_GT(run.samples(), whole.samples() - 100);
+}
+
+void ExpectLeftAlone(const MeasuredRun& recorded, const char* what) {
+  MeasuredRun run = recorded;
+  EXPECT_THAT(AlignClocks(testing::Table1(), &run), IsEmpty()) << what;
+  EXPECT_EQ(run.time, recorded.time) << what;
+  EXPECT_EQ(run.voltage.values, recorded.voltage.values) << what;
+  EXPECT_EQ(run.motor_speed.values, recorded.motor_speed.values) << what;
+  EXPECT_EQ(run.p2.values, recorded.p2.values) << what;
+}
+
+// Tests that what is on one clock, and lateness that an effect of the catalogue has a name for, is left as it
+// is.
+TEST(Alignment, LeavesTheRestToTheSearch) {
+  const MeasuredRun run = Recorded();
+  ExpectLeftAlone(run, "nothing");
+  ExpectLeftAlone(Late(run, {{&MeasuredRun::motor_speed, 0.05}}), "a late sensor of speed");
+  ExpectLeftAlone(Late(run, {{&MeasuredRun::p2, 0.05}}), "a late sensor of pressure");
+  ExpectLeftAlone(Late(run, {{&MeasuredRun::p1, 0.1}, {&MeasuredRun::p2, 0.1}}), "late pressures");
+  ExpectLeftAlone(Late(run, {{&MeasuredRun::voltage, 0.05}}), "a command recorded late");
+  ExpectLeftAlone(Late(run, {{&MeasuredRun::voltage, -0.05}}), "an amplifier's delay");
+  MeasuredRun blind = run;
+  blind.p1.values.clear();
+  ExpectLeftAlone(blind, "one pressure only");
+}
+
+// Tests that pieces that were put on one clock are no surer than that.
+TEST(Alignment, TimingCountsAsNoise) {
+  const MeasuredRun run = Recorded();
+  std::vector<ClockDelay> clocks;
+  const RunData plain = PrepareAligned(run, testing::Table1(), &clocks);
+  EXPECT_THAT(clocks, IsEmpty());
+  EXPECT_EQ(plain.Find(Channel::kP2)->noise, PrepareRun(run, testing::Table1()).Find(Channel::kP2)->noise);
+  const RunData late = PrepareAligned(Late(run, {{&MeasuredRun::voltage, 0.1},
+                                                 {&MeasuredRun::motor_speed, 0.1},
+                                                 {&MeasuredRun::motor_angle, 0.1}}),
+                                      testing::Table1(), &clocks);
+  EXPECT_EQ(clocks.size(), 2u);
+  EXPECT_GT(late.Find(Channel::kP2)->noise, 2 * plain.Find(Channel::kP2)->noise);
+}
+
+// Tests the sentences on recordings that have little in them, or are not what they say.
+TEST(RecordingRemarks, SayWhatIsWrong) {
+  MeasuredRun run = Recorded();
+  const RunData good = PrepareRun(run, testing::Table1());
+  EXPECT_THAT(RecordingRemarks({}, {&good}, {}), IsEmpty());
+
+  run.p1.noise = 0.5;
+  run.time.back() += 3;
+  for (double& value : run.motor_speed.values) value = std::abs(value);
+  for (size_t i = 1000; i < 1500; ++i) run.p2.values[i] = NAN;
+  const RunData bad = PrepareRun(run, testing::Table1());
+  EXPECT_THAT(RecordingRemarks({}, {&bad}, {}),
+              ElementsAre(HasSubstr("1 gap in time, up to 3"), HasSubstr("p1's noise is 1."),
+                          HasSubstr("p2 is missing in 10 % of the rows"), HasSubstr("one way only")));
+}
+
+}  // namespace
+}  // namespace hydro
