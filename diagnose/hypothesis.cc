@@ -11,6 +11,10 @@ namespace {
 // Values that a fit may reach beyond an effect's starting points: so many times more or less.
 constexpr double kReach = 300;
 
+// Times its value, for a base parameter whose derivative alone does not show the way: of what resonates, a
+// small change of frequency is a large one of phase.
+constexpr double kElsewhere[] = {0.8, 1.25};
+
 const ParameterInfo& InfoOf(const EffectDescription& effect, const std::string& name) {
   const EffectInfo* info = FindEffect(effect.id);
   for (const ParameterInfo& parameter : info->parameters) {
@@ -145,7 +149,8 @@ Sizes SizesOf(const ModelDescription& model, const std::vector<const RunData*>& 
   return sizes;
 }
 
-std::vector<Hypothesis> With(const Hypothesis& hypothesis, const Change& change, const Sizes& sizes) {
+std::vector<Hypothesis> With(const Hypothesis& hypothesis, const Change& change, const Sizes& sizes,
+                             bool elsewhere) {
   Hypothesis more = hypothesis;
   more.changes.push_back(change);
   if (change.effect.empty()) {
@@ -153,7 +158,13 @@ std::vector<Hypothesis> With(const Hypothesis& hypothesis, const Change& change,
       if (BaseParameters()[i].info.name != change.parameter) continue;
       if (std::find(more.base.begin(), more.base.end(), i) == more.base.end()) more.base.push_back(i);
     }
-    return {more};
+    std::vector<Hypothesis> all = {more};
+    for (const double factor : kElsewhere) {
+      if (!elsewhere) break;
+      all.push_back(more);
+      all.back().model.parameters.*BaseParameters()[more.base.back()].member *= factor;
+    }
+    return all;
   }
   const EffectInfo& info = *FindEffect(change.effect);
   more.effects.push_back(change.effect);

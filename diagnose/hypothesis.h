@@ -56,8 +56,10 @@ struct Sizes {
 };
 Sizes SizesOf(const ModelDescription& model, const std::vector<const RunData*>& runs);
 
-// The hypothesis with an effect added, once for each of its starting points; a base parameter freed, once.
-std::vector<Hypothesis> With(const Hypothesis& hypothesis, const Change& change, const Sizes& sizes);
+// The hypothesis with an effect added, once for each of its starting points; a base parameter freed, as it is
+// and, when `elsewhere`, also somewhat smaller and larger.
+std::vector<Hypothesis> With(const Hypothesis& hypothesis, const Change& change, const Sizes& sizes,
+                             bool elsewhere);
 // The hypothesis with the change taken back: base parameters as in `given`.
 Hypothesis Without(const Hypothesis& hypothesis, const Change& change, const ModelDescription& given);
 

@@ -74,11 +74,13 @@ struct Task {
   size_t change = 0;
   Hypothesis with;
   std::vector<FreeParameter> own;  // free in it and not before
+  bool moved = false;              // a base parameter that has another value already
 };
 
 // The parameters in which it does nothing as it stands: their derivatives are all there is to it.
 std::vector<size_t> Vanishing(const Task& task) {
   std::vector<size_t> places;
+  if (task.moved) return places;
   for (size_t i = 0; i < task.own.size(); ++i) {
     const bool base = task.own[i].unknown.kind == Unknown::Kind::kBase;
     if (base || (task.own[i].value == 0 && !task.own[i].logarithmic)) places.push_back(i);
@@ -229,8 +231,8 @@ bool Together(const Fitted& current, const std::vector<const RunData*>& runs,
 }  // namespace
 
 std::vector<std::vector<Scanned>> Scan(const Fitted& current, const std::vector<const RunData*>& runs,
-                                       const std::vector<Change>& changes, const Sizes& sizes, size_t stride,
-                                       int jobs) {
+                                       const std::vector<Change>& changes, const Sizes& sizes, bool elsewhere,
+                                       size_t stride, int jobs) {
   const std::vector<FreeParameter> known = current.hypothesis.Free();
   std::vector<RunBasis> bases(runs.size());
   ParallelFor(runs.size(), jobs, [&](size_t r) {
@@ -251,13 +253,16 @@ std::vector<std::vector<Scanned>> Scan(const Fitted& current, const std::vector<
 
   std::vector<Task> tasks;
   for (size_t c = 0; c < changes.size(); ++c) {
-    for (Hypothesis& with : With(current.hypothesis, changes[c], sizes)) {
-      Task task{c, std::move(with), {}};
+    for (Hypothesis& with : With(current.hypothesis, changes[c], sizes, elsewhere)) {
+      Task task{c, std::move(with), {}, false};
       for (const FreeParameter& parameter : task.with.Free()) {
         const bool had = std::any_of(known.begin(), known.end(), [&](const FreeParameter& other) {
           return other.name == parameter.name;
         });
         if (!had) task.own.push_back(parameter);
+        task.moved |= !had && parameter.unknown.kind == Unknown::Kind::kBase &&
+                      parameter.value != current.hypothesis.model.parameters.*
+                                             BaseParameters()[parameter.unknown.index].member;
       }
       tasks.push_back(std::move(task));
     }

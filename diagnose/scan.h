@@ -21,7 +21,7 @@ struct Scanned {
 // projected off those of all that `current` has free and of the runs' starts. Sums count all samples,
 // whatever the stride.
 std::vector<std::vector<Scanned>> Scan(const Fitted& current, const std::vector<const RunData*>& runs,
-                                       const std::vector<Change>& changes, const Sizes& sizes, size_t stride,
-                                       int jobs);
+                                       const std::vector<Change>& changes, const Sizes& sizes, bool elsewhere,
+                                       size_t stride, int jobs);
 
 }  // namespace hydro
