@@ -1,5 +1,4 @@
 // Effects of valves, fluid, motor, arm and sensors against closed forms.
-#include <ceres/jet.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
