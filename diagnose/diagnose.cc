@@ -19,6 +19,8 @@ namespace hydro {
 namespace {
 
 constexpr int kMostChanges = 3;
+// Squared gap of a model that is wrong all over.
+constexpr double kFar = 25;
 
 // A single run without others to hold out: its last third is held out.
 void SplitOff(MeasuredRun* run, std::vector<MeasuredRun>* held_out) {
@@ -151,7 +153,10 @@ Diagnosis Diagnose(const ModelDescription& model, std::vector<MeasuredRun> runs,
   fine.jobs = options.jobs;
   Explanation refit = Explain(context, refitted, starts, fine);
   if (!refit.fitted.ok()) refit = search.given;
-  if (Material(search.best.held_out_gap(), refit.held_out_gap())) {
+  // So far from the noise, a few changes are not what it takes: the rest is looked for once the parameters
+  // fit.
+  const bool far = search.best.held_out_gap() > kFar && refit.held_out_gap() < search.best.held_out_gap();
+  if (far || Material(search.best.held_out_gap(), refit.held_out_gap())) {
     SearchResult wider = Search(context, refit.fitted.hypothesis, kMostChanges);
     if (wider.given.fitted.ok() && Material(search.best.held_out_gap(), wider.best.held_out_gap())) {
       search.best = std::move(wider.best);

@@ -1,0 +1,58 @@
+"""hydro-diagnose on measurements of a real rig (examples/buoy_pto): what it finds on one record must hold on another."""
+
+import json
+import math
+import os
+import shutil
+import unittest
+
+import stack
+
+ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
+EXAMPLE = os.path.join(ROOT, "examples", "buoy_pto")
+DATA = os.path.join(os.environ.get("HYDRO_DATA", ""), "buoy_pto")
+SINE, FRICTION = "sine_moves_2021-07-26", "friction_moves_bias_current"
+# The whole catalogue takes ten times as long, and finds the same.
+EFFECTS = 'effects = ["valve.relief", "pump.pressure_friction"]\n'
+LONG = 540
+
+
+@unittest.skipUnless(os.path.isdir(DATA), "the measured data are not here: examples/buoy_pto/README.md says where they are")
+class RealDataTest(stack.TestCase):
+    # Tests that the clocks, the relief valve and the friction of a real rig are found on one record, and that the
+    # model then predicts another, which was not fitted.
+    def test_wave_energy_take_off(self):
+        for name in (SINE, FRICTION):
+            shutil.copy(os.path.join(DATA, name + ".csv"), self.path(name + ".csv"))
+            shutil.copy(os.path.join(EXAMPLE, name + ".toml"), self.path(name + ".toml"))
+        with open(self.path("effects.toml"), "w", encoding="utf-8") as file:
+            file.write(EFFECTS)
+        run = self.start("hydro-diagnose", self.path(SINE + ".csv"), "--hold-out", self.path(FRICTION + ".csv"),
+                         "--model", os.path.join(EXAMPLE, "model.toml"), "--effects", self.path("effects.toml"),
+                         "--free", "J,b,T_s,c_E", "--out", self.path("out"))
+        self.assertEqual(run.wait(LONG), 0, run.report())
+        with open(os.path.join(self.path("out"), "report.json"), encoding="utf-8") as file:
+            report = json.load(file)
+
+        late = {(clock["run"], name): clock["late_s"] for clock in report["recording"] for name in clock["signals"]}
+        for record in ("sine moves", "friction moves"):
+            self.assertGreater(late[record, "motor_speed"], 0.2, late)
+            self.assertLess(late[record, "motor_speed"], 0.4, late)
+            self.assertGreater(late[record, "voltage"], 0.25, late)
+        self.assertTrue(any("late by" in remark for remark in report["remarks"]), report["remarks"])
+
+        found = {effect["id"]: effect["parameters"] for effect in report["effects"]}
+        self.assertIn("valve.relief", found)
+        self.assertAlmostEqual(found["valve.relief"]["set"]["value"], 2950, delta=100)
+
+        signals = report["gap"]["signals"]
+        p1, p2 = (signals[name]["held_out"]["after"] for name in ("p1", "p2"))
+        rpm = signals["motor_speed"]["held_out"]["after"] * 30 / math.pi
+        # The rig's published simulator is off by 529 rpm and 240 psi there.
+        self.assertLess(rpm, 264, signals)
+        # Of p2 - p1 134 psi are reached, not the half of 240.
+        self.assertLess(math.hypot(p1, p2), 145, signals)
+
+
+if __name__ == "__main__":
+    unittest.main()
