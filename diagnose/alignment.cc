@@ -1,6 +1,6 @@
 #include "diagnose/alignment.h"
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -9,6 +9,7 @@
 #include <limits>
 #include <utility>
 
+#include "diagnose/solve.h"
 #include "logger/run_delays.h"
 
 namespace hydro {
@@ -136,7 +137,7 @@ double Open(Index first, Index last, const Row& row) {
           scale.asDiagonal();
   inner.diagonal().array() += 1e-10;
   const Eigen::Matrix<double, N, 1> scaled = scale.asDiagonal() * right;
-  return std::max(0.0, yy - scaled.dot(inner.ldlt().solve(scaled))) / variance;
+  return std::max(0.0, yy - scaled.dot(SolveSymmetric(inner, scaled).col(0))) / variance;
 }
 
 class Clocks {

@@ -3,12 +3,14 @@
 #include <ceres/ceres.h>
 #include <glog/logging.h>
 
-#include <Eigen/Dense>
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 
 #include "diagnose/parallel.h"
 #include "diagnose/residuals.h"
+#include "diagnose/solve.h"
 
 namespace hydro {
 
@@ -57,9 +59,8 @@ class RunCost : public ceres::CostFunction {
       return true;
     }
     // [J r]' [J r] = V L V'; the rows of L^1/2 V' are as good as those of [J r].
-    const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(normal);
-    const MatrixXd root =
-        eigen.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal() * eigen.eigenvectors().transpose();
+    const Eigensystem eigen = EigensystemOf(normal);
+    const MatrixXd root = eigen.values.cwiseMax(0.0).cwiseSqrt().asDiagonal() * eigen.vectors.transpose();
     out = root.col(n);
     using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
     int block = 0;

@@ -1,12 +1,13 @@
 #include "diagnose/held_out.h"
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "diagnose/parallel.h"
 #include "diagnose/residuals.h"
+#include "diagnose/solve.h"
 
 namespace hydro {
 
@@ -123,7 +124,7 @@ HeldOut PredictInTurn(const Fitted& fitted, const ModelDescription& given,
       right += pull;
       const VectorXd scale = left.diagonal().cwiseSqrt().cwiseInverse();
       const MatrixXd scaled = scale.asDiagonal() * left * scale.asDiagonal();
-      const VectorXd move = -(scale.asDiagonal() * scaled.ldlt().solve(scale.asDiagonal() * right));
+      const VectorXd move = -(scale.asDiagonal() * SolveSymmetric(scaled, scale.asDiagonal() * right));
       std::vector<double> values;
       for (Index i = 0; i < p; ++i) {
         const FreeParameter& parameter = free[static_cast<size_t>(i)];

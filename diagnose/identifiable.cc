@@ -1,6 +1,6 @@
 #include "diagnose/identifiable.h"
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 

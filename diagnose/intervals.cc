@@ -1,12 +1,14 @@
 #include "diagnose/intervals.h"
 
-#include <Eigen/Dense>
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
 #include <algorithm>
 #include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 
 #include "diagnose/parallel.h"
 #include "diagnose/residuals.h"
+#include "diagnose/solve.h"
 
 namespace hydro {
 
@@ -44,9 +46,9 @@ BlocksOfRun BlocksOf(const Fitted& fitted, const std::vector<FreeParameter>& fre
   MatrixXd columns = jacobian.leftCols(p);
   if (n > p) {
     const MatrixXd starts = jacobian.rightCols(n - p);
-    MatrixXd inner = starts.transpose() * starts;
+    MatrixXd inner = TransposeTimes(starts, starts);
     inner.diagonal().array() += 1e-10 * inner.diagonal().maxCoeff() + 1e-300;
-    columns -= starts * inner.ldlt().solve(starts.transpose() * columns);
+    columns -= starts * SolveSymmetric(inner, TransposeTimes(starts, columns));
   }
   BlocksOfRun blocks{MatrixXd::Zero(p, kBlocksPerRun),
                      std::vector<MatrixXd>(kBlocksPerRun, MatrixXd::Zero(p, p))};
@@ -83,7 +85,7 @@ std::vector<Interval> Intervals(const Fitted& fitted, const std::vector<const Ru
   MatrixXd scaled = scale.asDiagonal() * information * scale.asDiagonal();
   scaled.diagonal().array() += 1e-10;
   const MatrixXd inverse =
-      scale.asDiagonal() * scaled.ldlt().solve(MatrixXd::Identity(p, p)) * scale.asDiagonal();
+      scale.asDiagonal() * SolveSymmetric(scaled, MatrixXd::Identity(p, p)) * scale.asDiagonal();
   // The fit has followed each block as far as the block has leverage; what is left of its gradient is made up
   // for that (as in leaving it out, the jackknife).
   const Eigen::LLT<MatrixXd> root(scaled);
@@ -94,11 +96,11 @@ std::vector<Interval> Intervals(const Fitted& fitted, const std::vector<const Ru
       root.matrixL().solveInPlace(share);
       share.transposeInPlace();
       root.matrixL().solveInPlace(share);
-      const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(share);
-      const VectorXd left = 1 - eigen.eigenvalues().array().max(0.0).min(kMostLeverage);
+      const Eigensystem eigen = EigensystemOf(share);
+      const VectorXd left = 1 - eigen.values.array().max(0.0).min(kMostLeverage);
       VectorXd gradient = scale.asDiagonal() * run.gradients.col(b);
       root.matrixL().solveInPlace(gradient);
-      gradient = eigen.eigenvectors() * (eigen.eigenvectors().transpose() * gradient).cwiseQuotient(left);
+      gradient = eigen.vectors * (eigen.vectors.transpose() * gradient).cwiseQuotient(left);
       root.matrixU().solveInPlace(gradient);
       gradient = scale.asDiagonal() * gradient;  // how far the block moves the fit
       by_block += gradient * gradient.transpose();

@@ -1,11 +1,12 @@
 #include "diagnose/scan.h"
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 
 #include "diagnose/parallel.h"
 #include "diagnose/residuals.h"
+#include "diagnose/solve.h"
 #include "model/jet.h"
 
 namespace hydro {
@@ -48,7 +49,7 @@ double BestMove(const MatrixXd& A, const VectorXd& b, double s, const VectorXd& 
       scaled(i, i) = 1;
       right(i) = 0;
     }
-    const VectorXd more = scale.asDiagonal() * scaled.ldlt().solve(right);
+    const VectorXd more = scale.asDiagonal() * SolveSymmetric(scaled, right);
     *move += more;
     Index worst = -1;
     for (Index i = 0; i < own; ++i) {
@@ -104,9 +105,9 @@ Scanned Judge(const std::vector<RunBasis>& bases, const std::vector<FreeParamete
     const Index starts = basis.cols() - p;
     MatrixXd normal(p + starts + e, p + starts + e);
     normal.topLeftCorner(p + starts, p + starts) = bases[r].normal;
-    normal.topRightCorner(p + starts, e) = basis.transpose() * own;
+    normal.topRightCorner(p + starts, e) = TransposeTimes(basis, own);
     normal.bottomLeftCorner(e, p + starts) = normal.topRightCorner(p + starts, e).transpose();
-    normal.bottomRightCorner(e, e) = own.transpose() * own;
+    normal.bottomRightCorner(e, e) = TransposeTimes(own, own);
     VectorXd right(p + starts + e);
     right << basis.transpose() * values, own.transpose() * values;
     if (!normal.allFinite() || !right.allFinite()) throw ModelError("its simulation is not finite");
@@ -119,13 +120,12 @@ Scanned Judge(const std::vector<RunBasis>& bases, const std::vector<FreeParamete
     if (starts > 0) {
       MatrixXd inner = normal.block(p, p, starts, starts);
       inner.diagonal().array() += 1e-10 * inner.diagonal().maxCoeff() + 1e-300;
-      const Eigen::LDLT<MatrixXd> solve(inner);
       const MatrixXd across = normal.middleCols(p, starts);
       const VectorXd start_right = right.segment(p, starts);
-      const VectorXd moved = solve.solve(start_right);
+      const VectorXd moved = SolveSymmetric(inner, start_right);
       sum -= start_right.dot(moved);
       right -= across * moved;
-      normal -= across * solve.solve(across.transpose());
+      normal -= across * SolveSymmetric(inner, across.transpose());
     }
     A += normal(keep, keep);
     b += right(keep);
@@ -247,7 +247,7 @@ std::vector<std::vector<Scanned>> Scan(const Fitted& current, const std::vector<
     for (size_t i = 0; i < known.size(); ++i) {
       if (known[i].logarithmic) bases[r].columns.col(static_cast<Index>(i)) *= known[i].value;
     }
-    bases[r].normal = bases[r].columns.transpose() * bases[r].columns;
+    bases[r].normal = TransposeTimes(bases[r].columns, bases[r].columns);
     bases[r].values = Map<const VectorXd>(residuals.values.data(), rows);
   });
 
