@@ -7,7 +7,7 @@ namespace hydro {
 namespace {
 
 // Of a step. With 1e-5 a Stribeck speed of 0.1 rad/s came out 11 % too large, beyond its interval.
-constexpr double kTolerance = 1e-6;
+constexpr double kTolerance = 1e-7;
 
 }  // namespace
 
