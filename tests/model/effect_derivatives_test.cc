@@ -116,7 +116,7 @@ TEST(EffectDerivatives, AreFiniteWhereTheEffectVanishes) {
       equations.Start(100, state.data(), &at_rest);
       for (const Jet& number : Evaluated(equations, mode, state)) {
         EXPECT_TRUE(std::isfinite(number.a)) << info.id;
-        EXPECT_TRUE(number.v.allFinite()) << info.id;
+        for (int k = 0; k < kJetWidth; ++k) EXPECT_TRUE(std::isfinite(number.v[k])) << info.id;
       }
     }
   }
