@@ -290,7 +290,7 @@ std::vector<ClockDelay> AlignClocks(const Parameters& model, MeasuredRun* run) {
 
   std::vector<ClockDelay> delays;
   std::vector<SignalDelay> moves;
-  const auto add = [&](std::vector<std::pair<const char*, MeasuredSignal MeasuredRun::*>> signals,
+  const auto add = [&](const std::vector<std::pair<const char*, MeasuredSignal MeasuredRun::*>>& signals,
                        const Estimate& steps) {
     ClockDelay delay{run->name, {}, grid.step * steps.mean, grid.step * std::hypot(steps.error, 0.5)};
     for (const auto& [name, signal] : signals) {

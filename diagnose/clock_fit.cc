@@ -46,6 +46,7 @@ RunData Corrected(const RunData& run, const Correction& correction, const Parame
 std::vector<RunData> AllCorrected(const std::vector<RunData>& runs, const Correction& correction,
                                   const Parameters& model) {
   std::vector<RunData> corrected;
+  corrected.reserve(runs.size());
   for (const RunData& run : runs) corrected.push_back(Corrected(run, correction, model));
   return corrected;
 }

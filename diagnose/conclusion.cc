@@ -142,10 +142,10 @@ std::string WhyNext(const std::vector<FoundEffect>& effects) {
 
 }  // namespace
 
-Diagnosis Conclude(const SearchContext& context, SearchResult search, Explanation refit,
+Diagnosis Conclude(const SearchContext& context, const SearchResult& search, const Explanation& refit,
                    const TellProgress& tell) {
   const Explanation& given = search.given;
-  Explanation& best = search.best;
+  const Explanation& best = search.best;
   Diagnosis d;
   d.fit = {std::sqrt(given.squared_gap()), std::sqrt(refit.squared_gap()), std::sqrt(best.squared_gap())};
   d.held_out = {std::sqrt(given.held_out_gap()), std::sqrt(refit.held_out_gap()),

@@ -7,7 +7,7 @@
 namespace hydro {
 
 // `refit`: the given model with all identifiable base parameters fitted.
-Diagnosis Conclude(const SearchContext& context, SearchResult search, Explanation refit,
+Diagnosis Conclude(const SearchContext& context, const SearchResult& search, const Explanation& refit,
                    const TellProgress& tell);
 
 }  // namespace hydro

@@ -177,6 +177,7 @@ std::string RangeOf(const Blocks& blocks, const Variable& variable, const std::v
   const size_t n = averages.size();
   if (n < kBins) return "everywhere";
   std::vector<double> sizes;
+  sizes.reserve(averages.size());
   for (const double value : averages) sizes.push_back(std::abs(value));
   const std::vector<size_t> by_value = InOrderOf(averages), by_size = InOrderOf(sizes);
   const bool both_signs = averages[by_value.front()] < 0 && averages[by_value.back()] > 0;

@@ -50,6 +50,7 @@ void SplitOff(MeasuredRun* run, std::vector<MeasuredRun>* held_out) {
 
 std::vector<const RunData*> Pointers(const std::vector<RunData>& runs) {
   std::vector<const RunData*> pointers;
+  pointers.reserve(runs.size());
   for (const RunData& run : runs) pointers.push_back(&run);
   return pointers;
 }
@@ -163,7 +164,7 @@ Diagnosis Diagnose(const ModelDescription& model, std::vector<MeasuredRun> runs,
       search.tried.insert(search.tried.end(), wider.tried.begin(), wider.tried.end());
     }
   }
-  Diagnosis diagnosis = Conclude(context, std::move(search), std::move(refit), tell);
+  Diagnosis diagnosis = Conclude(context, search, refit, tell);
   const std::vector<std::string> remarks = RecordingRemarks(clocks, context.runs, context.held_out);
   diagnosis.remarks.insert(diagnosis.remarks.begin(), remarks.begin(), remarks.end());
   diagnosis.recording = std::move(clocks);

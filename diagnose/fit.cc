@@ -152,6 +152,7 @@ Fitted Fit(const Hypothesis& hypothesis, const std::vector<const RunData*>& runs
   fitted.hypothesis = hypothesis;
   std::vector<FreeParameter> free = hypothesis.Free();
   std::vector<double> values;
+  values.reserve(free.size());
   for (const FreeParameter& parameter : free) {
     values.push_back(ToFitted(parameter, std::clamp(parameter.value, parameter.low, parameter.high)));
   }

@@ -62,6 +62,7 @@ class ReportFolder {
 
 std::vector<MeasuredRun> ReadRuns(const std::vector<std::string>& files) {
   std::vector<MeasuredRun> runs;
+  runs.reserve(files.size());
   for (const std::string& file : files) runs.push_back(ReadMeasuredRun(file));
   return runs;
 }

@@ -33,6 +33,7 @@ struct BlocksOfRun {
 BlocksOfRun BlocksOf(const Fitted& fitted, const std::vector<FreeParameter>& free, size_t r,
                      const RunData& run) {
   std::vector<Unknown> unknowns;
+  unknowns.reserve(free.size());
   for (const FreeParameter& parameter : free) unknowns.push_back(parameter.unknown);
   for (const Unknown& start : StartUnknowns(run)) unknowns.push_back(start);
   Residuals residuals = ResidualsOf(fitted.hypothesis.model, run, fitted.runs[r].start, unknowns, 1);

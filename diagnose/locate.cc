@@ -49,6 +49,7 @@ Found Weigh(const std::vector<SmoothedRun>& smoothed, const std::vector<const Ru
 std::vector<SmoothedRun> SmoothAll(const ModelDescription& model, const std::vector<const RunData*>& runs,
                                    const PressureOffsets& offsets) {
   std::vector<SmoothedRun> smoothed;
+  smoothed.reserve(runs.size());
   for (const RunData* run : runs) smoothed.push_back(SmoothDisturbances(model, *run, offsets));
   return smoothed;
 }

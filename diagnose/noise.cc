@@ -92,7 +92,7 @@ double SpectralNoise(const std::vector<double>& values, const std::vector<int>& 
   for (int i = 0; i < samples - kOrder; ++i) {
     differences[i] = 0;
     for (int lag = 0; lag <= kOrder; ++lag) {
-      differences[i] += kDifference[lag] * values[static_cast<size_t>(i + lag)];
+      differences[i] += kDifference[lag] * values[static_cast<size_t>(i) + static_cast<size_t>(lag)];
     }
   }
   const Eigen::MatrixXd basis = Basis();

@@ -113,6 +113,7 @@ std::vector<std::string> RecordingRemarks(const std::vector<ClockDelay>& clocks,
                                           const std::vector<const RunData*>& runs,
                                           const std::vector<const RunData*>& held_out) {
   std::vector<std::string> remarks;
+  remarks.reserve(clocks.size());
   for (const ClockDelay& clock : clocks) remarks.push_back(Says(clock));
   for (const auto* some : {&runs, &held_out}) {
     for (const RunData* run : *some) {

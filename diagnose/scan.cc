@@ -237,6 +237,7 @@ std::vector<std::vector<Scanned>> Scan(const Fitted& current, const std::vector<
   std::vector<RunBasis> bases(runs.size());
   ParallelFor(runs.size(), jobs, [&](size_t r) {
     std::vector<Unknown> unknowns;
+    unknowns.reserve(known.size());
     for (const FreeParameter& parameter : known) unknowns.push_back(parameter.unknown);
     for (const Unknown& start : StartUnknowns(*runs[r])) unknowns.push_back(start);
     const Residuals residuals =
