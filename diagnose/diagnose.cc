@@ -142,11 +142,7 @@ Diagnosis Diagnose(const ModelDescription& model, std::vector<MeasuredRun> runs,
 
   // All base parameters at once, and the search from there when that predicts better.
   if (tell) tell({"refitting the model's own parameters", 0.92});
-  const std::vector<StartState> starts = [&] {
-    std::vector<StartState> all;
-    for (const RunFit& run : search.given.fitted.runs) all.push_back(run.start);
-    return all;
-  }();
+  const std::vector<StartState> starts = StartsOf(search.given.fitted);
   Hypothesis refitted = given;
   refitted.base = Identifiable(as_given, context.runs, starts, allowed, context.sizes, options.jobs);
   FitOptions fine;

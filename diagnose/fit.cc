@@ -146,6 +146,13 @@ class AllRuns : public ceres::EvaluationCallback {
 
 }  // namespace
 
+std::vector<StartState> StartsOf(const Fitted& fitted) {
+  std::vector<StartState> starts;
+  starts.reserve(fitted.runs.size());
+  for (const RunFit& run : fitted.runs) starts.push_back(run.start);
+  return starts;
+}
+
 Fitted Fit(const Hypothesis& hypothesis, const std::vector<const RunData*>& runs,
            const std::vector<StartState>& starts, const FitOptions& options) {
   Fitted fitted;

@@ -31,6 +31,9 @@ struct Fitted {
   double squared_gap() const { return count == 0 ? 0 : sum / static_cast<double>(count); }
 };
 
+// Each run's start, as fitted.
+std::vector<StartState> StartsOf(const Fitted& fitted);
+
 struct FitOptions {
   int most_iterations = 20;
   double tolerance = 1e-4;  // relative fall of the sum below which it is done

@@ -24,12 +24,6 @@ constexpr size_t kFinalists = 3;
 // Further changes are not looked for below this squared gap on held-out runs.
 constexpr double kCloseEnough = 1.25;
 
-std::vector<StartState> StartsOf(const Fitted& fitted) {
-  std::vector<StartState> starts;
-  for (const RunFit& run : fitted.runs) starts.push_back(run.start);
-  return starts;
-}
-
 // Of two that predict alike, the one with fewer new numbers; a value that is wrong before an effect that is
 // missing.
 double Cost(const Explanation& one) {
