@@ -67,7 +67,7 @@ std::vector<Rival> Rivals(const std::vector<Explanation>& tried, const Explanati
   return rivals;
 }
 
-FoundEffect Describe(const Change& change, const Explanation& best, const std::vector<FreeParameter>& free,
+FoundEffect Describe(const Change& change, const std::vector<FreeParameter>& free,
                      const std::vector<Interval>& intervals) {
   const EffectInfo& info = *FindEffect(change.effect);
   FoundEffect found;
@@ -82,7 +82,6 @@ FoundEffect Describe(const Change& change, const Explanation& best, const std::v
           {parameter.name, free[i].value, intervals[i].low, intervals[i].high, parameter.unit});
     }
   }
-  (void)best;
   return found;
 }
 
@@ -142,8 +141,8 @@ std::string WhyNext(const std::vector<FoundEffect>& effects) {
 
 }  // namespace
 
-Diagnosis Conclude(const SearchContext& context, const SearchResult& search, const Explanation& refit,
-                   const TellProgress& tell) {
+Diagnosis Conclude(const SearchContext& context, const SearchResult& search, const Explanation& refit) {
+  const TellProgress& tell = context.tell;
   const Explanation& given = search.given;
   const Explanation& best = search.best;
   Diagnosis d;
@@ -159,7 +158,7 @@ Diagnosis Conclude(const SearchContext& context, const SearchResult& search, con
   std::vector<ModelDescription> rivals = {best.fitted.hypothesis.model};
   for (const Change& change : best.changes()) {
     if (change.effect.empty()) continue;
-    FoundEffect found = Describe(change, best, free, intervals);
+    FoundEffect found = Describe(change, free, intervals);
     for (const Rival& rival : Rivals(search.tried, best, change)) {
       found.tied_with.push_back(rival.change.Label());
       rivals.push_back(rival.explanation->fitted.hypothesis.model);

@@ -160,7 +160,7 @@ Diagnosis Diagnose(const ModelDescription& model, std::vector<MeasuredRun> runs,
       search.tried.insert(search.tried.end(), wider.tried.begin(), wider.tried.end());
     }
   }
-  Diagnosis diagnosis = Conclude(context, search, refit, tell);
+  Diagnosis diagnosis = Conclude(context, search, refit);
   const std::vector<std::string> remarks = RecordingRemarks(clocks, context.runs, context.held_out);
   diagnosis.remarks.insert(diagnosis.remarks.begin(), remarks.begin(), remarks.end());
   diagnosis.recording = std::move(clocks);
