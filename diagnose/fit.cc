@@ -31,8 +31,8 @@ double FromFitted(const FreeParameter& parameter, double fitted) {
 // square root of their normal equations: the same cost, gradient and Gauss-Newton matrix in a few numbers.
 class RunCost : public ceres::CostFunction {
  public:
-  RunCost(const Hypothesis& hypothesis, const RunData& run, const StartState& start, size_t stride)
-      : hypothesis_(hypothesis), free_(hypothesis.Free()), run_(run), start_(start), stride_(stride) {
+  RunCost(const Hypothesis& hypothesis, const RunData& run, const StartState& start)
+      : hypothesis_(hypothesis), free_(hypothesis.Free()), run_(run), start_(start) {
     for (const FreeParameter& parameter : free_) unknowns_.push_back(parameter.unknown);
     starts_ = StartUnknowns(run);
     unknowns_.insert(unknowns_.end(), starts_.begin(), starts_.end());
@@ -83,7 +83,7 @@ class RunCost : public ceres::CostFunction {
     for (size_t i = 0; i < starts_.size(); ++i) from[starts_[i].index] = start[i];
     Residuals r;
     try {
-      r = ResidualsOf(point.model, run_, from, derivatives ? unknowns_ : std::vector<Unknown>{}, stride_);
+      r = ResidualsOf(point.model, run_, from, derivatives ? unknowns_ : std::vector<Unknown>{});
     } catch (const ModelError&) {
       return false;
     }
@@ -118,7 +118,6 @@ class RunCost : public ceres::CostFunction {
   std::vector<FreeParameter> free_;
   const RunData& run_;
   StartState start_;
-  size_t stride_;
   std::vector<Unknown> unknowns_, starts_;
   mutable size_t count_ = 0;
   MatrixXd prepared_;
@@ -171,7 +170,7 @@ Fitted Fit(const Hypothesis& hypothesis, const std::vector<const RunData*>& runs
   with_all_runs.evaluation_callback = &all_runs;
   ceres::Problem problem(with_all_runs);
   for (size_t r = 0; r < runs.size(); ++r) {
-    auto* cost = new RunCost(hypothesis, *runs[r], starts[r], options.stride);  // the problem owns it
+    auto* cost = new RunCost(hypothesis, *runs[r], starts[r]);  // the problem owns it
     costs.push_back(cost);
     all_runs.Add(cost);
     for (const Unknown& start : cost->starts()) start_values[r].push_back(starts[r][start.index]);

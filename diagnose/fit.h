@@ -37,7 +37,6 @@ std::vector<StartState> StartsOf(const Fitted& fitted);
 struct FitOptions {
   int most_iterations = 20;
   double tolerance = 1e-4;  // relative fall of the sum below which it is done
-  size_t stride = 1;        // every stride-th sample is compared
   int jobs = 1;
 };
 

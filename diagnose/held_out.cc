@@ -37,7 +37,7 @@ void PredictRun(const Hypothesis& hypothesis, const RunData& run, const StartSta
     return;
   }
   part.starts.push_back(fitted.runs[0].start);
-  const Residuals residuals = ResidualsOf(fixed.model, run, fitted.runs[0].start, {}, 1);
+  const Residuals residuals = ResidualsOf(fixed.model, run, fitted.runs[0].start);
   for (size_t s = 0; s < run.signals.size(); ++s) {
     const auto channel = static_cast<size_t>(run.signals[s].channel);
     for (size_t i = residuals.first[s]; i < residuals.first[s + 1]; ++i) {

@@ -36,7 +36,7 @@ BlocksOfRun BlocksOf(const Fitted& fitted, const std::vector<FreeParameter>& fre
   unknowns.reserve(free.size());
   for (const FreeParameter& parameter : free) unknowns.push_back(parameter.unknown);
   for (const Unknown& start : StartUnknowns(run)) unknowns.push_back(start);
-  Residuals residuals = ResidualsOf(fitted.hypothesis.model, run, fitted.runs[r].start, unknowns, 1);
+  Residuals residuals = ResidualsOf(fitted.hypothesis.model, run, fitted.runs[r].start, unknowns);
   const auto rows = static_cast<Index>(residuals.values.size());
   const auto p = static_cast<Index>(free.size());
   const auto n = static_cast<Index>(unknowns.size());

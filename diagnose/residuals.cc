@@ -12,9 +12,8 @@ constexpr double kTolerance = 1e-7;
 }  // namespace
 
 Residuals ResidualsOf(const ModelDescription& model, const RunData& run, const StartState& start,
-                      const std::vector<Unknown>& unknowns, size_t stride, bool repeated_effects) {
+                      const std::vector<Unknown>& unknowns, bool repeated_effects) {
   ResponseOptions options;
-  options.stride = stride;
   options.repeated_effects = repeated_effects;
   options.channels = {};
   options.relative_tolerance = kTolerance;
@@ -26,7 +25,7 @@ Residuals ResidualsOf(const ModelDescription& model, const RunData& run, const S
     residuals.first.push_back(residuals.values.size());
     const std::vector<double>& predicted = response.values[static_cast<size_t>(signal.channel)];
     for (size_t row = 0; row < predicted.size(); ++row) {
-      const double measured = signal.values[row * stride];
+      const double measured = signal.values[row];
       if (!std::isnan(measured)) residuals.values.push_back((predicted[row] - measured) / signal.noise);
     }
   }
@@ -37,8 +36,7 @@ Residuals ResidualsOf(const ModelDescription& model, const RunData& run, const S
     for (const SignalData& signal : run.signals) {
       const std::vector<double>& derivative = response.derivatives[u][static_cast<size_t>(signal.channel)];
       for (size_t row = 0; row < derivative.size(); ++row) {
-        if (!std::isnan(signal.values[row * stride]))
-          residuals.jacobian[next++] = derivative[row] / signal.noise;
+        if (!std::isnan(signal.values[row])) residuals.jacobian[next++] = derivative[row] / signal.noise;
       }
     }
   }

@@ -18,7 +18,7 @@ struct Residuals {
 
 // Throws ModelError when the model cannot be simulated.
 Residuals ResidualsOf(const ModelDescription& model, const RunData& run, const StartState& start,
-                      const std::vector<Unknown>& unknowns, size_t stride, bool repeated_effects = false);
+                      const std::vector<Unknown>& unknowns = {}, bool repeated_effects = false);
 
 // The unknown starts of a run.
 std::vector<Unknown> StartUnknowns(const RunData& run);

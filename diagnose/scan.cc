@@ -90,7 +90,7 @@ std::vector<size_t> Vanishing(const Task& task) {
 }
 
 Scanned Judge(const std::vector<RunBasis>& bases, const std::vector<FreeParameter>& known, const Task& task,
-              const std::vector<RunColumns>& columns, size_t stride) {
+              const std::vector<RunColumns>& columns) {
   Scanned scanned;
   const auto p = static_cast<Index>(known.size());
   const auto e = static_cast<Index>(task.own.size());
@@ -139,7 +139,7 @@ Scanned Judge(const std::vector<RunBasis>& bases, const std::vector<FreeParamete
     high(i) = parameter.logarithmic ? kLongestStep : parameter.high - parameter.value;
   }
   const double after = BestMove(A, b, s, low, high, &move);
-  scanned.expected = (before - after) * static_cast<double>(stride);
+  scanned.expected = before - after;
   std::vector<double> values;
   size_t next = 0;
   for (const FreeParameter& parameter : task.with.Free()) {
@@ -157,13 +157,12 @@ Scanned Judge(const std::vector<RunBasis>& bases, const std::vector<FreeParamete
 
 // One that acts at its starting point is simulated there by itself.
 std::vector<RunColumns> Alone(const Fitted& current, const std::vector<const RunData*>& runs,
-                              const Task& task, size_t stride) {
+                              const Task& task) {
   std::vector<Unknown> unknowns;
   for (const FreeParameter& parameter : task.own) unknowns.push_back(parameter.unknown);
   std::vector<RunColumns> columns(runs.size());
   for (size_t r = 0; r < runs.size(); ++r) {
-    const Residuals residuals =
-        ResidualsOf(task.with.model, *runs[r], current.runs[r].start, unknowns, stride);
+    const Residuals residuals = ResidualsOf(task.with.model, *runs[r], current.runs[r].start, unknowns);
     const auto rows = static_cast<Index>(residuals.values.size());
     columns[r].values = Map<const VectorXd>(residuals.values.data(), rows);
     columns[r].own =
@@ -178,7 +177,7 @@ std::vector<RunColumns> Alone(const Fitted& current, const std::vector<const Run
 // Several that do nothing yet share one simulation; the result by task. False when they do something after
 // all.
 bool Together(const Fitted& current, const std::vector<const RunData*>& runs,
-              const std::vector<RunBasis>& bases, const std::vector<const Task*>& tasks, size_t stride,
+              const std::vector<RunBasis>& bases, const std::vector<const Task*>& tasks,
               std::vector<std::vector<RunColumns>>* columns) {
   ModelDescription model = current.hypothesis.model;
   for (const Task* task : tasks) {
@@ -208,7 +207,7 @@ bool Together(const Fitted& current, const std::vector<const RunData*>& runs,
   }
   columns->assign(tasks.size(), std::vector<RunColumns>(runs.size()));
   for (size_t r = 0; r < runs.size(); ++r) {
-    const Residuals residuals = ResidualsOf(model, *runs[r], current.runs[r].start, unknowns, stride, true);
+    const Residuals residuals = ResidualsOf(model, *runs[r], current.runs[r].start, unknowns, true);
     const auto rows = static_cast<Index>(residuals.values.size());
     const Map<const VectorXd> values(residuals.values.data(), rows);
     if (!((values - bases[r].values).squaredNorm() < 1e-4 * static_cast<double>(rows))) return false;
@@ -232,7 +231,7 @@ bool Together(const Fitted& current, const std::vector<const RunData*>& runs,
 
 std::vector<std::vector<Scanned>> Scan(const Fitted& current, const std::vector<const RunData*>& runs,
                                        const std::vector<Change>& changes, const Sizes& sizes, bool elsewhere,
-                                       size_t stride, int jobs) {
+                                       int jobs) {
   const std::vector<FreeParameter> known = current.hypothesis.Free();
   std::vector<RunBasis> bases(runs.size());
   ParallelFor(runs.size(), jobs, [&](size_t r) {
@@ -241,7 +240,7 @@ std::vector<std::vector<Scanned>> Scan(const Fitted& current, const std::vector<
     for (const FreeParameter& parameter : known) unknowns.push_back(parameter.unknown);
     for (const Unknown& start : StartUnknowns(*runs[r])) unknowns.push_back(start);
     const Residuals residuals =
-        ResidualsOf(current.hypothesis.model, *runs[r], current.runs[r].start, unknowns, stride);
+        ResidualsOf(current.hypothesis.model, *runs[r], current.runs[r].start, unknowns);
     const auto rows = static_cast<Index>(residuals.values.size());
     bases[r].columns =
         Map<const MatrixXd>(residuals.jacobian.data(), rows, static_cast<Index>(unknowns.size()));
@@ -288,7 +287,7 @@ std::vector<std::vector<Scanned>> Scan(const Fitted& current, const std::vector<
   std::vector<Scanned> judged(tasks.size());
   const auto alone = [&](size_t t) {
     try {
-      judged[t] = Judge(bases, known, tasks[t], Alone(current, runs, tasks[t], stride), stride);
+      judged[t] = Judge(bases, known, tasks[t], Alone(current, runs, tasks[t]));
     } catch (const ModelError& error) {
       judged[t].failure = error.what();
       judged[t].start = tasks[t].with;
@@ -301,9 +300,9 @@ std::vector<std::vector<Scanned>> Scan(const Fitted& current, const std::vector<
     std::vector<std::vector<RunColumns>> columns;
     bool together = false;
     try {
-      together = Together(current, runs, bases, members, stride, &columns);
+      together = Together(current, runs, bases, members, &columns);
       for (size_t m = 0; together && m < members.size(); ++m) {
-        judged[groups[i][m]] = Judge(bases, known, *members[m], columns[m], stride);
+        judged[groups[i][m]] = Judge(bases, known, *members[m], columns[m]);
       }
     } catch (const ModelError&) {
       together = false;  // one of them cannot be simulated; each by itself shows which

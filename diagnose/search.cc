@@ -94,7 +94,7 @@ class Searcher {
       for (const Change& change : context_.changes) {
         if (CanAdd(from.fitted.hypothesis, change)) changes.push_back(change);
       }
-      auto scanned = Scan(from.fitted, context_.runs, changes, context_.sizes, step == 0, 1, context_.jobs);
+      auto scanned = Scan(from.fitted, context_.runs, changes, context_.sizes, step == 0, context_.jobs);
       if (step == 0) {
         for (const auto& rows : scanned) {
           Rated rated{rows.front().change, 0, rows.front().failure};
