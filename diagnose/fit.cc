@@ -20,25 +20,19 @@ using Eigen::Map;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-double ToFitted(const FreeParameter& parameter, double value) {
-  return parameter.logarithmic ? std::log(value) : value;
-}
-double FromFitted(const FreeParameter& parameter, double fitted) {
-  return parameter.logarithmic ? std::exp(fitted) : fitted;
-}
-
 // One run against the hypothesis. What the solver gets is not the residuals, hundred thousands of them, but a
 // square root of their normal equations: the same cost, gradient and Gauss-Newton matrix in a few numbers.
 class RunCost : public ceres::CostFunction {
  public:
   RunCost(const Hypothesis& hypothesis, const RunData& run, const StartState& start)
-      : hypothesis_(hypothesis), free_(hypothesis.Free()), run_(run), start_(start) {
-    for (const FreeParameter& parameter : free_) unknowns_.push_back(parameter.unknown);
-    starts_ = StartUnknowns(run);
-    unknowns_.insert(unknowns_.end(), starts_.begin(), starts_.end());
+      : hypothesis_(hypothesis),
+        free_(hypothesis.Free()),
+        run_(run),
+        start_(start),
+        starts_(StartUnknowns(run)) {
     if (!free_.empty()) mutable_parameter_block_sizes()->push_back(static_cast<int>(free_.size()));
     if (!starts_.empty()) mutable_parameter_block_sizes()->push_back(static_cast<int>(starts_.size()));
-    set_num_residuals(static_cast<int>(unknowns_.size()) + 1);
+    set_num_residuals(static_cast<int>(unknowns()) + 1);
   }
 
   // Simulates at the point that the solver is going to ask for.
@@ -49,7 +43,7 @@ class RunCost : public ceres::CostFunction {
   // At the prepared point.
   bool Evaluate(double const* const* /*parameters*/, double* residuals, double** jacobians) const override {
     const auto p = static_cast<Eigen::Index>(free_.size());
-    const auto n = static_cast<Eigen::Index>(unknowns_.size());
+    const auto n = static_cast<Eigen::Index>(unknowns());
     Map<VectorXd> out(residuals, n + 1);
     const MatrixXd& normal = prepared_;
     if (!can_be_simulated_ || (jacobians != nullptr && normal.rows() != n + 1)) return false;
@@ -76,14 +70,16 @@ class RunCost : public ceres::CostFunction {
   // [J r]' [J r] at the point, or only r'r.
   bool Normal(const double* free, const double* start, bool derivatives, MatrixXd* normal) const {
     Hypothesis point = hypothesis_;
+    std::vector<FreeParameter> at = free_;
     std::vector<double> values;
-    for (size_t i = 0; i < free_.size(); ++i) values.push_back(FromFitted(free_[i], free[i]));
+    for (size_t i = 0; i < at.size(); ++i) values.push_back(at[i].value = at[i].FromFitted(free[i]));
     point.Set(values);
     StartState from = start_;
     for (size_t i = 0; i < starts_.size(); ++i) from[starts_[i].index] = start[i];
     Residuals r;
     try {
-      r = ResidualsOf(point.model, run_, from, derivatives ? unknowns_ : std::vector<Unknown>{});
+      r = derivatives ? ResidualsOf(point.model, run_, from, at, starts_)
+                      : ResidualsOf(point.model, run_, from);
     } catch (const ModelError&) {
       return false;
     }
@@ -93,11 +89,8 @@ class RunCost : public ceres::CostFunction {
       *normal = MatrixXd::Constant(1, 1, residual.squaredNorm());
       return std::isfinite((*normal)(0, 0));
     }
-    const auto n = static_cast<Eigen::Index>(unknowns_.size());
-    Map<MatrixXd> jacobian(r.jacobian.data(), rows, n);
-    for (size_t i = 0; i < free_.size(); ++i) {
-      if (free_[i].logarithmic) jacobian.col(static_cast<Eigen::Index>(i)) *= values[i];
-    }
+    const auto n = static_cast<Eigen::Index>(unknowns());
+    const Map<const MatrixXd> jacobian(r.jacobian.data(), rows, n);
     normal->resize(n + 1, n + 1);
     normal->topLeftCorner(n, n).setZero();
     normal->topLeftCorner(n, n).selfadjointView<Eigen::Lower>().rankUpdate(jacobian.transpose());
@@ -110,15 +103,16 @@ class RunCost : public ceres::CostFunction {
   }
 
   size_t count() const { return count_; }
-  const std::vector<FreeParameter>& free() const { return free_; }
   const std::vector<Unknown>& starts() const { return starts_; }
 
  private:
+  size_t unknowns() const { return free_.size() + starts_.size(); }
+
   const Hypothesis& hypothesis_;
   std::vector<FreeParameter> free_;
   const RunData& run_;
   StartState start_;
-  std::vector<Unknown> unknowns_, starts_;
+  std::vector<Unknown> starts_;
   mutable size_t count_ = 0;
   MatrixXd prepared_;
   bool can_be_simulated_ = false;
@@ -160,7 +154,7 @@ Fitted Fit(const Hypothesis& hypothesis, const std::vector<const RunData*>& runs
   std::vector<double> values;
   values.reserve(free.size());
   for (const FreeParameter& parameter : free) {
-    values.push_back(ToFitted(parameter, std::clamp(parameter.value, parameter.low, parameter.high)));
+    values.push_back(parameter.ToFitted(std::clamp(parameter.value, parameter.low, parameter.high)));
   }
   std::vector<std::vector<double>> start_values(runs.size());
   std::vector<const RunCost*> costs;
@@ -183,10 +177,10 @@ Fitted Fit(const Hypothesis& hypothesis, const std::vector<const RunData*>& runs
   for (size_t i = 0; i < free.size(); ++i) {
     const int place = static_cast<int>(i);
     if (std::isfinite(free[i].low)) {
-      problem.SetParameterLowerBound(values.data(), place, ToFitted(free[i], free[i].low));
+      problem.SetParameterLowerBound(values.data(), place, free[i].ToFitted(free[i].low));
     }
     if (std::isfinite(free[i].high)) {
-      problem.SetParameterUpperBound(values.data(), place, ToFitted(free[i], free[i].high));
+      problem.SetParameterUpperBound(values.data(), place, free[i].ToFitted(free[i].high));
     }
   }
   FLAGS_minloglevel = google::GLOG_FATAL;  // a step that cannot be simulated is no error
@@ -206,10 +200,10 @@ Fitted Fit(const Hypothesis& hypothesis, const std::vector<const RunData*>& runs
   }
 
   for (size_t i = 0; i < free.size(); ++i)
-    values[i] = std::clamp(FromFitted(free[i], values[i]), free[i].low, free[i].high);
+    values[i] = std::clamp(free[i].FromFitted(values[i]), free[i].low, free[i].high);
   fitted.hypothesis.Set(values);
   std::vector<double> at;
-  for (size_t i = 0; i < free.size(); ++i) at.push_back(ToFitted(free[i], values[i]));
+  for (size_t i = 0; i < free.size(); ++i) at.push_back(free[i].ToFitted(values[i]));
   const auto p = static_cast<Eigen::Index>(free.size());
   std::vector<MatrixXd> normals(runs.size());
   std::vector<char> simulated(runs.size());

@@ -128,9 +128,7 @@ HeldOut PredictInTurn(const Fitted& fitted, const ModelDescription& given,
       std::vector<double> values;
       for (Index i = 0; i < p; ++i) {
         const FreeParameter& parameter = free[static_cast<size_t>(i)];
-        const double moved =
-            parameter.logarithmic ? parameter.value * std::exp(move(i)) : parameter.value + move(i);
-        values.push_back(std::clamp(moved, parameter.low, parameter.high));
+        values.push_back(std::clamp(parameter.Moved(move(i)), parameter.low, parameter.high));
       }
       others.Set(values);
     }

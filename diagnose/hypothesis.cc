@@ -32,6 +32,10 @@ std::string Change::Label() const {
   return label;
 }
 
+double FreeParameter::ToFitted(double number) const { return logarithmic ? std::log(number) : number; }
+double FreeParameter::FromFitted(double fitted) const { return logarithmic ? std::exp(fitted) : fitted; }
+double FreeParameter::Moved(double by) const { return logarithmic ? value * std::exp(by) : value + by; }
+
 std::vector<FreeParameter> Hypothesis::Free() const {
   constexpr double kInf = std::numeric_limits<double>::infinity();
   std::vector<FreeParameter> free;

@@ -11,8 +11,17 @@ constexpr double kTolerance = 1e-7;
 
 }  // namespace
 
+Residuals ResidualsOf(const ModelDescription& model, const RunData& run, const StartState& start) {
+  return ResidualsOf(model, run, start, {}, {});
+}
+
 Residuals ResidualsOf(const ModelDescription& model, const RunData& run, const StartState& start,
-                      const std::vector<Unknown>& unknowns, bool repeated_effects) {
+                      const std::vector<FreeParameter>& free, const std::vector<Unknown>& starts,
+                      bool repeated_effects) {
+  std::vector<Unknown> unknowns;
+  unknowns.reserve(free.size() + starts.size());
+  for (const FreeParameter& parameter : free) unknowns.push_back(parameter.unknown);
+  unknowns.insert(unknowns.end(), starts.begin(), starts.end());
   ResponseOptions options;
   options.repeated_effects = repeated_effects;
   options.channels = {};
@@ -39,6 +48,11 @@ Residuals ResidualsOf(const ModelDescription& model, const RunData& run, const S
         if (!std::isnan(signal.values[row])) residuals.jacobian[next++] = derivative[row] / signal.noise;
       }
     }
+  }
+  for (size_t i = 0; i < free.size(); ++i) {
+    if (!free[i].logarithmic) continue;
+    const size_t rows = residuals.values.size();
+    for (size_t row = i * rows; row < (i + 1) * rows; ++row) residuals.jacobian[row] *= free[i].Slope();
   }
   return residuals;
 }

@@ -144,8 +144,7 @@ Scanned Judge(const std::vector<RunBasis>& bases, const std::vector<FreeParamete
   size_t next = 0;
   for (const FreeParameter& parameter : task.with.Free()) {
     if (next < task.own.size() && task.own[next].name == parameter.name) {
-      const double moved = move(p + static_cast<Index>(next++));
-      values.push_back(parameter.logarithmic ? parameter.value * std::exp(moved) : parameter.value + moved);
+      values.push_back(parameter.Moved(move(p + static_cast<Index>(next++))));
     } else {
       values.push_back(parameter.value);
     }
@@ -158,18 +157,13 @@ Scanned Judge(const std::vector<RunBasis>& bases, const std::vector<FreeParamete
 // One that acts at its starting point is simulated there by itself.
 std::vector<RunColumns> Alone(const Fitted& current, const std::vector<const RunData*>& runs,
                               const Task& task) {
-  std::vector<Unknown> unknowns;
-  for (const FreeParameter& parameter : task.own) unknowns.push_back(parameter.unknown);
   std::vector<RunColumns> columns(runs.size());
   for (size_t r = 0; r < runs.size(); ++r) {
-    const Residuals residuals = ResidualsOf(task.with.model, *runs[r], current.runs[r].start, unknowns);
+    const Residuals residuals = ResidualsOf(task.with.model, *runs[r], current.runs[r].start, task.own, {});
     const auto rows = static_cast<Index>(residuals.values.size());
     columns[r].values = Map<const VectorXd>(residuals.values.data(), rows);
     columns[r].own =
-        Map<const MatrixXd>(residuals.jacobian.data(), rows, static_cast<Index>(unknowns.size()));
-    for (size_t i = 0; i < task.own.size(); ++i) {
-      if (task.own[i].logarithmic) columns[r].own.col(static_cast<Index>(i)) *= task.own[i].value;
-    }
+        Map<const MatrixXd>(residuals.jacobian.data(), rows, static_cast<Index>(task.own.size()));
   }
   return columns;
 }
@@ -187,19 +181,15 @@ bool Together(const Fitted& current, const std::vector<const RunData*>& runs,
   }
   // Where each task's parameters are in the common model: effects there are in the order of their ids.
   const std::vector<EffectParameter> all = EffectParameters(model);
-  std::vector<Unknown> unknowns;
+  std::vector<FreeParameter> vanishing;
   size_t effect = current.hypothesis.model.effects.size();
   for (const Task* task : tasks) {
     const bool adds = task->own.front().unknown.kind == Unknown::Kind::kEffect;
     for (const size_t place : Vanishing(*task)) {
-      if (!adds) {
-        unknowns.push_back(task->own[place].unknown);
-        continue;
-      }
-      const std::string& name = task->own[place].name;
-      for (size_t i = 0; i < all.size(); ++i) {
-        if (all[i].effect == effect && model.effects[effect].id + "." + all[i].name == name) {
-          unknowns.push_back({Unknown::Kind::kEffect, i});
+      FreeParameter& parameter = vanishing.emplace_back(task->own[place]);
+      for (size_t i = 0; adds && i < all.size(); ++i) {
+        if (all[i].effect == effect && model.effects[effect].id + "." + all[i].name == parameter.name) {
+          parameter.unknown.index = i;
         }
       }
     }
@@ -207,11 +197,11 @@ bool Together(const Fitted& current, const std::vector<const RunData*>& runs,
   }
   columns->assign(tasks.size(), std::vector<RunColumns>(runs.size()));
   for (size_t r = 0; r < runs.size(); ++r) {
-    const Residuals residuals = ResidualsOf(model, *runs[r], current.runs[r].start, unknowns, true);
+    const Residuals residuals = ResidualsOf(model, *runs[r], current.runs[r].start, vanishing, {}, true);
     const auto rows = static_cast<Index>(residuals.values.size());
     const Map<const VectorXd> values(residuals.values.data(), rows);
     if (!((values - bases[r].values).squaredNorm() < 1e-4 * static_cast<double>(rows))) return false;
-    const Map<const MatrixXd> jacobian(residuals.jacobian.data(), rows, static_cast<Index>(unknowns.size()));
+    const Map<const MatrixXd> jacobian(residuals.jacobian.data(), rows, static_cast<Index>(vanishing.size()));
     Index next = 0;
     for (size_t t = 0; t < tasks.size(); ++t) {
       RunColumns& own = (*columns)[t][r];
@@ -219,8 +209,6 @@ bool Together(const Fitted& current, const std::vector<const RunData*>& runs,
       own.own = MatrixXd::Zero(rows, static_cast<Index>(tasks[t]->own.size()));
       for (const size_t place : Vanishing(*tasks[t])) {
         own.own.col(static_cast<Index>(place)) = jacobian.col(next++);
-        const FreeParameter& parameter = tasks[t]->own[place];
-        if (parameter.logarithmic) own.own.col(static_cast<Index>(place)) *= parameter.value;
       }
     }
   }
@@ -235,18 +223,12 @@ std::vector<std::vector<Scanned>> Scan(const Fitted& current, const std::vector<
   const std::vector<FreeParameter> known = current.hypothesis.Free();
   std::vector<RunBasis> bases(runs.size());
   ParallelFor(runs.size(), jobs, [&](size_t r) {
-    std::vector<Unknown> unknowns;
-    unknowns.reserve(known.size());
-    for (const FreeParameter& parameter : known) unknowns.push_back(parameter.unknown);
-    for (const Unknown& start : StartUnknowns(*runs[r])) unknowns.push_back(start);
+    const std::vector<Unknown> starts = StartUnknowns(*runs[r]);
     const Residuals residuals =
-        ResidualsOf(current.hypothesis.model, *runs[r], current.runs[r].start, unknowns);
+        ResidualsOf(current.hypothesis.model, *runs[r], current.runs[r].start, known, starts);
     const auto rows = static_cast<Index>(residuals.values.size());
-    bases[r].columns =
-        Map<const MatrixXd>(residuals.jacobian.data(), rows, static_cast<Index>(unknowns.size()));
-    for (size_t i = 0; i < known.size(); ++i) {
-      if (known[i].logarithmic) bases[r].columns.col(static_cast<Index>(i)) *= known[i].value;
-    }
+    bases[r].columns = Map<const MatrixXd>(residuals.jacobian.data(), rows,
+                                           static_cast<Index>(known.size() + starts.size()));
     bases[r].normal = TransposeTimes(bases[r].columns, bases[r].columns);
     bases[r].values = Map<const VectorXd>(residuals.values.data(), rows);
   });
