@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace hydro {
 
@@ -37,14 +36,16 @@ double FreeParameter::FromFitted(double fitted) const { return logarithmic ? std
 double FreeParameter::Moved(double by) const { return logarithmic ? value * std::exp(by) : value + by; }
 
 std::vector<FreeParameter> Hypothesis::Free() const {
-  constexpr double kInf = std::numeric_limits<double>::infinity();
   std::vector<FreeParameter> free;
   for (const size_t i : base) {
     const ParameterInfo& info = BaseParameters()[i].info;
     const double value = model.parameters.*BaseParameters()[i].member;
-    FreeParameter parameter{
-        {Unknown::Kind::kBase, i}, info.name, info.unit, value, value, info.min, info.max};
+    FreeParameter parameter{{Unknown::Kind::kBase, i}, info.name, info.unit, value, info.min, info.max};
     parameter.logarithmic = !info.min_allowed && value > 0;
+    if (parameter.logarithmic) {
+      parameter.low = value / kReach;
+      parameter.high = value * kReach;
+    }
     free.push_back(parameter);
   }
   const std::vector<EffectParameter> all = EffectParameters(model);
@@ -54,22 +55,15 @@ std::vector<FreeParameter> Hypothesis::Free() const {
     const ParameterInfo& info = InfoOf(effect, all[i].name);
     const double value = effect.parameters.at(all[i].name);
     FreeParameter parameter{
-        {Unknown::Kind::kEffect, i}, effect.id + "." + info.name, info.unit, value, 0, info.min, info.max};
+        {Unknown::Kind::kEffect, i}, effect.id + "." + info.name, info.unit, value, info.min, info.max};
     parameter.logarithmic = !info.min_allowed && info.min == 0 && value > 0;
     if (parameter.logarithmic) {
-      parameter.neutral = value;
       parameter.low = value / kReach;
       parameter.high = std::min(info.max, value * kReach);
     } else if (!info.min_allowed && std::isfinite(info.min)) {
       parameter.low = info.min + 1e-6 * std::max(1.0, std::abs(info.min));
     }
     free.push_back(parameter);
-  }
-  for (FreeParameter& parameter : free) {
-    if (parameter.logarithmic && parameter.unknown.kind == Unknown::Kind::kBase) {
-      parameter.low = parameter.value / kReach;
-      parameter.high = std::min(parameter.value * kReach, kInf);
-    }
   }
   return free;
 }
@@ -158,10 +152,8 @@ std::vector<Hypothesis> With(const Hypothesis& hypothesis, const Change& change,
   Hypothesis more = hypothesis;
   more.changes.push_back(change);
   if (change.effect.empty()) {
-    for (size_t i = 0; i < BaseParameters().size(); ++i) {
-      if (BaseParameters()[i].info.name != change.parameter) continue;
-      if (std::find(more.base.begin(), more.base.end(), i) == more.base.end()) more.base.push_back(i);
-    }
+    const size_t place = BasePlace(change.parameter);
+    if (std::find(more.base.begin(), more.base.end(), place) == more.base.end()) more.base.push_back(place);
     std::vector<Hypothesis> all = {more};
     for (const double factor : kElsewhere) {
       if (!elsewhere) break;
@@ -192,11 +184,9 @@ Hypothesis Without(const Hypothesis& hypothesis, const Change& change, const Mod
   Hypothesis less = hypothesis;
   std::erase(less.changes, change);
   if (change.effect.empty()) {
-    for (size_t i = 0; i < BaseParameters().size(); ++i) {
-      if (BaseParameters()[i].info.name != change.parameter) continue;
-      std::erase(less.base, i);
-      less.model.parameters.*BaseParameters()[i].member = given.parameters.*BaseParameters()[i].member;
-    }
+    const size_t place = BasePlace(change.parameter);
+    std::erase(less.base, place);
+    less.model.parameters.*BaseParameters()[place].member = given.parameters.*BaseParameters()[place].member;
     return less;
   }
   std::erase(less.effects, change.effect);

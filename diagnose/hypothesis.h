@@ -30,7 +30,6 @@ struct FreeParameter {
   std::string name;  // "k_1", "pump.stribeck.speed"
   std::string unit;
   double value = 0;
-  double neutral = 0;  // without the change: as given, 0 for an effect's size
   double low = 0, high = 0;
   bool logarithmic = false;  // positive: fitted as its logarithm
 
