@@ -27,24 +27,8 @@ void SplitOff(MeasuredRun* run, std::vector<MeasuredRun>* held_out) {
   const size_t first = run->samples() * 2 / 3;
   MeasuredRun rest = *run;
   rest.name += ", last third";
-  rest.first_row += first;
-  const auto cut = [&](std::vector<double>* values, bool front) {
-    if (values->empty()) return;
-    const auto at = values->begin() + static_cast<std::ptrdiff_t>(first);
-    if (front) {
-      values->erase(at, values->end());
-    } else {
-      values->erase(values->begin(), at);
-    }
-  };
-  for (const bool front : {true, false}) {
-    MeasuredRun& part = front ? *run : rest;
-    cut(&part.time, front);
-    for (MeasuredSignal* signal : {&part.voltage, &part.pressure_ref, &part.motor_speed, &part.motor_angle,
-                                   &part.arm_angle, &part.arm_speed, &part.p1, &part.p2}) {
-      cut(&signal->values, front);
-    }
-  }
+  rest.Keep(first, rest.samples());
+  run->Keep(0, first);
   held_out->push_back(std::move(rest));
 }
 
