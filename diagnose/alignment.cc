@@ -9,6 +9,7 @@
 #include <limits>
 #include <utility>
 
+#include "diagnose/sample_interval.h"
 #include "diagnose/solve.h"
 #include "logger/run_delays.h"
 
@@ -88,12 +89,8 @@ std::vector<double> Speed(const MeasuredSignal& speed, const MeasuredSignal& ang
 }
 
 Grid MakeGrid(const MeasuredRun& run, const Parameters& model) {
-  std::vector<double> intervals;
-  for (size_t i = 1; i < run.samples(); ++i) intervals.push_back(run.time[i] - run.time[i - 1]);
-  const auto middle = intervals.begin() + static_cast<std::ptrdiff_t>(intervals.size() / 2);
-  std::nth_element(intervals.begin(), middle, intervals.end());
   Grid grid;
-  grid.step = std::max(*middle, kFinestStep);
+  grid.step = std::max(MedianInterval(run.time), kFinestStep);
   const auto even = [&](const std::vector<double>& values) {
     return Smoothed(Averaged(run.time, values, grid.step));
   };

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "diagnose/sample_interval.h"
+
 namespace hydro {
 
 namespace {
@@ -114,7 +116,6 @@ Sizes SizesOf(const ModelDescription& model, const std::vector<const RunData*>& 
   const Parameters& p = model.parameters;
   sizes.torque = p.T_pmax;
   sizes.charge = p.p_3 > 0 ? p.p_3 : 0.01 * p.T_pmax / p.D;
-  std::vector<double> intervals;
   const auto largest = [](const SignalData* signal, double* size) {
     if (signal == nullptr) return;
     std::vector<double> values;
@@ -128,19 +129,16 @@ Sizes SizesOf(const ModelDescription& model, const std::vector<const RunData*>& 
     std::nth_element(values.begin(), place, values.end());
     *size = std::max(*size, *place);
   };
+  std::vector<const std::vector<double>*> times;
   for (const RunData* run : runs) {
     largest(run->Find(Channel::kMotorSpeed), &sizes.speed);
     largest(run->Find(Channel::kP1), &sizes.pressure);
     largest(run->Find(Channel::kP2), &sizes.pressure);
-    for (size_t i = 1; i < run->samples(); ++i) {
-      intervals.push_back(run->stimulus.time[i] - run->stimulus.time[i - 1]);
-    }
+    times.push_back(&run->stimulus.time);
   }
   if (sizes.speed == 0) sizes.speed = p.T_pmax / std::max(p.b, 0.001 * p.T_pmax);
   if (sizes.pressure == 0) sizes.pressure = p.T_pmax / p.D;
-  std::nth_element(intervals.begin(), intervals.begin() + static_cast<std::ptrdiff_t>(intervals.size() / 2),
-                   intervals.end());
-  sizes.sample = intervals[intervals.size() / 2];
+  sizes.sample = MedianInterval(times);
   sizes.flow = p.D * sizes.speed / sizes.pressure;
   sizes.arm_stiffness = p.J_a / (sizes.sample * sizes.sample);
   sizes.arm_damping = p.J_a / sizes.sample;
