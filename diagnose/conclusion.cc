@@ -2,14 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
-#include <limits>
 
 #include "diagnose/intervals.h"
 #include "diagnose/locate.h"
 #include "diagnose/next_experiment.h"
 #include "diagnose/ranking.h"
 #include "diagnose/run_curves.h"
+#include "diagnose/short_number.h"
 
 namespace hydro {
 
@@ -22,12 +21,6 @@ constexpr double kClosedShare = 0.01;  // of the squared gap above the noise
 constexpr double kToldApart = 2.5;
 // A base parameter that has to move by more than this factor is not believed.
 constexpr double kImplausible = 2.0;
-
-std::string Format(const char* format, double value) {
-  char text[64];
-  std::snprintf(text, sizeof text, format, value);
-  return text;
-}
 
 std::string Join(const std::vector<std::string>& parts) {
   std::string text;
@@ -94,15 +87,15 @@ ChangedParameter DescribeParameter(const FreeParameter& fitted, const Interval& 
     const double ratio = fitted.value / changed.model;
     if (ratio > kImplausible || ratio < 1 / kImplausible) {
       changed.implausible = true;
-      changed.why = "moves by a factor of " + Format("%.3g", ratio);
+      changed.why = "moves by a factor of " + ShortNumber(ratio, 3);
     }
   }
   return changed;
 }
 
 std::string Sentence(const Diagnosis& d) {
-  const std::string gap = " (held-out gap " + Format("%.3g", d.held_out.before) + " to " +
-                          Format("%.3g", d.held_out.after) + " noise units).";
+  const std::string gap = " (held-out gap " + ShortNumber(d.held_out.before, 3) + " to " +
+                          ShortNumber(d.held_out.after, 3) + " noise units).";
   std::vector<std::string> names;
   for (const FoundEffect& effect : d.effects) {
     std::string name = effect.says + " [" + effect.id + "]";
@@ -111,13 +104,13 @@ std::string Sentence(const Diagnosis& d) {
   }
   std::vector<std::string> parameters;
   for (const ChangedParameter& changed : d.parameters) {
-    parameters.push_back(changed.fitted.name + " = " + Format("%.4g", changed.fitted.value) + " instead of " +
-                         Format("%.4g", changed.model));
+    parameters.push_back(changed.fitted.name + " = " + ShortNumber(changed.fitted.value) + " instead of " +
+                         ShortNumber(changed.model));
   }
   switch (d.verdict) {
     case Verdict::kNothingMissing:
       return "Nothing is missing: the model as given explains the data to " +
-             Format("%.3g", d.held_out.before) + " noise units.";
+             ShortNumber(d.held_out.before, 3) + " noise units.";
     case Verdict::kParameters:
       return "The equations suffice with other values: " + Join(parameters) + gap;
     case Verdict::kNamed:

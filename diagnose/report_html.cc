@@ -10,7 +10,7 @@
 #include "diagnose/report_pictures.h"
 #include "diagnose/report_style.h"
 #include "diagnose/run_data.h"
-#include "diagnose/terminal_summary.h"
+#include "diagnose/short_number.h"
 #include "experiments/typeset.h"
 #include "settings/command_line.h"
 #include "settings/model_file.h"

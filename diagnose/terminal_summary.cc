@@ -1,11 +1,11 @@
 #include "diagnose/terminal_summary.h"
 
 #include <cmath>
-#include <cstdio>
 
 #include "diagnose/diagnosis_in_si.h"
 #include "diagnose/report_json.h"
 #include "diagnose/run_data.h"
+#include "diagnose/short_number.h"
 
 namespace hydro {
 namespace {
@@ -43,16 +43,6 @@ std::string SignalsLine(const Diagnosis& diagnosis, bool si) {
 }
 
 }  // namespace
-
-std::string ShortNumber(double value) {
-  if (!std::isfinite(value)) return "-";
-  char text[32];
-  const double size = std::abs(value);
-  // %g would write 81000 as 8.1e+04.
-  const char* format = size >= 1e4 && size < 1e7 ? "%.0f" : "%.4g";
-  std::snprintf(text, sizeof text, format, value == 0 ? 0.0 : value);  // no -0
-  return text;
-}
 
 std::string WithInterval(const Estimated& estimated) {
   std::string text = estimated.name + " " + ShortNumber(estimated.value);
