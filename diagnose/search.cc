@@ -1,8 +1,6 @@
 #include "diagnose/search.h"
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 
 #include "diagnose/parallel.h"
 
@@ -59,7 +57,7 @@ class Searcher {
     std::vector<StartState> starts;
     for (const RunData* run : context_.runs) starts.push_back(run->start);
     Tell("the model as given", 0);
-    result_.given = Explain(context_, from, starts, fine_);
+    result_.given = Explain(context_, from, starts, WithAllJobs(fine_));
     if (!result_.given.fitted.ok()) return result_;
     result_.best = result_.given;
     std::vector<Explanation> beam = {result_.given};
@@ -80,6 +78,12 @@ class Searcher {
   }
 
  private:
+  // For one that is fitted while no others are.
+  FitOptions WithAllJobs(FitOptions options) const {
+    options.jobs = context_.jobs;
+    return options;
+  }
+
   void Tell(const std::string& stage, double fraction) const {
     if (context_.tell) context_.tell({stage, fraction});
   }
@@ -185,7 +189,7 @@ class Searcher {
       for (const Change& change : changes) {
         Tell("exchanging what was found", 0.9);
         const Hypothesis less = Without(result_.best.fitted.hypothesis, change, context_.given);
-        Explanation reduced = Explain(context_, less, StartsOf(result_.best.fitted), coarse_);
+        Explanation reduced = Explain(context_, less, StartsOf(result_.best.fitted), WithAllJobs(coarse_));
         if (!reduced.fitted.ok()) continue;
         std::vector<Explanation> others = Extend({reduced}, most_changes_);
         for (const Explanation& other : others) {
@@ -208,7 +212,7 @@ class Searcher {
       fewer = false;
       for (const Change& change : result_.best.changes()) {
         const Hypothesis less = Without(result_.best.fitted.hypothesis, change, context_.given);
-        Explanation reduced = Explain(context_, less, StartsOf(result_.best.fitted), fine_);
+        Explanation reduced = Explain(context_, less, StartsOf(result_.best.fitted), WithAllJobs(fine_));
         if (!reduced.fitted.ok()) continue;
         result_.tried.push_back(reduced);
         if (Material(reduced.held_out_gap(), result_.best.held_out_gap())) continue;
@@ -233,10 +237,10 @@ Explanation Explain(const SearchContext& context, const Hypothesis& hypothesis,
   explanation.fitted = Fit(hypothesis, context.runs, starts, options);
   if (!explanation.fitted.ok()) return explanation;
   if (context.held_out.empty()) {
-    explanation.held_out = PredictInTurn(explanation.fitted, context.given, context.runs, 1);
+    explanation.held_out = PredictInTurn(explanation.fitted, context.given, context.runs, options.jobs);
     explanation.blocks = BlocksOf(context.runs, explanation.held_out);
   } else {
-    explanation.held_out = Predict(explanation.fitted, context.held_out, 1);
+    explanation.held_out = Predict(explanation.fitted, context.held_out, options.jobs);
     explanation.blocks = BlocksOf(context.held_out, explanation.held_out);
   }
   return explanation;
