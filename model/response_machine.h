@@ -15,9 +15,6 @@
 
 namespace hydro {
 
-inline double ValueOf(double x) { return x; }
-inline double ValueOf(const Jet& x) { return x.a; }
-
 // T is double, or Jet: then all that is seeded in the numbers and the start is carried along. Decisions
 // (steps, events) are taken on the values alone.
 template <class T>
@@ -27,10 +24,10 @@ class ResponseMachine {
       : equations_(*equations),
         data_(equations->data()),
         numbers_(numbers),
+        relative_tolerance_(relative_tolerance),
         n_(equations->states()),
         history_(n_, data_.reach) {
     for (int i = 0; i < n_; ++i) {
-      relative_[i] = relative_tolerance;
       floor_[i] = relative_tolerance * equations->scales()[i];
     }
   }
@@ -150,7 +147,7 @@ class ResponseMachine {
       StepTo(limited ? time_ + h : stop);
       double excess = 0;
       for (int i = 0; i < n_; ++i) {
-        const double allowed = floor_[i] + relative_[i] * std::abs(ValueOf(next_state_[i]));
+        const double allowed = floor_[i] + relative_tolerance_ * std::abs(ValueOf(next_state_[i]));
         const double error = std::abs(h / 6 * (ValueOf(k4_[i]) - ValueOf(next_rate_[i]))) / allowed;
         excess = std::isfinite(error) ? std::max(excess, error) : 1e30;
       }
@@ -226,12 +223,7 @@ class ResponseMachine {
   }
 
   double MarginRate(int i, const T* rate) const {
-    if (i == kPumpSwitch) return mode_.pump * ValueOf(rate[kMotorSpeed]);
-    if (!data_.ideal_valves) return 0;
-    const double p_3_rate = data_.p_3_state >= 0 ? ValueOf(rate[data_.p_3_state]) : 0;
-    if (i == kValve1Switch) return mode_.valve_1 ? 0 : ValueOf(rate[kP1]) - p_3_rate;
-    if (i == kValve2Switch) return mode_.valve_2 ? 0 : ValueOf(rate[kP2]) - p_3_rate;
-    return 0;
+    return hydro::MarginRate<Form::kGeneral>(data_, mode_, i, rate);
   }
 
   void Settle() {
@@ -368,6 +360,7 @@ class ResponseMachine {
   Equations& equations_;
   const EquationData& data_;
   const NumbersOf<T>& numbers_;
+  double relative_tolerance_;
   int n_;
   Mode mode_;
   double time_ = 0;
@@ -382,7 +375,6 @@ class ResponseMachine {
   int since_fastest_ = kFastestEvery;
   double direction_[kMaxStates] = {};
   StateHistory<T> history_;
-  double relative_[kMaxStates] = {};
   double floor_[kMaxStates] = {};
   Terms<T> terms_;
   T state_[kMaxStates] = {}, next_state_[kMaxStates] = {};
