@@ -1,9 +1,6 @@
 #include "diagnose/diagnose.h"
 
 #include <algorithm>
-#include <cmath>
-#include <cstdio>
-#include <limits>
 #include <utility>
 
 #include "diagnose/alignment.h"
