@@ -6,7 +6,6 @@
 #include <limits>
 
 #include "diagnose/parallel.h"
-#include "diagnose/residuals.h"
 #include "diagnose/solve.h"
 
 namespace hydro {
@@ -29,23 +28,15 @@ void PredictRun(const Hypothesis& hypothesis, const RunData& run, const StartSta
   const Fitted fitted = Fit(fixed, {&run}, {start}, options);
   HeldOut& part = (*parts)[place];
   part.models.push_back(fixed.model);
-  part.count = 0;
-  for (const SignalData& signal : run.signals) part.count += signal.valid;
-  if (!fitted.ok()) {
-    part.starts.push_back(start);
-    part.sum = std::numeric_limits<double>::infinity();
+  if (fitted.ok()) {
+    part.starts.push_back(fitted.runs[0].start);
+    part.sum = fitted.sum;
+    part.count = fitted.count;
     return;
   }
-  part.starts.push_back(fitted.runs[0].start);
-  const Residuals residuals = ResidualsOf(fixed.model, run, fitted.runs[0].start);
-  for (size_t s = 0; s < run.signals.size(); ++s) {
-    const auto channel = static_cast<size_t>(run.signals[s].channel);
-    for (size_t i = residuals.first[s]; i < residuals.first[s + 1]; ++i) {
-      part.channel_sum[channel] += residuals.values[i] * residuals.values[i];
-    }
-    part.channel_count[channel] += residuals.first[s + 1] - residuals.first[s];
-    part.sum += part.channel_sum[channel];
-  }
+  part.starts.push_back(start);
+  part.sum = std::numeric_limits<double>::infinity();
+  for (const SignalData& signal : run.signals) part.count += signal.valid;
 }
 
 HeldOut Sum(const std::vector<HeldOut>& parts) {
@@ -55,10 +46,6 @@ HeldOut Sum(const std::vector<HeldOut>& parts) {
     all.count += part.count;
     all.starts.push_back(part.starts.front());
     all.models.push_back(part.models.front());
-    for (size_t c = 0; c < kChannels; ++c) {
-      all.channel_sum[c] += part.channel_sum[c];
-      all.channel_count[c] += part.channel_count[c];
-    }
   }
   return all;
 }

@@ -1,7 +1,7 @@
 // How well a fitted hypothesis predicts runs that it was not fitted to.
 #pragma once
 
-#include <array>
+#include <cstddef>
 #include <vector>
 
 #include "diagnose/fit.h"
@@ -14,8 +14,6 @@ struct HeldOut {
   // By run: the predicted start, and the model that did not see it.
   std::vector<StartState> starts;
   std::vector<ModelDescription> models;
-  std::array<double, kChannels> channel_sum{};
-  std::array<size_t, kChannels> channel_count{};
 
   double squared_gap() const { return count == 0 ? 0 : sum / static_cast<double>(count); }
 };
