@@ -7,6 +7,7 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
+#include <memory>
 
 #include "diagnose/parallel.h"
 #include "diagnose/residuals.h"
@@ -157,15 +158,17 @@ Fitted Fit(const Hypothesis& hypothesis, const std::vector<const RunData*>& runs
     values.push_back(parameter.ToFitted(std::clamp(parameter.value, parameter.low, parameter.high)));
   }
   std::vector<std::vector<double>> start_values(runs.size());
-  std::vector<const RunCost*> costs;
+  std::vector<std::unique_ptr<RunCost>> costs;
 
   AllRuns all_runs(values, start_values, options.jobs);
   ceres::Problem::Options with_all_runs;
+  // Its own would leave out a run of which nothing is free: that is not added.
+  with_all_runs.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
   with_all_runs.evaluation_callback = &all_runs;
   ceres::Problem problem(with_all_runs);
   for (size_t r = 0; r < runs.size(); ++r) {
-    auto* cost = new RunCost(hypothesis, *runs[r], starts[r]);  // the problem owns it
-    costs.push_back(cost);
+    RunCost* const cost =
+        costs.emplace_back(std::make_unique<RunCost>(hypothesis, *runs[r], starts[r])).get();
     all_runs.Add(cost);
     for (const Unknown& start : cost->starts()) start_values[r].push_back(starts[r][start.index]);
     std::vector<double*> blocks;
