@@ -11,6 +11,7 @@
 
 #include "diagnose/sample_interval.h"
 #include "diagnose/solve.h"
+#include "diagnose/word_list.h"
 #include "logger/run_delays.h"
 
 namespace hydro {
@@ -351,14 +352,10 @@ RunData PrepareAligned(MeasuredRun run, const Parameters& model, std::vector<Clo
 }
 
 std::string Says(const ClockDelay& delay) {
-  std::string names;
-  for (size_t i = 0; i < delay.signals.size(); ++i) {
-    names += (i == 0 ? "" : i + 1 == delay.signals.size() ? " and " : ", ") + delay.signals[i];
-  }
   char text[96];
   std::snprintf(text, sizeof text, "%s %s by %.3g +- %.2g s", delay.signals.size() > 1 ? "are" : "is",
                 delay.delay < 0 ? "early" : "late", std::abs(delay.delay), delay.error);
-  return "run " + delay.run + ": " + names + " " + text + " against p1 and p2";
+  return "run " + delay.run + ": " + Enumerated(delay.signals) + " " + text + " against p1 and p2";
 }
 
 }  // namespace hydro

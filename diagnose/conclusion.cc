@@ -9,6 +9,7 @@
 #include "diagnose/ranking.h"
 #include "diagnose/run_curves.h"
 #include "diagnose/short_number.h"
+#include "diagnose/word_list.h"
 
 namespace hydro {
 
@@ -21,14 +22,6 @@ constexpr double kClosedShare = 0.01;  // of the squared gap above the noise
 constexpr double kToldApart = 2.5;
 // A base parameter that has to move by more than this factor is not believed.
 constexpr double kImplausible = 2.0;
-
-std::string Join(const std::vector<std::string>& parts) {
-  std::string text;
-  for (size_t i = 0; i < parts.size(); ++i) {
-    text += (i == 0 ? "" : i + 1 == parts.size() ? " and " : ", ") + parts[i];
-  }
-  return text;
-}
 
 struct Rival {
   Change change;
@@ -99,7 +92,7 @@ std::string Sentence(const Diagnosis& d) {
   std::vector<std::string> names;
   for (const FoundEffect& effect : d.effects) {
     std::string name = effect.says + " [" + effect.id + "]";
-    if (!effect.tied_with.empty()) name += ", or " + Join(effect.tied_with);
+    if (!effect.tied_with.empty()) name += ", or " + Enumerated(effect.tied_with);
     names.push_back(name);
   }
   std::vector<std::string> parameters;
@@ -112,22 +105,23 @@ std::string Sentence(const Diagnosis& d) {
       return "Nothing is missing: the model as given explains the data to " +
              ShortNumber(d.held_out.before, 3) + " noise units.";
     case Verdict::kParameters:
-      return "The equations suffice with other values: " + Join(parameters) + gap;
+      return "The equations suffice with other values: " + Enumerated(parameters) + gap;
     case Verdict::kNamed:
-      return "Missing: " + Join(names) + (parameters.empty() ? "" : "; with " + Join(parameters)) + gap;
+      return "Missing: " + Enumerated(names) +
+             (parameters.empty() ? "" : "; with " + Enumerated(parameters)) + gap;
     case Verdict::kTied:
-      return "Missing, but these data cannot tell which: " + Join(names) +
-             (parameters.empty() ? "" : "; with " + Join(parameters)) + gap;
+      return "Missing, but these data cannot tell which: " + Enumerated(names) +
+             (parameters.empty() ? "" : "; with " + Enumerated(parameters)) + gap;
     case Verdict::kUnexplained:
       return "Something is missing that no known effect explains" +
-             (names.empty() ? std::string() : "; the nearest is " + Join(names)) + gap;
+             (names.empty() ? std::string() : "; the nearest is " + Enumerated(names)) + gap;
   }
   return "";
 }
 
 std::string WhyNext(const std::vector<FoundEffect>& effects) {
   for (const FoundEffect& effect : effects) {
-    if (!effect.tied_with.empty()) return "tells " + effect.id + " from " + Join(effect.tied_with);
+    if (!effect.tied_with.empty()) return "tells " + effect.id + " from " + Enumerated(effect.tied_with);
   }
   return "";
 }

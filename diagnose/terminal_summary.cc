@@ -6,15 +6,10 @@
 #include "diagnose/report_json.h"
 #include "diagnose/run_data.h"
 #include "diagnose/short_number.h"
+#include "diagnose/word_list.h"
 
 namespace hydro {
 namespace {
-
-std::string Joined(const std::vector<std::string>& parts, const std::string& between) {
-  std::string joined;
-  for (const std::string& part : parts) joined += (joined.empty() ? "" : between) + part;
-  return joined;
-}
 
 std::string GapLine(const std::string& what, const BeforeAfter& gap) {
   return what + ShortNumber(gap.before) + " before, " + ShortNumber(gap.refit_only) + " refitted only, " +
@@ -26,8 +21,8 @@ std::string EffectText(const FoundEffect& effect) {
   for (const Estimated& parameter : effect.parameters) parts.push_back(WithInterval(parameter));
   parts.insert(parts.end(), effect.names.begin(), effect.names.end());
   std::string text = effect.id + " (" + effect.says + ")";
-  if (!parts.empty()) text += ": " + Joined(parts, ", ");
-  if (!effect.tied_with.empty()) text += "; tied with " + Joined(effect.tied_with, ", ");
+  if (!parts.empty()) text += ": " + Joined(parts);
+  if (!effect.tied_with.empty()) text += "; tied with " + Joined(effect.tied_with);
   return text;
 }
 
