@@ -1,6 +1,7 @@
 #include "diagnose/fit.h"
 
 #include <ceres/ceres.h>
+#include <ceres/normal_prior.h>
 #include <glog/logging.h>
 
 #include <Eigen/Cholesky>
@@ -185,6 +186,12 @@ Fitted Fit(const Hypothesis& hypothesis, const std::vector<const RunData*>& runs
     if (std::isfinite(free[i].high)) {
       problem.SetParameterUpperBound(values.data(), place, free[i].ToFitted(free[i].high));
     }
+  }
+  if (options.prior != nullptr && !free.empty()) {
+    const Map<const VectorXd> centre(options.prior->centre.data(), static_cast<Eigen::Index>(free.size()));
+    const Map<const VectorXd> weight(options.prior->weight.data(), static_cast<Eigen::Index>(free.size()));
+    problem.AddResidualBlock(new ceres::NormalPrior(weight.cwiseSqrt().asDiagonal(), centre), nullptr,
+                             values.data());
   }
   FLAGS_minloglevel = google::GLOG_FATAL;  // a step that cannot be simulated is no error
   ceres::Solver::Options solver;

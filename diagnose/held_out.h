@@ -21,9 +21,9 @@ struct HeldOut {
 // Predicts runs that the fit has not seen; only their starts are fitted.
 HeldOut Predict(const Fitted& fitted, const std::vector<const RunData*>& held_out, int jobs);
 
-// Each of the fit's runs in turn: what the others say of the parameters (a Gauss-Newton step from the common
-// fit, with what they cannot tell drawn to the values of `given` and to effects of no size), and how well
-// that predicts it.
+// Each of the fit's runs in turn: what the others say of the parameters (with what they cannot tell drawn to
+// the values of `given` and to effects of no size), and how well that predicts it. They are asked by a
+// Gauss-Newton step from the common fit, and by a fit of their own when that step predicts the run badly.
 HeldOut PredictInTurn(const Fitted& fitted, const ModelDescription& given,
                       const std::vector<const RunData*>& runs, int jobs);
 
