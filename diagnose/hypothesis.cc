@@ -156,7 +156,7 @@ std::vector<Hypothesis> With(const Hypothesis& hypothesis, const Change& change,
     for (const double factor : kElsewhere) {
       if (!elsewhere) break;
       all.push_back(more);
-      all.back().model.parameters.*BaseParameters()[more.base.back()].member *= factor;
+      all.back().model.parameters.*BaseParameters()[place].member *= factor;
     }
     return all;
   }

@@ -39,7 +39,10 @@ bool SameChanges(const Hypothesis& a, const Hypothesis& b) {
 
 // Two of an effect cannot be in one model; nor is something changed twice.
 bool CanAdd(const Hypothesis& hypothesis, const Change& change) {
-  if (change.effect.empty()) return !hypothesis.Has(change);
+  if (change.effect.empty()) {
+    const size_t place = BasePlace(change.parameter);
+    return std::find(hypothesis.base.begin(), hypothesis.base.end(), place) == hypothesis.base.end();
+  }
   return std::none_of(hypothesis.model.effects.begin(), hypothesis.model.effects.end(),
                       [&](const EffectDescription& effect) { return effect.id == change.effect; });
 }
@@ -180,10 +183,12 @@ class Searcher {
     }
   }
 
-  // Each change is tried to be replaced: a greedy choice may have been second best once others are there.
+  // Each change is tried to be replaced: a greedy choice may have been second best once others are there. Where
+  // all is explained it is still tried: what does as well is a tie.
   void Exchange() {
-    if (result_.best.changes().size() < 2 || result_.best.held_out_gap() < kCloseEnough) return;
-    for (int round = 0; round < 2; ++round) {
+    if (result_.best.changes().size() < 2) return;
+    const int rounds = result_.best.held_out_gap() < kCloseEnough ? 1 : 2;
+    for (int round = 0; round < rounds; ++round) {
       bool better = false;
       const std::vector<Change> changes = result_.best.changes();
       for (const Change& change : changes) {
