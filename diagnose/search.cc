@@ -1,6 +1,7 @@
 #include "diagnose/search.h"
 
 #include <algorithm>
+#include <limits>
 
 #include "diagnose/parallel.h"
 
@@ -17,6 +18,9 @@ constexpr double kWorthTrying = 0.15;
 constexpr size_t kBeam = 2;
 // Those are dropped whose sum of squares is so many times the best's.
 constexpr double kBehind = 2;
+// What is tried in the place of a part of an explanation is looked at closely up to so many times its sum of
+// squares, after a coarse fit.
+constexpr double kNearlyAsGood = 2;
 // How many refits are compared on held-out runs at each step.
 constexpr size_t kFinalists = 3;
 // Further changes are not looked for below this squared gap on held-out runs.
@@ -114,7 +118,9 @@ class Searcher {
   }
 
   // Each of the beam with one more change, fitted; the best few by their fit, with their held-out prediction.
-  std::vector<Explanation> Extend(const std::vector<Explanation>& beam, int step) {
+  // Those with a sum of squares above `most` are not predicted.
+  std::vector<Explanation> Extend(const std::vector<Explanation>& beam, int step,
+                                  double most = std::numeric_limits<double>::infinity()) {
     std::vector<Scanned> pool;
     const double share = static_cast<double>(step) / most_changes_;
     for (const Explanation& from : beam) {
@@ -135,11 +141,12 @@ class Searcher {
       Pick(from, &scanned, step == 0 ? kRefitsAtFirst : kRefitsLater, &pool);
     }
     Tell("refitting the likeliest" + Step(step), share + 0.3 / most_changes_);
-    return FitAll(pool, StartsOf(beam.front().fitted));
+    return FitAll(pool, StartsOf(beam.front().fitted), most);
   }
 
   // Fits all; the best few by their fit, with their held-out prediction.
-  std::vector<Explanation> FitAll(const std::vector<Scanned>& pool, const std::vector<StartState>& starts) {
+  std::vector<Explanation> FitAll(const std::vector<Scanned>& pool, const std::vector<StartState>& starts,
+                                  double most = std::numeric_limits<double>::infinity()) {
     std::vector<Fitted> fits(pool.size());
     ParallelFor(pool.size(), context_.jobs,
                 [&](size_t i) { fits[i] = Fit(pool[i].start, context_.runs, starts, coarse_); });
@@ -161,7 +168,9 @@ class Searcher {
     }
     std::stable_sort(best.begin(), best.end(),
                      [](const Fitted& a, const Fitted& b) { return a.sum < b.sum; });
-    std::vector<Explanation> explained(std::min(best.size(), kFinalists));
+    size_t finalists = 0;
+    while (finalists < std::min(best.size(), kFinalists) && best[finalists].sum <= most) ++finalists;
+    std::vector<Explanation> explained(finalists);
     ParallelFor(explained.size(), context_.jobs, [&](size_t i) {
       explained[i] = Explain(context_, best[i].hypothesis, StartsOf(best[i]), fine_);
     });
@@ -169,7 +178,7 @@ class Searcher {
     std::stable_sort(explained.begin(), explained.end(),
                      [](const Explanation& a, const Explanation& b) { return a.fitted.sum < b.fitted.sum; });
     for (const Explanation& one : explained) result_.tried.push_back(one);
-    for (size_t i = kFinalists; i < best.size(); ++i) {
+    for (size_t i = finalists; i < best.size(); ++i) {
       Explanation fitted_only;
       fitted_only.fitted = best[i];
       result_.tried.push_back(fitted_only);
@@ -220,9 +229,11 @@ class Searcher {
       for (const Change& change : changes) {
         Tell("exchanging what was found", 0.9);
         const Hypothesis less = Without(result_.best.fitted.hypothesis, change, context_.given);
-        Explanation reduced = Explain(context_, less, StartsOf(result_.best.fitted), WithAllJobs(coarse_));
+        Explanation reduced;  // its own prediction is not asked for
+        reduced.fitted = Fit(less, context_.runs, StartsOf(result_.best.fitted), WithAllJobs(coarse_));
         if (!reduced.fitted.ok()) continue;
-        std::vector<Explanation> others = Extend({reduced}, most_changes_);
+        std::vector<Explanation> others =
+            Extend({reduced}, most_changes_, kNearlyAsGood * result_.best.fitted.sum);
         for (const Explanation& other : others) {
           if (other.fitted.sum < 0.98 * result_.best.fitted.sum &&
               other.held_out_gap() < result_.best.held_out_gap()) {
