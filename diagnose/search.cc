@@ -12,6 +12,8 @@ namespace {
 // How many of the score test's best are refitted: at the first step, and at later ones.
 constexpr size_t kRefitsAtFirst = 6;
 constexpr size_t kRefitsLater = 5;
+// From how many of its starting points each of them.
+constexpr size_t kStarts = 3;
 // Below this share of what is expected of the best, a change is not refitted.
 constexpr double kWorthTrying = 0.15;
 // How many hypotheses are gone on with.
@@ -138,7 +140,8 @@ class Searcher {
         }
         scanned_alone_ = scanned;
       }
-      Pick(from, &scanned, step == 0 ? kRefitsAtFirst : kRefitsLater, &pool);
+      const bool exchange = most < std::numeric_limits<double>::infinity();
+      Pick(from, &scanned, step == 0 ? kRefitsAtFirst : kRefitsLater, exchange ? 1 : kStarts, &pool);
     }
     Tell("refitting the likeliest" + Step(step), share + 0.3 / most_changes_);
     return FitAll(pool, StartsOf(beam.front().fitted), most);
@@ -188,10 +191,10 @@ class Searcher {
 
   static std::string Step(int step) { return step == 0 ? "" : ", with " + std::to_string(step) + " found"; }
 
-  // The most promising of a score test: the best start of each of the first few changes, and a second start
-  // where it promises nearly as much.
+  // The most promising of a score test: the best start of each of the first few changes, and further ones
+  // that promise nearly as much.
   void Pick(const Explanation& from, std::vector<std::vector<Scanned>>* scanned, size_t most,
-            std::vector<Scanned>* pool) const {
+            size_t most_starts, std::vector<Scanned>* pool) const {
     auto& rows = *scanned;
     std::erase_if(rows, [](const auto& starts) { return starts.empty() || !starts.front().failure.empty(); });
     std::stable_sort(rows.begin(), rows.end(),
@@ -200,7 +203,7 @@ class Searcher {
     const double least = std::max(0.3 * kLeastGain * static_cast<double>(from.fitted.count),
                                   rows.empty() ? 0 : kWorthTrying * rows.front().front().expected);
     for (size_t i = 0; i < rows.size() && i < most; ++i) {
-      for (size_t s = 0; s < rows[i].size() && s < 3; ++s) {
+      for (size_t s = 0; s < rows[i].size() && s < most_starts; ++s) {
         if (s > 0 && rows[i][s].expected < 0.5 * rows[i].front().expected) break;
         if (rows[i][s].expected < least) continue;
         const bool there = std::any_of(pool->begin(), pool->end(), [&](const Scanned& other) {
