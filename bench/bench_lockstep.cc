@@ -18,6 +18,7 @@
 #include "bench/child_process.h"
 #include "bus/udpm_bus.h"
 #include "plant/plant_app.h"
+#include "plant/simulated_rig.h"
 #include "position_ctrl/position_app.h"
 #include "pressure_ctrl/pressure_app.h"
 #include "settings/stack_config.h"
@@ -117,7 +118,8 @@ double StackTicksPerSecond(int64_t ticks, const std::string& config_file) {
     if (status.role == "plant" && status.state == process_status_t::RUNNING) started = status.utime;
   });
   bus.Subscribe<stop_t>("HYDRO_STOP", [&](const stop_t& stop) { ended = stop.utime; });
-  PlantApp plant(bus, clock, config);
+  SimulatedRig rig(config);
+  PlantApp plant(bus, clock, config, rig);
   if (plant.Run() != 0) {
     std::fprintf(stderr, "bench_lockstep: %s\n", plant.failure().c_str());
     std::exit(1);
