@@ -141,6 +141,9 @@ class Bus {
   // Messages that arrived on a subscribed channel and could not be decoded as its type.
   virtual int64_t undecodable() const = 0;
 
+  // The channel of the newest of them; empty when there was none or the transport does not know.
+  const std::string& undecodable_channel() const { return undecodable_channel_; }
+
  protected:
   virtual void PublishTyped(const std::string& channel, const MessageType& type, const void* message) = 0;
   virtual void SubscribeTyped(const std::string& channel, const MessageType& type,
@@ -150,6 +153,8 @@ class Bus {
   virtual std::shared_ptr<Outlet> MakeOutlet(const std::string& channel, const MessageType& type) {
     return std::make_shared<NamedOutlet>(this, channel, type);
   }
+
+  std::string undecodable_channel_;
 
  private:
   class NamedOutlet : public Outlet {

@@ -15,6 +15,7 @@ struct Channels {
         loop_statistics("HYDRO_LOOP_STATISTICS" + suffix),
         fault("HYDRO_FAULT" + suffix),
         stop("HYDRO_STOP" + suffix),
+        rearm("HYDRO_REARM" + suffix),
         process_status("HYDRO_PROCESS_STATUS" + suffix),
         log_progress("HYDRO_LOG_PROGRESS" + suffix) {}
 
@@ -26,6 +27,7 @@ struct Channels {
   std::string loop_statistics;   // loop_statistics_t, from every process
   std::string fault;             // fault_t, from every process
   std::string stop;              // stop_t
+  std::string rearm;             // rearm_t, from hydro-launch --rearm, answered by the plant
   std::string process_status;    // process_status_t, from every process
   std::string log_progress;      // log_progress_t, from the logger
 };

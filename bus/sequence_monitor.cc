@@ -13,6 +13,7 @@ SequenceMonitor::Verdict SequenceMonitor::Observe(int64_t session, int64_t seque
   const bool silent = now - heard_ > alive_;
   if (session != *session_ && !silent) {
     second_heard_ = now;
+    second_session_ = session;
     return Verdict::kSecondSender;
   }
   heard_ = now;

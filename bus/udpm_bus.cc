@@ -186,6 +186,7 @@ void UdpmBus::Deliver(const lcm_recv_buf_t& buffer, const char* channel, Subscri
     subscription->typed(subscription->message.get());
   } else {
     ++undecodable_;
+    undecodable_channel_ = channel;
   }
 }
 

@@ -210,8 +210,19 @@ bool LoggerApp::finished() const {
   return stop_time_ && (EveryoneHasLeft() || participant_.clock().Now() - *stop_time_ > kFarewellTime);
 }
 
+// Why writing has ended; empty while it goes on.
+std::string LoggerApp::FailureText() {
+  const std::lock_guard lock(mutex_);
+  if (!failure_) return "";
+  try {
+    std::rethrow_exception(failure_);
+  } catch (const std::exception& error) {
+    return error.what();
+  }
+}
+
 int LoggerApp::Finish() {
-  int exit_code = participant_.Leave();
+  int exit_code = participant_.Leave(FailureText());
   // What has been sent already, up to our own farewell, which comes back to us as everybody's.
   const auto deadline = participant_.clock().Now() + kEchoTime;
   while (!left_ && participant_.clock().Now() < deadline) bus_.HandleUntil(deadline);

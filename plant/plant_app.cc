@@ -33,10 +33,15 @@ PlantApp::PlantApp(Bus& bus, Clock& clock, const StackConfig& config, Rig& rig,
     : config_(config),
       rig_(rig),
       participant_(bus, clock, Channels(config.bus.channel_suffix), rig.role()),
+      safety_(participant_, config),
+      logger_watch_(participant_, FromSeconds(std::max(config.limits.stale_logger_s,
+                                                       3 / (config.plant.rate_hz * config.time.speed)))),
       roll_call_(WithControllers(expected)),
       program_(program),
       state_publisher_(bus.Advertise<state_t>(participant_.channels().state)),
       stale_time_(FromSeconds(config.limits.stale_input_s)),
+      voltage_limit_((1 + 1e-9) * config.model.description.parameters.T_pmax /
+                     config.model.description.parameters.k_1),
       command_monitor_(stale_time_) {
   const Channels& channels = participant_.channels();
   bus.Subscribe<motor_command_t>(channels.motor_command,
@@ -73,7 +78,12 @@ int PlantApp::Run() {
   if (StopSignal() != 0) {
     participant_.RequestStop(fmt::format("{} was stopped by signal {}", program_, StopSignal()), 0);
   } else {
-    participant_.RequestStop(fmt::format("the run is complete after {} s", state_.time), 0);
+    const std::string latched = safety_.Latched();
+    participant_.RequestStop(
+        latched.empty()
+            ? fmt::format("the run is complete after {} s", state_.time)
+            : fmt::format("the run ends after {} s, stopped by {} and not re-armed", state_.time, latched),
+        latched.empty() ? 0 : 1);
   }
   return participant_.Leave();
 }
@@ -119,6 +129,7 @@ void PlantApp::RunLockstep() {
   while (AwaitAnswers() && tick_ != config_.last_tick) {
     ChooseVoltage();
     Drive();
+    if (participant_.stop()) break;  // a limit was passed
     Advance(tick_ + 1);
     if (simulated) {
       // Nobody else lets simulated time pass. Each tick from the start: rounding must not add up.
@@ -187,16 +198,18 @@ void PlantApp::RunRealtime() {
     if (elapsed == 0) continue;  // a signal
     if (config_.last_tick >= 0) elapsed = std::min(elapsed, config_.last_tick - tick_);
     participant_.statistics().set_missed_deadlines(loop.skipped());
+    const auto slept = FromSeconds(static_cast<double>(elapsed - 1) * period.count());
     Advance(tick_ + elapsed);  // under the voltage that was held all that time
+    if (slept > stale_time_) awake_again_ = tick_;
     PublishState(elapsed - 1);
     ChooseVoltage();
-    CheckCommandIsFresh();
     Drive();
+    logger_watch_.Poll();
     Poll();
   }
 }
 
-// The voltage that was chosen goes out, unless the sensors give a reason against it.
+// The voltage that was chosen goes out, unless the sensors give a reason against it; then why is said.
 void PlantApp::Drive() {
   if (!rig_.faults().empty()) {
     voltage_ = 0;
@@ -204,6 +217,7 @@ void PlantApp::Drive() {
   }
   voltage_ = rig_.Drive(voltage_);
   NameRigFaults();
+  safety_.Explain();
 }
 
 void PlantApp::NameRigFaults() {

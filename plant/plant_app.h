@@ -7,8 +7,9 @@
 //
 // Real time: wakes at each tick of wall time, reads the rig (a simulated one is advanced under the voltage it
 // holds), publishes the state, and takes the newest command. When it wakes late, all the time it missed has
-// passed under that voltage; it publishes the one state it then has, and counts the ticks it skipped. When
-// commands stop coming for limits.stale_input_s, the voltage goes to zero.
+// passed under that voltage; it publishes the one state it then has, and counts the ticks it skipped.
+//
+// In both, what OutputSafety finds wrong holds the voltage at zero (docs/safety.md).
 //
 // Either way the command computed from tick k acts from tick k + plant.command_delay_ticks on.
 #pragma once
@@ -26,6 +27,8 @@
 #include <vector>
 
 #include "bus/sequence_monitor.h"
+#include "plant/logger_watch.h"
+#include "plant/output_safety.h"
 #include "plant/rig.h"
 #include "plant/roll_call.h"
 #include "process/participant.h"
@@ -59,6 +62,7 @@ class PlantApp {
   void PublishState(int64_t skipped_ticks);
   void PublishDescription();
   void ChooseVoltage();
+  void CheckCommand(const motor_command_t& command);
   void CheckCommandIsFresh();
   void OnMotorCommand(const motor_command_t& command);
   Clock::Duration TimeSinceDue(int64_t tick) const;
@@ -68,10 +72,13 @@ class PlantApp {
   StackConfig config_;
   Rig& rig_;
   Participant participant_;
+  OutputSafety safety_;
+  LoggerWatch logger_watch_;
   RollCall roll_call_;
   std::string program_;
   Publisher<state_t> state_publisher_;
   const Clock::Duration stale_time_;
+  const double voltage_limit_;  // V, T_pmax/k_1 beyond rounding
 
   int64_t tick_ = 0;
   state_t state_;
@@ -80,6 +87,9 @@ class PlantApp {
   double voltage_ = 0;                   // V, held from tick_ on
   int64_t command_tick_ = -1;            // tick of the command that voltage_ came from
   SequenceMonitor command_monitor_;
+  CountedWarning repeated_commands_{"repeated_motor_command"};
+  bool future_command_ = false;         // since the last command that made sense
+  std::optional<int64_t> awake_again_;  // real time: the tick at which a loop that was stopped went on
   std::deque<motor_command_t> waiting_commands_;  // received, not yet in force, by tick
   std::optional<motor_command_t> command_;        // in force
   int64_t newest_command_tick_ = -1;

@@ -21,6 +21,13 @@ motor_command_t ZeroVolts(int64_t tick, int8_t status) {
   return zero;
 }
 
+// psi, what limits.arm_torque_in_lbf leaves of a pressure reference, rounding and the D/A's included.
+double PressureReferenceLimit(const StackConfig& config) {
+  const PositionSection& dac = config.position;
+  const double half_step = dac.dac_bits > 0 ? std::ldexp(dac.dac_range_psi, -dac.dac_bits) : 0;
+  return (1 + 1e-9) * config.limits.arm_torque_in_lbf / config.model.description.parameters.k_2 + half_step;
+}
+
 }  // namespace
 
 PressureLawSettings PressureLawSettingsFor(const StackConfig& config) {
@@ -52,6 +59,8 @@ PressureApp::PressureApp(Bus& bus, Clock& clock, const StackConfig& config)
       delay_(config.plant.command_delay_ticks),
       stale_ticks_(delay_ + position_interval_ +
                    static_cast<int64_t>(std::ceil(config.limits.stale_input_s * config.plant.rate_hz))),
+      ramp_ticks_(static_cast<int64_t>(std::ceil(config.limits.pressure_ramp_s * config.plant.rate_hz))),
+      pressure_limit_(PressureReferenceLimit(config)),
       stale_time_(FromSeconds(config.limits.stale_input_s)),
       // The plant itself waits stall_timeout_s for whoever is late and then says who; only after that is it
       // silent.
@@ -79,9 +88,7 @@ void PressureApp::OnState(const state_t& state) {
   const auto now = participant_.clock().Now();
   switch (state_monitor_.Observe(state.session, state.sequence, now)) {
     case SequenceMonitor::Verdict::kSecondSender:
-      participant_.Raise("second_state_sender", "two processes send states on this network; allowed is one",
-                         2, 1, false);
-      return;
+      return;  // InputsAreSafe() sees to it
     case SequenceMonitor::Verdict::kRestarted:
       Restart();
       break;
@@ -110,11 +117,8 @@ void PressureApp::OnState(const state_t& state) {
 void PressureApp::OnPressureCommand(const pressure_command_t& command) {
   const auto verdict =
       command_monitor_.Observe(command.session, command.sequence, participant_.clock().Now());
-  if (verdict == SequenceMonitor::Verdict::kSecondSender) {
-    participant_.Raise("second_pressure_command_sender",
-                       "two processes send pressure commands on this network; allowed is one", 2, 1, false);
-    return;
-  }
+  // A second sender is not obeyed; InputsAreSafe() sees to it.
+  if (verdict == SequenceMonitor::Verdict::kSecondSender) return;
   if (verdict == SequenceMonitor::Verdict::kDuplicate) return;
   if (verdict == SequenceMonitor::Verdict::kRestarted) {
     waiting_commands_.clear();
@@ -151,7 +155,7 @@ void PressureApp::Answer(const state_t& state) {
   TakePressureCommandsUpTo(state.tick - delay_);
   motor_command_t command = ZeroVolts(state.tick, motor_command_t::SAFE);
   if (pressure_command_) {
-    command.pressure_ref = pressure_command_->pressure_ref;
+    command.pressure_ref = PressureReference(state.tick);
     command.pressure_command_tick = pressure_command_->tick;
   }
   if (!InputsAreSafe(state)) {

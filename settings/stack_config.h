@@ -98,11 +98,22 @@ struct ReferenceSection {
   TrajectorySpec trajectory;  // kind = "steps" | "sine" | "square" | "chirp" | "csv"
 };
 
+// How a fault that zeroed the voltage ends. Its codes and what each does: docs/safety.md.
+enum class Rearm {
+  kRestart,   // inputs that are good again end it; a limit that was passed ends the run
+  kExplicit,  // the run goes on at zero volts until hydro-launch --rearm
+};
+
 struct LimitsSection {
-  double pressure_psi = 2000;  // either side; above it: zero volts, fault, end of the run
+  double pressure_psi = 2000;  // either side; above it: zero volts and a fault
   double motor_speed_rad_s = std::numeric_limits<double>::infinity();
+  // |alpha|; read from a file, the default is kArmAngleShare V_ms/c for a free shaft (stack_checks.h).
+  double arm_angle_rad = std::numeric_limits<double>::infinity();
   double arm_torque_in_lbf = std::numeric_limits<double>::infinity();  // |k_2 dp_ref| is limited to this
-  double stale_input_s = 0.1;  // older inputs give zero volts and a fault
+  double stale_input_s = 0.1;     // older inputs give zero volts and a fault
+  double pressure_ramp_s = 0.2;   // plant time in which a stale pressure reference goes to zero; 0: at once
+  double stale_logger_s = 1;      // a logger that is silent for so long is reported as gone
+  Rearm rearm = Rearm::kRestart;  // rearm = "restart" | "explicit"
 };
 
 struct NoiseSection {

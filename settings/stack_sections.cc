@@ -128,8 +128,13 @@ void ReadReference(SectionReader section, const std::string& config_file, Refere
 void ReadLimits(SectionReader section, LimitsSection* limits) {
   section.Number("pressure_psi", &limits->pressure_psi, kPositiveOrNone);
   section.Number("motor_speed_rad_s", &limits->motor_speed_rad_s, kPositiveOrNone);
+  section.Number("arm_angle_rad", &limits->arm_angle_rad, kPositiveOrNone);
   section.Number("arm_torque_in_lbf", &limits->arm_torque_in_lbf, kPositiveOrNone);
   section.Number("stale_input_s", &limits->stale_input_s, kWait);
+  section.Number("pressure_ramp_s", &limits->pressure_ramp_s, {.min = 0, .max = 1e6});
+  section.Number("stale_logger_s", &limits->stale_logger_s, kWait);
+  section.Choice<Rearm>("rearm", {{"restart", Rearm::kRestart}, {"explicit", Rearm::kExplicit}},
+                        &limits->rearm);
   section.Finish();
 }
 
