@@ -104,7 +104,8 @@ class Bus {
   Bus(const Bus&) = delete;
   Bus& operator=(const Bus&) = delete;
 
-  // Sends `message` on `channel`. Throws BusError when the transport refuses it.
+  // Sends `message` on `channel`. Throws BusError when the transport refuses it. A network that is down for
+  // the moment (a cable, an interface) only loses it: see unsent().
   template <class Message>
   void Publish(const std::string& channel, const Message& message) {
     PublishTyped(channel, TypeOf<Message>(), &message);
@@ -141,7 +142,11 @@ class Bus {
   // Messages that arrived on a subscribed channel and could not be decoded as its type.
   virtual int64_t undecodable() const = 0;
 
-  // The channel of the newest of them; empty when there was none or the transport does not know.
+  // Messages that could not be sent because the network was down.
+  virtual int64_t unsent() const { return 0; }
+
+  // The channel of the newest message that could not be decoded; empty when there was none or the transport
+  // does not know.
   const std::string& undecodable_channel() const { return undecodable_channel_; }
 
  protected:

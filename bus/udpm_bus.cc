@@ -68,6 +68,12 @@ void CheckChannel(const std::string& channel) {
   }
 }
 
+// The network may come back: it has worked before (the constructor has seen to that).
+bool IsPassing(int error) {
+  return error == ENETUNREACH || error == ENETDOWN || error == EHOSTUNREACH || error == EADDRNOTAVAIL ||
+         error == ENOBUFS || error == EPERM;  // the last: a firewall
+}
+
 // Waits until `fd` can be read: 1, the deadline passed: 0, a signal arrived: -1.
 int WaitReadable(int fd, Bus::TimePoint deadline) {
   while (true) {
@@ -207,6 +213,10 @@ void UdpmBus::PublishTyped(const std::string& channel, const MessageType& type, 
 
 void UdpmBus::Send(const std::string& channel, const void* data, int size) {
   if (lcm_publish(lcm_, channel.c_str(), data, static_cast<unsigned>(size)) != 0) {
+    if (IsPassing(errno)) {
+      ++unsent_;  // as if it were lost on its way: whoever waits for it has a watchdog
+      return;
+    }
     throw BusError("LCM cannot publish on " + channel + ": " + std::strerror(errno));
   }
 }

@@ -30,6 +30,7 @@ class UdpmBus : public Bus {
   // it.
   int HandleUntil(TimePoint deadline) override;
   int64_t undecodable() const override { return undecodable_; }
+  int64_t unsent() const override { return unsent_; }
 
   // Bytes of receive buffer that the kernel gave (it counts its own bookkeeping as well); 0 for memq.
   int receive_buffer_bytes() const { return receive_buffer_bytes_; }
@@ -64,6 +65,7 @@ class UdpmBus : public Bus {
   int receive_buffer_bytes_ = 0;
   int receive_buffer_asked_ = 0;
   int64_t undecodable_ = 0;
+  int64_t unsent_ = 0;
   bool handling_ = false;
   bool delivered_ = false;        // the message in hand reached a handler
   std::exception_ptr exception_;  // thrown by a handler, kept until LCM's C code is off the stack

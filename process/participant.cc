@@ -28,6 +28,7 @@ Participant::Participant(Bus& bus, Clock& clock, const Channels& channels, const
       host_(HostName()),
       session_(SessionOn(clock)),
       undecodable_("undecodable_message"),
+      unsent_("unsent_message"),
       statistics_(role, host_, session_, clock.Now()) {
   bus_.Subscribe<stop_t>(channels_.stop, [this](const stop_t& stop) {
     if (!stop_) stop_ = stop;
@@ -66,6 +67,12 @@ void Participant::Poll() {
     report->utime = clock_.Utime();
     bus_.Publish(channels_.loop_statistics, *report);
   }
+  unsent_.Update(
+      bus_.unsent(), now,
+      [](int64_t count) {
+        return std::to_string(count) + " messages could not be sent: the network is down";
+      },
+      *this);
   undecodable_.Update(
       bus_.undecodable(), now,
       [this](int64_t count) {

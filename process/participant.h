@@ -90,6 +90,7 @@ class Participant {
   std::map<std::string, fault_t> active_;
   std::map<int64_t, std::string> names_;  // of the processes heard of, by session
   CountedWarning undecodable_;
+  CountedWarning unsent_;
   std::optional<stop_t> stop_;
   Clock::TimePoint next_announcement_;
   LoopStatistics statistics_;
