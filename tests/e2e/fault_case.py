@@ -41,9 +41,9 @@ class FaultCase(stack.TestCase):
         """A reference that never settles, so that the voltage of a running loop is never zero for long."""
         return self.config_with('signal = "arm_angle"\nkind = "sine"\namplitude = 0.2\nfrequency_hz = 0.5')
 
-    def start_stack(self, *options, config=None, roles=("logger", "position_ctrl", "pressure_ctrl", "plant")):
+    def start_stack(self, *options, config=None, duration=0, roles=("logger", "position_ctrl", "pressure_ctrl", "plant")):
         """Starts these of the four programs, the plant last; returns the log as it grows."""
-        self.run_ = self.stack(config or self.moving(), "--time", "realtime", "--duration", "0", "--set",
+        self.run_ = self.stack(config or self.moving(), "--time", "realtime", "--duration", duration, "--set",
                                f"limits.stale_input_s={STALE}", *options)
         for role in roles:
             self.run_.start(role, *{"logger": ("-o", self.log_file), "plant": ("--expect", "logger")}.get(role, ()))

@@ -14,7 +14,7 @@ from fault_case import STALE
 
 BAD = 100  # the tick of the first bad command
 LIMIT = 10  # V, T_pmax/k_1 of Table 1
-SLOW = 200  # Hz: slow enough for a loop written in Python on a busy machine
+SLOW = 400  # Hz: slow enough for a loop written in Python on a busy machine
 
 
 def repeated(session=4242, **fields):
