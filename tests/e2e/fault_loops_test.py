@@ -41,6 +41,28 @@ class FaultLoopsTest(fault_case.FaultCase):
         self.wait_for_states(300)
         self.check_stale_motor_command(self.finish())
 
+    # Tests the limit of a real-time machine, five ticks (config/realtime.toml), at a rate at which this machine's
+    # late wake-ups are less than a tick or two.
+    def test_five_ticks(self):
+        rate, limit = 50, 5
+        voltage = self.config_with('signal = "voltage"\nkind = "steps"\ninitial = 1.5')
+        self.start_stack("--set", f"plant.rate_hz={rate}", "--set", "position.sample_interval_s=0.02", "--set",
+                         f"limits.stale_input_s={limit / rate}", config=voltage)
+        self.log.wait_for_tick(20)
+        self.wait_for_voltage()
+        self.run_["pressure_ctrl"].kill()
+        killed = self.log.messages["HYDRO_STATE"][-1].tick
+        fault = self.log.wait_for("HYDRO_FAULT", lambda f: f.code == "stale_motor_command" and f.tick >= killed, "a fault")
+        self.wait_for_states(20)
+        log = self.finish()
+        last = max(c.tick for c in log.motor_commands if c.status == event_log.OPEN_LOOP)
+        slept = sum(s.skipped_ticks for s in log.states if last < s.tick <= fault.tick)
+        print(f"{fault.tick - last} ticks after the last command it was stale, {limit} allowed", flush=True)
+        self.assertLessEqual(fault.tick - last, limit + 2 + slept)
+        after = [s for s in log.states if s.tick > fault.tick]
+        self.assertGreater(len(after), 10)
+        self.assertEqual([s for s in after if s.voltage != 0], [])
+
     # Tests that a pressure loop that hangs is the same, that what it answers late to old states moves nothing, and that
     # control comes back with it.
     def test_pressure_loop_hangs(self):
