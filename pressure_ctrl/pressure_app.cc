@@ -80,6 +80,7 @@ PressureApp::PressureApp(Bus& bus, Clock& clock, const StackConfig& config)
 void PressureApp::Restart() {
   waiting_commands_.clear();
   pressure_command_.reset();
+  future_command_.reset();
   pending_state_.reset();
   answered_ = false;
 }
@@ -124,6 +125,11 @@ void PressureApp::OnPressureCommand(const pressure_command_t& command) {
     waiting_commands_.clear();
     pressure_command_.reset();
   }
+  // A little ahead is another route through a network; far ahead would hold up all that come after it.
+  future_command_ = participant_.tick() >= 0 && command.tick > participant_.tick() + stale_ticks_
+                        ? std::optional(command.tick)
+                        : std::nullopt;
+  if (future_command_) return;
   waiting_commands_.push_back(command);
   if (pending_state_ && !AwaitsPressureCommand(pending_state_->tick)) {
     const state_t state = *pending_state_;

@@ -67,7 +67,8 @@ class PressureApp : public App {
   SequenceMonitor command_monitor_;
   std::deque<pressure_command_t> waiting_commands_;     // not yet in force, by tick
   std::optional<pressure_command_t> pressure_command_;  // in force
-  std::optional<state_t> pending_state_;                // lockstep: waits for the pressure command it needs
+  std::optional<int64_t> future_command_;  // tick of a refused one, while none came that makes sense
+  std::optional<state_t> pending_state_;   // lockstep: waits for the pressure command it needs
   motor_command_t last_command_;
   bool answered_ = false;
   int64_t sequence_ = 0;

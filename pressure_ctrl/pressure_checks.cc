@@ -102,6 +102,12 @@ bool PressureApp::PressureCommandIsSafe(const state_t& state) {
                       "(limits.arm_torque_in_lbf / k_2)",
                       pressure_command_->tick, reference, pressure_limit_);
                 });
+  safe &= Check(!future_command_, "future_pressure_command", static_cast<double>(future_command_.value_or(0)),
+                static_cast<double>(state.tick), [&] {
+                  return fmt::format(
+                      "a pressure command for tick {} at tick {}; is another run's log being played?",
+                      future_command_.value_or(0), state.tick);
+                });
   safe &= Check(!command_monitor_.SecondSenderAlive(participant_.clock().Now()),
                 "second_pressure_command_sender", 2, 1, [&] {
                   return fmt::format("two processes send pressure commands: {} and {}; allowed is one",

@@ -13,6 +13,7 @@ constexpr std::array kCodes{
     FaultCode{"stale_pressure_command", FaultEffect::kRamp},
     FaultCode{"nonfinite_pressure_command", FaultEffect::kZeroVolts},
     FaultCode{"excessive_pressure_command", FaultEffect::kZeroVolts},
+    FaultCode{"future_pressure_command", FaultEffect::kZeroVolts},
     FaultCode{"second_pressure_command_sender", FaultEffect::kZeroVolts},
     // Position loop.
     FaultCode{"nonfinite_arm_angle", FaultEffect::kZeroVolts},

@@ -235,6 +235,29 @@ class PressureCommandTest(fault_case.FaultCase):
         log = self.finish()
         self.assertEqual({f.code for f in log.faults if f.source == "pressure_ctrl"} - {"stale_state"}, set())
 
+    # Tests that a reference for a tick that is far from having been is refused, and zeroes the voltage until one comes that
+    # makes sense.
+    def test_future(self):
+        self.run_with(lambda tick: [{"pressure_ref": 100.0, "tick": tick + 5000}])
+        log = self.check("future_pressure_command")
+        self.assertEqual([c for c in log.motor_commands if c.pressure_ref == 100.0], [])
+
+    # Tests that a loop that answers every sample, but too late, is a loop that is stale: its reference goes to zero, then
+    # the voltage.
+    def test_late(self):
+        hold = 6 + int(STALE * fault_case.RATE)
+        self.SPAN = 2 * hold + 400
+        self.run_with(lambda tick: [{"pressure_ref": 100.0, "tick": max(0, tick - 2 * hold)}])
+        fault = self.wait_for_fault("stale_pressure_command")
+        self.wait_for_fault("stale_pressure_command", active=False)
+        log = self.finish()
+        safe = [c for c in log.motor_commands if c.status == event_log.SAFE and c.tick >= fault.tick]
+        self.assertGreater(len(safe), 50)
+        self.assertEqual([c for c in safe if c.voltage != 0], [])
+        # The first ones, for tick 0, were not too old yet; then it is never the whole of it.
+        whole = [c for c in log.motor_commands if c.pressure_ref == 100.0]
+        self.assertEqual([c for c in whole if c.tick > hold], [])
+
     # Tests that of two that command pressures none is obeyed, and that both are named.
     def test_two_senders(self):
         self.run_with(lambda tick: [{"pressure_ref": 50.0},
@@ -255,6 +278,59 @@ class PressureCommandTest(fault_case.FaultCase):
         safe = [c for c in log.motor_commands if c.status == event_log.SAFE]
         self.assertGreater(len(safe), 100)
         self.assertEqual([c for c in safe if c.voltage != 0], [])
+
+
+class StateTest(fault_case.FaultCase):
+    """The plant is the test's: what its sensors read is not finite from tick BAD to tick GOOD."""
+
+    GOOD = BAD + 50
+
+    def run_with(self, **bad):
+        self.start_stack(roles=("logger", "pressure_ctrl", "position_ctrl"))
+        for role in ("pressure_ctrl", "position_ctrl"):
+            self.log.wait_for("HYDRO_PROCESS_STATUS", lambda s, r=role: s.role == r, role)
+        plant = self.peer()
+        commands = {"HYDRO_MOTOR_COMMAND": {}, "HYDRO_PRESSURE_COMMAND": {}}
+
+        def answered(kind, tick):
+            for channel, data in plant.receive(stack.PATIENCE if tick not in commands[kind] else 0):
+                if channel in commands:
+                    command = event_log.TYPES[channel].decode(data)
+                    commands[channel].setdefault(command.tick, command)
+            return tick in commands[kind]
+
+        for tick in range(self.GOOD + 50):
+            state = {"p1": 100.0, "p2": 120.0, "motor_speed": 3.0, "arm_angle": 0.05 + 1e-4 * tick}
+            if BAD <= tick < self.GOOD:
+                state.update(bad)
+            plant.publish("HYDRO_STATE", tick=tick, sequence=tick, session=6, time=tick / fault_case.RATE,
+                          command_tick=-1, **state)
+            for kind in commands if tick % 5 == 0 else ["HYDRO_MOTOR_COMMAND"]:
+                self.wait_until(lambda k=kind, t=tick: answered(k, t), f"{kind} of tick {tick}")
+        return commands["HYDRO_MOTOR_COMMAND"]
+
+    # Tests that a pressure or a speed that is not a number is answered with zero volts in that very tick.
+    def test_pressures_and_speed(self):
+        commands = self.run_with(p2=float("nan"), motor_speed=float("inf"))
+        self.wait_for_fault("nonfinite_state", source="pressure_ctrl")
+        self.wait_for_fault("nonfinite_state", active=False)
+        for tick, command in commands.items():
+            if BAD <= tick < self.GOOD:
+                self.assertEqual((command.status, command.voltage), (event_log.SAFE, 0), command)
+            else:
+                self.assertEqual(command.status, event_log.LAW, command)
+        self.assertNotEqual(commands[BAD - 1].voltage, 0)
+        self.assertNotEqual(commands[self.GOOD].voltage, 0)
+
+    # Tests that without the arm's angle the position loop commands zero volts, in force a tick later.
+    def test_arm_angle(self):
+        commands = self.run_with(arm_angle=float("nan"))
+        self.wait_for_fault("nonfinite_arm_angle", source="position_ctrl")
+        self.wait_for_fault("nonfinite_arm_angle", active=False)
+        for tick in range(BAD + 1, self.GOOD):
+            self.assertEqual((commands[tick].status, commands[tick].voltage), (event_log.OPEN_LOOP, 0), commands[tick])
+        self.assertNotEqual(commands[BAD - 1].voltage, 0)
+        self.assertNotEqual(commands[self.GOOD + 1].voltage, 0)
 
 
 if __name__ == "__main__":

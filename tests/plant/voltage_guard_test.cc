@@ -3,7 +3,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <filesystem>
+#include <fstream>
+#include <limits>
 #include <set>
+#include <sstream>
 #include <string>
 
 #include "process/fault_codes.h"
@@ -83,6 +87,37 @@ TEST(VoltageGuardTest, HidesWhatIsNotANumber) {
   VoltageGuard guard(Rearm::kRestart);
   guard.Set(Cause::kNonfiniteCommand, true);
   EXPECT_EQ(guard.Voltage(std::numeric_limits<double>::quiet_NaN()), 0);
+}
+
+std::string Document(const char* name) {
+  std::ifstream stream(std::filesystem::path(HYDRO_SOURCE_DIR) / "docs" / name);
+  std::stringstream text;
+  text << stream.rdbuf();
+  return text.str();
+}
+
+// Tests that docs/faults.md has a row for each code, with its effect, and that docs/safety.md, whose table is
+// of situations, has a code or the beginning of one for each.
+TEST(FaultCodesTest, AreDocumented) {
+  const std::string list = Document("faults.md");
+  const std::string table = Document("safety.md");
+  for (const FaultCode& entry : FaultCodes()) {
+    const std::string code(entry.code);
+    const size_t row = list.find("| `" + code + "` |");
+    ASSERT_NE(row, std::string::npos) << code;
+    const std::string line = list.substr(row, list.find('\n', row) - row);
+    const std::string effect = entry.effect == FaultEffect::kZeroVolts ? "zero volts"
+                               : entry.effect == FaultEffect::kRamp    ? "ramp"
+                                                                       : "warning";
+    EXPECT_TRUE(line.ends_with("| " + effect + " |")) << line;
+    const bool second = code.starts_with("second_");
+    const bool pressure_command = code.ends_with("_pressure_command");
+    // These share a row: `nonfinite_`, `excessive_`, `future_pressure_command`; second_..._sender.
+    const std::string in_table = second             ? "second_"
+                                 : pressure_command ? code.substr(0, code.find('_') + 1)
+                                                    : "`" + code + "`";
+    EXPECT_NE(table.find(in_table), std::string::npos) << code;
+  }
 }
 
 // Tests that a code that nobody knows is taken for one that zeroes the voltage.

@@ -313,6 +313,35 @@ TEST_F(PressureAppTest, ExcessivePressureReferenceGivesZeroVolts) {
   EXPECT_FALSE(faults_[1].active);
 }
 
+// Tests that a command for a tick that is far from having been is refused, zeroes the voltage, and holds up
+// nothing that comes after it.
+TEST_F(PressureAppTest, FuturePressureCommandGivesZeroVolts) {
+  StackConfig config = SmallStack();
+  config.time.mode = TimeMode::kRealtime;
+  config.limits.stale_input_s = 0.02;
+  Start(config);
+  SendPressure(0, 120);
+  SendState(State(0));
+  pressure_command_t future{};
+  future.tick = 1000;
+  future.session = 7;
+  future.sequence = 1;
+  future.pressure_ref = 300;
+  bus_.Publish("HYDRO_PRESSURE_COMMAND", future);
+  SendState(State(1));
+  EXPECT_EQ(commands_.back().status, motor_command_t::SAFE);
+  ASSERT_EQ(faults_.size(), 1u);
+  EXPECT_EQ(faults_[0].code, "future_pressure_command");
+  EXPECT_EQ(faults_[0].value, 1000);
+  SendPressure(5, 130);  // ahead by what a network may do
+  SendState(State(2));
+  EXPECT_EQ(commands_.back().status, motor_command_t::LAW);
+  EXPECT_EQ(commands_.back().pressure_ref, 120);
+  for (int64_t tick = 3; tick <= 6; ++tick) SendState(State(tick));
+  EXPECT_EQ(commands_.back().pressure_ref, 130);
+  EXPECT_FALSE(faults_.back().active);
+}
+
 // Tests that an arm beyond its limit trips as a pressure does.
 TEST_F(PressureAppTest, ArmAngleLimitTrips) {
   StackConfig config = SmallStack();
