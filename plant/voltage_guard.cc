@@ -48,7 +48,7 @@ void VoltageGuard::Set(Cause cause, bool present) {
 std::vector<VoltageGuard::Cause> VoltageGuard::Release(std::vector<Cause>* standing) {
   *standing = Listed(present_);
   if (present_ != 0) return {};
-  const std::vector<Cause> ended = Listed(latched_);
+  std::vector<Cause> ended = Listed(latched_);
   latched_ = 0;
   return ended;
 }
