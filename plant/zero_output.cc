@@ -58,10 +58,13 @@ bool LeftAlone(int signal) {
 }
 
 void CatchEndingSignals() {
-  stack_t stack = {};
-  stack.ss_sp = handler_stack;
-  stack.ss_size = sizeof handler_stack;
-  sigaltstack(&stack, nullptr);
+  stack_t present_stack = {};
+  if (sigaltstack(nullptr, &present_stack) == 0 && (present_stack.ss_flags & SS_DISABLE) != 0) {
+    stack_t stack = {};
+    stack.ss_sp = handler_stack;
+    stack.ss_size = sizeof handler_stack;
+    sigaltstack(&stack, nullptr);  // of this thread, the one that drives
+  }
   for (int signal = 1; signal < NSIG; ++signal) {
     struct sigaction present = {};
     if (LeftAlone(signal) || sigaction(signal, nullptr, &present) != 0) continue;

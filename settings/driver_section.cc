@@ -131,7 +131,7 @@ void CheckDriver(const StackConfig& config) {
     throw KeyError(config.file, key, found, allowed);
   };
   if (!config.driver) {
-    refuse("driver", "no such section", "[driver], which hydro-driver needs: the wiring of the board");
+    refuse("driver", "nothing", "a section [driver], which hydro-driver needs: the wiring of the board");
   }
   if (config.time.mode == TimeMode::kLockstep) {
     refuse("time.mode", "\"lockstep\"", "\"realtime\" with hydro-driver: a machine waits for nobody");
