@@ -62,6 +62,7 @@ SensorSection ReadSensor(SectionReader section, const std::vector<std::pair<std:
   SensorSection sensor;
   section.Choice<Source>("source", sources, &sensor.source);
   std::vector<std::string> names;
+  names.reserve(sources.size());
   for (const auto& [name, source] : sources) names.push_back(name);
   section.Require("source", QuotedList(names));
   if (sensor.source == Source::kAnalog) {
