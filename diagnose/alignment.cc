@@ -9,7 +9,9 @@
 #include <limits>
 #include <utility>
 
+#include "diagnose/sample_interval.h"
 #include "diagnose/solve.h"
+#include "diagnose/word_list.h"
 #include "logger/run_delays.h"
 
 namespace hydro {
@@ -88,12 +90,8 @@ std::vector<double> Speed(const MeasuredSignal& speed, const MeasuredSignal& ang
 }
 
 Grid MakeGrid(const MeasuredRun& run, const Parameters& model) {
-  std::vector<double> intervals;
-  for (size_t i = 1; i < run.samples(); ++i) intervals.push_back(run.time[i] - run.time[i - 1]);
-  const auto middle = intervals.begin() + static_cast<std::ptrdiff_t>(intervals.size() / 2);
-  std::nth_element(intervals.begin(), middle, intervals.end());
   Grid grid;
-  grid.step = std::max(*middle, kFinestStep);
+  grid.step = std::max(MedianInterval(run.time), kFinestStep);
   const auto even = [&](const std::vector<double>& values) {
     return Smoothed(Averaged(run.time, values, grid.step));
   };
@@ -354,14 +352,10 @@ RunData PrepareAligned(MeasuredRun run, const Parameters& model, std::vector<Clo
 }
 
 std::string Says(const ClockDelay& delay) {
-  std::string names;
-  for (size_t i = 0; i < delay.signals.size(); ++i) {
-    names += (i == 0 ? "" : i + 1 == delay.signals.size() ? " and " : ", ") + delay.signals[i];
-  }
   char text[96];
   std::snprintf(text, sizeof text, "%s %s by %.3g +- %.2g s", delay.signals.size() > 1 ? "are" : "is",
                 delay.delay < 0 ? "early" : "late", std::abs(delay.delay), delay.error);
-  return "run " + delay.run + ": " + names + " " + text + " against p1 and p2";
+  return "run " + delay.run + ": " + Enumerated(delay.signals) + " " + text + " against p1 and p2";
 }
 
 }  // namespace hydro

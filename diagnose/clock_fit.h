@@ -1,7 +1,6 @@
 // Clocks of a recording, as a simulation of it sees them.
 #pragma once
 
-#include <string>
 #include <vector>
 
 #include "diagnose/alignment.h"

@@ -20,7 +20,7 @@ BlockSums BlocksOf(const std::vector<const RunData*>& runs, const HeldOut& predi
     std::vector<double> sums(kBlocksPerRun, 0.0);
     Residuals residuals;
     try {
-      residuals = ResidualsOf(predicted.models[r], *runs[r], predicted.starts[r], {}, 1);
+      residuals = ResidualsOf(predicted.models[r], *runs[r], predicted.starts[r]);
     } catch (const ModelError&) {
       // Infinitely bad, but comparable.
       blocks.sums.insert(blocks.sums.end(), kBlocksPerRun, 1e12);
@@ -66,7 +66,7 @@ double CorrelationOf(const std::vector<const RunData*>& runs, const Fitted& fitt
   double weighted = 0;
   double count = 0;
   for (size_t r = 0; r < runs.size(); ++r) {
-    const Residuals residuals = ResidualsOf(fitted.hypothesis.model, *runs[r], fitted.runs[r].start, {}, 1);
+    const Residuals residuals = ResidualsOf(fitted.hypothesis.model, *runs[r], fitted.runs[r].start);
     for (size_t s = 0; s + 1 < residuals.first.size(); ++s) {
       const double* x = residuals.values.data() + residuals.first[s];
       const size_t n = residuals.first[s + 1] - residuals.first[s];

@@ -2,14 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
-#include <limits>
 
 #include "diagnose/intervals.h"
 #include "diagnose/locate.h"
 #include "diagnose/next_experiment.h"
 #include "diagnose/ranking.h"
 #include "diagnose/run_curves.h"
+#include "diagnose/short_number.h"
+#include "diagnose/word_list.h"
 
 namespace hydro {
 
@@ -22,20 +22,6 @@ constexpr double kClosedShare = 0.01;  // of the squared gap above the noise
 constexpr double kToldApart = 2.5;
 // A base parameter that has to move by more than this factor is not believed.
 constexpr double kImplausible = 2.0;
-
-std::string Format(const char* format, double value) {
-  char text[64];
-  std::snprintf(text, sizeof text, format, value);
-  return text;
-}
-
-std::string Join(const std::vector<std::string>& parts) {
-  std::string text;
-  for (size_t i = 0; i < parts.size(); ++i) {
-    text += (i == 0 ? "" : i + 1 == parts.size() ? " and " : ", ") + parts[i];
-  }
-  return text;
-}
 
 struct Rival {
   Change change;
@@ -67,7 +53,7 @@ std::vector<Rival> Rivals(const std::vector<Explanation>& tried, const Explanati
   return rivals;
 }
 
-FoundEffect Describe(const Change& change, const Explanation& best, const std::vector<FreeParameter>& free,
+FoundEffect Describe(const Change& change, const std::vector<FreeParameter>& free,
                      const std::vector<Interval>& intervals) {
   const EffectInfo& info = *FindEffect(change.effect);
   FoundEffect found;
@@ -82,7 +68,6 @@ FoundEffect Describe(const Change& change, const Explanation& best, const std::v
           {parameter.name, free[i].value, intervals[i].low, intervals[i].high, parameter.unit});
     }
   }
-  (void)best;
   return found;
 }
 
@@ -95,55 +80,56 @@ ChangedParameter DescribeParameter(const FreeParameter& fitted, const Interval& 
     const double ratio = fitted.value / changed.model;
     if (ratio > kImplausible || ratio < 1 / kImplausible) {
       changed.implausible = true;
-      changed.why = "moves by a factor of " + Format("%.3g", ratio);
+      changed.why = "moves by a factor of " + ShortNumber(ratio, 3);
     }
   }
   return changed;
 }
 
 std::string Sentence(const Diagnosis& d) {
-  const std::string gap = " (held-out gap " + Format("%.3g", d.held_out.before) + " to " +
-                          Format("%.3g", d.held_out.after) + " noise units).";
+  const std::string gap = " (held-out gap " + ShortNumber(d.held_out.before, 3) + " to " +
+                          ShortNumber(d.held_out.after, 3) + " noise units).";
   std::vector<std::string> names;
   for (const FoundEffect& effect : d.effects) {
     std::string name = effect.says + " [" + effect.id + "]";
-    if (!effect.tied_with.empty()) name += ", or " + Join(effect.tied_with);
+    if (!effect.tied_with.empty()) name += ", or " + Enumerated(effect.tied_with);
     names.push_back(name);
   }
   std::vector<std::string> parameters;
   for (const ChangedParameter& changed : d.parameters) {
-    parameters.push_back(changed.fitted.name + " = " + Format("%.4g", changed.fitted.value) + " instead of " +
-                         Format("%.4g", changed.model));
+    parameters.push_back(changed.fitted.name + " = " + ShortNumber(changed.fitted.value) + " instead of " +
+                         ShortNumber(changed.model));
   }
   switch (d.verdict) {
     case Verdict::kNothingMissing:
       return "Nothing is missing: the model as given explains the data to " +
-             Format("%.3g", d.held_out.before) + " noise units.";
+             ShortNumber(d.held_out.before, 3) + " noise units.";
     case Verdict::kParameters:
-      return "The equations suffice with other values: " + Join(parameters) + gap;
+      return "The equations suffice with other values: " + Enumerated(parameters) + gap;
     case Verdict::kNamed:
-      return "Missing: " + Join(names) + (parameters.empty() ? "" : "; with " + Join(parameters)) + gap;
+      return "Missing: " + Enumerated(names) +
+             (parameters.empty() ? "" : "; with " + Enumerated(parameters)) + gap;
     case Verdict::kTied:
-      return "Missing, but these data cannot tell which: " + Join(names) +
-             (parameters.empty() ? "" : "; with " + Join(parameters)) + gap;
+      return "Missing, but these data cannot tell which: " + Enumerated(names) +
+             (parameters.empty() ? "" : "; with " + Enumerated(parameters)) + gap;
     case Verdict::kUnexplained:
       return "Something is missing that no known effect explains" +
-             (names.empty() ? std::string() : "; the nearest is " + Join(names)) + gap;
+             (names.empty() ? std::string() : "; the nearest is " + Enumerated(names)) + gap;
   }
   return "";
 }
 
 std::string WhyNext(const std::vector<FoundEffect>& effects) {
   for (const FoundEffect& effect : effects) {
-    if (!effect.tied_with.empty()) return "tells " + effect.id + " from " + Join(effect.tied_with);
+    if (!effect.tied_with.empty()) return "tells " + effect.id + " from " + Enumerated(effect.tied_with);
   }
   return "";
 }
 
 }  // namespace
 
-Diagnosis Conclude(const SearchContext& context, const SearchResult& search, const Explanation& refit,
-                   const TellProgress& tell) {
+Diagnosis Conclude(const SearchContext& context, const SearchResult& search, const Explanation& refit) {
+  const TellProgress& tell = context.tell;
   const Explanation& given = search.given;
   const Explanation& best = search.best;
   Diagnosis d;
@@ -159,7 +145,7 @@ Diagnosis Conclude(const SearchContext& context, const SearchResult& search, con
   std::vector<ModelDescription> rivals = {best.fitted.hypothesis.model};
   for (const Change& change : best.changes()) {
     if (change.effect.empty()) continue;
-    FoundEffect found = Describe(change, best, free, intervals);
+    FoundEffect found = Describe(change, free, intervals);
     for (const Rival& rival : Rivals(search.tried, best, change)) {
       found.tied_with.push_back(rival.change.Label());
       rivals.push_back(rival.explanation->fitted.hypothesis.model);

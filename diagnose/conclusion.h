@@ -7,7 +7,6 @@
 namespace hydro {
 
 // `refit`: the given model with all identifiable base parameters fitted.
-Diagnosis Conclude(const SearchContext& context, const SearchResult& search, const Explanation& refit,
-                   const TellProgress& tell);
+Diagnosis Conclude(const SearchContext& context, const SearchResult& search, const Explanation& refit);
 
 }  // namespace hydro

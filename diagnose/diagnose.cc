@@ -1,9 +1,6 @@
 #include "diagnose/diagnose.h"
 
 #include <algorithm>
-#include <cmath>
-#include <cstdio>
-#include <limits>
 #include <utility>
 
 #include "diagnose/alignment.h"
@@ -27,24 +24,8 @@ void SplitOff(MeasuredRun* run, std::vector<MeasuredRun>* held_out) {
   const size_t first = run->samples() * 2 / 3;
   MeasuredRun rest = *run;
   rest.name += ", last third";
-  rest.first_row += first;
-  const auto cut = [&](std::vector<double>* values, bool front) {
-    if (values->empty()) return;
-    const auto at = values->begin() + static_cast<std::ptrdiff_t>(first);
-    if (front) {
-      values->erase(at, values->end());
-    } else {
-      values->erase(values->begin(), at);
-    }
-  };
-  for (const bool front : {true, false}) {
-    MeasuredRun& part = front ? *run : rest;
-    cut(&part.time, front);
-    for (MeasuredSignal* signal : {&part.voltage, &part.pressure_ref, &part.motor_speed, &part.motor_angle,
-                                   &part.arm_angle, &part.arm_speed, &part.p1, &part.p2}) {
-      cut(&signal->values, front);
-    }
-  }
+  rest.Keep(first, rest.samples());
+  run->Keep(0, first);
   held_out->push_back(std::move(rest));
 }
 
@@ -142,11 +123,7 @@ Diagnosis Diagnose(const ModelDescription& model, std::vector<MeasuredRun> runs,
 
   // All base parameters at once, and the search from there when that predicts better.
   if (tell) tell({"refitting the model's own parameters", 0.92});
-  const std::vector<StartState> starts = [&] {
-    std::vector<StartState> all;
-    for (const RunFit& run : search.given.fitted.runs) all.push_back(run.start);
-    return all;
-  }();
+  const std::vector<StartState> starts = StartsOf(search.given.fitted);
   Hypothesis refitted = given;
   refitted.base = Identifiable(as_given, context.runs, starts, allowed, context.sizes, options.jobs);
   FitOptions fine;
@@ -164,7 +141,7 @@ Diagnosis Diagnose(const ModelDescription& model, std::vector<MeasuredRun> runs,
       search.tried.insert(search.tried.end(), wider.tried.begin(), wider.tried.end());
     }
   }
-  Diagnosis diagnosis = Conclude(context, search, refit, tell);
+  Diagnosis diagnosis = Conclude(context, search, refit);
   const std::vector<std::string> remarks = RecordingRemarks(clocks, context.runs, context.held_out);
   diagnosis.remarks.insert(diagnosis.remarks.begin(), remarks.begin(), remarks.end());
   diagnosis.recording = std::move(clocks);

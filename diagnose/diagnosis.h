@@ -1,7 +1,6 @@
 // What a diagnosis finds: the content of report.json and report.html.
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <string>
 #include <vector>

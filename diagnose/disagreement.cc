@@ -6,7 +6,7 @@
 #include <limits>
 #include <utility>
 
-#include "diagnose/observed_mode.h"
+#include "diagnose/sample_interval.h"
 
 namespace hydro {
 
@@ -33,7 +33,7 @@ Disagreement AtDuration(const std::vector<SmoothedRun>& smoothed, const std::vec
     const Disturbance& d = smoothed[r].disturbance[b];
     const size_t samples = d.value.size();
     const size_t length =
-        static_cast<size_t>(std::max(1.0, std::round(duration / MedianStep(runs[r]->stimulus.time))));
+        static_cast<size_t>(std::max(1.0, std::round(duration / MedianInterval(runs[r]->stimulus.time))));
     const size_t before = blocks.size();
     std::vector<double> drawn = {0};  // sums of the draws' squares
     for (size_t first = 0; first < samples; first += length) {

@@ -6,6 +6,7 @@
 #include <random>
 
 #include "diagnose/observed_mode.h"
+#include "diagnose/sample_interval.h"
 #include "diagnose/smoother_record.h"
 #include "model/equations.h"
 #include "model/linearise.h"
@@ -135,7 +136,7 @@ class Smoother {
   // How much a balance's disturbance may wander: as much as makes the smoother follow it with the bandwidth,
   // were there only the sensor of the quantity that the balance moves. `gain` is its rate per disturbance.
   double Wander(double gain, double rate_variance, double integral_variance) const {
-    const double step = MedianStep(time_);
+    const double step = MedianInterval(time_);
     const double bandwidth = std::min(kBandwidth, kBandwidthPerSample / step);
     double wander = std::numeric_limits<double>::infinity();
     if (rate_variance > 0) wander = std::pow(bandwidth, 4) * rate_variance * step / (gain * gain);
@@ -201,7 +202,7 @@ class Smoother {
       const double scale = equations.scales()[i];
       covariance(i, i) = scale * scale;
     }
-    const double step = MedianStep(time_);
+    const double step = MedianInterval(time_);
     for (size_t b = 0; b < kBalances; ++b) {
       // What wanders in the time that a disturbance is followed in, and a good deal more.
       if (place_[b] >= 0) covariance(place_[b], place_[b]) = 100 * wander_[b] * std::max(step, 0.1);

@@ -1,12 +1,14 @@
 #include "diagnose/fit.h"
 
 #include <ceres/ceres.h>
+#include <ceres/normal_prior.h>
 #include <glog/logging.h>
 
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
+#include <memory>
 
 #include "diagnose/parallel.h"
 #include "diagnose/residuals.h"
@@ -20,25 +22,19 @@ using Eigen::Map;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-double ToFitted(const FreeParameter& parameter, double value) {
-  return parameter.logarithmic ? std::log(value) : value;
-}
-double FromFitted(const FreeParameter& parameter, double fitted) {
-  return parameter.logarithmic ? std::exp(fitted) : fitted;
-}
-
 // One run against the hypothesis. What the solver gets is not the residuals, hundred thousands of them, but a
 // square root of their normal equations: the same cost, gradient and Gauss-Newton matrix in a few numbers.
 class RunCost : public ceres::CostFunction {
  public:
-  RunCost(const Hypothesis& hypothesis, const RunData& run, const StartState& start, size_t stride)
-      : hypothesis_(hypothesis), free_(hypothesis.Free()), run_(run), start_(start), stride_(stride) {
-    for (const FreeParameter& parameter : free_) unknowns_.push_back(parameter.unknown);
-    starts_ = StartUnknowns(run);
-    unknowns_.insert(unknowns_.end(), starts_.begin(), starts_.end());
+  RunCost(const Hypothesis& hypothesis, const RunData& run, const StartState& start)
+      : hypothesis_(hypothesis),
+        free_(hypothesis.Free()),
+        run_(run),
+        start_(start),
+        starts_(StartUnknowns(run)) {
     if (!free_.empty()) mutable_parameter_block_sizes()->push_back(static_cast<int>(free_.size()));
     if (!starts_.empty()) mutable_parameter_block_sizes()->push_back(static_cast<int>(starts_.size()));
-    set_num_residuals(static_cast<int>(unknowns_.size()) + 1);
+    set_num_residuals(static_cast<int>(unknowns()) + 1);
   }
 
   // Simulates at the point that the solver is going to ask for.
@@ -49,7 +45,7 @@ class RunCost : public ceres::CostFunction {
   // At the prepared point.
   bool Evaluate(double const* const* /*parameters*/, double* residuals, double** jacobians) const override {
     const auto p = static_cast<Eigen::Index>(free_.size());
-    const auto n = static_cast<Eigen::Index>(unknowns_.size());
+    const auto n = static_cast<Eigen::Index>(unknowns());
     Map<VectorXd> out(residuals, n + 1);
     const MatrixXd& normal = prepared_;
     if (!can_be_simulated_ || (jacobians != nullptr && normal.rows() != n + 1)) return false;
@@ -76,14 +72,16 @@ class RunCost : public ceres::CostFunction {
   // [J r]' [J r] at the point, or only r'r.
   bool Normal(const double* free, const double* start, bool derivatives, MatrixXd* normal) const {
     Hypothesis point = hypothesis_;
+    std::vector<FreeParameter> at = free_;
     std::vector<double> values;
-    for (size_t i = 0; i < free_.size(); ++i) values.push_back(FromFitted(free_[i], free[i]));
+    for (size_t i = 0; i < at.size(); ++i) values.push_back(at[i].value = at[i].FromFitted(free[i]));
     point.Set(values);
     StartState from = start_;
     for (size_t i = 0; i < starts_.size(); ++i) from[starts_[i].index] = start[i];
     Residuals r;
     try {
-      r = ResidualsOf(point.model, run_, from, derivatives ? unknowns_ : std::vector<Unknown>{}, stride_);
+      r = derivatives ? ResidualsOf(point.model, run_, from, at, starts_)
+                      : ResidualsOf(point.model, run_, from);
     } catch (const ModelError&) {
       return false;
     }
@@ -93,11 +91,8 @@ class RunCost : public ceres::CostFunction {
       *normal = MatrixXd::Constant(1, 1, residual.squaredNorm());
       return std::isfinite((*normal)(0, 0));
     }
-    const auto n = static_cast<Eigen::Index>(unknowns_.size());
-    Map<MatrixXd> jacobian(r.jacobian.data(), rows, n);
-    for (size_t i = 0; i < free_.size(); ++i) {
-      if (free_[i].logarithmic) jacobian.col(static_cast<Eigen::Index>(i)) *= values[i];
-    }
+    const auto n = static_cast<Eigen::Index>(unknowns());
+    const Map<const MatrixXd> jacobian(r.jacobian.data(), rows, n);
     normal->resize(n + 1, n + 1);
     normal->topLeftCorner(n, n).setZero();
     normal->topLeftCorner(n, n).selfadjointView<Eigen::Lower>().rankUpdate(jacobian.transpose());
@@ -110,16 +105,16 @@ class RunCost : public ceres::CostFunction {
   }
 
   size_t count() const { return count_; }
-  const std::vector<FreeParameter>& free() const { return free_; }
   const std::vector<Unknown>& starts() const { return starts_; }
 
  private:
+  size_t unknowns() const { return free_.size() + starts_.size(); }
+
   const Hypothesis& hypothesis_;
   std::vector<FreeParameter> free_;
   const RunData& run_;
   StartState start_;
-  size_t stride_;
-  std::vector<Unknown> unknowns_, starts_;
+  std::vector<Unknown> starts_;
   mutable size_t count_ = 0;
   MatrixXd prepared_;
   bool can_be_simulated_ = false;
@@ -146,6 +141,13 @@ class AllRuns : public ceres::EvaluationCallback {
 
 }  // namespace
 
+std::vector<StartState> StartsOf(const Fitted& fitted) {
+  std::vector<StartState> starts;
+  starts.reserve(fitted.runs.size());
+  for (const RunFit& run : fitted.runs) starts.push_back(run.start);
+  return starts;
+}
+
 Fitted Fit(const Hypothesis& hypothesis, const std::vector<const RunData*>& runs,
            const std::vector<StartState>& starts, const FitOptions& options) {
   Fitted fitted;
@@ -154,18 +156,20 @@ Fitted Fit(const Hypothesis& hypothesis, const std::vector<const RunData*>& runs
   std::vector<double> values;
   values.reserve(free.size());
   for (const FreeParameter& parameter : free) {
-    values.push_back(ToFitted(parameter, std::clamp(parameter.value, parameter.low, parameter.high)));
+    values.push_back(parameter.ToFitted(std::clamp(parameter.value, parameter.low, parameter.high)));
   }
   std::vector<std::vector<double>> start_values(runs.size());
-  std::vector<const RunCost*> costs;
+  std::vector<std::unique_ptr<RunCost>> costs;
 
   AllRuns all_runs(values, start_values, options.jobs);
   ceres::Problem::Options with_all_runs;
+  // Its own would leave out a run of which nothing is free: that is not added.
+  with_all_runs.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
   with_all_runs.evaluation_callback = &all_runs;
   ceres::Problem problem(with_all_runs);
   for (size_t r = 0; r < runs.size(); ++r) {
-    auto* cost = new RunCost(hypothesis, *runs[r], starts[r], options.stride);  // the problem owns it
-    costs.push_back(cost);
+    RunCost* const cost =
+        costs.emplace_back(std::make_unique<RunCost>(hypothesis, *runs[r], starts[r])).get();
     all_runs.Add(cost);
     for (const Unknown& start : cost->starts()) start_values[r].push_back(starts[r][start.index]);
     std::vector<double*> blocks;
@@ -177,11 +181,17 @@ Fitted Fit(const Hypothesis& hypothesis, const std::vector<const RunData*>& runs
   for (size_t i = 0; i < free.size(); ++i) {
     const int place = static_cast<int>(i);
     if (std::isfinite(free[i].low)) {
-      problem.SetParameterLowerBound(values.data(), place, ToFitted(free[i], free[i].low));
+      problem.SetParameterLowerBound(values.data(), place, free[i].ToFitted(free[i].low));
     }
     if (std::isfinite(free[i].high)) {
-      problem.SetParameterUpperBound(values.data(), place, ToFitted(free[i], free[i].high));
+      problem.SetParameterUpperBound(values.data(), place, free[i].ToFitted(free[i].high));
     }
+  }
+  if (options.prior != nullptr && !free.empty()) {
+    const Map<const VectorXd> centre(options.prior->centre.data(), static_cast<Eigen::Index>(free.size()));
+    const Map<const VectorXd> weight(options.prior->weight.data(), static_cast<Eigen::Index>(free.size()));
+    problem.AddResidualBlock(new ceres::NormalPrior(weight.cwiseSqrt().asDiagonal(), centre), nullptr,
+                             values.data());
   }
   FLAGS_minloglevel = google::GLOG_FATAL;  // a step that cannot be simulated is no error
   ceres::Solver::Options solver;
@@ -200,10 +210,10 @@ Fitted Fit(const Hypothesis& hypothesis, const std::vector<const RunData*>& runs
   }
 
   for (size_t i = 0; i < free.size(); ++i)
-    values[i] = std::clamp(FromFitted(free[i], values[i]), free[i].low, free[i].high);
+    values[i] = std::clamp(free[i].FromFitted(values[i]), free[i].low, free[i].high);
   fitted.hypothesis.Set(values);
   std::vector<double> at;
-  for (size_t i = 0; i < free.size(); ++i) at.push_back(ToFitted(free[i], values[i]));
+  for (size_t i = 0; i < free.size(); ++i) at.push_back(free[i].ToFitted(values[i]));
   const auto p = static_cast<Eigen::Index>(free.size());
   std::vector<MatrixXd> normals(runs.size());
   std::vector<char> simulated(runs.size());

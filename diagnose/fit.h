@@ -31,11 +31,20 @@ struct Fitted {
   double squared_gap() const { return count == 0 ? 0 : sum / static_cast<double>(count); }
 };
 
+// Each run's start, as fitted.
+std::vector<StartState> StartsOf(const Fitted& fitted);
+
+// What is known of the free parameters beforehand: each, as it is fitted (logarithms of some), adds
+// weight (it - centre)^2 to the sum that is least.
+struct Prior {
+  std::vector<double> centre, weight;
+};
+
 struct FitOptions {
   int most_iterations = 20;
   double tolerance = 1e-4;  // relative fall of the sum below which it is done
-  size_t stride = 1;        // every stride-th sample is compared
   int jobs = 1;
+  const Prior* prior = nullptr;  // in the order of Free()
 };
 
 // `starts`: one a run, where to begin. Never throws ModelError: a model that cannot be simulated is a

@@ -6,7 +6,6 @@
 #include <limits>
 
 #include "diagnose/parallel.h"
-#include "diagnose/residuals.h"
 #include "diagnose/solve.h"
 
 namespace hydro {
@@ -18,34 +17,30 @@ using Eigen::Map;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
+// A Gauss-Newton step that predicts a run with so many times the sum of squares that the common fit leaves is
+// not believed: far steps end where the derivatives do not hold.
+constexpr double kDoubtful = 1.5;
+
 // One run against a model whose parameters are fixed.
-void PredictRun(const Hypothesis& hypothesis, const RunData& run, const StartState& start, size_t place,
-                std::vector<HeldOut>* parts) {
+HeldOut PredictRun(const Hypothesis& hypothesis, const RunData& run, const StartState& start) {
   Hypothesis fixed = hypothesis;
   fixed.base.clear();
   fixed.effects.clear();
   FitOptions options;
   options.most_iterations = 6;
   const Fitted fitted = Fit(fixed, {&run}, {start}, options);
-  HeldOut& part = (*parts)[place];
+  HeldOut part;
   part.models.push_back(fixed.model);
-  part.count = 0;
+  if (fitted.ok()) {
+    part.starts.push_back(fitted.runs[0].start);
+    part.sum = fitted.sum;
+    part.count = fitted.count;
+    return part;
+  }
+  part.starts.push_back(start);
+  part.sum = std::numeric_limits<double>::infinity();
   for (const SignalData& signal : run.signals) part.count += signal.valid;
-  if (!fitted.ok()) {
-    part.starts.push_back(start);
-    part.sum = std::numeric_limits<double>::infinity();
-    return;
-  }
-  part.starts.push_back(fitted.runs[0].start);
-  const Residuals residuals = ResidualsOf(fixed.model, run, fitted.runs[0].start, {}, 1);
-  for (size_t s = 0; s < run.signals.size(); ++s) {
-    const auto channel = static_cast<size_t>(run.signals[s].channel);
-    for (size_t i = residuals.first[s]; i < residuals.first[s + 1]; ++i) {
-      part.channel_sum[channel] += residuals.values[i] * residuals.values[i];
-    }
-    part.channel_count[channel] += residuals.first[s + 1] - residuals.first[s];
-    part.sum += part.channel_sum[channel];
-  }
+  return part;
 }
 
 HeldOut Sum(const std::vector<HeldOut>& parts) {
@@ -55,10 +50,6 @@ HeldOut Sum(const std::vector<HeldOut>& parts) {
     all.count += part.count;
     all.starts.push_back(part.starts.front());
     all.models.push_back(part.models.front());
-    for (size_t c = 0; c < kChannels; ++c) {
-      all.channel_sum[c] += part.channel_sum[c];
-      all.channel_count[c] += part.channel_count[c];
-    }
   }
   return all;
 }
@@ -76,12 +67,38 @@ double Neutral(const FreeParameter& parameter, const ModelDescription& given) {
   return parameter.logarithmic ? parameter.value : 0;
 }
 
+// What little is known beforehand: a base parameter is within a third of what was given, the size of an
+// effect within its own size of none.
+Prior PriorOf(const std::vector<FreeParameter>& free, const ModelDescription& given) {
+  constexpr double kBaseSpread = 0.3;
+  Prior prior;
+  for (const FreeParameter& parameter : free) {
+    const double neutral = Neutral(parameter, given);
+    const double moved = std::abs(parameter.ToFitted(parameter.value) - parameter.ToFitted(neutral));
+    double spread = std::max({moved, kBaseSpread * std::abs(neutral), 1e-300});
+    if (parameter.logarithmic) {
+      spread = parameter.unknown.kind == Unknown::Kind::kBase ? kBaseSpread + moved : 1;
+    }
+    prior.centre.push_back(parameter.ToFitted(neutral));
+    prior.weight.push_back(1 / (spread * spread));
+  }
+  return prior;
+}
+
+// All but one.
+template <class T>
+std::vector<T> Without(const std::vector<T>& all, size_t place) {
+  std::vector<T> rest = all;
+  rest.erase(rest.begin() + static_cast<std::ptrdiff_t>(place));
+  return rest;
+}
+
 }  // namespace
 
 HeldOut Predict(const Fitted& fitted, const std::vector<const RunData*>& held_out, int jobs) {
   std::vector<HeldOut> parts(held_out.size());
   ParallelFor(held_out.size(), jobs,
-              [&](size_t r) { PredictRun(fitted.hypothesis, *held_out[r], held_out[r]->start, r, &parts); });
+              [&](size_t r) { parts[r] = PredictRun(fitted.hypothesis, *held_out[r], held_out[r]->start); });
   return Sum(parts);
 }
 
@@ -95,46 +112,36 @@ HeldOut PredictInTurn(const Fitted& fitted, const ModelDescription& given,
     information += Map<const MatrixXd>(run.information.data(), p, p);
     gradient += Map<const VectorXd>(run.gradient.data(), p);
   }
-  // What little is known beforehand: a base parameter is within a third of what was given, the size of an
-  // effect within its own size of none.
-  constexpr double kBaseSpread = 0.3;
-  VectorXd prior(p), pull(p);
-  for (Index i = 0; i < p; ++i) {
-    const FreeParameter& parameter = free[static_cast<size_t>(i)];
-    const double neutral = Neutral(parameter, given);
-    const bool base = parameter.unknown.kind == Unknown::Kind::kBase;
-    if (parameter.logarithmic) {
-      const double spread = base ? kBaseSpread + std::abs(std::log(parameter.value / neutral)) : 1;
-      prior(i) = 1 / (spread * spread);
-      pull(i) = prior(i) * std::log(parameter.value / neutral);
-    } else {
-      const double size =
-          std::max({std::abs(parameter.value - neutral), kBaseSpread * std::abs(neutral), 1e-300});
-      prior(i) = 1 / (size * size);
-      pull(i) = prior(i) * (parameter.value - neutral);
-    }
-  }
+  const Prior prior = PriorOf(free, given);
   std::vector<HeldOut> parts(runs.size());
   ParallelFor(runs.size(), jobs, [&](size_t r) {
     Hypothesis others = fitted.hypothesis;
     if (p > 0) {
       MatrixXd left = information - Map<const MatrixXd>(fitted.runs[r].information.data(), p, p);
       VectorXd right = gradient - Map<const VectorXd>(fitted.runs[r].gradient.data(), p);
-      left.diagonal() += prior;
-      right += pull;
+      for (Index i = 0; i < p; ++i) {
+        const auto place = static_cast<size_t>(i);
+        left(i, i) += prior.weight[place];
+        right(i) += prior.weight[place] * (free[place].ToFitted(free[place].value) - prior.centre[place]);
+      }
       const VectorXd scale = left.diagonal().cwiseSqrt().cwiseInverse();
       const MatrixXd scaled = scale.asDiagonal() * left * scale.asDiagonal();
       const VectorXd move = -(scale.asDiagonal() * SolveSymmetric(scaled, scale.asDiagonal() * right));
       std::vector<double> values;
       for (Index i = 0; i < p; ++i) {
         const FreeParameter& parameter = free[static_cast<size_t>(i)];
-        const double moved =
-            parameter.logarithmic ? parameter.value * std::exp(move(i)) : parameter.value + move(i);
-        values.push_back(std::clamp(moved, parameter.low, parameter.high));
+        values.push_back(std::clamp(parameter.Moved(move(i)), parameter.low, parameter.high));
       }
       others.Set(values);
     }
-    PredictRun(others, *runs[r], fitted.runs[r].start, r, &parts);
+    parts[r] = PredictRun(others, *runs[r], fitted.runs[r].start);
+    if (p == 0 || runs.size() < 2 || !(parts[r].sum > kDoubtful * fitted.runs[r].sum)) return;
+    FitOptions options;
+    options.most_iterations = 6;
+    options.tolerance = 1e-3;
+    options.prior = &prior;
+    const Fitted by_others = Fit(fitted.hypothesis, Without(runs, r), Without(StartsOf(fitted), r), options);
+    if (by_others.ok()) parts[r] = PredictRun(by_others.hypothesis, *runs[r], fitted.runs[r].start);
   });
   return Sum(parts);
 }

@@ -1,7 +1,7 @@
 // How well a fitted hypothesis predicts runs that it was not fitted to.
 #pragma once
 
-#include <array>
+#include <cstddef>
 #include <vector>
 
 #include "diagnose/fit.h"
@@ -14,8 +14,6 @@ struct HeldOut {
   // By run: the predicted start, and the model that did not see it.
   std::vector<StartState> starts;
   std::vector<ModelDescription> models;
-  std::array<double, kChannels> channel_sum{};
-  std::array<size_t, kChannels> channel_count{};
 
   double squared_gap() const { return count == 0 ? 0 : sum / static_cast<double>(count); }
 };
@@ -23,9 +21,9 @@ struct HeldOut {
 // Predicts runs that the fit has not seen; only their starts are fitted.
 HeldOut Predict(const Fitted& fitted, const std::vector<const RunData*>& held_out, int jobs);
 
-// Each of the fit's runs in turn: what the others say of the parameters (a Gauss-Newton step from the common
-// fit, with what they cannot tell drawn to the values of `given` and to effects of no size), and how well
-// that predicts it.
+// Each of the fit's runs in turn: what the others say of the parameters (with what they cannot tell drawn to
+// the values of `given` and to effects of no size), and how well that predicts it. They are asked by a
+// Gauss-Newton step from the common fit, and by a fit of their own when that step predicts the run badly.
 HeldOut PredictInTurn(const Fitted& fitted, const ModelDescription& given,
                       const std::vector<const RunData*>& runs, int jobs);
 

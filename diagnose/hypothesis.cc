@@ -2,7 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+
+#include "diagnose/sample_interval.h"
 
 namespace hydro {
 
@@ -32,15 +33,21 @@ std::string Change::Label() const {
   return label;
 }
 
+double FreeParameter::ToFitted(double number) const { return logarithmic ? std::log(number) : number; }
+double FreeParameter::FromFitted(double fitted) const { return logarithmic ? std::exp(fitted) : fitted; }
+double FreeParameter::Moved(double by) const { return logarithmic ? value * std::exp(by) : value + by; }
+
 std::vector<FreeParameter> Hypothesis::Free() const {
-  constexpr double kInf = std::numeric_limits<double>::infinity();
   std::vector<FreeParameter> free;
   for (const size_t i : base) {
     const ParameterInfo& info = BaseParameters()[i].info;
     const double value = model.parameters.*BaseParameters()[i].member;
-    FreeParameter parameter{
-        {Unknown::Kind::kBase, i}, info.name, info.unit, value, value, info.min, info.max};
+    FreeParameter parameter{{Unknown::Kind::kBase, i}, info.name, info.unit, value, info.min, info.max};
     parameter.logarithmic = !info.min_allowed && value > 0;
+    if (parameter.logarithmic) {
+      parameter.low = value / kReach;
+      parameter.high = value * kReach;
+    }
     free.push_back(parameter);
   }
   const std::vector<EffectParameter> all = EffectParameters(model);
@@ -50,22 +57,15 @@ std::vector<FreeParameter> Hypothesis::Free() const {
     const ParameterInfo& info = InfoOf(effect, all[i].name);
     const double value = effect.parameters.at(all[i].name);
     FreeParameter parameter{
-        {Unknown::Kind::kEffect, i}, effect.id + "." + info.name, info.unit, value, 0, info.min, info.max};
+        {Unknown::Kind::kEffect, i}, effect.id + "." + info.name, info.unit, value, info.min, info.max};
     parameter.logarithmic = !info.min_allowed && info.min == 0 && value > 0;
     if (parameter.logarithmic) {
-      parameter.neutral = value;
       parameter.low = value / kReach;
       parameter.high = std::min(info.max, value * kReach);
     } else if (!info.min_allowed && std::isfinite(info.min)) {
       parameter.low = info.min + 1e-6 * std::max(1.0, std::abs(info.min));
     }
     free.push_back(parameter);
-  }
-  for (FreeParameter& parameter : free) {
-    if (parameter.logarithmic && parameter.unknown.kind == Unknown::Kind::kBase) {
-      parameter.low = parameter.value / kReach;
-      parameter.high = std::min(parameter.value * kReach, kInf);
-    }
   }
   return free;
 }
@@ -116,7 +116,6 @@ Sizes SizesOf(const ModelDescription& model, const std::vector<const RunData*>& 
   const Parameters& p = model.parameters;
   sizes.torque = p.T_pmax;
   sizes.charge = p.p_3 > 0 ? p.p_3 : 0.01 * p.T_pmax / p.D;
-  std::vector<double> intervals;
   const auto largest = [](const SignalData* signal, double* size) {
     if (signal == nullptr) return;
     std::vector<double> values;
@@ -130,19 +129,16 @@ Sizes SizesOf(const ModelDescription& model, const std::vector<const RunData*>& 
     std::nth_element(values.begin(), place, values.end());
     *size = std::max(*size, *place);
   };
+  std::vector<const std::vector<double>*> times;
   for (const RunData* run : runs) {
     largest(run->Find(Channel::kMotorSpeed), &sizes.speed);
     largest(run->Find(Channel::kP1), &sizes.pressure);
     largest(run->Find(Channel::kP2), &sizes.pressure);
-    for (size_t i = 1; i < run->samples(); ++i) {
-      intervals.push_back(run->stimulus.time[i] - run->stimulus.time[i - 1]);
-    }
+    times.push_back(&run->stimulus.time);
   }
   if (sizes.speed == 0) sizes.speed = p.T_pmax / std::max(p.b, 0.001 * p.T_pmax);
   if (sizes.pressure == 0) sizes.pressure = p.T_pmax / p.D;
-  std::nth_element(intervals.begin(), intervals.begin() + static_cast<std::ptrdiff_t>(intervals.size() / 2),
-                   intervals.end());
-  sizes.sample = intervals[intervals.size() / 2];
+  sizes.sample = MedianInterval(times);
   sizes.flow = p.D * sizes.speed / sizes.pressure;
   sizes.arm_stiffness = p.J_a / (sizes.sample * sizes.sample);
   sizes.arm_damping = p.J_a / sizes.sample;
@@ -154,15 +150,13 @@ std::vector<Hypothesis> With(const Hypothesis& hypothesis, const Change& change,
   Hypothesis more = hypothesis;
   more.changes.push_back(change);
   if (change.effect.empty()) {
-    for (size_t i = 0; i < BaseParameters().size(); ++i) {
-      if (BaseParameters()[i].info.name != change.parameter) continue;
-      if (std::find(more.base.begin(), more.base.end(), i) == more.base.end()) more.base.push_back(i);
-    }
+    const size_t place = BasePlace(change.parameter);
+    if (std::find(more.base.begin(), more.base.end(), place) == more.base.end()) more.base.push_back(place);
     std::vector<Hypothesis> all = {more};
     for (const double factor : kElsewhere) {
       if (!elsewhere) break;
       all.push_back(more);
-      all.back().model.parameters.*BaseParameters()[more.base.back()].member *= factor;
+      all.back().model.parameters.*BaseParameters()[place].member *= factor;
     }
     return all;
   }
@@ -188,11 +182,9 @@ Hypothesis Without(const Hypothesis& hypothesis, const Change& change, const Mod
   Hypothesis less = hypothesis;
   std::erase(less.changes, change);
   if (change.effect.empty()) {
-    for (size_t i = 0; i < BaseParameters().size(); ++i) {
-      if (BaseParameters()[i].info.name != change.parameter) continue;
-      std::erase(less.base, i);
-      less.model.parameters.*BaseParameters()[i].member = given.parameters.*BaseParameters()[i].member;
-    }
+    const size_t place = BasePlace(change.parameter);
+    std::erase(less.base, place);
+    less.model.parameters.*BaseParameters()[place].member = given.parameters.*BaseParameters()[place].member;
     return less;
   }
   std::erase(less.effects, change.effect);

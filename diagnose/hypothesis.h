@@ -30,9 +30,16 @@ struct FreeParameter {
   std::string name;  // "k_1", "pump.stribeck.speed"
   std::string unit;
   double value = 0;
-  double neutral = 0;  // without the change: as given, 0 for an effect's size
   double low = 0, high = 0;
   bool logarithmic = false;  // positive: fitted as its logarithm
+
+  // To what a fit moves, and back.
+  double ToFitted(double number) const;
+  double FromFitted(double fitted) const;
+  // The value when what is fitted has moved by so much.
+  double Moved(double by) const;
+  // Derivative of the value by what is fitted, there.
+  double Slope() const { return logarithmic ? value : 1; }
 };
 
 struct Hypothesis {

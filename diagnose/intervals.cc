@@ -32,18 +32,13 @@ struct BlocksOfRun {
 };
 BlocksOfRun BlocksOf(const Fitted& fitted, const std::vector<FreeParameter>& free, size_t r,
                      const RunData& run) {
-  std::vector<Unknown> unknowns;
-  unknowns.reserve(free.size());
-  for (const FreeParameter& parameter : free) unknowns.push_back(parameter.unknown);
-  for (const Unknown& start : StartUnknowns(run)) unknowns.push_back(start);
-  Residuals residuals = ResidualsOf(fitted.hypothesis.model, run, fitted.runs[r].start, unknowns, 1);
+  const std::vector<Unknown> unknown_starts = StartUnknowns(run);
+  const Residuals residuals =
+      ResidualsOf(fitted.hypothesis.model, run, fitted.runs[r].start, free, unknown_starts);
   const auto rows = static_cast<Index>(residuals.values.size());
   const auto p = static_cast<Index>(free.size());
-  const auto n = static_cast<Index>(unknowns.size());
-  Map<MatrixXd> jacobian(residuals.jacobian.data(), rows, n);
-  for (Index i = 0; i < p; ++i) {
-    if (free[static_cast<size_t>(i)].logarithmic) jacobian.col(i) *= free[static_cast<size_t>(i)].value;
-  }
+  const Index n = p + static_cast<Index>(unknown_starts.size());
+  const Map<const MatrixXd> jacobian(residuals.jacobian.data(), rows, n);
   MatrixXd columns = jacobian.leftCols(p);
   if (n > p) {
     const MatrixXd starts = jacobian.rightCols(n - p);
@@ -123,11 +118,7 @@ std::vector<Interval> Intervals(const Fitted& fitted, const std::vector<const Ru
       half = std::max(half, t_run * std::sqrt(std::max(0.0, run_variance(i, i)) * count / (count - 1)));
     }
     const FreeParameter& parameter = free[static_cast<size_t>(i)];
-    if (parameter.logarithmic) {
-      intervals.push_back({parameter.value * std::exp(-half), parameter.value * std::exp(half)});
-    } else {
-      intervals.push_back({parameter.value - half, parameter.value + half});
-    }
+    intervals.push_back({parameter.Moved(-half), parameter.Moved(half)});
   }
   return intervals;
 }

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "diagnose/sample_interval.h"
+
 namespace hydro {
 
 namespace {
@@ -60,19 +62,11 @@ std::vector<double> SpeedFromAngle(const std::vector<double>& angle, const std::
 
 }  // namespace
 
-double MedianStep(const std::vector<double>& time) {
-  std::vector<double> steps;
-  for (size_t i = 1; i < time.size(); ++i) steps.push_back(time[i] - time[i - 1]);
-  if (steps.empty()) return 1;
-  std::nth_element(steps.begin(), steps.begin() + steps.size() / 2, steps.end());
-  return steps[steps.size() / 2];
-}
-
 ObservedMode ObserveMode(const RunData& run) {
   ObservedMode mode;
   const std::vector<double>& time = run.stimulus.time;
   const size_t n = time.size();
-  const double step = MedianStep(time);
+  const double step = MedianInterval(time);
   const size_t half = static_cast<size_t>(std::min(50.0, std::floor(kHalfWindow / step)));
   mode.half_window = half;
   const double averaging = kMargin / std::sqrt(2.0 * static_cast<double>(half) + 1);

@@ -22,9 +22,6 @@ struct ObservedMode {
   bool speed_measured() const { return !turns.empty(); }
 };
 
-// Between samples, s.
-double MedianStep(const std::vector<double>& time);
-
 ObservedMode ObserveMode(const RunData& run);
 
 }  // namespace hydro

@@ -1,20 +1,10 @@
 #include "diagnose/progress_bar.h"
 
-#include <sys/ioctl.h>
-
 #include <algorithm>
 #include <cmath>
 
 namespace hydro {
 namespace {
-
-constexpr int kWidth = 30;
-constexpr size_t kUsualColumns = 80;  // of a terminal that does not say
-
-size_t Columns(std::FILE* out) {
-  winsize size{};
-  return ioctl(fileno(out), TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : kUsualColumns;
-}
 
 std::string Left(double fraction, double elapsed) {
   if (fraction < 0.02 || elapsed < 1 || fraction >= 1) return "";
@@ -25,8 +15,6 @@ std::string Left(double fraction, double elapsed) {
 }
 
 }  // namespace
-
-ProgressBar::~ProgressBar() { Wipe(); }
 
 void ProgressBar::Tell(const Progress& progress, double elapsed) {
   if (!terminal_) {
@@ -42,25 +30,7 @@ void ProgressBar::Tell(const Progress& progress, double elapsed) {
   }
   // A bar that goes back tells nobody anything.
   furthest_ = std::clamp(progress.fraction, furthest_, 1.0);
-  const int filled = static_cast<int>(furthest_ * kWidth);
-  std::string bar = "[" + std::string(static_cast<size_t>(filled), '#') +
-                    std::string(static_cast<size_t>(kWidth - filled), '.') + "] " +
-                    std::to_string(static_cast<int>(furthest_ * 100)) + " % " + progress.stage +
-                    Left(furthest_, elapsed);
-  // A line that wraps could not be wiped.
-  bar.resize(std::min(bar.size(), Columns(out_) - 1));
-  if (bar == drawn_) return;
-  Wipe();
-  std::fputs(bar.c_str(), out_);
-  std::fflush(out_);
-  drawn_ = std::move(bar);
-}
-
-void ProgressBar::Wipe() {
-  if (drawn_.empty()) return;
-  std::fputs("\r\033[K", out_);
-  std::fflush(out_);
-  drawn_.clear();
+  line_.Draw(furthest_, progress.stage + Left(furthest_, elapsed));
 }
 
 }  // namespace hydro

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "diagnose/progress.h"
+#include "settings/terminal_line.h"
 
 namespace hydro {
 
@@ -12,24 +13,19 @@ namespace hydro {
 // when the second does.
 class ProgressBar {
  public:
-  // `out` stays the caller's.
-  ProgressBar(std::FILE* out, bool terminal) : out_(out), terminal_(terminal) {}
-  // Wipes the bar away.
-  ~ProgressBar();
-  ProgressBar(const ProgressBar&) = delete;
-  ProgressBar& operator=(const ProgressBar&) = delete;
+  // `out` stays the caller's. The bar is wiped away in the end.
+  ProgressBar(std::FILE* out, bool terminal) : out_(out), terminal_(terminal), line_(out) {}
 
   // `elapsed`: s since the work began.
   void Tell(const Progress& progress, double elapsed);
 
  private:
-  void Wipe();
-
   std::FILE* out_;
   bool terminal_;
+  TerminalLine line_;
   double furthest_ = 0;
   int stages_ = 0;
-  std::string stage_, drawn_;
+  std::string stage_;
 };
 
 }  // namespace hydro

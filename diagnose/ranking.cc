@@ -2,19 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 #include <tuple>
+
+#include "diagnose/short_number.h"
 
 namespace hydro {
 
 namespace {
 
-std::string Gap(double squared) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3g", std::sqrt(squared));
-  return text;
-}
+std::string Gap(double squared) { return ShortNumber(std::sqrt(squared), 3); }
 
 size_t OwnNumbers(const Change& change) {
   if (change.effect.empty()) return 1;

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstdio>
 
+#include "diagnose/sample_interval.h"
+
 namespace hydro {
 namespace {
 
@@ -34,24 +36,19 @@ double Range(const SignalData& signal, double* low, double* high) {
 }
 
 void RemarkOnTimes(const RunData& run, std::vector<std::string>* remarks) {
-  std::vector<double> intervals;
-  for (size_t i = 1; i < run.samples(); ++i) {
-    intervals.push_back(run.stimulus.time[i] - run.stimulus.time[i - 1]);
-  }
-  std::vector<double> sorted = intervals;
-  const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
-  std::nth_element(sorted.begin(), middle, sorted.end());
+  const std::vector<double>& time = run.stimulus.time;
+  const double usual = MedianInterval(time);
   size_t gaps = 0, first = 0;
   double longest = 0;
-  for (size_t i = 0; i < intervals.size(); ++i) {
-    if (intervals[i] <= kGap * *middle) continue;
+  for (size_t i = 0; i + 1 < time.size(); ++i) {
+    const double interval = time[i + 1] - time[i];
+    if (interval <= kGap * usual) continue;
     if (gaps++ == 0) first = i;
-    longest = std::max(longest, intervals[i]);
+    longest = std::max(longest, interval);
   }
   if (gaps == 0) return;
-  remarks->push_back(
-      "run " + run.name + ": " + Format("%zu", gaps) + (gaps == 1 ? " gap" : " gaps") +
-      Format(" in time, up to %.3g s, the first after %.6g s", longest, run.stimulus.time[first]));
+  remarks->push_back("run " + run.name + ": " + Format("%zu", gaps) + (gaps == 1 ? " gap" : " gaps") +
+                     Format(" in time, up to %.3g s, the first after %.6g s", longest, time[first]));
 }
 
 void RemarkOnSignal(const RunData& run, const SignalData& signal, std::vector<std::string>* remarks) {

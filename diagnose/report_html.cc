@@ -10,7 +10,8 @@
 #include "diagnose/report_pictures.h"
 #include "diagnose/report_style.h"
 #include "diagnose/run_data.h"
-#include "diagnose/terminal_summary.h"
+#include "diagnose/short_number.h"
+#include "diagnose/word_list.h"
 #include "experiments/typeset.h"
 #include "settings/command_line.h"
 #include "settings/model_file.h"
@@ -25,12 +26,6 @@ std::string Probability(double p) {
   char text[32];
   std::snprintf(text, sizeof text, "%.2g", p);
   return "<td class=\"number\">" + std::string(std::isfinite(p) ? text : "-") + "</td>";
-}
-
-std::string Joined(const std::vector<std::string>& parts) {
-  std::string joined;
-  for (const std::string& part : parts) joined += (joined.empty() ? "" : ", ") + part;
-  return joined;
 }
 
 // Columns whose names begin with '#' hold numbers.

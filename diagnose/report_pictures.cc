@@ -8,7 +8,7 @@
 #include "diagnose/chart.h"
 #include "diagnose/diagnosis_in_si.h"
 #include "diagnose/run_data.h"
-#include "diagnose/terminal_summary.h"
+#include "diagnose/short_number.h"
 #include "experiments/typeset.h"
 
 namespace hydro {

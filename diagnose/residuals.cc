@@ -11,10 +11,18 @@ constexpr double kTolerance = 1e-7;
 
 }  // namespace
 
+Residuals ResidualsOf(const ModelDescription& model, const RunData& run, const StartState& start) {
+  return ResidualsOf(model, run, start, {}, {});
+}
+
 Residuals ResidualsOf(const ModelDescription& model, const RunData& run, const StartState& start,
-                      const std::vector<Unknown>& unknowns, size_t stride, bool repeated_effects) {
+                      const std::vector<FreeParameter>& free, const std::vector<Unknown>& starts,
+                      bool repeated_effects) {
+  std::vector<Unknown> unknowns;
+  unknowns.reserve(free.size() + starts.size());
+  for (const FreeParameter& parameter : free) unknowns.push_back(parameter.unknown);
+  unknowns.insert(unknowns.end(), starts.begin(), starts.end());
   ResponseOptions options;
-  options.stride = stride;
   options.repeated_effects = repeated_effects;
   options.channels = {};
   options.relative_tolerance = kTolerance;
@@ -26,7 +34,7 @@ Residuals ResidualsOf(const ModelDescription& model, const RunData& run, const S
     residuals.first.push_back(residuals.values.size());
     const std::vector<double>& predicted = response.values[static_cast<size_t>(signal.channel)];
     for (size_t row = 0; row < predicted.size(); ++row) {
-      const double measured = signal.values[row * stride];
+      const double measured = signal.values[row];
       if (!std::isnan(measured)) residuals.values.push_back((predicted[row] - measured) / signal.noise);
     }
   }
@@ -37,10 +45,14 @@ Residuals ResidualsOf(const ModelDescription& model, const RunData& run, const S
     for (const SignalData& signal : run.signals) {
       const std::vector<double>& derivative = response.derivatives[u][static_cast<size_t>(signal.channel)];
       for (size_t row = 0; row < derivative.size(); ++row) {
-        if (!std::isnan(signal.values[row * stride]))
-          residuals.jacobian[next++] = derivative[row] / signal.noise;
+        if (!std::isnan(signal.values[row])) residuals.jacobian[next++] = derivative[row] / signal.noise;
       }
     }
+  }
+  for (size_t i = 0; i < free.size(); ++i) {
+    if (!free[i].logarithmic) continue;
+    const size_t rows = residuals.values.size();
+    for (size_t row = i * rows; row < (i + 1) * rows; ++row) residuals.jacobian[row] *= free[i].Slope();
   }
   return residuals;
 }

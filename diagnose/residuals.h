@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "diagnose/hypothesis.h"
 #include "diagnose/run_data.h"
 #include "model/response.h"
 
@@ -16,9 +17,14 @@ struct Residuals {
   std::vector<size_t> first;     // where each of the run's signals begins; one more, the end
 };
 
-// Throws ModelError when the model cannot be simulated.
+// Without derivatives. Throws ModelError when the model cannot be simulated.
+Residuals ResidualsOf(const ModelDescription& model, const RunData& run, const StartState& start);
+
+// With derivatives by the free parameters as a fit moves them (logarithms of some), then by `starts`. The
+// values of `free` are those of the model. Throws as above.
 Residuals ResidualsOf(const ModelDescription& model, const RunData& run, const StartState& start,
-                      const std::vector<Unknown>& unknowns, size_t stride, bool repeated_effects = false);
+                      const std::vector<FreeParameter>& free, const std::vector<Unknown>& starts,
+                      bool repeated_effects = false);
 
 // The unknown starts of a run.
 std::vector<Unknown> StartUnknowns(const RunData& run);

@@ -90,7 +90,7 @@ std::vector<size_t> Vanishing(const Task& task) {
 }
 
 Scanned Judge(const std::vector<RunBasis>& bases, const std::vector<FreeParameter>& known, const Task& task,
-              const std::vector<RunColumns>& columns, size_t stride) {
+              const std::vector<RunColumns>& columns) {
   Scanned scanned;
   const auto p = static_cast<Index>(known.size());
   const auto e = static_cast<Index>(task.own.size());
@@ -139,13 +139,12 @@ Scanned Judge(const std::vector<RunBasis>& bases, const std::vector<FreeParamete
     high(i) = parameter.logarithmic ? kLongestStep : parameter.high - parameter.value;
   }
   const double after = BestMove(A, b, s, low, high, &move);
-  scanned.expected = (before - after) * static_cast<double>(stride);
+  scanned.expected = before - after;
   std::vector<double> values;
   size_t next = 0;
   for (const FreeParameter& parameter : task.with.Free()) {
     if (next < task.own.size() && task.own[next].name == parameter.name) {
-      const double moved = move(p + static_cast<Index>(next++));
-      values.push_back(parameter.logarithmic ? parameter.value * std::exp(moved) : parameter.value + moved);
+      values.push_back(parameter.Moved(move(p + static_cast<Index>(next++))));
     } else {
       values.push_back(parameter.value);
     }
@@ -157,20 +156,14 @@ Scanned Judge(const std::vector<RunBasis>& bases, const std::vector<FreeParamete
 
 // One that acts at its starting point is simulated there by itself.
 std::vector<RunColumns> Alone(const Fitted& current, const std::vector<const RunData*>& runs,
-                              const Task& task, size_t stride) {
-  std::vector<Unknown> unknowns;
-  for (const FreeParameter& parameter : task.own) unknowns.push_back(parameter.unknown);
+                              const Task& task) {
   std::vector<RunColumns> columns(runs.size());
   for (size_t r = 0; r < runs.size(); ++r) {
-    const Residuals residuals =
-        ResidualsOf(task.with.model, *runs[r], current.runs[r].start, unknowns, stride);
+    const Residuals residuals = ResidualsOf(task.with.model, *runs[r], current.runs[r].start, task.own, {});
     const auto rows = static_cast<Index>(residuals.values.size());
     columns[r].values = Map<const VectorXd>(residuals.values.data(), rows);
     columns[r].own =
-        Map<const MatrixXd>(residuals.jacobian.data(), rows, static_cast<Index>(unknowns.size()));
-    for (size_t i = 0; i < task.own.size(); ++i) {
-      if (task.own[i].logarithmic) columns[r].own.col(static_cast<Index>(i)) *= task.own[i].value;
-    }
+        Map<const MatrixXd>(residuals.jacobian.data(), rows, static_cast<Index>(task.own.size()));
   }
   return columns;
 }
@@ -178,7 +171,7 @@ std::vector<RunColumns> Alone(const Fitted& current, const std::vector<const Run
 // Several that do nothing yet share one simulation; the result by task. False when they do something after
 // all.
 bool Together(const Fitted& current, const std::vector<const RunData*>& runs,
-              const std::vector<RunBasis>& bases, const std::vector<const Task*>& tasks, size_t stride,
+              const std::vector<RunBasis>& bases, const std::vector<const Task*>& tasks,
               std::vector<std::vector<RunColumns>>* columns) {
   ModelDescription model = current.hypothesis.model;
   for (const Task* task : tasks) {
@@ -188,19 +181,15 @@ bool Together(const Fitted& current, const std::vector<const RunData*>& runs,
   }
   // Where each task's parameters are in the common model: effects there are in the order of their ids.
   const std::vector<EffectParameter> all = EffectParameters(model);
-  std::vector<Unknown> unknowns;
+  std::vector<FreeParameter> vanishing;
   size_t effect = current.hypothesis.model.effects.size();
   for (const Task* task : tasks) {
     const bool adds = task->own.front().unknown.kind == Unknown::Kind::kEffect;
     for (const size_t place : Vanishing(*task)) {
-      if (!adds) {
-        unknowns.push_back(task->own[place].unknown);
-        continue;
-      }
-      const std::string& name = task->own[place].name;
-      for (size_t i = 0; i < all.size(); ++i) {
-        if (all[i].effect == effect && model.effects[effect].id + "." + all[i].name == name) {
-          unknowns.push_back({Unknown::Kind::kEffect, i});
+      FreeParameter& parameter = vanishing.emplace_back(task->own[place]);
+      for (size_t i = 0; adds && i < all.size(); ++i) {
+        if (all[i].effect == effect && model.effects[effect].id + "." + all[i].name == parameter.name) {
+          parameter.unknown.index = i;
         }
       }
     }
@@ -208,11 +197,11 @@ bool Together(const Fitted& current, const std::vector<const RunData*>& runs,
   }
   columns->assign(tasks.size(), std::vector<RunColumns>(runs.size()));
   for (size_t r = 0; r < runs.size(); ++r) {
-    const Residuals residuals = ResidualsOf(model, *runs[r], current.runs[r].start, unknowns, stride, true);
+    const Residuals residuals = ResidualsOf(model, *runs[r], current.runs[r].start, vanishing, {}, true);
     const auto rows = static_cast<Index>(residuals.values.size());
     const Map<const VectorXd> values(residuals.values.data(), rows);
     if (!((values - bases[r].values).squaredNorm() < 1e-4 * static_cast<double>(rows))) return false;
-    const Map<const MatrixXd> jacobian(residuals.jacobian.data(), rows, static_cast<Index>(unknowns.size()));
+    const Map<const MatrixXd> jacobian(residuals.jacobian.data(), rows, static_cast<Index>(vanishing.size()));
     Index next = 0;
     for (size_t t = 0; t < tasks.size(); ++t) {
       RunColumns& own = (*columns)[t][r];
@@ -220,8 +209,6 @@ bool Together(const Fitted& current, const std::vector<const RunData*>& runs,
       own.own = MatrixXd::Zero(rows, static_cast<Index>(tasks[t]->own.size()));
       for (const size_t place : Vanishing(*tasks[t])) {
         own.own.col(static_cast<Index>(place)) = jacobian.col(next++);
-        const FreeParameter& parameter = tasks[t]->own[place];
-        if (parameter.logarithmic) own.own.col(static_cast<Index>(place)) *= parameter.value;
       }
     }
   }
@@ -232,22 +219,16 @@ bool Together(const Fitted& current, const std::vector<const RunData*>& runs,
 
 std::vector<std::vector<Scanned>> Scan(const Fitted& current, const std::vector<const RunData*>& runs,
                                        const std::vector<Change>& changes, const Sizes& sizes, bool elsewhere,
-                                       size_t stride, int jobs) {
+                                       int jobs) {
   const std::vector<FreeParameter> known = current.hypothesis.Free();
   std::vector<RunBasis> bases(runs.size());
   ParallelFor(runs.size(), jobs, [&](size_t r) {
-    std::vector<Unknown> unknowns;
-    unknowns.reserve(known.size());
-    for (const FreeParameter& parameter : known) unknowns.push_back(parameter.unknown);
-    for (const Unknown& start : StartUnknowns(*runs[r])) unknowns.push_back(start);
+    const std::vector<Unknown> starts = StartUnknowns(*runs[r]);
     const Residuals residuals =
-        ResidualsOf(current.hypothesis.model, *runs[r], current.runs[r].start, unknowns, stride);
+        ResidualsOf(current.hypothesis.model, *runs[r], current.runs[r].start, known, starts);
     const auto rows = static_cast<Index>(residuals.values.size());
-    bases[r].columns =
-        Map<const MatrixXd>(residuals.jacobian.data(), rows, static_cast<Index>(unknowns.size()));
-    for (size_t i = 0; i < known.size(); ++i) {
-      if (known[i].logarithmic) bases[r].columns.col(static_cast<Index>(i)) *= known[i].value;
-    }
+    bases[r].columns = Map<const MatrixXd>(residuals.jacobian.data(), rows,
+                                           static_cast<Index>(known.size() + starts.size()));
     bases[r].normal = TransposeTimes(bases[r].columns, bases[r].columns);
     bases[r].values = Map<const VectorXd>(residuals.values.data(), rows);
   });
@@ -288,7 +269,7 @@ std::vector<std::vector<Scanned>> Scan(const Fitted& current, const std::vector<
   std::vector<Scanned> judged(tasks.size());
   const auto alone = [&](size_t t) {
     try {
-      judged[t] = Judge(bases, known, tasks[t], Alone(current, runs, tasks[t], stride), stride);
+      judged[t] = Judge(bases, known, tasks[t], Alone(current, runs, tasks[t]));
     } catch (const ModelError& error) {
       judged[t].failure = error.what();
       judged[t].start = tasks[t].with;
@@ -301,9 +282,9 @@ std::vector<std::vector<Scanned>> Scan(const Fitted& current, const std::vector<
     std::vector<std::vector<RunColumns>> columns;
     bool together = false;
     try {
-      together = Together(current, runs, bases, members, stride, &columns);
+      together = Together(current, runs, bases, members, &columns);
       for (size_t m = 0; together && m < members.size(); ++m) {
-        judged[groups[i][m]] = Judge(bases, known, *members[m], columns[m], stride);
+        judged[groups[i][m]] = Judge(bases, known, *members[m], columns[m]);
       }
     } catch (const ModelError&) {
       together = false;  // one of them cannot be simulated; each by itself shows which

@@ -18,10 +18,9 @@ struct Scanned {
 };
 
 // One row for each change and starting point, best first within each change. The change's derivatives are
-// projected off those of all that `current` has free and of the runs' starts. Sums count all samples,
-// whatever the stride.
+// projected off those of all that `current` has free and of the runs' starts.
 std::vector<std::vector<Scanned>> Scan(const Fitted& current, const std::vector<const RunData*>& runs,
                                        const std::vector<Change>& changes, const Sizes& sizes, bool elsewhere,
-                                       size_t stride, int jobs);
+                                       int jobs);
 
 }  // namespace hydro

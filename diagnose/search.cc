@@ -1,8 +1,6 @@
 #include "diagnose/search.h"
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 
 #include "diagnose/parallel.h"
 
@@ -24,12 +22,6 @@ constexpr size_t kFinalists = 3;
 // Further changes are not looked for below this squared gap on held-out runs.
 constexpr double kCloseEnough = 1.25;
 
-std::vector<StartState> StartsOf(const Fitted& fitted) {
-  std::vector<StartState> starts;
-  for (const RunFit& run : fitted.runs) starts.push_back(run.start);
-  return starts;
-}
-
 // Of two that predict alike, the one with fewer new numbers; a value that is wrong before an effect that is
 // missing.
 double Cost(const Explanation& one) {
@@ -47,7 +39,10 @@ bool SameChanges(const Hypothesis& a, const Hypothesis& b) {
 
 // Two of an effect cannot be in one model; nor is something changed twice.
 bool CanAdd(const Hypothesis& hypothesis, const Change& change) {
-  if (change.effect.empty()) return !hypothesis.Has(change);
+  if (change.effect.empty()) {
+    const size_t place = BasePlace(change.parameter);
+    return std::find(hypothesis.base.begin(), hypothesis.base.end(), place) == hypothesis.base.end();
+  }
   return std::none_of(hypothesis.model.effects.begin(), hypothesis.model.effects.end(),
                       [&](const EffectDescription& effect) { return effect.id == change.effect; });
 }
@@ -65,7 +60,7 @@ class Searcher {
     std::vector<StartState> starts;
     for (const RunData* run : context_.runs) starts.push_back(run->start);
     Tell("the model as given", 0);
-    result_.given = Explain(context_, from, starts, fine_);
+    result_.given = Explain(context_, from, starts, WithAllJobs(fine_));
     if (!result_.given.fitted.ok()) return result_;
     result_.best = result_.given;
     std::vector<Explanation> beam = {result_.given};
@@ -86,6 +81,12 @@ class Searcher {
   }
 
  private:
+  // For one that is fitted while no others are.
+  FitOptions WithAllJobs(FitOptions options) const {
+    options.jobs = context_.jobs;
+    return options;
+  }
+
   void Tell(const std::string& stage, double fraction) const {
     if (context_.tell) context_.tell({stage, fraction});
   }
@@ -100,7 +101,7 @@ class Searcher {
       for (const Change& change : context_.changes) {
         if (CanAdd(from.fitted.hypothesis, change)) changes.push_back(change);
       }
-      auto scanned = Scan(from.fitted, context_.runs, changes, context_.sizes, step == 0, 1, context_.jobs);
+      auto scanned = Scan(from.fitted, context_.runs, changes, context_.sizes, step == 0, context_.jobs);
       if (step == 0) {
         for (const auto& rows : scanned) {
           Rated rated{rows.front().change, 0, rows.front().failure};
@@ -182,16 +183,18 @@ class Searcher {
     }
   }
 
-  // Each change is tried to be replaced: a greedy choice may have been second best once others are there.
+  // Each change is tried to be replaced: a greedy choice may have been second best once others are there. Where
+  // all is explained it is still tried: what does as well is a tie.
   void Exchange() {
-    if (result_.best.changes().size() < 2 || result_.best.held_out_gap() < kCloseEnough) return;
-    for (int round = 0; round < 2; ++round) {
+    if (result_.best.changes().size() < 2) return;
+    const int rounds = result_.best.held_out_gap() < kCloseEnough ? 1 : 2;
+    for (int round = 0; round < rounds; ++round) {
       bool better = false;
       const std::vector<Change> changes = result_.best.changes();
       for (const Change& change : changes) {
         Tell("exchanging what was found", 0.9);
         const Hypothesis less = Without(result_.best.fitted.hypothesis, change, context_.given);
-        Explanation reduced = Explain(context_, less, StartsOf(result_.best.fitted), coarse_);
+        Explanation reduced = Explain(context_, less, StartsOf(result_.best.fitted), WithAllJobs(coarse_));
         if (!reduced.fitted.ok()) continue;
         std::vector<Explanation> others = Extend({reduced}, most_changes_);
         for (const Explanation& other : others) {
@@ -214,7 +217,7 @@ class Searcher {
       fewer = false;
       for (const Change& change : result_.best.changes()) {
         const Hypothesis less = Without(result_.best.fitted.hypothesis, change, context_.given);
-        Explanation reduced = Explain(context_, less, StartsOf(result_.best.fitted), fine_);
+        Explanation reduced = Explain(context_, less, StartsOf(result_.best.fitted), WithAllJobs(fine_));
         if (!reduced.fitted.ok()) continue;
         result_.tried.push_back(reduced);
         if (Material(reduced.held_out_gap(), result_.best.held_out_gap())) continue;
@@ -239,10 +242,10 @@ Explanation Explain(const SearchContext& context, const Hypothesis& hypothesis,
   explanation.fitted = Fit(hypothesis, context.runs, starts, options);
   if (!explanation.fitted.ok()) return explanation;
   if (context.held_out.empty()) {
-    explanation.held_out = PredictInTurn(explanation.fitted, context.given, context.runs, 1);
+    explanation.held_out = PredictInTurn(explanation.fitted, context.given, context.runs, options.jobs);
     explanation.blocks = BlocksOf(context.runs, explanation.held_out);
   } else {
-    explanation.held_out = Predict(explanation.fitted, context.held_out, 1);
+    explanation.held_out = Predict(explanation.fitted, context.held_out, options.jobs);
     explanation.blocks = BlocksOf(context.held_out, explanation.held_out);
   }
   return explanation;

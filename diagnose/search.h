@@ -48,7 +48,7 @@ struct SearchContext {
   TellProgress tell;
 };
 
-// Fits, and predicts the held-out runs.
+// Fits, and predicts the held-out runs, both with the options' jobs.
 Explanation Explain(const SearchContext& context, const Hypothesis& hypothesis,
                     const std::vector<StartState>& starts, const FitOptions& options);
 

@@ -1,20 +1,15 @@
 #include "diagnose/terminal_summary.h"
 
 #include <cmath>
-#include <cstdio>
 
 #include "diagnose/diagnosis_in_si.h"
 #include "diagnose/report_json.h"
 #include "diagnose/run_data.h"
+#include "diagnose/short_number.h"
+#include "diagnose/word_list.h"
 
 namespace hydro {
 namespace {
-
-std::string Joined(const std::vector<std::string>& parts, const std::string& between) {
-  std::string joined;
-  for (const std::string& part : parts) joined += (joined.empty() ? "" : between) + part;
-  return joined;
-}
 
 std::string GapLine(const std::string& what, const BeforeAfter& gap) {
   return what + ShortNumber(gap.before) + " before, " + ShortNumber(gap.refit_only) + " refitted only, " +
@@ -26,8 +21,8 @@ std::string EffectText(const FoundEffect& effect) {
   for (const Estimated& parameter : effect.parameters) parts.push_back(WithInterval(parameter));
   parts.insert(parts.end(), effect.names.begin(), effect.names.end());
   std::string text = effect.id + " (" + effect.says + ")";
-  if (!parts.empty()) text += ": " + Joined(parts, ", ");
-  if (!effect.tied_with.empty()) text += "; tied with " + Joined(effect.tied_with, ", ");
+  if (!parts.empty()) text += ": " + Joined(parts);
+  if (!effect.tied_with.empty()) text += "; tied with " + Joined(effect.tied_with);
   return text;
 }
 
@@ -43,16 +38,6 @@ std::string SignalsLine(const Diagnosis& diagnosis, bool si) {
 }
 
 }  // namespace
-
-std::string ShortNumber(double value) {
-  if (!std::isfinite(value)) return "-";
-  char text[32];
-  const double size = std::abs(value);
-  // %g would write 81000 as 8.1e+04.
-  const char* format = size >= 1e4 && size < 1e7 ? "%.0f" : "%.4g";
-  std::snprintf(text, sizeof text, format, value == 0 ? 0.0 : value);  // no -0
-  return text;
-}
 
 std::string WithInterval(const Estimated& estimated) {
   std::string text = estimated.name + " " + ShortNumber(estimated.value);

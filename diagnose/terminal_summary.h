@@ -10,9 +10,6 @@ namespace hydro {
 // `folder`: where the report is. With `si`, figures are in SI.
 std::string TerminalSummary(const Diagnosis& diagnosis, const std::string& folder, bool si);
 
-// "0.52", four digits at most; "-" for what is not finite.
-std::string ShortNumber(double value);
-
 // "b 0.0203 [0.0199, 0.0207] in-lbf-s"
 std::string WithInterval(const Estimated& estimated);
 

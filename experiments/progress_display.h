@@ -6,17 +6,16 @@
 #include <string>
 #include <vector>
 
+#include "settings/terminal_line.h"
+
 namespace hydro {
 
 // A bar on a terminal, plain lines in a log. May be told things by several threads.
 class ProgressDisplay {
  public:
-  // `costs`: of each task, in any unit. Writes to `out`, which stays the caller's.
+  // `costs`: of each task, in any unit. Writes to `out`, which stays the caller's; the bar is
+  // wiped away in the end.
   ProgressDisplay(std::FILE* out, bool terminal, std::vector<std::string> names, std::vector<double> costs);
-  // Wipes the bar away.
-  ~ProgressDisplay();
-  ProgressDisplay(const ProgressDisplay&) = delete;
-  ProgressDisplay& operator=(const ProgressDisplay&) = delete;
 
   void Start(size_t task);
   // `done`: 0 to 1.
@@ -32,14 +31,13 @@ class ProgressDisplay {
   };
 
   void Draw();
-  void Wipe();
 
   std::FILE* out_;
   bool terminal_;
+  TerminalLine line_;
   std::mutex mutex_;
   std::vector<Task> tasks_;
   int finished_ = 0;
-  std::string drawn_;
 };
 
 }  // namespace hydro

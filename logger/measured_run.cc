@@ -224,6 +224,17 @@ std::optional<double> SensorNoise(SectionReader& noise, const SignalName& name) 
 
 }  // namespace
 
+void MeasuredRun::Keep(size_t first, size_t last) {
+  const auto keep = [&](std::vector<double>* values) {
+    if (values->empty()) return;
+    values->erase(values->begin() + static_cast<std::ptrdiff_t>(last), values->end());
+    values->erase(values->begin(), values->begin() + static_cast<std::ptrdiff_t>(first));
+  };
+  for (const SignalName& one : kSignals) keep(&(this->*one.signal).values);
+  keep(&time);
+  first_row += first;
+}
+
 std::string MeasuredRun::Place(size_t sample) const {
   const size_t row = first_row + sample;
   return file + (rows_are_lines ? ": line " + std::to_string(row + 2) : ": row " + std::to_string(row + 1));

@@ -45,6 +45,8 @@ struct MeasuredRun {
   MeasuredSignal p2;
 
   size_t samples() const { return time.size(); }
+  // Cuts off the samples before `first` and those from `last` on.
+  void Keep(size_t first, size_t last);
   // Where a sample stands, for messages: "run.csv: line 17".
   std::string Place(size_t sample) const;
 };

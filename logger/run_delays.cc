@@ -6,22 +6,12 @@
 namespace hydro {
 namespace {
 
-constexpr MeasuredSignal MeasuredRun::*kAll[] = {
-    &MeasuredRun::voltage,   &MeasuredRun::pressure_ref, &MeasuredRun::motor_speed, &MeasuredRun::motor_angle,
-    &MeasuredRun::arm_angle, &MeasuredRun::arm_speed,    &MeasuredRun::p1,          &MeasuredRun::p2};
-
 size_t Nearest(const std::vector<double>& time, double at) {
   const auto after = std::lower_bound(time.begin(), time.end(), at);
   if (after == time.begin()) return 0;
   if (after == time.end()) return time.size() - 1;
   const auto place = static_cast<size_t>(after - time.begin());
   return time[place] - at < at - time[place - 1] ? place : place - 1;
-}
-
-void Cut(size_t first, size_t last, std::vector<double>* values) {
-  if (values->empty()) return;
-  values->erase(values->begin() + static_cast<std::ptrdiff_t>(last), values->end());
-  values->erase(values->begin(), values->begin() + static_cast<std::ptrdiff_t>(first));
 }
 
 }  // namespace
@@ -47,9 +37,7 @@ bool RemoveDelays(const std::vector<SignalDelay>& delays, MeasuredRun* run) {
     for (size_t i = first; i < last; ++i) moved[i] = values[Nearest(time, time[i] + delay)];
     values = std::move(moved);
   }
-  for (MeasuredSignal MeasuredRun::*const signal : kAll) Cut(first, last, &(run->*signal).values);
-  Cut(first, last, &run->time);
-  run->first_row += first;
+  run->Keep(first, last);
   return true;
 }
 

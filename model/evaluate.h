@@ -11,6 +11,9 @@
 
 namespace hydro {
 
+inline double ValueOf(double x) { return x; }
+inline double ValueOf(const Jet& x) { return x.a; }
+
 // Which terms are compiled in. The plain forms have no effects and no bypass, and are what the fast path
 // inlines.
 enum class Form { kPlainClamped, kPlainFree, kGeneral };
@@ -164,6 +167,21 @@ template <Form kForm, class T>
   }
 }
 
+// The rate of a margin that is itself a state; 0 for others.
+template <Form kForm, class T>
+[[gnu::always_inline]] inline double MarginRate(const EquationData& m, const Mode& mode, int which,
+                                                const T* rate) {
+  if (which == kPumpSwitch) return mode.pump * ValueOf(rate[kMotorSpeed]);
+  double p_3_rate = 0;
+  if constexpr (kForm == Form::kGeneral) {
+    if (!m.ideal_valves) return 0;
+    if (m.p_3_state >= 0) p_3_rate = ValueOf(rate[m.p_3_state]);
+  }
+  if (which == kValve1Switch) return mode.valve_1 ? 0 : ValueOf(rate[kP1]) - p_3_rate;
+  if (which == kValve2Switch) return mode.valve_2 ? 0 : ValueOf(rate[kP2]) - p_3_rate;
+  return 0;
+}
+
 template <Form kForm>
 [[gnu::always_inline]] inline void EvaluatePoint(const EquationData& m, double time, double voltage,
                                                  const Mode& mode, const double* y, double* rate,
@@ -213,8 +231,6 @@ inline Jet MotionAt(const Trajectory& motion, const Jet& time) {
   angle.v = motion.Rate(time.a) * time.v;
   return angle;
 }
-inline double TimeOf(double time) { return time; }
-inline double TimeOf(const Jet& time) { return time.a; }
 
 // What the sensors make of this state, none of them late.
 template <class T>
@@ -230,12 +246,12 @@ template <class T>
     measured.arm_speed = state[kArmSpeed];
   } else if (m.shaft == Shaft::kDriven) {
     measured.arm_angle = MotionAt(*m.motion, time);
-    measured.arm_speed = T(m.motion->Rate(TimeOf(time)));
+    measured.arm_speed = T(m.motion->Rate(ValueOf(time)));
   } else {
     measured.arm_angle = T(m.arm_angle);
   }
   SenseTerms<T> at;
-  at.time = TimeOf(time);
+  at.time = ValueOf(time);
   at.state = state;
   for (const auto& effect : m.effects) {
     at.own = n.own.data() + effect->first_parameter();

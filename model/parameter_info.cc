@@ -2,6 +2,8 @@
 
 #include <limits>
 
+#include "model/actuator.h"
+
 namespace hydro {
 
 const std::vector<BaseParameter>& BaseParameters() {
@@ -32,6 +34,13 @@ const std::vector<BaseParameter>& BaseParameters() {
        &Parameters::mgl},
   };
   return parameters;
+}
+
+size_t BasePlace(const std::string& name) {
+  for (size_t i = 0; i < BaseParameters().size(); ++i) {
+    if (BaseParameters()[i].info.name == name) return i;
+  }
+  throw ModelError("no base parameter is called \"" + name + "\"");
 }
 
 }  // namespace hydro

@@ -58,6 +58,9 @@ T& BaseValue(ParametersOf<T>& parameters, size_t index) {
 // All base parameters, in the order of Parameters.
 const std::vector<BaseParameter>& BaseParameters();
 
+// Where in BaseParameters() the one of this name is. Throws ModelError when there is none.
+size_t BasePlace(const std::string& name);
+
 // What the catalogue says of an effect. docs/effects.md has the same rows.
 struct EffectInfo {
   std::string id;    // "pump.stribeck"

@@ -161,17 +161,8 @@ class SwitchingSimulation final : public Simulation {
     return on;
   }
 
-  // The rate of a margin that is itself a state; 0 for others.
   double MarginRate(int i, const Point& at) const {
-    if (i == kPumpSwitch) return mode_.pump * at.rate[kMotorSpeed];
-    double p_3_rate = 0;
-    if constexpr (kForm == Form::kGeneral) {
-      if (!data().ideal_valves) return 0;
-      if (data().p_3_state >= 0) p_3_rate = at.rate[data().p_3_state];
-    }
-    if (i == kValve1Switch) return mode_.valve_1 ? 0 : at.rate[kP1] - p_3_rate;
-    if (i == kValve2Switch) return mode_.valve_2 ? 0 : at.rate[kP2] - p_3_rate;
-    return 0;
+    return hydro::MarginRate<kForm>(data(), mode_, i, at.rate);
   }
 
   // Changes the switches that contradict the present state. True when any did.

@@ -32,12 +32,21 @@ constexpr std::array kCodes{
     FaultCode{"machine_suspended", FaultEffect::kZeroVolts},
     FaultCode{"controller_fault", FaultEffect::kZeroVolts},
     FaultCode{"rig_fault", FaultEffect::kZeroVolts},
+    FaultCode{"sensor_p1", FaultEffect::kZeroVolts},
+    FaultCode{"sensor_p2", FaultEffect::kZeroVolts},
+    FaultCode{"sensor_motor_angle", FaultEffect::kZeroVolts},
+    FaultCode{"sensor_motor_speed", FaultEffect::kZeroVolts},
+    FaultCode{"sensor_arm_angle", FaultEffect::kZeroVolts},
+    FaultCode{"sensor_arm_speed", FaultEffect::kZeroVolts},
+    FaultCode{"board_error", FaultEffect::kZeroVolts},
+    FaultCode{"encoder_lost", FaultEffect::kZeroVolts},
     FaultCode{"model_error", FaultEffect::kZeroVolts},
     FaultCode{"repeated_motor_command", FaultEffect::kWarning},
     FaultCode{"logger_gone", FaultEffect::kWarning},
     // Any process.
     FaultCode{"undecodable_message", FaultEffect::kWarning},
     FaultCode{"unsent_message", FaultEffect::kWarning},
+    FaultCode{"unauthenticated_command", FaultEffect::kWarning},
 };
 
 }  // namespace

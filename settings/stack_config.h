@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "model/description.h"
+#include "settings/driver_section.h"
 #include "settings/input_error.h"
 #include "trajectory/trajectory.h"
 
@@ -152,7 +153,8 @@ struct StackConfig {
   ReferenceSection reference;
   LimitsSection limits;
   NoiseSection noise;
-  int64_t seed = 1;  // --seed, [noise] seed
+  std::optional<DriverSection> driver;  // only a stack with hydro-driver needs it
+  int64_t seed = 1;                     // --seed, [noise] seed
   std::vector<ProcessSection>
       processes;  // default: plant, pressure-ctrl, position-ctrl, no host, no cpu, no priority
 

@@ -188,6 +188,14 @@ void ReadProcesses(SectionReader& document, std::vector<ProcessSection>* process
     ReadProcess(SectionReader(item, "process"), &process);
     const bool twice = std::any_of(processes->begin(), processes->end(),
                                    [&](const auto& other) { return other.program == process.program; });
+    const std::string twin = process.program == "hydro-driver"  ? "hydro-plant"
+                             : process.program == "hydro-plant" ? "hydro-driver"
+                                                                : "";
+    if (std::any_of(processes->begin(), processes->end(),
+                    [&](const auto& other) { return other.program == twin; })) {
+      throw KeyError(item.place, "process.program", process.program + " beside " + twin,
+                     "one of the two: both send states");
+    }
     // Several loggers do no harm; two of the others would contradict each other on the bus.
     if (twice && process.program != "hydro-logger") {
       throw KeyError(item.place, "process.program", "a second " + process.program, "one of it in a stack");
@@ -209,6 +217,7 @@ void ReadSections(const TomlNode& root, const std::string& config_file, StackCon
   SectionReader reference = document.Section("reference");
   SectionReader limits = document.Section("limits");
   SectionReader noise = document.Section("noise");
+  SectionReader driver = document.Section("driver");
   document.Take("process");
   document.Finish();
 
@@ -221,6 +230,7 @@ void ReadSections(const TomlNode& root, const std::string& config_file, StackCon
   ReadReference(std::move(reference), config_file, &config->reference);
   ReadLimits(std::move(limits), &config->limits);
   ReadNoise(std::move(noise), &config->noise, &config->seed);
+  if (document.Has("driver")) config->driver = ReadDriver(std::move(driver));
   ReadProcesses(document, &config->processes);
 }
 

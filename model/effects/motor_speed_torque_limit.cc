@@ -92,7 +92,7 @@ CatalogueEntry MotorSpeedTorqueLimit() {
              "speed at which no torque is left",
              false,
              {},
-             {1.1, 1.6, 3},
+             {1.1, 1.6, 3, 30},
              Scale::kSpeed}}},
           MakeEffect<SpeedTorqueLimit>};
 }

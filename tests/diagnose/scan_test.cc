@@ -33,7 +33,7 @@ struct Case {
     sizes = SizesOf(Table1With(), pointers);
   }
   std::vector<std::vector<Scanned>> Judge(const std::vector<Change>& changes, int jobs = 1) const {
-    return Scan(current, pointers, changes, sizes, false, 1, jobs);
+    return Scan(current, pointers, changes, sizes, false, jobs);
   }
 
   std::vector<RunData> runs;
@@ -108,7 +108,7 @@ TEST(Scan, WhatIsFreeAlreadyGainsNothing) {
   options.tolerance = 1e-6;
   const Fitted fitted = Fit(WithFree(Table1With(), {"b"}), one.pointers, StartsOf(one.runs), options);
   const auto after =
-      Scan(fitted, one.pointers, {{"", {}, "k_1"}, {"pump.quadratic_drag", {}, ""}}, one.sizes, false, 1, 1);
+      Scan(fitted, one.pointers, {{"", {}, "k_1"}, {"pump.quadratic_drag", {}, ""}}, one.sizes, false, 1);
   for (const auto& rows : after) EXPECT_LT(rows.front().expected, 0.02 * before[0].front().expected);
 }
 

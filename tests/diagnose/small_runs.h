@@ -67,18 +67,11 @@ inline std::vector<StartState> StartsOf(const std::vector<RunData>& runs) {
   return starts;
 }
 
-inline size_t BaseIndex(const std::string& name) {
-  for (size_t i = 0; i < BaseParameters().size(); ++i) {
-    if (BaseParameters()[i].info.name == name) return i;
-  }
-  return BaseParameters().size();
-}
-
 // The model with these base parameters free, and the parameters of all of its effects.
 inline Hypothesis WithFree(const ModelDescription& model, const std::vector<std::string>& base) {
   Hypothesis hypothesis;
   hypothesis.model = model;
-  for (const std::string& name : base) hypothesis.base.push_back(BaseIndex(name));
+  for (const std::string& name : base) hypothesis.base.push_back(BasePlace(name));
   for (const EffectDescription& effect : model.effects) hypothesis.effects.push_back(effect.id);
   return hypothesis;
 }

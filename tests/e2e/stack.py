@@ -32,6 +32,7 @@ MACHINE_MARGIN = 2.5
 
 PROGRAMS = {
     "plant": "hydro-plant",
+    "driver": "hydro-driver",
     "pressure_ctrl": "hydro-pressure-ctrl",
     "position_ctrl": "hydro-position-ctrl",
     "logger": "hydro-logger",

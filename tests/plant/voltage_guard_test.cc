@@ -103,17 +103,21 @@ TEST(FaultCodesTest, AreDocumented) {
   const std::string table = Document("safety.md");
   for (const FaultCode& entry : FaultCodes()) {
     const std::string code(entry.code);
-    const size_t row = list.find("| `" + code + "` |");
-    ASSERT_NE(row, std::string::npos) << code;
-    const std::string line = list.substr(row, list.find('\n', row) - row);
+    const size_t place = list.find("`" + code + "`");
+    ASSERT_NE(place, std::string::npos) << code;
+    const size_t row = list.rfind('\n', place) + 1;
+    const std::string line = list.substr(row, list.find('\n', place) - row);
+    EXPECT_TRUE(line.starts_with("| `")) << line;
     const std::string effect = entry.effect == FaultEffect::kZeroVolts ? "zero volts"
                                : entry.effect == FaultEffect::kRamp    ? "ramp"
                                                                        : "warning";
     EXPECT_TRUE(line.ends_with("| " + effect + " |")) << line;
+    const bool sensor = code.starts_with("sensor_");
     const bool second = code.starts_with("second_");
     const bool pressure_command = code.ends_with("_pressure_command");
     // These share a row: `nonfinite_`, `excessive_`, `future_pressure_command`; second_..._sender.
-    const std::string in_table = second             ? "second_"
+    const std::string in_table = sensor             ? "`sensor_...`"
+                                 : second           ? "second_"
                                  : pressure_command ? code.substr(0, code.find('_') + 1)
                                                     : "`" + code + "`";
     EXPECT_NE(table.find(in_table), std::string::npos) << code;

@@ -1,0 +1,13 @@
+// How far apart a recording's samples are.
+#pragma once
+
+#include <vector>
+
+namespace hydro {
+
+// The median time between successive samples, s; 1 when there are fewer than two.
+double MedianInterval(const std::vector<double>& time);
+// Of several recordings together.
+double MedianInterval(const std::vector<const std::vector<double>*>& times);
+
+}  // namespace hydro

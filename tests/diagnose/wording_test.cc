@@ -1,0 +1,50 @@
+// Tests of how numbers and lists are written, and of the interval between samples.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "diagnose/sample_interval.h"
+#include "diagnose/short_number.h"
+#include "diagnose/word_list.h"
+
+namespace hydro {
+namespace {
+
+// Tests that numbers are rounded behind the point only, and written with powers of ten only where that is
+// shorter.
+TEST(ShortNumber, HasNoPowersOfTenThatNobodyNeeds) {
+  EXPECT_EQ(ShortNumber(3.14159), "3.142");
+  EXPECT_EQ(ShortNumber(3.14159, 3), "3.14");
+  EXPECT_EQ(ShortNumber(3114.2, 3), "3114");
+  EXPECT_EQ(ShortNumber(999.7, 3), "1000");
+  EXPECT_EQ(ShortNumber(-81000), "-81000");
+  EXPECT_EQ(ShortNumber(247004.6), "247005");
+  EXPECT_EQ(ShortNumber(2.6e-5), "2.6e-05");
+  EXPECT_EQ(ShortNumber(2.5e7), "2.5e+07");
+  EXPECT_EQ(ShortNumber(-0.0), "0");
+  EXPECT_EQ(ShortNumber(NAN), "-");
+}
+
+// Tests commas and the "and" of lists of every length.
+TEST(WordList, JoinsAndEnumerates) {
+  EXPECT_EQ(Joined({}), "");
+  EXPECT_EQ(Joined({"a", "b", "c"}), "a, b, c");
+  EXPECT_EQ(Joined({"a", "b"}, "; "), "a; b");
+  EXPECT_EQ(Enumerated({}), "");
+  EXPECT_EQ(Enumerated({"a"}), "a");
+  EXPECT_EQ(Enumerated({"a", "b"}), "a and b");
+  EXPECT_EQ(Enumerated({"a", "b", "c"}), "a, b and c");
+}
+
+// Tests that a gap does not change what is usual, and that recordings are taken together.
+TEST(MedianInterval, OfOneAndOfSeveralRecordings) {
+  const std::vector<double> slow = {0, 1, 2, 50};
+  const std::vector<double> fast = {0, 0.25, 0.5, 0.75, 1, 1.25};
+  EXPECT_EQ(MedianInterval(slow), 1);
+  EXPECT_EQ(MedianInterval(std::vector{&slow, &fast}), 0.25);
+  EXPECT_EQ(MedianInterval(std::vector<double>{3}), 1);
+}
+
+}  // namespace
+}  // namespace hydro
