@@ -75,9 +75,10 @@ class FaultLoopsTest(fault_case.FaultCase):
         self.wait_for_voltage()
         log = self.finish()
         self.check_stale_motor_command(log)
+        slept = max(s.skipped_ticks for s in log.states)
         for state in log.states:
             if state.command_tick >= 0:
-                self.assertLessEqual(state.tick - state.command_tick, STALE * RATE + 10 + state.skipped_ticks, state)
+                self.assertLessEqual(state.tick - state.command_tick, STALE * RATE + 10 + 2 * slept, state)
 
     # Tests that without a position loop the last pressure reference is held for the stale limit, then goes to zero in a
     # line, and that then the voltage is zero: in ticks exactly, since the pressure loop counts them.
@@ -92,7 +93,7 @@ class FaultLoopsTest(fault_case.FaultCase):
         print(f"{len(held)} commands held, {len(ramp)} on the ramp, {len(done)} safe; "
               f"detected {last.tick - newest.tick} ticks after the last pressure command", flush=True)
         for commands in (held, ramp, done):
-            self.assertGreater(len(commands), 50)
+            self.assertGreater(len(commands), 20)
         # The first state behind the limit raised it: later only by ticks for which there was no state.
         self.assertEqual(last.tick, min(c.tick for c in ramp))
         for c in held:
@@ -114,14 +115,16 @@ class FaultLoopsTest(fault_case.FaultCase):
         self.start_moving()
         self.run_["position_ctrl"].kill()
         fault = self.wait_for_fault("stale_pressure_command", source="pressure_ctrl")
-        self.log.wait_for_tick(fault.tick + RAMP + 300)
+        self.log.wait_for_tick(fault.tick + RAMP)
+        self.wait_for_states(200)
         self.check_position_loop_gone(self.finish())
 
     def test_position_loop_hangs(self):
         self.start_moving()
         self.run_["position_ctrl"].send(signal.SIGSTOP)
         fault = self.wait_for_fault("stale_pressure_command", source="pressure_ctrl")
-        self.log.wait_for_tick(fault.tick + RAMP + 300)
+        self.log.wait_for_tick(fault.tick + RAMP)
+        self.wait_for_states(200)
         self.run_["position_ctrl"].send(signal.SIGCONT)
         self.wait_for_fault("stale_pressure_command", active=False)
         self.wait_for_voltage()
@@ -183,7 +186,7 @@ class FaultLoopsTest(fault_case.FaultCase):
         self.run_["plant"].wait_for("fault logger_gone: logger on .* silent for")
         second, log = self.start_second_logger()
         self.run_["plant"].wait_for("fault logger_gone has gone")
-        log.wait_for("HYDRO_STATE", lambda s: s.tick > log.messages["HYDRO_STATE"][0].tick + 300, "300 more ticks")
+        self.wait_until(lambda: log.count("HYDRO_STATE") > 300, "300 states")
         self.run_["plant"].send(signal.SIGTERM)
         for process in (self.run_["plant"], self.run_["pressure_ctrl"], self.run_["position_ctrl"], second):
             self.assertEqual(process.wait(), 0, process.report())
@@ -205,8 +208,7 @@ class FaultLoopsTest(fault_case.FaultCase):
         self.assertRegex(self.run_["logger"].stderr, r"run\.lcmlog.*[Ff]ile too large")
         self.run_["plant"].wait_for("fault logger_gone: logger on .*[Ff]ile too large")
         second, log = self.start_second_logger()
-        first = log.messages["HYDRO_STATE"][0].tick
-        log.wait_for("HYDRO_STATE", lambda s: s.tick > first + 300, "300 more ticks")
+        self.wait_until(lambda: log.count("HYDRO_STATE") > 300, "300 states")
         self.run_["plant"].send(signal.SIGTERM)
         for process in (self.run_["plant"], self.run_["pressure_ctrl"], self.run_["position_ctrl"], second):
             self.assertEqual(process.wait(), 0, process.report())
