@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <utility>
 
 #include "settings/section_reader.h"
@@ -53,7 +54,10 @@ BoardRig::BoardRig(const StackConfig& config, const Clock& clock)
 }
 
 BoardRig::~BoardRig() {
-  zero_.Write();
+  if (!zero_.Write()) {
+    std::fprintf(stderr, "hydro-driver: %s does not take zero volts: cut the amplifier's supply\n",
+                 board_.name().c_str());
+  }
   DisarmZero();
   guardian_->Dismiss();
 }

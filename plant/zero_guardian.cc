@@ -16,6 +16,7 @@ namespace hydro {
 namespace {
 
 constexpr char kDismissed = 'd';
+constexpr int kPatience_ms = 500;  // with a guardian that was told to end
 
 // Everything of ours but `first` and `second` is closed: a pipe or socket that the guardian held open would
 // look like a driver that lives on.
@@ -78,6 +79,11 @@ void ZeroGuardian::Dismiss() {
   sigaction(SIGPIPE, &before, nullptr);
   close(pipe_);
   pipe_ = -1;
+  for (int i = 0; i < kPatience_ms; ++i) {
+    if (waitpid(pid_, nullptr, WNOHANG) != 0) return;
+    usleep(1000);
+  }
+  kill(pid_, SIGKILL);  // somebody has stopped it
   waitpid(pid_, nullptr, 0);
 }
 

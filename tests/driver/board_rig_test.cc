@@ -2,9 +2,11 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <chrono>
+#include <csignal>
 #include <filesystem>
 
 #include "plant/check_sensors.h"
@@ -328,6 +330,19 @@ TEST_F(BoardRigTest, Guardian) {
     EXPECT_EQ(board_->outputs[0], expected);
     EXPECT_EQ(board_->nonzero_writes, dismissed ? 2 : 1);
   }
+}
+
+// Tests that a guardian that somebody has stopped does not keep us from ending.
+TEST_F(BoardRigTest, StoppedGuardian) {
+  ComediBoard board(config_.file, file_, 0);
+  ZeroOutput output;
+  output.device = board.device();
+  output.subdevice = 1;
+  output.zero_code = SimulatedBoard::kZeroCode;
+  ZeroGuardian guardian(output);
+  kill(guardian.pid(), SIGSTOP);
+  guardian.Dismiss();
+  EXPECT_EQ(kill(guardian.pid(), 0), -1) << "it has gone";
 }
 
 // Tests the lines of --check-sensors, and that it leaves the board alone.
