@@ -15,6 +15,7 @@
 #include "bus/channels.h"
 #include "bus/clock.h"
 #include "bus/loop_statistics.h"
+#include "process/refusal_watch.h"
 
 namespace hydro {
 
@@ -33,8 +34,8 @@ class Participant {
   void Announce(int8_t state, const std::string& text = "");
   int8_t state() const { return state_; }
 
-  // Publishes what is due: the ready announcement, the statistics. To be called often; cheap when nothing is
-  // due.
+  // Publishes what is due: the ready announcement, the statistics, a warning of messages that were refused.
+  // To be called often; cheap when nothing is due.
   void Poll();
 
   // The last plant tick this process knows of; -1 before the first. Written into faults and stops.
@@ -67,6 +68,7 @@ class Participant {
 
  private:
   void PublishFault(const fault_t& fault);
+  void WatchRefusals();
 
   Bus& bus_;
   Clock& clock_;
@@ -80,6 +82,7 @@ class Participant {
   int64_t fault_sequence_ = 0;
   bool latched_ = false;
   std::map<std::string, fault_t> active_;
+  RefusalWatch refusals_;
   std::optional<stop_t> stop_;
   Clock::TimePoint next_announcement_;
   LoopStatistics statistics_;
