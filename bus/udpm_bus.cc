@@ -135,13 +135,11 @@ void UdpmBus::SubscribeAll(std::function<void(const RawMessage&)> handler) {
       subscriptions_.emplace_back(Subscription{this, "", nullptr, nullptr, {}, std::move(handler)});
   if (all_ == nullptr) AddSubscription(".*", &added);
   all_ = all_ == nullptr ? &added : all_;
-  StartIntroductions();
 }
 
 void UdpmBus::SubscribeTyped(const std::string& channel, const MessageType& type,
                              std::function<void(const void*)> handler) {
   CheckChannel(channel);
-  StartIntroductions();
   Subscription& added =
       subscriptions_.emplace_back(Subscription{this, channel, &type, type.create(), std::move(handler), {}});
   // Where all channels are subscribed already, that subscription serves this one too: two that overlap would
@@ -206,7 +204,6 @@ void UdpmBus::DeliverTyped(const RawMessage& message, Subscription* subscription
 
 void UdpmBus::PublishRaw(const std::string& channel, const void* data, int size) {
   CheckChannel(channel);
-  StartIntroductions();
   if (authenticator_ != nullptr) {
     const auto* const bytes = static_cast<const uint8_t*>(data);
     encoded_.assign(bytes, bytes + size);
@@ -218,7 +215,6 @@ void UdpmBus::PublishRaw(const std::string& channel, const void* data, int size)
 
 void UdpmBus::PublishTyped(const std::string& channel, const MessageType& type, const void* message) {
   CheckChannel(channel);
-  StartIntroductions();
   int size = type.encoded_size(message);
   if (encoded_.size() < static_cast<size_t>(size)) encoded_.resize(size);
   if (type.encode(message, encoded_.data(), size) != size) {
@@ -237,6 +233,7 @@ void UdpmBus::Send(const std::string& channel, const void* data, int size) {
 int UdpmBus::HandleUntil(TimePoint deadline) {
   const Marked marked(&handling_);
   int handled = 0;
+  if (authenticator_ != nullptr && !introduced_) StartIntroductions();
   if (!held_.empty()) GiveUpHeld();
   for (int seen = 0; seen < kMostPerCall;) {
     // Once something was handled, only what is there already counts.
