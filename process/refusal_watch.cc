@@ -37,10 +37,8 @@ std::string RefusalWatch::Text() const {
   add(&RefusedMessages::wrong_seal, "sealed with another key or changed on the way");
   add(&RefusedMessages::repeated, "played again or overtaken");
   add(&RefusedMessages::unknown_sender, "recorded in another run");
-  return fmt::format(
-      "refused {} message{} that are not of this stack ({}), the last on {}; not obeyed "
-      "(bus.key_file)",
-      count_, count_ == 1 ? "" : "s", reasons, newest_.last_channel);
+  return fmt::format("refused {} message{} not of this stack ({}), the last on {} (bus.key_file)", count_,
+                     count_ == 1 ? "" : "s", reasons, newest_.last_channel);
 }
 
 }  // namespace hydro

@@ -47,7 +47,7 @@ TEST(RefusalWatchTest, CountsEachBurst) {
   refused.repeated = 1;
   EXPECT_EQ(watch.Observe(refused, now + 3s), News::kBegins);
   EXPECT_EQ(watch.count(), 1);
-  EXPECT_THAT(watch.Text(), HasSubstr("1 message that"));
+  EXPECT_THAT(watch.Text(), HasSubstr("1 message not"));
   EXPECT_THAT(watch.Text(), Not(HasSubstr("without a seal")));
   EXPECT_THAT(watch.Text(), HasSubstr("1 played again"));
 }
