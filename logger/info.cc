@@ -5,7 +5,7 @@
 #include <map>
 
 #include "logger/run_config.h"
-#include "logger/saturating.h"
+#include "bus/saturating.h"
 
 namespace hydro {
 namespace {

@@ -10,6 +10,8 @@
 #include <hydro/state_t.hpp>
 #include <utility>
 
+#include "bus/saturating.h"
+
 namespace hydro {
 namespace {
 
@@ -89,8 +91,8 @@ void LoggerApp::OnMessage(const RawMessage& message) {
     int64_t& next = next_sequence_[event.channel]
                         .try_emplace(ReadInt64(message.data + kSessionOffset), sequence)
                         .first->second;
-    if (sequence > next) lost_ += sequence - next;
-    if (sequence >= next) next = sequence + 1;
+    if (sequence > next) lost_ = SaturatingSum(lost_, SaturatingDifference(sequence, next));
+    if (sequence >= next) next = SaturatingSum(sequence, 1);
   }
   if (message.channel == channels.state && message.size >= kSequenceOffset) {
     state_tick_ = ReadInt64(message.data + kTickOffset);

@@ -4,7 +4,7 @@
 #include "logger/message_order.h"
 #include "logger/run_config.h"
 #include "logger/run_table.h"
-#include "logger/saturating.h"
+#include "bus/saturating.h"
 #include "settings/input_error.h"
 
 namespace hydro {

@@ -51,6 +51,7 @@ start_s = 0.6
 [bus]
 url = "udpm://239.255.76.68:7668?ttl=1"
 channel_suffix = "_LEFT"
+key_file = "keys/stack.key"
 [time]
 mode = "lockstep"
 speed = 2
@@ -128,6 +129,7 @@ TEST(StackConfigTest, ReadsEveryKey) {
   EXPECT_EQ(config.model.motion->start_s, 0.6);
   EXPECT_EQ(config.bus.url, "udpm://239.255.76.68:7668?ttl=1");
   EXPECT_EQ(config.bus.channel_suffix, "_LEFT");
+  EXPECT_EQ(config.bus.key_file, "keys/stack.key");
   EXPECT_EQ(config.time.mode, TimeMode::kLockstep);
   EXPECT_EQ(config.time.speed, 2);
   EXPECT_EQ(config.time.duration_s, 12.5);
