@@ -232,8 +232,9 @@ TEST_F(StackConfigFolderTest, PathsAreRelativeToTheConfiguration) {
                                      "kind = \"steps\"\nsteps = [[0.1, 0.1]]",
                                      "kind = \"csv\"\nfile = \"../runs/square.csv\"\n"
                                      "column = \"value\"\ninterpolation = \"cubic\""));
-  const StackConfig config = LoadStackConfig(file);
+  const StackConfig config = LoadStackConfig(file, {"bus.key_file=../keys/stack.key"});
   EXPECT_EQ(config.model.resolved_file, (folder_ / "models/table1.toml").string());
+  EXPECT_EQ(config.bus.resolved_key_file, (folder_ / "keys/stack.key").string());
   EXPECT_EQ(config.model.text, kModelText);
   ASSERT_EQ(config.reference.trajectory.points.size(), 3u);
   EXPECT_EQ(config.reference.trajectory.points[1].value, 0.2);
