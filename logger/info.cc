@@ -4,8 +4,8 @@
 #include <cmath>
 #include <map>
 
-#include "logger/run_config.h"
 #include "bus/saturating.h"
+#include "logger/run_config.h"
 
 namespace hydro {
 namespace {

@@ -99,7 +99,8 @@ void LoggerApp::OnMessage(const RawMessage& message) {
     participant_.set_tick(state_tick_);
     if (participant_.state() == process_status_t::READY) participant_.Announce(process_status_t::RUNNING);
     // A state that is sent again asks for the answer again; it may have been lost.
-    if (state_tick_ >= reported_tick_ + kProgressTicks || state_tick_ <= reported_tick_) ReportProgress();
+    if (state_tick_ >= SaturatingSum(reported_tick_, kProgressTicks) || state_tick_ <= reported_tick_)
+      ReportProgress();
   }
   if (order_ && kind && message.size >= kSequenceOffset) {
     order_->Take(*kind, ReadInt64(message.data + kTickOffset), std::move(event), participant_.clock().Now());

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "bus/saturating.h"
 #include "pressure_ctrl/pressure_app.h"
 
 namespace hydro {
@@ -46,7 +47,7 @@ bool PressureApp::InputsAreSafe(const state_t& state) {
               "tick {}: the motor turns at {:.6g} rad/s, allowed is {} rad/s (limits.motor_speed_rad_s)",
               state.tick, speed, limits_.motor_speed_rad_s);
         });
-  const int64_t age = state.tick - (pressure_command_ ? pressure_command_->tick : 0);
+  const int64_t age = SaturatingDifference(state.tick, pressure_command_ ? pressure_command_->tick : 0);
   check(age <= stale_ticks_, "stale_pressure_command", static_cast<double>(age),
         static_cast<double>(stale_ticks_), false, [&] {
           return fmt::format(

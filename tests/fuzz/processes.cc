@@ -45,44 +45,23 @@ class Input {
   size_t left_;
 };
 
-}  // namespace
-
 // Each message: a byte for the channel, one for the time since the one before, one for the size, and its
-// fields (the type's hash goes before them). The controllers answer; the commands must be what an amplifier
-// may get.
-void Processes(const uint8_t* data, size_t size) {
-  spdlog::set_level(spdlog::level::off);
-  Input input(data, size);
-  SimulatedClock clock;
-  clock.AdvanceTo(Clock::TimePoint(std::chrono::hours(1)));
-  InProcessBus bus(&clock);
-  StackConfig config = testing::SmallStack();
-  config.time.mode = input.Byte() % 2 == 0 ? TimeMode::kLockstep : TimeMode::kRealtime;
-  const Channels channels;
-  LoggerApp logger(bus, clock, config, {"/dev/null"});
-  PressureApp pressure(bus, clock, config);
-  PositionApp position(bus, clock, config);
-  StackWatch watch(bus, clock, channels);
-  RollCall roll_call({"pressure_ctrl"});
-  bus.Subscribe<process_status_t>(channels.process_status,
-                                  [&](const process_status_t& status) { roll_call.Observe(status); });
-  bus.Subscribe<motor_command_t>(channels.motor_command, [&](const motor_command_t& command) {
-    // An intruder's own are on this channel too: only the loop's are promised.
-    if (command.session == 0) Promise(std::abs(command.voltage) <= 1e9, "voltages are finite");
-  });
-
+// fields (the type's hash goes before them). `poll` is called after each.
+template <class Poll>
+void Feed(Input& input, InProcessBus& bus, SimulatedClock& clock, Poll poll) {
   struct Place {
     const std::string* channel;
     int64_t hash;
   };
-  const std::array<Place, 8> places = {{{&channels.state, state_t::getHash()},
-                                        {&channels.pressure_command, pressure_command_t::getHash()},
-                                        {&channels.process_status, process_status_t::getHash()},
-                                        {&channels.stop, stop_t::getHash()},
-                                        {&channels.fault, fault_t::getHash()},
-                                        {&channels.loop_statistics, loop_statistics_t::getHash()},
-                                        {&channels.log_progress, log_progress_t::getHash()},
-                                        {&channels.arm_reference, arm_reference_t::getHash()}}};
+  static const Channels channels;
+  static const std::array<Place, 8> places = {{{&channels.state, state_t::getHash()},
+                                               {&channels.pressure_command, pressure_command_t::getHash()},
+                                               {&channels.process_status, process_status_t::getHash()},
+                                               {&channels.stop, stop_t::getHash()},
+                                               {&channels.fault, fault_t::getHash()},
+                                               {&channels.loop_statistics, loop_statistics_t::getHash()},
+                                               {&channels.log_progress, log_progress_t::getHash()},
+                                               {&channels.arm_reference, arm_reference_t::getHash()}}};
   for (size_t count = 0; input.left() > 0 && count < kMostMessages; ++count) {
     const Place& place = places[input.Byte() % places.size()];
     clock.AdvanceTo(clock.Now() + std::chrono::milliseconds(input.Byte()));
@@ -96,15 +75,57 @@ void Processes(const uint8_t* data, size_t size) {
     bus.PublishRaw(*place.channel, bytes.data(), static_cast<int>(bytes.size()));
     for (int turn = 0; turn < 5 && bus.HandleUntil(clock.Now()) > 0; ++turn) {
     }
-    logger.Poll();
+    poll();
+  }
+}
+
+StackConfig Config(Input& input) {
+  StackConfig config = testing::SmallStack();
+  config.time.mode = input.Byte() % 2 == 0 ? TimeMode::kLockstep : TimeMode::kRealtime;
+  return config;
+}
+
+}  // namespace
+
+// The controllers answer; the commands must be what an amplifier may get.
+void Processes(const uint8_t* data, size_t size) {
+  spdlog::set_level(spdlog::level::off);
+  Input input(data, size);
+  SimulatedClock clock;
+  clock.AdvanceTo(Clock::TimePoint(std::chrono::hours(1)));
+  InProcessBus bus(&clock);
+  const StackConfig config = Config(input);
+  const double most_volts = PressureLawSettingsFor(config).voltage_limit;
+  const Channels channels;
+  PressureApp pressure(bus, clock, config);
+  PositionApp position(bus, clock, config);
+  StackWatch watch(bus, clock, channels);
+  RollCall roll_call({"pressure_ctrl"});
+  bus.Subscribe<process_status_t>(channels.process_status,
+                                  [&](const process_status_t& status) { roll_call.Observe(status); });
+  bus.Subscribe<motor_command_t>(channels.motor_command, [&](const motor_command_t& command) {
+    // Nobody but the loop sends any here.
+    Promise(std::abs(command.voltage) <= most_volts, "voltages are within what the amplifier takes");
+  });
+  Feed(input, bus, clock, [&] {
     pressure.Poll();
     position.Poll();
-  }
+  });
   watch.summary().Lines();
   watch.NotReady();
   roll_call.Missing();
   pressure.Finish();
   position.Finish();
+}
+
+void Recorder(const uint8_t* data, size_t size) {
+  spdlog::set_level(spdlog::level::off);
+  Input input(data, size);
+  SimulatedClock clock;
+  clock.AdvanceTo(Clock::TimePoint(std::chrono::hours(1)));
+  InProcessBus bus(&clock);
+  LoggerApp logger(bus, clock, Config(input), {"/dev/null"});
+  Feed(input, bus, clock, [&] { logger.Poll(); });
 }
 
 }  // namespace hydro::fuzz

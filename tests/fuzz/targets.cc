@@ -6,6 +6,7 @@ const Target* FindTarget(std::string_view name) {
   static constexpr Target kTargets[] = {
       {"messages", Messages},
       {"processes", Processes},
+      {"recorder", Recorder},
       {"log", Log},
       {"table", Table},
       {"measured_run", MeasuredRun},

@@ -21,7 +21,8 @@ struct Target {
 const Target* FindTarget(std::string_view name);
 
 void Messages(const uint8_t* data, size_t size);     // messages as they come from the network
-void Processes(const uint8_t* data, size_t size);    // what processes do with them
+void Processes(const uint8_t* data, size_t size);    // what controllers and the launch do with them
+void Recorder(const uint8_t* data, size_t size);     // what the logger does with them
 void Log(const uint8_t* data, size_t size);          // all that hydro-log does with a log
 void Table(const uint8_t* data, size_t size);        // hydro-log import
 void MeasuredRun(const uint8_t* data, size_t size);  // a CSV with its sidecar
