@@ -1,5 +1,7 @@
 #include "bus/sequence_monitor.h"
 
+#include "bus/saturating.h"
+
 namespace hydro {
 
 SequenceMonitor::Verdict SequenceMonitor::Observe(int64_t session, int64_t sequence, Clock::TimePoint now) {
@@ -31,8 +33,8 @@ SequenceMonitor::Verdict SequenceMonitor::Observe(int64_t session, int64_t seque
     ++duplicates_;
     return Verdict::kDuplicate;
   }
-  gap_ = sequence - sequence_ - 1;
-  lost_ += gap_;
+  gap_ = SaturatingDifference(SaturatingDifference(sequence, sequence_), 1);
+  lost_ = SaturatingSum(lost_, gap_);
   sequence_ = sequence;
   return Verdict::kAccept;
 }

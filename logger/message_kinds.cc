@@ -3,6 +3,7 @@
 #include "bus/channels.h"
 #include "hydro/arm_reference_t.hpp"
 #include "hydro/fault_t.hpp"
+#include "hydro/introduction_t.hpp"
 #include "hydro/log_progress_t.hpp"
 #include "hydro/loop_statistics_t.hpp"
 #include "hydro/motor_command_t.hpp"
@@ -40,7 +41,8 @@ const std::vector<MessageKind>& MessageKinds() {
                                     Kind<stop_t>(channels.stop),
                                     Kind<rearm_t>(channels.rearm),
                                     Kind<process_status_t>(channels.process_status),
-                                    Kind<log_progress_t>(channels.log_progress)};
+                                    Kind<log_progress_t>(channels.log_progress),
+                                    Kind<introduction_t>(channels.introduction)};
   }();
   return kinds;
 }

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "bus/saturating.h"
 #include "settings/input_error.h"
 
 namespace hydro {
@@ -126,9 +127,10 @@ void PressureApp::OnPressureCommand(const pressure_command_t& command) {
     pressure_command_.reset();
   }
   // A little ahead is another route through a network; far ahead would hold up all that come after it.
-  future_command_ = participant_.tick() >= 0 && command.tick > participant_.tick() + stale_ticks_
-                        ? std::optional(command.tick)
-                        : std::nullopt;
+  future_command_ =
+      participant_.tick() >= 0 && command.tick > SaturatingSum(participant_.tick(), stale_ticks_)
+          ? std::optional(command.tick)
+          : std::nullopt;
   if (future_command_) return;
   waiting_commands_.push_back(command);
   if (pending_state_ && !AwaitsPressureCommand(pending_state_->tick)) {
@@ -141,7 +143,7 @@ void PressureApp::OnPressureCommand(const pressure_command_t& command) {
 // In lockstep every pressure command that is due comes, sooner or later; which one is in force must not
 // depend on when.
 bool PressureApp::AwaitsPressureCommand(int64_t state_tick) const {
-  const int64_t newest_allowed = state_tick - delay_;
+  const int64_t newest_allowed = SaturatingDifference(state_tick, delay_);
   if (!lockstep_ || newest_allowed < 0) return false;
   const int64_t due = newest_allowed / position_interval_ * position_interval_;
   const int64_t known = !waiting_commands_.empty() ? waiting_commands_.back().tick
@@ -158,7 +160,7 @@ void PressureApp::TakePressureCommandsUpTo(int64_t tick) {
 }
 
 void PressureApp::Answer(const state_t& state) {
-  TakePressureCommandsUpTo(state.tick - delay_);
+  TakePressureCommandsUpTo(SaturatingDifference(state.tick, delay_));
   motor_command_t command = ZeroVolts(state.tick, motor_command_t::SAFE);
   if (pressure_command_) {
     command.pressure_ref = PressureReference(state.tick);
@@ -199,7 +201,7 @@ void PressureApp::Send(motor_command_t& command) {
 }
 
 void PressureApp::Poll() {
-  participant_.statistics().set_lost_messages(state_monitor_.lost() + command_monitor_.lost());
+  participant_.statistics().set_lost_messages(SaturatingSum(state_monitor_.lost(), command_monitor_.lost()));
   participant_.Poll();
   if (participant_.state() != process_status_t::RUNNING || participant_.stop()) return;
   const auto silence = participant_.clock().Now() - last_state_time_;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "bus/saturating.h"
 #include "pressure_ctrl/pressure_app.h"
 
 namespace hydro {
@@ -76,7 +77,7 @@ bool PressureApp::InputsAreSafe(const state_t& state) {
 }
 
 bool PressureApp::PressureCommandIsSafe(const state_t& state) {
-  const int64_t age = state.tick - (pressure_command_ ? pressure_command_->tick : 0);
+  const int64_t age = SaturatingDifference(state.tick, pressure_command_ ? pressure_command_->tick : 0);
   const bool fresh = Check(
       TicksStale(state.tick) == 0, "stale_pressure_command", static_cast<double>(age),
       static_cast<double>(stale_ticks_), [&] {
@@ -119,7 +120,8 @@ bool PressureApp::PressureCommandIsSafe(const state_t& state) {
 
 // How long the pressure command in force has been stale; 0 while it is not.
 int64_t PressureApp::TicksStale(int64_t tick) const {
-  return std::max<int64_t>(0, tick - (pressure_command_ ? pressure_command_->tick : 0) - stale_ticks_);
+  const int64_t age = SaturatingDifference(tick, pressure_command_ ? pressure_command_->tick : 0);
+  return std::max<int64_t>(0, SaturatingDifference(age, stale_ticks_));
 }
 
 // The reference in force: held until it is stale, then on its way to zero.

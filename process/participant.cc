@@ -80,6 +80,23 @@ void Participant::Poll() {
                bus_.undecodable_channel() + "); they are ignored";
       },
       *this);
+  WatchRefusals();
+}
+
+void Participant::WatchRefusals() {
+  const auto news = refusals_.Observe(bus_.refused(), clock_.Now());
+  if (news == RefusalWatch::News::kNone) return;
+  const auto count = static_cast<double>(refusals_.count());
+  if (news == RefusalWatch::News::kBegins) {
+    Raise(RefusalWatch::kCode, refusals_.Text(), count, 0, false);
+    return;
+  }
+  if (const auto fault = active_.find(RefusalWatch::kCode); fault != active_.end()) {
+    fault->second.text = refusals_.Text();  // all of them, now that there are no more
+    fault->second.value = count;
+    if (!clock_.simulated()) spdlog::error("{}", fault->second.text);
+  }
+  Clear(RefusalWatch::kCode);
 }
 
 bool Participant::Raise(const std::string& code, const std::string& text, double value, double limit,

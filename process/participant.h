@@ -16,6 +16,7 @@
 #include "bus/clock.h"
 #include "bus/loop_statistics.h"
 #include "process/counted_warning.h"
+#include "process/refusal_watch.h"
 
 namespace hydro {
 
@@ -34,8 +35,8 @@ class Participant {
   void Announce(int8_t state, const std::string& text = "");
   int8_t state() const { return state_; }
 
-  // Publishes what is due: the ready announcement, the statistics. To be called often; cheap when nothing is
-  // due.
+  // Publishes what is due: the ready announcement, the statistics, a warning of messages that were refused.
+  // To be called often; cheap when nothing is due.
   void Poll();
 
   // The last plant tick this process knows of; -1 before the first. Written into faults and stops.
@@ -75,6 +76,7 @@ class Participant {
  private:
   void PublishFault(const fault_t& fault);
   void End(const std::string& code);
+  void WatchRefusals();
 
   Bus& bus_;
   Clock& clock_;
@@ -91,6 +93,7 @@ class Participant {
   std::map<int64_t, std::string> names_;  // of the processes heard of, by session
   CountedWarning undecodable_;
   CountedWarning unsent_;
+  RefusalWatch refusals_;
   std::optional<stop_t> stop_;
   Clock::TimePoint next_announcement_;
   LoopStatistics statistics_;

@@ -51,7 +51,9 @@ struct ModelSection {
 
 struct BusSection {
   std::string url = "udpm://239.255.76.67:7667?ttl=0";
-  std::string channel_suffix;  // appended to every channel name
+  std::string channel_suffix;     // appended to every channel name
+  std::string key_file;           // "": messages are not authenticated; docs/security.md
+  std::string resolved_key_file;  // path to read it from
 };
 
 enum class TimeMode { kRealtime, kLockstep };

@@ -29,13 +29,15 @@ void ReadModel(SectionReader section, const std::string& config_file, ModelSecti
   CheckedTrajectory(*model->motion, motion);
 }
 
-void ReadBus(SectionReader section, BusSection* bus) {
+void ReadBus(SectionReader section, const std::string& config_file, BusSection* bus) {
   if (section.Text("url", &bus->url)) {
     const std::string allowed = WhatIsWrongWithBusUrl(bus->url);
     if (!allowed.empty()) throw section.Error("url", Quoted(bus->url), allowed);
   }
   section.Text("channel_suffix", &bus->channel_suffix);
+  section.Text("key_file", &bus->key_file);
   section.Finish();
+  if (!bus->key_file.empty()) bus->resolved_key_file = PathBeside(config_file, bus->key_file);
   const std::string& suffix = bus->channel_suffix;
   const bool plain = std::all_of(suffix.begin(), suffix.end(), [](unsigned char c) {
     return (c < 0x80 && std::isalnum(c)) || c == '_' || c == '-' || c == '.';
@@ -222,7 +224,7 @@ void ReadSections(const TomlNode& root, const std::string& config_file, StackCon
   document.Finish();
 
   ReadModel(std::move(model), config_file, &config->model);
-  ReadBus(std::move(bus), &config->bus);
+  ReadBus(std::move(bus), config_file, &config->bus);
   ReadTime(std::move(time), &config->time);
   ReadPlant(std::move(plant), &config->plant);
   ReadPressure(std::move(pressure), &config->pressure);

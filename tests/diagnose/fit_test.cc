@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstdint>
 
+#include "diagnose/held_out.h"
 #include "model/state.h"
 #include "tests/diagnose/small_runs.h"
 
@@ -63,6 +64,44 @@ TEST(Fit, RecoversEffectParameters) {
   EXPECT_NEAR(ValueOf(fitted, "valve.relief.set"), 1500, 15);
   EXPECT_NEAR(ValueOf(fitted, "valve.relief.conductance"), 3e-3, 0.05 * 3e-3);
   EXPECT_NEAR(fitted.squared_gap(), 1, 0.1);
+}
+
+// Tests that what is known beforehand decides where it outweighs the runs, and does nothing without weight.
+TEST(Fit, WeighsWhatIsKnownBeforehand) {
+  const std::vector<RunData> runs = ClampedPair(Table1With(), 0.5, 1);
+  const Hypothesis hypothesis = WithFree(Table1With(), {"k_1", "b"});
+  FitOptions options;
+  options.tolerance = 1e-6;
+  const Fitted without = Fit(hypothesis, PointersTo(runs), StartsOf(runs), options);
+  Prior prior{{std::log(4.4), 0}, {0, 0}};
+  options.prior = &prior;
+  EXPECT_NEAR(ValueOf(Fit(hypothesis, PointersTo(runs), StartsOf(runs), options), "k_1"),
+              ValueOf(without, "k_1"), 1e-4);
+  prior.weight[0] = 1e15;
+  EXPECT_NEAR(ValueOf(Fit(hypothesis, PointersTo(runs), StartsOf(runs), options), "k_1"), 4.4, 1e-3);
+}
+
+// Tests that runs held out in turn are predicted as by fits to the others, also where the model is so wrong
+// that a straight step from the common fit ends anywhere.
+TEST(HeldOutInTurn, IsWhatFitsToTheOthersPredict) {
+  const ModelDescription truth = Table1With({{"valve.relief", {{"set", 500}, {"conductance", 3e-3}}, {}},
+                                             {"pump.quadratic_drag", {{"k", 1e-3}}, {}}});
+  std::vector<RunData> runs = ClampedPair(truth, 0.5, 1);
+  runs.push_back(SmallRun(truth, Shaft::kFree, false, 0.5, 2, 1));
+  const Hypothesis hypothesis = WithFree(Table1With(), {"k_1", "T_pmax", "J", "b", "T_s", "beta", "c_E"});
+  const Fitted fitted = FitRuns(hypothesis, runs);
+  ASSERT_TRUE(fitted.ok());
+  const HeldOut in_turn = PredictInTurn(fitted, Table1With(), PointersTo(runs), 1);
+  double sum = 0;
+  for (size_t r = 0; r < runs.size(); ++r) {
+    std::vector<const RunData*> others = PointersTo(runs);
+    std::vector<StartState> starts = hydro::StartsOf(fitted);
+    others.erase(others.begin() + static_cast<std::ptrdiff_t>(r));
+    starts.erase(starts.begin() + static_cast<std::ptrdiff_t>(r));
+    sum += Predict(Fit(fitted.hypothesis, others, starts, {}), {&runs[r]}, 1).sum;
+  }
+  EXPECT_LT(in_turn.sum, 3 * sum);
+  EXPECT_GT(in_turn.sum, fitted.sum);
 }
 
 // Tests that the start of a run that begins in motion is found.

@@ -55,6 +55,7 @@ start_s = 0.6
 [bus]
 url = "udpm://239.255.76.68:7668?ttl=1"
 channel_suffix = "_LEFT"
+key_file = "keys/stack.key"
 [time]
 mode = "lockstep"
 speed = 2
@@ -136,6 +137,7 @@ TEST(StackConfigTest, ReadsEveryKey) {
   EXPECT_EQ(config.model.motion->start_s, 0.6);
   EXPECT_EQ(config.bus.url, "udpm://239.255.76.68:7668?ttl=1");
   EXPECT_EQ(config.bus.channel_suffix, "_LEFT");
+  EXPECT_EQ(config.bus.key_file, "keys/stack.key");
   EXPECT_EQ(config.time.mode, TimeMode::kLockstep);
   EXPECT_EQ(config.time.speed, 2);
   EXPECT_EQ(config.time.duration_s, 12.5);
@@ -245,8 +247,9 @@ TEST_F(StackConfigFolderTest, PathsAreRelativeToTheConfiguration) {
                                      "kind = \"steps\"\nsteps = [[0.1, 0.1]]",
                                      "kind = \"csv\"\nfile = \"../runs/square.csv\"\n"
                                      "column = \"value\"\ninterpolation = \"cubic\""));
-  const StackConfig config = LoadStackConfig(file);
+  const StackConfig config = LoadStackConfig(file, {"bus.key_file=../keys/stack.key"});
   EXPECT_EQ(config.model.resolved_file, (folder_ / "models/table1.toml").string());
+  EXPECT_EQ(config.bus.resolved_key_file, (folder_ / "keys/stack.key").string());
   EXPECT_EQ(config.model.text, kModelText);
   ASSERT_EQ(config.reference.trajectory.points.size(), 3u);
   EXPECT_EQ(config.reference.trajectory.points[1].value, 0.2);
