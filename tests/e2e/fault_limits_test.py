@@ -127,6 +127,29 @@ class RearmTest(fault_case.FaultCase):
         log = self.finish()
         self.assertEqual(self.assert_zero_during(log, "controller_fault", "plant", least=300), 0)
 
+    # Tests that in a stack with a key a re-arm and a stop need it, and that with it they do what they do without.
+    def test_with_a_key(self):
+        key = ("--set", f"bus.key_file={self.path('bus.key')}")
+        self.run_program("hydro-launch", self.moving(), *key, "--make-key")
+        self.start_explicit(*key)
+        self.wait_for_voltage()
+        self.run_["pressure_ctrl"].kill()
+        self.wait_for_fault("stale_motor_command")
+        self.run_["pressure_ctrl"].wait()
+        self.run_.start("pressure_ctrl", label="second")
+        self.log.wait_for("HYDRO_MOTOR_COMMAND", lambda c: c.status == event_log.LAW, "commands again",
+                          start=self.log.count("HYDRO_MOTOR_COMMAND"))
+        arguments = [a for a in self.run_.arguments if not str(a).startswith("bus.key_file")]
+        at = arguments.index("--set", arguments.index('limits.rearm="explicit"'))
+        stranger = self.run_program("hydro-launch", *arguments[:at], *arguments[at + 1:], "--rearm", expect=1)
+        self.assertRegex(stranger.stderr, "the plant does not answer")
+        self.rearm(0)
+        self.wait_for_voltage()
+        stopped = self.run_program("hydro-launch", *self.run_.arguments, "--stop")
+        self.assertRegex(stopped.stdout, "processes have ended")
+        for role in ("plant", "pressure_ctrl", "position_ctrl", "logger"):
+            self.assertEqual(self.run_[role].wait(), 0, self.run_[role].report())
+
     # Tests that a limit that is still passed stands against a re-arm.
     def test_refused_while_the_cause_persists(self):
         self.start_explicit("--set", "limits.arm_angle_rad=0.05", config=self.config_with(PUSH.format(100)))
