@@ -38,8 +38,9 @@ class FaultCase(stack.TestCase):
         return self.path(name)
 
     def moving(self):
-        """A reference that never settles, so that the voltage of a running loop is never zero for long."""
-        return self.config_with('signal = "arm_angle"\nkind = "sine"\namplitude = 0.2\nfrequency_hz = 0.5')
+        """A reference that never settles, so that the voltage of a running loop is never zero for long; and slow, so that
+        an arm that coasts at zero volts, or under a voltage that was held, stays far from its ends."""
+        return self.config_with('signal = "arm_angle"\nkind = "sine"\namplitude = 0.05\nfrequency_hz = 0.5')
 
     def start_stack(self, *options, config=None, duration=0, roles=("logger", "position_ctrl", "pressure_ctrl", "plant")):
         """Starts these of the four programs, the plant last; returns the log as it grows."""

@@ -38,7 +38,7 @@ class FaultLoopsTest(fault_case.FaultCase):
         self.start_moving()
         self.run_["pressure_ctrl"].kill()
         self.wait_for_fault("stale_motor_command")
-        self.wait_for_states(300)
+        self.wait_for_states(100)
         self.check_stale_motor_command(self.finish())
 
     # Tests the limit of a real-time machine, five ticks (config/realtime.toml), at a rate at which this machine's
@@ -69,7 +69,7 @@ class FaultLoopsTest(fault_case.FaultCase):
         self.start_moving()
         self.run_["pressure_ctrl"].send(signal.SIGSTOP)
         self.wait_for_fault("stale_motor_command")
-        self.wait_for_states(300)
+        self.wait_for_states(100)
         self.run_["pressure_ctrl"].send(signal.SIGCONT)
         self.wait_for_fault("stale_motor_command", active=False)
         self.wait_for_voltage()
@@ -93,7 +93,7 @@ class FaultLoopsTest(fault_case.FaultCase):
         print(f"{len(held)} commands held, {len(ramp)} on the ramp, {len(done)} safe; "
               f"detected {last.tick - newest.tick} ticks after the last pressure command", flush=True)
         for commands in (held, ramp, done):
-            self.assertGreater(len(commands), 20)
+            self.assertGreater(len(commands), 3)
         # The first state behind the limit raised it: later only by ticks for which there was no state.
         self.assertEqual(last.tick, min(c.tick for c in ramp))
         for c in held:
@@ -116,7 +116,7 @@ class FaultLoopsTest(fault_case.FaultCase):
         self.run_["position_ctrl"].kill()
         fault = self.wait_for_fault("stale_pressure_command", source="pressure_ctrl")
         self.log.wait_for_tick(fault.tick + RAMP)
-        self.wait_for_states(200)
+        self.wait_for_states(100)
         self.check_position_loop_gone(self.finish())
 
     def test_position_loop_hangs(self):
@@ -124,7 +124,7 @@ class FaultLoopsTest(fault_case.FaultCase):
         self.run_["position_ctrl"].send(signal.SIGSTOP)
         fault = self.wait_for_fault("stale_pressure_command", source="pressure_ctrl")
         self.log.wait_for_tick(fault.tick + RAMP)
-        self.wait_for_states(200)
+        self.wait_for_states(100)
         self.run_["position_ctrl"].send(signal.SIGCONT)
         self.wait_for_fault("stale_pressure_command", active=False)
         self.wait_for_voltage()
@@ -174,9 +174,10 @@ class FaultLoopsTest(fault_case.FaultCase):
         return second, second_log
 
     def check_control_went_on(self, states, commands):
-        answered = {c.tick for c in commands}
+        answered = {c.tick for c in commands if c.status == event_log.LAW}
         self.assertGreater(len(states), 200)
-        self.assertEqual([s.tick for s in states if s.tick not in answered], [])
+        # Those at the very end were overtaken by the run's end.
+        self.assertEqual([s.tick for s in states if s.tick not in answered and s.tick < max(answered)], [])
         self.assertTrue([s for s in states if s.voltage != 0])
 
     # Tests that control goes on without a logger, that the plant says so, and that it hears when one is back.

@@ -77,7 +77,7 @@ class NetworkTest(fault_case.FaultCase):
         fault = self.wait_for_fault("stale_pressure_command", source="pressure_ctrl")
         gone = self.wait_for_fault("logger_gone", source="plant")
         self.log.wait_for_tick(fault.tick + RAMP)
-        self.wait_for_states(200)
+        self.wait_for_states(100)
         back()
         self.wait_for_fault("stale_pressure_command", active=False)
         self.wait_for_fault("logger_gone", active=False)
