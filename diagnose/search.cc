@@ -63,18 +63,8 @@ class Searcher {
     result_.given = Explain(context_, from, starts, WithAllJobs(fine_));
     if (!result_.given.fitted.ok()) return result_;
     result_.best = result_.given;
-    std::vector<Explanation> beam = {result_.given};
-    for (int step = 0; step < most_changes_; ++step) {
-      std::vector<Explanation> next = Extend(beam, step);
-      if (next.empty()) break;
-      beam.assign(next.begin(), next.begin() + static_cast<std::ptrdiff_t>(std::min(kBeam, next.size())));
-      while (beam.size() > 1 && beam.back().fitted.sum > kBehind * beam.front().fitted.sum) beam.pop_back();
-      const auto best = std::min_element(next.begin(), next.end(),
-                                         [](const auto& a, const auto& b) { return Cost(a) < Cost(b); });
-      if (!Material(result_.best.held_out_gap(), best->held_out_gap())) break;
-      result_.best = *best;
-      if (result_.best.held_out_gap() < kCloseEnough) break;
-    }
+    Grow(Extend({result_.given}, 0), 0);
+    if (result_.best.held_out_gap() >= kCloseEnough) Grow(TryAllAlone(), 0);
     Exchange();
     TakeBack();
     return result_;
@@ -89,6 +79,38 @@ class Searcher {
 
   void Tell(const std::string& stage, double fraction) const {
     if (context_.tell) context_.tell({stage, fraction});
+  }
+
+  // Takes the best of `next`, hypotheses of `step` + 1 changes, as far as it gains enough, and goes on from
+  // there.
+  void Grow(std::vector<Explanation> next, int step) {
+    while (!next.empty()) {
+      std::vector<Explanation> beam(next.begin(),
+                                    next.begin() + static_cast<std::ptrdiff_t>(std::min(kBeam, next.size())));
+      while (beam.size() > 1 && beam.back().fitted.sum > kBehind * beam.front().fitted.sum) beam.pop_back();
+      const auto best = std::min_element(next.begin(), next.end(),
+                                         [](const auto& a, const auto& b) { return Cost(a) < Cost(b); });
+      if (!Material(result_.best.held_out_gap(), best->held_out_gap())) return;
+      result_.best = *best;
+      if (result_.best.held_out_gap() < kCloseEnough || ++step >= most_changes_) return;
+      next = Extend(beam, step);
+    }
+  }
+
+  // The score test is a straight line's, and what is far from straight may look worthless in it. Where the
+  // likeliest have not explained the runs, every change that has not been refitted alone is.
+  std::vector<Explanation> TryAllAlone() {
+    std::vector<Scanned> pool;
+    for (const auto& rows : scanned_alone_) {
+      const bool tried = std::any_of(result_.tried.begin(), result_.tried.end(), [&](const Explanation& one) {
+        return one.changes().size() == 1 && one.changes().front() == rows.front().change;
+      });
+      if (tried || !rows.front().failure.empty()) continue;
+      pool.push_back(rows.front());
+      if (rows.size() > 1 && rows[1].failure.empty()) pool.push_back(rows[1]);
+    }
+    Tell("refitting each effect", 0.8);
+    return FitAll(pool, StartsOf(result_.given.fitted));
   }
 
   // Each of the beam with one more change, fitted; the best few by their fit, with their held-out prediction.
@@ -108,12 +130,17 @@ class Searcher {
           rated.expected = rows.front().expected / static_cast<double>(from.fitted.count);
           result_.rated.push_back(rated);
         }
+        scanned_alone_ = scanned;
       }
       Pick(from, &scanned, step == 0 ? kRefitsAtFirst : kRefitsLater, &pool);
     }
     Tell("refitting the likeliest" + Step(step), share + 0.3 / most_changes_);
+    return FitAll(pool, StartsOf(beam.front().fitted));
+  }
+
+  // Fits all; the best few by their fit, with their held-out prediction.
+  std::vector<Explanation> FitAll(const std::vector<Scanned>& pool, const std::vector<StartState>& starts) {
     std::vector<Fitted> fits(pool.size());
-    const std::vector<StartState> starts = StartsOf(beam.front().fitted);
     ParallelFor(pool.size(), context_.jobs,
                 [&](size_t i) { fits[i] = Fit(pool[i].start, context_.runs, starts, coarse_); });
     // The best start of each set of changes.
@@ -135,7 +162,6 @@ class Searcher {
     std::stable_sort(best.begin(), best.end(),
                      [](const Fitted& a, const Fitted& b) { return a.sum < b.sum; });
     std::vector<Explanation> explained(std::min(best.size(), kFinalists));
-    Tell("refitting the likeliest" + Step(step), share + 0.6 / most_changes_);
     ParallelFor(explained.size(), context_.jobs, [&](size_t i) {
       explained[i] = Explain(context_, best[i].hypothesis, StartsOf(best[i]), fine_);
     });
@@ -183,8 +209,8 @@ class Searcher {
     }
   }
 
-  // Each change is tried to be replaced: a greedy choice may have been second best once others are there. Where
-  // all is explained it is still tried: what does as well is a tie.
+  // Each change is tried to be replaced: a greedy choice may have been second best once others are there.
+  // Where all is explained it is still tried: what does as well is a tie.
   void Exchange() {
     if (result_.best.changes().size() < 2) return;
     const int rounds = result_.best.held_out_gap() < kCloseEnough ? 1 : 2;
@@ -232,6 +258,7 @@ class Searcher {
   int most_changes_;
   FitOptions coarse_, fine_;
   SearchResult result_;
+  std::vector<std::vector<Scanned>> scanned_alone_;  // every change to the given model
 };
 
 }  // namespace

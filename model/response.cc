@@ -57,8 +57,7 @@ void Pass(const ModelDescription& model, const Stimulus& stimulus, const StartSt
   // The steps of a fourth-order method are as the fourth root of its error.
   const double finer = std::max(1.0, std::pow(1e-6 / options.relative_tolerance, 0.25));
   machine.AllowSteps(
-      static_cast<int64_t>(finer * (20 * static_cast<double>(stimulus.time.size()) + 500 * duration)) +
-      1000);
+      static_cast<int64_t>(finer * (20 * static_cast<double>(stimulus.time.size()) + 500 * duration)) + 1000);
   const bool values = first == 0;
   size_t row = 0;
   for (size_t k = 0; k < stimulus.time.size(); ++k) {

@@ -55,7 +55,16 @@ CatalogueEntry FluidEntrainedAir() {
            "1/beta_eff = 1/beta + compressibility of air that is `air_fraction` of the volume at atmospheric "
            "pressure, compressed polytropically",
            "parameter beta, fluid.stiffening",
-           {{"air_fraction", "1", 0, 1, true, "volume of the air at atmospheric pressure over the fluid's"}}},
+           // The less air there is the more a little of it does: from none, 1 part in 500 is not found.
+           {{"air_fraction",
+             "1",
+             0,
+             1,
+             true,
+             "volume of the air at atmospheric pressure over the fluid's",
+             false,
+             {},
+             {0, 5e-4, 5e-3}}}},
           MakeEffect<EntrainedAir>};
 }
 
