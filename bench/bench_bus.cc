@@ -10,9 +10,12 @@
 #include <hydro/motor_command_t.hpp>
 #include <hydro/state_t.hpp>
 #include <lcm/lcm-cpp.hpp>
+#include <memory>
 #include <string>
+#include <vector>
 
 #include "bench/child_process.h"
+#include "bus/authenticated_channels.h"
 #include "bus/histogram.h"
 #include "bus/in_process_bus.h"
 #include "bus/udpm_bus.h"
@@ -31,11 +34,17 @@ constexpr int kRounds = 5;
 constexpr int kBlocks = 20;
 constexpr int kTripsPerBlock = 100;
 
+// What messages are sealed with where they are; the same in all processes of a round.
+std::unique_ptr<Authenticator> KeyedOrNot(bool with_key) {
+  if (!with_key) return nullptr;
+  return std::make_unique<Authenticator>(BusKey({1, 2, 3}), AuthenticatedChannels(Channels()));
+}
+
 // The pressure loop as hydro-pressure-ctrl runs it.
-void AnswerOnBus(const std::string& url) {
+void AnswerOnBus(const std::string& url, bool with_key) {
   StackConfig config =
       LoadStackConfig(HYDRO_BENCH_CONFIG, {"time.mode=realtime", "limits.stale_input_s=1e6"});
-  UdpmBus bus(url);
+  UdpmBus bus(url, KeyedOrNot(with_key));
   WallClock clock;
   PressureApp app(bus, clock, config);
   RunApp(bus, clock, app);
@@ -62,7 +71,8 @@ class BareEcho {
 
 class BusPinger {
  public:
-  explicit BusPinger(const std::string& url) : bus_(url), states_(bus_.Advertise<state_t>(kState)) {
+  BusPinger(const std::string& url, bool with_key)
+      : bus_(url, KeyedOrNot(with_key)), states_(bus_.Advertise<state_t>(kState)) {
     bus_.Subscribe<motor_command_t>(kCommand,
                                     [this](const motor_command_t& command) { answered_ = command.tick; });
   }
@@ -130,29 +140,34 @@ void AwaitEcho(Pinger* pinger) {
 struct RoundTrips {
   Histogram bare;
   Histogram bus;
+  Histogram keyed;  // the bus with messages that are authenticated
 };
 
 // One round with fresh processes. Which core the kernel gives to which thread makes a difference of a third
 // and stays for the life of a process: hence several rounds.
 void RunRound(bool one_core, RoundTrips* times) {
   // The children first: a process must not fork once LCM's threads run in it.
-  const std::string bus_url = FreeBusUrl(), bare_url = FreeBusUrl();
+  const std::string bus_url = FreeBusUrl(), bare_url = FreeBusUrl(), keyed_url = FreeBusUrl();
   if (one_core) {
     cpu_set_t set;
     CPU_ZERO(&set);
     CPU_SET(static_cast<unsigned>(sched_getcpu()), &set);
     sched_setaffinity(0, sizeof set, &set);
   }
-  const ChildProcess pressure_loop([&] { AnswerOnBus(bus_url); });
+  const ChildProcess pressure_loop([&] { AnswerOnBus(bus_url, false); });
+  const ChildProcess keyed_loop([&] { AnswerOnBus(keyed_url, true); });
   const ChildProcess bare_echo([&] { BareEcho(bare_url).Run(); });
-  BusPinger bus(bus_url);
+  BusPinger bus(bus_url, false);
+  BusPinger keyed(keyed_url, true);
   BarePinger bare(bare_url);
   AwaitEcho(&bus);
+  AwaitEcho(&keyed);
   AwaitEcho(&bare);
   int64_t tick = 0;
   for (int block = 0; block < kBlocks; ++block) {  // alternately, so that both meet the same neighbours
     RunBlock(&bare, &tick, &times->bare);
     RunBlock(&bus, &tick, &times->bus);
+    RunBlock(&keyed, &tick, &times->keyed);
   }
 }
 
@@ -172,11 +187,16 @@ void PrintRoundTrips(bool one_core) {
   };
   row("bare LCM", times.bare);
   row("stack", times.bus);
-  const auto ratio = [&](double percent) {
-    return static_cast<double>(times.bus.Percentile(percent)) /
-           static_cast<double>(times.bare.Percentile(percent));
+  row("with a key", times.keyed);
+  const auto ratios = [](const char* name, const Histogram& a, const Histogram& b) {
+    const auto ratio = [&](double percent) {
+      return static_cast<double>(a.Percentile(percent)) / static_cast<double>(b.Percentile(percent));
+    };
+    std::printf("%-12s %9.2f %9.2f %9.2f\n", name, ratio(50), ratio(99), ratio(99.9));
   };
-  std::printf("%-12s %9.2f %9.2f %9.2f\n\n", "ratio", ratio(50), ratio(99), ratio(99.9));
+  ratios("stack / bare", times.bus, times.bare);
+  ratios("key / none", times.keyed, times.bus);
+  std::printf("\n");
 }
 
 enum class Sending { kByName, kAdvertised };
@@ -217,6 +237,21 @@ void InProcessExchange(benchmark::State& bench, Sending sending, bool tapped) {
 BENCHMARK_CAPTURE(InProcessExchange, advertised, Sending::kAdvertised, false);
 BENCHMARK_CAPTURE(InProcessExchange, by_name, Sending::kByName, false);
 BENCHMARK_CAPTURE(InProcessExchange, advertised_and_tapped, Sending::kAdvertised, true);
+
+// What authentication adds to a message's way: its seal, and the check of it.
+void SealAndOpen(benchmark::State& bench) {
+  Authenticator authenticator(BusKey({1, 2, 3}), AuthenticatedChannels(Channels()));
+  state_t state{};
+  std::vector<uint8_t> bytes(static_cast<size_t>(state.getEncodedSize()));
+  const int size = state.encode(bytes.data(), 0, static_cast<int>(bytes.size()));
+  const auto now = SteadyClock::now();
+  for (auto _ : bench) {
+    const int sealed = authenticator.Seal(kState, &bytes, size);
+    const auto opened = authenticator.Open(kState, bytes.data(), sealed, now);
+    if (opened.verdict != Authenticator::Verdict::kAccepted) bench.SkipWithError("refused");
+  }
+}
+BENCHMARK(SealAndOpen);
 
 void HistogramRecord(benchmark::State& bench) {
   Histogram histogram;

@@ -12,12 +12,15 @@
 #include <hydro/pressure_command_t.hpp>
 #include <hydro/state_t.hpp>
 #include <lcm/lcm-cpp.hpp>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "bench/child_process.h"
+#include "bus/authenticated_channels.h"
 #include "bus/udpm_bus.h"
 #include "plant/plant_app.h"
+#include "plant/simulated_rig.h"
 #include "position_ctrl/position_app.h"
 #include "pressure_ctrl/pressure_app.h"
 #include "settings/stack_config.h"
@@ -95,21 +98,27 @@ double BareTicksPerSecond(int64_t ticks) {
   return static_cast<double>(ticks) / elapsed.count();
 }
 
+// With a key all messages are authenticated.
+std::unique_ptr<Authenticator> KeyedOrNot(bool with_key) {
+  if (!with_key) return nullptr;
+  return std::make_unique<Authenticator>(BusKey({1, 2, 3}), AuthenticatedChannels(Channels()));
+}
+
 template <class Controller>
-void RunController(const std::string& url, const StackConfig& config) {
-  UdpmBus bus(url);
+void RunController(const std::string& url, const StackConfig& config, bool with_key) {
+  UdpmBus bus(url, KeyedOrNot(with_key));
   WallClock clock;
   Controller controller(bus, clock, config);
   RunApp(bus, clock, controller);
 }
 
-double StackTicksPerSecond(int64_t ticks, const std::string& config_file) {
+double StackTicksPerSecond(int64_t ticks, const std::string& config_file, bool with_key) {
   const std::string url = FreeBusUrl();
   StackConfig config = LoadStackConfig(config_file, {"time.mode=lockstep", "plant.rate_hz=5000"});
   config.last_tick = ticks;
-  const ChildProcess fast([&] { RunController<PressureApp>(url, config); });
-  const ChildProcess slow([&] { RunController<PositionApp>(url, config); });
-  UdpmBus bus(url);
+  const ChildProcess fast([&] { RunController<PressureApp>(url, config, with_key); });
+  const ChildProcess slow([&] { RunController<PositionApp>(url, config, with_key); });
+  UdpmBus bus(url, KeyedOrNot(with_key));
   WallClock clock;
   // The plant's own messages say when it started and ended.
   int64_t started = 0, ended = 0;
@@ -117,7 +126,8 @@ double StackTicksPerSecond(int64_t ticks, const std::string& config_file) {
     if (status.role == "plant" && status.state == process_status_t::RUNNING) started = status.utime;
   });
   bus.Subscribe<stop_t>("HYDRO_STOP", [&](const stop_t& stop) { ended = stop.utime; });
-  PlantApp plant(bus, clock, config);
+  SimulatedRig rig(config);
+  PlantApp plant(bus, clock, config, rig);
   if (plant.Run() != 0) {
     std::fprintf(stderr, "bench_lockstep: %s\n", plant.failure().c_str());
     std::exit(1);
@@ -141,14 +151,16 @@ void Compare(int64_t ticks, const std::string& config_file, bool one_core) {
     CPU_SET(static_cast<unsigned>(sched_getcpu()), &set);
     sched_setaffinity(0, sizeof set, &set);
   }
-  std::vector<double> bare, stack;
+  std::vector<double> bare, stack, keyed;
   for (int round = 0; round < kRounds; ++round) {  // alternately, so that both meet the same neighbours
     bare.push_back(BareTicksPerSecond(ticks));
-    stack.push_back(StackTicksPerSecond(ticks, config_file));
+    stack.push_back(StackTicksPerSecond(ticks, config_file, false));
+    keyed.push_back(StackTicksPerSecond(ticks, config_file, true));
   }
   sched_setaffinity(0, sizeof before, &before);
-  std::printf("%-34s %10.0f %10.0f %8.2f\n", one_core ? "three processes on one core" : "three processes",
-              Median(bare), Median(stack), Median(stack) / Median(bare));
+  std::printf("%-34s %10.0f %10.0f %8.2f %10.0f %8.2f\n",
+              one_core ? "three processes on one core" : "three processes", Median(bare), Median(stack),
+              Median(stack) / Median(bare), Median(keyed), Median(keyed) / Median(stack));
 }
 
 }  // namespace
@@ -161,7 +173,8 @@ int main(int argc, char** argv) {
     return 2;
   }
   try {
-    std::printf("%-34s %10s %10s %8s\n", "lockstep, ticks/s (median of 5)", "bare LCM", "stack", "ratio");
+    std::printf("%-34s %10s %10s %8s %10s %8s\n", "lockstep, ticks/s (median of 5)", "bare LCM", "stack",
+                "ratio", "with key", "to none");
     hydro::Compare(ticks, HYDRO_BENCH_CONFIG, false);
     hydro::Compare(ticks, HYDRO_BENCH_CONFIG, true);
   } catch (const std::exception& error) {

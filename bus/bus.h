@@ -10,6 +10,9 @@
 //   publishes is delivered by a later turn of the same or a later HandleUntil(), never inside Publish().
 // - An exception thrown by a handler leaves HandleUntil() (it never travels through C code).
 // - A message that cannot be decoded (another type, truncated) is counted in undecodable() and not delivered.
+// - The seal of an authenticated message (message_seal.h) is never part of what is delivered. Where the bus
+// has a
+//   key, a message that is not genuine is counted in refused() and not delivered.
 // - A bus is used by one thread.
 #pragma once
 
@@ -22,6 +25,8 @@
 #include <string_view>
 #include <utility>
 #include <vector>
+
+#include "bus/message_seal.h"
 
 namespace hydro {
 
@@ -43,6 +48,11 @@ struct MessageType {
   bool (*decode_into)(void* message, const void* data, int size);  // false: not a message of this type
 };
 
+// True when decoding `size` bytes took all of them but for a seal.
+inline bool DecodedAll(int decoded, const void* data, int size) {
+  return decoded == size || (decoded >= 0 && decoded == SizeWithoutSeal(data, size));
+}
+
 template <class Message>
 const MessageType& TypeOf() {
   static const MessageType type{
@@ -53,12 +63,12 @@ const MessageType& TypeOf() {
       },
       [](const void* data, int size) -> std::shared_ptr<void> {
         auto message = std::make_shared<Message>();
-        return message->decode(data, 0, size) == size ? message : nullptr;
+        return DecodedAll(message->decode(data, 0, size), data, size) ? message : nullptr;
       },
       []() -> std::shared_ptr<void> { return std::make_shared<Message>(); },
       [](void* to, const void* from) { *static_cast<Message*>(to) = *static_cast<const Message*>(from); },
       [](void* message, const void* data, int size) {
-        return static_cast<Message*>(message)->decode(data, 0, size) == size;
+        return DecodedAll(static_cast<Message*>(message)->decode(data, 0, size), data, size);
       }};
   return type;
 }
@@ -69,6 +79,17 @@ struct RawMessage {
   const uint8_t* data = nullptr;
   int size = 0;
   int64_t receive_utime = 0;  // us since 1970-01-01 UTC, or simulated time, when it was received
+};
+
+// Messages that arrived on an authenticated channel and were not obeyed, by reason.
+struct RefusedMessages {
+  int64_t unsealed = 0;        // without a seal: from who knows nothing of the key
+  int64_t wrong_seal = 0;      // from who has another key, or changed on the way
+  int64_t repeated = 0;        // no newer than one that was accepted: played again, or overtaken
+  int64_t unknown_sender = 0;  // genuine, but of a sender that does not answer: a recording of an earlier run
+  std::string last_channel;
+
+  int64_t total() const { return unsealed + wrong_seal + repeated + unknown_sender; }
 };
 
 // One channel that a bus has looked up already, for messages of one type. Behind Publisher.
@@ -104,7 +125,8 @@ class Bus {
   Bus(const Bus&) = delete;
   Bus& operator=(const Bus&) = delete;
 
-  // Sends `message` on `channel`. Throws BusError when the transport refuses it.
+  // Sends `message` on `channel`. Throws BusError when the transport refuses it. A network that is down for
+  // the moment (a cable, an interface) only loses it: see unsent().
   template <class Message>
   void Publish(const std::string& channel, const Message& message) {
     PublishTyped(channel, TypeOf<Message>(), &message);
@@ -141,6 +163,19 @@ class Bus {
   // Messages that arrived on a subscribed channel and could not be decoded as its type.
   virtual int64_t undecodable() const = 0;
 
+  // Messages that could not be sent because the network was down.
+  virtual int64_t unsent() const { return 0; }
+
+  // The channel of the newest message that could not be decoded; empty when there was none or the transport
+  // does not know.
+  const std::string& undecodable_channel() const { return undecodable_channel_; }
+
+  // Messages that were not genuine. None on a bus without a key.
+  virtual const RefusedMessages& refused() const {
+    static const RefusedMessages kNone;
+    return kNone;
+  }
+
  protected:
   virtual void PublishTyped(const std::string& channel, const MessageType& type, const void* message) = 0;
   virtual void SubscribeTyped(const std::string& channel, const MessageType& type,
@@ -150,6 +185,8 @@ class Bus {
   virtual std::shared_ptr<Outlet> MakeOutlet(const std::string& channel, const MessageType& type) {
     return std::make_shared<NamedOutlet>(this, channel, type);
   }
+
+  std::string undecodable_channel_;
 
  private:
   class NamedOutlet : public Outlet {

@@ -15,8 +15,10 @@ struct Channels {
         loop_statistics("HYDRO_LOOP_STATISTICS" + suffix),
         fault("HYDRO_FAULT" + suffix),
         stop("HYDRO_STOP" + suffix),
+        rearm("HYDRO_REARM" + suffix),
         process_status("HYDRO_PROCESS_STATUS" + suffix),
-        log_progress("HYDRO_LOG_PROGRESS" + suffix) {}
+        log_progress("HYDRO_LOG_PROGRESS" + suffix),
+        introduction("HYDRO_INTRODUCTION" + suffix) {}
 
   std::string state;             // state_t, from the plant or the driver
   std::string motor_command;     // motor_command_t, from the pressure loop
@@ -26,8 +28,10 @@ struct Channels {
   std::string loop_statistics;   // loop_statistics_t, from every process
   std::string fault;             // fault_t, from every process
   std::string stop;              // stop_t
+  std::string rearm;             // rearm_t, from hydro-launch --rearm, answered by the plant
   std::string process_status;    // process_status_t, from every process
   std::string log_progress;      // log_progress_t, from the logger
+  std::string introduction;      // introduction_t, from the bus of every process of a stack with a key
 };
 
 }  // namespace hydro

@@ -2,6 +2,8 @@
 // deadlines, watchdogs and statistics only.
 #pragma once
 
+#include <time.h>
+
 #include <chrono>
 #include <cstdint>
 
@@ -20,6 +22,9 @@ class Clock {
   // Microseconds since 1970-01-01 UTC, for the utime field of messages.
   virtual int64_t Utime() const = 0;
 
+  // How long the machine has been suspended in all since it was started. Now() stands still meanwhile.
+  virtual Duration Suspended() const { return {}; }
+
   // True when no wall time passes by itself: whoever waits on it advances it.
   virtual bool simulated() const { return false; }
 };
@@ -35,6 +40,14 @@ class WallClock : public Clock {
   int64_t Utime() const override {
     using namespace std::chrono;
     return duration_cast<microseconds>(system_clock::now().time_since_epoch()).count();
+  }
+  Duration Suspended() const override { return Since(CLOCK_BOOTTIME) - Since(CLOCK_MONOTONIC); }
+
+ private:
+  static Duration Since(clockid_t id) {
+    timespec time{};
+    clock_gettime(id, &time);
+    return std::chrono::seconds(time.tv_sec) + std::chrono::nanoseconds(time.tv_nsec);
   }
 };
 

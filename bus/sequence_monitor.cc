@@ -1,5 +1,7 @@
 #include "bus/sequence_monitor.h"
 
+#include "bus/saturating.h"
+
 namespace hydro {
 
 SequenceMonitor::Verdict SequenceMonitor::Observe(int64_t session, int64_t sequence, Clock::TimePoint now) {
@@ -13,6 +15,7 @@ SequenceMonitor::Verdict SequenceMonitor::Observe(int64_t session, int64_t seque
   const bool silent = now - heard_ > alive_;
   if (session != *session_ && !silent) {
     second_heard_ = now;
+    second_session_ = session;
     return Verdict::kSecondSender;
   }
   heard_ = now;
@@ -30,8 +33,8 @@ SequenceMonitor::Verdict SequenceMonitor::Observe(int64_t session, int64_t seque
     ++duplicates_;
     return Verdict::kDuplicate;
   }
-  gap_ = sequence - sequence_ - 1;
-  lost_ += gap_;
+  gap_ = SaturatingDifference(SaturatingDifference(sequence, sequence_), 1);
+  lost_ = SaturatingSum(lost_, gap_);
   sequence_ = sequence;
   return Verdict::kAccept;
 }

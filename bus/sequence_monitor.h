@@ -34,6 +34,9 @@ class SequenceMonitor {
     return second_heard_ && now - *second_heard_ <= alive_;
   }
 
+  std::optional<int64_t> session() const { return session_; }                // of the sender that is followed
+  std::optional<int64_t> second_session() const { return second_session_; }  // of the last kSecondSender
+
   int64_t gap() const { return gap_; }    // messages missing just before the last observed one
   int64_t lost() const { return lost_; }  // messages missing in all; what came before the first is not
   int64_t duplicates() const { return duplicates_; }  // kDuplicate verdicts
@@ -46,6 +49,7 @@ class SequenceMonitor {
   int64_t sequence_ = 0;            // its newest
   std::optional<int64_t> tick_;     // its newest
   Clock::TimePoint heard_{};        // when it was heard last
+  std::optional<int64_t> second_session_;
   std::optional<Clock::TimePoint> second_heard_;
   int64_t gap_ = 0;
   int64_t lost_ = 0;

@@ -9,6 +9,7 @@
 #include <csignal>
 #include <cstring>
 #include <string_view>
+#include <utility>
 
 #include "bus/multicast_self_test.h"
 #include "bus/udpm_url.h"
@@ -68,6 +69,12 @@ void CheckChannel(const std::string& channel) {
   }
 }
 
+// The network may come back: it has worked before (the constructor has seen to that).
+bool IsPassing(int error) {
+  return error == ENETUNREACH || error == ENETDOWN || error == EHOSTUNREACH || error == EADDRNOTAVAIL ||
+         error == ENOBUFS || error == EPERM;  // the last: a firewall
+}
+
 // Waits until `fd` can be read: 1, the deadline passed: 0, a signal arrived: -1.
 int WaitReadable(int fd, Bus::TimePoint deadline) {
   while (true) {
@@ -89,7 +96,8 @@ int WaitReadable(int fd, Bus::TimePoint deadline) {
 
 }  // namespace
 
-UdpmBus::UdpmBus(const std::string& url) {
+UdpmBus::UdpmBus(const std::string& url, std::unique_ptr<Authenticator> authenticator)
+    : authenticator_(std::move(authenticator)) {
   std::string lcm_url = url;
   if (url != "memq://") {
     UdpmUrl parsed = ParseUdpmUrl(url);
@@ -165,47 +173,70 @@ void UdpmBus::OnMessage(const lcm_recv_buf_t* buffer, const char* channel, void*
 }
 
 void UdpmBus::Deliver(const lcm_recv_buf_t& buffer, const char* channel, Subscription* subscription) {
-  const int size = static_cast<int>(buffer.data_size);
+  RawMessage message{channel, static_cast<const uint8_t*>(buffer.data), static_cast<int>(buffer.data_size),
+                     buffer.recv_utime};
+  if (message.channel == kLcmSelfTest) return;
+  if (authenticator_ != nullptr) {
+    // Once for all subscriptions: a second look would take it for a repetition.
+    if (!std::exchange(opened_, true)) plain_size_ = Authenticate(message);
+    if (!plain_size_) return;
+    message.size = *plain_size_;
+    if (subscription != all_ && message.channel == authenticator_->introduction_channel()) return;
+  }
   if (subscription == all_) {
-    const RawMessage message{channel, static_cast<const uint8_t*>(buffer.data), size, buffer.recv_utime};
-    if (message.channel == kLcmSelfTest) return;
     delivered_ = true;
     // By index: a handler may subscribe. What it adds does not get this message.
     const size_t count = subscriptions_.size();
-    for (size_t i = 0; i < count; ++i) {
-      if (subscriptions_[i].type == nullptr) subscriptions_[i].raw(message);
-    }
+    Record(message);
     for (size_t i = 0; i < count; ++i) {
       Subscription& typed = subscriptions_[i];
       if (typed.type != nullptr && !typed.own && typed.channel == message.channel) {
-        Deliver(buffer, channel, &typed);
+        DeliverTyped(message, &typed);
       }
     }
-  } else if (subscription->type->decode_into(subscription->message.get(), buffer.data, size)) {
+  } else {
+    DeliverTyped(message, subscription);
+  }
+}
+
+void UdpmBus::DeliverTyped(const RawMessage& message, Subscription* subscription) {
+  if (subscription->type->decode_into(subscription->message.get(), message.data, message.size)) {
     delivered_ = true;
     subscription->typed(subscription->message.get());
   } else {
     ++undecodable_;
+    undecodable_channel_ = message.channel;
   }
 }
 
 void UdpmBus::PublishRaw(const std::string& channel, const void* data, int size) {
   CheckChannel(channel);
+  if (authenticator_ != nullptr) {
+    const auto* const bytes = static_cast<const uint8_t*>(data);
+    encoded_.assign(bytes, bytes + size);
+    size = authenticator_->Seal(channel, &encoded_, size);
+    data = encoded_.data();
+  }
   Send(channel, data, size);
 }
 
 void UdpmBus::PublishTyped(const std::string& channel, const MessageType& type, const void* message) {
   CheckChannel(channel);
-  const int size = type.encoded_size(message);
+  int size = type.encoded_size(message);
   if (encoded_.size() < static_cast<size_t>(size)) encoded_.resize(size);
   if (type.encode(message, encoded_.data(), size) != size) {
     throw BusError("a message for " + channel + " cannot be encoded");
   }
+  if (authenticator_ != nullptr) size = authenticator_->Seal(channel, &encoded_, size);
   Send(channel, encoded_.data(), size);
 }
 
 void UdpmBus::Send(const std::string& channel, const void* data, int size) {
   if (lcm_publish(lcm_, channel.c_str(), data, static_cast<unsigned>(size)) != 0) {
+    if (IsPassing(errno)) {
+      ++unsent_;  // as if it were lost on its way: whoever waits for it has a watchdog
+      return;
+    }
     throw BusError("LCM cannot publish on " + channel + ": " + std::strerror(errno));
   }
 }
@@ -213,11 +244,14 @@ void UdpmBus::Send(const std::string& channel, const void* data, int size) {
 int UdpmBus::HandleUntil(TimePoint deadline) {
   const Marked marked(&handling_);
   int handled = 0;
+  if (authenticator_ != nullptr && !introduced_) StartIntroductions();
+  if (!held_.empty()) GiveUpHeld();
   for (int seen = 0; seen < kMostPerCall;) {
     // Once something was handled, only what is there already counts.
     if (WaitReadable(fd_, handled > 0 ? TimePoint::min() : deadline) != 1) break;
     ++seen;
     delivered_ = false;
+    opened_ = false;
     if (lcm_handle(lcm_) != 0) throw BusError("LCM cannot receive any more");
     if (exception_) std::rethrow_exception(std::exchange(exception_, nullptr));
     if (delivered_) ++handled;

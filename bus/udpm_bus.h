@@ -6,9 +6,11 @@
 #include <deque>
 #include <exception>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "bus/authenticator.h"
 #include "bus/bus.h"
 
 namespace hydro {
@@ -19,10 +21,12 @@ class UdpmBus : public Bus {
  public:
   // `url` as in udpm_url.h, or "memq://" (private to this object). Proves that multicast works before it
   // returns. Throws InputError for a bad URL and BusError, with the cure, where multicast does not work.
-  explicit UdpmBus(const std::string& url);
+  // With an `authenticator` the messages on its channels are sealed, and only genuine ones are delivered.
+  explicit UdpmBus(const std::string& url, std::unique_ptr<Authenticator> authenticator = nullptr);
   ~UdpmBus() override;
 
-  // Does not pass on the messages by which LCM tests itself when a process starts.
+  // Does not pass on the messages by which LCM tests itself when a process starts. Those that were refused
+  // come as they arrived, on their channel with REFUSED_ before its name.
   void SubscribeAll(std::function<void(const RawMessage&)> handler) override;
   void PublishRaw(const std::string& channel, const void* data, int size) override;
 
@@ -30,6 +34,10 @@ class UdpmBus : public Bus {
   // it.
   int HandleUntil(TimePoint deadline) override;
   int64_t undecodable() const override { return undecodable_; }
+  int64_t unsent() const override { return unsent_; }
+  const RefusedMessages& refused() const override {
+    return authenticator_ != nullptr ? authenticator_->refused() : Bus::refused();
+  }
 
   // Bytes of receive buffer that the kernel gave (it counts its own bookkeeping as well); 0 for memq.
   int receive_buffer_bytes() const { return receive_buffer_bytes_; }
@@ -54,22 +62,48 @@ class UdpmBus : public Bus {
         false;  // typed: LCM calls it itself, because it was there before the subscription to all channels
   };
 
+  // Genuine, for a SubscribeAll() handler, as soon as its sender has proved itself.
+  struct HeldMessage {
+    std::string channel;
+    std::vector<uint8_t> data;
+    int64_t receive_utime;
+    int64_t session;
+    TimePoint arrived;
+  };
+
   static void OnMessage(const lcm_recv_buf_t* buffer, const char* channel, void* subscription) noexcept;
   void Deliver(const lcm_recv_buf_t& buffer, const char* channel, Subscription* subscription);
+  void DeliverTyped(const RawMessage& message, Subscription* subscription);
   void AddSubscription(const std::string& pattern, Subscription* subscription);
   void Send(const std::string& channel, const void* data, int size);
+
+  // udpm_authentication.cc
+  void StartIntroductions();
+  std::optional<int> Authenticate(const RawMessage& arrived);
+  void Ask(int64_t session, TimePoint now);
+  void Record(const RawMessage& message);
+  void RecordRefused(const RawMessage& arrived);
+  void RecordHeld(int64_t session);
+  void GiveUpHeld();
 
   lcm_t* lcm_ = nullptr;
   int fd_ = -1;
   int receive_buffer_bytes_ = 0;
   int receive_buffer_asked_ = 0;
   int64_t undecodable_ = 0;
+  int64_t unsent_ = 0;
   bool handling_ = false;
   bool delivered_ = false;        // the message in hand reached a handler
   std::exception_ptr exception_;  // thrown by a handler, kept until LCM's C code is off the stack
   std::deque<Subscription> subscriptions_;
   Subscription* all_ = nullptr;   // the one that LCM knows as ".*"
   std::vector<uint8_t> encoded_;  // used again for each message
+
+  std::unique_ptr<Authenticator> authenticator_;  // null: without a key
+  bool introduced_ = false;
+  std::deque<HeldMessage> held_;
+  bool opened_ = false;            // the message in hand has been looked at
+  std::optional<int> plain_size_;  // and what of it may be delivered
 };
 
 }  // namespace hydro

@@ -101,7 +101,8 @@ StackLaunch::StackLaunch(const StackConfig& config, const LaunchPlan& plan, int 
       timing_(timing),
       output_(out_fd, err_fd, LabelledOutput::WantsColour(out_fd, err_fd)),
       supervisor_(output_, GraceFor(timing, plan)),
-      bus_(config.bus.url),
+      bus_(config.bus.url,
+           MakeAuthenticator(config.bus.resolved_key_file, Channels(config.bus.channel_suffix))),
       watch_(bus_, clock_, Channels(config.bus.channel_suffix)) {
   output_.AnnounceLabel(kLabel);
   for (const ChildSpec& child : plan.children) output_.AnnounceLabel(child.label);

@@ -67,6 +67,7 @@ LaunchPlan PlanLaunch(const StackConfig& config, const LaunchRequest& request,
   std::vector<std::string> programs;
   bool names_logger = false;
   for (const ProcessSection& process : config.processes) {
+    if (process.program == "hydro-driver") CheckDriver(config);
     const bool logger = process.program == kLogger;
     names_logger |= logger;
     if (!process.host.empty()) hosts.insert(process.host);

@@ -1,5 +1,24 @@
+#include <cstdio>
+
+#include "bus/udpm_bus.h"
 #include "launch/launch.h"
+#include "launch/make_key.h"
+#include "launch/operator_request.h"
 #include "settings/command_line.h"
+
+namespace {
+
+int Ask(decltype(hydro::StopStack)* request, const hydro::CommonOptions& options) {
+  const hydro::StackConfig config = hydro::LoadStackConfig(options.config, options.overrides);
+  hydro::UdpmBus bus(config.bus.url, hydro::MakeAuthenticator(config.bus.resolved_key_file,
+                                                              hydro::Channels(config.bus.channel_suffix)));
+  const hydro::WallClock clock;
+  const hydro::OperatorResult result = request(bus, clock, config, {});
+  std::fprintf(result.exit_code == 0 ? stdout : stderr, "hydro-launch: %s\n", result.text.c_str());
+  return result.exit_code;
+}
+
+}  // namespace
 
 int main(int argc, char** argv) {
   hydro::CommandLine line("hydro-launch", "Starts, watches over and stops the processes of a stack.");
@@ -8,8 +27,18 @@ int main(int argc, char** argv) {
   line.AddCommon(&options);
   line.AddOption("--host", &request.host,
                  "NAME start only the processes whose [[process]] section has this host");
+  bool stop = false;
+  bool rearm = false;
+  line.AddFlag("--stop", &stop, "stop the stack that runs, and wait until it has; starts nothing");
+  line.AddFlag("--rearm", &rearm,
+               "end the faults that hold the voltage at zero (limits.rearm = \"explicit\"); starts nothing");
+  bool make_key = false;
+  line.AddFlag("--make-key", &make_key, "write a new key into CONFIG's bus.key_file and start nothing");
   if (const auto code = line.Parse(argc, argv)) return *code;
   return hydro::RunProgram("hydro-launch", [&] {
+    if (make_key) return hydro::MakeKey(options);
+    if (stop && rearm) throw hydro::InputError("--stop: found --rearm beside it, allowed is one of them");
+    if (stop || rearm) return Ask(stop ? hydro::StopStack : hydro::RearmStack, options);
     request.config_file = options.config;
     request.overrides = options.overrides;
     request.log_file = options.log;

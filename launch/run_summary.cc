@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "bus/saturating.h"
+
 namespace hydro {
 namespace {
 
@@ -24,9 +26,9 @@ void RunSummary::Add(const loop_statistics_t& report) {
   }
   // A process that was killed leaves only its periodic reports; one over a few cycles says little.
   if (report.interval_s >= kMostOfASecond || loop->shown.interval_s < kMostOfASecond) loop->shown = report;
-  loop->cycles += report.cycles;
-  loop->missed_deadlines += report.missed_deadlines;
-  loop->lost_messages += report.lost_messages;
+  loop->cycles = SaturatingSum(loop->cycles, report.cycles);
+  loop->missed_deadlines = SaturatingSum(loop->missed_deadlines, report.missed_deadlines);
+  loop->lost_messages = SaturatingSum(loop->lost_messages, report.lost_messages);
   loop->latency_max_us = std::max(loop->latency_max_us, report.latency_max_us);
 }
 

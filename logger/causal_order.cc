@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "bus/saturating.h"
+
 namespace hydro {
 
 CausalOrder::CausalOrder(int64_t pressure_interval, int64_t position_interval,
@@ -15,7 +17,7 @@ void CausalOrder::Take(Kind kind, int64_t tick, RecordedMessage message, Clock::
       if (state_) EmitState();  // what it waits for has been lost
       state_ = std::move(message);
       state_tick_ = tick;
-      if (AnswersAreIn(tick - 1)) {
+      if (AnswersAreIn(SaturatingDifference(tick, 1))) {
         EmitState();
       } else {
         held_since_ = now;
@@ -36,7 +38,7 @@ void CausalOrder::Take(Kind kind, int64_t tick, RecordedMessage message, Clock::
     return;
   }
   emit_(std::move(message));
-  if (state_ && AnswersAreIn(state_tick_ - 1)) EmitState();
+  if (state_ && AnswersAreIn(SaturatingDifference(state_tick_, 1))) EmitState();
 }
 
 void CausalOrder::EmitState() {

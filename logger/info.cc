@@ -4,8 +4,8 @@
 #include <cmath>
 #include <map>
 
+#include "bus/saturating.h"
 #include "logger/run_config.h"
-#include "logger/saturating.h"
 
 namespace hydro {
 namespace {

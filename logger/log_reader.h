@@ -7,6 +7,7 @@
 #include <string>
 #include <string_view>
 
+#include "bus/bus.h"
 #include "logger/mapped_file.h"
 #include "settings/input_error.h"
 
@@ -30,11 +31,12 @@ struct LogEvent {
   int size = 0;
 };
 
-// Decodes an event. False: it is not a whole message of that type.
+// Decodes an event, with a seal (bus/message_seal.h: lcm-logger records it) or without. False: it is not a
+// whole message of that type.
 template <class Message>
 bool DecodeAs(const LogEvent& event, Message& message) {
   try {
-    return message.decode(event.data, 0, event.size) == event.size;
+    return DecodedAll(message.decode(event.data, 0, event.size), event.data, event.size);
   } catch (const std::length_error&) {  // lcm-gen's code believes a string length of 0 or less
     return false;
   }

@@ -8,7 +8,19 @@
 namespace hydro {
 namespace {
 constexpr size_t kBufferSize = 1u << 20;
+
+// How many of the first `size` bytes of a buffer of events belong to events that are whole in them.
+size_t WholeEvents(const uint8_t* buffer, size_t size) {
+  size_t whole = 0;
+  while (size - whole >= kLogHeaderSize) {
+    const uint8_t* event = buffer + whole;
+    const size_t next = whole + kLogHeaderSize + LoadBigEndian32(event + 20) + LoadBigEndian32(event + 24);
+    if (next > size) break;
+    whole = next;
+  }
+  return whole;
 }
+}  // namespace
 
 LogWriter::LogWriter(const std::string& file, Opening opening)
     : file_(file, opening),
@@ -67,7 +79,10 @@ void LogWriter::Flush() {
   try {
     while (done < used_) done += file_.WriteSome(buffer_.get() + done, used_ - done);
   } catch (const WriteError&) {
-    // What did reach the file must not be written twice when the caller tries again.
+    // What did reach the file must not be written twice when the caller tries again, and an event of which
+    // only a part did would make the log unreadable.
+    const size_t whole = WholeEvents(buffer_.get(), done);
+    if (file_.TakeBack(done - whole)) done = whole;
     std::memmove(buffer_.get(), buffer_.get() + done, used_ - done);
     used_ -= done;
     throw;

@@ -10,6 +10,8 @@
 #include <hydro/state_t.hpp>
 #include <utility>
 
+#include "bus/saturating.h"
+
 namespace hydro {
 namespace {
 
@@ -89,15 +91,16 @@ void LoggerApp::OnMessage(const RawMessage& message) {
     int64_t& next = next_sequence_[event.channel]
                         .try_emplace(ReadInt64(message.data + kSessionOffset), sequence)
                         .first->second;
-    if (sequence > next) lost_ += sequence - next;
-    if (sequence >= next) next = sequence + 1;
+    if (sequence > next) lost_ = SaturatingSum(lost_, SaturatingDifference(sequence, next));
+    if (sequence >= next) next = SaturatingSum(sequence, 1);
   }
   if (message.channel == channels.state && message.size >= kSequenceOffset) {
     state_tick_ = ReadInt64(message.data + kTickOffset);
     participant_.set_tick(state_tick_);
     if (participant_.state() == process_status_t::READY) participant_.Announce(process_status_t::RUNNING);
     // A state that is sent again asks for the answer again; it may have been lost.
-    if (state_tick_ >= reported_tick_ + kProgressTicks || state_tick_ <= reported_tick_) ReportProgress();
+    if (state_tick_ >= SaturatingSum(reported_tick_, kProgressTicks) || state_tick_ <= reported_tick_)
+      ReportProgress();
   }
   if (order_ && kind && message.size >= kSequenceOffset) {
     order_->Take(*kind, ReadInt64(message.data + kTickOffset), std::move(event), participant_.clock().Now());
@@ -210,8 +213,19 @@ bool LoggerApp::finished() const {
   return stop_time_ && (EveryoneHasLeft() || participant_.clock().Now() - *stop_time_ > kFarewellTime);
 }
 
+// Why writing has ended; empty while it goes on.
+std::string LoggerApp::FailureText() {
+  const std::lock_guard lock(mutex_);
+  if (!failure_) return "";
+  try {
+    std::rethrow_exception(failure_);
+  } catch (const std::exception& error) {
+    return error.what();
+  }
+}
+
 int LoggerApp::Finish() {
-  int exit_code = participant_.Leave();
+  int exit_code = participant_.Leave(FailureText());
   // What has been sent already, up to our own farewell, which comes back to us as everybody's.
   const auto deadline = participant_.clock().Now() + kEchoTime;
   while (!left_ && participant_.clock().Now() < deadline) bus_.HandleUntil(deadline);

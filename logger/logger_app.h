@@ -61,6 +61,7 @@ class LoggerApp : public App {
   void Rotate();
   void ReportProgress();
   bool EveryoneHasLeft() const;
+  std::string FailureText();
 
   Bus& bus_;
   Participant participant_;

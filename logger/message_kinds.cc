@@ -3,11 +3,13 @@
 #include "bus/channels.h"
 #include "hydro/arm_reference_t.hpp"
 #include "hydro/fault_t.hpp"
+#include "hydro/introduction_t.hpp"
 #include "hydro/log_progress_t.hpp"
 #include "hydro/loop_statistics_t.hpp"
 #include "hydro/motor_command_t.hpp"
 #include "hydro/pressure_command_t.hpp"
 #include "hydro/process_status_t.hpp"
+#include "hydro/rearm_t.hpp"
 #include "hydro/run_description_t.hpp"
 #include "hydro/state_t.hpp"
 #include "hydro/stop_t.hpp"
@@ -37,8 +39,10 @@ const std::vector<MessageKind>& MessageKinds() {
                                     Kind<loop_statistics_t>(channels.loop_statistics),
                                     Kind<fault_t>(channels.fault),
                                     Kind<stop_t>(channels.stop),
+                                    Kind<rearm_t>(channels.rearm),
                                     Kind<process_status_t>(channels.process_status),
-                                    Kind<log_progress_t>(channels.log_progress)};
+                                    Kind<log_progress_t>(channels.log_progress),
+                                    Kind<introduction_t>(channels.introduction)};
   }();
   return kinds;
 }

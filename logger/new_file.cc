@@ -96,6 +96,11 @@ void NewFile::Write(const void* data, size_t size) {
   }
 }
 
+bool NewFile::TakeBack(size_t size) {
+  const off_t end = lseek(descriptor_, -static_cast<off_t>(size), SEEK_CUR);
+  return end >= 0 && ftruncate(descriptor_, end) == 0;
+}
+
 void NewFile::Finish() {
   if (descriptor_ < 0) return;
   const int result = close(descriptor_);

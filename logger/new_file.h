@@ -36,6 +36,8 @@ class NewFile {
   size_t WriteSome(const void* data, size_t size);
   // Writes all of it. Throws WriteError.
   void Write(const void* data, size_t size);
+  // Removes the last `size` bytes that were written; false where that cannot be done (not a regular file).
+  bool TakeBack(size_t size);
   // Closes the file and, when temporary, gives it its name. Throws WriteError. Later calls do nothing.
   void Finish();
 

@@ -1,12 +1,15 @@
 #include "logger/replay.h"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <thread>
 #include <vector>
 
 #include "bus/in_process_bus.h"
+#include "bus/saturating.h"
 #include "logger/compare.h"
+#include "logger/number_text.h"
 #include "position_ctrl/position_app.h"
 #include "pressure_ctrl/pressure_app.h"
 #include "settings/input_error.h"
@@ -14,6 +17,8 @@
 
 namespace hydro {
 namespace {
+
+constexpr double kLatestTime = 1e9;  // s; 64 bits of ns hold it
 
 // The first message of each tick: a later one of the same tick is a repetition or a watchdog's.
 template <class Message>
@@ -52,6 +57,11 @@ class Replayer {
     channels_ = Channels(config_.bus.channel_suffix);
     states_ = ByTick(log.messages.states);
     if (states_.empty()) throw InputError(log.file + ": found no states to feed");
+    for (const auto& [tick, state] : states_) {
+      if (std::abs(state.time) <= kLatestTime) continue;
+      throw InputError(log.file + ": found the state of tick " + std::to_string(tick) + " at " +
+                       NumberText(state.time) + " s; a time between -1e9 and 1e9 s is needed");
+    }
   }
 
   const StackConfig& config() const { return config_; }
@@ -144,7 +154,10 @@ ReplayResult ReplayPosition(const RunLog& log, double speed) {
   if (replayer.first_tick() > 0) {
     // A log that begins in the middle of a run: the derivative of its first sample needs the sample before.
     const int64_t interval = replayer.config().position_interval_ticks;
-    const int64_t first_sample = (replayer.first_tick() + interval - 1) / interval * interval;
+    const int64_t since_sample = replayer.first_tick() % interval;
+    const int64_t first_sample = since_sample == 0
+                                     ? replayer.first_tick()
+                                     : SaturatingSum(replayer.first_tick(), interval - since_sample);
     recorded.erase(recorded.begin(), recorded.upper_bound(first_sample));
     references.erase(references.begin(), references.upper_bound(first_sample));
   }

@@ -1,10 +1,10 @@
 #include <limits>
 #include <set>
 
+#include "bus/saturating.h"
 #include "logger/message_order.h"
 #include "logger/run_config.h"
 #include "logger/run_table.h"
-#include "logger/saturating.h"
 #include "settings/input_error.h"
 
 namespace hydro {

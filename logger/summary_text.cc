@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
+#include "bus/saturating.h"
 #include "logger/tracking.h"
 
 namespace hydro {
@@ -13,7 +14,7 @@ using Json = nlohmann::ordered_json;
 int64_t LostMessages(const LogInfo& info) {
   int64_t lost = 0;
   for (const ChannelInfo& channel : info.channels) {
-    if (channel.numbered) lost += channel.lost;
+    if (channel.numbered) lost = SaturatingSum(lost, channel.lost);
   }
   return lost;
 }

@@ -1,5 +1,6 @@
 // hydro-plant CONFIG: the simulated actuator.
 #include "plant/plant_app.h"
+#include "plant/simulated_rig.h"
 #include "process/process_main.h"
 
 int main(int argc, char** argv) {
@@ -12,6 +13,7 @@ int main(int argc, char** argv) {
   if (const auto exit_code = command_line.Parse(argc, argv)) return *exit_code;
   return hydro::RunProcess("hydro-plant", options,
                            [&](hydro::Bus& bus, hydro::Clock& clock, const hydro::StackConfig& config) {
-                             return hydro::PlantApp(bus, clock, config, expected).Run();
+                             hydro::SimulatedRig rig(config);
+                             return hydro::PlantApp(bus, clock, config, rig, expected).Run();
                            });
 }

@@ -8,9 +8,7 @@
 #include <cmath>
 
 #include "bus/fixed_rate_loop.h"
-#include "plant/sensor_noise.h"
 #include "process/stop_signal.h"
-#include "settings/input_error.h"
 
 namespace hydro {
 namespace {
@@ -30,29 +28,21 @@ std::vector<std::string> WithControllers(std::vector<std::string> roles) {
 
 }  // namespace
 
-PlantApp::PlantApp(Bus& bus, Clock& clock, const StackConfig& config,
+PlantApp::PlantApp(Bus& bus, Clock& clock, const StackConfig& config, Rig& rig,
                    const std::vector<std::string>& expected, const std::string& program)
     : config_(config),
-      participant_(bus, clock, Channels(config.bus.channel_suffix), "plant"),
+      rig_(rig),
+      participant_(bus, clock, Channels(config.bus.channel_suffix), rig.role()),
+      safety_(participant_, config),
+      logger_watch_(participant_, FromSeconds(std::max(config.limits.stale_logger_s,
+                                                       3 / (config.plant.rate_hz * config.time.speed)))),
       roll_call_(WithControllers(expected)),
       program_(program),
-      motion_(config.model.motion ? MakeTrajectory(*config.model.motion) : nullptr),
       state_publisher_(bus.Advertise<state_t>(participant_.channels().state)),
       stale_time_(FromSeconds(config.limits.stale_input_s)),
+      voltage_limit_((1 + 1e-9) * config.model.description.parameters.T_pmax /
+                     config.model.description.parameters.k_1),
       command_monitor_(stale_time_) {
-  ActuatorOptions options;
-  options.shaft = config.model.shaft;
-  options.arm_angle = config.model.arm_angle_rad;
-  options.motion = motion_.get();
-  options.bypass = config.model.bypass;
-  options.initial_pressure = config.model.initial_pressure_psi;
-  options.integrator = config.plant.integrator;
-  options.relative_tolerance = config.plant.relative_tolerance;
-  try {
-    actuator_ = std::make_unique<Actuator>(config.model.description, options);
-  } catch (const ModelError& error) {
-    throw InputError(fmt::format("{}: {}", config.file, error.what()));
-  }
   const Channels& channels = participant_.channels();
   bus.Subscribe<motor_command_t>(channels.motor_command,
                                  [this](const motor_command_t& command) { OnMotorCommand(command); });
@@ -75,15 +65,25 @@ int PlantApp::Run() {
     for (const int64_t session : roll_call_.Loggers()) log_progress_.emplace(session, -1);
     try {
       config_.time.mode == TimeMode::kLockstep ? RunLockstep() : RunRealtime();
-    } catch (const ModelError& error) {
-      participant_.Raise("model_error", error.what(), NAN, NAN, true);
+    } catch (const RigError& error) {
+      rig_.Zero();  // zero volts first, explanation second
+      participant_.Raise(error.code(), error.what(), NAN, NAN, true);
       participant_.RequestStop(error.what(), 1);
+    } catch (...) {
+      rig_.Zero();
+      throw;
     }
   }
+  rig_.Zero();
   if (StopSignal() != 0) {
     participant_.RequestStop(fmt::format("{} was stopped by signal {}", program_, StopSignal()), 0);
   } else {
-    participant_.RequestStop(fmt::format("the run is complete after {} s", state_.time), 0);
+    const std::string latched = safety_.Latched();
+    participant_.RequestStop(
+        latched.empty()
+            ? fmt::format("the run is complete after {} s", state_.time)
+            : fmt::format("the run ends after {} s, stopped by {} and not re-armed", state_.time, latched),
+        latched.empty() ? 0 : 1);
   }
   return participant_.Leave();
 }
@@ -124,9 +124,12 @@ void PlantApp::RunLockstep() {
   const bool simulated = participant_.clock().simulated();
   const auto start = participant_.clock().Now();
   const double rate = config_.plant.rate_hz;
+  measured_ = rig_.Read(0);
   PublishState(0);
   while (AwaitAnswers() && tick_ != config_.last_tick) {
     ChooseVoltage();
+    Drive();
+    if (participant_.stop()) break;  // a limit was passed
     Advance(tick_ + 1);
     if (simulated) {
       // Nobody else lets simulated time pass. Each tick from the start: rounding must not add up.
@@ -188,24 +191,56 @@ std::string PlantApp::Unanswered() const {
 void PlantApp::RunRealtime() {
   const std::chrono::duration<double> period(1 / (config_.plant.rate_hz * config_.time.speed));
   FixedRateLoop loop(participant_.bus(), participant_.clock(), period, participant_.statistics());
+  measured_ = rig_.Read(0);
   PublishState(0);
   while (!Ended() && tick_ != config_.last_tick) {
     int64_t elapsed = loop.Wait();
     if (elapsed == 0) continue;  // a signal
     if (config_.last_tick >= 0) elapsed = std::min(elapsed, config_.last_tick - tick_);
     participant_.statistics().set_missed_deadlines(loop.skipped());
+    const auto slept = FromSeconds(static_cast<double>(elapsed - 1) * period.count());
     Advance(tick_ + elapsed);  // under the voltage that was held all that time
+    if (slept > stale_time_) awake_again_ = tick_;
     PublishState(elapsed - 1);
     ChooseVoltage();
-    CheckCommandIsFresh();
+    Drive();
+    logger_watch_.Poll();
     Poll();
+  }
+}
+
+// The voltage that was chosen goes out, unless the sensors give a reason against it; then why is said.
+void PlantApp::Drive() {
+  if (!rig_.faults().empty()) {
+    voltage_ = 0;
+    command_tick_ = -1;
+  }
+  voltage_ = rig_.Drive(voltage_);
+  NameRigFaults();
+  safety_.Explain();
+}
+
+void PlantApp::NameRigFaults() {
+  const std::vector<RigFault>& faults = rig_.faults();
+  if (faults.empty() && rig_faults_.empty()) return;
+  const auto names = [&](const std::string& code) {
+    return std::any_of(faults.begin(), faults.end(), [&](const RigFault& f) { return f.code == code; });
+  };
+  for (const std::string& code : rig_faults_) {
+    if (!names(code)) participant_.Clear(code);
+  }
+  rig_faults_.clear();
+  for (const RigFault& fault : faults) {
+    participant_.Raise(fault.code, fmt::format("tick {}: {}", tick_, fault.text), fault.value, fault.limit,
+                       false);
+    rig_faults_.push_back(fault.code);
   }
 }
 
 void PlantApp::Advance(int64_t to_tick) {
   state_.voltage = voltage_;
   state_.command_tick = command_tick_;
-  actuator_->Advance(voltage_, static_cast<double>(to_tick) / config_.plant.rate_hz);
+  measured_ = rig_.Read(to_tick);
   tick_ = to_tick;
   participant_.set_tick(tick_);
 }
@@ -219,17 +254,16 @@ void PlantApp::PublishState(int64_t skipped_ticks) {
   } else {
     ++state_.sequence;
   }
-  const Measurement measured = ReadSensors(actuator_->Measure(), config_.noise, config_.seed, tick_);
   state_.utime = participant_.clock().Utime();
   state_.tick = tick_;
   state_.session = participant_.session();
   state_.time = static_cast<double>(tick_) / config_.plant.rate_hz;
-  state_.motor_angle = measured.motor_angle;
-  state_.motor_speed = measured.motor_speed;
-  state_.arm_angle = measured.arm_angle;
-  state_.arm_speed = measured.arm_speed;
-  state_.p1 = measured.p1;
-  state_.p2 = measured.p2;
+  state_.motor_angle = measured_.motor_angle;
+  state_.motor_speed = measured_.motor_speed;
+  state_.arm_angle = measured_.arm_angle;
+  state_.arm_speed = measured_.arm_speed;
+  state_.p1 = measured_.p1;
+  state_.p2 = measured_.p2;
   state_.skipped_ticks = skipped_ticks;
   state_publisher_.Send(state_);
   if (!unanswered_since_ && tick_ % config_.pressure_interval_ticks == 0) {

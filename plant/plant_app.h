@@ -1,13 +1,15 @@
-// The simulated actuator as an application: it sets the pace of a run.
+// A rig - the simulated actuator or a board in front of a real one - as an application: it sets the pace of a
+// run.
 //
 // Lockstep: publishes the state of tick k, waits for each command that is due at tick k (and for a logger
 // that has fallen behind), then advances to tick k + 1. The result does not depend on how long anybody took.
 // A participant that does not answer within time.stall_timeout_s ends the run with an error that names it.
 //
-// Real time: wakes at each tick of wall time, advances the model under the voltage it holds, publishes the
-// state, and takes the newest command. When it wakes late it integrates all the time it missed, publishes the
-// one state it then has, and counts the ticks it skipped. When commands stop coming for limits.stale_input_s,
-// the voltage goes to zero.
+// Real time: wakes at each tick of wall time, reads the rig (a simulated one is advanced under the voltage it
+// holds), publishes the state, and takes the newest command. When it wakes late, all the time it missed has
+// passed under that voltage; it publishes the one state it then has, and counts the ticks it skipped.
+//
+// In both, what OutputSafety finds wrong holds the voltage at zero (docs/safety.md).
 //
 // Either way the command computed from tick k acts from tick k + plant.command_delay_ticks on.
 #pragma once
@@ -20,13 +22,14 @@
 #include <hydro/run_description_t.hpp>
 #include <hydro/state_t.hpp>
 #include <map>
-#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "bus/sequence_monitor.h"
-#include "model/actuator.h"
+#include "plant/logger_watch.h"
+#include "plant/output_safety.h"
+#include "plant/rig.h"
 #include "plant/roll_call.h"
 #include "process/participant.h"
 #include "settings/stack_config.h"
@@ -35,12 +38,12 @@ namespace hydro {
 
 class PlantApp {
  public:
-  // `expected`: roles to wait for beside pressure_ctrl and position_ctrl ("logger").
-  // Throws InputError when the configuration and the model contradict each other.
-  PlantApp(Bus& bus, Clock& clock, const StackConfig& config, const std::vector<std::string>& expected = {},
-           const std::string& program = "hydro-plant");
+  // `rig` must outlive it. `expected`: roles to wait for beside pressure_ctrl and position_ctrl ("logger").
+  PlantApp(Bus& bus, Clock& clock, const StackConfig& config, Rig& rig,
+           const std::vector<std::string>& expected = {}, const std::string& program = "hydro-plant");
 
-  // The whole run. Returns the process's exit code: 0 complete or stopped in order, 1 failed.
+  // The whole run; the rig is driven in it only, and is at zero volts when it ends, also by an exception.
+  // Returns the process's exit code: 0 complete or stopped in order, 1 failed.
   int Run();
 
   // Why the run ended; empty when it ran to its duration.
@@ -54,9 +57,12 @@ class PlantApp {
   bool AwaitAnswers();
   std::string Unanswered() const;
   void Advance(int64_t to_tick);
+  void Drive();
+  void NameRigFaults();
   void PublishState(int64_t skipped_ticks);
   void PublishDescription();
   void ChooseVoltage();
+  void CheckCommand(const motor_command_t& command);
   void CheckCommandIsFresh();
   void OnMotorCommand(const motor_command_t& command);
   Clock::Duration TimeSinceDue(int64_t tick) const;
@@ -64,19 +70,26 @@ class PlantApp {
   bool Ended() const;
 
   StackConfig config_;
+  Rig& rig_;
   Participant participant_;
+  OutputSafety safety_;
+  LoggerWatch logger_watch_;
   RollCall roll_call_;
   std::string program_;
-  std::unique_ptr<Trajectory> motion_;  // of a driven shaft; before actuator_, which points to it
-  std::unique_ptr<Actuator> actuator_;
   Publisher<state_t> state_publisher_;
   const Clock::Duration stale_time_;
+  const double voltage_limit_;  // V, T_pmax/k_1 beyond rounding
 
   int64_t tick_ = 0;
   state_t state_;
-  double voltage_ = 0;         // V, held from tick_ on
-  int64_t command_tick_ = -1;  // tick of the command that voltage_ came from
+  Measurement measured_;                 // at tick_
+  std::vector<std::string> rig_faults_;  // codes of those that are active
+  double voltage_ = 0;                   // V, held from tick_ on
+  int64_t command_tick_ = -1;            // tick of the command that voltage_ came from
   SequenceMonitor command_monitor_;
+  CountedWarning repeated_commands_{"repeated_motor_command"};
+  bool future_command_ = false;         // since the last command that made sense
+  std::optional<int64_t> awake_again_;  // real time: the tick at which a loop that was stopped went on
   std::deque<motor_command_t> waiting_commands_;  // received, not yet in force, by tick
   std::optional<motor_command_t> command_;        // in force
   int64_t newest_command_tick_ = -1;

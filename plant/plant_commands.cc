@@ -9,19 +9,20 @@
 namespace hydro {
 void PlantApp::OnMotorCommand(const motor_command_t& command) {
   const auto now = participant_.clock().Now();
-  const auto verdict = command_monitor_.Observe(command.session, command.sequence, now);
-  if (verdict == SequenceMonitor::Verdict::kDuplicate) return;
+  const auto verdict = command_monitor_.Observe(command.session, command.sequence, command.tick, now);
+  if (verdict == SequenceMonitor::Verdict::kDuplicate) return;  // neither obeyed nor taken for a sign of life
   if (verdict == SequenceMonitor::Verdict::kSecondSender) return;  // ChooseVoltage() sees to it
   if (verdict == SequenceMonitor::Verdict::kRestarted) waiting_commands_.clear();
-  if (command.tick > tick_) {
-    participant_.Raise(
-        "future_motor_command",
-        fmt::format("a motor command for tick {} at tick {}; is another run's log being played?",
-                    command.tick, tick_),
-        static_cast<double>(command.tick), static_cast<double>(tick_), false);
+  future_command_ = command.tick > tick_;
+  if (future_command_) {
+    safety_.Set(VoltageGuard::Cause::kFutureCommand, true, [&] {
+      return OutputSafety::Finding{
+          fmt::format("a motor command for tick {} at tick {}; is another run's log being played?",
+                      command.tick, tick_),
+          static_cast<double>(command.tick), static_cast<double>(tick_)};
+    });
     return;
   }
-  if (participant_.any_fault()) participant_.Clear("future_motor_command");
   waiting_commands_.push_back(command);
   newest_command_tick_ = command.tick;
   unanswered_since_.reset();
@@ -37,51 +38,82 @@ Clock::Duration PlantApp::TimeSinceDue(int64_t tick) const {
   return FromSeconds(std::clamp(ticks / (config_.plant.rate_hz * config_.time.speed), 0.0, 1e8));
 }
 
+// The voltage of the command that is in force from now on, unless something forbids any. Drive() comes first,
+// explanation second.
 void PlantApp::ChooseVoltage() {
   const int64_t newest_allowed = tick_ - config_.plant.command_delay_ticks;
   while (!waiting_commands_.empty() && waiting_commands_.front().tick <= newest_allowed) {
     command_ = waiting_commands_.front();
     waiting_commands_.pop_front();
   }
-  voltage_ = command_ ? command_->voltage : 0;
-  command_tick_ = command_ ? command_->tick : -1;
-  const auto zero = [&] {
-    voltage_ = 0;
-    command_tick_ = -1;
-  };
-  if (!std::isfinite(voltage_)) {
-    const double found = voltage_;
-    zero();
-    participant_.Raise("nonfinite_motor_command",
-                       fmt::format("tick {}: the motor command is {} V, must be finite", tick_, found), found,
-                       NAN, false);
-  } else if (participant_.any_fault()) {
-    participant_.Clear("nonfinite_motor_command");
-  }
-  if (participant_.active("future_motor_command")) zero();  // contradictory: what came before it is no better
-  if (command_monitor_.SecondSenderAlive(participant_.clock().Now())) {
-    zero();
-    participant_.Raise("second_motor_command_sender",
-                       "two processes send motor commands on this network; allowed is one", 2, 1, false);
-  } else if (participant_.any_fault()) {
-    participant_.Clear("second_motor_command_sender");
+  CheckCommand(command_.value_or(motor_command_t{}));
+  if (config_.time.mode == TimeMode::kRealtime) CheckCommandIsFresh();
+  safety_.CheckMeasured(state_);
+  safety_.CheckRig(rig_.faults());
+  safety_.CheckSurroundings();
+  voltage_ = safety_.Voltage(command_ ? command_->voltage : 0);
+  command_tick_ = command_ && !safety_.holds() ? command_->tick : -1;
+}
+
+void PlantApp::CheckCommand(const motor_command_t& command) {
+  using Cause = VoltageGuard::Cause;
+  using Finding = OutputSafety::Finding;
+  const double voltage = command.voltage;
+  safety_.Set(Cause::kNonfiniteCommand, !std::isfinite(voltage), [&] {
+    return Finding{fmt::format("tick {}: the motor command is {} V, must be finite", tick_, voltage), voltage,
+                   NAN};
+  });
+  safety_.Set(Cause::kExcessiveCommand, std::isfinite(voltage) && std::fabs(voltage) > voltage_limit_, [&] {
+    return Finding{
+        fmt::format("tick {}: the motor command is {:.6g} V, allowed are +/- {:.6g} V (T_pmax/k_1)", tick_,
+                    voltage, voltage_limit_),
+        voltage, voltage_limit_};
+  });
+  // Contradictory: what came before it is no better.
+  safety_.Set(Cause::kFutureCommand, future_command_, [] { return Finding{}; });
+  safety_.Set(Cause::kSecondCommandSender, command_monitor_.SecondSenderAlive(participant_.clock().Now()),
+              [&] {
+                return Finding{fmt::format("two processes send motor commands: {} and {}; allowed is one",
+                                           participant_.NameOf(command_monitor_.session()),
+                                           participant_.NameOf(command_monitor_.second_session())),
+                               2, 1};
+              });
+  safety_.CheckController(command_ && command.status == motor_command_t::SAFE);
+  // Lockstep asks for answers again; in real time nobody does.
+  if (config_.time.mode == TimeMode::kRealtime) {
+    repeated_commands_.Update(
+        command_monitor_.duplicates(), participant_.clock().Now(),
+        [&](int64_t count) {
+          return fmt::format(
+              "tick {}: {} motor commands in all came twice or behind newer ones; they are "
+              "not obeyed",
+              tick_, count);
+        },
+        participant_);
   }
 }
 
 void PlantApp::CheckCommandIsFresh() {
+  using Cause = VoltageGuard::Cause;
+  using Finding = OutputSafety::Finding;
   const auto now = participant_.clock().Now();
   const auto age = now - unanswered_since_.value_or(now);
-  if (age <= stale_time_) {
-    if (participant_.any_fault()) participant_.Clear("stale_motor_command");
-    return;
-  }
-  voltage_ = 0;  // zero volts first, explanation second
-  command_tick_ = -1;
-  participant_.Raise(
-      "stale_motor_command",
-      fmt::format("tick {}: no motor command for {:.0f} ms, allowed are {:.0f} ms (limits.stale_input_s)",
-                  tick_, 1e3 * ToSeconds(age), 1e3 * ToSeconds(stale_time_)),
-      ToSeconds(age), config_.limits.stale_input_s, false);
+  safety_.Set(Cause::kStaleCommand, age > stale_time_, [&] {
+    return Finding{
+        fmt::format("tick {}: no motor command for {:.0f} ms, allowed are {:.0f} ms (limits.stale_input_s)",
+                    tick_, 1e3 * ToSeconds(age), 1e3 * ToSeconds(stale_time_)),
+        ToSeconds(age), config_.limits.stale_input_s};
+  });
+  // After a stop of this process itself, commands from before it say nothing.
+  if (awake_again_ && command_ && command_->tick >= *awake_again_) awake_again_.reset();
+  safety_.Set(Cause::kLatePlant, awake_again_.has_value(), [&] {
+    const double slept =
+        static_cast<double>(state_.skipped_ticks) / (config_.plant.rate_hz * config_.time.speed);
+    return Finding{fmt::format("tick {}: the loop was stopped for {:.0f} ms, allowed are {:.0f} ms "
+                               "(limits.stale_input_s)",
+                               tick_, 1e3 * slept, 1e3 * ToSeconds(stale_time_)),
+                   slept, config_.limits.stale_input_s};
+  });
 }
 
 }  // namespace hydro

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "bus/saturating.h"
+
 namespace hydro {
 namespace {
 
@@ -79,7 +81,7 @@ void PositionApp::OnState(const state_t& state) {
 void PositionApp::Answer(const state_t& state) {
   if (last_sample_tick_ < 0) law_.Reset();
   const int64_t intervals = last_sample_tick_ < 0 ? 1 : (state.tick - last_sample_tick_) / interval_;
-  missed_samples_ += intervals - 1;
+  missed_samples_ = SaturatingSum(missed_samples_, intervals - 1);
   last_sample_tick_ = state.tick;
 
   const double reference = reference_->Value(state.time);

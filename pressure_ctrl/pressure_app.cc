@@ -6,6 +6,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "bus/saturating.h"
 #include "settings/input_error.h"
 
 namespace hydro {
@@ -19,6 +20,13 @@ motor_command_t ZeroVolts(int64_t tick, int8_t status) {
   zero.pressure_command_tick = -1;
   zero.status = status;
   return zero;
+}
+
+// psi, what limits.arm_torque_in_lbf leaves of a pressure reference, rounding and the D/A's included.
+double PressureReferenceLimit(const StackConfig& config) {
+  const PositionSection& dac = config.position;
+  const double half_step = dac.dac_bits > 0 ? std::ldexp(dac.dac_range_psi, -dac.dac_bits) : 0;
+  return (1 + 1e-9) * config.limits.arm_torque_in_lbf / config.model.description.parameters.k_2 + half_step;
 }
 
 }  // namespace
@@ -52,6 +60,8 @@ PressureApp::PressureApp(Bus& bus, Clock& clock, const StackConfig& config)
       delay_(config.plant.command_delay_ticks),
       stale_ticks_(delay_ + position_interval_ +
                    static_cast<int64_t>(std::ceil(config.limits.stale_input_s * config.plant.rate_hz))),
+      ramp_ticks_(static_cast<int64_t>(std::ceil(config.limits.pressure_ramp_s * config.plant.rate_hz))),
+      pressure_limit_(PressureReferenceLimit(config)),
       stale_time_(FromSeconds(config.limits.stale_input_s)),
       // The plant itself waits stall_timeout_s for whoever is late and then says who; only after that is it
       // silent.
@@ -71,6 +81,7 @@ PressureApp::PressureApp(Bus& bus, Clock& clock, const StackConfig& config)
 void PressureApp::Restart() {
   waiting_commands_.clear();
   pressure_command_.reset();
+  future_command_.reset();
   pending_state_.reset();
   answered_ = false;
 }
@@ -79,9 +90,7 @@ void PressureApp::OnState(const state_t& state) {
   const auto now = participant_.clock().Now();
   switch (state_monitor_.Observe(state.session, state.sequence, now)) {
     case SequenceMonitor::Verdict::kSecondSender:
-      participant_.Raise("second_state_sender", "two processes send states on this network; allowed is one",
-                         2, 1, false);
-      return;
+      return;  // InputsAreSafe() sees to it
     case SequenceMonitor::Verdict::kRestarted:
       Restart();
       break;
@@ -110,16 +119,19 @@ void PressureApp::OnState(const state_t& state) {
 void PressureApp::OnPressureCommand(const pressure_command_t& command) {
   const auto verdict =
       command_monitor_.Observe(command.session, command.sequence, participant_.clock().Now());
-  if (verdict == SequenceMonitor::Verdict::kSecondSender) {
-    participant_.Raise("second_pressure_command_sender",
-                       "two processes send pressure commands on this network; allowed is one", 2, 1, false);
-    return;
-  }
+  // A second sender is not obeyed; InputsAreSafe() sees to it.
+  if (verdict == SequenceMonitor::Verdict::kSecondSender) return;
   if (verdict == SequenceMonitor::Verdict::kDuplicate) return;
   if (verdict == SequenceMonitor::Verdict::kRestarted) {
     waiting_commands_.clear();
     pressure_command_.reset();
   }
+  // A little ahead is another route through a network; far ahead would hold up all that come after it.
+  future_command_ =
+      participant_.tick() >= 0 && command.tick > SaturatingSum(participant_.tick(), stale_ticks_)
+          ? std::optional(command.tick)
+          : std::nullopt;
+  if (future_command_) return;
   waiting_commands_.push_back(command);
   if (pending_state_ && !AwaitsPressureCommand(pending_state_->tick)) {
     const state_t state = *pending_state_;
@@ -131,7 +143,7 @@ void PressureApp::OnPressureCommand(const pressure_command_t& command) {
 // In lockstep every pressure command that is due comes, sooner or later; which one is in force must not
 // depend on when.
 bool PressureApp::AwaitsPressureCommand(int64_t state_tick) const {
-  const int64_t newest_allowed = state_tick - delay_;
+  const int64_t newest_allowed = SaturatingDifference(state_tick, delay_);
   if (!lockstep_ || newest_allowed < 0) return false;
   const int64_t due = newest_allowed / position_interval_ * position_interval_;
   const int64_t known = !waiting_commands_.empty() ? waiting_commands_.back().tick
@@ -148,10 +160,10 @@ void PressureApp::TakePressureCommandsUpTo(int64_t tick) {
 }
 
 void PressureApp::Answer(const state_t& state) {
-  TakePressureCommandsUpTo(state.tick - delay_);
+  TakePressureCommandsUpTo(SaturatingDifference(state.tick, delay_));
   motor_command_t command = ZeroVolts(state.tick, motor_command_t::SAFE);
   if (pressure_command_) {
-    command.pressure_ref = pressure_command_->pressure_ref;
+    command.pressure_ref = PressureReference(state.tick);
     command.pressure_command_tick = pressure_command_->tick;
   }
   if (!InputsAreSafe(state)) {
@@ -189,7 +201,7 @@ void PressureApp::Send(motor_command_t& command) {
 }
 
 void PressureApp::Poll() {
-  participant_.statistics().set_lost_messages(state_monitor_.lost() + command_monitor_.lost());
+  participant_.statistics().set_lost_messages(SaturatingSum(state_monitor_.lost(), command_monitor_.lost()));
   participant_.Poll();
   if (participant_.state() != process_status_t::RUNNING || participant_.stop()) return;
   const auto silence = participant_.clock().Now() - last_state_time_;

@@ -1,8 +1,10 @@
 // PressureApp's checks of what it receives: what is not safe gives zero volts and a named fault.
 #include <spdlog/fmt/fmt.h>
 
+#include <algorithm>
 #include <cmath>
 
+#include "bus/saturating.h"
 #include "pressure_ctrl/pressure_app.h"
 
 namespace hydro {
@@ -15,57 +17,120 @@ bool Finite(const state_t& state, bool with_arm_speed) {
 
 }  // namespace
 
+// A fault while `good` is false; returns `good`.
+template <class Describe>
+bool PressureApp::Check(bool good, const char* code, double value, double limit, Describe&& describe) {
+  if (!good) {
+    participant_.Raise(code, describe(), value, limit, false);
+  } else if (participant_.any_fault()) {
+    participant_.Clear(code);
+  }
+  return good;
+}
+
+// The same for a limit whose passing ends the run, unless faults are ended explicitly: then the plant holds
+// the voltage at zero from the first safe command on.
+template <class Describe>
+bool PressureApp::CheckLimit(bool good, const char* code, double value, double limit, Describe&& describe) {
+  if (limits_.rearm == Rearm::kExplicit) return Check(good, code, value, limit, describe);
+  if (!good && participant_.Raise(code, describe(), value, limit, true)) {
+    participant_.RequestStop(fmt::format("fault {}: {}", code, describe()), 1);
+  }
+  return good;
+}
+
 bool PressureApp::InputsAreSafe(const state_t& state) {
   if (participant_.latched()) return false;
-  bool safe = true;
-  const auto check = [&](bool good, const char* code, double value, double limit, bool latched,
-                         auto&& describe) {
-    if (good) {
-      if (participant_.any_fault()) participant_.Clear(code);
-      return;
-    }
-    safe = false;
-    if (participant_.Raise(code, describe(), value, limit, latched) && latched) {
-      participant_.RequestStop(fmt::format("fault {}: {}", code, describe()), 1);
-    }
-  };
-  const auto now = participant_.clock().Now();
-  check(Finite(state, law_.arm_speed_ratio != 0), "nonfinite_state", NAN, NAN, false, [&] {
+  bool safe = Check(Finite(state, law_.arm_speed_ratio != 0), "nonfinite_state", NAN, NAN, [&] {
     return fmt::format("tick {}: p1 {}, p2 {}, motor speed {}, arm speed {}; all must be finite", state.tick,
                        state.p1, state.p2, state.motor_speed, state.arm_speed);
   });
   const double pressure = std::fmax(state.p1, state.p2);
-  check(!(pressure > limits_.pressure_psi), "pressure_limit", pressure, limits_.pressure_psi, true, [&] {
-    return fmt::format("tick {}: p{} is {:.6g} psi, allowed is {} psi (limits.pressure_psi)", state.tick,
-                       state.p1 > state.p2 ? 1 : 2, pressure, limits_.pressure_psi);
-  });
+  safe &=
+      CheckLimit(!(pressure > limits_.pressure_psi), "pressure_limit", pressure, limits_.pressure_psi, [&] {
+        return fmt::format("tick {}: p{} is {:.6g} psi, allowed is {} psi (limits.pressure_psi)", state.tick,
+                           state.p1 > state.p2 ? 1 : 2, pressure, limits_.pressure_psi);
+      });
   const double speed = std::fabs(state.motor_speed);
-  check(!(speed > limits_.motor_speed_rad_s), "motor_speed_limit", speed, limits_.motor_speed_rad_s, true,
-        [&] {
-          return fmt::format(
-              "tick {}: the motor turns at {:.6g} rad/s, allowed is {} rad/s (limits.motor_speed_rad_s)",
-              state.tick, speed, limits_.motor_speed_rad_s);
-        });
-  const int64_t age = state.tick - (pressure_command_ ? pressure_command_->tick : 0);
-  check(age <= stale_ticks_, "stale_pressure_command", static_cast<double>(age),
-        static_cast<double>(stale_ticks_), false, [&] {
-          return fmt::format(
-              "tick {}: the newest pressure command is {} ticks old, allowed are {} (limits.stale_input_s)",
-              state.tick, age, stale_ticks_);
-        });
-  check(!pressure_command_ ||
-            (std::isfinite(pressure_command_->pressure_ref) && std::isfinite(pressure_command_->voltage)),
-        "nonfinite_pressure_command", NAN, NAN, false, [&] {
-          return fmt::format("tick {}: pressure reference {}, voltage {}; both must be finite",
-                             pressure_command_->tick, pressure_command_->pressure_ref,
-                             pressure_command_->voltage);
-        });
-  check(!state_monitor_.SecondSenderAlive(now), "second_state_sender", 2, 1, false,
-        [] { return "two processes send states on this network; allowed is one"; });
-  check(!command_monitor_.SecondSenderAlive(now), "second_pressure_command_sender", 2, 1, false,
-        [] { return "two processes send pressure commands on this network; allowed is one"; });
+  safe &= CheckLimit(
+      !(speed > limits_.motor_speed_rad_s), "motor_speed_limit", speed, limits_.motor_speed_rad_s, [&] {
+        return fmt::format(
+            "tick {}: the motor turns at {:.6g} rad/s, allowed is {} rad/s (limits.motor_speed_rad_s)",
+            state.tick, speed, limits_.motor_speed_rad_s);
+      });
+  const double angle = std::fabs(state.arm_angle);
+  safe &= CheckLimit(!(angle > limits_.arm_angle_rad), "arm_angle_limit", angle, limits_.arm_angle_rad, [&] {
+    return fmt::format(
+        "tick {}: the arm is at {:.6g} rad, allowed is |alpha| <= {:.6g} rad "
+        "(limits.arm_angle_rad)",
+        state.tick, state.arm_angle, limits_.arm_angle_rad);
+  });
+  safe &= PressureCommandIsSafe(state);
+  safe &=
+      Check(!state_monitor_.SecondSenderAlive(participant_.clock().Now()), "second_state_sender", 2, 1, [&] {
+        return fmt::format("two processes send states: {} and {}; allowed is one",
+                           participant_.NameOf(state_monitor_.session()),
+                           participant_.NameOf(state_monitor_.second_session()));
+      });
   if (safe && participant_.any_fault()) participant_.Clear("stale_state");
   return safe;
+}
+
+bool PressureApp::PressureCommandIsSafe(const state_t& state) {
+  const int64_t age = SaturatingDifference(state.tick, pressure_command_ ? pressure_command_->tick : 0);
+  const bool fresh = Check(
+      TicksStale(state.tick) == 0, "stale_pressure_command", static_cast<double>(age),
+      static_cast<double>(stale_ticks_), [&] {
+        return fmt::format(
+            "tick {}: the newest pressure command is {} ticks old, allowed are {} (limits.stale_input_s)",
+            state.tick, age, stale_ticks_);
+      });
+  // A voltage is not a reference that something could still follow.
+  const bool ramps =
+      pressure_command_ && !pressure_command_->open_loop && TicksStale(state.tick) < ramp_ticks_;
+  bool safe = fresh || ramps;
+  const double reference = pressure_command_ ? pressure_command_->pressure_ref : 0;
+  const bool finite =
+      std::isfinite(reference) && (!pressure_command_ || std::isfinite(pressure_command_->voltage));
+  safe &= Check(finite, "nonfinite_pressure_command", NAN, NAN, [&] {
+    return fmt::format("tick {}: pressure reference {}, voltage {}; both must be finite",
+                       pressure_command_->tick, pressure_command_->pressure_ref, pressure_command_->voltage);
+  });
+  safe &= Check(!finite || std::fabs(reference) <= pressure_limit_, "excessive_pressure_command", reference,
+                pressure_limit_, [&] {
+                  return fmt::format(
+                      "tick {}: pressure reference {:.6g} psi, allowed are +/- {:.6g} psi "
+                      "(limits.arm_torque_in_lbf / k_2)",
+                      pressure_command_->tick, reference, pressure_limit_);
+                });
+  safe &= Check(!future_command_, "future_pressure_command", static_cast<double>(future_command_.value_or(0)),
+                static_cast<double>(state.tick), [&] {
+                  return fmt::format(
+                      "a pressure command for tick {} at tick {}; is another run's log being played?",
+                      future_command_.value_or(0), state.tick);
+                });
+  safe &= Check(!command_monitor_.SecondSenderAlive(participant_.clock().Now()),
+                "second_pressure_command_sender", 2, 1, [&] {
+                  return fmt::format("two processes send pressure commands: {} and {}; allowed is one",
+                                     participant_.NameOf(command_monitor_.session()),
+                                     participant_.NameOf(command_monitor_.second_session()));
+                });
+  return safe;
+}
+
+// How long the pressure command in force has been stale; 0 while it is not.
+int64_t PressureApp::TicksStale(int64_t tick) const {
+  const int64_t age = SaturatingDifference(tick, pressure_command_ ? pressure_command_->tick : 0);
+  return std::max<int64_t>(0, SaturatingDifference(age, stale_ticks_));
+}
+
+// The reference in force: held until it is stale, then on its way to zero.
+double PressureApp::PressureReference(int64_t tick) const {
+  const int64_t stale = TicksStale(tick);
+  const double reference = pressure_command_->pressure_ref;
+  if (stale == 0) return reference;
+  if (stale >= ramp_ticks_) return 0;
+  return reference * (1 - static_cast<double>(stale) / static_cast<double>(ramp_ticks_));
 }
 
 }  // namespace hydro

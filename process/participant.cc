@@ -11,6 +11,7 @@ namespace hydro {
 namespace {
 
 constexpr auto kAnnouncementPeriod = std::chrono::milliseconds(100);
+constexpr size_t kMostNames = 256;  // a stack has five processes; what a flood sends is not kept
 
 std::string HostName() {
   char name[256] = {};
@@ -26,11 +27,17 @@ Participant::Participant(Bus& bus, Clock& clock, const Channels& channels, const
       role_(role),
       host_(HostName()),
       session_(SessionOn(clock)),
+      undecodable_("undecodable_message"),
+      unsent_("unsent_message"),
       statistics_(role, host_, session_, clock.Now()) {
   bus_.Subscribe<stop_t>(channels_.stop, [this](const stop_t& stop) {
     if (!stop_) stop_ = stop;
   });
   bus_.Subscribe<process_status_t>(channels_.process_status, [this](const process_status_t& status) {
+    if (names_.size() < kMostNames && !names_.contains(status.session)) {
+      names_[status.session] =
+          status.role + " on " + status.host + " (process " + std::to_string(status.pid) + ")";
+    }
     const bool calls_the_roll = status.state == process_status_t::READY && status.session != session_ &&
                                 (status.role == "plant" || status.role == "driver");
     if (calls_the_roll && state_ == process_status_t::RUNNING) Announce(state_, status_text_);
@@ -60,6 +67,36 @@ void Participant::Poll() {
     report->utime = clock_.Utime();
     bus_.Publish(channels_.loop_statistics, *report);
   }
+  unsent_.Update(
+      bus_.unsent(), now,
+      [](int64_t count) {
+        return std::to_string(count) + " messages could not be sent: the network is down";
+      },
+      *this);
+  undecodable_.Update(
+      bus_.undecodable(), now,
+      [this](int64_t count) {
+        return std::to_string(count) + " messages are not of this version's types (the last on " +
+               bus_.undecodable_channel() + "); they are ignored";
+      },
+      *this);
+  WatchRefusals();
+}
+
+void Participant::WatchRefusals() {
+  const auto news = refusals_.Observe(bus_.refused(), clock_.Now());
+  if (news == RefusalWatch::News::kNone) return;
+  const auto count = static_cast<double>(refusals_.count());
+  if (news == RefusalWatch::News::kBegins) {
+    Raise(RefusalWatch::kCode, refusals_.Text(), count, 0, false);
+    return;
+  }
+  if (const auto fault = active_.find(RefusalWatch::kCode); fault != active_.end()) {
+    fault->second.text = refusals_.Text();  // all of them, now that there are no more
+    fault->second.value = count;
+    if (!clock_.simulated()) spdlog::error("{}", fault->second.text);
+  }
+  Clear(RefusalWatch::kCode);
 }
 
 bool Participant::Raise(const std::string& code, const std::string& text, double value, double limit,
@@ -74,7 +111,7 @@ bool Participant::Raise(const std::string& code, const std::string& text, double
   fault.latched = latched;
   fault.active = true;
   active_[code] = fault;
-  latched_ = latched_ || latched;
+  latched_ += latched ? 1 : 0;
   PublishFault(fault);
   if (!clock_.simulated()) spdlog::error("fault {}: {}", code, text);
   return true;
@@ -82,12 +119,28 @@ bool Participant::Raise(const std::string& code, const std::string& text, double
 
 void Participant::Clear(const std::string& code) {
   const auto found = active_.find(code);
-  if (found == active_.end() || found->second.latched) return;
+  if (found != active_.end() && !found->second.latched) End(code);
+}
+
+void Participant::Release(const std::string& code) {
+  if (active_.contains(code)) End(code);
+}
+
+void Participant::End(const std::string& code) {
+  const auto found = active_.find(code);
   fault_t fault = found->second;
   active_.erase(found);
+  latched_ -= fault.latched ? 1 : 0;
   fault.active = false;
   PublishFault(fault);
   if (!clock_.simulated()) spdlog::info("fault {} has gone", code);
+}
+
+std::string Participant::NameOf(std::optional<int64_t> session) const {
+  if (!session) return "nobody";
+  const auto found = names_.find(*session);
+  if (found != names_.end()) return found->second;
+  return "an unannounced process (session " + std::to_string(*session) + ")";
 }
 
 void Participant::PublishFault(const fault_t& fault) {
@@ -113,14 +166,16 @@ void Participant::RequestStop(const std::string& reason, int exit_code) {
   if (exit_code != 0 && !clock_.simulated()) spdlog::error("{}", reason);
 }
 
-int Participant::Leave() {
+int Participant::Leave(const std::string& failure) {
   if (!clock_.simulated()) {
     loop_statistics_t total = statistics_.Total(clock_.Now());
     total.utime = clock_.Utime();
     bus_.Publish(channels_.loop_statistics, total);
   }
-  const bool failed = stop_ && stop_->exit_code != 0;
-  Announce(failed ? process_status_t::FAILED : process_status_t::DONE, failed ? stop_->reason : "");
+  const bool run_failed = stop_ && stop_->exit_code != 0;
+  const bool failed = run_failed || !failure.empty();
+  const std::string text = !failure.empty() ? failure : run_failed ? stop_->reason : "";
+  Announce(failed ? process_status_t::FAILED : process_status_t::DONE, text);
   return failed ? 1 : 0;
 }
 

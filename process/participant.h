@@ -15,6 +15,8 @@
 #include "bus/channels.h"
 #include "bus/clock.h"
 #include "bus/loop_statistics.h"
+#include "process/counted_warning.h"
+#include "process/refusal_watch.h"
 
 namespace hydro {
 
@@ -33,22 +35,27 @@ class Participant {
   void Announce(int8_t state, const std::string& text = "");
   int8_t state() const { return state_; }
 
-  // Publishes what is due: the ready announcement, the statistics. To be called often; cheap when nothing is
-  // due.
+  // Publishes what is due: the ready announcement, the statistics, a warning of messages that were refused.
+  // To be called often; cheap when nothing is due.
   void Poll();
 
   // The last plant tick this process knows of; -1 before the first. Written into faults and stops.
   void set_tick(int64_t tick) { tick_ = tick; }
   int64_t tick() const { return tick_; }
 
-  // A fault begins: publishes it once, until Clear(code). A latched one is never cleared.
+  // A fault begins: publishes it once, until Clear(code). A latched one is cleared by Release(code) only.
   // Returns true when it was not active before.
   bool Raise(const std::string& code, const std::string& text, double value, double limit, bool latched);
   void Clear(const std::string& code);
+  void Release(const std::string& code);  // the operator has ended it
   // Cheap: no fault is active (the usual case, asked on every tick).
   bool any_fault() const { return !active_.empty(); }
   bool active(const std::string& code) const { return active_.contains(code); }
-  bool latched() const { return latched_; }
+  bool latched() const { return latched_ > 0; }
+
+  // "pressure_ctrl on rig (process 4711)" for the session of a process that has announced itself, so that a
+  // fault can name it.
+  std::string NameOf(std::optional<int64_t> session) const;
 
   // Ends the run for everyone. Only the first request of this process counts.
   void RequestStop(const std::string& reason, int exit_code);
@@ -58,7 +65,8 @@ class Participant {
 
   // The last thing a process says, once its output is safe: DONE, or FAILED when the run ended with an error.
   // Returns the exit code that goes with it: 1 when the run failed, whoever ended it; else 0.
-  int Leave();
+  // `failure`: why this process alone failed; empty when it did not.
+  int Leave(const std::string& failure = "");
 
   LoopStatistics& statistics() { return statistics_; }
   Bus& bus() { return bus_; }
@@ -67,6 +75,8 @@ class Participant {
 
  private:
   void PublishFault(const fault_t& fault);
+  void End(const std::string& code);
+  void WatchRefusals();
 
   Bus& bus_;
   Clock& clock_;
@@ -78,8 +88,12 @@ class Participant {
   std::string status_text_;
   int64_t tick_ = -1;
   int64_t fault_sequence_ = 0;
-  bool latched_ = false;
+  int latched_ = 0;  // active faults that are latched
   std::map<std::string, fault_t> active_;
+  std::map<int64_t, std::string> names_;  // of the processes heard of, by session
+  CountedWarning undecodable_;
+  CountedWarning unsent_;
+  RefusalWatch refusals_;
   std::optional<stop_t> stop_;
   Clock::TimePoint next_announcement_;
   LoopStatistics statistics_;

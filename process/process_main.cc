@@ -8,6 +8,7 @@
 
 #include "bus/real_time.h"
 #include "bus/udpm_bus.h"
+#include "bus/udpm_url.h"
 #include "logger/log_writer.h"
 #include "process/stop_signal.h"
 
@@ -20,6 +21,17 @@ const ProcessSection& SectionOf(const StackConfig& config, const std::string& pr
     if (section.program == program) return section;
   }
   return kNone;
+}
+
+// Who can reach the group can drive the actuator: the process that does what commands say, says so.
+void WarnOfOpenNetwork(const std::string& program, const BusSection& bus) {
+  const bool obeys = program == "hydro-plant" || program == "hydro-driver";
+  const int ttl = ParseUdpmUrl(bus.url).ttl;
+  if (!obeys || ttl == 0 || !bus.key_file.empty()) return;
+  spdlog::warn(
+      "bus.url has ttl={} and there is no bus.key_file: whoever reaches this network can command the motor "
+      "(docs/security.md)",
+      ttl);
 }
 
 // --log of a process that has other work: a log that cannot be written any more must not end that work.
@@ -78,7 +90,9 @@ int RunProcess(const std::string& program, const CommonOptions& options, const P
     request.cpu = section.cpu;
     request.lock_memory = section.priority > 0;
     ApplyRealTime(request);
-    UdpmBus bus(config.bus.url);
+    UdpmBus bus(config.bus.url,
+                MakeAuthenticator(config.bus.resolved_key_file, Channels(config.bus.channel_suffix)));
+    WarnOfOpenNetwork(program, config.bus);
     if (const std::string hint = bus.receive_buffer_hint(); !hint.empty()) spdlog::warn("{}", hint);
     Recording recording;
     if (!options.log.empty()) {

@@ -1,5 +1,6 @@
 #include "settings/bus_url.h"
 
+#include <algorithm>
 #include <charconv>
 #include <string_view>
 
@@ -22,10 +23,13 @@ std::string_view Take(std::string_view* rest, char separator) {
 }
 
 bool IsMulticastGroup(std::string_view group) {
+  if (std::count(group.begin(), group.end(), '.') != 3) return false;
   for (int i = 0; i < 4; ++i) {
-    if (!WholeNumber(Take(&group, '.'), i == 0 ? 224 : 0, i == 0 ? 239 : 255)) return false;
+    const std::string_view number = Take(&group, '.');
+    if (number.size() > 1 && number.front() == '0') return false;  // octal to some
+    if (!WholeNumber(number, i == 0 ? 224 : 0, i == 0 ? 239 : 255)) return false;
   }
-  return group.empty();
+  return true;
 }
 
 }  // namespace

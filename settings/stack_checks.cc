@@ -27,8 +27,14 @@ void CheckPair(const TomlNode& root, const std::string& present, const std::stri
 }
 
 // The arm angle that `what` takes must leave V_1, V_2 > 0: V_ms - c |alpha| > 0, eqs. (6), (7).
-void CheckAngle(const TomlNode& root, const std::string& key, double angle, const Parameters& p) {
+// `allowed` is limits.arm_angle_rad.
+void CheckAngle(const TomlNode& root, const std::string& key, double angle, const Parameters& p,
+                double allowed) {
   const double limit = p.V_ms / p.c;
+  if (std::abs(angle) < limit && std::abs(angle) > allowed) {
+    throw KeyError(root, key, "arm angle " + ShortestNumber(angle) + " rad",
+                   "|alpha| <= " + ShortestNumber(allowed) + " rad (limits.arm_angle_rad)");
+  }
   if (std::abs(angle) < limit) return;
   const char* side = angle > 0 ? "V_1" : "V_2";
   throw KeyError(root, key,
@@ -50,10 +56,10 @@ std::string KeyOf(const TrajectorySpec& spec, double extreme) {
 }
 
 void CheckAngles(const TomlNode& root, const std::string& section, const TrajectorySpec& spec,
-                 const Parameters& p) {
+                 const Parameters& p, double allowed) {
   const auto trajectory = MakeTrajectory(spec);
   for (const double extreme : {trajectory->Max(), trajectory->Min()}) {
-    CheckAngle(root, section + KeyOf(spec, extreme), extreme, p);
+    CheckAngle(root, section + KeyOf(spec, extreme), extreme, p, allowed);
   }
 }
 
@@ -144,13 +150,19 @@ void CheckChoices(const TomlNode& root, const StackConfig& config) {
   }
 }
 
-void CheckAgainstModel(const TomlNode& root, const StackConfig& config) {
-  const ModelSection& model = config.model;
+void CheckAgainstModel(const TomlNode& root, StackConfig* checked) {
+  const ModelSection& model = checked->model;
   const Parameters& p = model.description.parameters;
-  CheckAngle(root, "model.arm_angle_rad", model.arm_angle_rad, p);
-  if (model.motion) CheckAngles(root, "model.motion", *model.motion, p);
+  const TomlNode* limits = root.Find("limits");
+  const bool given = limits != nullptr && limits->Find("arm_angle_rad") != nullptr;
+  // A shaft that is held or moved by something else is not ours to stop.
+  if (!given && model.shaft == Shaft::kFree) checked->limits.arm_angle_rad = kArmAngleShare * p.V_ms / p.c;
+  const StackConfig& config = *checked;
+  const double allowed = config.limits.arm_angle_rad;
+  CheckAngle(root, "model.arm_angle_rad", model.arm_angle_rad, p, allowed);
+  if (model.motion) CheckAngles(root, "model.motion", *model.motion, p, allowed);
   if (config.reference.signal == ReferenceSignal::kArmAngle) {
-    CheckAngles(root, "reference", config.reference.trajectory, p);
+    CheckAngles(root, "reference", config.reference.trajectory, p, allowed);
   }
   const double pressure = model.initial_pressure_psi;
   if (pressure < 0 || (pressure < p.p_3 && !Has(model.description.effects, "valve.check"))) {

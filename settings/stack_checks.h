@@ -9,8 +9,12 @@ namespace hydro {
 // Checks the times against the tick and fills the intervals in ticks and the last tick. Throws InputError.
 void CheckTimes(const TomlNode& root, StackConfig* config);
 
-// Checks pressures and arm angles against the model, once its description is known. Throws InputError.
-void CheckAgainstModel(const TomlNode& root, const StackConfig& config);
+// The share of V_ms/c, where V_1 or V_2 is 0, that a free arm may use when limits.arm_angle_rad is not given.
+inline constexpr double kArmAngleShare = 0.98;
+
+// Checks pressures and arm angles against the model, once its description is known, and fills the default of
+// limits.arm_angle_rad. Throws InputError.
+void CheckAgainstModel(const TomlNode& root, StackConfig* config);
 
 // Checks what holds the shaft and the gains. Throws InputError.
 void CheckChoices(const TomlNode& root, const StackConfig& config);

@@ -39,7 +39,7 @@ StackConfig LoadStackConfig(const std::string& file, const std::vector<std::stri
   config.model.resolved_file = PathBeside(file, config.model.file);
   config.model.text = ReadTextFile(config.model.resolved_file);
   config.model.description = ParseModel(config.model.text, config.model.resolved_file);
-  CheckAgainstModel(root, config);
+  CheckAgainstModel(root, &config);
   return config;
 }
 
@@ -50,7 +50,7 @@ StackConfig ParseStackConfig(const std::string& config_text, const std::string& 
   config.model.resolved_file = model_name;
   config.model.text = model_text;
   config.model.description = ParseModel(model_text, model_name);
-  CheckAgainstModel(root, config);
+  CheckAgainstModel(root, &config);
   return config;
 }
 

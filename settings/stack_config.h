@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "model/description.h"
+#include "settings/driver_section.h"
 #include "settings/input_error.h"
 #include "trajectory/trajectory.h"
 
@@ -50,7 +51,9 @@ struct ModelSection {
 
 struct BusSection {
   std::string url = "udpm://239.255.76.67:7667?ttl=0";
-  std::string channel_suffix;  // appended to every channel name
+  std::string channel_suffix;     // appended to every channel name
+  std::string key_file;           // "": messages are not authenticated; docs/security.md
+  std::string resolved_key_file;  // path to read it from
 };
 
 enum class TimeMode { kRealtime, kLockstep };
@@ -98,11 +101,22 @@ struct ReferenceSection {
   TrajectorySpec trajectory;  // kind = "steps" | "sine" | "square" | "chirp" | "csv"
 };
 
+// How a fault that zeroed the voltage ends. Its codes and what each does: docs/safety.md.
+enum class Rearm {
+  kRestart,   // inputs that are good again end it; a limit that was passed ends the run
+  kExplicit,  // the run goes on at zero volts until hydro-launch --rearm
+};
+
 struct LimitsSection {
-  double pressure_psi = 2000;  // either side; above it: zero volts, fault, end of the run
+  double pressure_psi = 2000;  // either side; above it: zero volts and a fault
   double motor_speed_rad_s = std::numeric_limits<double>::infinity();
+  // |alpha|; read from a file, the default is kArmAngleShare V_ms/c for a free shaft (stack_checks.h).
+  double arm_angle_rad = std::numeric_limits<double>::infinity();
   double arm_torque_in_lbf = std::numeric_limits<double>::infinity();  // |k_2 dp_ref| is limited to this
-  double stale_input_s = 0.1;  // older inputs give zero volts and a fault
+  double stale_input_s = 0.1;     // older inputs give zero volts and a fault
+  double pressure_ramp_s = 0.2;   // plant time in which a stale pressure reference goes to zero; 0: at once
+  double stale_logger_s = 1;      // a logger that is silent for so long is reported as gone
+  Rearm rearm = Rearm::kRestart;  // rearm = "restart" | "explicit"
 };
 
 struct NoiseSection {
@@ -141,7 +155,8 @@ struct StackConfig {
   ReferenceSection reference;
   LimitsSection limits;
   NoiseSection noise;
-  int64_t seed = 1;  // --seed, [noise] seed
+  std::optional<DriverSection> driver;  // only a stack with hydro-driver needs it
+  int64_t seed = 1;                     // --seed, [noise] seed
   std::vector<ProcessSection>
       processes;  // default: plant, pressure-ctrl, position-ctrl, no host, no cpu, no priority
 

@@ -29,13 +29,15 @@ void ReadModel(SectionReader section, const std::string& config_file, ModelSecti
   CheckedTrajectory(*model->motion, motion);
 }
 
-void ReadBus(SectionReader section, BusSection* bus) {
+void ReadBus(SectionReader section, const std::string& config_file, BusSection* bus) {
   if (section.Text("url", &bus->url)) {
     const std::string allowed = WhatIsWrongWithBusUrl(bus->url);
     if (!allowed.empty()) throw section.Error("url", Quoted(bus->url), allowed);
   }
   section.Text("channel_suffix", &bus->channel_suffix);
+  section.Text("key_file", &bus->key_file);
   section.Finish();
+  if (!bus->key_file.empty()) bus->resolved_key_file = PathBeside(config_file, bus->key_file);
   const std::string& suffix = bus->channel_suffix;
   const bool plain = std::all_of(suffix.begin(), suffix.end(), [](unsigned char c) {
     return (c < 0x80 && std::isalnum(c)) || c == '_' || c == '-' || c == '.';
@@ -128,8 +130,13 @@ void ReadReference(SectionReader section, const std::string& config_file, Refere
 void ReadLimits(SectionReader section, LimitsSection* limits) {
   section.Number("pressure_psi", &limits->pressure_psi, kPositiveOrNone);
   section.Number("motor_speed_rad_s", &limits->motor_speed_rad_s, kPositiveOrNone);
+  section.Number("arm_angle_rad", &limits->arm_angle_rad, kPositiveOrNone);
   section.Number("arm_torque_in_lbf", &limits->arm_torque_in_lbf, kPositiveOrNone);
   section.Number("stale_input_s", &limits->stale_input_s, kWait);
+  section.Number("pressure_ramp_s", &limits->pressure_ramp_s, {.min = 0, .max = 1e6});
+  section.Number("stale_logger_s", &limits->stale_logger_s, kWait);
+  section.Choice<Rearm>("rearm", {{"restart", Rearm::kRestart}, {"explicit", Rearm::kExplicit}},
+                        &limits->rearm);
   section.Finish();
 }
 
@@ -183,6 +190,14 @@ void ReadProcesses(SectionReader& document, std::vector<ProcessSection>* process
     ReadProcess(SectionReader(item, "process"), &process);
     const bool twice = std::any_of(processes->begin(), processes->end(),
                                    [&](const auto& other) { return other.program == process.program; });
+    const std::string twin = process.program == "hydro-driver"  ? "hydro-plant"
+                             : process.program == "hydro-plant" ? "hydro-driver"
+                                                                : "";
+    if (std::any_of(processes->begin(), processes->end(),
+                    [&](const auto& other) { return other.program == twin; })) {
+      throw KeyError(item.place, "process.program", process.program + " beside " + twin,
+                     "one of the two: both send states");
+    }
     // Several loggers do no harm; two of the others would contradict each other on the bus.
     if (twice && process.program != "hydro-logger") {
       throw KeyError(item.place, "process.program", "a second " + process.program, "one of it in a stack");
@@ -204,11 +219,12 @@ void ReadSections(const TomlNode& root, const std::string& config_file, StackCon
   SectionReader reference = document.Section("reference");
   SectionReader limits = document.Section("limits");
   SectionReader noise = document.Section("noise");
+  SectionReader driver = document.Section("driver");
   document.Take("process");
   document.Finish();
 
   ReadModel(std::move(model), config_file, &config->model);
-  ReadBus(std::move(bus), &config->bus);
+  ReadBus(std::move(bus), config_file, &config->bus);
   ReadTime(std::move(time), &config->time);
   ReadPlant(std::move(plant), &config->plant);
   ReadPressure(std::move(pressure), &config->pressure);
@@ -216,6 +232,7 @@ void ReadSections(const TomlNode& root, const std::string& config_file, StackCon
   ReadReference(std::move(reference), config_file, &config->reference);
   ReadLimits(std::move(limits), &config->limits);
   ReadNoise(std::move(noise), &config->noise, &config->seed);
+  if (document.Has("driver")) config->driver = ReadDriver(std::move(driver));
   ReadProcesses(document, &config->processes);
 }
 

@@ -2,6 +2,7 @@
 
 #include "bus/in_process_bus.h"
 #include "plant/plant_app.h"
+#include "plant/simulated_rig.h"
 #include "position_ctrl/position_app.h"
 #include "pressure_ctrl/pressure_app.h"
 #include "settings/input_error.h"
@@ -19,7 +20,8 @@ SimulationResult Simulate(const StackConfig& config, const std::function<void(co
   SimulatedClock clock;
   InProcessBus bus(&clock);
   if (tap) bus.SubscribeAll(tap);
-  PlantApp plant(bus, clock, lockstep, {}, "hydro-sim");
+  SimulatedRig rig(lockstep);
+  PlantApp plant(bus, clock, lockstep, rig, {}, "hydro-sim");
   PressureApp pressure(bus, clock, lockstep);
   PositionApp position(bus, clock, lockstep);
 

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
 #include <vector>
 
 namespace hydro {
@@ -110,6 +111,19 @@ TEST(SequenceMonitorTest, TicksGoingBack) {
   EXPECT_EQ(observe(2, 2, 3, 401ms), Verdict::kAccept);
   EXPECT_EQ(monitor.ticks_back(), 1);
   EXPECT_EQ(monitor.lost(), 0);
+}
+
+// Tests that sequence numbers of anybody's making, as far apart as they can be, are counted as best they may.
+TEST(SequenceMonitorTest, ExtremeNumbers) {
+  constexpr int64_t kLowest = std::numeric_limits<int64_t>::min();
+  constexpr int64_t kHighest = std::numeric_limits<int64_t>::max();
+  SequenceMonitor monitor(100ms);
+  EXPECT_EQ(monitor.Observe(1, kLowest, Clock::TimePoint(0ms)), Verdict::kAccept);
+  EXPECT_EQ(monitor.Observe(1, kHighest, Clock::TimePoint(1ms)), Verdict::kAccept);
+  EXPECT_GE(monitor.gap(), kHighest - 1);
+  EXPECT_EQ(monitor.Observe(1, 0, Clock::TimePoint(500ms)), Verdict::kRestarted);
+  EXPECT_EQ(monitor.Observe(1, kHighest, Clock::TimePoint(501ms)), Verdict::kAccept);
+  EXPECT_EQ(monitor.lost(), kHighest);
 }
 
 }  // namespace

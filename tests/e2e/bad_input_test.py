@@ -9,6 +9,7 @@ import stack
 # Programs that take a CONFIG, with options that make each do something. FILE stands for an output file.
 CONFIG_PROGRAMS = {
     "hydro-plant": ["--log", "FILE"],
+    "hydro-driver": ["--log", "FILE"],
     "hydro-pressure-ctrl": ["--log", "FILE"],
     "hydro-position-ctrl": ["--log", "FILE"],
     "hydro-logger": ["-o", "FILE"],

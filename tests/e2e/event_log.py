@@ -21,6 +21,7 @@ FIELDS = {
     "HYDRO_ARM_REFERENCE": "utime:q tick:q session:q sequence:q signal:b value:d",
     "HYDRO_FAULT": "utime:q tick:q session:q sequence:q source:s code:s text:s value:d limit:d latched:b active:b",
     "HYDRO_STOP": "utime:q tick:q session:q source:s reason:s exit_code:i",
+    "HYDRO_REARM": "utime:q tick:q session:q addressee:q kind:b source:s text:s",
     "HYDRO_PROCESS_STATUS": "utime:q session:q role:s host:s version:s pid:i state:b text:s",
     "HYDRO_LOOP_STATISTICS": "utime:q session:q sequence:q role:s host:s whole_run:b interval_s:d cycles:q "
                              "period_p50_us:d period_p99_us:d period_p999_us:d period_max_us:d latency_p50_us:d "
@@ -67,6 +68,17 @@ class Type:
         if at != len(data):
             raise LogError(f"{self.tuple.__name__}: {len(data)} bytes, decoded {at}")
         return self.tuple._make(values)
+
+    def encode(self, type_hash, message):
+        """The bytes of a message; `type_hash` is the 8 bytes that open each message of this type."""
+        data = type_hash
+        for code, value in zip(self.codes, message):
+            if code == "s":
+                text = value.encode() + b"\0"
+                data += struct.pack(">i", len(text)) + text
+            else:
+                data += struct.pack(">" + code, value)
+        return data
 
 
 TYPES = {channel: Type(channel, fields) for channel, fields in FIELDS.items()}
@@ -136,9 +148,10 @@ class Follower:
 
 
 class Log:
-    """The decoded messages of a log. `items` are (kind, message) in file order; `suffix` picks one stack of several."""
+    """The decoded messages of a log. `items` are (kind, message) in file order; `suffix` picks one stack of several; with
+    `foreign`, messages that are not of their channel's type are left out."""
 
-    def __init__(self, path, suffix="", torn_tail=False):
+    def __init__(self, path, suffix="", torn_tail=False, foreign=False):
         self.events = read_events(path, torn_tail)
         self.items = []
         self._by_kind = {kind: [] for kind in TYPES}
@@ -146,7 +159,12 @@ class Log:
             kind = kind_of(event.channel)
             if kind is None or event.channel != kind + suffix:
                 continue
-            message = TYPES[kind].decode(event.data)
+            try:
+                message = TYPES[kind].decode(event.data)
+            except (LogError, struct.error):
+                if not foreign:
+                    raise
+                continue
             self.items.append((kind, message))
             self._by_kind[kind].append(message)
 
@@ -154,7 +172,7 @@ class Log:
         table = {"states": "HYDRO_STATE", "motor_commands": "HYDRO_MOTOR_COMMAND",
                  "pressure_commands": "HYDRO_PRESSURE_COMMAND", "arm_references": "HYDRO_ARM_REFERENCE",
                  "faults": "HYDRO_FAULT", "stops": "HYDRO_STOP", "statuses": "HYDRO_PROCESS_STATUS",
-                 "statistics": "HYDRO_LOOP_STATISTICS", "descriptions": "HYDRO_RUN", "progress": "HYDRO_LOG_PROGRESS"}
+                 "statistics": "HYDRO_LOOP_STATISTICS", "rearms": "HYDRO_REARM", "descriptions": "HYDRO_RUN", "progress": "HYDRO_LOG_PROGRESS"}
         if name not in table:
             raise AttributeError(name)
         return self._by_kind[table[name]]

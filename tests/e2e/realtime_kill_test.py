@@ -14,6 +14,7 @@ import stack
 
 ROLES = ("plant", "pressure_ctrl", "position_ctrl", "logger")
 RATE = 1000  # Hz, of demo.toml
+RAMP = 200  # ticks, the default of limits.pressure_ramp_s
 # s, limits.stale_input_s: above what wake-ups are late by here (up to 150 ms), so that only a dead process is stale.
 STALE = 0.3
 
@@ -87,18 +88,19 @@ class RealtimeKillTest(stack.TestCase):
         slept = max(s.skipped_ticks for s in log.states)
         self.assertLessEqual(held - last_command, STALE * RATE + 3 + slept + 2)
 
-    # Tests that without a position loop the pressure loop goes to zero volts and says so, until there is one again.
+    # Tests that without a position loop the pressure loop goes to zero volts and says so, until there is one again. The
+    # way there is tested in fault_loops_test.py.
     def test_position_ctrl_killed(self):
         self.run_["position_ctrl"].kill()
         self.run_["position_ctrl"].wait()
         fault = self.wait_for_fault("stale_pressure_command", True)
         self.assertEqual(fault.source, "pressure_ctrl")
-        self.log.wait_for_tick(fault.tick + 200)
+        self.log.wait_for_tick(fault.tick + RAMP + 200)
         self.run_.start("position_ctrl")
         gone = self.wait_for_fault("stale_pressure_command", False)
         self.wait_for_law(gone.tick)
         log = self.finish()
-        between = [c for c in log.motor_commands if fault.tick <= c.tick < gone.tick]
+        between = [c for c in log.motor_commands if fault.tick + RAMP <= c.tick < gone.tick]
         self.assertTrue(between)
         for command in between:
             self.assertEqual((command.status, command.voltage), (event_log.SAFE, 0), command)
@@ -108,7 +110,7 @@ class RealtimeKillTest(stack.TestCase):
         interval = 5
         limit = 1 + interval + math.ceil(STALE * RATE)
         first_safe = min(c.tick for c in log.motor_commands if c.status == event_log.SAFE)
-        self.assertGreater(first_safe - last, limit)
+        self.assertGreaterEqual(first_safe - last, limit + RAMP)
 
     # Tests that without a plant the pressure loop says zero volts once and names the fault, and that a new plant
     # finds everybody where it left them.
@@ -124,12 +126,12 @@ class RealtimeKillTest(stack.TestCase):
         states = self.log.count("HYDRO_STATE")
         self.run_.start("plant", "--expect", "logger")
         self.wait_for_fault("stale_state", False)
-        self.log.wait_for("HYDRO_STATE", lambda s: s.tick == 200, "tick 200 of the new plant", start=states)
+        self.log.wait_for("HYDRO_STATE", lambda s: s.tick >= 200, "tick 200 of the new plant", start=states)
         self.log.wait_for("HYDRO_MOTOR_COMMAND", lambda c: c.status == event_log.LAW and c.tick >= 200,
                           "commands for the new plant", start=commands)
         self.finish()
 
-    # Tests that control does not need the logger, nor notices that it is gone, and that a new one joins in.
+    # Tests that control does not need the logger, and that a new one joins in.
     def test_logger_killed(self):
         second_file = self.path("second.lcmlog")
         second = self.start("hydro-logger", *self.run_.arguments, "-o", second_file)
@@ -144,7 +146,7 @@ class RealtimeKillTest(stack.TestCase):
         for process in (self.run_["plant"], self.run_["pressure_ctrl"], self.run_["position_ctrl"], second):
             self.assertEqual(process.wait(), 0, process.report())
         after = event_log.Log(second_file)
-        self.assertFalse([f for f in after.faults if f.tick >= tick and f.active], after.faults)
+        self.assertLessEqual({f.code for f in after.faults if f.tick >= tick and f.active}, {"logger_gone"})
         commands = {c.tick: c for c in after.motor_commands if c.status != event_log.STOPPED}
         for state in after.states[:-1]:
             self.assertIn(state.tick, commands)

@@ -144,6 +144,22 @@ TEST_F(LaunchPlanTest, NothingToStart) {
   EXPECT_THAT(Error(), HasSubstr("nothing to start on host desk"));
 }
 
+// Tests that a driver that the configuration does not suit is refused before anything is started, and that it
+// waits for the logger as the plant does.
+TEST_F(LaunchPlanTest, ChecksTheDriver) {
+  MakeProgram(folder_ / "hydro-driver");
+  Processes({{"hydro-driver", ""}});
+  EXPECT_THAT(Error(), HasSubstr("driver: found nothing, allowed a section [driver]"));
+  config_.driver.emplace();
+  config_.driver->arm_angle.source = SensorSection::Source::kAnalog;
+  request_.log_file = "a.lcmlog";
+  const LaunchPlan plan = Plan();
+  EXPECT_EQ(plan.children[0].label, "driver");
+  EXPECT_THAT(plan.children[0].argv, ::testing::Contains("--expect"));
+  config_.time.mode = TimeMode::kLockstep;
+  EXPECT_THAT(Error(), HasSubstr("time.mode: found \"lockstep\""));
+}
+
 // Tests that a program is looked for in the folder first, then on PATH, and that a missing one is named.
 TEST_F(LaunchPlanTest, FindsPrograms) {
   const std::string path_before = getenv("PATH");
@@ -152,6 +168,8 @@ TEST_F(LaunchPlanTest, FindsPrograms) {
   MakeProgram(folder_ / "bin" / "hydro-driver");
   setenv("PATH", (folder_ / "bin").c_str(), 1);
   Processes({{"hydro-plant", ""}, {"hydro-driver", ""}});
+  config_.driver.emplace();
+  config_.driver->arm_angle.source = SensorSection::Source::kAnalog;
   EXPECT_EQ(Plan().children[0].argv[0], (folder_ / "hydro-plant").string());
   EXPECT_EQ(Plan().children[1].argv[0], (folder_ / "bin" / "hydro-driver").string());
   chmod((folder_ / "bin" / "hydro-driver").c_str(), 0644);  // not a program any more

@@ -1,6 +1,9 @@
 #include "logger/log_writer.h"
 
 #include <gmock/gmock.h>
+#include <sys/resource.h>
+
+#include <csignal>
 
 #include "tests/logger/log_fixture.h"
 
@@ -103,6 +106,26 @@ TEST_F(LogWriterTest, DiskFull) {
   const std::string large(2u << 20, 'x');
   EXPECT_THROW(writer.Append("A", large.data(), large.size(), 2), WriteError);
   EXPECT_EQ(writer.events(), 1);
+}
+
+// Tests that a file that may not grow any more (as on a disk that fills up) ends with the last event that
+// fits: what is in it can be read.
+TEST_F(LogWriterTest, FullDiskLeavesWholeEvents) {
+  const auto old_handler = std::signal(SIGXFSZ, SIG_IGN);
+  rlimit before{};
+  ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &before), 0);
+  {
+    LogWriter writer(Path("log"), Opening::kDirect);
+    const std::vector<uint8_t> data(100, 7);
+    for (int i = 0; i < 20; ++i) writer.Append("CHANNEL", data.data(), data.size(), i);
+    rlimit small = before;
+    small.rlim_cur = 1000;  // seven events of 135 bytes and a piece
+    ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &small), 0);
+    EXPECT_THROW(writer.Flush(), WriteError);
+  }  // the destructor tries again
+  ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &before), 0);
+  std::signal(SIGXFSZ, old_handler);
+  EXPECT_EQ(ReadEvents(Path("log")).size(), 7u);
 }
 
 // Tests that what LCM could not have sent is refused.

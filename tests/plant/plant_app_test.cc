@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "bus/in_process_bus.h"
+#include "plant/simulated_rig.h"
 #include "settings/input_error.h"
 #include "tests/stack_fixture.h"
 
@@ -31,7 +32,8 @@ class PlantAppTest : public ::testing::Test {
   }
 
   int Run(const StackConfig& config) {
-    PlantApp plant(bus_, clock_, config);
+    SimulatedRig rig(config);
+    PlantApp plant(bus_, clock_, config, rig);
     for (const char* role : {"pressure_ctrl", "position_ctrl"}) {
       process_status_t ready;
       ready.session = 1;
@@ -157,7 +159,9 @@ TEST_F(PlantAppTest, LockstepNamesWhoLeft) {
 
 // Tests that a run does not start without its participants and says who is missing.
 TEST_F(PlantAppTest, NamesWhoIsNotReady) {
-  PlantApp plant(bus_, clock_, SmallStack(), {"logger"});
+  const StackConfig config = SmallStack();
+  SimulatedRig rig(config);
+  PlantApp plant(bus_, clock_, config, rig, {"logger"});
   process_status_t ready;
   ready.session = 1;
   ready.role = "pressure_ctrl";
@@ -180,7 +184,9 @@ TEST_F(PlantAppTest, LockstepWaitsForTheLogger) {
     announced = true;
   });
   // The controllers are announced after the logger, so that the plant knows it when the run starts.
-  PlantApp plant(bus_, clock_, SmallStack(), {"logger"});
+  const StackConfig config = SmallStack();
+  SimulatedRig rig(config);
+  PlantApp plant(bus_, clock_, config, rig, {"logger"});
   for (const char* role : {"pressure_ctrl", "position_ctrl"}) {
     process_status_t ready;
     ready.session = 1;
@@ -377,7 +383,7 @@ TEST_F(PlantAppTest, ModelErrorEndsTheRun) {
 TEST_F(PlantAppTest, ImpossibleAngleIsBadInput) {
   StackConfig config = SmallStack();
   config.model.arm_angle_rad = 1.5708;
-  EXPECT_THROW(PlantApp(bus_, clock_, config), InputError);
+  EXPECT_THROW(SimulatedRig{config}, InputError);
 }
 
 }  // namespace

@@ -227,25 +227,157 @@ TEST_P(PressureLimitTest, Trips) {
 
 INSTANTIATE_TEST_SUITE_P(BothSides, PressureLimitTest, ::testing::Values(&state_t::p1, &state_t::p2));
 
-// Tests that in real time a position loop that has gone silent gives zero volts after the stale-input limit,
-// counted in ticks so that a replay does the same, and that the loop resumes with the next pressure command.
-TEST_F(PressureAppTest, StalePressureCommandGivesZeroVolts) {
+// Tests that in real time the reference of a position loop that has gone silent is held for the stale-input
+// limit, goes to zero in a line within limits.pressure_ramp_s, and that then the voltage is zero: counted in
+// ticks, so that a replay does the same. The loop resumes with the next pressure command.
+TEST_F(PressureAppTest, StalePressureReferenceGoesToZeroThenTheVoltage) {
   StackConfig config = SmallStack();
   config.time.mode = TimeMode::kRealtime;
   config.limits.stale_input_s = 0.02;  // 20 ticks, beside one sample interval of 5 and the delay of 1
+  config.limits.pressure_ramp_s = 0.01;
   Start(config);
   SendPressure(0, 120);
-  for (int64_t tick = 0; tick <= 26; ++tick) SendState(State(tick));
-  EXPECT_EQ(commands_.back().status, motor_command_t::LAW);
-  SendState(State(27));
-  EXPECT_EQ(commands_.back().voltage, 0);
-  EXPECT_EQ(commands_.back().status, motor_command_t::SAFE);
+  for (int64_t tick = 0; tick <= 40; ++tick) SendState(State(tick));
+  ASSERT_EQ(commands_.size(), 41u);
+  for (int64_t tick = 1; tick <= 40; ++tick) {
+    const motor_command_t& c = commands_[tick];
+    const double reference = tick <= 26  ? 120
+                             : tick < 36 ? 120 * (1 - 0.1 * static_cast<double>(tick - 26))
+                                         : 0;
+    EXPECT_NEAR(c.pressure_ref, reference, 1e-12) << tick;
+    EXPECT_EQ(c.status, tick < 36 ? motor_command_t::LAW : motor_command_t::SAFE) << tick;
+    EXPECT_NEAR(c.voltage, tick < 36 ? std::max(-10.0, Law(reference)) : 0, 1e-12) << tick;
+  }
   ASSERT_EQ(faults_.size(), 1u);
   EXPECT_EQ(faults_[0].code, "stale_pressure_command");
-  SendPressure(27, 120);
-  SendState(State(28));
+  EXPECT_EQ(faults_[0].tick, 27);
+  SendPressure(40, 120);
+  SendState(State(41));
   EXPECT_EQ(commands_.back().status, motor_command_t::LAW);
+  EXPECT_EQ(commands_.back().pressure_ref, 120);
   EXPECT_EQ(faults_.size(), 2u);
+}
+
+// Tests that without a ramp, and for a voltage, which nothing would follow down, zero volts come at once.
+TEST_F(PressureAppTest, StaleVoltageGivesZeroVolts) {
+  for (const bool open_loop : {false, true}) {
+    clock_ = SimulatedClock();
+    InProcessBus bus(&clock_);
+    StackConfig config = SmallStack();
+    config.time.mode = TimeMode::kRealtime;
+    config.limits.stale_input_s = 0.02;
+    config.limits.pressure_ramp_s = open_loop ? 0.2 : 0;
+    PressureApp app(bus, clock_, config);
+    std::vector<motor_command_t> commands;
+    bus.Subscribe<motor_command_t>("HYDRO_MOTOR_COMMAND",
+                                   [&](const motor_command_t& c) { commands.push_back(c); });
+    pressure_command_t command{};
+    command.open_loop = open_loop;
+    command.voltage = 2.5;
+    command.pressure_ref = 120;
+    bus.Publish("HYDRO_PRESSURE_COMMAND", command);
+    for (int64_t tick = 0; tick <= 40; ++tick) bus.Publish("HYDRO_STATE", State(tick));
+    while (bus.HandleUntil(clock_.Now()) > 0) {
+    }
+    ASSERT_EQ(commands.size(), 41u);
+    EXPECT_NE(commands[26].status, motor_command_t::SAFE);
+    for (int64_t tick = 27; tick <= 40; ++tick) {
+      EXPECT_EQ(commands[tick].status, motor_command_t::SAFE) << tick;
+      EXPECT_EQ(commands[tick].voltage, 0) << tick;
+    }
+  }
+}
+
+// Tests that a reference beyond what limits.arm_torque_in_lbf allows is not followed, while one at it is,
+// half a step of the D/A converter included.
+TEST_F(PressureAppTest, ExcessivePressureReferenceGivesZeroVolts) {
+  StackConfig config = SmallStack();
+  config.limits.arm_torque_in_lbf = 368;  // 100 psi
+  config.position.dac_bits = 12;
+  config.position.dac_range_psi = 2048;  // steps of 1 psi
+  Start(config);
+  SendState(State(0));
+  int64_t tick = 0;
+  for (const double reference : {100.5, -100.5, 100.6, -100.6, 100.0}) {
+    SendPressure(tick, reference);
+    for (int k = 0; k < 5; ++k) SendState(State(++tick));
+    const bool allowed = std::fabs(reference) <= 100.5;
+    EXPECT_EQ(commands_.back().status, allowed ? motor_command_t::LAW : motor_command_t::SAFE) << reference;
+    if (!allowed) {
+      EXPECT_EQ(commands_.back().voltage, 0);
+    }
+  }
+  ASSERT_EQ(faults_.size(), 2u);
+  EXPECT_EQ(faults_[0].code, "excessive_pressure_command");
+  EXPECT_EQ(faults_[0].value, 100.6);
+  EXPECT_FALSE(faults_[1].active);
+}
+
+// Tests that a command for a tick that is far from having been is refused, zeroes the voltage, and holds up
+// nothing that comes after it.
+TEST_F(PressureAppTest, FuturePressureCommandGivesZeroVolts) {
+  StackConfig config = SmallStack();
+  config.time.mode = TimeMode::kRealtime;
+  config.limits.stale_input_s = 0.02;
+  Start(config);
+  SendPressure(0, 120);
+  SendState(State(0));
+  pressure_command_t future{};
+  future.tick = 1000;
+  future.session = 7;
+  future.sequence = 1;
+  future.pressure_ref = 300;
+  bus_.Publish("HYDRO_PRESSURE_COMMAND", future);
+  SendState(State(1));
+  EXPECT_EQ(commands_.back().status, motor_command_t::SAFE);
+  ASSERT_EQ(faults_.size(), 1u);
+  EXPECT_EQ(faults_[0].code, "future_pressure_command");
+  EXPECT_EQ(faults_[0].value, 1000);
+  SendPressure(5, 130);  // ahead by what a network may do
+  SendState(State(2));
+  EXPECT_EQ(commands_.back().status, motor_command_t::LAW);
+  EXPECT_EQ(commands_.back().pressure_ref, 120);
+  for (int64_t tick = 3; tick <= 6; ++tick) SendState(State(tick));
+  EXPECT_EQ(commands_.back().pressure_ref, 130);
+  EXPECT_FALSE(faults_.back().active);
+}
+
+// Tests that an arm beyond its limit trips as a pressure does.
+TEST_F(PressureAppTest, ArmAngleLimitTrips) {
+  StackConfig config = SmallStack();
+  config.limits.arm_angle_rad = 0.8;
+  Start(config);
+  state_t s = State(0);
+  s.arm_angle = -0.81;
+  SendState(s);
+  EXPECT_EQ(commands_.back().status, motor_command_t::SAFE);
+  ASSERT_EQ(faults_.size(), 1u);
+  EXPECT_EQ(faults_[0].code, "arm_angle_limit");
+  EXPECT_EQ(faults_[0].value, 0.81);
+  EXPECT_TRUE(faults_[0].latched);
+  EXPECT_TRUE(app_->finished());
+}
+
+// Tests that where faults are ended explicitly (by the plant, which holds the voltage at zero) this loop goes
+// on and says when the limit is kept again.
+TEST_F(PressureAppTest, ExplicitRearmEndsNothingHere) {
+  StackConfig config = SmallStack();
+  config.limits.rearm = Rearm::kExplicit;
+  Start(config);
+  SendState(State(0));
+  SendPressure(0, 120);
+  state_t s = State(1);
+  s.p1 = 2000.5;
+  SendState(s);
+  EXPECT_EQ(commands_.back().status, motor_command_t::SAFE);
+  ASSERT_EQ(faults_.size(), 1u);
+  EXPECT_FALSE(faults_[0].latched);
+  EXPECT_FALSE(app_->finished());
+  SendState(State(2));
+  EXPECT_EQ(commands_.back().status, motor_command_t::LAW);
+  ASSERT_EQ(faults_.size(), 2u);
+  EXPECT_FALSE(faults_[1].active);
+  EXPECT_TRUE(stops_.empty());
 }
 
 // Tests that in real time a silent plant gives a zero-volt command first and a fault second.

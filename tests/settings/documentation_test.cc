@@ -44,6 +44,29 @@ void ExpectDocumented(const std::string& heading, const std::string& config, siz
   }
 }
 
+const char kDriverSensors[] = R"(
+[driver.p1]
+source = "analog"
+subdevice = 0
+channel = 0
+scale = 1
+[driver.p2]
+source = "analog"
+subdevice = 0
+channel = 1
+scale = 1
+[driver.motor_speed]
+source = "analog"
+subdevice = 0
+channel = 2
+scale = 1
+[driver.arm_angle]
+source = "analog"
+subdevice = 0
+channel = 3
+scale = 1
+)";
+
 // Tests that every section and every key that the reader accepts is in docs/configuration.md.
 TEST(DocumentationTest, MentionsEveryKey) {
   for (const std::string& section : Allowed(InputErrorOf([] { Parsed("zzz = 1\n"); }))) {
@@ -51,6 +74,14 @@ TEST(DocumentationTest, MentionsEveryKey) {
     ExpectDocumented("[" + section + "]", "[" + section + "]\nzzz = 1\n", 1);
   }
   ExpectDocumented("[[process]]", std::string(kConfigText) + "[[process]]\nzzz = 1\n", 4);
+  ExpectDocumented("[driver]", std::string(kDriverSensors) + "[driver.voltage]\nzzz = 1\n", 7);
+  for (const char* part :
+       {"[driver.watchdog]\nzzz = 1\n", "[driver.motor_angle]\nsource = \"counter\"\nzzz = 1\n",
+        "[driver.motor_angle]\nsource = \"analog\"\nzzz = 1\n",
+        "[driver.arm_speed]\nsource = \"derivative\"\nzzz = 1\n"}) {
+    const std::string amplifier = "[driver.voltage]\nsubdevice = 1\nchannel = 0\nscale = 1\n";
+    ExpectDocumented("[driver]", kDriverSensors + amplifier + part, 2);
+  }
   ExpectDocumented("[pressure]", "[pressure]\nzzz = 1\n", 8);
   for (const char* kind : {"steps", "sine", "square", "chirp", "csv"}) {
     ExpectDocumented("[reference]", std::string("[reference]\nkind = \"") + kind + "\"\nzzz = 1\n", 4);

@@ -24,6 +24,10 @@ TEST(StackConfigTest, DefaultsAndTicks) {
   EXPECT_EQ(config.pressure.rate_hz, 0.0);
   EXPECT_FALSE(config.position.derivative_on_error);
   EXPECT_EQ(config.limits.motor_speed_rad_s, kInf);
+  EXPECT_EQ(config.limits.stale_input_s, 0.1);
+  EXPECT_EQ(config.limits.pressure_ramp_s, 0.2);
+  EXPECT_EQ(config.limits.rearm, Rearm::kRestart);
+  EXPECT_DOUBLE_EQ(config.limits.arm_angle_rad, 0.98 * 3.16 / (1.83 * 1.83 * 2.20 / 2));
   EXPECT_EQ(config.seed, 1);
   EXPECT_EQ(config.position_interval_ticks, 5);
   EXPECT_EQ(config.pressure_interval_ticks, 1);
@@ -51,6 +55,7 @@ start_s = 0.6
 [bus]
 url = "udpm://239.255.76.68:7668?ttl=1"
 channel_suffix = "_LEFT"
+key_file = "keys/stack.key"
 [time]
 mode = "lockstep"
 speed = 2
@@ -88,6 +93,10 @@ pressure_psi = 1800
 motor_speed_rad_s = 600
 arm_torque_in_lbf = 7000
 stale_input_s = 0.05
+pressure_ramp_s = 0.3
+stale_logger_s = 2
+arm_angle_rad = 0.7
+rearm = "explicit"
 [noise]
 p1_psi = 1
 p2_psi = 2
@@ -128,6 +137,7 @@ TEST(StackConfigTest, ReadsEveryKey) {
   EXPECT_EQ(config.model.motion->start_s, 0.6);
   EXPECT_EQ(config.bus.url, "udpm://239.255.76.68:7668?ttl=1");
   EXPECT_EQ(config.bus.channel_suffix, "_LEFT");
+  EXPECT_EQ(config.bus.key_file, "keys/stack.key");
   EXPECT_EQ(config.time.mode, TimeMode::kLockstep);
   EXPECT_EQ(config.time.speed, 2);
   EXPECT_EQ(config.time.duration_s, 12.5);
@@ -158,6 +168,10 @@ TEST(StackConfigTest, ReadsEveryKey) {
   EXPECT_EQ(config.limits.motor_speed_rad_s, 600);
   EXPECT_EQ(config.limits.arm_torque_in_lbf, 7000);
   EXPECT_EQ(config.limits.stale_input_s, 0.05);
+  EXPECT_EQ(config.limits.pressure_ramp_s, 0.3);
+  EXPECT_EQ(config.limits.stale_logger_s, 2);
+  EXPECT_EQ(config.limits.arm_angle_rad, 0.7);
+  EXPECT_EQ(config.limits.rearm, Rearm::kExplicit);
   EXPECT_EQ(config.noise.p1_psi, 1);
   EXPECT_EQ(config.noise.p2_psi, 2);
   EXPECT_EQ(config.noise.motor_angle_rad, 3);
@@ -207,6 +221,9 @@ TEST(StackConfigTest, OtherValues) {
       Parsed(Replaced(kConfigText, "[pressure]", "[pressure]\nrate_hz = \"every_tick\"")).pressure.rate_hz,
       0);
   EXPECT_EQ(Parsed(std::string(kConfigText) + "[limits]\npressure_psi = inf\n").limits.pressure_psi, kInf);
+  EXPECT_EQ(Parsed(std::string(kConfigText) + "[limits]\narm_angle_rad = inf\n").limits.arm_angle_rad, kInf);
+  EXPECT_EQ(Parsed(Replaced(kConfigText, "[model]", "[model]\nshaft = \"clamped\"")).limits.arm_angle_rad,
+            kInf);
   EXPECT_TRUE(Parsed(std::string("process = []\n") + kConfigText).processes.empty());
 }
 
@@ -230,8 +247,9 @@ TEST_F(StackConfigFolderTest, PathsAreRelativeToTheConfiguration) {
                                      "kind = \"steps\"\nsteps = [[0.1, 0.1]]",
                                      "kind = \"csv\"\nfile = \"../runs/square.csv\"\n"
                                      "column = \"value\"\ninterpolation = \"cubic\""));
-  const StackConfig config = LoadStackConfig(file);
+  const StackConfig config = LoadStackConfig(file, {"bus.key_file=../keys/stack.key"});
   EXPECT_EQ(config.model.resolved_file, (folder_ / "models/table1.toml").string());
+  EXPECT_EQ(config.bus.resolved_key_file, (folder_ / "keys/stack.key").string());
   EXPECT_EQ(config.model.text, kModelText);
   ASSERT_EQ(config.reference.trajectory.points.size(), 3u);
   EXPECT_EQ(config.reference.trajectory.points[1].value, 0.2);

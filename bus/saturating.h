@@ -1,4 +1,4 @@
-// Sums and differences of whole numbers that come from files and may be anything.
+// Sums and differences of whole numbers that come from messages and files and may be anything.
 #pragma once
 
 #include <cstdint>

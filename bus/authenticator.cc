@@ -1,0 +1,134 @@
+#include "bus/authenticator.h"
+
+#include <algorithm>
+#include <stdexcept>
+#include <utility>
+
+#include "bus/authenticated_channels.h"
+#include "bus/session.h"
+
+namespace hydro {
+namespace {
+
+using namespace std::chrono_literals;
+
+// A recording that is played fast must not make us send as fast.
+constexpr auto kQuestionPeriod = 10ms;
+
+// Bounds on memory. Only who has the key can fill the first; the oldest of the second make room.
+constexpr size_t kMostAdmitted = 65536;
+constexpr size_t kMostWaiting = 64;
+
+int64_t NowUtime() {
+  using namespace std::chrono;
+  return duration_cast<microseconds>(system_clock::now().time_since_epoch()).count();
+}
+
+}  // namespace
+
+Authenticator::Authenticator(const BusKey& key, std::vector<std::string> channels)
+    : key_(key), channels_(std::move(channels)), session_(RandomSession()) {
+  if (channels_.empty() || channels_.size() > kMostChannels) {
+    throw std::invalid_argument("an authenticator takes 1 to 16 channels");
+  }
+  admitted_[session_] = {};  // multicast brings our own messages back
+}
+
+std::optional<size_t> Authenticator::IndexOf(std::string_view channel) const {
+  for (size_t i = 0; i < channels_.size(); ++i) {
+    if (channels_[i] == channel) return i;
+  }
+  return std::nullopt;
+}
+
+int Authenticator::Seal(std::string_view channel, std::vector<uint8_t>* bytes, int size) {
+  if (!IndexOf(channel)) return size;
+  const size_t sealed_size = static_cast<size_t>(size) + kSealSize;
+  if (bytes->size() < sealed_size) bytes->resize(sealed_size);
+  hydro::Seal seal{session_, ++counter_, {}};
+  seal.tag = SealTag(key_.bytes(), channel, session_, counter_, bytes->data(), size);
+  WriteSeal(seal, bytes->data() + size);
+  return size + kSealSize;
+}
+
+Authenticator::Opened Authenticator::Refuse(int64_t RefusedMessages::*reason, std::string_view channel,
+                                            int size) {
+  ++(refused_.*reason);
+  refused_.last_channel = channel;
+  return {Verdict::kRefused, size, 0, 0};
+}
+
+Authenticator::Opened Authenticator::Open(std::string_view channel, const void* data, int size,
+                                          TimePoint now) {
+  const std::optional<size_t> index = IndexOf(channel);
+  if (!index) return {Verdict::kPlain, size, 0, 0};
+  hydro::Seal seal;
+  if (!ReadSeal(data, size, &seal)) return Refuse(&RefusedMessages::unsealed, channel, size);
+  const int message_size = size - kSealSize;
+  const auto tag = SealTag(key_.bytes(), channel, seal.session, seal.counter, data, message_size);
+  if (!SameTag(tag, seal.tag)) return Refuse(&RefusedMessages::wrong_seal, channel, size);
+
+  const auto sender = admitted_.find(seal.session);
+  if (sender == admitted_.end()) {
+    // An introduction may be the proof that is waited for.
+    if (*index != 0 && WaitsTooLong(seal.session, now)) {
+      Opened opened = Refuse(&RefusedMessages::unknown_sender, channel, size);
+      opened.session = seal.session;
+      return opened;
+    }
+    return {Verdict::kWaiting, message_size, seal.session, seal.counter};
+  }
+  uint64_t& newest = sender->second[*index];
+  if (seal.counter <= newest) return Refuse(&RefusedMessages::repeated, channel, size);
+  newest = seal.counter;
+  return {Verdict::kAccepted, message_size, seal.session, seal.counter};
+}
+
+bool Authenticator::WaitsTooLong(int64_t session, TimePoint now) {
+  if (const auto found = waiting_.find(session); found != waiting_.end()) {
+    return now - found->second > kIntroductionTime;
+  }
+  if (waiting_.size() >= kMostWaiting) {
+    waiting_.erase(std::min_element(waiting_.begin(), waiting_.end(),
+                                    [](const auto& a, const auto& b) { return a.second < b.second; }));
+  }
+  waiting_[session] = now;
+  return false;
+}
+
+introduction_t Authenticator::Introduction(int64_t answers) const {
+  introduction_t introduction{};
+  introduction.utime = NowUtime();
+  introduction.session = session_;
+  introduction.answers = answers;
+  introduction.known = admitted_.contains(answers);
+  return introduction;
+}
+
+std::optional<introduction_t> Authenticator::Hear(const introduction_t& introduction, const Opened& opened,
+                                                  bool* admitted) {
+  *admitted = false;
+  if (opened.session == session_) return std::nullopt;
+  const bool answers_us = introduction.answers == session_;
+  if (answers_us && !admitted_.contains(opened.session) && admitted_.size() < kMostAdmitted) {
+    // What it sent before is not proved to be new.
+    admitted_[opened.session].fill(opened.counter);
+    waiting_.erase(opened.session);
+    *admitted = true;
+  }
+  const bool asks = introduction.answers == 0 || (answers_us && introduction.known == 0);
+  return asks ? std::optional(Introduction(opened.session)) : std::nullopt;
+}
+
+std::optional<introduction_t> Authenticator::Ask(int64_t session, TimePoint now) {
+  if (now < next_question_) return std::nullopt;
+  next_question_ = now + kQuestionPeriod;
+  return Introduction(session);
+}
+
+std::unique_ptr<Authenticator> MakeAuthenticator(const std::string& key_file, const Channels& channels) {
+  if (key_file.empty()) return nullptr;
+  return std::make_unique<Authenticator>(ReadBusKey(key_file), AuthenticatedChannels(channels));
+}
+
+}  // namespace hydro

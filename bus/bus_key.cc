@@ -1,0 +1,143 @@
+#include "bus/bus_key.h"
+
+#include <fcntl.h>
+#include <sodium.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <stdexcept>
+
+#include "settings/input_error.h"
+
+namespace hydro {
+namespace {
+
+constexpr size_t kLongest = 200;  // bytes of a key file, blanks included
+constexpr mode_t kOthers = S_IRWXG | S_IRWXO;
+
+class File {
+ public:
+  explicit File(int fd) : fd_(fd) {}
+  ~File() {
+    if (fd_ >= 0) close(fd_);
+  }
+  File(const File&) = delete;
+  File& operator=(const File&) = delete;
+  int fd() const { return fd_; }
+
+ private:
+  int fd_;
+};
+
+// Text that holds a key: wiped when it goes.
+class SecretText {
+ public:
+  SecretText() = default;
+  ~SecretText() { sodium_memzero(bytes_.data(), bytes_.size()); }
+  SecretText(const SecretText&) = delete;
+  SecretText& operator=(const SecretText&) = delete;
+  char* data() { return bytes_.data(); }
+
+ private:
+  std::array<char, kLongest + 1> bytes_{};
+};
+
+void StartSodium() {
+  if (sodium_init() < 0) throw std::runtime_error("libsodium has no source of random numbers");
+}
+
+[[noreturn]] void Refuse(const std::string& file, const std::string& what) {
+  throw InputError(file + ": bus.key_file: " + what);
+}
+
+[[noreturn]] void RefuseErrno(const std::string& file, const std::string& what, const std::string& cure) {
+  Refuse(file, what + ": " + std::strerror(errno) + "; " + cure);
+}
+
+void CheckPermissions(const std::string& file, int fd) {
+  struct stat status {};
+  if (fstat(fd, &status) != 0) RefuseErrno(file, "cannot be read", "a file with a key is needed");
+  if (!S_ISREG(status.st_mode)) Refuse(file, "found something that is not a file, allowed a file with a key");
+  if ((status.st_mode & kOthers) == 0) return;
+  char mode[8];
+  std::snprintf(mode, sizeof mode, "%04o", static_cast<unsigned>(status.st_mode & 07777U));
+  Refuse(file, std::string("found permissions ") + mode + ", allowed the owner's alone; `chmod 600 " + file +
+                   "` sets them (and take a new key if others may have read this one)");
+}
+
+size_t ReadAll(const std::string& file, int fd, char* text) {
+  size_t size = 0;
+  while (size <= kLongest) {
+    const ssize_t count = read(fd, text + size, kLongest + 1 - size);
+    if (count < 0 && errno == EINTR) continue;
+    if (count < 0) RefuseErrno(file, "cannot be read", "a file with a key is needed");
+    if (count == 0) break;
+    size += static_cast<size_t>(count);
+  }
+  return size;
+}
+
+}  // namespace
+
+BusKey::~BusKey() { sodium_memzero(bytes_.data(), bytes_.size()); }
+
+BusKey ReadBusKey(const std::string& file) {
+  StartSodium();
+  const File opened(open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
+  if (opened.fd() < 0) RefuseErrno(file, "cannot be read", "`hydro-launch CONFIG --make-key` makes one");
+  CheckPermissions(file, opened.fd());
+  SecretText secret;
+  const char* text = secret.data();
+  size_t size = ReadAll(file, opened.fd(), secret.data());
+  const auto blank = [](char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\n'; };
+  while (size > 0 && blank(text[size - 1])) --size;
+  while (size > 0 && blank(*text)) ++text, --size;
+
+  std::array<uint8_t, kBusKeySize> bytes{};
+  size_t length = 0;
+  const char* end = nullptr;
+  const auto whole = [&](int result) { return result == 0 && length == bytes.size() && end == text + size; };
+  const bool read = whole(sodium_hex2bin(bytes.data(), bytes.size(), text, size, nullptr, &length, &end)) ||
+                    whole(sodium_base642bin(bytes.data(), bytes.size(), text, size, nullptr, &length, &end,
+                                            sodium_base64_VARIANT_ORIGINAL)) ||
+                    whole(sodium_base642bin(bytes.data(), bytes.size(), text, size, nullptr, &length, &end,
+                                            sodium_base64_VARIANT_ORIGINAL_NO_PADDING));
+  const BusKey key(bytes);
+  sodium_memzero(bytes.data(), bytes.size());
+  if (!read) {
+    Refuse(file, "found " +
+                     (size > kLongest ? "more than " + std::to_string(kLongest) : std::to_string(size)) +
+                     " characters that are no key, allowed 32 bytes on one line, as 64 hexadecimal digits or "
+                     "in base64");
+  }
+  return key;
+}
+
+void MakeBusKeyFile(const std::string& file) {
+  StartSodium();
+  std::array<uint8_t, kBusKeySize> bytes{};
+  randombytes_buf(bytes.data(), bytes.size());
+  SecretText text;
+  sodium_bin2hex(text.data(), kLongest, bytes.data(), bytes.size());
+  sodium_memzero(bytes.data(), bytes.size());
+  constexpr size_t kSize = 2 * kBusKeySize + 1;
+  text.data()[kSize - 1] = '\n';
+
+  const File made(open(file.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, S_IRUSR | S_IWUSR));
+  if (made.fd() < 0) {
+    RefuseErrno(file, "cannot be made",
+                errno == EEXIST ? "remove it first if it is to be replaced"
+                                : "a name in a folder that can be written is needed");
+  }
+  if (write(made.fd(), text.data(), kSize) != static_cast<ssize_t>(kSize) || fsync(made.fd()) != 0) {
+    const int error = errno;
+    unlink(file.c_str());
+    errno = error;
+    RefuseErrno(file, "cannot be written", "space for it is needed");
+  }
+}
+
+}  // namespace hydro

@@ -1,0 +1,35 @@
+// The key that the processes of a stack share (bus.key_file).
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+
+#include "bus/message_seal.h"
+
+namespace hydro {
+
+// Wiped from memory when it goes.
+class BusKey {
+ public:
+  explicit BusKey(const std::array<uint8_t, kBusKeySize>& bytes) : bytes_(bytes) {}
+  ~BusKey();
+  BusKey(const BusKey&) = default;
+  BusKey& operator=(const BusKey&) = default;
+
+  const std::array<uint8_t, kBusKeySize>& bytes() const { return bytes_; }
+
+ private:
+  std::array<uint8_t, kBusKeySize> bytes_;
+};
+
+// Reads a key file: 32 bytes, as 64 hexadecimal digits or in base64, on one line. Throws InputError that
+// names the file when it cannot be read, holds anything else, or when others than its owner may read or write
+// it. Never shows what is in it.
+BusKey ReadBusKey(const std::string& file);
+
+// Writes a new random key, for its owner's eyes only. Throws InputError when the file is there already or
+// cannot be made.
+void MakeBusKeyFile(const std::string& file);
+
+}  // namespace hydro

@@ -1,0 +1,12 @@
+// hydro-launch CONFIG --make-key.
+#pragma once
+
+#include "settings/command_line.h"
+
+namespace hydro {
+
+// Writes a new key into the file that the configuration's bus.key_file names, and says so on stdout. Returns
+// the exit code. Throws InputError when there is no such key or the file is there already.
+int MakeKey(const CommonOptions& options);
+
+}  // namespace hydro

@@ -1,0 +1,69 @@
+#include "plant/logger_watch.h"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <cmath>
+
+namespace hydro {
+namespace {
+
+constexpr char kCode[] = "logger_gone";
+constexpr size_t kMostLoggers = 64;  // a flood of made-up ones is not kept
+
+}  // namespace
+
+LoggerWatch::LoggerWatch(Participant& participant, Clock::Duration limit)
+    : participant_(participant), limit_(limit) {
+  Bus& bus = participant_.bus();
+  bus.Subscribe<log_progress_t>(participant_.channels().log_progress,
+                                [this](const log_progress_t& progress) { Heard(progress.session); });
+  bus.Subscribe<process_status_t>(participant_.channels().process_status,
+                                  [this](const process_status_t& status) {
+                                    if (status.role == "logger") OnStatus(status);
+                                  });
+}
+
+void LoggerWatch::OnStatus(const process_status_t& status) {
+  const bool left = status.state == process_status_t::DONE || status.state == process_status_t::FAILED;
+  if (!left) {
+    Heard(status.session);
+  } else if (heard_.contains(status.session)) {
+    Gone(status.session, status.text.empty() ? "it has left" : status.text, NAN);
+  }
+}
+
+void LoggerWatch::Heard(int64_t session) {
+  const bool is_new = !heard_.contains(session);
+  if (is_new && heard_.size() >= kMostLoggers) return;
+  heard_[session] = participant_.clock().Now();
+  if (is_new && participant_.any_fault()) participant_.Clear(kCode);
+}
+
+void LoggerWatch::Gone(int64_t session, const std::string& text, double silence) {
+  heard_.erase(session);
+  // The run's end is announced before its logger leaves.
+  if (participant_.stop()) return;
+  participant_.Raise(kCode,
+                     fmt::format("{} does not record any more: {}", participant_.NameOf(session), text),
+                     silence, ToSeconds(limit_), false);
+}
+
+void LoggerWatch::Poll() {
+  const auto now = participant_.clock().Now();
+  const auto away = now - polled_.value_or(now);
+  polled_ = now;
+  if (away > limit_ / 4) {  // no state was sent, so a logger had nothing to report
+    for (auto& [session, heard] : heard_) heard += away;
+  }
+  for (const auto& [session, heard] : heard_) {
+    if (now - heard <= limit_) continue;
+    const double silence = ToSeconds(now - heard);
+    Gone(session,
+         fmt::format("silent for {:.3g} s, allowed are {} s (limits.stale_logger_s)", silence,
+                     ToSeconds(limit_)),
+         silence);
+    return;  // the map has changed; the next turn sees the rest
+  }
+}
+
+}  // namespace hydro

@@ -1,0 +1,207 @@
+#include "plant/output_safety.h"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <cmath>
+
+#include "process/fault_codes.h"
+
+namespace hydro {
+namespace {
+
+using namespace std::chrono_literals;
+
+// A plant describes itself once a second.
+constexpr auto kOtherStackAlive = 2500ms;
+// A re-arm that names a tick older than this is somebody's recording.
+constexpr double kRearmAge_s = 5;
+
+std::string Line(const std::string& text, const char* key) {
+  const size_t begin = text.find(key);
+  return begin == std::string::npos ? "" : text.substr(begin, text.find('\n', begin) - begin);
+}
+
+}  // namespace
+
+OutputSafety::OutputSafety(Participant& participant, const StackConfig& config)
+    : participant_(participant),
+      limits_(config.limits),
+      ticks_per_s_(config.plant.rate_hz * config.time.speed),
+      guard_(config.limits.rearm),
+      suspended_(participant.clock().Suspended()) {
+  Bus& bus = participant_.bus();
+  const Channels& channels = participant_.channels();
+  bus.Subscribe<run_description_t>(channels.run,
+                                   [this](const run_description_t& other) { OnDescription(other); });
+  bus.Subscribe<rearm_t>(channels.rearm, [this](const rearm_t& request) { OnRearm(request); });
+  if (limits_.rearm != Rearm::kExplicit) return;
+  bus.Subscribe<fault_t>(channels.fault, [this](const fault_t& fault) { OnFault(fault); });
+  bus.Subscribe<process_status_t>(channels.process_status,
+                                  [this](const process_status_t& status) { OnStatus(status); });
+}
+
+void OutputSafety::CheckMeasured(const state_t& state) {
+  const double pressure = std::fmax(state.p1, state.p2);
+  Set(Cause::kPressureLimit, pressure > limits_.pressure_psi, [&] {
+    return Finding{fmt::format("tick {}: p{} is {:.6g} psi, allowed is {} psi (limits.pressure_psi)",
+                               state.tick, state.p1 > state.p2 ? 1 : 2, pressure, limits_.pressure_psi),
+                   pressure, limits_.pressure_psi};
+  });
+  const double speed = std::fabs(state.motor_speed);
+  Set(Cause::kMotorSpeedLimit, speed > limits_.motor_speed_rad_s, [&] {
+    return Finding{fmt::format("tick {}: the motor turns at {:.6g} rad/s, allowed is {} rad/s "
+                               "(limits.motor_speed_rad_s)",
+                               state.tick, speed, limits_.motor_speed_rad_s),
+                   speed, limits_.motor_speed_rad_s};
+  });
+  const double angle = std::fabs(state.arm_angle);
+  Set(Cause::kArmAngleLimit, angle > limits_.arm_angle_rad, [&] {
+    return Finding{fmt::format("tick {}: the arm is at {:.6g} rad, allowed is |alpha| <= {:.6g} rad "
+                               "(limits.arm_angle_rad)",
+                               state.tick, state.arm_angle, limits_.arm_angle_rad),
+                   angle, limits_.arm_angle_rad};
+  });
+}
+
+void OutputSafety::CheckSurroundings() {
+  const Clock& clock = participant_.clock();
+  const Clock::Duration suspended = clock.Suspended();
+  const double gone = ToSeconds(suspended - suspended_);
+  suspended_ = suspended;
+  Set(Cause::kSuspended, gone > limits_.stale_input_s, [&] {
+    return Finding{fmt::format("tick {}: the machine was suspended for {:.3g} s, allowed are {} s "
+                               "(limits.stale_input_s)",
+                               participant_.tick(), gone, limits_.stale_input_s),
+                   gone, limits_.stale_input_s};
+  });
+  const bool other = other_stack_heard_ && clock.Now() - *other_stack_heard_ <= kOtherStackAlive;
+  Set(Cause::kOtherStack, other, [&] { return Finding{other_stack_, 2, 1}; });
+}
+
+void OutputSafety::CheckController(bool safe_command) {
+  if (limits_.rearm != Rearm::kExplicit) return;
+  Set(Cause::kControllerFault, safe_command || !remote_.empty(), [&] {
+    std::string why = "the pressure loop commands a safe output";
+    if (!remote_.empty()) {
+      const fault_t& first = remote_.begin()->second;
+      why = fmt::format("{}: {}: {}", first.source, first.code, first.text);
+    }
+    return Finding{why, NAN, NAN};
+  });
+}
+
+void OutputSafety::CheckRig(const std::vector<RigFault>& faults) {
+  if (limits_.rearm != Rearm::kExplicit) return;
+  Set(Cause::kRigFault, !faults.empty(), [&] {
+    const RigFault& first = faults.front();
+    return Finding{first.code + ": " + first.text, first.value, first.limit};
+  });
+}
+
+void OutputSafety::Explain() {
+  if (!changed_) return;
+  changed_ = false;
+  for (size_t i = 0; i < findings_.size(); ++i) {
+    const Cause cause = static_cast<Cause>(i);
+    const char* code = VoltageGuard::CodeOf(cause);
+    const Finding& finding = findings_[i];
+    if (!guard_.active(cause)) {
+      participant_.Clear(code);
+    } else if (participant_.Raise(code, finding.text, finding.value, finding.limit, guard_.latched(cause)) &&
+               VoltageGuard::Trips(cause) && limits_.rearm == Rearm::kRestart) {
+      participant_.RequestStop(fmt::format("fault {}: {}", code, finding.text), 1);
+    }
+  }
+}
+
+std::string OutputSafety::Latched() const {
+  std::string codes;
+  for (size_t i = 0; i < findings_.size(); ++i) {
+    const Cause cause = static_cast<Cause>(i);
+    if (!guard_.latched(cause)) continue;
+    codes += (codes.empty() ? "" : ", ") + std::string(VoltageGuard::CodeOf(cause));
+  }
+  return codes;
+}
+
+// LCM receivers hear every multicast group on their port, so this may be a stack of another group.
+void OutputSafety::OnDescription(const run_description_t& description) {
+  if (description.session == participant_.session()) return;
+  other_stack_heard_ = participant_.clock().Now();
+  const std::string url = Line(description.config_text, "url = ");
+  other_stack_ = fmt::format(
+      "another plant is on this port: {} on {} (session {}{}); allowed is one, give a stack a port or a "
+      "bus.channel_suffix of its own",
+      description.program, description.host, description.session, url.empty() ? "" : ", its bus." + url);
+}
+
+void OutputSafety::OnFault(const fault_t& fault) {
+  if (fault.session == participant_.session() || !ZeroesVoltage(fault.code)) return;
+  const std::pair key(fault.session, fault.code);
+  if (fault.active == 0) {
+    remote_.erase(key);
+  } else if (remote_.size() < 64) {  // a stack has fewer; a flood is not kept
+    remote_.emplace(key, fault);
+  }
+}
+
+// What a process that has left, or was replaced, had found does not stand any more.
+void OutputSafety::OnStatus(const process_status_t& status) {
+  const bool left = status.state == process_status_t::DONE || status.state == process_status_t::FAILED;
+  std::erase_if(remote_, [&](const auto& entry) {
+    const bool same = entry.first.first == status.session;
+    return left ? same : !same && entry.second.source == status.role;
+  });
+}
+
+std::string OutputSafety::Standing(const std::vector<Cause>& causes) const {
+  std::string text;
+  for (const Cause cause : causes) {
+    text += fmt::format("{}{} persists: {}", text.empty() ? "" : "; ", VoltageGuard::CodeOf(cause),
+                        findings_[static_cast<size_t>(cause)].text);
+  }
+  return text;
+}
+
+void OutputSafety::OnRearm(const rearm_t& request) {
+  if (request.kind != rearm_t::REQUEST || request.addressee != participant_.session()) return;
+  if (limits_.rearm != Rearm::kExplicit) {
+    Answer(request, rearm_t::REFUSED, "limits.rearm is \"restart\": a fault that is latched ends the run");
+    return;
+  }
+  const double age_s =
+      (static_cast<double>(participant_.tick()) - static_cast<double>(request.tick)) / ticks_per_s_;
+  if (!(age_s >= 0 && age_s <= kRearmAge_s)) {
+    Answer(request, rearm_t::REFUSED,
+           fmt::format("the request names tick {}, it is now {}; allowed are {} s", request.tick,
+                       participant_.tick(), kRearmAge_s));
+    return;
+  }
+  std::vector<Cause> standing;
+  const std::vector<Cause> ended = guard_.Release(&standing);
+  if (!standing.empty()) {
+    Answer(request, rearm_t::REFUSED, Standing(standing));
+    return;
+  }
+  std::string codes;
+  for (const Cause cause : ended) {
+    const char* code = VoltageGuard::CodeOf(cause);
+    participant_.Release(code);
+    codes += (codes.empty() ? "" : ", ") + std::string(code);
+  }
+  Answer(request, rearm_t::ACCEPTED, codes.empty() ? "no fault is latched" : "ended " + codes);
+}
+
+void OutputSafety::Answer(const rearm_t& request, int8_t kind, const std::string& text) {
+  rearm_t answer;
+  answer.utime = participant_.clock().Utime();
+  answer.tick = participant_.tick();
+  answer.session = participant_.session();
+  answer.addressee = request.session;
+  answer.kind = kind;
+  answer.source = participant_.role();
+  answer.text = text;
+  participant_.bus().Publish(participant_.channels().rearm, answer);
+}
+
+}  // namespace hydro

@@ -1,0 +1,37 @@
+#include "plant/simulated_rig.h"
+
+#include "plant/sensor_noise.h"
+#include "settings/input_error.h"
+
+namespace hydro {
+
+SimulatedRig::SimulatedRig(const StackConfig& config)
+    : noise_(config.noise),
+      seed_(config.seed),
+      rate_hz_(config.plant.rate_hz),
+      motion_(config.model.motion ? MakeTrajectory(*config.model.motion) : nullptr) {
+  ActuatorOptions options;
+  options.shaft = config.model.shaft;
+  options.arm_angle = config.model.arm_angle_rad;
+  options.motion = motion_.get();
+  options.bypass = config.model.bypass;
+  options.initial_pressure = config.model.initial_pressure_psi;
+  options.integrator = config.plant.integrator;
+  options.relative_tolerance = config.plant.relative_tolerance;
+  try {
+    actuator_ = std::make_unique<Actuator>(config.model.description, options);
+  } catch (const ModelError& error) {
+    throw InputError(config.file + ": " + error.what());
+  }
+}
+
+Measurement SimulatedRig::Read(int64_t tick) {
+  try {
+    if (tick > 0) actuator_->Advance(voltage_, static_cast<double>(tick) / rate_hz_);
+    return ReadSensors(actuator_->Measure(), noise_, seed_, tick);
+  } catch (const ModelError& error) {
+    throw RigError("model_error", error.what());
+  }
+}
+
+}  // namespace hydro

@@ -1,0 +1,36 @@
+// The simulated actuator with its simulated sensors.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "model/actuator.h"
+#include "plant/rig.h"
+#include "settings/stack_config.h"
+
+namespace hydro {
+
+class SimulatedRig : public Rig {
+ public:
+  // Throws InputError when the configuration and the model contradict each other.
+  explicit SimulatedRig(const StackConfig& config);
+
+  std::string role() const override { return "plant"; }
+  // Throws RigError "model_error" when the model cannot go on.
+  Measurement Read(int64_t tick) override;
+  const std::vector<RigFault>& faults() const override { return no_faults_; }
+  double Drive(double voltage) override { return voltage_ = voltage; }
+  void Zero() noexcept override { voltage_ = 0; }
+
+ private:
+  NoiseSection noise_;
+  int64_t seed_;
+  double rate_hz_;
+  std::unique_ptr<Trajectory> motion_;  // of a driven shaft; before actuator_, which points to it
+  std::unique_ptr<Actuator> actuator_;
+  double voltage_ = 0;
+  std::vector<RigFault> no_faults_;
+};
+
+}  // namespace hydro

@@ -1,0 +1,155 @@
+#include "settings/driver_section.h"
+
+#include <cmath>
+
+#include "settings/section_reader.h"
+#include "settings/stack_config.h"
+
+namespace hydro {
+namespace {
+
+using Source = SensorSection::Source;
+
+constexpr int kMostLines = 4095;
+constexpr int kLongestSettling = 99999;  // ns, what Comedi's wait instruction takes
+
+void ReadLine(SectionReader& section, BoardLine* line) {
+  section.Integer("subdevice", &line->subdevice, 0, kMostLines);
+  section.Integer("channel", &line->channel, 0, kMostLines);
+  section.Require("subdevice", "the number of the board's subdevice; comedi_board_info lists them");
+  section.Require("channel", "the number of the channel of that subdevice");
+}
+
+void ReadAnalog(SectionReader& section, int* range, AnalogReference* reference) {
+  section.Integer("range", range, 0, kMostLines);
+  section.Choice<AnalogReference>("reference",
+                                  {{"ground", AnalogReference::kGround},
+                                   {"common", AnalogReference::kCommon},
+                                   {"differential", AnalogReference::kDifferential},
+                                   {"other", AnalogReference::kOther}},
+                                  reference);
+}
+
+// A scale of zero would make every reading the same; an infinite one, none.
+void ReadScale(SectionReader& section, double* scale, double* offset, const std::string& unit) {
+  if (section.Number("scale", scale) && *scale == 0) {
+    throw section.Error("scale", "0", "a finite number other than 0, in " + unit);
+  }
+  section.Require("scale", "a finite number other than 0, in " + unit);
+  section.Number("offset", offset);
+}
+
+AmplifierSection ReadAmplifier(SectionReader section) {
+  AmplifierSection amplifier;
+  ReadLine(section, &amplifier.line);
+  ReadAnalog(section, &amplifier.range, &amplifier.reference);
+  ReadScale(section, &amplifier.scale, &amplifier.offset, "V of eq. (1) per V at the terminal");
+  section.Number("limit_V", &amplifier.limit_V, {.min = 0, .min_allowed = false, .infinity_allowed = true});
+  section.Finish();
+  return amplifier;
+}
+
+void ReadPlausible(SectionReader& section, SensorSection* sensor) {
+  section.Number("minimum_V", &sensor->minimum_V);
+  section.Number("maximum_V", &sensor->maximum_V);
+  if (sensor->minimum_V >= sensor->maximum_V) {
+    throw section.Error("minimum_V", ShortestNumber(sensor->minimum_V),
+                        "below maximum_V = " + ShortestNumber(sensor->maximum_V));
+  }
+}
+
+SensorSection ReadSensor(SectionReader section, const std::vector<std::pair<std::string, Source>>& sources) {
+  SensorSection sensor;
+  section.Choice<Source>("source", sources, &sensor.source);
+  std::vector<std::string> names;
+  names.reserve(sources.size());
+  for (const auto& [name, source] : sources) names.push_back(name);
+  section.Require("source", QuotedList(names));
+  if (sensor.source == Source::kAnalog) {
+    ReadLine(section, &sensor.line);
+    ReadAnalog(section, &sensor.range, &sensor.reference);
+    ReadScale(section, &sensor.scale, &sensor.offset, "the signal's unit per V");
+    ReadPlausible(section, &sensor);
+  } else if (sensor.source == Source::kCounter) {
+    ReadLine(section, &sensor.line);
+    ReadScale(section, &sensor.scale, &sensor.offset, "rad per count");
+  }
+  section.Number("low_pass_hz", &sensor.low_pass_hz, kNotNegative);
+  section.Finish();
+  return sensor;
+}
+
+// The rate of an angle needs the angle.
+void CheckDerivative(const SectionReader& section, const std::string& speed, const SensorSection& rate,
+                     const std::string& angle, const SensorSection& of) {
+  if (rate.source != Source::kDerivative || of.source != Source::kNone) return;
+  throw section.Error(speed, "source = \"derivative\" without [driver." + angle + "]",
+                      "[driver." + angle + "] beside it, or source = \"analog\"");
+}
+
+}  // namespace
+
+DriverSection ReadDriver(SectionReader section) {
+  DriverSection driver;
+  section.Text("device", &driver.device);
+  section.Integer("settle_ns", &driver.settle_ns, 0, kLongestSettling);
+  const auto part = [&](const char* name) { return std::pair(section.Has(name), section.Section(name)); };
+  auto [has_voltage, voltage] = part("voltage");
+  auto [has_watchdog, watchdog] = part("watchdog");
+  auto [has_p1, p1] = part("p1");
+  auto [has_p2, p2] = part("p2");
+  auto [has_motor_angle, motor_angle] = part("motor_angle");
+  auto [has_motor_speed, motor_speed] = part("motor_speed");
+  auto [has_arm_angle, arm_angle] = part("arm_angle");
+  auto [has_arm_speed, arm_speed] = part("arm_speed");
+  section.Require("voltage", "a section [driver.voltage]: the output to the amplifier");
+  section.Require("p1", "a section [driver.p1]: how the pressure of side 1 is measured");
+  section.Require("p2", "a section [driver.p2]: how the pressure of side 2 is measured");
+  section.Require("motor_speed", "a section [driver.motor_speed]: how the motor's speed is measured");
+  section.Finish();
+
+  driver.voltage = ReadAmplifier(std::move(voltage));
+  if (has_watchdog) {
+    ReadLine(watchdog, &driver.watchdog.emplace());
+    watchdog.Finish();
+  }
+  const std::pair<std::string, Source> analog{"analog", Source::kAnalog};
+  const std::pair<std::string, Source> counter{"counter", Source::kCounter};
+  const std::pair<std::string, Source> derivative{"derivative", Source::kDerivative};
+  driver.p1 = ReadSensor(std::move(p1), {analog});
+  driver.p2 = ReadSensor(std::move(p2), {analog});
+  if (has_motor_angle) driver.motor_angle = ReadSensor(std::move(motor_angle), {counter, analog});
+  driver.motor_speed = ReadSensor(std::move(motor_speed), {analog, derivative});
+  if (has_arm_angle) driver.arm_angle = ReadSensor(std::move(arm_angle), {analog, counter});
+  if (has_arm_speed) driver.arm_speed = ReadSensor(std::move(arm_speed), {analog, derivative});
+  CheckDerivative(section, "motor_speed", driver.motor_speed, "motor_angle", driver.motor_angle);
+  CheckDerivative(section, "arm_speed", driver.arm_speed, "arm_angle", driver.arm_angle);
+  return driver;
+}
+
+void CheckDriver(const StackConfig& config) {
+  const auto refuse = [&](const std::string& key, const std::string& found, const std::string& allowed) {
+    throw KeyError(config.file, key, found, allowed);
+  };
+  if (!config.driver) {
+    refuse("driver", "nothing", "a section [driver], which hydro-driver needs: the wiring of the board");
+  }
+  if (config.time.mode == TimeMode::kLockstep) {
+    refuse("time.mode", "\"lockstep\"", "\"realtime\" with hydro-driver: a machine waits for nobody");
+  }
+  if (config.time.speed != 1) {
+    refuse("time.speed", ShortestNumber(config.time.speed), "1 with hydro-driver");
+  }
+  if (config.reference.signal == ReferenceSignal::kArmAngle &&
+      config.driver->arm_angle.source == Source::kNone) {
+    refuse("driver.arm_angle", "nothing",
+           "a section [driver.arm_angle] where reference.signal = \"arm_angle\"");
+  }
+  if (config.pressure.arm_speed_feedforward && config.driver->arm_speed.source == Source::kNone) {
+    refuse("driver.arm_speed", "nothing",
+           "a section [driver.arm_speed], e.g. source = \"derivative\", where pressure.arm_speed_feedforward "
+           "= true");
+  }
+}
+
+}  // namespace hydro

@@ -1,0 +1,269 @@
+"""A stack with a key (bus.key_file): it works as without, and who has not the key has no say in it."""
+
+import os
+import re
+import shutil
+import socket
+import struct
+import unittest
+
+import event_log
+import stack
+
+CODE = "unauthenticated_command"
+# Above what wake-ups are late by here: no stale input is to be taken for an intruder's doing.
+PATIENT = ("--set", "limits.stale_input_s=0.5")
+
+
+def encoded(kind, template, **changes):
+    """The bytes of a message of the same type as `template`, the encoded form of one."""
+    fields = [field.split(":") for field in event_log.FIELDS[kind].split()]
+    values = dict(event_log.TYPES[kind].decode(template)._asdict(), **changes)
+    data = template[:8]  # the type's hash
+    for name, code in fields:
+        if code == "s":
+            text = values[name].encode() + b"\0"
+            data += struct.pack(">i", len(text)) + text
+        else:
+            data += struct.pack(">" + code, values[name])
+    return data
+
+
+class Sender:
+    """Sends LCM messages as anybody on the network can: written from LCM's description alone."""
+
+    def __init__(self, url):
+        group, port = re.match(r"udpm://([\d.]+):(\d+)", url).groups()
+        self.address = (group, int(port))
+        self.socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+        self.socket.setsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_TTL, 0)
+        self.sequence = 0
+
+    def send(self, channel, data):
+        self.sequence += 1
+        packet = struct.pack(">II", 0x4C433032, self.sequence) + channel.encode() + b"\0" + data
+        self.socket.sendto(packet, self.address)
+
+    def close(self):
+        self.socket.close()
+
+
+class AuthenticationTest(stack.TestCase):
+    def setUp(self):
+        super().setUp()
+        self.key = self.make_key("key")
+        self.keyed = ("--set", f"bus.key_file={self.key}")
+
+    def make_key(self, name):
+        path = self.path(name)
+        self.run_program("hydro-launch", stack.config("demo.toml"), "--set", f"bus.key_file={path}", "--make-key")
+        return path
+
+    def sender(self):
+        sender = Sender(self.url)
+        self.addCleanup(sender.close)
+        return sender
+
+    def recorder(self, name):
+        """LCM's own logger, which records what is on the wire, seals and all, and says nothing."""
+        recorder = self.start(shutil.which("lcm-logger"), "--lcm-url=" + self.url, "--flush-interval=20", self.path(name))
+        return recorder, event_log.Follower(self.path(name))
+
+    def assert_voltages_are_the_loops_own(self, log):
+        """Each voltage that acted was commanded by the one pressure loop that the log knows."""
+        self.assertEqual(len({c.session for c in log.motor_commands}), 1)
+        commanded = {c.tick: c.voltage for c in log.motor_commands}
+        acted = [s for s in log.states if s.command_tick >= 0]
+        self.assertGreater(len(acted), 100)
+        for state in acted:
+            self.assertEqual(state.voltage, commanded[state.command_tick], state)
+
+    # Tests that a key changes nothing of a run: the log is that of hydro-sim, bit by bit, and holds plain messages.
+    def test_lockstep_is_identical(self):
+        self.run_program("hydro-sim", stack.config("demo.toml"), "--duration", "1", "-o", self.path("sim.lcmlog"))
+        launch = self.launch(stack.config("demo.toml"), "--time", "lockstep", "--duration", "1", *self.keyed, "--log",
+                             self.path("stack.lcmlog"))
+        self.assertEqual(launch.wait(60), 0, launch.report())
+        self.assert_identical(self.path("sim.lcmlog"), self.path("stack.lcmlog"))
+        self.assertEqual({f.code for f in event_log.Log(self.path("stack.lcmlog")).faults}, set())
+
+    # Tests that an intruder without the key who sends commands, states, stops, failures and faults is refused, counted
+    # and named, while the arm goes to its reference.
+    def test_intruder(self):
+        launch = self.launch(stack.config("demo.toml"), "--time", "realtime", "--duration", "0", *self.keyed, *PATIENT,
+                             "--log", self.path("run.lcmlog"))
+        log = stack.LiveLog(self, self.path("run.lcmlog"))
+        log.wait_for_tick(50)
+        templates = {event.channel: event.data for event in event_log.read_events(self.path("run.lcmlog"), True)}
+        intruder = self.sender()
+        attacks = [
+            ("HYDRO_MOTOR_COMMAND", dict(session=666, voltage=10.0, status=event_log.OPEN_LOOP)),
+            ("HYDRO_MOTOR_COMMAND", dict(voltage=float("nan"))),  # as if from the pressure loop itself
+            ("HYDRO_PRESSURE_COMMAND", dict(session=666, voltage=10.0, open_loop=1)),
+            ("HYDRO_STATE", dict(session=666, p1=1e9)),
+            ("HYDRO_PROCESS_STATUS", dict(state=event_log.FAILED)),
+        ]
+        rounds, sent = 200, 0
+        for number in range(rounds):
+            for kind, changes in attacks:
+                if kind != "HYDRO_PROCESS_STATUS":
+                    changes = dict(changes, tick=50 + 5 * number, sequence=10**6 + number)
+                intruder.send(kind, encoded(kind, templates[kind], **changes))
+                sent += 1
+            log.wait_for_tick(50 + 5 * number)  # spread over the run, and never more than the receivers can hold
+        stop = (struct.pack(">q", 0) + b"".join(struct.pack(">q", n) for n in (0, 0, 666)) +
+                b"\0\0\0\2x\0" * 2 + b"\0\0\0\1")
+        for _ in range(5):
+            intruder.send("HYDRO_STOP", stop)
+            intruder.send("HYDRO_MOTOR_COMMAND", b"")
+            intruder.send("HYDRO_MOTOR_COMMAND", b"\xff" * 100)
+            intruder.send("HYDRO_INTRODUCTION", b"hydroMAC" + bytes(32))
+        fault = log.wait_for("HYDRO_FAULT", lambda f: f.source == "plant" and not f.active, "the fault's end")
+        log.wait_for_tick(fault.tick + 200)
+        launch.send(2)
+        self.assertEqual(launch.wait(), 0, launch.report())
+
+        run = event_log.Log(self.path("run.lcmlog"))
+        self.assertEqual({f.code for f in run.faults}, {CODE}, run.faults)
+        self.assertIn("plant", {f.source for f in run.faults})
+        self.assertIn("pressure_ctrl", {f.source for f in run.faults})
+        self.assertEqual(fault.code, CODE)
+        self.assertRegex(fault.text, r"\d+ without a seal")
+        # The plant listens to neither states nor, of its own accord, all that the logger does.
+        self.assertGreaterEqual(fault.value, 3 * rounds)
+        self.assert_voltages_are_the_loops_own(run)
+        refused = [e for e in event_log.read_events(self.path("run.lcmlog")) if e.channel.startswith("REFUSED_HYDRO_")]
+        self.assertEqual(len(refused), sent + 4 * 5, "the log has every refused message under another name")
+        self.assertEqual(len({s.session for s in run.states}), 1)
+        # The reference went to 0.3 rad at 0.2 s; it takes 0.96 s to be within 2 %.
+        late = [s for s in run.states if 1.3 < s.time < 2.1]
+        self.assertGreater(len(late), 100)
+        for state in late:
+            self.assertAlmostEqual(state.arm_angle, 0.3, delta=0.02)
+        info = self.run_program("hydro-log", "info", self.path("run.lcmlog"))
+        self.assertIn("REFUSED_HYDRO_MOTOR_COMMAND", info.stdout)
+
+    # Tests that a process with another key, or without one, never gets control: the plant does not even take it for
+    # ready.
+    def test_another_key(self):
+        other = self.make_key("other")
+        for options, reason in (("--set", f"bus.key_file={other}"), "another key"), ((), "without a seal"):
+            run = self.stack(stack.config("demo.toml"), "--time", "realtime", "--duration", "1", "--set",
+                             "time.start_timeout_s=1.5")
+            plant = run.start("plant", *self.keyed)
+            run.start("position_ctrl", *self.keyed)
+            run.start("pressure_ctrl", *options)
+            self.assertEqual(plant.wait(), 1, plant.report())
+            self.assertRegex(plant.stderr, r"not ready after .*: pressure_ctrl\n")
+            self.assertRegex(plant.stderr, rf"fault {CODE}: refused .*{reason}")
+            for role in ("position_ctrl", "pressure_ctrl"):
+                run[role].end()
+
+    # Tests that a recording is refused, played into a later run, and into the run itself: whether it has the seals
+    # or not.
+    def test_recording(self):
+        recorder, _ = self.recorder("wire.lcmlog")
+        self.wait_until(lambda: os.path.exists(self.path("wire.lcmlog")), "the recorder is on the network")
+        launch = self.launch(stack.config("demo.toml"), "--time", "realtime", "--duration", "1.5", *self.keyed,
+                             *PATIENT, "--log", self.path("plain.lcmlog"))
+        self.assertEqual(launch.wait(), 0, launch.report())
+        recorder.send(2)
+        recorder.wait()
+        sealed = [e for e in event_log.read_events(self.path("wire.lcmlog")) if e.data[-40:-32] == b"hydroMAC"]
+        self.assertGreater(len(sealed), 3000)
+        # Both logs read alike, without the key.
+        for name in ("wire.lcmlog", "plain.lcmlog"):
+            self.run_program("hydro-log", "export", self.path(name), "-o", self.path(name + ".csv"))
+        with open(self.path("wire.lcmlog.csv"), encoding="utf-8") as a, \
+                open(self.path("plain.lcmlog.csv"), encoding="utf-8") as b:
+            self.assertEqual(a.read(), b.read())
+
+        launch = self.launch(stack.config("demo.toml"), "--time", "realtime", "--duration", "0", *self.keyed, *PATIENT,
+                             "--log", self.path("live.lcmlog"))
+        log = stack.LiveLog(self, self.path("live.lcmlog"))
+        log.wait_for_tick(100)
+        for name in ("wire.lcmlog", "plain.lcmlog"):
+            player = self.start(shutil.which("lcm-logplayer"), "--lcm-url=" + self.url, self.path(name))
+            self.assertEqual(player.wait(), 0, player.report())
+        # And what this very run is sending.
+        recorder, wire = self.recorder("here.lcmlog")
+        events = []
+        self.wait_until(lambda: events.extend(wire.new_events()) or len(events) > 200, "a recording")
+        again = self.sender()
+        for event in events[:200]:
+            again.send(event.channel, event.data)
+        fault = log.wait_for("HYDRO_FAULT", lambda f: f.source == "plant" and not f.active and "played again" in f.text,
+                             "the fault's end")
+        log.wait_for_tick(fault.tick + 100)
+        launch.send(2)
+        self.assertEqual(launch.wait(), 0, launch.report())
+        run = event_log.Log(self.path("live.lcmlog"))
+        self.assertEqual({f.code for f in run.faults}, {CODE}, run.faults)
+        ends = " ".join(f.text for f in run.faults if not f.active and f.source == "plant")
+        for reason in ("recorded in another run", "without a seal", "played again"):
+            self.assertIn(reason, ends)
+        self.assert_voltages_are_the_loops_own(run)
+        self.assertEqual(len({s.session for s in run.states}), 1)
+
+    # Tests that a pressure loop that was killed and is started again takes over, and a recording of the first does not.
+    def test_restart(self):
+        run = self.stack(stack.config("demo.toml"), "--time", "realtime", "--duration", "0", *self.keyed, *PATIENT)
+        log = run.start_all(self.path("run.lcmlog"))
+        log.wait_for_tick(100)
+        first = {c.session for c in log.messages["HYDRO_MOTOR_COMMAND"]}
+        run["pressure_ctrl"].kill()
+        run["pressure_ctrl"].wait()
+        log.wait_for("HYDRO_FAULT", lambda f: f.code == "stale_motor_command" and f.active, "zero volts")
+        run.start("pressure_ctrl", label="pressure_ctrl again")
+        command = log.wait_for("HYDRO_MOTOR_COMMAND", lambda c: c.session not in first and c.status == event_log.LAW,
+                               "a command of the new one")
+        log.wait_for("HYDRO_STATE", lambda s: s.command_tick >= command.tick and s.voltage != 0, "which acts")
+        run["plant"].send(15)
+        self.assertEqual(run["plant"].wait(), 0, run["plant"].report())
+
+    # Tests that a key file that is missing, readable for others or no key stops a program at once, naming the file.
+    def test_bad_key_files(self):
+        def check(name, found):
+            for program in ("hydro-plant", "hydro-pressure-ctrl", "hydro-launch"):
+                process = self.run_program(program, stack.config("demo.toml"), "--set", f"bus.url={self.url}", "--set",
+                                           f"bus.key_file={self.path(name)}", expect=2)
+                self.assertEqual(process.stderr.count("\n"), 1, process.report())
+                self.assertIn(self.path(name), process.stderr)
+                self.assertRegex(process.stderr, found)
+
+        check("missing", "No such file")
+        os.chmod(self.make_key("wide"), 0o644)
+        check("wide", "0644.*chmod 600")
+        with open(os.open(self.path("short"), os.O_CREAT | os.O_WRONLY, 0o600), "w", encoding="utf-8") as file:
+            file.write("0123")
+        check("short", "64 hexadecimal digits")
+        again = self.run_program("hydro-launch", stack.config("demo.toml"), *self.keyed, "--make-key", expect=2)
+        self.assertIn("remove it first", again.stderr)
+        none = self.run_program("hydro-launch", stack.config("demo.toml"), "--make-key", expect=2)
+        self.assertIn("bus.key_file", none.stderr)
+
+    # Tests that a plant on a network that others reach says that it has no key, and no other program does. In a
+    # network of its own: nothing leaves this machine.
+    def test_warns_of_open_network(self):
+        unshare = shutil.which("unshare")
+        if unshare is None or os.system(f"{unshare} -n true 2>/dev/null") != 0:
+            self.skipTest("network namespaces cannot be made here")
+
+        def first_words(program, *options):
+            script = "ip link set lo up && ip route add 224.0.0.0/4 dev lo && exec \"$@\""
+            process = self.start(unshare, "-n", "sh", "-c", script, "sh", stack.program(program),
+                                 stack.config("demo.toml"), "--set", "time.start_timeout_s=0.2", *options)
+            if program != "hydro-plant":
+                process.send(15)
+            process.wait()
+            return process.stderr
+
+        near, far = "udpm://239.255.76.67:7667?ttl=0", "udpm://239.255.76.67:7667?ttl=1"
+        words = "there is no bus.key_file"
+        self.assertIn(words, first_words("hydro-plant", "--set", f"bus.url={far}"))
+        self.assertNotIn(words, first_words("hydro-plant", "--set", f"bus.url={far}", *self.keyed))
+        self.assertNotIn(words, first_words("hydro-plant", "--set", f"bus.url={near}"))
+
+
+if __name__ == "__main__":
+    unittest.main()

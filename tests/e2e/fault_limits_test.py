@@ -1,0 +1,223 @@
+"""Rows of docs/safety.md: limits that are passed, and how a latched fault ends (limits.rearm), with the real programs."""
+
+import unittest
+
+import event_log
+import fault_case
+import lcm_peer
+
+# A pressure that drives the arm away for as long as it is asked for; negative: the other way.
+PUSH = 'signal = "pressure"\nkind = "steps"\nsteps = [[0.1, {}]]'
+
+
+class LimitTest(fault_case.FaultCase):
+    """With the default, limits.rearm = "restart": the run ends with exit code 1."""
+
+    def run_to_limit(self, option, code, measured, limit, push=100):
+        self.start_stack("--set", f"{option}={limit}", config=self.config_with(PUSH.format(push)))
+        for role in ("plant", "pressure_ctrl", "position_ctrl", "logger"):
+            self.assertEqual(self.run_[role].wait(), 1, self.run_[role].report())
+        self.assertRegex(self.run_["plant"].stderr, f"fault {code}: tick .*{option}")
+        log = event_log.Log(self.log_file)
+        faults = {f.source: f for f in log.faults if f.code == code}
+        passed = next(s for s in log.states if measured(s) > limit)
+        fault = faults["plant"]
+        print(f"{code}: passed at tick {passed.tick}, detected at tick {fault.tick}", flush=True)
+        self.assertEqual(fault.tick, passed.tick)  # in the very tick
+        self.assertEqual((fault.latched, fault.active), (1, 1))
+        self.assertAlmostEqual(fault.value, measured(passed), delta=1e-9 * fault.value)
+        self.assertAlmostEqual(fault.limit, limit)
+        self.assertEqual([s for s in log.states if s.tick > fault.tick and s.voltage != 0], [])
+        self.assertTrue([s for s in log.states if s.voltage != 0])
+        self.assertTrue([s for s in log.stops if s.exit_code == 1 and code in s.reason])
+        last = log.motor_commands[-1]
+        self.assertEqual((last.status, last.voltage), (event_log.STOPPED, 0))
+        # The pressure loop finds the same by itself, unless the plant's stop was there first.
+        self.assertLessEqual(set(faults), {"plant", "pressure_ctrl"})
+
+    # Tests that a pressure above its limit, on either side, zeroes the voltage in the tick in which it is measured and
+    # ends the run.
+    def test_pressure(self):
+        for push in (100, -100):
+            with self.subTest(push=push):
+                self.run_to_limit("limits.pressure_psi", "pressure_limit", lambda s: max(s.p1, s.p2), 115, push)
+
+    def test_motor_speed(self):
+        self.run_to_limit("limits.motor_speed_rad_s", "motor_speed_limit", lambda s: abs(s.motor_speed), 30, -100)
+
+    # Tests the arm: long before V_1 or V_2 is 0, of which the model itself would die.
+    def test_arm_angle(self):
+        for push in (100, -100):
+            with self.subTest(push=push):
+                self.run_to_limit("limits.arm_angle_rad", "arm_angle_limit", lambda s: abs(s.arm_angle), 0.05, push)
+
+    # Tests that a run whose arm is driven to its end is stopped by the default of that limit, 0.98 V_ms/c.
+    def test_arm_angle_default(self):
+        self.start_stack(config=self.config_with(PUSH.format(100)))
+        fault = self.wait_for_fault("arm_angle_limit", source="plant")
+        self.assertAlmostEqual(fault.limit, 0.98 * 3.16 / 3.68379, places=6)
+        for role in ("plant", "pressure_ctrl", "position_ctrl", "logger"):
+            self.assertEqual(self.run_[role].wait(), 1, self.run_[role].report())
+        self.assertFalse([f for f in event_log.Log(self.log_file).faults if f.code == "model_error"])
+
+
+class RearmTest(fault_case.FaultCase):
+    """With limits.rearm = "explicit": the stack stays up at zero volts until hydro-launch --rearm."""
+
+    def start_explicit(self, *options, **more):
+        self.start_stack("--set", 'limits.rearm="explicit"', *options, **more)
+
+    def rearm(self, expect):
+        return self.run_program("hydro-launch", *self.run_.arguments, "--rearm", expect=expect)
+
+    # Tests that the voltage stays zero when the pressure has long gone, that a re-arm ends that, and that the fault is
+    # found again when the limit is passed again.
+    def test_pressure(self):
+        self.start_explicit("--set", "limits.pressure_psi=115", config=self.config_with(PUSH.format(100)))
+        fault = self.wait_for_fault("pressure_limit", source="plant")
+        self.assertEqual(fault.latched, 1)
+        self.log.wait_for("HYDRO_STATE", lambda s: s.tick > fault.tick + 10 and max(s.p1, s.p2) < 108, "less pressure")
+        self.wait_for_states(300)
+        states = self.log.count("HYDRO_STATE")
+        answer = self.rearm(0)
+        self.assertRegex(answer.stdout, "re-armed: ended .*pressure_limit")
+        gone = self.wait_for_fault("pressure_limit", active=False, source="plant")
+        again = self.log.wait_for("HYDRO_STATE", lambda s: s.voltage != 0, "a voltage", start=states)
+        self.assertGreater(again.tick, gone.tick)
+        self.wait_for_fault("pressure_limit", source="plant", start=self.log.messages["HYDRO_FAULT"].index(gone))
+        log = self.finish()
+        self.assertEqual(self.assert_zero_during(log, "pressure_limit", "plant", least=300), 0)
+        self.assertEqual([(r.kind, r.source) for r in log.rearms[:2]], [(0, "launch"), (1, "plant")])
+
+    # Tests that an input that is good again does not end the fault by itself.
+    def test_stale_command(self):
+        self.start_explicit()
+        self.wait_for_voltage()
+        self.run_["pressure_ctrl"].kill()
+        fault = self.wait_for_fault("stale_motor_command")
+        self.assertEqual(fault.latched, 1)
+        refused = self.rearm(1)
+        self.assertRegex(refused.stderr, "refused by the plant: stale_motor_command persists: tick .* no motor command")
+        self.run_["pressure_ctrl"].wait()
+        self.run_.start("pressure_ctrl", label="second")
+        self.log.wait_for("HYDRO_MOTOR_COMMAND", lambda c: c.status == event_log.LAW, "commands again",
+                          start=self.log.count("HYDRO_MOTOR_COMMAND"))
+        self.wait_for_states(300)
+        self.rearm(0)
+        self.wait_for_fault("stale_motor_command", active=False)
+        self.wait_for_voltage()
+        log = self.finish()
+        self.assertEqual(self.assert_zero_during(log, "stale_motor_command", "plant", least=300), 0)
+
+    # Tests that what the pressure loop finds is latched too: its safe output keeps the voltage at zero when it is over.
+    def test_controller_fault(self):
+        self.start_explicit("--set", "limits.pressure_ramp_s=0")
+        self.wait_for_voltage()
+        self.run_["position_ctrl"].kill()
+        self.wait_for_fault("stale_pressure_command", source="pressure_ctrl")
+        fault = self.wait_for_fault("controller_fault", source="plant")
+        self.assertEqual(fault.latched, 1)
+        self.assertRegex(self.rearm(1).stderr, "controller_fault persists")
+        self.run_["position_ctrl"].wait()
+        self.run_.start("position_ctrl", label="second")
+        self.wait_for_fault("stale_pressure_command", active=False)
+        self.wait_for_states(300)
+        self.rearm(0)
+        self.wait_for_voltage()
+        log = self.finish()
+        self.assertEqual(self.assert_zero_during(log, "controller_fault", "plant", least=300), 0)
+
+    # Tests that in a stack with a key a re-arm and a stop need it, and that with it they do what they do without.
+    def test_with_a_key(self):
+        key = ("--set", f"bus.key_file={self.path('bus.key')}")
+        self.run_program("hydro-launch", self.moving(), *key, "--make-key")
+        self.start_explicit(*key)
+        self.wait_for_voltage()
+        self.run_["pressure_ctrl"].kill()
+        self.wait_for_fault("stale_motor_command")
+        self.run_["pressure_ctrl"].wait()
+        self.run_.start("pressure_ctrl", label="second")
+        self.log.wait_for("HYDRO_MOTOR_COMMAND", lambda c: c.status == event_log.LAW, "commands again",
+                          start=self.log.count("HYDRO_MOTOR_COMMAND"))
+        arguments = [a for a in self.run_.arguments if not str(a).startswith("bus.key_file")]
+        at = arguments.index("--set", arguments.index('limits.rearm="explicit"'))
+        stranger = self.run_program("hydro-launch", *arguments[:at], *arguments[at + 1:], "--rearm", expect=1)
+        self.assertRegex(stranger.stderr, "the plant does not answer")
+        self.rearm(0)
+        self.wait_for_voltage()
+        stopped = self.run_program("hydro-launch", *self.run_.arguments, "--stop")
+        self.assertRegex(stopped.stdout, "processes have ended")
+        for role in ("plant", "pressure_ctrl", "position_ctrl", "logger"):
+            self.assertEqual(self.run_[role].wait(), 0, self.run_[role].report())
+
+    # Tests that a limit that is still passed stands against a re-arm.
+    def test_refused_while_the_cause_persists(self):
+        self.start_explicit("--set", "limits.arm_angle_rad=0.05", config=self.config_with(PUSH.format(100)))
+        fault = self.wait_for_fault("arm_angle_limit", source="plant")
+        self.wait_for_states(100)
+        self.assertRegex(self.rearm(1).stderr, "arm_angle_limit persists: tick .* the arm is at")
+        self.wait_for_states(100)
+        log = self.finish()
+        self.assertEqual(self.assert_zero_during(log, "arm_angle_limit", "plant", least=200), 0)
+        self.assertEqual([f for f in log.faults if f.code == fault.code and not f.active], [])
+
+    # Tests that a re-arm that is meant for another run (as a log that is played holds), or is old, ends nothing.
+    def test_requests_of_another_run(self):
+        self.start_explicit()
+        self.wait_for_voltage()
+        self.run_["pressure_ctrl"].kill()
+        self.wait_for_fault("stale_motor_command")
+        self.run_["pressure_ctrl"].wait()
+        self.run_.start("pressure_ctrl", label="second")
+        self.log.wait_for("HYDRO_MOTOR_COMMAND", lambda c: c.status == event_log.LAW, "commands again",
+                          start=self.log.count("HYDRO_MOTOR_COMMAND"))
+        self.rearm(0)  # from here on its bytes are known
+        self.wait_for_voltage()
+        self.run_["pressure_ctrl"].kill()
+        begun = self.wait_for_fault("stale_motor_command", start=self.log.count("HYDRO_FAULT"))
+        self.run_["pressure_ctrl"].wait()
+        self.run_.start("pressure_ctrl", label="third")
+        self.log.wait_for("HYDRO_MOTOR_COMMAND", lambda c: c.status == event_log.LAW, "commands again",
+                          start=self.log.count("HYDRO_MOTOR_COMMAND"))
+        hashes = lcm_peer.type_hashes(self.copy_of_log())
+        peer = lcm_peer.Peer(self.url, hashes)
+        self.addCleanup(peer.close)
+        state = self.log.messages["HYDRO_STATE"][-1]
+        peer.publish("HYDRO_REARM", addressee=state.session + 1, tick=state.tick)
+        peer.publish("HYDRO_REARM", addressee=state.session, tick=state.tick - 6000)
+        self.log.wait_for("HYDRO_REARM", lambda r: r.kind == 2 and "names tick" in r.text, "a refusal")
+        self.wait_for_states(100)
+        log = self.finish()
+        after = [s for s in log.states if s.tick > begun.tick]
+        self.assertGreater(len(after), 100)
+        self.assertEqual([s for s in after if s.voltage != 0], [])
+
+    def copy_of_log(self):
+        """What the logger has written so far, in whole events."""
+        with open(self.log_file, "rb") as file:
+            data = file.read()
+        whole, at = 0, 0
+        while (found := event_log._event_at(data, at)) is not None:  # noqa: SLF001
+            whole = at = found[1]
+        with open(self.path("copy.lcmlog"), "wb") as file:
+            file.write(data[:whole])
+        return self.path("copy.lcmlog")
+
+    # Tests that where faults end by themselves there is nothing to re-arm, and that one who asks nobody is told so.
+    def test_nothing_to_rearm(self):
+        self.start_stack()
+        self.wait_for_voltage()
+        self.assertRegex(self.rearm(1).stderr, 'refused by the plant: limits.rearm is "restart"')
+        self.finish()
+        self.assertRegex(self.rearm(1).stderr, "no plant or driver is heard")
+
+    # Tests that a run that ends at zero volts, never re-armed, has failed.
+    def test_ends_latched(self):
+        self.start_explicit("--set", "limits.pressure_psi=115", duration=1.2,
+                            config=self.config_with(PUSH.format(100)))
+        self.assertEqual(self.run_["plant"].wait(), 1, self.run_["plant"].report())
+        self.assertRegex(self.run_["plant"].stderr, "stopped by .*pressure_limit and not re-armed")
+
+
+if __name__ == "__main__":
+    unittest.main()

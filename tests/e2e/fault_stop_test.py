@@ -1,0 +1,60 @@
+"""Rows of docs/safety.md: HYDRO_STOP, from any program and from hydro-launch --stop."""
+
+import unittest
+
+import event_log
+import fault_case
+import stack
+
+
+class StopTest(fault_case.FaultCase):
+    def check_stopped(self, source):
+        for role in ("plant", "pressure_ctrl", "position_ctrl", "logger"):
+            self.assertEqual(self.run_[role].wait(), 0, self.run_[role].report())
+        log = event_log.Log(self.log_file)
+        stop = log.stops[0]
+        self.assertEqual(stop.source, source)
+        # States that the plant sent after the stop had arrived at the logger: zero volts, or none.
+        first = next(n for n, (kind, _) in enumerate(log.items) if kind == "HYDRO_STOP")
+        after = [m for kind, m in log.items[first:] if kind == "HYDRO_STATE"]
+        print(f"{self.id().split('.')[-1]}: {len(after)} states after the stop", flush=True)
+        self.assertLessEqual(len(after), fault_case.ZERO_WITHIN)
+        last = log.motor_commands[-1]
+        self.assertEqual((last.status, last.voltage), (event_log.STOPPED, 0))
+        return log
+
+    # Tests that any program's HYDRO_STOP ends the run in order.
+    def test_any_program(self):
+        self.start_stack()
+        self.wait_for_voltage()
+        self.peer().publish("HYDRO_STOP", source="somebody", reason="enough", session=99)
+        self.check_stopped("somebody")
+
+    # Tests that hydro-launch --stop ends a stack that was started by hand, and waits until it has ended.
+    def test_stop_by_hand(self):
+        self.start_stack()
+        self.wait_for_voltage()
+        stopper = self.run_program("hydro-launch", *self.run_.arguments, "--stop")
+        self.assertRegex(stopper.stdout, "stopped: 4 processes have ended")
+        self.check_stopped("launch")
+
+    # Tests that it ends a stack under hydro-launch, which ends with 0.
+    def test_stop_launched(self):
+        launch = self.launch(self.moving(), "--duration", "0", "--log", self.log_file)
+        stack.LiveLog(self, self.log_file).wait_for_tick(200)
+        stopper = self.run_program("hydro-launch", self.moving(), "--set", f"bus.url={self.url}", "--stop")
+        self.assertRegex(stopper.stdout, "stopped: 4 processes have ended")
+        self.assertEqual(launch.wait(), 0, launch.report())
+        self.assertRegex(launch.stdout, "stopped by launch: hydro-launch --stop")
+
+    # Tests that without a stack it says so, with exit code 1, and that it does not go with --rearm.
+    def test_nobody(self):
+        arguments = (stack.config("demo.toml"), "--set", f"bus.url={self.url}")
+        nobody = self.run_program("hydro-launch", *arguments, "--stop", expect=1)
+        self.assertRegex(nobody.stderr, "no process of a stack is heard on udpm:")
+        both = self.run_program("hydro-launch", *arguments, "--stop", "--rearm", expect=2)
+        self.assertRegex(both.stderr, "--stop: found --rearm beside it")
+
+
+if __name__ == "__main__":
+    unittest.main()

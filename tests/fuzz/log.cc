@@ -1,0 +1,73 @@
+#include <spdlog/spdlog.h>
+
+#include <string>
+
+#include "logger/compare.h"
+#include "logger/info.h"
+#include "logger/log_reader.h"
+#include "logger/measured_run.h"
+#include "logger/repair.h"
+#include "logger/replay.h"
+#include "logger/run_log.h"
+#include "logger/run_table.h"
+#include "logger/table.h"
+#include "logger/tracking.h"
+#include "tests/fuzz/promise.h"
+#include "tests/fuzz/scratch_folder.h"
+#include "tests/fuzz/targets.h"
+
+namespace hydro::fuzz {
+namespace {
+
+int64_t CountEvents(const std::string& file) {
+  LogReader reader(file);
+  LogEvent event;
+  int64_t count = 0;
+  while (reader.Next(event)) ++count;
+  return count;
+}
+
+void ReadAsARun(const std::string& file, const ScratchFolder& folder) {
+  RunLog log;
+  if (!Accepts([&] { log = ReadRunLog(file); })) return;
+  Accepts([&] {
+    const LogInfo info = Summarise(log, true);
+    Promise(!InfoText(info).empty() && !InfoJson(info).empty(), "info says something");
+    const Tracking tracking = TrackArm(log);
+    Promise(!SummaryText(tracking, info, true).empty(), "a summary says something");
+    SummaryJson(tracking, info);
+  });
+  Promise(!FirstDifference(log.messages, "a", log.messages, "b").has_value(), "a log is identical to itself");
+  Accepts([&] {
+    const ::hydro::Table table = ExportRun(log);
+    WriteTable(table, folder.Path("export.csv"));
+    Promise(ReadTable(folder.Path("export.csv")).rows() == table.rows(), "an export can be read");
+    ImportRun(table, "fuzz", folder.Path("import.log"));
+    CountEvents(folder.Path("import.log"));
+  });
+  Accepts([&] { Replay(log, ReplayedController::kPressure, 0); });
+  Accepts([&] { Replay(log, ReplayedController::kPosition, 0); });
+}
+
+}  // namespace
+
+void Log(const uint8_t* data, size_t size) {
+  spdlog::set_level(spdlog::level::off);
+  static const ScratchFolder folder;
+  const std::string file = folder.Write("log", Text(data, size));
+  const bool whole = Accepts([&] { CountEvents(file); });
+  ReadAsARun(file, folder);
+  Accepts([&] { ReadMeasuredRun(file); });
+  Accepts([&] {
+    const std::string repaired = folder.Path("repaired");
+    const RepairResult result = RepairLog(file, repaired);
+    Promise(CountEvents(repaired) == result.kept_events, "a repaired log is whole");
+    Promise(!Describe(result, file).empty(), "a repair is described");
+    int64_t lost = 0;
+    for (const LostBytes& bytes : result.lost) lost += bytes.end - bytes.begin;
+    Promise(lost + result.kept_bytes == static_cast<int64_t>(size), "every byte is kept or lost");
+    Promise(whole || !result.lost.empty(), "a damaged log loses something");
+  });
+}
+
+}  // namespace hydro::fuzz

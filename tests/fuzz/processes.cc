@@ -1,0 +1,131 @@
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "bus/channels.h"
+#include "bus/in_process_bus.h"
+#include "hydro/log_progress_t.hpp"
+#include "launch/stack_watch.h"
+#include "logger/logger_app.h"
+#include "plant/roll_call.h"
+#include "position_ctrl/position_app.h"
+#include "pressure_ctrl/pressure_app.h"
+#include "tests/fuzz/promise.h"
+#include "tests/fuzz/targets.h"
+#include "tests/stack_fixture.h"
+
+namespace hydro::fuzz {
+namespace {
+
+constexpr size_t kMostMessages = 200;
+
+// Takes up to `count` bytes off the front.
+class Input {
+ public:
+  Input(const uint8_t* data, size_t size) : data_(data), left_(size) {}
+  size_t left() const { return left_; }
+  std::vector<uint8_t> Take(size_t count) {
+    count = std::min(count, left_);
+    std::vector<uint8_t> bytes(data_, data_ + count);
+    data_ += count;
+    left_ -= count;
+    return bytes;
+  }
+  uint8_t Byte() {
+    const std::vector<uint8_t> byte = Take(1);
+    return byte.empty() ? 0 : byte[0];
+  }
+
+ private:
+  const uint8_t* data_;
+  size_t left_;
+};
+
+// Each message: a byte for the channel, one for the time since the one before, one for the size, and its
+// fields (the type's hash goes before them). `poll` is called after each.
+template <class Poll>
+void Feed(Input& input, InProcessBus& bus, SimulatedClock& clock, Poll poll) {
+  struct Place {
+    const std::string* channel;
+    int64_t hash;
+  };
+  static const Channels channels;
+  static const std::array<Place, 8> places = {{{&channels.state, state_t::getHash()},
+                                               {&channels.pressure_command, pressure_command_t::getHash()},
+                                               {&channels.process_status, process_status_t::getHash()},
+                                               {&channels.stop, stop_t::getHash()},
+                                               {&channels.fault, fault_t::getHash()},
+                                               {&channels.loop_statistics, loop_statistics_t::getHash()},
+                                               {&channels.log_progress, log_progress_t::getHash()},
+                                               {&channels.arm_reference, arm_reference_t::getHash()}}};
+  for (size_t count = 0; input.left() > 0 && count < kMostMessages; ++count) {
+    const Place& place = places[input.Byte() % places.size()];
+    clock.AdvanceTo(clock.Now() + std::chrono::milliseconds(input.Byte()));
+    std::vector<uint8_t> bytes;
+    for (int shift = 56; shift >= 0; shift -= 8) {
+      bytes.push_back(static_cast<uint8_t>(static_cast<uint64_t>(place.hash) >> shift));
+    }
+    const size_t length = input.Byte();
+    const std::vector<uint8_t> fields = input.Take(length);
+    bytes.insert(bytes.end(), fields.begin(), fields.end());
+    bus.PublishRaw(*place.channel, bytes.data(), static_cast<int>(bytes.size()));
+    for (int turn = 0; turn < 5 && bus.HandleUntil(clock.Now()) > 0; ++turn) {
+    }
+    poll();
+  }
+}
+
+StackConfig Config(Input& input) {
+  StackConfig config = testing::SmallStack();
+  config.time.mode = input.Byte() % 2 == 0 ? TimeMode::kLockstep : TimeMode::kRealtime;
+  return config;
+}
+
+}  // namespace
+
+// The controllers answer; the commands must be what an amplifier may get.
+void Processes(const uint8_t* data, size_t size) {
+  spdlog::set_level(spdlog::level::off);
+  Input input(data, size);
+  SimulatedClock clock;
+  clock.AdvanceTo(Clock::TimePoint(std::chrono::hours(1)));
+  InProcessBus bus(&clock);
+  const StackConfig config = Config(input);
+  const double most_volts = PressureLawSettingsFor(config).voltage_limit;
+  const Channels channels;
+  PressureApp pressure(bus, clock, config);
+  PositionApp position(bus, clock, config);
+  StackWatch watch(bus, clock, channels);
+  RollCall roll_call({"pressure_ctrl"});
+  bus.Subscribe<process_status_t>(channels.process_status,
+                                  [&](const process_status_t& status) { roll_call.Observe(status); });
+  bus.Subscribe<motor_command_t>(channels.motor_command, [&](const motor_command_t& command) {
+    // Nobody but the loop sends any here.
+    Promise(std::abs(command.voltage) <= most_volts, "voltages are within what the amplifier takes");
+  });
+  Feed(input, bus, clock, [&] {
+    pressure.Poll();
+    position.Poll();
+  });
+  watch.summary().Lines();
+  watch.NotReady();
+  roll_call.Missing();
+  pressure.Finish();
+  position.Finish();
+}
+
+void Recorder(const uint8_t* data, size_t size) {
+  spdlog::set_level(spdlog::level::off);
+  Input input(data, size);
+  SimulatedClock clock;
+  clock.AdvanceTo(Clock::TimePoint(std::chrono::hours(1)));
+  InProcessBus bus(&clock);
+  LoggerApp logger(bus, clock, Config(input), {"/dev/null"});
+  Feed(input, bus, clock, [&] { logger.Poll(); });
+}
+
+}  // namespace hydro::fuzz

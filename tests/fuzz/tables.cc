@@ -1,0 +1,88 @@
+#include <cmath>
+#include <string>
+#include <string_view>
+
+#include "logger/log_reader.h"
+#include "logger/measured_run.h"
+#include "logger/run_log.h"
+#include "logger/run_table.h"
+#include "logger/table.h"
+#include "settings/csv_points.h"
+#include "settings/stack_config.h"
+#include "tests/fuzz/promise.h"
+#include "tests/fuzz/scratch_folder.h"
+#include "tests/fuzz/targets.h"
+
+namespace hydro::fuzz {
+namespace {
+
+// Between the CSV and its sidecar.
+constexpr std::string_view kSeparator = "\n----\n";
+
+}  // namespace
+
+void Table(const uint8_t* data, size_t size) {
+  static const ScratchFolder folder;
+  const std::string file = folder.Write("table.csv", Text(data, size));
+  Accepts([&] {
+    const ::hydro::Table table = ReadTable(file);
+    for (const Column& column : table.columns) {
+      Promise(column.values.size() == table.rows(), "columns are of one length");
+    }
+    WriteTable(table, folder.Path("again.csv"));
+    Accepts([&] {
+      ImportRun(table, "fuzz", folder.Path("import.log"));
+      Promise(ReadRunLog(folder.Path("import.log")).messages.states.size() == table.rows(),
+              "an import has a state a row");
+      Promise(ExportRun(ReadRunLog(folder.Path("import.log"))).rows() == table.rows(),
+              "an import exports as many rows");
+    });
+  });
+}
+
+void MeasuredRun(const uint8_t* data, size_t size) {
+  static const ScratchFolder folder;
+  const std::string_view text = Text(data, size);
+  const size_t separator = text.find(kSeparator);
+  if (separator == text.npos) return;
+  const std::string file = folder.Write("run.csv", text.substr(0, separator));
+  folder.Write("run.toml", text.substr(separator + kSeparator.size()));
+  Accepts([&] {
+    const ::hydro::MeasuredRun run = ReadMeasuredRun(file);
+    Promise(run.samples() >= 2, "a run has two samples or more");
+    for (size_t i = 0; i < run.samples(); ++i) {
+      Promise(std::isfinite(run.time[i]), "times are finite");
+      Promise(i == 0 || run.time[i] > run.time[i - 1], "times increase");
+      Promise(std::isfinite(run.voltage.values[i]), "no command is missing");
+    }
+    for (const MeasuredSignal* signal : {&run.voltage, &run.pressure_ref, &run.motor_speed, &run.motor_angle,
+                                         &run.arm_angle, &run.arm_speed, &run.p1, &run.p2}) {
+      Promise(!signal->measured() || signal->values.size() == run.samples(), "signals are of one length");
+      Promise(!signal->noise || *signal->noise > 0, "noise is above 0");
+    }
+  });
+}
+
+void Points(const uint8_t* data, size_t size) {
+  Accepts([&] {
+    TrajectorySpec spec;
+    spec.kind = TrajectorySpec::Kind::kCsv;
+    spec.points = ParseCsvPoints(std::string(Text(data, size)), "points.csv", "value");
+    for (const Interpolation interpolation :
+         {Interpolation::kHold, Interpolation::kLinear, Interpolation::kCubic}) {
+      spec.interpolation = interpolation;
+      const auto trajectory = MakeTrajectory(spec);
+      Promise(trajectory->Min() <= trajectory->Max(), "a trajectory has a range");
+      for (const Step& point : spec.points) {
+        const double slack = 1e-9 * (std::abs(trajectory->Max()) + std::abs(trajectory->Min()));
+        const double value = trajectory->Value(point.time);
+        Promise(!(value > trajectory->Max() + slack) && !(value < trajectory->Min() - slack),
+                "values are in the range");
+        trajectory->Rate(point.time);
+        Promise(!(trajectory->NextBreak(point.time) <= point.time), "the next break is later");
+      }
+    }
+  });
+}
+
+}  // namespace hydro::fuzz

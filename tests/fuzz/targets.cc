@@ -1,0 +1,26 @@
+#include "tests/fuzz/targets.h"
+
+namespace hydro::fuzz {
+
+const Target* FindTarget(std::string_view name) {
+  static constexpr Target kTargets[] = {
+      {"messages", Messages},
+      {"processes", Processes},
+      {"recorder", Recorder},
+      {"log", Log},
+      {"table", Table},
+      {"measured_run", MeasuredRun},
+      {"points", Points},
+      {"stack_toml", StackToml},
+      {"model_toml", ModelToml},
+      {"overrides", Overrides},
+      {"url", Url},
+      {"key", Key},
+  };
+  for (const Target& target : kTargets) {
+    if (name == target.name) return &target;
+  }
+  return nullptr;
+}
+
+}  // namespace hydro::fuzz

@@ -1,0 +1,375 @@
+// PlantApp's faults on a simulated clock: what the end-to-end tests cannot do to a machine, and exact ticks.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <hydro/fault_t.hpp>
+#include <hydro/log_progress_t.hpp>
+#include <hydro/rearm_t.hpp>
+#include <memory>
+#include <set>
+#include <vector>
+
+#include "bus/in_process_bus.h"
+#include "plant/plant_app.h"
+#include "plant/simulated_rig.h"
+#include "tests/stack_fixture.h"
+
+namespace hydro {
+namespace {
+
+using namespace std::chrono_literals;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using testing::SmallStack;
+
+// A clock whose wall time can be set and whose machine can be suspended.
+class DisturbedClock : public SimulatedClock {
+ public:
+  int64_t Utime() const override { return SimulatedClock::Utime() + step_us; }
+  Duration Suspended() const override { return suspended; }
+
+  int64_t step_us = 0;
+  Duration suspended{};
+};
+
+class PlantFaultsTest : public ::testing::Test {
+ protected:
+  PlantFaultsTest() {
+    config_.time.mode = TimeMode::kRealtime;
+    StartAgain();
+  }
+
+  // Another run, of which nothing is left of the one before.
+  void StartAgain() {
+    clock_ = DisturbedClock();
+    bus_ = std::make_unique<InProcessBus>(&clock_);
+    states_.clear();
+    faults_.clear();
+    answers_.clear();
+    sequence_ = 0;
+    bus_->Subscribe<state_t>("HYDRO_STATE", [this](const state_t& s) {
+      states_.push_back(s);
+      if (on_state_) on_state_(s);
+      if (answering_) Answer(s.tick, voltage_);
+    });
+    bus_->Subscribe<fault_t>("HYDRO_FAULT", [this](const fault_t& f) { faults_.push_back(f); });
+    bus_->Subscribe<rearm_t>("HYDRO_REARM", [this](const rearm_t& r) {
+      if (r.kind != rearm_t::REQUEST) answers_.push_back(r);
+    });
+  }
+
+  int Run() {
+    SimulatedRig rig(config_);
+    PlantApp plant(*bus_, clock_, config_, rig);
+    for (const char* role : {"pressure_ctrl", "position_ctrl"}) Status(role, 1, process_status_t::READY);
+    const int exit_code = plant.Run();
+    failure_ = plant.failure();
+    while (bus_->HandleUntil(clock_.Now()) > 0) {
+    }
+    return exit_code;
+  }
+
+  void Status(const std::string& role, int64_t session, int8_t state, const std::string& text = "") {
+    process_status_t status;
+    status.session = session;
+    status.role = role;
+    status.host = "rig";
+    status.pid = 7;
+    status.state = state;
+    status.text = text;
+    bus_->Publish("HYDRO_PROCESS_STATUS", status);
+  }
+
+  void Answer(int64_t tick, double voltage, int8_t status = motor_command_t::LAW) {
+    motor_command_t c{};
+    c.tick = tick;
+    c.session = 1;
+    c.sequence = sequence_++;
+    c.voltage = voltage;
+    c.status = status;
+    bus_->Publish("HYDRO_MOTOR_COMMAND", c);
+  }
+
+  void AskToRearm(int64_t tick, int64_t addressee = 0) {
+    rearm_t request;
+    request.tick = tick;
+    request.session = 5;
+    request.addressee = addressee;
+    request.kind = rearm_t::REQUEST;
+    bus_->Publish("HYDRO_REARM", request);
+  }
+
+  std::vector<std::string> Codes() const {
+    std::vector<std::string> codes;
+    for (const fault_t& f : faults_) codes.push_back((f.active != 0 ? "+" : "-") + f.code);
+    return codes;
+  }
+
+  // Voltages of the states from `first` to `last` are all `voltage`.
+  void ExpectVoltage(int64_t first, int64_t last, double voltage) const {
+    for (const state_t& s : states_) {
+      if (s.tick >= first && s.tick <= last) {
+        EXPECT_EQ(s.voltage, voltage) << s.tick;
+      }
+    }
+  }
+
+  DisturbedClock clock_;
+  std::unique_ptr<InProcessBus> bus_;
+  StackConfig config_ = SmallStack();
+  std::function<void(const state_t&)> on_state_;
+  bool answering_ = true;
+  double voltage_ = 1.5;  // of our answers
+  std::vector<state_t> states_;
+  std::vector<fault_t> faults_;
+  std::vector<rearm_t> answers_;
+  std::string failure_;
+  int64_t sequence_ = 0;
+};
+
+// Tests that a machine that was suspended ends the run at zero volts, in the next tick, with a latched fault.
+TEST_F(PlantFaultsTest, SuspendEndsTheRun) {
+  on_state_ = [this](const state_t& s) {
+    if (s.tick == 50) clock_.suspended = 3h;
+  };
+  EXPECT_EQ(Run(), 1);
+  ASSERT_EQ(faults_.size(), 1u);
+  EXPECT_EQ(faults_[0].code, "machine_suspended");
+  EXPECT_EQ(faults_[0].tick, 51);
+  EXPECT_TRUE(faults_[0].latched);
+  EXPECT_EQ(faults_[0].value, 3 * 3600);
+  EXPECT_EQ(states_.back().tick, 51);
+  EXPECT_THAT(failure_, HasSubstr("suspended"));
+}
+
+// Tests that with explicit re-arming it holds zero volts until then, though it is over at once.
+TEST_F(PlantFaultsTest, SuspendWaitsForARearm) {
+  config_.limits.rearm = Rearm::kExplicit;
+  on_state_ = [this](const state_t& s) {
+    if (s.tick == 50) clock_.suspended = 3h;
+    if (s.tick == 80) AskToRearm(80);
+  };
+  EXPECT_EQ(Run(), 0);
+  EXPECT_THAT(Codes(), ::testing::ElementsAre("+machine_suspended", "-machine_suspended"));
+  ExpectVoltage(10, 51, 1.5);
+  ExpectVoltage(52, 81, 0);
+  ExpectVoltage(83, 100, 1.5);
+}
+
+// Tests that a wall clock that is set by ten seconds, forwards and back, changes no state but its time stamp.
+TEST_F(PlantFaultsTest, ClockStepChangesNothing) {
+  ASSERT_EQ(Run(), 0);
+  const std::vector<state_t> even = states_;
+  StartAgain();
+  on_state_ = [this](const state_t& s) {
+    if (s.tick == 30) clock_.step_us = 10'000'000;
+    if (s.tick == 60) clock_.step_us = -10'000'000;
+  };
+  ASSERT_EQ(Run(), 0);
+  EXPECT_THAT(faults_, IsEmpty());
+  ASSERT_EQ(states_.size(), even.size());
+  EXPECT_GT(std::abs(states_[50].utime - even[50].utime), 5'000'000);
+  for (size_t k = 0; k < even.size(); ++k) {
+    state_t state = states_[k];
+    state.utime = even[k].utime;
+    std::vector<uint8_t> a(state.getEncodedSize()), b(state.getEncodedSize());
+    state.encode(a.data(), 0, static_cast<int>(a.size()));
+    even[k].encode(b.data(), 0, static_cast<int>(b.size()));
+    EXPECT_EQ(a, b) << k;
+  }
+}
+
+// Tests that with the limits of a real-time machine, five ticks, a pressure loop that falls silent is noticed
+// in the sixth and the voltage is zero from the next state on.
+TEST_F(PlantFaultsTest, FiveTicks) {
+  config_.limits.stale_input_s = 0.005;
+  on_state_ = [this](const state_t& s) { answering_ = s.tick < 50; };
+  EXPECT_EQ(Run(), 0);
+  ASSERT_EQ(faults_.size(), 1u);
+  EXPECT_EQ(faults_[0].code, "stale_motor_command");
+  EXPECT_LE(faults_[0].tick, 50 + 6);
+  ExpectVoltage(faults_[0].tick + 1, 100, 0);
+  ExpectVoltage(10, faults_[0].tick, 1.5);
+}
+
+// Tests that after a stop of its own the plant acts on nothing that was commanded before it.
+TEST_F(PlantFaultsTest, LatePlantWaitsForAFreshCommand) {
+  config_.limits.stale_input_s = 0.02;
+  int64_t awake = 0;
+  on_state_ = [&](const state_t& s) {
+    answering_ = s.skipped_ticks == 0 && (awake == 0 || s.tick > awake + 5);
+    if (s.skipped_ticks > 0) awake = s.tick;
+    if (s.tick == 30) clock_.AdvanceTo(clock_.Now() + 25ms);
+  };
+  EXPECT_EQ(Run(), 0);
+  ASSERT_GT(awake, 50);
+  ASSERT_GE(faults_.size(), 2u);
+  EXPECT_EQ(faults_.back().code, "late_plant");
+  EXPECT_EQ(faults_.front().tick, awake);
+  EXPECT_THAT(Codes(), ::testing::Contains("+late_plant"));
+  ExpectVoltage(awake + 1, awake + 6, 0);
+  EXPECT_EQ(states_.back().voltage, 1.5);
+}
+
+// Tests that the plant has its own eyes on each limit: zero volts from the tick in which it is passed.
+TEST_F(PlantFaultsTest, LimitsEndTheRun) {
+  struct Case {
+    const char* code;
+    double LimitsSection::*limit;
+    double value;
+  };
+  voltage_ = 9;
+  for (const Case& c : {Case{"pressure_limit", &LimitsSection::pressure_psi, 102},
+                        Case{"motor_speed_limit", &LimitsSection::motor_speed_rad_s, 5},
+                        Case{"arm_angle_limit", &LimitsSection::arm_angle_rad, 1e-6}}) {
+    StartAgain();
+    config_.limits = LimitsSection{};
+    config_.limits.*c.limit = c.value;
+    EXPECT_EQ(Run(), 1);
+    ASSERT_EQ(faults_.size(), 1u) << c.code;
+    EXPECT_EQ(faults_[0].code, c.code);
+    EXPECT_TRUE(faults_[0].latched);
+    EXPECT_EQ(faults_[0].tick, states_.back().tick);
+    EXPECT_GT(faults_[0].value, c.value);
+  }
+}
+
+// Tests the rows of a re-arm: to another session, of an old tick, while the cause persists, and a good one.
+TEST_F(PlantFaultsTest, Rearm) {
+  config_.limits.rearm = Rearm::kExplicit;
+  config_.last_tick = 7000;
+  on_state_ = [this](const state_t& s) {
+    const bool bad = s.tick >= 10 && s.tick < 30;
+    answering_ = false;
+    Answer(s.tick, bad ? 99 : 1.5);
+    if (s.tick == 20) AskToRearm(20);
+    if (s.tick == 40) AskToRearm(40, 1234);
+    if (s.tick == 5500) AskToRearm(400);
+    if (s.tick == 5600) AskToRearm(5601);  // it has not been
+    if (s.tick == 6000) AskToRearm(5990);
+    if (s.tick == 6500) AskToRearm(6500);
+  };
+  EXPECT_EQ(Run(), 0);
+  ASSERT_EQ(answers_.size(), 5u);
+  EXPECT_EQ(answers_[0].kind, rearm_t::REFUSED);
+  EXPECT_THAT(answers_[0].text,
+              HasSubstr("excessive_motor_command persists: tick 11: the motor command is 99 V"));
+  EXPECT_THAT(answers_[1].text, HasSubstr("names tick 400"));
+  EXPECT_THAT(answers_[2].text, HasSubstr("names tick 5601"));
+  EXPECT_EQ(answers_[3].kind, rearm_t::ACCEPTED);
+  EXPECT_EQ(answers_[3].text, "ended excessive_motor_command");
+  EXPECT_EQ(answers_[3].addressee, 5);
+  EXPECT_EQ(answers_[4].text, "no fault is latched");
+  ExpectVoltage(12, 6001, 0);
+  ExpectVoltage(6003, 7000, 1.5);
+}
+
+// Tests that a safe output of the pressure loop is latched where faults are ended explicitly, and only there.
+TEST_F(PlantFaultsTest, SafeCommand) {
+  on_state_ = [this](const state_t& s) {
+    answering_ = s.tick != 40;
+    if (!answering_) Answer(s.tick, 0, motor_command_t::SAFE);
+  };
+  EXPECT_EQ(Run(), 0);
+  EXPECT_THAT(faults_, IsEmpty());
+  ExpectVoltage(43, 100, 1.5);
+
+  StartAgain();
+  config_.limits.rearm = Rearm::kExplicit;
+  EXPECT_EQ(Run(), 1);  // it was not re-armed
+  EXPECT_THAT(Codes(), ::testing::ElementsAre("+controller_fault"));
+  ExpectVoltage(42, 100, 0);
+  EXPECT_THAT(failure_, HasSubstr("controller_fault"));
+}
+
+// Tests that a fault that the position loop names is latched too, that it stands until the loop takes it back
+// or is replaced, and that a warning is not.
+TEST_F(PlantFaultsTest, FaultOfThePositionLoop) {
+  config_.limits.rearm = Rearm::kExplicit;
+  const auto fault = [this](const char* code, bool active) {
+    fault_t f{};
+    f.session = 33;
+    f.source = "position_ctrl";
+    f.code = code;
+    f.active = active;
+    bus_->Publish("HYDRO_FAULT", f);
+  };
+  on_state_ = [&](const state_t& s) {
+    if (s.tick == 10) fault("undecodable_message", true);
+    if (s.tick == 20) fault("nonfinite_arm_angle", true);
+    if (s.tick == 30) AskToRearm(30);
+    if (s.tick == 40) Status("position_ctrl", 34, process_status_t::READY);
+    if (s.tick == 50) AskToRearm(50);
+  };
+  EXPECT_EQ(Run(), 0);
+  ASSERT_EQ(answers_.size(), 2u);
+  EXPECT_THAT(answers_[0].text, HasSubstr("position_ctrl: nonfinite_arm_angle"));
+  EXPECT_EQ(answers_[1].kind, rearm_t::ACCEPTED);
+  ExpectVoltage(5, 20, 1.5);
+  ExpectVoltage(22, 51, 0);
+  ExpectVoltage(54, 100, 1.5);
+}
+
+// Tests that a second plant on the channels is named, with the multicast group it says it has.
+TEST_F(PlantFaultsTest, OtherStack) {
+  config_.last_tick = 4000;
+  on_state_ = [this](const state_t& s) {
+    if (s.tick != 50) return;
+    run_description_t other;
+    other.session = 77;
+    other.program = "hydro-plant";
+    other.host = "neighbour";
+    other.config_text = "[bus]\nurl = \"udpm://239.1.2.3:7667?ttl=1\"\n";
+    bus_->Publish("HYDRO_RUN", other);
+  };
+  EXPECT_EQ(Run(), 0);
+  EXPECT_THAT(Codes(), ::testing::ElementsAre("+other_stack", "-other_stack"));
+  EXPECT_THAT(faults_[0].text,
+              HasSubstr("hydro-plant on neighbour (session 77, its bus.url = \"udpm://239.1.2.3"));
+  ExpectVoltage(52, 2500, 0);
+  EXPECT_EQ(states_.back().voltage, 1.5);
+}
+
+// Tests that a logger that falls silent is a warning, which ends when there is one again; and that the
+// plant's own silence is none of the logger's.
+TEST_F(PlantFaultsTest, LoggerGone) {
+  config_.last_tick = 3000;
+  config_.limits.stale_logger_s = 0.5;
+  const auto progress = [this](int64_t session, int64_t tick) {
+    log_progress_t p{};
+    p.session = session;
+    p.tick = tick;
+    bus_->Publish("HYDRO_LOG_PROGRESS", p);
+  };
+  on_state_ = [&](const state_t& s) {
+    if (s.tick < 1000) progress(8, s.tick);
+    if (s.tick == 500) clock_.AdvanceTo(clock_.Now() + 60ms);
+    if (s.tick == 2000) progress(9, s.tick);
+    if (s.tick > 2000) progress(9, s.tick);
+  };
+  Status("logger", 8, process_status_t::RUNNING);
+  EXPECT_EQ(Run(), 0);
+  EXPECT_THAT(Codes(), ::testing::ElementsAre("+logger_gone", "-logger_gone"));
+  EXPECT_GE(faults_[0].tick, 1500);
+  EXPECT_LE(faults_[0].tick, 1505);
+  EXPECT_GE(faults_[1].tick, 2000);
+  ExpectVoltage(600, 3000, 1.5);
+}
+
+// Tests that a logger that says why it leaves is quoted.
+TEST_F(PlantFaultsTest, LoggerFailed) {
+  on_state_ = [&](const state_t& s) {
+    if (s.tick == 5) Status("logger", 8, process_status_t::RUNNING);
+    if (s.tick == 20) Status("logger", 8, process_status_t::FAILED, "no space left");
+  };
+  EXPECT_EQ(Run(), 0);
+  ASSERT_EQ(faults_.size(), 1u);
+  EXPECT_EQ(faults_[0].code, "logger_gone");
+  EXPECT_THAT(faults_[0].text, HasSubstr("logger on rig (process 7)"));
+  EXPECT_THAT(faults_[0].text, HasSubstr("no space left"));
+  ExpectVoltage(10, 100, 1.5);
+}
+
+}  // namespace
+}  // namespace hydro

@@ -1,0 +1,179 @@
+// PlantApp on a rig that is not the simulated one: when it drives, when it does not, and how it ends.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <hydro/fault_t.hpp>
+#include <set>
+
+#include "bus/in_process_bus.h"
+#include "plant/plant_app.h"
+#include "tests/stack_fixture.h"
+
+namespace hydro {
+namespace {
+
+using testing::SmallStack;
+
+// Remembers what it was told; reads what the test says.
+class RecordingRig : public Rig {
+ public:
+  std::string role() const override { return "driver"; }
+  Measurement Read(int64_t tick) override {
+    if (on_read) on_read(tick);
+    Measurement measured;
+    measured.p1 = measured.p2 = 100;
+    return measured;
+  }
+  const std::vector<RigFault>& faults() const override { return faults_now; }
+  double Drive(double voltage) override {
+    driven.push_back(voltage);
+    output = std::clamp(voltage, -2.0, 2.0);
+    return output;
+  }
+  void Zero() noexcept override {
+    output = 0;
+    ++zeros;
+  }
+
+  std::function<void(int64_t)> on_read;
+  std::vector<RigFault> faults_now;
+  std::vector<double> driven;
+  double output = 0;
+  int zeros = 0;
+};
+
+class PlantRigTest : public ::testing::Test {
+ protected:
+  PlantRigTest() {
+    config_.time.mode = TimeMode::kRealtime;
+    bus_.Subscribe<state_t>("HYDRO_STATE", [this](const state_t& s) {
+      states_.push_back(s);
+      motor_command_t command{};
+      command.tick = s.tick;
+      command.session = 1;
+      command.sequence = sequence_++;
+      command.voltage = voltage_;
+      if (answers_) bus_.Publish("HYDRO_MOTOR_COMMAND", command);
+    });
+    bus_.Subscribe<fault_t>("HYDRO_FAULT", [this](const fault_t& f) { faults_.push_back(f); });
+    bus_.Subscribe<process_status_t>("HYDRO_PROCESS_STATUS",
+                                     [this](const process_status_t& s) { roles_.insert(s.role); });
+  }
+
+  int Run() {
+    PlantApp app(bus_, clock_, config_, rig_, {}, "hydro-driver");
+    for (const char* role : {"pressure_ctrl", "position_ctrl"}) {
+      process_status_t ready;
+      ready.session = 1;
+      ready.role = role;
+      ready.state = process_status_t::READY;
+      bus_.Publish("HYDRO_PROCESS_STATUS", ready);
+    }
+    const int exit_code = app.Run();
+    failure_ = app.failure();
+    while (bus_.HandleUntil(clock_.Now()) > 0) {
+    }
+    return exit_code;
+  }
+
+  SimulatedClock clock_;
+  InProcessBus bus_{&clock_};
+  StackConfig config_ = SmallStack();
+  RecordingRig rig_;
+  bool answers_ = true;
+  double voltage_ = 1.5;
+  int64_t sequence_ = 0;
+  std::vector<state_t> states_;
+  std::vector<fault_t> faults_;
+  std::set<std::string> roles_;
+  std::string failure_;
+};
+
+// Tests that a run on any rig drives what was commanded, once at each tick, says who it is, and ends at zero.
+TEST_F(PlantRigTest, DrivesCommands) {
+  EXPECT_EQ(Run(), 0);
+  EXPECT_EQ(rig_.driven.size(), 100u);
+  for (const double voltage : rig_.driven) EXPECT_EQ(voltage, 1.5);
+  EXPECT_EQ(states_[1].voltage, 0) << "the command of tick 0 acts from tick 1 on";
+  EXPECT_EQ(states_[7].voltage, 1.5);
+  EXPECT_GE(rig_.zeros, 1);
+  EXPECT_EQ(rig_.output, 0);
+  EXPECT_TRUE(roles_.contains("driver"));
+  EXPECT_FALSE(roles_.contains("plant"));
+}
+
+// Tests that without a command nothing but zero is driven.
+TEST_F(PlantRigTest, ZeroUntilTheFirstCommand) {
+  answers_ = false;
+  EXPECT_EQ(Run(), 0);
+  for (const double voltage : rig_.driven) EXPECT_EQ(voltage, 0);
+}
+
+// Tests that nothing is driven at all while somebody is missing.
+TEST_F(PlantRigTest, NothingBeforeTheRollIsComplete) {
+  PlantApp app(bus_, clock_, config_, rig_);
+  EXPECT_EQ(app.Run(), 1);
+  EXPECT_TRUE(rig_.driven.empty());
+  EXPECT_GE(rig_.zeros, 1);
+}
+
+// Tests that states tell the voltage that acts where the rig cuts it.
+TEST_F(PlantRigTest, StatesTellTheVoltageThatActs) {
+  voltage_ = 9;
+  EXPECT_EQ(Run(), 0);
+  EXPECT_EQ(rig_.driven[5], 9);
+  EXPECT_EQ(states_[7].voltage, 2);
+  EXPECT_GE(states_[7].command_tick, 0);
+}
+
+// Tests that faults of the rig's own give zero volts from that reading on, are named one by one, and end.
+TEST_F(PlantRigTest, RigFaults) {
+  rig_.on_read = [this](int64_t tick) {
+    rig_.faults_now.clear();
+    if (tick >= 20 && tick < 40) rig_.faults_now.push_back({"sensor_p1", "p1 is gone", 1, 2});
+    if (tick >= 30 && tick < 50) rig_.faults_now.push_back({"sensor_p2", "p2 is gone", 3, 4});
+  };
+  EXPECT_EQ(Run(), 0);
+  for (int64_t k = 0; k < 100; ++k) {
+    const bool at_fault = k + 1 >= 20 && k + 1 < 50;  // driven[k] follows the reading of tick k + 1
+    EXPECT_EQ(rig_.driven[k], at_fault ? 0 : 1.5) << k;
+  }
+  EXPECT_EQ(states_[30].command_tick, -1);
+  std::vector<std::string> seen;
+  for (const fault_t& f : faults_)
+    seen.push_back(f.code + (f.active ? " begins " : " ends ") + std::to_string(f.tick));
+  EXPECT_THAT(seen, ::testing::ElementsAre("sensor_p1 begins 20", "sensor_p2 begins 30", "sensor_p1 ends 40",
+                                           "sensor_p2 ends 50"));
+  EXPECT_EQ(faults_[0].text, "tick 20: p1 is gone");
+  EXPECT_EQ(faults_[1].limit, 4);
+  EXPECT_EQ(faults_[0].source, "driver");
+}
+
+// Tests that an error of the rig ends the run with 1: zero volts, then a latched fault of its name.
+TEST_F(PlantRigTest, RigError) {
+  rig_.on_read = [](int64_t tick) {
+    if (tick == 30) throw hydro::RigError("board_error", "no answer");
+  };
+  EXPECT_EQ(Run(), 1);
+  EXPECT_EQ(failure_, "driver: no answer");
+  EXPECT_EQ(rig_.output, 0);
+  ASSERT_EQ(faults_.size(), 1u);
+  EXPECT_EQ(faults_[0].code, "board_error");
+  EXPECT_TRUE(faults_[0].latched);
+  EXPECT_EQ(states_.back().tick, 29);
+}
+
+// Tests that any other exception leaves zero volts behind, too.
+TEST_F(PlantRigTest, OtherExceptions) {
+  rig_.on_read = [](int64_t tick) {
+    if (tick == 30) throw 1;
+  };
+  EXPECT_THROW(Run(), int);
+  EXPECT_EQ(rig_.driven.back(), 1.5);
+  EXPECT_EQ(rig_.output, 0);
+}
+
+}  // namespace
+}  // namespace hydro

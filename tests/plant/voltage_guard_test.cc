@@ -1,0 +1,136 @@
+#include "plant/voltage_guard.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <limits>
+#include <set>
+#include <sstream>
+#include <string>
+
+#include "process/fault_codes.h"
+
+namespace hydro {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::IsEmpty;
+using Cause = VoltageGuard::Cause;
+
+std::vector<Cause> AllCauses() {
+  std::vector<Cause> causes;
+  for (int i = 0; i < static_cast<int>(Cause::kCount); ++i) causes.push_back(static_cast<Cause>(i));
+  return causes;
+}
+
+// Tests that each cause has a name of its own, which is known to zero the voltage.
+TEST(VoltageGuardTest, EveryCauseHasACode) {
+  std::set<std::string> codes;
+  for (const Cause cause : AllCauses()) {
+    const std::string code = VoltageGuard::CodeOf(cause);
+    codes.insert(code);
+    bool known = false;
+    for (const FaultCode& entry : FaultCodes()) {
+      known = known || (entry.code == code && entry.effect == FaultEffect::kZeroVolts);
+    }
+    EXPECT_TRUE(known) << code;
+  }
+  EXPECT_EQ(codes.size(), AllCauses().size());
+}
+
+// Tests, of each cause in each mode, the voltage of five ticks: before it, with it, when it has gone, and
+// after a re-arm.
+TEST(VoltageGuardTest, TicksInVoltageOut) {
+  for (const Rearm rearm : {Rearm::kRestart, Rearm::kExplicit}) {
+    for (const Cause cause : AllCauses()) {
+      VoltageGuard guard(rearm);
+      std::vector<double> volts;
+      std::vector<Cause> standing;
+      const auto tick = [&](bool present) {
+        guard.Set(cause, present);
+        volts.push_back(guard.Voltage(7));
+      };
+      tick(false);
+      tick(true);
+      tick(true);
+      tick(false);
+      const bool latches = rearm == Rearm::kExplicit || VoltageGuard::Trips(cause);
+      EXPECT_EQ(guard.any_latched(), latches);
+      guard.Release(&standing);
+      EXPECT_THAT(standing, IsEmpty());
+      tick(false);
+      EXPECT_THAT(volts, ElementsAre(7, 0, 0, latches ? 0 : 7, 7)) << VoltageGuard::CodeOf(cause);
+    }
+  }
+}
+
+// Tests that nothing is released while any cause, be it another one, is present.
+TEST(VoltageGuardTest, ReleasesNothingWhileACauseStands) {
+  VoltageGuard guard(Rearm::kExplicit);
+  guard.Set(Cause::kStaleCommand, true);
+  guard.Set(Cause::kStaleCommand, false);
+  guard.Set(Cause::kPressureLimit, true);
+  std::vector<Cause> standing;
+  EXPECT_THAT(guard.Release(&standing), IsEmpty());
+  EXPECT_THAT(standing, ElementsAre(Cause::kPressureLimit));
+  EXPECT_TRUE(guard.latched(Cause::kStaleCommand));
+  EXPECT_EQ(guard.Voltage(7), 0);
+  guard.Set(Cause::kPressureLimit, false);
+  EXPECT_THAT(guard.Release(&standing), ElementsAre(Cause::kStaleCommand, Cause::kPressureLimit));
+  EXPECT_EQ(guard.Voltage(7), 7);
+}
+
+// Tests that zero volts stay zero volts for what is not a number, too.
+TEST(VoltageGuardTest, HidesWhatIsNotANumber) {
+  VoltageGuard guard(Rearm::kRestart);
+  guard.Set(Cause::kNonfiniteCommand, true);
+  EXPECT_EQ(guard.Voltage(std::numeric_limits<double>::quiet_NaN()), 0);
+}
+
+std::string Document(const char* name) {
+  std::ifstream stream(std::filesystem::path(HYDRO_SOURCE_DIR) / "docs" / name);
+  std::stringstream text;
+  text << stream.rdbuf();
+  return text.str();
+}
+
+// Tests that docs/faults.md has a row for each code, with its effect, and that docs/safety.md, whose table is
+// of situations, has a code or the beginning of one for each.
+TEST(FaultCodesTest, AreDocumented) {
+  const std::string list = Document("faults.md");
+  const std::string table = Document("safety.md");
+  for (const FaultCode& entry : FaultCodes()) {
+    const std::string code(entry.code);
+    const size_t place = list.find("`" + code + "`");
+    ASSERT_NE(place, std::string::npos) << code;
+    const size_t row = list.rfind('\n', place) + 1;
+    const std::string line = list.substr(row, list.find('\n', place) - row);
+    EXPECT_TRUE(line.starts_with("| `")) << line;
+    const std::string effect = entry.effect == FaultEffect::kZeroVolts ? "zero volts"
+                               : entry.effect == FaultEffect::kRamp    ? "ramp"
+                                                                       : "warning";
+    EXPECT_TRUE(line.ends_with("| " + effect + " |")) << line;
+    const bool sensor = code.starts_with("sensor_");
+    const bool second = code.starts_with("second_");
+    const bool pressure_command = code.ends_with("_pressure_command");
+    // These share a row: `nonfinite_`, `excessive_`, `future_pressure_command`; second_..._sender.
+    const std::string in_table = sensor             ? "`sensor_...`"
+                                 : second           ? "second_"
+                                 : pressure_command ? code.substr(0, code.find('_') + 1)
+                                                    : "`" + code + "`";
+    EXPECT_NE(table.find(in_table), std::string::npos) << code;
+  }
+}
+
+// Tests that a code that nobody knows is taken for one that zeroes the voltage.
+TEST(FaultCodesTest, UnknownIsTakenSeriously) {
+  EXPECT_TRUE(ZeroesVoltage("what_is_this"));
+  EXPECT_TRUE(ZeroesVoltage("pressure_limit"));
+  EXPECT_FALSE(ZeroesVoltage("logger_gone"));
+  EXPECT_FALSE(ZeroesVoltage("stale_pressure_command"));
+}
+
+}  // namespace
+}  // namespace hydro
