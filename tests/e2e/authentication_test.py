@@ -1,5 +1,7 @@
 """A stack with a key (bus.key_file): it works as without, and who has not the key has no say in it."""
 
+import collections
+import csv
 import os
 import re
 import shutil
@@ -11,8 +13,8 @@ import event_log
 import stack
 
 CODE = "unauthenticated_command"
-# Above what wake-ups are late by here: no stale input is to be taken for an intruder's doing.
-PATIENT = ("--set", "limits.stale_input_s=0.5")
+# Far above what wake-ups are late by here: no stale input is to be taken for an intruder's doing.
+PATIENT = ("--set", "limits.stale_input_s=2")
 
 
 def encoded(kind, template, **changes):
@@ -74,7 +76,7 @@ class AuthenticationTest(stack.TestCase):
         self.assertEqual(len({c.session for c in log.motor_commands}), 1)
         commanded = {c.tick: c.voltage for c in log.motor_commands}
         acted = [s for s in log.states if s.command_tick >= 0]
-        self.assertGreater(len(acted), 100)
+        self.assertGreater(len(acted), 20)
         for state in acted:
             self.assertEqual(state.voltage, commanded[state.command_tick], state)
 
@@ -88,58 +90,65 @@ class AuthenticationTest(stack.TestCase):
         self.assertEqual({f.code for f in event_log.Log(self.path("stack.lcmlog")).faults}, set())
 
     # Tests that an intruder without the key who sends commands, states, stops, failures and faults is refused, counted
-    # and named, while the arm goes to its reference.
+    # and named, while the run goes on as if nobody had sent anything: to the last bit, in lockstep.
     def test_intruder(self):
-        launch = self.launch(stack.config("demo.toml"), "--time", "realtime", "--duration", "0", *self.keyed, *PATIENT,
-                             "--log", self.path("run.lcmlog"))
-        log = stack.LiveLog(self, self.path("run.lcmlog"))
-        log.wait_for_tick(50)
-        templates = {event.channel: event.data for event in event_log.read_events(self.path("run.lcmlog"), True)}
-        intruder = self.sender()
+        options = ("--duration", "1.5", *self.keyed)
+        self.run_program("hydro-sim", stack.config("demo.toml"), *options, "-o", self.path("sim.lcmlog"))
+        templates = {event.channel: event.data for event in event_log.read_events(self.path("sim.lcmlog"))}
         attacks = [
             ("HYDRO_MOTOR_COMMAND", dict(session=666, voltage=10.0, status=event_log.OPEN_LOOP)),
-            ("HYDRO_MOTOR_COMMAND", dict(voltage=float("nan"))),  # as if from the pressure loop itself
+            ("HYDRO_MOTOR_COMMAND", dict(voltage=float("nan"))),
             ("HYDRO_PRESSURE_COMMAND", dict(session=666, voltage=10.0, open_loop=1)),
             ("HYDRO_STATE", dict(session=666, p1=1e9)),
-            ("HYDRO_PROCESS_STATUS", dict(state=event_log.FAILED)),
+            ("HYDRO_PROCESS_STATUS", dict(state=event_log.FAILED, role="pressure_ctrl")),
+            ("HYDRO_STOP", dict(reason="an intruder's")),
         ]
-        rounds, sent = 200, 0
-        for number in range(rounds):
-            for kind, changes in attacks:
-                if kind != "HYDRO_PROCESS_STATUS":
-                    changes = dict(changes, tick=50 + 5 * number, sequence=10**6 + number)
-                intruder.send(kind, encoded(kind, templates[kind], **changes))
-                sent += 1
-            log.wait_for_tick(50 + 5 * number)  # spread over the run, and never more than the receivers can hold
-        stop = (struct.pack(">q", 0) + b"".join(struct.pack(">q", n) for n in (0, 0, 666)) +
-                b"\0\0\0\2x\0" * 2 + b"\0\0\0\1")
-        for _ in range(5):
-            intruder.send("HYDRO_STOP", stop)
-            intruder.send("HYDRO_MOTOR_COMMAND", b"")
-            intruder.send("HYDRO_MOTOR_COMMAND", b"\xff" * 100)
-            intruder.send("HYDRO_INTRODUCTION", b"hydroMAC" + bytes(32))
-        fault = log.wait_for("HYDRO_FAULT", lambda f: f.source == "plant" and not f.active, "the fault's end")
-        log.wait_for_tick(fault.tick + 200)
-        launch.send(2)
-        self.assertEqual(launch.wait(), 0, launch.report())
+        rubbish = [("HYDRO_MOTOR_COMMAND", b""), ("HYDRO_MOTOR_COMMAND", b"\xff" * 100),
+                   ("HYDRO_INTRODUCTION", b"hydroMAC" + bytes(32))]
 
-        run = event_log.Log(self.path("run.lcmlog"))
+        launch = self.launch(stack.config("demo.toml"), "--time", "lockstep", *options, "--log", self.path("run.lcmlog"))
+        log = event_log.Follower(self.path("run.lcmlog"))
+        intruder = self.sender()
+        seen = collections.Counter()
+
+        def look():
+            seen.update(event.channel for event in log.new_events())
+            return seen
+
+        self.wait_until(lambda: look()["HYDRO_STATE"] > 10, "the run has begun")
+        sent = collections.Counter()
+        for number in range(500):
+            for kind, data in [(kind, encoded(kind, templates[kind], **changes, **(
+                    dict(tick=seen["HYDRO_STATE"], sequence=10**6 + number) if "COMMAND" in kind or "STATE" in kind else {})))
+                               for kind, changes in attacks] + rubbish:
+                intruder.send(kind, data)
+                sent["REFUSED_" + kind] += 1
+            # Never more under way than the receivers can hold.
+            self.wait_until(lambda: not launch.running or
+                            sum(n for channel, n in look().items() if channel in sent) > sum(sent.values()) - 100,
+                            "the logger keeps up")
+            if not launch.running:
+                break
+        self.assertEqual(launch.wait(120), 0, launch.report())
+        look()
+        self.assertGreater(sum(sent.values()), 100)
+        for channel in sent:
+            self.assertGreater(seen[channel], 0, channel)
+            self.assertLessEqual(seen[channel], sent[channel])
+
+        sim, run = event_log.Log(self.path("sim.lcmlog")), event_log.Log(self.path("run.lcmlog"))
+        for kind in event_log.NUMBERED:
+            # A repetition that was asked for is no difference.
+            def essence(messages):
+                return {m.sequence: m._replace(utime=0, session=0) for m in messages}
+            self.assertEqual(essence(run.of(kind)), essence(sim.of(kind)), kind)
         self.assertEqual({f.code for f in run.faults}, {CODE}, run.faults)
-        self.assertIn("plant", {f.source for f in run.faults})
-        self.assertIn("pressure_ctrl", {f.source for f in run.faults})
-        self.assertEqual(fault.code, CODE)
-        self.assertRegex(fault.text, r"\d+ without a seal")
-        # The plant listens to neither states nor, of its own accord, all that the logger does.
-        self.assertGreaterEqual(fault.value, 3 * rounds)
-        self.assert_voltages_are_the_loops_own(run)
-        refused = [e for e in event_log.read_events(self.path("run.lcmlog")) if e.channel.startswith("REFUSED_HYDRO_")]
-        self.assertEqual(len(refused), sent + 4 * 5, "the log has every refused message under another name")
-        self.assertEqual(len({s.session for s in run.states}), 1)
-        # The reference went to 0.3 rad at 0.2 s; it takes 0.96 s to be within 2 %.
-        late = [s for s in run.states if 1.3 < s.time < 2.1]
-        self.assertGreater(len(late), 100)
-        for state in late:
-            self.assertAlmostEqual(state.arm_angle, 0.3, delta=0.02)
+        for role in ("plant", "pressure_ctrl"):
+            begins = [f for f in run.faults if f.source == role and f.active]
+            self.assertTrue(begins, role)
+            self.assertRegex(begins[0].text, r"refused \d+ messages? not of this stack \(.*without a seal")
+            self.assertFalse(begins[0].latched)
+            self.assertGreater(begins[0].value, 0)
         info = self.run_program("hydro-log", "info", self.path("run.lcmlog"))
         self.assertIn("REFUSED_HYDRO_MOTOR_COMMAND", info.stdout)
 
@@ -170,13 +179,18 @@ class AuthenticationTest(stack.TestCase):
         recorder.send(2)
         recorder.wait()
         sealed = [e for e in event_log.read_events(self.path("wire.lcmlog")) if e.data[-40:-32] == b"hydroMAC"]
-        self.assertGreater(len(sealed), 3000)
-        # Both logs read alike, without the key.
+        self.assertGreater(len(sealed), 100)
+        # Both logs read alike, without the key; LCM's logger may have lost some.
+        rows = {}
         for name in ("wire.lcmlog", "plain.lcmlog"):
             self.run_program("hydro-log", "export", self.path(name), "-o", self.path(name + ".csv"))
-        with open(self.path("wire.lcmlog.csv"), encoding="utf-8") as a, \
-                open(self.path("plain.lcmlog.csv"), encoding="utf-8") as b:
-            self.assertEqual(a.read(), b.read())
+            with open(self.path(name + ".csv"), encoding="utf-8") as file:
+                rows[name] = {row["tick"]: (row["p1_psi"], row["p2_psi"], row["arm_angle_rad"])
+                              for row in csv.DictReader(file)}
+        both = rows["wire.lcmlog"].keys() & rows["plain.lcmlog"].keys()
+        self.assertGreater(len(both), 0.5 * len(rows["plain.lcmlog"]))
+        for tick in both:
+            self.assertEqual(rows["wire.lcmlog"][tick], rows["plain.lcmlog"][tick])
 
         launch = self.launch(stack.config("demo.toml"), "--time", "realtime", "--duration", "0", *self.keyed, *PATIENT,
                              "--log", self.path("live.lcmlog"))
