@@ -180,9 +180,10 @@ TEST(DriverSectionTest, Errors) {
       {WithDriver("[[process]]\nprogram = \"hydro-plant\"\n[[process]]\nprogram = \"hydro-driver\"\n"),
        "process.program: found hydro-driver beside hydro-plant, allowed one of the two"},
   };
-  for (const auto& [text, says] : table) {
+  for (const auto& row : table) {
+    const std::string& text = row.first;
     const std::string error = InputErrorOf([&] { Parsed(text); });
-    EXPECT_THAT(error, AllOf(HasSubstr("stack.toml"), HasSubstr(says))) << text;
+    EXPECT_THAT(error, AllOf(HasSubstr("stack.toml"), HasSubstr(row.second))) << text;
     EXPECT_EQ(error.find('\n'), std::string::npos);
   }
 }

@@ -72,17 +72,17 @@ TEST(TomlDocumentTest, FormatReadsBack) {
                        std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()}) {
     values.push_back(NumberNode(value));
   }
-  root.members.emplace_back("strings",
-                            ArrayNode({StringNode("plain"), StringNode("\"quoted\" \\ \n\t\r\x01\x7f"),
-                                       StringNode("\xC3\xA4 \xE2\x82\xAC"), StringNode("")}));
-  numbers.members.emplace_back("of every size", ArrayNode(std::move(values)));
+  root.members.push_back(
+      {"strings", ArrayNode({StringNode("plain"), StringNode("\"quoted\" \\ \n\t\r\x01\x7f"),
+                             StringNode("\xC3\xA4 \xE2\x82\xAC"), StringNode("")})});
+  numbers.members.push_back({"of every size", ArrayNode(std::move(values))});
   TomlNode item;
-  item.members.emplace_back("pump.stribeck", StringNode("a key with a dot"));
+  item.members.push_back({"pump.stribeck", StringNode("a key with a dot")});
   TomlNode list = ArrayNode({item, item});
-  root.members.emplace_back("numbers", numbers);
-  root.members.emplace_back("list", list);
-  numbers.members.emplace_back("inner", item);
-  root.members.emplace_back("nested", numbers);
+  root.members.push_back({"numbers", numbers});
+  root.members.push_back({"list", list});
+  numbers.members.push_back({"inner", item});
+  root.members.push_back({"nested", numbers});
   const TomlNode back = ParseToml(FormatToml(root), "f.toml");
   ExpectSame(root, back);
   EXPECT_EQ(FormatToml(back), FormatToml(root));
