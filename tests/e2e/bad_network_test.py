@@ -15,6 +15,8 @@ BAD = ("--loss", LOSS, "--delay", DELAY, "--jitter", JITTER, "--seed", 7)
 # limits.stale_input_s is above a round trip and what wake-ups are late by on a shared machine. The gains of demo.toml, made
 # for an immediate network, let the arm swing by 0.2 rad where a round trip takes 40 ms: these are for that.
 PATIENT = ("--set", "limits.stale_input_s=0.2", "--set", "position.c1=2000", "--set", "position.c2=400")
+# rad, of steps of 0.3 to 0.5: the machine of the tests may itself be late for half of the ticks.
+SETTLED = 0.08
 # Channels whose messages are numbered, and from which host they come.
 RIG_CHANNELS = ("HYDRO_STATE", "HYDRO_MOTOR_COMMAND")
 DESK_CHANNELS = ("HYDRO_PRESSURE_COMMAND", "HYDRO_ARM_REFERENCE")
@@ -36,7 +38,9 @@ class BadNetworkCase(two_hosts.TestCase):
             (session, seen), = numbers.items()
             absent = set(range(min(seen), max(seen))) - set(seen)
             dropped = {n for name, s, n, _ in record["missing"][way] if (name, s) == (channel, session)}
-            self.assertEqual(absent, {n for n in dropped if min(seen) < n < max(seen)}, channel)
+            # What the end of the run has overtaken was still on its way when the logger left.
+            settled = max(seen) - 100
+            self.assertEqual({n for n in absent if n < settled}, {n for n in dropped if min(seen) < n < settled}, channel)
             self.assertEqual(by_info[channel], len(absent), channel)
             self.assertGreater(len(absent), 0, channel)
             overtaken = sum(1 for before, number in zip(seen, seen[1:]) if number < before)
@@ -88,7 +92,7 @@ class BadNetworkTest(BadNetworkCase):
         for channel in RIG_CHANNELS:
             self.assertEqual(event_log.missing_numbers(log.of(channel)), {}, channel)
         self.assert_safe_in_outage(log, AT_REST)
-        self.assertLess(abs(two_hosts.final_error(log)), 0.04)
+        self.assertLess(abs(two_hosts.final_error(log)), SETTLED)
         # The plant itself, whose pressure loop is on its own host, never had a reason to stop.
         self.assertEqual({f.code for f in log.faults if f.source == "plant"} - {"late_plant", "logger_gone"}, set())
 
@@ -107,26 +111,38 @@ class OutageInMotionTest(BadNetworkCase):
         print(f"outage in motion: exit code {code}, {sorted({f.code for f in log.faults})}", flush=True)
         if code == 0:
             self.assertEqual(latched, [])
-            self.assertLess(abs(two_hosts.final_error(log)), 0.04)
+            self.assertLess(abs(two_hosts.final_error(log)), SETTLED)
             self.assertEqual(launches["desk"].wait(), 0, launches["desk"].report())
         else:
             self.assertEqual({f.code for f in latched}, {"arm_angle_limit"}, launches["rig"].report())
             self.assertEqual(log.motor_commands[-1].voltage, 0)
 
 
+def by_number(messages):
+    """{sequence: what does not depend on when and by whom it was sent}"""
+    return {m.sequence: repr(m._replace(utime=0, session=0)) for m in messages}
+
+
 class LockstepTest(BadNetworkCase):
     relay_options = BAD
 
-    # Tests that loss, delay and overtaking change not one bit of a lockstep run: what is lost is asked for again.
+    # Tests that loss, delay and overtaking change not one bit of a lockstep run: what the run waits for is asked for
+    # again. Nobody waits for the references, which are for the log alone: it lacks those that were lost.
     def test_lockstep(self):
         self.run_both("--time", "lockstep", "--duration", "0.5", logs=("rig",))
         record = self.relay_record()
         lost = sum(counts.get("lost", 0) for way in record["counts"].values() for counts in way.values())
-        self.assertGreater(lost, 20)
         print(f"lockstep: {lost} datagrams lost", flush=True)
+        self.assertGreater(lost, 20)
         simulated = self.path("sim.lcmlog")
         self.run_program("hydro-sim", self.config, "--duration", "0.5", "-o", simulated)
-        self.assert_identical(self.log_of("rig"), simulated)
+        log, exact = event_log.Log(self.log_of("rig")), event_log.Log(simulated)
+        for channel in (*RIG_CHANNELS, "HYDRO_PRESSURE_COMMAND"):
+            self.assertEqual(by_number(log.of(channel)), by_number(exact.of(channel)), channel)
+        references, all_of_them = by_number(log.arm_references), by_number(exact.arm_references)
+        self.assertLessEqual(references.items(), all_of_them.items())
+        dropped = {n for channel, _, n, _ in record["missing"]["b>a"] if channel == "HYDRO_ARM_REFERENCE"}
+        self.assertLessEqual(set(all_of_them) - set(references) - {max(all_of_them)}, dropped)
 
 
 class OutageInLockstepTest(BadNetworkCase):
