@@ -32,6 +32,7 @@ DoctorTask TaskOf(const std::string& config_file, const std::vector<std::string>
   task.config = config_file;
   task.url = ParseUdpmUrl(config.bus.url);
   task.channel_suffix = config.bus.channel_suffix;
+  task.open_network = task.url.ttl > 0 && config.bus.key_file.empty();
   if (config.time.mode == TimeMode::kRealtime) task.stale_input_s = config.limits.stale_input_s;
   std::set<std::string> hosts;
   for (const ProcessSection& process : config.processes) {

@@ -1,4 +1,7 @@
 #include <cstdio>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "bus/udpm_bus.h"
 #include "launch/doctor.h"
@@ -17,6 +20,18 @@ int Ask(decltype(hydro::StopStack)* request, const hydro::CommonOptions& options
   const hydro::OperatorResult result = request(bus, clock, config, {});
   std::fprintf(result.exit_code == 0 ? stdout : stderr, "hydro-launch: %s\n", result.text.c_str());
   return result.exit_code;
+}
+
+// Of the flags with which nothing is started.
+void CheckAtMostOne(const std::vector<std::pair<std::string, bool>>& flags) {
+  std::string first;
+  for (const auto& [flag, given] : flags) {
+    if (!given) continue;
+    if (!first.empty()) {
+      throw hydro::InputError(first + ": found " + flag + " beside it, allowed is one of them");
+    }
+    first = flag;
+  }
 }
 
 }  // namespace
@@ -42,10 +57,7 @@ int main(int argc, char** argv) {
   line.AddFlag("--make-key", &make_key, "write a new key into CONFIG's bus.key_file and start nothing");
   if (const auto code = line.Parse(argc, argv)) return *code;
   return hydro::RunProgram("hydro-launch", [&] {
-    if (stop + rearm + make_key + doctor > 1) {
-      throw hydro::InputError(
-          "found two of --stop, --rearm, --make-key and --doctor, allowed is one of them");
-    }
+    CheckAtMostOne({{"--stop", stop}, {"--rearm", rearm}, {"--make-key", make_key}, {"--doctor", doctor}});
     if (doctor) return hydro::RunDoctor(options.config, options.overrides, request.host);
     if (options.config.empty()) throw hydro::InputError("CONFIG is required; see --help");
     if (make_key) return hydro::MakeKey(options);
