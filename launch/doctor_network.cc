@@ -172,7 +172,9 @@ Finding ReachFinding(const DoctorTask& task) {
     return {kCheck, false,
             fmt::format("ttl={} and no bus.key_file: whoever is on the network may command the motor",
                         task.url.ttl),
-            fmt::format("hydro-launch {} --make-key --set bus.key_file=bus.key  # see docs/security.md",
+            fmt::format("sed -i '/^\\[bus\\]/a key_file = \"bus.key\"' {0} && hydro-launch {0} --make-key  # "
+                        "and copy the key "
+                        "to the other hosts: docs/security.md",
                         task.config)};
   }
   return {kCheck, true,

@@ -51,7 +51,8 @@ class DoctorTest(stack.TestCase):
 
     def mend(self, done, check):
         cure = self.findings(done.stdout)[check][2]
-        subprocess.run(self.inside("sh", "-c", cure), check=True, capture_output=True)
+        environment = {**os.environ, "PATH": stack.BIN + ":" + os.environ["PATH"]}
+        subprocess.run(self.inside("sh", "-c", cure), check=True, capture_output=True, env=environment)
 
     # Tests a machine without a multicast route: both that and the delivery that fails for it are named, the command mends
     # both, and the rest of the checks is done all the same.
@@ -85,6 +86,23 @@ class DoctorTest(stack.TestCase):
         self.assertNotIn("multicast route", self.problems(done), done.stdout)
         self.assertIn("veth", self.findings(done.stdout)["multicast route"][1])
         self.assertNotIn("loopback delivery", self.problems(done), done.stdout)
+
+    # Tests that commands that may come from other hosts want a key, and hosts beyond the machine a ttl.
+    def test_open_network(self):
+        shutil.copytree(stack.CONFIG, self.path("config"))
+        config = os.path.join(self.path("config"), "hosts.toml")
+        with open(stack.config("demo.toml"), encoding="utf-8") as file:
+            text = file.read().split("[[process]]")[0]
+        with open(config, "w", encoding="utf-8") as file:
+            file.write(text + '[[process]]\nprogram = "hydro-plant"\nhost = "rig"\n'
+                       '[[process]]\nprogram = "hydro-pressure-ctrl"\nhost = "desk"\n')
+        for found in ("names several hosts, and ttl=0", "ttl=1 and no bus.key_file"):
+            done = self.doctor(config, expect=1)
+            self.assertIn("ttl and hosts", self.problems(done), done.stdout)
+            self.assertIn(found, self.findings(done.stdout)["ttl and hosts"][1])
+            self.mend(done, "ttl and hosts")
+        done = self.doctor(config)
+        self.assertNotIn("ttl and hosts", self.problems(done), done.stdout)
 
     # Tests that a stack that runs on the port is heard and named, and that one with other channels is no problem.
     def test_other_stack(self):
