@@ -17,7 +17,6 @@
 namespace hydro {
 namespace {
 
-constexpr int kReceiveBufferBytes = 4 << 20;  // none lost up to 150,000 messages/s
 constexpr int kMostPerCall = 4096;
 constexpr std::string_view kLcmSelfTest = "LCM_SELF_TEST";
 

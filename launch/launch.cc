@@ -24,7 +24,7 @@ constexpr auto kBusPeriod =
     20ms;  // how often the bus is looked at; processes that print or end wake us at once
 constexpr auto kLastWords = 50ms;  // how long the reason of a process that failed may take to arrive
 constexpr auto kStopRepeatPeriod = 50ms;
-constexpr int kStopsAtOnce = 3;  // UDP may lose one
+constexpr int kStopsAtOnce = 3;
 constexpr int kStopRepeats = 5;
 
 std::string Join(const std::vector<std::string>& names) {
@@ -55,8 +55,10 @@ class StackLaunch {
   void CheckReady();
   void CheckEarlyEnd();
   void RepeatStop();
+  void TellOtherHosts();
   void Fail(const std::string& reason, int exit_code);
   void BeginStop(const std::string& reason, int exit_code);
+  void AnnounceStop(const std::string& reason, int exit_code);
   void PublishStop();
   void Say(const std::string& text) { output_.Line(Stream::kOut, kLabel, text); }
   void Complain(const std::string& text) { output_.Line(Stream::kErr, kLabel, text); }
@@ -120,6 +122,7 @@ int StackLaunch::Run() {
     CheckEarlyEnd();
     RepeatStop();
   }
+  TellOtherHosts();
   HearLastReports();
   for (const std::string& line : watch_.summary().Lines()) Say(line);
   // The terminal may be slow or stopped; a second Ctrl-C still gets us out.
@@ -212,6 +215,8 @@ void StackLaunch::OnStopHeard() {
   early_end_.clear();
   if (supervisor_.stopping()) return;  // it follows from our own
   const stop_t& stop = *watch_.stop();
+  // Who publishes it leaves at once, and the network may have lost that one message.
+  if (plan_.spread) AnnounceStop(stop.source + ": " + stop.reason, stop.exit_code);
   const std::string text = "stopped by " + stop.source + ": " + stop.reason;
   if (stop.exit_code == 0) {
     Say(text);
@@ -253,6 +258,11 @@ void StackLaunch::BeginStop(const std::string& reason, int exit_code) {
   supervisor_.Stop(Supervisor::Clock::now());
   if (!stop_reason_.empty()) return;
   if (exit_code == 0) Say(reason);
+  AnnounceStop(reason, exit_code);
+}
+
+// Several times, as UDP may lose some.
+void StackLaunch::AnnounceStop(const std::string& reason, int exit_code) {
   stop_reason_ = reason;
   stop_exit_code_ = exit_code;
   stops_left_ = kStopRepeats;
@@ -263,6 +273,14 @@ void StackLaunch::RepeatStop() {
   if (stops_left_ == 0 || Supervisor::Clock::now() < next_stop_) return;
   --stops_left_;
   PublishStop();
+}
+
+// What is left to be said when our own processes have ended.
+void StackLaunch::TellOtherHosts() {
+  while (plan_.spread && stops_left_ > 0 && !bus_failed_ && !killed_) {
+    HearBus(next_stop_);
+    RepeatStop();
+  }
 }
 
 void StackLaunch::PublishStop() {

@@ -1,6 +1,10 @@
 #include <cstdio>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "bus/udpm_bus.h"
+#include "launch/doctor.h"
 #include "launch/launch.h"
 #include "launch/make_key.h"
 #include "launch/operator_request.h"
@@ -18,15 +22,32 @@ int Ask(decltype(hydro::StopStack)* request, const hydro::CommonOptions& options
   return result.exit_code;
 }
 
+// Of the flags with which nothing is started.
+void CheckAtMostOne(const std::vector<std::pair<std::string, bool>>& flags) {
+  std::string first;
+  for (const auto& [flag, given] : flags) {
+    if (!given) continue;
+    if (!first.empty()) {
+      throw hydro::InputError(first + ": found " + flag + " beside it, allowed is one of them");
+    }
+    first = flag;
+  }
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   hydro::CommandLine line("hydro-launch", "Starts, watches over and stops the processes of a stack.");
   hydro::CommonOptions options;
   hydro::LaunchRequest request;
-  line.AddCommon(&options);
+  line.AddCommon(&options, false);
   line.AddOption("--host", &request.host,
                  "NAME start only the processes whose [[process]] section has this host");
+  bool doctor = false;
+  line.AddFlag(
+      "--doctor", &doctor,
+      "examine this machine and its network for the stack of CONFIG (without: for any in real time), and "
+      "print what mends each problem; starts nothing");
   bool stop = false;
   bool rearm = false;
   line.AddFlag("--stop", &stop, "stop the stack that runs, and wait until it has; starts nothing");
@@ -36,8 +57,10 @@ int main(int argc, char** argv) {
   line.AddFlag("--make-key", &make_key, "write a new key into CONFIG's bus.key_file and start nothing");
   if (const auto code = line.Parse(argc, argv)) return *code;
   return hydro::RunProgram("hydro-launch", [&] {
+    CheckAtMostOne({{"--stop", stop}, {"--rearm", rearm}, {"--make-key", make_key}, {"--doctor", doctor}});
+    if (doctor) return hydro::RunDoctor(options.config, options.overrides, request.host);
+    if (options.config.empty()) throw hydro::InputError("CONFIG is required; see --help");
     if (make_key) return hydro::MakeKey(options);
-    if (stop && rearm) throw hydro::InputError("--stop: found --rearm beside it, allowed is one of them");
     if (stop || rearm) return Ask(stop ? hydro::StopStack : hydro::RearmStack, options);
     request.config_file = options.config;
     request.overrides = options.overrides;

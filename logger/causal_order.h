@@ -20,7 +20,8 @@ namespace hydro {
 struct RecordedMessage {
   std::string channel;
   std::vector<uint8_t> data;
-  int64_t utime = 0;  // us, when it was received
+  int64_t utime = 0;              // us, when it was received
+  Clock::TimePoint arrived = {};  // when the logger took it: monotonic, whatever happens to utime's clock
 };
 
 class CausalOrder {

@@ -176,6 +176,19 @@ std::vector<run_description_t> DistinctDescriptions(const std::vector<run_descri
   return distinct;
 }
 
+// Who stops a run says so several times, lest the network loses it.
+std::vector<stop_t> DistinctStops(const std::vector<stop_t>& all) {
+  std::vector<stop_t> distinct;
+  for (const stop_t& stop : all) {
+    const bool known = std::any_of(distinct.begin(), distinct.end(), [&](const stop_t& other) {
+      return other.session == stop.session && other.reason == stop.reason &&
+             other.exit_code == stop.exit_code;
+    });
+    if (!known) distinct.push_back(stop);
+  }
+  return distinct;
+}
+
 }  // namespace
 
 LogInfo Summarise(const RunLog& log, bool si) {
@@ -191,7 +204,7 @@ LogInfo Summarise(const RunLog& log, bool si) {
   info.loops = LoopsOf(log.statistics);
   info.programs = ProgramsOf(log.statuses);
   info.faults = log.messages.faults;
-  info.stops = log.stops;
+  info.stops = DistinctStops(log.stops);
   info.descriptions = DistinctDescriptions(log.descriptions);
   if (!info.descriptions.empty()) {
     info.model_name = ModelName(info.descriptions.front(), log.file);

@@ -69,7 +69,7 @@ struct LogInfo {
   std::vector<LoopInfo> loops;        // by role and host
   std::vector<ProgramInfo> programs;  // that said they were there
   std::vector<fault_t> faults;
-  std::vector<stop_t> stops;
+  std::vector<stop_t> stops;                                // each once, however often it was said
   std::vector<run_description_t> descriptions;              // distinct ones
   std::string model_name;                                   // of the first description
   std::vector<std::pair<std::string, std::string>> config;  // of the first description

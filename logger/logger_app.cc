@@ -81,8 +81,10 @@ LoggerApp::~LoggerApp() {
 
 void LoggerApp::OnMessage(const RawMessage& message) {
   if (message.channel.empty()) return;  // LCM carries such a message, but no log can hold it
-  RecordedMessage event{
-      std::string(message.channel), {message.data, message.data + message.size}, message.receive_utime};
+  RecordedMessage event{std::string(message.channel),
+                        {message.data, message.data + message.size},
+                        message.receive_utime,
+                        participant_.clock().Now()};
   ++received_;
   const Channels& channels = participant_.channels();
   const std::optional<CausalOrder::Kind> kind = NumberedKind(message.channel, channels);
@@ -166,14 +168,14 @@ void LoggerApp::WriteUntilClosed() {
 
 LoggerApp::Write LoggerApp::WriteBatch(std::deque<RecordedMessage>& batch) {
   const auto began = participant_.clock().Now();
-  const int64_t oldest_utime = batch.front().utime;
+  const auto oldest = batch.front().arrived;
   for (RecordedMessage& event : batch) {
     if (options_.rotate_bytes > 0 && writer_->bytes() >= options_.rotate_bytes) Rotate();
     writer_->Append(event.channel, event.data.data(), event.data.size(), event.utime);
     if (event.channel == participant_.channels().run) descriptions_[event.channel] = std::move(event);
   }
   writer_->Flush();
-  return {began, std::chrono::microseconds(participant_.clock().Utime() - oldest_utime)};
+  return {began, participant_.clock().Now() - oldest};
 }
 
 void LoggerApp::Rotate() {

@@ -64,7 +64,11 @@ void PositionApp::OnState(const state_t& state) {
       last_sample_tick_ = -1;
       break;
     case SequenceMonitor::Verdict::kDuplicate:
-      if (last_sample_tick_ >= 0) Send();  // the plant asks again: the answer may have been lost
+      if (state.tick == last_sample_tick_) Send();  // the plant asks again: the answer may have been lost
+      // Overtaken on its way by states that were no samples: it is still the newest sample.
+      if (state.tick > last_sample_tick_ && state.tick < participant_.tick() && state.tick % interval_ == 0) {
+        Sample(state, now);
+      }
       return;
     case SequenceMonitor::Verdict::kAccept:
       break;
@@ -73,9 +77,12 @@ void PositionApp::OnState(const state_t& state) {
   if (participant_.state() == process_status_t::READY) participant_.Announce(process_status_t::RUNNING);
   if (state.tick <= last_sample_tick_) last_sample_tick_ = -1;  // a log is played again
   participant_.set_tick(state.tick);
-  if (state.tick % interval_ != 0) return;
+  if (state.tick % interval_ == 0) Sample(state, now);
+}
+
+void PositionApp::Sample(const state_t& state, Clock::TimePoint arrival) {
   Answer(state);
-  participant_.statistics().RecordCycle(now, participant_.clock().Now() - now);
+  participant_.statistics().RecordCycle(arrival, participant_.clock().Now() - arrival);
 }
 
 void PositionApp::Answer(const state_t& state) {

@@ -28,6 +28,7 @@ class PositionApp : public App {
 
  private:
   void OnState(const state_t& state);
+  void Sample(const state_t& state, Clock::TimePoint arrival);
   void Answer(const state_t& state);
   void Send();
 

@@ -157,8 +157,8 @@ CommandLine::~CommandLine() = default;
 CommandLine::CommandLine(CommandLine&&) noexcept = default;
 CommandLine& CommandLine::operator=(CommandLine&&) noexcept = default;
 
-void CommandLine::AddCommon(CommonOptions* options) {
-  AddPositional("CONFIG", &options->config, "FILE the stack's configuration, TOML");
+void CommandLine::AddCommon(CommonOptions* options, bool config_required) {
+  AddPositional("CONFIG", &options->config, "FILE the stack's configuration, TOML", config_required);
   AddOption("--set", &options->overrides,
             "SECTION.KEY=VALUE changes one key of CONFIG, e.g. pressure.damping_ratio=0.7");
   // The callbacks run in the order of declaration, so these have the last word over --set.

@@ -40,7 +40,8 @@ class CommandLine {
   CommandLine& operator=(CommandLine&&) noexcept;
 
   // CONFIG, --set section.key=value, --time realtime|lockstep, --duration S, --seed N, --log FILE, --si.
-  void AddCommon(CommonOptions* options);
+  // Without `config_required` a CONFIG that is not there leaves options->config empty.
+  void AddCommon(CommonOptions* options, bool config_required = true);
 
   // `names` as in "-o,--out"; `help` begins with the value's name in capitals: "FILE where to write".
   void AddOption(const std::string& names, std::string* target, const std::string& help,

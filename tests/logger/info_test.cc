@@ -94,6 +94,18 @@ TEST_F(InfoTest, ConfigurationOfTheRun) {
                   Entry("reference.steps", "[[0.2, 0.3], [2.2, -0.2]]"), Entry("time.mode", "'lockstep'")));
 }
 
+// Tests that a stop that was said several times, lest it is lost, is told once, and another sender's too.
+TEST_F(InfoTest, RepeatedStops) {
+  RunLog log;
+  for (const int64_t session : {1, 2, 2, 2, 1}) {
+    stop_t stop{};
+    stop.session = session;
+    stop.reason = "the run is complete";
+    log.stops.push_back(stop);
+  }
+  EXPECT_EQ(Summarise(log, false).stops.size(), 2u);
+}
+
 // Tests that figures are in SI where that is asked for.
 TEST_F(InfoTest, SiUnits) {
   const LogInfo info = InfoOf(SampleRun(3), true);

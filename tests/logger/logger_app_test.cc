@@ -2,11 +2,15 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
+#include <chrono>
 #include <filesystem>
 #include <hydro/log_progress_t.hpp>
+#include <hydro/loop_statistics_t.hpp>
 #include <hydro/run_description_t.hpp>
 #include <hydro/state_t.hpp>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "bus/in_process_bus.h"
@@ -129,6 +133,53 @@ TEST(RotatedNameTest, NumbersBeforeTheExtension) {
   EXPECT_EQ(RotatedName("run.lcmlog", 0), "run.lcmlog");
   EXPECT_EQ(RotatedName("out/run.lcmlog", 2), "out/run-002.lcmlog");
   EXPECT_EQ(RotatedName("run", 1), "run-001");
+}
+
+// A clock whose wall time can be set while it runs; safe to read from any thread.
+class ClockThatIsSet : public Clock {
+ public:
+  TimePoint Now() const override { return TimePoint(std::chrono::milliseconds(now_ms_)); }
+  int64_t Utime() const override { return WallClock().Utime() + utime_offset_; }
+  bool simulated() const override { return true; }
+  void Advance(int64_t ms) { now_ms_ += ms; }
+  void SetBy(int64_t us) { utime_offset_ += us; }
+
+ private:
+  std::atomic<int64_t> now_ms_ = 0;
+  std::atomic<int64_t> utime_offset_ = 0;
+};
+
+// Tests that the time from arrival to write is no business of the wall clock: it is set by 10 s forwards, and
+// back, between arrivals and writes.
+TEST_F(LoggerAppTest, LatencyWhileTheWallClockIsSet) {
+  ClockThatIsSet clock;
+  InProcessBus bus(nullptr);  // stamps what it delivers with the wall clock
+  std::vector<loop_statistics_t> reports;
+  LoggerApp logger(bus, clock, SmallStack(), {file_, 0});
+  bus.Subscribe<loop_statistics_t>("HYDRO_LOOP_STATISTICS",
+                                   [&](const loop_statistics_t& report) { reports.push_back(report); });
+  int64_t cycles = 0;
+  for (int64_t tick = 0; tick < 4000 && cycles < 20; ++tick) {
+    state_t state{};
+    state.tick = state.sequence = tick;
+    state.session = 3;
+    bus.Publish("HYDRO_STATE", state);
+    bus.HandleUntil(Clock::TimePoint::min());
+    clock.SetBy(tick % 2 == 0 ? 10'000'000 : -10'000'000);
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    clock.Advance(100);
+    logger.Poll();
+    while (bus.HandleUntil(Clock::TimePoint::min()) > 0) {
+    }
+    cycles = 0;
+    for (const loop_statistics_t& report : reports) cycles += report.cycles;
+  }
+  ASSERT_GE(cycles, 20);
+  for (const loop_statistics_t& report : reports) {
+    EXPECT_LT(report.latency_max_us, 9e6);
+    EXPECT_GE(report.latency_p50_us, 0);
+  }
+  EXPECT_EQ(logger.Finish(), 0);
 }
 
 }  // namespace

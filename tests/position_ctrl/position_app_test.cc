@@ -151,6 +151,20 @@ TEST_F(PositionAppTest, RepeatsTheAnswerToARepeatedState) {
 }
 
 // Tests that a loop that leaves a run that goes on does not leave its last pressure in force, and that at the
+// Tests that a sample that was overtaken on its way by states that are none is answered, one that was
+// overtaken by a newer sample is not, and that neither they nor other overtaken states repeat an answer.
+TEST_F(PositionAppTest, OvertakenSamples) {
+  Start(WithReference(ReferenceSignal::kArmAngle, 0.1));
+  for (const int64_t tick : {0, 1, 2, 3, 4, 6, 7, 5, 8, 6, 15, 10, 14, 20}) SendState(tick, 0);
+  std::vector<int64_t> ticks, numbers;
+  for (const auto& c : commands_) {
+    ticks.push_back(c.tick);
+    numbers.push_back(c.sequence);
+  }
+  EXPECT_THAT(ticks, ElementsAre(0, 5, 15, 20));
+  EXPECT_THAT(numbers, ElementsAre(0, 1, 2, 3));
+}
+
 // end of a run, when everybody leaves, it adds nothing.
 TEST_F(PositionAppTest, LeavesWithZeroVolts) {
   Start(WithReference(ReferenceSignal::kArmAngle, 0));

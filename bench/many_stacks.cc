@@ -1,0 +1,229 @@
+// How many stacks (plant, pressure loop, position loop: three processes each) one machine and one multicast
+// segment carry in real time, with ports of their own and on one port with channel suffixes; and how many
+// hydro-sim carries in one process.
+//   many_stacks [--seconds S] [--most N] [--rate HZ] [--priority P]
+// A stack alone is measured before each row, as what it is compared with: the machine may have other work.
+#include <sys/prctl.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <csignal>
+#include <cstdio>
+#include <functional>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "bench/shared_results.h"
+#include "bus/real_time.h"
+#include "bus/udpm_bus.h"
+#include "plant/plant_app.h"
+#include "plant/simulated_rig.h"
+#include "position_ctrl/position_app.h"
+#include "pressure_ctrl/pressure_app.h"
+#include "settings/command_line.h"
+#include "settings/stack_config.h"
+#include "sim/simulation.h"
+#include "tests/free_udp_port.h"
+
+namespace hydro {
+namespace {
+
+constexpr int kProcesses = 3;
+// Deadlines have gone when more ticks are missed or answered late than this share beside those of one stack.
+constexpr double kMostMissed = 0.01;
+
+struct Options {
+  int most = 16;
+  double seconds = 4;
+  double rate = 1000;
+  int priority = 0;
+};
+
+struct PlantResult {
+  int64_t due = 0;       // ticks
+  int64_t states = 0;    // published, one for each tick that was not skipped
+  int64_t commands = 0;  // motor commands received
+  int64_t late = 0;      // of them after the next tick
+  int64_t pressure_commands = 0;
+  bool done = false;
+};
+
+struct Row {
+  double missed = 0;   // share of the ticks, skipped by the plant
+  double late = 0;     // share of the states, answered after the next tick
+  double cores = 0;    // processor time per plant time
+  double sent = 0;     // messages a second
+  double bytes = 0;    // a second, on an Ethernet
+  double arrived = 0;  // messages a second that the processes were given by the kernel, all together
+  bool complete = true;
+};
+
+StackConfig ConfigOf(const Options& options, const std::string& url, const std::string& suffix) {
+  return LoadStackConfig(HYDRO_BENCH_CONFIG,
+                         {"time.mode=realtime", "time.duration_s=" + std::to_string(options.seconds),
+                          "time.start_timeout_s=60", "plant.rate_hz=" + std::to_string(options.rate),
+                          "limits.stale_input_s=5", "bus.url=" + url, "bus.channel_suffix=" + suffix});
+}
+
+void RunPlant(const StackConfig& config, PlantResult* result) {
+  UdpmBus bus(config.bus.url);
+  WallClock clock;
+  const Channels channels(config.bus.channel_suffix);
+  SimulatedRig rig(config);
+  PlantApp plant(bus, clock, config, rig);
+  bus.Subscribe<motor_command_t>(channels.motor_command, [&](const motor_command_t& command) {
+    ++result->commands;
+    if (command.tick < plant.tick()) ++result->late;
+  });
+  bus.Subscribe<pressure_command_t>(channels.pressure_command,
+                                    [&](const pressure_command_t&) { ++result->pressure_commands; });
+  bus.Subscribe<state_t>(channels.state, [&](const state_t&) { ++result->states; });
+  result->done = plant.Run() == 0;
+  result->due = plant.tick();
+}
+
+template <class Controller>
+void RunController(const StackConfig& config) {
+  UdpmBus bus(config.bus.url);
+  WallClock clock;
+  Controller controller(bus, clock, config);
+  RunApp(bus, clock, controller);
+}
+
+pid_t Fork(const Options& options, const std::function<void()>& work) {
+  const pid_t pid = fork();
+  if (pid < 0) throw std::runtime_error("fork failed; see `ulimit -u`");
+  if (pid > 0) return pid;
+  prctl(PR_SET_PDEATHSIG, SIGKILL);
+  try {
+    RealTimeRequest request;
+    request.priority = options.priority;
+    ApplyRealTime(request);
+    work();
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "%s\n", error.what());
+    _exit(1);
+  }
+  _exit(0);
+}
+
+// Bytes that a message takes on an Ethernet: LCM's, UDP's and IP's headers, the frame with its gap.
+double WireBytes(const std::string& channel, int encoded_size) {
+  return 8 + static_cast<double>(channel.size()) + 1 + encoded_size + 28 + 38;
+}
+
+double Seconds(const rusage& usage) {
+  return static_cast<double>(usage.ru_utime.tv_sec + usage.ru_stime.tv_sec) +
+         1e-6 * static_cast<double>(usage.ru_utime.tv_usec + usage.ru_stime.tv_usec);
+}
+
+Row Measure(int stacks, bool own_ports, const Options& options) {
+  SharedResults<PlantResult> results(static_cast<size_t>(stacks));
+  const std::string shared_url = FreeBusUrl();
+  std::vector<pid_t> children;
+  for (int i = 0; i < stacks; ++i) {
+    const StackConfig config =
+        ConfigOf(options, own_ports ? FreeBusUrl() : shared_url, own_ports ? "" : "_" + std::to_string(i));
+    children.push_back(Fork(options, [&] { RunController<PressureApp>(config); }));
+    children.push_back(Fork(options, [&] { RunController<PositionApp>(config); }));
+    children.push_back(Fork(options, [&, i] { RunPlant(config, &results[static_cast<size_t>(i)]); }));
+  }
+  double processor = 0;
+  for (const pid_t child : children) {
+    rusage usage{};
+    int status = 0;
+    wait4(child, &status, 0, &usage);
+    processor += Seconds(usage);
+  }
+  const Channels channels;
+  Row row;
+  double due = 0, states = 0, commands = 0, late = 0, pressure_commands = 0;
+  for (int i = 0; i < stacks; ++i) {
+    const PlantResult& result = results[static_cast<size_t>(i)];
+    row.complete &= result.done;
+    due += static_cast<double>(result.due);
+    states += static_cast<double>(result.states);
+    commands += static_cast<double>(result.commands);
+    late += static_cast<double>(result.late);
+    pressure_commands += static_cast<double>(result.pressure_commands);
+  }
+  row.missed = due > 0 ? std::max(0.0, 1 - states / due) : 1;
+  row.late = commands > 0 ? late / commands : 1;
+  row.cores = processor / options.seconds;
+  row.sent = (states + commands + 2 * pressure_commands) / options.seconds;
+  row.bytes =
+      (states * WireBytes(channels.state, state_t().getEncodedSize()) +
+       commands * WireBytes(channels.motor_command, motor_command_t().getEncodedSize()) +
+       pressure_commands * (WireBytes(channels.pressure_command, pressure_command_t().getEncodedSize()) +
+                            WireBytes(channels.arm_reference, arm_reference_t().getEncodedSize()))) /
+      options.seconds;
+  row.arrived = row.sent * kProcesses * (own_ports ? 1 : stacks);
+  return row;
+}
+
+void RealTime(bool own_ports, const Options& options) {
+  std::printf("\nreal time at %g Hz, %s\n", options.rate,
+              own_ports ? "each stack on a port of its own" : "all on one port, with channel suffixes");
+  std::printf("%7s %8s %8s %12s %10s %8s %12s %12s %11s %8s\n", "stacks", "missed", "late", "missed by 1",
+              "late by 1", "cores", "us/message", "messages/s", "arrivals/s", "Mbit/s");
+  for (int stacks = 1; stacks <= options.most; stacks *= 2) {
+    const Row alone = Measure(1, own_ports, options);
+    const Row row = Measure(stacks, own_ports, options);
+    std::printf("%7d %7.1f%% %7.1f%% %11.1f%% %9.1f%% %8.3f %12.1f %12.0f %11.0f %8.2f%s\n", stacks,
+                100 * row.missed, 100 * row.late, 100 * alone.missed, 100 * alone.late, row.cores,
+                1e6 * row.cores / row.sent, row.sent, row.arrived, 8e-6 * row.bytes,
+                row.complete ? "" : "  not all ran to the end");
+    std::fflush(stdout);
+    if (stacks > 1 && row.missed + row.late > 2 * (alone.missed + alone.late) + kMostMissed) {
+      std::printf("deadlines go at %d stacks\n", stacks);
+      return;
+    }
+  }
+  std::printf("deadlines are kept as well as by one stack, up to the %d stacks that were tried\n",
+              options.most);
+}
+
+void Simulated(const Options& options) {
+  const int stacks = std::min(options.most, 16);
+  const StackConfig config = LoadStackConfig(
+      HYDRO_BENCH_CONFIG, {"time.mode=lockstep", "time.duration_s=" + std::to_string(options.seconds),
+                           "plant.rate_hz=" + std::to_string(options.rate)});
+  const auto processor_time = [] {
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+    return Seconds(usage);
+  };
+  const double before = processor_time();
+  for (int i = 0; i < stacks; ++i) Simulate(config, nullptr);
+  const double cores = (processor_time() - before) / options.seconds / stacks;
+  std::printf("in hydro-sim (one process, simulated clock, the same messages and laws) at %g Hz\n",
+              options.rate);
+  std::printf("%d stacks: %.4f of a core for each at the pace of real time; one core carries %.0f\n", stacks,
+              cores, 1 / cores);
+}
+
+}  // namespace
+}  // namespace hydro
+
+int main(int argc, char** argv) {
+  hydro::CommandLine line("many_stacks", "How many stacks a machine and a multicast segment carry.");
+  hydro::Options options;
+  line.AddOption("--most", &options.most, "N the most stacks to try (default 16); rows are powers of two");
+  line.AddOption("--seconds", &options.seconds, "S plant time of each run (default 4)");
+  line.AddOption("--rate", &options.rate, "HZ ticks a second (default 1000)");
+  line.AddOption("--priority", &options.priority, "P SCHED_FIFO priority of all processes (default 0: none)");
+  if (const auto code = line.Parse(argc, argv)) return *code;
+  return hydro::RunProgram("many_stacks", [&] {
+    if (options.most < 1 || options.seconds < 1 || options.rate < 1) {
+      throw hydro::InputError("--most, --seconds and --rate: found less than 1, allowed is 1 or more");
+    }
+    hydro::Simulated(options);
+    hydro::RealTime(true, options);
+    hydro::RealTime(false, options);
+    return 0;
+  });
+}
