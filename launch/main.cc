@@ -27,6 +27,8 @@ int main(int argc, char** argv) {
   line.AddCommon(&options);
   line.AddOption("--host", &request.host,
                  "NAME start only the processes whose [[process]] section has this host");
+  line.AddOption("--timing", &request.timing_file,
+                 "REPORT.json write there how the loops kept time, and REPORT.html with plots beside it");
   bool stop = false;
   bool rearm = false;
   line.AddFlag("--stop", &stop, "stop the stack that runs, and wait until it has; starts nothing");

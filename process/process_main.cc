@@ -88,10 +88,11 @@ int RunProcess(const std::string& program, const CommonOptions& options, const P
     RealTimeRequest request;
     request.priority = section.priority;
     request.cpu = section.cpu;
-    request.lock_memory = section.priority > 0;
+    request.lock_memory = section.lock_memory;
     ApplyRealTime(request);
     UdpmBus bus(config.bus.url,
-                MakeAuthenticator(config.bus.resolved_key_file, Channels(config.bus.channel_suffix)));
+                MakeAuthenticator(config.bus.resolved_key_file, Channels(config.bus.channel_suffix)),
+                Receiving::kDirect);
     WarnOfOpenNetwork(program, config.bus);
     if (const std::string hint = bus.receive_buffer_hint(); !hint.empty()) spdlog::warn("{}", hint);
     Recording recording;

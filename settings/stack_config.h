@@ -141,6 +141,7 @@ struct ProcessSection {
   std::string host;     // empty: any (started by a launch without --host, or on "localhost")
   int cpu = -1;         // processor to run on; -1: any
   int priority = 0;     // SCHED_FIFO priority 1..99; 0: ordinary scheduling
+  bool lock_memory = false;  // keep all memory resident; by default where there is a priority
 };
 
 struct StackConfig {

@@ -168,6 +168,8 @@ void ReadProcess(SectionReader section, ProcessSection* process) {
   section.Text("host", &process->host);
   section.Integer("cpu", &process->cpu, -1, 1023);
   section.Integer("priority", &process->priority, 0, 99);
+  process->lock_memory = process->priority > 0;
+  section.Boolean("lock_memory", &process->lock_memory);
   section.Finish();
 }
 
