@@ -34,7 +34,8 @@ bool SendAll(int fd, iovec* parts, size_t count) {
   message.msg_iov = parts;
   message.msg_iovlen = count;
   while (true) {
-    if (sendmsg(fd, &message, 0) >= 0) return true;
+    if (sendmsg(fd, &message, MSG_DONTWAIT) >= 0) return true;
+    if (errno == EAGAIN || errno == EWOULDBLOCK) errno = ENOBUFS;
     if (errno != EINTR) return false;
   }
 }

@@ -28,7 +28,8 @@ class UdpmSocket {
   void Accept(const std::string& channel);
   void AcceptAll();
 
-  // Sends one message. False: errno says why not.
+  // Sends one message, never waiting. False: errno says why not; ENOBUFS where a network is slower than what
+  // is sent on it.
   bool Send(std::string_view channel, const void* data, size_t size);
 
   // A received message; it lies in this object until the next call of Receive().

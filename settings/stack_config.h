@@ -136,6 +136,11 @@ struct NoiseSection {
   double arm_speed_resolution_rad_s = 0;
 };
 
+struct LoggerSection {
+  double memory_mb =
+      64;  // for what waits to be written; what comes when it is used up is left out of the log
+};
+
 struct ProcessSection {
   std::string program;  // hydro-plant, hydro-driver, hydro-pressure-ctrl, hydro-position-ctrl, hydro-logger
   std::string host;     // empty: any (started by a launch without --host, or on "localhost")
@@ -156,6 +161,7 @@ struct StackConfig {
   ReferenceSection reference;
   LimitsSection limits;
   NoiseSection noise;
+  LoggerSection logger;
   std::optional<DriverSection> driver;  // only a stack with hydro-driver needs it
   int64_t seed = 1;                     // --seed, [noise] seed
   std::vector<ProcessSection>

@@ -12,7 +12,10 @@ namespace {
 constexpr double kWidth = 430, kHeight = 210;
 constexpr double kLeft = 56, kRight = 12, kTop = 22, kBottom = 40;
 
-std::string Number(double value) { return fmt::format("{:.4g}", value); }
+std::string Number(double value) {
+  const double size = std::abs(value);
+  return size >= 1e4 && size < 1e9 ? fmt::format("{:.0f}", value) : fmt::format("{:.4g}", value);
+}
 
 // One axis: from values to pixels, and where its ticks are.
 struct Scale {

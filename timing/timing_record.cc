@@ -1,8 +1,11 @@
 #include "timing/timing_record.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <tuple>
+
+#include "bus/saturating.h"
 
 namespace hydro {
 namespace {
@@ -25,12 +28,21 @@ TimingHistogram Read(const loop_histogram_t& message) {
   return histogram;
 }
 
+size_t PlaceOf(const std::string& role) {
+  static const std::array<std::string, 5> kOrder{"plant", "driver", "pressure_ctrl", "position_ctrl",
+                                                 "logger"};
+  return static_cast<size_t>(std::find(kOrder.begin(), kOrder.end(), role) - kOrder.begin());
+}
+
+double Sum(double a, double b) { return a + b; }
+int64_t Sum(int64_t a, int64_t b) { return SaturatingSum(a, b); }
+
 // What the periodic reports of a process that did not come to its last one add up to.
 loop_statistics_t Sum(const std::vector<loop_statistics_t>& reports) {
   loop_statistics_t total = reports.back();
   const auto add = [&](auto member) {
     total.*member = 0;
-    for (const loop_statistics_t& report : reports) total.*member += report.*member;
+    for (const loop_statistics_t& report : reports) total.*member = Sum(total.*member, report.*member);
   };
   const auto largest = [&](auto member) {
     for (const loop_statistics_t& report : reports) total.*member = std::max(total.*member, report.*member);
@@ -49,12 +61,12 @@ loop_statistics_t Sum(const std::vector<loop_statistics_t>& reports) {
 
 double TimingHistogram::Percentile(double percent) const {
   int64_t in_all = 0;
-  for (const Range& range : ranges) in_all += range.count;
-  const auto rank =
-      static_cast<int64_t>(std::ceil(std::clamp(percent, 0.0, 100.0) / 100 * static_cast<double>(in_all)));
+  for (const Range& range : ranges) in_all = SaturatingSum(in_all, range.count);
+  const auto rank = static_cast<int64_t>(
+      std::ceil(std::clamp(percent, 0.0, 100.0) / 100 * static_cast<double>(in_all) - 1e-6));
   int64_t below = 0;
   for (const Range& range : ranges) {
-    below += range.count;
+    below = SaturatingSum(below, range.count);
     if (below >= rank && below < in_all) {
       const double middle = 0.5 * (static_cast<double>(range.first) + static_cast<double>(range.last));
       return std::clamp(middle, static_cast<double>(lowest), static_cast<double>(highest));
@@ -112,7 +124,7 @@ std::vector<TimedProcess> TimingRecord::Processes() const {
     processes.push_back(std::move(process));
   }
   std::stable_sort(processes.begin(), processes.end(), [](const TimedProcess& a, const TimedProcess& b) {
-    return std::tie(a.role, a.session) < std::tie(b.role, b.session);
+    return std::tuple(PlaceOf(a.role), a.role, a.session) < std::tuple(PlaceOf(b.role), b.role, b.session);
   });
   return processes;
 }

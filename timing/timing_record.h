@@ -44,7 +44,7 @@ class TimingRecord {
   void Add(const loop_statistics_t& report);
   void Add(const loop_histogram_t& histogram);
 
-  // By role, then by session.
+  // In the order of cause and effect: plant or driver, pressure loop, position loop, logger, others.
   std::vector<TimedProcess> Processes() const;
 
  private:

@@ -42,7 +42,7 @@ class ReportTest(stack.TestCase):
 
     def by_role(self, report):
         processes = {process["role"]: process for process in report["processes"]}
-        self.assertEqual(list(processes), ["logger", "plant", "position_ctrl", "pressure_ctrl"])
+        self.assertEqual(list(processes), ["plant", "pressure_ctrl", "position_ctrl", "logger"])
         return processes
 
     def check_against_log(self, report, log):
