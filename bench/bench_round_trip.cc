@@ -16,6 +16,7 @@
 
 #include "bench/child_process.h"
 #include "bench/echo_peers.h"
+#include "bus/authenticated_channels.h"
 #include "bus/histogram.h"
 #include "bus/udpm_bus.h"
 #include "pressure_ctrl/pressure_app.h"
@@ -30,11 +31,16 @@ using SteadyClock = std::chrono::steady_clock;
 constexpr int kBlocks = 20;
 constexpr int kTripsPerBlock = 100;
 
+std::unique_ptr<Authenticator> KeyedOrNot(bool with_key) {
+  if (!with_key) return nullptr;
+  return std::make_unique<Authenticator>(BusKey({1, 2, 3}), AuthenticatedChannels(Channels()));
+}
+
 // The plant's end of the bus, waiting as the plant does.
 class StackPinger : public Pinger {
  public:
-  StackPinger(const std::string& url, Receiving receiving)
-      : bus_(url, receiving), states_(bus_.Advertise<state_t>("HYDRO_STATE")) {
+  StackPinger(const std::string& url, Receiving receiving, bool with_key)
+      : bus_(url, KeyedOrNot(with_key), receiving), states_(bus_.Advertise<state_t>("HYDRO_STATE")) {
     bus_.Subscribe<motor_command_t>("HYDRO_MOTOR_COMMAND",
                                     [this](const motor_command_t& command) { answered_ = command.tick; });
   }
@@ -59,19 +65,19 @@ class StackPinger : public Pinger {
 };
 
 // The pressure loop as hydro-pressure-ctrl runs it.
-void AnswerOnBus(const std::string& url, Receiving receiving) {
+void AnswerOnBus(const std::string& url, Receiving receiving, bool with_key) {
   const StackConfig config =
       LoadStackConfig(HYDRO_BENCH_CONFIG, {"time.mode=realtime", "limits.stale_input_s=1e6"});
-  UdpmBus bus(url, receiving);
+  UdpmBus bus(url, KeyedOrNot(with_key), receiving);
   WallClock clock;
   PressureApp app(bus, clock, config);
   RunApp(bus, clock, app);
 }
 
-Peer StackPeer(const std::string& name, Receiving receiving) {
+Peer StackPeer(const std::string& name, Receiving receiving, bool with_key = false) {
   const std::string url = FreeBusUrl();
-  return {name, [=] { AnswerOnBus(url, receiving); },
-          [=] { return std::make_unique<StackPinger>(url, receiving); }};
+  return {name, [=] { AnswerOnBus(url, receiving, with_key); },
+          [=] { return std::make_unique<StackPinger>(url, receiving, with_key); }};
 }
 
 enum class Placement { kAnywhere, kOneCore, kTwoCores };
@@ -94,7 +100,8 @@ std::vector<int> Cpus(const cpu_set_t& set) {
 std::vector<Peer> Everyone() {
   std::vector<Peer> peers = MakePeers();
   peers.insert(peers.begin() + 1, StackPeer("stack", Receiving::kDirect));
-  peers.insert(peers.begin() + 2, StackPeer("stack, LCM's own thread", Receiving::kQueued));
+  peers.insert(peers.begin() + 2, StackPeer("stack with a key", Receiving::kDirect, true));
+  peers.insert(peers.begin() + 3, StackPeer("stack, LCM's own thread", Receiving::kQueued));
   return peers;
 }
 

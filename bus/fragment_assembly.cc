@@ -1,63 +1,68 @@
 #include "bus/fragment_assembly.h"
 
 #include <algorithm>
-#include <cstring>
 
 #include "bus/lcm_packet.h"
 
 namespace hydro {
 namespace {
 
-uint32_t Load(const uint8_t* bytes, size_t size) {
-  uint32_t value = 0;
-  for (size_t i = 0; i < size; ++i) value = value << 8 | bytes[i];
-  return value;
-}
+constexpr size_t kMostUnfinished = 4;
+constexpr size_t kLargestMessage = 16u << 20;
+constexpr size_t kMostFragments = kLargestMessage / kLcmLargestFragment + 1;
 
 }  // namespace
 
 std::optional<FragmentAssembly::Message> FragmentAssembly::Take(uint64_t sender, const uint8_t* packet,
                                                                 size_t size) {
-  if (size < kLcmFragmentHeader || Load(packet, 4) != kLcmFragmentMagic) return std::nullopt;
-  const uint32_t sequence = Load(packet + 4, 4);
-  const size_t whole = Load(packet + 8, 4), offset = Load(packet + 12, 4);
-  const size_t number = Load(packet + 16, 2), fragments = Load(packet + 18, 2);
-  if (fragments == 0 || number >= fragments || whole > kLargestMessage) return std::nullopt;
+  if (size < kLcmFragmentHeader || LoadLcm(packet, 4) != kLcmFragmentMagic) return std::nullopt;
+  const uint32_t sequence = LoadLcm(packet + 4, 4);
+  const size_t whole = LoadLcm(packet + 8, 4), offset = LoadLcm(packet + 12, 4);
+  const size_t number = LoadLcm(packet + 16, 2), fragments = LoadLcm(packet + 18, 2);
+  if (number >= fragments || fragments > kMostFragments || whole > kLargestMessage) return std::nullopt;
   const uint8_t* data = packet + kLcmFragmentHeader;
-  size_t data_size = size - kLcmFragmentHeader;
+  const uint8_t* const end = packet + size;
   std::string channel;
   if (number == 0) {
-    const void* const end = std::memchr(data, 0, std::min(data_size, kLcmLongestChannel + 1));
-    if (end == nullptr) return std::nullopt;
-    channel.assign(reinterpret_cast<const char*>(data));
-    data += channel.size() + 1;
-    data_size -= channel.size() + 1;
+    const uint8_t* const zero = EndOfLcmChannel(data, end);
+    if (zero == nullptr) return std::nullopt;
+    channel.assign(data, zero);
+    data = zero + 1;
   }
-  if (offset > whole || data_size > whole - offset) return std::nullopt;
+  if (offset > whole || static_cast<size_t>(end - data) > whole - offset) return std::nullopt;
 
   auto found = std::find_if(unfinished_.begin(), unfinished_.end(), [&](const Unfinished& other) {
     return other.sender == sender && other.sequence == sequence;
   });
-  if (found != unfinished_.end() &&
-      (found->have.size() != fragments || found->message.data.size() != whole)) {
+  if (found != unfinished_.end() && (found->pieces.size() != fragments || found->size != whole)) {
     unfinished_.erase(found);  // another message under the same number
     found = unfinished_.end();
   }
   if (found == unfinished_.end()) {
     if (unfinished_.size() == kMostUnfinished) unfinished_.pop_front();
-    found = unfinished_.insert(
-        unfinished_.end(),
-        Unfinished{
-            sender, sequence, std::vector<bool>(fragments), fragments, {{}, std::vector<uint8_t>(whole)}});
+    unfinished_.push_back({sender, sequence, whole, {}, std::vector<Piece>(fragments)});
+    found = unfinished_.end() - 1;
   }
-  if (found->have[number]) return std::nullopt;
-  found->have[number] = true;
-  --found->missing;
-  if (number == 0) found->message.channel = std::move(channel);
-  std::copy_n(data, data_size, found->message.data.begin() + static_cast<std::ptrdiff_t>(offset));
-  if (found->missing > 0) return std::nullopt;
-  Message message = std::move(found->message);
+  if (found->pieces[number].have) return std::nullopt;
+  found->pieces[number] = {offset, {data, end}, true};
+  if (number == 0) found->channel = std::move(channel);
+  if (!std::all_of(found->pieces.begin(), found->pieces.end(),
+                   [](const Piece& piece) { return piece.have; })) {
+    return std::nullopt;
+  }
+  std::optional<Message> message = Joined(*found);
   unfinished_.erase(found);
+  return message;
+}
+
+// Nothing when the pieces do not fit together.
+std::optional<FragmentAssembly::Message> FragmentAssembly::Joined(const Unfinished& whole) {
+  Message message{whole.channel, {}};
+  for (const Piece& piece : whole.pieces) {
+    if (piece.offset != message.data.size()) return std::nullopt;
+    message.data.insert(message.data.end(), piece.data.begin(), piece.data.end());
+  }
+  if (message.data.size() != whole.size) return std::nullopt;
   return message;
 }
 

@@ -9,7 +9,8 @@
 
 namespace hydro {
 
-// Bounded: the oldest unfinished message makes room for a new one.
+// Bounded: messages of at most 16 MiB, at most four unfinished at a time (the oldest makes room), and no more
+// memory than the packets had that came.
 class FragmentAssembly {
  public:
   struct Message {
@@ -22,16 +23,20 @@ class FragmentAssembly {
   std::optional<Message> Take(uint64_t sender, const uint8_t* packet, size_t size);
 
  private:
-  static constexpr size_t kMostUnfinished = 4;
-  static constexpr size_t kLargestMessage = 16u << 20;
-
-  struct Unfinished {
-    uint64_t sender;
-    uint32_t sequence;
-    std::vector<bool> have;  // by fragment
-    size_t missing;
-    Message message;
+  struct Piece {
+    size_t offset = 0;
+    std::vector<uint8_t> data;
+    bool have = false;
   };
+  struct Unfinished {
+    uint64_t sender = 0;
+    uint32_t sequence = 0;
+    size_t size = 0;  // of all the data
+    std::string channel;
+    std::vector<Piece> pieces;
+  };
+  static std::optional<Message> Joined(const Unfinished& whole);
+
   std::deque<Unfinished> unfinished_;
 };
 

@@ -133,17 +133,6 @@ bool UdpmSocket::SendFragments(std::string_view channel, const uint8_t* data, si
   return true;
 }
 
-bool UdpmSocket::ReadWhole(size_t size, Message* message) const {
-  const uint8_t* const channel = packet_.data() + kLcmWholeHeader;
-  const size_t rest = size - kLcmWholeHeader;
-  const void* const end = std::memchr(channel, 0, std::min(rest, kLcmLongestChannel + 1));
-  if (end == nullptr) return false;
-  message->channel = reinterpret_cast<const char*>(channel);
-  message->data = static_cast<const uint8_t*>(end) + 1;
-  message->size = rest - static_cast<size_t>(message->data - channel);
-  return true;
-}
-
 bool UdpmSocket::Receive(Message* message) {
   while (true) {
     sockaddr_in from{};
@@ -171,12 +160,12 @@ bool UdpmSocket::Receive(Message* message) {
       }
     }
     const auto size = static_cast<size_t>(received);
-    if (size < kLcmWholeHeader) continue;
-    uint32_t magic;
-    std::memcpy(&magic, packet_.data(), sizeof magic);
-    magic = ntohl(magic);
-    if (magic == kLcmWholeMagic && ReadWhole(size, message)) return true;
-    if (magic != kLcmFragmentMagic) continue;
+    if (LcmWhole whole; ReadLcmWhole(packet_.data(), size, &whole)) {
+      message->channel = whole.channel;
+      message->data = whole.data;
+      message->size = whole.size;
+      return true;
+    }
     const uint64_t sender = uint64_t{from.sin_addr.s_addr} << 16 | from.sin_port;
     if (auto whole = assembly_.Take(sender, packet_.data(), size)) {
       assembled_ = std::move(*whole);

@@ -48,7 +48,6 @@ class UdpmSocket {
 
  private:
   bool SendFragments(std::string_view channel, const uint8_t* data, size_t size);
-  bool ReadWhole(size_t size, Message* message) const;
 
   int receiver_ = -1;
   int sender_ = -1;

@@ -1,4 +1,5 @@
-// What the loops of a stack do not do once they run: take memory, and call anything that may block.
+// What the loops of a stack do not do once they run: take memory, and call anything that may block. Built with
+// the optimised programs only (CMakeLists.txt).
 #include <gtest/gtest.h>
 #include <linux/filter.h>
 #include <linux/seccomp.h>
@@ -42,7 +43,7 @@ constexpr auto kBegin = 1200ms, kEnd = 2700ms;
 class Loop {
  public:
   Loop(const std::string& url, std::function<void()> begin, std::function<void()> end)
-      : bus_(url, Receiving::kDirect), begin_(std::move(begin)), end_(std::move(end)) {}
+      : bus_(url, nullptr, Receiving::kDirect), begin_(std::move(begin)), end_(std::move(end)) {}
 
   void RunPlant(const StackConfig& config) {
     PlantApp plant(bus_, clock_, config);
