@@ -1,6 +1,5 @@
 #include "process/process_main.h"
 
-#include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
 
 #include <chrono>
@@ -11,6 +10,7 @@
 #include "bus/udpm_url.h"
 #include "logger/log_writer.h"
 #include "process/stop_signal.h"
+#include "process/words.h"
 
 namespace hydro {
 namespace {
@@ -79,9 +79,7 @@ class Recording {
 
 int RunProcess(const std::string& program, const CommonOptions& options, const ProcessBody& body) {
   return RunProgram(program, [&] {
-    // Words for a person go to stderr: stdout is for results.
-    spdlog::set_default_logger(spdlog::stderr_color_mt(program));
-    spdlog::set_pattern("%H:%M:%S.%e %n: %v");
+    const Words words(program);  // on stderr: stdout is for results
     const StackConfig config = LoadStackConfig(options.config, options.overrides);
     CatchStopSignals();
     const ProcessSection& section = SectionOf(config, program);
