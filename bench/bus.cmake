@@ -6,3 +6,5 @@ target_compile_definitions(bench_bus PRIVATE HYDRO_BENCH_CONFIG="${PROJECT_SOURC
 add_executable(bench_lockstep ${PROJECT_SOURCE_DIR}/bench/bench_lockstep.cc)
 target_link_libraries(bench_lockstep PRIVATE hydro_plant_app hydro_pressure_app hydro_position_app)
 target_compile_definitions(bench_lockstep PRIVATE HYDRO_BENCH_CONFIG="${PROJECT_SOURCE_DIR}/config/paper.toml")
+add_executable(bench_event_source ${PROJECT_SOURCE_DIR}/bench/bench_event_source.cc)
+target_link_libraries(bench_event_source PRIVATE hydro_bus hydro_settings)

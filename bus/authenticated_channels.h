@@ -23,6 +23,7 @@ inline std::vector<std::string> AuthenticatedChannels(const Channels& channels) 
       channels.arm_reference,     // the rest is for the record
       channels.run,
       channels.loop_statistics,
+      channels.loop_histogram,
       channels.fault,
   };
 }

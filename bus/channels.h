@@ -13,6 +13,7 @@ struct Channels {
         arm_reference("HYDRO_ARM_REFERENCE" + suffix),
         run("HYDRO_RUN" + suffix),
         loop_statistics("HYDRO_LOOP_STATISTICS" + suffix),
+        loop_histogram("HYDRO_LOOP_HISTOGRAM" + suffix),
         fault("HYDRO_FAULT" + suffix),
         stop("HYDRO_STOP" + suffix),
         rearm("HYDRO_REARM" + suffix),
@@ -26,6 +27,7 @@ struct Channels {
   std::string arm_reference;     // arm_reference_t, from the position loop
   std::string run;               // run_description_t, from the plant
   std::string loop_statistics;   // loop_statistics_t, from every process
+  std::string loop_histogram;    // loop_histogram_t, from every process
   std::string fault;             // fault_t, from every process
   std::string stop;              // stop_t
   std::string rearm;             // rearm_t, from hydro-launch --rearm, answered by the plant

@@ -23,6 +23,7 @@ int64_t FixedRateLoop::Wait() {
   Clock::TimePoint now;
   do {
     const int handled = bus_.HandleUntil(due);
+    if (handled > 0) statistics_.RecordQueueDepth(handled);
     now = clock_.Now();
     if (handled == 0 && now < due) return 0;
   } while (now < due);

@@ -8,8 +8,7 @@ int64_t Histogram::MiddleOf(int bucket) {
   static_assert(BucketOf(kHighest) < kBuckets && BucketOf(kHighest) >= kBuckets - kSub);
   if (bucket < 2 * kSub) return bucket;
   const int64_t shift = bucket / kSub - 1;
-  const int64_t lowest = (bucket - shift * kSub) << shift;
-  return lowest + ((int64_t{1} << shift) - 1) / 2;
+  return FirstOf(bucket) + ((int64_t{1} << shift) - 1) / 2;
 }
 
 int64_t Histogram::Percentile(double percent) const {

@@ -35,6 +35,11 @@ class Histogram {
   // Adds what `other` has recorded.
   void Merge(const Histogram& other);
 
+  // Calls `use(first, last, count)` for each range of values that holds any, in rising order. The ranges are
+  // coarser than the counts: a single value below 32, from there on 16 to each power of two, so at most 700.
+  template <class Use>
+  void ForEachRange(Use&& use) const;
+
   void Reset() { *this = Histogram(); }
 
  private:
@@ -51,10 +56,37 @@ class Histogram {
   }
   static int64_t MiddleOf(int bucket);
 
+  static constexpr int kRangeBits = 4;
+  static constexpr int64_t FirstOf(int bucket) {
+    if (bucket < 2 * kSub) return bucket;
+    const int64_t shift = bucket / kSub - 1;
+    return (bucket - shift * kSub) << shift;
+  }
+
   int64_t count_ = 0;
   int64_t min_ = 0;
   int64_t max_ = 0;
   std::array<int64_t, kBuckets> counts_{};
 };
+
+template <class Use>
+void Histogram::ForEachRange(Use&& use) const {
+  int64_t first = 0, last = -1, count = 0;
+  const int end = count_ == 0 ? 0 : BucketOf(max_) + 1;
+  for (int bucket = BucketOf(min_); bucket < end; ++bucket) {
+    if (counts_[bucket] == 0) continue;
+    const int64_t value = FirstOf(bucket);
+    if (value > last) {
+      if (count > 0) use(first, last, count);
+      const int shift =
+          std::max(0, static_cast<int>(std::bit_width(static_cast<uint64_t>(value))) - kRangeBits - 1);
+      first = value >> shift << shift;
+      last = first + (int64_t{1} << shift) - 1;
+      count = 0;
+    }
+    count += counts_[bucket];
+  }
+  if (count > 0) use(first, last, count);
+}
 
 }  // namespace hydro

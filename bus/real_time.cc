@@ -1,5 +1,6 @@
 #include "bus/real_time.h"
 
+#include <malloc.h>
 #include <sched.h>
 #include <spdlog/sinks/stdout_sinks.h>
 #include <spdlog/spdlog.h>
@@ -39,7 +40,12 @@ bool SetCpu(int cpu, RealTimeResult* result) {
 }
 
 bool LockMemory(RealTimeResult* result) {
-  if (mlockall(MCL_CURRENT | MCL_FUTURE) == 0) return true;
+  if (mlockall(MCL_CURRENT | MCL_FUTURE) == 0) {
+    // What was freed is kept for the next allocation: pages given back would have to be faulted in again.
+    mallopt(M_TRIM_THRESHOLD, -1);
+    mallopt(M_MMAP_MAX, 0);
+    return true;
+  }
   result->warnings.push_back(
       std::string("locking memory is refused (") + std::strerror(errno) +
       "), running without: page faults may delay the loop; permit it with `ulimit -l "

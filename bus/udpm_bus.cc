@@ -18,6 +18,7 @@ namespace hydro {
 namespace {
 
 constexpr int kMostPerCall = 4096;
+constexpr size_t kFirstEncodedSize = 64 << 10;  // longer messages make the buffer grow once
 constexpr std::string_view kLcmSelfTest = "LCM_SELF_TEST";
 
 // While it lives, threads that are created inherit a mask in which every signal is blocked: signals must
@@ -95,8 +96,8 @@ int WaitReadable(int fd, Bus::TimePoint deadline) {
 
 }  // namespace
 
-UdpmBus::UdpmBus(const std::string& url, std::unique_ptr<Authenticator> authenticator)
-    : authenticator_(std::move(authenticator)) {
+UdpmBus::UdpmBus(const std::string& url, std::unique_ptr<Authenticator> authenticator, Receiving receiving)
+    : encoded_(kFirstEncodedSize), authenticator_(std::move(authenticator)) {
   std::string lcm_url = url;
   if (url != "memq://") {
     UdpmUrl parsed = ParseUdpmUrl(url);
@@ -106,6 +107,11 @@ UdpmBus::UdpmBus(const std::string& url, std::unique_ptr<Authenticator> authenti
     // LCM prints several lines when it gets less than it asks for: we know what it will get.
     parsed.recv_buf_size = std::min(parsed.recv_buf_size, receive_buffer_bytes_);
     lcm_url = parsed.ToString();
+    if (receiving == Receiving::kDirect) {
+      socket_ = std::make_unique<UdpmSocket>(parsed);
+      fd_ = socket_->fd();
+      return;
+    }
   }
   const SignalsBlocked blocked;
   lcm_ = lcm_create(lcm_url.c_str());
@@ -125,7 +131,9 @@ UdpmBus::UdpmBus(const std::string& url, std::unique_ptr<Authenticator> authenti
   }
 }
 
-UdpmBus::~UdpmBus() { lcm_destroy(lcm_); }
+UdpmBus::~UdpmBus() {
+  if (lcm_ != nullptr) lcm_destroy(lcm_);
+}
 
 std::string UdpmBus::receive_buffer_hint() const {
   if (receive_buffer_bytes_ >= receive_buffer_asked_) return {};
@@ -156,6 +164,10 @@ void UdpmBus::SubscribeTyped(const std::string& channel, const MessageType& type
 }
 
 void UdpmBus::AddSubscription(const std::string& pattern, Subscription* subscription) {
+  if (socket_ != nullptr) {
+    subscription->type == nullptr ? socket_->AcceptAll() : socket_->Accept(subscription->channel);
+    return;
+  }
   lcm_subscription_t* const added = lcm_subscribe(lcm_, pattern.c_str(), &UdpmBus::OnMessage, subscription);
   if (added == nullptr) throw BusError("LCM refuses to subscribe to " + pattern);
   lcm_subscription_set_queue_capacity(added, 0);  // unlimited: the default drops the newest after 30
@@ -231,7 +243,10 @@ void UdpmBus::PublishTyped(const std::string& channel, const MessageType& type, 
 }
 
 void UdpmBus::Send(const std::string& channel, const void* data, int size) {
-  if (lcm_publish(lcm_, channel.c_str(), data, static_cast<unsigned>(size)) != 0) {
+  const bool sent = socket_ != nullptr
+                        ? socket_->Send(channel, data, static_cast<size_t>(size))
+                        : lcm_publish(lcm_, channel.c_str(), data, static_cast<unsigned>(size)) == 0;
+  if (!sent) {
     if (IsPassing(errno)) {
       ++unsent_;  // as if it were lost on its way: whoever waits for it has a watchdog
       return;
@@ -246,16 +261,45 @@ int UdpmBus::HandleUntil(TimePoint deadline) {
   if (authenticator_ != nullptr && !introduced_) StartIntroductions();
   if (!held_.empty()) GiveUpHeld();
   for (int seen = 0; seen < kMostPerCall;) {
-    // Once something was handled, only what is there already counts.
-    if (WaitReadable(fd_, handled > 0 ? TimePoint::min() : deadline) != 1) break;
+    // Once something was handled, only what is there already counts. A socket says so itself.
+    const bool waits = socket_ == nullptr || handled == 0;
+    if (waits && WaitReadable(fd_, handled > 0 ? TimePoint::min() : deadline) != 1) break;
     ++seen;
     delivered_ = false;
     opened_ = false;
-    if (lcm_handle(lcm_) != 0) throw BusError("LCM cannot receive any more");
+    const bool received = HandleNext();
     if (exception_) std::rethrow_exception(std::exchange(exception_, nullptr));
     if (delivered_) ++handled;
+    if (!received && handled > 0) break;
   }
   return handled;
+}
+
+// Handles one message; false when there was none.
+bool UdpmBus::HandleNext() {
+  if (socket_ == nullptr) {
+    if (lcm_handle(lcm_) != 0) throw BusError("LCM cannot receive any more");
+    return true;
+  }
+  UdpmSocket::Message message;
+  if (!socket_->Receive(&message)) return false;
+  Dispatch(message);
+  return true;
+}
+
+// What LCM does with a message: hands it to each subscription that it matches.
+void UdpmBus::Dispatch(const UdpmSocket::Message& message) {
+  lcm_recv_buf_t buffer{};
+  buffer.data = const_cast<uint8_t*>(message.data);
+  buffer.data_size = static_cast<uint32_t>(message.size);
+  buffer.recv_utime = message.receive_utime;
+  const size_t count = subscriptions_.size();  // a handler may subscribe
+  for (size_t i = 0; i < count; ++i) {
+    Subscription& subscription = subscriptions_[i];
+    const bool wanted =
+        &subscription == all_ || (subscription.own && subscription.channel == message.channel);
+    if (wanted) OnMessage(&buffer, message.channel, &subscription);
+  }
 }
 
 }  // namespace hydro

@@ -12,20 +12,32 @@
 
 #include "bus/authenticator.h"
 #include "bus/bus.h"
+#include "bus/udpm_socket.h"
 
 namespace hydro {
 
 // Asked of the kernel for a receiver's buffer where the URL says nothing: none lost up to 150,000 messages/s.
 inline constexpr int kReceiveBufferBytes = 4 << 20;
 
+// Who takes messages from the network.
+enum class Receiving {
+  // A thread of LCM's, into a queue without limit: for who may be busy with something else for long.
+  kQueued,
+  // The thread that calls HandleUntil(), as they come (udpm_socket.h): for loops, which wait for nothing
+  // else.
+  // Half the wake-ups, no allocation; what comes meanwhile waits in the kernel's receive buffer.
+  kDirect,
+};
+
 // Apply real-time scheduling (real_time.h) before constructing it: LCM's receiving thread inherits it.
-// Nothing is dropped here: queues are unlimited, and the kernel's receive buffer is asked to be large.
+// Nothing is dropped here: a queue is unlimited, and the kernel's receive buffer is asked to be large.
 class UdpmBus : public Bus {
  public:
   // `url` as in udpm_url.h, or "memq://" (private to this object). Proves that multicast works before it
   // returns. Throws InputError for a bad URL and BusError, with the cure, where multicast does not work.
   // With an `authenticator` the messages on its channels are sealed, and only genuine ones are delivered.
-  explicit UdpmBus(const std::string& url, std::unique_ptr<Authenticator> authenticator = nullptr);
+  explicit UdpmBus(const std::string& url, std::unique_ptr<Authenticator> authenticator = nullptr,
+                   Receiving receiving = Receiving::kQueued);
   ~UdpmBus() override;
 
   // Does not pass on the messages by which LCM tests itself when a process starts. Those that were refused
@@ -78,6 +90,8 @@ class UdpmBus : public Bus {
   void Deliver(const lcm_recv_buf_t& buffer, const char* channel, Subscription* subscription);
   void DeliverTyped(const RawMessage& message, Subscription* subscription);
   void AddSubscription(const std::string& pattern, Subscription* subscription);
+  bool HandleNext();
+  void Dispatch(const UdpmSocket::Message& message);
   void Send(const std::string& channel, const void* data, int size);
 
   // udpm_authentication.cc
@@ -89,6 +103,7 @@ class UdpmBus : public Bus {
   void RecordHeld(int64_t session);
   void GiveUpHeld();
 
+  std::unique_ptr<UdpmSocket> socket_;  // of a direct one; else lcm_
   lcm_t* lcm_ = nullptr;
   int fd_ = -1;
   int receive_buffer_bytes_ = 0;

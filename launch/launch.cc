@@ -11,6 +11,7 @@
 
 #include "bus/udpm_bus.h"
 #include "launch/stack_watch.h"
+#include "launch/timing_files.h"
 
 namespace hydro {
 namespace {
@@ -49,6 +50,7 @@ class StackLaunch {
   void StartAll();
   int HearBus(TimePoint until);
   void HearLastReports();
+  void WriteTiming();
   void OnSignals();
   void OnEnded(const Supervisor::Ended& ended);
   void OnStopHeard();
@@ -71,6 +73,7 @@ class StackLaunch {
   WallClock clock_;
   UdpmBus bus_;
   StackWatch watch_;
+  std::optional<TimingFiles> timing_files_;
 
   TimePoint started_;
   bool ready_ = false;
@@ -106,6 +109,7 @@ StackLaunch::StackLaunch(const StackConfig& config, const LaunchPlan& plan, int 
       bus_(config.bus.url,
            MakeAuthenticator(config.bus.resolved_key_file, Channels(config.bus.channel_suffix))),
       watch_(bus_, clock_, Channels(config.bus.channel_suffix)) {
+  if (!plan.timing_file.empty()) timing_files_.emplace(plan.timing_file);
   output_.AnnounceLabel(kLabel);
   for (const ChildSpec& child : plan.children) output_.AnnounceLabel(child.label);
 }
@@ -125,6 +129,7 @@ int StackLaunch::Run() {
   TellOtherHosts();
   HearLastReports();
   for (const std::string& line : watch_.summary().Lines()) Say(line);
+  WriteTiming();
   // The terminal may be slow or stopped; a second Ctrl-C still gets us out.
   TimePoint until = TimePoint::max();
   while (!supervisor_.finished() && Supervisor::Clock::now() < until) {
@@ -167,6 +172,17 @@ void StackLaunch::HearLastReports() {
   do {
     until = Supervisor::Clock::now() + kBusPeriod;
   } while (until < latest && HearBus(until) > 0);
+}
+
+void StackLaunch::WriteTiming() {
+  if (!timing_files_) return;
+  try {
+    timing_files_->Write(watch_.timing().Processes(), config_.file);
+    Say("timing in " + timing_files_->json() + " and " + timing_files_->page());
+  } catch (const std::exception& error) {
+    Complain(error.what());
+    if (exit_code_ == 0) exit_code_ = 1;
+  }
 }
 
 void StackLaunch::OnSignals() {

@@ -63,6 +63,7 @@ LaunchPlan PlanLaunch(const StackConfig& config, const LaunchRequest& request,
                       const std::string& programs_folder) {
   const bool with_log = !request.log_file.empty();
   LaunchPlan plan;
+  plan.timing_file = request.timing_file;
   std::set<std::string> hosts;
   std::vector<std::string> programs;
   bool names_logger = false;

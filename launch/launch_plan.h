@@ -15,12 +15,14 @@ struct LaunchRequest {
   std::vector<std::string> overrides;  // "section.key=value", passed on to every process
   std::string log_file;                // --log; empty: no logger runs
   std::string host;                    // --host; empty: everything on this machine
+  std::string timing_file;             // --timing; empty: no report
 };
 
 struct LaunchPlan {
   std::vector<ChildSpec> children;
   bool spread = false;               // other processes of the stack run on other hosts
   std::vector<std::string> remarks;  // lines that the user should see
+  std::string timing_file;           // where the report on how the loops kept time goes, .json; empty: none
 };
 
 // Programs are taken from `programs_folder`, else from PATH. Throws InputError when a program is missing, and

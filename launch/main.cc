@@ -48,6 +48,8 @@ int main(int argc, char** argv) {
       "--doctor", &doctor,
       "examine this machine and its network for the stack of CONFIG (without: for any in real time), and "
       "print what mends each problem; starts nothing");
+  line.AddOption("--timing", &request.timing_file,
+                 "REPORT.json write there how the loops kept time, and REPORT.html with plots beside it");
   bool stop = false;
   bool rearm = false;
   line.AddFlag("--stop", &stop, "stop the stack that runs, and wait until it has; starts nothing");

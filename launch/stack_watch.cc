@@ -12,8 +12,12 @@ StackWatch::StackWatch(Bus& bus, const Clock& clock, const Channels& channels)
   bus.Subscribe<stop_t>(channels_.stop, [this](const stop_t& stop) {
     if (!stop_ && stop.session != session_) stop_ = stop;
   });
-  bus.Subscribe<loop_statistics_t>(channels_.loop_statistics,
-                                   [this](const loop_statistics_t& report) { summary_.Add(report); });
+  bus.Subscribe<loop_statistics_t>(channels_.loop_statistics, [this](const loop_statistics_t& report) {
+    summary_.Add(report);
+    timing_.Add(report);
+  });
+  bus.Subscribe<loop_histogram_t>(channels_.loop_histogram,
+                                  [this](const loop_histogram_t& histogram) { timing_.Add(histogram); });
   bus.Subscribe<fault_t>(channels_.fault, [this](const fault_t& fault) { summary_.Add(fault); });
 }
 

@@ -17,6 +17,7 @@
 #include "bus/channels.h"
 #include "bus/clock.h"
 #include "launch/run_summary.h"
+#include "timing/timing_record.h"
 
 namespace hydro {
 
@@ -42,6 +43,9 @@ class StackWatch {
 
   const RunSummary& summary() const { return summary_; }
 
+  // What the processes reported about their loops.
+  const TimingRecord& timing() const { return timing_; }
+
  private:
   struct Expected {
     std::string program;
@@ -57,6 +61,7 @@ class StackWatch {
   std::map<std::pair<std::string, pid_t>, process_status_t> statuses_;
   std::optional<stop_t> stop_;
   RunSummary summary_;
+  TimingRecord timing_;
 };
 
 }  // namespace hydro

@@ -137,6 +137,7 @@ int RunHydroLog(int argc, const char* const* argv) {
   const CompareVerb compare(line);
   const RepairVerb repair(line);
   const SummaryVerb summary(line);
+  const TimingVerb timing(line);
   const ReplayVerb replay(line);
   if (const auto exit_code = line.Parse(argc, argv)) return *exit_code;
   return RunProgram("hydro-log", [&] {
@@ -146,6 +147,7 @@ int RunHydroLog(int argc, const char* const* argv) {
     if (verb == "import") return import_verb.Run();
     if (verb == "compare") return compare.Run();
     if (verb == "summary") return summary.Run();
+    if (verb == "timing") return timing.Run();
     if (verb == "replay") return replay.Run();
     return repair.Run();
   });

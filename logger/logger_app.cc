@@ -19,6 +19,7 @@ using namespace std::chrono_literals;
 
 constexpr int64_t kProgressTicks = 16;  // a quarter of the plant's window (plant_app.cc)
 constexpr auto kEchoTime = 200ms;       // how long to wait for our own last words to come back
+constexpr auto kOverflowQuiet = 1s;     // an overflow has ended when nothing was dropped for so long
 constexpr auto kFarewellTime = 500ms;   // how long to wait for the others' last words after a stop
 
 // Fields common to the numbered messages, read without decoding the rest: after the 8 bytes of the type's
@@ -28,6 +29,8 @@ int64_t ReadInt64(const uint8_t* data) {
   for (int i = 0; i < 8; ++i) value = value << 8 | data[i];
   return static_cast<int64_t>(value);
 }
+constexpr size_t kMostSenders =
+    1024;  // of one kind, whose numbers are followed: what a flood sends is not kept
 constexpr int kTickOffset = 16;
 constexpr int kSessionOffset = 24;
 constexpr int kSequenceOffset = 32;
@@ -54,10 +57,14 @@ LoggerApp::LoggerApp(Bus& bus, Clock& clock, const StackConfig& config, const Lo
     : bus_(Tap(bus)),  // first of all: a subscription to all channels beside earlier ones could lose messages
       participant_(bus, clock, Channels(config.bus.channel_suffix), "logger"),
       options_(options),
-      writer_(std::make_unique<LogWriter>(options.file, Opening::kDirect)) {
+      writer_(std::make_unique<LogWriter>(options.file, Opening::kDirect)),
+      queue_(static_cast<size_t>(config.logger.memory_mb * 1e6)) {
   if (config.time.mode == TimeMode::kLockstep) {
     order_.emplace(config.pressure_interval_ticks, config.position_interval_ticks,
-                   [this](RecordedMessage message) { Enqueue(std::move(message)); });
+                   [this](const RecordedMessage& message) {
+                     Enqueue(message.channel, message.data.data(), message.data.size(), message.utime,
+                             message.arrived);
+                   });
   }
   bus.Subscribe<process_status_t>(participant_.channels().process_status,
                                   [this](const process_status_t& status) { OnStatus(status); });
@@ -81,20 +88,11 @@ LoggerApp::~LoggerApp() {
 
 void LoggerApp::OnMessage(const RawMessage& message) {
   if (message.channel.empty()) return;  // LCM carries such a message, but no log can hold it
-  RecordedMessage event{std::string(message.channel),
-                        {message.data, message.data + message.size},
-                        message.receive_utime,
-                        participant_.clock().Now()};
   ++received_;
   const Channels& channels = participant_.channels();
   const std::optional<CausalOrder::Kind> kind = NumberedKind(message.channel, channels);
   if (kind && message.size >= kSequenceOffset + 8) {
-    const int64_t sequence = ReadInt64(message.data + kSequenceOffset);
-    int64_t& next = next_sequence_[event.channel]
-                        .try_emplace(ReadInt64(message.data + kSessionOffset), sequence)
-                        .first->second;
-    if (sequence > next) lost_ = SaturatingSum(lost_, SaturatingDifference(sequence, next));
-    if (sequence >= next) next = SaturatingSum(sequence, 1);
+    CountSequence(*kind, message);
   }
   if (message.channel == channels.state && message.size >= kSequenceOffset) {
     state_tick_ = ReadInt64(message.data + kTickOffset);
@@ -105,21 +103,50 @@ void LoggerApp::OnMessage(const RawMessage& message) {
       ReportProgress();
   }
   if (order_ && kind && message.size >= kSequenceOffset) {
-    order_->Take(*kind, ReadInt64(message.data + kTickOffset), std::move(event), participant_.clock().Now());
+    const auto now = participant_.clock().Now();
+    RecordedMessage event{std::string(message.channel),
+                          {message.data, message.data + message.size},
+                          message.receive_utime,
+                          now};
+    order_->Take(*kind, ReadInt64(message.data + kTickOffset), std::move(event), now);
   } else {
-    Enqueue(std::move(event));
+    Enqueue(message.channel, message.data, static_cast<size_t>(message.size), message.receive_utime,
+            participant_.clock().Now());
   }
 }
 
-void LoggerApp::Enqueue(RecordedMessage message) {
-  size_t waiting = 0;
-  {
-    const std::lock_guard lock(mutex_);
-    queue_.push_back(std::move(message));
-    waiting = queue_.size();
-  }
-  largest_queue_ = std::max(largest_queue_, static_cast<int64_t>(waiting));
+void LoggerApp::CountSequence(CausalOrder::Kind kind, const RawMessage& message) {
+  const int64_t sequence = ReadInt64(message.data + kSequenceOffset);
+  const int64_t session = ReadInt64(message.data + kSessionOffset);
+  std::map<int64_t, int64_t>& senders = next_sequence_[static_cast<size_t>(kind)];
+  if (senders.size() >= kMostSenders && !senders.contains(session)) return;
+  int64_t& next = senders.try_emplace(session, sequence).first->second;
+  if (sequence > next) lost_ = SaturatingSum(lost_, SaturatingDifference(sequence, next));
+  if (sequence >= next) next = SaturatingSum(sequence, 1);
+}
+
+void LoggerApp::Enqueue(std::string_view channel, const uint8_t* data, size_t size, int64_t utime,
+                        Clock::TimePoint arrived) {
+  largest_queue_ = std::max(largest_queue_, queue_.Push(channel, data, size, utime));
   largest_queue_total_ = std::max(largest_queue_total_, largest_queue_);
+}
+
+// One fault an episode, however much is left out of the log; it never concerns the voltage.
+void LoggerApp::CheckOverflow() {
+  const int64_t dropped = queue_.dropped();
+  const auto now = participant_.clock().Now();
+  if (dropped > dropped_) {
+    dropped_ = dropped;
+    overflow_ = now;
+    participant_.Raise("log_overflow",
+                       fmt::format("{} messages are not in the log so far: the disk is slower than the bus, "
+                                   "and {} MB wait (logger.memory_mb)",
+                                   dropped, static_cast<double>(queue_.memory()) * 1e-6),
+                       static_cast<double>(dropped), 0, false);
+  } else if (overflow_ && now - *overflow_ > kOverflowQuiet) {
+    overflow_.reset();
+    participant_.Clear("log_overflow");
+  }
 }
 
 void LoggerApp::OnStatus(const process_status_t& status) {
@@ -147,13 +174,12 @@ void LoggerApp::ReportProgress() {
 void LoggerApp::WriteUntilClosed() {
   try {
     for (bool closing = false; !closing;) {
-      std::deque<RecordedMessage> batch;
       {
         std::unique_lock lock(mutex_);
         wake_.wait_for(lock, kFlushPeriod, [this] { return closing_; });
-        batch.swap(queue_);
         closing = closing_;
       }
+      const EventQueue::Batch batch = queue_.Take();
       if (batch.empty()) continue;
       const Write write = WriteBatch(batch);
       const std::lock_guard lock(mutex_);
@@ -166,16 +192,21 @@ void LoggerApp::WriteUntilClosed() {
   }
 }
 
-LoggerApp::Write LoggerApp::WriteBatch(std::deque<RecordedMessage>& batch) {
+LoggerApp::Write LoggerApp::WriteBatch(const EventQueue::Batch& batch) {
   const auto began = participant_.clock().Now();
-  const auto oldest = batch.front().arrived;
-  for (RecordedMessage& event : batch) {
+  std::optional<Clock::TimePoint> oldest;
+  batch.ForEach([&](const EventQueue::Event& event) {
+    if (!oldest) oldest = event.arrived;
     if (options_.rotate_bytes > 0 && writer_->bytes() >= options_.rotate_bytes) Rotate();
-    writer_->Append(event.channel, event.data.data(), event.data.size(), event.utime);
-    if (event.channel == participant_.channels().run) descriptions_[event.channel] = std::move(event);
-  }
+    writer_->Append(event.channel, event.data, event.size, event.utime);
+    if (event.channel == participant_.channels().run) {
+      const std::string channel(event.channel);
+      descriptions_[channel] = {channel, {event.data, event.data + event.size}, event.utime};
+    }
+  });
   writer_->Flush();
-  return {began, participant_.clock().Now() - oldest};
+  const auto now = participant_.clock().Now();
+  return {began, now - oldest.value_or(now)};
 }
 
 void LoggerApp::Rotate() {
@@ -190,7 +221,8 @@ void LoggerApp::Poll() {
   if (order_ && order_->held_since() && participant_.clock().Now() - *order_->held_since() > kFlushPeriod) {
     order_->Release();  // what it waits for was lost
   }
-  participant_.statistics().set_lost_messages(lost_);
+  CheckOverflow();
+  participant_.statistics().set_lost_messages(lost_ + dropped_);
   participant_.statistics().RecordQueueDepth(largest_queue_);
   largest_queue_ = 0;
   {
@@ -240,9 +272,14 @@ int LoggerApp::Finish() {
   thread_.join();
   if (failure_) std::rethrow_exception(failure_);
   writer_->Finish();
+  if (const int64_t dropped = queue_.dropped(); dropped > 0) {
+    spdlog::warn("{} messages are not in the log: the disk was slower than the bus (logger.memory_mb)",
+                 dropped);
+  }
   spdlog::info("{} messages in {}{}, {} bytes in the last; at most {} waited; {} lost before they arrived",
-               received_, options_.file, files_ > 1 ? fmt::format(" and {} more files", files_ - 1) : "",
-               writer_->bytes(), largest_queue_total_, lost_);
+               received_ - queue_.dropped(), options_.file,
+               files_ > 1 ? fmt::format(" and {} more files", files_ - 1) : "", writer_->bytes(),
+               largest_queue_total_, lost_);
   return exit_code;
 }
 

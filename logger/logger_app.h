@@ -1,24 +1,27 @@
 // The logger as an application: records every message on the bus.
 //
-// Messages go from the bus into an unbounded queue and from there, on a thread of its own, into the file, so
-// that a slow disk delays nobody and loses nothing. What was received is handed to the kernel at least every
-// kFlushPeriod.
+// Messages go from the bus into a queue (event_queue.h) and from there, on a thread of its own, into the
+// file, so that a slow disk delays nobody. The queue takes logger.memory_mb; what comes when it is full is
+// left out of the log, counted, and named as the fault log_overflow. What was received is handed to the
+// kernel at least every kFlushPeriod.
 #pragma once
 
+#include <array>
 #include <atomic>
 #include <condition_variable>
 #include <cstdint>
-#include <deque>
 #include <exception>
 #include <map>
 #include <memory>
 #include <mutex>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <thread>
 #include <vector>
 
 #include "logger/causal_order.h"
+#include "logger/event_queue.h"
 #include "logger/log_writer.h"
 #include "process/app.h"
 #include "process/participant.h"
@@ -53,11 +56,14 @@ class LoggerApp : public App {
   };
 
   Bus& Tap(Bus& bus);
-  void Enqueue(RecordedMessage message);
+  void Enqueue(std::string_view channel, const uint8_t* data, size_t size, int64_t utime,
+               Clock::TimePoint arrived);
+  void CountSequence(CausalOrder::Kind kind, const RawMessage& message);
+  void CheckOverflow();
   void OnMessage(const RawMessage& message);
   void OnStatus(const process_status_t& status);
   void WriteUntilClosed();
-  Write WriteBatch(std::deque<RecordedMessage>& batch);
+  Write WriteBatch(const EventQueue::Batch& batch);
   void Rotate();
   void ReportProgress();
   bool EveryoneHasLeft() const;
@@ -71,9 +77,9 @@ class LoggerApp : public App {
   std::map<std::string, RecordedMessage>
       descriptions_;  // newest HYDRO_RUN message by channel: opens each rotated file
 
-  std::mutex mutex_;  // guards queue_, writes_, closing_, failure_
+  std::mutex mutex_;  // guards writes_, closing_, failure_
   std::condition_variable wake_;
-  std::deque<RecordedMessage> queue_;
+  EventQueue queue_;
   std::vector<Write> writes_;  // done since the last Poll()
   bool closing_ = false;
   std::exception_ptr failure_;
@@ -89,9 +95,10 @@ class LoggerApp : public App {
   std::optional<CausalOrder> order_;  // of the numbered messages, in lockstep
   bool left_ = false;                 // our own farewell has come back
   std::map<int64_t, int8_t> others_;  // state of the other processes, by session
-  std::map<std::string, std::map<int64_t, int64_t>>
-      next_sequence_;  // by channel and session, to count losses
+  std::array<std::map<int64_t, int64_t>, 4> next_sequence_;  // by kind and session, to count losses
   int64_t lost_ = 0;
+  int64_t dropped_ = 0;                        // by a queue that was full, at the last look
+  std::optional<Clock::TimePoint> overflow_;   // when that was seen last, while it is a fault
   std::optional<Clock::TimePoint> stop_time_;  // when the stop was heard
 };
 

@@ -5,6 +5,7 @@
 #include "hydro/fault_t.hpp"
 #include "hydro/introduction_t.hpp"
 #include "hydro/log_progress_t.hpp"
+#include "hydro/loop_histogram_t.hpp"
 #include "hydro/loop_statistics_t.hpp"
 #include "hydro/motor_command_t.hpp"
 #include "hydro/pressure_command_t.hpp"
@@ -37,6 +38,7 @@ const std::vector<MessageKind>& MessageKinds() {
                                     Kind<arm_reference_t>(channels.arm_reference),
                                     Kind<run_description_t>(channels.run),
                                     Kind<loop_statistics_t>(channels.loop_statistics),
+                                    Kind<loop_histogram_t>(channels.loop_histogram),
                                     Kind<fault_t>(channels.fault),
                                     Kind<stop_t>(channels.stop),
                                     Kind<rearm_t>(channels.rearm),

@@ -110,8 +110,9 @@ RunLog ReadRunLog(const std::string& file, const std::optional<std::string>& suf
         keep(channels.pressure_command, log.messages.pressure_commands) ||
         keep(channels.arm_reference, log.messages.arm_references) ||
         keep(channels.fault, log.messages.faults) || keep(channels.run, log.descriptions) ||
-        keep(channels.loop_statistics, log.statistics) || keep(channels.stop, log.stops) ||
-        keep(channels.process_status, log.statuses) || keep(channels.log_progress, log.progress);
+        keep(channels.loop_statistics, log.statistics) || keep(channels.loop_histogram, log.histograms) ||
+        keep(channels.stop, log.stops) || keep(channels.process_status, log.statuses) ||
+        keep(channels.log_progress, log.progress);
   }
   return log;
 }

@@ -8,6 +8,7 @@
 
 #include "bus/channels.h"
 #include "hydro/log_progress_t.hpp"
+#include "hydro/loop_histogram_t.hpp"
 #include "hydro/loop_statistics_t.hpp"
 #include "hydro/process_status_t.hpp"
 #include "hydro/run_description_t.hpp"
@@ -32,6 +33,7 @@ struct RunLog {
   RunMessages messages;
   std::vector<run_description_t> descriptions;
   std::vector<loop_statistics_t> statistics;
+  std::vector<loop_histogram_t> histograms;
   std::vector<stop_t> stops;
   std::vector<process_status_t> statuses;
   std::vector<log_progress_t> progress;

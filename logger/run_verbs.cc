@@ -7,8 +7,19 @@
 #include "logger/replay.h"
 #include "logger/tracking.h"
 #include "settings/input_error.h"
+#include "timing/timing_report.h"
 
 namespace hydro {
+
+namespace {
+
+void WriteText(const std::string& name, const std::string& text) {
+  NewFile file(name, Opening::kTemporary);
+  file.Write(text.data(), text.size());
+  file.Finish();
+}
+
+}  // namespace
 
 std::optional<std::string> SuffixOption(const std::string& suffix) {
   return suffix == kNoSuffix ? std::nullopt : std::optional(suffix);
@@ -29,12 +40,32 @@ int SummaryVerb::Run() const {
   const Tracking tracking = TrackArm(log);
   const LogInfo info = Summarise(log, si_);
   std::fputs(SummaryText(tracking, info, si_).c_str(), stdout);
-  if (!json_.empty()) {
-    const std::string text = SummaryJson(tracking, info);
-    NewFile file(json_, Opening::kTemporary);
-    file.Write(text.data(), text.size());
-    file.Finish();
+  if (!json_.empty()) WriteText(json_, SummaryJson(tracking, info));
+  return 0;
+}
+
+TimingVerb::TimingVerb(CommandLine& line) {
+  CommandLine& verb =
+      line.AddVerb("timing", "How the loops kept time: periods, latencies, round trips, losses.");
+  verb.AddPositional("LOG", &log_, "FILE the log");
+  verb.AddOption("--suffix", &suffix_, "TEXT suffix of the channels, where the log has several");
+  verb.AddOption("--json", &json_, "FILE write the same there as JSON, with the histograms");
+  verb.AddOption("--page", &page_, "FILE write plots there (HTML)");
+}
+
+int TimingVerb::Run() const {
+  const RunLog log = ReadRunLog(log_, SuffixOption(suffix_));
+  TimingRecord record;
+  for (const loop_statistics_t& report : log.statistics) record.Add(report);
+  for (const loop_histogram_t& histogram : log.histograms) record.Add(histogram);
+  const std::vector<TimedProcess> processes = record.Processes();
+  if (processes.empty()) {
+    throw InputError(
+        log_ + ": found no report of a loop (HYDRO_LOOP_STATISTICS); a log of a run of processes is needed");
   }
+  std::fputs(TimingText(processes).c_str(), stdout);
+  if (!json_.empty()) WriteText(json_, TimingJson(processes, log_));
+  if (!page_.empty()) WriteText(page_, TimingPage(processes, log_));
   return 0;
 }
 

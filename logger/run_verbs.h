@@ -1,4 +1,4 @@
-// The verbs of hydro-log that look at a run as a control loop: summary and replay.
+// The verbs of hydro-log that look at a run as a control loop: summary, timing and replay.
 #pragma once
 
 #include <optional>
@@ -20,6 +20,15 @@ class SummaryVerb {
  private:
   std::string log_, json_, suffix_ = kNoSuffix;
   bool si_ = false;
+};
+
+class TimingVerb {
+ public:
+  explicit TimingVerb(CommandLine& line);
+  int Run() const;
+
+ private:
+  std::string log_, json_, page_, suffix_ = kNoSuffix;
 };
 
 class ReplayVerb {

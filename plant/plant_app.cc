@@ -56,7 +56,23 @@ PlantApp::PlantApp(Bus& bus, Clock& clock, const StackConfig& config, Rig& rig,
   });
 }
 
+void PlantApp::DescribeRun() {
+  char host[256] = {};
+  gethostname(host, sizeof host - 1);
+  description_.session = participant_.session();
+  description_.config_file = config_.file;
+  description_.config_text = config_.text;
+  description_.model_file = config_.model.resolved_file;
+  description_.model_text = config_.model.text;
+  description_.program = program_;
+  description_.version = HYDRO_VERSION;
+  description_.host = host;
+  description_.rate_hz = config_.plant.rate_hz;
+  description_.seed = config_.seed;
+}
+
 int PlantApp::Run() {
+  DescribeRun();
   participant_.Announce(process_status_t::READY);
   PublishDescription();
   if (WaitForParticipants()) {
@@ -265,6 +281,9 @@ void PlantApp::PublishState(int64_t skipped_ticks) {
   state_.p1 = measured_.p1;
   state_.p2 = measured_.p2;
   state_.skipped_ticks = skipped_ticks;
+  if (tick_ % config_.pressure_interval_ticks == 0 && !participant_.clock().simulated()) {
+    round_trips_.OnSent(tick_, participant_.clock().Now());
+  }
   state_publisher_.Send(state_);
   if (!unanswered_since_ && tick_ % config_.pressure_interval_ticks == 0) {
     unanswered_since_ = participant_.clock().Now();
@@ -279,21 +298,8 @@ void PlantApp::Poll() {
 
 void PlantApp::PublishDescription() {
   next_description_ = participant_.clock().Now() + kDescriptionPeriod;
-  char host[256] = {};
-  gethostname(host, sizeof host - 1);
-  run_description_t description;
-  description.utime = participant_.clock().Utime();
-  description.session = participant_.session();
-  description.config_file = config_.file;
-  description.config_text = config_.text;
-  description.model_file = config_.model.resolved_file;
-  description.model_text = config_.model.text;
-  description.program = program_;
-  description.version = HYDRO_VERSION;
-  description.host = host;
-  description.rate_hz = config_.plant.rate_hz;
-  description.seed = config_.seed;
-  participant_.bus().Publish(participant_.channels().run, description);
+  description_.utime = participant_.clock().Utime();
+  participant_.bus().Publish(participant_.channels().run, description_);
 }
 
 }  // namespace hydro

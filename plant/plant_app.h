@@ -15,7 +15,6 @@
 #pragma once
 
 #include <cstdint>
-#include <deque>
 #include <hydro/log_progress_t.hpp>
 #include <hydro/motor_command_t.hpp>
 #include <hydro/pressure_command_t.hpp>
@@ -26,6 +25,8 @@
 #include <string>
 #include <vector>
 
+#include "bus/ring_queue.h"
+#include "bus/round_trip_monitor.h"
 #include "bus/sequence_monitor.h"
 #include "plant/logger_watch.h"
 #include "plant/output_safety.h"
@@ -60,6 +61,7 @@ class PlantApp {
   void Drive();
   void NameRigFaults();
   void PublishState(int64_t skipped_ticks);
+  void DescribeRun();
   void PublishDescription();
   void ChooseVoltage();
   void CheckCommand(const motor_command_t& command);
@@ -90,13 +92,15 @@ class PlantApp {
   CountedWarning repeated_commands_{"repeated_motor_command"};
   bool future_command_ = false;         // since the last command that made sense
   std::optional<int64_t> awake_again_;  // real time: the tick at which a loop that was stopped went on
-  std::deque<motor_command_t> waiting_commands_;  // received, not yet in force, by tick
+  RoundTripMonitor round_trips_;
+  RingQueue<motor_command_t> waiting_commands_;  // received, not yet in force, by tick
   std::optional<motor_command_t> command_;        // in force
   int64_t newest_command_tick_ = -1;
   int64_t newest_pressure_command_tick_ = -1;
   std::map<int64_t, int64_t> log_progress_;  // tick by logger session
   std::optional<Clock::TimePoint>
-      unanswered_since_;  // real time: the oldest state without an answer was sent then
+      unanswered_since_;           // real time: the oldest state without an answer was sent then
+  run_description_t description_;  // published again and again
   Clock::TimePoint next_description_;
 };
 

@@ -23,6 +23,9 @@ void PlantApp::OnMotorCommand(const motor_command_t& command) {
     });
     return;
   }
+  if (const auto taken = round_trips_.OnAnswer(command.tick, now)) {
+    participant_.statistics().RecordRoundTrip(*taken);
+  }
   waiting_commands_.push_back(command);
   newest_command_tick_ = command.tick;
   unanswered_since_.reset();

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "bus/saturating.h"
 
 namespace hydro {
 namespace {
@@ -88,7 +87,7 @@ void PositionApp::Sample(const state_t& state, Clock::TimePoint arrival) {
 void PositionApp::Answer(const state_t& state) {
   if (last_sample_tick_ < 0) law_.Reset();
   const int64_t intervals = last_sample_tick_ < 0 ? 1 : (state.tick - last_sample_tick_) / interval_;
-  missed_samples_ = SaturatingSum(missed_samples_, intervals - 1);
+  participant_.statistics().AddMissedDeadlines(intervals - 1);
   last_sample_tick_ = state.tick;
 
   const double reference = reference_->Value(state.time);
@@ -104,7 +103,7 @@ void PositionApp::Answer(const state_t& state) {
     case ReferenceSignal::kArmAngle:
       if (std::isfinite(state.arm_angle)) {
         pressure_ref = law_.Update(state.arm_angle, reference, intervals);
-        participant_.Clear("nonfinite_arm_angle");
+        if (participant_.any_fault()) participant_.Clear("nonfinite_arm_angle");
       } else {
         pressure_command_.open_loop = true;  // zero volts: without the arm's angle no pressure is safe
         law_.Reset();
@@ -141,7 +140,6 @@ void PositionApp::Send() {
 
 void PositionApp::Poll() {
   participant_.statistics().set_lost_messages(state_monitor_.lost());
-  participant_.statistics().set_missed_deadlines(missed_samples_);
   participant_.Poll();
   if (!lockstep_ || participant_.state() != process_status_t::RUNNING || participant_.stop()) return;
   const auto silence = participant_.clock().Now() - last_state_time_;

@@ -23,6 +23,7 @@ class PositionApp : public App {
   PositionApp(Bus& bus, Clock& clock, const StackConfig& config);
 
   void Poll() override;
+  void OnHandled(int messages) override { participant_.statistics().RecordQueueDepth(messages); }
   bool finished() const override;
   int Finish() override;
 
@@ -48,7 +49,6 @@ class PositionApp : public App {
   pressure_command_t pressure_command_;  // the newest sample's
   int64_t last_sample_tick_ = -1;
   int64_t sequence_ = 0;
-  int64_t missed_samples_ = 0;
   Clock::TimePoint last_state_time_;
 };
 

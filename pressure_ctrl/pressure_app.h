@@ -7,12 +7,12 @@
 #pragma once
 
 #include <cstdint>
-#include <deque>
 #include <hydro/motor_command_t.hpp>
 #include <hydro/pressure_command_t.hpp>
 #include <hydro/state_t.hpp>
 #include <optional>
 
+#include "bus/ring_queue.h"
 #include "bus/sequence_monitor.h"
 #include "pressure_ctrl/pressure_law.h"
 #include "process/app.h"
@@ -30,6 +30,7 @@ class PressureApp : public App {
   PressureApp(Bus& bus, Clock& clock, const StackConfig& config);
 
   void Poll() override;
+  void OnHandled(int messages) override { participant_.statistics().RecordQueueDepth(messages); }
   bool finished() const override;
   int Finish() override;
 
@@ -65,7 +66,7 @@ class PressureApp : public App {
 
   SequenceMonitor state_monitor_;
   SequenceMonitor command_monitor_;
-  std::deque<pressure_command_t> waiting_commands_;     // not yet in force, by tick
+  RingQueue<pressure_command_t> waiting_commands_;      // not yet in force, by tick
   std::optional<pressure_command_t> pressure_command_;  // in force
   std::optional<int64_t> future_command_;  // tick of a refused one, while none came that makes sense
   std::optional<state_t> pending_state_;   // lockstep: waits for the pressure command it needs

@@ -7,7 +7,8 @@ namespace hydro {
 int RunApp(Bus& bus, Clock& clock, App& app) {
   try {
     while (!app.finished() && StopSignal() == 0) {
-      bus.HandleUntil(clock.Now() + kPollPeriod);
+      const int handled = bus.HandleUntil(clock.Now() + kPollPeriod);
+      if (handled > 0) app.OnHandled(handled);
       app.Poll();
     }
   } catch (...) {

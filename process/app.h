@@ -14,6 +14,9 @@ class App {
   // Watchdogs, statistics, announcements. Called at least every kPollPeriod.
   virtual void Poll() = 0;
 
+  // `messages` (at least one) were handled in one go; more than one: some had been waiting.
+  virtual void OnHandled(int /*messages*/) {}
+
   // The run is over for this application: it heard a stop or cannot go on.
   virtual bool finished() const = 0;
 

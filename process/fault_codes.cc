@@ -43,6 +43,8 @@ constexpr std::array kCodes{
     FaultCode{"model_error", FaultEffect::kZeroVolts},
     FaultCode{"repeated_motor_command", FaultEffect::kWarning},
     FaultCode{"logger_gone", FaultEffect::kWarning},
+    // Logger.
+    FaultCode{"log_overflow", FaultEffect::kWarning},
     // Any process.
     FaultCode{"undecodable_message", FaultEffect::kWarning},
     FaultCode{"unsent_message", FaultEffect::kWarning},

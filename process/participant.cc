@@ -63,10 +63,11 @@ void Participant::Announce(int8_t state, const std::string& text) {
 void Participant::Poll() {
   const auto now = clock_.Now();
   if (state_ == process_status_t::READY && now >= next_announcement_) Announce(state_, status_text_);
-  if (auto report = statistics_.Poll(now)) {
+  if (loop_statistics_t* report = statistics_.Poll(now)) {
     report->utime = clock_.Utime();
     bus_.Publish(channels_.loop_statistics, *report);
   }
+  if (!clock_.simulated()) Publish(statistics_.PollHistogram(now));
   unsent_.Update(
       bus_.unsent(), now,
       [](int64_t count) {
@@ -143,6 +144,12 @@ std::string Participant::NameOf(std::optional<int64_t> session) const {
   return "an unannounced process (session " + std::to_string(*session) + ")";
 }
 
+void Participant::Publish(loop_histogram_t* histogram) {
+  if (histogram == nullptr) return;
+  histogram->utime = clock_.Utime();
+  bus_.Publish(channels_.loop_histogram, *histogram);
+}
+
 void Participant::PublishFault(const fault_t& fault) {
   fault_t message = fault;
   message.utime = clock_.Utime();
@@ -171,6 +178,9 @@ int Participant::Leave(const std::string& failure) {
     loop_statistics_t total = statistics_.Total(clock_.Now());
     total.utime = clock_.Utime();
     bus_.Publish(channels_.loop_statistics, total);
+    for (int i = 0; i < kLoopQuantities; ++i) {
+      Publish(statistics_.TotalHistogram(static_cast<LoopQuantity>(i), clock_.Now()));
+    }
   }
   const bool run_failed = stop_ && stop_->exit_code != 0;
   const bool failed = run_failed || !failure.empty();

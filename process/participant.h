@@ -1,5 +1,5 @@
 // What every process of a stack does beside its own work: says that it is ready, hears that the run ends,
-// names faults when they begin and when they have gone, and reports once a second how it kept time.
+// names faults when they begin and when they have gone, and reports how it kept time.
 #pragma once
 
 #include <cstdint>
@@ -77,6 +77,7 @@ class Participant {
   void PublishFault(const fault_t& fault);
   void End(const std::string& code);
   void WatchRefusals();
+  void Publish(loop_histogram_t* histogram);
 
   Bus& bus_;
   Clock& clock_;

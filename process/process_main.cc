@@ -1,6 +1,5 @@
 #include "process/process_main.h"
 
-#include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
 
 #include <chrono>
@@ -11,6 +10,7 @@
 #include "bus/udpm_url.h"
 #include "logger/log_writer.h"
 #include "process/stop_signal.h"
+#include "process/words.h"
 
 namespace hydro {
 namespace {
@@ -79,19 +79,18 @@ class Recording {
 
 int RunProcess(const std::string& program, const CommonOptions& options, const ProcessBody& body) {
   return RunProgram(program, [&] {
-    // Words for a person go to stderr: stdout is for results.
-    spdlog::set_default_logger(spdlog::stderr_color_mt(program));
-    spdlog::set_pattern("%H:%M:%S.%e %n: %v");
+    const Words words(program);  // on stderr: stdout is for results
     const StackConfig config = LoadStackConfig(options.config, options.overrides);
     CatchStopSignals();
     const ProcessSection& section = SectionOf(config, program);
     RealTimeRequest request;
     request.priority = section.priority;
     request.cpu = section.cpu;
-    request.lock_memory = section.priority > 0;
+    request.lock_memory = section.lock_memory;
     ApplyRealTime(request);
     UdpmBus bus(config.bus.url,
-                MakeAuthenticator(config.bus.resolved_key_file, Channels(config.bus.channel_suffix)));
+                MakeAuthenticator(config.bus.resolved_key_file, Channels(config.bus.channel_suffix)),
+                Receiving::kDirect);
     WarnOfOpenNetwork(program, config.bus);
     if (const std::string hint = bus.receive_buffer_hint(); !hint.empty()) spdlog::warn("{}", hint);
     Recording recording;

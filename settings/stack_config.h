@@ -136,11 +136,17 @@ struct NoiseSection {
   double arm_speed_resolution_rad_s = 0;
 };
 
+struct LoggerSection {
+  double memory_mb =
+      64;  // for what waits to be written; what comes when it is used up is left out of the log
+};
+
 struct ProcessSection {
   std::string program;  // hydro-plant, hydro-driver, hydro-pressure-ctrl, hydro-position-ctrl, hydro-logger
   std::string host;     // empty: any (started by a launch without --host, or on "localhost")
   int cpu = -1;         // processor to run on; -1: any
   int priority = 0;     // SCHED_FIFO priority 1..99; 0: ordinary scheduling
+  bool lock_memory = false;  // keep all memory resident; by default where there is a priority
 };
 
 struct StackConfig {
@@ -155,6 +161,7 @@ struct StackConfig {
   ReferenceSection reference;
   LimitsSection limits;
   NoiseSection noise;
+  LoggerSection logger;
   std::optional<DriverSection> driver;  // only a stack with hydro-driver needs it
   int64_t seed = 1;                     // --seed, [noise] seed
   std::vector<ProcessSection>

@@ -157,6 +157,11 @@ void ReadNoise(SectionReader section, NoiseSection* noise, int64_t* seed) {
   section.Finish();
 }
 
+void ReadLogger(SectionReader section, LoggerSection* logger) {
+  section.Number("memory_mb", &logger->memory_mb, {.min = 1, .max = 1e5});
+  section.Finish();
+}
+
 void ReadProcess(SectionReader section, ProcessSection* process) {
   std::vector<std::pair<std::string, std::string>> programs;
   for (const char* name :
@@ -168,6 +173,8 @@ void ReadProcess(SectionReader section, ProcessSection* process) {
   section.Text("host", &process->host);
   section.Integer("cpu", &process->cpu, -1, 1023);
   section.Integer("priority", &process->priority, 0, 99);
+  process->lock_memory = process->priority > 0;
+  section.Boolean("lock_memory", &process->lock_memory);
   section.Finish();
 }
 
@@ -220,6 +227,7 @@ void ReadSections(const TomlNode& root, const std::string& config_file, StackCon
   SectionReader limits = document.Section("limits");
   SectionReader noise = document.Section("noise");
   SectionReader driver = document.Section("driver");
+  SectionReader logger = document.Section("logger");
   document.Take("process");
   document.Finish();
 
@@ -233,6 +241,7 @@ void ReadSections(const TomlNode& root, const std::string& config_file, StackCon
   ReadLimits(std::move(limits), &config->limits);
   ReadNoise(std::move(noise), &config->noise, &config->seed);
   if (document.Has("driver")) config->driver = ReadDriver(std::move(driver));
+  ReadLogger(std::move(logger), &config->logger);
   ReadProcesses(document, &config->processes);
 }
 

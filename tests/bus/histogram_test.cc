@@ -86,5 +86,38 @@ TEST(HistogramTest, MergeAndReset) {
   EXPECT_EQ(low.Percentile(99), 0);
 }
 
+// Tests that ranges hold each value once, side by side in rising order, and are as narrow as promised: one
+// value below 32, at most 1/16 above.
+TEST(HistogramTest, Ranges) {
+  std::mt19937_64 random(1);
+  std::uniform_real_distribution<double> exponent(0, std::log(3.6e12));
+  Histogram histogram;
+  std::vector<int64_t> values;
+  for (int i = 0; i < 20'000; ++i) {
+    values.push_back(static_cast<int64_t>(std::exp(exponent(random))));
+    histogram.Record(values.back());
+  }
+  std::sort(values.begin(), values.end());
+  size_t next = 0;
+  int ranges = 0;
+  int64_t before = -1;
+  histogram.ForEachRange([&](int64_t first, int64_t last, int64_t count) {
+    ++ranges;
+    ASSERT_GT(first, before);
+    ASSERT_GE(last, first);
+    ASSERT_LE(last - first, first < 32 ? 0 : first / 16);
+    before = last;
+    int64_t expected = 0;
+    for (; next < values.size() && values[next] <= last; ++next) {
+      ASSERT_GE(values[next], first);
+      ++expected;
+    }
+    ASSERT_EQ(count, expected);
+  });
+  EXPECT_EQ(next, values.size());
+  EXPECT_LE(ranges, 700);
+  Histogram().ForEachRange([](int64_t, int64_t, int64_t) { FAIL() << "there is nothing"; });
+}
+
 }  // namespace
 }  // namespace hydro

@@ -11,7 +11,7 @@ SYNC_WORD = 0xEDA1DA01
 HEADER = struct.Struct(">IqqII")  # sync word, event number, timestamp us, channel length, data length
 
 # The fields after the 8 bytes of the type's hash, as in lcmtypes/: q int64, i int32, b int8 or boolean, d double,
-# s string (its length with the zero byte as int32, then the bytes).
+# s string (its length with the zero byte as int32, then the bytes), *FIELD int64 as many times as that field says.
 FIELDS = {
     "HYDRO_STATE": "utime:q tick:q session:q sequence:q time:d motor_angle:d motor_speed:d arm_angle:d arm_speed:d "
                    "p1:d p2:d voltage:d command_tick:q skipped_ticks:q",
@@ -27,6 +27,9 @@ FIELDS = {
                              "period_p50_us:d period_p99_us:d period_p999_us:d period_max_us:d latency_p50_us:d "
                              "latency_p99_us:d latency_p999_us:d latency_max_us:d missed_deadlines:q lost_messages:q "
                              "queue_depth:q",
+    "HYDRO_LOOP_HISTOGRAM": "utime:q session:q sequence:q role:s host:s quantity:s whole_run:b interval_s:d count:q "
+                            "lowest:q highest:q buckets:i bucket_first:*buckets bucket_last:*buckets "
+                            "bucket_count:*buckets",
     "HYDRO_LOG_PROGRESS": "utime:q tick:q session:q events:q queue_depth:q",
     "HYDRO_RUN": "utime:q session:q config_file:s config_text:s model_file:s model_text:s program:s version:s host:s "
                  "rate_hz:d seed:q",
@@ -49,7 +52,8 @@ class Type:
         pairs = [field.split(":") for field in fields.split()]
         self.tuple = collections.namedtuple(channel.title().replace("_", ""), [name for name, _ in pairs])
         self.codes = [code for _, code in pairs]
-        self.fixed = struct.Struct(">" + "".join(self.codes)) if "s" not in self.codes else None
+        varies = any(code == "s" or code.startswith("*") for code in self.codes)
+        self.fixed = None if varies else struct.Struct(">" + "".join(self.codes))
 
     def decode(self, data):
         if self.fixed:
@@ -62,6 +66,10 @@ class Type:
                 (length,) = struct.unpack_from(">i", data, at)
                 values.append(data[at + 4:at + 3 + length].decode())
                 at += 4 + length
+            elif code.startswith("*"):
+                length = values[self.tuple._fields.index(code[1:])]
+                values.append(struct.unpack_from(f">{length}q", data, at))
+                at += 8 * length
             else:
                 values.append(struct.unpack_from(">" + code, data, at)[0])
                 at += struct.calcsize(">" + code)
@@ -172,7 +180,9 @@ class Log:
         table = {"states": "HYDRO_STATE", "motor_commands": "HYDRO_MOTOR_COMMAND",
                  "pressure_commands": "HYDRO_PRESSURE_COMMAND", "arm_references": "HYDRO_ARM_REFERENCE",
                  "faults": "HYDRO_FAULT", "stops": "HYDRO_STOP", "statuses": "HYDRO_PROCESS_STATUS",
-                 "statistics": "HYDRO_LOOP_STATISTICS", "rearms": "HYDRO_REARM", "descriptions": "HYDRO_RUN", "progress": "HYDRO_LOG_PROGRESS"}
+                 "statistics": "HYDRO_LOOP_STATISTICS", "histograms": "HYDRO_LOOP_HISTOGRAM",
+                 "rearms": "HYDRO_REARM",
+                 "descriptions": "HYDRO_RUN", "progress": "HYDRO_LOG_PROGRESS"}
         if name not in table:
             raise AttributeError(name)
         return self._by_kind[table[name]]

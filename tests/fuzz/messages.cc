@@ -8,6 +8,7 @@
 #include "hydro/fault_t.hpp"
 #include "hydro/introduction_t.hpp"
 #include "hydro/log_progress_t.hpp"
+#include "hydro/loop_histogram_t.hpp"
 #include "hydro/loop_statistics_t.hpp"
 #include "hydro/motor_command_t.hpp"
 #include "hydro/pressure_command_t.hpp"
@@ -50,11 +51,11 @@ void Authenticate(const uint8_t* data, int size) {
 
 void Messages(const uint8_t* data, size_t size) {
   if (size == 0) return;
-  static const std::array<const MessageType*, 11> kTypes = {
+  static const std::array<const MessageType*, 12> kTypes = {
       &TypeOf<state_t>(),           &TypeOf<motor_command_t>(), &TypeOf<pressure_command_t>(),
       &TypeOf<arm_reference_t>(),   &TypeOf<fault_t>(),         &TypeOf<stop_t>(),
       &TypeOf<process_status_t>(),  &TypeOf<log_progress_t>(),  &TypeOf<run_description_t>(),
-      &TypeOf<loop_statistics_t>(), &TypeOf<introduction_t>()};
+      &TypeOf<loop_statistics_t>(), &TypeOf<introduction_t>(),  &TypeOf<loop_histogram_t>()};
   const MessageType& type = *kTypes[data[0] % kTypes.size()];
   // The type's own hash in front, or no input would get past it; the first bit says otherwise.
   std::vector<uint8_t> bytes;

@@ -4,6 +4,7 @@ namespace hydro::fuzz {
 
 const Target* FindTarget(std::string_view name) {
   static constexpr Target kTargets[] = {
+      {"packets", Packets},
       {"messages", Messages},
       {"processes", Processes},
       {"recorder", Recorder},

@@ -20,6 +20,7 @@ struct Target {
 // Null when there is none of that name.
 const Target* FindTarget(std::string_view name);
 
+void Packets(const uint8_t* data, size_t size);      // LCM's packets as they come from the network
 void Messages(const uint8_t* data, size_t size);     // messages as they come from the network
 void Processes(const uint8_t* data, size_t size);    // what controllers and the launch do with them
 void Recorder(const uint8_t* data, size_t size);     // what the logger does with them

@@ -1,10 +1,15 @@
 #include "logger/logger_app.h"
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include <atomic>
 #include <chrono>
 #include <filesystem>
+#include <fstream>
+#include <hydro/fault_t.hpp>
 #include <hydro/log_progress_t.hpp>
 #include <hydro/loop_statistics_t.hpp>
 #include <hydro/run_description_t.hpp>
@@ -21,6 +26,7 @@
 namespace hydro {
 namespace {
 
+using namespace std::chrono_literals;
 using testing::SmallStack;
 
 // The logger on an in-process bus; the test sends what it records.
@@ -180,6 +186,61 @@ TEST_F(LoggerAppTest, LatencyWhileTheWallClockIsSet) {
     EXPECT_GE(report.latency_p50_us, 0);
   }
   EXPECT_EQ(logger.Finish(), 0);
+}
+
+// Tests that a disk that is slower than the bus costs no more memory than was allowed: what has no room is
+// left out of the log, counted, and named as a fault, which goes when the disk has caught up. The disk is a
+// pipe that nobody reads for a while.
+TEST_F(LoggerAppTest, SlowDisk) {
+  ASSERT_EQ(mkfifo(file_.c_str(), 0600), 0);
+  const int disk = open(file_.c_str(), O_RDWR | O_CLOEXEC);
+  ASSERT_GE(disk, 0);
+  std::vector<fault_t> faults;
+  bus_.Subscribe<fault_t>("HYDRO_FAULT", [&](const fault_t& fault) { faults.push_back(fault); });
+  StackConfig config = SmallStack();
+  config.time.mode = TimeMode::kRealtime;
+  config.logger.memory_mb = 1;
+  LoggerApp logger(bus_, clock_, config, {file_, 0});
+  SendStates(0, 19'999);  // some 3.7 MB
+  logger.Poll();
+  Deliver();
+  ASSERT_EQ(faults.size(), 1u);
+  EXPECT_EQ(faults[0].code, "log_overflow");
+  EXPECT_NE(faults[0].active, 0);
+  EXPECT_GT(faults[0].value, 5000);
+  EXPECT_LT(faults[0].value, 20'000);
+
+  // The disk is read at last, until the logger has closed it.
+  std::vector<uint8_t> bytes;
+  std::thread reader([&] {
+    std::vector<uint8_t> buffer(1 << 16);
+    const int end = open(file_.c_str(), O_RDONLY | O_CLOEXEC);
+    close(disk);
+    for (ssize_t size; (size = read(end, buffer.data(), buffer.size())) > 0;) {
+      bytes.insert(bytes.end(), buffer.begin(), buffer.begin() + size);
+    }
+    close(end);
+  });
+  const auto give_up = std::chrono::steady_clock::now() + 10s;
+  while (faults.size() < 2 && std::chrono::steady_clock::now() < give_up) {
+    clock_.AdvanceTo(clock_.Now() + 2s);
+    logger.Poll();
+    Deliver();
+    std::this_thread::yield();
+  }
+  EXPECT_EQ(logger.Finish(), 0);
+  reader.join();
+  ASSERT_EQ(faults.size(), 2u);
+  EXPECT_EQ(faults[1].active, 0);
+  std::filesystem::remove(file_);
+  std::ofstream(file_, std::ios::binary)
+      .write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+  // The oldest are all there, without a gap, and as many as were not counted; the logger's own reports on its
+  // progress, one to 16 states, count too.
+  const std::vector<int64_t> ticks = StateTicks(file_);
+  EXPECT_GE(static_cast<double>(ticks.size()) + faults[0].value, 20'000);
+  EXPECT_LE(static_cast<double>(ticks.size()) + faults[0].value, 20'000 * 17.0 / 16 + 10);
+  for (size_t i = 0; i < ticks.size(); ++i) ASSERT_EQ(ticks[i], static_cast<int64_t>(i));
 }
 
 }  // namespace

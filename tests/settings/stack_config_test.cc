@@ -36,6 +36,8 @@ TEST(StackConfigTest, DefaultsAndTicks) {
   EXPECT_EQ(config.processes[0].program, "hydro-plant");
   EXPECT_EQ(config.processes[2].program, "hydro-position-ctrl");
   EXPECT_EQ(config.processes[2].cpu, -1);
+  EXPECT_FALSE(config.processes[2].lock_memory);
+  EXPECT_EQ(config.logger.memory_mb, 64);
 }
 
 const char kEveryKey[] = R"(
@@ -111,6 +113,8 @@ motor_speed_resolution_rad_s = 0.4
 arm_angle_resolution_rad = 0.5
 arm_speed_resolution_rad_s = 0.6
 seed = 7
+[logger]
+memory_mb = 12.5
 [[process]]
 program = "hydro-driver"
 host = "rig"
@@ -118,6 +122,11 @@ cpu = 2
 priority = 80
 [[process]]
 program = "hydro-logger"
+lock_memory = true
+[[process]]
+program = "hydro-plant"
+priority = 1
+lock_memory = false
 )";
 
 // Tests that every key reaches its field.
@@ -185,12 +194,16 @@ TEST(StackConfigTest, ReadsEveryKey) {
   EXPECT_EQ(config.noise.arm_angle_resolution_rad, 0.5);
   EXPECT_EQ(config.noise.arm_speed_resolution_rad_s, 0.6);
   EXPECT_EQ(config.seed, 7);
-  ASSERT_EQ(config.processes.size(), 2u);
+  EXPECT_EQ(config.logger.memory_mb, 12.5);
+  ASSERT_EQ(config.processes.size(), 3u);
   EXPECT_EQ(config.processes[0].program, "hydro-driver");
   EXPECT_EQ(config.processes[0].host, "rig");
   EXPECT_EQ(config.processes[0].cpu, 2);
   EXPECT_EQ(config.processes[0].priority, 80);
+  EXPECT_TRUE(config.processes[0].lock_memory);  // by its priority
   EXPECT_EQ(config.processes[1].program, "hydro-logger");
+  EXPECT_TRUE(config.processes[1].lock_memory);
+  EXPECT_FALSE(config.processes[2].lock_memory);
   EXPECT_EQ(config.position_interval_ticks, 10);
   EXPECT_EQ(config.pressure_interval_ticks, 5);
   EXPECT_EQ(config.last_tick, 62500);

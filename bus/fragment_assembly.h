@@ -1,0 +1,43 @@
+// Puts messages together that LCM had to cut into several packets.
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace hydro {
+
+// Bounded: messages of at most 16 MiB, at most four unfinished at a time (the oldest makes room), and no more
+// memory than the packets had that came.
+class FragmentAssembly {
+ public:
+  struct Message {
+    std::string channel;
+    std::vector<uint8_t> data;
+  };
+
+  // Takes a fragment, the whole packet, from a sender. Returns the message when this was the last piece it
+  // lacked; a packet that is not a proper fragment is ignored.
+  std::optional<Message> Take(uint64_t sender, const uint8_t* packet, size_t size);
+
+ private:
+  struct Piece {
+    size_t offset = 0;
+    std::vector<uint8_t> data;
+    bool have = false;
+  };
+  struct Unfinished {
+    uint64_t sender = 0;
+    uint32_t sequence = 0;
+    size_t size = 0;  // of all the data
+    std::string channel;
+    std::vector<Piece> pieces;
+  };
+  static std::optional<Message> Joined(const Unfinished& whole);
+
+  std::deque<Unfinished> unfinished_;
+};
+
+}  // namespace hydro

@@ -1,0 +1,44 @@
+// A queue for what passes through a loop: after it has been as long as it gets, it allocates nothing more.
+#pragma once
+
+#include <cstddef>
+#include <utility>
+#include <vector>
+
+namespace hydro {
+
+template <class Value>
+class RingQueue {
+ public:
+  // Room for `capacity` (a power of two) before it grows; it doubles when it must.
+  explicit RingQueue(size_t capacity = 64) : values_(capacity) {}
+
+  bool empty() const { return first_ == end_; }
+  size_t size() const { return end_ - first_; }
+  const Value& front() const { return values_[first_ & (values_.size() - 1)]; }
+  const Value& back() const { return values_[(end_ - 1) & (values_.size() - 1)]; }
+
+  void push_back(const Value& value) {
+    if (size() == values_.size()) Grow();
+    values_[end_++ & (values_.size() - 1)] = value;
+  }
+  void pop_front() { ++first_; }
+  void clear() { first_ = end_ = 0; }
+
+ private:
+  void Grow() {
+    std::vector<Value> larger(2 * values_.size());
+    for (size_t i = 0; i < values_.size(); ++i) {
+      larger[i] = std::move(values_[(first_ + i) & (values_.size() - 1)]);
+    }
+    end_ -= first_;
+    first_ = 0;
+    values_ = std::move(larger);
+  }
+
+  std::vector<Value> values_;
+  size_t first_ = 0;  // counts on; the position is modulo the capacity
+  size_t end_ = 0;
+};
+
+}  // namespace hydro

@@ -1,0 +1,35 @@
+#include "launch/timing_files.h"
+
+#include "logger/new_file.h"
+#include "settings/input_error.h"
+#include "timing/timing_report.h"
+
+namespace hydro {
+namespace {
+
+constexpr char kEnding[] = ".json";
+
+void WriteText(const std::string& name, const std::string& text) {
+  NewFile file(name, Opening::kTemporary);
+  file.Write(text.data(), text.size());
+  file.Finish();
+}
+
+}  // namespace
+
+TimingFiles::TimingFiles(const std::string& json) : json_(json) {
+  if (!json.ends_with(kEnding) || json.size() == sizeof kEnding - 1) {
+    throw InputError("--timing: found " + json + ", allowed is a name that ends in .json");
+  }
+  page_ = json.substr(0, json.size() - (sizeof kEnding - 1)) + ".html";
+  // Opened and left without a word: only the attempt counts.
+  const NewFile json_file(json_, Opening::kTemporary);
+  const NewFile page_file(page_, Opening::kTemporary);
+}
+
+void TimingFiles::Write(const std::vector<TimedProcess>& processes, const std::string& source) const {
+  WriteText(json_, TimingJson(processes, source));
+  WriteText(page_, TimingPage(processes, source));
+}
+
+}  // namespace hydro

@@ -1,0 +1,28 @@
+// The files of hydro-launch --timing: REPORT.json and REPORT.html beside it.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "timing/timing_record.h"
+
+namespace hydro {
+
+class TimingFiles {
+ public:
+  // `json`: "REPORT.json". Throws InputError when its name ends otherwise or its folder cannot be written, so
+  // that a run does not have to end before that is known.
+  explicit TimingFiles(const std::string& json);
+
+  // Writes both, each whole or not at all. Throws WriteError or InputError.
+  void Write(const std::vector<TimedProcess>& processes, const std::string& source) const;
+
+  const std::string& json() const { return json_; }
+  const std::string& page() const { return page_; }
+
+ private:
+  std::string json_;
+  std::string page_;
+};
+
+}  // namespace hydro

@@ -1,0 +1,118 @@
+#include "logger/event_queue.h"
+
+#include <algorithm>
+#include <cstring>
+#include <utility>
+
+namespace hydro {
+namespace {
+
+constexpr size_t kChunkSize = 256u << 10;
+
+struct Header {
+  int64_t utime;
+  Clock::TimePoint arrived;
+  uint32_t channel_size;
+  uint32_t size;
+};
+
+}  // namespace
+
+EventQueue::EventQueue(size_t limit) : limit_(std::max(limit, kChunkSize)) {
+  // So that the lists of pieces never move.
+  waiting_chunks_.reserve(limit_ / kChunkSize + 1);
+  free_.reserve(limit_ / kChunkSize + 1);
+}
+
+int64_t EventQueue::Push(std::string_view channel, const void* data, size_t size, int64_t utime,
+                         Clock::TimePoint arrived) {
+  const size_t needed = sizeof(Header) + channel.size() + size;
+  const std::lock_guard lock(mutex_);
+  if (waiting_chunks_.empty() || waiting_chunks_.back().size - waiting_chunks_.back().used < needed) {
+    if (!MakeRoom(needed)) {
+      ++dropped_;
+      return 0;
+    }
+  }
+  Chunk& chunk = waiting_chunks_.back();
+  uint8_t* to = chunk.bytes.get() + chunk.used;
+  const Header header{utime, arrived, static_cast<uint32_t>(channel.size()), static_cast<uint32_t>(size)};
+  std::memcpy(to, &header, sizeof header);
+  std::memcpy(to + sizeof header, channel.data(), channel.size());
+  if (size > 0) std::memcpy(to + sizeof header + channel.size(), data, size);
+  chunk.used += needed;
+  ++chunk.events;
+  return ++waiting_;
+}
+
+// Appends an empty piece in which `needed` bytes have room; false where the limit forbids it.
+bool EventQueue::MakeRoom(size_t needed) {
+  if (needed <= kChunkSize && !free_.empty()) {
+    waiting_chunks_.push_back(std::move(free_.back()));
+    free_.pop_back();
+    return true;
+  }
+  const size_t size = std::max(needed, kChunkSize);
+  while (memory_ + size > limit_ && !free_.empty()) {
+    memory_ -= free_.back().size;
+    free_.pop_back();
+  }
+  if (memory_ + size > limit_) return false;
+  memory_ += size;
+  waiting_chunks_.push_back({std::make_unique_for_overwrite<uint8_t[]>(size), size, 0, 0});
+  return true;
+}
+
+EventQueue::Batch EventQueue::Take() {
+  Batch batch;
+  batch.queue_ = this;
+  batch.chunks_.reserve(limit_ / kChunkSize + 1);
+  const std::lock_guard lock(mutex_);
+  batch.chunks_.swap(waiting_chunks_);
+  return batch;
+}
+
+void EventQueue::GiveBack(std::vector<Chunk>* chunks) {
+  const std::lock_guard lock(mutex_);
+  for (Chunk& chunk : *chunks) {
+    waiting_ -= chunk.events;
+    if (chunk.size == kChunkSize) {
+      chunk.used = 0;
+      chunk.events = 0;
+      free_.push_back(std::move(chunk));
+    } else {
+      memory_ -= chunk.size;  // an event larger than a piece: its own goes
+    }
+  }
+}
+
+EventQueue::Batch::~Batch() {
+  if (queue_ != nullptr && !chunks_.empty()) queue_->GiveBack(&chunks_);
+}
+
+size_t EventQueue::Batch::Read(const Chunk& chunk, size_t at, Event* event) {
+  Header header;
+  const uint8_t* from = chunk.bytes.get() + at;
+  std::memcpy(&header, from, sizeof header);
+  event->channel = {reinterpret_cast<const char*>(from + sizeof header), header.channel_size};
+  event->data = from + sizeof header + header.channel_size;
+  event->size = header.size;
+  event->utime = header.utime;
+  event->arrived = header.arrived;
+  return at + sizeof header + header.channel_size + header.size;
+}
+
+int64_t EventQueue::waiting() const {
+  const std::lock_guard lock(mutex_);
+  return waiting_;
+}
+int64_t EventQueue::dropped() const {
+  const std::lock_guard lock(mutex_);
+  return dropped_;
+}
+size_t EventQueue::memory() const {
+  const std::lock_guard lock(mutex_);
+  return memory_;
+}
+
+}  // namespace hydro

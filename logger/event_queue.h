@@ -1,0 +1,89 @@
+// What was received and waits to be written: between the thread that receives and the one that writes.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <string_view>
+#include <vector>
+
+#include "bus/clock.h"
+
+namespace hydro {
+
+// Never holds more memory than its limit: where the disk is slower than the bus for longer than that lasts,
+// what comes then is refused and counted. Memory is taken in pieces as it is needed, and used again.
+class EventQueue {
+ public:
+  // `limit`: bytes, what is being written included; at least one piece.
+  explicit EventQueue(size_t limit);
+
+  struct Event {
+    std::string_view channel;
+    const uint8_t* data = nullptr;
+    size_t size = 0;
+    int64_t utime = 0;
+    Clock::TimePoint arrived{};  // monotonic, whatever happens to utime's clock
+  };
+
+  // Copies the event and returns how many wait then. 0: there was no room, and it was counted as dropped.
+  int64_t Push(std::string_view channel, const void* data, size_t size, int64_t utime,
+               Clock::TimePoint arrived = {});
+
+  int64_t waiting() const;  // events that have been pushed and not written
+  int64_t dropped() const;
+  size_t memory() const;  // bytes taken now
+
+  // Some of what waits, in order, and what it gives back when it is done with.
+  class Batch {
+   public:
+    Batch() = default;
+    Batch(Batch&& other) noexcept = default;
+    Batch& operator=(Batch&&) = delete;
+    ~Batch();
+
+    bool empty() const { return chunks_.empty(); }
+    // Calls `use(event)` for each.
+    template <class Use>
+    void ForEach(Use&& use) const {
+      for (const Chunk& chunk : chunks_) {
+        for (size_t at = 0; at < chunk.used;) {
+          Event event;
+          at = Read(chunk, at, &event);
+          use(event);
+        }
+      }
+    }
+
+   private:
+    friend class EventQueue;
+    struct Chunk {
+      std::unique_ptr<uint8_t[]> bytes;
+      size_t size = 0;
+      size_t used = 0;
+      int64_t events = 0;
+    };
+    static size_t Read(const Chunk& chunk, size_t at, Event* event);
+
+    EventQueue* queue_ = nullptr;
+    std::vector<Chunk> chunks_;
+  };
+
+  // All that waits now; empty when nothing does. One batch at a time.
+  Batch Take();
+
+ private:
+  using Chunk = Batch::Chunk;
+  bool MakeRoom(size_t needed);
+  void GiveBack(std::vector<Chunk>* chunks);
+
+  const size_t limit_;
+  mutable std::mutex mutex_;  // guards all below
+  std::vector<Chunk> waiting_chunks_;
+  std::vector<Chunk> free_;
+  size_t memory_ = 0;
+  int64_t waiting_ = 0;
+  int64_t dropped_ = 0;
+};
+
+}  // namespace hydro

@@ -1,0 +1,94 @@
+"""hydro-launch puts each process where its [[process]] section says: processor, priority, locked memory."""
+
+import os
+import unittest
+
+import stack
+
+
+def permitted():
+    """Whether this user may have real-time priority and locked memory here: asked of the kernel, in a child."""
+    child = os.fork()
+    if child == 0:
+        try:
+            os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(1))
+            with open("/proc/self/limits", encoding="utf-8") as limits:
+                locked = next(line for line in limits if line.startswith("Max locked memory"))
+            os._exit(0 if os.geteuid() == 0 or "unlimited" in locked else 1)
+        except OSError:
+            os._exit(1)
+    return os.waitpid(child, 0)[1] == 0
+
+
+def locked_kb(pid):
+    with open(f"/proc/{pid}/status", encoding="utf-8") as status:
+        return int(next(line for line in status if line.startswith("VmLck")).split()[1])
+
+
+class PlacementTest(stack.TestCase):
+    def start_with(self, sections):
+        """A launch of demo.toml with these [[process]] sections; returns {role: pid} when the run is under way."""
+        with open(stack.config("demo.toml"), encoding="utf-8") as file:
+            text = file.read()
+        text = text[:text.index("[[process]]")]
+        text = text.replace("models/table1.toml", os.path.join(stack.CONFIG, "models", "table1.toml"))
+        for section in sections:
+            text += "\n[[process]]\n" + "".join(f"{key} = {value}\n" for key, value in section.items())
+        config = self.path("placed.toml")
+        with open(config, "w", encoding="utf-8") as file:
+            file.write(text)
+        self.launched = self.launch(config, "--duration", "0", "--log", self.path("run.lcmlog"))
+        log = stack.LiveLog(self, self.path("run.lcmlog"))
+        log.wait_for_tick(100)
+        return {status.role: status.pid for status in log.messages["HYDRO_PROCESS_STATUS"]}
+
+    def threads(self, pid):
+        threads = []
+        for task in os.listdir(f"/proc/{pid}/task"):
+            with open(f"/proc/{pid}/task/{task}/comm", encoding="utf-8") as name:
+                if name.read().strip() != "words":
+                    threads.append(int(task))
+        return threads
+
+    # Tests processor, priority and memory of every program, each with other values, the logger included: of all
+    # threads, because a thread without them would hold up the others. Only the one that speaks to people has nobody
+    # waiting for it.
+    def test_each_program(self):
+        if not permitted():
+            self.skipTest("real-time priority and locked memory are not permitted to this user")
+        cpus = sorted(os.sched_getaffinity(0))
+        wanted = {
+            "plant": (cpus[-1], 12, None),
+            "pressure_ctrl": (cpus[0], 11, None),
+            "position_ctrl": (cpus[-1], 10, "false"),
+            "logger": (cpus[0], 0, "true"),
+        }
+        sections = []
+        for role, (cpu, priority, lock) in wanted.items():
+            section = {"program": f'"{stack.PROGRAMS[role]}"', "cpu": cpu, "priority": priority}
+            if lock:
+                section["lock_memory"] = lock
+            sections.append(section)
+        pids = self.start_with(sections)
+        self.assertEqual(set(pids), set(wanted))
+        for role, (cpu, priority, lock) in wanted.items():
+            for thread in self.threads(pids[role]):
+                self.assertEqual(os.sched_getaffinity(thread), {cpu}, role)
+                self.assertEqual(os.sched_getscheduler(thread), os.SCHED_FIFO if priority else os.SCHED_OTHER, role)
+                self.assertEqual(os.sched_getparam(thread).sched_priority, priority, role)
+            # By default memory is locked where there is a priority; the key says otherwise.
+            is_locked = locked_kb(pids[role]) > 0
+            self.assertEqual(is_locked, lock != "false" and (priority > 0 or lock == "true"), role)
+        self.assertEqual(self.launched.stderr, "")
+
+    # Tests that without these keys the kernel's own choice is left alone.
+    def test_nothing_asked_for(self):
+        pids = self.start_with([{"program": f'"{stack.PROGRAMS[role]}"'} for role in stack.PROGRAMS])
+        for role, pid in pids.items():
+            self.assertEqual(os.sched_getaffinity(pid), os.sched_getaffinity(0), role)
+            self.assertEqual(os.sched_getscheduler(pid), os.SCHED_OTHER, role)
+            self.assertEqual(locked_kb(pid), 0, role)
+
+
+if __name__ == "__main__":
+    unittest.main()

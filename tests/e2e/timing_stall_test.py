@@ -1,0 +1,87 @@
+"""A process stands still for 2.5 s: the run goes on afterwards, and what was missed is counted, by whom it concerns."""
+
+import unittest
+
+import event_log
+import timing_case
+
+STALL = 2.5  # s
+STALE = 0.3  # s, limits.stale_input_s: above what wake-ups are late by on a busy machine
+MOST = int(STALL * timing_case.RATE)
+
+
+class StallTest(timing_case.TimingCase):
+    def stall(self, role, *options):
+        self.start_stack("--set", f"limits.stale_input_s={STALE}", *options)
+        self.hold(role, STALL)
+        # Control is back when the law acts again on states from after the stall.
+        states = self.live.count("HYDRO_STATE")
+        resumed = self.live.wait_for("HYDRO_STATE", lambda s: True, "a state after the stall", start=states)
+        self.live.wait_for("HYDRO_MOTOR_COMMAND", lambda c: c.status == event_log.LAW and c.tick > resumed.tick,
+                           "a command of the law after the stall", start=self.live.count("HYDRO_MOTOR_COMMAND"))
+        self.live.wait_for_tick(self.live.messages["HYDRO_STATE"][-1].tick + 300)
+        log = self.finish()
+        # Whatever happened: ticks once and in order, samples in their phase, causes before effects.
+        skipped = self.check_ticks(log)
+        self.check_phase(log)
+        self.check_cause_and_effect(log)
+        return log, skipped
+
+    # Tests that a plant that stood still skips all ticks of that time in one go, counts them, and says so in its next
+    # state; the slow loop counts the samples that there were none for.
+    def test_plant(self):
+        # At rest: the voltage of the moment acts for as long as the plant stands still.
+        log, skipped = self.stall("plant", "--set", "reference.steps=[[0, 0]]", "--set", "noise={}")
+        longest = max(s.skipped_ticks for s in log.states)
+        self.assertGreaterEqual(longest, 0.9 * MOST)
+        self.assertGreaterEqual(skipped, longest)
+        self.assertEqual(self.histogram(log, "plant", "skipped").highest, longest)
+        self.assertGreaterEqual(self.totals(log)["position_ctrl"].missed_deadlines, longest // timing_case.INTERVAL - 1)
+        self.assertEqual(self.totals(log)["pressure_ctrl"].lost_messages, 0)  # nothing was sent, nothing is lost
+
+    # Tests that a pressure loop that stood still counts the states that it did not get, one for one.
+    def test_pressure_ctrl(self):
+        log, _ = self.stall("pressure_ctrl")
+        answered = {c.tick for c in log.motor_commands if c.status != event_log.STOPPED}
+        unanswered = [s.tick for s in log.states if s.tick not in answered and s.tick < max(answered)]
+        total = self.totals(log)["pressure_ctrl"]
+        # It loses pressure commands too; of those that it did not lose some may never have been in force.
+        used = {c.pressure_command_tick for c in log.motor_commands}
+        unused = [c for c in log.pressure_commands if c.tick not in used]
+        print(f"{len(unanswered)} states unanswered, {total.lost_messages} messages lost")
+        self.assertGreaterEqual(total.lost_messages, len(unanswered))
+        self.assertLessEqual(total.lost_messages, len(unanswered) + len(unused))
+        # What was sent meanwhile either waited or was lost.
+        waited = self.histogram(log, "pressure_ctrl", "queue_depth").highest
+        self.assertGreaterEqual(total.lost_messages + waited, len(self.while_held(log.states)))
+
+    # Tests that a slow loop that stood still goes on in its phase and counts the samples and states it missed.
+    def test_position_ctrl(self):
+        log, _ = self.stall("position_ctrl")
+        total = self.totals(log)["position_ctrl"]
+        sampled = {c.tick for c in log.pressure_commands}
+        last = max(sampled)
+        due = [s.tick for s in log.states if s.tick % timing_case.INTERVAL == 0 and s.tick < last]
+        missed = [tick for tick in due if tick not in sampled]
+        # What was due and had a state, and what the plant itself had skipped.
+        absent = last // timing_case.INTERVAL + 1 - len([t for t in due if t != last]) - 1
+        self.assertEqual(total.missed_deadlines, len(missed) + absent)
+        waited = self.histogram(log, "position_ctrl", "queue_depth").highest
+        self.assertGreaterEqual(total.lost_messages + waited, len(self.while_held(log.states)))
+
+    # Tests that a logger that stood still neither disturbs control nor hides what it did not get.
+    def test_logger(self):
+        self.start_stack("--set", f"limits.stale_input_s={STALE}")
+        before = self.live.count("HYDRO_STATE")
+        self.hold("logger", STALL)
+        self.live.wait_for("HYDRO_STATE", lambda s: s.tick > before + MOST, "a state after the stall")
+        self.live.wait_for_tick(self.live.messages["HYDRO_STATE"][-1].tick + 300)
+        log = self.finish()
+        absent = sum(len(numbers) for kind in event_log.NUMBERED
+                     for numbers in event_log.missing_numbers(log.of(kind)).values())
+        self.assertEqual(self.totals(log)["logger"].lost_messages, absent)
+        self.assertEqual(self.totals(log)["plant"].lost_messages, 0)
+
+
+if __name__ == "__main__":
+    unittest.main()
