@@ -127,7 +127,7 @@ void LoggerApp::CountSequence(CausalOrder::Kind kind, const RawMessage& message)
 
 void LoggerApp::Enqueue(std::string_view channel, const uint8_t* data, size_t size, int64_t utime,
                         Clock::TimePoint arrived) {
-  largest_queue_ = std::max(largest_queue_, queue_.Push(channel, data, size, utime));
+  largest_queue_ = std::max(largest_queue_, queue_.Push(channel, data, size, utime, arrived));
   largest_queue_total_ = std::max(largest_queue_total_, largest_queue_);
 }
 
