@@ -24,6 +24,7 @@
 
 #include "bus/udpm_bus.h"
 #include "plant/plant_app.h"
+#include "plant/simulated_rig.h"
 #include "position_ctrl/position_app.h"
 #include "pressure_ctrl/pressure_app.h"
 #include "tests/free_udp_port.h"
@@ -46,7 +47,8 @@ class Loop {
       : bus_(url, nullptr, Receiving::kDirect), begin_(std::move(begin)), end_(std::move(end)) {}
 
   void RunPlant(const StackConfig& config) {
-    PlantApp plant(bus_, clock_, config);
+    SimulatedRig rig(config);
+    PlantApp plant(bus_, clock_, config, rig);
     bus_.Subscribe<motor_command_t>("HYDRO_MOTOR_COMMAND", [this](const motor_command_t&) { Watch(); });
     plant.Run();
   }
