@@ -297,8 +297,9 @@ TEST(AuthenticatedChannelsTest, AreAll) {
   EXPECT_THAT(table,
               testing::UnorderedElementsAre(channels.state, channels.motor_command, channels.pressure_command,
                                             channels.arm_reference, channels.run, channels.loop_statistics,
-                                            channels.fault, channels.stop, channels.process_status,
-                                            channels.log_progress, channels.introduction));
+                                            channels.loop_histogram, channels.fault, channels.stop,
+                                            channels.rearm, channels.process_status, channels.log_progress,
+                                            channels.introduction));
   for (const std::string& channel : table) EXPECT_LE(("REFUSED_" + channel).size(), 63u);
 }
 

@@ -61,7 +61,7 @@ TEST(RealTimeTest, DoesNothingUnasked) {
 
 // Tests that each refusal gives exactly one line that names what was refused and how to permit it.
 TEST(RealTimeTest, DegradesWithOneWarningEach) {
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#ifdef HYDRO_SANITIZED
   GTEST_SKIP() << "the sanitizers answer mlockall() themselves";
 #endif
   const Outcome outcome = InChild([] {

@@ -124,7 +124,7 @@ priority = 80
 program = "hydro-logger"
 lock_memory = true
 [[process]]
-program = "hydro-plant"
+program = "hydro-pressure-ctrl"
 priority = 1
 lock_memory = false
 )";

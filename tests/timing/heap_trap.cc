@@ -26,7 +26,7 @@ thread_local int64_t allocations = 0;
 
 }  // namespace
 
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#ifdef HYDRO_SANITIZED
 
 namespace hydro {
 const bool kHeapTrapWorks = false;
