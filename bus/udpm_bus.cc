@@ -98,7 +98,7 @@ int WaitReadable(int fd, Bus::TimePoint deadline) {
 }  // namespace
 
 UdpmBus::UdpmBus(const std::string& url, std::unique_ptr<Authenticator> authenticator, Receiving receiving)
-    : authenticator_(std::move(authenticator)), encoded_(kFirstEncodedSize) {
+    : encoded_(kFirstEncodedSize), authenticator_(std::move(authenticator)) {
   std::string lcm_url = url;
   if (url != "memq://") {
     UdpmUrl parsed = ParseUdpmUrl(url);
