@@ -13,11 +13,16 @@ ROLES = ("plant", "pressure_ctrl", "position_ctrl", "logger")
 
 
 class TimingCase(stack.TestCase):
-    def start_stack(self, *options):
-        """The four processes in real time, without an end; the log of a logger that nothing disturbs."""
+    def start_stack(self, *options, few_may_wait=None):
+        """The four processes in real time, without an end. Of `few_may_wait`, a role, the receive buffer is small."""
         self.log_file = self.path("run.lcmlog")
         self.run_ = self.stack(stack.config("demo.toml"), "--time", "realtime", "--duration", "0", *options)
-        self.live = self.run_.start_all(log=self.log_file)
+        for role, more in (("logger", ("-o", self.log_file)), ("position_ctrl", ()), ("pressure_ctrl", ()),
+                           ("plant", ("--expect", "logger"))):
+            if role == few_may_wait:
+                more += ("--set", f"bus.url={self.url}&recv_buf_size=32768")
+            self.run_.start(role, *more)
+        self.live = stack.LiveLog(self, self.log_file)
         self.live.wait_for_tick(200)
 
     def hold(self, role, seconds):
