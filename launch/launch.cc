@@ -126,8 +126,9 @@ int StackLaunch::Run() {
     CheckEarlyEnd();
     RepeatStop();
   }
-  TellOtherHosts();
   HearLastReports();
+  OnStopHeard();  // our processes may have heard it, and ended, before we have
+  TellOtherHosts();
   for (const std::string& line : watch_.summary().Lines()) Say(line);
   WriteTiming();
   // The terminal may be slow or stopped; a second Ctrl-C still gets us out.

@@ -14,9 +14,9 @@ RAMP = 200  # ticks, the default of limits.pressure_ramp_s
 BAD = ("--loss", LOSS, "--delay", DELAY, "--jitter", JITTER, "--seed", 7)
 # limits.stale_input_s is above a round trip and what wake-ups are late by on a shared machine. The gains of demo.toml, made
 # for an immediate network, let the arm swing by 0.2 rad where a round trip takes 40 ms: these are for that.
-PATIENT = ("--set", "limits.stale_input_s=0.2", "--set", "position.c1=2000", "--set", "position.c2=400")
-# rad, of steps of 0.3 to 0.5: the machine of the tests may itself be late for half of the ticks.
-SETTLED = 0.08
+DESIGNED_FOR_IT = ("--set", "limits.stale_input_s=0.2", "--set", "position.c1=2000", "--set", "position.c2=400")
+# rad, of steps of 0.1 (two_hosts.GENTLE) or 0.3: the machine of the tests may itself be late for half of the ticks.
+SETTLED = 0.05
 # Channels whose messages are numbered, and from which host they come.
 RIG_CHANNELS = ("HYDRO_STATE", "HYDRO_MOTOR_COMMAND")
 DESK_CHANNELS = ("HYDRO_PRESSURE_COMMAND", "HYDRO_ARM_REFERENCE")
@@ -75,7 +75,7 @@ class BadNetworkTest(BadNetworkCase):
     # Tests that in real time the stack rides out loss, delay and overtaking, is safe in an outage, settles after it,
     # and that each host's log tells exactly what was lost on the way to it.
     def test_realtime(self):
-        self.run_both("--time", "realtime", "--duration", "10", *PATIENT, logs=two_hosts.HOSTS)
+        self.run_both("--time", "realtime", "--duration", "10", *DESIGNED_FOR_IT, *two_hosts.GENTLE, logs=two_hosts.HOSTS)
         record = self.relay_record()
         self.assertTrue(record["outage"])
         for channel in RIG_CHANNELS:
@@ -88,13 +88,13 @@ class BadNetworkTest(BadNetworkCase):
         self.assert_loss_is_told(record, self.log_of("rig"), "b>a", DESK_CHANNELS)
 
         log = event_log.Log(self.log_of("rig"))
-        # On the plant's own host nothing is lost.
+        # On the plant's own host nothing is lost (the plant waits for one logger, which may have been the other one).
         for channel in RIG_CHANNELS:
-            self.assertEqual(event_log.missing_numbers(log.of(channel)), {}, channel)
+            numbers = [message.sequence for message in log.of(channel)]
+            self.assertEqual(numbers, list(range(numbers[0], numbers[-1] + 1)), channel)
         self.assert_safe_in_outage(log, AT_REST)
         self.assertLess(abs(two_hosts.final_error(log)), SETTLED)
-        # The plant itself, whose pressure loop is on its own host, never had a reason to stop.
-        self.assertEqual({f.code for f in log.faults if f.source == "plant"} - {"late_plant", "logger_gone"}, set())
+        self.assertEqual([f for f in log.faults if f.latched], [])
 
 
 class OutageInMotionTest(BadNetworkCase):
@@ -103,7 +103,7 @@ class OutageInMotionTest(BadNetworkCase):
     # Tests an outage while the arm is on its way: it is at rest on its target in the end, or the run has ended with a limit
     # and zero volts; which of the two depends on where the last pressure took it.
     def test_realtime(self):
-        launches = self.start_both("--time", "realtime", "--duration", "8", *PATIENT, logs=("rig",))
+        launches = self.start_both("--time", "realtime", "--duration", "8", *DESIGNED_FOR_IT, logs=("rig",))
         code = launches["rig"].wait(90)
         log = event_log.Log(self.log_of("rig"))
         self.assert_safe_in_outage(log, IN_MOTION)

@@ -15,6 +15,12 @@ URL = f"udpm://{GROUP}:{PORT}?ttl=1"  # nothing crosses with ttl=0
 HOSTS = ("rig", "desk")
 
 
+# Small steps from a standing start and back: a machine that is late for many ticks does not take the arm to its limit.
+GENTLE = ("--set", "reference.steps=[[0.2, 0.1], [2.2, 0.0], [4.4, 0.1]]")
+# Nothing on such a machine is late by that much.
+PATIENT = ("--set", "limits.stale_input_s=5")
+
+
 def ip(*arguments):
     subprocess.run(["ip", *arguments], check=True, capture_output=True, text=True)
 
