@@ -236,7 +236,7 @@ Fitted Fit(const Hypothesis& hypothesis, const std::vector<const RunData*>& runs
     // The Schur complement of the start's block.
     MatrixXd information = normal.topLeftCorner(p, p);
     VectorXd gradient = normal.topRightCorner(p, 1);
-    if (n > p) {
+    if (n > p && p > 0) {
       MatrixXd inner = normal.block(p, p, n - p, n - p);
       inner.diagonal().array() += 1e-12 * inner.diagonal().maxCoeff() + 1e-300;
       const Eigen::LDLT<MatrixXd> solve(inner);
