@@ -29,8 +29,12 @@ void Store(uint32_t value, size_t size, uint8_t* bytes) {
   for (size_t i = 0; i < size; ++i) bytes[i] = static_cast<uint8_t>(value >> (8 * (size - 1 - i)));
 }
 
-bool SendAll(int fd, iovec* parts, size_t count) {
+// The destination is named each time: a connected socket keeps its source address, and of an interface that
+// is down it would drop what it sends without an error.
+bool SendAll(int fd, const sockaddr_in& destination, iovec* parts, size_t count) {
   msghdr message{};
+  message.msg_name = const_cast<sockaddr_in*>(&destination);
+  message.msg_namelen = sizeof destination;
   message.msg_iov = parts;
   message.msg_iovlen = count;
   while (true) {
@@ -45,20 +49,19 @@ iovec Part(const void* data, size_t size) { return {const_cast<void*>(data), siz
 }  // namespace
 
 UdpmSocket::UdpmSocket(const UdpmUrl& url) : packet_(kLcmLargestPacket + 1) {
-  sockaddr_in group{};
-  group.sin_family = AF_INET;
-  group.sin_port = htons(url.port);
-  inet_pton(AF_INET, url.group.c_str(), &group.sin_addr);
-  sockaddr_in any = group;
+  group_.sin_family = AF_INET;
+  group_.sin_port = htons(url.port);
+  inet_pton(AF_INET, url.group.c_str(), &group_.sin_addr);
+  sockaddr_in any = group_;
   any.sin_addr.s_addr = htonl(INADDR_ANY);
   ip_mreq membership{};
-  membership.imr_multiaddr = group.sin_addr;
+  membership.imr_multiaddr = group_.sin_addr;
   membership.imr_interface.s_addr = htonl(INADDR_ANY);
 
   sender_ = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
   receiver_ = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
   const auto address = [](const sockaddr_in& a) { return reinterpret_cast<const sockaddr*>(&a); };
-  const bool open = sender_ >= 0 && receiver_ >= 0 && connect(sender_, address(group), sizeof group) == 0 &&
+  const bool open = sender_ >= 0 && receiver_ >= 0 &&
                     SetOption(sender_, IPPROTO_IP, IP_MULTICAST_TTL, static_cast<unsigned char>(url.ttl)) &&
                     SetOption(sender_, IPPROTO_IP, IP_MULTICAST_LOOP, static_cast<unsigned char>(1)) &&
                     SetOption(receiver_, SOL_SOCKET, SO_REUSEADDR, 1);
@@ -101,7 +104,7 @@ bool UdpmSocket::Send(std::string_view channel, const void* data, size_t size) {
   Store(sequence_++, 4, header.data() + 4);
   std::array<iovec, 4> parts{Part(header.data(), header.size()), Part(channel.data(), channel.size()),
                              Part("", 1), Part(data, size)};
-  return SendAll(sender_, parts.data(), parts.size());
+  return SendAll(sender_, group_, parts.data(), parts.size());
 }
 
 bool UdpmSocket::SendFragments(std::string_view channel, const uint8_t* data, size_t size) {
@@ -127,7 +130,7 @@ bool UdpmSocket::SendFragments(std::string_view channel, const uint8_t* data, si
     std::array<iovec, 4> parts{Part(header.data(), header.size()),
                                Part(channel.data(), first ? channel.size() : 0), Part("", first ? 1 : 0),
                                Part(data + offset, piece)};
-    if (!SendAll(sender_, parts.data(), parts.size())) return false;
+    if (!SendAll(sender_, group_, parts.data(), parts.size())) return false;
     offset += piece;
   }
   return true;

@@ -6,6 +6,8 @@
 // allocated.
 #pragma once
 
+#include <netinet/in.h>
+
 #include <cstdint>
 #include <string>
 #include <string_view>
@@ -50,6 +52,7 @@ class UdpmSocket {
   bool SendFragments(std::string_view channel, const uint8_t* data, size_t size);
 
   int receiver_ = -1;
+  sockaddr_in group_{};
   int sender_ = -1;
   uint32_t sequence_ = 0;
   bool all_ = false;

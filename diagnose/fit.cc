@@ -160,6 +160,7 @@ Fitted Fit(const Hypothesis& hypothesis, const std::vector<const RunData*>& runs
   }
   std::vector<std::vector<double>> start_values(runs.size());
   std::vector<std::unique_ptr<RunCost>> costs;
+  std::unique_ptr<ceres::CostFunction> prior;
 
   AllRuns all_runs(values, start_values, options.jobs);
   ceres::Problem::Options with_all_runs;
@@ -190,8 +191,8 @@ Fitted Fit(const Hypothesis& hypothesis, const std::vector<const RunData*>& runs
   if (options.prior != nullptr && !free.empty()) {
     const Map<const VectorXd> centre(options.prior->centre.data(), static_cast<Eigen::Index>(free.size()));
     const Map<const VectorXd> weight(options.prior->weight.data(), static_cast<Eigen::Index>(free.size()));
-    problem.AddResidualBlock(new ceres::NormalPrior(weight.cwiseSqrt().asDiagonal(), centre), nullptr,
-                             values.data());
+    prior = std::make_unique<ceres::NormalPrior>(weight.cwiseSqrt().asDiagonal(), centre);
+    problem.AddResidualBlock(prior.get(), nullptr, values.data());
   }
   FLAGS_minloglevel = google::GLOG_FATAL;  // a step that cannot be simulated is no error
   ceres::Solver::Options solver;

@@ -114,6 +114,8 @@ class NetworkTest(fault_case.FaultCase):
     # Tests an interface that is taken down and up: what cannot be sent is lost and reported, and ends nobody.
     def test_interface(self):
         def back():
+            # With no states to answer, the loop sends its report once a second only.
+            self.desk[0].wait_for("fault unsent_message")
             ip("-n", DESK, "link", "set", "veth0", "up")
             ip("-n", DESK, "route", "add", "224.0.0.0/4", "dev", "veth0")  # it went with the interface
         self.cable_out_and_in(lambda: ip("-n", DESK, "link", "set", "veth0", "down"), back)
