@@ -94,7 +94,7 @@ class PlantApp {
   std::optional<int64_t> awake_again_;  // real time: the tick at which a loop that was stopped went on
   RoundTripMonitor round_trips_;
   RingQueue<motor_command_t> waiting_commands_;  // received, not yet in force, by tick
-  std::optional<motor_command_t> command_;        // in force
+  std::optional<motor_command_t> command_;       // in force
   int64_t newest_command_tick_ = -1;
   int64_t newest_pressure_command_tick_ = -1;
   std::map<int64_t, int64_t> log_progress_;  // tick by logger session

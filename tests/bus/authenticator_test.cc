@@ -294,12 +294,11 @@ TEST(AuthenticatedChannelsTest, AreAll) {
   const Channels channels(std::string(32, 'x'));
   const std::vector<std::string> table = AuthenticatedChannels(channels);
   EXPECT_EQ(table.front(), channels.introduction);
-  EXPECT_THAT(table,
-              testing::UnorderedElementsAre(channels.state, channels.motor_command, channels.pressure_command,
-                                            channels.arm_reference, channels.run, channels.loop_statistics,
-                                            channels.loop_histogram, channels.fault, channels.stop,
-                                            channels.rearm, channels.process_status, channels.log_progress,
-                                            channels.introduction));
+  EXPECT_THAT(table, testing::UnorderedElementsAre(
+                         channels.state, channels.motor_command, channels.pressure_command,
+                         channels.arm_reference, channels.run, channels.loop_statistics,
+                         channels.loop_histogram, channels.fault, channels.stop, channels.rearm,
+                         channels.process_status, channels.log_progress, channels.introduction));
   for (const std::string& channel : table) EXPECT_LE(("REFUSED_" + channel).size(), 63u);
 }
 

@@ -315,9 +315,10 @@ INSTANTIATE_TEST_SUITE_P(
                         std::vector<std::string>{kIntroductions, "STATE", "COMMAND", "PING", "RUN"});
                     return std::make_unique<UdpmBus>(FreeBusUrl(), std::move(authenticator));
                   }},
-        Transport{
-            "UdpmDirect", false,
-            [](SimulatedClock*) { return std::make_unique<UdpmBus>(FreeBusUrl(), nullptr, Receiving::kDirect); }},
+        Transport{"UdpmDirect", false,
+                  [](SimulatedClock*) {
+                    return std::make_unique<UdpmBus>(FreeBusUrl(), nullptr, Receiving::kDirect);
+                  }},
         Transport{"Memq", false, [](SimulatedClock*) { return std::make_unique<UdpmBus>("memq://"); }}),
     [](const testing::TestParamInfo<Transport>& param) { return param.param.name; });
 

@@ -1,5 +1,5 @@
-// What the loops of a stack do not do once they run: take memory, and call anything that may block. Built with
-// the optimised programs only (CMakeLists.txt).
+// What the loops of a stack do not do once they run: take memory, and call anything that may block. Built
+// with the optimised programs only (CMakeLists.txt).
 #include <gtest/gtest.h>
 #include <linux/filter.h>
 #include <linux/seccomp.h>
