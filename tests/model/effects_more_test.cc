@@ -6,6 +6,7 @@
 #include <functional>
 #include <set>
 
+#include "model/effects/effect.h"
 #include "model/state_history.h"
 #include "tests/model/model_case.h"
 
@@ -42,6 +43,12 @@ Terms<double> TermsOf(const Rig& rig, double voltage) {
   return x;
 }
 
+Terms<double> TermsAt(const Equations& equations, const std::vector<double>& state, double* rate) {
+  Terms<double> x;
+  equations.Evaluate(0, 0, Mode{}, state.data(), rate, &x);
+  return x;
+}
+
 // Tests that the pressure difference of a pump at rest falls as an orifice lets it: its root falls evenly, at
 // k beta/V.
 TEST(TurbulentLeakage, RootFallsEvenly) {
@@ -56,6 +63,16 @@ TEST(TurbulentLeakage, RootFallsEvenly) {
     const double root = std::sqrt(sign * before) - kStiffness * 2e-5;
     EXPECT_NEAR(rig.Measure().p2 - rig.Measure().p1, sign * root * root, 0.01);
   }
+}
+
+// Tests that the orifice is at the pump, where a line lies between it and the actuator.
+TEST(TurbulentLeakage, SeesThePumpsPressures) {
+  ModelDescription model = Sealed({"pump.turbulent_leakage", {{"k", 2e-5}}, {}});
+  model.effects.push_back(Wave(300, 0.2, 0.05));
+  const Equations equations(model, Held(Shaft::kClamped));
+  double rate[kMaxStates];
+  const Terms<double> x = TermsAt(equations, {0, 0, 100, 300, 100, 0, 500, 0}, rate);
+  EXPECT_NEAR(x.cross_flow, 2e-5 * std::sqrt(400), 1e-8);
 }
 
 // Tests that pressure above `set` flows off with the time constant V/(beta conductance), and that what is
@@ -108,6 +125,13 @@ TEST(EntrainedAir, SoftAtLowPressure) {
   actuator.Advance(0, TimeToFall(800, 150, 1e-4, beta));
   EXPECT_NEAR(actuator.Measure().p1, 150, 0.01);
   EXPECT_LT(beta(150), 0.4 * beta(800));
+
+  const Equations equations(Sealed({"fluid.entrained_air", {{"air_fraction", 0.02}}, {}}),
+                            Held(Shaft::kClamped));
+  double rate[kMaxStates];
+  const Terms<double> x = TermsAt(equations, {0, 0, 150, 800}, rate);  // each side has its own
+  EXPECT_NEAR(x.beta_1, beta(150), 1e-4 * beta(150));
+  EXPECT_NEAR(x.beta_2, beta(800), 1e-4 * beta(800));
 }
 
 // Tests the same where the modulus grows with pressure, and that only the liquid's does beside air.
@@ -117,6 +141,11 @@ TEST(Stiffening, StiffAtHighPressure) {
   Actuator actuator(Sealed(stiffening, 1e-4), HeldAt(800));
   actuator.Advance(0, TimeToFall(800, 150, 1e-4, beta));
   EXPECT_NEAR(actuator.Measure().p1, 150, 1e-3);
+  const Equations equations(Sealed(stiffening), Held(Shaft::kClamped));
+  double rate[kMaxStates];
+  const Terms<double> x = TermsAt(equations, {0, 0, 150, 800}, rate);  // each side has its own
+  EXPECT_DOUBLE_EQ(x.beta_1, beta(150));
+  EXPECT_DOUBLE_EQ(x.beta_2, beta(800));
 
   ModelDescription both = Sealed(stiffening, 1e-4);
   both.effects.push_back({"fluid.entrained_air", {{"air_fraction", 0.02}}, {}});
@@ -200,6 +229,21 @@ TEST(SpeedTorqueLimit, BeyondNoLoadSpeedAndBehindALag) {
   equations.Rates(0, 5, mode, state, rate, margin);
   EXPECT_GT(margin[4], 0);
   EXPECT_DOUBLE_EQ(rate[kMotorSpeed], -(4 + 0.01455 * 300) / 0.03);
+
+  // Back: to the line when the pump has slowed down, to no limit when torque is asked for against the speed.
+  const Mode beyond = mode;
+  state[kMotorSpeed] = 199;
+  equations.Rates(0, 5, mode, state, rate, margin);
+  ASSERT_LT(margin[4], 0);
+  equations.Cross(4, 0, 5, state, &mode);
+  EXPECT_EQ(mode.effects[1], 1);
+  mode = beyond;
+  state[kMotorSpeed] = 300;
+  state[4] = -5;
+  equations.Rates(0, 5, mode, state, rate, margin);
+  ASSERT_LT(margin[4], 0);
+  equations.Cross(4, 0, 5, state, &mode);
+  EXPECT_EQ(mode.effects[1], 0);
 }
 
 // Tests that what is read follows the pressure with a time constant, and that the gain acts on what is read.
@@ -218,6 +262,19 @@ TEST(PressureLag, FollowsItsClosedForm) {
     EXPECT_NEAR(rig.Measure().p2, 1.05 * read, 1e-4) << Name(integrator);
     EXPECT_NEAR(rig.Measure().p1, 1.05 * read + 3, 1e-4) << Name(integrator);
   }
+}
+
+// Tests that each transducer follows its own side.
+TEST(PressureLag, EachSideHasItsOwn) {
+  const Equations equations(Sealed({"sensor.pressure_lag", {{"tau", 0.02}}, {}}), Held(Shaft::kClamped));
+  const std::vector<double> state = {0, 0, 200, 300, 150, 400};
+  double rate[kMaxStates];
+  TermsAt(equations, state, rate);
+  EXPECT_DOUBLE_EQ(rate[4], (200 - 150) / 0.02);
+  EXPECT_DOUBLE_EQ(rate[5], (300 - 400) / 0.02);
+  const Measurement read = equations.Measure(0, state.data());
+  EXPECT_EQ(read.p1, 150);
+  EXPECT_EQ(read.p2, 400);
 }
 
 // Tests that without friction the motor's energy is the work of its torque less the magnets', and that at
@@ -336,6 +393,22 @@ TEST(AccumulatorStiffness, LosesNoFluid) {
       EXPECT_EQ(lowest < 95, !bypass);
     }
   }
+}
+
+// Tests the same at one instant where the bypass is open and so is the valve, which stands for both: both
+// sides are held, and the accumulator gives what leaks back to it.
+TEST(AccumulatorStiffness, HoldsBothSidesOfTheBypass) {
+  const Equations equations(Table1Model({{"accumulator.stiffness", {{"stiffness", 5e3}}, {}}}), Bypassed());
+  const double state[5] = {0, 0, 120, 120, 100};
+  Mode mode;
+  mode.valve_1 = 1;
+  double rate[kMaxStates];
+  Terms<double> x;
+  equations.Evaluate(0, 0, mode, state, rate, &x);
+  ASSERT_GT(x.outer_flow_1 + x.outer_flow_2, 1e-5);
+  EXPECT_EQ(rate[kP1], rate[4]);
+  EXPECT_EQ(rate[kP2], rate[4]);
+  EXPECT_NEAR((rate[kP1] + rate[kP2]) / kStiffness + rate[4] / 5e3, 0, 1e-12);
 }
 
 // Tests that one channel is inverted, offset included, and no other.
@@ -477,6 +550,21 @@ TEST(Flexure, ArmSwingsOnItsSpring) {
                 1e-2);
   }
   EXPECT_LT(lowest, -0.12);  // it swings well beyond its rest at -mgl/K
+}
+
+// Tests that the spring starts at rest under whatever pressures a run starts with.
+TEST(Flexure, StartsAtRest) {
+  const Equations equations(Sealed({"arm.flexure", {{"stiffness", 6000}, {"damping", 60}}, {}}),
+                            Held(Shaft::kFree));
+  std::vector<double> state = {0, 0, 150, 180, 0.1, 0, 0};
+  double rate[kMaxStates];
+  Terms<double> x = TermsAt(equations, state, rate);
+  const Effect& flexure = *equations.data().effects[0];
+  x.own = equations.data().own.data() + flexure.first_parameter();
+  flexure.Start(x, state.data());
+  EXPECT_DOUBLE_EQ(state[6], 0.1 + 3.68 * (180 - 150) / 6000);
+  TermsAt(equations, state, rate);
+  EXPECT_NEAR(rate[6], 0, 1e-12);
 }
 
 // Tests that an effect which counts for nothing changes nothing.

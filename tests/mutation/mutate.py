@@ -3,7 +3,7 @@
 
 Changes one thing at a time in the model or a control law (a sign, a dropped leakage term, a valve's direction ...), builds
 the tests and runs them: they must fail. Works on a private copy of the source tree; the checkout is not touched. A run of
-the whole list takes about 20 minutes on two free cores, so it is no part of ./check.
+the whole list takes more than half an hour on two free cores, so it is no part of ./check.
 
 The tests of the folder that a mutation changes run first, up to the first that fails; those of experiments/ when none of
 them does. First of all, everything must pass without a mutation.
