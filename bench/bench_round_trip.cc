@@ -173,6 +173,7 @@ void Measure(Placement placement, const std::string& title, int rounds) {
                 us(times[i].Percentile(99.9)), static_cast<long long>(times[i].Count()),
                 p50 / us(times[0].Percentile(50)), p99 / us(times[0].Percentile(99)));
   }
+  std::fflush(stdout);
 }
 
 }  // namespace

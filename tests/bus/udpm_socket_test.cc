@@ -81,7 +81,7 @@ std::string Text(size_t size) {
 // Tests that liblcm understands what is sent: nothing, a little, the most that one packet holds, and what
 // takes several.
 TEST(UdpmSocketTest, LcmUnderstandsIt) {
-  const std::string url = FreeBusUrl();
+  const std::string url = FreeBusUrl() + "&recv_buf_size=4194304";  // four packets of 64 KB wait at a time
   UdpmSocket socket(ParseUdpmUrl(url));
   Lcm lcm(url);
   for (const size_t size : {0u, 1u, 128u, 65499u - 5u, 65499u - 4u, 65487u, 200'000u}) {
