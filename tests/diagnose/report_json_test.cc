@@ -81,7 +81,7 @@ TEST(ReportJson, Nothing) {
 TEST(ReportJson, ForeignBytes) {
   Diagnosis diagnosis = testing::EmptyDiagnosis();
   diagnosis.runs = {"caf\xe9"};
-  EXPECT_NO_THROW(static_cast<void>(Json::parse(ReportJson(diagnosis, "", 1))));
+  EXPECT_TRUE(Json::accept(ReportJson(diagnosis, "", 1)));
 }
 
 // Tests the names of verdicts.
