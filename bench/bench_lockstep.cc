@@ -106,7 +106,7 @@ std::unique_ptr<Authenticator> KeyedOrNot(bool with_key) {
 
 template <class Controller>
 void RunController(const std::string& url, const StackConfig& config, bool with_key) {
-  UdpmBus bus(url, KeyedOrNot(with_key));
+  UdpmBus bus(url, KeyedOrNot(with_key), Receiving::kDirect);  // as the programs do
   WallClock clock;
   Controller controller(bus, clock, config);
   RunApp(bus, clock, controller);
@@ -118,7 +118,7 @@ double StackTicksPerSecond(int64_t ticks, const std::string& config_file, bool w
   config.last_tick = ticks;
   const ChildProcess fast([&] { RunController<PressureApp>(url, config, with_key); });
   const ChildProcess slow([&] { RunController<PositionApp>(url, config, with_key); });
-  UdpmBus bus(url, KeyedOrNot(with_key));
+  UdpmBus bus(url, KeyedOrNot(with_key), Receiving::kDirect);  // as the programs do
   WallClock clock;
   // The plant's own messages say when it started and ended.
   int64_t started = 0, ended = 0;

@@ -70,7 +70,7 @@ StackConfig ConfigOf(const Options& options, const std::string& url, const std::
 }
 
 void RunPlant(const StackConfig& config, PlantResult* result) {
-  UdpmBus bus(config.bus.url);
+  UdpmBus bus(config.bus.url, nullptr, Receiving::kDirect);
   WallClock clock;
   const Channels channels(config.bus.channel_suffix);
   SimulatedRig rig(config);
@@ -88,7 +88,7 @@ void RunPlant(const StackConfig& config, PlantResult* result) {
 
 template <class Controller>
 void RunController(const StackConfig& config) {
-  UdpmBus bus(config.bus.url);
+  UdpmBus bus(config.bus.url, nullptr, Receiving::kDirect);
   WallClock clock;
   Controller controller(bus, clock, config);
   RunApp(bus, clock, controller);
