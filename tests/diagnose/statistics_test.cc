@@ -89,6 +89,33 @@ TEST(Intervals, HoldTheTruthWithCorrelatedNoise) {
   for (const int covered : Covered(0.8, 1)) EXPECT_GE(covered, 26);
 }
 
+// Tests that a time is not said to be known better than sensors are immediate, however little noise there is.
+TEST(Intervals, TimesAreNotSharperThanSensors) {
+  const ModelDescription lagging = Table1With({{"amp.lag", {{"tau", 0.002}}, {}}});
+  const std::vector<RunData> runs = ClampedPair(lagging, 2, 1);
+  const Fitted fitted = Fit(WithFree(lagging, {}), PointersTo(runs), StartsOf(runs), {});
+  ASSERT_TRUE(fitted.ok());
+  const std::vector<Interval> intervals = Intervals(fitted, PointersTo(runs), 1);
+  ASSERT_EQ(intervals.size(), 1u);
+  const double sample = runs[0].duration() / static_cast<double>(runs[0].samples() - 1);
+  EXPECT_GT(intervals[0].high - intervals[0].low, 2 * 1.96 * 0.02 * sample);
+  EXPECT_LT(intervals[0].high - intervals[0].low, 0.2 * sample);
+}
+
+// Tests that no interval holds what cannot be: friction that drives.
+TEST(Intervals, StayWithinPhysics) {
+  Parameters smooth = Table1();
+  smooth.T_s = 0;
+  const ModelDescription model{"smooth", smooth, {}};
+  const std::vector<RunData> runs = ClampedPair(model, 0.5, 1);
+  const Fitted fitted = Fit(WithFree(model, {"T_s"}), PointersTo(runs), StartsOf(runs), {});
+  ASSERT_TRUE(fitted.ok());
+  const std::vector<Interval> intervals = Intervals(fitted, PointersTo(runs), 1);
+  ASSERT_EQ(intervals.size(), 1u);
+  EXPECT_EQ(intervals[0].low, 0);
+  EXPECT_GT(intervals[0].high, 0);
+}
+
 // Tests that where there is no effect p-values are uniform: of falls that chance gives, chi-squared times
 // what residuals are worth.
 TEST(PValue, IsUniformWithoutAnEffect) {
