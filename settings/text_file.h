@@ -17,6 +17,14 @@ std::string PathBeside(const std::string& beside, const std::string& file);
 // `text` in double quotes on one line: control characters escaped, the middle of long texts left out.
 std::string Quoted(std::string_view text);
 
+// `text` as a terminal may see it: tabs and valid UTF-8 stay, whatever could move its cursor, change its
+// colours or make one line two (control characters, and bytes that are no UTF-8, which 8-bit terminals take
+// for such) becomes "\\x1b".
+std::string Printable(std::string_view text);
+
+// Printable, line by line: its own line ends stay.
+std::string PrintableLines(std::string_view text);
+
 // The shortest decimal that reads back as the same double.
 std::string ShortestNumber(double value);
 
