@@ -36,6 +36,7 @@ SummaryVerb::SummaryVerb(CommandLine& line) {
 }
 
 int SummaryVerb::Run() const {
+  CheckKeeps(json_, {log_});
   const RunLog log = ReadRunLog(log_, SuffixOption(suffix_));
   if (log.messages.states.empty()) throw InputError(log_ + ": found no state; a log of a run is needed");
   const Tracking tracking = TrackArm(log);
@@ -55,6 +56,8 @@ TimingVerb::TimingVerb(CommandLine& line) {
 }
 
 int TimingVerb::Run() const {
+  CheckKeeps(json_, {log_});
+  CheckKeeps(page_, {log_});
   const RunLog log = ReadRunLog(log_, SuffixOption(suffix_));
   TimingRecord record;
   for (const loop_statistics_t& report : log.statistics) record.Add(report);

@@ -3,6 +3,7 @@
 
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "settings/input_error.h"
 
@@ -13,6 +14,10 @@ std::string ReadTextFile(const std::string& file);
 
 // A path that `file` (absolute, or relative to the folder of `beside`) means.
 std::string PathBeside(const std::string& beside, const std::string& file);
+
+// Throws InputError where writing to `output` would replace one of `inputs`, under whatever name. Devices may
+// be both.
+void CheckKeeps(const std::string& output, const std::vector<std::string>& inputs);
 
 // `text` in double quotes on one line: control characters escaped, the middle of long texts left out.
 std::string Quoted(std::string_view text);

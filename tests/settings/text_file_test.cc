@@ -5,6 +5,8 @@
 namespace hydro {
 namespace {
 
+using ::testing::HasSubstr;
+
 // Tests that text stays as it is, and that what could command a terminal does not reach it.
 TEST(TextFileTest, Printable) {
   for (const char* text : {"", "a b\tc", "\xc3\xa4\xe2\x82\xac\xf0\x9f\x98\x80\xc2\xa0"}) {
@@ -24,6 +26,25 @@ TEST(TextFileTest, PrintableLines) {
   EXPECT_EQ(PrintableLines("a\n\n\033b\n"), "a\n\n\\x1bb\n");
   EXPECT_EQ(PrintableLines("a\nb"), "a\nb");
   EXPECT_EQ(PrintableLines(""), "");
+}
+
+class TextFileFolderTest : public FolderTest {};
+
+// Tests that a file is not written over while it is read, whatever it is called; others and devices may be.
+TEST_F(TextFileFolderTest, CheckKeeps) {
+  const std::string file = Write("a", "x");
+  const std::string other = Write("b", "x");
+  std::filesystem::create_symlink(file, folder_ / "link");
+  for (const std::string& name : {file, (folder_ / "." / "a").string(), (folder_ / "link").string()}) {
+    EXPECT_THAT(InputErrorOf([&] {
+                  CheckKeeps(name, {other, file});
+                }),
+                HasSubstr(name + ": found the name of a file"));
+  }
+  for (const std::string& name :
+       {std::string(), other, (folder_ / "none").string(), std::string("/dev/null")}) {
+    EXPECT_EQ(InputErrorOf([&] { CheckKeeps(name, {file, "", "/dev/null"}); }), "") << name;
+  }
 }
 
 }  // namespace
