@@ -9,6 +9,7 @@
 
 #include "launch/doctor_facts.h"
 #include "settings/stack_config.h"
+#include "settings/text_file.h"
 
 namespace hydro {
 namespace {
@@ -78,7 +79,7 @@ int RunDoctor(const std::string& config_file, const std::vector<std::string>& ov
               const std::string& host) {
   const DoctorTask task = TaskOf(config_file, overrides, host);
   const std::vector<Finding> findings = Diagnose(task, GatherFacts(task));
-  std::fputs(FindingsText(findings).c_str(), stdout);
+  std::fputs(PrintableLines(FindingsText(findings)).c_str(), stdout);
   return Problems(findings) == 0 ? 0 : 1;
 }
 

@@ -7,6 +7,8 @@
 #include <cerrno>
 #include <cstdlib>
 
+#include "settings/text_file.h"
+
 namespace hydro {
 namespace {
 
@@ -34,7 +36,7 @@ void LabelledOutput::Line(Stream stream, std::string_view label, std::string_vie
   line.append("[").append(label).append("]");
   if (colour_) line += "\033[0m";
   line.append(label_width_ > label.size() ? label_width_ - label.size() : 0, ' ');
-  line.append(" ").append(text).append("\n");
+  line.append(" ").append(Printable(text)).append("\n");
   queued_bytes_ += line.size();
   constexpr std::size_t kChunk = 64 * 1024;
   if (!queue_.empty() && queue_.back().stream == stream && queue_.back().bytes.size() < kChunk) {

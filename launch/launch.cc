@@ -6,12 +6,14 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <filesystem>
 #include <optional>
 #include <string>
 
 #include "bus/udpm_bus.h"
 #include "launch/stack_watch.h"
 #include "launch/timing_files.h"
+#include "logger/new_file.h"
 
 namespace hydro {
 namespace {
@@ -311,6 +313,22 @@ void StackLaunch::PublishStop() {
   }
 }
 
+// Before anything is started: a logger that finds it out later stops the stack, and with it one that somebody
+// else has running on this port.
+void CheckLog(const StackConfig& config, const LaunchPlan& plan, const std::string& file) {
+  const bool ours = std::any_of(plan.children.begin(), plan.children.end(),
+                                [](const ChildSpec& child) { return child.program() == "hydro-logger"; });
+  if (!ours) return;
+  CheckKeepsInputs(file, config);
+  std::error_code absent;
+  if (std::filesystem::is_fifo(file, absent))
+    return;  // who reads it would take the attempt for the whole log
+  if (IsBeingWritten(file)) {
+    throw InputError(file + ": is being written by another process; stop that one or give another name");
+  }
+  const NewFile attempt(file, Opening::kTemporary);
+}
+
 }  // namespace
 
 int Launch(const StackConfig& config, const LaunchPlan& plan, int out_fd, int err_fd,
@@ -320,7 +338,9 @@ int Launch(const StackConfig& config, const LaunchPlan& plan, int out_fd, int er
 
 int LaunchStack(const LaunchRequest& request) {
   const StackConfig config = LoadStackConfig(request.config_file, request.overrides);
-  return Launch(config, PlanLaunch(config, request, OwnFolder()), STDOUT_FILENO, STDERR_FILENO);
+  const LaunchPlan plan = PlanLaunch(config, request, OwnFolder());
+  CheckLog(config, plan, request.log_file);
+  return Launch(config, plan, STDOUT_FILENO, STDERR_FILENO);
 }
 
 }  // namespace hydro

@@ -9,6 +9,7 @@
 #include "launch/make_key.h"
 #include "launch/operator_request.h"
 #include "settings/command_line.h"
+#include "settings/text_file.h"
 
 namespace {
 
@@ -18,7 +19,9 @@ int Ask(decltype(hydro::StopStack)* request, const hydro::CommonOptions& options
                                                               hydro::Channels(config.bus.channel_suffix)));
   const hydro::WallClock clock;
   const hydro::OperatorResult result = request(bus, clock, config, {});
-  std::fprintf(result.exit_code == 0 ? stdout : stderr, "hydro-launch: %s\n", result.text.c_str());
+  // Names and reasons come from the network.
+  std::fprintf(result.exit_code == 0 ? stdout : stderr, "hydro-launch: %s\n",
+               hydro::Printable(result.text).c_str());
   return result.exit_code;
 }
 

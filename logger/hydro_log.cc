@@ -13,6 +13,7 @@
 #include "logger/table.h"
 #include "settings/command_line.h"
 #include "settings/input_error.h"
+#include "settings/text_file.h"
 
 namespace hydro {
 namespace {
@@ -28,7 +29,7 @@ class InfoVerb {
   }
   int Run() const {
     const LogInfo info = Summarise(ReadRunLog(log_, SuffixOption(suffix_)), si_);
-    std::fputs((json_ ? InfoJson(info) : InfoText(info)).c_str(), stdout);
+    std::fputs((json_ ? InfoJson(info) : PrintableLines(InfoText(info))).c_str(), stdout);
     return 0;
   }
 

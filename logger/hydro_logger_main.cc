@@ -18,6 +18,7 @@ int main(int argc, char** argv) {
   return hydro::RunProcess(
       "hydro-logger", options, [&](hydro::Bus& bus, hydro::Clock& clock, const hydro::StackConfig& config) {
         if (logger.file.empty()) throw hydro::InputError("-o FILE is required");
+        hydro::CheckKeepsInputs(logger.file, config);
         if (rotate_mb != 0 && !(rotate_mb >= 0.01 && rotate_mb <= 1e9)) {
           throw hydro::InputError("--rotate-mb: found " + hydro::ShortestNumber(rotate_mb) +
                                   ", allowed 0 (never) and 0.01 to 1e9");

@@ -7,6 +7,7 @@
 #include "logger/replay.h"
 #include "logger/tracking.h"
 #include "settings/input_error.h"
+#include "settings/text_file.h"
 #include "timing/timing_report.h"
 
 namespace hydro {
@@ -35,11 +36,12 @@ SummaryVerb::SummaryVerb(CommandLine& line) {
 }
 
 int SummaryVerb::Run() const {
+  CheckKeeps(json_, {log_});
   const RunLog log = ReadRunLog(log_, SuffixOption(suffix_));
   if (log.messages.states.empty()) throw InputError(log_ + ": found no state; a log of a run is needed");
   const Tracking tracking = TrackArm(log);
   const LogInfo info = Summarise(log, si_);
-  std::fputs(SummaryText(tracking, info, si_).c_str(), stdout);
+  std::fputs(PrintableLines(SummaryText(tracking, info, si_)).c_str(), stdout);
   if (!json_.empty()) WriteText(json_, SummaryJson(tracking, info));
   return 0;
 }
@@ -54,6 +56,8 @@ TimingVerb::TimingVerb(CommandLine& line) {
 }
 
 int TimingVerb::Run() const {
+  CheckKeeps(json_, {log_});
+  CheckKeeps(page_, {log_});
   const RunLog log = ReadRunLog(log_, SuffixOption(suffix_));
   TimingRecord record;
   for (const loop_statistics_t& report : log.statistics) record.Add(report);
@@ -63,7 +67,7 @@ int TimingVerb::Run() const {
     throw InputError(
         log_ + ": found no report of a loop (HYDRO_LOOP_STATISTICS); a log of a run of processes is needed");
   }
-  std::fputs(TimingText(processes).c_str(), stdout);
+  std::fputs(PrintableLines(TimingText(processes)).c_str(), stdout);
   if (!json_.empty()) WriteText(json_, TimingJson(processes, log_));
   if (!page_.empty()) WriteText(page_, TimingPage(processes, log_));
   return 0;

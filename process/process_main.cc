@@ -81,6 +81,7 @@ int RunProcess(const std::string& program, const CommonOptions& options, const P
   return RunProgram(program, [&] {
     const Words words(program);  // on stderr: stdout is for results
     const StackConfig config = LoadStackConfig(options.config, options.overrides);
+    CheckKeepsInputs(options.log, config);
     CatchStopSignals();
     const ProcessSection& section = SectionOf(config, program);
     RealTimeRequest request;

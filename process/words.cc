@@ -1,16 +1,31 @@
 #include "process/words.h"
 
+#include <limits.h>
+#include <poll.h>
 #include <pthread.h>
 #include <spdlog/async.h>
-#include <spdlog/sinks/stdout_color_sinks.h>
+#include <spdlog/sinks/base_sink.h>
 #include <spdlog/spdlog.h>
+#include <unistd.h>
 
+#include <algorithm>
+#include <atomic>
+#include <cerrno>
+#include <chrono>
 #include <csignal>
+#include <mutex>
+#include <string_view>
+
+#include "settings/text_file.h"
 
 namespace hydro {
 namespace {
 
+using namespace std::chrono_literals;
+
 constexpr size_t kMostLines = 256;
+constexpr auto kLastWords = 1s;
+constexpr int kLook_ms = 50;  // how often a thread that cannot write looks whether it should go on trying
 
 void OnThreadStart() {
   sigset_t all;
@@ -21,13 +36,51 @@ void OnThreadStart() {
 
 }  // namespace
 
-Words::Words(const std::string& name) {
+// Unlike spdlog's own it can give up, and it shows what came over the network as characters only.
+class Words::StderrSink : public spdlog::sinks::base_sink<std::mutex> {
+ public:
+  void GiveUpAt(std::chrono::steady_clock::time_point time) { give_up_ = time; }
+
+ protected:
+  void sink_it_(const spdlog::details::log_msg& message) override {
+    spdlog::memory_buf_t formatted;
+    formatter_->format(message, formatted);
+    const std::string_view line(formatted.data(), formatted.size());
+    Write(Printable(line.substr(0, line.find_last_not_of('\n') + 1)) + "\n");
+  }
+  void flush_() override {}
+
+ private:
+  void Write(std::string_view text) {
+    while (!text.empty()) {
+      pollfd writable{STDERR_FILENO, POLLOUT, 0};
+      const bool last_chance = std::chrono::steady_clock::now() >= give_up_.load();
+      if (poll(&writable, 1, last_chance ? 0 : kLook_ms) == 0) {
+        if (last_chance) return;
+        continue;
+      }
+      // As much as a pipe that can be written to has room for.
+      const ssize_t written = write(STDERR_FILENO, text.data(), std::min<size_t>(text.size(), PIPE_BUF));
+      if (written >= 0) {
+        text.remove_prefix(static_cast<size_t>(written));
+      } else if (errno != EINTR && errno != EAGAIN) {
+        return;  // nobody reads it any more
+      }
+    }
+  }
+
+  std::atomic<std::chrono::steady_clock::time_point> give_up_{std::chrono::steady_clock::time_point::max()};
+};
+
+Words::Words(const std::string& name) : sink_(std::make_shared<StderrSink>()) {
   spdlog::init_thread_pool(kMostLines, 1, OnThreadStart);
-  spdlog::set_default_logger(spdlog::create_async_nb<spdlog::sinks::stderr_color_sink_mt>(name));
+  spdlog::set_default_logger(std::make_shared<spdlog::async_logger>(
+      name, sink_, spdlog::thread_pool(), spdlog::async_overflow_policy::overrun_oldest));
   spdlog::set_pattern("%H:%M:%S.%e %n: %v");
 }
 
 Words::~Words() {
+  sink_->GiveUpAt(std::chrono::steady_clock::now() + kLastWords);
   spdlog::shutdown();  // writes what waits
 }
 

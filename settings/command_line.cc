@@ -280,10 +280,10 @@ int RunProgram(const std::string& program, const std::function<int()>& body) {
                  std::strerror(errno));
     return exit_code == 0 ? 1 : exit_code;
   } catch (const InputError& error) {
-    std::fprintf(stderr, "%s: %s\n", program.c_str(), error.what());
+    std::fprintf(stderr, "%s: %s\n", program.c_str(), Printable(error.what()).c_str());
     return 2;
   } catch (const std::exception& error) {
-    std::fprintf(stderr, "%s: %s\n", program.c_str(), error.what());
+    std::fprintf(stderr, "%s: %s\n", program.c_str(), Printable(error.what()).c_str());
     return 1;
   }
 }

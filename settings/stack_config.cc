@@ -43,6 +43,10 @@ StackConfig LoadStackConfig(const std::string& file, const std::vector<std::stri
   return config;
 }
 
+void CheckKeepsInputs(const std::string& output, const StackConfig& config) {
+  CheckKeeps(output, {config.file, config.model.resolved_file, config.bus.resolved_key_file});
+}
+
 StackConfig ParseStackConfig(const std::string& config_text, const std::string& config_name,
                              const std::string& model_text, const std::string& model_name) {
   TomlNode root = ParseToml(config_text, config_name);

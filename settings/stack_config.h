@@ -183,6 +183,9 @@ StackConfig LoadStackConfig(const std::string& file, const std::vector<std::stri
 StackConfig ParseStackConfig(const std::string& config_text, const std::string& config_name,
                              const std::string& model_text, const std::string& model_name);
 
+// Throws InputError where writing to `output` would replace a file that `config` was read from, or its key.
+void CheckKeepsInputs(const std::string& output, const StackConfig& config);
+
 // Builds the function that a specification describes.
 std::unique_ptr<Trajectory> MakeTrajectory(const TrajectorySpec& spec);
 

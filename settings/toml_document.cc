@@ -10,6 +10,60 @@
 namespace hydro {
 namespace {
 
+constexpr int kDeepest = 16;  // parts of a key; what is read here has up to three
+
+// toml++ limits how deep arrays and inline tables go, but not a key of a hundred thousand parts, whose tables
+// in tables then exhaust the stack. This looks at nothing else: where the text is no TOML, toml++ says so.
+class KeyDepth {
+ public:
+  explicit KeyDepth(std::string_view text) : text_(text) {}
+
+  // Line of the first key that is too deep; 0: none is.
+  int FirstTooDeep() {
+    int depth = 1;
+    while (at_ < text_.size()) {
+      const char c = text_[at_];
+      if (c == '"' || c == '\'') {
+        SkipString(c);
+        continue;
+      }
+      if (c == '#') {
+        at_ = std::min(text_.find('\n', at_), text_.size());
+        continue;
+      }
+      if (c == '.') {
+        if (++depth > kDeepest) return line_;
+      } else if (c == '\n' || c == '=' || c == ',' || c == '{' || c == '[' || c == ']') {
+        depth = 1;
+      }
+      Step(1);
+    }
+    return 0;
+  }
+
+ private:
+  bool At(std::string_view what) const { return text_.substr(at_, what.size()) == what; }
+
+  void Step(size_t count) {
+    for (; count > 0 && at_ < text_.size(); --count, ++at_) line_ += text_[at_] == '\n' ? 1 : 0;
+  }
+
+  void SkipString(char quote) {
+    const std::string thrice(3, quote);
+    const std::string end = At(thrice) ? thrice : std::string(1, quote);
+    Step(end.size());
+    while (at_ < text_.size() && !At(end)) {
+      if (end.size() == 1 && text_[at_] == '\n') return;  // no TOML
+      Step(quote == '"' && text_[at_] == '\\' ? 2 : 1);
+    }
+    Step(end.size());
+  }
+
+  std::string_view text_;
+  size_t at_ = 0;
+  int line_ = 1;
+};
+
 TomlNode Convert(const toml::node& from, const std::string& name) {
   TomlNode node;
   node.place = name + ":" + std::to_string(from.source().begin.line);
@@ -107,6 +161,11 @@ TomlNode ArrayNode(std::vector<TomlNode> items) {
 }
 
 TomlNode ParseToml(const std::string& text, const std::string& name) {
+  if (const int line = KeyDepth(text).FirstTooDeep(); line > 0) {
+    throw InputError(name + ":" + std::to_string(line) + ": syntax: found a key of more than " +
+                     std::to_string(kDeepest) + " parts (a.b.c has three), allowed " +
+                     std::to_string(kDeepest));
+  }
   try {
     return Convert(toml::parse(text, name), name);
   } catch (const toml::parse_error& error) {

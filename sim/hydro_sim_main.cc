@@ -13,6 +13,7 @@ namespace {
 
 int Run(const hydro::CommonOptions& options, const std::string& file) {
   const hydro::StackConfig config = hydro::LoadStackConfig(options.config, options.overrides);
+  hydro::CheckKeepsInputs(file, config);
   hydro::CatchStopSignals();
   std::unique_ptr<hydro::LogWriter> writer;
   if (!file.empty()) writer = std::make_unique<hydro::LogWriter>(file, hydro::Opening::kTemporary);

@@ -86,6 +86,26 @@ class BadInputTest(stack.TestCase):
             with self.subTest(program=name):
                 self.assert_refused(name, [*arguments, *output], pattern)
 
+    # Tests that no program writes its log over the configuration that it reads, or over the model.
+    def test_log_over_what_is_read(self):
+        model = self.write("model.toml", open(os.path.join(stack.CONFIG, "models", "table1.toml"), "rb").read())
+        config = self.write("mine.toml", self.demo.replace(os.path.join(stack.CONFIG, "models", "table1.toml"), model))
+        for name, (option, _) in CONFIG_PROGRAMS.items():
+            for file in (config, model):
+                with self.subTest(program=name, file=file), open(file, "rb") as before:
+                    text = before.read()
+                    arguments = [config, option, file, "--duration", "0.1", "--set", f"bus.url={self.url}"]
+                    self.assert_refused(name, arguments, f"{file}: found the name of a file that is read")
+                    with open(file, "rb") as after:
+                        self.assertEqual(after.read(), text)
+
+    # Tests that a launch finds out about a log that cannot be written before it starts anything: what it starts and
+    # stops would stop whom it finds on the port.
+    def test_log_that_cannot_be_written(self):
+        nowhere = self.path(os.path.join("none", "run.lcmlog"))
+        self.assert_refused("hydro-launch", [self.write("mine.toml", self.demo), "--log", nowhere],
+                            f"{nowhere}: cannot be created")
+
     # Tests a table of malformed configurations on every program that takes one.
     def test_configurations(self):
         for what, old, new, pattern in CONFIGS:

@@ -57,6 +57,14 @@ TEST_F(LabelledOutputTest, LinesOfTwoStreamsDoNotMix) {
   EXPECT_EQ(Read(), "[a] " + longer + "\n[b] short\n[a] " + longer + "\n");
 }
 
+// Tests that a text from the network cannot command the terminal, nor pass for a line of another process.
+TEST_F(LabelledOutputTest, EscapesControlCharacters) {
+  LabelledOutput output(pipe_[1], pipe_[1], false);
+  output.Line(Stream::kOut, "a", "\033[2Jx\n[b] y");
+  output.Flush();
+  EXPECT_EQ(Read(), "[a] \\x1b[2Jx\\x0a[b] y\n");
+}
+
 // Tests that colours surround the label only.
 TEST_F(LabelledOutputTest, ColoursTheLabel) {
   LabelledOutput output(pipe_[1], pipe_[1], true);

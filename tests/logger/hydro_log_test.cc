@@ -108,6 +108,12 @@ TEST_F(HydroLogTest, BadUsageAndInput) {
       {{"import", Path("log"), "-o", out}, Path("log")},
       {{"compare", Path("log"), Path("none")}, Path("none")},
       {{"repair", Path("bad.csv"), "-o", out}, "found no event"},
+      {{"timing", Path("log"), "--json", Path("log")},
+       Path("log") + ": found the name of a file that is read"},
+      {{"timing", Path("log"), "--page", Path("log")},
+       Path("log") + ": found the name of a file that is read"},
+      {{"summary", Path("log"), "--json", Path("log")},
+       Path("log") + ": found the name of a file that is read"},
   };
   for (const auto& bad : cases) {
     const Outcome outcome = HydroLog(bad.arguments);

@@ -279,6 +279,18 @@ TEST_F(StackConfigFolderTest, PathsAreRelativeToTheConfiguration) {
   EXPECT_EQ(again.text, config.text);
 }
 
+// Tests that nothing is written over a configuration, its model or its key.
+TEST_F(StackConfigFolderTest, KeepsItsFiles) {
+  const std::string file = Write("a.toml", kConfigText);
+  const std::string model = Write("model.toml", kModelText);
+  const std::string key = Write("a.key", "");
+  const StackConfig config = LoadStackConfig(file, {"bus.key_file=a.key"});
+  for (const std::string& input : {file, model, key}) {
+    EXPECT_THAT(InputErrorOf([&] { CheckKeepsInputs(input, config); }), HasSubstr(input)) << input;
+  }
+  EXPECT_EQ(InputErrorOf([&] { CheckKeepsInputs(Write("log", ""), config); }), "");
+}
+
 // Tests that errors in the files that a configuration names say which file.
 TEST_F(StackConfigFolderTest, NamesTheFileThatIsWrong) {
   const std::string file = Write("a.toml", kConfigText);

@@ -36,6 +36,25 @@ TEST(TomlDocumentTest, RefusesWhatIsNotToml) {
   }
 }
 
+// Tests that a key of very many parts is refused instead of exhausting the stack, wherever it stands, and
+// that dots elsewhere are no keys.
+TEST(TomlDocumentTest, RefusesVeryDeepKeys) {
+  std::string deep;
+  for (int i = 0; i < 100000; ++i) deep += "\"a\" . b.";
+  for (const std::string& text :
+       {"x = 1\n" + deep + "c = 1\n", "x = 1\n[" + deep + "c]\n", "x = 1\ny = {" + deep + "c = 1}\n"}) {
+    EXPECT_THAT(InputErrorOf([&] { ParseToml(text, "f.toml"); }),
+                HasSubstr("f.toml:2: syntax: found a key of"));
+  }
+  const std::string dots(1000, '.');
+  std::string numbers;
+  for (int i = 0; i < 100; ++i) numbers += "1.5, ";
+  const TomlNode root = ParseToml("a = \"" + dots + "\\\"" + dots + "\" # " + dots + "\nb = \"\"\"\n\"" +
+                                      dots + "\n\"\"\"\nc.d.e = [" + numbers + "]\n",
+                                  "f.toml");
+  EXPECT_EQ(root.Find("c")->Find("d")->Find("e")->items.size(), 100u);
+}
+
 void ExpectSame(const TomlNode& a, const TomlNode& b) {
   ASSERT_EQ(a.kind, b.kind);
   EXPECT_EQ(a.text, b.text);
