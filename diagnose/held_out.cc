@@ -21,6 +21,10 @@ using Eigen::VectorXd;
 // not believed: far steps end where the derivatives do not hold.
 constexpr double kDoubtful = 1.5;
 
+// From so many times that sum on, the run's start is looked for from the measured one too: with other values
+// friction or cogging may catch the shaft at another place.
+constexpr double kStartInDoubt = 1.1;
+
 // One run against a model whose parameters are fixed.
 HeldOut PredictRun(const Hypothesis& hypothesis, const RunData& run, const StartState& start) {
   Hypothesis fixed = hypothesis;
@@ -134,14 +138,20 @@ HeldOut PredictInTurn(const Fitted& fitted, const ModelDescription& given,
       }
       others.Set(values);
     }
-    parts[r] = PredictRun(others, *runs[r], fitted.runs[r].start);
+    const auto predict = [&](const Hypothesis& hypothesis) {
+      HeldOut part = PredictRun(hypothesis, *runs[r], fitted.runs[r].start);
+      if (!(part.sum > kStartInDoubt * fitted.runs[r].sum)) return part;
+      HeldOut again = PredictRun(hypothesis, *runs[r], runs[r]->start);
+      return again.sum < part.sum ? again : part;
+    };
+    parts[r] = predict(others);
     if (p == 0 || runs.size() < 2 || !(parts[r].sum > kDoubtful * fitted.runs[r].sum)) return;
     FitOptions options;
     options.most_iterations = 6;
     options.tolerance = 1e-3;
     options.prior = &prior;
     const Fitted by_others = Fit(fitted.hypothesis, Without(runs, r), Without(StartsOf(fitted), r), options);
-    if (by_others.ok()) parts[r] = PredictRun(by_others.hypothesis, *runs[r], fitted.runs[r].start);
+    if (by_others.ok()) parts[r] = predict(by_others.hypothesis);
   });
   return Sum(parts);
 }

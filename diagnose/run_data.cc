@@ -143,10 +143,15 @@ SignalData MakeSignal(const MeasuredRun& run, Channel channel) {
   return signal;
 }
 
-// A straight line through the first valid samples, at the first time.
+// A straight line through the first valid samples, at the first time, and its standard errors.
 struct Line {
   double value = kNone, slope = 0;
+  double value_error = 0, slope_error = 0;
 };
+
+// A speed that is nil as far as the samples tell. What begins at rest with a little speed slips where
+// friction or cogging hold it, and the fit then stays one tooth off.
+double Rest(double speed, double error) { return std::abs(speed) < 3 * error ? 0 : speed; }
 
 Line FirstLine(const std::vector<double>& time, const SignalData& signal) {
   std::vector<size_t> rows;
@@ -168,7 +173,8 @@ Line FirstLine(const std::vector<double>& time, const SignalData& signal) {
       tt += since * since;
       ty += since * (signal.values[rows[k]] - y);
     }
-    const Line line{y - ty / tt * t, ty / tt};
+    const Line line{y - ty / tt * t, ty / tt, signal.noise * std::sqrt(1 / n + t * t / tt),
+                    signal.noise / std::sqrt(tt)};
     for (size_t k = 0; k < count; ++k) {
       const double expected = line.value + line.slope * (time[rows[k]] - time[0]);
       off += std::pow(signal.values[rows[k]] - expected, 2);
@@ -188,7 +194,8 @@ void SetStart(const Parameters& model, RunData* data) {
   const auto first_known = [](double a, double b) { return std::isnan(a) ? b : a; };
   const Line motor_angle = line(Channel::kMotorAngle), motor_speed = line(Channel::kMotorSpeed);
   data->start[kMotorAngle] = first_known(motor_angle.value, 0);
-  data->start[kMotorSpeed] = first_known(motor_speed.value, motor_angle.slope);
+  data->start[kMotorSpeed] = first_known(Rest(motor_speed.value, motor_speed.value_error),
+                                         Rest(motor_angle.slope, motor_angle.slope_error));
   data->start_free[kMotorAngle] = !std::isnan(motor_angle.value);
   data->start_free[kMotorSpeed] = true;
 
@@ -206,7 +213,8 @@ void SetStart(const Parameters& model, RunData* data) {
   if (data->stimulus.shaft == Shaft::kFree) {
     const Line arm_angle = line(Channel::kArmAngle), arm_speed = line(Channel::kArmSpeed);
     data->start[kArmAngle] = first_known(arm_angle.value, 0);
-    data->start[kArmSpeed] = first_known(arm_speed.value, arm_angle.slope);
+    data->start[kArmSpeed] = first_known(Rest(arm_speed.value, arm_speed.value_error),
+                                         Rest(arm_angle.slope, arm_angle.slope_error));
     data->start_free[kArmAngle] = data->start_free[kArmSpeed] = true;
   } else if (data->stimulus.shaft == Shaft::kDriven) {
     data->start[kArmAngle] = data->motion->Value(time.front());

@@ -28,6 +28,15 @@ constexpr size_t kFinalists = 3;
 // Further changes are not looked for below this squared gap on held-out runs.
 constexpr double kCloseEnough = 1.25;
 
+// Above this squared gap a fit is begun once more, from the measured starts.
+constexpr double kStartsInDoubt = 1.1;
+
+std::vector<StartState> MeasuredStarts(const std::vector<const RunData*>& runs) {
+  std::vector<StartState> starts;
+  for (const RunData* run : runs) starts.push_back(run->start);
+  return starts;
+}
+
 // Of two that predict alike, the one with fewer new numbers; a value that is wrong before an effect that is
 // missing.
 double Cost(const Explanation& one) {
@@ -63,10 +72,8 @@ class Searcher {
   }
 
   SearchResult Run(const Hypothesis& from) {
-    std::vector<StartState> starts;
-    for (const RunData* run : context_.runs) starts.push_back(run->start);
     Tell("the model as given", 0);
-    result_.given = Explain(context_, from, starts, WithAllJobs(fine_));
+    result_.given = Explain(context_, from, MeasuredStarts(context_.runs), WithAllJobs(fine_));
     if (!result_.given.fitted.ok()) return result_;
     result_.best = result_.given;
     Grow(Extend({result_.given}, 0), 0);
@@ -282,6 +289,12 @@ Explanation Explain(const SearchContext& context, const Hypothesis& hypothesis,
   Explanation explanation;
   explanation.fitted = Fit(hypothesis, context.runs, starts, options);
   if (!explanation.fitted.ok()) return explanation;
+  // Starts that were fitted while something was missing made up for it, and may hold the fit where friction
+  // or cogging catch the shaft at another place. Begun from the measured ones again it may do better.
+  if (explanation.fitted.squared_gap() > kStartsInDoubt && starts != MeasuredStarts(context.runs)) {
+    Fitted again = Fit(explanation.fitted.hypothesis, context.runs, MeasuredStarts(context.runs), options);
+    if (again.ok() && again.sum < explanation.fitted.sum) explanation.fitted = std::move(again);
+  }
   if (context.held_out.empty()) {
     explanation.held_out = PredictInTurn(explanation.fitted, context.given, context.runs, options.jobs);
     explanation.blocks = BlocksOf(context.runs, explanation.held_out);
