@@ -28,7 +28,7 @@ class InfoVerb {
     verb.AddFlag("--si", &si_, "print figures in SI units");
   }
   int Run() const {
-    const LogInfo info = Summarise(ReadRunLog(log_, SuffixOption(suffix_)), si_);
+    const LogInfo info = Summarise(ReadRunLog(log_, SuffixOption(suffix_), Undecodable::kLeftOut), si_);
     std::fputs((json_ ? InfoJson(info) : PrintableLines(InfoText(info))).c_str(), stdout);
     return 0;
   }
@@ -48,7 +48,7 @@ class ExportVerb {
   }
   int Run() const {
     CheckTableName(out_);
-    WriteTable(ExportRun(ReadRunLog(log_, SuffixOption(suffix_))), out_);
+    WriteTable(ExportRun(ReadWithWarning(log_, suffix_)), out_);
     return 0;
   }
 
@@ -94,6 +94,7 @@ class CompareVerb {
 
  private:
   RunLog ReadComparable(const std::string& file, const std::string& suffix) const {
+    // Bit by bit the same cannot be said of what cannot be read: such a message is refused here.
     RunLog log = ReadRunLog(file, SuffixOption(suffix != kNoSuffix ? suffix : suffix_));
     // Two logs of nothing are not a run repeated.
     if (log.messages.states.empty() && log.messages.motor_commands.empty()) {

@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 
+#include "logger/run_log.h"
 #include "settings/command_line.h"
 
 namespace hydro {
@@ -11,6 +12,10 @@ namespace hydro {
 // Value of a --suffix option that was not given: no channel has it (an empty suffix is a suffix).
 inline constexpr const char* kNoSuffix = "\n";
 std::optional<std::string> SuffixOption(const std::string& suffix);
+
+// For verbs that show or convert what was recorded: a message that is not this stack's is none of the run, as
+// it was none to the processes that heard it. One line on stderr says what was left out.
+RunLog ReadWithWarning(const std::string& file, const std::string& suffix);
 
 class SummaryVerb {
  public:
