@@ -132,6 +132,10 @@ int StackLaunch::Run() {
   OnStopHeard();  // our processes may have heard it, and ended, before we have
   TellOtherHosts();
   for (const std::string& line : watch_.summary().Lines()) Say(line);
+  if (const std::vector<std::string> left = watch_.summary().FaultsLeft(); !left.empty()) {
+    Complain("the run ended with faults that hold the voltage at zero: " + Join(left));
+    if (exit_code_ == 0) exit_code_ = 1;
+  }
   WriteTiming();
   // The terminal may be slow or stopped; a second Ctrl-C still gets us out.
   TimePoint until = TimePoint::max();

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "bus/saturating.h"
+#include "process/fault_codes.h"
 
 namespace hydro {
 namespace {
@@ -64,6 +65,15 @@ std::vector<std::string> RunSummary::Lines() const {
                                 fault.active ? ", still there at the end" : "", fault.first.text));
   }
   return lines;
+}
+
+std::vector<std::string> RunSummary::FaultsLeft() const {
+  std::vector<std::string> left;
+  for (const Fault& fault : faults_) {
+    if (fault.active && !IsWarning(fault.first.code))
+      left.push_back(fault.first.code + " of " + fault.first.source);
+  }
+  return left;
 }
 
 }  // namespace hydro
