@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <filesystem>
 #include <optional>
 #include <string>
 
@@ -324,13 +323,10 @@ void CheckLog(const StackConfig& config, const LaunchPlan& plan, const std::stri
                                 [](const ChildSpec& child) { return child.program() == "hydro-logger"; });
   if (!ours) return;
   CheckKeepsInputs(file, config);
-  std::error_code absent;
-  if (std::filesystem::is_fifo(file, absent))
-    return;  // who reads it would take the attempt for the whole log
   if (IsBeingWritten(file)) {
     throw InputError(file + ": is being written by another process; stop that one or give another name");
   }
-  const NewFile attempt(file, Opening::kTemporary);
+  CheckCanBeCreated(file);
 }
 
 }  // namespace

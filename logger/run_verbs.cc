@@ -44,6 +44,7 @@ SummaryVerb::SummaryVerb(CommandLine& line) {
 
 int SummaryVerb::Run() const {
   CheckKeeps(json_, {log_});
+  CheckCanBeCreated(json_);
   const RunLog log = ReadWithWarning(log_, suffix_);
   if (log.messages.states.empty()) throw InputError(log_ + ": found no state; a log of a run is needed");
   const Tracking tracking = TrackArm(log);
@@ -65,6 +66,8 @@ TimingVerb::TimingVerb(CommandLine& line) {
 int TimingVerb::Run() const {
   CheckKeeps(json_, {log_});
   CheckKeeps(page_, {log_});
+  CheckCanBeCreated(json_);
+  CheckCanBeCreated(page_);
   const RunLog log = ReadWithWarning(log_, suffix_);
   TimingRecord record;
   for (const loop_statistics_t& report : log.statistics) record.Add(report);

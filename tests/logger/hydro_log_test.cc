@@ -29,6 +29,15 @@ Outcome HydroLog(std::vector<std::string> arguments) {
   return {exit_code, testing::internal::GetCapturedStdout(), testing::internal::GetCapturedStderr()};
 }
 
+// What hydro-log timing needs of a log.
+EventContents LoopReport() {
+  loop_statistics_t report{};
+  report.role = "plant";
+  std::string data(static_cast<size_t>(report.getEncodedSize()), '\0');
+  report.encode(data.data(), 0, static_cast<int>(data.size()));
+  return {"HYDRO_LOOP_STATISTICS", data, 9000};
+}
+
 class HydroLogTest : public LogTest {};
 
 // Tests that equal runs print exactly "identical" and that a difference exits 1, also across suffixes.
@@ -91,11 +100,7 @@ TEST_F(HydroLogTest, UndecodableMessages) {
   RunMessages run = SampleRun(9);
   WriteRun(Path("whole"), run);
   std::vector<EventContents> events = ReadEvents(Path("whole"));
-  loop_statistics_t report{};
-  report.role = "plant";
-  std::string data(static_cast<size_t>(report.getEncodedSize()), '\0');
-  report.encode(data.data(), 0, static_cast<int>(data.size()));
-  events.push_back({"HYDRO_LOOP_STATISTICS", data, 9000});
+  events.push_back(LoopReport());
   WriteEvents(Path("whole"), events);
   events.insert(events.begin() + 4, {"HYDRO_MOTOR_COMMAND", "\x1b[2J not of this stack", 5});
   events.insert(events.begin() + 8, {"HYDRO_STATE", "torn", 5});
@@ -128,6 +133,7 @@ TEST_F(HydroLogTest, UndecodableMessages) {
 // Tests that bad usage and bad input exit 2 with one line that names the place, and leave no file.
 TEST_F(HydroLogTest, BadUsageAndInput) {
   WriteRun(Path("log"), SampleRun(3));
+  WriteEvents(Path("timed"), {LoopReport()});
   WriteBytes(Path("bad.csv"), "time_s,p1_psi\n0,1\n1,x\n");
   WriteBytes(Path("empty"), "");
   const std::string out = Path("out.csv");
@@ -153,6 +159,9 @@ TEST_F(HydroLogTest, BadUsageAndInput) {
        Path("log") + ": found the name of a file that is read"},
       {{"timing", Path("log"), "--page", Path("log")},
        Path("log") + ": found the name of a file that is read"},
+      {{"timing", Path("timed"), "--json", Path("none/x")}, Path("none/x") + ": cannot be created"},
+      {{"timing", Path("timed"), "--page", Path("none/x")}, Path("none/x") + ": cannot be created"},
+      {{"summary", Path("log"), "--json", Path("none/x")}, Path("none/x") + ": cannot be created"},
       {{"summary", Path("log"), "--json", Path("log")},
        Path("log") + ": found the name of a file that is read"},
   };
