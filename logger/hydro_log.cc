@@ -28,13 +28,14 @@ class InfoVerb {
     verb.AddFlag("--si", &si_, "print figures in SI units");
   }
   int Run() const {
-    const LogInfo info = Summarise(ReadRunLog(log_, SuffixOption(suffix_), Undecodable::kLeftOut), si_);
+    const LogInfo info = Summarise(ReadRunLog(log_, suffix_, Undecodable::kLeftOut), si_);
     std::fputs((json_ ? InfoJson(info) : PrintableLines(InfoText(info))).c_str(), stdout);
     return 0;
   }
 
  private:
-  std::string log_, suffix_ = kNoSuffix;
+  std::string log_;
+  std::optional<std::string> suffix_;
   bool json_ = false, si_ = false;
 };
 
@@ -53,7 +54,8 @@ class ExportVerb {
   }
 
  private:
-  std::string log_, out_, suffix_ = kNoSuffix;
+  std::string log_, out_;
+  std::optional<std::string> suffix_;
 };
 
 class ImportVerb {
@@ -93,9 +95,9 @@ class CompareVerb {
   }
 
  private:
-  RunLog ReadComparable(const std::string& file, const std::string& suffix) const {
+  RunLog ReadComparable(const std::string& file, const std::optional<std::string>& suffix) const {
     // Bit by bit the same cannot be said of what cannot be read: such a message is refused here.
-    RunLog log = ReadRunLog(file, SuffixOption(suffix != kNoSuffix ? suffix : suffix_));
+    RunLog log = ReadRunLog(file, suffix ? suffix : suffix_);
     // Two logs of nothing are not a run repeated.
     if (log.messages.states.empty() && log.messages.motor_commands.empty()) {
       throw InputError(file + ": found no state and no motor command; a log of a run is needed");
@@ -103,7 +105,8 @@ class CompareVerb {
     return log;
   }
 
-  std::string a_, b_, suffix_ = kNoSuffix, suffix_a_ = kNoSuffix, suffix_b_ = kNoSuffix;
+  std::string a_, b_;
+  std::optional<std::string> suffix_, suffix_a_, suffix_b_;
 };
 
 class RepairVerb {

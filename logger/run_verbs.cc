@@ -22,12 +22,8 @@ void WriteText(const std::string& name, const std::string& text) {
 
 }  // namespace
 
-std::optional<std::string> SuffixOption(const std::string& suffix) {
-  return suffix == kNoSuffix ? std::nullopt : std::optional(suffix);
-}
-
-RunLog ReadWithWarning(const std::string& file, const std::string& suffix) {
-  RunLog log = ReadRunLog(file, SuffixOption(suffix), Undecodable::kLeftOut);
+RunLog ReadWithWarning(const std::string& file, const std::optional<std::string>& suffix) {
+  RunLog log = ReadRunLog(file, suffix, Undecodable::kLeftOut);
   const std::string left_out = DescribeUndecodable(log);
   if (!left_out.empty()) std::fprintf(stderr, "hydro-log: warning: %s\n", Printable(left_out).c_str());
   return log;

@@ -162,6 +162,8 @@ TEST_F(HydroLogTest, BadUsageAndInput) {
       {{"timing", Path("timed"), "--json", Path("none/x")}, Path("none/x") + ": cannot be created"},
       {{"timing", Path("timed"), "--page", Path("none/x")}, Path("none/x") + ": cannot be created"},
       {{"summary", Path("log"), "--json", Path("none/x")}, Path("none/x") + ": cannot be created"},
+      {{"timing", Path("timed"), "--json", ""}, "--json: found \"\", allowed FILE"},
+      {{"info", ""}, "LOG: found \"\", allowed FILE"},
       {{"summary", Path("log"), "--json", Path("log")},
        Path("log") + ": found the name of a file that is read"},
   };
