@@ -259,6 +259,14 @@ std::string CommandLine::verb() const {
   return chosen.empty() ? "" : chosen.front()->get_name();
 }
 
+std::vector<std::string> CommandLine::Given() const {
+  std::vector<std::string> given;
+  for (const CLI::Option* option : impl_->app().get_options()) {
+    if (option->count() > 0 && !option->get_lnames().empty()) given.push_back("--" + option->get_lnames()[0]);
+  }
+  return given;
+}
+
 std::optional<int> CommandLine::Parse(int argc, const char* const* argv) {
   CLI::App& app = impl_->app();
   const std::string program = app.get_name();

@@ -68,6 +68,9 @@ class CommandLine {
   // The verb that was given; empty before Parse() and where there are none.
   std::string verb() const;
 
+  // The options and flags that were given, as "--log", in the order of declaration.
+  std::vector<std::string> Given() const;
+
   // Nothing when the program should go on; else the code to exit with now: 0 after --help or --version, 2 for
   // bad usage, which one line on stderr explains.
   std::optional<int> Parse(int argc, const char* const* argv);

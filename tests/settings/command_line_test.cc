@@ -142,8 +142,8 @@ TEST(CommandLineTest, OwnOptions) {
   EXPECT_THAT(Parse(other, {}).err, HasSubstr("--out: found nothing, allowed FILE where to write"));
 }
 
-// Tests that an empty text is a value where a program says that it is one.
-TEST(CommandLineTest, EmptyValues) {
+// Tests that an empty text is a value where a program says that it is one, and that what was given is known.
+TEST(CommandLineTest, EmptyValuesAndGiven) {
   CommandLine line("hydro-test", "Does nothing.");
   std::optional<std::string> suffix, other;
   std::string out;
@@ -155,6 +155,7 @@ TEST(CommandLineTest, EmptyValues) {
   EXPECT_EQ(Parse(line, {"-o", "x", "--flag", "--suffix", ""}).code, std::nullopt);
   EXPECT_EQ(suffix, "");
   EXPECT_EQ(other, std::nullopt);
+  EXPECT_THAT(line.Given(), ElementsAre("--suffix", "--out", "--flag"));
 }
 
 // Tests verbs with options of their own.
