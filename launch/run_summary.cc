@@ -70,8 +70,9 @@ std::vector<std::string> RunSummary::Lines() const {
 std::vector<std::string> RunSummary::FaultsLeft() const {
   std::vector<std::string> left;
   for (const Fault& fault : faults_) {
-    if (fault.active && !IsWarning(fault.first.code))
-      left.push_back(fault.first.code + " of " + fault.first.source);
+    const std::string name = fault.first.code + " of " + fault.first.source;
+    const bool known = std::find(left.begin(), left.end(), name) != left.end();  // of another session
+    if (fault.active && !IsWarning(fault.first.code) && !known) left.push_back(name);
   }
   return left;
 }

@@ -20,7 +20,8 @@ class RunSummary {
   // microseconds, with or without --si.
   std::vector<std::string> Lines() const;
 
-  // "CODE of SOURCE" of every fault that was still there at the end and is more than a warning.
+  // "CODE of SOURCE" of every fault that was still there at the end and is more than a warning,
+  // once, whoever else says the same.
   std::vector<std::string> FaultsLeft() const;
 
  private:
