@@ -87,7 +87,14 @@ BusKey::~BusKey() { sodium_memzero(bytes_.data(), bytes_.size()); }
 BusKey ReadBusKey(const std::string& file) {
   StartSodium();
   const File opened(open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
-  if (opened.fd() < 0) RefuseErrno(file, "cannot be read", "`hydro-launch CONFIG --make-key` makes one");
+  if (opened.fd() < 0) {
+    // A new key in the place of one that is there would lock the other hosts out.
+    RefuseErrno(file, "cannot be read",
+                errno == ENOENT ? "`hydro-launch CONFIG --make-key` makes one"
+                : errno == EACCES
+                    ? "whoever starts the stack must own it (chown), in a folder that may be entered"
+                    : "a file with a key is needed");
+  }
   CheckPermissions(file, opened.fd());
   SecretText secret;
   const char* text = secret.data();
@@ -105,6 +112,7 @@ BusKey ReadBusKey(const std::string& file) {
                                             sodium_base64_VARIANT_ORIGINAL)) ||
                     whole(sodium_base642bin(bytes.data(), bytes.size(), text, size, nullptr, &length, &end,
                                             sodium_base64_VARIANT_ORIGINAL_NO_PADDING));
+  const bool zeros = sodium_is_zero(bytes.data(), bytes.size()) == 1;
   const BusKey key(bytes);
   sodium_memzero(bytes.data(), bytes.size());
   if (!read) {
@@ -112,6 +120,10 @@ BusKey ReadBusKey(const std::string& file) {
                      (size > kLongest ? "more than " + std::to_string(kLongest) : std::to_string(size)) +
                      " characters that are no key, allowed 32 bytes on one line, as 64 hexadecimal digits or "
                      "in base64");
+  }
+  if (zeros) {  // what everybody tries first
+    Refuse(file,
+           "found a key of zeros only, allowed random bytes; `hydro-launch CONFIG --make-key` makes one");
   }
   return key;
 }

@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <filesystem>
 #include <optional>
 #include <string>
 
@@ -132,6 +131,10 @@ int StackLaunch::Run() {
   OnStopHeard();  // our processes may have heard it, and ended, before we have
   TellOtherHosts();
   for (const std::string& line : watch_.summary().Lines()) Say(line);
+  if (const std::vector<std::string> left = watch_.summary().FaultsLeft(); !left.empty()) {
+    Complain("the run ended with faults that hold the voltage at zero: " + Join(left));
+    if (exit_code_ == 0) exit_code_ = 1;
+  }
   WriteTiming();
   // The terminal may be slow or stopped; a second Ctrl-C still gets us out.
   TimePoint until = TimePoint::max();
@@ -320,13 +323,10 @@ void CheckLog(const StackConfig& config, const LaunchPlan& plan, const std::stri
                                 [](const ChildSpec& child) { return child.program() == "hydro-logger"; });
   if (!ours) return;
   CheckKeepsInputs(file, config);
-  std::error_code absent;
-  if (std::filesystem::is_fifo(file, absent))
-    return;  // who reads it would take the attempt for the whole log
   if (IsBeingWritten(file)) {
     throw InputError(file + ": is being written by another process; stop that one or give another name");
   }
-  const NewFile attempt(file, Opening::kTemporary);
+  CheckCanBeCreated(file);
 }
 
 }  // namespace

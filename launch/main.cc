@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cstdio>
 #include <string>
 #include <utility>
@@ -25,8 +26,8 @@ int Ask(decltype(hydro::StopStack)* request, const hydro::CommonOptions& options
   return result.exit_code;
 }
 
-// Of the flags with which nothing is started.
-void CheckAtMostOne(const std::vector<std::pair<std::string, bool>>& flags) {
+// Of the flags with which nothing is started. Returns the one that is given, or nothing.
+std::string TheOneOf(const std::vector<std::pair<std::string, bool>>& flags) {
   std::string first;
   for (const auto& [flag, given] : flags) {
     if (!given) continue;
@@ -34,6 +35,19 @@ void CheckAtMostOne(const std::vector<std::pair<std::string, bool>>& flags) {
       throw hydro::InputError(first + ": found " + flag + " beside it, allowed is one of them");
     }
     first = flag;
+  }
+  return first;
+}
+
+// An option that nobody would look at may not be what was meant: a stack is not recorded by --stop --log X.
+// --set and its like say which stack it is, as the command line that started it did.
+void CheckNoneIgnored(const hydro::CommandLine& line, const std::string& flag) {
+  std::vector<std::string> allowed = {"--set", "--time", "--duration", "--seed"};
+  if (flag == "--doctor") allowed.emplace_back("--host");
+  for (const std::string& given : line.Given()) {
+    if (given == flag || std::find(allowed.begin(), allowed.end(), given) != allowed.end()) continue;
+    throw hydro::InputError(flag + ": found " + given + " beside it, allowed are CONFIG and " +
+                            hydro::QuotedList(allowed));
   }
 }
 
@@ -62,7 +76,9 @@ int main(int argc, char** argv) {
   line.AddFlag("--make-key", &make_key, "write a new key into CONFIG's bus.key_file and start nothing");
   if (const auto code = line.Parse(argc, argv)) return *code;
   return hydro::RunProgram("hydro-launch", [&] {
-    CheckAtMostOne({{"--stop", stop}, {"--rearm", rearm}, {"--make-key", make_key}, {"--doctor", doctor}});
+    const std::string instead =
+        TheOneOf({{"--stop", stop}, {"--rearm", rearm}, {"--make-key", make_key}, {"--doctor", doctor}});
+    if (!instead.empty()) CheckNoneIgnored(line, instead);
     if (doctor) return hydro::RunDoctor(options.config, options.overrides, request.host);
     if (options.config.empty()) throw hydro::InputError("CONFIG is required; see --help");
     if (make_key) return hydro::MakeKey(options);

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "bus/saturating.h"
+#include "process/fault_codes.h"
 
 namespace hydro {
 namespace {
@@ -64,6 +65,16 @@ std::vector<std::string> RunSummary::Lines() const {
                                 fault.active ? ", still there at the end" : "", fault.first.text));
   }
   return lines;
+}
+
+std::vector<std::string> RunSummary::FaultsLeft() const {
+  std::vector<std::string> left;
+  for (const Fault& fault : faults_) {
+    const std::string name = fault.first.code + " of " + fault.first.source;
+    const bool known = std::find(left.begin(), left.end(), name) != left.end();  // of another session
+    if (fault.active && !IsWarning(fault.first.code) && !known) left.push_back(name);
+  }
+  return left;
 }
 
 }  // namespace hydro

@@ -20,6 +20,10 @@ class RunSummary {
   // microseconds, with or without --si.
   std::vector<std::string> Lines() const;
 
+  // "CODE of SOURCE" of every fault that was still there at the end and is more than a warning,
+  // once, whoever else says the same.
+  std::vector<std::string> FaultsLeft() const;
+
  private:
   struct Loop {
     loop_statistics_t shown;  // whose percentiles are printed

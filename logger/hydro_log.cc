@@ -28,13 +28,14 @@ class InfoVerb {
     verb.AddFlag("--si", &si_, "print figures in SI units");
   }
   int Run() const {
-    const LogInfo info = Summarise(ReadRunLog(log_, SuffixOption(suffix_)), si_);
+    const LogInfo info = Summarise(ReadRunLog(log_, suffix_, Undecodable::kLeftOut), si_);
     std::fputs((json_ ? InfoJson(info) : PrintableLines(InfoText(info))).c_str(), stdout);
     return 0;
   }
 
  private:
-  std::string log_, suffix_ = kNoSuffix;
+  std::string log_;
+  std::optional<std::string> suffix_;
   bool json_ = false, si_ = false;
 };
 
@@ -48,12 +49,13 @@ class ExportVerb {
   }
   int Run() const {
     CheckTableName(out_);
-    WriteTable(ExportRun(ReadRunLog(log_, SuffixOption(suffix_))), out_);
+    WriteTable(ExportRun(ReadWithWarning(log_, suffix_)), out_);
     return 0;
   }
 
  private:
-  std::string log_, out_, suffix_ = kNoSuffix;
+  std::string log_, out_;
+  std::optional<std::string> suffix_;
 };
 
 class ImportVerb {
@@ -93,8 +95,9 @@ class CompareVerb {
   }
 
  private:
-  RunLog ReadComparable(const std::string& file, const std::string& suffix) const {
-    RunLog log = ReadRunLog(file, SuffixOption(suffix != kNoSuffix ? suffix : suffix_));
+  RunLog ReadComparable(const std::string& file, const std::optional<std::string>& suffix) const {
+    // Bit by bit the same cannot be said of what cannot be read: such a message is refused here.
+    RunLog log = ReadRunLog(file, suffix ? suffix : suffix_);
     // Two logs of nothing are not a run repeated.
     if (log.messages.states.empty() && log.messages.motor_commands.empty()) {
       throw InputError(file + ": found no state and no motor command; a log of a run is needed");
@@ -102,7 +105,8 @@ class CompareVerb {
     return log;
   }
 
-  std::string a_, b_, suffix_ = kNoSuffix, suffix_a_ = kNoSuffix, suffix_b_ = kNoSuffix;
+  std::string a_, b_;
+  std::optional<std::string> suffix_, suffix_a_, suffix_b_;
 };
 
 class RepairVerb {

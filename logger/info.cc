@@ -198,6 +198,7 @@ LogInfo Summarise(const RunLog& log, bool si) {
   info.bytes = log.bytes;
   info.events = log.events;
   info.duration_s = Seconds(log.first_utime, log.last_utime);
+  info.first_undecodable = log.first_undecodable;
   for (const ChannelSummary& channel : log.channels) info.channels.push_back(ChannelOf(channel, log));
   info.ticks = TicksOf(log.messages.states);
   info.signals = SignalsOf(log.messages, si);

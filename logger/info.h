@@ -62,7 +62,8 @@ struct LogInfo {
   std::string suffix;
   int64_t bytes = 0;
   int64_t events = 0;
-  double duration_s = 0;  // receive time from the first event to the last
+  double duration_s = 0;          // receive time from the first event to the last
+  std::string first_undecodable;  // as RunLog::first_undecodable; how many is in the channels' summaries
   std::vector<ChannelInfo> channels;
   TickInfo ticks;  // states = 0: the log has none
   std::vector<SignalInfo> signals;

@@ -8,8 +8,10 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 Json ChannelJson(const ChannelInfo& channel) {
-  Json json = {
-      {"messages", channel.summary.events}, {"bytes", channel.summary.bytes}, {"rate_hz", channel.rate_hz}};
+  Json json = {{"messages", channel.summary.events},
+               {"bytes", channel.summary.bytes},
+               {"rate_hz", channel.rate_hz},
+               {"undecodable", channel.summary.undecodable}};
   if (channel.numbered) {
     json["senders"] = channel.senders;
     json["lost"] = channel.lost;
@@ -84,6 +86,7 @@ std::string InfoJson(const LogInfo& info) {
   json["channels"] = Json::object();
   for (const ChannelInfo& channel : info.channels)
     json["channels"][channel.summary.channel] = ChannelJson(channel);
+  json["first_undecodable"] = info.first_undecodable;
   const TickInfo& ticks = info.ticks;
   json["ticks"] = {{"states", ticks.states},
                    {"first", ticks.first},

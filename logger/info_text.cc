@@ -50,7 +50,13 @@ void AppendChannels(const LogInfo& info, std::string& text) {
         Append(text, "  %lld sent before the log began", static_cast<long long>(channel.before_first));
       }
     }
+    if (channel.summary.undecodable > 0) {
+      Append(text, "  %lld undecodable", static_cast<long long>(channel.summary.undecodable));
+    }
     text += '\n';
+  }
+  if (!info.first_undecodable.empty()) {
+    Append(text, "undecodable messages are left out; the first: %s\n", info.first_undecodable.c_str());
   }
 }
 

@@ -57,7 +57,8 @@ struct MeasuredRun {
 //   that is not clamped, a driven shaft without arm_angle, noise of a signal that has no column;
 // - of the table: columns that are not there or hold no value, numbers that are not finite, times that are
 //   missing or do not increase, a command that is missing in the first row;
-// - of a log: damage, more than one run, no description of how the shaft was held.
+// - of a log: damage, messages that cannot be decoded, more than one run, no description of how the shaft
+// was held.
 MeasuredRun ReadMeasuredRun(const std::string& file);
 
 // The run that a table of hydro-log export (logger/run_table.h) holds; `config_text` is the configuration it

@@ -57,6 +57,14 @@ bool IsBeingWritten(const std::string& file) {
   return locked;
 }
 
+void CheckCanBeCreated(const std::string& file) {
+  struct stat status;
+  if (file.empty()) return;
+  // Who reads a pipe would take the attempt for all that comes.
+  if (stat(file.c_str(), &status) == 0 && S_ISFIFO(status.st_mode)) return;
+  const NewFile attempt(file, Opening::kTemporary);
+}
+
 NewFile::NewFile(const std::string& file, Opening opening) : name_(file), path_(file) {
   if (ExistsAndIsNotRegular(file)) {
     descriptor_ = open(path_.c_str(), O_WRONLY | O_CLOEXEC);

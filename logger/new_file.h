@@ -22,6 +22,10 @@ enum class Opening {
 // Whether a NewFile, of this process or another, is writing to the file under this name.
 bool IsBeingWritten(const std::string& file);
 
+// Throws InputError when a NewFile of that name could not be created, so that work does not have to be done
+// before that is known; leaves nothing. An empty name is no file.
+void CheckCanBeCreated(const std::string& file);
+
 class NewFile {
  public:
   // Creates the file, replacing an existing one (whoever reads that keeps the old contents). Throws

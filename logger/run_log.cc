@@ -19,18 +19,16 @@ std::string Hex(uint64_t value) {
   return text;
 }
 
-[[noreturn]] void ThrowUndecodable(const std::string& file, const LogEvent& event, const MessageKind& kind) {
-  const std::string place = file + ": byte " + std::to_string(event.offset) + ", event " +
+// Where it is, what was found and what is allowed.
+std::string WhyUndecodable(const LogEvent& event, const MessageKind& kind) {
+  const std::string place = "byte " + std::to_string(event.offset) + ", event " +
                             std::to_string(event.index) + " on " + std::string(event.channel) + ": ";
   const uint64_t hash = event.size >= 8 ? LoadBigEndian64(event.data) : 0;
   if (event.size >= 8 && hash != static_cast<uint64_t>(kind.hash)) {
-    throw LogError(place + "found type hash " + Hex(hash) + "; allowed " +
-                   Hex(static_cast<uint64_t>(kind.hash)) + " (" + kind.type +
-                   " of this version); where others on that channel are, hydro-log repair " + file +
-                   " leaves such events out");
+    return place + "found type hash " + Hex(hash) + "; allowed " + Hex(static_cast<uint64_t>(kind.hash)) +
+           " (" + kind.type + " of this version)";
   }
-  throw LogError(place + "found " + std::to_string(event.size) + " bytes that are not a whole " + kind.type +
-                 "; hydro-log repair " + file + " leaves such events out");
+  return place + "found " + std::to_string(event.size) + " bytes that are not a whole " + kind.type;
 }
 
 // Counts events by channel; a damaged log is noticed here, before anything is decoded.
@@ -88,7 +86,8 @@ std::string ChooseSuffix(const RunLog& log, const std::optional<std::string>& wa
 
 }  // namespace
 
-RunLog ReadRunLog(const std::string& file, const std::optional<std::string>& suffix) {
+RunLog ReadRunLog(const std::string& file, const std::optional<std::string>& suffix,
+                  Undecodable undecodable) {
   RunLog log;
   log.file = file;
   LogReader reader(file);
@@ -98,10 +97,32 @@ RunLog ReadRunLog(const std::string& file, const std::optional<std::string>& suf
 
   const Channels channels(log.suffix);
   LogEvent event;
-  // True when the event is on `channel`, and then it is in `messages`.
+  const auto leave_out = [&](const MessageKind& kind) {
+    const std::string why = WhyUndecodable(event, kind);
+    if (undecodable == Undecodable::kRefused) {
+      throw LogError(file + ": " + why + "; where others on that channel are, hydro-log repair " + file +
+                     " leaves such events out");
+    }
+    if (log.first_undecodable.empty()) log.first_undecodable = why;
+    const auto channel =
+        std::lower_bound(log.channels.begin(), log.channels.end(), event.channel,
+                         [](const ChannelSummary& a, std::string_view name) { return a.channel < name; });
+    ++channel->undecodable;
+  };
+  // True when the event is on `channel`, and then it is in `messages` or left out.
   const auto keep = [&]<class Message>(const std::string& channel, std::vector<Message>& messages) {
     if (event.channel != channel) return false;
-    if (!DecodeAs(event, messages.emplace_back())) ThrowUndecodable(file, event, *KindOfChannel(channel));
+    if (!DecodeAs(event, messages.emplace_back())) {
+      messages.pop_back();
+      leave_out(*KindOfChannel(channel));
+    }
+    return true;
+  };
+  // Nobody asks for what is on these channels; only their count would be wrong.
+  const auto count = [&](const std::string& channel) {
+    if (event.channel != channel) return false;
+    const MessageKind& kind = *KindOfChannel(channel);
+    if (undecodable == Undecodable::kLeftOut && !kind.decodes(event)) leave_out(kind);
     return true;
   };
   reader.Rewind();
@@ -112,9 +133,22 @@ RunLog ReadRunLog(const std::string& file, const std::optional<std::string>& suf
         keep(channels.fault, log.messages.faults) || keep(channels.run, log.descriptions) ||
         keep(channels.loop_statistics, log.statistics) || keep(channels.loop_histogram, log.histograms) ||
         keep(channels.stop, log.stops) || keep(channels.process_status, log.statuses) ||
-        keep(channels.log_progress, log.progress);
+        keep(channels.log_progress, log.progress) || count(channels.rearm) || count(channels.introduction);
   }
   return log;
+}
+
+std::string DescribeUndecodable(const RunLog& log) {
+  int64_t all = 0;
+  std::string list;
+  for (const ChannelSummary& channel : log.channels) {
+    if (channel.undecodable == 0) continue;
+    all += channel.undecodable;
+    list += (list.empty() ? "" : ", ") + std::to_string(channel.undecodable) + " on " + channel.channel;
+  }
+  if (all == 0) return {};
+  return log.file + ": left out " + (all == 1 ? "a message" : std::to_string(all) + " messages") +
+         " of another type or version, or torn (" + list + "); the first: " + log.first_undecodable;
 }
 
 }  // namespace hydro

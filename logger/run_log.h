@@ -24,6 +24,7 @@ struct ChannelSummary {
   int64_t bytes = 0;        // of data
   int64_t first_utime = 0;  // us, when its first and last event were received
   int64_t last_utime = 0;
+  int64_t undecodable = 0;  // of this stack's type and version they are not: left out
 };
 
 // Messages are in the order of the log, with whatever was lost, repeated or late.
@@ -42,11 +43,22 @@ struct RunLog {
   int64_t bytes = 0;                     // length of the file
   int64_t first_utime = 0;               // us, earliest and latest event received; 0 without events
   int64_t last_utime = 0;
+  std::string first_undecodable;  // where the first message that was left out is, and why; empty: none was
+};
+
+// What becomes of a message on one of this stack's channels that is of another type or version, or torn.
+enum class Undecodable {
+  kRefused,  // LogError: for whom all of a run matters
+  kLeftOut,  // counted and left out, as the processes of the run did that heard it
 };
 
 // Reads `file`. Without `suffix`, the suffix of its state channel is found; of several, one must be chosen
 // (InputError names them). A log without any of this stack's channels is not an error here. Throws LogError
-// where it is damaged or a message on one of this stack's channels is of another type or version.
-RunLog ReadRunLog(const std::string& file, const std::optional<std::string>& suffix = std::nullopt);
+// where the file is damaged: it cannot be told then what else is missing.
+RunLog ReadRunLog(const std::string& file, const std::optional<std::string>& suffix = std::nullopt,
+                  Undecodable undecodable = Undecodable::kRefused);
+
+// One line for a person about the messages that were left out; empty when none was.
+std::string DescribeUndecodable(const RunLog& log);
 
 }  // namespace hydro

@@ -22,8 +22,11 @@ void WriteText(const std::string& name, const std::string& text) {
 
 }  // namespace
 
-std::optional<std::string> SuffixOption(const std::string& suffix) {
-  return suffix == kNoSuffix ? std::nullopt : std::optional(suffix);
+RunLog ReadWithWarning(const std::string& file, const std::optional<std::string>& suffix) {
+  RunLog log = ReadRunLog(file, suffix, Undecodable::kLeftOut);
+  const std::string left_out = DescribeUndecodable(log);
+  if (!left_out.empty()) std::fprintf(stderr, "hydro-log: warning: %s\n", Printable(left_out).c_str());
+  return log;
 }
 
 SummaryVerb::SummaryVerb(CommandLine& line) {
@@ -37,7 +40,8 @@ SummaryVerb::SummaryVerb(CommandLine& line) {
 
 int SummaryVerb::Run() const {
   CheckKeeps(json_, {log_});
-  const RunLog log = ReadRunLog(log_, SuffixOption(suffix_));
+  CheckCanBeCreated(json_);
+  const RunLog log = ReadWithWarning(log_, suffix_);
   if (log.messages.states.empty()) throw InputError(log_ + ": found no state; a log of a run is needed");
   const Tracking tracking = TrackArm(log);
   const LogInfo info = Summarise(log, si_);
@@ -58,7 +62,9 @@ TimingVerb::TimingVerb(CommandLine& line) {
 int TimingVerb::Run() const {
   CheckKeeps(json_, {log_});
   CheckKeeps(page_, {log_});
-  const RunLog log = ReadRunLog(log_, SuffixOption(suffix_));
+  CheckCanBeCreated(json_);
+  CheckCanBeCreated(page_);
+  const RunLog log = ReadWithWarning(log_, suffix_);
   TimingRecord record;
   for (const loop_statistics_t& report : log.statistics) record.Add(report);
   for (const loop_histogram_t& histogram : log.histograms) record.Add(histogram);
@@ -88,7 +94,7 @@ int ReplayVerb::Run() const {
     throw InputError("--controller: found " + controller_ + ", allowed are pressure, position and both");
   }
   if (!(speed_ >= 0) || std::isinf(speed_)) throw InputError("--speed: must be a number of 0 or more");
-  const RunLog log = ReadRunLog(log_, SuffixOption(suffix_));
+  const RunLog log = ReadWithWarning(log_, suffix_);
   int exit_code = 0;
   const auto replay = [&](ReplayedController controller, const char* name, const char* commands) {
     const ReplayResult result = Replay(log, controller, speed_);

@@ -4,13 +4,14 @@
 #include <optional>
 #include <string>
 
+#include "logger/run_log.h"
 #include "settings/command_line.h"
 
 namespace hydro {
 
-// Value of a --suffix option that was not given: no channel has it (an empty suffix is a suffix).
-inline constexpr const char* kNoSuffix = "\n";
-std::optional<std::string> SuffixOption(const std::string& suffix);
+// For verbs that show or convert what was recorded: a message that is not this stack's is none of the run, as
+// it was none to the processes that heard it. One line on stderr says what was left out.
+RunLog ReadWithWarning(const std::string& file, const std::optional<std::string>& suffix);
 
 class SummaryVerb {
  public:
@@ -18,7 +19,8 @@ class SummaryVerb {
   int Run() const;
 
  private:
-  std::string log_, json_, suffix_ = kNoSuffix;
+  std::string log_, json_;
+  std::optional<std::string> suffix_;
   bool si_ = false;
 };
 
@@ -28,7 +30,8 @@ class TimingVerb {
   int Run() const;
 
  private:
-  std::string log_, json_, page_, suffix_ = kNoSuffix;
+  std::string log_, json_, page_;
+  std::optional<std::string> suffix_;
 };
 
 class ReplayVerb {
@@ -37,7 +40,8 @@ class ReplayVerb {
   int Run() const;
 
  private:
-  std::string log_, controller_ = "both", suffix_ = kNoSuffix;
+  std::string log_, controller_ = "both";
+  std::optional<std::string> suffix_;
   double speed_ = 0;
 };
 

@@ -52,7 +52,9 @@ PlantApp::PlantApp(Bus& bus, Clock& clock, const StackConfig& config, Rig& rig,
   bus.Subscribe<process_status_t>(channels.process_status,
                                   [this](const process_status_t& status) { roll_call_.Observe(status); });
   bus.Subscribe<log_progress_t>(channels.log_progress, [this](const log_progress_t& progress) {
-    log_progress_[progress.session] = progress.tick;
+    // Only of the loggers that were there when the run began: those that a flood makes up are not kept.
+    const auto known = log_progress_.find(progress.session);
+    if (known != log_progress_.end()) known->second = progress.tick;
   });
 }
 

@@ -97,7 +97,7 @@ class PlantApp {
   std::optional<motor_command_t> command_;       // in force
   int64_t newest_command_tick_ = -1;
   int64_t newest_pressure_command_tick_ = -1;
-  std::map<int64_t, int64_t> log_progress_;  // tick by logger session
+  std::map<int64_t, int64_t> log_progress_;  // tick by session, of the loggers that the run began with
   std::optional<Clock::TimePoint>
       unanswered_since_;           // real time: the oldest state without an answer was sent then
   run_description_t description_;  // published again and again

@@ -3,11 +3,16 @@
 #include <algorithm>
 
 namespace hydro {
+namespace {
+
+constexpr size_t kMostPresent = 256;  // a stack has five processes; what a flood makes up is not kept
+
+}  // namespace
 
 void RollCall::Observe(const process_status_t& status) {
   const std::pair key(status.role, status.session);  // on a simulated clock every session is 0
   if (status.state == process_status_t::READY || status.state == process_status_t::RUNNING) {
-    present_[key] = status;
+    if (present_.size() < kMostPresent || present_.contains(key)) present_[key] = status;
     return;
   }
   const auto found = present_.find(key);

@@ -1,5 +1,6 @@
 #include "process/fault_codes.h"
 
+#include <algorithm>
 #include <array>
 
 namespace hydro {
@@ -60,6 +61,12 @@ bool ZeroesVoltage(std::string_view code) {
     if (known.code == code) return known.effect == FaultEffect::kZeroVolts;
   }
   return true;
+}
+
+bool IsWarning(std::string_view code) {
+  return std::any_of(kCodes.begin(), kCodes.end(), [&](const FaultCode& known) {
+    return known.code == code && known.effect == FaultEffect::kWarning;
+  });
 }
 
 }  // namespace hydro

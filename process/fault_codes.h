@@ -23,4 +23,7 @@ std::span<const FaultCode> FaultCodes();
 // True unless `code` is known to leave the voltage alone at first: what is not known is not taken lightly.
 bool ZeroesVoltage(std::string_view code);
 
+// True when `code` is known to be a warning only.
+bool IsWarning(std::string_view code);
+
 }  // namespace hydro

@@ -33,6 +33,11 @@ std::pair<std::string, std::string> SplitHelp(const std::string& help) {
   throw CLI::ValidationError(name, "found " + Quoted(found) + ", allowed " + allowed);
 }
 
+std::string Filled(const std::string& name, const std::string& text, const std::string& help) {
+  if (text.empty()) Refuse(name, text, help);
+  return text;
+}
+
 // The whole of `text` as a number; CLI11's own conversion would take "nan" and "0x10", too.
 double Number(const std::string& name, const std::string& text) {
   double value = 0;
@@ -122,9 +127,15 @@ class CommandLine::Impl {
   CLI::Option* AddList(const std::string& names, std::vector<std::string>* target, const std::string& help,
                        bool required) {
     const auto [value, rest] = SplitHelp(help);
+    const std::string shown = names.substr(names.rfind(',') + 1);
     return app_
         ->add_option_function<std::vector<std::string>>(
-            names, [=](const std::vector<std::string>& values) { *target = values; }, rest)
+            names,
+            [=](const std::vector<std::string>& values) {
+              for (const std::string& text : values) Filled(shown, text, help);
+              *target = values;
+            },
+            rest)
         ->type_name(value)
         ->required(required);
   }
@@ -192,7 +203,13 @@ void CommandLine::AddCommon(CommonOptions* options, bool config_required) {
 
 void CommandLine::AddOption(const std::string& names, std::string* target, const std::string& help,
                             bool required) {
-  impl_->Add(names, target, help, required, [](const std::string&, const std::string& text) { return text; });
+  impl_->Add(names, target, help, required,
+             [help](const std::string& name, const std::string& text) { return Filled(name, text, help); });
+}
+
+void CommandLine::AddOption(const std::string& names, std::optional<std::string>* target,
+                            const std::string& help) {
+  impl_->Add(names, target, help, false, [](const std::string&, const std::string& text) { return text; });
 }
 
 void CommandLine::AddOption(const std::string& names, double* target, const std::string& help,
@@ -242,6 +259,14 @@ std::string CommandLine::verb() const {
   return chosen.empty() ? "" : chosen.front()->get_name();
 }
 
+std::vector<std::string> CommandLine::Given() const {
+  std::vector<std::string> given;
+  for (const CLI::Option* option : impl_->app().get_options()) {
+    if (option->count() > 0 && !option->get_lnames().empty()) given.push_back("--" + option->get_lnames()[0]);
+  }
+  return given;
+}
+
 std::optional<int> CommandLine::Parse(int argc, const char* const* argv) {
   CLI::App& app = impl_->app();
   const std::string program = app.get_name();
@@ -254,6 +279,14 @@ std::optional<int> CommandLine::Parse(int argc, const char* const* argv) {
                    DidYouMean(found, verbs).c_str());
       return 2;
     }
+  }
+  // CLI11 would take the argument after "--log=" for its value.
+  for (int i = 1; i < argc; ++i) {
+    const std::string found = argv[i];
+    if (!found.starts_with("--") || found.find('=') != found.size() - 1) continue;
+    std::fprintf(stderr, "%s: %s: found nothing after =, allowed a value\n", program.c_str(),
+                 Printable(found.substr(0, found.size() - 1)).c_str());
+    return 2;
   }
   try {
     app.parse(argc, argv);

@@ -43,9 +43,12 @@ class CommandLine {
   // Without `config_required` a CONFIG that is not there leaves options->config empty.
   void AddCommon(CommonOptions* options, bool config_required = true);
 
-  // `names` as in "-o,--out"; `help` begins with the value's name in capitals: "FILE where to write".
+  // `names` as in "-o,--out"; `help` begins with the value's name in capitals: "FILE where to write". A text
+  // that is empty, as of a shell's variable that is not set, is refused: it would count as not given.
   void AddOption(const std::string& names, std::string* target, const std::string& help,
                  bool required = false);
+  // An empty text is a value here.
+  void AddOption(const std::string& names, std::optional<std::string>* target, const std::string& help);
   void AddOption(const std::string& names, double* target, const std::string& help, bool required = false);
   void AddOption(const std::string& names, int* target, const std::string& help, bool required = false);
   void AddOption(const std::string& names, int64_t* target, const std::string& help, bool required = false);
@@ -64,6 +67,9 @@ class CommandLine {
 
   // The verb that was given; empty before Parse() and where there are none.
   std::string verb() const;
+
+  // The options and flags that were given, as "--log", in the order of declaration.
+  std::vector<std::string> Given() const;
 
   // Nothing when the program should go on; else the code to exit with now: 0 after --help or --version, 2 for
   // bad usage, which one line on stderr explains.

@@ -90,6 +90,29 @@ TEST_F(BusKeyTest, RefusesWhatIsNoFile) {
   EXPECT_THAT(ErrorOf("/dev/zero"), HasSubstr("not a file"));
 }
 
+// Tests that where a file is there and cannot be read, a new key is not what is advised: it would lock others
+// out.
+TEST_F(BusKeyTest, UnreadableFile) {
+  const std::string file = Write(kHex, 0000);
+  const uid_t user = geteuid();
+  if (user == 0) {  // who may read anything
+    ASSERT_EQ(seteuid(65534), 0);
+  }
+  const std::string error = ErrorOf(file);
+  ASSERT_EQ(seteuid(user), 0);
+  EXPECT_THAT(error, testing::AllOf(HasSubstr("Permission denied"), HasSubstr("own it")));
+  EXPECT_EQ(error.find("--make-key"), std::string::npos) << error;
+  EXPECT_EQ(ErrorOf(file + "/key").find("--make-key"), std::string::npos);
+}
+
+// Tests that the key that everybody tries first is none.
+TEST_F(BusKeyTest, RefusesZeros) {
+  for (const std::string& text : {std::string(64, '0'), std::string(42, 'A') + "A="}) {
+    EXPECT_THAT(ErrorOf(Write(text)), testing::AllOf(HasSubstr("zeros"), HasSubstr("--make-key")));
+  }
+  EXPECT_EQ(ErrorOf(Write(std::string(63, '0') + "1")), "");
+}
+
 // Tests that a key that is made can be read, by its owner alone, is new each time, and replaces nothing.
 TEST_F(BusKeyTest, MakesKeys) {
   MakeBusKeyFile(Path("a"));

@@ -6,7 +6,8 @@
 //   print N            N lines on each of stdout and stderr, cut at odd places
 //   endless            one line without an end, and no newline
 //   status NAME TEXT   announces ready, running, done or failed
-//   statistics         one report of 1000 cycles    fault       raises over_pressure
+//   statistics         one report of 1000 cycles
+//   fault [CODE]       raises CODE (over_pressure)   gone [CODE]     says that it has gone
 //   stop CODE TEXT     publishes HYDRO_STOP
 //   await N            until N roles beside it have said that they are ready
 //   wait               until HYDRO_STOP or SIGTERM, announcing its status; says which
@@ -67,7 +68,9 @@ class FakeProgram {
     if (verb == "endless") dprintf(STDOUT_FILENO, "no end");
     if (verb == "status") Announce(first, rest);
     if (verb == "statistics") PublishStatistics();
-    if (verb == "fault") PublishFault();
+    if (verb == "fault" || verb == "gone") {
+      PublishFault(first.empty() ? "over_pressure" : first, verb == "fault");
+    }
     if (verb == "stop") PublishStop(std::stoi(first), rest);
     if (verb == "await") Await(std::stoul(first));
     if (verb == "wait") Wait();
@@ -126,13 +129,13 @@ class FakeProgram {
     bus().Publish(channels_.loop_statistics, report);
   }
 
-  void PublishFault() {
+  void PublishFault(const std::string& code, bool active) {
     fault_t fault{};
     fault.session = session_;
     fault.source = role_;
-    fault.code = "over_pressure";
+    fault.code = code;
     fault.text = "p1 is 2100 psi, allowed are 2000 psi";
-    fault.active = true;
+    fault.active = active;
     bus().Publish(channels_.fault, fault);
   }
 

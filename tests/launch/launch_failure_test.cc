@@ -133,5 +133,33 @@ TEST(LaunchFailureTest, BadConfiguration) {
   EXPECT_FALSE(std::filesystem::exists(stack.file("started")));
 }
 
+// Tests that what starts nothing refuses options that it would not look at, and that an empty one is none.
+TEST(LaunchFailureTest, OptionsThatWouldBeIgnored) {
+  const struct {
+    std::vector<std::string> arguments;
+    std::string says;
+  } usages[] = {
+      {{"--stop", "--log", "x"}, "--stop: found --log beside it, allowed are CONFIG and \"--set\""},
+      {{"--rearm", "--timing", "x.json"}, "--rearm: found --timing beside it"},
+      {{"--stop", "--host", "rig"}, "--stop: found --host beside it"},
+      {{"--make-key", "--si"}, "--make-key: found --si beside it"},
+      {{"--doctor", "--log", "x"}, "--doctor: found --log beside it"},
+      {{"--stop", "--rearm"}, "--stop: found --rearm beside it"},
+      {{"--log", ""}, "--log: found \"\", allowed FILE"},
+      {{"--timing", ""}, "--timing: found \"\", allowed REPORT.json"},
+      {{"--host", ""}, "--host: found \"\", allowed NAME"},
+  };
+  StackFolder stack;
+  stack.Script("plant", "touch " + stack.file("started") + ";status ready;wait");
+  for (const auto& usage : usages) {
+    auto launch = stack.Launch(usage.arguments);
+    EXPECT_EQ(launch->WaitForExit(), 2) << usage.says;
+    ASSERT_EQ(launch->err().size(), 1u) << launch->text();
+    EXPECT_THAT(launch->err()[0], HasSubstr(usage.says));
+    EXPECT_THAT(launch->out(), IsEmpty());
+  }
+  EXPECT_FALSE(std::filesystem::exists(stack.file("started")));
+}
+
 }  // namespace
 }  // namespace hydro

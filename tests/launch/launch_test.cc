@@ -99,13 +99,45 @@ TEST(LaunchTest, HeavyOutputKeepsItsLines) {
 // Tests that the statistics and faults of all processes are in the table at the end.
 TEST(LaunchTest, PrintsTimingAndFaults) {
   StackFolder stack;
-  stack.Script("pressure_ctrl", "status ready;fault;wait;statistics");
+  stack.Script("pressure_ctrl", "status ready;fault;gone;wait;statistics");
   auto launch = stack.Launch();
   launch->WaitForLine("all 3 processes ready");
   launch->Signal(SIGINT);
   EXPECT_EQ(launch->WaitForExit(), 0);
   EXPECT_THAT(launch->WaitForLine("pressure_ctrl       1000"), HasSubstr(" 345        7      3"));
   EXPECT_THAT(launch->WaitForLine("fault over_pressure"), HasSubstr("p1 is 2100 psi, allowed are 2000 psi"));
+}
+
+// Tests that a run that ends with a fault still there has failed, whoever ends it, and that one that ended
+// with a warning, or with a fault that has gone, has not.
+TEST(LaunchTest, AFaultAtTheEndIsAFailure) {
+  const struct {
+    const char* says;
+    int exit_code;
+  } ends[] = {{"fault other_stack", 1},
+              {"fault stale_pressure_command", 1},
+              {"fault a_code_of_a_later_version", 1},
+              {"fault other_stack;gone other_stack", 0},
+              {"fault undecodable_message", 0}};
+  for (const auto& end : ends) {
+    StackFolder stack;
+    stack.Script("pressure_ctrl", "status ready;" + std::string(end.says) + ";wait;status done");
+    stack.Script("plant", kShortRun);
+    auto launch = stack.Launch();
+    EXPECT_EQ(launch->WaitForExit(), end.exit_code) << end.says << "\n" << launch->text();
+    if (end.exit_code == 1) {
+      EXPECT_THAT(launch->err(), Contains(HasSubstr("hold the voltage at zero: ")));
+    } else {
+      EXPECT_THAT(launch->err(), IsEmpty());
+    }
+  }
+  StackFolder stack;
+  stack.Script("pressure_ctrl", "status ready;fault other_stack;wait;status done");
+  auto launch = stack.Launch();
+  launch->WaitForLine("all 3 processes ready");
+  launch->Signal(SIGINT);
+  EXPECT_EQ(launch->WaitForExit(), 1);
+  EXPECT_THAT(launch->err(), Contains(HasSubstr("other_stack of pressure_ctrl")));
 }
 
 // Tests that only the processes of the given host are started.

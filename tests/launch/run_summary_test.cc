@@ -78,6 +78,12 @@ TEST(RunSummaryTest, FaultsAreCounted) {
   ASSERT_EQ(lines.size(), 2u);
   EXPECT_EQ(lines[0], "fault stale_state of pressure_ctrl, 2 times: no state for 120 ms, allowed are 100 ms");
   EXPECT_THAT(lines[1], HasSubstr("pressure_limit of pressure_ctrl, once, still there at the end"));
+  EXPECT_THAT(summary.FaultsLeft(), testing::ElementsAre("pressure_limit of pressure_ctrl"));
+  fault.session = 2;  // another stack's pressure loop, say
+  summary.Add(fault);
+  fault.code = "logger_gone";  // a warning
+  summary.Add(fault);
+  EXPECT_EQ(summary.FaultsLeft().size(), 1u);
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 
+#include "hydro/loop_statistics_t.hpp"
 #include "tests/logger/log_fixture.h"
 
 namespace hydro {
@@ -26,6 +27,15 @@ Outcome HydroLog(std::vector<std::string> arguments) {
   const int exit_code = RunHydroLog(static_cast<int>(argv.size()), argv.data());
   std::fflush(stdout);
   return {exit_code, testing::internal::GetCapturedStdout(), testing::internal::GetCapturedStderr()};
+}
+
+// What hydro-log timing needs of a log.
+EventContents LoopReport() {
+  loop_statistics_t report{};
+  report.role = "plant";
+  std::string data(static_cast<size_t>(report.getEncodedSize()), '\0');
+  report.encode(data.data(), 0, static_cast<int>(data.size()));
+  return {"HYDRO_LOOP_STATISTICS", data, 9000};
 }
 
 class HydroLogTest : public LogTest {};
@@ -84,9 +94,46 @@ TEST_F(HydroLogTest, Repair) {
   EXPECT_EQ(HydroLog({"info", Path("log")}).exit_code, 0);
 }
 
+// Tests that a message that cannot be decoded, as a foreign program may send, is no reason to refuse the log:
+// info counts it, the others say so in one line; only what is to be the same bit by bit is refused.
+TEST_F(HydroLogTest, UndecodableMessages) {
+  RunMessages run = SampleRun(9);
+  WriteRun(Path("whole"), run);
+  std::vector<EventContents> events = ReadEvents(Path("whole"));
+  events.push_back(LoopReport());
+  WriteEvents(Path("whole"), events);
+  events.insert(events.begin() + 4, {"HYDRO_MOTOR_COMMAND", "\x1b[2J not of this stack", 5});
+  events.insert(events.begin() + 8, {"HYDRO_STATE", "torn", 5});
+  WriteEvents(Path("log"), events);
+
+  const Outcome text = HydroLog({"info", Path("log")});
+  EXPECT_EQ(text.exit_code, 0) << text.err;
+  EXPECT_EQ(text.err, "");
+  EXPECT_THAT(text.out, AllOf(HasSubstr("  1 undecodable\n"), HasSubstr("event 4 on HYDRO_MOTOR_COMMAND")));
+  EXPECT_THAT(HydroLog({"info", Path("log"), "--json"}).out, HasSubstr("\"undecodable\": 1"));
+  EXPECT_THAT(HydroLog({"info", Path("whole")}).out, testing::Not(HasSubstr("undecodable")));
+
+  for (const std::vector<std::string>& verb :
+       {std::vector<std::string>{"summary"}, {"timing"}, {"export", "-o", Path("out.csv")}}) {
+    std::vector<std::string> arguments = verb;
+    arguments.insert(arguments.begin() + 1, Path("log"));
+    const Outcome outcome = HydroLog(arguments);
+    EXPECT_EQ(outcome.exit_code, 0) << verb[0] << outcome.err;
+    EXPECT_THAT(outcome.err, StartsWith("hydro-log: warning: " + Path("log") + ": left out 2 messages"));
+    EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
+  }
+  EXPECT_EQ(HydroLog({"export", Path("whole"), "-o", Path("whole.csv")}).err, "");
+  EXPECT_EQ(ReadBytes(Path("out.csv")), ReadBytes(Path("whole.csv")));
+
+  const Outcome compared = HydroLog({"compare", Path("whole"), Path("log")});
+  EXPECT_EQ(compared.exit_code, 2);
+  EXPECT_THAT(compared.err, HasSubstr("hydro-log repair " + Path("log")));
+}
+
 // Tests that bad usage and bad input exit 2 with one line that names the place, and leave no file.
 TEST_F(HydroLogTest, BadUsageAndInput) {
   WriteRun(Path("log"), SampleRun(3));
+  WriteEvents(Path("timed"), {LoopReport()});
   WriteBytes(Path("bad.csv"), "time_s,p1_psi\n0,1\n1,x\n");
   WriteBytes(Path("empty"), "");
   const std::string out = Path("out.csv");
@@ -112,6 +159,11 @@ TEST_F(HydroLogTest, BadUsageAndInput) {
        Path("log") + ": found the name of a file that is read"},
       {{"timing", Path("log"), "--page", Path("log")},
        Path("log") + ": found the name of a file that is read"},
+      {{"timing", Path("timed"), "--json", Path("none/x")}, Path("none/x") + ": cannot be created"},
+      {{"timing", Path("timed"), "--page", Path("none/x")}, Path("none/x") + ": cannot be created"},
+      {{"summary", Path("log"), "--json", Path("none/x")}, Path("none/x") + ": cannot be created"},
+      {{"timing", Path("timed"), "--json", ""}, "--json: found \"\", allowed FILE"},
+      {{"info", ""}, "LOG: found \"\", allowed FILE"},
       {{"summary", Path("log"), "--json", Path("log")},
        Path("log") + ": found the name of a file that is read"},
   };

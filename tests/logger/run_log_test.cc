@@ -71,5 +71,36 @@ TEST_F(RunLogTest, UndecodableMessage) {
               AllOf(HasSubstr("event 1 on HYDRO_STATE: found type hash 0x3f"), HasSubstr("; allowed 0x")));
 }
 
+// Tests that such messages are left out and counted by channel where that is asked for, also on channels that
+// nobody reads, and that nothing else is: not a foreign channel, not another stack's.
+TEST_F(RunLogTest, UndecodableMessageLeftOut) {
+  const RunMessages run = SampleRun(3);
+  WriteRun(Path("log"), run);
+  std::vector<EventContents> events = ReadEvents(Path("log"));
+  const EventContents torn{"HYDRO_STATE", events[1].data.substr(0, 60), 1};
+  events.insert(events.begin() + 1, {torn,
+                                     {"HYDRO_STATE", "", 1},
+                                     {"HYDRO_MOTOR_COMMAND", "another type of message", 1},
+                                     {"HYDRO_REARM", "nonsense", 1},
+                                     {"HYDRO_STATE_2", "another stack's", 1},
+                                     {"CAMERA", "a picture", 1}});
+  WriteEvents(Path("log"), events);
+  const RunLog log = ReadRunLog(Path("log"), "", Undecodable::kLeftOut);
+  EXPECT_EQ(FirstDifference(run, "written", log.messages, "read"), std::nullopt);
+  EXPECT_EQ(log.messages.states.size(), run.states.size());
+  for (const ChannelSummary& channel : log.channels) {
+    const bool one = channel.channel == "HYDRO_MOTOR_COMMAND" || channel.channel == "HYDRO_REARM";
+    EXPECT_EQ(channel.undecodable, channel.channel == "HYDRO_STATE" ? 2 : one ? 1 : 0) << channel.channel;
+  }
+  EXPECT_THAT(DescribeUndecodable(log),
+              AllOf(HasSubstr(Path("log") + ": left out 4 messages"),
+                    HasSubstr("(1 on HYDRO_MOTOR_COMMAND, 1 on HYDRO_REARM, 2 on HYDRO_STATE)"),
+                    HasSubstr("event 1 on HYDRO_STATE: found 60 bytes that are not a whole hydro.state_t")));
+
+  WriteBytes(Path("log"), ReadBytes(Path("log")) + "x");  // damage of the file is not a message
+  EXPECT_THAT(InputErrorOf([&] { ReadRunLog(Path("log"), "", Undecodable::kLeftOut); }),
+              HasSubstr("hydro-log repair"));
+}
+
 }  // namespace
 }  // namespace hydro

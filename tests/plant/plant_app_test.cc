@@ -6,6 +6,7 @@
 #include <cmath>
 #include <functional>
 #include <hydro/fault_t.hpp>
+#include <hydro/log_progress_t.hpp>
 #include <vector>
 
 #include "bus/in_process_bus.h"
@@ -197,6 +198,23 @@ TEST_F(PlantAppTest, LockstepWaitsForTheLogger) {
   EXPECT_EQ(plant.Run(), 1);
   EXPECT_THAT(plant.failure(), HasSubstr("logger has not answered"));
   EXPECT_LE(plant.tick(), 64);
+}
+
+// Tests that progress of a logger that was not there when the run began neither holds it up nor is kept: each
+// would be an entry that every tick looks at.
+TEST_F(PlantAppTest, LockstepIgnoresLoggersThatWereNotThere) {
+  on_state_ = [this](const state_t& state) {
+    for (int64_t i = 0; i < 10; ++i) {
+      log_progress_t progress{};
+      progress.session = 1000 + 10 * state.tick + i;
+      progress.tick = state.tick;
+      bus_.Publish("HYDRO_LOG_PROGRESS", progress);
+    }
+    if (state.tick % 5 == 0) SendPressureCommand(state.tick);
+    SendVoltage(state.tick, 0);
+  };
+  EXPECT_EQ(Run(SmallStack()), 0) << failure_;
+  EXPECT_EQ(states_.back().tick, 100);
 }
 
 // Tests that in real time, on exact simulated time, each tick is published and the newest command acts.

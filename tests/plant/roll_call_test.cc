@@ -53,5 +53,18 @@ TEST(RollCallTest, TellsRolesApart) {
   EXPECT_THAT(roll.Loggers(), ElementsAre(5));
 }
 
+// Tests that of a flood of made-up loggers no more than a stack could have is kept, and that those that are
+// known still are heard.
+TEST(RollCallTest, KeepsNoFlood) {
+  RollCall roll({"pressure_ctrl"});
+  roll.Observe(Status("pressure_ctrl", 1, process_status_t::READY));
+  for (int64_t session = 0; session < 10000; ++session) {
+    roll.Observe(Status("logger", session, process_status_t::READY));
+  }
+  EXPECT_LE(roll.Loggers().size(), 256u);
+  roll.Observe(Status("pressure_ctrl", 1, process_status_t::FAILED));
+  EXPECT_THAT(roll.left(), HasSubstr("pressure_ctrl"));
+}
+
 }  // namespace
 }  // namespace hydro

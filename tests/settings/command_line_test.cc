@@ -90,6 +90,12 @@ TEST(CommandLineTest, BadUsage) {
       {{"a.toml", "--seed", "1.5"}, "--seed: found \"1.5\", allowed a whole number"},
       {{"a.toml", "--seed", "-1"}, "--seed: found \"-1\", allowed a whole number of at least 0"},
       {{"a.toml", "--seed", "99999999999999999999"}, "--seed: found \"99999999999999999999\""},
+      {{"a.toml", "--log", ""}, "--log: found \"\", allowed FILE records the run there"},
+      {{"a.toml", "--log="}, "--log: found nothing after =, allowed a value"},
+      {{"--log=", "a.toml"}, "--log: found nothing after =, allowed a value"},
+      {{"a.toml", "--set", ""}, "--set: found \"\", allowed SECTION.KEY=VALUE"},
+      {{""}, "CONFIG: found \"\", allowed FILE"},
+      {{"a.toml", "--duration", ""}, "--duration: found \"\", allowed a finite number"},
       {{"a.toml", "--log", "x", "--log", "y"}, "--log: found it more than once, allowed once"},
   };
   for (const auto& usage : usages) {
@@ -134,6 +140,22 @@ TEST(CommandLineTest, OwnOptions) {
   CommandLine other("hydro-test", "Does nothing.");
   other.AddOption("-o,--out", &out, "FILE where to write", true);
   EXPECT_THAT(Parse(other, {}).err, HasSubstr("--out: found nothing, allowed FILE where to write"));
+}
+
+// Tests that an empty text is a value where a program says that it is one, and that what was given is known.
+TEST(CommandLineTest, EmptyValuesAndGiven) {
+  CommandLine line("hydro-test", "Does nothing.");
+  std::optional<std::string> suffix, other;
+  std::string out;
+  bool flag = false;
+  line.AddOption("--suffix", &suffix, "TEXT of channels");
+  line.AddOption("--other", &other, "TEXT of channels");
+  line.AddOption("-o,--out", &out, "FILE");
+  line.AddFlag("--flag", &flag, "a flag");
+  EXPECT_EQ(Parse(line, {"-o", "x", "--flag", "--suffix", ""}).code, std::nullopt);
+  EXPECT_EQ(suffix, "");
+  EXPECT_EQ(other, std::nullopt);
+  EXPECT_THAT(line.Given(), ElementsAre("--suffix", "--out", "--flag"));
 }
 
 // Tests verbs with options of their own.
