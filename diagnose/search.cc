@@ -163,10 +163,7 @@ class Searcher {
     // The best start of each set of changes.
     std::vector<Fitted> best;
     for (Fitted& fit : fits) {
-      if (!fit.ok()) {
-        NoteFailure(fit);
-        continue;
-      }
+      if (!fit.ok()) continue;
       const auto same = std::find_if(best.begin(), best.end(), [&](const Fitted& other) {
         return SameChanges(other.hypothesis, fit.hypothesis);
       });
@@ -175,6 +172,13 @@ class Searcher {
       } else if (fit.sum < same->sum) {
         *same = std::move(fit);
       }
+    }
+    for (const Fitted& fit : fits) {
+      if (fit.ok()) continue;
+      const bool by_another_start = std::any_of(best.begin(), best.end(), [&](const Fitted& other) {
+        return SameChanges(other.hypothesis, fit.hypothesis);
+      });
+      if (!by_another_start) NoteFailure(fit);
     }
     std::stable_sort(best.begin(), best.end(),
                      [](const Fitted& a, const Fitted& b) { return a.sum < b.sum; });
