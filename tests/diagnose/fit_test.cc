@@ -9,6 +9,7 @@
 #include <cstdint>
 
 #include "diagnose/held_out.h"
+#include "diagnose/search.h"
 #include "model/state.h"
 #include "tests/diagnose/small_runs.h"
 
@@ -46,6 +47,31 @@ TEST(Fit, RecoversBaseParameters) {
   EXPECT_NEAR(ValueOf(fitted, "c_E"), 3e-5, 0.05 * 3e-5);
   EXPECT_NEAR(fitted.squared_gap(), 1, 0.1);
   EXPECT_EQ(fitted.runs.size(), runs.size());
+}
+
+// Tests that starts which hold a fit one tooth of the cogging off are given up for the measured ones.
+TEST(Explain, BeginsAgainFromTheMeasuredStarts) {
+  const ModelDescription truth =
+      Table1With({{"motor.cogging", {{"amplitude", 1}, {"periods", 6}, {"phase", 0.7}}, {}}});
+  std::vector<RunData> runs;
+  runs.push_back(SmallRun(truth, Shaft::kFree, false, 0.6, 2, 1));
+  std::vector<StartState> elsewhere = StartsOf(runs);
+  elsewhere[0][kMotorSpeed] = -60;
+  elsewhere[0][kArmAngle] += 0.02;
+  FitOptions options;
+  options.most_iterations = 15;
+  options.tolerance = 1e-5;
+  Hypothesis hypothesis;
+  hypothesis.model = truth;
+  const Fitted held = Fit(hypothesis, PointersTo(runs), elsewhere, options);
+  ASSERT_TRUE(held.ok()) << held.failure;
+  EXPECT_GT(held.squared_gap(), 1.5);
+  SearchContext context;
+  context.given = Table1With();
+  context.runs = context.held_out = PointersTo(runs);
+  const Explanation explained = Explain(context, hypothesis, elsewhere, options);
+  ASSERT_TRUE(explained.fitted.ok());
+  EXPECT_LT(explained.fitted.squared_gap(), 1.15);
 }
 
 // Tests that the numbers of effects are found from where fits start.

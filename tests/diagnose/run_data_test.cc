@@ -9,6 +9,7 @@
 
 #include "diagnose/smoothed_motion.h"
 #include "model/state.h"
+#include "tests/diagnose/noisy_rig.h"
 #include "tests/table1.h"
 
 namespace hydro {
@@ -81,6 +82,18 @@ TEST(PrepareRun, Clamped) {
   EXPECT_NEAR(data.start[kP2], 140, 3);
   EXPECT_EQ(data.start[kArmAngle], 0.2);
   EXPECT_THAT(data.start_free, ElementsAre(false, true, true, true, false, false));
+}
+
+// Tests that a first speed that noise alone may have made is none, and a greater one is kept.
+TEST(PrepareRun, RestIsRest) {
+  testing::NoisyRig rig;
+  rig.model = {"Table 1", testing::Table1(), {}};
+  for (rig.seed = 1; rig.seed <= 8; ++rig.seed) {
+    const RunData run =
+        rig.Record("rest", Shaft::kFree, -0.1, 0.5, false, [](double t) { return t < 0.1 ? 0 : 5.0; });
+    EXPECT_EQ(run.start[kMotorSpeed], 0) << rig.seed;
+    EXPECT_NEAR(run.start[kArmSpeed], 0, 0.02) << rig.seed;
+  }
 }
 
 // Tests that a free arm is compared and started, its speed from the angle's slope.
