@@ -33,6 +33,7 @@ constexpr double kStartsInDoubt = 1.1;
 
 std::vector<StartState> MeasuredStarts(const std::vector<const RunData*>& runs) {
   std::vector<StartState> starts;
+  starts.reserve(runs.size());
   for (const RunData* run : runs) starts.push_back(run->start);
   return starts;
 }
