@@ -54,10 +54,15 @@ class Scanner {
     return std::nullopt;
   }
 
+  // By their numbers, which in a damaged file may be any.
+  static bool Follows(const LogEvent& next, const LogEvent& event) {
+    return static_cast<uint64_t>(next.number) == static_cast<uint64_t>(event.number) + 1;
+  }
+
   bool MayKeep(const LogEvent& event) const {
     const int64_t end = EndOf(event);
     LogEvent next;
-    if (Parses(end, next) && next.number == event.number + 1) return true;
+    if (Parses(end, next) && Follows(next, event)) return true;
     // An event that was torn, after which more were appended, and one whose length is too large contain
     // others.
     if (NextSound(event.offset + 4, end).has_value()) return false;
@@ -65,7 +70,7 @@ class Scanner {
     // What follows is damaged: either that alone, or this event's length is too small.
     if (const MessageKind* kind = KindOfChannel(event.channel)) return kind->decodes(event);
     const std::optional<LogEvent> following = NextSound(end, size());
-    return !following.has_value() || following->number != event.number + 1;
+    return !following.has_value() || !Follows(*following, event);
   }
 
   const MappedFile& file_;
