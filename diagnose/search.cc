@@ -99,12 +99,13 @@ class Searcher {
   // there.
   void Grow(std::vector<Explanation> next, int step) {
     while (!next.empty()) {
-      std::vector<Explanation> beam(next.begin(),
-                                    next.begin() + static_cast<std::ptrdiff_t>(std::min(kBeam, next.size())));
-      while (beam.size() > 1 && beam.back().fitted.sum > kBehind * beam.front().fitted.sum) beam.pop_back();
       const auto best = std::min_element(next.begin(), next.end(),
                                          [](const auto& a, const auto& b) { return Cost(a) < Cost(b); });
       if (!Material(result_.best.held_out_gap(), best->held_out_gap())) return;
+      *best = BegunAgain(context_, *best, WithAllJobs(fine_));
+      std::vector<Explanation> beam(next.begin(),
+                                    next.begin() + static_cast<std::ptrdiff_t>(std::min(kBeam, next.size())));
+      while (beam.size() > 1 && beam.back().fitted.sum > kBehind * beam.front().fitted.sum) beam.pop_back();
       result_.best = *best;
       if (result_.best.held_out_gap() < kCloseEnough || ++step >= most_changes_) return;
       next = Extend(beam, step);
@@ -252,7 +253,7 @@ class Searcher {
         for (const Explanation& other : others) {
           if (other.fitted.sum < 0.98 * result_.best.fitted.sum &&
               other.held_out_gap() < result_.best.held_out_gap()) {
-            result_.best = other;
+            result_.best = BegunAgain(context_, other, WithAllJobs(fine_));
             better = true;
           }
         }
@@ -294,12 +295,6 @@ Explanation Explain(const SearchContext& context, const Hypothesis& hypothesis,
   Explanation explanation;
   explanation.fitted = Fit(hypothesis, context.runs, starts, options);
   if (!explanation.fitted.ok()) return explanation;
-  // Starts that were fitted while something was missing made up for it, and may hold the fit where friction
-  // or cogging catch the shaft at another place. Begun from the measured ones again it may do better.
-  if (explanation.fitted.squared_gap() > kStartsInDoubt && starts != MeasuredStarts(context.runs)) {
-    Fitted again = Fit(explanation.fitted.hypothesis, context.runs, MeasuredStarts(context.runs), options);
-    if (again.ok() && again.sum < explanation.fitted.sum) explanation.fitted = std::move(again);
-  }
   if (context.held_out.empty()) {
     explanation.held_out = PredictInTurn(explanation.fitted, context.given, context.runs, options.jobs);
     explanation.blocks = BlocksOf(context.runs, explanation.held_out);
@@ -308,6 +303,12 @@ Explanation Explain(const SearchContext& context, const Hypothesis& hypothesis,
     explanation.blocks = BlocksOf(context.held_out, explanation.held_out);
   }
   return explanation;
+}
+
+Explanation BegunAgain(const SearchContext& context, const Explanation& one, const FitOptions& options) {
+  if (one.fitted.squared_gap() <= kStartsInDoubt) return one;
+  Explanation again = Explain(context, one.fitted.hypothesis, MeasuredStarts(context.runs), options);
+  return again.fitted.ok() && again.fitted.sum < one.fitted.sum ? again : one;
 }
 
 SearchResult Search(const SearchContext& context, const Hypothesis& from, int most_changes) {

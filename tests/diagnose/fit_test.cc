@@ -69,7 +69,8 @@ TEST(Explain, BeginsAgainFromTheMeasuredStarts) {
   SearchContext context;
   context.given = Table1With();
   context.runs = context.held_out = PointersTo(runs);
-  const Explanation explained = Explain(context, hypothesis, elsewhere, options);
+  const Explanation explained =
+      BegunAgain(context, Explain(context, hypothesis, elsewhere, options), options);
   ASSERT_TRUE(explained.fitted.ok());
   EXPECT_LT(explained.fitted.squared_gap(), 1.15);
 }
