@@ -49,6 +49,7 @@ class ExportVerb {
   }
   int Run() const {
     CheckTableName(out_);
+    CheckKeeps(out_, {log_});
     WriteTable(ExportRun(ReadWithWarning(log_, suffix_)), out_);
     return 0;
   }
@@ -68,6 +69,7 @@ class ImportVerb {
   }
   int Run() const {
     CheckTableName(table_);
+    CheckKeeps(out_, {table_});
     ImportRun(ReadTable(table_), ProgramVersion(), out_);
     return 0;
   }

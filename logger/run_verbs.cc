@@ -20,6 +20,12 @@ void WriteText(const std::string& name, const std::string& text) {
   file.Finish();
 }
 
+// Before anything is printed or written.
+void CheckOutput(const std::string& file, const std::string& log) {
+  CheckKeeps(file, {log});
+  CheckCanBeCreated(file);
+}
+
 }  // namespace
 
 RunLog ReadWithWarning(const std::string& file, const std::optional<std::string>& suffix) {
@@ -39,8 +45,7 @@ SummaryVerb::SummaryVerb(CommandLine& line) {
 }
 
 int SummaryVerb::Run() const {
-  CheckKeeps(json_, {log_});
-  CheckCanBeCreated(json_);
+  CheckOutput(json_, log_);
   const RunLog log = ReadWithWarning(log_, suffix_);
   if (log.messages.states.empty()) throw InputError(log_ + ": found no state; a log of a run is needed");
   const Tracking tracking = TrackArm(log);
@@ -60,10 +65,8 @@ TimingVerb::TimingVerb(CommandLine& line) {
 }
 
 int TimingVerb::Run() const {
-  CheckKeeps(json_, {log_});
-  CheckKeeps(page_, {log_});
-  CheckCanBeCreated(json_);
-  CheckCanBeCreated(page_);
+  CheckOutput(json_, log_);
+  CheckOutput(page_, log_);
   const RunLog log = ReadWithWarning(log_, suffix_);
   TimingRecord record;
   for (const loop_statistics_t& report : log.statistics) record.Add(report);

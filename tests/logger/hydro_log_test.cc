@@ -135,6 +135,8 @@ TEST_F(HydroLogTest, BadUsageAndInput) {
   WriteRun(Path("log"), SampleRun(3));
   WriteEvents(Path("timed"), {LoopReport()});
   WriteBytes(Path("bad.csv"), "time_s,p1_psi\n0,1\n1,x\n");
+  WriteBytes(Path("good.csv"), "time_s,p1_psi\n0,1\n1,2\n");
+  WriteRun(Path("log.csv"), SampleRun(3));
   WriteBytes(Path("empty"), "");
   const std::string out = Path("out.csv");
   const struct {
@@ -155,6 +157,10 @@ TEST_F(HydroLogTest, BadUsageAndInput) {
       {{"import", Path("log"), "-o", out}, Path("log")},
       {{"compare", Path("log"), Path("none")}, Path("none")},
       {{"repair", Path("bad.csv"), "-o", out}, "found no event"},
+      {{"import", Path("good.csv"), "-o", Path("good.csv")},
+       Path("good.csv") + ": found the name of a file that is read"},
+      {{"export", Path("log.csv"), "-o", Path("log.csv")},
+       Path("log.csv") + ": found the name of a file that is read"},
       {{"timing", Path("log"), "--json", Path("log")},
        Path("log") + ": found the name of a file that is read"},
       {{"timing", Path("log"), "--page", Path("log")},
