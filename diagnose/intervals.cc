@@ -8,6 +8,7 @@
 
 #include "diagnose/parallel.h"
 #include "diagnose/residuals.h"
+#include "diagnose/sample_interval.h"
 #include "diagnose/solve.h"
 
 namespace hydro {
@@ -121,7 +122,7 @@ std::vector<Interval> Intervals(const Fitted& fitted, const std::vector<const Ru
   };
   const auto count = static_cast<double>(runs.size());
   const double squared_gap = std::max(1.0, fitted.squared_gap());
-  const double sample = runs.front()->duration() / static_cast<double>(runs.front()->samples() - 1);
+  const double sample = MedianInterval(runs.front()->stimulus.time);
   std::vector<Interval> intervals;
   for (Index i = 0; i < p; ++i) {
     const double white = 1.96 * std::sqrt(inverse(i, i) * squared_gap);
@@ -132,8 +133,8 @@ std::vector<Interval> Intervals(const Fitted& fitted, const std::vector<const Ru
         std::hypot(kIdealised * parameter.value, parameter.unit == "s" ? kInstant * sample : 0);
     half = std::hypot(half, 1.96 * std::abs(unseen / parameter.Slope()));
     Interval interval{parameter.Moved(-half), parameter.Moved(half)};
-    if (!parameter
-             .logarithmic) {  // a logarithm is positive by itself; its bounds are the fit's, not physics'
+    // A logarithm is positive by itself; its bounds are the fit's, not physics'.
+    if (!parameter.logarithmic) {
       interval.low = std::max(interval.low, std::min(parameter.low, parameter.value));
       interval.high = std::min(interval.high, std::max(parameter.high, parameter.value));
     }
