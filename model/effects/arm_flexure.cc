@@ -63,7 +63,7 @@ CatalogueEntry ArmFlexure() {
              "torque per twist",
              false,
              {},
-             {0.001, 0.03},
+             {0.001, 0.005, 0.03},
              Scale::kArmStiffness},
             {"damping",
              "in-lbf-s",
