@@ -7,6 +7,7 @@
 
 #include "diagnose/parallel.h"
 #include "diagnose/solve.h"
+#include "diagnose/start_fit.h"
 
 namespace hydro {
 
@@ -21,30 +22,29 @@ using Eigen::VectorXd;
 // not believed: far steps end where the derivatives do not hold.
 constexpr double kDoubtful = 1.5;
 
-// From so many times that sum on, the run's start is looked for from the measured one too: with other values
-// friction or cogging may catch the shaft at another place.
+// From so many times that sum (or that squared gap) on, the run's start is looked for elsewhere too.
 constexpr double kStartInDoubt = 1.1;
 
-// One run against a model whose parameters are fixed.
-HeldOut PredictRun(const Hypothesis& hypothesis, const RunData& run, const StartState& start) {
-  Hypothesis fixed = hypothesis;
-  fixed.base.clear();
-  fixed.effects.clear();
-  FitOptions options;
-  options.most_iterations = 6;
-  const Fitted fitted = Fit(fixed, {&run}, {start}, options);
+// What a fit of a run's start alone is as a prediction.
+HeldOut Prediction(const Fitted& fitted, const RunData& run, const StartState& from) {
   HeldOut part;
-  part.models.push_back(fixed.model);
+  part.models.push_back(fitted.hypothesis.model);
   if (fitted.ok()) {
     part.starts.push_back(fitted.runs[0].start);
     part.sum = fitted.sum;
     part.count = fitted.count;
     return part;
   }
-  part.starts.push_back(start);
+  part.starts.push_back(from);
   part.sum = std::numeric_limits<double>::infinity();
   for (const SignalData& signal : run.signals) part.count += signal.valid;
   return part;
+}
+
+// One run against a model whose parameters are held.
+HeldOut PredictRun(const Hypothesis& hypothesis, const RunData& run, const StartState& from,
+                   double doubtful) {
+  return Prediction(FitStart(hypothesis, run, from, doubtful), run, from);
 }
 
 HeldOut Sum(const std::vector<HeldOut>& parts) {
@@ -71,12 +71,17 @@ double Neutral(const FreeParameter& parameter, const ModelDescription& given) {
   return parameter.logarithmic ? parameter.value : 0;
 }
 
-// What little is known beforehand: a base parameter is within a third of what was given, the size of an
-// effect within its own size of none.
+// What little is known beforehand, where nothing else says more: a base parameter is within a third of what
+// was given, the size of an effect within its own size of none.
 Prior PriorOf(const std::vector<FreeParameter>& free, const ModelDescription& given) {
   constexpr double kBaseSpread = 0.3;
   Prior prior;
   for (const FreeParameter& parameter : free) {
+    if (parameter.spread > 0) {
+      prior.centre.push_back(parameter.centre);
+      prior.weight.push_back(1 / (parameter.spread * parameter.spread));
+      continue;
+    }
     const double neutral = Neutral(parameter, given);
     const double moved = std::abs(parameter.ToFitted(parameter.value) - parameter.ToFitted(neutral));
     double spread = std::max({moved, kBaseSpread * std::abs(neutral), 1e-300});
@@ -101,8 +106,9 @@ std::vector<T> Without(const std::vector<T>& all, size_t place) {
 
 HeldOut Predict(const Fitted& fitted, const std::vector<const RunData*>& held_out, int jobs) {
   std::vector<HeldOut> parts(held_out.size());
-  ParallelFor(held_out.size(), jobs,
-              [&](size_t r) { parts[r] = PredictRun(fitted.hypothesis, *held_out[r], held_out[r]->start); });
+  ParallelFor(held_out.size(), jobs, [&](size_t r) {
+    parts[r] = PredictRun(fitted.hypothesis, *held_out[r], held_out[r]->start, kStartInDoubt);
+  });
   return Sum(parts);
 }
 
@@ -138,11 +144,9 @@ HeldOut PredictInTurn(const Fitted& fitted, const ModelDescription& given,
       }
       others.Set(values);
     }
+    const double doubtful = kStartInDoubt * fitted.runs[r].sum / static_cast<double>(fitted.runs[r].count);
     const auto predict = [&](const Hypothesis& hypothesis) {
-      HeldOut part = PredictRun(hypothesis, *runs[r], fitted.runs[r].start);
-      if (!(part.sum > kStartInDoubt * fitted.runs[r].sum)) return part;
-      HeldOut again = PredictRun(hypothesis, *runs[r], runs[r]->start);
-      return again.sum < part.sum ? again : part;
+      return PredictRun(hypothesis, *runs[r], fitted.runs[r].start, doubtful);
     };
     parts[r] = predict(others);
     if (p == 0 || runs.size() < 2 || !(parts[r].sum > kDoubtful * fitted.runs[r].sum)) return;

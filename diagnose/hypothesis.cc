@@ -50,6 +50,18 @@ std::vector<FreeParameter> Hypothesis::Free() const {
     }
     free.push_back(parameter);
   }
+  for (const Trim& trim : trimmed) {
+    const ParameterInfo& info = BaseParameters()[trim.place].info;
+    FreeParameter parameter{{Unknown::Kind::kBase, trim.place},
+                            info.name,
+                            info.unit,
+                            model.parameters.*BaseParameters()[trim.place].member,
+                            trim.centre - 2 * kTrim * std::abs(trim.centre),
+                            trim.centre + 2 * kTrim * std::abs(trim.centre)};
+    parameter.centre = trim.centre;
+    parameter.spread = kTrim * std::abs(trim.centre);
+    free.push_back(parameter);
+  }
   const std::vector<EffectParameter> all = EffectParameters(model);
   for (size_t i = 0; i < all.size(); ++i) {
     const EffectDescription& effect = model.effects[all[i].effect];
@@ -73,6 +85,7 @@ std::vector<FreeParameter> Hypothesis::Free() const {
 void Hypothesis::Set(const std::vector<double>& values) {
   size_t next = 0;
   for (const size_t i : base) model.parameters.*BaseParameters()[i].member = values[next++];
+  for (const Trim& trim : trimmed) model.parameters.*BaseParameters()[trim.place].member = values[next++];
   const std::vector<EffectParameter> all = EffectParameters(model);
   for (const EffectParameter& parameter : all) {
     EffectDescription& effect = model.effects[parameter.effect];
@@ -143,6 +156,18 @@ Sizes SizesOf(const ModelDescription& model, const std::vector<const RunData*>& 
   sizes.arm_stiffness = p.J_a / (sizes.sample * sizes.sample);
   sizes.arm_damping = p.J_a / sizes.sample;
   return sizes;
+}
+
+Hypothesis Trimmed(const Hypothesis& hypothesis, const std::vector<size_t>& places) {
+  Hypothesis trimmed = hypothesis;
+  trimmed.trimmed.clear();
+  for (const size_t place : places) {
+    const double value = hypothesis.model.parameters.*BaseParameters()[place].member;
+    const bool is_free =
+        std::find(hypothesis.base.begin(), hypothesis.base.end(), place) != hypothesis.base.end();
+    if (value != 0 && !is_free) trimmed.trimmed.push_back({place, value});
+  }
+  return trimmed;
 }
 
 std::vector<Hypothesis> With(const Hypothesis& hypothesis, const Change& change, const Sizes& sizes,

@@ -83,6 +83,10 @@ std::vector<Interval> Intervals(const Fitted& fitted, const std::vector<const Ru
   ParallelFor(runs.size(), jobs, [&](size_t r) { blocks_of[r] = BlocksOf(fitted, free, r, *runs[r]); });
   MatrixXd information = MatrixXd::Zero(p, p);
   for (const RunFit& run : fitted.runs) information += Map<const MatrixXd>(run.information.data(), p, p);
+  for (Index i = 0; i < p; ++i) {
+    const double spread = free[static_cast<size_t>(i)].spread;
+    if (spread > 0) information(i, i) += 1 / (spread * spread);
+  }
   const VectorXd scale = (information.diagonal().array() + 1e-300).sqrt().inverse();
   MatrixXd scaled = scale.asDiagonal() * information * scale.asDiagonal();
   scaled.diagonal().array() += 1e-10;

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -35,6 +36,9 @@ struct RunData {
   // Which of them are unknown: measured badly or not at all. Others are held (the angle of a motor whose
   // angle is not measured).
   std::array<bool, 6> start_free{};
+  // The start with both speeds 0, where the first sample allows that and the samples after it say otherwise:
+  // of what accelerates from rest they cannot tell.
+  std::optional<StartState> at_rest;
   std::vector<SignalData> signals;  // those that a simulation is compared with
 
   size_t samples() const { return stimulus.time.size(); }

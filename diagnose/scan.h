@@ -15,6 +15,8 @@ struct Scanned {
   Hypothesis start;     // with the change, its parameters moved to where the score test expects them
   double expected = 0;  // fall of the sum of squared residuals that it expects
   std::string failure;  // "" or why it cannot be judged
+  // Where the runs begin with it; empty: where they do without it.
+  std::vector<StartState> run_starts;
 };
 
 // One row for each change and starting point, best first within each change. The change's derivatives are

@@ -4,6 +4,8 @@
 #include <limits>
 
 #include "diagnose/parallel.h"
+#include "diagnose/periodic_starts.h"
+#include "diagnose/start_fit.h"
 
 namespace hydro {
 
@@ -31,6 +33,9 @@ constexpr double kCloseEnough = 1.25;
 // Above this squared gap a fit is begun once more, from the measured starts.
 constexpr double kStartsInDoubt = 1.1;
 
+// Up to this squared gap of its fit an explanation may lack no more than a trim.
+constexpr double kNear = 3;
+
 std::vector<StartState> MeasuredStarts(const std::vector<const RunData*>& runs) {
   std::vector<StartState> starts;
   starts.reserve(runs.size());
@@ -43,6 +48,7 @@ std::vector<StartState> MeasuredStarts(const std::vector<const RunData*>& runs) 
 double Cost(const Explanation& one) {
   double cost = one.held_out_gap();
   for (const FreeParameter& parameter : one.fitted.hypothesis.Free()) {
+    if (parameter.spread > 0) continue;
     cost += parameter.unknown.kind == Unknown::Kind::kBase ? 0.005 : 0.01;
   }
   return cost;
@@ -78,9 +84,11 @@ class Searcher {
     if (!result_.given.fitted.ok()) return result_;
     result_.best = result_.given;
     Grow(Extend({result_.given}, 0), 0);
-    if (result_.best.held_out_gap() >= kCloseEnough) Grow(TryAllAlone(), 0);
+    if (!IsClosed()) Grow(TryAllAlone(), 0);
     Exchange();
     TakeBack();
+    const Explanation trimmed = WithTrim(result_.best);
+    if (Material(result_.best.held_out_gap(), trimmed.held_out_gap())) result_.best = trimmed;
     return result_;
   }
 
@@ -107,7 +115,7 @@ class Searcher {
                                     next.begin() + static_cast<std::ptrdiff_t>(std::min(kBeam, next.size())));
       while (beam.size() > 1 && beam.back().fitted.sum > kBehind * beam.front().fitted.sum) beam.pop_back();
       result_.best = *best;
-      if (result_.best.held_out_gap() < kCloseEnough || ++step >= most_changes_) return;
+      if (++step >= most_changes_ || IsClosed()) return;
       next = Extend(beam, step);
     }
   }
@@ -151,6 +159,12 @@ class Searcher {
       }
       const bool exchange = most < std::numeric_limits<double>::infinity();
       Pick(from, &scanned, step == 0 ? kRefitsAtFirst : kRefitsLater, exchange ? 1 : kStarts, &pool);
+      for (const Hypothesis& one :
+           WithPeriodic(from.fitted.hypothesis, changes, context_.runs, context_.jobs)) {
+        Scanned seed{one.changes.back(), one, 0, "", {}};
+        seed.run_starts = BestStarts(one, context_.runs, StartsOf(from.fitted), context_.jobs);
+        pool.push_back(std::move(seed));
+      }
     }
     Tell("refitting the likeliest" + Step(step), share + 0.3 / most_changes_);
     return FitAll(pool, StartsOf(beam.front().fitted), most);
@@ -160,8 +174,10 @@ class Searcher {
   std::vector<Explanation> FitAll(const std::vector<Scanned>& pool, const std::vector<StartState>& starts,
                                   double most = std::numeric_limits<double>::infinity()) {
     std::vector<Fitted> fits(pool.size());
-    ParallelFor(pool.size(), context_.jobs,
-                [&](size_t i) { fits[i] = Fit(pool[i].start, context_.runs, starts, coarse_); });
+    ParallelFor(pool.size(), context_.jobs, [&](size_t i) {
+      const auto& own = pool[i].run_starts;
+      fits[i] = Fit(pool[i].start, context_.runs, own.empty() ? starts : own, coarse_);
+    });
     // The best start of each set of changes.
     std::vector<Fitted> best;
     for (Fitted& fit : fits) {
@@ -234,6 +250,30 @@ class Searcher {
     }
   }
 
+  // Whether further changes need not be looked for.
+  bool IsClosed() {
+    if (result_.best.held_out_gap() < kCloseEnough) return true;
+    if (result_.best.fitted.sum != judged_sum_) {
+      judged_sum_ = result_.best.fitted.sum;
+      closed_by_trim_ = WithTrim(result_.best).held_out_gap() < kStartsInDoubt;
+    }
+    return closed_by_trim_;
+  }
+
+  // One with changes that comes near, with the model's own parameters trimmed where they may be; itself where
+  // that is no use.
+  Explanation WithTrim(const Explanation& one) const {
+    const bool near = one.held_out_gap() > kStartsInDoubt && one.squared_gap() < kNear;
+    if (one.changes().empty() || !near) return one;
+    std::vector<size_t> places;
+    for (const Change& change : context_.changes) {
+      if (change.effect.empty()) places.push_back(BasePlace(change.parameter));
+    }
+    Explanation trimmed =
+        Explain(context_, Trimmed(one.fitted.hypothesis, places), StartsOf(one.fitted), WithAllJobs(fine_));
+    return trimmed.fitted.ok() && trimmed.held_out_gap() < one.held_out_gap() ? trimmed : one;
+  }
+
   // Each change is tried to be replaced: a greedy choice may have been second best once others are there.
   // Where all is explained it is still tried: what does as well is a tie.
   void Exchange() {
@@ -272,8 +312,11 @@ class Searcher {
         const Hypothesis less = Without(result_.best.fitted.hypothesis, change, context_.given);
         Explanation reduced = Explain(context_, less, StartsOf(result_.best.fitted), WithAllJobs(fine_));
         if (!reduced.fitted.ok()) continue;
+        if (reduced.squared_gap() < kNear) reduced = BegunAgain(context_, reduced, WithAllJobs(fine_));
         result_.tried.push_back(reduced);
-        if (Material(reduced.held_out_gap(), result_.best.held_out_gap())) continue;
+        const double gap = result_.best.held_out_gap();
+        if (Material(reduced.held_out_gap(), gap) && Material(WithTrim(reduced).held_out_gap(), gap))
+          continue;
         result_.best = reduced;
         fewer = true;
         break;
@@ -286,6 +329,8 @@ class Searcher {
   FitOptions coarse_, fine_;
   SearchResult result_;
   std::vector<std::vector<Scanned>> scanned_alone_;  // every change to the given model
+  double judged_sum_ = -1;                           // of the explanation that closed_by_trim_ is about
+  bool closed_by_trim_ = false;
 };
 
 }  // namespace
@@ -307,8 +352,15 @@ Explanation Explain(const SearchContext& context, const Hypothesis& hypothesis,
 
 Explanation BegunAgain(const SearchContext& context, const Explanation& one, const FitOptions& options) {
   if (one.fitted.squared_gap() <= kStartsInDoubt) return one;
-  Explanation again = Explain(context, one.fitted.hypothesis, MeasuredStarts(context.runs), options);
-  return again.fitted.ok() && again.fitted.sum < one.fitted.sum ? again : one;
+  Explanation best = one;
+  const auto begin_at = [&](const std::vector<StartState>& starts) {
+    Explanation again = Explain(context, one.fitted.hypothesis, starts, options);
+    if (again.fitted.ok() && again.fitted.sum < best.fitted.sum) best = std::move(again);
+  };
+  begin_at(MeasuredStarts(context.runs));
+  if (best.fitted.squared_gap() <= kStartsInDoubt) return best;
+  begin_at(BestStarts(best.fitted.hypothesis, context.runs, StartsOf(best.fitted), options.jobs));
+  return best;
 }
 
 SearchResult Search(const SearchContext& context, const Hypothesis& from, int most_changes) {

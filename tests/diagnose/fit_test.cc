@@ -7,9 +7,11 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 
 #include "diagnose/held_out.h"
 #include "diagnose/search.h"
+#include "diagnose/start_fit.h"
 #include "model/state.h"
 #include "tests/diagnose/small_runs.h"
 
@@ -73,6 +75,47 @@ TEST(Explain, BeginsAgainFromTheMeasuredStarts) {
       BegunAgain(context, Explain(context, hypothesis, elsewhere, options), options);
   ASSERT_TRUE(explained.fitted.ok());
   EXPECT_LT(explained.fitted.squared_gap(), 1.15);
+}
+
+// Tests that a run's start is looked for at rest too where the first samples allow it: the measured start of
+// what accelerates from rest is moving, and slips into another tooth of the cogging.
+TEST(FitStart, TriesRest) {
+  const ModelDescription truth =
+      Table1With({{"motor.cogging", {{"amplitude", 1}, {"periods", 6}, {"phase", 0.7}}, {}}});
+  std::vector<RunData> runs;
+  runs.push_back(SmallRun(truth, Shaft::kFree, false, 0.6, 2, 1));
+  StartState moving = runs[0].start;
+  moving[kMotorSpeed] = -60;
+  moving[kArmAngle] += 0.02;
+  runs[0].at_rest = runs[0].start;
+  runs[0].start = moving;
+  Hypothesis hypothesis;
+  hypothesis.model = truth;
+  constexpr double kNoDoubt = std::numeric_limits<double>::infinity();
+  EXPECT_GT(FitStart(hypothesis, runs[0], moving, kNoDoubt).squared_gap(), 1.5);
+  const Fitted fitted = FitStart(hypothesis, runs[0], moving, 1.1);
+  ASSERT_TRUE(fitted.ok());
+  EXPECT_LT(fitted.squared_gap(), 1.15);
+  EXPECT_EQ(fitted.hypothesis.model.effects[0].parameters, truth.effects[0].parameters);
+  EXPECT_EQ(BestStarts(hypothesis, PointersTo(runs), {moving}, 1)[0], fitted.runs[0].start);
+}
+
+// Tests that trimmed parameters follow the runs as far as they may, and no further; that one which is free or
+// 0 is not trimmed; and that a trim says nothing to a hypothesis without one.
+TEST(Trimmed, MovesALittle) {
+  ModelDescription truth = Table1With();
+  truth.parameters.k_1 *= 1.002;
+  truth.parameters.b *= 1.1;
+  const std::vector<RunData> runs = ClampedPair(truth, 0.6, 1);
+  const std::vector<size_t> places = {BasePlace("k_1"), BasePlace("b"), BasePlace("f"), BasePlace("T_s")};
+  const Hypothesis hypothesis = Trimmed(WithFree(Table1With(), {"T_s"}), places);
+  ASSERT_EQ(hypothesis.trimmed.size(), 2u);  // f is 0, T_s is free
+  const Fitted fitted = Fit(hypothesis, PointersTo(runs), StartsOf(runs), {});
+  ASSERT_TRUE(fitted.ok());
+  const Parameters table = Table1();
+  EXPECT_NEAR(ValueOf(fitted, "k_1"), truth.parameters.k_1, 0.003 * table.k_1);
+  EXPECT_LE(std::abs(ValueOf(fitted, "k_1") / table.k_1 - 1), 2 * kTrim * 1.0001);
+  EXPECT_NEAR(ValueOf(fitted, "b") / table.b, 1 + 2 * kTrim, 1e-6);
 }
 
 // Tests that the numbers of effects are found from where fits start.

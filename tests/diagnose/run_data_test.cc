@@ -96,6 +96,21 @@ TEST(PrepareRun, RestIsRest) {
   }
 }
 
+// Tests that what accelerates from rest may be at rest, beside the line through its first samples; and that
+// what moves at its first sample may not.
+TEST(PrepareRun, MayBeginAtRest) {
+  testing::NoisyRig rig;
+  rig.model = {"Table 1", testing::Table1(), {}};
+  const RunData from_rest =
+      rig.Record("from rest", Shaft::kFree, -0.1, 0.5, false, [](double t) { return t < 0.004 ? 0 : 6.0; });
+  ASSERT_NE(from_rest.start[kMotorSpeed], 0);
+  ASSERT_TRUE(from_rest.at_rest.has_value());
+  EXPECT_EQ((*from_rest.at_rest)[kMotorSpeed], 0);
+  EXPECT_EQ((*from_rest.at_rest)[kArmSpeed], 0);
+  EXPECT_EQ((*from_rest.at_rest)[kP1], from_rest.start[kP1]);
+  EXPECT_FALSE(PrepareRun(WithArm(Shaft::kFree), testing::Table1()).at_rest.has_value());
+}
+
 // Tests that a free arm is compared and started, its speed from the angle's slope.
 TEST(PrepareRun, Free) {
   const RunData data = PrepareRun(WithArm(Shaft::kFree), testing::Table1());

@@ -1,0 +1,83 @@
+// Effects that repeat within a turn are read off the balances before anything is fitted.
+#include "diagnose/periodic_starts.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "tests/diagnose/small_runs.h"
+
+namespace hydro::testing {
+namespace {
+
+const std::vector<Change> kPeriodic = {{"motor.cogging", {}, ""}, {"pump.flow_ripple", {}, ""}};
+
+// The likeliest start of an effect; null where there is none.
+const EffectDescription* Likeliest(const std::vector<Hypothesis>& starts, const std::string& id) {
+  for (const Hypothesis& start : starts) {
+    if (start.changes.back().effect == id) return &start.model.effects.back();
+  }
+  return nullptr;
+}
+
+std::vector<Hypothesis> StartsFor(const ModelDescription& truth, const std::vector<Change>& changes,
+                                  int jobs) {
+  const std::vector<RunData> runs = OneOfEach(truth, 1.0, 1);
+  return WithPeriodic(WithFree(Table1With(), {}), changes, PointersTo(runs), jobs);
+}
+
+// Tests that a strong cogging has its number of periods, its phase and the order of its size; most of it is
+// left to the fit, since a smoothed disturbance is smaller than the true one.
+TEST(WithPeriodic, ReadsCogging) {
+  for (const int periods : {5, 6, 11}) {
+    const ModelDescription truth =
+        Table1With({{"motor.cogging",
+                     {{"amplitude", 1}, {"periods", static_cast<double>(periods)}, {"phase", 0.7}},
+                     {}}});
+    const std::vector<Hypothesis> starts = StartsFor(truth, kPeriodic, 1);
+    const EffectDescription* cogging = Likeliest(starts, "motor.cogging");
+    ASSERT_NE(cogging, nullptr) << periods;
+    EXPECT_EQ(cogging->parameters.at("periods"), periods);
+    EXPECT_LT(std::abs(std::remainder(cogging->parameters.at("phase") - 0.7, 2 * std::numbers::pi)), 0.4)
+        << periods;
+    EXPECT_GT(cogging->parameters.at("amplitude"), 0.25);
+    EXPECT_LT(cogging->parameters.at("amplitude"), 1.2);
+  }
+}
+
+// Tests the same of a displacement that varies, with its sign.
+TEST(WithPeriodic, ReadsAFlowRipple) {
+  for (const double amplitude : {0.1, -0.1}) {
+    const std::vector<Hypothesis> starts = StartsFor(
+        Table1With({{"pump.flow_ripple", {{"amplitude", amplitude}, {"periods", 9}}, {}}}), kPeriodic, 1);
+    const EffectDescription* ripple = Likeliest(starts, "pump.flow_ripple");
+    ASSERT_NE(ripple, nullptr);
+    EXPECT_EQ(ripple->parameters.at("periods"), 9);
+    EXPECT_NEAR(ripple->parameters.at("amplitude"), amplitude, 0.07);
+  }
+}
+
+// Tests that what may not be named is not proposed, and that nothing is where nothing repeats.
+TEST(WithPeriodic, OnlyWhatIsAskedForAndThere) {
+  const ModelDescription truth =
+      Table1With({{"motor.cogging", {{"amplitude", 1}, {"periods", 6}, {"phase", 0}}, {}}});
+  EXPECT_THAT(StartsFor(truth, {{"pump.stribeck", {}, ""}}, 1), ::testing::IsEmpty());
+  EXPECT_EQ(Likeliest(StartsFor(truth, {kPeriodic[1]}, 1), "motor.cogging"), nullptr);
+  EXPECT_THAT(StartsFor(Table1With(), kPeriodic, 1), ::testing::IsEmpty());
+}
+
+// Tests that the bits do not depend on the number of threads.
+TEST(WithPeriodic, SameForAnyNumberOfThreads) {
+  const ModelDescription truth =
+      Table1With({{"motor.cogging", {{"amplitude", 1}, {"periods", 6}, {"phase", 0.7}}, {}}});
+  const std::vector<Hypothesis> a = StartsFor(truth, kPeriodic, 1), b = StartsFor(truth, kPeriodic, 2);
+  ASSERT_EQ(a.size(), b.size());
+  for (size_t i = 0; i < a.size(); ++i) {
+    EXPECT_EQ(a[i].model.effects.back().parameters, b[i].model.effects.back().parameters);
+  }
+}
+
+}  // namespace
+}  // namespace hydro::testing
