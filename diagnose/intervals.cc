@@ -5,11 +5,13 @@
 #include <algorithm>
 #include <boost/math/distributions/students_t.hpp>
 #include <cmath>
+#include <numeric>
 
 #include "diagnose/parallel.h"
 #include "diagnose/residuals.h"
 #include "diagnose/sample_interval.h"
 #include "diagnose/solve.h"
+#include "model/parameter_info.h"
 
 namespace hydro {
 
@@ -30,6 +32,10 @@ constexpr double kMostLeverage = 0.75;
 // noise alone leaves a tenth of it; rigs whose friction is rounded a little or whose sensors are of second
 // order moved the numbers found by up to two percent without showing it in any block (bench/gap_score).
 constexpr double kIdealised = 0.005;
+
+// The same of each of the model's own numbers that are held: what is found stands beside their terms, and a
+// small effect moves by as much of a large term. Calibrated on such rigs, too.
+constexpr double kIdealisedHeld = 0.0005;
 
 // Standard deviation of a time, in sample intervals, for what is taken to be immediate and is not: a
 // tachometer with a filter of a twelfth of a sample, left out of the model, made delays and lags found 0.02
@@ -72,6 +78,46 @@ BlocksOfRun BlocksOf(const Fitted& fitted, const std::vector<FreeParameter>& fre
     }
   }
   return blocks;
+}
+
+// Standard deviations of the free numbers, as they are fitted, from what the model's own idealise that are
+// held: the fit follows each of those as far as the runs cannot tell it from the free ones. 0 for those that
+// are trimmed.
+VectorXd ByHeldNumbers(const Fitted& fitted, const std::vector<const RunData*>& runs, int jobs) {
+  std::vector<size_t> places(BaseParameters().size());
+  std::iota(places.begin(), places.end(), size_t{0});
+  const std::vector<FreeParameter> all = Trimmed(fitted.hypothesis, places).Free();
+  std::vector<Index> own, held;
+  for (size_t i = 0; i < all.size(); ++i) {
+    (all[i].spread > 0 ? held : own).push_back(static_cast<Index>(i));
+  }
+  std::vector<MatrixXd> parts(runs.size());
+  ParallelFor(runs.size(), jobs, [&](size_t r) {
+    const BlocksOfRun blocks = BlocksOf(fitted, all, r, *runs[r]);
+    parts[r] = blocks.informations[0];
+    for (size_t b = 1; b < blocks.informations.size(); ++b) parts[r] += blocks.informations[b];
+  });
+  MatrixXd information = parts[0];
+  for (size_t r = 1; r < parts.size(); ++r) information += parts[r];
+
+  const MatrixXd among = information(own, own);
+  const VectorXd scale = (among.diagonal().array() + 1e-300).sqrt().inverse();
+  MatrixXd scaled = scale.asDiagonal() * among * scale.asDiagonal();
+  scaled.diagonal().array() += 1e-10;
+  const MatrixXd across = scale.asDiagonal() * MatrixXd(information(own, held));
+  const MatrixXd follows = scale.asDiagonal() * SolveSymmetric(scaled, across);
+  VectorXd squares = VectorXd::Zero(static_cast<Index>(own.size()));
+  for (size_t k = 0; k < held.size(); ++k) {
+    const double deviation = kIdealisedHeld * std::abs(all[static_cast<size_t>(held[k])].centre);
+    squares += (follows.col(static_cast<Index>(k)) * deviation).cwiseAbs2();
+  }
+  const std::vector<FreeParameter> free = fitted.hypothesis.Free();
+  VectorXd deviations = VectorXd::Zero(static_cast<Index>(free.size()));
+  Index next = 0;
+  for (size_t i = 0; i < free.size(); ++i) {
+    if (free[i].spread == 0) deviations(static_cast<Index>(i)) = std::sqrt(squares(next++));
+  }
+  return deviations;
 }
 
 }  // namespace
@@ -127,6 +173,7 @@ std::vector<Interval> Intervals(const Fitted& fitted, const std::vector<const Ru
   const auto count = static_cast<double>(runs.size());
   const double squared_gap = std::max(1.0, fitted.squared_gap());
   const double sample = MedianInterval(runs.front()->stimulus.time);
+  const VectorXd by_held = ByHeldNumbers(fitted, runs, jobs);
   std::vector<Interval> intervals;
   for (Index i = 0; i < p; ++i) {
     const double white = 1.96 * std::sqrt(inverse(i, i) * squared_gap);
@@ -135,7 +182,7 @@ std::vector<Interval> Intervals(const Fitted& fitted, const std::vector<const Ru
     const FreeParameter& parameter = free[static_cast<size_t>(i)];
     const double unseen =
         std::hypot(kIdealised * parameter.value, parameter.unit == "s" ? kInstant * sample : 0);
-    half = std::hypot(half, 1.96 * std::abs(unseen / parameter.Slope()));
+    half = std::hypot(half, 1.96 * std::abs(unseen / parameter.Slope()), 1.96 * by_held(i));
     Interval interval{parameter.Moved(-half), parameter.Moved(half)};
     // A logarithm is positive by itself; its bounds are the fit's, not physics'.
     if (!parameter.logarithmic) {

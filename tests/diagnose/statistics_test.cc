@@ -102,6 +102,24 @@ TEST(Intervals, TimesAreNotSharperThanSensors) {
   EXPECT_LT(intervals[0].high - intervals[0].low, 0.2 * sample);
 }
 
+// Tests that a small effect is not said to be known better than the large terms beside it: a little more
+// viscous friction than the model holds is taken for drag.
+TEST(Intervals, AllowForNumbersThatAreHeld) {
+  constexpr double kDrag = 1e-5;
+  ModelDescription truth = Table1With({{"pump.quadratic_drag", {{"k", kDrag}}, {}}});
+  const ModelDescription held = truth;
+  truth.parameters.b *= 1.001;
+  const std::vector<RunData> runs = ClampedPair(truth, 3, 1);
+  const Fitted fitted = Fit(WithFree(held, {}), PointersTo(runs), StartsOf(runs), {});
+  ASSERT_TRUE(fitted.ok());
+  const double k = fitted.hypothesis.Free()[0].value;
+  EXPECT_GT(k, 1.01 * kDrag);
+  const std::vector<Interval> intervals = Intervals(fitted, PointersTo(runs), 1);
+  ASSERT_EQ(intervals.size(), 1u);
+  EXPECT_LE(intervals[0].low, kDrag);
+  EXPECT_LT(intervals[0].high - intervals[0].low, k);
+}
+
 // Tests that no interval holds what cannot be: friction that drives.
 TEST(Intervals, StayWithinPhysics) {
   Parameters smooth = Table1();
