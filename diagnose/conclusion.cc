@@ -86,18 +86,6 @@ ChangedParameter DescribeParameter(const FreeParameter& fitted, const Interval& 
   return changed;
 }
 
-// What is told of parameters that are trimmed; "" where none is.
-std::string TrimRemark(const Hypothesis& hypothesis) {
-  if (hypothesis.trimmed.empty()) return "";
-  double largest = 0;
-  for (const Trim& trim : hypothesis.trimmed) {
-    const double value = hypothesis.model.parameters.*BaseParameters()[trim.place].member;
-    largest = std::max(largest, std::abs(value / trim.centre - 1));
-  }
-  return "the model's own parameters are trimmed in model.toml, by " + ShortNumber(100 * largest, 2) +
-         " % at most: so little decides when friction holds the shaft and when it slips";
-}
-
 std::string Sentence(const Diagnosis& d) {
   const std::string gap = " (held-out gap " + ShortNumber(d.held_out.before, 3) + " to " +
                           ShortNumber(d.held_out.after, 3) + " noise units).";
@@ -166,13 +154,9 @@ Diagnosis Conclude(const SearchContext& context, const SearchResult& search, con
     d.effects.push_back(std::move(found));
   }
   for (size_t i = 0; i < free.size(); ++i) {
-    if (free[i].unknown.kind == Unknown::Kind::kBase && free[i].spread == 0) {
+    if (free[i].unknown.kind == Unknown::Kind::kBase) {
       d.parameters.push_back(DescribeParameter(free[i], intervals[i], context.given));
     }
-  }
-
-  if (const std::string trimmed = TrimRemark(best.fitted.hypothesis); !trimmed.empty()) {
-    d.remarks.push_back(trimmed);
   }
 
   const double left = best.held_out_gap() - 1;

@@ -139,19 +139,6 @@ class AllRuns : public ceres::EvaluationCallback {
   std::vector<RunCost*> costs_;
 };
 
-// What the parameters themselves say; empty where they say nothing.
-Prior KnownOf(const std::vector<FreeParameter>& free) {
-  Prior prior;
-  if (std::none_of(free.begin(), free.end(), [](const auto& parameter) { return parameter.spread > 0; })) {
-    return prior;
-  }
-  for (const FreeParameter& parameter : free) {
-    prior.centre.push_back(parameter.centre);
-    prior.weight.push_back(parameter.spread > 0 ? 1 / (parameter.spread * parameter.spread) : 0);
-  }
-  return prior;
-}
-
 }  // namespace
 
 std::vector<StartState> StartsOf(const Fitted& fitted) {
@@ -201,10 +188,9 @@ Fitted Fit(const Hypothesis& hypothesis, const std::vector<const RunData*>& runs
       problem.SetParameterUpperBound(values.data(), place, free[i].ToFitted(free[i].high));
     }
   }
-  const Prior known = options.prior != nullptr ? *options.prior : KnownOf(free);
-  if (!known.weight.empty()) {
-    const Map<const VectorXd> centre(known.centre.data(), static_cast<Eigen::Index>(free.size()));
-    const Map<const VectorXd> weight(known.weight.data(), static_cast<Eigen::Index>(free.size()));
+  if (options.prior != nullptr && !free.empty()) {
+    const Map<const VectorXd> centre(options.prior->centre.data(), static_cast<Eigen::Index>(free.size()));
+    const Map<const VectorXd> weight(options.prior->weight.data(), static_cast<Eigen::Index>(free.size()));
     prior = std::make_unique<ceres::NormalPrior>(weight.cwiseSqrt().asDiagonal(), centre);
     problem.AddResidualBlock(prior.get(), nullptr, values.data());
   }

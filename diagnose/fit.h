@@ -44,7 +44,7 @@ struct FitOptions {
   int most_iterations = 20;
   double tolerance = 1e-4;  // relative fall of the sum below which it is done
   int jobs = 1;
-  const Prior* prior = nullptr;  // in the order of Free(); null: what these say of themselves
+  const Prior* prior = nullptr;  // in the order of Free()
 };
 
 // `starts`: one a run, where to begin. Never throws ModelError: a model that cannot be simulated is a

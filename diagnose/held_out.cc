@@ -22,9 +22,6 @@ using Eigen::VectorXd;
 // not believed: far steps end where the derivatives do not hold.
 constexpr double kDoubtful = 1.5;
 
-// From so many times that sum (or that squared gap) on, the run's start is looked for elsewhere too.
-constexpr double kStartInDoubt = 1.1;
-
 // What a fit of a run's start alone is as a prediction.
 HeldOut Prediction(const Fitted& fitted, const RunData& run, const StartState& from) {
   HeldOut part;
@@ -71,17 +68,12 @@ double Neutral(const FreeParameter& parameter, const ModelDescription& given) {
   return parameter.logarithmic ? parameter.value : 0;
 }
 
-// What little is known beforehand, where nothing else says more: a base parameter is within a third of what
-// was given, the size of an effect within its own size of none.
+// What little is known beforehand: a base parameter is within a third of what was given, the size of an
+// effect within its own size of none.
 Prior PriorOf(const std::vector<FreeParameter>& free, const ModelDescription& given) {
   constexpr double kBaseSpread = 0.3;
   Prior prior;
   for (const FreeParameter& parameter : free) {
-    if (parameter.spread > 0) {
-      prior.centre.push_back(parameter.centre);
-      prior.weight.push_back(1 / (parameter.spread * parameter.spread));
-      continue;
-    }
     const double neutral = Neutral(parameter, given);
     const double moved = std::abs(parameter.ToFitted(parameter.value) - parameter.ToFitted(neutral));
     double spread = std::max({moved, kBaseSpread * std::abs(neutral), 1e-300});

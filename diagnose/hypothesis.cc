@@ -50,18 +50,6 @@ std::vector<FreeParameter> Hypothesis::Free() const {
     }
     free.push_back(parameter);
   }
-  for (const Trim& trim : trimmed) {
-    const ParameterInfo& info = BaseParameters()[trim.place].info;
-    FreeParameter parameter{{Unknown::Kind::kBase, trim.place},
-                            info.name,
-                            info.unit,
-                            model.parameters.*BaseParameters()[trim.place].member,
-                            trim.centre - 2 * kTrim * std::abs(trim.centre),
-                            trim.centre + 2 * kTrim * std::abs(trim.centre)};
-    parameter.centre = trim.centre;
-    parameter.spread = kTrim * std::abs(trim.centre);
-    free.push_back(parameter);
-  }
   const std::vector<EffectParameter> all = EffectParameters(model);
   for (size_t i = 0; i < all.size(); ++i) {
     const EffectDescription& effect = model.effects[all[i].effect];
@@ -85,7 +73,6 @@ std::vector<FreeParameter> Hypothesis::Free() const {
 void Hypothesis::Set(const std::vector<double>& values) {
   size_t next = 0;
   for (const size_t i : base) model.parameters.*BaseParameters()[i].member = values[next++];
-  for (const Trim& trim : trimmed) model.parameters.*BaseParameters()[trim.place].member = values[next++];
   const std::vector<EffectParameter> all = EffectParameters(model);
   for (const EffectParameter& parameter : all) {
     EffectDescription& effect = model.effects[parameter.effect];
@@ -96,6 +83,13 @@ void Hypothesis::Set(const std::vector<double>& values) {
 
 bool Hypothesis::Has(const Change& change) const {
   return std::find(changes.begin(), changes.end(), change) != changes.end();
+}
+
+Hypothesis Hypothesis::Held() const {
+  Hypothesis held = *this;
+  held.base.clear();
+  held.effects.clear();
+  return held;
 }
 
 double Sizes::Of(Scale scale) const {
@@ -158,16 +152,17 @@ Sizes SizesOf(const ModelDescription& model, const std::vector<const RunData*>& 
   return sizes;
 }
 
-Hypothesis Trimmed(const Hypothesis& hypothesis, const std::vector<size_t>& places) {
-  Hypothesis trimmed = hypothesis;
-  trimmed.trimmed.clear();
-  for (const size_t place : places) {
-    const double value = hypothesis.model.parameters.*BaseParameters()[place].member;
+std::vector<FreeParameter> HeldParameters(const Hypothesis& hypothesis) {
+  Hypothesis held = hypothesis.Held();
+  for (size_t place = 0; place < BaseParameters().size(); ++place) {
     const bool is_free =
         std::find(hypothesis.base.begin(), hypothesis.base.end(), place) != hypothesis.base.end();
-    if (value != 0 && !is_free) trimmed.trimmed.push_back({place, value});
+    if (!is_free) held.base.push_back(place);
   }
-  return trimmed;
+  std::vector<FreeParameter> parameters = held.Free();
+  std::erase_if(parameters, [](const FreeParameter& parameter) { return !(parameter.value > 0); });
+  for (FreeParameter& parameter : parameters) parameter.logarithmic = true;
+  return parameters;
 }
 
 std::vector<Hypothesis> With(const Hypothesis& hypothesis, const Change& change, const Sizes& sizes,

@@ -32,9 +32,6 @@ struct FreeParameter {
   double value = 0;
   double low = 0, high = 0;
   bool logarithmic = false;  // positive: fitted as its logarithm
-  // What is known of it beforehand, as it is fitted: the value and its standard deviation, 0 where nothing
-  // is.
-  double centre = 0, spread = 0;
 
   // To what a fit moves, and back.
   double ToFitted(double number) const;
@@ -45,26 +42,18 @@ struct FreeParameter {
   double Slope() const { return logarithmic ? value : 1; }
 };
 
-// A base parameter that may move a little from `centre`: kTrim times it are a standard deviation, and twice
-// as much is the limit. What equations idealise moves a number by as much; where friction may hold the shaft
-// or let it slip, that decides.
-struct Trim {
-  size_t place = 0;  // in BaseParameters()
-  double centre = 0;
-};
-inline constexpr double kTrim = 0.0025;
-
 struct Hypothesis {
   ModelDescription model;       // with the values of `free`
   std::vector<Change> changes;  // to the model as given
   std::vector<size_t> base;     // free base parameters, as in BaseParameters(); those of `changes` among them
-  std::vector<Trim> trimmed;    // none of `base`
   std::vector<std::string> effects;  // ids whose parameters are free
 
   std::vector<FreeParameter> Free() const;
   // The model with these values, in the order of Free().
   void Set(const std::vector<double>& values);
   bool Has(const Change& change) const;
+  // The same with nothing free.
+  Hypothesis Held() const;
 };
 
 // Sizes of what the runs show, by which starting values are scaled.
@@ -76,8 +65,8 @@ struct Sizes {
 };
 Sizes SizesOf(const ModelDescription& model, const std::vector<const RunData*>& runs);
 
-// The hypothesis with those of `places` trimmed that are not free and not 0.
-Hypothesis Trimmed(const Hypothesis& hypothesis, const std::vector<size_t>& places);
+// The base parameters that the hypothesis holds, as if they were free: those above 0, as logarithms.
+std::vector<FreeParameter> HeldParameters(const Hypothesis& hypothesis);
 
 // The hypothesis with an effect added, once for each of its starting points; a base parameter freed, as it is
 // and, when `elsewhere`, also somewhat smaller and larger.

@@ -5,13 +5,11 @@
 #include <algorithm>
 #include <boost/math/distributions/students_t.hpp>
 #include <cmath>
-#include <numeric>
 
 #include "diagnose/parallel.h"
 #include "diagnose/residuals.h"
 #include "diagnose/sample_interval.h"
 #include "diagnose/solve.h"
-#include "model/parameter_info.h"
 
 namespace hydro {
 
@@ -81,16 +79,12 @@ BlocksOfRun BlocksOf(const Fitted& fitted, const std::vector<FreeParameter>& fre
 }
 
 // Standard deviations of the free numbers, as they are fitted, from what the model's own idealise that are
-// held: the fit follows each of those as far as the runs cannot tell it from the free ones. 0 for those that
-// are trimmed.
+// held: the fit follows each of those as far as the runs cannot tell it from the free ones.
 VectorXd ByHeldNumbers(const Fitted& fitted, const std::vector<const RunData*>& runs, int jobs) {
-  std::vector<size_t> places(BaseParameters().size());
-  std::iota(places.begin(), places.end(), size_t{0});
-  const std::vector<FreeParameter> all = Trimmed(fitted.hypothesis, places).Free();
-  std::vector<Index> own, held;
-  for (size_t i = 0; i < all.size(); ++i) {
-    (all[i].spread > 0 ? held : own).push_back(static_cast<Index>(i));
-  }
+  std::vector<FreeParameter> all = fitted.hypothesis.Free();
+  const auto own = static_cast<Index>(all.size());
+  const std::vector<FreeParameter> held = HeldParameters(fitted.hypothesis);
+  all.insert(all.end(), held.begin(), held.end());
   std::vector<MatrixXd> parts(runs.size());
   ParallelFor(runs.size(), jobs, [&](size_t r) {
     const BlocksOfRun blocks = BlocksOf(fitted, all, r, *runs[r]);
@@ -100,24 +94,14 @@ VectorXd ByHeldNumbers(const Fitted& fitted, const std::vector<const RunData*>& 
   MatrixXd information = parts[0];
   for (size_t r = 1; r < parts.size(); ++r) information += parts[r];
 
-  const MatrixXd among = information(own, own);
+  const MatrixXd among = information.topLeftCorner(own, own);
   const VectorXd scale = (among.diagonal().array() + 1e-300).sqrt().inverse();
   MatrixXd scaled = scale.asDiagonal() * among * scale.asDiagonal();
   scaled.diagonal().array() += 1e-10;
-  const MatrixXd across = scale.asDiagonal() * MatrixXd(information(own, held));
+  const MatrixXd across = scale.asDiagonal() * information.topRightCorner(own, information.cols() - own);
   const MatrixXd follows = scale.asDiagonal() * SolveSymmetric(scaled, across);
-  VectorXd squares = VectorXd::Zero(static_cast<Index>(own.size()));
-  for (size_t k = 0; k < held.size(); ++k) {
-    const double deviation = kIdealisedHeld * std::abs(all[static_cast<size_t>(held[k])].centre);
-    squares += (follows.col(static_cast<Index>(k)) * deviation).cwiseAbs2();
-  }
-  const std::vector<FreeParameter> free = fitted.hypothesis.Free();
-  VectorXd deviations = VectorXd::Zero(static_cast<Index>(free.size()));
-  Index next = 0;
-  for (size_t i = 0; i < free.size(); ++i) {
-    if (free[i].spread == 0) deviations(static_cast<Index>(i)) = std::sqrt(squares(next++));
-  }
-  return deviations;
+  // By logarithms of what is held: a relative deviation as it is.
+  return kIdealisedHeld * follows.rowwise().norm();
 }
 
 }  // namespace
@@ -129,10 +113,6 @@ std::vector<Interval> Intervals(const Fitted& fitted, const std::vector<const Ru
   ParallelFor(runs.size(), jobs, [&](size_t r) { blocks_of[r] = BlocksOf(fitted, free, r, *runs[r]); });
   MatrixXd information = MatrixXd::Zero(p, p);
   for (const RunFit& run : fitted.runs) information += Map<const MatrixXd>(run.information.data(), p, p);
-  for (Index i = 0; i < p; ++i) {
-    const double spread = free[static_cast<size_t>(i)].spread;
-    if (spread > 0) information(i, i) += 1 / (spread * spread);
-  }
   const VectorXd scale = (information.diagonal().array() + 1e-300).sqrt().inverse();
   MatrixXd scaled = scale.asDiagonal() * information * scale.asDiagonal();
   scaled.diagonal().array() += 1e-10;

@@ -36,6 +36,7 @@ class Periodogram {
 
   // One sample: `x` has the other regressors; `carrier` is what sine and cosine are multiplied with.
   void Add(const VectorXd& x, double carrier, double angle, double target) {
+    if (!x.allFinite() || !std::isfinite(carrier * angle * target)) return;
     VectorXd row(others_ + 3);
     row.head(others_) = x;
     row(others_ + 2) = target;
@@ -44,6 +45,10 @@ class Periodogram {
       row(others_ + 1) = carrier * std::cos(n * angle);
       normal_[static_cast<size_t>(n - 1)].selfadjointView<Eigen::Lower>().rankUpdate(row);
     }
+  }
+
+  void Add(const Periodogram& other) {
+    for (size_t n = 0; n < normal_.size(); ++n) normal_[n] += other.normal_[n];
   }
 
   struct Wave {
@@ -120,22 +125,17 @@ std::vector<Hypothesis> WithPeriodic(const Hypothesis& hypothesis, const std::ve
     return std::find(changes.begin(), changes.end(), change) != changes.end();
   };
   if (!asked(cogging) && !asked(ripple)) return {};
-  std::vector<SmoothedRun> smoothed(runs.size());
-  std::vector<char> can_be_smoothed(runs.size(), 0);
-  ParallelFor(runs.size(), jobs, [&](size_t r) {
-    try {
-      smoothed[r] = SmoothDisturbances(hypothesis.model, *runs[r], {});
-      can_be_smoothed[r] = 1;
-    } catch (const ModelError&) {
-      // another run may do
-    }
-  });
-
   // Eq. (4): what the pump's torque lacks, beside a constant, its friction and its displacement.
   constexpr Index kOthers = 5;
   const double D = hypothesis.model.parameters.D;
-  Periodogram of_cogging(kOthers), of_ripple(kOthers);
-  for (const SmoothedRun& run : smoothed) {
+  std::vector<Periodogram> of_cogging(runs.size(), Periodogram(kOthers)), of_ripple = of_cogging;
+  ParallelFor(runs.size(), jobs, [&](size_t r) {
+    SmoothedRun run;
+    try {
+      run = SmoothDisturbances(hypothesis.model, *runs[r], {});
+    } catch (const ModelError&) {
+      return;  // another run may do
+    }
     const Disturbance& torque = run.disturbance[static_cast<size_t>(Balance::kPumpTorque)];
     for (size_t k = 0; k < torque.value.size(); ++k) {
       if (!torque.informative[k]) continue;
@@ -143,13 +143,18 @@ std::vector<Hypothesis> WithPeriodic(const Hypothesis& hypothesis, const std::ve
       const double sign = speed > 0 ? 1 : -1;
       const VectorXd others =
           (VectorXd(kOthers) << 1, sign, speed, sign * (run.p1[k] + run.p2[k]), difference).finished();
-      of_cogging.Add(others, 1, run.motor_angle[k], torque.value[k]);
-      of_ripple.Add(others, D * difference, run.motor_angle[k], torque.value[k]);
+      if (asked(cogging)) of_cogging[r].Add(others, 1, run.motor_angle[k], torque.value[k]);
+      if (asked(ripple)) of_ripple[r].Add(others, D * difference, run.motor_angle[k], torque.value[k]);
     }
+  });
+  // In the runs' order, however many threads there were.
+  for (size_t r = 1; r < runs.size(); ++r) {
+    of_cogging[0].Add(of_cogging[r]);
+    of_ripple[0].Add(of_ripple[r]);
   }
   std::vector<Hypothesis> all;
   if (asked(cogging)) {
-    for (const auto& wave : Likeliest(of_cogging, true)) {
+    for (const auto& wave : Likeliest(of_cogging[0], true)) {
       all.push_back(Added(hypothesis, cogging,
                           {{"amplitude", std::hypot(wave.sine, wave.cosine)},
                            {"periods", wave.periods},
@@ -157,7 +162,7 @@ std::vector<Hypothesis> WithPeriodic(const Hypothesis& hypothesis, const std::ve
     }
   }
   if (asked(ripple)) {
-    for (const auto& wave : Likeliest(of_ripple, false)) {
+    for (const auto& wave : Likeliest(of_ripple[0], false)) {
       all.push_back(Added(hypothesis, ripple,
                           {{"amplitude", std::clamp(-wave.cosine, -0.5, 0.5)}, {"periods", wave.periods}}));
     }

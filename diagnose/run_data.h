@@ -36,8 +36,8 @@ struct RunData {
   // Which of them are unknown: measured badly or not at all. Others are held (the angle of a motor whose
   // angle is not measured).
   std::array<bool, 6> start_free{};
-  // The start with both speeds 0, where the first sample allows that and the samples after it say otherwise:
-  // of what accelerates from rest they cannot tell.
+  // The start at rest, where the first sample of the motor's speed allows that and `start` moves: what
+  // accelerates from rest has its speed extrapolated.
   std::optional<StartState> at_rest;
   std::vector<SignalData> signals;  // those that a simulation is compared with
 

@@ -94,12 +94,16 @@ void SetStart(const Parameters& model, RunData* data) {
     data->start[kArmAngle] = data->stimulus.arm_angle;
   }
 
-  const SignalData* speed = data->Find(Channel::kMotorSpeed);
-  if (speed == nullptr || data->start[kMotorSpeed] == 0) return;
-  if (!(std::abs(speed->values.front()) < kAtRest * speed->noise)) return;
-  data->at_rest = data->start;
-  (*data->at_rest)[kMotorSpeed] = 0;
-  if (data->stimulus.shaft == Shaft::kFree) (*data->at_rest)[kArmSpeed] = 0;
+  // Each speed for itself; one that is not measured says nothing against rest.
+  StartState at_rest = data->start;
+  const auto may_rest = [&](Channel channel) {
+    const SignalData* speed = data->Find(channel);
+    return speed == nullptr || std::abs(speed->values.front()) < kAtRest * speed->noise;
+  };
+  if (data->Find(Channel::kMotorSpeed) == nullptr || !may_rest(Channel::kMotorSpeed)) return;
+  at_rest[kMotorSpeed] = 0;
+  if (data->stimulus.shaft == Shaft::kFree && may_rest(Channel::kArmSpeed)) at_rest[kArmSpeed] = 0;
+  if (at_rest != data->start) data->at_rest = at_rest;
 }
 
 }  // namespace hydro

@@ -1,11 +1,13 @@
 #include "diagnose/search.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "diagnose/parallel.h"
 #include "diagnose/periodic_starts.h"
 #include "diagnose/start_fit.h"
+#include "model/parameter_info.h"
 
 namespace hydro {
 
@@ -30,11 +32,11 @@ constexpr size_t kFinalists = 3;
 // Further changes are not looked for below this squared gap on held-out runs.
 constexpr double kCloseEnough = 1.25;
 
-// Above this squared gap a fit is begun once more, from the measured starts.
-constexpr double kStartsInDoubt = 1.1;
-
-// Up to this squared gap of its fit an explanation may lack no more than a trim.
+// Above this squared gap of its fit an explanation is not begun again to see whether it suffices.
 constexpr double kNear = 3;
+
+// A base parameter that moves by less than this part of itself is within what is known of it anyway.
+constexpr double kWithinWhatIsKnown = 0.01;
 
 std::vector<StartState> MeasuredStarts(const std::vector<const RunData*>& runs) {
   std::vector<StartState> starts;
@@ -48,7 +50,6 @@ std::vector<StartState> MeasuredStarts(const std::vector<const RunData*>& runs) 
 double Cost(const Explanation& one) {
   double cost = one.held_out_gap();
   for (const FreeParameter& parameter : one.fitted.hypothesis.Free()) {
-    if (parameter.spread > 0) continue;
     cost += parameter.unknown.kind == Unknown::Kind::kBase ? 0.005 : 0.01;
   }
   return cost;
@@ -84,11 +85,10 @@ class Searcher {
     if (!result_.given.fitted.ok()) return result_;
     result_.best = result_.given;
     Grow(Extend({result_.given}, 0), 0);
-    if (!IsClosed()) Grow(TryAllAlone(), 0);
+    if (result_.best.held_out_gap() >= kCloseEnough) Grow(TryAllAlone(), 0);
     Exchange();
     TakeBack();
-    const Explanation trimmed = WithTrim(result_.best);
-    if (Material(result_.best.held_out_gap(), trimmed.held_out_gap())) result_.best = trimmed;
+    PreferParameters();
     return result_;
   }
 
@@ -115,7 +115,7 @@ class Searcher {
                                     next.begin() + static_cast<std::ptrdiff_t>(std::min(kBeam, next.size())));
       while (beam.size() > 1 && beam.back().fitted.sum > kBehind * beam.front().fitted.sum) beam.pop_back();
       result_.best = *best;
-      if (++step >= most_changes_ || IsClosed()) return;
+      if (result_.best.held_out_gap() < kCloseEnough || ++step >= most_changes_) return;
       next = Extend(beam, step);
     }
   }
@@ -125,9 +125,8 @@ class Searcher {
   std::vector<Explanation> TryAllAlone() {
     std::vector<Scanned> pool;
     for (const auto& rows : scanned_alone_) {
-      const bool tried = std::any_of(result_.tried.begin(), result_.tried.end(), [&](const Explanation& one) {
-        return one.changes().size() == 1 && one.changes().front() == rows.front().change;
-      });
+      const bool tried =
+          std::find(picked_alone_.begin(), picked_alone_.end(), rows.front().change) != picked_alone_.end();
       if (tried || !rows.front().failure.empty()) continue;
       pool.push_back(rows.front());
       if (rows.size() > 1 && rows[1].failure.empty()) pool.push_back(rows[1]);
@@ -140,7 +139,7 @@ class Searcher {
   // Those with a sum of squares above `most` are not predicted.
   std::vector<Explanation> Extend(const std::vector<Explanation>& beam, int step,
                                   double most = std::numeric_limits<double>::infinity()) {
-    std::vector<Scanned> pool;
+    std::vector<Scanned> pool, periodic;
     const double share = static_cast<double>(step) / most_changes_;
     for (const Explanation& from : beam) {
       Tell("judging each effect" + Step(step), share);
@@ -161,11 +160,14 @@ class Searcher {
       Pick(from, &scanned, step == 0 ? kRefitsAtFirst : kRefitsLater, exchange ? 1 : kStarts, &pool);
       for (const Hypothesis& one :
            WithPeriodic(from.fitted.hypothesis, changes, context_.runs, context_.jobs)) {
-        Scanned seed{one.changes.back(), one, 0, "", {}};
-        seed.run_starts = BestStarts(one, context_.runs, StartsOf(from.fitted), context_.jobs);
-        pool.push_back(std::move(seed));
+        periodic.push_back({one.changes.back(), one, 0, "", {}});
+        periodic.back().run_starts = BestStarts(one, context_.runs, StartsOf(from.fitted), context_.jobs);
       }
     }
+    if (step == 0) {
+      for (const Scanned& picked : pool) picked_alone_.push_back(picked.change);
+    }
+    pool.insert(pool.end(), periodic.begin(), periodic.end());
     Tell("refitting the likeliest" + Step(step), share + 0.3 / most_changes_);
     return FitAll(pool, StartsOf(beam.front().fitted), most);
   }
@@ -250,30 +252,6 @@ class Searcher {
     }
   }
 
-  // Whether further changes need not be looked for.
-  bool IsClosed() {
-    if (result_.best.held_out_gap() < kCloseEnough) return true;
-    if (result_.best.fitted.sum != judged_sum_) {
-      judged_sum_ = result_.best.fitted.sum;
-      closed_by_trim_ = WithTrim(result_.best).held_out_gap() < kStartsInDoubt;
-    }
-    return closed_by_trim_;
-  }
-
-  // One with changes that comes near, with the model's own parameters trimmed where they may be; itself where
-  // that is no use.
-  Explanation WithTrim(const Explanation& one) const {
-    const bool near = one.held_out_gap() > kStartsInDoubt && one.squared_gap() < kNear;
-    if (one.changes().empty() || !near) return one;
-    std::vector<size_t> places;
-    for (const Change& change : context_.changes) {
-      if (change.effect.empty()) places.push_back(BasePlace(change.parameter));
-    }
-    Explanation trimmed =
-        Explain(context_, Trimmed(one.fitted.hypothesis, places), StartsOf(one.fitted), WithAllJobs(fine_));
-    return trimmed.fitted.ok() && trimmed.held_out_gap() < one.held_out_gap() ? trimmed : one;
-  }
-
   // Each change is tried to be replaced: a greedy choice may have been second best once others are there.
   // Where all is explained it is still tried: what does as well is a tie.
   void Exchange() {
@@ -314,9 +292,7 @@ class Searcher {
         if (!reduced.fitted.ok()) continue;
         if (reduced.squared_gap() < kNear) reduced = BegunAgain(context_, reduced, WithAllJobs(fine_));
         result_.tried.push_back(reduced);
-        const double gap = result_.best.held_out_gap();
-        if (Material(reduced.held_out_gap(), gap) && Material(WithTrim(reduced).held_out_gap(), gap))
-          continue;
+        if (Material(reduced.held_out_gap(), result_.best.held_out_gap())) continue;
         result_.best = reduced;
         fewer = true;
         break;
@@ -324,13 +300,44 @@ class Searcher {
     }
   }
 
+  // Where friction holds the shaft or lets it slip, a thousandth of a number decides when. What stands beside
+  // others only for that is no effect: the parameter that does as well by moving within what is known of it
+  // takes its place.
+  void PreferParameters() {
+    if (result_.best.changes().size() < 2) return;
+    const Explanation* instead = nullptr;
+    for (const Explanation& other : result_.tried) {
+      if (other.blocks.sums.empty() || other.changes().size() != result_.best.changes().size()) continue;
+      if (Material(other.held_out_gap(), result_.best.held_out_gap())) continue;
+      if (!MovesAParameterInstead(other.fitted.hypothesis)) continue;
+      if (instead == nullptr || other.held_out_gap() < instead->held_out_gap()) instead = &other;
+    }
+    if (instead != nullptr) result_.best = Explanation(*instead);
+  }
+
+  // Whether the other has a small change of a base parameter where the best has an effect.
+  bool MovesAParameterInstead(const Hypothesis& other) const {
+    const Change* own = nullptr;
+    for (const Change& change : other.changes) {
+      if (result_.best.fitted.hypothesis.Has(change)) continue;
+      if (own != nullptr || !change.effect.empty()) return false;
+      own = &change;
+    }
+    const bool in_place_of_an_effect =
+        std::any_of(result_.best.changes().begin(), result_.best.changes().end(),
+                    [&](const Change& change) { return !change.effect.empty() && !other.Has(change); });
+    if (own == nullptr || !in_place_of_an_effect) return false;
+    const double Parameters::*member = BaseParameters()[BasePlace(own->parameter)].member;
+    const double given = context_.given.parameters.*member;
+    return std::abs(other.model.parameters.*member - given) < kWithinWhatIsKnown * std::abs(given);
+  }
+
   const SearchContext& context_;
   int most_changes_;
   FitOptions coarse_, fine_;
   SearchResult result_;
   std::vector<std::vector<Scanned>> scanned_alone_;  // every change to the given model
-  double judged_sum_ = -1;                           // of the explanation that closed_by_trim_ is about
-  bool closed_by_trim_ = false;
+  std::vector<Change> picked_alone_;                 // of those, what was refitted from where it led
 };
 
 }  // namespace
@@ -351,14 +358,14 @@ Explanation Explain(const SearchContext& context, const Hypothesis& hypothesis,
 }
 
 Explanation BegunAgain(const SearchContext& context, const Explanation& one, const FitOptions& options) {
-  if (one.fitted.squared_gap() <= kStartsInDoubt) return one;
+  if (one.fitted.squared_gap() <= kStartInDoubt) return one;
   Explanation best = one;
   const auto begin_at = [&](const std::vector<StartState>& starts) {
     Explanation again = Explain(context, one.fitted.hypothesis, starts, options);
     if (again.fitted.ok() && again.fitted.sum < best.fitted.sum) best = std::move(again);
   };
   begin_at(MeasuredStarts(context.runs));
-  if (best.fitted.squared_gap() <= kStartsInDoubt) return best;
+  if (best.fitted.squared_gap() <= kStartInDoubt) return best;
   begin_at(BestStarts(best.fitted.hypothesis, context.runs, StartsOf(best.fitted), options.jobs));
   return best;
 }

@@ -52,9 +52,10 @@ struct SearchContext {
 Explanation Explain(const SearchContext& context, const Hypothesis& hypothesis,
                     const std::vector<StartState>& starts, const FitOptions& options);
 
-// The same begun once more from the measured starts, where its fit leaves a gap; the better of both. Starts
-// that were fitted while something was missing made up for it, and may hold the fit where friction or cogging
-// catch the shaft at another place.
+// The same begun once more from the measured starts, where its fit leaves a gap, and where that is left
+// still, from each run's best (BestStarts); what fits best of these. Starts that were fitted while something
+// was missing made up for it, and may hold the fit where friction or cogging catch the shaft at another
+// place.
 Explanation BegunAgain(const SearchContext& context, const Explanation& one, const FitOptions& options);
 
 // From `from` on, a hypothesis without changes of its own.

@@ -7,9 +7,7 @@
 namespace hydro {
 
 Fitted FitStart(const Hypothesis& hypothesis, const RunData& run, const StartState& from, double doubtful) {
-  Hypothesis held = hypothesis;
-  held.base.clear();
-  held.effects.clear();
+  const Hypothesis held = hypothesis.Held();
   FitOptions options;
   options.most_iterations = 6;
   Fitted best = Fit(held, {&run}, {from}, options);
@@ -28,7 +26,7 @@ std::vector<StartState> BestStarts(const Hypothesis& hypothesis, const std::vect
                                    const std::vector<StartState>& from, int jobs) {
   std::vector<StartState> starts = from;
   ParallelFor(runs.size(), jobs, [&](size_t r) {
-    const Fitted best = FitStart(hypothesis, *runs[r], from[r], 0);
+    const Fitted best = FitStart(hypothesis, *runs[r], from[r], kStartInDoubt);
     if (best.ok()) starts[r] = best.runs[0].start;
   });
   return starts;

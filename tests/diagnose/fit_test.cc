@@ -100,24 +100,6 @@ TEST(FitStart, TriesRest) {
   EXPECT_EQ(BestStarts(hypothesis, PointersTo(runs), {moving}, 1)[0], fitted.runs[0].start);
 }
 
-// Tests that trimmed parameters follow the runs as far as they may, and no further; that one which is free or
-// 0 is not trimmed; and that a trim says nothing to a hypothesis without one.
-TEST(Trimmed, MovesALittle) {
-  ModelDescription truth = Table1With();
-  truth.parameters.k_1 *= 1.002;
-  truth.parameters.b *= 1.1;
-  const std::vector<RunData> runs = ClampedPair(truth, 0.6, 1);
-  const std::vector<size_t> places = {BasePlace("k_1"), BasePlace("b"), BasePlace("f"), BasePlace("T_s")};
-  const Hypothesis hypothesis = Trimmed(WithFree(Table1With(), {"T_s"}), places);
-  ASSERT_EQ(hypothesis.trimmed.size(), 2u);  // f is 0, T_s is free
-  const Fitted fitted = Fit(hypothesis, PointersTo(runs), StartsOf(runs), {});
-  ASSERT_TRUE(fitted.ok());
-  const Parameters table = Table1();
-  EXPECT_NEAR(ValueOf(fitted, "k_1"), truth.parameters.k_1, 0.003 * table.k_1);
-  EXPECT_LE(std::abs(ValueOf(fitted, "k_1") / table.k_1 - 1), 2 * kTrim * 1.0001);
-  EXPECT_NEAR(ValueOf(fitted, "b") / table.b, 1 + 2 * kTrim, 1e-6);
-}
-
 // Tests that the numbers of effects are found from where fits start.
 TEST(Fit, RecoversEffectParameters) {
   const std::vector<RunData> runs =
