@@ -1,13 +1,12 @@
 #include "diagnose/search.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
 #include "diagnose/parallel.h"
+#include "diagnose/parameter_instead.h"
 #include "diagnose/periodic_starts.h"
 #include "diagnose/start_fit.h"
-#include "model/parameter_info.h"
 
 namespace hydro {
 
@@ -34,9 +33,6 @@ constexpr double kCloseEnough = 1.25;
 
 // Above this squared gap of its fit an explanation is not begun again to see whether it suffices.
 constexpr double kNear = 3;
-
-// A base parameter that moves by less than this part of itself is within what is known of it anyway.
-constexpr double kWithinWhatIsKnown = 0.01;
 
 std::vector<StartState> MeasuredStarts(const std::vector<const RunData*>& runs) {
   std::vector<StartState> starts;
@@ -88,7 +84,9 @@ class Searcher {
     if (result_.best.held_out_gap() >= kCloseEnough) Grow(TryAllAlone(), 0);
     Exchange();
     TakeBack();
-    PreferParameters();
+    if (const Explanation* instead = ParameterInstead(result_, context_.given)) {
+      result_.best = Explanation(*instead);
+    }
     return result_;
   }
 
@@ -298,38 +296,6 @@ class Searcher {
         break;
       }
     }
-  }
-
-  // Where friction holds the shaft or lets it slip, a thousandth of a number decides when. What stands beside
-  // others only for that is no effect: the parameter that does as well by moving within what is known of it
-  // takes its place.
-  void PreferParameters() {
-    if (result_.best.changes().size() < 2) return;
-    const Explanation* instead = nullptr;
-    for (const Explanation& other : result_.tried) {
-      if (other.blocks.sums.empty() || other.changes().size() != result_.best.changes().size()) continue;
-      if (Material(other.held_out_gap(), result_.best.held_out_gap())) continue;
-      if (!MovesAParameterInstead(other.fitted.hypothesis)) continue;
-      if (instead == nullptr || other.held_out_gap() < instead->held_out_gap()) instead = &other;
-    }
-    if (instead != nullptr) result_.best = Explanation(*instead);
-  }
-
-  // Whether the other has a small change of a base parameter where the best has an effect.
-  bool MovesAParameterInstead(const Hypothesis& other) const {
-    const Change* own = nullptr;
-    for (const Change& change : other.changes) {
-      if (result_.best.fitted.hypothesis.Has(change)) continue;
-      if (own != nullptr || !change.effect.empty()) return false;
-      own = &change;
-    }
-    const bool in_place_of_an_effect =
-        std::any_of(result_.best.changes().begin(), result_.best.changes().end(),
-                    [&](const Change& change) { return !change.effect.empty() && !other.Has(change); });
-    if (own == nullptr || !in_place_of_an_effect) return false;
-    const double Parameters::*member = BaseParameters()[BasePlace(own->parameter)].member;
-    const double given = context_.given.parameters.*member;
-    return std::abs(other.model.parameters.*member - given) < kWithinWhatIsKnown * std::abs(given);
   }
 
   const SearchContext& context_;
