@@ -355,7 +355,7 @@ std::string Says(const ClockDelay& delay) {
   char text[96];
   std::snprintf(text, sizeof text, "%s %s by %.3g +- %.2g s", delay.signals.size() > 1 ? "are" : "is",
                 delay.delay < 0 ? "early" : "late", std::abs(delay.delay), delay.error);
-  return "run " + delay.run + ": " + Enumerated(delay.signals) + " " + text + " against p1 and p2";
+  return RunNamed(delay.run) + ": " + Enumerated(delay.signals) + " " + text + " against p1 and p2";
 }
 
 }  // namespace hydro

@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "diagnose/sample_interval.h"
+#include "diagnose/word_list.h"
 
 namespace hydro {
 namespace {
@@ -47,12 +48,12 @@ void RemarkOnTimes(const RunData& run, std::vector<std::string>* remarks) {
     longest = std::max(longest, interval);
   }
   if (gaps == 0) return;
-  remarks->push_back("run " + run.name + ": " + Format("%zu", gaps) + (gaps == 1 ? " gap" : " gaps") +
+  remarks->push_back(RunNamed(run.name) + ": " + Format("%zu", gaps) + (gaps == 1 ? " gap" : " gaps") +
                      Format(" in time, up to %.3g s, the first after %.6g s", longest, time[first]));
 }
 
 void RemarkOnSignal(const RunData& run, const SignalData& signal, std::vector<std::string>* remarks) {
-  const std::string name = "run " + run.name + ": " + ChannelName(signal.channel);
+  const std::string name = RunNamed(run.name) + ": " + ChannelName(signal.channel);
   const char* unit = ChannelUnit(signal.channel).c_str();
   const double ratio = signal.noise / signal.stated_noise;
   if (ratio > kUnlikeStated || ratio < 1 / kUnlikeStated) {

@@ -15,4 +15,6 @@ std::string Enumerated(const std::vector<std::string>& parts) {
   return Joined({parts.begin(), parts.end() - 1}) + " and " + parts.back();
 }
 
+std::string RunNamed(const std::string& name) { return name.starts_with("run ") ? name : "run " + name; }
+
 }  // namespace hydro

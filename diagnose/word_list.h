@@ -1,4 +1,4 @@
-// Several words in one text.
+// Words put together.
 #pragma once
 
 #include <string>
@@ -10,5 +10,7 @@ namespace hydro {
 std::string Joined(const std::vector<std::string>& parts, const std::string& between = ", ");
 // "a, b and c"
 std::string Enumerated(const std::vector<std::string>& parts);
+// "run sine"; a name that says so itself as it is: "run 5"
+std::string RunNamed(const std::string& name);
 
 }  // namespace hydro

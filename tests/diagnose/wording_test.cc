@@ -37,6 +37,13 @@ TEST(WordList, JoinsAndEnumerates) {
   EXPECT_EQ(Enumerated({"a", "b", "c"}), "a, b and c");
 }
 
+// Tests that a run whose name says that it is one is not called a run twice.
+TEST(WordList, NamesRuns) {
+  EXPECT_EQ(RunNamed("sine"), "run sine");
+  EXPECT_EQ(RunNamed("run 5"), "run 5");
+  EXPECT_EQ(RunNamed("runaway"), "run runaway");
+}
+
 // Tests that a gap does not change what is usual, and that recordings are taken together.
 TEST(MedianInterval, OfOneAndOfSeveralRecordings) {
   const std::vector<double> slow = {0, 1, 2, 50};
