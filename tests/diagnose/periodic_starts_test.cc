@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "tests/diagnose/small_runs.h"
@@ -57,6 +58,26 @@ TEST(WithPeriodic, ReadsAFlowRipple) {
     EXPECT_EQ(ripple->parameters.at("periods"), 9);
     EXPECT_NEAR(ripple->parameters.at("amplitude"), amplitude, 0.07);
   }
+}
+
+// Tests that samples that are missing are left out, and that a run without pressures has no say.
+TEST(WithPeriodic, LeavesOutWhatIsMissing) {
+  const ModelDescription truth =
+      Table1With({{"motor.cogging", {{"amplitude", 1}, {"periods", 6}, {"phase", 0.7}}, {}}});
+  std::vector<RunData> runs = ClampedPair(truth, 1.0, 1);
+  MeasuredRun gaps = runs[0].measured, bare = runs[1].measured;
+  for (size_t i = 0; i < gaps.samples(); i += 3) {
+    gaps.motor_speed.values[i] = gaps.p2.values[i + 1] = std::numeric_limits<double>::quiet_NaN();
+  }
+  bare.p1 = bare.p2 = {};
+  runs.clear();
+  runs.push_back(PrepareRun(gaps, Table1()));
+  runs.push_back(PrepareRun(bare, Table1()));
+  const std::vector<Hypothesis> starts =
+      WithPeriodic(WithFree(Table1With(), {}), {kPeriodic[0]}, PointersTo(runs), 1);
+  const EffectDescription* cogging = Likeliest(starts, "motor.cogging");
+  ASSERT_NE(cogging, nullptr);
+  EXPECT_EQ(cogging->parameters.at("periods"), 6);
 }
 
 // Tests that what may not be named is not proposed, and that nothing is where nothing repeats.
