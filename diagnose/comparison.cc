@@ -54,6 +54,28 @@ bool Material(double squared_gap_before, double squared_gap_after) {
   return gain >= kLeastGain && gain >= kLeastShare * std::max(0.0, squared_gap_before - 1);
 }
 
+bool Closed(double squared_gap_before, double squared_gap_after, bool exact_sensors) {
+  constexpr double kClosed = 1.15, kClosedShare = 0.01;
+  if (squared_gap_after <= kClosed * kClosed) return true;
+  return exact_sensors && squared_gap_after - 1 <= kClosedShare * (squared_gap_before - 1);
+}
+
+bool ExactSensors(const std::vector<const RunData*>& runs) {
+  constexpr double kExact = 2e-4;
+  for (const RunData* run : runs) {
+    for (const SignalData& signal : run->signals) {
+      double low = INFINITY, high = -INFINITY;
+      for (const double value : signal.values) {
+        if (std::isnan(value)) continue;
+        low = std::min(low, value);
+        high = std::max(high, value);
+      }
+      if (high > low && signal.noise > kExact * (high - low)) return false;
+    }
+  }
+  return true;
+}
+
 double PValue(double fall, double squared_gap, double correlation, size_t parameters, size_t tried) {
   if (!(fall > 0)) return 1;
   const boost::math::chi_squared distribution(static_cast<double>(std::max<size_t>(parameters, 1)));

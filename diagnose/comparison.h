@@ -27,6 +27,12 @@ inline constexpr double kLeastShare = 0.25;  // of the squared gap above the noi
 
 bool Material(double squared_gap_before, double squared_gap_after);
 
+// Whether what is left of a gap needs no further explanation: it is within 1.15 of the noise. Where all
+// sensors are exact (noise below 2e-4 of their range: a simulation's) no model of a rig comes that near;
+// there it is closed when 1 % of the squared gap above the noise is left.
+bool Closed(double squared_gap_before, double squared_gap_after, bool exact_sensors);
+bool ExactSensors(const std::vector<const RunData*>& runs);
+
 // That chance alone makes a fit better by `fall` (of a sum of squared residuals whose remaining mean is
 // `squared_gap`) with `parameters` more free, when the best of `tried` is looked at and only one in
 // `correlation` residuals is independent.

@@ -15,9 +15,6 @@ namespace hydro {
 
 namespace {
 
-// A gap is closed when what is left is within this of the noise, or is this small a part of what there was.
-constexpr double kClosed = 1.15;
-constexpr double kClosedShare = 0.01;  // of the squared gap above the noise
 // A rival is told apart when it is worse by so many standard errors, block by block.
 constexpr double kToldApart = 2.5;
 // A base parameter that has to move by more than this factor is not believed.
@@ -112,9 +109,15 @@ std::string Sentence(const Diagnosis& d) {
     case Verdict::kTied:
       return "Missing, but these data cannot tell which: " + Enumerated(names) +
              (parameters.empty() ? "" : "; with " + Enumerated(parameters)) + gap;
-    case Verdict::kUnexplained:
+    case Verdict::kUnexplained: {
+      const double before = d.held_out.before * d.held_out.before - 1;
+      const double left = (d.held_out.after * d.held_out.after - 1) / before;
       return "Something is missing that no known effect explains" +
-             (names.empty() ? std::string() : "; the nearest is " + Enumerated(names)) + gap;
+             (names.empty() ? std::string()
+                            : "; the nearest is " + Enumerated(names) + ", which leaves " +
+                                  ShortNumber(100 * left, 2) + " % of the squared gap") +
+             gap;
+    }
   }
   return "";
 }
@@ -159,9 +162,7 @@ Diagnosis Conclude(const SearchContext& context, const SearchResult& search, con
     }
   }
 
-  const double left = best.held_out_gap() - 1;
-  const bool closed = d.held_out.after <= kClosed || left <= kClosedShare * (given.held_out_gap() - 1);
-  if (!closed) {
+  if (!Closed(given.held_out_gap(), best.held_out_gap(), ExactSensors(context.runs))) {
     d.verdict = Verdict::kUnexplained;
   } else if (best.changes().empty() && d.parameters.empty()) {
     d.verdict = Verdict::kNothingMissing;

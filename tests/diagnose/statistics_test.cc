@@ -268,6 +268,24 @@ TEST(Identifiable, WhatIsToldCanBeFitted) {
   }
 }
 
+// Tests that a gap is closed near the noise, and by its share only where there is no noise to speak of.
+TEST(Closed, NearTheNoiseOrOfExactSensors) {
+  EXPECT_TRUE(Closed(200, 1.15 * 1.15 - 1e-9, false));
+  EXPECT_FALSE(Closed(200, 1.4, false));
+  EXPECT_TRUE(Closed(200, 1.4, true));
+  EXPECT_FALSE(Closed(200, 3.5, true));
+  const std::vector<RunData> noisy = ClampedPair(Table1With(), 0.3, 1);
+  EXPECT_FALSE(ExactSensors(PointersTo(noisy)));
+  NoisyRig exact;
+  exact.model = Table1With();
+  exact.pressure_noise = exact.speed_noise = 0;
+  exact.encoder_bits = 26;
+  std::vector<RunData> runs;
+  runs.push_back(
+      exact.Record("exact", Shaft::kClamped, 0, 0.5, false, [](double t) { return Levels(t, 0); }));
+  EXPECT_TRUE(ExactSensors(PointersTo(runs)));
+}
+
 // Tests what a gain must be to count: a part of the whole and of what is above the noise.
 TEST(Material, AsksForAGainThatMatters) {
   EXPECT_FALSE(Material(1.02, 1.00));
