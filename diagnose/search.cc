@@ -6,6 +6,7 @@
 #include "diagnose/parallel.h"
 #include "diagnose/parameter_instead.h"
 #include "diagnose/periodic_starts.h"
+#include "diagnose/resonance.h"
 #include "diagnose/start_fit.h"
 
 namespace hydro {
@@ -87,6 +88,7 @@ class Searcher {
     if (const Explanation* instead = ParameterInstead(result_, context_.given)) {
       result_.best = Explanation(*instead);
     }
+    result_.best = AtBestResonance(context_, result_.best, WithAllJobs(fine_));
     return result_;
   }
 
