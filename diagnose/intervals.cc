@@ -33,7 +33,7 @@ constexpr double kIdealised = 0.005;
 
 // The same of each of the model's own numbers that are held: what is found stands beside their terms, and a
 // small effect moves by as much of a large term. Calibrated on such rigs, too.
-constexpr double kIdealisedHeld = 0.0005;
+constexpr double kIdealisedHeld = 0.0003;
 
 // Standard deviation of a time, in sample intervals, for what is taken to be immediate and is not: a
 // tachometer with a filter of a twelfth of a sample, left out of the model, made delays and lags found 0.02
