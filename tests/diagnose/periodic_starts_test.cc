@@ -66,7 +66,7 @@ TEST(WithPeriodic, LeavesOutWhatIsMissing) {
       Table1With({{"motor.cogging", {{"amplitude", 1}, {"periods", 6}, {"phase", 0.7}}, {}}});
   std::vector<RunData> runs = ClampedPair(truth, 1.0, 1);
   MeasuredRun gaps = runs[0].measured, bare = runs[1].measured;
-  for (size_t i = 0; i < gaps.samples(); i += 3) {
+  for (size_t i = 0; i + 1 < gaps.samples(); i += 3) {
     gaps.motor_speed.values[i] = gaps.p2.values[i + 1] = std::numeric_limits<double>::quiet_NaN();
   }
   bare.p1 = bare.p2 = {};
