@@ -64,13 +64,8 @@ bool ExactSensors(const std::vector<const RunData*>& runs) {
   constexpr double kExact = 2e-4;
   for (const RunData* run : runs) {
     for (const SignalData& signal : run->signals) {
-      double low = INFINITY, high = -INFINITY;
-      for (const double value : signal.values) {
-        if (std::isnan(value)) continue;
-        low = std::min(low, value);
-        high = std::max(high, value);
-      }
-      if (high > low && signal.noise > kExact * (high - low)) return false;
+      const double size = RangeOfValues(signal.values).size();
+      if (size > 0 && signal.noise > kExact * size) return false;
     }
   }
   return true;

@@ -32,14 +32,8 @@ std::vector<Rival> Rivals(const std::vector<Explanation>& tried, const Explanati
   for (const Explanation& other : tried) {
     if (other.blocks.sums.empty() || other.changes().size() != best.changes().size()) continue;
     if (other.fitted.hypothesis.Has(change)) continue;
-    const Change* instead = nullptr;
-    size_t different = 0;
-    for (const Change& one : other.changes()) {
-      if (best.fitted.hypothesis.Has(one)) continue;
-      ++different;
-      instead = &one;
-    }
-    if (different != 1) continue;
+    const Change* instead = other.fitted.hypothesis.OneBeyond(best.fitted.hypothesis);
+    if (instead == nullptr) continue;
     const double t = TValue(other.blocks, best.blocks);
     const double loss = other.held_out_gap() - best.held_out_gap();
     if (t > kToldApart || loss > std::max(kLeastGain, 0.1 * (best.held_out_gap() - 1))) continue;

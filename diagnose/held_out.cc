@@ -22,10 +22,12 @@ using Eigen::VectorXd;
 // not believed: far steps end where the derivatives do not hold.
 constexpr double kDoubtful = 1.5;
 
-// What a fit of a run's start alone is as a prediction.
-HeldOut Prediction(const Fitted& fitted, const RunData& run, const StartState& from) {
+// One run against a model whose parameters are held.
+HeldOut PredictRun(const Hypothesis& hypothesis, const RunData& run, const StartState& from,
+                   double doubtful) {
+  const Fitted fitted = FitStart(hypothesis, run, from, doubtful);
   HeldOut part;
-  part.models.push_back(fitted.hypothesis.model);
+  part.models.push_back(hypothesis.model);
   if (fitted.ok()) {
     part.starts.push_back(fitted.runs[0].start);
     part.sum = fitted.sum;
@@ -36,12 +38,6 @@ HeldOut Prediction(const Fitted& fitted, const RunData& run, const StartState& f
   part.sum = std::numeric_limits<double>::infinity();
   for (const SignalData& signal : run.signals) part.count += signal.valid;
   return part;
-}
-
-// One run against a model whose parameters are held.
-HeldOut PredictRun(const Hypothesis& hypothesis, const RunData& run, const StartState& from,
-                   double doubtful) {
-  return Prediction(FitStart(hypothesis, run, from, doubtful), run, from);
 }
 
 HeldOut Sum(const std::vector<HeldOut>& parts) {

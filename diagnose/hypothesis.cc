@@ -85,6 +85,16 @@ bool Hypothesis::Has(const Change& change) const {
   return std::find(changes.begin(), changes.end(), change) != changes.end();
 }
 
+const Change* Hypothesis::OneBeyond(const Hypothesis& other) const {
+  const Change* own = nullptr;
+  for (const Change& change : changes) {
+    if (other.Has(change)) continue;
+    if (own != nullptr) return nullptr;
+    own = &change;
+  }
+  return own;
+}
+
 Hypothesis Hypothesis::Held() const {
   Hypothesis held = *this;
   held.base.clear();

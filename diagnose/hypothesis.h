@@ -52,6 +52,8 @@ struct Hypothesis {
   // The model with these values, in the order of Free().
   void Set(const std::vector<double>& values);
   bool Has(const Change& change) const;
+  // The one change that it has and the other has not; null where there is none or several.
+  const Change* OneBeyond(const Hypothesis& other) const;
   // The same with nothing free.
   Hypothesis Held() const;
 };

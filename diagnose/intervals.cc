@@ -78,39 +78,17 @@ BlocksOfRun BlocksOf(const Fitted& fitted, const std::vector<FreeParameter>& fre
   return blocks;
 }
 
-// Standard deviations of the free numbers, as they are fitted, from what the model's own idealise that are
-// held: the fit follows each of those as far as the runs cannot tell it from the free ones.
-VectorXd ByHeldNumbers(const Fitted& fitted, const std::vector<const RunData*>& runs, int jobs) {
-  std::vector<FreeParameter> all = fitted.hypothesis.Free();
-  const auto own = static_cast<Index>(all.size());
-  const std::vector<FreeParameter> held = HeldParameters(fitted.hypothesis);
-  all.insert(all.end(), held.begin(), held.end());
-  std::vector<MatrixXd> parts(runs.size());
-  ParallelFor(runs.size(), jobs, [&](size_t r) {
-    const BlocksOfRun blocks = BlocksOf(fitted, all, r, *runs[r]);
-    parts[r] = blocks.informations[0];
-    for (size_t b = 1; b < blocks.informations.size(); ++b) parts[r] += blocks.informations[b];
-  });
-  MatrixXd information = parts[0];
-  for (size_t r = 1; r < parts.size(); ++r) information += parts[r];
-
-  const MatrixXd among = information.topLeftCorner(own, own);
-  const VectorXd scale = (among.diagonal().array() + 1e-300).sqrt().inverse();
-  MatrixXd scaled = scale.asDiagonal() * among * scale.asDiagonal();
-  scaled.diagonal().array() += 1e-10;
-  const MatrixXd across = scale.asDiagonal() * information.topRightCorner(own, information.cols() - own);
-  const MatrixXd follows = scale.asDiagonal() * SolveSymmetric(scaled, across);
-  // By logarithms of what is held: a relative deviation as it is.
-  return kIdealisedHeld * follows.rowwise().norm();
-}
-
 }  // namespace
 
 std::vector<Interval> Intervals(const Fitted& fitted, const std::vector<const RunData*>& runs, int jobs) {
   const std::vector<FreeParameter> free = fitted.hypothesis.Free();
   const auto p = static_cast<Index>(free.size());
+  std::vector<FreeParameter> all = free;  // and behind them what is held
+  const std::vector<FreeParameter> held = HeldParameters(fitted.hypothesis);
+  all.insert(all.end(), held.begin(), held.end());
+  const auto h = static_cast<Index>(held.size());
   std::vector<BlocksOfRun> blocks_of(runs.size());
-  ParallelFor(runs.size(), jobs, [&](size_t r) { blocks_of[r] = BlocksOf(fitted, free, r, *runs[r]); });
+  ParallelFor(runs.size(), jobs, [&](size_t r) { blocks_of[r] = BlocksOf(fitted, all, r, *runs[r]); });
   MatrixXd information = MatrixXd::Zero(p, p);
   for (const RunFit& run : fitted.runs) information += Map<const MatrixXd>(run.information.data(), p, p);
   const VectorXd scale = (information.diagonal().array() + 1e-300).sqrt().inverse();
@@ -137,15 +115,21 @@ std::vector<Interval> Intervals(const Fitted& fitted, const std::vector<const Ru
   // Noise scatters from block to block; what the model lacks a little of differs from run to run.
   VectorXd by_block = VectorXd::Zero(p);
   VectorXd by_run = VectorXd::Zero(p);
+  MatrixXd with_held = MatrixXd::Zero(p, h);
   for (size_t r = 0; r < runs.size(); ++r) {
+    const MatrixXd gradients = blocks_of[r].gradients.topRows(p);
     for (Index b = 0; b < kBlocksPerRun; ++b) {
-      by_block += influence(blocks_of[r].informations[static_cast<size_t>(b)], blocks_of[r].gradients.col(b))
-                      .cwiseAbs2();
+      const MatrixXd& block = blocks_of[r].informations[static_cast<size_t>(b)];
+      by_block += influence(block.topLeftCorner(p, p), gradients.col(b)).cwiseAbs2();
+      with_held += block.topRightCorner(p, h);
     }
-    by_run += influence(Map<const MatrixXd>(fitted.runs[r].information.data(), p, p),
-                        blocks_of[r].gradients.rowwise().sum())
-                  .cwiseAbs2();
+    by_run +=
+        influence(Map<const MatrixXd>(fitted.runs[r].information.data(), p, p), gradients.rowwise().sum())
+            .cwiseAbs2();
   }
+  // The fit follows what is held as far as the runs cannot tell it from the free numbers; by logarithms, so
+  // that a relative deviation counts as it is.
+  const VectorXd by_held = kIdealisedHeld * (inverse * with_held).rowwise().norm();
   const auto half_width = [](double squares, double parts) {
     const double t = boost::math::quantile(boost::math::students_t(parts - 1), 0.975);
     return t * std::sqrt(squares * (parts - 1) / parts);
@@ -153,7 +137,6 @@ std::vector<Interval> Intervals(const Fitted& fitted, const std::vector<const Ru
   const auto count = static_cast<double>(runs.size());
   const double squared_gap = std::max(1.0, fitted.squared_gap());
   const double sample = MedianInterval(runs.front()->stimulus.time);
-  const VectorXd by_held = ByHeldNumbers(fitted, runs, jobs);
   std::vector<Interval> intervals;
   for (Index i = 0; i < p; ++i) {
     const double white = 1.96 * std::sqrt(inverse(i, i) * squared_gap);

@@ -13,20 +13,6 @@ namespace {
 // A number that moves by less than this part of itself is within what any data sheet says of it.
 constexpr double kWithinWhatIsKnown = 0.01;
 
-// The parameter that `other` changes where `best` has an effect; null where they differ otherwise.
-const Change* InPlaceOfAnEffect(const Hypothesis& other, const Hypothesis& best) {
-  const Change* own = nullptr;
-  for (const Change& change : other.changes) {
-    if (best.Has(change)) continue;
-    if (own != nullptr || !change.effect.empty()) return nullptr;
-    own = &change;
-  }
-  const bool an_effect_less =
-      std::any_of(best.changes.begin(), best.changes.end(),
-                  [&](const Change& change) { return !change.effect.empty() && !other.Has(change); });
-  return an_effect_less ? own : nullptr;
-}
-
 }  // namespace
 
 const Explanation* ParameterInstead(const SearchResult& search, const ModelDescription& given) {
@@ -38,8 +24,10 @@ const Explanation* ParameterInstead(const SearchResult& search, const ModelDescr
   for (const Explanation& other : search.tried) {
     // Of what was only fitted the prediction is not known.
     if (other.blocks.sums.empty() || other.changes().size() != best.changes().size()) continue;
-    const Change* own = InPlaceOfAnEffect(other.fitted.hypothesis, best.fitted.hypothesis);
-    if (own == nullptr || Material(other.held_out_gap(), best.held_out_gap())) continue;
+    const Change* own = other.fitted.hypothesis.OneBeyond(best.fitted.hypothesis);
+    const Change* gone = best.fitted.hypothesis.OneBeyond(other.fitted.hypothesis);
+    const bool in_place = own != nullptr && own->effect.empty() && gone != nullptr && !gone->effect.empty();
+    if (!in_place || Material(other.held_out_gap(), best.held_out_gap())) continue;
     const double Parameters::*member = BaseParameters()[BasePlace(own->parameter)].member;
     const double value = given.parameters.*member;
     const double moved = other.fitted.hypothesis.model.parameters.*member - value;

@@ -25,17 +25,6 @@ std::string Format(const char* format, Values... values) {
   return text;
 }
 
-double Range(const SignalData& signal, double* low, double* high) {
-  *low = INFINITY;
-  *high = -INFINITY;
-  for (const double value : signal.values) {
-    if (std::isnan(value)) continue;
-    *low = std::min(*low, value);
-    *high = std::max(*high, value);
-  }
-  return *high - *low;
-}
-
 void RemarkOnTimes(const RunData& run, std::vector<std::string>* remarks) {
   const std::vector<double>& time = run.stimulus.time;
   const double usual = MedianInterval(time);
@@ -82,16 +71,15 @@ void RemarkOnMotion(const std::vector<const RunData*>& runs, std::vector<std::st
   bool speed = false, pressure = false;
   for (const RunData* run : runs) {
     for (const SignalData& signal : run->signals) {
-      double from, to;
-      const double range = Range(signal, &from, &to);
+      const ValueRange range = RangeOfValues(signal.values);
       if (signal.channel == Channel::kMotorSpeed) {
         speed = true;
-        low = std::min(low, from);
-        high = std::max(high, to);
+        low = std::min(low, range.low);
+        high = std::max(high, range.high);
         noise = std::max(noise, signal.noise);
       } else if (signal.channel == Channel::kP1 || signal.channel == Channel::kP2) {
         pressure = true;
-        most_pressure = std::max(most_pressure, range / signal.noise);
+        most_pressure = std::max(most_pressure, range.size() / signal.noise);
       }
     }
   }

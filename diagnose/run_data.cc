@@ -35,11 +35,6 @@ constexpr ChannelRow kRows[kChannels] = {{"motor_angle", "rad", &MeasuredRun::mo
                    allowed);
 }
 
-struct Range {
-  double low = std::numeric_limits<double>::infinity();
-  double high = -std::numeric_limits<double>::infinity();
-};
-
 size_t CountValid(const std::vector<double>& values) {
   return static_cast<size_t>(
       std::count_if(values.begin(), values.end(), [](double value) { return !std::isnan(value); }));
@@ -92,7 +87,7 @@ void CheckSignal(const MeasuredRun& run, const ChannelRow& row, const Parameters
 
 // `values` without the samples at the end of a sensor's range, if there are any. Noise makes neighbours
 // differ; where many in a row are the largest or smallest value of all, the sensor reads no further.
-std::vector<double> WithoutEnds(const std::vector<double>& values, const Range& range) {
+std::vector<double> WithoutEnds(const std::vector<double>& values, const ValueRange& range) {
   constexpr size_t kInARow = 8;
   std::vector<double> rest = values;
   for (const double end : {range.low, range.high}) {
@@ -116,13 +111,8 @@ SignalData MakeSignal(const MeasuredRun& run, Channel channel) {
   signal.values = measured.values;
   signal.stated_noise = measured.noise.value_or(kNone);
   signal.resolution = EstimateResolution(measured.values);
-  Range range;
-  for (const double value : measured.values) {
-    if (std::isnan(value)) continue;
-    range.low = std::min(range.low, value);
-    range.high = std::max(range.high, value);
-  }
-  const double size = range.high - range.low;
+  const ValueRange range = RangeOfValues(measured.values);
+  const double size = range.size();
   if (size == 0) {
     // What never moves is as good as it is said to be.
     signal.noise = measured.noise.value_or(1e-5 * std::max(1.0, std::abs(range.high)));
@@ -179,6 +169,16 @@ const SignalData* RunData::Find(Channel channel) const {
     if (signal.channel == channel) return &signal;
   }
   return nullptr;
+}
+
+ValueRange RangeOfValues(const std::vector<double>& values) {
+  ValueRange range;
+  for (const double value : values) {
+    if (std::isnan(value)) continue;
+    range.low = std::min(range.low, value);
+    range.high = std::max(range.high, value);
+  }
+  return range;
 }
 
 RunData PrepareRun(MeasuredRun run, const Parameters& model) {

@@ -56,6 +56,15 @@ const std::string& ChannelUnit(Channel channel);
 // values that are impossible (speeds of 1e5 rad/s: another unit).
 RunData PrepareRun(MeasuredRun run, const Parameters& model);
 
+// Between the smallest and the largest value, NaN left out; low is above high when there is none.
+struct ValueRange {
+  double low = std::numeric_limits<double>::infinity();
+  double high = -std::numeric_limits<double>::infinity();
+
+  double size() const { return high - low; }
+};
+ValueRange RangeOfValues(const std::vector<double>& values);
+
 // Makes the runs' names unique.
 void NameApart(std::vector<RunData>* runs);
 

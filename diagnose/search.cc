@@ -86,7 +86,7 @@ class Searcher {
     Exchange();
     TakeBack();
     if (const Explanation* instead = ParameterInstead(result_, context_.given)) {
-      result_.best = Explanation(*instead);
+      result_.best = *instead;
     }
     result_.best = AtBestResonance(context_, result_.best, WithAllJobs(fine_));
     return result_;
