@@ -10,8 +10,8 @@
 
 #include "bus/authenticated_channels.h"
 #include "bus/authenticator.h"
-#include "bus/histogram.h"
 #include "bus/in_process_bus.h"
+#include "timing/histogram.h"
 
 namespace hydro {
 namespace {

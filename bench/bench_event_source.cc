@@ -8,9 +8,9 @@
 #include <cstring>
 #include <thread>
 
+#include "base/input_error.h"
 #include "bus/sleep_until.h"
 #include "bus/udpm_socket.h"
-#include "settings/input_error.h"
 
 int main(int argc, char** argv) {
   const double rate = argc >= 4 ? std::atof(argv[2]) : 0, seconds = argc >= 4 ? std::atof(argv[3]) : 0;

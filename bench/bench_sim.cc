@@ -7,7 +7,7 @@
 #include <map>
 #include <string>
 
-#include "logger/log_writer.h"
+#include "log/log_writer.h"
 #include "settings/stack_config.h"
 #include "sim/simulation.h"
 

@@ -18,7 +18,6 @@
 #include <vector>
 
 #include "bench/shared_results.h"
-#include "bus/real_time.h"
 #include "bus/udpm_bus.h"
 #include "plant/plant_app.h"
 #include "plant/simulated_rig.h"
@@ -28,6 +27,7 @@
 #include "settings/stack_config.h"
 #include "sim/simulation.h"
 #include "tests/free_udp_port.h"
+#include "timing/real_time.h"
 
 namespace hydro {
 namespace {

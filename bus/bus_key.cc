@@ -10,7 +10,7 @@
 #include <cstring>
 #include <stdexcept>
 
-#include "settings/input_error.h"
+#include "base/input_error.h"
 
 namespace hydro {
 namespace {

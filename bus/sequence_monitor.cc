@@ -1,6 +1,6 @@
 #include "bus/sequence_monitor.h"
 
-#include "bus/saturating.h"
+#include "base/saturating.h"
 
 namespace hydro {
 

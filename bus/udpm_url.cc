@@ -5,7 +5,7 @@
 #include <charconv>
 #include <string_view>
 
-#include "settings/input_error.h"
+#include "base/input_error.h"
 
 namespace hydro {
 namespace {

@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <utility>
 
-#include "diagnose/alignment.h"
-#include "diagnose/clock_fit.h"
-#include "diagnose/conclusion.h"
-#include "diagnose/identifiable.h"
-#include "diagnose/recording_remarks.h"
-#include "diagnose/run_data.h"
-#include "diagnose/search.h"
+#include "diagnose/data/alignment.h"
+#include "diagnose/data/recording_remarks.h"
+#include "diagnose/data/run_data.h"
+#include "diagnose/fit/clock_fit.h"
+#include "diagnose/fit/identifiable.h"
+#include "diagnose/search/search.h"
+#include "diagnose/verdict/conclusion.h"
 
 namespace hydro {
 

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "diagnose/diagnosis.h"
-#include "diagnose/progress.h"
-#include "logger/measured_run.h"
+#include "diagnose/data/diagnosis.h"
+#include "diagnose/search/progress.h"
+#include "runs/measured_run.h"
 
 namespace hydro {
 

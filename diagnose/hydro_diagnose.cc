@@ -9,15 +9,15 @@
 #include <system_error>
 #include <utility>
 
-#include "diagnose/progress_bar.h"
-#include "diagnose/report_html.h"
-#include "diagnose/report_json.h"
-#include "diagnose/terminal_summary.h"
-#include "logger/new_file.h"
+#include "base/did_you_mean.h"
+#include "base/new_file.h"
+#include "diagnose/report/progress_bar.h"
+#include "diagnose/report/report_html.h"
+#include "diagnose/report/report_json.h"
+#include "diagnose/report/terminal_summary.h"
 #include "model/parameter_info.h"
-#include "settings/did_you_mean.h"
 #include "settings/model_file.h"
-#include "settings/section_reader.h"
+#include "settings/toml/section_reader.h"
 
 namespace hydro {
 namespace {

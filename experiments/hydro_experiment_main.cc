@@ -2,10 +2,10 @@
 #include <cstdio>
 #include <filesystem>
 
-#include "experiments/experiment.h"
+#include "base/input_error.h"
 #include "experiments/run_experiments.h"
+#include "experiments/studies/experiment.h"
 #include "settings/command_line.h"
-#include "settings/input_error.h"
 
 namespace {
 

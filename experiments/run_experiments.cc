@@ -9,14 +9,14 @@
 #include <numeric>
 #include <thread>
 
-#include "experiments/comparison_text.h"
-#include "experiments/experiment_files.h"
-#include "experiments/gnuplot.h"
-#include "experiments/progress_display.h"
-#include "experiments/report.h"
-#include "logger/new_file.h"
-#include "settings/did_you_mean.h"
-#include "settings/input_error.h"
+#include "base/did_you_mean.h"
+#include "base/input_error.h"
+#include "base/new_file.h"
+#include "experiments/report/comparison_text.h"
+#include "experiments/report/experiment_files.h"
+#include "experiments/report/progress_display.h"
+#include "experiments/report/report.h"
+#include "page/gnuplot.h"
 
 namespace hydro {
 namespace {

@@ -7,7 +7,7 @@
 #include <cerrno>
 #include <cstdlib>
 
-#include "settings/text_file.h"
+#include "base/text_file.h"
 
 namespace hydro {
 namespace {

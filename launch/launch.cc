@@ -9,10 +9,10 @@
 #include <optional>
 #include <string>
 
+#include "base/new_file.h"
 #include "bus/udpm_bus.h"
 #include "launch/stack_watch.h"
 #include "launch/timing_files.h"
-#include "logger/new_file.h"
 
 namespace hydro {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "bus/saturating.h"
+#include "base/saturating.h"
 #include "process/fault_codes.h"
 
 namespace hydro {

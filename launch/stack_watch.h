@@ -17,7 +17,7 @@
 #include "bus/channels.h"
 #include "bus/clock.h"
 #include "launch/run_summary.h"
-#include "timing/timing_record.h"
+#include "timing/report/timing_record.h"
 
 namespace hydro {
 

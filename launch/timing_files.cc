@@ -1,8 +1,8 @@
 #include "launch/timing_files.h"
 
-#include "logger/new_file.h"
-#include "settings/input_error.h"
-#include "timing/timing_report.h"
+#include "base/input_error.h"
+#include "base/new_file.h"
+#include "timing/report/timing_report.h"
 
 namespace hydro {
 namespace {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "timing/timing_record.h"
+#include "timing/report/timing_record.h"
 
 namespace hydro {
 

@@ -1,7 +1,7 @@
 // hydro-logger CONFIG -o FILE: records the bus.
+#include "base/text_file.h"
 #include "logger/logger_app.h"
 #include "process/process_main.h"
-#include "settings/text_file.h"
 
 int main(int argc, char** argv) {
   hydro::CommandLine command_line("hydro-logger", "Records every message on the bus into an LCM event log.");

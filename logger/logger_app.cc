@@ -10,7 +10,7 @@
 #include <hydro/state_t.hpp>
 #include <utility>
 
-#include "bus/saturating.h"
+#include "base/saturating.h"
 
 namespace hydro {
 namespace {

@@ -20,9 +20,9 @@
 #include <thread>
 #include <vector>
 
-#include "logger/causal_order.h"
+#include "log/causal_order.h"
+#include "log/log_writer.h"
 #include "logger/event_queue.h"
-#include "logger/log_writer.h"
 #include "process/app.h"
 #include "process/participant.h"
 #include "settings/stack_config.h"

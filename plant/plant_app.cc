@@ -7,8 +7,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "bus/fixed_rate_loop.h"
 #include "process/stop_signal.h"
+#include "timing/fixed_rate_loop.h"
 
 namespace hydro {
 namespace {

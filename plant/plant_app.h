@@ -25,8 +25,7 @@
 #include <string>
 #include <vector>
 
-#include "bus/ring_queue.h"
-#include "bus/round_trip_monitor.h"
+#include "base/ring_queue.h"
 #include "bus/sequence_monitor.h"
 #include "plant/logger_watch.h"
 #include "plant/output_safety.h"
@@ -34,6 +33,7 @@
 #include "plant/roll_call.h"
 #include "process/participant.h"
 #include "settings/stack_config.h"
+#include "timing/round_trip_monitor.h"
 
 namespace hydro {
 

@@ -1,7 +1,7 @@
 #include "plant/simulated_rig.h"
 
+#include "base/input_error.h"
 #include "plant/sensor_noise.h"
-#include "settings/input_error.h"
 
 namespace hydro {
 

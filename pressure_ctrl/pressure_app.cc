@@ -6,8 +6,8 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "bus/saturating.h"
-#include "settings/input_error.h"
+#include "base/input_error.h"
+#include "base/saturating.h"
 
 namespace hydro {
 namespace {

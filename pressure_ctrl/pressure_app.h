@@ -12,7 +12,7 @@
 #include <hydro/state_t.hpp>
 #include <optional>
 
-#include "bus/ring_queue.h"
+#include "base/ring_queue.h"
 #include "bus/sequence_monitor.h"
 #include "pressure_ctrl/pressure_law.h"
 #include "process/app.h"

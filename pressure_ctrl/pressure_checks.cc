@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "bus/saturating.h"
+#include "base/saturating.h"
 #include "pressure_ctrl/pressure_app.h"
 
 namespace hydro {

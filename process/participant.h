@@ -14,9 +14,9 @@
 #include "bus/bus.h"
 #include "bus/channels.h"
 #include "bus/clock.h"
-#include "bus/loop_statistics.h"
 #include "process/counted_warning.h"
 #include "process/refusal_watch.h"
+#include "timing/loop_statistics.h"
 
 namespace hydro {
 

@@ -5,12 +5,12 @@
 #include <chrono>
 #include <memory>
 
-#include "bus/real_time.h"
 #include "bus/udpm_bus.h"
 #include "bus/udpm_url.h"
-#include "logger/log_writer.h"
+#include "log/log_writer.h"
 #include "process/stop_signal.h"
 #include "process/words.h"
+#include "timing/real_time.h"
 
 namespace hydro {
 namespace {

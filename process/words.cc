@@ -16,7 +16,7 @@
 #include <mutex>
 #include <string_view>
 
-#include "settings/text_file.h"
+#include "base/text_file.h"
 
 namespace hydro {
 namespace {

@@ -11,9 +11,9 @@
 #include <exception>
 #include <limits>
 
-#include "settings/did_you_mean.h"
-#include "settings/input_error.h"
-#include "settings/text_file.h"
+#include "base/did_you_mean.h"
+#include "base/input_error.h"
+#include "base/text_file.h"
 
 namespace hydro {
 namespace {

@@ -2,9 +2,9 @@
 
 #include <cmath>
 
+#include "base/did_you_mean.h"
 #include "model/parameter_info.h"
-#include "settings/did_you_mean.h"
-#include "settings/section_reader.h"
+#include "settings/toml/section_reader.h"
 
 namespace hydro {
 namespace {

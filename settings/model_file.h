@@ -3,8 +3,8 @@
 
 #include <string>
 
+#include "base/input_error.h"
 #include "model/description.h"
-#include "settings/input_error.h"
 
 namespace hydro {
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "settings/text_file.h"
+#include "base/text_file.h"
 #include "settings/trajectory_spec.h"
 
 namespace hydro {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "settings/toml_document.h"
+#include "settings/toml/toml_document.h"
 
 namespace hydro {
 

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "settings/section_reader.h"
+#include "settings/toml/section_reader.h"
 #include "trajectory/trajectory.h"
 
 namespace hydro {

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "settings/stack_config.h"
-#include "settings/toml_document.h"
+#include "settings/toml/toml_document.h"
 
 namespace hydro {
 

@@ -1,10 +1,10 @@
 #include "settings/stack_config.h"
 
+#include "base/text_file.h"
 #include "settings/model_file.h"
 #include "settings/overrides.h"
 #include "settings/stack_checks.h"
 #include "settings/stack_sections.h"
-#include "settings/text_file.h"
 #include "settings/trajectory_spec.h"
 
 namespace hydro {

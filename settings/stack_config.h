@@ -9,9 +9,9 @@
 #include <string>
 #include <vector>
 
+#include "base/input_error.h"
 #include "model/description.h"
 #include "settings/driver_section.h"
-#include "settings/input_error.h"
 #include "trajectory/trajectory.h"
 
 namespace hydro {

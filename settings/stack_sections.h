@@ -2,8 +2,8 @@
 // stack_checks.h.
 #pragma once
 
-#include "settings/section_reader.h"
 #include "settings/stack_config.h"
+#include "settings/toml/section_reader.h"
 
 namespace hydro {
 

@@ -4,7 +4,7 @@
 #include <map>
 #include <stdexcept>
 
-#include "settings/csv_points.h"
+#include "tables/csv_points.h"
 
 namespace hydro {
 namespace {

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "settings/section_reader.h"
 #include "settings/stack_config.h"
+#include "settings/toml/section_reader.h"
 
 namespace hydro {
 

@@ -4,7 +4,7 @@
 #include <cstdio>
 #include <memory>
 
-#include "logger/log_writer.h"
+#include "log/log_writer.h"
 #include "process/stop_signal.h"
 #include "settings/command_line.h"
 #include "sim/simulation.h"

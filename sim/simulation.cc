@@ -1,11 +1,11 @@
 #include "sim/simulation.h"
 
+#include "base/input_error.h"
 #include "bus/in_process_bus.h"
 #include "plant/plant_app.h"
 #include "plant/simulated_rig.h"
 #include "position_ctrl/position_app.h"
 #include "pressure_ctrl/pressure_app.h"
-#include "settings/input_error.h"
 
 namespace hydro {
 

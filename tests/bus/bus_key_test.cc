@@ -9,7 +9,7 @@
 #include <fstream>
 #include <string>
 
-#include "settings/input_error.h"
+#include "base/input_error.h"
 
 namespace hydro {
 namespace {

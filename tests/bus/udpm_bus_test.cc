@@ -9,9 +9,9 @@
 
 #include <csignal>
 
+#include "base/input_error.h"
 #include "bus/multicast_self_test.h"
 #include "hydro/state_t.hpp"
-#include "settings/input_error.h"
 #include "tests/free_udp_port.h"
 
 namespace hydro {

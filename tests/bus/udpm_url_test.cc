@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "settings/input_error.h"
+#include "base/input_error.h"
 
 namespace hydro {
 namespace {

@@ -1,4 +1,4 @@
-#include "diagnose/alignment.h"
+#include "diagnose/data/alignment.h"
 
 #include <gmock/gmock.h>
 
@@ -7,8 +7,8 @@
 #include <numbers>
 #include <random>
 
-#include "diagnose/recording_remarks.h"
-#include "logger/run_delays.h"
+#include "diagnose/data/recording_remarks.h"
+#include "runs/run_delays.h"
 #include "tests/diagnose/noisy_rig.h"
 #include "tests/table1.h"
 

@@ -5,8 +5,8 @@
 
 #include <cmath>
 
-#include "diagnose/report_json.h"
-#include "settings/input_error.h"
+#include "base/input_error.h"
+#include "diagnose/report/report_json.h"
 #include "tests/diagnose/small_runs.h"
 
 namespace hydro::testing {

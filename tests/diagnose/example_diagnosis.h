@@ -1,7 +1,7 @@
 // A diagnosis as it might be, for tests of what is told of one.
 #pragma once
 
-#include "diagnose/diagnosis.h"
+#include "diagnose/data/diagnosis.h"
 
 namespace hydro::testing {
 

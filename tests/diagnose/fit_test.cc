@@ -1,5 +1,5 @@
 // Fits find the numbers that runs were made with, keep to bounds, and are the same every time.
-#include "diagnose/fit.h"
+#include "diagnose/fit/fit.h"
 
 #include <gtest/gtest.h>
 
@@ -9,9 +9,9 @@
 #include <cstdint>
 #include <limits>
 
-#include "diagnose/held_out.h"
-#include "diagnose/search.h"
-#include "diagnose/start_fit.h"
+#include "diagnose/fit/held_out.h"
+#include "diagnose/fit/start_fit.h"
+#include "diagnose/search/search.h"
 #include "model/state.h"
 #include "tests/diagnose/small_runs.h"
 

@@ -8,8 +8,8 @@
 #include <fstream>
 #include <iterator>
 
-#include "diagnose/progress_bar.h"
-#include "diagnose/terminal_summary.h"
+#include "diagnose/report/progress_bar.h"
+#include "diagnose/report/terminal_summary.h"
 #include "settings/model_file.h"
 #include "tests/diagnose/example_diagnosis.h"
 #include "tests/table1.h"

@@ -1,4 +1,4 @@
-#include "diagnose/locate.h"
+#include "diagnose/locate/locate.h"
 
 #include <gmock/gmock.h>
 
@@ -6,7 +6,7 @@
 #include <cmath>
 #include <vector>
 
-#include "diagnose/disturbance_smoother.h"
+#include "diagnose/locate/disturbance_smoother.h"
 #include "tests/diagnose/noisy_rig.h"
 #include "tests/table1.h"
 

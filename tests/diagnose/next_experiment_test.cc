@@ -1,4 +1,4 @@
-#include "diagnose/next_experiment.h"
+#include "diagnose/verdict/next_experiment.h"
 
 #include <gmock/gmock.h>
 

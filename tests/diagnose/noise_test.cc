@@ -6,7 +6,7 @@
 #include <numbers>
 #include <random>
 
-#include "diagnose/run_data.h"
+#include "diagnose/data/run_data.h"
 
 namespace hydro {
 namespace {

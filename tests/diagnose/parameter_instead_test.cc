@@ -1,5 +1,5 @@
 // An effect gives way to a parameter only where that does as well, by a small move, beside another effect.
-#include "diagnose/parameter_instead.h"
+#include "diagnose/search/parameter_instead.h"
 
 #include <gtest/gtest.h>
 

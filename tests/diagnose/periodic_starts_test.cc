@@ -1,5 +1,5 @@
 // Effects that repeat within a turn are read off the balances before anything is fitted.
-#include "diagnose/periodic_starts.h"
+#include "diagnose/search/periodic_starts.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

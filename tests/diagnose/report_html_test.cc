@@ -1,4 +1,4 @@
-#include "diagnose/report_html.h"
+#include "diagnose/report/report_html.h"
 
 #include <gmock/gmock.h>
 
@@ -6,7 +6,7 @@
 #include <limits>
 #include <regex>
 
-#include "diagnose/chart.h"
+#include "page/chart.h"
 #include "tests/diagnose/example_diagnosis.h"
 
 namespace hydro {

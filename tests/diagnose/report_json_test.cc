@@ -1,4 +1,4 @@
-#include "diagnose/report_json.h"
+#include "diagnose/report/report_json.h"
 
 #include <gmock/gmock.h>
 

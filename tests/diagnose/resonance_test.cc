@@ -1,5 +1,5 @@
 // A frequency that a fit ended at is not the last word where another fits better.
-#include "diagnose/resonance.h"
+#include "diagnose/search/resonance.h"
 
 #include <gtest/gtest.h>
 

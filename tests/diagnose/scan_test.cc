@@ -1,5 +1,5 @@
 // The score test: it finds the hidden change before anything is refitted.
-#include "diagnose/scan.h"
+#include "diagnose/search/scan.h"
 
 #include <gtest/gtest.h>
 

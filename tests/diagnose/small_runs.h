@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "diagnose/fit.h"
+#include "diagnose/fit/fit.h"
 #include "tests/diagnose/noisy_rig.h"
 #include "tests/table1.h"
 

@@ -5,9 +5,9 @@
 #include <cmath>
 #include <random>
 
-#include "diagnose/comparison.h"
-#include "diagnose/identifiable.h"
-#include "diagnose/intervals.h"
+#include "diagnose/fit/comparison.h"
+#include "diagnose/fit/identifiable.h"
+#include "diagnose/fit/intervals.h"
 #include "tests/diagnose/small_runs.h"
 
 namespace hydro::testing {

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <vector>
 
-#include "diagnose/sample_interval.h"
-#include "diagnose/short_number.h"
-#include "diagnose/word_list.h"
+#include "base/short_number.h"
+#include "base/word_list.h"
+#include "diagnose/data/sample_interval.h"
 
 namespace hydro {
 namespace {

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "experiments/catalogue.h"
-#include "experiments/json_text.h"
-#include "experiments/shipped_models.h"
+#include "experiments/figures/catalogue.h"
+#include "experiments/runs/shipped_models.h"
+#include "experiments/studies/json_text.h"
 
 namespace hydro {
 namespace {

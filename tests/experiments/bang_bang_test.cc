@@ -1,10 +1,10 @@
-#include "experiments/bang_bang.h"
+#include "experiments/maths/bang_bang.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "experiments/shipped_models.h"
+#include "experiments/runs/shipped_models.h"
 
 namespace hydro {
 namespace {

@@ -1,4 +1,4 @@
-#include "experiments/frequency_response.h"
+#include "experiments/maths/frequency_response.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <random>
 #include <stdexcept>
 
-#include "experiments/second_order_fit.h"
+#include "experiments/maths/second_order_fit.h"
 
 namespace hydro {
 namespace {

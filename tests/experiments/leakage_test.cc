@@ -6,10 +6,10 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "experiments/catalogue.h"
-#include "experiments/json_text.h"
-#include "experiments/leakage_fit.h"
-#include "experiments/shipped_models.h"
+#include "experiments/figures/catalogue.h"
+#include "experiments/runs/shipped_models.h"
+#include "experiments/studies/json_text.h"
+#include "experiments/studies/leakage_fit.h"
 #include "plant/sensor_noise.h"
 #include "settings/model_file.h"
 

@@ -1,11 +1,11 @@
-#include "experiments/linear_loop.h"
+#include "experiments/maths/linear_loop.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
 
-#include "experiments/shipped_models.h"
+#include "experiments/runs/shipped_models.h"
 #include "model/actuator.h"
 #include "tests/experiments/wave_polynomial.h"
 

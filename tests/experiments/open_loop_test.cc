@@ -7,8 +7,8 @@
 #include <numbers>
 #include <vector>
 
-#include "experiments/catalogue.h"
-#include "experiments/json_text.h"
+#include "experiments/figures/catalogue.h"
+#include "experiments/studies/json_text.h"
 
 namespace hydro {
 namespace {

@@ -1,4 +1,4 @@
-#include "experiments/position_design.h"
+#include "experiments/maths/position_design.h"
 
 #include <gtest/gtest.h>
 
@@ -7,11 +7,11 @@
 #include <cmath>
 #include <numbers>
 
-#include "experiments/arm_loop.h"
-#include "experiments/sampled_position_loop.h"
-#include "experiments/shipped_models.h"
-#include "logger/step_response.h"
+#include "experiments/maths/arm_loop.h"
+#include "experiments/maths/sampled_position_loop.h"
+#include "experiments/runs/shipped_models.h"
 #include "position_ctrl/position_law.h"
+#include "runs/step_response.h"
 
 namespace hydro {
 namespace {

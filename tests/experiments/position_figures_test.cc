@@ -4,12 +4,12 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "experiments/catalogue.h"
-#include "experiments/json_text.h"
-#include "experiments/retuning.h"
-#include "experiments/shipped_models.h"
-#include "experiments/shipped_stacks.h"
-#include "logger/step_response.h"
+#include "experiments/figures/catalogue.h"
+#include "experiments/runs/shipped_models.h"
+#include "experiments/runs/shipped_stacks.h"
+#include "experiments/studies/json_text.h"
+#include "experiments/studies/retuning.h"
+#include "runs/step_response.h"
 
 namespace hydro {
 namespace {

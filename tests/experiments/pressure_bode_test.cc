@@ -10,9 +10,9 @@
 #include <utility>
 #include <vector>
 
-#include "experiments/catalogue.h"
-#include "experiments/json_text.h"
-#include "experiments/shipped_models.h"
+#include "experiments/figures/catalogue.h"
+#include "experiments/runs/shipped_models.h"
+#include "experiments/studies/json_text.h"
 #include "pressure_ctrl/pressure_law.h"
 #include "tests/experiments/wave_polynomial.h"
 

@@ -10,11 +10,11 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "experiments/comparison_text.h"
-#include "experiments/experiment_files.h"
-#include "experiments/json_text.h"
-#include "experiments/report.h"
-#include "settings/input_error.h"
+#include "base/input_error.h"
+#include "experiments/report/comparison_text.h"
+#include "experiments/report/experiment_files.h"
+#include "experiments/report/report.h"
+#include "experiments/studies/json_text.h"
 
 namespace hydro {
 namespace {

@@ -1,11 +1,11 @@
-#include "experiments/stack_run.h"
+#include "experiments/runs/stack_run.h"
 
 #include <gtest/gtest.h>
 
-#include "experiments/shipped_models.h"
-#include "logger/run_table.h"
+#include "base/input_error.h"
+#include "experiments/runs/shipped_models.h"
 #include "model/actuator.h"
-#include "settings/input_error.h"
+#include "runs/run_table.h"
 
 namespace hydro {
 namespace {

@@ -5,9 +5,9 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "experiments/catalogue.h"
-#include "experiments/json_text.h"
-#include "experiments/torque_driven.h"
+#include "experiments/figures/catalogue.h"
+#include "experiments/studies/json_text.h"
+#include "experiments/studies/torque_driven.h"
 
 namespace hydro {
 namespace {

@@ -6,10 +6,10 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "experiments/catalogue.h"
-#include "experiments/json_text.h"
-#include "experiments/pressure_loop_run.h"
-#include "experiments/shipped_models.h"
+#include "experiments/figures/catalogue.h"
+#include "experiments/runs/pressure_loop_run.h"
+#include "experiments/runs/shipped_models.h"
+#include "experiments/studies/json_text.h"
 #include "model/actuator.h"
 
 namespace hydro {

@@ -7,7 +7,7 @@
 #include <string>
 #include <string_view>
 
-#include "settings/input_error.h"
+#include "base/input_error.h"
 
 namespace hydro::fuzz {
 

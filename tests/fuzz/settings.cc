@@ -10,7 +10,7 @@
 #include "settings/model_file.h"
 #include "settings/overrides.h"
 #include "settings/stack_config.h"
-#include "settings/toml_document.h"
+#include "settings/toml/toml_document.h"
 #include "tests/fuzz/promise.h"
 #include "tests/fuzz/scratch_folder.h"
 #include "tests/fuzz/targets.h"

@@ -2,13 +2,13 @@
 #include <string>
 #include <string_view>
 
-#include "logger/log_reader.h"
-#include "logger/measured_run.h"
-#include "logger/run_log.h"
-#include "logger/run_table.h"
-#include "logger/table.h"
-#include "settings/csv_points.h"
+#include "log/log_reader.h"
+#include "runs/measured_run.h"
+#include "runs/run_log.h"
+#include "runs/run_table.h"
 #include "settings/stack_config.h"
+#include "tables/csv_points.h"
+#include "tables/table.h"
 #include "tests/fuzz/promise.h"
 #include "tests/fuzz/scratch_folder.h"
 #include "tests/fuzz/targets.h"

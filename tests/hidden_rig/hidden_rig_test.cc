@@ -8,9 +8,9 @@
 #include <set>
 #include <sstream>
 
-#include "logger/measured_run.h"
 #include "model/response.h"
 #include "model/state.h"
+#include "runs/measured_run.h"
 #include "tests/hidden_rig/cases.h"
 #include "tests/hidden_rig/line.h"
 #include "tests/hidden_rig/plans.h"

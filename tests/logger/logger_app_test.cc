@@ -18,9 +18,9 @@
 #include <thread>
 #include <vector>
 
+#include "base/input_error.h"
 #include "bus/in_process_bus.h"
-#include "settings/input_error.h"
-#include "tests/logger/log_fixture.h"
+#include "tests/log/log_fixture.h"
 #include "tests/stack_fixture.h"
 
 namespace hydro {

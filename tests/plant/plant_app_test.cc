@@ -9,9 +9,9 @@
 #include <hydro/log_progress_t.hpp>
 #include <vector>
 
+#include "base/input_error.h"
 #include "bus/in_process_bus.h"
 #include "plant/simulated_rig.h"
-#include "settings/input_error.h"
 #include "tests/stack_fixture.h"
 
 namespace hydro {

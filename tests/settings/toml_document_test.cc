@@ -1,4 +1,4 @@
-#include "settings/toml_document.h"
+#include "settings/toml/toml_document.h"
 
 #include <cmath>
 #include <cstring>

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "settings/input_error.h"
+#include "base/input_error.h"
 #include "tests/stack_fixture.h"
 
 namespace hydro {

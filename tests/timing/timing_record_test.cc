@@ -1,4 +1,4 @@
-#include "timing/timing_record.h"
+#include "timing/report/timing_record.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "timing/timing_report.h"
+#include "timing/report/timing_report.h"
 
 namespace hydro {
 namespace {

@@ -1,0 +1,67 @@
+#include "base/mapped_file.h"
+
+#include <fcntl.h>
+#include <sys/mman.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+
+#include "base/input_error.h"
+
+namespace hydro {
+namespace {
+
+class Descriptor {
+ public:
+  explicit Descriptor(int descriptor) : descriptor_(descriptor) {}
+  ~Descriptor() {
+    if (descriptor_ >= 0) close(descriptor_);
+  }
+  Descriptor(const Descriptor&) = delete;
+  Descriptor& operator=(const Descriptor&) = delete;
+  int get() const { return descriptor_; }
+
+ private:
+  int descriptor_;
+};
+
+[[noreturn]] void ThrowCannotRead(const std::string& file, int error) {
+  throw InputError(file + ": cannot be read: " + std::strerror(error) + "; a readable file is needed");
+}
+
+}  // namespace
+
+MappedFile::MappedFile(const std::string& file) {
+  const Descriptor descriptor(open(file.c_str(), O_RDONLY | O_CLOEXEC));
+  if (descriptor.get() < 0) ThrowCannotRead(file, errno);
+  struct stat status;
+  if (fstat(descriptor.get(), &status) != 0) ThrowCannotRead(file, errno);
+  if (S_ISREG(status.st_mode)) {
+    size_ = static_cast<size_t>(status.st_size);
+    if (size_ == 0) return;
+    void* mapping = mmap(nullptr, size_, PROT_READ, MAP_PRIVATE, descriptor.get(), 0);
+    if (mapping == MAP_FAILED) ThrowCannotRead(file, errno);
+    madvise(mapping, size_, MADV_SEQUENTIAL);
+    mapping_ = mapping;
+    data_ = static_cast<const uint8_t*>(mapping);
+    return;
+  }
+  constexpr size_t kChunk = 1u << 20;
+  for (;;) {
+    contents_.resize(size_ + kChunk);
+    const ssize_t count = read(descriptor.get(), contents_.data() + size_, kChunk);
+    if (count < 0 && errno == EINTR) continue;
+    if (count < 0) ThrowCannotRead(file, errno);
+    if (count == 0) break;
+    size_ += static_cast<size_t>(count);
+  }
+  data_ = contents_.data();
+}
+
+MappedFile::~MappedFile() {
+  if (mapping_ != nullptr) munmap(mapping_, size_);
+}
+
+}  // namespace hydro

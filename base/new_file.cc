@@ -1,0 +1,129 @@
+#include "base/new_file.h"
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+
+#include "base/input_error.h"
+
+namespace hydro {
+namespace {
+
+[[noreturn]] void ThrowCannotCreate(const std::string& file, int error) {
+  throw InputError(file + ": cannot be created: " + std::strerror(error) +
+                   "; a writable file in an existing folder is needed");
+}
+
+[[noreturn]] void ThrowWriteError(const std::string& file, int error) {
+  throw WriteError(file + ": cannot be written: " + std::strerror(error));
+}
+
+bool ExistsAndIsNotRegular(const std::string& file) {
+  struct stat status;
+  return stat(file.c_str(), &status) == 0 && !S_ISREG(status.st_mode);
+}
+
+// Removes a file of that name, unless another process holds the lock that every NewFile takes on what it
+// writes.
+void RemoveUnlessBeingWritten(const std::string& path, const std::string& name) {
+  const int old = open(path.c_str(), O_WRONLY | O_CLOEXEC);
+  if (old < 0) {
+    if (errno == ENOENT) return;
+    ThrowCannotCreate(name, errno);
+  }
+  const bool locked = flock(old, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK;
+  close(old);
+  if (locked) {
+    throw InputError(name + ": is being written by another process; stop that one or give another name");
+  }
+  // Unlinked instead of truncated: a reader that has the old contents mapped keeps them.
+  if (unlink(path.c_str()) != 0 && errno != ENOENT) ThrowCannotCreate(name, errno);
+}
+
+}  // namespace
+
+// Every NewFile holds a lock on what it writes.
+bool IsBeingWritten(const std::string& file) {
+  const int descriptor = open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+  if (descriptor < 0) return false;
+  const bool locked = flock(descriptor, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK;
+  close(descriptor);
+  return locked;
+}
+
+void CheckCanBeCreated(const std::string& file) {
+  struct stat status;
+  if (file.empty()) return;
+  // Who reads a pipe would take the attempt for all that comes.
+  if (stat(file.c_str(), &status) == 0 && S_ISFIFO(status.st_mode)) return;
+  const NewFile attempt(file, Opening::kTemporary);
+}
+
+NewFile::NewFile(const std::string& file, Opening opening) : name_(file), path_(file) {
+  if (ExistsAndIsNotRegular(file)) {
+    descriptor_ = open(path_.c_str(), O_WRONLY | O_CLOEXEC);
+    if (descriptor_ < 0) ThrowCannotCreate(name_, errno);
+    return;
+  }
+  if (opening == Opening::kTemporary) path_ += ".part";
+  RemoveUnlessBeingWritten(path_, name_);
+  descriptor_ = open(path_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+  if (descriptor_ < 0) ThrowCannotCreate(name_, errno);
+  flock(descriptor_, LOCK_EX | LOCK_NB);  // a file system without locks only loses the check above
+}
+
+NewFile::~NewFile() {
+  if (descriptor_ < 0) return;
+  close(descriptor_);
+  if (path_ != name_) unlink(path_.c_str());
+}
+
+size_t NewFile::WriteSome(const void* data, size_t size) {
+  // Linux writes at most 0x7ffff000 bytes a call.
+  const size_t chunk = std::min<size_t>(size, 1u << 30);
+  for (;;) {
+    const ssize_t written = write(descriptor_, data, chunk);
+    if (written > 0) return static_cast<size_t>(written);
+    if (written == 0) ThrowWriteError(name_, EIO);
+    if (errno != EINTR) ThrowWriteError(name_, errno);
+  }
+}
+
+void NewFile::Write(const void* data, size_t size) {
+  const char* next = static_cast<const char*>(data);
+  while (size > 0) {
+    const size_t written = WriteSome(next, size);
+    next += written;
+    size -= written;
+  }
+}
+
+bool NewFile::TakeBack(size_t size) {
+  const off_t end = lseek(descriptor_, -static_cast<off_t>(size), SEEK_CUR);
+  return end >= 0 && ftruncate(descriptor_, end) == 0;
+}
+
+void NewFile::Finish() {
+  if (descriptor_ < 0) return;
+  const int result = close(descriptor_);
+  const int error = errno;
+  descriptor_ = -1;
+  if (result != 0) {
+    if (path_ != name_) unlink(path_.c_str());
+    ThrowWriteError(name_, error);
+  }
+  if (path_ == name_) return;
+  if (std::rename(path_.c_str(), name_.c_str()) != 0) {
+    const int rename_error = errno;
+    unlink(path_.c_str());
+    ThrowWriteError(name_, rename_error);
+  }
+}
+
+}  // namespace hydro

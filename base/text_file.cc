@@ -1,0 +1,134 @@
+#include "base/text_file.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <system_error>
+
+namespace hydro {
+namespace {
+
+// Bytes of the UTF-8 character that `text` begins with; 0 where there is none.
+size_t CharacterLength(std::string_view text) {
+  const auto byte = [&](size_t i) { return static_cast<unsigned char>(text[i]); };
+  const size_t length = byte(0) < 0x80    ? 1
+                        : byte(0) < 0xc2  ? 0
+                        : byte(0) < 0xe0  ? 2
+                        : byte(0) < 0xf0  ? 3
+                        : byte(0) <= 0xf4 ? 4
+                                          : 0;
+  if (length > text.size()) return 0;
+  for (size_t i = 1; i < length; ++i) {
+    if (byte(i) < 0x80 || byte(i) > 0xbf) return 0;
+  }
+  return length;
+}
+
+}  // namespace
+
+std::string ReadTextFile(const std::string& file) {
+  constexpr size_t kLargest = 64u << 20;
+  std::error_code ignored;
+  if (std::filesystem::is_directory(file, ignored)) {
+    throw InputError(file + ": found a folder, allowed: a file");
+  }
+  errno = 0;
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream) throw InputError(file + ": cannot be read: " + std::strerror(errno));
+  std::string text;
+  char block[65536];
+  while (stream.read(block, sizeof block), stream.gcount() > 0) {
+    text.append(block, static_cast<size_t>(stream.gcount()));
+    if (text.size() > kLargest) throw InputError(file + ": found more than 64 MiB, allowed: 64 MiB");
+  }
+  if (stream.bad()) throw InputError(file + ": cannot be read: " + std::strerror(errno));
+  return text;
+}
+
+std::string PathBeside(const std::string& beside, const std::string& file) {
+  return (std::filesystem::path(beside).parent_path() / file).lexically_normal().string();
+}
+
+void CheckKeeps(const std::string& output, const std::vector<std::string>& inputs) {
+  std::error_code absent;
+  if (output.empty() || !std::filesystem::is_regular_file(output, absent)) return;
+  for (const std::string& input : inputs) {
+    if (!std::filesystem::equivalent(output, input, absent)) continue;
+    throw InputError(output +
+                     ": found the name of a file that is read, allowed: another, so that it is not replaced");
+  }
+}
+
+std::string Quoted(std::string_view text) {
+  constexpr size_t kLongest = 200;
+  std::string quoted = "\"";
+  for (size_t i = 0; i < text.size(); ++i) {
+    if (text.size() > kLongest && i == kLongest / 2) {
+      quoted += " ... ";
+      i = text.size() - kLongest / 2;
+    }
+    const unsigned char c = static_cast<unsigned char>(text[i]);
+    if (c == '\n') {
+      quoted += "\\n";
+    } else if (c < 0x20 || c == 0x7f) {
+      char code[8];
+      std::snprintf(code, sizeof code, "\\x%02x", c);
+      quoted += code;
+    } else {
+      quoted += static_cast<char>(c);
+    }
+  }
+  return quoted + "\"";
+}
+
+std::string Printable(std::string_view text) {
+  std::string printable;
+  printable.reserve(text.size());
+  while (!text.empty()) {
+    size_t length = CharacterLength(text);
+    const unsigned char c = static_cast<unsigned char>(text[0]);
+    const bool control = length == 1 && ((c < 0x20 && c != '\t') || c == 0x7f);
+    // U+0080 to U+009F: the same commands as ESC and a letter.
+    const bool long_control = length == 2 && c == 0xc2 && static_cast<unsigned char>(text[1]) < 0xa0;
+    if (length == 0 || control || long_control) {
+      length = std::max<size_t>(length, 1);
+      for (const char byte : text.substr(0, length)) {
+        char code[8];
+        std::snprintf(code, sizeof code, "\\x%02x", static_cast<unsigned char>(byte));
+        printable += code;
+      }
+    } else {
+      printable += text.substr(0, length);
+    }
+    text.remove_prefix(length);
+  }
+  return printable;
+}
+
+std::string PrintableLines(std::string_view text) {
+  std::string printable;
+  for (size_t end = 0; !text.empty(); text.remove_prefix(end)) {
+    end = std::min(text.find('\n'), text.size());
+    printable += Printable(text.substr(0, end));
+    if (end == text.size()) continue;
+    printable += '\n';
+    ++end;
+  }
+  return printable;
+}
+
+std::string ShortestNumber(double value) {
+  char text[64];
+  // Shortest digits either way; people read 0.0002 more easily than 2e-04.
+  const double size = std::abs(value);
+  const bool plain = value == 0 || (size >= 1e-4 && size < 1e15);
+  const auto end = plain ? std::to_chars(text, text + sizeof text, value, std::chars_format::fixed).ptr
+                         : std::to_chars(text, text + sizeof text, value).ptr;
+  return std::string(text, end);
+}
+
+}  // namespace hydro

@@ -1,0 +1,49 @@
+// Reading a whole text file, and showing what was found in one.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "base/input_error.h"
+
+namespace hydro {
+
+// The file's bytes. Throws InputError "file: ..." when it cannot be read or is larger than 64 MiB.
+std::string ReadTextFile(const std::string& file);
+
+// A path that `file` (absolute, or relative to the folder of `beside`) means.
+std::string PathBeside(const std::string& beside, const std::string& file);
+
+// Throws InputError where writing to `output` would replace one of `inputs`, under whatever name. Devices may
+// be both.
+void CheckKeeps(const std::string& output, const std::vector<std::string>& inputs);
+
+// `text` in double quotes on one line: control characters escaped, the middle of long texts left out.
+std::string Quoted(std::string_view text);
+
+// `text` as a terminal may see it: tabs and valid UTF-8 stay, whatever could move its cursor, change its
+// colours or make one line two (control characters, and bytes that are no UTF-8, which 8-bit terminals take
+// for such) becomes "\\x1b".
+std::string Printable(std::string_view text);
+
+// Printable, line by line: its own line ends stay.
+std::string PrintableLines(std::string_view text);
+
+// The shortest decimal that reads back as the same double.
+std::string ShortestNumber(double value);
+
+// "\"a\", \"b\" or \"c\"".
+template <class Names>
+std::string QuotedList(const Names& names) {
+  std::string list;
+  size_t i = 0;
+  for (const auto& name : names) {
+    if (i > 0) list += i + 1 == std::size(names) ? " or " : ", ";
+    list += Quoted(name);
+    ++i;
+  }
+  return list;
+}
+
+}  // namespace hydro

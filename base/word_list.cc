@@ -1,0 +1,20 @@
+#include "base/word_list.h"
+
+#include <cstddef>
+
+namespace hydro {
+
+std::string Joined(const std::vector<std::string>& parts, const std::string& between) {
+  std::string joined;
+  for (size_t i = 0; i < parts.size(); ++i) joined += (i == 0 ? "" : between) + parts[i];
+  return joined;
+}
+
+std::string Enumerated(const std::vector<std::string>& parts) {
+  if (parts.size() < 2) return Joined(parts);
+  return Joined({parts.begin(), parts.end() - 1}) + " and " + parts.back();
+}
+
+std::string RunNamed(const std::string& name) { return name.starts_with("run ") ? name : "run " + name; }
+
+}  // namespace hydro

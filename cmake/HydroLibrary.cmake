@@ -1,0 +1,59 @@
+# One call for each library and each program of a room.
+#
+# The standard library's headers are a fifth of all compiling. Builds of everything (presets release and asan) precompile them
+# once for each set of flags; the preset dev compiles every file alone, and so finds includes that are missing.
+option(HYDRO_PRECOMPILE "Precompile the standard library's headers" OFF)
+# GCC 12 does not count what is precompiled as system headers, and warns falsely about strings in its own (its bug 105651).
+if(HYDRO_PRECOMPILE AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+  add_compile_options(-Wno-array-bounds -Wno-restrict -Wno-stringop-overflow -Wno-stringop-overread)
+endif()
+# LCM's flags have it: what is precompiled without would not serve sources that use LCM.
+add_compile_options(-pthread)
+
+# Under the sanitizers what computes is optimised a little, and does without the check of every access's alignment: it reads no
+# raw bytes, and that check is much of all compiling.
+set(HYDRO_COMPUTES_OPTIONS "")
+if(HYDRO_SANITIZE)
+  set(HYDRO_COMPUTES_OPTIONS -O1 -fno-sanitize=alignment)
+endif()
+
+if(HYDRO_PRECOMPILE)
+  foreach(flavour precompiled precompiled_computes)
+    add_library(hydro_${flavour} OBJECT ${CMAKE_CURRENT_LIST_DIR}/precompiled.cc)
+    target_precompile_headers(hydro_${flavour} PRIVATE <algorithm> <array> <chrono> <cmath> <filesystem> <fstream> <functional> <map>
+                                                       <memory> <optional> <set> <sstream> <string> <thread> <variant> <vector>)
+  endforeach()
+  target_compile_options(hydro_precompiled_computes PRIVATE ${HYDRO_COMPUTES_OPTIONS})
+endif()
+
+# hydro_library(NAME [COMPUTES] SOURCES FILES... [PUBLIC LIBS...] [PRIVATE LIBS...]): a static library. Its headers are included by
+# their path from the root, here and where they are installed (include/hydro). COMPUTES: see above.
+function(hydro_library name)
+  cmake_parse_arguments(arg "COMPUTES" "" "SOURCES;PUBLIC;PRIVATE" ${ARGN})
+  if(arg_UNPARSED_ARGUMENTS)
+    message(FATAL_ERROR "hydro_library(${name}): unknown: ${arg_UNPARSED_ARGUMENTS}")
+  endif()
+  add_library(${name} STATIC ${arg_SOURCES})
+  target_include_directories(${name} PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>
+                                            $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/hydro>)
+  target_link_libraries(${name} PUBLIC ${arg_PUBLIC} PRIVATE ${arg_PRIVATE})
+  set(flavour precompiled)
+  if(arg_COMPUTES)
+    target_compile_options(${name} PRIVATE ${HYDRO_COMPUTES_OPTIONS})
+    set(flavour precompiled_computes)
+  endif()
+  if(HYDRO_PRECOMPILE)
+    target_precompile_headers(${name} REUSE_FROM hydro_${flavour})
+  endif()
+endfunction()
+
+# hydro_program(NAME SOURCES FILES... LIBS LIBS...): a program, installed.
+function(hydro_program name)
+  cmake_parse_arguments(arg "" "" "SOURCES;LIBS" ${ARGN})
+  if(arg_UNPARSED_ARGUMENTS)
+    message(FATAL_ERROR "hydro_program(${name}): unknown: ${arg_UNPARSED_ARGUMENTS}")
+  endif()
+  add_executable(${name} ${arg_SOURCES})
+  target_link_libraries(${name} PRIVATE ${arg_LIBS})
+  install(TARGETS ${name})
+endfunction()

@@ -1,0 +1,120 @@
+// What a diagnosis finds: the content of report.json and report.html.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "diagnose/data/alignment.h"
+#include "model/description.h"
+#include "model/response.h"
+
+namespace hydro {
+
+enum class Verdict { kNamed, kTied, kParameters, kUnexplained, kNothingMissing };
+
+// A number with its 95 % interval.
+struct Estimated {
+  std::string name;
+  double value = 0;
+  double low = 0, high = 0;
+  std::string unit;
+};
+
+struct Window {
+  std::string run;
+  double from = 0, to = 0;  // s
+};
+
+// Where simulation and data disagree.
+struct Location {
+  std::string balance;  // pump_torque | flow_1 | flow_2 | arm_torque | command | sensor
+  double share = 0;     // of the disagreement
+  std::string where;    // "|motor_speed| < 5 rad/s, at reversals"
+  std::vector<Window> windows;
+};
+
+// The missing term of a balance against what it depends on: one row a bin, mean and standard error.
+struct MissingTerm {
+  std::string balance, unit;          // of the term, e.g. in-lbf
+  std::string against, against_unit;  // "motor_speed", "rad/s"
+  std::vector<double> at, mean, error;
+};
+
+struct FoundEffect {
+  std::string id, says, equation;
+  std::vector<Estimated> parameters;
+  std::vector<std::string> names;  // "signal = p1"
+  std::vector<std::string> tied_with;
+};
+
+struct ChangedParameter {
+  Estimated fitted;
+  double model = 0;  // as given
+  bool implausible = false;
+  std::string why;  // it is called implausible
+};
+
+// Root-mean-square residuals; in noise units or, of one signal, in its unit.
+struct BeforeAfter {
+  double before = 0;      // the model as given
+  double refit_only = 0;  // its own parameters refitted
+  double after = 0;       // with what was found
+};
+
+struct SignalGap {
+  Channel channel = Channel::kP1;
+  double noise = 0;
+  BeforeAfter fit, held_out;
+};
+
+struct Candidate {
+  std::string id;       // of the effect, or "parameter k_1"
+  double score = 0;     // fall of the squared gap that the score test expects, in noise units squared
+  double fit = 0;       // gap after its refit; NaN: not refitted
+  double held_out = 0;  // gap on held-out runs; NaN: not tried
+  double p_value = 1;   // that chance alone improves the fit so much, allowing for the number tried
+  std::string rejected_because;  // "" for those that were taken
+};
+
+// One run as the pictures show it, thinned to what a page can hold.
+struct RunCurves {
+  std::string run;
+  bool held_out = false;  // the values are those of a fit that did not see it
+  std::vector<double> time;
+  struct Curve {
+    Channel channel = Channel::kP1;
+    std::vector<double> measured, before, after;
+  };
+  std::vector<Curve> curves;
+  // To plot residuals against; may be empty.
+  std::vector<double> voltage;
+};
+
+struct NextExperiment {
+  std::string why;
+  std::string config;              // TOML of a stack that runs it, "" when none is needed
+  double expected_separation = 0;  // of the models, in noise units
+};
+
+struct Diagnosis {
+  Verdict verdict = Verdict::kNothingMissing;
+  std::string sentence;               // the verdict, in one
+  std::vector<ClockDelay> recording;  // clocks that were found apart, and put on one
+  std::vector<std::string>
+      remarks;  // suspects of the recording, what could not be tried, noise unlike what is stated
+  std::vector<Location> location;
+  std::vector<MissingTerm> missing;
+  std::vector<FoundEffect> effects;
+  std::vector<ChangedParameter> parameters;
+  std::vector<SignalGap> signals;
+  BeforeAfter fit, held_out;
+  NextExperiment next;
+  std::vector<Candidate> candidates;
+  std::vector<RunCurves> curves;
+  ModelDescription model;                        // with what was found
+  std::vector<std::string> runs, held_out_runs;  // held_out_runs empty: held out in turn
+  size_t samples = 0;
+};
+
+}  // namespace hydro

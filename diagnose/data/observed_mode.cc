@@ -1,0 +1,135 @@
+#include "diagnose/data/observed_mode.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "diagnose/data/sample_interval.h"
+
+namespace hydro {
+
+namespace {
+
+constexpr double kHalfWindow = 2.5e-3;  // s: short against the shortest rest that matters
+constexpr double kMargin = 3.5;         // standard deviations
+constexpr double kShortestRest = 0.01;  // s
+
+// Centred averages of what is there; NaN where nothing is.
+std::vector<double> Average(const std::vector<double>& values, size_t half) {
+  const size_t n = values.size();
+  std::vector<double> sum(n + 1, 0.0), count(n + 1, 0.0);
+  for (size_t i = 0; i < n; ++i) {
+    const bool there = !std::isnan(values[i]);
+    sum[i + 1] = sum[i] + (there ? values[i] : 0);
+    count[i + 1] = count[i] + (there ? 1 : 0);
+  }
+  std::vector<double> average(n, std::numeric_limits<double>::quiet_NaN());
+  for (size_t i = 0; i < n; ++i) {
+    const size_t first = i < half ? 0 : i - half;
+    const size_t last = std::min(n, i + half + 1);
+    const double there = count[last] - count[first];
+    if (there > 0) average[i] = (sum[last] - sum[first]) / there;
+  }
+  return average;
+}
+
+// Gaps take the value before them, those at the start the first one.
+void FillGaps(std::vector<double>* values) {
+  double last = 0;
+  for (const double value : *values) {
+    if (!std::isnan(value)) {
+      last = value;
+      break;
+    }
+  }
+  for (double& value : *values) {
+    if (std::isnan(value)) value = last;
+    last = value;
+  }
+}
+
+std::vector<double> SpeedFromAngle(const std::vector<double>& angle, const std::vector<double>& time,
+                                   size_t half) {
+  const size_t n = angle.size();
+  std::vector<double> speed(n, std::numeric_limits<double>::quiet_NaN());
+  for (size_t i = 0; i < n; ++i) {
+    const size_t first = i < half ? 0 : i - half;
+    const size_t last = std::min(n - 1, i + half);
+    if (last > first) speed[i] = (angle[last] - angle[first]) / (time[last] - time[first]);
+  }
+  return speed;
+}
+
+}  // namespace
+
+ObservedMode ObserveMode(const RunData& run) {
+  ObservedMode mode;
+  const std::vector<double>& time = run.stimulus.time;
+  const size_t n = time.size();
+  const double step = MedianInterval(time);
+  const size_t half = static_cast<size_t>(std::min(50.0, std::floor(kHalfWindow / step)));
+  mode.half_window = half;
+  const double averaging = kMargin / std::sqrt(2.0 * static_cast<double>(half) + 1);
+
+  const SignalData* const p1 = run.Find(Channel::kP1);
+  const SignalData* const p2 = run.Find(Channel::kP2);
+  if (p1 != nullptr) {
+    mode.p1 = Average(p1->values, half);
+    mode.p1_margin = averaging * p1->noise;
+  }
+  if (p2 != nullptr) {
+    mode.p2 = Average(p2->values, half);
+    mode.p2_margin = averaging * p2->noise;
+  }
+
+  const SignalData* const speed = run.Find(Channel::kMotorSpeed);
+  const SignalData* const angle = run.Find(Channel::kMotorAngle);
+  if (speed == nullptr && angle == nullptr) return mode;
+  const size_t reach = std::max<size_t>(1, half);
+  const double angle_margin =
+      angle == nullptr ? std::numeric_limits<double>::infinity()
+                       : kMargin * angle->noise * std::sqrt(0.5) / (static_cast<double>(reach) * step);
+  const double speed_margin =
+      speed == nullptr ? std::numeric_limits<double>::infinity() : averaging * speed->noise;
+  // A difference across samples that are far apart would smear a reversal.
+  const bool from_speed = speed != nullptr && (speed_margin <= angle_margin || step > kHalfWindow);
+  mode.motor_speed = from_speed ? Average(speed->values, half) : SpeedFromAngle(angle->values, time, reach);
+  mode.speed_margin = from_speed ? speed_margin : angle_margin;
+  FillGaps(&mode.motor_speed);
+
+  mode.turns.assign(n, 0);
+  mode.passes.assign(n, 0);
+  const auto side = [&](size_t i) {
+    const double value = mode.motor_speed[i];
+    return value > mode.speed_margin ? 1 : value < -mode.speed_margin ? -1 : 0;
+  };
+  for (size_t i = 0; i < n; ++i) {
+    const int now = side(i);
+    const int next = side(std::min(n - 1, i + 1));
+    if (now == next) {
+      mode.turns[i] = static_cast<int8_t>(now);
+    } else {
+      mode.turns[i] = static_cast<int8_t>(now != 0 && next != 0 ? now : 0);
+      if (now != 0 && next != 0) mode.passes[i] = 1;
+    }
+  }
+  for (size_t i = 0; i < n;) {
+    size_t end = i;
+    while (end < n && mode.turns[end] == 0) ++end;
+    if (end == i) {
+      ++i;
+      continue;
+    }
+    const double duration = time[std::min(n - 1, end)] - time[i];
+    if (end - i < 3 || duration < kShortestRest) {
+      for (size_t k = i; k < end; ++k) {
+        mode.passes[k] = 1;
+        mode.turns[k] = static_cast<int8_t>(mode.motor_speed[k] >= 0 ? 1 : -1);
+      }
+    }
+    i = end;
+  }
+  return mode;
+}
+
+}  // namespace hydro

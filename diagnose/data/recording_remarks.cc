@@ -1,0 +1,114 @@
+#include "diagnose/data/recording_remarks.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "base/word_list.h"
+#include "diagnose/data/sample_interval.h"
+
+namespace hydro {
+namespace {
+
+constexpr double kUnlikeStated = 1.5;    // ratio of noises, either way
+constexpr double kMostSaturated = 0.01;  // share of a signal's samples
+constexpr double kMostMissing = 0.05;    // of one that is there at most times
+constexpr double kSlowerSensor = 0.5;    // with more missing it is a slower sensor
+constexpr double kGap = 5;               // median intervals
+constexpr double kCoarse = 2;            // steps of so many standard deviations of the noise
+constexpr double kStill = 5;             // noises that a signal moves by
+
+template <class... Values>
+std::string Format(const char* format, Values... values) {
+  char text[160];
+  std::snprintf(text, sizeof text, format, values...);
+  return text;
+}
+
+void RemarkOnTimes(const RunData& run, std::vector<std::string>* remarks) {
+  const std::vector<double>& time = run.stimulus.time;
+  const double usual = MedianInterval(time);
+  size_t gaps = 0, first = 0;
+  double longest = 0;
+  for (size_t i = 0; i + 1 < time.size(); ++i) {
+    const double interval = time[i + 1] - time[i];
+    if (interval <= kGap * usual) continue;
+    if (gaps++ == 0) first = i;
+    longest = std::max(longest, interval);
+  }
+  if (gaps == 0) return;
+  remarks->push_back(RunNamed(run.name) + ": " + Format("%zu", gaps) + (gaps == 1 ? " gap" : " gaps") +
+                     Format(" in time, up to %.3g s, the first after %.6g s", longest, time[first]));
+}
+
+void RemarkOnSignal(const RunData& run, const SignalData& signal, std::vector<std::string>* remarks) {
+  const std::string name = RunNamed(run.name) + ": " + ChannelName(signal.channel);
+  const char* unit = ChannelUnit(signal.channel).c_str();
+  const double ratio = signal.noise / signal.stated_noise;
+  if (ratio > kUnlikeStated || ratio < 1 / kUnlikeStated) {
+    remarks->push_back(name + Format("'s noise is %.3g %s, stated are %.3g %s", signal.noise, unit,
+                                     signal.stated_noise, unit));
+  }
+  const auto samples = static_cast<double>(run.samples());
+  const auto there = static_cast<double>(signal.valid + signal.saturated);
+  if (static_cast<double>(signal.saturated) > kMostSaturated * there) {
+    remarks->push_back(name + Format(" is at the end of its range in %.3g %% of its samples",
+                                     100 * static_cast<double>(signal.saturated) / there));
+  }
+  const double missing = 1 - there / samples;
+  if (missing > kMostMissing && missing < kSlowerSensor) {
+    remarks->push_back(name + Format(" is missing in %.3g %% of the rows", 100 * missing));
+  }
+  // Noise of a recording without any is that of rounding, q / sqrt(12).
+  if (signal.resolution > kCoarse * signal.noise && !std::isnan(signal.stated_noise)) {
+    remarks->push_back(
+        name + Format(" is recorded in steps of %.3g %s, coarser than its noise", signal.resolution, unit));
+  }
+}
+
+void RemarkOnMotion(const std::vector<const RunData*>& runs, std::vector<std::string>* remarks) {
+  double low = INFINITY, high = -INFINITY, noise = 0, most_pressure = 0;
+  bool speed = false, pressure = false;
+  for (const RunData* run : runs) {
+    for (const SignalData& signal : run->signals) {
+      const ValueRange range = RangeOfValues(signal.values);
+      if (signal.channel == Channel::kMotorSpeed) {
+        speed = true;
+        low = std::min(low, range.low);
+        high = std::max(high, range.high);
+        noise = std::max(noise, signal.noise);
+      } else if (signal.channel == Channel::kP1 || signal.channel == Channel::kP2) {
+        pressure = true;
+        most_pressure = std::max(most_pressure, range.size() / signal.noise);
+      }
+    }
+  }
+  if (speed && high - low < 2 * kStill * noise) {
+    remarks->push_back("the motor hardly turns in any run: friction and inertia cannot be seen");
+  } else if (speed && (low > -kStill * noise || high < kStill * noise)) {
+    remarks->push_back("the motor turns one way only: friction cannot be told from a wrong torque");
+  }
+  if (pressure && most_pressure < 2 * kStill) {
+    remarks->push_back("the pressures hardly change in any run: fluid and leakage cannot be seen");
+  }
+}
+
+}  // namespace
+
+std::vector<std::string> RecordingRemarks(const std::vector<ClockDelay>& clocks,
+                                          const std::vector<const RunData*>& runs,
+                                          const std::vector<const RunData*>& held_out) {
+  std::vector<std::string> remarks;
+  remarks.reserve(clocks.size());
+  for (const ClockDelay& clock : clocks) remarks.push_back(Says(clock));
+  for (const auto* some : {&runs, &held_out}) {
+    for (const RunData* run : *some) {
+      RemarkOnTimes(*run, &remarks);
+      for (const SignalData& signal : run->signals) RemarkOnSignal(*run, signal, &remarks);
+    }
+  }
+  if (!runs.empty()) RemarkOnMotion(runs, &remarks);
+  return remarks;
+}
+
+}  // namespace hydro

@@ -1,0 +1,231 @@
+#include "diagnose/data/run_data.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "base/text_file.h"
+#include "diagnose/data/run_start.h"
+#include "diagnose/data/smoothed_motion.h"
+
+namespace hydro {
+namespace {
+
+constexpr size_t kFewestSamples = 100;
+constexpr size_t kFewestValues = 20;  // of one signal: slower sensors leave gaps
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+
+struct ChannelRow {
+  const char* name;
+  const char* unit;
+  MeasuredSignal MeasuredRun::*signal;
+  bool arm;
+};
+
+constexpr ChannelRow kRows[kChannels] = {{"motor_angle", "rad", &MeasuredRun::motor_angle, false},
+                                         {"motor_speed", "rad/s", &MeasuredRun::motor_speed, false},
+                                         {"arm_angle", "rad", &MeasuredRun::arm_angle, true},
+                                         {"arm_speed", "rad/s", &MeasuredRun::arm_speed, true},
+                                         {"p1", "psi", &MeasuredRun::p1, false},
+                                         {"p2", "psi", &MeasuredRun::p2, false}};
+
+[[noreturn]] void Refuse(const std::string& place, const std::string& signal, const std::string& found,
+                         const std::string& allowed) {
+  throw InputError(place + (signal.empty() ? "" : ": " + signal) + ": found " + found + ", allowed " +
+                   allowed);
+}
+
+size_t CountValid(const std::vector<double>& values) {
+  return static_cast<size_t>(
+      std::count_if(values.begin(), values.end(), [](double value) { return !std::isnan(value); }));
+}
+
+// What no actuator reaches, in the model's own units; twice what its equations could hold and more, so that
+// only another unit gets there and a wrong parameter does not.
+double Impossible(const ChannelRow& row, const Parameters& model) {
+  const std::string name = row.name;
+  const double stroke = model.V_ms / model.c;  // where V_1 or V_2 is 0, eqs. (6), (7)
+  if (name == "motor_speed") return 1e5;       // rad/s in every coherent system
+  if (name == "motor_angle") return 1e9;
+  if (name == "arm_angle") return 2 * stroke;
+  if (name == "arm_speed") return 1000 * stroke;
+  return model.beta / 2;  // the oil at half its volume, eq. (5)
+}
+
+void CheckRange(const MeasuredRun& run, const std::string& name, const std::vector<double>& values,
+                double limit, const std::string& unit) {
+  for (size_t i = 0; i < values.size(); ++i) {
+    if (std::isnan(values[i]) || std::abs(values[i]) <= limit) continue;
+    Refuse(run.Place(i), name, ShortestNumber(values[i]) + " " + unit,
+           "-" + ShortestNumber(limit) + " to " + ShortestNumber(limit) +
+               " with this model: is the column in another unit?");
+  }
+}
+
+void CheckSignal(const MeasuredRun& run, const ChannelRow& row, const Parameters& model) {
+  const std::vector<double>& values = (run.*row.signal).values;
+  const size_t valid = CountValid(values);
+  if (valid < kFewestValues) {
+    Refuse(run.file, row.name, valid == 0 ? "no value in any row" : std::to_string(valid) + " values",
+           std::to_string(kFewestValues) + " values or more, or leave the signal out");
+  }
+  CheckRange(run, row.name, values, Impossible(row, model), row.unit);
+  // An arm may well stand still; and what a simulation without noise says of a side on its one-way valve, or
+  // of a pump that sticks, is one number.
+  const bool simulated = !run.model_text.empty() && !(run.*row.signal).noise.has_value();
+  if (row.arm || simulated) return;
+  size_t first = 0;
+  while (std::isnan(values[first])) ++first;
+  const bool constant = std::all_of(values.begin(), values.end(), [&](double value) {
+    return std::isnan(value) || value == values[first];
+  });
+  if (!constant) return;
+  Refuse(run.Place(first), row.name,
+         ShortestNumber(values[first]) + " " + row.unit + " there and in every row after it",
+         "a signal that changes, or leave it out");
+}
+
+// `values` without the samples at the end of a sensor's range, if there are any. Noise makes neighbours
+// differ; where many in a row are the largest or smallest value of all, the sensor reads no further.
+std::vector<double> WithoutEnds(const std::vector<double>& values, const ValueRange& range) {
+  constexpr size_t kInARow = 8;
+  std::vector<double> rest = values;
+  for (const double end : {range.low, range.high}) {
+    size_t longest = 0, here = 0;
+    for (const double value : values) {
+      here = value == end ? here + 1 : 0;
+      longest = std::max(longest, here);
+    }
+    if (longest < kInARow) continue;
+    for (double& value : rest) {
+      if (value == end) value = kNone;
+    }
+  }
+  return rest;
+}
+
+SignalData MakeSignal(const MeasuredRun& run, Channel channel) {
+  const MeasuredSignal& measured = run.*kRows[static_cast<size_t>(channel)].signal;
+  SignalData signal;
+  signal.channel = channel;
+  signal.values = measured.values;
+  signal.stated_noise = measured.noise.value_or(kNone);
+  signal.resolution = EstimateResolution(measured.values);
+  const ValueRange range = RangeOfValues(measured.values);
+  const double size = range.size();
+  if (size == 0) {
+    // What never moves is as good as it is said to be.
+    signal.noise = measured.noise.value_or(1e-5 * std::max(1.0, std::abs(range.high)));
+  } else {
+    std::vector<double> rest = WithoutEnds(measured.values, range);
+    double noise = EstimateNoise(rest);
+    // Without noise above the rounding one cannot tell: what rests at an end of its motion reads the same.
+    if (noise >= 0.6 * signal.resolution && noise >= 1e-4 * size) {
+      signal.values = std::move(rest);
+    } else {
+      noise = EstimateNoise(measured.values);
+    }
+    // Below 1e-5 of the range it is the simulation that is noisy.
+    signal.noise = std::max(noise, 1e-5 * size);
+  }
+  signal.valid = CountValid(signal.values);
+  signal.saturated = CountValid(measured.values) - signal.valid;
+  return signal;
+}
+
+// The motion that a driven shaft is made to follow.
+std::unique_ptr<Trajectory> ImposedMotion(const MeasuredRun& run, const Parameters& model) {
+  const SignalData angle = MakeSignal(run, Channel::kArmAngle);
+  SignalData speed;
+  if (run.arm_speed.measured()) speed = MakeSignal(run, Channel::kArmSpeed);
+  std::unique_ptr<Trajectory> motion =
+      SmoothMotion(run.time, angle.values, angle.noise, speed.values, speed.noise);
+  const double stroke = model.V_ms / model.c;
+  CheckRange(run, "arm_angle", angle.values, stroke, "rad");
+  if (std::max(-motion->Min(), motion->Max()) >= stroke) {
+    Refuse(run.file, "arm_angle", "a motion that reaches the end of the stroke",
+           "angles between -" + ShortestNumber(stroke) + " and " + ShortestNumber(stroke) +
+               " rad, where the model's V_1 and V_2 are above 0");
+  }
+  return motion;
+}
+
+}  // namespace
+
+const std::string& ChannelName(Channel channel) {
+  static const std::array<std::string, kChannels> names = {kRows[0].name, kRows[1].name, kRows[2].name,
+                                                           kRows[3].name, kRows[4].name, kRows[5].name};
+  return names.at(static_cast<size_t>(channel));
+}
+
+const std::string& ChannelUnit(Channel channel) {
+  static const std::array<std::string, kChannels> units = {kRows[0].unit, kRows[1].unit, kRows[2].unit,
+                                                           kRows[3].unit, kRows[4].unit, kRows[5].unit};
+  return units.at(static_cast<size_t>(channel));
+}
+
+const SignalData* RunData::Find(Channel channel) const {
+  for (const SignalData& signal : signals) {
+    if (signal.channel == channel) return &signal;
+  }
+  return nullptr;
+}
+
+ValueRange RangeOfValues(const std::vector<double>& values) {
+  ValueRange range;
+  for (const double value : values) {
+    if (std::isnan(value)) continue;
+    range.low = std::min(range.low, value);
+    range.high = std::max(range.high, value);
+  }
+  return range;
+}
+
+RunData PrepareRun(MeasuredRun run, const Parameters& model) {
+  if (run.samples() < kFewestSamples) {
+    Refuse(run.file, "", std::to_string(run.samples()) + " samples",
+           std::to_string(kFewestSamples) + " or more");
+  }
+  RunData data;
+  data.name = run.name;
+  data.stimulus.shaft = run.shaft;
+  data.stimulus.arm_angle = run.arm_angle_rad;
+  data.stimulus.bypass = run.bypass;
+  data.stimulus.time = run.time;
+  data.stimulus.voltage = run.voltage.values;
+  // A thousand times what saturates the amplifier, eq. (1).
+  CheckRange(run, "voltage", run.voltage.values, 1000 * model.T_pmax / model.k_1, "V");
+  for (size_t channel = 0; channel < kChannels; ++channel) {
+    const ChannelRow& row = kRows[channel];
+    if (!(run.*row.signal).measured()) continue;
+    CheckSignal(run, row, model);
+    // The arm of a clamped shaft stands still, that of a driven one is imposed.
+    if (row.arm && run.shaft != Shaft::kFree) continue;
+    SignalData signal = MakeSignal(run, static_cast<Channel>(channel));
+    if (signal.valid >= kFewestValues) data.signals.push_back(std::move(signal));
+  }
+  if (data.signals.empty()) {
+    Refuse(run.file, "", "no signal to compare a model with",
+           std::string("one or more of motor_speed, motor_angle, p1, p2") +
+               (run.shaft == Shaft::kFree ? ", arm_angle, arm_speed" : ""));
+  }
+  if (run.shaft == Shaft::kDriven) {
+    data.motion = ImposedMotion(run, model);
+    data.stimulus.motion = data.motion.get();
+  }
+  SetStart(model, &data);
+  data.measured = std::move(run);
+  return data;
+}
+
+void NameApart(std::vector<RunData>* runs) {
+  std::set<std::string> taken;
+  for (RunData& run : *runs) {
+    const std::string own = run.name;
+    for (int number = 2; !taken.insert(run.name).second; ++number) {
+      run.name = own + " (" + std::to_string(number) + ")";
+    }
+  }
+}
+
+}  // namespace hydro

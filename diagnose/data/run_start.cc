@@ -1,0 +1,109 @@
+#include "diagnose/data/run_start.h"
+
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "model/state.h"
+
+namespace hydro {
+namespace {
+
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+
+// A straight line through the first valid samples, at the first time, and its standard errors.
+struct Line {
+  double value = kNone, slope = 0;
+  double value_error = 0, slope_error = 0;
+};
+
+// A speed that is nil as far as the samples tell. What begins at rest with a little speed slips where
+// friction or cogging hold it, and the fit then stays one tooth off.
+constexpr double kAtRest = 3;  // standard errors
+double Rest(double speed, double error) { return std::abs(speed) < kAtRest * error ? 0 : speed; }
+
+Line FirstLine(const std::vector<double>& time, const SignalData& signal) {
+  std::vector<size_t> rows;
+  for (size_t i = 0; i < time.size() && rows.size() < 10; ++i) {
+    if (!std::isnan(signal.values[i])) rows.push_back(i);
+  }
+  // What begins late says nothing of the start's slope.
+  if (rows[0] > 20) return {signal.values[rows[0]], 0};
+  // Fewer of them where no line passes through ten: a fast event near the start.
+  for (const size_t count : {rows.size(), size_t{5}, size_t{3}}) {
+    double t = 0, y = 0, tt = 0, ty = 0, off = 0;
+    const double n = static_cast<double>(count);
+    for (size_t k = 0; k < count; ++k) {
+      t += (time[rows[k]] - time[0]) / n;
+      y += signal.values[rows[k]] / n;
+    }
+    for (size_t k = 0; k < count; ++k) {
+      const double since = time[rows[k]] - time[0] - t;
+      tt += since * since;
+      ty += since * (signal.values[rows[k]] - y);
+    }
+    const Line line{y - ty / tt * t, ty / tt, signal.noise * std::sqrt(1 / n + t * t / tt),
+                    signal.noise / std::sqrt(tt)};
+    for (size_t k = 0; k < count; ++k) {
+      const double expected = line.value + line.slope * (time[rows[k]] - time[0]);
+      off += std::pow(signal.values[rows[k]] - expected, 2);
+    }
+    if (off <= 9 * signal.noise * signal.noise * n) return line;
+  }
+  const double slope = (signal.values[rows[1]] - signal.values[rows[0]]) / (time[rows[1]] - time[rows[0]]);
+  return {signal.values[rows[0]], slope};
+}
+
+}  // namespace
+
+void SetStart(const Parameters& model, RunData* data) {
+  const std::vector<double>& time = data->stimulus.time;
+  const auto line = [&](Channel channel) {
+    const SignalData* signal = data->Find(channel);
+    return signal == nullptr ? Line{} : FirstLine(time, *signal);
+  };
+  const auto first_known = [](double a, double b) { return std::isnan(a) ? b : a; };
+  const Line motor_angle = line(Channel::kMotorAngle), motor_speed = line(Channel::kMotorSpeed);
+  data->start[kMotorAngle] = first_known(motor_angle.value, 0);
+  data->start[kMotorSpeed] = first_known(Rest(motor_speed.value, motor_speed.value_error),
+                                         Rest(motor_angle.slope, motor_angle.slope_error));
+  data->start_free[kMotorAngle] = !std::isnan(motor_angle.value);
+  data->start_free[kMotorSpeed] = true;
+
+  double p1 = line(Channel::kP1).value, p2 = line(Channel::kP2).value;
+  if (data->stimulus.bypass) {
+    // One pressure, eqs. (13), (14) added up; p1 stands for both in start_free, and whoever moves it moves
+    // p2.
+    p1 = p2 = std::isnan(p1) ? p2 : std::isnan(p2) ? p1 : (p1 + p2) / 2;
+  }
+  data->start[kP1] = first_known(p1, model.p_3);
+  data->start[kP2] = first_known(p2, model.p_3);
+  data->start_free[kP1] = true;
+  data->start_free[kP2] = !data->stimulus.bypass;
+
+  if (data->stimulus.shaft == Shaft::kFree) {
+    const Line arm_angle = line(Channel::kArmAngle), arm_speed = line(Channel::kArmSpeed);
+    data->start[kArmAngle] = first_known(arm_angle.value, 0);
+    data->start[kArmSpeed] = first_known(Rest(arm_speed.value, arm_speed.value_error),
+                                         Rest(arm_angle.slope, arm_angle.slope_error));
+    data->start_free[kArmAngle] = data->start_free[kArmSpeed] = true;
+  } else if (data->stimulus.shaft == Shaft::kDriven) {
+    data->start[kArmAngle] = data->motion->Value(time.front());
+    data->start[kArmSpeed] = data->motion->Rate(time.front());
+  } else {
+    data->start[kArmAngle] = data->stimulus.arm_angle;
+  }
+
+  // Each speed for itself; one that is not measured says nothing against rest.
+  StartState at_rest = data->start;
+  const auto may_rest = [&](Channel channel) {
+    const SignalData* speed = data->Find(channel);
+    return speed == nullptr || std::abs(speed->values.front()) < kAtRest * speed->noise;
+  };
+  if (data->Find(Channel::kMotorSpeed) == nullptr || !may_rest(Channel::kMotorSpeed)) return;
+  at_rest[kMotorSpeed] = 0;
+  if (data->stimulus.shaft == Shaft::kFree && may_rest(Channel::kArmSpeed)) at_rest[kArmSpeed] = 0;
+  if (at_rest != data->start) data->at_rest = at_rest;
+}
+
+}  // namespace hydro

@@ -1,0 +1,11 @@
+// Where a measured run begins.
+#pragma once
+
+#include "diagnose/data/run_data.h"
+
+namespace hydro {
+
+// Sets the run's start, start_free and at_rest from its first samples; everything else of `data` is there.
+void SetStart(const Parameters& model, RunData* data);
+
+}  // namespace hydro

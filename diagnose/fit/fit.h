@@ -1,0 +1,55 @@
+// Fits a hypothesis to runs by simulation: the free numbers and each run's start are chosen so that predicted
+// and measured signals differ least, in noise units.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "diagnose/data/run_data.h"
+#include "diagnose/fit/hypothesis.h"
+
+namespace hydro {
+
+struct RunFit {
+  StartState start{};
+  double sum = 0;    // of squared residuals
+  size_t count = 0;  // of residuals
+  // At the fitted values, with the unknown start taken out (its best follows the parameters): information and
+  // gradient of sum/2 by the free parameters as they are fitted (logarithms of some), by columns.
+  std::vector<double> information, gradient;
+};
+
+struct Fitted {
+  std::string failure;  // why there is no fit; "" when there is one
+  Hypothesis hypothesis;
+  std::vector<RunFit> runs;
+  double sum = 0;
+  size_t count = 0;
+
+  bool ok() const { return failure.empty(); }
+  double squared_gap() const { return count == 0 ? 0 : sum / static_cast<double>(count); }
+};
+
+// Each run's start, as fitted.
+std::vector<StartState> StartsOf(const Fitted& fitted);
+
+// What is known of the free parameters beforehand: each, as it is fitted (logarithms of some), adds
+// weight (it - centre)^2 to the sum that is least.
+struct Prior {
+  std::vector<double> centre, weight;
+};
+
+struct FitOptions {
+  int most_iterations = 20;
+  double tolerance = 1e-4;  // relative fall of the sum below which it is done
+  int jobs = 1;
+  const Prior* prior = nullptr;  // in the order of Free()
+};
+
+// `starts`: one a run, where to begin. Never throws ModelError: a model that cannot be simulated is a
+// failure.
+Fitted Fit(const Hypothesis& hypothesis, const std::vector<const RunData*>& runs,
+           const std::vector<StartState>& starts, const FitOptions& options);
+
+}  // namespace hydro

@@ -1,0 +1,226 @@
+#include "diagnose/fit/hypothesis.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "diagnose/data/sample_interval.h"
+
+namespace hydro {
+
+namespace {
+
+// Values that a fit may reach beyond an effect's starting points: so many times more or less.
+constexpr double kReach = 300;
+
+// Times its value, for a base parameter whose derivative alone does not show the way: of what resonates, a
+// small change of frequency is a large one of phase.
+constexpr double kElsewhere[] = {0.8, 1.25};
+
+const ParameterInfo& InfoOf(const EffectDescription& effect, const std::string& name) {
+  const EffectInfo* info = FindEffect(effect.id);
+  for (const ParameterInfo& parameter : info->parameters) {
+    if (parameter.name == name) return parameter;
+  }
+  throw ModelError("effect \"" + effect.id + "\" has no parameter \"" + name + "\"");
+}
+
+}  // namespace
+
+std::string Change::Label() const {
+  if (effect.empty()) return "parameter " + parameter;
+  std::string label = effect;
+  for (const auto& [name, value] : names) label += " (" + value + ")";
+  return label;
+}
+
+double FreeParameter::ToFitted(double number) const { return logarithmic ? std::log(number) : number; }
+double FreeParameter::FromFitted(double fitted) const { return logarithmic ? std::exp(fitted) : fitted; }
+double FreeParameter::Moved(double by) const { return logarithmic ? value * std::exp(by) : value + by; }
+
+std::vector<FreeParameter> Hypothesis::Free() const {
+  std::vector<FreeParameter> free;
+  for (const size_t i : base) {
+    const ParameterInfo& info = BaseParameters()[i].info;
+    const double value = model.parameters.*BaseParameters()[i].member;
+    FreeParameter parameter{{Unknown::Kind::kBase, i}, info.name, info.unit, value, info.min, info.max};
+    parameter.logarithmic = !info.min_allowed && value > 0;
+    if (parameter.logarithmic) {
+      parameter.low = value / kReach;
+      parameter.high = value * kReach;
+    }
+    free.push_back(parameter);
+  }
+  const std::vector<EffectParameter> all = EffectParameters(model);
+  for (size_t i = 0; i < all.size(); ++i) {
+    const EffectDescription& effect = model.effects[all[i].effect];
+    if (std::find(effects.begin(), effects.end(), effect.id) == effects.end()) continue;
+    const ParameterInfo& info = InfoOf(effect, all[i].name);
+    const double value = effect.parameters.at(all[i].name);
+    FreeParameter parameter{
+        {Unknown::Kind::kEffect, i}, effect.id + "." + info.name, info.unit, value, info.min, info.max};
+    parameter.logarithmic = !info.min_allowed && info.min == 0 && value > 0;
+    if (parameter.logarithmic) {
+      parameter.low = value / kReach;
+      parameter.high = std::min(info.max, value * kReach);
+    } else if (!info.min_allowed && std::isfinite(info.min)) {
+      parameter.low = info.min + 1e-6 * std::max(1.0, std::abs(info.min));
+    }
+    free.push_back(parameter);
+  }
+  return free;
+}
+
+void Hypothesis::Set(const std::vector<double>& values) {
+  size_t next = 0;
+  for (const size_t i : base) model.parameters.*BaseParameters()[i].member = values[next++];
+  const std::vector<EffectParameter> all = EffectParameters(model);
+  for (const EffectParameter& parameter : all) {
+    EffectDescription& effect = model.effects[parameter.effect];
+    if (std::find(effects.begin(), effects.end(), effect.id) == effects.end()) continue;
+    effect.parameters[parameter.name] = values[next++];
+  }
+}
+
+bool Hypothesis::Has(const Change& change) const {
+  return std::find(changes.begin(), changes.end(), change) != changes.end();
+}
+
+const Change* Hypothesis::OneBeyond(const Hypothesis& other) const {
+  const Change* own = nullptr;
+  for (const Change& change : changes) {
+    if (other.Has(change)) continue;
+    if (own != nullptr) return nullptr;
+    own = &change;
+  }
+  return own;
+}
+
+Hypothesis Hypothesis::Held() const {
+  Hypothesis held = *this;
+  held.base.clear();
+  held.effects.clear();
+  return held;
+}
+
+double Sizes::Of(Scale scale) const {
+  switch (scale) {
+    case Scale::kOne:
+      return 1;
+    case Scale::kTorque:
+      return torque;
+    case Scale::kSpeed:
+      return speed;
+    case Scale::kPressure:
+      return pressure;
+    case Scale::kCharge:
+      return charge;
+    case Scale::kSample:
+      return sample;
+    case Scale::kRate:
+      return 1 / sample;
+    case Scale::kFlow:
+      return flow;
+    case Scale::kArmStiffness:
+      return arm_stiffness;
+    case Scale::kArmDamping:
+      return arm_damping;
+  }
+  return 1;
+}
+
+Sizes SizesOf(const ModelDescription& model, const std::vector<const RunData*>& runs) {
+  Sizes sizes;
+  const Parameters& p = model.parameters;
+  sizes.torque = p.T_pmax;
+  sizes.charge = p.p_3 > 0 ? p.p_3 : 0.01 * p.T_pmax / p.D;
+  const auto largest = [](const SignalData* signal, double* size) {
+    if (signal == nullptr) return;
+    std::vector<double> values;
+    for (const double value : signal->values) {
+      if (std::isfinite(value)) values.push_back(std::abs(value));
+    }
+    if (values.empty()) return;
+    // Not the very largest: one spike would be it.
+    const auto place =
+        values.begin() + static_cast<std::ptrdiff_t>(0.999 * static_cast<double>(values.size() - 1));
+    std::nth_element(values.begin(), place, values.end());
+    *size = std::max(*size, *place);
+  };
+  std::vector<const std::vector<double>*> times;
+  for (const RunData* run : runs) {
+    largest(run->Find(Channel::kMotorSpeed), &sizes.speed);
+    largest(run->Find(Channel::kP1), &sizes.pressure);
+    largest(run->Find(Channel::kP2), &sizes.pressure);
+    times.push_back(&run->stimulus.time);
+  }
+  if (sizes.speed == 0) sizes.speed = p.T_pmax / std::max(p.b, 0.001 * p.T_pmax);
+  if (sizes.pressure == 0) sizes.pressure = p.T_pmax / p.D;
+  sizes.sample = MedianInterval(times);
+  sizes.flow = p.D * sizes.speed / sizes.pressure;
+  sizes.arm_stiffness = p.J_a / (sizes.sample * sizes.sample);
+  sizes.arm_damping = p.J_a / sizes.sample;
+  return sizes;
+}
+
+std::vector<FreeParameter> HeldParameters(const Hypothesis& hypothesis) {
+  Hypothesis held = hypothesis.Held();
+  for (size_t place = 0; place < BaseParameters().size(); ++place) {
+    const bool is_free =
+        std::find(hypothesis.base.begin(), hypothesis.base.end(), place) != hypothesis.base.end();
+    if (!is_free) held.base.push_back(place);
+  }
+  std::vector<FreeParameter> parameters = held.Free();
+  std::erase_if(parameters, [](const FreeParameter& parameter) { return !(parameter.value > 0); });
+  for (FreeParameter& parameter : parameters) parameter.logarithmic = true;
+  return parameters;
+}
+
+std::vector<Hypothesis> With(const Hypothesis& hypothesis, const Change& change, const Sizes& sizes,
+                             bool elsewhere) {
+  Hypothesis more = hypothesis;
+  more.changes.push_back(change);
+  if (change.effect.empty()) {
+    const size_t place = BasePlace(change.parameter);
+    if (std::find(more.base.begin(), more.base.end(), place) == more.base.end()) more.base.push_back(place);
+    std::vector<Hypothesis> all = {more};
+    for (const double factor : kElsewhere) {
+      if (!elsewhere) break;
+      all.push_back(more);
+      all.back().model.parameters.*BaseParameters()[place].member *= factor;
+    }
+    return all;
+  }
+  const EffectInfo& info = *FindEffect(change.effect);
+  more.effects.push_back(change.effect);
+  more.model.effects.push_back({change.effect, {}, change.names});
+  std::vector<Hypothesis> all = {more};
+  for (const ParameterInfo& parameter : info.parameters) {
+    if (parameter.is_name) continue;
+    std::vector<Hypothesis> next;
+    for (const Hypothesis& one : all) {
+      for (const double start : parameter.starts) {
+        next.push_back(one);
+        next.back().model.effects.back().parameters[parameter.name] = start * sizes.Of(parameter.scale);
+      }
+    }
+    all = std::move(next);
+  }
+  return all;
+}
+
+Hypothesis Without(const Hypothesis& hypothesis, const Change& change, const ModelDescription& given) {
+  Hypothesis less = hypothesis;
+  std::erase(less.changes, change);
+  if (change.effect.empty()) {
+    const size_t place = BasePlace(change.parameter);
+    std::erase(less.base, place);
+    less.model.parameters.*BaseParameters()[place].member = given.parameters.*BaseParameters()[place].member;
+    return less;
+  }
+  std::erase(less.effects, change.effect);
+  std::erase_if(less.model.effects,
+                [&](const EffectDescription& effect) { return effect.id == change.effect; });
+  return less;
+}
+
+}  // namespace hydro

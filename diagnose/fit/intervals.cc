@@ -1,0 +1,160 @@
+#include "diagnose/fit/intervals.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
+#include <algorithm>
+#include <boost/math/distributions/students_t.hpp>
+#include <cmath>
+
+#include "base/parallel.h"
+#include "diagnose/data/sample_interval.h"
+#include "diagnose/fit/residuals.h"
+#include "maths/solve.h"
+
+namespace hydro {
+
+namespace {
+
+using Eigen::Index;
+using Eigen::Map;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr Index kBlocksPerRun = 12;
+
+// A block that has nearly all that is known of a number says nothing of its own scatter; it counts as if it
+// had no more than this part.
+constexpr double kMostLeverage = 0.75;
+
+// Relative standard deviation of a number for what its equation idealises. With ten thousands of samples the
+// noise alone leaves a tenth of it; rigs whose friction is rounded a little or whose sensors are of second
+// order moved the numbers found by up to two percent without showing it in any block (bench/gap_score).
+constexpr double kIdealised = 0.005;
+
+// The same of each of the model's own numbers that are held: what is found stands beside their terms, and a
+// small effect moves by as much of a large term. Calibrated on such rigs, too.
+constexpr double kIdealisedHeld = 0.0003;
+
+// Standard deviation of a time, in sample intervals, for what is taken to be immediate and is not: a
+// tachometer with a filter of a twelfth of a sample, left out of the model, made delays and lags found 0.02
+// to 0.03 samples longer.
+constexpr double kInstant = 0.02;
+
+// What each stretch of a run says: its gradient and its information, with the run's start taken out.
+struct BlocksOfRun {
+  MatrixXd gradients;  // a column each
+  std::vector<MatrixXd> informations;
+};
+BlocksOfRun BlocksOf(const Fitted& fitted, const std::vector<FreeParameter>& free, size_t r,
+                     const RunData& run) {
+  const std::vector<Unknown> unknown_starts = StartUnknowns(run);
+  const Residuals residuals =
+      ResidualsOf(fitted.hypothesis.model, run, fitted.runs[r].start, free, unknown_starts);
+  const auto rows = static_cast<Index>(residuals.values.size());
+  const auto p = static_cast<Index>(free.size());
+  const Index n = p + static_cast<Index>(unknown_starts.size());
+  const Map<const MatrixXd> jacobian(residuals.jacobian.data(), rows, n);
+  MatrixXd columns = jacobian.leftCols(p);
+  if (n > p) {
+    const MatrixXd starts = jacobian.rightCols(n - p);
+    MatrixXd inner = TransposeTimes(starts, starts);
+    inner.diagonal().array() += 1e-10 * inner.diagonal().maxCoeff() + 1e-300;
+    columns -= starts * SolveSymmetric(inner, TransposeTimes(starts, columns));
+  }
+  BlocksOfRun blocks{MatrixXd::Zero(p, kBlocksPerRun),
+                     std::vector<MatrixXd>(kBlocksPerRun, MatrixXd::Zero(p, p))};
+  for (size_t s = 0; s + 1 < residuals.first.size(); ++s) {
+    const auto first = static_cast<Index>(residuals.first[s]);
+    const Index count = static_cast<Index>(residuals.first[s + 1]) - first;
+    for (Index b = 0; b < kBlocksPerRun; ++b) {
+      const Index from = first + b * count / kBlocksPerRun;
+      const Index to = first + (b + 1) * count / kBlocksPerRun;
+      const Map<const VectorXd> values(residuals.values.data() + from, to - from);
+      const auto rows_of_block = columns.middleRows(from, to - from);
+      blocks.gradients.col(b) += rows_of_block.transpose() * values;
+      blocks.informations[static_cast<size_t>(b)] += rows_of_block.transpose() * rows_of_block;
+    }
+  }
+  return blocks;
+}
+
+}  // namespace
+
+std::vector<Interval> Intervals(const Fitted& fitted, const std::vector<const RunData*>& runs, int jobs) {
+  const std::vector<FreeParameter> free = fitted.hypothesis.Free();
+  const auto p = static_cast<Index>(free.size());
+  std::vector<FreeParameter> all = free;  // and behind them what is held
+  const std::vector<FreeParameter> held = HeldParameters(fitted.hypothesis);
+  all.insert(all.end(), held.begin(), held.end());
+  const auto h = static_cast<Index>(held.size());
+  std::vector<BlocksOfRun> blocks_of(runs.size());
+  ParallelFor(runs.size(), jobs, [&](size_t r) { blocks_of[r] = BlocksOf(fitted, all, r, *runs[r]); });
+  MatrixXd information = MatrixXd::Zero(p, p);
+  for (const RunFit& run : fitted.runs) information += Map<const MatrixXd>(run.information.data(), p, p);
+  const VectorXd scale = (information.diagonal().array() + 1e-300).sqrt().inverse();
+  MatrixXd scaled = scale.asDiagonal() * information * scale.asDiagonal();
+  scaled.diagonal().array() += 1e-10;
+  const MatrixXd inverse =
+      scale.asDiagonal() * SolveSymmetric(scaled, MatrixXd::Identity(p, p)) * scale.asDiagonal();
+  // By how much a part of the data moves the fit. The fit has followed it as far as it has leverage; what is
+  // left of its gradient is made up for that (as in leaving it out, the jackknife).
+  const Eigen::LLT<MatrixXd> root(scaled);
+  const auto influence = [&](const MatrixXd& part, const VectorXd& its_gradient) {
+    MatrixXd share = scale.asDiagonal() * part * scale.asDiagonal();
+    root.matrixL().solveInPlace(share);
+    share.transposeInPlace();
+    root.matrixL().solveInPlace(share);
+    const Eigensystem eigen = EigensystemOf(share);
+    const VectorXd left = 1 - eigen.values.array().max(0.0).min(kMostLeverage);
+    VectorXd gradient = scale.asDiagonal() * its_gradient;
+    root.matrixL().solveInPlace(gradient);
+    gradient = eigen.vectors * (eigen.vectors.transpose() * gradient).cwiseQuotient(left);
+    root.matrixU().solveInPlace(gradient);
+    return VectorXd(scale.asDiagonal() * gradient);
+  };
+  // Noise scatters from block to block; what the model lacks a little of differs from run to run.
+  VectorXd by_block = VectorXd::Zero(p);
+  VectorXd by_run = VectorXd::Zero(p);
+  MatrixXd with_held = MatrixXd::Zero(p, h);
+  for (size_t r = 0; r < runs.size(); ++r) {
+    const MatrixXd gradients = blocks_of[r].gradients.topRows(p);
+    for (Index b = 0; b < kBlocksPerRun; ++b) {
+      const MatrixXd& block = blocks_of[r].informations[static_cast<size_t>(b)];
+      by_block += influence(block.topLeftCorner(p, p), gradients.col(b)).cwiseAbs2();
+      with_held += block.topRightCorner(p, h);
+    }
+    by_run +=
+        influence(Map<const MatrixXd>(fitted.runs[r].information.data(), p, p), gradients.rowwise().sum())
+            .cwiseAbs2();
+  }
+  // The fit follows what is held as far as the runs cannot tell it from the free numbers; by logarithms, so
+  // that a relative deviation counts as it is.
+  const VectorXd by_held = kIdealisedHeld * (inverse * with_held).rowwise().norm();
+  const auto half_width = [](double squares, double parts) {
+    const double t = boost::math::quantile(boost::math::students_t(parts - 1), 0.975);
+    return t * std::sqrt(squares * (parts - 1) / parts);
+  };
+  const auto count = static_cast<double>(runs.size());
+  const double squared_gap = std::max(1.0, fitted.squared_gap());
+  const double sample = MedianInterval(runs.front()->stimulus.time);
+  std::vector<Interval> intervals;
+  for (Index i = 0; i < p; ++i) {
+    const double white = 1.96 * std::sqrt(inverse(i, i) * squared_gap);
+    double half = std::max(white, half_width(by_block(i), static_cast<double>(kBlocksPerRun) * count));
+    if (runs.size() > 2) half = std::max(half, half_width(by_run(i), count));
+    const FreeParameter& parameter = free[static_cast<size_t>(i)];
+    const double unseen =
+        std::hypot(kIdealised * parameter.value, parameter.unit == "s" ? kInstant * sample : 0);
+    half = std::hypot(half, 1.96 * std::abs(unseen / parameter.Slope()), 1.96 * by_held(i));
+    Interval interval{parameter.Moved(-half), parameter.Moved(half)};
+    // A logarithm is positive by itself; its bounds are the fit's, not physics'.
+    if (!parameter.logarithmic) {
+      interval.low = std::max(interval.low, std::min(parameter.low, parameter.value));
+      interval.high = std::min(interval.high, std::max(parameter.high, parameter.value));
+    }
+    intervals.push_back(interval);
+  }
+  return intervals;
+}
+
+}  // namespace hydro

@@ -1,0 +1,32 @@
+// A run's residuals against a model, in noise units, with their derivatives.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "diagnose/data/run_data.h"
+#include "diagnose/fit/hypothesis.h"
+#include "model/response.h"
+
+namespace hydro {
+
+struct Residuals {
+  // Predicted less measured, over the noise; signal after signal, each one's valid samples in order of time.
+  std::vector<double> values;
+  std::vector<double> jacobian;  // by columns: values.size() a column, one column an unknown
+  std::vector<size_t> first;     // where each of the run's signals begins; one more, the end
+};
+
+// Without derivatives. Throws ModelError when the model cannot be simulated.
+Residuals ResidualsOf(const ModelDescription& model, const RunData& run, const StartState& start);
+
+// With derivatives by the free parameters as a fit moves them (logarithms of some), then by `starts`. The
+// values of `free` are those of the model. Throws as above.
+Residuals ResidualsOf(const ModelDescription& model, const RunData& run, const StartState& start,
+                      const std::vector<FreeParameter>& free, const std::vector<Unknown>& starts,
+                      bool repeated_effects = false);
+
+// The unknown starts of a run.
+std::vector<Unknown> StartUnknowns(const RunData& run);
+
+}  // namespace hydro

@@ -1,0 +1,35 @@
+#include "diagnose/fit/start_fit.h"
+
+#include <utility>
+
+#include "base/parallel.h"
+
+namespace hydro {
+
+Fitted FitStart(const Hypothesis& hypothesis, const RunData& run, const StartState& from, double doubtful) {
+  const Hypothesis held = hypothesis.Held();
+  FitOptions options;
+  options.most_iterations = 6;
+  Fitted best = Fit(held, {&run}, {from}, options);
+  const auto begin_at = [&](const StartState& start) {
+    if (start == from) return;
+    Fitted other = Fit(held, {&run}, {start}, options);
+    if (other.ok() && (!best.ok() || other.sum < best.sum)) best = std::move(other);
+  };
+  if (best.ok() && best.squared_gap() <= doubtful) return best;
+  begin_at(run.start);
+  if (run.at_rest.has_value()) begin_at(*run.at_rest);
+  return best;
+}
+
+std::vector<StartState> BestStarts(const Hypothesis& hypothesis, const std::vector<const RunData*>& runs,
+                                   const std::vector<StartState>& from, int jobs) {
+  std::vector<StartState> starts = from;
+  ParallelFor(runs.size(), jobs, [&](size_t r) {
+    const Fitted best = FitStart(hypothesis, *runs[r], from[r], kStartInDoubt);
+    if (best.ok()) starts[r] = best.runs[0].start;
+  });
+  return starts;
+}
+
+}  // namespace hydro

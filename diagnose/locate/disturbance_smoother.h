@@ -1,0 +1,46 @@
+// What each balance of the model lacks along a measured run: an extended Kalman filter and a Bryson-Frazier
+// smoother, with the model's states and a disturbance in each balance that may wander. Signals are smoothed
+// by the equations themselves, so nothing noisy is ever differentiated.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "diagnose/data/run_data.h"
+#include "model/description.h"
+
+namespace hydro {
+
+// Eq. (4), torque on the pump; (13) and (14), flow into each side; (15), torque on the arm.
+enum class Balance { kPumpTorque, kFlow1, kFlow2, kArmTorque };
+inline constexpr size_t kBalances = 4;
+
+// So many times noise alone, drawn anew, goes through the same filter: how far a disturbance means anything.
+inline constexpr size_t kNoiseDraws = 6;
+
+struct Disturbance {
+  std::vector<double> value;                           // a sample each; in-lbf or in^3/s
+  std::array<std::vector<double>, kNoiseDraws> noise;  // what the sensors' noise alone makes of it
+  std::vector<uint8_t> informative;  // 0: friction at rest or an open valve hides the balance there
+};
+
+struct SmoothedRun {
+  // Balances whose own quantity was measured; the others have no disturbance and are empty.
+  std::array<bool, kBalances> measured{};
+  std::array<Disturbance, kBalances> disturbance;
+  std::vector<double> motor_angle, motor_speed, p1, p2, arm_angle, arm_speed;
+};
+
+// What is taken off measured pressures before they are used, psi.
+struct PressureOffsets {
+  double p1 = 0, p2 = 0;
+};
+
+// Throws ModelError when the model contradicts the run's conditions. Time and memory grow with the samples;
+// some 3 kB each while it runs.
+SmoothedRun SmoothDisturbances(const ModelDescription& model, const RunData& run,
+                               const PressureOffsets& offsets);
+
+}  // namespace hydro

@@ -1,0 +1,216 @@
+#include "diagnose/locate/locate.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+
+#include "diagnose/data/observed_mode.h"
+#include "diagnose/locate/dependence.h"
+#include "diagnose/locate/disagreement.h"
+#include "diagnose/locate/disturbance_smoother.h"
+#include "diagnose/locate/explanations.h"
+#include "diagnose/locate/pressure_offsets.h"
+
+namespace hydro {
+
+namespace {
+
+constexpr std::array<const char*, kBalances> kNames = {"pump_torque", "flow_1", "flow_2", "arm_torque"};
+constexpr std::array<const char*, kBalances> kUnits = {"in-lbf", "in^3/s", "in^3/s", "in-lbf"};
+
+constexpr double kSmallestShare = 0.02;
+// A variable must explain so much more of the variance than a simpler one to be preferred to it.
+constexpr double kPlainly = 0.06;
+// A dependence that explains less is none.
+constexpr double kDependence = 0.05;
+constexpr double kQuick = 0.005;  // s: longer blocks do not see what repeats within a turn
+constexpr double kMostlyOffsets = 0.5;
+constexpr double kReversal = 0.02;  // s on either side of one
+
+struct Found {
+  std::array<Blocks, kBalances> blocks;
+  std::array<double, kBalances> energy{};  // 0: nothing beyond noise
+  double total = 0;
+};
+
+Found Weigh(const std::vector<SmoothedRun>& smoothed, const std::vector<const RunData*>& runs) {
+  Found found;
+  for (size_t b = 0; b < kBalances; ++b) {
+    Disagreement d = LargestDisagreement(smoothed, runs, static_cast<Balance>(b));
+    found.blocks[b] = std::move(d.blocks);
+    if (!d.beyond_noise) continue;
+    found.energy[b] = d.energy;
+    found.total += d.energy;
+  }
+  return found;
+}
+
+std::vector<SmoothedRun> SmoothAll(const ModelDescription& model, const std::vector<const RunData*>& runs,
+                                   const PressureOffsets& offsets) {
+  std::vector<SmoothedRun> smoothed;
+  smoothed.reserve(runs.size());
+  for (const RunData* run : runs) smoothed.push_back(SmoothDisturbances(model, *run, offsets));
+  return smoothed;
+}
+
+struct Dependence {
+  Variable variable;
+  std::vector<double> averages;
+  double explained = 0;
+  size_t simplicity = 0;  // place in the list: the plain ones come first
+};
+
+// Ordered by what they explain.
+std::vector<Dependence> Rank(const Blocks& blocks, std::vector<Variable> variables,
+                             const std::vector<SmoothedRun>& smoothed, Balance balance) {
+  std::vector<Dependence> ranked;
+  for (Variable& variable : variables) {
+    Dependence d;
+    d.averages = Average(variable, blocks, smoothed, balance);
+    d.explained = Explained(blocks, d.averages, variable.linear_only);
+    d.variable = std::move(variable);
+    d.simplicity = ranked.size();
+    ranked.push_back(std::move(d));
+  }
+  const auto more = [](const Dependence& a, const Dependence& b) { return a.explained > b.explained; };
+  std::stable_sort(ranked.begin(), ranked.end(), more);
+  // Of those that explain nearly as much as the best, the simplest.
+  const double best = ranked.front().explained;
+  auto simplest = ranked.begin();
+  for (auto d = ranked.begin(); d != ranked.end() && d->explained >= best - kPlainly; ++d) {
+    if (d->simplicity < simplest->simplicity) simplest = d;
+  }
+  std::rotate(ranked.begin(), simplest, simplest + 1);
+  return ranked;
+}
+
+// How much more of the energy lies near reversals of the motor than time does: text, or "".
+std::string AtReversals(const Blocks& blocks, const std::vector<const RunData*>& runs) {
+  std::vector<std::vector<double>> reversals(runs.size());
+  for (size_t r = 0; r < runs.size(); ++r) {
+    const ObservedMode observed = ObserveMode(*runs[r]);
+    int last = 0;
+    for (size_t k = 0; k < observed.turns.size(); ++k) {
+      const int now = observed.turns[k];
+      if (now == last || now == 0) continue;
+      if (last != 0) reversals[r].push_back(runs[r]->stimulus.time[k]);
+      last = now;
+    }
+  }
+  double near = 0, all = 0;
+  size_t near_blocks = 0;
+  for (const Blocks::Block& block : blocks.blocks) {
+    const std::vector<double>& time = runs[block.run]->stimulus.time;
+    const double ratio = block.value / block.noise;
+    const auto next = std::lower_bound(reversals[block.run].begin(), reversals[block.run].end(),
+                                       time[block.first] - kReversal);
+    const bool at = next != reversals[block.run].end() && *next <= time[block.end - 1] + kReversal;
+    all += ratio * ratio - 1;
+    if (!at) continue;
+    near += ratio * ratio - 1;
+    ++near_blocks;
+  }
+  const bool here = near > 0.6 * all && 3 * near_blocks < blocks.blocks.size();
+  return here ? "at reversals" : "";
+}
+
+std::string WhereOf(const Blocks& blocks, const std::vector<Dependence>& ranked,
+                    const std::vector<const RunData*>& runs) {
+  std::string where = "everywhere alike";
+  if (ranked.front().explained > kDependence) {
+    where = RangeOf(blocks, ranked.front().variable, ranked.front().averages);
+  }
+  const std::string reversals = AtReversals(blocks, runs);
+  if (!reversals.empty()) where += ", " + reversals;
+  return where;
+}
+
+// Against the variable that explains most, and against the next that explains something.
+void Tabulate(const Blocks& blocks, const std::vector<Dependence>& ranked, size_t balance,
+              std::vector<MissingTerm>* missing) {
+  for (const Dependence& d : ranked) {
+    if (missing->size() == 2 || (!missing->empty() && d.explained < kDependence)) break;
+    MissingTerm table = TableOf(blocks, d.variable, d.averages);
+    table.balance = kNames[balance];
+    table.unit = kUnits[balance];
+    missing->push_back(std::move(table));
+  }
+}
+
+// Shares of one balance found in several ways add up; the largest says where.
+void AddShare(std::vector<Location>* locations, Location more) {
+  for (Location& location : *locations) {
+    if (location.balance != more.balance) continue;
+    const double share = location.share + more.share;
+    if (more.share > location.share) location = std::move(more);
+    location.share = share;
+    return;
+  }
+  locations->push_back(std::move(more));
+}
+
+}  // namespace
+
+Localisation Locate(const ModelDescription& model, const std::vector<const RunData*>& runs) {
+  Localisation result;
+  std::vector<SmoothedRun> smoothed = SmoothAll(model, runs, {});
+  Found found = Weigh(smoothed, runs);
+  if (found.total == 0) return result;
+  const double all = found.total;
+
+  // The sensors' share is what readings at rest take away, if that is most of it.
+  double sensor = 0;
+  const PressureOffsets offsets = RestOffsets(model, runs);
+  if (offsets.p1 != 0 || offsets.p2 != 0) {
+    std::vector<SmoothedRun> corrected = SmoothAll(model, runs, offsets);
+    Found left = Weigh(corrected, runs);
+    if (left.total < kMostlyOffsets * all) {
+      sensor = 1 - left.total / all;
+      char where[96];
+      std::snprintf(where, sizeof where, "p1 reads %+.3g psi, p2 %+.3g psi at the valves' pressure",
+                    offsets.p1, offsets.p2);
+      const size_t largest = static_cast<size_t>(std::max_element(found.energy.begin(), found.energy.end()) -
+                                                 found.energy.begin());
+      result.location.push_back({"sensor", sensor, where, WindowsOf(found.blocks[largest], runs)});
+      smoothed = std::move(corrected);
+      found = std::move(left);
+    }
+  }
+
+  const Explanations explanations(smoothed, runs);
+  std::array<std::vector<Dependence>, kBalances> ranked;
+  for (size_t b = 0; b < kBalances; ++b) {
+    const double share = found.energy[b] / all;
+    if (share < kSmallestShare) continue;
+    const Balance balance = static_cast<Balance>(b);
+    const Blocks& blocks = found.blocks[b];
+    ranked[b] = Rank(blocks, explanations.States(balance, blocks.duration < kQuick), smoothed, balance);
+    double own = share;
+    // What a list of variables explains plainly better than the balance's own is another's.
+    const auto give = [&](const char* to, std::vector<Variable> variables) {
+      if (variables.empty() || own < share) return;
+      const std::vector<Dependence> others = Rank(blocks, std::move(variables), smoothed, balance);
+      const double explained = others.front().explained;
+      if (explained <= ranked[b].front().explained + kPlainly) return;
+      const double part = share * std::min(1.0, explained);
+      own -= part;
+      AddShare(&result.location,
+               {to, part, WhereOf(blocks, {others.front()}, runs), WindowsOf(blocks, runs)});
+      ranked[b].insert(ranked[b].begin(), others.front());
+    };
+    if (balance == Balance::kPumpTorque) give("command", explanations.Commands());
+    give("sensor", explanations.Lateness(balance));
+    if (own < kSmallestShare) continue;
+    result.location.push_back({kNames[b], own, WhereOf(blocks, ranked[b], runs), WindowsOf(blocks, runs)});
+  }
+  std::stable_sort(result.location.begin(), result.location.end(),
+                   [](const Location& a, const Location& b) { return a.share > b.share; });
+  if (!result.location.empty() && result.location.front().balance != "sensor") {
+    const size_t b = static_cast<size_t>(std::max_element(found.energy.begin(), found.energy.end()) -
+                                         found.energy.begin());
+    Tabulate(found.blocks[b], ranked[b], b, &result.missing);
+  }
+  return result;
+}
+
+}  // namespace hydro

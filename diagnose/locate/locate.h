@@ -1,0 +1,19 @@
+// Where simulation and data disagree: residuals of each balance, driven by measured signals.
+#pragma once
+
+#include <vector>
+
+#include "diagnose/data/diagnosis.h"
+#include "diagnose/data/run_data.h"
+
+namespace hydro {
+
+struct Localisation {
+  std::vector<Location> location;    // by share, largest first; empty when nothing is missing
+  std::vector<MissingTerm> missing;  // of the largest one, against what it depends on most
+};
+
+// `model` is the one that disagrees. Balances that the runs do not measure are left out.
+Localisation Locate(const ModelDescription& model, const std::vector<const RunData*>& runs);
+
+}  // namespace hydro

@@ -1,0 +1,21 @@
+// A diagnosis in SI units, for --si.
+#pragma once
+
+#include "diagnose/data/diagnosis.h"
+
+namespace hydro {
+
+// A signal and the unit it is shown in.
+struct ShownUnit {
+  std::string unit;
+  double factor = 1;  // shown = factor * model's
+};
+
+// The unit of a channel: the paper's, or SI (kPa).
+ShownUnit UnitOf(Channel channel, bool si);
+
+// Parameters, effects and missing terms converted from the paper's units; signals and curves are left, see
+// UnitOf. The sentences keep what they say.
+Diagnosis InSi(Diagnosis diagnosis);
+
+}  // namespace hydro

@@ -1,0 +1,31 @@
+// How far a diagnosis is, for whoever watches.
+#pragma once
+
+#include <cstdio>
+#include <string>
+
+#include "base/terminal_line.h"
+#include "diagnose/search/progress.h"
+
+namespace hydro {
+
+// A bar with the stage and the time left on a terminal; elsewhere a line when a stage begins, the first one
+// when the second does.
+class ProgressBar {
+ public:
+  // `out` stays the caller's. The bar is wiped away in the end.
+  ProgressBar(std::FILE* out, bool terminal) : out_(out), terminal_(terminal), line_(out) {}
+
+  // `elapsed`: s since the work began.
+  void Tell(const Progress& progress, double elapsed);
+
+ private:
+  std::FILE* out_;
+  bool terminal_;
+  TerminalLine line_;
+  double furthest_ = 0;
+  int stages_ = 0;
+  std::string stage_;
+};
+
+}  // namespace hydro

@@ -1,0 +1,152 @@
+#include "diagnose/report/report_json.h"
+
+#include <nlohmann/json.hpp>
+
+#include "diagnose/data/run_data.h"
+#include "settings/command_line.h"
+
+namespace hydro {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json Interval(const Estimated& estimated) { return Json::array({estimated.low, estimated.high}); }
+
+Json Places(const Diagnosis& diagnosis) {
+  Json places = Json::array();
+  for (const Location& location : diagnosis.location) {
+    Json windows = Json::array();
+    for (const Window& window : location.windows) {
+      windows.push_back({{"run", window.run}, {"from_s", window.from}, {"to_s", window.to}});
+    }
+    places.push_back({{"balance", location.balance},
+                      {"share", location.share},
+                      {"where", location.where},
+                      {"windows", std::move(windows)}});
+  }
+  return places;
+}
+
+Json MissingTerms(const Diagnosis& diagnosis) {
+  Json terms = Json::array();
+  for (const MissingTerm& term : diagnosis.missing) {
+    terms.push_back({{"balance", term.balance},
+                     {"unit", term.unit},
+                     {"against", term.against},
+                     {"against_unit", term.against_unit},
+                     {"at", term.at},
+                     {"mean", term.mean},
+                     {"standard_error", term.error}});
+  }
+  return terms;
+}
+
+Json Effects(const Diagnosis& diagnosis) {
+  Json effects = Json::array();
+  for (const FoundEffect& effect : diagnosis.effects) {
+    Json parameters = Json::object();
+    for (const Estimated& parameter : effect.parameters) {
+      parameters[parameter.name] = {
+          {"value", parameter.value}, {"ci95", Interval(parameter)}, {"unit", parameter.unit}};
+    }
+    effects.push_back({{"id", effect.id},
+                       {"says", effect.says},
+                       {"equation", effect.equation},
+                       {"parameters", std::move(parameters)},
+                       {"names", effect.names},
+                       {"tied_with", effect.tied_with}});
+  }
+  return effects;
+}
+
+Json Recording(const Diagnosis& diagnosis) {
+  Json clocks = Json::array();
+  for (const ClockDelay& clock : diagnosis.recording) {
+    clocks.push_back({{"run", clock.run},
+                      {"signals", clock.signals},
+                      {"late_s", clock.delay},
+                      {"ci95", {clock.delay - clock.error, clock.delay + clock.error}}});
+  }
+  return clocks;
+}
+
+Json ChangedParameters(const Diagnosis& diagnosis) {
+  Json parameters = Json::array();
+  for (const ChangedParameter& parameter : diagnosis.parameters) {
+    parameters.push_back({{"name", parameter.fitted.name},
+                          {"model", parameter.model},
+                          {"fitted", parameter.fitted.value},
+                          {"ci95", Interval(parameter.fitted)},
+                          {"unit", parameter.fitted.unit},
+                          {"implausible", parameter.implausible}});
+    if (!parameter.why.empty()) parameters.back()["why"] = parameter.why;
+  }
+  return parameters;
+}
+
+Json Gap(const BeforeAfter& gap) {
+  return {{"before", gap.before}, {"refit_only", gap.refit_only}, {"after", gap.after}};
+}
+
+Json Gaps(const Diagnosis& diagnosis) {
+  Json signals = Json::object();
+  for (const SignalGap& signal : diagnosis.signals) {
+    signals[ChannelName(signal.channel)] = {{"unit", ChannelUnit(signal.channel)},
+                                            {"noise", signal.noise},
+                                            {"fit", Gap(signal.fit)},
+                                            {"held_out", Gap(signal.held_out)}};
+  }
+  return {
+      {"signals", std::move(signals)}, {"fit", Gap(diagnosis.fit)}, {"held_out", Gap(diagnosis.held_out)}};
+}
+
+Json NextExperimentOf(const Diagnosis& diagnosis, const std::string& next_config) {
+  const NextExperiment& next = diagnosis.next;
+  if (next.why.empty() && next_config.empty()) return nullptr;
+  return {{"why", next.why},
+          {"config", next_config.empty() ? Json(nullptr) : Json(next_config)},
+          {"expected_separation", next.expected_separation}};
+}
+
+Json Candidates(const Diagnosis& diagnosis) {
+  Json candidates = Json::array();
+  for (const Candidate& candidate : diagnosis.candidates) {
+    candidates.push_back({{"id", candidate.id},
+                          {"score", candidate.score},
+                          {"fit", candidate.fit},
+                          {"held_out", candidate.held_out},
+                          {"p_value", candidate.p_value},
+                          {"rejected_because", candidate.rejected_because}});
+  }
+  return candidates;
+}
+
+}  // namespace
+
+const std::string& VerdictName(Verdict verdict) {
+  static const std::string names[] = {"named", "tied", "parameters", "unexplained", "nothing_missing"};
+  return names[static_cast<size_t>(verdict)];
+}
+
+std::string ReportJson(const Diagnosis& diagnosis, const std::string& next_config, double elapsed_s) {
+  const Json report = {{"verdict", VerdictName(diagnosis.verdict)},
+                       {"sentence", diagnosis.sentence},
+                       {"recording", Recording(diagnosis)},
+                       {"location", Places(diagnosis)},
+                       {"missing_terms", MissingTerms(diagnosis)},
+                       {"effects", Effects(diagnosis)},
+                       {"parameters", ChangedParameters(diagnosis)},
+                       {"gap", Gaps(diagnosis)},
+                       {"next_experiment", NextExperimentOf(diagnosis, next_config)},
+                       {"candidates", Candidates(diagnosis)},
+                       {"remarks", diagnosis.remarks},
+                       {"runs", diagnosis.runs},
+                       {"held_out_runs", diagnosis.held_out_runs},
+                       {"samples", diagnosis.samples},
+                       {"version", ProgramVersion()},
+                       {"elapsed_s", elapsed_s}};
+  // Names come from files: bytes that are no UTF-8 are replaced instead of refused.
+  return report.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace hydro

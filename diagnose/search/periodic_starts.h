@@ -1,0 +1,19 @@
+// Starting values of effects that repeat within a turn of the shaft, read off the balances. To a simulation
+// another number of periods is another motion, and its derivatives do not lead from the one to the other; a
+// balance of smoothed signals is a straight line in such an effect, for each whole number of periods.
+#pragma once
+
+#include <vector>
+
+#include "diagnose/data/run_data.h"
+#include "diagnose/fit/hypothesis.h"
+
+namespace hydro {
+
+// `hypothesis` with motor.cogging, and with pump.flow_ripple, where they are among `changes` and the balances
+// that it leaves open (SmoothDisturbances) plainly repeat within a turn: the likeliest numbers of periods,
+// with the amplitude and phase that the balances have. Where the runs cannot be smoothed, nothing.
+std::vector<Hypothesis> WithPeriodic(const Hypothesis& hypothesis, const std::vector<Change>& changes,
+                                     const std::vector<const RunData*>& runs, int jobs);
+
+}  // namespace hydro

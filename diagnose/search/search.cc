@@ -1,0 +1,345 @@
+#include "diagnose/search/search.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "base/parallel.h"
+#include "diagnose/fit/start_fit.h"
+#include "diagnose/search/parameter_instead.h"
+#include "diagnose/search/periodic_starts.h"
+#include "diagnose/search/resonance.h"
+
+namespace hydro {
+
+namespace {
+
+// How many of the score test's best are refitted: at the first step, and at later ones.
+constexpr size_t kRefitsAtFirst = 6;
+constexpr size_t kRefitsLater = 5;
+// From how many of its starting points each of them.
+constexpr size_t kStarts = 3;
+// Below this share of what is expected of the best, a change is not refitted.
+constexpr double kWorthTrying = 0.15;
+// How many hypotheses are gone on with.
+constexpr size_t kBeam = 2;
+// Those are dropped whose sum of squares is so many times the best's.
+constexpr double kBehind = 2;
+// What is tried in the place of a part of an explanation is looked at closely up to so many times its sum of
+// squares, after a coarse fit.
+constexpr double kNearlyAsGood = 2;
+// How many refits are compared on held-out runs at each step.
+constexpr size_t kFinalists = 3;
+// Further changes are not looked for below this squared gap on held-out runs.
+constexpr double kCloseEnough = 1.25;
+
+// Above this squared gap of its fit an explanation is not begun again to see whether it suffices.
+constexpr double kNear = 3;
+
+std::vector<StartState> MeasuredStarts(const std::vector<const RunData*>& runs) {
+  std::vector<StartState> starts;
+  starts.reserve(runs.size());
+  for (const RunData* run : runs) starts.push_back(run->start);
+  return starts;
+}
+
+// Of two that predict alike, the one with fewer new numbers; a value that is wrong before an effect that is
+// missing.
+double Cost(const Explanation& one) {
+  double cost = one.held_out_gap();
+  for (const FreeParameter& parameter : one.fitted.hypothesis.Free()) {
+    cost += parameter.unknown.kind == Unknown::Kind::kBase ? 0.005 : 0.01;
+  }
+  return cost;
+}
+
+bool SameChanges(const Hypothesis& a, const Hypothesis& b) {
+  if (a.changes.size() != b.changes.size()) return false;
+  return std::all_of(a.changes.begin(), a.changes.end(), [&](const Change& change) { return b.Has(change); });
+}
+
+// Two of an effect cannot be in one model; nor is something changed twice.
+bool CanAdd(const Hypothesis& hypothesis, const Change& change) {
+  if (change.effect.empty()) {
+    const size_t place = BasePlace(change.parameter);
+    return std::find(hypothesis.base.begin(), hypothesis.base.end(), place) == hypothesis.base.end();
+  }
+  return std::none_of(hypothesis.model.effects.begin(), hypothesis.model.effects.end(),
+                      [&](const EffectDescription& effect) { return effect.id == change.effect; });
+}
+
+class Searcher {
+ public:
+  Searcher(const SearchContext& context, int most_changes) : context_(context), most_changes_(most_changes) {
+    coarse_.most_iterations = 8;
+    coarse_.tolerance = 1e-3;
+    fine_.most_iterations = 15;
+    fine_.tolerance = 1e-5;
+  }
+
+  SearchResult Run(const Hypothesis& from) {
+    Tell("the model as given", 0);
+    result_.given = Explain(context_, from, MeasuredStarts(context_.runs), WithAllJobs(fine_));
+    if (!result_.given.fitted.ok()) return result_;
+    result_.best = result_.given;
+    Grow(Extend({result_.given}, 0), 0);
+    if (result_.best.held_out_gap() >= kCloseEnough) Grow(TryAllAlone(), 0);
+    Exchange();
+    TakeBack();
+    if (const Explanation* instead = ParameterInstead(result_, context_.given)) {
+      result_.best = *instead;
+    }
+    result_.best = AtBestResonance(context_, result_.best, WithAllJobs(fine_));
+    return result_;
+  }
+
+ private:
+  // For one that is fitted while no others are.
+  FitOptions WithAllJobs(FitOptions options) const {
+    options.jobs = context_.jobs;
+    return options;
+  }
+
+  void Tell(const std::string& stage, double fraction) const {
+    if (context_.tell) context_.tell({stage, fraction});
+  }
+
+  // Takes the best of `next`, hypotheses of `step` + 1 changes, as far as it gains enough, and goes on from
+  // there.
+  void Grow(std::vector<Explanation> next, int step) {
+    while (!next.empty()) {
+      const auto best = std::min_element(next.begin(), next.end(),
+                                         [](const auto& a, const auto& b) { return Cost(a) < Cost(b); });
+      if (!Material(result_.best.held_out_gap(), best->held_out_gap())) return;
+      *best = BegunAgain(context_, *best, WithAllJobs(fine_));
+      std::vector<Explanation> beam(next.begin(),
+                                    next.begin() + static_cast<std::ptrdiff_t>(std::min(kBeam, next.size())));
+      while (beam.size() > 1 && beam.back().fitted.sum > kBehind * beam.front().fitted.sum) beam.pop_back();
+      result_.best = *best;
+      if (result_.best.held_out_gap() < kCloseEnough || ++step >= most_changes_) return;
+      next = Extend(beam, step);
+    }
+  }
+
+  // The score test is a straight line's, and what is far from straight may look worthless in it. Where the
+  // likeliest have not explained the runs, every change that has not been refitted alone is.
+  std::vector<Explanation> TryAllAlone() {
+    std::vector<Scanned> pool;
+    for (const auto& rows : scanned_alone_) {
+      const bool tried =
+          std::find(picked_alone_.begin(), picked_alone_.end(), rows.front().change) != picked_alone_.end();
+      if (tried || !rows.front().failure.empty()) continue;
+      pool.push_back(rows.front());
+      if (rows.size() > 1 && rows[1].failure.empty()) pool.push_back(rows[1]);
+    }
+    Tell("refitting each effect", 0.8);
+    return FitAll(pool, StartsOf(result_.given.fitted));
+  }
+
+  // Each of the beam with one more change, fitted; the best few by their fit, with their held-out prediction.
+  // Those with a sum of squares above `most` are not predicted.
+  std::vector<Explanation> Extend(const std::vector<Explanation>& beam, int step,
+                                  double most = std::numeric_limits<double>::infinity()) {
+    std::vector<Scanned> pool, periodic;
+    const double share = static_cast<double>(step) / most_changes_;
+    for (const Explanation& from : beam) {
+      Tell("judging each effect" + Step(step), share);
+      std::vector<Change> changes;
+      for (const Change& change : context_.changes) {
+        if (CanAdd(from.fitted.hypothesis, change)) changes.push_back(change);
+      }
+      auto scanned = Scan(from.fitted, context_.runs, changes, context_.sizes, step == 0, context_.jobs);
+      if (step == 0) {
+        for (const auto& rows : scanned) {
+          Rated rated{rows.front().change, 0, rows.front().failure};
+          rated.expected = rows.front().expected / static_cast<double>(from.fitted.count);
+          result_.rated.push_back(rated);
+        }
+        scanned_alone_ = scanned;
+      }
+      const bool exchange = most < std::numeric_limits<double>::infinity();
+      Pick(from, &scanned, step == 0 ? kRefitsAtFirst : kRefitsLater, exchange ? 1 : kStarts, &pool);
+      for (const Hypothesis& one :
+           WithPeriodic(from.fitted.hypothesis, changes, context_.runs, context_.jobs)) {
+        periodic.push_back({one.changes.back(), one, 0, "", {}});
+        periodic.back().run_starts = BestStarts(one, context_.runs, StartsOf(from.fitted), context_.jobs);
+      }
+    }
+    if (step == 0) {
+      for (const Scanned& picked : pool) picked_alone_.push_back(picked.change);
+    }
+    pool.insert(pool.end(), periodic.begin(), periodic.end());
+    Tell("refitting the likeliest" + Step(step), share + 0.3 / most_changes_);
+    return FitAll(pool, StartsOf(beam.front().fitted), most);
+  }
+
+  // Fits all; the best few by their fit, with their held-out prediction.
+  std::vector<Explanation> FitAll(const std::vector<Scanned>& pool, const std::vector<StartState>& starts,
+                                  double most = std::numeric_limits<double>::infinity()) {
+    std::vector<Fitted> fits(pool.size());
+    ParallelFor(pool.size(), context_.jobs, [&](size_t i) {
+      const auto& own = pool[i].run_starts;
+      fits[i] = Fit(pool[i].start, context_.runs, own.empty() ? starts : own, coarse_);
+    });
+    // The best start of each set of changes.
+    std::vector<Fitted> best;
+    for (Fitted& fit : fits) {
+      if (!fit.ok()) continue;
+      const auto same = std::find_if(best.begin(), best.end(), [&](const Fitted& other) {
+        return SameChanges(other.hypothesis, fit.hypothesis);
+      });
+      if (same == best.end()) {
+        best.push_back(std::move(fit));
+      } else if (fit.sum < same->sum) {
+        *same = std::move(fit);
+      }
+    }
+    for (const Fitted& fit : fits) {
+      if (fit.ok()) continue;
+      const bool by_another_start = std::any_of(best.begin(), best.end(), [&](const Fitted& other) {
+        return SameChanges(other.hypothesis, fit.hypothesis);
+      });
+      if (!by_another_start) NoteFailure(fit);
+    }
+    std::stable_sort(best.begin(), best.end(),
+                     [](const Fitted& a, const Fitted& b) { return a.sum < b.sum; });
+    size_t finalists = 0;
+    while (finalists < std::min(best.size(), kFinalists) && best[finalists].sum <= most) ++finalists;
+    std::vector<Explanation> explained(finalists);
+    ParallelFor(explained.size(), context_.jobs, [&](size_t i) {
+      explained[i] = Explain(context_, best[i].hypothesis, StartsOf(best[i]), fine_);
+    });
+    std::erase_if(explained, [](const Explanation& one) { return !one.fitted.ok(); });
+    std::stable_sort(explained.begin(), explained.end(),
+                     [](const Explanation& a, const Explanation& b) { return a.fitted.sum < b.fitted.sum; });
+    for (const Explanation& one : explained) result_.tried.push_back(one);
+    for (size_t i = finalists; i < best.size(); ++i) {
+      Explanation fitted_only;
+      fitted_only.fitted = best[i];
+      result_.tried.push_back(fitted_only);
+    }
+    return explained;
+  }
+
+  static std::string Step(int step) { return step == 0 ? "" : ", with " + std::to_string(step) + " found"; }
+
+  // The most promising of a score test: the best start of each of the first few changes, and further ones
+  // that promise nearly as much.
+  void Pick(const Explanation& from, std::vector<std::vector<Scanned>>* scanned, size_t most,
+            size_t most_starts, std::vector<Scanned>* pool) const {
+    auto& rows = *scanned;
+    std::erase_if(rows, [](const auto& starts) { return starts.empty() || !starts.front().failure.empty(); });
+    std::stable_sort(rows.begin(), rows.end(),
+                     [](const auto& a, const auto& b) { return a.front().expected > b.front().expected; });
+    // The score test is a straight line's; a curved effect can gain several times what it expects.
+    const double least = std::max(0.3 * kLeastGain * static_cast<double>(from.fitted.count),
+                                  rows.empty() ? 0 : kWorthTrying * rows.front().front().expected);
+    for (size_t i = 0; i < rows.size() && i < most; ++i) {
+      for (size_t s = 0; s < rows[i].size() && s < most_starts; ++s) {
+        if (s > 0 && rows[i][s].expected < 0.5 * rows[i].front().expected) break;
+        if (rows[i][s].expected < least) continue;
+        const bool there = std::any_of(pool->begin(), pool->end(), [&](const Scanned& other) {
+          return s == 0 && SameChanges(other.start, rows[i][s].start);
+        });
+        if (!there) pool->push_back(rows[i][s]);
+      }
+    }
+  }
+
+  void NoteFailure(const Fitted& fit) {
+    if (fit.hypothesis.changes.size() != 1) return;
+    for (Rated& rated : result_.rated) {
+      if (rated.change == fit.hypothesis.changes.front()) rated.failure = fit.failure;
+    }
+  }
+
+  // Each change is tried to be replaced: a greedy choice may have been second best once others are there.
+  // Where all is explained it is still tried: what does as well is a tie.
+  void Exchange() {
+    if (result_.best.changes().size() < 2) return;
+    const int rounds = result_.best.held_out_gap() < kCloseEnough ? 1 : 2;
+    for (int round = 0; round < rounds; ++round) {
+      bool better = false;
+      const std::vector<Change> changes = result_.best.changes();
+      for (const Change& change : changes) {
+        Tell("exchanging what was found", 0.9);
+        const Hypothesis less = Without(result_.best.fitted.hypothesis, change, context_.given);
+        Explanation reduced;  // its own prediction is not asked for
+        reduced.fitted = Fit(less, context_.runs, StartsOf(result_.best.fitted), WithAllJobs(coarse_));
+        if (!reduced.fitted.ok()) continue;
+        std::vector<Explanation> others =
+            Extend({reduced}, most_changes_, kNearlyAsGood * result_.best.fitted.sum);
+        for (const Explanation& other : others) {
+          if (other.fitted.sum < 0.98 * result_.best.fitted.sum &&
+              other.held_out_gap() < result_.best.held_out_gap()) {
+            result_.best = BegunAgain(context_, other, WithAllJobs(fine_));
+            better = true;
+          }
+        }
+        if (better) break;
+      }
+      if (!better) return;
+    }
+  }
+
+  // What is not needed any more, now that the others are there.
+  void TakeBack() {
+    bool fewer = true;
+    while (fewer && result_.best.changes().size() > 1) {
+      fewer = false;
+      for (const Change& change : result_.best.changes()) {
+        const Hypothesis less = Without(result_.best.fitted.hypothesis, change, context_.given);
+        Explanation reduced = Explain(context_, less, StartsOf(result_.best.fitted), WithAllJobs(fine_));
+        if (!reduced.fitted.ok()) continue;
+        if (reduced.squared_gap() < kNear) reduced = BegunAgain(context_, reduced, WithAllJobs(fine_));
+        result_.tried.push_back(reduced);
+        if (Material(reduced.held_out_gap(), result_.best.held_out_gap())) continue;
+        result_.best = reduced;
+        fewer = true;
+        break;
+      }
+    }
+  }
+
+  const SearchContext& context_;
+  int most_changes_;
+  FitOptions coarse_, fine_;
+  SearchResult result_;
+  std::vector<std::vector<Scanned>> scanned_alone_;  // every change to the given model
+  std::vector<Change> picked_alone_;                 // of those, what was refitted from where it led
+};
+
+}  // namespace
+
+Explanation Explain(const SearchContext& context, const Hypothesis& hypothesis,
+                    const std::vector<StartState>& starts, const FitOptions& options) {
+  Explanation explanation;
+  explanation.fitted = Fit(hypothesis, context.runs, starts, options);
+  if (!explanation.fitted.ok()) return explanation;
+  if (context.held_out.empty()) {
+    explanation.held_out = PredictInTurn(explanation.fitted, context.given, context.runs, options.jobs);
+    explanation.blocks = BlocksOf(context.runs, explanation.held_out);
+  } else {
+    explanation.held_out = Predict(explanation.fitted, context.held_out, options.jobs);
+    explanation.blocks = BlocksOf(context.held_out, explanation.held_out);
+  }
+  return explanation;
+}
+
+Explanation BegunAgain(const SearchContext& context, const Explanation& one, const FitOptions& options) {
+  if (one.fitted.squared_gap() <= kStartInDoubt) return one;
+  Explanation best = one;
+  const auto begin_at = [&](const std::vector<StartState>& starts) {
+    Explanation again = Explain(context, one.fitted.hypothesis, starts, options);
+    if (again.fitted.ok() && again.fitted.sum < best.fitted.sum) best = std::move(again);
+  };
+  begin_at(MeasuredStarts(context.runs));
+  if (best.fitted.squared_gap() <= kStartInDoubt) return best;
+  begin_at(BestStarts(best.fitted.hypothesis, context.runs, StartsOf(best.fitted), options.jobs));
+  return best;
+}
+
+SearchResult Search(const SearchContext& context, const Hypothesis& from, int most_changes) {
+  return Searcher(context, most_changes).Run(from);
+}
+
+}  // namespace hydro

@@ -1,0 +1,193 @@
+#include "diagnose/verdict/conclusion.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/short_number.h"
+#include "base/word_list.h"
+#include "diagnose/fit/intervals.h"
+#include "diagnose/locate/locate.h"
+#include "diagnose/verdict/next_experiment.h"
+#include "diagnose/verdict/ranking.h"
+#include "diagnose/verdict/run_curves.h"
+
+namespace hydro {
+
+namespace {
+
+// A rival is told apart when it is worse by so many standard errors, block by block.
+constexpr double kToldApart = 2.5;
+// A base parameter that has to move by more than this factor is not believed.
+constexpr double kImplausible = 2.0;
+
+struct Rival {
+  Change change;
+  const Explanation* explanation = nullptr;
+};
+
+// What stands in the place of one change of `best`, and does as well.
+std::vector<Rival> Rivals(const std::vector<Explanation>& tried, const Explanation& best,
+                          const Change& change) {
+  std::vector<Rival> rivals;
+  for (const Explanation& other : tried) {
+    if (other.blocks.sums.empty() || other.changes().size() != best.changes().size()) continue;
+    if (other.fitted.hypothesis.Has(change)) continue;
+    const Change* instead = other.fitted.hypothesis.OneBeyond(best.fitted.hypothesis);
+    if (instead == nullptr) continue;
+    const double t = TValue(other.blocks, best.blocks);
+    const double loss = other.held_out_gap() - best.held_out_gap();
+    if (t > kToldApart || loss > std::max(kLeastGain, 0.1 * (best.held_out_gap() - 1))) continue;
+    const bool there =
+        std::any_of(rivals.begin(), rivals.end(), [&](const Rival& had) { return had.change == *instead; });
+    if (!there) rivals.push_back({*instead, &other});
+  }
+  return rivals;
+}
+
+FoundEffect Describe(const Change& change, const std::vector<FreeParameter>& free,
+                     const std::vector<Interval>& intervals) {
+  const EffectInfo& info = *FindEffect(change.effect);
+  FoundEffect found;
+  found.id = info.id;
+  found.says = info.says;
+  found.equation = info.equation;
+  for (const auto& [name, value] : change.names) found.names.push_back(name + " = " + value);
+  for (const ParameterInfo& parameter : info.parameters) {
+    for (size_t i = 0; i < free.size(); ++i) {
+      if (free[i].name != info.id + "." + parameter.name) continue;
+      found.parameters.push_back(
+          {parameter.name, free[i].value, intervals[i].low, intervals[i].high, parameter.unit});
+    }
+  }
+  return found;
+}
+
+ChangedParameter DescribeParameter(const FreeParameter& fitted, const Interval& interval,
+                                   const ModelDescription& given) {
+  ChangedParameter changed;
+  changed.fitted = {fitted.name, fitted.value, interval.low, interval.high, fitted.unit};
+  changed.model = given.parameters.*BaseParameters()[fitted.unknown.index].member;
+  if (changed.model != 0) {
+    const double ratio = fitted.value / changed.model;
+    if (ratio > kImplausible || ratio < 1 / kImplausible) {
+      changed.implausible = true;
+      changed.why = "moves by a factor of " + ShortNumber(ratio, 3);
+    }
+  }
+  return changed;
+}
+
+std::string Sentence(const Diagnosis& d) {
+  const std::string gap = " (held-out gap " + ShortNumber(d.held_out.before, 3) + " to " +
+                          ShortNumber(d.held_out.after, 3) + " noise units).";
+  std::vector<std::string> names;
+  for (const FoundEffect& effect : d.effects) {
+    std::string name = effect.says + " [" + effect.id + "]";
+    if (!effect.tied_with.empty()) name += ", or " + Enumerated(effect.tied_with);
+    names.push_back(name);
+  }
+  std::vector<std::string> parameters;
+  for (const ChangedParameter& changed : d.parameters) {
+    parameters.push_back(changed.fitted.name + " = " + ShortNumber(changed.fitted.value) + " instead of " +
+                         ShortNumber(changed.model));
+  }
+  switch (d.verdict) {
+    case Verdict::kNothingMissing:
+      return "Nothing is missing: the model as given explains the data to " +
+             ShortNumber(d.held_out.before, 3) + " noise units.";
+    case Verdict::kParameters:
+      return "The equations suffice with other values: " + Enumerated(parameters) + gap;
+    case Verdict::kNamed:
+      return "Missing: " + Enumerated(names) +
+             (parameters.empty() ? "" : "; with " + Enumerated(parameters)) + gap;
+    case Verdict::kTied:
+      return "Missing, but these data cannot tell which: " + Enumerated(names) +
+             (parameters.empty() ? "" : "; with " + Enumerated(parameters)) + gap;
+    case Verdict::kUnexplained: {
+      const double before = d.held_out.before * d.held_out.before - 1;
+      const double left = (d.held_out.after * d.held_out.after - 1) / before;
+      return "Something is missing that no known effect explains" +
+             (names.empty() ? std::string()
+                            : "; the nearest is " + Enumerated(names) + ", which leaves " +
+                                  ShortNumber(100 * left, 2) + " % of the squared gap") +
+             gap;
+    }
+  }
+  return "";
+}
+
+std::string WhyNext(const std::vector<FoundEffect>& effects) {
+  for (const FoundEffect& effect : effects) {
+    if (!effect.tied_with.empty()) return "tells " + effect.id + " from " + Enumerated(effect.tied_with);
+  }
+  return "";
+}
+
+}  // namespace
+
+Diagnosis Conclude(const SearchContext& context, const SearchResult& search, const Explanation& refit) {
+  const TellProgress& tell = context.tell;
+  const Explanation& given = search.given;
+  const Explanation& best = search.best;
+  Diagnosis d;
+  d.fit = {std::sqrt(given.squared_gap()), std::sqrt(refit.squared_gap()), std::sqrt(best.squared_gap())};
+  d.held_out = {std::sqrt(given.held_out_gap()), std::sqrt(refit.held_out_gap()),
+                std::sqrt(best.held_out_gap())};
+
+  if (tell) tell({"intervals", 0.95});
+  const std::vector<FreeParameter> free = best.fitted.hypothesis.Free();
+  const std::vector<Interval> intervals =
+      free.empty() ? std::vector<Interval>{} : Intervals(best.fitted, context.runs, context.jobs);
+  bool tied = false;
+  std::vector<ModelDescription> rivals = {best.fitted.hypothesis.model};
+  for (const Change& change : best.changes()) {
+    if (change.effect.empty()) continue;
+    FoundEffect found = Describe(change, free, intervals);
+    for (const Rival& rival : Rivals(search.tried, best, change)) {
+      found.tied_with.push_back(rival.change.Label());
+      rivals.push_back(rival.explanation->fitted.hypothesis.model);
+    }
+    tied |= !found.tied_with.empty();
+    d.effects.push_back(std::move(found));
+  }
+  for (size_t i = 0; i < free.size(); ++i) {
+    if (free[i].unknown.kind == Unknown::Kind::kBase) {
+      d.parameters.push_back(DescribeParameter(free[i], intervals[i], context.given));
+    }
+  }
+
+  if (!Closed(given.held_out_gap(), best.held_out_gap(), ExactSensors(context.runs))) {
+    d.verdict = Verdict::kUnexplained;
+  } else if (best.changes().empty() && d.parameters.empty()) {
+    d.verdict = Verdict::kNothingMissing;
+  } else if (d.effects.empty()) {
+    d.verdict = Verdict::kParameters;
+  } else {
+    d.verdict = tied ? Verdict::kTied : Verdict::kNamed;
+  }
+  d.model = best.fitted.hypothesis.model;
+  d.signals = SignalGaps(context, given, refit, best);
+  d.candidates = Ranking(context, search);
+  d.curves = CurvesOf(context, given, best);
+  if (d.verdict != Verdict::kNothingMissing) {
+    if (tell) tell({"where the gap is", 0.97});
+    const ModelDescription& disagrees =
+        d.verdict == Verdict::kUnexplained ? best.fitted.hypothesis.model : context.given;
+    Localisation located = Locate(disagrees, context.runs);
+    d.location = std::move(located.location);
+    d.missing = std::move(located.missing);
+  }
+  if (d.verdict == Verdict::kTied) {
+    if (tell) tell({"the next experiment", 0.98});
+    d.next = DesignNextExperiment(rivals, context.runs, WhyNext(d.effects));
+  }
+  for (const RunData* run : context.runs) {
+    d.runs.push_back(run->name);
+    d.samples += run->samples();
+  }
+  for (const RunData* run : context.held_out) d.held_out_runs.push_back(run->name);
+  d.sentence = Sentence(d);
+  return d;
+}
+
+}  // namespace hydro

@@ -1,0 +1,12 @@
+// What a search's results mean: the verdict, ties, intervals, reasons.
+#pragma once
+
+#include "diagnose/data/diagnosis.h"
+#include "diagnose/search/search.h"
+
+namespace hydro {
+
+// `refit`: the given model with all identifiable base parameters fitted.
+Diagnosis Conclude(const SearchContext& context, const SearchResult& search, const Explanation& refit);
+
+}  // namespace hydro

@@ -1,0 +1,22 @@
+// The experiment that would tell apart models that explain the runs equally well.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "diagnose/data/diagnosis.h"
+#include "diagnose/data/run_data.h"
+#include "model/description.h"
+
+namespace hydro {
+
+// Of voltages over 3 s (squares, sines slow enough to creep through 0, chirps, staircases; each about 0 and
+// about an offset) and of ways to hold the shaft, the one under which the rivals' predictions differ most, in
+// noise units, after base parameters have taken up what they can of the difference. Nothing leaves what the
+// runs have seen of voltage, pressure, speed and arm angle. `rivals`: two or more, each as fitted. `config`
+// is a stack whose model is "model.toml" beside it; "" when no experiment tells them apart or none can be
+// simulated. `why` is passed on.
+NextExperiment DesignNextExperiment(const std::vector<ModelDescription>& rivals,
+                                    const std::vector<const RunData*>& runs, const std::string& why);
+
+}  // namespace hydro

@@ -1,0 +1,14 @@
+// Every candidate with what became of it.
+#pragma once
+
+#include <vector>
+
+#include "diagnose/data/diagnosis.h"
+#include "diagnose/search/search.h"
+
+namespace hydro {
+
+// Taken ones first, then by held-out gap, fit and score.
+std::vector<Candidate> Ranking(const SearchContext& context, const SearchResult& search);
+
+}  // namespace hydro

@@ -1,0 +1,95 @@
+// What Figure 10 compares: steps of the arm by the linear design model and by the full one, the full one with
+// causes of their difference switched off, and the retuned loop against what the motor could do.
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "experiments/maths/bang_bang.h"
+#include "experiments/maths/position_design.h"
+#include "experiments/maths/sampled_position_loop.h"
+#include "experiments/runs/step_trial.h"
+#include "experiments/studies/experiment.h"
+#include "runs/step_response.h"
+
+namespace hydro {
+
+inline constexpr double kFigure10Step = 0.1;        // rad; the paper prints none
+inline constexpr double kFigure10Interval = 0.001;  // s; the paper prints none
+
+// The arm in one run of the stack, from the step on.
+struct ArmRun {
+  std::vector<double> time, angle, torque, speed;  // s, rad, in-lbf, rad/s of the motor
+  StepResponse response;
+  double saturated_time = 0;  // s
+  double highest_speed = 0;   // rad/s
+};
+
+// The figure with one form of the derivative.
+struct FormRuns {
+  Response linear;
+  StepResponse linear_step;
+  ArmRun nonlinear;
+};
+
+// The full model with some of what the linear one lacks switched off.
+struct Cause {
+  const char* key;
+  const char* says;
+  bool friction, saturation, speed_coupling, arm_flow;  // what is left on
+};
+enum CauseIndex {
+  kAllOn,
+  kNoFriction,
+  kNoSaturation,
+  kNoFrictionNoSaturation,
+  kFeedforward,
+  kFeedforwardNoFrictionNoSaturation,
+  kNoArmFlow,
+  kCauseCount
+};
+extern const std::array<Cause, kCauseCount> kCauses;
+
+struct CauseRuns {
+  std::array<ArmRun, kCauseCount> runs;
+  StepResponse exact;           // of the exact linearisation
+  StepResponse exact_assisted;  // the same with arm-speed feed-forward
+  double friction_error = 0;    // rad, within which the pump's friction holds the arm
+};
+
+// A step of the retuned loop.
+struct RetunedStep {
+  std::string says;
+  double step;  // rad
+  bool gravity, noise;
+  ArmRun run;
+  double shortest;  // s, to settle, by the motor's limits
+};
+
+struct RetunedRuns {
+  RigidDrive drive;
+  FastestMove fastest;
+  double shortest = 0;           // s, to settle
+  StepTrial shipped;             // config/retuned.toml
+  bool shipped_is_best = false;  // the search, repeated, finds its gains
+  ArmRun run;
+  double ratio = 0;  // settling time to the shortest
+  std::vector<RetunedStep> steps;
+  double worst_ratio = 0;     // of the steps without gravity
+  double expected_error = 0;  // rad, that holds the arm against gravity after the last step: closed form
+};
+
+struct Figure10Runs {
+  ModelDescription model;
+  DesignModel design;
+  double c1 = 0, c2 = 0;          // psi/rad, psi s/rad
+  std::array<FormRuns, 2> forms;  // derivative on the error, as printed; on the measurement
+  double form_difference = 0;     // rad, at most, between the two in the full model
+  CauseRuns causes;               // derivative on the measurement
+  RetunedRuns retuned;
+};
+
+Figure10Runs RunFigure10(const ExperimentOptions& options);
+
+}  // namespace hydro

@@ -1,0 +1,296 @@
+// Figure 1: the apparatus, its schematic and what its numbers amount to.
+#include <spdlog/fmt/fmt.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "experiments/figures/catalogue.h"
+#include "experiments/figures/fig1_drawing.h"
+#include "experiments/runs/shipped_models.h"
+#include "model/actuator.h"
+
+namespace hydro {
+namespace {
+
+using nlohmann::ordered_json;
+
+// What the paper prints.
+constexpr double kPrintedRatio = 484.7;
+constexpr double kPressureLimit = 2000;             // psi, seals of the actuator
+constexpr double kMotorRpm = 6000;                  // the motor of the experiments
+constexpr double kFastMotorRpm = 18000;             // the other one
+constexpr double kArmLength = 24;                   // in; ASSUMPTION of table1_gravity.toml
+constexpr double kGravity = 9.80665 / 0.0254;       // in/s^2
+constexpr double kRpm = std::numbers::pi / 30;      // rad/s
+constexpr double kNewtonMetres = 0.112984829;       // in one in-lbf
+constexpr double kKilowatts = kNewtonMetres / 1e3;  // in one in-lbf/s
+
+struct FreeRun {
+  Table table;
+  double speed_ratio = 0;  // motor angle per arm angle, over the whole run
+  double arm_speed = 0;    // rad/s, at the motor's top speed
+};
+
+// The arm, free and without gravity, from one end of its travel: full torque until the motor has reached
+// `top_speed`, then as much as holds it there.
+FreeRun RunFree(const ModelDescription& model, double top_speed) {
+  const Parameters& p = model.parameters;
+  constexpr double kTick = 1e-3;
+  constexpr int kHold = 250;      // ticks at top speed
+  constexpr int kAveraged = 200;  // of them: hydraulic oscillations are faster
+  Actuator actuator(model, {.shaft = Shaft::kFree, .arm_angle = -0.75});
+  FreeRun run;
+  const char* names[] = {"time_s",        "voltage_V",       "motor_angle_rad", "motor_speed_rad_s",
+                         "arm_angle_rad", "arm_speed_rad_s", "p1_psi",          "p2_psi"};
+  for (const char* name : names) run.table.columns.push_back({name, {}});
+  const Measurement start = actuator.Measure();
+  double averaged_from = 0;
+  for (int tick = 0, held = 0; held <= kHold && tick < 5000; ++tick) {
+    const Measurement now = actuator.Measure();
+    if (now.motor_speed >= top_speed || held > 0) ++held;
+    const double voltage = (held > 0 ? p.b * top_speed + p.T_s : p.T_pmax) / p.k_1;
+    const double row[] = {actuator.time(), voltage,       now.motor_angle, now.motor_speed,
+                          now.arm_angle,   now.arm_speed, now.p1,          now.p2};
+    for (size_t i = 0; i < std::size(row); ++i) run.table.columns[i].values.push_back(row[i]);
+    if (held == kHold - kAveraged) averaged_from = now.arm_angle;
+    if (held == kHold) run.arm_speed = (now.arm_angle - averaged_from) / (kAveraged * kTick);
+    run.speed_ratio = (now.motor_angle - start.motor_angle) / (now.arm_angle - start.arm_angle);
+    actuator.Advance(voltage, (tick + 1) * kTick);
+  }
+  return run;
+}
+
+// The arm's torque against a clamp, in-lbf, when a motor torque has been held until nothing moves but what
+// leaks.
+double HeldTorque(const ModelDescription& model, double motor_torque) {
+  Actuator actuator(model, {.shaft = Shaft::kClamped});
+  for (int i = 1; i <= 40; ++i) actuator.Advance(motor_torque / model.parameters.k_1, i);
+  const Measurement m = actuator.Measure();
+  return model.parameters.k_2 * (m.p2 - m.p1);
+}
+
+// The speed, rad/s, at which full voltage drives the motor with the bypass open.
+double UnlimitedSpeed(const ModelDescription& model) {
+  const Parameters& p = model.parameters;
+  Actuator actuator(model, {.shaft = Shaft::kClamped, .bypass = true});
+  for (int i = 1; i <= 60; ++i) actuator.Advance(p.T_pmax / p.k_1, i * 0.5);
+  return actuator.Measure().motor_speed;
+}
+
+std::string InSi(double torque) { return fmt::format("{:.0f} N m", torque * kNewtonMetres); }
+
+// The arm's torque at each of its speeds up to `top_speed` of the motor, rad/s, when `viscous` and `coulomb`
+// friction take their share of the motor's.
+Curve Envelope(const std::string& label, const Parameters& p, double top_speed, double viscous,
+               double coulomb) {
+  Curve curve;
+  curve.label = label;
+  for (const double speed : {0.0, top_speed}) {
+    curve.x.push_back(speed * p.D / p.c / kRpm);
+    curve.y.push_back((p.T_pmax - coulomb - viscous * speed) * p.k_2 / p.D);
+  }
+  curve.x.push_back(curve.x.back());
+  curve.y.push_back(0);
+  return curve;
+}
+
+Figure Limits(const Parameters& p) {
+  Panel panel;
+  const double top_speed = kMotorRpm * kRpm;
+  panel.x = {"arm speed α', rpm", false, 0, 15};
+  panel.y = {"arm torque, in-lbf", false, 0, 22000};
+  const double printed_torque = p.T_pmax * kPrintedRatio;
+  const double printed_speed = kMotorRpm / kPrintedRatio;
+  const Curve printed{fmt::format("as printed, ratio {:g}", kPrintedRatio),
+                      {0, printed_speed, printed_speed},
+                      {printed_torque, printed_torque, 0},
+                      Stroke::kDashed,
+                      1,
+                      {},
+                      {}};
+  panel.curves = {Envelope("Table 1, with friction", p, top_speed, p.b, p.T_s), printed,
+                  Envelope("Table 1, without friction", p, top_speed, 0, 0)};
+  panel.rules = {{fmt::format("Δp = {:.0f} psi, the limit of the seals", kPressureLimit), false,
+                  kPressureLimit * p.k_2}};
+  return {fmt::format(
+              "What the motor's limits, {:g} in-lbf and {:g} rpm, leave for the arm: the torque k_2 (T_pmax "
+              "- T_s "
+              "- b θ')/D up to the speed {:g} rpm D/c, beside the printed ratio; and what the seals bear.",
+              p.T_pmax, kMotorRpm, kMotorRpm),
+          {panel},
+          ""};
+}
+
+}  // namespace
+
+ExperimentResult RunFig1(const ExperimentOptions& options) {
+  const ModelDescription model = ShippedModel("table1");
+  const Parameters& p = model.parameters;
+  const ModelDescription fast_model = ShippedModel("motor_18000rpm");
+  const Parameters& fast = fast_model.parameters;
+  const double gravity_torque = ShippedModel("table1_gravity").parameters.mgl;
+  const double top_speed = kMotorRpm * kRpm;
+
+  FreeRun free = RunFree(model, top_speed);
+  const FreeRun fast_run = RunFree(fast_model, kFastMotorRpm * kRpm);
+  options.progress(0.3);
+  // Coulomb friction is the same in both.
+  const double low_torque = 8;
+  const double high_torque = 16;
+  const double torque_ratio =
+      (HeldTorque(model, high_torque) - HeldTorque(model, low_torque)) / (high_torque - low_torque);
+  options.progress(0.8);
+  const double unlimited = UnlimitedSpeed(model);
+
+  const double torque_ratio_lossless = p.k_2 / p.D;
+  // At rest but for leakage, the pump turns at (c_I + c_E) dp / D, and viscous friction takes its share.
+  const double torque_ratio_leaking = p.k_2 / (p.D + p.b * (p.c_I + p.c_E) / p.D);
+  const double displacement_ratio = 1.83 * 1.83 * 2.20 / 2 / 0.00796;  // Table 1's r, d and D
+  const double needed_k2 = kPrintedRatio * p.D;
+  const double peak = p.T_pmax * torque_ratio_lossless;
+  const double peak_with_friction = (p.T_pmax - p.T_s) * torque_ratio_lossless;
+  const double at_limit = p.k_2 * kPressureLimit;
+  const double at_limit_gauge = p.k_2 * (kPressureLimit - p.p_3);
+  const double reflected = p.J * std::pow(p.c / p.D, 2);
+  const double reflected_fast = fast.J * std::pow(fast.c / fast.D, 2);
+  const double unlimited_expected = (p.T_pmax - p.T_s) / p.b;
+  const double arm_mass = 3 * p.J_a / (kArmLength * kArmLength);
+  const double arm_mgl = arm_mass * kGravity * kArmLength / 2;
+
+  ExperimentResult result;
+  result.conditions = fmt::format(
+      "Table 1. Speeds: the free arm swings through its travel, driven up to {:.0f} rpm of the motor. "
+      "Torques: the "
+      "clamped arm, motor torques of {:g} and {:g} in-lbf held for 40 s. The 18000 rpm motor is a model file "
+      "of its "
+      "own (config/models/motor_18000rpm.toml), an assumption where the paper is silent.",
+      kMotorRpm, low_torque, high_torque);
+  result.paper_says =
+      "A 6000 rpm motor with a peak torque of 40 in-lb is geared down hydraulically with a ratio of 484.7:1, "
+      "for a "
+      "theoretical peak torque of 19388 in-lb and a maximum speed of 12.4 rpm. The seals of the actuator "
+      "limit the "
+      "pressure to 2000 psi and the torque to about 7300 in-lb. An 18000 rpm motor worked excellent, too, "
+      "but needed "
+      "large cooling fins.";
+  result.comparisons = {
+      {"transmission ratio of speeds, θ'/α'", "", "484.7", displacement_ratio, free.speed_ratio,
+       "independent: r^2 d/(2 D) of Table 1; here: the angles turned, free arm"},
+      {"transmission ratio of torques, k_2/D", "", "484.7", torque_ratio_lossless, torque_ratio,
+       fmt::format("here: clamped, at rest but for leakage, which with viscous friction takes {:.2f} %",
+                   100 * (1 - torque_ratio / torque_ratio_lossless))},
+      {"k_2 that a ratio of 484.7 needs", "in-lbf/psi", "3.68", needed_k2, needed_k2,
+       "k_2 = 484.7 D; the paper prints 3.68, \"from the transmission ratio\""},
+      {"theoretical peak torque", "in-lbf", "19388", p.T_pmax * kPrintedRatio, peak,
+       fmt::format("independent: 40 in-lbf times 484.7; here: T_pmax k_2/D, {}", InSi(peak))},
+      {"peak torque, friction T_s taken off", "in-lbf", "", kAutomatic, peak_with_friction,
+       fmt::format("{}; it needs dp = {:.0f} psi", InSi(peak_with_friction), (p.T_pmax - p.T_s) / p.D)},
+      {"torque at dp = 2000 psi", "in-lbf", "about 7300", kAutomatic, at_limit,
+       fmt::format("k_2 2000 psi, {}; \"600 ft-lb\" is 7200 in-lb", InSi(at_limit))},
+      {"torque at p_2 = 2000 psi, p_1 = p_3", "in-lbf", "about 7300", kAutomatic, at_limit_gauge,
+       fmt::format("the low side keeps the accumulator's {:g} psi; {}", p.p_3, InSi(at_limit_gauge))},
+      {"motor torque for dp = 2000 psi", "in-lbf", "", kAutomatic, p.D * kPressureLimit + p.T_s,
+       "D 2000 psi + T_s: half of what the motor can"},
+      {"maximum arm speed", "rpm", "12.4", kMotorRpm / kPrintedRatio, free.arm_speed / kRpm,
+       fmt::format("independent: 6000 rpm/484.7; here: free arm at 6000 rpm of the motor, {:.3f} rad/s",
+                   free.arm_speed)},
+      {"motor speed at full voltage, no load", "rpm", "6000", unlimited_expected / kRpm, unlimited / kRpm,
+       "eqs. (1) to (15) have no limit of speed: friction alone balances the torque, (T_pmax - T_s)/b"},
+      {"voltage that holds 6000 rpm, no load", "V", "", kAutomatic, (p.b * top_speed + p.T_s) / p.k_1,
+       "(b θ' + T_s)/k_1; the motor's own limit is up to whoever commands it"},
+      {"motor and pump inertia seen by the arm", "lbf-in-s^2", "", kAutomatic, reflected,
+       fmt::format("J (c/D)^2, {:.0f} times J_a = {:g}", reflected / p.J_a, p.J_a)},
+      {"m g l of a uniform slender arm", "in-lbf", "", arm_mgl, gravity_torque,
+       fmt::format("assumed: J_a = m L^2/3 with L = {:g} in; here: table1_gravity.toml. It holds with dp = "
+                   "{:.1f} psi",
+                   kArmLength, gravity_torque / p.k_2)},
+      {"18000 rpm motor: transmission ratio", "", "", 3 * torque_ratio_lossless, fast.k_2 / fast.D,
+       "assumed: the same power, torque and speed at the arm, so a pump of D/3"},
+      {"18000 rpm motor: peak torque at the arm", "in-lbf", "", peak, fast.T_pmax * fast.k_2 / fast.D,
+       "independent: the 6000 rpm motor's"},
+      {"18000 rpm motor: maximum arm speed", "rpm", "", kMotorRpm * p.D / p.c, fast_run.arm_speed / kRpm,
+       "independent: 6000 rpm D/c of Table 1; here: its free arm"},
+      {"18000 rpm motor: inertia seen by the arm", "lbf-in-s^2", "", reflected * std::pow(3.0, 2 - 5.0 / 3),
+       reflected_fast,
+       "independent: J goes with T_pmax^{5/3} for motors of one shape, and with the ratio squared"},
+      {"18000 rpm motor: time to full speed", "s", "", kAutomatic,
+       fast.J * kFastMotorRpm * kRpm / fast.T_pmax,
+       fmt::format("J θ'/T_pmax without load and friction; the 6000 rpm motor: {:.2f} s",
+                   p.J * top_speed / p.T_pmax)},
+  };
+  result.explanation = fmt::format(
+      "The two ratios that Table 1 gives, {:.1f} by displacements and {:.1f} by torques, agree with each "
+      "other "
+      "within {:.1f} %, as energy demands, but not with the printed one: 484.7 is {:.1f} % above. With Table "
+      "1 the "
+      "peak torque is {:.0f} in-lbf instead of 19388 and the maximum speed {:.2f} rpm instead of 12.4. The "
+      "torque "
+      "that the seals allow fits \"about 7300\": {:.0f} in-lbf, or {:.0f} when the low side's {:g} psi "
+      "count.",
+      displacement_ratio, torque_ratio_lossless,
+      100 * std::abs(displacement_ratio / torque_ratio_lossless - 1),
+      100 * (kPrintedRatio / torque_ratio_lossless - 1), peak, free.arm_speed / kRpm, at_limit,
+      at_limit_gauge, p.p_3);
+  result.findings = {
+      {2,
+       "The text gives the transmission ratio as 484.7:1; Table 1 has k_2 = 3.68 \"from the transmission "
+       "ratio\" and D = 0.00796.",
+       fmt::format("k_2/D = {:.1f} (measured on the clamped model: {:.1f}), c/D = {:.1f} (measured on the "
+                   "free arm: {:.1f}); "
+                   "484.7 would need k_2 = {:.3f}.",
+                   torque_ratio_lossless, torque_ratio, p.c / p.D, free.speed_ratio, needed_k2),
+       "k_2 and D stay as in Table 1; both ratios are stated."},
+      {6, "The mass m and length l of the arm are not printed, only J_a.",
+       fmt::format("m g l is free: 0 in table1.toml, {:g} in-lbf in table1_gravity.toml, that of a uniform "
+                   "slender arm of {:g} in "
+                   "(m = 3 J_a/L^2 = {:.4f} lbf-s^2/in, m g L/2 = {:.1f} in-lbf). Holding it takes {:.1f} "
+                   "psi, {:.1f} % of "
+                   "the seals' limit.",
+                   gravity_torque, kArmLength, arm_mass, arm_mgl, gravity_torque / p.k_2,
+                   100 * gravity_torque / p.k_2 / kPressureLimit),
+       "Two model files, both marked as assumptions; the figures use 0 unless they say otherwise."}};
+
+  const ordered_json numbers = {{"printed_ratio", kPrintedRatio},
+                                {"torque_ratio", torque_ratio_lossless},
+                                {"torque_ratio_measured", torque_ratio},
+                                {"torque_ratio_with_leakage", torque_ratio_leaking},
+                                {"displacement_ratio", p.c / p.D},
+                                {"displacement_ratio_measured", free.speed_ratio},
+                                {"k_2_for_printed_ratio_in_lbf_per_psi", needed_k2},
+                                {"peak_torque_printed_in_lbf", p.T_pmax * kPrintedRatio},
+                                {"peak_torque_in_lbf", peak},
+                                {"peak_torque_N_m", peak * kNewtonMetres},
+                                {"peak_torque_less_friction_in_lbf", peak_with_friction},
+                                {"torque_at_2000_psi_in_lbf", at_limit},
+                                {"torque_at_2000_psi_N_m", at_limit * kNewtonMetres},
+                                {"torque_at_2000_psi_above_accumulator_in_lbf", at_limit_gauge},
+                                {"maximum_speed_printed_rpm", kMotorRpm / kPrintedRatio},
+                                {"maximum_speed_rpm", free.arm_speed / kRpm},
+                                {"maximum_speed_rad_s", free.arm_speed},
+                                {"unlimited_motor_speed_rpm", unlimited / kRpm},
+                                {"reflected_inertia_lbf_in_s2", reflected},
+                                {"gravity_torque_assumed_in_lbf", gravity_torque},
+                                {"motor_18000rpm",
+                                 {{"assumption", true},
+                                  {"peak_torque_in_lbf", fast.T_pmax * fast.k_2 / fast.D},
+                                  {"maximum_speed_rpm", fast_run.arm_speed / kRpm},
+                                  {"ratio", fast.k_2 / fast.D},
+                                  {"power_kW", fast.T_pmax * kFastMotorRpm * kRpm * kKilowatts},
+                                  {"reflected_inertia_lbf_in_s2", reflected_fast}}}};
+  result.numbers = numbers.dump();
+  result.table = std::move(free.table);
+  result.pictures = {{"",
+                      {"The apparatus, after Figure 1 and eqs. (1) to (15), with the numbers of Table 1; "
+                       "leakages in in^3/(s psi). "
+                       "Arrows show the directions in which θ', q_1, q_2 and α count as positive. Dashed "
+                       "pipes are leakages.",
+                       {},
+                       ApparatusDrawing(p)}},
+                     {"-limits", Limits(p)}};
+  return result;
+}
+
+}  // namespace hydro

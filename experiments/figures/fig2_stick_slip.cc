@@ -1,0 +1,348 @@
+// Figure 2: the clamped actuator under a low torque, with Table 1 alone and with static friction above
+// kinetic.
+#include <spdlog/fmt/fmt.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "experiments/figures/catalogue.h"
+#include "experiments/runs/open_loop_run.h"
+#include "experiments/runs/shipped_models.h"
+#include "experiments/studies/json_text.h"
+
+namespace hydro {
+namespace {
+
+using nlohmann::json;
+
+constexpr double kTorque = 6;         // in-lbf: "low"
+constexpr double kDuration = 20;      // s; cycles are judged in its second half
+constexpr double kPictured = 8;       // s
+constexpr double kFasterTorque = 10;  // in-lbf, of Figure 3, which does not stick and slip
+// Static friction that acts at rest only: its excess is gone at speeds at which the pump has hardly moved.
+constexpr double kAtRestOnly = 1e-4;  // rad/s
+
+ModelDescription WithStaticAtRest(double static_torque) {
+  ModelDescription model = ShippedModel("table1");
+  model.effects.push_back(
+      {"pump.stribeck",
+       {{"static_excess", static_torque / model.parameters.T_s - 1}, {"speed", kAtRestOnly}},
+       {}});
+  return model;
+}
+
+struct Scanned {
+  double torque = 0;
+  double static_torque = 0;
+  size_t sticks = 0;
+  StickSlipCycles cycles;
+
+  // (T_static - T_s)/(T_p - T_s): the equations are the same for all torques when dp is counted in
+  // (T_p - T_s)/D.
+  double ExcessRatio(double kinetic) const { return (static_torque - kinetic) / (torque - kinetic); }
+};
+
+Scanned Scan(const ModelDescription& model, double torque, double static_torque, double duration) {
+  const OpenLoopRun run = RunOpenLoop(model, torque, duration);
+  return {torque, static_torque, run.sticks(), FindCycles(run)};
+}
+
+// The least static friction (in-lbf) with sustained cycles at kTorque, bracketed.
+struct Threshold {
+  double none = 0;    // does not cycle
+  double cycles = 0;  // does
+};
+Threshold FindThreshold() {
+  Threshold threshold{4.0, 4.4};
+  for (int i = 0; i < 7; ++i) {
+    const double middle = (threshold.none + threshold.cycles) / 2;
+    const bool sustained = FindCycles(RunOpenLoop(WithStaticAtRest(middle), kTorque, kDuration)).sustained;
+    (sustained ? threshold.cycles : threshold.none) = middle;
+  }
+  return threshold;
+}
+
+json Describe(const Scanned& scanned, double kinetic) {
+  json out = {{"torque_in_lbf", scanned.torque},
+              {"static_torque_in_lbf", scanned.static_torque},
+              {"excess_ratio", scanned.ExcessRatio(kinetic)},
+              {"sticks", scanned.sticks},
+              {"sustained", scanned.cycles.sustained}};
+  if (scanned.cycles.sustained) {
+    out["period_s"] = scanned.cycles.period;
+    out["high_psi"] = scanned.cycles.high;
+    out["low_psi"] = scanned.cycles.low;
+    out["swing_psi"] = scanned.cycles.high - scanned.cycles.low;
+    out["stick_dp_psi"] = scanned.cycles.stick_dp;
+    out["slip_dp_psi"] = scanned.cycles.slip_dp;
+  }
+  return out;
+}
+
+// The part of a run that is pictured.
+Curve DpCurve(const OpenLoopRun& run, const std::string& label, int colour) {
+  Curve curve{.label = label, .x = {}, .y = {}, .colour = colour, .y_low = {}, .y_high = {}};
+  for (size_t i = 0; i < run.time.size() && run.time[i] <= kPictured; ++i) {
+    curve.x.push_back(run.time[i]);
+    curve.y.push_back(run.dp[i]);
+  }
+  return curve;
+}
+
+std::vector<Note> ChangeNotes(const OpenLoopRun& run, size_t most) {
+  std::vector<Note> notes;
+  for (const PumpChange& change : run.changes) {
+    if (notes.size() == most || change.time > kPictured) break;
+    notes.push_back({fmt::format("{} at {:.3f} s, {:.0f} psi", change.sticks ? "sticks" : "slips",
+                                 change.time, change.dp),
+                     change.time, change.dp});
+  }
+  return notes;
+}
+
+Panel DpPanel(const std::string& title, std::vector<Curve> curves, std::vector<Note> notes) {
+  return {.title = title,
+          .x = {.label = "time, s", .min = 0, .max = kPictured},
+          .y = {.label = "p_2 - p_1, psi", .min = 0},
+          .curves = std::move(curves),
+          .notes = std::move(notes),
+          .rules = {}};
+}
+
+Picture ScanPicture(const std::vector<Scanned>& scans, double kinetic, double threshold_ratio) {
+  Curve period{.label = "", .x = {}, .y = {}, .stroke = Stroke::kLinePoints, .y_low = {}, .y_high = {}};
+  Curve high{.label = "highest", .x = {}, .y = {}, .stroke = Stroke::kLinePoints, .y_low = {}, .y_high = {}};
+  Curve low{.label = "lowest", .x = {}, .y = {}, .stroke = Stroke::kLinePoints, .y_low = {}, .y_high = {}};
+  for (const Scanned& scanned : scans) {
+    if (scanned.torque != kTorque || !scanned.cycles.sustained) continue;
+    for (Curve* curve : {&period, &high, &low}) curve->x.push_back(scanned.ExcessRatio(kinetic));
+    period.y.push_back(scanned.cycles.period);
+    high.y.push_back(scanned.cycles.high);
+    low.y.push_back(scanned.cycles.low);
+  }
+  const Axis ratio{.label = "(T_static - T_s)/(T_p - T_s)", .min = 0, .max = 0.9};
+  const Rule threshold{fmt::format("no cycles below {:.3f}", threshold_ratio), true, threshold_ratio};
+  Panel periods{.title = "Period of the cycles",
+                .x = ratio,
+                .y = {.label = "period, s", .min = 0},
+                .curves = {period},
+                .notes = {},
+                .rules = {threshold}};
+  Panel swings{.title = fmt::format("Extremes of p_2 - p_1 at T_p = {} in-lbf", kTorque),
+               .x = ratio,
+               .y = {.label = "p_2 - p_1, psi", .min = 0},
+               .curves = {high, low},
+               .notes = {},
+               .rules = {threshold}};
+  return {"-scan",
+          {.caption = fmt::format("Static friction above kinetic at rest only (gone at {} rad/s), Table 1 "
+                                  "otherwise, clamped at α = 0, T_p = {} in-lbf, second half of {} s.",
+                                  kAtRestOnly, kTorque, kDuration),
+           .panels = {periods, swings},
+           .drawing = ""}};
+}
+
+}  // namespace
+
+ExperimentResult RunFig2(const ExperimentOptions& options) {
+  const ModelDescription table1 = ShippedModel("table1");
+  const ModelDescription stribeck = ShippedModel("table1_stribeck");
+  const Parameters& p = table1.parameters;
+  const double excess = stribeck.effects.at(0).parameters.at("static_excess");
+  const double speed = stribeck.effects.at(0).parameters.at("speed");
+  const double static_torque = p.T_s * (1 + excess);
+
+  const OpenLoopRun plain = RunOpenLoop(table1, kTorque, kDuration);
+  const OpenLoopRun cycling = RunOpenLoop(stribeck, kTorque, kDuration);
+  const StickSlipCycles cycles = FindCycles(cycling);
+  options.progress(0.2);
+
+  // Table 1 at other torques: the same curve, scaled.
+  std::vector<Scanned> plain_scan;
+  std::vector<Curve> scaled;
+  for (const double torque : {4.1, 4.5, 5.0, 6.0, 8.0, 10.0}) {
+    const OpenLoopRun run = RunOpenLoop(table1, torque, kDuration / 2);
+    plain_scan.push_back({torque, p.T_s, run.sticks(), FindCycles(run)});
+    if (torque == 4.5 || torque == 6 || torque == 8 || torque == 10) {
+      scaled.push_back(DpCurve(run, fmt::format("T_p = {} in-lbf", torque), -1));
+    }
+  }
+  options.progress(0.4);
+
+  // How much static friction cycles need, and what it does.
+  const Threshold threshold = FindThreshold();
+  const double threshold_ratio = (threshold.cycles - p.T_s) / (kTorque - p.T_s);
+  options.progress(0.6);
+  std::vector<Scanned> at_rest;
+  for (const double at : {4.2, 4.22, 4.4, 4.8, 5.2, 5.6}) {
+    at_rest.push_back(Scan(WithStaticAtRest(at), kTorque, at, at > 5 ? 2 * kDuration : kDuration));
+  }
+  for (const double at : {4.4, 4.8}) {
+    at_rest.push_back(Scan(WithStaticAtRest(at), kFasterTorque, at, kDuration));
+  }
+  std::vector<Scanned> stribeck_scan;
+  for (const double torque : {5.0, 8.0, 10.0}) {
+    stribeck_scan.push_back(Scan(stribeck, torque, static_torque, kDuration));
+  }
+  options.progress(0.9);
+
+  // Where Table 1 alone ends: slipping steadily, side 1 at p_3 by its valve, q_2 = 0 in eq. (12), eq. (4).
+  const double creep_per_psi = (p.c_E + p.c_I) / p.D;
+  const double creep_dp = (kTorque - p.T_s) / (p.D + p.b * creep_per_psi);
+  // While the pump sticks, d(dp)/dt = -(beta/V_ms)(2 c_I + c_E) dp by eqs. (13), (14) with both valves
+  // closed.
+  const double leak_rate = p.beta / p.V_ms * (2 * p.c_I + p.c_E);
+  const double slip_dp = (kTorque - static_torque) / p.D;
+  const double largest_static = p.T_s + threshold_ratio * (kFasterTorque - p.T_s);
+
+  const PumpChange& stick = plain.changes.at(0);
+  const PumpChange& slip = plain.changes.at(1);
+
+  ExperimentResult result;
+  result.conditions = fmt::format(
+      "Clamped at α = 0, from rest at p_1 = p_2 = p_3 = {} psi, constant T_p = {} in-lbf for {} s, open "
+      "loop. Table 1 alone, and Table 1 with static friction {:.0f} % above kinetic which falls off over {} "
+      "rad/s (pump.stribeck, assumed: the paper measures neither). Sticks are counted by the model's own "
+      "changes of mode, located within {} us.",
+      p.p_3, kTorque, kDuration, 100 * excess, speed, kLocatedWithin * 1e6);
+  result.paper_says =
+      "At low voltages the pressure fluctuates erratically: after a peak friction holds the rotor until "
+      "leakage has let the pressure drop far enough for the torque to turn the pump once again. Figure 2 "
+      "simulates it; at higher torques it does not occur.";
+  result.explanation = fmt::format(
+      "Table 1 alone cannot do this at any torque. With equal static and kinetic friction its equations, "
+      "from "
+      "rest at p_3, contain the torque only as T_p - T_s: 4.1 in-lbf gives the curve of 10 in-lbf, scaled, "
+      "and "
+      "each sticks once (at {:.3f} s, here with dp = {:.1f} psi), waits while leakage lowers dp, slips at "
+      "(T_p - T_s)/D = {:.1f} psi at {:.3f} s, and creeps on for ever at the speed that makes up for the "
+      "leakage. Where the pump slips from a balance of torques there is nothing to throw it beyond. Static "
+      "friction above kinetic "
+      "throws it: with {:.1f} in-lbf at rest it sticks {} times in {} s, every {:.2f} s, dp between {:.0f} "
+      "and "
+      "{:.0f} psi, which is Figure 2's behaviour. It takes an excess of {:.3f} (T_p - T_s), so at a given "
+      "static friction the cycles end as the torque grows, as the paper says. To cycle at {} and not at {} "
+      "in-lbf, as Figures 2 and 3 do, friction at rest only must be between {:.2f} and {:.2f} in-lbf; the "
+      "{:.1f} "
+      "shipped as an assumption cycles at both.",
+      stick.time, stick.dp, slip.dp, slip.time, static_torque, cycling.sticks(), kDuration, cycles.period,
+      cycles.low, cycles.high, threshold_ratio, kTorque, kFasterTorque, threshold.cycles, largest_static,
+      static_torque);
+
+  result.comparisons = {
+      {"sticks, Table 1 alone", "", "sustained cycles", 1, static_cast<double>(plain.sticks()),
+       "the paper's equations do not cycle: one stick, then creep"},
+      {"dp when it slips again, Table 1 alone", "psi", "", (kTorque - p.T_s) / p.D, slip.dp,
+       "expected: (T_p - T_s)/D"},
+      {"how long that stick lasts, Table 1 alone", "s", "", std::log(stick.dp / slip.dp) / leak_rate,
+       slip.time - stick.time, "expected: dp leaks at (β/V_ms)(2 c_I + c_E)"},
+      {"dp at the end, Table 1 alone", "psi", "", creep_dp, plain.dp.back(),
+       "expected: steady creep, side 1 held at p_3"},
+      {"sticks with static above kinetic friction", "", "sustained cycles", kAutomatic,
+       static_cast<double>(cycling.sticks()), fmt::format("in {} s", kDuration)},
+      {"period of the cycles", "s", "", kAutomatic, cycles.period, "follows from the assumed friction"},
+      {"dp at each slip of the cycles", "psi", "", slip_dp, cycles.slip_dp, "expected: (T_p - T_static)/D"},
+      {"how long each stick of the cycles lasts", "s", "",
+       std::log(cycles.stick_dp / cycles.slip_dp) / leak_rate, cycles.stick_time, "expected: as above"},
+      {"static friction that cycles need at 6 in-lbf, at rest only", "in-lbf", "", kAutomatic,
+       threshold.cycles, fmt::format("{:.3f} still creeps", threshold.none)},
+  };
+
+  result.findings = {
+      {3,
+       "Figure 2 shows sustained stick-slip, simulated with eqs. (4), (13), (14) and Table 1, and says that "
+       "it "
+       "does not occur at higher torques.",
+       fmt::format(
+           "Table 1 alone sticks exactly once at each of 4.1, 4.5, 5, 6, 8 and 10 in-lbf, at the same "
+           "{:.4f} s, and then creeps (dp {:.1f} psi and {:.3f} rad/s after {} s at {} in-lbf). "
+           "With static friction at rest only, {:.3f} in-lbf still creeps and {:.3f} cycles at {} "
+           "in-lbf: an excess of {:.3f} (T_p - T_s). The shipped assumption ({:.1f} in-lbf, {} rad/s) "
+           "cycles every {:.2f} s between {:.0f} and {:.0f} psi.",
+           stick.time, plain.dp.back(), plain.motor_speed.back(), kDuration, kTorque, threshold.none,
+           threshold.cycles, kTorque, threshold_ratio, static_torque, speed, cycles.period, cycles.low,
+           cycles.high),
+       "Both are shown. Table 1 stays as printed; config/models/table1_stribeck.toml adds static friction "
+       "above kinetic, marked as an assumption."}};
+
+  json by_torque = json::array();
+  for (const Scanned& scanned : plain_scan) by_torque.push_back(Describe(scanned, p.T_s));
+  json rest = json::array();
+  for (const Scanned& scanned : at_rest) rest.push_back(Describe(scanned, p.T_s));
+  json stribeck_torques = json::array();
+  for (const Scanned& scanned : stribeck_scan) stribeck_torques.push_back(Describe(scanned, p.T_s));
+  result.numbers = JsonText(json{{"torque_in_lbf", kTorque},
+                                 {"duration_s", kDuration},
+                                 {"table1",
+                                  {{"sticks", plain.sticks()},
+                                   {"stick_time_s", stick.time},
+                                   {"stick_dp_psi", stick.dp},
+                                   {"slip_time_s", slip.time},
+                                   {"slip_dp_psi", slip.dp},
+                                   {"final_dp_psi", plain.dp.back()},
+                                   {"final_motor_speed_rad_s", plain.motor_speed.back()},
+                                   {"by_torque", by_torque}}},
+                                 {"stribeck",
+                                  {{"static_excess", excess},
+                                   {"speed_rad_s", speed},
+                                   {"static_torque_in_lbf", static_torque},
+                                   {"sticks", cycling.sticks()},
+                                   {"period_s", cycles.period},
+                                   {"swing_psi", cycles.high - cycles.low},
+                                   {"high_psi", cycles.high},
+                                   {"low_psi", cycles.low},
+                                   {"stick_dp_psi", cycles.stick_dp},
+                                   {"slip_dp_psi", cycles.slip_dp},
+                                   {"stick_duration_s", cycles.stick_time},
+                                   {"by_torque", stribeck_torques}}},
+                                 {"at_rest_only",
+                                  {{"speed_rad_s", kAtRestOnly},
+                                   {"largest_static_torque_without_cycles_in_lbf", threshold.none},
+                                   {"smallest_static_torque_with_cycles_in_lbf", threshold.cycles},
+                                   {"threshold_excess_ratio", threshold_ratio},
+                                   {"largest_static_torque_without_cycles_at_10_in_lbf", largest_static},
+                                   {"scan", rest}}}});
+
+  const size_t rows = static_cast<size_t>(std::lround(kPictured / 1e-3)) + 1;
+  const auto head = [&](const std::vector<double>& values) {
+    return std::vector<double>(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(rows));
+  };
+  result.table.columns = {{"time_s", head(plain.time)},
+                          {"table1_dp_psi", head(plain.dp)},
+                          {"table1_p1_psi", head(plain.p1)},
+                          {"table1_p2_psi", head(plain.p2)},
+                          {"table1_motor_speed_rad_s", head(plain.motor_speed)},
+                          {"stribeck_dp_psi", head(cycling.dp)},
+                          {"stribeck_p1_psi", head(cycling.p1)},
+                          {"stribeck_p2_psi", head(cycling.p2)},
+                          {"stribeck_motor_speed_rad_s", head(cycling.motor_speed)}};
+
+  Panel once =
+      DpPanel("Table 1 alone: one stick, then creep", {DpCurve(plain, "", 0)}, ChangeNotes(plain, 2));
+  Panel often =
+      DpPanel(fmt::format("Static friction {:.0f} % above kinetic: sustained stick-slip", 100 * excess),
+              {DpCurve(cycling, "", 0)}, {});
+  once.rules = {{"(T_p - T_s)/D", false, (kTorque - p.T_s) / p.D}};
+  often.rules = {{"(T_p - T_static)/D: slips", false, slip_dp}};
+  result.pictures.push_back(
+      {"",
+       {.caption = fmt::format("Open loop, clamped at α = 0, T_p = {} in-lbf from rest. Above: the "
+                               "paper's equations and Table 1. Below: with static friction {:.1f} in-lbf, {} "
+                               "in-lbf sliding, falling off over {} rad/s (assumed).",
+                               kTorque, static_torque, p.T_s, speed),
+        .panels = {once, often},
+        .drawing = ""}});
+  result.pictures.push_back(
+      {"-torques",
+       {.caption = "Table 1 alone, clamped at α = 0, constant torque from rest: whatever the torque, one "
+                   "stick at the same time. The curves are multiples of each other by T_p - T_s.",
+        .panels = {DpPanel("Table 1 alone at several torques", scaled, {})},
+        .drawing = ""}});
+  result.pictures.push_back(ScanPicture(at_rest, p.T_s, threshold_ratio));
+  options.progress(1);
+  return result;
+}
+
+}  // namespace hydro

@@ -1,0 +1,13 @@
+// The paper's Figure 8, drawn: the position loop's block diagram with its numbers.
+#pragma once
+
+#include <string>
+
+#include "experiments/maths/position_design.h"
+
+namespace hydro {
+
+// An <svg> element for Figure::drawing.
+std::string DrawPositionLoop(const DesignModel& model, double gain);
+
+}  // namespace hydro

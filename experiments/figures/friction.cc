@@ -1,0 +1,382 @@
+// "Determining the System Parameters": T_s from the voltage at which the motor breaks away, then T_s and b
+// from torque against steady speed with the two sides connected.
+#include <spdlog/fmt/fmt.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "experiments/figures/catalogue.h"
+#include "experiments/runs/shipped_models.h"
+#include "experiments/studies/json_text.h"
+#include "experiments/studies/pump_friction.h"
+#include "maths/linear_fit.h"
+#include "settings/model_file.h"
+
+namespace hydro {
+namespace {
+
+using nlohmann::json;
+
+// The sensors of the simulated rig: a 14-bit encoder, and a noisy tachometer behind a converter.
+constexpr double kEncoderStep = 2 * std::numbers::pi / 16384;  // rad
+constexpr double kSpeedNoise = 0.3;                            // rad/s
+constexpr double kSpeedStep = 0.1;                             // rad/s
+
+// Held voltages in each direction, V: up to 550 of the motor's 628 rad/s (6000 rpm). A hold is 15 time
+// constants J/b.
+constexpr double kVoltages[] = {1.25, 1.625, 2.0, 2.5, 3.0};
+constexpr double kHold = 30;  // s
+
+// The ramps: quickly to what surely does not move the motor, then slowly on.
+constexpr double kRampStart = 0.8;                                 // V
+constexpr double kRampEnd = 1.1;                                   // V
+constexpr double kRampTime = 15;                                   // s
+constexpr double kLeadTime = 0.5;                                  // s, to the ramp's start
+constexpr double kBackwardFrom = 20;                               // s
+constexpr double kRampRate = (kRampEnd - kRampStart) / kRampTime;  // V/s
+// A reading this far from rest has moved: five steps of the encoder, the last of which begins at its middle.
+constexpr double kMoved = 4.5 * kEncoderStep;  // rad
+
+std::string Config(double duration, const std::string& reference, int64_t seed) {
+  return fmt::format(
+      "[model]\nfile = \"table1.toml\"\nshaft = \"clamped\"\nbypass = true\n"
+      "[time]\nmode = \"lockstep\"\nduration_s = {}\n"
+      "[plant]\nrate_hz = 1000\n"
+      "[pressure]\nk_p = 0.0\nk_v = 0.0\n"
+      "[position]\nsample_interval_s = 0.001\n"
+      "[reference]\nsignal = \"voltage\"\n{}"
+      "[limits]\nmotor_speed_rad_s = 628.3\n"
+      "[noise]\nseed = {}\nmotor_speed_rad_s = {}\nmotor_speed_resolution_rad_s = {}\n"
+      "motor_angle_resolution_rad = {}\n",
+      duration, reference, seed, kSpeedNoise, kSpeedStep, kEncoderStep);
+}
+
+MeasuredRun Measure(const ExperimentOptions& options, const std::string& name, const std::string& config) {
+  const std::string& model = ShippedModelText("table1");
+  Table table = options.run_stack({name, config, model});
+  table.file = name;
+  return RunOfExport(table, config, model);
+}
+
+MeasuredRun MeasureHolds(const ExperimentOptions& options) {
+  std::string steps;
+  double time = 0;
+  for (const int sign : {1, -1}) {
+    for (const double voltage : kVoltages) {
+      steps += fmt::format("[{:.1f}, {}], ", time, sign * voltage);
+      time += kHold;
+    }
+  }
+  return Measure(options, "friction-holds",
+                 Config(time, fmt::format("kind = \"steps\"\nsteps = [{}]\n", steps), options.seed));
+}
+
+MeasuredRun MeasureRamps(const ExperimentOptions& options) {
+  std::string points = "[0.0, 0.0], ";
+  for (const double from : {0.0, kBackwardFrom}) {
+    const int sign = from > 0 ? -1 : 1;
+    if (from > 0) points += fmt::format("[{}, 0.0], [{}, 0.0], ", kLeadTime + kRampTime + 0.5, from);
+    points += fmt::format("[{}, {}], [{}, {}], ", from + kLeadTime, sign * kRampStart,
+                          from + kLeadTime + kRampTime, sign * kRampEnd);
+  }
+  return Measure(options, "friction-ramps",
+                 Config(kBackwardFrom + kLeadTime + kRampTime,
+                        fmt::format("kind = \"csv\"\npoints = [{}]\n", points), options.seed));
+}
+
+json Interval(const Estimate& estimate) { return {estimate.low, estimate.high}; }
+
+// "Contains" for a text.
+const char* Holds(const Estimate& estimate, double truth) {
+  return estimate.low <= truth && truth <= estimate.high ? "holds" : "misses";
+}
+
+// The most that acceleration may still take at any of the points, in-lbf, as far as the noise lets it be
+// seen.
+double AccelerationTorque(const PumpFriction& friction, const Parameters& p) {
+  double most = 0;
+  for (const FrictionPoint& point : friction.points) {
+    most = std::max(most, p.J * point.window.LargestAcceleration());
+  }
+  return most;
+}
+
+// The most that is left of the transients at any of the points, in-lbf: the intervals are wider by it.
+double TransientTorque(const PumpFriction& friction) {
+  double most = 0;
+  for (const FrictionPoint& point : friction.points) most = std::max(most, point.transient);
+  return most;
+}
+
+// What the points and lines give for the files and the figure, simulated or measured.
+void AddFit(const PumpFriction& friction, const Parameters& p, ExperimentResult* result, json* numbers) {
+  *numbers = {{"T_s", friction.T_s.value},
+              {"b", friction.b.value},
+              {"ci95", {{"T_s", Interval(friction.T_s)}, {"b", Interval(friction.b)}}},
+              {"units", {{"T_s", "in-lbf"}, {"b", "in-lbf-s"}}},
+              {"T_s_forward", friction.T_s_forward.value},
+              {"T_s_forward_ci95", Interval(friction.T_s_forward)},
+              {"T_s_backward", friction.T_s_backward.value},
+              {"T_s_backward_ci95", Interval(friction.T_s_backward)},
+              {"T_s_difference", friction.difference.value},
+              {"T_s_difference_ci95", Interval(friction.difference)},
+              {"scatter_in_lbf", friction.scatter},
+              {"degrees_of_freedom", friction.degrees_of_freedom},
+              {"acceleration_may_take_in_lbf", AccelerationTorque(friction, p)},
+              {"transient_may_take_in_lbf", TransientTorque(friction)},
+              {"k_1", p.k_1}};
+  Curve points{.label = "steady states",
+               .x = {},
+               .y = {},
+               .stroke = Stroke::kPoints,
+               .colour = 0,
+               .y_low = {},
+               .y_high = {}};
+  Curve residuals = points;
+  residuals.label = "";
+  std::vector<std::vector<double>> columns(8);
+  double fastest = 0;
+  for (const FrictionPoint& point : friction.points) {
+    const SpeedWindow& window = point.window;
+    (*numbers)["points"].push_back({{"voltage_V", window.voltage},
+                                    {"torque_in_lbf", point.torque},
+                                    {"motor_speed_rad_s", window.speed},
+                                    {"standard_error_rad_s", window.speed_error},
+                                    {"from_s", window.from},
+                                    {"to_s", window.to}});
+    const double row[] = {window.from,  window.to,          window.voltage,      point.torque,
+                          window.speed, window.speed_error, window.acceleration, point.fitted};
+    for (size_t i = 0; i < columns.size(); ++i) columns[i].push_back(row[i]);
+    points.x.push_back(window.speed);
+    points.y.push_back(point.torque);
+    residuals.x.push_back(window.speed);
+    // The error bar of the speed, 95 %, as the torque it stands for; ten blocks leave nine degrees of
+    // freedom.
+    const double error = 1e3 * StudentT95(9) * friction.b.value * window.speed_error;
+    residuals.y.push_back(1e3 * (point.torque - point.fitted));
+    residuals.y_low.push_back(residuals.y.back() - error);
+    residuals.y_high.push_back(residuals.y.back() + error);
+    fastest = std::max(fastest, std::abs(window.speed));
+  }
+  result->table.columns = {{"from_s", columns[0]},
+                           {"to_s", columns[1]},
+                           {"voltage_V", columns[2]},
+                           {"torque_in_lbf", columns[3]},
+                           {"motor_speed_rad_s", columns[4]},
+                           {"standard_error_rad_s", columns[5]},
+                           {"acceleration_rad_s2", columns[6]},
+                           {"fitted_torque_in_lbf", columns[7]}};
+  const auto line = [&](double direction, double intercept) {
+    const double end = direction * 1.15 * fastest;
+    return Curve{.label = direction > 0 ? "b θ' + T_s, forward" : "b θ' - T_s, backward",
+                 .x = {0, end},
+                 .y = {direction * intercept, direction * intercept + friction.b.value * end},
+                 .colour = direction > 0 ? 1 : 2,
+                 .y_low = {},
+                 .y_high = {}};
+  };
+  const Axis speed{.label = "motor speed θ', rad/s", .min = -1.15 * fastest, .max = 1.15 * fastest};
+  Panel torque{
+      .title = "Torque against steady speed, both sides connected",
+      .x = speed,
+      .y = {.label = "T_p, in-lbf"},
+      .curves = {points, line(1, friction.T_s_forward.value), line(-1, friction.T_s_backward.value)},
+      .notes = {{fmt::format("T_s = {}", PlusMinus(friction.T_s_forward)), 0, friction.T_s_forward.value},
+                {fmt::format("T_s = {}", PlusMinus(friction.T_s_backward)), 0, -friction.T_s_backward.value}},
+      .rules = {},
+      .height = 2};
+  Panel rest{.title = "Points less lines, with the 95 % error bars of the speeds",
+             .x = speed,
+             .y = {.label = "10^-3 in-lbf"},
+             .curves = {residuals},
+             .notes = {},
+             .rules = {{"", false, 0}}};
+  result->pictures.push_back(
+      {"",
+       {.caption = fmt::format("{} Slope b = {} in-lbf-s, intercepts T_s = {} in-lbf on average (95 %).",
+                               result->conditions, PlusMinus(friction.b), PlusMinus(friction.T_s)),
+        .panels = {torque, rest},
+        .drawing = ""}});
+}
+
+struct RampReading {
+  double direction = 1;
+  BreakAway moved;
+  double torque = 0;  // in-lbf, magnitude at the first sample that has moved
+};
+
+RampReading ReadRamp(const MeasuredRun& run, double from, const Parameters& p) {
+  RampReading reading;
+  reading.direction = from > 0 ? -1 : 1;
+  const auto moved = FindBreakAway(run, from + kLeadTime, from + kLeadTime + kRampTime, kMoved);
+  if (!moved.has_value()) throw std::runtime_error("friction: the motor did not break away on the ramp");
+  reading.moved = *moved;
+  reading.torque = std::abs(p.k_1 * moved->voltage);
+  return reading;
+}
+
+Picture RampPicture(const MeasuredRun& run, const std::vector<RampReading>& readings, double T_s,
+                    const Parameters& p) {
+  const double ramp = p.k_1 * kRampRate;
+  Curve command{.label = "", .x = run.time, .y = {}, .colour = 0, .y_low = {}, .y_high = {}};
+  for (const double voltage : run.voltage.values) command.y.push_back(p.k_1 * voltage);
+  Panel torque{.title = "The ramps",
+               .x = {.label = "time, s"},
+               .y = {.label = "T_p, in-lbf"},
+               .curves = {command},
+               .notes = {},
+               .rules = {}};
+  Panel angle{.title = "How far the motor has turned",
+              .x = {.label = "|T_p|, in-lbf", .min = T_s - 0.01, .max = T_s + 0.03},
+              .y = {.label = "angle from rest, 10^-3 rad", .min = 0, .max = 6},
+              .curves = {},
+              .notes = {},
+              .rules = {{"T_s", true, T_s}, {"counts as moved", false, 1e3 * kMoved}}};
+  for (const RampReading& reading : readings) {
+    torque.notes.push_back({fmt::format("moves at {:.4f} in-lbf", reading.torque), reading.moved.time,
+                            reading.direction * reading.torque});
+    Curve curve{.label = reading.direction > 0 ? "forward" : "backward",
+                .x = {},
+                .y = {},
+                .stroke = Stroke::kSteps,
+                .colour = reading.direction > 0 ? 1 : 2,
+                .y_low = {},
+                .y_high = {}};
+    double rest = std::nan("");
+    for (size_t i = 0; i < run.samples(); ++i) {
+      const double at = reading.direction * command.y[i];
+      if (std::abs(run.time[i] - reading.moved.time) > 3 || at < T_s - 0.01 || at > T_s + 0.03) continue;
+      if (std::isnan(rest)) rest = run.motor_angle.values[i];
+      curve.x.push_back(at);
+      curve.y.push_back(1e3 * std::abs(run.motor_angle.values[i] - rest));
+    }
+    angle.curves.push_back(curve);
+  }
+  Curve expected{.label = "(T_p - T_s)^3 / (6 J T_p'^2)",
+                 .x = {},
+                 .y = {},
+                 .stroke = Stroke::kDashed,
+                 .colour = 0,
+                 .y_low = {},
+                 .y_high = {}};
+  for (double excess = 0; excess < 0.03; excess += 5e-4) {
+    expected.x.push_back(T_s + excess);
+    expected.y.push_back(1e3 * std::pow(excess, 3) / (6 * p.J * ramp * ramp));
+  }
+  angle.curves.push_back(expected);
+  return {
+      "-ramp",
+      {.caption = fmt::format("Break-away: the torque rises by {:.3g} in-lbf/s until an encoder of {:.3g} "
+                              "rad a step has moved by five steps. The dashed line is what eq. (4) gives "
+                              "without viscous friction.",
+                              ramp, kEncoderStep),
+       .panels = {torque, angle},
+       .drawing = ""}};
+}
+
+ExperimentResult AnalyseMeasured(const ExperimentOptions& options) {
+  const MeasuredRun run = ReadMeasuredRun(options.measured_run);
+  const bool own_model = !run.model_text.empty();
+  const ModelDescription model =
+      own_model ? ParseModel(run.model_text, run.file + " (model)") : ShippedModel("table1");
+  const Parameters& p = model.parameters;
+  const SpeedSource source = SpeedSourceOf(run);
+  const PumpFriction friction = FitPumpFriction(run, source, p);
+  ExperimentResult result;
+  result.conditions = fmt::format(
+      "Measured run \"{}\", bypass open, speed from the motor's {}; k_1 = {} in-lbf/V is that of the model "
+      "\"{}\".",
+      run.name, source == SpeedSource::kSpeed ? "speed" : "angle", p.k_1, model.name);
+  result.paper_says =
+      "With a valve open between the two sides, constant voltages held to steady speed give T_p against "
+      "speed; the slope is b, the intercept T_s.";
+  result.explanation = fmt::format(
+      "{} steady states were found; the points scatter by {:.3g} in-lbf about the lines, and inertia takes "
+      "{:.2g} in-lbf of one at most, by what is left of the transients: the intervals include both. The "
+      "directions' Coulomb frictions differ by {} in-lbf. Both values are in proportion to k_1.",
+      friction.points.size(), friction.scatter, TransientTorque(friction), PlusMinus(friction.difference));
+  json numbers;
+  AddFit(friction, p, &result, &numbers);
+  numbers["source"] = run.file;
+  numbers["model"] = model.name;
+  result.numbers = JsonText(numbers);
+  result.comparisons = {
+      {"T_s", "in-lbf", "", kAutomatic, friction.T_s.value, PlusMinus(friction.T_s) + ", 95 %"},
+      {"b", "in-lbf-s", "", kAutomatic, friction.b.value, PlusMinus(friction.b) + ", 95 %"}};
+  return result;
+}
+
+}  // namespace
+
+ExperimentResult RunFriction(const ExperimentOptions& options) {
+  if (!options.measured_run.empty()) return AnalyseMeasured(options);
+  const Parameters p = ShippedModel("table1").parameters;
+  const MeasuredRun ramps = MeasureRamps(options);
+  options.progress(0.1);
+  const MeasuredRun holds = MeasureHolds(options);
+  options.progress(0.9);
+  const PumpFriction friction = FitPumpFriction(holds, SpeedSource::kSpeed, p);
+  const PumpFriction by_angle = FitPumpFriction(holds, SpeedSource::kAngle, p);
+  const std::vector<RampReading> readings = {ReadRamp(ramps, 0, p), ReadRamp(ramps, kBackwardFrom, p)};
+  const double excess = BreakAwayExcess(p.k_1 * kRampRate, p.J, kMoved);
+  const double error_percent =
+      100 * std::max(std::abs(friction.T_s.value / p.T_s - 1), std::abs(friction.b.value / p.b - 1));
+
+  ExperimentResult result;
+  result.conditions = fmt::format(
+      "Table 1 with the bypass open (p_1 = p_2), over the stack at 1 kHz. Speed read with {} rad/s of noise "
+      "in steps of {} rad/s, angle in steps of {:.3g} rad. {} voltages of each sign, held {} s each.",
+      kSpeedNoise, kSpeedStep, kEncoderStep, std::size(kVoltages), kHold);
+  result.paper_says =
+      "T_s is the torque of the smallest voltage that turns the motor. Then, with a valve open between the "
+      "two sides, constant voltages are held to steady speed and T_p is plotted against speed: the slope is "
+      "b, the intercept a check of T_s.";
+  result.explanation = fmt::format(
+      "The lines give T_s = {} in-lbf and b = {} in-lbf-s (95 %, Student, {} degrees of freedom), {:.2g} % "
+      "at "
+      "most from the simulated rig's own. The intervals rest on the scatter of {} holds about the lines and "
+      "on what is left of the transients, {:.2g} in-lbf at most. The ramp reads {:.4f} in-lbf "
+      "forward and {:.4f} backward, {:.2g} and {:.2g} % above T_s: the motor has to have turned by {:.2g} "
+      "rad "
+      "to be seen moving, and a torque that rises by {:.3g} in-lbf/s has grown by (6 J θ T_p'^2)^{{1/3}} = "
+      "{:.3g} in-lbf by then. From the encoder's angles in place of the speeds: T_s = {:.6f} in-lbf, b = "
+      "{:.8f} in-lbf-s. The speed settles with J/b = {:.2f} s, so holds are long.",
+      PlusMinus(friction.T_s), PlusMinus(friction.b), friction.degrees_of_freedom, error_percent,
+      friction.points.size(), TransientTorque(friction), readings[0].torque, readings[1].torque,
+      100 * (readings[0].torque / p.T_s - 1), 100 * (readings[1].torque / p.T_s - 1), kMoved,
+      p.k_1 * kRampRate, excess, by_angle.T_s.value, by_angle.b.value, p.J / p.b);
+
+  json numbers;
+  AddFit(friction, p, &result, &numbers);
+  numbers["source"] = "simulated rig";
+  numbers["from_encoder"] = {{"T_s", by_angle.T_s.value},
+                             {"b", by_angle.b.value},
+                             {"acceleration_may_take_in_lbf", AccelerationTorque(by_angle, p)}};
+  numbers["break_away"] = {{"forward_in_lbf", readings[0].torque},
+                           {"backward_in_lbf", readings[1].torque},
+                           {"ramp_in_lbf_s", p.k_1 * kRampRate},
+                           {"counts_as_moved_rad", kMoved},
+                           {"expected_excess_in_lbf", excess}};
+  result.numbers = JsonText(numbers);
+  result.comparisons = {
+      {"T_s, intercept", "in-lbf", "4.0", p.T_s, friction.T_s.value,
+       fmt::format("+/- {:.2g}: the interval {} the rig's own", friction.T_s.high - friction.T_s.value,
+                   Holds(friction.T_s, p.T_s))},
+      {"b, slope", "in-lbf-s", "0.01455", p.b, friction.b.value,
+       fmt::format("+/- {:.2g}: the interval {} the rig's own", friction.b.high - friction.b.value,
+                   Holds(friction.b, p.b))},
+      {"break-away torque, forward", "in-lbf", "4.0", p.T_s + excess, readings[0].torque,
+       "expected: T_s and what the ramp adds until movement is seen"},
+      {"break-away torque, backward", "in-lbf", "4.0", p.T_s + excess, readings[1].torque, ""},
+      {"time constant J/b", "s", "", p.J / p.b, p.J / friction.b.value, "how long to wait for steady speed"},
+  };
+  result.pictures.push_back(RampPicture(ramps, readings, p.T_s, p));
+  options.progress(1);
+  return result;
+}
+
+}  // namespace hydro

@@ -1,0 +1,378 @@
+// Torque control, the paper's stated purpose: a commanded torque against a clamped arm and along a path.
+#include <spdlog/fmt/fmt.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "experiments/figures/catalogue.h"
+#include "experiments/runs/shipped_models.h"
+#include "experiments/studies/json_text.h"
+#include "experiments/studies/torque_clamped.h"
+#include "experiments/studies/torque_driven.h"
+
+namespace hydro {
+namespace {
+
+using nlohmann::json;
+
+constexpr double kPathSpeed = 0.15;  // rad/s, the largest along the path that is pictured
+
+struct Study {
+  double feedforward = 0;  // V/psi, of the reference
+  std::vector<TorqueStep> steps, steps_with;
+  std::vector<TorqueSweep> sweeps;
+  std::vector<TorqueOnPath> paths, paths_with;
+
+  const TorqueOnPath& pictured(bool with) const {
+    const std::vector<TorqueOnPath>& all = with ? paths_with : paths;
+    return *std::min_element(all.begin(), all.end(), [](const TorqueOnPath& a, const TorqueOnPath& b) {
+      return std::abs(a.largest_speed - kPathSpeed) < std::abs(b.largest_speed - kPathSpeed);
+    });
+  }
+};
+
+Study RunStudy(const ExperimentOptions& options) {
+  Study study;
+  study.feedforward = SteadyStateFeedforward(PressureLoopParameters(), PressureLoopGains());
+  for (const double command : {200.0, 1000.0, 3000.0, 5000.0}) {
+    study.steps.push_back(RunTorqueStep(options.run_stack, command, 0));
+    study.steps_with.push_back(RunTorqueStep(options.run_stack, command, study.feedforward));
+  }
+  options.progress(0.2);
+  struct Sweep {
+    double mean, amplitude;
+  };
+  const std::vector<Sweep> sweeps = {{0, 100}, {0, 300}, {0, 1000}, {0, 3000}, {3000, 300}};
+  for (const Sweep& sweep : sweeps) {
+    study.sweeps.push_back(RunTorqueSweep(options.run_stack, sweep.mean, sweep.amplitude));
+    options.progress(0.2 + 0.1 * static_cast<double>(study.sweeps.size()));
+  }
+  // Beyond 0.3 rad/s the k_v term alone would drive the pressure to the seals' limit.
+  for (const double speed : {0.05, kPathSpeed, 0.3}) {
+    study.paths.push_back(RunTorqueOnPath(options.run_stack, speed, false));
+  }
+  for (const double speed : {0.05, kPathSpeed, 0.3, 0.5}) {
+    study.paths_with.push_back(RunTorqueOnPath(options.run_stack, speed, true));
+  }
+  options.progress(0.9);
+  return study;
+}
+
+json StepsJson(const std::vector<TorqueStep>& steps) {
+  json out = json::array();
+  for (const TorqueStep& step : steps) {
+    out.push_back({{"command_in_lbf", step.command},
+                   {"steady_state_error_in_lbf", step.error},
+                   {"closed_form_error_in_lbf", step.closed_form_error},
+                   {"rise_time_s", step.rise_time},
+                   {"overshoot_percent", step.overshoot_percent},
+                   {"settling_time_s", step.settling_time ? json(*step.settling_time) : json()},
+                   {"saturated_fraction_of_first_100_ms", step.saturated_fraction}});
+  }
+  return out;
+}
+
+json PathsJson(const std::vector<TorqueOnPath>& paths) {
+  json out = json::array();
+  for (const TorqueOnPath& path : paths) {
+    out.push_back({{"largest_arm_speed_rad_s", path.largest_speed},
+                   {"largest_error_in_lbf", path.largest_error},
+                   {"rms_error_in_lbf", path.rms_error},
+                   {"error_at_largest_speed_in_lbf", path.error_at_largest_speed},
+                   {"closed_form_error_at_largest_speed_in_lbf", path.closed_form_at_largest_speed},
+                   {"largest_motor_torque_in_lbf", path.largest_motor_torque},
+                   {"largest_motor_speed_rad_s", path.largest_motor_speed}});
+  }
+  return out;
+}
+
+std::string SweepName(const TorqueSweep& sweep) {
+  return sweep.mean == 0 ? fmt::format("±{} in-lbf", sweep.amplitude)
+                         : fmt::format("{} ± {} in-lbf", sweep.mean, sweep.amplitude);
+}
+
+Picture StepPicture(const Study& study) {
+  constexpr double kUntil = 0.3;
+  const double k_2 = PressureLoopParameters().k_2;
+  Panel response{.title = "Torque at the clamped arm after a step of the command",
+                 .x = {.label = "time, s", .min = 0, .max = kUntil},
+                 .y = {.label = "torque / command", .min = 0},
+                 .curves = {},
+                 .notes = {},
+                 .rules = {{"command", false, 1}},
+                 .height = 1.4};
+  Panel motor{.title = "Motor torque",
+              .x = response.x,
+              .y = {.label = "T_p, in-lbf", .min = -50, .max = 50},
+              .curves = {},
+              .notes = {},
+              .rules = {{"T_pmax", false, PressureLoopParameters().T_pmax},
+                        {"", false, -PressureLoopParameters().T_pmax}}};
+  int colour = 0;
+  for (const TorqueStep& step : study.steps) {
+    std::vector<double> share = step.run.dp;
+    for (double& value : share) value *= k_2 / step.command;
+    const std::string label = fmt::format("{} in-lbf", step.command);
+    response.curves.push_back(SignalCurve(label, step.run, share, colour, kUntil));
+    motor.curves.push_back(SignalCurve(label, step.run, step.run.torque, colour, kUntil));
+    ++colour;
+  }
+  return {
+      "",
+      {.caption = "Torque commanded to the arm clamped at α = 0, from rest, eq. (16) without feed-forward.",
+       .panels = {response, motor},
+       .drawing = ""}};
+}
+
+Picture BandwidthPicture(const Study& study) {
+  const Axis frequency{.label = "frequency, Hz", .logarithmic = true, .min = 2, .max = 60};
+  Panel gain{.title = "Torque at the clamped arm per commanded torque",
+             .x = frequency,
+             .y = {.label = "gain, dB", .min = -30, .max = 5},
+             .curves = {},
+             .notes = {},
+             .rules = {{"-3 dB of the command", false, -3},
+                       {fmt::format("linear, both sides: {:.1f} Hz", LinearBandwidthHz(2)), true,
+                        LinearBandwidthHz(2)},
+                       {fmt::format("one side: {:.1f}", LinearBandwidthHz(1)), true, LinearBandwidthHz(1)}},
+             .height = 1.5};
+  Panel coherence{.title = "Coherence",
+                  .x = frequency,
+                  .y = {.label = "coherence", .min = 0, .max = 1.05},
+                  .curves = {},
+                  .notes = {},
+                  .rules = {},
+                  .height = 0.7};
+  for (const TorqueSweep& sweep : study.sweeps) {
+    Curve gains{.label = SweepName(sweep), .x = {}, .y = {}, .y_low = {}, .y_high = {}};
+    Curve coherences = gains;
+    for (const ResponsePoint& point : sweep.points) {
+      gains.x.push_back(point.frequency_hz);
+      gains.y.push_back(Decibels(point.gain));
+      coherences.x.push_back(point.frequency_hz);
+      coherences.y.push_back(point.coherence);
+    }
+    gain.curves.push_back(std::move(gains));
+    coherence.curves.push_back(std::move(coherences));
+  }
+  return {"-bandwidth",
+          {.caption = fmt::format(
+               "Swept sines of the commanded torque, {} to {} Hz, arm clamped at α = 0. Bandwidths are where "
+               "the gain is 3 dB below that at the lowest frequency.",
+               kSweepFirst, kSweepLast),
+           .panels = {gain, coherence},
+           .drawing = ""}};
+}
+
+Picture PathPicture(const Study& study) {
+  const TorqueOnPath& without = study.pictured(false);
+  const TorqueOnPath& with = study.pictured(true);
+  const double end = without.run.time.back();
+  const Axis time{.label = "time, s", .min = 0, .max = end};
+  const double k_2 = PressureLoopParameters().k_2;
+  const auto torque = [&](const TorqueOnPath& path) {
+    std::vector<double> values = path.run.dp;
+    for (double& value : values) value *= k_2;
+    return values;
+  };
+  const auto expected = [&](const TorqueOnPath& path) {
+    std::vector<double> values = path.command;
+    for (size_t i = 0; i < values.size(); ++i) values[i] -= path.closed_form[i];
+    return values;
+  };
+  Panel angle{.title = "The arm is moved",
+              .x = time,
+              .y = {.label = "α, rad"},
+              .curves = {SignalCurve("", without.run, without.run.arm_angle, 0, end)},
+              .notes = {},
+              .rules = {},
+              .height = 0.6};
+  Panel arm{
+      .title = "Torque at the arm",
+      .x = time,
+      .y = {.label = "torque, in-lbf"},
+      .curves = {SignalCurve("command", without.run, without.command, 5, end, Stroke::kDashed),
+                 SignalCurve("eq. (16)", without.run, torque(without), 0, end),
+                 SignalCurve("with arm-speed feed-forward", with.run, torque(with), 1, end),
+                 SignalCurve("closed form of both", without.run, expected(without), 3, end, Stroke::kDotted),
+                 SignalCurve("", with.run, expected(with), 3, end, Stroke::kDotted)},
+      .notes = {},
+      .rules = {},
+      .height = 1.3};
+  Panel error{.title = "Torque error with arm-speed feed-forward",
+              .x = time,
+              .y = {.label = "command - torque, in-lbf", .min = -80, .max = 80},
+              .curves = {SignalCurve("run", with.run, with.error, 1, end),
+                         SignalCurve("closed form", with.run, with.closed_form, 3, end, Stroke::kDotted)},
+              .notes = {},
+              .rules = {}};
+  return {
+      "-path",
+      {.caption = fmt::format("The arm is moved from -0.1 to 0.1 rad and back with up to {:.2f} rad/s while "
+                              "the torque that carries it there is commanded.",
+                              with.largest_speed),
+       .panels = {angle, arm, error},
+       .drawing = ""}};
+}
+
+Picture SpeedPicture(const Study& study) {
+  Panel panel{.title = "Largest torque error along the path",
+              .x = {.label = "largest speed of the arm, rad/s", .logarithmic = true, .min = 0.04, .max = 0.6},
+              .y = {.label = "error, in-lbf", .logarithmic = true},
+              .curves = {},
+              .notes = {},
+              .rules = {{"friction band", false, FrictionBandTorque()}}};
+  for (const bool with : {false, true}) {
+    Curve curve{.label = with ? "with arm-speed feed-forward" : "eq. (16)",
+                .x = {},
+                .y = {},
+                .stroke = Stroke::kLinePoints,
+                .y_low = {},
+                .y_high = {}};
+    for (const TorqueOnPath& path : with ? study.paths_with : study.paths) {
+      curve.x.push_back(path.largest_speed);
+      curve.y.push_back(path.largest_error);
+    }
+    panel.curves.push_back(std::move(curve));
+  }
+  return {"-speed", {.caption = "The same path at several speeds.", .panels = {panel}, .drawing = ""}};
+}
+
+json Numbers(const Study& study) {
+  json sweeps = json::array();
+  for (const TorqueSweep& sweep : study.sweeps) {
+    double least = 1;
+    for (const ResponsePoint& point : sweep.points) least = std::min(least, point.coherence);
+    sweeps.push_back({{"mean_in_lbf", sweep.mean},
+                      {"amplitude_in_lbf", sweep.amplitude},
+                      {"bandwidth_hz", std::isnan(sweep.bandwidth_hz) ? json() : json(sweep.bandwidth_hz)},
+                      {"gain_at_lowest_point", std::abs(sweep.points.front().gain)},
+                      {"saturated_fraction", sweep.saturated_fraction},
+                      {"both_compress_fraction", sweep.both_compress_fraction},
+                      {"least_coherence", least}});
+  }
+  return {{"friction_band_in_lbf", FrictionBandTorque()},
+          {"clamped",
+           {{"steps", StepsJson(study.steps)},
+            {"steps_with_feedforward", StepsJson(study.steps_with)},
+            {"feedforward_V_per_psi", study.feedforward},
+            {"sweeps", sweeps},
+            {"linear_bandwidth_both_sides_hz", LinearBandwidthHz(2)},
+            {"linear_bandwidth_one_side_hz", LinearBandwidthHz(1)}}},
+          {"along_path",
+           {{"without_arm_speed_feedforward", PathsJson(study.paths)},
+            {"with_arm_speed_feedforward", PathsJson(study.paths_with)}}}};
+}
+
+}  // namespace
+
+ExperimentResult RunTorque(const ExperimentOptions& options) {
+  const Study study = RunStudy(options);
+  const Parameters p = PressureLoopParameters();
+  const PressureGains gains = PressureLoopGains();
+  const TorqueOnPath& without = study.pictured(false);
+  const TorqueOnPath& with = study.pictured(true);
+  const TorqueOnPath& fastest = study.paths_with.back();
+  const TorqueStep& step = study.steps.at(1);
+  const TorqueStep& large = study.steps.back();
+  const TorqueSweep& small_sweep = study.sweeps.at(1);
+  const TorqueSweep& large_sweep = study.sweeps.at(3);
+  const TorqueSweep& held_sweep = study.sweeps.at(4);
+  const double braking = p.k_2 * gains.k_v * p.c / p.D;  // in-lbf per rad/s of the arm
+
+  ExperimentResult result;
+  result.conditions = fmt::format(
+      "Table 1, eq. (16) over the stack at {} Hz without delay, k_p = {:.4f} V/psi, k_v = {:.2f} psi s/rad; "
+      "torque commands go to it as dp_ref = torque/k_2. Clamped: α = 0. Along a path: the arm is moved from "
+      "-0.1 to 0.1 rad and back (quintic), and the torque commanded is J_a α'' + m g l cos α with m g l = {} "
+      "in-lbf (assumed, the shipped gravity model). Bandwidth: 3 dB below the gain at the lowest frequency.",
+      kLoopRate, gains.k_p, gains.k_v, ShippedModel("table1_gravity").parameters.mgl);
+  result.paper_says =
+      "Torque control is needed to exert a given force or to make an arm follow a trajectory; the pressure "
+      "loop drives the torque quickly to the desired value, with a bandwidth of about 32 Hz.";
+  result.explanation =
+      fmt::format(
+          "Clamped, the loop keeps the promise. A step of {} in-lbf is there (10 to 90 %) in {:.0f} ms and "
+          "settles "
+          "{:.1f} in-lbf short ({:.1f} with the feed-forward); a step of {} takes {:.0f} ms, because the "
+          "motor is at its "
+          "limit. By friction a standing pump stays so within ±{:.1f} in-lbf of its balance. The bandwidth "
+          "at the "
+          "arm is "
+          "{:.1f} Hz for ±{} in-lbf and {:.1f} for ±{}, where the motor is at its limit {:.0f} % of the "
+          "time. For {} ± "
+          "{} in-lbf it is {:.1f}: one side held at p_3 would give {:.1f}, but the valve lets fluid in "
+          "within a "
+          "cycle, and for {:.0f} % of the time both sides compress. ",
+          step.command, 1e3 * step.rise_time, step.error, study.steps_with.at(1).error, large.command,
+          1e3 * large.rise_time, FrictionBandTorque(), small_sweep.bandwidth_hz, small_sweep.amplitude,
+          large_sweep.bandwidth_hz, large_sweep.amplitude, 100 * large_sweep.saturated_fraction,
+          held_sweep.mean, held_sweep.amplitude, held_sweep.bandwidth_hz, LinearBandwidthHz(1),
+          100 * held_sweep.both_compress_fraction) +
+      fmt::format(
+          "Along a path, eq. (16) as printed fails: moving the arm turns the pump at (c/D) α', which the k_v "
+          "term "
+          "brakes with {:.0f} in-lbf per rad/s of the arm. At {:.2f} rad/s the error is {:.0f} in-lbf, of "
+          "{:.0f} "
+          "commanded. Taking that forced speed out of the k_v term (pressure.arm_speed_feedforward) leaves "
+          "at most {:.0f} along the "
+          "whole path: friction, viscous drag and D dp, which the loop pays for with an error, and the "
+          "pump's "
+          "inertia where the arm accelerates. At {:.2f} rad/s that inertia takes the motor to {:.1f} of its "
+          "{} in-lbf and the "
+          "error to {:.0f}.",
+          braking, without.largest_speed, without.error_at_largest_speed, without.command.front(),
+          with.largest_error, fastest.largest_speed, fastest.largest_motor_torque, p.T_pmax,
+          fastest.largest_error);
+  for (const TorqueStep& s : study.steps) {
+    result.comparisons.push_back({fmt::format("steady-state error at {} in-lbf, clamped", s.command),
+                                  "in-lbf", "", s.closed_form_error, s.error,
+                                  "expected: balance of eqs. (4) and (16)"});
+  }
+  for (const TorqueStep& s : study.steps_with) {
+    if (s.command != step.command) continue;
+    result.comparisons.push_back({fmt::format("the same at {} in-lbf with feed-forward", s.command), "in-lbf",
+                                  "could be eliminated", s.closed_form_error, s.error, "left is friction"});
+  }
+  for (const TorqueSweep& sweep : study.sweeps) {
+    result.comparisons.push_back({"bandwidth at the arm, " + SweepName(sweep), "Hz", "about 32",
+                                  LinearBandwidthHz(2), sweep.bandwidth_hz,
+                                  fmt::format("expected: linear, both sides compress ({:.0f} % of the time "
+                                              "here; one side: {:.1f} Hz); at the torque "
+                                              "limit {:.0f} % of the time",
+                                              100 * sweep.both_compress_fraction, LinearBandwidthHz(1),
+                                              100 * sweep.saturated_fraction)});
+  }
+  for (const TorqueOnPath* path : {&without, &with}) {
+    result.comparisons.push_back(
+        {fmt::format("torque error at {:.2f} rad/s {} arm-speed feed-forward", path->largest_speed,
+                     path->arm_speed_feedforward ? "with" : "without"),
+         "in-lbf", "", path->closed_form_at_largest_speed, path->error_at_largest_speed,
+         "expected: eqs. (4) and (16) with the pump speed that the motion forces"});
+  }
+  result.numbers = JsonText(Numbers(study));
+  std::vector<double> torque = without.run.dp, torque_with = with.run.dp;
+  for (double& value : torque) value *= p.k_2;
+  for (double& value : torque_with) value *= p.k_2;
+  result.table.columns = {{"time_s", without.run.time},
+                          {"arm_angle_rad", without.run.arm_angle},
+                          {"arm_speed_rad_s", without.run.arm_speed},
+                          {"torque_command_in_lbf", without.command},
+                          {"torque_in_lbf", torque},
+                          {"motor_torque_in_lbf", without.run.torque},
+                          {"torque_with_arm_speed_feedforward_in_lbf", torque_with},
+                          {"motor_torque_with_arm_speed_feedforward_in_lbf", with.run.torque}};
+  for (Column& column : result.table.columns) {  // every 1 ms is enough here
+    std::vector<double> thinned;
+    for (size_t i = 0; i < column.values.size(); i += 5) thinned.push_back(column.values[i]);
+    column.values = std::move(thinned);
+  }
+  result.pictures = {StepPicture(study), BandwidthPicture(study), PathPicture(study), SpeedPicture(study)};
+  options.progress(1);
+  return result;
+}
+
+}  // namespace hydro

@@ -1,0 +1,33 @@
+// The files of an experiment: NAME.json, NAME.csv, NAME.svg and further pictures.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "experiments/studies/experiment.h"
+
+namespace hydro {
+
+struct RenderedPicture {
+  std::string name;  // NAME and the picture's suffix
+  std::string svg;
+};
+
+// The pictures as SVG. Throws what RenderSvg() throws, std::logic_error when a suffix is there twice.
+std::vector<RenderedPicture> RenderPictures(const std::string& name, const std::vector<Picture>& pictures);
+
+// The result's numbers beside name, title, program version, options, conditions, comparisons and findings;
+// what is not finite is null. Throws std::logic_error when the numbers are no JSON object or take one of
+// those keys.
+std::string ExperimentJson(const Experiment& experiment, const ExperimentResult& result,
+                           const ExperimentOptions& options, bool real_time);
+
+// Writes all of them into `folder`, each whole or not at all. Throws InputError when a file cannot be created
+// there, WriteError.
+void WriteExperimentFiles(const std::string& folder, const std::string& name, const std::string& json,
+                          const Table& table, const std::vector<RenderedPicture>& pictures);
+
+// One text file, whole or not at all.
+void WriteWholeFile(const std::string& file, const std::string& text);
+
+}  // namespace hydro

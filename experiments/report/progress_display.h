@@ -1,0 +1,43 @@
+// How far a set of experiments is, for whoever watches.
+#pragma once
+
+#include <cstdio>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "base/terminal_line.h"
+
+namespace hydro {
+
+// A bar on a terminal, plain lines in a log. May be told things by several threads.
+class ProgressDisplay {
+ public:
+  // `costs`: of each task, in any unit. Writes to `out`, which stays the caller's; the bar is
+  // wiped away in the end.
+  ProgressDisplay(std::FILE* out, bool terminal, std::vector<std::string> names, std::vector<double> costs);
+
+  void Start(size_t task);
+  // `done`: 0 to 1.
+  void Advance(size_t task, double done);
+  void Finish(size_t task, bool failed);
+
+ private:
+  struct Task {
+    std::string name;
+    double cost = 1;
+    double done = 0;
+    bool runs = false;
+  };
+
+  void Draw();
+
+  std::FILE* out_;
+  bool terminal_;
+  TerminalLine line_;
+  std::mutex mutex_;
+  std::vector<Task> tasks_;
+  int finished_ = 0;
+};
+
+}  // namespace hydro

@@ -1,0 +1,52 @@
+// Swept sines through the closed pressure loop of the clamped actuator, run by the stack.
+#pragma once
+
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "experiments/maths/frequency_response.h"
+#include "experiments/runs/stack_run.h"
+#include "model/description.h"
+#include "pressure_ctrl/pressure_law.h"
+
+namespace hydro {
+
+// One run: a sine whose frequency rises linearly through the band, from a quarter of its lower end to 1.4
+// times its upper.
+struct SweptBand {
+  double first_hz = 0;
+  double last_hz = 0;
+  double duration_s = 0;
+  double segment_s = 0;  // of the estimate
+  int points_per_decade = 16;
+};
+
+// Two runs, so that low frequencies get cycles enough.
+inline const std::vector<SweptBand> kTwoDecades = {{1, 6, 16, 4}, {6, 100, 16, 2}};
+
+struct PressureSweep {
+  std::string name;  // for messages and files
+  ModelDescription model;
+  double arm_angle = 0;                                                // rad, clamped there
+  PressureGains gains;                                                 // eq. (16), no feed-forward
+  double amplitude = 0;                                                // psi, of dp_ref
+  double offset = 0;                                                   // psi, its mean
+  double initial_pressure = std::numeric_limits<double>::quiet_NaN();  // psi, both sides; NaN: p_3
+  double rest_s = 1;      // at the offset before the sweep begins
+  double rate_hz = 5000;  // of plant and pressure loop, without delay between them: nearly analog
+  std::vector<SweptBand> bands = kTwoDecades;
+};
+
+// What the loop did, all runs together. Fractions are of the time of the sweeps.
+struct SweptPressureLoop {
+  std::vector<ResponsePoint> points;  // dp per dp_ref, samples per samples
+  double saturated_fraction = 0;      // the voltage is at its limit
+  double stuck_fraction = 0;          // the pump stands still
+  double both_compress_fraction = 0;  // both valves are closed: p1, p2 > p_3
+  double largest_torque = 0;          // in-lbf, |k_1 v|
+};
+
+SweptPressureLoop RunPressureSweep(const PressureSweep& sweep, const StackRunner& run_stack);
+
+}  // namespace hydro

@@ -1,0 +1,140 @@
+// The stack as separate processes in real time.
+#include <arpa/inet.h>
+#include <fcntl.h>
+#include <netinet/in.h>
+#include <signal.h>
+#include <sys/prctl.h>
+#include <sys/socket.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <mutex>
+#include <sstream>
+#include <stdexcept>
+#include <system_error>
+#include <vector>
+
+#include "experiments/report/experiment_files.h"
+#include "experiments/runs/stack_run.h"
+#include "runs/run_table.h"
+#include "settings/stack_config.h"
+
+namespace hydro {
+namespace {
+
+// A UDP port that no socket of this machine uses, reserved as long as this lives: so that the stack meets no
+// other one. LCM, which shares its ports, can use it.
+class ReservedPort {
+ public:
+  ReservedPort() : socket_(socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0)) {
+    sockaddr_in address{};
+    address.sin_family = AF_INET;
+    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    socklen_t length = sizeof address;
+    if (socket_ < 0 || bind(socket_, reinterpret_cast<sockaddr*>(&address), length) != 0 ||
+        getsockname(socket_, reinterpret_cast<sockaddr*>(&address), &length) != 0) {
+      const int error = errno;
+      if (socket_ >= 0) close(socket_);
+      throw std::system_error(error, std::generic_category(), "no free UDP port");
+    }
+    const int reuse = 1;
+    setsockopt(socket_, SOL_SOCKET, SO_REUSEADDR, &reuse, sizeof reuse);
+    port_ = ntohs(address.sin_port);
+  }
+  ~ReservedPort() { close(socket_); }
+  ReservedPort(const ReservedPort&) = delete;
+  ReservedPort& operator=(const ReservedPort&) = delete;
+  std::string url() const { return "udpm://239.255.76.67:" + std::to_string(port_) + "?ttl=0"; }
+
+ private:
+  int socket_ = -1;
+  int port_ = 0;
+};
+
+// Runs a program to its end, its output in `output_file`; returns its exit code, 128 + N when signal N ended
+// it. It gets SIGTERM when we die.
+int RunToItsEnd(const std::vector<std::string>& command, const std::string& output_file) {
+  const int output = open(output_file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+  if (output < 0) throw std::system_error(errno, std::generic_category(), output_file);
+  std::vector<char*> argv;
+  argv.reserve(command.size() + 1);
+  for (const std::string& word : command) argv.push_back(const_cast<char*>(word.c_str()));
+  argv.push_back(nullptr);
+  const pid_t us = getpid();
+  const pid_t pid = fork();
+  if (pid == 0) {
+    // Only what is safe between fork and exec in a program with threads.
+    prctl(PR_SET_PDEATHSIG, SIGTERM);
+    if (getppid() != us) _exit(1);
+    dup2(output, STDOUT_FILENO);
+    dup2(output, STDERR_FILENO);
+    execv(argv[0], argv.data());
+    _exit(127);
+  }
+  const int error = errno;
+  close(output);
+  if (pid < 0) throw std::system_error(error, std::generic_category(), "fork");
+  int status = 0;
+  while (waitpid(pid, &status, 0) < 0) {
+    if (errno != EINTR) throw std::system_error(errno, std::generic_category(), "waitpid");
+  }
+  return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+}
+
+std::string LastLines(const std::string& file, size_t count) {
+  std::ifstream in(file);
+  std::vector<std::string> lines;
+  for (std::string line; std::getline(in, line);) {
+    if (line.empty()) continue;
+    lines.push_back(line);
+    if (lines.size() > count) lines.erase(lines.begin());
+  }
+  std::string text;
+  for (const std::string& line : lines) text += (text.empty() ? "" : " | ") + line;
+  return text.empty() ? "it printed nothing" : text;
+}
+
+}  // namespace
+
+StackRunner SeparateProcesses(const std::string& program_folder, const std::string& folder) {
+  // Two stacks at a time would take the processor from each other: this is real time.
+  auto one_at_a_time = std::make_shared<std::mutex>();
+  return [=](const StackSetup& setup) {
+    const std::lock_guard lock(*one_at_a_time);
+    const StackConfig parsed =
+        ParseStackConfig(setup.config, setup.name, setup.model, setup.name + " (model)");
+    std::filesystem::create_directories(folder);
+    const std::string stem = folder + "/" + setup.name;
+    const std::string config = stem + ".toml";
+    const std::string model = setup.name + ".model.toml";
+    const std::string log = stem + ".lcmlog";
+    WriteWholeFile(config, setup.config);
+    WriteWholeFile(folder + "/" + model, setup.model);
+    const ReservedPort port;
+    std::vector<std::string> command = {program_folder + "/hydro-launch",
+                                        config,
+                                        "--time",
+                                        "realtime",
+                                        "--log",
+                                        log,
+                                        "--set",
+                                        "model.file=" + model,
+                                        "--set",
+                                        "bus.url=" + port.url()};
+    if (parsed.plant.command_delay_ticks == 0) {  // an answer cannot act before it was computed
+      command.insert(command.end(), {"--set", "plant.command_delay_ticks=1"});
+    }
+    const int exit_code = RunToItsEnd(command, stem + ".txt");
+    if (exit_code != 0) {
+      throw std::runtime_error(setup.name + ": hydro-launch ended with exit code " +
+                               std::to_string(exit_code) + ": " + LastLines(stem + ".txt", 3));
+    }
+    return ExportRun(ReadRunLog(log));
+  };
+}
+
+}  // namespace hydro

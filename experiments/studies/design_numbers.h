@@ -1,0 +1,27 @@
+// Poles and settling times as text and JSON, for the figures of the position loop's design.
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "experiments/maths/position_design.h"
+#include "runs/step_response.h"
+
+namespace hydro {
+
+inline constexpr double kPaperGain = 350;  // psi s/rad, g of the paper's Figure 10
+
+// [[re, im], ...]
+std::vector<std::pair<double, double>> AsPairs(const std::vector<Complex>& poles);
+
+// The pole with the largest real part, of a pair the upper one.
+Complex SlowestPole(const std::vector<Complex>& poles);
+
+// "0.312 s", or "never".
+std::string SettlingText(const StepResponse& response);
+
+// "-38.4 ± 113.1j"; of a real pole "-2.52".
+std::string PoleText(const Complex& pole);
+
+}  // namespace hydro

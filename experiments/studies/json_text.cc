@@ -1,0 +1,11 @@
+#include "experiments/studies/json_text.h"
+
+#include <nlohmann/json.hpp>
+
+namespace hydro {
+
+std::string JsonText(const nlohmann::json& value) { return value.dump(2); }
+
+nlohmann::json ParseJson(const std::string& text) { return nlohmann::json::parse(text); }
+
+}  // namespace hydro

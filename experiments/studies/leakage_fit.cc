@@ -1,0 +1,353 @@
+#include "experiments/studies/leakage_fit.h"
+
+#include <ceres/ceres.h>
+#include <spdlog/fmt/fmt.h>
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "model/actuator.h"
+
+namespace hydro {
+namespace {
+
+constexpr double kLeast = 1e-9;  // in^3/(s psi), between which leakages are looked for
+constexpr double kMost = 1e-3;
+constexpr double kStep = 1e-4;          // of a logarithm, for derivatives
+constexpr double kIdentifiable = 0.25;  // half an interval, relative
+constexpr double kNormal95 = 1.96;      // there are thousands of degrees of freedom
+
+ModelDescription WithLeakage(ModelDescription model, double log_c_E, double log_c_I) {
+  model.parameters.c_E = std::exp(log_c_E);
+  model.parameters.c_I = std::exp(log_c_I);
+  return model;
+}
+
+// Standard deviation of a signal's noise, where it is not given: from the differences of neighbours, half of
+// which are below 0.6745 sqrt(2) deviations.
+double Noise(const MeasuredSignal& signal) {
+  if (signal.noise.has_value()) return *signal.noise;
+  std::vector<double> differences;
+  for (size_t i = 1; i < signal.values.size(); ++i) {
+    const double difference = std::abs(signal.values[i] - signal.values[i - 1]);
+    if (!std::isnan(difference)) differences.push_back(difference);
+  }
+  if (differences.empty()) return 1;
+  const auto middle = differences.begin() + static_cast<ptrdiff_t>(differences.size() / 2);
+  std::nth_element(differences.begin(), middle, differences.end());
+  return std::max(*middle / (0.6745 * std::sqrt(2.0)), 1e-6);
+}
+
+// Mean of the first values while nothing acts yet.
+double StartOf(const MeasuredSignal& signal, size_t resting) {
+  double sum = 0;
+  int count = 0;
+  for (size_t i = 0; i < signal.values.size() && (i < resting || count == 0); ++i) {
+    if (std::isnan(signal.values[i])) continue;
+    sum += signal.values[i];
+    ++count;
+  }
+  return sum / count;
+}
+
+// A run with what is needed to compare it with a simulation.
+struct Case {
+  const MeasuredRun* run;
+  double p1_noise, p2_noise;
+  double pressure;  // psi, of both sides at the start
+
+  // Residuals of p1 and p2 in standard deviations, sample by sample; 0 where a value is missing.
+  Eigen::VectorXd Residuals(const SimulatedRun& simulated) const {
+    const auto n = static_cast<Eigen::Index>(run->samples());
+    Eigen::VectorXd residuals = Eigen::VectorXd::Zero(2 * n);
+    for (Eigen::Index i = 0; i < n; ++i) {
+      const auto k = static_cast<size_t>(i);
+      const double r1 = (simulated.p1[k] - run->p1.values[k]) / p1_noise;
+      const double r2 = (simulated.p2[k] - run->p2.values[k]) / p2_noise;
+      if (!std::isnan(r1)) residuals[2 * i] = r1;
+      if (!std::isnan(r2)) residuals[2 * i + 1] = r2;
+    }
+    return residuals;
+  }
+};
+
+// Throws where the run cannot support the fit.
+Case MakeCase(const MeasuredRun& run, const ModelDescription& model) {
+  const Parameters& p = model.parameters;
+  if (run.shaft != Shaft::kClamped) {
+    throw InputError(run.file + ": found a shaft that is " + (run.shaft == Shaft::kFree ? "free" : "driven") +
+                     ", allowed a clamped one: the arm's motion would drown the leakage");
+  }
+  if (run.bypass) {
+    throw InputError(run.file +
+                     ": found the bypass open, allowed a run with it closed: p_1 = p_2 leaks nothing");
+  }
+  for (const auto& [signal, name] : {std::pair(&run.p1, "p1"), std::pair(&run.p2, "p2")}) {
+    if (!signal->measured()) {
+      throw InputError(run.file + ": found no " + name +
+                       ", allowed a run with p1 and p2: the two sides tell c_E from c_I");
+    }
+  }
+  try {
+    const Actuator possible(model, {.shaft = Shaft::kClamped, .arm_angle = run.arm_angle_rad});
+  } catch (const ModelError& error) {
+    throw InputError(run.file + ": " + error.what());
+  }
+  Case result{&run, Noise(run.p1), Noise(run.p2), p.p_3};
+  double largest = 0, least_dp = std::numeric_limits<double>::infinity(), most_dp = -least_dp;
+  size_t resting = run.samples();
+  for (size_t i = 0; i < run.samples(); ++i) {
+    const double torque = std::min(std::abs(p.k_1 * run.voltage.values[i]), p.T_pmax);
+    if (torque > p.T_s) resting = std::min(resting, i + 1);
+    largest = std::max(largest, torque);
+    const double dp = run.p2.values[i] - run.p1.values[i];
+    if (std::isnan(dp)) continue;
+    least_dp = std::min(least_dp, dp);
+    most_dp = std::max(most_dp, dp);
+  }
+  const std::string allowed = ", allowed steps of torque well above it, so that pressure builds up and leaks";
+  if (largest <= p.T_s) {
+    throw InputError(
+        fmt::format("{}: found a motor torque of at most {:.4g} in-lbf, which friction holds (T_s = "
+                    "{:.4g} in-lbf){}",
+                    run.file, largest, p.T_s, allowed));
+  }
+  const double noise = std::hypot(result.p1_noise, result.p2_noise);
+  if (!(most_dp - least_dp > 10 * noise)) {
+    throw InputError(
+        fmt::format("{}: found p_2 - p_1 from {:.4g} to {:.4g} psi with a noise of {:.3g} psi, allowed "
+                    "a swing of ten times the noise: torques well above T_s = {:.4g} in-lbf",
+                    run.file, least_dp, most_dp, noise, p.T_s));
+  }
+  // A voltage that overcomes friction raises the side that it drives the pump to. (A smaller one may stand
+  // against what is left from before.)
+  double along = 0;  // V psi
+  for (size_t i = 0; i < run.samples(); ++i) {
+    const double dp = run.p2.values[i] - run.p1.values[i];
+    if (std::isnan(dp) || std::abs(p.k_1 * run.voltage.values[i]) <= p.T_s) continue;
+    along += run.voltage.values[i] * dp;
+  }
+  if (along < 0) {
+    throw InputError(run.file +
+                     ": found p_2 - p_1 against the sign of the voltage, allowed p_2 rising under a positive "
+                     "voltage: exchange p1 and p2, or give the voltage the scale -1");
+  }
+  resting = std::min<size_t>(resting, 100);
+  const double p1 = StartOf(run.p1, resting), p2 = StartOf(run.p2, resting);
+  // Missing first values tell nothing of the start; p_3 is what rest tends to.
+  if (!std::isnan(run.p1.values.front()) && !std::isnan(run.p2.values.front())) {
+    if (std::abs(p1 - p2) > 5 * noise) {
+      throw InputError(
+          fmt::format("{}: found a start at p_1 = {:.4g} psi, p_2 = {:.4g} psi, allowed a start at "
+                      "rest with both sides at one pressure: wait without voltage before it",
+                      run.file, p1, p2));
+    }
+    if ((p1 + p2) / 2 > p.p_3 + 5 * noise) result.pressure = (p1 + p2) / 2;
+  }
+  return result;
+}
+
+// What a Fisher matrix about the logarithms says.
+LeakageInformation Information(const Eigen::Matrix2d& fisher, double c_E, double c_I) {
+  LeakageInformation information;
+  const double infinity = std::numeric_limits<double>::infinity();
+  const double determinant = fisher.determinant();
+  const bool regular = determinant > 1e-12 * fisher(0, 0) * fisher(1, 1);
+  information.c_E_error = regular ? std::sqrt(fisher(1, 1) / determinant) : infinity;
+  information.c_I_error = regular ? std::sqrt(fisher(0, 0) / determinant) : infinity;
+  information.correlation = -fisher(0, 1) / std::sqrt(fisher(0, 0) * fisher(1, 1));
+  const Eigen::Vector2d values(c_E, c_I);
+  const Eigen::Matrix2d in_units =
+      values.cwiseInverse().asDiagonal() * fisher * values.cwiseInverse().asDiagonal();
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> solver(in_units);
+  const Eigen::Vector2d best = solver.eigenvectors().col(1);
+  information.c_I_weight = best[1] / best[0];
+  information.combination_error = 1 / std::sqrt(solver.eigenvalues()[1]) / std::abs(best.dot(values));
+  return information;
+}
+
+// The residuals of one run as Ceres asks for them.
+struct RunResiduals {
+  const ModelDescription* model;
+  const Case* run_case;
+
+  bool operator()(double const* const* logs, double* residuals) const {
+    const SimulatedRun simulated =
+        SimulateClamped(WithLeakage(*model, logs[0][0], logs[0][1]), *run_case->run, run_case->pressure);
+    const Eigen::VectorXd values = run_case->Residuals(simulated);
+    std::copy(values.data(), values.data() + values.size(), residuals);
+    return true;
+  }
+};
+
+double Cost(const ModelDescription& model, const std::vector<Case>& cases, const double* logs) {
+  double cost = 0;
+  for (const Case& run_case : cases) {
+    cost += run_case
+                .Residuals(
+                    SimulateClamped(WithLeakage(model, logs[0], logs[1]), *run_case.run, run_case.pressure))
+                .squaredNorm();
+  }
+  return cost;
+}
+
+// Starts from the best of a coarse grid, so that no guess is needed.
+bool Solve(const ModelDescription& model, const std::vector<Case>& cases, double* logs) {
+  double least = std::numeric_limits<double>::infinity();
+  for (const double c_E : {1e-7, 1e-6, 1e-5, 1e-4}) {
+    for (const double c_I : {1e-7, 1e-6, 1e-5, 1e-4}) {
+      const double at[] = {std::log(c_E), std::log(c_I)};
+      const double cost = Cost(model, cases, at);
+      if (!(cost < least)) continue;
+      least = cost;
+      logs[0] = at[0];
+      logs[1] = at[1];
+    }
+  }
+  ceres::NumericDiffOptions differences;
+  differences.relative_step_size = 1e-5;  // of logarithms about -12
+  ceres::Problem problem;
+  for (const Case& run_case : cases) {
+    auto* cost = new ceres::DynamicNumericDiffCostFunction<RunResiduals, ceres::CENTRAL>(
+        new RunResiduals{&model, &run_case}, ceres::TAKE_OWNERSHIP, differences);
+    cost->AddParameterBlock(2);
+    cost->SetNumResiduals(static_cast<int>(2 * run_case.run->samples()));
+    problem.AddResidualBlock(cost, nullptr, logs);
+  }
+  for (int i = 0; i < 2; ++i) {
+    problem.SetParameterLowerBound(logs, i, std::log(kLeast));
+    problem.SetParameterUpperBound(logs, i, std::log(kMost));
+  }
+  ceres::Solver::Options options;
+  options.linear_solver_type = ceres::DENSE_NORMAL_CHOLESKY;
+  options.function_tolerance = 1e-10;
+  options.parameter_tolerance = 1e-8;
+  options.logging_type = ceres::SILENT;
+  options.num_threads = 1;
+  ceres::Solver::Summary summary;
+  ceres::Solve(options, &problem, &summary);
+  return summary.termination_type == ceres::CONVERGENCE;
+}
+
+Estimate Interval(double value, double relative_error) {
+  const double factor = std::exp(kNormal95 * relative_error);
+  return {value, value / factor, value * factor};
+}
+
+// Sums up what the runs tell, part by part.
+struct FisherSums {
+  Eigen::Matrix2d floating = Eigen::Matrix2d::Zero(), held_side = floating, floating_dp = floating,
+                  held_dp = floating;
+
+  void Add(const Case& run_case, const SimulatedRun& simulated, double p_3,
+           const Eigen::MatrixX2d& jacobian) {
+    const double noise = std::hypot(run_case.p1_noise, run_case.p2_noise);
+    for (size_t i = 0; i < run_case.run->samples(); ++i) {
+      const auto k = static_cast<Eigen::Index>(2 * i);
+      const Eigen::Matrix2d both = jacobian.row(k).transpose() * jacobian.row(k) +
+                                   jacobian.row(k + 1).transpose() * jacobian.row(k + 1);
+      const Eigen::RowVector2d dp =
+          (run_case.p2_noise * jacobian.row(k + 1) - run_case.p1_noise * jacobian.row(k)) / noise;
+      // The model holds a side at p_3 to the last bit while its valve is open.
+      const bool held = simulated.p1[i] == p_3 || simulated.p2[i] == p_3;
+      (held ? held_side : floating) += both;
+      (held ? held_dp : floating_dp) += dp.transpose() * dp;
+    }
+  }
+};
+
+}  // namespace
+
+SimulatedRun SimulateClamped(const ModelDescription& model, const MeasuredRun& run, double pressure) {
+  Actuator actuator(model, {.shaft = Shaft::kClamped,
+                            .arm_angle = run.arm_angle_rad,
+                            .bypass = false,
+                            .initial_pressure = pressure});
+  SimulatedRun simulated;
+  for (size_t i = 0; i < run.samples(); ++i) {
+    if (i > 0) actuator.Advance(run.voltage.values[i - 1], run.time[i] - run.time[0]);
+    const Measurement now = actuator.Measure();
+    simulated.p1.push_back(now.p1);
+    simulated.p2.push_back(now.p2);
+    simulated.motor_speed.push_back(now.motor_speed);
+  }
+  return simulated;
+}
+
+LeakageFit FitLeakage(const ModelDescription& model, const std::vector<MeasuredRun>& runs) {
+  std::vector<Case> cases;
+  cases.reserve(runs.size());
+  for (const MeasuredRun& run : runs) cases.push_back(MakeCase(run, model));
+  double logs[2];
+  LeakageFit fit;
+  fit.converged = Solve(model, cases, logs);
+
+  const ModelDescription found = WithLeakage(model, logs[0], logs[1]);
+  FisherSums sums;
+  double squares = 0;
+  int64_t count = 0;
+  // How the gradient of the cost changes with each of the parameters that are taken as known.
+  const std::vector<std::pair<const char*, double Parameters::*>> known = {
+      {"k_1", &Parameters::k_1},   {"T_s", &Parameters::T_s},   {"D", &Parameters::D},
+      {"beta", &Parameters::beta}, {"V_ms", &Parameters::V_ms}, {"p_3", &Parameters::p_3}};
+  std::vector<Eigen::Vector2d> pulls(known.size(), Eigen::Vector2d::Zero());
+  for (const Case& run_case : cases) {
+    const auto simulate = [&](const ModelDescription& with) {
+      return SimulateClamped(
+          with, *run_case.run,
+          run_case.pressure == model.parameters.p_3 ? with.parameters.p_3 : run_case.pressure);
+    };
+    const SimulatedRun simulated = simulate(found);
+    const Eigen::VectorXd residuals = run_case.Residuals(simulated);
+    Eigen::MatrixX2d jacobian(residuals.size(), 2);
+    for (int j = 0; j < 2; ++j) {
+      double up[] = {logs[0], logs[1]}, down[] = {logs[0], logs[1]};
+      up[j] += kStep;
+      down[j] -= kStep;
+      jacobian.col(j) = (run_case.Residuals(simulate(WithLeakage(model, up[0], up[1]))) -
+                         run_case.Residuals(simulate(WithLeakage(model, down[0], down[1])))) /
+                        (2 * kStep);
+    }
+    sums.Add(run_case, simulated, model.parameters.p_3, jacobian);
+    squares += residuals.squaredNorm();
+    for (const double residual : residuals) count += residual != 0;
+    for (size_t i = 0; i < known.size(); ++i) {
+      // A thousandth: small enough to be linear across sticks and slips.
+      ModelDescription changed = found;
+      changed.parameters.*known[i].second *= 1.001;
+      pulls[i] += 10 * jacobian.transpose() * (run_case.Residuals(simulate(changed)) - residuals);
+    }
+    fit.simulated.push_back(simulated);
+    fit.p1_noise.push_back(run_case.p1_noise);
+    fit.p2_noise.push_back(run_case.p2_noise);
+  }
+
+  const double c_E = found.parameters.c_E, c_I = found.parameters.c_I;
+  const Eigen::Matrix2d all = sums.floating + sums.held_side;
+  fit.rms = std::sqrt(squares / static_cast<double>(std::max<int64_t>(1, count - 2)));
+  fit.information = Information(all, c_E, c_I);
+  fit.floating = Information(sums.floating, c_E, c_I);
+  fit.held = Information(sums.held_side, c_E, c_I);
+  fit.floating_difference = Information(sums.floating_dp, c_E, c_I);
+  fit.held_difference = Information(sums.held_dp, c_E, c_I);
+  fit.all_difference = Information(sums.floating_dp + sums.held_dp, c_E, c_I);
+  // Residuals larger than the noise say that the model lacks something: the intervals grow with them.
+  const double scale = std::max(1.0, fit.rms);
+  fit.c_E = Interval(c_E, scale * fit.information.c_E_error);
+  fit.c_I = Interval(c_I, scale * fit.information.c_I_error);
+  fit.combination =
+      Interval(c_E + fit.information.c_I_weight * c_I, scale * fit.information.combination_error);
+  for (const auto& [estimate, name] : {std::pair(&fit.c_E, "c_E"), std::pair(&fit.c_I, "c_I")}) {
+    if (!(estimate->high <= (1 + kIdentifiable) * estimate->value)) fit.not_identifiable.push_back(name);
+  }
+  for (size_t i = 0; i < known.size(); ++i) {
+    // One Gauss-Newton step; pulls are for 1 % of the parameter.
+    const Eigen::Vector2d shift = -all.ldlt().solve(pulls[i]);
+    fit.shifts.push_back({known[i].first, 100 * shift[0], 100 * shift[1]});
+  }
+  return fit;
+}
+
+}  // namespace hydro

@@ -1,0 +1,49 @@
+// A commanded torque against a clamped arm: steps and swept sines.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "experiments/maths/frequency_response.h"
+#include "experiments/runs/pressure_loop_run.h"
+#include "experiments/studies/experiment.h"
+
+namespace hydro {
+
+struct TorqueStep {
+  double command = 0;                   // in-lbf
+  double error = 0;                     // in-lbf, command - torque, settled
+  double closed_form_error = 0;         // in-lbf
+  double rise_time = 0;                 // s, from 10 to 90 % of where it settles
+  double overshoot_percent = 0;         // of the command, beyond it
+  std::optional<double> settling_time;  // s, to within 2 % of where it settles
+  double saturated_fraction = 0;        // of the time until 0.1 s after the step
+  PressureLoopRun run;
+};
+
+// From rest; with `feedforward` V/psi of the reference.
+TorqueStep RunTorqueStep(const StackRunner& run_stack, double command, double feedforward);
+
+struct TorqueSweep {
+  double mean = 0;                    // in-lbf, of the commanded torque
+  double amplitude = 0;               // in-lbf
+  std::vector<ResponsePoint> points;  // torque at the arm per commanded torque
+  double bandwidth_hz = 0;            // 3 dB below the lowest points' gain; NaN: not within the sweep
+  double saturated_fraction = 0;      // of the time
+  // Of the time, both pressures above p_3: a valve that opened in an earlier cycle has let fluid in.
+  double both_compress_fraction = 0;
+};
+
+inline constexpr double kSweepFirst = 0.5;  // Hz
+inline constexpr double kSweepLast = 60;    // Hz
+
+TorqueSweep RunTorqueSweep(const StackRunner& run_stack, double mean, double amplitude);
+
+// Half the width of the band of torques at which a standing pump stays so, whatever is commanded.
+double FrictionBandTorque();
+
+// Bandwidth in closed form of the loop without friction, leakage and saturation. compressed_sides: 2, or 1
+// when a valve holds the other side at p_3.
+double LinearBandwidthHz(int compressed_sides);
+
+}  // namespace hydro

@@ -1,0 +1,121 @@
+#include "experiments/studies/torque_driven.h"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "experiments/runs/shipped_models.h"
+
+namespace hydro {
+namespace {
+
+constexpr double kReach = 0.1;            // rad
+constexpr double kPointInterval = 0.005;  // s, of the path and of the command
+// Speeds and accelerations of the unit quintic 10 s^3 - 15 s^4 + 6 s^5 peak at 15/8 and 5.77.
+constexpr double kPeakRate = 1.875;
+
+std::string Points(double duration, const auto& value) {
+  std::string out;
+  const auto count = static_cast<int>(std::lround(duration / kPointInterval));
+  for (int i = 0; i <= count; ++i) {
+    const double time = i * kPointInterval;
+    out += fmt::format("{}[{}, {}]", i == 0 ? "" : ", ", time, value(time));
+  }
+  return "[" + out + "]";
+}
+
+// e from k_1 (k_p e - k_p k_v w) = J theta'' + b theta' + T_s sgn(theta') + D (ref - e), where w is the pump
+// speed that the k_v term sees, and the higher side leaks (c_I + c_E) |dp| while the other is at p_3.
+double PathError(const Parameters& p, const PressureGains& gains, double reference, double arm_speed,
+                 double arm_acceleration, bool arm_speed_feedforward) {
+  const double forced = p.c / p.D * arm_speed;
+  const double leak_per_psi = (p.c_I + p.c_E) / p.D;  // rad/s per psi
+  const double gain = p.k_1 * gains.k_p;
+  const double braking = gain * gains.k_v;
+  const double seen = arm_speed_feedforward ? 0 : forced;
+  const double turns = forced + leak_per_psi * reference;  // for its sign
+  const double friction = turns == 0 ? 0 : std::copysign(p.T_s, turns);
+  const double torque = p.J * p.c / p.D * arm_acceleration + p.b * forced + friction + braking * seen;
+  // leak_per_psi (ref - e) turns the pump as well, and costs b and the k_v term.
+  const double per_psi = p.D + (p.b + braking) * leak_per_psi;
+  return (torque + per_psi * reference) / (gain + per_psi);
+}
+
+}  // namespace
+
+SmoothPath::SmoothPath(double reach, double largest_speed)
+    : reach_(reach),
+      move_(std::round(kPeakRate * 2 * reach / largest_speed / (2 * kPointInterval)) * 2 * kPointInterval) {}
+
+SmoothPath::Phase SmoothPath::At(double time) const {
+  if (time < kRest) return {0, 0};
+  if (time < kRest + move_) return {(time - kRest) / move_, 1};
+  if (time < 2 * kRest + move_) return {1, 0};
+  if (time < 2 * (kRest + move_)) return {1 - (time - 2 * kRest - move_) / move_, -1};
+  return {0, 0};
+}
+
+double SmoothPath::angle(double time) const {
+  const double s = At(time).share;
+  return reach_ * (2 * s * s * s * (10 - 15 * s + 6 * s * s) - 1);
+}
+
+double SmoothPath::speed(double time) const {
+  const Phase at = At(time);
+  const double s = at.share;
+  return at.direction * 2 * reach_ / move_ * 30 * s * s * (1 - s) * (1 - s);
+}
+
+double SmoothPath::acceleration(double time) const {
+  const Phase at = At(time);
+  const double s = at.share;
+  // The way back is the way there with time reversed: the same acceleration at the same place.
+  return std::abs(at.direction) * 2 * reach_ / (move_ * move_) * 60 * s * (1 - s) * (1 - 2 * s);
+}
+
+TorqueOnPath RunTorqueOnPath(const StackRunner& run_stack, double largest_speed, bool arm_speed_feedforward) {
+  const Parameters p = PressureLoopParameters();
+  const PressureGains gains = PressureLoopGains();
+  const double mgl = ShippedModel("table1_gravity").parameters.mgl;
+  const SmoothPath path(kReach, largest_speed);
+  const auto command = [&](double time) {
+    return p.J_a * path.acceleration(time) + mgl * std::cos(path.angle(time));
+  };
+  TorqueOnPath out;
+  out.largest_speed = path.speed(path.middle());
+  out.arm_speed_feedforward = arm_speed_feedforward;
+  const auto angle = [&](double time) { return path.angle(time); };
+  out.run = RunPressureLoop(
+      run_stack,
+      {.name = fmt::format("torque-path-{}{}", largest_speed, arm_speed_feedforward ? "-feedforward" : ""),
+       .reference =
+           "signal = \"torque\"\nkind = \"csv\"\npoints = " + Points(path.duration(), command) + "\n",
+       .duration = path.duration(),
+       .arm_speed_feedforward = arm_speed_feedforward,
+       .motion =
+           "kind = \"csv\"\ninterpolation = \"cubic\"\npoints = " + Points(path.duration(), angle) + "\n"});
+
+  double squares = 0;
+  for (size_t i = 0; i < out.run.time.size(); ++i) {
+    const double time = out.run.time[i];
+    const double wanted = command(time);
+    out.command.push_back(wanted);
+    out.error.push_back(wanted - p.k_2 * out.run.dp[i]);
+    out.closed_form.push_back(p.k_2 * PathError(p, gains, wanted / p.k_2, path.speed(time),
+                                                path.acceleration(time), arm_speed_feedforward));
+    // What counts is the torque along the path, not how it rises at first.
+    if (time < SmoothPath::kRest) continue;
+    out.largest_motor_torque = std::max(out.largest_motor_torque, std::abs(out.run.torque[i]));
+    out.largest_motor_speed = std::max(out.largest_motor_speed, std::abs(out.run.motor_speed[i]));
+    out.largest_error = std::max(out.largest_error, std::abs(out.error[i]));
+    squares += out.error[i] * out.error[i];
+  }
+  const auto middle = static_cast<size_t>(std::lround(path.middle() * kLoopRate));
+  out.error_at_largest_speed = out.error[middle];
+  out.closed_form_at_largest_speed = out.closed_form[middle];
+  out.rms_error = std::sqrt(squares / ((path.duration() - SmoothPath::kRest) * kLoopRate));
+  return out;
+}
+
+}  // namespace hydro

@@ -1,0 +1,163 @@
+#include "hydro_log/hydro_log.h"
+
+#include <cstdio>
+#include <optional>
+#include <string>
+
+#include "base/input_error.h"
+#include "base/text_file.h"
+#include "hydro_log/run_verbs.h"
+#include "log/repair.h"
+#include "runs/compare.h"
+#include "runs/info.h"
+#include "runs/run_log.h"
+#include "runs/run_table.h"
+#include "settings/command_line.h"
+#include "tables/table.h"
+
+namespace hydro {
+namespace {
+
+class InfoVerb {
+ public:
+  explicit InfoVerb(CommandLine& line) {
+    CommandLine& verb = line.AddVerb("info", "What a log holds and whether it is complete.");
+    verb.AddPositional("LOG", &log_, "FILE the log");
+    verb.AddOption("--suffix", &suffix_, "TEXT suffix of the channels, where the log has several");
+    verb.AddFlag("--json", &json_, "print JSON");
+    verb.AddFlag("--si", &si_, "print figures in SI units");
+  }
+  int Run() const {
+    const LogInfo info = Summarise(ReadRunLog(log_, suffix_, Undecodable::kLeftOut), si_);
+    std::fputs((json_ ? InfoJson(info) : PrintableLines(InfoText(info))).c_str(), stdout);
+    return 0;
+  }
+
+ private:
+  std::string log_;
+  std::optional<std::string> suffix_;
+  bool json_ = false, si_ = false;
+};
+
+class ExportVerb {
+ public:
+  explicit ExportVerb(CommandLine& line) {
+    CommandLine& verb = line.AddVerb("export", "Write a log's run as a table, one row a plant tick.");
+    verb.AddPositional("LOG", &log_, "FILE the log");
+    verb.AddOption("-o,--output", &out_, "FILE the table: X.csv or X.mat", true);
+    verb.AddOption("--suffix", &suffix_, "TEXT suffix of the channels, where the log has several");
+  }
+  int Run() const {
+    CheckTableName(out_);
+    CheckKeeps(out_, {log_});
+    WriteTable(ExportRun(ReadWithWarning(log_, suffix_)), out_);
+    return 0;
+  }
+
+ private:
+  std::string log_, out_;
+  std::optional<std::string> suffix_;
+};
+
+class ImportVerb {
+ public:
+  explicit ImportVerb(CommandLine& line) {
+    CommandLine& verb = line.AddVerb("import", "Write a table as a log, the inverse of export.");
+    verb.AddPositional("TABLE", &table_,
+                       "FILE the table: X.csv or X.mat, with any of export's columns that include time_s");
+    verb.AddOption("-o,--output", &out_, "FILE the log", true);
+  }
+  int Run() const {
+    CheckTableName(table_);
+    CheckKeeps(out_, {table_});
+    ImportRun(ReadTable(table_), ProgramVersion(), out_);
+    return 0;
+  }
+
+ private:
+  std::string table_, out_;
+};
+
+class CompareVerb {
+ public:
+  explicit CompareVerb(CommandLine& line) {
+    CommandLine& verb = line.AddVerb("compare", "Tell whether two logs hold the same run, bit by bit.");
+    verb.AddPositional("A", &a_, "FILE a log");
+    verb.AddPositional("B", &b_, "FILE the other");
+    verb.AddOption("--suffix", &suffix_, "TEXT suffix of the channels, where both logs have several");
+    verb.AddOption("--suffix-a", &suffix_a_, "TEXT the same for A alone");
+    verb.AddOption("--suffix-b", &suffix_b_, "TEXT the same for B alone");
+  }
+  int Run() const {
+    const RunLog a = ReadComparable(a_, suffix_a_);
+    const RunLog b = ReadComparable(b_, suffix_b_);
+    const std::optional<std::string> difference = FirstDifference(a.messages, a_, b.messages, b_);
+    std::puts(difference.value_or("identical").c_str());
+    return difference.has_value() ? 1 : 0;
+  }
+
+ private:
+  RunLog ReadComparable(const std::string& file, const std::optional<std::string>& suffix) const {
+    // Bit by bit the same cannot be said of what cannot be read: such a message is refused here.
+    RunLog log = ReadRunLog(file, suffix ? suffix : suffix_);
+    // Two logs of nothing are not a run repeated.
+    if (log.messages.states.empty() && log.messages.motor_commands.empty()) {
+      throw InputError(file + ": found no state and no motor command; a log of a run is needed");
+    }
+    return log;
+  }
+
+  std::string a_, b_;
+  std::optional<std::string> suffix_, suffix_a_, suffix_b_;
+};
+
+class RepairVerb {
+ public:
+  explicit RepairVerb(CommandLine& line) {
+    CommandLine& verb = line.AddVerb("repair",
+                                     "Keep what can be read of a damaged log. Without -o the log is "
+                                     "replaced; LOG.damaged is what it was.");
+    verb.AddPositional("LOG", &log_, "FILE the log");
+    verb.AddOption("-o,--output", &out_, "FILE write the repaired log there and leave LOG alone");
+  }
+  int Run() const {
+    const RepairResult result = out_.empty() ? RepairInPlace(log_) : RepairLog(log_, out_);
+    if (result.lost.empty()) {
+      std::printf("%s: nothing to repair\n", log_.c_str());
+    } else {
+      std::fputs(Describe(result, log_).c_str(), stdout);
+    }
+    return 0;
+  }
+
+ private:
+  std::string log_, out_;
+};
+
+}  // namespace
+
+int RunHydroLog(int argc, const char* const* argv) {
+  CommandLine line("hydro-log", "Reads, converts, compares, replays and repairs logs.");
+  const InfoVerb info(line);
+  const ExportVerb export_verb(line);
+  const ImportVerb import_verb(line);
+  const CompareVerb compare(line);
+  const RepairVerb repair(line);
+  const SummaryVerb summary(line);
+  const TimingVerb timing(line);
+  const ReplayVerb replay(line);
+  if (const auto exit_code = line.Parse(argc, argv)) return *exit_code;
+  return RunProgram("hydro-log", [&] {
+    const std::string verb = line.verb();
+    if (verb == "info") return info.Run();
+    if (verb == "export") return export_verb.Run();
+    if (verb == "import") return import_verb.Run();
+    if (verb == "compare") return compare.Run();
+    if (verb == "summary") return summary.Run();
+    if (verb == "timing") return timing.Run();
+    if (verb == "replay") return replay.Run();
+    return repair.Run();
+  });
+}
+
+}  // namespace hydro

@@ -1,0 +1,191 @@
+#include "hydro_log/replay.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <thread>
+#include <vector>
+
+#include "base/input_error.h"
+#include "base/number_text.h"
+#include "base/saturating.h"
+#include "bus/in_process_bus.h"
+#include "position_ctrl/position_app.h"
+#include "pressure_ctrl/pressure_app.h"
+#include "runs/compare.h"
+#include "settings/stack_config.h"
+
+namespace hydro {
+namespace {
+
+constexpr double kLatestTime = 1e9;  // s; 64 bits of ns hold it
+
+// The first message of each tick: a later one of the same tick is a repetition or a watchdog's.
+template <class Message>
+std::map<int64_t, Message> ByTick(const std::vector<Message>& messages) {
+  std::map<int64_t, Message> by_tick;
+  for (const Message& message : messages) by_tick.emplace(message.tick, message);
+  return by_tick;
+}
+
+template <class Message>
+std::vector<Message> Unnumbered(const std::map<int64_t, Message>& by_tick) {
+  std::vector<Message> messages;
+  for (const auto& [tick, message] : by_tick) {
+    messages.push_back(message);
+    messages.back().sequence = 0;
+  }
+  return messages;
+}
+
+class Replayer {
+ public:
+  Replayer(const RunLog& log, double speed) : speed_(speed) {
+    if (log.descriptions.empty()) {
+      throw InputError(log.file +
+                       ": found no HYDRO_RUN message; a replay needs the run's configuration and model");
+    }
+    const run_description_t& description = log.descriptions.front();
+    if (description.config_text.empty()) {
+      throw InputError(
+          log.file + ": its description has no configuration (an imported table); a replay needs the run's");
+    }
+    config_ = ParseStackConfig(description.config_text, log.file + " (its configuration)",
+                               description.model_text, log.file + " (its model)");
+    config_.time.mode =
+        TimeMode::kRealtime;  // nothing is waited for: what is in force is handed over in time
+    channels_ = Channels(config_.bus.channel_suffix);
+    states_ = ByTick(log.messages.states);
+    if (states_.empty()) throw InputError(log.file + ": found no states to feed");
+    for (const auto& [tick, state] : states_) {
+      if (std::abs(state.time) <= kLatestTime) continue;
+      throw InputError(log.file + ": found the state of tick " + std::to_string(tick) + " at " +
+                       NumberText(state.time) + " s; a time between -1e9 and 1e9 s is needed");
+    }
+  }
+
+  const StackConfig& config() const { return config_; }
+  const Channels& channels() const { return channels_; }
+  SimulatedClock& clock() { return clock_; }
+  InProcessBus& bus() { return bus_; }
+  int64_t first_tick() const { return states_.begin()->first; }
+  int64_t states() const { return static_cast<int64_t>(states_.size()); }
+
+  // Sends the states one by one; `before` may send something else first.
+  template <class Before>
+  void Feed(Before before) {
+    const double first_time = states_.begin()->second.time;
+    const auto wall_start = std::chrono::steady_clock::now();
+    for (const auto& [tick, state] : states_) {
+      const std::chrono::duration<double> elapsed(state.time - first_time);
+      if (speed_ > 0) std::this_thread::sleep_until(wall_start + elapsed / speed_);
+      clock_.AdvanceTo(Clock::TimePoint(std::chrono::duration_cast<Clock::Duration>(elapsed)));
+      before(tick);
+      bus_.Publish(channels_.state, state);
+      Deliver();
+    }
+  }
+
+  void Deliver() {
+    while (bus_.HandleUntil(clock_.Now()) > 0) {
+    }
+  }
+
+ private:
+  double speed_;
+  StackConfig config_;
+  Channels channels_;
+  std::map<int64_t, state_t> states_;
+  SimulatedClock clock_;
+  InProcessBus bus_{&clock_};
+};
+
+ReplayResult Compare(const Replayer& replayer, const RunMessages& recorded, const RunMessages& replayed,
+                     size_t answers) {
+  ReplayResult result;
+  result.states = replayer.states();
+  result.answers = static_cast<int64_t>(answers);
+  result.difference = FirstDifference(recorded, "the record", replayed, "the replay");
+  return result;
+}
+
+ReplayResult ReplayPressure(const RunLog& log, double speed) {
+  std::map<int64_t, motor_command_t> recorded;
+  for (const auto& [tick, command] : ByTick(log.messages.motor_commands)) {
+    if (command.status != motor_command_t::STOPPED) recorded.emplace(tick, command);
+  }
+  if (recorded.empty()) throw InputError(log.file + ": found no motor commands to compare with");
+  const auto pressure_commands = ByTick(log.messages.pressure_commands);
+  // A log that begins in the middle of a run: the pressure command in force then was sent before.
+  while (!recorded.empty() && recorded.begin()->second.pressure_command_tick >= 0 &&
+         !pressure_commands.contains(recorded.begin()->second.pressure_command_tick)) {
+    recorded.erase(recorded.begin());
+  }
+
+  Replayer replayer(log, speed);
+  PressureApp app(replayer.bus(), replayer.clock(), replayer.config());
+  std::map<int64_t, motor_command_t> answers;
+  replayer.bus().Subscribe<motor_command_t>(replayer.channels().motor_command,
+                                            [&](const motor_command_t& command) {
+                                              if (recorded.contains(command.tick))
+                                                answers.emplace(command.tick, command);
+                                            });
+  auto next = pressure_commands.begin();
+  replayer.Feed([&](int64_t tick) {
+    const auto command = recorded.find(tick);
+    if (command == recorded.end()) return;
+    for (; next != pressure_commands.end() && next->first <= command->second.pressure_command_tick; ++next) {
+      replayer.bus().Publish(replayer.channels().pressure_command, next->second);
+      replayer.Deliver();
+    }
+  });
+  RunMessages record, replay;
+  record.motor_commands = Unnumbered(recorded);
+  replay.motor_commands = Unnumbered(answers);
+  return Compare(replayer, record, replay, recorded.size());
+}
+
+ReplayResult ReplayPosition(const RunLog& log, double speed) {
+  auto recorded = ByTick(log.messages.pressure_commands);
+  auto references = ByTick(log.messages.arm_references);
+  if (recorded.empty()) throw InputError(log.file + ": found no pressure commands to compare with");
+
+  Replayer replayer(log, speed);
+  if (replayer.first_tick() > 0) {
+    // A log that begins in the middle of a run: the derivative of its first sample needs the sample before.
+    const int64_t interval = replayer.config().position_interval_ticks;
+    const int64_t since_sample = replayer.first_tick() % interval;
+    const int64_t first_sample = since_sample == 0
+                                     ? replayer.first_tick()
+                                     : SaturatingSum(replayer.first_tick(), interval - since_sample);
+    recorded.erase(recorded.begin(), recorded.upper_bound(first_sample));
+    references.erase(references.begin(), references.upper_bound(first_sample));
+  }
+  PositionApp app(replayer.bus(), replayer.clock(), replayer.config());
+  std::map<int64_t, pressure_command_t> answers;
+  std::map<int64_t, arm_reference_t> answered_references;
+  replayer.bus().Subscribe<pressure_command_t>(replayer.channels().pressure_command,
+                                               [&](const auto& command) {
+                                                 if (recorded.contains(command.tick))
+                                                   answers.emplace(command.tick, command);
+                                               });
+  replayer.bus().Subscribe<arm_reference_t>(replayer.channels().arm_reference, [&](const auto& reference) {
+    if (references.contains(reference.tick)) answered_references.emplace(reference.tick, reference);
+  });
+  replayer.Feed([](int64_t) {});
+  RunMessages record, replay;
+  record.pressure_commands = Unnumbered(recorded);
+  record.arm_references = Unnumbered(references);
+  replay.pressure_commands = Unnumbered(answers);
+  replay.arm_references = Unnumbered(answered_references);
+  return Compare(replayer, record, replay, recorded.size());
+}
+
+}  // namespace
+
+ReplayResult Replay(const RunLog& log, ReplayedController controller, double speed) {
+  return controller == ReplayedController::kPressure ? ReplayPressure(log, speed)
+                                                     : ReplayPosition(log, speed);
+}
+
+}  // namespace hydro

@@ -1,0 +1,117 @@
+#include "hydro_log/run_verbs.h"
+
+#include <cmath>
+#include <cstdio>
+
+#include "base/input_error.h"
+#include "base/new_file.h"
+#include "base/text_file.h"
+#include "hydro_log/replay.h"
+#include "runs/tracking.h"
+#include "timing/report/timing_report.h"
+
+namespace hydro {
+
+namespace {
+
+void WriteText(const std::string& name, const std::string& text) {
+  NewFile file(name, Opening::kTemporary);
+  file.Write(text.data(), text.size());
+  file.Finish();
+}
+
+// Before anything is printed or written.
+void CheckOutput(const std::string& file, const std::string& log) {
+  CheckKeeps(file, {log});
+  CheckCanBeCreated(file);
+}
+
+}  // namespace
+
+RunLog ReadWithWarning(const std::string& file, const std::optional<std::string>& suffix) {
+  RunLog log = ReadRunLog(file, suffix, Undecodable::kLeftOut);
+  const std::string left_out = DescribeUndecodable(log);
+  if (!left_out.empty()) std::fprintf(stderr, "hydro-log: warning: %s\n", Printable(left_out).c_str());
+  return log;
+}
+
+SummaryVerb::SummaryVerb(CommandLine& line) {
+  CommandLine& verb =
+      line.AddVerb("summary", "How well the arm followed its reference, loop timing, losses.");
+  verb.AddPositional("LOG", &log_, "FILE the log");
+  verb.AddOption("--suffix", &suffix_, "TEXT suffix of the channels, where the log has several");
+  verb.AddOption("--json", &json_, "FILE write the same there as JSON");
+  verb.AddFlag("--si", &si_, "print figures in SI units too");
+}
+
+int SummaryVerb::Run() const {
+  CheckOutput(json_, log_);
+  const RunLog log = ReadWithWarning(log_, suffix_);
+  if (log.messages.states.empty()) throw InputError(log_ + ": found no state; a log of a run is needed");
+  const Tracking tracking = TrackArm(log);
+  const LogInfo info = Summarise(log, si_);
+  std::fputs(PrintableLines(SummaryText(tracking, info, si_)).c_str(), stdout);
+  if (!json_.empty()) WriteText(json_, SummaryJson(tracking, info));
+  return 0;
+}
+
+TimingVerb::TimingVerb(CommandLine& line) {
+  CommandLine& verb =
+      line.AddVerb("timing", "How the loops kept time: periods, latencies, round trips, losses.");
+  verb.AddPositional("LOG", &log_, "FILE the log");
+  verb.AddOption("--suffix", &suffix_, "TEXT suffix of the channels, where the log has several");
+  verb.AddOption("--json", &json_, "FILE write the same there as JSON, with the histograms");
+  verb.AddOption("--page", &page_, "FILE write plots there (HTML)");
+}
+
+int TimingVerb::Run() const {
+  CheckOutput(json_, log_);
+  CheckOutput(page_, log_);
+  const RunLog log = ReadWithWarning(log_, suffix_);
+  TimingRecord record;
+  for (const loop_statistics_t& report : log.statistics) record.Add(report);
+  for (const loop_histogram_t& histogram : log.histograms) record.Add(histogram);
+  const std::vector<TimedProcess> processes = record.Processes();
+  if (processes.empty()) {
+    throw InputError(
+        log_ + ": found no report of a loop (HYDRO_LOOP_STATISTICS); a log of a run of processes is needed");
+  }
+  std::fputs(PrintableLines(TimingText(processes)).c_str(), stdout);
+  if (!json_.empty()) WriteText(json_, TimingJson(processes, log_));
+  if (!page_.empty()) WriteText(page_, TimingPage(processes, log_));
+  return 0;
+}
+
+ReplayVerb::ReplayVerb(CommandLine& line) {
+  CommandLine& verb = line.AddVerb(
+      "replay",
+      "Feed the recorded states through the controllers and compare their answers with the record.");
+  verb.AddPositional("LOG", &log_, "FILE the log");
+  verb.AddOption("--suffix", &suffix_, "TEXT suffix of the channels, where the log has several");
+  verb.AddOption("--controller", &controller_, "NAME pressure, position or both (default)");
+  verb.AddOption("--speed", &speed_, "X recorded seconds per wall second; 0 (default): as fast as possible");
+}
+
+int ReplayVerb::Run() const {
+  if (controller_ != "pressure" && controller_ != "position" && controller_ != "both") {
+    throw InputError("--controller: found " + controller_ + ", allowed are pressure, position and both");
+  }
+  if (!(speed_ >= 0) || std::isinf(speed_)) throw InputError("--speed: must be a number of 0 or more");
+  const RunLog log = ReadWithWarning(log_, suffix_);
+  int exit_code = 0;
+  const auto replay = [&](ReplayedController controller, const char* name, const char* commands) {
+    const ReplayResult result = Replay(log, controller, speed_);
+    if (result.difference) {
+      std::printf("%s: %s\n", name, result.difference->c_str());
+      exit_code = 1;
+    } else {
+      std::printf("%s: identical, %lld %s from %lld states\n", name, static_cast<long long>(result.answers),
+                  commands, static_cast<long long>(result.states));
+    }
+  };
+  if (controller_ != "position") replay(ReplayedController::kPressure, "pressure", "motor commands");
+  if (controller_ != "pressure") replay(ReplayedController::kPosition, "position", "pressure commands");
+  return exit_code;
+}
+
+}  // namespace hydro

@@ -1,0 +1,48 @@
+// The verbs of hydro-log that look at a run as a control loop: summary, timing and replay.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "runs/run_log.h"
+#include "settings/command_line.h"
+
+namespace hydro {
+
+// For verbs that show or convert what was recorded: a message that is not this stack's is none of the run, as
+// it was none to the processes that heard it. One line on stderr says what was left out.
+RunLog ReadWithWarning(const std::string& file, const std::optional<std::string>& suffix);
+
+class SummaryVerb {
+ public:
+  explicit SummaryVerb(CommandLine& line);
+  int Run() const;
+
+ private:
+  std::string log_, json_;
+  std::optional<std::string> suffix_;
+  bool si_ = false;
+};
+
+class TimingVerb {
+ public:
+  explicit TimingVerb(CommandLine& line);
+  int Run() const;
+
+ private:
+  std::string log_, json_, page_;
+  std::optional<std::string> suffix_;
+};
+
+class ReplayVerb {
+ public:
+  explicit ReplayVerb(CommandLine& line);
+  int Run() const;
+
+ private:
+  std::string log_, controller_ = "both";
+  std::optional<std::string> suffix_;
+  double speed_ = 0;
+};
+
+}  // namespace hydro

@@ -1,0 +1,187 @@
+#include "launch/doctor/doctor_facts.h"
+
+#include <net/if.h>
+#include <pwd.h>
+#include <sched.h>
+#include <sys/ioctl.h>
+#include <sys/resource.h>
+#include <sys/socket.h>
+#include <sys/timex.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <hydro/loop_statistics_t.hpp>
+#include <iterator>
+#include <map>
+#include <set>
+
+#include "bus/channels.h"
+#include "bus/multicast_self_test.h"
+#include "bus/udpm_bus.h"
+
+namespace hydro {
+namespace {
+
+namespace fs = std::filesystem;
+using namespace std::chrono_literals;
+
+constexpr auto kListenTime = 2s;  // every process of a stack reports once a second
+
+// Empty where it cannot be read.
+std::string TextOf(const fs::path& path) {
+  std::ifstream file(path);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+std::string WordOf(const fs::path& path) {
+  std::string word;
+  std::ifstream(path) >> word;
+  return word;
+}
+
+std::optional<bool> SwitchOf(const fs::path& path) {
+  const std::string word = WordOf(path);
+  if (word.empty()) return std::nullopt;
+  return word != "0";
+}
+
+// Asked of a socket: files under /sys may be those of another network namespace.
+unsigned FlagsOf(const std::string& interface) {
+  const int fd = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+  if (fd < 0) return 0;
+  ifreq request{};
+  interface.copy(request.ifr_name, sizeof request.ifr_name - 1);
+  const bool known = ioctl(fd, SIOCGIFFLAGS, &request) == 0;
+  close(fd);
+  return known ? static_cast<unsigned short>(request.ifr_flags) : 0;
+}
+
+std::vector<NetworkInterface> Interfaces() {
+  std::vector<NetworkInterface> interfaces;
+  if (struct if_nameindex* const names = if_nameindex(); names != nullptr) {
+    for (const struct if_nameindex* name = names; name->if_name != nullptr; ++name) {
+      NetworkInterface interface;
+      interface.name = name->if_name;
+      const unsigned flags = FlagsOf(interface.name);
+      interface.up = (flags & IFF_UP) != 0 && (flags & IFF_RUNNING) != 0;
+      interface.loopback = (flags & IFF_LOOPBACK) != 0;
+      interface.multicast = (flags & IFF_MULTICAST) != 0;
+      const fs::path folder = fs::path("/sys/class/net") / interface.name;
+      interface.snooping = SwitchOf(folder / "bridge/multicast_snooping");
+      interface.querier = SwitchOf(folder / "bridge/multicast_querier");
+      interfaces.push_back(interface);
+    }
+    if_freenameindex(names);
+  }
+  return interfaces;
+}
+
+bool IsInstalled(const std::string& program) {
+  for (const char* folder : {"/usr/sbin/", "/usr/bin/", "/sbin/"}) {
+    if (access((folder + program).c_str(), X_OK) == 0) return true;
+  }
+  return false;
+}
+
+std::string Firewall() {
+  for (const char* program : {"ufw", "firewall-cmd", "nft", "iptables"}) {
+    if (IsInstalled(program)) return program;
+  }
+  return "";
+}
+
+int ReceiveBuffer(int asked) {
+  const int fd = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+  if (fd < 0) return 0;
+  int given = 0;
+  socklen_t length = sizeof given;
+  setsockopt(fd, SOL_SOCKET, SO_RCVBUF, &asked, sizeof asked);
+  getsockopt(fd, SOL_SOCKET, SO_RCVBUF, &given, &length);
+  close(fd);
+  return given;
+}
+
+int64_t LimitOf(__rlimit_resource resource) {
+  rlimit limit{};
+  if (getrlimit(resource, &limit) != 0) return 0;
+  return limit.rlim_cur == RLIM_INFINITY ? -1 : static_cast<int64_t>(limit.rlim_cur);
+}
+
+std::string UserName() {
+  const passwd* const entry = getpwuid(getuid());
+  return entry != nullptr ? entry->pw_name : std::to_string(getuid());
+}
+
+std::vector<int> AllowedCpus() {
+  cpu_set_t set;
+  CPU_ZERO(&set);
+  std::vector<int> cpus;
+  if (sched_getaffinity(0, sizeof set, &set) != 0) return cpus;
+  for (int cpu = 0; cpu < CPU_SETSIZE; ++cpu) {
+    if (CPU_ISSET(static_cast<size_t>(cpu), &set)) cpus.push_back(cpu);
+  }
+  return cpus;
+}
+
+void ReadClock(MachineFacts* facts) {
+  timex state{};
+  const int result = adjtimex(&state);
+  if (result < 0) return;
+  const bool free_running = result == TIME_ERROR || (state.status & STA_UNSYNC) != 0;
+  facts->clock = free_running ? ClockState::kUnsynchronised : ClockState::kSynchronised;
+  facts->clock_error_us = state.maxerror;
+}
+
+// Who reports on its loop is named; its messages may carry a seal behind them (a stack with a key).
+void Listen(const DoctorTask& task, MachineFacts* facts) {
+  const std::string statistics = Channels().loop_statistics;
+  std::map<std::string, std::set<std::string>> stacks;
+  UdpmBus bus(task.url.ToString());
+  bus.SubscribeAll([&](const RawMessage& message) {
+    if (!message.channel.starts_with("HYDRO_")) ++facts->other_messages;
+    loop_statistics_t report;
+    if (!message.channel.starts_with(statistics) || report.decode(message.data, 0, message.size) < 0) return;
+    stacks[std::string(message.channel.substr(statistics.size()))].insert(report.role + " on " + report.host);
+  });
+  const auto until = std::chrono::steady_clock::now() + kListenTime;
+  while (std::chrono::steady_clock::now() < until) bus.HandleUntil(until);
+  facts->listened_s = std::chrono::duration<double>(kListenTime).count();
+  for (const auto& [suffix, processes] : stacks) {
+    facts->stacks.push_back({suffix, {processes.begin(), processes.end()}});
+  }
+}
+
+}  // namespace
+
+MachineFacts GatherFacts(const DoctorTask& task) {
+  MachineFacts facts;
+  facts.routes = TextOf("/proc/net/route");
+  facts.interfaces = Interfaces();
+  facts.firewall = Firewall();
+  facts.receive_buffer_asked = task.url.recv_buf_size > 0 ? task.url.recv_buf_size : kReceiveBufferBytes;
+  facts.receive_buffer_bytes = ReceiveBuffer(facts.receive_buffer_asked);
+  try {
+    TestMulticast(task.url);
+    Listen(task, &facts);
+  } catch (const BusError& error) {
+    facts.self_test_error = error.what();
+  }
+  facts.rtprio_limit = LimitOf(RLIMIT_RTPRIO);
+  facts.memlock_limit = LimitOf(RLIMIT_MEMLOCK);
+  facts.process_status = TextOf("/proc/self/status");
+  facts.user = UserName();
+  facts.cpus = AllowedCpus();
+  for (int cpu = 0; cpu < static_cast<int>(sysconf(_SC_NPROCESSORS_CONF)); ++cpu) {
+    const std::string governor =
+        WordOf("/sys/devices/system/cpu/cpu" + std::to_string(cpu) + "/cpufreq/scaling_governor");
+    if (!governor.empty()) facts.governors.push_back(governor);
+  }
+  facts.swaps = TextOf("/proc/swaps");
+  facts.realtime_kernel = WordOf("/sys/kernel/realtime") == "1";
+  ReadClock(&facts);
+  facts.timesyncd = IsInstalled("timedatectl") && fs::exists("/usr/lib/systemd/systemd-timesyncd");
+  return facts;
+}
+
+}  // namespace hydro

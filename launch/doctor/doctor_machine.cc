@@ -1,0 +1,125 @@
+#include <spdlog/fmt/fmt.h>
+
+#include <algorithm>
+#include <cstdlib>
+
+#include "launch/doctor/doctor.h"
+
+namespace hydro {
+namespace {
+
+constexpr char kNotAsked[] = "no process here asks for a priority";
+// mlockall() takes all there is and all that comes; LCM's and our threads' stacks are the most of it.
+constexpr int64_t kLockedBytes = 512LL << 20;
+// linux/capability.h
+constexpr int kCapIpcLock = 14;
+constexpr int kCapSysNice = 23;
+// Wake-ups of a general kernel are late by up to tens of milliseconds.
+constexpr double kGeneralKernel_s = 0.05;
+
+bool HasCapability(const std::string& process_status, int capability) {
+  constexpr char kLine[] = "CapEff:";
+  const size_t at = process_status.find(kLine);
+  if (at == process_status.npos) return false;
+  const unsigned long long mask = std::strtoull(process_status.c_str() + at + sizeof kLine - 1, nullptr, 16);
+  return (mask >> capability & 1) != 0;
+}
+
+std::string LimitsCure(const MachineFacts& facts, const std::string& limit) {
+  return fmt::format("echo '{} - {}' >> /etc/security/limits.d/hydro.conf  # then log in again", facts.user,
+                     limit);
+}
+
+Finding PriorityFinding(const DoctorTask& task, const MachineFacts& facts) {
+  constexpr char kCheck[] = "real-time priority";
+  if (task.priority == 0) return {kCheck, true, kNotAsked, ""};
+  if (HasCapability(facts.process_status, kCapSysNice)) return {kCheck, true, "allowed by CAP_SYS_NICE", ""};
+  if (facts.rtprio_limit < 0 || facts.rtprio_limit >= task.priority) {
+    return {kCheck, true, fmt::format("allowed, asked for is {}", task.priority), ""};
+  }
+  return {kCheck, false, fmt::format("rtprio is {}, asked for is {}", facts.rtprio_limit, task.priority),
+          LimitsCure(facts, fmt::format("rtprio {}", task.priority))};
+}
+
+Finding MemoryFinding(const DoctorTask& task, const MachineFacts& facts) {
+  constexpr char kCheck[] = "locked memory";
+  if (task.priority == 0) return {kCheck, true, kNotAsked, ""};
+  if (HasCapability(facts.process_status, kCapIpcLock)) return {kCheck, true, "allowed by CAP_IPC_LOCK", ""};
+  if (facts.memlock_limit < 0 || facts.memlock_limit >= kLockedBytes) return {kCheck, true, "allowed", ""};
+  return {
+      kCheck, false,
+      fmt::format("memlock is {} KiB, allowed are {} or more", facts.memlock_limit >> 10, kLockedBytes >> 10),
+      LimitsCure(facts, "memlock unlimited")};
+}
+
+Finding CpuFinding(const DoctorTask& task, const MachineFacts& facts) {
+  constexpr char kCheck[] = "processors";
+  for (const int cpu : task.cpus) {
+    if (std::find(facts.cpus.begin(), facts.cpus.end(), cpu) != facts.cpus.end()) continue;
+    return {
+        kCheck, false,
+        fmt::format("a [[process]] asks for cpu {}, allowed here are {}", cpu, fmt::join(facts.cpus, ", ")),
+        fmt::format("sed -i 's|^ *cpu *= *{} *|cpu = {}|' {}", cpu,
+                    facts.cpus.empty() ? -1 : facts.cpus.back(), task.config)};
+  }
+  return {kCheck, true, fmt::format("{} allowed", facts.cpus.size()), ""};
+}
+
+Finding KernelFinding(const DoctorTask& task, const MachineFacts& facts) {
+  constexpr char kCheck[] = "kernel";
+  if (facts.realtime_kernel) return {kCheck, true, "PREEMPT_RT", ""};
+  if (task.stale_input_s >= kGeneralKernel_s) return {kCheck, true, "a general one", ""};
+  return {kCheck, false,
+          fmt::format("a general one, which wakes late by up to tens of ms; limits.stale_input_s is {:g} s",
+                      task.stale_input_s),
+          "apt-get install -y linux-image-rt-amd64 && reboot"};
+}
+
+Finding GovernorFinding(const DoctorTask& task, const MachineFacts& facts) {
+  constexpr char kCheck[] = "CPU governor";
+  if (facts.governors.empty()) return {kCheck, true, "no frequency scaling here", ""};
+  const auto slow = std::find_if(facts.governors.begin(), facts.governors.end(),
+                                 [](const std::string& governor) { return governor != "performance"; });
+  if (slow == facts.governors.end()) return {kCheck, true, "performance", ""};
+  if (task.priority == 0) return {kCheck, true, *slow + "; " + kNotAsked, ""};
+  return {kCheck, false, *slow + ", which lowers the clock of a loop that sleeps; allowed is performance",
+          "echo performance | tee /sys/devices/system/cpu/cpu*/cpufreq/scaling_governor"};
+}
+
+Finding SwapFinding(const DoctorTask& task, const MachineFacts& facts) {
+  constexpr char kCheck[] = "swap";
+  const size_t header = facts.swaps.find('\n');
+  const bool on = header != facts.swaps.npos && header + 1 < facts.swaps.size();
+  if (!on) return {kCheck, true, "off", ""};
+  if (task.priority == 0) return {kCheck, true, std::string("on; ") + kNotAsked, ""};
+  return {kCheck, false, "on: its traffic delays the loops, although their own memory is locked",
+          "swapoff -a"};
+}
+
+Finding ClockFinding(const DoctorTask& task, const MachineFacts& facts) {
+  constexpr char kCheck[] = "clock";
+  if (!task.several_hosts && task.url.ttl == 0) return {kCheck, true, "one machine has one clock", ""};
+  switch (facts.clock) {
+    case ClockState::kSynchronised:
+      return {kCheck, true,
+              fmt::format("synchronised, within {:.1f} ms", 1e-3 * static_cast<double>(facts.clock_error_us)),
+              ""};
+    case ClockState::kUnknown:
+      return {kCheck, true, "the kernel does not say whether it is synchronised", ""};
+    case ClockState::kUnsynchronised:
+      break;
+  }
+  return {kCheck, false,
+          "not synchronised: control does not care, but times in the logs of two hosts cannot be compared",
+          facts.timesyncd ? "timedatectl set-ntp true" : "apt-get install -y chrony"};
+}
+
+}  // namespace
+
+std::vector<Finding> DiagnoseMachine(const DoctorTask& task, const MachineFacts& facts) {
+  return {PriorityFinding(task, facts), MemoryFinding(task, facts),   CpuFinding(task, facts),
+          KernelFinding(task, facts),   GovernorFinding(task, facts), SwapFinding(task, facts),
+          ClockFinding(task, facts)};
+}
+
+}  // namespace hydro

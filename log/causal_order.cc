@@ -1,0 +1,65 @@
+#include "log/causal_order.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "base/saturating.h"
+
+namespace hydro {
+
+CausalOrder::CausalOrder(int64_t pressure_interval, int64_t position_interval,
+                         std::function<void(RecordedMessage)> emit)
+    : pressure_interval_(pressure_interval), position_interval_(position_interval), emit_(std::move(emit)) {}
+
+void CausalOrder::Take(Kind kind, int64_t tick, RecordedMessage message, Clock::TimePoint now) {
+  switch (kind) {
+    case Kind::kState:
+      if (state_) EmitState();  // what it waits for has been lost
+      state_ = std::move(message);
+      state_tick_ = tick;
+      if (AnswersAreIn(SaturatingDifference(tick, 1))) {
+        EmitState();
+      } else {
+        held_since_ = now;
+      }
+      return;
+    case Kind::kMotorCommand:
+      motor_command_tick_ = std::max(motor_command_tick_, tick);
+      break;
+    case Kind::kPressureCommand:
+      pressure_command_tick_ = std::max(pressure_command_tick_, tick);
+      break;
+    case Kind::kArmReference:
+      break;
+  }
+  if (tick > emitted_state_tick_) {
+    answers_.emplace_back(tick, std::move(message));
+    if (!held_since_) held_since_ = now;
+    return;
+  }
+  emit_(std::move(message));
+  if (state_ && AnswersAreIn(SaturatingDifference(state_tick_, 1))) EmitState();
+}
+
+void CausalOrder::EmitState() {
+  emitted_state_tick_ = state_tick_;
+  emit_(*std::exchange(state_, std::nullopt));
+  while (!answers_.empty() && answers_.front().first <= emitted_state_tick_) {
+    emit_(std::move(answers_.front().second));
+    answers_.pop_front();
+  }
+  if (answers_.empty()) held_since_.reset();
+}
+
+void CausalOrder::Release() {
+  if (state_) EmitState();
+  for (auto& [tick, answer] : std::exchange(answers_, {})) emit_(std::move(answer));
+  held_since_.reset();
+}
+
+bool CausalOrder::AnswersAreIn(int64_t tick) const {
+  return tick < 0 || ((tick % pressure_interval_ != 0 || motor_command_tick_ >= tick) &&
+                      (tick % position_interval_ != 0 || pressure_command_tick_ >= tick));
+}
+
+}  // namespace hydro

@@ -1,0 +1,80 @@
+// Reads LCM event logs (log_format.h), ours and lcm-logger's, strictly: a place that is not an event is an
+// error.
+#pragma once
+
+#include <cstdint>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+
+#include "base/input_error.h"
+#include "base/mapped_file.h"
+#include "bus/bus.h"
+
+namespace hydro {
+
+// A log that is damaged, torn or not a log. what() names the file, the byte, the event, what was found and
+// what is allowed.
+class LogError : public InputError {
+ public:
+  using InputError::InputError;
+};
+
+// One message of a log. Channel and data live as long as the reader that it came from.
+struct LogEvent {
+  int64_t index = 0;   // place in the log, counted from 0
+  int64_t offset = 0;  // byte of the file at which it begins
+  int64_t number = 0;  // as the writer numbered it
+  int64_t utime = 0;   // us since 1970-01-01 UTC, or simulated time, when it was received
+  std::string_view channel;
+  const uint8_t* data = nullptr;
+  int size = 0;
+};
+
+// Decodes an event, with a seal (bus/message_seal.h: lcm-logger records it) or without. False: it is not a
+// whole message of that type.
+template <class Message>
+bool DecodeAs(const LogEvent& event, Message& message) {
+  try {
+    return DecodedAll(message.decode(event.data, 0, event.size), event.data, event.size);
+  } catch (const std::length_error&) {  // lcm-gen's code believes a string length of 0 or less
+    return false;
+  }
+}
+
+// Reads the event at `offset`, which is before the end. Returns an empty string, or what is wrong with it:
+// "found ...; allowed ...". `event.index` is left as it is.
+std::string ParseLogEvent(const MappedFile& file, int64_t offset, LogEvent& event);
+
+// True when `offset` is the end, or a sync word (or as much of one as the file still holds) stands there.
+bool LogEventMayBeginAt(const MappedFile& file, int64_t offset);
+
+// The byte after an event.
+int64_t EndOf(const LogEvent& event);
+
+class LogReader {
+ public:
+  // Opens a log. Throws InputError when it cannot be read. An empty file is a log without events.
+  explicit LogReader(const std::string& file) : name_(file), file_(file) {}
+
+  // Reads the next event; false at the end. Throws LogError at the first place that is not an event followed
+  // by the end or by another event: an event with a damaged length is not returned.
+  bool Next(LogEvent& event);
+
+  // Starts again at the first event.
+  void Rewind() {
+    offset_ = 0;
+    index_ = 0;
+  }
+
+  const std::string& file() const { return name_; }
+  int64_t size() const { return static_cast<int64_t>(file_.size()); }  // bytes
+
+ private:
+  std::string name_;
+  MappedFile file_;
+  int64_t offset_ = 0;
+  int64_t index_ = 0;
+};
+
+}  // namespace hydro

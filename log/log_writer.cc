@@ -1,0 +1,98 @@
+#include "log/log_writer.h"
+
+#include <cstring>
+#include <stdexcept>
+
+#include "log/log_format.h"
+
+namespace hydro {
+namespace {
+constexpr size_t kBufferSize = 1u << 20;
+
+// How many of the first `size` bytes of a buffer of events belong to events that are whole in them.
+size_t WholeEvents(const uint8_t* buffer, size_t size) {
+  size_t whole = 0;
+  while (size - whole >= kLogHeaderSize) {
+    const uint8_t* event = buffer + whole;
+    const size_t next = whole + kLogHeaderSize + LoadBigEndian32(event + 20) + LoadBigEndian32(event + 24);
+    if (next > size) break;
+    whole = next;
+  }
+  return whole;
+}
+}  // namespace
+
+LogWriter::LogWriter(const std::string& file, Opening opening)
+    : file_(file, opening),
+      opening_(opening),
+      capacity_(kBufferSize),
+      buffer_(std::make_unique_for_overwrite<uint8_t[]>(kBufferSize)) {}
+
+LogWriter::~LogWriter() {
+  if (opening_ == Opening::kTemporary) return;
+  try {
+    Flush();
+  } catch (const WriteError&) {
+    // A destructor has nobody to tell; whoever wants to know calls Flush() or Finish().
+  }
+}
+
+uint8_t* LogWriter::Reserve(std::string_view channel, size_t size, int64_t utime) {
+  if (channel.empty() || channel.size() > kMaxLogChannelLength || size > kMaxLogDataSize) {
+    throw std::invalid_argument("event on channel '" + std::string(channel) + "' with " +
+                                std::to_string(size) +
+                                " bytes: a channel of 1 to 63 bytes and at most 1 GiB of data are allowed");
+  }
+  const size_t needed = kLogHeaderSize + channel.size() + size;
+  if (used_ + needed > capacity_) {
+    Flush();
+    if (needed > capacity_) {
+      buffer_ = std::make_unique_for_overwrite<uint8_t[]>(needed);
+      capacity_ = needed;
+    }
+  }
+  uint8_t* event = buffer_.get() + used_;
+  StoreBigEndian32(kLogSyncWord, event);
+  StoreBigEndian64(static_cast<uint64_t>(events_), event + 4);
+  StoreBigEndian64(static_cast<uint64_t>(utime), event + 12);
+  StoreBigEndian32(static_cast<uint32_t>(channel.size()), event + 20);
+  StoreBigEndian32(static_cast<uint32_t>(size), event + 24);
+  std::memcpy(event + kLogHeaderSize, channel.data(), channel.size());
+  return event + kLogHeaderSize + channel.size();
+}
+
+void LogWriter::Commit(size_t channel_size, size_t size) {
+  const size_t written = kLogHeaderSize + channel_size + size;
+  used_ += written;
+  bytes_ += static_cast<int64_t>(written);
+  ++events_;
+}
+
+void LogWriter::Append(std::string_view channel, const void* data, size_t size, int64_t utime) {
+  uint8_t* place = Reserve(channel, size, utime);
+  if (size > 0) std::memcpy(place, data, size);
+  Commit(channel.size(), size);
+}
+
+void LogWriter::Flush() {
+  size_t done = 0;
+  try {
+    while (done < used_) done += file_.WriteSome(buffer_.get() + done, used_ - done);
+  } catch (const WriteError&) {
+    // What did reach the file must not be written twice when the caller tries again, and an event of which
+    // only a part did would make the log unreadable.
+    const size_t whole = WholeEvents(buffer_.get(), done);
+    if (file_.TakeBack(done - whole)) done = whole;
+    std::memmove(buffer_.get(), buffer_.get() + done, used_ - done);
+    used_ -= done;
+    throw;
+  }
+  used_ = 0;
+}
+
+void LogWriter::Finish() {
+  Flush();
+  file_.Finish();
+}
+
+}  // namespace hydro

@@ -1,0 +1,26 @@
+// Which type of message lies on which channel, for code that meets them in a log.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "log/log_reader.h"
+
+namespace hydro {
+
+struct MessageKind {
+  std::string channel;                     // without suffix, e.g. HYDRO_STATE
+  std::string type;                        // e.g. hydro.state_t
+  int64_t hash;                            // what an encoded message of the type begins with
+  bool (*decodes)(const LogEvent& event);  // whether it is a whole message of the type
+};
+
+// All kinds, in the order of bus/channels.h.
+const std::vector<MessageKind>& MessageKinds();
+
+// The kind whose channel's name `channel` begins with; the rest is the suffix. Null: none of this stack's.
+const MessageKind* KindOfChannel(std::string_view channel);
+
+}  // namespace hydro

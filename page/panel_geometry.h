@@ -1,0 +1,35 @@
+// Where the values of a panel come to lie in the picture.
+#pragma once
+
+#include <string>
+
+#include "page/label_placement.h"
+#include "page/plot.h"
+
+namespace hydro {
+
+struct AxisRange {
+  double min = 0;
+  double max = 1;
+  bool logarithmic = false;
+
+  bool Holds(double value) const { return value >= min && value <= max; }
+  // 0 at min, 1 at max; not finite for a value that the axis cannot show.
+  double Fraction(double value) const;
+};
+
+struct PanelGeometry {
+  Box frame;  // in pixels of the picture
+  AxisRange x;
+  AxisRange y;
+
+  double Column(double value) const { return frame.left + x.Fraction(value) * (frame.right - frame.left); }
+  double Row(double value) const { return frame.bottom - y.Fraction(value) * (frame.bottom - frame.top); }
+  bool Holds(double x_value, double y_value) const { return x.Holds(x_value) && y.Holds(y_value); }
+};
+
+// The ranges of a panel: as given, else so that all curves, notes and rules are within. `where` is for
+// messages. Throws std::invalid_argument as RenderSvg() does.
+PanelGeometry FitPanel(const Panel& panel, const Box& frame, const std::string& where);
+
+}  // namespace hydro

@@ -1,0 +1,50 @@
+// A real actuator behind a data-acquisition board.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "bus/clock.h"
+#include "plant/driver/board_sensors.h"
+#include "plant/driver/comedi_board.h"
+#include "plant/driver/zero_guardian.h"
+#include "plant/driver/zero_output.h"
+#include "plant/rig.h"
+#include "settings/stack_config.h"
+
+namespace hydro {
+
+class BoardRig : public Rig {
+ public:
+  // Opens the board and checks the channels that [driver] names; then the output is at zero, and goes to zero
+  // on every way out of the process (zero_output.h, zero_guardian.h). Throws InputError when the board does
+  // not have what the configuration names, RigError when it does not take the zero.
+  BoardRig(const StackConfig& config, const Clock& clock);
+  // Zero, then closes the board.
+  ~BoardRig() override;
+
+  std::string role() const override { return "driver"; }
+  Measurement Read(int64_t tick) override;
+  const std::vector<RigFault>& faults() const override { return faults_; }
+  // Changes the watchdog line once the board has taken the voltage.
+  double Drive(double voltage) override;
+  void Zero() noexcept override { zero_.Write(); }
+
+  const std::string& board_name() const { return board_.name(); }
+
+ private:
+  AmplifierSection amplifier_;
+  ComediBoard board_;
+  BoardChannel output_;
+  std::optional<BoardChannel> watchdog_;
+  bool watchdog_high_ = false;
+  double most_;   // V of eq. (1), what limit and range allow
+  double least_;  // V
+  ZeroOutput zero_;
+  std::optional<ZeroGuardian> guardian_;
+  BoardSensors sensors_;
+  std::vector<RigFault> faults_;
+};
+
+}  // namespace hydro

@@ -1,0 +1,75 @@
+#include "plant/driver/check_sensors.h"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <array>
+#include <cstdio>
+#include <thread>
+
+#include "process/stop_signal.h"
+
+namespace hydro {
+namespace {
+
+using namespace std::chrono_literals;
+using Source = SensorSection::Source;
+
+// Read more often than shown, so that low passes and rates are those of a run.
+constexpr auto kReadPeriod = 5ms;
+constexpr auto kTablePeriod = 500ms;
+
+const char* UnitOf(const std::string& name) {
+  if (name == "p1" || name == "p2") return "psi";
+  return name.ends_with("speed") ? "rad/s" : "rad";
+}
+
+}  // namespace
+
+std::string DescribeReading(const BoardSensor& sensor, double value) {
+  const BoardChannel& channel = sensor.channel();
+  const bool analog = sensor.section().source == Source::kAnalog;
+  std::string from = "not measured";
+  std::string code;
+  std::string volts;
+  if (sensor.section().source == Source::kDerivative) from = "rate of the angle";
+  if (analog || sensor.section().source == Source::kCounter) {
+    from = fmt::format("{} {}/{}", analog ? "analog" : "counter", channel.subdevice, channel.channel);
+    code = fmt::format("{}", sensor.code());
+  }
+  if (analog) volts = fmt::format("{:.4f} V", channel.converter.Volts(sensor.code()));
+  const std::string signal = std::isnan(value) ? "-" : fmt::format("{:.5g} {}", value, UnitOf(sensor.name()));
+  const std::string fault = sensor.fault() ? "  FAULT: " + sensor.fault()->text : "";
+  return fmt::format("{:<12} {:<18} {:>10} {:>11} {:>18}{}", sensor.name(), from, code, volts, signal, fault);
+}
+
+int CheckSensors(const StackConfig& config, const Clock& clock) {
+  ComediBoard board(config.file, config.driver->device, config.driver->settle_ns);
+  BoardSensors sensors(board, *config.driver, clock);
+  std::printf("%s: sensors only, the output is not touched\n", board.name().c_str());
+  const auto start = clock.Now();
+  const auto duration = FromSeconds(config.time.duration_s);
+  auto next_table = start + kTablePeriod;
+  bool fault = false;
+  for (bool last = false; !last;) {
+    const Measurement measured = sensors.Read();
+    const std::array<double, 6> values = {measured.p1,          measured.p2,        measured.motor_angle,
+                                          measured.motor_speed, measured.arm_angle, measured.arm_speed};
+    const auto now = clock.Now();
+    last = StopSignal() != 0 || (config.time.duration_s > 0 && now - start >= duration);
+    if (last || now >= next_table) {
+      next_table = now + kTablePeriod;
+      fault = false;
+      std::printf("after %.1f s\n", ToSeconds(now - start));
+      for (size_t i = 0; i < values.size(); ++i) {
+        const BoardSensor& sensor = *sensors.all()[i];
+        std::printf("%s\n", DescribeReading(sensor, values[i]).c_str());
+        fault = fault || sensor.fault().has_value();
+      }
+      std::fflush(stdout);
+    }
+    if (!last) std::this_thread::sleep_for(kReadPeriod);
+  }
+  return fault ? 1 : 0;
+}
+
+}  // namespace hydro

@@ -1,0 +1,60 @@
+// A data-acquisition board behind Comedi: the few of its functions that a rig needs, with errors that name
+// what is wrong.
+#pragma once
+
+#include <comedilib.h>
+
+#include <cstdint>
+#include <string>
+
+#include "plant/driver/signal_conditioning.h"
+#include "settings/driver_section.h"
+
+namespace hydro {
+
+// One channel of the board, checked to exist.
+struct BoardChannel {
+  std::string key;  // of the configuration, e.g. driver.p1; for errors
+  unsigned subdevice = 0;
+  unsigned channel = 0;
+  unsigned range = 0;
+  unsigned reference = 0;
+  ConverterRange converter;  // of a counter or a digital line only max_code
+};
+
+class ComediBoard {
+ public:
+  // `file`: the configuration, for errors. Throws InputError when the device cannot be opened.
+  ComediBoard(const std::string& file, const std::string& device, int settle_ns);
+  ~ComediBoard();
+  ComediBoard(const ComediBoard&) = delete;
+  ComediBoard& operator=(const ComediBoard&) = delete;
+
+  // These check that the board has such a channel; they throw InputError that names `key`. The digital one
+  // makes the line an output where it could be either.
+  BoardChannel AnalogInput(const std::string& key, const SensorSection& section);
+  BoardChannel Counter(const std::string& key, const BoardLine& line);
+  BoardChannel AnalogOutput(const std::string& key, const AmplifierSection& section);
+  BoardChannel DigitalOutput(const std::string& key, const BoardLine& line);
+
+  // An analog input's code or a counter's count. Throws RigError "board_error".
+  uint32_t Read(const BoardChannel& channel);
+  // Throw RigError "board_error".
+  void Write(const BoardChannel& output, uint32_t code);
+  void WriteLine(const BoardChannel& line, bool high);
+
+  comedi_t* device() const { return device_; }
+  const std::string& name() const { return name_; }  // "/dev/comedi0 (pci-6221)"
+
+ private:
+  BoardChannel Channel(const std::string& key, const BoardLine& line, std::initializer_list<int> types,
+                       const char* what);
+  void AddRange(BoardChannel* channel, int range, AnalogReference reference);
+
+  std::string file_;
+  std::string name_;
+  unsigned settle_ns_;
+  comedi_t* device_;
+};
+
+}  // namespace hydro

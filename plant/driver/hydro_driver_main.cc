@@ -1,0 +1,35 @@
+// hydro-driver CONFIG: the real actuator, behind a data-acquisition board.
+#include "plant/driver/board_rig.h"
+#include "plant/driver/check_sensors.h"
+#include "plant/plant_app.h"
+#include "process/process_main.h"
+#include "process/stop_signal.h"
+
+int main(int argc, char** argv) {
+  hydro::CommandLine command_line(
+      "hydro-driver",
+      "The real actuator behind a data-acquisition board (Comedi): publishes what "
+      "the sensors read, puts out what the pressure loop commands.");
+  hydro::CommonOptions options;
+  std::vector<std::string> expected;
+  bool check_sensors = false;
+  command_line.AddCommon(&options);
+  command_line.AddOption("--expect", &expected, "ROLE to wait for besides the two controllers, e.g. logger");
+  command_line.AddFlag("--check-sensors", &check_sensors,
+                       "print what the sensors read and drive nothing, for --duration or until stopped");
+  if (const auto exit_code = command_line.Parse(argc, argv)) return *exit_code;
+  if (check_sensors) {
+    return hydro::RunProgram("hydro-driver", [&] {
+      const hydro::StackConfig config = hydro::LoadStackConfig(options.config, options.overrides);
+      hydro::CheckDriver(config);
+      hydro::CatchStopSignals();
+      return hydro::CheckSensors(config, hydro::WallClock());
+    });
+  }
+  return hydro::RunProcess("hydro-driver", options,
+                           [&](hydro::Bus& bus, hydro::Clock& clock, const hydro::StackConfig& config) {
+                             hydro::CheckDriver(config);
+                             hydro::BoardRig rig(config, clock);
+                             return hydro::PlantApp(bus, clock, config, rig, expected, "hydro-driver").Run();
+                           });
+}

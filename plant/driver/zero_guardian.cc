@@ -1,0 +1,90 @@
+#include "plant/driver/zero_guardian.h"
+
+#include <fcntl.h>
+#include <linux/close_range.h>
+#include <sys/prctl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <csignal>
+#include <cstring>
+#include <stdexcept>
+#include <string>
+
+namespace hydro {
+namespace {
+
+constexpr char kDismissed = 'd';
+constexpr int kPatience_ms = 500;  // with a guardian that was told to end
+
+// Everything of ours but `first` and `second` is closed: a pipe or socket that the guardian held open would
+// look like a driver that lives on.
+void CloseAllBut(int first, int second) {
+  const unsigned low = static_cast<unsigned>(first < second ? first : second);
+  const unsigned high = static_cast<unsigned>(first < second ? second : first);
+  if (low > 0) close_range(0, low - 1, 0);
+  if (high > low + 1) close_range(low + 1, high - 1, 0);
+  close_range(high + 1, ~0U, 0);
+}
+
+// The child of a process that may have had threads: only system calls from here on.
+[[noreturn]] void Guard(const ZeroOutput& output, int pipe) {
+  prctl(PR_SET_NAME, "hydro-zero");
+  // It dies with the driver, or for nobody: SIGTERM to the whole group must reach the driver alone.
+  for (int signal = 1; signal < NSIG; ++signal) {
+    if (signal != SIGKILL && signal != SIGSTOP) std::signal(signal, SIG_IGN);
+  }
+  CloseAllBut(pipe, comedi_fileno(output.device));
+  char word = 0;
+  ssize_t got = 0;
+  do {
+    got = read(pipe, &word, 1);
+  } while (got < 0 && errno == EINTR);
+  if (got != 1 || word != kDismissed) output.Write();
+  _exit(0);
+}
+
+}  // namespace
+
+ZeroGuardian::ZeroGuardian(const ZeroOutput& output) {
+  int ends[2];
+  if (pipe2(ends, O_CLOEXEC) != 0) {
+    throw std::runtime_error(std::string("the guardian of the output has no pipe: ") + std::strerror(errno));
+  }
+  pid_ = fork();
+  if (pid_ < 0) {
+    const int error = errno;
+    close(ends[0]);
+    close(ends[1]);
+    throw std::runtime_error(std::string("the guardian of the output cannot be started: ") +
+                             std::strerror(error));
+  }
+  if (pid_ == 0) {
+    close(ends[1]);
+    Guard(output, ends[0]);
+  }
+  close(ends[0]);
+  pipe_ = ends[1];
+}
+
+void ZeroGuardian::Dismiss() {
+  if (pipe_ < 0) return;
+  // A guardian that is not there any more must not end us with SIGPIPE.
+  struct sigaction ignore = {}, before = {};
+  ignore.sa_handler = SIG_IGN;
+  sigaction(SIGPIPE, &ignore, &before);
+  const ssize_t written = write(pipe_, &kDismissed, 1);
+  static_cast<void>(written);
+  sigaction(SIGPIPE, &before, nullptr);
+  close(pipe_);
+  pipe_ = -1;
+  for (int i = 0; i < kPatience_ms; ++i) {
+    if (waitpid(pid_, nullptr, WNOHANG) != 0) return;
+    usleep(1000);
+  }
+  kill(pid_, SIGKILL);  // somebody has stopped it
+  waitpid(pid_, nullptr, 0);
+}
+
+}  // namespace hydro

@@ -1,0 +1,109 @@
+#include "plant/driver/zero_output.h"
+
+#include <atomic>
+#include <cerrno>
+#include <csignal>
+#include <cstdlib>
+#include <exception>
+
+namespace hydro {
+namespace {
+
+constexpr int kTries = 10;
+
+// What the handlers see: the pointer is null or what it points to is complete.
+ZeroOutput armed_output;
+std::atomic<const ZeroOutput*> armed{nullptr};
+static_assert(std::atomic<const ZeroOutput*>::is_always_lock_free, "signal handlers need it lock-free");
+
+std::terminate_handler previous_terminate = nullptr;
+alignas(16) char handler_stack[64 * 1024];  // of its own: the stack may be what has overflowed
+
+void WriteArmed() noexcept {
+  if (const ZeroOutput* output = armed.load()) output->Write();
+}
+
+[[noreturn]] void OnTerminate() {
+  WriteArmed();
+  if (previous_terminate != nullptr) previous_terminate();
+  std::abort();
+}
+
+bool Stops(int signal) { return signal == SIGTSTP || signal == SIGTTIN || signal == SIGTTOU; }
+
+void OnSignal(int signal) {
+  WriteArmed();
+  if (Stops(signal)) {
+    raise(SIGSTOP);
+    return;  // continued: the run goes on, with the commands that come then
+  }
+  // The handler was reset when it was entered and the signal is not blocked in it: this ends the process as
+  // the signal would have, with its core dump.
+  raise(signal);
+}
+
+// Those whose default is to do nothing, or that nobody can catch.
+bool LeftAlone(int signal) {
+  switch (signal) {
+    case SIGKILL:
+    case SIGSTOP:
+    case SIGCHLD:
+    case SIGCONT:
+    case SIGURG:
+    case SIGWINCH:
+      return true;
+    default:
+      return false;
+  }
+}
+
+void CatchEndingSignals() {
+  stack_t present_stack = {};
+  if (sigaltstack(nullptr, &present_stack) == 0 && (present_stack.ss_flags & SS_DISABLE) != 0) {
+    stack_t stack = {};
+    stack.ss_sp = handler_stack;
+    stack.ss_size = sizeof handler_stack;
+    sigaltstack(&stack, nullptr);  // of this thread, the one that drives
+  }
+  for (int signal = 1; signal < NSIG; ++signal) {
+    struct sigaction present = {};
+    if (LeftAlone(signal) || sigaction(signal, nullptr, &present) != 0) continue;
+    if ((present.sa_flags & SA_SIGINFO) != 0 || present.sa_handler != SIG_DFL) continue;  // caught or ignored
+    struct sigaction action = {};
+    action.sa_handler = OnSignal;
+    action.sa_flags = SA_ONSTACK | (Stops(signal) ? SA_RESTART : SA_NODEFER | static_cast<int>(SA_RESETHAND));
+    sigemptyset(&action.sa_mask);
+    sigaction(signal, &action, nullptr);
+  }
+}
+
+}  // namespace
+
+bool ZeroOutput::Write() const noexcept {
+  const int error = errno;
+  bool written = false;
+  for (int i = 0; i < kTries && !written; ++i) {
+    written = comedi_data_write(device, subdevice, channel, range, reference, zero_code) >= 0;
+  }
+  if (has_watchdog) comedi_dio_write(device, watchdog_subdevice, watchdog_channel, 0);
+  errno = error;
+  return written;
+}
+
+void ArmZero(const ZeroOutput& output) {
+  armed.store(nullptr);
+  armed_output = output;
+  armed.store(&armed_output);
+  static const bool installed = [] {
+    std::atexit([] { WriteArmed(); });
+    std::at_quick_exit([] { WriteArmed(); });
+    previous_terminate = std::set_terminate(OnTerminate);
+    CatchEndingSignals();
+    return true;
+  }();
+  static_cast<void>(installed);
+}
+
+void DisarmZero() { armed.store(nullptr); }
+
+}  // namespace hydro

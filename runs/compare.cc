@@ -1,0 +1,84 @@
+#include "runs/compare.h"
+
+#include <cinttypes>
+#include <cmath>
+#include <cstdio>
+
+#include "base/number_text.h"
+#include "bus/channels.h"
+#include "runs/message_order.h"
+
+namespace hydro {
+namespace {
+
+struct Difference {
+  int64_t tick;
+  std::string text;
+};
+
+std::string FieldText(double value) {
+  if (!std::isnan(value)) return NumberText(value);
+  char text[32];
+  std::snprintf(text, sizeof text, "nan (0x%016" PRIx64 ")", std::bit_cast<uint64_t>(value));
+  return text;
+}
+std::string FieldText(int64_t value) { return std::to_string(value); }
+std::string FieldText(int8_t value) { return std::to_string(value); }
+std::string FieldText(const std::string& value) { return '"' + value + '"'; }
+
+template <class Message>
+std::string FieldDifference(const Message& a, const std::string& name_a, const Message& b,
+                            const std::string& name_b) {
+  std::string text;
+  const auto compare = [&](const auto& field) {
+    const auto& value_a = a.*field.member;
+    const auto& value_b = b.*field.member;
+    if (CompareField(value_a, value_b) == std::strong_ordering::equal) return true;
+    text = std::string(".") + field.name + ": " + FieldText(value_a) + " (" + name_a + ") and " +
+           FieldText(value_b) + " (" + name_b + ")";
+    return false;
+  };
+  std::apply([&](const auto&... field) { (compare(field) && ...); }, FieldsOf(&a));
+  return text;
+}
+
+// Replaces `first` by the first difference on this channel if that has a lower tick.
+template <class Message>
+void CompareChannel(const std::string& channel, const std::vector<Message>& all_a, const std::string& name_a,
+                    const std::vector<Message>& all_b, const std::string& name_b,
+                    std::optional<Difference>& first) {
+  const std::vector<const Message*> a = InOrder(all_a);
+  const std::vector<const Message*> b = InOrder(all_b);
+  size_t k = 0;
+  while (k < a.size() && k < b.size() && CompareMessages(*a[k], *b[k]) == std::strong_ordering::equal) ++k;
+  if (k == a.size() && k == b.size()) return;
+
+  Difference difference;
+  if (k < a.size() && k < b.size() && a[k]->tick == b[k]->tick) {
+    difference = {a[k]->tick, channel + FieldDifference(*a[k], name_a, *b[k], name_b)};
+  } else {
+    const bool only_in_a = k == b.size() || (k < a.size() && a[k]->tick < b[k]->tick);
+    const Message& message = only_in_a ? *a[k] : *b[k];
+    difference = {message.tick, channel + ": no such message in " + (only_in_a ? name_b : name_a) +
+                                    ", sequence " + std::to_string(message.sequence) + " in " +
+                                    (only_in_a ? name_a : name_b)};
+  }
+  if (!first.has_value() || difference.tick < first->tick) first = std::move(difference);
+}
+
+}  // namespace
+
+std::optional<std::string> FirstDifference(const RunMessages& a, const std::string& name_a,
+                                           const RunMessages& b, const std::string& name_b) {
+  const Channels channels;
+  std::optional<Difference> first;
+  CompareChannel(channels.state, a.states, name_a, b.states, name_b, first);
+  CompareChannel(channels.motor_command, a.motor_commands, name_a, b.motor_commands, name_b, first);
+  CompareChannel(channels.pressure_command, a.pressure_commands, name_a, b.pressure_commands, name_b, first);
+  CompareChannel(channels.arm_reference, a.arm_references, name_a, b.arm_references, name_b, first);
+  CompareChannel(channels.fault, a.faults, name_a, b.faults, name_b, first);
+  if (!first.has_value()) return std::nullopt;
+  return "differ at tick " + std::to_string(first->tick) + ": " + first->text;
+}
+
+}  // namespace hydro

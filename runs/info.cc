@@ -1,0 +1,217 @@
+#include "runs/info.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "base/saturating.h"
+#include "runs/run_config.h"
+
+namespace hydro {
+namespace {
+
+constexpr double kKilopascalsPerPsi = 6.894757293168361;
+
+double Seconds(int64_t first_utime, int64_t last_utime) {
+  return (static_cast<double>(last_utime) - static_cast<double>(first_utime)) * 1e-6;
+}
+
+// One channel's sequence numbers, by sender.
+class SequenceCount {
+ public:
+  template <class Message>
+  explicit SequenceCount(const std::vector<Message>& messages) {
+    for (const Message& message : messages) sequences_[message.session].push_back(message.sequence);
+  }
+
+  void Fill(ChannelInfo& info) {
+    info.numbered = true;
+    info.senders = static_cast<int64_t>(sequences_.size());
+    for (auto& [session, numbers] : sequences_) {
+      const auto count = static_cast<int64_t>(numbers.size());
+      std::sort(numbers.begin(), numbers.end());
+      numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
+      const auto distinct = static_cast<int64_t>(numbers.size());
+      info.repeated += count - distinct;
+      info.lost = SaturatingSum(
+          info.lost,
+          SaturatingDifference(SaturatingDifference(numbers.back(), numbers.front()), distinct - 1));
+      info.before_first = SaturatingSum(info.before_first, std::max<int64_t>(numbers.front(), 0));
+    }
+  }
+
+ private:
+  std::map<int64_t, std::vector<int64_t>> sequences_;
+};
+
+ChannelInfo ChannelOf(const ChannelSummary& summary, const RunLog& log) {
+  ChannelInfo info;
+  info.summary = summary;
+  const double seconds = Seconds(summary.first_utime, summary.last_utime);
+  if (summary.events > 1 && seconds > 0) info.rate_hz = static_cast<double>(summary.events - 1) / seconds;
+  const Channels channels(log.suffix);
+  const RunMessages& messages = log.messages;
+  if (summary.channel == channels.state) SequenceCount(messages.states).Fill(info);
+  if (summary.channel == channels.motor_command) SequenceCount(messages.motor_commands).Fill(info);
+  if (summary.channel == channels.pressure_command) SequenceCount(messages.pressure_commands).Fill(info);
+  if (summary.channel == channels.arm_reference) SequenceCount(messages.arm_references).Fill(info);
+  if (summary.channel == channels.fault) SequenceCount(messages.faults).Fill(info);
+  if (summary.channel == channels.loop_statistics) SequenceCount(log.statistics).Fill(info);
+  return info;
+}
+
+TickInfo TicksOf(const std::vector<state_t>& states) {
+  std::map<int64_t, const state_t*> by_tick;
+  for (const state_t& state : states) by_tick.try_emplace(by_tick.end(), state.tick, &state);
+  TickInfo info;
+  info.states = static_cast<int64_t>(by_tick.size());
+  if (by_tick.empty()) return info;
+  info.first = by_tick.begin()->first;
+  info.last = by_tick.rbegin()->first;
+  info.first_time_s = by_tick.begin()->second->time;
+  info.last_time_s = by_tick.rbegin()->second->time;
+  if (info.last_time_s > info.first_time_s) {
+    info.rate_hz = static_cast<double>(SaturatingDifference(info.last, info.first)) /
+                   (info.last_time_s - info.first_time_s);
+  }
+  int64_t previous = info.first;
+  for (const auto& [tick, state] : by_tick) {
+    const int64_t missing = SaturatingDifference(SaturatingDifference(tick, previous), 1);
+    if (missing > 0) {
+      ++info.gaps;
+      info.missing = SaturatingSum(info.missing, missing);
+      info.announced = SaturatingSum(info.announced, std::clamp<int64_t>(state->skipped_ticks, 0, missing));
+    }
+    previous = tick;
+  }
+  return info;
+}
+
+template <class Message, class Value>
+void AddSignal(const std::string& name, const std::string& unit, double scale,
+               const std::vector<Message>& messages, Value value, std::vector<SignalInfo>& signals) {
+  SignalInfo info{name, unit};
+  for (const Message& message : messages) {
+    const double number = scale * value(message);
+    if (std::isnan(number)) continue;
+    info.min = info.count == 0 ? number : std::min(info.min, number);
+    info.max = info.count == 0 ? number : std::max(info.max, number);
+    info.last = number;
+    ++info.count;
+  }
+  if (!messages.empty()) signals.push_back(std::move(info));
+}
+
+std::vector<SignalInfo> SignalsOf(const RunMessages& messages, bool si) {
+  const double pressure = si ? kKilopascalsPerPsi : 1;
+  const std::string pressure_unit = si ? "kPa" : "psi";
+  std::vector<SignalInfo> signals;
+  const auto add_state = [&](const std::string& name, const std::string& unit, double scale,
+                             double state_t::*member) {
+    AddSignal(
+        name, unit, scale, messages.states, [member](const state_t& state) { return state.*member; },
+        signals);
+  };
+  add_state("voltage", "V", 1, &state_t::voltage);
+  AddSignal(
+      "pressure_ref", pressure_unit, pressure, messages.motor_commands,
+      [](const motor_command_t& command) { return command.pressure_ref; }, signals);
+  AddSignal(
+      "arm_ref", "rad", 1, messages.arm_references,
+      [](const arm_reference_t& reference) {
+        return reference.signal == arm_reference_t::ARM_ANGLE ? reference.value : std::nan("");
+      },
+      signals);
+  add_state("motor_angle", "rad", 1, &state_t::motor_angle);
+  add_state("motor_speed", "rad/s", 1, &state_t::motor_speed);
+  add_state("arm_angle", "rad", 1, &state_t::arm_angle);
+  add_state("arm_speed", "rad/s", 1, &state_t::arm_speed);
+  add_state("p1", pressure_unit, pressure, &state_t::p1);
+  add_state("p2", pressure_unit, pressure, &state_t::p2);
+  return signals;
+}
+
+std::vector<LoopInfo> LoopsOf(const std::vector<loop_statistics_t>& statistics) {
+  std::map<std::pair<std::string, std::string>, LoopInfo> loops;
+  for (const loop_statistics_t& report : statistics) {
+    LoopInfo& loop = loops[{report.role, report.host}];
+    loop.last = report;
+    if (report.whole_run) {  // the process's own sum, which also has what came after its last periodic report
+      loop.cycles = report.cycles;
+      loop.missed_deadlines = report.missed_deadlines;
+      loop.lost_messages = report.lost_messages;
+      continue;
+    }
+    loop.cycles = SaturatingSum(loop.cycles, report.cycles);
+    loop.missed_deadlines = SaturatingSum(loop.missed_deadlines, report.missed_deadlines);
+    loop.lost_messages = SaturatingSum(loop.lost_messages, report.lost_messages);
+  }
+  std::vector<LoopInfo> list;
+  list.reserve(loops.size());
+  for (auto& [key, loop] : loops) list.push_back(std::move(loop));
+  return list;
+}
+
+std::vector<ProgramInfo> ProgramsOf(const std::vector<process_status_t>& statuses) {
+  std::vector<ProgramInfo> programs;
+  for (const process_status_t& status : statuses) {
+    const bool known = std::any_of(programs.begin(), programs.end(), [&](const ProgramInfo& program) {
+      return program.role == status.role && program.host == status.host && program.version == status.version;
+    });
+    if (!known) programs.push_back({status.role, status.host, status.version});
+  }
+  return programs;
+}
+
+std::vector<run_description_t> DistinctDescriptions(const std::vector<run_description_t>& all) {
+  std::vector<run_description_t> distinct;
+  for (const run_description_t& description : all) {
+    const bool known = std::any_of(distinct.begin(), distinct.end(), [&](const run_description_t& other) {
+      return other.session == description.session && other.config_text == description.config_text &&
+             other.model_text == description.model_text && other.program == description.program &&
+             other.version == description.version;
+    });
+    if (!known) distinct.push_back(description);
+  }
+  return distinct;
+}
+
+// Who stops a run says so several times, lest the network loses it.
+std::vector<stop_t> DistinctStops(const std::vector<stop_t>& all) {
+  std::vector<stop_t> distinct;
+  for (const stop_t& stop : all) {
+    const bool known = std::any_of(distinct.begin(), distinct.end(), [&](const stop_t& other) {
+      return other.session == stop.session && other.reason == stop.reason &&
+             other.exit_code == stop.exit_code;
+    });
+    if (!known) distinct.push_back(stop);
+  }
+  return distinct;
+}
+
+}  // namespace
+
+LogInfo Summarise(const RunLog& log, bool si) {
+  LogInfo info;
+  info.file = log.file;
+  info.suffix = log.suffix;
+  info.bytes = log.bytes;
+  info.events = log.events;
+  info.duration_s = Seconds(log.first_utime, log.last_utime);
+  info.first_undecodable = log.first_undecodable;
+  for (const ChannelSummary& channel : log.channels) info.channels.push_back(ChannelOf(channel, log));
+  info.ticks = TicksOf(log.messages.states);
+  info.signals = SignalsOf(log.messages, si);
+  info.loops = LoopsOf(log.statistics);
+  info.programs = ProgramsOf(log.statuses);
+  info.faults = log.messages.faults;
+  info.stops = DistinctStops(log.stops);
+  info.descriptions = DistinctDescriptions(log.descriptions);
+  if (!info.descriptions.empty()) {
+    info.model_name = ModelName(info.descriptions.front(), log.file);
+    info.config = ConfigEntries(info.descriptions.front(), log.file);
+  }
+  return info;
+}
+
+}  // namespace hydro

@@ -1,0 +1,88 @@
+// hydro-log info: what a log holds and whether it is complete.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "runs/run_log.h"
+
+namespace hydro {
+
+// How complete the messages of one channel are, by the sequence numbers of each sender.
+struct ChannelInfo {
+  ChannelSummary summary;
+  double rate_hz = 0;        // events a second of receive time; 0: fewer than two, or no time passed
+  bool numbered = false;     // its messages have sequence numbers; else the counts below mean nothing
+  int64_t senders = 0;       // distinct sessions
+  int64_t lost = 0;          // numbers missing between the first and the last of each sender
+  int64_t repeated = 0;      // messages whose number was there already
+  int64_t before_first = 0;  // messages of its senders that were sent before the log began
+};
+
+struct TickInfo {
+  int64_t states = 0;  // distinct ticks
+  int64_t first = 0;   // ticks of the first and the last state
+  int64_t last = 0;
+  double first_time_s = 0;  // plant time of those
+  double last_time_s = 0;
+  double rate_hz = 0;     // ticks a second of plant time; 0: fewer than two
+  int64_t gaps = 0;       // places where ticks have no state
+  int64_t missing = 0;    // ticks without a state
+  int64_t announced = 0;  // of those, how many the plant says it skipped (a late wake-up)
+};
+
+// Smallest and largest value of a signal, missing values (NaN) left out.
+struct SignalInfo {
+  std::string name;  // as in the exported table, without unit
+  std::string unit;
+  int64_t count = 0;  // values that are not missing; 0: min and max mean nothing
+  double min = 0;
+  double max = 0;
+  double last = 0;
+};
+
+// A process's last report on its loop, and what all its reports add up to.
+struct LoopInfo {
+  loop_statistics_t last;
+  int64_t cycles = 0;
+  int64_t missed_deadlines = 0;
+  int64_t lost_messages = 0;
+};
+
+struct ProgramInfo {
+  std::string role;
+  std::string host;
+  std::string version;
+};
+
+struct LogInfo {
+  std::string file;
+  std::string suffix;
+  int64_t bytes = 0;
+  int64_t events = 0;
+  double duration_s = 0;          // receive time from the first event to the last
+  std::string first_undecodable;  // as RunLog::first_undecodable; how many is in the channels' summaries
+  std::vector<ChannelInfo> channels;
+  TickInfo ticks;  // states = 0: the log has none
+  std::vector<SignalInfo> signals;
+  std::vector<LoopInfo> loops;        // by role and host
+  std::vector<ProgramInfo> programs;  // that said they were there
+  std::vector<fault_t> faults;
+  std::vector<stop_t> stops;                                // each once, however often it was said
+  std::vector<run_description_t> descriptions;              // distinct ones
+  std::string model_name;                                   // of the first description
+  std::vector<std::pair<std::string, std::string>> config;  // of the first description
+};
+
+// With `si`, pressures are in kPa instead of psi (for models in the paper's units).
+LogInfo Summarise(const RunLog& log, bool si);
+
+// For a person; several lines.
+std::string InfoText(const LogInfo& info);
+
+// The same as JSON.
+std::string InfoJson(const LogInfo& info);
+
+}  // namespace hydro

@@ -1,0 +1,126 @@
+#include <nlohmann/json.hpp>
+
+#include "runs/info.h"
+
+namespace hydro {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json ChannelJson(const ChannelInfo& channel) {
+  Json json = {{"messages", channel.summary.events},
+               {"bytes", channel.summary.bytes},
+               {"rate_hz", channel.rate_hz},
+               {"undecodable", channel.summary.undecodable}};
+  if (channel.numbered) {
+    json["senders"] = channel.senders;
+    json["lost"] = channel.lost;
+    json["repeated"] = channel.repeated;
+    json["before_first"] = channel.before_first;
+  }
+  return json;
+}
+
+Json SignalJson(const SignalInfo& signal) {
+  Json json = {{"unit", signal.unit}, {"count", signal.count}};
+  if (signal.count > 0) {
+    json["min"] = signal.min;
+    json["max"] = signal.max;
+    json["last"] = signal.last;
+  }
+  return json;
+}
+
+Json LoopJson(const LoopInfo& loop) {
+  const loop_statistics_t& last = loop.last;
+  return {{"role", last.role},
+          {"host", last.host},
+          {"cycles", loop.cycles},
+          {"missed_deadlines", loop.missed_deadlines},
+          {"lost_messages", loop.lost_messages},
+          {"last",
+           {{"interval_s", last.interval_s},
+            {"cycles", last.cycles},
+            {"period_us",
+             {{"p50", last.period_p50_us},
+              {"p99", last.period_p99_us},
+              {"p999", last.period_p999_us},
+              {"max", last.period_max_us}}},
+            {"latency_us",
+             {{"p50", last.latency_p50_us},
+              {"p99", last.latency_p99_us},
+              {"p999", last.latency_p999_us},
+              {"max", last.latency_max_us}}},
+            {"missed_deadlines", last.missed_deadlines},
+            {"lost_messages", last.lost_messages},
+            {"queue_depth", last.queue_depth}}}};
+}
+
+}  // namespace
+
+std::string InfoJson(const LogInfo& info) {
+  Json json;
+  json["file"] = info.file;
+  json["suffix"] = info.suffix;
+  json["bytes"] = info.bytes;
+  json["messages"] = info.events;
+  json["duration_s"] = info.duration_s;
+  json["runs"] = Json::array();
+  for (const run_description_t& description : info.descriptions) {
+    json["runs"].push_back({{"program", description.program},
+                            {"version", description.version},
+                            {"host", description.host},
+                            {"config_file", description.config_file},
+                            {"model_file", description.model_file},
+                            {"rate_hz", description.rate_hz},
+                            {"seed", description.seed}});
+  }
+  json["model_name"] = info.model_name;
+  json["config"] = Json::object();
+  for (const auto& [key, value] : info.config) json["config"][key] = value;
+  json["processes"] = Json::array();
+  for (const ProgramInfo& program : info.programs) {
+    json["processes"].push_back(
+        {{"role", program.role}, {"host", program.host}, {"version", program.version}});
+  }
+  json["channels"] = Json::object();
+  for (const ChannelInfo& channel : info.channels)
+    json["channels"][channel.summary.channel] = ChannelJson(channel);
+  json["first_undecodable"] = info.first_undecodable;
+  const TickInfo& ticks = info.ticks;
+  json["ticks"] = {{"states", ticks.states},
+                   {"first", ticks.first},
+                   {"last", ticks.last},
+                   {"first_time_s", ticks.first_time_s},
+                   {"last_time_s", ticks.last_time_s},
+                   {"rate_hz", ticks.rate_hz},
+                   {"gaps", ticks.gaps},
+                   {"missing", ticks.missing},
+                   {"skipped_by_plant", ticks.announced}};
+  json["signals"] = Json::object();
+  for (const SignalInfo& signal : info.signals) json["signals"][signal.name] = SignalJson(signal);
+  json["loops"] = Json::array();
+  for (const LoopInfo& loop : info.loops) json["loops"].push_back(LoopJson(loop));
+  json["faults"] = Json::array();
+  for (const fault_t& fault : info.faults) {
+    json["faults"].push_back({{"tick", fault.tick},
+                              {"source", fault.source},
+                              {"code", fault.code},
+                              {"text", fault.text},
+                              {"value", fault.value},
+                              {"limit", fault.limit},
+                              {"latched", fault.latched != 0},
+                              {"active", fault.active != 0}});
+  }
+  json["stops"] = Json::array();
+  for (const stop_t& stop : info.stops) {
+    json["stops"].push_back({{"tick", stop.tick},
+                             {"source", stop.source},
+                             {"reason", stop.reason},
+                             {"exit_code", stop.exit_code}});
+  }
+  // Text from a log may not be UTF-8; what is not is replaced instead of refused.
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace hydro

@@ -1,0 +1,131 @@
+#include <limits>
+#include <set>
+
+#include "base/input_error.h"
+#include "base/saturating.h"
+#include "runs/message_order.h"
+#include "runs/run_config.h"
+#include "runs/run_table.h"
+
+namespace hydro {
+namespace {
+
+constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
+
+// Walks the ordered messages of one channel while the ticks of the rows go up.
+template <class Message>
+class Cursor {
+ public:
+  explicit Cursor(const std::vector<Message>& messages) : messages_(InOrder(messages)) {}
+
+  // The last message with a tick of at most `tick`; null when there is none. `tick` never goes down between
+  // calls.
+  const Message* LastUpTo(int64_t tick) {
+    while (next_ < messages_.size() && messages_[next_]->tick <= tick) ++next_;
+    return next_ == 0 ? nullptr : messages_[next_ - 1];
+  }
+  const Message* At(int64_t tick) {
+    const Message* last = LastUpTo(tick);
+    return last != nullptr && last->tick == tick ? last : nullptr;
+  }
+
+ private:
+  std::vector<const Message*> messages_;
+  size_t next_ = 0;
+};
+
+// States of one run, in order of ticks, each tick once.
+std::vector<const state_t*> OrderedStates(const RunLog& log) {
+  if (log.messages.states.empty()) {
+    throw InputError(log.file + ": found no message on " + Channels(log.suffix).state +
+                     "; a table needs at least one");
+  }
+  std::set<int64_t> sessions;
+  for (const state_t& state : log.messages.states) sessions.insert(state.session);
+  std::vector<const state_t*> states = InOrder(log.messages.states);
+  for (size_t k = 1; k < states.size(); ++k) {
+    if (states[k]->tick != states[k - 1]->tick) continue;
+    throw InputError(log.file + ": found two different states of tick " + std::to_string(states[k]->tick) +
+                     " on " + Channels(log.suffix).state + ", from " + std::to_string(sessions.size()) +
+                     " sender(s); one run by one sender is needed");
+  }
+  if (sessions.size() > 1) {
+    throw InputError(log.file + ": found states from " + std::to_string(sessions.size()) + " senders on " +
+                     Channels(log.suffix).state + "; one run by one sender is needed");
+  }
+  return states;
+}
+
+std::vector<arm_reference_t> ArmAngleReferences(const RunLog& log) {
+  std::vector<arm_reference_t> references;
+  for (const arm_reference_t& reference : log.messages.arm_references) {
+    if (reference.signal == arm_reference_t::ARM_ANGLE) references.push_back(reference);
+  }
+  return references;
+}
+
+// Without those that only end the run: they may share the last tick with a command that was meant to act.
+std::vector<motor_command_t> ActingCommands(const RunLog& log) {
+  std::vector<motor_command_t> commands;
+  for (const motor_command_t& command : log.messages.motor_commands) {
+    if (command.status != motor_command_t::STOPPED) commands.push_back(command);
+  }
+  return commands;
+}
+
+double PressureReference(const motor_command_t* motor, const pressure_command_t* pressure) {
+  if (motor != nullptr) {
+    const bool has_one = motor->pressure_command_tick >= 0 && motor->status != motor_command_t::OPEN_LOOP;
+    return has_one ? motor->pressure_ref : kMissing;
+  }
+  return pressure != nullptr && pressure->open_loop == 0 ? pressure->pressure_ref : kMissing;
+}
+
+}  // namespace
+
+Table ExportRun(const RunLog& log) {
+  const std::vector<const state_t*> states = OrderedStates(log);
+  const int delay = log.descriptions.empty() ? 1 : CommandDelayTicks(log.descriptions.front(), log.file);
+
+  Table table;
+  table.file = log.file;
+  for (const char* name : kRunColumns) {
+    table.columns.push_back({name, {}});
+    table.columns.back().values.reserve(states.size());
+  }
+  const std::vector<motor_command_t> commands = ActingCommands(log);
+  const std::vector<arm_reference_t> references = ArmAngleReferences(log);
+  Cursor<motor_command_t> acting(commands);
+  Cursor<motor_command_t> motor(commands);
+  Cursor<pressure_command_t> pressure(log.messages.pressure_commands);
+  Cursor<arm_reference_t> reference(references);
+  for (size_t k = 0; k < states.size(); ++k) {
+    const state_t& state = *states[k];
+    const int64_t commanding_tick = SaturatingDifference(state.tick, delay);
+    double voltage = kMissing;
+    if (k + 1 < states.size()) {
+      voltage = states[k + 1]->voltage;
+    } else if (const motor_command_t* command = acting.At(commanding_tick)) {
+      voltage = command->voltage;
+    }
+    const arm_reference_t* arm = reference.LastUpTo(state.tick);
+    // A pressure command of tick k is in force from tick k + delay on, as any command.
+    const double values[] = {state.time,
+                             static_cast<double>(state.tick),
+                             voltage,
+                             PressureReference(motor.At(state.tick), pressure.LastUpTo(commanding_tick)),
+                             arm != nullptr ? arm->value : kMissing,
+                             state.motor_angle,
+                             state.motor_speed,
+                             state.arm_angle,
+                             state.arm_speed,
+                             state.p1,
+                             state.p2};
+    static_assert(std::size(values) == kRunColumns.size());
+    for (size_t column = 0; column < std::size(values); ++column)
+      table.columns[column].values.push_back(values[column]);
+  }
+  return table;
+}
+
+}  // namespace hydro

@@ -1,0 +1,189 @@
+#include <unistd.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+
+#include "base/input_error.h"
+#include "base/number_text.h"
+#include "bus/channels.h"
+#include "log/log_writer.h"
+#include "runs/run_table.h"
+
+namespace hydro {
+namespace {
+
+constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
+constexpr double kLatestTime = 1e12;              // s; in us it still fits the log's 64 bits
+constexpr double kLastTick = 9007199254740992.0;  // 2^53: above, a double does not hold every whole number
+
+void CheckColumns(const Table& table) {
+  for (const Column& column : table.columns) {
+    if (std::find(kRunColumns.begin(), kRunColumns.end(), column.name) != kRunColumns.end()) continue;
+    std::string allowed;
+    for (const char* name : kRunColumns) allowed += (allowed.empty() ? "" : ", ") + std::string(name);
+    throw InputError(table.file + ": found the column '" + column.name + "'; allowed are " + allowed);
+  }
+  if (table.Find("time_s") == nullptr)
+    throw InputError(table.file + ": found no column time_s; it is needed");
+}
+
+void CheckTimes(const Table& table, const std::vector<double>& times) {
+  for (size_t row = 0; row < times.size(); ++row) {
+    const double time = times[row];
+    if (!(std::abs(time) <= kLatestTime)) {
+      throw InputError(table.Place(row, "time_s") + ": found " +
+                       (std::isnan(time) ? "nothing" : NumberText(time)) +
+                       "; a time in s between -1e12 and 1e12 is needed");
+    }
+    if (row > 0 && !(time > times[row - 1])) {
+      throw InputError(table.Place(row, "time_s") + ": found " + NumberText(time) + "; a time after " +
+                       NumberText(times[row - 1]) + " of the row before is needed");
+    }
+  }
+}
+
+std::vector<int64_t> Ticks(const Table& table) {
+  std::vector<int64_t> ticks;
+  ticks.reserve(table.rows());
+  const Column* column = table.Find("tick");
+  for (size_t row = 0; row < table.rows(); ++row) {
+    if (column == nullptr) {
+      ticks.push_back(static_cast<int64_t>(row));
+      continue;
+    }
+    const double tick = column->values[row];
+    if (!(tick >= 0 && tick <= kLastTick && tick == std::floor(tick)) || std::signbit(tick)) {
+      throw InputError(table.Place(row, "tick") + ": found " +
+                       (std::isnan(tick) ? "nothing" : NumberText(tick)) +
+                       "; a whole number from 0 to 2^53 is needed");
+    }
+    ticks.push_back(static_cast<int64_t>(tick));
+    if (row > 0 && ticks[row] <= ticks[row - 1]) {
+      throw InputError(table.Place(row, "tick") + ": found " + NumberText(tick) + "; a tick above " +
+                       std::to_string(ticks[row - 1]) + " of the row before is needed");
+    }
+  }
+  return ticks;
+}
+
+// Ticks per second when the times are even, within what the rounding of their text explains; else 0.
+double Rate(const std::vector<double>& times, const std::vector<int64_t>& ticks) {
+  if (times.size() < 2) return 0;
+  double rate = static_cast<double>(ticks.back() - ticks.front()) / (times.back() - times.front());
+  if (std::abs(rate - std::round(rate)) < 1e-6 * rate) rate = std::round(rate);
+  if (!(rate > 0) || !std::isfinite(rate)) return 0;
+  for (size_t row = 0; row < times.size(); ++row) {
+    const double even = times.front() + static_cast<double>(ticks[row] - ticks.front()) / rate;
+    if (std::abs(times[row] - even) > 1e-3 / rate) return 0;
+  }
+  return rate;
+}
+
+int64_t Utime(double time) { return std::llround(time * 1e6); }
+
+bool SameBits(double a, double b) { return std::bit_cast<uint64_t>(a) == std::bit_cast<uint64_t>(b); }
+
+run_description_t Describe(const Table& table, const std::string& version, double rate_hz) {
+  run_description_t description{};
+  description.utime = 0;
+  description.config_file = table.file;
+  description.program = "hydro-log";
+  description.version = version;
+  char host[256] = "";
+  if (gethostname(host, sizeof host - 1) == 0) description.host = host;
+  description.rate_hz = rate_hz;
+  return description;
+}
+
+}  // namespace
+
+void ImportRun(const Table& table, const std::string& program_version, const std::string& log_file) {
+  CheckColumns(table);
+  const std::vector<double>& times = table.Find("time_s")->values;
+  CheckTimes(table, times);
+  const std::vector<int64_t> ticks = Ticks(table);
+
+  const auto value = [&table](const char* name) {
+    const Column* column = table.Find(name);
+    return [column](size_t row) { return column != nullptr ? column->values[row] : kMissing; };
+  };
+  const auto voltage = value("voltage_V");
+  const auto pressure_ref = value("pressure_ref_psi");
+  const auto arm_ref = value("arm_ref_rad");
+  const auto motor_angle = value("motor_angle_rad");
+  const auto motor_speed = value("motor_speed_rad_s");
+  const auto arm_angle = value("arm_angle_rad");
+  const auto arm_speed = value("arm_speed_rad_s");
+  const auto p1 = value("p1_psi");
+  const auto p2 = value("p2_psi");
+  const bool has_voltage = table.Find("voltage_V") != nullptr;
+
+  LogWriter log(log_file, Opening::kTemporary);
+  const Channels channels;
+  run_description_t description = Describe(table, program_version, Rate(times, ticks));
+  description.utime = Utime(times.front());
+  log.AppendMessage(channels.run, description, description.utime);
+
+  int64_t motor_sequence = 0;
+  int64_t reference_sequence = 0;
+  const auto append_motor_command = [&](int64_t utime, int64_t tick, double volts, double reference) {
+    motor_command_t command{};
+    command.utime = utime;
+    command.tick = tick;
+    command.sequence = motor_sequence++;
+    command.voltage = volts;
+    command.pressure_ref = reference;
+    command.pressure_command_tick = std::isnan(reference) ? -1 : tick;
+    command.status = motor_command_t::LAW;
+    log.AppendMessage(channels.motor_command, command, utime);
+  };
+
+  const size_t rows = table.rows();
+  double last_reference = kMissing;
+  for (size_t row = 0; row < rows; ++row) {
+    const int64_t utime = Utime(times[row]);
+    state_t state{};
+    state.utime = utime;
+    state.tick = ticks[row];
+    state.sequence = static_cast<int64_t>(row);
+    state.time = times[row];
+    state.motor_angle = motor_angle(row);
+    state.motor_speed = motor_speed(row);
+    state.arm_angle = arm_angle(row);
+    state.arm_speed = arm_speed(row);
+    state.p1 = p1(row);
+    state.p2 = p2(row);
+    // What acted before the first row is not in a table; the actuator is taken to have been at rest.
+    state.voltage = row > 0 ? voltage(row - 1) : has_voltage ? 0 : kMissing;
+    state.command_tick = row > 0 && has_voltage ? ticks[row] - 1 : -1;
+    log.AppendMessage(channels.state, state, utime);
+
+    // A reference is held until the next one; a missing value after one is a reference of its own.
+    const double reference = arm_ref(row);
+    if (!SameBits(reference, last_reference)) {
+      arm_reference_t message{};
+      message.utime = utime;
+      message.tick = ticks[row];
+      message.sequence = reference_sequence++;
+      message.signal = arm_reference_t::ARM_ANGLE;
+      message.value = last_reference = reference;
+      log.AppendMessage(channels.arm_reference, message, utime);
+    }
+
+    // The command of tick k acts from tick k + 1 on (the delay that an empty configuration means), so the
+    // last row's voltage is in the command of the tick before it.
+    const bool next_acts = row + 1 < rows && ticks[row + 1] == ticks[row] + 1;
+    const bool last_follows = row + 2 == rows;
+    if (row + 1 == rows && !std::isnan(voltage(row)) && (row == 0 || ticks[row - 1] + 1 != ticks[row])) {
+      append_motor_command(utime, ticks[row] - 1, voltage(row), kMissing);
+    }
+    if (!std::isnan(pressure_ref(row)) || (next_acts && last_follows && !std::isnan(voltage(row + 1)))) {
+      append_motor_command(utime, ticks[row], next_acts ? voltage(row + 1) : kMissing, pressure_ref(row));
+    }
+  }
+  log.Finish();
+}
+
+}  // namespace hydro

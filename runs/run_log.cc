@@ -1,0 +1,154 @@
+#include "runs/run_log.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <map>
+#include <set>
+#include <string_view>
+
+#include "log/log_format.h"
+#include "log/log_reader.h"
+#include "log/message_kinds.h"
+
+namespace hydro {
+namespace {
+
+std::string Hex(uint64_t value) {
+  char text[19];
+  std::snprintf(text, sizeof text, "0x%016llx", static_cast<unsigned long long>(value));
+  return text;
+}
+
+// Where it is, what was found and what is allowed.
+std::string WhyUndecodable(const LogEvent& event, const MessageKind& kind) {
+  const std::string place = "byte " + std::to_string(event.offset) + ", event " +
+                            std::to_string(event.index) + " on " + std::string(event.channel) + ": ";
+  const uint64_t hash = event.size >= 8 ? LoadBigEndian64(event.data) : 0;
+  if (event.size >= 8 && hash != static_cast<uint64_t>(kind.hash)) {
+    return place + "found type hash " + Hex(hash) + "; allowed " + Hex(static_cast<uint64_t>(kind.hash)) +
+           " (" + kind.type + " of this version)";
+  }
+  return place + "found " + std::to_string(event.size) + " bytes that are not a whole " + kind.type;
+}
+
+// Counts events by channel; a damaged log is noticed here, before anything is decoded.
+void Summarise(LogReader& reader, RunLog& log) {
+  std::map<std::string_view, ChannelSummary> channels;  // the names lie in the reader's file
+  LogEvent event;
+  while (reader.Next(event)) {
+    const auto [place, is_new] = channels.try_emplace(event.channel);
+    ChannelSummary& channel = place->second;
+    if (is_new) {
+      channel.channel = std::string(event.channel);
+      channel.first_utime = event.utime;
+    }
+    ++channel.events;
+    channel.bytes += event.size;
+    channel.last_utime = event.utime;
+    log.first_utime = log.events == 0 ? event.utime : std::min(log.first_utime, event.utime);
+    log.last_utime = log.events == 0 ? event.utime : std::max(log.last_utime, event.utime);
+    ++log.events;
+  }
+  for (auto& [name, channel] : channels) log.channels.push_back(std::move(channel));
+}
+
+std::set<std::string> SuffixesOf(const RunLog& log, bool of_state_only) {
+  std::set<std::string> suffixes;
+  for (const ChannelSummary& channel : log.channels) {
+    const MessageKind* kind = KindOfChannel(channel.channel);
+    if (kind == nullptr || (of_state_only && kind != &MessageKinds().front())) continue;
+    suffixes.insert(channel.channel.substr(kind->channel.size()));
+  }
+  return suffixes;
+}
+
+std::string ListOf(const std::set<std::string>& suffixes) {
+  std::string list;
+  for (const std::string& suffix : suffixes) list += (list.empty() ? "'" : ", '") + suffix + "'";
+  return list;
+}
+
+std::string ChooseSuffix(const RunLog& log, const std::optional<std::string>& wanted) {
+  const std::set<std::string> all = SuffixesOf(log, false);
+  if (wanted.has_value()) {
+    if (all.contains(*wanted)) return *wanted;
+    throw InputError(log.file + ": found no channel with suffix '" + *wanted + "'; the log has " +
+                     (all.empty() ? "no HYDRO_ channel" : ListOf(all)));
+  }
+  std::set<std::string> suffixes = SuffixesOf(log, true);
+  if (suffixes.empty()) suffixes = all;
+  if (suffixes.size() > 1) {
+    throw InputError(log.file + ": found channels with the suffixes " + ListOf(suffixes) +
+                     "; choose one of them with --suffix");
+  }
+  return suffixes.empty() ? "" : *suffixes.begin();
+}
+
+}  // namespace
+
+RunLog ReadRunLog(const std::string& file, const std::optional<std::string>& suffix,
+                  Undecodable undecodable) {
+  RunLog log;
+  log.file = file;
+  LogReader reader(file);
+  log.bytes = reader.size();
+  Summarise(reader, log);
+  log.suffix = ChooseSuffix(log, suffix);
+
+  const Channels channels(log.suffix);
+  LogEvent event;
+  const auto leave_out = [&](const MessageKind& kind) {
+    const std::string why = WhyUndecodable(event, kind);
+    if (undecodable == Undecodable::kRefused) {
+      throw LogError(file + ": " + why + "; where others on that channel are, hydro-log repair " + file +
+                     " leaves such events out");
+    }
+    if (log.first_undecodable.empty()) log.first_undecodable = why;
+    const auto channel =
+        std::lower_bound(log.channels.begin(), log.channels.end(), event.channel,
+                         [](const ChannelSummary& a, std::string_view name) { return a.channel < name; });
+    ++channel->undecodable;
+  };
+  // True when the event is on `channel`, and then it is in `messages` or left out.
+  const auto keep = [&]<class Message>(const std::string& channel, std::vector<Message>& messages) {
+    if (event.channel != channel) return false;
+    if (!DecodeAs(event, messages.emplace_back())) {
+      messages.pop_back();
+      leave_out(*KindOfChannel(channel));
+    }
+    return true;
+  };
+  // Nobody asks for what is on these channels; only their count would be wrong.
+  const auto count = [&](const std::string& channel) {
+    if (event.channel != channel) return false;
+    const MessageKind& kind = *KindOfChannel(channel);
+    if (undecodable == Undecodable::kLeftOut && !kind.decodes(event)) leave_out(kind);
+    return true;
+  };
+  reader.Rewind();
+  while (reader.Next(event)) {
+    keep(channels.state, log.messages.states) || keep(channels.motor_command, log.messages.motor_commands) ||
+        keep(channels.pressure_command, log.messages.pressure_commands) ||
+        keep(channels.arm_reference, log.messages.arm_references) ||
+        keep(channels.fault, log.messages.faults) || keep(channels.run, log.descriptions) ||
+        keep(channels.loop_statistics, log.statistics) || keep(channels.loop_histogram, log.histograms) ||
+        keep(channels.stop, log.stops) || keep(channels.process_status, log.statuses) ||
+        keep(channels.log_progress, log.progress) || count(channels.rearm) || count(channels.introduction);
+  }
+  return log;
+}
+
+std::string DescribeUndecodable(const RunLog& log) {
+  int64_t all = 0;
+  std::string list;
+  for (const ChannelSummary& channel : log.channels) {
+    if (channel.undecodable == 0) continue;
+    all += channel.undecodable;
+    list += (list.empty() ? "" : ", ") + std::to_string(channel.undecodable) + " on " + channel.channel;
+  }
+  if (all == 0) return {};
+  return log.file + ": left out " + (all == 1 ? "a message" : std::to_string(all) + " messages") +
+         " of another type or version, or torn (" + list + "); the first: " + log.first_undecodable;
+}
+
+}  // namespace hydro

@@ -1,0 +1,64 @@
+// A whole log in memory, decoded.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "bus/channels.h"
+#include "hydro/log_progress_t.hpp"
+#include "hydro/loop_histogram_t.hpp"
+#include "hydro/loop_statistics_t.hpp"
+#include "hydro/process_status_t.hpp"
+#include "hydro/run_description_t.hpp"
+#include "hydro/stop_t.hpp"
+#include "runs/run_messages.h"
+
+namespace hydro {
+
+// What a channel of a log holds, one of this stack's or not.
+struct ChannelSummary {
+  std::string channel;
+  int64_t events = 0;
+  int64_t bytes = 0;        // of data
+  int64_t first_utime = 0;  // us, when its first and last event were received
+  int64_t last_utime = 0;
+  int64_t undecodable = 0;  // of this stack's type and version they are not: left out
+};
+
+// Messages are in the order of the log, with whatever was lost, repeated or late.
+struct RunLog {
+  std::string file;
+  std::string suffix;  // of the channels that were read
+  RunMessages messages;
+  std::vector<run_description_t> descriptions;
+  std::vector<loop_statistics_t> statistics;
+  std::vector<loop_histogram_t> histograms;
+  std::vector<stop_t> stops;
+  std::vector<process_status_t> statuses;
+  std::vector<log_progress_t> progress;
+  std::vector<ChannelSummary> channels;  // by name, all that the log holds
+  int64_t events = 0;                    // on all channels
+  int64_t bytes = 0;                     // length of the file
+  int64_t first_utime = 0;               // us, earliest and latest event received; 0 without events
+  int64_t last_utime = 0;
+  std::string first_undecodable;  // where the first message that was left out is, and why; empty: none was
+};
+
+// What becomes of a message on one of this stack's channels that is of another type or version, or torn.
+enum class Undecodable {
+  kRefused,  // LogError: for whom all of a run matters
+  kLeftOut,  // counted and left out, as the processes of the run did that heard it
+};
+
+// Reads `file`. Without `suffix`, the suffix of its state channel is found; of several, one must be chosen
+// (InputError names them). A log without any of this stack's channels is not an error here. Throws LogError
+// where the file is damaged: it cannot be told then what else is missing.
+RunLog ReadRunLog(const std::string& file, const std::optional<std::string>& suffix = std::nullopt,
+                  Undecodable undecodable = Undecodable::kRefused);
+
+// One line for a person about the messages that were left out; empty when none was.
+std::string DescribeUndecodable(const RunLog& log);
+
+}  // namespace hydro

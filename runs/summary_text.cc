@@ -1,0 +1,106 @@
+#include <spdlog/fmt/fmt.h>
+
+#include <nlohmann/json.hpp>
+#include <numbers>
+
+#include "base/saturating.h"
+#include "runs/tracking.h"
+
+namespace hydro {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+int64_t LostMessages(const LogInfo& info) {
+  int64_t lost = 0;
+  for (const ChannelInfo& channel : info.channels) {
+    if (channel.numbered) lost = SaturatingSum(lost, channel.lost);
+  }
+  return lost;
+}
+
+std::string Angle(double rad, bool si) {
+  return si ? fmt::format("{:.4f} rad ({:.2f} deg)", rad, rad * 180 / std::numbers::pi)
+            : fmt::format("{:.4f} rad", rad);
+}
+
+}  // namespace
+
+std::string SummaryText(const Tracking& tracking, const LogInfo& info, bool si) {
+  std::string text;
+  const auto line = [&](fmt::string_view format, const auto&... arguments) {
+    text += fmt::vformat(format, fmt::make_format_args(arguments...)) + "\n";
+  };
+  line("{} states over {:.3f} s of plant time, {} ticks skipped (late wake-ups), {} messages lost",
+       info.ticks.states, info.ticks.last_time_s - info.ticks.first_time_s, info.ticks.missing,
+       LostMessages(info));
+  if (tracking.has_reference) {
+    if (tracking.at_target) {
+      line("arm {} its target {}: final error {:.5f} rad, rms error over the run {:.4f} rad",
+           *tracking.at_target ? "at" : "NOT at", Angle(tracking.target_rad, si), tracking.final_error_rad,
+           tracking.rms_error_rad);
+    } else {
+      line("the reference still moves at the end: error there {:.5f} rad, rms error over the run {:.4f} rad",
+           tracking.final_error_rad, tracking.rms_error_rad);
+    }
+    for (const StepResponse& step : tracking.steps) {
+      line("  step at {:5.2f} s to {}: overshoot {:4.1f} %, {}, error at the end {:.5f} rad", step.time_s,
+           Angle(step.to_rad, si), step.overshoot_percent,
+           step.settling_time_s ? fmt::format("within 2 % after {:.2f} s", *step.settling_time_s)
+                                : std::string("not within 2 %"),
+           step.final_error_rad);
+    }
+  }
+  if (!info.loops.empty()) {
+    line("{:<14} {:>8} {:>10} {:>10} {:>10} {:>10} {:>10} {:>7} {:>6}", "loop", "cycles", "period p50",
+         "period p99", "late p50", "late p99", "late max", "missed", "lost");
+    for (const LoopInfo& loop : info.loops) {
+      line("{:<14} {:>8} {:>7.0f} us {:>7.0f} us {:>7.0f} us {:>7.0f} us {:>7.0f} us {:>7} {:>6}",
+           loop.last.role, loop.cycles, loop.last.period_p50_us, loop.last.period_p99_us,
+           loop.last.latency_p50_us, loop.last.latency_p99_us, loop.last.latency_max_us,
+           loop.missed_deadlines, loop.lost_messages);
+    }
+  }
+  for (const fault_t& fault : info.faults) {
+    line("fault at tick {}: {} {} ({})", fault.tick, fault.code, fault.active ? "began" : "ended",
+         fault.source);
+  }
+  return text;
+}
+
+std::string SummaryJson(const Tracking& tracking, const LogInfo& info) {
+  Json json = {{"ticks", info.ticks.states},
+               {"duration_s", info.ticks.last_time_s - info.ticks.first_time_s},
+               {"skipped_ticks", info.ticks.missing},
+               {"lost_messages", LostMessages(info)}};
+  if (tracking.has_reference) {
+    Json steps = Json::array();
+    for (const StepResponse& step : tracking.steps) {
+      steps.push_back(
+          {{"time_s", step.time_s},
+           {"from_rad", step.from_rad},
+           {"to_rad", step.to_rad},
+           {"overshoot_percent", step.overshoot_percent},
+           {"settling_time_s", step.settling_time_s ? Json(*step.settling_time_s) : Json(nullptr)},
+           {"final_error_rad", step.final_error_rad}});
+    }
+    json["tracking"] = {{"at_target", tracking.at_target ? Json(*tracking.at_target) : Json(nullptr)},
+                        {"target_rad", tracking.target_rad},
+                        {"final_error_rad", tracking.final_error_rad},
+                        {"rms_error_rad", tracking.rms_error_rad},
+                        {"steps", steps}};
+  }
+  json["loops"] = Json::parse(InfoJson(info)).value("loops", Json::array());
+  Json faults = Json::array();
+  for (const fault_t& fault : info.faults) {
+    faults.push_back({{"tick", fault.tick},
+                      {"source", fault.source},
+                      {"code", fault.code},
+                      {"active", bool(fault.active)},
+                      {"text", fault.text}});
+  }
+  json["faults"] = faults;
+  return json.dump(2) + "\n";
+}
+
+}  // namespace hydro

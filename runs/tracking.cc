@@ -1,0 +1,110 @@
+#include "runs/tracking.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace hydro {
+namespace {
+
+constexpr double kShortestRest = 0.2;         // s
+constexpr double kFinalTime = 0.1;            // s
+constexpr double kSmallestTolerance = 0.001;  // rad
+constexpr size_t kMostSteps = 100;
+
+struct Samples {
+  std::vector<double> times;
+  std::vector<double> references;
+  std::vector<double> angles;
+  size_t size() const { return times.size(); }
+};
+
+// Reference (held since its tick) and angle at each state that has both.
+Samples ReadSamples(const RunLog& log) {
+  std::vector<const arm_reference_t*> references;
+  for (const arm_reference_t& reference : log.messages.arm_references) {
+    if (reference.signal == arm_reference_t::ARM_ANGLE) references.push_back(&reference);
+  }
+  const auto by_tick = [](const auto* a, const auto* b) { return a->tick < b->tick; };
+  std::stable_sort(references.begin(), references.end(), by_tick);
+  std::vector<const state_t*> states;
+  for (const state_t& state : log.messages.states) states.push_back(&state);
+  std::stable_sort(states.begin(), states.end(), by_tick);
+
+  Samples samples;
+  size_t next = 0;
+  for (const state_t* state : states) {
+    while (next < references.size() && references[next]->tick <= state->tick) ++next;
+    if (next == 0 || !std::isfinite(state->arm_angle)) continue;
+    samples.times.push_back(state->time);
+    samples.references.push_back(references[next - 1]->value);
+    samples.angles.push_back(state->arm_angle);
+  }
+  return samples;
+}
+
+double MeanErrorAtEnd(const Samples& samples) {
+  double sum = 0;
+  int count = 0;
+  for (size_t i = 0; i < samples.size(); ++i) {
+    if (samples.times.back() - samples.times[i] > kFinalTime) continue;
+    sum += samples.angles[i] - samples.references[i];
+    ++count;
+  }
+  return sum / count;
+}
+
+std::vector<StepResponse> Steps(const Samples& samples) {
+  std::vector<size_t> changes;
+  for (size_t i = 1; i < samples.size(); ++i) {
+    if (samples.references[i] != samples.references[i - 1]) changes.push_back(i);
+  }
+  if (changes.size() > kMostSteps) return {};
+  std::vector<StepResponse> steps;
+  for (size_t k = 0; k < changes.size(); ++k) {
+    const size_t end = k + 1 < changes.size() ? changes[k + 1] : samples.size();
+    if (samples.times[end - 1] - samples.times[changes[k]] < kShortestRest) return {};
+    steps.push_back(MeasureStep(samples.times, samples.angles, changes[k], end,
+                                samples.references[changes[k] - 1], samples.references[changes[k]]));
+  }
+  return steps;
+}
+
+}  // namespace
+
+Tracking TrackArm(const RunLog& log) {
+  Tracking tracking;
+  const Samples samples = ReadSamples(log);
+  if (samples.size() == 0) return tracking;
+  tracking.has_reference = true;
+  double squares = 0;
+  for (size_t i = 0; i < samples.size(); ++i) {
+    const double error = samples.angles[i] - samples.references[i];
+    squares += error * error;
+  }
+  const auto [low, high] = std::minmax_element(samples.references.begin(), samples.references.end());
+  tracking.rms_error_rad = std::sqrt(squares / static_cast<double>(samples.size()));
+  tracking.target_rad = samples.references.back();
+  tracking.final_error_rad = MeanErrorAtEnd(samples);
+  tracking.steps = Steps(samples);
+  double scale = *high - *low;
+  if (!tracking.steps.empty()) {
+    scale = 0;
+    for (const StepResponse& step : tracking.steps) {
+      scale = std::max(scale, std::fabs(step.to_rad - step.from_rad));
+    }
+  }
+  bool at_rest = true;
+  for (size_t i = 0; i < samples.size(); ++i) {
+    if (samples.times.back() - samples.times[i] <= kFinalTime &&
+        samples.references[i] != tracking.target_rad) {
+      at_rest = false;
+    }
+  }
+  if (at_rest) {
+    tracking.at_target =
+        std::fabs(tracking.final_error_rad) <= std::max(kSettlingBand * scale, kSmallestTolerance);
+  }
+  return tracking;
+}
+
+}  // namespace hydro

@@ -1,0 +1,34 @@
+// hydro-log summary: how well the arm followed its reference, and how the processes kept time meanwhile.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "runs/info.h"
+#include "runs/run_log.h"
+#include "runs/step_response.h"
+
+namespace hydro {
+
+struct Tracking {
+  bool has_reference = false;  // the log has arm-angle references and measured arm angles
+  double rms_error_rad = 0;    // over the run
+  double final_error_rad = 0;  // arm minus reference, the mean of the last 0.1 s
+  double target_rad = 0;       // last reference
+  // |final error| within 2 % of the largest step, at least 0.001 rad. None: the reference is still moving.
+  std::optional<bool> at_target;
+  std::vector<StepResponse> steps;  // empty when the reference is not made of steps
+};
+
+// The arm's tracking in a run. A reference counts as made of steps when it changes at most 100 times and
+// rests at least 0.2 s after each change.
+Tracking TrackArm(const RunLog& log);
+
+// For a person; several lines, loop timing and losses included. With `si`, angles are also in degrees.
+std::string SummaryText(const Tracking& tracking, const LogInfo& info, bool si);
+
+// The same as JSON.
+std::string SummaryJson(const Tracking& tracking, const LogInfo& info);
+
+}  // namespace hydro

@@ -1,0 +1,145 @@
+#include "settings/toml/section_reader.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/did_you_mean.h"
+
+namespace hydro {
+namespace {
+
+using Kind = TomlNode::Kind;
+
+}  // namespace
+
+InputError KeyError(const std::string& place, const std::string& key, const std::string& found,
+                    const std::string& allowed) {
+  return InputError(place + ": " + key + ": found " + found + ", allowed " + allowed);
+}
+
+InputError KeyError(const TomlNode& root, const std::string& dotted_key, const std::string& found,
+                    const std::string& allowed) {
+  const TomlNode* node = &root;
+  for (size_t begin = 0; begin <= dotted_key.size();) {
+    const size_t end = std::min(dotted_key.find('.', begin), dotted_key.size());
+    const TomlNode* inner = node->Find(dotted_key.substr(begin, end - begin));
+    if (inner == nullptr) break;
+    node = inner;
+    begin = end + 1;
+  }
+  return KeyError(node->place, dotted_key, found, allowed);
+}
+
+bool NumberRange::Holds(double value) const {
+  if (std::isinf(value) && value > 0 && infinity_allowed) return true;
+  if (!std::isfinite(value)) return false;
+  return (min_allowed ? value >= min : value > min) && (max_allowed ? value <= max : value < max);
+}
+
+std::string NumberRange::Says() const {
+  std::string says = "a finite number";
+  if (std::isfinite(min)) says += (min_allowed ? " of at least " : " above ") + ShortestNumber(min);
+  if (std::isfinite(max)) {
+    says += std::isfinite(min) ? " and" : "";
+    says += (max_allowed ? " at most " : " below ") + ShortestNumber(max);
+  }
+  return infinity_allowed ? says + ", or inf" : says;
+}
+
+SectionReader::SectionReader(const TomlNode& table, std::string path)
+    : table_(&table), path_(std::move(path)) {}
+
+bool SectionReader::Number(const std::string& key, double* out, const NumberRange& range) {
+  const TomlNode* node = Take(key);
+  if (node == nullptr) return false;
+  if (!node->is_number() || !range.Holds(node->AsDouble())) throw Error(key, node->Shown(), range.Says());
+  *out = node->AsDouble();
+  return true;
+}
+
+bool SectionReader::Number(const std::string& key, std::optional<double>* out, const NumberRange& range) {
+  double value = 0;
+  if (!Number(key, &value, range)) return false;
+  *out = value;
+  return true;
+}
+
+bool SectionReader::Integer(const std::string& key, int64_t* out, int64_t min, int64_t max) {
+  const TomlNode* node = Take(key);
+  if (node == nullptr) return false;
+  if (!node->is(Kind::kInteger) || node->integer < min || node->integer > max) {
+    std::string allowed = "a whole number of at least " + std::to_string(min);
+    if (max != std::numeric_limits<int64_t>::max()) allowed += " and at most " + std::to_string(max);
+    throw Error(key, node->Shown(), allowed);
+  }
+  *out = node->integer;
+  return true;
+}
+
+bool SectionReader::Integer(const std::string& key, int* out, int min, int max) {
+  int64_t value = 0;
+  if (!Integer(key, &value, int64_t{min}, int64_t{max})) return false;
+  *out = static_cast<int>(value);
+  return true;
+}
+
+bool SectionReader::Boolean(const std::string& key, bool* out) {
+  const TomlNode* node = Take(key);
+  if (node == nullptr) return false;
+  if (!node->is(Kind::kBoolean)) throw Error(key, node->Shown(), "true or false");
+  *out = node->boolean;
+  return true;
+}
+
+bool SectionReader::Text(const std::string& key, std::string* out) {
+  const TomlNode* node = Take(key);
+  if (node == nullptr) return false;
+  if (!node->is(Kind::kString)) throw Error(key, node->Shown(), "a string");
+  if (node->text.find('\0') != std::string::npos) {
+    throw Error(key, node->Shown(), "a string without NUL characters");
+  }
+  *out = node->text;
+  return true;
+}
+
+SectionReader SectionReader::Section(const std::string& key) {
+  const TomlNode* node = Take(key);
+  if (node != nullptr) {
+    if (!node->is(Kind::kTable)) throw Error(key, node->Shown(), "a section [" + Dotted(key) + "]");
+    return SectionReader(*node, Dotted(key));
+  }
+  auto absent = std::make_shared<TomlNode>();
+  absent->place = table_->place;
+  SectionReader reader(*absent, Dotted(key));
+  reader.absent_ = std::move(absent);
+  return reader;
+}
+
+const TomlNode* SectionReader::Take(const std::string& key) {
+  if (std::find(known_.begin(), known_.end(), key) == known_.end()) known_.push_back(key);
+  return table_->Find(key);
+}
+
+void SectionReader::Require(const std::string& key, const std::string& allowed) {
+  required_.emplace_back(key, allowed);
+}
+
+void SectionReader::Finish() const {
+  for (const auto& [key, node] : table_->members) {
+    if (std::find(known_.begin(), known_.end(), key) != known_.end()) continue;
+    const std::string where = path_.empty() ? Quoted(key) : path_ + ": " + Quoted(key);
+    throw InputError(node.place + ": " + where + ": found an unknown key, allowed " + QuotedList(known_) +
+                     DidYouMean(key, known_));
+  }
+  for (const auto& [key, allowed] : required_) {
+    if (!Has(key)) throw Error(key, "nothing", allowed);
+  }
+}
+
+InputError SectionReader::Error(const std::string& key, const std::string& found,
+                                const std::string& allowed) const {
+  const TomlNode* node = table_->Find(key);
+  return KeyError(node != nullptr ? node->place : table_->place, Dotted(key), found, allowed);
+}
+
+}  // namespace hydro

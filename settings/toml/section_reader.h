@@ -1,0 +1,103 @@
+// Reads one section of a TOML document key by key, so that everything it holds is either asked for or an
+// error.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "base/text_file.h"
+#include "settings/toml/toml_document.h"
+
+namespace hydro {
+
+// "place: key: found ..., allowed ...".
+InputError KeyError(const std::string& place, const std::string& key, const std::string& found,
+                    const std::string& allowed);
+
+// The same for a dotted key; the place is that of the key or, where it is absent, of the innermost section
+// around it.
+InputError KeyError(const TomlNode& root, const std::string& dotted_key, const std::string& found,
+                    const std::string& allowed);
+
+struct NumberRange {
+  double min = -std::numeric_limits<double>::infinity();
+  double max = std::numeric_limits<double>::infinity();
+  bool min_allowed = true;
+  bool max_allowed = true;
+  bool infinity_allowed = false;  // "inf" for "no limit"
+
+  bool Holds(double value) const;
+  std::string Says() const;  // "a finite number above 0"
+};
+
+inline constexpr NumberRange kAnyNumber{};
+inline constexpr NumberRange kPositive{.min = 0, .min_allowed = false};
+inline constexpr NumberRange kNotNegative{.min = 0};
+
+class SectionReader {
+ public:
+  // `path` is the dotted name of the section, empty for the whole document. The node must outlive the reader.
+  SectionReader(const TomlNode& table, std::string path);
+
+  bool Has(const std::string& key) const { return table_->Find(key) != nullptr; }
+
+  // These return whether the key is there, and leave `out` alone where it is not. They throw InputError.
+  bool Number(const std::string& key, double* out, const NumberRange& range = kAnyNumber);
+  bool Number(const std::string& key, std::optional<double>* out, const NumberRange& range = kAnyNumber);
+  bool Integer(const std::string& key, int64_t* out, int64_t min, int64_t max);
+  bool Integer(const std::string& key, int* out, int min, int max);
+  bool Boolean(const std::string& key, bool* out);
+  bool Text(const std::string& key, std::string* out);
+  template <class Value>
+  bool Choice(const std::string& key, const std::vector<std::pair<std::string, Value>>& choices, Value* out);
+
+  // The section of that name; where there is none, an empty one.
+  SectionReader Section(const std::string& key);
+
+  // The key's node, for what the above do not cover; null where there is none.
+  const TomlNode* Take(const std::string& key);
+
+  // Says that `key` must be there (checked by Finish).
+  void Require(const std::string& key, const std::string& allowed);
+
+  // Throws InputError for the first key that was never asked for, else for the first required one that is
+  // missing.
+  void Finish() const;
+
+  InputError Error(const std::string& key, const std::string& found, const std::string& allowed) const;
+
+  const std::string& place() const { return table_->place; }
+  const std::string& path() const { return path_; }
+
+ private:
+  std::string Dotted(const std::string& key) const { return path_.empty() ? key : path_ + "." + key; }
+
+  const TomlNode* table_;
+  std::shared_ptr<const TomlNode> absent_;  // stands in for a section that is not there
+  std::string path_;
+  std::vector<std::string> known_;
+  std::vector<std::pair<std::string, std::string>> required_;  // key, allowed
+};
+
+template <class Value>
+bool SectionReader::Choice(const std::string& key, const std::vector<std::pair<std::string, Value>>& choices,
+                           Value* out) {
+  const TomlNode* node = Take(key);
+  if (node == nullptr) return false;
+  std::vector<std::string> names;
+  for (const auto& [name, value] : choices) {
+    if (node->is(TomlNode::Kind::kString) && node->text == name) {
+      *out = value;
+      return true;
+    }
+    names.push_back(name);
+  }
+  throw Error(key, node->Shown(), QuotedList(names));
+}
+
+}  // namespace hydro

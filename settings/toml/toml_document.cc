@@ -1,0 +1,179 @@
+#include "settings/toml/toml_document.h"
+
+#include <toml++/toml.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/text_file.h"
+
+namespace hydro {
+namespace {
+
+constexpr int kDeepest = 16;  // parts of a key; what is read here has up to three
+
+// toml++ limits how deep arrays and inline tables go, but not a key of a hundred thousand parts, whose tables
+// in tables then exhaust the stack. This looks at nothing else: where the text is no TOML, toml++ says so.
+class KeyDepth {
+ public:
+  explicit KeyDepth(std::string_view text) : text_(text) {}
+
+  // Line of the first key that is too deep; 0: none is.
+  int FirstTooDeep() {
+    int depth = 1;
+    while (at_ < text_.size()) {
+      const char c = text_[at_];
+      if (c == '"' || c == '\'') {
+        SkipString(c);
+        continue;
+      }
+      if (c == '#') {
+        at_ = std::min(text_.find('\n', at_), text_.size());
+        continue;
+      }
+      if (c == '.') {
+        if (++depth > kDeepest) return line_;
+      } else if (c == '\n' || c == '=' || c == ',' || c == '{' || c == '[' || c == ']') {
+        depth = 1;
+      }
+      Step(1);
+    }
+    return 0;
+  }
+
+ private:
+  bool At(std::string_view what) const { return text_.substr(at_, what.size()) == what; }
+
+  void Step(size_t count) {
+    for (; count > 0 && at_ < text_.size(); --count, ++at_) line_ += text_[at_] == '\n' ? 1 : 0;
+  }
+
+  void SkipString(char quote) {
+    const std::string thrice(3, quote);
+    const std::string end = At(thrice) ? thrice : std::string(1, quote);
+    Step(end.size());
+    while (at_ < text_.size() && !At(end)) {
+      if (end.size() == 1 && text_[at_] == '\n') return;  // no TOML
+      Step(quote == '"' && text_[at_] == '\\' ? 2 : 1);
+    }
+    Step(end.size());
+  }
+
+  std::string_view text_;
+  size_t at_ = 0;
+  int line_ = 1;
+};
+
+TomlNode Convert(const toml::node& from, const std::string& name) {
+  TomlNode node;
+  node.place = name + ":" + std::to_string(from.source().begin.line);
+  if (const toml::table* table = from.as_table()) {
+    node.kind = TomlNode::Kind::kTable;
+    // toml++ sorts by name; people, and the order of effects in a model, go by the file.
+    std::vector<std::pair<const toml::key*, const toml::node*>> entries;
+    for (auto&& [key, value] : *table) entries.emplace_back(&key, &value);
+    std::stable_sort(entries.begin(), entries.end(), [](const auto& a, const auto& b) {
+      const toml::source_position& x = a.first->source().begin;
+      const toml::source_position& y = b.first->source().begin;
+      return x.line != y.line ? x.line < y.line : x.column < y.column;
+    });
+    for (const auto& [key, value] : entries) {
+      node.members.push_back({std::string(key->str()), Convert(*value, name)});
+      node.members.back().second.place = name + ":" + std::to_string(key->source().begin.line);
+    }
+  } else if (const toml::array* array = from.as_array()) {
+    node.kind = TomlNode::Kind::kArray;
+    for (const toml::node& item : *array) node.items.push_back(Convert(item, name));
+  } else if (const auto* string = from.as_string()) {
+    node.kind = TomlNode::Kind::kString;
+    node.text = string->get();
+  } else if (const auto* integer = from.as_integer()) {
+    node.kind = TomlNode::Kind::kInteger;
+    node.integer = integer->get();
+  } else if (const auto* number = from.as_floating_point()) {
+    node.kind = TomlNode::Kind::kFloat;
+    node.number = number->get();
+  } else if (const auto* boolean = from.as_boolean()) {
+    node.kind = TomlNode::Kind::kBoolean;
+    node.boolean = boolean->get();
+  } else {
+    node.kind = TomlNode::Kind::kDate;
+  }
+  return node;
+}
+
+}  // namespace
+
+const TomlNode* TomlNode::Find(const std::string& key) const {
+  for (const auto& member : members) {
+    if (member.first == key) return &member.second;
+  }
+  return nullptr;
+}
+
+TomlNode* TomlNode::Find(const std::string& key) {
+  return const_cast<TomlNode*>(std::as_const(*this).Find(key));
+}
+
+void TomlNode::Erase(const std::string& key) {
+  std::erase_if(members, [&key](const auto& member) { return member.first == key; });
+}
+
+std::string TomlNode::Shown() const {
+  switch (kind) {
+    case Kind::kTable:
+      return "a section";
+    case Kind::kArray:
+      return items.empty() ? "an empty array" : "an array";
+    case Kind::kString:
+      return Quoted(text);
+    case Kind::kInteger:
+      return std::to_string(integer);
+    case Kind::kFloat:
+      return ShortestNumber(number);
+    case Kind::kBoolean:
+      return boolean ? "true" : "false";
+    case Kind::kDate:
+      break;
+  }
+  return "a date or time";
+}
+
+TomlNode NumberNode(double value) {
+  TomlNode node;
+  node.kind = TomlNode::Kind::kFloat;
+  node.number = value;
+  return node;
+}
+
+TomlNode StringNode(std::string text) {
+  TomlNode node;
+  node.kind = TomlNode::Kind::kString;
+  node.text = std::move(text);
+  return node;
+}
+
+TomlNode ArrayNode(std::vector<TomlNode> items) {
+  TomlNode node;
+  node.kind = TomlNode::Kind::kArray;
+  node.items = std::move(items);
+  return node;
+}
+
+TomlNode ParseToml(const std::string& text, const std::string& name) {
+  if (const int line = KeyDepth(text).FirstTooDeep(); line > 0) {
+    throw InputError(name + ":" + std::to_string(line) + ": syntax: found a key of more than " +
+                     std::to_string(kDeepest) + " parts (a.b.c has three), allowed " +
+                     std::to_string(kDeepest));
+  }
+  try {
+    return Convert(toml::parse(text, name), name);
+  } catch (const toml::parse_error& error) {
+    std::string description(error.description());
+    std::replace_if(
+        description.begin(), description.end(), [](unsigned char c) { return c < 0x20; }, ' ');
+    throw InputError(name + ":" + std::to_string(error.source().begin.line) + ": syntax: " + description);
+  }
+}
+
+}  // namespace hydro

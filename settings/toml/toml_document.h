@@ -1,0 +1,54 @@
+// A TOML document as a tree that remembers the order of its keys and where each came from.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "base/input_error.h"
+
+namespace hydro {
+
+struct TomlMember;
+
+struct TomlNode {
+  enum class Kind { kTable, kArray, kString, kInteger, kFloat, kBoolean, kDate };
+  Kind kind = Kind::kTable;
+  std::vector<TomlMember> members;  // kTable, in the document's order
+  std::vector<TomlNode> items;      // kArray
+  std::string text;                 // kString
+  int64_t integer = 0;              // kInteger
+  double number = 0;                // kFloat
+  bool boolean = false;             // kBoolean
+  std::string place;                // "file:line", or the option that it came from
+  bool from_option = false;         // true: from --set
+
+  bool is(Kind k) const { return kind == k; }
+  bool is_number() const { return kind == Kind::kInteger || kind == Kind::kFloat; }
+  double AsDouble() const { return kind == Kind::kInteger ? static_cast<double>(integer) : number; }
+
+  const TomlNode* Find(const std::string& key) const;  // null when there is none
+  TomlNode* Find(const std::string& key);
+  void Erase(const std::string& key);
+
+  // What was found, for a message: a value as it would be written, a table or an array by its kind.
+  std::string Shown() const;
+};
+
+struct TomlMember {
+  std::string first;  // the key
+  TomlNode second;
+};
+
+TomlNode NumberNode(double value);
+TomlNode StringNode(std::string text);
+TomlNode ArrayNode(std::vector<TomlNode> items);
+
+// Throws InputError "name:line: syntax: ..." where the text is not TOML.
+TomlNode ParseToml(const std::string& text, const std::string& name);
+
+// TOML text that ParseToml reads back as the same tree, doubles bit by bit. Dates are not kept (no key takes
+// one).
+std::string FormatToml(const TomlNode& table);
+
+}  // namespace hydro

@@ -1,0 +1,33 @@
+#include "tables/table.h"
+
+#include "base/input_error.h"
+
+namespace hydro {
+
+const Column* Table::Find(std::string_view name) const {
+  for (const Column& column : columns) {
+    if (column.name == name) return &column;
+  }
+  return nullptr;
+}
+
+std::string Table::Place(size_t row, std::string_view column) const {
+  return file + ": " +
+         (rows_are_lines ? "line " + std::to_string(row + 2) : "row " + std::to_string(row + 1)) +
+         ", column " + std::string(column);
+}
+
+Table ReadTable(const std::string& file) { return file.ends_with(".mat") ? ReadMat(file) : ReadCsv(file); }
+
+void CheckTableName(const std::string& file) {
+  if (file.ends_with(".csv") || file.ends_with(".mat")) return;
+  throw InputError(
+      file + ": found a name that tells no format of table; allowed are names that end in .csv or .mat");
+}
+
+void WriteTable(const Table& table, const std::string& file) {
+  CheckTableName(file);
+  file.ends_with(".mat") ? WriteMat(table, file) : WriteCsv(table, file);
+}
+
+}  // namespace hydro

@@ -1,0 +1,51 @@
+#include "base/text_file.h"
+
+#include "tests/settings/texts.h"
+
+namespace hydro {
+namespace {
+
+using ::testing::HasSubstr;
+
+// Tests that text stays as it is, and that what could command a terminal does not reach it.
+TEST(TextFileTest, Printable) {
+  for (const char* text : {"", "a b\tc", "\xc3\xa4\xe2\x82\xac\xf0\x9f\x98\x80\xc2\xa0"}) {
+    EXPECT_EQ(Printable(text), text);
+  }
+  EXPECT_EQ(Printable("\033[31m\r\n\a\x7f"), "\\x1b[31m\\x0d\\x0a\\x07\\x7f");
+  EXPECT_EQ(Printable("\x9b"
+                      "2J \xc2\x9b"
+                      "2J"),
+            "\\x9b2J \\xc2\\x9b2J");
+  EXPECT_EQ(Printable("\xff \xc3 \xe2\x82"), "\\xff \\xc3 \\xe2\\x82");
+  EXPECT_EQ(Printable(std::string_view("\0x", 2)), "\\x00x");
+}
+
+// Tests that line ends stay, the last one or its absence included.
+TEST(TextFileTest, PrintableLines) {
+  EXPECT_EQ(PrintableLines("a\n\n\033b\n"), "a\n\n\\x1bb\n");
+  EXPECT_EQ(PrintableLines("a\nb"), "a\nb");
+  EXPECT_EQ(PrintableLines(""), "");
+}
+
+class TextFileFolderTest : public FolderTest {};
+
+// Tests that a file is not written over while it is read, whatever it is called; others and devices may be.
+TEST_F(TextFileFolderTest, CheckKeeps) {
+  const std::string file = Write("a", "x");
+  const std::string other = Write("b", "x");
+  std::filesystem::create_symlink(file, folder_ / "link");
+  for (const std::string& name : {file, (folder_ / "." / "a").string(), (folder_ / "link").string()}) {
+    EXPECT_THAT(InputErrorOf([&] {
+                  CheckKeeps(name, {other, file});
+                }),
+                HasSubstr(name + ": found the name of a file"));
+  }
+  for (const std::string& name :
+       {std::string(), other, (folder_ / "none").string(), std::string("/dev/null")}) {
+    EXPECT_EQ(InputErrorOf([&] { CheckKeeps(name, {file, "", "/dev/null"}); }), "") << name;
+  }
+}
+
+}  // namespace
+}  // namespace hydro

@@ -1,0 +1,196 @@
+#include "hydro_log/hydro_log.h"
+
+#include <gmock/gmock.h>
+
+#include "hydro/loop_statistics_t.hpp"
+#include "tests/log/log_fixture.h"
+
+namespace hydro {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::StartsWith;
+
+struct Outcome {
+  int exit_code;
+  std::string out;
+  std::string err;
+};
+
+Outcome HydroLog(std::vector<std::string> arguments) {
+  arguments.insert(arguments.begin(), "hydro-log");
+  std::vector<const char*> argv;
+  for (const std::string& argument : arguments) argv.push_back(argument.c_str());
+  testing::internal::CaptureStdout();
+  testing::internal::CaptureStderr();
+  const int exit_code = RunHydroLog(static_cast<int>(argv.size()), argv.data());
+  std::fflush(stdout);
+  return {exit_code, testing::internal::GetCapturedStdout(), testing::internal::GetCapturedStderr()};
+}
+
+// What hydro-log timing needs of a log.
+EventContents LoopReport() {
+  loop_statistics_t report{};
+  report.role = "plant";
+  std::string data(static_cast<size_t>(report.getEncodedSize()), '\0');
+  report.encode(data.data(), 0, static_cast<int>(data.size()));
+  return {"HYDRO_LOOP_STATISTICS", data, 9000};
+}
+
+class HydroLogTest : public LogTest {};
+
+// Tests that equal runs print exactly "identical" and that a difference exits 1, also across suffixes.
+TEST_F(HydroLogTest, Compare) {
+  RunMessages run = SampleRun(9);
+  WriteRun(Path("a"), run);
+  WriteRun(Path("b"), run, "_2");
+  const Outcome same = HydroLog({"compare", Path("a"), Path("b")});
+  EXPECT_EQ(same.exit_code, 0) << same.err;
+  EXPECT_EQ(same.out, "identical\n");
+  run.states[4].p2 = 7;
+  WriteRun(Path("b"), run);
+  const Outcome different = HydroLog({"compare", Path("a"), Path("b")});
+  EXPECT_EQ(different.exit_code, 1);
+  EXPECT_THAT(different.out, AllOf(StartsWith("differ at tick 4: HYDRO_STATE.p2: "),
+                                   HasSubstr(" and 7 (" + Path("b") + ")\n")));
+}
+
+// Tests that two logs without a run are not called identical.
+TEST_F(HydroLogTest, CompareOfNothing) {
+  WriteBytes(Path("a"), "");
+  const Outcome outcome = HydroLog({"compare", Path("a"), Path("a")});
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_EQ(outcome.out, "");
+}
+
+// Tests that a log goes through a table of either kind and back.
+TEST_F(HydroLogTest, ExportAndImport) {
+  WriteRun(Path("log"), SampleRun(9));
+  for (const char* kind : {".csv", ".mat"}) {
+    const std::string first = Path("first") + kind;
+    const std::string second = Path("second") + kind;
+    EXPECT_EQ(HydroLog({"export", Path("log"), "-o", first}).exit_code, 0);
+    EXPECT_EQ(HydroLog({"import", first, "-o", Path("imported")}).exit_code, 0);
+    EXPECT_EQ(HydroLog({"export", Path("imported"), "-o", second}).exit_code, 0);
+    EXPECT_EQ(ReadBytes(second), ReadBytes(first));
+    EXPECT_GT(ReadBytes(first).size(), 200u);
+  }
+}
+
+// Tests what repair says and leaves, with and without damage.
+TEST_F(HydroLogTest, Repair) {
+  WriteRun(Path("log"), SampleRun(9));
+  const std::string whole = ReadBytes(Path("log"));
+  EXPECT_EQ(HydroLog({"repair", Path("log")}).out, Path("log") + ": nothing to repair\n");
+  EXPECT_FALSE(std::filesystem::exists(Path("log.damaged")));
+  WriteBytes(Path("log"), whole.substr(0, whole.size() - 1));
+  const Outcome broken = HydroLog({"info", Path("log")});
+  EXPECT_EQ(broken.exit_code, 2);
+  EXPECT_THAT(broken.err, HasSubstr("hydro-log repair " + Path("log")));
+  const Outcome repaired = HydroLog({"repair", Path("log")});
+  EXPECT_EQ(repaired.exit_code, 0);
+  EXPECT_THAT(repaired.out, AllOf(HasSubstr(": kept "), HasSubstr(": lost bytes ")));
+  EXPECT_EQ(HydroLog({"info", Path("log")}).exit_code, 0);
+}
+
+// Tests that a message that cannot be decoded, as a foreign program may send, is no reason to refuse the log:
+// info counts it, the others say so in one line; only what is to be the same bit by bit is refused.
+TEST_F(HydroLogTest, UndecodableMessages) {
+  RunMessages run = SampleRun(9);
+  WriteRun(Path("whole"), run);
+  std::vector<EventContents> events = ReadEvents(Path("whole"));
+  events.push_back(LoopReport());
+  WriteEvents(Path("whole"), events);
+  events.insert(events.begin() + 4, {"HYDRO_MOTOR_COMMAND", "\x1b[2J not of this stack", 5});
+  events.insert(events.begin() + 8, {"HYDRO_STATE", "torn", 5});
+  WriteEvents(Path("log"), events);
+
+  const Outcome text = HydroLog({"info", Path("log")});
+  EXPECT_EQ(text.exit_code, 0) << text.err;
+  EXPECT_EQ(text.err, "");
+  EXPECT_THAT(text.out, AllOf(HasSubstr("  1 undecodable\n"), HasSubstr("event 4 on HYDRO_MOTOR_COMMAND")));
+  EXPECT_THAT(HydroLog({"info", Path("log"), "--json"}).out, HasSubstr("\"undecodable\": 1"));
+  EXPECT_THAT(HydroLog({"info", Path("whole")}).out, testing::Not(HasSubstr("undecodable")));
+
+  for (const std::vector<std::string>& verb :
+       {std::vector<std::string>{"summary"}, {"timing"}, {"export", "-o", Path("out.csv")}}) {
+    std::vector<std::string> arguments = verb;
+    arguments.insert(arguments.begin() + 1, Path("log"));
+    const Outcome outcome = HydroLog(arguments);
+    EXPECT_EQ(outcome.exit_code, 0) << verb[0] << outcome.err;
+    EXPECT_THAT(outcome.err, StartsWith("hydro-log: warning: " + Path("log") + ": left out 2 messages"));
+    EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
+  }
+  EXPECT_EQ(HydroLog({"export", Path("whole"), "-o", Path("whole.csv")}).err, "");
+  EXPECT_EQ(ReadBytes(Path("out.csv")), ReadBytes(Path("whole.csv")));
+
+  const Outcome compared = HydroLog({"compare", Path("whole"), Path("log")});
+  EXPECT_EQ(compared.exit_code, 2);
+  EXPECT_THAT(compared.err, HasSubstr("hydro-log repair " + Path("log")));
+}
+
+// Tests that bad usage and bad input exit 2 with one line that names the place, and leave no file.
+TEST_F(HydroLogTest, BadUsageAndInput) {
+  WriteRun(Path("log"), SampleRun(3));
+  WriteEvents(Path("timed"), {LoopReport()});
+  WriteBytes(Path("bad.csv"), "time_s,p1_psi\n0,1\n1,x\n");
+  WriteBytes(Path("good.csv"), "time_s,p1_psi\n0,1\n1,2\n");
+  WriteRun(Path("log.csv"), SampleRun(3));
+  WriteBytes(Path("empty"), "");
+  const std::string out = Path("out.csv");
+  const struct {
+    std::vector<std::string> arguments;
+    std::string says;
+  } cases[] = {
+      {{}, "verb"},
+      {{"examine", Path("log")}, "examine"},
+      {{"info"}, "LOG"},
+      {{"info", Path("none")}, Path("none") + ": cannot be read: No such file or directory"},
+      {{"info", Path("log"), "--suffix", "_9"}, "no channel with suffix '_9'"},
+      {{"export", Path("log")}, "--output"},
+      {{"export", Path("log"), "-o", Path("out.txt")}, Path("out.txt")},
+      {{"export", Path("log"), "-o", Path("none/out.csv")}, Path("none/out.csv") + ": cannot be created"},
+      {{"export", Path("empty"), "-o", out}, "found no message on HYDRO_STATE"},
+      {{"export", Path("bad.csv"), "-o", out}, Path("bad.csv") + ": byte 0, event 0"},
+      {{"import", Path("bad.csv"), "-o", out}, Path("bad.csv") + ": line 3, column p1_psi: found 'x'"},
+      {{"import", Path("log"), "-o", out}, Path("log")},
+      {{"compare", Path("log"), Path("none")}, Path("none")},
+      {{"repair", Path("bad.csv"), "-o", out}, "found no event"},
+      {{"import", Path("good.csv"), "-o", Path("good.csv")},
+       Path("good.csv") + ": found the name of a file that is read"},
+      {{"export", Path("log.csv"), "-o", Path("log.csv")},
+       Path("log.csv") + ": found the name of a file that is read"},
+      {{"timing", Path("log"), "--json", Path("log")},
+       Path("log") + ": found the name of a file that is read"},
+      {{"timing", Path("log"), "--page", Path("log")},
+       Path("log") + ": found the name of a file that is read"},
+      {{"timing", Path("timed"), "--json", Path("none/x")}, Path("none/x") + ": cannot be created"},
+      {{"timing", Path("timed"), "--page", Path("none/x")}, Path("none/x") + ": cannot be created"},
+      {{"summary", Path("log"), "--json", Path("none/x")}, Path("none/x") + ": cannot be created"},
+      {{"timing", Path("timed"), "--json", ""}, "--json: found \"\", allowed FILE"},
+      {{"info", ""}, "LOG: found \"\", allowed FILE"},
+      {{"summary", Path("log"), "--json", Path("log")},
+       Path("log") + ": found the name of a file that is read"},
+  };
+  for (const auto& bad : cases) {
+    const Outcome outcome = HydroLog(bad.arguments);
+    EXPECT_EQ(outcome.exit_code, 2) << bad.says;
+    EXPECT_EQ(outcome.out, "") << bad.says;
+    EXPECT_THAT(outcome.err, HasSubstr(bad.says));
+    EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
+    EXPECT_FALSE(std::filesystem::exists(out)) << bad.says;
+    EXPECT_FALSE(std::filesystem::exists(out + ".part")) << bad.says;
+  }
+}
+
+// Tests that a disk that is full is a failure of the work, not bad input.
+TEST_F(HydroLogTest, DiskFull) {
+  WriteRun(Path("log"), SampleRun(3));
+  const Outcome outcome = HydroLog({"repair", Path("log"), "-o", "/dev/full"});
+  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_THAT(outcome.err, HasSubstr("/dev/full: cannot be written: No space left on device"));
+}
+
+}  // namespace
+}  // namespace hydro

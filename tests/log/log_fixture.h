@@ -1,0 +1,182 @@
+// What the tests of logs share: a folder of their own, and a small run.
+#pragma once
+
+#include <gtest/gtest.h>
+#include <stdlib.h>
+
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+#include <vector>
+
+#include "bus/channels.h"
+#include "hydro/run_description_t.hpp"
+#include "log/log_reader.h"
+#include "log/log_writer.h"
+#include "runs/run_messages.h"
+
+namespace hydro {
+
+// A folder that is removed with all that is in it.
+class LogTest : public testing::Test {
+ protected:
+  LogTest() {
+    std::string pattern = testing::TempDir() + "/hydro_log_XXXXXX";
+    folder_ = mkdtemp(pattern.data());
+  }
+  ~LogTest() override { std::filesystem::remove_all(folder_); }
+
+  std::string Path(const std::string& name) const { return folder_ + "/" + name; }
+
+ private:
+  std::string folder_;
+};
+
+inline std::string ReadBytes(const std::string& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+inline void WriteBytes(const std::string& file, const std::string& bytes) {
+  // Cutting a file to nothing, or renaming over one, makes ext4 write to the disk at once: slow, ten thousand
+  // times.
+  std::filesystem::remove(file);
+  std::ofstream out(file, std::ios::binary | std::ios::trunc);
+  out << bytes;
+}
+
+// What an event holds, to compare whole logs.
+struct EventContents {
+  std::string channel;
+  std::string data;
+  int64_t utime;
+  bool operator==(const EventContents&) const = default;
+};
+
+inline std::vector<EventContents> ReadEvents(const std::string& file) {
+  LogReader reader(file);
+  std::vector<EventContents> events;
+  LogEvent event;
+  while (reader.Next(event)) {
+    events.push_back({std::string(event.channel),
+                      std::string(reinterpret_cast<const char*>(event.data), static_cast<size_t>(event.size)),
+                      event.utime});
+  }
+  return events;
+}
+
+inline void WriteEvents(const std::string& file, const std::vector<EventContents>& events) {
+  LogWriter writer(file, Opening::kTemporary);
+  for (const EventContents& event : events) {
+    writer.Append(event.channel, event.data.data(), event.data.size(), event.utime);
+  }
+  writer.Finish();
+}
+
+// A message on `where` of the InputError that `work` must throw.
+template <class Work>
+std::string InputErrorOf(Work work) {
+  try {
+    work();
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  ADD_FAILURE() << "no InputError was thrown";
+  return {};
+}
+
+// `ticks` ticks of a run at 1 kHz in which every message has all its fields set to something of its own.
+inline RunMessages SampleRun(int64_t ticks) {
+  RunMessages run;
+  for (int64_t tick = 0; tick < ticks; ++tick) {
+    const double x = static_cast<double>(tick);
+    state_t state{};
+    state.utime = 1000 * tick;
+    state.tick = state.sequence = tick;
+    state.session = 11;
+    state.time = 1e-3 * x;
+    state.motor_angle = 0.1 * x;
+    state.motor_speed = 100 + 0.1 * x;
+    state.arm_angle = 0.01 * x;
+    state.arm_speed = 10 - x / 3;
+    state.p1 = 100 + x / 7;
+    state.p2 = 200 - x / 7;
+    state.voltage = tick == 0 ? 0 : -0.5 + x - 1;
+    state.command_tick = tick - 1;
+    run.states.push_back(state);
+    if (tick % 5 == 0) {
+      pressure_command_t pressure{};
+      pressure.utime = state.utime;
+      pressure.tick = tick;
+      pressure.sequence = tick / 5;
+      pressure.session = 13;
+      pressure.pressure_ref = 50 + x;
+      run.pressure_commands.push_back(pressure);
+      arm_reference_t reference{};
+      reference.utime = state.utime;
+      reference.tick = tick;
+      reference.sequence = tick / 5;
+      reference.session = 13;
+      reference.signal = arm_reference_t::ARM_ANGLE;
+      reference.value = 0.2 + x;
+      run.arm_references.push_back(reference);
+    }
+    motor_command_t command{};
+    command.utime = state.utime;
+    command.tick = command.sequence = tick;
+    command.session = 12;
+    command.voltage = -0.5 + x;
+    command.pressure_command_tick = tick == 0 ? -1 : (tick - 1) / 5 * 5;
+    command.pressure_ref = tick == 0 ? 0 : 50 + static_cast<double>(command.pressure_command_tick);
+    run.motor_commands.push_back(command);
+  }
+  fault_t fault{};
+  fault.tick = 2;
+  fault.session = 12;
+  fault.source = "pressure_ctrl";
+  fault.code = "stale_state";
+  fault.text = "found 0.2 s, 0.1 s is allowed";
+  fault.value = 0.2;
+  fault.limit = 0.1;
+  fault.active = 1;
+  run.faults.push_back(fault);
+  return run;
+}
+
+// Tick by tick, as they would have arrived.
+inline void WriteRun(const std::string& file, const RunMessages& run, const std::string& suffix = "",
+                     const std::string& config_text = "[plant]\nrate_hz = 1000\n") {
+  const Channels channels(suffix);
+  LogWriter writer(file, Opening::kTemporary);
+  run_description_t description{};
+  description.session = 11;
+  description.config_file = "demo.toml";
+  description.config_text = config_text;
+  description.model_file = "table1.toml";
+  description.model_text = "name = \"Table 1\"\n";
+  description.program = "hydro-sim";
+  description.version = "1.2.3";
+  description.host = "bench";
+  description.rate_hz = 1000;
+  description.seed = 7;
+  writer.AppendMessage(channels.run, description, 0);
+  const auto append_tick = [&writer](const std::string& channel, const auto& messages, int64_t tick) {
+    for (const auto& message : messages) {
+      if (message.tick == tick) writer.AppendMessage(channel, message, 1000 * tick);
+    }
+  };
+  int64_t last = 0;
+  for (const state_t& state : run.states) last = std::max(last, state.tick);
+  for (int64_t tick = -1; tick <= last; ++tick) {
+    append_tick(channels.state, run.states, tick);
+    append_tick(channels.pressure_command, run.pressure_commands, tick);
+    append_tick(channels.arm_reference, run.arm_references, tick);
+    append_tick(channels.motor_command, run.motor_commands, tick);
+    append_tick(channels.fault, run.faults, tick);
+  }
+  writer.Finish();
+}
+
+}  // namespace hydro

@@ -1,0 +1,133 @@
+#include "runs/info.h"
+
+#include <gmock/gmock.h>
+
+#include "tests/log/log_fixture.h"
+
+namespace hydro {
+namespace {
+
+using testing::HasSubstr;
+
+class InfoTest : public LogTest {
+ protected:
+  LogInfo InfoOf(const RunMessages& run, bool si = false) {
+    WriteRun(Path("log"), run);
+    return Summarise(ReadRunLog(Path("log")), si);
+  }
+};
+
+const ChannelInfo& Channel(const LogInfo& info, const std::string& name) {
+  for (const ChannelInfo& channel : info.channels) {
+    if (channel.summary.channel == name) return channel;
+  }
+  throw std::out_of_range(name);
+}
+
+const SignalInfo& Signal(const LogInfo& info, const std::string& name) {
+  for (const SignalInfo& signal : info.signals) {
+    if (signal.name == name) return signal;
+  }
+  throw std::out_of_range(name);
+}
+
+// Tests the figures of a complete run.
+TEST_F(InfoTest, CompleteRun) {
+  const LogInfo info = InfoOf(SampleRun(101));
+  EXPECT_DOUBLE_EQ(info.duration_s, 0.1);
+  EXPECT_EQ(info.ticks.states, 101);
+  EXPECT_EQ(info.ticks.last, 100);
+  EXPECT_DOUBLE_EQ(info.ticks.rate_hz, 1000);
+  EXPECT_EQ(info.ticks.gaps, 0);
+  const ChannelInfo& state = Channel(info, "HYDRO_STATE");
+  EXPECT_DOUBLE_EQ(state.rate_hz, 1000);
+  EXPECT_EQ(state.lost, 0);
+  EXPECT_EQ(state.repeated, 0);
+  EXPECT_DOUBLE_EQ(Channel(info, "HYDRO_PRESSURE_COMMAND").rate_hz, 200);
+  EXPECT_EQ(info.model_name, "Table 1");
+  EXPECT_EQ(info.config, (std::vector<std::pair<std::string, std::string>>{{"plant.rate_hz", "1000"}}));
+  EXPECT_EQ(Signal(info, "p1").min, 100);
+  EXPECT_EQ(Signal(info, "p1").max, 100 + 100.0 / 7);
+  EXPECT_EQ(info.faults.size(), 1u);
+}
+
+// Tests that lost, repeated and late-joined messages are counted by sender.
+TEST_F(InfoTest, LostAndRepeatedMessages) {
+  RunMessages run = SampleRun(20);
+  run.states.erase(run.states.begin() + 5, run.states.begin() + 8);  // ticks 5 to 7
+  run.states.push_back(run.states[2]);
+  run.motor_commands.erase(run.motor_commands.begin(), run.motor_commands.begin() + 4);
+  run.motor_commands[10].session = 77;  // a second sender: its numbers are its own
+  run.motor_commands[10].sequence = 0;
+  const LogInfo info = InfoOf(run);
+  EXPECT_EQ(Channel(info, "HYDRO_STATE").lost, 3);
+  EXPECT_EQ(Channel(info, "HYDRO_STATE").repeated, 1);
+  EXPECT_EQ(Channel(info, "HYDRO_MOTOR_COMMAND").before_first, 4);
+  EXPECT_EQ(Channel(info, "HYDRO_MOTOR_COMMAND").lost, 1);
+  EXPECT_EQ(Channel(info, "HYDRO_MOTOR_COMMAND").senders, 2);
+  EXPECT_EQ(info.ticks.states, 17);
+  EXPECT_EQ(info.ticks.gaps, 1);
+  EXPECT_EQ(info.ticks.missing, 3);
+  EXPECT_EQ(info.ticks.announced, 0);
+}
+
+// Tests that ticks the plant says it skipped are told from those that were lost.
+TEST_F(InfoTest, SkippedTicks) {
+  RunMessages run = SampleRun(20);
+  run.states.erase(run.states.begin() + 5, run.states.begin() + 8);
+  run.states[5].skipped_ticks = 2;
+  const LogInfo info = InfoOf(run);
+  EXPECT_EQ(info.ticks.missing, 3);
+  EXPECT_EQ(info.ticks.announced, 2);
+}
+
+// Tests that the configuration is shown key by key, with values of any kind on one line.
+TEST_F(InfoTest, ConfigurationOfTheRun) {
+  WriteRun(
+      Path("log"), SampleRun(2), "",
+      "[[process]]\nprogram = \"a\"\ncpu = 1\n[limits]\nstale_input_s = 0.1\n[time]\nmode = \"lockstep\"\n"
+      "[reference]\nsteps = [[0.2, 0.3], [2.2, -0.2]]\n");
+  using Entry = std::pair<std::string, std::string>;
+  EXPECT_THAT(Summarise(ReadRunLog(Path("log")), false).config,
+              testing::ElementsAre(
+                  Entry("limits.stale_input_s", "0.1"), Entry("process", "[{cpu = 1, program = 'a'}]"),
+                  Entry("reference.steps", "[[0.2, 0.3], [2.2, -0.2]]"), Entry("time.mode", "'lockstep'")));
+}
+
+// Tests that a stop that was said several times, lest it is lost, is told once, and another sender's too.
+TEST_F(InfoTest, RepeatedStops) {
+  RunLog log;
+  for (const int64_t session : {1, 2, 2, 2, 1}) {
+    stop_t stop{};
+    stop.session = session;
+    stop.reason = "the run is complete";
+    log.stops.push_back(stop);
+  }
+  EXPECT_EQ(Summarise(log, false).stops.size(), 2u);
+}
+
+// Tests that figures are in SI where that is asked for.
+TEST_F(InfoTest, SiUnits) {
+  const LogInfo info = InfoOf(SampleRun(3), true);
+  EXPECT_EQ(Signal(info, "p1").unit, "kPa");
+  EXPECT_NEAR(Signal(info, "p1").min, 689.4757, 1e-3);
+  EXPECT_EQ(Signal(info, "arm_angle").unit, "rad");
+}
+
+// Tests that the texts hold what matters, for a log with everything and for one with nothing.
+TEST_F(InfoTest, Texts) {
+  const LogInfo info = InfoOf(SampleRun(11));
+  const std::string text = InfoText(info);
+  for (const char* part :
+       {"Table 1", "hydro-sim 1.2.3", "HYDRO_STATE", "stale_state", "plant.rate_hz = 1000"}) {
+    EXPECT_THAT(text, HasSubstr(part));
+  }
+  EXPECT_THAT(InfoJson(info), HasSubstr("\"model_name\": \"Table 1\""));
+  WriteBytes(Path("empty"), "");
+  const LogInfo nothing = Summarise(ReadRunLog(Path("empty")), false);
+  EXPECT_THAT(InfoText(nothing), HasSubstr("0 messages"));
+  EXPECT_THAT(InfoJson(nothing), HasSubstr("\"messages\": 0"));
+}
+
+}  // namespace
+}  // namespace hydro

@@ -1,0 +1,147 @@
+#include <gmock/gmock.h>
+
+#include <bit>
+#include <cmath>
+#include <random>
+
+#include "runs/run_log.h"
+#include "runs/run_table.h"
+#include "tests/log/log_fixture.h"
+
+namespace hydro {
+namespace {
+
+using testing::HasSubstr;
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+class RunImportTest : public LogTest {
+ protected:
+  RunLog Import(const Table& table) {
+    ImportRun(table, "1.2.3", Path("log"));
+    return ReadRunLog(Path("log"));
+  }
+  RunLog ImportCsv(const std::string& text) {
+    WriteBytes(Path("x.csv"), text);
+    return Import(ReadTable(Path("x.csv")));
+  }
+
+  // Expects that export gives the columns of `table` back bit by bit, and nothing in the others.
+  void ExpectComesBack(const Table& table) {
+    const Table back = ExportRun(Import(table));
+    ASSERT_EQ(back.rows(), table.rows());
+    for (const Column& column : back.columns) {
+      const Column* given = table.Find(column.name);
+      for (size_t row = 0; row < table.rows(); ++row) {
+        double expected = kNan;
+        if (given != nullptr) expected = given->values[row];
+        if (given == nullptr && column.name == "tick") expected = static_cast<double>(row);
+        const double found = column.values[row];
+        ASSERT_TRUE(std::bit_cast<uint64_t>(found) == std::bit_cast<uint64_t>(expected) ||
+                    (std::isnan(found) && std::isnan(expected)))
+            << column.name << " row " << row << ": " << found << " instead of " << expected;
+      }
+    }
+  }
+};
+
+// Any numbers, a third of them missing.
+Table RandomTable(uint64_t seed, size_t rows, unsigned columns) {
+  std::mt19937_64 random(seed);
+  Table table;
+  table.file = "random.csv";
+  for (size_t k = 0; k < kRunColumns.size(); ++k) {
+    if (k > 0 && ((columns >> k) & 1) == 0) continue;
+    Column column{kRunColumns[k], {}};
+    double time = -1;
+    double tick = -1;
+    for (size_t row = 0; row < rows; ++row) {
+      time += 1e-6 + static_cast<double>(random() % 100000) * 1e-5;
+      tick += static_cast<double>(1 + (random() % 3 == 0 ? random() % 5 : 0));
+      double value = random() % 3 == 0 ? kNan : std::bit_cast<double>(random());
+      if (random() % 5 == 0) value = -0.0;
+      column.values.push_back(k == 0 ? time : k == 1 ? tick : value);
+    }
+    table.columns.push_back(column);
+  }
+  return table;
+}
+
+// Tests that every subset of the columns that has time_s comes back bit by bit, with gaps in the ticks and
+// missing values.
+TEST_F(RunImportTest, EverySubsetOfColumnsComesBack) {
+  for (unsigned columns = 1; columns < 1u << kRunColumns.size(); columns += 2) {
+    SCOPED_TRACE(columns);
+    ExpectComesBack(RandomTable(columns, 1 + columns % 7, columns));
+    std::filesystem::remove(Path("log"));
+    if (HasFatalFailure()) return;
+  }
+}
+
+// Tests that an exported run goes in and out again unchanged.
+TEST_F(RunImportTest, ExportedRunComesBack) {
+  WriteRun(Path("run"), SampleRun(50));
+  ExpectComesBack(ExportRun(ReadRunLog(Path("run"))));
+}
+
+// Tests that the log plays at the pace of the measurement and describes itself.
+TEST_F(RunImportTest, TimesAndDescription) {
+  const RunLog even = ImportCsv("time_s,p1_psi\n0.5,1\n0.502,2\n0.504,3\n");
+  EXPECT_EQ(even.first_utime, 500000);
+  EXPECT_EQ(even.last_utime, 504000);
+  ASSERT_EQ(even.descriptions.size(), 1u);
+  EXPECT_EQ(even.descriptions[0].rate_hz, 500);
+  EXPECT_EQ(even.descriptions[0].program, "hydro-log");
+  EXPECT_EQ(even.descriptions[0].version, "1.2.3");
+  EXPECT_EQ(even.descriptions[0].config_file, Path("x.csv"));
+  EXPECT_EQ(ImportCsv("time_s,tick\n0,0\n0.002,2\n0.003,3\n").descriptions[0].rate_hz, 1000);
+  EXPECT_EQ(ImportCsv("time_s\n0\n0.002\n0.003\n").descriptions[0].rate_hz, 0);
+  EXPECT_EQ(ImportCsv("time_s\n7\n").descriptions[0].rate_hz, 0);
+}
+
+// Tests that a voltage acts from its row on, as in a log of the plant.
+TEST_F(RunImportTest, VoltageActsFromItsRow) {
+  const RunLog log = ImportCsv("time_s,voltage_V\n0,1\n1,2\n2,3\n");
+  ASSERT_EQ(log.messages.states.size(), 3u);
+  EXPECT_EQ(log.messages.states[0].voltage, 0);
+  EXPECT_EQ(log.messages.states[0].command_tick, -1);
+  EXPECT_EQ(log.messages.states[1].voltage, 1);
+  EXPECT_EQ(log.messages.states[2].voltage, 2);
+  EXPECT_EQ(log.messages.states[2].command_tick, 1);
+  ASSERT_EQ(log.messages.motor_commands.size(), 1u);
+  EXPECT_EQ(log.messages.motor_commands[0].tick, 1);
+  EXPECT_EQ(log.messages.motor_commands[0].voltage, 3);
+}
+
+// Tests that each kind of bad table is an error that names row and column, and that no log is left.
+TEST_F(RunImportTest, BadTables) {
+  const struct {
+    const char* text;
+    const char* says;
+  } cases[] = {
+      {"p1_psi\n1\n", ": found no column time_s"},
+      {"time_s,p3_psi\n0,1\n", ": found the column 'p3_psi'; allowed are time_s, tick, voltage_V"},
+      {"time_s,time_s\n0,1\n", ": line 1, column 2: found the name 'time_s' a second time"},
+      {"time_s,p1_psi\n0,1\n0,2\n", ": line 3, column time_s: found 0; a time after 0"},
+      {"time_s,p1_psi\n0,1\n2,2\n1,2\n", ": line 4, column time_s: found 1; a time after 2"},
+      {"time_s,p1_psi\n0,1\n,2\n", ": line 3, column time_s: found nothing"},
+      {"time_s,p1_psi\n0,1\ninf,2\n", ": line 3, column time_s: found inf"},
+      {"time_s,p1_psi\n0,1\n1e13,2\n", ": line 3, column time_s: found 1e+13"},
+      {"time_s,tick\n0,0\n1,1.5\n", ": line 3, column tick: found 1.5; a whole number"},
+      {"time_s,tick\n0,-1\n", ": line 2, column tick: found -1; a whole number from 0"},
+      {"time_s,tick\n0,\n", ": line 2, column tick: found nothing; a whole number"},
+      {"time_s,tick\n0,1e300\n", ": line 2, column tick: found 1e+300"},
+      {"time_s,tick\n0,3\n1,3\n", ": line 3, column tick: found 3; a tick above 3"},
+      {"time_s,p1_psi\n0,abc\n", ": line 2, column p1_psi: found 'abc'"},
+      {"time_s,p1_psi\n0\n", ": line 2: found 1 cells; 2 are needed"},
+      {"", ": found an empty file"},
+  };
+  for (const auto& bad : cases) {
+    EXPECT_THAT(InputErrorOf([&] { ImportCsv(bad.text); }), HasSubstr(Path("x.csv") + bad.says));
+    EXPECT_FALSE(std::filesystem::exists(Path("log"))) << bad.says;
+    EXPECT_FALSE(std::filesystem::exists(Path("log.part"))) << bad.says;
+  }
+}
+
+}  // namespace
+}  // namespace hydro

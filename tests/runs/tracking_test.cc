@@ -1,0 +1,117 @@
+#include "runs/tracking.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+
+namespace hydro {
+namespace {
+
+// A run at 1 kHz for `ticks` ticks whose arm and reference are given functions of time.
+RunLog MakeRun(int64_t ticks, const std::function<double(double)>& arm,
+               const std::function<double(double)>& reference) {
+  RunLog log;
+  for (int64_t tick = 0; tick <= ticks; ++tick) {
+    state_t state{};
+    state.tick = tick;
+    state.time = 1e-3 * static_cast<double>(tick);
+    state.arm_angle = arm(state.time);
+    log.messages.states.push_back(state);
+    if (tick % 5 != 0) continue;
+    arm_reference_t sample{};
+    sample.tick = tick;
+    sample.signal = arm_reference_t::ARM_ANGLE;
+    sample.value = reference(state.time);
+    log.messages.arm_references.push_back(sample);
+  }
+  return log;
+}
+
+double StepAtOne(double t) { return t < 1 ? 0.0 : 0.5; }
+
+// Tests overshoot, settling time and final error of a second-order response against their closed forms.
+TEST(TrackingTest, SecondOrderStep) {
+  const double omega = 20, zeta = 0.4, damped = omega * std::sqrt(1 - zeta * zeta);
+  const auto arm = [&](double t) {
+    if (t < 1) return 0.0;
+    const double s = t - 1;
+    return 0.5 * (1 - std::exp(-zeta * omega * s) *
+                          (std::cos(damped * s) + zeta / std::sqrt(1 - zeta * zeta) * std::sin(damped * s)));
+  };
+  const Tracking tracking = TrackArm(MakeRun(4000, arm, StepAtOne));
+  ASSERT_TRUE(tracking.has_reference);
+  ASSERT_EQ(tracking.steps.size(), 1u);
+  const StepResponse& step = tracking.steps[0];
+  EXPECT_DOUBLE_EQ(step.time_s, 1);
+  EXPECT_EQ(step.from_rad, 0);
+  EXPECT_EQ(step.to_rad, 0.5);
+  EXPECT_NEAR(step.overshoot_percent, 100 * std::exp(-M_PI * zeta / std::sqrt(1 - zeta * zeta)), 0.05);
+  ASSERT_TRUE(step.settling_time_s.has_value());
+  // The envelope reaches 2 % at -ln(0.02 sqrt(1 - zeta^2))/(zeta omega); the response at most half a period
+  // before.
+  const double envelope = -std::log(0.02 * std::sqrt(1 - zeta * zeta)) / (zeta * omega);
+  EXPECT_LE(*step.settling_time_s, envelope + 1e-3);
+  EXPECT_GE(*step.settling_time_s, envelope - M_PI / damped);
+  EXPECT_NEAR(step.final_error_rad, 0, 1e-9);
+  EXPECT_EQ(tracking.at_target, true);
+}
+
+// Tests that an arm that stops short is not at its target, never settles, and has its error reported with its
+// sign.
+TEST(TrackingTest, StopsShort) {
+  const Tracking tracking = TrackArm(MakeRun(
+      3000, [](double t) { return t < 1 ? 0.0 : 0.48; }, StepAtOne));
+  ASSERT_EQ(tracking.steps.size(), 1u);
+  EXPECT_FALSE(tracking.steps[0].settling_time_s.has_value());
+  EXPECT_NEAR(tracking.final_error_rad, -0.02, 1e-12);
+  EXPECT_EQ(tracking.at_target, false);
+  EXPECT_EQ(tracking.steps[0].overshoot_percent, 0);
+}
+
+// Tests that a downward step's overshoot counts downwards.
+TEST(TrackingTest, DownwardOvershoot) {
+  const Tracking tracking = TrackArm(MakeRun(
+      3000, [](double t) { return t < 1     ? 0.5
+                                  : t < 1.5 ? -0.05
+                                            : 0.0; },
+      [](double t) { return t < 1 ? 0.5 : 0.0; }));
+  ASSERT_EQ(tracking.steps.size(), 1u);
+  EXPECT_NEAR(tracking.steps[0].overshoot_percent, 10, 1e-9);
+  EXPECT_NEAR(*tracking.steps[0].settling_time_s, 0.5, 1.1e-3);
+}
+
+// Tests that a sine reference has no steps, only an error.
+TEST(TrackingTest, SineHasNoSteps) {
+  const auto sine = [](double t) { return 0.3 * std::sin(6 * t); };
+  const Tracking tracking = TrackArm(MakeRun(
+      4000, [&](double t) { return sine(t) + 0.01; }, sine));
+  EXPECT_TRUE(tracking.steps.empty());
+  EXPECT_EQ(tracking.at_target, std::nullopt);       // it still moves
+  EXPECT_NEAR(tracking.rms_error_rad, 0.01, 0.002);  // the reference is held for 5 ms
+}
+
+// Tests that an arm that holds still at a constant reference is at its target, up to a floor and not beyond.
+TEST(TrackingTest, ConstantReference) {
+  const auto constant = [](double) { return 0.2; };
+  EXPECT_EQ(TrackArm(MakeRun(
+                         500, [](double) { return 0.2001; }, constant))
+                .at_target,
+            true);
+  EXPECT_EQ(TrackArm(MakeRun(
+                         500, [](double) { return 0.202; }, constant))
+                .at_target,
+            false);
+}
+
+// Tests that a run without arm-angle references says so instead of dividing by nothing.
+TEST(TrackingTest, NoReference) {
+  RunLog log = MakeRun(
+      100, [](double) { return 0.0; }, StepAtOne);
+  for (arm_reference_t& reference : log.messages.arm_references) reference.signal = arm_reference_t::PRESSURE;
+  EXPECT_FALSE(TrackArm(log).has_reference);
+  EXPECT_FALSE(TrackArm(RunLog()).has_reference);
+}
+
+}  // namespace
+}  // namespace hydro

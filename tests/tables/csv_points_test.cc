@@ -1,0 +1,51 @@
+#include "tables/csv_points.h"
+
+#include "tests/settings/texts.h"
+
+namespace hydro {
+namespace {
+
+using ::testing::HasSubstr;
+
+// Tests that the two columns are found by name, whatever else the table holds.
+TEST(CsvPointsTest, ReadsColumnsByName) {
+  const auto points = ParseCsvPoints(
+      "\xEF\xBB\xBF# recorded\r\nother, \"time_s\" ,arm_ref_rad\r\n9,0,0.1\r\n\r\n,0.5,-2e-3\r\n9,+1,3",
+      "a.csv", "arm_ref_rad");
+  ASSERT_EQ(points.size(), 3u);
+  EXPECT_EQ(points[1].time, 0.5);
+  EXPECT_EQ(points[1].value, -2e-3);
+  EXPECT_EQ(points[2].time, 1.0);
+}
+
+// Tests that each malformed table is refused with file, row, column, what was found and what is allowed.
+TEST(CsvPointsTest, RefusesMalformedTables) {
+  const struct {
+    const char* text;
+    const char* says;
+  } tables[] = {
+      {"", "a.csv: found no header row, allowed the column names time_s and y"},
+      {"# only a comment\n", "a.csv: found no header row"},
+      {"time_s,y\n", "a.csv: found no rows below the header, allowed one or more"},
+      {"t,y\n0,1\n", "a.csv:1: found no column \"time_s\", allowed \"t\" or \"y\""},
+      {"time_s,Y2\n0,1\n", "a.csv:1: found no column \"y\", allowed \"time_s\" or \"Y2\""},
+      {"time_s,y,y\n0,1,1\n", "a.csv:1: found two columns \"y\", allowed one"},
+      {"time_s,y\n0,1\n1\n", "a.csv:3: found 1 cells, allowed 2, as many as the header has"},
+      {"time_s,y\n0,1,2\n", "a.csv:2: found 3 cells, allowed 2"},
+      {"time_s,y\n0,one\n", "a.csv:2:y: found \"one\", allowed a finite number"},
+      {"time_s,y\n0,1e\n", "a.csv:2:y: found \"1e\", allowed a finite number"},
+      {"time_s,y\n0,1 2\n", "a.csv:2:y: found \"1 2\", allowed a finite number"},
+      {"time_s,y\n0,nan\n", "a.csv:2:y: found \"nan\", allowed a finite number"},
+      {"time_s,y\n0,1e999\n", "a.csv:2:y: found \"1e999\", allowed a finite number"},
+      {"time_s,y\n0,\n", "a.csv:2:y: found \"\", allowed a finite number"},
+      {"time_s,y\n-inf,0\n", "a.csv:2:time_s: found \"-inf\", allowed a finite number"},
+      {"time_s,y\n0,1\n# x\n0,2\n", "a.csv:4:time_s: found 0, allowed above 0, the time of the row before"},
+      {"time_s;y\n0;1\n", "a.csv:1: found no column \"time_s\", allowed \"time_s;y\""},
+  };
+  for (const auto& table : tables) {
+    EXPECT_THAT(InputErrorOf([&] { ParseCsvPoints(table.text, "a.csv", "y"); }), HasSubstr(table.says));
+  }
+}
+
+}  // namespace
+}  // namespace hydro
