@@ -126,4 +126,10 @@ void NewFile::Finish() {
   }
 }
 
+void WriteWholeFile(const std::string& file, const std::string& text) {
+  NewFile out(file, Opening::kTemporary);
+  out.Write(text.data(), text.size());
+  out.Finish();
+}
+
 }  // namespace hydro

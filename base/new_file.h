@@ -54,4 +54,7 @@ class NewFile {
   int descriptor_ = -1;
 };
 
+// Writes a text file, whole or not at all. Throws what NewFile throws.
+void WriteWholeFile(const std::string& file, const std::string& text);
+
 }  // namespace hydro

@@ -23,10 +23,10 @@ enum class Sending { kByName, kAdvertised };
 
 // A state and its command: two messages a turn.
 void InProcessExchange(benchmark::State& bench, Sending sending, bool tapped) {
-  SimulatedClock clock;
-  InProcessBus bus(&clock);
-  Publisher<state_t> states = bus.Advertise<state_t>(kState);
-  Publisher<motor_command_t> commands = bus.Advertise<motor_command_t>(kCommand);
+  bus::SimulatedClock clock;
+  bus::InProcessBus bus(&clock);
+  bus::Publisher<state_t> states = bus.Advertise<state_t>(kState);
+  bus::Publisher<motor_command_t> commands = bus.Advertise<motor_command_t>(kCommand);
   motor_command_t command{};
   int64_t answered = -1;
   int64_t bytes = 0;
@@ -39,7 +39,7 @@ void InProcessExchange(benchmark::State& bench, Sending sending, bool tapped) {
     }
   });
   bus.Subscribe<motor_command_t>(kCommand, [&](const motor_command_t& c) { answered = c.tick; });
-  if (tapped) bus.SubscribeAll([&](const RawMessage& message) { bytes += message.size; });
+  if (tapped) bus.SubscribeAll([&](const bus::RawMessage& message) { bytes += message.size; });
   state_t state{};
   for (auto _ : bench) {
     ++state.tick;
@@ -48,7 +48,7 @@ void InProcessExchange(benchmark::State& bench, Sending sending, bool tapped) {
     } else {
       bus.Publish(kState, state);
     }
-    while (answered != state.tick) bus.HandleUntil(Bus::TimePoint::max());
+    while (answered != state.tick) bus.HandleUntil(bus::Bus::TimePoint::max());
   }
   benchmark::DoNotOptimize(bytes);
   bench.counters["s/message"] = benchmark::Counter(2.0 * static_cast<double>(bench.iterations()),
@@ -60,7 +60,7 @@ BENCHMARK_CAPTURE(InProcessExchange, advertised_and_tapped, Sending::kAdvertised
 
 // What authentication adds to a message's way: its seal, and the check of it.
 void SealAndOpen(benchmark::State& bench) {
-  Authenticator authenticator(BusKey({1, 2, 3}), AuthenticatedChannels(Channels()));
+  bus::Authenticator authenticator(bus::BusKey({1, 2, 3}), bus::AuthenticatedChannels(bus::Channels()));
   state_t state{};
   std::vector<uint8_t> bytes(static_cast<size_t>(state.getEncodedSize()));
   const int size = state.encode(bytes.data(), 0, static_cast<int>(bytes.size()));
@@ -68,13 +68,13 @@ void SealAndOpen(benchmark::State& bench) {
   for (auto _ : bench) {
     const int sealed = authenticator.Seal(kState, &bytes, size);
     const auto opened = authenticator.Open(kState, bytes.data(), sealed, now);
-    if (opened.verdict != Authenticator::Verdict::kAccepted) bench.SkipWithError("refused");
+    if (opened.verdict != bus::Authenticator::Verdict::kAccepted) bench.SkipWithError("refused");
   }
 }
 BENCHMARK(SealAndOpen);
 
 void HistogramRecord(benchmark::State& bench) {
-  Histogram histogram;
+  timing::Histogram histogram;
   int64_t value = 1;
   for (auto _ : bench) {
     histogram.Record(value);

@@ -20,7 +20,7 @@ int main(int argc, char** argv) {
   }
   using namespace std::chrono;
   try {
-    hydro::UdpmSocket socket(hydro::ParseUdpmUrl(argv[1]));
+    hydro::bus::UdpmSocket socket(hydro::bus::ParseUdpmUrl(argv[1]));
     const char* const channel = argc == 5 ? argv[4] : "EVENT";
     const auto events = static_cast<int64_t>(rate * seconds);
     std::array<uint8_t, 128> event{};
@@ -28,7 +28,7 @@ int main(int argc, char** argv) {
     for (int64_t i = 0; i < events; ++i) {
       const auto due = start + nanoseconds(static_cast<int64_t>(1e9 * static_cast<double>(i) / rate));
       // Of several that are due by then the sleep costs one wake-up, not one each.
-      if (due > steady_clock::now() + 50us) hydro::SleepUntil(due);
+      if (due > steady_clock::now() + 50us) hydro::bus::SleepUntil(due);
       std::memcpy(event.data(), &i, sizeof i);
       while (!socket.Send(channel, event.data(), event.size())) std::this_thread::yield();
     }

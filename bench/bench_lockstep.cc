@@ -99,35 +99,37 @@ double BareTicksPerSecond(int64_t ticks) {
 }
 
 // With a key all messages are authenticated.
-std::unique_ptr<Authenticator> KeyedOrNot(bool with_key) {
+std::unique_ptr<bus::Authenticator> KeyedOrNot(bool with_key) {
   if (!with_key) return nullptr;
-  return std::make_unique<Authenticator>(BusKey({1, 2, 3}), AuthenticatedChannels(Channels()));
+  return std::make_unique<bus::Authenticator>(bus::BusKey({1, 2, 3}),
+                                              bus::AuthenticatedChannels(bus::Channels()));
 }
 
 template <class Controller>
-void RunController(const std::string& url, const StackConfig& config, bool with_key) {
-  UdpmBus bus(url, KeyedOrNot(with_key), Receiving::kDirect);  // as the programs do
-  WallClock clock;
+void RunController(const std::string& url, const settings::StackConfig& config, bool with_key) {
+  bus::UdpmBus bus(url, KeyedOrNot(with_key), bus::Receiving::kDirect);  // as the programs do
+  bus::WallClock clock;
   Controller controller(bus, clock, config);
-  RunApp(bus, clock, controller);
+  process::RunApp(bus, clock, controller);
 }
 
 double StackTicksPerSecond(int64_t ticks, const std::string& config_file, bool with_key) {
   const std::string url = FreeBusUrl();
-  StackConfig config = LoadStackConfig(config_file, {"time.mode=lockstep", "plant.rate_hz=5000"});
+  settings::StackConfig config =
+      settings::LoadStackConfig(config_file, {"time.mode=lockstep", "plant.rate_hz=5000"});
   config.last_tick = ticks;
-  const ChildProcess fast([&] { RunController<PressureApp>(url, config, with_key); });
-  const ChildProcess slow([&] { RunController<PositionApp>(url, config, with_key); });
-  UdpmBus bus(url, KeyedOrNot(with_key), Receiving::kDirect);  // as the programs do
-  WallClock clock;
+  const ChildProcess fast([&] { RunController<pressure_ctrl::PressureApp>(url, config, with_key); });
+  const ChildProcess slow([&] { RunController<position_ctrl::PositionApp>(url, config, with_key); });
+  bus::UdpmBus bus(url, KeyedOrNot(with_key), bus::Receiving::kDirect);  // as the programs do
+  bus::WallClock clock;
   // The plant's own messages say when it started and ended.
   int64_t started = 0, ended = 0;
   bus.Subscribe<process_status_t>("HYDRO_PROCESS_STATUS", [&](const process_status_t& status) {
     if (status.role == "plant" && status.state == process_status_t::RUNNING) started = status.utime;
   });
   bus.Subscribe<stop_t>("HYDRO_STOP", [&](const stop_t& stop) { ended = stop.utime; });
-  SimulatedRig rig(config);
-  PlantApp plant(bus, clock, config, rig);
+  plant::SimulatedRig rig(config);
+  plant::PlantApp plant(bus, clock, config, rig);
   if (plant.Run() != 0) {
     std::fprintf(stderr, "bench_lockstep: %s\n", plant.failure().c_str());
     std::exit(1);

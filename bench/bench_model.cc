@@ -27,21 +27,21 @@ constexpr double kReference[] = {296.568239647, -318.759357681, 320.915787611, -
                                  320.055402546, -320.055608311, 320.055715807, -320.055771898,
                                  320.055801149, -320.055816398, 320.055824347, -320.055828489};
 
-ModelDescription Table1Model() {
-  ModelDescription model;
+model::ModelDescription Table1Model() {
+  model::ModelDescription model;
   model.name = "Table 1";
   model.parameters = testing::Table1();
   return model;
 }
 
-double Loop(const Measurement& m, int tick) {
+double Loop(const model::Measurement& m, int tick) {
   const double reference = tick % 500 < 250 ? 300 : -300;
   return 0.134 * (reference - (m.p2 - m.p1) - 8.4 * m.motor_speed);
 }
 
-ActuatorOptions Clamped(Integrator integrator, double tolerance) {
-  ActuatorOptions options;
-  options.shaft = Shaft::kClamped;
+model::ActuatorOptions Clamped(model::Integrator integrator, double tolerance) {
+  model::ActuatorOptions options;
+  options.shaft = model::Shaft::kClamped;
   options.integrator = integrator;
   options.relative_tolerance = tolerance;
   return options;
@@ -54,16 +54,16 @@ struct Row {
 std::map<std::string, Row> rows;  // in the order of their names
 std::vector<std::string> order;
 
-void Tick(benchmark::State& state, const std::string& name, const ModelDescription& model,
-          const ActuatorOptions& options, bool has_reference) {
+void Tick(benchmark::State& state, const std::string& name, const model::ModelDescription& model,
+          const model::ActuatorOptions& options, bool has_reference) {
   double error = 0;
   int64_t seconds = 0;
   for (auto _ : state) {
-    Actuator actuator(model, options);
+    model::Actuator actuator(model, options);
     for (int tick = 0; tick < kTicks; ++tick) {
       actuator.Advance(Loop(actuator.Measure(), tick), (tick + 1) * kTick);
       if ((tick + 1) % 250 == 0) {
-        const Measurement m = actuator.Measure();
+        const model::Measurement m = actuator.Measure();
         error = std::max(error, std::abs(m.p2 - m.p1 - kReference[tick / 250]));
       }
     }
@@ -77,8 +77,8 @@ void Tick(benchmark::State& state, const std::string& name, const ModelDescripti
   rows[name].error = has_reference ? error : std::nan("");
 }
 
-void Register(const std::string& name, const ModelDescription& model, const ActuatorOptions& options,
-              bool has_reference) {
+void Register(const std::string& name, const model::ModelDescription& model,
+              const model::ActuatorOptions& options, bool has_reference) {
   benchmark::RegisterBenchmark(name.c_str(), [=](benchmark::State& state) {
     Tick(state, name, model, options, has_reference);
   })->Unit(benchmark::kMillisecond);
@@ -101,20 +101,20 @@ class Reporter : public benchmark::ConsoleReporter {
 
 int main(int argc, char** argv) {
   using namespace hydro;
-  Register("fast", Table1Model(), Clamped(Integrator::kFast, 1e-8), true);
-  Register("auto", Table1Model(), Clamped(Integrator::kAuto, 1e-8), true);
-  Register("erk", Table1Model(), Clamped(Integrator::kErk, 1e-8), true);
-  Register("cvode", Table1Model(), Clamped(Integrator::kCvode, 1e-8), true);
-  ActuatorOptions free = Clamped(Integrator::kFast, 1e-8);
-  free.shaft = Shaft::kFree;
+  Register("fast", Table1Model(), Clamped(model::Integrator::kFast, 1e-8), true);
+  Register("auto", Table1Model(), Clamped(model::Integrator::kAuto, 1e-8), true);
+  Register("erk", Table1Model(), Clamped(model::Integrator::kErk, 1e-8), true);
+  Register("cvode", Table1Model(), Clamped(model::Integrator::kCvode, 1e-8), true);
+  model::ActuatorOptions free = Clamped(model::Integrator::kFast, 1e-8);
+  free.shaft = model::Shaft::kFree;
   Register("fast, free arm", Table1Model(), free, false);
-  ModelDescription stribeck = Table1Model();
+  model::ModelDescription stribeck = Table1Model();
   stribeck.effects.push_back({"pump.stribeck", {{"static_excess", 0.5}, {"speed", 3.0}}, {}});
-  Register("fast, pump.stribeck", stribeck, Clamped(Integrator::kFast, 1e-8), false);
-  ModelDescription wave = Table1Model();
+  Register("fast, pump.stribeck", stribeck, Clamped(model::Integrator::kFast, 1e-8), false);
+  model::ModelDescription wave = Table1Model();
   wave.effects.push_back(
       {"line.wave", {{"frequency", 300.0}, {"volume_fraction", 0.2}, {"damping", 0.05}}, {}});
-  Register("fast, line.wave", wave, Clamped(Integrator::kFast, 1e-8), false);
+  Register("fast, line.wave", wave, Clamped(model::Integrator::kFast, 1e-8), false);
   benchmark::Initialize(&argc, argv);
   Reporter reporter;
   benchmark::RunSpecifiedBenchmarks(&reporter);

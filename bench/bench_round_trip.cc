@@ -31,15 +31,16 @@ using SteadyClock = std::chrono::steady_clock;
 constexpr int kBlocks = 20;
 constexpr int kTripsPerBlock = 100;
 
-std::unique_ptr<Authenticator> KeyedOrNot(bool with_key) {
+std::unique_ptr<bus::Authenticator> KeyedOrNot(bool with_key) {
   if (!with_key) return nullptr;
-  return std::make_unique<Authenticator>(BusKey({1, 2, 3}), AuthenticatedChannels(Channels()));
+  return std::make_unique<bus::Authenticator>(bus::BusKey({1, 2, 3}),
+                                              bus::AuthenticatedChannels(bus::Channels()));
 }
 
 // The plant's end of the bus, waiting as the plant does.
 class StackPinger : public Pinger {
  public:
-  StackPinger(const std::string& url, Receiving receiving, bool with_key)
+  StackPinger(const std::string& url, bus::Receiving receiving, bool with_key)
       : bus_(url, KeyedOrNot(with_key), receiving), states_(bus_.Advertise<state_t>("HYDRO_STATE")) {
     bus_.Subscribe<motor_command_t>("HYDRO_MOTOR_COMMAND",
                                     [this](const motor_command_t& command) { answered_ = command.tick; });
@@ -58,23 +59,23 @@ class StackPinger : public Pinger {
   }
 
  private:
-  UdpmBus bus_;
-  Publisher<state_t> states_;
+  bus::UdpmBus bus_;
+  bus::Publisher<state_t> states_;
   int64_t answered_ = -1;
   int64_t sequence_ = 0;
 };
 
 // The pressure loop as hydro-pressure-ctrl runs it.
-void AnswerOnBus(const std::string& url, Receiving receiving, bool with_key) {
-  const StackConfig config =
-      LoadStackConfig(HYDRO_BENCH_CONFIG, {"time.mode=realtime", "limits.stale_input_s=1e6"});
-  UdpmBus bus(url, KeyedOrNot(with_key), receiving);
-  WallClock clock;
-  PressureApp app(bus, clock, config);
-  RunApp(bus, clock, app);
+void AnswerOnBus(const std::string& url, bus::Receiving receiving, bool with_key) {
+  const settings::StackConfig config =
+      settings::LoadStackConfig(HYDRO_BENCH_CONFIG, {"time.mode=realtime", "limits.stale_input_s=1e6"});
+  bus::UdpmBus bus(url, KeyedOrNot(with_key), receiving);
+  bus::WallClock clock;
+  pressure_ctrl::PressureApp app(bus, clock, config);
+  process::RunApp(bus, clock, app);
 }
 
-Peer StackPeer(const std::string& name, Receiving receiving, bool with_key = false) {
+Peer StackPeer(const std::string& name, bus::Receiving receiving, bool with_key = false) {
   const std::string url = FreeBusUrl();
   return {name, [=] { AnswerOnBus(url, receiving, with_key); },
           [=] { return std::make_unique<StackPinger>(url, receiving, with_key); }};
@@ -99,15 +100,15 @@ std::vector<int> Cpus(const cpu_set_t& set) {
 
 std::vector<Peer> Everyone() {
   std::vector<Peer> peers = MakePeers();
-  peers.insert(peers.begin() + 1, StackPeer("stack", Receiving::kDirect));
-  peers.insert(peers.begin() + 2, StackPeer("stack with a key", Receiving::kDirect, true));
-  peers.insert(peers.begin() + 3, StackPeer("stack, LCM's own thread", Receiving::kQueued));
+  peers.insert(peers.begin() + 1, StackPeer("stack", bus::Receiving::kDirect));
+  peers.insert(peers.begin() + 2, StackPeer("stack with a key", bus::Receiving::kDirect, true));
+  peers.insert(peers.begin() + 3, StackPeer("stack, LCM's own thread", bus::Receiving::kQueued));
   return peers;
 }
 
 // One round with fresh processes: which core the kernel gives to which thread makes a difference of a third
 // and stays for the life of a process.
-void RunRound(Placement placement, const std::vector<int>& cpus, std::span<Histogram> times) {
+void RunRound(Placement placement, const std::vector<int>& cpus, std::span<timing::Histogram> times) {
   std::vector<Peer> peers = Everyone();
   std::vector<std::unique_ptr<ChildProcess>> echoes;
   if (placement != Placement::kAnywhere) Pin(cpus.front());
@@ -144,10 +145,10 @@ void Measure(Placement placement, const std::string& title, int rounds) {
   const std::vector<int> cpus = Cpus(permitted);
   if (placement == Placement::kTwoCores && cpus.size() < 2) return;
   const std::vector<Peer> peers = Everyone();
-  void* const memory = mmap(nullptr, peers.size() * sizeof(Histogram), PROT_READ | PROT_WRITE,
+  void* const memory = mmap(nullptr, peers.size() * sizeof(timing::Histogram), PROT_READ | PROT_WRITE,
                             MAP_SHARED | MAP_ANONYMOUS, -1, 0);
   if (memory == MAP_FAILED) throw std::bad_alloc();
-  const std::span<Histogram> times(new (memory) Histogram[peers.size()], peers.size());
+  const std::span<timing::Histogram> times(new (memory) timing::Histogram[peers.size()], peers.size());
   for (int round = 0; round < rounds; ++round) {
     // In a process of its own too: some of these libraries cannot be used on both sides of a fork.
     const pid_t runner = fork();

@@ -17,19 +17,19 @@ namespace {
 constexpr double kDuration = 10;  // s of plant time
 
 void Run(benchmark::State& state, bool logged) {
-  const StackConfig config =
-      LoadStackConfig(HYDRO_BENCH_CONFIG, {"time.duration_s=" + std::to_string(kDuration)});
+  const settings::StackConfig config =
+      settings::LoadStackConfig(HYDRO_BENCH_CONFIG, {"time.duration_s=" + std::to_string(kDuration)});
   const std::string file = (std::filesystem::temp_directory_path() / "bench_sim.lcmlog").string();
   int64_t runs = 0;
   for (auto _ : state) {
     if (logged) {
-      LogWriter writer(file, Opening::kTemporary);
-      Simulate(config, [&](const RawMessage& m) {
+      log::LogWriter writer(file, Opening::kTemporary);
+      sim::Simulate(config, [&](const bus::RawMessage& m) {
         writer.Append(m.channel, m.data, static_cast<size_t>(m.size), m.receive_utime);
       });
       writer.Finish();
     } else {
-      Simulate(config, nullptr);
+      sim::Simulate(config, nullptr);
     }
     ++runs;
   }

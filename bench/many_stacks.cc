@@ -62,19 +62,19 @@ struct Row {
   bool complete = true;
 };
 
-StackConfig ConfigOf(const Options& options, const std::string& url, const std::string& suffix) {
-  return LoadStackConfig(HYDRO_BENCH_CONFIG,
-                         {"time.mode=realtime", "time.duration_s=" + std::to_string(options.seconds),
-                          "time.start_timeout_s=60", "plant.rate_hz=" + std::to_string(options.rate),
-                          "limits.stale_input_s=5", "bus.url=" + url, "bus.channel_suffix=" + suffix});
+settings::StackConfig ConfigOf(const Options& options, const std::string& url, const std::string& suffix) {
+  return settings::LoadStackConfig(
+      HYDRO_BENCH_CONFIG, {"time.mode=realtime", "time.duration_s=" + std::to_string(options.seconds),
+                           "time.start_timeout_s=60", "plant.rate_hz=" + std::to_string(options.rate),
+                           "limits.stale_input_s=5", "bus.url=" + url, "bus.channel_suffix=" + suffix});
 }
 
-void RunPlant(const StackConfig& config, PlantResult* result) {
-  UdpmBus bus(config.bus.url, nullptr, Receiving::kDirect);
-  WallClock clock;
-  const Channels channels(config.bus.channel_suffix);
-  SimulatedRig rig(config);
-  PlantApp plant(bus, clock, config, rig);
+void RunPlant(const settings::StackConfig& config, PlantResult* result) {
+  bus::UdpmBus bus(config.bus.url, nullptr, bus::Receiving::kDirect);
+  bus::WallClock clock;
+  const bus::Channels channels(config.bus.channel_suffix);
+  plant::SimulatedRig rig(config);
+  plant::PlantApp plant(bus, clock, config, rig);
   bus.Subscribe<motor_command_t>(channels.motor_command, [&](const motor_command_t& command) {
     ++result->commands;
     if (command.tick < plant.tick()) ++result->late;
@@ -87,11 +87,11 @@ void RunPlant(const StackConfig& config, PlantResult* result) {
 }
 
 template <class Controller>
-void RunController(const StackConfig& config) {
-  UdpmBus bus(config.bus.url, nullptr, Receiving::kDirect);
-  WallClock clock;
+void RunController(const settings::StackConfig& config) {
+  bus::UdpmBus bus(config.bus.url, nullptr, bus::Receiving::kDirect);
+  bus::WallClock clock;
   Controller controller(bus, clock, config);
-  RunApp(bus, clock, controller);
+  process::RunApp(bus, clock, controller);
 }
 
 pid_t Fork(const Options& options, const std::function<void()>& work) {
@@ -100,9 +100,9 @@ pid_t Fork(const Options& options, const std::function<void()>& work) {
   if (pid > 0) return pid;
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   try {
-    RealTimeRequest request;
+    timing::RealTimeRequest request;
     request.priority = options.priority;
-    ApplyRealTime(request);
+    timing::ApplyRealTime(request);
     work();
   } catch (const std::exception& error) {
     std::fprintf(stderr, "%s\n", error.what());
@@ -126,10 +126,10 @@ Row Measure(int stacks, bool own_ports, const Options& options) {
   const std::string shared_url = FreeBusUrl();
   std::vector<pid_t> children;
   for (int i = 0; i < stacks; ++i) {
-    const StackConfig config =
+    const settings::StackConfig config =
         ConfigOf(options, own_ports ? FreeBusUrl() : shared_url, own_ports ? "" : "_" + std::to_string(i));
-    children.push_back(Fork(options, [&] { RunController<PressureApp>(config); }));
-    children.push_back(Fork(options, [&] { RunController<PositionApp>(config); }));
+    children.push_back(Fork(options, [&] { RunController<pressure_ctrl::PressureApp>(config); }));
+    children.push_back(Fork(options, [&] { RunController<position_ctrl::PositionApp>(config); }));
     children.push_back(Fork(options, [&, i] { RunPlant(config, &results[static_cast<size_t>(i)]); }));
   }
   double processor = 0;
@@ -139,7 +139,7 @@ Row Measure(int stacks, bool own_ports, const Options& options) {
     wait4(child, &status, 0, &usage);
     processor += Seconds(usage);
   }
-  const Channels channels;
+  const bus::Channels channels;
   Row row;
   double due = 0, states = 0, commands = 0, late = 0, pressure_commands = 0;
   for (int i = 0; i < stacks; ++i) {
@@ -189,7 +189,7 @@ void RealTime(bool own_ports, const Options& options) {
 
 void Simulated(const Options& options) {
   const int stacks = std::min(options.most, 16);
-  const StackConfig config = LoadStackConfig(
+  const settings::StackConfig config = settings::LoadStackConfig(
       HYDRO_BENCH_CONFIG, {"time.mode=lockstep", "time.duration_s=" + std::to_string(options.seconds),
                            "plant.rate_hz=" + std::to_string(options.rate)});
   const auto processor_time = [] {
@@ -198,7 +198,7 @@ void Simulated(const Options& options) {
     return Seconds(usage);
   };
   const double before = processor_time();
-  for (int i = 0; i < stacks; ++i) Simulate(config, nullptr);
+  for (int i = 0; i < stacks; ++i) sim::Simulate(config, nullptr);
   const double cores = (processor_time() - before) / options.seconds / stacks;
   std::printf("in hydro-sim (one process, simulated clock, the same messages and laws) at %g Hz\n",
               options.rate);
@@ -210,14 +210,15 @@ void Simulated(const Options& options) {
 }  // namespace hydro
 
 int main(int argc, char** argv) {
-  hydro::CommandLine line("many_stacks", "How many stacks a machine and a multicast segment carry.");
+  hydro::settings::CommandLine line("many_stacks",
+                                    "How many stacks a machine and a multicast segment carry.");
   hydro::Options options;
   line.AddOption("--most", &options.most, "N the most stacks to try (default 16); rows are powers of two");
   line.AddOption("--seconds", &options.seconds, "S plant time of each run (default 4)");
   line.AddOption("--rate", &options.rate, "HZ ticks a second (default 1000)");
   line.AddOption("--priority", &options.priority, "P SCHED_FIFO priority of all processes (default 0: none)");
   if (const auto code = line.Parse(argc, argv)) return *code;
-  return hydro::RunProgram("many_stacks", [&] {
+  return hydro::settings::RunProgram("many_stacks", [&] {
     if (options.most < 1 || options.seconds < 1 || options.rate < 1) {
       throw hydro::InputError("--most, --seconds and --rate: found less than 1, allowed is 1 or more");
     }

@@ -6,7 +6,7 @@
 
 #include "bus/channels.h"
 
-namespace hydro {
+namespace hydro::bus {
 
 // All on which a process acts, and those that make up the record of a run. States too: a controller that
 // believes a false state computes an authentic command from it.
@@ -28,4 +28,4 @@ inline std::vector<std::string> AuthenticatedChannels(const Channels& channels) 
   };
 }
 
-}  // namespace hydro
+}  // namespace hydro::bus

@@ -7,7 +7,7 @@
 #include "bus/authenticated_channels.h"
 #include "bus/session.h"
 
-namespace hydro {
+namespace hydro::bus {
 namespace {
 
 using namespace std::chrono_literals;
@@ -45,7 +45,7 @@ int Authenticator::Seal(std::string_view channel, std::vector<uint8_t>* bytes, i
   if (!IndexOf(channel)) return size;
   const size_t sealed_size = static_cast<size_t>(size) + kSealSize;
   if (bytes->size() < sealed_size) bytes->resize(sealed_size);
-  hydro::Seal seal{session_, ++counter_, {}};
+  hydro::bus::Seal seal{session_, ++counter_, {}};
   seal.tag = SealTag(key_.bytes(), channel, session_, counter_, bytes->data(), size);
   WriteSeal(seal, bytes->data() + size);
   return size + kSealSize;
@@ -62,7 +62,7 @@ Authenticator::Opened Authenticator::Open(std::string_view channel, const void* 
                                           TimePoint now) {
   const std::optional<size_t> index = IndexOf(channel);
   if (!index) return {Verdict::kPlain, size, 0, 0};
-  hydro::Seal seal;
+  hydro::bus::Seal seal;
   if (!ReadSeal(data, size, &seal)) return Refuse(&RefusedMessages::unsealed, channel, size);
   const int message_size = size - kSealSize;
   const auto tag = SealTag(key_.bytes(), channel, seal.session, seal.counter, data, message_size);
@@ -131,4 +131,4 @@ std::unique_ptr<Authenticator> MakeAuthenticator(const std::string& key_file, co
   return std::make_unique<Authenticator>(ReadBusKey(key_file), AuthenticatedChannels(channels));
 }
 
-}  // namespace hydro
+}  // namespace hydro::bus

@@ -26,7 +26,7 @@
 #include "bus/bus_key.h"
 #include "bus/channels.h"
 
-namespace hydro {
+namespace hydro::bus {
 
 class Authenticator {
  public:
@@ -96,4 +96,4 @@ class Authenticator {
 // For the stack with that key file; null when `key_file` is empty. Throws InputError (bus_key.h).
 std::unique_ptr<Authenticator> MakeAuthenticator(const std::string& key_file, const Channels& channels);
 
-}  // namespace hydro
+}  // namespace hydro::bus

@@ -28,7 +28,7 @@
 
 #include "bus/message_seal.h"
 
-namespace hydro {
+namespace hydro::bus {
 
 // The bus cannot work here (no multicast route, bad URL, a self test that failed). what() says what to do
 // about it.
@@ -202,4 +202,4 @@ class Bus {
   };
 };
 
-}  // namespace hydro
+}  // namespace hydro::bus

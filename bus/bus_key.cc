@@ -12,7 +12,7 @@
 
 #include "base/input_error.h"
 
-namespace hydro {
+namespace hydro::bus {
 namespace {
 
 constexpr size_t kLongest = 200;  // bytes of a key file, blanks included
@@ -152,4 +152,4 @@ void MakeBusKeyFile(const std::string& file) {
   }
 }
 
-}  // namespace hydro
+}  // namespace hydro::bus

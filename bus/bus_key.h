@@ -7,7 +7,7 @@
 
 #include "bus/message_seal.h"
 
-namespace hydro {
+namespace hydro::bus {
 
 // Wiped from memory when it goes.
 class BusKey {
@@ -32,4 +32,4 @@ BusKey ReadBusKey(const std::string& file);
 // cannot be made.
 void MakeBusKeyFile(const std::string& file);
 
-}  // namespace hydro
+}  // namespace hydro::bus

@@ -8,7 +8,7 @@
 
 #include "bus/lcm_packet.h"
 
-namespace hydro {
+namespace hydro::bus {
 namespace {
 
 constexpr uint32_t kUdpHeader = 8;  // where the filter of a UDP socket begins to look
@@ -59,4 +59,4 @@ void AttachChannelFilter(int fd, const std::vector<std::string>& channels) {
   setsockopt(fd, SOL_SOCKET, SO_ATTACH_FILTER, &filter, sizeof filter);
 }
 
-}  // namespace hydro
+}  // namespace hydro::bus

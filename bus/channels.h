@@ -3,7 +3,7 @@
 
 #include <string>
 
-namespace hydro {
+namespace hydro::bus {
 
 struct Channels {
   explicit Channels(const std::string& suffix = "")
@@ -36,4 +36,4 @@ struct Channels {
   std::string introduction;      // introduction_t, from the bus of every process of a stack with a key
 };
 
-}  // namespace hydro
+}  // namespace hydro::bus

@@ -7,7 +7,7 @@
 #include <chrono>
 #include <cstdint>
 
-namespace hydro {
+namespace hydro::bus {
 
 class Clock {
  public:
@@ -69,4 +69,4 @@ class SimulatedClock : public Clock {
   TimePoint now_{};
 };
 
-}  // namespace hydro
+}  // namespace hydro::bus

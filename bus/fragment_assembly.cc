@@ -4,7 +4,7 @@
 
 #include "bus/lcm_packet.h"
 
-namespace hydro {
+namespace hydro::bus {
 namespace {
 
 constexpr size_t kMostUnfinished = 4;
@@ -66,4 +66,4 @@ std::optional<FragmentAssembly::Message> FragmentAssembly::Joined(const Unfinish
   return message;
 }
 
-}  // namespace hydro
+}  // namespace hydro::bus

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace hydro {
+namespace hydro::bus {
 
 // Bounded: messages of at most 16 MiB, at most four unfinished at a time (the oldest makes room), and no more
 // memory than the packets had that came.
@@ -40,4 +40,4 @@ class FragmentAssembly {
   std::deque<Unfinished> unfinished_;
 };
 
-}  // namespace hydro
+}  // namespace hydro::bus

@@ -4,7 +4,7 @@
 
 #include "bus/sleep_until.h"
 
-namespace hydro {
+namespace hydro::bus {
 namespace {
 
 constexpr size_t kFirstCapacity = 16;
@@ -192,4 +192,4 @@ void InProcessBus::Dispatch(Channel& channel) {
   }
 }
 
-}  // namespace hydro
+}  // namespace hydro::bus

@@ -11,7 +11,7 @@
 #include "bus/bus.h"
 #include "bus/clock.h"
 
-namespace hydro {
+namespace hydro::bus {
 
 // Messages are dispatched in the order in which they were published, on all channels together. A message that
 // nobody subscribes to is not kept. SubscribeAll() handlers see a message before the typed ones do.
@@ -57,4 +57,4 @@ class InProcessBus : public Bus {
   size_t end_ = 0;    // one past the newest
 };
 
-}  // namespace hydro
+}  // namespace hydro::bus

@@ -10,7 +10,7 @@
 #include <cstddef>
 #include <cstdint>
 
-namespace hydro {
+namespace hydro::bus {
 
 constexpr uint32_t kLcmWholeMagic = 0x4c433032;
 constexpr uint32_t kLcmFragmentMagic = 0x4c433033;
@@ -55,4 +55,4 @@ inline bool ReadLcmWhole(const uint8_t* packet, size_t size, LcmWhole* whole) {
   return true;
 }
 
-}  // namespace hydro
+}  // namespace hydro::bus

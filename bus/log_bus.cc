@@ -6,7 +6,7 @@
 
 #include "bus/sleep_until.h"
 
-namespace hydro {
+namespace hydro::bus {
 
 LogBus::LogBus(EventSource source, Options options)
     : source_(std::move(source)),
@@ -96,4 +96,4 @@ void LogBus::PublishRaw(const std::string& channel, const void* data, int size) 
   if (options_.published_raw) options_.published_raw(channel, data, size);
 }
 
-}  // namespace hydro
+}  // namespace hydro::bus

@@ -10,7 +10,7 @@
 #include "bus/bus.h"
 #include "bus/clock.h"
 
-namespace hydro {
+namespace hydro::bus {
 
 // Handles the events in the order of the log. Nothing that is published comes back as a message.
 class LogBus : public Bus {
@@ -75,4 +75,4 @@ class LogBus : public Bus {
   std::deque<std::function<void(const RawMessage&)>> taps_;
 };
 
-}  // namespace hydro
+}  // namespace hydro::bus

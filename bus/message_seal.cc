@@ -4,7 +4,7 @@
 
 #include <string>
 
-namespace hydro {
+namespace hydro::bus {
 namespace {
 
 static_assert(kSealTagSize >= static_cast<int>(crypto_generichash_BYTES_MIN));
@@ -69,4 +69,4 @@ bool SameTag(const std::array<uint8_t, kSealTagSize>& a, const std::array<uint8_
   return sodium_memcmp(a.data(), b.data(), a.size()) == 0;
 }
 
-}  // namespace hydro
+}  // namespace hydro::bus

@@ -10,7 +10,7 @@
 #include <cstring>
 #include <string_view>
 
-namespace hydro {
+namespace hydro::bus {
 
 // magic | session i64 | counter u64 | keyed hash, integers big-endian.
 inline constexpr std::array<uint8_t, 8> kSealMagic = {'h', 'y', 'd', 'r', 'o', 'M', 'A', 'C'};
@@ -46,4 +46,4 @@ bool ReadSeal(const void* data, int size, Seal* seal);
 // In constant time.
 bool SameTag(const std::array<uint8_t, kSealTagSize>& a, const std::array<uint8_t, kSealTagSize>& b);
 
-}  // namespace hydro
+}  // namespace hydro::bus

@@ -15,7 +15,7 @@
 
 #include "bus/bus.h"
 
-namespace hydro {
+namespace hydro::bus {
 namespace {
 
 constexpr const char* kCure =
@@ -126,4 +126,4 @@ int TestMulticast(const UdpmUrl& url, std::chrono::milliseconds timeout) {
   }
 }
 
-}  // namespace hydro
+}  // namespace hydro::bus

@@ -5,7 +5,7 @@
 
 #include "bus/udpm_url.h"
 
-namespace hydro {
+namespace hydro::bus {
 
 // Sends one packet to the group and port of `url` and waits for it to come back, as another process on this
 // machine would receive it. Returns the bytes of receive buffer that the kernel gives when
@@ -13,4 +13,4 @@ namespace hydro {
 // that is taken.
 int TestMulticast(const UdpmUrl& url, std::chrono::milliseconds timeout = std::chrono::milliseconds(2000));
 
-}  // namespace hydro
+}  // namespace hydro::bus

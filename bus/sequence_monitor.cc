@@ -2,7 +2,7 @@
 
 #include "base/saturating.h"
 
-namespace hydro {
+namespace hydro::bus {
 
 SequenceMonitor::Verdict SequenceMonitor::Observe(int64_t session, int64_t sequence, Clock::TimePoint now) {
   gap_ = 0;
@@ -52,4 +52,4 @@ SequenceMonitor::Verdict SequenceMonitor::Observe(int64_t session, int64_t seque
   return verdict;
 }
 
-}  // namespace hydro
+}  // namespace hydro::bus

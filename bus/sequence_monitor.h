@@ -7,7 +7,7 @@
 
 #include "bus/clock.h"
 
-namespace hydro {
+namespace hydro::bus {
 
 // Pure: time is passed in. One for each channel that has exactly one sender.
 class SequenceMonitor {
@@ -58,4 +58,4 @@ class SequenceMonitor {
   int64_t ticks_back_ = 0;
 };
 
-}  // namespace hydro
+}  // namespace hydro::bus

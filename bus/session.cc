@@ -2,7 +2,7 @@
 
 #include <random>
 
-namespace hydro {
+namespace hydro::bus {
 
 int64_t RandomSession() {
   std::random_device device;
@@ -15,4 +15,4 @@ int64_t RandomSession() {
 
 int64_t SessionOn(const Clock& clock) { return clock.simulated() ? 0 : RandomSession(); }
 
-}  // namespace hydro
+}  // namespace hydro::bus

@@ -5,7 +5,7 @@
 
 #include "bus/clock.h"
 
-namespace hydro {
+namespace hydro::bus {
 
 // A random number, never 0.
 int64_t RandomSession();
@@ -13,4 +13,4 @@ int64_t RandomSession();
 // RandomSession() on a wall clock; 0 on a simulated one, where every run is the same to the bit.
 int64_t SessionOn(const Clock& clock);
 
-}  // namespace hydro
+}  // namespace hydro::bus

@@ -4,7 +4,7 @@
 #include <chrono>
 #include <ctime>
 
-namespace hydro {
+namespace hydro::bus {
 
 // True: the time has come. False: a signal arrived first.
 inline bool SleepUntil(std::chrono::steady_clock::time_point time) {
@@ -16,4 +16,4 @@ inline bool SleepUntil(std::chrono::steady_clock::time_point time) {
   return clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &until, nullptr) == 0;
 }
 
-}  // namespace hydro
+}  // namespace hydro::bus

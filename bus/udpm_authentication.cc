@@ -3,7 +3,7 @@
 
 #include "bus/udpm_bus.h"
 
-namespace hydro {
+namespace hydro::bus {
 namespace {
 
 // A message that nobody may take for a real one is still for the record.
@@ -97,4 +97,4 @@ void UdpmBus::GiveUpHeld() {
   }
 }
 
-}  // namespace hydro
+}  // namespace hydro::bus

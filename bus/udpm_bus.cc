@@ -14,7 +14,7 @@
 #include "bus/multicast_self_test.h"
 #include "bus/udpm_url.h"
 
-namespace hydro {
+namespace hydro::bus {
 namespace {
 
 constexpr int kMostPerCall = 4096;
@@ -302,4 +302,4 @@ void UdpmBus::Dispatch(const UdpmSocket::Message& message) {
   }
 }
 
-}  // namespace hydro
+}  // namespace hydro::bus

@@ -14,7 +14,7 @@
 #include "bus/bus.h"
 #include "bus/udpm_socket.h"
 
-namespace hydro {
+namespace hydro::bus {
 
 // Asked of the kernel for a receiver's buffer where the URL says nothing: none lost up to 150,000 messages/s.
 inline constexpr int kReceiveBufferBytes = 4 << 20;
@@ -124,4 +124,4 @@ class UdpmBus : public Bus {
   std::optional<int> plain_size_;  // and what of it may be delivered
 };
 
-}  // namespace hydro
+}  // namespace hydro::bus

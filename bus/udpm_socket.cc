@@ -17,7 +17,7 @@
 #include "bus/channel_filter.h"
 #include "bus/lcm_packet.h"
 
-namespace hydro {
+namespace hydro::bus {
 namespace {
 
 template <class Value>
@@ -180,4 +180,4 @@ bool UdpmSocket::Receive(Message* message) {
   }
 }
 
-}  // namespace hydro
+}  // namespace hydro::bus

@@ -16,7 +16,7 @@
 #include "bus/fragment_assembly.h"
 #include "bus/udpm_url.h"
 
-namespace hydro {
+namespace hydro::bus {
 
 class UdpmSocket {
  public:
@@ -62,4 +62,4 @@ class UdpmSocket {
   FragmentAssembly::Message assembled_;
 };
 
-}  // namespace hydro
+}  // namespace hydro::bus

@@ -7,7 +7,7 @@
 
 #include "base/input_error.h"
 
-namespace hydro {
+namespace hydro::bus {
 namespace {
 
 constexpr std::string_view kScheme = "udpm://";
@@ -79,4 +79,4 @@ UdpmUrl ParseUdpmUrl(const std::string& text) {
   return url;
 }
 
-}  // namespace hydro
+}  // namespace hydro::bus

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <string>
 
-namespace hydro {
+namespace hydro::bus {
 
 struct UdpmUrl {
   std::string group = "239.255.76.67";  // IPv4 multicast address
@@ -19,4 +19,4 @@ struct UdpmUrl {
 // Throws InputError that names `text`, what is wrong with it, and an example.
 UdpmUrl ParseUdpmUrl(const std::string& text);
 
-}  // namespace hydro
+}  // namespace hydro::bus

@@ -11,7 +11,7 @@
 #include "diagnose/search/search.h"
 #include "diagnose/verdict/conclusion.h"
 
-namespace hydro {
+namespace hydro::diagnose {
 
 namespace {
 
@@ -20,9 +20,9 @@ constexpr int kMostChanges = 3;
 constexpr double kFar = 25;
 
 // A single run without others to hold out: its last third is held out.
-void SplitOff(MeasuredRun* run, std::vector<MeasuredRun>* held_out) {
+void SplitOff(runs::MeasuredRun* run, std::vector<runs::MeasuredRun>* held_out) {
   const size_t first = run->samples() * 2 / 3;
-  MeasuredRun rest = *run;
+  runs::MeasuredRun rest = *run;
   rest.name += ", last third";
   rest.Keep(first, rest.samples());
   run->Keep(0, first);
@@ -37,18 +37,20 @@ std::vector<const RunData*> Pointers(const std::vector<RunData>& runs) {
 }
 
 // The effects that may be named, each with every name that it can take in these runs.
-std::vector<Change> EffectChanges(const ModelDescription& given, const std::vector<std::string>& allowed,
+std::vector<Change> EffectChanges(const model::ModelDescription& given,
+                                  const std::vector<std::string>& allowed,
                                   const std::vector<const RunData*>& runs) {
   std::vector<Change> changes;
-  for (const EffectInfo& info : EffectCatalogue()) {
+  for (const model::EffectInfo& info : model::EffectCatalogue()) {
     if (!allowed.empty() && std::find(allowed.begin(), allowed.end(), info.id) == allowed.end()) continue;
     // With f above 0 it is the base parameter that may be wrong.
     if (info.id == "pump.pressure_friction" && given.parameters.f != 0) continue;
-    const bool has = std::any_of(given.effects.begin(), given.effects.end(),
-                                 [&](const EffectDescription& effect) { return effect.id == info.id; });
+    const bool has =
+        std::any_of(given.effects.begin(), given.effects.end(),
+                    [&](const model::EffectDescription& effect) { return effect.id == info.id; });
     if (has) continue;
     std::vector<Change> variants = {{info.id, {}, ""}};
-    for (const ParameterInfo& parameter : info.parameters) {
+    for (const model::ParameterInfo& parameter : info.parameters) {
       if (!parameter.is_name) continue;
       std::vector<Change> next;
       for (const Change& variant : variants) {
@@ -69,10 +71,10 @@ std::vector<Change> EffectChanges(const ModelDescription& given, const std::vect
   return changes;
 }
 
-std::vector<size_t> AllowedBase(const ModelDescription& given, const std::vector<std::string>& names) {
+std::vector<size_t> AllowedBase(const model::ModelDescription& given, const std::vector<std::string>& names) {
   std::vector<size_t> allowed;
-  for (size_t i = 0; i < BaseParameters().size(); ++i) {
-    const std::string& name = BaseParameters()[i].info.name;
+  for (size_t i = 0; i < model::BaseParameters().size(); ++i) {
+    const std::string& name = model::BaseParameters()[i].info.name;
     if (!names.empty() && std::find(names.begin(), names.end(), name) == names.end()) continue;
     if (name == "f" && given.parameters.f == 0 && names.empty())
       continue;  // the effect pump.pressure_friction
@@ -83,15 +85,16 @@ std::vector<size_t> AllowedBase(const ModelDescription& given, const std::vector
 
 }  // namespace
 
-Diagnosis Diagnose(const ModelDescription& model, std::vector<MeasuredRun> runs,
-                   std::vector<MeasuredRun> held_out, const DiagnoseOptions& options,
+Diagnosis Diagnose(const model::ModelDescription& model, std::vector<runs::MeasuredRun> runs,
+                   std::vector<runs::MeasuredRun> held_out, const DiagnoseOptions& options,
                    const TellProgress& tell) {
   if (runs.size() == 1 && held_out.empty() && runs.front().samples() >= 300)
     SplitOff(&runs.front(), &held_out);
   std::vector<RunData> data, held_out_data;
   std::vector<ClockDelay> clocks;
-  for (MeasuredRun& run : runs) data.push_back(PrepareAligned(std::move(run), model.parameters, &clocks));
-  for (MeasuredRun& run : held_out) {
+  for (runs::MeasuredRun& run : runs)
+    data.push_back(PrepareAligned(std::move(run), model.parameters, &clocks));
+  for (runs::MeasuredRun& run : held_out) {
     held_out_data.push_back(PrepareAligned(std::move(run), model.parameters, &clocks));
   }
   const std::vector<size_t> allowed = AllowedBase(model, options.free);
@@ -107,23 +110,23 @@ Diagnosis Diagnose(const ModelDescription& model, std::vector<MeasuredRun> runs,
   context.jobs = options.jobs;
   context.tell = tell;
   context.changes = EffectChanges(model, options.effects, context.runs);
-  for (const size_t i : allowed) context.changes.push_back({"", {}, BaseParameters()[i].info.name});
+  for (const size_t i : allowed) context.changes.push_back({"", {}, model::BaseParameters()[i].info.name});
 
   // Few changes to the model as given first: one wrong value or one missing effect is the likeliest.
   Hypothesis given;
   given.model = model;
-  for (const EffectDescription& effect : model.effects) given.effects.push_back(effect.id);
+  for (const model::EffectDescription& effect : model.effects) given.effects.push_back(effect.id);
   Hypothesis as_given = given;
   as_given.effects.clear();
   SearchResult search = Search(context, as_given, kMostChanges);
   if (!search.given.fitted.ok()) {
-    throw ModelError("the model cannot follow the runs at all: " + search.given.fitted.failure +
-                     "; is a shaft's mode or a unit wrong?");
+    throw model::ModelError("the model cannot follow the runs at all: " + search.given.fitted.failure +
+                            "; is a shaft's mode or a unit wrong?");
   }
 
   // All base parameters at once, and the search from there when that predicts better.
   if (tell) tell({"refitting the model's own parameters", 0.92});
-  const std::vector<StartState> starts = StartsOf(search.given.fitted);
+  const std::vector<model::StartState> starts = StartsOf(search.given.fitted);
   Hypothesis refitted = given;
   refitted.base = Identifiable(as_given, context.runs, starts, allowed, context.sizes, options.jobs);
   FitOptions fine;
@@ -148,4 +151,4 @@ Diagnosis Diagnose(const ModelDescription& model, std::vector<MeasuredRun> runs,
   return diagnosis;
 }
 
-}  // namespace hydro
+}  // namespace hydro::diagnose

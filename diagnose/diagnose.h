@@ -9,7 +9,7 @@
 #include "diagnose/search/progress.h"
 #include "runs/measured_run.h"
 
-namespace hydro {
+namespace hydro::diagnose {
 
 struct DiagnoseOptions {
   std::vector<std::string> effects;  // ids that may be named; empty: the whole catalogue
@@ -22,8 +22,8 @@ struct DiagnoseOptions {
 // single one). Throws InputError for data that cannot be used, naming run, signal and row; ModelError when
 // the given model cannot follow a run at all. The same arguments give the same diagnosis to the bit, whatever
 // `jobs` is.
-Diagnosis Diagnose(const ModelDescription& model, std::vector<MeasuredRun> runs,
-                   std::vector<MeasuredRun> held_out, const DiagnoseOptions& options,
+Diagnosis Diagnose(const model::ModelDescription& model, std::vector<runs::MeasuredRun> runs,
+                   std::vector<runs::MeasuredRun> held_out, const DiagnoseOptions& options,
                    const TellProgress& tell);
 
-}  // namespace hydro
+}  // namespace hydro::diagnose

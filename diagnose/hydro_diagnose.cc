@@ -19,7 +19,7 @@
 #include "settings/model_file.h"
 #include "settings/toml/section_reader.h"
 
-namespace hydro {
+namespace hydro::diagnose {
 namespace {
 
 namespace fs = std::filesystem;
@@ -60,10 +60,10 @@ class ReportFolder {
   std::string folder_;
 };
 
-std::vector<MeasuredRun> ReadRuns(const std::vector<std::string>& files) {
-  std::vector<MeasuredRun> runs;
+std::vector<runs::MeasuredRun> ReadRuns(const std::vector<std::string>& files) {
+  std::vector<runs::MeasuredRun> runs;
   runs.reserve(files.size());
-  for (const std::string& file : files) runs.push_back(ReadMeasuredRun(file));
+  for (const std::string& file : files) runs.push_back(runs::ReadMeasuredRun(file));
   return runs;
 }
 
@@ -91,12 +91,12 @@ Diagnosis Make(const DiagnoseRequest& request, const Diagnoser& diagnose, const 
   if (!request.free.empty()) options.free = SplitFree(request.free);
   options.jobs = request.jobs;
   options.seed = static_cast<uint64_t>(request.seed);
-  const ModelDescription model = LoadModelFile(request.model);
+  const model::ModelDescription model = settings::LoadModelFile(request.model);
   tell({"reading the runs", 0});
-  std::vector<MeasuredRun> runs = ReadRuns(request.runs), held_out = ReadRuns(request.held_out);
+  std::vector<runs::MeasuredRun> runs = ReadRuns(request.runs), held_out = ReadRuns(request.held_out);
   try {
     return diagnose(model, std::move(runs), std::move(held_out), options, tell);
-  } catch (const ModelError& error) {
+  } catch (const model::ModelError& error) {
     throw InputError(request.model + ": found a model that cannot follow the runs: " + error.what() +
                      "; allowed one that can, and runs whose shaft was held as they say");
   }
@@ -105,22 +105,23 @@ Diagnosis Make(const DiagnoseRequest& request, const Diagnoser& diagnose, const 
 }  // namespace
 
 std::vector<std::string> ReadEffectList(const std::string& file) {
-  TomlNode root = ParseToml(ReadTextFile(file), file);
+  settings::TomlNode root = settings::ParseToml(ReadTextFile(file), file);
   root.place = file;
-  SectionReader document(root, "");
+  settings::SectionReader document(root, "");
   const std::string allowed = "a list of effects' ids, effects = [\"pump.stribeck\", ...]";
-  const TomlNode* list = document.Take("effects");
+  const settings::TomlNode* list = document.Take("effects");
   document.Require("effects", allowed);
   document.Finish();
-  if (!list->is(TomlNode::Kind::kArray) || list->items.empty()) {
-    throw document.Error("effects", list->is(TomlNode::Kind::kArray) ? "none" : list->Shown(), allowed);
+  if (!list->is(settings::TomlNode::Kind::kArray) || list->items.empty()) {
+    throw document.Error("effects", list->is(settings::TomlNode::Kind::kArray) ? "none" : list->Shown(),
+                         allowed);
   }
   std::vector<std::string> known;
-  for (const EffectInfo& info : EffectCatalogue()) known.push_back(info.id);
+  for (const model::EffectInfo& info : model::EffectCatalogue()) known.push_back(info.id);
   std::vector<std::string> ids;
-  for (const TomlNode& item : list->items) {
-    if (!item.is(TomlNode::Kind::kString)) throw document.Error("effects", item.Shown(), allowed);
-    if (FindEffect(item.text) == nullptr) {
+  for (const settings::TomlNode& item : list->items) {
+    if (!item.is(settings::TomlNode::Kind::kString)) throw document.Error("effects", item.Shown(), allowed);
+    if (model::FindEffect(item.text) == nullptr) {
       throw document.Error("effects", "the unknown effect " + Quoted(item.text),
                            QuotedList(known) + DidYouMean(item.text, known));
     }
@@ -131,7 +132,7 @@ std::vector<std::string> ReadEffectList(const std::string& file) {
 
 std::vector<std::string> SplitFree(const std::string& names) {
   std::vector<std::string> known;
-  for (const BaseParameter& parameter : BaseParameters()) known.push_back(parameter.info.name);
+  for (const model::BaseParameter& parameter : model::BaseParameters()) known.push_back(parameter.info.name);
   std::vector<std::string> free;
   for (size_t begin = 0; begin <= names.size();) {
     const size_t end = std::min(names.find(',', begin), names.size());
@@ -171,7 +172,7 @@ void RunDiagnosis(const DiagnoseRequest& request, const Diagnoser& diagnose, std
   const bool next = !diagnosis.next.config.empty();
   std::vector<std::pair<std::string, std::string>> files;
   files.emplace_back("report.html", ReportHtml(diagnosis, request.si));
-  files.emplace_back("model.toml", FormatModel(diagnosis.model));
+  files.emplace_back("model.toml", settings::FormatModel(diagnosis.model));
   if (next) files.emplace_back("next.toml", diagnosis.next.config);
   files.emplace_back("report.json", ReportJson(diagnosis, next ? "next.toml" : "", elapsed()));
   folder.Write(files);
@@ -179,4 +180,4 @@ void RunDiagnosis(const DiagnoseRequest& request, const Diagnoser& diagnose, std
   std::fputs(TerminalSummary(diagnosis, request.folder, request.si).c_str(), out);
 }
 
-}  // namespace hydro
+}  // namespace hydro::diagnose

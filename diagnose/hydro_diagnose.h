@@ -9,7 +9,7 @@
 
 #include "diagnose/diagnose.h"
 
-namespace hydro {
+namespace hydro::diagnose {
 
 struct DiagnoseRequest {
   std::vector<std::string> runs, held_out;  // files
@@ -23,8 +23,8 @@ struct DiagnoseRequest {
 
 // What makes the diagnosis: Diagnose, or another in tests.
 using Diagnoser =
-    std::function<Diagnosis(const ModelDescription&, std::vector<MeasuredRun>, std::vector<MeasuredRun>,
-                            const DiagnoseOptions&, const TellProgress&)>;
+    std::function<Diagnosis(const model::ModelDescription&, std::vector<runs::MeasuredRun>,
+                            std::vector<runs::MeasuredRun>, const DiagnoseOptions&, const TellProgress&)>;
 
 // Writes report.html, report.json, model.toml and, when there is a next experiment, next.toml into the
 // request's folder, each whole or not at all, and a summary to `out`. Progress goes to `err` where that is a
@@ -39,4 +39,4 @@ std::vector<std::string> ReadEffectList(const std::string& file);
 // The base parameters in "b,T_s". Throws InputError for names that are unknown or missing.
 std::vector<std::string> SplitFree(const std::string& names);
 
-}  // namespace hydro
+}  // namespace hydro::diagnose

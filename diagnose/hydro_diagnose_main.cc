@@ -7,10 +7,11 @@
 #include "settings/command_line.h"
 
 int main(int argc, char** argv) {
-  hydro::CommandLine line("hydro-diagnose",
-                          "Finds where a model and measured runs disagree, names the missing effect, adds it "
-                          "to the model and shows the gap shrink on data it was not fitted to.");
-  hydro::DiagnoseRequest request;
+  hydro::settings::CommandLine line(
+      "hydro-diagnose",
+      "Finds where a model and measured runs disagree, names the missing effect, adds it "
+      "to the model and shows the gap shrink on data it was not fitted to.");
+  hydro::diagnose::DiagnoseRequest request;
   request.jobs = static_cast<int>(std::clamp(std::thread::hardware_concurrency(), 1u, 256u));
   line.AddPositional("RUN", &request.runs,
                      "FILE a measured run: a log, or a table (csv, mat) with a sidecar");
@@ -27,8 +28,8 @@ int main(int argc, char** argv) {
   line.AddOption("--seed", &request.seed, "N of all that is random (1)");
   line.AddFlag("--si", &request.si, "print figures in SI units, in report.html too");
   if (const auto code = line.Parse(argc, argv)) return *code;
-  return hydro::RunProgram("hydro-diagnose", [&] {
-    hydro::RunDiagnosis(request, hydro::Diagnose, stdout, stderr);
+  return hydro::settings::RunProgram("hydro-diagnose", [&] {
+    hydro::diagnose::RunDiagnosis(request, hydro::diagnose::Diagnose, stdout, stderr);
     return 0;
   });
 }

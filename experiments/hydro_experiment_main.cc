@@ -10,34 +10,34 @@
 namespace {
 
 int List() {
-  for (const hydro::Experiment& experiment : hydro::Experiments()) {
+  for (const hydro::experiments::Experiment& experiment : hydro::experiments::Experiments()) {
     std::printf("%-10s %s\n", experiment.name.c_str(), experiment.title.c_str());
   }
   std::printf("%-10s %s\n", "all", "all of them, and a report, index.html");
   return 0;
 }
 
-int Run(hydro::ExperimentRequest& request) {
+int Run(hydro::experiments::ExperimentRequest& request) {
   if (request.name.empty())
     throw hydro::InputError("NAME: found nothing, allowed one of those that --list prints");
   if (request.jobs < 1 || request.jobs > 64) {
     throw hydro::InputError("--jobs: found " + std::to_string(request.jobs) + ", allowed 1 to 64");
   }
   if (request.real_time) {
-    request.options.run_stack = hydro::SeparateProcesses(
+    request.options.run_stack = hydro::experiments::SeparateProcesses(
         std::filesystem::read_symlink("/proc/self/exe").parent_path(), request.folder + "/runs");
   }
-  return hydro::RunExperiments(hydro::Experiments(), request, stdout, stderr);
+  return hydro::experiments::RunExperiments(hydro::experiments::Experiments(), request, stdout, stderr);
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  hydro::CommandLine line(
+  hydro::settings::CommandLine line(
       "hydro-experiment",
       "The paper's experiments and figures: NAME.json, NAME.csv and NAME.svg of each; for "
       "all of them, index.html, too.");
-  hydro::ExperimentRequest request;
+  hydro::experiments::ExperimentRequest request;
   request.name.clear();
   bool list = false;
   line.AddPositional("NAME", &request.name, "which one, or all", false);
@@ -52,5 +52,5 @@ int main(int argc, char** argv) {
   line.AddFlag("--si", &request.si, "print figures in SI units");
   line.AddFlag("--list", &list, "print the names and end");
   if (const auto code = line.Parse(argc, argv)) return *code;
-  return hydro::RunProgram("hydro-experiment", [&] { return list ? List() : Run(request); });
+  return hydro::settings::RunProgram("hydro-experiment", [&] { return list ? List() : Run(request); });
 }

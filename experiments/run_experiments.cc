@@ -18,7 +18,7 @@
 #include "experiments/report/report.h"
 #include "page/gnuplot.h"
 
-namespace hydro {
+namespace hydro::experiments {
 namespace {
 
 void CreateFolder(const std::string& folder) {
@@ -94,7 +94,7 @@ int RunExperiments(const std::vector<Experiment>& all, const ExperimentRequest& 
                    std::FILE* errors) {
   const std::vector<Experiment> chosen = ChooseExperiments(all, request);
   CreateFolder(request.folder);
-  RunGnuplot("");  // where it is missing, that is said once and before the work
+  page::RunGnuplot("");  // where it is missing, that is said once and before the work
 
   std::vector<std::string> names;
   std::vector<double> costs;
@@ -156,4 +156,4 @@ int RunExperiments(const std::vector<Experiment>& all, const ExperimentRequest& 
   return exit_code;
 }
 
-}  // namespace hydro
+}  // namespace hydro::experiments

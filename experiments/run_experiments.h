@@ -5,18 +5,10 @@
 #include <string>
 #include <vector>
 
+#include "experiments/report/experiment_request.h"
 #include "experiments/studies/experiment.h"
 
-namespace hydro {
-
-struct ExperimentRequest {
-  std::string name = "all";                // or of an experiment
-  std::string folder = "out/experiments";  // is created
-  int jobs = 2;                            // experiments at the same time
-  bool si = false;
-  bool real_time = false;  // for the record; options.run_stack says how
-  ExperimentOptions options = {};
-};
+namespace hydro::experiments {
 
 // The experiments asked for. Throws InputError: no such name, or a measured run for one that takes none.
 std::vector<Experiment> ChooseExperiments(const std::vector<Experiment>& all,
@@ -29,4 +21,4 @@ std::vector<Experiment> ChooseExperiments(const std::vector<Experiment>& all,
 int RunExperiments(const std::vector<Experiment>& all, const ExperimentRequest& request, std::FILE* out,
                    std::FILE* errors);
 
-}  // namespace hydro
+}  // namespace hydro::experiments

@@ -15,21 +15,22 @@
 #include "settings/command_line.h"
 #include "tables/table.h"
 
-namespace hydro {
+namespace hydro::hydro_log {
 namespace {
 
 class InfoVerb {
  public:
-  explicit InfoVerb(CommandLine& line) {
-    CommandLine& verb = line.AddVerb("info", "What a log holds and whether it is complete.");
+  explicit InfoVerb(settings::CommandLine& line) {
+    settings::CommandLine& verb = line.AddVerb("info", "What a log holds and whether it is complete.");
     verb.AddPositional("LOG", &log_, "FILE the log");
     verb.AddOption("--suffix", &suffix_, "TEXT suffix of the channels, where the log has several");
     verb.AddFlag("--json", &json_, "print JSON");
     verb.AddFlag("--si", &si_, "print figures in SI units");
   }
   int Run() const {
-    const LogInfo info = Summarise(ReadRunLog(log_, suffix_, Undecodable::kLeftOut), si_);
-    std::fputs((json_ ? InfoJson(info) : PrintableLines(InfoText(info))).c_str(), stdout);
+    const runs::LogInfo info =
+        runs::Summarise(runs::ReadRunLog(log_, suffix_, runs::Undecodable::kLeftOut), si_);
+    std::fputs((json_ ? runs::InfoJson(info) : PrintableLines(runs::InfoText(info))).c_str(), stdout);
     return 0;
   }
 
@@ -41,16 +42,17 @@ class InfoVerb {
 
 class ExportVerb {
  public:
-  explicit ExportVerb(CommandLine& line) {
-    CommandLine& verb = line.AddVerb("export", "Write a log's run as a table, one row a plant tick.");
+  explicit ExportVerb(settings::CommandLine& line) {
+    settings::CommandLine& verb =
+        line.AddVerb("export", "Write a log's run as a table, one row a plant tick.");
     verb.AddPositional("LOG", &log_, "FILE the log");
     verb.AddOption("-o,--output", &out_, "FILE the table: X.csv or X.mat", true);
     verb.AddOption("--suffix", &suffix_, "TEXT suffix of the channels, where the log has several");
   }
   int Run() const {
-    CheckTableName(out_);
+    tables::CheckTableName(out_);
     CheckKeeps(out_, {log_});
-    WriteTable(ExportRun(ReadWithWarning(log_, suffix_)), out_);
+    tables::WriteTable(runs::ExportRun(ReadWithWarning(log_, suffix_)), out_);
     return 0;
   }
 
@@ -61,16 +63,16 @@ class ExportVerb {
 
 class ImportVerb {
  public:
-  explicit ImportVerb(CommandLine& line) {
-    CommandLine& verb = line.AddVerb("import", "Write a table as a log, the inverse of export.");
+  explicit ImportVerb(settings::CommandLine& line) {
+    settings::CommandLine& verb = line.AddVerb("import", "Write a table as a log, the inverse of export.");
     verb.AddPositional("TABLE", &table_,
                        "FILE the table: X.csv or X.mat, with any of export's columns that include time_s");
     verb.AddOption("-o,--output", &out_, "FILE the log", true);
   }
   int Run() const {
-    CheckTableName(table_);
+    tables::CheckTableName(table_);
     CheckKeeps(out_, {table_});
-    ImportRun(ReadTable(table_), ProgramVersion(), out_);
+    runs::ImportRun(tables::ReadTable(table_), settings::ProgramVersion(), out_);
     return 0;
   }
 
@@ -80,8 +82,9 @@ class ImportVerb {
 
 class CompareVerb {
  public:
-  explicit CompareVerb(CommandLine& line) {
-    CommandLine& verb = line.AddVerb("compare", "Tell whether two logs hold the same run, bit by bit.");
+  explicit CompareVerb(settings::CommandLine& line) {
+    settings::CommandLine& verb =
+        line.AddVerb("compare", "Tell whether two logs hold the same run, bit by bit.");
     verb.AddPositional("A", &a_, "FILE a log");
     verb.AddPositional("B", &b_, "FILE the other");
     verb.AddOption("--suffix", &suffix_, "TEXT suffix of the channels, where both logs have several");
@@ -89,17 +92,17 @@ class CompareVerb {
     verb.AddOption("--suffix-b", &suffix_b_, "TEXT the same for B alone");
   }
   int Run() const {
-    const RunLog a = ReadComparable(a_, suffix_a_);
-    const RunLog b = ReadComparable(b_, suffix_b_);
-    const std::optional<std::string> difference = FirstDifference(a.messages, a_, b.messages, b_);
+    const runs::RunLog a = ReadComparable(a_, suffix_a_);
+    const runs::RunLog b = ReadComparable(b_, suffix_b_);
+    const std::optional<std::string> difference = runs::FirstDifference(a.messages, a_, b.messages, b_);
     std::puts(difference.value_or("identical").c_str());
     return difference.has_value() ? 1 : 0;
   }
 
  private:
-  RunLog ReadComparable(const std::string& file, const std::optional<std::string>& suffix) const {
+  runs::RunLog ReadComparable(const std::string& file, const std::optional<std::string>& suffix) const {
     // Bit by bit the same cannot be said of what cannot be read: such a message is refused here.
-    RunLog log = ReadRunLog(file, suffix ? suffix : suffix_);
+    runs::RunLog log = runs::ReadRunLog(file, suffix ? suffix : suffix_);
     // Two logs of nothing are not a run repeated.
     if (log.messages.states.empty() && log.messages.motor_commands.empty()) {
       throw InputError(file + ": found no state and no motor command; a log of a run is needed");
@@ -113,19 +116,20 @@ class CompareVerb {
 
 class RepairVerb {
  public:
-  explicit RepairVerb(CommandLine& line) {
-    CommandLine& verb = line.AddVerb("repair",
-                                     "Keep what can be read of a damaged log. Without -o the log is "
-                                     "replaced; LOG.damaged is what it was.");
+  explicit RepairVerb(settings::CommandLine& line) {
+    settings::CommandLine& verb =
+        line.AddVerb("repair",
+                     "Keep what can be read of a damaged log. Without -o the log is "
+                     "replaced; LOG.damaged is what it was.");
     verb.AddPositional("LOG", &log_, "FILE the log");
     verb.AddOption("-o,--output", &out_, "FILE write the repaired log there and leave LOG alone");
   }
   int Run() const {
-    const RepairResult result = out_.empty() ? RepairInPlace(log_) : RepairLog(log_, out_);
+    const log::RepairResult result = out_.empty() ? log::RepairInPlace(log_) : log::RepairLog(log_, out_);
     if (result.lost.empty()) {
       std::printf("%s: nothing to repair\n", log_.c_str());
     } else {
-      std::fputs(Describe(result, log_).c_str(), stdout);
+      std::fputs(log::Describe(result, log_).c_str(), stdout);
     }
     return 0;
   }
@@ -137,7 +141,7 @@ class RepairVerb {
 }  // namespace
 
 int RunHydroLog(int argc, const char* const* argv) {
-  CommandLine line("hydro-log", "Reads, converts, compares, replays and repairs logs.");
+  settings::CommandLine line("hydro-log", "Reads, converts, compares, replays and repairs logs.");
   const InfoVerb info(line);
   const ExportVerb export_verb(line);
   const ImportVerb import_verb(line);
@@ -147,7 +151,7 @@ int RunHydroLog(int argc, const char* const* argv) {
   const TimingVerb timing(line);
   const ReplayVerb replay(line);
   if (const auto exit_code = line.Parse(argc, argv)) return *exit_code;
-  return RunProgram("hydro-log", [&] {
+  return settings::RunProgram("hydro-log", [&] {
     const std::string verb = line.verb();
     if (verb == "info") return info.Run();
     if (verb == "export") return export_verb.Run();
@@ -160,4 +164,4 @@ int RunHydroLog(int argc, const char* const* argv) {
   });
 }
 
-}  // namespace hydro
+}  // namespace hydro::hydro_log

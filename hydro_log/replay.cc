@@ -15,7 +15,7 @@
 #include "runs/compare.h"
 #include "settings/stack_config.h"
 
-namespace hydro {
+namespace hydro::hydro_log {
 namespace {
 
 constexpr double kLatestTime = 1e9;  // s; 64 bits of ns hold it
@@ -40,7 +40,7 @@ std::vector<Message> Unnumbered(const std::map<int64_t, Message>& by_tick) {
 
 class Replayer {
  public:
-  Replayer(const RunLog& log, double speed) : speed_(speed) {
+  Replayer(const runs::RunLog& log, double speed) : speed_(speed) {
     if (log.descriptions.empty()) {
       throw InputError(log.file +
                        ": found no HYDRO_RUN message; a replay needs the run's configuration and model");
@@ -50,11 +50,11 @@ class Replayer {
       throw InputError(
           log.file + ": its description has no configuration (an imported table); a replay needs the run's");
     }
-    config_ = ParseStackConfig(description.config_text, log.file + " (its configuration)",
-                               description.model_text, log.file + " (its model)");
+    config_ = settings::ParseStackConfig(description.config_text, log.file + " (its configuration)",
+                                         description.model_text, log.file + " (its model)");
     config_.time.mode =
-        TimeMode::kRealtime;  // nothing is waited for: what is in force is handed over in time
-    channels_ = Channels(config_.bus.channel_suffix);
+        settings::TimeMode::kRealtime;  // nothing is waited for: what is in force is handed over in time
+    channels_ = bus::Channels(config_.bus.channel_suffix);
     states_ = ByTick(log.messages.states);
     if (states_.empty()) throw InputError(log.file + ": found no states to feed");
     for (const auto& [tick, state] : states_) {
@@ -64,10 +64,10 @@ class Replayer {
     }
   }
 
-  const StackConfig& config() const { return config_; }
-  const Channels& channels() const { return channels_; }
-  SimulatedClock& clock() { return clock_; }
-  InProcessBus& bus() { return bus_; }
+  const settings::StackConfig& config() const { return config_; }
+  const bus::Channels& channels() const { return channels_; }
+  bus::SimulatedClock& clock() { return clock_; }
+  bus::InProcessBus& bus() { return bus_; }
   int64_t first_tick() const { return states_.begin()->first; }
   int64_t states() const { return static_cast<int64_t>(states_.size()); }
 
@@ -79,7 +79,7 @@ class Replayer {
     for (const auto& [tick, state] : states_) {
       const std::chrono::duration<double> elapsed(state.time - first_time);
       if (speed_ > 0) std::this_thread::sleep_until(wall_start + elapsed / speed_);
-      clock_.AdvanceTo(Clock::TimePoint(std::chrono::duration_cast<Clock::Duration>(elapsed)));
+      clock_.AdvanceTo(bus::Clock::TimePoint(std::chrono::duration_cast<bus::Clock::Duration>(elapsed)));
       before(tick);
       bus_.Publish(channels_.state, state);
       Deliver();
@@ -93,23 +93,23 @@ class Replayer {
 
  private:
   double speed_;
-  StackConfig config_;
-  Channels channels_;
+  settings::StackConfig config_;
+  bus::Channels channels_;
   std::map<int64_t, state_t> states_;
-  SimulatedClock clock_;
-  InProcessBus bus_{&clock_};
+  bus::SimulatedClock clock_;
+  bus::InProcessBus bus_{&clock_};
 };
 
-ReplayResult Compare(const Replayer& replayer, const RunMessages& recorded, const RunMessages& replayed,
-                     size_t answers) {
+ReplayResult Compare(const Replayer& replayer, const runs::RunMessages& recorded,
+                     const runs::RunMessages& replayed, size_t answers) {
   ReplayResult result;
   result.states = replayer.states();
   result.answers = static_cast<int64_t>(answers);
-  result.difference = FirstDifference(recorded, "the record", replayed, "the replay");
+  result.difference = runs::FirstDifference(recorded, "the record", replayed, "the replay");
   return result;
 }
 
-ReplayResult ReplayPressure(const RunLog& log, double speed) {
+ReplayResult ReplayPressure(const runs::RunLog& log, double speed) {
   std::map<int64_t, motor_command_t> recorded;
   for (const auto& [tick, command] : ByTick(log.messages.motor_commands)) {
     if (command.status != motor_command_t::STOPPED) recorded.emplace(tick, command);
@@ -123,7 +123,7 @@ ReplayResult ReplayPressure(const RunLog& log, double speed) {
   }
 
   Replayer replayer(log, speed);
-  PressureApp app(replayer.bus(), replayer.clock(), replayer.config());
+  pressure_ctrl::PressureApp app(replayer.bus(), replayer.clock(), replayer.config());
   std::map<int64_t, motor_command_t> answers;
   replayer.bus().Subscribe<motor_command_t>(replayer.channels().motor_command,
                                             [&](const motor_command_t& command) {
@@ -139,13 +139,13 @@ ReplayResult ReplayPressure(const RunLog& log, double speed) {
       replayer.Deliver();
     }
   });
-  RunMessages record, replay;
+  runs::RunMessages record, replay;
   record.motor_commands = Unnumbered(recorded);
   replay.motor_commands = Unnumbered(answers);
   return Compare(replayer, record, replay, recorded.size());
 }
 
-ReplayResult ReplayPosition(const RunLog& log, double speed) {
+ReplayResult ReplayPosition(const runs::RunLog& log, double speed) {
   auto recorded = ByTick(log.messages.pressure_commands);
   auto references = ByTick(log.messages.arm_references);
   if (recorded.empty()) throw InputError(log.file + ": found no pressure commands to compare with");
@@ -161,7 +161,7 @@ ReplayResult ReplayPosition(const RunLog& log, double speed) {
     recorded.erase(recorded.begin(), recorded.upper_bound(first_sample));
     references.erase(references.begin(), references.upper_bound(first_sample));
   }
-  PositionApp app(replayer.bus(), replayer.clock(), replayer.config());
+  position_ctrl::PositionApp app(replayer.bus(), replayer.clock(), replayer.config());
   std::map<int64_t, pressure_command_t> answers;
   std::map<int64_t, arm_reference_t> answered_references;
   replayer.bus().Subscribe<pressure_command_t>(replayer.channels().pressure_command,
@@ -173,7 +173,7 @@ ReplayResult ReplayPosition(const RunLog& log, double speed) {
     if (references.contains(reference.tick)) answered_references.emplace(reference.tick, reference);
   });
   replayer.Feed([](int64_t) {});
-  RunMessages record, replay;
+  runs::RunMessages record, replay;
   record.pressure_commands = Unnumbered(recorded);
   record.arm_references = Unnumbered(references);
   replay.pressure_commands = Unnumbered(answers);
@@ -183,9 +183,9 @@ ReplayResult ReplayPosition(const RunLog& log, double speed) {
 
 }  // namespace
 
-ReplayResult Replay(const RunLog& log, ReplayedController controller, double speed) {
+ReplayResult Replay(const runs::RunLog& log, ReplayedController controller, double speed) {
   return controller == ReplayedController::kPressure ? ReplayPressure(log, speed)
                                                      : ReplayPosition(log, speed);
 }
 
-}  // namespace hydro
+}  // namespace hydro::hydro_log

@@ -8,7 +8,7 @@
 
 #include "runs/run_log.h"
 
-namespace hydro {
+namespace hydro::hydro_log {
 
 enum class ReplayedController { kPressure, kPosition };
 
@@ -24,6 +24,6 @@ struct ReplayResult {
 // the answers but utime, session and sequence; commands that wall-clock watchdogs sent (a stale state, the
 // end of the run) are left out. speed: recorded seconds per wall second; 0: as fast as possible. Throws
 // InputError when the log has no description of its run, no states, or none of the controller's commands.
-ReplayResult Replay(const RunLog& log, ReplayedController controller, double speed);
+ReplayResult Replay(const runs::RunLog& log, ReplayedController controller, double speed);
 
-}  // namespace hydro
+}  // namespace hydro::hydro_log

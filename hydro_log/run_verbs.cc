@@ -10,7 +10,7 @@
 #include "runs/tracking.h"
 #include "timing/report/timing_report.h"
 
-namespace hydro {
+namespace hydro::hydro_log {
 
 namespace {
 
@@ -28,15 +28,15 @@ void CheckOutput(const std::string& file, const std::string& log) {
 
 }  // namespace
 
-RunLog ReadWithWarning(const std::string& file, const std::optional<std::string>& suffix) {
-  RunLog log = ReadRunLog(file, suffix, Undecodable::kLeftOut);
-  const std::string left_out = DescribeUndecodable(log);
+runs::RunLog ReadWithWarning(const std::string& file, const std::optional<std::string>& suffix) {
+  runs::RunLog log = runs::ReadRunLog(file, suffix, runs::Undecodable::kLeftOut);
+  const std::string left_out = runs::DescribeUndecodable(log);
   if (!left_out.empty()) std::fprintf(stderr, "hydro-log: warning: %s\n", Printable(left_out).c_str());
   return log;
 }
 
-SummaryVerb::SummaryVerb(CommandLine& line) {
-  CommandLine& verb =
+SummaryVerb::SummaryVerb(settings::CommandLine& line) {
+  settings::CommandLine& verb =
       line.AddVerb("summary", "How well the arm followed its reference, loop timing, losses.");
   verb.AddPositional("LOG", &log_, "FILE the log");
   verb.AddOption("--suffix", &suffix_, "TEXT suffix of the channels, where the log has several");
@@ -46,17 +46,17 @@ SummaryVerb::SummaryVerb(CommandLine& line) {
 
 int SummaryVerb::Run() const {
   CheckOutput(json_, log_);
-  const RunLog log = ReadWithWarning(log_, suffix_);
+  const runs::RunLog log = ReadWithWarning(log_, suffix_);
   if (log.messages.states.empty()) throw InputError(log_ + ": found no state; a log of a run is needed");
-  const Tracking tracking = TrackArm(log);
-  const LogInfo info = Summarise(log, si_);
-  std::fputs(PrintableLines(SummaryText(tracking, info, si_)).c_str(), stdout);
-  if (!json_.empty()) WriteText(json_, SummaryJson(tracking, info));
+  const runs::Tracking tracking = runs::TrackArm(log);
+  const runs::LogInfo info = runs::Summarise(log, si_);
+  std::fputs(PrintableLines(runs::SummaryText(tracking, info, si_)).c_str(), stdout);
+  if (!json_.empty()) WriteText(json_, runs::SummaryJson(tracking, info));
   return 0;
 }
 
-TimingVerb::TimingVerb(CommandLine& line) {
-  CommandLine& verb =
+TimingVerb::TimingVerb(settings::CommandLine& line) {
+  settings::CommandLine& verb =
       line.AddVerb("timing", "How the loops kept time: periods, latencies, round trips, losses.");
   verb.AddPositional("LOG", &log_, "FILE the log");
   verb.AddOption("--suffix", &suffix_, "TEXT suffix of the channels, where the log has several");
@@ -67,23 +67,23 @@ TimingVerb::TimingVerb(CommandLine& line) {
 int TimingVerb::Run() const {
   CheckOutput(json_, log_);
   CheckOutput(page_, log_);
-  const RunLog log = ReadWithWarning(log_, suffix_);
-  TimingRecord record;
+  const runs::RunLog log = ReadWithWarning(log_, suffix_);
+  timing::TimingRecord record;
   for (const loop_statistics_t& report : log.statistics) record.Add(report);
   for (const loop_histogram_t& histogram : log.histograms) record.Add(histogram);
-  const std::vector<TimedProcess> processes = record.Processes();
+  const std::vector<timing::TimedProcess> processes = record.Processes();
   if (processes.empty()) {
     throw InputError(
         log_ + ": found no report of a loop (HYDRO_LOOP_STATISTICS); a log of a run of processes is needed");
   }
-  std::fputs(PrintableLines(TimingText(processes)).c_str(), stdout);
-  if (!json_.empty()) WriteText(json_, TimingJson(processes, log_));
-  if (!page_.empty()) WriteText(page_, TimingPage(processes, log_));
+  std::fputs(PrintableLines(timing::TimingText(processes)).c_str(), stdout);
+  if (!json_.empty()) WriteText(json_, timing::TimingJson(processes, log_));
+  if (!page_.empty()) WriteText(page_, timing::TimingPage(processes, log_));
   return 0;
 }
 
-ReplayVerb::ReplayVerb(CommandLine& line) {
-  CommandLine& verb = line.AddVerb(
+ReplayVerb::ReplayVerb(settings::CommandLine& line) {
+  settings::CommandLine& verb = line.AddVerb(
       "replay",
       "Feed the recorded states through the controllers and compare their answers with the record.");
   verb.AddPositional("LOG", &log_, "FILE the log");
@@ -97,7 +97,7 @@ int ReplayVerb::Run() const {
     throw InputError("--controller: found " + controller_ + ", allowed are pressure, position and both");
   }
   if (!(speed_ >= 0) || std::isinf(speed_)) throw InputError("--speed: must be a number of 0 or more");
-  const RunLog log = ReadWithWarning(log_, suffix_);
+  const runs::RunLog log = ReadWithWarning(log_, suffix_);
   int exit_code = 0;
   const auto replay = [&](ReplayedController controller, const char* name, const char* commands) {
     const ReplayResult result = Replay(log, controller, speed_);
@@ -114,4 +114,4 @@ int ReplayVerb::Run() const {
   return exit_code;
 }
 
-}  // namespace hydro
+}  // namespace hydro::hydro_log

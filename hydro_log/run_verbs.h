@@ -7,15 +7,15 @@
 #include "runs/run_log.h"
 #include "settings/command_line.h"
 
-namespace hydro {
+namespace hydro::hydro_log {
 
 // For verbs that show or convert what was recorded: a message that is not this stack's is none of the run, as
 // it was none to the processes that heard it. One line on stderr says what was left out.
-RunLog ReadWithWarning(const std::string& file, const std::optional<std::string>& suffix);
+runs::RunLog ReadWithWarning(const std::string& file, const std::optional<std::string>& suffix);
 
 class SummaryVerb {
  public:
-  explicit SummaryVerb(CommandLine& line);
+  explicit SummaryVerb(settings::CommandLine& line);
   int Run() const;
 
  private:
@@ -26,7 +26,7 @@ class SummaryVerb {
 
 class TimingVerb {
  public:
-  explicit TimingVerb(CommandLine& line);
+  explicit TimingVerb(settings::CommandLine& line);
   int Run() const;
 
  private:
@@ -36,7 +36,7 @@ class TimingVerb {
 
 class ReplayVerb {
  public:
-  explicit ReplayVerb(CommandLine& line);
+  explicit ReplayVerb(settings::CommandLine& line);
   int Run() const;
 
  private:
@@ -45,4 +45,4 @@ class ReplayVerb {
   double speed_ = 0;
 };
 
-}  // namespace hydro
+}  // namespace hydro::hydro_log

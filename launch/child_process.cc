@@ -9,7 +9,7 @@
 
 #include <cerrno>
 
-namespace hydro {
+namespace hydro::launch {
 namespace {
 
 struct Pipe {
@@ -141,4 +141,4 @@ void ChildProcess::CloseErr() {
   err_fd_ = -1;
 }
 
-}  // namespace hydro
+}  // namespace hydro::launch

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-namespace hydro {
+namespace hydro::launch {
 
 struct ChildSpec {
   std::string label;              // before each of its lines, e.g. plant
@@ -71,4 +71,4 @@ class ChildProcess {
   std::optional<ProcessEnd> end_;
 };
 
-}  // namespace hydro
+}  // namespace hydro::launch

@@ -14,12 +14,14 @@
 
 namespace {
 
-int Ask(decltype(hydro::StopStack)* request, const hydro::CommonOptions& options) {
-  const hydro::StackConfig config = hydro::LoadStackConfig(options.config, options.overrides);
-  hydro::UdpmBus bus(config.bus.url, hydro::MakeAuthenticator(config.bus.resolved_key_file,
-                                                              hydro::Channels(config.bus.channel_suffix)));
-  const hydro::WallClock clock;
-  const hydro::OperatorResult result = request(bus, clock, config, {});
+int Ask(decltype(hydro::launch::StopStack)* request, const hydro::settings::CommonOptions& options) {
+  const hydro::settings::StackConfig config =
+      hydro::settings::LoadStackConfig(options.config, options.overrides);
+  hydro::bus::UdpmBus bus(config.bus.url,
+                          hydro::bus::MakeAuthenticator(config.bus.resolved_key_file,
+                                                        hydro::bus::Channels(config.bus.channel_suffix)));
+  const hydro::bus::WallClock clock;
+  const hydro::launch::OperatorResult result = request(bus, clock, config, {});
   // Names and reasons come from the network.
   std::fprintf(result.exit_code == 0 ? stdout : stderr, "hydro-launch: %s\n",
                hydro::Printable(result.text).c_str());
@@ -41,7 +43,7 @@ std::string TheOneOf(const std::vector<std::pair<std::string, bool>>& flags) {
 
 // An option that nobody would look at may not be what was meant: a stack is not recorded by --stop --log X.
 // --set and its like say which stack it is, as the command line that started it did.
-void CheckNoneIgnored(const hydro::CommandLine& line, const std::string& flag) {
+void CheckNoneIgnored(const hydro::settings::CommandLine& line, const std::string& flag) {
   std::vector<std::string> allowed = {"--set", "--time", "--duration", "--seed"};
   if (flag == "--doctor") allowed.emplace_back("--host");
   for (const std::string& given : line.Given()) {
@@ -54,9 +56,10 @@ void CheckNoneIgnored(const hydro::CommandLine& line, const std::string& flag) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  hydro::CommandLine line("hydro-launch", "Starts, watches over and stops the processes of a stack.");
-  hydro::CommonOptions options;
-  hydro::LaunchRequest request;
+  hydro::settings::CommandLine line("hydro-launch",
+                                    "Starts, watches over and stops the processes of a stack.");
+  hydro::settings::CommonOptions options;
+  hydro::launch::LaunchRequest request;
   line.AddCommon(&options, false);
   line.AddOption("--host", &request.host,
                  "NAME start only the processes whose [[process]] section has this host");
@@ -75,17 +78,17 @@ int main(int argc, char** argv) {
   bool make_key = false;
   line.AddFlag("--make-key", &make_key, "write a new key into CONFIG's bus.key_file and start nothing");
   if (const auto code = line.Parse(argc, argv)) return *code;
-  return hydro::RunProgram("hydro-launch", [&] {
+  return hydro::settings::RunProgram("hydro-launch", [&] {
     const std::string instead =
         TheOneOf({{"--stop", stop}, {"--rearm", rearm}, {"--make-key", make_key}, {"--doctor", doctor}});
     if (!instead.empty()) CheckNoneIgnored(line, instead);
-    if (doctor) return hydro::RunDoctor(options.config, options.overrides, request.host);
+    if (doctor) return hydro::launch::RunDoctor(options.config, options.overrides, request.host);
     if (options.config.empty()) throw hydro::InputError("CONFIG is required; see --help");
-    if (make_key) return hydro::MakeKey(options);
-    if (stop || rearm) return Ask(stop ? hydro::StopStack : hydro::RearmStack, options);
+    if (make_key) return hydro::launch::MakeKey(options);
+    if (stop || rearm) return Ask(stop ? hydro::launch::StopStack : hydro::launch::RearmStack, options);
     request.config_file = options.config;
     request.overrides = options.overrides;
     request.log_file = options.log;
-    return hydro::LaunchStack(request);
+    return hydro::launch::LaunchStack(request);
   });
 }

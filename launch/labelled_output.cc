@@ -9,7 +9,7 @@
 
 #include "base/text_file.h"
 
-namespace hydro {
+namespace hydro::launch {
 namespace {
 
 // One of six terminal colours, the same for the same label in every run.
@@ -65,4 +65,4 @@ void LabelledOutput::Flush() {
   while (!queue_.empty()) WriteSome();
 }
 
-}  // namespace hydro
+}  // namespace hydro::launch

@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-namespace hydro {
+namespace hydro::launch {
 
 // Lines leave in the order in which they were added, whole: a line of one stream is finished before one of
 // the other is begun, also where both streams are the same file. Nothing is dropped; full() says when to stop
@@ -56,4 +56,4 @@ class LabelledOutput {
   std::size_t queued_bytes_ = 0;
 };
 
-}  // namespace hydro
+}  // namespace hydro::launch

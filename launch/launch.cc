@@ -14,7 +14,7 @@
 #include "launch/stack_watch.h"
 #include "launch/timing_files.h"
 
-namespace hydro {
+namespace hydro::launch {
 namespace {
 
 using namespace std::chrono_literals;
@@ -43,7 +43,7 @@ std::string Seconds(Supervisor::Duration duration, const char* format = "%g s") 
 
 class StackLaunch {
  public:
-  StackLaunch(const StackConfig& config, const LaunchPlan& plan, int out_fd, int err_fd,
+  StackLaunch(const settings::StackConfig& config, const LaunchPlan& plan, int out_fd, int err_fd,
               const LaunchTiming& timing);
   int Run();
 
@@ -66,13 +66,13 @@ class StackLaunch {
   void Say(const std::string& text) { output_.Line(Stream::kOut, kLabel, text); }
   void Complain(const std::string& text) { output_.Line(Stream::kErr, kLabel, text); }
 
-  const StackConfig& config_;
+  const settings::StackConfig& config_;
   const LaunchPlan& plan_;
   const LaunchTiming timing_;
   LabelledOutput output_;
   Supervisor supervisor_;  // before the bus, whose threads must not take our signals
-  WallClock clock_;
-  UdpmBus bus_;
+  bus::WallClock clock_;
+  bus::UdpmBus bus_;
   StackWatch watch_;
   std::optional<TimingFiles> timing_files_;
 
@@ -100,7 +100,7 @@ Supervisor::Grace GraceFor(const LaunchTiming& timing, const LaunchPlan& plan) {
   return grace;
 }
 
-StackLaunch::StackLaunch(const StackConfig& config, const LaunchPlan& plan, int out_fd, int err_fd,
+StackLaunch::StackLaunch(const settings::StackConfig& config, const LaunchPlan& plan, int out_fd, int err_fd,
                          const LaunchTiming& timing)
     : config_(config),
       plan_(plan),
@@ -108,8 +108,8 @@ StackLaunch::StackLaunch(const StackConfig& config, const LaunchPlan& plan, int 
       output_(out_fd, err_fd, LabelledOutput::WantsColour(out_fd, err_fd)),
       supervisor_(output_, GraceFor(timing, plan)),
       bus_(config.bus.url,
-           MakeAuthenticator(config.bus.resolved_key_file, Channels(config.bus.channel_suffix))),
-      watch_(bus_, clock_, Channels(config.bus.channel_suffix)) {
+           bus::MakeAuthenticator(config.bus.resolved_key_file, bus::Channels(config.bus.channel_suffix))),
+      watch_(bus_, clock_, bus::Channels(config.bus.channel_suffix)) {
   if (!plan.timing_file.empty()) timing_files_.emplace(plan.timing_file);
   output_.AnnounceLabel(kLabel);
   for (const ChildSpec& child : plan.children) output_.AnnounceLabel(child.label);
@@ -163,7 +163,7 @@ int StackLaunch::HearBus(TimePoint until) {
   if (bus_failed_) return 0;
   try {
     return bus_.HandleUntil(until);
-  } catch (const BusError& error) {
+  } catch (const bus::BusError& error) {
     bus_failed_ = true;
     Fail(error.what(), 1);
     return 0;
@@ -310,7 +310,7 @@ void StackLaunch::PublishStop() {
   if (bus_failed_) return;
   try {
     watch_.PublishStop(stop_reason_, stop_exit_code_);
-  } catch (const BusError& error) {
+  } catch (const bus::BusError& error) {
     bus_failed_ = true;  // SIGTERM still reaches our own processes
     Complain(error.what());
   }
@@ -318,11 +318,11 @@ void StackLaunch::PublishStop() {
 
 // Before anything is started: a logger that finds it out later stops the stack, and with it one that somebody
 // else has running on this port.
-void CheckLog(const StackConfig& config, const LaunchPlan& plan, const std::string& file) {
+void CheckLog(const settings::StackConfig& config, const LaunchPlan& plan, const std::string& file) {
   const bool ours = std::any_of(plan.children.begin(), plan.children.end(),
                                 [](const ChildSpec& child) { return child.program() == "hydro-logger"; });
   if (!ours) return;
-  CheckKeepsInputs(file, config);
+  settings::CheckKeepsInputs(file, config);
   if (IsBeingWritten(file)) {
     throw InputError(file + ": is being written by another process; stop that one or give another name");
   }
@@ -331,16 +331,16 @@ void CheckLog(const StackConfig& config, const LaunchPlan& plan, const std::stri
 
 }  // namespace
 
-int Launch(const StackConfig& config, const LaunchPlan& plan, int out_fd, int err_fd,
+int Launch(const settings::StackConfig& config, const LaunchPlan& plan, int out_fd, int err_fd,
            const LaunchTiming& timing) {
   return StackLaunch(config, plan, out_fd, err_fd, timing).Run();
 }
 
 int LaunchStack(const LaunchRequest& request) {
-  const StackConfig config = LoadStackConfig(request.config_file, request.overrides);
+  const settings::StackConfig config = settings::LoadStackConfig(request.config_file, request.overrides);
   const LaunchPlan plan = PlanLaunch(config, request, OwnFolder());
   CheckLog(config, plan, request.log_file);
   return Launch(config, plan, STDOUT_FILENO, STDERR_FILENO);
 }
 
-}  // namespace hydro
+}  // namespace hydro::launch

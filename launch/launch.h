@@ -6,7 +6,7 @@
 #include "launch/supervisor.h"
 #include "settings/stack_config.h"
 
-namespace hydro {
+namespace hydro::launch {
 
 struct LaunchTiming {
   Supervisor::Grace grace;
@@ -21,10 +21,10 @@ struct LaunchTiming {
 // ended in order, 1 something failed, 2 a process refused its input. Throws InputError for a bad bus URL and
 // BusError where the bus cannot work, before anything is started. Call it before the process has other
 // threads.
-int Launch(const StackConfig& config, const LaunchPlan& plan, int out_fd, int err_fd,
+int Launch(const settings::StackConfig& config, const LaunchPlan& plan, int out_fd, int err_fd,
            const LaunchTiming& timing = {});
 
 // All of hydro-launch behind its command line: loads the configuration, plans, launches.
 int LaunchStack(const LaunchRequest& request);
 
-}  // namespace hydro
+}  // namespace hydro::launch

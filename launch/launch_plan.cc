@@ -8,7 +8,7 @@
 #include <set>
 #include <sstream>
 
-namespace hydro {
+namespace hydro::launch {
 namespace {
 
 namespace fs = std::filesystem;
@@ -59,7 +59,7 @@ std::string RoleOf(const std::string& program) {
 
 std::string OwnFolder() { return fs::read_symlink("/proc/self/exe").parent_path().string(); }
 
-LaunchPlan PlanLaunch(const StackConfig& config, const LaunchRequest& request,
+LaunchPlan PlanLaunch(const settings::StackConfig& config, const LaunchRequest& request,
                       const std::string& programs_folder) {
   const bool with_log = !request.log_file.empty();
   LaunchPlan plan;
@@ -67,8 +67,8 @@ LaunchPlan PlanLaunch(const StackConfig& config, const LaunchRequest& request,
   std::set<std::string> hosts;
   std::vector<std::string> programs;
   bool names_logger = false;
-  for (const ProcessSection& process : config.processes) {
-    if (process.program == "hydro-driver") CheckDriver(config);
+  for (const settings::ProcessSection& process : config.processes) {
+    if (process.program == "hydro-driver") settings::CheckDriver(config);
     const bool logger = process.program == kLogger;
     names_logger |= logger;
     if (!process.host.empty()) hosts.insert(process.host);
@@ -103,9 +103,9 @@ LaunchPlan PlanLaunch(const StackConfig& config, const LaunchRequest& request,
                      (request.host.empty() ? "" : " on host " + request.host) +
                      "; hydro-logger runs only with --log FILE");
   }
-  plan.spread =
-      std::any_of(config.processes.begin(), config.processes.end(),
-                  [&](const ProcessSection& process) { return !Matches(process.host, request.host); });
+  plan.spread = std::any_of(
+      config.processes.begin(), config.processes.end(),
+      [&](const settings::ProcessSection& process) { return !Matches(process.host, request.host); });
 
   for (const std::string& program : programs) {
     ChildSpec child;
@@ -126,4 +126,4 @@ LaunchPlan PlanLaunch(const StackConfig& config, const LaunchRequest& request,
   return plan;
 }
 
-}  // namespace hydro
+}  // namespace hydro::launch

@@ -7,7 +7,7 @@
 #include "launch/child_process.h"
 #include "settings/stack_config.h"
 
-namespace hydro {
+namespace hydro::launch {
 
 // What the command line asks for.
 struct LaunchRequest {
@@ -27,7 +27,7 @@ struct LaunchPlan {
 
 // Programs are taken from `programs_folder`, else from PATH. Throws InputError when a program is missing, and
 // when the hosts of the [[process]] sections and `request.host` do not fit.
-LaunchPlan PlanLaunch(const StackConfig& config, const LaunchRequest& request,
+LaunchPlan PlanLaunch(const settings::StackConfig& config, const LaunchRequest& request,
                       const std::string& programs_folder);
 
 // The role under which a program announces itself: "hydro-pressure-ctrl" is "pressure_ctrl".
@@ -36,4 +36,4 @@ std::string RoleOf(const std::string& program);
 // The folder of the running program.
 std::string OwnFolder();
 
-}  // namespace hydro
+}  // namespace hydro::launch

@@ -1,6 +1,6 @@
 #include "launch/line_assembler.h"
 
-namespace hydro {
+namespace hydro::launch {
 
 void LineAssembler::Feed(std::string_view bytes, const LineHandler& handler) {
   while (!bytes.empty()) {
@@ -29,4 +29,4 @@ void LineAssembler::Finish(const LineHandler& handler) {
   begun_.clear();
 }
 
-}  // namespace hydro
+}  // namespace hydro::launch

@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-namespace hydro {
+namespace hydro::launch {
 
 class LineAssembler {
  public:
@@ -26,4 +26,4 @@ class LineAssembler {
   std::string begun_;
 };
 
-}  // namespace hydro
+}  // namespace hydro::launch

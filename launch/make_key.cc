@@ -5,18 +5,18 @@
 #include "bus/bus_key.h"
 #include "settings/stack_config.h"
 
-namespace hydro {
+namespace hydro::launch {
 
-int MakeKey(const CommonOptions& options) {
-  const StackConfig config = LoadStackConfig(options.config, options.overrides);
+int MakeKey(const settings::CommonOptions& options) {
+  const settings::StackConfig config = settings::LoadStackConfig(options.config, options.overrides);
   const std::string& file = config.bus.resolved_key_file;
   if (file.empty()) {
     throw InputError(options.config + ": bus.key_file: found nothing, allowed: the path of the key to make");
   }
-  MakeBusKeyFile(file);
+  bus::MakeBusKeyFile(file);
   std::printf("%s: a new key, for you alone; every host of the stack needs a copy of it (docs/security.md)\n",
               file.c_str());
   return 0;
 }
 
-}  // namespace hydro
+}  // namespace hydro::launch

@@ -9,15 +9,15 @@
 #include "bus/clock.h"
 #include "settings/stack_config.h"
 
-namespace hydro {
+namespace hydro::launch {
 
 struct OperatorTiming {
   // Without a sign of life for so long nobody is there; every process reports once a second.
-  Clock::Duration presence = std::chrono::milliseconds(2500);
+  bus::Clock::Duration presence = std::chrono::milliseconds(2500);
   // How long a stack may take to end (a logger may have much to write).
-  Clock::Duration end = std::chrono::seconds(12);
+  bus::Clock::Duration end = std::chrono::seconds(12);
   // After the last farewell: somebody who was not heard yet may still say something.
-  Clock::Duration quiet = std::chrono::milliseconds(300);
+  bus::Clock::Duration quiet = std::chrono::milliseconds(300);
 };
 
 struct OperatorResult {
@@ -27,12 +27,12 @@ struct OperatorResult {
 
 // Publishes HYDRO_STOP until every process that is heard has said farewell: 0; 1 when nobody is there or
 // somebody does not end.
-OperatorResult StopStack(Bus& bus, const Clock& clock, const StackConfig& config,
+OperatorResult StopStack(bus::Bus& bus, const bus::Clock& clock, const settings::StackConfig& config,
                          const OperatorTiming& timing = {});
 
 // Asks the plant (or driver) that is heard to end its latched faults: 0 when it did or had none, 1 when it
 // refused, nobody is there, or there are two.
-OperatorResult RearmStack(Bus& bus, const Clock& clock, const StackConfig& config,
+OperatorResult RearmStack(bus::Bus& bus, const bus::Clock& clock, const settings::StackConfig& config,
                           const OperatorTiming& timing = {});
 
-}  // namespace hydro
+}  // namespace hydro::launch

@@ -7,7 +7,7 @@
 #include "bus/session.h"
 #include "launch/operator_request.h"
 
-namespace hydro {
+namespace hydro::launch {
 namespace {
 
 using namespace std::chrono_literals;
@@ -17,10 +17,10 @@ constexpr auto kRepeat = 100ms;
 
 }  // namespace
 
-OperatorResult RearmStack(Bus& bus, const Clock& clock, const StackConfig& config,
+OperatorResult RearmStack(bus::Bus& bus, const bus::Clock& clock, const settings::StackConfig& config,
                           const OperatorTiming& timing) {
-  const Channels channels(config.bus.channel_suffix);
-  const int64_t session = SessionOn(clock);
+  const bus::Channels channels(config.bus.channel_suffix);
+  const int64_t session = bus::SessionOn(clock);
   std::set<int64_t> plants;
   int64_t tick = -1;
   std::optional<rearm_t> answer;
@@ -58,4 +58,4 @@ OperatorResult RearmStack(Bus& bus, const Clock& clock, const StackConfig& confi
   return {0, "re-armed: " + answer->text};
 }
 
-}  // namespace hydro
+}  // namespace hydro::launch

@@ -7,7 +7,7 @@
 #include "base/saturating.h"
 #include "process/fault_codes.h"
 
-namespace hydro {
+namespace hydro::launch {
 namespace {
 
 constexpr double kMostOfASecond = 0.5;
@@ -72,9 +72,9 @@ std::vector<std::string> RunSummary::FaultsLeft() const {
   for (const Fault& fault : faults_) {
     const std::string name = fault.first.code + " of " + fault.first.source;
     const bool known = std::find(left.begin(), left.end(), name) != left.end();  // of another session
-    if (fault.active && !IsWarning(fault.first.code) && !known) left.push_back(name);
+    if (fault.active && !process::IsWarning(fault.first.code) && !known) left.push_back(name);
   }
   return left;
 }
 
-}  // namespace hydro
+}  // namespace hydro::launch

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace hydro {
+namespace hydro::launch {
 
 class RunSummary {
  public:
@@ -42,4 +42,4 @@ class RunSummary {
   std::vector<Fault> faults_;  // by sender and code, in order of their first appearance
 };
 
-}  // namespace hydro
+}  // namespace hydro::launch

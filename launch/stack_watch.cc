@@ -3,9 +3,9 @@
 #include "bus/session.h"
 #include "launch/launch_plan.h"
 
-namespace hydro {
-StackWatch::StackWatch(Bus& bus, const Clock& clock, const Channels& channels)
-    : bus_(bus), clock_(clock), channels_(channels), session_(RandomSession()) {
+namespace hydro::launch {
+StackWatch::StackWatch(bus::Bus& bus, const bus::Clock& clock, const bus::Channels& channels)
+    : bus_(bus), clock_(clock), channels_(channels), session_(bus::RandomSession()) {
   bus.Subscribe<process_status_t>(channels_.process_status, [this](const process_status_t& status) {
     statuses_[{status.role, status.pid}] = status;
   });
@@ -51,4 +51,4 @@ void StackWatch::PublishStop(const std::string& reason, int exit_code) {
   bus_.Publish(channels_.stop, stop);
 }
 
-}  // namespace hydro
+}  // namespace hydro::launch

@@ -19,12 +19,12 @@
 #include "launch/run_summary.h"
 #include "timing/report/timing_record.h"
 
-namespace hydro {
+namespace hydro::launch {
 
 class StackWatch {
  public:
   // Subscribes. Create it before the processes are started, so that no announcement is missed.
-  StackWatch(Bus& bus, const Clock& clock, const Channels& channels);
+  StackWatch(bus::Bus& bus, const bus::Clock& clock, const bus::Channels& channels);
 
   // A process of ours, to be waited for.
   void Expect(const std::string& program, pid_t pid);
@@ -44,7 +44,7 @@ class StackWatch {
   const RunSummary& summary() const { return summary_; }
 
   // What the processes reported about their loops.
-  const TimingRecord& timing() const { return timing_; }
+  const timing::TimingRecord& timing() const { return timing_; }
 
  private:
   struct Expected {
@@ -52,16 +52,16 @@ class StackWatch {
     pid_t pid;
   };
 
-  Bus& bus_;
-  const Clock& clock_;
-  const Channels channels_;
+  bus::Bus& bus_;
+  const bus::Clock& clock_;
+  const bus::Channels channels_;
   const int64_t session_;
   std::vector<Expected> expected_;
   // The latest of each role and process id: on another host a process of another role may have the same id.
   std::map<std::pair<std::string, pid_t>, process_status_t> statuses_;
   std::optional<stop_t> stop_;
   RunSummary summary_;
-  TimingRecord timing_;
+  timing::TimingRecord timing_;
 };
 
-}  // namespace hydro
+}  // namespace hydro::launch

@@ -8,7 +8,7 @@
 #include "bus/session.h"
 #include "launch/operator_request.h"
 
-namespace hydro {
+namespace hydro::launch {
 namespace {
 
 using namespace std::chrono_literals;
@@ -19,7 +19,7 @@ constexpr auto kUnheard = 500ms;  // for so long also to those that have not bee
 // The processes that are heard, until they say farewell.
 class Presence {
  public:
-  Presence(Bus& bus, const Clock& clock, const Channels& channels) : clock_(clock) {
+  Presence(bus::Bus& bus, const bus::Clock& clock, const bus::Channels& channels) : clock_(clock) {
     bus.Subscribe<state_t>(channels.state, [this](const state_t& s) { Heard(s.session, "plant"); });
     bus.Subscribe<loop_statistics_t>(channels.loop_statistics, [this](const loop_statistics_t& s) {
       Heard(s.session, s.role + " on " + s.host);
@@ -34,7 +34,7 @@ class Presence {
 
   bool anybody() const { return !processes_.empty(); }
   size_t count() const { return processes_.size(); }
-  Clock::TimePoint newest() const { return newest_; }
+  bus::Clock::TimePoint newest() const { return newest_; }
 
   // Those that have not said farewell.
   std::string Left() const {
@@ -57,20 +57,20 @@ class Presence {
     if (process.name.size() < name.size()) process.name = name;
   }
 
-  const Clock& clock_;
-  Clock::TimePoint newest_{};
+  const bus::Clock& clock_;
+  bus::Clock::TimePoint newest_{};
   std::map<int64_t, Process> processes_;
 };
 
 }  // namespace
 
-OperatorResult StopStack(Bus& bus, const Clock& clock, const StackConfig& config,
+OperatorResult StopStack(bus::Bus& bus, const bus::Clock& clock, const settings::StackConfig& config,
                          const OperatorTiming& timing) {
-  const Channels channels(config.bus.channel_suffix);
+  const bus::Channels channels(config.bus.channel_suffix);
   Presence presence(bus, clock, channels);
   stop_t stop;
   stop.tick = -1;
-  stop.session = SessionOn(clock);
+  stop.session = bus::SessionOn(clock);
   stop.source = "launch";
   stop.reason = "hydro-launch --stop";
   stop.exit_code = 0;
@@ -95,4 +95,4 @@ OperatorResult StopStack(Bus& bus, const Clock& clock, const StackConfig& config
   }
 }
 
-}  // namespace hydro
+}  // namespace hydro::launch

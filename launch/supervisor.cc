@@ -11,7 +11,7 @@
 #include <cerrno>
 #include <string_view>
 
-namespace hydro {
+namespace hydro::launch {
 namespace {
 
 using Stream = LabelledOutput::Stream;
@@ -198,4 +198,4 @@ Supervisor::TimePoint Supervisor::NextStopStep() const {
   return next;
 }
 
-}  // namespace hydro
+}  // namespace hydro::launch

@@ -13,7 +13,7 @@
 #include "launch/labelled_output.h"
 #include "launch/line_assembler.h"
 
-namespace hydro {
+namespace hydro::launch {
 
 // Contract:
 // - Every line that a child printed is passed to the output before its end is reported.
@@ -102,4 +102,4 @@ class Supervisor {
   std::optional<TimePoint> first_gone_at_;  // when, during a stop, no child was left but the `last` ones
 };
 
-}  // namespace hydro
+}  // namespace hydro::launch

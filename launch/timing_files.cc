@@ -4,7 +4,7 @@
 #include "base/new_file.h"
 #include "timing/report/timing_report.h"
 
-namespace hydro {
+namespace hydro::launch {
 namespace {
 
 constexpr char kEnding[] = ".json";
@@ -27,9 +27,9 @@ TimingFiles::TimingFiles(const std::string& json) : json_(json) {
   const NewFile page_file(page_, Opening::kTemporary);
 }
 
-void TimingFiles::Write(const std::vector<TimedProcess>& processes, const std::string& source) const {
-  WriteText(json_, TimingJson(processes, source));
-  WriteText(page_, TimingPage(processes, source));
+void TimingFiles::Write(const std::vector<timing::TimedProcess>& processes, const std::string& source) const {
+  WriteText(json_, timing::TimingJson(processes, source));
+  WriteText(page_, timing::TimingPage(processes, source));
 }
 
-}  // namespace hydro
+}  // namespace hydro::launch

@@ -6,7 +6,7 @@
 
 #include "timing/report/timing_record.h"
 
-namespace hydro {
+namespace hydro::launch {
 
 class TimingFiles {
  public:
@@ -15,7 +15,7 @@ class TimingFiles {
   explicit TimingFiles(const std::string& json);
 
   // Writes both, each whole or not at all. Throws WriteError or InputError.
-  void Write(const std::vector<TimedProcess>& processes, const std::string& source) const;
+  void Write(const std::vector<timing::TimedProcess>& processes, const std::string& source) const;
 
   const std::string& json() const { return json_; }
   const std::string& page() const { return page_; }
@@ -25,4 +25,4 @@ class TimingFiles {
   std::string page_;
 };
 
-}  // namespace hydro
+}  // namespace hydro::launch

@@ -5,13 +5,13 @@
 
 #include "base/saturating.h"
 
-namespace hydro {
+namespace hydro::log {
 
 CausalOrder::CausalOrder(int64_t pressure_interval, int64_t position_interval,
                          std::function<void(RecordedMessage)> emit)
     : pressure_interval_(pressure_interval), position_interval_(position_interval), emit_(std::move(emit)) {}
 
-void CausalOrder::Take(Kind kind, int64_t tick, RecordedMessage message, Clock::TimePoint now) {
+void CausalOrder::Take(Kind kind, int64_t tick, RecordedMessage message, bus::Clock::TimePoint now) {
   switch (kind) {
     case Kind::kState:
       if (state_) EmitState();  // what it waits for has been lost
@@ -62,4 +62,4 @@ bool CausalOrder::AnswersAreIn(int64_t tick) const {
                       (tick % position_interval_ != 0 || pressure_command_tick_ >= tick));
 }
 
-}  // namespace hydro
+}  // namespace hydro::log

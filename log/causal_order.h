@@ -15,13 +15,14 @@
 
 #include "bus/clock.h"
 
-namespace hydro {
+namespace hydro::log {
 
 struct RecordedMessage {
   std::string channel;
   std::vector<uint8_t> data;
-  int64_t utime = 0;              // us, when it was received
-  Clock::TimePoint arrived = {};  // when the logger took it: monotonic, whatever happens to utime's clock
+  int64_t utime = 0;  // us, when it was received
+  bus::Clock::TimePoint arrived =
+      {};  // when the logger took it: monotonic, whatever happens to utime's clock
 };
 
 class CausalOrder {
@@ -35,13 +36,13 @@ class CausalOrder {
 
   // A message of `kind` that belongs to `tick`, received at `now`. It is emitted at once unless what it
   // follows from has not come yet.
-  void Take(Kind kind, int64_t tick, RecordedMessage message, Clock::TimePoint now);
+  void Take(Kind kind, int64_t tick, RecordedMessage message, bus::Clock::TimePoint now);
 
   // Emits what is held: what it waits for has been lost, or the run is over.
   void Release();
 
   // Since when something has been held.
-  std::optional<Clock::TimePoint> held_since() const { return held_since_; }
+  std::optional<bus::Clock::TimePoint> held_since() const { return held_since_; }
 
  private:
   bool AnswersAreIn(int64_t tick) const;
@@ -57,7 +58,7 @@ class CausalOrder {
   int64_t state_tick_ = -1;
   std::deque<std::pair<int64_t, RecordedMessage>>
       answers_;  // with their ticks; wait for the state they answer
-  std::optional<Clock::TimePoint> held_since_;
+  std::optional<bus::Clock::TimePoint> held_since_;
 };
 
-}  // namespace hydro
+}  // namespace hydro::log

@@ -9,7 +9,7 @@
 #include <cstdint>
 #include <cstring>
 
-namespace hydro {
+namespace hydro::log {
 
 constexpr uint32_t kLogSyncWord = 0xEDA1DA01;
 constexpr size_t kLogHeaderSize = 28;
@@ -40,4 +40,4 @@ inline void StoreBigEndian64(uint64_t value, uint8_t* bytes) {
 
 static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "the loads and stores above swap bytes");
 
-}  // namespace hydro
+}  // namespace hydro::log

@@ -6,7 +6,7 @@
 
 #include "log/log_format.h"
 
-namespace hydro {
+namespace hydro::log {
 namespace {
 
 std::string Hex(uint32_t value) {
@@ -89,4 +89,4 @@ bool LogReader::Next(LogEvent& event) {
   return true;
 }
 
-}  // namespace hydro
+}  // namespace hydro::log

@@ -11,7 +11,7 @@
 #include "base/mapped_file.h"
 #include "bus/bus.h"
 
-namespace hydro {
+namespace hydro::log {
 
 // A log that is damaged, torn or not a log. what() names the file, the byte, the event, what was found and
 // what is allowed.
@@ -36,7 +36,7 @@ struct LogEvent {
 template <class Message>
 bool DecodeAs(const LogEvent& event, Message& message) {
   try {
-    return DecodedAll(message.decode(event.data, 0, event.size), event.data, event.size);
+    return bus::DecodedAll(message.decode(event.data, 0, event.size), event.data, event.size);
   } catch (const std::length_error&) {  // lcm-gen's code believes a string length of 0 or less
     return false;
   }
@@ -77,4 +77,4 @@ class LogReader {
   int64_t index_ = 0;
 };
 
-}  // namespace hydro
+}  // namespace hydro::log

@@ -5,7 +5,7 @@
 
 #include "log/log_format.h"
 
-namespace hydro {
+namespace hydro::log {
 namespace {
 constexpr size_t kBufferSize = 1u << 20;
 
@@ -95,4 +95,4 @@ void LogWriter::Finish() {
   file_.Finish();
 }
 
-}  // namespace hydro
+}  // namespace hydro::log

@@ -10,7 +10,7 @@
 
 #include "base/new_file.h"
 
-namespace hydro {
+namespace hydro::log {
 
 class LogWriter {
  public:
@@ -66,4 +66,4 @@ class LogWriter {
   int64_t events_ = 0;
 };
 
-}  // namespace hydro
+}  // namespace hydro::log

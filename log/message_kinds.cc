@@ -15,7 +15,7 @@
 #include "hydro/state_t.hpp"
 #include "hydro/stop_t.hpp"
 
-namespace hydro {
+namespace hydro::log {
 namespace {
 
 template <class Message>
@@ -31,7 +31,7 @@ MessageKind Kind(const std::string& channel) {
 
 const std::vector<MessageKind>& MessageKinds() {
   static const std::vector<MessageKind> kinds = [] {
-    const Channels channels;
+    const bus::Channels channels;
     return std::vector<MessageKind>{Kind<state_t>(channels.state),
                                     Kind<motor_command_t>(channels.motor_command),
                                     Kind<pressure_command_t>(channels.pressure_command),
@@ -56,4 +56,4 @@ const MessageKind* KindOfChannel(std::string_view channel) {
   return nullptr;
 }
 
-}  // namespace hydro
+}  // namespace hydro::log

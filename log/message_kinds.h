@@ -8,7 +8,7 @@
 
 #include "log/log_reader.h"
 
-namespace hydro {
+namespace hydro::log {
 
 struct MessageKind {
   std::string channel;                     // without suffix, e.g. HYDRO_STATE
@@ -23,4 +23,4 @@ const std::vector<MessageKind>& MessageKinds();
 // The kind whose channel's name `channel` begins with; the rest is the suffix. Null: none of this stack's.
 const MessageKind* KindOfChannel(std::string_view channel);
 
-}  // namespace hydro
+}  // namespace hydro::log

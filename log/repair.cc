@@ -15,7 +15,7 @@
 #include "log/log_writer.h"
 #include "log/message_kinds.h"
 
-namespace hydro {
+namespace hydro::log {
 namespace {
 
 class Scanner {
@@ -191,4 +191,4 @@ std::string Describe(const RepairResult& result, const std::string& file) {
   return text;
 }
 
-}  // namespace hydro
+}  // namespace hydro::log

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace hydro {
+namespace hydro::log {
 
 // Bytes of a log that are not kept.
 struct LostBytes {
@@ -38,4 +38,4 @@ RepairResult RepairInPlace(const std::string& file);
 // One line for what was kept, and one for each place where something was lost.
 std::string Describe(const RepairResult& result, const std::string& file);
 
-}  // namespace hydro
+}  // namespace hydro::log

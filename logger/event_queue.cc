@@ -4,14 +4,14 @@
 #include <cstring>
 #include <utility>
 
-namespace hydro {
+namespace hydro::logger {
 namespace {
 
 constexpr size_t kChunkSize = 256u << 10;
 
 struct Header {
   int64_t utime;
-  Clock::TimePoint arrived;
+  bus::Clock::TimePoint arrived;
   uint32_t channel_size;
   uint32_t size;
 };
@@ -25,7 +25,7 @@ EventQueue::EventQueue(size_t limit) : limit_(std::max(limit, kChunkSize)) {
 }
 
 int64_t EventQueue::Push(std::string_view channel, const void* data, size_t size, int64_t utime,
-                         Clock::TimePoint arrived) {
+                         bus::Clock::TimePoint arrived) {
   const size_t needed = sizeof(Header) + channel.size() + size;
   const std::lock_guard lock(mutex_);
   if (waiting_chunks_.empty() || waiting_chunks_.back().size - waiting_chunks_.back().used < needed) {
@@ -115,4 +115,4 @@ size_t EventQueue::memory() const {
   return memory_;
 }
 
-}  // namespace hydro
+}  // namespace hydro::logger

@@ -9,7 +9,7 @@
 
 #include "bus/clock.h"
 
-namespace hydro {
+namespace hydro::logger {
 
 // Never holds more memory than its limit: where the disk is slower than the bus for longer than that lasts,
 // what comes then is refused and counted. Memory is taken in pieces as it is needed, and used again.
@@ -23,12 +23,12 @@ class EventQueue {
     const uint8_t* data = nullptr;
     size_t size = 0;
     int64_t utime = 0;
-    Clock::TimePoint arrived{};  // monotonic, whatever happens to utime's clock
+    bus::Clock::TimePoint arrived{};  // monotonic, whatever happens to utime's clock
   };
 
   // Copies the event and returns how many wait then. 0: there was no room, and it was counted as dropped.
   int64_t Push(std::string_view channel, const void* data, size_t size, int64_t utime,
-               Clock::TimePoint arrived = {});
+               bus::Clock::TimePoint arrived = {});
 
   int64_t waiting() const;  // events that have been pushed and not written
   int64_t dropped() const;
@@ -86,4 +86,4 @@ class EventQueue {
   int64_t dropped_ = 0;
 };
 
-}  // namespace hydro
+}  // namespace hydro::logger

@@ -4,9 +4,10 @@
 #include "process/process_main.h"
 
 int main(int argc, char** argv) {
-  hydro::CommandLine command_line("hydro-logger", "Records every message on the bus into an LCM event log.");
-  hydro::CommonOptions options;
-  hydro::LoggerOptions logger;
+  hydro::settings::CommandLine command_line("hydro-logger",
+                                            "Records every message on the bus into an LCM event log.");
+  hydro::settings::CommonOptions options;
+  hydro::logger::LoggerOptions logger;
   double rotate_mb = 0;
   command_line.AddCommon(&options);
   command_line.AddOption("-o,--output", &logger.file, "FILE to record into (an existing file is replaced)");
@@ -15,16 +16,17 @@ int main(int argc, char** argv) {
   if (const auto exit_code = command_line.Parse(argc, argv)) return *exit_code;
   if (logger.file.empty()) logger.file = options.log;
   options.log.clear();
-  return hydro::RunProcess(
-      "hydro-logger", options, [&](hydro::Bus& bus, hydro::Clock& clock, const hydro::StackConfig& config) {
+  return hydro::process::RunProcess(
+      "hydro-logger", options,
+      [&](hydro::bus::Bus& bus, hydro::bus::Clock& clock, const hydro::settings::StackConfig& config) {
         if (logger.file.empty()) throw hydro::InputError("-o FILE is required");
-        hydro::CheckKeepsInputs(logger.file, config);
+        hydro::settings::CheckKeepsInputs(logger.file, config);
         if (rotate_mb != 0 && !(rotate_mb >= 0.01 && rotate_mb <= 1e9)) {
           throw hydro::InputError("--rotate-mb: found " + hydro::ShortestNumber(rotate_mb) +
                                   ", allowed 0 (never) and 0.01 to 1e9");
         }
         logger.rotate_bytes = static_cast<int64_t>(rotate_mb * 1e6);
-        hydro::LoggerApp app(bus, clock, config, logger);
-        return hydro::RunApp(bus, clock, app);
+        hydro::logger::LoggerApp app(bus, clock, config, logger);
+        return hydro::process::RunApp(bus, clock, app);
       });
 }

@@ -12,7 +12,7 @@
 
 #include "base/saturating.h"
 
-namespace hydro {
+namespace hydro::logger {
 namespace {
 
 using namespace std::chrono_literals;
@@ -36,11 +36,11 @@ constexpr int kSessionOffset = 24;
 constexpr int kSequenceOffset = 32;
 
 // Which of the numbered messages lies on `channel`.
-std::optional<CausalOrder::Kind> NumberedKind(std::string_view channel, const Channels& channels) {
-  if (channel == channels.state) return CausalOrder::Kind::kState;
-  if (channel == channels.motor_command) return CausalOrder::Kind::kMotorCommand;
-  if (channel == channels.pressure_command) return CausalOrder::Kind::kPressureCommand;
-  if (channel == channels.arm_reference) return CausalOrder::Kind::kArmReference;
+std::optional<log::CausalOrder::Kind> NumberedKind(std::string_view channel, const bus::Channels& channels) {
+  if (channel == channels.state) return log::CausalOrder::Kind::kState;
+  if (channel == channels.motor_command) return log::CausalOrder::Kind::kMotorCommand;
+  if (channel == channels.pressure_command) return log::CausalOrder::Kind::kPressureCommand;
+  if (channel == channels.arm_reference) return log::CausalOrder::Kind::kArmReference;
   return std::nullopt;
 }
 
@@ -53,15 +53,16 @@ std::string RotatedName(const std::string& file, int n) {
       .string();
 }
 
-LoggerApp::LoggerApp(Bus& bus, Clock& clock, const StackConfig& config, const LoggerOptions& options)
+LoggerApp::LoggerApp(bus::Bus& bus, bus::Clock& clock, const settings::StackConfig& config,
+                     const LoggerOptions& options)
     : bus_(Tap(bus)),  // first of all: a subscription to all channels beside earlier ones could lose messages
-      participant_(bus, clock, Channels(config.bus.channel_suffix), "logger"),
+      participant_(bus, clock, bus::Channels(config.bus.channel_suffix), "logger"),
       options_(options),
-      writer_(std::make_unique<LogWriter>(options.file, Opening::kDirect)),
+      writer_(std::make_unique<log::LogWriter>(options.file, Opening::kDirect)),
       queue_(static_cast<size_t>(config.logger.memory_mb * 1e6)) {
-  if (config.time.mode == TimeMode::kLockstep) {
+  if (config.time.mode == settings::TimeMode::kLockstep) {
     order_.emplace(config.pressure_interval_ticks, config.position_interval_ticks,
-                   [this](const RecordedMessage& message) {
+                   [this](const log::RecordedMessage& message) {
                      Enqueue(message.channel, message.data.data(), message.data.size(), message.utime,
                              message.arrived);
                    });
@@ -72,8 +73,8 @@ LoggerApp::LoggerApp(Bus& bus, Clock& clock, const StackConfig& config, const Lo
   participant_.Announce(process_status_t::READY);
 }
 
-Bus& LoggerApp::Tap(Bus& bus) {
-  bus.SubscribeAll([this](const RawMessage& message) { OnMessage(message); });
+bus::Bus& LoggerApp::Tap(bus::Bus& bus) {
+  bus.SubscribeAll([this](const bus::RawMessage& message) { OnMessage(message); });
   return bus;
 }
 
@@ -86,11 +87,11 @@ LoggerApp::~LoggerApp() {
   if (thread_.joinable()) thread_.join();
 }
 
-void LoggerApp::OnMessage(const RawMessage& message) {
+void LoggerApp::OnMessage(const bus::RawMessage& message) {
   if (message.channel.empty()) return;  // LCM carries such a message, but no log can hold it
   ++received_;
-  const Channels& channels = participant_.channels();
-  const std::optional<CausalOrder::Kind> kind = NumberedKind(message.channel, channels);
+  const bus::Channels& channels = participant_.channels();
+  const std::optional<log::CausalOrder::Kind> kind = NumberedKind(message.channel, channels);
   if (kind && message.size >= kSequenceOffset + 8) {
     CountSequence(*kind, message);
   }
@@ -104,10 +105,10 @@ void LoggerApp::OnMessage(const RawMessage& message) {
   }
   if (order_ && kind && message.size >= kSequenceOffset) {
     const auto now = participant_.clock().Now();
-    RecordedMessage event{std::string(message.channel),
-                          {message.data, message.data + message.size},
-                          message.receive_utime,
-                          now};
+    log::RecordedMessage event{std::string(message.channel),
+                               {message.data, message.data + message.size},
+                               message.receive_utime,
+                               now};
     order_->Take(*kind, ReadInt64(message.data + kTickOffset), std::move(event), now);
   } else {
     Enqueue(message.channel, message.data, static_cast<size_t>(message.size), message.receive_utime,
@@ -115,7 +116,7 @@ void LoggerApp::OnMessage(const RawMessage& message) {
   }
 }
 
-void LoggerApp::CountSequence(CausalOrder::Kind kind, const RawMessage& message) {
+void LoggerApp::CountSequence(log::CausalOrder::Kind kind, const bus::RawMessage& message) {
   const int64_t sequence = ReadInt64(message.data + kSequenceOffset);
   const int64_t session = ReadInt64(message.data + kSessionOffset);
   std::map<int64_t, int64_t>& senders = next_sequence_[static_cast<size_t>(kind)];
@@ -126,7 +127,7 @@ void LoggerApp::CountSequence(CausalOrder::Kind kind, const RawMessage& message)
 }
 
 void LoggerApp::Enqueue(std::string_view channel, const uint8_t* data, size_t size, int64_t utime,
-                        Clock::TimePoint arrived) {
+                        bus::Clock::TimePoint arrived) {
   largest_queue_ = std::max(largest_queue_, queue_.Push(channel, data, size, utime, arrived));
   largest_queue_total_ = std::max(largest_queue_total_, largest_queue_);
 }
@@ -159,7 +160,7 @@ void LoggerApp::OnStatus(const process_status_t& status) {
 
 void LoggerApp::ReportProgress() {
   reported_tick_ = state_tick_;
-  report_again_ = participant_.clock().Now() + kPollPeriod;
+  report_again_ = participant_.clock().Now() + process::kPollPeriod;
   log_progress_t progress;
   progress.utime = participant_.clock().Utime();
   progress.tick = state_tick_;
@@ -194,7 +195,7 @@ void LoggerApp::WriteUntilClosed() {
 
 LoggerApp::Write LoggerApp::WriteBatch(const EventQueue::Batch& batch) {
   const auto began = participant_.clock().Now();
-  std::optional<Clock::TimePoint> oldest;
+  std::optional<bus::Clock::TimePoint> oldest;
   batch.ForEach([&](const EventQueue::Event& event) {
     if (!oldest) oldest = event.arrived;
     if (options_.rotate_bytes > 0 && writer_->bytes() >= options_.rotate_bytes) Rotate();
@@ -211,7 +212,7 @@ LoggerApp::Write LoggerApp::WriteBatch(const EventQueue::Batch& batch) {
 
 void LoggerApp::Rotate() {
   writer_->Finish();
-  writer_ = std::make_unique<LogWriter>(RotatedName(options_.file, files_++), Opening::kDirect);
+  writer_ = std::make_unique<log::LogWriter>(RotatedName(options_.file, files_++), Opening::kDirect);
   for (const auto& [channel, event] : descriptions_) {
     writer_->Append(channel, event.data.data(), event.data.size(), event.utime);
   }
@@ -283,4 +284,4 @@ int LoggerApp::Finish() {
   return exit_code;
 }
 
-}  // namespace hydro
+}  // namespace hydro::logger

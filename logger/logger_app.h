@@ -27,7 +27,7 @@
 #include "process/participant.h"
 #include "settings/stack_config.h"
 
-namespace hydro {
+namespace hydro::logger {
 
 struct LoggerOptions {
   std::string file;
@@ -37,12 +37,13 @@ struct LoggerOptions {
 // Name of the n-th file (n = 0 is `file` itself): run.lcmlog, run-001.lcmlog, run-002.lcmlog ...
 std::string RotatedName(const std::string& file, int n);
 
-class LoggerApp : public App {
+class LoggerApp : public process::App {
  public:
   static constexpr auto kFlushPeriod = std::chrono::milliseconds(20);
 
   // Opens the file; throws InputError when that cannot be done.
-  LoggerApp(Bus& bus, Clock& clock, const StackConfig& config, const LoggerOptions& options);
+  LoggerApp(bus::Bus& bus, bus::Clock& clock, const settings::StackConfig& config,
+            const LoggerOptions& options);
   ~LoggerApp() override;
 
   void Poll() override;
@@ -51,16 +52,16 @@ class LoggerApp : public App {
 
  private:
   struct Write {
-    Clock::TimePoint began;
-    Clock::Duration latency;  // since the oldest message in it had arrived
+    bus::Clock::TimePoint began;
+    bus::Clock::Duration latency;  // since the oldest message in it had arrived
   };
 
-  Bus& Tap(Bus& bus);
+  bus::Bus& Tap(bus::Bus& bus);
   void Enqueue(std::string_view channel, const uint8_t* data, size_t size, int64_t utime,
-               Clock::TimePoint arrived);
-  void CountSequence(CausalOrder::Kind kind, const RawMessage& message);
+               bus::Clock::TimePoint arrived);
+  void CountSequence(log::CausalOrder::Kind kind, const bus::RawMessage& message);
   void CheckOverflow();
-  void OnMessage(const RawMessage& message);
+  void OnMessage(const bus::RawMessage& message);
   void OnStatus(const process_status_t& status);
   void WriteUntilClosed();
   Write WriteBatch(const EventQueue::Batch& batch);
@@ -69,12 +70,12 @@ class LoggerApp : public App {
   bool EveryoneHasLeft() const;
   std::string FailureText();
 
-  Bus& bus_;
-  Participant participant_;
+  bus::Bus& bus_;
+  process::Participant participant_;
   LoggerOptions options_;
-  std::unique_ptr<LogWriter> writer_;  // the writing thread's, once it runs
+  std::unique_ptr<log::LogWriter> writer_;  // the writing thread's, once it runs
   int files_ = 1;
-  std::map<std::string, RecordedMessage>
+  std::map<std::string, log::RecordedMessage>
       descriptions_;  // newest HYDRO_RUN message by channel: opens each rotated file
 
   std::mutex mutex_;  // guards writes_, closing_, failure_
@@ -91,15 +92,15 @@ class LoggerApp : public App {
   int64_t largest_queue_total_ = 0;
   int64_t state_tick_ = -1;  // newest tick received
   int64_t reported_tick_ = -1;
-  Clock::TimePoint report_again_;     // fewer than kProgressTicks new ticks are reported from then on
-  std::optional<CausalOrder> order_;  // of the numbered messages, in lockstep
-  bool left_ = false;                 // our own farewell has come back
-  std::map<int64_t, int8_t> others_;  // state of the other processes, by session
+  bus::Clock::TimePoint report_again_;     // fewer than kProgressTicks new ticks are reported from then on
+  std::optional<log::CausalOrder> order_;  // of the numbered messages, in lockstep
+  bool left_ = false;                      // our own farewell has come back
+  std::map<int64_t, int8_t> others_;       // state of the other processes, by session
   std::array<std::map<int64_t, int64_t>, 4> next_sequence_;  // by kind and session, to count losses
   int64_t lost_ = 0;
-  int64_t dropped_ = 0;                        // by a queue that was full, at the last look
-  std::optional<Clock::TimePoint> overflow_;   // when that was seen last, while it is a fault
-  std::optional<Clock::TimePoint> stop_time_;  // when the stop was heard
+  int64_t dropped_ = 0;                             // by a queue that was full, at the last look
+  std::optional<bus::Clock::TimePoint> overflow_;   // when that was seen last, while it is a fault
+  std::optional<bus::Clock::TimePoint> stop_time_;  // when the stop was heard
 };
 
-}  // namespace hydro
+}  // namespace hydro::logger

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace hydro {
+namespace hydro::maths {
 
 std::string PlusMinus(const Estimate& estimate) {
   const double half = estimate.half_width();
@@ -25,4 +25,4 @@ std::string PlusMinus(const Estimate& estimate) {
                      exponent);
 }
 
-}  // namespace hydro
+}  // namespace hydro::maths

@@ -3,7 +3,7 @@
 
 #include <string>
 
-namespace hydro {
+namespace hydro::maths {
 
 struct Estimate {
   double value = 0;
@@ -16,4 +16,4 @@ struct Estimate {
 // "4.000017 +/- 0.000075": as many decimals as the interval is worth.
 std::string PlusMinus(const Estimate& estimate);
 
-}  // namespace hydro
+}  // namespace hydro::maths

@@ -8,7 +8,7 @@
 
 #include "maths/matrix_functions.h"
 
-namespace hydro {
+namespace hydro::maths {
 
 double LinearFit::Value(const std::vector<double>& weights) const {
   double value = 0;
@@ -62,4 +62,4 @@ double StudentT95(int degrees_of_freedom) {
   return boost::math::quantile(boost::math::students_t(degrees_of_freedom), 0.975);
 }
 
-}  // namespace hydro
+}  // namespace hydro::maths

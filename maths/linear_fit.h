@@ -3,7 +3,7 @@
 
 #include <vector>
 
-namespace hydro {
+namespace hydro::maths {
 
 struct LinearFit {
   std::vector<double> coefficients;
@@ -26,4 +26,4 @@ LinearFit FitLinear(const std::vector<std::vector<double>>& regressors, const st
 // The value that Student's t stays below in size with a probability of 95 %; infinity for 0 degrees.
 double StudentT95(int degrees_of_freedom);
 
-}  // namespace hydro
+}  // namespace hydro::maths

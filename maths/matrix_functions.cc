@@ -4,7 +4,7 @@
 #include <Eigen/LU>
 #include <unsupported/Eigen/MatrixFunctions>
 
-namespace hydro {
+namespace hydro::maths {
 
 Eigen::VectorXcd Eigenvalues(const Eigen::MatrixXd& A) {
   return Eigen::EigenSolver<Eigen::MatrixXd>(A, /*computeEigenvectors=*/false).eigenvalues();
@@ -25,4 +25,4 @@ Eigen::VectorXcd Resolvent(const Eigen::MatrixXd& A, std::complex<double> s, con
   return resolvent.partialPivLu().solve(b.cast<std::complex<double>>());
 }
 
-}  // namespace hydro
+}  // namespace hydro::maths

@@ -5,7 +5,7 @@
 #include <Eigen/Core>
 #include <complex>
 
-namespace hydro {
+namespace hydro::maths {
 
 struct Eigensystem {
   Eigen::VectorXcd values;
@@ -24,4 +24,4 @@ Eigen::MatrixXd Inverse(const Eigen::MatrixXd& A);
 // (s I - A)^-1 b: the states' response at s (or z) to an input that enters by b.
 Eigen::VectorXcd Resolvent(const Eigen::MatrixXd& A, std::complex<double> s, const Eigen::VectorXd& b);
 
-}  // namespace hydro
+}  // namespace hydro::maths

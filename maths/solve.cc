@@ -3,7 +3,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 
-namespace hydro {
+namespace hydro::maths {
 
 Eigen::MatrixXd SolveSymmetric(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B) {
   return A.ldlt().solve(B);
@@ -18,4 +18,4 @@ Eigensystem EigensystemOf(const Eigen::MatrixXd& A) {
   return {eigen.eigenvalues(), eigen.eigenvectors()};
 }
 
-}  // namespace hydro
+}  // namespace hydro::maths

@@ -4,7 +4,7 @@
 
 #include <Eigen/Core>
 
-namespace hydro {
+namespace hydro::maths {
 
 // X with A X = B.
 Eigen::MatrixXd SolveSymmetric(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B);
@@ -19,4 +19,4 @@ struct Eigensystem {
 };
 Eigensystem EigensystemOf(const Eigen::MatrixXd& A);
 
-}  // namespace hydro
+}  // namespace hydro::maths

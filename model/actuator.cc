@@ -3,7 +3,7 @@
 #include "model/equations.h"
 #include "model/simulation.h"
 
-namespace hydro {
+namespace hydro::model {
 
 class Actuator::Impl {
  public:
@@ -33,4 +33,4 @@ Measurement Actuator::Measure() const {
   return impl_->equations.Measure(time(), impl_->simulation->now().state, impl_->history);
 }
 
-}  // namespace hydro
+}  // namespace hydro::model

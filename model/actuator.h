@@ -9,7 +9,7 @@
 #include "model/description.h"
 #include "trajectory/trajectory.h"
 
-namespace hydro {
+namespace hydro::model {
 
 // The model cannot go on: V_1 or V_2 would reach 0 (what() names angle and limit), a step failed or a value
 // is not finite (what() names time and state), or the conditions contradict the model.
@@ -21,7 +21,7 @@ class ModelError : public std::runtime_error {
 struct ActuatorOptions {
   Shaft shaft = Shaft::kFree;
   double arm_angle = 0;  // rad, clamped: where; free: where the arm starts
-  const Trajectory* motion =
+  const trajectory::Trajectory* motion =
       nullptr;          // rad over s, driven: the arm's angle; must be continuous and outlive the Actuator
   bool bypass = false;  // the two sides are connected: p1 = p2
   double initial_pressure = std::numeric_limits<double>::quiet_NaN();  // psi, both sides; NaN: p_3
@@ -65,4 +65,4 @@ class Actuator {
   std::unique_ptr<Impl> impl_;
 };
 
-}  // namespace hydro
+}  // namespace hydro::model

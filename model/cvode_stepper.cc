@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-namespace hydro {
+namespace hydro::model {
 
 namespace {
 
@@ -114,4 +114,4 @@ void CvodeStepper::TakeState(const Point& now, Point* at) const {
   if (mode.valve_2 || (data.bypass && mode.valve_1)) at->state[kP2] = held(kP2);
 }
 
-}  // namespace hydro
+}  // namespace hydro::model

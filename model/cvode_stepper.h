@@ -7,7 +7,7 @@
 #include "model/simulation.h"
 #include "model/sundials.h"
 
-namespace hydro {
+namespace hydro::model {
 
 class CvodeStepper {
  public:
@@ -38,4 +38,4 @@ class CvodeStepper {
   bool stepped_by_euler_ = false;
 };
 
-}  // namespace hydro
+}  // namespace hydro::model

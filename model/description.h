@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace hydro {
+namespace hydro::model {
 
 // Base parameters of eqs. (1) to (15), Table 1. Units need only be coherent; those of the paper are given.
 // T is double, or a scalar that carries derivatives.
@@ -54,4 +54,4 @@ enum class Integrator {
   kCvode,  // SUNDIALS CVODE, BDF with the exact Jacobian
 };
 
-}  // namespace hydro
+}  // namespace hydro::model

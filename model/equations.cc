@@ -8,7 +8,7 @@
 #include "model/effects/effect.h"
 #include "model/evaluate.h"
 
-namespace hydro {
+namespace hydro::model {
 
 namespace {
 
@@ -249,4 +249,4 @@ void Equations::PassStop(double time) {
   if (data_.motion != nullptr) data_.motion_limit = std::nextafter(data_.motion->NextBreak(time), time);
 }
 
-}  // namespace hydro
+}  // namespace hydro::model

@@ -15,7 +15,7 @@
 #include "model/state.h"
 #include "model/terms.h"
 
-namespace hydro {
+namespace hydro::model {
 
 class Effect;
 template <class T>
@@ -37,8 +37,8 @@ struct NumbersOf {
 struct EquationData : NumbersOf<double> {
   Shaft shaft = Shaft::kFree;
   bool bypass = false;
-  double arm_angle = 0;                // clamped
-  const Trajectory* motion = nullptr;  // driven
+  double arm_angle = 0;                            // clamped
+  const trajectory::Trajectory* motion = nullptr;  // driven
   double motion_limit =
       std::numeric_limits<double>::infinity();  // s: `motion` is evaluated at times below this
   std::vector<std::shared_ptr<Effect>> effects;
@@ -115,4 +115,4 @@ class Equations {
   std::vector<double> scales_;
 };
 
-}  // namespace hydro
+}  // namespace hydro::model

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-namespace hydro {
+namespace hydro::model {
 
 ErkStepper::ErkStepper(const Mode* mode, const double* voltage, Equations* equations,
                        double relative_tolerance)
@@ -64,4 +64,4 @@ void ErkStepper::Interpolate(const Point& now, const Point& /*next*/, double tim
   std::copy_n(N_VGetArrayPointer(state_.get()), problem_.equations->states(), at->state);
 }
 
-}  // namespace hydro
+}  // namespace hydro::model

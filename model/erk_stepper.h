@@ -4,7 +4,7 @@
 #include "model/simulation.h"
 #include "model/sundials.h"
 
-namespace hydro {
+namespace hydro::model {
 
 class ErkStepper {
  public:
@@ -29,4 +29,4 @@ class ErkStepper {
   bool stepped_by_euler_ = false;
 };
 
-}  // namespace hydro
+}  // namespace hydro::model

@@ -9,7 +9,7 @@
 #include "model/state_history.h"
 #include "trajectory/trajectory.h"
 
-namespace hydro {
+namespace hydro::model {
 
 inline double ValueOf(double x) { return x; }
 inline double ValueOf(const Jet& x) { return x.a; }
@@ -225,8 +225,8 @@ void CrossSwitch(const EquationData& m, const NumbersOf<T>& n, int which, double
 }
 
 // The motion at a time that may have derivatives.
-inline double MotionAt(const Trajectory& motion, double time) { return motion.Value(time); }
-inline Jet MotionAt(const Trajectory& motion, const Jet& time) {
+inline double MotionAt(const trajectory::Trajectory& motion, double time) { return motion.Value(time); }
+inline Jet MotionAt(const trajectory::Trajectory& motion, const Jet& time) {
   Jet angle(motion.Value(time.a));
   angle.v = motion.Rate(time.a) * time.v;
   return angle;
@@ -301,4 +301,4 @@ void CompleteNumbers(const EquationData& m, NumbersOf<T>* n) {
   n->stiffness_2 = p.beta / (p.V_ms + p.c * m.arm_angle - n->fixed_volume);
 }
 
-}  // namespace hydro
+}  // namespace hydro::model

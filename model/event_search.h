@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-namespace hydro {
+namespace hydro::model {
 
 // A margin at both ends of a step of length h.
 struct MarginEnds {
@@ -60,4 +60,4 @@ double TimeJustPast(double start, double g_start, double end, double g_end, doub
   return end;
 }
 
-}  // namespace hydro
+}  // namespace hydro::model

@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-namespace hydro {
+namespace hydro::model {
 
 inline constexpr int kJetWidth = 8;
 
@@ -98,4 +98,4 @@ inline Jet pow(const Jet& x, double exponent) {
   return {std::pow(x.a, exponent), (exponent * std::pow(x.a, exponent - 1)) * x.v};
 }
 
-}  // namespace hydro
+}  // namespace hydro::model

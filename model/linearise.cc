@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace hydro {
+namespace hydro::model {
 
 namespace {
 
@@ -57,4 +57,4 @@ LinearModel Linearise(const Equations& equations, double time, double voltage, c
   return model;
 }
 
-}  // namespace hydro
+}  // namespace hydro::model

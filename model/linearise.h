@@ -6,7 +6,7 @@
 
 #include "model/equations.h"
 
-namespace hydro {
+namespace hydro::model {
 
 // The model near one operating point in one mode, with exact derivatives:
 //   d state/dt = rate + A (x - x0) + B (u - u0),  y = output + C (x - x0) + D (u - u0)
@@ -33,4 +33,4 @@ struct LinearModel {
 LinearModel Linearise(const Equations& equations, double time, double voltage, const Mode& mode,
                       const double* state);
 
-}  // namespace hydro
+}  // namespace hydro::model

@@ -4,7 +4,7 @@
 #include <array>
 #include <cstdint>
 
-namespace hydro {
+namespace hydro::model {
 
 // Most switches that effects can add to one model.
 inline constexpr int kMaxEffectSwitches = 13;
@@ -30,4 +30,4 @@ struct Mode {
   bool operator==(const Mode&) const = default;
 };
 
-}  // namespace hydro
+}  // namespace hydro::model

@@ -4,7 +4,7 @@
 
 #include "model/actuator.h"
 
-namespace hydro {
+namespace hydro::model {
 
 const std::vector<BaseParameter>& BaseParameters() {
   constexpr double kInf = std::numeric_limits<double>::infinity();
@@ -43,4 +43,4 @@ size_t BasePlace(const std::string& name) {
   throw ModelError("no base parameter is called \"" + name + "\"");
 }
 
-}  // namespace hydro
+}  // namespace hydro::model

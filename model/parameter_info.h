@@ -8,7 +8,7 @@
 
 #include "model/description.h"
 
-namespace hydro {
+namespace hydro::model {
 
 // What a parameter's size is measured by when a fit starts from it: quantities of a model and of runs, so
 // that nothing depends on the units.
@@ -76,4 +76,4 @@ const std::vector<EffectInfo>& EffectCatalogue();
 // Null when no such effect is known.
 const EffectInfo* FindEffect(const std::string& id);
 
-}  // namespace hydro
+}  // namespace hydro::model

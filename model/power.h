@@ -1,7 +1,7 @@
 // Where the power goes: the balance of eqs. (4), (13), (14), (15) at one instant.
 #pragma once
 
-namespace hydro {
+namespace hydro::model {
 
 // in-lbf/s in the paper's units. in + shaft_in = stored() + dissipated() + mismatch, exactly.
 //
@@ -31,4 +31,4 @@ struct Power {
   double dissipated() const { return viscous + coulomb + leakage + effects_dissipated; }
 };
 
-}  // namespace hydro
+}  // namespace hydro::model

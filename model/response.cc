@@ -8,7 +8,7 @@
 #include "model/parameter_info.h"
 #include "model/response_machine.h"
 
-namespace hydro {
+namespace hydro::model {
 
 namespace {
 
@@ -116,4 +116,4 @@ Response Respond(const ModelDescription& model, const Stimulus& stimulus, const 
   return response;
 }
 
-}  // namespace hydro
+}  // namespace hydro::model

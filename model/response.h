@@ -11,7 +11,7 @@
 #include "model/actuator.h"
 #include "model/description.h"
 
-namespace hydro {
+namespace hydro::model {
 
 // What a response is differentiated by.
 struct Unknown {
@@ -39,8 +39,8 @@ std::vector<EffectParameter> EffectParameters(const ModelDescription& model);
 // What was done to the actuator in a run, and when it was looked at.
 struct Stimulus {
   Shaft shaft = Shaft::kFree;
-  double arm_angle = 0;                // rad, clamped
-  const Trajectory* motion = nullptr;  // rad over s, driven
+  double arm_angle = 0;                            // rad, clamped
+  const trajectory::Trajectory* motion = nullptr;  // rad over s, driven
   bool bypass = false;
   std::vector<double> time;     // s, increasing
   std::vector<double> voltage;  // V, each held from its time to the next
@@ -81,4 +81,4 @@ struct ResponseOptions {
 Response Respond(const ModelDescription& model, const Stimulus& stimulus, const StartState& start,
                  const std::vector<Unknown>& unknowns, const ResponseOptions& options);
 
-}  // namespace hydro
+}  // namespace hydro::model

@@ -13,7 +13,7 @@
 #include "model/response.h"
 #include "model/simulation.h"
 
-namespace hydro {
+namespace hydro::model {
 
 // T is double, or Jet: then all that is seeded in the numbers and the start is carried along. Decisions
 // (steps, events) are taken on the values alone.
@@ -226,7 +226,7 @@ class ResponseMachine {
   }
 
   double MarginRate(int i, const T* rate) const {
-    return hydro::MarginRate<Form::kGeneral>(data_, mode_, i, rate);
+    return hydro::model::MarginRate<Form::kGeneral>(data_, mode_, i, rate);
   }
 
   void Settle() {
@@ -386,4 +386,4 @@ class ResponseMachine {
   T k2_[kMaxStates] = {}, k3_[kMaxStates] = {}, k4_[kMaxStates] = {}, stage_[kMaxStates] = {};
 };
 
-}  // namespace hydro
+}  // namespace hydro::model

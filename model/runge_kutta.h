@@ -10,7 +10,7 @@
 
 #include "model/switching.h"
 
-namespace hydro {
+namespace hydro::model {
 
 template <Form kForm>
 class RungeKutta {
@@ -172,4 +172,4 @@ class RungeKutta {
   double good_step_ = kLongestStep;  // remembered between calls
 };
 
-}  // namespace hydro
+}  // namespace hydro::model

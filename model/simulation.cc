@@ -4,7 +4,7 @@
 #include "model/erk_stepper.h"
 #include "model/runge_kutta.h"
 
-namespace hydro {
+namespace hydro::model {
 
 namespace {
 
@@ -97,4 +97,4 @@ std::unique_ptr<Simulation> MakeSimulation(Equations* equations, Integrator inte
   return MakeForForm<AutoStepper>(equations, initial_pressure, relative_tolerance);
 }
 
-}  // namespace hydro
+}  // namespace hydro::model

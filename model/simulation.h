@@ -6,7 +6,7 @@
 
 #include "model/equations.h"
 
-namespace hydro {
+namespace hydro::model {
 
 // A state with all that is known at it.
 struct Point {
@@ -47,4 +47,4 @@ class Simulation {
 std::unique_ptr<Simulation> MakeSimulation(Equations* equations, Integrator integrator,
                                            double initial_pressure, double relative_tolerance);
 
-}  // namespace hydro
+}  // namespace hydro::model

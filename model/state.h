@@ -1,7 +1,7 @@
 // Where each state lies.
 #pragma once
 
-namespace hydro {
+namespace hydro::model {
 
 // The state vector: theta, theta', p1, p2, then alpha, alpha' when the shaft is free, then the states of the
 // effects.
@@ -13,4 +13,4 @@ inline constexpr int kArmAngle = 4;  // free shaft only
 inline constexpr int kArmSpeed = 5;  // free shaft only
 inline constexpr int kMaxStates = 32;
 
-}  // namespace hydro
+}  // namespace hydro::model

@@ -9,7 +9,7 @@
 #include "model/state.h"
 #include "model/terms.h"
 
-namespace hydro {
+namespace hydro::model {
 
 // Between the times that it is told, states follow the cubic through both ends with their rates. T is double,
 // or a scalar with derivatives: those of the states are at fixed time, and a time asked for may have
@@ -80,4 +80,4 @@ class StateHistory {
   size_t first_ = 0;        // what lies before is not needed any more
 };
 
-}  // namespace hydro
+}  // namespace hydro::model

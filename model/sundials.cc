@@ -6,7 +6,7 @@
 
 #include "model/switching.h"
 
-namespace hydro {
+namespace hydro::model {
 
 SundialsContext MakeSundialsContext() {
   SUNContext context = nullptr;
@@ -55,4 +55,4 @@ void ThrowStepFailed(const char* integrator, const SundialsProblem& problem, int
                    complaint + ")" + Where(*problem.equations, now));
 }
 
-}  // namespace hydro
+}  // namespace hydro::model

@@ -10,7 +10,7 @@
 #include "model/equations.h"
 #include "model/simulation.h"
 
-namespace hydro {
+namespace hydro::model {
 
 // What SUNDIALS' callbacks get as user data, and what it last complained of.
 struct SundialsProblem {
@@ -48,4 +48,4 @@ void FillPoint(const SundialsProblem& problem, Point* at);
 [[noreturn]] void ThrowStepFailed(const char* integrator, const SundialsProblem& problem, int flag,
                                   const Point& now);
 
-}  // namespace hydro
+}  // namespace hydro::model

@@ -23,7 +23,7 @@
 #include "model/event_search.h"
 #include "model/simulation.h"
 
-namespace hydro {
+namespace hydro::model {
 
 // "…at t = 0.25 s, state (0, 1.5, …)".
 inline std::string Where(const Equations& equations, const Point& at) {
@@ -162,7 +162,7 @@ class SwitchingSimulation final : public Simulation {
   }
 
   double MarginRate(int i, const Point& at) const {
-    return hydro::MarginRate<kForm>(data(), mode_, i, at.rate);
+    return hydro::model::MarginRate<kForm>(data(), mode_, i, at.rate);
   }
 
   // Changes the switches that contradict the present state. True when any did.
@@ -271,4 +271,4 @@ class SwitchingSimulation final : public Simulation {
   Stepper stepper_;
 };
 
-}  // namespace hydro
+}  // namespace hydro::model

@@ -7,7 +7,7 @@
 #include "model/jet.h"
 #include "model/mode.h"
 
-namespace hydro {
+namespace hydro::model {
 
 // T is double, or Jet for exact derivatives. Signs are those of the paper: the pump turning forward (theta' >
 // 0) moves fluid from side 1 to side 2.
@@ -73,4 +73,4 @@ template <class T>
   return std::clamp<T>(p.k_1 * voltage, -p.T_pmax, p.T_pmax);
 }
 
-}  // namespace hydro
+}  // namespace hydro::model

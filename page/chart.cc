@@ -9,7 +9,7 @@
 #include "page/curve_thinning.h"
 #include "page/typeset.h"
 
-namespace hydro {
+namespace hydro::page {
 namespace {
 
 // Around the axes' rectangle.
@@ -170,4 +170,4 @@ std::string DrawChart(const Chart& chart, double left, double top) {
   return out + "</g>\n";
 }
 
-}  // namespace hydro
+}  // namespace hydro::page

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-namespace hydro {
+namespace hydro::page {
 
 struct ChartRange {
   double low = 0, high = 1;
@@ -45,4 +45,4 @@ std::vector<double> RoundNumbers(const ChartRange& range, int count);
 // "12.3": for SVG's coordinates.
 std::string Pixels(double value);
 
-}  // namespace hydro
+}  // namespace hydro::page

@@ -2,7 +2,7 @@
 
 #include <array>
 
-namespace hydro {
+namespace hydro::page {
 namespace {
 
 struct Ink {
@@ -55,4 +55,4 @@ CurveStyle StyleOf(const Curve& curve, int place) {
   return style;
 }
 
-}  // namespace hydro
+}  // namespace hydro::page

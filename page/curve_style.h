@@ -6,7 +6,7 @@
 
 #include "page/plot.h"
 
-namespace hydro {
+namespace hydro::page {
 
 struct CurveStyle {
   std::string colour;        // "#rrggbb"
@@ -19,4 +19,4 @@ struct CurveStyle {
 // `place` is the curve's number in its panel.
 CurveStyle StyleOf(const Curve& curve, int place);
 
-}  // namespace hydro
+}  // namespace hydro::page

@@ -6,7 +6,7 @@
 #include <set>
 #include <utility>
 
-namespace hydro {
+namespace hydro::page {
 
 std::vector<size_t> ThinLine(std::span<const double> x, std::span<const double> y,
                              const std::function<double(double)>& column) {
@@ -47,4 +47,4 @@ std::vector<size_t> ThinPoints(std::span<const double> x, std::span<const double
   return kept;
 }
 
-}  // namespace hydro
+}  // namespace hydro::page

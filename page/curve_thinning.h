@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-namespace hydro {
+namespace hydro::page {
 
 // Indices, increasing, of the points to draw. `column` gives the pixel column of an x. Of consecutive points
 // in one column the first, the lowest, the highest and the last stay, so that the drawn line (or staircase)
@@ -19,4 +19,4 @@ std::vector<size_t> ThinPoints(std::span<const double> x, std::span<const double
                                const std::function<double(double)>& column,
                                const std::function<double(double)>& row);
 
-}  // namespace hydro
+}  // namespace hydro::page

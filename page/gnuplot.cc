@@ -14,7 +14,7 @@
 #include <system_error>
 #include <vector>
 
-namespace hydro {
+namespace hydro::page {
 namespace {
 
 // A file in memory. Unlike with pipes, nobody waits for anybody, and a child that ends early kills nobody.
@@ -126,4 +126,4 @@ std::string RunGnuplot(const std::string& script) {
   return output.Text();
 }
 
-}  // namespace hydro
+}  // namespace hydro::page

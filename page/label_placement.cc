@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace hydro {
+namespace hydro::page {
 namespace {
 
 constexpr double kCell = 3;        // pixels
@@ -64,4 +64,4 @@ Box LabelPlacement::Place(const std::vector<Box>& candidates) {
   return best;
 }
 
-}  // namespace hydro
+}  // namespace hydro::page

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-namespace hydro {
+namespace hydro::page {
 
 // In pixels, y downwards.
 struct Box {
@@ -34,4 +34,4 @@ class LabelPlacement {
   std::vector<int> cells_;  // how much is drawn there
 };
 
-}  // namespace hydro
+}  // namespace hydro::page

@@ -9,7 +9,7 @@
 #include "page/curve_thinning.h"
 #include "page/typeset.h"
 
-namespace hydro {
+namespace hydro::page {
 namespace {
 
 // Pixels.
@@ -303,4 +303,4 @@ std::string PanelDrawing::Texts(const std::string& name) {
   return out + Labels();
 }
 
-}  // namespace hydro
+}  // namespace hydro::page

@@ -10,7 +10,7 @@
 #include "page/panel_geometry.h"
 #include "page/plot.h"
 
-namespace hydro {
+namespace hydro::page {
 
 inline constexpr char kFontFamily[] = "Helvetica, Arial, sans-serif";
 
@@ -60,4 +60,4 @@ class PanelDrawing {
   PanelGeometry geometry_;
 };
 
-}  // namespace hydro
+}  // namespace hydro::page

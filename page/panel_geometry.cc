@@ -4,7 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 
-namespace hydro {
+namespace hydro::page {
 namespace {
 
 class Extent {
@@ -119,4 +119,4 @@ PanelGeometry FitPanel(const Panel& panel, const Box& frame, const std::string& 
   return geometry;
 }
 
-}  // namespace hydro
+}  // namespace hydro::page

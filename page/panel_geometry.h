@@ -6,7 +6,7 @@
 #include "page/label_placement.h"
 #include "page/plot.h"
 
-namespace hydro {
+namespace hydro::page {
 
 struct AxisRange {
   double min = 0;
@@ -32,4 +32,4 @@ struct PanelGeometry {
 // messages. Throws std::invalid_argument as RenderSvg() does.
 PanelGeometry FitPanel(const Panel& panel, const Box& frame, const std::string& where);
 
-}  // namespace hydro
+}  // namespace hydro::page

@@ -11,7 +11,7 @@
 #include "page/panel_geometry.h"
 #include "page/typeset.h"
 
-namespace hydro {
+namespace hydro::page {
 namespace {
 
 // Pixels.
@@ -155,4 +155,4 @@ std::string RenderSvg(const Figure& figure, const std::string& name) {
   return svg;
 }
 
-}  // namespace hydro
+}  // namespace hydro::page

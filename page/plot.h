@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-namespace hydro {
+namespace hydro::page {
 
 inline constexpr double kAutomatic = std::numeric_limits<double>::quiet_NaN();
 
@@ -86,4 +86,4 @@ struct Figure {
 // figure that cannot be drawn (vectors of unequal length, no panel, nothing to show, an empty range).
 std::string RenderSvg(const Figure& figure, const std::string& name);
 
-}  // namespace hydro
+}  // namespace hydro::page

@@ -1,6 +1,6 @@
 #include "page/typeset.h"
 
-namespace hydro {
+namespace hydro::page {
 namespace {
 
 bool IsWordCharacter(char c) {
@@ -167,4 +167,4 @@ std::vector<std::string> WrapText(std::string_view text, double width) {
   return lines;
 }
 
-}  // namespace hydro
+}  // namespace hydro::page

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-namespace hydro {
+namespace hydro::page {
 
 // With <, >, &, " and ' as entities; control characters as blanks.
 std::string EscapeMarkup(std::string_view text);
@@ -24,4 +24,4 @@ double TextWidth(std::string_view text);
 // possible.
 std::vector<std::string> WrapText(std::string_view text, double width);
 
-}  // namespace hydro
+}  // namespace hydro::page

@@ -4,16 +4,17 @@
 #include "process/process_main.h"
 
 int main(int argc, char** argv) {
-  hydro::CommandLine command_line(
+  hydro::settings::CommandLine command_line(
       "hydro-plant", "The simulated actuator: sets the pace, publishes states, obeys motor commands.");
-  hydro::CommonOptions options;
+  hydro::settings::CommonOptions options;
   std::vector<std::string> expected;
   command_line.AddCommon(&options);
   command_line.AddOption("--expect", &expected, "ROLE to wait for besides the two controllers, e.g. logger");
   if (const auto exit_code = command_line.Parse(argc, argv)) return *exit_code;
-  return hydro::RunProcess("hydro-plant", options,
-                           [&](hydro::Bus& bus, hydro::Clock& clock, const hydro::StackConfig& config) {
-                             hydro::SimulatedRig rig(config);
-                             return hydro::PlantApp(bus, clock, config, rig, expected).Run();
-                           });
+  return hydro::process::RunProcess(
+      "hydro-plant", options,
+      [&](hydro::bus::Bus& bus, hydro::bus::Clock& clock, const hydro::settings::StackConfig& config) {
+        hydro::plant::SimulatedRig rig(config);
+        return hydro::plant::PlantApp(bus, clock, config, rig, expected).Run();
+      });
 }

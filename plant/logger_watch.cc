@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace hydro {
+namespace hydro::plant {
 namespace {
 
 constexpr char kCode[] = "logger_gone";
@@ -12,9 +12,9 @@ constexpr size_t kMostLoggers = 64;  // a flood of made-up ones is not kept
 
 }  // namespace
 
-LoggerWatch::LoggerWatch(Participant& participant, Clock::Duration limit)
+LoggerWatch::LoggerWatch(process::Participant& participant, bus::Clock::Duration limit)
     : participant_(participant), limit_(limit) {
-  Bus& bus = participant_.bus();
+  bus::Bus& bus = participant_.bus();
   bus.Subscribe<log_progress_t>(participant_.channels().log_progress,
                                 [this](const log_progress_t& progress) { Heard(progress.session); });
   bus.Subscribe<process_status_t>(participant_.channels().process_status,
@@ -45,7 +45,7 @@ void LoggerWatch::Gone(int64_t session, const std::string& text, double silence)
   if (participant_.stop()) return;
   participant_.Raise(kCode,
                      fmt::format("{} does not record any more: {}", participant_.NameOf(session), text),
-                     silence, ToSeconds(limit_), false);
+                     silence, bus::ToSeconds(limit_), false);
 }
 
 void LoggerWatch::Poll() {
@@ -57,13 +57,13 @@ void LoggerWatch::Poll() {
   }
   for (const auto& [session, heard] : heard_) {
     if (now - heard <= limit_) continue;
-    const double silence = ToSeconds(now - heard);
+    const double silence = bus::ToSeconds(now - heard);
     Gone(session,
          fmt::format("silent for {:.3g} s, allowed are {} s (limits.stale_logger_s)", silence,
-                     ToSeconds(limit_)),
+                     bus::ToSeconds(limit_)),
          silence);
     return;  // the map has changed; the next turn sees the rest
   }
 }
 
-}  // namespace hydro
+}  // namespace hydro::plant

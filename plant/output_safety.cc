@@ -6,7 +6,7 @@
 
 #include "process/fault_codes.h"
 
-namespace hydro {
+namespace hydro::plant {
 namespace {
 
 using namespace std::chrono_literals;
@@ -23,18 +23,18 @@ std::string Line(const std::string& text, const char* key) {
 
 }  // namespace
 
-OutputSafety::OutputSafety(Participant& participant, const StackConfig& config)
+OutputSafety::OutputSafety(process::Participant& participant, const settings::StackConfig& config)
     : participant_(participant),
       limits_(config.limits),
       ticks_per_s_(config.plant.rate_hz * config.time.speed),
       guard_(config.limits.rearm),
       suspended_(participant.clock().Suspended()) {
-  Bus& bus = participant_.bus();
-  const Channels& channels = participant_.channels();
+  bus::Bus& bus = participant_.bus();
+  const bus::Channels& channels = participant_.channels();
   bus.Subscribe<run_description_t>(channels.run,
                                    [this](const run_description_t& other) { OnDescription(other); });
   bus.Subscribe<rearm_t>(channels.rearm, [this](const rearm_t& request) { OnRearm(request); });
-  if (limits_.rearm != Rearm::kExplicit) return;
+  if (limits_.rearm != settings::Rearm::kExplicit) return;
   bus.Subscribe<fault_t>(channels.fault, [this](const fault_t& fault) { OnFault(fault); });
   bus.Subscribe<process_status_t>(channels.process_status,
                                   [this](const process_status_t& status) { OnStatus(status); });
@@ -64,9 +64,9 @@ void OutputSafety::CheckMeasured(const state_t& state) {
 }
 
 void OutputSafety::CheckSurroundings() {
-  const Clock& clock = participant_.clock();
-  const Clock::Duration suspended = clock.Suspended();
-  const double gone = ToSeconds(suspended - suspended_);
+  const bus::Clock& clock = participant_.clock();
+  const bus::Clock::Duration suspended = clock.Suspended();
+  const double gone = bus::ToSeconds(suspended - suspended_);
   suspended_ = suspended;
   Set(Cause::kSuspended, gone > limits_.stale_input_s, [&] {
     return Finding{fmt::format("tick {}: the machine was suspended for {:.3g} s, allowed are {} s "
@@ -79,7 +79,7 @@ void OutputSafety::CheckSurroundings() {
 }
 
 void OutputSafety::CheckController(bool safe_command) {
-  if (limits_.rearm != Rearm::kExplicit) return;
+  if (limits_.rearm != settings::Rearm::kExplicit) return;
   Set(Cause::kControllerFault, safe_command || !remote_.empty(), [&] {
     std::string why = "the pressure loop commands a safe output";
     if (!remote_.empty()) {
@@ -91,7 +91,7 @@ void OutputSafety::CheckController(bool safe_command) {
 }
 
 void OutputSafety::CheckRig(const std::vector<RigFault>& faults) {
-  if (limits_.rearm != Rearm::kExplicit) return;
+  if (limits_.rearm != settings::Rearm::kExplicit) return;
   Set(Cause::kRigFault, !faults.empty(), [&] {
     const RigFault& first = faults.front();
     return Finding{first.code + ": " + first.text, first.value, first.limit};
@@ -108,7 +108,7 @@ void OutputSafety::Explain() {
     if (!guard_.active(cause)) {
       participant_.Clear(code);
     } else if (participant_.Raise(code, finding.text, finding.value, finding.limit, guard_.latched(cause)) &&
-               VoltageGuard::Trips(cause) && limits_.rearm == Rearm::kRestart) {
+               VoltageGuard::Trips(cause) && limits_.rearm == settings::Rearm::kRestart) {
       participant_.RequestStop(fmt::format("fault {}: {}", code, finding.text), 1);
     }
   }
@@ -136,7 +136,7 @@ void OutputSafety::OnDescription(const run_description_t& description) {
 }
 
 void OutputSafety::OnFault(const fault_t& fault) {
-  if (fault.session == participant_.session() || !ZeroesVoltage(fault.code)) return;
+  if (fault.session == participant_.session() || !process::ZeroesVoltage(fault.code)) return;
   const std::pair key(fault.session, fault.code);
   if (fault.active == 0) {
     remote_.erase(key);
@@ -165,7 +165,7 @@ std::string OutputSafety::Standing(const std::vector<Cause>& causes) const {
 
 void OutputSafety::OnRearm(const rearm_t& request) {
   if (request.kind != rearm_t::REQUEST || request.addressee != participant_.session()) return;
-  if (limits_.rearm != Rearm::kExplicit) {
+  if (limits_.rearm != settings::Rearm::kExplicit) {
     Answer(request, rearm_t::REFUSED, "limits.rearm is \"restart\": a fault that is latched ends the run");
     return;
   }
@@ -204,4 +204,4 @@ void OutputSafety::Answer(const rearm_t& request, int8_t kind, const std::string
   participant_.bus().Publish(participant_.channels().rearm, answer);
 }
 
-}  // namespace hydro
+}  // namespace hydro::plant

@@ -20,14 +20,14 @@
 #include "process/participant.h"
 #include "settings/stack_config.h"
 
-namespace hydro {
+namespace hydro::plant {
 
 class OutputSafety {
  public:
   using Cause = VoltageGuard::Cause;
 
   // Subscribes; `participant` must outlive it and the bus.
-  OutputSafety(Participant& participant, const StackConfig& config);
+  OutputSafety(process::Participant& participant, const settings::StackConfig& config);
 
   // What was found of a cause in this tick. `describe()` gives the Finding; it is asked only when the fault
   // begins.
@@ -77,18 +77,18 @@ class OutputSafety {
   void Answer(const rearm_t& request, int8_t kind, const std::string& text);
   std::string Standing(const std::vector<Cause>& causes) const;
 
-  Participant& participant_;
-  const LimitsSection limits_;
+  process::Participant& participant_;
+  const settings::LimitsSection limits_;
   const double ticks_per_s_;  // of wall time
   VoltageGuard guard_;
   bool changed_ = false;
   std::array<Finding, static_cast<size_t>(Cause::kCount)> findings_;
 
-  Clock::Duration suspended_;  // at the last look
-  std::string other_stack_;    // who else publishes as a plant
-  std::optional<Clock::TimePoint> other_stack_heard_;
+  bus::Clock::Duration suspended_;  // at the last look
+  std::string other_stack_;         // who else publishes as a plant
+  std::optional<bus::Clock::TimePoint> other_stack_heard_;
   // Faults of the loops that zero the voltage, by session and code, for rearm = "explicit".
   std::map<std::pair<int64_t, std::string>, fault_t> remote_;
 };
 
-}  // namespace hydro
+}  // namespace hydro::plant

@@ -10,7 +10,7 @@
 #include "process/stop_signal.h"
 #include "timing/fixed_rate_loop.h"
 
-namespace hydro {
+namespace hydro::plant {
 namespace {
 
 using namespace std::chrono_literals;
@@ -28,22 +28,22 @@ std::vector<std::string> WithControllers(std::vector<std::string> roles) {
 
 }  // namespace
 
-PlantApp::PlantApp(Bus& bus, Clock& clock, const StackConfig& config, Rig& rig,
+PlantApp::PlantApp(bus::Bus& bus, bus::Clock& clock, const settings::StackConfig& config, Rig& rig,
                    const std::vector<std::string>& expected, const std::string& program)
     : config_(config),
       rig_(rig),
-      participant_(bus, clock, Channels(config.bus.channel_suffix), rig.role()),
+      participant_(bus, clock, bus::Channels(config.bus.channel_suffix), rig.role()),
       safety_(participant_, config),
-      logger_watch_(participant_, FromSeconds(std::max(config.limits.stale_logger_s,
-                                                       3 / (config.plant.rate_hz * config.time.speed)))),
+      logger_watch_(participant_, bus::FromSeconds(std::max(config.limits.stale_logger_s,
+                                                            3 / (config.plant.rate_hz * config.time.speed)))),
       roll_call_(WithControllers(expected)),
       program_(program),
       state_publisher_(bus.Advertise<state_t>(participant_.channels().state)),
-      stale_time_(FromSeconds(config.limits.stale_input_s)),
+      stale_time_(bus::FromSeconds(config.limits.stale_input_s)),
       voltage_limit_((1 + 1e-9) * config.model.description.parameters.T_pmax /
                      config.model.description.parameters.k_1),
       command_monitor_(stale_time_) {
-  const Channels& channels = participant_.channels();
+  const bus::Channels& channels = participant_.channels();
   bus.Subscribe<motor_command_t>(channels.motor_command,
                                  [this](const motor_command_t& command) { OnMotorCommand(command); });
   bus.Subscribe<pressure_command_t>(channels.pressure_command, [this](const pressure_command_t& command) {
@@ -82,7 +82,7 @@ int PlantApp::Run() {
     PublishDescription();
     for (const int64_t session : roll_call_.Loggers()) log_progress_.emplace(session, -1);
     try {
-      config_.time.mode == TimeMode::kLockstep ? RunLockstep() : RunRealtime();
+      config_.time.mode == settings::TimeMode::kLockstep ? RunLockstep() : RunRealtime();
     } catch (const RigError& error) {
       rig_.Zero();  // zero volts first, explanation second
       participant_.Raise(error.code(), error.what(), NAN, NAN, true);
@@ -93,8 +93,8 @@ int PlantApp::Run() {
     }
   }
   rig_.Zero();
-  if (StopSignal() != 0) {
-    participant_.RequestStop(fmt::format("{} was stopped by signal {}", program_, StopSignal()), 0);
+  if (process::StopSignal() != 0) {
+    participant_.RequestStop(fmt::format("{} was stopped by signal {}", program_, process::StopSignal()), 0);
   } else {
     const std::string latched = safety_.Latched();
     participant_.RequestStop(
@@ -111,11 +111,11 @@ std::string PlantApp::failure() const {
   return stop && stop->exit_code != 0 ? stop->source + ": " + stop->reason : "";
 }
 
-bool PlantApp::Ended() const { return participant_.stop().has_value() || StopSignal() != 0; }
+bool PlantApp::Ended() const { return participant_.stop().has_value() || process::StopSignal() != 0; }
 
 bool PlantApp::WaitForParticipants() {
   const auto start = participant_.clock().Now();
-  const auto deadline = start + FromSeconds(config_.time.start_timeout_s);
+  const auto deadline = start + bus::FromSeconds(config_.time.start_timeout_s);
   auto next_word = start + 2s;
   while (!Ended()) {
     const std::vector<std::string> missing = roll_call_.Missing();
@@ -151,7 +151,7 @@ void PlantApp::RunLockstep() {
     Advance(tick_ + 1);
     if (simulated) {
       // Nobody else lets simulated time pass. Each tick from the start: rounding must not add up.
-      const auto due = start + FromSeconds(static_cast<double>(tick_) / rate);
+      const auto due = start + bus::FromSeconds(static_cast<double>(tick_) / rate);
       while (participant_.bus().HandleUntil(due) > 0) {
       }
     }
@@ -163,10 +163,10 @@ void PlantApp::RunLockstep() {
 
 bool PlantApp::AwaitAnswers() {
   if (Unanswered().empty()) return true;
-  Bus& bus = participant_.bus();
-  const Clock& clock = participant_.clock();
+  bus::Bus& bus = participant_.bus();
+  const bus::Clock& clock = participant_.clock();
   auto now = clock.Now();
-  const auto deadline = now + FromSeconds(config_.time.stall_timeout_s);
+  const auto deadline = now + bus::FromSeconds(config_.time.stall_timeout_s);
   auto next_repeat = now + kRepeatPeriod;
   while (!Ended()) {
     bus.HandleUntil(std::min(next_repeat, deadline));
@@ -208,7 +208,7 @@ std::string PlantApp::Unanswered() const {
 
 void PlantApp::RunRealtime() {
   const std::chrono::duration<double> period(1 / (config_.plant.rate_hz * config_.time.speed));
-  FixedRateLoop loop(participant_.bus(), participant_.clock(), period, participant_.statistics());
+  timing::FixedRateLoop loop(participant_.bus(), participant_.clock(), period, participant_.statistics());
   measured_ = rig_.Read(0);
   PublishState(0);
   while (!Ended() && tick_ != config_.last_tick) {
@@ -216,7 +216,7 @@ void PlantApp::RunRealtime() {
     if (elapsed == 0) continue;  // a signal
     if (config_.last_tick >= 0) elapsed = std::min(elapsed, config_.last_tick - tick_);
     participant_.statistics().set_missed_deadlines(loop.skipped());
-    const auto slept = FromSeconds(static_cast<double>(elapsed - 1) * period.count());
+    const auto slept = bus::FromSeconds(static_cast<double>(elapsed - 1) * period.count());
     Advance(tick_ + elapsed);  // under the voltage that was held all that time
     if (slept > stale_time_) awake_again_ = tick_;
     PublishState(elapsed - 1);
@@ -304,4 +304,4 @@ void PlantApp::PublishDescription() {
   participant_.bus().Publish(participant_.channels().run, description_);
 }
 
-}  // namespace hydro
+}  // namespace hydro::plant

@@ -35,12 +35,12 @@
 #include "settings/stack_config.h"
 #include "timing/round_trip_monitor.h"
 
-namespace hydro {
+namespace hydro::plant {
 
 class PlantApp {
  public:
   // `rig` must outlive it. `expected`: roles to wait for beside pressure_ctrl and position_ctrl ("logger").
-  PlantApp(Bus& bus, Clock& clock, const StackConfig& config, Rig& rig,
+  PlantApp(bus::Bus& bus, bus::Clock& clock, const settings::StackConfig& config, Rig& rig,
            const std::vector<std::string>& expected = {}, const std::string& program = "hydro-plant");
 
   // The whole run; the rig is driven in it only, and is at zero volts when it ends, also by an exception.
@@ -67,41 +67,41 @@ class PlantApp {
   void CheckCommand(const motor_command_t& command);
   void CheckCommandIsFresh();
   void OnMotorCommand(const motor_command_t& command);
-  Clock::Duration TimeSinceDue(int64_t tick) const;
+  bus::Clock::Duration TimeSinceDue(int64_t tick) const;
   void Poll();
   bool Ended() const;
 
-  StackConfig config_;
+  settings::StackConfig config_;
   Rig& rig_;
-  Participant participant_;
+  process::Participant participant_;
   OutputSafety safety_;
   LoggerWatch logger_watch_;
   RollCall roll_call_;
   std::string program_;
-  Publisher<state_t> state_publisher_;
-  const Clock::Duration stale_time_;
+  bus::Publisher<state_t> state_publisher_;
+  const bus::Clock::Duration stale_time_;
   const double voltage_limit_;  // V, T_pmax/k_1 beyond rounding
 
   int64_t tick_ = 0;
   state_t state_;
-  Measurement measured_;                 // at tick_
+  model::Measurement measured_;          // at tick_
   std::vector<std::string> rig_faults_;  // codes of those that are active
   double voltage_ = 0;                   // V, held from tick_ on
   int64_t command_tick_ = -1;            // tick of the command that voltage_ came from
-  SequenceMonitor command_monitor_;
-  CountedWarning repeated_commands_{"repeated_motor_command"};
+  bus::SequenceMonitor command_monitor_;
+  process::CountedWarning repeated_commands_{"repeated_motor_command"};
   bool future_command_ = false;         // since the last command that made sense
   std::optional<int64_t> awake_again_;  // real time: the tick at which a loop that was stopped went on
-  RoundTripMonitor round_trips_;
+  timing::RoundTripMonitor round_trips_;
   RingQueue<motor_command_t> waiting_commands_;  // received, not yet in force, by tick
   std::optional<motor_command_t> command_;       // in force
   int64_t newest_command_tick_ = -1;
   int64_t newest_pressure_command_tick_ = -1;
   std::map<int64_t, int64_t> log_progress_;  // tick by session, of the loggers that the run began with
-  std::optional<Clock::TimePoint>
+  std::optional<bus::Clock::TimePoint>
       unanswered_since_;           // real time: the oldest state without an answer was sent then
   run_description_t description_;  // published again and again
-  Clock::TimePoint next_description_;
+  bus::Clock::TimePoint next_description_;
 };
 
-}  // namespace hydro
+}  // namespace hydro::plant

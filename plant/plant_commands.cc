@@ -6,13 +6,14 @@
 
 #include "plant/plant_app.h"
 
-namespace hydro {
+namespace hydro::plant {
 void PlantApp::OnMotorCommand(const motor_command_t& command) {
   const auto now = participant_.clock().Now();
   const auto verdict = command_monitor_.Observe(command.session, command.sequence, command.tick, now);
-  if (verdict == SequenceMonitor::Verdict::kDuplicate) return;  // neither obeyed nor taken for a sign of life
-  if (verdict == SequenceMonitor::Verdict::kSecondSender) return;  // ChooseVoltage() sees to it
-  if (verdict == SequenceMonitor::Verdict::kRestarted) waiting_commands_.clear();
+  if (verdict == bus::SequenceMonitor::Verdict::kDuplicate)
+    return;  // neither obeyed nor taken for a sign of life
+  if (verdict == bus::SequenceMonitor::Verdict::kSecondSender) return;  // ChooseVoltage() sees to it
+  if (verdict == bus::SequenceMonitor::Verdict::kRestarted) waiting_commands_.clear();
   future_command_ = command.tick > tick_;
   if (future_command_) {
     safety_.Set(VoltageGuard::Cause::kFutureCommand, true, [&] {
@@ -35,10 +36,10 @@ void PlantApp::OnMotorCommand(const motor_command_t& command) {
 
 // How long ago the state after that of `tick` asked for an answer: a loop that works off what has piled up,
 // or repeats itself, is not in control however often it sends.
-Clock::Duration PlantApp::TimeSinceDue(int64_t tick) const {
+bus::Clock::Duration PlantApp::TimeSinceDue(int64_t tick) const {
   const double ticks = static_cast<double>(tick_) - static_cast<double>(tick) -
                        static_cast<double>(config_.pressure_interval_ticks);
-  return FromSeconds(std::clamp(ticks / (config_.plant.rate_hz * config_.time.speed), 0.0, 1e8));
+  return bus::FromSeconds(std::clamp(ticks / (config_.plant.rate_hz * config_.time.speed), 0.0, 1e8));
 }
 
 // The voltage of the command that is in force from now on, unless something forbids any. Drive() comes first,
@@ -50,7 +51,7 @@ void PlantApp::ChooseVoltage() {
     waiting_commands_.pop_front();
   }
   CheckCommand(command_.value_or(motor_command_t{}));
-  if (config_.time.mode == TimeMode::kRealtime) CheckCommandIsFresh();
+  if (config_.time.mode == settings::TimeMode::kRealtime) CheckCommandIsFresh();
   safety_.CheckMeasured(state_);
   safety_.CheckRig(rig_.faults());
   safety_.CheckSurroundings();
@@ -83,7 +84,7 @@ void PlantApp::CheckCommand(const motor_command_t& command) {
               });
   safety_.CheckController(command_ && command.status == motor_command_t::SAFE);
   // Lockstep asks for answers again; in real time nobody does.
-  if (config_.time.mode == TimeMode::kRealtime) {
+  if (config_.time.mode == settings::TimeMode::kRealtime) {
     repeated_commands_.Update(
         command_monitor_.duplicates(), participant_.clock().Now(),
         [&](int64_t count) {
@@ -104,8 +105,8 @@ void PlantApp::CheckCommandIsFresh() {
   safety_.Set(Cause::kStaleCommand, age > stale_time_, [&] {
     return Finding{
         fmt::format("tick {}: no motor command for {:.0f} ms, allowed are {:.0f} ms (limits.stale_input_s)",
-                    tick_, 1e3 * ToSeconds(age), 1e3 * ToSeconds(stale_time_)),
-        ToSeconds(age), config_.limits.stale_input_s};
+                    tick_, 1e3 * bus::ToSeconds(age), 1e3 * bus::ToSeconds(stale_time_)),
+        bus::ToSeconds(age), config_.limits.stale_input_s};
   });
   // After a stop of this process itself, commands from before it say nothing.
   if (awake_again_ && command_ && command_->tick >= *awake_again_) awake_again_.reset();
@@ -114,9 +115,9 @@ void PlantApp::CheckCommandIsFresh() {
         static_cast<double>(state_.skipped_ticks) / (config_.plant.rate_hz * config_.time.speed);
     return Finding{fmt::format("tick {}: the loop was stopped for {:.0f} ms, allowed are {:.0f} ms "
                                "(limits.stale_input_s)",
-                               tick_, 1e3 * slept, 1e3 * ToSeconds(stale_time_)),
+                               tick_, 1e3 * slept, 1e3 * bus::ToSeconds(stale_time_)),
                    slept, config_.limits.stale_input_s};
   });
 }
 
-}  // namespace hydro
+}  // namespace hydro::plant

@@ -9,7 +9,7 @@
 
 #include "model/actuator.h"
 
-namespace hydro {
+namespace hydro::plant {
 
 // Something that a rig says about itself; the fields are those of fault_t.
 struct RigFault {
@@ -39,7 +39,7 @@ class Rig {
   // What the sensors read at `tick`; NaN: not measured, or not to be believed. Tick 0 comes first, later ones
   // follow in increasing order. A simulated actuator gets there under the voltage of the last Drive(). Throws
   // RigError.
-  virtual Measurement Read(int64_t tick) = 0;
+  virtual model::Measurement Read(int64_t tick) = 0;
 
   // What is wrong with the last reading; as long as anything is, no voltage but zero may be driven.
   virtual const std::vector<RigFault>& faults() const = 0;
@@ -52,4 +52,4 @@ class Rig {
   virtual void Zero() noexcept = 0;
 };
 
-}  // namespace hydro
+}  // namespace hydro::plant

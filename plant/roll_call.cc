@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace hydro {
+namespace hydro::plant {
 namespace {
 
 constexpr size_t kMostPresent = 256;  // a stack has five processes; what a flood makes up is not kept
@@ -44,4 +44,4 @@ std::vector<int64_t> RollCall::Loggers() const {
   return sessions;
 }
 
-}  // namespace hydro
+}  // namespace hydro::plant

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-namespace hydro {
+namespace hydro::plant {
 
 class RollCall {
  public:
@@ -32,4 +32,4 @@ class RollCall {
   std::string left_;
 };
 
-}  // namespace hydro
+}  // namespace hydro::plant

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace hydro {
+namespace hydro::plant {
 namespace {
 
 // SplitMix64's output function (Steele, Lea and Flood 2014): a bijection that scatters neighbouring inputs.
@@ -25,9 +25,9 @@ double StandardNormal(uint64_t seed, int64_t tick, int channel) {
   return std::sqrt(-2 * std::log(Unit(first))) * std::cos(2 * std::numbers::pi * Unit(Scatter(~first)));
 }
 
-Measurement ReadSensors(const Measurement& measurement, const NoiseSection& noise, int64_t seed,
-                        int64_t tick) {
-  Measurement reading = measurement;
+model::Measurement ReadSensors(const model::Measurement& measurement, const settings::NoiseSection& noise,
+                               int64_t seed, int64_t tick) {
+  model::Measurement reading = measurement;
   int channel = 0;
   const auto read = [&](double& signal, double standard_deviation, double resolution) {
     if (standard_deviation > 0) {
@@ -45,4 +45,4 @@ Measurement ReadSensors(const Measurement& measurement, const NoiseSection& nois
   return reading;
 }
 
-}  // namespace hydro
+}  // namespace hydro::plant

@@ -8,13 +8,13 @@
 #include "model/actuator.h"
 #include "settings/stack_config.h"
 
-namespace hydro {
+namespace hydro::plant {
 
 // Standard normal number for (seed, tick, channel): Box-Muller on two SplitMix64 outputs.
 double StandardNormal(uint64_t seed, int64_t tick, int channel);
 
 // `measurement` as the sensors read it at `tick`: noise added, then rounded to a multiple of the resolution.
-Measurement ReadSensors(const Measurement& measurement, const NoiseSection& noise, int64_t seed,
-                        int64_t tick);
+model::Measurement ReadSensors(const model::Measurement& measurement, const settings::NoiseSection& noise,
+                               int64_t seed, int64_t tick);
 
-}  // namespace hydro
+}  // namespace hydro::plant

@@ -3,14 +3,14 @@
 #include "base/input_error.h"
 #include "plant/sensor_noise.h"
 
-namespace hydro {
+namespace hydro::plant {
 
-SimulatedRig::SimulatedRig(const StackConfig& config)
+SimulatedRig::SimulatedRig(const settings::StackConfig& config)
     : noise_(config.noise),
       seed_(config.seed),
       rate_hz_(config.plant.rate_hz),
-      motion_(config.model.motion ? MakeTrajectory(*config.model.motion) : nullptr) {
-  ActuatorOptions options;
+      motion_(config.model.motion ? settings::MakeTrajectory(*config.model.motion) : nullptr) {
+  model::ActuatorOptions options;
   options.shaft = config.model.shaft;
   options.arm_angle = config.model.arm_angle_rad;
   options.motion = motion_.get();
@@ -19,19 +19,19 @@ SimulatedRig::SimulatedRig(const StackConfig& config)
   options.integrator = config.plant.integrator;
   options.relative_tolerance = config.plant.relative_tolerance;
   try {
-    actuator_ = std::make_unique<Actuator>(config.model.description, options);
-  } catch (const ModelError& error) {
+    actuator_ = std::make_unique<model::Actuator>(config.model.description, options);
+  } catch (const model::ModelError& error) {
     throw InputError(config.file + ": " + error.what());
   }
 }
 
-Measurement SimulatedRig::Read(int64_t tick) {
+model::Measurement SimulatedRig::Read(int64_t tick) {
   try {
     if (tick > 0) actuator_->Advance(voltage_, static_cast<double>(tick) / rate_hz_);
     return ReadSensors(actuator_->Measure(), noise_, seed_, tick);
-  } catch (const ModelError& error) {
+  } catch (const model::ModelError& error) {
     throw RigError("model_error", error.what());
   }
 }
 
-}  // namespace hydro
+}  // namespace hydro::plant

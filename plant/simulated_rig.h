@@ -9,28 +9,28 @@
 #include "plant/rig.h"
 #include "settings/stack_config.h"
 
-namespace hydro {
+namespace hydro::plant {
 
 class SimulatedRig : public Rig {
  public:
   // Throws InputError when the configuration and the model contradict each other.
-  explicit SimulatedRig(const StackConfig& config);
+  explicit SimulatedRig(const settings::StackConfig& config);
 
   std::string role() const override { return "plant"; }
   // Throws RigError "model_error" when the model cannot go on.
-  Measurement Read(int64_t tick) override;
+  model::Measurement Read(int64_t tick) override;
   const std::vector<RigFault>& faults() const override { return no_faults_; }
   double Drive(double voltage) override { return voltage_ = voltage; }
   void Zero() noexcept override { voltage_ = 0; }
 
  private:
-  NoiseSection noise_;
+  settings::NoiseSection noise_;
   int64_t seed_;
   double rate_hz_;
-  std::unique_ptr<Trajectory> motion_;  // of a driven shaft; before actuator_, which points to it
-  std::unique_ptr<Actuator> actuator_;
+  std::unique_ptr<trajectory::Trajectory> motion_;  // of a driven shaft; before actuator_, which points to it
+  std::unique_ptr<model::Actuator> actuator_;
   double voltage_ = 0;
   std::vector<RigFault> no_faults_;
 };
 
-}  // namespace hydro
+}  // namespace hydro::plant

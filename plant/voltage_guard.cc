@@ -1,6 +1,6 @@
 #include "plant/voltage_guard.h"
 
-namespace hydro {
+namespace hydro::plant {
 
 const char* VoltageGuard::CodeOf(Cause cause) {
   switch (cause) {
@@ -42,7 +42,7 @@ void VoltageGuard::Set(Cause cause, bool present) {
     return;
   }
   present_ |= Bit(cause);
-  if (rearm_ == Rearm::kExplicit || Trips(cause)) latched_ |= Bit(cause);
+  if (rearm_ == settings::Rearm::kExplicit || Trips(cause)) latched_ |= Bit(cause);
 }
 
 std::vector<VoltageGuard::Cause> VoltageGuard::Release(std::vector<Cause>* standing) {
@@ -61,4 +61,4 @@ std::vector<VoltageGuard::Cause> VoltageGuard::Listed(uint32_t bits) {
   return causes;
 }
 
-}  // namespace hydro
+}  // namespace hydro::plant

@@ -8,7 +8,7 @@
 
 #include "settings/stack_config.h"
 
-namespace hydro {
+namespace hydro::plant {
 
 class VoltageGuard {
  public:
@@ -29,7 +29,7 @@ class VoltageGuard {
     kCount
   };
 
-  explicit VoltageGuard(Rearm rearm) : rearm_(rearm) {}
+  explicit VoltageGuard(settings::Rearm rearm) : rearm_(rearm) {}
 
   // The fault's name on HYDRO_FAULT.
   static const char* CodeOf(Cause cause);
@@ -57,9 +57,9 @@ class VoltageGuard {
   static uint32_t Bit(Cause cause) { return 1u << static_cast<unsigned>(cause); }
   static std::vector<Cause> Listed(uint32_t bits);
 
-  const Rearm rearm_;
+  const settings::Rearm rearm_;
   uint32_t present_ = 0;
   uint32_t latched_ = 0;
 };
 
-}  // namespace hydro
+}  // namespace hydro::plant

@@ -3,15 +3,16 @@
 #include "process/process_main.h"
 
 int main(int argc, char** argv) {
-  hydro::CommandLine command_line(
+  hydro::settings::CommandLine command_line(
       "hydro-position-ctrl",
       "The sampled PD position loop, eq. (17), and the references that it or the pressure loop follows.");
-  hydro::CommonOptions options;
+  hydro::settings::CommonOptions options;
   command_line.AddCommon(&options);
   if (const auto exit_code = command_line.Parse(argc, argv)) return *exit_code;
-  return hydro::RunProcess("hydro-position-ctrl", options,
-                           [](hydro::Bus& bus, hydro::Clock& clock, const hydro::StackConfig& config) {
-                             hydro::PositionApp app(bus, clock, config);
-                             return hydro::RunApp(bus, clock, app);
-                           });
+  return hydro::process::RunProcess(
+      "hydro-position-ctrl", options,
+      [](hydro::bus::Bus& bus, hydro::bus::Clock& clock, const hydro::settings::StackConfig& config) {
+        hydro::position_ctrl::PositionApp app(bus, clock, config);
+        return hydro::process::RunApp(bus, clock, app);
+      });
 }

@@ -5,26 +5,26 @@
 #include <algorithm>
 #include <cmath>
 
-namespace hydro {
+namespace hydro::position_ctrl {
 namespace {
 
 using namespace std::chrono_literals;
 
-int8_t SignalCode(ReferenceSignal signal) {
+int8_t SignalCode(settings::ReferenceSignal signal) {
   switch (signal) {
-    case ReferenceSignal::kArmAngle:
+    case settings::ReferenceSignal::kArmAngle:
       return arm_reference_t::ARM_ANGLE;
-    case ReferenceSignal::kPressure:
+    case settings::ReferenceSignal::kPressure:
       return arm_reference_t::PRESSURE;
-    case ReferenceSignal::kTorque:
+    case settings::ReferenceSignal::kTorque:
       return arm_reference_t::TORQUE;
-    case ReferenceSignal::kVoltage:
+    case settings::ReferenceSignal::kVoltage:
       return arm_reference_t::VOLTAGE;
   }
   return arm_reference_t::ARM_ANGLE;
 }
 
-PositionLawSettings LawSettingsFor(const StackConfig& config) {
+PositionLawSettings LawSettingsFor(const settings::StackConfig& config) {
   PositionLawSettings settings;
   settings.c1 = config.position.c1;
   settings.c2 = config.position.c2;
@@ -36,18 +36,18 @@ PositionLawSettings LawSettingsFor(const StackConfig& config) {
 
 }  // namespace
 
-PositionApp::PositionApp(Bus& bus, Clock& clock, const StackConfig& config)
-    : participant_(bus, clock, Channels(config.bus.channel_suffix), "position_ctrl"),
-      lockstep_(config.time.mode == TimeMode::kLockstep),
+PositionApp::PositionApp(bus::Bus& bus, bus::Clock& clock, const settings::StackConfig& config)
+    : participant_(bus, clock, bus::Channels(config.bus.channel_suffix), "position_ctrl"),
+      lockstep_(config.time.mode == settings::TimeMode::kLockstep),
       interval_(config.position_interval_ticks),
-      stall_time_(FromSeconds(config.time.stall_timeout_s) + 400ms),
+      stall_time_(bus::FromSeconds(config.time.stall_timeout_s) + 400ms),
       signal_(config.reference.signal),
-      reference_(MakeTrajectory(config.reference.trajectory)),
+      reference_(settings::MakeTrajectory(config.reference.trajectory)),
       torque_per_pressure_(config.model.description.parameters.k_2),
       pressure_limit_(config.limits.arm_torque_in_lbf / config.model.description.parameters.k_2),
       section_(config.position),
       law_(LawSettingsFor(config)),
-      state_monitor_(FromSeconds(config.limits.stale_input_s)),
+      state_monitor_(bus::FromSeconds(config.limits.stale_input_s)),
       last_state_time_(clock.Now()) {
   bus.Subscribe<state_t>(participant_.channels().state, [this](const state_t& state) { OnState(state); });
   participant_.Announce(process_status_t::READY);
@@ -56,19 +56,19 @@ PositionApp::PositionApp(Bus& bus, Clock& clock, const StackConfig& config)
 void PositionApp::OnState(const state_t& state) {
   const auto now = participant_.clock().Now();
   switch (state_monitor_.Observe(state.session, state.sequence, now)) {
-    case SequenceMonitor::Verdict::kSecondSender:
+    case bus::SequenceMonitor::Verdict::kSecondSender:
       return;  // the pressure loop names it and goes to zero volts
-    case SequenceMonitor::Verdict::kRestarted:
+    case bus::SequenceMonitor::Verdict::kRestarted:
       last_sample_tick_ = -1;
       break;
-    case SequenceMonitor::Verdict::kDuplicate:
+    case bus::SequenceMonitor::Verdict::kDuplicate:
       if (state.tick == last_sample_tick_) Send();  // the plant asks again: the answer may have been lost
       // Overtaken on its way by states that were no samples: it is still the newest sample.
       if (state.tick > last_sample_tick_ && state.tick < participant_.tick() && state.tick % interval_ == 0) {
         Sample(state, now);
       }
       return;
-    case SequenceMonitor::Verdict::kAccept:
+    case bus::SequenceMonitor::Verdict::kAccept:
       break;
   }
   last_state_time_ = now;
@@ -78,7 +78,7 @@ void PositionApp::OnState(const state_t& state) {
   if (state.tick % interval_ == 0) Sample(state, now);
 }
 
-void PositionApp::Sample(const state_t& state, Clock::TimePoint arrival) {
+void PositionApp::Sample(const state_t& state, bus::Clock::TimePoint arrival) {
   Answer(state);
   participant_.statistics().RecordCycle(arrival, participant_.clock().Now() - arrival);
 }
@@ -95,11 +95,11 @@ void PositionApp::Answer(const state_t& state) {
   arm_reference_.value = reference;
 
   pressure_command_.tick = state.tick;
-  pressure_command_.open_loop = signal_ == ReferenceSignal::kVoltage;
+  pressure_command_.open_loop = signal_ == settings::ReferenceSignal::kVoltage;
   pressure_command_.voltage = pressure_command_.open_loop ? reference : 0;
   double pressure_ref = 0;
   switch (signal_) {
-    case ReferenceSignal::kArmAngle:
+    case settings::ReferenceSignal::kArmAngle:
       if (std::isfinite(state.arm_angle)) {
         pressure_ref = law_.Update(state.arm_angle, reference, intervals);
         if (participant_.any_fault()) participant_.Clear("nonfinite_arm_angle");
@@ -112,13 +112,13 @@ void PositionApp::Answer(const state_t& state) {
             state.arm_angle, NAN, false);
       }
       break;
-    case ReferenceSignal::kPressure:
+    case settings::ReferenceSignal::kPressure:
       pressure_ref = reference;
       break;
-    case ReferenceSignal::kTorque:
+    case settings::ReferenceSignal::kTorque:
       pressure_ref = reference / torque_per_pressure_;
       break;
-    case ReferenceSignal::kVoltage:
+    case settings::ReferenceSignal::kVoltage:
       break;
   }
   pressure_ref = std::clamp(pressure_ref, -pressure_limit_, pressure_limit_);
@@ -144,7 +144,7 @@ void PositionApp::Poll() {
   const auto silence = participant_.clock().Now() - last_state_time_;
   if (silence > stall_time_) {
     participant_.RequestStop(fmt::format("the plant has sent no state for {:.1f} s (last: tick {})",
-                                         ToSeconds(silence), participant_.tick()),
+                                         bus::ToSeconds(silence), participant_.tick()),
                              1);
   }
 }
@@ -166,4 +166,4 @@ int PositionApp::Finish() {
   return participant_.Leave();
 }
 
-}  // namespace hydro
+}  // namespace hydro::position_ctrl

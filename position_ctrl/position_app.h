@@ -16,11 +16,11 @@
 #include "process/participant.h"
 #include "settings/stack_config.h"
 
-namespace hydro {
+namespace hydro::position_ctrl {
 
-class PositionApp : public App {
+class PositionApp : public process::App {
  public:
-  PositionApp(Bus& bus, Clock& clock, const StackConfig& config);
+  PositionApp(bus::Bus& bus, bus::Clock& clock, const settings::StackConfig& config);
 
   void Poll() override;
   void OnHandled(int messages) override { participant_.statistics().RecordQueueDepth(messages); }
@@ -29,27 +29,27 @@ class PositionApp : public App {
 
  private:
   void OnState(const state_t& state);
-  void Sample(const state_t& state, Clock::TimePoint arrival);
+  void Sample(const state_t& state, bus::Clock::TimePoint arrival);
   void Answer(const state_t& state);
   void Send();
 
-  Participant participant_;
+  process::Participant participant_;
   const bool lockstep_;
   const int64_t interval_;  // ticks between two samples
-  const Clock::Duration stall_time_;
-  const ReferenceSignal signal_;
-  const std::unique_ptr<Trajectory> reference_;
+  const bus::Clock::Duration stall_time_;
+  const settings::ReferenceSignal signal_;
+  const std::unique_ptr<trajectory::Trajectory> reference_;
   const double torque_per_pressure_;  // k_2
   const double pressure_limit_;       // psi, from limits.arm_torque_in_lbf
-  const PositionSection section_;
+  const settings::PositionSection section_;
   PositionLaw law_;
 
-  SequenceMonitor state_monitor_;
+  bus::SequenceMonitor state_monitor_;
   arm_reference_t arm_reference_;        // the newest sample's
   pressure_command_t pressure_command_;  // the newest sample's
   int64_t last_sample_tick_ = -1;
   int64_t sequence_ = 0;
-  Clock::TimePoint last_state_time_;
+  bus::Clock::TimePoint last_state_time_;
 };
 
-}  // namespace hydro
+}  // namespace hydro::position_ctrl

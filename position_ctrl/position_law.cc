@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace hydro {
+namespace hydro::position_ctrl {
 
 double PositionLaw::Update(double arm_angle, double arm_ref, int64_t intervals) {
   const double error = arm_angle - arm_ref;
@@ -25,4 +25,4 @@ double QuantiseDac(double value, int bits, double full_scale) {
   return std::clamp(std::nearbyint(value / step), -half, half - 1) * step;
 }
 
-}  // namespace hydro
+}  // namespace hydro::position_ctrl

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <limits>
 
-namespace hydro {
+namespace hydro::position_ctrl {
 
 struct PositionLawSettings {
   double c1 = 0;                   // psi/rad
@@ -36,4 +36,4 @@ class PositionLaw {
 // 2^bits levels k full_scale / 2^(bits-1), k = -2^(bits-1) ... 2^(bits-1) - 1. bits = 0: value itself.
 double QuantiseDac(double value, int bits, double full_scale);
 
-}  // namespace hydro
+}  // namespace hydro::position_ctrl

@@ -3,14 +3,15 @@
 #include "process/process_main.h"
 
 int main(int argc, char** argv) {
-  hydro::CommandLine command_line("hydro-pressure-ctrl",
-                                  "The fast pressure loop: a motor command for each plant tick, eq. (16).");
-  hydro::CommonOptions options;
+  hydro::settings::CommandLine command_line(
+      "hydro-pressure-ctrl", "The fast pressure loop: a motor command for each plant tick, eq. (16).");
+  hydro::settings::CommonOptions options;
   command_line.AddCommon(&options);
   if (const auto exit_code = command_line.Parse(argc, argv)) return *exit_code;
-  return hydro::RunProcess("hydro-pressure-ctrl", options,
-                           [](hydro::Bus& bus, hydro::Clock& clock, const hydro::StackConfig& config) {
-                             hydro::PressureApp app(bus, clock, config);
-                             return hydro::RunApp(bus, clock, app);
-                           });
+  return hydro::process::RunProcess(
+      "hydro-pressure-ctrl", options,
+      [](hydro::bus::Bus& bus, hydro::bus::Clock& clock, const hydro::settings::StackConfig& config) {
+        hydro::pressure_ctrl::PressureApp app(bus, clock, config);
+        return hydro::process::RunApp(bus, clock, app);
+      });
 }

@@ -9,7 +9,7 @@
 #include "base/input_error.h"
 #include "base/saturating.h"
 
-namespace hydro {
+namespace hydro::pressure_ctrl {
 namespace {
 
 using namespace std::chrono_literals;
@@ -23,17 +23,17 @@ motor_command_t ZeroVolts(int64_t tick, int8_t status) {
 }
 
 // psi, what limits.arm_torque_in_lbf leaves of a pressure reference, rounding and the D/A's included.
-double PressureReferenceLimit(const StackConfig& config) {
-  const PositionSection& dac = config.position;
+double PressureReferenceLimit(const settings::StackConfig& config) {
+  const settings::PositionSection& dac = config.position;
   const double half_step = dac.dac_bits > 0 ? std::ldexp(dac.dac_range_psi, -dac.dac_bits) : 0;
   return (1 + 1e-9) * config.limits.arm_torque_in_lbf / config.model.description.parameters.k_2 + half_step;
 }
 
 }  // namespace
 
-PressureLawSettings PressureLawSettingsFor(const StackConfig& config) {
-  const Parameters& parameters = config.model.description.parameters;
-  const PressureSection& section = config.pressure;
+PressureLawSettings PressureLawSettingsFor(const settings::StackConfig& config) {
+  const model::Parameters& parameters = config.model.description.parameters;
+  const settings::PressureSection& section = config.pressure;
   PressureLawSettings law;
   try {
     law.gains = section.k_p ? PressureGains{*section.k_p, section.k_v.value_or(0)}
@@ -52,9 +52,9 @@ PressureLawSettings PressureLawSettingsFor(const StackConfig& config) {
   return law;
 }
 
-PressureApp::PressureApp(Bus& bus, Clock& clock, const StackConfig& config)
-    : participant_(bus, clock, Channels(config.bus.channel_suffix), "pressure_ctrl"),
-      lockstep_(config.time.mode == TimeMode::kLockstep),
+PressureApp::PressureApp(bus::Bus& bus, bus::Clock& clock, const settings::StackConfig& config)
+    : participant_(bus, clock, bus::Channels(config.bus.channel_suffix), "pressure_ctrl"),
+      lockstep_(config.time.mode == settings::TimeMode::kLockstep),
       interval_(config.pressure_interval_ticks),
       position_interval_(config.position_interval_ticks),
       delay_(config.plant.command_delay_ticks),
@@ -62,10 +62,10 @@ PressureApp::PressureApp(Bus& bus, Clock& clock, const StackConfig& config)
                    static_cast<int64_t>(std::ceil(config.limits.stale_input_s * config.plant.rate_hz))),
       ramp_ticks_(static_cast<int64_t>(std::ceil(config.limits.pressure_ramp_s * config.plant.rate_hz))),
       pressure_limit_(PressureReferenceLimit(config)),
-      stale_time_(FromSeconds(config.limits.stale_input_s)),
+      stale_time_(bus::FromSeconds(config.limits.stale_input_s)),
       // The plant itself waits stall_timeout_s for whoever is late and then says who; only after that is it
       // silent.
-      stall_time_(FromSeconds(config.time.stall_timeout_s) + 400ms),
+      stall_time_(bus::FromSeconds(config.time.stall_timeout_s) + 400ms),
       limits_(config.limits),
       law_(PressureLawSettingsFor(config)),
       state_monitor_(stale_time_),
@@ -89,18 +89,18 @@ void PressureApp::Restart() {
 void PressureApp::OnState(const state_t& state) {
   const auto now = participant_.clock().Now();
   switch (state_monitor_.Observe(state.session, state.sequence, now)) {
-    case SequenceMonitor::Verdict::kSecondSender:
+    case bus::SequenceMonitor::Verdict::kSecondSender:
       return;  // InputsAreSafe() sees to it
-    case SequenceMonitor::Verdict::kRestarted:
+    case bus::SequenceMonitor::Verdict::kRestarted:
       Restart();
       break;
-    case SequenceMonitor::Verdict::kDuplicate:
+    case bus::SequenceMonitor::Verdict::kDuplicate:
       // The plant asks again: the answer may have been lost.
       if (answered_ && last_command_.tick == state.tick) {
         participant_.bus().Publish(participant_.channels().motor_command, last_command_);
       }
       return;
-    case SequenceMonitor::Verdict::kAccept:
+    case bus::SequenceMonitor::Verdict::kAccept:
       break;
   }
   last_state_time_ = now;
@@ -120,9 +120,9 @@ void PressureApp::OnPressureCommand(const pressure_command_t& command) {
   const auto verdict =
       command_monitor_.Observe(command.session, command.sequence, participant_.clock().Now());
   // A second sender is not obeyed; InputsAreSafe() sees to it.
-  if (verdict == SequenceMonitor::Verdict::kSecondSender) return;
-  if (verdict == SequenceMonitor::Verdict::kDuplicate) return;
-  if (verdict == SequenceMonitor::Verdict::kRestarted) {
+  if (verdict == bus::SequenceMonitor::Verdict::kSecondSender) return;
+  if (verdict == bus::SequenceMonitor::Verdict::kDuplicate) return;
+  if (verdict == bus::SequenceMonitor::Verdict::kRestarted) {
     waiting_commands_.clear();
     pressure_command_.reset();
   }
@@ -209,7 +209,7 @@ void PressureApp::Poll() {
     if (silence > stall_time_ && !stalled_) {
       stalled_ = true;
       participant_.RequestStop(fmt::format("the plant has sent no state for {:.1f} s (last: tick {})",
-                                           ToSeconds(silence), participant_.tick()),
+                                           bus::ToSeconds(silence), participant_.tick()),
                                1);
     }
   } else if (silence > stale_time_ && !participant_.active("stale_state")) {
@@ -217,8 +217,8 @@ void PressureApp::Poll() {
     Send(zero);  // zero volts first, explanation second
     participant_.Raise("stale_state",
                        fmt::format("no state for {:.0f} ms, allowed are {:.0f} ms (limits.stale_input_s)",
-                                   1e3 * ToSeconds(silence), 1e3 * ToSeconds(stale_time_)),
-                       ToSeconds(silence), limits_.stale_input_s, false);
+                                   1e3 * bus::ToSeconds(silence), 1e3 * bus::ToSeconds(stale_time_)),
+                       bus::ToSeconds(silence), limits_.stale_input_s, false);
   }
 }
 
@@ -230,4 +230,4 @@ int PressureApp::Finish() {
   return participant_.Leave();
 }
 
-}  // namespace hydro
+}  // namespace hydro::pressure_ctrl

@@ -19,15 +19,15 @@
 #include "process/participant.h"
 #include "settings/stack_config.h"
 
-namespace hydro {
+namespace hydro::pressure_ctrl {
 
 // The law's settings that a configuration asks for; derives the gains where it gives natural frequency and
 // damping. Throws InputError when they cannot be derived.
-PressureLawSettings PressureLawSettingsFor(const StackConfig& config);
+PressureLawSettings PressureLawSettingsFor(const settings::StackConfig& config);
 
-class PressureApp : public App {
+class PressureApp : public process::App {
  public:
-  PressureApp(Bus& bus, Clock& clock, const StackConfig& config);
+  PressureApp(bus::Bus& bus, bus::Clock& clock, const settings::StackConfig& config);
 
   void Poll() override;
   void OnHandled(int messages) override { participant_.statistics().RecordQueueDepth(messages); }
@@ -51,7 +51,7 @@ class PressureApp : public App {
   void Send(motor_command_t& command);
   void Restart();
 
-  Participant participant_;
+  process::Participant participant_;
   const bool lockstep_;
   const int64_t interval_;           // ticks between two commands of this loop
   const int64_t position_interval_;  // ticks between two pressure commands
@@ -59,13 +59,13 @@ class PressureApp : public App {
   const int64_t stale_ticks_;        // a pressure command is stale when this much older than it may be
   const int64_t ramp_ticks_;         // from then on its reference goes to zero in this many ticks
   const double pressure_limit_;      // psi, of a pressure reference
-  const Clock::Duration stale_time_;
-  const Clock::Duration stall_time_;
-  const LimitsSection limits_;
+  const bus::Clock::Duration stale_time_;
+  const bus::Clock::Duration stall_time_;
+  const settings::LimitsSection limits_;
   const PressureLawSettings law_;
 
-  SequenceMonitor state_monitor_;
-  SequenceMonitor command_monitor_;
+  bus::SequenceMonitor state_monitor_;
+  bus::SequenceMonitor command_monitor_;
   RingQueue<pressure_command_t> waiting_commands_;      // not yet in force, by tick
   std::optional<pressure_command_t> pressure_command_;  // in force
   std::optional<int64_t> future_command_;  // tick of a refused one, while none came that makes sense
@@ -73,8 +73,8 @@ class PressureApp : public App {
   motor_command_t last_command_;
   bool answered_ = false;
   int64_t sequence_ = 0;
-  Clock::TimePoint last_state_time_;
+  bus::Clock::TimePoint last_state_time_;
   bool stalled_ = false;  // lockstep: the plant has gone silent
 };
 
-}  // namespace hydro
+}  // namespace hydro::pressure_ctrl

@@ -7,7 +7,7 @@
 #include "base/saturating.h"
 #include "pressure_ctrl/pressure_app.h"
 
-namespace hydro {
+namespace hydro::pressure_ctrl {
 namespace {
 
 bool Finite(const state_t& state, bool with_arm_speed) {
@@ -32,7 +32,7 @@ bool PressureApp::Check(bool good, const char* code, double value, double limit,
 // the voltage at zero from the first safe command on.
 template <class Describe>
 bool PressureApp::CheckLimit(bool good, const char* code, double value, double limit, Describe&& describe) {
-  if (limits_.rearm == Rearm::kExplicit) return Check(good, code, value, limit, describe);
+  if (limits_.rearm == settings::Rearm::kExplicit) return Check(good, code, value, limit, describe);
   if (!good && participant_.Raise(code, describe(), value, limit, true)) {
     participant_.RequestStop(fmt::format("fault {}: {}", code, describe()), 1);
   }
@@ -133,4 +133,4 @@ double PressureApp::PressureReference(int64_t tick) const {
   return reference * (1 - static_cast<double>(stale) / static_cast<double>(ramp_ticks_));
 }
 
-}  // namespace hydro
+}  // namespace hydro::pressure_ctrl

@@ -5,11 +5,11 @@
 #include <stdexcept>
 #include <string>
 
-namespace hydro {
+namespace hydro::pressure_ctrl {
 namespace {
 
 // psi per rad of pump rotation: how fast dp rises with pump angle, from eqs. (13) and (14).
-double PressureStiffness(const Parameters& p, double arm_angle, int compressed_sides) {
+double PressureStiffness(const model::Parameters& p, double arm_angle, int compressed_sides) {
   if (compressed_sides != 1 && compressed_sides != 2) {
     throw std::invalid_argument("compressed sides: found " + std::to_string(compressed_sides) +
                                 ", allowed are 1 and 2");
@@ -23,7 +23,7 @@ double PressureStiffness(const Parameters& p, double arm_angle, int compressed_s
 
 // With x = (dp, theta'): dp' = s theta', J theta'' = k_1 v - D dp - b theta', v from eq. (16). So
 // omega^2 = s (D + k_1 k_p) / J and 2 zeta omega = (b + k_1 k_p k_v) / J.
-PressureGains DerivePressureGains(const Parameters& p, double arm_angle, double natural_frequency,
+PressureGains DerivePressureGains(const model::Parameters& p, double arm_angle, double natural_frequency,
                                   double damping_ratio, int compressed_sides) {
   const double stiffness = PressureStiffness(p, arm_angle, compressed_sides);
   PressureGains gains;
@@ -37,7 +37,7 @@ PressureGains DerivePressureGains(const Parameters& p, double arm_angle, double 
   return gains;
 }
 
-SecondOrder PressureLoopDynamics(const Parameters& p, double arm_angle, const PressureGains& gains,
+SecondOrder PressureLoopDynamics(const model::Parameters& p, double arm_angle, const PressureGains& gains,
                                  int compressed_sides) {
   const double stiffness = PressureStiffness(p, arm_angle, compressed_sides);
   SecondOrder loop;
@@ -46,7 +46,7 @@ SecondOrder PressureLoopDynamics(const Parameters& p, double arm_angle, const Pr
   return loop;
 }
 
-double SteadyStateFeedforward(const Parameters& p, const PressureGains& gains) {
+double SteadyStateFeedforward(const model::Parameters& p, const PressureGains& gains) {
   const double speed_per_psi =
       (p.c_I + p.c_E) / p.D;  // rad/s per psi, from p_2' = 0 in eq. (14) with p_1 = p_3
   return (p.D + p.b * speed_per_psi) / p.k_1 + gains.k_p * gains.k_v * speed_per_psi;
@@ -64,4 +64,4 @@ PressureLawOutput PressureLaw(const PressureLawSettings& settings, const Pressur
   return output;
 }
 
-}  // namespace hydro
+}  // namespace hydro::pressure_ctrl

@@ -3,7 +3,7 @@
 
 #include "model/description.h"
 
-namespace hydro {
+namespace hydro::pressure_ctrl {
 
 struct PressureGains {
   double k_p = 0;  // V/psi
@@ -14,21 +14,21 @@ struct PressureGains {
 // without leakage and Coulomb friction) the natural frequency (rad/s) and damping ratio asked for.
 // compressed_sides: 2 when both volumes compress; 1 when side 1 is held at p_3 by its one-way valve.
 // Throws std::invalid_argument when that needs a negative k_p (natural frequency below the open loop's).
-PressureGains DerivePressureGains(const Parameters& parameters, double arm_angle, double natural_frequency,
-                                  double damping_ratio, int compressed_sides);
+PressureGains DerivePressureGains(const model::Parameters& parameters, double arm_angle,
+                                  double natural_frequency, double damping_ratio, int compressed_sides);
 
 // The loop that gains give: the inverse of DerivePressureGains.
 struct SecondOrder {
   double natural_frequency = 0;  // rad/s
   double damping_ratio = 0;
 };
-SecondOrder PressureLoopDynamics(const Parameters& parameters, double arm_angle, const PressureGains& gains,
-                                 int compressed_sides);
+SecondOrder PressureLoopDynamics(const model::Parameters& parameters, double arm_angle,
+                                 const PressureGains& gains, int compressed_sides);
 
 // V/psi: the feed-forward "which changes linearly with dp_ref" that removes the steady-state error of a
 // clamped actuator up to Coulomb friction: the torque that holds dp_ref, D dp / k_1, and what the speed that
 // makes up for the leakage costs in viscous friction and in the k_v term. One side is taken to lie at p_3.
-double SteadyStateFeedforward(const Parameters& parameters, const PressureGains& gains);
+double SteadyStateFeedforward(const model::Parameters& parameters, const PressureGains& gains);
 
 struct PressureLawSettings {
   PressureGains gains;
@@ -54,4 +54,4 @@ struct PressureLawOutput {
 // Eq. (16).
 PressureLawOutput PressureLaw(const PressureLawSettings& settings, const PressureLawInput& input);
 
-}  // namespace hydro
+}  // namespace hydro::pressure_ctrl

@@ -2,9 +2,9 @@
 
 #include "process/stop_signal.h"
 
-namespace hydro {
+namespace hydro::process {
 
-int RunApp(Bus& bus, Clock& clock, App& app) {
+int RunApp(bus::Bus& bus, bus::Clock& clock, App& app) {
   try {
     while (!app.finished() && StopSignal() == 0) {
       const int handled = bus.HandleUntil(clock.Now() + kPollPeriod);
@@ -18,4 +18,4 @@ int RunApp(Bus& bus, Clock& clock, App& app) {
   return app.Finish();
 }
 
-}  // namespace hydro
+}  // namespace hydro::process

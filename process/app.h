@@ -5,7 +5,7 @@
 #include "bus/bus.h"
 #include "bus/clock.h"
 
-namespace hydro {
+namespace hydro::process {
 
 class App {
  public:
@@ -27,6 +27,6 @@ class App {
 inline constexpr auto kPollPeriod = std::chrono::milliseconds(20);
 
 // Handles messages and polls until the application is finished or a stop signal was caught; then finishes it.
-int RunApp(Bus& bus, Clock& clock, App& app);
+int RunApp(bus::Bus& bus, bus::Clock& clock, App& app);
 
-}  // namespace hydro
+}  // namespace hydro::process

@@ -7,7 +7,7 @@
 
 #include "bus/clock.h"
 
-namespace hydro {
+namespace hydro::process {
 
 class CountedWarning {
  public:
@@ -19,7 +19,7 @@ class CountedWarning {
   // To be called often with the count so far. Where it has grown it raises the fault at `faults`, whose text
   // is `describe(count)`; it never zeroes a voltage. Cheap while nothing is counted.
   template <class Describe, class Faults>
-  void Update(int64_t count, Clock::TimePoint now, Describe&& describe, Faults& faults) {
+  void Update(int64_t count, bus::Clock::TimePoint now, Describe&& describe, Faults& faults) {
     if (count == count_ && !active_) return;
     if (count != count_) {
       count_ = count;
@@ -37,7 +37,7 @@ class CountedWarning {
   const std::string code_;
   int64_t count_ = 0;
   bool active_ = false;
-  Clock::TimePoint grew_{};
+  bus::Clock::TimePoint grew_{};
 };
 
-}  // namespace hydro
+}  // namespace hydro::process

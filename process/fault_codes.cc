@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 
-namespace hydro {
+namespace hydro::process {
 namespace {
 
 constexpr std::array kCodes{
@@ -69,4 +69,4 @@ bool IsWarning(std::string_view code) {
   });
 }
 
-}  // namespace hydro
+}  // namespace hydro::process

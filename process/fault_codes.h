@@ -5,7 +5,7 @@
 #include <span>
 #include <string_view>
 
-namespace hydro {
+namespace hydro::process {
 
 enum class FaultEffect {
   kZeroVolts,  // at once
@@ -26,4 +26,4 @@ bool ZeroesVoltage(std::string_view code);
 // True when `code` is known to be a warning only.
 bool IsWarning(std::string_view code);
 
-}  // namespace hydro
+}  // namespace hydro::process

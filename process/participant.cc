@@ -7,7 +7,7 @@
 
 #include "bus/session.h"
 
-namespace hydro {
+namespace hydro::process {
 namespace {
 
 constexpr auto kAnnouncementPeriod = std::chrono::milliseconds(100);
@@ -20,13 +20,14 @@ std::string HostName() {
 
 }  // namespace
 
-Participant::Participant(Bus& bus, Clock& clock, const Channels& channels, const std::string& role)
+Participant::Participant(bus::Bus& bus, bus::Clock& clock, const bus::Channels& channels,
+                         const std::string& role)
     : bus_(bus),
       clock_(clock),
       channels_(channels),
       role_(role),
       host_(HostName()),
-      session_(SessionOn(clock)),
+      session_(bus::SessionOn(clock)),
       undecodable_("undecodable_message"),
       unsent_("unsent_message"),
       statistics_(role, host_, session_, clock.Now()) {
@@ -178,8 +179,8 @@ int Participant::Leave(const std::string& failure) {
     loop_statistics_t total = statistics_.Total(clock_.Now());
     total.utime = clock_.Utime();
     bus_.Publish(channels_.loop_statistics, total);
-    for (int i = 0; i < kLoopQuantities; ++i) {
-      Publish(statistics_.TotalHistogram(static_cast<LoopQuantity>(i), clock_.Now()));
+    for (int i = 0; i < timing::kLoopQuantities; ++i) {
+      Publish(statistics_.TotalHistogram(static_cast<timing::LoopQuantity>(i), clock_.Now()));
     }
   }
   const bool run_failed = stop_ && stop_->exit_code != 0;
@@ -189,4 +190,4 @@ int Participant::Leave(const std::string& failure) {
   return failed ? 1 : 0;
 }
 
-}  // namespace hydro
+}  // namespace hydro::process

@@ -18,13 +18,13 @@
 #include "process/refusal_watch.h"
 #include "timing/loop_statistics.h"
 
-namespace hydro {
+namespace hydro::process {
 
 class Participant {
  public:
   // `role`: plant, driver, pressure_ctrl, position_ctrl or logger. Subscribes to HYDRO_STOP and
   // HYDRO_PROCESS_STATUS.
-  Participant(Bus& bus, Clock& clock, const Channels& channels, const std::string& role);
+  Participant(bus::Bus& bus, bus::Clock& clock, const bus::Channels& channels, const std::string& role);
 
   const std::string& role() const { return role_; }
   int64_t session() const { return session_; }
@@ -68,10 +68,10 @@ class Participant {
   // `failure`: why this process alone failed; empty when it did not.
   int Leave(const std::string& failure = "");
 
-  LoopStatistics& statistics() { return statistics_; }
-  Bus& bus() { return bus_; }
-  const Clock& clock() const { return clock_; }
-  const Channels& channels() const { return channels_; }
+  timing::LoopStatistics& statistics() { return statistics_; }
+  bus::Bus& bus() { return bus_; }
+  const bus::Clock& clock() const { return clock_; }
+  const bus::Channels& channels() const { return channels_; }
 
  private:
   void PublishFault(const fault_t& fault);
@@ -79,9 +79,9 @@ class Participant {
   void WatchRefusals();
   void Publish(loop_histogram_t* histogram);
 
-  Bus& bus_;
-  Clock& clock_;
-  Channels channels_;
+  bus::Bus& bus_;
+  bus::Clock& clock_;
+  bus::Channels channels_;
   std::string role_;
   std::string host_;
   int64_t session_;
@@ -96,8 +96,8 @@ class Participant {
   CountedWarning unsent_;
   RefusalWatch refusals_;
   std::optional<stop_t> stop_;
-  Clock::TimePoint next_announcement_;
-  LoopStatistics statistics_;
+  bus::Clock::TimePoint next_announcement_;
+  timing::LoopStatistics statistics_;
 };
 
-}  // namespace hydro
+}  // namespace hydro::process

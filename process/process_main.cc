@@ -12,21 +12,21 @@
 #include "process/words.h"
 #include "timing/real_time.h"
 
-namespace hydro {
+namespace hydro::process {
 namespace {
 
-const ProcessSection& SectionOf(const StackConfig& config, const std::string& program) {
-  static const ProcessSection kNone;
-  for (const ProcessSection& section : config.processes) {
+const settings::ProcessSection& SectionOf(const settings::StackConfig& config, const std::string& program) {
+  static const settings::ProcessSection kNone;
+  for (const settings::ProcessSection& section : config.processes) {
     if (section.program == program) return section;
   }
   return kNone;
 }
 
 // Who can reach the group can drive the actuator: the process that does what commands say, says so.
-void WarnOfOpenNetwork(const std::string& program, const BusSection& bus) {
+void WarnOfOpenNetwork(const std::string& program, const settings::BusSection& bus) {
   const bool obeys = program == "hydro-plant" || program == "hydro-driver";
-  const int ttl = ParseUdpmUrl(bus.url).ttl;
+  const int ttl = bus::ParseUdpmUrl(bus.url).ttl;
   if (!obeys || ttl == 0 || !bus.key_file.empty()) return;
   spdlog::warn(
       "bus.url has ttl={} and there is no bus.key_file: whoever reaches this network can command the motor "
@@ -37,9 +37,9 @@ void WarnOfOpenNetwork(const std::string& program, const BusSection& bus) {
 // --log of a process that has other work: a log that cannot be written any more must not end that work.
 class Recording {
  public:
-  void Open(const std::string& file) { writer_ = std::make_unique<LogWriter>(file, Opening::kDirect); }
+  void Open(const std::string& file) { writer_ = std::make_unique<log::LogWriter>(file, Opening::kDirect); }
 
-  void Add(const RawMessage& message) {
+  void Add(const bus::RawMessage& message) {
     if (!writer_ || message.channel.empty()) return;
     Try([&] {
       writer_->Append(message.channel, message.data, static_cast<size_t>(message.size),
@@ -70,39 +70,40 @@ class Recording {
     }
   }
 
-  std::unique_ptr<LogWriter> writer_;
+  std::unique_ptr<log::LogWriter> writer_;
   std::chrono::steady_clock::time_point flushed_;
   bool failed_ = false;
 };
 
 }  // namespace
 
-int RunProcess(const std::string& program, const CommonOptions& options, const ProcessBody& body) {
-  return RunProgram(program, [&] {
+int RunProcess(const std::string& program, const settings::CommonOptions& options, const ProcessBody& body) {
+  return settings::RunProgram(program, [&] {
     const Words words(program);  // on stderr: stdout is for results
-    const StackConfig config = LoadStackConfig(options.config, options.overrides);
-    CheckKeepsInputs(options.log, config);
+    const settings::StackConfig config = settings::LoadStackConfig(options.config, options.overrides);
+    settings::CheckKeepsInputs(options.log, config);
     CatchStopSignals();
-    const ProcessSection& section = SectionOf(config, program);
-    RealTimeRequest request;
+    const settings::ProcessSection& section = SectionOf(config, program);
+    timing::RealTimeRequest request;
     request.priority = section.priority;
     request.cpu = section.cpu;
     request.lock_memory = section.lock_memory;
-    ApplyRealTime(request);
-    UdpmBus bus(config.bus.url,
-                MakeAuthenticator(config.bus.resolved_key_file, Channels(config.bus.channel_suffix)),
-                Receiving::kDirect);
+    timing::ApplyRealTime(request);
+    bus::UdpmBus bus(
+        config.bus.url,
+        bus::MakeAuthenticator(config.bus.resolved_key_file, bus::Channels(config.bus.channel_suffix)),
+        bus::Receiving::kDirect);
     WarnOfOpenNetwork(program, config.bus);
     if (const std::string hint = bus.receive_buffer_hint(); !hint.empty()) spdlog::warn("{}", hint);
     Recording recording;
     if (!options.log.empty()) {
       recording.Open(options.log);
-      bus.SubscribeAll([&recording](const RawMessage& message) { recording.Add(message); });
+      bus.SubscribeAll([&recording](const bus::RawMessage& message) { recording.Add(message); });
     }
-    WallClock clock;
+    bus::WallClock clock;
     const int exit_code = body(bus, clock, config);
     return recording.Close() ? exit_code : 1;
   });
 }
 
-}  // namespace hydro
+}  // namespace hydro::process

@@ -4,7 +4,7 @@
 
 #include <chrono>
 
-namespace hydro {
+namespace hydro::process {
 namespace {
 
 using namespace std::chrono_literals;
@@ -13,7 +13,7 @@ constexpr auto kQuiet = 1s;
 
 }  // namespace
 
-RefusalWatch::News RefusalWatch::Observe(const RefusedMessages& refused, Clock::TimePoint now) {
+RefusalWatch::News RefusalWatch::Observe(const bus::RefusedMessages& refused, bus::Clock::TimePoint now) {
   if (refused.total() == newest_.total()) {
     if (!last_ || now - *last_ < kQuiet) return News::kNone;
     last_.reset();
@@ -29,16 +29,16 @@ RefusalWatch::News RefusalWatch::Observe(const RefusedMessages& refused, Clock::
 
 std::string RefusalWatch::Text() const {
   std::string reasons;
-  const auto add = [&](int64_t RefusedMessages::*reason, const char* says) {
+  const auto add = [&](int64_t bus::RefusedMessages::*reason, const char* says) {
     const int64_t count = newest_.*reason - before_.*reason;
     if (count > 0) reasons += fmt::format("{}{} {}", reasons.empty() ? "" : ", ", count, says);
   };
-  add(&RefusedMessages::unsealed, "without a seal");
-  add(&RefusedMessages::wrong_seal, "sealed with another key or changed on the way");
-  add(&RefusedMessages::repeated, "played again or overtaken");
-  add(&RefusedMessages::unknown_sender, "recorded in another run");
+  add(&bus::RefusedMessages::unsealed, "without a seal");
+  add(&bus::RefusedMessages::wrong_seal, "sealed with another key or changed on the way");
+  add(&bus::RefusedMessages::repeated, "played again or overtaken");
+  add(&bus::RefusedMessages::unknown_sender, "recorded in another run");
   return fmt::format("refused {} message{} not of this stack ({}), the last on {} (bus.key_file)", count_,
                      count_ == 1 ? "" : "s", reasons, newest_.last_channel);
 }
 
-}  // namespace hydro
+}  // namespace hydro::process

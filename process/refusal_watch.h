@@ -8,7 +8,7 @@
 #include "bus/bus.h"
 #include "bus/clock.h"
 
-namespace hydro {
+namespace hydro::process {
 
 // Pure: counts and time are passed in. A warning: nothing that an intruder sends changes what the stack does.
 class RefusalWatch {
@@ -18,7 +18,7 @@ class RefusalWatch {
   enum class News { kNone, kBegins, kEnds };
 
   // It begins with the first message that is refused, and ends when none has been for a second.
-  News Observe(const RefusedMessages& refused, Clock::TimePoint now);
+  News Observe(const bus::RefusedMessages& refused, bus::Clock::TimePoint now);
 
   // Messages refused since it began; after it has ended, all of that time.
   int64_t count() const { return count_; }
@@ -27,10 +27,10 @@ class RefusalWatch {
   std::string Text() const;
 
  private:
-  RefusedMessages before_;  // when it began
-  RefusedMessages newest_;
-  std::optional<Clock::TimePoint> last_;  // while it lasts: when the newest was refused
+  bus::RefusedMessages before_;  // when it began
+  bus::RefusedMessages newest_;
+  std::optional<bus::Clock::TimePoint> last_;  // while it lasts: when the newest was refused
   int64_t count_ = 0;
 };
 
-}  // namespace hydro
+}  // namespace hydro::process

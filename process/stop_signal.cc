@@ -3,7 +3,7 @@
 #include <csignal>
 #include <initializer_list>
 
-namespace hydro {
+namespace hydro::process {
 namespace {
 
 volatile std::sig_atomic_t caught_signal = 0;
@@ -23,4 +23,4 @@ void CatchStopSignals() {
 
 int StopSignal() { return caught_signal; }
 
-}  // namespace hydro
+}  // namespace hydro::process

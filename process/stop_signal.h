@@ -1,7 +1,7 @@
 // SIGINT and SIGTERM as a flag that loops look at.
 #pragma once
 
-namespace hydro {
+namespace hydro::process {
 
 // From now on SIGINT, SIGTERM and SIGHUP set the flag instead of ending the process, and interrupt a waiting
 // HandleUntil(). Call once, before threads are started.
@@ -10,4 +10,4 @@ void CatchStopSignals();
 // The signal that was caught; 0 when none was.
 int StopSignal();
 
-}  // namespace hydro
+}  // namespace hydro::process

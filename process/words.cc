@@ -18,7 +18,7 @@
 
 #include "base/text_file.h"
 
-namespace hydro {
+namespace hydro::process {
 namespace {
 
 using namespace std::chrono_literals;
@@ -84,4 +84,4 @@ Words::~Words() {
   spdlog::shutdown();  // writes what waits
 }
 
-}  // namespace hydro
+}  // namespace hydro::process

@@ -4,7 +4,7 @@
 #include <memory>
 #include <string>
 
-namespace hydro {
+namespace hydro::process {
 
 // While it lives, spdlog's default logger writes to stderr from a thread of its own: a terminal that is
 // stopped, or a pipe that nobody empties, holds up that thread and not the loop. Of more than 256 lines that
@@ -25,4 +25,4 @@ class Words {
   std::shared_ptr<StderrSink> sink_;
 };
 
-}  // namespace hydro
+}  // namespace hydro::process

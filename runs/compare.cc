@@ -8,7 +8,7 @@
 #include "bus/channels.h"
 #include "runs/message_order.h"
 
-namespace hydro {
+namespace hydro::runs {
 namespace {
 
 struct Difference {
@@ -70,7 +70,7 @@ void CompareChannel(const std::string& channel, const std::vector<Message>& all_
 
 std::optional<std::string> FirstDifference(const RunMessages& a, const std::string& name_a,
                                            const RunMessages& b, const std::string& name_b) {
-  const Channels channels;
+  const bus::Channels channels;
   std::optional<Difference> first;
   CompareChannel(channels.state, a.states, name_a, b.states, name_b, first);
   CompareChannel(channels.motor_command, a.motor_commands, name_a, b.motor_commands, name_b, first);
@@ -81,4 +81,4 @@ std::optional<std::string> FirstDifference(const RunMessages& a, const std::stri
   return "differ at tick " + std::to_string(first->tick) + ": " + first->text;
 }
 
-}  // namespace hydro
+}  // namespace hydro::runs

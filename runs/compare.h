@@ -6,7 +6,7 @@
 
 #include "runs/run_messages.h"
 
-namespace hydro {
+namespace hydro::runs {
 
 // The first place where two runs differ, as one line: "differ at tick 812: HYDRO_STATE.p2: 101.25 (a) and
 // 101.26 (b)", or which message is missing where; empty when they are identical. "First" is the lowest tick;
@@ -19,4 +19,4 @@ namespace hydro {
 std::optional<std::string> FirstDifference(const RunMessages& a, const std::string& name_a,
                                            const RunMessages& b, const std::string& name_b);
 
-}  // namespace hydro
+}  // namespace hydro::runs

@@ -7,7 +7,7 @@
 #include "base/saturating.h"
 #include "runs/run_config.h"
 
-namespace hydro {
+namespace hydro::runs {
 namespace {
 
 constexpr double kKilopascalsPerPsi = 6.894757293168361;
@@ -49,7 +49,7 @@ ChannelInfo ChannelOf(const ChannelSummary& summary, const RunLog& log) {
   info.summary = summary;
   const double seconds = Seconds(summary.first_utime, summary.last_utime);
   if (summary.events > 1 && seconds > 0) info.rate_hz = static_cast<double>(summary.events - 1) / seconds;
-  const Channels channels(log.suffix);
+  const bus::Channels channels(log.suffix);
   const RunMessages& messages = log.messages;
   if (summary.channel == channels.state) SequenceCount(messages.states).Fill(info);
   if (summary.channel == channels.motor_command) SequenceCount(messages.motor_commands).Fill(info);
@@ -214,4 +214,4 @@ LogInfo Summarise(const RunLog& log, bool si) {
   return info;
 }
 
-}  // namespace hydro
+}  // namespace hydro::runs

@@ -8,7 +8,7 @@
 
 #include "runs/run_log.h"
 
-namespace hydro {
+namespace hydro::runs {
 
 // How complete the messages of one channel are, by the sequence numbers of each sender.
 struct ChannelInfo {
@@ -85,4 +85,4 @@ std::string InfoText(const LogInfo& info);
 // The same as JSON.
 std::string InfoJson(const LogInfo& info);
 
-}  // namespace hydro
+}  // namespace hydro::runs

@@ -2,7 +2,7 @@
 
 #include "runs/info.h"
 
-namespace hydro {
+namespace hydro::runs {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -123,4 +123,4 @@ std::string InfoJson(const LogInfo& info) {
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
-}  // namespace hydro
+}  // namespace hydro::runs

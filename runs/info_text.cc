@@ -5,7 +5,7 @@
 #include "base/number_text.h"
 #include "runs/info.h"
 
-namespace hydro {
+namespace hydro::runs {
 namespace {
 
 [[gnu::format(printf, 2, 3)]] void Append(std::string& text, const char* format, ...) {
@@ -125,4 +125,4 @@ std::string InfoText(const LogInfo& info) {
   return text;
 }
 
-}  // namespace hydro
+}  // namespace hydro::runs

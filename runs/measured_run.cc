@@ -13,7 +13,7 @@
 #include "settings/toml/section_reader.h"
 #include "settings/toml/toml_document.h"
 
-namespace hydro {
+namespace hydro::runs {
 namespace {
 
 struct SignalName {
@@ -39,8 +39,8 @@ constexpr std::array<SignalName, 8> kSignals = {{
     {&MeasuredRun::p2, "p2", "p2_psi", "p2_psi", "p2_resolution_psi"},
 }};
 
-const std::vector<std::pair<std::string, Shaft>> kShafts = {
-    {"clamped", Shaft::kClamped}, {"free", Shaft::kFree}, {"driven", Shaft::kDriven}};
+const std::vector<std::pair<std::string, model::Shaft>> kShafts = {
+    {"clamped", model::Shaft::kClamped}, {"free", model::Shaft::kFree}, {"driven", model::Shaft::kDriven}};
 
 bool AllMissing(const std::vector<double>& values) {
   return std::all_of(values.begin(), values.end(), [](double value) { return std::isnan(value); });
@@ -48,13 +48,13 @@ bool AllMissing(const std::vector<double>& values) {
 
 // A column of `table` in our units.
 struct Source {
-  const Column* column = nullptr;
+  const tables::Column* column = nullptr;
   double scale = 1;
   double offset = 0;
   double delay = 0;
 };
 
-std::vector<double> Values(const Table& table, const Source& source) {
+std::vector<double> Values(const tables::Table& table, const Source& source) {
   std::vector<double> values;
   values.reserve(table.rows());
   for (const double theirs : source.column->values) {
@@ -67,7 +67,7 @@ std::vector<double> Values(const Table& table, const Source& source) {
   return values;
 }
 
-std::vector<double> Times(const Table& table, const Source& source) {
+std::vector<double> Times(const tables::Table& table, const Source& source) {
   std::vector<double> times = Values(table, source);
   for (size_t i = 0; i < times.size(); ++i) {
     if (!std::isnan(times[i]) && (i == 0 || times[i] > times[i - 1])) continue;
@@ -83,7 +83,7 @@ std::vector<double> Times(const Table& table, const Source& source) {
 }
 
 // The command, held where a value is missing.
-std::vector<double> Command(const Table& table, const Source& source) {
+std::vector<double> Command(const tables::Table& table, const Source& source) {
   std::vector<double> command = Values(table, source);
   if (std::isnan(command.front())) {
     throw InputError(table.Place(0, source.column->name) +
@@ -97,22 +97,23 @@ std::vector<double> Command(const Table& table, const Source& source) {
 }
 
 // What a key of [columns] may name.
-std::string ColumnsOf(const Table& table) {
+std::string ColumnsOf(const tables::Table& table) {
   std::vector<std::string> names;
-  for (const Column& column : table.columns) names.push_back(column.name);
+  for (const tables::Column& column : table.columns) names.push_back(column.name);
   return "a column of " + table.file + ": " + QuotedList(names);
 }
 
 // One entry of [columns]: a name, or { column, scale, offset }.
-std::optional<Source> ReadSource(SectionReader& columns, const std::string& key, const Table& table) {
-  const TomlNode* node = columns.Take(key);
+std::optional<Source> ReadSource(settings::SectionReader& columns, const std::string& key,
+                                 const tables::Table& table) {
+  const settings::TomlNode* node = columns.Take(key);
   if (node == nullptr) return std::nullopt;
   Source source;
   std::string name;
-  if (node->is(TomlNode::Kind::kString)) {
+  if (node->is(settings::TomlNode::Kind::kString)) {
     name = node->text;
-  } else if (node->is(TomlNode::Kind::kTable)) {
-    SectionReader section(*node, "columns." + key);
+  } else if (node->is(settings::TomlNode::Kind::kTable)) {
+    settings::SectionReader section(*node, "columns." + key);
     section.Require("column", "the name of a column of " + table.file);
     section.Text("column", &name);
     section.Number("scale", &source.scale);
@@ -131,13 +132,13 @@ std::optional<Source> ReadSource(SectionReader& columns, const std::string& key,
   source.column = table.Find(name);
   if (source.column == nullptr) {
     std::vector<std::string> names;
-    for (const Column& column : table.columns) names.push_back(column.name);
+    for (const tables::Column& column : table.columns) names.push_back(column.name);
     throw columns.Error(key, Quoted(name), ColumnsOf(table) + DidYouMean(name, names));
   }
   return source;
 }
 
-void ReadColumns(SectionReader columns, const Table& table, MeasuredRun* run) {
+void ReadColumns(settings::SectionReader columns, const tables::Table& table, MeasuredRun* run) {
   columns.Require("time", ColumnsOf(table));
   columns.Require("voltage", ColumnsOf(table));
   const std::optional<Source> time = ReadSource(columns, "time", table);
@@ -164,8 +165,9 @@ void ReadColumns(SectionReader columns, const Table& table, MeasuredRun* run) {
   }
 }
 
-void ReadNoise(SectionReader noise, MeasuredRun* run) {
-  for (const SignalName& name : kSignals) noise.Number(name.ours, &(run->*name.signal).noise, kPositive);
+void ReadNoise(settings::SectionReader noise, MeasuredRun* run) {
+  for (const SignalName& name : kSignals)
+    noise.Number(name.ours, &(run->*name.signal).noise, settings::kPositive);
   noise.Finish();
   for (const SignalName& name : kSignals) {
     const MeasuredSignal& signal = run->*name.signal;
@@ -176,36 +178,36 @@ void ReadNoise(SectionReader noise, MeasuredRun* run) {
 }
 
 MeasuredRun ReadTableRun(const std::string& file) {
-  const Table table = ReadTable(file);
+  const tables::Table table = tables::ReadTable(file);
   const std::string sidecar = std::filesystem::path(file).replace_extension(".toml").string();
   if (!std::filesystem::exists(sidecar)) {
     throw InputError(file + ": found no " + sidecar +
                      " beside it, allowed a table with a sidecar that has shaft and [columns] with time and "
                      "voltage");
   }
-  TomlNode root = ParseToml(ReadTextFile(sidecar), sidecar);
+  settings::TomlNode root = settings::ParseToml(ReadTextFile(sidecar), sidecar);
   root.place = sidecar;
 
   MeasuredRun run;
   run.file = file;
   run.rows_are_lines = table.rows_are_lines;
   run.name = std::filesystem::path(file).stem().string();
-  SectionReader document(root, "");
+  settings::SectionReader document(root, "");
   document.Text("name", &run.name);
   document.Require("shaft", "\"clamped\", \"free\" or \"driven\"");
   document.Choice("shaft", kShafts, &run.shaft);
   const bool angle = document.Number("arm_angle_rad", &run.arm_angle_rad);
   document.Boolean("bypass", &run.bypass);
-  SectionReader columns = document.Section("columns");
-  SectionReader noise = document.Section("noise");
+  settings::SectionReader columns = document.Section("columns");
+  settings::SectionReader noise = document.Section("noise");
   document.Finish();
-  if (angle && run.shaft != Shaft::kClamped) {
+  if (angle && run.shaft != model::Shaft::kClamped) {
     throw document.Error("arm_angle_rad", "it with a shaft that is not clamped",
                          "arm_angle_rad with shaft = \"clamped\" only");
   }
   ReadColumns(columns, table, &run);
   ReadNoise(noise, &run);
-  if (run.shaft == Shaft::kDriven && !run.arm_angle.measured()) {
+  if (run.shaft == model::Shaft::kDriven && !run.arm_angle.measured()) {
     throw document.Error("shaft", "\"driven\" without columns.arm_angle",
                          "\"driven\" with the measured arm angle, which is imposed on the model");
   }
@@ -213,11 +215,11 @@ MeasuredRun ReadTableRun(const std::string& file) {
 }
 
 // What the simulated sensors are said to add, rounding included.
-std::optional<double> SensorNoise(SectionReader& noise, const SignalName& name) {
+std::optional<double> SensorNoise(settings::SectionReader& noise, const SignalName& name) {
   if (name.standard_deviation == nullptr) return std::nullopt;
   double standard_deviation = 0, resolution = 0;
-  noise.Number(name.standard_deviation, &standard_deviation, kNotNegative);
-  noise.Number(name.resolution, &resolution, kNotNegative);
+  noise.Number(name.standard_deviation, &standard_deviation, settings::kNotNegative);
+  noise.Number(name.resolution, &resolution, settings::kNotNegative);
   const double sum = std::hypot(standard_deviation, resolution / std::sqrt(12.0));
   return sum > 0 ? std::optional<double>(sum) : std::nullopt;
 }
@@ -240,11 +242,12 @@ std::string MeasuredRun::Place(size_t sample) const {
   return file + (rows_are_lines ? ": line " + std::to_string(row + 2) : ": row " + std::to_string(row + 1));
 }
 
-MeasuredRun RunOfExport(const Table& table, const std::string& config_text, const std::string& model_text) {
+MeasuredRun RunOfExport(const tables::Table& table, const std::string& config_text,
+                        const std::string& model_text) {
   const std::string place = table.file + " (configuration)";
-  TomlNode root = ParseToml(config_text, place);
+  settings::TomlNode root = settings::ParseToml(config_text, place);
   root.place = place;
-  SectionReader document(root, "");  // not finished: only what concerns the measurement is read
+  settings::SectionReader document(root, "");  // not finished: only what concerns the measurement is read
   if (!document.Has("model")) {
     throw document.Error("model", "nothing",
                          "a description of how the shaft was held; give a table (csv, mat) with a sidecar");
@@ -255,15 +258,15 @@ MeasuredRun RunOfExport(const Table& table, const std::string& config_text, cons
   run.rows_are_lines = table.rows_are_lines;
   run.name = std::filesystem::path(table.file).stem().string();
   run.model_text = model_text;
-  SectionReader model = document.Section("model");
+  settings::SectionReader model = document.Section("model");
   model.Choice("shaft", kShafts, &run.shaft);
   model.Number("arm_angle_rad", &run.arm_angle_rad);
   model.Boolean("bypass", &run.bypass);
 
   run.time = Times(table, {table.Find("time_s")});
-  SectionReader noise = document.Section("noise");
+  settings::SectionReader noise = document.Section("noise");
   for (const SignalName& name : kSignals) {
-    const Column* column = table.Find(name.exported);
+    const tables::Column* column = table.Find(name.exported);
     if (column == nullptr || AllMissing(column->values)) continue;
     MeasuredSignal& signal = run.*name.signal;
     signal.values = name.signal == &MeasuredRun::voltage ? Command(table, {column}) : Values(table, {column});
@@ -272,7 +275,7 @@ MeasuredRun RunOfExport(const Table& table, const std::string& config_text, cons
   if (!run.voltage.measured()) {
     throw InputError(table.file + ": found no voltage, allowed a run with the commands of the motor");
   }
-  if (run.shaft == Shaft::kDriven && !run.arm_angle.measured()) {
+  if (run.shaft == model::Shaft::kDriven && !run.arm_angle.measured()) {
     throw InputError(table.file + ": found a driven shaft without arm angle, allowed one with it");
   }
   return run;
@@ -284,7 +287,7 @@ MeasuredRun ReadMeasuredRun(const std::string& file) {
     throw InputError(file + ": found a sidecar, allowed the run itself: a log, or the csv or mat beside it");
   }
   const RunLog log = ReadRunLog(file);
-  Table table = ExportRun(log);
+  tables::Table table = ExportRun(log);
   table.file = file;
   if (log.descriptions.empty()) {
     throw InputError(file +
@@ -295,4 +298,4 @@ MeasuredRun ReadMeasuredRun(const std::string& file) {
   return RunOfExport(table, description.config_text, description.model_text);
 }
 
-}  // namespace hydro
+}  // namespace hydro::runs

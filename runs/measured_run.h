@@ -11,7 +11,7 @@
 #include "model/description.h"
 #include "tables/table.h"
 
-namespace hydro {
+namespace hydro::runs {
 
 struct MeasuredSignal {
   std::vector<double> values;   // one a sample, in our units; NaN: missing there. Empty: not measured
@@ -26,7 +26,7 @@ struct MeasuredRun {
   std::string file;             // as given
   bool rows_are_lines = false;  // of a CSV: samples are named by the file's line
 
-  Shaft shaft = Shaft::kFree;
+  model::Shaft shaft = model::Shaft::kFree;
   double arm_angle_rad = 0;  // kClamped: where the arm is held
   bool bypass = false;       // the valve between the two sides is open: p1 = p2
 
@@ -63,6 +63,7 @@ MeasuredRun ReadMeasuredRun(const std::string& file);
 
 // The run that a table of hydro-log export (runs/run_table.h) holds; `config_text` is the configuration it
 // was run with: shaft and bypass are taken from it, and what noise the sensors are said to have.
-MeasuredRun RunOfExport(const Table& table, const std::string& config_text, const std::string& model_text);
+MeasuredRun RunOfExport(const tables::Table& table, const std::string& config_text,
+                        const std::string& model_text);
 
-}  // namespace hydro
+}  // namespace hydro::runs

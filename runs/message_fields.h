@@ -5,7 +5,7 @@
 
 #include "runs/run_messages.h"
 
-namespace hydro {
+namespace hydro::runs {
 
 template <class Message, class Value>
 struct MessageField {
@@ -75,4 +75,4 @@ constexpr auto FieldsOf(const fault_t*) {
   };
 }
 
-}  // namespace hydro
+}  // namespace hydro::runs

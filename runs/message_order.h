@@ -10,7 +10,7 @@
 
 #include "runs/message_fields.h"
 
-namespace hydro {
+namespace hydro::runs {
 
 // Integers and strings by value, doubles by bits: a total order in which only the same bits are equal.
 inline std::strong_ordering CompareField(double a, double b) {
@@ -50,4 +50,4 @@ std::vector<const Message*> InOrder(const std::vector<Message>& messages) {
   return ordered;
 }
 
-}  // namespace hydro
+}  // namespace hydro::runs

@@ -7,7 +7,7 @@
 #include "base/input_error.h"
 #include "base/number_text.h"
 
-namespace hydro {
+namespace hydro::runs {
 namespace {
 
 toml::table Parse(const std::string& text, const std::string& file, const char* what) {
@@ -76,4 +76,4 @@ std::string ModelName(const run_description_t& description, const std::string& f
   return model["name"].value_or(std::string());
 }
 
-}  // namespace hydro
+}  // namespace hydro::runs

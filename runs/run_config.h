@@ -8,7 +8,7 @@
 
 #include "hydro/run_description_t.hpp"
 
-namespace hydro {
+namespace hydro::runs {
 
 // The keys of the configuration as "section.key" with their values as TOML, sorted by key; empty when it
 // has none. `file` names the log in messages. Throws InputError when it is not TOML.
@@ -22,4 +22,4 @@ int CommandDelayTicks(const run_description_t& description, const std::string& f
 // The name that the model's text gives itself; empty when it has none.
 std::string ModelName(const run_description_t& description, const std::string& file);
 
-}  // namespace hydro
+}  // namespace hydro::runs

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstddef>
 
-namespace hydro {
+namespace hydro::runs {
 namespace {
 
 size_t Nearest(const std::vector<double>& time, double at) {
@@ -41,4 +41,4 @@ bool RemoveDelays(const std::vector<SignalDelay>& delays, MeasuredRun* run) {
   return true;
 }
 
-}  // namespace hydro
+}  // namespace hydro::runs

@@ -6,7 +6,7 @@
 
 #include "runs/measured_run.h"
 
-namespace hydro {
+namespace hydro::runs {
 
 // A signal of a run and by how much it was recorded late, s (early: below 0).
 using SignalDelay = std::pair<MeasuredSignal MeasuredRun::*, double>;
@@ -16,4 +16,4 @@ using SignalDelay = std::pair<MeasuredSignal MeasuredRun::*, double>;
 // ends. False, and the run as it was, when fewer than two samples would be left.
 bool RemoveDelays(const std::vector<SignalDelay>& delays, MeasuredRun* run);
 
-}  // namespace hydro
+}  // namespace hydro::runs

@@ -7,7 +7,7 @@
 #include "runs/run_config.h"
 #include "runs/run_table.h"
 
-namespace hydro {
+namespace hydro::runs {
 namespace {
 
 constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
@@ -37,7 +37,7 @@ class Cursor {
 // States of one run, in order of ticks, each tick once.
 std::vector<const state_t*> OrderedStates(const RunLog& log) {
   if (log.messages.states.empty()) {
-    throw InputError(log.file + ": found no message on " + Channels(log.suffix).state +
+    throw InputError(log.file + ": found no message on " + bus::Channels(log.suffix).state +
                      "; a table needs at least one");
   }
   std::set<int64_t> sessions;
@@ -46,12 +46,12 @@ std::vector<const state_t*> OrderedStates(const RunLog& log) {
   for (size_t k = 1; k < states.size(); ++k) {
     if (states[k]->tick != states[k - 1]->tick) continue;
     throw InputError(log.file + ": found two different states of tick " + std::to_string(states[k]->tick) +
-                     " on " + Channels(log.suffix).state + ", from " + std::to_string(sessions.size()) +
+                     " on " + bus::Channels(log.suffix).state + ", from " + std::to_string(sessions.size()) +
                      " sender(s); one run by one sender is needed");
   }
   if (sessions.size() > 1) {
     throw InputError(log.file + ": found states from " + std::to_string(sessions.size()) + " senders on " +
-                     Channels(log.suffix).state + "; one run by one sender is needed");
+                     bus::Channels(log.suffix).state + "; one run by one sender is needed");
   }
   return states;
 }
@@ -83,11 +83,11 @@ double PressureReference(const motor_command_t* motor, const pressure_command_t*
 
 }  // namespace
 
-Table ExportRun(const RunLog& log) {
+tables::Table ExportRun(const RunLog& log) {
   const std::vector<const state_t*> states = OrderedStates(log);
   const int delay = log.descriptions.empty() ? 1 : CommandDelayTicks(log.descriptions.front(), log.file);
 
-  Table table;
+  tables::Table table;
   table.file = log.file;
   for (const char* name : kRunColumns) {
     table.columns.push_back({name, {}});
@@ -128,4 +128,4 @@ Table ExportRun(const RunLog& log) {
   return table;
 }
 
-}  // namespace hydro
+}  // namespace hydro::runs

@@ -11,15 +11,15 @@
 #include "log/log_writer.h"
 #include "runs/run_table.h"
 
-namespace hydro {
+namespace hydro::runs {
 namespace {
 
 constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 constexpr double kLatestTime = 1e12;              // s; in us it still fits the log's 64 bits
 constexpr double kLastTick = 9007199254740992.0;  // 2^53: above, a double does not hold every whole number
 
-void CheckColumns(const Table& table) {
-  for (const Column& column : table.columns) {
+void CheckColumns(const tables::Table& table) {
+  for (const tables::Column& column : table.columns) {
     if (std::find(kRunColumns.begin(), kRunColumns.end(), column.name) != kRunColumns.end()) continue;
     std::string allowed;
     for (const char* name : kRunColumns) allowed += (allowed.empty() ? "" : ", ") + std::string(name);
@@ -29,7 +29,7 @@ void CheckColumns(const Table& table) {
     throw InputError(table.file + ": found no column time_s; it is needed");
 }
 
-void CheckTimes(const Table& table, const std::vector<double>& times) {
+void CheckTimes(const tables::Table& table, const std::vector<double>& times) {
   for (size_t row = 0; row < times.size(); ++row) {
     const double time = times[row];
     if (!(std::abs(time) <= kLatestTime)) {
@@ -44,10 +44,10 @@ void CheckTimes(const Table& table, const std::vector<double>& times) {
   }
 }
 
-std::vector<int64_t> Ticks(const Table& table) {
+std::vector<int64_t> Ticks(const tables::Table& table) {
   std::vector<int64_t> ticks;
   ticks.reserve(table.rows());
-  const Column* column = table.Find("tick");
+  const tables::Column* column = table.Find("tick");
   for (size_t row = 0; row < table.rows(); ++row) {
     if (column == nullptr) {
       ticks.push_back(static_cast<int64_t>(row));
@@ -85,7 +85,7 @@ int64_t Utime(double time) { return std::llround(time * 1e6); }
 
 bool SameBits(double a, double b) { return std::bit_cast<uint64_t>(a) == std::bit_cast<uint64_t>(b); }
 
-run_description_t Describe(const Table& table, const std::string& version, double rate_hz) {
+run_description_t Describe(const tables::Table& table, const std::string& version, double rate_hz) {
   run_description_t description{};
   description.utime = 0;
   description.config_file = table.file;
@@ -99,14 +99,14 @@ run_description_t Describe(const Table& table, const std::string& version, doubl
 
 }  // namespace
 
-void ImportRun(const Table& table, const std::string& program_version, const std::string& log_file) {
+void ImportRun(const tables::Table& table, const std::string& program_version, const std::string& log_file) {
   CheckColumns(table);
   const std::vector<double>& times = table.Find("time_s")->values;
   CheckTimes(table, times);
   const std::vector<int64_t> ticks = Ticks(table);
 
   const auto value = [&table](const char* name) {
-    const Column* column = table.Find(name);
+    const tables::Column* column = table.Find(name);
     return [column](size_t row) { return column != nullptr ? column->values[row] : kMissing; };
   };
   const auto voltage = value("voltage_V");
@@ -120,8 +120,8 @@ void ImportRun(const Table& table, const std::string& program_version, const std
   const auto p2 = value("p2_psi");
   const bool has_voltage = table.Find("voltage_V") != nullptr;
 
-  LogWriter log(log_file, Opening::kTemporary);
-  const Channels channels;
+  log::LogWriter log(log_file, Opening::kTemporary);
+  const bus::Channels channels;
   run_description_t description = Describe(table, program_version, Rate(times, ticks));
   description.utime = Utime(times.front());
   log.AppendMessage(channels.run, description, description.utime);
@@ -186,4 +186,4 @@ void ImportRun(const Table& table, const std::string& program_version, const std
   log.Finish();
 }
 
-}  // namespace hydro
+}  // namespace hydro::runs

@@ -10,7 +10,7 @@
 #include "log/log_reader.h"
 #include "log/message_kinds.h"
 
-namespace hydro {
+namespace hydro::runs {
 namespace {
 
 std::string Hex(uint64_t value) {
@@ -20,10 +20,10 @@ std::string Hex(uint64_t value) {
 }
 
 // Where it is, what was found and what is allowed.
-std::string WhyUndecodable(const LogEvent& event, const MessageKind& kind) {
+std::string WhyUndecodable(const log::LogEvent& event, const log::MessageKind& kind) {
   const std::string place = "byte " + std::to_string(event.offset) + ", event " +
                             std::to_string(event.index) + " on " + std::string(event.channel) + ": ";
-  const uint64_t hash = event.size >= 8 ? LoadBigEndian64(event.data) : 0;
+  const uint64_t hash = event.size >= 8 ? log::LoadBigEndian64(event.data) : 0;
   if (event.size >= 8 && hash != static_cast<uint64_t>(kind.hash)) {
     return place + "found type hash " + Hex(hash) + "; allowed " + Hex(static_cast<uint64_t>(kind.hash)) +
            " (" + kind.type + " of this version)";
@@ -32,9 +32,9 @@ std::string WhyUndecodable(const LogEvent& event, const MessageKind& kind) {
 }
 
 // Counts events by channel; a damaged log is noticed here, before anything is decoded.
-void Summarise(LogReader& reader, RunLog& log) {
+void Summarise(log::LogReader& reader, RunLog& log) {
   std::map<std::string_view, ChannelSummary> channels;  // the names lie in the reader's file
-  LogEvent event;
+  log::LogEvent event;
   while (reader.Next(event)) {
     const auto [place, is_new] = channels.try_emplace(event.channel);
     ChannelSummary& channel = place->second;
@@ -55,8 +55,8 @@ void Summarise(LogReader& reader, RunLog& log) {
 std::set<std::string> SuffixesOf(const RunLog& log, bool of_state_only) {
   std::set<std::string> suffixes;
   for (const ChannelSummary& channel : log.channels) {
-    const MessageKind* kind = KindOfChannel(channel.channel);
-    if (kind == nullptr || (of_state_only && kind != &MessageKinds().front())) continue;
+    const log::MessageKind* kind = log::KindOfChannel(channel.channel);
+    if (kind == nullptr || (of_state_only && kind != &log::MessageKinds().front())) continue;
     suffixes.insert(channel.channel.substr(kind->channel.size()));
   }
   return suffixes;
@@ -90,18 +90,18 @@ RunLog ReadRunLog(const std::string& file, const std::optional<std::string>& suf
                   Undecodable undecodable) {
   RunLog log;
   log.file = file;
-  LogReader reader(file);
+  log::LogReader reader(file);
   log.bytes = reader.size();
   Summarise(reader, log);
   log.suffix = ChooseSuffix(log, suffix);
 
-  const Channels channels(log.suffix);
-  LogEvent event;
-  const auto leave_out = [&](const MessageKind& kind) {
+  const bus::Channels channels(log.suffix);
+  log::LogEvent event;
+  const auto leave_out = [&](const log::MessageKind& kind) {
     const std::string why = WhyUndecodable(event, kind);
     if (undecodable == Undecodable::kRefused) {
-      throw LogError(file + ": " + why + "; where others on that channel are, hydro-log repair " + file +
-                     " leaves such events out");
+      throw log::LogError(file + ": " + why + "; where others on that channel are, hydro-log repair " + file +
+                          " leaves such events out");
     }
     if (log.first_undecodable.empty()) log.first_undecodable = why;
     const auto channel =
@@ -112,16 +112,16 @@ RunLog ReadRunLog(const std::string& file, const std::optional<std::string>& suf
   // True when the event is on `channel`, and then it is in `messages` or left out.
   const auto keep = [&]<class Message>(const std::string& channel, std::vector<Message>& messages) {
     if (event.channel != channel) return false;
-    if (!DecodeAs(event, messages.emplace_back())) {
+    if (!log::DecodeAs(event, messages.emplace_back())) {
       messages.pop_back();
-      leave_out(*KindOfChannel(channel));
+      leave_out(*log::KindOfChannel(channel));
     }
     return true;
   };
   // Nobody asks for what is on these channels; only their count would be wrong.
   const auto count = [&](const std::string& channel) {
     if (event.channel != channel) return false;
-    const MessageKind& kind = *KindOfChannel(channel);
+    const log::MessageKind& kind = *log::KindOfChannel(channel);
     if (undecodable == Undecodable::kLeftOut && !kind.decodes(event)) leave_out(kind);
     return true;
   };
@@ -151,4 +151,4 @@ std::string DescribeUndecodable(const RunLog& log) {
          " of another type or version, or torn (" + list + "); the first: " + log.first_undecodable;
 }
 
-}  // namespace hydro
+}  // namespace hydro::runs

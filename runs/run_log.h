@@ -15,7 +15,7 @@
 #include "hydro/stop_t.hpp"
 #include "runs/run_messages.h"
 
-namespace hydro {
+namespace hydro::runs {
 
 // What a channel of a log holds, one of this stack's or not.
 struct ChannelSummary {
@@ -61,4 +61,4 @@ RunLog ReadRunLog(const std::string& file, const std::optional<std::string>& suf
 // One line for a person about the messages that were left out; empty when none was.
 std::string DescribeUndecodable(const RunLog& log);
 
-}  // namespace hydro
+}  // namespace hydro::runs

@@ -9,7 +9,7 @@
 #include "hydro/pressure_command_t.hpp"
 #include "hydro/state_t.hpp"
 
-namespace hydro {
+namespace hydro::runs {
 
 struct RunMessages {
   std::vector<state_t> states;
@@ -19,4 +19,4 @@ struct RunMessages {
   std::vector<fault_t> faults;
 };
 
-}  // namespace hydro
+}  // namespace hydro::runs

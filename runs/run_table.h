@@ -7,7 +7,7 @@
 #include "runs/run_log.h"
 #include "tables/table.h"
 
-namespace hydro {
+namespace hydro::runs {
 
 // The columns of every exported table, in order.
 inline constexpr std::array<const char*, 11> kRunColumns = {"time_s",
@@ -32,13 +32,13 @@ inline constexpr std::array<const char*, 11> kRunColumns = {"time_s",
 //   open loop.
 // - arm_ref_rad is the last arm reference's (of signal ARM_ANGLE) at this tick or before.
 // Throws InputError when the log has no state, or the states of more than one run.
-Table ExportRun(const RunLog& log);
+tables::Table ExportRun(const RunLog& log);
 
 // Writes the log that ExportRun() turns into the same table: for any subset of kRunColumns that has time_s,
 // the columns given come back bit by bit and the others empty (tick: the row number from 0).
 // `program_version` goes into the log's description. Events are received at time_s, so that lcm-logplayer
 // plays the log at the pace of the measurement. Throws InputError naming file, row and column: unknown
 // columns, no time_s, times that do not increase, ticks that are not increasing whole numbers; WriteError.
-void ImportRun(const Table& table, const std::string& program_version, const std::string& log_file);
+void ImportRun(const tables::Table& table, const std::string& program_version, const std::string& log_file);
 
-}  // namespace hydro
+}  // namespace hydro::runs

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace hydro {
+namespace hydro::runs {
 namespace {
 
 constexpr double kFinalTime = 0.1;  // s
@@ -36,4 +36,4 @@ StepResponse MeasureStep(const std::vector<double>& times, const std::vector<dou
   return step;
 }
 
-}  // namespace hydro
+}  // namespace hydro::runs

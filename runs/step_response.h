@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-namespace hydro {
+namespace hydro::runs {
 
 // The answer to one step of the reference, until the next step or the end of the run.
 struct StepResponse {
@@ -25,4 +25,4 @@ inline constexpr double kSettlingBand = 0.02;
 StepResponse MeasureStep(const std::vector<double>& times, const std::vector<double>& angles, size_t begin,
                          size_t end, double from, double to);
 
-}  // namespace hydro
+}  // namespace hydro::runs

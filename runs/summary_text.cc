@@ -6,7 +6,7 @@
 #include "base/saturating.h"
 #include "runs/tracking.h"
 
-namespace hydro {
+namespace hydro::runs {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -103,4 +103,4 @@ std::string SummaryJson(const Tracking& tracking, const LogInfo& info) {
   return json.dump(2) + "\n";
 }
 
-}  // namespace hydro
+}  // namespace hydro::runs

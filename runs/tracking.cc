@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace hydro {
+namespace hydro::runs {
 namespace {
 
 constexpr double kShortestRest = 0.2;         // s
@@ -107,4 +107,4 @@ Tracking TrackArm(const RunLog& log) {
   return tracking;
 }
 
-}  // namespace hydro
+}  // namespace hydro::runs

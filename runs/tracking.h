@@ -9,7 +9,7 @@
 #include "runs/run_log.h"
 #include "runs/step_response.h"
 
-namespace hydro {
+namespace hydro::runs {
 
 struct Tracking {
   bool has_reference = false;  // the log has arm-angle references and measured arm angles
@@ -31,4 +31,4 @@ std::string SummaryText(const Tracking& tracking, const LogInfo& info, bool si);
 // The same as JSON.
 std::string SummaryJson(const Tracking& tracking, const LogInfo& info);
 
-}  // namespace hydro
+}  // namespace hydro::runs

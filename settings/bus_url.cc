@@ -4,7 +4,7 @@
 #include <charconv>
 #include <string_view>
 
-namespace hydro {
+namespace hydro::settings {
 namespace {
 
 bool WholeNumber(std::string_view text, long min, long max) {
@@ -56,4 +56,4 @@ std::string WhatIsWrongWithBusUrl(const std::string& url) {
   return "";
 }
 
-}  // namespace hydro
+}  // namespace hydro::settings

@@ -3,10 +3,10 @@
 
 #include <string>
 
-namespace hydro {
+namespace hydro::settings {
 
 // Empty when `url` is udpm://GROUP:PORT with optional ?ttl=N&recv_buf_size=BYTES, else what is allowed. LCM
 // itself takes malformed addresses for others without a word.
 std::string WhatIsWrongWithBusUrl(const std::string& url);
 
-}  // namespace hydro
+}  // namespace hydro::settings

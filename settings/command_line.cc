@@ -15,7 +15,7 @@
 #include "base/input_error.h"
 #include "base/text_file.h"
 
-namespace hydro {
+namespace hydro::settings {
 namespace {
 
 // "FILE where to write" -> "FILE" and "where to write".
@@ -321,4 +321,4 @@ int RunProgram(const std::string& program, const std::function<int()>& body) {
   }
 }
 
-}  // namespace hydro
+}  // namespace hydro::settings

@@ -17,7 +17,7 @@
 #include <string>
 #include <vector>
 
-namespace hydro {
+namespace hydro::settings {
 
 // The version of all programs, e.g. "0.1.0".
 std::string ProgramVersion();
@@ -85,4 +85,4 @@ class CommandLine {
 // for InputError, 1 for anything else.
 int RunProgram(const std::string& program, const std::function<int()>& body);
 
-}  // namespace hydro
+}  // namespace hydro::settings

@@ -5,7 +5,7 @@
 #include "settings/stack_config.h"
 #include "settings/toml/section_reader.h"
 
-namespace hydro {
+namespace hydro::settings {
 namespace {
 
 using Source = SensorSection::Source;
@@ -152,4 +152,4 @@ void CheckDriver(const StackConfig& config) {
   }
 }
 
-}  // namespace hydro
+}  // namespace hydro::settings

@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-namespace hydro {
+namespace hydro::settings {
 
 class SectionReader;
 struct StackConfig;
@@ -64,4 +64,4 @@ DriverSection ReadDriver(SectionReader section);
 // every signal that its loops need is measured. Throws InputError that names hydro-driver.
 void CheckDriver(const StackConfig& config);
 
-}  // namespace hydro
+}  // namespace hydro::settings

@@ -6,19 +6,19 @@
 #include "model/parameter_info.h"
 #include "settings/toml/section_reader.h"
 
-namespace hydro {
+namespace hydro::settings {
 namespace {
 
-NumberRange RangeOf(const ParameterInfo& info) {
+NumberRange RangeOf(const model::ParameterInfo& info) {
   return {.min = info.min, .max = info.max, .min_allowed = info.min_allowed};
 }
 
-std::string Wanted(const ParameterInfo& info) {
+std::string Wanted(const model::ParameterInfo& info) {
   return RangeOf(info).Says() + " (" + info.unit + ", " + info.says + ")";
 }
 
 // c itself, or r and d that give it: c = r^2 d / 2, eqs. (6), (7).
-void ReadDisplacement(SectionReader& section, const ParameterInfo& info, double* c) {
+void ReadDisplacement(SectionReader& section, const model::ParameterInfo& info, double* c) {
   double r = 0;
   double d = 0;
   const bool has_c = section.Number("c", c, RangeOf(info));
@@ -38,10 +38,10 @@ void ReadDisplacement(SectionReader& section, const ParameterInfo& info, double*
   }
 }
 
-EffectDescription ReadEffect(SectionReader section, const EffectInfo& info) {
-  EffectDescription effect;
+model::EffectDescription ReadEffect(SectionReader section, const model::EffectInfo& info) {
+  model::EffectDescription effect;
   effect.id = info.id;
-  for (const ParameterInfo& parameter : info.parameters) {
+  for (const model::ParameterInfo& parameter : info.parameters) {
     if (parameter.is_name) {
       std::vector<std::pair<std::string, std::string>> choices;
       for (const std::string& name : parameter.names) choices.emplace_back(name, name);
@@ -56,21 +56,21 @@ EffectDescription ReadEffect(SectionReader section, const EffectInfo& info) {
   return effect;
 }
 
-std::vector<EffectDescription> ReadEffects(SectionReader section, const TomlNode* table) {
-  std::vector<EffectDescription> effects;
+std::vector<model::EffectDescription> ReadEffects(SectionReader section, const TomlNode* table) {
+  std::vector<model::EffectDescription> effects;
   if (table == nullptr) return effects;
   std::vector<std::string> known;
-  for (const EffectInfo& info : EffectCatalogue()) known.push_back(info.id);
+  for (const model::EffectInfo& info : model::EffectCatalogue()) known.push_back(info.id);
   for (const auto& member : table->members) {
     // [effects.pump.stribeck] without quotes is a table in a table.
-    if (const EffectInfo* info = FindEffect(member.first)) {
+    if (const model::EffectInfo* info = model::FindEffect(member.first)) {
       SectionReader reader = section.Section(member.first);
       effects.push_back(ReadEffect(std::move(reader), *info));
       continue;
     }
     std::string id = member.first;
     if (member.second.is(TomlNode::Kind::kTable) && member.second.members.size() == 1 &&
-        FindEffect(id + "." + member.second.members[0].first) != nullptr) {
+        model::FindEffect(id + "." + member.second.members[0].first) != nullptr) {
       id += "." + member.second.members[0].first;
       throw InputError(member.second.place + ": effects: found [effects." + id + "], allowed [effects.\"" +
                        id + "\"]: the id needs quotes");
@@ -83,18 +83,18 @@ std::vector<EffectDescription> ReadEffects(SectionReader section, const TomlNode
 
 }  // namespace
 
-ModelDescription ParseModel(const std::string& text, const std::string& name_for_messages) {
+model::ModelDescription ParseModel(const std::string& text, const std::string& name_for_messages) {
   TomlNode root = ParseToml(text, name_for_messages);
   root.place = name_for_messages;
   SectionReader document(root, "");
-  ModelDescription description;
+  model::ModelDescription description;
   document.Text("name", &description.name);
   SectionReader parameters = document.Section("parameters");
   document.Require("parameters", "a section [parameters]");
   SectionReader effects = document.Section("effects");
   document.Finish();
 
-  for (const BaseParameter& parameter : BaseParameters()) {
+  for (const model::BaseParameter& parameter : model::BaseParameters()) {
     double* value = &(description.parameters.*parameter.member);
     if (parameter.info.name == "c") {
       ReadDisplacement(parameters, parameter.info, value);
@@ -108,18 +108,20 @@ ModelDescription ParseModel(const std::string& text, const std::string& name_for
   return description;
 }
 
-ModelDescription LoadModelFile(const std::string& file) { return ParseModel(ReadTextFile(file), file); }
+model::ModelDescription LoadModelFile(const std::string& file) {
+  return ParseModel(ReadTextFile(file), file);
+}
 
-std::string FormatModel(const ModelDescription& description) {
+std::string FormatModel(const model::ModelDescription& description) {
   TomlNode root;
   root.members.push_back({"name", StringNode(description.name)});
   TomlNode parameters;
-  for (const BaseParameter& parameter : BaseParameters()) {
+  for (const model::BaseParameter& parameter : model::BaseParameters()) {
     parameters.members.push_back({parameter.info.name, NumberNode(description.parameters.*parameter.member)});
   }
   root.members.push_back({"parameters", std::move(parameters)});
   TomlNode effects;
-  for (const EffectDescription& effect : description.effects) {
+  for (const model::EffectDescription& effect : description.effects) {
     TomlNode table;
     for (const auto& [name, value] : effect.parameters) table.members.push_back({name, NumberNode(value)});
     for (const auto& [name, value] : effect.names) table.members.push_back({name, StringNode(value)});
@@ -129,4 +131,4 @@ std::string FormatModel(const ModelDescription& description) {
   return FormatToml(root);
 }
 
-}  // namespace hydro
+}  // namespace hydro::settings

@@ -6,13 +6,13 @@
 #include "base/input_error.h"
 #include "model/description.h"
 
-namespace hydro {
+namespace hydro::settings {
 
 // Reads and checks a model file. Throws InputError naming file, line and key.
-ModelDescription LoadModelFile(const std::string& file);
-ModelDescription ParseModel(const std::string& text, const std::string& name_for_messages);
+model::ModelDescription LoadModelFile(const std::string& file);
+model::ModelDescription ParseModel(const std::string& text, const std::string& name_for_messages);
 
 // The TOML text of a model; ParseModel gives the same description back, bit by bit.
-std::string FormatModel(const ModelDescription& description);
+std::string FormatModel(const model::ModelDescription& description);
 
-}  // namespace hydro
+}  // namespace hydro::settings

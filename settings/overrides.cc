@@ -5,7 +5,7 @@
 #include "base/text_file.h"
 #include "settings/trajectory_spec.h"
 
-namespace hydro {
+namespace hydro::settings {
 namespace {
 
 using Kind = TomlNode::Kind;
@@ -126,4 +126,4 @@ void ApplyOverrides(const std::vector<std::string>& overrides, TomlNode* root) {
   DropAlternatives(root);
 }
 
-}  // namespace hydro
+}  // namespace hydro::settings

@@ -6,7 +6,7 @@
 
 #include "settings/toml/toml_document.h"
 
-namespace hydro {
+namespace hydro::settings {
 
 // Sets each "section.key=value" in the configuration. The value is TOML, or else taken as a string. Throws
 // InputError naming the option where it has no such form.
@@ -16,4 +16,4 @@ namespace hydro {
 // and damping_ratio, points against file and column, motion and arm_angle_rad when model.shaft is set.
 void ApplyOverrides(const std::vector<std::string>& overrides, TomlNode* root);
 
-}  // namespace hydro
+}  // namespace hydro::settings

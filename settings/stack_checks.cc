@@ -5,7 +5,7 @@
 #include "settings/toml/section_reader.h"
 #include "trajectory/trajectory.h"
 
-namespace hydro {
+namespace hydro::settings {
 namespace {
 
 // How many whole `unit`s `value` is; 0 when it is not a whole number of at least one. Decimal fractions such
@@ -28,7 +28,7 @@ void CheckPair(const TomlNode& root, const std::string& present, const std::stri
 
 // The arm angle that `what` takes must leave V_1, V_2 > 0: V_ms - c |alpha| > 0, eqs. (6), (7).
 // `allowed` is limits.arm_angle_rad.
-void CheckAngle(const TomlNode& root, const std::string& key, double angle, const Parameters& p,
+void CheckAngle(const TomlNode& root, const std::string& key, double angle, const model::Parameters& p,
                 double allowed) {
   const double limit = p.V_ms / p.c;
   if (std::abs(angle) < limit && std::abs(angle) > allowed) {
@@ -56,15 +56,15 @@ std::string KeyOf(const TrajectorySpec& spec, double extreme) {
 }
 
 void CheckAngles(const TomlNode& root, const std::string& section, const TrajectorySpec& spec,
-                 const Parameters& p, double allowed) {
+                 const model::Parameters& p, double allowed) {
   const auto trajectory = MakeTrajectory(spec);
   for (const double extreme : {trajectory->Max(), trajectory->Min()}) {
     CheckAngle(root, section + KeyOf(spec, extreme), extreme, p, allowed);
   }
 }
 
-bool Has(const std::vector<EffectDescription>& effects, const std::string& id) {
-  for (const EffectDescription& effect : effects) {
+bool Has(const std::vector<model::EffectDescription>& effects, const std::string& id) {
+  for (const model::EffectDescription& effect : effects) {
     if (effect.id == id) return true;
   }
   return false;
@@ -129,7 +129,7 @@ void CheckChoices(const TomlNode& root, const StackConfig& config) {
   }
 
   const ModelSection& model = config.model;
-  const bool driven = model.shaft == Shaft::kDriven;
+  const bool driven = model.shaft == model::Shaft::kDriven;
   if (driven && !model.motion) {
     throw KeyError(root, "model.shaft", "\"driven\" without [model.motion]",
                    "\"driven\" with the arm's motion in [model.motion]");
@@ -152,11 +152,12 @@ void CheckChoices(const TomlNode& root, const StackConfig& config) {
 
 void CheckAgainstModel(const TomlNode& root, StackConfig* checked) {
   const ModelSection& model = checked->model;
-  const Parameters& p = model.description.parameters;
+  const model::Parameters& p = model.description.parameters;
   const TomlNode* limits = root.Find("limits");
   const bool given = limits != nullptr && limits->Find("arm_angle_rad") != nullptr;
   // A shaft that is held or moved by something else is not ours to stop.
-  if (!given && model.shaft == Shaft::kFree) checked->limits.arm_angle_rad = kArmAngleShare * p.V_ms / p.c;
+  if (!given && model.shaft == model::Shaft::kFree)
+    checked->limits.arm_angle_rad = kArmAngleShare * p.V_ms / p.c;
   const StackConfig& config = *checked;
   const double allowed = config.limits.arm_angle_rad;
   CheckAngle(root, "model.arm_angle_rad", model.arm_angle_rad, p, allowed);
@@ -176,4 +177,4 @@ void CheckAgainstModel(const TomlNode& root, StackConfig* checked) {
   }
 }
 
-}  // namespace hydro
+}  // namespace hydro::settings

@@ -4,7 +4,7 @@
 #include "settings/stack_config.h"
 #include "settings/toml/toml_document.h"
 
-namespace hydro {
+namespace hydro::settings {
 
 // Checks the times against the tick and fills the intervals in ticks and the last tick. Throws InputError.
 void CheckTimes(const TomlNode& root, StackConfig* config);
@@ -19,4 +19,4 @@ void CheckAgainstModel(const TomlNode& root, StackConfig* config);
 // Checks what holds the shaft and the gains. Throws InputError.
 void CheckChoices(const TomlNode& root, const StackConfig& config);
 
-}  // namespace hydro
+}  // namespace hydro::settings

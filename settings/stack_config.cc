@@ -7,7 +7,7 @@
 #include "settings/stack_sections.h"
 #include "settings/trajectory_spec.h"
 
-namespace hydro {
+namespace hydro::settings {
 namespace {
 
 // Everything but the model file.
@@ -58,4 +58,4 @@ StackConfig ParseStackConfig(const std::string& config_text, const std::string& 
   return config;
 }
 
-}  // namespace hydro
+}  // namespace hydro::settings

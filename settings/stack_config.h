@@ -14,37 +14,37 @@
 #include "settings/driver_section.h"
 #include "trajectory/trajectory.h"
 
-namespace hydro {
+namespace hydro::settings {
 
 // A Trajectory as the configuration describes it ([reference], [model.motion]).
 struct TrajectorySpec {
   enum class Kind { kSteps, kSine, kSquare, kChirp, kCsv };
   Kind kind = Kind::kSteps;
-  double initial = 0;               // kSteps: before the first step
-  std::vector<Step> steps;          // kSteps: [[time_s, value], ...]
-  double offset = 0;                // kSine, kSquare, kChirp
-  double amplitude = 0;             // kSine, kSquare, kChirp
-  double frequency_hz = 1;          // kSine, kSquare
-  double phase_rad = 0;             // kSine
-  double start_s = 0;               // kSine, kSquare, kChirp
-  double first_frequency_hz = 0.1;  // kChirp
-  double last_frequency_hz = 10;    // kChirp
-  double duration_s = 10;           // kChirp
-  std::string file;                 // kCsv, relative to the configuration's folder
-  std::string column;               // kCsv: the value's column; time is the column time_s
-  Interpolation interpolation = Interpolation::kLinear;  // kCsv
-  std::vector<Step> points;                              // kCsv: what the file held
+  double initial = 0;                   // kSteps: before the first step
+  std::vector<trajectory::Step> steps;  // kSteps: [[time_s, value], ...]
+  double offset = 0;                    // kSine, kSquare, kChirp
+  double amplitude = 0;                 // kSine, kSquare, kChirp
+  double frequency_hz = 1;              // kSine, kSquare
+  double phase_rad = 0;                 // kSine
+  double start_s = 0;                   // kSine, kSquare, kChirp
+  double first_frequency_hz = 0.1;      // kChirp
+  double last_frequency_hz = 10;        // kChirp
+  double duration_s = 10;               // kChirp
+  std::string file;                     // kCsv, relative to the configuration's folder
+  std::string column;                   // kCsv: the value's column; time is the column time_s
+  trajectory::Interpolation interpolation = trajectory::Interpolation::kLinear;  // kCsv
+  std::vector<trajectory::Step> points;                                          // kCsv: what the file held
 };
 
 struct ModelSection {
   std::string file;           // as given; relative to the configuration's folder
   std::string resolved_file;  // path it was read from
   std::string text;           // the file's text
-  ModelDescription description;
-  Shaft shaft = Shaft::kFree;            // shaft = "free" | "clamped" | "driven"
-  double arm_angle_rad = 0;              // clamped: where; free: where the arm starts
-  bool bypass = false;                   // the valve between the two sides is open: p1 = p2
-  std::optional<TrajectorySpec> motion;  // [model.motion], required for driven: the arm's angle over time
+  model::ModelDescription description;
+  model::Shaft shaft = model::Shaft::kFree;  // shaft = "free" | "clamped" | "driven"
+  double arm_angle_rad = 0;                  // clamped: where; free: where the arm starts
+  bool bypass = false;                       // the valve between the two sides is open: p1 = p2
+  std::optional<TrajectorySpec> motion;      // [model.motion], required for driven: the arm's angle over time
   double initial_pressure_psi =
       std::numeric_limits<double>::quiet_NaN();  // both sides at the start; default p_3
 };
@@ -69,7 +69,7 @@ struct TimeSection {
 struct PlantSection {
   double rate_hz = 1000;        // ticks per second of plant time
   int command_delay_ticks = 1;  // a command computed from tick k acts from tick k + this; 0 or 1
-  Integrator integrator = Integrator::kAuto;  // "auto" | "fast" | "erk" | "cvode"
+  model::Integrator integrator = model::Integrator::kAuto;  // "auto" | "fast" | "erk" | "cvode"
   double relative_tolerance = 1e-8;
 };
 
@@ -187,6 +187,6 @@ StackConfig ParseStackConfig(const std::string& config_text, const std::string& 
 void CheckKeepsInputs(const std::string& output, const StackConfig& config);
 
 // Builds the function that a specification describes.
-std::unique_ptr<Trajectory> MakeTrajectory(const TrajectorySpec& spec);
+std::unique_ptr<trajectory::Trajectory> MakeTrajectory(const TrajectorySpec& spec);
 
-}  // namespace hydro
+}  // namespace hydro::settings

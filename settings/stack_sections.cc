@@ -6,7 +6,7 @@
 #include "settings/bus_url.h"
 #include "settings/trajectory_spec.h"
 
-namespace hydro {
+namespace hydro::settings {
 namespace {
 
 constexpr NumberRange kPositiveOrNone{.min = 0, .min_allowed = false, .infinity_allowed = true};
@@ -15,9 +15,10 @@ constexpr NumberRange kWait{.min = 0, .max = 1e6, .min_allowed = false};
 
 void ReadModel(SectionReader section, const std::string& config_file, ModelSection* model) {
   section.Text("file", &model->file);
-  section.Choice<Shaft>("shaft",
-                        {{"free", Shaft::kFree}, {"clamped", Shaft::kClamped}, {"driven", Shaft::kDriven}},
-                        &model->shaft);
+  section.Choice<model::Shaft>(
+      "shaft",
+      {{"free", model::Shaft::kFree}, {"clamped", model::Shaft::kClamped}, {"driven", model::Shaft::kDriven}},
+      &model->shaft);
   section.Number("arm_angle_rad", &model->arm_angle_rad);
   section.Boolean("bypass", &model->bypass);
   section.Number("initial_pressure_psi", &model->initial_pressure_psi);
@@ -63,12 +64,12 @@ void ReadTime(SectionReader section, TimeSection* time) {
 void ReadPlant(SectionReader section, PlantSection* plant) {
   section.Number("rate_hz", &plant->rate_hz, {.min = 0, .max = 1e6, .min_allowed = false});
   section.Integer("command_delay_ticks", &plant->command_delay_ticks, 0, 1);
-  section.Choice<Integrator>("integrator",
-                             {{"auto", Integrator::kAuto},
-                              {"fast", Integrator::kFast},
-                              {"erk", Integrator::kErk},
-                              {"cvode", Integrator::kCvode}},
-                             &plant->integrator);
+  section.Choice<model::Integrator>("integrator",
+                                    {{"auto", model::Integrator::kAuto},
+                                     {"fast", model::Integrator::kFast},
+                                     {"erk", model::Integrator::kErk},
+                                     {"cvode", model::Integrator::kCvode}},
+                                    &plant->integrator);
   section.Number("relative_tolerance", &plant->relative_tolerance,
                  {.min = 0, .max = 0.01, .min_allowed = false});
   section.Finish();
@@ -245,4 +246,4 @@ void ReadSections(const TomlNode& root, const std::string& config_file, StackCon
   ReadProcesses(document, &config->processes);
 }
 
-}  // namespace hydro
+}  // namespace hydro::settings

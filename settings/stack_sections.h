@@ -5,9 +5,9 @@
 #include "settings/stack_config.h"
 #include "settings/toml/section_reader.h"
 
-namespace hydro {
+namespace hydro::settings {
 
 // Fills every section of `config` but the model's description from the document. Throws InputError.
 void ReadSections(const TomlNode& root, const std::string& config_file, StackConfig* config);
 
-}  // namespace hydro
+}  // namespace hydro::settings

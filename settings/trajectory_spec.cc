@@ -6,7 +6,7 @@
 
 #include "tables/csv_points.h"
 
-namespace hydro {
+namespace hydro::settings {
 namespace {
 
 using Kind = TrajectorySpec::Kind;
@@ -23,7 +23,7 @@ const std::map<std::string, std::vector<std::string>>& KeysOfKinds() {
 }
 
 // [[time_s, value], ...]
-void ReadPairs(SectionReader& section, const std::string& key, std::vector<Step>* pairs) {
+void ReadPairs(SectionReader& section, const std::string& key, std::vector<trajectory::Step>* pairs) {
   const TomlNode* node = section.Take(key);
   if (node == nullptr) return;
   const std::string allowed = "an array of [time_s, value]";
@@ -54,10 +54,11 @@ void ReadPairs(SectionReader& section, const std::string& key, std::vector<Step>
 void ReadCsv(SectionReader& section, const std::string& config_file, TrajectorySpec* spec) {
   section.Text("file", &spec->file);
   section.Text("column", &spec->column);
-  section.Choice<Interpolation>(
-      "interpolation",
-      {{"hold", Interpolation::kHold}, {"linear", Interpolation::kLinear}, {"cubic", Interpolation::kCubic}},
-      &spec->interpolation);
+  section.Choice<trajectory::Interpolation>("interpolation",
+                                            {{"hold", trajectory::Interpolation::kHold},
+                                             {"linear", trajectory::Interpolation::kLinear},
+                                             {"cubic", trajectory::Interpolation::kCubic}},
+                                            &spec->interpolation);
   ReadPairs(section, "points", &spec->points);
   if (section.Has("points")) {
     for (const char* key : {"file", "column"}) {
@@ -72,7 +73,7 @@ void ReadCsv(SectionReader& section, const std::string& config_file, TrajectoryS
   if (section.Has("file") && section.Has("column")) {
     const std::string file = PathBeside(config_file, spec->file);
     try {
-      spec->points = ReadCsvPoints(file, spec->column);
+      spec->points = tables::ReadCsvPoints(file, spec->column);
     } catch (const InputError& error) {
       throw InputError(std::string(error.what()) + " (" + section.path() + ".file in " + section.place() +
                        ")");
@@ -119,7 +120,8 @@ TrajectorySpec ReadTrajectory(SectionReader& section, const std::string& config_
   return spec;
 }
 
-std::unique_ptr<Trajectory> CheckedTrajectory(const TrajectorySpec& spec, const SectionReader& section) {
+std::unique_ptr<trajectory::Trajectory> CheckedTrajectory(const TrajectorySpec& spec,
+                                                          const SectionReader& section) {
   try {
     return MakeTrajectory(spec);
   } catch (const std::invalid_argument& error) {
@@ -133,7 +135,7 @@ void EmbedPoints(const TrajectorySpec& spec, TomlNode* section) {
   if (file == nullptr) return;  // it has them already
   TomlNode points = ArrayNode({});
   points.place = file->place;
-  for (const Step& point : spec.points) {
+  for (const trajectory::Step& point : spec.points) {
     points.items.push_back(ArrayNode({NumberNode(point.time), NumberNode(point.value)}));
   }
   section->Erase("file");
@@ -141,21 +143,22 @@ void EmbedPoints(const TrajectorySpec& spec, TomlNode* section) {
   section->members.push_back({"points", std::move(points)});
 }
 
-std::unique_ptr<Trajectory> MakeTrajectory(const TrajectorySpec& spec) {
+std::unique_ptr<trajectory::Trajectory> MakeTrajectory(const TrajectorySpec& spec) {
   switch (spec.kind) {
     case Kind::kSteps:
-      return MakeSteps(spec.initial, spec.steps);
+      return trajectory::MakeSteps(spec.initial, spec.steps);
     case Kind::kSine:
-      return MakeSine(spec.offset, spec.amplitude, spec.frequency_hz, spec.start_s, spec.phase_rad);
+      return trajectory::MakeSine(spec.offset, spec.amplitude, spec.frequency_hz, spec.start_s,
+                                  spec.phase_rad);
     case Kind::kSquare:
-      return MakeSquare(spec.offset, spec.amplitude, spec.frequency_hz, spec.start_s);
+      return trajectory::MakeSquare(spec.offset, spec.amplitude, spec.frequency_hz, spec.start_s);
     case Kind::kChirp:
-      return MakeChirp(spec.offset, spec.amplitude, spec.first_frequency_hz, spec.last_frequency_hz,
-                       spec.start_s, spec.duration_s);
+      return trajectory::MakeChirp(spec.offset, spec.amplitude, spec.first_frequency_hz,
+                                   spec.last_frequency_hz, spec.start_s, spec.duration_s);
     case Kind::kCsv:
       break;
   }
-  return MakePoints(spec.points, spec.interpolation);
+  return trajectory::MakePoints(spec.points, spec.interpolation);
 }
 
-}  // namespace hydro
+}  // namespace hydro::settings

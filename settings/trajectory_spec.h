@@ -7,7 +7,7 @@
 #include "settings/stack_config.h"
 #include "settings/toml/section_reader.h"
 
-namespace hydro {
+namespace hydro::settings {
 
 // The keys that belong to a kind, e.g. "sine"; empty for an unknown kind.
 std::vector<std::string> KeysOfTrajectory(const std::string& kind);
@@ -17,10 +17,11 @@ std::vector<std::string> KeysOfTrajectory(const std::string& kind);
 TrajectorySpec ReadTrajectory(SectionReader& section, const std::string& config_file);
 
 // Throws InputError unless MakeTrajectory takes `spec`.
-std::unique_ptr<Trajectory> CheckedTrajectory(const TrajectorySpec& spec, const SectionReader& section);
+std::unique_ptr<trajectory::Trajectory> CheckedTrajectory(const TrajectorySpec& spec,
+                                                          const SectionReader& section);
 
 // Puts the points of a CSV trajectory into its section in place of the file, so that the text describes
 // itself.
 void EmbedPoints(const TrajectorySpec& spec, TomlNode* section);
 
-}  // namespace hydro
+}  // namespace hydro::settings

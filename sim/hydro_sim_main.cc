@@ -11,20 +11,21 @@
 
 namespace {
 
-int Run(const hydro::CommonOptions& options, const std::string& file) {
-  const hydro::StackConfig config = hydro::LoadStackConfig(options.config, options.overrides);
-  hydro::CheckKeepsInputs(file, config);
-  hydro::CatchStopSignals();
-  std::unique_ptr<hydro::LogWriter> writer;
-  if (!file.empty()) writer = std::make_unique<hydro::LogWriter>(file, hydro::Opening::kTemporary);
-  std::function<void(const hydro::RawMessage&)> tap;
+int Run(const hydro::settings::CommonOptions& options, const std::string& file) {
+  const hydro::settings::StackConfig config =
+      hydro::settings::LoadStackConfig(options.config, options.overrides);
+  hydro::settings::CheckKeepsInputs(file, config);
+  hydro::process::CatchStopSignals();
+  std::unique_ptr<hydro::log::LogWriter> writer;
+  if (!file.empty()) writer = std::make_unique<hydro::log::LogWriter>(file, hydro::Opening::kTemporary);
+  std::function<void(const hydro::bus::RawMessage&)> tap;
   if (writer) {
-    tap = [&](const hydro::RawMessage& m) {
+    tap = [&](const hydro::bus::RawMessage& m) {
       writer->Append(m.channel, m.data, static_cast<size_t>(m.size), m.receive_utime);
     };
   }
   const auto start = std::chrono::steady_clock::now();
-  const hydro::SimulationResult result = hydro::Simulate(config, tap);
+  const hydro::sim::SimulationResult result = hydro::sim::Simulate(config, tap);
   const double wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   if (writer) writer->Finish();
   if (!result.failure.empty()) std::fprintf(stderr, "hydro-sim: %s\n", result.failure.c_str());
@@ -36,12 +37,13 @@ int Run(const hydro::CommonOptions& options, const std::string& file) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  hydro::CommandLine command_line("hydro-sim", "The whole stack in one process on a simulated clock.");
-  hydro::CommonOptions options;
+  hydro::settings::CommandLine command_line("hydro-sim",
+                                            "The whole stack in one process on a simulated clock.");
+  hydro::settings::CommonOptions options;
   std::string file;
   command_line.AddCommon(&options);
   command_line.AddOption("-o,--output", &file, "FILE to log to (without it nothing is logged)");
   if (const auto exit_code = command_line.Parse(argc, argv)) return *exit_code;
   if (file.empty()) file = options.log;
-  return hydro::RunProgram("hydro-sim", [&] { return Run(options, file); });
+  return hydro::settings::RunProgram("hydro-sim", [&] { return Run(options, file); });
 }

@@ -7,23 +7,24 @@
 #include "position_ctrl/position_app.h"
 #include "pressure_ctrl/pressure_app.h"
 
-namespace hydro {
+namespace hydro::sim {
 
-SimulationResult Simulate(const StackConfig& config, const std::function<void(const RawMessage&)>& tap) {
+SimulationResult Simulate(const settings::StackConfig& config,
+                          const std::function<void(const bus::RawMessage&)>& tap) {
   if (config.last_tick < 0) {
     throw InputError(
         config.file +
         ": time.duration_s: found 0, a simulation needs an end: allowed is > 0 (or --duration S)");
   }
-  StackConfig lockstep = config;
-  lockstep.time.mode = TimeMode::kLockstep;
-  SimulatedClock clock;
-  InProcessBus bus(&clock);
+  settings::StackConfig lockstep = config;
+  lockstep.time.mode = settings::TimeMode::kLockstep;
+  bus::SimulatedClock clock;
+  bus::InProcessBus bus(&clock);
   if (tap) bus.SubscribeAll(tap);
-  SimulatedRig rig(lockstep);
-  PlantApp plant(bus, clock, lockstep, rig, {}, "hydro-sim");
-  PressureApp pressure(bus, clock, lockstep);
-  PositionApp position(bus, clock, lockstep);
+  plant::SimulatedRig rig(lockstep);
+  plant::PlantApp plant(bus, clock, lockstep, rig, {}, "hydro-sim");
+  pressure_ctrl::PressureApp pressure(bus, clock, lockstep);
+  position_ctrl::PositionApp position(bus, clock, lockstep);
 
   SimulationResult result;
   result.exit_code = plant.Run();
@@ -41,4 +42,4 @@ SimulationResult Simulate(const StackConfig& config, const std::function<void(co
   return result;
 }
 
-}  // namespace hydro
+}  // namespace hydro::sim

@@ -9,7 +9,7 @@
 #include "bus/bus.h"
 #include "settings/stack_config.h"
 
-namespace hydro {
+namespace hydro::sim {
 
 struct SimulationResult {
   int64_t ticks = 0;    // the last tick reached
@@ -21,6 +21,7 @@ struct SimulationResult {
 // Runs `config` to its end and hands every message to `tap` (null: none, and nothing is encoded). Runs in
 // lockstep whatever time.mode says. Throws InputError when the configuration has no duration or contradicts
 // the model.
-SimulationResult Simulate(const StackConfig& config, const std::function<void(const RawMessage&)>& tap);
+SimulationResult Simulate(const settings::StackConfig& config,
+                          const std::function<void(const bus::RawMessage&)>& tap);
 
-}  // namespace hydro
+}  // namespace hydro::sim

@@ -8,7 +8,7 @@
 #include "base/did_you_mean.h"
 #include "base/text_file.h"
 
-namespace hydro {
+namespace hydro::tables {
 namespace {
 
 constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
@@ -59,9 +59,9 @@ double Number(std::string_view cell, const std::string& place) {
 
 }  // namespace
 
-std::vector<Step> ParseCsvPoints(const std::string& text, const std::string& file,
-                                 const std::string& column) {
-  std::vector<Step> points;
+std::vector<trajectory::Step> ParseCsvPoints(const std::string& text, const std::string& file,
+                                             const std::string& column) {
+  std::vector<trajectory::Step> points;
   std::vector<std::string_view> header;
   size_t time_column = 0;
   size_t value_column = 0;
@@ -99,8 +99,8 @@ std::vector<Step> ParseCsvPoints(const std::string& text, const std::string& fil
   return points;
 }
 
-std::vector<Step> ReadCsvPoints(const std::string& file, const std::string& column) {
+std::vector<trajectory::Step> ReadCsvPoints(const std::string& file, const std::string& column) {
   return ParseCsvPoints(ReadTextFile(file), file, column);
 }
 
-}  // namespace hydro
+}  // namespace hydro::tables

@@ -2,7 +2,7 @@
 
 #include "base/input_error.h"
 
-namespace hydro {
+namespace hydro::tables {
 
 const Column* Table::Find(std::string_view name) const {
   for (const Column& column : columns) {
@@ -30,4 +30,4 @@ void WriteTable(const Table& table, const std::string& file) {
   file.ends_with(".mat") ? WriteMat(table, file) : WriteCsv(table, file);
 }
 
-}  // namespace hydro
+}  // namespace hydro::tables

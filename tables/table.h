@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-namespace hydro {
+namespace hydro::tables {
 
 struct Column {
   std::string name;
@@ -49,4 +49,4 @@ void WriteCsv(const Table& table, const std::string& file);
 Table ReadMat(const std::string& file);
 void WriteMat(const Table& table, const std::string& file);
 
-}  // namespace hydro
+}  // namespace hydro::tables

@@ -7,7 +7,7 @@
 #include "base/number_text.h"
 #include "tables/table.h"
 
-namespace hydro {
+namespace hydro::tables {
 namespace {
 
 constexpr size_t kWriteChunk = 1u << 20;
@@ -141,4 +141,4 @@ void WriteCsv(const Table& table, const std::string& file) {
   out.Finish();
 }
 
-}  // namespace hydro
+}  // namespace hydro::tables

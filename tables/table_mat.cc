@@ -9,7 +9,7 @@
 #include "base/new_file.h"
 #include "tables/table.h"
 
-namespace hydro {
+namespace hydro::tables {
 namespace {
 
 struct CloseMat {
@@ -157,4 +157,4 @@ void WriteMat(const Table& table, const std::string& file) {
   out.Finish();
 }
 
-}  // namespace hydro
+}  // namespace hydro::tables

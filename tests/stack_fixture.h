@@ -9,13 +9,13 @@
 namespace hydro::testing {
 
 // Table 1, free arm, 1 kHz plant and pressure loop, 200 Hz position loop, lockstep, gains given.
-inline StackConfig SmallStack() {
-  StackConfig config;
+inline settings::StackConfig SmallStack() {
+  settings::StackConfig config;
   config.file = "test.toml";
   config.model.description.name = "Table 1";
   config.model.description.parameters = Table1();
   config.model.initial_pressure_psi = 100;
-  config.time.mode = TimeMode::kLockstep;
+  config.time.mode = settings::TimeMode::kLockstep;
   config.time.duration_s = 0.1;
   config.plant.rate_hz = 1000;
   config.pressure.k_p = 0.125;

@@ -5,8 +5,8 @@
 
 namespace hydro::testing {
 
-inline Parameters Table1() {
-  Parameters p;
+inline model::Parameters Table1() {
+  model::Parameters p;
   p.k_1 = 4.0;
   p.T_pmax = 40.0;
   p.D = 0.00796;

@@ -5,22 +5,22 @@
 #include <cmath>
 #include <stdexcept>
 
-namespace hydro {
+namespace hydro::timing {
 
-FixedRateLoop::FixedRateLoop(Bus& bus, const Clock& clock, std::chrono::duration<double, std::nano> period,
-                             LoopStatistics& statistics)
+FixedRateLoop::FixedRateLoop(bus::Bus& bus, const bus::Clock& clock,
+                             std::chrono::duration<double, std::nano> period, LoopStatistics& statistics)
     : bus_(bus), clock_(clock), period_ns_(period.count()), statistics_(statistics), start_(clock.Now()) {
   if (!(period_ns_ >= 1)) throw std::invalid_argument("the period of a loop must be at least 1 ns");
   if (!clock_.simulated()) prctl(PR_SET_TIMERSLACK, 1);
 }
 
-Clock::TimePoint FixedRateLoop::DueTime(int64_t tick) const {
+bus::Clock::TimePoint FixedRateLoop::DueTime(int64_t tick) const {
   return start_ + std::chrono::nanoseconds(std::llround(static_cast<double>(tick) * period_ns_));
 }
 
 int64_t FixedRateLoop::Wait() {
-  const Clock::TimePoint due = DueTime(tick_ + 1);
-  Clock::TimePoint now;
+  const bus::Clock::TimePoint due = DueTime(tick_ + 1);
+  bus::Clock::TimePoint now;
   do {
     const int handled = bus_.HandleUntil(due);
     if (handled > 0) statistics_.RecordQueueDepth(handled);
@@ -41,4 +41,4 @@ int64_t FixedRateLoop::Wait() {
   return elapsed;
 }
 
-}  // namespace hydro
+}  // namespace hydro::timing

@@ -8,7 +8,7 @@
 #include "bus/clock.h"
 #include "timing/loop_statistics.h"
 
-namespace hydro {
+namespace hydro::timing {
 
 // Tick 0 is the moment of construction; tick k is due k periods later, whatever happened in between: it never
 // drifts. On a simulated clock every tick comes exactly when it is due.
@@ -17,7 +17,7 @@ class FixedRateLoop {
   // `period` need not be a whole number of ns. Wake-ups are recorded in `statistics`: the latency of a cycle
   // is the time from its deadline to the wake-up. On a wall clock it lowers the thread's timer slack, which
   // would make every wake-up 50 us late. Throws std::invalid_argument when the period is not positive.
-  FixedRateLoop(Bus& bus, const Clock& clock, std::chrono::duration<double, std::nano> period,
+  FixedRateLoop(bus::Bus& bus, const bus::Clock& clock, std::chrono::duration<double, std::nano> period,
                 LoopStatistics& statistics);
 
   // Handles messages until the next tick is due (what is waiting is handled even when it is due already).
@@ -29,15 +29,15 @@ class FixedRateLoop {
   int64_t skipped() const { return skipped_; }  // ticks for which Wait() did not return
 
  private:
-  Clock::TimePoint DueTime(int64_t tick) const;
+  bus::Clock::TimePoint DueTime(int64_t tick) const;
 
-  Bus& bus_;
-  const Clock& clock_;
+  bus::Bus& bus_;
+  const bus::Clock& clock_;
   double period_ns_;
   LoopStatistics& statistics_;
-  Clock::TimePoint start_;
+  bus::Clock::TimePoint start_;
   int64_t tick_ = 0;
   int64_t skipped_ = 0;
 };
 
-}  // namespace hydro
+}  // namespace hydro::timing

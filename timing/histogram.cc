@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-namespace hydro {
+namespace hydro::timing {
 
 int64_t Histogram::MiddleOf(int bucket) {
   static_assert(BucketOf(kHighest) < kBuckets && BucketOf(kHighest) >= kBuckets - kSub);
@@ -31,4 +31,4 @@ void Histogram::Merge(const Histogram& other) {
   count_ += other.count_;
 }
 
-}  // namespace hydro
+}  // namespace hydro::timing

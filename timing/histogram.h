@@ -6,7 +6,7 @@
 #include <bit>
 #include <cstdint>
 
-namespace hydro {
+namespace hydro::timing {
 
 // Of whole numbers from 0 to kHighest, in any one unit (1 ns to 1 h in ns, for example). Each power of two is
 // divided into 128 buckets; a percentile is the middle of its bucket, so it is wrong by at most 1/256 (0
@@ -89,4 +89,4 @@ void Histogram::ForEachRange(Use&& use) const {
   if (count > 0) use(first, last, count);
 }
 
-}  // namespace hydro
+}  // namespace hydro::timing

@@ -3,14 +3,14 @@
 #include <algorithm>
 #include <utility>
 
-namespace hydro {
+namespace hydro::timing {
 namespace {
 
 constexpr auto kReportPeriod = std::chrono::seconds(1);
 constexpr auto kHistogramPeriod = std::chrono::seconds(2);
 constexpr size_t kMostBuckets = 700;  // more than Histogram::ForEachRange() can give
 
-int64_t Nanoseconds(Clock::Duration duration) {
+int64_t Nanoseconds(bus::Clock::Duration duration) {
   return std::chrono::duration_cast<std::chrono::nanoseconds>(duration).count();
 }
 
@@ -24,7 +24,8 @@ const char* NameOf(LoopQuantity quantity) {
   return kNames[static_cast<size_t>(quantity)];
 }
 
-LoopStatistics::LoopStatistics(std::string role, std::string host, int64_t session, Clock::TimePoint start)
+LoopStatistics::LoopStatistics(std::string role, std::string host, int64_t session,
+                               bus::Clock::TimePoint start)
     : report_{}, histogram_{}, start_(start), next_round_(start + kHistogramPeriod) {
   report_.role = histogram_.role = std::move(role);
   report_.host = histogram_.host = std::move(host);
@@ -36,14 +37,14 @@ LoopStatistics::LoopStatistics(std::string role, std::string host, int64_t sessi
   current_.start = start;
 }
 
-void LoopStatistics::RecordCycle(Clock::TimePoint began, Clock::Duration latency) {
+void LoopStatistics::RecordCycle(bus::Clock::TimePoint began, bus::Clock::Duration latency) {
   ++current_.cycles;
   if (previous_began_) current_.period.Record(Nanoseconds(began - *previous_began_));
   previous_began_ = began;
   current_.latency.Record(Nanoseconds(latency));
 }
 
-void LoopStatistics::RecordRoundTrip(Clock::Duration duration) {
+void LoopStatistics::RecordRoundTrip(bus::Clock::Duration duration) {
   Whole(LoopQuantity::kRoundTrip).Record(Nanoseconds(duration));
 }
 
@@ -62,7 +63,7 @@ void LoopStatistics::RecordQueueDepth(int64_t depth) {
   Whole(LoopQuantity::kQueueDepth).Record(depth);
 }
 
-loop_statistics_t* LoopStatistics::Poll(Clock::TimePoint now) {
+loop_statistics_t* LoopStatistics::Poll(bus::Clock::TimePoint now) {
   if (now - current_.start < kReportPeriod) return nullptr;
   Fill(current_, now, &report_);
   report_.sequence = sequence_++;
@@ -80,7 +81,7 @@ loop_statistics_t* LoopStatistics::Poll(Clock::TimePoint now) {
   return &report_;
 }
 
-loop_statistics_t LoopStatistics::Total(Clock::TimePoint now) const {
+loop_statistics_t LoopStatistics::Total(bus::Clock::TimePoint now) const {
   Interval all;
   all.start = start_;
   all.cycles = cycles_ + current_.cycles;
@@ -96,7 +97,8 @@ loop_statistics_t LoopStatistics::Total(Clock::TimePoint now) const {
   return report;
 }
 
-void LoopStatistics::Fill(const Interval& interval, Clock::TimePoint now, loop_statistics_t* report) const {
+void LoopStatistics::Fill(const Interval& interval, bus::Clock::TimePoint now,
+                          loop_statistics_t* report) const {
   report->interval_s = std::chrono::duration<double>(now - interval.start).count();
   report->cycles = interval.cycles;
   report->period_p50_us = Microseconds(interval.period.Percentile(50));
@@ -112,7 +114,7 @@ void LoopStatistics::Fill(const Interval& interval, Clock::TimePoint now, loop_s
   report->queue_depth = interval.queue_depth;
 }
 
-loop_histogram_t* LoopStatistics::PollHistogram(Clock::TimePoint now) {
+loop_histogram_t* LoopStatistics::PollHistogram(bus::Clock::TimePoint now) {
   if (now >= next_round_) {
     next_round_ = now + kHistogramPeriod;
     next_histogram_ = 0;
@@ -123,7 +125,7 @@ loop_histogram_t* LoopStatistics::PollHistogram(Clock::TimePoint now) {
   return nullptr;
 }
 
-loop_histogram_t* LoopStatistics::TotalHistogram(LoopQuantity quantity, Clock::TimePoint now) {
+loop_histogram_t* LoopStatistics::TotalHistogram(LoopQuantity quantity, bus::Clock::TimePoint now) {
   const bool by_interval = quantity == LoopQuantity::kPeriod || quantity == LoopQuantity::kLatency;
   Histogram& whole = Whole(quantity);
   const Histogram before = whole;  // what has not been reported yet still belongs into the next report
@@ -134,7 +136,7 @@ loop_histogram_t* LoopStatistics::TotalHistogram(LoopQuantity quantity, Clock::T
   return total;
 }
 
-loop_histogram_t* LoopStatistics::FillHistogram(int quantity, Clock::TimePoint now) {
+loop_histogram_t* LoopStatistics::FillHistogram(int quantity, bus::Clock::TimePoint now) {
   const Histogram& whole = whole_[static_cast<size_t>(quantity)];
   if (whole.Count() == 0) return nullptr;
   histogram_.sequence = histogram_sequence_++;
@@ -155,4 +157,4 @@ loop_histogram_t* LoopStatistics::FillHistogram(int quantity, Clock::TimePoint n
   return &histogram_;
 }
 
-}  // namespace hydro
+}  // namespace hydro::timing

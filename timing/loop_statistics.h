@@ -14,7 +14,7 @@
 #include "bus/clock.h"
 #include "timing/histogram.h"
 
-namespace hydro {
+namespace hydro::timing {
 
 // What has a histogram of its own; loop_histogram_t says what each is.
 enum class LoopQuantity { kPeriod, kLatency, kRoundTrip, kQueueDepth, kGap, kSkipped };
@@ -25,14 +25,14 @@ const char* NameOf(LoopQuantity quantity);
 class LoopStatistics {
  public:
   // `role`, `host` and `session` go into each report; the first interval begins at `start`.
-  LoopStatistics(std::string role, std::string host, int64_t session, Clock::TimePoint start);
+  LoopStatistics(std::string role, std::string host, int64_t session, bus::Clock::TimePoint start);
 
   // The loop ran: it began at `began`, and `latency` is what loop_statistics_t says of the role. The period
   // is the time since the previous one began.
-  void RecordCycle(Clock::TimePoint began, Clock::Duration latency);
+  void RecordCycle(bus::Clock::TimePoint began, bus::Clock::Duration latency);
 
   // The first command for a state has arrived so long after that state was sent.
-  void RecordRoundTrip(Clock::Duration duration);
+  void RecordRoundTrip(bus::Clock::Duration duration);
 
   // Counters of the whole run; a report holds what was added since the one before. What one call adds counts
   // as having been missed, or lost, in a row.
@@ -45,21 +45,21 @@ class LoopStatistics {
   void RecordQueueDepth(int64_t depth);
 
   // The report that is due, once a second; null in between. The sender adds utime. Valid until the next call.
-  loop_statistics_t* Poll(Clock::TimePoint now);
+  loop_statistics_t* Poll(bus::Clock::TimePoint now);
 
   // The same over the whole run so far, whenever it is asked for; marked as whole_run.
-  loop_statistics_t Total(Clock::TimePoint now) const;
+  loop_statistics_t Total(bus::Clock::TimePoint now) const;
 
   // The histogram that is due: every two seconds one after the other, so that no single call of a loop has to
   // send them all; null when none is. Those of which nothing was recorded are left out.
-  loop_histogram_t* PollHistogram(Clock::TimePoint now);
+  loop_histogram_t* PollHistogram(bus::Clock::TimePoint now);
 
   // That of `quantity` so far, marked as whole_run; null when nothing was recorded.
-  loop_histogram_t* TotalHistogram(LoopQuantity quantity, Clock::TimePoint now);
+  loop_histogram_t* TotalHistogram(LoopQuantity quantity, bus::Clock::TimePoint now);
 
  private:
   struct Interval {
-    Clock::TimePoint start{};
+    bus::Clock::TimePoint start{};
     int64_t cycles = 0;
     Histogram period;   // ns
     Histogram latency;  // ns
@@ -68,8 +68,8 @@ class LoopStatistics {
     int64_t queue_depth = 0;
   };
 
-  void Fill(const Interval& interval, Clock::TimePoint now, loop_statistics_t* report) const;
-  loop_histogram_t* FillHistogram(int quantity, Clock::TimePoint now);
+  void Fill(const Interval& interval, bus::Clock::TimePoint now, loop_statistics_t* report) const;
+  loop_histogram_t* FillHistogram(int quantity, bus::Clock::TimePoint now);
   Histogram& Whole(LoopQuantity quantity) { return whole_[static_cast<size_t>(quantity)]; }
 
   loop_statistics_t report_;
@@ -78,14 +78,14 @@ class LoopStatistics {
   int64_t histogram_sequence_ = 0;
   int64_t total_missed_ = 0;
   int64_t total_lost_ = 0;
-  std::optional<Clock::TimePoint> previous_began_;
-  Clock::TimePoint start_;
+  std::optional<bus::Clock::TimePoint> previous_began_;
+  bus::Clock::TimePoint start_;
   Interval current_;
   int64_t cycles_ = 0;                            // of the reported intervals
   int64_t queue_depth_ = 0;                       // the same
   std::array<Histogram, kLoopQuantities> whole_;  // period and latency: of the reported intervals; else all
   int next_histogram_ = kLoopQuantities;          // kLoopQuantities: all have been sent
-  Clock::TimePoint next_round_;                   // when they are due again
+  bus::Clock::TimePoint next_round_;              // when they are due again
 };
 
-}  // namespace hydro
+}  // namespace hydro::timing

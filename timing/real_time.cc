@@ -10,7 +10,7 @@
 #include <cerrno>
 #include <cstring>
 
-namespace hydro {
+namespace hydro::timing {
 namespace {
 
 bool SetPriority(int priority, RealTimeResult* result) {
@@ -68,4 +68,4 @@ RealTimeResult ApplyRealTime(const RealTimeRequest& request) {
   return result;
 }
 
-}  // namespace hydro
+}  // namespace hydro::timing

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-namespace hydro {
+namespace hydro::timing {
 
 struct RealTimeRequest {
   int priority = 0;          // SCHED_FIFO priority 1..99; 0: leave the scheduling as it is
@@ -24,4 +24,4 @@ struct RealTimeResult {
 // it.
 RealTimeResult ApplyRealTime(const RealTimeRequest& request);
 
-}  // namespace hydro
+}  // namespace hydro::timing

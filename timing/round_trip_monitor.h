@@ -7,7 +7,7 @@
 
 #include "bus/clock.h"
 
-namespace hydro {
+namespace hydro::timing {
 
 // Pure: time is passed in. Remembers the last kRemembered ticks; an answer to an older one is not measured.
 class RoundTripMonitor {
@@ -15,13 +15,13 @@ class RoundTripMonitor {
   static constexpr int64_t kRemembered = 1024;
 
   // The state of `tick` was sent at `now`. One that is sent again counts from the first time.
-  void OnSent(int64_t tick, Clock::TimePoint now) {
+  void OnSent(int64_t tick, bus::Clock::TimePoint now) {
     Sent& sent = sent_[Index(tick)];
     if (sent.tick != tick) sent = {tick, now, false};
   }
 
   // How long the first answer to `tick` took; nothing for a later one, or for a tick that was not sent.
-  std::optional<Clock::Duration> OnAnswer(int64_t tick, Clock::TimePoint now) {
+  std::optional<bus::Clock::Duration> OnAnswer(int64_t tick, bus::Clock::TimePoint now) {
     Sent& sent = sent_[Index(tick)];
     if (sent.tick != tick || sent.answered) return std::nullopt;
     sent.answered = true;
@@ -31,7 +31,7 @@ class RoundTripMonitor {
  private:
   struct Sent {
     int64_t tick = -1;
-    Clock::TimePoint time{};
+    bus::Clock::TimePoint time{};
     bool answered = true;  // nothing was sent yet
   };
   static size_t Index(int64_t tick) { return static_cast<uint64_t>(tick) % kRemembered; }
@@ -39,4 +39,4 @@ class RoundTripMonitor {
   std::array<Sent, kRemembered> sent_{};
 };
 
-}  // namespace hydro
+}  // namespace hydro::timing

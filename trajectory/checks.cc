@@ -4,7 +4,7 @@
 #include <cstdio>
 #include <stdexcept>
 
-namespace hydro {
+namespace hydro::trajectory {
 namespace {
 
 std::string Text(double value) {
@@ -39,4 +39,4 @@ void RequireIncreasing(const std::string& what, const std::vector<Step>& items) 
   }
 }
 
-}  // namespace hydro
+}  // namespace hydro::trajectory

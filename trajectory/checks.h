@@ -6,7 +6,7 @@
 
 #include "trajectory/trajectory.h"
 
-namespace hydro {
+namespace hydro::trajectory {
 
 // Throws std::invalid_argument, e.g. "frequency: found nan, allowed: a finite number".
 void RequireFinite(const std::string& what, double value);
@@ -18,4 +18,4 @@ void RequirePositive(const std::string& what, double value);
 // singular, e.g. "step"; items are counted from 1.
 void RequireIncreasing(const std::string& what, const std::vector<Step>& items);
 
-}  // namespace hydro
+}  // namespace hydro::trajectory

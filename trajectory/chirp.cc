@@ -5,7 +5,7 @@
 #include "trajectory/checks.h"
 #include "trajectory/trajectory.h"
 
-namespace hydro {
+namespace hydro::trajectory {
 namespace {
 
 class Chirp : public Trajectory {
@@ -73,4 +73,4 @@ std::unique_ptr<Trajectory> MakeChirp(double offset, double amplitude, double fi
   return std::make_unique<Chirp>(offset, amplitude, first_hz, last_hz, start, duration);
 }
 
-}  // namespace hydro
+}  // namespace hydro::trajectory

@@ -6,7 +6,7 @@
 #include "trajectory/checks.h"
 #include "trajectory/trajectory.h"
 
-namespace hydro {
+namespace hydro::trajectory {
 namespace {
 
 // Slopes at the points that keep each cubic between two points monotone: Fritsch and Carlson, SIAM J. Numer.
@@ -113,4 +113,4 @@ std::unique_ptr<Trajectory> MakePoints(std::vector<Step> points, Interpolation i
   return std::make_unique<Points>(std::move(points), interpolation);
 }
 
-}  // namespace hydro
+}  // namespace hydro::trajectory

@@ -5,7 +5,7 @@
 #include "trajectory/checks.h"
 #include "trajectory/trajectory.h"
 
-namespace hydro {
+namespace hydro::trajectory {
 namespace {
 
 class Sine : public Trajectory {
@@ -60,4 +60,4 @@ std::unique_ptr<Trajectory> MakeSine(double offset, double amplitude, double fre
   return std::make_unique<Sine>(offset, amplitude, frequency_hz, start, phase_rad);
 }
 
-}  // namespace hydro
+}  // namespace hydro::trajectory

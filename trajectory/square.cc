@@ -5,7 +5,7 @@
 #include "trajectory/checks.h"
 #include "trajectory/trajectory.h"
 
-namespace hydro {
+namespace hydro::trajectory {
 namespace {
 
 class Square : public Trajectory {
@@ -64,4 +64,4 @@ std::unique_ptr<Trajectory> MakeSquare(double offset, double amplitude, double f
   return std::make_unique<Square>(offset, amplitude, frequency_hz, start);
 }
 
-}  // namespace hydro
+}  // namespace hydro::trajectory

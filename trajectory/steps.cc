@@ -4,7 +4,7 @@
 #include "trajectory/checks.h"
 #include "trajectory/trajectory.h"
 
-namespace hydro {
+namespace hydro::trajectory {
 namespace {
 
 class Steps : public Trajectory {
@@ -50,4 +50,4 @@ std::unique_ptr<Trajectory> MakeSteps(double initial, std::vector<Step> steps) {
   return std::make_unique<Steps>(initial, std::move(steps));
 }
 
-}  // namespace hydro
+}  // namespace hydro::trajectory

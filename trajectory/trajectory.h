@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace hydro {
+namespace hydro::trajectory {
 
 class Trajectory {
  public:
@@ -63,4 +63,4 @@ std::unique_ptr<Trajectory> MakeChirp(double offset, double amplitude, double fi
 // Through points (times strictly increase); the first value before them and the last after them.
 std::unique_ptr<Trajectory> MakePoints(std::vector<Step> points, Interpolation interpolation);
 
-}  // namespace hydro
+}  // namespace hydro::trajectory

@@ -14,7 +14,7 @@
 #include "maths/solve.h"
 #include "runs/run_delays.h"
 
-namespace hydro {
+namespace hydro::diagnose {
 namespace {
 
 using Eigen::Index;
@@ -79,7 +79,7 @@ VectorXd Rate(const VectorXd& values, double step) {
   return rate;
 }
 
-std::vector<double> Speed(const MeasuredSignal& speed, const MeasuredSignal& angle,
+std::vector<double> Speed(const runs::MeasuredSignal& speed, const runs::MeasuredSignal& angle,
                           const std::vector<double>& time) {
   if (speed.measured() || !angle.measured()) return speed.values;
   std::vector<double> rate(time.size(), kNone);
@@ -89,7 +89,7 @@ std::vector<double> Speed(const MeasuredSignal& speed, const MeasuredSignal& ang
   return rate;
 }
 
-Grid MakeGrid(const MeasuredRun& run, const Parameters& model) {
+Grid MakeGrid(const runs::MeasuredRun& run, const model::Parameters& model) {
   Grid grid;
   grid.step = std::max(MedianInterval(run.time), kFinestStep);
   const auto even = [&](const std::vector<double>& values) {
@@ -105,7 +105,7 @@ Grid MakeGrid(const MeasuredRun& run, const Parameters& model) {
   grid.p1_rate = Rate(grid.p1, grid.step);
   grid.p2_rate = Rate(grid.p2, grid.step);
   const std::vector<double> arm = Speed(run.arm_speed, run.arm_angle, run.time);
-  if (run.shaft == Shaft::kDriven && !arm.empty()) grid.arm_speed = even(arm);
+  if (run.shaft == model::Shaft::kDriven && !arm.empty()) grid.arm_speed = even(arm);
   return grid;
 }
 
@@ -135,12 +135,12 @@ double Open(Index first, Index last, const Row& row) {
           scale.asDiagonal();
   inner.diagonal().array() += 1e-10;
   const Eigen::Matrix<double, N, 1> scaled = scale.asDiagonal() * right;
-  return std::max(0.0, yy - scaled.dot(SolveSymmetric(inner, scaled).col(0))) / variance;
+  return std::max(0.0, yy - scaled.dot(maths::SolveSymmetric(inner, scaled).col(0))) / variance;
 }
 
 class Clocks {
  public:
-  Clocks(Grid grid, const Parameters& model) : grid_(std::move(grid)), floor_(model.p_3) {
+  Clocks(Grid grid, const model::Parameters& model) : grid_(std::move(grid)), floor_(model.p_3) {
     const double duration = grid_.step * static_cast<double>(grid_.speed.size());
     reach_ = static_cast<int>(std::min(kLongestDelay, kLongestShare * duration) / grid_.step);
     slowest_ = 0.03 * grid_.speed.cwiseAbs().maxCoeff();
@@ -241,14 +241,14 @@ bool Agree(const std::vector<double>& parts, double whole) {
   });
 }
 
-bool Suits(const MeasuredRun& run) {
+bool Suits(const runs::MeasuredRun& run) {
   return !run.bypass && run.p1.measured() && run.p2.measured() &&
          (run.motor_speed.measured() || run.motor_angle.measured()) && run.samples() >= 100;
 }
 
 }  // namespace
 
-std::vector<ClockDelay> AlignClocks(const Parameters& model, MeasuredRun* run) {
+std::vector<ClockDelay> AlignClocks(const model::Parameters& model, runs::MeasuredRun* run) {
   if (!Suits(*run)) return {};
   const Grid grid = MakeGrid(*run, model);
   for (const VectorXd* signal : {&grid.voltage, &grid.speed, &grid.p1, &grid.p2}) {
@@ -287,20 +287,21 @@ std::vector<ClockDelay> AlignClocks(const Parameters& model, MeasuredRun* run) {
   const double speed = best[1] + Vertex(torque(best[0], best[1] - 1), open, torque(best[0], best[1] + 1));
 
   std::vector<ClockDelay> delays;
-  std::vector<SignalDelay> moves;
-  const auto add = [&](const std::vector<std::pair<const char*, MeasuredSignal MeasuredRun::*>>& signals,
-                       const Estimate& steps) {
-    ClockDelay delay{run->name, {}, grid.step * steps.mean, grid.step * std::hypot(steps.error, 0.5)};
-    for (const auto& [name, signal] : signals) {
-      if (!(run->*signal).measured()) continue;
-      delay.signals.emplace_back(name);
-      moves.emplace_back(signal, delay.delay);
-    }
-    delays.push_back(std::move(delay));
-  };
-  add({{"voltage", &MeasuredRun::voltage}, {"pressure_ref", &MeasuredRun::pressure_ref}},
+  std::vector<runs::SignalDelay> moves;
+  const auto add =
+      [&](const std::vector<std::pair<const char*, runs::MeasuredSignal runs::MeasuredRun::*>>& signals,
+          const Estimate& steps) {
+        ClockDelay delay{run->name, {}, grid.step * steps.mean, grid.step * std::hypot(steps.error, 0.5)};
+        for (const auto& [name, signal] : signals) {
+          if (!(run->*signal).measured()) continue;
+          delay.signals.emplace_back(name);
+          moves.emplace_back(signal, delay.delay);
+        }
+        delays.push_back(std::move(delay));
+      };
+  add({{"voltage", &runs::MeasuredRun::voltage}, {"pressure_ref", &runs::MeasuredRun::pressure_ref}},
       Of(command_parts, command));
-  add({{"motor_speed", &MeasuredRun::motor_speed}, {"motor_angle", &MeasuredRun::motor_angle}},
+  add({{"motor_speed", &runs::MeasuredRun::motor_speed}, {"motor_angle", &runs::MeasuredRun::motor_angle}},
       Of(speed_parts, speed));
   if (grid.arm_speed.size() > 0 && grid.arm_speed.allFinite()) {
     // Every part counts as much as any other: where a relief valve opens, flows say less.
@@ -317,15 +318,16 @@ std::vector<ClockDelay> AlignClocks(const Parameters& model, MeasuredRun* run) {
       const size_t half = parts.size() / 2;
       const Estimate arm =
           Of(parts, parts.size() % 2 == 1 ? parts[half] : (parts[half - 1] + parts[half]) / 2);
-      add({{"arm_angle", &MeasuredRun::arm_angle}, {"arm_speed", &MeasuredRun::arm_speed}}, arm);
+      add({{"arm_angle", &runs::MeasuredRun::arm_angle}, {"arm_speed", &runs::MeasuredRun::arm_speed}}, arm);
     }
   }
-  if (!RemoveDelays(moves, run)) return {};
+  if (!runs::RemoveDelays(moves, run)) return {};
   return delays;
 }
 
-RunData PrepareAligned(MeasuredRun run, const Parameters& model, std::vector<ClockDelay>* delays) {
-  MeasuredRun recorded = run;
+RunData PrepareAligned(runs::MeasuredRun run, const model::Parameters& model,
+                       std::vector<ClockDelay>* delays) {
+  runs::MeasuredRun recorded = run;
   const std::vector<ClockDelay> found = AlignClocks(model, &run);
   if (found.empty()) return PrepareRun(std::move(run), model);
   PrepareRun(std::move(recorded), model);  // what is wrong with it stands in its own row
@@ -358,4 +360,4 @@ std::string Says(const ClockDelay& delay) {
   return RunNamed(delay.run) + ": " + Enumerated(delay.signals) + " " + text + " against p1 and p2";
 }
 
-}  // namespace hydro
+}  // namespace hydro::diagnose

@@ -8,7 +8,7 @@
 #include "model/description.h"
 #include "runs/measured_run.h"
 
-namespace hydro {
+namespace hydro::diagnose {
 
 // A clock of a recording, against that of p1 and p2.
 struct ClockDelay {
@@ -28,13 +28,14 @@ struct ClockDelay {
 // are left to the search. So are delays below 20 ms or two samples: here it takes speed and command that are
 // both late, a balance that no shift of one of them alone comes near, and the same delay in every part of the
 // run. Otherwise the run is left as it is, to the bit, and nothing is returned.
-std::vector<ClockDelay> AlignClocks(const Parameters& model, MeasuredRun* run);
+std::vector<ClockDelay> AlignClocks(const model::Parameters& model, runs::MeasuredRun* run);
 
 // PrepareRun on one clock; what was found of clocks is added to `delays`. Where it was anything, a signal is
 // no surer than its time: what it changes within the standard error of the delays counts as noise.
-RunData PrepareAligned(MeasuredRun run, const Parameters& model, std::vector<ClockDelay>* delays);
+RunData PrepareAligned(runs::MeasuredRun run, const model::Parameters& model,
+                       std::vector<ClockDelay>* delays);
 
 // "run sine: motor_speed is late by 0.334 +- 0.013 s against p1 and p2"
 std::string Says(const ClockDelay& delay);
 
-}  // namespace hydro
+}  // namespace hydro::diagnose

@@ -9,7 +9,7 @@
 #include "model/description.h"
 #include "model/response.h"
 
-namespace hydro {
+namespace hydro::diagnose {
 
 enum class Verdict { kNamed, kTied, kParameters, kUnexplained, kNothingMissing };
 
@@ -63,7 +63,7 @@ struct BeforeAfter {
 };
 
 struct SignalGap {
-  Channel channel = Channel::kP1;
+  model::Channel channel = model::Channel::kP1;
   double noise = 0;
   BeforeAfter fit, held_out;
 };
@@ -83,7 +83,7 @@ struct RunCurves {
   bool held_out = false;  // the values are those of a fit that did not see it
   std::vector<double> time;
   struct Curve {
-    Channel channel = Channel::kP1;
+    model::Channel channel = model::Channel::kP1;
     std::vector<double> measured, before, after;
   };
   std::vector<Curve> curves;
@@ -112,9 +112,9 @@ struct Diagnosis {
   NextExperiment next;
   std::vector<Candidate> candidates;
   std::vector<RunCurves> curves;
-  ModelDescription model;                        // with what was found
+  model::ModelDescription model;                 // with what was found
   std::vector<std::string> runs, held_out_runs;  // held_out_runs empty: held out in turn
   size_t samples = 0;
 };
 
-}  // namespace hydro
+}  // namespace hydro::diagnose

@@ -8,7 +8,7 @@
 
 #include "diagnose/data/run_data.h"
 
-namespace hydro {
+namespace hydro::diagnose {
 namespace {
 
 constexpr int kSegment = 64;  // samples that one spectrum is of: an event spoils no more than that
@@ -213,4 +213,4 @@ double EstimateNoise(const std::vector<double>& values) {
   return std::max(noise, rounding);
 }
 
-}  // namespace hydro
+}  // namespace hydro::diagnose

@@ -6,7 +6,7 @@
 
 #include "diagnose/data/sample_interval.h"
 
-namespace hydro {
+namespace hydro::diagnose {
 
 namespace {
 
@@ -71,8 +71,8 @@ ObservedMode ObserveMode(const RunData& run) {
   mode.half_window = half;
   const double averaging = kMargin / std::sqrt(2.0 * static_cast<double>(half) + 1);
 
-  const SignalData* const p1 = run.Find(Channel::kP1);
-  const SignalData* const p2 = run.Find(Channel::kP2);
+  const SignalData* const p1 = run.Find(model::Channel::kP1);
+  const SignalData* const p2 = run.Find(model::Channel::kP2);
   if (p1 != nullptr) {
     mode.p1 = Average(p1->values, half);
     mode.p1_margin = averaging * p1->noise;
@@ -82,8 +82,8 @@ ObservedMode ObserveMode(const RunData& run) {
     mode.p2_margin = averaging * p2->noise;
   }
 
-  const SignalData* const speed = run.Find(Channel::kMotorSpeed);
-  const SignalData* const angle = run.Find(Channel::kMotorAngle);
+  const SignalData* const speed = run.Find(model::Channel::kMotorSpeed);
+  const SignalData* const angle = run.Find(model::Channel::kMotorAngle);
   if (speed == nullptr && angle == nullptr) return mode;
   const size_t reach = std::max<size_t>(1, half);
   const double angle_margin =
@@ -132,4 +132,4 @@ ObservedMode ObserveMode(const RunData& run) {
   return mode;
 }
 
-}  // namespace hydro
+}  // namespace hydro::diagnose

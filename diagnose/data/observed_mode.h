@@ -6,7 +6,7 @@
 
 #include "diagnose/data/run_data.h"
 
-namespace hydro {
+namespace hydro::diagnose {
 
 struct ObservedMode {
   // Averages over some milliseconds, which is less than a sample in slow recordings; NaN: not measured.
@@ -24,4 +24,4 @@ struct ObservedMode {
 
 ObservedMode ObserveMode(const RunData& run);
 
-}  // namespace hydro
+}  // namespace hydro::diagnose

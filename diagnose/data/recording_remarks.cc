@@ -7,7 +7,7 @@
 #include "base/word_list.h"
 #include "diagnose/data/sample_interval.h"
 
-namespace hydro {
+namespace hydro::diagnose {
 namespace {
 
 constexpr double kUnlikeStated = 1.5;    // ratio of noises, either way
@@ -72,12 +72,12 @@ void RemarkOnMotion(const std::vector<const RunData*>& runs, std::vector<std::st
   for (const RunData* run : runs) {
     for (const SignalData& signal : run->signals) {
       const ValueRange range = RangeOfValues(signal.values);
-      if (signal.channel == Channel::kMotorSpeed) {
+      if (signal.channel == model::Channel::kMotorSpeed) {
         speed = true;
         low = std::min(low, range.low);
         high = std::max(high, range.high);
         noise = std::max(noise, signal.noise);
-      } else if (signal.channel == Channel::kP1 || signal.channel == Channel::kP2) {
+      } else if (signal.channel == model::Channel::kP1 || signal.channel == model::Channel::kP2) {
         pressure = true;
         most_pressure = std::max(most_pressure, range.size() / signal.noise);
       }
@@ -111,4 +111,4 @@ std::vector<std::string> RecordingRemarks(const std::vector<ClockDelay>& clocks,
   return remarks;
 }
 
-}  // namespace hydro
+}  // namespace hydro::diagnose

@@ -8,7 +8,7 @@
 #include "diagnose/data/run_start.h"
 #include "diagnose/data/smoothed_motion.h"
 
-namespace hydro {
+namespace hydro::diagnose {
 namespace {
 
 constexpr size_t kFewestSamples = 100;
@@ -18,16 +18,17 @@ constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 struct ChannelRow {
   const char* name;
   const char* unit;
-  MeasuredSignal MeasuredRun::*signal;
+  runs::MeasuredSignal runs::MeasuredRun::*signal;
   bool arm;
 };
 
-constexpr ChannelRow kRows[kChannels] = {{"motor_angle", "rad", &MeasuredRun::motor_angle, false},
-                                         {"motor_speed", "rad/s", &MeasuredRun::motor_speed, false},
-                                         {"arm_angle", "rad", &MeasuredRun::arm_angle, true},
-                                         {"arm_speed", "rad/s", &MeasuredRun::arm_speed, true},
-                                         {"p1", "psi", &MeasuredRun::p1, false},
-                                         {"p2", "psi", &MeasuredRun::p2, false}};
+constexpr ChannelRow kRows[model::kChannels] = {
+    {"motor_angle", "rad", &runs::MeasuredRun::motor_angle, false},
+    {"motor_speed", "rad/s", &runs::MeasuredRun::motor_speed, false},
+    {"arm_angle", "rad", &runs::MeasuredRun::arm_angle, true},
+    {"arm_speed", "rad/s", &runs::MeasuredRun::arm_speed, true},
+    {"p1", "psi", &runs::MeasuredRun::p1, false},
+    {"p2", "psi", &runs::MeasuredRun::p2, false}};
 
 [[noreturn]] void Refuse(const std::string& place, const std::string& signal, const std::string& found,
                          const std::string& allowed) {
@@ -42,7 +43,7 @@ size_t CountValid(const std::vector<double>& values) {
 
 // What no actuator reaches, in the model's own units; twice what its equations could hold and more, so that
 // only another unit gets there and a wrong parameter does not.
-double Impossible(const ChannelRow& row, const Parameters& model) {
+double Impossible(const ChannelRow& row, const model::Parameters& model) {
   const std::string name = row.name;
   const double stroke = model.V_ms / model.c;  // where V_1 or V_2 is 0, eqs. (6), (7)
   if (name == "motor_speed") return 1e5;       // rad/s in every coherent system
@@ -52,7 +53,7 @@ double Impossible(const ChannelRow& row, const Parameters& model) {
   return model.beta / 2;  // the oil at half its volume, eq. (5)
 }
 
-void CheckRange(const MeasuredRun& run, const std::string& name, const std::vector<double>& values,
+void CheckRange(const runs::MeasuredRun& run, const std::string& name, const std::vector<double>& values,
                 double limit, const std::string& unit) {
   for (size_t i = 0; i < values.size(); ++i) {
     if (std::isnan(values[i]) || std::abs(values[i]) <= limit) continue;
@@ -62,7 +63,7 @@ void CheckRange(const MeasuredRun& run, const std::string& name, const std::vect
   }
 }
 
-void CheckSignal(const MeasuredRun& run, const ChannelRow& row, const Parameters& model) {
+void CheckSignal(const runs::MeasuredRun& run, const ChannelRow& row, const model::Parameters& model) {
   const std::vector<double>& values = (run.*row.signal).values;
   const size_t valid = CountValid(values);
   if (valid < kFewestValues) {
@@ -104,8 +105,8 @@ std::vector<double> WithoutEnds(const std::vector<double>& values, const ValueRa
   return rest;
 }
 
-SignalData MakeSignal(const MeasuredRun& run, Channel channel) {
-  const MeasuredSignal& measured = run.*kRows[static_cast<size_t>(channel)].signal;
+SignalData MakeSignal(const runs::MeasuredRun& run, model::Channel channel) {
+  const runs::MeasuredSignal& measured = run.*kRows[static_cast<size_t>(channel)].signal;
   SignalData signal;
   signal.channel = channel;
   signal.values = measured.values;
@@ -134,11 +135,12 @@ SignalData MakeSignal(const MeasuredRun& run, Channel channel) {
 }
 
 // The motion that a driven shaft is made to follow.
-std::unique_ptr<Trajectory> ImposedMotion(const MeasuredRun& run, const Parameters& model) {
-  const SignalData angle = MakeSignal(run, Channel::kArmAngle);
+std::unique_ptr<trajectory::Trajectory> ImposedMotion(const runs::MeasuredRun& run,
+                                                      const model::Parameters& model) {
+  const SignalData angle = MakeSignal(run, model::Channel::kArmAngle);
   SignalData speed;
-  if (run.arm_speed.measured()) speed = MakeSignal(run, Channel::kArmSpeed);
-  std::unique_ptr<Trajectory> motion =
+  if (run.arm_speed.measured()) speed = MakeSignal(run, model::Channel::kArmSpeed);
+  std::unique_ptr<trajectory::Trajectory> motion =
       SmoothMotion(run.time, angle.values, angle.noise, speed.values, speed.noise);
   const double stroke = model.V_ms / model.c;
   CheckRange(run, "arm_angle", angle.values, stroke, "rad");
@@ -152,19 +154,19 @@ std::unique_ptr<Trajectory> ImposedMotion(const MeasuredRun& run, const Paramete
 
 }  // namespace
 
-const std::string& ChannelName(Channel channel) {
-  static const std::array<std::string, kChannels> names = {kRows[0].name, kRows[1].name, kRows[2].name,
-                                                           kRows[3].name, kRows[4].name, kRows[5].name};
+const std::string& ChannelName(model::Channel channel) {
+  static const std::array<std::string, model::kChannels> names = {
+      kRows[0].name, kRows[1].name, kRows[2].name, kRows[3].name, kRows[4].name, kRows[5].name};
   return names.at(static_cast<size_t>(channel));
 }
 
-const std::string& ChannelUnit(Channel channel) {
-  static const std::array<std::string, kChannels> units = {kRows[0].unit, kRows[1].unit, kRows[2].unit,
-                                                           kRows[3].unit, kRows[4].unit, kRows[5].unit};
+const std::string& ChannelUnit(model::Channel channel) {
+  static const std::array<std::string, model::kChannels> units = {
+      kRows[0].unit, kRows[1].unit, kRows[2].unit, kRows[3].unit, kRows[4].unit, kRows[5].unit};
   return units.at(static_cast<size_t>(channel));
 }
 
-const SignalData* RunData::Find(Channel channel) const {
+const SignalData* RunData::Find(model::Channel channel) const {
   for (const SignalData& signal : signals) {
     if (signal.channel == channel) return &signal;
   }
@@ -181,7 +183,7 @@ ValueRange RangeOfValues(const std::vector<double>& values) {
   return range;
 }
 
-RunData PrepareRun(MeasuredRun run, const Parameters& model) {
+RunData PrepareRun(runs::MeasuredRun run, const model::Parameters& model) {
   if (run.samples() < kFewestSamples) {
     Refuse(run.file, "", std::to_string(run.samples()) + " samples",
            std::to_string(kFewestSamples) + " or more");
@@ -195,21 +197,21 @@ RunData PrepareRun(MeasuredRun run, const Parameters& model) {
   data.stimulus.voltage = run.voltage.values;
   // A thousand times what saturates the amplifier, eq. (1).
   CheckRange(run, "voltage", run.voltage.values, 1000 * model.T_pmax / model.k_1, "V");
-  for (size_t channel = 0; channel < kChannels; ++channel) {
+  for (size_t channel = 0; channel < model::kChannels; ++channel) {
     const ChannelRow& row = kRows[channel];
     if (!(run.*row.signal).measured()) continue;
     CheckSignal(run, row, model);
     // The arm of a clamped shaft stands still, that of a driven one is imposed.
-    if (row.arm && run.shaft != Shaft::kFree) continue;
-    SignalData signal = MakeSignal(run, static_cast<Channel>(channel));
+    if (row.arm && run.shaft != model::Shaft::kFree) continue;
+    SignalData signal = MakeSignal(run, static_cast<model::Channel>(channel));
     if (signal.valid >= kFewestValues) data.signals.push_back(std::move(signal));
   }
   if (data.signals.empty()) {
     Refuse(run.file, "", "no signal to compare a model with",
            std::string("one or more of motor_speed, motor_angle, p1, p2") +
-               (run.shaft == Shaft::kFree ? ", arm_angle, arm_speed" : ""));
+               (run.shaft == model::Shaft::kFree ? ", arm_angle, arm_speed" : ""));
   }
-  if (run.shaft == Shaft::kDriven) {
+  if (run.shaft == model::Shaft::kDriven) {
     data.motion = ImposedMotion(run, model);
     data.stimulus.motion = data.motion.get();
   }
@@ -228,4 +230,4 @@ void NameApart(std::vector<RunData>* runs) {
   }
 }
 
-}  // namespace hydro
+}  // namespace hydro::diagnose

@@ -14,10 +14,10 @@
 #include "runs/measured_run.h"
 #include "trajectory/trajectory.h"
 
-namespace hydro {
+namespace hydro::diagnose {
 
 struct SignalData {
-  Channel channel = Channel::kP1;
+  model::Channel channel = model::Channel::kP1;
   std::vector<double> values;  // a sample each; NaN: missing
   double noise = 0;            // standard deviation, in the signal's unit: estimated from the data
   double stated_noise = std::numeric_limits<double>::quiet_NaN();  // what the run says of it
@@ -29,32 +29,32 @@ struct SignalData {
 
 struct RunData {
   std::string name;  // unique among the runs
-  MeasuredRun measured;
-  Stimulus stimulus;  // `motion` points to the one below
-  std::unique_ptr<Trajectory> motion;
-  StartState start{};  // the base states at the first sample, from its neighbours
+  runs::MeasuredRun measured;
+  model::Stimulus stimulus;  // `motion` points to the one below
+  std::unique_ptr<trajectory::Trajectory> motion;
+  model::StartState start{};  // the base states at the first sample, from its neighbours
   // Which of them are unknown: measured badly or not at all. Others are held (the angle of a motor whose
   // angle is not measured).
   std::array<bool, 6> start_free{};
   // The start at rest, where the first sample of the motor's speed allows that and `start` moves: what
   // accelerates from rest has its speed extrapolated.
-  std::optional<StartState> at_rest;
+  std::optional<model::StartState> at_rest;
   std::vector<SignalData> signals;  // those that a simulation is compared with
 
   size_t samples() const { return stimulus.time.size(); }
   double duration() const { return stimulus.time.back() - stimulus.time.front(); }
-  const SignalData* Find(Channel channel) const;
+  const SignalData* Find(model::Channel channel) const;
 };
 
 // "motor_speed", as in sidecars and reports.
-const std::string& ChannelName(Channel channel);
+const std::string& ChannelName(model::Channel channel);
 // "rad/s"
-const std::string& ChannelUnit(Channel channel);
+const std::string& ChannelUnit(model::Channel channel);
 
 // Throws InputError, with run, signal and row, for data that nothing can be learnt from: fewer than 100
 // samples, a signal that never changes or is not there at all, none that a model could be compared with,
 // values that are impossible (speeds of 1e5 rad/s: another unit).
-RunData PrepareRun(MeasuredRun run, const Parameters& model);
+RunData PrepareRun(runs::MeasuredRun run, const model::Parameters& model);
 
 // Between the smallest and the largest value, NaN left out; low is above high when there is none.
 struct ValueRange {
@@ -76,4 +76,4 @@ double EstimateNoise(const std::vector<double>& values);
 // The smallest step between values that differ; 0 when most steps are no multiples of it.
 double EstimateResolution(const std::vector<double>& values);
 
-}  // namespace hydro
+}  // namespace hydro::diagnose

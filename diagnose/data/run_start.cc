@@ -6,7 +6,7 @@
 
 #include "model/state.h"
 
-namespace hydro {
+namespace hydro::diagnose {
 namespace {
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
@@ -56,54 +56,55 @@ Line FirstLine(const std::vector<double>& time, const SignalData& signal) {
 
 }  // namespace
 
-void SetStart(const Parameters& model, RunData* data) {
+void SetStart(const model::Parameters& model, RunData* data) {
   const std::vector<double>& time = data->stimulus.time;
-  const auto line = [&](Channel channel) {
+  const auto line = [&](model::Channel channel) {
     const SignalData* signal = data->Find(channel);
     return signal == nullptr ? Line{} : FirstLine(time, *signal);
   };
   const auto first_known = [](double a, double b) { return std::isnan(a) ? b : a; };
-  const Line motor_angle = line(Channel::kMotorAngle), motor_speed = line(Channel::kMotorSpeed);
-  data->start[kMotorAngle] = first_known(motor_angle.value, 0);
-  data->start[kMotorSpeed] = first_known(Rest(motor_speed.value, motor_speed.value_error),
-                                         Rest(motor_angle.slope, motor_angle.slope_error));
-  data->start_free[kMotorAngle] = !std::isnan(motor_angle.value);
-  data->start_free[kMotorSpeed] = true;
+  const Line motor_angle = line(model::Channel::kMotorAngle), motor_speed = line(model::Channel::kMotorSpeed);
+  data->start[model::kMotorAngle] = first_known(motor_angle.value, 0);
+  data->start[model::kMotorSpeed] = first_known(Rest(motor_speed.value, motor_speed.value_error),
+                                                Rest(motor_angle.slope, motor_angle.slope_error));
+  data->start_free[model::kMotorAngle] = !std::isnan(motor_angle.value);
+  data->start_free[model::kMotorSpeed] = true;
 
-  double p1 = line(Channel::kP1).value, p2 = line(Channel::kP2).value;
+  double p1 = line(model::Channel::kP1).value, p2 = line(model::Channel::kP2).value;
   if (data->stimulus.bypass) {
     // One pressure, eqs. (13), (14) added up; p1 stands for both in start_free, and whoever moves it moves
     // p2.
     p1 = p2 = std::isnan(p1) ? p2 : std::isnan(p2) ? p1 : (p1 + p2) / 2;
   }
-  data->start[kP1] = first_known(p1, model.p_3);
-  data->start[kP2] = first_known(p2, model.p_3);
-  data->start_free[kP1] = true;
-  data->start_free[kP2] = !data->stimulus.bypass;
+  data->start[model::kP1] = first_known(p1, model.p_3);
+  data->start[model::kP2] = first_known(p2, model.p_3);
+  data->start_free[model::kP1] = true;
+  data->start_free[model::kP2] = !data->stimulus.bypass;
 
-  if (data->stimulus.shaft == Shaft::kFree) {
-    const Line arm_angle = line(Channel::kArmAngle), arm_speed = line(Channel::kArmSpeed);
-    data->start[kArmAngle] = first_known(arm_angle.value, 0);
-    data->start[kArmSpeed] = first_known(Rest(arm_speed.value, arm_speed.value_error),
-                                         Rest(arm_angle.slope, arm_angle.slope_error));
-    data->start_free[kArmAngle] = data->start_free[kArmSpeed] = true;
-  } else if (data->stimulus.shaft == Shaft::kDriven) {
-    data->start[kArmAngle] = data->motion->Value(time.front());
-    data->start[kArmSpeed] = data->motion->Rate(time.front());
+  if (data->stimulus.shaft == model::Shaft::kFree) {
+    const Line arm_angle = line(model::Channel::kArmAngle), arm_speed = line(model::Channel::kArmSpeed);
+    data->start[model::kArmAngle] = first_known(arm_angle.value, 0);
+    data->start[model::kArmSpeed] = first_known(Rest(arm_speed.value, arm_speed.value_error),
+                                                Rest(arm_angle.slope, arm_angle.slope_error));
+    data->start_free[model::kArmAngle] = data->start_free[model::kArmSpeed] = true;
+  } else if (data->stimulus.shaft == model::Shaft::kDriven) {
+    data->start[model::kArmAngle] = data->motion->Value(time.front());
+    data->start[model::kArmSpeed] = data->motion->Rate(time.front());
   } else {
-    data->start[kArmAngle] = data->stimulus.arm_angle;
+    data->start[model::kArmAngle] = data->stimulus.arm_angle;
   }
 
   // Each speed for itself; one that is not measured says nothing against rest.
-  StartState at_rest = data->start;
-  const auto may_rest = [&](Channel channel) {
+  model::StartState at_rest = data->start;
+  const auto may_rest = [&](model::Channel channel) {
     const SignalData* speed = data->Find(channel);
     return speed == nullptr || std::abs(speed->values.front()) < kAtRest * speed->noise;
   };
-  if (data->Find(Channel::kMotorSpeed) == nullptr || !may_rest(Channel::kMotorSpeed)) return;
-  at_rest[kMotorSpeed] = 0;
-  if (data->stimulus.shaft == Shaft::kFree && may_rest(Channel::kArmSpeed)) at_rest[kArmSpeed] = 0;
+  if (data->Find(model::Channel::kMotorSpeed) == nullptr || !may_rest(model::Channel::kMotorSpeed)) return;
+  at_rest[model::kMotorSpeed] = 0;
+  if (data->stimulus.shaft == model::Shaft::kFree && may_rest(model::Channel::kArmSpeed))
+    at_rest[model::kArmSpeed] = 0;
   if (at_rest != data->start) data->at_rest = at_rest;
 }
 
-}  // namespace hydro
+}  // namespace hydro::diagnose

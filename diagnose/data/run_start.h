@@ -3,9 +3,9 @@
 
 #include "diagnose/data/run_data.h"
 
-namespace hydro {
+namespace hydro::diagnose {
 
 // Sets the run's start, start_free and at_rest from its first samples; everything else of `data` is there.
-void SetStart(const Parameters& model, RunData* data);
+void SetStart(const model::Parameters& model, RunData* data);
 
-}  // namespace hydro
+}  // namespace hydro::diagnose

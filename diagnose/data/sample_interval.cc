@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstddef>
 
-namespace hydro {
+namespace hydro::diagnose {
 
 double MedianInterval(const std::vector<const std::vector<double>*>& times) {
   std::vector<double> intervals;
@@ -18,4 +18,4 @@ double MedianInterval(const std::vector<const std::vector<double>*>& times) {
 
 double MedianInterval(const std::vector<double>& time) { return MedianInterval(std::vector{&time}); }
 
-}  // namespace hydro
+}  // namespace hydro::diagnose

@@ -9,7 +9,7 @@
 #include <limits>
 #include <utility>
 
-namespace hydro {
+namespace hydro::diagnose {
 namespace {
 
 // Angle, rate and acceleration, in units of time that make them about as large as each other.
@@ -17,7 +17,7 @@ using State = Eigen::Vector3d;
 using Covariance = Eigen::Matrix3d;
 
 // Quintics between points that each have a value, a rate and an acceleration.
-class Quintics : public Trajectory {
+class Quintics : public trajectory::Trajectory {
  public:
   // `unit`: s, the unit of time of the points' rates and accelerations.
   Quintics(std::vector<double> times, const std::vector<State>& points, double unit)
@@ -169,9 +169,9 @@ class Smoother {
 
 }  // namespace
 
-std::unique_ptr<Trajectory> SmoothMotion(const std::vector<double>& time, const std::vector<double>& angle,
-                                         double angle_noise, const std::vector<double>& rate,
-                                         double rate_noise) {
+std::unique_ptr<trajectory::Trajectory> SmoothMotion(const std::vector<double>& time,
+                                                     const std::vector<double>& angle, double angle_noise,
+                                                     const std::vector<double>& rate, double rate_noise) {
   Smoother smoother(time, angle, angle_noise, rate, rate_noise);
   if (smoother.range() == 0) {
     const double held = *std::find_if(angle.begin(), angle.end(), [](double a) { return !std::isnan(a); });
@@ -196,4 +196,4 @@ std::unique_ptr<Trajectory> SmoothMotion(const std::vector<double>& time, const 
   return std::make_unique<Quintics>(time, smoother.Smooth(), smoother.unit());
 }
 
-}  // namespace hydro
+}  // namespace hydro::diagnose

@@ -8,7 +8,7 @@
 #include "model/parameter_info.h"
 #include "runs/run_delays.h"
 
-namespace hydro {
+namespace hydro::diagnose {
 namespace {
 
 constexpr double kMostCorrection = 0.15;       // s
@@ -26,14 +26,16 @@ size_t ClockOf(const std::string& signal) {
   return signal.starts_with("motor") ? 1 : 0;
 }
 
-RunData Corrected(const RunData& run, const Correction& correction, const Parameters& model) {
+RunData Corrected(const RunData& run, const Correction& correction, const model::Parameters& model) {
   const double step = Interval(run);
-  MeasuredRun moved = run.measured;
-  std::vector<SignalDelay> delays = {
-      {&MeasuredRun::voltage, step * correction[0]},     {&MeasuredRun::pressure_ref, step * correction[0]},
-      {&MeasuredRun::motor_speed, step * correction[1]}, {&MeasuredRun::motor_angle, step * correction[1]},
-      {&MeasuredRun::arm_angle, step * correction[2]},   {&MeasuredRun::arm_speed, step * correction[2]}};
-  RemoveDelays(delays, &moved);
+  runs::MeasuredRun moved = run.measured;
+  std::vector<runs::SignalDelay> delays = {{&runs::MeasuredRun::voltage, step * correction[0]},
+                                           {&runs::MeasuredRun::pressure_ref, step * correction[0]},
+                                           {&runs::MeasuredRun::motor_speed, step * correction[1]},
+                                           {&runs::MeasuredRun::motor_angle, step * correction[1]},
+                                           {&runs::MeasuredRun::arm_angle, step * correction[2]},
+                                           {&runs::MeasuredRun::arm_speed, step * correction[2]}};
+  runs::RemoveDelays(delays, &moved);
   RunData corrected = PrepareRun(std::move(moved), model);
   // What timing adds to the noise stays.
   for (SignalData& signal : corrected.signals) {
@@ -44,7 +46,7 @@ RunData Corrected(const RunData& run, const Correction& correction, const Parame
 }
 
 std::vector<RunData> AllCorrected(const std::vector<RunData>& runs, const Correction& correction,
-                                  const Parameters& model) {
+                                  const model::Parameters& model) {
   std::vector<RunData> corrected;
   corrected.reserve(runs.size());
   for (const RunData& run : runs) corrected.push_back(Corrected(run, correction, model));
@@ -53,7 +55,7 @@ std::vector<RunData> AllCorrected(const std::vector<RunData>& runs, const Correc
 
 }  // namespace
 
-void CorrectClocks(const ModelDescription& model, const std::vector<size_t>& allowed_base, int jobs,
+void CorrectClocks(const model::ModelDescription& model, const std::vector<size_t>& allowed_base, int jobs,
                    std::vector<RunData>* runs, std::vector<RunData>* held_out,
                    std::vector<ClockDelay>* clocks) {
   if (clocks->empty() || runs->empty()) return;
@@ -65,7 +67,7 @@ void CorrectClocks(const ModelDescription& model, const std::vector<size_t>& all
   Hypothesis best;
   best.model = model;
   for (const size_t i : allowed_base) {
-    const std::string& name = BaseParameters()[i].info.name;
+    const std::string& name = model::BaseParameters()[i].info.name;
     for (const char* free : {"J", "b", "T_s", "beta", "c_E"}) {
       if (name == free) best.base.push_back(i);
     }
@@ -75,7 +77,7 @@ void CorrectClocks(const ModelDescription& model, const std::vector<size_t>& all
   const auto consider = [&](const Correction& correction, int iterations) {
     const std::vector<RunData> moved = AllCorrected(*runs, correction, model.parameters);
     std::vector<const RunData*> pointers;
-    std::vector<StartState> starts;
+    std::vector<model::StartState> starts;
     for (const RunData& run : moved) {
       pointers.push_back(&run);
       starts.push_back(run.start);
@@ -120,4 +122,4 @@ void CorrectClocks(const ModelDescription& model, const std::vector<size_t>& all
   *held_out = AllCorrected(*held_out, at, model.parameters);
 }
 
-}  // namespace hydro
+}  // namespace hydro::diagnose

@@ -6,7 +6,7 @@
 
 #include "diagnose/fit/residuals.h"
 
-namespace hydro {
+namespace hydro::diagnose {
 
 namespace {
 
@@ -21,7 +21,7 @@ BlockSums BlocksOf(const std::vector<const RunData*>& runs, const HeldOut& predi
     Residuals residuals;
     try {
       residuals = ResidualsOf(predicted.models[r], *runs[r], predicted.starts[r]);
-    } catch (const ModelError&) {
+    } catch (const model::ModelError&) {
       // Infinitely bad, but comparable.
       blocks.sums.insert(blocks.sums.end(), kBlocksPerRun, 1e12);
       continue;
@@ -105,4 +105,4 @@ double CorrelationOf(const std::vector<const RunData*>& runs, const Fitted& fitt
   return count > 0 ? std::max(1.0, weighted / count) : 1;
 }
 
-}  // namespace hydro
+}  // namespace hydro::diagnose

@@ -6,7 +6,7 @@
 #include "diagnose/fit/fit.h"
 #include "diagnose/fit/held_out.h"
 
-namespace hydro {
+namespace hydro::diagnose {
 
 // Sums of squared residuals over stretches of time long enough to be nearly independent, run after run.
 struct BlockSums {
@@ -41,4 +41,4 @@ double PValue(double fall, double squared_gap, double correlation, size_t parame
 // How many successive residuals count as one: the integrated autocorrelation of each signal, averaged.
 double CorrelationOf(const std::vector<const RunData*>& runs, const Fitted& fitted);
 
-}  // namespace hydro
+}  // namespace hydro::diagnose

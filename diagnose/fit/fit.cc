@@ -14,7 +14,7 @@
 #include "diagnose/fit/residuals.h"
 #include "maths/solve.h"
 
-namespace hydro {
+namespace hydro::diagnose {
 
 namespace {
 
@@ -26,7 +26,7 @@ using Eigen::VectorXd;
 // square root of their normal equations: the same cost, gradient and Gauss-Newton matrix in a few numbers.
 class RunCost : public ceres::CostFunction {
  public:
-  RunCost(const Hypothesis& hypothesis, const RunData& run, const StartState& start)
+  RunCost(const Hypothesis& hypothesis, const RunData& run, const model::StartState& start)
       : hypothesis_(hypothesis),
         free_(hypothesis.Free()),
         run_(run),
@@ -55,7 +55,7 @@ class RunCost : public ceres::CostFunction {
       return true;
     }
     // [J r]' [J r] = V L V'; the rows of L^1/2 V' are as good as those of [J r].
-    const Eigensystem eigen = EigensystemOf(normal);
+    const maths::Eigensystem eigen = maths::EigensystemOf(normal);
     const MatrixXd root = eigen.values.cwiseMax(0.0).cwiseSqrt().asDiagonal() * eigen.vectors.transpose();
     out = root.col(n);
     using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
@@ -76,13 +76,13 @@ class RunCost : public ceres::CostFunction {
     std::vector<double> values;
     for (size_t i = 0; i < at.size(); ++i) values.push_back(at[i].value = at[i].FromFitted(free[i]));
     point.Set(values);
-    StartState from = start_;
+    model::StartState from = start_;
     for (size_t i = 0; i < starts_.size(); ++i) from[starts_[i].index] = start[i];
     Residuals r;
     try {
       r = derivatives ? ResidualsOf(point.model, run_, from, at, starts_)
                       : ResidualsOf(point.model, run_, from);
-    } catch (const ModelError&) {
+    } catch (const model::ModelError&) {
       return false;
     }
     const auto rows = static_cast<Eigen::Index>(r.values.size());
@@ -105,7 +105,7 @@ class RunCost : public ceres::CostFunction {
   }
 
   size_t count() const { return count_; }
-  const std::vector<Unknown>& starts() const { return starts_; }
+  const std::vector<model::Unknown>& starts() const { return starts_; }
 
  private:
   size_t unknowns() const { return free_.size() + starts_.size(); }
@@ -113,8 +113,8 @@ class RunCost : public ceres::CostFunction {
   const Hypothesis& hypothesis_;
   std::vector<FreeParameter> free_;
   const RunData& run_;
-  StartState start_;
-  std::vector<Unknown> starts_;
+  model::StartState start_;
+  std::vector<model::Unknown> starts_;
   mutable size_t count_ = 0;
   MatrixXd prepared_;
   bool can_be_simulated_ = false;
@@ -141,15 +141,15 @@ class AllRuns : public ceres::EvaluationCallback {
 
 }  // namespace
 
-std::vector<StartState> StartsOf(const Fitted& fitted) {
-  std::vector<StartState> starts;
+std::vector<model::StartState> StartsOf(const Fitted& fitted) {
+  std::vector<model::StartState> starts;
   starts.reserve(fitted.runs.size());
   for (const RunFit& run : fitted.runs) starts.push_back(run.start);
   return starts;
 }
 
 Fitted Fit(const Hypothesis& hypothesis, const std::vector<const RunData*>& runs,
-           const std::vector<StartState>& starts, const FitOptions& options) {
+           const std::vector<model::StartState>& starts, const FitOptions& options) {
   Fitted fitted;
   fitted.hypothesis = hypothesis;
   std::vector<FreeParameter> free = hypothesis.Free();
@@ -172,7 +172,7 @@ Fitted Fit(const Hypothesis& hypothesis, const std::vector<const RunData*>& runs
     RunCost* const cost =
         costs.emplace_back(std::make_unique<RunCost>(hypothesis, *runs[r], starts[r])).get();
     all_runs.Add(cost);
-    for (const Unknown& start : cost->starts()) start_values[r].push_back(starts[r][start.index]);
+    for (const model::Unknown& start : cost->starts()) start_values[r].push_back(starts[r][start.index]);
     std::vector<double*> blocks;
     if (!free.empty()) blocks.push_back(values.data());
     if (!start_values[r].empty()) blocks.push_back(start_values[r].data());
@@ -253,4 +253,4 @@ Fitted Fit(const Hypothesis& hypothesis, const std::vector<const RunData*>& runs
   return fitted;
 }
 
-}  // namespace hydro
+}  // namespace hydro::diagnose

@@ -9,10 +9,10 @@
 #include "diagnose/data/run_data.h"
 #include "diagnose/fit/hypothesis.h"
 
-namespace hydro {
+namespace hydro::diagnose {
 
 struct RunFit {
-  StartState start{};
+  model::StartState start{};
   double sum = 0;    // of squared residuals
   size_t count = 0;  // of residuals
   // At the fitted values, with the unknown start taken out (its best follows the parameters): information and
@@ -32,7 +32,7 @@ struct Fitted {
 };
 
 // Each run's start, as fitted.
-std::vector<StartState> StartsOf(const Fitted& fitted);
+std::vector<model::StartState> StartsOf(const Fitted& fitted);
 
 // What is known of the free parameters beforehand: each, as it is fitted (logarithms of some), adds
 // weight (it - centre)^2 to the sum that is least.
@@ -50,6 +50,6 @@ struct FitOptions {
 // `starts`: one a run, where to begin. Never throws ModelError: a model that cannot be simulated is a
 // failure.
 Fitted Fit(const Hypothesis& hypothesis, const std::vector<const RunData*>& runs,
-           const std::vector<StartState>& starts, const FitOptions& options);
+           const std::vector<model::StartState>& starts, const FitOptions& options);
 
-}  // namespace hydro
+}  // namespace hydro::diagnose

@@ -9,7 +9,7 @@
 #include "diagnose/fit/start_fit.h"
 #include "maths/solve.h"
 
-namespace hydro {
+namespace hydro::diagnose {
 
 namespace {
 
@@ -23,7 +23,7 @@ using Eigen::VectorXd;
 constexpr double kDoubtful = 1.5;
 
 // One run against a model whose parameters are held.
-HeldOut PredictRun(const Hypothesis& hypothesis, const RunData& run, const StartState& from,
+HeldOut PredictRun(const Hypothesis& hypothesis, const RunData& run, const model::StartState& from,
                    double doubtful) {
   const Fitted fitted = FitStart(hypothesis, run, from, doubtful);
   HeldOut part;
@@ -52,11 +52,11 @@ HeldOut Sum(const std::vector<HeldOut>& parts) {
 }
 
 // The value without the change.
-double Neutral(const FreeParameter& parameter, const ModelDescription& given) {
-  if (parameter.unknown.kind == Unknown::Kind::kBase) {
-    return given.parameters.*BaseParameters()[parameter.unknown.index].member;
+double Neutral(const FreeParameter& parameter, const model::ModelDescription& given) {
+  if (parameter.unknown.kind == model::Unknown::Kind::kBase) {
+    return given.parameters.*model::BaseParameters()[parameter.unknown.index].member;
   }
-  for (const EffectDescription& effect : given.effects) {
+  for (const model::EffectDescription& effect : given.effects) {
     for (const auto& [name, value] : effect.parameters) {
       if (effect.id + "." + name == parameter.name) return value;
     }
@@ -66,7 +66,7 @@ double Neutral(const FreeParameter& parameter, const ModelDescription& given) {
 
 // What little is known beforehand: a base parameter is within a third of what was given, the size of an
 // effect within its own size of none.
-Prior PriorOf(const std::vector<FreeParameter>& free, const ModelDescription& given) {
+Prior PriorOf(const std::vector<FreeParameter>& free, const model::ModelDescription& given) {
   constexpr double kBaseSpread = 0.3;
   Prior prior;
   for (const FreeParameter& parameter : free) {
@@ -74,7 +74,7 @@ Prior PriorOf(const std::vector<FreeParameter>& free, const ModelDescription& gi
     const double moved = std::abs(parameter.ToFitted(parameter.value) - parameter.ToFitted(neutral));
     double spread = std::max({moved, kBaseSpread * std::abs(neutral), 1e-300});
     if (parameter.logarithmic) {
-      spread = parameter.unknown.kind == Unknown::Kind::kBase ? kBaseSpread + moved : 1;
+      spread = parameter.unknown.kind == model::Unknown::Kind::kBase ? kBaseSpread + moved : 1;
     }
     prior.centre.push_back(parameter.ToFitted(neutral));
     prior.weight.push_back(1 / (spread * spread));
@@ -100,7 +100,7 @@ HeldOut Predict(const Fitted& fitted, const std::vector<const RunData*>& held_ou
   return Sum(parts);
 }
 
-HeldOut PredictInTurn(const Fitted& fitted, const ModelDescription& given,
+HeldOut PredictInTurn(const Fitted& fitted, const model::ModelDescription& given,
                       const std::vector<const RunData*>& runs, int jobs) {
   const std::vector<FreeParameter> free = fitted.hypothesis.Free();
   const auto p = static_cast<Index>(free.size());
@@ -124,7 +124,7 @@ HeldOut PredictInTurn(const Fitted& fitted, const ModelDescription& given,
       }
       const VectorXd scale = left.diagonal().cwiseSqrt().cwiseInverse();
       const MatrixXd scaled = scale.asDiagonal() * left * scale.asDiagonal();
-      const VectorXd move = -(scale.asDiagonal() * SolveSymmetric(scaled, scale.asDiagonal() * right));
+      const VectorXd move = -(scale.asDiagonal() * maths::SolveSymmetric(scaled, scale.asDiagonal() * right));
       std::vector<double> values;
       for (Index i = 0; i < p; ++i) {
         const FreeParameter& parameter = free[static_cast<size_t>(i)];
@@ -148,4 +148,4 @@ HeldOut PredictInTurn(const Fitted& fitted, const ModelDescription& given,
   return Sum(parts);
 }
 
-}  // namespace hydro
+}  // namespace hydro::diagnose

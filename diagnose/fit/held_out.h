@@ -6,14 +6,14 @@
 
 #include "diagnose/fit/fit.h"
 
-namespace hydro {
+namespace hydro::diagnose {
 
 struct HeldOut {
   double sum = 0;
   size_t count = 0;
   // By run: the predicted start, and the model that did not see it.
-  std::vector<StartState> starts;
-  std::vector<ModelDescription> models;
+  std::vector<model::StartState> starts;
+  std::vector<model::ModelDescription> models;
 
   double squared_gap() const { return count == 0 ? 0 : sum / static_cast<double>(count); }
 };
@@ -24,7 +24,7 @@ HeldOut Predict(const Fitted& fitted, const std::vector<const RunData*>& held_ou
 // Each of the fit's runs in turn: what the others say of the parameters (with what they cannot tell drawn to
 // the values of `given` and to effects of no size), and how well that predicts it. They are asked by a
 // Gauss-Newton step from the common fit, and by a fit of their own when that step predicts the run badly.
-HeldOut PredictInTurn(const Fitted& fitted, const ModelDescription& given,
+HeldOut PredictInTurn(const Fitted& fitted, const model::ModelDescription& given,
                       const std::vector<const RunData*>& runs, int jobs);
 
-}  // namespace hydro
+}  // namespace hydro::diagnose

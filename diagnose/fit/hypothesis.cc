@@ -5,7 +5,7 @@
 
 #include "diagnose/data/sample_interval.h"
 
-namespace hydro {
+namespace hydro::diagnose {
 
 namespace {
 
@@ -16,12 +16,12 @@ constexpr double kReach = 300;
 // small change of frequency is a large one of phase.
 constexpr double kElsewhere[] = {0.8, 1.25};
 
-const ParameterInfo& InfoOf(const EffectDescription& effect, const std::string& name) {
-  const EffectInfo* info = FindEffect(effect.id);
-  for (const ParameterInfo& parameter : info->parameters) {
+const model::ParameterInfo& InfoOf(const model::EffectDescription& effect, const std::string& name) {
+  const model::EffectInfo* info = model::FindEffect(effect.id);
+  for (const model::ParameterInfo& parameter : info->parameters) {
     if (parameter.name == name) return parameter;
   }
-  throw ModelError("effect \"" + effect.id + "\" has no parameter \"" + name + "\"");
+  throw model::ModelError("effect \"" + effect.id + "\" has no parameter \"" + name + "\"");
 }
 
 }  // namespace
@@ -40,9 +40,10 @@ double FreeParameter::Moved(double by) const { return logarithmic ? value * std:
 std::vector<FreeParameter> Hypothesis::Free() const {
   std::vector<FreeParameter> free;
   for (const size_t i : base) {
-    const ParameterInfo& info = BaseParameters()[i].info;
-    const double value = model.parameters.*BaseParameters()[i].member;
-    FreeParameter parameter{{Unknown::Kind::kBase, i}, info.name, info.unit, value, info.min, info.max};
+    const model::ParameterInfo& info = model::BaseParameters()[i].info;
+    const double value = model.parameters.*model::BaseParameters()[i].member;
+    FreeParameter parameter{
+        {model::Unknown::Kind::kBase, i}, info.name, info.unit, value, info.min, info.max};
     parameter.logarithmic = !info.min_allowed && value > 0;
     if (parameter.logarithmic) {
       parameter.low = value / kReach;
@@ -50,14 +51,18 @@ std::vector<FreeParameter> Hypothesis::Free() const {
     }
     free.push_back(parameter);
   }
-  const std::vector<EffectParameter> all = EffectParameters(model);
+  const std::vector<model::EffectParameter> all = model::EffectParameters(model);
   for (size_t i = 0; i < all.size(); ++i) {
-    const EffectDescription& effect = model.effects[all[i].effect];
+    const model::EffectDescription& effect = model.effects[all[i].effect];
     if (std::find(effects.begin(), effects.end(), effect.id) == effects.end()) continue;
-    const ParameterInfo& info = InfoOf(effect, all[i].name);
+    const model::ParameterInfo& info = InfoOf(effect, all[i].name);
     const double value = effect.parameters.at(all[i].name);
-    FreeParameter parameter{
-        {Unknown::Kind::kEffect, i}, effect.id + "." + info.name, info.unit, value, info.min, info.max};
+    FreeParameter parameter{{model::Unknown::Kind::kEffect, i},
+                            effect.id + "." + info.name,
+                            info.unit,
+                            value,
+                            info.min,
+                            info.max};
     parameter.logarithmic = !info.min_allowed && info.min == 0 && value > 0;
     if (parameter.logarithmic) {
       parameter.low = value / kReach;
@@ -72,10 +77,10 @@ std::vector<FreeParameter> Hypothesis::Free() const {
 
 void Hypothesis::Set(const std::vector<double>& values) {
   size_t next = 0;
-  for (const size_t i : base) model.parameters.*BaseParameters()[i].member = values[next++];
-  const std::vector<EffectParameter> all = EffectParameters(model);
-  for (const EffectParameter& parameter : all) {
-    EffectDescription& effect = model.effects[parameter.effect];
+  for (const size_t i : base) model.parameters.*model::BaseParameters()[i].member = values[next++];
+  const std::vector<model::EffectParameter> all = model::EffectParameters(model);
+  for (const model::EffectParameter& parameter : all) {
+    model::EffectDescription& effect = model.effects[parameter.effect];
     if (std::find(effects.begin(), effects.end(), effect.id) == effects.end()) continue;
     effect.parameters[parameter.name] = values[next++];
   }
@@ -102,35 +107,35 @@ Hypothesis Hypothesis::Held() const {
   return held;
 }
 
-double Sizes::Of(Scale scale) const {
+double Sizes::Of(model::Scale scale) const {
   switch (scale) {
-    case Scale::kOne:
+    case model::Scale::kOne:
       return 1;
-    case Scale::kTorque:
+    case model::Scale::kTorque:
       return torque;
-    case Scale::kSpeed:
+    case model::Scale::kSpeed:
       return speed;
-    case Scale::kPressure:
+    case model::Scale::kPressure:
       return pressure;
-    case Scale::kCharge:
+    case model::Scale::kCharge:
       return charge;
-    case Scale::kSample:
+    case model::Scale::kSample:
       return sample;
-    case Scale::kRate:
+    case model::Scale::kRate:
       return 1 / sample;
-    case Scale::kFlow:
+    case model::Scale::kFlow:
       return flow;
-    case Scale::kArmStiffness:
+    case model::Scale::kArmStiffness:
       return arm_stiffness;
-    case Scale::kArmDamping:
+    case model::Scale::kArmDamping:
       return arm_damping;
   }
   return 1;
 }
 
-Sizes SizesOf(const ModelDescription& model, const std::vector<const RunData*>& runs) {
+Sizes SizesOf(const model::ModelDescription& model, const std::vector<const RunData*>& runs) {
   Sizes sizes;
-  const Parameters& p = model.parameters;
+  const model::Parameters& p = model.parameters;
   sizes.torque = p.T_pmax;
   sizes.charge = p.p_3 > 0 ? p.p_3 : 0.01 * p.T_pmax / p.D;
   const auto largest = [](const SignalData* signal, double* size) {
@@ -148,9 +153,9 @@ Sizes SizesOf(const ModelDescription& model, const std::vector<const RunData*>& 
   };
   std::vector<const std::vector<double>*> times;
   for (const RunData* run : runs) {
-    largest(run->Find(Channel::kMotorSpeed), &sizes.speed);
-    largest(run->Find(Channel::kP1), &sizes.pressure);
-    largest(run->Find(Channel::kP2), &sizes.pressure);
+    largest(run->Find(model::Channel::kMotorSpeed), &sizes.speed);
+    largest(run->Find(model::Channel::kP1), &sizes.pressure);
+    largest(run->Find(model::Channel::kP2), &sizes.pressure);
     times.push_back(&run->stimulus.time);
   }
   if (sizes.speed == 0) sizes.speed = p.T_pmax / std::max(p.b, 0.001 * p.T_pmax);
@@ -164,7 +169,7 @@ Sizes SizesOf(const ModelDescription& model, const std::vector<const RunData*>& 
 
 std::vector<FreeParameter> HeldParameters(const Hypothesis& hypothesis) {
   Hypothesis held = hypothesis.Held();
-  for (size_t place = 0; place < BaseParameters().size(); ++place) {
+  for (size_t place = 0; place < model::BaseParameters().size(); ++place) {
     const bool is_free =
         std::find(hypothesis.base.begin(), hypothesis.base.end(), place) != hypothesis.base.end();
     if (!is_free) held.base.push_back(place);
@@ -180,21 +185,21 @@ std::vector<Hypothesis> With(const Hypothesis& hypothesis, const Change& change,
   Hypothesis more = hypothesis;
   more.changes.push_back(change);
   if (change.effect.empty()) {
-    const size_t place = BasePlace(change.parameter);
+    const size_t place = model::BasePlace(change.parameter);
     if (std::find(more.base.begin(), more.base.end(), place) == more.base.end()) more.base.push_back(place);
     std::vector<Hypothesis> all = {more};
     for (const double factor : kElsewhere) {
       if (!elsewhere) break;
       all.push_back(more);
-      all.back().model.parameters.*BaseParameters()[place].member *= factor;
+      all.back().model.parameters.*model::BaseParameters()[place].member *= factor;
     }
     return all;
   }
-  const EffectInfo& info = *FindEffect(change.effect);
+  const model::EffectInfo& info = *model::FindEffect(change.effect);
   more.effects.push_back(change.effect);
   more.model.effects.push_back({change.effect, {}, change.names});
   std::vector<Hypothesis> all = {more};
-  for (const ParameterInfo& parameter : info.parameters) {
+  for (const model::ParameterInfo& parameter : info.parameters) {
     if (parameter.is_name) continue;
     std::vector<Hypothesis> next;
     for (const Hypothesis& one : all) {
@@ -208,19 +213,20 @@ std::vector<Hypothesis> With(const Hypothesis& hypothesis, const Change& change,
   return all;
 }
 
-Hypothesis Without(const Hypothesis& hypothesis, const Change& change, const ModelDescription& given) {
+Hypothesis Without(const Hypothesis& hypothesis, const Change& change, const model::ModelDescription& given) {
   Hypothesis less = hypothesis;
   std::erase(less.changes, change);
   if (change.effect.empty()) {
-    const size_t place = BasePlace(change.parameter);
+    const size_t place = model::BasePlace(change.parameter);
     std::erase(less.base, place);
-    less.model.parameters.*BaseParameters()[place].member = given.parameters.*BaseParameters()[place].member;
+    less.model.parameters.*model::BaseParameters()[place].member =
+        given.parameters.*model::BaseParameters()[place].member;
     return less;
   }
   std::erase(less.effects, change.effect);
   std::erase_if(less.model.effects,
-                [&](const EffectDescription& effect) { return effect.id == change.effect; });
+                [&](const model::EffectDescription& effect) { return effect.id == change.effect; });
   return less;
 }
 
-}  // namespace hydro
+}  // namespace hydro::diagnose

@@ -10,7 +10,7 @@
 #include "model/parameter_info.h"
 #include "model/response.h"
 
-namespace hydro {
+namespace hydro::diagnose {
 
 // Something that may be added to a model or changed in it: an effect (with the names it takes), or, when
 // `effect` is empty, the value of a base parameter.
@@ -26,8 +26,8 @@ struct Change {
 
 // A free number of a hypothesis.
 struct FreeParameter {
-  Unknown unknown;   // kBase, kEffect
-  std::string name;  // "k_1", "pump.stribeck.speed"
+  model::Unknown unknown;  // kBase, kEffect
+  std::string name;        // "k_1", "pump.stribeck.speed"
   std::string unit;
   double value = 0;
   double low = 0, high = 0;
@@ -43,9 +43,9 @@ struct FreeParameter {
 };
 
 struct Hypothesis {
-  ModelDescription model;       // with the values of `free`
-  std::vector<Change> changes;  // to the model as given
-  std::vector<size_t> base;     // free base parameters, as in BaseParameters(); those of `changes` among them
+  model::ModelDescription model;  // with the values of `free`
+  std::vector<Change> changes;    // to the model as given
+  std::vector<size_t> base;  // free base parameters, as in BaseParameters(); those of `changes` among them
   std::vector<std::string> effects;  // ids whose parameters are free
 
   std::vector<FreeParameter> Free() const;
@@ -63,9 +63,9 @@ struct Sizes {
   double torque = 0, speed = 0, pressure = 0, charge = 0, sample = 0;
   double flow = 0, arm_stiffness = 0, arm_damping = 0;
 
-  double Of(Scale scale) const;
+  double Of(model::Scale scale) const;
 };
-Sizes SizesOf(const ModelDescription& model, const std::vector<const RunData*>& runs);
+Sizes SizesOf(const model::ModelDescription& model, const std::vector<const RunData*>& runs);
 
 // The base parameters that the hypothesis holds, as if they were free: those above 0, as logarithms.
 std::vector<FreeParameter> HeldParameters(const Hypothesis& hypothesis);
@@ -75,6 +75,6 @@ std::vector<FreeParameter> HeldParameters(const Hypothesis& hypothesis);
 std::vector<Hypothesis> With(const Hypothesis& hypothesis, const Change& change, const Sizes& sizes,
                              bool elsewhere);
 // The hypothesis with the change taken back: base parameters as in `given`.
-Hypothesis Without(const Hypothesis& hypothesis, const Change& change, const ModelDescription& given);
+Hypothesis Without(const Hypothesis& hypothesis, const Change& change, const model::ModelDescription& given);
 
-}  // namespace hydro
+}  // namespace hydro::diagnose

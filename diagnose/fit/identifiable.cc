@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace hydro {
+namespace hydro::diagnose {
 
 namespace {
 
@@ -23,8 +23,8 @@ double SizeOf(const FreeParameter& parameter, const Sizes& sizes) {
 }  // namespace
 
 std::vector<size_t> Identifiable(const Hypothesis& given, const std::vector<const RunData*>& runs,
-                                 const std::vector<StartState>& starts, const std::vector<size_t>& allowed,
-                                 const Sizes& sizes, int jobs) {
+                                 const std::vector<model::StartState>& starts,
+                                 const std::vector<size_t>& allowed, const Sizes& sizes, int jobs) {
   Hypothesis all = given;
   all.base = allowed;
   FitOptions options;
@@ -64,4 +64,4 @@ std::vector<size_t> Identifiable(const Hypothesis& given, const std::vector<cons
   return chosen;
 }
 
-}  // namespace hydro
+}  // namespace hydro::diagnose

@@ -11,7 +11,7 @@
 #include "diagnose/fit/residuals.h"
 #include "maths/solve.h"
 
-namespace hydro {
+namespace hydro::diagnose {
 
 namespace {
 
@@ -47,7 +47,7 @@ struct BlocksOfRun {
 };
 BlocksOfRun BlocksOf(const Fitted& fitted, const std::vector<FreeParameter>& free, size_t r,
                      const RunData& run) {
-  const std::vector<Unknown> unknown_starts = StartUnknowns(run);
+  const std::vector<model::Unknown> unknown_starts = StartUnknowns(run);
   const Residuals residuals =
       ResidualsOf(fitted.hypothesis.model, run, fitted.runs[r].start, free, unknown_starts);
   const auto rows = static_cast<Index>(residuals.values.size());
@@ -57,9 +57,9 @@ BlocksOfRun BlocksOf(const Fitted& fitted, const std::vector<FreeParameter>& fre
   MatrixXd columns = jacobian.leftCols(p);
   if (n > p) {
     const MatrixXd starts = jacobian.rightCols(n - p);
-    MatrixXd inner = TransposeTimes(starts, starts);
+    MatrixXd inner = maths::TransposeTimes(starts, starts);
     inner.diagonal().array() += 1e-10 * inner.diagonal().maxCoeff() + 1e-300;
-    columns -= starts * SolveSymmetric(inner, TransposeTimes(starts, columns));
+    columns -= starts * maths::SolveSymmetric(inner, maths::TransposeTimes(starts, columns));
   }
   BlocksOfRun blocks{MatrixXd::Zero(p, kBlocksPerRun),
                      std::vector<MatrixXd>(kBlocksPerRun, MatrixXd::Zero(p, p))};
@@ -95,7 +95,7 @@ std::vector<Interval> Intervals(const Fitted& fitted, const std::vector<const Ru
   MatrixXd scaled = scale.asDiagonal() * information * scale.asDiagonal();
   scaled.diagonal().array() += 1e-10;
   const MatrixXd inverse =
-      scale.asDiagonal() * SolveSymmetric(scaled, MatrixXd::Identity(p, p)) * scale.asDiagonal();
+      scale.asDiagonal() * maths::SolveSymmetric(scaled, MatrixXd::Identity(p, p)) * scale.asDiagonal();
   // By how much a part of the data moves the fit. The fit has followed it as far as it has leverage; what is
   // left of its gradient is made up for that (as in leaving it out, the jackknife).
   const Eigen::LLT<MatrixXd> root(scaled);
@@ -104,7 +104,7 @@ std::vector<Interval> Intervals(const Fitted& fitted, const std::vector<const Ru
     root.matrixL().solveInPlace(share);
     share.transposeInPlace();
     root.matrixL().solveInPlace(share);
-    const Eigensystem eigen = EigensystemOf(share);
+    const maths::Eigensystem eigen = maths::EigensystemOf(share);
     const VectorXd left = 1 - eigen.values.array().max(0.0).min(kMostLeverage);
     VectorXd gradient = scale.asDiagonal() * its_gradient;
     root.matrixL().solveInPlace(gradient);
@@ -157,4 +157,4 @@ std::vector<Interval> Intervals(const Fitted& fitted, const std::vector<const Ru
   return intervals;
 }
 
-}  // namespace hydro
+}  // namespace hydro::diagnose

@@ -5,7 +5,7 @@
 
 #include "diagnose/fit/fit.h"
 
-namespace hydro {
+namespace hydro::diagnose {
 
 struct Interval {
   double low = 0, high = 0;
@@ -16,4 +16,4 @@ struct Interval {
 // equations idealise, their own and those of the numbers that are held.
 std::vector<Interval> Intervals(const Fitted& fitted, const std::vector<const RunData*>& runs, int jobs);
 
-}  // namespace hydro
+}  // namespace hydro::diagnose

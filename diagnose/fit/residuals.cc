@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-namespace hydro {
+namespace hydro::diagnose {
 
 namespace {
 
@@ -11,23 +11,24 @@ constexpr double kTolerance = 1e-7;
 
 }  // namespace
 
-Residuals ResidualsOf(const ModelDescription& model, const RunData& run, const StartState& start) {
+Residuals ResidualsOf(const model::ModelDescription& model, const RunData& run,
+                      const model::StartState& start) {
   return ResidualsOf(model, run, start, {}, {});
 }
 
-Residuals ResidualsOf(const ModelDescription& model, const RunData& run, const StartState& start,
-                      const std::vector<FreeParameter>& free, const std::vector<Unknown>& starts,
-                      bool repeated_effects) {
-  std::vector<Unknown> unknowns;
+Residuals ResidualsOf(const model::ModelDescription& model, const RunData& run,
+                      const model::StartState& start, const std::vector<FreeParameter>& free,
+                      const std::vector<model::Unknown>& starts, bool repeated_effects) {
+  std::vector<model::Unknown> unknowns;
   unknowns.reserve(free.size() + starts.size());
   for (const FreeParameter& parameter : free) unknowns.push_back(parameter.unknown);
   unknowns.insert(unknowns.end(), starts.begin(), starts.end());
-  ResponseOptions options;
+  model::ResponseOptions options;
   options.repeated_effects = repeated_effects;
   options.channels = {};
   options.relative_tolerance = kTolerance;
   for (const SignalData& signal : run.signals) options.channels[static_cast<size_t>(signal.channel)] = true;
-  const Response response = Respond(model, run.stimulus, start, unknowns, options);
+  const model::Response response = model::Respond(model, run.stimulus, start, unknowns, options);
 
   Residuals residuals;
   for (const SignalData& signal : run.signals) {
@@ -57,12 +58,12 @@ Residuals ResidualsOf(const ModelDescription& model, const RunData& run, const S
   return residuals;
 }
 
-std::vector<Unknown> StartUnknowns(const RunData& run) {
-  std::vector<Unknown> unknowns;
+std::vector<model::Unknown> StartUnknowns(const RunData& run) {
+  std::vector<model::Unknown> unknowns;
   for (size_t i = 0; i < run.start_free.size(); ++i) {
-    if (run.start_free[i]) unknowns.push_back({Unknown::Kind::kStart, i});
+    if (run.start_free[i]) unknowns.push_back({model::Unknown::Kind::kStart, i});
   }
   return unknowns;
 }
 
-}  // namespace hydro
+}  // namespace hydro::diagnose

@@ -8,7 +8,7 @@
 #include "diagnose/fit/hypothesis.h"
 #include "model/response.h"
 
-namespace hydro {
+namespace hydro::diagnose {
 
 struct Residuals {
   // Predicted less measured, over the noise; signal after signal, each one's valid samples in order of time.
@@ -18,15 +18,16 @@ struct Residuals {
 };
 
 // Without derivatives. Throws ModelError when the model cannot be simulated.
-Residuals ResidualsOf(const ModelDescription& model, const RunData& run, const StartState& start);
+Residuals ResidualsOf(const model::ModelDescription& model, const RunData& run,
+                      const model::StartState& start);
 
 // With derivatives by the free parameters as a fit moves them (logarithms of some), then by `starts`. The
 // values of `free` are those of the model. Throws as above.
-Residuals ResidualsOf(const ModelDescription& model, const RunData& run, const StartState& start,
-                      const std::vector<FreeParameter>& free, const std::vector<Unknown>& starts,
-                      bool repeated_effects = false);
+Residuals ResidualsOf(const model::ModelDescription& model, const RunData& run,
+                      const model::StartState& start, const std::vector<FreeParameter>& free,
+                      const std::vector<model::Unknown>& starts, bool repeated_effects = false);
 
 // The unknown starts of a run.
-std::vector<Unknown> StartUnknowns(const RunData& run);
+std::vector<model::Unknown> StartUnknowns(const RunData& run);
 
-}  // namespace hydro
+}  // namespace hydro::diagnose

@@ -4,14 +4,15 @@
 
 #include "base/parallel.h"
 
-namespace hydro {
+namespace hydro::diagnose {
 
-Fitted FitStart(const Hypothesis& hypothesis, const RunData& run, const StartState& from, double doubtful) {
+Fitted FitStart(const Hypothesis& hypothesis, const RunData& run, const model::StartState& from,
+                double doubtful) {
   const Hypothesis held = hypothesis.Held();
   FitOptions options;
   options.most_iterations = 6;
   Fitted best = Fit(held, {&run}, {from}, options);
-  const auto begin_at = [&](const StartState& start) {
+  const auto begin_at = [&](const model::StartState& start) {
     if (start == from) return;
     Fitted other = Fit(held, {&run}, {start}, options);
     if (other.ok() && (!best.ok() || other.sum < best.sum)) best = std::move(other);
@@ -22,9 +23,10 @@ Fitted FitStart(const Hypothesis& hypothesis, const RunData& run, const StartSta
   return best;
 }
 
-std::vector<StartState> BestStarts(const Hypothesis& hypothesis, const std::vector<const RunData*>& runs,
-                                   const std::vector<StartState>& from, int jobs) {
-  std::vector<StartState> starts = from;
+std::vector<model::StartState> BestStarts(const Hypothesis& hypothesis,
+                                          const std::vector<const RunData*>& runs,
+                                          const std::vector<model::StartState>& from, int jobs) {
+  std::vector<model::StartState> starts = from;
   ParallelFor(runs.size(), jobs, [&](size_t r) {
     const Fitted best = FitStart(hypothesis, *runs[r], from[r], kStartInDoubt);
     if (best.ok()) starts[r] = best.runs[0].start;
@@ -32,4 +34,4 @@ std::vector<StartState> BestStarts(const Hypothesis& hypothesis, const std::vect
   return starts;
 }
 
-}  // namespace hydro
+}  // namespace hydro::diagnose

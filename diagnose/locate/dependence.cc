@@ -7,7 +7,7 @@
 #include <numeric>
 #include <utility>
 
-namespace hydro {
+namespace hydro::diagnose {
 
 namespace {
 
@@ -234,4 +234,4 @@ std::vector<Window> WindowsOf(const Blocks& blocks, const std::vector<const RunD
   return windows;
 }
 
-}  // namespace hydro
+}  // namespace hydro::diagnose

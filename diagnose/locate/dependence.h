@@ -7,7 +7,7 @@
 #include "diagnose/data/diagnosis.h"
 #include "diagnose/locate/disagreement.h"
 
-namespace hydro {
+namespace hydro::diagnose {
 
 // What a disturbance may depend on: a value each sample of each run.
 struct Variable {
@@ -35,4 +35,4 @@ std::string RangeOf(const Blocks& blocks, const Variable& variable, const std::v
 // The stretches of each run, up to five, with most energy; in order of time.
 std::vector<Window> WindowsOf(const Blocks& blocks, const std::vector<const RunData*>& runs);
 
-}  // namespace hydro
+}  // namespace hydro::diagnose

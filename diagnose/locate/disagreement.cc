@@ -8,7 +8,7 @@
 
 #include "diagnose/data/sample_interval.h"
 
-namespace hydro {
+namespace hydro::diagnose {
 
 namespace {
 
@@ -96,4 +96,4 @@ Disagreement LargestDisagreement(const std::vector<SmoothedRun>& smoothed,
   return largest;
 }
 
-}  // namespace hydro
+}  // namespace hydro::diagnose

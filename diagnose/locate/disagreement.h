@@ -7,7 +7,7 @@
 #include "diagnose/data/run_data.h"
 #include "diagnose/locate/disturbance_smoother.h"
 
-namespace hydro {
+namespace hydro::diagnose {
 
 // A disturbance averaged over blocks of one length, of all runs that have the balance.
 struct Blocks {
@@ -31,4 +31,4 @@ struct Disagreement {
 Disagreement LargestDisagreement(const std::vector<SmoothedRun>& smoothed,
                                  const std::vector<const RunData*>& runs, Balance balance);
 
-}  // namespace hydro
+}  // namespace hydro::diagnose

@@ -11,7 +11,7 @@
 #include "model/equations.h"
 #include "model/linearise.h"
 
-namespace hydro {
+namespace hydro::diagnose {
 
 namespace {
 
@@ -32,7 +32,7 @@ constexpr double kLoosenAtMost = 200;
 constexpr double kSwitching = 0.02;  // s
 
 struct Sensor {
-  Channel channel = Channel::kP1;
+  model::Channel channel = model::Channel::kP1;
   const std::vector<double>* values = nullptr;
   double offset = 0, variance = 0;
   std::vector<float> repeats;  // samples that a reading stays the same; empty where noise hides the steps
@@ -67,15 +67,16 @@ std::vector<float> Repeats(const std::vector<double>& values) {
 
 class Smoother {
  public:
-  Smoother(const ModelDescription& model, const RunData& run, const PressureOffsets& offsets)
+  Smoother(const model::ModelDescription& model, const RunData& run, const PressureOffsets& offsets)
       : model_(model), run_(run), time_(run.stimulus.time), observed_(ObserveMode(run)) {
-    ActuatorOptions options;
+    model::ActuatorOptions options;
     options.shaft = run.stimulus.shaft;
-    options.arm_angle = run.stimulus.shaft == Shaft::kFree ? run.start[kArmAngle] : run.stimulus.arm_angle;
+    options.arm_angle =
+        run.stimulus.shaft == model::Shaft::kFree ? run.start[model::kArmAngle] : run.stimulus.arm_angle;
     options.motion = run.stimulus.motion;
     options.bypass = run.stimulus.bypass;
     options_ = options;
-    const Equations equations(model, options);
+    const model::Equations equations(model, options);
     states_ = equations.states();
     for (double& p : observed_.p1) p -= offsets.p1;
     for (double& p : observed_.p2) p -= offsets.p2;
@@ -102,13 +103,14 @@ class Smoother {
   void ChooseSensors(const PressureOffsets& offsets) {
     std::mt19937_64 random(20240229);
     for (const SignalData& signal : run_.signals) {
-      const bool arm = signal.channel == Channel::kArmAngle || signal.channel == Channel::kArmSpeed;
-      if (arm && run_.stimulus.shaft != Shaft::kFree) continue;
+      const bool arm =
+          signal.channel == model::Channel::kArmAngle || signal.channel == model::Channel::kArmSpeed;
+      if (arm && run_.stimulus.shaft != model::Shaft::kFree) continue;
       Sensor sensor;
       sensor.channel = signal.channel;
       sensor.values = &signal.values;
-      if (signal.channel == Channel::kP1) sensor.offset = offsets.p1;
-      if (signal.channel == Channel::kP2) sensor.offset = offsets.p2;
+      if (signal.channel == model::Channel::kP1) sensor.offset = offsets.p1;
+      if (signal.channel == model::Channel::kP2) sensor.offset = offsets.p2;
       const double noise = ChannelNoise(signal);
       // While a coarse reading stays the same so does its error: it counts once.
       const bool coarse = signal.resolution > 0 && noise < 0.6 * signal.resolution;
@@ -126,7 +128,7 @@ class Smoother {
     }
   }
 
-  double Variance(Channel channel) const {
+  double Variance(model::Channel channel) const {
     for (const Sensor& sensor : sensors_) {
       if (sensor.channel == channel) return sensor.variance;
     }
@@ -146,16 +148,16 @@ class Smoother {
     return wander;
   }
 
-  void ChooseBalances(const Equations& equations) {
-    const Parameters& p = model_.parameters;
+  void ChooseBalances(const model::Equations& equations) {
+    const model::Parameters& p = model_.parameters;
     const double volume = p.beta / p.V_ms;
     const bool bypass = run_.stimulus.bypass;
     const std::array<double, kBalances> wander = {
-        Wander(1 / p.J, Variance(Channel::kMotorSpeed), Variance(Channel::kMotorAngle)),
-        bypass ? INFINITY : Wander(volume, Variance(Channel::kP1), 0),
-        bypass ? INFINITY : Wander(volume, Variance(Channel::kP2), 0),
-        run_.stimulus.shaft == Shaft::kFree
-            ? Wander(1 / p.J_a, Variance(Channel::kArmSpeed), Variance(Channel::kArmAngle))
+        Wander(1 / p.J, Variance(model::Channel::kMotorSpeed), Variance(model::Channel::kMotorAngle)),
+        bypass ? INFINITY : Wander(volume, Variance(model::Channel::kP1), 0),
+        bypass ? INFINITY : Wander(volume, Variance(model::Channel::kP2), 0),
+        run_.stimulus.shaft == model::Shaft::kFree
+            ? Wander(1 / p.J_a, Variance(model::Channel::kArmSpeed), Variance(model::Channel::kArmAngle))
             : INFINITY};
     size_ = states_;
     for (size_t b = 0; b < kBalances; ++b) {
@@ -166,18 +168,18 @@ class Smoother {
       wander_[b] = wander[b];
     }
     // The sensors read a linear function of the states.
-    double state[kMaxStates];
-    Mode mode;
+    double state[model::kMaxStates];
+    model::Mode mode;
     BeginState(equations, state, &mode);
-    const LinearModel linear = Linearise(equations, time_[0], 0, mode, state);
+    const model::LinearModel linear = model::Linearise(equations, time_[0], 0, mode, state);
     for (Sensor& sensor : sensors_) {
       const size_t channel = static_cast<size_t>(sensor.channel);
       sensor.row = Vector::Zero(size_);
-      for (int j = 0; j < states_; ++j) sensor.row[j] = linear.C[channel + j * kChannels];
-      if (sensor.channel != Channel::kP1 && sensor.channel != Channel::kP2) continue;
+      for (int j = 0; j < states_; ++j) sensor.row[j] = linear.C[channel + j * model::kChannels];
+      if (sensor.channel != model::Channel::kP1 && sensor.channel != model::Channel::kP2) continue;
       // The valves feel the pressure, not the reading.
-      const bool first = sensor.channel == Channel::kP1;
-      const int at = first ? kP1 : kP2;
+      const bool first = sensor.channel == model::Channel::kP1;
+      const int at = first ? model::kP1 : model::kP2;
       const double gain = sensor.row[at];
       std::vector<double>& observed = first ? observed_.p1 : observed_.p2;
       if (gain == 0) {
@@ -189,14 +191,14 @@ class Smoother {
     }
   }
 
-  void BeginState(const Equations& equations, double* state, Mode* mode) const {
-    const double pressure = std::max({run_.start[kP1], run_.start[kP2], model_.parameters.p_3});
+  void BeginState(const model::Equations& equations, double* state, model::Mode* mode) const {
+    const double pressure = std::max({run_.start[model::kP1], run_.start[model::kP2], model_.parameters.p_3});
     equations.Start(pressure, state, mode);
-    const int base = run_.stimulus.shaft == Shaft::kFree ? 6 : 4;
+    const int base = run_.stimulus.shaft == model::Shaft::kFree ? 6 : 4;
     for (int i = 0; i < base; ++i) state[i] = run_.start[i];
   }
 
-  Matrix BeginCovariance(const Equations& equations) const {
+  Matrix BeginCovariance(const model::Equations& equations) const {
     Matrix covariance = Matrix::Zero(size_, size_);
     for (int i = 0; i < states_; ++i) {
       const double scale = equations.scales()[i];
@@ -230,10 +232,11 @@ class Smoother {
   }
 
   // The pump's and the valves' switches from what was measured, else from the state.
-  void SetMode(const Equations& equations, size_t k, double voltage, const double* state, Mode* mode,
-               Terms<double>* terms, double* rate, std::array<uint8_t, kBalances>* informative) {
+  void SetMode(const model::Equations& equations, size_t k, double voltage, const double* state,
+               model::Mode* mode, model::Terms<double>* terms, double* rate,
+               std::array<uint8_t, kBalances>* informative) {
     const double time = time_[k];
-    Mode open = *mode;
+    model::Mode open = *mode;
     open.pump = 0;
     open.valve_1 = open.valve_2 = 0;
     const int8_t before = mode->pump;
@@ -248,14 +251,14 @@ class Smoother {
       // The model says that it should turn, the data that it rests: friction holds it beyond its limit.
       if (mode->pump == 0) mode->pump = static_cast<int8_t>(breaks_away());
       if (observed_.passes[k]) (*informative)[0] = 0;
-    } else if (before == 0 || before * state[kMotorSpeed] <= 0) {
+    } else if (before == 0 || before * state[model::kMotorSpeed] <= 0) {
       mode->pump = static_cast<int8_t>(breaks_away());
     }
     if (mode->pump == 0) (*informative)[0] = 0;
 
     const std::array<double, 2> free_rate = {terms->free_rate_1, terms->free_rate_2};
     for (int side = 0; side < 2; ++side) {
-      const double pressure = state[side == 0 ? kP1 : kP2];
+      const double pressure = state[side == 0 ? model::kP1 : model::kP2];
       const Rest rest = RestOf(side, k, pressure, terms->p_3);
       at_valve_[side] = rest == Rest::kNear || rest == Rest::kAt;
       if (!equations.data().ideal_valves) continue;
@@ -268,14 +271,14 @@ class Smoother {
     if (run_.stimulus.bypass) mode->valve_2 = 0;
     equations.Evaluate(time, voltage, *mode, state, rate, terms);
     // An arm that an effect holds at rest feels no further torque.
-    if (run_.stimulus.shaft == Shaft::kFree && rate[kArmSpeed] == 0) (*informative)[3] = 0;
+    if (run_.stimulus.shaft == model::Shaft::kFree && rate[model::kArmSpeed] == 0) (*informative)[3] = 0;
   }
 
   void Pass();
-  void Measure(const Equations& equations, size_t k, double* state, Matrix* covariance, Columns* columns,
-               Record* record) const;
+  void Measure(const model::Equations& equations, size_t k, double* state, Matrix* covariance,
+               Columns* columns, Record* record) const;
   void Smooth(Record& record);
-  void Keep(double* state, const Equations& equations) const;
+  void Keep(double* state, const model::Equations& equations) const;
 
   // Mean square change from sample to sample against that of noise alone.
   double Unrest(const Disturbance& d) const {
@@ -292,11 +295,11 @@ class Smoother {
     return noise > 0 ? data / noise : 1;
   }
 
-  const ModelDescription& model_;
+  const model::ModelDescription& model_;
   const RunData& run_;
   const std::vector<double>& time_;
   ObservedMode observed_;
-  ActuatorOptions options_;
+  model::ActuatorOptions options_;
   std::vector<Sensor> sensors_;
   int states_ = 0, size_ = 0;
   std::array<int, kBalances> place_{};  // of each disturbance among the states, -1: none
@@ -308,16 +311,16 @@ class Smoother {
 };
 
 // Volumes stay above 0 whatever a filter makes of the arm's angle.
-void Smoother::Keep(double* state, const Equations& equations) const {
-  if (run_.stimulus.shaft != Shaft::kFree) return;
-  const Parameters& p = model_.parameters;
+void Smoother::Keep(double* state, const model::Equations& equations) const {
+  if (run_.stimulus.shaft != model::Shaft::kFree) return;
+  const model::Parameters& p = model_.parameters;
   const double limit = 0.98 * (p.V_ms - equations.data().fixed_volume) / p.c;
-  state[kArmAngle] = std::clamp(state[kArmAngle], -limit, limit);
+  state[model::kArmAngle] = std::clamp(state[model::kArmAngle], -limit, limit);
 }
 
-void Smoother::Measure(const Equations& equations, size_t k, double* state, Matrix* covariance,
+void Smoother::Measure(const model::Equations& equations, size_t k, double* state, Matrix* covariance,
                        Columns* columns, Record* record) const {
-  const Measurement predicted = equations.Measure(time_[k], state);
+  const model::Measurement predicted = equations.Measure(time_[k], state);
   const Vector before = columns->col(0);
   Vector gain(size_);
   for (size_t s = 0; s < sensors_.size(); ++s) {
@@ -331,7 +334,8 @@ void Smoother::Measure(const Equations& equations, size_t k, double* state, Matr
     update.variance = sensor.row.dot(gain) + sensor.variance * repeats;
     gain /= update.variance;
     update.innovation.noalias() = -sensor.row.transpose().lazyProduct(*columns);
-    update.innovation[0] = value - sensor.offset - ChannelOf(predicted, static_cast<size_t>(sensor.channel)) -
+    update.innovation[0] = value - sensor.offset -
+                           model::ChannelOf(predicted, static_cast<size_t>(sensor.channel)) -
                            sensor.row.dot(columns->col(0) - before);
     for (size_t draw = 0; draw < kNoiseDraws; ++draw) {
       update.innovation[1 + static_cast<int>(draw)] += static_cast<double>(sensor.noise[draw][k]);
@@ -344,10 +348,10 @@ void Smoother::Measure(const Equations& equations, size_t k, double* state, Matr
 }
 
 void Smoother::Pass() {
-  Equations equations(model_, options_);
+  model::Equations equations(model_, options_);
   const size_t samples = time_.size();
-  double state[kMaxStates];
-  Mode mode;
+  double state[model::kMaxStates];
+  model::Mode mode;
   BeginState(equations, state, &mode);
   const Matrix first_covariance = BeginCovariance(equations);
   Matrix covariance = first_covariance;
@@ -356,8 +360,8 @@ void Smoother::Pass() {
   Record record(samples, size_);
   Matrix rates = Matrix::Zero(size_, size_);
   Matrix term(size_, size_), power(size_, size_), square(size_, size_), transition(size_, size_);
-  double rate[kMaxStates], jacobian[kMaxStates * kMaxStates];
-  Terms<double> terms;
+  double rate[model::kMaxStates], jacobian[model::kMaxStates * model::kMaxStates];
+  model::Terms<double> terms;
   const std::vector<double>& scales = equations.scales();
   const double speed_wander = 0.3 * observed_.speed_margin;
   switched_.clear();
@@ -397,8 +401,8 @@ void Smoother::Pass() {
                                                 mode.valve_1 ? 0 : terms.beta_1 / terms.V_1,
                                                 mode.valve_2 ? 0 : terms.beta_2 / terms.V_2,
                                                 record.informative(k)[3] ? 1 / model_.parameters.J_a : 0};
-    constexpr int kMoved[kBalances] = {kMotorSpeed, kP1, kP2, kArmSpeed};
-    double push[kMaxStates] = {};
+    constexpr int kMoved[kBalances] = {model::kMotorSpeed, model::kP1, model::kP2, model::kArmSpeed};
+    double push[model::kMaxStates] = {};
     for (size_t b = 0; b < kBalances; ++b) {
       if (place_[b] < 0) continue;
       rates.col(place_[b]).setZero();
@@ -414,7 +418,7 @@ void Smoother::Pass() {
       const double end = std::min(time_[k + 1], stop);
       const int parts = std::max(1, static_cast<int>(std::ceil((end - at) / step * (1 << halvings) - 1e-9)));
       const double h = (end - at) / parts;
-      double stage[kMaxStates], slope[4][kMaxStates];
+      double stage[model::kMaxStates], slope[4][model::kMaxStates];
       for (int part = 0; part < parts; ++part) {
         const double begin = at + part * h;
         constexpr double kReach[4] = {0, 0.5, 0.5, 1};
@@ -433,10 +437,10 @@ void Smoother::Pass() {
       at = end;
     }
     Keep(state, equations);
-    if (equations.switches() > kFirstEffectSwitch) {
-      double margin[kMaxSwitches];
+    if (equations.switches() > model::kFirstEffectSwitch) {
+      double margin[model::kMaxSwitches];
       equations.Rates(time_[k + 1], voltage, mode, state, rate, margin);
-      for (int which = kFirstEffectSwitch; which < equations.switches(); ++which) {
+      for (int which = model::kFirstEffectSwitch; which < equations.switches(); ++which) {
         if (margin[which] >= 0) continue;
         equations.Cross(which, time_[k + 1], voltage, state, &mode);
         switched_.push_back(time_[k + 1]);
@@ -471,17 +475,18 @@ void Smoother::Pass() {
     for (size_t b = 0; b < kBalances; ++b) {
       if (place_[b] >= 0) covariance(place_[b], place_[b]) += wander_[b] * step;
     }
-    if (mode.pump == 0) covariance(kMotorSpeed, kMotorSpeed) += speed_wander * speed_wander;
+    if (mode.pump == 0) covariance(model::kMotorSpeed, model::kMotorSpeed) += speed_wander * speed_wander;
     if (observed_.speed_measured() && observed_.passes[k]) {
       const double jump = 2 * terms.coulomb * step / model_.parameters.J;
-      covariance(kMotorSpeed, kMotorSpeed) += jump * jump + speed_wander * speed_wander;
+      covariance(model::kMotorSpeed, model::kMotorSpeed) += jump * jump + speed_wander * speed_wander;
     }
     // A valve may open and close at any time between the samples near p_3.
     for (int side = 0; side < 2; ++side) {
       if (!at_valve_[side] && !run_.stimulus.bypass) continue;
       const double jump = free_rate_[side] * step;
-      const int at = side == 0 ? kP1 : kP2;
-      covariance(at, at) += jump * jump + 0.1 * Variance(side == 0 ? Channel::kP1 : Channel::kP2);
+      const int at = side == 0 ? model::kP1 : model::kP2;
+      covariance(at, at) +=
+          jump * jump + 0.1 * Variance(side == 0 ? model::Channel::kP1 : model::Channel::kP2);
     }
   }
   if (place_[static_cast<size_t>(Balance::kArmTorque)] >= 0) {
@@ -498,7 +503,7 @@ void Smoother::Pass() {
 
 void Smoother::Smooth(Record& record) {
   const size_t samples = time_.size();
-  const bool free = run_.stimulus.shaft == Shaft::kFree;
+  const bool free = run_.stimulus.shaft == model::Shaft::kFree;
   result_ = SmoothedRun{};
   std::vector<double>* const kept[6] = {&result_.motor_angle, &result_.motor_speed, &result_.p1,
                                         &result_.p2,          &result_.arm_angle,   &result_.arm_speed};
@@ -524,7 +529,7 @@ void Smoother::Smooth(Record& record) {
     smoothed.noalias() -= record.covariance(k).lazyProduct(adjoint);
     for (int i = 0; i < (free ? 6 : 4); ++i) (*kept[i])[k] = smoothed(i, 0);
     if (!free) {
-      const bool driven = run_.stimulus.shaft == Shaft::kDriven;
+      const bool driven = run_.stimulus.shaft == model::Shaft::kDriven;
       result_.arm_angle[k] = driven ? run_.stimulus.motion->Value(time_[k]) : run_.stimulus.arm_angle;
       result_.arm_speed[k] = driven ? run_.stimulus.motion->Rate(time_[k]) : 0;
     }
@@ -547,9 +552,9 @@ void Smoother::Smooth(Record& record) {
 
 }  // namespace
 
-SmoothedRun SmoothDisturbances(const ModelDescription& model, const RunData& run,
+SmoothedRun SmoothDisturbances(const model::ModelDescription& model, const RunData& run,
                                const PressureOffsets& offsets) {
   return Smoother(model, run, offsets).Run();
 }
 
-}  // namespace hydro
+}  // namespace hydro::diagnose

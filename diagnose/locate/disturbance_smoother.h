@@ -11,7 +11,7 @@
 #include "diagnose/data/run_data.h"
 #include "model/description.h"
 
-namespace hydro {
+namespace hydro::diagnose {
 
 // Eq. (4), torque on the pump; (13) and (14), flow into each side; (15), torque on the arm.
 enum class Balance { kPumpTorque, kFlow1, kFlow2, kArmTorque };
@@ -40,7 +40,7 @@ struct PressureOffsets {
 
 // Throws ModelError when the model contradicts the run's conditions. Time and memory grow with the samples;
 // some 3 kB each while it runs.
-SmoothedRun SmoothDisturbances(const ModelDescription& model, const RunData& run,
+SmoothedRun SmoothDisturbances(const model::ModelDescription& model, const RunData& run,
                                const PressureOffsets& offsets);
 
-}  // namespace hydro
+}  // namespace hydro::diagnose

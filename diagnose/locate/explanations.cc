@@ -6,7 +6,7 @@
 #include <numbers>
 #include <string>
 
-namespace hydro {
+namespace hydro::diagnose {
 
 namespace {
 
@@ -145,4 +145,4 @@ Variable Explanations::Ripple(Balance balance, int periods) const {
   return ripple;
 }
 
-}  // namespace hydro
+}  // namespace hydro::diagnose

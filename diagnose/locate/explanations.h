@@ -7,7 +7,7 @@
 #include "diagnose/locate/dependence.h"
 #include "diagnose/locate/disturbance_smoother.h"
 
-namespace hydro {
+namespace hydro::diagnose {
 
 class Explanations {
  public:
@@ -34,4 +34,4 @@ class Explanations {
   const std::vector<const RunData*>& runs_;
 };
 
-}  // namespace hydro
+}  // namespace hydro::diagnose

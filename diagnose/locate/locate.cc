@@ -11,7 +11,7 @@
 #include "diagnose/locate/explanations.h"
 #include "diagnose/locate/pressure_offsets.h"
 
-namespace hydro {
+namespace hydro::diagnose {
 
 namespace {
 
@@ -45,8 +45,8 @@ Found Weigh(const std::vector<SmoothedRun>& smoothed, const std::vector<const Ru
   return found;
 }
 
-std::vector<SmoothedRun> SmoothAll(const ModelDescription& model, const std::vector<const RunData*>& runs,
-                                   const PressureOffsets& offsets) {
+std::vector<SmoothedRun> SmoothAll(const model::ModelDescription& model,
+                                   const std::vector<const RunData*>& runs, const PressureOffsets& offsets) {
   std::vector<SmoothedRun> smoothed;
   smoothed.reserve(runs.size());
   for (const RunData* run : runs) smoothed.push_back(SmoothDisturbances(model, *run, offsets));
@@ -151,7 +151,7 @@ void AddShare(std::vector<Location>* locations, Location more) {
 
 }  // namespace
 
-Localisation Locate(const ModelDescription& model, const std::vector<const RunData*>& runs) {
+Localisation Locate(const model::ModelDescription& model, const std::vector<const RunData*>& runs) {
   Localisation result;
   std::vector<SmoothedRun> smoothed = SmoothAll(model, runs, {});
   Found found = Weigh(smoothed, runs);
@@ -213,4 +213,4 @@ Localisation Locate(const ModelDescription& model, const std::vector<const RunDa
   return result;
 }
 
-}  // namespace hydro
+}  // namespace hydro::diagnose

@@ -6,7 +6,7 @@
 #include "diagnose/data/diagnosis.h"
 #include "diagnose/data/run_data.h"
 
-namespace hydro {
+namespace hydro::diagnose {
 
 struct Localisation {
   std::vector<Location> location;    // by share, largest first; empty when nothing is missing
@@ -14,6 +14,6 @@ struct Localisation {
 };
 
 // `model` is the one that disagrees. Balances that the runs do not measure are left out.
-Localisation Locate(const ModelDescription& model, const std::vector<const RunData*>& runs);
+Localisation Locate(const model::ModelDescription& model, const std::vector<const RunData*>& runs);
 
-}  // namespace hydro
+}  // namespace hydro::diagnose

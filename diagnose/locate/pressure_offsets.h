@@ -7,10 +7,10 @@
 #include "diagnose/locate/disturbance_smoother.h"
 #include "model/description.h"
 
-namespace hydro {
+namespace hydro::diagnose {
 
 // Both 0 where the transducers agree with each other: then it may as well be p_3 that is wrong; and where a
 // side never rests at its lowest pressure.
-PressureOffsets RestOffsets(const ModelDescription& model, const std::vector<const RunData*>& runs);
+PressureOffsets RestOffsets(const model::ModelDescription& model, const std::vector<const RunData*>& runs);
 
-}  // namespace hydro
+}  // namespace hydro::diagnose

@@ -10,9 +10,9 @@
 #include "diagnose/locate/disturbance_smoother.h"
 #include "model/state.h"
 
-namespace hydro::smoother {
+namespace hydro::diagnose::smoother {
 
-inline constexpr int kMostStates = kMaxStates + static_cast<int>(kBalances);
+inline constexpr int kMostStates = model::kMaxStates + static_cast<int>(kBalances);
 inline constexpr int kColumns = 1 + static_cast<int>(kNoiseDraws);  // the data, then draws of noise
 using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMostStates, kMostStates>;
 using Vector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMostStates, 1>;
@@ -78,4 +78,4 @@ class Record {
   std::vector<std::array<uint8_t, kBalances>> informative_;
 };
 
-}  // namespace hydro::smoother
+}  // namespace hydro::diagnose::smoother

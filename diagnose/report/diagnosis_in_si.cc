@@ -5,7 +5,7 @@
 #include "base/si_units.h"
 #include "diagnose/data/run_data.h"
 
-namespace hydro {
+namespace hydro::diagnose {
 namespace {
 
 double Largest(const std::vector<double>& values) {
@@ -33,7 +33,7 @@ double Convert(Estimated* estimated) {
 
 }  // namespace
 
-ShownUnit UnitOf(Channel channel, bool si) {
+ShownUnit UnitOf(model::Channel channel, bool si) {
   const SiUnit* unit = si ? FindSiUnit(ChannelUnit(channel), 0) : nullptr;
   if (unit == nullptr) return {ChannelUnit(channel), 1};
   return {unit->to, unit->factor};
@@ -58,4 +58,4 @@ Diagnosis InSi(Diagnosis diagnosis) {
   return diagnosis;
 }
 
-}  // namespace hydro
+}  // namespace hydro::diagnose

@@ -3,7 +3,7 @@
 
 #include "diagnose/data/diagnosis.h"
 
-namespace hydro {
+namespace hydro::diagnose {
 
 // A signal and the unit it is shown in.
 struct ShownUnit {
@@ -12,10 +12,10 @@ struct ShownUnit {
 };
 
 // The unit of a channel: the paper's, or SI (kPa).
-ShownUnit UnitOf(Channel channel, bool si);
+ShownUnit UnitOf(model::Channel channel, bool si);
 
 // Parameters, effects and missing terms converted from the paper's units; signals and curves are left, see
 // UnitOf. The sentences keep what they say.
 Diagnosis InSi(Diagnosis diagnosis);
 
-}  // namespace hydro
+}  // namespace hydro::diagnose

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace hydro {
+namespace hydro::diagnose {
 namespace {
 
 std::string Left(double fraction, double elapsed) {
@@ -33,4 +33,4 @@ void ProgressBar::Tell(const Progress& progress, double elapsed) {
   line_.Draw(furthest_, progress.stage + Left(furthest_, elapsed));
 }
 
-}  // namespace hydro
+}  // namespace hydro::diagnose

@@ -7,7 +7,7 @@
 #include "base/terminal_line.h"
 #include "diagnose/search/progress.h"
 
-namespace hydro {
+namespace hydro::diagnose {
 
 // A bar with the stage and the time left on a terminal; elsewhere a line when a stage begins, the first one
 // when the second does.
@@ -28,4 +28,4 @@ class ProgressBar {
   std::string stage_;
 };
 
-}  // namespace hydro
+}  // namespace hydro::diagnose

@@ -16,10 +16,10 @@
 #include "settings/command_line.h"
 #include "settings/model_file.h"
 
-namespace hydro {
+namespace hydro::diagnose {
 namespace {
 
-std::string Cell(const std::string& text) { return "<td>" + TypesetHtml(text) + "</td>"; }
+std::string Cell(const std::string& text) { return "<td>" + page::TypesetHtml(text) + "</td>"; }
 std::string NumberCell(double value) { return "<td class=\"number\">" + ShortNumber(value) + "</td>"; }
 
 std::string Probability(double p) {
@@ -34,8 +34,8 @@ std::string Table(const std::vector<std::string>& columns, const std::string& ro
   std::string out = "<table" + (style.empty() ? "" : " class=\"" + style + "\"") + ">\n<thead><tr>";
   for (const std::string& column : columns) {
     const bool number = column.starts_with('#');
-    out += (number ? "<th class=\"number\">" : "<th>") + TypesetHtml(number ? column.substr(1) : column) +
-           "</th>";
+    out += (number ? "<th class=\"number\">" : "<th>") +
+           page::TypesetHtml(number ? column.substr(1) : column) + "</th>";
   }
   return out + "</tr></thead>\n<tbody>\n" + rows + "</tbody>\n</table>\n";
 }
@@ -57,9 +57,10 @@ std::string Head(const Diagnosis& diagnosis) {
   std::string verdict = VerdictName(diagnosis.verdict);
   const bool open = diagnosis.verdict == Verdict::kUnexplained;
   std::replace(verdict.begin(), verdict.end(), '_', ' ');
-  return "<h1>" + EscapeMarkup("Gap report: " + diagnosis.model.name) + "</h1>\n<p class=\"meta\">" +
-         EscapeMarkup(meta) + "</p>\n<p class=\"verdict" + (open ? " unexplained" : "") +
-         "\"><span class=\"badge\">" + verdict + "</span>\n" + TypesetHtml(diagnosis.sentence) + "</p>\n";
+  return "<h1>" + page::EscapeMarkup("Gap report: " + diagnosis.model.name) + "</h1>\n<p class=\"meta\">" +
+         page::EscapeMarkup(meta) + "</p>\n<p class=\"verdict" + (open ? " unexplained" : "") +
+         "\"><span class=\"badge\">" + verdict + "</span>\n" + page::TypesetHtml(diagnosis.sentence) +
+         "</p>\n";
 }
 
 std::string GapTable(const Diagnosis& diagnosis, bool si) {
@@ -93,18 +94,18 @@ std::string Interval(const Estimated& estimated) {
 std::string Effects(const Diagnosis& diagnosis) {
   std::string out;
   for (const FoundEffect& effect : diagnosis.effects) {
-    out += "<h3>" + EscapeMarkup(effect.id) + ": " + TypesetHtml(effect.says) +
-           "</h3>\n<p class=\"equation\">" + TypesetHtml(effect.equation) + "</p>\n";
+    out += "<h3>" + page::EscapeMarkup(effect.id) + ": " + page::TypesetHtml(effect.says) +
+           "</h3>\n<p class=\"equation\">" + page::TypesetHtml(effect.equation) + "</p>\n";
     std::string rows;
     for (const Estimated& parameter : effect.parameters) {
       rows += "<tr>" + Cell(parameter.name) + NumberCell(parameter.value) + Interval(parameter) +
               Cell(parameter.unit) + "</tr>\n";
     }
     if (!rows.empty()) out += Table({"parameter", "#value", "#95 % interval", "unit"}, rows, "narrow");
-    if (!effect.names.empty()) out += "<p>" + EscapeMarkup(Joined(effect.names)) + "</p>\n";
+    if (!effect.names.empty()) out += "<p>" + page::EscapeMarkup(Joined(effect.names)) + "</p>\n";
     if (!effect.tied_with.empty()) {
-      out += "<p class=\"flag\">These data cannot tell it from " + EscapeMarkup(Joined(effect.tied_with)) +
-             ".</p>\n";
+      out += "<p class=\"flag\">These data cannot tell it from " +
+             page::EscapeMarkup(Joined(effect.tied_with)) + ".</p>\n";
     }
   }
   return out;
@@ -119,7 +120,8 @@ std::string OwnParameters(const Diagnosis& diagnosis) {
             "<td class=\"number\">" + (std::isfinite(change) && change > 0 ? "+" : "") +
             (std::isfinite(change) ? ShortNumber(std::round(10 * change) / 10) + " %" : "-") + "</td><td" +
             (parameter.implausible ? " class=\"flag\">implausible" : ">") +
-            (parameter.why.empty() ? "" : (parameter.implausible ? ": " : "") + TypesetHtml(parameter.why)) +
+            (parameter.why.empty() ? ""
+                                   : (parameter.implausible ? ": " : "") + page::TypesetHtml(parameter.why)) +
             "</td></tr>\n";
   }
   if (rows.empty()) return "";
@@ -142,7 +144,7 @@ std::string Where(const Diagnosis& diagnosis) {
   for (const Location& location : diagnosis.location) {
     rows += "<tr>" + Cell(location.balance) + "<td class=\"number\">" +
             ShortNumber(std::round(100 * location.share)) + " %</td>" + Cell(location.where) + "<td>" +
-            EscapeMarkup(Windows(location.windows)) + "</td></tr>\n";
+            page::EscapeMarkup(Windows(location.windows)) + "</td></tr>\n";
   }
   std::string out;
   if (!rows.empty()) out = Table({"balance", "#share", "where", "when"}, rows);
@@ -167,19 +169,19 @@ std::string Lines(const std::string& text) {
   std::string out, line;
   for (const char c : text) {
     if (c == '\n') {
-      out += EscapeMarkup(line) + "\n";
+      out += page::EscapeMarkup(line) + "\n";
       line.clear();
     } else {
       line += c;
     }
   }
-  return out + EscapeMarkup(line);
+  return out + page::EscapeMarkup(line);
 }
 
 std::string Next(const Diagnosis& diagnosis) {
   const NextExperiment& next = diagnosis.next;
   if (next.why.empty()) return "";
-  std::string out = "<p>" + TypesetHtml(next.why) + "</p>\n";
+  std::string out = "<p>" + page::TypesetHtml(next.why) + "</p>\n";
   if (next.expected_separation > 0) {
     out += "<p>The refitted models are expected to differ by " + ShortNumber(next.expected_separation) +
            " noise units in it.</p>\n";
@@ -195,7 +197,7 @@ std::string Runs(const Diagnosis& diagnosis, bool si) {
   for (const RunCurves& run : diagnosis.curves) {
     const std::string picture = RunPicture(diagnosis, run, si);
     if (picture.empty()) continue;
-    out += "<h3>" + EscapeMarkup(run.run) +
+    out += "<h3>" + page::EscapeMarkup(run.run) +
            (run.held_out ? " <span class=\"meta\">held out: <i>after</i> is a model that was not fitted to "
                            "it</span>"
                          : "") +
@@ -212,7 +214,7 @@ std::string Ranking(const Diagnosis& diagnosis) {
     rows += std::string(taken ? "<tr class=\"taken\">" : "<tr>") + "<td class=\"number\">" +
             std::to_string(++rank) + "</td>" + Cell(candidate.id) + NumberCell(candidate.score) +
             NumberCell(candidate.fit) + NumberCell(candidate.held_out) + Probability(candidate.p_value) +
-            "<td>" + (taken ? "taken" : TypesetHtml(candidate.rejected_because)) + "</td></tr>\n";
+            "<td>" + (taken ? "taken" : page::TypesetHtml(candidate.rejected_because)) + "</td></tr>\n";
   }
   if (rows.empty()) return "";
   return "<p>Gaps are in noise units, after the candidate was added and all was refitted; the score is the "
@@ -226,7 +228,7 @@ std::string Ranking(const Diagnosis& diagnosis) {
 
 std::string Remarks(const Diagnosis& diagnosis) {
   std::string items;
-  for (const std::string& remark : diagnosis.remarks) items += "<li>" + TypesetHtml(remark) + "</li>\n";
+  for (const std::string& remark : diagnosis.remarks) items += "<li>" + page::TypesetHtml(remark) + "</li>\n";
   return items.empty() ? "" : "<ul>\n" + items + "</ul>\n";
 }
 
@@ -236,7 +238,7 @@ std::string ReportHtml(const Diagnosis& given, bool si) {
   const Diagnosis diagnosis = si ? InSi(given) : given;
   return "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<meta name=\"viewport\" "
          "content=\"width=device-width\">\n<title>" +
-         EscapeMarkup("Gap report: " + diagnosis.model.name) + "</title>\n<style>" + kReportStyle +
+         page::EscapeMarkup("Gap report: " + diagnosis.model.name) + "</title>\n<style>" + kReportStyle +
          "</style>\n</head>\n<body>\n" + Head(diagnosis) + Section("The gap", GapTable(diagnosis, si)) +
          Section("What was found", Effects(diagnosis)) +
          Section("The model's own parameters", OwnParameters(diagnosis)) +
@@ -246,10 +248,11 @@ std::string ReportHtml(const Diagnosis& given, bool si) {
          Section("What is left, against what it may depend on", DependencePicture(diagnosis, si)) +
          Section("Every candidate, and why it was rejected", Ranking(diagnosis)) +
          Section("The model with what was found", "<p>As <code>model.toml</code>:</p>\n<pre>" +
-                                                      Lines(FormatModel(diagnosis.model)) + "</pre>\n") +
-         "<p class=\"meta\">hydro-diagnose " + EscapeMarkup(ProgramVersion()) +
+                                                      Lines(settings::FormatModel(diagnosis.model)) +
+                                                      "</pre>\n") +
+         "<p class=\"meta\">hydro-diagnose " + page::EscapeMarkup(settings::ProgramVersion()) +
          "; the numbers are in "
          "report.json.</p>\n</body>\n</html>\n";
 }
 
-}  // namespace hydro
+}  // namespace hydro::diagnose

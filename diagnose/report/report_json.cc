@@ -5,7 +5,7 @@
 #include "diagnose/data/run_data.h"
 #include "settings/command_line.h"
 
-namespace hydro {
+namespace hydro::diagnose {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -143,10 +143,10 @@ std::string ReportJson(const Diagnosis& diagnosis, const std::string& next_confi
                        {"runs", diagnosis.runs},
                        {"held_out_runs", diagnosis.held_out_runs},
                        {"samples", diagnosis.samples},
-                       {"version", ProgramVersion()},
+                       {"version", settings::ProgramVersion()},
                        {"elapsed_s", elapsed_s}};
   // Names come from files: bytes that are no UTF-8 are replaced instead of refused.
   return report.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
-}  // namespace hydro
+}  // namespace hydro::diagnose

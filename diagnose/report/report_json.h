@@ -5,7 +5,7 @@
 
 #include "diagnose/data/diagnosis.h"
 
-namespace hydro {
+namespace hydro::diagnose {
 
 // "named", "tied", ...: a verdict as reports write it.
 const std::string& VerdictName(Verdict verdict);
@@ -14,4 +14,4 @@ const std::string& VerdictName(Verdict verdict);
 // there is none. What is not finite is null.
 std::string ReportJson(const Diagnosis& diagnosis, const std::string& next_config, double elapsed_s);
 
-}  // namespace hydro
+}  // namespace hydro::diagnose

@@ -11,16 +11,16 @@
 #include "page/chart.h"
 #include "page/typeset.h"
 
-namespace hydro {
+namespace hydro::diagnose {
 namespace {
 
 constexpr double kPageWidth = 960;
 constexpr double kLegendHeight = 22;
 
 std::string Figure(double width, double height, const std::string& says, const std::string& drawing) {
-  return "<figure>\n<svg viewBox=\"0 0 " + Pixels(width) + " " + Pixels(height) +
-         "\" style=\"width:" + Pixels(width) + "px\" role=\"img\" aria-label=\"" + EscapeMarkup(says) +
-         "\">\n" + drawing + "</svg>\n</figure>\n";
+  return "<figure>\n<svg viewBox=\"0 0 " + page::Pixels(width) + " " + page::Pixels(height) +
+         "\" style=\"width:" + page::Pixels(width) + "px\" role=\"img\" aria-label=\"" +
+         page::EscapeMarkup(says) + "\">\n" + drawing + "</svg>\n</figure>\n";
 }
 
 struct LegendEntry {
@@ -33,17 +33,18 @@ std::string Legend(const std::vector<LegendEntry>& entries, double left) {
   double x = left;
   for (const LegendEntry& entry : entries) {
     const std::string drawing = entry.drawing;
-    const std::string at = Pixels(x);
+    const std::string at = page::Pixels(x);
     if (drawing.starts_with("rect ")) {
       out +=
           "<rect class=\"" + drawing.substr(5) + "\" x=\"" + at + "\" y=\"5\" width=\"22\" height=\"10\"/>\n";
     } else if (drawing.starts_with("dots ")) {
-      out += "<path class=\"" + drawing + "\" d=\"M" + Pixels(x + 11) + " 10h0\"/>\n";
+      out += "<path class=\"" + drawing + "\" d=\"M" + page::Pixels(x + 11) + " 10h0\"/>\n";
     } else {
       out += "<path class=\"" + drawing + "\" d=\"M" + at + " 10h22\"/>\n";
     }
-    out += "<text x=\"" + Pixels(x + 28) + "\" y=\"13.5\">" + TypesetSvg(entry.says) + "</text>\n";
-    x += 28 + 11 * TextWidth(entry.says) + 26;
+    out +=
+        "<text x=\"" + page::Pixels(x + 28) + "\" y=\"13.5\">" + page::TypesetSvg(entry.says) + "</text>\n";
+    x += 28 + 11 * page::TextWidth(entry.says) + 26;
   }
   return out;
 }
@@ -75,26 +76,27 @@ double UsualSize(const std::vector<double>& values) {
   return *at;
 }
 
-double NoiseOf(const Diagnosis& diagnosis, Channel channel) {
+double NoiseOf(const Diagnosis& diagnosis, model::Channel channel) {
   for (const SignalGap& signal : diagnosis.signals) {
     if (signal.channel == channel) return signal.noise;
   }
   return 0;
 }
 
-std::string LabelOf(Channel channel, const std::string& unit) {
+std::string LabelOf(model::Channel channel, const std::string& unit) {
   std::string name = ChannelName(channel);
   std::replace(name.begin(), name.end(), '_', ' ');
   return name + " (" + unit + ")";
 }
 
 // What a simulation that runs away shows counts up to the size of what was measured.
-ChartRange RangeOf(const ChartSeries& measured, const ChartSeries& before, const ChartSeries& after) {
-  ChartRange range = ChartRange::Empty();
+page::ChartRange RangeOf(const page::ChartSeries& measured, const page::ChartSeries& before,
+                         const page::ChartSeries& after) {
+  page::ChartRange range = page::ChartRange::Empty();
   range.Include(measured.y);
   const double size = range.high - range.low;
-  const ChartRange most{range.low - size, range.high + size};
-  for (const ChartSeries* series : {&before, &after}) {
+  const page::ChartRange most{range.low - size, range.high + size};
+  for (const page::ChartSeries* series : {&before, &after}) {
     for (const double y : series->y) {
       if (std::isfinite(y)) range.Include(std::clamp(y, most.low, most.high));
     }
@@ -103,24 +105,24 @@ ChartRange RangeOf(const ChartSeries& measured, const ChartSeries& before, const
 }
 
 // Of residuals, which count up to the size of what was measured.
-ChartRange ResidualRange(const ChartSeries& before, const ChartSeries& after, double measured_size,
-                         double noise) {
+page::ChartRange ResidualRange(const page::ChartSeries& before, const page::ChartSeries& after,
+                               double measured_size, double noise) {
   double size = std::max(UsualSize(before.y), UsualSize(after.y));
   if (measured_size > 0) size = std::min(size, measured_size);
   size = std::max(size, 3 * noise);
-  return ChartRange{-size, size}.WithMargin();
+  return page::ChartRange{-size, size}.WithMargin();
 }
 
 double SizeOf(const std::vector<double>& values) {
-  ChartRange range = ChartRange::Empty();
+  page::ChartRange range = page::ChartRange::Empty();
   range.Include(values);
   return range.low <= range.high ? range.high - range.low : 0;
 }
 
 // Means over stretches of time, through which noise does not show.
-ChartSeries RunningMean(const std::string& style, const ChartSeries& series) {
+page::ChartSeries RunningMean(const std::string& style, const page::ChartSeries& series) {
   constexpr size_t kStretches = 100;
-  ChartSeries means{style, {}, {}, {}};
+  page::ChartSeries means{style, {}, {}, {}};
   const size_t size = series.x.size();
   for (size_t k = 0; k < std::min(kStretches, size); ++k) {
     const size_t from = k * size / std::min(kStretches, size);
@@ -144,25 +146,27 @@ std::optional<std::vector<double>> Quantity(const RunCurves& run, const std::str
     if (run.voltage.size() != run.time.size()) return std::nullopt;
     return run.voltage;
   }
-  const auto find = [&](Channel channel) -> const std::vector<double>* {
+  const auto find = [&](model::Channel channel) -> const std::vector<double>* {
     for (const RunCurves::Curve& curve : run.curves) {
       if (curve.channel == channel) return &curve.measured;
     }
     return nullptr;
   };
   if (name == "dp") {
-    const std::vector<double>* p1 = find(Channel::kP1);
-    const std::vector<double>* p2 = find(Channel::kP2);
+    const std::vector<double>* p1 = find(model::Channel::kP1);
+    const std::vector<double>* p2 = find(model::Channel::kP2);
     if (p1 == nullptr || p2 == nullptr) return std::nullopt;
     return Left(*p2, *p1, 1);
   }
-  const std::vector<double>* values = find(name == "speed" ? Channel::kMotorSpeed : Channel::kArmAngle);
+  const std::vector<double>* values =
+      find(name == "speed" ? model::Channel::kMotorSpeed : model::Channel::kArmAngle);
   if (values == nullptr) return std::nullopt;
   return *values;
 }
 
 // Means of y in bins of x, left out where there are few points.
-ChartSeries BinMeans(const std::string& style, const ChartSeries& points, const ChartRange& range) {
+page::ChartSeries BinMeans(const std::string& style, const page::ChartSeries& points,
+                           const page::ChartRange& range) {
   constexpr size_t kBins = 18;
   std::array<double, kBins> x{}, y{};
   std::array<size_t, kBins> count{};
@@ -176,7 +180,7 @@ ChartSeries BinMeans(const std::string& style, const ChartSeries& points, const 
     ++count[bin];
     ++all;
   }
-  ChartSeries means{style, {}, {}, {}};
+  page::ChartSeries means{style, {}, {}, {}};
   for (size_t bin = 0; bin < kBins; ++bin) {
     if (count[bin] == 0 || 500 * count[bin] < all) continue;
     means.x.push_back(x[bin] / static_cast<double>(count[bin]));
@@ -186,8 +190,8 @@ ChartSeries BinMeans(const std::string& style, const ChartSeries& points, const 
 }
 
 // At most `most` of the points, evenly chosen.
-ChartSeries Some(const ChartSeries& points, size_t most) {
-  ChartSeries some{points.style, {}, {}, {}};
+page::ChartSeries Some(const page::ChartSeries& points, size_t most) {
+  page::ChartSeries some{points.style, {}, {}, {}};
   const size_t stride = std::max<size_t>(1, (points.x.size() + most - 1) / most);
   for (size_t i = 0; i < points.x.size(); i += stride) {
     some.x.push_back(points.x[i]);
@@ -235,45 +239,46 @@ std::string GapPicture(const Diagnosis& diagnosis) {
     for (const int digit : {1, 2, 5}) {
       const double value = digit * decade;
       if (value > highest) break;
-      const std::string x = Pixels(at(value));
-      out += "<path class=\"grid\" d=\"M" + x + " " + Pixels(kLegendHeight) + "V" + Pixels(bottom) +
-             "\"/>\n" + "<text class=\"x\" x=\"" + x + "\" y=\"" + Pixels(bottom + 14) + "\">" +
-             ShortNumber(value) + "</text>\n";
+      const std::string x = page::Pixels(at(value));
+      out += "<path class=\"grid\" d=\"M" + x + " " + page::Pixels(kLegendHeight) + "V" +
+             page::Pixels(bottom) + "\"/>\n" + "<text class=\"x\" x=\"" + x + "\" y=\"" +
+             page::Pixels(bottom + 14) + "\">" + ShortNumber(value) + "</text>\n";
     }
   }
-  out += "<path class=\"line floor\" d=\"M" + Pixels(at(1)) + " " + Pixels(kLegendHeight) + "V" +
-         Pixels(bottom) + "\"/>\n";
+  out += "<path class=\"line floor\" d=\"M" + page::Pixels(at(1)) + " " + page::Pixels(kLegendHeight) + "V" +
+         page::Pixels(bottom) + "\"/>\n";
   for (size_t i = 0; i < rows.size(); ++i) {
     const double y = kLegendHeight + kRow * (static_cast<double>(i) + 0.5) + 3;
     const BeforeAfter& gap = rows[i].gap;
-    out += "<text class=\"y\" x=\"" + Pixels(kLabel - 8) + "\" y=\"" + Pixels(y + 4) + "\">" +
-           TypesetSvg(rows[i].says) + "</text>\n";
+    out += "<text class=\"y\" x=\"" + page::Pixels(kLabel - 8) + "\" y=\"" + page::Pixels(y + 4) + "\">" +
+           page::TypesetSvg(rows[i].says) + "</text>\n";
     if (std::isfinite(gap.before) && std::isfinite(gap.after)) {
-      out += "<path class=\"zero\" d=\"M" + Pixels(at(gap.after)) + " " + Pixels(y) + "H" +
-             Pixels(at(gap.before)) + "\"/>\n";
+      out += "<path class=\"zero\" d=\"M" + page::Pixels(at(gap.after)) + " " + page::Pixels(y) + "H" +
+             page::Pixels(at(gap.before)) + "\"/>\n";
     }
     const std::pair<const char*, double> marks[] = {
         {"before", gap.before}, {"refit", gap.refit_only}, {"after", gap.after}};
     for (const auto& [style, value] : marks) {
       if (!std::isfinite(value)) continue;
-      out += "<path class=\"dots big " + std::string(style) + "\" d=\"M" + Pixels(at(value)) + " " +
-             Pixels(y) + "h0\"/>\n";
+      out += "<path class=\"dots big " + std::string(style) + "\" d=\"M" + page::Pixels(at(value)) + " " +
+             page::Pixels(y) + "h0\"/>\n";
     }
   }
-  out += "<text class=\"x\" x=\"" + Pixels((kLabel + kWidth) / 2) + "\" y=\"" + Pixels(bottom + 30) +
+  out += "<text class=\"x\" x=\"" + page::Pixels((kLabel + kWidth) / 2) + "\" y=\"" +
+         page::Pixels(bottom + 30) +
          "\">root-mean-square residual in noise standard deviations, logarithmic</text>\n";
   return Figure(kWidth, bottom + 36, "the gap before and after", out);
 }
 
 std::string RunPicture(const Diagnosis& diagnosis, const RunCurves& run, bool si) {
   constexpr double kSignals = 570, kResiduals = kPageWidth - kSignals, kRow = 128, kNumbers = 24;
-  std::vector<ChartRange> spans;
+  std::vector<page::ChartRange> spans;
   if (!diagnosis.location.empty()) {
     for (const Window& window : diagnosis.location.front().windows) {
       if (window.run == run.run) spans.push_back({window.from, window.to});
     }
   }
-  ChartRange time = ChartRange::Empty();
+  page::ChartRange time = page::ChartRange::Empty();
   time.Include(run.time);
   if (!(time.low < time.high)) return "";
 
@@ -291,11 +296,11 @@ std::string RunPicture(const Diagnosis& diagnosis, const RunCurves& run, bool si
     const double noise = unit.factor * NoiseOf(diagnosis, curve.channel);
     const auto series = [&](const char* style, const std::vector<double>& y) {
       const bool there = y.size() == run.time.size();
-      return ChartSeries{
+      return page::ChartSeries{
           style, there ? run.time : std::vector<double>(), there ? y : std::vector<double>(), {}};
     };
 
-    Chart signals;
+    page::Chart signals;
     signals.width = kSignals;
     signals.height = last ? kRow + kNumbers : kRow;
     signals.y_label = LabelOf(curve.channel, unit.unit);
@@ -306,9 +311,9 @@ std::string RunPicture(const Diagnosis& diagnosis, const RunCurves& run, bool si
                      series("before", Scaled(curve.before, unit.factor)),
                      series("after", Scaled(curve.after, unit.factor))};
     signals.y = RangeOf(signals.lines[0], signals.lines[1], signals.lines[2]);
-    out += DrawChart(signals, 0, top);
+    out += page::DrawChart(signals, 0, top);
 
-    Chart residuals = signals;
+    page::Chart residuals = signals;
     residuals.width = kResiduals;
     residuals.y_label = "measured - model";
     residuals.band = 2 * noise;
@@ -318,7 +323,7 @@ std::string RunPicture(const Diagnosis& diagnosis, const RunCurves& run, bool si
     residuals.y = ResidualRange(residuals.lines[0], residuals.lines[1], SizeOf(signals.lines[0].y), noise);
     residuals.lines.push_back(RunningMean("before mean", residuals.lines[0]));
     residuals.lines.push_back(RunningMean("after mean", residuals.lines[1]));
-    out += DrawChart(residuals, kSignals, top);
+    out += page::DrawChart(residuals, kSignals, top);
     top += signals.height;
   }
   return Figure(kPageWidth, top + 4, "measured and simulated signals of " + run.run, out);
@@ -326,14 +331,14 @@ std::string RunPicture(const Diagnosis& diagnosis, const RunCurves& run, bool si
 
 std::string DependencePicture(const Diagnosis& diagnosis, bool si) {
   if (diagnosis.curves.empty()) return "";
-  const std::string pressure = UnitOf(Channel::kP1, si).unit;
+  const std::string pressure = UnitOf(model::Channel::kP1, si).unit;
   struct Against {
     std::string name, label;
     double factor;
   };
   const std::array<Against, 4> all = {
       {{"speed", "motor speed (rad/s)", 1},
-       {"dp", "p_2 - p_1 (" + pressure + ")", UnitOf(Channel::kP1, si).factor},
+       {"dp", "p_2 - p_1 (" + pressure + ")", UnitOf(model::Channel::kP1, si).factor},
        {"angle", "arm angle (rad)", 1},
        {"voltage", "voltage (V)", 1}}};
   std::vector<Against> columns;
@@ -343,9 +348,9 @@ std::string DependencePicture(const Diagnosis& diagnosis, bool si) {
                     [&](const RunCurves& run) { return Quantity(run, column.name).has_value(); });
     if (there) columns.push_back(column);
   }
-  std::vector<Channel> channels;
-  for (size_t c = 0; c < kChannels; ++c) {
-    const Channel channel = static_cast<Channel>(c);
+  std::vector<model::Channel> channels;
+  for (size_t c = 0; c < model::kChannels; ++c) {
+    const model::Channel channel = static_cast<model::Channel>(c);
     const bool there =
         std::any_of(diagnosis.curves.begin(), diagnosis.curves.end(), [&](const RunCurves& run) {
           return std::any_of(run.curves.begin(), run.curves.end(),
@@ -364,12 +369,12 @@ std::string DependencePicture(const Diagnosis& diagnosis, bool si) {
                             {"rect band", "twice the noise"}},
                            58);
   double top = kLegendHeight;
-  for (const Channel channel : channels) {
+  for (const model::Channel channel : channels) {
     const bool last = channel == channels.back();
     const ShownUnit unit = UnitOf(channel, si);
     const double noise = unit.factor * NoiseOf(diagnosis, channel);
     for (size_t k = 0; k < columns.size(); ++k) {
-      ChartSeries before{"before", {}, {}, {}}, after{"after", {}, {}, {}};
+      page::ChartSeries before{"before", {}, {}, {}}, after{"after", {}, {}, {}};
       double measured_size = 0;
       for (const RunCurves& run : diagnosis.curves) {
         const std::optional<std::vector<double>> x = Quantity(run, columns[k].name);
@@ -386,12 +391,12 @@ std::string DependencePicture(const Diagnosis& diagnosis, bool si) {
           }
         }
       }
-      Chart chart;
+      page::Chart chart;
       chart.width = width;
       chart.height = last ? kRow + kNumbers : kRow;
       chart.x_label = last ? columns[k].label : "";
       chart.y_label = k == 0 ? LabelOf(channel, unit.unit) : "";
-      ChartRange range = ChartRange::Empty();
+      page::ChartRange range = page::ChartRange::Empty();
       range.Include(before.x);
       range.Include(after.x);
       chart.x = range.WithMargin();
@@ -400,7 +405,7 @@ std::string DependencePicture(const Diagnosis& diagnosis, bool si) {
       chart.zero_line = true;
       chart.dots = {Some(before, 400), Some(after, 400)};
       chart.lines = {BinMeans("before mean", before, chart.x), BinMeans("after mean", after, chart.x)};
-      out += DrawChart(chart, width * static_cast<double>(k), top);
+      out += page::DrawChart(chart, width * static_cast<double>(k), top);
     }
     top += last ? kRow + kNumbers : kRow;
   }
@@ -408,7 +413,7 @@ std::string DependencePicture(const Diagnosis& diagnosis, bool si) {
 }
 
 std::string MissingTermPicture(const MissingTerm& term) {
-  Chart chart;
+  page::Chart chart;
   chart.width = 560;
   chart.height = 220;
   std::string against = term.against;
@@ -417,10 +422,10 @@ std::string MissingTermPicture(const MissingTerm& term) {
   std::replace(balance.begin(), balance.end(), '_', ' ');
   chart.x_label = against + (term.against_unit.empty() ? "" : " (" + term.against_unit + ")");
   chart.y_label = "missing in " + balance + " (" + term.unit + ")";
-  ChartRange x = ChartRange::Empty(), y = ChartRange::Empty();
+  page::ChartRange x = page::ChartRange::Empty(), y = page::ChartRange::Empty();
   x.Include(term.at);
   y.Include(0.0);
-  ChartSeries dots{"found", term.at, term.mean, {}};
+  page::ChartSeries dots{"found", term.at, term.mean, {}};
   for (size_t i = 0; i < term.mean.size(); ++i) {
     const double error = i < term.error.size() ? 1.96 * term.error[i] : 0;
     dots.error.push_back(error);
@@ -432,7 +437,7 @@ std::string MissingTermPicture(const MissingTerm& term) {
   chart.zero_line = true;
   chart.dots = {dots};
   chart.lines = {{"found", term.at, term.mean, {}}};
-  return Figure(chart.width, chart.height, "the missing term", DrawChart(chart, 0, 0));
+  return Figure(chart.width, chart.height, "the missing term", page::DrawChart(chart, 0, 0));
 }
 
-}  // namespace hydro
+}  // namespace hydro::diagnose

@@ -5,7 +5,7 @@
 
 #include "diagnose/data/diagnosis.h"
 
-namespace hydro {
+namespace hydro::diagnose {
 
 // The gap before, with refitted parameters and after, in noise units, of all signals and of each.
 std::string GapPicture(const Diagnosis& diagnosis);
@@ -21,4 +21,4 @@ std::string DependencePicture(const Diagnosis& diagnosis, bool si);
 // The missing term of a balance against what it depends on.
 std::string MissingTermPicture(const MissingTerm& term);
 
-}  // namespace hydro
+}  // namespace hydro::diagnose

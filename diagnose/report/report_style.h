@@ -1,7 +1,7 @@
 // How report.html looks: on a screen, on paper, and the pictures' lines.
 #pragma once
 
-namespace hydro {
+namespace hydro::diagnose {
 
 // Colours are of Okabe and Ito's set for the colour-blind; widths and dashes tell the lines apart without
 // any.
@@ -77,4 +77,4 @@ svg path { fill: none; }
 }
 )css";
 
-}  // namespace hydro
+}  // namespace hydro::diagnose

@@ -8,7 +8,7 @@
 #include "diagnose/report/diagnosis_in_si.h"
 #include "diagnose/report/report_json.h"
 
-namespace hydro {
+namespace hydro::diagnose {
 namespace {
 
 std::string GapLine(const std::string& what, const BeforeAfter& gap) {
@@ -78,4 +78,4 @@ std::string TerminalSummary(const Diagnosis& given, const std::string& folder, b
          (diagnosis.next.config.empty() ? "" : ", next.toml") + "\n";
 }
 
-}  // namespace hydro
+}  // namespace hydro::diagnose

@@ -5,7 +5,7 @@
 
 #include "diagnose/data/diagnosis.h"
 
-namespace hydro {
+namespace hydro::diagnose {
 
 // `folder`: where the report is. With `si`, figures are in SI.
 std::string TerminalSummary(const Diagnosis& diagnosis, const std::string& folder, bool si);
@@ -13,4 +13,4 @@ std::string TerminalSummary(const Diagnosis& diagnosis, const std::string& folde
 // "b 0.0203 [0.0199, 0.0207] in-lbf-s"
 std::string WithInterval(const Estimated& estimated);
 
-}  // namespace hydro
+}  // namespace hydro::diagnose

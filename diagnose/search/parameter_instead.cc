@@ -6,7 +6,7 @@
 #include "diagnose/fit/comparison.h"
 #include "model/parameter_info.h"
 
-namespace hydro {
+namespace hydro::diagnose {
 
 namespace {
 
@@ -15,7 +15,7 @@ constexpr double kWithinWhatIsKnown = 0.01;
 
 }  // namespace
 
-const Explanation* ParameterInstead(const SearchResult& search, const ModelDescription& given) {
+const Explanation* ParameterInstead(const SearchResult& search, const model::ModelDescription& given) {
   const Explanation& best = search.best;
   const auto effects = std::count_if(best.changes().begin(), best.changes().end(),
                                      [](const Change& change) { return !change.effect.empty(); });
@@ -28,7 +28,8 @@ const Explanation* ParameterInstead(const SearchResult& search, const ModelDescr
     const Change* gone = best.fitted.hypothesis.OneBeyond(other.fitted.hypothesis);
     const bool in_place = own != nullptr && own->effect.empty() && gone != nullptr && !gone->effect.empty();
     if (!in_place || Material(other.held_out_gap(), best.held_out_gap())) continue;
-    const double Parameters::*member = BaseParameters()[BasePlace(own->parameter)].member;
+    const double model::Parameters::*member =
+        model::BaseParameters()[model::BasePlace(own->parameter)].member;
     const double value = given.parameters.*member;
     const double moved = other.fitted.hypothesis.model.parameters.*member - value;
     if (!(std::abs(moved) < kWithinWhatIsKnown * std::abs(value))) continue;
@@ -37,4 +38,4 @@ const Explanation* ParameterInstead(const SearchResult& search, const ModelDescr
   return instead;
 }
 
-}  // namespace hydro
+}  // namespace hydro::diagnose

@@ -11,7 +11,7 @@
 #include "maths/solve.h"
 #include "model/description.h"
 
-namespace hydro {
+namespace hydro::diagnose {
 
 namespace {
 
@@ -86,7 +86,7 @@ class Periodogram {
     for (Index i = 0; i < scale.size(); ++i) scale(i) = inner(i, i) > 0 ? 1 / std::sqrt(inner(i, i)) : 0;
     MatrixXd scaled = scale.asDiagonal() * inner * scale.asDiagonal();
     scaled.diagonal().array() += 1e-9;
-    const VectorXd best = scale.asDiagonal() * SolveSymmetric(scaled, scale.asDiagonal() * right);
+    const VectorXd best = scale.asDiagonal() * maths::SolveSymmetric(scaled, scale.asDiagonal() * right);
     if (solution != nullptr) *solution = best;
     return all(last, last) - right.dot(best);
   }
@@ -133,7 +133,7 @@ std::vector<Hypothesis> WithPeriodic(const Hypothesis& hypothesis, const std::ve
     SmoothedRun run;
     try {
       run = SmoothDisturbances(hypothesis.model, *runs[r], {});
-    } catch (const ModelError&) {
+    } catch (const model::ModelError&) {
       return;  // another run may do
     }
     const Disturbance& torque = run.disturbance[static_cast<size_t>(Balance::kPumpTorque)];
@@ -170,4 +170,4 @@ std::vector<Hypothesis> WithPeriodic(const Hypothesis& hypothesis, const std::ve
   return all;
 }
 
-}  // namespace hydro
+}  // namespace hydro::diagnose

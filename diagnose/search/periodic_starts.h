@@ -8,7 +8,7 @@
 #include "diagnose/data/run_data.h"
 #include "diagnose/fit/hypothesis.h"
 
-namespace hydro {
+namespace hydro::diagnose {
 
 // `hypothesis` with motor.cogging, and with pump.flow_ripple, where they are among `changes` and the balances
 // that it leaves open (SmoothDisturbances) plainly repeat within a turn: the likeliest numbers of periods,
@@ -16,4 +16,4 @@ namespace hydro {
 std::vector<Hypothesis> WithPeriodic(const Hypothesis& hypothesis, const std::vector<Change>& changes,
                                      const std::vector<const RunData*>& runs, int jobs);
 
-}  // namespace hydro
+}  // namespace hydro::diagnose

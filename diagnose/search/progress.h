@@ -4,7 +4,7 @@
 #include <functional>
 #include <string>
 
-namespace hydro {
+namespace hydro::diagnose {
 
 struct Progress {
   std::string stage;    // "trying each effect"
@@ -14,4 +14,4 @@ struct Progress {
 // Called from one thread at a time.
 using TellProgress = std::function<void(const Progress&)>;
 
-}  // namespace hydro
+}  // namespace hydro::diagnose

@@ -7,7 +7,7 @@
 
 #include "base/parallel.h"
 
-namespace hydro {
+namespace hydro::diagnose {
 
 namespace {
 
@@ -62,4 +62,4 @@ Explanation AtBestResonance(const SearchContext& context, const Explanation& one
   return best;
 }
 
-}  // namespace hydro
+}  // namespace hydro::diagnose

@@ -4,10 +4,10 @@
 
 #include "diagnose/search/search.h"
 
-namespace hydro {
+namespace hydro::diagnose {
 
 // `one`, fitted again from frequencies around its own for each of its free numbers that is in Hz, as long as
 // that fits better. `one` itself where nothing is in Hz, or where it fits best already.
 Explanation AtBestResonance(const SearchContext& context, const Explanation& one, const FitOptions& options);
 
-}  // namespace hydro
+}  // namespace hydro::diagnose

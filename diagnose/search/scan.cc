@@ -9,7 +9,7 @@
 #include "maths/solve.h"
 #include "model/jet.h"
 
-namespace hydro {
+namespace hydro::diagnose {
 
 namespace {
 
@@ -49,7 +49,7 @@ double BestMove(const MatrixXd& A, const VectorXd& b, double s, const VectorXd& 
       scaled(i, i) = 1;
       right(i) = 0;
     }
-    const VectorXd more = scale.asDiagonal() * SolveSymmetric(scaled, right);
+    const VectorXd more = scale.asDiagonal() * maths::SolveSymmetric(scaled, right);
     *move += more;
     Index worst = -1;
     for (Index i = 0; i < own; ++i) {
@@ -83,7 +83,7 @@ std::vector<size_t> Vanishing(const Task& task) {
   std::vector<size_t> places;
   if (task.moved) return places;
   for (size_t i = 0; i < task.own.size(); ++i) {
-    const bool base = task.own[i].unknown.kind == Unknown::Kind::kBase;
+    const bool base = task.own[i].unknown.kind == model::Unknown::Kind::kBase;
     if (base || (task.own[i].value == 0 && !task.own[i].logarithmic)) places.push_back(i);
   }
   return places;
@@ -105,12 +105,12 @@ Scanned Judge(const std::vector<RunBasis>& bases, const std::vector<FreeParamete
     const Index starts = basis.cols() - p;
     MatrixXd normal(p + starts + e, p + starts + e);
     normal.topLeftCorner(p + starts, p + starts) = bases[r].normal;
-    normal.topRightCorner(p + starts, e) = TransposeTimes(basis, own);
+    normal.topRightCorner(p + starts, e) = maths::TransposeTimes(basis, own);
     normal.bottomLeftCorner(e, p + starts) = normal.topRightCorner(p + starts, e).transpose();
-    normal.bottomRightCorner(e, e) = TransposeTimes(own, own);
+    normal.bottomRightCorner(e, e) = maths::TransposeTimes(own, own);
     VectorXd right(p + starts + e);
     right << basis.transpose() * values, own.transpose() * values;
-    if (!normal.allFinite() || !right.allFinite()) throw ModelError("its simulation is not finite");
+    if (!normal.allFinite() || !right.allFinite()) throw model::ModelError("its simulation is not finite");
     // The run's start is taken out; what is left are the known parameters and the change's own.
     std::vector<Index> keep;
     for (Index i = 0; i < p + starts + e; ++i) {
@@ -122,10 +122,10 @@ Scanned Judge(const std::vector<RunBasis>& bases, const std::vector<FreeParamete
       inner.diagonal().array() += 1e-10 * inner.diagonal().maxCoeff() + 1e-300;
       const MatrixXd across = normal.middleCols(p, starts);
       const VectorXd start_right = right.segment(p, starts);
-      const VectorXd moved = SolveSymmetric(inner, start_right);
+      const VectorXd moved = maths::SolveSymmetric(inner, start_right);
       sum -= start_right.dot(moved);
       right -= across * moved;
-      normal -= across * SolveSymmetric(inner, across.transpose());
+      normal -= across * maths::SolveSymmetric(inner, across.transpose());
     }
     A += normal(keep, keep);
     b += right(keep);
@@ -173,18 +173,18 @@ std::vector<RunColumns> Alone(const Fitted& current, const std::vector<const Run
 bool Together(const Fitted& current, const std::vector<const RunData*>& runs,
               const std::vector<RunBasis>& bases, const std::vector<const Task*>& tasks,
               std::vector<std::vector<RunColumns>>* columns) {
-  ModelDescription model = current.hypothesis.model;
+  model::ModelDescription model = current.hypothesis.model;
   for (const Task* task : tasks) {
-    if (task->own.front().unknown.kind == Unknown::Kind::kEffect) {
+    if (task->own.front().unknown.kind == model::Unknown::Kind::kEffect) {
       model.effects.push_back(task->with.model.effects.back());
     }
   }
   // Where each task's parameters are in the common model: effects there are in the order of their ids.
-  const std::vector<EffectParameter> all = EffectParameters(model);
+  const std::vector<model::EffectParameter> all = model::EffectParameters(model);
   std::vector<FreeParameter> vanishing;
   size_t effect = current.hypothesis.model.effects.size();
   for (const Task* task : tasks) {
-    const bool adds = task->own.front().unknown.kind == Unknown::Kind::kEffect;
+    const bool adds = task->own.front().unknown.kind == model::Unknown::Kind::kEffect;
     for (const size_t place : Vanishing(*task)) {
       FreeParameter& parameter = vanishing.emplace_back(task->own[place]);
       for (size_t i = 0; adds && i < all.size(); ++i) {
@@ -223,13 +223,13 @@ std::vector<std::vector<Scanned>> Scan(const Fitted& current, const std::vector<
   const std::vector<FreeParameter> known = current.hypothesis.Free();
   std::vector<RunBasis> bases(runs.size());
   ParallelFor(runs.size(), jobs, [&](size_t r) {
-    const std::vector<Unknown> starts = StartUnknowns(*runs[r]);
+    const std::vector<model::Unknown> starts = StartUnknowns(*runs[r]);
     const Residuals residuals =
         ResidualsOf(current.hypothesis.model, *runs[r], current.runs[r].start, known, starts);
     const auto rows = static_cast<Index>(residuals.values.size());
     bases[r].columns = Map<const MatrixXd>(residuals.jacobian.data(), rows,
                                            static_cast<Index>(known.size() + starts.size()));
-    bases[r].normal = TransposeTimes(bases[r].columns, bases[r].columns);
+    bases[r].normal = maths::TransposeTimes(bases[r].columns, bases[r].columns);
     bases[r].values = Map<const VectorXd>(residuals.values.data(), rows);
   });
 
@@ -242,9 +242,9 @@ std::vector<std::vector<Scanned>> Scan(const Fitted& current, const std::vector<
           return other.name == parameter.name;
         });
         if (!had) task.own.push_back(parameter);
-        task.moved |= !had && parameter.unknown.kind == Unknown::Kind::kBase &&
+        task.moved |= !had && parameter.unknown.kind == model::Unknown::Kind::kBase &&
                       parameter.value != current.hypothesis.model.parameters.*
-                                             BaseParameters()[parameter.unknown.index].member;
+                                             model::BaseParameters()[parameter.unknown.index].member;
       }
       tasks.push_back(std::move(task));
     }
@@ -259,7 +259,7 @@ std::vector<std::vector<Scanned>> Scan(const Fitted& current, const std::vector<
       single.push_back(t);
       continue;
     }
-    if (groups.empty() || directions + own > static_cast<size_t>(kJetWidth)) {
+    if (groups.empty() || directions + own > static_cast<size_t>(model::kJetWidth)) {
       groups.emplace_back();
       directions = 0;
     }
@@ -270,7 +270,7 @@ std::vector<std::vector<Scanned>> Scan(const Fitted& current, const std::vector<
   const auto alone = [&](size_t t) {
     try {
       judged[t] = Judge(bases, known, tasks[t], Alone(current, runs, tasks[t]));
-    } catch (const ModelError& error) {
+    } catch (const model::ModelError& error) {
       judged[t].failure = error.what();
       judged[t].start = tasks[t].with;
     }
@@ -286,7 +286,7 @@ std::vector<std::vector<Scanned>> Scan(const Fitted& current, const std::vector<
       for (size_t m = 0; together && m < members.size(); ++m) {
         judged[groups[i][m]] = Judge(bases, known, *members[m], columns[m]);
       }
-    } catch (const ModelError&) {
+    } catch (const model::ModelError&) {
       together = false;  // one of them cannot be simulated; each by itself shows which
     }
     if (!together) {
@@ -305,4 +305,4 @@ std::vector<std::vector<Scanned>> Scan(const Fitted& current, const std::vector<
   return scanned;
 }
 
-}  // namespace hydro
+}  // namespace hydro::diagnose

@@ -8,7 +8,7 @@
 #include "diagnose/fit/fit.h"
 #include "diagnose/fit/hypothesis.h"
 
-namespace hydro {
+namespace hydro::diagnose {
 
 struct Scanned {
   Change change;
@@ -16,7 +16,7 @@ struct Scanned {
   double expected = 0;  // fall of the sum of squared residuals that it expects
   std::string failure;  // "" or why it cannot be judged
   // Where the runs begin with it; empty: where they do without it.
-  std::vector<StartState> run_starts;
+  std::vector<model::StartState> run_starts;
 };
 
 // One row for each change and starting point, best first within each change. The change's derivatives are
@@ -25,4 +25,4 @@ std::vector<std::vector<Scanned>> Scan(const Fitted& current, const std::vector<
                                        const std::vector<Change>& changes, const Sizes& sizes, bool elsewhere,
                                        int jobs);
 
-}  // namespace hydro
+}  // namespace hydro::diagnose

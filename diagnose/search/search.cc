@@ -9,7 +9,7 @@
 #include "diagnose/search/periodic_starts.h"
 #include "diagnose/search/resonance.h"
 
-namespace hydro {
+namespace hydro::diagnose {
 
 namespace {
 
@@ -35,8 +35,8 @@ constexpr double kCloseEnough = 1.25;
 // Above this squared gap of its fit an explanation is not begun again to see whether it suffices.
 constexpr double kNear = 3;
 
-std::vector<StartState> MeasuredStarts(const std::vector<const RunData*>& runs) {
-  std::vector<StartState> starts;
+std::vector<model::StartState> MeasuredStarts(const std::vector<const RunData*>& runs) {
+  std::vector<model::StartState> starts;
   starts.reserve(runs.size());
   for (const RunData* run : runs) starts.push_back(run->start);
   return starts;
@@ -47,7 +47,7 @@ std::vector<StartState> MeasuredStarts(const std::vector<const RunData*>& runs) 
 double Cost(const Explanation& one) {
   double cost = one.held_out_gap();
   for (const FreeParameter& parameter : one.fitted.hypothesis.Free()) {
-    cost += parameter.unknown.kind == Unknown::Kind::kBase ? 0.005 : 0.01;
+    cost += parameter.unknown.kind == model::Unknown::Kind::kBase ? 0.005 : 0.01;
   }
   return cost;
 }
@@ -60,11 +60,11 @@ bool SameChanges(const Hypothesis& a, const Hypothesis& b) {
 // Two of an effect cannot be in one model; nor is something changed twice.
 bool CanAdd(const Hypothesis& hypothesis, const Change& change) {
   if (change.effect.empty()) {
-    const size_t place = BasePlace(change.parameter);
+    const size_t place = model::BasePlace(change.parameter);
     return std::find(hypothesis.base.begin(), hypothesis.base.end(), place) == hypothesis.base.end();
   }
   return std::none_of(hypothesis.model.effects.begin(), hypothesis.model.effects.end(),
-                      [&](const EffectDescription& effect) { return effect.id == change.effect; });
+                      [&](const model::EffectDescription& effect) { return effect.id == change.effect; });
 }
 
 class Searcher {
@@ -173,7 +173,8 @@ class Searcher {
   }
 
   // Fits all; the best few by their fit, with their held-out prediction.
-  std::vector<Explanation> FitAll(const std::vector<Scanned>& pool, const std::vector<StartState>& starts,
+  std::vector<Explanation> FitAll(const std::vector<Scanned>& pool,
+                                  const std::vector<model::StartState>& starts,
                                   double most = std::numeric_limits<double>::infinity()) {
     std::vector<Fitted> fits(pool.size());
     ParallelFor(pool.size(), context_.jobs, [&](size_t i) {
@@ -311,7 +312,7 @@ class Searcher {
 }  // namespace
 
 Explanation Explain(const SearchContext& context, const Hypothesis& hypothesis,
-                    const std::vector<StartState>& starts, const FitOptions& options) {
+                    const std::vector<model::StartState>& starts, const FitOptions& options) {
   Explanation explanation;
   explanation.fitted = Fit(hypothesis, context.runs, starts, options);
   if (!explanation.fitted.ok()) return explanation;
@@ -328,7 +329,7 @@ Explanation Explain(const SearchContext& context, const Hypothesis& hypothesis,
 Explanation BegunAgain(const SearchContext& context, const Explanation& one, const FitOptions& options) {
   if (one.fitted.squared_gap() <= kStartInDoubt) return one;
   Explanation best = one;
-  const auto begin_at = [&](const std::vector<StartState>& starts) {
+  const auto begin_at = [&](const std::vector<model::StartState>& starts) {
     Explanation again = Explain(context, one.fitted.hypothesis, starts, options);
     if (again.fitted.ok() && again.fitted.sum < best.fitted.sum) best = std::move(again);
   };
@@ -342,4 +343,4 @@ SearchResult Search(const SearchContext& context, const Hypothesis& from, int mo
   return Searcher(context, most_changes).Run(from);
 }
 
-}  // namespace hydro
+}  // namespace hydro::diagnose

@@ -11,7 +11,7 @@
 #include "diagnose/search/progress.h"
 #include "diagnose/search/scan.h"
 
-namespace hydro {
+namespace hydro::diagnose {
 
 // A hypothesis with what is known of it.
 struct Explanation {
@@ -39,7 +39,7 @@ struct SearchResult {
 };
 
 struct SearchContext {
-  ModelDescription given;
+  model::ModelDescription given;
   std::vector<const RunData*> runs;
   std::vector<const RunData*> held_out;  // empty: the runs in turn
   std::vector<Change> changes;           // those that may be made
@@ -50,7 +50,7 @@ struct SearchContext {
 
 // Fits, and predicts the held-out runs, both with the options' jobs.
 Explanation Explain(const SearchContext& context, const Hypothesis& hypothesis,
-                    const std::vector<StartState>& starts, const FitOptions& options);
+                    const std::vector<model::StartState>& starts, const FitOptions& options);
 
 // The same begun once more from the measured starts, where its fit leaves a gap, and where that is left
 // still, from each run's best (BestStarts); what fits best of these. Starts that were fitted while something
@@ -61,4 +61,4 @@ Explanation BegunAgain(const SearchContext& context, const Explanation& one, con
 // From `from` on, a hypothesis without changes of its own.
 SearchResult Search(const SearchContext& context, const Hypothesis& from, int most_changes);
 
-}  // namespace hydro
+}  // namespace hydro::diagnose

@@ -11,7 +11,7 @@
 #include "diagnose/verdict/ranking.h"
 #include "diagnose/verdict/run_curves.h"
 
-namespace hydro {
+namespace hydro::diagnose {
 
 namespace {
 
@@ -46,13 +46,13 @@ std::vector<Rival> Rivals(const std::vector<Explanation>& tried, const Explanati
 
 FoundEffect Describe(const Change& change, const std::vector<FreeParameter>& free,
                      const std::vector<Interval>& intervals) {
-  const EffectInfo& info = *FindEffect(change.effect);
+  const model::EffectInfo& info = *model::FindEffect(change.effect);
   FoundEffect found;
   found.id = info.id;
   found.says = info.says;
   found.equation = info.equation;
   for (const auto& [name, value] : change.names) found.names.push_back(name + " = " + value);
-  for (const ParameterInfo& parameter : info.parameters) {
+  for (const model::ParameterInfo& parameter : info.parameters) {
     for (size_t i = 0; i < free.size(); ++i) {
       if (free[i].name != info.id + "." + parameter.name) continue;
       found.parameters.push_back(
@@ -63,10 +63,10 @@ FoundEffect Describe(const Change& change, const std::vector<FreeParameter>& fre
 }
 
 ChangedParameter DescribeParameter(const FreeParameter& fitted, const Interval& interval,
-                                   const ModelDescription& given) {
+                                   const model::ModelDescription& given) {
   ChangedParameter changed;
   changed.fitted = {fitted.name, fitted.value, interval.low, interval.high, fitted.unit};
-  changed.model = given.parameters.*BaseParameters()[fitted.unknown.index].member;
+  changed.model = given.parameters.*model::BaseParameters()[fitted.unknown.index].member;
   if (changed.model != 0) {
     const double ratio = fitted.value / changed.model;
     if (ratio > kImplausible || ratio < 1 / kImplausible) {
@@ -139,7 +139,7 @@ Diagnosis Conclude(const SearchContext& context, const SearchResult& search, con
   const std::vector<Interval> intervals =
       free.empty() ? std::vector<Interval>{} : Intervals(best.fitted, context.runs, context.jobs);
   bool tied = false;
-  std::vector<ModelDescription> rivals = {best.fitted.hypothesis.model};
+  std::vector<model::ModelDescription> rivals = {best.fitted.hypothesis.model};
   for (const Change& change : best.changes()) {
     if (change.effect.empty()) continue;
     FoundEffect found = Describe(change, free, intervals);
@@ -151,7 +151,7 @@ Diagnosis Conclude(const SearchContext& context, const SearchResult& search, con
     d.effects.push_back(std::move(found));
   }
   for (size_t i = 0; i < free.size(); ++i) {
-    if (free[i].unknown.kind == Unknown::Kind::kBase) {
+    if (free[i].unknown.kind == model::Unknown::Kind::kBase) {
       d.parameters.push_back(DescribeParameter(free[i], intervals[i], context.given));
     }
   }
@@ -171,7 +171,7 @@ Diagnosis Conclude(const SearchContext& context, const SearchResult& search, con
   d.curves = CurvesOf(context, given, best);
   if (d.verdict != Verdict::kNothingMissing) {
     if (tell) tell({"where the gap is", 0.97});
-    const ModelDescription& disagrees =
+    const model::ModelDescription& disagrees =
         d.verdict == Verdict::kUnexplained ? best.fitted.hypothesis.model : context.given;
     Localisation located = Locate(disagrees, context.runs);
     d.location = std::move(located.location);
@@ -190,4 +190,4 @@ Diagnosis Conclude(const SearchContext& context, const SearchResult& search, con
   return d;
 }
 
-}  // namespace hydro
+}  // namespace hydro::diagnose

@@ -4,9 +4,9 @@
 #include "diagnose/data/diagnosis.h"
 #include "diagnose/search/search.h"
 
-namespace hydro {
+namespace hydro::diagnose {
 
 // `refit`: the given model with all identifiable base parameters fitted.
 Diagnosis Conclude(const SearchContext& context, const SearchResult& search, const Explanation& refit);
 
-}  // namespace hydro
+}  // namespace hydro::diagnose

@@ -13,7 +13,7 @@
 #include "model/parameter_info.h"
 #include "model/response.h"
 
-namespace hydro {
+namespace hydro::diagnose {
 
 namespace {
 
@@ -29,19 +29,19 @@ struct Rig {
   double voltage = 0, pressure = 0, speed = 0;
   double low_angle = std::numeric_limits<double>::infinity(), high_angle = -low_angle;
   bool free = false, clamped = false;
-  std::array<double, kChannels> noise{};  // 0: not measured
+  std::array<double, model::kChannels> noise{};  // 0: not measured
 };
 
 Rig Inspect(const std::vector<const RunData*>& runs) {
   Rig rig;
   for (const RunData* run : runs) {
     for (const double v : run->stimulus.voltage) rig.voltage = std::max(rig.voltage, std::abs(v));
-    (run->stimulus.shaft == Shaft::kFree ? rig.free : rig.clamped) = true;
+    (run->stimulus.shaft == model::Shaft::kFree ? rig.free : rig.clamped) = true;
     const auto angle = [&](double value) {
       rig.low_angle = std::min(rig.low_angle, value);
       rig.high_angle = std::max(rig.high_angle, value);
     };
-    if (run->stimulus.shaft == Shaft::kClamped) angle(run->stimulus.arm_angle);
+    if (run->stimulus.shaft == model::Shaft::kClamped) angle(run->stimulus.arm_angle);
     if (run->stimulus.motion != nullptr) {
       angle(run->stimulus.motion->Min());
       angle(run->stimulus.motion->Max());
@@ -52,9 +52,9 @@ Rig Inspect(const std::vector<const RunData*>& runs) {
       rig.noise[channel] = rig.noise[channel] == 0 ? noise : std::min(rig.noise[channel], noise);
       for (const double value : signal.values) {
         if (std::isnan(value)) continue;
-        if (signal.channel == Channel::kArmAngle) angle(value);
-        if (signal.channel == Channel::kMotorSpeed) rig.speed = std::max(rig.speed, std::abs(value));
-        if (signal.channel == Channel::kP1 || signal.channel == Channel::kP2) {
+        if (signal.channel == model::Channel::kArmAngle) angle(value);
+        if (signal.channel == model::Channel::kMotorSpeed) rig.speed = std::max(rig.speed, std::abs(value));
+        if (signal.channel == model::Channel::kP1 || signal.channel == model::Channel::kP2) {
           rig.pressure = std::max(rig.pressure, value);
         }
       }
@@ -65,11 +65,11 @@ Rig Inspect(const std::vector<const RunData*>& runs) {
 }
 
 struct Trial {
-  Shaft shaft = Shaft::kClamped;
+  model::Shaft shaft = model::Shaft::kClamped;
   double arm_angle = 0;
   bool bypass = false;
   std::string reference;  // keys of [reference]
-  std::shared_ptr<const Trajectory> voltage;
+  std::shared_ptr<const trajectory::Trajectory> voltage;
   double separation = 0;
 };
 
@@ -87,7 +87,7 @@ double Rounded(double value) {
 
 std::vector<Trial> Voltages(double largest) {
   std::vector<Trial> all;
-  const auto add = [&](std::string reference, std::unique_ptr<Trajectory> voltage) {
+  const auto add = [&](std::string reference, std::unique_ptr<trajectory::Trajectory> voltage) {
     Trial trial;
     trial.reference = std::move(reference);
     trial.voltage = std::move(voltage);
@@ -100,17 +100,17 @@ std::vector<Trial> Voltages(double largest) {
       for (const double frequency : {0.7, 2.5}) {
         add(Text("kind = \"square\"\noffset = %.10g\namplitude = %.10g\nfrequency_hz = %.10g\n", offset,
                  amplitude, frequency),
-            MakeSquare(offset, amplitude, frequency, 0));
+            trajectory::MakeSquare(offset, amplitude, frequency, 0));
       }
       add(Text("kind = \"sine\"\noffset = %.10g\namplitude = %.10g\nfrequency_hz = 0.5\n", offset, amplitude),
-          MakeSine(offset, amplitude, 0.5, 0, 0));
+          trajectory::MakeSine(offset, amplitude, 0.5, 0, 0));
       add(Text("kind = \"chirp\"\noffset = %.10g\namplitude = %.10g\nfirst_frequency_hz = 0.5\n"
                "last_frequency_hz = 30.0\nduration_s = %.10g\n",
                offset, amplitude, kDuration),
-          MakeChirp(offset, amplitude, 0.5, 30, 0, kDuration));
+          trajectory::MakeChirp(offset, amplitude, 0.5, 30, 0, kDuration));
     }
     // Up, down past 0 and back: each level long enough to settle, in both directions.
-    std::vector<Step> steps;
+    std::vector<trajectory::Step> steps;
     std::string text = "kind = \"steps\"\nsteps = [";
     constexpr double kLevels[] = {0.3, 0.6, 1, 0.5, 0.1, -0.3, -0.6, -1, -0.5, -0.1, 0.8, -0.8};
     for (const double level : kLevels) {
@@ -118,14 +118,14 @@ std::vector<Trial> Voltages(double largest) {
       steps.push_back({time, Rounded(level * part * largest)});
       text += (steps.size() > 1 ? ", " : "") + Text("[%.10g, %.10g]", time, steps.back().value);
     }
-    add(text + "]\n", MakeSteps(0, steps));
+    add(text + "]\n", trajectory::MakeSteps(0, steps));
   }
   return all;
 }
 
-std::vector<Trial> Trials(const Rig& rig, const Parameters& p) {
+std::vector<Trial> Trials(const Rig& rig, const model::Parameters& p) {
   std::vector<Trial> all;
-  const auto held = [&](Shaft shaft, double angle, bool bypass) {
+  const auto held = [&](model::Shaft shaft, double angle, bool bypass) {
     for (Trial trial : Voltages(rig.voltage)) {
       trial.shaft = shaft;
       trial.arm_angle = Rounded(angle);
@@ -142,14 +142,14 @@ std::vector<Trial> Trials(const Rig& rig, const Parameters& p) {
     low = std::max(low, -limit);
     high = std::min(high, limit);
   }
-  for (const double part : {0.0, 0.5, 1.0}) held(Shaft::kClamped, low + part * (high - low), false);
-  if (rig.free) held(Shaft::kFree, 0.5 * (low + high), false);
-  held(Shaft::kClamped, 0.5 * (low + high), true);
+  for (const double part : {0.0, 0.5, 1.0}) held(model::Shaft::kClamped, low + part * (high - low), false);
+  if (rig.free) held(model::Shaft::kFree, 0.5 * (low + high), false);
+  held(model::Shaft::kClamped, 0.5 * (low + high), true);
   return all;
 }
 
-Stimulus StimulusOf(const Trial& trial) {
-  Stimulus stimulus;
+model::Stimulus StimulusOf(const Trial& trial) {
+  model::Stimulus stimulus;
   stimulus.shaft = trial.shaft;
   stimulus.arm_angle = trial.arm_angle;
   stimulus.bypass = trial.bypass;
@@ -162,37 +162,39 @@ Stimulus StimulusOf(const Trial& trial) {
   return stimulus;
 }
 
-Response Predict(const ModelDescription& model, const Trial& trial, const std::vector<Unknown>& unknowns) {
-  ResponseOptions options;
+model::Response Predict(const model::ModelDescription& model, const Trial& trial,
+                        const std::vector<model::Unknown>& unknowns) {
+  model::ResponseOptions options;
   options.stride = kStride;
   const double p_3 = model.parameters.p_3;
-  return Respond(model, StimulusOf(trial), {0, 0, p_3, p_3, trial.arm_angle, 0}, unknowns, options);
+  return model::Respond(model, StimulusOf(trial), {0, 0, p_3, p_3, trial.arm_angle, 0}, unknowns, options);
 }
 
-bool Inside(const Response& response, const Rig& rig, bool free) {
-  const auto largest = [&](Channel channel) {
+bool Inside(const model::Response& response, const Rig& rig, bool free) {
+  const auto largest = [&](model::Channel channel) {
     double size = 0;
     for (const double value : response.values[static_cast<size_t>(channel)]) {
       size = std::max(size, std::abs(value));
     }
     return size;
   };
-  if (rig.speed > 0 && largest(Channel::kMotorSpeed) > kHeadroom * rig.speed) return false;
-  if (rig.pressure > 0 && std::max(largest(Channel::kP1), largest(Channel::kP2)) > kHeadroom * rig.pressure) {
+  if (rig.speed > 0 && largest(model::Channel::kMotorSpeed) > kHeadroom * rig.speed) return false;
+  if (rig.pressure > 0 &&
+      std::max(largest(model::Channel::kP1), largest(model::Channel::kP2)) > kHeadroom * rig.pressure) {
     return false;
   }
   if (!free) return true;
   const double slack = (kHeadroom - 1) * (rig.high_angle - rig.low_angle);
-  for (const double angle : response.values[static_cast<size_t>(Channel::kArmAngle)]) {
+  for (const double angle : response.values[static_cast<size_t>(model::Channel::kArmAngle)]) {
     if (angle < rig.low_angle - slack || angle > rig.high_angle + slack) return false;
   }
   return true;
 }
 
 // Signals of a response in noise units, one below the other.
-Eigen::VectorXd InNoise(const std::array<std::vector<double>, kChannels>& values, const Rig& rig) {
+Eigen::VectorXd InNoise(const std::array<std::vector<double>, model::kChannels>& values, const Rig& rig) {
   std::vector<double> all;
-  for (size_t channel = 0; channel < kChannels; ++channel) {
+  for (size_t channel = 0; channel < model::kChannels; ++channel) {
     if (rig.noise[channel] == 0) continue;
     for (const double value : values[channel]) all.push_back(value / rig.noise[channel]);
   }
@@ -205,18 +207,19 @@ double Rms(const Eigen::VectorXd& values) {
 
 // The smallest root-mean-square difference of two rivals; with `absorb` of what is left of it by the base
 // parameters of either. Nothing when the trial leaves the rig's limits or cannot be simulated.
-std::optional<double> Separation(const std::vector<ModelDescription>& rivals, const Trial& trial,
+std::optional<double> Separation(const std::vector<model::ModelDescription>& rivals, const Trial& trial,
                                  const Rig& rig, bool absorb) {
-  std::vector<Unknown> unknowns;
+  std::vector<model::Unknown> unknowns;
   if (absorb) {
-    for (size_t i = 0; i < BaseParameters().size(); ++i) unknowns.push_back({Unknown::Kind::kBase, i});
+    for (size_t i = 0; i < model::BaseParameters().size(); ++i)
+      unknowns.push_back({model::Unknown::Kind::kBase, i});
   }
   std::vector<Eigen::VectorXd> predicted;
   std::vector<Eigen::MatrixXd> sensitivities;
   try {
-    for (const ModelDescription& rival : rivals) {
-      const Response response = Predict(rival, trial, unknowns);
-      if (!Inside(response, rig, trial.shaft == Shaft::kFree)) return std::nullopt;
+    for (const model::ModelDescription& rival : rivals) {
+      const model::Response response = Predict(rival, trial, unknowns);
+      if (!Inside(response, rig, trial.shaft == model::Shaft::kFree)) return std::nullopt;
       predicted.push_back(InNoise(response.values, rig));
       if (!absorb) continue;
       Eigen::MatrixXd matrix(predicted.back().size(), static_cast<Eigen::Index>(unknowns.size()));
@@ -228,7 +231,7 @@ std::optional<double> Separation(const std::vector<ModelDescription>& rivals, co
       }
       sensitivities.push_back(std::move(matrix));
     }
-  } catch (const ModelError&) {
+  } catch (const model::ModelError&) {
     return std::nullopt;
   }
   double smallest = std::numeric_limits<double>::infinity();
@@ -251,7 +254,7 @@ std::optional<double> Separation(const std::vector<ModelDescription>& rivals, co
 std::string Config(const Trial& trial, const Rig& rig) {
   std::string text = "# An experiment that tells models apart that the recorded runs do not.\n\n[model]\n";
   text += "file = \"model.toml\"\n";
-  text += std::string("shaft = \"") + (trial.shaft == Shaft::kFree ? "free" : "clamped") + "\"\n";
+  text += std::string("shaft = \"") + (trial.shaft == model::Shaft::kFree ? "free" : "clamped") + "\"\n";
   text += Text("arm_angle_rad = %.10g\n", trial.arm_angle);
   text += std::string("bypass = ") + (trial.bypass ? "true" : "false") + "\n\n[time]\nmode = \"lockstep\"\n";
   text += Text("duration_s = %.10g\n\n[plant]\nrate_hz = %.10g\n\n[pressure]\nk_p = 0.0\nk_v = 0.0\n\n",
@@ -264,7 +267,7 @@ std::string Config(const Trial& trial, const Rig& rig) {
 
 }  // namespace
 
-NextExperiment DesignNextExperiment(const std::vector<ModelDescription>& rivals,
+NextExperiment DesignNextExperiment(const std::vector<model::ModelDescription>& rivals,
                                     const std::vector<const RunData*>& runs, const std::string& why) {
   NextExperiment next;
   next.why = why;
@@ -296,4 +299,4 @@ NextExperiment DesignNextExperiment(const std::vector<ModelDescription>& rivals,
   return next;
 }
 
-}  // namespace hydro
+}  // namespace hydro::diagnose

@@ -8,7 +8,7 @@
 #include "diagnose/data/run_data.h"
 #include "model/description.h"
 
-namespace hydro {
+namespace hydro::diagnose {
 
 // Of voltages over 3 s (squares, sines slow enough to creep through 0, chirps, staircases; each about 0 and
 // about an offset) and of ways to hold the shaft, the one under which the rivals' predictions differ most, in
@@ -16,7 +16,7 @@ namespace hydro {
 // runs have seen of voltage, pressure, speed and arm angle. `rivals`: two or more, each as fitted. `config`
 // is a stack whose model is "model.toml" beside it; "" when no experiment tells them apart or none can be
 // simulated. `why` is passed on.
-NextExperiment DesignNextExperiment(const std::vector<ModelDescription>& rivals,
+NextExperiment DesignNextExperiment(const std::vector<model::ModelDescription>& rivals,
                                     const std::vector<const RunData*>& runs, const std::string& why);
 
-}  // namespace hydro
+}  // namespace hydro::diagnose

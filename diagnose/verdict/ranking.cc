@@ -7,7 +7,7 @@
 
 #include "base/short_number.h"
 
-namespace hydro {
+namespace hydro::diagnose {
 
 namespace {
 
@@ -16,7 +16,7 @@ std::string Gap(double squared) { return ShortNumber(std::sqrt(squared), 3); }
 size_t OwnNumbers(const Change& change) {
   if (change.effect.empty()) return 1;
   size_t numbers = 0;
-  for (const ParameterInfo& parameter : FindEffect(change.effect)->parameters)
+  for (const model::ParameterInfo& parameter : model::FindEffect(change.effect)->parameters)
     numbers += parameter.is_name ? 0 : 1;
   return numbers;
 }
@@ -95,4 +95,4 @@ std::vector<Candidate> Ranking(const SearchContext& context, const SearchResult&
   return candidates;
 }
 
-}  // namespace hydro
+}  // namespace hydro::diagnose

@@ -6,9 +6,9 @@
 #include "diagnose/data/diagnosis.h"
 #include "diagnose/search/search.h"
 
-namespace hydro {
+namespace hydro::diagnose {
 
 // Taken ones first, then by held-out gap, fit and score.
 std::vector<Candidate> Ranking(const SearchContext& context, const SearchResult& search);
 
-}  // namespace hydro
+}  // namespace hydro::diagnose

@@ -4,20 +4,20 @@
 #include <array>
 #include <cmath>
 
-namespace hydro {
+namespace hydro::diagnose {
 
 namespace {
 
 constexpr size_t kMostPoints = 1200;
 
 struct Sums {
-  std::array<double, kChannels> square{};
-  std::array<double, kChannels> count{};
-  void Add(const RunData& run, const ModelDescription& model, const StartState& start) {
-    Response response;
+  std::array<double, model::kChannels> square{};
+  std::array<double, model::kChannels> count{};
+  void Add(const RunData& run, const model::ModelDescription& model, const model::StartState& start) {
+    model::Response response;
     try {
-      response = Respond(model, run.stimulus, start, {}, {});
-    } catch (const ModelError&) {
+      response = model::Respond(model, run.stimulus, start, {}, {});
+    } catch (const model::ModelError&) {
       return;
     }
     for (const SignalData& signal : run.signals) {
@@ -52,22 +52,22 @@ Sums OfHeldOut(const SearchContext& context, const Explanation& one) {
   return sums;
 }
 
-RunCurves Curves(const RunData& run, bool held_out, const ModelDescription& model_before,
-                 const StartState& start_before, const ModelDescription& model_after,
-                 const StartState& start_after) {
+RunCurves Curves(const RunData& run, bool held_out, const model::ModelDescription& model_before,
+                 const model::StartState& start_before, const model::ModelDescription& model_after,
+                 const model::StartState& start_after) {
   RunCurves curves;
   curves.run = run.name;
   curves.held_out = held_out;
   const size_t stride = std::max<size_t>(1, run.samples() / kMostPoints);
-  const auto respond = [&](const ModelDescription& model, const StartState& start) {
+  const auto respond = [&](const model::ModelDescription& model, const model::StartState& start) {
     try {
-      return Respond(model, run.stimulus, start, {}, {});
-    } catch (const ModelError&) {
-      return Response{};
+      return model::Respond(model, run.stimulus, start, {}, {});
+    } catch (const model::ModelError&) {
+      return model::Response{};
     }
   };
-  const Response before = respond(model_before, start_before);
-  const Response after = respond(model_after, start_after);
+  const model::Response before = respond(model_before, start_before);
+  const model::Response after = respond(model_after, start_after);
   const auto thin = [&](const std::vector<double>& values) {
     std::vector<double> thinned;
     for (size_t i = 0; i < values.size(); i += stride) thinned.push_back(values[i]);
@@ -94,10 +94,10 @@ std::vector<SignalGap> SignalGaps(const SearchContext& context, const Explanatio
     held_out[i] = OfHeldOut(context, *all[i]);
   }
   std::vector<SignalGap> gaps;
-  for (size_t c = 0; c < kChannels; ++c) {
+  for (size_t c = 0; c < model::kChannels; ++c) {
     if (fit[0].count[c] == 0 && held_out[0].count[c] == 0) continue;
     SignalGap gap;
-    gap.channel = static_cast<Channel>(c);
+    gap.channel = static_cast<model::Channel>(c);
     double square = 0;
     double runs = 0;
     for (const auto* list : {&context.runs, &context.held_out}) {
@@ -133,4 +133,4 @@ std::vector<RunCurves> CurvesOf(const SearchContext& context, const Explanation&
   return curves;
 }
 
-}  // namespace hydro
+}  // namespace hydro::diagnose

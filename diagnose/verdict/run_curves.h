@@ -6,7 +6,7 @@
 #include "diagnose/data/diagnosis.h"
 #include "diagnose/search/search.h"
 
-namespace hydro {
+namespace hydro::diagnose {
 
 // By signal, over all runs: root-mean-square differences in the signal's unit.
 std::vector<SignalGap> SignalGaps(const SearchContext& context, const Explanation& given,
@@ -16,4 +16,4 @@ std::vector<SignalGap> SignalGaps(const SearchContext& context, const Explanatio
 std::vector<RunCurves> CurvesOf(const SearchContext& context, const Explanation& given,
                                 const Explanation& best);
 
-}  // namespace hydro
+}  // namespace hydro::diagnose

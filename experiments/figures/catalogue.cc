@@ -2,7 +2,7 @@
 
 #include "experiments/studies/experiment.h"
 
-namespace hydro {
+namespace hydro::experiments {
 
 const std::vector<Experiment>& Experiments() {
   static const std::vector<Experiment> experiments = {
@@ -25,4 +25,4 @@ const std::vector<Experiment>& Experiments() {
   return experiments;
 }
 
-}  // namespace hydro
+}  // namespace hydro::experiments

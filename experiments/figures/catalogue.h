@@ -3,7 +3,7 @@
 
 #include "experiments/studies/experiment.h"
 
-namespace hydro {
+namespace hydro::experiments {
 
 // In the order of the paper.
 ExperimentResult RunFig1(const ExperimentOptions& options);      // apparatus.cc
@@ -21,4 +21,4 @@ ExperimentResult RunFig9(const ExperimentOptions& options);      // figure9.cc
 ExperimentResult RunFig10(const ExperimentOptions& options);     // figure10.cc
 ExperimentResult RunTorque(const ExperimentOptions& options);    // torque_control.cc
 
-}  // namespace hydro
+}  // namespace hydro::experiments

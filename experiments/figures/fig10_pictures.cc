@@ -7,17 +7,17 @@
 
 #include "experiments/studies/design_numbers.h"
 
-namespace hydro {
+namespace hydro::experiments {
 namespace {
 
 constexpr double kStep = kFigure10Step;
-const Axis kTime{.label = "time since the step, s", .min = 0, .max = 2};
-const Axis kShortTime{.label = "time since the step, s", .min = 0, .max = 1};
-const Axis kAngle{.label = "α, rad", .min = 0};
+const page::Axis kTime{.label = "time since the step, s", .min = 0, .max = 2};
+const page::Axis kShortTime{.label = "time since the step, s", .min = 0, .max = 1};
+const page::Axis kAngle{.label = "α, rad", .min = 0};
 
 Picture FormsPicture(const Figure10Runs& figure) {
   const ArmRun& full = figure.forms[0].nonlinear;
-  const Parameters& p = figure.model.parameters;
+  const model::Parameters& p = figure.model.parameters;
   return {"",
           {.caption = fmt::format(
                "Step of {:g} rad at g = {:g}, T = {:g} ms, m g l = 0: Figure 8's linear model and the full "
@@ -26,44 +26,44 @@ Picture FormsPicture(const Figure10Runs& figure) {
            .panels = {{.title = "Arm",
                        .x = kTime,
                        .y = kAngle,
-                       .curves = {Line("linear, derivative on the error", figure.forms[0].linear.time,
-                                       figure.forms[0].linear.angle, 0),
-                                  Line("linear, on the measurement", figure.forms[1].linear.time,
-                                       figure.forms[1].linear.angle, 1),
-                                  Line("full model", full.time, full.angle, 2)},
+                       .curves = {page::Line("linear, derivative on the error", figure.forms[0].linear.time,
+                                             figure.forms[0].linear.angle, 0),
+                                  page::Line("linear, on the measurement", figure.forms[1].linear.time,
+                                             figure.forms[1].linear.angle, 1),
+                                  page::Line("full model", full.time, full.angle, 2)},
                        .notes = {},
                        .rules = {{"", false, kStep}},
                        .height = 1.6},
                       {.title = "Motor torque, full model",
                        .x = kTime,
                        .y = {.label = "T_p, in-lbf", .min = -45, .max = 45},
-                       .curves = {Line("", full.time, full.torque, 2)},
+                       .curves = {page::Line("", full.time, full.torque, 2)},
                        .notes = {},
                        .rules = {{"", false, p.T_pmax}, {"", false, -p.T_pmax}}}},
            .drawing = ""}};
 }
 
 Picture CausesPicture(const Figure10Runs& figure) {
-  Panel slow{.title = "Eq. (16) as printed",
-             .x = kTime,
-             .y = kAngle,
-             .curves = {},
-             .notes = {},
-             .rules = {{"", false, kStep}}};
-  Panel fast{.title = "Without the k_v term braking the arm",
-             .x = kTime,
-             .y = kAngle,
-             .curves = {},
-             .notes = {},
-             .rules = {{"", false, kStep}}};
+  page::Panel slow{.title = "Eq. (16) as printed",
+                   .x = kTime,
+                   .y = kAngle,
+                   .curves = {},
+                   .notes = {},
+                   .rules = {{"", false, kStep}}};
+  page::Panel fast{.title = "Without the k_v term braking the arm",
+                   .x = kTime,
+                   .y = kAngle,
+                   .curves = {},
+                   .notes = {},
+                   .rules = {{"", false, kStep}}};
   for (size_t i = 0; i < kCauses.size(); ++i) {
     const ArmRun& run = figure.causes.runs[i];
-    Panel& panel = i < kFeedforward ? slow : fast;
+    page::Panel& panel = i < kFeedforward ? slow : fast;
     const auto colour = static_cast<int>(i < kFeedforward ? i : i - kFeedforward);
-    panel.curves.push_back(Line(kCauses[i].says, run.time, run.angle, colour));
+    panel.curves.push_back(page::Line(kCauses[i].says, run.time, run.angle, colour));
   }
-  fast.curves.push_back(
-      Line("Figure 8", figure.forms[1].linear.time, figure.forms[1].linear.angle, 3, Stroke::kDashed));
+  fast.curves.push_back(page::Line("Figure 8", figure.forms[1].linear.time, figure.forms[1].linear.angle, 3,
+                                   page::Stroke::kDashed));
   return {"-causes",
           {.caption = fmt::format(
                "What makes the full model differ from Figure 8's, switched off one after the other: step of "
@@ -76,7 +76,7 @@ Picture CausesPicture(const Figure10Runs& figure) {
 Picture RetunedPicture(const Figure10Runs& figure) {
   const ArmRun& run = figure.retuned.run;
   const ArmRun& assisted = figure.causes.runs[kFeedforward];
-  const Parameters& p = figure.model.parameters;
+  const model::Parameters& p = figure.model.parameters;
   // The arm's swing on the oil, over the last 0.1 s.
   const auto tail = run.angle.end() - std::min<ptrdiff_t>(500, std::ssize(run.angle));
   const auto [lowest, highest] = std::minmax_element(tail, run.angle.end());
@@ -92,32 +92,35 @@ Picture RetunedPicture(const Figure10Runs& figure) {
        .panels = {{.title = "Arm",
                    .x = kShortTime,
                    .y = {.label = "α, rad", .min = 0, .max = 0.15},
-                   .curves = {Line("retuned", run.time, run.angle, 0),
-                              Line("g = 350 with arm-speed feed-forward", assisted.time, assisted.angle, 1)},
+                   .curves = {page::Line("retuned", run.time, run.angle, 0),
+                              page::Line("g = 350 with arm-speed feed-forward", assisted.time, assisted.angle,
+                                         1)},
                    .notes = {},
                    .rules = {{"", false, kStep}, {"shortest settling", true, figure.retuned.shortest}},
                    .height = 1.6},
                   {.title = "Motor torque",
                    .x = kShortTime,
                    .y = {.label = "T_p, in-lbf", .min = -45, .max = 45},
-                   .curves = {Line("", run.time, run.torque, 0), Line("", assisted.time, assisted.torque, 1)},
+                   .curves = {page::Line("", run.time, run.torque, 0),
+                              page::Line("", assisted.time, assisted.torque, 1)},
                    .notes = {},
                    .rules = {{"", false, p.T_pmax}, {"", false, -p.T_pmax}}}},
        .drawing = ""}};
 }
 
 Picture StepsPicture(const Figure10Runs& figure) {
-  Panel steps{.title = "",
-              .x = kShortTime,
-              .y = {.label = "α/step", .min = -0.2, .max = 1.3},
-              .curves = {},
-              .notes = {},
-              .rules = {{"", false, 1}}};
+  page::Panel steps{.title = "",
+                    .x = kShortTime,
+                    .y = {.label = "α/step", .min = -0.2, .max = 1.3},
+                    .curves = {},
+                    .notes = {},
+                    .rules = {{"", false, 1}}};
   for (const RetunedStep& r : figure.retuned.steps) {
     std::vector<double> share = r.run.angle;
     for (double& value : share) value /= r.step;
     // Noise hardly shows: dashed, so that the curve below it is seen.
-    steps.curves.push_back(Line(r.says, r.run.time, share, -1, r.noise ? Stroke::kDashed : Stroke::kLine));
+    steps.curves.push_back(
+        page::Line(r.says, r.run.time, share, -1, r.noise ? page::Stroke::kDashed : page::Stroke::kLine));
   }
   return {"-robustness",
           {.caption = "The retuned loop on other steps, with noise and with gravity (m g "
@@ -133,4 +136,4 @@ std::vector<Picture> Figure10Pictures(const Figure10Runs& figure) {
   return {FormsPicture(figure), CausesPicture(figure), RetunedPicture(figure), StepsPicture(figure)};
 }
 
-}  // namespace hydro
+}  // namespace hydro::experiments

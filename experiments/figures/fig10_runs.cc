@@ -14,7 +14,7 @@
 #include "experiments/studies/retuning.h"
 #include "settings/model_file.h"
 
-namespace hydro {
+namespace hydro::experiments {
 namespace {
 
 constexpr double kStep = kFigure10Step;
@@ -24,8 +24,8 @@ constexpr double kMotorSpeed = 6000 * std::numbers::pi / 30;  // rad/s: "a large
 constexpr double kNoLimit = 1e6;                              // in-lbf
 
 ArmRun RunArm(const StackRunner& run_stack, const std::string& name, const std::string& config,
-              const ModelDescription& model, double step) {
-  const Table table = run_stack({name, config, FormatModel(model)});
+              const model::ModelDescription& model, double step) {
+  const tables::Table table = run_stack({name, config, settings::FormatModel(model)});
   const auto column = [&](const char* which) -> const std::vector<double>& {
     return table.Find(which)->values;
   };
@@ -46,17 +46,18 @@ ArmRun RunArm(const StackRunner& run_stack, const std::string& name, const std::
     if (i + 1 < times.size() && std::fabs(run.torque.back()) >= limit)
       run.saturated_time += times[i + 1] - times[i];
   }
-  run.response = MeasureStep(run.time, run.angle, 0, run.time.size(), 0, step);
+  run.response = runs::MeasureStep(run.time, run.angle, 0, run.time.size(), 0, step);
   return run;
 }
 
-StepResponse Measure(const Response& response, double step) {
-  return MeasureStep(response.time, response.angle, 0, response.time.size(), 0, step);
+runs::StepResponse Measure(const Response& response, double step) {
+  return runs::MeasureStep(response.time, response.angle, 0, response.time.size(), 0, step);
 }
 
 // The error at which the pump holds the arm under eq. (16) and (17), coming from below: leakage keeps it
 // turning forward at what makes up for it, so that friction is fully used. dp holds the arm's weight.
-double HoldingError(const Parameters& p, const PressureLawSettings& law, double c1, double angle) {
+double HoldingError(const model::Parameters& p, const pressure_ctrl::PressureLawSettings& law, double c1,
+                    double angle) {
   const double dp = p.mgl * std::cos(angle) / p.k_2;
   const double creep = (p.c_I + p.c_E) * dp / p.D;  // rad/s, with side 1 at p_3
   const double torque = p.T_s + p.b * creep + p.D * dp;
@@ -92,7 +93,7 @@ CauseRuns RunCauses(const Figure10Runs& figure, const ExperimentOptions& options
   CauseRuns causes;
   for (size_t i = 0; i < kCauses.size(); ++i) {
     const Cause& cause = kCauses[i];
-    ModelDescription model = figure.model;
+    model::ModelDescription model = figure.model;
     std::vector<std::string> settings = {"position.derivative=measurement", "limits.pressure_psi=inf"};
     if (!cause.friction) model.parameters.T_s = 0;
     if (!cause.saturation) model.parameters.T_pmax = kNoLimit;
@@ -106,12 +107,13 @@ CauseRuns RunCauses(const Figure10Runs& figure, const ExperimentOptions& options
                             Figure10Stack(figure, settings), model, kStep);
     options.progress(0.3 + 0.05 * static_cast<double>(i + 1));
   }
-  const Parameters& p = figure.model.parameters;
-  PressureLawSettings law;
-  law.gains = DerivePressureGains(p, 0, figure.design.natural_frequency, figure.design.damping_ratio, 2);
-  PressureLawSettings assisted = law;
+  const model::Parameters& p = figure.model.parameters;
+  pressure_ctrl::PressureLawSettings law;
+  law.gains = pressure_ctrl::DerivePressureGains(p, 0, figure.design.natural_frequency,
+                                                 figure.design.damping_ratio, 2);
+  pressure_ctrl::PressureLawSettings assisted = law;
   assisted.arm_speed_ratio = p.c / p.D;
-  const auto exact = [&](const PressureLawSettings& with) {
+  const auto exact = [&](const pressure_ctrl::PressureLawSettings& with) {
     return Measure(LinearArmLoop(figure.model, with).Step(figure.c1, figure.c2, kStep, 4, 1e-3), kStep);
   };
   causes.exact = exact(law);
@@ -138,11 +140,11 @@ std::string RetunedStack(const RetunedStep& r, int64_t seed) {
   return ShippedStackText("retuned", settings);
 }
 
-double SettlingTime(const ArmRun& run) { return run.response.settling_time_s.value_or(kAutomatic); }
+double SettlingTime(const ArmRun& run) { return run.response.settling_time_s.value_or(page::kAutomatic); }
 
 // The retuned loop on other steps, with noise and with gravity.
-void RunSteps(const ModelDescription& model, const ExperimentOptions& options, RetunedRuns* retuned) {
-  const ModelDescription heavy = ShippedModel("table1_gravity");
+void RunSteps(const model::ModelDescription& model, const ExperimentOptions& options, RetunedRuns* retuned) {
+  const model::ModelDescription heavy = ShippedModel("table1_gravity");
   retuned->steps = {{"0.05 rad", 0.05, false, false, {}, 0},
                     {"0.1 rad", 0.1, false, false, {}, 0},
                     {"0.2 rad", 0.2, false, false, {}, 0},
@@ -152,19 +154,19 @@ void RunSteps(const ModelDescription& model, const ExperimentOptions& options, R
   for (RetunedStep& r : retuned->steps) {
     r.run = RunArm(options.run_stack, "fig10-retuned-" + std::to_string(&r - retuned->steps.data()),
                    RetunedStack(r, options.seed), r.gravity ? heavy : model, r.step);
-    r.shortest = FastestSettling(retuned->drive, r.step, kSettlingBand);
+    r.shortest = FastestSettling(retuned->drive, r.step, runs::kSettlingBand);
     if (!r.gravity) retuned->worst_ratio = std::max(retuned->worst_ratio, SettlingTime(r.run) / r.shortest);
   }
-  const StepResponse& sagging = retuned->steps.back().run.response;
+  const runs::StepResponse& sagging = retuned->steps.back().run.response;
   retuned->expected_error = HoldingError(heavy.parameters, retuned->shipped.pressure,
                                          retuned->shipped.position.c1, kStep + sagging.final_error_rad);
 }
 
-RetunedRuns RunRetuned(const ModelDescription& model, const ExperimentOptions& options) {
+RetunedRuns RunRetuned(const model::ModelDescription& model, const ExperimentOptions& options) {
   RetunedRuns retuned;
   retuned.drive = MakeRigidDrive(model.parameters, kMotorSpeed);
   retuned.fastest = FastestRestToRest(retuned.drive, kStep);
-  retuned.shortest = FastestSettling(retuned.drive, kStep, kSettlingBand);
+  retuned.shortest = FastestSettling(retuned.drive, kStep, runs::kSettlingBand);
   retuned.shipped = TrialOf(ShippedStackText("retuned"), ShippedModelText("table1"), kStep);
   const Candidate best = SearchGains(retuned.shipped, retuned.drive).front();
   retuned.shipped_is_best = best.c1 == retuned.shipped.position.c1 && best.c2 == retuned.shipped.position.c2;
@@ -208,4 +210,4 @@ Figure10Runs RunFigure10(const ExperimentOptions& options) {
   return figure;
 }
 
-}  // namespace hydro
+}  // namespace hydro::experiments

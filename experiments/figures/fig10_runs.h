@@ -13,7 +13,7 @@
 #include "experiments/studies/experiment.h"
 #include "runs/step_response.h"
 
-namespace hydro {
+namespace hydro::experiments {
 
 inline constexpr double kFigure10Step = 0.1;        // rad; the paper prints none
 inline constexpr double kFigure10Interval = 0.001;  // s; the paper prints none
@@ -21,7 +21,7 @@ inline constexpr double kFigure10Interval = 0.001;  // s; the paper prints none
 // The arm in one run of the stack, from the step on.
 struct ArmRun {
   std::vector<double> time, angle, torque, speed;  // s, rad, in-lbf, rad/s of the motor
-  StepResponse response;
+  runs::StepResponse response;
   double saturated_time = 0;  // s
   double highest_speed = 0;   // rad/s
 };
@@ -29,7 +29,7 @@ struct ArmRun {
 // The figure with one form of the derivative.
 struct FormRuns {
   Response linear;
-  StepResponse linear_step;
+  runs::StepResponse linear_step;
   ArmRun nonlinear;
 };
 
@@ -53,9 +53,9 @@ extern const std::array<Cause, kCauseCount> kCauses;
 
 struct CauseRuns {
   std::array<ArmRun, kCauseCount> runs;
-  StepResponse exact;           // of the exact linearisation
-  StepResponse exact_assisted;  // the same with arm-speed feed-forward
-  double friction_error = 0;    // rad, within which the pump's friction holds the arm
+  runs::StepResponse exact;           // of the exact linearisation
+  runs::StepResponse exact_assisted;  // the same with arm-speed feed-forward
+  double friction_error = 0;          // rad, within which the pump's friction holds the arm
 };
 
 // A step of the retuned loop.
@@ -81,7 +81,7 @@ struct RetunedRuns {
 };
 
 struct Figure10Runs {
-  ModelDescription model;
+  model::ModelDescription model;
   DesignModel design;
   double c1 = 0, c2 = 0;          // psi/rad, psi s/rad
   std::array<FormRuns, 2> forms;  // derivative on the error, as printed; on the measurement
@@ -92,4 +92,4 @@ struct Figure10Runs {
 
 Figure10Runs RunFigure10(const ExperimentOptions& options);
 
-}  // namespace hydro
+}  // namespace hydro::experiments

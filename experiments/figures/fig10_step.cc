@@ -11,14 +11,14 @@
 #include "experiments/studies/design_numbers.h"
 #include "experiments/studies/json_text.h"
 
-namespace hydro {
+namespace hydro::experiments {
 namespace {
 
 using nlohmann::json;
 
 constexpr double kAllowedRatio = 1.3;  // settling time to the shortest possible
 
-json AsJson(const StepResponse& r) {
+json AsJson(const runs::StepResponse& r) {
   return {{"overshoot_percent", r.overshoot_percent},
           {"settling_time_s", r.settling_time_s ? json(*r.settling_time_s) : json(nullptr)},
           {"steady_state_error_rad", r.final_error_rad}};
@@ -39,7 +39,8 @@ json StepsJson(const RetunedRuns& retuned) {
     numbers["noise"] = r.noise;
     if (!r.gravity) {
       numbers["shortest_settling_time_s"] = r.shortest;
-      numbers["settling_to_shortest"] = r.run.response.settling_time_s.value_or(kAutomatic) / r.shortest;
+      numbers["settling_to_shortest"] =
+          r.run.response.settling_time_s.value_or(page::kAutomatic) / r.shortest;
     }
     list.push_back(numbers);
   }
@@ -49,7 +50,7 @@ json StepsJson(const RetunedRuns& retuned) {
 json Numbers(const Figure10Runs& figure) {
   const FormRuns& measured = figure.forms[1];
   const RetunedRuns& retuned = figure.retuned;
-  const Parameters& p = figure.model.parameters;
+  const model::Parameters& p = figure.model.parameters;
   json numbers = {
       {"step_rad", kFigure10Step},
       {"gain", kPaperGain},
@@ -84,11 +85,13 @@ json Numbers(const Figure10Runs& figure) {
 }
 
 std::string Explanation(const Figure10Runs& figure) {
-  const StepResponse& linear = figure.forms[0].linear_step;
-  const StepResponse& full = figure.forms[0].nonlinear.response;
+  const runs::StepResponse& linear = figure.forms[0].linear_step;
+  const runs::StepResponse& full = figure.forms[0].nonlinear.response;
   const FormRuns& measured = figure.forms[1];
   const RetunedRuns& retuned = figure.retuned;
-  const auto cause = [&](CauseIndex i) -> const StepResponse& { return figure.causes.runs[i].response; };
+  const auto cause = [&](CauseIndex i) -> const runs::StepResponse& {
+    return figure.causes.runs[i].response;
+  };
   return fmt::format(
       "Figure 8's model overshoots {:.0f} % and settles in {}; the full model creeps in without overshoot in "
       "{}. "
@@ -126,45 +129,47 @@ std::string Explanation(const Figure10Runs& figure) {
 }
 
 std::vector<Comparison> Comparisons(const Figure10Runs& figure) {
-  const StepResponse& linear = figure.forms[0].linear_step;
-  const StepResponse& full = figure.forms[0].nonlinear.response;
+  const runs::StepResponse& linear = figure.forms[0].linear_step;
+  const runs::StepResponse& full = figure.forms[0].nonlinear.response;
   const FormRuns& measured = figure.forms[1];
   const RetunedRuns& retuned = figure.retuned;
-  const StepResponse& assisted = figure.causes.runs[kFeedforward].response;
+  const runs::StepResponse& assisted = figure.causes.runs[kFeedforward].response;
   std::vector<Comparison> comparisons = {
-      {"overshoot, linear model", "%", "", kAutomatic, linear.overshoot_percent,
+      {"overshoot, linear model", "%", "", page::kAutomatic, linear.overshoot_percent,
        fmt::format("derivative on the measurement: {:.1f} %", measured.linear_step.overshoot_percent)},
-      {"settling time (2 %), linear model", "s", "", kAutomatic, linear.settling_time_s.value_or(kAutomatic),
-       ""},
-      {"overshoot, full model", "%", "", kAutomatic, full.overshoot_percent, ""},
-      {"settling time (2 %), full model", "s", "", figure.causes.exact.settling_time_s.value_or(kAutomatic),
-       full.settling_time_s.value_or(kAutomatic), "expected: of the exact linearisation, without friction"},
+      {"settling time (2 %), linear model", "s", "", page::kAutomatic,
+       linear.settling_time_s.value_or(page::kAutomatic), ""},
+      {"overshoot, full model", "%", "", page::kAutomatic, full.overshoot_percent, ""},
+      {"settling time (2 %), full model", "s", "",
+       figure.causes.exact.settling_time_s.value_or(page::kAutomatic),
+       full.settling_time_s.value_or(page::kAutomatic),
+       "expected: of the exact linearisation, without friction"},
       {"steady-state error, full model", "rad", "", -figure.causes.friction_error, full.final_error_rad,
        "expected: where the pump's friction holds, T_s/(k_1 k_p c_1)"},
       {"overshoot with arm-speed feed-forward", "%", "", figure.causes.exact_assisted.overshoot_percent,
        assisted.overshoot_percent, "expected: exact linearisation, without saturation"},
       {"settling time (2 %), retuned", "s", "", retuned.shortest,
-       retuned.run.response.settling_time_s.value_or(kAutomatic),
+       retuned.run.response.settling_time_s.value_or(page::kAutomatic),
        fmt::format("expected: the shortest possible; allowed is {:g} times that", kAllowedRatio)},
-      {"overshoot, retuned", "%", "", kAutomatic, retuned.run.response.overshoot_percent, ""},
+      {"overshoot, retuned", "%", "", page::kAutomatic, retuned.run.response.overshoot_percent, ""},
       {"error held against gravity, retuned", "rad", "", retuned.expected_error,
        retuned.steps.back().run.response.final_error_rad, "expected: m g l cos α = k_2 dp, and friction"},
   };
   for (const RetunedStep& r : retuned.steps) {
     if (r.gravity) continue;
     comparisons.push_back({"retuned, settling time of " + r.says, "s", "", r.shortest,
-                           r.run.response.settling_time_s.value_or(kAutomatic),
+                           r.run.response.settling_time_s.value_or(page::kAutomatic),
                            fmt::format("overshoot {:.1f} %", r.run.response.overshoot_percent)});
   }
   return comparisons;
 }
 
 Finding LinearModelFinding(const Figure10Runs& figure) {
-  const StepResponse& linear = figure.forms[0].linear_step;
-  const StepResponse& full = figure.forms[0].nonlinear.response;
+  const runs::StepResponse& linear = figure.forms[0].linear_step;
+  const runs::StepResponse& full = figure.forms[0].nonlinear.response;
   const FormRuns& measured = figure.forms[1];
-  const StepResponse& assisted = figure.causes.runs[kFeedforward].response;
-  const Parameters& p = figure.model.parameters;
+  const runs::StepResponse& assisted = figure.causes.runs[kFeedforward].response;
+  const model::Parameters& p = figure.model.parameters;
   return {
       8, "Figure 8's linear model leaves out the pump speed that arm motion forces, θ' = (c/D) α'.",
       fmt::format("Reflected pump inertia J (c/D)² = {:.0f} against J_a = {:g} lbf-in-s². A step of {:g} rad "
@@ -180,11 +185,11 @@ Finding LinearModelFinding(const Figure10Runs& figure) {
       "it."};
 }
 
-std::vector<Column> Columns(const Figure10Runs& figure) {
+std::vector<tables::Column> Columns(const Figure10Runs& figure) {
   const ArmRun& full = figure.forms[0].nonlinear;
   // The others are shorter.
   const auto padded = [&](std::vector<double> values) {
-    values.resize(full.time.size(), kAutomatic);
+    values.resize(full.time.size(), page::kAutomatic);
     return values;
   };
   return {{"time_s", full.time},
@@ -221,4 +226,4 @@ ExperimentResult RunFig10(const ExperimentOptions& options) {
   return result;
 }
 
-}  // namespace hydro
+}  // namespace hydro::experiments

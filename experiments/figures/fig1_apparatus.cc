@@ -12,7 +12,7 @@
 #include "experiments/runs/shipped_models.h"
 #include "model/actuator.h"
 
-namespace hydro {
+namespace hydro::experiments {
 namespace {
 
 using nlohmann::ordered_json;
@@ -29,27 +29,27 @@ constexpr double kNewtonMetres = 0.112984829;       // in one in-lbf
 constexpr double kKilowatts = kNewtonMetres / 1e3;  // in one in-lbf/s
 
 struct FreeRun {
-  Table table;
+  tables::Table table;
   double speed_ratio = 0;  // motor angle per arm angle, over the whole run
   double arm_speed = 0;    // rad/s, at the motor's top speed
 };
 
 // The arm, free and without gravity, from one end of its travel: full torque until the motor has reached
 // `top_speed`, then as much as holds it there.
-FreeRun RunFree(const ModelDescription& model, double top_speed) {
-  const Parameters& p = model.parameters;
+FreeRun RunFree(const model::ModelDescription& model, double top_speed) {
+  const model::Parameters& p = model.parameters;
   constexpr double kTick = 1e-3;
   constexpr int kHold = 250;      // ticks at top speed
   constexpr int kAveraged = 200;  // of them: hydraulic oscillations are faster
-  Actuator actuator(model, {.shaft = Shaft::kFree, .arm_angle = -0.75});
+  model::Actuator actuator(model, {.shaft = model::Shaft::kFree, .arm_angle = -0.75});
   FreeRun run;
   const char* names[] = {"time_s",        "voltage_V",       "motor_angle_rad", "motor_speed_rad_s",
                          "arm_angle_rad", "arm_speed_rad_s", "p1_psi",          "p2_psi"};
   for (const char* name : names) run.table.columns.push_back({name, {}});
-  const Measurement start = actuator.Measure();
+  const model::Measurement start = actuator.Measure();
   double averaged_from = 0;
   for (int tick = 0, held = 0; held <= kHold && tick < 5000; ++tick) {
-    const Measurement now = actuator.Measure();
+    const model::Measurement now = actuator.Measure();
     if (now.motor_speed >= top_speed || held > 0) ++held;
     const double voltage = (held > 0 ? p.b * top_speed + p.T_s : p.T_pmax) / p.k_1;
     const double row[] = {actuator.time(), voltage,       now.motor_angle, now.motor_speed,
@@ -65,17 +65,17 @@ FreeRun RunFree(const ModelDescription& model, double top_speed) {
 
 // The arm's torque against a clamp, in-lbf, when a motor torque has been held until nothing moves but what
 // leaks.
-double HeldTorque(const ModelDescription& model, double motor_torque) {
-  Actuator actuator(model, {.shaft = Shaft::kClamped});
+double HeldTorque(const model::ModelDescription& model, double motor_torque) {
+  model::Actuator actuator(model, {.shaft = model::Shaft::kClamped});
   for (int i = 1; i <= 40; ++i) actuator.Advance(motor_torque / model.parameters.k_1, i);
-  const Measurement m = actuator.Measure();
+  const model::Measurement m = actuator.Measure();
   return model.parameters.k_2 * (m.p2 - m.p1);
 }
 
 // The speed, rad/s, at which full voltage drives the motor with the bypass open.
-double UnlimitedSpeed(const ModelDescription& model) {
-  const Parameters& p = model.parameters;
-  Actuator actuator(model, {.shaft = Shaft::kClamped, .bypass = true});
+double UnlimitedSpeed(const model::ModelDescription& model) {
+  const model::Parameters& p = model.parameters;
+  model::Actuator actuator(model, {.shaft = model::Shaft::kClamped, .bypass = true});
   for (int i = 1; i <= 60; ++i) actuator.Advance(p.T_pmax / p.k_1, i * 0.5);
   return actuator.Measure().motor_speed;
 }
@@ -84,9 +84,9 @@ std::string InSi(double torque) { return fmt::format("{:.0f} N m", torque * kNew
 
 // The arm's torque at each of its speeds up to `top_speed` of the motor, rad/s, when `viscous` and `coulomb`
 // friction take their share of the motor's.
-Curve Envelope(const std::string& label, const Parameters& p, double top_speed, double viscous,
-               double coulomb) {
-  Curve curve;
+page::Curve Envelope(const std::string& label, const model::Parameters& p, double top_speed, double viscous,
+                     double coulomb) {
+  page::Curve curve;
   curve.label = label;
   for (const double speed : {0.0, top_speed}) {
     curve.x.push_back(speed * p.D / p.c / kRpm);
@@ -97,20 +97,20 @@ Curve Envelope(const std::string& label, const Parameters& p, double top_speed, 
   return curve;
 }
 
-Figure Limits(const Parameters& p) {
-  Panel panel;
+page::Figure Limits(const model::Parameters& p) {
+  page::Panel panel;
   const double top_speed = kMotorRpm * kRpm;
   panel.x = {"arm speed α', rpm", false, 0, 15};
   panel.y = {"arm torque, in-lbf", false, 0, 22000};
   const double printed_torque = p.T_pmax * kPrintedRatio;
   const double printed_speed = kMotorRpm / kPrintedRatio;
-  const Curve printed{fmt::format("as printed, ratio {:g}", kPrintedRatio),
-                      {0, printed_speed, printed_speed},
-                      {printed_torque, printed_torque, 0},
-                      Stroke::kDashed,
-                      1,
-                      {},
-                      {}};
+  const page::Curve printed{fmt::format("as printed, ratio {:g}", kPrintedRatio),
+                            {0, printed_speed, printed_speed},
+                            {printed_torque, printed_torque, 0},
+                            page::Stroke::kDashed,
+                            1,
+                            {},
+                            {}};
   panel.curves = {Envelope("Table 1, with friction", p, top_speed, p.b, p.T_s), printed,
                   Envelope("Table 1, without friction", p, top_speed, 0, 0)};
   panel.rules = {{fmt::format("Δp = {:.0f} psi, the limit of the seals", kPressureLimit), false,
@@ -127,10 +127,10 @@ Figure Limits(const Parameters& p) {
 }  // namespace
 
 ExperimentResult RunFig1(const ExperimentOptions& options) {
-  const ModelDescription model = ShippedModel("table1");
-  const Parameters& p = model.parameters;
-  const ModelDescription fast_model = ShippedModel("motor_18000rpm");
-  const Parameters& fast = fast_model.parameters;
+  const model::ModelDescription model = ShippedModel("table1");
+  const model::Parameters& p = model.parameters;
+  const model::ModelDescription fast_model = ShippedModel("motor_18000rpm");
+  const model::Parameters& fast = fast_model.parameters;
   const double gravity_torque = ShippedModel("table1_gravity").parameters.mgl;
   const double top_speed = kMotorRpm * kRpm;
 
@@ -186,22 +186,22 @@ ExperimentResult RunFig1(const ExperimentOptions& options) {
        "k_2 = 484.7 D; the paper prints 3.68, \"from the transmission ratio\""},
       {"theoretical peak torque", "in-lbf", "19388", p.T_pmax * kPrintedRatio, peak,
        fmt::format("independent: 40 in-lbf times 484.7; here: T_pmax k_2/D, {}", InSi(peak))},
-      {"peak torque, friction T_s taken off", "in-lbf", "", kAutomatic, peak_with_friction,
+      {"peak torque, friction T_s taken off", "in-lbf", "", page::kAutomatic, peak_with_friction,
        fmt::format("{}; it needs dp = {:.0f} psi", InSi(peak_with_friction), (p.T_pmax - p.T_s) / p.D)},
-      {"torque at dp = 2000 psi", "in-lbf", "about 7300", kAutomatic, at_limit,
+      {"torque at dp = 2000 psi", "in-lbf", "about 7300", page::kAutomatic, at_limit,
        fmt::format("k_2 2000 psi, {}; \"600 ft-lb\" is 7200 in-lb", InSi(at_limit))},
-      {"torque at p_2 = 2000 psi, p_1 = p_3", "in-lbf", "about 7300", kAutomatic, at_limit_gauge,
+      {"torque at p_2 = 2000 psi, p_1 = p_3", "in-lbf", "about 7300", page::kAutomatic, at_limit_gauge,
        fmt::format("the low side keeps the accumulator's {:g} psi; {}", p.p_3, InSi(at_limit_gauge))},
-      {"motor torque for dp = 2000 psi", "in-lbf", "", kAutomatic, p.D * kPressureLimit + p.T_s,
+      {"motor torque for dp = 2000 psi", "in-lbf", "", page::kAutomatic, p.D * kPressureLimit + p.T_s,
        "D 2000 psi + T_s: half of what the motor can"},
       {"maximum arm speed", "rpm", "12.4", kMotorRpm / kPrintedRatio, free.arm_speed / kRpm,
        fmt::format("independent: 6000 rpm/484.7; here: free arm at 6000 rpm of the motor, {:.3f} rad/s",
                    free.arm_speed)},
       {"motor speed at full voltage, no load", "rpm", "6000", unlimited_expected / kRpm, unlimited / kRpm,
        "eqs. (1) to (15) have no limit of speed: friction alone balances the torque, (T_pmax - T_s)/b"},
-      {"voltage that holds 6000 rpm, no load", "V", "", kAutomatic, (p.b * top_speed + p.T_s) / p.k_1,
+      {"voltage that holds 6000 rpm, no load", "V", "", page::kAutomatic, (p.b * top_speed + p.T_s) / p.k_1,
        "(b θ' + T_s)/k_1; the motor's own limit is up to whoever commands it"},
-      {"motor and pump inertia seen by the arm", "lbf-in-s^2", "", kAutomatic, reflected,
+      {"motor and pump inertia seen by the arm", "lbf-in-s^2", "", page::kAutomatic, reflected,
        fmt::format("J (c/D)^2, {:.0f} times J_a = {:g}", reflected / p.J_a, p.J_a)},
       {"m g l of a uniform slender arm", "in-lbf", "", arm_mgl, gravity_torque,
        fmt::format("assumed: J_a = m L^2/3 with L = {:g} in; here: table1_gravity.toml. It holds with dp = "
@@ -216,7 +216,7 @@ ExperimentResult RunFig1(const ExperimentOptions& options) {
       {"18000 rpm motor: inertia seen by the arm", "lbf-in-s^2", "", reflected * std::pow(3.0, 2 - 5.0 / 3),
        reflected_fast,
        "independent: J goes with T_pmax^{5/3} for motors of one shape, and with the ratio squared"},
-      {"18000 rpm motor: time to full speed", "s", "", kAutomatic,
+      {"18000 rpm motor: time to full speed", "s", "", page::kAutomatic,
        fast.J * kFastMotorRpm * kRpm / fast.T_pmax,
        fmt::format("J θ'/T_pmax without load and friction; the 6000 rpm motor: {:.2f} s",
                    p.J * top_speed / p.T_pmax)},
@@ -293,4 +293,4 @@ ExperimentResult RunFig1(const ExperimentOptions& options) {
   return result;
 }
 
-}  // namespace hydro
+}  // namespace hydro::experiments

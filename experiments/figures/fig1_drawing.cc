@@ -8,7 +8,7 @@
 
 #include "page/panel_drawing.h"
 
-namespace hydro {
+namespace hydro::experiments {
 namespace {
 
 // Pixels, y downwards.
@@ -66,9 +66,9 @@ class Drawing {
   }
   void Dot(double x, double y, const char* colour) { Circle(x, y, 3, colour, colour); }
   // Lines of text, one below the other.
-  void Text(double x, double y, const std::vector<std::string>& lines, TextStyle style = {.size = 13}) {
+  void Text(double x, double y, const std::vector<std::string>& lines, page::TextStyle style = {.size = 13}) {
     for (const std::string& line : lines) {
-      svg_ += SvgText(line, x, y, style);
+      svg_ += page::SvgText(line, x, y, style);
       y += 17;
     }
   }
@@ -98,10 +98,12 @@ class Drawing {
   std::string svg_;
 };
 
-TextStyle Centred(bool bold = false) { return {.size = 13, .anchor = "middle", .bold = bold}; }
-TextStyle Value(const char* anchor = "start") { return {.size = 12, .colour = kGrey, .anchor = anchor}; }
+page::TextStyle Centred(bool bold = false) { return {.size = 13, .anchor = "middle", .bold = bold}; }
+page::TextStyle Value(const char* anchor = "start") {
+  return {.size = 12, .colour = kGrey, .anchor = anchor};
+}
 
-void DrawDrive(Drawing& d, const Parameters& p) {
+void DrawDrive(Drawing& d, const model::Parameters& p) {
   d.Arrow(8, kMiddle, 45, kMiddle, kInk);
   d.Text(10, kMiddle - 10, {"v"});
   d.Rectangle(45, kMiddle - 28, 74, 56);
@@ -120,7 +122,7 @@ void DrawDrive(Drawing& d, const Parameters& p) {
   d.Text(205, kMiddle + 52, {"T_p"}, {.size = 13, .anchor = "end"});
 }
 
-void DrawPump(Drawing& d, const Parameters& p) {
+void DrawPump(Drawing& d, const model::Parameters& p) {
   d.Path(fmt::format("M{0},{1} V{2}", kPump, kMiddle - 38, kLine1), kSide1, 3);
   d.Path(fmt::format("M{0},{1} V{2}", kPump, kMiddle + 38, kLine2), kSide2, 3);
   d.Circle(kPump, kMiddle, 38);
@@ -135,7 +137,7 @@ void DrawPump(Drawing& d, const Parameters& p) {
          Value());
 }
 
-void DrawLines(Drawing& d, const Parameters& p) {
+void DrawLines(Drawing& d, const model::Parameters& p) {
   d.Path(fmt::format("M{},{} H{} V{}", kPump, kLine1, kPort, kMiddle - 70), kSide1, 3);
   d.Path(fmt::format("M{},{} H{} V{}", kPump, kLine2, kPort, kMiddle + 70), kSide2, 3);
   // Flows out of the actuator, as eqs. (9) and (10) count them.
@@ -173,7 +175,7 @@ void DrawLines(Drawing& d, const Parameters& p) {
   d.Text(kBypass - 12, kMiddle - 44, {"bypass", "valve"}, {.size = 13, .anchor = "end"});
 }
 
-void DrawAccumulator(Drawing& d, const Parameters& p) {
+void DrawAccumulator(Drawing& d, const model::Parameters& p) {
   d.Path(fmt::format("M{0},{1} V{2} M{0},{3} V{4}", kValves, kLine1, kMiddle - 87, kMiddle - 68, kMiddle));
   d.Path(fmt::format("M{0},{1} V{2} M{0},{3} V{4}", kValves, kMiddle, kMiddle + 68, kMiddle + 87, kLine2));
   d.OneWayValve(kValves, kMiddle - 78, -1);
@@ -202,7 +204,7 @@ void DrawAccumulator(Drawing& d, const Parameters& p) {
   d.Text(590, kMiddle + 40, {fmt::format("accumulator p_3 = {:g} psi", p.p_3)});
 }
 
-void DrawActuator(Drawing& d, const Parameters& p) {
+void DrawActuator(Drawing& d, const model::Parameters& p) {
   const double angle = 22 * std::numbers::pi / 180;  // shown
   const double cosine = std::cos(angle);
   const double sine = std::sin(angle);
@@ -252,7 +254,7 @@ void DrawActuator(Drawing& d, const Parameters& p) {
 
 }  // namespace
 
-std::string ApparatusDrawing(const Parameters& parameters) {
+std::string ApparatusDrawing(const model::Parameters& parameters) {
   Drawing drawing;
   DrawLines(drawing, parameters);
   DrawAccumulator(drawing, parameters);
@@ -262,4 +264,4 @@ std::string ApparatusDrawing(const Parameters& parameters) {
   return drawing.svg();
 }
 
-}  // namespace hydro
+}  // namespace hydro::experiments

@@ -12,7 +12,7 @@
 #include "experiments/runs/shipped_models.h"
 #include "experiments/studies/json_text.h"
 
-namespace hydro {
+namespace hydro::experiments {
 namespace {
 
 using nlohmann::json;
@@ -24,8 +24,8 @@ constexpr double kFasterTorque = 10;  // in-lbf, of Figure 3, which does not sti
 // Static friction that acts at rest only: its excess is gone at speeds at which the pump has hardly moved.
 constexpr double kAtRestOnly = 1e-4;  // rad/s
 
-ModelDescription WithStaticAtRest(double static_torque) {
-  ModelDescription model = ShippedModel("table1");
+model::ModelDescription WithStaticAtRest(double static_torque) {
+  model::ModelDescription model = ShippedModel("table1");
   model.effects.push_back(
       {"pump.stribeck",
        {{"static_excess", static_torque / model.parameters.T_s - 1}, {"speed", kAtRestOnly}},
@@ -44,7 +44,7 @@ struct Scanned {
   double ExcessRatio(double kinetic) const { return (static_torque - kinetic) / (torque - kinetic); }
 };
 
-Scanned Scan(const ModelDescription& model, double torque, double static_torque, double duration) {
+Scanned Scan(const model::ModelDescription& model, double torque, double static_torque, double duration) {
   const OpenLoopRun run = RunOpenLoop(model, torque, duration);
   return {torque, static_torque, run.sticks(), FindCycles(run)};
 }
@@ -82,8 +82,8 @@ json Describe(const Scanned& scanned, double kinetic) {
 }
 
 // The part of a run that is pictured.
-Curve DpCurve(const OpenLoopRun& run, const std::string& label, int colour) {
-  Curve curve{.label = label, .x = {}, .y = {}, .colour = colour, .y_low = {}, .y_high = {}};
+page::Curve DpCurve(const OpenLoopRun& run, const std::string& label, int colour) {
+  page::Curve curve{.label = label, .x = {}, .y = {}, .colour = colour, .y_low = {}, .y_high = {}};
   for (size_t i = 0; i < run.time.size() && run.time[i] <= kPictured; ++i) {
     curve.x.push_back(run.time[i]);
     curve.y.push_back(run.dp[i]);
@@ -91,8 +91,8 @@ Curve DpCurve(const OpenLoopRun& run, const std::string& label, int colour) {
   return curve;
 }
 
-std::vector<Note> ChangeNotes(const OpenLoopRun& run, size_t most) {
-  std::vector<Note> notes;
+std::vector<page::Note> ChangeNotes(const OpenLoopRun& run, size_t most) {
+  std::vector<page::Note> notes;
   for (const PumpChange& change : run.changes) {
     if (notes.size() == most || change.time > kPictured) break;
     notes.push_back({fmt::format("{} at {:.3f} s, {:.0f} psi", change.sticks ? "sticks" : "slips",
@@ -102,7 +102,8 @@ std::vector<Note> ChangeNotes(const OpenLoopRun& run, size_t most) {
   return notes;
 }
 
-Panel DpPanel(const std::string& title, std::vector<Curve> curves, std::vector<Note> notes) {
+page::Panel DpPanel(const std::string& title, std::vector<page::Curve> curves,
+                    std::vector<page::Note> notes) {
   return {.title = title,
           .x = {.label = "time, s", .min = 0, .max = kPictured},
           .y = {.label = "p_2 - p_1, psi", .min = 0},
@@ -112,30 +113,33 @@ Panel DpPanel(const std::string& title, std::vector<Curve> curves, std::vector<N
 }
 
 Picture ScanPicture(const std::vector<Scanned>& scans, double kinetic, double threshold_ratio) {
-  Curve period{.label = "", .x = {}, .y = {}, .stroke = Stroke::kLinePoints, .y_low = {}, .y_high = {}};
-  Curve high{.label = "highest", .x = {}, .y = {}, .stroke = Stroke::kLinePoints, .y_low = {}, .y_high = {}};
-  Curve low{.label = "lowest", .x = {}, .y = {}, .stroke = Stroke::kLinePoints, .y_low = {}, .y_high = {}};
+  page::Curve period{
+      .label = "", .x = {}, .y = {}, .stroke = page::Stroke::kLinePoints, .y_low = {}, .y_high = {}};
+  page::Curve high{
+      .label = "highest", .x = {}, .y = {}, .stroke = page::Stroke::kLinePoints, .y_low = {}, .y_high = {}};
+  page::Curve low{
+      .label = "lowest", .x = {}, .y = {}, .stroke = page::Stroke::kLinePoints, .y_low = {}, .y_high = {}};
   for (const Scanned& scanned : scans) {
     if (scanned.torque != kTorque || !scanned.cycles.sustained) continue;
-    for (Curve* curve : {&period, &high, &low}) curve->x.push_back(scanned.ExcessRatio(kinetic));
+    for (page::Curve* curve : {&period, &high, &low}) curve->x.push_back(scanned.ExcessRatio(kinetic));
     period.y.push_back(scanned.cycles.period);
     high.y.push_back(scanned.cycles.high);
     low.y.push_back(scanned.cycles.low);
   }
-  const Axis ratio{.label = "(T_static - T_s)/(T_p - T_s)", .min = 0, .max = 0.9};
-  const Rule threshold{fmt::format("no cycles below {:.3f}", threshold_ratio), true, threshold_ratio};
-  Panel periods{.title = "Period of the cycles",
-                .x = ratio,
-                .y = {.label = "period, s", .min = 0},
-                .curves = {period},
-                .notes = {},
-                .rules = {threshold}};
-  Panel swings{.title = fmt::format("Extremes of p_2 - p_1 at T_p = {} in-lbf", kTorque),
-               .x = ratio,
-               .y = {.label = "p_2 - p_1, psi", .min = 0},
-               .curves = {high, low},
-               .notes = {},
-               .rules = {threshold}};
+  const page::Axis ratio{.label = "(T_static - T_s)/(T_p - T_s)", .min = 0, .max = 0.9};
+  const page::Rule threshold{fmt::format("no cycles below {:.3f}", threshold_ratio), true, threshold_ratio};
+  page::Panel periods{.title = "Period of the cycles",
+                      .x = ratio,
+                      .y = {.label = "period, s", .min = 0},
+                      .curves = {period},
+                      .notes = {},
+                      .rules = {threshold}};
+  page::Panel swings{.title = fmt::format("Extremes of p_2 - p_1 at T_p = {} in-lbf", kTorque),
+                     .x = ratio,
+                     .y = {.label = "p_2 - p_1, psi", .min = 0},
+                     .curves = {high, low},
+                     .notes = {},
+                     .rules = {threshold}};
   return {"-scan",
           {.caption = fmt::format("Static friction above kinetic at rest only (gone at {} rad/s), Table 1 "
                                   "otherwise, clamped at α = 0, T_p = {} in-lbf, second half of {} s.",
@@ -147,9 +151,9 @@ Picture ScanPicture(const std::vector<Scanned>& scans, double kinetic, double th
 }  // namespace
 
 ExperimentResult RunFig2(const ExperimentOptions& options) {
-  const ModelDescription table1 = ShippedModel("table1");
-  const ModelDescription stribeck = ShippedModel("table1_stribeck");
-  const Parameters& p = table1.parameters;
+  const model::ModelDescription table1 = ShippedModel("table1");
+  const model::ModelDescription stribeck = ShippedModel("table1_stribeck");
+  const model::Parameters& p = table1.parameters;
   const double excess = stribeck.effects.at(0).parameters.at("static_excess");
   const double speed = stribeck.effects.at(0).parameters.at("speed");
   const double static_torque = p.T_s * (1 + excess);
@@ -161,7 +165,7 @@ ExperimentResult RunFig2(const ExperimentOptions& options) {
 
   // Table 1 at other torques: the same curve, scaled.
   std::vector<Scanned> plain_scan;
-  std::vector<Curve> scaled;
+  std::vector<page::Curve> scaled;
   for (const double torque : {4.1, 4.5, 5.0, 6.0, 8.0, 10.0}) {
     const OpenLoopRun run = RunOpenLoop(table1, torque, kDuration / 2);
     plain_scan.push_back({torque, p.T_s, run.sticks(), FindCycles(run)});
@@ -240,13 +244,13 @@ ExperimentResult RunFig2(const ExperimentOptions& options) {
        slip.time - stick.time, "expected: dp leaks at (β/V_ms)(2 c_I + c_E)"},
       {"dp at the end, Table 1 alone", "psi", "", creep_dp, plain.dp.back(),
        "expected: steady creep, side 1 held at p_3"},
-      {"sticks with static above kinetic friction", "", "sustained cycles", kAutomatic,
+      {"sticks with static above kinetic friction", "", "sustained cycles", page::kAutomatic,
        static_cast<double>(cycling.sticks()), fmt::format("in {} s", kDuration)},
-      {"period of the cycles", "s", "", kAutomatic, cycles.period, "follows from the assumed friction"},
+      {"period of the cycles", "s", "", page::kAutomatic, cycles.period, "follows from the assumed friction"},
       {"dp at each slip of the cycles", "psi", "", slip_dp, cycles.slip_dp, "expected: (T_p - T_static)/D"},
       {"how long each stick of the cycles lasts", "s", "",
        std::log(cycles.stick_dp / cycles.slip_dp) / leak_rate, cycles.stick_time, "expected: as above"},
-      {"static friction that cycles need at 6 in-lbf, at rest only", "in-lbf", "", kAutomatic,
+      {"static friction that cycles need at 6 in-lbf, at rest only", "in-lbf", "", page::kAutomatic,
        threshold.cycles, fmt::format("{:.3f} still creeps", threshold.none)},
   };
 
@@ -319,9 +323,9 @@ ExperimentResult RunFig2(const ExperimentOptions& options) {
                           {"stribeck_p2_psi", head(cycling.p2)},
                           {"stribeck_motor_speed_rad_s", head(cycling.motor_speed)}};
 
-  Panel once =
+  page::Panel once =
       DpPanel("Table 1 alone: one stick, then creep", {DpCurve(plain, "", 0)}, ChangeNotes(plain, 2));
-  Panel often =
+  page::Panel often =
       DpPanel(fmt::format("Static friction {:.0f} % above kinetic: sustained stick-slip", 100 * excess),
               {DpCurve(cycling, "", 0)}, {});
   once.rules = {{"(T_p - T_s)/D", false, (kTorque - p.T_s) / p.D}};
@@ -345,4 +349,4 @@ ExperimentResult RunFig2(const ExperimentOptions& options) {
   return result;
 }
 
-}  // namespace hydro
+}  // namespace hydro::experiments

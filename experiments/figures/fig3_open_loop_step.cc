@@ -14,7 +14,7 @@
 #include "experiments/studies/json_text.h"
 #include "model/equations.h"
 
-namespace hydro {
+namespace hydro::experiments {
 namespace {
 
 using nlohmann::json;
@@ -30,7 +30,7 @@ struct SpringAnalogy {
   double peak_time = 0;  // s
   double peak_dp = 0;    // psi
 };
-SpringAnalogy AnalyseSpring(const Parameters& p) {
+SpringAnalogy AnalyseSpring(const model::Parameters& p) {
   // J theta'' = T_p - T_s - b theta' - D dp, dp' = s (D theta' - c_L dp).
   const double s = p.beta / p.V_ms;
   const double c_L = p.c_I + p.c_E;
@@ -52,25 +52,25 @@ struct WithoutValves {
   size_t peak = 0;            // of dp
   double negative_since = 0;  // s, p_1 < 0
 };
-WithoutValves RunWithoutValves(const ModelDescription& model) {
+WithoutValves RunWithoutValves(const model::ModelDescription& model) {
   constexpr double kStep = 1e-4;  // s; classical Runge-Kutta at 18 rad/s: errors below 1e-9 psi
-  const Equations equations(model, {.shaft = Shaft::kClamped});
-  Mode mode;
-  std::array<double, kMaxStates> y{};
+  const model::Equations equations(model, {.shaft = model::Shaft::kClamped});
+  model::Mode mode;
+  std::array<double, model::kMaxStates> y{};
   equations.Start(model.parameters.p_3, y.data(), &mode);
   mode.pump = 1;
   const double voltage = kTorque / model.parameters.k_1;
   const size_t n = static_cast<size_t>(equations.states());
-  std::array<std::array<double, kMaxStates>, 4> rate{};
+  std::array<std::array<double, model::kMaxStates>, 4> rate{};
   WithoutValves run;
-  for (int i = 0; i == 0 || y[kMotorSpeed] > 0; ++i) {
+  for (int i = 0; i == 0 || y[model::kMotorSpeed] > 0; ++i) {
     const double time = i * kStep;
     run.time.push_back(time);
-    run.p1.push_back(y[kP1]);
-    run.p2.push_back(y[kP2]);
-    run.dp.push_back(y[kP2] - y[kP1]);
+    run.p1.push_back(y[model::kP1]);
+    run.p2.push_back(y[model::kP2]);
+    run.dp.push_back(y[model::kP2] - y[model::kP1]);
     if (run.dp.back() > run.dp[run.peak]) run.peak = run.dp.size() - 1;
-    if (y[kP1] < 0 && run.negative_since == 0) run.negative_since = time;
+    if (y[model::kP1] < 0 && run.negative_since == 0) run.negative_since = time;
     for (size_t stage = 0; stage < 4; ++stage) {
       auto at = y;
       const double reach = stage == 0 ? 0 : (stage == 3 ? kStep : kStep / 2);
@@ -87,8 +87,8 @@ WithoutValves RunWithoutValves(const ModelDescription& model) {
 }  // namespace
 
 ExperimentResult RunFig3(const ExperimentOptions& options) {
-  const ModelDescription model = ShippedModel("table1");
-  const Parameters& p = model.parameters;
+  const model::ModelDescription model = ShippedModel("table1");
+  const model::Parameters& p = model.parameters;
   const OpenLoopRun run = RunOpenLoop(model, kTorque, kDuration);
   const PressureExtreme& peak = run.extremes.at(0);
   const PumpChange& stick = run.changes.at(0);
@@ -133,14 +133,14 @@ ExperimentResult RunFig3(const ExperimentOptions& options) {
       {"peak of p_2", "psi", "", p.p_3 + spring.peak_dp, peak.p2, "expected: closed form, one side at p_3"},
       {"peak of dp", "psi", "", spring.peak_dp, peak.dp, ""},
       {"time of the peak", "s", "", spring.peak_time, peak.time, "expected: half a damped period"},
-      {"pump sticks", "s", "", kAutomatic, stick.time,
+      {"pump sticks", "s", "", page::kAutomatic, stick.time,
        "after the peak the valve closes and both sides compress: no closed form"},
       {"dp when it slips again", "psi", "", slip_dp, slip.dp, "expected: (T_p - T_s)/D"},
       {"pump slips again", "s", "", stick.time + std::log(stick.dp / slip_dp) / leak_rate, slip.time,
        "expected: from the stick on, dp leaks at (β/V_ms)(2 c_I + c_E)"},
-      {"peak of dp without the valves", "psi", "", kAutomatic, bare_dp, ""},
-      {"p_2 then", "psi", "", kAutomatic, bare.p2[bare.peak], ""},
-      {"p_1 then", "psi", "", kAutomatic, bare.p1[bare.peak], "no fluid bears that: it would cavitate"},
+      {"peak of dp without the valves", "psi", "", page::kAutomatic, bare_dp, ""},
+      {"p_2 then", "psi", "", page::kAutomatic, bare.p2[bare.peak], ""},
+      {"p_1 then", "psi", "", page::kAutomatic, bare.p1[bare.peak], "no fluid bears that: it would cavitate"},
   };
 
   result.numbers = JsonText(json{{"torque_in_lbf", kTorque},
@@ -168,24 +168,25 @@ ExperimentResult RunFig3(const ExperimentOptions& options) {
                           {"p2_psi", run.p2},
                           {"motor_speed_rad_s", run.motor_speed}};
 
-  const Axis time{.label = "time, s", .min = 0, .max = kDuration};
-  Panel difference{
+  const page::Axis time{.label = "time, s", .min = 0, .max = kDuration};
+  page::Panel difference{
       .title = "Pressure difference",
       .x = time,
       .y = {.label = "p_2 - p_1, psi", .min = 0},
-      .curves = {Line("", run.time, run.dp, 0)},
+      .curves = {page::Line("", run.time, run.dp, 0)},
       .notes = {{fmt::format("peak {:.1f} psi at {:.4f} s; sticks at {:.4f} s", peak.dp, peak.time,
                              stick.time),
                  peak.time, peak.dp},
                 {fmt::format("slips at {:.3f} s, {:.1f} psi", slip.time, slip.dp), slip.time, slip.dp}},
       .rules = {{"(T_p - T_s)/D", false, slip_dp}}};
-  Panel sides{
+  page::Panel sides{
       .title = "The two sides",
       .x = time,
       .y = {.label = "pressure, psi"},
-      .curves = {Line("p_2", run.time, run.p2, 0), Line("p_1", run.time, run.p1, 1),
-                 Line("p_2 without valves, to the first stop", bare.time, bare.p2, 0, Stroke::kDashed),
-                 Line("p_1 without valves", bare.time, bare.p1, 1, Stroke::kDashed)},
+      .curves = {page::Line("p_2", run.time, run.p2, 0), page::Line("p_1", run.time, run.p1, 1),
+                 page::Line("p_2 without valves, to the first stop", bare.time, bare.p2, 0,
+                            page::Stroke::kDashed),
+                 page::Line("p_1 without valves", bare.time, bare.p1, 1, page::Stroke::kDashed)},
       .notes = {},
       .rules = {}};
   result.pictures.push_back(
@@ -199,4 +200,4 @@ ExperimentResult RunFig3(const ExperimentOptions& options) {
   return result;
 }
 
-}  // namespace hydro
+}  // namespace hydro::experiments

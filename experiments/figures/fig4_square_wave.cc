@@ -10,7 +10,7 @@
 #include "experiments/studies/json_text.h"
 #include "experiments/studies/tracking_study.h"
 
-namespace hydro {
+namespace hydro::experiments {
 namespace {
 
 using nlohmann::json;
@@ -47,7 +47,7 @@ struct Remainder {
   std::vector<Level> levels;
 };
 
-Panel HeldPanel(const TrackingStudy& study) {
+page::Panel HeldPanel(const TrackingStudy& study) {
   return {.title = fmt::format("A reference of {} psi, held", kWaveAmplitude),
           .x = {.label = "time, s", .min = 0, .max = 0.5},
           .y = {.label = "p_2 - p_1, psi", .min = kWaveAmplitude - 25, .max = kWaveAmplitude + 10},
@@ -59,21 +59,21 @@ Panel HeldPanel(const TrackingStudy& study) {
                     {"closed form, with", false, SettledPressure(kWaveAmplitude, study.feedforward)}}};
 }
 
-Panel LevelsPanel(const std::vector<Remainder>& remainders) {
-  Panel panel{.title = "Steady-state error at rising references",
-              .x = {.label = "reference, psi", .min = 0, .max = 650},
-              .y = {.label = "reference - (p_2 - p_1), psi"},
-              .curves = {},
-              .notes = {},
-              .rules = {}};
+page::Panel LevelsPanel(const std::vector<Remainder>& remainders) {
+  page::Panel panel{.title = "Steady-state error at rising references",
+                    .x = {.label = "reference, psi", .min = 0, .max = 650},
+                    .y = {.label = "reference - (p_2 - p_1), psi"},
+                    .curves = {},
+                    .notes = {},
+                    .rules = {}};
   int colour = 0;
   for (const Remainder& remainder : remainders) {
-    Curve measured{.label = remainder.label, .x = {}, .y = {}, .y_low = {}, .y_high = {}};
-    measured.stroke = Stroke::kPoints;
+    page::Curve measured{.label = remainder.label, .x = {}, .y = {}, .y_low = {}, .y_high = {}};
+    measured.stroke = page::Stroke::kPoints;
     measured.colour = colour++;
-    Curve closed = measured;
+    page::Curve closed = measured;
     closed.label.clear();
-    closed.stroke = Stroke::kLine;
+    closed.stroke = page::Stroke::kLine;
     for (const Level& level : remainder.levels) {
       measured.x.push_back(level.reference);
       measured.y.push_back(level.error);
@@ -100,7 +100,7 @@ json LevelsJson(const Remainder& remainder) {
 }  // namespace
 
 ExperimentResult RunFig4(const ExperimentOptions& options) {
-  const Parameters p = PressureLoopParameters();
+  const model::Parameters p = PressureLoopParameters();
   const TrackingStudy study = RunTrackingStudy(options, "fig4", "square");
   const TrackingError& error = study.error;
   const TrackingError& slow = study.by_frequency.front().error;
@@ -144,7 +144,7 @@ ExperimentResult RunFig4(const ExperimentOptions& options) {
       {"torque that the loop asks for at a jump", "in-lbf", "limited to 40", jump, study.largest_demand,
        "expected: 2 A k_1 k_p, had dp settled and the pump stopped before the jump"});
   result.comparisons.push_back(
-      {"steady peaks of dp", "psi", "", kAutomatic, error.highest,
+      {"steady peaks of dp", "psi", "", page::kAutomatic, error.highest,
        fmt::format("the other way {:.1f}; {:.1f} with the loop sampled at 50 kHz, nearer to an analog one",
                    error.lowest, finer.highest)});
   result.findings = {
@@ -177,4 +177,4 @@ ExperimentResult RunFig4(const ExperimentOptions& options) {
   return result;
 }
 
-}  // namespace hydro
+}  // namespace hydro::experiments

@@ -10,7 +10,7 @@
 #include "experiments/studies/json_text.h"
 #include "experiments/studies/tracking_study.h"
 
-namespace hydro {
+namespace hydro::experiments {
 namespace {
 
 using nlohmann::json;
@@ -70,4 +70,4 @@ ExperimentResult RunFig5(const ExperimentOptions& options) {
   return result;
 }
 
-}  // namespace hydro
+}  // namespace hydro::experiments

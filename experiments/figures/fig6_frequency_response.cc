@@ -13,7 +13,7 @@
 #include "experiments/studies/bode_case.h"
 #include "experiments/studies/json_text.h"
 
-namespace hydro {
+namespace hydro::experiments {
 namespace {
 
 using nlohmann::json;
@@ -40,10 +40,10 @@ struct Cases {
   }
 };
 
-Cases MakeCases(const ModelDescription& table1, const PressureGains& two_sided,
-                const PressureGains& one_sided) {
+Cases MakeCases(const model::ModelDescription& table1, const pressure_ctrl::PressureGains& two_sided,
+                const pressure_ctrl::PressureGains& one_sided) {
   Cases cases;
-  const auto make = [&](const std::string& key, const std::string& title, const Mode& mode) {
+  const auto make = [&](const std::string& key, const std::string& title, const model::Mode& mode) {
     BodeCase made;
     made.key = key;
     made.title = title;
@@ -84,10 +84,10 @@ Cases MakeCases(const ModelDescription& table1, const PressureGains& two_sided,
 }
 
 BodeCurve Measured(const BodeCase& bode_case, int colour) {
-  return {bode_case.title, bode_case.swept.points, Stroke::kPoints, colour};
+  return {bode_case.title, bode_case.swept.points, page::Stroke::kPoints, colour};
 }
 
-BodeCurve Predicted(const BodeCase& bode_case, const std::string& label, Stroke stroke, int colour) {
+BodeCurve Predicted(const BodeCase& bode_case, const std::string& label, page::Stroke stroke, int colour) {
   const LinearPressureLoop loop =
       LinearLoop(bode_case.sweep, bode_case.mode, {1 / bode_case.sweep.rate_hz, 0});
   return {label, Sampled(1, 100, [&](double hz) { return loop.ClosedGain(bode_case.sweep.gains, hz); }),
@@ -97,18 +97,20 @@ BodeCurve Predicted(const BodeCase& bode_case, const std::string& label, Stroke 
 // Coulomb friction acts on a sine of the motor's speed like a viscous friction 4 T_s/(pi speed) (describing
 // function). At omega_n the speed is k_1 k_p A/B with B all viscous friction, so that B, and zeta with it,
 // grow by 1/(1 - 4 T_s/(pi k_1 k_p A)).
-double DampingWithFriction(const Parameters& p, const PressureGains& gains, double damping_ratio,
-                           double amplitude) {
+double DampingWithFriction(const model::Parameters& p, const pressure_ctrl::PressureGains& gains,
+                           double damping_ratio, double amplitude) {
   return damping_ratio / (1 - 4 * p.T_s / (std::numbers::pi * p.k_1 * gains.k_p * amplitude));
 }
 
 }  // namespace
 
 ExperimentResult RunFig6(const ExperimentOptions& options) {
-  const ModelDescription table1 = ShippedModel("table1");
-  const Parameters& p = table1.parameters;
-  const PressureGains two_sided = DerivePressureGains(p, 0, kNaturalFrequency, kDampingRatio, 2);
-  const PressureGains one_sided = DerivePressureGains(p, 0, kNaturalFrequency, kDampingRatio, 1);
+  const model::ModelDescription table1 = ShippedModel("table1");
+  const model::Parameters& p = table1.parameters;
+  const pressure_ctrl::PressureGains two_sided =
+      pressure_ctrl::DerivePressureGains(p, 0, kNaturalFrequency, kDampingRatio, 2);
+  const pressure_ctrl::PressureGains one_sided =
+      pressure_ctrl::DerivePressureGains(p, 0, kNaturalFrequency, kDampingRatio, 1);
   Cases cases = MakeCases(table1, two_sided, one_sided);
   const std::vector<BodeCase*> all = cases.all();
   for (size_t i = 0; i < all.size(); ++i) {
@@ -121,7 +123,7 @@ ExperimentResult RunFig6(const ExperimentOptions& options) {
   const SecondOrderModel design = {1, kNaturalFrequency, kDampingRatio, 0};
   const double sticking = p.T_s / (p.k_1 * two_sided.k_p);
   const double figure_zeta = DampingWithFriction(p, two_sided, kDampingRatio, figure.sweep.amplitude);
-  const SecondOrder one_sided_rule = PressureLoopDynamics(p, 0, two_sided, 1);
+  const pressure_ctrl::SecondOrder one_sided_rule = pressure_ctrl::PressureLoopDynamics(p, 0, two_sided, 1);
   // Without feedback's help, at frequencies well above omega_n: J w^2 dp/s is torque, s psi per rad.
   const double stiffness = 2 * p.beta * p.D / p.V_ms;
   const double w = 2 * std::numbers::pi * kPaperHz;
@@ -193,7 +195,7 @@ ExperimentResult RunFig6(const ExperimentOptions& options) {
        cases.one_sided.bandwidth_hz, ""},
       {"natural frequency, side 1 held at p_3, gains for that", "rad/s", "", kNaturalFrequency,
        cases.one_sided_gains.fit.model.natural_frequency, ""},
-      {"bandwidth at ±300 psi", "Hz", "", kAutomatic, large.bandwidth_hz, "the motor's torque limit"},
+      {"bandwidth at ±300 psi", "Hz", "", page::kAutomatic, large.bandwidth_hz, "the motor's torque limit"},
       {"largest difference from the linearised loop, gain", "dB", "", 0, worst_db,
        "in the cases without friction's switching"},
       {"largest difference from the linearised loop, phase", "degrees", "", 0, worst_deg, "the same"},
@@ -231,10 +233,10 @@ ExperimentResult RunFig6(const ExperimentOptions& options) {
   numbers["cases"] = listed;
   result.numbers = JsonText(numbers);
   for (const BodeCase* one : all) {
-    for (Column& column : CaseColumns(*one)) result.table.columns.push_back(std::move(column));
+    for (tables::Column& column : CaseColumns(*one)) result.table.columns.push_back(std::move(column));
   }
 
-  const std::vector<Rule> rules = {
+  const std::vector<page::Rule> rules = {
       {"paper: 32 Hz", true, kPaperHz},
       {fmt::format("-3 dB: {:.1f} Hz", figure.bandwidth_hz), true, figure.bandwidth_hz}};
   result.pictures.push_back(
@@ -243,15 +245,15 @@ ExperimentResult RunFig6(const ExperimentOptions& options) {
             "Swept sine of ±{} psi about zero through the closed pressure loop, arm clamped at α = 0, Table "
             "1. Fit: ω_n = {:.1f} rad/s, ζ = {:.2f}. Dashed: the linearised loop without Coulomb friction.",
             figure.sweep.amplitude, figure.fit.model.natural_frequency, figure.fit.model.damping_ratio),
-        .panels = WithCoherence(
-            BodePanels(
-                "Closed pressure loop at mid-stroke",
-                {{"measured", figure.swept.points, Stroke::kPoints, 0},
-                 {"fitted second order",
-                  Sampled(1, 100, [&](double hz) { return figure.fit.model.Gain(hz); }), Stroke::kLine, 1},
-                 Predicted(figure, "linearised", Stroke::kDashed, 2)},
-                rules, -30),
-            {Measured(figure, 0)}),
+        .panels =
+            WithCoherence(BodePanels("Closed pressure loop at mid-stroke",
+                                     {{"measured", figure.swept.points, page::Stroke::kPoints, 0},
+                                      {"fitted second order",
+                                       Sampled(1, 100, [&](double hz) { return figure.fit.model.Gain(hz); }),
+                                       page::Stroke::kLine, 1},
+                                      Predicted(figure, "linearised", page::Stroke::kDashed, 2)},
+                                     rules, -30),
+                          {Measured(figure, 0)}),
         .drawing = ""}});
   std::vector<BodeCurve> family;
   std::vector<const BodeCase*> by_amplitude;
@@ -261,7 +263,7 @@ ExperimentResult RunFig6(const ExperimentOptions& options) {
   family.reserve(by_amplitude.size());
   for (const BodeCase* one : by_amplitude) {
     family.push_back(
-        {fmt::format("±{} psi", one->sweep.amplitude), one->swept.points, Stroke::kLinePoints, -1});
+        {fmt::format("±{} psi", one->sweep.amplitude), one->swept.points, page::Stroke::kLinePoints, -1});
   }
   result.pictures.push_back(
       {"-amplitude",
@@ -279,14 +281,14 @@ ExperimentResult RunFig6(const ExperimentOptions& options) {
                         "0; curves: the linearised loop, within {:.2f} dB and {:.2f}° of all points. The "
                         "first and the third case coincide: their gains are derived for the same ω_n and ζ.",
                         worst_db, worst_deg),
-        .panels = BodePanels(
-            "Compressed sides",
-            {Measured(none, 0), Measured(cases.one_sided, 1), Measured(cases.one_sided_gains, 2),
-             Predicted(none, "", Stroke::kLine, 0), Predicted(cases.one_sided, "", Stroke::kLine, 1),
-             Predicted(cases.one_sided_gains, "", Stroke::kLine, 2)},
-            {{"paper: 32 Hz", true, kPaperHz}}, -40),
+        .panels = BodePanels("Compressed sides",
+                             {Measured(none, 0), Measured(cases.one_sided, 1),
+                              Measured(cases.one_sided_gains, 2), Predicted(none, "", page::Stroke::kLine, 0),
+                              Predicted(cases.one_sided, "", page::Stroke::kLine, 1),
+                              Predicted(cases.one_sided_gains, "", page::Stroke::kLine, 2)},
+                             {{"paper: 32 Hz", true, kPaperHz}}, -40),
         .drawing = ""}});
   return result;
 }
 
-}  // namespace hydro
+}  // namespace hydro::experiments

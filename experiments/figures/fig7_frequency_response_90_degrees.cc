@@ -14,7 +14,7 @@
 #include "experiments/studies/json_text.h"
 #include "model/actuator.h"
 
-namespace hydro {
+namespace hydro::experiments {
 namespace {
 
 using nlohmann::json;
@@ -26,11 +26,11 @@ constexpr double kQuarterTurn = std::numbers::pi / 2;
 const std::vector<SweptBand> kBands = {{1, 6, 16, 4}, {6, 200, 16, 2}};
 
 // What the model answers when it is asked for an arm angle.
-std::string Refusal(const ModelDescription& model, double arm_angle) {
+std::string Refusal(const model::ModelDescription& model, double arm_angle) {
   try {
-    Actuator actuator(model, {.shaft = Shaft::kClamped, .arm_angle = arm_angle});
+    model::Actuator actuator(model, {.shaft = model::Shaft::kClamped, .arm_angle = arm_angle});
     return "";
-  } catch (const ModelError& error) {
+  } catch (const model::ModelError& error) {
     return error.what();
   }
 }
@@ -48,9 +48,10 @@ struct Cases {
   }
 };
 
-Cases MakeCases(const ModelDescription& wide, const PressureGains& gains, const PressureGains& redesigned) {
-  const auto make = [&](const std::string& key, const std::string& title, const Mode& mode, double amplitude,
-                        double offset) {
+Cases MakeCases(const model::ModelDescription& wide, const pressure_ctrl::PressureGains& gains,
+                const pressure_ctrl::PressureGains& redesigned) {
+  const auto make = [&](const std::string& key, const std::string& title, const model::Mode& mode,
+                        double amplitude, double offset) {
     BodeCase made;
     made.key = key;
     made.title = title;
@@ -81,27 +82,29 @@ Cases MakeCases(const ModelDescription& wide, const PressureGains& gains, const 
   return cases;
 }
 
-BodeCurve Predicted(const BodeCase& bode_case, const std::string& label, Stroke stroke, int colour) {
+BodeCurve Predicted(const BodeCase& bode_case, const std::string& label, page::Stroke stroke, int colour) {
   const LinearPressureLoop loop =
       LinearLoop(bode_case.sweep, bode_case.mode, {1 / bode_case.sweep.rate_hz, 0});
   return {label, Sampled(1, 200, [&](double hz) { return loop.ClosedGain(bode_case.sweep.gains, hz); }),
           stroke, colour};
 }
 
-json Dynamics(const SecondOrder& loop) {
+json Dynamics(const pressure_ctrl::SecondOrder& loop) {
   return {{"natural_frequency_rad_s", loop.natural_frequency}, {"damping_ratio", loop.damping_ratio}};
 }
 
 }  // namespace
 
 ExperimentResult RunFig7(const ExperimentOptions& options) {
-  const ModelDescription table1 = ShippedModel("table1");
-  const ModelDescription wide = ShippedModel("wide_actuator");
-  const Parameters& p = wide.parameters;
+  const model::ModelDescription table1 = ShippedModel("table1");
+  const model::ModelDescription wide = ShippedModel("wide_actuator");
+  const model::Parameters& p = wide.parameters;
   const std::string refusal = Refusal(table1, kQuarterTurn);
   const double limit = table1.parameters.V_ms / table1.parameters.c;
-  const PressureGains gains = DerivePressureGains(p, 0, kNaturalFrequency, kDampingRatio, 2);
-  const PressureGains redesigned = DerivePressureGains(p, kQuarterTurn, kNaturalFrequency, kDampingRatio, 2);
+  const pressure_ctrl::PressureGains gains =
+      pressure_ctrl::DerivePressureGains(p, 0, kNaturalFrequency, kDampingRatio, 2);
+  const pressure_ctrl::PressureGains redesigned =
+      pressure_ctrl::DerivePressureGains(p, kQuarterTurn, kNaturalFrequency, kDampingRatio, 2);
   Cases cases = MakeCases(wide, gains, redesigned);
   const std::vector<BodeCase*> all = cases.all();
   for (size_t i = 0; i < all.size(); ++i) {
@@ -113,9 +116,11 @@ ExperimentResult RunFig7(const ExperimentOptions& options) {
   const BodeCase& figure = cases.quarter_turn;
   const double V_1 = p.V_ms - p.c * kQuarterTurn;
   const double V_2 = p.V_ms + p.c * kQuarterTurn;
-  const SecondOrder two_sides = PressureLoopDynamics(p, kQuarterTurn, gains, 2);
-  const SecondOrder large_side = PressureLoopDynamics(p, kQuarterTurn, gains, 1);
-  const SecondOrder small_side = PressureLoopDynamics(p, -kQuarterTurn, gains, 1);  // V_1 in V_2's place
+  const pressure_ctrl::SecondOrder two_sides = pressure_ctrl::PressureLoopDynamics(p, kQuarterTurn, gains, 2);
+  const pressure_ctrl::SecondOrder large_side =
+      pressure_ctrl::PressureLoopDynamics(p, kQuarterTurn, gains, 1);
+  const pressure_ctrl::SecondOrder small_side =
+      pressure_ctrl::PressureLoopDynamics(p, -kQuarterTurn, gains, 1);  // V_1 in V_2's place
   // omega_n^2 goes with 1/V_1 + 1/V_2 = (2/V_ms)/(1 - (c alpha/V_ms)^2).
   const double displaced = p.c * kQuarterTurn / p.V_ms;
   const double ratio = 1 / std::sqrt(1 - displaced * displaced);
@@ -213,10 +218,10 @@ ExperimentResult RunFig7(const ExperimentOptions& options) {
   numbers["cases"] = listed;
   result.numbers = JsonText(numbers);
   for (const BodeCase* one : all) {
-    for (Column& column : CaseColumns(*one)) result.table.columns.push_back(std::move(column));
+    for (tables::Column& column : CaseColumns(*one)) result.table.columns.push_back(std::move(column));
   }
 
-  const Rule paper = {"paper: 32 Hz", true, kPaperHz};
+  const page::Rule paper = {"paper: 32 Hz", true, kPaperHz};
   result.pictures.push_back(
       {"",
        {.caption =
@@ -228,30 +233,32 @@ ExperimentResult RunFig7(const ExperimentOptions& options) {
         .panels = WithCoherence(
             BodePanels(
                 "Closed pressure loop at 90°",
-                {{"measured, α = π/2", figure.swept.points, Stroke::kPoints, 0},
+                {{"measured, α = π/2", figure.swept.points, page::Stroke::kPoints, 0},
                  {"fitted second order",
-                  Sampled(1, 200, [&](double hz) { return figure.fit.model.Gain(hz); }), Stroke::kLine, 1},
-                 Predicted(figure, "linearised", Stroke::kDashed, 2),
-                 {"measured, α = 0", cases.mid_stroke.swept.points, Stroke::kPoints, 3}},
+                  Sampled(1, 200, [&](double hz) { return figure.fit.model.Gain(hz); }), page::Stroke::kLine,
+                  1},
+                 Predicted(figure, "linearised", page::Stroke::kDashed, 2),
+                 {"measured, α = 0", cases.mid_stroke.swept.points, page::Stroke::kPoints, 3}},
                 {paper, {fmt::format("-3 dB: {:.1f} Hz", figure.bandwidth_hz), true, figure.bandwidth_hz}},
                 -40),
-            {{"", figure.swept.points, Stroke::kPoints, 0},
-             {"", cases.mid_stroke.swept.points, Stroke::kPoints, 3}}),
+            {{"", figure.swept.points, page::Stroke::kPoints, 0},
+             {"", cases.mid_stroke.swept.points, page::Stroke::kPoints, 3}}),
         .drawing = ""}});
   result.pictures.push_back(
       {"-cases",
        {.caption = "At α = π/2: a larger amplitude, gains designed for this angle, and either side alone "
                    "compressing. Curves: the linearised loop of the cases with one side held.",
-        .panels = BodePanels("What it depends on",
-                             {{cases.large.title, cases.large.swept.points, Stroke::kLinePoints, 0},
-                              {cases.redesigned.title, cases.redesigned.swept.points, Stroke::kLinePoints, 1},
-                              {cases.large_side.title, cases.large_side.swept.points, Stroke::kPoints, 2},
-                              {cases.small_side.title, cases.small_side.swept.points, Stroke::kPoints, 3},
-                              Predicted(cases.large_side, "", Stroke::kLine, 2),
-                              Predicted(cases.small_side, "", Stroke::kLine, 3)},
-                             {paper}, -40),
+        .panels =
+            BodePanels("What it depends on",
+                       {{cases.large.title, cases.large.swept.points, page::Stroke::kLinePoints, 0},
+                        {cases.redesigned.title, cases.redesigned.swept.points, page::Stroke::kLinePoints, 1},
+                        {cases.large_side.title, cases.large_side.swept.points, page::Stroke::kPoints, 2},
+                        {cases.small_side.title, cases.small_side.swept.points, page::Stroke::kPoints, 3},
+                        Predicted(cases.large_side, "", page::Stroke::kLine, 2),
+                        Predicted(cases.small_side, "", page::Stroke::kLine, 3)},
+                       {paper}, -40),
         .drawing = ""}});
   return result;
 }
 
-}  // namespace hydro
+}  // namespace hydro::experiments

@@ -5,7 +5,7 @@
 #include <cctype>
 #include <string_view>
 
-namespace hydro {
+namespace hydro::experiments {
 namespace {
 
 constexpr double kAxis = 120;  // y of the forward path
@@ -104,4 +104,4 @@ std::string DrawPositionLoop(const DesignModel& m, double gain) {
   return svg + "</svg>\n";
 }
 
-}  // namespace hydro
+}  // namespace hydro::experiments

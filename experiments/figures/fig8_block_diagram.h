@@ -5,9 +5,9 @@
 
 #include "experiments/maths/position_design.h"
 
-namespace hydro {
+namespace hydro::experiments {
 
 // An <svg> element for Figure::drawing.
 std::string DrawPositionLoop(const DesignModel& model, double gain);
 
-}  // namespace hydro
+}  // namespace hydro::experiments

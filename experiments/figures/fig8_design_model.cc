@@ -12,7 +12,7 @@
 #include "experiments/studies/design_numbers.h"
 #include "experiments/studies/json_text.h"
 
-namespace hydro {
+namespace hydro::experiments {
 namespace {
 
 using nlohmann::json;
@@ -33,28 +33,28 @@ struct Bode {
 }  // namespace
 
 ExperimentResult RunFig8(const ExperimentOptions& options) {
-  const ModelDescription table1 = ShippedModel("table1");
-  const Parameters& p = table1.parameters;
+  const model::ModelDescription table1 = ShippedModel("table1");
+  const model::Parameters& p = table1.parameters;
   const DesignModel design = Figure8Model(p);
   const StabilityLimit limit = RouthLimit(design);
   const Margins margins = StabilityMargins(design, kPaperGain);
 
   // The pressure loop that the real model closes with eq. (16), and the same with the arm free.
-  PressureLawSettings law;
-  law.gains = DerivePressureGains(p, 0, design.natural_frequency, design.damping_ratio, 2);
-  const SecondOrder two_sided = ExactPressureLoop(table1, law, 2);
-  const SecondOrder one_sided = ExactPressureLoop(table1, law, 1);
+  pressure_ctrl::PressureLawSettings law;
+  law.gains = pressure_ctrl::DerivePressureGains(p, 0, design.natural_frequency, design.damping_ratio, 2);
+  const pressure_ctrl::SecondOrder two_sided = ExactPressureLoop(table1, law, 2);
+  const pressure_ctrl::SecondOrder one_sided = ExactPressureLoop(table1, law, 1);
   const LinearArmLoop arm(table1, law);
   const double c1 = design.zero * kPaperGain, c2 = kPaperGain;
   const std::vector<Complex> exact = arm.Poles(c1, c2);
-  PressureLawSettings feedforward = law;
+  pressure_ctrl::PressureLawSettings feedforward = law;
   feedforward.arm_speed_ratio = p.c / p.D;
   const LinearArmLoop assisted(table1, feedforward);
   const std::vector<Complex> exact_assisted = assisted.Poles(c1, c2);
   const double reflected = p.J * std::pow(p.c / p.D, 2);
   // A displacement that does not answer the arm's motion leaves Figure 8: the check that nothing else
   // differs.
-  ModelDescription still = table1;
+  model::ModelDescription still = table1;
   still.parameters.c *= 1e-9;
   const std::vector<Complex> without_motion = LinearArmLoop(still, law).Poles(c1, c2);
   options.progress(0.5);
@@ -124,14 +124,14 @@ ExperimentResult RunFig8(const ExperimentOptions& options) {
       {"ζ of the pressure loop, clamped", "", ".5", design.damping_ratio, two_sided.damping_ratio,
        "the same"},
       {"ω_n, one side held at p_3", "rad/s", "150",
-       PressureLoopDynamics(p, 0, law.gains, 1).natural_frequency, one_sided.natural_frequency,
+       pressure_ctrl::PressureLoopDynamics(p, 0, law.gains, 1).natural_frequency, one_sided.natural_frequency,
        "the mode in which the loop works at rest at p_3"},
       {"gain margin at g = 350", "", "2.2 (770/350)", limit.gain / kPaperGain, margins.gain, ""},
-      {"phase margin at g = 350", "degrees", "", kAutomatic, margins.phase_deg,
+      {"phase margin at g = 350", "degrees", "", page::kAutomatic, margins.phase_deg,
        fmt::format("at {:.1f} rad/s", margins.gain_crossover)},
       {"slowest pole at g = 350, arm free", "1/s", "", -SlowestPole(Poles(design, kPaperGain)).real(),
        -SlowestPole(exact).real(), "expected: of Figure 8's model; here: of the exact one"},
-      {"reflected inertia of the pump", "lbf-in-s^2", "", kAutomatic, reflected,
+      {"reflected inertia of the pump", "lbf-in-s^2", "", page::kAutomatic, reflected,
        fmt::format("J_a = {:g}; Figure 8 has J_a alone", p.J_a)},
   };
 
@@ -175,12 +175,12 @@ ExperimentResult RunFig8(const ExperimentOptions& options) {
                         kPaperGain),
         .panels = {},
         .drawing = DrawPositionLoop(design, kPaperGain)}});
-  const Axis frequency{.label = "frequency, rad/s", .logarithmic = true, .min = 1, .max = 1000};
+  const page::Axis frequency{.label = "frequency, rad/s", .logarithmic = true, .min = 1, .max = 1000};
   const auto curve = [&](const std::string& label, const std::vector<double>& y, int colour,
-                         Stroke stroke = Stroke::kLine) {
-    return Curve{label, bode.frequency, y, stroke, colour, {}, {}};
+                         page::Stroke stroke = page::Stroke::kLine) {
+    return page::Curve{label, bode.frequency, y, stroke, colour, {}, {}};
   };
-  Panel magnitude{
+  page::Panel magnitude{
       .title = "Magnitude",
       .x = frequency,
       .y = {.label = "dB", .min = -80, .max = 60},
@@ -189,13 +189,13 @@ ExperimentResult RunFig8(const ExperimentOptions& options) {
       .notes = {{fmt::format("gain margin {:.2f} ({:.1f} dB)", margins.gain, 20 * std::log10(margins.gain)),
                  margins.phase_crossover, -20 * std::log10(margins.gain)}},
       .rules = {{"", false, 0}}};
-  Panel phase{.title = "Phase",
-              .x = frequency,
-              .y = {.label = "degrees", .min = -360, .max = 0},
-              .curves = {curve("", bode.open_deg, 0), curve("", bode.closed_deg, 1)},
-              .notes = {{fmt::format("phase margin {:.1f}°", margins.phase_deg), margins.gain_crossover,
-                         margins.phase_deg - 180}},
-              .rules = {{"", false, -180}}};
+  page::Panel phase{.title = "Phase",
+                    .x = frequency,
+                    .y = {.label = "degrees", .min = -360, .max = 0},
+                    .curves = {curve("", bode.open_deg, 0), curve("", bode.closed_deg, 1)},
+                    .notes = {{fmt::format("phase margin {:.1f}°", margins.phase_deg), margins.gain_crossover,
+                               margins.phase_deg - 180}},
+                    .rules = {{"", false, -180}}};
   result.pictures.push_back(
       {"-bode",
        {.caption =
@@ -204,15 +204,16 @@ ExperimentResult RunFig8(const ExperimentOptions& options) {
                         kPaperGain),
         .panels = {magnitude, phase},
         .drawing = ""}});
-  Panel pressure{.title = "Δp over Δp_ref",
-                 .x = frequency,
-                 .y = {.label = "dB", .min = -70, .max = 30},
-                 .curves = {curve("Figure 8", bode.design_db, 0),
-                            curve("exact, arm clamped", bode.clamped_db, 1, Stroke::kDashed),
-                            curve("exact, arm free", bode.free_db, 2),
-                            curve("exact, arm free, with arm-speed feed-forward", bode.feedforward_db, 3)},
-                 .notes = {},
-                 .rules = {}};
+  page::Panel pressure{
+      .title = "Δp over Δp_ref",
+      .x = frequency,
+      .y = {.label = "dB", .min = -70, .max = 30},
+      .curves = {curve("Figure 8", bode.design_db, 0),
+                 curve("exact, arm clamped", bode.clamped_db, 1, page::Stroke::kDashed),
+                 curve("exact, arm free", bode.free_db, 2),
+                 curve("exact, arm free, with arm-speed feed-forward", bode.feedforward_db, 3)},
+      .notes = {},
+      .rules = {}};
   result.pictures.push_back(
       {"-free-arm",
        {.caption =
@@ -224,4 +225,4 @@ ExperimentResult RunFig8(const ExperimentOptions& options) {
   return result;
 }
 
-}  // namespace hydro
+}  // namespace hydro::experiments

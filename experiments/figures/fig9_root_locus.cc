@@ -14,12 +14,12 @@
 #include "experiments/studies/json_text.h"
 #include "runs/step_response.h"
 
-namespace hydro {
+namespace hydro::experiments {
 namespace {
 
 using nlohmann::json;
 
-constexpr double kNaN = kAutomatic;
+constexpr double kNaN = page::kAutomatic;
 constexpr double kPaperCriticalGain = 770;
 constexpr double kPaperRatio = 484.7;  // of the transmission, as the paper's text prints it
 constexpr double kStep = 0.1;          // rad; the model is linear
@@ -54,9 +54,9 @@ std::vector<std::vector<Complex>> FollowBranches(const std::vector<std::vector<C
   return branches;
 }
 
-Curve Points(const std::string& label, const std::vector<Complex>& points, int colour,
-             Stroke stroke = Stroke::kPoints) {
-  Curve curve{
+page::Curve Points(const std::string& label, const std::vector<Complex>& points, int colour,
+                   page::Stroke stroke = page::Stroke::kPoints) {
+  page::Curve curve{
       .label = label, .x = {}, .y = {}, .stroke = stroke, .colour = colour, .y_low = {}, .y_high = {}};
   for (const Complex& point : points) {
     curve.x.push_back(point.real());
@@ -65,8 +65,8 @@ Curve Points(const std::string& label, const std::vector<Complex>& points, int c
   return curve;
 }
 
-StepResponse Measure(const Response& response) {
-  return MeasureStep(response.time, response.angle, 0, response.time.size(), 0, kStep);
+runs::StepResponse Measure(const Response& response) {
+  return runs::MeasureStep(response.time, response.angle, 0, response.time.size(), 0, kStep);
 }
 
 // Whether a simulated step dies away: its deviation late in the run against the same earlier.
@@ -84,8 +84,8 @@ bool SimulatedStepDecays(const DesignModel& model, double interval, DerivativeFo
 }  // namespace
 
 ExperimentResult RunFig9(const ExperimentOptions& options) {
-  const ModelDescription table1 = ShippedModel("table1");
-  const Parameters& p = table1.parameters;
+  const model::ModelDescription table1 = ShippedModel("table1");
+  const model::Parameters& p = table1.parameters;
   const DesignModel design = Figure8Model(p);
   const StabilityLimit limit = RouthLimit(design);
   DesignModel printed_ratio = design;
@@ -106,15 +106,15 @@ ExperimentResult RunFig9(const ExperimentOptions& options) {
   const double largest = LargestStableInterval(design, kPaperGain);
   json sampled = json::array();
   json largest_stable;
-  std::vector<Panel> step_panels;
+  std::vector<page::Panel> step_panels;
   for (size_t f = 0; f < kForms.size(); ++f) {
-    Panel panel;
+    page::Panel panel;
     panel.title = kForms[f].name;
     panel.x = {.label = "time, s", .logarithmic = false, .min = 0, .max = 0.4};
     panel.y = {
         .label = "α, rad", .logarithmic = false, .min = f == 0 ? -0.05 : 0.0, .max = f == 0 ? 0.25 : 0.2};
     const Response continuous = ContinuousStep(design, kPaperGain, kForms[f].form, kStep, kDuration, 5e-4);
-    panel.curves.push_back({"continuous", continuous.time, continuous.angle, Stroke::kLine, 0, {}, {}});
+    panel.curves.push_back({"continuous", continuous.time, continuous.angle, page::Stroke::kLine, 0, {}, {}});
     for (size_t t = 0; t < kIntervals.size(); ++t) {
       const double interval = kIntervals[t];
       const Response step = SampledStep(design, kPaperGain, interval, kForms[f].form, kStep, kDuration,
@@ -122,7 +122,7 @@ ExperimentResult RunFig9(const ExperimentOptions& options) {
       panel.curves.push_back({fmt::format("T = {:g} ms", interval * 1e3),
                               step.time,
                               step.angle,
-                              interval == 0.010 ? Stroke::kDashed : Stroke::kLine,
+                              interval == 0.010 ? page::Stroke::kDashed : page::Stroke::kLine,
                               static_cast<int>(t) + 1,
                               {},
                               {}});
@@ -134,7 +134,7 @@ ExperimentResult RunFig9(const ExperimentOptions& options) {
   options.progress(0.3);
   json continuous;
   for (const Form& form : kForms) {
-    const StepResponse step = Measure(ContinuousStep(design, kPaperGain, form.form, kStep, 2, 1e-4));
+    const runs::StepResponse step = Measure(ContinuousStep(design, kPaperGain, form.form, kStep, 2, 1e-4));
     continuous[form.key] = {{"overshoot_percent", step.overshoot_percent},
                             {"settling_time_s", step.settling_time_s.value_or(kNaN)}};
   }
@@ -148,8 +148,8 @@ ExperimentResult RunFig9(const ExperimentOptions& options) {
                 {"critical_gain", SampledCriticalGain(design, interval)},
                 {"poles_z", AsPairs(SampledPoles(design, kPaperGain, interval))}};
     for (size_t f = 0; f < kForms.size(); ++f) {
-      const StepResponse step = Measure(SampledStep(design, kPaperGain, interval, kForms[f].form, kStep, 2,
-                                                    static_cast<int>(std::lround(interval / 1e-4))));
+      const runs::StepResponse step = Measure(SampledStep(design, kPaperGain, interval, kForms[f].form, kStep,
+                                                          2, static_cast<int>(std::lround(interval / 1e-4))));
       // Without an end there is no overshoot to name.
       overshoot[f][t] = radius < 1 ? step.overshoot_percent : kNaN;
       row[kForms[f].key] = {
@@ -249,7 +249,8 @@ ExperimentResult RunFig9(const ExperimentOptions& options) {
                     {"largest_stable_interval_confirmed_by_simulation", confirmed}});
   result.table.columns = {{"gain", gains}};
   for (size_t b = 0; b < branches.size(); ++b) {
-    Column re{fmt::format("pole_{}_re_1_s", b + 1), {}}, im{fmt::format("pole_{}_im_rad_s", b + 1), {}};
+    tables::Column re{fmt::format("pole_{}_re_1_s", b + 1), {}},
+        im{fmt::format("pole_{}_im_rad_s", b + 1), {}};
     for (const Complex& pole : branches[b]) {
       re.values.push_back(pole.real());
       im.values.push_back(pole.imag());
@@ -258,7 +259,7 @@ ExperimentResult RunFig9(const ExperimentOptions& options) {
     result.table.columns.push_back(im);
   }
 
-  Panel locus{
+  page::Panel locus{
       .title = "",
       .x = {.label = "real part, 1/s", .logarithmic = false, .min = -200, .max = 100},
       .y = {.label = "imaginary part, rad/s", .logarithmic = false, .min = -200, .max = 200},
@@ -268,7 +269,7 @@ ExperimentResult RunFig9(const ExperimentOptions& options) {
       .equal_scales = true,
       .height = 1.8};
   for (size_t b = 0; b < branches.size(); ++b) {
-    locus.curves.push_back(Points(b == 0 ? "locus over g" : "", branches[b], 0, Stroke::kLine));
+    locus.curves.push_back(Points(b == 0 ? "locus over g" : "", branches[b], 0, page::Stroke::kLine));
   }
   locus.curves.push_back(Points("open loop, g = 0", poles.front(), 1));
   locus.curves.push_back(Points("zero", {Complex(-design.zero, 0)}, 2));
@@ -290,17 +291,17 @@ ExperimentResult RunFig9(const ExperimentOptions& options) {
             kPaperGain, kStep),
         .panels = step_panels,
         .drawing = ""}});
-  Panel plane{.title = "",
-              .x = {.label = "real part of z", .logarithmic = false, .min = -1.1, .max = 1.1},
-              .y = {.label = "imaginary part of z", .logarithmic = false, .min = -1.1, .max = 1.1},
-              .curves = {},
-              .notes = {},
-              .rules = {{"", true, 0}, {"", false, 0}},
-              .equal_scales = true,
-              .height = 1.8};
+  page::Panel plane{.title = "",
+                    .x = {.label = "real part of z", .logarithmic = false, .min = -1.1, .max = 1.1},
+                    .y = {.label = "imaginary part of z", .logarithmic = false, .min = -1.1, .max = 1.1},
+                    .curves = {},
+                    .notes = {},
+                    .rules = {{"", true, 0}, {"", false, 0}},
+                    .equal_scales = true,
+                    .height = 1.8};
   std::vector<Complex> circle;
   for (int i = 0; i <= 360; ++i) circle.push_back(std::polar(1.0, i * std::numbers::pi / 180));
-  plane.curves.push_back(Points("unit circle", circle, 0, Stroke::kDotted));
+  plane.curves.push_back(Points("unit circle", circle, 0, page::Stroke::kDotted));
   for (size_t t = 0; t < kIntervals.size(); ++t) {
     plane.curves.push_back(Points(fmt::format("T = {:g} ms", 1e3 * kIntervals[t]),
                                   SampledPoles(design, kPaperGain, kIntervals[t]), static_cast<int>(t) + 1));
@@ -317,4 +318,4 @@ ExperimentResult RunFig9(const ExperimentOptions& options) {
   return result;
 }
 
-}  // namespace hydro
+}  // namespace hydro::experiments

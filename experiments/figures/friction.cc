@@ -16,7 +16,7 @@
 #include "maths/linear_fit.h"
 #include "settings/model_file.h"
 
-namespace hydro {
+namespace hydro::experiments {
 namespace {
 
 using nlohmann::json;
@@ -55,14 +55,15 @@ std::string Config(double duration, const std::string& reference, int64_t seed) 
       duration, reference, seed, kSpeedNoise, kSpeedStep, kEncoderStep);
 }
 
-MeasuredRun Measure(const ExperimentOptions& options, const std::string& name, const std::string& config) {
+runs::MeasuredRun Measure(const ExperimentOptions& options, const std::string& name,
+                          const std::string& config) {
   const std::string& model = ShippedModelText("table1");
-  Table table = options.run_stack({name, config, model});
+  tables::Table table = options.run_stack({name, config, model});
   table.file = name;
-  return RunOfExport(table, config, model);
+  return runs::RunOfExport(table, config, model);
 }
 
-MeasuredRun MeasureHolds(const ExperimentOptions& options) {
+runs::MeasuredRun MeasureHolds(const ExperimentOptions& options) {
   std::string steps;
   double time = 0;
   for (const int sign : {1, -1}) {
@@ -75,7 +76,7 @@ MeasuredRun MeasureHolds(const ExperimentOptions& options) {
                  Config(time, fmt::format("kind = \"steps\"\nsteps = [{}]\n", steps), options.seed));
 }
 
-MeasuredRun MeasureRamps(const ExperimentOptions& options) {
+runs::MeasuredRun MeasureRamps(const ExperimentOptions& options) {
   std::string points = "[0.0, 0.0], ";
   for (const double from : {0.0, kBackwardFrom}) {
     const int sign = from > 0 ? -1 : 1;
@@ -88,16 +89,16 @@ MeasuredRun MeasureRamps(const ExperimentOptions& options) {
                         fmt::format("kind = \"csv\"\npoints = [{}]\n", points), options.seed));
 }
 
-json Interval(const Estimate& estimate) { return {estimate.low, estimate.high}; }
+json Interval(const maths::Estimate& estimate) { return {estimate.low, estimate.high}; }
 
 // "Contains" for a text.
-const char* Holds(const Estimate& estimate, double truth) {
+const char* Holds(const maths::Estimate& estimate, double truth) {
   return estimate.low <= truth && truth <= estimate.high ? "holds" : "misses";
 }
 
 // The most that acceleration may still take at any of the points, in-lbf, as far as the noise lets it be
 // seen.
-double AccelerationTorque(const PumpFriction& friction, const Parameters& p) {
+double AccelerationTorque(const PumpFriction& friction, const model::Parameters& p) {
   double most = 0;
   for (const FrictionPoint& point : friction.points) {
     most = std::max(most, p.J * point.window.LargestAcceleration());
@@ -113,7 +114,8 @@ double TransientTorque(const PumpFriction& friction) {
 }
 
 // What the points and lines give for the files and the figure, simulated or measured.
-void AddFit(const PumpFriction& friction, const Parameters& p, ExperimentResult* result, json* numbers) {
+void AddFit(const PumpFriction& friction, const model::Parameters& p, ExperimentResult* result,
+            json* numbers) {
   *numbers = {{"T_s", friction.T_s.value},
               {"b", friction.b.value},
               {"ci95", {{"T_s", Interval(friction.T_s)}, {"b", Interval(friction.b)}}},
@@ -129,14 +131,14 @@ void AddFit(const PumpFriction& friction, const Parameters& p, ExperimentResult*
               {"acceleration_may_take_in_lbf", AccelerationTorque(friction, p)},
               {"transient_may_take_in_lbf", TransientTorque(friction)},
               {"k_1", p.k_1}};
-  Curve points{.label = "steady states",
-               .x = {},
-               .y = {},
-               .stroke = Stroke::kPoints,
-               .colour = 0,
-               .y_low = {},
-               .y_high = {}};
-  Curve residuals = points;
+  page::Curve points{.label = "steady states",
+                     .x = {},
+                     .y = {},
+                     .stroke = page::Stroke::kPoints,
+                     .colour = 0,
+                     .y_low = {},
+                     .y_high = {}};
+  page::Curve residuals = points;
   residuals.label = "";
   std::vector<std::vector<double>> columns(8);
   double fastest = 0;
@@ -156,7 +158,7 @@ void AddFit(const PumpFriction& friction, const Parameters& p, ExperimentResult*
     residuals.x.push_back(window.speed);
     // The error bar of the speed, 95 %, as the torque it stands for; ten blocks leave nine degrees of
     // freedom.
-    const double error = 1e3 * StudentT95(9) * friction.b.value * window.speed_error;
+    const double error = 1e3 * maths::StudentT95(9) * friction.b.value * window.speed_error;
     residuals.y.push_back(1e3 * (point.torque - point.fitted));
     residuals.y_low.push_back(residuals.y.back() - error);
     residuals.y_high.push_back(residuals.y.back() + error);
@@ -172,33 +174,36 @@ void AddFit(const PumpFriction& friction, const Parameters& p, ExperimentResult*
                            {"fitted_torque_in_lbf", columns[7]}};
   const auto line = [&](double direction, double intercept) {
     const double end = direction * 1.15 * fastest;
-    return Curve{.label = direction > 0 ? "b θ' + T_s, forward" : "b θ' - T_s, backward",
-                 .x = {0, end},
-                 .y = {direction * intercept, direction * intercept + friction.b.value * end},
-                 .colour = direction > 0 ? 1 : 2,
-                 .y_low = {},
-                 .y_high = {}};
+    return page::Curve{.label = direction > 0 ? "b θ' + T_s, forward" : "b θ' - T_s, backward",
+                       .x = {0, end},
+                       .y = {direction * intercept, direction * intercept + friction.b.value * end},
+                       .colour = direction > 0 ? 1 : 2,
+                       .y_low = {},
+                       .y_high = {}};
   };
-  const Axis speed{.label = "motor speed θ', rad/s", .min = -1.15 * fastest, .max = 1.15 * fastest};
-  Panel torque{
+  const page::Axis speed{.label = "motor speed θ', rad/s", .min = -1.15 * fastest, .max = 1.15 * fastest};
+  page::Panel torque{
       .title = "Torque against steady speed, both sides connected",
       .x = speed,
       .y = {.label = "T_p, in-lbf"},
       .curves = {points, line(1, friction.T_s_forward.value), line(-1, friction.T_s_backward.value)},
-      .notes = {{fmt::format("T_s = {}", PlusMinus(friction.T_s_forward)), 0, friction.T_s_forward.value},
-                {fmt::format("T_s = {}", PlusMinus(friction.T_s_backward)), 0, -friction.T_s_backward.value}},
+      .notes = {{fmt::format("T_s = {}", maths::PlusMinus(friction.T_s_forward)), 0,
+                 friction.T_s_forward.value},
+                {fmt::format("T_s = {}", maths::PlusMinus(friction.T_s_backward)), 0,
+                 -friction.T_s_backward.value}},
       .rules = {},
       .height = 2};
-  Panel rest{.title = "Points less lines, with the 95 % error bars of the speeds",
-             .x = speed,
-             .y = {.label = "10^-3 in-lbf"},
-             .curves = {residuals},
-             .notes = {},
-             .rules = {{"", false, 0}}};
+  page::Panel rest{.title = "Points less lines, with the 95 % error bars of the speeds",
+                   .x = speed,
+                   .y = {.label = "10^-3 in-lbf"},
+                   .curves = {residuals},
+                   .notes = {},
+                   .rules = {{"", false, 0}}};
   result->pictures.push_back(
       {"",
-       {.caption = fmt::format("{} Slope b = {} in-lbf-s, intercepts T_s = {} in-lbf on average (95 %).",
-                               result->conditions, PlusMinus(friction.b), PlusMinus(friction.T_s)),
+       {.caption =
+            fmt::format("{} Slope b = {} in-lbf-s, intercepts T_s = {} in-lbf on average (95 %).",
+                        result->conditions, maths::PlusMinus(friction.b), maths::PlusMinus(friction.T_s)),
         .panels = {torque, rest},
         .drawing = ""}});
 }
@@ -209,7 +214,7 @@ struct RampReading {
   double torque = 0;  // in-lbf, magnitude at the first sample that has moved
 };
 
-RampReading ReadRamp(const MeasuredRun& run, double from, const Parameters& p) {
+RampReading ReadRamp(const runs::MeasuredRun& run, double from, const model::Parameters& p) {
   RampReading reading;
   reading.direction = from > 0 ? -1 : 1;
   const auto moved = FindBreakAway(run, from + kLeadTime, from + kLeadTime + kRampTime, kMoved);
@@ -219,33 +224,33 @@ RampReading ReadRamp(const MeasuredRun& run, double from, const Parameters& p) {
   return reading;
 }
 
-Picture RampPicture(const MeasuredRun& run, const std::vector<RampReading>& readings, double T_s,
-                    const Parameters& p) {
+Picture RampPicture(const runs::MeasuredRun& run, const std::vector<RampReading>& readings, double T_s,
+                    const model::Parameters& p) {
   const double ramp = p.k_1 * kRampRate;
-  Curve command{.label = "", .x = run.time, .y = {}, .colour = 0, .y_low = {}, .y_high = {}};
+  page::Curve command{.label = "", .x = run.time, .y = {}, .colour = 0, .y_low = {}, .y_high = {}};
   for (const double voltage : run.voltage.values) command.y.push_back(p.k_1 * voltage);
-  Panel torque{.title = "The ramps",
-               .x = {.label = "time, s"},
-               .y = {.label = "T_p, in-lbf"},
-               .curves = {command},
-               .notes = {},
-               .rules = {}};
-  Panel angle{.title = "How far the motor has turned",
-              .x = {.label = "|T_p|, in-lbf", .min = T_s - 0.01, .max = T_s + 0.03},
-              .y = {.label = "angle from rest, 10^-3 rad", .min = 0, .max = 6},
-              .curves = {},
-              .notes = {},
-              .rules = {{"T_s", true, T_s}, {"counts as moved", false, 1e3 * kMoved}}};
+  page::Panel torque{.title = "The ramps",
+                     .x = {.label = "time, s"},
+                     .y = {.label = "T_p, in-lbf"},
+                     .curves = {command},
+                     .notes = {},
+                     .rules = {}};
+  page::Panel angle{.title = "How far the motor has turned",
+                    .x = {.label = "|T_p|, in-lbf", .min = T_s - 0.01, .max = T_s + 0.03},
+                    .y = {.label = "angle from rest, 10^-3 rad", .min = 0, .max = 6},
+                    .curves = {},
+                    .notes = {},
+                    .rules = {{"T_s", true, T_s}, {"counts as moved", false, 1e3 * kMoved}}};
   for (const RampReading& reading : readings) {
     torque.notes.push_back({fmt::format("moves at {:.4f} in-lbf", reading.torque), reading.moved.time,
                             reading.direction * reading.torque});
-    Curve curve{.label = reading.direction > 0 ? "forward" : "backward",
-                .x = {},
-                .y = {},
-                .stroke = Stroke::kSteps,
-                .colour = reading.direction > 0 ? 1 : 2,
-                .y_low = {},
-                .y_high = {}};
+    page::Curve curve{.label = reading.direction > 0 ? "forward" : "backward",
+                      .x = {},
+                      .y = {},
+                      .stroke = page::Stroke::kSteps,
+                      .colour = reading.direction > 0 ? 1 : 2,
+                      .y_low = {},
+                      .y_high = {}};
     double rest = std::nan("");
     for (size_t i = 0; i < run.samples(); ++i) {
       const double at = reading.direction * command.y[i];
@@ -256,13 +261,13 @@ Picture RampPicture(const MeasuredRun& run, const std::vector<RampReading>& read
     }
     angle.curves.push_back(curve);
   }
-  Curve expected{.label = "(T_p - T_s)^3 / (6 J T_p'^2)",
-                 .x = {},
-                 .y = {},
-                 .stroke = Stroke::kDashed,
-                 .colour = 0,
-                 .y_low = {},
-                 .y_high = {}};
+  page::Curve expected{.label = "(T_p - T_s)^3 / (6 J T_p'^2)",
+                       .x = {},
+                       .y = {},
+                       .stroke = page::Stroke::kDashed,
+                       .colour = 0,
+                       .y_low = {},
+                       .y_high = {}};
   for (double excess = 0; excess < 0.03; excess += 5e-4) {
     expected.x.push_back(T_s + excess);
     expected.y.push_back(1e3 * std::pow(excess, 3) / (6 * p.J * ramp * ramp));
@@ -279,11 +284,11 @@ Picture RampPicture(const MeasuredRun& run, const std::vector<RampReading>& read
 }
 
 ExperimentResult AnalyseMeasured(const ExperimentOptions& options) {
-  const MeasuredRun run = ReadMeasuredRun(options.measured_run);
+  const runs::MeasuredRun run = runs::ReadMeasuredRun(options.measured_run);
   const bool own_model = !run.model_text.empty();
-  const ModelDescription model =
-      own_model ? ParseModel(run.model_text, run.file + " (model)") : ShippedModel("table1");
-  const Parameters& p = model.parameters;
+  const model::ModelDescription model =
+      own_model ? settings::ParseModel(run.model_text, run.file + " (model)") : ShippedModel("table1");
+  const model::Parameters& p = model.parameters;
   const SpeedSource source = SpeedSourceOf(run);
   const PumpFriction friction = FitPumpFriction(run, source, p);
   ExperimentResult result;
@@ -298,15 +303,16 @@ ExperimentResult AnalyseMeasured(const ExperimentOptions& options) {
       "{} steady states were found; the points scatter by {:.3g} in-lbf about the lines, and inertia takes "
       "{:.2g} in-lbf of one at most, by what is left of the transients: the intervals include both. The "
       "directions' Coulomb frictions differ by {} in-lbf. Both values are in proportion to k_1.",
-      friction.points.size(), friction.scatter, TransientTorque(friction), PlusMinus(friction.difference));
+      friction.points.size(), friction.scatter, TransientTorque(friction),
+      maths::PlusMinus(friction.difference));
   json numbers;
   AddFit(friction, p, &result, &numbers);
   numbers["source"] = run.file;
   numbers["model"] = model.name;
   result.numbers = JsonText(numbers);
   result.comparisons = {
-      {"T_s", "in-lbf", "", kAutomatic, friction.T_s.value, PlusMinus(friction.T_s) + ", 95 %"},
-      {"b", "in-lbf-s", "", kAutomatic, friction.b.value, PlusMinus(friction.b) + ", 95 %"}};
+      {"T_s", "in-lbf", "", page::kAutomatic, friction.T_s.value, maths::PlusMinus(friction.T_s) + ", 95 %"},
+      {"b", "in-lbf-s", "", page::kAutomatic, friction.b.value, maths::PlusMinus(friction.b) + ", 95 %"}};
   return result;
 }
 
@@ -314,10 +320,10 @@ ExperimentResult AnalyseMeasured(const ExperimentOptions& options) {
 
 ExperimentResult RunFriction(const ExperimentOptions& options) {
   if (!options.measured_run.empty()) return AnalyseMeasured(options);
-  const Parameters p = ShippedModel("table1").parameters;
-  const MeasuredRun ramps = MeasureRamps(options);
+  const model::Parameters p = ShippedModel("table1").parameters;
+  const runs::MeasuredRun ramps = MeasureRamps(options);
   options.progress(0.1);
-  const MeasuredRun holds = MeasureHolds(options);
+  const runs::MeasuredRun holds = MeasureHolds(options);
   options.progress(0.9);
   const PumpFriction friction = FitPumpFriction(holds, SpeedSource::kSpeed, p);
   const PumpFriction by_angle = FitPumpFriction(holds, SpeedSource::kAngle, p);
@@ -345,10 +351,10 @@ ExperimentResult RunFriction(const ExperimentOptions& options) {
       "to be seen moving, and a torque that rises by {:.3g} in-lbf/s has grown by (6 J θ T_p'^2)^{{1/3}} = "
       "{:.3g} in-lbf by then. From the encoder's angles in place of the speeds: T_s = {:.6f} in-lbf, b = "
       "{:.8f} in-lbf-s. The speed settles with J/b = {:.2f} s, so holds are long.",
-      PlusMinus(friction.T_s), PlusMinus(friction.b), friction.degrees_of_freedom, error_percent,
-      friction.points.size(), TransientTorque(friction), readings[0].torque, readings[1].torque,
-      100 * (readings[0].torque / p.T_s - 1), 100 * (readings[1].torque / p.T_s - 1), kMoved,
-      p.k_1 * kRampRate, excess, by_angle.T_s.value, by_angle.b.value, p.J / p.b);
+      maths::PlusMinus(friction.T_s), maths::PlusMinus(friction.b), friction.degrees_of_freedom,
+      error_percent, friction.points.size(), TransientTorque(friction), readings[0].torque,
+      readings[1].torque, 100 * (readings[0].torque / p.T_s - 1), 100 * (readings[1].torque / p.T_s - 1),
+      kMoved, p.k_1 * kRampRate, excess, by_angle.T_s.value, by_angle.b.value, p.J / p.b);
 
   json numbers;
   AddFit(friction, p, &result, &numbers);
@@ -379,4 +385,4 @@ ExperimentResult RunFriction(const ExperimentOptions& options) {
   return result;
 }
 
-}  // namespace hydro
+}  // namespace hydro::experiments

@@ -14,7 +14,7 @@
 #include "maths/linear_fit.h"
 #include "settings/model_file.h"
 
-namespace hydro {
+namespace hydro::experiments {
 namespace {
 
 using nlohmann::json;
@@ -27,7 +27,7 @@ constexpr double kStart = 0.1;                   // s, when the torque steps up
 constexpr double kRelease = 2.5;                 // s, when it steps to 0
 constexpr double kDuration = 4.5;                // s
 
-MeasuredRun Measure(const ExperimentOptions& options, size_t index, const Parameters& p) {
+runs::MeasuredRun Measure(const ExperimentOptions& options, size_t index, const model::Parameters& p) {
   const std::string& model = ShippedModelText("table1");
   const std::string config = fmt::format(
       "[model]\nfile = \"table1.toml\"\nshaft = \"clamped\"\n"
@@ -39,12 +39,12 @@ MeasuredRun Measure(const ExperimentOptions& options, size_t index, const Parame
       "[noise]\nseed = {}\np1_psi = {}\np2_psi = {}\np1_resolution_psi = {}\np2_resolution_psi = {}\n",
       kDuration, kStart, kTorques[index] / p.k_1, kRelease, options.seed + static_cast<int64_t>(index),
       kPressureNoise, kPressureNoise, kPressureStep, kPressureStep);
-  Table table = options.run_stack({fmt::format("leakage-{}", index + 1), config, model});
+  tables::Table table = options.run_stack({fmt::format("leakage-{}", index + 1), config, model});
   table.file = fmt::format("{} in-lbf", kTorques[index]);
-  return RunOfExport(table, config, model);
+  return runs::RunOfExport(table, config, model);
 }
 
-json Interval(const Estimate& estimate) { return {estimate.low, estimate.high}; }
+json Interval(const maths::Estimate& estimate) { return {estimate.low, estimate.high}; }
 
 json Told(const LeakageInformation& information) {
   return {{"c_E_error_percent", 100 * information.c_E_error},
@@ -81,41 +81,43 @@ json Numbers(const LeakageFit& fit) {
   return numbers;
 }
 
-Curve Empty(const std::string& label, Stroke stroke, int colour) {
+page::Curve Empty(const std::string& label, page::Stroke stroke, int colour) {
   return {.label = label, .x = {}, .y = {}, .stroke = stroke, .colour = colour, .y_low = {}, .y_high = {}};
 }
 
 // Measured and simulated dp, the pressure of the side that the pump draws from, and the residuals.
-Picture FitPicture(const std::vector<MeasuredRun>& runs, const LeakageFit& fit, double p_3,
+Picture FitPicture(const std::vector<runs::MeasuredRun>& runs, const LeakageFit& fit, double p_3,
                    const std::string& caption) {
-  const Axis time{.label = "time, s"};
-  Panel dp{.title = "Pressure difference: measured (one sample in 60) and fitted (lines)",
-           .x = time,
-           .y = {.label = "p_2 - p_1, psi"},
-           .curves = {},
-           .notes = {},
-           .rules = {},
-           .height = 1.6};
-  Panel low{.title =
-                "The lower of the two pressures, above the accumulator's: leakage into it while the pump "
-                "sticks",
-            .x = time,
-            .y = {.label = "min(p_1, p_2) - p_3, psi"},
-            .curves = {},
-            .notes = {},
-            .rules = {}};
-  Panel residuals{.title = "Measured less fitted, p_2 - p_1",
-                  .x = time,
-                  .y = {.label = "standard deviations of the noise"},
-                  .curves = {},
-                  .notes = {},
-                  .rules = {{"", false, 0}}};
+  const page::Axis time{.label = "time, s"};
+  page::Panel dp{.title = "Pressure difference: measured (one sample in 60) and fitted (lines)",
+                 .x = time,
+                 .y = {.label = "p_2 - p_1, psi"},
+                 .curves = {},
+                 .notes = {},
+                 .rules = {},
+                 .height = 1.6};
+  page::Panel low{
+      .title =
+          "The lower of the two pressures, above the accumulator's: leakage into it while the pump "
+          "sticks",
+      .x = time,
+      .y = {.label = "min(p_1, p_2) - p_3, psi"},
+      .curves = {},
+      .notes = {},
+      .rules = {}};
+  page::Panel residuals{.title = "Measured less fitted, p_2 - p_1",
+                        .x = time,
+                        .y = {.label = "standard deviations of the noise"},
+                        .curves = {},
+                        .notes = {},
+                        .rules = {{"", false, 0}}};
   for (size_t r = 0; r < runs.size(); ++r) {
-    const MeasuredRun& run = runs[r];
+    const runs::MeasuredRun& run = runs[r];
     const SimulatedRun& model = fit.simulated[r];
     const int colour = static_cast<int>(r);
-    Curve dots = Empty("", Stroke::kPoints, colour), line = Empty(run.name, Stroke::kLine, colour);
-    Curve low_dots = dots, low_line = Empty("", Stroke::kLine, colour), rest = dots;
+    page::Curve dots = Empty("", page::Stroke::kPoints, colour),
+                line = Empty(run.name, page::Stroke::kLine, colour);
+    page::Curve low_dots = dots, low_line = Empty("", page::Stroke::kLine, colour), rest = dots;
     const double noise = std::hypot(fit.p1_noise[r], fit.p2_noise[r]);
     for (size_t i = 0; i < run.samples(); ++i) {
       const double modelled = model.p2[i] - model.p1[i];
@@ -125,7 +127,7 @@ Picture FitPicture(const std::vector<MeasuredRun>& runs, const LeakageFit& fit, 
       low_line.y.push_back(std::min(model.p1[i], model.p2[i]) - p_3);
       if (i % 60 != 15 * r % 60) continue;
       const double measured = run.p2.values[i] - run.p1.values[i];
-      for (Curve* curve : {&dots, &low_dots, &rest}) curve->x.push_back(run.time[i]);
+      for (page::Curve* curve : {&dots, &low_dots, &rest}) curve->x.push_back(run.time[i]);
       dots.y.push_back(measured);
       // Of the side that is lower in the model: the lower reading of two equal pressures is not their mean.
       low_dots.y.push_back((model.p1[i] < model.p2[i] ? run.p1 : run.p2).values[i] - p_3);
@@ -141,13 +143,13 @@ Picture FitPicture(const std::vector<MeasuredRun>& runs, const LeakageFit& fit, 
 }
 
 // All runs below each other, as measured and as simulated.
-Table FitTable(const std::vector<MeasuredRun>& runs, const LeakageFit& fit) {
-  Table table;
+tables::Table FitTable(const std::vector<runs::MeasuredRun>& runs, const LeakageFit& fit) {
+  tables::Table table;
   table.columns = {
       {"run", {}},    {"time_s", {}},        {"voltage_V", {}},     {"p1_psi", {}},
       {"p2_psi", {}}, {"fitted_p1_psi", {}}, {"fitted_p2_psi", {}}, {"fitted_motor_speed_rad_s", {}}};
   for (size_t r = 0; r < runs.size(); ++r) {
-    const MeasuredRun& run = runs[r];
+    const runs::MeasuredRun& run = runs[r];
     const SimulatedRun& model = fit.simulated[r];
     for (size_t i = 0; i < run.samples(); ++i) {
       const double row[] = {
@@ -166,7 +168,7 @@ struct StickDecay {
   double c_I = 0;
   double from = 0, to = 0;  // s
 };
-StickDecay FitStick(const MeasuredRun& run, const SimulatedRun& model, const Parameters& p) {
+StickDecay FitStick(const runs::MeasuredRun& run, const SimulatedRun& model, const model::Parameters& p) {
   std::vector<double> one, time, sum, difference;
   size_t i = 0;
   while (i < run.samples() && model.motor_speed[i] == 0) ++i;  // at rest before the step
@@ -179,15 +181,15 @@ StickDecay FitStick(const MeasuredRun& run, const SimulatedRun& model, const Par
   }
   const double V = p.V_ms;  // at mid-stroke
   StickDecay decay;
-  decay.c_E = -FitLinear({one, time}, sum).coefficients[1] * V / p.beta;
-  decay.c_I = (-FitLinear({one, time}, difference).coefficients[1] * V / p.beta - decay.c_E) / 2;
+  decay.c_E = -maths::FitLinear({one, time}, sum).coefficients[1] * V / p.beta;
+  decay.c_I = (-maths::FitLinear({one, time}, difference).coefficients[1] * V / p.beta - decay.c_E) / 2;
   decay.from = time.front();
   decay.to = time.back();
   return decay;
 }
 
 // Mean reading of the side that the pump draws from, while it creeps before the release.
-double LowSideWhileCreeping(const MeasuredRun& run) {
+double LowSideWhileCreeping(const runs::MeasuredRun& run) {
   const std::vector<double>& low = (run.voltage.values[run.samples() / 4] > 0 ? run.p1 : run.p2).values;
   double sum = 0;
   int count = 0;
@@ -214,7 +216,7 @@ std::string Identifiability(const LeakageFit& fit) {
       "or only p_2 - p_1 decays (weight 2). A run in which the pump sticks for long with both sides above "
       "p_3 "
       "would tell them apart.",
-      names, fit.information.correlation, fit.information.c_I_weight, PlusMinus(fit.combination));
+      names, fit.information.correlation, fit.information.c_I_weight, maths::PlusMinus(fit.combination));
 }
 
 constexpr char kPaperSays[] =
@@ -229,10 +231,11 @@ constexpr char kNotDescribed[] =
     "pressure or of the voltage, a wrong k_1, T_s or beta, or an effect that the model lacks would do that.";
 
 ExperimentResult AnalyseMeasured(const ExperimentOptions& options) {
-  const std::vector<MeasuredRun> runs = {ReadMeasuredRun(options.measured_run)};
-  const MeasuredRun& run = runs.front();
-  const ModelDescription model =
-      run.model_text.empty() ? ShippedModel("table1") : ParseModel(run.model_text, run.file + " (model)");
+  const std::vector<runs::MeasuredRun> runs = {runs::ReadMeasuredRun(options.measured_run)};
+  const runs::MeasuredRun& run = runs.front();
+  const model::ModelDescription model = run.model_text.empty()
+                                            ? ShippedModel("table1")
+                                            : settings::ParseModel(run.model_text, run.file + " (model)");
   const LeakageFit fit = FitLeakage(model, runs);
   const bool described = fit.rms < kDescribed;
   options.progress(0.9);
@@ -244,7 +247,8 @@ ExperimentResult AnalyseMeasured(const ExperimentOptions& options) {
   result.explanation = fmt::format(
       "c_E = {}, c_I = {} in^3/(s psi) (95 %, all else known). {} The residuals are {:.2f} of the noise{}. "
       "One direction suffices: leakage does not know it.",
-      PlusMinus(fit.c_E), PlusMinus(fit.c_I), described ? Identifiability(fit) : kNotDescribed, fit.rms,
+      maths::PlusMinus(fit.c_E), maths::PlusMinus(fit.c_I), described ? Identifiability(fit) : kNotDescribed,
+      fit.rms,
       fit.rms > 1.2 ? ", so the model lacks something, and the intervals were widened by as much" : "");
   json numbers = Numbers(fit);
   numbers["model_describes_run"] = described;
@@ -252,8 +256,8 @@ ExperimentResult AnalyseMeasured(const ExperimentOptions& options) {
   numbers["model"] = model.name;
   result.numbers = JsonText(numbers);
   result.comparisons = {
-      {"c_E", "in^3/(s psi)", "", kAutomatic, fit.c_E.value, PlusMinus(fit.c_E) + ", 95 %"},
-      {"c_I", "in^3/(s psi)", "", kAutomatic, fit.c_I.value, PlusMinus(fit.c_I) + ", 95 %"}};
+      {"c_E", "in^3/(s psi)", "", page::kAutomatic, fit.c_E.value, maths::PlusMinus(fit.c_E) + ", 95 %"},
+      {"c_I", "in^3/(s psi)", "", page::kAutomatic, fit.c_I.value, maths::PlusMinus(fit.c_I) + ", 95 %"}};
   result.table = FitTable(runs, fit);
   result.pictures.push_back(FitPicture(runs, fit, model.parameters.p_3, result.conditions));
   return result;
@@ -263,9 +267,9 @@ ExperimentResult AnalyseMeasured(const ExperimentOptions& options) {
 
 ExperimentResult RunLeakage(const ExperimentOptions& options) {
   if (!options.measured_run.empty()) return AnalyseMeasured(options);
-  const ModelDescription model = ShippedModel("table1");
-  const Parameters& p = model.parameters;
-  std::vector<MeasuredRun> runs;
+  const model::ModelDescription model = ShippedModel("table1");
+  const model::Parameters& p = model.parameters;
+  std::vector<runs::MeasuredRun> runs;
   for (size_t i = 0; i < std::size(kTorques); ++i) {
     runs.push_back(Measure(options, i, p));
     runs.back().name = runs.back().file;
@@ -302,10 +306,10 @@ ExperimentResult RunLeakage(const ExperimentOptions& options) {
       "but steady creep, one side at p_3, tells c_E + c_I only. The rest of Table 1 is taken as exact and "
       "matters more than the noise: 1 % more β changes c_E by {:.1f} % and c_I by {:.1f} %, 1 % more T_s by "
       "{:.1f} % and {:.1f} %, 1 % more k_1 by {:.1f} % and {:.1f} %.",
-      PlusMinus(fit.c_E), PlusMinus(fit.c_I), fit.rms, Identifiability(fit), fit.all_difference.c_I_weight,
-      100 * fit.all_difference.c_I_error, 100 * fit.information.c_I_error, fit.all_difference.correlation,
-      shift("beta").c_E_percent, shift("beta").c_I_percent, shift("T_s").c_E_percent,
-      shift("T_s").c_I_percent, shift("k_1").c_E_percent, shift("k_1").c_I_percent);
+      maths::PlusMinus(fit.c_E), maths::PlusMinus(fit.c_I), fit.rms, Identifiability(fit),
+      fit.all_difference.c_I_weight, 100 * fit.all_difference.c_I_error, 100 * fit.information.c_I_error,
+      fit.all_difference.correlation, shift("beta").c_E_percent, shift("beta").c_I_percent,
+      shift("T_s").c_E_percent, shift("T_s").c_I_percent, shift("k_1").c_E_percent, shift("k_1").c_I_percent);
 
   json numbers = Numbers(fit);
   numbers["source"] = "simulated rig";
@@ -314,8 +318,8 @@ ExperimentResult RunLeakage(const ExperimentOptions& options) {
   numbers["low_side_while_creeping_psi"] = low;
   result.numbers = JsonText(numbers);
   result.comparisons = {
-      {"c_E", "in^3/(s psi)", "6.5e-6", p.c_E, fit.c_E.value, PlusMinus(fit.c_E) + ", 95 %"},
-      {"c_I", "in^3/(s psi)", "1.0e-6", p.c_I, fit.c_I.value, PlusMinus(fit.c_I) + ", 95 %"},
+      {"c_E", "in^3/(s psi)", "6.5e-6", p.c_E, fit.c_E.value, maths::PlusMinus(fit.c_E) + ", 95 %"},
+      {"c_I", "in^3/(s psi)", "1.0e-6", p.c_I, fit.c_I.value, maths::PlusMinus(fit.c_I) + ", 95 %"},
       {"c_E from the first stick", "in^3/(s psi)", "6.5e-6", p.c_E, decay.c_E,
        "closed form: decay of p_1 + p_2 - 2 p_3"},
       {"c_I from the first stick", "in^3/(s psi)", "1.0e-6", p.c_I, decay.c_I,
@@ -332,9 +336,9 @@ ExperimentResult RunLeakage(const ExperimentOptions& options) {
   result.table = FitTable(runs, fit);
   result.pictures.push_back(FitPicture(runs, fit, p.p_3,
                                        fmt::format("{} c_E = {}, c_I = {} in^3/(s psi).", result.conditions,
-                                                   PlusMinus(fit.c_E), PlusMinus(fit.c_I))));
+                                                   maths::PlusMinus(fit.c_E), maths::PlusMinus(fit.c_I))));
   options.progress(1);
   return result;
 }
 
-}  // namespace hydro
+}  // namespace hydro::experiments

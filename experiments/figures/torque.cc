@@ -13,7 +13,7 @@
 #include "experiments/studies/torque_clamped.h"
 #include "experiments/studies/torque_driven.h"
 
-namespace hydro {
+namespace hydro::experiments {
 namespace {
 
 using nlohmann::json;
@@ -36,7 +36,7 @@ struct Study {
 
 Study RunStudy(const ExperimentOptions& options) {
   Study study;
-  study.feedforward = SteadyStateFeedforward(PressureLoopParameters(), PressureLoopGains());
+  study.feedforward = pressure_ctrl::SteadyStateFeedforward(PressureLoopParameters(), PressureLoopGains());
   for (const double command : {200.0, 1000.0, 3000.0, 5000.0}) {
     study.steps.push_back(RunTorqueStep(options.run_stack, command, 0));
     study.steps_with.push_back(RunTorqueStep(options.run_stack, command, study.feedforward));
@@ -97,20 +97,20 @@ std::string SweepName(const TorqueSweep& sweep) {
 Picture StepPicture(const Study& study) {
   constexpr double kUntil = 0.3;
   const double k_2 = PressureLoopParameters().k_2;
-  Panel response{.title = "Torque at the clamped arm after a step of the command",
-                 .x = {.label = "time, s", .min = 0, .max = kUntil},
-                 .y = {.label = "torque / command", .min = 0},
-                 .curves = {},
-                 .notes = {},
-                 .rules = {{"command", false, 1}},
-                 .height = 1.4};
-  Panel motor{.title = "Motor torque",
-              .x = response.x,
-              .y = {.label = "T_p, in-lbf", .min = -50, .max = 50},
-              .curves = {},
-              .notes = {},
-              .rules = {{"T_pmax", false, PressureLoopParameters().T_pmax},
-                        {"", false, -PressureLoopParameters().T_pmax}}};
+  page::Panel response{.title = "Torque at the clamped arm after a step of the command",
+                       .x = {.label = "time, s", .min = 0, .max = kUntil},
+                       .y = {.label = "torque / command", .min = 0},
+                       .curves = {},
+                       .notes = {},
+                       .rules = {{"command", false, 1}},
+                       .height = 1.4};
+  page::Panel motor{.title = "Motor torque",
+                    .x = response.x,
+                    .y = {.label = "T_p, in-lbf", .min = -50, .max = 50},
+                    .curves = {},
+                    .notes = {},
+                    .rules = {{"T_pmax", false, PressureLoopParameters().T_pmax},
+                              {"", false, -PressureLoopParameters().T_pmax}}};
   int colour = 0;
   for (const TorqueStep& step : study.steps) {
     std::vector<double> share = step.run.dp;
@@ -128,27 +128,28 @@ Picture StepPicture(const Study& study) {
 }
 
 Picture BandwidthPicture(const Study& study) {
-  const Axis frequency{.label = "frequency, Hz", .logarithmic = true, .min = 2, .max = 60};
-  Panel gain{.title = "Torque at the clamped arm per commanded torque",
-             .x = frequency,
-             .y = {.label = "gain, dB", .min = -30, .max = 5},
-             .curves = {},
-             .notes = {},
-             .rules = {{"-3 dB of the command", false, -3},
-                       {fmt::format("linear, both sides: {:.1f} Hz", LinearBandwidthHz(2)), true,
-                        LinearBandwidthHz(2)},
-                       {fmt::format("one side: {:.1f}", LinearBandwidthHz(1)), true, LinearBandwidthHz(1)}},
-             .height = 1.5};
-  Panel coherence{.title = "Coherence",
-                  .x = frequency,
-                  .y = {.label = "coherence", .min = 0, .max = 1.05},
-                  .curves = {},
-                  .notes = {},
-                  .rules = {},
-                  .height = 0.7};
+  const page::Axis frequency{.label = "frequency, Hz", .logarithmic = true, .min = 2, .max = 60};
+  page::Panel gain{
+      .title = "Torque at the clamped arm per commanded torque",
+      .x = frequency,
+      .y = {.label = "gain, dB", .min = -30, .max = 5},
+      .curves = {},
+      .notes = {},
+      .rules = {{"-3 dB of the command", false, -3},
+                {fmt::format("linear, both sides: {:.1f} Hz", LinearBandwidthHz(2)), true,
+                 LinearBandwidthHz(2)},
+                {fmt::format("one side: {:.1f}", LinearBandwidthHz(1)), true, LinearBandwidthHz(1)}},
+      .height = 1.5};
+  page::Panel coherence{.title = "Coherence",
+                        .x = frequency,
+                        .y = {.label = "coherence", .min = 0, .max = 1.05},
+                        .curves = {},
+                        .notes = {},
+                        .rules = {},
+                        .height = 0.7};
   for (const TorqueSweep& sweep : study.sweeps) {
-    Curve gains{.label = SweepName(sweep), .x = {}, .y = {}, .y_low = {}, .y_high = {}};
-    Curve coherences = gains;
+    page::Curve gains{.label = SweepName(sweep), .x = {}, .y = {}, .y_low = {}, .y_high = {}};
+    page::Curve coherences = gains;
     for (const ResponsePoint& point : sweep.points) {
       gains.x.push_back(point.frequency_hz);
       gains.y.push_back(Decibels(point.gain));
@@ -171,7 +172,7 @@ Picture PathPicture(const Study& study) {
   const TorqueOnPath& without = study.pictured(false);
   const TorqueOnPath& with = study.pictured(true);
   const double end = without.run.time.back();
-  const Axis time{.label = "time, s", .min = 0, .max = end};
+  const page::Axis time{.label = "time, s", .min = 0, .max = end};
   const double k_2 = PressureLoopParameters().k_2;
   const auto torque = [&](const TorqueOnPath& path) {
     std::vector<double> values = path.run.dp;
@@ -183,32 +184,34 @@ Picture PathPicture(const Study& study) {
     for (size_t i = 0; i < values.size(); ++i) values[i] -= path.closed_form[i];
     return values;
   };
-  Panel angle{.title = "The arm is moved",
-              .x = time,
-              .y = {.label = "α, rad"},
-              .curves = {SignalCurve("", without.run, without.run.arm_angle, 0, end)},
-              .notes = {},
-              .rules = {},
-              .height = 0.6};
-  Panel arm{
+  page::Panel angle{.title = "The arm is moved",
+                    .x = time,
+                    .y = {.label = "α, rad"},
+                    .curves = {SignalCurve("", without.run, without.run.arm_angle, 0, end)},
+                    .notes = {},
+                    .rules = {},
+                    .height = 0.6};
+  page::Panel arm{
       .title = "Torque at the arm",
       .x = time,
       .y = {.label = "torque, in-lbf"},
-      .curves = {SignalCurve("command", without.run, without.command, 5, end, Stroke::kDashed),
+      .curves = {SignalCurve("command", without.run, without.command, 5, end, page::Stroke::kDashed),
                  SignalCurve("eq. (16)", without.run, torque(without), 0, end),
                  SignalCurve("with arm-speed feed-forward", with.run, torque(with), 1, end),
-                 SignalCurve("closed form of both", without.run, expected(without), 3, end, Stroke::kDotted),
-                 SignalCurve("", with.run, expected(with), 3, end, Stroke::kDotted)},
+                 SignalCurve("closed form of both", without.run, expected(without), 3, end,
+                             page::Stroke::kDotted),
+                 SignalCurve("", with.run, expected(with), 3, end, page::Stroke::kDotted)},
       .notes = {},
       .rules = {},
       .height = 1.3};
-  Panel error{.title = "Torque error with arm-speed feed-forward",
-              .x = time,
-              .y = {.label = "command - torque, in-lbf", .min = -80, .max = 80},
-              .curves = {SignalCurve("run", with.run, with.error, 1, end),
-                         SignalCurve("closed form", with.run, with.closed_form, 3, end, Stroke::kDotted)},
-              .notes = {},
-              .rules = {}};
+  page::Panel error{
+      .title = "Torque error with arm-speed feed-forward",
+      .x = time,
+      .y = {.label = "command - torque, in-lbf", .min = -80, .max = 80},
+      .curves = {SignalCurve("run", with.run, with.error, 1, end),
+                 SignalCurve("closed form", with.run, with.closed_form, 3, end, page::Stroke::kDotted)},
+      .notes = {},
+      .rules = {}};
   return {
       "-path",
       {.caption = fmt::format("The arm is moved from -0.1 to 0.1 rad and back with up to {:.2f} rad/s while "
@@ -219,19 +222,20 @@ Picture PathPicture(const Study& study) {
 }
 
 Picture SpeedPicture(const Study& study) {
-  Panel panel{.title = "Largest torque error along the path",
-              .x = {.label = "largest speed of the arm, rad/s", .logarithmic = true, .min = 0.04, .max = 0.6},
-              .y = {.label = "error, in-lbf", .logarithmic = true},
-              .curves = {},
-              .notes = {},
-              .rules = {{"friction band", false, FrictionBandTorque()}}};
+  page::Panel panel{
+      .title = "Largest torque error along the path",
+      .x = {.label = "largest speed of the arm, rad/s", .logarithmic = true, .min = 0.04, .max = 0.6},
+      .y = {.label = "error, in-lbf", .logarithmic = true},
+      .curves = {},
+      .notes = {},
+      .rules = {{"friction band", false, FrictionBandTorque()}}};
   for (const bool with : {false, true}) {
-    Curve curve{.label = with ? "with arm-speed feed-forward" : "eq. (16)",
-                .x = {},
-                .y = {},
-                .stroke = Stroke::kLinePoints,
-                .y_low = {},
-                .y_high = {}};
+    page::Curve curve{.label = with ? "with arm-speed feed-forward" : "eq. (16)",
+                      .x = {},
+                      .y = {},
+                      .stroke = page::Stroke::kLinePoints,
+                      .y_low = {},
+                      .y_high = {}};
     for (const TorqueOnPath& path : with ? study.paths_with : study.paths) {
       curve.x.push_back(path.largest_speed);
       curve.y.push_back(path.largest_error);
@@ -271,8 +275,8 @@ json Numbers(const Study& study) {
 
 ExperimentResult RunTorque(const ExperimentOptions& options) {
   const Study study = RunStudy(options);
-  const Parameters p = PressureLoopParameters();
-  const PressureGains gains = PressureLoopGains();
+  const model::Parameters p = PressureLoopParameters();
+  const pressure_ctrl::PressureGains gains = PressureLoopGains();
   const TorqueOnPath& without = study.pictured(false);
   const TorqueOnPath& with = study.pictured(true);
   const TorqueOnPath& fastest = study.paths_with.back();
@@ -365,7 +369,7 @@ ExperimentResult RunTorque(const ExperimentOptions& options) {
                           {"motor_torque_in_lbf", without.run.torque},
                           {"torque_with_arm_speed_feedforward_in_lbf", torque_with},
                           {"motor_torque_with_arm_speed_feedforward_in_lbf", with.run.torque}};
-  for (Column& column : result.table.columns) {  // every 1 ms is enough here
+  for (tables::Column& column : result.table.columns) {  // every 1 ms is enough here
     std::vector<double> thinned;
     for (size_t i = 0; i < column.values.size(); i += 5) thinned.push_back(column.values[i]);
     column.values = std::move(thinned);
@@ -375,4 +379,4 @@ ExperimentResult RunTorque(const ExperimentOptions& options) {
   return result;
 }
 
-}  // namespace hydro
+}  // namespace hydro::experiments

@@ -14,7 +14,7 @@
 #include "experiments/studies/json_text.h"
 #include "settings/model_file.h"
 
-namespace hydro {
+namespace hydro::experiments {
 namespace {
 
 using nlohmann::json;
@@ -33,8 +33,8 @@ constexpr double kMostFrequency = 3000;  // rad/s
 
 // Table 1 with waves. Without Coulomb friction: amplitudes at which the pump moves at 300 Hz against 4 in-lbf
 // are beyond the motor.
-ModelDescription WithWaves(double frequency_hz, double volume_fraction, double damping) {
-  ModelDescription model = ShippedModel("table1");
+model::ModelDescription WithWaves(double frequency_hz, double volume_fraction, double damping) {
+  model::ModelDescription model = ShippedModel("table1");
   model.parameters.T_s = 0;
   model.effects.push_back(
       {"line.wave",
@@ -43,16 +43,16 @@ ModelDescription WithWaves(double frequency_hz, double volume_fraction, double d
   return model;
 }
 
-LinearModel Linear(const ModelDescription& model) {
-  const Equations equations(model, {.shaft = Shaft::kClamped});
-  double state[kMaxStates];
-  Mode mode;
+model::LinearModel Linear(const model::ModelDescription& model) {
+  const model::Equations equations(model, {.shaft = model::Shaft::kClamped});
+  double state[model::kMaxStates];
+  model::Mode mode;
   equations.Start(1000, state, &mode);
-  return Linearise(equations, 0, 0, BothCompress(), state);
+  return model::Linearise(equations, 0, 0, BothCompress(), state);
 }
 
 // The same with pressure transducers at the pump instead of the actuator.
-LinearModel SensedAtPump(LinearModel model) {
+model::LinearModel SensedAtPump(model::LinearModel model) {
   for (int i = 0; i < model.states; ++i) {
     for (int output = 0; output < model.outputs; ++output) {
       double& c = model.C[output + i * model.outputs];
@@ -64,7 +64,7 @@ LinearModel SensedAtPump(LinearModel model) {
 }
 
 // The wave that the loop sees, in the difference of the sides: the fastest of the visible poles.
-std::complex<double> WavePole(const LinearPressureLoop& loop, const PressureGains& gains) {
+std::complex<double> WavePole(const LinearPressureLoop& loop, const pressure_ctrl::PressureGains& gains) {
   std::complex<double> wave = 0;
   for (const std::complex<double> pole : loop.VisiblePoles(gains)) {
     if (pole.imag() > wave.imag()) wave = pole;
@@ -77,9 +77,10 @@ struct Limits {
   GainLimit gain;                // factor on the design's k_p with its k_v
   double natural_frequency = 0;  // rad/s, with both gains derived from it and zeta = .5
 };
-Limits FindLimits(const LinearPressureLoop& loop, const Parameters& p, const PressureGains& gains) {
+Limits FindLimits(const LinearPressureLoop& loop, const model::Parameters& p,
+                  const pressure_ctrl::PressureGains& gains) {
   const auto stable = [&](double natural_frequency) {
-    return loop.Growth(DerivePressureGains(p, 0, natural_frequency, kDampingRatio, 2)) < 0;
+    return loop.Growth(pressure_ctrl::DerivePressureGains(p, 0, natural_frequency, kDampingRatio, 2)) < 0;
   };
   double low = kNaturalFrequency / 3;
   double high = low;
@@ -94,7 +95,7 @@ Limits FindLimits(const LinearPressureLoop& loop, const Parameters& p, const Pre
   return {LargestStableFactor(loop, gains, kMostFactor), low};
 }
 
-json Describe(const Limits& limits, const PressureGains& gains) {
+json Describe(const Limits& limits, const pressure_ctrl::PressureGains& gains) {
   const bool limited = limits.gain.factor < kMostFactor;
   return {{"highest_stable_k_p_V_per_psi", limited ? json(limits.gain.factor * gains.k_p) : json(nullptr)},
           {"factor", limited ? json(limits.gain.factor) : json(nullptr)},
@@ -111,11 +112,11 @@ struct Trial {
   double growth = 0;    // 1/s, measured
   double expected = 0;  // 1/s, the pole's real part
 };
-Trial RunTrial(const ModelDescription& model, const LoopTiming& timing, const PressureGains& gains,
-               double factor, const StackRunner& run_stack) {
+Trial RunTrial(const model::ModelDescription& model, const LoopTiming& timing,
+               const pressure_ctrl::PressureGains& gains, double factor, const StackRunner& run_stack) {
   constexpr double kDuration = 1.5;
   const double rate = 1 / timing.interval;
-  const Table table =
+  const tables::Table table =
       run_stack({fmt::format("waves-{}-of-limit", factor),
                  fmt::format(R"([model]
 file = "model.toml"
@@ -141,7 +142,7 @@ pressure_psi = inf
 )",
                              kInitialPressure, kDuration, std::round(rate), timing.delay_ticks, gains.k_p,
                              gains.k_v, timing.interval, kTrialStep),
-                 FormatModel(model)});
+                 settings::FormatModel(model)});
   Trial trial = {factor, table.Find("time_s")->values, table.Find("p2_psi")->values, 0, 0};
   const std::vector<double>& p1 = table.Find("p1_psi")->values;
   for (size_t i = 0; i < p1.size(); ++i) trial.dp[i] -= p1[i];
@@ -159,12 +160,12 @@ pressure_psi = inf
   return trial;
 }
 
-Panel TrialPanel(const Trial& trial) {
+page::Panel TrialPanel(const Trial& trial) {
   return {.title = fmt::format("k_p at {:.0f} % of its limit: {:+.1f} 1/s measured, {:+.1f} 1/s expected",
                                100 * trial.factor, trial.growth, trial.expected),
           .x = {.label = "time, s", .min = 0},
           .y = {.label = "dp, psi"},
-          .curves = {Line("", trial.time, trial.dp, 0)},
+          .curves = {page::Line("", trial.time, trial.dp, 0)},
           .notes = {},
           .rules = {}};
 }
@@ -172,10 +173,11 @@ Panel TrialPanel(const Trial& trial) {
 }  // namespace
 
 ExperimentResult RunWaves(const ExperimentOptions& options) {
-  const Parameters p = ShippedModel("table1").parameters;
-  const PressureGains gains = DerivePressureGains(p, 0, kNaturalFrequency, kDampingRatio, 2);
-  const ModelDescription model = WithWaves(kWaveHz, kVolumeFraction, kWaveDamping);
-  const LinearModel linear = Linear(model);
+  const model::Parameters p = ShippedModel("table1").parameters;
+  const pressure_ctrl::PressureGains gains =
+      pressure_ctrl::DerivePressureGains(p, 0, kNaturalFrequency, kDampingRatio, 2);
+  const model::ModelDescription model = WithWaves(kWaveHz, kVolumeFraction, kWaveDamping);
+  const model::LinearModel linear = Linear(model);
   const LinearPressureLoop analog(linear, {});
   const std::complex<double> open_pole = WavePole(analog, {});
   const std::complex<double> closed_pole = WavePole(analog, gains);
@@ -223,8 +225,8 @@ ExperimentResult RunWaves(const ExperimentOptions& options) {
 
   // The same line between other volumes, and other dampings.
   json by_volume = json::array();
-  Curve closed_form = Line("closed form", {}, {}, 1);
-  Curve eigenvalues = Line("eigenvalue", {}, {}, 0, Stroke::kPoints);
+  page::Curve closed_form = page::Line("closed form", {}, {}, 1);
+  page::Curve eigenvalues = page::Line("eigenvalue", {}, {}, 0, page::Stroke::kPoints);
   const auto frequency_of = [&](double fraction) {  // w^2 goes with 1/V_p + 1/(V_ms - V_p)
     return kWaveHz * std::sqrt(kVolumeFraction * (1 - kVolumeFraction) / (fraction * (1 - fraction)));
   };
@@ -303,9 +305,9 @@ ExperimentResult RunWaves(const ExperimentOptions& options) {
        "expected: the line's; pump friction and leakage add"},
       {"peak of the swept sine", "Hz", "about 300", closed_pole.imag() / (2 * std::numbers::pi),
        peak.frequency_hz, "expected: the closed loop's pole"},
-      {"highest stable k_p, k_v as designed, analog", "V/psi", "", kAutomatic, highest_k_p,
+      {"highest stable k_p, k_v as designed, analog", "V/psi", "", page::kAutomatic, highest_k_p,
        fmt::format("design: {:.4f}", gains.k_p)},
-      {"highest stable ω_n, ζ = .5, analog", "rad/s", "", kAutomatic, limits.natural_frequency,
+      {"highest stable ω_n, ζ = .5, analog", "rad/s", "", page::kAutomatic, limits.natural_frequency,
        "the paper's is 150"},
       {"growth at 95 % of the limit, 5 kHz", "1/s", "", trials[0].expected, trials[0].growth,
        "expected: eigenvalue of the sampled loop"},
@@ -344,17 +346,17 @@ ExperimentResult RunWaves(const ExperimentOptions& options) {
                                      {"growth_per_s", trial.growth},
                                      {"expected_growth_per_s", trial.expected}});
   }
-  Column frequency{"frequency_hz", {}};
-  Column gain{"gain_db", {}};
-  Column phase{"phase_deg", PhasesDeg(swept.points)};
-  Column coherence{"coherence", {}};
+  tables::Column frequency{"frequency_hz", {}};
+  tables::Column gain{"gain_db", {}};
+  tables::Column phase{"phase_deg", PhasesDeg(swept.points)};
+  tables::Column coherence{"coherence", {}};
   for (const ResponsePoint& point : swept.points) {
     frequency.values.push_back(point.frequency_hz);
     gain.values.push_back(Decibels(point.gain));
     coherence.values.push_back(point.coherence);
   }
   result.table.columns = {frequency, gain, phase, coherence};
-  for (const Column& column : result.table.columns) numbers[column.name] = column.values;
+  for (const tables::Column& column : result.table.columns) numbers[column.name] = column.values;
   result.numbers = JsonText(numbers);
 
   const LinearPressureLoop rigid(Linear(ShippedModel("table1")), {1 / sweep.rate_hz, 0});
@@ -366,16 +368,16 @@ ExperimentResult RunWaves(const ExperimentOptions& options) {
                                kWaveHz, kWaveDamping, sweep.amplitude, worst_db, worst_deg),
         .panels = BodePanels(
             "Pressure loop with waves in the lines",
-            {{"measured", swept.points, Stroke::kPoints, 0},
+            {{"measured", swept.points, page::Stroke::kPoints, 0},
              {"linearised", Sampled(6, 600, [&](double hz) { return swept_linear.ClosedGain(gains, hz); }),
-              Stroke::kLine, 1},
+              page::Stroke::kLine, 1},
              {"without waves", Sampled(6, 600, [&](double hz) { return rigid.ClosedGain(gains, hz); }),
-              Stroke::kDashed, 2}},
+              page::Stroke::kDashed, 2}},
             {{"paper: waves at 300 Hz", true, kWaveHz}}, -70),
         .drawing = ""}});
-  std::vector<Curve> growth;
+  std::vector<page::Curve> growth;
   const auto add = [&](const std::string& label, const LinearPressureLoop& loop) {
-    Curve curve = Line(label, {}, {}, -1);
+    page::Curve curve = page::Line(label, {}, {}, -1);
     std::complex<double> wave = WavePole(loop, gains);
     for (int i = 1; i <= 150; ++i) {  // the pole is followed from gain to gain
       const double k_p = 0.1 * i * gains.k_p;
@@ -385,7 +387,7 @@ ExperimentResult RunWaves(const ExperimentOptions& options) {
             return std::abs(a - wave) < std::abs(b - wave);
           });
       curve.x.push_back(k_p);
-      curve.y.push_back(wave.real() > -kShownDecay ? wave.real() : kAutomatic);
+      curve.y.push_back(wave.real() > -kShownDecay ? wave.real() : page::kAutomatic);
     }
     growth.push_back(std::move(curve));
   };
@@ -421,4 +423,4 @@ ExperimentResult RunWaves(const ExperimentOptions& options) {
   return result;
 }
 
-}  // namespace hydro
+}  // namespace hydro::experiments

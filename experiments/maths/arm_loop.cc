@@ -8,7 +8,7 @@
 #include "maths/matrix_functions.h"
 #include "model/linearise.h"
 
-namespace hydro {
+namespace hydro::experiments {
 namespace {
 
 constexpr double kStartPressure = 500;  // psi, above p_3: both valves are closed
@@ -27,32 +27,32 @@ struct Loop {
 };
 
 // v = k_p ((dp_ref - dp) - k_v (theta' - ratio alpha')) + feedforward dp_ref around the linearised actuator.
-Loop ClosePressureLoop(const ModelDescription& model, const ActuatorOptions& options, int compressed_sides,
-                       const PressureLawSettings& law) {
-  const Equations equations(model, options);
-  std::vector<double> state(kMaxStates);
-  Mode mode;
+Loop ClosePressureLoop(const model::ModelDescription& model, const model::ActuatorOptions& options,
+                       int compressed_sides, const pressure_ctrl::PressureLawSettings& law) {
+  const model::Equations equations(model, options);
+  std::vector<double> state(model::kMaxStates);
+  model::Mode mode;
   equations.Start(kStartPressure, state.data(), &mode);
   mode.pump = 1;
   if (compressed_sides == 1) {
     mode.valve_1 = 1;
-    state[kP1] = model.parameters.p_3;
+    state[model::kP1] = model.parameters.p_3;
   }
-  const LinearModel linear = Linearise(equations, 0, 0, mode, state.data());
+  const model::LinearModel linear = model::Linearise(equations, 0, 0, mode, state.data());
   // Without the motor's angle, on which nothing depends, and with dp for p1 and p2. At mid-stroke their mean
   // goes its own way; with side 1 held, p2 alone is dp.
-  const bool free = options.shaft == Shaft::kFree;
+  const bool free = options.shaft == model::Shaft::kFree;
   const Eigen::Index n = free ? 4 : 2;
   Eigen::MatrixXd to_states = Eigen::MatrixXd::Zero(linear.states, n);
   Eigen::MatrixXd from_states = Eigen::MatrixXd::Zero(n, linear.states);
-  to_states(kMotorSpeed, kSpeed) = from_states(kSpeed, kMotorSpeed) = 1;
-  to_states(kP2, kDifference) = compressed_sides == 1 ? 1 : 0.5;
-  to_states(kP1, kDifference) = compressed_sides == 1 ? 0 : -0.5;
-  from_states(kDifference, kP2) = 1;
-  from_states(kDifference, kP1) = -1;
+  to_states(model::kMotorSpeed, kSpeed) = from_states(kSpeed, model::kMotorSpeed) = 1;
+  to_states(model::kP2, kDifference) = compressed_sides == 1 ? 1 : 0.5;
+  to_states(model::kP1, kDifference) = compressed_sides == 1 ? 0 : -0.5;
+  from_states(kDifference, model::kP2) = 1;
+  from_states(kDifference, model::kP1) = -1;
   if (free) {
-    to_states(kArmAngle, kAlpha) = from_states(kAlpha, kArmAngle) = 1;
-    to_states(kArmSpeed, kAlphaRate) = from_states(kAlphaRate, kArmSpeed) = 1;
+    to_states(model::kArmAngle, kAlpha) = from_states(kAlpha, model::kArmAngle) = 1;
+    to_states(model::kArmSpeed, kAlphaRate) = from_states(kAlphaRate, model::kArmSpeed) = 1;
   }
   Loop loop;
   loop.A = from_states * AsMatrix(linear.A, static_cast<size_t>(linear.states)) * to_states;
@@ -68,7 +68,8 @@ Loop ClosePressureLoop(const ModelDescription& model, const ActuatorOptions& opt
 
 }  // namespace
 
-LinearArmLoop::LinearArmLoop(const ModelDescription& model, const PressureLawSettings& law) {
+LinearArmLoop::LinearArmLoop(const model::ModelDescription& model,
+                             const pressure_ctrl::PressureLawSettings& law) {
   const Loop loop = ClosePressureLoop(model, {}, 2, law);
   states_ = static_cast<size_t>(loop.A.rows());
   A_.assign(loop.A.data(), loop.A.data() + loop.A.size());
@@ -77,7 +78,7 @@ LinearArmLoop::LinearArmLoop(const ModelDescription& model, const PressureLawSet
 
 Complex LinearArmLoop::Output(size_t row, double frequency) const {
   const Eigen::VectorXcd states =
-      Resolvent(AsMatrix(A_, states_), Complex(0, frequency), AsMatrix(B_, states_));
+      maths::Resolvent(AsMatrix(A_, states_), Complex(0, frequency), AsMatrix(B_, states_));
   return states(static_cast<Eigen::Index>(row));
 }
 
@@ -89,7 +90,7 @@ std::vector<Complex> LinearArmLoop::Poles(double c1, double c2) const {
   Eigen::MatrixXd closed = AsMatrix(A_, states_);
   closed.col(kAlpha) -= c1 * AsMatrix(B_, states_);
   closed.col(kAlphaRate) -= c2 * AsMatrix(B_, states_);
-  const Eigen::VectorXcd values = Eigenvalues(closed);
+  const Eigen::VectorXcd values = maths::Eigenvalues(closed);
   std::vector<Complex> poles(values.begin(), values.end());
   SortPoles(&poles);
   return poles;
@@ -107,14 +108,15 @@ Response LinearArmLoop::Step(double c1, double c2, double step, double duration,
   return FreeResponse({rates.data(), rates.data() + rates.size()}, state, kAlpha, duration, spacing);
 }
 
-SecondOrder ExactPressureLoop(const ModelDescription& model, const PressureLawSettings& law,
-                              int compressed_sides) {
-  const Loop loop = ClosePressureLoop(model, {.shaft = Shaft::kClamped}, compressed_sides, law);
-  const Eigen::VectorXcd poles = Eigenvalues(loop.A);
+pressure_ctrl::SecondOrder ExactPressureLoop(const model::ModelDescription& model,
+                                             const pressure_ctrl::PressureLawSettings& law,
+                                             int compressed_sides) {
+  const Loop loop = ClosePressureLoop(model, {.shaft = model::Shaft::kClamped}, compressed_sides, law);
+  const Eigen::VectorXcd poles = maths::Eigenvalues(loop.A);
   const auto upper = std::max_element(poles.begin(), poles.end(),
                                       [](const Complex& a, const Complex& b) { return a.imag() < b.imag(); });
   if (!(upper->imag() > 0)) throw std::domain_error("the pressure loop does not oscillate");
   return {std::abs(*upper), -upper->real() / std::abs(*upper)};
 }
 
-}  // namespace hydro
+}  // namespace hydro::experiments

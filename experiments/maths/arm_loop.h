@@ -7,14 +7,14 @@
 #include "model/description.h"
 #include "pressure_ctrl/pressure_law.h"
 
-namespace hydro {
+namespace hydro::experiments {
 
 // The actuator of eqs. (4), (13), (14), (15), its pump slipping and both sides compressing, at rest at
 // mid-stroke, under the pressure law, eq. (16), without limits: linear, from dp_ref to the rest.
 class LinearArmLoop {
  public:
   // Throws ModelError as Equations does.
-  LinearArmLoop(const ModelDescription& model, const PressureLawSettings& law);
+  LinearArmLoop(const model::ModelDescription& model, const pressure_ctrl::PressureLawSettings& law);
 
   // Responses at a frequency, rad/s: dp/dp_ref and alpha/dp_ref.
   Complex Pressure(double frequency) const;
@@ -36,7 +36,8 @@ class LinearArmLoop {
 // Natural frequency and damping ratio of the pressure loop with the arm clamped at mid-stroke, from the
 // exact linearisation, leakage included.
 // compressed_sides: 2, or 1 when side 1 is held at p_3 by its valve.
-SecondOrder ExactPressureLoop(const ModelDescription& model, const PressureLawSettings& law,
-                              int compressed_sides);
+pressure_ctrl::SecondOrder ExactPressureLoop(const model::ModelDescription& model,
+                                             const pressure_ctrl::PressureLawSettings& law,
+                                             int compressed_sides);
 
-}  // namespace hydro
+}  // namespace hydro::experiments

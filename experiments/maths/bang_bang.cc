@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-namespace hydro {
+namespace hydro::experiments {
 namespace {
 
 // Speed v under a constant torque and viscous friction: inertia v' = torque - viscous v, from rest. Braking
@@ -47,7 +47,7 @@ double HighestSpeed(const RigidDrive& d) {
 
 }  // namespace
 
-RigidDrive MakeRigidDrive(const Parameters& p, double motor_speed) {
+RigidDrive MakeRigidDrive(const model::Parameters& p, double motor_speed) {
   const double motor_per_arm = p.c / p.D;  // speeds: theta'/alpha'
   const double torque_per_torque = p.k_2 / p.D;
   RigidDrive drive;
@@ -92,4 +92,4 @@ double FastestSettling(const RigidDrive& drive, double distance, double band) {
   return time;
 }
 
-}  // namespace hydro
+}  // namespace hydro::experiments

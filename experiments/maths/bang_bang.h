@@ -3,7 +3,7 @@
 
 #include "model/description.h"
 
-namespace hydro {
+namespace hydro::experiments {
 
 // Motor, pump and arm as one rigid body (incompressible fluid, no leakage), seen at the arm; eqs. (4), (15):
 // (J (c/D)(k_2/D) + J_a) alpha'' = (k_2/D)(T_p - T_s sign(alpha') - b (c/D) alpha').
@@ -16,7 +16,7 @@ struct RigidDrive {
 };
 
 // motor_speed: rad/s, the largest of the motor.
-RigidDrive MakeRigidDrive(const Parameters& parameters, double motor_speed);
+RigidDrive MakeRigidDrive(const model::Parameters& parameters, double motor_speed);
 
 struct FastestMove {
   double time = 0;             // s, from rest to rest
@@ -32,4 +32,4 @@ FastestMove FastestRestToRest(const RigidDrive& drive, double distance);
 // again: the arm may still move then, as fast as full braking can stop it within the band.
 double FastestSettling(const RigidDrive& drive, double distance, double band);
 
-}  // namespace hydro
+}  // namespace hydro::experiments

@@ -11,7 +11,7 @@
 #include <string>
 #include <unsupported/Eigen/FFT>
 
-namespace hydro {
+namespace hydro::experiments {
 namespace {
 
 using Spectrum = std::vector<std::complex<double>>;
@@ -166,4 +166,4 @@ double BandwidthHz(const std::vector<ResponsePoint>& points, double passband_gai
   return std::numeric_limits<double>::quiet_NaN();
 }
 
-}  // namespace hydro
+}  // namespace hydro::experiments

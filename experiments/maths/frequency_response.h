@@ -4,7 +4,7 @@
 #include <complex>
 #include <vector>
 
-namespace hydro {
+namespace hydro::experiments {
 
 struct ResponsePoint {
   double frequency_hz = 0;
@@ -42,4 +42,4 @@ std::vector<double> PhasesDeg(const std::vector<ResponsePoint>& points);
 // points on straight lines in dB over log frequency; NaN when it never was above or is not below at the end.
 double BandwidthHz(const std::vector<ResponsePoint>& points, double passband_gain);
 
-}  // namespace hydro
+}  // namespace hydro::experiments

@@ -8,7 +8,7 @@
 
 #include "maths/matrix_functions.h"
 
-namespace hydro {
+namespace hydro::experiments {
 namespace {
 
 using Complex = std::complex<double>;
@@ -36,7 +36,8 @@ std::vector<double> Copy(const Eigen::MatrixXd& m) { return {m.data(), m.data() 
 
 }  // namespace
 
-LinearPressureLoop::LinearPressureLoop(const LinearModel& model, const LoopTiming& timing) : timing_(timing) {
+LinearPressureLoop::LinearPressureLoop(const model::LinearModel& model, const LoopTiming& timing)
+    : timing_(timing) {
   if (!(timing.interval >= 0) || timing.delay_ticks < 0 || timing.delay_ticks > 1 ||
       (timing.interval == 0 && timing.delay_ticks != 0)) {
     throw std::invalid_argument(
@@ -56,7 +57,7 @@ LinearPressureLoop::LinearPressureLoop(const LinearModel& model, const LoopTimin
     Eigen::MatrixXd both = Eigen::MatrixXd::Zero(n + 1, n + 1);
     both.topLeftCorner(n, n) = A * timing.interval;
     both.topRightCorner(n, 1) = B * timing.interval;
-    const Eigen::MatrixXd exponential = Exponential(both);
+    const Eigen::MatrixXd exponential = maths::Exponential(both);
     A = exponential.topLeftCorner(n, n);
     B = exponential.topRightCorner(n, 1);
     if (timing.delay_ticks == 1) {  // the voltage that acts is one more state
@@ -79,27 +80,29 @@ LinearPressureLoop::LinearPressureLoop(const LinearModel& model, const LoopTimin
 Complex LinearPressureLoop::PerVolt(const std::vector<double>& output, double frequency_hz) const {
   const double w = 2 * std::numbers::pi * frequency_hz;
   const Complex s = timing_.interval > 0 ? std::polar(1.0, w * timing_.interval) : Complex(0, w);
-  const Eigen::VectorXcd x = Resolvent(Map(A_.data(), states_, states_), s, Column(B_.data(), states_));
+  const Eigen::VectorXcd x =
+      maths::Resolvent(Map(A_.data(), states_, states_), s, Column(B_.data(), states_));
   return (Row(output.data(), states_).cast<Complex>() * x)(0);
 }
 
 Complex LinearPressureLoop::PressurePerVolt(double frequency_hz) const { return PerVolt(dp_, frequency_hz); }
 Complex LinearPressureLoop::SpeedPerVolt(double frequency_hz) const { return PerVolt(speed_, frequency_hz); }
 
-Complex LinearPressureLoop::LoopGain(const PressureGains& gains, double frequency_hz) const {
+Complex LinearPressureLoop::LoopGain(const pressure_ctrl::PressureGains& gains, double frequency_hz) const {
   return gains.k_p * (PressurePerVolt(frequency_hz) + gains.k_v * SpeedPerVolt(frequency_hz));
 }
 
-Complex LinearPressureLoop::ClosedGain(const PressureGains& gains, double frequency_hz) const {
+Complex LinearPressureLoop::ClosedGain(const pressure_ctrl::PressureGains& gains, double frequency_hz) const {
   return gains.k_p * PressurePerVolt(frequency_hz) / (1.0 + LoopGain(gains, frequency_hz));
 }
 
-std::vector<Complex> LinearPressureLoop::ClosedPoles(const PressureGains& gains, bool visible_only) const {
+std::vector<Complex> LinearPressureLoop::ClosedPoles(const pressure_ctrl::PressureGains& gains,
+                                                     bool visible_only) const {
   const Row dp(dp_.data(), states_);
   const Row speed(speed_.data(), states_);
   const Eigen::MatrixXd A =
       Map(A_.data(), states_, states_) - gains.k_p * Column(B_.data(), states_) * (dp + gains.k_v * speed);
-  const Eigensystem motions = Eigenvectors(A);
+  const maths::Eigensystem motions = maths::Eigenvectors(A);
   // How much of a motion's parts is left in their sum.
   const auto shows = [](const Row& output, const Eigen::VectorXcd& motion) {
     const Eigen::VectorXcd parts = output.transpose().cast<Complex>().cwiseProduct(motion);
@@ -123,23 +126,26 @@ std::vector<Complex> LinearPressureLoop::ClosedPoles(const PressureGains& gains,
   return poles;
 }
 
-std::vector<Complex> LinearPressureLoop::Poles(const PressureGains& gains) const {
+std::vector<Complex> LinearPressureLoop::Poles(const pressure_ctrl::PressureGains& gains) const {
   return ClosedPoles(gains, false);
 }
 
-std::vector<Complex> LinearPressureLoop::VisiblePoles(const PressureGains& gains) const {
+std::vector<Complex> LinearPressureLoop::VisiblePoles(const pressure_ctrl::PressureGains& gains) const {
   return ClosedPoles(gains, true);
 }
 
-double LinearPressureLoop::Growth(const PressureGains& gains) const { return Poles(gains).back().real(); }
+double LinearPressureLoop::Growth(const pressure_ctrl::PressureGains& gains) const {
+  return Poles(gains).back().real();
+}
 
-Complex LinearPressureLoop::LeastDampedPole(const PressureGains& gains) const {
+Complex LinearPressureLoop::LeastDampedPole(const pressure_ctrl::PressureGains& gains) const {
   const std::vector<Complex> poles = VisiblePoles(gains);
   const auto found = std::find_if(poles.rbegin(), poles.rend(), [](Complex pole) { return pole.imag() > 0; });
   return found == poles.rend() ? 0 : *found;
 }
 
-GainLimit LargestStableFactor(const LinearPressureLoop& loop, const PressureGains& gains, double most) {
+GainLimit LargestStableFactor(const LinearPressureLoop& loop, const pressure_ctrl::PressureGains& gains,
+                              double most) {
   const auto stable = [&](double factor) { return loop.Growth({factor * gains.k_p, gains.k_v}) < 0; };
   double low = 1e-3;
   double high = low;
@@ -155,4 +161,4 @@ GainLimit LargestStableFactor(const LinearPressureLoop& loop, const PressureGain
   return {low, loop.LeastDampedPole({high * gains.k_p, gains.k_v}).imag() / (2 * std::numbers::pi)};
 }
 
-}  // namespace hydro
+}  // namespace hydro::experiments

@@ -8,7 +8,7 @@
 #include "model/linearise.h"
 #include "pressure_ctrl/pressure_law.h"
 
-namespace hydro {
+namespace hydro::experiments {
 
 struct LoopTiming {
   double interval = 0;  // s: the voltage is computed at each multiple and held; 0: continuously
@@ -20,32 +20,34 @@ class LinearPressureLoop {
   // `model`: as Linearise gives it. States that nothing moves (an open valve's pressure) and the motor's
   // angle, which nothing depends on, are left out. Throws std::invalid_argument: an interval below 0, a delay
   // that is not 0 or 1 or without interval.
-  LinearPressureLoop(const LinearModel& model, const LoopTiming& timing);
+  LinearPressureLoop(const model::LinearModel& model, const LoopTiming& timing);
 
   // Responses at a frequency, Hz (above 0). Of the sampled loop: samples of the output per samples of the
   // input.
   std::complex<double> PressurePerVolt(double frequency_hz) const;  // dp/v
   std::complex<double> SpeedPerVolt(double frequency_hz) const;     // theta'/v
-  std::complex<double> LoopGain(const PressureGains& gains,
+  std::complex<double> LoopGain(const pressure_ctrl::PressureGains& gains,
                                 double frequency_hz) const;  // k_p (dp + k_v theta')/v
-  std::complex<double> ClosedGain(const PressureGains& gains, double frequency_hz) const;  // dp/dp_ref
+  std::complex<double> ClosedGain(const pressure_ctrl::PressureGains& gains,
+                                  double frequency_hz) const;  // dp/dp_ref
 
   // Poles of the closed loop in the s plane, 1/s, from left to right; gains of 0: of the actuator alone.
   // Sampled ones are mapped by s = ln(z)/interval; those at z = 0 are left out.
-  std::vector<std::complex<double>> Poles(const PressureGains& gains) const;
+  std::vector<std::complex<double>> Poles(const pressure_ctrl::PressureGains& gains) const;
 
   // The largest real part of the closed loop's poles, 1/s: stable below 0.
-  double Growth(const PressureGains& gains) const;
+  double Growth(const pressure_ctrl::PressureGains& gains) const;
 
   // Those of them that show in dp or in the motor's speed: without, for instance, what the two sides do in
   // common at mid-stroke.
-  std::vector<std::complex<double>> VisiblePoles(const PressureGains& gains) const;
+  std::vector<std::complex<double>> VisiblePoles(const pressure_ctrl::PressureGains& gains) const;
 
   // Of the visible poles that oscillate the one nearest to instability (upper half plane); 0 when none does.
-  std::complex<double> LeastDampedPole(const PressureGains& gains) const;
+  std::complex<double> LeastDampedPole(const pressure_ctrl::PressureGains& gains) const;
 
  private:
-  std::vector<std::complex<double>> ClosedPoles(const PressureGains& gains, bool visible_only) const;
+  std::vector<std::complex<double>> ClosedPoles(const pressure_ctrl::PressureGains& gains,
+                                                bool visible_only) const;
   std::complex<double> PerVolt(const std::vector<double>& output, double frequency_hz) const;
 
   LoopTiming timing_;
@@ -60,6 +62,7 @@ struct GainLimit {
   double factor = 0;  // `most` when it is stable there
   double frequency_hz = 0;
 };
-GainLimit LargestStableFactor(const LinearPressureLoop& loop, const PressureGains& gains, double most);
+GainLimit LargestStableFactor(const LinearPressureLoop& loop, const pressure_ctrl::PressureGains& gains,
+                              double most);
 
-}  // namespace hydro
+}  // namespace hydro::experiments

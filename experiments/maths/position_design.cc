@@ -10,7 +10,7 @@
 
 #include "maths/matrix_functions.h"
 
-namespace hydro {
+namespace hydro::experiments {
 namespace {
 
 // Where `falling` passes 0 between two frequencies, on a logarithmic scale.
@@ -24,7 +24,7 @@ double Crossing(const std::function<double(double)>& falling, double low, double
 
 }  // namespace
 
-DesignModel Figure8Model(const Parameters& parameters) {
+DesignModel Figure8Model(const model::Parameters& parameters) {
   DesignModel model;
   model.k_2 = parameters.k_2;
   model.J_a = parameters.J_a;
@@ -48,7 +48,7 @@ std::vector<Complex> PolynomialRoots(const std::vector<double>& coefficients) {
   for (Eigen::Index i = 0; i < degree; ++i) {
     companion(i, degree - 1) = -coefficients[static_cast<size_t>(i)] / coefficients.back();
   }
-  const Eigen::VectorXcd values = Eigenvalues(companion);
+  const Eigen::VectorXcd values = maths::Eigenvalues(companion);
   std::vector<Complex> roots(values.begin(), values.end());
   SortPoles(&roots);
   return roots;
@@ -117,4 +117,4 @@ Margins StabilityMargins(const DesignModel& model, double gain) {
   return margins;
 }
 
-}  // namespace hydro
+}  // namespace hydro::experiments

@@ -6,7 +6,7 @@
 
 #include "model/description.h"
 
-namespace hydro {
+namespace hydro::experiments {
 
 using Complex = std::complex<double>;
 
@@ -21,7 +21,7 @@ struct DesignModel {
 };
 
 // Figure 8 with its omega_n and zeta and the arm of `parameters`.
-DesignModel Figure8Model(const Parameters& parameters);
+DesignModel Figure8Model(const model::Parameters& parameters);
 
 // Where the derivative of eq. (17) acts: on the error, as printed, or on the measured angle alone.
 enum class DerivativeForm { kError, kMeasurement };
@@ -65,4 +65,4 @@ struct Margins {
 // Throws std::domain_error where the gain does not give a stable loop.
 Margins StabilityMargins(const DesignModel& model, double gain);
 
-}  // namespace hydro
+}  // namespace hydro::experiments

@@ -7,7 +7,7 @@
 
 #include "maths/matrix_functions.h"
 
-namespace hydro {
+namespace hydro::experiments {
 namespace {
 
 // dp, dp', alpha, alpha', and the held dp_ref.
@@ -25,7 +25,7 @@ Held Transition(const DesignModel& m, double interval) {
   rates(1, 4) = squared;
   rates(2, 3) = 1;
   rates(3, 0) = m.k_2 / m.J_a;
-  return Exponential(rates * interval);
+  return maths::Exponential(rates * interval);
 }
 
 // From one sample to the next, the law closing the loop: the states and the previous sample's angle.
@@ -58,7 +58,7 @@ Response FreeResponse(const std::vector<double>& A, const std::vector<double>& s
                       double duration, double spacing) {
   const auto n = static_cast<Eigen::Index>(state.size());
   const Eigen::MatrixXd rates = Eigen::Map<const Eigen::MatrixXd>(A.data(), n, n) * spacing;
-  const Eigen::MatrixXd transition = Exponential(rates);
+  const Eigen::MatrixXd transition = maths::Exponential(rates);
   Eigen::VectorXd x = Eigen::Map<const Eigen::VectorXd>(state.data(), n);
   Response response;
   const auto steps = static_cast<int>(std::lround(duration / spacing));
@@ -78,7 +78,7 @@ Response ContinuousStep(const DesignModel& m, double gain, DerivativeForm form, 
   for (int i = 0; i < 3; ++i) rates(i, i + 1) = 1;
   for (int i = 0; i < kStates; ++i) rates(3, i) = -denominator[static_cast<size_t>(i)] / denominator.back();
   rates(3, 4) = 1;
-  const Held transition = Exponential(rates * spacing);
+  const Held transition = maths::Exponential(rates * spacing);
   Eigen::Matrix<double, 1, kStates + 1> output = Eigen::Matrix<double, 1, kStates + 1>::Zero();
   output(0) = denominator[0] / denominator.back();
   if (form == DerivativeForm::kError) output(1) = denominator[1] / denominator.back();
@@ -119,14 +119,14 @@ Response SampledStep(const DesignModel& m, double gain, double interval, Derivat
 }
 
 std::vector<Complex> SampledPoles(const DesignModel& model, double gain, double interval) {
-  const Eigen::VectorXcd values = Eigenvalues(SampledLoop(model, gain, interval));
+  const Eigen::VectorXcd values = maths::Eigenvalues(SampledLoop(model, gain, interval));
   std::vector<Complex> poles(values.begin(), values.end());
   SortPoles(&poles);
   return poles;
 }
 
 double SpectralRadius(const DesignModel& model, double gain, double interval) {
-  return Eigenvalues(SampledLoop(model, gain, interval)).cwiseAbs().maxCoeff();
+  return maths::Eigenvalues(SampledLoop(model, gain, interval)).cwiseAbs().maxCoeff();
 }
 
 double LargestStableInterval(const DesignModel& model, double gain) {
@@ -137,4 +137,4 @@ double SampledCriticalGain(const DesignModel& model, double interval) {
   return Limit([&](double gain) { return SpectralRadius(model, gain, interval) < 1; }, 1);
 }
 
-}  // namespace hydro
+}  // namespace hydro::experiments

@@ -6,7 +6,7 @@
 
 #include "experiments/maths/position_design.h"
 
-namespace hydro {
+namespace hydro::experiments {
 
 // alpha over time.
 struct Response {
@@ -39,4 +39,4 @@ double LargestStableInterval(const DesignModel& model, double gain);
 // The gain, psi s/rad, at which the sampled loop loses its stability.
 double SampledCriticalGain(const DesignModel& model, double interval);
 
-}  // namespace hydro
+}  // namespace hydro::experiments

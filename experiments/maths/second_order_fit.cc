@@ -9,7 +9,7 @@
 #include <stdexcept>
 #include <string>
 
-namespace hydro {
+namespace hydro::experiments {
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180;
@@ -108,4 +108,4 @@ SecondOrderFit FitSecondOrder(const std::vector<ResponsePoint>& points,
   return fit;
 }
 
-}  // namespace hydro
+}  // namespace hydro::experiments

@@ -6,7 +6,7 @@
 
 #include "experiments/maths/frequency_response.h"
 
-namespace hydro {
+namespace hydro::experiments {
 
 // K wn^2 / (s^2 + 2 zeta wn s + wn^2) exp(-s delay)
 struct SecondOrderModel {
@@ -40,4 +40,4 @@ struct SecondOrderFit {
 SecondOrderFit FitSecondOrder(const std::vector<ResponsePoint>& points,
                               const SecondOrderFitSettings& settings);
 
-}  // namespace hydro
+}  // namespace hydro::experiments

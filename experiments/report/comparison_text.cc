@@ -8,7 +8,7 @@
 
 #include "base/si_units.h"
 
-namespace hydro {
+namespace hydro::experiments {
 namespace {
 
 constexpr size_t kLineWidth = 108;
@@ -121,4 +121,4 @@ std::string SummaryText(const Experiment& experiment, const ExperimentResult& re
   return out;
 }
 
-}  // namespace hydro
+}  // namespace hydro::experiments

@@ -6,7 +6,7 @@
 
 #include "experiments/studies/experiment.h"
 
-namespace hydro {
+namespace hydro::experiments {
 
 // An aligned table: quantity, paper, independent, here, unit; a remark stands below its row. With `si`, units
 // that have an SI one are converted; what the paper says is converted where it is a number, else its unit is
@@ -22,4 +22,4 @@ std::string ShownNumber(double value);
 // All that is shown of an experiment: title, comparisons, explanation, findings.
 std::string SummaryText(const Experiment& experiment, const ExperimentResult& result, bool si);
 
-}  // namespace hydro
+}  // namespace hydro::experiments

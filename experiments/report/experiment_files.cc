@@ -7,7 +7,7 @@
 #include "base/new_file.h"
 #include "settings/command_line.h"
 
-namespace hydro {
+namespace hydro::experiments {
 
 std::vector<RenderedPicture> RenderPictures(const std::string& name, const std::vector<Picture>& pictures) {
   std::set<std::string> suffixes;
@@ -16,7 +16,7 @@ std::vector<RenderedPicture> RenderPictures(const std::string& name, const std::
     if (!suffixes.insert(picture.suffix).second) {
       throw std::logic_error(name + ": two pictures with the suffix '" + picture.suffix + "'");
     }
-    rendered.push_back({name + picture.suffix, RenderSvg(picture.figure, name + picture.suffix)});
+    rendered.push_back({name + picture.suffix, page::RenderSvg(picture.figure, name + picture.suffix)});
   }
   return rendered;
 }
@@ -29,7 +29,7 @@ std::string ExperimentJson(const Experiment& experiment, const ExperimentResult&
   Json json;
   json["name"] = experiment.name;
   json["title"] = experiment.title;
-  json["program_version"] = ProgramVersion();
+  json["program_version"] = settings::ProgramVersion();
   json["options"] = {{"seed", options.seed}, {"noise", options.noise}, {"real_time", real_time}};
   if (!options.measured_run.empty()) json["options"]["run"] = options.measured_run;
   json["conditions"] = result.conditions;
@@ -56,19 +56,13 @@ std::string ExperimentJson(const Experiment& experiment, const ExperimentResult&
   return json.dump(2) + "\n";
 }
 
-void WriteWholeFile(const std::string& file, const std::string& text) {
-  NewFile out(file, Opening::kTemporary);
-  out.Write(text.data(), text.size());
-  out.Finish();
-}
-
 void WriteExperimentFiles(const std::string& folder, const std::string& name, const std::string& json,
-                          const Table& table, const std::vector<RenderedPicture>& pictures) {
+                          const tables::Table& table, const std::vector<RenderedPicture>& pictures) {
   for (const RenderedPicture& picture : pictures) {
     WriteWholeFile(folder + "/" + picture.name + ".svg", picture.svg);
   }
-  WriteTable(table, folder + "/" + name + ".csv");
+  tables::WriteTable(table, folder + "/" + name + ".csv");
   WriteWholeFile(folder + "/" + name + ".json", json);
 }
 
-}  // namespace hydro
+}  // namespace hydro::experiments

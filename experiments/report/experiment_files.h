@@ -6,7 +6,7 @@
 
 #include "experiments/studies/experiment.h"
 
-namespace hydro {
+namespace hydro::experiments {
 
 struct RenderedPicture {
   std::string name;  // NAME and the picture's suffix
@@ -25,9 +25,6 @@ std::string ExperimentJson(const Experiment& experiment, const ExperimentResult&
 // Writes all of them into `folder`, each whole or not at all. Throws InputError when a file cannot be created
 // there, WriteError.
 void WriteExperimentFiles(const std::string& folder, const std::string& name, const std::string& json,
-                          const Table& table, const std::vector<RenderedPicture>& pictures);
+                          const tables::Table& table, const std::vector<RenderedPicture>& pictures);
 
-// One text file, whole or not at all.
-void WriteWholeFile(const std::string& file, const std::string& text);
-
-}  // namespace hydro
+}  // namespace hydro::experiments

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-namespace hydro {
+namespace hydro::experiments {
 
 ProgressDisplay::ProgressDisplay(std::FILE* out, bool terminal, std::vector<std::string> names,
                                  std::vector<double> costs)
@@ -51,4 +51,4 @@ void ProgressDisplay::Draw() {
   line_.Draw(all > 0 ? done / all : 1, running);
 }
 
-}  // namespace hydro
+}  // namespace hydro::experiments

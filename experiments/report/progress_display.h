@@ -8,7 +8,7 @@
 
 #include "base/terminal_line.h"
 
-namespace hydro {
+namespace hydro::experiments {
 
 // A bar on a terminal, plain lines in a log. May be told things by several threads.
 class ProgressDisplay {
@@ -40,4 +40,4 @@ class ProgressDisplay {
   int finished_ = 0;
 };
 
-}  // namespace hydro
+}  // namespace hydro::experiments

@@ -7,7 +7,7 @@
 #include "page/typeset.h"
 #include "settings/command_line.h"
 
-namespace hydro {
+namespace hydro::experiments {
 namespace {
 
 constexpr char kStyle[] = R"css(
@@ -50,7 +50,7 @@ sub, sup { line-height: 0; font-size: .72em; }
 
 std::string Paragraph(const std::string& heading, const std::string& text) {
   if (text.empty()) return "";
-  return "<h3>" + EscapeMarkup(heading) + "</h3>\n<p>" + TypesetHtml(text) + "</p>\n";
+  return "<h3>" + page::EscapeMarkup(heading) + "</h3>\n<p>" + page::TypesetHtml(text) + "</p>\n";
 }
 
 std::string Shown(double value) { return std::isfinite(value) ? ShownNumber(value) : "–"; }
@@ -62,10 +62,11 @@ std::string ComparisonTable(const std::vector<Comparison>& comparisons, bool si)
       "class=\"number\">independent</th><th class=\"number\">this "
       "run</th><th>unit</th><th>remark</th></tr></thead>\n<tbody>\n";
   for (const Comparison& row : si ? InSi(comparisons) : comparisons) {
-    out += "<tr><td>" + TypesetHtml(row.quantity) + "</td><td>" +
-           (row.paper.empty() ? "–" : TypesetHtml(row.paper)) + "</td><td class=\"number\">" +
+    out += "<tr><td>" + page::TypesetHtml(row.quantity) + "</td><td>" +
+           (row.paper.empty() ? "–" : page::TypesetHtml(row.paper)) + "</td><td class=\"number\">" +
            Shown(row.expected) + "</td><td class=\"number\">" + Shown(row.here) + "</td><td class=\"unit\">" +
-           TypesetHtml(row.unit) + "</td><td class=\"remark\">" + TypesetHtml(row.remark) + "</td></tr>\n";
+           page::TypesetHtml(row.unit) + "</td><td class=\"remark\">" + page::TypesetHtml(row.remark) +
+           "</td></tr>\n";
   }
   return out + "</tbody>\n</table>\n";
 }
@@ -78,15 +79,15 @@ std::string Inline(const std::string& svg) {
 
 std::string Section(const ReportEntry& entry, bool si) {
   const Experiment& experiment = entry.experiment;
-  std::string out = "<section id=\"" + EscapeMarkup(experiment.name) + "\">\n<h2>" +
-                    TypesetHtml(experiment.title) + "</h2>\n";
+  std::string out = "<section id=\"" + page::EscapeMarkup(experiment.name) + "\">\n<h2>" +
+                    page::TypesetHtml(experiment.title) + "</h2>\n";
   if (!entry.result) {
-    return out + "<p class=\"failed\"><b>This experiment failed:</b> " + EscapeMarkup(entry.failure) +
+    return out + "<p class=\"failed\"><b>This experiment failed:</b> " + page::EscapeMarkup(entry.failure) +
            "</p>\n</section>\n";
   }
   for (const RenderedPicture& picture : entry.pictures) {
-    out +=
-        "<figure id=\"picture-" + EscapeMarkup(picture.name) + "\">\n" + Inline(picture.svg) + "</figure>\n";
+    out += "<figure id=\"picture-" + page::EscapeMarkup(picture.name) + "\">\n" + Inline(picture.svg) +
+           "</figure>\n";
   }
   const ExperimentResult& result = *entry.result;
   out += Paragraph("Conditions", result.conditions);
@@ -96,10 +97,10 @@ std::string Section(const ReportEntry& entry, bool si) {
   for (const Finding& finding : result.findings) {
     const std::string number = std::to_string(finding.number);
     out += "<div class=\"finding\"><p><a href=\"#findings\"><b>Finding " + number + ".</b></a> " +
-           TypesetHtml(finding.evidence) + "</p></div>\n";
+           page::TypesetHtml(finding.evidence) + "</p></div>\n";
   }
-  return out + "<p class=\"meta\">Data: " + EscapeMarkup(experiment.name) +
-         ".csv, numbers: " + EscapeMarkup(experiment.name) + ".json</p>\n</section>\n";
+  return out + "<p class=\"meta\">Data: " + page::EscapeMarkup(experiment.name) +
+         ".csv, numbers: " + page::EscapeMarkup(experiment.name) + ".json</p>\n</section>\n";
 }
 
 std::string FindingsTable(const std::vector<ReportEntry>& entries) {
@@ -120,10 +121,10 @@ std::string FindingsTable(const std::vector<ReportEntry>& entries) {
       if (!entry.result) continue;
       for (const Finding& finding : entry.result->findings) {
         if (finding.number != number) continue;
-        out += first + "<td>" + TypesetHtml(finding.paper) + "</td><td>" + TypesetHtml(finding.evidence) +
-               "</td><td>" + TypesetHtml(finding.treatment) + "</td><td><a href=\"#" +
-               EscapeMarkup(entry.experiment.name) + "\">" + EscapeMarkup(entry.experiment.name) +
-               "</a></td></tr>\n";
+        out += first + "<td>" + page::TypesetHtml(finding.paper) + "</td><td>" +
+               page::TypesetHtml(finding.evidence) + "</td><td>" + page::TypesetHtml(finding.treatment) +
+               "</td><td><a href=\"#" + page::EscapeMarkup(entry.experiment.name) + "\">" +
+               page::EscapeMarkup(entry.experiment.name) + "</a></td></tr>\n";
       }
     }
   }
@@ -162,8 +163,9 @@ std::string ReportHtml(const std::vector<ReportEntry>& entries, const Experiment
   std::string failed;
   for (const ReportEntry& entry : entries) {
     const std::string& name = entry.experiment.name;
-    contents += "<li><a href=\"#" + EscapeMarkup(name) + "\">" + TypesetHtml(entry.experiment.title) +
-                "</a>" + (entry.result ? "" : " (failed)") + "</li>\n";
+    contents += "<li><a href=\"#" + page::EscapeMarkup(name) + "\">" +
+                page::TypesetHtml(entry.experiment.title) + "</a>" + (entry.result ? "" : " (failed)") +
+                "</li>\n";
     sections += Section(entry, request.si);
     if (!entry.result) failed += (failed.empty() ? "" : ", ") + name;
   }
@@ -176,12 +178,13 @@ std::string ReportHtml(const std::vector<ReportEntry>& entries, const Experiment
          "<p class=\"meta\">After <i>Modeling and Analysis of a High-Torque, Hydrostatic Actuator for "
          "Robotic "
          "Applications</i>; equation, figure and table numbers are the paper's. Made by <code>" +
-         EscapeMarkup(Command(request)) + "</code>, hydro " + EscapeMarkup(ProgramVersion()) +
+         page::EscapeMarkup(Command(request)) + "</code>, hydro " +
+         page::EscapeMarkup(settings::ProgramVersion()) +
          (request.real_time ? ", with separate processes in real time: numbers vary from run to run.</p>\n"
                             : ", on simulated time: the same command gives the same bytes.</p>\n") +
          (failed.empty() ? ""
                          : "<p class=\"failed\"><b>Not everything worked.</b> Failed: " +
-                               EscapeMarkup(failed) + ".</p>\n") +
+                               page::EscapeMarkup(failed) + ".</p>\n") +
          "<p>Each section shows one experiment or figure of the paper as this project's model, control laws "
          "and "
          "processes give it. The tables set three numbers side by side: what the paper prints or its figure "
@@ -194,4 +197,4 @@ std::string ReportHtml(const std::vector<ReportEntry>& entries, const Experiment
          sections + FindingsTable(entries) + "</main>\n</body>\n</html>\n";
 }
 
-}  // namespace hydro
+}  // namespace hydro::experiments

@@ -6,10 +6,10 @@
 #include <vector>
 
 #include "experiments/report/experiment_files.h"
-#include "experiments/run_experiments.h"
+#include "experiments/report/experiment_request.h"
 #include "experiments/studies/experiment.h"
 
-namespace hydro {
+namespace hydro::experiments {
 
 // The paper's contradictions and open ends that the experiments together must show, numbered 1 to this.
 inline constexpr int kFindings = 10;
@@ -28,4 +28,4 @@ std::vector<int> MissingFindings(const std::vector<ReportEntry>& entries);
 // identical bytes. `request` says how they were made (its folder is not told).
 std::string ReportHtml(const std::vector<ReportEntry>& entries, const ExperimentRequest& request);
 
-}  // namespace hydro
+}  // namespace hydro::experiments

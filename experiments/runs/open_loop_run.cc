@@ -10,39 +10,40 @@
 #include "model/equations.h"
 #include "model/simulation.h"
 
-namespace hydro {
+namespace hydro::experiments {
 namespace {
 
 // The model in motion under one voltage.
 class Rig {
  public:
-  Rig(const ModelDescription& model, double voltage)
-      : equations_(model, {.shaft = Shaft::kClamped}),
-        simulation_(MakeSimulation(&equations_, Integrator::kAuto, std::numeric_limits<double>::quiet_NaN(),
-                                   ActuatorOptions{}.relative_tolerance)),
+  Rig(const model::ModelDescription& model, double voltage)
+      : equations_(model, {.shaft = model::Shaft::kClamped}),
+        simulation_(model::MakeSimulation(&equations_, model::Integrator::kAuto,
+                                          std::numeric_limits<double>::quiet_NaN(),
+                                          model::ActuatorOptions{}.relative_tolerance)),
         voltage_(voltage) {
     simulation_->Advance(voltage, 0);  // breaks away, if it does
   }
   void Advance(double until) { simulation_->Advance(voltage_, until); }
 
-  double p1() const { return simulation_->now().state[kP1]; }
-  double p2() const { return simulation_->now().state[kP2]; }
-  double motor_speed() const { return simulation_->now().state[kMotorSpeed]; }
+  double p1() const { return simulation_->now().state[model::kP1]; }
+  double p2() const { return simulation_->now().state[model::kP2]; }
+  double motor_speed() const { return simulation_->now().state[model::kMotorSpeed]; }
   double dp() const { return p2() - p1(); }
-  bool rises() const { return simulation_->now().rate[kP2] > simulation_->now().rate[kP1]; }
+  bool rises() const { return simulation_->now().rate[model::kP2] > simulation_->now().rate[model::kP1]; }
   bool sticks() const { return simulation_->mode().pump == 0; }
   int64_t mode_changes() const { return simulation_->mode_changes(); }
 
  private:
-  Equations equations_;
-  std::unique_ptr<Simulation> simulation_;
+  model::Equations equations_;
+  std::unique_ptr<model::Simulation> simulation_;
   double voltage_;
 };
 
 double SampleTime(size_t i, double interval) { return static_cast<double>(i) * interval; }
 
 // Sample intervals within which the pump or a valve switches, or dp turns.
-std::vector<bool> EventfulIntervals(const ModelDescription& model, double voltage, size_t samples,
+std::vector<bool> EventfulIntervals(const model::ModelDescription& model, double voltage, size_t samples,
                                     double interval) {
   Rig rig(model, voltage);
   std::vector<bool> eventful(samples);
@@ -64,7 +65,7 @@ size_t OpenLoopRun::sticks(double from) const {
 }
 
 // A first run finds where something happens, a second one looks closely there.
-OpenLoopRun RunOpenLoop(const ModelDescription& model, double torque, double duration,
+OpenLoopRun RunOpenLoop(const model::ModelDescription& model, double torque, double duration,
                         double sample_interval) {
   const double voltage = torque / model.parameters.k_1;
   const auto samples = static_cast<size_t>(std::lround(duration / sample_interval));
@@ -130,4 +131,4 @@ StickSlipCycles FindCycles(const OpenLoopRun& run) {
   return cycles;
 }
 
-}  // namespace hydro
+}  // namespace hydro::experiments

@@ -7,7 +7,7 @@
 #include "model/description.h"
 #include "tables/table.h"
 
-namespace hydro {
+namespace hydro::experiments {
 
 // How finely changes and extremes are located: they lie within this before the time given.
 inline constexpr double kLocatedWithin = 1e-6;  // s
@@ -41,7 +41,7 @@ struct OpenLoopRun {
 };
 
 // From rest at mid-stroke with both pressures at p_3. Throws ModelError.
-OpenLoopRun RunOpenLoop(const ModelDescription& model, double torque, double duration,
+OpenLoopRun RunOpenLoop(const model::ModelDescription& model, double torque, double duration,
                         double sample_interval = 1e-3);
 
 // Sustained cycles of stick and slip, as they are in the second half of a run.
@@ -56,4 +56,4 @@ struct StickSlipCycles {
 };
 StickSlipCycles FindCycles(const OpenLoopRun& run);
 
-}  // namespace hydro
+}  // namespace hydro::experiments

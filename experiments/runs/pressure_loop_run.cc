@@ -8,7 +8,7 @@
 
 #include "experiments/runs/shipped_models.h"
 
-namespace hydro {
+namespace hydro::experiments {
 namespace {
 
 std::string Configuration(const PressureLoopSetup& setup) {
@@ -42,22 +42,22 @@ seed = {}
                      setup.pressure_noise, setup.pressure_noise, setup.seed);
 }
 
-const std::vector<double>& Values(const Table& table, const char* name) {
-  const Column* column = table.Find(name);
+const std::vector<double>& Values(const tables::Table& table, const char* name) {
+  const tables::Column* column = table.Find(name);
   if (column == nullptr) throw std::logic_error(std::string("a run without ") + name);
   return column->values;
 }
 
 // Torque of the motor per psi of dp while it creeps steadily: what dp itself takes, and what the speed that
 // makes up for the leakage costs in viscous friction and in the k_v term.
-double CreepTorque(const Parameters& p, const PressureGains& gains) {
+double CreepTorque(const model::Parameters& p, const pressure_ctrl::PressureGains& gains) {
   return p.D + (p.b + p.k_1 * gains.k_p * gains.k_v) * (p.c_E + p.c_I) / p.D;
 }
 
 }  // namespace
 
 PressureLoopRun RunPressureLoop(const StackRunner& run_stack, const PressureLoopSetup& setup) {
-  const Table table = run_stack({setup.name, Configuration(setup), ShippedModelText("table1")});
+  const tables::Table table = run_stack({setup.name, Configuration(setup), ShippedModelText("table1")});
   PressureLoopRun run;
   run.time = Values(table, "time_s");
   run.reference = Values(table, "pressure_ref_psi");
@@ -74,23 +74,24 @@ PressureLoopRun RunPressureLoop(const StackRunner& run_stack, const PressureLoop
   return run;
 }
 
-Parameters PressureLoopParameters() { return ShippedModel("table1").parameters; }
+model::Parameters PressureLoopParameters() { return ShippedModel("table1").parameters; }
 
-PressureGains PressureLoopGains() {
-  return DerivePressureGains(PressureLoopParameters(), 0, kLoopNaturalFrequency, kLoopDampingRatio, 2);
+pressure_ctrl::PressureGains PressureLoopGains() {
+  return pressure_ctrl::DerivePressureGains(PressureLoopParameters(), 0, kLoopNaturalFrequency,
+                                            kLoopDampingRatio, 2);
 }
 
 // k_1 (k_p (ref - dp) + feedforward ref) = CreepTorque dp + T_s.
 double SettledPressure(double reference, double feedforward) {
-  const Parameters p = PressureLoopParameters();
-  const PressureGains gains = PressureLoopGains();
+  const model::Parameters p = PressureLoopParameters();
+  const pressure_ctrl::PressureGains gains = PressureLoopGains();
   return (p.k_1 * (gains.k_p + feedforward) * reference - p.T_s) /
          (p.k_1 * gains.k_p + CreepTorque(p, gains));
 }
 
 FrictionBand StickingPressures(double reference, double feedforward) {
-  const Parameters p = PressureLoopParameters();
-  const PressureGains gains = PressureLoopGains();
+  const model::Parameters p = PressureLoopParameters();
+  const pressure_ctrl::PressureGains gains = PressureLoopGains();
   const double torque = p.k_1 * (gains.k_p + feedforward) * reference;
   const double stiffness = p.k_1 * gains.k_p + p.D;
   return {(torque - p.T_s) / stiffness, (torque + p.T_s) / stiffness};
@@ -128,9 +129,9 @@ double MeanError(const PressureLoopRun& run, double until, double length) {
   return sum / static_cast<double>(count);
 }
 
-Curve SignalCurve(const std::string& label, const PressureLoopRun& run, const std::vector<double>& values,
-                  int colour, double until, Stroke stroke) {
-  Curve curve{
+page::Curve SignalCurve(const std::string& label, const PressureLoopRun& run,
+                        const std::vector<double>& values, int colour, double until, page::Stroke stroke) {
+  page::Curve curve{
       .label = label, .x = {}, .y = {}, .stroke = stroke, .colour = colour, .y_low = {}, .y_high = {}};
   for (size_t i = 0; i < run.time.size() && run.time[i] <= until + 0.5 / kLoopRate; ++i) {
     curve.x.push_back(run.time[i]);
@@ -139,4 +140,4 @@ Curve SignalCurve(const std::string& label, const PressureLoopRun& run, const st
   return curve;
 }
 
-}  // namespace hydro
+}  // namespace hydro::experiments

@@ -10,7 +10,7 @@
 #include "page/plot.h"
 #include "pressure_ctrl/pressure_law.h"
 
-namespace hydro {
+namespace hydro::experiments {
 
 // Figure 8's pressure loop; the rate stands for the paper's analog circuit.
 inline constexpr double kLoopNaturalFrequency = 150;  // rad/s
@@ -45,8 +45,8 @@ struct PressureLoopRun {
 PressureLoopRun RunPressureLoop(const StackRunner& run_stack, const PressureLoopSetup& setup);
 
 // Table 1's and the gains that those runs have.
-Parameters PressureLoopParameters();
-PressureGains PressureLoopGains();
+model::Parameters PressureLoopParameters();
+pressure_ctrl::PressureGains PressureLoopGains();
 
 // What dp settles at under a constant reference > 0 with the arm held, in closed form: the pump creeps
 // forward to make up for the leakage, D theta' = (c_E + c_I) dp with side 1 at p_3, and eq. (4) balances
@@ -73,7 +73,8 @@ TrackingError MeasureTracking(const PressureLoopRun& run, double from);
 double MeanError(const PressureLoopRun& run, double until, double length = 0.1);
 
 // Curve of `values` over the run's time, up to `until` s.
-Curve SignalCurve(const std::string& label, const PressureLoopRun& run, const std::vector<double>& values,
-                  int colour, double until, Stroke stroke = Stroke::kLine);
+page::Curve SignalCurve(const std::string& label, const PressureLoopRun& run,
+                        const std::vector<double>& values, int colour, double until,
+                        page::Stroke stroke = page::Stroke::kLine);
 
-}  // namespace hydro
+}  // namespace hydro::experiments

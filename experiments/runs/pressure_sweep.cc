@@ -7,7 +7,7 @@
 
 #include "settings/model_file.h"
 
-namespace hydro {
+namespace hydro::experiments {
 namespace {
 
 // The sine starts this factor below the band, so that the valves have let in what they will, and ends above
@@ -55,12 +55,12 @@ pressure_psi = inf
 }  // namespace
 
 SweptPressureLoop RunPressureSweep(const PressureSweep& sweep, const StackRunner& run_stack) {
-  const Parameters& p = sweep.model.parameters;
-  const std::string model = FormatModel(sweep.model);
+  const model::Parameters& p = sweep.model.parameters;
+  const std::string model = settings::FormatModel(sweep.model);
   SweptPressureLoop result;
   double rows = 0;
   for (const SweptBand& band : sweep.bands) {
-    const Table table = run_stack(
+    const tables::Table table = run_stack(
         {fmt::format("{}-from-{}-hz", sweep.name, band.first_hz), Configuration(sweep, band), model});
     const std::vector<double>& voltage = table.Find("voltage_V")->values;
     const std::vector<double>& speed = table.Find("motor_speed_rad_s")->values;
@@ -98,4 +98,4 @@ SweptPressureLoop RunPressureSweep(const PressureSweep& sweep, const StackRunner
   return result;
 }
 
-}  // namespace hydro
+}  // namespace hydro::experiments

@@ -10,7 +10,7 @@
 #include "model/description.h"
 #include "pressure_ctrl/pressure_law.h"
 
-namespace hydro {
+namespace hydro::experiments {
 
 // One run: a sine whose frequency rises linearly through the band, from a quarter of its lower end to 1.4
 // times its upper.
@@ -27,9 +27,9 @@ inline const std::vector<SweptBand> kTwoDecades = {{1, 6, 16, 4}, {6, 100, 16, 2
 
 struct PressureSweep {
   std::string name;  // for messages and files
-  ModelDescription model;
+  model::ModelDescription model;
   double arm_angle = 0;                                                // rad, clamped there
-  PressureGains gains;                                                 // eq. (16), no feed-forward
+  pressure_ctrl::PressureGains gains;                                  // eq. (16), no feed-forward
   double amplitude = 0;                                                // psi, of dp_ref
   double offset = 0;                                                   // psi, its mean
   double initial_pressure = std::numeric_limits<double>::quiet_NaN();  // psi, both sides; NaN: p_3
@@ -49,4 +49,4 @@ struct SweptPressureLoop {
 
 SweptPressureLoop RunPressureSweep(const PressureSweep& sweep, const StackRunner& run_stack);
 
-}  // namespace hydro
+}  // namespace hydro::experiments

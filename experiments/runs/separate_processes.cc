@@ -18,12 +18,12 @@
 #include <system_error>
 #include <vector>
 
-#include "experiments/report/experiment_files.h"
+#include "base/new_file.h"
 #include "experiments/runs/stack_run.h"
 #include "runs/run_table.h"
 #include "settings/stack_config.h"
 
-namespace hydro {
+namespace hydro::experiments {
 namespace {
 
 // A UDP port that no socket of this machine uses, reserved as long as this lives: so that the stack meets no
@@ -105,8 +105,8 @@ StackRunner SeparateProcesses(const std::string& program_folder, const std::stri
   auto one_at_a_time = std::make_shared<std::mutex>();
   return [=](const StackSetup& setup) {
     const std::lock_guard lock(*one_at_a_time);
-    const StackConfig parsed =
-        ParseStackConfig(setup.config, setup.name, setup.model, setup.name + " (model)");
+    const settings::StackConfig parsed =
+        settings::ParseStackConfig(setup.config, setup.name, setup.model, setup.name + " (model)");
     std::filesystem::create_directories(folder);
     const std::string stem = folder + "/" + setup.name;
     const std::string config = stem + ".toml";
@@ -133,8 +133,8 @@ StackRunner SeparateProcesses(const std::string& program_folder, const std::stri
       throw std::runtime_error(setup.name + ": hydro-launch ended with exit code " +
                                std::to_string(exit_code) + ": " + LastLines(stem + ".txt", 3));
     }
-    return ExportRun(ReadRunLog(log));
+    return runs::ExportRun(runs::ReadRunLog(log));
   };
 }
 
-}  // namespace hydro
+}  // namespace hydro::experiments

@@ -5,10 +5,10 @@
 
 #include "model/description.h"
 
-namespace hydro {
+namespace hydro::experiments {
 
 // The text of config/models/NAME.toml; throws std::out_of_range for another name.
 const std::string& ShippedModelText(const std::string& name);
-ModelDescription ShippedModel(const std::string& name);
+model::ModelDescription ShippedModel(const std::string& name);
 
-}  // namespace hydro
+}  // namespace hydro::experiments

@@ -8,13 +8,13 @@
 #include "settings/stack_config.h"
 #include "sim/simulation.h"
 
-namespace hydro {
+namespace hydro::experiments {
 namespace {
 
 // What ExportRun() needs of a log, taken from the bus instead.
 class Recording {
  public:
-  void Take(const RawMessage& message) {
+  void Take(const bus::RawMessage& message) {
     Keep(message, channels_.state, log_.messages.states) ||
         Keep(message, channels_.motor_command, log_.messages.motor_commands) ||
         Keep(message, channels_.pressure_command, log_.messages.pressure_commands) ||
@@ -22,12 +22,13 @@ class Recording {
         Keep(message, channels_.fault, log_.messages.faults) ||
         Keep(message, channels_.run, log_.descriptions);
   }
-  const RunLog& log() const { return log_; }
-  RunLog& log() { return log_; }
+  const runs::RunLog& log() const { return log_; }
+  runs::RunLog& log() { return log_; }
 
  private:
   template <class Message>
-  static bool Keep(const RawMessage& message, const std::string& channel, std::vector<Message>& messages) {
+  static bool Keep(const bus::RawMessage& message, const std::string& channel,
+                   std::vector<Message>& messages) {
     if (message.channel != channel) return false;
     if (messages.emplace_back().decode(message.data, 0, static_cast<int>(message.size)) < 0) {
       throw std::logic_error("a message of our own on " + channel + " does not decode");
@@ -35,21 +36,22 @@ class Recording {
     return true;
   }
 
-  Channels channels_;
-  RunLog log_;
+  bus::Channels channels_;
+  runs::RunLog log_;
 };
 
 }  // namespace
 
-Table RunStackInProcess(const StackSetup& setup) {
-  StackConfig config = ParseStackConfig(setup.config, setup.name, setup.model, setup.name + " (model)");
+tables::Table RunStackInProcess(const StackSetup& setup) {
+  settings::StackConfig config =
+      settings::ParseStackConfig(setup.config, setup.name, setup.model, setup.name + " (model)");
   config.bus.channel_suffix.clear();
   Recording recording;
   recording.log().file = setup.name;
-  const SimulationResult result =
-      Simulate(config, [&](const RawMessage& message) { recording.Take(message); });
+  const sim::SimulationResult result =
+      sim::Simulate(config, [&](const bus::RawMessage& message) { recording.Take(message); });
   if (result.exit_code != 0) throw std::runtime_error(setup.name + ": the run failed: " + result.failure);
-  return ExportRun(recording.log());
+  return runs::ExportRun(recording.log());
 }
 
-}  // namespace hydro
+}  // namespace hydro::experiments

@@ -4,21 +4,21 @@
 
 #include "model/actuator.h"
 
-namespace hydro {
+namespace hydro::experiments {
 
 Response RunStepTrial(const StepTrial& trial) {
-  Actuator actuator(trial.model, {});
-  PositionLaw position(trial.position);
+  model::Actuator actuator(trial.model, {});
+  position_ctrl::PositionLaw position(trial.position);
   // What the law has seen before the step: the arm at rest at 0.
   position.Update(0, 0, 1);
-  PressureLawInput input;
+  pressure_ctrl::PressureLawInput input;
   double next_pressure_ref = 0;  // computed, not yet in force
   double voltage = 0;            // acting
   double next_voltage = 0;       // computed, not yet acting
   Response response;
   const auto ticks = static_cast<int>(std::lround(trial.duration / trial.tick));
   for (int k = 0; k <= ticks; ++k) {
-    const Measurement m = actuator.Measure();
+    const model::Measurement m = actuator.Measure();
     response.time.push_back(k * trial.tick);
     response.angle.push_back(m.arm_angle);
     if (trial.command_delay > 0) {
@@ -31,11 +31,11 @@ Response RunStepTrial(const StepTrial& trial) {
     input.p2 = m.p2;
     input.motor_speed = m.motor_speed;
     input.arm_speed = m.arm_speed;
-    next_voltage = PressureLaw(trial.pressure, input).voltage;
+    next_voltage = pressure_ctrl::PressureLaw(trial.pressure, input).voltage;
     if (trial.command_delay == 0) voltage = next_voltage;
     actuator.Advance(voltage, (k + 1) * trial.tick);
   }
   return response;
 }
 
-}  // namespace hydro
+}  // namespace hydro::experiments

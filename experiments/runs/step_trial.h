@@ -7,12 +7,12 @@
 #include "position_ctrl/position_law.h"
 #include "pressure_ctrl/pressure_law.h"
 
-namespace hydro {
+namespace hydro::experiments {
 
 struct StepTrial {
-  ModelDescription model;
-  PressureLawSettings pressure;
-  PositionLawSettings position;
+  model::ModelDescription model;
+  pressure_ctrl::PressureLawSettings pressure;
+  position_ctrl::PositionLawSettings position;
   double tick = 0;        // s, of plant and pressure loop
   int interval = 1;       // ticks from one sample of the position loop to the next
   int command_delay = 1;  // ticks, as plant.command_delay_ticks
@@ -25,4 +25,4 @@ struct StepTrial {
 // ModelError.
 Response RunStepTrial(const StepTrial& trial);
 
-}  // namespace hydro
+}  // namespace hydro::experiments

@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
-namespace hydro {
+namespace hydro::experiments {
 namespace {
 
 using nlohmann::json;
@@ -30,30 +30,31 @@ struct Parts {
 
 }  // namespace
 
-Mode BothCompress() {
-  Mode mode;
+model::Mode BothCompress() {
+  model::Mode mode;
   mode.pump = 1;
   return mode;
 }
 
-Mode Side1Held() {
-  Mode mode = BothCompress();
+model::Mode Side1Held() {
+  model::Mode mode = BothCompress();
   mode.valve_1 = 1;
   return mode;
 }
 
-Mode Side2Held() {
-  Mode mode = BothCompress();
+model::Mode Side2Held() {
+  model::Mode mode = BothCompress();
   mode.valve_2 = 1;
   return mode;
 }
 
-LinearPressureLoop LinearLoop(const PressureSweep& sweep, const Mode& mode, const LoopTiming& timing) {
-  const Equations equations(sweep.model, {.shaft = Shaft::kClamped, .arm_angle = sweep.arm_angle});
-  double state[kMaxStates];
-  Mode start;
+LinearPressureLoop LinearLoop(const PressureSweep& sweep, const model::Mode& mode, const LoopTiming& timing) {
+  const model::Equations equations(sweep.model,
+                                   {.shaft = model::Shaft::kClamped, .arm_angle = sweep.arm_angle});
+  double state[model::kMaxStates];
+  model::Mode start;
   equations.Start(1000, state, &start);
-  return LinearPressureLoop(Linearise(equations, 0, 0, mode, state), timing);
+  return LinearPressureLoop(model::Linearise(equations, 0, 0, mode, state), timing);
 }
 
 void Evaluate(BodeCase* out, double fit_to_hz, const StackRunner& run_stack) {
@@ -115,7 +116,7 @@ json CaseJson(const BodeCase& c) {
   return out;
 }
 
-std::vector<Column> CaseColumns(const BodeCase& c) {
+std::vector<tables::Column> CaseColumns(const BodeCase& c) {
   Parts measured(c.swept.points);
   return {{c.key + "_frequency_hz", std::move(measured.frequency)},
           {c.key + "_gain_db", std::move(measured.gain_db)},
@@ -123,39 +124,39 @@ std::vector<Column> CaseColumns(const BodeCase& c) {
           {c.key + "_coherence", std::move(measured.coherence)}};
 }
 
-std::vector<Panel> BodePanels(const std::string& title, const std::vector<BodeCurve>& curves,
-                              const std::vector<Rule>& vertical, double least_db) {
-  Panel magnitude{.title = title,
-                  .x = {.label = "frequency, Hz", .logarithmic = true},
-                  .y = {.label = "gain dp/dp_ref, dB", .min = least_db},
-                  .curves = {},
-                  .notes = {},
-                  .rules = vertical};
-  Panel phase{.title = "",
-              .x = {.label = "frequency, Hz", .logarithmic = true},
-              .y = {.label = "phase, degrees"},
-              .curves = {},
-              .notes = {},
-              .rules = {}};
-  for (Rule rule : vertical) {
+std::vector<page::Panel> BodePanels(const std::string& title, const std::vector<BodeCurve>& curves,
+                                    const std::vector<page::Rule>& vertical, double least_db) {
+  page::Panel magnitude{.title = title,
+                        .x = {.label = "frequency, Hz", .logarithmic = true},
+                        .y = {.label = "gain dp/dp_ref, dB", .min = least_db},
+                        .curves = {},
+                        .notes = {},
+                        .rules = vertical};
+  page::Panel phase{.title = "",
+                    .x = {.label = "frequency, Hz", .logarithmic = true},
+                    .y = {.label = "phase, degrees"},
+                    .curves = {},
+                    .notes = {},
+                    .rules = {}};
+  for (page::Rule rule : vertical) {
     rule.label.clear();
     phase.rules.push_back(rule);
   }
   for (const BodeCurve& curve : curves) {
     const Parts parts(curve.points);
-    Curve gain{.label = curve.label,
-               .x = parts.frequency,
-               .y = parts.gain_db,
-               .stroke = curve.stroke,
-               .colour = curve.colour,
-               .y_low = {},
-               .y_high = {}};
-    Curve angle = gain;
+    page::Curve gain{.label = curve.label,
+                     .x = parts.frequency,
+                     .y = parts.gain_db,
+                     .stroke = curve.stroke,
+                     .colour = curve.colour,
+                     .y_low = {},
+                     .y_high = {}};
+    page::Curve angle = gain;
     angle.label.clear();
     angle.y = parts.phase_deg;
     for (size_t i = 0; i < curve.points.size(); ++i) {
-      if (parts.gain_db[i] < least_db) gain.y[i] = kAutomatic;
-      if (parts.coherence[i] < kShownCoherence) gain.y[i] = angle.y[i] = kAutomatic;
+      if (parts.gain_db[i] < least_db) gain.y[i] = page::kAutomatic;
+      if (parts.coherence[i] < kShownCoherence) gain.y[i] = angle.y[i] = page::kAutomatic;
     }
     magnitude.curves.push_back(std::move(gain));
     phase.curves.push_back(std::move(angle));
@@ -163,17 +164,18 @@ std::vector<Panel> BodePanels(const std::string& title, const std::vector<BodeCu
   return {magnitude, phase};
 }
 
-std::vector<Panel> WithCoherence(std::vector<Panel> panels, const std::vector<BodeCurve>& measured) {
-  Panel coherence{.title = "",
-                  .x = panels.front().x,
-                  .y = {.label = "coherence", .min = 0, .max = 1.05},
-                  .curves = {},
-                  .notes = {},
-                  .rules = {},
-                  .height = 0.6};
+std::vector<page::Panel> WithCoherence(std::vector<page::Panel> panels,
+                                       const std::vector<BodeCurve>& measured) {
+  page::Panel coherence{.title = "",
+                        .x = panels.front().x,
+                        .y = {.label = "coherence", .min = 0, .max = 1.05},
+                        .curves = {},
+                        .notes = {},
+                        .rules = {},
+                        .height = 0.6};
   // The range of the panels above, which may have curves beyond the points.
   std::vector<double> frequencies;
-  for (const Curve& curve : panels.front().curves) {
+  for (const page::Curve& curve : panels.front().curves) {
     frequencies.insert(frequencies.end(), curve.x.begin(), curve.x.end());
   }
   const auto [least, most] = std::minmax_element(frequencies.begin(), frequencies.end());
@@ -184,7 +186,7 @@ std::vector<Panel> WithCoherence(std::vector<Panel> panels, const std::vector<Bo
     coherence.curves.push_back({.label = "",
                                 .x = parts.frequency,
                                 .y = parts.coherence,
-                                .stroke = Stroke::kPoints,
+                                .stroke = page::Stroke::kPoints,
                                 .colour = curve.colour,
                                 .y_low = {},
                                 .y_high = {}});
@@ -204,4 +206,4 @@ std::vector<ResponsePoint> Sampled(double first_hz, double last_hz,
   return points;
 }
 
-}  // namespace hydro
+}  // namespace hydro::experiments

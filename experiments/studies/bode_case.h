@@ -15,13 +15,13 @@
 #include "page/plot.h"
 #include "tables/table.h"
 
-namespace hydro {
+namespace hydro::experiments {
 
 struct BodeCase {
   std::string key;    // in JSON and as the column's name
   std::string title;  // in plots: what is special about it
   PressureSweep sweep;
-  Mode mode;            // which the linear prediction holds for
+  model::Mode mode;     // which the linear prediction holds for
   bool linear = false;  // the loop stays in that mode, so that the prediction must agree
 
   SweptPressureLoop swept;
@@ -34,12 +34,12 @@ struct BodeCase {
 };
 
 // Modes of a clamped actuator whose pump slips forward: both valves closed, or side 1 (2) held at p_3.
-Mode BothCompress();
-Mode Side1Held();
-Mode Side2Held();
+model::Mode BothCompress();
+model::Mode Side1Held();
+model::Mode Side2Held();
 
 // The linearised loop at the sweep's arm angle, at 1000 psi.
-LinearPressureLoop LinearLoop(const PressureSweep& sweep, const Mode& mode, const LoopTiming& timing);
+LinearPressureLoop LinearLoop(const PressureSweep& sweep, const model::Mode& mode, const LoopTiming& timing);
 
 // Runs the sweep and evaluates it: fills all but the first five.
 void Evaluate(BodeCase* bode_case, double fit_to_hz, const StackRunner& run_stack);
@@ -48,22 +48,23 @@ void Evaluate(BodeCase* bode_case, double fit_to_hz, const StackRunner& run_stac
 nlohmann::json CaseJson(const BodeCase& bode_case);
 
 // frequency_hz, gain_db, phase_deg, coherence, as columns that begin with the case's key.
-std::vector<Column> CaseColumns(const BodeCase& bode_case);
+std::vector<tables::Column> CaseColumns(const BodeCase& bode_case);
 
 // Points (coherence of .8 and above) or curves of one response, for the two panels of a Bode plot.
 struct BodeCurve {
   std::string label;
   std::vector<ResponsePoint> points;
-  Stroke stroke = Stroke::kLine;
+  page::Stroke stroke = page::Stroke::kLine;
   int colour = -1;
 };
-std::vector<Panel> BodePanels(const std::string& title, const std::vector<BodeCurve>& curves,
-                              const std::vector<Rule>& vertical, double least_db);
+std::vector<page::Panel> BodePanels(const std::string& title, const std::vector<BodeCurve>& curves,
+                                    const std::vector<page::Rule>& vertical, double least_db);
 // The panels with one more below them: the coherence of what was measured, all points of it.
-std::vector<Panel> WithCoherence(std::vector<Panel> panels, const std::vector<BodeCurve>& measured);
+std::vector<page::Panel> WithCoherence(std::vector<page::Panel> panels,
+                                       const std::vector<BodeCurve>& measured);
 
 // A response at frequencies close enough for a smooth curve.
 std::vector<ResponsePoint> Sampled(double first_hz, double last_hz,
                                    const std::function<std::complex<double>(double)>& gain);
 
-}  // namespace hydro
+}  // namespace hydro::experiments

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace hydro {
+namespace hydro::experiments {
 
 std::vector<std::pair<double, double>> AsPairs(const std::vector<Complex>& poles) {
   std::vector<std::pair<double, double>> pairs;
@@ -25,8 +25,8 @@ std::string PoleText(const Complex& pole) {
   return fmt::format("{:.1f} ± {:.1f}j", pole.real(), std::fabs(pole.imag()));
 }
 
-std::string SettlingText(const StepResponse& response) {
+std::string SettlingText(const runs::StepResponse& response) {
   return response.settling_time_s ? fmt::format("{:.3f} s", *response.settling_time_s) : "never";
 }
 
-}  // namespace hydro
+}  // namespace hydro::experiments

@@ -8,7 +8,7 @@
 #include "experiments/maths/position_design.h"
 #include "runs/step_response.h"
 
-namespace hydro {
+namespace hydro::experiments {
 
 inline constexpr double kPaperGain = 350;  // psi s/rad, g of the paper's Figure 10
 
@@ -19,9 +19,9 @@ std::vector<std::pair<double, double>> AsPairs(const std::vector<Complex>& poles
 Complex SlowestPole(const std::vector<Complex>& poles);
 
 // "0.312 s", or "never".
-std::string SettlingText(const StepResponse& response);
+std::string SettlingText(const runs::StepResponse& response);
 
 // "-38.4 ± 113.1j"; of a real pole "-2.52".
 std::string PoleText(const Complex& pole);
 
-}  // namespace hydro
+}  // namespace hydro::experiments

@@ -11,7 +11,7 @@
 #include "page/plot.h"
 #include "tables/table.h"
 
-namespace hydro {
+namespace hydro::experiments {
 
 // One line of "what the paper says, what we get".
 struct Comparison {
@@ -36,7 +36,7 @@ struct Finding {
 
 struct Picture {
   std::string suffix;  // "" is the experiment's own, NAME.svg; "-noise" gives NAME-noise.svg
-  Figure figure;
+  page::Figure figure;
 };
 
 struct ExperimentResult {
@@ -46,7 +46,7 @@ struct ExperimentResult {
   std::vector<Comparison> comparisons;  // in the order of the report
   std::vector<Finding> findings;        // those that this experiment gives evidence for
   std::string numbers = "{}";           // a JSON object: the keys of docs/experiments.md and more
-  Table table;                          // NAME.csv; columns may be padded with NaN
+  tables::Table table;                  // NAME.csv; columns may be padded with NaN
   std::vector<Picture> pictures;        // the first is NAME.svg
 };
 
@@ -70,4 +70,4 @@ struct Experiment {
 // All, in the order of the paper (and of the report).
 const std::vector<Experiment>& Experiments();
 
-}  // namespace hydro
+}  // namespace hydro::experiments

@@ -2,10 +2,10 @@
 
 #include <nlohmann/json.hpp>
 
-namespace hydro {
+namespace hydro::experiments {
 
 std::string JsonText(const nlohmann::json& value) { return value.dump(2); }
 
 nlohmann::json ParseJson(const std::string& text) { return nlohmann::json::parse(text); }
 
-}  // namespace hydro
+}  // namespace hydro::experiments

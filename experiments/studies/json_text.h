@@ -5,7 +5,7 @@
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
-namespace hydro {
+namespace hydro::experiments {
 
 // Indented by 2; what is not finite is null.
 std::string JsonText(const nlohmann::json& value);
@@ -13,4 +13,4 @@ std::string JsonText(const nlohmann::json& value);
 // Throws nlohmann::json::parse_error.
 nlohmann::json ParseJson(const std::string& text);
 
-}  // namespace hydro
+}  // namespace hydro::experiments

@@ -10,7 +10,7 @@
 
 #include "model/actuator.h"
 
-namespace hydro {
+namespace hydro::experiments {
 namespace {
 
 constexpr double kLeast = 1e-9;  // in^3/(s psi), between which leakages are looked for
@@ -19,7 +19,7 @@ constexpr double kStep = 1e-4;          // of a logarithm, for derivatives
 constexpr double kIdentifiable = 0.25;  // half an interval, relative
 constexpr double kNormal95 = 1.96;      // there are thousands of degrees of freedom
 
-ModelDescription WithLeakage(ModelDescription model, double log_c_E, double log_c_I) {
+model::ModelDescription WithLeakage(model::ModelDescription model, double log_c_E, double log_c_I) {
   model.parameters.c_E = std::exp(log_c_E);
   model.parameters.c_I = std::exp(log_c_I);
   return model;
@@ -27,7 +27,7 @@ ModelDescription WithLeakage(ModelDescription model, double log_c_E, double log_
 
 // Standard deviation of a signal's noise, where it is not given: from the differences of neighbours, half of
 // which are below 0.6745 sqrt(2) deviations.
-double Noise(const MeasuredSignal& signal) {
+double Noise(const runs::MeasuredSignal& signal) {
   if (signal.noise.has_value()) return *signal.noise;
   std::vector<double> differences;
   for (size_t i = 1; i < signal.values.size(); ++i) {
@@ -41,7 +41,7 @@ double Noise(const MeasuredSignal& signal) {
 }
 
 // Mean of the first values while nothing acts yet.
-double StartOf(const MeasuredSignal& signal, size_t resting) {
+double StartOf(const runs::MeasuredSignal& signal, size_t resting) {
   double sum = 0;
   int count = 0;
   for (size_t i = 0; i < signal.values.size() && (i < resting || count == 0); ++i) {
@@ -54,7 +54,7 @@ double StartOf(const MeasuredSignal& signal, size_t resting) {
 
 // A run with what is needed to compare it with a simulation.
 struct Case {
-  const MeasuredRun* run;
+  const runs::MeasuredRun* run;
   double p1_noise, p2_noise;
   double pressure;  // psi, of both sides at the start
 
@@ -74,10 +74,11 @@ struct Case {
 };
 
 // Throws where the run cannot support the fit.
-Case MakeCase(const MeasuredRun& run, const ModelDescription& model) {
-  const Parameters& p = model.parameters;
-  if (run.shaft != Shaft::kClamped) {
-    throw InputError(run.file + ": found a shaft that is " + (run.shaft == Shaft::kFree ? "free" : "driven") +
+Case MakeCase(const runs::MeasuredRun& run, const model::ModelDescription& model) {
+  const model::Parameters& p = model.parameters;
+  if (run.shaft != model::Shaft::kClamped) {
+    throw InputError(run.file + ": found a shaft that is " +
+                     (run.shaft == model::Shaft::kFree ? "free" : "driven") +
                      ", allowed a clamped one: the arm's motion would drown the leakage");
   }
   if (run.bypass) {
@@ -91,8 +92,8 @@ Case MakeCase(const MeasuredRun& run, const ModelDescription& model) {
     }
   }
   try {
-    const Actuator possible(model, {.shaft = Shaft::kClamped, .arm_angle = run.arm_angle_rad});
-  } catch (const ModelError& error) {
+    const model::Actuator possible(model, {.shaft = model::Shaft::kClamped, .arm_angle = run.arm_angle_rad});
+  } catch (const model::ModelError& error) {
     throw InputError(run.file + ": " + error.what());
   }
   Case result{&run, Noise(run.p1), Noise(run.p2), p.p_3};
@@ -170,7 +171,7 @@ LeakageInformation Information(const Eigen::Matrix2d& fisher, double c_E, double
 
 // The residuals of one run as Ceres asks for them.
 struct RunResiduals {
-  const ModelDescription* model;
+  const model::ModelDescription* model;
   const Case* run_case;
 
   bool operator()(double const* const* logs, double* residuals) const {
@@ -182,7 +183,7 @@ struct RunResiduals {
   }
 };
 
-double Cost(const ModelDescription& model, const std::vector<Case>& cases, const double* logs) {
+double Cost(const model::ModelDescription& model, const std::vector<Case>& cases, const double* logs) {
   double cost = 0;
   for (const Case& run_case : cases) {
     cost += run_case
@@ -194,7 +195,7 @@ double Cost(const ModelDescription& model, const std::vector<Case>& cases, const
 }
 
 // Starts from the best of a coarse grid, so that no guess is needed.
-bool Solve(const ModelDescription& model, const std::vector<Case>& cases, double* logs) {
+bool Solve(const model::ModelDescription& model, const std::vector<Case>& cases, double* logs) {
   double least = std::numeric_limits<double>::infinity();
   for (const double c_E : {1e-7, 1e-6, 1e-5, 1e-4}) {
     for (const double c_I : {1e-7, 1e-6, 1e-5, 1e-4}) {
@@ -231,7 +232,7 @@ bool Solve(const ModelDescription& model, const std::vector<Case>& cases, double
   return summary.termination_type == ceres::CONVERGENCE;
 }
 
-Estimate Interval(double value, double relative_error) {
+maths::Estimate Interval(double value, double relative_error) {
   const double factor = std::exp(kNormal95 * relative_error);
   return {value, value / factor, value * factor};
 }
@@ -260,15 +261,16 @@ struct FisherSums {
 
 }  // namespace
 
-SimulatedRun SimulateClamped(const ModelDescription& model, const MeasuredRun& run, double pressure) {
-  Actuator actuator(model, {.shaft = Shaft::kClamped,
-                            .arm_angle = run.arm_angle_rad,
-                            .bypass = false,
-                            .initial_pressure = pressure});
+SimulatedRun SimulateClamped(const model::ModelDescription& model, const runs::MeasuredRun& run,
+                             double pressure) {
+  model::Actuator actuator(model, {.shaft = model::Shaft::kClamped,
+                                   .arm_angle = run.arm_angle_rad,
+                                   .bypass = false,
+                                   .initial_pressure = pressure});
   SimulatedRun simulated;
   for (size_t i = 0; i < run.samples(); ++i) {
     if (i > 0) actuator.Advance(run.voltage.values[i - 1], run.time[i] - run.time[0]);
-    const Measurement now = actuator.Measure();
+    const model::Measurement now = actuator.Measure();
     simulated.p1.push_back(now.p1);
     simulated.p2.push_back(now.p2);
     simulated.motor_speed.push_back(now.motor_speed);
@@ -276,25 +278,26 @@ SimulatedRun SimulateClamped(const ModelDescription& model, const MeasuredRun& r
   return simulated;
 }
 
-LeakageFit FitLeakage(const ModelDescription& model, const std::vector<MeasuredRun>& runs) {
+LeakageFit FitLeakage(const model::ModelDescription& model, const std::vector<runs::MeasuredRun>& runs) {
   std::vector<Case> cases;
   cases.reserve(runs.size());
-  for (const MeasuredRun& run : runs) cases.push_back(MakeCase(run, model));
+  for (const runs::MeasuredRun& run : runs) cases.push_back(MakeCase(run, model));
   double logs[2];
   LeakageFit fit;
   fit.converged = Solve(model, cases, logs);
 
-  const ModelDescription found = WithLeakage(model, logs[0], logs[1]);
+  const model::ModelDescription found = WithLeakage(model, logs[0], logs[1]);
   FisherSums sums;
   double squares = 0;
   int64_t count = 0;
   // How the gradient of the cost changes with each of the parameters that are taken as known.
-  const std::vector<std::pair<const char*, double Parameters::*>> known = {
-      {"k_1", &Parameters::k_1},   {"T_s", &Parameters::T_s},   {"D", &Parameters::D},
-      {"beta", &Parameters::beta}, {"V_ms", &Parameters::V_ms}, {"p_3", &Parameters::p_3}};
+  const std::vector<std::pair<const char*, double model::Parameters::*>> known = {
+      {"k_1", &model::Parameters::k_1},   {"T_s", &model::Parameters::T_s},
+      {"D", &model::Parameters::D},       {"beta", &model::Parameters::beta},
+      {"V_ms", &model::Parameters::V_ms}, {"p_3", &model::Parameters::p_3}};
   std::vector<Eigen::Vector2d> pulls(known.size(), Eigen::Vector2d::Zero());
   for (const Case& run_case : cases) {
-    const auto simulate = [&](const ModelDescription& with) {
+    const auto simulate = [&](const model::ModelDescription& with) {
       return SimulateClamped(
           with, *run_case.run,
           run_case.pressure == model.parameters.p_3 ? with.parameters.p_3 : run_case.pressure);
@@ -315,7 +318,7 @@ LeakageFit FitLeakage(const ModelDescription& model, const std::vector<MeasuredR
     for (const double residual : residuals) count += residual != 0;
     for (size_t i = 0; i < known.size(); ++i) {
       // A thousandth: small enough to be linear across sticks and slips.
-      ModelDescription changed = found;
+      model::ModelDescription changed = found;
       changed.parameters.*known[i].second *= 1.001;
       pulls[i] += 10 * jacobian.transpose() * (run_case.Residuals(simulate(changed)) - residuals);
     }
@@ -350,4 +353,4 @@ LeakageFit FitLeakage(const ModelDescription& model, const std::vector<MeasuredR
   return fit;
 }
 
-}  // namespace hydro
+}  // namespace hydro::experiments

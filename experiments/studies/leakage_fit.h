@@ -10,7 +10,7 @@
 #include "model/description.h"
 #include "runs/measured_run.h"
 
-namespace hydro {
+namespace hydro::experiments {
 
 // How well some of the measurements tell c_E and c_I.
 struct LeakageInformation {
@@ -35,9 +35,9 @@ struct LeakageShift {
 };
 
 struct LeakageFit {
-  Estimate c_E;                    // in^3/(s psi); intervals take all other parameters as known
-  Estimate c_I;                    // in^3/(s psi)
-  Estimate combination;            // in^3/(s psi), c_E + information.c_I_weight c_I
+  maths::Estimate c_E;             // in^3/(s psi); intervals take all other parameters as known
+  maths::Estimate c_I;             // in^3/(s psi)
+  maths::Estimate combination;     // in^3/(s psi), c_E + information.c_I_weight c_I
   LeakageInformation information;  // of all measurements
   // Of parts: while both sides are above p_3 and while a valve holds one there, by p_1 and p_2 or by p_2 -
   // p_1 only.
@@ -51,12 +51,13 @@ struct LeakageFit {
 };
 
 // The model clamped at the run's angle, under its voltage, from rest with both pressures at `pressure`.
-SimulatedRun SimulateClamped(const ModelDescription& model, const MeasuredRun& run, double pressure);
+SimulatedRun SimulateClamped(const model::ModelDescription& model, const runs::MeasuredRun& run,
+                             double pressure);
 
 // Fits both coefficients to all runs by Levenberg-Marquardt on their logarithms; the model's own are not
 // used. Throws InputError where a run cannot support it, saying what it has: shaft not clamped, bypass open,
 // p1 or p2 not measured, a start that is not at rest with equal pressures, a torque that never exceeds T_s,
 // pressures that hardly move.
-LeakageFit FitLeakage(const ModelDescription& model, const std::vector<MeasuredRun>& runs);
+LeakageFit FitLeakage(const model::ModelDescription& model, const std::vector<runs::MeasuredRun>& runs);
 
-}  // namespace hydro
+}  // namespace hydro::experiments

@@ -6,7 +6,7 @@
 
 #include "maths/linear_fit.h"
 
-namespace hydro {
+namespace hydro::experiments {
 namespace {
 
 // Speeds are different when they differ by this much of the fastest.
@@ -33,8 +33,8 @@ int DifferentSpeeds(const std::vector<FrictionPoint>& points) {
   return count;
 }
 
-void CheckSupport(const MeasuredRun& run, const SteadySpeeds& found, const std::vector<FrictionPoint>& points,
-                  const Parameters& parameters) {
+void CheckSupport(const runs::MeasuredRun& run, const SteadySpeeds& found,
+                  const std::vector<FrictionPoint>& points, const model::Parameters& parameters) {
   const std::string allowed =
       ", allowed constant voltages held until the speed is steady: both directions, three speeds or more and "
       "four holds or more in all";
@@ -84,27 +84,28 @@ double TransientTorque(const SpeedWindow& window, double J, double b) {
 using Regressors = std::vector<std::vector<double>>;
 
 // With `errors`, the most that each of the torques may be off by besides its scatter.
-Estimate Estimated(const LinearFit& fit, const Regressors& regressors, const std::vector<double>& errors,
-                   const std::vector<double>& weights) {
+maths::Estimate Estimated(const maths::LinearFit& fit, const Regressors& regressors,
+                          const std::vector<double>& errors, const std::vector<double>& weights) {
   const double value = fit.Value(weights);
   double half = fit.HalfWidth95(weights);
   for (size_t i = 0; i < errors.size(); ++i) {
     std::vector<double> unit(errors.size(), 0.0);
     unit[i] = 1;
-    half += std::abs(FitLinear(regressors, unit).Value(weights)) * errors[i];
+    half += std::abs(maths::FitLinear(regressors, unit).Value(weights)) * errors[i];
   }
   return {value, value - half, value + half};
 }
 
 }  // namespace
 
-SpeedSource SpeedSourceOf(const MeasuredRun& run) {
+SpeedSource SpeedSourceOf(const runs::MeasuredRun& run) {
   if (run.motor_speed.measured()) return SpeedSource::kSpeed;
   if (run.motor_angle.measured()) return SpeedSource::kAngle;
   throw InputError(run.file + ": found neither motor_speed nor motor_angle, allowed a run with one of them");
 }
 
-PumpFriction FitPumpFriction(const MeasuredRun& run, SpeedSource source, const Parameters& parameters) {
+PumpFriction FitPumpFriction(const runs::MeasuredRun& run, SpeedSource source,
+                             const model::Parameters& parameters) {
   if (!run.bypass) {
     throw InputError(run.file +
                      ": found the bypass closed (bypass = false), allowed a run with it open: only then is "
@@ -125,7 +126,7 @@ PumpFriction FitPumpFriction(const MeasuredRun& run, SpeedSource source, const P
   CheckSupport(run, found, friction.points, parameters);
 
   const Regressors regressors = {speed, forward, backward};
-  const LinearFit fit = FitLinear(regressors, torque);
+  const maths::LinearFit fit = maths::FitLinear(regressors, torque);
   std::vector<double> transients;
   for (FrictionPoint& point : friction.points) {
     point.transient = TransientTorque(point.window, parameters.J, fit.coefficients[0]);
@@ -147,7 +148,7 @@ PumpFriction FitPumpFriction(const MeasuredRun& run, SpeedSource source, const P
   return friction;
 }
 
-std::optional<BreakAway> FindBreakAway(const MeasuredRun& run, double from, double to, double moved) {
+std::optional<BreakAway> FindBreakAway(const runs::MeasuredRun& run, double from, double to, double moved) {
   const std::vector<double>& angle = run.motor_angle.values;
   std::optional<double> rest;
   for (size_t i = 0; i < run.samples() && run.time[i] <= to; ++i) {
@@ -162,4 +163,4 @@ double BreakAwayExcess(double ramp, double inertia, double moved) {
   return std::cbrt(6 * inertia * moved * ramp * ramp);
 }
 
-}  // namespace hydro
+}  // namespace hydro::experiments

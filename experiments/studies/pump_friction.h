@@ -11,7 +11,7 @@
 #include "model/description.h"
 #include "runs/measured_run.h"
 
-namespace hydro {
+namespace hydro::experiments {
 
 struct FrictionPoint {
   SpeedWindow window;
@@ -25,12 +25,12 @@ struct FrictionPoint {
 // are Student's, from the points' scatter about the lines, widened by the most that what is left of the
 // transients can shift the value: all points lag in the same way, so that their scatter does not tell it.
 struct PumpFriction {
-  Estimate T_s;           // in-lbf, the mean of the two directions'
-  Estimate T_s_forward;   // in-lbf
-  Estimate T_s_backward;  // in-lbf, a magnitude
-  Estimate difference;    // in-lbf, forward less backward
-  Estimate b;             // in-lbf-s
-  double scatter = 0;     // in-lbf, standard deviation of the points about the lines
+  maths::Estimate T_s;           // in-lbf, the mean of the two directions'
+  maths::Estimate T_s_forward;   // in-lbf
+  maths::Estimate T_s_backward;  // in-lbf, a magnitude
+  maths::Estimate difference;    // in-lbf, forward less backward
+  maths::Estimate b;             // in-lbf-s
+  double scatter = 0;            // in-lbf, standard deviation of the points about the lines
   int degrees_of_freedom = 0;
   std::vector<FrictionPoint> points;
 };
@@ -39,10 +39,11 @@ struct PumpFriction {
 // InputError where the run cannot support it, saying what it has: bypass closed; neither speed nor angle of
 // the motor; no steady speed (then how far from it the longest hold is), in one direction only, fewer than
 // three different ones or four in all.
-PumpFriction FitPumpFriction(const MeasuredRun& run, SpeedSource source, const Parameters& parameters);
+PumpFriction FitPumpFriction(const runs::MeasuredRun& run, SpeedSource source,
+                             const model::Parameters& parameters);
 
 // The motor's speed where it is measured, else its angle. Throws InputError when neither is.
-SpeedSource SpeedSourceOf(const MeasuredRun& run);
+SpeedSource SpeedSourceOf(const runs::MeasuredRun& run);
 
 struct BreakAway {
   double time = 0;     // s, of the first sample that has moved
@@ -51,10 +52,10 @@ struct BreakAway {
 
 // The first sample from `from` to `to` (s) whose motor angle differs by more than `moved` rad from that at
 // `from`; none when the motor stays.
-std::optional<BreakAway> FindBreakAway(const MeasuredRun& run, double from, double to, double moved);
+std::optional<BreakAway> FindBreakAway(const runs::MeasuredRun& run, double from, double to, double moved);
 
 // How much more than the friction a torque ramp (in-lbf/s) has reached when the motor has turned by `moved`:
 // from J theta'' = ramp t, theta = ramp t^3 / (6 J). in-lbf.
 double BreakAwayExcess(double ramp, double inertia, double moved);
 
-}  // namespace hydro
+}  // namespace hydro::experiments

@@ -7,23 +7,24 @@
 #include "runs/step_response.h"
 #include "settings/stack_config.h"
 
-namespace hydro {
+namespace hydro::experiments {
 
 StepTrial TrialOf(const std::string& config_text, const std::string& model_text, double step) {
-  const StackConfig config = ParseStackConfig(config_text, "configuration", model_text, "model");
-  const Parameters& p = config.model.description.parameters;
+  const settings::StackConfig config =
+      settings::ParseStackConfig(config_text, "configuration", model_text, "model");
+  const model::Parameters& p = config.model.description.parameters;
   StepTrial trial;
   trial.model = config.model.description;
   if (config.pressure.k_p) {
     trial.pressure.gains = {*config.pressure.k_p, *config.pressure.k_v};
   } else {
-    trial.pressure.gains =
-        DerivePressureGains(p, config.model.arm_angle_rad, *config.pressure.natural_frequency_rad_s,
-                            *config.pressure.damping_ratio, config.pressure.compressed_sides);
+    trial.pressure.gains = pressure_ctrl::DerivePressureGains(
+        p, config.model.arm_angle_rad, *config.pressure.natural_frequency_rad_s,
+        *config.pressure.damping_ratio, config.pressure.compressed_sides);
   }
   trial.pressure.voltage_limit = p.T_pmax / p.k_1;
   if (config.pressure.reference_feedforward) {
-    trial.pressure.reference_feedforward = SteadyStateFeedforward(p, trial.pressure.gains);
+    trial.pressure.reference_feedforward = pressure_ctrl::SteadyStateFeedforward(p, trial.pressure.gains);
   }
   if (config.pressure.arm_speed_feedforward) trial.pressure.arm_speed_ratio = p.c / p.D;
   trial.position.c1 = config.position.c1;
@@ -49,11 +50,11 @@ std::vector<Candidate> SearchGains(StepTrial trial, const RigidDrive& drive) {
       trial.position.c2 = candidate.c2;
       for (const double factor : {0.9, 1.0, 1.1}) {
         trial.step = factor * design_step;
-        const double shortest = FastestSettling(drive, trial.step, kSettlingBand);
+        const double shortest = FastestSettling(drive, trial.step, runs::kSettlingBand);
         trial.duration = 2 * shortest;
         const Response response = RunStepTrial(trial);
         const auto settling =
-            MeasureStep(response.time, response.angle, 0, response.time.size(), 0, trial.step)
+            runs::MeasureStep(response.time, response.angle, 0, response.time.size(), 0, trial.step)
                 .settling_time_s;
         candidate.worst_ratio = std::max(
             candidate.worst_ratio, settling ? *settling / shortest : std::numeric_limits<double>::infinity());
@@ -66,4 +67,4 @@ std::vector<Candidate> SearchGains(StepTrial trial, const RigidDrive& drive) {
   return candidates;
 }
 
-}  // namespace hydro
+}  // namespace hydro::experiments

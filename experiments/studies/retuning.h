@@ -7,7 +7,7 @@
 #include "experiments/maths/bang_bang.h"
 #include "experiments/runs/step_trial.h"
 
-namespace hydro {
+namespace hydro::experiments {
 
 // What a stack's configuration (whole TOML) and model (TOML) make of a step of `step` rad: gains, rates,
 // limits. The parts of it that a StepTrial does not know (noise, quantisation) are left out.
@@ -27,4 +27,4 @@ struct Candidate {
 // The best first; of equals the one with the smaller gains.
 std::vector<Candidate> SearchGains(StepTrial trial, const RigidDrive& drive);
 
-}  // namespace hydro
+}  // namespace hydro::experiments

@@ -5,7 +5,7 @@
 
 #include "maths/linear_fit.h"
 
-namespace hydro {
+namespace hydro::experiments {
 namespace {
 
 constexpr int kBlocks = 10;
@@ -16,7 +16,7 @@ constexpr double kLargestShare = 5e-3;     // of the torque that acceleration ma
 constexpr double kSlowest = 0.01;          // of the fastest speed, of the largest voltage: less is none
 
 // Speed over the samples from first to before end; NaN when too few of them have a value.
-double BlockSpeed(const MeasuredRun& run, SpeedSource source, size_t first, size_t end) {
+double BlockSpeed(const runs::MeasuredRun& run, SpeedSource source, size_t first, size_t end) {
   const auto& values = (source == SpeedSource::kSpeed ? run.motor_speed : run.motor_angle).values;
   double sum = 0;
   int count = 0;
@@ -32,7 +32,8 @@ double BlockSpeed(const MeasuredRun& run, SpeedSource source, size_t first, size
   return (values[last_valid] - values[first_valid]) / (run.time[last_valid] - run.time[first_valid]);
 }
 
-std::optional<SpeedWindow> LookAt(const MeasuredRun& run, SpeedSource source, const Hold& hold, double from) {
+std::optional<SpeedWindow> LookAt(const runs::MeasuredRun& run, SpeedSource source, const Hold& hold,
+                                  double from) {
   SpeedWindow window;
   window.from = from;
   window.to = run.time[hold.last];
@@ -52,7 +53,7 @@ std::optional<SpeedWindow> LookAt(const MeasuredRun& run, SpeedSource source, co
     speeds.push_back(speed);
     times.push_back((k + 0.5 - 0.5 * kBlocks) * width);
   }
-  const LinearFit line = FitLinear({std::vector<double>(kBlocks, 1.0), times}, speeds);
+  const maths::LinearFit line = maths::FitLinear({std::vector<double>(kBlocks, 1.0), times}, speeds);
   window.speed = line.coefficients[0];
   window.speed_error = line.StandardError({1, 0});
   window.acceleration = line.coefficients[1];
@@ -61,7 +62,7 @@ std::optional<SpeedWindow> LookAt(const MeasuredRun& run, SpeedSource source, co
 }
 
 // The typical size of the voltage's noise, from differences of neighbours: half of them are below it.
-double VoltageNoise(const MeasuredRun& run) {
+double VoltageNoise(const runs::MeasuredRun& run) {
   if (run.voltage.noise.has_value()) return *run.voltage.noise;
   std::vector<double> differences;
   const std::vector<double>& voltage = run.voltage.values;
@@ -75,7 +76,7 @@ double VoltageNoise(const MeasuredRun& run) {
 
 double SpeedWindow::LargestAcceleration() const { return std::abs(acceleration) + acceleration_95; }
 
-std::vector<Hold> ConstantVoltage(const MeasuredRun& run) {
+std::vector<Hold> ConstantVoltage(const runs::MeasuredRun& run) {
   const std::vector<double>& voltage = run.voltage.values;
   double largest = 0;
   for (const double v : voltage) largest = std::max(largest, std::abs(v));
@@ -94,7 +95,7 @@ std::vector<Hold> ConstantVoltage(const MeasuredRun& run) {
   return holds;
 }
 
-SteadySpeeds FindSteadySpeeds(const MeasuredRun& run, SpeedSource source, double torque_per_volt,
+SteadySpeeds FindSteadySpeeds(const runs::MeasuredRun& run, SpeedSource source, double torque_per_volt,
                               double inertia) {
   SteadySpeeds result;
   double largest = 0;
@@ -138,4 +139,4 @@ SteadySpeeds FindSteadySpeeds(const MeasuredRun& run, SpeedSource source, double
   return result;
 }
 
-}  // namespace hydro
+}  // namespace hydro::experiments

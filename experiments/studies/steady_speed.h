@@ -8,7 +8,7 @@
 
 #include "runs/measured_run.h"
 
-namespace hydro {
+namespace hydro::experiments {
 
 // What the speed is taken from.
 enum class SpeedSource { kSpeed, kAngle };
@@ -46,14 +46,14 @@ struct SteadySpeeds {
 
 // Stretches over which the voltage does not change by more than its noise (that of the run, else estimated
 // from its differences).
-std::vector<Hold> ConstantVoltage(const MeasuredRun& run);
+std::vector<Hold> ConstantVoltage(const runs::MeasuredRun& run);
 
 // Looks in each hold for the longest stretch up to its end in which the speed has no significant trend and an
 // inertia `inertia` cannot take more than 0.5 % of the torque `torque_per_volt` gives; where noise is too
 // small or drift too slow for the first, the second suffices. The later half of the stretch is given: what is
 // left of a transient hides in the noise of the whole, but is smaller there. The run must have the source's
 // signal.
-SteadySpeeds FindSteadySpeeds(const MeasuredRun& run, SpeedSource source, double torque_per_volt,
+SteadySpeeds FindSteadySpeeds(const runs::MeasuredRun& run, SpeedSource source, double torque_per_volt,
                               double inertia);
 
-}  // namespace hydro
+}  // namespace hydro::experiments

@@ -8,7 +8,7 @@
 
 #include "runs/step_response.h"
 
-namespace hydro {
+namespace hydro::experiments {
 namespace {
 
 constexpr double kStepDuration = 1.5;  // s
@@ -34,7 +34,7 @@ std::vector<double> Scaled(std::vector<double> values, double factor) {
 }  // namespace
 
 TorqueStep RunTorqueStep(const StackRunner& run_stack, double command, double feedforward) {
-  const Parameters p = PressureLoopParameters();
+  const model::Parameters p = PressureLoopParameters();
   TorqueStep step;
   step.command = command;
   step.run = RunPressureLoop(
@@ -51,8 +51,9 @@ TorqueStep RunTorqueStep(const StackRunner& run_stack, double command, double fe
   const double settled = command - step.error;
   step.rise_time =
       FirstTimeAt(step.run.time, torque, 0.9 * settled) - FirstTimeAt(step.run.time, torque, 0.1 * settled);
-  step.overshoot_percent = MeasureStep(step.run.time, torque, 0, torque.size(), 0, command).overshoot_percent;
-  step.settling_time = MeasureStep(step.run.time, torque, 0, torque.size(), 0, settled).settling_time_s;
+  step.overshoot_percent =
+      runs::MeasureStep(step.run.time, torque, 0, torque.size(), 0, command).overshoot_percent;
+  step.settling_time = runs::MeasureStep(step.run.time, torque, 0, torque.size(), 0, settled).settling_time_s;
   const double limit = p.T_pmax;
   size_t saturated = 0, early = 0;
   for (; early < step.run.time.size() && step.run.time[early] < 0.1; ++early) {
@@ -63,7 +64,7 @@ TorqueStep RunTorqueStep(const StackRunner& run_stack, double command, double fe
 }
 
 TorqueSweep RunTorqueSweep(const StackRunner& run_stack, double mean, double amplitude) {
-  const Parameters p = PressureLoopParameters();
+  const model::Parameters p = PressureLoopParameters();
   TorqueSweep sweep;
   sweep.mean = mean;
   sweep.amplitude = amplitude;
@@ -102,10 +103,10 @@ double FrictionBandTorque() {
 
 // |G|^2 = 1/2 of a second-order low-pass.
 double LinearBandwidthHz(int compressed_sides) {
-  const SecondOrder loop =
-      PressureLoopDynamics(PressureLoopParameters(), 0, PressureLoopGains(), compressed_sides);
+  const pressure_ctrl::SecondOrder loop =
+      pressure_ctrl::PressureLoopDynamics(PressureLoopParameters(), 0, PressureLoopGains(), compressed_sides);
   const double a = 1 - 2 * loop.damping_ratio * loop.damping_ratio;
   return loop.natural_frequency * std::sqrt(a + std::sqrt(a * a + 1)) / (2 * std::numbers::pi);
 }
 
-}  // namespace hydro
+}  // namespace hydro::experiments

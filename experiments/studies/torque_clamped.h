@@ -8,7 +8,7 @@
 #include "experiments/runs/pressure_loop_run.h"
 #include "experiments/studies/experiment.h"
 
-namespace hydro {
+namespace hydro::experiments {
 
 struct TorqueStep {
   double command = 0;                   // in-lbf
@@ -46,4 +46,4 @@ double FrictionBandTorque();
 // when a valve holds the other side at p_3.
 double LinearBandwidthHz(int compressed_sides);
 
-}  // namespace hydro
+}  // namespace hydro::experiments

@@ -7,7 +7,7 @@
 
 #include "experiments/runs/shipped_models.h"
 
-namespace hydro {
+namespace hydro::experiments {
 namespace {
 
 constexpr double kReach = 0.1;            // rad
@@ -27,8 +27,8 @@ std::string Points(double duration, const auto& value) {
 
 // e from k_1 (k_p e - k_p k_v w) = J theta'' + b theta' + T_s sgn(theta') + D (ref - e), where w is the pump
 // speed that the k_v term sees, and the higher side leaks (c_I + c_E) |dp| while the other is at p_3.
-double PathError(const Parameters& p, const PressureGains& gains, double reference, double arm_speed,
-                 double arm_acceleration, bool arm_speed_feedforward) {
+double PathError(const model::Parameters& p, const pressure_ctrl::PressureGains& gains, double reference,
+                 double arm_speed, double arm_acceleration, bool arm_speed_feedforward) {
   const double forced = p.c / p.D * arm_speed;
   const double leak_per_psi = (p.c_I + p.c_E) / p.D;  // rad/s per psi
   const double gain = p.k_1 * gains.k_p;
@@ -75,8 +75,8 @@ double SmoothPath::acceleration(double time) const {
 }
 
 TorqueOnPath RunTorqueOnPath(const StackRunner& run_stack, double largest_speed, bool arm_speed_feedforward) {
-  const Parameters p = PressureLoopParameters();
-  const PressureGains gains = PressureLoopGains();
+  const model::Parameters p = PressureLoopParameters();
+  const pressure_ctrl::PressureGains gains = PressureLoopGains();
   const double mgl = ShippedModel("table1_gravity").parameters.mgl;
   const SmoothPath path(kReach, largest_speed);
   const auto command = [&](double time) {
@@ -118,4 +118,4 @@ TorqueOnPath RunTorqueOnPath(const StackRunner& run_stack, double largest_speed,
   return out;
 }
 
-}  // namespace hydro
+}  // namespace hydro::experiments

@@ -6,7 +6,7 @@
 
 #include "experiments/runs/pressure_loop_run.h"
 
-namespace hydro {
+namespace hydro::experiments {
 
 // From -reach to +reach and back, each way a quintic that starts and ends without speed and acceleration,
 // with rests before, between and after.
@@ -54,4 +54,4 @@ struct TorqueOnPath {
 
 TorqueOnPath RunTorqueOnPath(const StackRunner& run_stack, double largest_speed, bool arm_speed_feedforward);
 
-}  // namespace hydro
+}  // namespace hydro::experiments

@@ -8,14 +8,14 @@
 
 #include "experiments/studies/json_text.h"
 
-namespace hydro {
+namespace hydro::experiments {
 namespace {
 
 using nlohmann::json;
 
 constexpr double kPictured = 0.3;  // s
 
-double LargestDemand(const PressureLoopRun& run, const PressureGains& gains) {
+double LargestDemand(const PressureLoopRun& run, const pressure_ctrl::PressureGains& gains) {
   const double k_1 = PressureLoopParameters().k_1;
   double largest = 0;
   for (size_t i = 0; i < run.time.size(); ++i) {
@@ -29,23 +29,24 @@ double LargestDemand(const PressureLoopRun& run, const PressureGains& gains) {
 // `with` may be empty.
 Picture WavePicture(const std::string& suffix, const std::string& caption, const PressureLoopRun& without,
                     const PressureLoopRun& with) {
-  const Axis time{.label = "time, s", .min = 0, .max = kPictured};
+  const page::Axis time{.label = "time, s", .min = 0, .max = kPictured};
   const double limit = PressureLoopParameters().T_pmax;
-  Panel pressure{
+  page::Panel pressure{
       .title = "Pressure difference",
       .x = time,
       .y = {.label = "p_2 - p_1, psi"},
-      .curves = {SignalCurve("reference", without, without.reference, 5, kPictured, Stroke::kDashed),
+      .curves = {SignalCurve("reference", without, without.reference, 5, kPictured, page::Stroke::kDashed),
                  SignalCurve("without feed-forward", without, without.dp, 0, kPictured)},
       .notes = {},
       .rules = {},
       .height = 1.5};
-  Panel torque{.title = "Motor torque",
-               .x = time,
-               .y = {.label = "T_p, in-lbf", .min = -1.25 * limit, .max = 1.25 * limit},
-               .curves = {SignalCurve("without feed-forward", without, without.torque, 0, kPictured)},
-               .notes = {},
-               .rules = {{fmt::format("T_pmax = {} in-lbf", limit), false, limit}, {"", false, -limit}}};
+  page::Panel torque{
+      .title = "Motor torque",
+      .x = time,
+      .y = {.label = "T_p, in-lbf", .min = -1.25 * limit, .max = 1.25 * limit},
+      .curves = {SignalCurve("without feed-forward", without, without.torque, 0, kPictured)},
+      .notes = {},
+      .rules = {{fmt::format("T_pmax = {} in-lbf", limit), false, limit}, {"", false, -limit}}};
   if (!with.time.empty()) {
     pressure.curves.push_back(SignalCurve("with feed-forward", with, with.dp, 1, kPictured));
     torque.curves.push_back(SignalCurve("with feed-forward", with, with.torque, 1, kPictured));
@@ -97,12 +98,12 @@ std::string WaveReference(const std::string& kind, double frequency) {
 
 TrackingStudy RunTrackingStudy(const ExperimentOptions& options, const std::string& figure,
                                const std::string& kind) {
-  const Parameters p = PressureLoopParameters();
+  const model::Parameters p = PressureLoopParameters();
   TrackingStudy study;
   study.figure = figure;
   study.kind = kind;
   study.gains = PressureLoopGains();
-  study.feedforward = SteadyStateFeedforward(p, study.gains);
+  study.feedforward = pressure_ctrl::SteadyStateFeedforward(p, study.gains);
   study.tuned_feedforward = study.feedforward + p.T_s / (p.k_1 * kWaveAmplitude);
 
   const auto run = [&](const std::string& name, const std::string& reference, double duration,
@@ -145,7 +146,7 @@ TrackingStudy RunTrackingStudy(const ExperimentOptions& options, const std::stri
 }
 
 ExperimentResult DescribeTracking(const TrackingStudy& study) {
-  const Parameters p = PressureLoopParameters();
+  const model::Parameters p = PressureLoopParameters();
   const std::string wave = study.kind == "square" ? "square wave" : study.kind;
   ExperimentResult result;
   result.conditions = fmt::format(
@@ -163,11 +164,11 @@ ExperimentResult DescribeTracking(const TrackingStudy& study) {
       {"steady-state error with feed-forward", "psi", "could be eliminated",
        kWaveAmplitude - SettledPressure(kWaveAmplitude, study.feedforward), study.steady_state_error_with,
        "left is T_s, which a term linear in the reference cancels at one reference only"},
-      {"RMS error without feed-forward", "psi", "", kAutomatic, study.error.rms, ""},
-      {"RMS error with feed-forward", "psi", "", kAutomatic, study.error_with.rms, ""},
-      {"time at the torque limit, without feed-forward", "%", "", kAutomatic,
+      {"RMS error without feed-forward", "psi", "", page::kAutomatic, study.error.rms, ""},
+      {"RMS error with feed-forward", "psi", "", page::kAutomatic, study.error_with.rms, ""},
+      {"time at the torque limit, without feed-forward", "%", "", page::kAutomatic,
        100 * study.error.saturated_fraction, ""},
-      {"time at the torque limit, with feed-forward", "%", "", kAutomatic,
+      {"time at the torque limit, with feed-forward", "%", "", page::kAutomatic,
        100 * study.error_with.saturated_fraction, ""},
   };
   result.numbers = JsonText(Numbers(study));
@@ -209,4 +210,4 @@ std::string SteadyStateText(const TrackingStudy& study) {
       study.tuned_feedforward, kWaveAmplitude, band.low, band.high);
 }
 
-}  // namespace hydro
+}  // namespace hydro::experiments

@@ -8,7 +8,7 @@
 #include "experiments/runs/pressure_loop_run.h"
 #include "experiments/studies/experiment.h"
 
-namespace hydro {
+namespace hydro::experiments {
 
 // The paper prints neither amplitude nor frequency of its references.
 inline constexpr double kWaveAmplitude = 300;  // psi
@@ -21,7 +21,7 @@ struct TrackingStudy {
   std::string figure;  // "fig4"
   std::string kind;    // of reference: "square", "sine"
 
-  PressureGains gains;
+  pressure_ctrl::PressureGains gains;
   double feedforward = 0;  // V/psi, pays for all but T_s in the steady state
   // V/psi, pays for T_s as well at a reference of kWaveAmplitude
   double tuned_feedforward = 0;
@@ -54,4 +54,4 @@ std::string SteadyStateText(const TrackingStudy& study);
 // Keys of [reference] for the wave.
 std::string WaveReference(const std::string& kind, double frequency);
 
-}  // namespace hydro
+}  // namespace hydro::experiments

@@ -11,13 +11,13 @@
 #include "launch/doctor/doctor_facts.h"
 #include "settings/stack_config.h"
 
-namespace hydro {
+namespace hydro::launch {
 namespace {
 
 // What the checks of real time go by where no configuration says it; that of config/realtime.toml.
 constexpr int kUsualPriority = 80;
 
-bool IsOf(const ProcessSection& process, const std::string& host) {
+bool IsOf(const settings::ProcessSection& process, const std::string& host) {
   return host.empty() || process.host.empty() || process.host == host;
 }
 
@@ -25,18 +25,18 @@ DoctorTask TaskOf(const std::string& config_file, const std::vector<std::string>
                   const std::string& host) {
   DoctorTask task;
   if (config_file.empty()) {
-    task.url = ParseUdpmUrl(BusSection().url);
+    task.url = bus::ParseUdpmUrl(settings::BusSection().url);
     task.priority = kUsualPriority;
     return task;
   }
-  const StackConfig config = LoadStackConfig(config_file, overrides);
+  const settings::StackConfig config = settings::LoadStackConfig(config_file, overrides);
   task.config = config_file;
-  task.url = ParseUdpmUrl(config.bus.url);
+  task.url = bus::ParseUdpmUrl(config.bus.url);
   task.channel_suffix = config.bus.channel_suffix;
   task.open_network = task.url.ttl > 0 && config.bus.key_file.empty();
-  if (config.time.mode == TimeMode::kRealtime) task.stale_input_s = config.limits.stale_input_s;
+  if (config.time.mode == settings::TimeMode::kRealtime) task.stale_input_s = config.limits.stale_input_s;
   std::set<std::string> hosts;
-  for (const ProcessSection& process : config.processes) {
+  for (const settings::ProcessSection& process : config.processes) {
     hosts.insert(process.host);
     if (!IsOf(process, host)) continue;
     task.priority = std::max(task.priority, process.priority);
@@ -83,4 +83,4 @@ int RunDoctor(const std::string& config_file, const std::vector<std::string>& ov
   return Problems(findings) == 0 ? 0 : 1;
 }
 
-}  // namespace hydro
+}  // namespace hydro::launch

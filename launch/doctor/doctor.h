@@ -13,7 +13,7 @@
 
 #include "bus/udpm_url.h"
 
-namespace hydro {
+namespace hydro::launch {
 
 struct Finding {
   std::string check;  // what was looked at, e.g. "multicast route"
@@ -24,7 +24,7 @@ struct Finding {
 
 // What the stack asks of the machine.
 struct DoctorTask {
-  UdpmUrl url;
+  bus::UdpmUrl url;
   std::string channel_suffix;
   bool several_hosts = false;
   bool open_network = false;  // messages may come from other hosts, and nothing authenticates them
@@ -92,4 +92,4 @@ int Problems(const std::vector<Finding>& findings);
 int RunDoctor(const std::string& config_file, const std::vector<std::string>& overrides,
               const std::string& host);
 
-}  // namespace hydro
+}  // namespace hydro::launch

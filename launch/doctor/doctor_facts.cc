@@ -20,7 +20,7 @@
 #include "bus/multicast_self_test.h"
 #include "bus/udpm_bus.h"
 
-namespace hydro {
+namespace hydro::launch {
 namespace {
 
 namespace fs = std::filesystem;
@@ -135,10 +135,10 @@ void ReadClock(MachineFacts* facts) {
 
 // Who reports on its loop is named; its messages may carry a seal behind them (a stack with a key).
 void Listen(const DoctorTask& task, MachineFacts* facts) {
-  const std::string statistics = Channels().loop_statistics;
+  const std::string statistics = bus::Channels().loop_statistics;
   std::map<std::string, std::set<std::string>> stacks;
-  UdpmBus bus(task.url.ToString());
-  bus.SubscribeAll([&](const RawMessage& message) {
+  bus::UdpmBus bus(task.url.ToString());
+  bus.SubscribeAll([&](const bus::RawMessage& message) {
     if (!message.channel.starts_with("HYDRO_")) ++facts->other_messages;
     loop_statistics_t report;
     if (!message.channel.starts_with(statistics) || report.decode(message.data, 0, message.size) < 0) return;
@@ -159,12 +159,12 @@ MachineFacts GatherFacts(const DoctorTask& task) {
   facts.routes = TextOf("/proc/net/route");
   facts.interfaces = Interfaces();
   facts.firewall = Firewall();
-  facts.receive_buffer_asked = task.url.recv_buf_size > 0 ? task.url.recv_buf_size : kReceiveBufferBytes;
+  facts.receive_buffer_asked = task.url.recv_buf_size > 0 ? task.url.recv_buf_size : bus::kReceiveBufferBytes;
   facts.receive_buffer_bytes = ReceiveBuffer(facts.receive_buffer_asked);
   try {
-    TestMulticast(task.url);
+    bus::TestMulticast(task.url);
     Listen(task, &facts);
-  } catch (const BusError& error) {
+  } catch (const bus::BusError& error) {
     facts.self_test_error = error.what();
   }
   facts.rtprio_limit = LimitOf(RLIMIT_RTPRIO);
@@ -184,4 +184,4 @@ MachineFacts GatherFacts(const DoctorTask& task) {
   return facts;
 }
 
-}  // namespace hydro
+}  // namespace hydro::launch

@@ -3,9 +3,9 @@
 
 #include "launch/doctor/doctor.h"
 
-namespace hydro {
+namespace hydro::launch {
 
 // Takes two seconds, for which it listens on the port; up to four where multicast does not come back.
 MachineFacts GatherFacts(const DoctorTask& task);
 
-}  // namespace hydro
+}  // namespace hydro::launch

@@ -5,7 +5,7 @@
 
 #include "launch/doctor/doctor.h"
 
-namespace hydro {
+namespace hydro::launch {
 namespace {
 
 constexpr char kNotAsked[] = "no process here asks for a priority";
@@ -122,4 +122,4 @@ std::vector<Finding> DiagnoseMachine(const DoctorTask& task, const MachineFacts&
           ClockFinding(task, facts)};
 }
 
-}  // namespace hydro
+}  // namespace hydro::launch

@@ -5,7 +5,7 @@
 #include "launch/doctor/doctor.h"
 #include "launch/doctor/multicast_route.h"
 
-namespace hydro {
+namespace hydro::launch {
 namespace {
 
 const NetworkInterface* Find(const MachineFacts& facts, const std::string& name) {
@@ -163,7 +163,7 @@ Finding SnoopingFinding(const DoctorTask& task, const MachineFacts& facts) {
 Finding ReachFinding(const DoctorTask& task) {
   constexpr char kCheck[] = "ttl and hosts";
   if (task.several_hosts && task.url.ttl == 0) {
-    UdpmUrl far = task.url;
+    bus::UdpmUrl far = task.url;
     far.ttl = 1;
     return {kCheck, false, "[[process]] names several hosts, and ttl=0 leaves none of them",
             fmt::format("sed -i 's|^ *url *=.*|url = \"{}\"|' {}", far.ToString(), task.config)};
@@ -188,4 +188,4 @@ std::vector<Finding> DiagnoseNetwork(const DoctorTask& task, const MachineFacts&
           ReachFinding(task),        SnoopingFinding(task, facts), NeighbourFinding(task, facts)};
 }
 
-}  // namespace hydro
+}  // namespace hydro::launch

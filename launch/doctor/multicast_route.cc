@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <sstream>
 
-namespace hydro {
+namespace hydro::launch {
 namespace {
 
 // linux/route.h, which clashes with the C library's.
@@ -49,4 +49,4 @@ std::optional<MulticastRoute> FindMulticastRoute(const std::string& routes, cons
   return best;
 }
 
-}  // namespace hydro
+}  // namespace hydro::launch

@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-namespace hydro {
+namespace hydro::launch {
 
 struct MulticastRoute {
   std::string interface;
@@ -15,4 +15,4 @@ struct MulticastRoute {
 // none or it refuses.
 std::optional<MulticastRoute> FindMulticastRoute(const std::string& routes, const std::string& group);
 
-}  // namespace hydro
+}  // namespace hydro::launch

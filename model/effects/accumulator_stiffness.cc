@@ -7,7 +7,7 @@
 
 #include "model/effects/effect.h"
 
-namespace hydro {
+namespace hydro::model {
 
 namespace {
 
@@ -56,4 +56,4 @@ CatalogueEntry AccumulatorStiffness() {
           MakeEffect<Accumulator>};
 }
 
-}  // namespace hydro
+}  // namespace hydro::model

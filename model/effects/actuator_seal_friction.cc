@@ -6,7 +6,7 @@
 
 #include "model/effects/effect.h"
 
-namespace hydro {
+namespace hydro::model {
 
 namespace {
 
@@ -81,4 +81,4 @@ CatalogueEntry ActuatorSealFriction() {
           MakeEffect<SealFriction>};
 }
 
-}  // namespace hydro
+}  // namespace hydro::model

@@ -6,7 +6,7 @@
 
 #include "model/effects/effect.h"
 
-namespace hydro {
+namespace hydro::model {
 
 namespace {
 
@@ -80,4 +80,4 @@ CatalogueEntry AmpDelay() {
           }};
 }
 
-}  // namespace hydro
+}  // namespace hydro::model

@@ -3,7 +3,7 @@
 
 #include "model/effects/effect.h"
 
-namespace hydro {
+namespace hydro::model {
 
 namespace {
 
@@ -54,4 +54,4 @@ CatalogueEntry AmpLag() {
           MakeEffect<Lag>};
 }
 
-}  // namespace hydro
+}  // namespace hydro::model

@@ -7,7 +7,7 @@
 
 #include "model/effects/effect.h"
 
-namespace hydro {
+namespace hydro::model {
 
 namespace {
 
@@ -78,4 +78,4 @@ CatalogueEntry ArmFlexure() {
           MakeEffect<Flexure>};
 }
 
-}  // namespace hydro
+}  // namespace hydro::model

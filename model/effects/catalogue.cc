@@ -8,7 +8,7 @@
 #include "model/effects/effect.h"
 #include "model/parameter_info.h"
 
-namespace hydro {
+namespace hydro::model {
 
 CatalogueEntry AccumulatorStiffness();
 CatalogueEntry ActuatorSealFriction();
@@ -121,4 +121,4 @@ const EffectInfo* FindEffect(const std::string& id) {
   return nullptr;
 }
 
-}  // namespace hydro
+}  // namespace hydro::model

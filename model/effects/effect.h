@@ -22,7 +22,7 @@
 #include "model/state.h"
 #include "model/terms.h"
 
-namespace hydro {
+namespace hydro::model {
 
 // The bound of a parameter that has none.
 inline constexpr double kUnbounded = std::numeric_limits<double>::infinity();
@@ -255,4 +255,4 @@ struct CatalogueEntry {
 // is found at the first use.
 bool AddToCatalogue(CatalogueEntry entry);
 
-}  // namespace hydro
+}  // namespace hydro::model

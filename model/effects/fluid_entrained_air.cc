@@ -8,7 +8,7 @@
 
 #include "model/effects/effect.h"
 
-namespace hydro {
+namespace hydro::model {
 
 namespace {
 
@@ -68,4 +68,4 @@ CatalogueEntry FluidEntrainedAir() {
           MakeEffect<EntrainedAir>};
 }
 
-}  // namespace hydro
+}  // namespace hydro::model

@@ -5,7 +5,7 @@
 
 #include "model/effects/effect.h"
 
-namespace hydro {
+namespace hydro::model {
 
 namespace {
 
@@ -33,4 +33,4 @@ CatalogueEntry FluidWarming() {
           MakeEffect<Warming>};
 }
 
-}  // namespace hydro
+}  // namespace hydro::model

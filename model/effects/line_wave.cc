@@ -12,7 +12,7 @@
 
 #include "model/effects/effect.h"
 
-namespace hydro {
+namespace hydro::model {
 
 namespace {
 
@@ -107,4 +107,4 @@ CatalogueEntry LineWave() {
       MakeEffect<Wave>};
 }
 
-}  // namespace hydro
+}  // namespace hydro::model

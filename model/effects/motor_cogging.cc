@@ -6,7 +6,7 @@
 
 #include "model/effects/effect.h"
 
-namespace hydro {
+namespace hydro::model {
 
 namespace {
 
@@ -55,4 +55,4 @@ CatalogueEntry MotorCogging() {
       MakeEffect<Cogging>};
 }
 
-}  // namespace hydro
+}  // namespace hydro::model

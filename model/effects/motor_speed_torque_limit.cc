@@ -8,7 +8,7 @@
 
 #include "model/effects/effect.h"
 
-namespace hydro {
+namespace hydro::model {
 
 namespace {
 
@@ -97,4 +97,4 @@ CatalogueEntry MotorSpeedTorqueLimit() {
           MakeEffect<SpeedTorqueLimit>};
 }
 
-}  // namespace hydro
+}  // namespace hydro::model

@@ -5,7 +5,7 @@
 
 #include "model/effects/effect.h"
 
-namespace hydro {
+namespace hydro::model {
 
 namespace {
 
@@ -32,4 +32,4 @@ CatalogueEntry PumpFlowRipple() {
       MakeEffect<FlowRipple>};
 }
 
-}  // namespace hydro
+}  // namespace hydro::model

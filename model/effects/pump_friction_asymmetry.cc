@@ -4,7 +4,7 @@
 
 #include "model/effects/effect.h"
 
-namespace hydro {
+namespace hydro::model {
 
 namespace {
 
@@ -30,4 +30,4 @@ CatalogueEntry PumpFrictionAsymmetry() {
       MakeEffect<FrictionAsymmetry>};
 }
 
-}  // namespace hydro
+}  // namespace hydro::model

@@ -3,7 +3,7 @@
 
 #include "model/effects/effect.h"
 
-namespace hydro {
+namespace hydro::model {
 
 namespace {
 
@@ -28,4 +28,4 @@ CatalogueEntry PumpPressureFriction() {
           MakeEffect<PressureFriction>};
 }
 
-}  // namespace hydro
+}  // namespace hydro::model

@@ -2,7 +2,7 @@
 
 #include "model/effects/effect.h"
 
-namespace hydro {
+namespace hydro::model {
 
 namespace {
 
@@ -27,4 +27,4 @@ CatalogueEntry PumpQuadraticDrag() {
           MakeEffect<QuadraticDrag>};
 }
 
-}  // namespace hydro
+}  // namespace hydro::model

@@ -6,7 +6,7 @@
 
 #include "model/effects/effect.h"
 
-namespace hydro {
+namespace hydro::model {
 
 namespace {
 
@@ -46,4 +46,4 @@ CatalogueEntry PumpStribeck() {
       MakeEffect<Stribeck>};
 }
 
-}  // namespace hydro
+}  // namespace hydro::model

@@ -7,7 +7,7 @@
 
 #include "model/effects/effect.h"
 
-namespace hydro {
+namespace hydro::model {
 
 namespace {
 
@@ -37,4 +37,4 @@ CatalogueEntry PumpTurbulentLeakage() {
           MakeEffect<TurbulentLeakage>};
 }
 
-}  // namespace hydro
+}  // namespace hydro::model

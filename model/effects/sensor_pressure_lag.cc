@@ -3,7 +3,7 @@
 
 #include "model/effects/effect.h"
 
-namespace hydro {
+namespace hydro::model {
 
 namespace {
 
@@ -46,4 +46,4 @@ CatalogueEntry SensorPressureLag() {
           MakeEffect<PressureLag>};
 }
 
-}  // namespace hydro
+}  // namespace hydro::model

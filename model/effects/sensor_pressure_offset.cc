@@ -2,7 +2,7 @@
 
 #include "model/effects/effect.h"
 
-namespace hydro {
+namespace hydro::model {
 
 namespace {
 
@@ -28,4 +28,4 @@ CatalogueEntry SensorPressureOffset() {
           MakeEffect<PressureOffset>};
 }
 
-}  // namespace hydro
+}  // namespace hydro::model

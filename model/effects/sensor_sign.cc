@@ -3,7 +3,7 @@
 #include "model/effects/effect.h"
 #include "model/effects/sensor_signal.h"
 
-namespace hydro {
+namespace hydro::model {
 
 namespace {
 
@@ -34,4 +34,4 @@ CatalogueEntry SensorSign() {
           }};
 }
 
-}  // namespace hydro
+}  // namespace hydro::model

@@ -7,7 +7,7 @@
 #include "model/actuator.h"
 #include "model/description.h"
 
-namespace hydro {
+namespace hydro::model {
 
 enum class Signal { kSpeed, kAngle, kArm, kPressure1, kPressure2 };
 
@@ -48,4 +48,4 @@ void ChangeSignal(Signal signal, const MeasurementOf<T>& source, MeasurementOf<T
   }
 }
 
-}  // namespace hydro
+}  // namespace hydro::model

@@ -4,7 +4,7 @@
 #include "model/effects/effect.h"
 #include "model/effects/sensor_signal.h"
 
-namespace hydro {
+namespace hydro::model {
 
 namespace {
 
@@ -53,4 +53,4 @@ CatalogueEntry SensorSkew() {
           }};
 }
 
-}  // namespace hydro
+}  // namespace hydro::model

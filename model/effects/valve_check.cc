@@ -3,7 +3,7 @@
 
 #include "model/effects/effect.h"
 
-namespace hydro {
+namespace hydro::model {
 
 namespace {
 
@@ -75,4 +75,4 @@ CatalogueEntry ValveCheck() {
           MakeEffect<Check>};
 }
 
-}  // namespace hydro
+}  // namespace hydro::model

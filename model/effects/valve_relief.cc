@@ -3,7 +3,7 @@
 
 #include "model/effects/effect.h"
 
-namespace hydro {
+namespace hydro::model {
 
 namespace {
 
@@ -64,4 +64,4 @@ CatalogueEntry ValveRelief() {
           MakeEffect<Relief>};
 }
 
-}  // namespace hydro
+}  // namespace hydro::model

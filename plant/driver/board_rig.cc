@@ -7,16 +7,16 @@
 
 #include "settings/toml/section_reader.h"
 
-namespace hydro {
+namespace hydro::plant {
 namespace {
 
-double TerminalVoltage(const AmplifierSection& amplifier, double voltage) {
+double TerminalVoltage(const settings::AmplifierSection& amplifier, double voltage) {
   return (voltage - amplifier.offset) / amplifier.scale;
 }
 
 }  // namespace
 
-BoardRig::BoardRig(const StackConfig& config, const Clock& clock)
+BoardRig::BoardRig(const settings::StackConfig& config, const bus::Clock& clock)
     : amplifier_(config.driver->voltage),
       board_(config.file, config.driver->device, config.driver->settle_ns),
       output_(board_.AnalogOutput("driver.voltage", amplifier_)),
@@ -27,10 +27,10 @@ BoardRig::BoardRig(const StackConfig& config, const Clock& clock)
   const ConverterRange& range = output_.converter;
   const double zero_V = TerminalVoltage(amplifier_, 0);
   if (zero_V < range.minimum_V || zero_V > range.maximum_V) {
-    throw KeyError(config.file, "driver.voltage.offset", ShortestNumber(amplifier_.offset),
-                   "one with which zero volts are within the output's range, " +
-                       ShortestNumber(range.minimum_V) + " to " + ShortestNumber(range.maximum_V) +
-                       " V at the terminal");
+    throw settings::KeyError(config.file, "driver.voltage.offset", ShortestNumber(amplifier_.offset),
+                             "one with which zero volts are within the output's range, " +
+                                 ShortestNumber(range.minimum_V) + " to " + ShortestNumber(range.maximum_V) +
+                                 " V at the terminal");
   }
   const auto [reach_low, reach_high] = std::minmax({amplifier_.scale * range.minimum_V + amplifier_.offset,
                                                     amplifier_.scale * range.maximum_V + amplifier_.offset});
@@ -62,8 +62,8 @@ BoardRig::~BoardRig() {
   guardian_->Dismiss();
 }
 
-Measurement BoardRig::Read(int64_t /*tick*/) {
-  const Measurement measured = sensors_.Read();
+model::Measurement BoardRig::Read(int64_t /*tick*/) {
+  const model::Measurement measured = sensors_.Read();
   faults_.clear();
   for (const BoardSensor* sensor : sensors_.all()) {
     if (sensor->fault()) faults_.push_back(*sensor->fault());
@@ -82,4 +82,4 @@ double BoardRig::Drive(double voltage) {
   return voltage;
 }
 
-}  // namespace hydro
+}  // namespace hydro::plant

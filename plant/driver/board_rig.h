@@ -13,19 +13,19 @@
 #include "plant/rig.h"
 #include "settings/stack_config.h"
 
-namespace hydro {
+namespace hydro::plant {
 
 class BoardRig : public Rig {
  public:
   // Opens the board and checks the channels that [driver] names; then the output is at zero, and goes to zero
   // on every way out of the process (zero_output.h, zero_guardian.h). Throws InputError when the board does
   // not have what the configuration names, RigError when it does not take the zero.
-  BoardRig(const StackConfig& config, const Clock& clock);
+  BoardRig(const settings::StackConfig& config, const bus::Clock& clock);
   // Zero, then closes the board.
   ~BoardRig() override;
 
   std::string role() const override { return "driver"; }
-  Measurement Read(int64_t tick) override;
+  model::Measurement Read(int64_t tick) override;
   const std::vector<RigFault>& faults() const override { return faults_; }
   // Changes the watchdog line once the board has taken the voltage.
   double Drive(double voltage) override;
@@ -34,7 +34,7 @@ class BoardRig : public Rig {
   const std::string& board_name() const { return board_.name(); }
 
  private:
-  AmplifierSection amplifier_;
+  settings::AmplifierSection amplifier_;
   ComediBoard board_;
   BoardChannel output_;
   std::optional<BoardChannel> watchdog_;
@@ -47,4 +47,4 @@ class BoardRig : public Rig {
   std::vector<RigFault> faults_;
 };
 
-}  // namespace hydro
+}  // namespace hydro::plant

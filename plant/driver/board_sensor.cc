@@ -2,12 +2,12 @@
 
 #include <spdlog/fmt/fmt.h>
 
-namespace hydro {
+namespace hydro::plant {
 
-using Source = SensorSection::Source;
+using Source = settings::SensorSection::Source;
 
-BoardSensor::BoardSensor(ComediBoard& board, const Clock& clock, const std::string& name,
-                         const SensorSection& section, const BoardSensor* angle)
+BoardSensor::BoardSensor(ComediBoard& board, const bus::Clock& clock, const std::string& name,
+                         const settings::SensorSection& section, const BoardSensor* angle)
     : board_(board),
       clock_(clock),
       name_(name),
@@ -44,7 +44,7 @@ double BoardSensor::Signal() {
 
 uint32_t BoardSensor::Code() {
   const auto now = clock_.Now();
-  elapsed_s_ = read_at_ ? ToSeconds(now - *read_at_) : 0;
+  elapsed_s_ = read_at_ ? bus::ToSeconds(now - *read_at_) : 0;
   read_at_ = now;
   return board_.Read(channel_);
 }
@@ -92,4 +92,4 @@ void BoardSensor::Judge(bool good) {
   }
 }
 
-}  // namespace hydro
+}  // namespace hydro::plant

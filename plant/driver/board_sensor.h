@@ -11,14 +11,14 @@
 #include "plant/rig.h"
 #include "settings/driver_section.h"
 
-namespace hydro {
+namespace hydro::plant {
 
 class BoardSensor {
  public:
   // `name`: of its section, e.g. "p1". `angle`: the sensor whose rate this one is, for source "derivative";
   // it must outlive this one and be read before it. Throws InputError when the board has no such channel.
-  BoardSensor(ComediBoard& board, const Clock& clock, const std::string& name, const SensorSection& section,
-              const BoardSensor* angle = nullptr);
+  BoardSensor(ComediBoard& board, const bus::Clock& clock, const std::string& name,
+              const settings::SensorSection& section, const BoardSensor* angle = nullptr);
 
   // The signal now. Rates and low passes take the time since the last reading from the clock, right beside
   // the reading itself, so that a late wake-up makes no false speed. NaN: not measured, or not to be
@@ -33,7 +33,7 @@ class BoardSensor {
 
   // The last reading, for a person.
   const std::string& name() const { return name_; }
-  const SensorSection& section() const { return section_; }
+  const settings::SensorSection& section() const { return section_; }
   const BoardChannel& channel() const { return channel_; }
   uint32_t code() const { return code_; }  // what the board said
   double unfiltered() const { return unfiltered_; }
@@ -46,15 +46,15 @@ class BoardSensor {
   void Judge(bool good);
 
   ComediBoard& board_;
-  const Clock& clock_;
+  const bus::Clock& clock_;
   std::string name_;
-  SensorSection section_;
+  settings::SensorSection section_;
   const BoardSensor* angle_;
   BoardChannel channel_;
   EncoderCount count_{0};
   Derivative derivative_;
   LowPass low_pass_;
-  std::optional<Clock::TimePoint> read_at_;
+  std::optional<bus::Clock::TimePoint> read_at_;
   double elapsed_s_ = 0;  // between the last two readings; of a rate, those of its angle
   uint32_t code_ = 0;
   double unfiltered_ = NAN;
@@ -65,4 +65,4 @@ class BoardSensor {
   int good_readings_ = kGoodReadings;
 };
 
-}  // namespace hydro
+}  // namespace hydro::plant

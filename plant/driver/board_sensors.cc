@@ -1,8 +1,9 @@
 #include "plant/driver/board_sensors.h"
 
-namespace hydro {
+namespace hydro::plant {
 
-BoardSensors::BoardSensors(ComediBoard& board, const DriverSection& section, const Clock& clock)
+BoardSensors::BoardSensors(ComediBoard& board, const settings::DriverSection& section,
+                           const bus::Clock& clock)
     : p1_(board, clock, "p1", section.p1),
       p2_(board, clock, "p2", section.p2),
       motor_angle_(board, clock, "motor_angle", section.motor_angle),
@@ -10,8 +11,8 @@ BoardSensors::BoardSensors(ComediBoard& board, const DriverSection& section, con
       arm_angle_(board, clock, "arm_angle", section.arm_angle),
       arm_speed_(board, clock, "arm_speed", section.arm_speed, &arm_angle_) {}
 
-Measurement BoardSensors::Read() {
-  Measurement measured;
+model::Measurement BoardSensors::Read() {
+  model::Measurement measured;
   measured.p1 = p1_.Read();
   measured.p2 = p2_.Read();
   measured.motor_angle = motor_angle_.Read();
@@ -21,4 +22,4 @@ Measurement BoardSensors::Read() {
   return measured;
 }
 
-}  // namespace hydro
+}  // namespace hydro::plant

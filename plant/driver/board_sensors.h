@@ -7,15 +7,15 @@
 #include "model/actuator.h"
 #include "plant/driver/board_sensor.h"
 
-namespace hydro {
+namespace hydro::plant {
 
 class BoardSensors {
  public:
   // Throws InputError when the board lacks a channel.
-  BoardSensors(ComediBoard& board, const DriverSection& section, const Clock& clock);
+  BoardSensors(ComediBoard& board, const settings::DriverSection& section, const bus::Clock& clock);
 
   // Reads every input once. Throws RigError.
-  Measurement Read();
+  model::Measurement Read();
 
   std::array<const BoardSensor*, 6> all() const {
     return {&p1_, &p2_, &motor_angle_, &motor_speed_, &arm_angle_, &arm_speed_};
@@ -30,4 +30,4 @@ class BoardSensors {
   BoardSensor arm_speed_;
 };
 
-}  // namespace hydro
+}  // namespace hydro::plant

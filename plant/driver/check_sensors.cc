@@ -8,11 +8,11 @@
 
 #include "process/stop_signal.h"
 
-namespace hydro {
+namespace hydro::plant {
 namespace {
 
 using namespace std::chrono_literals;
-using Source = SensorSection::Source;
+using Source = settings::SensorSection::Source;
 
 // Read more often than shown, so that low passes and rates are those of a run.
 constexpr auto kReadPeriod = 5ms;
@@ -42,24 +42,24 @@ std::string DescribeReading(const BoardSensor& sensor, double value) {
   return fmt::format("{:<12} {:<18} {:>10} {:>11} {:>18}{}", sensor.name(), from, code, volts, signal, fault);
 }
 
-int CheckSensors(const StackConfig& config, const Clock& clock) {
+int CheckSensors(const settings::StackConfig& config, const bus::Clock& clock) {
   ComediBoard board(config.file, config.driver->device, config.driver->settle_ns);
   BoardSensors sensors(board, *config.driver, clock);
   std::printf("%s: sensors only, the output is not touched\n", board.name().c_str());
   const auto start = clock.Now();
-  const auto duration = FromSeconds(config.time.duration_s);
+  const auto duration = bus::FromSeconds(config.time.duration_s);
   auto next_table = start + kTablePeriod;
   bool fault = false;
   for (bool last = false; !last;) {
-    const Measurement measured = sensors.Read();
+    const model::Measurement measured = sensors.Read();
     const std::array<double, 6> values = {measured.p1,          measured.p2,        measured.motor_angle,
                                           measured.motor_speed, measured.arm_angle, measured.arm_speed};
     const auto now = clock.Now();
-    last = StopSignal() != 0 || (config.time.duration_s > 0 && now - start >= duration);
+    last = process::StopSignal() != 0 || (config.time.duration_s > 0 && now - start >= duration);
     if (last || now >= next_table) {
       next_table = now + kTablePeriod;
       fault = false;
-      std::printf("after %.1f s\n", ToSeconds(now - start));
+      std::printf("after %.1f s\n", bus::ToSeconds(now - start));
       for (size_t i = 0; i < values.size(); ++i) {
         const BoardSensor& sensor = *sensors.all()[i];
         std::printf("%s\n", DescribeReading(sensor, values[i]).c_str());
@@ -72,4 +72,4 @@ int CheckSensors(const StackConfig& config, const Clock& clock) {
   return fault ? 1 : 0;
 }
 
-}  // namespace hydro
+}  // namespace hydro::plant

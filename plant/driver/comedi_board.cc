@@ -6,7 +6,7 @@
 #include "plant/rig.h"
 #include "settings/toml/section_reader.h"
 
-namespace hydro {
+namespace hydro::plant {
 namespace {
 
 // A signal that we catch may interrupt the driver's wait for a conversion: that is no error of the board.
@@ -30,15 +30,15 @@ RigError BoardError(const BoardChannel& channel, const char* what, const std::st
 
 std::string UpTo(int count) { return count == 1 ? "0" : "0 to " + std::to_string(count - 1); }
 
-unsigned Aref(AnalogReference reference) {
+unsigned Aref(settings::AnalogReference reference) {
   switch (reference) {
-    case AnalogReference::kGround:
+    case settings::AnalogReference::kGround:
       return AREF_GROUND;
-    case AnalogReference::kCommon:
+    case settings::AnalogReference::kCommon:
       return AREF_COMMON;
-    case AnalogReference::kDifferential:
+    case settings::AnalogReference::kDifferential:
       return AREF_DIFF;
-    case AnalogReference::kOther:
+    case settings::AnalogReference::kOther:
       break;
   }
   return AREF_OTHER;
@@ -55,14 +55,15 @@ ComediBoard::ComediBoard(const std::string& file, const std::string& device, int
     const int error = comedi_errno();
     std::string allowed = "a Comedi device that can be opened; comedi_board_info lists what a board has";
     if (error == EACCES) allowed += ", and the group of the device file may use it";
-    throw KeyError(file_, "driver.device", Quoted(device) + " (" + comedi_strerror(error) + ")", allowed);
+    throw settings::KeyError(file_, "driver.device", Quoted(device) + " (" + comedi_strerror(error) + ")",
+                             allowed);
   }
   if (const char* board = comedi_get_board_name(device_)) name_ += std::string(" (") + board + ")";
 }
 
 ComediBoard::~ComediBoard() { comedi_close(device_); }
 
-BoardChannel ComediBoard::Channel(const std::string& key, const BoardLine& line,
+BoardChannel ComediBoard::Channel(const std::string& key, const settings::BoardLine& line,
                                   std::initializer_list<int> types, const char* what) {
   BoardChannel channel;
   channel.key = key;
@@ -72,31 +73,33 @@ BoardChannel ComediBoard::Channel(const std::string& key, const BoardLine& line,
   const bool there = line.subdevice < subdevices;
   const int type = there ? comedi_get_subdevice_type(device_, channel.subdevice) : -1;
   if (std::find(types.begin(), types.end(), type) == types.end()) {
-    throw KeyError(file_, key + ".subdevice", std::to_string(line.subdevice),
-                   std::string("a subdevice of ") + name_ + " (0 to " + std::to_string(subdevices - 1) +
-                       ") that is " + what + "; comedi_board_info lists them");
+    throw settings::KeyError(file_, key + ".subdevice", std::to_string(line.subdevice),
+                             std::string("a subdevice of ") + name_ + " (0 to " +
+                                 std::to_string(subdevices - 1) + ") that is " + what +
+                                 "; comedi_board_info lists them");
   }
   const int channels = comedi_get_n_channels(device_, channel.subdevice);
   if (line.channel >= channels) {
-    throw KeyError(file_, key + ".channel", std::to_string(line.channel),
-                   UpTo(channels) + " (subdevice " + std::to_string(line.subdevice) + " of " + name_ + ")");
+    throw settings::KeyError(
+        file_, key + ".channel", std::to_string(line.channel),
+        UpTo(channels) + " (subdevice " + std::to_string(line.subdevice) + " of " + name_ + ")");
   }
   channel.converter.max_code = comedi_get_maxdata(device_, channel.subdevice, channel.channel);
   if (channel.converter.max_code == 0) {
-    throw KeyError(file_, key + ".channel", std::to_string(line.channel),
-                   "a channel whose resolution " + name_ + " tells");
+    throw settings::KeyError(file_, key + ".channel", std::to_string(line.channel),
+                             "a channel whose resolution " + name_ + " tells");
   }
   return channel;
 }
 
-void ComediBoard::AddRange(BoardChannel* channel, int range, AnalogReference reference) {
+void ComediBoard::AddRange(BoardChannel* channel, int range, settings::AnalogReference reference) {
   const int ranges = comedi_get_n_ranges(device_, channel->subdevice, channel->channel);
   const comedi_range* found = range < ranges ? comedi_get_range(device_, channel->subdevice, channel->channel,
                                                                 static_cast<unsigned>(range))
                                              : nullptr;
   if (found == nullptr || !(found->min < found->max)) {
-    throw KeyError(file_, channel->key + ".range", std::to_string(range),
-                   UpTo(ranges) + "; comedi_board_info lists what they are in V");
+    throw settings::KeyError(file_, channel->key + ".range", std::to_string(range),
+                             UpTo(ranges) + "; comedi_board_info lists what they are in V");
   }
   channel->range = static_cast<unsigned>(range);
   channel->reference = Aref(reference);
@@ -104,28 +107,28 @@ void ComediBoard::AddRange(BoardChannel* channel, int range, AnalogReference ref
   channel->converter.maximum_V = found->max;
 }
 
-BoardChannel ComediBoard::AnalogInput(const std::string& key, const SensorSection& section) {
+BoardChannel ComediBoard::AnalogInput(const std::string& key, const settings::SensorSection& section) {
   BoardChannel channel = Channel(key, section.line, {COMEDI_SUBD_AI}, "an analog input");
   AddRange(&channel, section.range, section.reference);
   return channel;
 }
 
-BoardChannel ComediBoard::Counter(const std::string& key, const BoardLine& line) {
+BoardChannel ComediBoard::Counter(const std::string& key, const settings::BoardLine& line) {
   return Channel(key, line, {COMEDI_SUBD_COUNTER}, "a counter");
 }
 
-BoardChannel ComediBoard::AnalogOutput(const std::string& key, const AmplifierSection& section) {
+BoardChannel ComediBoard::AnalogOutput(const std::string& key, const settings::AmplifierSection& section) {
   BoardChannel channel = Channel(key, section.line, {COMEDI_SUBD_AO}, "an analog output");
   AddRange(&channel, section.range, section.reference);
   return channel;
 }
 
-BoardChannel ComediBoard::DigitalOutput(const std::string& key, const BoardLine& line) {
+BoardChannel ComediBoard::DigitalOutput(const std::string& key, const settings::BoardLine& line) {
   BoardChannel channel = Channel(key, line, {COMEDI_SUBD_DO, COMEDI_SUBD_DIO}, "a digital output");
   if (comedi_get_subdevice_type(device_, channel.subdevice) == COMEDI_SUBD_DIO &&
       comedi_dio_config(device_, channel.subdevice, channel.channel, COMEDI_OUTPUT) < 0) {
-    throw KeyError(file_, key + ".channel", std::to_string(line.channel) + " (" + LastError() + ")",
-                   "a line that can be made an output");
+    throw settings::KeyError(file_, key + ".channel", std::to_string(line.channel) + " (" + LastError() + ")",
+                             "a line that can be made an output");
   }
   return channel;
 }
@@ -158,4 +161,4 @@ void ComediBoard::WriteLine(const BoardChannel& line, bool high) {
   if (result < 0) throw BoardError(line, "writing", name_);
 }
 
-}  // namespace hydro
+}  // namespace hydro::plant

@@ -10,7 +10,7 @@
 #include "plant/driver/signal_conditioning.h"
 #include "settings/driver_section.h"
 
-namespace hydro {
+namespace hydro::plant {
 
 // One channel of the board, checked to exist.
 struct BoardChannel {
@@ -32,10 +32,10 @@ class ComediBoard {
 
   // These check that the board has such a channel; they throw InputError that names `key`. The digital one
   // makes the line an output where it could be either.
-  BoardChannel AnalogInput(const std::string& key, const SensorSection& section);
-  BoardChannel Counter(const std::string& key, const BoardLine& line);
-  BoardChannel AnalogOutput(const std::string& key, const AmplifierSection& section);
-  BoardChannel DigitalOutput(const std::string& key, const BoardLine& line);
+  BoardChannel AnalogInput(const std::string& key, const settings::SensorSection& section);
+  BoardChannel Counter(const std::string& key, const settings::BoardLine& line);
+  BoardChannel AnalogOutput(const std::string& key, const settings::AmplifierSection& section);
+  BoardChannel DigitalOutput(const std::string& key, const settings::BoardLine& line);
 
   // An analog input's code or a counter's count. Throws RigError "board_error".
   uint32_t Read(const BoardChannel& channel);
@@ -47,9 +47,9 @@ class ComediBoard {
   const std::string& name() const { return name_; }  // "/dev/comedi0 (pci-6221)"
 
  private:
-  BoardChannel Channel(const std::string& key, const BoardLine& line, std::initializer_list<int> types,
-                       const char* what);
-  void AddRange(BoardChannel* channel, int range, AnalogReference reference);
+  BoardChannel Channel(const std::string& key, const settings::BoardLine& line,
+                       std::initializer_list<int> types, const char* what);
+  void AddRange(BoardChannel* channel, int range, settings::AnalogReference reference);
 
   std::string file_;
   std::string name_;
@@ -57,4 +57,4 @@ class ComediBoard {
   comedi_t* device_;
 };
 
-}  // namespace hydro
+}  // namespace hydro::plant

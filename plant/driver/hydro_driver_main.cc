@@ -6,11 +6,11 @@
 #include "process/stop_signal.h"
 
 int main(int argc, char** argv) {
-  hydro::CommandLine command_line(
+  hydro::settings::CommandLine command_line(
       "hydro-driver",
       "The real actuator behind a data-acquisition board (Comedi): publishes what "
       "the sensors read, puts out what the pressure loop commands.");
-  hydro::CommonOptions options;
+  hydro::settings::CommonOptions options;
   std::vector<std::string> expected;
   bool check_sensors = false;
   command_line.AddCommon(&options);
@@ -19,17 +19,19 @@ int main(int argc, char** argv) {
                        "print what the sensors read and drive nothing, for --duration or until stopped");
   if (const auto exit_code = command_line.Parse(argc, argv)) return *exit_code;
   if (check_sensors) {
-    return hydro::RunProgram("hydro-driver", [&] {
-      const hydro::StackConfig config = hydro::LoadStackConfig(options.config, options.overrides);
-      hydro::CheckDriver(config);
-      hydro::CatchStopSignals();
-      return hydro::CheckSensors(config, hydro::WallClock());
+    return hydro::settings::RunProgram("hydro-driver", [&] {
+      const hydro::settings::StackConfig config =
+          hydro::settings::LoadStackConfig(options.config, options.overrides);
+      hydro::settings::CheckDriver(config);
+      hydro::process::CatchStopSignals();
+      return hydro::plant::CheckSensors(config, hydro::bus::WallClock());
     });
   }
-  return hydro::RunProcess("hydro-driver", options,
-                           [&](hydro::Bus& bus, hydro::Clock& clock, const hydro::StackConfig& config) {
-                             hydro::CheckDriver(config);
-                             hydro::BoardRig rig(config, clock);
-                             return hydro::PlantApp(bus, clock, config, rig, expected, "hydro-driver").Run();
-                           });
+  return hydro::process::RunProcess(
+      "hydro-driver", options,
+      [&](hydro::bus::Bus& bus, hydro::bus::Clock& clock, const hydro::settings::StackConfig& config) {
+        hydro::settings::CheckDriver(config);
+        hydro::plant::BoardRig rig(config, clock);
+        return hydro::plant::PlantApp(bus, clock, config, rig, expected, "hydro-driver").Run();
+      });
 }

@@ -5,7 +5,7 @@
 #include <limits>
 #include <numbers>
 
-namespace hydro {
+namespace hydro::plant {
 
 double ConverterRange::Volts(uint32_t code) const {
   return minimum_V + (maximum_V - minimum_V) * static_cast<double>(code) / static_cast<double>(max_code);
@@ -59,4 +59,4 @@ double Derivative::Update(double input, double elapsed_s) {
   return rate_;
 }
 
-}  // namespace hydro
+}  // namespace hydro::plant

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <optional>
 
-namespace hydro {
+namespace hydro::plant {
 
 // A converter whose codes 0 to `max_code` stand for `minimum_V` to `maximum_V`, evenly, as Comedi's do.
 struct ConverterRange {
@@ -60,4 +60,4 @@ class Derivative {
   double rate_ = 0;
 };
 
-}  // namespace hydro
+}  // namespace hydro::plant

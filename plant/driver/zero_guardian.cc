@@ -12,7 +12,7 @@
 #include <stdexcept>
 #include <string>
 
-namespace hydro {
+namespace hydro::plant {
 namespace {
 
 constexpr char kDismissed = 'd';
@@ -87,4 +87,4 @@ void ZeroGuardian::Dismiss() {
   waitpid(pid_, nullptr, 0);
 }
 
-}  // namespace hydro
+}  // namespace hydro::plant

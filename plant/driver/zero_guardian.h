@@ -6,7 +6,7 @@
 
 #include "plant/driver/zero_output.h"
 
-namespace hydro {
+namespace hydro::plant {
 
 class ZeroGuardian {
  public:
@@ -29,4 +29,4 @@ class ZeroGuardian {
   int pipe_ = -1;
 };
 
-}  // namespace hydro
+}  // namespace hydro::plant

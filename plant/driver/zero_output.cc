@@ -6,7 +6,7 @@
 #include <cstdlib>
 #include <exception>
 
-namespace hydro {
+namespace hydro::plant {
 namespace {
 
 constexpr int kTries = 10;
@@ -106,4 +106,4 @@ void ArmZero(const ZeroOutput& output) {
 
 void DisarmZero() { armed.store(nullptr); }
 
-}  // namespace hydro
+}  // namespace hydro::plant

@@ -5,7 +5,7 @@
 
 #include <cstdint>
 
-namespace hydro {
+namespace hydro::plant {
 
 // Plain numbers, so that a signal handler or a forked child may use it: it allocates nothing, takes no lock
 // and calls only comedi_data_write, comedi_dio_write and comedi_errno. Of libcomedi 0.11 these fill a struct
@@ -34,4 +34,4 @@ struct ZeroOutput {
 void ArmZero(const ZeroOutput& output);
 void DisarmZero();
 
-}  // namespace hydro
+}  // namespace hydro::plant

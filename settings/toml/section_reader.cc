@@ -5,7 +5,7 @@
 
 #include "base/did_you_mean.h"
 
-namespace hydro {
+namespace hydro::settings {
 namespace {
 
 using Kind = TomlNode::Kind;
@@ -142,4 +142,4 @@ InputError SectionReader::Error(const std::string& key, const std::string& found
   return KeyError(node != nullptr ? node->place : table_->place, Dotted(key), found, allowed);
 }
 
-}  // namespace hydro
+}  // namespace hydro::settings

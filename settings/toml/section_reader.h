@@ -13,7 +13,7 @@
 #include "base/text_file.h"
 #include "settings/toml/toml_document.h"
 
-namespace hydro {
+namespace hydro::settings {
 
 // "place: key: found ..., allowed ...".
 InputError KeyError(const std::string& place, const std::string& key, const std::string& found,
@@ -100,4 +100,4 @@ bool SectionReader::Choice(const std::string& key, const std::vector<std::pair<s
   throw Error(key, node->Shown(), QuotedList(names));
 }
 
-}  // namespace hydro
+}  // namespace hydro::settings

@@ -7,7 +7,7 @@
 
 #include "base/text_file.h"
 
-namespace hydro {
+namespace hydro::settings {
 namespace {
 
 constexpr int kDeepest = 16;  // parts of a key; what is read here has up to three
@@ -176,4 +176,4 @@ TomlNode ParseToml(const std::string& text, const std::string& name) {
   }
 }
 
-}  // namespace hydro
+}  // namespace hydro::settings

@@ -7,7 +7,7 @@
 
 #include "base/input_error.h"
 
-namespace hydro {
+namespace hydro::settings {
 
 struct TomlMember;
 
@@ -51,4 +51,4 @@ TomlNode ParseToml(const std::string& text, const std::string& name);
 // one).
 std::string FormatToml(const TomlNode& table);
 
-}  // namespace hydro
+}  // namespace hydro::settings

@@ -7,7 +7,7 @@
 #include "base/text_file.h"
 #include "settings/toml/toml_document.h"
 
-namespace hydro {
+namespace hydro::settings {
 namespace {
 
 using Kind = TomlNode::Kind;
@@ -103,4 +103,4 @@ std::string FormatToml(const TomlNode& table) {
   return out;
 }
 
-}  // namespace hydro
+}  // namespace hydro::settings

@@ -28,7 +28,7 @@ TEST(TextFileTest, PrintableLines) {
   EXPECT_EQ(PrintableLines(""), "");
 }
 
-class TextFileFolderTest : public FolderTest {};
+class TextFileFolderTest : public settings::FolderTest {};
 
 // Tests that a file is not written over while it is read, whatever it is called; others and devices may be.
 TEST_F(TextFileFolderTest, CheckKeeps) {
@@ -36,14 +36,14 @@ TEST_F(TextFileFolderTest, CheckKeeps) {
   const std::string other = Write("b", "x");
   std::filesystem::create_symlink(file, folder_ / "link");
   for (const std::string& name : {file, (folder_ / "." / "a").string(), (folder_ / "link").string()}) {
-    EXPECT_THAT(InputErrorOf([&] {
+    EXPECT_THAT(settings::InputErrorOf([&] {
                   CheckKeeps(name, {other, file});
                 }),
                 HasSubstr(name + ": found the name of a file"));
   }
   for (const std::string& name :
        {std::string(), other, (folder_ / "none").string(), std::string("/dev/null")}) {
-    EXPECT_EQ(InputErrorOf([&] { CheckKeeps(name, {file, "", "/dev/null"}); }), "") << name;
+    EXPECT_EQ(settings::InputErrorOf([&] { CheckKeeps(name, {file, "", "/dev/null"}); }), "") << name;
   }
 }
 

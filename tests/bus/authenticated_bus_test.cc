@@ -11,7 +11,7 @@
 #include "bus/udpm_bus.h"
 #include "tests/free_udp_port.h"
 
-namespace hydro {
+namespace hydro::bus {
 namespace {
 
 using namespace std::chrono_literals;
@@ -156,4 +156,4 @@ TEST_F(AuthenticatedBusTest, RecordingIsRefused) {
 }
 
 }  // namespace
-}  // namespace hydro
+}  // namespace hydro::bus

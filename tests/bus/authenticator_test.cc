@@ -11,7 +11,7 @@
 
 #include "bus/authenticated_channels.h"
 
-namespace hydro {
+namespace hydro::bus {
 namespace {
 
 using namespace std::chrono_literals;
@@ -329,4 +329,4 @@ TEST(MessageSealTest, InputsDoNotRunTogether) {
 }
 
 }  // namespace
-}  // namespace hydro
+}  // namespace hydro::bus

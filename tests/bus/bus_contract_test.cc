@@ -16,7 +16,7 @@
 #include "hydro/state_t.hpp"
 #include "tests/free_udp_port.h"
 
-namespace hydro {
+namespace hydro::bus {
 namespace {
 
 using namespace std::chrono_literals;
@@ -323,4 +323,4 @@ INSTANTIATE_TEST_SUITE_P(
     [](const testing::TestParamInfo<Transport>& param) { return param.param.name; });
 
 }  // namespace
-}  // namespace hydro
+}  // namespace hydro::bus

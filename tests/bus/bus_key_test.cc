@@ -11,7 +11,7 @@
 
 #include "base/input_error.h"
 
-namespace hydro {
+namespace hydro::bus {
 namespace {
 
 using testing::HasSubstr;
@@ -128,4 +128,4 @@ TEST_F(BusKeyTest, MakesKeys) {
 }
 
 }  // namespace
-}  // namespace hydro
+}  // namespace hydro::bus

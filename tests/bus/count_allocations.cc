@@ -18,6 +18,6 @@ void* operator new(size_t size) {
 void operator delete(void* memory) noexcept { std::free(memory); }
 void operator delete(void* memory, size_t) noexcept { std::free(memory); }
 
-namespace hydro {
+namespace hydro::bus {
 int64_t AllocationCount() { return allocations; }
-}  // namespace hydro
+}  // namespace hydro::bus

@@ -3,9 +3,9 @@
 
 #include <cstdint>
 
-namespace hydro {
+namespace hydro::bus {
 
 // Calls of operator new since the program began.
 int64_t AllocationCount();
 
-}  // namespace hydro
+}  // namespace hydro::bus

@@ -7,7 +7,7 @@
 #include "hydro/state_t.hpp"
 #include "tests/bus/count_allocations.h"
 
-namespace hydro {
+namespace hydro::bus {
 namespace {
 
 using namespace std::chrono_literals;
@@ -121,4 +121,4 @@ TEST(InProcessBusTest, AllocatesNothingInTheSteadyState) {
 }
 
 }  // namespace
-}  // namespace hydro
+}  // namespace hydro::bus

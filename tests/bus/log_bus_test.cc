@@ -6,7 +6,7 @@
 #include "hydro/motor_command_t.hpp"
 #include "hydro/state_t.hpp"
 
-namespace hydro {
+namespace hydro::bus {
 namespace {
 
 using namespace std::chrono_literals;
@@ -146,4 +146,4 @@ TEST(LogBusTest, KeepsPaceOnAWallClock) {
 }
 
 }  // namespace
-}  // namespace hydro
+}  // namespace hydro::bus

@@ -6,7 +6,7 @@
 
 #include "bus/bus.h"
 
-namespace hydro {
+namespace hydro::bus {
 namespace {
 
 // Tests that a string length that no encoder writes (0, negative, beyond the message) makes a message
@@ -32,4 +32,4 @@ TEST(MalformedStringTest, BadLengthsAreRefused) {
 }
 
 }  // namespace
-}  // namespace hydro
+}  // namespace hydro::bus

@@ -5,7 +5,7 @@
 #include <limits>
 #include <vector>
 
-namespace hydro {
+namespace hydro::bus {
 namespace {
 
 using namespace std::chrono_literals;
@@ -127,4 +127,4 @@ TEST(SequenceMonitorTest, ExtremeNumbers) {
 }
 
 }  // namespace
-}  // namespace hydro
+}  // namespace hydro::bus

@@ -4,7 +4,7 @@
 
 #include <set>
 
-namespace hydro {
+namespace hydro::bus {
 namespace {
 
 // Tests that sessions differ and are never 0 on a wall clock, and are always 0 on a simulated one.
@@ -17,4 +17,4 @@ TEST(SessionTest, RandomOnAWallClock) {
 }
 
 }  // namespace
-}  // namespace hydro
+}  // namespace hydro::bus

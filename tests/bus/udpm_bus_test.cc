@@ -14,7 +14,7 @@
 #include "hydro/state_t.hpp"
 #include "tests/free_udp_port.h"
 
-namespace hydro {
+namespace hydro::bus {
 namespace {
 
 using namespace std::chrono_literals;
@@ -172,4 +172,4 @@ TEST(UdpmBusTest, SilenceIsABusError) {
 }
 
 }  // namespace
-}  // namespace hydro
+}  // namespace hydro::bus

@@ -14,7 +14,7 @@
 
 #include "tests/free_udp_port.h"
 
-namespace hydro {
+namespace hydro::bus {
 namespace {
 
 using namespace std::chrono_literals;
@@ -191,4 +191,4 @@ TEST(FragmentAssemblyTest, AnyOrder) {
 }
 
 }  // namespace
-}  // namespace hydro
+}  // namespace hydro::bus

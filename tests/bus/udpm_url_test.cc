@@ -5,7 +5,7 @@
 
 #include "base/input_error.h"
 
-namespace hydro {
+namespace hydro::bus {
 namespace {
 
 using testing::HasSubstr;
@@ -72,4 +72,4 @@ TEST(UdpmUrlTest, RefusesBadUrls) {
 }
 
 }  // namespace
-}  // namespace hydro
+}  // namespace hydro::bus

@@ -12,7 +12,7 @@
 #include "tests/diagnose/noisy_rig.h"
 #include "tests/table1.h"
 
-namespace hydro {
+namespace hydro::diagnose {
 namespace {
 
 using ::testing::ElementsAre;
@@ -24,7 +24,7 @@ using ::testing::UnorderedElementsAre;
 constexpr double kStep = 0.005;
 
 // A recorder's run: a clamped actuator at 200 Hz, its command never the same.
-MeasuredRun Recorded(double friction_per_psi = 0) {
+runs::MeasuredRun Recorded(double friction_per_psi = 0) {
   NoisyRig rig;
   rig.step = kStep;
   rig.model.parameters = testing::Table1();
@@ -32,12 +32,12 @@ MeasuredRun Recorded(double friction_per_psi = 0) {
   const auto waves = [](double t) {
     return 4 * std::sin(2 * std::numbers::pi * 0.7 * t) + 3 * std::sin(2 * std::numbers::pi * 1.9 * t + 1);
   };
-  return rig.Record("waves", Shaft::kClamped, 0.1, 25, false, waves).measured;
+  return rig.Record("waves", model::Shaft::kClamped, 0.1, 25, false, waves).measured;
 }
 
 // The channels come so much later.
-MeasuredRun Late(MeasuredRun run, const std::vector<SignalDelay>& delays) {
-  std::vector<SignalDelay> back;
+runs::MeasuredRun Late(runs::MeasuredRun run, const std::vector<runs::SignalDelay>& delays) {
+  std::vector<runs::SignalDelay> back;
   for (const auto& [signal, delay] : delays) back.emplace_back(signal, -delay);
   EXPECT_TRUE(RemoveDelays(back, &run));
   return run;
@@ -53,10 +53,10 @@ const ClockDelay* Of(const std::vector<ClockDelay>& clocks, const std::string& s
 // Tests that motor and command of a late clock are found with their delays and put back, whatever the model
 // has for friction.
 TEST(Alignment, FindsALateClock) {
-  const MeasuredRun whole = Recorded(0.0005);
-  MeasuredRun run = Late(
-      whole,
-      {{&MeasuredRun::voltage, 0.1}, {&MeasuredRun::motor_speed, 0.12}, {&MeasuredRun::motor_angle, 0.12}});
+  const runs::MeasuredRun whole = Recorded(0.0005);
+  runs::MeasuredRun run = Late(whole, {{&runs::MeasuredRun::voltage, 0.1},
+                                       {&runs::MeasuredRun::motor_speed, 0.12},
+                                       {&runs::MeasuredRun::motor_angle, 0.12}});
   const std::vector<ClockDelay> clocks = AlignClocks(testing::Table1(), &run);
   ASSERT_EQ(clocks.size(), 2u);
   const ClockDelay* const command = Of(clocks, "voltage");
@@ -74,8 +74,8 @@ TEST(Alignment, FindsALateClock) {
   EXPECT_GT(run.samples(), whole.samples() - 100);
 }
 
-void ExpectLeftAlone(const MeasuredRun& recorded, const char* what) {
-  MeasuredRun run = recorded;
+void ExpectLeftAlone(const runs::MeasuredRun& recorded, const char* what) {
+  runs::MeasuredRun run = recorded;
   EXPECT_THAT(AlignClocks(testing::Table1(), &run), IsEmpty()) << what;
   EXPECT_EQ(run.time, recorded.time) << what;
   EXPECT_EQ(run.voltage.values, recorded.voltage.values) << what;
@@ -86,36 +86,38 @@ void ExpectLeftAlone(const MeasuredRun& recorded, const char* what) {
 // Tests that what is on one clock, and lateness that an effect of the catalogue has a name for, is left as it
 // is.
 TEST(Alignment, LeavesTheRestToTheSearch) {
-  const MeasuredRun run = Recorded();
+  const runs::MeasuredRun run = Recorded();
   ExpectLeftAlone(run, "nothing");
-  ExpectLeftAlone(Late(run, {{&MeasuredRun::motor_speed, 0.05}}), "a late sensor of speed");
-  ExpectLeftAlone(Late(run, {{&MeasuredRun::p2, 0.05}}), "a late sensor of pressure");
-  ExpectLeftAlone(Late(run, {{&MeasuredRun::p1, 0.1}, {&MeasuredRun::p2, 0.1}}), "late pressures");
-  ExpectLeftAlone(Late(run, {{&MeasuredRun::voltage, 0.05}}), "a command recorded late");
-  ExpectLeftAlone(Late(run, {{&MeasuredRun::voltage, -0.05}}), "an amplifier's delay");
-  MeasuredRun blind = run;
+  ExpectLeftAlone(Late(run, {{&runs::MeasuredRun::motor_speed, 0.05}}), "a late sensor of speed");
+  ExpectLeftAlone(Late(run, {{&runs::MeasuredRun::p2, 0.05}}), "a late sensor of pressure");
+  ExpectLeftAlone(Late(run, {{&runs::MeasuredRun::p1, 0.1}, {&runs::MeasuredRun::p2, 0.1}}),
+                  "late pressures");
+  ExpectLeftAlone(Late(run, {{&runs::MeasuredRun::voltage, 0.05}}), "a command recorded late");
+  ExpectLeftAlone(Late(run, {{&runs::MeasuredRun::voltage, -0.05}}), "an amplifier's delay");
+  runs::MeasuredRun blind = run;
   blind.p1.values.clear();
   ExpectLeftAlone(blind, "one pressure only");
 }
 
 // Tests that pieces that were put on one clock are no surer than that.
 TEST(Alignment, TimingCountsAsNoise) {
-  const MeasuredRun run = Recorded();
+  const runs::MeasuredRun run = Recorded();
   std::vector<ClockDelay> clocks;
   const RunData plain = PrepareAligned(run, testing::Table1(), &clocks);
   EXPECT_THAT(clocks, IsEmpty());
-  EXPECT_EQ(plain.Find(Channel::kP2)->noise, PrepareRun(run, testing::Table1()).Find(Channel::kP2)->noise);
-  const RunData late = PrepareAligned(Late(run, {{&MeasuredRun::voltage, 0.1},
-                                                 {&MeasuredRun::motor_speed, 0.1},
-                                                 {&MeasuredRun::motor_angle, 0.1}}),
+  EXPECT_EQ(plain.Find(model::Channel::kP2)->noise,
+            PrepareRun(run, testing::Table1()).Find(model::Channel::kP2)->noise);
+  const RunData late = PrepareAligned(Late(run, {{&runs::MeasuredRun::voltage, 0.1},
+                                                 {&runs::MeasuredRun::motor_speed, 0.1},
+                                                 {&runs::MeasuredRun::motor_angle, 0.1}}),
                                       testing::Table1(), &clocks);
   EXPECT_EQ(clocks.size(), 2u);
-  EXPECT_GT(late.Find(Channel::kP2)->noise, 2 * plain.Find(Channel::kP2)->noise);
+  EXPECT_GT(late.Find(model::Channel::kP2)->noise, 2 * plain.Find(model::Channel::kP2)->noise);
 }
 
 // Tests the sentences on recordings that have little in them, or are not what they say.
 TEST(RecordingRemarks, SayWhatIsWrong) {
-  MeasuredRun run = Recorded();
+  runs::MeasuredRun run = Recorded();
   const RunData good = PrepareRun(run, testing::Table1());
   EXPECT_THAT(RecordingRemarks({}, {&good}, {}), IsEmpty());
 
@@ -130,4 +132,4 @@ TEST(RecordingRemarks, SayWhatIsWrong) {
 }
 
 }  // namespace
-}  // namespace hydro
+}  // namespace hydro::diagnose

@@ -15,36 +15,39 @@ namespace {
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
-std::vector<MeasuredRun> Measured(std::vector<RunData> data) {
-  std::vector<MeasuredRun> runs;
-  for (RunData& run : data) runs.push_back(std::move(run.measured));
+std::vector<runs::MeasuredRun> Measured(std::vector<diagnose::RunData> data) {
+  std::vector<runs::MeasuredRun> runs;
+  for (diagnose::RunData& run : data) runs.push_back(std::move(run.measured));
   return runs;
 }
 
-std::vector<MeasuredRun> RunsOf(const ModelDescription& truth) { return Measured(OneOfEach(truth, 0.5, 5)); }
+std::vector<runs::MeasuredRun> RunsOf(const model::ModelDescription& truth) {
+  return Measured(OneOfEach(truth, 0.5, 5));
+}
 
-ModelDescription Dragged() { return Table1With({{"pump.quadratic_drag", {{"k", 2e-4}}, {}}}); }
+model::ModelDescription Dragged() { return Table1With({{"pump.quadratic_drag", {{"k", 2e-4}}, {}}}); }
 
-std::string Json(const Diagnosis& d) { return ReportJson(d, "next.toml", 0); }
+std::string Json(const diagnose::Diagnosis& d) { return diagnose::ReportJson(d, "next.toml", 0); }
 
 // Some of the catalogue, for what does not depend on all of it.
-DiagnoseOptions Few() {
-  DiagnoseOptions options;
+diagnose::DiagnoseOptions Few() {
+  diagnose::DiagnoseOptions options;
   options.effects = {"pump.quadratic_drag", "pump.stribeck", "sensor.pressure_lag", "valve.relief"};
   options.free = {"k_1", "b", "T_s", "beta"};
   return options;
 }
 
 // The diagnosis that several tests look at: the drag is hidden.
-const Diagnosis& OfTheDrag() {
-  static const Diagnosis diagnosis = Diagnose(Table1With(), RunsOf(Dragged()), {}, {}, {});
+const diagnose::Diagnosis& OfTheDrag() {
+  static const diagnose::Diagnosis diagnosis =
+      diagnose::Diagnose(Table1With(), RunsOf(Dragged()), {}, {}, {});
   return diagnosis;
 }
 
 // Tests that a model which explains the runs is left as it is.
 TEST(Diagnose, NothingMissing) {
-  const Diagnosis d = Diagnose(Table1With(), RunsOf(Table1With()), {}, {}, {});
-  EXPECT_EQ(d.verdict, Verdict::kNothingMissing) << d.sentence;
+  const diagnose::Diagnosis d = diagnose::Diagnose(Table1With(), RunsOf(Table1With()), {}, {}, {});
+  EXPECT_EQ(d.verdict, diagnose::Verdict::kNothingMissing) << d.sentence;
   EXPECT_TRUE(d.effects.empty());
   EXPECT_TRUE(d.model.effects.empty());
   EXPECT_NEAR(d.held_out.after, 1, 0.05);
@@ -54,8 +57,8 @@ TEST(Diagnose, NothingMissing) {
 
 // Tests that a hidden effect is named, with its value within the interval and the gap closed.
 TEST(Diagnose, NamesAHiddenEffect) {
-  const Diagnosis& d = OfTheDrag();
-  EXPECT_EQ(d.verdict, Verdict::kNamed) << d.sentence;
+  const diagnose::Diagnosis& d = OfTheDrag();
+  EXPECT_EQ(d.verdict, diagnose::Verdict::kNamed) << d.sentence;
   ASSERT_EQ(d.effects.size(), 1) << d.sentence;
   EXPECT_EQ(d.effects[0].id, "pump.quadratic_drag");
   ASSERT_EQ(d.effects[0].parameters.size(), 1);
@@ -76,17 +79,17 @@ TEST(Diagnose, NamesAHiddenEffect) {
 
 // Tests that the model which it writes needs nothing more.
 TEST(Diagnose, ItsOwnModelNeedsNothing) {
-  const Diagnosis d = Diagnose(OfTheDrag().model, RunsOf(Dragged()), {}, {}, {});
-  EXPECT_EQ(d.verdict, Verdict::kNothingMissing) << d.sentence;
+  const diagnose::Diagnosis d = diagnose::Diagnose(OfTheDrag().model, RunsOf(Dragged()), {}, {}, {});
+  EXPECT_EQ(d.verdict, diagnose::Verdict::kNothingMissing) << d.sentence;
   EXPECT_EQ(d.model.effects.size(), 1);
 }
 
 // Tests that a wrong value is told as such, and found.
 TEST(Diagnose, WrongParameter) {
-  ModelDescription truth = Table1With();
+  model::ModelDescription truth = Table1With();
   truth.parameters.beta *= 0.8;
-  const Diagnosis d = Diagnose(Table1With(), RunsOf(truth), {}, {}, {});
-  EXPECT_EQ(d.verdict, Verdict::kParameters) << d.sentence;
+  const diagnose::Diagnosis d = diagnose::Diagnose(Table1With(), RunsOf(truth), {}, {}, {});
+  EXPECT_EQ(d.verdict, diagnose::Verdict::kParameters) << d.sentence;
   ASSERT_EQ(d.parameters.size(), 1) << d.sentence;
   EXPECT_EQ(d.parameters[0].fitted.name, "beta");
   EXPECT_NEAR(d.parameters[0].fitted.value, truth.parameters.beta, 0.02 * truth.parameters.beta);
@@ -97,32 +100,32 @@ TEST(Diagnose, WrongParameter) {
 
 // Tests that the report is the same to the bit for any number of threads.
 TEST(Diagnose, SameForAnyNumberOfThreads) {
-  DiagnoseOptions options = Few();
-  const std::string one = Json(Diagnose(Table1With(), RunsOf(Dragged()), {}, options, {}));
+  diagnose::DiagnoseOptions options = Few();
+  const std::string one = Json(diagnose::Diagnose(Table1With(), RunsOf(Dragged()), {}, options, {}));
   options.jobs = 2;
   EXPECT_EQ(Json(Diagnose(Table1With(), RunsOf(Dragged()), {}, options, {})), one);
 }
 
 // Tests that of a single run the last third is held out.
 TEST(Diagnose, SplitsASingleRun) {
-  std::vector<MeasuredRun> runs = Measured(ClampedPair(Dragged(), 0.9, 5));
+  std::vector<runs::MeasuredRun> runs = Measured(ClampedPair(Dragged(), 0.9, 5));
   runs.pop_back();
-  const Diagnosis d = Diagnose(Table1With(), runs, {}, Few(), {});
+  const diagnose::Diagnosis d = diagnose::Diagnose(Table1With(), runs, {}, Few(), {});
   EXPECT_THAT(d.runs, ElementsAre("clamped 0"));
   EXPECT_THAT(d.held_out_runs, ElementsAre("clamped 0, last third"));
   EXPECT_EQ(d.samples, 600);
-  EXPECT_EQ(d.verdict, Verdict::kNamed) << d.sentence;
+  EXPECT_EQ(d.verdict, diagnose::Verdict::kNamed) << d.sentence;
 }
 
 // Tests that runs that are held out are predicted, not fitted.
 TEST(Diagnose, HeldOutRuns) {
-  std::vector<MeasuredRun> runs = RunsOf(Dragged());
-  std::vector<MeasuredRun> held_out = {runs.back()};
+  std::vector<runs::MeasuredRun> runs = RunsOf(Dragged());
+  std::vector<runs::MeasuredRun> held_out = {runs.back()};
   runs.pop_back();
-  const Diagnosis d = Diagnose(Table1With(), runs, held_out, Few(), {});
+  const diagnose::Diagnosis d = diagnose::Diagnose(Table1With(), runs, held_out, Few(), {});
   EXPECT_EQ(d.runs.size(), 3);
   EXPECT_THAT(d.held_out_runs, ElementsAre("bypass 3"));
-  EXPECT_EQ(d.verdict, Verdict::kNamed) << d.sentence;
+  EXPECT_EQ(d.verdict, diagnose::Verdict::kNamed) << d.sentence;
   ASSERT_EQ(d.effects.size(), 1);
   EXPECT_EQ(d.effects[0].id, "pump.quadratic_drag");
   EXPECT_GT(d.held_out.before, d.held_out.after);
@@ -131,48 +134,49 @@ TEST(Diagnose, HeldOutRuns) {
 
 // Tests that only what is allowed is named.
 TEST(Diagnose, NamesOnlyWhatItMay) {
-  DiagnoseOptions options;
+  diagnose::DiagnoseOptions options;
   options.effects = {"sensor.pressure_lag", "valve.check"};
   options.free = {"k_1", "beta"};
-  const Diagnosis d = Diagnose(Table1With(), RunsOf(Dragged()), {}, options, {});
-  for (const Candidate& candidate : d.candidates) {
+  const diagnose::Diagnosis d = diagnose::Diagnose(Table1With(), RunsOf(Dragged()), {}, options, {});
+  for (const diagnose::Candidate& candidate : d.candidates) {
     EXPECT_TRUE(candidate.id.starts_with("parameter ") || candidate.id == "sensor.pressure_lag" ||
                 candidate.id == "valve.check")
         << candidate.id;
   }
-  for (const FoundEffect& effect : d.effects) EXPECT_NE(effect.id, "pump.quadratic_drag");
-  EXPECT_NE(d.verdict, Verdict::kNothingMissing);
+  for (const diagnose::FoundEffect& effect : d.effects) EXPECT_NE(effect.id, "pump.quadratic_drag");
+  EXPECT_NE(d.verdict, diagnose::Verdict::kNothingMissing);
 }
 
 // Tests that only the base parameters that are allowed are changed.
 TEST(Diagnose, FreesOnlyWhatItMay) {
-  ModelDescription truth = Table1With();
+  model::ModelDescription truth = Table1With();
   truth.parameters.b *= 1.5;
-  DiagnoseOptions options;
+  diagnose::DiagnoseOptions options;
   options.effects = {"sensor.pressure_gain"};
   options.free = {"b", "beta"};
-  const Diagnosis d = Diagnose(Table1With(), RunsOf(truth), {}, options, {});
-  EXPECT_EQ(d.verdict, Verdict::kParameters) << d.sentence;
+  const diagnose::Diagnosis d = diagnose::Diagnose(Table1With(), RunsOf(truth), {}, options, {});
+  EXPECT_EQ(d.verdict, diagnose::Verdict::kParameters) << d.sentence;
   ASSERT_EQ(d.parameters.size(), 1);
   EXPECT_EQ(d.parameters[0].fitted.name, "b");
   size_t parameters = 0;
-  for (const Candidate& candidate : d.candidates) parameters += candidate.id.starts_with("parameter ");
+  for (const diagnose::Candidate& candidate : d.candidates)
+    parameters += candidate.id.starts_with("parameter ");
   EXPECT_EQ(parameters, 2);
 }
 
 // Tests that a run whose shaft was held otherwise than it says is not explained by some physics.
 TEST(Diagnose, AWrongShaftModeIsNotExplainedAway) {
-  std::vector<MeasuredRun> runs = RunsOf(Table1With());
+  std::vector<runs::MeasuredRun> runs = RunsOf(Table1With());
   runs.erase(runs.begin() + 2);  // the free one
   runs.pop_back();
-  RunData swing = SmallRun(Table1With(), Shaft::kFree, false, 0.5, 2, 5);
-  swing.measured.shaft = Shaft::kClamped;
+  diagnose::RunData swing = SmallRun(Table1With(), model::Shaft::kFree, false, 0.5, 2, 5);
+  swing.measured.shaft = model::Shaft::kClamped;
   swing.measured.arm_angle_rad = 0;
   runs.push_back(swing.measured);
   try {
-    const Diagnosis d = Diagnose(Table1With(), runs, {}, Few(), {});
-    EXPECT_EQ(d.verdict, Verdict::kUnexplained) << d.sentence;
-  } catch (const ModelError& error) {
+    const diagnose::Diagnosis d = diagnose::Diagnose(Table1With(), runs, {}, Few(), {});
+    EXPECT_EQ(d.verdict, diagnose::Verdict::kUnexplained) << d.sentence;
+  } catch (const model::ModelError& error) {
     EXPECT_THAT(error.what(), HasSubstr("shaft"));
   } catch (const InputError& error) {
     EXPECT_THAT(error.what(), HasSubstr("arm_angle"));

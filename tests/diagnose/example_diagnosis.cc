@@ -12,14 +12,15 @@ namespace {
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 // A motor that turns back and forth; `before` overshoots at reversals, `after` does not.
-RunCurves Curves(const std::string& run, bool held_out, size_t samples, unsigned seed) {
+diagnose::RunCurves Curves(const std::string& run, bool held_out, size_t samples, unsigned seed) {
   std::mt19937_64 random(seed);
   std::normal_distribution<double> normal;
-  RunCurves curves;
+  diagnose::RunCurves curves;
   curves.run = run;
   curves.held_out = held_out;
-  curves.curves = {
-      {Channel::kMotorSpeed, {}, {}, {}}, {Channel::kP1, {}, {}, {}}, {Channel::kP2, {}, {}, {}}};
+  curves.curves = {{model::Channel::kMotorSpeed, {}, {}, {}},
+                   {model::Channel::kP1, {}, {}, {}},
+                   {model::Channel::kP2, {}, {}, {}}};
   for (size_t i = 0; i < samples; ++i) {
     const double t = 5.0 * static_cast<double>(i) / static_cast<double>(samples);
     const double speed = 120 * std::sin(2 * t) + 20 * std::sin(9 * t);
@@ -30,7 +31,7 @@ RunCurves Curves(const std::string& run, bool held_out, size_t samples, unsigned
     const double noise[3] = {0.3, 1.5, 1.5};
     const double sizes[3] = {9, -60, 60};
     for (size_t c = 0; c < 3; ++c) {
-      RunCurves::Curve& curve = curves.curves[c];
+      diagnose::RunCurves::Curve& curve = curves.curves[c];
       curve.measured.push_back(i % 97 == 13 ? kNan : values[c] + noise[c] * normal(random));
       curve.before.push_back(values[c] + sizes[c] * off);
       curve.after.push_back(values[c]);
@@ -41,9 +42,9 @@ RunCurves Curves(const std::string& run, bool held_out, size_t samples, unsigned
 
 }  // namespace
 
-Diagnosis ExampleDiagnosis(size_t samples) {
-  Diagnosis d;
-  d.verdict = Verdict::kTied;
+diagnose::Diagnosis ExampleDiagnosis(size_t samples) {
+  diagnose::Diagnosis d;
+  d.verdict = diagnose::Verdict::kTied;
   d.sentence =
       "The pump's static friction exceeds its kinetic friction (pump.stribeck), and its friction drifts, "
       "which "
@@ -55,14 +56,14 @@ Diagnosis ExampleDiagnosis(size_t samples) {
                  "|motor_speed| < 5 rad/s, at reversals",
                  {{"square <wave>", 1.4, 1.75}, {"square <wave>", 3.0, 3.3}, {"sine", 1.5, 1.7}}},
                 {"flow_2", 0.05, "p2 > 700 psi", {}}};
-  MissingTerm term{"pump_torque", "in-lbf", "motor_speed", "rad/s", {}, {}, {}};
+  diagnose::MissingTerm term{"pump_torque", "in-lbf", "motor_speed", "rad/s", {}, {}, {}};
   for (int i = -10; i <= 10; ++i) {
     term.at.push_back(12.0 * i);
     term.mean.push_back(2 * std::exp(-std::abs(i) / 2.5) * (i > 0 ? 1 : i < 0 ? -1 : 0));
     term.error.push_back(0.08 + 0.01 * std::abs(i));
   }
   d.missing = {term};
-  FoundEffect stribeck{
+  diagnose::FoundEffect stribeck{
       "pump.stribeck",
       "static friction above kinetic",
       "T_s becomes T_s (1 + static_excess exp(-(abs(theta')/speed)^2)), T_s (1 + static_excess) "
@@ -70,25 +71,25 @@ Diagnosis ExampleDiagnosis(size_t samples) {
       {{"static_excess", 0.52, 0.47, 0.57, "1"}, {"speed", 3.1, 2.5, 3.7, "rad/s"}},
       {},
       {}};
-  FoundEffect warming{"fluid.warming",
-                      "viscous friction and leakage drift as the oil warms",
-                      "b exp(-rate t), c_E and c_I exp(+rate t)",
-                      {{"rate", 0.011, 0.004, 0.018, "1/s"}},
-                      {},
-                      {"sensor.skew"}};
-  FoundEffect skew{"sensor.skew",
-                   "one channel is late",
-                   "one channel is late by delay",
-                   {{"delay", 0.0021, 0.0019, 0.0023, "s"}},
-                   {"signal = p1"},
-                   {"fluid.warming"}};
+  diagnose::FoundEffect warming{"fluid.warming",
+                                "viscous friction and leakage drift as the oil warms",
+                                "b exp(-rate t), c_E and c_I exp(+rate t)",
+                                {{"rate", 0.011, 0.004, 0.018, "1/s"}},
+                                {},
+                                {"sensor.skew"}};
+  diagnose::FoundEffect skew{"sensor.skew",
+                             "one channel is late",
+                             "one channel is late by delay",
+                             {{"delay", 0.0021, 0.0019, 0.0023, "s"}},
+                             {"signal = p1"},
+                             {"fluid.warming"}};
   d.effects = {stribeck, warming, skew};
   d.parameters = {{{"b", 0.0203, 0.0199, 0.0207, "in-lbf-s"}, 0.01455, false, ""},
                   {{"J", 0.12, 0.09, 0.15, "lbf-in-s^2"}, 0.03, true, "four times what the model says"},
                   {{"p_3", 103, kNan, kNan, "psi"}, 100, false, ""}};
-  d.signals = {{Channel::kMotorSpeed, 0.3, {7.2, 6.5, 0.31}, {7.9, 7.0, 0.33}},
-               {Channel::kP1, 1.5, {41.0, 30.0, 1.6}, {44.0, 31.0, 1.6}},
-               {Channel::kP2, 1.62, {41.5, 30.5, 1.65}, {45.0, 32.0, 1.7}}};
+  d.signals = {{model::Channel::kMotorSpeed, 0.3, {7.2, 6.5, 0.31}, {7.9, 7.0, 0.33}},
+               {model::Channel::kP1, 1.5, {41.0, 30.0, 1.6}, {44.0, 31.0, 1.6}},
+               {model::Channel::kP2, 1.62, {41.5, 30.5, 1.65}, {45.0, 32.0, 1.7}}};
   d.fit = {22.1, 18.0, 1.04};
   d.held_out = {23.9, 19.5, 1.06};
   d.next = {
@@ -110,9 +111,9 @@ Diagnosis ExampleDiagnosis(size_t samples) {
   return d;
 }
 
-Diagnosis EmptyDiagnosis() {
-  Diagnosis d;
-  d.verdict = Verdict::kNothingMissing;
+diagnose::Diagnosis EmptyDiagnosis() {
+  diagnose::Diagnosis d;
+  d.verdict = diagnose::Verdict::kNothingMissing;
   d.sentence = "The model as given explains the data to the noise.";
   d.fit = d.held_out = {1.01, 1.0, 1.01};
   d.model = {"Table 1", Table1(), {}};

@@ -7,9 +7,9 @@ namespace hydro::testing {
 
 // pump.stribeck named, fluid.warming tied with b drifting, J implausible; two runs of `samples` samples, the
 // second held out.
-Diagnosis ExampleDiagnosis(size_t samples = 600);
+diagnose::Diagnosis ExampleDiagnosis(size_t samples = 600);
 
 // Nothing found, nothing to show.
-Diagnosis EmptyDiagnosis();
+diagnose::Diagnosis EmptyDiagnosis();
 
 }  // namespace hydro::testing

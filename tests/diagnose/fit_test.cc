@@ -18,15 +18,16 @@
 namespace hydro::testing {
 namespace {
 
-Fitted FitRuns(const Hypothesis& hypothesis, const std::vector<RunData>& runs, int jobs = 1) {
-  FitOptions options;
+diagnose::Fitted FitRuns(const diagnose::Hypothesis& hypothesis, const std::vector<diagnose::RunData>& runs,
+                         int jobs = 1) {
+  diagnose::FitOptions options;
   options.tolerance = 1e-6;
   options.jobs = jobs;
-  return Fit(hypothesis, PointersTo(runs), StartsOf(runs), options);
+  return diagnose::Fit(hypothesis, PointersTo(runs), StartsOf(runs), options);
 }
 
-double ValueOf(const Fitted& fitted, const std::string& name) {
-  for (const FreeParameter& parameter : fitted.hypothesis.Free()) {
+double ValueOf(const diagnose::Fitted& fitted, const std::string& name) {
+  for (const diagnose::FreeParameter& parameter : fitted.hypothesis.Free()) {
     if (parameter.name == name) return parameter.value;
   }
   ADD_FAILURE() << name << " is not free";
@@ -35,13 +36,13 @@ double ValueOf(const Fitted& fitted, const std::string& name) {
 
 // Tests that wrong base parameters are set right, to the noise.
 TEST(Fit, RecoversBaseParameters) {
-  ModelDescription truth = Table1With();
+  model::ModelDescription truth = Table1With();
   truth.parameters.k_1 = 4.3;
   truth.parameters.b = 0.018;
   truth.parameters.T_s = 4.5;
   truth.parameters.c_E = 3e-5;
-  const std::vector<RunData> runs = OneOfEach(truth, 0.6, 1);
-  const Fitted fitted = FitRuns(WithFree(Table1With(), {"k_1", "b", "T_s", "c_E"}), runs);
+  const std::vector<diagnose::RunData> runs = OneOfEach(truth, 0.6, 1);
+  const diagnose::Fitted fitted = FitRuns(WithFree(Table1With(), {"k_1", "b", "T_s", "c_E"}), runs);
   ASSERT_TRUE(fitted.ok()) << fitted.failure;
   EXPECT_NEAR(ValueOf(fitted, "k_1"), 4.3, 0.01 * 4.3);
   EXPECT_NEAR(ValueOf(fitted, "b"), 0.018, 0.02 * 0.018);
@@ -53,26 +54,26 @@ TEST(Fit, RecoversBaseParameters) {
 
 // Tests that starts which hold a fit one tooth of the cogging off are given up for the measured ones.
 TEST(Explain, BeginsAgainFromTheMeasuredStarts) {
-  const ModelDescription truth =
+  const model::ModelDescription truth =
       Table1With({{"motor.cogging", {{"amplitude", 1}, {"periods", 6}, {"phase", 0.7}}, {}}});
-  std::vector<RunData> runs;
-  runs.push_back(SmallRun(truth, Shaft::kFree, false, 0.6, 2, 1));
-  std::vector<StartState> elsewhere = StartsOf(runs);
-  elsewhere[0][kMotorSpeed] = -60;
-  elsewhere[0][kArmAngle] += 0.02;
-  FitOptions options;
+  std::vector<diagnose::RunData> runs;
+  runs.push_back(SmallRun(truth, model::Shaft::kFree, false, 0.6, 2, 1));
+  std::vector<model::StartState> elsewhere = StartsOf(runs);
+  elsewhere[0][model::kMotorSpeed] = -60;
+  elsewhere[0][model::kArmAngle] += 0.02;
+  diagnose::FitOptions options;
   options.most_iterations = 15;
   options.tolerance = 1e-5;
-  Hypothesis hypothesis;
+  diagnose::Hypothesis hypothesis;
   hypothesis.model = truth;
-  const Fitted held = Fit(hypothesis, PointersTo(runs), elsewhere, options);
+  const diagnose::Fitted held = diagnose::Fit(hypothesis, PointersTo(runs), elsewhere, options);
   ASSERT_TRUE(held.ok()) << held.failure;
   EXPECT_GT(held.squared_gap(), 1.5);
-  SearchContext context;
+  diagnose::SearchContext context;
   context.given = Table1With();
   context.runs = context.held_out = PointersTo(runs);
-  const Explanation explained =
-      BegunAgain(context, Explain(context, hypothesis, elsewhere, options), options);
+  const diagnose::Explanation explained =
+      diagnose::BegunAgain(context, diagnose::Explain(context, hypothesis, elsewhere, options), options);
   ASSERT_TRUE(explained.fitted.ok());
   EXPECT_LT(explained.fitted.squared_gap(), 1.15);
 }
@@ -80,20 +81,20 @@ TEST(Explain, BeginsAgainFromTheMeasuredStarts) {
 // Tests that a run's start is looked for at rest too where the first samples allow it: the measured start of
 // what accelerates from rest is moving, and slips into another tooth of the cogging.
 TEST(FitStart, TriesRest) {
-  const ModelDescription truth =
+  const model::ModelDescription truth =
       Table1With({{"motor.cogging", {{"amplitude", 1}, {"periods", 6}, {"phase", 0.7}}, {}}});
-  std::vector<RunData> runs;
-  runs.push_back(SmallRun(truth, Shaft::kFree, false, 0.6, 2, 1));
-  StartState moving = runs[0].start;
-  moving[kMotorSpeed] = -60;
-  moving[kArmAngle] += 0.02;
+  std::vector<diagnose::RunData> runs;
+  runs.push_back(SmallRun(truth, model::Shaft::kFree, false, 0.6, 2, 1));
+  model::StartState moving = runs[0].start;
+  moving[model::kMotorSpeed] = -60;
+  moving[model::kArmAngle] += 0.02;
   runs[0].at_rest = runs[0].start;
   runs[0].start = moving;
-  Hypothesis hypothesis;
+  diagnose::Hypothesis hypothesis;
   hypothesis.model = truth;
   constexpr double kNoDoubt = std::numeric_limits<double>::infinity();
   EXPECT_GT(FitStart(hypothesis, runs[0], moving, kNoDoubt).squared_gap(), 1.5);
-  const Fitted fitted = FitStart(hypothesis, runs[0], moving, 1.1);
+  const diagnose::Fitted fitted = diagnose::FitStart(hypothesis, runs[0], moving, 1.1);
   ASSERT_TRUE(fitted.ok());
   EXPECT_LT(fitted.squared_gap(), 1.15);
   EXPECT_EQ(fitted.hypothesis.model.effects[0].parameters, truth.effects[0].parameters);
@@ -102,11 +103,11 @@ TEST(FitStart, TriesRest) {
 
 // Tests that the numbers of effects are found from where fits start.
 TEST(Fit, RecoversEffectParameters) {
-  const std::vector<RunData> runs =
+  const std::vector<diagnose::RunData> runs =
       ClampedPair(Table1With({{"pump.quadratic_drag", {{"k", 2e-4}}, {}},
                               {"valve.relief", {{"set", 1500}, {"conductance", 3e-3}}, {}}}),
                   0.8, 1);
-  const Fitted fitted =
+  const diagnose::Fitted fitted =
       FitRuns(WithFree(Table1With({{"pump.quadratic_drag", {{"k", 0}}, {}},
                                    {"valve.relief", {{"set", 1300}, {"conductance", 1e-3}}, {}}}),
                        {}),
@@ -120,12 +121,12 @@ TEST(Fit, RecoversEffectParameters) {
 
 // Tests that what is known beforehand decides where it outweighs the runs, and does nothing without weight.
 TEST(Fit, WeighsWhatIsKnownBeforehand) {
-  const std::vector<RunData> runs = ClampedPair(Table1With(), 0.5, 1);
-  const Hypothesis hypothesis = WithFree(Table1With(), {"k_1", "b"});
-  FitOptions options;
+  const std::vector<diagnose::RunData> runs = ClampedPair(Table1With(), 0.5, 1);
+  const diagnose::Hypothesis hypothesis = WithFree(Table1With(), {"k_1", "b"});
+  diagnose::FitOptions options;
   options.tolerance = 1e-6;
-  const Fitted without = Fit(hypothesis, PointersTo(runs), StartsOf(runs), options);
-  Prior prior{{std::log(4.4), 0}, {0, 0}};
+  const diagnose::Fitted without = diagnose::Fit(hypothesis, PointersTo(runs), StartsOf(runs), options);
+  diagnose::Prior prior{{std::log(4.4), 0}, {0, 0}};
   options.prior = &prior;
   EXPECT_NEAR(ValueOf(Fit(hypothesis, PointersTo(runs), StartsOf(runs), options), "k_1"),
               ValueOf(without, "k_1"), 1e-4);
@@ -136,21 +137,23 @@ TEST(Fit, WeighsWhatIsKnownBeforehand) {
 // Tests that runs held out in turn are predicted as by fits to the others, also where the model is so wrong
 // that a straight step from the common fit ends anywhere.
 TEST(HeldOutInTurn, IsWhatFitsToTheOthersPredict) {
-  const ModelDescription truth = Table1With({{"valve.relief", {{"set", 500}, {"conductance", 3e-3}}, {}},
-                                             {"pump.quadratic_drag", {{"k", 1e-3}}, {}}});
-  std::vector<RunData> runs = ClampedPair(truth, 0.5, 1);
-  runs.push_back(SmallRun(truth, Shaft::kFree, false, 0.5, 2, 1));
-  const Hypothesis hypothesis = WithFree(Table1With(), {"k_1", "T_pmax", "J", "b", "T_s", "beta", "c_E"});
-  const Fitted fitted = FitRuns(hypothesis, runs);
+  const model::ModelDescription truth =
+      Table1With({{"valve.relief", {{"set", 500}, {"conductance", 3e-3}}, {}},
+                  {"pump.quadratic_drag", {{"k", 1e-3}}, {}}});
+  std::vector<diagnose::RunData> runs = ClampedPair(truth, 0.5, 1);
+  runs.push_back(SmallRun(truth, model::Shaft::kFree, false, 0.5, 2, 1));
+  const diagnose::Hypothesis hypothesis =
+      WithFree(Table1With(), {"k_1", "T_pmax", "J", "b", "T_s", "beta", "c_E"});
+  const diagnose::Fitted fitted = FitRuns(hypothesis, runs);
   ASSERT_TRUE(fitted.ok());
-  const HeldOut in_turn = PredictInTurn(fitted, Table1With(), PointersTo(runs), 1);
+  const diagnose::HeldOut in_turn = diagnose::PredictInTurn(fitted, Table1With(), PointersTo(runs), 1);
   double sum = 0;
   for (size_t r = 0; r < runs.size(); ++r) {
-    std::vector<const RunData*> others = PointersTo(runs);
-    std::vector<StartState> starts = hydro::StartsOf(fitted);
+    std::vector<const diagnose::RunData*> others = PointersTo(runs);
+    std::vector<model::StartState> starts = hydro::diagnose::StartsOf(fitted);
     others.erase(others.begin() + static_cast<std::ptrdiff_t>(r));
     starts.erase(starts.begin() + static_cast<std::ptrdiff_t>(r));
-    sum += Predict(Fit(fitted.hypothesis, others, starts, {}), {&runs[r]}, 1).sum;
+    sum += diagnose::Predict(diagnose::Fit(fitted.hypothesis, others, starts, {}), {&runs[r]}, 1).sum;
   }
   EXPECT_LT(in_turn.sum, 3 * sum);
   EXPECT_GT(in_turn.sum, fitted.sum);
@@ -158,55 +161,56 @@ TEST(HeldOutInTurn, IsWhatFitsToTheOthersPredict) {
 
 // Tests that the start of a run that begins in motion is found.
 TEST(Fit, RecoversStarts) {
-  const ModelDescription truth = Table1With();
-  RunData whole = SmallRun(truth, Shaft::kClamped, false, 0.6, 0, 1);
+  const model::ModelDescription truth = Table1With();
+  diagnose::RunData whole = SmallRun(truth, model::Shaft::kClamped, false, 0.6, 0, 1);
   constexpr size_t kFirst = 130;
-  const Response exact = Respond(truth, whole.stimulus, {0, 0, 100, 100, 0.3, 0}, {}, {});
-  MeasuredRun rest = whole.measured;
+  const model::Response exact = model::Respond(truth, whole.stimulus, {0, 0, 100, 100, 0.3, 0}, {}, {});
+  runs::MeasuredRun rest = whole.measured;
   for (std::vector<double>* values : {&rest.time, &rest.voltage.values, &rest.motor_speed.values,
                                       &rest.motor_angle.values, &rest.p1.values, &rest.p2.values}) {
     values->erase(values->begin(), values->begin() + kFirst);
   }
-  std::vector<RunData> runs;
-  runs.push_back(PrepareRun(rest, truth.parameters));
-  const Fitted fitted = FitRuns(WithFree(truth, {}), runs);
+  std::vector<diagnose::RunData> runs;
+  runs.push_back(diagnose::PrepareRun(rest, truth.parameters));
+  const diagnose::Fitted fitted = FitRuns(WithFree(truth, {}), runs);
   ASSERT_TRUE(fitted.ok()) << fitted.failure;
-  const StartState& start = fitted.runs[0].start;
-  EXPECT_NEAR(start[kMotorAngle], exact.values[0][kFirst], 1e-3);
-  EXPECT_NEAR(start[kMotorSpeed], exact.values[1][kFirst], 1);
-  EXPECT_NEAR(start[kP1], exact.values[4][kFirst], 5);
-  EXPECT_NEAR(start[kP2], exact.values[5][kFirst], 5);
+  const model::StartState& start = fitted.runs[0].start;
+  EXPECT_NEAR(start[model::kMotorAngle], exact.values[0][kFirst], 1e-3);
+  EXPECT_NEAR(start[model::kMotorSpeed], exact.values[1][kFirst], 1);
+  EXPECT_NEAR(start[model::kP1], exact.values[4][kFirst], 5);
+  EXPECT_NEAR(start[model::kP2], exact.values[5][kFirst], 5);
   EXPECT_LT(std::abs(fitted.squared_gap() - 1), 0.1);
 }
 
 // Tests that an effect which would be best below its smallest physical value ends there.
 TEST(Fit, KeepsToBounds) {
-  ModelDescription truth = Table1With();
+  model::ModelDescription truth = Table1With();
   truth.parameters.b = 0.008;
-  const std::vector<RunData> runs = ClampedPair(truth, 0.5, 1);
-  const Fitted fitted = FitRuns(WithFree(Table1With({{"pump.quadratic_drag", {{"k", 1e-4}}, {}}}), {}), runs);
+  const std::vector<diagnose::RunData> runs = ClampedPair(truth, 0.5, 1);
+  const diagnose::Fitted fitted =
+      FitRuns(WithFree(Table1With({{"pump.quadratic_drag", {{"k", 1e-4}}, {}}}), {}), runs);
   ASSERT_TRUE(fitted.ok()) << fitted.failure;
   EXPECT_EQ(ValueOf(fitted, "pump.quadratic_drag.k"), 0);
 }
 
 // Tests that what must be above 0 is fitted as its logarithm, also from far away.
 TEST(Fit, PositiveParametersAreLogarithms) {
-  ModelDescription wrong = Table1With();
+  model::ModelDescription wrong = Table1With();
   wrong.parameters.beta = 0.6 * 247000;
-  const Hypothesis hypothesis = WithFree(wrong, {"beta", "b"});
+  const diagnose::Hypothesis hypothesis = WithFree(wrong, {"beta", "b"});
   EXPECT_TRUE(hypothesis.Free()[0].logarithmic);
   EXPECT_FALSE(hypothesis.Free()[1].logarithmic);  // may be 0
-  const Fitted fitted = FitRuns(hypothesis, ClampedPair(Table1With(), 0.5, 1));
+  const diagnose::Fitted fitted = FitRuns(hypothesis, ClampedPair(Table1With(), 0.5, 1));
   ASSERT_TRUE(fitted.ok()) << fitted.failure;
   EXPECT_NEAR(ValueOf(fitted, "beta"), 247000, 0.02 * 247000);
 }
 
 // Tests that a model which cannot be simulated is told, not thrown.
 TEST(Fit, FailuresAreTold) {
-  ModelDescription stiff = Table1With();
+  model::ModelDescription stiff = Table1With();
   stiff.parameters.beta = 1e16;
-  Fitted fitted;
-  const std::vector<RunData> runs = ClampedPair(Table1With(), 0.2, 1);
+  diagnose::Fitted fitted;
+  const std::vector<diagnose::RunData> runs = ClampedPair(Table1With(), 0.2, 1);
   EXPECT_NO_THROW(fitted = FitRuns(WithFree(stiff, {"b"}), runs));
   EXPECT_FALSE(fitted.ok());
   EXPECT_NE(fitted.failure, "");
@@ -222,10 +226,11 @@ size_t DifferentBits(const std::vector<double>& a, const std::vector<double>& b)
   return different;
 }
 
-std::vector<double> AllNumbers(const Fitted& fitted) {
+std::vector<double> AllNumbers(const diagnose::Fitted& fitted) {
   std::vector<double> numbers = {fitted.sum};
-  for (const FreeParameter& parameter : fitted.hypothesis.Free()) numbers.push_back(parameter.value);
-  for (const RunFit& run : fitted.runs) {
+  for (const diagnose::FreeParameter& parameter : fitted.hypothesis.Free())
+    numbers.push_back(parameter.value);
+  for (const diagnose::RunFit& run : fitted.runs) {
     numbers.push_back(run.sum);
     numbers.insert(numbers.end(), run.start.begin(), run.start.end());
     numbers.insert(numbers.end(), run.information.begin(), run.information.end());
@@ -236,11 +241,11 @@ std::vector<double> AllNumbers(const Fitted& fitted) {
 
 // Tests that a fit is the same to the bit when made again, and for any number of threads.
 TEST(Fit, SameBitsEveryTime) {
-  ModelDescription truth = Table1With();
+  model::ModelDescription truth = Table1With();
   truth.parameters.b = 0.018;
   truth.parameters.J = 0.026;
-  const std::vector<RunData> runs = OneOfEach(truth, 0.2, 1);
-  const Hypothesis hypothesis =
+  const std::vector<diagnose::RunData> runs = OneOfEach(truth, 0.2, 1);
+  const diagnose::Hypothesis hypothesis =
       WithFree(Table1With({{"pump.quadratic_drag", {{"k", 0}}, {}}}), {"J", "b", "T_s", "beta"});
   const std::vector<double> once = AllNumbers(FitRuns(hypothesis, runs));
   ASSERT_GT(once.size(), 5);

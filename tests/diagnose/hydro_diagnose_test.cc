@@ -14,7 +14,7 @@
 #include "tests/diagnose/example_diagnosis.h"
 #include "tests/table1.h"
 
-namespace hydro {
+namespace hydro::diagnose {
 namespace {
 
 using ::testing::ElementsAre;
@@ -29,7 +29,7 @@ class HydroDiagnoseTest : public ::testing::Test {
   HydroDiagnoseTest() {
     std::string pattern = ::testing::TempDir() + "/hydro_diagnose_XXXXXX";
     folder_ = mkdtemp(pattern.data());
-    Write("model.toml", FormatModel({"Table 1", testing::Table1(), {}}));
+    Write("model.toml", settings::FormatModel({"Table 1", testing::Table1(), {}}));
     std::string table = "time_s,voltage_V,p1_psi\n";
     for (int i = 0; i < 120; ++i) {
       table += std::to_string(0.001 * i) + ",2," + std::to_string(100 + i % 7) + "\n";
@@ -60,8 +60,8 @@ class HydroDiagnoseTest : public ::testing::Test {
 
   // What is told on standard output, with `diagnosis` found.
   std::string Run(const Diagnosis& diagnosis) {
-    return Run([&](const ModelDescription& model, std::vector<MeasuredRun> runs,
-                   std::vector<MeasuredRun> held_out, const DiagnoseOptions& options,
+    return Run([&](const model::ModelDescription& model, std::vector<runs::MeasuredRun> runs,
+                   std::vector<runs::MeasuredRun> held_out, const DiagnoseOptions& options,
                    const TellProgress& tell) {
       model_ = model;
       runs_ = std::move(runs);
@@ -106,8 +106,8 @@ class HydroDiagnoseTest : public ::testing::Test {
 
   std::string folder_;
   DiagnoseRequest request_;
-  ModelDescription model_;
-  std::vector<MeasuredRun> runs_, held_out_;
+  model::ModelDescription model_;
+  std::vector<runs::MeasuredRun> runs_, held_out_;
   DiagnoseOptions options_;
 };
 
@@ -141,7 +141,7 @@ TEST_F(HydroDiagnoseTest, ReadsAndWrites) {
 TEST_F(HydroDiagnoseTest, ModelRoundTrips) {
   const Diagnosis diagnosis = testing::ExampleDiagnosis();
   Run(diagnosis);
-  const ModelDescription read = LoadModelFile(Path("out/model.toml"));
+  const model::ModelDescription read = settings::LoadModelFile(Path("out/model.toml"));
   EXPECT_EQ(read.name, diagnosis.model.name);
   EXPECT_EQ(read.parameters.c, diagnosis.model.parameters.c);
   ASSERT_EQ(read.effects.size(), 3u);
@@ -205,9 +205,10 @@ TEST_F(HydroDiagnoseTest, Errors) {
 
 // Tests that a model that cannot follow the runs is bad input, that says which model.
 TEST_F(HydroDiagnoseTest, ModelThatCannotFollow) {
-  const Diagnoser diagnoser = [](const ModelDescription&, std::vector<MeasuredRun>, std::vector<MeasuredRun>,
-                                 const DiagnoseOptions&, const TellProgress&) -> Diagnosis {
-    throw ModelError("arm angle 1.5708 rad leaves V_1 = -2.63 in^3");
+  const Diagnoser diagnoser = [](const model::ModelDescription&, std::vector<runs::MeasuredRun>,
+                                 std::vector<runs::MeasuredRun>, const DiagnoseOptions&,
+                                 const TellProgress&) -> Diagnosis {
+    throw model::ModelError("arm angle 1.5708 rad leaves V_1 = -2.63 in^3");
   };
   try {
     Run(diagnoser);
@@ -272,4 +273,4 @@ TEST(ProgressBar, BarAndLines) {
 }
 
 }  // namespace
-}  // namespace hydro
+}  // namespace hydro::diagnose

@@ -10,39 +10,39 @@
 #include "tests/diagnose/noisy_rig.h"
 #include "tests/table1.h"
 
-namespace hydro {
+namespace hydro::diagnose {
 namespace {
 
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using testing::NoisyRig;
 
-ModelDescription Given() {
-  ModelDescription model;
+model::ModelDescription Given() {
+  model::ModelDescription model;
   model.parameters = testing::Table1();
   model.parameters.mgl = 150;
   return model;
 }
 
-ModelDescription With(const std::string& id, const std::map<std::string, double>& parameters) {
-  ModelDescription model = Given();
+model::ModelDescription With(const std::string& id, const std::map<std::string, double>& parameters) {
+  model::ModelDescription model = Given();
   model.effects.push_back({id, parameters, {}});
   return model;
 }
 
-ModelDescription Changed(double Parameters::*member, double factor) {
-  ModelDescription model = Given();
+model::ModelDescription Changed(double model::Parameters::*member, double factor) {
+  model::ModelDescription model = Given();
   model.parameters.*member *= factor;
   return model;
 }
 
-Localisation LocateIn(const std::vector<RunData>& runs, const ModelDescription& given = Given()) {
+Localisation LocateIn(const std::vector<RunData>& runs, const model::ModelDescription& given = Given()) {
   std::vector<const RunData*> all;
   for (const RunData& run : runs) all.push_back(&run);
   return Locate(given, all);
 }
 
-Localisation LocateOn(const ModelDescription& truth) {
+Localisation LocateOn(const model::ModelDescription& truth) {
   NoisyRig rig;
   rig.model = truth;
   return LocateIn(rig.RecordAll());
@@ -50,7 +50,7 @@ Localisation LocateOn(const ModelDescription& truth) {
 
 struct Case {
   std::string name;
-  ModelDescription truth;
+  model::ModelDescription truth;
   std::string balance;
   std::string where;    // part of it
   std::string against;  // of the first table; "": none
@@ -93,11 +93,12 @@ INSTANTIATE_TEST_SUITE_P(
         Case{"SealFriction", With("actuator.seal_friction", {{"coulomb", 20}, {"viscous", 5}}), "arm_torque",
              "sign of arm_speed", "arm_speed"},
         Case{"Lag", With("amp.lag", {{"tau", 0.004}}), "command", "change of voltage", "change of voltage"},
-        Case{"TorquePerVolt", Changed(&Parameters::k_1, 1.05), "command", "voltage", "voltage"},
-        Case{"TorqueLimit", Changed(&Parameters::T_pmax, 0.7), "command", "voltage", ""},
-        Case{"ExternalLeakage", Changed(&Parameters::c_E, 3), "flow_2", "p2 > ", "p2", 0.5},
-        Case{"InternalLeakage", Changed(&Parameters::c_I, 5), "flow_2", "|p2 - p1| > ", "p2 - p1", 0.4},
-        Case{"Gravity", Changed(&Parameters::mgl, 1.2), "arm_torque", "", ""},
+        Case{"TorquePerVolt", Changed(&model::Parameters::k_1, 1.05), "command", "voltage", "voltage"},
+        Case{"TorqueLimit", Changed(&model::Parameters::T_pmax, 0.7), "command", "voltage", ""},
+        Case{"ExternalLeakage", Changed(&model::Parameters::c_E, 3), "flow_2", "p2 > ", "p2", 0.5},
+        Case{"InternalLeakage", Changed(&model::Parameters::c_I, 5), "flow_2", "|p2 - p1| > ", "p2 - p1",
+             0.4},
+        Case{"Gravity", Changed(&model::Parameters::mgl, 1.2), "arm_torque", "", ""},
         Case{"PressureOffset", With("sensor.pressure_offset", {{"p1", 12}, {"p2", -5}}), "sensor",
              "p1 reads +12", ""}),
     [](const auto& test) { return test.param.name; });
@@ -118,7 +119,7 @@ TEST(Locate, NothingMissing) {
 
 // Tests that an effect that the model has is not missed, also one with states, switches or delays.
 TEST(Locate, NothingMissingWithEffects) {
-  for (const ModelDescription& model :
+  for (const model::ModelDescription& model :
        {With("amp.lag", {{"tau", 0.004}}), With("valve.relief", {{"set", 3000}, {"conductance", 1e-3}}),
         With("line.wave", {{"frequency", 100}, {"volume_fraction", 0.3}, {"damping", 0.2}}),
         With("amp.delay", {{"delay", 0.003}}), With("sensor.pressure_offset", {{"p1", 12}, {"p2", -5}})}) {
@@ -137,7 +138,7 @@ TEST(Locate, LateReadings) {
   std::vector<RunData> runs = rig.RecordAll();
   for (RunData& run : runs) {
     for (SignalData& signal : run.signals) {
-      if (signal.channel != Channel::kP1 && signal.channel != Channel::kP2) continue;
+      if (signal.channel != model::Channel::kP1 && signal.channel != model::Channel::kP2) continue;
       for (size_t k = signal.values.size(); k-- > 3;) signal.values[k] = signal.values[k - 3];
     }
   }
@@ -166,11 +167,12 @@ TEST(Locate, TableIsTheHiddenTerm) {
 // tells still locates friction.
 TEST(Locate, WhatIsNotMeasured) {
   NoisyRig rig;
-  rig.model = Changed(&Parameters::T_s, 0.85);
+  rig.model = Changed(&model::Parameters::T_s, 0.85);
   rig.speed_measured = false;
   std::vector<RunData> runs = rig.RecordAll();
   for (RunData& run : runs) {
-    std::erase_if(run.signals, [](const SignalData& signal) { return signal.channel == Channel::kP1; });
+    std::erase_if(run.signals,
+                  [](const SignalData& signal) { return signal.channel == model::Channel::kP1; });
   }
   const SmoothedRun smoothed = SmoothDisturbances(Given(), runs[0], {});
   EXPECT_TRUE(smoothed.measured[static_cast<size_t>(Balance::kPumpTorque)]);
@@ -186,11 +188,11 @@ TEST(Locate, WhatIsNotMeasured) {
 // where it is.
 TEST(Locate, SlowRecordings) {
   NoisyRig rig;
-  rig.model = Changed(&Parameters::T_s, 0.5);
+  rig.model = Changed(&model::Parameters::T_s, 0.5);
   std::vector<RunData> runs = rig.RecordAll();
   std::vector<RunData> slow;
   for (RunData& run : runs) {
-    MeasuredRun measured = run.measured;
+    runs::MeasuredRun measured = run.measured;
     const auto thin = [](std::vector<double>* values) {
       for (size_t k = 0; 20 * k < values->size(); ++k) (*values)[k] = (*values)[20 * k];
       values->resize((values->size() + 19) / 20);
@@ -226,4 +228,4 @@ TEST(Locate, Repeats) {
 }
 
 }  // namespace
-}  // namespace hydro
+}  // namespace hydro::diagnose

@@ -11,31 +11,31 @@
 #include "tests/diagnose/noisy_rig.h"
 #include "tests/table1.h"
 
-namespace hydro {
+namespace hydro::diagnose {
 namespace {
 
 using testing::NoisyRig;
 
-ModelDescription With(const std::string& id, const std::map<std::string, double>& parameters) {
-  ModelDescription model;
+model::ModelDescription With(const std::string& id, const std::map<std::string, double>& parameters) {
+  model::ModelDescription model;
   model.name = "rival";
   model.parameters = testing::Table1();
   model.effects.push_back({id, parameters, {}});
   return model;
 }
 
-RunData Recorded(const ModelDescription& model) {
+RunData Recorded(const model::ModelDescription& model) {
   NoisyRig rig;
   rig.model = model;
-  return rig.Record("square", Shaft::kClamped, 0, 1, false,
+  return rig.Record("square", model::Shaft::kClamped, 0, 1, false,
                     [](double t) { return std::fmod(t, 0.5) < 0.25 ? 6.0 : -6.0; });
 }
 
 // Tests that an experiment is found for friction that could be one of two kinds, that it keeps to what the
 // rig has seen, and that a stack can be run from it.
 TEST(NextExperiment, TellsRivalsApart) {
-  const ModelDescription drag = With("pump.quadratic_drag", {{"k", 4e-5}});
-  const ModelDescription pressure = With("pump.pressure_friction", {{"f", 1e-4}});
+  const model::ModelDescription drag = With("pump.quadratic_drag", {{"k", 4e-5}});
+  const model::ModelDescription pressure = With("pump.pressure_friction", {{"f", 1e-4}});
   const RunData run = Recorded(drag);
   const NextExperiment next = DesignNextExperiment({drag, pressure}, {&run}, "two kinds of friction");
   EXPECT_EQ(next.why, "two kinds of friction");
@@ -43,12 +43,13 @@ TEST(NextExperiment, TellsRivalsApart) {
   ASSERT_NE(next.config, "");
   const std::filesystem::path folder = std::filesystem::path(::testing::TempDir()) / "next_experiment";
   std::filesystem::create_directories(folder);
-  std::ofstream(folder / "model.toml") << FormatModel(drag);
+  std::ofstream(folder / "model.toml") << settings::FormatModel(drag);
   std::ofstream(folder / "next.toml") << next.config;
-  const StackConfig config = LoadStackConfig((folder / "next.toml").string());
-  EXPECT_EQ(config.reference.signal, ReferenceSignal::kVoltage);
+  const settings::StackConfig config = settings::LoadStackConfig((folder / "next.toml").string());
+  EXPECT_EQ(config.reference.signal, settings::ReferenceSignal::kVoltage);
   EXPECT_EQ(config.time.duration_s, 3);
-  const std::unique_ptr<Trajectory> voltage = MakeTrajectory(config.reference.trajectory);
+  const std::unique_ptr<trajectory::Trajectory> voltage =
+      settings::MakeTrajectory(config.reference.trajectory);
   EXPECT_LE(voltage->Max(), 6.0);
   EXPECT_GE(voltage->Min(), -6.0);
   EXPECT_GT(voltage->Max(), voltage->Min());
@@ -56,7 +57,7 @@ TEST(NextExperiment, TellsRivalsApart) {
 
 // Tests that none is proposed for models that are the same.
 TEST(NextExperiment, NoneForOneModel) {
-  const ModelDescription drag = With("pump.quadratic_drag", {{"k", 4e-5}});
+  const model::ModelDescription drag = With("pump.quadratic_drag", {{"k", 4e-5}});
   const RunData run = Recorded(drag);
   const NextExperiment next = DesignNextExperiment({drag, drag}, {&run}, "");
   EXPECT_EQ(next.config, "");
@@ -64,4 +65,4 @@ TEST(NextExperiment, NoneForOneModel) {
 }
 
 }  // namespace
-}  // namespace hydro
+}  // namespace hydro::diagnose

@@ -8,7 +8,7 @@
 
 #include "diagnose/data/run_data.h"
 
-namespace hydro {
+namespace hydro::diagnose {
 namespace {
 
 constexpr size_t kSamples = 2000;
@@ -120,4 +120,4 @@ TEST(EstimateNoise, TooShort) {
 }
 
 }  // namespace
-}  // namespace hydro
+}  // namespace hydro::diagnose

@@ -18,19 +18,19 @@ using ::testing::HasSubstr;
 
 constexpr double kStiffness = 2500;  // in-lbf/rad
 
-ModelDescription Sprung() { return Table1With({{"arm.spring", {{"stiffness", kStiffness}}, {}}}); }
+model::ModelDescription Sprung() { return Table1With({{"arm.spring", {{"stiffness", kStiffness}}, {}}}); }
 
 // A free arm, simulated by Actuator at 1 kHz, with noise on what is measured.
-MeasuredRun Swing(double volts, double period, uint64_t seed) {
-  Actuator rig(Sprung(), {});
-  MeasuredRun run;
+runs::MeasuredRun Swing(double volts, double period, uint64_t seed) {
+  model::Actuator rig(Sprung(), {});
+  runs::MeasuredRun run;
   run.name = run.file = "swing " + std::to_string(seed);
   std::mt19937_64 random(seed);
   std::normal_distribution<double> normal;
   for (int k = 0; k < 600; ++k) {
     const double t = 1e-3 * k;
     if (k > 0) rig.Advance(run.voltage.values.back(), t);
-    const Measurement m = rig.Measure();
+    const model::Measurement m = rig.Measure();
     run.time.push_back(t);
     run.voltage.values.push_back(std::fmod(t, period) < 0.5 * period ? volts : -volts);
     run.motor_speed.values.push_back(m.motor_speed + 0.3 * normal(random));
@@ -41,30 +41,30 @@ MeasuredRun Swing(double volts, double period, uint64_t seed) {
   return run;
 }
 
-std::vector<MeasuredRun> Swings() { return {Swing(3, 0.4, 1), Swing(5, 0.25, 2), Swing(4, 0.6, 3)}; }
+std::vector<runs::MeasuredRun> Swings() { return {Swing(3, 0.4, 1), Swing(5, 0.25, 2), Swing(4, 0.6, 3)}; }
 
 // Tests that the catalogue has it like any other, model files and the simulation too.
 TEST(OwnEffect, IsInTheCatalogue) {
-  const EffectInfo* info = FindEffect("arm.spring");
+  const model::EffectInfo* info = model::FindEffect("arm.spring");
   ASSERT_NE(info, nullptr);
   EXPECT_EQ(info->parameters.at(0).unit, "in-lbf/rad");
-  EXPECT_TRUE(std::is_sorted(EffectCatalogue().begin(), EffectCatalogue().end(),
+  EXPECT_TRUE(std::is_sorted(model::EffectCatalogue().begin(), model::EffectCatalogue().end(),
                              [](const auto& a, const auto& b) { return a.id < b.id; }));
-  EXPECT_THAT(FormatModel(Sprung()), HasSubstr("[effects.\"arm.spring\"]"));
+  EXPECT_THAT(settings::FormatModel(Sprung()), HasSubstr("[effects.\"arm.spring\"]"));
 }
 
 // Tests that it cannot be added once the catalogue is in use, when references into it are held.
 TEST(OwnEffect, IsAddedBeforeTheCatalogueIsUsed) {
-  const size_t known = EffectCatalogue().size();
-  EXPECT_THROW(AddToCatalogue({{"arm.other", "", "", "", {}}, nullptr}), std::logic_error);
-  EXPECT_EQ(EffectCatalogue().size(), known);
+  const size_t known = model::EffectCatalogue().size();
+  EXPECT_THROW(model::AddToCatalogue({{"arm.other", "", "", "", {}}, nullptr}), std::logic_error);
+  EXPECT_EQ(model::EffectCatalogue().size(), known);
 }
 
 // Tests that the gap finder names it, with its stiffness within the interval, and that the model it writes
 // has it.
 TEST(OwnEffect, IsFound) {
-  const Diagnosis d = Diagnose(Table1With(), Swings(), {}, {}, {});
-  EXPECT_EQ(d.verdict, Verdict::kNamed) << d.sentence;
+  const diagnose::Diagnosis d = diagnose::Diagnose(Table1With(), Swings(), {}, {}, {});
+  EXPECT_EQ(d.verdict, diagnose::Verdict::kNamed) << d.sentence;
   ASSERT_EQ(d.effects.size(), 1) << d.sentence;
   EXPECT_EQ(d.effects[0].id, "arm.spring");
   EXPECT_EQ(d.effects[0].says, "a spring pulls the arm to its middle");
@@ -78,12 +78,12 @@ TEST(OwnEffect, IsFound) {
 
 // Tests that where it may not be named nothing else is, with confidence.
 TEST(OwnEffect, NothingElseTakesItsPlace) {
-  DiagnoseOptions options;
-  for (const EffectInfo& info : EffectCatalogue()) {
+  diagnose::DiagnoseOptions options;
+  for (const model::EffectInfo& info : model::EffectCatalogue()) {
     if (info.id != "arm.spring") options.effects.push_back(info.id);
   }
-  const Diagnosis d = Diagnose(Table1With(), Swings(), {}, options, {});
-  EXPECT_EQ(d.verdict, Verdict::kUnexplained) << d.sentence;
+  const diagnose::Diagnosis d = diagnose::Diagnose(Table1With(), Swings(), {}, options, {});
+  EXPECT_EQ(d.verdict, diagnose::Verdict::kUnexplained) << d.sentence;
   ASSERT_FALSE(d.location.empty());
   EXPECT_EQ(d.location[0].balance, "arm_torque");
 }

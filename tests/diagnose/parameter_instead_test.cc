@@ -10,11 +10,11 @@
 namespace hydro::testing {
 namespace {
 
-const Change kRipple = {"pump.flow_ripple", {}, ""}, kAsymmetry = {"pump.friction_asymmetry", {}, ""},
-             kFriction = {"", {}, "T_s"};
+const diagnose::Change kRipple = {"pump.flow_ripple", {}, ""},
+                       kAsymmetry = {"pump.friction_asymmetry", {}, ""}, kFriction = {"", {}, "T_s"};
 
-Explanation Of(std::vector<Change> changes, double squared_gap, double factor = 1) {
-  Explanation one;
+diagnose::Explanation Of(std::vector<diagnose::Change> changes, double squared_gap, double factor = 1) {
+  diagnose::Explanation one;
   one.fitted.hypothesis.model = Table1With();
   one.fitted.hypothesis.model.parameters.T_s *= factor;
   one.fitted.hypothesis.changes = std::move(changes);
@@ -24,17 +24,17 @@ Explanation Of(std::vector<Change> changes, double squared_gap, double factor = 
   return one;
 }
 
-const Explanation* Instead(const Explanation& best, const Explanation& other) {
-  static SearchResult search;
+const diagnose::Explanation* Instead(const diagnose::Explanation& best, const diagnose::Explanation& other) {
+  static diagnose::SearchResult search;
   search = {};
   search.best = best;
   search.tried = {best, other};
-  return ParameterInstead(search, Table1With());
+  return diagnose::ParameterInstead(search, Table1With());
 }
 
 // Tests that a small move of a parameter that predicts as well takes an effect's place.
 TEST(ParameterInstead, TakesThePlaceOfATinyEffect) {
-  const Explanation* instead =
+  const diagnose::Explanation* instead =
       Instead(Of({kRipple, kAsymmetry}, 1.04), Of({kRipple, kFriction}, 1.12, 0.999));
   ASSERT_NE(instead, nullptr);
   EXPECT_TRUE(instead->fitted.hypothesis.Has(kFriction));
@@ -43,10 +43,10 @@ TEST(ParameterInstead, TakesThePlaceOfATinyEffect) {
 // Tests that it does not where it predicts worse, moves further, was not asked to predict, stands in no
 // effect's place, leaves no other effect, or differs by more than that.
 TEST(ParameterInstead, AndOtherwiseNot) {
-  const Explanation best = Of({kRipple, kAsymmetry}, 1.04);
+  const diagnose::Explanation best = Of({kRipple, kAsymmetry}, 1.04);
   EXPECT_EQ(Instead(best, Of({kRipple, kFriction}, 1.3, 0.999)), nullptr);
   EXPECT_EQ(Instead(best, Of({kRipple, kFriction}, 1.04, 0.98)), nullptr);
-  Explanation fitted_only = Of({kRipple, kFriction}, 1.04, 0.999);
+  diagnose::Explanation fitted_only = Of({kRipple, kFriction}, 1.04, 0.999);
   fitted_only.blocks.sums.clear();
   EXPECT_EQ(Instead(best, fitted_only), nullptr);
   EXPECT_EQ(Instead(Of({kRipple, {"", {}, "b"}}, 1.04), Of({kRipple, kFriction}, 1.04, 0.999)), nullptr);

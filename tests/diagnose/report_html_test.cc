@@ -9,7 +9,7 @@
 #include "page/chart.h"
 #include "tests/diagnose/example_diagnosis.h"
 
-namespace hydro {
+namespace hydro::diagnose {
 namespace {
 
 using ::testing::ElementsAre;
@@ -129,12 +129,12 @@ TEST(ReportHtml, OddCurves) {
 
 // Tests that numbers along an axis are round and within its range.
 TEST(Chart, RoundNumbers) {
-  EXPECT_THAT(RoundNumbers({-0.4, 10.2}, 5), ElementsAre(0, 5, 10));
-  EXPECT_THAT(RoundNumbers({0, 1}, 5).size(), 6u);
-  EXPECT_TRUE(RoundNumbers({1, 1}, 5).empty());
-  EXPECT_EQ(Pixels(12.345), "12.3");
-  EXPECT_EQ(Pixels(-0.01), "0");
+  EXPECT_THAT(page::RoundNumbers({-0.4, 10.2}, 5), ElementsAre(0, 5, 10));
+  EXPECT_THAT(page::RoundNumbers({0, 1}, 5).size(), 6u);
+  EXPECT_TRUE(page::RoundNumbers({1, 1}, 5).empty());
+  EXPECT_EQ(page::Pixels(12.345), "12.3");
+  EXPECT_EQ(page::Pixels(-0.01), "0");
 }
 
 }  // namespace
-}  // namespace hydro
+}  // namespace hydro::diagnose

@@ -6,7 +6,7 @@
 
 #include "tests/diagnose/example_diagnosis.h"
 
-namespace hydro {
+namespace hydro::diagnose {
 namespace {
 
 using ::testing::IsSupersetOf;
@@ -94,4 +94,4 @@ TEST(ReportJson, Verdicts) {
 }
 
 }  // namespace
-}  // namespace hydro
+}  // namespace hydro::diagnose

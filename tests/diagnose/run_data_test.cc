@@ -12,7 +12,7 @@
 #include "tests/diagnose/noisy_rig.h"
 #include "tests/table1.h"
 
-namespace hydro {
+namespace hydro::diagnose {
 namespace {
 
 using ::testing::ElementsAre;
@@ -22,12 +22,12 @@ constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kPi = std::numbers::pi;
 
 // Half a second of a clamped run at 1 kHz: speed decaying from 50 rad/s, pressures from 120 and 140 psi.
-MeasuredRun Clamped() {
-  MeasuredRun run;
+runs::MeasuredRun Clamped() {
+  runs::MeasuredRun run;
   run.name = "step";
   run.file = "step.csv";
   run.rows_are_lines = true;
-  run.shaft = Shaft::kClamped;
+  run.shaft = model::Shaft::kClamped;
   run.arm_angle_rad = 0.2;
   std::mt19937_64 random(1);
   std::normal_distribution<double> normal;
@@ -43,15 +43,16 @@ MeasuredRun Clamped() {
   return run;
 }
 
-MeasuredRun WithArm(Shaft shaft) {
-  MeasuredRun run = Clamped();
+runs::MeasuredRun WithArm(model::Shaft shaft) {
+  runs::MeasuredRun run = Clamped();
   run.shaft = shaft;
   run.arm_angle_rad = 0;
   for (const double t : run.time) run.arm_angle.values.push_back(0.3 * std::sin(2 * kPi * (t - 1)));
   return run;
 }
 
-std::string ErrorOf(const std::function<void(MeasuredRun&)>& change, MeasuredRun run = Clamped()) {
+std::string ErrorOf(const std::function<void(runs::MeasuredRun&)>& change,
+                    runs::MeasuredRun run = Clamped()) {
   change(run);
   try {
     PrepareRun(run, testing::Table1());
@@ -70,17 +71,17 @@ TEST(PrepareRun, Clamped) {
   EXPECT_NEAR(data.duration(), 0.499, 1e-9);
   EXPECT_EQ(data.stimulus.motion, nullptr);
   ASSERT_EQ(data.signals.size(), 3u);
-  EXPECT_EQ(data.Find(Channel::kArmAngle), nullptr);
-  const SignalData* p1 = data.Find(Channel::kP1);
+  EXPECT_EQ(data.Find(model::Channel::kArmAngle), nullptr);
+  const SignalData* p1 = data.Find(model::Channel::kP1);
   ASSERT_NE(p1, nullptr);
   EXPECT_NEAR(p1->noise, 1.5, 0.2);
   EXPECT_EQ(p1->stated_noise, 1.0);
-  EXPECT_TRUE(std::isnan(data.Find(Channel::kP2)->stated_noise));
+  EXPECT_TRUE(std::isnan(data.Find(model::Channel::kP2)->stated_noise));
   EXPECT_EQ(p1->valid, 500u);
-  EXPECT_NEAR(data.start[kMotorSpeed], 50, 1);
-  EXPECT_NEAR(data.start[kP1], 120, 3);
-  EXPECT_NEAR(data.start[kP2], 140, 3);
-  EXPECT_EQ(data.start[kArmAngle], 0.2);
+  EXPECT_NEAR(data.start[model::kMotorSpeed], 50, 1);
+  EXPECT_NEAR(data.start[model::kP1], 120, 3);
+  EXPECT_NEAR(data.start[model::kP2], 140, 3);
+  EXPECT_EQ(data.start[model::kArmAngle], 0.2);
   EXPECT_THAT(data.start_free, ElementsAre(false, true, true, true, false, false));
 }
 
@@ -90,9 +91,9 @@ TEST(PrepareRun, RestIsRest) {
   rig.model = {"Table 1", testing::Table1(), {}};
   for (rig.seed = 1; rig.seed <= 8; ++rig.seed) {
     const RunData run =
-        rig.Record("rest", Shaft::kFree, -0.1, 0.5, false, [](double t) { return t < 0.1 ? 0 : 5.0; });
-    EXPECT_EQ(run.start[kMotorSpeed], 0) << rig.seed;
-    EXPECT_NEAR(run.start[kArmSpeed], 0, 0.02) << rig.seed;
+        rig.Record("rest", model::Shaft::kFree, -0.1, 0.5, false, [](double t) { return t < 0.1 ? 0 : 5.0; });
+    EXPECT_EQ(run.start[model::kMotorSpeed], 0) << rig.seed;
+    EXPECT_NEAR(run.start[model::kArmSpeed], 0, 0.02) << rig.seed;
   }
 }
 
@@ -101,86 +102,89 @@ TEST(PrepareRun, RestIsRest) {
 TEST(PrepareRun, MayBeginAtRest) {
   testing::NoisyRig rig;
   rig.model = {"Table 1", testing::Table1(), {}};
-  const RunData from_rest =
-      rig.Record("from rest", Shaft::kFree, -0.1, 0.5, false, [](double t) { return t < 0.004 ? 0 : 6.0; });
-  ASSERT_NE(from_rest.start[kMotorSpeed], 0);
+  const RunData from_rest = rig.Record("from rest", model::Shaft::kFree, -0.1, 0.5, false,
+                                       [](double t) { return t < 0.004 ? 0 : 6.0; });
+  ASSERT_NE(from_rest.start[model::kMotorSpeed], 0);
   ASSERT_TRUE(from_rest.at_rest.has_value());
-  EXPECT_EQ((*from_rest.at_rest)[kMotorSpeed], 0);
-  EXPECT_EQ((*from_rest.at_rest)[kArmSpeed], 0);
-  EXPECT_EQ((*from_rest.at_rest)[kP1], from_rest.start[kP1]);
-  EXPECT_FALSE(PrepareRun(WithArm(Shaft::kFree), testing::Table1()).at_rest.has_value());
+  EXPECT_EQ((*from_rest.at_rest)[model::kMotorSpeed], 0);
+  EXPECT_EQ((*from_rest.at_rest)[model::kArmSpeed], 0);
+  EXPECT_EQ((*from_rest.at_rest)[model::kP1], from_rest.start[model::kP1]);
+  EXPECT_FALSE(PrepareRun(WithArm(model::Shaft::kFree), testing::Table1()).at_rest.has_value());
 }
 
 // Tests that a free arm is compared and started, its speed from the angle's slope.
 TEST(PrepareRun, Free) {
-  const RunData data = PrepareRun(WithArm(Shaft::kFree), testing::Table1());
-  EXPECT_NE(data.Find(Channel::kArmAngle), nullptr);
-  EXPECT_NEAR(data.start[kArmSpeed], 0.3 * 2 * kPi, 0.01);
+  const RunData data = PrepareRun(WithArm(model::Shaft::kFree), testing::Table1());
+  EXPECT_NE(data.Find(model::Channel::kArmAngle), nullptr);
+  EXPECT_NEAR(data.start[model::kArmSpeed], 0.3 * 2 * kPi, 0.01);
   EXPECT_THAT(data.start_free, ElementsAre(false, true, true, true, true, true));
 }
 
 // Tests that a driven arm is imposed and not compared.
 TEST(PrepareRun, Driven) {
-  RunData data = PrepareRun(WithArm(Shaft::kDriven), testing::Table1());
-  EXPECT_EQ(data.Find(Channel::kArmAngle), nullptr);
+  RunData data = PrepareRun(WithArm(model::Shaft::kDriven), testing::Table1());
+  EXPECT_EQ(data.Find(model::Channel::kArmAngle), nullptr);
   const RunData moved = std::move(data);
   ASSERT_EQ(moved.stimulus.motion, moved.motion.get());
   EXPECT_TRUE(moved.motion->continuous());
   EXPECT_NEAR(moved.motion->Value(1.25), 0.3, 1e-4);
-  EXPECT_NEAR(moved.start[kArmSpeed], 0.3 * 2 * kPi, 0.02);
+  EXPECT_NEAR(moved.start[model::kArmSpeed], 0.3 * 2 * kPi, 0.02);
 }
 
 // Tests that with the bypass open there is one pressure to start from.
 TEST(PrepareRun, Bypass) {
-  MeasuredRun run = Clamped();
+  runs::MeasuredRun run = Clamped();
   run.bypass = true;
   const RunData data = PrepareRun(run, testing::Table1());
-  EXPECT_EQ(data.start[kP1], data.start[kP2]);
-  EXPECT_NEAR(data.start[kP1], 130, 3);
+  EXPECT_EQ(data.start[model::kP1], data.start[model::kP2]);
+  EXPECT_NEAR(data.start[model::kP1], 130, 3);
   EXPECT_THAT(data.start_free, ElementsAre(false, true, true, false, false, false));
 }
 
 // Tests that what is not measured starts from what is: speed from the angle, pressures at p_3.
 TEST(PrepareRun, StartOfWhatIsNotMeasured) {
-  MeasuredRun run = Clamped();
+  runs::MeasuredRun run = Clamped();
   run.motor_speed = {};
   run.p1 = run.p2 = {};
   for (const double t : run.time) run.motor_angle.values.push_back(3 + 20 * (t - 1));
   const RunData data = PrepareRun(run, testing::Table1());
-  EXPECT_NEAR(data.start[kMotorAngle], 3, 1e-3);
-  EXPECT_NEAR(data.start[kMotorSpeed], 20, 1e-3);
-  EXPECT_EQ(data.start[kP1], 100);
-  EXPECT_TRUE(data.start_free[kMotorAngle]);
+  EXPECT_NEAR(data.start[model::kMotorAngle], 3, 1e-3);
+  EXPECT_NEAR(data.start[model::kMotorSpeed], 20, 1e-3);
+  EXPECT_EQ(data.start[model::kP1], 100);
+  EXPECT_TRUE(data.start_free[model::kMotorAngle]);
 }
 
 // Tests that data from which nothing can be learnt are refused with run, signal and row.
 TEST(PrepareRun, Refusals) {
-  EXPECT_EQ(ErrorOf([](MeasuredRun& run) { run.time.resize(99); }),
+  EXPECT_EQ(ErrorOf([](runs::MeasuredRun& run) { run.time.resize(99); }),
             "step.csv: found 99 samples, allowed 100 or more");
-  EXPECT_EQ(ErrorOf([](MeasuredRun& run) { run.p1.values.assign(500, 7.0); }),
+  EXPECT_EQ(ErrorOf([](runs::MeasuredRun& run) { run.p1.values.assign(500, 7.0); }),
             "step.csv: line 2: p1: found 7 psi there and in every row after it, allowed a signal that "
             "changes, or leave it out");
-  EXPECT_EQ(ErrorOf([](MeasuredRun& run) { run.p2.values.assign(500, kNan); }),
+  EXPECT_EQ(ErrorOf([](runs::MeasuredRun& run) { run.p2.values.assign(500, kNan); }),
             "step.csv: p2: found no value in any row, allowed 20 values or more, or leave the signal out");
-  EXPECT_EQ(ErrorOf([](MeasuredRun& run) { run.motor_speed.values[3] = -2e5; }),
+  EXPECT_EQ(ErrorOf([](runs::MeasuredRun& run) { run.motor_speed.values[3] = -2e5; }),
             "step.csv: line 5: motor_speed: found -200000 rad/s, allowed -100000 to 100000 with this model: "
             "is the column in another unit?");
-  EXPECT_THAT(ErrorOf([](MeasuredRun& run) { run.p1.values[0] = 690000; }), HasSubstr("line 2: p1: found"));
-  EXPECT_THAT(ErrorOf([](MeasuredRun& run) { run.voltage.values[9] = 24000; }),
+  EXPECT_THAT(ErrorOf([](runs::MeasuredRun& run) { run.p1.values[0] = 690000; }),
+              HasSubstr("line 2: p1: found"));
+  EXPECT_THAT(ErrorOf([](runs::MeasuredRun& run) { run.voltage.values[9] = 24000; }),
               HasSubstr("line 11: voltage: found 24000 V, allowed -10000 to 10000"));
-  EXPECT_THAT(ErrorOf([](MeasuredRun& run) { run.motor_speed = run.p1 = run.p2 = {}; }),
+  EXPECT_THAT(ErrorOf([](runs::MeasuredRun& run) { run.motor_speed = run.p1 = run.p2 = {}; }),
               HasSubstr("step.csv: found no signal to compare a model with"));
-  EXPECT_THAT(ErrorOf([](MeasuredRun& run) { run.arm_angle.values[50] = 0.9; }, WithArm(Shaft::kDriven)),
-              HasSubstr("line 52: arm_angle: found 0.9 rad"));
-  EXPECT_THAT(ErrorOf([](MeasuredRun& run) { run.arm_angle.values[50] = 17; }, WithArm(Shaft::kFree)),
-              HasSubstr("line 52: arm_angle: found 17 rad"));
+  EXPECT_THAT(
+      ErrorOf([](runs::MeasuredRun& run) { run.arm_angle.values[50] = 0.9; }, WithArm(model::Shaft::kDriven)),
+      HasSubstr("line 52: arm_angle: found 0.9 rad"));
+  EXPECT_THAT(
+      ErrorOf([](runs::MeasuredRun& run) { run.arm_angle.values[50] = 17; }, WithArm(model::Shaft::kFree)),
+      HasSubstr("line 52: arm_angle: found 17 rad"));
 }
 
 // Tests that the limits are those of the model's own units: 100 bar in Pa is nothing unusual in SI.
 TEST(PrepareRun, LimitsFollowTheModelsUnits) {
-  Parameters si = testing::Table1();
+  model::Parameters si = testing::Table1();
   si.beta *= 6894.757;
-  MeasuredRun run = Clamped();
+  runs::MeasuredRun run = Clamped();
   for (double& p : run.p2.values) p *= 6894.757;
   EXPECT_NO_THROW(PrepareRun(run, si));
 }
@@ -188,11 +192,13 @@ TEST(PrepareRun, LimitsFollowTheModelsUnits) {
 // Tests that what may well stand still does: a voltage, a driven arm, and in a log of the stack without noise
 // a side that stays on its one-way valve.
 TEST(PrepareRun, ConstantButRight) {
-  EXPECT_EQ(ErrorOf([](MeasuredRun& run) { run.arm_angle.values.assign(500, 0.1); }, WithArm(Shaft::kDriven)),
+  EXPECT_EQ(ErrorOf([](runs::MeasuredRun& run) { run.arm_angle.values.assign(500, 0.1); },
+                    WithArm(model::Shaft::kDriven)),
             "no error");
-  EXPECT_EQ(ErrorOf([](MeasuredRun& run) { run.arm_angle.values.assign(500, 0.1); }, WithArm(Shaft::kFree)),
+  EXPECT_EQ(ErrorOf([](runs::MeasuredRun& run) { run.arm_angle.values.assign(500, 0.1); },
+                    WithArm(model::Shaft::kFree)),
             "no error");
-  EXPECT_EQ(ErrorOf([](MeasuredRun& run) {
+  EXPECT_EQ(ErrorOf([](runs::MeasuredRun& run) {
               run.model_text = "of a log";
               run.p1.noise.reset();
               run.p1.values.assign(500, 100.0);
@@ -202,7 +208,7 @@ TEST(PrepareRun, ConstantButRight) {
 
 // Tests that a noise is never 0, by which residuals could not be divided.
 TEST(PrepareRun, NoiseIsAboveZero) {
-  MeasuredRun run = WithArm(Shaft::kFree);
+  runs::MeasuredRun run = WithArm(model::Shaft::kFree);
   run.arm_angle.values.assign(500, 0.1);
   for (size_t i = 0; i < 500; ++i) run.p2.values[i] = 100 + static_cast<double>(i);
   for (const SignalData& signal : PrepareRun(run, testing::Table1()).signals) EXPECT_GT(signal.noise, 0);
@@ -211,7 +217,7 @@ TEST(PrepareRun, NoiseIsAboveZero) {
 // Tests that what a saturated sensor reads counts as missing, and that a side which rests on its one-way
 // valve in a run without noise, and a coarse reading of an angle at rest, do not.
 TEST(PrepareRun, Saturation) {
-  MeasuredRun run = Clamped();
+  runs::MeasuredRun run = Clamped();
   size_t beyond = 0;
   for (double& p : run.p2.values) {
     if (p <= 400) continue;
@@ -220,19 +226,19 @@ TEST(PrepareRun, Saturation) {
   }
   ASSERT_GT(beyond, 100u);
   const RunData data = PrepareRun(run, testing::Table1());
-  EXPECT_EQ(data.Find(Channel::kP2)->saturated, beyond);
-  EXPECT_EQ(data.Find(Channel::kP2)->valid, 500 - beyond);
-  EXPECT_NEAR(data.Find(Channel::kP2)->noise, 1.5, 0.3);
-  EXPECT_EQ(data.Find(Channel::kP1)->saturated, 0u);
+  EXPECT_EQ(data.Find(model::Channel::kP2)->saturated, beyond);
+  EXPECT_EQ(data.Find(model::Channel::kP2)->valid, 500 - beyond);
+  EXPECT_NEAR(data.Find(model::Channel::kP2)->noise, 1.5, 0.3);
+  EXPECT_EQ(data.Find(model::Channel::kP1)->saturated, 0u);
 
-  MeasuredRun quiet = Clamped();
+  runs::MeasuredRun quiet = Clamped();
   for (size_t i = 0; i < 500; ++i) {
     quiet.p1.values[i] = 100 + std::max(0.0, 300 * std::sin(0.02 * static_cast<double>(i)));
     quiet.motor_speed.values[i] = std::round(std::max(0.0, 20 * std::sin(0.02 * static_cast<double>(i))));
   }
   const RunData still = PrepareRun(quiet, testing::Table1());
-  EXPECT_EQ(still.Find(Channel::kP1)->saturated, 0u);
-  EXPECT_EQ(still.Find(Channel::kMotorSpeed)->saturated, 0u);
+  EXPECT_EQ(still.Find(model::Channel::kP1)->saturated, 0u);
+  EXPECT_EQ(still.Find(model::Channel::kMotorSpeed)->saturated, 0u);
 }
 
 // Tests that runs of one name are told apart.
@@ -254,10 +260,11 @@ struct RateErrors {
 
 RateErrors ErrorsOfRate(const std::vector<double>& time, const std::vector<double>& angle, double noise,
                         double frequency) {
-  const std::unique_ptr<Trajectory> smooth = SmoothMotion(time, angle, noise, {}, 0);
-  std::vector<Step> steps;
+  const std::unique_ptr<trajectory::Trajectory> smooth = SmoothMotion(time, angle, noise, {}, 0);
+  std::vector<trajectory::Step> steps;
   for (size_t i = 0; i < time.size(); ++i) steps.push_back({time[i], angle[i]});
-  const std::unique_ptr<Trajectory> through = MakePoints(steps, Interpolation::kCubic);
+  const std::unique_ptr<trajectory::Trajectory> through =
+      trajectory::MakePoints(steps, trajectory::Interpolation::kCubic);
   RateErrors errors;
   const double w = 2 * kPi * frequency;
   for (double t = time[20]; t < time[time.size() - 20]; t += 0.37e-3) {
@@ -289,7 +296,7 @@ TEST(SmoothMotion, WithoutNoise) {
     time.push_back(0.001 * static_cast<double>(i) + (i % 3 == 0 ? 3e-4 : 0));
     angle.push_back(i % 10 == 4 ? kNan : 0.4 * std::sin(2 * kPi * 2 * time.back()));
   }
-  const std::unique_ptr<Trajectory> motion = SmoothMotion(time, angle, 8e-6, {}, 0);
+  const std::unique_ptr<trajectory::Trajectory> motion = SmoothMotion(time, angle, 8e-6, {}, 0);
   for (double t = 0.05; t < 0.95; t += 0.0007) {
     EXPECT_NEAR(motion->Value(t), 0.4 * std::sin(4 * kPi * t), 3e-5);
     EXPECT_NEAR(motion->Rate(t), 1.6 * kPi * std::cos(4 * kPi * t), 0.01);
@@ -309,7 +316,7 @@ TEST(SmoothMotion, MeasuredRate) {
     angle.push_back(0.4 * std::sin(2 * kPi * 0.5 * time.back()) + 0.002 * normal(random));
     rate.push_back(0.4 * kPi * std::cos(2 * kPi * 0.5 * time.back()) + 0.005 * normal(random));
   }
-  const auto error = [&](const Trajectory& motion) {
+  const auto error = [&](const trajectory::Trajectory& motion) {
     double sum = 0;
     for (size_t i = 0; i + 1 < time.size(); ++i) {
       sum += std::pow(motion.Rate(time[i]) - 0.4 * kPi * std::cos(kPi * time[i]), 2);
@@ -323,4 +330,4 @@ TEST(SmoothMotion, MeasuredRate) {
 }
 
 }  // namespace
-}  // namespace hydro
+}  // namespace hydro::diagnose

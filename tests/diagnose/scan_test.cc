@@ -13,14 +13,14 @@ namespace {
 
 // Every effect without names, sensor.skew of one channel, and every base parameter but f, which is
 // pump.pressure_friction.
-std::vector<Change> AllChanges() {
-  std::vector<Change> changes;
-  for (const EffectInfo& info : EffectCatalogue()) {
+std::vector<diagnose::Change> AllChanges() {
+  std::vector<diagnose::Change> changes;
+  for (const model::EffectInfo& info : model::EffectCatalogue()) {
     if (info.id == "sensor.sign") continue;
     changes.push_back({info.id, {}, ""});
     if (info.id == "sensor.skew") changes.back().names["signal"] = "p1";
   }
-  for (const BaseParameter& parameter : BaseParameters()) {
+  for (const model::BaseParameter& parameter : model::BaseParameters()) {
     if (parameter.info.name != "f") changes.push_back({"", {}, parameter.info.name});
   }
   return changes;
@@ -28,39 +28,41 @@ std::vector<Change> AllChanges() {
 
 // Runs of a rig, and Table 1 fitted to them as given.
 struct Case {
-  explicit Case(const ModelDescription& truth) : runs(OneOfEach(truth, 0.4, 1)), pointers(PointersTo(runs)) {
-    current = Fit(WithFree(Table1With(), {}), pointers, StartsOf(runs), {});
-    sizes = SizesOf(Table1With(), pointers);
+  explicit Case(const model::ModelDescription& truth)
+      : runs(OneOfEach(truth, 0.4, 1)), pointers(PointersTo(runs)) {
+    current = diagnose::Fit(WithFree(Table1With(), {}), pointers, StartsOf(runs), {});
+    sizes = diagnose::SizesOf(Table1With(), pointers);
   }
-  std::vector<std::vector<Scanned>> Judge(const std::vector<Change>& changes, int jobs = 1) const {
-    return Scan(current, pointers, changes, sizes, false, jobs);
+  std::vector<std::vector<diagnose::Scanned>> Judge(const std::vector<diagnose::Change>& changes,
+                                                    int jobs = 1) const {
+    return diagnose::Scan(current, pointers, changes, sizes, false, jobs);
   }
 
-  std::vector<RunData> runs;
-  std::vector<const RunData*> pointers;
-  Fitted current;
-  Sizes sizes;
+  std::vector<diagnose::RunData> runs;
+  std::vector<const diagnose::RunData*> pointers;
+  diagnose::Fitted current;
+  diagnose::Sizes sizes;
 };
 
-ModelDescription Frictional() { return Table1With({{"pump.pressure_friction", {{"f", 4e-4}}, {}}}); }
+model::ModelDescription Frictional() { return Table1With({{"pump.pressure_friction", {{"f", 4e-4}}, {}}}); }
 
 // Tests that a change which acts linearly is ranked first, with the fall that its refit brings, and that the
 // refit has little left to do.
 TEST(Scan, RanksTheHiddenChangeFirst) {
   const Case one(Frictional());
   ASSERT_TRUE(one.current.ok());
-  const std::vector<Change> changes = AllChanges();
+  const std::vector<diagnose::Change> changes = AllChanges();
   const auto scanned = one.Judge(changes);
   ASSERT_EQ(scanned.size(), changes.size());
-  const Scanned* best = &scanned[0].front();
+  const diagnose::Scanned* best = &scanned[0].front();
   for (const auto& rows : scanned) {
     ASSERT_FALSE(rows.empty());
     if (rows.front().failure.empty() && rows.front().expected > best->expected) best = &rows.front();
   }
   EXPECT_EQ(best->change.Label(), "pump.pressure_friction");
-  FitOptions options;
+  diagnose::FitOptions options;
   options.tolerance = 1e-6;
-  const Fitted refit = Fit(best->start, one.pointers, StartsOf(one.runs), options);
+  const diagnose::Fitted refit = diagnose::Fit(best->start, one.pointers, StartsOf(one.runs), options);
   ASSERT_TRUE(refit.ok());
   const double fall = one.current.sum - refit.sum;
   EXPECT_NEAR(best->expected, fall, 0.1 * fall);
@@ -71,7 +73,7 @@ TEST(Scan, RanksTheHiddenChangeFirst) {
 // Tests that the changes which share a simulation get the numbers that they get alone.
 TEST(Scan, TogetherAsAlone) {
   const Case one(Frictional());
-  const std::vector<Change> changes = AllChanges();
+  const std::vector<diagnose::Change> changes = AllChanges();
   const auto together = one.Judge(changes);
   double largest = 0;
   for (const auto& rows : together) largest = std::max(largest, rows.front().expected);
@@ -99,23 +101,24 @@ TEST(Scan, PromisesNothingWhereNothingIsMissing) {
 
 // Tests that what is free already promises nothing more: derivatives are taken off those of all that is.
 TEST(Scan, WhatIsFreeAlreadyGainsNothing) {
-  ModelDescription truth = Table1With();
+  model::ModelDescription truth = Table1With();
   truth.parameters.b = 0.02;
   const Case one(truth);
   const auto before = one.Judge({{"", {}, "b"}, {"", {}, "k_1"}});
   EXPECT_GT(before[0].front().expected, 1000);
-  FitOptions options;
+  diagnose::FitOptions options;
   options.tolerance = 1e-6;
-  const Fitted fitted = Fit(WithFree(Table1With(), {"b"}), one.pointers, StartsOf(one.runs), options);
-  const auto after =
-      Scan(fitted, one.pointers, {{"", {}, "k_1"}, {"pump.quadratic_drag", {}, ""}}, one.sizes, false, 1);
+  const diagnose::Fitted fitted =
+      diagnose::Fit(WithFree(Table1With(), {"b"}), one.pointers, StartsOf(one.runs), options);
+  const auto after = diagnose::Scan(fitted, one.pointers, {{"", {}, "k_1"}, {"pump.quadratic_drag", {}, ""}},
+                                    one.sizes, false, 1);
   for (const auto& rows : after) EXPECT_LT(rows.front().expected, 0.02 * before[0].front().expected);
 }
 
 // Tests that the order and the bits do not depend on the number of threads.
 TEST(Scan, SameBitsForAnyNumberOfThreads) {
   const Case one(Frictional());
-  const std::vector<Change> changes = AllChanges();
+  const std::vector<diagnose::Change> changes = AllChanges();
   const auto a = one.Judge(changes, 1), b = one.Judge(changes, 2);
   for (size_t c = 0; c < changes.size(); ++c) {
     ASSERT_EQ(a[c].size(), b[c].size());

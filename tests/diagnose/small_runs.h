@@ -14,7 +14,7 @@
 
 namespace hydro::testing {
 
-inline ModelDescription Table1With(std::vector<EffectDescription> effects = {}) {
+inline model::ModelDescription Table1With(std::vector<model::EffectDescription> effects = {}) {
   return {"Table 1", Table1(), std::move(effects)};
 }
 
@@ -24,55 +24,58 @@ inline double Levels(double t, int which) {
   return kLevels[(static_cast<int>(t / 0.07) + 4 * which) % 15];
 }
 
-inline RunData SmallRun(const ModelDescription& truth, Shaft shaft, bool bypass, double duration, int which,
-                        uint64_t seed) {
+inline diagnose::RunData SmallRun(const model::ModelDescription& truth, model::Shaft shaft, bool bypass,
+                                  double duration, int which, uint64_t seed) {
   NoisyRig rig;
   rig.model = truth;
   rig.seed = 100 * seed + static_cast<uint64_t>(which);
-  const std::string name = (bypass                  ? "bypass "
-                            : shaft == Shaft::kFree ? "free "
-                                                    : "clamped ") +
+  const std::string name = (bypass                         ? "bypass "
+                            : shaft == model::Shaft::kFree ? "free "
+                                                           : "clamped ") +
                            std::to_string(which);
-  const double angle = shaft == Shaft::kFree ? -0.1 : 0.3 - 0.2 * which;
+  const double angle = shaft == model::Shaft::kFree ? -0.1 : 0.3 - 0.2 * which;
   // A free arm is kept from drifting off by levels that come in pairs.
   return rig.Record(name, shaft, angle, duration, bypass, [&](double t) {
-    if (shaft != Shaft::kFree) return Levels(t, which);
+    if (shaft != model::Shaft::kFree) return Levels(t, which);
     return std::fmod(t, 0.3) < 0.15 ? 3.0 + which : -3.0 - which;
   });
 }
 
-inline std::vector<RunData> ClampedPair(const ModelDescription& truth, double duration, uint64_t seed) {
-  std::vector<RunData> runs;
-  runs.push_back(SmallRun(truth, Shaft::kClamped, false, duration, 0, seed));
-  runs.push_back(SmallRun(truth, Shaft::kClamped, false, duration, 1, seed));
+inline std::vector<diagnose::RunData> ClampedPair(const model::ModelDescription& truth, double duration,
+                                                  uint64_t seed) {
+  std::vector<diagnose::RunData> runs;
+  runs.push_back(SmallRun(truth, model::Shaft::kClamped, false, duration, 0, seed));
+  runs.push_back(SmallRun(truth, model::Shaft::kClamped, false, duration, 1, seed));
   return runs;
 }
 
-inline std::vector<RunData> OneOfEach(const ModelDescription& truth, double duration, uint64_t seed) {
-  std::vector<RunData> runs = ClampedPair(truth, duration, seed);
-  runs.push_back(SmallRun(truth, Shaft::kFree, false, duration, 2, seed));
-  runs.push_back(SmallRun(truth, Shaft::kClamped, true, duration, 3, seed));
+inline std::vector<diagnose::RunData> OneOfEach(const model::ModelDescription& truth, double duration,
+                                                uint64_t seed) {
+  std::vector<diagnose::RunData> runs = ClampedPair(truth, duration, seed);
+  runs.push_back(SmallRun(truth, model::Shaft::kFree, false, duration, 2, seed));
+  runs.push_back(SmallRun(truth, model::Shaft::kClamped, true, duration, 3, seed));
   return runs;
 }
 
-inline std::vector<const RunData*> PointersTo(const std::vector<RunData>& runs) {
-  std::vector<const RunData*> pointers;
-  for (const RunData& run : runs) pointers.push_back(&run);
+inline std::vector<const diagnose::RunData*> PointersTo(const std::vector<diagnose::RunData>& runs) {
+  std::vector<const diagnose::RunData*> pointers;
+  for (const diagnose::RunData& run : runs) pointers.push_back(&run);
   return pointers;
 }
 
-inline std::vector<StartState> StartsOf(const std::vector<RunData>& runs) {
-  std::vector<StartState> starts;
-  for (const RunData& run : runs) starts.push_back(run.start);
+inline std::vector<model::StartState> StartsOf(const std::vector<diagnose::RunData>& runs) {
+  std::vector<model::StartState> starts;
+  for (const diagnose::RunData& run : runs) starts.push_back(run.start);
   return starts;
 }
 
 // The model with these base parameters free, and the parameters of all of its effects.
-inline Hypothesis WithFree(const ModelDescription& model, const std::vector<std::string>& base) {
-  Hypothesis hypothesis;
+inline diagnose::Hypothesis WithFree(const model::ModelDescription& model,
+                                     const std::vector<std::string>& base) {
+  diagnose::Hypothesis hypothesis;
   hypothesis.model = model;
-  for (const std::string& name : base) hypothesis.base.push_back(BasePlace(name));
-  for (const EffectDescription& effect : model.effects) hypothesis.effects.push_back(effect.id);
+  for (const std::string& name : base) hypothesis.base.push_back(model::BasePlace(name));
+  for (const model::EffectDescription& effect : model.effects) hypothesis.effects.push_back(effect.id);
   return hypothesis;
 }
 

@@ -25,35 +25,39 @@ std::vector<double> Noise(size_t samples, double phi, std::mt19937_64* random) {
 constexpr double kPressureNoise = 1.5, kSpeedNoise = 0.3;
 
 // A clamped run with such noise on pressures and speed. `exact` is Table 1's response to its stimulus.
-RunData WithNoise(const RunData& like, const Response& exact, double phi, uint64_t seed) {
-  MeasuredRun run = like.measured;
+diagnose::RunData WithNoise(const diagnose::RunData& like, const model::Response& exact, double phi,
+                            uint64_t seed) {
+  runs::MeasuredRun run = like.measured;
   run.motor_angle = {};
   std::mt19937_64 random(seed);
-  const auto noisy = [&](Channel channel, double size, MeasuredSignal* signal) {
+  const auto noisy = [&](model::Channel channel, double size, runs::MeasuredSignal* signal) {
     signal->values = exact.values[static_cast<size_t>(channel)];
     const std::vector<double> noise = Noise(signal->values.size(), phi, &random);
     for (size_t i = 0; i < noise.size(); ++i) signal->values[i] += size * noise[i];
   };
-  noisy(Channel::kMotorSpeed, kSpeedNoise, &run.motor_speed);
-  noisy(Channel::kP1, kPressureNoise, &run.p1);
-  noisy(Channel::kP2, kPressureNoise, &run.p2);
-  return PrepareRun(run, Table1());
+  noisy(model::Channel::kMotorSpeed, kSpeedNoise, &run.motor_speed);
+  noisy(model::Channel::kP1, kPressureNoise, &run.p1);
+  noisy(model::Channel::kP2, kPressureNoise, &run.p2);
+  return diagnose::PrepareRun(run, Table1());
 }
 
 // Two clamped runs of Table 1 without noise.
 struct ExactPair {
   explicit ExactPair(double duration) : runs(ClampedPair(Table1With(), duration, 1)) {
-    for (const RunData& run : runs) exact.push_back(Respond(Table1With(), run.stimulus, Start(run), {}, {}));
+    for (const diagnose::RunData& run : runs)
+      exact.push_back(model::Respond(Table1With(), run.stimulus, Start(run), {}, {}));
   }
-  static StartState Start(const RunData& run) { return {0, 0, 100, 100, run.stimulus.arm_angle, 0}; }
-  std::vector<RunData> With(double phi, uint64_t seed) const {
-    std::vector<RunData> noisy;
+  static model::StartState Start(const diagnose::RunData& run) {
+    return {0, 0, 100, 100, run.stimulus.arm_angle, 0};
+  }
+  std::vector<diagnose::RunData> With(double phi, uint64_t seed) const {
+    std::vector<diagnose::RunData> noisy;
     for (size_t r = 0; r < runs.size(); ++r) noisy.push_back(WithNoise(runs[r], exact[r], phi, 2 * seed + r));
     return noisy;
   }
 
-  std::vector<RunData> runs;
-  std::vector<Response> exact;
+  std::vector<diagnose::RunData> runs;
+  std::vector<model::Response> exact;
 };
 
 constexpr uint64_t kSeeds = 30;
@@ -63,12 +67,12 @@ std::vector<int> Covered(double phi, double duration) {
   const ExactPair pair(duration);
   std::vector<int> covered(3, 0);
   for (uint64_t seed = 1; seed <= kSeeds; ++seed) {
-    const std::vector<RunData> runs = pair.With(phi, seed);
-    const Fitted fitted =
-        Fit(WithFree(Table1With(), {"b", "T_s", "beta"}), PointersTo(runs), StartsOf(runs), {});
+    const std::vector<diagnose::RunData> runs = pair.With(phi, seed);
+    const diagnose::Fitted fitted =
+        diagnose::Fit(WithFree(Table1With(), {"b", "T_s", "beta"}), PointersTo(runs), StartsOf(runs), {});
     EXPECT_TRUE(fitted.ok());
-    const std::vector<Interval> intervals = Intervals(fitted, PointersTo(runs), 1);
-    const Parameters p = Table1();
+    const std::vector<diagnose::Interval> intervals = diagnose::Intervals(fitted, PointersTo(runs), 1);
+    const model::Parameters p = Table1();
     const double truth[] = {p.b, p.T_s, p.beta};
     for (size_t i = 0; i < 3; ++i) {
       covered[i] += intervals[i].low <= truth[i] && truth[i] <= intervals[i].high;
@@ -91,11 +95,11 @@ TEST(Intervals, HoldTheTruthWithCorrelatedNoise) {
 
 // Tests that a time is not said to be known better than sensors are immediate, however little noise there is.
 TEST(Intervals, TimesAreNotSharperThanSensors) {
-  const ModelDescription lagging = Table1With({{"amp.lag", {{"tau", 0.002}}, {}}});
-  const std::vector<RunData> runs = ClampedPair(lagging, 2, 1);
-  const Fitted fitted = Fit(WithFree(lagging, {}), PointersTo(runs), StartsOf(runs), {});
+  const model::ModelDescription lagging = Table1With({{"amp.lag", {{"tau", 0.002}}, {}}});
+  const std::vector<diagnose::RunData> runs = ClampedPair(lagging, 2, 1);
+  const diagnose::Fitted fitted = diagnose::Fit(WithFree(lagging, {}), PointersTo(runs), StartsOf(runs), {});
   ASSERT_TRUE(fitted.ok());
-  const std::vector<Interval> intervals = Intervals(fitted, PointersTo(runs), 1);
+  const std::vector<diagnose::Interval> intervals = diagnose::Intervals(fitted, PointersTo(runs), 1);
   ASSERT_EQ(intervals.size(), 1u);
   const double sample = runs[0].duration() / static_cast<double>(runs[0].samples() - 1);
   EXPECT_GT(intervals[0].high - intervals[0].low, 2 * 1.96 * 0.02 * sample);
@@ -106,15 +110,15 @@ TEST(Intervals, TimesAreNotSharperThanSensors) {
 // viscous friction than the model holds is taken for drag.
 TEST(Intervals, AllowForNumbersThatAreHeld) {
   constexpr double kDrag = 1e-5;
-  ModelDescription truth = Table1With({{"pump.quadratic_drag", {{"k", kDrag}}, {}}});
-  const ModelDescription held = truth;
+  model::ModelDescription truth = Table1With({{"pump.quadratic_drag", {{"k", kDrag}}, {}}});
+  const model::ModelDescription held = truth;
   truth.parameters.b *= 1.001;
-  const std::vector<RunData> runs = ClampedPair(truth, 3, 1);
-  const Fitted fitted = Fit(WithFree(held, {}), PointersTo(runs), StartsOf(runs), {});
+  const std::vector<diagnose::RunData> runs = ClampedPair(truth, 3, 1);
+  const diagnose::Fitted fitted = diagnose::Fit(WithFree(held, {}), PointersTo(runs), StartsOf(runs), {});
   ASSERT_TRUE(fitted.ok());
   const double k = fitted.hypothesis.Free()[0].value;
   EXPECT_GT(k, 1.01 * kDrag);
-  const std::vector<Interval> intervals = Intervals(fitted, PointersTo(runs), 1);
+  const std::vector<diagnose::Interval> intervals = diagnose::Intervals(fitted, PointersTo(runs), 1);
   ASSERT_EQ(intervals.size(), 1u);
   EXPECT_LE(intervals[0].low, kDrag);
   EXPECT_LT(intervals[0].high - intervals[0].low, k);
@@ -122,13 +126,14 @@ TEST(Intervals, AllowForNumbersThatAreHeld) {
 
 // Tests that no interval holds what cannot be: friction that drives.
 TEST(Intervals, StayWithinPhysics) {
-  Parameters smooth = Table1();
+  model::Parameters smooth = Table1();
   smooth.T_s = 0;
-  const ModelDescription model{"smooth", smooth, {}};
-  const std::vector<RunData> runs = ClampedPair(model, 0.5, 1);
-  const Fitted fitted = Fit(WithFree(model, {"T_s"}), PointersTo(runs), StartsOf(runs), {});
+  const model::ModelDescription model{"smooth", smooth, {}};
+  const std::vector<diagnose::RunData> runs = ClampedPair(model, 0.5, 1);
+  const diagnose::Fitted fitted =
+      diagnose::Fit(WithFree(model, {"T_s"}), PointersTo(runs), StartsOf(runs), {});
   ASSERT_TRUE(fitted.ok());
-  const std::vector<Interval> intervals = Intervals(fitted, PointersTo(runs), 1);
+  const std::vector<diagnose::Interval> intervals = diagnose::Intervals(fitted, PointersTo(runs), 1);
   ASSERT_EQ(intervals.size(), 1u);
   EXPECT_EQ(intervals[0].low, 0);
   EXPECT_GT(intervals[0].high, 0);
@@ -145,7 +150,7 @@ TEST(PValue, IsUniformWithoutAnEffect) {
     for (int i = 0; i < kDraws; ++i) {
       double fall = 0;
       for (size_t k = 0; k < parameters; ++k) fall += std::pow(normal(random), 2);
-      p_values.push_back(PValue(1.3 * 7 * fall, 1.3, 7, parameters, 1));
+      p_values.push_back(diagnose::PValue(1.3 * 7 * fall, 1.3, 7, parameters, 1));
     }
     std::sort(p_values.begin(), p_values.end());
     double worst = 0;  // Kolmogorov-Smirnov
@@ -157,27 +162,27 @@ TEST(PValue, IsUniformWithoutAnEffect) {
 
 // Tests how it allows for the number tried, and its limits.
 TEST(PValue, AllowsForWhatWasTried) {
-  EXPECT_NEAR(PValue(3.841, 1, 1, 1, 1), 0.05, 1e-4);
-  EXPECT_NEAR(PValue(10.828, 1, 1, 1, 40), 0.04, 1e-4);
-  EXPECT_EQ(PValue(1, 1, 1, 1, 40), 1);
-  EXPECT_EQ(PValue(0, 1, 1, 1, 1), 1);
-  EXPECT_EQ(PValue(-5, 1, 1, 1, 1), 1);
+  EXPECT_NEAR(diagnose::PValue(3.841, 1, 1, 1, 1), 0.05, 1e-4);
+  EXPECT_NEAR(diagnose::PValue(10.828, 1, 1, 1, 40), 0.04, 1e-4);
+  EXPECT_EQ(diagnose::PValue(1, 1, 1, 1, 40), 1);
+  EXPECT_EQ(diagnose::PValue(0, 1, 1, 1, 1), 1);
+  EXPECT_EQ(diagnose::PValue(-5, 1, 1, 1, 1), 1);
   // A fit better than the noise is no reason to believe more.
-  EXPECT_EQ(PValue(5, 0.5, 1, 1, 1), PValue(5, 1, 1, 1, 1));
+  EXPECT_EQ(diagnose::PValue(5, 0.5, 1, 1, 1), diagnose::PValue(5, 1, 1, 1, 1));
 }
 
 // Tests the mean difference over its standard error.
 TEST(TValue, IsTheMeanOverItsError) {
-  const BlockSums worse{{11, 22, 33}, 3}, better{{10, 20, 30}, 3};
+  const diagnose::BlockSums worse{{11, 22, 33}, 3}, better{{10, 20, 30}, 3};
   EXPECT_NEAR(TValue(worse, better), 2 / std::sqrt(1.0 / 3), 1e-12);
   EXPECT_NEAR(TValue(better, worse), -2 / std::sqrt(1.0 / 3), 1e-12);
   EXPECT_EQ(TValue(worse, worse), 0);
 }
 
-Fitted AtTheTruth(const ExactPair& pair) {
-  Fitted fitted;
+diagnose::Fitted AtTheTruth(const ExactPair& pair) {
+  diagnose::Fitted fitted;
   fitted.hypothesis = WithFree(Table1With(), {});
-  for (const RunData& run : pair.runs) {
+  for (const diagnose::RunData& run : pair.runs) {
     fitted.runs.emplace_back();
     fitted.runs.back().start = ExactPair::Start(run);
   }
@@ -188,7 +193,7 @@ Fitted AtTheTruth(const ExactPair& pair) {
 TEST(CorrelationOf, CountsWhatIsIndependent) {
   const ExactPair pair(2);
   for (const double phi : {0.0, 0.5, 0.8}) {
-    const std::vector<RunData> runs = pair.With(phi, 3);
+    const std::vector<diagnose::RunData> runs = pair.With(phi, 3);
     const double expected = (1 + phi) / (1 - phi);
     EXPECT_NEAR(CorrelationOf(PointersTo(runs), AtTheTruth(pair)), expected, 0.25 * expected) << phi;
   }
@@ -197,31 +202,31 @@ TEST(CorrelationOf, CountsWhatIsIndependent) {
 // Tests that blocks add up to the whole, in the order of time.
 TEST(BlocksOf, AddUpToTheWhole) {
   const ExactPair pair(0.5);
-  const std::vector<RunData> runs = pair.With(0, 1);
-  HeldOut predicted;
-  for (const RunData& run : runs) {
+  const std::vector<diagnose::RunData> runs = pair.With(0, 1);
+  diagnose::HeldOut predicted;
+  for (const diagnose::RunData& run : runs) {
     predicted.starts.push_back(ExactPair::Start(run));
     predicted.models.push_back(Table1With());
   }
-  const BlockSums blocks = BlocksOf(PointersTo(runs), predicted);
+  const diagnose::BlockSums blocks = diagnose::BlocksOf(PointersTo(runs), predicted);
   double sum = 0;
   for (const double block : blocks.sums) sum += block;
   EXPECT_EQ(blocks.count, 2 * 3 * 500);
   EXPECT_NEAR(sum, blocks.count, 0.1 * blocks.count);
   predicted.models[1].parameters.k_1 *= 1.1;
-  const BlockSums worse = BlocksOf(PointersTo(runs), predicted);
+  const diagnose::BlockSums worse = diagnose::BlocksOf(PointersTo(runs), predicted);
   for (size_t i = 0; i < blocks.sums.size() / 2; ++i) EXPECT_EQ(worse.sums[i], blocks.sums[i]);
   EXPECT_GT(TValue(worse, blocks), 2);
 }
 
-std::vector<std::string> Told(const std::vector<RunData>& runs) {
+std::vector<std::string> Told(const std::vector<diagnose::RunData>& runs) {
   std::vector<size_t> all;
-  for (size_t i = 0; i < BaseParameters().size(); ++i) all.push_back(i);
-  const std::vector<const RunData*> pointers = PointersTo(runs);
+  for (size_t i = 0; i < model::BaseParameters().size(); ++i) all.push_back(i);
+  const std::vector<const diagnose::RunData*> pointers = PointersTo(runs);
   std::vector<std::string> names;
-  for (const size_t i : Identifiable(WithFree(Table1With(), {}), pointers, StartsOf(runs), all,
-                                     SizesOf(Table1With(), pointers), 1)) {
-    names.push_back(BaseParameters()[i].info.name);
+  for (const size_t i : diagnose::Identifiable(WithFree(Table1With(), {}), pointers, StartsOf(runs), all,
+                                               diagnose::SizesOf(Table1With(), pointers), 1)) {
+    names.push_back(model::BaseParameters()[i].info.name);
   }
   return names;
 }
@@ -248,7 +253,7 @@ TEST(Identifiable, ClampedRunsTellNothingOfTheArm) {
 
 // Tests that a free arm tells of the arm, but not more than one unit each leaves.
 TEST(Identifiable, AFreeArmTellsOfTheArm) {
-  std::vector<RunData> runs = OneOfEach(Table1With(), 0.6, 1);
+  std::vector<diagnose::RunData> runs = OneOfEach(Table1With(), 0.6, 1);
   const std::vector<std::string> told = Told(runs);
   EXPECT_GE(CountOf(told, {"k_2", "J_a"}), 1);
   EXPECT_LT(CountOf(told, {"k_2", "J_a", "mgl"}), 3);  // eq. (15) holds for all times any number
@@ -257,43 +262,44 @@ TEST(Identifiable, AFreeArmTellsOfTheArm) {
 
 // Tests that a fit of all that is identifiable ends at the truth: nothing in it is left to chance.
 TEST(Identifiable, WhatIsToldCanBeFitted) {
-  const std::vector<RunData> runs = ClampedPair(Table1With(), 0.6, 1);
+  const std::vector<diagnose::RunData> runs = ClampedPair(Table1With(), 0.6, 1);
   const std::vector<std::string> told = Told(runs);
-  const Fitted fitted = Fit(WithFree(Table1With(), told), PointersTo(runs), StartsOf(runs), {});
+  const diagnose::Fitted fitted =
+      diagnose::Fit(WithFree(Table1With(), told), PointersTo(runs), StartsOf(runs), {});
   ASSERT_TRUE(fitted.ok());
-  for (const FreeParameter& parameter : fitted.hypothesis.Free()) {
-    Parameters given = Table1();
-    const double truth = BaseValue(given, parameter.unknown.index);
+  for (const diagnose::FreeParameter& parameter : fitted.hypothesis.Free()) {
+    model::Parameters given = Table1();
+    const double truth = model::BaseValue(given, parameter.unknown.index);
     EXPECT_NEAR(parameter.value, truth, std::abs(truth) + 1e-3) << parameter.name;
   }
 }
 
 // Tests that a gap is closed near the noise, and by its share only where there is no noise to speak of.
 TEST(Closed, NearTheNoiseOrOfExactSensors) {
-  EXPECT_TRUE(Closed(200, 1.15 * 1.15 - 1e-9, false));
-  EXPECT_FALSE(Closed(200, 1.4, false));
-  EXPECT_TRUE(Closed(200, 1.4, true));
-  EXPECT_FALSE(Closed(200, 3.5, true));
-  const std::vector<RunData> noisy = ClampedPair(Table1With(), 0.3, 1);
+  EXPECT_TRUE(diagnose::Closed(200, 1.15 * 1.15 - 1e-9, false));
+  EXPECT_FALSE(diagnose::Closed(200, 1.4, false));
+  EXPECT_TRUE(diagnose::Closed(200, 1.4, true));
+  EXPECT_FALSE(diagnose::Closed(200, 3.5, true));
+  const std::vector<diagnose::RunData> noisy = ClampedPair(Table1With(), 0.3, 1);
   EXPECT_FALSE(ExactSensors(PointersTo(noisy)));
   NoisyRig exact;
   exact.model = Table1With();
   exact.pressure_noise = exact.speed_noise = 0;
   exact.encoder_bits = 26;
-  std::vector<RunData> runs;
+  std::vector<diagnose::RunData> runs;
   runs.push_back(
-      exact.Record("exact", Shaft::kClamped, 0, 0.5, false, [](double t) { return Levels(t, 0); }));
+      exact.Record("exact", model::Shaft::kClamped, 0, 0.5, false, [](double t) { return Levels(t, 0); }));
   EXPECT_TRUE(ExactSensors(PointersTo(runs)));
 }
 
 // Tests what a gain must be to count: a part of the whole and of what is above the noise.
 TEST(Material, AsksForAGainThatMatters) {
-  EXPECT_FALSE(Material(1.02, 1.00));
-  EXPECT_FALSE(Material(1.0, 1.0 - 0.5 * kLeastGain));
-  EXPECT_TRUE(Material(1 + 2 * kLeastGain, 1.0));
-  EXPECT_FALSE(Material(101, 101 - 0.5 * kLeastShare * 100));
-  EXPECT_TRUE(Material(101, 101 - 1.5 * kLeastShare * 100));
-  EXPECT_FALSE(Material(2, 3));
+  EXPECT_FALSE(diagnose::Material(1.02, 1.00));
+  EXPECT_FALSE(diagnose::Material(1.0, 1.0 - 0.5 * diagnose::kLeastGain));
+  EXPECT_TRUE(diagnose::Material(1 + 2 * diagnose::kLeastGain, 1.0));
+  EXPECT_FALSE(diagnose::Material(101, 101 - 0.5 * diagnose::kLeastShare * 100));
+  EXPECT_TRUE(diagnose::Material(101, 101 - 1.5 * diagnose::kLeastShare * 100));
+  EXPECT_FALSE(diagnose::Material(2, 3));
 }
 
 }  // namespace

@@ -8,7 +8,7 @@
 #include "base/word_list.h"
 #include "diagnose/data/sample_interval.h"
 
-namespace hydro {
+namespace hydro::diagnose {
 namespace {
 
 // Tests that numbers are rounded behind the point only, and written with powers of ten only where that is
@@ -54,4 +54,4 @@ TEST(MedianInterval, OfOneAndOfSeveralRecordings) {
 }
 
 }  // namespace
-}  // namespace hydro
+}  // namespace hydro::diagnose

@@ -8,7 +8,7 @@
 #include "experiments/runs/shipped_models.h"
 #include "experiments/studies/json_text.h"
 
-namespace hydro {
+namespace hydro::experiments {
 namespace {
 
 const ExperimentResult& Result() {
@@ -46,8 +46,8 @@ TEST(Apparatus, TorquesAndSpeeds) {
 
 // Tests that the assumed 18000 rpm motor has the power of the other one and gives the arm the same.
 TEST(Apparatus, FastMotorIsAnAssumptionOfTheSamePower) {
-  const Parameters slow = ShippedModel("table1").parameters;
-  const Parameters fast = ShippedModel("motor_18000rpm").parameters;
+  const model::Parameters slow = ShippedModel("table1").parameters;
+  const model::Parameters fast = ShippedModel("motor_18000rpm").parameters;
   EXPECT_NEAR(fast.T_pmax * 18000, slow.T_pmax * 6000, 1e-6);
   EXPECT_NEAR(fast.T_pmax / fast.k_1, slow.T_pmax / slow.k_1, 1e-9);
   EXPECT_NEAR(fast.J, slow.J * std::pow(1.0 / 3, 5.0 / 3), 1e-6);
@@ -78,4 +78,4 @@ TEST(Apparatus, FindingsAndSchematic) {
 }
 
 }  // namespace
-}  // namespace hydro
+}  // namespace hydro::experiments

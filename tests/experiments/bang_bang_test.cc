@@ -6,7 +6,7 @@
 
 #include "experiments/runs/shipped_models.h"
 
-namespace hydro {
+namespace hydro::experiments {
 namespace {
 
 // Tests that without friction the double integrator's closed form results: 2 sqrt(distance/acceleration).
@@ -57,7 +57,7 @@ TEST(BangBang, EqualsSimulationWithFriction) {
 
 // Tests that Table 1's drive has the reflected inertia of the paper's numbers and bounds around 0.38 s.
 TEST(BangBang, Table1) {
-  const Parameters p = ShippedModel("table1").parameters;
+  const model::Parameters p = ShippedModel("table1").parameters;
   const RigidDrive drive = MakeRigidDrive(p, 628.3);
   EXPECT_NEAR(p.J * std::pow(p.c / p.D, 2), 6430, 10);
   EXPECT_NEAR(drive.inertia, 6430 + 23.3, 20);
@@ -66,4 +66,4 @@ TEST(BangBang, Table1) {
 }
 
 }  // namespace
-}  // namespace hydro
+}  // namespace hydro::experiments

@@ -10,7 +10,7 @@
 
 #include "experiments/maths/second_order_fit.h"
 
-namespace hydro {
+namespace hydro::experiments {
 namespace {
 
 constexpr double kRate = 2000;  // Hz
@@ -152,4 +152,4 @@ TEST(SecondOrderFit, FarFromTheStart) {
 }
 
 }  // namespace
-}  // namespace hydro
+}  // namespace hydro::experiments

@@ -13,15 +13,15 @@
 #include "plant/sensor_noise.h"
 #include "settings/model_file.h"
 
-namespace hydro {
+namespace hydro::experiments {
 namespace {
 
 using nlohmann::json;
 using testing::AllOf;
 using testing::HasSubstr;
 
-const Parameters& Table1() {
-  static const Parameters parameters = ShippedModel("table1").parameters;
+const model::Parameters& Table1() {
+  static const model::Parameters parameters = ShippedModel("table1").parameters;
   return parameters;
 }
 
@@ -92,12 +92,12 @@ struct CleanHold {
   double voltage;
   double duration;
 };
-MeasuredRun SimulateHolds(const ModelDescription& model, const std::vector<CleanHold>& holds,
-                          double interval) {
-  Actuator actuator(model, {.shaft = Shaft::kClamped, .bypass = true});
-  MeasuredRun run;
+runs::MeasuredRun SimulateHolds(const model::ModelDescription& model, const std::vector<CleanHold>& holds,
+                                double interval) {
+  model::Actuator actuator(model, {.shaft = model::Shaft::kClamped, .bypass = true});
+  runs::MeasuredRun run;
   run.name = run.file = "holds.csv";
-  run.shaft = Shaft::kClamped;
+  run.shaft = model::Shaft::kClamped;
   run.bypass = true;
   double begin = 0;
   for (const CleanHold& hold : holds) {
@@ -122,15 +122,15 @@ std::vector<CleanHold> BothWays(double duration) {
   return holds;
 }
 
-MeasuredRun WithNoise(MeasuredRun run, double deviation, int64_t seed) {
+runs::MeasuredRun WithNoise(runs::MeasuredRun run, double deviation, int64_t seed) {
   for (size_t i = 0; i < run.samples(); ++i) {
     run.motor_speed.values[i] +=
-        deviation * StandardNormal(static_cast<uint64_t>(seed), static_cast<int64_t>(i), 3);
+        deviation * plant::StandardNormal(static_cast<uint64_t>(seed), static_cast<int64_t>(i), 3);
   }
   return run;
 }
 
-std::string ErrorOf(const MeasuredRun& run) {
+std::string ErrorOf(const runs::MeasuredRun& run) {
   try {
     FitPumpFriction(run, SpeedSourceOf(run), Table1());
   } catch (const InputError& error) {
@@ -142,7 +142,7 @@ std::string ErrorOf(const MeasuredRun& run) {
 
 // Tests that the 95 % intervals are honest: over 120 draws of the noise they hold the truth in 90 to 99 %.
 TEST(PumpFrictionTest, IntervalsAreHonest) {
-  const MeasuredRun clean = SimulateHolds(ShippedModel("table1"), BothWays(40), 0.02);
+  const runs::MeasuredRun clean = SimulateHolds(ShippedModel("table1"), BothWays(40), 0.02);
   const int draws = 120;
   int T_s_held = 0, b_held = 0, difference_held = 0;
   for (int seed = 1; seed <= draws; ++seed) {
@@ -189,7 +189,7 @@ TEST(PumpFrictionTest, ExactWithoutNoise) {
 
 // Tests that friction which differs between the directions is found as such.
 TEST(PumpFrictionTest, DirectionsDiffer) {
-  const ModelDescription model = ParseModel(
+  const model::ModelDescription model = settings::ParseModel(
       ShippedModelText("table1") + "[effects.\"pump.friction_asymmetry\"]\ncoulomb = 0.3\nviscous = 0.0\n",
       "asymmetric.toml");
   const PumpFriction friction = FitPumpFriction(WithNoise(SimulateHolds(model, BothWays(30), 0.02), 0.3, 1),
@@ -215,9 +215,9 @@ TEST(PumpFrictionTest, OnlySteadyHoldsCount) {
 
 // Tests that a noisy command (a measured current) and missing speeds do no harm.
 TEST(PumpFrictionTest, NoisyCommandAndGaps) {
-  MeasuredRun run = WithNoise(SimulateHolds(ShippedModel("table1"), BothWays(30), 0.02), 0.3, 1);
+  runs::MeasuredRun run = WithNoise(SimulateHolds(ShippedModel("table1"), BothWays(30), 0.02), 0.3, 1);
   for (size_t i = 0; i < run.samples(); ++i) {
-    run.voltage.values[i] += 0.01 * StandardNormal(5, static_cast<int64_t>(i), 0);
+    run.voltage.values[i] += 0.01 * plant::StandardNormal(5, static_cast<int64_t>(i), 0);
     if (i % 7 == 0) run.motor_speed.values[i] = std::nan("");
   }
   const PumpFriction friction = FitPumpFriction(run, SpeedSource::kSpeed, Table1());
@@ -228,8 +228,8 @@ TEST(PumpFrictionTest, NoisyCommandAndGaps) {
 // Tests each way in which a run can fail to support the fit: the message has what was found and what is
 // allowed.
 TEST(PumpFrictionTest, Errors) {
-  const ModelDescription model = ShippedModel("table1");
-  MeasuredRun run = SimulateHolds(model, BothWays(30), 0.02);
+  const model::ModelDescription model = ShippedModel("table1");
+  runs::MeasuredRun run = SimulateHolds(model, BothWays(30), 0.02);
   run.bypass = false;
   EXPECT_THAT(ErrorOf(run), AllOf(HasSubstr("holds.csv: found the bypass closed"), HasSubstr("allowed")));
 
@@ -258,13 +258,13 @@ TEST(PumpFrictionTest, Errors) {
 // is no speed.
 TEST(FrictionRunFile, TableWithSidecar) {
   const std::string stem = testing::TempDir() + "/friction_run_file";
-  Table table;
-  const MeasuredRun run = WithNoise(SimulateHolds(ShippedModel("table1"), BothWays(30), 0.02), 0.3, 1);
+  tables::Table table;
+  const runs::MeasuredRun run = WithNoise(SimulateHolds(ShippedModel("table1"), BothWays(30), 0.02), 0.3, 1);
   table.columns = {{"t", run.time},
                    {"v", run.voltage.values},
                    {"w", run.motor_speed.values},
                    {"th", run.motor_angle.values}};
-  WriteTable(table, stem + ".csv");
+  tables::WriteTable(table, stem + ".csv");
   for (const char* signal : {"motor_speed = \"w\"\n", "motor_angle = \"th\"\n"}) {
     std::ofstream(stem + ".toml")
         << "shaft = \"free\"\nbypass = true\n[columns]\ntime = \"t\"\nvoltage = \"v\"\n"
@@ -313,17 +313,17 @@ TEST(FrictionRunFile, RealRunWithoutBypass) {
 
 // Tests the fit of a line against a textbook's: y = 1, 3, 2, 5 at x = 0, 1, 2, 3.
 TEST(LinearFitTest, Line) {
-  const LinearFit fit = FitLinear({{1, 1, 1, 1}, {0, 1, 2, 3}}, {1, 3, 2, 5});
+  const maths::LinearFit fit = maths::FitLinear({{1, 1, 1, 1}, {0, 1, 2, 3}}, {1, 3, 2, 5});
   EXPECT_NEAR(fit.coefficients[0], 1.1, 1e-12);
   EXPECT_NEAR(fit.coefficients[1], 1.1, 1e-12);
   EXPECT_EQ(fit.degrees_of_freedom, 2);
   EXPECT_NEAR(fit.residual_deviation, std::sqrt(2.7 / 2), 1e-12);
   EXPECT_NEAR(fit.StandardError({0, 1}), std::sqrt(1.35 / 5), 1e-12);
   EXPECT_NEAR(fit.HalfWidth95({0, 1}), 4.302652730 * std::sqrt(1.35 / 5), 1e-8);
-  EXPECT_NEAR(StudentT95(7), 2.364624252, 1e-8);  // tables
-  EXPECT_TRUE(std::isinf(StudentT95(0)));
-  EXPECT_THROW(FitLinear({{1, 1, 1}, {2, 2, 2}}, {1, 2, 3}), std::invalid_argument);
+  EXPECT_NEAR(maths::StudentT95(7), 2.364624252, 1e-8);  // tables
+  EXPECT_TRUE(std::isinf(maths::StudentT95(0)));
+  EXPECT_THROW(maths::FitLinear({{1, 1, 1}, {2, 2, 2}}, {1, 2, 3}), std::invalid_argument);
 }
 
 }  // namespace
-}  // namespace hydro
+}  // namespace hydro::experiments

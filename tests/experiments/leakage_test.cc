@@ -13,7 +13,7 @@
 #include "plant/sensor_noise.h"
 #include "settings/model_file.h"
 
-namespace hydro {
+namespace hydro::experiments {
 namespace {
 
 using nlohmann::json;
@@ -104,11 +104,11 @@ TEST_F(LeakageTest, Report) {
 }
 
 // A clamped run of the model by itself, at 200 Hz: one torque, then none.
-MeasuredRun Clamped(const ModelDescription& model, double torque, int64_t seed, double noise = 3,
-                    int samples = 900) {
-  MeasuredRun run;
+runs::MeasuredRun Clamped(const model::ModelDescription& model, double torque, int64_t seed, double noise = 3,
+                          int samples = 900) {
+  runs::MeasuredRun run;
   run.file = run.name = "clamped.csv";
-  run.shaft = Shaft::kClamped;
+  run.shaft = model::Shaft::kClamped;
   for (int i = 0; i < samples; ++i) {
     run.time.push_back(i * 0.005);
     run.voltage.values.push_back(i >= 20 && i < samples - 400 ? torque / model.parameters.k_1 : 0);
@@ -118,15 +118,15 @@ MeasuredRun Clamped(const ModelDescription& model, double torque, int64_t seed, 
   run.p2.values = truth.p2;
   for (int i = 0; i < samples; ++i) {
     const auto k = static_cast<size_t>(i);
-    run.p1.values[k] += noise * StandardNormal(static_cast<uint64_t>(seed), i, 0);
-    run.p2.values[k] += noise * StandardNormal(static_cast<uint64_t>(seed), i, 1);
+    run.p1.values[k] += noise * plant::StandardNormal(static_cast<uint64_t>(seed), i, 0);
+    run.p2.values[k] += noise * plant::StandardNormal(static_cast<uint64_t>(seed), i, 1);
   }
   run.p1.noise = run.p2.noise = noise;
   return run;
 }
 
-ModelDescription Leaking(double c_E, double c_I) {
-  ModelDescription model = ShippedModel("table1");
+model::ModelDescription Leaking(double c_E, double c_I) {
+  model::ModelDescription model = ShippedModel("table1");
   model.parameters.c_E = c_E;
   model.parameters.c_I = c_I;
   return model;
@@ -146,14 +146,14 @@ TEST(LeakageFitTest, OtherLeakages) {
 // (which has a probability of 0.986 at 95 %), and that their width is the scatter of the values.
 TEST(LeakageFitTest, IntervalsAreHonest) {
   const int draws = 40;
-  const MeasuredRun clean = Clamped(ShippedModel("table1"), 10, 1, 1e-9);
+  const runs::MeasuredRun clean = Clamped(ShippedModel("table1"), 10, 1, 1e-9);
   int c_E_held = 0, c_I_held = 0;
   double squares = 0, half = 0;
   for (int seed = 1; seed <= draws; ++seed) {
-    MeasuredRun run = clean;
+    runs::MeasuredRun run = clean;
     for (size_t i = 0; i < run.samples(); ++i) {
-      run.p1.values[i] += 3 * StandardNormal(static_cast<uint64_t>(seed), static_cast<int64_t>(i), 0);
-      run.p2.values[i] += 3 * StandardNormal(static_cast<uint64_t>(seed), static_cast<int64_t>(i), 1);
+      run.p1.values[i] += 3 * plant::StandardNormal(static_cast<uint64_t>(seed), static_cast<int64_t>(i), 0);
+      run.p2.values[i] += 3 * plant::StandardNormal(static_cast<uint64_t>(seed), static_cast<int64_t>(i), 1);
     }
     run.p1.noise = run.p2.noise = 3;
     const LeakageFit fit = FitLeakage(ShippedModel("table1"), {run});
@@ -170,7 +170,7 @@ TEST(LeakageFitTest, IntervalsAreHonest) {
 // Tests that data which tell only one combination are said to: pressures recorded long after the last stick,
 // when one side stays at p_3 and the pump creeps steadily against c_E + c_I.
 TEST(LeakageFitTest, SteadyCreepTellsOnlyTheSum) {
-  MeasuredRun run = Clamped(ShippedModel("table1"), 10, 1, 3, 3200);
+  runs::MeasuredRun run = Clamped(ShippedModel("table1"), 10, 1, 3, 3200);
   for (size_t i = 0; i < run.samples(); ++i) {
     // The swing about the creep has a time constant of 1.8 s from 1.3 s on; the torque ends at 14 s.
     if (run.time[i] > 12 && run.time[i] < 13.9) continue;
@@ -190,9 +190,9 @@ TEST(LeakageFitTest, SteadyCreepTellsOnlyTheSum) {
 
 // Tests that the fit does not need the noise to be given, and bears missing values and uneven times.
 TEST(LeakageFitTest, UnknownNoiseGapsUnevenTimes) {
-  MeasuredRun run = Clamped(ShippedModel("table1"), -10, 1);
+  runs::MeasuredRun run = Clamped(ShippedModel("table1"), -10, 1);
   run.p1.noise = run.p2.noise = std::nullopt;
-  MeasuredRun uneven = run;
+  runs::MeasuredRun uneven = run;
   uneven.time.clear();
   uneven.voltage.values.clear();
   uneven.p1.values.clear();
@@ -210,7 +210,7 @@ TEST(LeakageFitTest, UnknownNoiseGapsUnevenTimes) {
   EXPECT_NEAR(fit.p1_noise[0], 3, 0.5);
 }
 
-std::string ErrorOf(const MeasuredRun& run) {
+std::string ErrorOf(const runs::MeasuredRun& run) {
   try {
     FitLeakage(ShippedModel("table1"), {run});
   } catch (const InputError& error) {
@@ -223,9 +223,9 @@ std::string ErrorOf(const MeasuredRun& run) {
 // Tests each way in which a run can fail to support the fit: the message has what was found and what is
 // allowed.
 TEST(LeakageFitTest, Errors) {
-  const MeasuredRun good = Clamped(ShippedModel("table1"), 10, 1);
-  MeasuredRun run = good;
-  run.shaft = Shaft::kFree;
+  const runs::MeasuredRun good = Clamped(ShippedModel("table1"), 10, 1);
+  runs::MeasuredRun run = good;
+  run.shaft = model::Shaft::kFree;
   EXPECT_THAT(ErrorOf(run),
               AllOf(HasSubstr("clamped.csv: found a shaft that is free"), HasSubstr("allowed")));
   run = good;
@@ -257,10 +257,10 @@ TEST(LeakageFitTest, Errors) {
 // of a moving piston is refused with the reason.
 TEST(LeakageRunFile, TableWithSidecar) {
   const std::string stem = testing::TempDir() + "/leakage_run_file";
-  const MeasuredRun run = Clamped(ShippedModel("table1"), 10, 1);
-  Table table;
+  const runs::MeasuredRun run = Clamped(ShippedModel("table1"), 10, 1);
+  tables::Table table;
   table.columns = {{"t", run.time}, {"v", run.voltage.values}, {"a", run.p1.values}, {"b", run.p2.values}};
-  WriteTable(table, stem + ".csv");
+  tables::WriteTable(table, stem + ".csv");
   std::ofstream(stem + ".toml") << "name = \"bench\"\nshaft = \"clamped\"\n[columns]\ntime = \"t\"\n"
                                    "voltage = \"v\"\np1 = \"a\"\np2 = \"b\"\n";
   ExperimentOptions options;
@@ -298,4 +298,4 @@ TEST(LeakageRunFile, TableWithSidecar) {
 }
 
 }  // namespace
-}  // namespace hydro
+}  // namespace hydro::experiments

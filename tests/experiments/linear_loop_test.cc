@@ -9,32 +9,32 @@
 #include "model/actuator.h"
 #include "tests/experiments/wave_polynomial.h"
 
-namespace hydro {
+namespace hydro::experiments {
 namespace {
 
 using Complex = std::complex<double>;
 constexpr double kPi = std::numbers::pi;
 
-LinearModel Clamped(const ModelDescription& model, int valve_1_open) {
-  const Equations equations(model, {.shaft = Shaft::kClamped});
-  double state[kMaxStates];
-  Mode mode;
+model::LinearModel Clamped(const model::ModelDescription& model, int valve_1_open) {
+  const model::Equations equations(model, {.shaft = model::Shaft::kClamped});
+  double state[model::kMaxStates];
+  model::Mode mode;
   equations.Start(1000, state, &mode);
   mode.pump = 1;
   mode.valve_1 = static_cast<int8_t>(valve_1_open);
-  return Linearise(equations, 0, 0, mode, state);
+  return model::Linearise(equations, 0, 0, mode, state);
 }
 
 // Table 1 with waves in its lines.
-ModelDescription WithWaves(double volume_fraction, double damping) {
-  ModelDescription model = ShippedModel("table1");
+model::ModelDescription WithWaves(double volume_fraction, double damping) {
+  model::ModelDescription model = ShippedModel("table1");
   model.effects.push_back(
       {"line.wave", {{"frequency", 300}, {"volume_fraction", volume_fraction}, {"damping", damping}}, {}});
   return model;
 }
 
-PressureGains PaperGains(int sides) {
-  return DerivePressureGains(ShippedModel("table1").parameters, 0, 150, 0.5, sides);
+pressure_ctrl::PressureGains PaperGains(int sides) {
+  return pressure_ctrl::DerivePressureGains(ShippedModel("table1").parameters, 0, 150, 0.5, sides);
 }
 
 // With x = (dp, theta'): dp' = s theta' - a dp, J theta'' = k_1 v - D dp - b theta'. By hand from eqs. (4),
@@ -42,12 +42,12 @@ PressureGains PaperGains(int sides) {
 struct HandModel {
   double s, a, J, b, D, k_1;
   explicit HandModel(int sides) {
-    const Parameters p = ShippedModel("table1").parameters;
+    const model::Parameters p = ShippedModel("table1").parameters;
     s = sides * p.beta * p.D / p.V_ms;
     a = p.beta / p.V_ms * (p.c_E + sides * p.c_I);
     J = p.J, b = p.b, D = p.D, k_1 = p.k_1;
   }
-  Complex Closed(const PressureGains& g, Complex w) const {
+  Complex Closed(const pressure_ctrl::PressureGains& g, Complex w) const {
     const double B = b + k_1 * g.k_p * g.k_v;
     return k_1 * g.k_p * s / ((J * w + B) * (w + a) + s * (D + k_1 * g.k_p));
   }
@@ -58,7 +58,7 @@ struct HandModel {
 TEST(LinearPressureLoop, AnalogLoopIsSecondOrder) {
   for (const int sides : {1, 2}) {
     const HandModel hand(sides);
-    const PressureGains gains = PaperGains(sides);
+    const pressure_ctrl::PressureGains gains = PaperGains(sides);
     const LinearPressureLoop loop(Clamped(ShippedModel("table1"), sides == 1), {});
     for (double f = 0.1; f < 1000; f *= 1.7) {
       const Complex expected = hand.Closed(gains, Complex(0, 2 * kPi * f));
@@ -86,9 +86,9 @@ TEST(LinearPressureLoop, TwoSidedGainsOnOneSide) {
 
 // Tests that the sampled loop tends to the analog one, first by the half interval that holding delays.
 TEST(LinearPressureLoop, SampledLoopTendsToAnalog) {
-  const LinearModel model = Clamped(ShippedModel("table1"), 0);
+  const model::LinearModel model = Clamped(ShippedModel("table1"), 0);
   const LinearPressureLoop analog(model, {});
-  const PressureGains gains = PaperGains(2);
+  const pressure_ctrl::PressureGains gains = PaperGains(2);
   for (const double interval : {1e-4, 1e-5}) {
     for (const int delay : {0, 1}) {
       const LinearPressureLoop sampled(model, {interval, delay});
@@ -107,8 +107,8 @@ TEST(LinearPressureLoop, SampledLoopTendsToAnalog) {
 TEST(LinearPressureLoop, GainLimitWithWavesMeetsRouth) {
   for (const double volume_fraction : {0.1, 0.4}) {
     for (const double damping : {0.005, 0.02}) {
-      const ModelDescription model = WithWaves(volume_fraction, damping);
-      const PressureGains gains = PaperGains(2);
+      const model::ModelDescription model = WithWaves(volume_fraction, damping);
+      const pressure_ctrl::PressureGains gains = PaperGains(2);
       const auto routh_stable = [&](double factor) {
         return RouthStable(
             WavePolynomial(model.parameters, 300, volume_fraction, damping, {factor * gains.k_p, gains.k_v}));
@@ -126,24 +126,24 @@ TEST(LinearPressureLoop, GainLimitWithWavesMeetsRouth) {
 // Tests the sampled loop's limit by the actuator itself under the sampled law: oscillations decay just below
 // it and grow just above it. Without Coulomb friction, which would stop them.
 TEST(LinearPressureLoop, SampledLimitIsWhereTheActuatorStartsToOscillate) {
-  ModelDescription model = ShippedModel("table1");
+  model::ModelDescription model = ShippedModel("table1");
   model.parameters.T_s = 0;
   const double interval = 2e-3;
-  const PressureGains gains = PaperGains(2);
+  const pressure_ctrl::PressureGains gains = PaperGains(2);
   const LinearPressureLoop loop(Clamped(model, 0), {interval, 1});
   const GainLimit limit = LargestStableFactor(loop, gains, 100);
   ASSERT_LT(limit.factor, 100);
   for (const double beside : {0.98, 1.02}) {
-    const PressureLawSettings law = {.gains = {beside * limit.factor * gains.k_p, gains.k_v},
-                                     .voltage_limit = 10};
-    Actuator actuator(model, {.shaft = Shaft::kClamped, .initial_pressure = 1500});
+    const pressure_ctrl::PressureLawSettings law = {.gains = {beside * limit.factor * gains.k_p, gains.k_v},
+                                                    .voltage_limit = 10};
+    model::Actuator actuator(model, {.shaft = model::Shaft::kClamped, .initial_pressure = 1500});
     double voltage = 0;
     double early = 0;
     double late = 0;
     for (int k = 0; k < 400; ++k) {
-      const Measurement m = actuator.Measure();
+      const model::Measurement m = actuator.Measure();
       const double next =
-          PressureLaw(
+          pressure_ctrl::PressureLaw(
               law, {.pressure_ref = k == 0 ? 0.01 : 0, .p1 = m.p1, .p2 = m.p2, .motor_speed = m.motor_speed})
               .voltage;
       if (k >= 50 && k < 100) early = std::max(early, std::abs(m.p2 - m.p1));
@@ -158,4 +158,4 @@ TEST(LinearPressureLoop, SampledLimitIsWhereTheActuatorStartsToOscillate) {
 }
 
 }  // namespace
-}  // namespace hydro
+}  // namespace hydro::experiments

@@ -10,7 +10,7 @@
 #include "experiments/figures/catalogue.h"
 #include "experiments/studies/json_text.h"
 
-namespace hydro {
+namespace hydro::experiments {
 namespace {
 
 using nlohmann::json;
@@ -166,7 +166,7 @@ TEST(Figure2, Finding) {
   EXPECT_NE(result.findings[0].evidence.find("4.203 cycles"), std::string::npos)
       << result.findings[0].evidence;
   EXPECT_EQ(result.numbers, JsonText(Fig2()));  // bit-identical
-  for (const Column& column : result.table.columns) {
+  for (const tables::Column& column : result.table.columns) {
     EXPECT_EQ(column.values.size(), result.table.rows()) << column.name;
   }
 }
@@ -224,4 +224,4 @@ TEST(Figure3, WithoutValves) {
 }
 
 }  // namespace
-}  // namespace hydro
+}  // namespace hydro::experiments

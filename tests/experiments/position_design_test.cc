@@ -13,13 +13,13 @@
 #include "position_ctrl/position_law.h"
 #include "runs/step_response.h"
 
-namespace hydro {
+namespace hydro::experiments {
 namespace {
 
 DesignModel Table1Design() { return Figure8Model(ShippedModel("table1").parameters); }
 
-StepResponse Measure(const Response& response, double step) {
-  return MeasureStep(response.time, response.angle, 0, response.time.size(), 0, step);
+runs::StepResponse Measure(const Response& response, double step) {
+  return runs::MeasureStep(response.time, response.angle, 0, response.time.size(), 0, step);
 }
 
 // Tests that Routh's closed form is where a Routh array built row by row changes sign, and where eigenvalues
@@ -108,7 +108,7 @@ TEST(PositionDesign, FastPressureLoopIsSecondOrder) {
 // The sampled loop computed otherwise: Runge-Kutta on the states, the law that the position process runs.
 Response SimulateByHand(const DesignModel& m, double gain, double interval, bool on_error, double step,
                         double duration) {
-  PositionLaw law(
+  position_ctrl::PositionLaw law(
       {.c1 = gain * m.zero, .c2 = gain, .sample_interval = interval, .derivative_on_error = on_error});
   law.Update(0, 0, 1);
   using State = std::array<double, 4>;
@@ -190,15 +190,16 @@ TEST(SampledPositionLoop, PolesGovernTheMotion) {
 // Tests that the exact linearisation with the arm clamped gives the design's loop up to leakage, and with one
 // side held the one that the gains' inverse gives.
 TEST(ArmLoop, ClampedIsTheDesign) {
-  const ModelDescription model = ShippedModel("table1");
-  PressureLawSettings law;
-  law.gains = DerivePressureGains(model.parameters, 0, 150, 0.5, 2);
-  const SecondOrder two = ExactPressureLoop(model, law, 2), one = ExactPressureLoop(model, law, 1);
+  const model::ModelDescription model = ShippedModel("table1");
+  pressure_ctrl::PressureLawSettings law;
+  law.gains = pressure_ctrl::DerivePressureGains(model.parameters, 0, 150, 0.5, 2);
+  const pressure_ctrl::SecondOrder two = ExactPressureLoop(model, law, 2),
+                                   one = ExactPressureLoop(model, law, 1);
   EXPECT_NEAR(two.natural_frequency, 150, 0.5);
   EXPECT_NEAR(two.damping_ratio, 0.5, 0.002);
   EXPECT_NEAR(one.natural_frequency, 106.6, 0.6);
   EXPECT_NEAR(one.damping_ratio, 0.709, 0.003);
-  ModelDescription tight = model;
+  model::ModelDescription tight = model;
   tight.parameters.c_E = tight.parameters.c_I = 0;
   EXPECT_NEAR(ExactPressureLoop(tight, law, 2).natural_frequency, 150, 1e-9);
   EXPECT_NEAR(ExactPressureLoop(tight, law, 2).damping_ratio, 0.5, 1e-12);
@@ -207,11 +208,11 @@ TEST(ArmLoop, ClampedIsTheDesign) {
 // Tests that without flow from the arm's motion and without leakage the exact model is Figure 8's, and that
 // with the flow its slow pole is that of the rigid transmission, c_1 per (b + k_1 k_p k_v)(c/D) and c_2.
 TEST(ArmLoop, ArmFlowIsTheDifference) {
-  ModelDescription model = ShippedModel("table1");
+  model::ModelDescription model = ShippedModel("table1");
   model.parameters.c_E = model.parameters.c_I = 0;
-  const Parameters& p = model.parameters;
-  PressureLawSettings law;
-  law.gains = DerivePressureGains(p, 0, 150, 0.5, 2);
+  const model::Parameters& p = model.parameters;
+  pressure_ctrl::PressureLawSettings law;
+  law.gains = pressure_ctrl::DerivePressureGains(p, 0, 150, 0.5, 2);
   const std::vector<Complex> full = LinearArmLoop(model, law).Poles(10500, 350);
   // (I/(k_1 k_p)) alpha'' + ((b + k_1 k_p k_v)/(k_1 k_p) c/D + c_2) alpha' + c_1 alpha = 0, the fluid rigid.
   const double drive = p.k_1 * law.gains.k_p;
@@ -227,4 +228,4 @@ TEST(ArmLoop, ArmFlowIsTheDifference) {
 }
 
 }  // namespace
-}  // namespace hydro
+}  // namespace hydro::experiments

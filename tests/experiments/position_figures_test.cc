@@ -11,7 +11,7 @@
 #include "experiments/studies/retuning.h"
 #include "runs/step_response.h"
 
-namespace hydro {
+namespace hydro::experiments {
 namespace {
 
 using nlohmann::json;
@@ -143,7 +143,7 @@ TEST(PositionFigures, RetunedLoop) {
 // Tests that gravity holds the arm below its target by what statics say: k_2 dp = m g l cos(alpha), c_1 e =
 // dp with the feed-forward, within the friction band of T_s.
 TEST(PositionFigures, GravityError) {
-  const Parameters p = ShippedModel("table1_gravity").parameters;
+  const model::Parameters p = ShippedModel("table1_gravity").parameters;
   const json& row = Outcome().numbers10["robustness"][5];
   ASSERT_TRUE(row["gravity"]);
   const double error = row["steady_state_error_rad"];
@@ -176,8 +176,8 @@ TEST(StepTrial, EqualsTheStack) {
   StepTrial trial = TrialOf(config, ShippedModelText("table1"), 0.1);
   trial.duration = 0.5;
   const Response response = RunStepTrial(trial);
-  const Table table = RunStackInProcess({"trial", config, ShippedModelText("table1")});
-  const Column* angle = table.Find("arm_angle_rad");
+  const tables::Table table = RunStackInProcess({"trial", config, ShippedModelText("table1")});
+  const tables::Column* angle = table.Find("arm_angle_rad");
   ASSERT_NE(angle, nullptr);
   const size_t start = 500;  // ticks before the step
   for (size_t i = 0; i < response.angle.size(); ++i) {
@@ -186,4 +186,4 @@ TEST(StepTrial, EqualsTheStack) {
 }
 
 }  // namespace
-}  // namespace hydro
+}  // namespace hydro::experiments

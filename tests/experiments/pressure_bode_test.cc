@@ -16,7 +16,7 @@
 #include "pressure_ctrl/pressure_law.h"
 #include "tests/experiments/wave_polynomial.h"
 
-namespace hydro {
+namespace hydro::experiments {
 namespace {
 
 using nlohmann::json;
@@ -49,7 +49,8 @@ const Ran& Waves() {
 
 // Closed loop of eq. (16) on eqs. (4), (13), (14), written out by hand: dp' = s theta' - a dp,
 // J theta'' = k_1 v - D dp - b theta'. The voltage is held for an interval, which delays it by half of that.
-Complex HandLoop(const Parameters& p, double stiffness, double leak, const PressureGains& g, double hz) {
+Complex HandLoop(const model::Parameters& p, double stiffness, double leak,
+                 const pressure_ctrl::PressureGains& g, double hz) {
   const Complex s(0, 2 * kPi * hz);
   const Complex hold = std::exp(-s * 1e-4);
   const Complex plant = (p.J * s + p.b) * (s + leak) + stiffness * p.D;
@@ -57,8 +58,8 @@ Complex HandLoop(const Parameters& p, double stiffness, double leak, const Press
 }
 
 // Largest differences of a case's points from that.
-void ExpectHandLoop(const json& points, const Parameters& p, double stiffness, double leak,
-                    const PressureGains& g) {
+void ExpectHandLoop(const json& points, const model::Parameters& p, double stiffness, double leak,
+                    const pressure_ctrl::PressureGains& g) {
   const auto frequency = points.at("frequency_hz").get<std::vector<double>>();
   ASSERT_GE(frequency.size(), 28u);
   for (size_t i = 0; i < frequency.size(); ++i) {
@@ -71,8 +72,8 @@ void ExpectHandLoop(const json& points, const Parameters& p, double stiffness, d
   }
 }
 
-PressureGains Gains(const Parameters& p, double arm_angle, int sides) {
-  return DerivePressureGains(p, arm_angle, 150, 0.5, sides);
+pressure_ctrl::PressureGains Gains(const model::Parameters& p, double arm_angle, int sides) {
+  return pressure_ctrl::DerivePressureGains(p, arm_angle, 150, 0.5, sides);
 }
 
 // Tests Figure 6's headline: bandwidth, natural frequency and damping beside the paper's 32 Hz, 150 rad/s and
@@ -82,7 +83,7 @@ TEST(Fig6, HeadlineBesideThePaper) {
   const json& n = Fig6().numbers;
   EXPECT_NEAR(n.at("bandwidth_hz").get<double>(), 32, 0.12 * 32);
   EXPECT_NEAR(n.at("natural_frequency_rad_s").get<double>(), 150, 0.03 * 150);
-  const Parameters p = ShippedModel("table1").parameters;
+  const model::Parameters p = ShippedModel("table1").parameters;
   const double friction =
       4 * p.T_s / (kPi * p.k_1 * Gains(p, 0, 2).k_p * n.at("amplitude_psi").get<double>());
   EXPECT_NEAR(n.at("damping_ratio").get<double>(), 0.5 / (1 - friction), 0.08 * 0.5);
@@ -95,7 +96,7 @@ TEST(Fig6, HeadlineBesideThePaper) {
 // Tests that without friction's switching the measured points are those of the linear loop, computed by hand,
 // and the fits the designs: two sides compressing, one, and one with gains for one.
 TEST(Fig6, LinearCasesMeetTheAnalyticLoop) {
-  const Parameters p = ShippedModel("table1").parameters;
+  const model::Parameters p = ShippedModel("table1").parameters;
   const double s = p.beta * p.D / p.V_ms;
   const double c = p.beta / p.V_ms;
   const json& both = Fig6().Case("no_friction");
@@ -131,7 +132,7 @@ TEST(Fig6, AmplitudeFamily) {
   EXPECT_EQ(value(60, "saturated_fraction"), 0);
   EXPECT_GT(value(300, "saturated_fraction"), 0.3);
   // J w^2 dp/s = T_pmax: what the motor can do at 32 Hz.
-  const Parameters p = ShippedModel("table1").parameters;
+  const model::Parameters p = ShippedModel("table1").parameters;
   const double reach = p.T_pmax * 2 * p.beta * p.D / p.V_ms / (p.J * 200 * 200);
   EXPECT_NEAR(Fig6().numbers.at("amplitude_that_torque_allows_at_32_hz_psi").get<double>(), reach, 1e-6);
   EXPECT_LT(value(300, "bandwidth_hz"), 20);
@@ -167,7 +168,7 @@ TEST(Fig7, Table1RefusesAQuarterTurn) {
 // natural frequency by its root (within what Coulomb friction at this amplitude shifts); gains for this angle
 // bring back 150 rad/s and about 32 Hz.
 TEST(Fig7, StiffnessGrowsWithTheAngle) {
-  const Parameters p = ShippedModel("wide_actuator").parameters;
+  const model::Parameters p = ShippedModel("wide_actuator").parameters;
   const double displaced = p.c * kPi / 2 / p.V_ms;
   const double expected = 150 / std::sqrt(1 - displaced * displaced);
   const json& n = Fig7().numbers;
@@ -181,7 +182,7 @@ TEST(Fig7, StiffnessGrowsWithTheAngle) {
 
 // Tests that with one side held the points are those of the analytic loop of the other side's volume.
 TEST(Fig7, EitherSideMeetsTheAnalyticLoop) {
-  const Parameters p = ShippedModel("wide_actuator").parameters;
+  const model::Parameters p = ShippedModel("wide_actuator").parameters;
   for (const auto& [key, volume] :
        {std::pair{"large_side", p.V_ms + p.c * kPi / 2}, std::pair{"small_side", p.V_ms - p.c * kPi / 2}}) {
     ExpectHandLoop(Fig7().Case(key), p, p.beta * p.D / volume, p.beta / volume * (p.c_E + p.c_I),
@@ -192,7 +193,7 @@ TEST(Fig7, EitherSideMeetsTheAnalyticLoop) {
 // Tests the waves' mode against the roots of the hand-made polynomial, found by Newton's method from 300 Hz.
 TEST(Waves, ModeIsWhereThePaperMeasuredIt) {
   const json& n = Waves().numbers;
-  const Parameters p = ShippedModel("table1").parameters;
+  const model::Parameters p = ShippedModel("table1").parameters;
   const auto q = WavePolynomial(p, 300, n.at("volume_fraction"), n.at("damping_assumed"), {0, 0});
   Complex s(0, 2 * kPi * 300);
   for (int i = 0; i < 50; ++i) {
@@ -218,8 +219,8 @@ TEST(Waves, ModeIsWhereThePaperMeasuredIt) {
 // .5.
 TEST(Waves, AllowedGainMeetsRouth) {
   const json& n = Waves().numbers;
-  const Parameters p = ShippedModel("table1").parameters;
-  const PressureGains design = Gains(p, 0, 2);
+  const model::Parameters p = ShippedModel("table1").parameters;
+  const pressure_ctrl::PressureGains design = Gains(p, 0, 2);
   const double k_p = n.at("highest_stable_k_p_V_per_psi");
   const double omega = n.at("highest_stable_natural_frequency_rad_s");
   for (const double beside : {1 - 1e-5, 1 + 1e-5}) {
@@ -227,7 +228,7 @@ TEST(Waves, AllowedGainMeetsRouth) {
                                          {beside * k_p, design.k_v})),
               beside < 1);
     EXPECT_EQ(RouthStable(WavePolynomial(p, 300, n.at("volume_fraction"), n.at("damping_assumed"),
-                                         DerivePressureGains(p, 0, beside * omega, 0.5, 2))),
+                                         pressure_ctrl::DerivePressureGains(p, 0, beside * omega, 0.5, 2))),
               beside < 1);
   }
   EXPECT_GT(omega, 150);
@@ -265,4 +266,4 @@ TEST(Waves, VolumeAndDamping) {
 }
 
 }  // namespace
-}  // namespace hydro
+}  // namespace hydro::experiments

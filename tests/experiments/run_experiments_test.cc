@@ -16,7 +16,7 @@
 #include "experiments/report/report.h"
 #include "experiments/studies/json_text.h"
 
-namespace hydro {
+namespace hydro::experiments {
 namespace {
 
 using ::testing::ElementsAre;
@@ -34,7 +34,7 @@ ExperimentResult Invented(const ExperimentOptions& options) {
                         {"nothing", "", "", NAN, NAN, ""}};
   result.numbers = R"({"peak_p2_psi": 1512.5, "seed_used": )" + std::to_string(options.seed) + "}";
   result.table.columns = {{"time_s", {0, 1}}, {"p2_psi", {100, NAN}}};
-  Figure figure;
+  page::Figure figure;
   figure.caption = "invented";
   figure.drawing = "<svg viewBox=\"0 0 10 10\"><circle r=\"3\"/></svg>";
   result.pictures = {{"", figure}, {"-more", figure}};
@@ -259,4 +259,4 @@ TEST(ComparisonText, AlignedTable) {
 }
 
 }  // namespace
-}  // namespace hydro
+}  // namespace hydro::experiments

@@ -7,7 +7,7 @@
 #include "model/actuator.h"
 #include "runs/run_table.h"
 
-namespace hydro {
+namespace hydro::experiments {
 namespace {
 
 constexpr char kOpenLoop[] = R"(
@@ -33,12 +33,12 @@ initial = 2.5
 // Tests that a run of the stack gives the table of hydro-log export, one row a tick, with the plant's own
 // pressures.
 TEST(StackRun, GivesTheRunsTable) {
-  const Table table = RunStackInProcess({"open-loop", kOpenLoop, ShippedModelText("table1")});
+  const tables::Table table = RunStackInProcess({"open-loop", kOpenLoop, ShippedModelText("table1")});
   ASSERT_EQ(table.rows(), 1501u);
-  ASSERT_EQ(table.columns.size(), kRunColumns.size());
-  Actuator actuator(ShippedModel("table1"), {.shaft = Shaft::kClamped});
-  const Column* p2 = table.Find("p2_psi");
-  const Column* voltage = table.Find("voltage_V");
+  ASSERT_EQ(table.columns.size(), runs::kRunColumns.size());
+  model::Actuator actuator(ShippedModel("table1"), {.shaft = model::Shaft::kClamped});
+  const tables::Column* p2 = table.Find("p2_psi");
+  const tables::Column* voltage = table.Find("voltage_V");
   ASSERT_NE(p2, nullptr);
   ASSERT_NE(voltage, nullptr);
   for (size_t i = 0; i + 1 < table.rows(); ++i) {
@@ -82,4 +82,4 @@ TEST(ShippedModels, ByName) {
 }
 
 }  // namespace
-}  // namespace hydro
+}  // namespace hydro::experiments

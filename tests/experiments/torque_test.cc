@@ -9,7 +9,7 @@
 #include "experiments/studies/json_text.h"
 #include "experiments/studies/torque_driven.h"
 
-namespace hydro {
+namespace hydro::experiments {
 namespace {
 
 using nlohmann::json;
@@ -138,11 +138,11 @@ TEST(SmoothPath, IsConsistent) {
 
 // Tests that a table and pictures are there, whole.
 TEST(Torque, TableAndPictures) {
-  for (const Column& column : Result().table.columns) {
+  for (const tables::Column& column : Result().table.columns) {
     EXPECT_EQ(column.values.size(), Result().table.rows()) << column.name;
   }
   EXPECT_EQ(Result().pictures.size(), 4u);
 }
 
 }  // namespace
-}  // namespace hydro
+}  // namespace hydro::experiments

@@ -12,7 +12,7 @@
 #include "experiments/studies/json_text.h"
 #include "model/actuator.h"
 
-namespace hydro {
+namespace hydro::experiments {
 namespace {
 
 using nlohmann::json;
@@ -52,7 +52,7 @@ TEST(Figure4, StackGivesTheReferenceTrajectory) {
                              {0.1, 429.472822425, 110.713464744},  {0.163, 219.429660639, 343.455860032},
                              {0.333, 100, 483.90458899},           {0.49, 491.487662302, 102.6648786},
                              {0.75, 136.180423988, 456.236139794}, {1, 456.241219573, 136.185391084}};
-  const Table table = RunStackInProcess({"square", R"([model]
+  const tables::Table table = RunStackInProcess({"square", R"([model]
 file = "table1.toml"
 shaft = "clamped"
 [time]
@@ -72,7 +72,7 @@ kind = "square"
 amplitude = 300.0
 frequency_hz = 10.0
 )",
-                                         ShippedModelText("table1")});
+                                                 ShippedModelText("table1")});
   for (const Row& row : kSquare) {
     const auto i = static_cast<size_t>(std::lround(row.time * 5000));
     EXPECT_NEAR(table.Find("p1_psi")->values.at(i), row.p1, 1e-6) << row.time;
@@ -85,14 +85,14 @@ struct Own {
   double rms = 0, saturated = 0, highest = 0;
 };
 Own RunOwnLoop(bool square, double feedforward) {
-  Actuator actuator(ShippedModel("table1"), {.shaft = Shaft::kClamped});
+  model::Actuator actuator(ShippedModel("table1"), {.shaft = model::Shaft::kClamped});
   Own own;
   int count = 0;
   for (int tick = 0; tick <= 5000; ++tick) {
     const double phase = std::fmod(tick / 500.0, 1);
     const double reference =
         square ? (phase < 0.5 ? 300 : -300) : 300 * std::sin(2 * std::acos(-1.0) * phase);
-    const Measurement m = actuator.Measure();
+    const model::Measurement m = actuator.Measure();
     const double dp = m.p2 - m.p1;
     const double asked = kKp * (reference - dp - kKv * m.motor_speed) + feedforward * reference;
     const double volts = std::clamp(asked, -kTpmax / kK1, kTpmax / kK1);
@@ -203,4 +203,4 @@ TEST(Figure4, NoiseIsAnOption) {
 }
 
 }  // namespace
-}  // namespace hydro
+}  // namespace hydro::experiments

@@ -8,7 +8,7 @@
 #include "model/description.h"
 #include "pressure_ctrl/pressure_law.h"
 
-namespace hydro {
+namespace hydro::experiments {
 
 // For the difference of the two sides, at mid-stroke with both compressing and line.wave of this frequency
 // (Hz), volume fraction and damping:
@@ -17,8 +17,9 @@ namespace hydro {
 //   theta' per actuator's pressure  M = ((s + a L) G + a s/c)/(2 a D),
 //   a = beta/V_p, c = beta/(V_ms - V_p), L = 2 c_I + c_E.
 // Coefficient of s^i at [i].
-inline std::array<double, 5> WavePolynomial(const Parameters& p, double frequency_hz, double volume_fraction,
-                                            double damping, const PressureGains& gains) {
+inline std::array<double, 5> WavePolynomial(const model::Parameters& p, double frequency_hz,
+                                            double volume_fraction, double damping,
+                                            const pressure_ctrl::PressureGains& gains) {
   const double w = 2 * std::numbers::pi * frequency_hz;
   const double V_p = volume_fraction * p.V_ms;
   const double a = p.beta / V_p;
@@ -40,4 +41,4 @@ inline bool RouthStable(const std::array<double, 5>& q) {
   return q[2] * q[3] > q[4] * q[1] && q[1] * q[2] * q[3] > q[4] * q[1] * q[1] + q[0] * q[3] * q[3];
 }
 
-}  // namespace hydro
+}  // namespace hydro::experiments

@@ -20,37 +20,39 @@ namespace hydro::fuzz {
 namespace {
 
 int64_t CountEvents(const std::string& file) {
-  LogReader reader(file);
-  LogEvent event;
+  log::LogReader reader(file);
+  log::LogEvent event;
   int64_t count = 0;
   while (reader.Next(event)) ++count;
   return count;
 }
 
 void ReadAsARun(const std::string& file, const ScratchFolder& folder) {
-  RunLog log, strict;
-  const bool accepted = Accepts([&] { log = ReadRunLog(file, std::nullopt, Undecodable::kLeftOut); });
-  if (Accepts([&] { strict = ReadRunLog(file); })) {
+  runs::RunLog log, strict;
+  const bool accepted =
+      Accepts([&] { log = runs::ReadRunLog(file, std::nullopt, runs::Undecodable::kLeftOut); });
+  if (Accepts([&] { strict = runs::ReadRunLog(file); })) {
     Promise(accepted, "who leaves messages out takes what the strict take");
   }
   if (!accepted) return;
   Accepts([&] {
-    const LogInfo info = Summarise(log, true);
-    Promise(!InfoText(info).empty() && !InfoJson(info).empty(), "info says something");
-    const Tracking tracking = TrackArm(log);
-    Promise(!SummaryText(tracking, info, true).empty(), "a summary says something");
-    SummaryJson(tracking, info);
+    const runs::LogInfo info = runs::Summarise(log, true);
+    Promise(!runs::InfoText(info).empty() && !runs::InfoJson(info).empty(), "info says something");
+    const runs::Tracking tracking = runs::TrackArm(log);
+    Promise(!runs::SummaryText(tracking, info, true).empty(), "a summary says something");
+    runs::SummaryJson(tracking, info);
   });
-  Promise(!FirstDifference(log.messages, "a", log.messages, "b").has_value(), "a log is identical to itself");
+  Promise(!runs::FirstDifference(log.messages, "a", log.messages, "b").has_value(),
+          "a log is identical to itself");
   Accepts([&] {
-    const ::hydro::Table table = ExportRun(log);
-    WriteTable(table, folder.Path("export.csv"));
-    Promise(ReadTable(folder.Path("export.csv")).rows() == table.rows(), "an export can be read");
-    ImportRun(table, "fuzz", folder.Path("import.log"));
+    const ::hydro::tables::Table table = runs::ExportRun(log);
+    tables::WriteTable(table, folder.Path("export.csv"));
+    Promise(tables::ReadTable(folder.Path("export.csv")).rows() == table.rows(), "an export can be read");
+    runs::ImportRun(table, "fuzz", folder.Path("import.log"));
     CountEvents(folder.Path("import.log"));
   });
-  Accepts([&] { Replay(log, ReplayedController::kPressure, 0); });
-  Accepts([&] { Replay(log, ReplayedController::kPosition, 0); });
+  Accepts([&] { hydro_log::Replay(log, hydro_log::ReplayedController::kPressure, 0); });
+  Accepts([&] { hydro_log::Replay(log, hydro_log::ReplayedController::kPosition, 0); });
 }
 
 }  // namespace
@@ -61,14 +63,14 @@ void Log(const uint8_t* data, size_t size) {
   const std::string file = folder.Write("log", Text(data, size));
   const bool whole = Accepts([&] { CountEvents(file); });
   ReadAsARun(file, folder);
-  Accepts([&] { ReadMeasuredRun(file); });
+  Accepts([&] { runs::ReadMeasuredRun(file); });
   Accepts([&] {
     const std::string repaired = folder.Path("repaired");
-    const RepairResult result = RepairLog(file, repaired);
+    const log::RepairResult result = log::RepairLog(file, repaired);
     Promise(CountEvents(repaired) == result.kept_events, "a repaired log is whole");
-    Promise(!Describe(result, file).empty(), "a repair is described");
+    Promise(!log::Describe(result, file).empty(), "a repair is described");
     int64_t lost = 0;
-    for (const LostBytes& bytes : result.lost) lost += bytes.end - bytes.begin;
+    for (const log::LostBytes& bytes : result.lost) lost += bytes.end - bytes.begin;
     Promise(lost + result.kept_bytes == static_cast<int64_t>(size), "every byte is kept or lost");
     Promise(whole || !result.lost.empty(), "a damaged log loses something");
   });

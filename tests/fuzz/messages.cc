@@ -24,7 +24,7 @@ namespace {
 
 // What decodes is a message: its encoding decodes too, and to the same bytes, but for what stands behind a
 // zero byte in a string, which LCM's encoder leaves out.
-void Decode(const MessageType& type, const uint8_t* data, int size) {
+void Decode(const bus::MessageType& type, const uint8_t* data, int size) {
   const std::shared_ptr<void> message = type.decode(data, size);
   const std::shared_ptr<void> into = type.create();
   Promise(type.decode_into(into.get(), data, size) == (message != nullptr), "both ways of decoding agree");
@@ -39,11 +39,11 @@ void Decode(const MessageType& type, const uint8_t* data, int size) {
 
 // Nothing that the fuzzer makes up is taken for genuine.
 void Authenticate(const uint8_t* data, int size) {
-  static const Channels channels;
-  Authenticator receiver(BusKey({1, 2, 3}), AuthenticatedChannels(channels));
+  static const bus::Channels channels;
+  bus::Authenticator receiver(bus::BusKey({1, 2, 3}), bus::AuthenticatedChannels(channels));
   const auto opened = receiver.Open(channels.motor_command, data, size, {});
-  Promise(opened.verdict == Authenticator::Verdict::kRefused, "what nobody sealed is refused");
-  Promise(SizeWithoutSeal(data, size) <= size && SizeWithoutSeal(data, size) >= 0,
+  Promise(opened.verdict == bus::Authenticator::Verdict::kRefused, "what nobody sealed is refused");
+  Promise(bus::SizeWithoutSeal(data, size) <= size && bus::SizeWithoutSeal(data, size) >= 0,
           "a seal is in the message");
 }
 
@@ -51,12 +51,12 @@ void Authenticate(const uint8_t* data, int size) {
 
 void Messages(const uint8_t* data, size_t size) {
   if (size == 0) return;
-  static const std::array<const MessageType*, 12> kTypes = {
-      &TypeOf<state_t>(),           &TypeOf<motor_command_t>(), &TypeOf<pressure_command_t>(),
-      &TypeOf<arm_reference_t>(),   &TypeOf<fault_t>(),         &TypeOf<stop_t>(),
-      &TypeOf<process_status_t>(),  &TypeOf<log_progress_t>(),  &TypeOf<run_description_t>(),
-      &TypeOf<loop_statistics_t>(), &TypeOf<introduction_t>(),  &TypeOf<loop_histogram_t>()};
-  const MessageType& type = *kTypes[data[0] % kTypes.size()];
+  static const std::array<const bus::MessageType*, 12> kTypes = {
+      &bus::TypeOf<state_t>(),           &bus::TypeOf<motor_command_t>(), &bus::TypeOf<pressure_command_t>(),
+      &bus::TypeOf<arm_reference_t>(),   &bus::TypeOf<fault_t>(),         &bus::TypeOf<stop_t>(),
+      &bus::TypeOf<process_status_t>(),  &bus::TypeOf<log_progress_t>(),  &bus::TypeOf<run_description_t>(),
+      &bus::TypeOf<loop_statistics_t>(), &bus::TypeOf<introduction_t>(),  &bus::TypeOf<loop_histogram_t>()};
+  const bus::MessageType& type = *kTypes[data[0] % kTypes.size()];
   // The type's own hash in front, or no input would get past it; the first bit says otherwise.
   std::vector<uint8_t> bytes;
   if (data[0] < 0x80) {

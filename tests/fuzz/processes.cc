@@ -48,12 +48,12 @@ class Input {
 // Each message: a byte for the channel, one for the time since the one before, one for the size, and its
 // fields (the type's hash goes before them). `poll` is called after each.
 template <class Poll>
-void Feed(Input& input, InProcessBus& bus, SimulatedClock& clock, Poll poll) {
+void Feed(Input& input, bus::InProcessBus& bus, bus::SimulatedClock& clock, Poll poll) {
   struct Place {
     const std::string* channel;
     int64_t hash;
   };
-  static const Channels channels;
+  static const bus::Channels channels;
   static const std::array<Place, 8> places = {{{&channels.state, state_t::getHash()},
                                                {&channels.pressure_command, pressure_command_t::getHash()},
                                                {&channels.process_status, process_status_t::getHash()},
@@ -79,9 +79,9 @@ void Feed(Input& input, InProcessBus& bus, SimulatedClock& clock, Poll poll) {
   }
 }
 
-StackConfig Config(Input& input) {
-  StackConfig config = testing::SmallStack();
-  config.time.mode = input.Byte() % 2 == 0 ? TimeMode::kLockstep : TimeMode::kRealtime;
+settings::StackConfig Config(Input& input) {
+  settings::StackConfig config = testing::SmallStack();
+  config.time.mode = input.Byte() % 2 == 0 ? settings::TimeMode::kLockstep : settings::TimeMode::kRealtime;
   return config;
 }
 
@@ -91,16 +91,16 @@ StackConfig Config(Input& input) {
 void Processes(const uint8_t* data, size_t size) {
   spdlog::set_level(spdlog::level::off);
   Input input(data, size);
-  SimulatedClock clock;
-  clock.AdvanceTo(Clock::TimePoint(std::chrono::hours(1)));
-  InProcessBus bus(&clock);
-  const StackConfig config = Config(input);
-  const double most_volts = PressureLawSettingsFor(config).voltage_limit;
-  const Channels channels;
-  PressureApp pressure(bus, clock, config);
-  PositionApp position(bus, clock, config);
-  StackWatch watch(bus, clock, channels);
-  RollCall roll_call({"pressure_ctrl"});
+  bus::SimulatedClock clock;
+  clock.AdvanceTo(bus::Clock::TimePoint(std::chrono::hours(1)));
+  bus::InProcessBus bus(&clock);
+  const settings::StackConfig config = Config(input);
+  const double most_volts = pressure_ctrl::PressureLawSettingsFor(config).voltage_limit;
+  const bus::Channels channels;
+  pressure_ctrl::PressureApp pressure(bus, clock, config);
+  position_ctrl::PositionApp position(bus, clock, config);
+  launch::StackWatch watch(bus, clock, channels);
+  plant::RollCall roll_call({"pressure_ctrl"});
   bus.Subscribe<process_status_t>(channels.process_status,
                                   [&](const process_status_t& status) { roll_call.Observe(status); });
   bus.Subscribe<motor_command_t>(channels.motor_command, [&](const motor_command_t& command) {
@@ -121,10 +121,10 @@ void Processes(const uint8_t* data, size_t size) {
 void Recorder(const uint8_t* data, size_t size) {
   spdlog::set_level(spdlog::level::off);
   Input input(data, size);
-  SimulatedClock clock;
-  clock.AdvanceTo(Clock::TimePoint(std::chrono::hours(1)));
-  InProcessBus bus(&clock);
-  LoggerApp logger(bus, clock, Config(input), {"/dev/null"});
+  bus::SimulatedClock clock;
+  clock.AdvanceTo(bus::Clock::TimePoint(std::chrono::hours(1)));
+  bus::InProcessBus bus(&clock);
+  logger::LoggerApp logger(bus, clock, Config(input), {"/dev/null"});
   Feed(input, bus, clock, [&] { logger.Poll(); });
 }
 

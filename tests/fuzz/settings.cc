@@ -19,19 +19,19 @@
 namespace hydro::fuzz {
 namespace {
 
-StackConfig Parse(const std::string& text) {
-  return ParseStackConfig(text, "stack.toml", kModelText, "model.toml");
+settings::StackConfig Parse(const std::string& text) {
+  return settings::ParseStackConfig(text, "stack.toml", settings::kModelText, "model.toml");
 }
 
 // What was accepted can be run: numbers that others divide by are above zero, and the text says the same
 // again.
-void Check(const StackConfig& config) {
+void Check(const settings::StackConfig& config) {
   Promise(config.position_interval_ticks >= 1 && config.pressure_interval_ticks >= 1, "intervals are ticks");
   Promise(config.plant.rate_hz > 0, "the plant ticks");
   Promise(config.last_tick == -1 || config.last_tick >= 1, "a run has an end or none");
-  Promise(WhatIsWrongWithBusUrl(config.bus.url).empty(), "the url is an url");
+  Promise(settings::WhatIsWrongWithBusUrl(config.bus.url).empty(), "the url is an url");
   Promise(Parse(config.text).text == config.text, "the effective text describes itself");
-  const auto trajectory = MakeTrajectory(config.reference.trajectory);
+  const auto trajectory = settings::MakeTrajectory(config.reference.trajectory);
   for (const double time : {0.0, 0.1, 1.0, 1e6}) trajectory->Value(time);
 }
 
@@ -43,9 +43,10 @@ void StackToml(const uint8_t* data, size_t size) {
 
 void ModelToml(const uint8_t* data, size_t size) {
   Accepts([&] {
-    const ModelDescription model = ParseModel(std::string(Text(data, size)), "model.toml");
-    const std::string text = FormatModel(model);
-    Promise(FormatModel(ParseModel(text, "model.toml")) == text, "a model can be written and read again");
+    const model::ModelDescription model = settings::ParseModel(std::string(Text(data, size)), "model.toml");
+    const std::string text = settings::FormatModel(model);
+    Promise(settings::FormatModel(settings::ParseModel(text, "model.toml")) == text,
+            "a model can be written and read again");
   });
 }
 
@@ -57,27 +58,29 @@ void Overrides(const uint8_t* data, size_t size) {
   }
   if (overrides.size() > 20) return;
   Accepts([&] {
-    TomlNode root = ParseToml(kConfigText, "stack.toml");
-    ApplyOverrides(overrides, &root);
-    Check(Parse(FormatToml(root)));
+    settings::TomlNode root = settings::ParseToml(settings::kConfigText, "stack.toml");
+    settings::ApplyOverrides(overrides, &root);
+    Check(Parse(settings::FormatToml(root)));
   });
 }
 
 void Url(const uint8_t* data, size_t size) {
   const std::string text(Text(data, size));
-  UdpmUrl url;
-  const bool accepted = Accepts([&] { url = ParseUdpmUrl(text); });
-  if (WhatIsWrongWithBusUrl(text).empty()) Promise(accepted, "what the settings allow the bus takes");
+  bus::UdpmUrl url;
+  const bool accepted = Accepts([&] { url = bus::ParseUdpmUrl(text); });
+  if (settings::WhatIsWrongWithBusUrl(text).empty())
+    Promise(accepted, "what the settings allow the bus takes");
   if (!accepted) return;
   Promise(url.port > 0 && url.ttl >= 0 && url.ttl <= 255, "port and ttl are in range");
-  Promise(ParseUdpmUrl(url.ToString()).ToString() == url.ToString(), "an url can be written and read again");
+  Promise(bus::ParseUdpmUrl(url.ToString()).ToString() == url.ToString(),
+          "an url can be written and read again");
 }
 
 void Key(const uint8_t* data, size_t size) {
   static const ScratchFolder folder;
   const std::string file = folder.Write("key", Text(data, size));
   chmod(file.c_str(), 0600);
-  Accepts([&] { ReadBusKey(file); });
+  Accepts([&] { bus::ReadBusKey(file); });
 }
 
 }  // namespace hydro::fuzz

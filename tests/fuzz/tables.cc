@@ -25,16 +25,16 @@ void Table(const uint8_t* data, size_t size) {
   static const ScratchFolder folder;
   const std::string file = folder.Write("table.csv", Text(data, size));
   Accepts([&] {
-    const ::hydro::Table table = ReadTable(file);
-    for (const Column& column : table.columns) {
+    const ::hydro::tables::Table table = tables::ReadTable(file);
+    for (const tables::Column& column : table.columns) {
       Promise(column.values.size() == table.rows(), "columns are of one length");
     }
-    WriteTable(table, folder.Path("again.csv"));
+    tables::WriteTable(table, folder.Path("again.csv"));
     Accepts([&] {
-      ImportRun(table, "fuzz", folder.Path("import.log"));
-      Promise(ReadRunLog(folder.Path("import.log")).messages.states.size() == table.rows(),
+      runs::ImportRun(table, "fuzz", folder.Path("import.log"));
+      Promise(runs::ReadRunLog(folder.Path("import.log")).messages.states.size() == table.rows(),
               "an import has a state a row");
-      Promise(ExportRun(ReadRunLog(folder.Path("import.log"))).rows() == table.rows(),
+      Promise(runs::ExportRun(runs::ReadRunLog(folder.Path("import.log"))).rows() == table.rows(),
               "an import exports as many rows");
     });
   });
@@ -48,15 +48,16 @@ void MeasuredRun(const uint8_t* data, size_t size) {
   const std::string file = folder.Write("run.csv", text.substr(0, separator));
   folder.Write("run.toml", text.substr(separator + kSeparator.size()));
   Accepts([&] {
-    const ::hydro::MeasuredRun run = ReadMeasuredRun(file);
+    const ::hydro::runs::MeasuredRun run = runs::ReadMeasuredRun(file);
     Promise(run.samples() >= 2, "a run has two samples or more");
     for (size_t i = 0; i < run.samples(); ++i) {
       Promise(std::isfinite(run.time[i]), "times are finite");
       Promise(i == 0 || run.time[i] > run.time[i - 1], "times increase");
       Promise(std::isfinite(run.voltage.values[i]), "no command is missing");
     }
-    for (const MeasuredSignal* signal : {&run.voltage, &run.pressure_ref, &run.motor_speed, &run.motor_angle,
-                                         &run.arm_angle, &run.arm_speed, &run.p1, &run.p2}) {
+    for (const runs::MeasuredSignal* signal :
+         {&run.voltage, &run.pressure_ref, &run.motor_speed, &run.motor_angle, &run.arm_angle, &run.arm_speed,
+          &run.p1, &run.p2}) {
       Promise(!signal->measured() || signal->values.size() == run.samples(), "signals are of one length");
       Promise(!signal->noise || *signal->noise > 0, "noise is above 0");
     }
@@ -65,15 +66,16 @@ void MeasuredRun(const uint8_t* data, size_t size) {
 
 void Points(const uint8_t* data, size_t size) {
   Accepts([&] {
-    TrajectorySpec spec;
-    spec.kind = TrajectorySpec::Kind::kCsv;
-    spec.points = ParseCsvPoints(std::string(Text(data, size)), "points.csv", "value");
-    for (const Interpolation interpolation :
-         {Interpolation::kHold, Interpolation::kLinear, Interpolation::kCubic}) {
+    settings::TrajectorySpec spec;
+    spec.kind = settings::TrajectorySpec::Kind::kCsv;
+    spec.points = tables::ParseCsvPoints(std::string(Text(data, size)), "points.csv", "value");
+    for (const trajectory::Interpolation interpolation :
+         {trajectory::Interpolation::kHold, trajectory::Interpolation::kLinear,
+          trajectory::Interpolation::kCubic}) {
       spec.interpolation = interpolation;
-      const auto trajectory = MakeTrajectory(spec);
+      const auto trajectory = settings::MakeTrajectory(spec);
       Promise(trajectory->Min() <= trajectory->Max(), "a trajectory has a range");
-      for (const Step& point : spec.points) {
+      for (const trajectory::Step& point : spec.points) {
         const double slack = 1e-9 * (std::abs(trajectory->Max()) + std::abs(trajectory->Min()));
         const double value = trajectory->Value(point.time);
         Promise(!(value > trajectory->Max() + slack) && !(value < trajectory->Min() - slack),

@@ -1,5 +1,7 @@
 // The hidden rig is worth something only if it is right on its own: it agrees with the model where nothing is
 // hidden, and its runs say nothing of what is.
+#include <gtest/gtest.h>
+
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -57,19 +59,20 @@ TEST_F(HiddenRig, RunsAreReadable) {
   const Case c = CaseNamed("nothing-1");
   const Options options = Short(0.5);
   WriteRuns(c, Solve(c, options), options, Folder("a"));
-  std::map<hydro::Shaft, int> shafts;
+  std::map<hydro::model::Shaft, int> shafts;
   int bypassed = 0;
   for (int i = 1; i <= 6; ++i) {
-    const hydro::MeasuredRun run = hydro::ReadMeasuredRun(Folder("a") + "/run" + std::to_string(i) + ".csv");
+    const hydro::runs::MeasuredRun run =
+        hydro::runs::ReadMeasuredRun(Folder("a") + "/run" + std::to_string(i) + ".csv");
     EXPECT_EQ(run.samples(), 501u);
     EXPECT_DOUBLE_EQ(run.p1.noise.value(), 1.5);
     EXPECT_DOUBLE_EQ(run.motor_speed.noise.value(), 0.3);
-    EXPECT_EQ(run.arm_angle.measured(), run.shaft == hydro::Shaft::kFree);
+    EXPECT_EQ(run.arm_angle.measured(), run.shaft == hydro::model::Shaft::kFree);
     ++shafts[run.shaft];
     bypassed += run.bypass ? 1 : 0;
   }
-  EXPECT_EQ(shafts[hydro::Shaft::kFree], 2);
-  EXPECT_EQ(shafts[hydro::Shaft::kClamped], 4);
+  EXPECT_EQ(shafts[hydro::model::Shaft::kFree], 2);
+  EXPECT_EQ(shafts[hydro::model::Shaft::kClamped], 4);
   EXPECT_EQ(bypassed, 2);
 }
 
@@ -178,8 +181,8 @@ TEST_F(HiddenRig, LineRingsWhereAsked) {
   EXPECT_NEAR(best_hz, kHz, 1.0);
 }
 
-hydro::Parameters ModelParameters(const Base& b) {
-  hydro::Parameters p;
+hydro::model::Parameters ModelParameters(const Base& b) {
+  hydro::model::Parameters p;
   p.k_1 = b.k_1;
   p.T_pmax = b.T_pmax;
   p.D = b.D;
@@ -203,35 +206,37 @@ hydro::Parameters ModelParameters(const Base& b) {
 // under the same voltages, open loop: two programs written apart agree.
 TEST_F(HiddenRig, AgreesWithTheModel) {
   RigSetup setup;
-  hydro::ModelDescription model;
+  hydro::model::ModelDescription model;
   model.parameters = ModelParameters(setup.base);
   for (const Plan& plan : Plans(5, 1.5, false)) {
     Conditions conditions;
     conditions.noise = 0;
     conditions.seconds = 1.5;
     const Record rig = RecordRun(setup, plan, conditions);
-    hydro::Stimulus stimulus;
-    stimulus.shaft = plan.shaft == Shaft::kFree ? hydro::Shaft::kFree : hydro::Shaft::kClamped;
+    hydro::model::Stimulus stimulus;
+    stimulus.shaft = plan.shaft == Shaft::kFree ? hydro::model::Shaft::kFree : hydro::model::Shaft::kClamped;
     stimulus.arm_angle = plan.arm_angle;
     stimulus.bypass = plan.bypass;
     stimulus.time = rig.time;
     stimulus.voltage = rig.voltage;
-    hydro::StartState start{};
-    start[hydro::kP1] = rig.p1[0];
-    start[hydro::kP2] = rig.p2[0];
-    start[hydro::kArmAngle] = plan.arm_angle;
-    const hydro::Response response = hydro::Respond(model, stimulus, start, {}, {});
-    const auto expect_close = [&](hydro::Channel channel, const std::vector<double>& recorded, double noise) {
+    hydro::model::StartState start{};
+    start[hydro::model::kP1] = rig.p1[0];
+    start[hydro::model::kP2] = rig.p2[0];
+    start[hydro::model::kArmAngle] = plan.arm_angle;
+    const hydro::model::Response response = hydro::model::Respond(model, stimulus, start, {}, {});
+    const auto expect_close = [&](hydro::model::Channel channel, const std::vector<double>& recorded,
+                                  double noise) {
       const auto& predicted = response.values[static_cast<size_t>(channel)];
       double sum = 0;
       for (size_t i = 0; i < recorded.size(); ++i) sum += std::pow((recorded[i] - predicted[i]) / noise, 2);
       EXPECT_LT(std::sqrt(sum / static_cast<double>(recorded.size())), 1.5)
           << plan.name << ", channel " << static_cast<int>(channel);
     };
-    expect_close(hydro::Channel::kMotorSpeed, rig.motor_speed, kSpeedNoise);
-    expect_close(hydro::Channel::kP1, rig.p1, kPressureNoise);
-    expect_close(hydro::Channel::kP2, rig.p2, kPressureNoise);
-    if (plan.shaft == Shaft::kFree) expect_close(hydro::Channel::kArmAngle, rig.arm_angle, kAngleNoise);
+    expect_close(hydro::model::Channel::kMotorSpeed, rig.motor_speed, kSpeedNoise);
+    expect_close(hydro::model::Channel::kP1, rig.p1, kPressureNoise);
+    expect_close(hydro::model::Channel::kP2, rig.p2, kPressureNoise);
+    if (plan.shaft == Shaft::kFree)
+      expect_close(hydro::model::Channel::kArmAngle, rig.arm_angle, kAngleNoise);
   }
 }
 

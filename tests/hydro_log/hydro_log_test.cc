@@ -5,7 +5,7 @@
 #include "hydro/loop_statistics_t.hpp"
 #include "tests/log/log_fixture.h"
 
-namespace hydro {
+namespace hydro::hydro_log {
 namespace {
 
 using testing::AllOf;
@@ -30,7 +30,7 @@ Outcome HydroLog(std::vector<std::string> arguments) {
 }
 
 // What hydro-log timing needs of a log.
-EventContents LoopReport() {
+log::EventContents LoopReport() {
   loop_statistics_t report{};
   report.role = "plant";
   std::string data(static_cast<size_t>(report.getEncodedSize()), '\0');
@@ -38,18 +38,18 @@ EventContents LoopReport() {
   return {"HYDRO_LOOP_STATISTICS", data, 9000};
 }
 
-class HydroLogTest : public LogTest {};
+class HydroLogTest : public log::LogTest {};
 
 // Tests that equal runs print exactly "identical" and that a difference exits 1, also across suffixes.
 TEST_F(HydroLogTest, Compare) {
-  RunMessages run = SampleRun(9);
-  WriteRun(Path("a"), run);
-  WriteRun(Path("b"), run, "_2");
+  runs::RunMessages run = log::SampleRun(9);
+  log::WriteRun(Path("a"), run);
+  log::WriteRun(Path("b"), run, "_2");
   const Outcome same = HydroLog({"compare", Path("a"), Path("b")});
   EXPECT_EQ(same.exit_code, 0) << same.err;
   EXPECT_EQ(same.out, "identical\n");
   run.states[4].p2 = 7;
-  WriteRun(Path("b"), run);
+  log::WriteRun(Path("b"), run);
   const Outcome different = HydroLog({"compare", Path("a"), Path("b")});
   EXPECT_EQ(different.exit_code, 1);
   EXPECT_THAT(different.out, AllOf(StartsWith("differ at tick 4: HYDRO_STATE.p2: "),
@@ -58,7 +58,7 @@ TEST_F(HydroLogTest, Compare) {
 
 // Tests that two logs without a run are not called identical.
 TEST_F(HydroLogTest, CompareOfNothing) {
-  WriteBytes(Path("a"), "");
+  log::WriteBytes(Path("a"), "");
   const Outcome outcome = HydroLog({"compare", Path("a"), Path("a")});
   EXPECT_EQ(outcome.exit_code, 2);
   EXPECT_EQ(outcome.out, "");
@@ -66,25 +66,25 @@ TEST_F(HydroLogTest, CompareOfNothing) {
 
 // Tests that a log goes through a table of either kind and back.
 TEST_F(HydroLogTest, ExportAndImport) {
-  WriteRun(Path("log"), SampleRun(9));
+  log::WriteRun(Path("log"), log::SampleRun(9));
   for (const char* kind : {".csv", ".mat"}) {
     const std::string first = Path("first") + kind;
     const std::string second = Path("second") + kind;
     EXPECT_EQ(HydroLog({"export", Path("log"), "-o", first}).exit_code, 0);
     EXPECT_EQ(HydroLog({"import", first, "-o", Path("imported")}).exit_code, 0);
     EXPECT_EQ(HydroLog({"export", Path("imported"), "-o", second}).exit_code, 0);
-    EXPECT_EQ(ReadBytes(second), ReadBytes(first));
-    EXPECT_GT(ReadBytes(first).size(), 200u);
+    EXPECT_EQ(log::ReadBytes(second), log::ReadBytes(first));
+    EXPECT_GT(log::ReadBytes(first).size(), 200u);
   }
 }
 
 // Tests what repair says and leaves, with and without damage.
 TEST_F(HydroLogTest, Repair) {
-  WriteRun(Path("log"), SampleRun(9));
-  const std::string whole = ReadBytes(Path("log"));
+  log::WriteRun(Path("log"), log::SampleRun(9));
+  const std::string whole = log::ReadBytes(Path("log"));
   EXPECT_EQ(HydroLog({"repair", Path("log")}).out, Path("log") + ": nothing to repair\n");
   EXPECT_FALSE(std::filesystem::exists(Path("log.damaged")));
-  WriteBytes(Path("log"), whole.substr(0, whole.size() - 1));
+  log::WriteBytes(Path("log"), whole.substr(0, whole.size() - 1));
   const Outcome broken = HydroLog({"info", Path("log")});
   EXPECT_EQ(broken.exit_code, 2);
   EXPECT_THAT(broken.err, HasSubstr("hydro-log repair " + Path("log")));
@@ -97,14 +97,14 @@ TEST_F(HydroLogTest, Repair) {
 // Tests that a message that cannot be decoded, as a foreign program may send, is no reason to refuse the log:
 // info counts it, the others say so in one line; only what is to be the same bit by bit is refused.
 TEST_F(HydroLogTest, UndecodableMessages) {
-  RunMessages run = SampleRun(9);
-  WriteRun(Path("whole"), run);
-  std::vector<EventContents> events = ReadEvents(Path("whole"));
+  runs::RunMessages run = log::SampleRun(9);
+  log::WriteRun(Path("whole"), run);
+  std::vector<log::EventContents> events = log::ReadEvents(Path("whole"));
   events.push_back(LoopReport());
-  WriteEvents(Path("whole"), events);
+  log::WriteEvents(Path("whole"), events);
   events.insert(events.begin() + 4, {"HYDRO_MOTOR_COMMAND", "\x1b[2J not of this stack", 5});
   events.insert(events.begin() + 8, {"HYDRO_STATE", "torn", 5});
-  WriteEvents(Path("log"), events);
+  log::WriteEvents(Path("log"), events);
 
   const Outcome text = HydroLog({"info", Path("log")});
   EXPECT_EQ(text.exit_code, 0) << text.err;
@@ -123,7 +123,7 @@ TEST_F(HydroLogTest, UndecodableMessages) {
     EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
   }
   EXPECT_EQ(HydroLog({"export", Path("whole"), "-o", Path("whole.csv")}).err, "");
-  EXPECT_EQ(ReadBytes(Path("out.csv")), ReadBytes(Path("whole.csv")));
+  EXPECT_EQ(log::ReadBytes(Path("out.csv")), log::ReadBytes(Path("whole.csv")));
 
   const Outcome compared = HydroLog({"compare", Path("whole"), Path("log")});
   EXPECT_EQ(compared.exit_code, 2);
@@ -132,12 +132,12 @@ TEST_F(HydroLogTest, UndecodableMessages) {
 
 // Tests that bad usage and bad input exit 2 with one line that names the place, and leave no file.
 TEST_F(HydroLogTest, BadUsageAndInput) {
-  WriteRun(Path("log"), SampleRun(3));
-  WriteEvents(Path("timed"), {LoopReport()});
-  WriteBytes(Path("bad.csv"), "time_s,p1_psi\n0,1\n1,x\n");
-  WriteBytes(Path("good.csv"), "time_s,p1_psi\n0,1\n1,2\n");
-  WriteRun(Path("log.csv"), SampleRun(3));
-  WriteBytes(Path("empty"), "");
+  log::WriteRun(Path("log"), log::SampleRun(3));
+  log::WriteEvents(Path("timed"), {LoopReport()});
+  log::WriteBytes(Path("bad.csv"), "time_s,p1_psi\n0,1\n1,x\n");
+  log::WriteBytes(Path("good.csv"), "time_s,p1_psi\n0,1\n1,2\n");
+  log::WriteRun(Path("log.csv"), log::SampleRun(3));
+  log::WriteBytes(Path("empty"), "");
   const std::string out = Path("out.csv");
   const struct {
     std::vector<std::string> arguments;
@@ -186,11 +186,11 @@ TEST_F(HydroLogTest, BadUsageAndInput) {
 
 // Tests that a disk that is full is a failure of the work, not bad input.
 TEST_F(HydroLogTest, DiskFull) {
-  WriteRun(Path("log"), SampleRun(3));
+  log::WriteRun(Path("log"), log::SampleRun(3));
   const Outcome outcome = HydroLog({"repair", Path("log"), "-o", "/dev/full"});
   EXPECT_EQ(outcome.exit_code, 1);
   EXPECT_THAT(outcome.err, HasSubstr("/dev/full: cannot be written: No space left on device"));
 }
 
 }  // namespace
-}  // namespace hydro
+}  // namespace hydro::hydro_log

@@ -12,7 +12,7 @@
 #include "settings/stack_config.h"
 #include "sim/simulation.h"
 
-namespace hydro {
+namespace hydro::hydro_log {
 namespace {
 
 const char* const kModel = R"(
@@ -60,17 +60,17 @@ motor_speed_rad_s = 0.1
 )";
 
 // A simulated run, recorded into a file and read back.
-RunLog Recorded() {
+runs::RunLog Recorded() {
   std::string folder = ::testing::TempDir() + "/hydro_replay_XXXXXX";  // tests run side by side
   const std::string file = std::string(mkdtemp(folder.data())) + "/run.lcmlog";
-  const StackConfig config = ParseStackConfig(kConfig, "test.toml", kModel, "model.toml");
-  LogWriter writer(file, Opening::kTemporary);
-  const SimulationResult result = Simulate(config, [&](const RawMessage& m) {
+  const settings::StackConfig config = settings::ParseStackConfig(kConfig, "test.toml", kModel, "model.toml");
+  log::LogWriter writer(file, Opening::kTemporary);
+  const sim::SimulationResult result = sim::Simulate(config, [&](const bus::RawMessage& m) {
     writer.Append(m.channel, m.data, static_cast<size_t>(m.size), m.receive_utime);
   });
   writer.Finish();
   EXPECT_EQ(result.exit_code, 0) << result.failure;
-  RunLog log = ReadRunLog(file);
+  runs::RunLog log = runs::ReadRunLog(file);
   std::filesystem::remove_all(folder);
   return log;
 }
@@ -89,7 +89,7 @@ TEST_P(ReplayTest, IsIdentical) {
 
 // Tests that the order of arrival in the log does not matter.
 TEST_P(ReplayTest, OrderOfArrivalDoesNotMatter) {
-  RunLog log = Recorded();
+  runs::RunLog log = Recorded();
   std::reverse(log.messages.states.begin(), log.messages.states.end());
   std::reverse(log.messages.pressure_commands.begin(), log.messages.pressure_commands.end());
   EXPECT_EQ(Replay(log, GetParam(), 0).difference, std::nullopt);
@@ -97,7 +97,7 @@ TEST_P(ReplayTest, OrderOfArrivalDoesNotMatter) {
 
 // Tests that one flipped bit, in a recorded answer or in a measurement, is found, at its tick.
 TEST(ReplayBitTest, OneBitIsFound) {
-  RunLog log = Recorded();
+  runs::RunLog log = Recorded();
   double& voltage = log.messages.motor_commands.at(120).voltage;
   voltage = std::bit_cast<double>(std::bit_cast<uint64_t>(voltage) ^ 1);
   const auto wrong_answer = Replay(log, ReplayedController::kPressure, 0).difference;
@@ -115,10 +115,10 @@ TEST(ReplayBitTest, OneBitIsFound) {
 // Tests that a real-time record in which a pressure command came late replays exactly: what was in force
 // counts.
 TEST(ReplayLateTest, WhatWasInForceCounts) {
-  RunLog log = Recorded();
+  runs::RunLog log = Recorded();
   // As if the command of tick 50 had arrived after tick 53: the record says which one each answer used, and
   // with those inputs the recorded answers of ticks 51 to 53 must be the ones of the old command.
-  RunLog late = log;
+  runs::RunLog late = log;
   const auto& law = log.messages;
   const double before = law.pressure_commands.at(9).pressure_ref;
   for (motor_command_t& command : late.messages.motor_commands) {
@@ -136,7 +136,7 @@ TEST(ReplayLateTest, WhatWasInForceCounts) {
 
 // Tests that a log that begins in the middle of a run, as a rotated one does, replays from where it can.
 TEST_P(ReplayTest, BeginsInTheMiddle) {
-  RunLog log = Recorded();
+  runs::RunLog log = Recorded();
   const auto cut = [](auto& messages) {
     std::erase_if(messages, [](const auto& m) { return m.tick < 103; });
   };
@@ -151,8 +151,8 @@ TEST_P(ReplayTest, BeginsInTheMiddle) {
 
 // Tests that a log that cannot be replayed says why.
 TEST(ReplayErrorTest, SaysWhatIsMissing) {
-  RunLog log = Recorded();
-  RunLog without = log;
+  runs::RunLog log = Recorded();
+  runs::RunLog without = log;
   without.descriptions.clear();
   EXPECT_THROW(Replay(without, ReplayedController::kPressure, 0), InputError);
   without = log;
@@ -167,4 +167,4 @@ TEST(ReplayErrorTest, SaysWhatIsMissing) {
 }
 
 }  // namespace
-}  // namespace hydro
+}  // namespace hydro::hydro_log

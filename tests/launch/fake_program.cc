@@ -36,7 +36,7 @@
 #include "bus/session.h"
 #include "bus/udpm_bus.h"
 
-namespace hydro {
+namespace hydro::launch {
 namespace {
 
 volatile sig_atomic_t terminated = 0;
@@ -87,9 +87,9 @@ class FakeProgram {
  private:
   void Say(const std::string& text) { dprintf(STDOUT_FILENO, "%s\n", text.c_str()); }
 
-  Bus& bus() {
+  bus::Bus& bus() {
     if (!bus_) {
-      bus_ = std::make_unique<UdpmBus>(std::getenv("HYDRO_FAKE_URL"));
+      bus_ = std::make_unique<bus::UdpmBus>(std::getenv("HYDRO_FAKE_URL"));
       bus_->Subscribe<stop_t>(channels_.stop, [this](const stop_t& stop) { stop_ = stop.reason; });
       bus_->Subscribe<process_status_t>(channels_.process_status, [this](const process_status_t& status) {
         if (status.role != role_) ready_.insert(status.role);
@@ -100,7 +100,7 @@ class FakeProgram {
 
   void Announce(const std::string& name, const std::string& text) {
     process_status_t status;
-    status.utime = WallClock().Utime();
+    status.utime = bus::WallClock().Utime();
     status.session = session_;
     status.role = role_;
     status.host = "here";
@@ -192,25 +192,25 @@ class FakeProgram {
   }
 
   const std::string role_;
-  const int64_t session_ = RandomSession();
-  const Channels channels_;
-  std::unique_ptr<UdpmBus> bus_;
+  const int64_t session_ = bus::RandomSession();
+  const bus::Channels channels_;
+  std::unique_ptr<bus::UdpmBus> bus_;
   std::string status_;
   std::string stop_;
   std::set<std::string> ready_;
 };
 
 }  // namespace
-}  // namespace hydro
+}  // namespace hydro::launch
 
 int main(int argc, char** argv) {
   struct sigaction action = {};
-  action.sa_handler = hydro::OnTerm;
+  action.sa_handler = hydro::launch::OnTerm;
   sigaction(SIGTERM, &action, nullptr);
   std::string role = argv[0];
   role = role.substr(role.rfind('/') + 1).substr(6);
   for (char& c : role) c = c == '-' ? '_' : c;
-  hydro::FakeProgram program(role);
+  hydro::launch::FakeProgram program(role);
   const char* script = std::getenv(("HYDRO_FAKE_" + role).c_str());
   std::istringstream commands(script ? script : "");
   for (std::string command; std::getline(commands, command, ';');) program.Do(command, argc, argv);

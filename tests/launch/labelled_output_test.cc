@@ -8,7 +8,7 @@
 #include <csignal>
 #include <string>
 
-namespace hydro {
+namespace hydro::launch {
 namespace {
 
 using Stream = LabelledOutput::Stream;
@@ -98,4 +98,4 @@ TEST_F(LabelledOutputTest, SurvivesAReaderThatIsGone) {
 }
 
 }  // namespace
-}  // namespace hydro
+}  // namespace hydro::launch

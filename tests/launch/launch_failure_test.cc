@@ -6,7 +6,7 @@
 
 #include "tests/launch/stack_folder.h"
 
-namespace hydro {
+namespace hydro::launch {
 namespace {
 
 using ::testing::Contains;
@@ -162,4 +162,4 @@ TEST(LaunchFailureTest, OptionsThatWouldBeIgnored) {
 }
 
 }  // namespace
-}  // namespace hydro
+}  // namespace hydro::launch

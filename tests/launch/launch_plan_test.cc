@@ -8,7 +8,7 @@
 #include <filesystem>
 #include <fstream>
 
-namespace hydro {
+namespace hydro::launch {
 namespace {
 
 using ::testing::ElementsAre;
@@ -52,7 +52,7 @@ class LaunchPlanTest : public ::testing::Test {
   }
 
   std::filesystem::path folder_;
-  StackConfig config_;
+  settings::StackConfig config_;
   LaunchRequest request_;
 };
 
@@ -151,12 +151,12 @@ TEST_F(LaunchPlanTest, ChecksTheDriver) {
   Processes({{"hydro-driver", ""}});
   EXPECT_THAT(Error(), HasSubstr("driver: found nothing, allowed a section [driver]"));
   config_.driver.emplace();
-  config_.driver->arm_angle.source = SensorSection::Source::kAnalog;
+  config_.driver->arm_angle.source = settings::SensorSection::Source::kAnalog;
   request_.log_file = "a.lcmlog";
   const LaunchPlan plan = Plan();
   EXPECT_EQ(plan.children[0].label, "driver");
   EXPECT_THAT(plan.children[0].argv, ::testing::Contains("--expect"));
-  config_.time.mode = TimeMode::kLockstep;
+  config_.time.mode = settings::TimeMode::kLockstep;
   EXPECT_THAT(Error(), HasSubstr("time.mode: found \"lockstep\""));
 }
 
@@ -169,7 +169,7 @@ TEST_F(LaunchPlanTest, FindsPrograms) {
   setenv("PATH", (folder_ / "bin").c_str(), 1);
   Processes({{"hydro-plant", ""}, {"hydro-driver", ""}});
   config_.driver.emplace();
-  config_.driver->arm_angle.source = SensorSection::Source::kAnalog;
+  config_.driver->arm_angle.source = settings::SensorSection::Source::kAnalog;
   EXPECT_EQ(Plan().children[0].argv[0], (folder_ / "hydro-plant").string());
   EXPECT_EQ(Plan().children[1].argv[0], (folder_ / "bin" / "hydro-driver").string());
   chmod((folder_ / "bin" / "hydro-driver").c_str(), 0644);  // not a program any more
@@ -180,4 +180,4 @@ TEST_F(LaunchPlanTest, FindsPrograms) {
 }
 
 }  // namespace
-}  // namespace hydro
+}  // namespace hydro::launch

@@ -7,7 +7,7 @@
 
 #include "tests/launch/stack_folder.h"
 
-namespace hydro {
+namespace hydro::launch {
 namespace {
 
 using ::testing::Contains;
@@ -143,4 +143,4 @@ TEST(LaunchStopTest, StuckReaderDoesNotHoldTheStop) {
 }
 
 }  // namespace
-}  // namespace hydro
+}  // namespace hydro::launch

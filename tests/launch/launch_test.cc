@@ -7,7 +7,7 @@
 
 #include "tests/launch/stack_folder.h"
 
-namespace hydro {
+namespace hydro::launch {
 namespace {
 
 using ::testing::Contains;
@@ -179,4 +179,4 @@ TEST(LaunchTest, TwoLaunchesEndTogether) {
 }
 
 }  // namespace
-}  // namespace hydro
+}  // namespace hydro::launch

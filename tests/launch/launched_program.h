@@ -17,7 +17,7 @@
 
 #include "launch/line_assembler.h"
 
-namespace hydro {
+namespace hydro::launch {
 
 class LaunchedProgram {
  public:
@@ -139,4 +139,4 @@ class LaunchedProgram {
   Stream streams_[2];
 };
 
-}  // namespace hydro
+}  // namespace hydro::launch

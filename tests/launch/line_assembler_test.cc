@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace hydro {
+namespace hydro::launch {
 namespace {
 
 std::vector<std::string> LinesOf(const std::vector<std::string>& pieces) {
@@ -54,4 +54,4 @@ TEST(LineAssemblerTest, LongestLineIsOneLine) {
 }
 
 }  // namespace
-}  // namespace hydro
+}  // namespace hydro::launch

@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace hydro {
+namespace hydro::launch {
 namespace {
 
 using ::testing::AllOf;
@@ -87,4 +87,4 @@ TEST(RunSummaryTest, FaultsAreCounted) {
 }
 
 }  // namespace
-}  // namespace hydro
+}  // namespace hydro::launch

@@ -14,7 +14,7 @@
 #include "tests/free_udp_port.h"
 #include "tests/launch/launched_program.h"
 
-namespace hydro {
+namespace hydro::launch {
 
 class StackFolder {
  public:
@@ -76,4 +76,4 @@ class StackFolder {
   std::string url_ = FreeBusUrl();
 };
 
-}  // namespace hydro
+}  // namespace hydro::launch

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-namespace hydro {
+namespace hydro::launch {
 namespace {
 
 using ::testing::ElementsAre;
@@ -226,4 +226,4 @@ TEST_F(SupervisorTest, ChildrenInheritNoDescriptor) {
 }
 
 }  // namespace
-}  // namespace hydro
+}  // namespace hydro::launch

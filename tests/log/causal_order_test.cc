@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace hydro {
+namespace hydro::log {
 namespace {
 
 using ::testing::ElementsAre;
@@ -26,7 +26,7 @@ class CausalOrderTest : public ::testing::Test {
     Take(Kind::kMotorCommand, tick);
   }
 
-  Clock::TimePoint now_{};
+  bus::Clock::TimePoint now_{};
   std::vector<std::string> out_;
   CausalOrder order_{1, 2, [this](RecordedMessage message) { out_.push_back(message.channel); }};
 };
@@ -98,4 +98,4 @@ TEST_F(CausalOrderTest, LostAnswersHoldNothingForEver) {
 }
 
 }  // namespace
-}  // namespace hydro
+}  // namespace hydro::log

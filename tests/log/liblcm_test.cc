@@ -2,7 +2,7 @@
 
 #include "tests/log/log_fixture.h"
 
-namespace hydro {
+namespace hydro::log {
 namespace {
 
 class LiblcmTest : public LogTest {};
@@ -64,4 +64,4 @@ TEST_F(LiblcmTest, WeReadWhatItAppended) {
 }
 
 }  // namespace
-}  // namespace hydro
+}  // namespace hydro::log

@@ -17,7 +17,7 @@
 #include "log/log_writer.h"
 #include "runs/run_messages.h"
 
-namespace hydro {
+namespace hydro::log {
 
 // A folder that is removed with all that is in it.
 class LogTest : public testing::Test {
@@ -88,8 +88,8 @@ std::string InputErrorOf(Work work) {
 }
 
 // `ticks` ticks of a run at 1 kHz in which every message has all its fields set to something of its own.
-inline RunMessages SampleRun(int64_t ticks) {
-  RunMessages run;
+inline runs::RunMessages SampleRun(int64_t ticks) {
+  runs::RunMessages run;
   for (int64_t tick = 0; tick < ticks; ++tick) {
     const double x = static_cast<double>(tick);
     state_t state{};
@@ -146,9 +146,9 @@ inline RunMessages SampleRun(int64_t ticks) {
 }
 
 // Tick by tick, as they would have arrived.
-inline void WriteRun(const std::string& file, const RunMessages& run, const std::string& suffix = "",
+inline void WriteRun(const std::string& file, const runs::RunMessages& run, const std::string& suffix = "",
                      const std::string& config_text = "[plant]\nrate_hz = 1000\n") {
-  const Channels channels(suffix);
+  const bus::Channels channels(suffix);
   LogWriter writer(file, Opening::kTemporary);
   run_description_t description{};
   description.session = 11;
@@ -179,4 +179,4 @@ inline void WriteRun(const std::string& file, const RunMessages& run, const std:
   writer.Finish();
 }
 
-}  // namespace hydro
+}  // namespace hydro::log

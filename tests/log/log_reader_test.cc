@@ -5,7 +5,7 @@
 #include "log/log_format.h"
 #include "tests/log/log_fixture.h"
 
-namespace hydro {
+namespace hydro::log {
 namespace {
 
 using testing::AllOf;
@@ -104,7 +104,7 @@ TEST_F(LogReaderTest, NotALog) {
 
 // Tests that messages of another type, with bytes missing or with bytes too many, do not decode.
 TEST_F(LogReaderTest, DecodesOnlyWholeMessages) {
-  const RunMessages run = SampleRun(1);
+  const runs::RunMessages run = SampleRun(1);
   std::vector<uint8_t> bytes(static_cast<size_t>(run.states[0].getEncodedSize()) + 1);
   run.states[0].encode(bytes.data(), 0, static_cast<int>(bytes.size()));
   LogEvent event;
@@ -120,7 +120,7 @@ TEST_F(LogReaderTest, DecodesOnlyWholeMessages) {
 
 // Tests that a string whose length is damaged does not decode, whatever the length.
 TEST_F(LogReaderTest, DamagedStringLengths) {
-  const RunMessages run = SampleRun(1);
+  const runs::RunMessages run = SampleRun(1);
   const fault_t& fault = run.faults[0];
   std::vector<uint8_t> bytes(static_cast<size_t>(fault.getEncodedSize()));
   LogEvent event;
@@ -136,4 +136,4 @@ TEST_F(LogReaderTest, DamagedStringLengths) {
 }
 
 }  // namespace
-}  // namespace hydro
+}  // namespace hydro::log

@@ -7,7 +7,7 @@
 
 #include "tests/log/log_fixture.h"
 
-namespace hydro {
+namespace hydro::log {
 namespace {
 
 using testing::AllOf;
@@ -137,4 +137,4 @@ TEST_F(LogWriterTest, RefusesImpossibleEvents) {
 }
 
 }  // namespace
-}  // namespace hydro
+}  // namespace hydro::log

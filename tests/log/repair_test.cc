@@ -5,7 +5,7 @@
 #include "log/log_format.h"
 #include "tests/log/log_fixture.h"
 
-namespace hydro {
+namespace hydro::log {
 namespace {
 
 using testing::HasSubstr;
@@ -190,4 +190,4 @@ TEST_F(RepairTest, NotWhileRecording) {
 }
 
 }  // namespace
-}  // namespace hydro
+}  // namespace hydro::log

@@ -7,7 +7,7 @@
 #include <thread>
 #include <vector>
 
-namespace hydro {
+namespace hydro::logger {
 namespace {
 
 int64_t Push(EventQueue& queue, const std::string& channel, const std::string& data, int64_t utime) {
@@ -83,4 +83,4 @@ TEST(EventQueueTest, TwoThreads) {
 }
 
 }  // namespace
-}  // namespace hydro
+}  // namespace hydro::logger

@@ -23,14 +23,14 @@
 #include "tests/log/log_fixture.h"
 #include "tests/stack_fixture.h"
 
-namespace hydro {
+namespace hydro::logger {
 namespace {
 
 using namespace std::chrono_literals;
 using testing::SmallStack;
 
 // The logger on an in-process bus; the test sends what it records.
-class LoggerAppTest : public LogTest {
+class LoggerAppTest : public log::LogTest {
  protected:
   LoggerAppTest() {
     bus_.Subscribe<log_progress_t>("HYDRO_LOG_PROGRESS",
@@ -54,18 +54,18 @@ class LoggerAppTest : public LogTest {
 
   static std::vector<int64_t> StateTicks(const std::string& file) {
     std::vector<int64_t> ticks;
-    LogReader reader(file);
-    LogEvent event;
+    log::LogReader reader(file);
+    log::LogEvent event;
     state_t state;
     while (reader.Next(event)) {
-      if (event.channel == "HYDRO_STATE" && DecodeAs(event, state)) ticks.push_back(state.tick);
+      if (event.channel == "HYDRO_STATE" && log::DecodeAs(event, state)) ticks.push_back(state.tick);
     }
     return ticks;
   }
 
   std::string file_ = Path("run.lcmlog");
-  SimulatedClock clock_;
-  InProcessBus bus_{&clock_};
+  bus::SimulatedClock clock_;
+  bus::InProcessBus bus_{&clock_};
   std::vector<log_progress_t> progress_;
 };
 
@@ -96,8 +96,8 @@ TEST_F(LoggerAppTest, RotatesBySize) {
   for (; std::filesystem::exists(RotatedName(file_, files)); ++files) {
     const std::string name = RotatedName(file_, files);
     EXPECT_LT(std::filesystem::file_size(name), 21000u);
-    LogReader reader(name);
-    LogEvent event;
+    log::LogReader reader(name);
+    log::LogEvent event;
     bool described = false;
     for (int i = 0; i < 5 && reader.Next(event); ++i) described = described || event.channel == "HYDRO_RUN";
     EXPECT_TRUE(described) << name;
@@ -142,10 +142,10 @@ TEST(RotatedNameTest, NumbersBeforeTheExtension) {
 }
 
 // A clock whose wall time can be set while it runs; safe to read from any thread.
-class ClockThatIsSet : public Clock {
+class ClockThatIsSet : public bus::Clock {
  public:
   TimePoint Now() const override { return TimePoint(std::chrono::milliseconds(now_ms_)); }
-  int64_t Utime() const override { return WallClock().Utime() + utime_offset_; }
+  int64_t Utime() const override { return bus::WallClock().Utime() + utime_offset_; }
   bool simulated() const override { return true; }
   void Advance(int64_t ms) { now_ms_ += ms; }
   void SetBy(int64_t us) { utime_offset_ += us; }
@@ -159,7 +159,7 @@ class ClockThatIsSet : public Clock {
 // back, between arrivals and writes.
 TEST_F(LoggerAppTest, LatencyWhileTheWallClockIsSet) {
   ClockThatIsSet clock;
-  InProcessBus bus(nullptr);  // stamps what it delivers with the wall clock
+  bus::InProcessBus bus(nullptr);  // stamps what it delivers with the wall clock
   std::vector<loop_statistics_t> reports;
   LoggerApp logger(bus, clock, SmallStack(), {file_, 0});
   bus.Subscribe<loop_statistics_t>("HYDRO_LOOP_STATISTICS",
@@ -170,12 +170,12 @@ TEST_F(LoggerAppTest, LatencyWhileTheWallClockIsSet) {
     state.tick = state.sequence = tick;
     state.session = 3;
     bus.Publish("HYDRO_STATE", state);
-    bus.HandleUntil(Clock::TimePoint::min());
+    bus.HandleUntil(bus::Clock::TimePoint::min());
     clock.SetBy(tick % 2 == 0 ? 10'000'000 : -10'000'000);
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
     clock.Advance(100);
     logger.Poll();
-    while (bus.HandleUntil(Clock::TimePoint::min()) > 0) {
+    while (bus.HandleUntil(bus::Clock::TimePoint::min()) > 0) {
     }
     cycles = 0;
     for (const loop_statistics_t& report : reports) cycles += report.cycles;
@@ -197,8 +197,8 @@ TEST_F(LoggerAppTest, SlowDisk) {
   ASSERT_GE(disk, 0);
   std::vector<fault_t> faults;
   bus_.Subscribe<fault_t>("HYDRO_FAULT", [&](const fault_t& fault) { faults.push_back(fault); });
-  StackConfig config = SmallStack();
-  config.time.mode = TimeMode::kRealtime;
+  settings::StackConfig config = SmallStack();
+  config.time.mode = settings::TimeMode::kRealtime;
   config.logger.memory_mb = 1;
   LoggerApp logger(bus_, clock_, config, {file_, 0});
   SendStates(0, 19'999);  // some 3.7 MB
@@ -244,4 +244,4 @@ TEST_F(LoggerAppTest, SlowDisk) {
 }
 
 }  // namespace
-}  // namespace hydro
+}  // namespace hydro::logger

@@ -12,63 +12,66 @@ namespace hydro::testing {
 namespace {
 
 // States' rates, switches' margins and readings, with derivatives by the model's first effects' parameters.
-std::vector<Jet> Evaluated(const Equations& equations, const Mode& mode, const std::vector<double>& state) {
-  const EquationData& data = equations.data();
-  NumbersOf<Jet> numbers = *data.constants;
+std::vector<model::Jet> Evaluated(const model::Equations& equations, const model::Mode& mode,
+                                  const std::vector<double>& state) {
+  const model::EquationData& data = equations.data();
+  model::NumbersOf<model::Jet> numbers = *data.constants;
   for (size_t k = 0; k < numbers.own.size(); ++k) numbers.own[k].v[static_cast<int>(k)] = 1;
-  CompleteNumbers<Jet>(data, &numbers);
-  Jet y[kMaxStates], rate[kMaxStates], margin[kMaxSwitches];
-  for (int i = 0; i < data.states; ++i) y[i] = Jet(state[i]);
-  Terms<Jet> x;
+  model::CompleteNumbers<model::Jet>(data, &numbers);
+  model::Jet y[model::kMaxStates], rate[model::kMaxStates], margin[model::kMaxSwitches];
+  for (int i = 0; i < data.states; ++i) y[i] = model::Jet(state[i]);
+  model::Terms<model::Jet> x;
   x.voltage_acts = true;
-  EvaluateTerms<Form::kGeneral, Jet>(data, numbers, 0.03, Jet(5.0), mode, y, rate, x);
-  FindMargins<Form::kGeneral, Jet>(data, numbers, mode, x, margin);
-  StateHistory<Jet> history(data.states, 1);
+  model::EvaluateTerms<model::Form::kGeneral, model::Jet>(data, numbers, 0.03, model::Jet(5.0), mode, y, rate,
+                                                          x);
+  model::FindMargins<model::Form::kGeneral, model::Jet>(data, numbers, mode, x, margin);
+  model::StateHistory<model::Jet> history(data.states, 1);
   history.Add(0.0, y, rate);
-  Jet later[kMaxStates];
+  model::Jet later[model::kMaxStates];
   for (int i = 0; i < data.states; ++i) later[i] = y[i] + 0.03 * rate[i];
   history.Add(0.03, later, rate);
-  const MeasurementOf<Jet> m = ReadSensors<Jet>(data, numbers, 0.03, later, &history);
-  std::vector<Jet> all(rate, rate + data.states);
+  const model::MeasurementOf<model::Jet> m =
+      model::ReadSensors<model::Jet>(data, numbers, 0.03, later, &history);
+  std::vector<model::Jet> all(rate, rate + data.states);
   all.insert(all.end(), margin, margin + data.switches);
   all.insert(all.end(), {m.motor_angle, m.motor_speed, m.arm_angle, m.arm_speed, m.p1, m.p2});
   return all;
 }
 
-std::vector<double> Somewhere(const Equations& equations, int pump) {
+std::vector<double> Somewhere(const model::Equations& equations, int pump) {
   std::vector<double> state(equations.states());
-  Mode at_rest;
+  model::Mode at_rest;
   equations.Start(300, state.data(), &at_rest);
   for (int i = 0; i < equations.states(); ++i) state[i] += equations.scales()[i] * (1 + 0.3 * i);
-  state[kMotorSpeed] = pump * 2.5;
+  state[model::kMotorSpeed] = pump * 2.5;
   return state;
 }
 
 // Tests each parameter of each effect in modes with its switches at every position.
 TEST(EffectDerivatives, EqualDifferenceQuotients) {
-  for (const EffectInfo& info : EffectCatalogue()) {
+  for (const model::EffectInfo& info : model::EffectCatalogue()) {
     if (info.id == "amp.delay") continue;  // its stops have the derivative
     for (int position = -2; position <= 2; ++position) {
       for (const int pump : {-1, 0, 1}) {
-        Mode mode;
+        model::Mode mode;
         mode.pump = static_cast<int8_t>(pump);
         mode.valve_1 = position > 0;
         mode.effects.fill(static_cast<int8_t>(position));
-        const EffectDescription& effect = SomeOfEach().at(info.id);
-        const Equations equations(Table1Model({effect}), Held(Shaft::kFree));
+        const model::EffectDescription& effect = SomeOfEach().at(info.id);
+        const model::Equations equations(Table1Model({effect}), Held(model::Shaft::kFree));
         const std::vector<double> state = Somewhere(equations, pump);
-        const std::vector<Jet> found = Evaluated(equations, mode, state);
+        const std::vector<model::Jet> found = Evaluated(equations, mode, state);
         int k = -1;
-        for (const ParameterInfo& parameter : info.parameters) {
+        for (const model::ParameterInfo& parameter : info.parameters) {
           if (parameter.is_name) continue;
           ++k;
           const double value = effect.parameters.at(parameter.name);
           const auto at = [&](double factor) {
-            EffectDescription moved = effect;
+            model::EffectDescription moved = effect;
             moved.parameters[parameter.name] = value * factor;
-            return Evaluated(Equations(Table1Model({moved}), Held(Shaft::kFree)), mode, state);
+            return Evaluated(model::Equations(Table1Model({moved}), Held(model::Shaft::kFree)), mode, state);
           };
-          const std::vector<Jet> up = at(1 + 1e-4), down = at(1 - 1e-4);
+          const std::vector<model::Jet> up = at(1 + 1e-4), down = at(1 - 1e-4);
           for (size_t i = 0; i < found.size(); ++i) {
             EXPECT_NEAR(found[i].v[k] * value, (up[i].a - down[i].a) / 2e-4,
                         1e-6 * (std::abs(found[i].a) + std::abs(found[i].v[k] * value)) + 1e-9)
@@ -82,15 +85,15 @@ TEST(EffectDerivatives, EqualDifferenceQuotients) {
 
 // Tests that some parameter of each effect does something.
 TEST(EffectDerivatives, AreNotAllZero) {
-  for (const EffectInfo& info : EffectCatalogue()) {
+  for (const model::EffectInfo& info : model::EffectCatalogue()) {
     if (info.id == "amp.delay" || info.id == "sensor.sign") continue;
-    Mode mode;
+    model::Mode mode;
     mode.pump = 1;
     mode.effects.fill(1);
-    const Equations equations(Table1Model({SomeOfEach().at(info.id)}), Held(Shaft::kFree));
+    const model::Equations equations(Table1Model({SomeOfEach().at(info.id)}), Held(model::Shaft::kFree));
     double sum = 0;
-    for (const Jet& number : Evaluated(equations, mode, Somewhere(equations, 1))) {
-      for (int k = 0; k < kJetWidth; ++k) sum += std::abs(number.v[k]);
+    for (const model::Jet& number : Evaluated(equations, mode, Somewhere(equations, 1))) {
+      for (int k = 0; k < model::kJetWidth; ++k) sum += std::abs(number.v[k]);
     }
     EXPECT_GT(sum, 0) << info.id;
   }
@@ -99,24 +102,24 @@ TEST(EffectDerivatives, AreNotAllZero) {
 // Tests that a fit can start where an effect vanishes: with every parameter that may be 0 at 0, and the
 // pressures alike, all is finite.
 TEST(EffectDerivatives, AreFiniteWhereTheEffectVanishes) {
-  for (const EffectInfo& info : EffectCatalogue()) {
+  for (const model::EffectInfo& info : model::EffectCatalogue()) {
     if (info.id == "amp.delay") continue;
-    EffectDescription effect = SomeOfEach().at(info.id);
-    for (const ParameterInfo& parameter : info.parameters) {
+    model::EffectDescription effect = SomeOfEach().at(info.id);
+    for (const model::ParameterInfo& parameter : info.parameters) {
       const bool may_vanish = !parameter.is_name && (parameter.min < 0 || parameter.min_allowed);
       if (may_vanish) effect.parameters[parameter.name] = 0;
     }
     for (int position = -1; position <= 1; ++position) {
-      Mode mode;
+      model::Mode mode;
       mode.pump = static_cast<int8_t>(position);
       mode.effects.fill(static_cast<int8_t>(position));
-      const Equations equations(Table1Model({effect}), Held(Shaft::kFree));
+      const model::Equations equations(Table1Model({effect}), Held(model::Shaft::kFree));
       std::vector<double> state(equations.states());
-      Mode at_rest;
+      model::Mode at_rest;
       equations.Start(100, state.data(), &at_rest);
-      for (const Jet& number : Evaluated(equations, mode, state)) {
+      for (const model::Jet& number : Evaluated(equations, mode, state)) {
         EXPECT_TRUE(std::isfinite(number.a)) << info.id;
-        for (int k = 0; k < kJetWidth; ++k) EXPECT_TRUE(std::isfinite(number.v[k])) << info.id;
+        for (int k = 0; k < model::kJetWidth; ++k) EXPECT_TRUE(std::isfinite(number.v[k])) << info.id;
       }
     }
   }

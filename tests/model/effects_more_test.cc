@@ -16,36 +16,37 @@ namespace {
 constexpr double kStiffness = 247000 / 3.16;  // beta/V_ms, psi/in^3
 
 // The pump sticks at both sides' pressure, and nothing leaks but through what the test adds.
-ModelDescription Sealed(EffectDescription effect, double c_E = 0) {
-  ModelDescription model = Table1Model({std::move(effect)});
+model::ModelDescription Sealed(model::EffectDescription effect, double c_E = 0) {
+  model::ModelDescription model = Table1Model({std::move(effect)});
   model.parameters.c_E = c_E;
   model.parameters.c_I = 0;
   return model;
 }
 
-ActuatorOptions HeldAt(double pressure, Integrator integrator = Integrator::kFast) {
-  ActuatorOptions options = Held(Shaft::kClamped, integrator);
+model::ActuatorOptions HeldAt(double pressure, model::Integrator integrator = model::Integrator::kFast) {
+  model::ActuatorOptions options = Held(model::Shaft::kClamped, integrator);
   options.initial_pressure = pressure;
   return options;
 }
 
-ActuatorOptions Bypassed() {
-  ActuatorOptions options = Held(Shaft::kClamped);
+model::ActuatorOptions Bypassed() {
+  model::ActuatorOptions options = Held(model::Shaft::kClamped);
   options.bypass = true;
   return options;
 }
 
-Terms<double> TermsOf(const Rig& rig, double voltage) {
-  double rate[kMaxStates];
-  Terms<double> x;
-  const Point& now = rig.simulation->now();
+model::Terms<double> TermsOf(const Rig& rig, double voltage) {
+  double rate[model::kMaxStates];
+  model::Terms<double> x;
+  const model::Point& now = rig.simulation->now();
   rig.equations.Evaluate(now.time, voltage, rig.simulation->mode(), now.state, rate, &x);
   return x;
 }
 
-Terms<double> TermsAt(const Equations& equations, const std::vector<double>& state, double* rate) {
-  Terms<double> x;
-  equations.Evaluate(0, 0, Mode{}, state.data(), rate, &x);
+model::Terms<double> TermsAt(const model::Equations& equations, const std::vector<double>& state,
+                             double* rate) {
+  model::Terms<double> x;
+  equations.Evaluate(0, 0, model::Mode{}, state.data(), rate, &x);
   return x;
 }
 
@@ -56,7 +57,7 @@ TEST(TurbulentLeakage, RootFallsEvenly) {
     Rig rig(Sealed({"pump.turbulent_leakage", {{"k", 2e-5}}, {}}), HeldAt(600));
     rig.simulation->Advance(sign * 1.5, 0.3);
     rig.simulation->Advance(0, 0.6);
-    ASSERT_EQ(rig.simulation->mode(), Mode{});
+    ASSERT_EQ(rig.simulation->mode(), model::Mode{});
     const double before = rig.Measure().p2 - rig.Measure().p1;
     ASSERT_GT(sign * before, 100);
     rig.simulation->Advance(0, 1.6);
@@ -67,24 +68,24 @@ TEST(TurbulentLeakage, RootFallsEvenly) {
 
 // Tests that the orifice is at the pump, where a line lies between it and the actuator.
 TEST(TurbulentLeakage, SeesThePumpsPressures) {
-  ModelDescription model = Sealed({"pump.turbulent_leakage", {{"k", 2e-5}}, {}});
+  model::ModelDescription model = Sealed({"pump.turbulent_leakage", {{"k", 2e-5}}, {}});
   model.effects.push_back(Wave(300, 0.2, 0.05));
-  const Equations equations(model, Held(Shaft::kClamped));
-  double rate[kMaxStates];
-  const Terms<double> x = TermsAt(equations, {0, 0, 100, 300, 100, 0, 500, 0}, rate);
+  const model::Equations equations(model, Held(model::Shaft::kClamped));
+  double rate[model::kMaxStates];
+  const model::Terms<double> x = TermsAt(equations, {0, 0, 100, 300, 100, 0, 500, 0}, rate);
   EXPECT_NEAR(x.cross_flow, 2e-5 * std::sqrt(400), 1e-8);
 }
 
 // Tests that pressure above `set` flows off with the time constant V/(beta conductance), and that what is
 // below stays.
 TEST(Relief, OpensAboveSet) {
-  const EffectDescription relief = {"valve.relief", {{"set", 300}, {"conductance", 1e-4}}, {}};
-  for (const Integrator integrator : kIntegrators) {
+  const model::EffectDescription relief = {"valve.relief", {{"set", 300}, {"conductance", 1e-4}}, {}};
+  for (const model::Integrator integrator : kIntegrators) {
     Rig above(Sealed(relief), HeldAt(500, integrator));
     above.simulation->Advance(0, 0.1);
     EXPECT_NEAR(above.Measure().p1, 300 + 200 * std::exp(-kStiffness * 1e-5), 1e-5) << Name(integrator);
     EXPECT_EQ(above.Measure().p1, above.Measure().p2);
-    Actuator below(Sealed(relief), HeldAt(299, integrator));
+    model::Actuator below(Sealed(relief), HeldAt(299, integrator));
     below.Advance(0, 0.1);
     EXPECT_EQ(below.Measure().p2, 299) << Name(integrator);
   }
@@ -121,15 +122,15 @@ TEST(EntrainedAir, SoftAtLowPressure) {
     const double absolute = p + 14.6959;
     return 1 / (1 / 247000.0 + 0.02 / (1.4 * absolute) * std::pow(14.6959 / absolute, 1 / 1.4));
   };
-  Actuator actuator(Sealed({"fluid.entrained_air", {{"air_fraction", 0.02}}, {}}, 1e-4), HeldAt(800));
+  model::Actuator actuator(Sealed({"fluid.entrained_air", {{"air_fraction", 0.02}}, {}}, 1e-4), HeldAt(800));
   actuator.Advance(0, TimeToFall(800, 150, 1e-4, beta));
   EXPECT_NEAR(actuator.Measure().p1, 150, 0.01);
   EXPECT_LT(beta(150), 0.4 * beta(800));
 
-  const Equations equations(Sealed({"fluid.entrained_air", {{"air_fraction", 0.02}}, {}}),
-                            Held(Shaft::kClamped));
-  double rate[kMaxStates];
-  const Terms<double> x = TermsAt(equations, {0, 0, 150, 800}, rate);  // each side has its own
+  const model::Equations equations(Sealed({"fluid.entrained_air", {{"air_fraction", 0.02}}, {}}),
+                                   Held(model::Shaft::kClamped));
+  double rate[model::kMaxStates];
+  const model::Terms<double> x = TermsAt(equations, {0, 0, 150, 800}, rate);  // each side has its own
   EXPECT_NEAR(x.beta_1, beta(150), 1e-4 * beta(150));
   EXPECT_NEAR(x.beta_2, beta(800), 1e-4 * beta(800));
 }
@@ -137,37 +138,37 @@ TEST(EntrainedAir, SoftAtLowPressure) {
 // Tests the same where the modulus grows with pressure, and that only the liquid's does beside air.
 TEST(Stiffening, StiffAtHighPressure) {
   const auto beta = [](double p) { return 247000 + 200 * p; };
-  const EffectDescription stiffening = {"fluid.stiffening", {{"slope", 200}}, {}};
-  Actuator actuator(Sealed(stiffening, 1e-4), HeldAt(800));
+  const model::EffectDescription stiffening = {"fluid.stiffening", {{"slope", 200}}, {}};
+  model::Actuator actuator(Sealed(stiffening, 1e-4), HeldAt(800));
   actuator.Advance(0, TimeToFall(800, 150, 1e-4, beta));
   EXPECT_NEAR(actuator.Measure().p1, 150, 1e-3);
-  const Equations equations(Sealed(stiffening), Held(Shaft::kClamped));
-  double rate[kMaxStates];
-  const Terms<double> x = TermsAt(equations, {0, 0, 150, 800}, rate);  // each side has its own
+  const model::Equations equations(Sealed(stiffening), Held(model::Shaft::kClamped));
+  double rate[model::kMaxStates];
+  const model::Terms<double> x = TermsAt(equations, {0, 0, 150, 800}, rate);  // each side has its own
   EXPECT_DOUBLE_EQ(x.beta_1, beta(150));
   EXPECT_DOUBLE_EQ(x.beta_2, beta(800));
 
-  ModelDescription both = Sealed(stiffening, 1e-4);
+  model::ModelDescription both = Sealed(stiffening, 1e-4);
   both.effects.push_back({"fluid.entrained_air", {{"air_fraction", 0.02}}, {}});
   const auto beta_both = [&](double p) {
     const double absolute = p + 14.6959;
     return 1 / (1 / beta(p) + 0.02 / (1.4 * absolute) * std::pow(14.6959 / absolute, 1 / 1.4));
   };
-  Actuator with_air(both, HeldAt(800));
+  model::Actuator with_air(both, HeldAt(800));
   with_air.Advance(0, TimeToFall(800, 150, 1e-4, beta_both));
   EXPECT_NEAR(with_air.Measure().p1, 150, 0.01);
 }
 
 // Tests that air stays soft and finite down to a vacuum and below.
 TEST(EntrainedAir, IsFiniteInAVacuum) {
-  const Equations equations(Sealed({"fluid.entrained_air", {{"air_fraction", 0.02}}, {}}),
-                            Held(Shaft::kClamped));
+  const model::Equations equations(Sealed({"fluid.entrained_air", {{"air_fraction", 0.02}}, {}}),
+                                   Held(model::Shaft::kClamped));
   double last = 1e9;
   for (const double p : {100.0, 0.0, -14.0, -14.6959, -16.0, -100.0}) {
     const double state[4] = {0, 0, p, p};
     double rate[4];
-    Terms<double> x;
-    equations.Evaluate(0, 0, Mode{}, state, rate, &x);
+    model::Terms<double> x;
+    equations.Evaluate(0, 0, model::Mode{}, state, rate, &x);
     EXPECT_GT(x.beta_1, 0) << p;
     EXPECT_LT(x.beta_1, last) << p;
     last = x.beta_1;
@@ -179,8 +180,8 @@ TEST(EntrainedAir, IsFiniteInAVacuum) {
 TEST(SpeedTorqueLimit, LimitsDrivingOnly) {
   const double w_0 = 1000;
   for (const double sign : {1.0, -1.0}) {
-    for (const Integrator integrator : kIntegrators) {
-      ActuatorOptions options = Bypassed();
+    for (const model::Integrator integrator : kIntegrators) {
+      model::ActuatorOptions options = Bypassed();
       options.integrator = integrator;
       Rig rig(Table1Model({{"motor.speed_torque_limit", {{"no_load_speed", w_0}}, {}}}), options);
       rig.simulation->Advance(sign * 10, 20);
@@ -204,7 +205,7 @@ TEST(SpeedTorqueLimit, BeyondNoLoadSpeedAndBehindALag) {
   for (int tick = 0; tick < 4000; ++tick) {
     const double voltage = tick < 1500 ? 10 : tick < 3000 ? 2 : -10;
     rig.simulation->Advance(voltage, (tick + 1) * 1e-3);
-    const Terms<double> x = TermsOf(rig, voltage);
+    const model::Terms<double> x = TermsOf(rig, voltage);
     positions.insert(rig.simulation->mode().effects[1]);
     const double lagged = std::clamp(rig.simulation->now().state[4], -40.0, 40.0);
     const double room = 40 * (1 - std::abs(x.motor_speed) / 200);
@@ -216,11 +217,11 @@ TEST(SpeedTorqueLimit, BeyondNoLoadSpeedAndBehindALag) {
   }
   EXPECT_TRUE(positions.contains(0) && positions.contains(1) && positions.contains(-1));
 
-  const Equations& equations = rig.equations;
+  const model::Equations& equations = rig.equations;
   double state[5] = {0, 300, 100, 100, 20};
-  double margin[kMaxSwitches];
-  double rate[kMaxStates];
-  Mode mode;
+  double margin[model::kMaxSwitches];
+  double rate[model::kMaxStates];
+  model::Mode mode;
   mode.pump = 1;
   equations.Rates(0, 5, mode, state, rate, margin);
   ASSERT_LT(margin[4], 0);
@@ -228,17 +229,17 @@ TEST(SpeedTorqueLimit, BeyondNoLoadSpeedAndBehindALag) {
   EXPECT_EQ(mode.effects[1], 2);
   equations.Rates(0, 5, mode, state, rate, margin);
   EXPECT_GT(margin[4], 0);
-  EXPECT_DOUBLE_EQ(rate[kMotorSpeed], -(4 + 0.01455 * 300) / 0.03);
+  EXPECT_DOUBLE_EQ(rate[model::kMotorSpeed], -(4 + 0.01455 * 300) / 0.03);
 
   // Back: to the line when the pump has slowed down, to no limit when torque is asked for against the speed.
-  const Mode beyond = mode;
-  state[kMotorSpeed] = 199;
+  const model::Mode beyond = mode;
+  state[model::kMotorSpeed] = 199;
   equations.Rates(0, 5, mode, state, rate, margin);
   ASSERT_LT(margin[4], 0);
   equations.Cross(4, 0, 5, state, &mode);
   EXPECT_EQ(mode.effects[1], 1);
   mode = beyond;
-  state[kMotorSpeed] = 300;
+  state[model::kMotorSpeed] = 300;
   state[4] = -5;
   equations.Rates(0, 5, mode, state, rate, margin);
   ASSERT_LT(margin[4], 0);
@@ -249,16 +250,16 @@ TEST(SpeedTorqueLimit, BeyondNoLoadSpeedAndBehindALag) {
 // Tests that what is read follows the pressure with a time constant, and that the gain acts on what is read.
 TEST(PressureLag, FollowsItsClosedForm) {
   const double tau = 0.02, k = kStiffness * 1e-4;
-  ModelDescription model = Sealed({"sensor.pressure_lag", {{"tau", tau}}, {}}, 1e-4);
+  model::ModelDescription model = Sealed({"sensor.pressure_lag", {{"tau", tau}}, {}}, 1e-4);
   model.effects.push_back({"sensor.pressure_gain", {{"gain", 0.05}}, {}});
   model.effects.push_back({"sensor.pressure_offset", {{"p1", 3}, {"p2", 0}}, {}});
-  for (const Integrator integrator : kIntegrators) {
+  for (const model::Integrator integrator : kIntegrators) {
     Rig rig(model, HeldAt(500, integrator));
     EXPECT_DOUBLE_EQ(rig.Measure().p2, 1.05 * 500);
     rig.simulation->Advance(0, 0.03);
     const double slow = 400 / (1 - k * tau);
     const double read = 100 + slow * std::exp(-k * 0.03) + (400 - slow) * std::exp(-0.03 / tau);
-    EXPECT_NEAR(rig.simulation->now().state[kP1], 100 + 400 * std::exp(-k * 0.03), 1e-4);
+    EXPECT_NEAR(rig.simulation->now().state[model::kP1], 100 + 400 * std::exp(-k * 0.03), 1e-4);
     EXPECT_NEAR(rig.Measure().p2, 1.05 * read, 1e-4) << Name(integrator);
     EXPECT_NEAR(rig.Measure().p1, 1.05 * read + 3, 1e-4) << Name(integrator);
   }
@@ -266,13 +267,14 @@ TEST(PressureLag, FollowsItsClosedForm) {
 
 // Tests that each transducer follows its own side.
 TEST(PressureLag, EachSideHasItsOwn) {
-  const Equations equations(Sealed({"sensor.pressure_lag", {{"tau", 0.02}}, {}}), Held(Shaft::kClamped));
+  const model::Equations equations(Sealed({"sensor.pressure_lag", {{"tau", 0.02}}, {}}),
+                                   Held(model::Shaft::kClamped));
   const std::vector<double> state = {0, 0, 200, 300, 150, 400};
-  double rate[kMaxStates];
+  double rate[model::kMaxStates];
   TermsAt(equations, state, rate);
   EXPECT_DOUBLE_EQ(rate[4], (200 - 150) / 0.02);
   EXPECT_DOUBLE_EQ(rate[5], (300 - 400) / 0.02);
-  const Measurement read = equations.Measure(0, state.data());
+  const model::Measurement read = equations.Measure(0, state.data());
   EXPECT_EQ(read.p1, 150);
   EXPECT_EQ(read.p2, 400);
 }
@@ -281,19 +283,19 @@ TEST(PressureLag, EachSideHasItsOwn) {
 // rest friction has to hold the cogging torque too.
 TEST(Cogging, IsConservativeAndHoldsAtRest) {
   const double A = 3, n = 7, phase = 0.4;
-  ModelDescription model =
+  model::ModelDescription model =
       Table1Model({{"motor.cogging", {{"amplitude", A}, {"periods", n}, {"phase", phase}}, {}}});
-  ModelDescription slick = model;
+  model::ModelDescription slick = model;
   slick.parameters.T_s = slick.parameters.b = 0;
   Rig rig(slick, Bypassed());
   for (int i = 1; i <= 20; ++i) {
     rig.simulation->Advance(1, 0.01 * i);
-    const Measurement m = rig.Measure();
+    const model::Measurement m = rig.Measure();
     const double work = 4 * m.motor_angle - A / n * (std::cos(phase) - std::cos(n * m.motor_angle + phase));
     EXPECT_NEAR(0.5 * 0.03 * m.motor_speed * m.motor_speed, work, 1e-5 * (1 + work));
   }
   for (const double excess : {-1e-3, 1e-3}) {
-    Actuator actuator(model, Bypassed());
+    model::Actuator actuator(model, Bypassed());
     actuator.Advance((4 + A * std::sin(phase) + excess) / 4, 0.1);
     EXPECT_EQ(actuator.Measure().motor_angle > 0, excess > 0);
   }
@@ -306,11 +308,11 @@ TEST(FlowRipple, PumpsTheVolumeOfItsAngle) {
   Rig rig(Sealed({"pump.flow_ripple", {{"amplitude", a}, {"periods", n}}, {}}), HeldAt(1000));
   for (int i = 1; i <= 20; ++i) {
     rig.simulation->Advance(2.5, 0.005 * i);
-    const Measurement m = rig.Measure();
+    const model::Measurement m = rig.Measure();
     const double volume = 0.00796 * (m.motor_angle + a / n * std::sin(n * m.motor_angle));
     EXPECT_NEAR(m.p2 - 1000, kStiffness * volume, 1e-4);
     EXPECT_NEAR(m.p1 - 1000, -kStiffness * volume, 1e-4);
-    const Terms<double> x = TermsOf(rig, 2.5);
+    const model::Terms<double> x = TermsOf(rig, 2.5);
     const double D = 0.00796 * (1 + a * std::cos(n * m.motor_angle));
     EXPECT_NEAR(x.net_torque, 10 - D * (m.p2 - m.p1), 1e-9);
   }
@@ -320,15 +322,15 @@ TEST(FlowRipple, PumpsTheVolumeOfItsAngle) {
 // Tests that a side below p3 - cracking fills with the time constant V/(beta conductance), and that the
 // valves replace the ideal ones: near to them when they open at once and pass much, and never beside them.
 TEST(Check, FillsFromBelowCracking) {
-  for (const Integrator integrator : kIntegrators) {
-    Actuator actuator(Sealed({"valve.check", {{"cracking", 30}, {"conductance", 1e-4}}, {}}),
-                      HeldAt(20, integrator));
+  for (const model::Integrator integrator : kIntegrators) {
+    model::Actuator actuator(Sealed({"valve.check", {{"cracking", 30}, {"conductance", 1e-4}}, {}}),
+                             HeldAt(20, integrator));
     actuator.Advance(0, 0.1);
     EXPECT_NEAR(actuator.Measure().p1, 70 - 50 * std::exp(-kStiffness * 1e-5), 1e-5) << Name(integrator);
   }
   Rig lazy(Table1Model({{"valve.check", {{"cracking", 30}, {"conductance", 1e-3}}, {}}}), HeldAt(100));
   Rig brisk(Table1Model({{"valve.check", {{"cracking", 0}, {"conductance", 1}}, {}}}), HeldAt(100));
-  Actuator ideal(Table1Model(), HeldAt(100));
+  model::Actuator ideal(Table1Model(), HeldAt(100));
   double least = 100;
   for (int tick = 1; tick <= 1000; ++tick) {
     const double voltage = tick < 500 ? 3 : -2;
@@ -349,7 +351,7 @@ TEST(Check, FillsFromBelowCracking) {
 // Tests that what leaks from both sides raises p3: e = p - p3 falls with (beta/V + 2 stiffness) c_E.
 TEST(AccumulatorStiffness, RisesWithWhatReturns) {
   const double k = 3e4, c_E = 1e-5, rate = (kStiffness + 2 * k) * c_E, time = 0.7;
-  for (const Integrator integrator : kIntegrators) {
+  for (const model::Integrator integrator : kIntegrators) {
     Rig rig(Sealed({"accumulator.stiffness", {{"stiffness", k}}, {}}, c_E), HeldAt(500, integrator));
     rig.simulation->Advance(0, time);
     const double passed = c_E * 400 * (1 - std::exp(-rate * time)) / rate;  // in^3 of each side
@@ -363,8 +365,8 @@ TEST(AccumulatorStiffness, RisesWithWhatReturns) {
 TEST(AccumulatorStiffness, LosesNoFluid) {
   const double k = 5e3;
   for (const bool bypass : {false, true}) {
-    for (const Integrator integrator : kIntegrators) {
-      ActuatorOptions options = HeldAt(bypass ? 100 : 105, integrator);
+    for (const model::Integrator integrator : kIntegrators) {
+      model::ActuatorOptions options = HeldAt(bypass ? 100 : 105, integrator);
       options.bypass = bypass;
       Rig rig(Table1Model({{"accumulator.stiffness", {{"stiffness", k}}, {}},
                            {"valve.relief", {{"set", 300}, {"conductance", 1e-3}}, {}}}),
@@ -375,16 +377,16 @@ TEST(AccumulatorStiffness, LosesNoFluid) {
       for (int tick = 0; tick < 3000; ++tick) {
         rig.simulation->Advance(tick / 500 % 2 == 0 ? 3 : -2.5, (tick + 1) * 2e-4);
         const double* state = rig.simulation->now().state;
-        const Mode& mode = rig.simulation->mode();
-        ASSERT_NEAR((state[kP1] + state[kP2]) / kStiffness + state[4] / k, start, 1e-9 * start)
+        const model::Mode& mode = rig.simulation->mode();
+        ASSERT_NEAR((state[model::kP1] + state[model::kP2]) / kStiffness + state[4] / k, start, 1e-9 * start)
             << Name(integrator) << " at tick " << tick;
-        ASSERT_GE(state[kP1], state[4]);
-        ASSERT_GE(state[kP2], state[4]);
+        ASSERT_GE(state[model::kP1], state[4]);
+        ASSERT_GE(state[model::kP2], state[4]);
         if (mode.valve_1) {
-          ASSERT_EQ(state[kP1], state[4]);
+          ASSERT_EQ(state[model::kP1], state[4]);
         }
         if (mode.valve_2) {
-          ASSERT_EQ(state[kP2], state[4]);
+          ASSERT_EQ(state[model::kP2], state[4]);
         }
         opened |= mode.valve_1 != 0;
         lowest = std::min(lowest, state[4]);
@@ -398,28 +400,29 @@ TEST(AccumulatorStiffness, LosesNoFluid) {
 // Tests the same at one instant where the bypass is open and so is the valve, which stands for both: both
 // sides are held, and the accumulator gives what leaks back to it.
 TEST(AccumulatorStiffness, HoldsBothSidesOfTheBypass) {
-  const Equations equations(Table1Model({{"accumulator.stiffness", {{"stiffness", 5e3}}, {}}}), Bypassed());
+  const model::Equations equations(Table1Model({{"accumulator.stiffness", {{"stiffness", 5e3}}, {}}}),
+                                   Bypassed());
   const double state[5] = {0, 0, 120, 120, 100};
-  Mode mode;
+  model::Mode mode;
   mode.valve_1 = 1;
-  double rate[kMaxStates];
-  Terms<double> x;
+  double rate[model::kMaxStates];
+  model::Terms<double> x;
   equations.Evaluate(0, 0, mode, state, rate, &x);
   ASSERT_GT(x.outer_flow_1 + x.outer_flow_2, 1e-5);
-  EXPECT_EQ(rate[kP1], rate[4]);
-  EXPECT_EQ(rate[kP2], rate[4]);
-  EXPECT_NEAR((rate[kP1] + rate[kP2]) / kStiffness + rate[4] / 5e3, 0, 1e-12);
+  EXPECT_EQ(rate[model::kP1], rate[4]);
+  EXPECT_EQ(rate[model::kP2], rate[4]);
+  EXPECT_NEAR((rate[model::kP1] + rate[model::kP2]) / kStiffness + rate[4] / 5e3, 0, 1e-12);
 }
 
 // Tests that one channel is inverted, offset included, and no other.
 TEST(Sign, InvertsOneChannel) {
   const std::vector<std::pair<std::string, int>> signals = {
       {"motor_speed", 0}, {"motor_angle", 1}, {"arm_angle", 2}, {"p1", 4}, {"p2", 5}};
-  ModelDescription model = Table1Model({{"sensor.pressure_offset", {{"p1", 3}, {"p2", -2}}, {}}});
+  model::ModelDescription model = Table1Model({{"sensor.pressure_offset", {{"p1", 3}, {"p2", -2}}, {}}});
   const auto read = [&] {
-    Actuator actuator(model, Held(Shaft::kFree));
+    model::Actuator actuator(model, Held(model::Shaft::kFree));
     actuator.Advance(2.5, 0.2);
-    const Measurement m = actuator.Measure();
+    const model::Measurement m = actuator.Measure();
     return std::vector<double>{m.motor_speed, m.motor_angle, m.arm_angle, m.arm_speed, m.p1, m.p2};
   };
   const std::vector<double> plain = read();
@@ -438,24 +441,24 @@ TEST(Sign, InvertsOneChannel) {
 // and jumps of the voltage, and between ticks.
 TEST(Skew, ReadsWhatWasThen) {
   const double delay = 3.1e-3;
-  const auto advance = [](Actuator* actuator, double until) {  // a voltage that jumps every 2 ms
+  const auto advance = [](model::Actuator* actuator, double until) {  // a voltage that jumps every 2 ms
     for (int block = static_cast<int>(std::floor(actuator->time() / 2e-3 + 1e-6));; ++block) {
       actuator->Advance(2.5 + 3 * std::sin(2 * block), std::min(until, (block + 1) * 2e-3));
       if ((block + 1) * 2e-3 >= until) return;
     }
   };
-  for (const Integrator integrator : kIntegrators) {
+  for (const model::Integrator integrator : kIntegrators) {
     for (const std::string name : {"p2", "motor_speed", "arm_angle"}) {
-      Actuator plain(Table1Model(), Held(Shaft::kFree, integrator));
-      Actuator late(Table1Model({{"sensor.skew", {{"delay", delay}}, {{"signal", name}}}}),
-                    Held(Shaft::kFree, integrator));
+      model::Actuator plain(Table1Model(), Held(model::Shaft::kFree, integrator));
+      model::Actuator late(Table1Model({{"sensor.skew", {{"delay", delay}}, {{"signal", name}}}}),
+                           Held(model::Shaft::kFree, integrator));
       double highest = 0;
       for (int tick = 1; tick <= 1000; ++tick) {
         advance(&late, tick * 2e-4);
         const double then = tick * 2e-4 - delay;
         highest = std::max(highest, late.Measure().p2);
         if (then > 0) advance(&plain, then);
-        const Measurement m = late.Measure(), expected = plain.Measure();
+        const model::Measurement m = late.Measure(), expected = plain.Measure();
         if (name == "p2") {
           ASSERT_NEAR(m.p2, expected.p2, 1e-4) << Name(integrator) << " " << tick;
         } else if (name == "motor_speed") {
@@ -475,28 +478,28 @@ TEST(Skew, ReadsWhatWasThen) {
 TEST(StateHistory, InterpolatesWithDerivatives) {
   const auto value = [](double t) { return 1 + t - 3 * t * t + 2 * t * t * t; };
   const auto slope = [](double t) { return 1 - 6 * t + 6 * t * t; };
-  StateHistory<Jet> history(1, 10);
+  model::StateHistory<model::Jet> history(1, 10);
   for (const double t : {0.0, 0.3, 0.35, 0.35, 1.0}) {
-    Jet y(value(t)), rate(slope(t));
+    model::Jet y(value(t)), rate(slope(t));
     y.v[3] = 2 * t;  // another parameter's
     rate.v[3] = 2;
     history.Add(t, &y, &rate);
   }
   for (const double t : {0.0, 0.1, 0.299, 0.3, 0.35, 0.5, 0.99, 1.0}) {
-    Jet time(t), state;
+    model::Jet time(t), state;
     time.v[0] = -1;  // a delay's
     history.At(&time, &state);
     EXPECT_NEAR(state.a, value(t), 1e-12) << t;
     EXPECT_NEAR(state.v[0], -slope(t), 1e-12) << t;
     EXPECT_NEAR(state.v[3], 2 * t, 1e-12) << t;
   }
-  Jet before(-0.5), state;
+  model::Jet before(-0.5), state;
   before.v[0] = -1;
   history.At(&before, &state);
   EXPECT_EQ(state.a, 1);
   EXPECT_EQ(state.v[0], 0);
 
-  StateHistory<double> jump(1, 0.01);  // forgets what is not needed
+  model::StateHistory<double> jump(1, 0.01);  // forgets what is not needed
   for (int i = 0; i <= 10000; ++i) {
     const double y = i < 5000 ? 1 : 2, zero = 0, one = 1;
     if (i == 5000) jump.Add(i * 1e-3, &one, &zero);
@@ -516,7 +519,7 @@ TEST(StateHistory, InterpolatesWithDerivatives) {
 // fluid gives dp = beta log((1 - c a/V)/(1 + c a/V)) in closed form.
 TEST(Flexure, ArmSwingsOnItsSpring) {
   const double K = 6000, B = 60, c = 1.83 * 1.83 * 2.20 / 2, mgl = 562;
-  ModelDescription model = Sealed({"arm.flexure", {{"stiffness", K}, {"damping", B}}, {}});
+  model::ModelDescription model = Sealed({"arm.flexure", {{"stiffness", K}, {"damping", B}}, {}});
   model.parameters.mgl = mgl;
   const auto rates = [&](const double* y, double* rate) {  // alpha, alpha', a
     const double dp = 247000 * std::log((1 - c * y[2] / 3.16) / (1 + c * y[2] / 3.16));
@@ -526,7 +529,7 @@ TEST(Flexure, ArmSwingsOnItsSpring) {
   };
   double y[3] = {0, 0, 0};
   const double h = 5e-6;
-  ActuatorOptions options = Held(Shaft::kFree, Integrator::kAuto);
+  model::ActuatorOptions options = Held(model::Shaft::kFree, model::Integrator::kAuto);
   options.initial_pressure = 1000;
   Rig rig(model, options);
   double lowest = 0;
@@ -546,20 +549,20 @@ TEST(Flexure, ArmSwingsOnItsSpring) {
     const double* state = rig.simulation->now().state;
     EXPECT_NEAR(rig.Measure().arm_angle, y[0], 1e-6);
     EXPECT_NEAR(state[6], y[2], 1e-7);
-    EXPECT_NEAR(state[kP2] - state[kP1], 247000 * std::log((1 - c * y[2] / 3.16) / (1 + c * y[2] / 3.16)),
-                1e-2);
+    EXPECT_NEAR(state[model::kP2] - state[model::kP1],
+                247000 * std::log((1 - c * y[2] / 3.16) / (1 + c * y[2] / 3.16)), 1e-2);
   }
   EXPECT_LT(lowest, -0.12);  // it swings well beyond its rest at -mgl/K
 }
 
 // Tests that the spring starts at rest under whatever pressures a run starts with.
 TEST(Flexure, StartsAtRest) {
-  const Equations equations(Sealed({"arm.flexure", {{"stiffness", 6000}, {"damping", 60}}, {}}),
-                            Held(Shaft::kFree));
+  const model::Equations equations(Sealed({"arm.flexure", {{"stiffness", 6000}, {"damping", 60}}, {}}),
+                                   Held(model::Shaft::kFree));
   std::vector<double> state = {0, 0, 150, 180, 0.1, 0, 0};
-  double rate[kMaxStates];
-  Terms<double> x = TermsAt(equations, state, rate);
-  const Effect& flexure = *equations.data().effects[0];
+  double rate[model::kMaxStates];
+  model::Terms<double> x = TermsAt(equations, state, rate);
+  const model::Effect& flexure = *equations.data().effects[0];
   x.own = equations.data().own.data() + flexure.first_parameter();
   flexure.Start(x, state.data());
   EXPECT_DOUBLE_EQ(state[6], 0.1 + 3.68 * (180 - 150) / 6000);
@@ -569,7 +572,7 @@ TEST(Flexure, StartsAtRest) {
 
 // Tests that an effect which counts for nothing changes nothing.
 TEST(MoreEffects, VanishWithTheirSize) {
-  const std::vector<EffectDescription> none = {
+  const std::vector<model::EffectDescription> none = {
       {"accumulator.stiffness", {{"stiffness", 0}}, {}},
       {"fluid.entrained_air", {{"air_fraction", 0}}, {}},
       {"fluid.stiffening", {{"slope", 0}}, {}},
@@ -579,9 +582,9 @@ TEST(MoreEffects, VanishWithTheirSize) {
       {"pump.turbulent_leakage", {{"k", 0}}, {}},
       {"sensor.skew", {{"delay", 0}}, {{"signal", "p2"}}},
       {"valve.relief", {{"set", 120}, {"conductance", 0}}, {}}};
-  for (const EffectDescription& effect : none) {
-    Actuator plain(Table1Model(), Held(Shaft::kClamped));
-    Actuator actuator(Table1Model({effect}), Held(Shaft::kClamped));
+  for (const model::EffectDescription& effect : none) {
+    model::Actuator plain(Table1Model(), Held(model::Shaft::kClamped));
+    model::Actuator actuator(Table1Model({effect}), Held(model::Shaft::kClamped));
     for (int tick = 0; tick < 1000; ++tick) {
       const double voltage = SquareWaveLoop(plain.Measure(), tick);
       plain.Advance(voltage, (tick + 1) * 2e-4);

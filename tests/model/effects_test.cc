@@ -12,8 +12,8 @@ namespace {
 // Tests that the lagged torque follows its closed form, and that the pump starts when it passes T_s.
 TEST(AmpLag, FollowsItsClosedForm) {
   const double tau = 0.01;
-  for (const Integrator integrator : kIntegrators) {
-    Rig rig(Table1Model({Lag(tau)}), Held(Shaft::kClamped, integrator));
+  for (const model::Integrator integrator : kIntegrators) {
+    Rig rig(Table1Model({Lag(tau)}), Held(model::Shaft::kClamped, integrator));
     const double start = -tau * std::log(1 - 4.0 / 8.0);  // T = 8 (1 - exp(-t/tau)) reaches T_s = 4
     rig.simulation->Advance(2, start - 1e-6);
     EXPECT_EQ(rig.Measure().motor_speed, 0) << Name(integrator);
@@ -30,11 +30,11 @@ TEST(AmpLag, FollowsItsClosedForm) {
 // Tests that the limit applies to the lagged torque: T_p stays at T_pmax while the lagged state is above it.
 TEST(AmpLag, LimitsTheTorqueItself) {
   const double tau = 0.01;
-  Rig rig(Table1Model({Lag(tau)}), Held(Shaft::kClamped));
+  Rig rig(Table1Model({Lag(tau)}), Held(model::Shaft::kClamped));
   const auto torque = [&] {
-    double rate[kMaxStates];
-    Terms<double> x;
-    const Point& now = rig.simulation->now();
+    double rate[model::kMaxStates];
+    model::Terms<double> x;
+    const model::Point& now = rig.simulation->now();
     rig.equations.Evaluate(now.time, 20, rig.simulation->mode(), now.state, rate, &x);
     return x.torque;
   };
@@ -57,13 +57,13 @@ TEST(AmpLag, LimitsTheTorqueItself) {
 
 // Tests that an effect which counts for nothing changes nothing.
 TEST(Effects, VanishWithTheirSize) {
-  const std::vector<EffectDescription> none = {Stribeck(0, 3),
-                                               {"pump.pressure_friction", {{"f", 0}}, {}},
-                                               {"pump.quadratic_drag", {{"k", 0}}, {}},
-                                               {"sensor.pressure_offset", {{"p1", 0}, {"p2", 0}}, {}}};
-  for (const EffectDescription& effect : none) {
-    Actuator plain(Table1Model(), Held(Shaft::kClamped));
-    Actuator with(Table1Model({effect}), Held(Shaft::kClamped));
+  const std::vector<model::EffectDescription> none = {Stribeck(0, 3),
+                                                      {"pump.pressure_friction", {{"f", 0}}, {}},
+                                                      {"pump.quadratic_drag", {{"k", 0}}, {}},
+                                                      {"sensor.pressure_offset", {{"p1", 0}, {"p2", 0}}, {}}};
+  for (const model::EffectDescription& effect : none) {
+    model::Actuator plain(Table1Model(), Held(model::Shaft::kClamped));
+    model::Actuator with(Table1Model({effect}), Held(model::Shaft::kClamped));
     for (int tick = 0; tick < 1000; ++tick) {
       plain.Advance(SquareWaveLoop(plain.Measure(), tick), (tick + 1) * 2e-4);
       with.Advance(SquareWaveLoop(with.Measure(), tick), (tick + 1) * 2e-4);
@@ -75,22 +75,23 @@ TEST(Effects, VanishWithTheirSize) {
 
 // Tests that the effect's f and the base parameter f are one term.
 TEST(PressureFriction, IsThePapersF) {
-  ModelDescription base = Table1Model();
+  model::ModelDescription base = Table1Model();
   base.parameters.f = 0.002;
-  Actuator a(base, Held(Shaft::kClamped));
-  Actuator b(Table1Model({{"pump.pressure_friction", {{"f", 0.002}}, {}}}), Held(Shaft::kClamped));
-  Actuator without(Table1Model(), Held(Shaft::kClamped));
-  for (Actuator* actuator : {&a, &b, &without}) actuator->Advance(2.5, 0.2);
+  model::Actuator a(base, Held(model::Shaft::kClamped));
+  model::Actuator b(Table1Model({{"pump.pressure_friction", {{"f", 0.002}}, {}}}),
+                    Held(model::Shaft::kClamped));
+  model::Actuator without(Table1Model(), Held(model::Shaft::kClamped));
+  for (model::Actuator* actuator : {&a, &b, &without}) actuator->Advance(2.5, 0.2);
   EXPECT_NEAR(a.Measure().p2, b.Measure().p2, 1e-6);
   EXPECT_LT(a.Measure().p2, without.Measure().p2 - 10);
 }
 
 // Tests that a delayed command acts exactly `delay` later, also when several are under way.
 TEST(AmpDelay, ShiftsTheCommand) {
-  for (const Integrator integrator : kIntegrators) {
-    Actuator plain(Table1Model(), Held(Shaft::kClamped, integrator));
-    Actuator delayed(Table1Model({{"amp.delay", {{"delay", 7.7e-4}}, {}}}),
-                     Held(Shaft::kClamped, integrator));
+  for (const model::Integrator integrator : kIntegrators) {
+    model::Actuator plain(Table1Model(), Held(model::Shaft::kClamped, integrator));
+    model::Actuator delayed(Table1Model({{"amp.delay", {{"delay", 7.7e-4}}, {}}}),
+                            Held(model::Shaft::kClamped, integrator));
     delayed.Advance(0.5, 2e-4);  // below friction
     plain.Advance(0, 9.7e-4);
     for (int tick = 0; tick < 300; ++tick) {
@@ -108,12 +109,13 @@ TEST(AmpDelay, ShiftsTheCommand) {
 // Tests that seal friction holds the arm until the torque on it passes `coulomb`, and never moves it by
 // itself.
 TEST(SealFriction, SticksAndSlips) {
-  ModelDescription model = Table1Model({{"actuator.seal_friction", {{"coulomb", 600}, {"viscous", 0}}, {}}});
+  model::ModelDescription model =
+      Table1Model({{"actuator.seal_friction", {{"coulomb", 600}, {"viscous", 0}}, {}}});
   model.parameters.mgl = 562;
-  Actuator holds(model, Held(Shaft::kFree));
+  model::Actuator holds(model, Held(model::Shaft::kFree));
   holds.Advance(0, 10);
   EXPECT_EQ(holds.Measure().arm_angle, 0);
-  Rig pushed(model, Held(Shaft::kFree));
+  Rig pushed(model, Held(model::Shaft::kFree));
   double dp = 0;
   for (int tick = 1; pushed.Measure().arm_speed == 0; ++tick) {
     ASSERT_LT(tick, 100000);
@@ -127,15 +129,16 @@ TEST(SealFriction, SticksAndSlips) {
 // Tests that seal friction slows a swinging arm evenly: with the bypass open it swings down by coulomb's
 // work.
 TEST(SealFriction, TakesItsWork) {
-  ModelDescription model = Table1Model({{"actuator.seal_friction", {{"coulomb", 50}, {"viscous", 0}}, {}}});
+  model::ModelDescription model =
+      Table1Model({{"actuator.seal_friction", {{"coulomb", 50}, {"viscous", 0}}, {}}});
   model.parameters.mgl = 562;
   model.parameters.V_ms = 10;
-  ActuatorOptions options = Held(Shaft::kFree);
+  model::ActuatorOptions options = Held(model::Shaft::kFree);
   options.bypass = true;
   options.arm_angle = -0.5;
   Rig rig(model, options);
   rig.simulation->Advance(0, 0.2);
-  const Measurement m = rig.Measure();
+  const model::Measurement m = rig.Measure();
   const double fallen = 562 * (std::sin(-0.5) - std::sin(m.arm_angle));
   EXPECT_NEAR(0.5 * 23.3 * m.arm_speed * m.arm_speed, fallen - 50 * (-0.5 - m.arm_angle), 1e-5);
   rig.simulation->Advance(0, 30);
@@ -145,12 +148,12 @@ TEST(SealFriction, TakesItsWork) {
 
 // Tests break-away and steady speed in each direction.
 TEST(FrictionAsymmetry, DiffersByDirection) {
-  ActuatorOptions options = Held(Shaft::kClamped);
+  model::ActuatorOptions options = Held(model::Shaft::kClamped);
   options.bypass = true;
-  const ModelDescription model =
+  const model::ModelDescription model =
       Table1Model({{"pump.friction_asymmetry", {{"coulomb", 1}, {"viscous", 0.005}}, {}}});
   const auto speed_at = [&](double torque) {
-    Actuator actuator(model, options);
+    model::Actuator actuator(model, options);
     actuator.Advance(torque / 4, 60);
     return actuator.Measure().motor_speed;
   };
@@ -162,10 +165,10 @@ TEST(FrictionAsymmetry, DiffersByDirection) {
 
 // Tests that leakage drifts: with the bypass open the common pressure leaks off at a rate that grows.
 TEST(Warming, LeakageDrifts) {
-  ActuatorOptions options = Held(Shaft::kClamped);
+  model::ActuatorOptions options = Held(model::Shaft::kClamped);
   options.bypass = true;
   options.initial_pressure = 400;
-  Actuator actuator(Table1Model({{"fluid.warming", {{"rate", 0.3}}, {}}}), options);
+  model::Actuator actuator(Table1Model({{"fluid.warming", {{"rate", 0.3}}, {}}}), options);
   actuator.Advance(0, 2);
   const double decay = 247000 * 6.5e-6 / 3.16 * (std::exp(0.3 * 2) - 1) / 0.3;
   EXPECT_NEAR(actuator.Measure().p1, 100 + 300 * std::exp(-decay), 1e-4);
@@ -174,16 +177,16 @@ TEST(Warming, LeakageDrifts) {
 // Tests that internal leakage drifts too: with the pump stuck and both valves closed, the pressure difference
 // leaks off at beta/V_ms (2 c_I + c_E) exp(rate t).
 TEST(Warming, InternalLeakageDrifts) {
-  ActuatorOptions options = Held(Shaft::kClamped);
+  model::ActuatorOptions options = Held(model::Shaft::kClamped);
   options.initial_pressure = 400;
   Rig rig(Table1Model({{"fluid.warming", {{"rate", 0.3}}, {}}}), options);
   rig.simulation->Advance(1.2, 0.3);
   rig.simulation->Advance(0, 0.6);
-  ASSERT_EQ(rig.simulation->mode(), Mode{});
-  const Measurement before = rig.Measure();
+  ASSERT_EQ(rig.simulation->mode(), model::Mode{});
+  const model::Measurement before = rig.Measure();
   ASSERT_GT(before.p2 - before.p1, 50);
   rig.simulation->Advance(0, 1.6);
-  const Measurement after = rig.Measure();
+  const model::Measurement after = rig.Measure();
   const double decay =
       247000 / 3.16 * (2 * 1.0e-6 + 6.5e-6) * (std::exp(0.3 * 1.6) - std::exp(0.3 * 0.6)) / 0.3;
   EXPECT_NEAR(after.p2 - after.p1, (before.p2 - before.p1) * std::exp(-decay), 1e-4);
@@ -192,9 +195,9 @@ TEST(Warming, InternalLeakageDrifts) {
 // Tests that viscous friction falls: the bypassed pump then runs up as J w' = T_p - T_s - b exp(-rate t) w
 // says, w = integral of (T_p - T_s)/J exp(B(s) - B(t)) ds with B = b/J (1 - exp(-rate t))/rate.
 TEST(Warming, ViscousFrictionDrifts) {
-  ActuatorOptions options = Held(Shaft::kClamped);
+  model::ActuatorOptions options = Held(model::Shaft::kClamped);
   options.bypass = true;
-  Actuator actuator(Table1Model({{"fluid.warming", {{"rate", 0.3}}, {}}}), options);
+  model::Actuator actuator(Table1Model({{"fluid.warming", {{"rate", 0.3}}, {}}}), options);
   const double until = 2;
   actuator.Advance(2.5, until);
   const auto growth = [](double t) { return 0.01455 / 0.03 * (1 - std::exp(-0.3 * t)) / 0.3; };
@@ -209,8 +212,9 @@ TEST(Warming, ViscousFrictionDrifts) {
 
 // Tests that a gain is in what is measured only.
 TEST(PressureGain, ScalesTheMeasurement) {
-  Actuator plain(Table1Model(), Held(Shaft::kClamped));
-  Actuator with(Table1Model({{"sensor.pressure_gain", {{"gain", 0.02}}, {}}}), Held(Shaft::kClamped));
+  model::Actuator plain(Table1Model(), Held(model::Shaft::kClamped));
+  model::Actuator with(Table1Model({{"sensor.pressure_gain", {{"gain", 0.02}}, {}}}),
+                       Held(model::Shaft::kClamped));
   plain.Advance(2.5, 0.2);
   with.Advance(2.5, 0.2);
   EXPECT_NEAR(with.Measure().p1, plain.Measure().p1 * 1.02, 1e-6);
@@ -219,10 +223,10 @@ TEST(PressureGain, ScalesTheMeasurement) {
 
 // Tests that quadratic drag sets the steady speed of the bypassed pump: k w^2 + b w = T_p - T_s.
 TEST(QuadraticDrag, SteadySpeed) {
-  ActuatorOptions options = Held(Shaft::kClamped);
+  model::ActuatorOptions options = Held(model::Shaft::kClamped);
   options.bypass = true;
   for (const double sign : {1.0, -1.0}) {
-    Actuator actuator(Table1Model({{"pump.quadratic_drag", {{"k", 1e-4}}, {}}}), options);
+    model::Actuator actuator(Table1Model({{"pump.quadratic_drag", {{"k", 1e-4}}, {}}}), options);
     actuator.Advance(sign * 2.5, 60);
     const double b = 0.01455, k = 1e-4;
     EXPECT_NEAR(actuator.Measure().motor_speed, sign * (-b + std::sqrt(b * b + 4 * k * 6)) / (2 * k), 1e-3);
@@ -231,9 +235,9 @@ TEST(QuadraticDrag, SteadySpeed) {
 
 // Tests that offsets are in what is measured and not in what happens.
 TEST(PressureOffset, ShiftsTheMeasurementOnly) {
-  Actuator plain(Table1Model(), Held(Shaft::kClamped));
-  Actuator with(Table1Model({{"sensor.pressure_offset", {{"p1", 3}, {"p2", -2}}, {}}}),
-                Held(Shaft::kClamped));
+  model::Actuator plain(Table1Model(), Held(model::Shaft::kClamped));
+  model::Actuator with(Table1Model({{"sensor.pressure_offset", {{"p1", 3}, {"p2", -2}}, {}}}),
+                       Held(model::Shaft::kClamped));
   plain.Advance(2.5, 0.2);
   with.Advance(2.5, 0.2);
   EXPECT_NEAR(with.Measure().p1, plain.Measure().p1 + 3, 1e-6);
@@ -243,18 +247,20 @@ TEST(PressureOffset, ShiftsTheMeasurementOnly) {
 // Tests that the pump is where the line says: the actuator's pressure lags behind the pump's when flow
 // starts.
 TEST(LineWave, PumpSideMovesFirst) {
-  Rig rig(Table1Model({Wave(300, 0.2, 0.05)}), Held(Shaft::kClamped));
+  Rig rig(Table1Model({Wave(300, 0.2, 0.05)}), Held(model::Shaft::kClamped));
   rig.simulation->Advance(10, 2e-4);
   const double* state = rig.simulation->now().state;
-  EXPECT_GT(state[6] - 100, 2 * (state[kP2] - 100));
-  EXPECT_GT(state[kP2], 100);
+  EXPECT_GT(state[6] - 100, 2 * (state[model::kP2] - 100));
+  EXPECT_GT(state[model::kP2], 100);
   EXPECT_EQ(rig.equations.StateNames()[6], "pump_p2");
 }
 
 // Tests that the order in the file does not matter.
 TEST(Effects, OrderDoesNotMatter) {
-  Actuator a(Table1Model({Stribeck(0.5, 3), Lag(2e-3), Wave(300, 0.2, 0.05)}), Held(Shaft::kFree));
-  Actuator b(Table1Model({Wave(300, 0.2, 0.05), Stribeck(0.5, 3), Lag(2e-3)}), Held(Shaft::kFree));
+  model::Actuator a(Table1Model({Stribeck(0.5, 3), Lag(2e-3), Wave(300, 0.2, 0.05)}),
+                    Held(model::Shaft::kFree));
+  model::Actuator b(Table1Model({Wave(300, 0.2, 0.05), Stribeck(0.5, 3), Lag(2e-3)}),
+                    Held(model::Shaft::kFree));
   a.Advance(2.5, 0.1);
   b.Advance(2.5, 0.1);
   EXPECT_EQ(a.Measure().p2, b.Measure().p2);

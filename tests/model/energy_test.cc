@@ -27,8 +27,9 @@ struct Totals {
 Totals Integrate(Rig* rig, double step, int steps) {
   Totals totals;
   const auto add = [&](double voltage, double weight) {
-    const Point& now = rig->simulation->now();
-    const Power power = rig->equations.PowerBalance(now.time, voltage, rig->simulation->mode(), now.state);
+    const model::Point& now = rig->simulation->now();
+    const model::Power power =
+        rig->equations.PowerBalance(now.time, voltage, rig->simulation->mode(), now.state);
     EXPECT_NEAR(power.in + power.shaft_in, power.stored() + power.dissipated() + power.mismatch,
                 1e-11 * (std::abs(power.in) + std::abs(power.compression) + std::abs(power.kinetic) +
                          std::abs(power.effects_stored) + 1));
@@ -40,8 +41,8 @@ Totals Integrate(Rig* rig, double step, int steps) {
     totals.kinetic += weight * power.kinetic;
     totals.compression += weight * power.compression;
     totals.gravity += weight * power.gravity;
-    const Measurement m = rig->Measure();
-    const Parameters& p = rig->equations.data().parameters;
+    const model::Measurement m = rig->Measure();
+    const model::Parameters& p = rig->equations.data().parameters;
     const double over_1 = m.p1 - p.p_3, over_2 = m.p2 - p.p_3;
     totals.volume_work += weight * p.c * m.arm_speed * (over_2 * over_2 - over_1 * over_1) / (2 * p.beta);
   };
@@ -56,15 +57,16 @@ Totals Integrate(Rig* rig, double step, int steps) {
 }
 
 double Kinetic(const Rig& rig) {
-  const Measurement m = rig.Measure();
-  const Parameters& p = rig.equations.data().parameters;
-  const double arm = rig.equations.data().shaft == Shaft::kFree ? p.J_a * m.arm_speed * m.arm_speed : 0;
+  const model::Measurement m = rig.Measure();
+  const model::Parameters& p = rig.equations.data().parameters;
+  const double arm =
+      rig.equations.data().shaft == model::Shaft::kFree ? p.J_a * m.arm_speed * m.arm_speed : 0;
   return 0.5 * (p.J * m.motor_speed * m.motor_speed + arm);
 }
 
 double Compression(const Rig& rig) {
-  const Measurement m = rig.Measure();
-  const Parameters& p = rig.equations.data().parameters;
+  const model::Measurement m = rig.Measure();
+  const model::Parameters& p = rig.equations.data().parameters;
   const double over_1 = m.p1 - p.p_3, over_2 = m.p2 - p.p_3;
   return ((p.V_ms - p.c * m.arm_angle) * over_1 * over_1 + (p.V_ms + p.c * m.arm_angle) * over_2 * over_2) /
          (2 * p.beta);
@@ -73,7 +75,7 @@ double Compression(const Rig& rig) {
 // Tests the balance over a run with stick, slip and open valves, against energies computed from the end
 // states alone.
 TEST(Energy, Clamped) {
-  Rig rig(Table1Model(), Held(Shaft::kClamped));
+  Rig rig(Table1Model(), Held(model::Shaft::kClamped));
   const Totals totals = Integrate(&rig, 2e-5, 25000);
   const double stored = Kinetic(rig) + Compression(rig);
   EXPECT_GT(totals.dissipated, 1);
@@ -83,9 +85,9 @@ TEST(Energy, Clamped) {
 // Tests the same with a free arm under gravity. With moving walls and constant beta the fluid's energy is
 // V (p - p_3)^2/(2 beta) less what the walls carry through it, volume_work.
 TEST(Energy, FreeArm) {
-  ModelDescription model = Table1Model();
+  model::ModelDescription model = Table1Model();
   model.parameters.mgl = 562;
-  ActuatorOptions options = Held(Shaft::kFree);
+  model::ActuatorOptions options = Held(model::Shaft::kFree);
   options.arm_angle = -0.3;
   Rig rig(model, options);
   const Totals totals = Integrate(&rig, 2e-5, 25000);
@@ -100,9 +102,9 @@ TEST(Energy, FreeArm) {
 
 // Tests that no energy is lost between pump and arm when k_2 = c.
 TEST(Energy, NoMismatchWhenRatiosAgree) {
-  ModelDescription model = Table1Model();
+  model::ModelDescription model = Table1Model();
   model.parameters.k_2 = model.parameters.c;
-  Rig rig(model, Held(Shaft::kFree));
+  Rig rig(model, Held(model::Shaft::kFree));
   const Totals totals = Integrate(&rig, 1e-4, 1000);
   EXPECT_EQ(totals.mismatch, 0);
 }
@@ -110,20 +112,20 @@ TEST(Energy, NoMismatchWhenRatiosAgree) {
 // Tests the balance of a driven shaft, of the bypass, and of every effect at each instant (in Integrate) and
 // over time.
 TEST(Energy, DrivenBypassAndEffects) {
-  const auto sine = MakeSine(0, 0.02, 2, 0, 0);
-  ActuatorOptions driven = Held(Shaft::kDriven);
+  const auto sine = trajectory::MakeSine(0, 0.02, 2, 0, 0);
+  model::ActuatorOptions driven = Held(model::Shaft::kDriven);
   driven.motion = sine.get();
-  ActuatorOptions bypass = Held(Shaft::kClamped);
+  model::ActuatorOptions bypass = Held(model::Shaft::kClamped);
   bypass.bypass = true;
   bypass.initial_pressure = 300;
-  const ModelDescription all =
+  const model::ModelDescription all =
       Table1Model({Stribeck(0.5, 3),
                    Lag(2e-3),
                    Wave(300, 0.2, 0.05),
                    {"pump.pressure_friction", {{"f", 0.001}}, {}},
                    {"pump.quadratic_drag", {{"k", 1e-3}}, {}},
                    {"actuator.seal_friction", {{"coulomb", 30}, {"viscous", 20}}, {}}});
-  const ModelDescription others =
+  const model::ModelDescription others =
       Table1Model({{"accumulator.stiffness", {{"stiffness", 5e3}}, {}},
                    {"arm.flexure", {{"stiffness", 6e3}, {"damping", 60}}, {}},
                    {"fluid.entrained_air", {{"air_fraction", 0.005}}, {}},
@@ -133,16 +135,17 @@ TEST(Energy, DrivenBypassAndEffects) {
                    {"pump.flow_ripple", {{"amplitude", 0.05}, {"periods", 9}}, {}},
                    {"pump.turbulent_leakage", {{"k", 1e-4}}, {}},
                    {"valve.relief", {{"set", 200}, {"conductance", 1e-3}}, {}}});
-  const ModelDescription check = Table1Model({{"valve.check", {{"cracking", 5}, {"conductance", 1e-3}}, {}}});
+  const model::ModelDescription check =
+      Table1Model({{"valve.check", {{"cracking", 5}, {"conductance", 1e-3}}, {}}});
   for (auto [model, options] : {std::pair{Table1Model(), driven},
                                 {others, driven},
                                 {others, bypass},
-                                {others, Held(Shaft::kFree)},
-                                {check, Held(Shaft::kClamped)},
+                                {others, Held(model::Shaft::kFree)},
+                                {check, Held(model::Shaft::kClamped)},
                                 {Table1Model(), bypass},
                                 {all, driven},
                                 {all, bypass},
-                                {all, Held(Shaft::kFree)}}) {
+                                {all, Held(model::Shaft::kFree)}}) {
     Rig rig(model, options);
     const Totals totals = Integrate(&rig, 2e-5, 10000);
     EXPECT_GT(totals.dissipated, 0);

@@ -19,19 +19,19 @@ template <class Action>
 std::string ErrorOf(Action action) {
   try {
     action();
-  } catch (const ModelError& error) {
+  } catch (const model::ModelError& error) {
     return error.what();
   }
   return "no error";
 }
 
-std::string ErrorOfBuilding(const ModelDescription& model, const ActuatorOptions& options) {
-  return ErrorOf([&] { Actuator actuator(model, options); });
+std::string ErrorOfBuilding(const model::ModelDescription& model, const model::ActuatorOptions& options) {
+  return ErrorOf([&] { model::Actuator actuator(model, options); });
 }
 
 // Tests that Figure 7's angle, which Table 1 leaves no volume for, is refused with angle, volume and limit.
 TEST(Errors, ClampedBeyondTheVolume) {
-  ActuatorOptions options = Held(Shaft::kClamped);
+  model::ActuatorOptions options = Held(model::Shaft::kClamped);
   options.arm_angle = 1.5707963267948966;
   EXPECT_THAT(
       ErrorOfBuilding(Table1Model(), options),
@@ -42,7 +42,7 @@ TEST(Errors, ClampedBeyondTheVolume) {
 
 // Tests that the volume at the pump's end of the line counts.
 TEST(Errors, LineTakesVolume) {
-  ActuatorOptions options = Held(Shaft::kClamped);
+  model::ActuatorOptions options = Held(model::Shaft::kClamped);
   options.arm_angle = 0.8;
   EXPECT_EQ(ErrorOfBuilding(Table1Model(), options), "no error");
   EXPECT_THAT(ErrorOfBuilding(Table1Model({Wave(300, 0.2, 0.05)}), options), HasSubstr("|alpha| < 0.686"));
@@ -51,8 +51,8 @@ TEST(Errors, LineTakesVolume) {
 // Tests that a free arm that is driven out of the volume stops with an error that names angle, limit, time
 // and state.
 TEST(Errors, FreeArmRunsOut) {
-  for (const Integrator integrator : kIntegrators) {
-    Actuator actuator(Table1Model(), Held(Shaft::kFree, integrator));
+  for (const model::Integrator integrator : kIntegrators) {
+    model::Actuator actuator(Table1Model(), Held(model::Shaft::kFree, integrator));
     const std::string error = ErrorOf([&] {
       for (int i = 1; i < 100000; ++i) actuator.Advance(10, i * 1e-3);
     });
@@ -64,8 +64,8 @@ TEST(Errors, FreeArmRunsOut) {
 
 // Tests the same within one long call.
 TEST(Errors, FreeArmRunsOutInOneCall) {
-  for (const Integrator integrator : kIntegrators) {
-    Actuator actuator(Table1Model(), Held(Shaft::kFree, integrator));
+  for (const model::Integrator integrator : kIntegrators) {
+    model::Actuator actuator(Table1Model(), Held(model::Shaft::kFree, integrator));
     EXPECT_THAT(ErrorOf([&] { actuator.Advance(10, 100); }),
                 AllOf(HasSubstr("arm angle 0.8"), HasSubstr("V_1 = "), HasSubstr(" at t = ")))
         << Name(integrator);
@@ -75,13 +75,13 @@ TEST(Errors, FreeArmRunsOutInOneCall) {
 // Tests that numbers which overflow end in an error with time and state, on every path, and not in a silent
 // wrong number.
 TEST(Errors, Overflow) {
-  ModelDescription model = Table1Model();
+  model::ModelDescription model = Table1Model();
   model.parameters.k_1 = 1e300;
   model.parameters.T_pmax = 1e300;
   model.parameters.J = 1e-300;
-  for (const Integrator integrator : kIntegrators) {
+  for (const model::Integrator integrator : kIntegrators) {
     EXPECT_THAT(ErrorOf([&] {
-                  Actuator actuator(model, Held(Shaft::kClamped, integrator));
+                  model::Actuator actuator(model, Held(model::Shaft::kClamped, integrator));
                   actuator.Advance(1, 1);
                 }),
                 AllOf(HasSubstr(" at t = 0 s"), HasSubstr("motor_speed = ")))
@@ -91,12 +91,12 @@ TEST(Errors, Overflow) {
 
 // Tests that a driven shaft's motion is checked before it runs.
 TEST(Errors, DrivenMotion) {
-  ActuatorOptions options = Held(Shaft::kDriven);
+  model::ActuatorOptions options = Held(model::Shaft::kDriven);
   EXPECT_THAT(ErrorOfBuilding(Table1Model(), options), HasSubstr("needs a motion"));
-  const auto far = MakePoints({{0, 0}, {1, 0.9}}, Interpolation::kLinear);
+  const auto far = trajectory::MakePoints({{0, 0}, {1, 0.9}}, trajectory::Interpolation::kLinear);
   options.motion = far.get();
   EXPECT_THAT(ErrorOfBuilding(Table1Model(), options), HasSubstr("arm angle 0.9 rad leaves V_1"));
-  const auto jumps = MakeSteps(0, {{1, 0.1}});
+  const auto jumps = trajectory::MakeSteps(0, {{1, 0.1}});
   options.motion = jumps.get();
   EXPECT_THAT(ErrorOfBuilding(Table1Model(), options), HasSubstr("continuous"));
 }
@@ -104,9 +104,9 @@ TEST(Errors, DrivenMotion) {
 // Tests that a voltage that is not a number is an error with time and state, and that the actuator stays as
 // it was.
 TEST(Errors, NotANumber) {
-  for (const Integrator integrator : kIntegrators) {
+  for (const model::Integrator integrator : kIntegrators) {
     for (const double voltage : {std::nan(""), std::numeric_limits<double>::infinity()}) {
-      Actuator actuator(Table1Model(), Held(Shaft::kClamped, integrator));
+      model::Actuator actuator(Table1Model(), Held(model::Shaft::kClamped, integrator));
       actuator.Advance(2.5, 0.01);
       const double before = actuator.Measure().p2;
       EXPECT_THAT(ErrorOf([&] { actuator.Advance(voltage, 0.02); }),
@@ -118,7 +118,7 @@ TEST(Errors, NotANumber) {
 
 // Tests that time does not run backwards, and that standing still is allowed.
 TEST(Errors, Time) {
-  Actuator actuator(Table1Model(), Held(Shaft::kClamped));
+  model::Actuator actuator(Table1Model(), Held(model::Shaft::kClamped));
   actuator.Advance(2.5, 0.01);
   actuator.Advance(2.5, 0.01);
   EXPECT_EQ(actuator.time(), 0.01);
@@ -128,27 +128,27 @@ TEST(Errors, Time) {
 
 // Tests that impossible models are refused by parameter.
 TEST(Errors, Parameters) {
-  ModelDescription model = Table1Model();
+  model::ModelDescription model = Table1Model();
   model.parameters.J = 0;
-  EXPECT_THAT(ErrorOfBuilding(model, Held(Shaft::kClamped)), HasSubstr("parameter J = 0 lbf-in-s^2"));
+  EXPECT_THAT(ErrorOfBuilding(model, Held(model::Shaft::kClamped)), HasSubstr("parameter J = 0 lbf-in-s^2"));
   model = Table1Model();
   model.parameters.c_E = -1;
-  EXPECT_THAT(ErrorOfBuilding(model, Held(Shaft::kClamped)), HasSubstr("parameter c_E = -1"));
+  EXPECT_THAT(ErrorOfBuilding(model, Held(model::Shaft::kClamped)), HasSubstr("parameter c_E = -1"));
   model = Table1Model();
   model.parameters.beta = std::nan("");
-  EXPECT_THAT(ErrorOfBuilding(model, Held(Shaft::kClamped)), HasSubstr("parameter beta = nan"));
-  EXPECT_THAT(ErrorOfBuilding(Table1Model({{"pump.unknown", {}, {}}}), Held(Shaft::kClamped)),
+  EXPECT_THAT(ErrorOfBuilding(model, Held(model::Shaft::kClamped)), HasSubstr("parameter beta = nan"));
+  EXPECT_THAT(ErrorOfBuilding(Table1Model({{"pump.unknown", {}, {}}}), Held(model::Shaft::kClamped)),
               HasSubstr("\"pump.unknown\" is not known"));
-  EXPECT_THAT(ErrorOfBuilding(Table1Model({Lag(1), Lag(2)}), Held(Shaft::kClamped)),
+  EXPECT_THAT(ErrorOfBuilding(Table1Model({Lag(1), Lag(2)}), Held(model::Shaft::kClamped)),
               HasSubstr("there twice"));
-  EXPECT_THAT(ErrorOfBuilding(Table1Model({Lag(-1)}), Held(Shaft::kClamped)),
+  EXPECT_THAT(ErrorOfBuilding(Table1Model({Lag(-1)}), Held(model::Shaft::kClamped)),
               HasSubstr("amp.lag.tau = -1 s"));
-  EXPECT_THAT(ErrorOfBuilding(Table1Model({{"amp.lag", {}, {}}}), Held(Shaft::kClamped)),
+  EXPECT_THAT(ErrorOfBuilding(Table1Model({{"amp.lag", {}, {}}}), Held(model::Shaft::kClamped)),
               HasSubstr("amp.lag.tau is missing"));
-  ActuatorOptions options = Held(Shaft::kClamped);
+  model::ActuatorOptions options = Held(model::Shaft::kClamped);
   options.initial_pressure = 99;
   EXPECT_THAT(ErrorOfBuilding(Table1Model(), options), HasSubstr("initial pressure 99"));
-  options = Held(Shaft::kClamped);
+  options = Held(model::Shaft::kClamped);
   options.relative_tolerance = 0;
   EXPECT_THAT(ErrorOfBuilding(Table1Model(), options), HasSubstr("relative tolerance"));
 }

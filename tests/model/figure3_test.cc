@@ -8,16 +8,16 @@
 namespace hydro::testing {
 namespace {
 
-class Figure3 : public ::testing::TestWithParam<Integrator> {};
+class Figure3 : public ::testing::TestWithParam<model::Integrator> {};
 
 // Tests that peak, stick and second slip come where an independent integration has them.
 TEST_P(Figure3, PeakStickAndSlip) {
-  Rig rig(Table1Model(), Held(Shaft::kClamped, GetParam()));
+  Rig rig(Table1Model(), Held(model::Shaft::kClamped, GetParam()));
   double peak_p2 = 0, peak_dp = 0, peak_time = 0, stick_time = 0, slip_time = 0, slip_dp = 0;
   for (int i = 1; i <= 65000; ++i) {
     const double t = i * 2e-5;
     rig.simulation->Advance(10 / 4.0, t);
-    const Measurement m = rig.Measure();
+    const model::Measurement m = rig.Measure();
     if (m.p2 > peak_p2) {
       peak_p2 = m.p2;
       peak_time = t;
@@ -40,12 +40,12 @@ TEST_P(Figure3, PeakStickAndSlip) {
 
 // Tests that while the pump sticks it stands exactly still.
 TEST_P(Figure3, StickIsStill) {
-  Rig rig(Table1Model(), Held(Shaft::kClamped, GetParam()));
+  Rig rig(Table1Model(), Held(model::Shaft::kClamped, GetParam()));
   rig.simulation->Advance(2.5, 0.3);
   ASSERT_EQ(rig.simulation->mode().pump, 0);
-  const Measurement before = rig.Measure();
+  const model::Measurement before = rig.Measure();
   rig.simulation->Advance(2.5, 1.1);
-  const Measurement after = rig.Measure();
+  const model::Measurement after = rig.Measure();
   EXPECT_EQ(before.motor_speed, 0);
   EXPECT_EQ(after.motor_speed, 0);
   EXPECT_EQ(after.motor_angle, before.motor_angle);

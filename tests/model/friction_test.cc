@@ -23,15 +23,15 @@ struct StickSlip {
 };
 
 // Constant torque from rest at p_3. Event times to 0.1 ms.
-StickSlip Observe(const ModelDescription& model, double torque, double duration) {
-  Rig rig(model, Held(Shaft::kClamped));
+StickSlip Observe(const model::ModelDescription& model, double torque, double duration) {
+  Rig rig(model, Held(model::Shaft::kClamped));
   StickSlip seen;
   bool stuck = true;
   const int ticks = static_cast<int>(std::lround(duration * 1e4));
   for (int i = 1; i <= ticks; ++i) {
     rig.simulation->Advance(torque / 4.0, i * 1e-4);
     const bool sticks = rig.simulation->mode().pump == 0;
-    const Measurement m = rig.Measure();
+    const model::Measurement m = rig.Measure();
     seen.last_dp = m.p2 - m.p1;
     if (sticks && !stuck) {
       seen.stick_times.push_back(i * 1e-4);
@@ -53,7 +53,7 @@ StickSlip Observe(const ModelDescription& model, double torque, double duration)
 
 // Static friction above kinetic at rest only: the excess is gone at 0.01 rad/s, where the pump has hardly
 // moved.
-ModelDescription WithStatic(double static_torque) {
+model::ModelDescription WithStatic(double static_torque) {
   return Table1Model({Stribeck(static_torque / 4.0 - 1, 1e-4)});
 }
 
@@ -71,7 +71,7 @@ TEST(Table1, SticksExactlyOnce) {
 // T_s)/D.
 TEST(Table1, SlipsAgainAtTheBalance) {
   for (const auto& [torque, balance] : {std::pair{4.5, 62.8}, {6.0, 251.3}, {10.0, 753.8}}) {
-    Rig rig(Table1Model(), Held(Shaft::kClamped));
+    Rig rig(Table1Model(), Held(model::Shaft::kClamped));
     bool was_stuck = false;
     double dp = 0;
     for (int i = 1; i <= 50000; ++i) {
@@ -89,7 +89,7 @@ TEST(Table1, SlipsAgainAtTheBalance) {
 
 // Tests that a torque below friction moves nothing at all, for ever.
 TEST(Table1, HoldsBelowFriction) {
-  Actuator actuator(Table1Model(), Held(Shaft::kFree));
+  model::Actuator actuator(Table1Model(), Held(model::Shaft::kFree));
   actuator.Advance(3.999 / 4.0, 100);
   EXPECT_EQ(actuator.Measure().motor_angle, 0);
   EXPECT_EQ(actuator.Measure().p1, 100);
@@ -128,7 +128,7 @@ TEST(Stribeck, PeriodAndSwing) {
 
 // Tests that the pump breaks away from rest at T_s (1 + static_excess), not at T_s.
 TEST(Stribeck, BreaksAwayAtStaticFriction) {
-  Actuator actuator(Table1Model({Stribeck(0.5, 3)}), Held(Shaft::kClamped));
+  model::Actuator actuator(Table1Model({Stribeck(0.5, 3)}), Held(model::Shaft::kClamped));
   actuator.Advance(5.999 / 4.0, 1);
   EXPECT_EQ(actuator.Measure().motor_speed, 0);
   actuator.Advance(6.001 / 4.0, 1.1);

@@ -9,7 +9,7 @@
 #include <random>
 #include <vector>
 
-namespace hydro {
+namespace hydro::model {
 namespace {
 
 Jet Seeded(double value, int direction) {
@@ -136,4 +136,4 @@ TEST(Jet, AbsoluteValueAtZero) {
 }
 
 }  // namespace
-}  // namespace hydro
+}  // namespace hydro::model

@@ -25,12 +25,12 @@ Matrix Rows(const std::vector<double>& values, int rows) {
 
 enum Output { kAngleOut, kSpeedOut, kArmAngleOut, kArmSpeedOut, kP1Out, kP2Out, kOutputs };
 
-std::vector<double> Outputs(const Measurement& m) {
+std::vector<double> Outputs(const model::Measurement& m) {
   return {m.motor_angle, m.motor_speed, m.arm_angle, m.arm_speed, m.p1, m.p2};
 }
 
-Mode Slip(int pump = 1, bool valve_1_open = false, bool valve_2_open = false) {
-  Mode mode;
+model::Mode Slip(int pump = 1, bool valve_1_open = false, bool valve_2_open = false) {
+  model::Mode mode;
   mode.pump = static_cast<int8_t>(pump);
   mode.valve_1 = valve_1_open;
   mode.valve_2 = valve_2_open;
@@ -38,16 +38,16 @@ Mode Slip(int pump = 1, bool valve_1_open = false, bool valve_2_open = false) {
 }
 
 // A point away from every symmetry: pressures above p_3, the pump turning as the mode says, all else moving.
-std::vector<double> Somewhere(const Equations& equations, const Mode& mode) {
+std::vector<double> Somewhere(const model::Equations& equations, const model::Mode& mode) {
   std::vector<double> state(equations.states());
-  Mode at_rest;
+  model::Mode at_rest;
   equations.Start(300, state.data(), &at_rest);
   for (int i = 0; i < equations.states(); ++i) state[i] += equations.scales()[i] * (1 + 0.3 * i);
-  state[kMotorSpeed] = mode.pump * 2.5;
+  state[model::kMotorSpeed] = mode.pump * 2.5;
   return state;
 }
 
-std::vector<double> Rates(const Equations& equations, double voltage, const Mode& mode,
+std::vector<double> Rates(const model::Equations& equations, double voltage, const model::Mode& mode,
                           const std::vector<double>& state) {
   std::vector<double> rate(equations.states());
   equations.Rates(0.03, voltage, mode, state.data(), rate.data());
@@ -56,10 +56,10 @@ std::vector<double> Rates(const Equations& equations, double voltage, const Mode
 
 // Compares all four matrices at one point with central differences. Each error counts against the size of its
 // row when every input moves by its scale: differences see no less.
-void ExpectDifferenceQuotients(const Equations& equations, double voltage, const Mode& mode) {
+void ExpectDifferenceQuotients(const model::Equations& equations, double voltage, const model::Mode& mode) {
   const int n = equations.states();
   const std::vector<double> state = Somewhere(equations, mode);
-  const LinearModel model = Linearise(equations, 0.03, voltage, mode, state.data());
+  const model::LinearModel model = model::Linearise(equations, 0.03, voltage, mode, state.data());
   ASSERT_EQ(model.states, n);
   ASSERT_EQ(model.inputs, 1);
   ASSERT_EQ(model.outputs, kOutputs);
@@ -102,20 +102,20 @@ void ExpectDifferenceQuotients(const Equations& equations, double voltage, const
 
 // In every mode of `model`, effects' switches included, with each way to hold the shaft and the bypass shut
 // and open.
-void ExpectDifferenceQuotientsInEveryMode(ModelDescription model) {
-  static const auto motion = MakeSine(0, 0.008, 2, 0, 0);
+void ExpectDifferenceQuotientsInEveryMode(model::ModelDescription model) {
+  static const auto motion = trajectory::MakeSine(0, 0.008, 2, 0, 0);
   model.parameters.mgl = 562;
-  for (const Shaft shaft : {Shaft::kFree, Shaft::kClamped, Shaft::kDriven}) {
+  for (const model::Shaft shaft : {model::Shaft::kFree, model::Shaft::kClamped, model::Shaft::kDriven}) {
     for (const bool bypass : {false, true}) {
-      ActuatorOptions options = Held(shaft);
+      model::ActuatorOptions options = Held(shaft);
       options.arm_angle = -0.3;
       options.motion = motion.get();
       options.bypass = bypass;
-      const Equations equations(model, options);
-      const bool has_switches = equations.switches() > kFirstEffectSwitch;
+      const model::Equations equations(model, options);
+      const bool has_switches = equations.switches() > model::kFirstEffectSwitch;
       for (int pump = -1; pump <= 1; ++pump) {
         for (int valves = 0; valves < 4; ++valves) {
-          Mode mode = Slip(pump, valves & 1, valves >> 1);
+          model::Mode mode = Slip(pump, valves & 1, valves >> 1);
           for (int position = has_switches ? -1 : 0; position <= (has_switches ? 1 : 0); ++position) {
             mode.effects.fill(static_cast<int8_t>(position));
             SCOPED_TRACE("shaft " + std::to_string(static_cast<int>(shaft)) + ", bypass " +
@@ -136,7 +136,7 @@ TEST(Linearise, EqualsDifferenceQuotients) { ExpectDifferenceQuotientsInEveryMod
 
 // Tests the same with each effect that the catalogue has.
 TEST(Linearise, EqualsDifferenceQuotientsWithEachEffect) {
-  for (const EffectInfo& info : EffectCatalogue()) {
+  for (const model::EffectInfo& info : model::EffectCatalogue()) {
     if (info.id == "amp.delay") continue;
     SCOPED_TRACE(info.id);
     ASSERT_TRUE(SomeOfEach().contains(info.id)) << "this test needs a case for it";
@@ -146,14 +146,14 @@ TEST(Linearise, EqualsDifferenceQuotientsWithEachEffect) {
 
 // Tests the same with all of them at once.
 TEST(Linearise, EqualsDifferenceQuotientsWithAllEffects) {
-  std::vector<EffectDescription> all;
+  std::vector<model::EffectDescription> all;
   for (const auto& [id, effect] : SomeOfEach()) all.push_back(effect);
   ExpectDifferenceQuotientsInEveryMode(Table1Model(all));
 }
 
 // Tests that A is the Jacobian that the integrators use, to the last bit.
 TEST(Linearise, HasTheJacobianAsA) {
-  const Equations equations(Table1Model({Wave(300, 0.2, 0.05), Lag(2e-3)}), Held(Shaft::kFree));
+  const model::Equations equations(Table1Model({Wave(300, 0.2, 0.05), Lag(2e-3)}), Held(model::Shaft::kFree));
   const std::vector<double> state = Somewhere(equations, Slip());
   std::vector<double> jacobian(equations.states() * equations.states());
   equations.Jacobian(0, 2, Slip(), state.data(), jacobian.data());
@@ -163,17 +163,18 @@ TEST(Linearise, HasTheJacobianAsA) {
 // Tests B: k_1/J while the pump slips and the amplifier is within its limit; 0 when the pump sticks or the
 // torque is at its limit.
 TEST(Linearise, VoltageActsWithinTheLimitOnly) {
-  const Equations equations(Table1Model(), Held(Shaft::kFree));
+  const model::Equations equations(Table1Model(), Held(model::Shaft::kFree));
   const std::vector<double> state = Somewhere(equations, Slip());
   const std::vector<double> none(6, 0.0);
   for (const double voltage : {0.0, 9.999, -9.999}) {
     EXPECT_EQ(Linearise(equations, 0, voltage, Slip(0), state.data()).B, none);
-    const std::vector<double> B = Linearise(equations, 0, voltage, Slip(), state.data()).B;
-    EXPECT_DOUBLE_EQ(B[kMotorSpeed], 4 / 0.03) << voltage;
-    for (const int i : {kMotorAngle, kP1, kP2, kArmAngle, kArmSpeed}) EXPECT_EQ(B[i], 0);
+    const std::vector<double> B = model::Linearise(equations, 0, voltage, Slip(), state.data()).B;
+    EXPECT_DOUBLE_EQ(B[model::kMotorSpeed], 4 / 0.03) << voltage;
+    for (const int i : {model::kMotorAngle, model::kP1, model::kP2, model::kArmAngle, model::kArmSpeed})
+      EXPECT_EQ(B[i], 0);
   }
   for (const double voltage : {10.001, 100.0, -10.001}) {
-    const LinearModel model = Linearise(equations, 0, voltage, Slip(), state.data());
+    const model::LinearModel model = model::Linearise(equations, 0, voltage, Slip(), state.data());
     EXPECT_EQ(model.B, none) << voltage;
     EXPECT_EQ(model.rate, Rates(equations, voltage < 0 ? -10 : 10, Slip(), state));
   }
@@ -183,48 +184,48 @@ TEST(Linearise, VoltageActsWithinTheLimitOnly) {
 // sides when the bypass connects them.
 TEST(Linearise, HeldStatesHaveNoSlope) {
   for (const bool bypass : {false, true}) {
-    ActuatorOptions options = Held(Shaft::kClamped);
+    model::ActuatorOptions options = Held(model::Shaft::kClamped);
     options.bypass = bypass;
-    const Equations equations(Table1Model(), options);
+    const model::Equations equations(Table1Model(), options);
     const std::vector<double> state = Somewhere(equations, Slip());
-    const auto held = [&](const Mode& mode, int i) {
-      const LinearModel model = Linearise(equations, 0, 3, mode, state.data());
+    const auto held = [&](const model::Mode& mode, int i) {
+      const model::LinearModel model = model::Linearise(equations, 0, 3, mode, state.data());
       return model.rate[i] == 0 && model.B[i] == 0 && Rows(model.A, 4).row(i).isZero(0);
     };
-    EXPECT_FALSE(held(Slip(), kMotorSpeed) || held(Slip(), kP1) || held(Slip(), kP2));
-    EXPECT_TRUE(held(Slip(0), kMotorSpeed));
-    EXPECT_TRUE(held(Slip(1, true), kP1));
-    EXPECT_EQ(held(Slip(1, true), kP2), bypass);
-    EXPECT_EQ(held(Slip(1, false, true), kP1), false);
-    EXPECT_EQ(held(Slip(1, false, true), kP2), !bypass);  // valve_1 stands for both
+    EXPECT_FALSE(held(Slip(), model::kMotorSpeed) || held(Slip(), model::kP1) || held(Slip(), model::kP2));
+    EXPECT_TRUE(held(Slip(0), model::kMotorSpeed));
+    EXPECT_TRUE(held(Slip(1, true), model::kP1));
+    EXPECT_EQ(held(Slip(1, true), model::kP2), bypass);
+    EXPECT_EQ(held(Slip(1, false, true), model::kP1), false);
+    EXPECT_EQ(held(Slip(1, false, true), model::kP2), !bypass);  // valve_1 stands for both
   }
 }
 
 // Tests that with amp.lag the voltage acts on the lagged torque, whose limit then cuts it off from the pump.
 TEST(Linearise, VoltageActsThroughTheLag) {
-  const Equations equations(Table1Model({Lag(0.002)}), Held(Shaft::kClamped));
+  const model::Equations equations(Table1Model({Lag(0.002)}), Held(model::Shaft::kClamped));
   const std::vector<double> state = Somewhere(equations, Slip());
-  Mode mode = Slip();
+  model::Mode mode = Slip();
   for (const int limit : {0, 1}) {
     mode.effects[0] = static_cast<int8_t>(limit);
-    const LinearModel model = Linearise(equations, 0, 20, mode, state.data());
+    const model::LinearModel model = model::Linearise(equations, 0, 20, mode, state.data());
     EXPECT_EQ(model.state_names[4], "lagged_torque");
     EXPECT_EQ(model.B, (std::vector<double>{0, 0, 0, 0, 4 / 0.002}));
     EXPECT_DOUBLE_EQ(model.A[4 + 4 * 5], -1 / 0.002);
-    EXPECT_DOUBLE_EQ(model.A[kMotorSpeed + 4 * 5], limit == 0 ? 1 / 0.03 : 0);
+    EXPECT_DOUBLE_EQ(model.A[model::kMotorSpeed + 4 * 5], limit == 0 ? 1 / 0.03 : 0);
   }
 }
 
 // Tests that with amp.delay the linear model is that of a voltage which has been held for longer than the
 // delay, whatever was commanded before: what lies behind the delay.
 TEST(Linearise, TakesADelayedVoltageAsTheOneThatActs) {
-  const EffectDescription delay = {"amp.delay", {{"delay", 0.01}}, {}};
-  const Equations plain(Table1Model(), Held(Shaft::kClamped));
+  const model::EffectDescription delay = {"amp.delay", {{"delay", 0.01}}, {}};
+  const model::Equations plain(Table1Model(), Held(model::Shaft::kClamped));
   const std::vector<double> state = Somewhere(plain, Slip());
-  Equations delayed(Table1Model({delay}), Held(Shaft::kClamped));
+  model::Equations delayed(Table1Model({delay}), Held(model::Shaft::kClamped));
   for (const double voltage : {5.0, 20.0}) {
-    const LinearModel expected = Linearise(plain, 0.03, voltage, Slip(), state.data());
-    const LinearModel found = Linearise(delayed, 0.03, voltage, Slip(), state.data());
+    const model::LinearModel expected = model::Linearise(plain, 0.03, voltage, Slip(), state.data());
+    const model::LinearModel found = model::Linearise(delayed, 0.03, voltage, Slip(), state.data());
     EXPECT_EQ(found.A, expected.A);
     EXPECT_EQ(found.B, expected.B);
     EXPECT_EQ(found.rate, expected.rate);
@@ -234,36 +235,36 @@ TEST(Linearise, TakesADelayedVoltageAsTheOneThatActs) {
     EXPECT_EQ(Rates(delayed, voltage, Slip(), state), expected.rate);
   }
   // Before a lag, the same: the lag then follows the delayed voltage.
-  const Equations both(Table1Model({delay, Lag(0.002)}), Held(Shaft::kClamped));
+  const model::Equations both(Table1Model({delay, Lag(0.002)}), Held(model::Shaft::kClamped));
   const std::vector<double> with_lag = Somewhere(both, Slip());
   EXPECT_DOUBLE_EQ(Linearise(both, 0, 5, Slip(), with_lag.data()).B[4], 4 / 0.002);
 }
 
 // Tests C and the outputs: what the transducers make of the pressures, and an arm that is not a state.
 TEST(Linearise, ReadsTheSensors) {
-  const Equations equations(Table1Model({{"sensor.pressure_gain", {{"gain", 0.05}}, {}},
-                                         {"sensor.pressure_offset", {{"p1", 3}, {"p2", -2}}, {}}}),
-                            Held(Shaft::kClamped));
+  const model::Equations equations(Table1Model({{"sensor.pressure_gain", {{"gain", 0.05}}, {}},
+                                                {"sensor.pressure_offset", {{"p1", 3}, {"p2", -2}}, {}}}),
+                                   Held(model::Shaft::kClamped));
   const std::vector<double> state = Somewhere(equations, Slip());
-  const LinearModel model = Linearise(equations, 0, 0, Slip(), state.data());
+  const model::LinearModel model = model::Linearise(equations, 0, 0, Slip(), state.data());
   EXPECT_EQ(model.output_names,
             (std::vector<std::string>{"motor_angle", "motor_speed", "arm_angle", "arm_speed", "p1", "p2"}));
   Matrix expected = Matrix::Zero(kOutputs, 4);
-  expected(kAngleOut, kMotorAngle) = expected(kSpeedOut, kMotorSpeed) = 1;
-  expected(kP1Out, kP1) = expected(kP2Out, kP2) = 1.05;
+  expected(kAngleOut, model::kMotorAngle) = expected(kSpeedOut, model::kMotorSpeed) = 1;
+  expected(kP1Out, model::kP1) = expected(kP2Out, model::kP2) = 1.05;
   EXPECT_EQ(Rows(model.C, kOutputs), expected);
   EXPECT_EQ(model.D, std::vector<double>(kOutputs, 0.0));
-  EXPECT_DOUBLE_EQ(model.output[kP1Out], 1.05 * state[kP1] + 3);
-  EXPECT_DOUBLE_EQ(model.output[kP2Out], 1.05 * state[kP2] - 2);
+  EXPECT_DOUBLE_EQ(model.output[kP1Out], 1.05 * state[model::kP1] + 3);
+  EXPECT_DOUBLE_EQ(model.output[kP2Out], 1.05 * state[model::kP2] - 2);
 }
 
 // Tests the frequency response from voltage to pressure difference, clamped at mid-stroke, against its closed
 // form: with h = beta/V_ms, k_1 2 D h / ((J s + b)(s + h (2 c_I + c_E)) + 2 D^2 h).
 TEST(Linearise, HasTheClosedFormsFrequencyResponse) {
-  const Equations equations(Table1Model(), Held(Shaft::kClamped));
+  const model::Equations equations(Table1Model(), Held(model::Shaft::kClamped));
   const std::vector<double> state = Somewhere(equations, Slip());
-  const LinearModel model = Linearise(equations, 0, 1, Slip(), state.data());
-  const Parameters p = Table1();
+  const model::LinearModel model = model::Linearise(equations, 0, 1, Slip(), state.data());
+  const model::Parameters p = Table1();
   const double h = p.beta / p.V_ms;
   const Matrix C = Rows(model.C, kOutputs);
   for (const double omega : {0.1, 1.0, 10.0, 18.0, 100.0, 1000.0}) {
@@ -287,15 +288,15 @@ TEST(Linearise, HasTheClosedFormsFrequencyResponse) {
 // Tests that the linear model goes where the actuator goes: clamped, the equations of one mode are linear, so
 // the exponential series is exact for as long as no switch changes.
 TEST(Linearise, GoesWhereTheActuatorGoes) {
-  ActuatorOptions options = Held(Shaft::kClamped);
+  model::ActuatorOptions options = Held(model::Shaft::kClamped);
   options.initial_pressure = 500;
   options.arm_angle = 0.2;
   options.relative_tolerance = 1e-11;
   Rig rig(Table1Model(), options);
   rig.simulation->Advance(5, 0.01);
   ASSERT_EQ(rig.simulation->mode(), Slip());
-  const Point start = rig.simulation->now();
-  const LinearModel model = Linearise(rig.equations, start.time, 5, Slip(), start.state);
+  const model::Point start = rig.simulation->now();
+  const model::LinearModel model = model::Linearise(rig.equations, start.time, 5, Slip(), start.state);
   rig.simulation->Advance(7, 0.03);
   ASSERT_EQ(rig.simulation->mode(), Slip());
   // x - x0 = sum of A^(k-1) x'(0) t^k/k!

@@ -13,26 +13,27 @@
 
 namespace hydro::testing {
 
-inline ModelDescription Table1Model(std::vector<EffectDescription> effects = {}) {
-  ModelDescription model;
+inline model::ModelDescription Table1Model(std::vector<model::EffectDescription> effects = {}) {
+  model::ModelDescription model;
   model.name = "Table 1";
   model.parameters = Table1();
   model.effects = std::move(effects);
   return model;
 }
 
-inline EffectDescription Stribeck(double static_excess, double speed) {
+inline model::EffectDescription Stribeck(double static_excess, double speed) {
   return {"pump.stribeck", {{"static_excess", static_excess}, {"speed", speed}}, {}};
 }
-inline EffectDescription Wave(double frequency, double volume_fraction, double damping) {
+inline model::EffectDescription Wave(double frequency, double volume_fraction, double damping) {
   return {"line.wave",
           {{"frequency", frequency}, {"volume_fraction", volume_fraction}, {"damping", damping}},
           {}};
 }
-inline EffectDescription Lag(double tau) { return {"amp.lag", {{"tau", tau}}, {}}; }
+inline model::EffectDescription Lag(double tau) { return {"amp.lag", {{"tau", tau}}, {}}; }
 
-inline ActuatorOptions Held(Shaft shaft, Integrator integrator = Integrator::kFast) {
-  ActuatorOptions options;
+inline model::ActuatorOptions Held(model::Shaft shaft,
+                                   model::Integrator integrator = model::Integrator::kFast) {
+  model::ActuatorOptions options;
   options.shaft = shaft;
   options.integrator = integrator;
   return options;
@@ -40,37 +41,37 @@ inline ActuatorOptions Held(Shaft shaft, Integrator integrator = Integrator::kFa
 
 // Equations in motion, with the mode in sight.
 struct Rig {
-  Rig(const ModelDescription& model, const ActuatorOptions& options)
+  Rig(const model::ModelDescription& model, const model::ActuatorOptions& options)
       : equations(model, options),
-        simulation(MakeSimulation(&equations, options.integrator, options.initial_pressure,
-                                  options.relative_tolerance)) {}
-  Measurement Measure() const {
+        simulation(model::MakeSimulation(&equations, options.integrator, options.initial_pressure,
+                                         options.relative_tolerance)) {}
+  model::Measurement Measure() const {
     return equations.Measure(simulation->now().time, simulation->now().state, simulation->history());
   }
 
-  Equations equations;
-  std::unique_ptr<Simulation> simulation;
+  model::Equations equations;
+  std::unique_ptr<model::Simulation> simulation;
 };
 
-inline std::string Name(Integrator integrator) {
+inline std::string Name(model::Integrator integrator) {
   switch (integrator) {
-    case Integrator::kAuto:
+    case model::Integrator::kAuto:
       return "Auto";
-    case Integrator::kFast:
+    case model::Integrator::kFast:
       return "Fast";
-    case Integrator::kErk:
+    case model::Integrator::kErk:
       return "Erk";
-    case Integrator::kCvode:
+    case model::Integrator::kCvode:
       return "Cvode";
   }
   return "?";
 }
 
-inline constexpr Integrator kIntegrators[] = {Integrator::kAuto, Integrator::kFast, Integrator::kErk,
-                                              Integrator::kCvode};
+inline constexpr model::Integrator kIntegrators[] = {model::Integrator::kAuto, model::Integrator::kFast,
+                                                     model::Integrator::kErk, model::Integrator::kCvode};
 
 // Eq. (16) with the gains of the reference runs, following a +/-300 psi square wave of 10 Hz at 5 kHz.
-inline double SquareWaveLoop(const Measurement& m, int tick) {
+inline double SquareWaveLoop(const model::Measurement& m, int tick) {
   const double reference = tick % 500 < 250 ? 300 : -300;
   return 0.134 * (reference - (m.p2 - m.p1) - 8.4 * m.motor_speed);
 }

@@ -15,8 +15,8 @@ namespace {
 // Tests that every member of Parameters has one entry, and that Table 1 lies within all bounds.
 TEST(BaseParameters, AreComplete) {
   std::set<std::string> names;
-  Parameters marked;
-  for (const BaseParameter& parameter : BaseParameters()) {
+  model::Parameters marked;
+  for (const model::BaseParameter& parameter : model::BaseParameters()) {
     EXPECT_TRUE(names.insert(parameter.info.name).second) << parameter.info.name;
     EXPECT_FALSE(parameter.info.unit.empty());
     EXPECT_FALSE(parameter.info.says.empty());
@@ -26,24 +26,24 @@ TEST(BaseParameters, AreComplete) {
     EXPECT_TRUE(parameter.info.min_allowed ? value >= parameter.info.min : value > parameter.info.min);
     EXPECT_LE(value, parameter.info.max);
   }
-  EXPECT_EQ(names.size() * sizeof(double), sizeof(Parameters));
+  EXPECT_EQ(names.size() * sizeof(double), sizeof(model::Parameters));
 }
 
 // Tests that the catalogue is ordered, each entry says all it should, and is found by its id.
 TEST(EffectCatalogue, IsComplete) {
   std::string previous;
-  for (const EffectInfo& effect : EffectCatalogue()) {
+  for (const model::EffectInfo& effect : model::EffectCatalogue()) {
     EXPECT_LT(previous, effect.id);
     previous = effect.id;
     EXPECT_FALSE(effect.says.empty());
     EXPECT_FALSE(effect.equation.empty());
     EXPECT_FALSE(effect.parameters.empty());
-    EXPECT_EQ(FindEffect(effect.id), &effect);
+    EXPECT_EQ(model::FindEffect(effect.id), &effect);
   }
   for (const char* id : {"amp.lag", "line.wave", "pump.pressure_friction", "pump.stribeck"}) {
-    EXPECT_NE(FindEffect(id), nullptr) << id;
+    EXPECT_NE(model::FindEffect(id), nullptr) << id;
   }
-  EXPECT_EQ(FindEffect("pump.unknown"), nullptr);
+  EXPECT_EQ(model::FindEffect("pump.unknown"), nullptr);
 }
 
 // Tests that docs/effects.md has the row of each effect, with its parameters and their units.
@@ -56,8 +56,8 @@ TEST(EffectCatalogue, IsDocumented) {
     const bool starts_with_id = line.rfind("| `", 0) == 0 && line.find('.') < line.find('`', 3);
     if (starts_with_id) rows.insert(line);
   }
-  EXPECT_EQ(rows.size(), EffectCatalogue().size());
-  for (const EffectInfo& effect : EffectCatalogue()) {
+  EXPECT_EQ(rows.size(), model::EffectCatalogue().size());
+  for (const model::EffectInfo& effect : model::EffectCatalogue()) {
     std::string row = "| `" + effect.id + "` | " + effect.says + " | " + effect.equation + " | ";
     for (size_t i = 0; i < effect.parameters.size(); ++i) {
       row += (i > 0 ? ", `" : "`") + effect.parameters[i].name + "` (" + effect.parameters[i].unit + ")";

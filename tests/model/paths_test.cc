@@ -13,86 +13,93 @@ namespace {
 
 struct Case {
   std::string name;
-  ModelDescription model;
-  ActuatorOptions options;
+  model::ModelDescription model;
+  model::ActuatorOptions options;
 };
 
 std::ostream& operator<<(std::ostream& out, const Case& c) { return out << c.name; }
 
 std::vector<Case> Cases() {
-  static const auto sine = MakeSine(0, 0.008, 2, 0.02, 0);
-  static const auto zigzag = MakePoints(
-      {{0, 0}, {0.05, 0.0015}, {0.1001, -0.001}, {0.2, -0.001}, {0.31, 0.003}}, Interpolation::kLinear);
+  static const auto sine = trajectory::MakeSine(0, 0.008, 2, 0.02, 0);
+  static const auto zigzag =
+      trajectory::MakePoints({{0, 0}, {0.05, 0.0015}, {0.1001, -0.001}, {0.2, -0.001}, {0.31, 0.003}},
+                             trajectory::Interpolation::kLinear);
   std::vector<Case> cases;
-  const auto add = [&](std::string name, std::vector<EffectDescription> effects, ActuatorOptions options) {
+  const auto add = [&](std::string name, std::vector<model::EffectDescription> effects,
+                       model::ActuatorOptions options) {
     cases.push_back({std::move(name), Table1Model(std::move(effects)), options});
   };
-  add("Clamped", {}, Held(Shaft::kClamped));
-  add("Free", {}, Held(Shaft::kFree));
-  add("FreeWithGravity", {}, Held(Shaft::kFree));
+  add("Clamped", {}, Held(model::Shaft::kClamped));
+  add("Free", {}, Held(model::Shaft::kFree));
+  add("FreeWithGravity", {}, Held(model::Shaft::kFree));
   cases.back().model.parameters.mgl = 562;
   cases.back().options.arm_angle = -0.3;
-  ActuatorOptions driven = Held(Shaft::kDriven);
+  model::ActuatorOptions driven = Held(model::Shaft::kDriven);
   driven.motion = sine.get();
   add("DrivenBySine", {}, driven);
   driven.motion = zigzag.get();
   add("DrivenAlongLines", {}, driven);
-  ActuatorOptions bypass = Held(Shaft::kClamped);
+  model::ActuatorOptions bypass = Held(model::Shaft::kClamped);
   bypass.bypass = true;
   bypass.initial_pressure = 250;
   add("Bypass", {}, bypass);
-  bypass.shaft = Shaft::kFree;
+  bypass.shaft = model::Shaft::kFree;
   add("BypassFree", {}, bypass);
-  add("PressureFriction", {{"pump.pressure_friction", {{"f", 0.001}}, {}}}, Held(Shaft::kClamped));
-  add("Stribeck", {Stribeck(0.5, 3)}, Held(Shaft::kClamped));
-  add("StribeckNarrow", {Stribeck(0.5, 0.02)}, Held(Shaft::kClamped));
-  add("StribeckFree", {Stribeck(0.5, 3)}, Held(Shaft::kFree));
-  add("Lag", {Lag(2e-3)}, Held(Shaft::kClamped));
-  add("Wave", {Wave(300, 0.2, 0.05)}, Held(Shaft::kClamped));
-  add("WaveFree", {Wave(300, 0.2, 0.05)}, Held(Shaft::kFree));
+  add("PressureFriction", {{"pump.pressure_friction", {{"f", 0.001}}, {}}}, Held(model::Shaft::kClamped));
+  add("Stribeck", {Stribeck(0.5, 3)}, Held(model::Shaft::kClamped));
+  add("StribeckNarrow", {Stribeck(0.5, 0.02)}, Held(model::Shaft::kClamped));
+  add("StribeckFree", {Stribeck(0.5, 3)}, Held(model::Shaft::kFree));
+  add("Lag", {Lag(2e-3)}, Held(model::Shaft::kClamped));
+  add("Wave", {Wave(300, 0.2, 0.05)}, Held(model::Shaft::kClamped));
+  add("WaveFree", {Wave(300, 0.2, 0.05)}, Held(model::Shaft::kFree));
   add("WaveBypass", {Wave(300, 0.2, 0.05)}, bypass);
-  add("QuadraticDrag", {{"pump.quadratic_drag", {{"k", 1e-3}}, {}}}, Held(Shaft::kClamped));
-  add("PressureOffset", {{"sensor.pressure_offset", {{"p1", 3}, {"p2", -2}}, {}}}, Held(Shaft::kClamped));
-  add("Delay", {{"amp.delay", {{"delay", 3.33e-4}}, {}}}, Held(Shaft::kClamped));
-  add("DelayAndLag", {{"amp.delay", {{"delay", 4e-4}}, {}}, Lag(2e-3)}, Held(Shaft::kFree));
-  add("Warming", {{"fluid.warming", {{"rate", 2}}, {}}}, Held(Shaft::kClamped));
+  add("QuadraticDrag", {{"pump.quadratic_drag", {{"k", 1e-3}}, {}}}, Held(model::Shaft::kClamped));
+  add("PressureOffset", {{"sensor.pressure_offset", {{"p1", 3}, {"p2", -2}}, {}}},
+      Held(model::Shaft::kClamped));
+  add("Delay", {{"amp.delay", {{"delay", 3.33e-4}}, {}}}, Held(model::Shaft::kClamped));
+  add("DelayAndLag", {{"amp.delay", {{"delay", 4e-4}}, {}}, Lag(2e-3)}, Held(model::Shaft::kFree));
+  add("Warming", {{"fluid.warming", {{"rate", 2}}, {}}}, Held(model::Shaft::kClamped));
   add("FrictionAsymmetry", {{"pump.friction_asymmetry", {{"coulomb", 1}, {"viscous", 0.01}}, {}}},
-      Held(Shaft::kClamped));
+      Held(model::Shaft::kClamped));
   add("SealFriction", {{"actuator.seal_friction", {{"coulomb", 100}, {"viscous", 50}}, {}}},
-      Held(Shaft::kFree));
+      Held(model::Shaft::kFree));
   add("SealFrictionWithGravity", {{"actuator.seal_friction", {{"coulomb", 600}, {"viscous", 0}}, {}}},
-      Held(Shaft::kFree));
+      Held(model::Shaft::kFree));
   cases.back().model.parameters.mgl = 562;
-  add("TurbulentLeakage", {{"pump.turbulent_leakage", {{"k", 1e-3}}, {}}}, Held(Shaft::kClamped));
-  add("Relief", {{"valve.relief", {{"set", 250}, {"conductance", 1e-3}}, {}}}, Held(Shaft::kClamped));
+  add("TurbulentLeakage", {{"pump.turbulent_leakage", {{"k", 1e-3}}, {}}}, Held(model::Shaft::kClamped));
+  add("Relief", {{"valve.relief", {{"set", 250}, {"conductance", 1e-3}}, {}}}, Held(model::Shaft::kClamped));
   add("ReliefBypass", {{"valve.relief", {{"set", 200}, {"conductance", 1e-4}}, {}}}, bypass);
-  add("EntrainedAir", {{"fluid.entrained_air", {{"air_fraction", 0.02}}, {}}}, Held(Shaft::kClamped));
-  add("Stiffening", {{"fluid.stiffening", {{"slope", 100}}, {}}}, Held(Shaft::kFree));
-  add("SpeedTorqueLimit", {{"motor.speed_torque_limit", {{"no_load_speed", 5}}, {}}}, Held(Shaft::kClamped));
+  add("EntrainedAir", {{"fluid.entrained_air", {{"air_fraction", 0.02}}, {}}}, Held(model::Shaft::kClamped));
+  add("Stiffening", {{"fluid.stiffening", {{"slope", 100}}, {}}}, Held(model::Shaft::kFree));
+  add("SpeedTorqueLimit", {{"motor.speed_torque_limit", {{"no_load_speed", 5}}, {}}},
+      Held(model::Shaft::kClamped));
   add("SpeedTorqueLimitAndLag", {{"motor.speed_torque_limit", {{"no_load_speed", 5}}, {}}, Lag(2e-3)},
-      Held(Shaft::kFree));
-  add("PressureLag", {{"sensor.pressure_lag", {{"tau", 3e-3}}, {}}}, Held(Shaft::kClamped));
+      Held(model::Shaft::kFree));
+  add("PressureLag", {{"sensor.pressure_lag", {{"tau", 3e-3}}, {}}}, Held(model::Shaft::kClamped));
   add("Cogging", {{"motor.cogging", {{"amplitude", 2}, {"periods", 12}, {"phase", 0.4}}, {}}},
-      Held(Shaft::kClamped));
-  add("FlowRipple", {{"pump.flow_ripple", {{"amplitude", 0.1}, {"periods", 12}}, {}}}, Held(Shaft::kClamped));
-  add("Check", {{"valve.check", {{"cracking", 10}, {"conductance", 1e-3}}, {}}}, Held(Shaft::kClamped));
-  add("CheckFree", {{"valve.check", {{"cracking", 0}, {"conductance", 1e-2}}, {}}}, Held(Shaft::kFree));
-  add("Accumulator", {{"accumulator.stiffness", {{"stiffness", 5e3}}, {}}}, Held(Shaft::kClamped));
+      Held(model::Shaft::kClamped));
+  add("FlowRipple", {{"pump.flow_ripple", {{"amplitude", 0.1}, {"periods", 12}}, {}}},
+      Held(model::Shaft::kClamped));
+  add("Check", {{"valve.check", {{"cracking", 10}, {"conductance", 1e-3}}, {}}},
+      Held(model::Shaft::kClamped));
+  add("CheckFree", {{"valve.check", {{"cracking", 0}, {"conductance", 1e-2}}, {}}},
+      Held(model::Shaft::kFree));
+  add("Accumulator", {{"accumulator.stiffness", {{"stiffness", 5e3}}, {}}}, Held(model::Shaft::kClamped));
   add("AccumulatorFree",
       {{"accumulator.stiffness", {{"stiffness", 5e3}}, {}},
        {"valve.relief", {{"set", 150}, {"conductance", 1e-3}}, {}}},
-      Held(Shaft::kFree));
+      Held(model::Shaft::kFree));
   add("AccumulatorBypass", {{"accumulator.stiffness", {{"stiffness", 5e3}}, {}}}, bypass);
-  add("Sign", {{"sensor.sign", {}, {{"signal", "motor_speed"}}}}, Held(Shaft::kClamped));
-  add("Skew", {{"sensor.skew", {{"delay", 3.33e-4}}, {{"signal", "p2"}}}}, Held(Shaft::kClamped));
-  add("Flexure", {{"arm.flexure", {{"stiffness", 2e5}, {"damping", 500}}, {}}}, Held(Shaft::kFree));
+  add("Sign", {{"sensor.sign", {}, {{"signal", "motor_speed"}}}}, Held(model::Shaft::kClamped));
+  add("Skew", {{"sensor.skew", {{"delay", 3.33e-4}}, {{"signal", "p2"}}}}, Held(model::Shaft::kClamped));
+  add("Flexure", {{"arm.flexure", {{"stiffness", 2e5}, {"damping", 500}}, {}}}, Held(model::Shaft::kFree));
   add("FlexureAndSealFriction",
       {{"arm.flexure", {{"stiffness", 2e5}, {"damping", 500}}, {}},
        {"actuator.seal_friction", {{"coulomb", 100}, {"viscous", 50}}, {}}},
-      Held(Shaft::kFree));
+      Held(model::Shaft::kFree));
   add("AllEffects",
       {Stribeck(0.5, 3), Lag(2e-3), Wave(300, 0.2, 0.05), {"pump.pressure_friction", {{"f", 0.001}}, {}}},
-      Held(Shaft::kFree));
+      Held(model::Shaft::kFree));
   add("AllOtherEffects",
       {{"accumulator.stiffness", {{"stiffness", 5e3}}, {}},
        {"arm.flexure", {{"stiffness", 2e5}, {"damping", 500}}, {}},
@@ -106,7 +113,7 @@ std::vector<Case> Cases() {
        {"sensor.pressure_lag", {{"tau", 3e-3}}, {}},
        {"valve.check", {{"cracking", 5}, {"conductance", 1e-2}}, {}},
        {"valve.relief", {{"set", 200}, {"conductance", 1e-3}}, {}}},
-      Held(Shaft::kFree));
+      Held(model::Shaft::kFree));
   return cases;
 }
 
@@ -116,13 +123,13 @@ class Paths : public ::testing::TestWithParam<Case> {};
 // controller hides a difference.
 TEST_P(Paths, Agree) {
   const Case& c = GetParam();
-  ActuatorOptions tight = c.options;
+  model::ActuatorOptions tight = c.options;
   tight.relative_tolerance = 1e-11;
-  tight.integrator = Integrator::kErk;
-  Actuator reference(c.model, tight);
-  std::vector<Actuator> actuators;
-  for (const Integrator integrator : kIntegrators) {
-    ActuatorOptions options = c.options;
+  tight.integrator = model::Integrator::kErk;
+  model::Actuator reference(c.model, tight);
+  std::vector<model::Actuator> actuators;
+  for (const model::Integrator integrator : kIntegrators) {
+    model::ActuatorOptions options = c.options;
     options.integrator = integrator;
     actuators.emplace_back(c.model, options);
   }
@@ -131,11 +138,11 @@ TEST_P(Paths, Agree) {
     const double voltage = (tick / 300 % 2 == 0 ? 2.6 : -1.7) + 0.4 * std::sin(0.1 * tick);
     const double until = (tick + 1) * 2e-4;
     reference.Advance(voltage, until);
-    const Measurement expected = reference.Measure();
+    const model::Measurement expected = reference.Measure();
     largest_dp = std::max(largest_dp, std::abs(expected.p2 - expected.p1));
     for (size_t i = 0; i < actuators.size(); ++i) {
       actuators[i].Advance(voltage, until);
-      const Measurement m = actuators[i].Measure();
+      const model::Measurement m = actuators[i].Measure();
       const std::string where = Name(kIntegrators[i]) + " at " + std::to_string(until) + " s";
       ASSERT_NEAR(m.p1, expected.p1, 1e-3) << where;
       ASSERT_NEAR(m.p2, expected.p2, 1e-3) << where;
@@ -151,8 +158,8 @@ TEST_P(Paths, Agree) {
 // Tests that the sum of many short calls is the same motion as one long call.
 TEST_P(Paths, LongCalls) {
   const Case& c = GetParam();
-  Actuator ticks(c.model, c.options);
-  Actuator whole(c.model, c.options);
+  model::Actuator ticks(c.model, c.options);
+  model::Actuator whole(c.model, c.options);
   for (int tick = 0; tick < 1500; ++tick) ticks.Advance(2.1, (tick + 1) * 2e-4);
   whole.Advance(2.1, 0.3);
   EXPECT_NEAR(whole.Measure().p1, ticks.Measure().p1, 1e-3);
@@ -166,9 +173,9 @@ class SymmetricPaths : public ::testing::TestWithParam<Case> {};
 std::vector<Case> SymmetricCases() {
   std::vector<Case> cases = Cases();
   std::erase_if(cases, [](const Case& c) {
-    return c.options.shaft == Shaft::kDriven || c.model.parameters.mgl != 0 || c.name == "PressureOffset" ||
-           c.name == "FrictionAsymmetry" || c.name == "Cogging" || c.name == "Sign" || c.name == "Skew" ||
-           c.name == "AllOtherEffects";
+    return c.options.shaft == model::Shaft::kDriven || c.model.parameters.mgl != 0 ||
+           c.name == "PressureOffset" || c.name == "FrictionAsymmetry" || c.name == "Cogging" ||
+           c.name == "Sign" || c.name == "Skew" || c.name == "AllOtherEffects";
   });
   return cases;
 }
@@ -177,13 +184,13 @@ std::vector<Case> SymmetricCases() {
 // in their order, so that there a rounding may choose another step or order, which the tolerance bounds.
 TEST_P(SymmetricPaths, Mirror) {
   const Case& c = GetParam();
-  for (const Integrator integrator : kIntegrators) {
-    ActuatorOptions options = c.options;
+  for (const model::Integrator integrator : kIntegrators) {
+    model::ActuatorOptions options = c.options;
     options.integrator = integrator;
-    const bool exact = integrator == Integrator::kFast || integrator == Integrator::kAuto;
+    const bool exact = integrator == model::Integrator::kFast || integrator == model::Integrator::kAuto;
     const double allowed = exact ? 0 : 1e-5;
-    Actuator a(c.model, options);
-    Actuator b(c.model, options);
+    model::Actuator a(c.model, options);
+    model::Actuator b(c.model, options);
     for (int tick = 0; tick < 1000; ++tick) {
       const double voltage = tick / 300 % 2 == 0 ? 2.6 : -1.7;
       a.Advance(voltage, (tick + 1) * 2e-4);
@@ -205,19 +212,19 @@ INSTANTIATE_TEST_SUITE_P(Cases, SymmetricPaths, ::testing::ValuesIn(SymmetricCas
 // Tests that the automatic choice leaves the explicit method when stability would hold it back, and loses no
 // accuracy.
 TEST(Auto, TakesCvodeWhereTheModelIsStiff) {
-  const ModelDescription stiff = Table1Model({Wave(2e5, 0.3, 5)});
-  Rig automatic(stiff, Held(Shaft::kClamped, Integrator::kAuto));
-  Rig explicit_pair(stiff, Held(Shaft::kClamped, Integrator::kErk));
-  EXPECT_EQ(automatic.simulation->in_use(), Integrator::kFast);
+  const model::ModelDescription stiff = Table1Model({Wave(2e5, 0.3, 5)});
+  Rig automatic(stiff, Held(model::Shaft::kClamped, model::Integrator::kAuto));
+  Rig explicit_pair(stiff, Held(model::Shaft::kClamped, model::Integrator::kErk));
+  EXPECT_EQ(automatic.simulation->in_use(), model::Integrator::kFast);
   for (int tick = 0; tick < 50; ++tick) {
     automatic.simulation->Advance(2.5, (tick + 1) * 2e-4);
     explicit_pair.simulation->Advance(2.5, (tick + 1) * 2e-4);
   }
-  EXPECT_EQ(automatic.simulation->in_use(), Integrator::kCvode);
+  EXPECT_EQ(automatic.simulation->in_use(), model::Integrator::kCvode);
   EXPECT_NEAR(automatic.Measure().p2, explicit_pair.Measure().p2, 1e-3);
-  Rig plain(Table1Model(), Held(Shaft::kClamped, Integrator::kAuto));
+  Rig plain(Table1Model(), Held(model::Shaft::kClamped, model::Integrator::kAuto));
   plain.simulation->Advance(2.5, 0.5);
-  EXPECT_EQ(plain.simulation->in_use(), Integrator::kFast);
+  EXPECT_EQ(plain.simulation->in_use(), model::Integrator::kFast);
 }
 
 }  // namespace

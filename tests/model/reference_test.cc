@@ -62,9 +62,9 @@ constexpr Row kSquare[] = {
     {1, 4.92157787443, 456.241219573, 136.185391084},
 };
 
-class Reference : public ::testing::TestWithParam<Integrator> {};
+class Reference : public ::testing::TestWithParam<model::Integrator> {};
 
-void ExpectNear(const Measurement& m, const Row& row) {
+void ExpectNear(const model::Measurement& m, const Row& row) {
   EXPECT_NEAR(m.motor_speed, row.motor_speed, 1e-5) << "at " << row.time << " s";
   EXPECT_NEAR(m.p1, row.p1, 1e-3) << "at " << row.time << " s";
   EXPECT_NEAR(m.p2, row.p2, 1e-3) << "at " << row.time << " s";
@@ -72,7 +72,7 @@ void ExpectNear(const Measurement& m, const Row& row) {
 
 // Tests that a step of T_p = 10 in-lbf gives the reference trajectory, however long the calls are.
 TEST_P(Reference, Step) {
-  Actuator actuator(Table1Model(), Held(Shaft::kClamped, GetParam()));
+  model::Actuator actuator(Table1Model(), Held(model::Shaft::kClamped, GetParam()));
   for (const Row& row : kStep) {
     actuator.Advance(2.5, row.time);
     ExpectNear(actuator.Measure(), row);
@@ -82,11 +82,11 @@ TEST_P(Reference, Step) {
 // Tests that the sampled pressure loop on a square wave, with its mode changes and saturation, gives the
 // reference trajectory, and that the one-way valves keep both pressures at or above p_3 at every sample.
 TEST_P(Reference, SquareWave) {
-  Actuator actuator(Table1Model(), Held(Shaft::kClamped, GetParam()));
+  model::Actuator actuator(Table1Model(), Held(model::Shaft::kClamped, GetParam()));
   const Row* row = kSquare;
   for (int tick = 0; tick < 5000; ++tick) {
     actuator.Advance(SquareWaveLoop(actuator.Measure(), tick), (tick + 1) * 2e-4);
-    const Measurement m = actuator.Measure();
+    const model::Measurement m = actuator.Measure();
     ASSERT_GE(m.p1, 100);
     ASSERT_GE(m.p2, 100);
     if (row != std::end(kSquare) && std::abs(actuator.time() - row->time) < 1e-9) ExpectNear(m, *row++);
@@ -97,14 +97,14 @@ TEST_P(Reference, SquareWave) {
 // Tests that a tighter tolerance gives a smaller error, with a free arm, whose 302 rad/s make the tolerance
 // choose the step.
 TEST_P(Reference, ConvergesWithTolerance) {
-  const auto run = [](Integrator integrator, double tolerance) {
-    ActuatorOptions options = Held(Shaft::kFree, integrator);
+  const auto run = [](model::Integrator integrator, double tolerance) {
+    model::ActuatorOptions options = Held(model::Shaft::kFree, integrator);
     options.relative_tolerance = tolerance;
-    Actuator actuator(Table1Model(), options);
+    model::Actuator actuator(Table1Model(), options);
     actuator.Advance(2.5, 0.15);
     return actuator.Measure().p2;
   };
-  const double tight = run(Integrator::kErk, 1e-12);
+  const double tight = run(model::Integrator::kErk, 1e-12);
   double previous = 1e9;
   for (const double tolerance : {1e-4, 1e-6, 1e-8, 1e-10}) {
     const double error = std::abs(run(GetParam(), tolerance) - tight);
@@ -116,8 +116,8 @@ TEST_P(Reference, ConvergesWithTolerance) {
 
 // Tests that the same calls give the same bits.
 TEST_P(Reference, Repeats) {
-  Actuator a(Table1Model(), Held(Shaft::kClamped, GetParam()));
-  Actuator b(Table1Model(), Held(Shaft::kClamped, GetParam()));
+  model::Actuator a(Table1Model(), Held(model::Shaft::kClamped, GetParam()));
+  model::Actuator b(Table1Model(), Held(model::Shaft::kClamped, GetParam()));
   for (int tick = 0; tick < 1000; ++tick) {
     a.Advance(SquareWaveLoop(a.Measure(), tick), (tick + 1) * 2e-4);
     b.Advance(SquareWaveLoop(b.Measure(), tick), (tick + 1) * 2e-4);

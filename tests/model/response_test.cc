@@ -18,26 +18,26 @@ namespace {
 // How the actuator is held in a test.
 struct Holding {
   std::string name;
-  Shaft shaft = Shaft::kClamped;
+  model::Shaft shaft = model::Shaft::kClamped;
   bool bypass = false;
 };
-const Holding kHoldings[] = {{"clamped", Shaft::kClamped, false},
-                             {"free", Shaft::kFree, false},
-                             {"driven", Shaft::kDriven, false},
-                             {"bypass", Shaft::kClamped, true}};
+const Holding kHoldings[] = {{"clamped", model::Shaft::kClamped, false},
+                             {"free", model::Shaft::kFree, false},
+                             {"driven", model::Shaft::kDriven, false},
+                             {"bypass", model::Shaft::kClamped, true}};
 
-const Trajectory& Motion() {
-  static const auto motion = MakeSine(0.1, 0.2, 3, 0.01, 0);
+const trajectory::Trajectory& Motion() {
+  static const auto motion = trajectory::MakeSine(0.1, 0.2, 3, 0.01, 0);
   return *motion;
 }
 
 // Levels that stick, slip, turn round and open the one-way valves, sampled at 1 kHz.
-Stimulus LevelsFor(const Holding& holding, size_t samples = 200) {
-  Stimulus stimulus;
+model::Stimulus LevelsFor(const Holding& holding, size_t samples = 200) {
+  model::Stimulus stimulus;
   stimulus.shaft = holding.shaft;
   stimulus.bypass = holding.bypass;
   stimulus.arm_angle = 0.1;
-  stimulus.motion = holding.shaft == Shaft::kDriven ? &Motion() : nullptr;
+  stimulus.motion = holding.shaft == model::Shaft::kDriven ? &Motion() : nullptr;
   constexpr double kLevels[] = {0.5, 6, 1.2, -4, 0, 3, 9, -9, 2, -1.5};
   for (size_t k = 0; k < samples; ++k) {
     stimulus.time.push_back(1e-3 * static_cast<double>(k));
@@ -47,10 +47,10 @@ Stimulus LevelsFor(const Holding& holding, size_t samples = 200) {
 }
 
 // Above p_3, so that the start decides.
-StartState SomeStart(double p1 = 150, double p2 = 180) { return {0, 1.5, p1, p2, 0.1, 0.05}; }
+model::StartState SomeStart(double p1 = 150, double p2 = 180) { return {0, 1.5, p1, p2, 0.1, 0.05}; }
 
-ResponseOptions Exact(double tolerance) {
-  ResponseOptions options;
+model::ResponseOptions Exact(double tolerance) {
+  model::ResponseOptions options;
   options.relative_tolerance = tolerance;
   return options;
 }
@@ -62,10 +62,10 @@ double Rms(const std::vector<double>& values) {
 }
 
 // The largest root-mean-square difference of a channel, relative to the channel's.
-double Difference(const std::array<std::vector<double>, kChannels>& a,
-                  const std::array<std::vector<double>, kChannels>& b) {
+double Difference(const std::array<std::vector<double>, model::kChannels>& a,
+                  const std::array<std::vector<double>, model::kChannels>& b) {
   double worst = 0;
-  for (size_t c = 0; c < kChannels; ++c) {
+  for (size_t c = 0; c < model::kChannels; ++c) {
     std::vector<double> difference;
     for (size_t i = 0; i < a[c].size(); ++i) difference.push_back(a[c][i] - b[c][i]);
     const double size = Rms(b[c]);
@@ -74,23 +74,23 @@ double Difference(const std::array<std::vector<double>, kChannels>& a,
   return worst;
 }
 
-void ExpectAsActuator(const ModelDescription& model, const Holding& holding, const std::string& what) {
-  const Stimulus stimulus = LevelsFor(holding);
-  ActuatorOptions options;
+void ExpectAsActuator(const model::ModelDescription& model, const Holding& holding, const std::string& what) {
+  const model::Stimulus stimulus = LevelsFor(holding);
+  model::ActuatorOptions options;
   options.shaft = stimulus.shaft;
   options.bypass = stimulus.bypass;
   options.motion = stimulus.motion;
   options.arm_angle = stimulus.arm_angle;
   options.relative_tolerance = 1e-9;
-  Actuator actuator(model, options);
-  std::array<std::vector<double>, kChannels> expected;
+  model::Actuator actuator(model, options);
+  std::array<std::vector<double>, model::kChannels> expected;
   for (size_t k = 0; k < stimulus.time.size(); ++k) {
     if (k > 0) actuator.Advance(stimulus.voltage[k - 1], stimulus.time[k]);
-    const Measurement measured = actuator.Measure();
-    for (size_t c = 0; c < kChannels; ++c) expected[c].push_back(ChannelOf(measured, c));
+    const model::Measurement measured = actuator.Measure();
+    for (size_t c = 0; c < model::kChannels; ++c) expected[c].push_back(model::ChannelOf(measured, c));
   }
   const double p_3 = model.parameters.p_3;
-  const Response response = Respond(model, stimulus, {0, 0, p_3, p_3, 0.1, 0}, {}, Exact(1e-9));
+  const model::Response response = model::Respond(model, stimulus, {0, 0, p_3, p_3, 0.1, 0}, {}, Exact(1e-9));
   EXPECT_LT(Difference(response.values, expected), 1e-5) << what << ", " << holding.name;
 }
 
@@ -109,28 +109,31 @@ TEST(Response, FollowsTheActuatorWithEffects) {
 }
 
 // Friction with a peak, valves that relieve and seals that stick: events of every kind.
-ModelDescription Eventful() {
+model::ModelDescription Eventful() {
   return Table1Model({Stribeck(0.4, 3),
                       {"valve.relief", {{"set", 900}, {"conductance", 2e-3}}, {}},
                       {"actuator.seal_friction", {{"coulomb", 300}, {"viscous", 50}}, {}}});
 }
 
-std::vector<Unknown> AllUnknowns(const ModelDescription& model) {
-  std::vector<Unknown> unknowns;
-  for (size_t i = 0; i < BaseParameters().size(); ++i) unknowns.push_back({Unknown::Kind::kBase, i});
-  for (size_t i = 0; i < EffectParameters(model).size(); ++i) unknowns.push_back({Unknown::Kind::kEffect, i});
-  for (size_t i = 0; i < 6; ++i) unknowns.push_back({Unknown::Kind::kStart, i});
+std::vector<model::Unknown> AllUnknowns(const model::ModelDescription& model) {
+  std::vector<model::Unknown> unknowns;
+  for (size_t i = 0; i < model::BaseParameters().size(); ++i)
+    unknowns.push_back({model::Unknown::Kind::kBase, i});
+  for (size_t i = 0; i < model::EffectParameters(model).size(); ++i)
+    unknowns.push_back({model::Unknown::Kind::kEffect, i});
+  for (size_t i = 0; i < 6; ++i) unknowns.push_back({model::Unknown::Kind::kStart, i});
   return unknowns;
 }
 
 // Tests that values have the same bits with derivatives and without, so that a fit sees one cost.
 TEST(Response, ValuesDoNotDependOnTheUnknowns) {
   for (const Holding& holding : kHoldings) {
-    const Stimulus stimulus = LevelsFor(holding);
-    const Response plain = Respond(Eventful(), stimulus, SomeStart(), {}, {});
-    const Response with = Respond(Eventful(), stimulus, SomeStart(), AllUnknowns(Eventful()), {});
+    const model::Stimulus stimulus = LevelsFor(holding);
+    const model::Response plain = model::Respond(Eventful(), stimulus, SomeStart(), {}, {});
+    const model::Response with =
+        model::Respond(Eventful(), stimulus, SomeStart(), AllUnknowns(Eventful()), {});
     size_t different = 0;
-    for (size_t c = 0; c < kChannels; ++c) {
+    for (size_t c = 0; c < model::kChannels; ++c) {
       for (size_t i = 0; i < plain.values[c].size(); ++i) {
         different +=
             std::bit_cast<uint64_t>(plain.values[c][i]) != std::bit_cast<uint64_t>(with.values[c][i]);
@@ -142,12 +145,13 @@ TEST(Response, ValuesDoNotDependOnTheUnknowns) {
 
 // Tests that the stride leaves out samples, not commands, and that channels not wanted are empty.
 TEST(Response, StrideAndChannels) {
-  const Stimulus stimulus = LevelsFor(kHoldings[0]);
-  const Response all = Respond(Table1Model(), stimulus, SomeStart(), {}, {});
-  ResponseOptions options;
+  const model::Stimulus stimulus = LevelsFor(kHoldings[0]);
+  const model::Response all = model::Respond(Table1Model(), stimulus, SomeStart(), {}, {});
+  model::ResponseOptions options;
   options.stride = 7;
   options.channels = {false, false, false, false, true, false};
-  const Response some = Respond(Table1Model(), stimulus, SomeStart(), {{Unknown::Kind::kBase, 0}}, options);
+  const model::Response some =
+      model::Respond(Table1Model(), stimulus, SomeStart(), {{model::Unknown::Kind::kBase, 0}}, options);
   EXPECT_TRUE(some.values[0].empty());
   EXPECT_TRUE(some.derivatives[0][0].empty());
   ASSERT_EQ(some.values[4].size(), (stimulus.time.size() + 6) / 7);
@@ -155,36 +159,37 @@ TEST(Response, StrideAndChannels) {
 }
 
 // One number of model or start.
-double& NumberOf(const Unknown& unknown, ModelDescription* model, StartState* start) {
+double& NumberOf(const model::Unknown& unknown, model::ModelDescription* model, model::StartState* start) {
   switch (unknown.kind) {
-    case Unknown::Kind::kBase:
-      return BaseValue(model->parameters, unknown.index);
-    case Unknown::Kind::kEffect: {
-      const EffectParameter parameter = EffectParameters(*model)[unknown.index];
+    case model::Unknown::Kind::kBase:
+      return model::BaseValue(model->parameters, unknown.index);
+    case model::Unknown::Kind::kEffect: {
+      const model::EffectParameter parameter = model::EffectParameters(*model)[unknown.index];
       return model->effects[parameter.effect].parameters.at(parameter.name);
     }
-    case Unknown::Kind::kStart:
+    case model::Unknown::Kind::kStart:
       break;
   }
   return (*start)[unknown.index];
 }
 
 // Every derivative against a central difference of Respond.
-void ExpectDerivatives(const ModelDescription& model, const Stimulus& stimulus, const StartState& start,
-                       const std::vector<Unknown>& unknowns, double share, const std::string& what) {
-  const Response found = Respond(model, stimulus, start, unknowns, Exact(1e-10));
+void ExpectDerivatives(const model::ModelDescription& model, const model::Stimulus& stimulus,
+                       const model::StartState& start, const std::vector<model::Unknown>& unknowns,
+                       double share, const std::string& what) {
+  const model::Response found = model::Respond(model, stimulus, start, unknowns, Exact(1e-10));
   for (size_t u = 0; u < unknowns.size(); ++u) {
-    std::array<std::vector<double>, kChannels> quotient;
-    ModelDescription moved = model;
-    StartState from = start;
+    std::array<std::vector<double>, model::kChannels> quotient;
+    model::ModelDescription moved = model;
+    model::StartState from = start;
     double& number = NumberOf(unknowns[u], &moved, &from);
     const double value = number;
     const double step = share * (value == 0 ? 1e-2 : std::abs(value));
     number = value + step;
-    const Response up = Respond(moved, stimulus, from, {}, Exact(1e-10));
+    const model::Response up = model::Respond(moved, stimulus, from, {}, Exact(1e-10));
     number = value - step;
-    const Response down = Respond(moved, stimulus, from, {}, Exact(1e-10));
-    for (size_t c = 0; c < kChannels; ++c) {
+    const model::Response down = model::Respond(moved, stimulus, from, {}, Exact(1e-10));
+    for (size_t c = 0; c < model::kChannels; ++c) {
       std::vector<double> difference;
       for (size_t i = 0; i < up.values[c].size(); ++i) {
         quotient[c].push_back((up.values[c][i] - down.values[c][i]) / (2 * step));
@@ -201,14 +206,14 @@ void ExpectDerivatives(const ModelDescription& model, const Stimulus& stimulus, 
 // Tests derivatives by every parameter and start, with events inside: stick and slip, valves.
 TEST(Response, DerivativesEqualDifferenceQuotients) {
   for (const Holding& holding : kHoldings) {
-    std::vector<Unknown> unknowns = AllUnknowns(Eventful());
+    std::vector<model::Unknown> unknowns = AllUnknowns(Eventful());
     // Where the arm is held its start is nothing; with the bypass open p2 starts where p1 does.
-    std::erase_if(unknowns, [&](const Unknown& unknown) {
-      return unknown.kind == Unknown::Kind::kStart &&
-             ((holding.shaft != Shaft::kFree && unknown.index >= 4) ||
+    std::erase_if(unknowns, [&](const model::Unknown& unknown) {
+      return unknown.kind == model::Unknown::Kind::kStart &&
+             ((holding.shaft != model::Shaft::kFree && unknown.index >= 4) ||
               (holding.bypass && unknown.index == 3));
     });
-    ModelDescription model = Eventful();
+    model::ModelDescription model = Eventful();
     model.parameters.mgl = 200;
     model.parameters.f = 1e-4;
     ExpectDerivatives(model, LevelsFor(holding), SomeStart(150, holding.bypass ? 150 : 180), unknowns, 1e-5,
@@ -219,7 +224,7 @@ TEST(Response, DerivativesEqualDifferenceQuotients) {
 // Tests derivatives by times: a command that acts late moves known stops, a channel that reads late looks at
 // other states.
 TEST(Response, DerivativesByDelays) {
-  const Unknown first = {Unknown::Kind::kEffect, 0};
+  const model::Unknown first = {model::Unknown::Kind::kEffect, 0};
   for (const Holding& holding : {kHoldings[0], kHoldings[1]}) {
     ExpectDerivatives(Table1Model({{"amp.delay", {{"delay", 2.3e-3}}, {}}}), LevelsFor(holding), SomeStart(),
                       {first}, 1e-4, "amp.delay");
@@ -230,40 +235,43 @@ TEST(Response, DerivativesByDelays) {
 
 // Tests derivatives where the accumulator's pressure moves and valves open and close at it.
 TEST(Response, DerivativesWithAnAccumulatorThatMoves) {
-  const ModelDescription model = Table1Model({{"accumulator.stiffness", {{"stiffness", 3e3}}, {}}});
+  const model::ModelDescription model = Table1Model({{"accumulator.stiffness", {{"stiffness", 3e3}}, {}}});
   ExpectDerivatives(model, LevelsFor(kHoldings[1]), SomeStart(),
-                    {{Unknown::Kind::kEffect, 0}, {Unknown::Kind::kBase, 12}, {Unknown::Kind::kBase, 11}},
+                    {{model::Unknown::Kind::kEffect, 0},
+                     {model::Unknown::Kind::kBase, 12},
+                     {model::Unknown::Kind::kBase, 11}},
                     1e-5, "accumulator.stiffness");
 }
 
 // Tests that a pump which sticks from the start does not drift off with a slightly different start.
 TEST(Response, StickingAtTheStart) {
-  Stimulus stimulus = LevelsFor(kHoldings[0], 50);
+  model::Stimulus stimulus = LevelsFor(kHoldings[0], 50);
   std::fill(stimulus.voltage.begin(), stimulus.voltage.end(), 0.5);
-  const Response response =
-      Respond(Table1Model(), stimulus, {0, 0, 150, 150, 0.1, 0}, {{Unknown::Kind::kStart, 1}}, {});
+  const model::Response response = model::Respond(Table1Model(), stimulus, {0, 0, 150, 150, 0.1, 0},
+                                                  {{model::Unknown::Kind::kStart, 1}}, {});
   EXPECT_EQ(response.values[0].back(), 0);
   EXPECT_EQ(response.derivatives[0][0].back(), 0);
   // One that breaks away takes the start's speed along.
   std::fill(stimulus.voltage.begin(), stimulus.voltage.end(), 2);
-  const Response moving =
-      Respond(Table1Model(), stimulus, {0, 0, 150, 150, 0.1, 0}, {{Unknown::Kind::kStart, 1}}, {});
+  const model::Response moving = model::Respond(Table1Model(), stimulus, {0, 0, 150, 150, 0.1, 0},
+                                                {{model::Unknown::Kind::kStart, 1}}, {});
   EXPECT_GT(moving.derivatives[0][0].back(), 0);
 }
 
 // Tests that a model far too stiff to be followed is an error, soon.
 TEST(Response, TooStiffIsAnError) {
-  ModelDescription model = Table1Model();
+  model::ModelDescription model = Table1Model();
   model.parameters.beta = 1e16;
-  EXPECT_THROW(Respond(model, LevelsFor(kHoldings[0]), SomeStart(), {}, {}), ModelError);
+  EXPECT_THROW(Respond(model, LevelsFor(kHoldings[0]), SomeStart(), {}, {}), model::ModelError);
 }
 
 // Tests that it is the actuator's own angle that must leave both volumes above 0, also where the arm gives.
 TEST(Response, TheActuatorsAngleHasToStayWithinItsRange) {
-  const ModelDescription model = Table1Model({{"arm.flexure", {{"stiffness", 300}, {"damping", 3000}}, {}}});
-  Stimulus stimulus = LevelsFor(kHoldings[1], 1500);
+  const model::ModelDescription model =
+      Table1Model({{"arm.flexure", {{"stiffness", 300}, {"damping", 3000}}, {}}});
+  model::Stimulus stimulus = LevelsFor(kHoldings[1], 1500);
   std::fill(stimulus.voltage.begin(), stimulus.voltage.end(), 10.0);
-  EXPECT_THROW(Respond(model, stimulus, SomeStart(), {}, {}), ModelError);
+  EXPECT_THROW(Respond(model, stimulus, SomeStart(), {}, {}), model::ModelError);
 }
 
 }  // namespace

@@ -11,10 +11,10 @@ namespace hydro::testing {
 
 // Some of each effect of the catalogue but amp.delay, which remembers (tested below). The motor turns little
 // within a period, so that differences see the slope.
-inline const std::map<std::string, EffectDescription>& SomeOfEach() {
-  static const std::map<std::string, EffectDescription> effects = [] {
-    std::map<std::string, EffectDescription> by_id;
-    for (const EffectDescription& effect : std::vector<EffectDescription>{
+inline const std::map<std::string, model::EffectDescription>& SomeOfEach() {
+  static const std::map<std::string, model::EffectDescription> effects = [] {
+    std::map<std::string, model::EffectDescription> by_id;
+    for (const model::EffectDescription& effect : std::vector<model::EffectDescription>{
              {"accumulator.stiffness", {{"stiffness", 3e3}}, {}},
              {"actuator.seal_friction", {{"coulomb", 100}, {"viscous", 50}}, {}},
              Lag(2e-3),

@@ -14,7 +14,7 @@
 #include "page/panel_geometry.h"
 #include "page/typeset.h"
 
-namespace hydro {
+namespace hydro::page {
 namespace {
 
 using ::testing::ElementsAre;
@@ -278,4 +278,4 @@ TEST(Typeset, Wraps) {
 }
 
 }  // namespace
-}  // namespace hydro
+}  // namespace hydro::page

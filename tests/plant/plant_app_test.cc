@@ -14,7 +14,7 @@
 #include "plant/simulated_rig.h"
 #include "tests/stack_fixture.h"
 
-namespace hydro {
+namespace hydro::plant {
 namespace {
 
 using ::testing::HasSubstr;
@@ -32,7 +32,7 @@ class PlantAppTest : public ::testing::Test {
     bus_.Subscribe<stop_t>("HYDRO_STOP", [this](const stop_t& s) { stops_.push_back(s); });
   }
 
-  int Run(const StackConfig& config) {
+  int Run(const settings::StackConfig& config) {
     SimulatedRig rig(config);
     PlantApp plant(bus_, clock_, config, rig);
     for (const char* role : {"pressure_ctrl", "position_ctrl"}) {
@@ -73,8 +73,8 @@ class PlantAppTest : public ::testing::Test {
     };
   }
 
-  SimulatedClock clock_;
-  InProcessBus bus_{&clock_};
+  bus::SimulatedClock clock_;
+  bus::InProcessBus bus_{&clock_};
   std::function<void(const state_t&)> on_state_;
   std::vector<state_t> states_;
   std::vector<fault_t> faults_;
@@ -110,7 +110,7 @@ TEST_F(PlantAppTest, LockstepAppliesCommandsOneTickLater) {
 // Tests that with a delay of 0 the command of tick k acts from tick k on.
 TEST_F(PlantAppTest, LockstepWithoutDelay) {
   AnswerAll();
-  StackConfig config = SmallStack();
+  settings::StackConfig config = SmallStack();
   config.plant.command_delay_ticks = 0;
   EXPECT_EQ(Run(config), 0);
   for (int64_t k = 1; k <= 100; ++k) EXPECT_EQ(states_[k].command_tick, k - 1);
@@ -160,7 +160,7 @@ TEST_F(PlantAppTest, LockstepNamesWhoLeft) {
 
 // Tests that a run does not start without its participants and says who is missing.
 TEST_F(PlantAppTest, NamesWhoIsNotReady) {
-  const StackConfig config = SmallStack();
+  const settings::StackConfig config = SmallStack();
   SimulatedRig rig(config);
   PlantApp plant(bus_, clock_, config, rig, {"logger"});
   process_status_t ready;
@@ -185,7 +185,7 @@ TEST_F(PlantAppTest, LockstepWaitsForTheLogger) {
     announced = true;
   });
   // The controllers are announced after the logger, so that the plant knows it when the run starts.
-  const StackConfig config = SmallStack();
+  const settings::StackConfig config = SmallStack();
   SimulatedRig rig(config);
   PlantApp plant(bus_, clock_, config, rig, {"logger"});
   for (const char* role : {"pressure_ctrl", "position_ctrl"}) {
@@ -220,8 +220,8 @@ TEST_F(PlantAppTest, LockstepIgnoresLoggersThatWereNotThere) {
 // Tests that in real time, on exact simulated time, each tick is published and the newest command acts.
 TEST_F(PlantAppTest, RealtimeTakesTheNewestCommand) {
   AnswerAll();
-  StackConfig config = SmallStack();
-  config.time.mode = TimeMode::kRealtime;
+  settings::StackConfig config = SmallStack();
+  config.time.mode = settings::TimeMode::kRealtime;
   EXPECT_EQ(Run(config), 0);
   ASSERT_EQ(states_.size(), 101u);
   EXPECT_EQ(states_.back().skipped_ticks, 0);
@@ -233,8 +233,8 @@ TEST_F(PlantAppTest, RealtimeTakesTheNewestCommand) {
 // equals that of a run without the gap in which the same voltage was held, and says how many ticks were
 // skipped.
 TEST_F(PlantAppTest, LateWakeUpIntegratesWhatItMissed) {
-  StackConfig config = SmallStack();
-  config.time.mode = TimeMode::kRealtime;
+  settings::StackConfig config = SmallStack();
+  config.time.mode = settings::TimeMode::kRealtime;
   config.time.duration_s = 0.05;
   config.last_tick = 50;
   const auto constant = [this](const state_t& s) { SendVoltage(s.tick, 1.5); };
@@ -244,7 +244,7 @@ TEST_F(PlantAppTest, LateWakeUpIntegratesWhatItMissed) {
   states_.clear();
 
   sequence_ = 0;
-  SimulatedClock late_clock;
+  bus::SimulatedClock late_clock;
   on_state_ = [&](const state_t& s) {
     constant(s);
     if (s.tick == 10) clock_.AdvanceTo(clock_.Now() + std::chrono::milliseconds(20));
@@ -267,8 +267,8 @@ TEST_F(PlantAppTest, LateWakeUpIntegratesWhatItMissed) {
 // Tests that in real time a silent pressure loop gives zero volts after the stale-input limit and a named
 // fault, and that the plant goes on and resumes when commands come again.
 TEST_F(PlantAppTest, RealtimeStaleCommandGivesZeroVolts) {
-  StackConfig config = SmallStack();
-  config.time.mode = TimeMode::kRealtime;
+  settings::StackConfig config = SmallStack();
+  config.time.mode = settings::TimeMode::kRealtime;
   config.limits.stale_input_s = 0.02;
   on_state_ = [this](const state_t& s) {
     if (s.tick < 30 || s.tick > 70) SendVoltage(s.tick, 1.5);
@@ -289,8 +289,8 @@ TEST_F(PlantAppTest, RealtimeStaleCommandGivesZeroVolts) {
 // Tests that a pressure loop that was stopped and then works off the states that have piled up moves nothing
 // with answers to states older than the stale-input limit, however many it sends.
 TEST_F(PlantAppTest, RealtimeAnswersToOldStatesGiveZeroVolts) {
-  StackConfig config = SmallStack();
-  config.time.mode = TimeMode::kRealtime;
+  settings::StackConfig config = SmallStack();
+  config.time.mode = settings::TimeMode::kRealtime;
   config.limits.stale_input_s = 0.02;
   on_state_ = [this](const state_t& s) {
     if (s.tick < 30) SendVoltage(s.tick, 1.5);
@@ -310,8 +310,8 @@ TEST_F(PlantAppTest, RealtimeAnswersToOldStatesGiveZeroVolts) {
 // Tests that a pressure loop slower than the stale-input limit is not called stale between its own samples,
 // even when its answers come a tick late.
 TEST_F(PlantAppTest, RealtimeSlowPressureLoopIsNotStale) {
-  StackConfig config = SmallStack();
-  config.time.mode = TimeMode::kRealtime;
+  settings::StackConfig config = SmallStack();
+  config.time.mode = settings::TimeMode::kRealtime;
   config.limits.stale_input_s = 0.02;
   config.pressure_interval_ticks = 50;
   on_state_ = [this](const state_t& s) {
@@ -324,7 +324,7 @@ TEST_F(PlantAppTest, RealtimeSlowPressureLoopIsNotStale) {
 
 // Tests that a command that is not finite acts as zero volts and is named.
 TEST_F(PlantAppTest, NonFiniteCommandGivesZeroVolts) {
-  StackConfig config = SmallStack();
+  settings::StackConfig config = SmallStack();
   on_state_ = [this](const state_t& s) {
     if (s.tick % 5 == 0) SendPressureCommand(s.tick);
     SendVoltage(s.tick, s.tick == 10 ? std::nan("") : 1.0);
@@ -338,8 +338,8 @@ TEST_F(PlantAppTest, NonFiniteCommandGivesZeroVolts) {
 
 // Tests that two senders of motor commands give zero volts and a named fault.
 TEST_F(PlantAppTest, SecondCommandSenderGivesZeroVolts) {
-  StackConfig config = SmallStack();
-  config.time.mode = TimeMode::kRealtime;
+  settings::StackConfig config = SmallStack();
+  config.time.mode = settings::TimeMode::kRealtime;
   on_state_ = [this](const state_t& s) {
     SendVoltage(s.tick, 1.0);
     if (s.tick == 20) SendVoltage(s.tick, 9.0, 99);
@@ -354,8 +354,8 @@ TEST_F(PlantAppTest, SecondCommandSenderGivesZeroVolts) {
 
 // Tests that a command from the future, as a log that is being played would send, is refused.
 TEST_F(PlantAppTest, FutureCommandIsRefused) {
-  StackConfig config = SmallStack();
-  config.time.mode = TimeMode::kRealtime;
+  settings::StackConfig config = SmallStack();
+  config.time.mode = settings::TimeMode::kRealtime;
   on_state_ = [this](const state_t& s) { SendVoltage(s.tick + 1000, 5); };
   Run(config);
   for (const state_t& s : states_) EXPECT_EQ(s.voltage, 0);
@@ -366,8 +366,8 @@ TEST_F(PlantAppTest, FutureCommandIsRefused) {
 // Tests that a command from the future also ends what acted before it, until a command that makes sense
 // comes.
 TEST_F(PlantAppTest, FutureCommandGivesZeroVolts) {
-  StackConfig config = SmallStack();
-  config.time.mode = TimeMode::kRealtime;
+  settings::StackConfig config = SmallStack();
+  config.time.mode = settings::TimeMode::kRealtime;
   on_state_ = [this](const state_t& s) {
     const bool future = s.tick >= 10 && s.tick < 20;
     SendVoltage(future ? s.tick + 1 : s.tick, 1.5);
@@ -383,7 +383,7 @@ TEST_F(PlantAppTest, FutureCommandGivesZeroVolts) {
 
 // Tests that an arm that runs out of its volume ends the run with an error that names the angle.
 TEST_F(PlantAppTest, ModelErrorEndsTheRun) {
-  StackConfig config = SmallStack();
+  settings::StackConfig config = SmallStack();
   config.model.arm_angle_rad = 0.84;
   config.last_tick = 20000;
   on_state_ = [this](const state_t& s) {
@@ -399,10 +399,10 @@ TEST_F(PlantAppTest, ModelErrorEndsTheRun) {
 
 // Tests that a configuration whose arm angle the model cannot have is bad input, not a failed run.
 TEST_F(PlantAppTest, ImpossibleAngleIsBadInput) {
-  StackConfig config = SmallStack();
+  settings::StackConfig config = SmallStack();
   config.model.arm_angle_rad = 1.5708;
   EXPECT_THROW(SimulatedRig{config}, InputError);
 }
 
 }  // namespace
-}  // namespace hydro
+}  // namespace hydro::plant

@@ -15,7 +15,7 @@
 #include "plant/simulated_rig.h"
 #include "tests/stack_fixture.h"
 
-namespace hydro {
+namespace hydro::plant {
 namespace {
 
 using namespace std::chrono_literals;
@@ -24,9 +24,9 @@ using ::testing::IsEmpty;
 using testing::SmallStack;
 
 // A clock whose wall time can be set and whose machine can be suspended.
-class DisturbedClock : public SimulatedClock {
+class DisturbedClock : public bus::SimulatedClock {
  public:
-  int64_t Utime() const override { return SimulatedClock::Utime() + step_us; }
+  int64_t Utime() const override { return bus::SimulatedClock::Utime() + step_us; }
   Duration Suspended() const override { return suspended; }
 
   int64_t step_us = 0;
@@ -36,14 +36,14 @@ class DisturbedClock : public SimulatedClock {
 class PlantFaultsTest : public ::testing::Test {
  protected:
   PlantFaultsTest() {
-    config_.time.mode = TimeMode::kRealtime;
+    config_.time.mode = settings::TimeMode::kRealtime;
     StartAgain();
   }
 
   // Another run, of which nothing is left of the one before.
   void StartAgain() {
     clock_ = DisturbedClock();
-    bus_ = std::make_unique<InProcessBus>(&clock_);
+    bus_ = std::make_unique<bus::InProcessBus>(&clock_);
     states_.clear();
     faults_.clear();
     answers_.clear();
@@ -116,8 +116,8 @@ class PlantFaultsTest : public ::testing::Test {
   }
 
   DisturbedClock clock_;
-  std::unique_ptr<InProcessBus> bus_;
-  StackConfig config_ = SmallStack();
+  std::unique_ptr<bus::InProcessBus> bus_;
+  settings::StackConfig config_ = SmallStack();
   std::function<void(const state_t&)> on_state_;
   bool answering_ = true;
   double voltage_ = 1.5;  // of our answers
@@ -145,7 +145,7 @@ TEST_F(PlantFaultsTest, SuspendEndsTheRun) {
 
 // Tests that with explicit re-arming it holds zero volts until then, though it is over at once.
 TEST_F(PlantFaultsTest, SuspendWaitsForARearm) {
-  config_.limits.rearm = Rearm::kExplicit;
+  config_.limits.rearm = settings::Rearm::kExplicit;
   on_state_ = [this](const state_t& s) {
     if (s.tick == 50) clock_.suspended = 3h;
     if (s.tick == 80) AskToRearm(80);
@@ -216,15 +216,15 @@ TEST_F(PlantFaultsTest, LatePlantWaitsForAFreshCommand) {
 TEST_F(PlantFaultsTest, LimitsEndTheRun) {
   struct Case {
     const char* code;
-    double LimitsSection::*limit;
+    double settings::LimitsSection::*limit;
     double value;
   };
   voltage_ = 9;
-  for (const Case& c : {Case{"pressure_limit", &LimitsSection::pressure_psi, 102},
-                        Case{"motor_speed_limit", &LimitsSection::motor_speed_rad_s, 5},
-                        Case{"arm_angle_limit", &LimitsSection::arm_angle_rad, 1e-6}}) {
+  for (const Case& c : {Case{"pressure_limit", &settings::LimitsSection::pressure_psi, 102},
+                        Case{"motor_speed_limit", &settings::LimitsSection::motor_speed_rad_s, 5},
+                        Case{"arm_angle_limit", &settings::LimitsSection::arm_angle_rad, 1e-6}}) {
     StartAgain();
-    config_.limits = LimitsSection{};
+    config_.limits = settings::LimitsSection{};
     config_.limits.*c.limit = c.value;
     EXPECT_EQ(Run(), 1);
     ASSERT_EQ(faults_.size(), 1u) << c.code;
@@ -237,7 +237,7 @@ TEST_F(PlantFaultsTest, LimitsEndTheRun) {
 
 // Tests the rows of a re-arm: to another session, of an old tick, while the cause persists, and a good one.
 TEST_F(PlantFaultsTest, Rearm) {
-  config_.limits.rearm = Rearm::kExplicit;
+  config_.limits.rearm = settings::Rearm::kExplicit;
   config_.last_tick = 7000;
   on_state_ = [this](const state_t& s) {
     const bool bad = s.tick >= 10 && s.tick < 30;
@@ -276,7 +276,7 @@ TEST_F(PlantFaultsTest, SafeCommand) {
   ExpectVoltage(43, 100, 1.5);
 
   StartAgain();
-  config_.limits.rearm = Rearm::kExplicit;
+  config_.limits.rearm = settings::Rearm::kExplicit;
   EXPECT_EQ(Run(), 1);  // it was not re-armed
   EXPECT_THAT(Codes(), ::testing::ElementsAre("+controller_fault"));
   ExpectVoltage(42, 100, 0);
@@ -286,7 +286,7 @@ TEST_F(PlantFaultsTest, SafeCommand) {
 // Tests that a fault that the position loop names is latched too, that it stands until the loop takes it back
 // or is replaced, and that a warning is not.
 TEST_F(PlantFaultsTest, FaultOfThePositionLoop) {
-  config_.limits.rearm = Rearm::kExplicit;
+  config_.limits.rearm = settings::Rearm::kExplicit;
   const auto fault = [this](const char* code, bool active) {
     fault_t f{};
     f.session = 33;
@@ -372,4 +372,4 @@ TEST_F(PlantFaultsTest, LoggerFailed) {
 }
 
 }  // namespace
-}  // namespace hydro
+}  // namespace hydro::plant

@@ -11,7 +11,7 @@
 #include "plant/plant_app.h"
 #include "tests/stack_fixture.h"
 
-namespace hydro {
+namespace hydro::plant {
 namespace {
 
 using testing::SmallStack;
@@ -20,9 +20,9 @@ using testing::SmallStack;
 class RecordingRig : public Rig {
  public:
   std::string role() const override { return "driver"; }
-  Measurement Read(int64_t tick) override {
+  model::Measurement Read(int64_t tick) override {
     if (on_read) on_read(tick);
-    Measurement measured;
+    model::Measurement measured;
     measured.p1 = measured.p2 = 100;
     return measured;
   }
@@ -47,7 +47,7 @@ class RecordingRig : public Rig {
 class PlantRigTest : public ::testing::Test {
  protected:
   PlantRigTest() {
-    config_.time.mode = TimeMode::kRealtime;
+    config_.time.mode = settings::TimeMode::kRealtime;
     bus_.Subscribe<state_t>("HYDRO_STATE", [this](const state_t& s) {
       states_.push_back(s);
       motor_command_t command{};
@@ -78,9 +78,9 @@ class PlantRigTest : public ::testing::Test {
     return exit_code;
   }
 
-  SimulatedClock clock_;
-  InProcessBus bus_{&clock_};
-  StackConfig config_ = SmallStack();
+  bus::SimulatedClock clock_;
+  bus::InProcessBus bus_{&clock_};
+  settings::StackConfig config_ = SmallStack();
   RecordingRig rig_;
   bool answers_ = true;
   double voltage_ = 1.5;
@@ -154,7 +154,7 @@ TEST_F(PlantRigTest, RigFaults) {
 // Tests that an error of the rig ends the run with 1: zero volts, then a latched fault of its name.
 TEST_F(PlantRigTest, RigError) {
   rig_.on_read = [](int64_t tick) {
-    if (tick == 30) throw hydro::RigError("board_error", "no answer");
+    if (tick == 30) throw hydro::plant::RigError("board_error", "no answer");
   };
   EXPECT_EQ(Run(), 1);
   EXPECT_EQ(failure_, "driver: no answer");
@@ -176,4 +176,4 @@ TEST_F(PlantRigTest, OtherExceptions) {
 }
 
 }  // namespace
-}  // namespace hydro
+}  // namespace hydro::plant

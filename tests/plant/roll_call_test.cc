@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace hydro {
+namespace hydro::plant {
 namespace {
 
 using ::testing::ElementsAre;
@@ -67,4 +67,4 @@ TEST(RollCallTest, KeepsNoFlood) {
 }
 
 }  // namespace
-}  // namespace hydro
+}  // namespace hydro::plant

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace hydro {
+namespace hydro::plant {
 namespace {
 
 // Tests that the noise is standard normal: mean, variance, and the share beyond one and two standard
@@ -46,13 +46,13 @@ TEST(SensorNoiseTest, IsUncorrelated) {
 // Tests that noise depends on nothing but seed, tick and signal, has the size asked for and leaves the rest
 // alone.
 TEST(SensorNoiseTest, ScalesAndLeavesTheRestAlone) {
-  Measurement truth;
+  model::Measurement truth;
   truth.p1 = 100;
   truth.p2 = 200;
-  NoiseSection noise;
+  settings::NoiseSection noise;
   noise.p2_psi = 3;
-  const Measurement a = ReadSensors(truth, noise, 7, 42);
-  const Measurement b = ReadSensors(truth, noise, 7, 42);
+  const model::Measurement a = ReadSensors(truth, noise, 7, 42);
+  const model::Measurement b = ReadSensors(truth, noise, 7, 42);
   EXPECT_EQ(a.p2, b.p2);
   EXPECT_DOUBLE_EQ(a.p2, 200 + 3 * StandardNormal(7, 42, 1));
   EXPECT_EQ(a.p1, 100);
@@ -64,19 +64,19 @@ TEST(SensorNoiseTest, ScalesAndLeavesTheRestAlone) {
 // Tests that a resolution rounds the noisy reading to its nearest multiple, each signal by its own, and that
 // the rounding of much smaller noise than the resolution hides it.
 TEST(SensorNoiseTest, RoundsToTheResolution) {
-  Measurement truth;
+  model::Measurement truth;
   truth.p1 = 100.3;
   truth.p2 = 200.3;
   truth.motor_angle = -1.0;
   truth.arm_speed = 0.3;
-  NoiseSection noise;
+  settings::NoiseSection noise;
   noise.p2_psi = 3;
   noise.p2_resolution_psi = 2000.0 / 4096;
   noise.motor_angle_resolution_rad = 2 * M_PI / 16384;
   noise.arm_speed_rad_s = 1e-6;
   noise.arm_speed_resolution_rad_s = 0.25;
   for (int tick = 0; tick < 100; ++tick) {
-    const Measurement reading = ReadSensors(truth, noise, 7, tick);
+    const model::Measurement reading = ReadSensors(truth, noise, 7, tick);
     EXPECT_EQ(reading.p1, 100.3);
     const double noisy = 200.3 + 3 * StandardNormal(7, tick, 1);
     EXPECT_LE(std::fabs(reading.p2 - noisy), 0.5 * noise.p2_resolution_psi + 1e-9);
@@ -88,4 +88,4 @@ TEST(SensorNoiseTest, RoundsToTheResolution) {
 }
 
 }  // namespace
-}  // namespace hydro
+}  // namespace hydro::plant

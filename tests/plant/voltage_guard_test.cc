@@ -12,7 +12,7 @@
 
 #include "process/fault_codes.h"
 
-namespace hydro {
+namespace hydro::plant {
 namespace {
 
 using ::testing::ElementsAre;
@@ -32,8 +32,8 @@ TEST(VoltageGuardTest, EveryCauseHasACode) {
     const std::string code = VoltageGuard::CodeOf(cause);
     codes.insert(code);
     bool known = false;
-    for (const FaultCode& entry : FaultCodes()) {
-      known = known || (entry.code == code && entry.effect == FaultEffect::kZeroVolts);
+    for (const process::FaultCode& entry : process::FaultCodes()) {
+      known = known || (entry.code == code && entry.effect == process::FaultEffect::kZeroVolts);
     }
     EXPECT_TRUE(known) << code;
   }
@@ -43,7 +43,7 @@ TEST(VoltageGuardTest, EveryCauseHasACode) {
 // Tests, of each cause in each mode, the voltage of five ticks: before it, with it, when it has gone, and
 // after a re-arm.
 TEST(VoltageGuardTest, TicksInVoltageOut) {
-  for (const Rearm rearm : {Rearm::kRestart, Rearm::kExplicit}) {
+  for (const settings::Rearm rearm : {settings::Rearm::kRestart, settings::Rearm::kExplicit}) {
     for (const Cause cause : AllCauses()) {
       VoltageGuard guard(rearm);
       std::vector<double> volts;
@@ -56,7 +56,7 @@ TEST(VoltageGuardTest, TicksInVoltageOut) {
       tick(true);
       tick(true);
       tick(false);
-      const bool latches = rearm == Rearm::kExplicit || VoltageGuard::Trips(cause);
+      const bool latches = rearm == settings::Rearm::kExplicit || VoltageGuard::Trips(cause);
       EXPECT_EQ(guard.any_latched(), latches);
       guard.Release(&standing);
       EXPECT_THAT(standing, IsEmpty());
@@ -68,7 +68,7 @@ TEST(VoltageGuardTest, TicksInVoltageOut) {
 
 // Tests that nothing is released while any cause, be it another one, is present.
 TEST(VoltageGuardTest, ReleasesNothingWhileACauseStands) {
-  VoltageGuard guard(Rearm::kExplicit);
+  VoltageGuard guard(settings::Rearm::kExplicit);
   guard.Set(Cause::kStaleCommand, true);
   guard.Set(Cause::kStaleCommand, false);
   guard.Set(Cause::kPressureLimit, true);
@@ -84,7 +84,7 @@ TEST(VoltageGuardTest, ReleasesNothingWhileACauseStands) {
 
 // Tests that zero volts stay zero volts for what is not a number, too.
 TEST(VoltageGuardTest, HidesWhatIsNotANumber) {
-  VoltageGuard guard(Rearm::kRestart);
+  VoltageGuard guard(settings::Rearm::kRestart);
   guard.Set(Cause::kNonfiniteCommand, true);
   EXPECT_EQ(guard.Voltage(std::numeric_limits<double>::quiet_NaN()), 0);
 }
@@ -101,16 +101,16 @@ std::string Document(const char* name) {
 TEST(FaultCodesTest, AreDocumented) {
   const std::string list = Document("faults.md");
   const std::string table = Document("safety.md");
-  for (const FaultCode& entry : FaultCodes()) {
+  for (const process::FaultCode& entry : process::FaultCodes()) {
     const std::string code(entry.code);
     const size_t place = list.find("`" + code + "`");
     ASSERT_NE(place, std::string::npos) << code;
     const size_t row = list.rfind('\n', place) + 1;
     const std::string line = list.substr(row, list.find('\n', place) - row);
     EXPECT_TRUE(line.starts_with("| `")) << line;
-    const std::string effect = entry.effect == FaultEffect::kZeroVolts ? "zero volts"
-                               : entry.effect == FaultEffect::kRamp    ? "ramp"
-                                                                       : "warning";
+    const std::string effect = entry.effect == process::FaultEffect::kZeroVolts ? "zero volts"
+                               : entry.effect == process::FaultEffect::kRamp    ? "ramp"
+                                                                                : "warning";
     EXPECT_TRUE(line.ends_with("| " + effect + " |")) << line;
     const bool sensor = code.starts_with("sensor_");
     const bool second = code.starts_with("second_");
@@ -126,11 +126,11 @@ TEST(FaultCodesTest, AreDocumented) {
 
 // Tests that a code that nobody knows is taken for one that zeroes the voltage.
 TEST(FaultCodesTest, UnknownIsTakenSeriously) {
-  EXPECT_TRUE(ZeroesVoltage("what_is_this"));
-  EXPECT_TRUE(ZeroesVoltage("pressure_limit"));
-  EXPECT_FALSE(ZeroesVoltage("logger_gone"));
-  EXPECT_FALSE(ZeroesVoltage("stale_pressure_command"));
+  EXPECT_TRUE(process::ZeroesVoltage("what_is_this"));
+  EXPECT_TRUE(process::ZeroesVoltage("pressure_limit"));
+  EXPECT_FALSE(process::ZeroesVoltage("logger_gone"));
+  EXPECT_FALSE(process::ZeroesVoltage("stale_pressure_command"));
 }
 
 }  // namespace
-}  // namespace hydro
+}  // namespace hydro::plant

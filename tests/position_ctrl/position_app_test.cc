@@ -10,7 +10,7 @@
 #include "bus/in_process_bus.h"
 #include "tests/stack_fixture.h"
 
-namespace hydro {
+namespace hydro::position_ctrl {
 namespace {
 
 using ::testing::ElementsAre;
@@ -20,7 +20,7 @@ using namespace std::chrono_literals;
 // The position loop on an in-process bus; the test plays the plant.
 class PositionAppTest : public ::testing::Test {
  protected:
-  void Start(const StackConfig& config) {
+  void Start(const settings::StackConfig& config) {
     app_ = std::make_unique<PositionApp>(bus_, clock_, config);
     bus_.Subscribe<pressure_command_t>("HYDRO_PRESSURE_COMMAND",
                                        [this](const pressure_command_t& c) { commands_.push_back(c); });
@@ -46,16 +46,16 @@ class PositionAppTest : public ::testing::Test {
     Deliver();
   }
 
-  static StackConfig WithReference(ReferenceSignal signal, double value) {
-    StackConfig config = SmallStack();
+  static settings::StackConfig WithReference(settings::ReferenceSignal signal, double value) {
+    settings::StackConfig config = SmallStack();
     config.reference.signal = signal;
     config.reference.trajectory.initial = 0;
     config.reference.trajectory.steps = {{0.005, value}};
     return config;
   }
 
-  SimulatedClock clock_;
-  InProcessBus bus_{&clock_};
+  bus::SimulatedClock clock_;
+  bus::InProcessBus bus_{&clock_};
   std::unique_ptr<PositionApp> app_;
   std::vector<pressure_command_t> commands_;
   std::vector<arm_reference_t> references_;
@@ -64,7 +64,7 @@ class PositionAppTest : public ::testing::Test {
 
 // Tests that exactly the ticks that are multiples of the sample interval get a command, with its reference.
 TEST_F(PositionAppTest, ActsEveryNthTick) {
-  Start(WithReference(ReferenceSignal::kArmAngle, 0.1));
+  Start(WithReference(settings::ReferenceSignal::kArmAngle, 0.1));
   for (int64_t tick = 0; tick <= 12; ++tick) SendState(tick, 0);
   std::vector<int64_t> ticks;
   for (const auto& c : commands_) ticks.push_back(c.tick);
@@ -77,7 +77,7 @@ TEST_F(PositionAppTest, ActsEveryNthTick) {
 
 // Tests eq. (17) through the messages: c1 = 1000, c2 = 30, T = 5 ms, derivative on the measurement.
 TEST_F(PositionAppTest, AppliesEquation17) {
-  Start(WithReference(ReferenceSignal::kArmAngle, 0.1));
+  Start(WithReference(settings::ReferenceSignal::kArmAngle, 0.1));
   SendState(0, 0.001);
   SendState(5, 0.002);
   ASSERT_EQ(commands_.size(), 2u);
@@ -87,7 +87,7 @@ TEST_F(PositionAppTest, AppliesEquation17) {
 }
 
 struct PassThrough {
-  ReferenceSignal signal;
+  settings::ReferenceSignal signal;
   double pressure_ref, voltage;
   bool open_loop;
   int8_t code;
@@ -106,15 +106,17 @@ TEST_P(PassThroughTest, PassesTheReferenceThrough) {
   EXPECT_EQ(references_[0].value, 184);
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    Signals, PassThroughTest,
-    ::testing::Values(PassThrough{ReferenceSignal::kPressure, 184, 0, false, arm_reference_t::PRESSURE},
-                      PassThrough{ReferenceSignal::kTorque, 50, 0, false, arm_reference_t::TORQUE},
-                      PassThrough{ReferenceSignal::kVoltage, 0, 184, true, arm_reference_t::VOLTAGE}));
+INSTANTIATE_TEST_SUITE_P(Signals, PassThroughTest,
+                         ::testing::Values(PassThrough{settings::ReferenceSignal::kPressure, 184, 0, false,
+                                                       arm_reference_t::PRESSURE},
+                                           PassThrough{settings::ReferenceSignal::kTorque, 50, 0, false,
+                                                       arm_reference_t::TORQUE},
+                                           PassThrough{settings::ReferenceSignal::kVoltage, 0, 184, true,
+                                                       arm_reference_t::VOLTAGE}));
 
 // Tests that the torque limit holds for every kind of reference and that the D/A has its levels.
 TEST_F(PositionAppTest, LimitsAndQuantises) {
-  StackConfig config = WithReference(ReferenceSignal::kPressure, 1000);
+  settings::StackConfig config = WithReference(settings::ReferenceSignal::kPressure, 1000);
   config.limits.arm_torque_in_lbf = 3.68 * 300.3;
   config.position.dac_bits = 12;
   config.position.dac_range_psi = 2048;
@@ -126,7 +128,7 @@ TEST_F(PositionAppTest, LimitsAndQuantises) {
 // Tests that an arm angle that is not finite gives an open-loop command of zero volts and a fault, and that
 // the loop starts afresh, without a derivative across the gap, when the angle is back.
 TEST_F(PositionAppTest, NonFiniteAngleGivesZeroVolts) {
-  Start(WithReference(ReferenceSignal::kArmAngle, 0));
+  Start(WithReference(settings::ReferenceSignal::kArmAngle, 0));
   SendState(0, 0.1);
   SendState(5, std::nan(""));
   ASSERT_EQ(commands_.size(), 2u);
@@ -142,7 +144,7 @@ TEST_F(PositionAppTest, NonFiniteAngleGivesZeroVolts) {
 
 // Tests that a state that is sent again gets the same answer again.
 TEST_F(PositionAppTest, RepeatsTheAnswerToARepeatedState) {
-  Start(WithReference(ReferenceSignal::kArmAngle, 0));
+  Start(WithReference(settings::ReferenceSignal::kArmAngle, 0));
   SendState(0, 0.1);
   SendState(0, 0.1);
   ASSERT_EQ(commands_.size(), 2u);
@@ -154,7 +156,7 @@ TEST_F(PositionAppTest, RepeatsTheAnswerToARepeatedState) {
 // Tests that a sample that was overtaken on its way by states that are none is answered, one that was
 // overtaken by a newer sample is not, and that neither they nor other overtaken states repeat an answer.
 TEST_F(PositionAppTest, OvertakenSamples) {
-  Start(WithReference(ReferenceSignal::kArmAngle, 0.1));
+  Start(WithReference(settings::ReferenceSignal::kArmAngle, 0.1));
   for (const int64_t tick : {0, 1, 2, 3, 4, 6, 7, 5, 8, 6, 15, 10, 14, 20}) SendState(tick, 0);
   std::vector<int64_t> ticks, numbers;
   for (const auto& c : commands_) {
@@ -167,7 +169,7 @@ TEST_F(PositionAppTest, OvertakenSamples) {
 
 // end of a run, when everybody leaves, it adds nothing.
 TEST_F(PositionAppTest, LeavesWithZeroVolts) {
-  Start(WithReference(ReferenceSignal::kArmAngle, 0));
+  Start(WithReference(settings::ReferenceSignal::kArmAngle, 0));
   SendState(0, 0.1);
   SendState(3, 0.1);
   EXPECT_EQ(app_->Finish(), 0);
@@ -178,7 +180,7 @@ TEST_F(PositionAppTest, LeavesWithZeroVolts) {
   EXPECT_EQ(commands_[1].voltage, 0);
 }
 TEST_F(PositionAppTest, AddsNothingAfterTheEnd) {
-  Start(WithReference(ReferenceSignal::kArmAngle, 0));
+  Start(WithReference(settings::ReferenceSignal::kArmAngle, 0));
   SendState(0, 0.1);
   bus_.Publish("HYDRO_STOP", stop_t{});
   Deliver();
@@ -189,7 +191,7 @@ TEST_F(PositionAppTest, AddsNothingAfterTheEnd) {
 
 // Tests that in lockstep a silent plant ends this process with an error in less than 2 s.
 TEST_F(PositionAppTest, LockstepEndsWhenThePlantStalls) {
-  Start(WithReference(ReferenceSignal::kArmAngle, 0));
+  Start(WithReference(settings::ReferenceSignal::kArmAngle, 0));
   SendState(0, 0);
   clock_.AdvanceTo(clock_.Now() + 1890ms);
   app_->Poll();
@@ -201,4 +203,4 @@ TEST_F(PositionAppTest, LockstepEndsWhenThePlantStalls) {
 }
 
 }  // namespace
-}  // namespace hydro
+}  // namespace hydro::position_ctrl

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace hydro {
+namespace hydro::position_ctrl {
 namespace {
 
 PositionLawSettings Settings(bool derivative_on_error) {
@@ -77,4 +77,4 @@ TEST(QuantiseDacTest, ErrorIsAtMostHalfALevel) {
 }
 
 }  // namespace
-}  // namespace hydro
+}  // namespace hydro::position_ctrl

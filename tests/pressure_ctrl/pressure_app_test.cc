@@ -11,7 +11,7 @@
 #include "bus/in_process_bus.h"
 #include "tests/stack_fixture.h"
 
-namespace hydro {
+namespace hydro::pressure_ctrl {
 namespace {
 
 using ::testing::ElementsAre;
@@ -21,7 +21,7 @@ using namespace std::chrono_literals;
 // The pressure loop on an in-process bus; the test plays plant and position loop.
 class PressureAppTest : public ::testing::Test {
  protected:
-  void Start(const StackConfig& config) {
+  void Start(const settings::StackConfig& config) {
     app_ = std::make_unique<PressureApp>(bus_, clock_, config);
     bus_.Subscribe<motor_command_t>("HYDRO_MOTOR_COMMAND",
                                     [this](const motor_command_t& c) { commands_.push_back(c); });
@@ -63,8 +63,8 @@ class PressureAppTest : public ::testing::Test {
 
   static double Law(double pressure_ref) { return 0.125 * ((pressure_ref - 100) - 8 * 5); }
 
-  SimulatedClock clock_;
-  InProcessBus bus_{&clock_};
+  bus::SimulatedClock clock_;
+  bus::InProcessBus bus_{&clock_};
   std::unique_ptr<PressureApp> app_;
   std::vector<motor_command_t> commands_;
   std::vector<fault_t> faults_;
@@ -91,7 +91,7 @@ TEST_F(PressureAppTest, PressureCommandActsOneTickLater) {
 
 // Tests that with no command delay the loop waits, in lockstep, for the pressure command of the same tick.
 TEST_F(PressureAppTest, WithoutDelayTheSameTicksPressureCommandActs) {
-  StackConfig config = SmallStack();
+  settings::StackConfig config = SmallStack();
   config.plant.command_delay_ticks = 0;
   Start(config);
   SendState(State(0));
@@ -165,7 +165,7 @@ TEST_F(PressureAppTest, NonFiniteStateGivesZeroVolts) {
 // Tests that gains whose products overflow give zero volts and a named fault, never a voltage that is not a
 // number.
 TEST_F(PressureAppTest, OverflowOfTheLawGivesZeroVolts) {
-  StackConfig config = SmallStack();
+  settings::StackConfig config = SmallStack();
   config.pressure.k_p = 1e300;
   config.pressure.k_v = 1e300;
   config.pressure.reference_feedforward_V_psi = 1e308;
@@ -231,8 +231,8 @@ INSTANTIATE_TEST_SUITE_P(BothSides, PressureLimitTest, ::testing::Values(&state_
 // limit, goes to zero in a line within limits.pressure_ramp_s, and that then the voltage is zero: counted in
 // ticks, so that a replay does the same. The loop resumes with the next pressure command.
 TEST_F(PressureAppTest, StalePressureReferenceGoesToZeroThenTheVoltage) {
-  StackConfig config = SmallStack();
-  config.time.mode = TimeMode::kRealtime;
+  settings::StackConfig config = SmallStack();
+  config.time.mode = settings::TimeMode::kRealtime;
   config.limits.stale_input_s = 0.02;  // 20 ticks, beside one sample interval of 5 and the delay of 1
   config.limits.pressure_ramp_s = 0.01;
   Start(config);
@@ -261,10 +261,10 @@ TEST_F(PressureAppTest, StalePressureReferenceGoesToZeroThenTheVoltage) {
 // Tests that without a ramp, and for a voltage, which nothing would follow down, zero volts come at once.
 TEST_F(PressureAppTest, StaleVoltageGivesZeroVolts) {
   for (const bool open_loop : {false, true}) {
-    clock_ = SimulatedClock();
-    InProcessBus bus(&clock_);
-    StackConfig config = SmallStack();
-    config.time.mode = TimeMode::kRealtime;
+    clock_ = bus::SimulatedClock();
+    bus::InProcessBus bus(&clock_);
+    settings::StackConfig config = SmallStack();
+    config.time.mode = settings::TimeMode::kRealtime;
     config.limits.stale_input_s = 0.02;
     config.limits.pressure_ramp_s = open_loop ? 0.2 : 0;
     PressureApp app(bus, clock_, config);
@@ -291,7 +291,7 @@ TEST_F(PressureAppTest, StaleVoltageGivesZeroVolts) {
 // Tests that a reference beyond what limits.arm_torque_in_lbf allows is not followed, while one at it is,
 // half a step of the D/A converter included.
 TEST_F(PressureAppTest, ExcessivePressureReferenceGivesZeroVolts) {
-  StackConfig config = SmallStack();
+  settings::StackConfig config = SmallStack();
   config.limits.arm_torque_in_lbf = 368;  // 100 psi
   config.position.dac_bits = 12;
   config.position.dac_range_psi = 2048;  // steps of 1 psi
@@ -316,8 +316,8 @@ TEST_F(PressureAppTest, ExcessivePressureReferenceGivesZeroVolts) {
 // Tests that a command for a tick that is far from having been is refused, zeroes the voltage, and holds up
 // nothing that comes after it.
 TEST_F(PressureAppTest, FuturePressureCommandGivesZeroVolts) {
-  StackConfig config = SmallStack();
-  config.time.mode = TimeMode::kRealtime;
+  settings::StackConfig config = SmallStack();
+  config.time.mode = settings::TimeMode::kRealtime;
   config.limits.stale_input_s = 0.02;
   Start(config);
   SendPressure(0, 120);
@@ -344,7 +344,7 @@ TEST_F(PressureAppTest, FuturePressureCommandGivesZeroVolts) {
 
 // Tests that an arm beyond its limit trips as a pressure does.
 TEST_F(PressureAppTest, ArmAngleLimitTrips) {
-  StackConfig config = SmallStack();
+  settings::StackConfig config = SmallStack();
   config.limits.arm_angle_rad = 0.8;
   Start(config);
   state_t s = State(0);
@@ -361,8 +361,8 @@ TEST_F(PressureAppTest, ArmAngleLimitTrips) {
 // Tests that where faults are ended explicitly (by the plant, which holds the voltage at zero) this loop goes
 // on and says when the limit is kept again.
 TEST_F(PressureAppTest, ExplicitRearmEndsNothingHere) {
-  StackConfig config = SmallStack();
-  config.limits.rearm = Rearm::kExplicit;
+  settings::StackConfig config = SmallStack();
+  config.limits.rearm = settings::Rearm::kExplicit;
   Start(config);
   SendState(State(0));
   SendPressure(0, 120);
@@ -382,8 +382,8 @@ TEST_F(PressureAppTest, ExplicitRearmEndsNothingHere) {
 
 // Tests that in real time a silent plant gives a zero-volt command first and a fault second.
 TEST_F(PressureAppTest, StaleStateGivesZeroVolts) {
-  StackConfig config = SmallStack();
-  config.time.mode = TimeMode::kRealtime;
+  settings::StackConfig config = SmallStack();
+  config.time.mode = settings::TimeMode::kRealtime;
   Start(config);
   SendState(State(0));
   clock_.AdvanceTo(clock_.Now() + 99ms);
@@ -424,8 +424,8 @@ TEST_F(PressureAppTest, LockstepEndsWhenThePlantStalls) {
 
 // Tests that two plants on one network give zero volts and a named fault while the second is heard.
 TEST_F(PressureAppTest, SecondStateSenderGivesZeroVolts) {
-  StackConfig config = SmallStack();
-  config.time.mode = TimeMode::kRealtime;
+  settings::StackConfig config = SmallStack();
+  config.time.mode = settings::TimeMode::kRealtime;
   Start(config);
   SendState(State(0));
   plant_session_ = 4;
@@ -467,7 +467,7 @@ TEST_F(PressureAppTest, FinishesWithZeroVolts) {
 
 // Tests that a loop slower than the plant acts on its own multiples only.
 TEST_F(PressureAppTest, ActsOnItsOwnMultiples) {
-  StackConfig config = SmallStack();
+  settings::StackConfig config = SmallStack();
   config.pressure_interval_ticks = 2;
   Start(config);
   SendPressure(0, 120);
@@ -478,4 +478,4 @@ TEST_F(PressureAppTest, ActsOnItsOwnMultiples) {
 }
 
 }  // namespace
-}  // namespace hydro
+}  // namespace hydro::pressure_ctrl

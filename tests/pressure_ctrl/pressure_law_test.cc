@@ -9,7 +9,7 @@
 #include "model/linearise.h"
 #include "tests/table1.h"
 
-namespace hydro {
+namespace hydro::pressure_ctrl {
 namespace {
 
 using testing::Table1;
@@ -17,7 +17,7 @@ using testing::Table1;
 // Eigenvalues of the closed loop of eqs. (4), (13), (14), (16) at alpha = 0, frictionless and without
 // leakage, written out here from the equations themselves: states p1, p2, theta'; side 1 at p_3 when only one
 // side compresses.
-SecondOrder ClosedLoop(const Parameters& p, const PressureGains& gains, int compressed_sides) {
+SecondOrder ClosedLoop(const model::Parameters& p, const PressureGains& gains, int compressed_sides) {
   const double rise2 = p.beta / p.V_ms * p.D;                               // d p2'/d theta', eq. (14)
   const double rise1 = compressed_sides == 2 ? -p.beta / p.V_ms * p.D : 0;  // d p1'/d theta', eq. (13)
   // dp' = (rise2 - rise1) theta';  J theta'' = -k_1 k_p dp - k_1 k_p k_v theta' - D dp - b theta'
@@ -53,27 +53,28 @@ TEST(PressureLawTest, DerivedGainsGiveTheLoopAskedFor) {
 
 // Tests the same away from mid-stroke, where the two volumes differ, on the model's own linearisation.
 TEST(PressureLawTest, DerivedGainsGiveTheLoopAskedForAwayFromMidstroke) {
-  ModelDescription model;
+  model::ModelDescription model;
   model.parameters = Table1();
   for (const double arm_angle : {0.4, -0.6}) {
-    ActuatorOptions options;
-    options.shaft = Shaft::kClamped;
+    model::ActuatorOptions options;
+    options.shaft = model::Shaft::kClamped;
     options.arm_angle = arm_angle;
-    const Equations equations(model, options);
+    const model::Equations equations(model, options);
     for (const int sides : {1, 2}) {
-      Mode mode;
+      model::Mode mode;
       mode.pump = 1;
       mode.valve_1 = sides == 1;  // holds side 1 at p_3
       const double state[] = {0, 1, 100, 400};
-      const LinearModel linear = Linearise(equations, 0, 0, mode, state);
+      const model::LinearModel linear = model::Linearise(equations, 0, 0, mode, state);
       const auto A = [&](int i, int j) { return linear.A[i + j * 4]; };
       const PressureGains gains = DerivePressureGains(model.parameters, arm_angle, 150, 0.5, sides);
       // v = -k_p (dp + k_v theta') closes the loop of dp' = rise theta' and theta'' = A theta' + A dp + B v.
-      const double rise = A(kP2, kMotorSpeed) - A(kP1, kMotorSpeed);
-      const double B = linear.B[kMotorSpeed];
-      const double omega = std::sqrt(rise * (B * gains.k_p - A(kMotorSpeed, kP2)));
+      const double rise = A(model::kP2, model::kMotorSpeed) - A(model::kP1, model::kMotorSpeed);
+      const double B = linear.B[model::kMotorSpeed];
+      const double omega = std::sqrt(rise * (B * gains.k_p - A(model::kMotorSpeed, model::kP2)));
       EXPECT_NEAR(omega, 150, 1e-9) << arm_angle << ", " << sides;
-      EXPECT_NEAR((B * gains.k_p * gains.k_v - A(kMotorSpeed, kMotorSpeed)) / (2 * omega), 0.5, 1e-12);
+      EXPECT_NEAR((B * gains.k_p * gains.k_v - A(model::kMotorSpeed, model::kMotorSpeed)) / (2 * omega), 0.5,
+                  1e-12);
       const SecondOrder loop = PressureLoopDynamics(model.parameters, arm_angle, gains, sides);
       EXPECT_NEAR(loop.natural_frequency, 150, 1e-9);
       EXPECT_NEAR(loop.damping_ratio, 0.5, 1e-12);
@@ -93,7 +94,7 @@ TEST(PressureLawTest, TwoSidedGainsInTheOneSidedMode) {
 // against values computed independently: 106.6 rad/s, damping 0.709. Leakage moves the frequency by 0.4 %,
 // which the derivation leaves out.
 TEST(PressureLawTest, LeakageMovesTheLoopLittle) {
-  const Parameters p = Table1();
+  const model::Parameters p = Table1();
   const PressureGains gains{0.134, 8.4};
   const SecondOrder loop = PressureLoopDynamics(p, 0, gains, 1);
   // dp' = s theta' - l dp adds l (b + k_1 k_p k_v)/J to omega^2 and l to 2 zeta omega.
@@ -141,7 +142,7 @@ TEST(PressureLawTest, Saturates) {
 // Tests that the feed-forward removes the steady-state error of the frictionless clamped actuator: at dp =
 // dp_ref, with the speed that makes up for the leakage, the law's torque is what eq. (4) needs.
 TEST(PressureLawTest, FeedforwardHoldsTheReference) {
-  Parameters p = Table1();
+  model::Parameters p = Table1();
   const PressureGains gains = DerivePressureGains(p, 0, 150, 0.5, 2);
   PressureLawSettings settings{gains, 10, SteadyStateFeedforward(p, gains), 0};
   const double dp = 300;
@@ -151,4 +152,4 @@ TEST(PressureLawTest, FeedforwardHoldsTheReference) {
 }
 
 }  // namespace
-}  // namespace hydro
+}  // namespace hydro::pressure_ctrl

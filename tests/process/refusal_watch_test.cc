@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace hydro {
+namespace hydro::process {
 namespace {
 
 using namespace std::chrono_literals;
@@ -15,8 +15,8 @@ using testing::Not;
 // it.
 TEST(RefusalWatchTest, BeginsAndEnds) {
   RefusalWatch watch;
-  RefusedMessages refused;
-  Clock::TimePoint now{1h};
+  bus::RefusedMessages refused;
+  bus::Clock::TimePoint now{1h};
   EXPECT_EQ(watch.Observe(refused, now), News::kNone);
   refused.unsealed = 2;
   refused.last_channel = "HYDRO_MOTOR_COMMAND";
@@ -39,8 +39,8 @@ TEST(RefusalWatchTest, BeginsAndEnds) {
 // Tests that a second burst counts anew.
 TEST(RefusalWatchTest, CountsEachBurst) {
   RefusalWatch watch;
-  RefusedMessages refused;
-  Clock::TimePoint now{1h};
+  bus::RefusedMessages refused;
+  bus::Clock::TimePoint now{1h};
   refused.unsealed = 5;
   watch.Observe(refused, now);
   EXPECT_EQ(watch.Observe(refused, now + 2s), News::kEnds);
@@ -53,4 +53,4 @@ TEST(RefusalWatchTest, CountsEachBurst) {
 }
 
 }  // namespace
-}  // namespace hydro
+}  // namespace hydro::process

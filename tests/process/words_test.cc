@@ -8,7 +8,7 @@
 #include <chrono>
 #include <string>
 
-namespace hydro {
+namespace hydro::process {
 namespace {
 
 using namespace std::chrono_literals;
@@ -64,4 +64,4 @@ TEST_F(WordsTest, EndsThoughNobodyReads) {
 }
 
 }  // namespace
-}  // namespace hydro
+}  // namespace hydro::process

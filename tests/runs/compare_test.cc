@@ -11,7 +11,7 @@
 #include "runs/message_fields.h"
 #include "tests/log/log_fixture.h"
 
-namespace hydro {
+namespace hydro::runs {
 namespace {
 
 using testing::AllOf;
@@ -33,7 +33,7 @@ void Change(std::string& value) { value += '.'; }
 // Changes each field of the message `pick` gives in turn, and expects that it is named.
 template <class Pick>
 void ExpectEachFieldNamed(const std::string& channel, Pick pick) {
-  const RunMessages a = SampleRun(12);
+  const RunMessages a = log::SampleRun(12);
   const auto expect_named = [&](const auto& field) {
     RunMessages b = a;
     auto& message = pick(b);
@@ -66,7 +66,7 @@ TEST(CompareTest, EachFieldOfEachMessage) {
 
 // Tests the whole line.
 TEST(CompareTest, Line) {
-  RunMessages a = SampleRun(3);
+  RunMessages a = log::SampleRun(3);
   RunMessages b = a;
   a.states[1].p2 = 101.25;
   b.states[1].p2 = 101.26;
@@ -77,7 +77,7 @@ TEST(CompareTest, Line) {
 
 // Tests that wall-clock fields are left out.
 TEST(CompareTest, WallClockAndSessionsDoNotMatter) {
-  const RunMessages a = SampleRun(12);
+  const RunMessages a = log::SampleRun(12);
   RunMessages b = a;
   const auto change = [](auto& messages) {
     for (auto& message : messages) {
@@ -95,7 +95,7 @@ TEST(CompareTest, WallClockAndSessionsDoNotMatter) {
 
 // Tests that neither the order of arrival nor a message sent again makes a difference.
 TEST(CompareTest, OrderAndRepetitionDoNotMatter) {
-  const RunMessages a = SampleRun(40);
+  const RunMessages a = log::SampleRun(40);
   RunMessages b = a;
   std::mt19937_64 random(1);
   std::shuffle(b.states.begin(), b.states.end(), random);
@@ -110,7 +110,7 @@ TEST(CompareTest, OrderAndRepetitionDoNotMatter) {
 
 // Tests that a second message of the same tick and number that says something else is a difference.
 TEST(CompareTest, ContradictoryRepetition) {
-  const RunMessages a = SampleRun(12);
+  const RunMessages a = log::SampleRun(12);
   RunMessages b = a;
   b.motor_commands.push_back(b.motor_commands[3]);
   b.motor_commands.back().voltage += 1;
@@ -119,7 +119,7 @@ TEST(CompareTest, ContradictoryRepetition) {
 
 // Tests that a message missing at the start, in the middle or at the end of either run is named.
 TEST(CompareTest, MissingMessage) {
-  const RunMessages whole = SampleRun(12);
+  const RunMessages whole = log::SampleRun(12);
   for (const int64_t tick : {0, 6, 11}) {
     RunMessages part = whole;
     part.states.erase(part.states.begin() + tick);
@@ -132,7 +132,7 @@ TEST(CompareTest, MissingMessage) {
 
 // Tests that of several differences the one of the lowest tick is named, and within a tick the state's.
 TEST(CompareTest, NamesTheFirst) {
-  const RunMessages a = SampleRun(12);
+  const RunMessages a = log::SampleRun(12);
   RunMessages b = a;
   b.states[9].p1 += 1;
   b.motor_commands[4].voltage += 1;
@@ -144,7 +144,7 @@ TEST(CompareTest, NamesTheFirst) {
 // Tests that doubles are compared by their bits.
 TEST(CompareTest, BitsOfDoubles) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  RunMessages a = SampleRun(3);
+  RunMessages a = log::SampleRun(3);
   a.states[1].p1 = nan;
   RunMessages b = a;
   EXPECT_EQ(Difference(a, b), std::nullopt);
@@ -159,7 +159,7 @@ TEST(CompareTest, BitsOfDoubles) {
 // Tests that faults of two processes with the same tick and number are told apart, in whatever order they
 // came.
 TEST(CompareTest, FaultsOfTwoProcesses) {
-  RunMessages a = SampleRun(3);
+  RunMessages a = log::SampleRun(3);
   a.faults.push_back(a.faults[0]);
   a.faults.back().source = "plant";
   RunMessages b = a;
@@ -170,4 +170,4 @@ TEST(CompareTest, FaultsOfTwoProcesses) {
 }
 
 }  // namespace
-}  // namespace hydro
+}  // namespace hydro::runs

@@ -4,15 +4,15 @@
 
 #include "tests/log/log_fixture.h"
 
-namespace hydro {
+namespace hydro::runs {
 namespace {
 
 using testing::HasSubstr;
 
-class InfoTest : public LogTest {
+class InfoTest : public log::LogTest {
  protected:
   LogInfo InfoOf(const RunMessages& run, bool si = false) {
-    WriteRun(Path("log"), run);
+    log::WriteRun(Path("log"), run);
     return Summarise(ReadRunLog(Path("log")), si);
   }
 };
@@ -33,7 +33,7 @@ const SignalInfo& Signal(const LogInfo& info, const std::string& name) {
 
 // Tests the figures of a complete run.
 TEST_F(InfoTest, CompleteRun) {
-  const LogInfo info = InfoOf(SampleRun(101));
+  const LogInfo info = InfoOf(log::SampleRun(101));
   EXPECT_DOUBLE_EQ(info.duration_s, 0.1);
   EXPECT_EQ(info.ticks.states, 101);
   EXPECT_EQ(info.ticks.last, 100);
@@ -53,7 +53,7 @@ TEST_F(InfoTest, CompleteRun) {
 
 // Tests that lost, repeated and late-joined messages are counted by sender.
 TEST_F(InfoTest, LostAndRepeatedMessages) {
-  RunMessages run = SampleRun(20);
+  RunMessages run = log::SampleRun(20);
   run.states.erase(run.states.begin() + 5, run.states.begin() + 8);  // ticks 5 to 7
   run.states.push_back(run.states[2]);
   run.motor_commands.erase(run.motor_commands.begin(), run.motor_commands.begin() + 4);
@@ -73,7 +73,7 @@ TEST_F(InfoTest, LostAndRepeatedMessages) {
 
 // Tests that ticks the plant says it skipped are told from those that were lost.
 TEST_F(InfoTest, SkippedTicks) {
-  RunMessages run = SampleRun(20);
+  RunMessages run = log::SampleRun(20);
   run.states.erase(run.states.begin() + 5, run.states.begin() + 8);
   run.states[5].skipped_ticks = 2;
   const LogInfo info = InfoOf(run);
@@ -83,8 +83,8 @@ TEST_F(InfoTest, SkippedTicks) {
 
 // Tests that the configuration is shown key by key, with values of any kind on one line.
 TEST_F(InfoTest, ConfigurationOfTheRun) {
-  WriteRun(
-      Path("log"), SampleRun(2), "",
+  log::WriteRun(
+      Path("log"), log::SampleRun(2), "",
       "[[process]]\nprogram = \"a\"\ncpu = 1\n[limits]\nstale_input_s = 0.1\n[time]\nmode = \"lockstep\"\n"
       "[reference]\nsteps = [[0.2, 0.3], [2.2, -0.2]]\n");
   using Entry = std::pair<std::string, std::string>;
@@ -108,7 +108,7 @@ TEST_F(InfoTest, RepeatedStops) {
 
 // Tests that figures are in SI where that is asked for.
 TEST_F(InfoTest, SiUnits) {
-  const LogInfo info = InfoOf(SampleRun(3), true);
+  const LogInfo info = InfoOf(log::SampleRun(3), true);
   EXPECT_EQ(Signal(info, "p1").unit, "kPa");
   EXPECT_NEAR(Signal(info, "p1").min, 689.4757, 1e-3);
   EXPECT_EQ(Signal(info, "arm_angle").unit, "rad");
@@ -116,18 +116,18 @@ TEST_F(InfoTest, SiUnits) {
 
 // Tests that the texts hold what matters, for a log with everything and for one with nothing.
 TEST_F(InfoTest, Texts) {
-  const LogInfo info = InfoOf(SampleRun(11));
+  const LogInfo info = InfoOf(log::SampleRun(11));
   const std::string text = InfoText(info);
   for (const char* part :
        {"Table 1", "hydro-sim 1.2.3", "HYDRO_STATE", "stale_state", "plant.rate_hz = 1000"}) {
     EXPECT_THAT(text, HasSubstr(part));
   }
   EXPECT_THAT(InfoJson(info), HasSubstr("\"model_name\": \"Table 1\""));
-  WriteBytes(Path("empty"), "");
+  log::WriteBytes(Path("empty"), "");
   const LogInfo nothing = Summarise(ReadRunLog(Path("empty")), false);
   EXPECT_THAT(InfoText(nothing), HasSubstr("0 messages"));
   EXPECT_THAT(InfoJson(nothing), HasSubstr("\"messages\": 0"));
 }
 
 }  // namespace
-}  // namespace hydro
+}  // namespace hydro::runs

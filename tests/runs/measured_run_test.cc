@@ -7,7 +7,7 @@
 #include "runs/run_table.h"
 #include "tests/log/log_fixture.h"
 
-namespace hydro {
+namespace hydro::runs {
 namespace {
 
 using testing::AllOf;
@@ -34,15 +34,15 @@ p2 = { column = "p high", offset = 14.7 }
 p1 = 1.5
 )";
 
-class MeasuredRunTest : public LogTest {
+class MeasuredRunTest : public log::LogTest {
  protected:
   MeasuredRun Read(const std::string& sidecar = kSidecar, const std::string& table = kTable) {
-    WriteBytes(Path("run.csv"), table);
-    WriteBytes(Path("run.toml"), sidecar);
+    log::WriteBytes(Path("run.csv"), table);
+    log::WriteBytes(Path("run.toml"), sidecar);
     return ReadMeasuredRun(Path("run.csv"));
   }
   std::string ErrorOf(const std::string& sidecar, const std::string& table = kTable) {
-    const std::string error = InputErrorOf([&] { Read(sidecar, table); });
+    const std::string error = log::InputErrorOf([&] { Read(sidecar, table); });
     EXPECT_EQ(error.find('\n'), std::string::npos) << error;
     return error;
   }
@@ -81,7 +81,7 @@ TEST_F(MeasuredRunTest, TableWithSidecar) {
   const MeasuredRun run = Read();
   EXPECT_EQ(run.name, "bench, clamped");
   EXPECT_EQ(run.file, Path("run.csv"));
-  EXPECT_EQ(run.shaft, Shaft::kClamped);
+  EXPECT_EQ(run.shaft, model::Shaft::kClamped);
   EXPECT_EQ(run.arm_angle_rad, 0.25);
   EXPECT_FALSE(run.bypass);
   EXPECT_EQ(run.model_text, "");
@@ -103,17 +103,17 @@ TEST_F(MeasuredRunTest, LeastSidecar) {
   const MeasuredRun run =
       Read("shaft = \"free\"\nbypass = true\n[columns]\ntime = \"t\"\nvoltage = \"amps\"\n");
   EXPECT_EQ(run.name, "run");
-  EXPECT_EQ(run.shaft, Shaft::kFree);
+  EXPECT_EQ(run.shaft, model::Shaft::kFree);
   EXPECT_TRUE(run.bypass);
   EXPECT_FALSE(run.p1.measured());
 }
 
 // Tests that a MAT file has a sidecar like a CSV.
 TEST_F(MeasuredRunTest, MatWithSidecar) {
-  Table table;
+  tables::Table table;
   table.columns = {{"t", {0, 1}}, {"amps", {2, 3}}};
-  WriteTable(table, Path("bench.mat"));
-  WriteBytes(Path("bench.toml"), "shaft = \"free\"\n[columns]\ntime = \"t\"\nvoltage = \"amps\"\n");
+  tables::WriteTable(table, Path("bench.mat"));
+  log::WriteBytes(Path("bench.toml"), "shaft = \"free\"\n[columns]\ntime = \"t\"\nvoltage = \"amps\"\n");
   const MeasuredRun run = ReadMeasuredRun(Path("bench.mat"));
   EXPECT_EQ(run.name, "bench");
   EXPECT_THAT(run.voltage.values, ElementsAre(2, 3));
@@ -187,27 +187,28 @@ TEST_F(MeasuredRunTest, TableErrors) {
 
 // Tests that a missing table, a missing sidecar and a sidecar in the run's place are named.
 TEST_F(MeasuredRunTest, MissingFiles) {
-  EXPECT_THAT(InputErrorOf([&] { ReadMeasuredRun(Path("none.csv")); }),
+  EXPECT_THAT(log::InputErrorOf([&] { ReadMeasuredRun(Path("none.csv")); }),
               HasSubstr(Path("none.csv") + ": cannot be read"));
-  WriteBytes(Path("alone.csv"), kTable);
+  log::WriteBytes(Path("alone.csv"), kTable);
   EXPECT_THAT(
-      InputErrorOf([&] { ReadMeasuredRun(Path("alone.csv")); }),
+      log::InputErrorOf([&] { ReadMeasuredRun(Path("alone.csv")); }),
       AllOf(HasSubstr(Path("alone.csv") + ": found no " + Path("alone.toml")), HasSubstr("[columns]")));
-  WriteBytes(Path("alone.toml"), kSidecar);
-  EXPECT_THAT(InputErrorOf([&] { ReadMeasuredRun(Path("alone.toml")); }), HasSubstr("found a sidecar"));
-  EXPECT_THAT(InputErrorOf([&] { ReadMeasuredRun(Path("none.lcmlog")); }), HasSubstr(Path("none.lcmlog")));
+  log::WriteBytes(Path("alone.toml"), kSidecar);
+  EXPECT_THAT(log::InputErrorOf([&] { ReadMeasuredRun(Path("alone.toml")); }), HasSubstr("found a sidecar"));
+  EXPECT_THAT(log::InputErrorOf([&] { ReadMeasuredRun(Path("none.lcmlog")); }),
+              HasSubstr(Path("none.lcmlog")));
 }
 
 // Tests that a log is read with the shaft, the bypass, the noise and the model of its own description, and
 // the signals of its export.
 TEST_F(MeasuredRunTest, Log) {
-  WriteRun(Path("a.lcmlog"), SampleRun(7), "",
-           "[model]\nfile = \"x.toml\"\nshaft = \"clamped\"\narm_angle_rad = 0.3\nbypass = true\n"
-           "[noise]\np1_psi = 3\np1_resolution_psi = 12\nmotor_angle_resolution_rad = 1\n");
+  log::WriteRun(Path("a.lcmlog"), log::SampleRun(7), "",
+                "[model]\nfile = \"x.toml\"\nshaft = \"clamped\"\narm_angle_rad = 0.3\nbypass = true\n"
+                "[noise]\np1_psi = 3\np1_resolution_psi = 12\nmotor_angle_resolution_rad = 1\n");
   const MeasuredRun run = ReadMeasuredRun(Path("a.lcmlog"));
-  const Table table = ExportRun(ReadRunLog(Path("a.lcmlog")));
+  const tables::Table table = ExportRun(ReadRunLog(Path("a.lcmlog")));
   EXPECT_EQ(run.name, "a");
-  EXPECT_EQ(run.shaft, Shaft::kClamped);
+  EXPECT_EQ(run.shaft, model::Shaft::kClamped);
   EXPECT_EQ(run.arm_angle_rad, 0.3);
   EXPECT_TRUE(run.bypass);
   EXPECT_EQ(run.model_text, "name = \"Table 1\"\n");
@@ -224,12 +225,12 @@ TEST_F(MeasuredRunTest, Log) {
 // Tests that signals which a log does not have are not measured, and that a log which does not say how the
 // shaft was held (an imported table) is refused with what to do.
 TEST_F(MeasuredRunTest, ImportedLog) {
-  Table table;
+  tables::Table table;
   table.file = "x.csv";
   table.columns = {{"time_s", {0, 1, 2}}, {"voltage_V", {1, 2, 3}}, {"p1_psi", {4, 5, 6}}};
   ImportRun(table, "1.2.3", Path("imported.lcmlog"));
   EXPECT_THAT(
-      InputErrorOf([&] { ReadMeasuredRun(Path("imported.lcmlog")); }),
+      log::InputErrorOf([&] { ReadMeasuredRun(Path("imported.lcmlog")); }),
       AllOf(HasSubstr(Path("imported.lcmlog")), HasSubstr("how the shaft was held"), HasSubstr("sidecar")));
   const MeasuredRun run =
       RunOfExport(ExportRun(ReadRunLog(Path("imported.lcmlog"))), "[model]\nshaft = \"free\"\n", "");
@@ -245,7 +246,7 @@ TEST_F(MeasuredRunTest, BuoyPowerTakeOff) {
   const std::filesystem::path data = std::filesystem::path(HYDRO_MEASURED_DATA) / "buoy_pto";
   if (!std::filesystem::exists(data)) GTEST_SKIP() << "no measured data at " << data;
   std::filesystem::copy_file(data / "sine_moves_2021-07-26.csv", Path("sine.csv"));
-  WriteBytes(Path("sine.toml"), R"toml(shaft = "driven"
+  log::WriteBytes(Path("sine.toml"), R"toml(shaft = "driven"
 [columns]
 time = "time(s)"
 voltage = "WindCurr(A)"
@@ -256,7 +257,7 @@ p1 = { column = "LowerHydPress(psig)", offset = 14.7 }
 p2 = { column = "UpperHydPress(psig)", offset = 14.7 }
 )toml");
   const MeasuredRun run = ReadMeasuredRun(Path("sine.csv"));
-  EXPECT_EQ(run.shaft, Shaft::kDriven);
+  EXPECT_EQ(run.shaft, model::Shaft::kDriven);
   EXPECT_EQ(run.voltage.values.front(), -2.205);
   EXPECT_NEAR(run.motor_speed.values.front(), 758.576 * 2 * M_PI / 60, 1e-6);
   EXPECT_NEAR(run.p1.values.front(), -6.855 + 14.7, 1e-12);
@@ -265,4 +266,4 @@ p2 = { column = "UpperHydPress(psig)", offset = 14.7 }
 }
 
 }  // namespace
-}  // namespace hydro
+}  // namespace hydro::runs

@@ -5,28 +5,30 @@
 #include "runs/run_table.h"
 #include "tests/log/log_fixture.h"
 
-namespace hydro {
+namespace hydro::runs {
 namespace {
 
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsNan;
 
-class RunExportTest : public LogTest {
+class RunExportTest : public log::LogTest {
  protected:
-  Table Export(const RunMessages& run, const std::string& config_text = "") {
-    WriteRun(Path("log"), run, "", config_text);
+  tables::Table Export(const RunMessages& run, const std::string& config_text = "") {
+    log::WriteRun(Path("log"), run, "", config_text);
     return ExportRun(ReadRunLog(Path("log")));
   }
 };
 
-std::vector<double> Values(const Table& table, const char* column) { return table.Find(column)->values; }
+std::vector<double> Values(const tables::Table& table, const char* column) {
+  return table.Find(column)->values;
+}
 
 // Tests the names and the order of the columns.
 TEST_F(RunExportTest, Columns) {
-  const Table table = Export(SampleRun(1));
+  const tables::Table table = Export(log::SampleRun(1));
   std::string names;
-  for (const Column& column : table.columns) names += column.name + ",";
+  for (const tables::Column& column : table.columns) names += column.name + ",";
   EXPECT_EQ(
       names,
       "time_s,tick,voltage_V,pressure_ref_psi,arm_ref_rad,motor_angle_rad,motor_speed_rad_s,arm_angle_rad,"
@@ -36,7 +38,7 @@ TEST_F(RunExportTest, Columns) {
 // Tests that each row holds its state, the voltage that acts from then on and the references that are in
 // force.
 TEST_F(RunExportTest, Values) {
-  const Table table = Export(SampleRun(7));
+  const tables::Table table = Export(log::SampleRun(7));
   ASSERT_EQ(table.rows(), 7u);
   EXPECT_THAT(Values(table, "tick"), ElementsAre(0, 1, 2, 3, 4, 5, 6));
   EXPECT_EQ(Values(table, "time_s")[6], 1e-3 * 6);
@@ -45,7 +47,7 @@ TEST_F(RunExportTest, Values) {
   // A pressure command of tick k is in force from k + 1 on; none at tick 0.
   EXPECT_THAT(Values(table, "pressure_ref_psi"), ElementsAre(IsNan(), 50, 50, 50, 50, 50, 55));
   EXPECT_THAT(Values(table, "arm_ref_rad"), ElementsAre(0.2, 0.2, 0.2, 0.2, 0.2, 5.2, 5.2));
-  const state_t state = SampleRun(7).states[6];
+  const state_t state = log::SampleRun(7).states[6];
   EXPECT_EQ(Values(table, "motor_angle_rad")[6], state.motor_angle);
   EXPECT_EQ(Values(table, "motor_speed_rad_s")[6], state.motor_speed);
   EXPECT_EQ(Values(table, "arm_angle_rad")[6], state.arm_angle);
@@ -57,7 +59,7 @@ TEST_F(RunExportTest, Values) {
 // Tests that the last voltage is the command's that acts next: of the tick before in a loop with delay, else
 // of its own.
 TEST_F(RunExportTest, LastVoltage) {
-  RunMessages run = SampleRun(7);
+  RunMessages run = log::SampleRun(7);
   EXPECT_EQ(Values(Export(run, "[plant]\ncommand_delay_ticks = 1\n"), "voltage_V").back(), 4.5);
   EXPECT_EQ(Values(Export(run, "[plant]\ncommand_delay_ticks = 0\n"), "voltage_V").back(), 5.5);
   run.motor_commands.erase(run.motor_commands.begin() + 5);
@@ -67,7 +69,7 @@ TEST_F(RunExportTest, LastVoltage) {
 // Tests that without motor commands the pressure reference is the last pressure command's that could have
 // arrived.
 TEST_F(RunExportTest, PressureReferenceWithoutMotorCommands) {
-  RunMessages run = SampleRun(7);
+  RunMessages run = log::SampleRun(7);
   run.motor_commands.clear();
   EXPECT_THAT(Values(Export(run), "pressure_ref_psi"), ElementsAre(IsNan(), 50, 50, 50, 50, 50, 55));
   EXPECT_THAT(Values(Export(run, "[plant]\ncommand_delay_ticks = 0\n"), "pressure_ref_psi"),
@@ -78,65 +80,66 @@ TEST_F(RunExportTest, PressureReferenceWithoutMotorCommands) {
 
 // Tests that in open loop no pressure reference is in force.
 TEST_F(RunExportTest, OpenLoop) {
-  RunMessages run = SampleRun(7);
+  RunMessages run = log::SampleRun(7);
   for (motor_command_t& command : run.motor_commands) command.status = motor_command_t::OPEN_LOOP;
   EXPECT_THAT(Values(Export(run), "pressure_ref_psi"), testing::Each(IsNan()));
 }
 
 // Tests that the zero command which ends a run does not stand for the one that acted.
 TEST_F(RunExportTest, StoppedCommandOfTheSameTick) {
-  RunMessages run = SampleRun(7);
+  RunMessages run = log::SampleRun(7);
   motor_command_t stopped = run.motor_commands[5];
   stopped.sequence = 7;
   stopped.voltage = stopped.pressure_ref = 0;
   stopped.status = motor_command_t::STOPPED;
   run.motor_commands.push_back(stopped);
-  const Table table = Export(run);
+  const tables::Table table = Export(run);
   EXPECT_EQ(Values(table, "voltage_V").back(), 4.5);
   EXPECT_EQ(Values(table, "pressure_ref_psi")[5], 50);
 }
 
 // Tests that references of another signal are not the arm's.
 TEST_F(RunExportTest, OtherReferences) {
-  RunMessages run = SampleRun(3);
+  RunMessages run = log::SampleRun(3);
   for (arm_reference_t& reference : run.arm_references) reference.signal = arm_reference_t::PRESSURE;
   EXPECT_THAT(Values(Export(run), "arm_ref_rad"), testing::Each(IsNan()));
 }
 
 // Tests that states late, repeated or lost in the log give rows in order of ticks, each once.
 TEST_F(RunExportTest, DisorderedStates) {
-  RunMessages run = SampleRun(7);
+  RunMessages run = log::SampleRun(7);
   run.states.erase(run.states.begin() + 3);
-  WriteRun(Path("log"), run);
+  log::WriteRun(Path("log"), run);
   const RunLog good = ReadRunLog(Path("log"));
   RunLog bad = good;
   std::swap(bad.messages.states[1], bad.messages.states[4]);
   bad.messages.states.push_back(bad.messages.states[2]);
   EXPECT_THAT(Values(ExportRun(bad), "tick"), ElementsAre(0, 1, 2, 4, 5, 6));
-  WriteTable(ExportRun(good), Path("good.csv"));
-  WriteTable(ExportRun(bad), Path("bad.csv"));
-  EXPECT_EQ(ReadBytes(Path("bad.csv")), ReadBytes(Path("good.csv")));
+  tables::WriteTable(ExportRun(good), Path("good.csv"));
+  tables::WriteTable(ExportRun(bad), Path("bad.csv"));
+  EXPECT_EQ(log::ReadBytes(Path("bad.csv")), log::ReadBytes(Path("good.csv")));
 }
 
 // Tests that a log of two runs, or of none, is an error.
 TEST_F(RunExportTest, NotOneRun) {
-  RunMessages run = SampleRun(7);
+  RunMessages run = log::SampleRun(7);
   run.states[5].session = 99;
-  EXPECT_THAT(InputErrorOf([&] { Export(run); }), HasSubstr("found states from 2 senders on HYDRO_STATE"));
-  run = SampleRun(7);
+  EXPECT_THAT(log::InputErrorOf([&] { Export(run); }),
+              HasSubstr("found states from 2 senders on HYDRO_STATE"));
+  run = log::SampleRun(7);
   run.states[5].tick = 4;
-  EXPECT_THAT(InputErrorOf([&] { Export(run); }), HasSubstr("two different states of tick 4"));
+  EXPECT_THAT(log::InputErrorOf([&] { Export(run); }), HasSubstr("two different states of tick 4"));
   run.states.clear();
-  EXPECT_THAT(InputErrorOf([&] { Export(run); }), HasSubstr("found no message on HYDRO_STATE"));
+  EXPECT_THAT(log::InputErrorOf([&] { Export(run); }), HasSubstr("found no message on HYDRO_STATE"));
 }
 
 // Tests that a description that cannot be understood is an error that says where it lies.
 TEST_F(RunExportTest, BadDescription) {
-  EXPECT_THAT(InputErrorOf([&] { Export(SampleRun(2), "[plant]\nrate_hz = \n"); }),
+  EXPECT_THAT(log::InputErrorOf([&] { Export(log::SampleRun(2), "[plant]\nrate_hz = \n"); }),
               HasSubstr("run description: configuration, line 2"));
-  EXPECT_THAT(InputErrorOf([&] { Export(SampleRun(2), "[plant]\ncommand_delay_ticks = 3\n"); }),
+  EXPECT_THAT(log::InputErrorOf([&] { Export(log::SampleRun(2), "[plant]\ncommand_delay_ticks = 3\n"); }),
               HasSubstr("plant.command_delay_ticks"));
 }
 
 }  // namespace
-}  // namespace hydro
+}  // namespace hydro::runs

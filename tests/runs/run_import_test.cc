@@ -8,30 +8,30 @@
 #include "runs/run_table.h"
 #include "tests/log/log_fixture.h"
 
-namespace hydro {
+namespace hydro::runs {
 namespace {
 
 using testing::HasSubstr;
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
-class RunImportTest : public LogTest {
+class RunImportTest : public log::LogTest {
  protected:
-  RunLog Import(const Table& table) {
+  RunLog Import(const tables::Table& table) {
     ImportRun(table, "1.2.3", Path("log"));
     return ReadRunLog(Path("log"));
   }
   RunLog ImportCsv(const std::string& text) {
-    WriteBytes(Path("x.csv"), text);
-    return Import(ReadTable(Path("x.csv")));
+    log::WriteBytes(Path("x.csv"), text);
+    return Import(tables::ReadTable(Path("x.csv")));
   }
 
   // Expects that export gives the columns of `table` back bit by bit, and nothing in the others.
-  void ExpectComesBack(const Table& table) {
-    const Table back = ExportRun(Import(table));
+  void ExpectComesBack(const tables::Table& table) {
+    const tables::Table back = ExportRun(Import(table));
     ASSERT_EQ(back.rows(), table.rows());
-    for (const Column& column : back.columns) {
-      const Column* given = table.Find(column.name);
+    for (const tables::Column& column : back.columns) {
+      const tables::Column* given = table.Find(column.name);
       for (size_t row = 0; row < table.rows(); ++row) {
         double expected = kNan;
         if (given != nullptr) expected = given->values[row];
@@ -46,13 +46,13 @@ class RunImportTest : public LogTest {
 };
 
 // Any numbers, a third of them missing.
-Table RandomTable(uint64_t seed, size_t rows, unsigned columns) {
+tables::Table RandomTable(uint64_t seed, size_t rows, unsigned columns) {
   std::mt19937_64 random(seed);
-  Table table;
+  tables::Table table;
   table.file = "random.csv";
   for (size_t k = 0; k < kRunColumns.size(); ++k) {
     if (k > 0 && ((columns >> k) & 1) == 0) continue;
-    Column column{kRunColumns[k], {}};
+    tables::Column column{kRunColumns[k], {}};
     double time = -1;
     double tick = -1;
     for (size_t row = 0; row < rows; ++row) {
@@ -80,7 +80,7 @@ TEST_F(RunImportTest, EverySubsetOfColumnsComesBack) {
 
 // Tests that an exported run goes in and out again unchanged.
 TEST_F(RunImportTest, ExportedRunComesBack) {
-  WriteRun(Path("run"), SampleRun(50));
+  log::WriteRun(Path("run"), log::SampleRun(50));
   ExpectComesBack(ExportRun(ReadRunLog(Path("run"))));
 }
 
@@ -137,11 +137,11 @@ TEST_F(RunImportTest, BadTables) {
       {"", ": found an empty file"},
   };
   for (const auto& bad : cases) {
-    EXPECT_THAT(InputErrorOf([&] { ImportCsv(bad.text); }), HasSubstr(Path("x.csv") + bad.says));
+    EXPECT_THAT(log::InputErrorOf([&] { ImportCsv(bad.text); }), HasSubstr(Path("x.csv") + bad.says));
     EXPECT_FALSE(std::filesystem::exists(Path("log"))) << bad.says;
     EXPECT_FALSE(std::filesystem::exists(Path("log.part"))) << bad.says;
   }
 }
 
 }  // namespace
-}  // namespace hydro
+}  // namespace hydro::runs

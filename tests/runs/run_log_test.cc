@@ -5,19 +5,19 @@
 #include "runs/compare.h"
 #include "tests/log/log_fixture.h"
 
-namespace hydro {
+namespace hydro::runs {
 namespace {
 
 using testing::AllOf;
 using testing::HasSubstr;
 
-class RunLogTest : public LogTest {};
+class RunLogTest : public log::LogTest {};
 
 // Tests that a run is read as it was written, on channels with and without suffix.
 TEST_F(RunLogTest, ReadsARun) {
-  const RunMessages run = SampleRun(23);
+  const RunMessages run = log::SampleRun(23);
   for (const std::string suffix : {"", "_2"}) {
-    WriteRun(Path("log"), run, suffix);
+    log::WriteRun(Path("log"), run, suffix);
     const RunLog log = ReadRunLog(Path("log"));
     EXPECT_EQ(log.suffix, suffix);
     EXPECT_EQ(FirstDifference(run, "written", log.messages, "read"), std::nullopt);
@@ -30,20 +30,20 @@ TEST_F(RunLogTest, ReadsARun) {
 
 // Tests that of a log of two stacks one must be chosen.
 TEST_F(RunLogTest, SeveralSuffixes) {
-  WriteRun(Path("one"), SampleRun(3));
-  WriteRun(Path("two"), SampleRun(5), "_2");
-  WriteBytes(Path("both"), ReadBytes(Path("one")) + ReadBytes(Path("two")));
-  EXPECT_THAT(InputErrorOf([&] { ReadRunLog(Path("both")); }),
+  log::WriteRun(Path("one"), log::SampleRun(3));
+  log::WriteRun(Path("two"), log::SampleRun(5), "_2");
+  log::WriteBytes(Path("both"), log::ReadBytes(Path("one")) + log::ReadBytes(Path("two")));
+  EXPECT_THAT(log::InputErrorOf([&] { ReadRunLog(Path("both")); }),
               AllOf(HasSubstr(Path("both")), HasSubstr("'', '_2'"), HasSubstr("--suffix")));
   EXPECT_EQ(ReadRunLog(Path("both"), "").messages.states.size(), 3u);
   EXPECT_EQ(ReadRunLog(Path("both"), "_2").messages.states.size(), 5u);
-  EXPECT_THAT(InputErrorOf([&] { ReadRunLog(Path("both"), "_3"); }),
+  EXPECT_THAT(log::InputErrorOf([&] { ReadRunLog(Path("both"), "_3"); }),
               AllOf(HasSubstr("no channel with suffix '_3'"), HasSubstr("'', '_2'")));
 }
 
 // Tests that other programs' messages are counted and otherwise left alone.
 TEST_F(RunLogTest, ForeignChannels) {
-  WriteEvents(Path("log"), {{"CAMERA", "12345", 7}, {"CAMERA", "678", 9}, {"LIDAR", "", 8}});
+  log::WriteEvents(Path("log"), {{"CAMERA", "12345", 7}, {"CAMERA", "678", 9}, {"LIDAR", "", 8}});
   const RunLog log = ReadRunLog(Path("log"));
   EXPECT_EQ(log.events, 3);
   ASSERT_EQ(log.channels.size(), 2u);
@@ -57,34 +57,34 @@ TEST_F(RunLogTest, ForeignChannels) {
 
 // Tests that a message of another type or version, or a damaged one, is an error that names event and byte.
 TEST_F(RunLogTest, UndecodableMessage) {
-  WriteRun(Path("log"), SampleRun(3));
-  std::vector<EventContents> events = ReadEvents(Path("log"));
+  log::WriteRun(Path("log"), log::SampleRun(3));
+  std::vector<log::EventContents> events = log::ReadEvents(Path("log"));
   ASSERT_EQ(events[1].channel, "HYDRO_STATE");
   events[1].data.pop_back();
-  WriteEvents(Path("short"), events);
-  EXPECT_THAT(InputErrorOf([&] { ReadRunLog(Path("short")); }),
+  log::WriteEvents(Path("short"), events);
+  EXPECT_THAT(log::InputErrorOf([&] { ReadRunLog(Path("short")); }),
               AllOf(HasSubstr("event 1 on HYDRO_STATE: found 119 bytes that are not a whole hydro.state_t"),
                     HasSubstr("hydro-log repair")));
   events[1].data[0] = '?';
-  WriteEvents(Path("other"), events);
-  EXPECT_THAT(InputErrorOf([&] { ReadRunLog(Path("other")); }),
+  log::WriteEvents(Path("other"), events);
+  EXPECT_THAT(log::InputErrorOf([&] { ReadRunLog(Path("other")); }),
               AllOf(HasSubstr("event 1 on HYDRO_STATE: found type hash 0x3f"), HasSubstr("; allowed 0x")));
 }
 
 // Tests that such messages are left out and counted by channel where that is asked for, also on channels that
 // nobody reads, and that nothing else is: not a foreign channel, not another stack's.
 TEST_F(RunLogTest, UndecodableMessageLeftOut) {
-  const RunMessages run = SampleRun(3);
-  WriteRun(Path("log"), run);
-  std::vector<EventContents> events = ReadEvents(Path("log"));
-  const EventContents torn{"HYDRO_STATE", events[1].data.substr(0, 60), 1};
+  const RunMessages run = log::SampleRun(3);
+  log::WriteRun(Path("log"), run);
+  std::vector<log::EventContents> events = log::ReadEvents(Path("log"));
+  const log::EventContents torn{"HYDRO_STATE", events[1].data.substr(0, 60), 1};
   events.insert(events.begin() + 1, {torn,
                                      {"HYDRO_STATE", "", 1},
                                      {"HYDRO_MOTOR_COMMAND", "another type of message", 1},
                                      {"HYDRO_REARM", "nonsense", 1},
                                      {"HYDRO_STATE_2", "another stack's", 1},
                                      {"CAMERA", "a picture", 1}});
-  WriteEvents(Path("log"), events);
+  log::WriteEvents(Path("log"), events);
   const RunLog log = ReadRunLog(Path("log"), "", Undecodable::kLeftOut);
   EXPECT_EQ(FirstDifference(run, "written", log.messages, "read"), std::nullopt);
   EXPECT_EQ(log.messages.states.size(), run.states.size());
@@ -97,10 +97,10 @@ TEST_F(RunLogTest, UndecodableMessageLeftOut) {
                     HasSubstr("(1 on HYDRO_MOTOR_COMMAND, 1 on HYDRO_REARM, 2 on HYDRO_STATE)"),
                     HasSubstr("event 1 on HYDRO_STATE: found 60 bytes that are not a whole hydro.state_t")));
 
-  WriteBytes(Path("log"), ReadBytes(Path("log")) + "x");  // damage of the file is not a message
-  EXPECT_THAT(InputErrorOf([&] { ReadRunLog(Path("log"), "", Undecodable::kLeftOut); }),
+  log::WriteBytes(Path("log"), log::ReadBytes(Path("log")) + "x");  // damage of the file is not a message
+  EXPECT_THAT(log::InputErrorOf([&] { ReadRunLog(Path("log"), "", Undecodable::kLeftOut); }),
               HasSubstr("hydro-log repair"));
 }
 
 }  // namespace
-}  // namespace hydro
+}  // namespace hydro::runs

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <functional>
 
-namespace hydro {
+namespace hydro::runs {
 namespace {
 
 // A run at 1 kHz for `ticks` ticks whose arm and reference are given functions of time.
@@ -114,4 +114,4 @@ TEST(TrackingTest, NoReference) {
 }
 
 }  // namespace
-}  // namespace hydro
+}  // namespace hydro::runs

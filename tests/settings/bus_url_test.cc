@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace hydro {
+namespace hydro::settings {
 namespace {
 
 // Tests that LCM's multicast addresses are taken.
@@ -43,4 +43,4 @@ TEST(BusUrlTest, RefusesOthers) {
 }
 
 }  // namespace
-}  // namespace hydro
+}  // namespace hydro::settings

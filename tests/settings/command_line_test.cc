@@ -4,7 +4,7 @@
 
 #include "tests/settings/texts.h"
 
-namespace hydro {
+namespace hydro::settings {
 namespace {
 
 using ::testing::AllOf;
@@ -209,4 +209,4 @@ TEST(RunProgramTest, ExitCodes) {
 }
 
 }  // namespace
-}  // namespace hydro
+}  // namespace hydro::settings

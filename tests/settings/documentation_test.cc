@@ -2,7 +2,7 @@
 
 #include "tests/settings/texts.h"
 
-namespace hydro {
+namespace hydro::settings {
 namespace {
 
 std::string Documentation() {
@@ -89,4 +89,4 @@ TEST(DocumentationTest, MentionsEveryKey) {
 }
 
 }  // namespace
-}  // namespace hydro
+}  // namespace hydro::settings

@@ -2,7 +2,7 @@
 
 #include "tests/settings/texts.h"
 
-namespace hydro {
+namespace hydro::settings {
 namespace {
 
 using ::testing::AllOf;
@@ -205,4 +205,4 @@ TEST(DriverSectionTest, WhatADriverNeeds) {
 }
 
 }  // namespace
-}  // namespace hydro
+}  // namespace hydro::settings

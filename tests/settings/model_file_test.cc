@@ -6,7 +6,7 @@
 #include "model/parameter_info.h"
 #include "tests/settings/texts.h"
 
-namespace hydro {
+namespace hydro::settings {
 namespace {
 
 using ::testing::AllOf;
@@ -17,7 +17,7 @@ std::string Changed(const std::string& from, const std::string& to) { return Rep
 
 // Tests that r and d give c = r^2 d / 2 and that all other numbers are taken as they are.
 TEST(ModelFileTest, ReadsTable1) {
-  const ModelDescription model = ParseModel(kModelText, "m.toml");
+  const model::ModelDescription model = ParseModel(kModelText, "m.toml");
   EXPECT_EQ(model.name, "Table 1");
   EXPECT_DOUBLE_EQ(model.parameters.c, 3.68379);
   EXPECT_EQ(model.parameters.beta, 247000.0);
@@ -33,7 +33,7 @@ TEST(ModelFileTest, TakesTheDisplacementItself) {
 
 // Tests that effects keep the file's order and their parameters.
 TEST(ModelFileTest, ReadsEffectsInOrder) {
-  const ModelDescription model = ParseModel(
+  const model::ModelDescription model = ParseModel(
       With(
           "[effects.\"pump.stribeck\"]\nspeed = 3\nstatic_excess = 0.5\n[effects.\"amp.lag\"]\ntau = 1e-3\n"),
       "m.toml");
@@ -49,21 +49,21 @@ TEST(ModelFileTest, RoundTripsBitByBit) {
   std::mt19937_64 random(1);
   std::uniform_real_distribution<double> mantissa(1, 10);
   for (int repeat = 0; repeat < 50; ++repeat) {
-    ModelDescription model;
+    model::ModelDescription model;
     model.name = "quotes \" and \\ and \xC3\xA4\n" + std::to_string(repeat);
-    const auto number = [&](const ParameterInfo& info) {
+    const auto number = [&](const model::ParameterInfo& info) {
       const double value = mantissa(random) * std::pow(10, static_cast<int>(random() % 12) - 8);
       if (value >= info.min && value <= info.max) return value;
       return std::isfinite(info.max) ? info.min + (info.max - info.min) * (value - std::floor(value))
                                      : info.min + value;
     };
-    for (const BaseParameter& parameter : BaseParameters()) {
+    for (const model::BaseParameter& parameter : model::BaseParameters()) {
       model.parameters.*parameter.member = number(parameter.info);
     }
-    for (const EffectInfo& info : EffectCatalogue()) {
-      EffectDescription effect;
+    for (const model::EffectInfo& info : model::EffectCatalogue()) {
+      model::EffectDescription effect;
       effect.id = info.id;
-      for (const ParameterInfo& parameter : info.parameters) {
+      for (const model::ParameterInfo& parameter : info.parameters) {
         if (parameter.is_name) {
           effect.names[parameter.name] = parameter.names.back();
         } else {
@@ -72,9 +72,9 @@ TEST(ModelFileTest, RoundTripsBitByBit) {
       }
       model.effects.insert(repeat % 2 == 0 ? model.effects.end() : model.effects.begin(), effect);
     }
-    const ModelDescription back = ParseModel(FormatModel(model), "m.toml");
+    const model::ModelDescription back = ParseModel(FormatModel(model), "m.toml");
     EXPECT_EQ(back.name, model.name);
-    for (const BaseParameter& parameter : BaseParameters()) {
+    for (const model::BaseParameter& parameter : model::BaseParameters()) {
       EXPECT_EQ(back.parameters.*parameter.member, model.parameters.*parameter.member) << parameter.info.name;
     }
     ASSERT_EQ(back.effects.size(), model.effects.size());
@@ -163,4 +163,4 @@ TEST_F(ModelFileFolderTest, NamesUnreadableFiles) {
 }
 
 }  // namespace
-}  // namespace hydro
+}  // namespace hydro::settings

@@ -2,7 +2,7 @@
 
 #include "tests/settings/texts.h"
 
-namespace hydro {
+namespace hydro::settings {
 namespace {
 
 const char kFullConfig[] = R"(# a comment
@@ -137,7 +137,7 @@ TEST(MutationTest, ModelsNeverCrash) {
   for (int i = 0; i < 4000; ++i) {
     const std::string text = Mutated(i % 2 == 0 ? std::string(kModelText) + kEffects : kModelText, random);
     try {
-      const ModelDescription model = ParseModel(text, "m.toml");
+      const model::ModelDescription model = ParseModel(text, "m.toml");
       ++taken;
       EXPECT_EQ(FormatModel(ParseModel(FormatModel(model), "m.toml")), FormatModel(model));
     } catch (const InputError& error) {
@@ -161,4 +161,4 @@ TEST(MutationTest, DeepNesting) {
 }
 
 }  // namespace
-}  // namespace hydro
+}  // namespace hydro::settings

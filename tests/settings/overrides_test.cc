@@ -2,7 +2,7 @@
 
 #include "tests/settings/texts.h"
 
-namespace hydro {
+namespace hydro::settings {
 namespace {
 
 using ::testing::AllOf;
@@ -30,7 +30,7 @@ TEST_F(OverridesTest, ValuesAreTomlOrBareWords) {
             "reference.steps=[[0.5, 0.2], [1, 0]]", "noise.p1_psi = 1.5", "position.c1=1_000"});
   EXPECT_EQ(config.time.mode, TimeMode::kLockstep);
   EXPECT_EQ(config.last_tick, 2000);
-  EXPECT_EQ(config.plant.integrator, Integrator::kErk);
+  EXPECT_EQ(config.plant.integrator, model::Integrator::kErk);
   EXPECT_EQ(config.bus.url, "udpm://239.255.76.67:7700?ttl=0");
   EXPECT_TRUE(config.pressure.arm_speed_feedforward);
   ASSERT_EQ(config.reference.trajectory.steps.size(), 2u);
@@ -123,4 +123,4 @@ TEST_F(OverridesTest, ErrorsNameTheOption) {
 }
 
 }  // namespace
-}  // namespace hydro
+}  // namespace hydro::settings

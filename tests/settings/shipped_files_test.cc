@@ -2,7 +2,7 @@
 
 #include "tests/settings/texts.h"
 
-namespace hydro {
+namespace hydro::settings {
 namespace {
 
 const std::filesystem::path kConfig = std::filesystem::path(HYDRO_SOURCE_DIR) / "config";
@@ -32,21 +32,21 @@ TEST(ShippedFilesTest, StacksLoad) {
 // Tests that the variants differ from Table 1 only where they say so.
 TEST(ShippedFilesTest, VariantsOfTable1) {
   const auto load = [](const char* name) { return LoadModelFile((kConfig / "models" / name).string()); };
-  const Parameters table1 = load("table1.toml").parameters;
+  const model::Parameters table1 = load("table1.toml").parameters;
   EXPECT_DOUBLE_EQ(table1.c, 3.68379);
   EXPECT_EQ(table1.mgl, 0);
-  Parameters gravity = load("table1_gravity.toml").parameters;
+  model::Parameters gravity = load("table1_gravity.toml").parameters;
   EXPECT_EQ(gravity.mgl, 562);
   gravity.mgl = 0;
-  Parameters wide = load("wide_actuator.toml").parameters;
+  model::Parameters wide = load("wide_actuator.toml").parameters;
   EXPECT_GT(wide.V_ms / wide.c, M_PI / 2) << "reaches +/- 90 degrees";
   wide.V_ms = table1.V_ms;
-  const ModelDescription stribeck = load("table1_stribeck.toml");
+  const model::ModelDescription stribeck = load("table1_stribeck.toml");
   ASSERT_EQ(stribeck.effects.size(), 1u);
   EXPECT_EQ(stribeck.effects[0].id, "pump.stribeck");
   EXPECT_TRUE(load("table1.toml").effects.empty());
-  for (const Parameters& other : {gravity, wide, stribeck.parameters}) {
-    ModelDescription a, b;
+  for (const model::Parameters& other : {gravity, wide, stribeck.parameters}) {
+    model::ModelDescription a, b;
     a.parameters = table1;
     b.parameters = other;
     EXPECT_EQ(FormatModel(a), FormatModel(b));
@@ -54,4 +54,4 @@ TEST(ShippedFilesTest, VariantsOfTable1) {
 }
 
 }  // namespace
-}  // namespace hydro
+}  // namespace hydro::settings

@@ -1,7 +1,7 @@
 // A small valid configuration and model.
 #pragma once
 
-namespace hydro {
+namespace hydro::settings {
 
 inline const char kModelText[] = R"(name = "Table 1"
 [parameters]
@@ -40,4 +40,4 @@ kind = "steps"
 steps = [[0.1, 0.1]]
 )";
 
-}  // namespace hydro
+}  // namespace hydro::settings

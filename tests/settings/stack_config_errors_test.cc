@@ -1,7 +1,7 @@
 #include "settings/stack_config.h"
 #include "tests/settings/texts.h"
 
-namespace hydro {
+namespace hydro::settings {
 namespace {
 
 using ::testing::AllOf;
@@ -308,4 +308,4 @@ TEST(StackConfigErrorsTest, PressureReferencesMayBeLarge) {
 }
 
 }  // namespace
-}  // namespace hydro
+}  // namespace hydro::settings

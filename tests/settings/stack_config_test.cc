@@ -4,7 +4,7 @@
 
 #include "tests/settings/texts.h"
 
-namespace hydro {
+namespace hydro::settings {
 namespace {
 
 using ::testing::HasSubstr;
@@ -18,7 +18,7 @@ TEST(StackConfigTest, DefaultsAndTicks) {
   EXPECT_EQ(config.model.resolved_file, "model.toml");
   EXPECT_EQ(config.model.text, kModelText);
   EXPECT_EQ(config.model.description.name, "Table 1");
-  EXPECT_EQ(config.model.shaft, Shaft::kFree);
+  EXPECT_EQ(config.model.shaft, model::Shaft::kFree);
   EXPECT_TRUE(std::isnan(config.model.initial_pressure_psi));
   EXPECT_EQ(config.time.mode, TimeMode::kRealtime);
   EXPECT_EQ(config.pressure.rate_hz, 0.0);
@@ -133,7 +133,7 @@ lock_memory = false
 TEST(StackConfigTest, ReadsEveryKey) {
   const StackConfig config = Parsed(kEveryKey);
   EXPECT_EQ(config.model.file, "models/m.toml");
-  EXPECT_EQ(config.model.shaft, Shaft::kDriven);
+  EXPECT_EQ(config.model.shaft, model::Shaft::kDriven);
   EXPECT_TRUE(config.model.bypass);
   EXPECT_EQ(config.model.initial_pressure_psi, 120);
   ASSERT_TRUE(config.model.motion);
@@ -154,7 +154,7 @@ TEST(StackConfigTest, ReadsEveryKey) {
   EXPECT_EQ(config.time.stall_timeout_s, 1);
   EXPECT_EQ(config.plant.rate_hz, 5000);
   EXPECT_EQ(config.plant.command_delay_ticks, 0);
-  EXPECT_EQ(config.plant.integrator, Integrator::kCvode);
+  EXPECT_EQ(config.plant.integrator, model::Integrator::kCvode);
   EXPECT_EQ(config.plant.relative_tolerance, 1e-6);
   EXPECT_EQ(config.pressure.rate_hz, 1000);
   EXPECT_EQ(config.pressure.k_p, 0.1336);
@@ -266,7 +266,7 @@ TEST_F(StackConfigFolderTest, PathsAreRelativeToTheConfiguration) {
   EXPECT_EQ(config.model.text, kModelText);
   ASSERT_EQ(config.reference.trajectory.points.size(), 3u);
   EXPECT_EQ(config.reference.trajectory.points[1].value, 0.2);
-  EXPECT_EQ(config.reference.trajectory.interpolation, Interpolation::kCubic);
+  EXPECT_EQ(config.reference.trajectory.interpolation, trajectory::Interpolation::kCubic);
   EXPECT_EQ(MakeTrajectory(config.reference.trajectory)->Value(1), 0.2);
 
   // A log has only the texts.
@@ -275,7 +275,7 @@ TEST_F(StackConfigFolderTest, PathsAreRelativeToTheConfiguration) {
   ASSERT_EQ(again.reference.trajectory.points.size(), 3u);
   EXPECT_EQ(again.reference.trajectory.points[2].time, 2.0);
   EXPECT_EQ(again.reference.trajectory.points[2].value, -0.1);
-  EXPECT_EQ(again.reference.trajectory.interpolation, Interpolation::kCubic);
+  EXPECT_EQ(again.reference.trajectory.interpolation, trajectory::Interpolation::kCubic);
   EXPECT_EQ(again.text, config.text);
 }
 
@@ -313,4 +313,4 @@ TEST_F(StackConfigFolderTest, NamesTheFileThatIsWrong) {
 }
 
 }  // namespace
-}  // namespace hydro
+}  // namespace hydro::settings

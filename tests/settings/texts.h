@@ -13,7 +13,7 @@
 #include "settings/stack_config.h"
 #include "tests/settings/small_texts.h"
 
-namespace hydro {
+namespace hydro::settings {
 
 inline StackConfig Parsed(const std::string& config, const std::string& model = kModelText) {
   return ParseStackConfig(config, "stack.toml", model, "model.toml");
@@ -58,4 +58,4 @@ class FolderTest : public ::testing::Test {
   std::filesystem::path folder_;
 };
 
-}  // namespace hydro
+}  // namespace hydro::settings

@@ -7,7 +7,7 @@
 
 #include "tests/settings/texts.h"
 
-namespace hydro {
+namespace hydro::settings {
 namespace {
 
 using ::testing::HasSubstr;
@@ -108,4 +108,4 @@ TEST(TomlDocumentTest, FormatReadsBack) {
 }
 
 }  // namespace
-}  // namespace hydro
+}  // namespace hydro::settings

@@ -12,7 +12,7 @@
 #include "base/input_error.h"
 #include "tests/stack_fixture.h"
 
-namespace hydro {
+namespace hydro::sim {
 namespace {
 
 using testing::SmallStack;
@@ -22,8 +22,8 @@ struct Recording {
   std::vector<std::string> channels;
   std::vector<std::string> messages;
 
-  std::function<void(const RawMessage&)> Tap() {
-    return [this](const RawMessage& m) {
+  std::function<void(const bus::RawMessage&)> Tap() {
+    return [this](const bus::RawMessage& m) {
       channels.emplace_back(m.channel);
       messages.emplace_back(reinterpret_cast<const char*>(m.data), static_cast<size_t>(m.size));
     };
@@ -42,8 +42,8 @@ struct Recording {
   }
 };
 
-StackConfig Step() {
-  StackConfig config = SmallStack();
+settings::StackConfig Step() {
+  settings::StackConfig config = SmallStack();
   config.plant.rate_hz = 5000;
   config.position_interval_ticks = 25;
   config.reference.trajectory.steps = {{0.01, 0.1}};
@@ -69,7 +69,7 @@ TEST(SimulationTest, RunsTheWholeStack) {
 
 // Tests that two runs are the same to the last bit, message by message.
 TEST(SimulationTest, IsRepeatable) {
-  StackConfig config = Step();
+  settings::StackConfig config = Step();
   config.noise.p1_psi = 2;
   Recording a, b;
   Simulate(config, a.Tap());
@@ -89,7 +89,7 @@ TEST(SimulationTest, LoggingDoesNotDisturb) {
 
 // Tests that a tripped limit ends the run as failed and says why.
 TEST(SimulationTest, TrippedLimitFails) {
-  StackConfig config = Step();
+  settings::StackConfig config = Step();
   config.limits.pressure_psi = 105;
   const SimulationResult result = Simulate(config, nullptr);
   EXPECT_EQ(result.exit_code, 1);
@@ -99,10 +99,10 @@ TEST(SimulationTest, TrippedLimitFails) {
 
 // Tests that a simulation without an end is refused.
 TEST(SimulationTest, NeedsADuration) {
-  StackConfig config = Step();
+  settings::StackConfig config = Step();
   config.last_tick = -1;
   EXPECT_THROW(Simulate(config, nullptr), InputError);
 }
 
 }  // namespace
-}  // namespace hydro
+}  // namespace hydro::sim

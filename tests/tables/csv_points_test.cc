@@ -2,7 +2,7 @@
 
 #include "tests/settings/texts.h"
 
-namespace hydro {
+namespace hydro::tables {
 namespace {
 
 using ::testing::HasSubstr;
@@ -43,9 +43,10 @@ TEST(CsvPointsTest, RefusesMalformedTables) {
       {"time_s;y\n0;1\n", "a.csv:1: found no column \"time_s\", allowed \"time_s;y\""},
   };
   for (const auto& table : tables) {
-    EXPECT_THAT(InputErrorOf([&] { ParseCsvPoints(table.text, "a.csv", "y"); }), HasSubstr(table.says));
+    EXPECT_THAT(settings::InputErrorOf([&] { ParseCsvPoints(table.text, "a.csv", "y"); }),
+                HasSubstr(table.says));
   }
 }
 
 }  // namespace
-}  // namespace hydro
+}  // namespace hydro::tables

@@ -10,16 +10,16 @@
 
 #include "tests/log/log_fixture.h"
 
-namespace hydro {
+namespace hydro::tables {
 namespace {
 
 using testing::AllOf;
 using testing::HasSubstr;
 
-class TableTest : public LogTest {
+class TableTest : public log::LogTest {
  protected:
   Table Csv(const std::string& text) {
-    WriteBytes(Path("x.csv"), text);
+    log::WriteBytes(Path("x.csv"), text);
     return ReadTable(Path("x.csv"));
   }
 };
@@ -70,7 +70,7 @@ TEST_F(TableTest, CsvText) {
   Table table;
   table.columns = {{"a", {0.1, 1e21}}, {"b", {kNan, -0.0}}, {"c", {100, kNan}}};
   WriteTable(table, Path("x.csv"));
-  EXPECT_EQ(ReadBytes(Path("x.csv")), "a,b,c\n0.1,,100\n1e+21,-0,\n");
+  EXPECT_EQ(log::ReadBytes(Path("x.csv")), "a,b,c\n0.1,,100\n1e+21,-0,\n");
 }
 
 // Tests that a table of one column can have missing values.
@@ -117,7 +117,7 @@ TEST_F(TableTest, MalformedCsv) {
       {std::string("a,b\n1,\0\n", 8), ": line 2, column b: found '?'"},
   };
   for (const auto& bad : cases) {
-    EXPECT_THAT(InputErrorOf([&] { Csv(bad.text); }), HasSubstr(Path("x.csv") + bad.says));
+    EXPECT_THAT(log::InputErrorOf([&] { Csv(bad.text); }), HasSubstr(Path("x.csv") + bad.says));
   }
 }
 
@@ -143,11 +143,11 @@ TEST_F(TableTest, MatOfOthers) {
 
   double numbers[4] = {1, 2, 3, 4};
   WriteVariable(Path("x.mat"), "square", MAT_C_DOUBLE, MAT_T_DOUBLE, 2, 2, numbers);
-  EXPECT_THAT(InputErrorOf([&] { ReadTable(Path("x.mat")); }),
+  EXPECT_THAT(log::InputErrorOf([&] { ReadTable(Path("x.mat")); }),
               AllOf(HasSubstr(Path("x.mat") + ": column 'square': found 2x2 numbers; a vector is needed")));
   char text[] = "abc";
   WriteVariable(Path("x.mat"), "text", MAT_C_CHAR, MAT_T_UINT8, 1, 3, text);
-  EXPECT_THAT(InputErrorOf([&] { ReadTable(Path("x.mat")); }), HasSubstr("column 'text': found text"));
+  EXPECT_THAT(log::InputErrorOf([&] { ReadTable(Path("x.mat")); }), HasSubstr("column 'text': found text"));
 }
 
 // Tests that columns of unequal length, no column at all and something else than a MAT file are errors.
@@ -155,18 +155,19 @@ TEST_F(TableTest, MalformedMat) {
   Table table;
   table.columns = {{"a", {1, 2}}, {"b", {3, 4}}};
   WriteTable(table, Path("x.mat"));
-  const std::string bytes = ReadBytes(Path("x.mat"));
-  WriteBytes(Path("y.mat"), bytes.substr(0, 128));  // the header alone
-  EXPECT_THAT(InputErrorOf([&] { ReadTable(Path("y.mat")); }), HasSubstr(Path("y.mat") + ": found no rows"));
-  WriteBytes(Path("y.mat"), "time_s,tick\n0,1\n");
-  EXPECT_THAT(InputErrorOf([&] { ReadTable(Path("y.mat")); }),
+  const std::string bytes = log::ReadBytes(Path("x.mat"));
+  log::WriteBytes(Path("y.mat"), bytes.substr(0, 128));  // the header alone
+  EXPECT_THAT(log::InputErrorOf([&] { ReadTable(Path("y.mat")); }),
+              HasSubstr(Path("y.mat") + ": found no rows"));
+  log::WriteBytes(Path("y.mat"), "time_s,tick\n0,1\n");
+  EXPECT_THAT(log::InputErrorOf([&] { ReadTable(Path("y.mat")); }),
               HasSubstr(Path("y.mat") + ": found no MAT file"));
-  EXPECT_THAT(InputErrorOf([&] { ReadTable(Path("none.mat")); }), HasSubstr("No such file"));
+  EXPECT_THAT(log::InputErrorOf([&] { ReadTable(Path("none.mat")); }), HasSubstr("No such file"));
   // Two files of one vector each, put together.
   double numbers[3] = {1, 2, 3};
   WriteVariable(Path("one.mat"), "three", MAT_C_DOUBLE, MAT_T_DOUBLE, 3, 1, numbers);
-  WriteBytes(Path("y.mat"), bytes + ReadBytes(Path("one.mat")).substr(128));
-  EXPECT_THAT(InputErrorOf([&] { ReadTable(Path("y.mat")); }),
+  log::WriteBytes(Path("y.mat"), bytes + log::ReadBytes(Path("one.mat")).substr(128));
+  EXPECT_THAT(log::InputErrorOf([&] { ReadTable(Path("y.mat")); }),
               HasSubstr("column 'three': found 3 rows; 2 are needed"));
 }
 
@@ -176,9 +177,9 @@ TEST_F(TableTest, TruncatedMat) {
   Table table;
   table.columns = {{"a", {1, 2, 3}}, {"b", {3, 4, 5}}};
   WriteTable(table, Path("x.mat"));
-  const std::string bytes = ReadBytes(Path("x.mat"));
+  const std::string bytes = log::ReadBytes(Path("x.mat"));
   for (size_t size = 0; size < bytes.size(); ++size) {
-    WriteBytes(Path("cut.mat"), bytes.substr(0, size));
+    log::WriteBytes(Path("cut.mat"), bytes.substr(0, size));
     try {
       const Table cut = ReadTable(Path("cut.mat"));
       Table expected;
@@ -191,9 +192,9 @@ TEST_F(TableTest, TruncatedMat) {
 
 // Tests that a name that tells no format is refused.
 TEST_F(TableTest, UnknownFormat) {
-  EXPECT_THAT(InputErrorOf([&] { WriteTable(HardTable(), Path("x.txt")); }),
+  EXPECT_THAT(log::InputErrorOf([&] { WriteTable(HardTable(), Path("x.txt")); }),
               HasSubstr("end in .csv or .mat"));
 }
 
 }  // namespace
-}  // namespace hydro
+}  // namespace hydro::tables

@@ -9,15 +9,15 @@
 #include "bus/in_process_bus.h"
 #include "hydro/state_t.hpp"
 
-namespace hydro {
+namespace hydro::timing {
 namespace {
 
 using namespace std::chrono_literals;
 
 class FixedRateLoopTest : public testing::Test {
  protected:
-  SimulatedClock clock_;
-  InProcessBus bus_{&clock_};
+  bus::SimulatedClock clock_;
+  bus::InProcessBus bus_{&clock_};
   LoopStatistics statistics_{"plant", "", 0, clock_.Now()};
 };
 
@@ -26,9 +26,9 @@ class FixedRateLoopTest : public testing::Test {
 TEST_F(FixedRateLoopTest, CountsExactlyOnASimulatedClock) {
   FixedRateLoop loop(bus_, clock_, 1ms, statistics_);
   int ticks = 1;
-  while (clock_.Now() < Clock::TimePoint(10s)) {
+  while (clock_.Now() < bus::Clock::TimePoint(10s)) {
     ASSERT_EQ(loop.Wait(), 1);
-    ASSERT_EQ(clock_.Now(), Clock::TimePoint(ticks * 1ms));
+    ASSERT_EQ(clock_.Now(), bus::Clock::TimePoint(ticks * 1ms));
     ++ticks;
   }
   EXPECT_EQ(ticks, 10'001);
@@ -45,7 +45,7 @@ TEST_F(FixedRateLoopTest, CountsExactlyOnASimulatedClock) {
 TEST_F(FixedRateLoopTest, NeverDrifts) {
   FixedRateLoop loop(bus_, clock_, std::chrono::duration<double>(1.0 / 3000), statistics_);
   for (int i = 0; i < 3'000'000; ++i) ASSERT_EQ(loop.Wait(), 1);
-  EXPECT_EQ(clock_.Now(), Clock::TimePoint(1000s));
+  EXPECT_EQ(clock_.Now(), bus::Clock::TimePoint(1000s));
 }
 
 // Tests that whoever is late is told how many ticks have passed, and that the next deadline is on the old
@@ -53,14 +53,14 @@ TEST_F(FixedRateLoopTest, NeverDrifts) {
 TEST_F(FixedRateLoopTest, CountsSkippedTicks) {
   FixedRateLoop loop(bus_, clock_, 1ms, statistics_);
   EXPECT_EQ(loop.Wait(), 1);
-  clock_.AdvanceTo(Clock::TimePoint(4500us));  // the work took 3.5 ms
-  EXPECT_EQ(loop.Wait(), 3);                   // ticks 2, 3 and 4
-  EXPECT_EQ(clock_.Now(), Clock::TimePoint(4500us));
+  clock_.AdvanceTo(bus::Clock::TimePoint(4500us));  // the work took 3.5 ms
+  EXPECT_EQ(loop.Wait(), 3);                        // ticks 2, 3 and 4
+  EXPECT_EQ(clock_.Now(), bus::Clock::TimePoint(4500us));
   EXPECT_EQ(loop.tick(), 4);
   EXPECT_EQ(loop.skipped(), 2);
   EXPECT_EQ(loop.Wait(), 1);
-  EXPECT_EQ(clock_.Now(), Clock::TimePoint(5ms));
-  clock_.AdvanceTo(Clock::TimePoint(7ms));  // exactly two ticks on
+  EXPECT_EQ(clock_.Now(), bus::Clock::TimePoint(5ms));
+  clock_.AdvanceTo(bus::Clock::TimePoint(7ms));  // exactly two ticks on
   EXPECT_EQ(loop.Wait(), 2);
   const loop_statistics_t total = statistics_.Total(clock_.Now());
   EXPECT_EQ(total.missed_deadlines, 3);
@@ -83,8 +83,8 @@ TEST_F(FixedRateLoopTest, HandlesMessagesWhileWaiting) {
 
 // Tests that a loop on the wall clock never returns before its tick is due and accounts for every tick.
 TEST_F(FixedRateLoopTest, WallClockTicksAreNeverEarly) {
-  WallClock wall;
-  InProcessBus bus(nullptr);
+  bus::WallClock wall;
+  bus::InProcessBus bus(nullptr);
   const auto start = wall.Now();
   FixedRateLoop loop(bus, wall, 500us, statistics_);
   int64_t ticks = 0;
@@ -100,8 +100,8 @@ void OnAlarm(int) {}
 
 // Tests that a signal makes Wait() return 0, and that the tick then still comes.
 TEST_F(FixedRateLoopTest, SignalEndsTheWait) {
-  WallClock wall;
-  InProcessBus bus(nullptr);
+  bus::WallClock wall;
+  bus::InProcessBus bus(nullptr);
   struct sigaction action {};
   action.sa_handler = OnAlarm;
   sigaction(SIGALRM, &action, nullptr);
@@ -124,4 +124,4 @@ TEST_F(FixedRateLoopTest, RefusesBadPeriods) {
 }
 
 }  // namespace
-}  // namespace hydro
+}  // namespace hydro::timing

@@ -28,7 +28,7 @@ thread_local int64_t allocations = 0;
 
 #ifdef HYDRO_SANITIZED
 
-namespace hydro {
+namespace hydro::timing {
 const bool kHeapTrapWorks = false;
 }
 
@@ -68,13 +68,13 @@ int posix_memalign(void** memory, size_t alignment, size_t size) {
 }
 }
 
-namespace hydro {
+namespace hydro::timing {
 const bool kHeapTrapWorks = true;
 }
 
 #endif
 
-namespace hydro {
+namespace hydro::timing {
 
 void SetHeapTrap(bool loud) {
   allocations = 0;
@@ -87,4 +87,4 @@ int64_t ReleaseHeapTrap() {
   return allocations;
 }
 
-}  // namespace hydro
+}  // namespace hydro::timing

@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-namespace hydro {
+namespace hydro::timing {
 
 // Under a sanitizer the heap is the sanitizer's: nothing is counted.
 extern const bool kHeapTrapWorks;
@@ -16,4 +16,4 @@ void SetHeapTrap(bool loud = false);
 // Ends counting; returns how often this thread allocated in between.
 int64_t ReleaseHeapTrap();
 
-}  // namespace hydro
+}  // namespace hydro::timing

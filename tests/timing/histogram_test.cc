@@ -7,7 +7,7 @@
 #include <random>
 #include <vector>
 
-namespace hydro {
+namespace hydro::timing {
 namespace {
 
 // Tests that percentiles of values over nine decades are within 1 % of the exact ones, and count, min and max
@@ -120,4 +120,4 @@ TEST(HistogramTest, Ranges) {
 }
 
 }  // namespace
-}  // namespace hydro
+}  // namespace hydro::timing

@@ -31,7 +31,7 @@
 #include "tests/stack_fixture.h"
 #include "tests/timing/heap_trap.h"
 
-namespace hydro {
+namespace hydro::timing {
 namespace {
 
 using namespace std::chrono_literals;
@@ -44,19 +44,19 @@ constexpr auto kBegin = 1200ms, kEnd = 2700ms;
 class Loop {
  public:
   Loop(const std::string& url, std::function<void()> begin, std::function<void()> end)
-      : bus_(url, nullptr, Receiving::kDirect), begin_(std::move(begin)), end_(std::move(end)) {}
+      : bus_(url, nullptr, bus::Receiving::kDirect), begin_(std::move(begin)), end_(std::move(end)) {}
 
-  void RunPlant(const StackConfig& config) {
-    SimulatedRig rig(config);
-    PlantApp plant(bus_, clock_, config, rig);
+  void RunPlant(const settings::StackConfig& config) {
+    plant::SimulatedRig rig(config);
+    plant::PlantApp plant(bus_, clock_, config, rig);
     bus_.Subscribe<motor_command_t>("HYDRO_MOTOR_COMMAND", [this](const motor_command_t&) { Watch(); });
     plant.Run();
   }
   template <class Application>
-  void RunController(const StackConfig& config) {
+  void RunController(const settings::StackConfig& config) {
     Application app(bus_, clock_, config);
     bus_.Subscribe<state_t>("HYDRO_STATE", [this](const state_t&) { Watch(); });
-    RunApp(bus_, clock_, app);
+    process::RunApp(bus_, clock_, app);
   }
 
  private:
@@ -72,34 +72,34 @@ class Loop {
     }
   }
 
-  UdpmBus bus_;
-  WallClock clock_;
+  bus::UdpmBus bus_;
+  bus::WallClock clock_;
   std::function<void()> begin_, end_;
-  std::optional<Clock::TimePoint> first_;
+  std::optional<bus::Clock::TimePoint> first_;
   bool begun_ = false, ended_ = false;
 };
 
 constexpr int kLoops = 3;
 const char* const kNames[kLoops] = {"plant", "pressure loop", "position loop"};
 
-void RunLoop(int which, const std::string& url, const StackConfig& config, std::function<void()> begin,
-             std::function<void()> end) {
+void RunLoop(int which, const std::string& url, const settings::StackConfig& config,
+             std::function<void()> begin, std::function<void()> end) {
   Loop loop(url, std::move(begin), std::move(end));
   if (which == 0) loop.RunPlant(config);
-  if (which == 1) loop.RunController<PressureApp>(config);
-  if (which == 2) loop.RunController<PositionApp>(config);
+  if (which == 1) loop.RunController<pressure_ctrl::PressureApp>(config);
+  if (which == 2) loop.RunController<position_ctrl::PositionApp>(config);
 }
 
-class LoopPurityTest : public ::testing::TestWithParam<TimeMode> {
+class LoopPurityTest : public ::testing::TestWithParam<settings::TimeMode> {
  protected:
   LoopPurityTest() {
     config_.time.mode = GetParam();
     config_.limits.stale_input_s = 3;  // a fault may take memory; none is to come of a busy machine
     // In lockstep a run ends by its ticks: as many as no machine makes in the time that is looked at.
-    config_.last_tick = GetParam() == TimeMode::kLockstep ? 4'000'000 : 3500;
+    config_.last_tick = GetParam() == settings::TimeMode::kLockstep ? 4'000'000 : 3500;
   }
   const std::string url_ = FreeBusUrl();
-  StackConfig config_ = testing::SmallStack();
+  settings::StackConfig config_ = testing::SmallStack();
 };
 
 // Tests that from its second second on no loop takes memory, neither itself nor in a library: over UDP, at
@@ -117,7 +117,7 @@ TEST_P(LoopPurityTest, TakesNoMemory) {
           [&, i] {
             taken[i] = ReleaseHeapTrap();
             if (++done == kLoops) {
-              UdpmBus bus(url_);
+              bus::UdpmBus bus(url_);
               stop_t stop{};
               stop.source = "test";
               bus.Publish("HYDRO_STOP", stop);
@@ -204,9 +204,11 @@ TEST_P(LoopPurityTest, MakesNoBlockingCall) {
   munmap(page, 4096);
 }
 
-INSTANTIATE_TEST_SUITE_P(Modes, LoopPurityTest, ::testing::Values(TimeMode::kRealtime, TimeMode::kLockstep),
+INSTANTIATE_TEST_SUITE_P(Modes, LoopPurityTest,
+                         ::testing::Values(settings::TimeMode::kRealtime, settings::TimeMode::kLockstep),
                          [](const auto& param) {
-                           return std::string(param.param == TimeMode::kRealtime ? "RealTime" : "Lockstep");
+                           return std::string(param.param == settings::TimeMode::kRealtime ? "RealTime"
+                                                                                           : "Lockstep");
                          });
 
 // Tests that the trap notices what it is there for.
@@ -223,4 +225,4 @@ TEST(HeapTrapTest, Notices) {
 }
 
 }  // namespace
-}  // namespace hydro
+}  // namespace hydro::timing

@@ -4,12 +4,12 @@
 
 #include <vector>
 
-namespace hydro {
+namespace hydro::timing {
 namespace {
 
 using namespace std::chrono_literals;
 
-constexpr Clock::TimePoint kStart{5s};
+constexpr bus::Clock::TimePoint kStart{5s};
 
 // Tests that a report comes once a second and holds what happened since the one before.
 TEST(LoopStatisticsTest, ReportsEachSecond) {
@@ -124,4 +124,4 @@ TEST(LoopStatisticsTest, HistogramsInTurn) {
 }
 
 }  // namespace
-}  // namespace hydro
+}  // namespace hydro::timing

@@ -11,7 +11,7 @@
 #include <algorithm>
 #include <functional>
 
-namespace hydro {
+namespace hydro::timing {
 namespace {
 
 using testing::HasSubstr;
@@ -103,4 +103,4 @@ TEST(RealTimeTest, NamesTheRangeOfPriorities) {
 }
 
 }  // namespace
-}  // namespace hydro
+}  // namespace hydro::timing

@@ -2,12 +2,12 @@
 
 #include <gtest/gtest.h>
 
-namespace hydro {
+namespace hydro::timing {
 namespace {
 
 using namespace std::chrono_literals;
 
-constexpr Clock::TimePoint kStart{5s};
+constexpr bus::Clock::TimePoint kStart{5s};
 
 // Tests that the first answer to each tick is measured from the first time its state was sent, and nothing
 // else is.
@@ -35,4 +35,4 @@ TEST(RoundTripMonitorTest, ForgetsOldTicks) {
 }
 
 }  // namespace
-}  // namespace hydro
+}  // namespace hydro::timing

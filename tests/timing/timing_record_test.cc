@@ -8,7 +8,7 @@
 
 #include "timing/report/timing_report.h"
 
-namespace hydro {
+namespace hydro::timing {
 namespace {
 
 using testing::HasSubstr;
@@ -142,4 +142,4 @@ TEST(TimingReportTest, NamesAreOnlyText) {
 }
 
 }  // namespace
-}  // namespace hydro
+}  // namespace hydro::timing

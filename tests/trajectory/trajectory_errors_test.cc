@@ -8,7 +8,7 @@
 
 #include "trajectory/trajectory.h"
 
-namespace hydro {
+namespace hydro::trajectory {
 namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
@@ -84,4 +84,4 @@ INSTANTIATE_TEST_SUITE_P(
                               }}));
 
 }  // namespace
-}  // namespace hydro
+}  // namespace hydro::trajectory

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-namespace hydro {
+namespace hydro::trajectory {
 namespace {
 
 using ::testing::ElementsAre;
@@ -251,4 +251,4 @@ TEST(PointsTest, OnePointIsAConstant) {
 }
 
 }  // namespace
-}  // namespace hydro
+}  // namespace hydro::trajectory

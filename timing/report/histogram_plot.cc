@@ -6,7 +6,7 @@
 #include <cmath>
 #include <functional>
 
-namespace hydro {
+namespace hydro::timing {
 namespace {
 
 constexpr double kWidth = 430, kHeight = 210;
@@ -180,4 +180,4 @@ std::string TimeSvg(const std::vector<double>& times_s, const std::vector<TimeLi
   return Wrap(svg, y_label + " over time");
 }
 
-}  // namespace hydro
+}  // namespace hydro::timing

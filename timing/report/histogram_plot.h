@@ -6,7 +6,7 @@
 
 #include "timing/report/timing_record.h"
 
-namespace hydro {
+namespace hydro::timing {
 
 // Text for HTML and SVG.
 std::string EscapeHtml(const std::string& text);
@@ -23,4 +23,4 @@ struct TimeLine {
 std::string TimeSvg(const std::vector<double>& times_s, const std::vector<TimeLine>& lines,
                     const std::string& y_label);
 
-}  // namespace hydro
+}  // namespace hydro::timing

@@ -2,7 +2,7 @@
 
 #include "timing/report/timing_report.h"
 
-namespace hydro {
+namespace hydro::timing {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -78,4 +78,4 @@ std::string TimingJson(const std::vector<TimedProcess>& processes, const std::st
   return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
-}  // namespace hydro
+}  // namespace hydro::timing

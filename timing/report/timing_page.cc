@@ -7,7 +7,7 @@
 #include "timing/report/histogram_plot.h"
 #include "timing/report/timing_report.h"
 
-namespace hydro {
+namespace hydro::timing {
 namespace {
 
 constexpr const char* kStyle = R"(
@@ -152,4 +152,4 @@ std::string TimingPage(const std::vector<TimedProcess>& processes, const std::st
   return html + "</body></html>\n";
 }
 
-}  // namespace hydro
+}  // namespace hydro::timing

@@ -7,7 +7,7 @@
 
 #include "base/saturating.h"
 
-namespace hydro {
+namespace hydro::timing {
 namespace {
 
 // More than any stack has, and than any run has seconds: what a flood sends is not kept.
@@ -135,4 +135,4 @@ const char* MeaningOfLatency(const std::string& role) {
   return "arrival of a state to the command sent";
 }
 
-}  // namespace hydro
+}  // namespace hydro::timing

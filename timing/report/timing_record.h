@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-namespace hydro {
+namespace hydro::timing {
 
 // How often which values were seen, over the whole run. Times are in ns.
 struct TimingHistogram {
@@ -60,4 +60,4 @@ class TimingRecord {
 // What `latency` is for a role, in a few words.
 const char* MeaningOfLatency(const std::string& role);
 
-}  // namespace hydro
+}  // namespace hydro::timing

@@ -6,7 +6,7 @@
 
 #include "timing/report/timing_record.h"
 
-namespace hydro {
+namespace hydro::timing {
 
 // JSON; times in microseconds, docs/performance.md lists the keys. `source`: where it comes from, e.g. the
 // name of a log.
@@ -18,4 +18,4 @@ std::string TimingText(const std::vector<TimedProcess>& processes);
 // A page (HTML) that needs nothing but itself: the table, and plots of each process.
 std::string TimingPage(const std::vector<TimedProcess>& processes, const std::string& source);
 
-}  // namespace hydro
+}  // namespace hydro::timing

@@ -2,7 +2,7 @@
 
 #include "timing/report/timing_report.h"
 
-namespace hydro {
+namespace hydro::timing {
 namespace {
 
 std::string HistogramLine(const char* name, const char* unit, const TimingHistogram& histogram,
@@ -48,4 +48,4 @@ std::string TimingText(const std::vector<TimedProcess>& processes) {
   return text;
 }
 
-}  // namespace hydro
+}  // namespace hydro::timing

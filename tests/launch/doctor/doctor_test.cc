@@ -10,7 +10,7 @@
 
 #include "launch/doctor/multicast_route.h"
 
-namespace hydro {
+namespace hydro::launch {
 namespace {
 
 using ::testing::HasSubstr;
@@ -250,4 +250,4 @@ TEST_F(DoctorTest, Clock) {
 }
 
 }  // namespace
-}  // namespace hydro
+}  // namespace hydro::launch

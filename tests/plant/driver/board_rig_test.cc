@@ -14,12 +14,12 @@
 #include "tests/plant/driver/simulated_board.h"
 #include "tests/stack_fixture.h"
 
-namespace hydro {
+namespace hydro::plant {
 namespace {
 
 using ::testing::HasSubstr;
 using testing::SimulatedBoard;
-using Source = SensorSection::Source;
+using Source = settings::SensorSection::Source;
 
 // A rig on a board whose registers the test sets, and a clock that it moves.
 class BoardRigTest : public ::testing::Test {
@@ -28,11 +28,11 @@ class BoardRigTest : public ::testing::Test {
     board_ = testing::CreateBoard(file_.c_str());
     config_ = testing::SmallStack();
     config_.file = "rig.toml";
-    DriverSection driver;
+    settings::DriverSection driver;
     driver.device = file_;
     driver.voltage.line = {1, 0};
     driver.voltage.scale = -2;
-    driver.watchdog = BoardLine{2, 3};
+    driver.watchdog = settings::BoardLine{2, 3};
     driver.p1 = Analog(0, 500, -250);
     driver.p2 = Analog(1, 500, -250);
     driver.motor_speed = Analog(2, -100, 0);
@@ -40,8 +40,8 @@ class BoardRigTest : public ::testing::Test {
   }
   ~BoardRigTest() override { std::filesystem::remove(file_); }
 
-  static SensorSection Analog(int channel, double scale, double offset) {
-    SensorSection section;
+  static settings::SensorSection Analog(int channel, double scale, double offset) {
+    settings::SensorSection section;
     section.source = Source::kAnalog;
     section.line = {0, channel};
     section.scale = scale;
@@ -72,15 +72,15 @@ class BoardRigTest : public ::testing::Test {
   void SetVolts(int input, double volts) { board_->inputs[input] = std::lround((volts + 10) / 20 * 0xffff); }
   double Terminal() const { return 20.0 * static_cast<double>(board_->outputs[0]) / 0xffff - 10; }
 
-  Measurement Read(BoardRig& rig) {
+  model::Measurement Read(BoardRig& rig) {
     clock_.AdvanceTo(clock_.Now() + std::chrono::milliseconds(1));
     return rig.Read(tick_++);
   }
 
   std::string file_;
   SimulatedBoard* board_;
-  StackConfig config_;
-  SimulatedClock clock_;
+  settings::StackConfig config_;
+  bus::SimulatedClock clock_;
   int64_t tick_ = 0;
 };
 
@@ -160,7 +160,7 @@ TEST_F(BoardRigTest, AnalogInputs) {
   SetVolts(0, 1.5);
   SetVolts(1, 4);
   SetVolts(2, 2);
-  const Measurement measured = Read(*rig);
+  const model::Measurement measured = Read(*rig);
   EXPECT_NEAR(measured.p1, 500, 0.1);
   EXPECT_NEAR(measured.p2, 1750, 0.1);
   EXPECT_NEAR(measured.motor_speed, -200, 0.02);
@@ -187,7 +187,7 @@ TEST_F(BoardRigTest, SaturatedInput) {
   const auto rig = Open();
   for (const int64_t end : {int64_t{0}, SimulatedBoard::kMaxCode}) {
     board_->inputs[1] = end;
-    const Measurement measured = Read(*rig);
+    const model::Measurement measured = Read(*rig);
     EXPECT_TRUE(std::isnan(measured.p2));
     EXPECT_FALSE(std::isnan(measured.p1));
     ASSERT_EQ(rig->faults().size(), 1u);
@@ -227,7 +227,7 @@ TEST_F(BoardRigTest, EncoderAndSpeed) {
   UseEncoder();
   board_->counters[1] = SimulatedBoard::kMaxCount - 4;
   const auto rig = Open();
-  Measurement measured = Read(*rig);
+  model::Measurement measured = Read(*rig);
   EXPECT_DOUBLE_EQ(measured.motor_angle, 0.05);
   EXPECT_EQ(measured.motor_speed, 0);
   board_->counters[1] = 5;  // ten counts on, through the wrap
@@ -245,7 +245,7 @@ TEST_F(BoardRigTest, FilteredSpeed) {
   const auto rig = Open();
   Read(*rig);
   board_->counters[1] = 10;
-  const Measurement measured = Read(*rig);
+  const model::Measurement measured = Read(*rig);
   EXPECT_DOUBLE_EQ(measured.motor_angle, -0.1);
   EXPECT_NEAR(measured.motor_speed, -100 * (1 - std::exp(-1)), 1e-9);
 }
@@ -353,7 +353,7 @@ TEST_F(BoardRigTest, CheckSensorsLines) {
   SetVolts(0, 2);
   board_->inputs[1] = SimulatedBoard::kMaxCode;
   board_->counters[1] = 100;
-  const Measurement measured = sensors.Read();
+  const model::Measurement measured = sensors.Read();
   const auto all = sensors.all();
   EXPECT_THAT(DescribeReading(*all[0], measured.p1),
               ::testing::ContainsRegex("p1 +analog 0/0 .* 2.000. V +750.* psi$"));
@@ -365,4 +365,4 @@ TEST_F(BoardRigTest, CheckSensorsLines) {
 }
 
 }  // namespace
-}  // namespace hydro
+}  // namespace hydro::plant

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace hydro {
+namespace hydro::plant {
 namespace {
 
 // Tests that codes and volts of a converter are each other's inverse, that the ends are the ends, and that
@@ -96,4 +96,4 @@ TEST(DerivativeTest, Rates) {
 }
 
 }  // namespace
-}  // namespace hydro
+}  // namespace hydro::plant

@@ -47,7 +47,8 @@ double Volts(int64_t code) { return 20 * static_cast<double>(code) / SimulatedBo
 
 class Rig {
  public:
-  Rig(SimulatedBoard& board, const hydro::ModelDescription& model) : board_(board), actuator_(model, {}) {
+  Rig(SimulatedBoard& board, const hydro::model::ModelDescription& model)
+      : board_(board), actuator_(model, {}) {
     Show();
   }
 
@@ -68,7 +69,7 @@ class Rig {
 
  private:
   void Show() {
-    const hydro::Measurement measured = actuator_.Measure();
+    const hydro::model::Measurement measured = actuator_.Measure();
     board_.inputs[0] = Code(0.5 + measured.p1 / 500);
     board_.inputs[1] = Code(0.5 + measured.p2 / 500);
     board_.inputs[2] = Code(-0.01 * measured.motor_speed);
@@ -83,7 +84,7 @@ class Rig {
   }
 
   SimulatedBoard& board_;
-  hydro::Actuator actuator_;
+  hydro::model::Actuator actuator_;
   int64_t edges_ = 0;
   double last_edge_ = 0;
 };
@@ -96,7 +97,7 @@ int main(int argc, char** argv) {
     return 2;
   }
   try {
-    const hydro::ModelDescription model = hydro::LoadModelFile(argv[2]);
+    const hydro::model::ModelDescription model = hydro::settings::LoadModelFile(argv[2]);
     SimulatedBoard* board = hydro::testing::CreateBoard(argv[1]);
     if (board == nullptr) {
       std::perror(argv[1]);

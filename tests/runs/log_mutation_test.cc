@@ -7,14 +7,14 @@
 #include "runs/run_table.h"
 #include "tests/log/log_fixture.h"
 
-namespace hydro {
+namespace hydro::runs {
 namespace {
 
-class LogMutationTest : public LogTest {
+class LogMutationTest : public log::LogTest {
  protected:
   // Reads a log of these bytes in every way there is; anything but success or an InputError fails the test.
   void ReadEveryWay(const std::string& bytes) {
-    WriteBytes(Path("log"), bytes);
+    log::WriteBytes(Path("log"), bytes);
     const auto attempt = [](auto work) {
       try {
         work();
@@ -22,15 +22,15 @@ class LogMutationTest : public LogTest {
         EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos) << error.what();
       }
     };
-    attempt([&] { ReadEvents(Path("log")); });
+    attempt([&] { log::ReadEvents(Path("log")); });
     attempt([&] {
-      const RunLog log = ReadRunLog(Path("log"), std::nullopt, Undecodable::kLeftOut);
-      FirstDifference(log.messages, "a", log.messages, "b");
-      ExportRun(log);
+      const runs::RunLog log = runs::ReadRunLog(Path("log"), std::nullopt, runs::Undecodable::kLeftOut);
+      runs::FirstDifference(log.messages, "a", log.messages, "b");
+      runs::ExportRun(log);
     });
     attempt([&] {
-      RepairLog(Path("log"), Path("repaired"));
-      ReadEvents(Path("repaired"));  // a repaired log is whole
+      log::RepairLog(Path("log"), Path("repaired"));
+      log::ReadEvents(Path("repaired"));  // a repaired log is whole
       std::filesystem::remove(Path("repaired"));
     });
   }
@@ -38,8 +38,8 @@ class LogMutationTest : public LogTest {
 
 // Tests that logs with a few bytes changed, removed, inserted or repeated never do worse than an InputError.
 TEST_F(LogMutationTest, MutatedLogs) {
-  WriteRun(Path("sample"), SampleRun(12));
-  const std::string sample = ReadBytes(Path("sample"));
+  log::WriteRun(Path("sample"), log::SampleRun(12));
+  const std::string sample = log::ReadBytes(Path("sample"));
   std::mt19937_64 random(20240607);
   const auto below = [&random](size_t limit) {
     return std::uniform_int_distribution<size_t>(0, limit - 1)(random);
@@ -80,10 +80,10 @@ TEST_F(LogMutationTest, RandomBytes) {
     std::string bytes(1 + below(400), '\0');
     for (char& byte : bytes) byte = static_cast<char>(below(256));
     for (size_t syncs = below(6); syncs > 0; --syncs) {
-      uint8_t header[kLogHeaderSize] = {};
-      StoreBigEndian32(kLogSyncWord, header);
-      StoreBigEndian32(static_cast<uint32_t>(below(70)), header + 20);
-      StoreBigEndian32(static_cast<uint32_t>(below(300)), header + 24);
+      uint8_t header[log::kLogHeaderSize] = {};
+      log::StoreBigEndian32(log::kLogSyncWord, header);
+      log::StoreBigEndian32(static_cast<uint32_t>(below(70)), header + 20);
+      log::StoreBigEndian32(static_cast<uint32_t>(below(300)), header + 24);
       bytes.insert(below(bytes.size()), reinterpret_cast<const char*>(header), sizeof header);
     }
     ReadEveryWay(bytes);
@@ -91,4 +91,4 @@ TEST_F(LogMutationTest, RandomBytes) {
 }
 
 }  // namespace
-}  // namespace hydro
+}  // namespace hydro::runs

@@ -1,1 +1,0 @@
-// Empty: CMake precompiles headers only for a target with a source file.
