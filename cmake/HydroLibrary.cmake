@@ -26,16 +26,19 @@ if(HYDRO_PRECOMPILE)
   target_compile_options(hydro_precompiled_computes PRIVATE ${HYDRO_COMPUTES_OPTIONS})
 endif()
 
-# hydro_library(NAME [COMPUTES] SOURCES FILES... [PUBLIC LIBS...] [PRIVATE LIBS...]): a static library. Its headers are included by
-# their path from the root, here and where they are installed (include/hydro). COMPUTES: see above.
+# hydro_library(NAME [COMPUTES] [INSTALLED] SOURCES FILES... [PUBLIC LIBS...] [PRIVATE LIBS...]): a static library, hydro_NAME, that
+# others know as hydro::NAME. Its headers are included by their path from the root, here and where they are installed
+# (include/hydro). COMPUTES: see above. INSTALLED: it and the headers of its folder are what others build on
+# (find_package(hydro), cmake/hydroConfig.cmake.in).
 function(hydro_library name)
-  cmake_parse_arguments(arg "COMPUTES" "" "SOURCES;PUBLIC;PRIVATE" ${ARGN})
+  cmake_parse_arguments(arg "COMPUTES;INSTALLED" "" "SOURCES;PUBLIC;PRIVATE" ${ARGN})
   if(arg_UNPARSED_ARGUMENTS)
     message(FATAL_ERROR "hydro_library(${name}): unknown: ${arg_UNPARSED_ARGUMENTS}")
   endif()
   add_library(${name} STATIC ${arg_SOURCES})
   target_include_directories(${name} PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>
                                             $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/hydro>)
+  target_compile_features(${name} PUBLIC cxx_std_20)
   target_link_libraries(${name} PUBLIC ${arg_PUBLIC} PRIVATE ${arg_PRIVATE})
   set(flavour precompiled)
   if(arg_COMPUTES)
@@ -45,6 +48,20 @@ function(hydro_library name)
   if(HYDRO_PRECOMPILE)
     target_precompile_headers(${name} REUSE_FROM hydro_${flavour})
   endif()
+  if(arg_INSTALLED)
+    hydro_install_library(${name})
+    cmake_path(RELATIVE_PATH CMAKE_CURRENT_SOURCE_DIR BASE_DIRECTORY ${PROJECT_SOURCE_DIR} OUTPUT_VARIABLE room)
+    install(DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR}/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/hydro/${room} COMPONENT development
+      FILES_MATCHING PATTERN "*.h")
+  endif()
+endfunction()
+
+# hydro_install_library(hydro_NAME): exports a library as hydro::NAME.
+function(hydro_install_library name)
+  string(REGEX REPLACE "^hydro_" "" short_name ${name})
+  set_target_properties(${name} PROPERTIES EXPORT_NAME ${short_name})
+  add_library(hydro::${short_name} ALIAS ${name})
+  install(TARGETS ${name} EXPORT hydroTargets COMPONENT development)
 endfunction()
 
 # hydro_program(NAME SOURCES FILES... LIBS LIBS...): a program, installed.

@@ -1,0 +1,61 @@
+"""Tests that the installed libraries are whole: a project of somebody else finds them, builds, and runs.
+
+HYDRO_BUILD is the folder of a finished build, HYDRO_SOURCE that of the sources.
+"""
+
+import os
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+import unittest
+
+BUILD = pathlib.Path(os.environ["HYDRO_BUILD"])
+SOURCE = pathlib.Path(os.environ["HYDRO_SOURCE"])
+
+
+def run(*command):
+    done = subprocess.run([str(word) for word in command], capture_output=True, text=True, timeout=300)
+    if done.returncode != 0:
+        raise AssertionError(f"{command}: exit {done.returncode}\n{done.stdout[-4000:]}\n{done.stderr[-4000:]}")
+    return done.stdout
+
+
+class InstallTest(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = tempfile.TemporaryDirectory()
+        cls.prefix = pathlib.Path(cls.folder.name) / "prefix"
+        run("cmake", "--install", BUILD, "--prefix", cls.prefix, "--component", "development")
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.folder.cleanup()
+
+    def test_a_project_builds_and_runs(self):
+        """Tests that find_package(hydro) is enough to build on the model, the laws, the bus and the log."""
+        project = pathlib.Path(self.folder.name) / "project"
+        run("cmake", "-S", SOURCE / "tests/install/project", "-B", project, "-G", "Ninja", f"-DCMAKE_PREFIX_PATH={self.prefix}")
+        run("cmake", "--build", project)
+        said = run(project / "moves_an_arm", SOURCE / "config/models/table1.toml", project / "run.lcmlog")
+        match = re.fullmatch(r"(\d+) states, arm at ([\d.]+) rad, (\d+) effects in the catalogue\n", said)
+        self.assertTrue(match, said)
+        self.assertEqual(int(match[1]), 10_000)
+        self.assertAlmostEqual(float(match[2]), 0.3, delta=0.01)
+        effects = len(list((SOURCE / "model/effects").glob("*_*.cc")))  # a file is GROUP_NAME.cc
+        self.assertEqual(int(match[3]), effects)
+
+    def test_headers_name_installed_headers(self):
+        """Tests that no installed header includes one of the project's that is not installed, and none of the upper floors is."""
+        include = self.prefix / "include/hydro"
+        headers = sorted(path.relative_to(include).as_posix() for path in include.rglob("*.h*"))
+        self.assertGreater(len(headers), 80)
+        for header in headers:
+            for name in re.findall(r'#include "([^"]+)"', (include / header).read_text()):
+                self.assertTrue((include / name).is_file(), f"{header} includes {name}")
+        self.assertEqual([name for name in headers if re.match("tests|diagnose|experiments|launch|plant", name)], [])
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1] + ["-v"])
