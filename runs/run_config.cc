@@ -1,52 +1,70 @@
 #include "runs/run_config.h"
 
-#include <toml++/toml.h>
-
-#include <sstream>
+#include <algorithm>
 
 #include "base/input_error.h"
 #include "base/number_text.h"
+#include "settings/toml/toml_document.h"
 
 namespace hydro::runs {
 namespace {
 
-toml::table Parse(const std::string& text, const std::string& file, const char* what) {
-  try {
-    return toml::parse(text);
-  } catch (const toml::parse_error& error) {
-    throw InputError(file + ": run description: " + what + ", line " +
-                     std::to_string(error.source().begin.line) + ": " + std::string(error.description()) +
-                     "; TOML is needed");
-  }
+using settings::TomlNode;
+using Kind = TomlNode::Kind;
+
+// A log is untrusted input: its text goes through the one door for TOML.
+TomlNode Parse(const std::string& text, const std::string& file, const std::string& what) {
+  return settings::ParseToml(text, file + ": run description: " + what);
 }
 
-// A value as TOML on one line; numbers in the shortest form, which toml++ does not write.
-std::string ValueText(const toml::node& node) {
-  if (const auto* number = node.as_floating_point()) return NumberText(number->get());
+std::vector<const settings::TomlMember*> SortedMembers(const TomlNode& table) {
+  std::vector<const settings::TomlMember*> members;
+  for (const settings::TomlMember& member : table.members) members.push_back(&member);
+  std::ranges::sort(members, {}, &settings::TomlMember::first);
+  return members;
+}
+
+// Literal where it can be, which needs no escapes.
+std::string StringText(const std::string& text) {
+  const bool literal =
+      std::ranges::none_of(text, [](unsigned char c) { return c == '\'' || c < 0x20 || c == 0x7f; });
+  return literal ? "'" + text + "'" : settings::TomlString(text);
+}
+
+// A value as TOML on one line; numbers as they are read, in the shortest form.
+std::string ValueText(const TomlNode& node) {
   std::string text;
-  if (const toml::array* array = node.as_array()) {
-    for (const toml::node& element : *array) text += (text.empty() ? "" : ", ") + ValueText(element);
-    return "[" + text + "]";
+  switch (node.kind) {
+    case Kind::kTable:
+      for (const settings::TomlMember* member : SortedMembers(node)) {
+        text += (text.empty() ? "" : ", ") + member->first + " = " + ValueText(member->second);
+      }
+      return "{" + text + "}";
+    case Kind::kArray:
+      for (const TomlNode& item : node.items) text += (text.empty() ? "" : ", ") + ValueText(item);
+      return "[" + text + "]";
+    case Kind::kString:
+      return StringText(node.text);
+    case Kind::kInteger:
+      return std::to_string(node.integer);
+    case Kind::kFloat:
+      return NumberText(node.number);
+    case Kind::kBoolean:
+      return node.boolean ? "true" : "false";
+    case Kind::kDate:
+      return node.text;
   }
-  if (const toml::table* table = node.as_table()) {
-    for (const auto& [key, value] : *table) {
-      text += (text.empty() ? "" : ", ") + std::string(key.str()) + " = " + ValueText(value);
-    }
-    return "{" + text + "}";
-  }
-  std::ostringstream stream;
-  node.visit([&](const auto& value) { stream << value; });
-  return stream.str();
+  return text;
 }
 
-void Flatten(const toml::table& table, const std::string& prefix,
+void Flatten(const TomlNode& table, const std::string& prefix,
              std::vector<std::pair<std::string, std::string>>& entries) {
-  for (const auto& [key, node] : table) {
-    const std::string name = prefix + std::string(key.str());
-    if (const toml::table* inner = node.as_table()) {
-      Flatten(*inner, name + ".", entries);
+  for (const settings::TomlMember* member : SortedMembers(table)) {
+    const std::string name = prefix + member->first;
+    if (member->second.is(Kind::kTable)) {
+      Flatten(member->second, name + ".", entries);
     } else {
-      entries.emplace_back(name, ValueText(node));
+      entries.emplace_back(name, ValueText(member->second));
     }
   }
 }
@@ -61,19 +79,21 @@ std::vector<std::pair<std::string, std::string>> ConfigEntries(const run_descrip
 }
 
 int CommandDelayTicks(const run_description_t& description, const std::string& file) {
-  const toml::table config = Parse(description.config_text, file, "configuration");
-  const auto node = config.at_path("plant.command_delay_ticks");
-  if (!node) return 1;
-  const std::optional<int64_t> delay = node.value<int64_t>();
-  if (delay != 0 && delay != 1) {
-    throw InputError(file + ": run description: plant.command_delay_ticks: found something else than 0 or 1");
+  const TomlNode config = Parse(description.config_text, file, "configuration");
+  const TomlNode* plant = config.Find("plant");
+  const TomlNode* delay = plant == nullptr ? nullptr : plant->Find("command_delay_ticks");
+  if (delay == nullptr) return 1;
+  if (!delay->is_number() || (delay->AsDouble() != 0 && delay->AsDouble() != 1)) {
+    throw InputError(delay->place + ": plant.command_delay_ticks: found " + delay->Shown() +
+                     ", allowed 0 or 1");
   }
-  return static_cast<int>(*delay);
+  return static_cast<int>(delay->AsDouble());
 }
 
 std::string ModelName(const run_description_t& description, const std::string& file) {
-  const toml::table model = Parse(description.model_text, file, "model");
-  return model["name"].value_or(std::string());
+  const TomlNode model = Parse(description.model_text, file, "model");
+  const TomlNode* name = model.Find("name");
+  return name != nullptr && name->is(Kind::kString) ? name->text : std::string();
 }
 
 }  // namespace hydro::runs

@@ -4,23 +4,28 @@
 
 #include <algorithm>
 #include <cmath>
+#include <sstream>
 
 #include "base/text_file.h"
 
 namespace hydro::settings {
 namespace {
 
-constexpr int kDeepest = 16;  // parts of a key; what is read here has up to three
+constexpr int kMostKeyParts = 16;  // what is read here has up to three
+constexpr int kMostBrackets = 16;  // one inside another; what is read here has two
 
-// toml++ limits how deep arrays and inline tables go, but not a key of a hundred thousand parts, whose tables
-// in tables then exhaust the stack. This looks at nothing else: where the text is no TOML, toml++ says so.
-class KeyDepth {
+// Bounds the depth of a document before it is parsed. toml++ bounds how deep arrays and inline tables nest, but
+// builds a table inside a table for each part of a dotted key, and a key of a hundred thousand parts exhausts
+// the stack. A document that passes is at most kMostKeyParts * (kMostBrackets + 1) + kMostBrackets levels deep.
+// The scan knows strings and comments as toml++ does and nothing else: toml++ reports what is not TOML.
+class DepthScan {
  public:
-  explicit KeyDepth(std::string_view text) : text_(text) {}
+  explicit DepthScan(std::string_view text) : text_(text) {}
 
-  // Line of the first key that is too deep; 0: none is.
-  int FirstTooDeep() {
-    int depth = 1;
+  // The first place that is too deep, as "LINE: syntax: found ..., allowed ..."; empty: there is none.
+  std::string FirstTooDeep() {
+    int parts = 1;
+    int brackets = 0;
     while (at_ < text_.size()) {
       const char c = text_[at_];
       if (c == '"' || c == '\'') {
@@ -32,16 +37,26 @@ class KeyDepth {
         continue;
       }
       if (c == '.') {
-        if (++depth > kDeepest) return line_;
+        if (++parts > kMostKeyParts) return TooDeep("a key", "parts (a.b.c has three)", kMostKeyParts);
       } else if (c == '\n' || c == '=' || c == ',' || c == '{' || c == '[' || c == ']') {
-        depth = 1;
+        parts = 1;
+      }
+      if (c == '[' || c == '{') {
+        if (++brackets > kMostBrackets) return TooDeep("a value", "brackets in brackets", kMostBrackets);
+      } else if (c == ']' || c == '}') {
+        brackets = std::max(brackets - 1, 0);
       }
       Step(1);
     }
-    return 0;
+    return {};
   }
 
  private:
+  std::string TooDeep(const std::string& what, const std::string& of, int most) const {
+    return std::to_string(line_) + ": syntax: found " + what + " of more than " + std::to_string(most) + " " +
+           of + ", allowed " + std::to_string(most);
+  }
+
   bool At(std::string_view what) const { return text_.substr(at_, what.size()) == what; }
 
   void Step(size_t count) {
@@ -57,6 +72,8 @@ class KeyDepth {
       Step(quote == '"' && text_[at_] == '\\' ? 2 : 1);
     }
     Step(end.size());
+    // Up to two quotes directly before the closing three belong to the string: """a""""" holds a"".
+    for (int extra = 0; end.size() == 3 && extra < 2 && At(std::string_view(&quote, 1)); ++extra) Step(1);
   }
 
   std::string_view text_;
@@ -98,6 +115,9 @@ TomlNode Convert(const toml::node& from, const std::string& name) {
     node.boolean = boolean->get();
   } else {
     node.kind = TomlNode::Kind::kDate;
+    std::ostringstream text;
+    from.visit([&text](const auto& value) { text << value; });
+    node.text = text.str();
   }
   return node;
 }
@@ -161,10 +181,8 @@ TomlNode ArrayNode(std::vector<TomlNode> items) {
 }
 
 TomlNode ParseToml(const std::string& text, const std::string& name) {
-  if (const int line = KeyDepth(text).FirstTooDeep(); line > 0) {
-    throw InputError(name + ":" + std::to_string(line) + ": syntax: found a key of more than " +
-                     std::to_string(kDeepest) + " parts (a.b.c has three), allowed " +
-                     std::to_string(kDeepest));
+  if (const std::string place = DepthScan(text).FirstTooDeep(); !place.empty()) {
+    throw InputError(name + ":" + place);
   }
   try {
     return Convert(toml::parse(text, name), name);

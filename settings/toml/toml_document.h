@@ -16,7 +16,7 @@ struct TomlNode {
   Kind kind = Kind::kTable;
   std::vector<TomlMember> members;  // kTable, in the document's order
   std::vector<TomlNode> items;      // kArray
-  std::string text;                 // kString
+  std::string text;                 // kString; kDate, as TOML
   int64_t integer = 0;              // kInteger
   double number = 0;                // kFloat
   bool boolean = false;             // kBoolean
@@ -44,11 +44,14 @@ TomlNode NumberNode(double value);
 TomlNode StringNode(std::string text);
 TomlNode ArrayNode(std::vector<TomlNode> items);
 
-// Throws InputError "name:line: syntax: ..." where the text is not TOML.
+// The only reader of TOML, for trusted and untrusted text alike: no text can exhaust the stack. Throws InputError
+// "name:line: syntax: ..." where the text is not TOML, or nests deeper than any document of this project.
 TomlNode ParseToml(const std::string& text, const std::string& name);
 
-// TOML text that ParseToml reads back as the same tree, doubles bit by bit. Dates are not kept (no key takes
-// one).
+// TOML text that ParseToml reads back as the same tree, doubles bit by bit.
 std::string FormatToml(const TomlNode& table);
+
+// `text` as a TOML string on one line.
+std::string TomlString(const std::string& text);
 
 }  // namespace hydro::settings

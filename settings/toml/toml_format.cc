@@ -12,29 +12,11 @@ namespace {
 
 using Kind = TomlNode::Kind;
 
-std::string String(const std::string& text) {
-  std::string out = "\"";
-  for (const char character : text) {
-    const unsigned char c = static_cast<unsigned char>(character);
-    if (c == '"' || c == '\\') {
-      out += '\\';
-      out += character;
-    } else if (c < 0x20 || c == 0x7f) {
-      char code[8];
-      std::snprintf(code, sizeof code, "\\u%04X", c);
-      out += code;
-    } else {
-      out += character;
-    }
-  }
-  return out + "\"";
-}
-
 std::string Key(const std::string& key) {
   const bool bare = !key.empty() && std::all_of(key.begin(), key.end(), [](unsigned char c) {
     return (c < 0x80 && std::isalnum(c)) || c == '_' || c == '-';
   });
-  return bare ? key : String(key);
+  return bare ? key : TomlString(key);
 }
 
 std::string Number(double value) {
@@ -57,7 +39,7 @@ std::string Value(const TomlNode& node) {
       for (const TomlNode& item : node.items) out += (out.empty() ? "" : ", ") + Value(item);
       return "[" + out + "]";
     case Kind::kString:
-      return String(node.text);
+      return TomlString(node.text);
     case Kind::kInteger:
       return std::to_string(node.integer);
     case Kind::kFloat:
@@ -67,7 +49,7 @@ std::string Value(const TomlNode& node) {
     case Kind::kDate:
       break;
   }
-  return "\"\"";
+  return node.text;
 }
 
 bool IsArrayOfTables(const TomlNode& node) {
@@ -96,6 +78,24 @@ void Append(const TomlNode& table, const std::string& path, std::string* out) {
 }
 
 }  // namespace
+
+std::string TomlString(const std::string& text) {
+  std::string out = "\"";
+  for (const char character : text) {
+    const unsigned char c = static_cast<unsigned char>(character);
+    if (c == '"' || c == '\\') {
+      out += '\\';
+      out += character;
+    } else if (c < 0x20 || c == 0x7f) {
+      char code[8];
+      std::snprintf(code, sizeof code, "\\u%04X", c);
+      out += code;
+    } else {
+      out += character;
+    }
+  }
+  return out + "\"";
+}
 
 std::string FormatToml(const TomlNode& table) {
   std::string out;

@@ -136,7 +136,7 @@ TEST_F(RunExportTest, NotOneRun) {
 // Tests that a description that cannot be understood is an error that says where it lies.
 TEST_F(RunExportTest, BadDescription) {
   EXPECT_THAT(log::InputErrorOf([&] { Export(log::SampleRun(2), "[plant]\nrate_hz = \n"); }),
-              HasSubstr("run description: configuration, line 2"));
+              HasSubstr("run description: configuration:2: syntax: "));
   EXPECT_THAT(log::InputErrorOf([&] { Export(log::SampleRun(2), "[plant]\ncommand_delay_ticks = 3\n"); }),
               HasSubstr("plant.command_delay_ticks"));
 }

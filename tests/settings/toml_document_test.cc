@@ -36,23 +36,66 @@ TEST(TomlDocumentTest, RefusesWhatIsNotToml) {
   }
 }
 
+std::string Repeated(const std::string& text, int times) {
+  std::string repeated;
+  for (int i = 0; i < times; ++i) repeated += text;
+  return repeated;
+}
+
 // Tests that a key of very many parts is refused instead of exhausting the stack, wherever it stands, and
 // that dots elsewhere are no keys.
 TEST(TomlDocumentTest, RefusesVeryDeepKeys) {
-  std::string deep;
-  for (int i = 0; i < 100000; ++i) deep += "\"a\" . b.";
-  for (const std::string& text :
-       {"x = 1\n" + deep + "c = 1\n", "x = 1\n[" + deep + "c]\n", "x = 1\ny = {" + deep + "c = 1}\n"}) {
-    EXPECT_THAT(InputErrorOf([&] { ParseToml(text, "f.toml"); }),
-                HasSubstr("f.toml:2: syntax: found a key of"));
+  for (const int parts : {20'000, 100'000}) {
+    const std::string deep = Repeated("\"a\" . b.", parts / 2) + "c";
+    for (const std::string& text :
+         {"x = 1\n" + deep + " = 1\n", "x = 1\n[" + deep + "]\n", "x = 1\n[[" + deep + "]]\n",
+          "x = 1\ny = {" + deep + " = 1}\n", "x = 1\ny = [{a = {" + deep + " = 1}}]\n",
+          // Quotes directly before the closing three belong to the string, and hide nothing behind it.
+          "x = 1\ny = {s = \"\"\"z\"\"\"\", " + deep + " = 1}\n",
+          "x = 1\ny = {s = '''z''''', " + deep + " = 1}\n"}) {
+      EXPECT_EQ(InputErrorOf([&] { ParseToml(text, "f.toml"); }),
+                "f.toml:2: syntax: found a key of more than 16 parts (a.b.c has three), allowed 16");
+    }
   }
   const std::string dots(1000, '.');
-  std::string numbers;
-  for (int i = 0; i < 100; ++i) numbers += "1.5, ";
   const TomlNode root = ParseToml("a = \"" + dots + "\\\"" + dots + "\" # " + dots + "\nb = \"\"\"\n\"" +
-                                      dots + "\n\"\"\"\nc.d.e = [" + numbers + "]\n",
+                                      dots + "\n\"\"\"\"\nc.d.e = [" + Repeated("1.5, ", 100) + "]\n",
                                   "f.toml");
+  EXPECT_EQ(root.Find("b")->text, "\"" + dots + "\n\"");
   EXPECT_EQ(root.Find("c")->Find("d")->Find("e")->items.size(), 100u);
+  EXPECT_EQ(ParseToml(Repeated("a.", 15) + "b = 1\n", "f.toml").members.size(), 1u);
+  EXPECT_NE(InputErrorOf([&] { ParseToml(Repeated("a.", 16) + "b = 1\n", "f.toml"); }), "");
+}
+
+// Tests that very deep nesting is refused, closed or not, and that brackets side by side or in strings and
+// comments are no nesting.
+TEST(TomlDocumentTest, RefusesVeryDeepNesting) {
+  const std::string keys = "{a.b.c.d.e.f.g.h.i.j.k.l.m.n.o = ";
+  for (const std::string& text :
+       {"x = 1\ny = " + std::string(100'000, '['),
+        "x = 1\ny = " + std::string(100'000, '[') + std::string(100'000, ']') + "\n",
+        "x = 1\ny = " + Repeated(keys, 250) + "1" + std::string(250, '}') + "\n"}) {
+    EXPECT_EQ(InputErrorOf([&] { ParseToml(text, "f.toml"); }),
+              "f.toml:2: syntax: found a value of more than 16 brackets in brackets, allowed 16");
+  }
+  const std::string brackets(1000, '[');
+  const TomlNode root = ParseToml("a = \"" + brackets + "\" # " + brackets + "\nb = [" +
+                                      Repeated("[1], ", 1000) + "]\n" + Repeated("[[c]]\n", 1000),
+                                  "f.toml");
+  EXPECT_EQ(root.Find("b")->items.size(), 1000u);
+  EXPECT_EQ(root.Find("c")->items.size(), 1000u);
+  EXPECT_EQ(ParseToml("a = " + std::string(16, '[') + std::string(16, ']'), "f.toml").members.size(), 1u);
+}
+
+// Tests that the deepest document there can be is read.
+TEST(TomlDocumentTest, ReadsTheDeepestDocument) {
+  const std::string key = Repeated("a.", 15) + "a";
+  const TomlNode root = ParseToml(
+      "[" + key + "]\n" + key + " = " + Repeated("{" + key + " = ", 16) + "1" + std::string(16, '}') + "\n",
+      "f.toml");
+  int depth = 0;
+  for (const TomlNode* node = &root; node != nullptr; node = node->Find("a")) ++depth;
+  EXPECT_EQ(depth, 1 + 16 + 16 + 16 * 16);
 }
 
 void ExpectSame(const TomlNode& a, const TomlNode& b) {
