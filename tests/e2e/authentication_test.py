@@ -7,9 +7,9 @@ import re
 import shutil
 import socket
 import struct
-import unittest
 
 import event_log
+import outcome
 import stack
 
 CODE = "unauthenticated_command"
@@ -280,4 +280,4 @@ class AuthenticationTest(stack.TestCase):
 
 
 if __name__ == "__main__":
-    unittest.main()
+    outcome.main()

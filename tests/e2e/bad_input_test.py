@@ -1,9 +1,9 @@
 """Bad input to the real programs: exit code 2, one line on stderr that names the place, and no output file."""
 
 import os
-import unittest
 
 import event_log
+import outcome
 import stack
 
 # Programs that take a CONFIG, with options that make each do something. FILE stands for an output file.
@@ -219,4 +219,4 @@ class BadInputTest(stack.TestCase):
 
 
 if __name__ == "__main__":
-    unittest.main()
+    outcome.main()

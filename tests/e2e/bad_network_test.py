@@ -2,9 +2,8 @@
 so that they overtake each other, and is out for 2 s. Plant and pressure loop on one host, position loop on the other, a
 logger on each."""
 
-import unittest
-
 import event_log
+import outcome
 import two_hosts
 
 LOSS, DELAY, JITTER = 0.05, 20, 6
@@ -170,4 +169,4 @@ class LostStopTest(BadNetworkCase):
 
 
 if __name__ == "__main__":
-    unittest.main()
+    outcome.main()

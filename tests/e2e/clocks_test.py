@@ -5,9 +5,9 @@ hosts, is what it is."""
 import os
 import shutil
 import subprocess
-import unittest
 
 import event_log
+import outcome
 import two_hosts
 
 
@@ -78,4 +78,4 @@ class ClocksTest(two_hosts.TestCase):
 
 
 if __name__ == "__main__":
-    unittest.main()
+    outcome.main()

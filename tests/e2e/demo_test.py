@@ -4,9 +4,9 @@ Only results are asserted. How the machine kept time is in the log; a late wake-
 """
 
 import json
-import unittest
 
 import event_log
+import outcome
 import stack
 
 
@@ -47,4 +47,4 @@ class DemoTest(stack.TestCase):
 
 
 if __name__ == "__main__":
-    unittest.main()
+    outcome.main()

@@ -5,8 +5,8 @@ import math
 import os
 import random
 import re
-import unittest
 
+import outcome
 import stack
 
 SIDECAR = """shaft = "clamped"
@@ -125,4 +125,4 @@ class DiagnoseTest(stack.TestCase):
 
 
 if __name__ == "__main__":
-    unittest.main()
+    outcome.main()

@@ -6,8 +6,8 @@ import os
 import re
 import shutil
 import subprocess
-import unittest
 
+import outcome
 import stack
 
 URL = "udpm://239.255.76.67:7667?ttl=0"
@@ -164,4 +164,4 @@ class DoctorTest(stack.TestCase):
 
 
 if __name__ == "__main__":
-    unittest.main()
+    outcome.main()

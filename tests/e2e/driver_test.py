@@ -4,10 +4,10 @@ import json
 import math
 import os
 import signal
-import unittest
 
 import board
 import event_log
+import outcome
 import stack
 
 STALE = 0.3  # s, above what wake-ups are late by here
@@ -349,4 +349,4 @@ class DriverInputTest(DriverCase):
 
 
 if __name__ == "__main__":
-    unittest.main()
+    outcome.main()

@@ -3,9 +3,9 @@
 import json
 import os
 import re
-import unittest
 import xml.etree.ElementTree as xml
 
+import outcome
 import stack
 
 # All of them take well under 30 s on two free cores; this machine may be shared.
@@ -120,4 +120,4 @@ class ExperimentTest(stack.TestCase):
 
 
 if __name__ == "__main__":
-    unittest.main()
+    outcome.main()

@@ -5,10 +5,10 @@ tick, so that the bad one comes at a known tick between good ones.
 """
 
 import struct
-import unittest
 
 import event_log
 import fault_case
+import outcome
 import stack
 from fault_case import STALE
 
@@ -335,4 +335,4 @@ class StateTest(fault_case.FaultCase):
 
 
 if __name__ == "__main__":
-    unittest.main()
+    outcome.main()

@@ -1,10 +1,9 @@
 """Rows of docs/safety.md: limits that are passed, and how a latched fault ends (limits.rearm), with the real programs."""
 
-import unittest
-
 import event_log
 import fault_case
 import lcm_peer
+import outcome
 
 # A pressure that drives the arm away for as long as it is asked for; negative: the other way.
 PUSH = 'signal = "pressure"\nkind = "steps"\nsteps = [[0.1, {}]]'
@@ -220,4 +219,4 @@ class RearmTest(fault_case.FaultCase):
 
 
 if __name__ == "__main__":
-    unittest.main()
+    outcome.main()

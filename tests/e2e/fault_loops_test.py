@@ -3,10 +3,10 @@
 import math
 import resource
 import signal
-import unittest
 
 import event_log
 import fault_case
+import outcome
 import stack
 from fault_case import RATE, STALE
 
@@ -224,4 +224,4 @@ class FaultLoopsTest(fault_case.FaultCase):
 
 
 if __name__ == "__main__":
-    unittest.main()
+    outcome.main()

@@ -8,10 +8,10 @@ import os
 import shutil
 import signal
 import subprocess
-import unittest
 
 import event_log
 import fault_case
+import outcome
 import stack
 from fault_case import RATE, STALE
 
@@ -123,4 +123,4 @@ class NetworkTest(fault_case.FaultCase):
 
 
 if __name__ == "__main__":
-    unittest.main()
+    outcome.main()

@@ -1,9 +1,8 @@
 """Rows of docs/safety.md: HYDRO_STOP, from any program and from hydro-launch --stop."""
 
-import unittest
-
 import event_log
 import fault_case
+import outcome
 import stack
 
 
@@ -57,4 +56,4 @@ class StopTest(fault_case.FaultCase):
 
 
 if __name__ == "__main__":
-    unittest.main()
+    outcome.main()

@@ -4,8 +4,8 @@ processes, and the stack started again with the model that it wrote."""
 import csv
 import json
 import os
-import unittest
 
+import outcome
 import stack
 
 LONG = 500
@@ -79,4 +79,4 @@ class GapClosedTest(stack.TestCase):
 
 
 if __name__ == "__main__":
-    unittest.main()
+    outcome.main()

@@ -1,9 +1,8 @@
 """One stack on two hosts with a cable between them: the plant and the pressure loop on one, the position loop and the
 logger on the other, the same configuration on each."""
 
-import unittest
-
 import event_log
+import outcome
 import stack
 import two_hosts
 
@@ -39,4 +38,4 @@ class HostsTest(two_hosts.TestCase):
 
 
 if __name__ == "__main__":
-    unittest.main()
+    outcome.main()

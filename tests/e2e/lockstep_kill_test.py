@@ -7,9 +7,9 @@ missing process on stderr. Nobody waits for ever and nobody computes on without 
 import os
 import signal
 import time
-import unittest
 
 import event_log
+import outcome
 import stack
 
 ROLES = ("plant", "pressure_ctrl", "position_ctrl", "logger")
@@ -156,4 +156,4 @@ class LaunchedLockstepKillTest(stack.TestCase):
 
 
 if __name__ == "__main__":
-    unittest.main()
+    outcome.main()

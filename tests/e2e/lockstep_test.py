@@ -1,8 +1,7 @@
 """In lockstep the result does not depend on the machine: run after run, under load, and in one process, bit by bit."""
 
-import unittest
-
 import event_log
+import outcome
 import stack
 
 # More plant time than this would only take longer.
@@ -74,4 +73,4 @@ class LockstepTest(stack.TestCase):
 
 
 if __name__ == "__main__":
-    unittest.main()
+    outcome.main()

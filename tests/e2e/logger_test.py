@@ -7,9 +7,9 @@ megabytes and is ended by SIGTERM while the run goes on; a third one joins then 
 import glob
 import signal
 import time
-import unittest
 
 import event_log
+import outcome
 import stack
 
 RATE = 5000
@@ -137,4 +137,4 @@ class TornLogTest(stack.TestCase):
 
 
 if __name__ == "__main__":
-    unittest.main()
+    outcome.main()

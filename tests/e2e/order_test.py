@@ -1,8 +1,7 @@
 """Order and cause in a lockstep run, as its log shows them: what a command was computed from precedes it."""
 
-import unittest
-
 import event_log
+import outcome
 import stack
 
 
@@ -83,4 +82,4 @@ def unrepeated(messages):
 
 
 if __name__ == "__main__":
-    unittest.main()
+    outcome.main()

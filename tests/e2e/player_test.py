@@ -5,6 +5,7 @@ import signal
 import unittest
 
 import event_log
+import outcome
 import stack
 
 PLAYER = shutil.which("lcm-logplayer")
@@ -97,4 +98,4 @@ class PlayerTest(stack.TestCase):
 
 
 if __name__ == "__main__":
-    unittest.main()
+    outcome.main()

@@ -6,6 +6,7 @@ import os
 import shutil
 import unittest
 
+import outcome
 import stack
 
 ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
@@ -55,4 +56,4 @@ class RealDataTest(stack.TestCase):
 
 
 if __name__ == "__main__":
-    unittest.main()
+    outcome.main()

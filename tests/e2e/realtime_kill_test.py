@@ -7,9 +7,9 @@ fault ends and the run resumes. Under hydro-launch: all are stopped, exit code 1
 import math
 import os
 import signal
-import unittest
 
 import event_log
+import outcome
 import stack
 
 ROLES = ("plant", "pressure_ctrl", "position_ctrl", "logger")
@@ -180,4 +180,4 @@ class LaunchedRealtimeKillTest(stack.TestCase):
 
 
 if __name__ == "__main__":
-    unittest.main()
+    outcome.main()

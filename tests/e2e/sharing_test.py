@@ -1,9 +1,9 @@
 """Several stacks, and several senders, on one network."""
 
 import signal
-import unittest
 
 import event_log
+import outcome
 import stack
 
 
@@ -75,4 +75,4 @@ class SharingTest(stack.TestCase):
 
 
 if __name__ == "__main__":
-    unittest.main()
+    outcome.main()

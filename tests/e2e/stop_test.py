@@ -2,9 +2,9 @@
 
 import itertools
 import signal
-import unittest
 
 import event_log
+import outcome
 import stack
 
 
@@ -61,4 +61,4 @@ class StopTest(stack.TestCase):
 
 
 if __name__ == "__main__":
-    unittest.main()
+    outcome.main()

@@ -5,8 +5,8 @@ import configparser
 import os
 import shutil
 import subprocess
-import unittest
 
+import outcome
 import stack
 
 BUILD = os.path.dirname(stack.BIN)
@@ -73,4 +73,4 @@ class SystemdTest(stack.TestCase):
 
 
 if __name__ == "__main__":
-    unittest.main()
+    outcome.main()

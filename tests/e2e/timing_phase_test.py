@@ -1,9 +1,9 @@
 """Every process is held up again and again for some milliseconds: ticks are late, but what belongs to a tick stays so."""
 
 import random
-import unittest
 
 import event_log
+import outcome
 import timing_case
 
 BURSTS = 60
@@ -45,4 +45,4 @@ class PhaseTest(timing_case.TimingCase):
 
 
 if __name__ == "__main__":
-    unittest.main()
+    outcome.main()

@@ -1,8 +1,8 @@
 """hydro-launch puts each process where its [[process]] section says: processor, priority, locked memory."""
 
 import os
-import unittest
 
+import outcome
 import stack
 
 
@@ -92,4 +92,4 @@ class PlacementTest(stack.TestCase):
 
 
 if __name__ == "__main__":
-    unittest.main()
+    outcome.main()

@@ -3,9 +3,9 @@
 import json
 import os
 import re
-import unittest
 
 import event_log
+import outcome
 import stack
 
 RATE = 1000
@@ -123,4 +123,4 @@ class ReportTest(stack.TestCase):
 
 
 if __name__ == "__main__":
-    unittest.main()
+    outcome.main()

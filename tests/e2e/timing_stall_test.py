@@ -1,8 +1,7 @@
 """A process stands still for 2.5 s: the run goes on afterwards, and what was missed is counted, by whom it concerns."""
 
-import unittest
-
 import event_log
+import outcome
 import timing_case
 
 STALL = 2.5  # s
@@ -90,4 +89,4 @@ class StallTest(timing_case.TimingCase):
 
 
 if __name__ == "__main__":
-    unittest.main()
+    outcome.main()

@@ -3,9 +3,9 @@
 import os
 import signal
 import subprocess
-import unittest
 
 import event_log
+import outcome
 import stack
 
 
@@ -63,4 +63,4 @@ class WordsTest(stack.TestCase):
 
 
 if __name__ == "__main__":
-    unittest.main()
+    outcome.main()

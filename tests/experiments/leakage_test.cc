@@ -279,7 +279,13 @@ TEST(LeakageRunFile, TableWithSidecar) {
   const ExperimentResult wrong = RunLeakage(options);
   EXPECT_FALSE(ParseJson(wrong.numbers).at("model_describes_run"));
   EXPECT_THAT(wrong.explanation, HasSubstr("NEITHER is to be believed"));
+}
 
+// Tests that a real run whose shaft a test machine drives is refused.
+TEST(LeakageRunFile, DrivenShaft) {
+  const std::string stem = testing::TempDir() + "/leakage_driven";
+  ExperimentOptions options;
+  options.measured_run = stem + ".csv";
   const std::filesystem::path data = std::filesystem::path(HYDRO_MEASURED_DATA) / "buoy_pto";
   if (!std::filesystem::exists(data)) GTEST_SKIP() << "no measured data at " << data;
   std::filesystem::copy_file(data / "sine_moves_2021-07-26.csv", stem + ".csv",
@@ -293,7 +299,7 @@ TEST(LeakageRunFile, TableWithSidecar) {
     ADD_FAILURE() << "no InputError was thrown";
   } catch (const InputError& error) {
     EXPECT_THAT(error.what(),
-                HasSubstr("leakage_run_file.csv: found a shaft that is driven, allowed a clamped one"));
+                HasSubstr("leakage_driven.csv: found a shaft that is driven, allowed a clamped one"));
   }
 }
 

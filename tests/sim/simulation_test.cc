@@ -6,10 +6,16 @@
 #include <hydro/motor_command_t.hpp>
 #include <hydro/pressure_command_t.hpp>
 #include <hydro/state_t.hpp>
+#include <map>
 #include <string>
 #include <vector>
 
 #include "base/input_error.h"
+#include "bus/in_process_bus.h"
+#include "plant/plant_app.h"
+#include "plant/simulated_rig.h"
+#include "position_ctrl/position_app.h"
+#include "pressure_ctrl/pressure_app.h"
 #include "tests/stack_fixture.h"
 
 namespace hydro::sim {
@@ -27,6 +33,14 @@ struct Recording {
       channels.emplace_back(m.channel);
       messages.emplace_back(reinterpret_cast<const char*>(m.data), static_cast<size_t>(m.size));
     };
+  }
+
+  std::vector<std::string> Bytes(const std::string& channel) const {
+    std::vector<std::string> all;
+    for (size_t i = 0; i < channels.size(); ++i) {
+      if (channels[i] == channel) all.push_back(messages[i]);
+    }
+    return all;
   }
 
   template <class Message>
@@ -78,13 +92,56 @@ TEST(SimulationTest, IsRepeatable) {
   EXPECT_EQ(a.messages, b.messages);
 }
 
-// Tests that logging changes nothing: the state reached without a tap is that reached with one.
+// The messages of one channel as a handler of their type is given them: encoded here, and nowhere else.
+template <class Message>
+void Watch(bus::Bus& bus, const std::string& channel, std::vector<std::string>& seen) {
+  bus.Subscribe<Message>(channel, [&seen](const Message& message) {
+    std::string bytes(static_cast<size_t>(message.getEncodedSize()), '\0');
+    message.encode(bytes.data(), 0, static_cast<int>(bytes.size()));
+    seen.push_back(std::move(bytes));
+  });
+}
+
+// Tests that logging changes nothing: without a tap, where nothing is encoded, every state and every command is to the last bit
+// what a tap records.
 TEST(SimulationTest, LoggingDoesNotDisturb) {
+  settings::StackConfig config = Step();
+  config.noise.p1_psi = 2;
   Recording recording;
-  const SimulationResult with = Simulate(Step(), recording.Tap());
-  const SimulationResult without = Simulate(Step(), nullptr);
+  const SimulationResult with = Simulate(config, recording.Tap());
+
+  config.time.mode = settings::TimeMode::kLockstep;
+  bus::SimulatedClock clock;
+  bus::InProcessBus bus(&clock);
+  std::map<std::string, std::vector<std::string>> seen;
+  Watch<state_t>(bus, "HYDRO_STATE", seen["HYDRO_STATE"]);
+  Watch<pressure_command_t>(bus, "HYDRO_PRESSURE_COMMAND", seen["HYDRO_PRESSURE_COMMAND"]);
+  Watch<motor_command_t>(bus, "HYDRO_MOTOR_COMMAND", seen["HYDRO_MOTOR_COMMAND"]);
+  plant::SimulatedRig rig(config);
+  plant::PlantApp plant(bus, clock, config, rig, {}, "hydro-sim");
+  pressure_ctrl::PressureApp pressure(bus, clock, config);
+  position_ctrl::PositionApp position(bus, clock, config);
+  EXPECT_EQ(plant.Run(), with.exit_code);
+  const auto dispatch_all = [&] {
+    while (bus.HandleUntil(clock.Now()) > 0) {
+    }
+  };
+  dispatch_all();
+  position.Finish();
+  pressure.Finish();
+  dispatch_all();
+  EXPECT_EQ(plant.tick(), with.ticks);
+
+  EXPECT_EQ(seen.at("HYDRO_STATE").size(), 2001u);
+  for (const auto& [channel, messages] : seen) {
+    EXPECT_EQ(messages, recording.Bytes(channel)) << channel;
+  }
+  // The same run through Simulate(), which tells only how it ended.
+  const SimulationResult without = Simulate(config, nullptr);
   EXPECT_EQ(with.ticks, without.ticks);
+  EXPECT_EQ(with.duration, without.duration);
   EXPECT_EQ(with.exit_code, without.exit_code);
+  EXPECT_EQ(with.failure, without.failure);
 }
 
 // Tests that a tripped limit ends the run as failed and says why.
