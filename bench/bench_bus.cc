@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "bus/authenticated_channels.h"
-#include "bus/authenticator.h"
 #include "bus/in_process_bus.h"
+#include "bus/seal/authenticated_channels.h"
+#include "bus/seal/authenticator.h"
 #include "timing/histogram.h"
 
 namespace hydro {

@@ -10,7 +10,7 @@
 
 #include "base/input_error.h"
 #include "bus/sleep_until.h"
-#include "bus/udpm_socket.h"
+#include "bus/udpm/udpm_socket.h"
 
 int main(int argc, char** argv) {
   const double rate = argc >= 4 ? std::atof(argv[2]) : 0, seconds = argc >= 4 ? std::atof(argv[3]) : 0;

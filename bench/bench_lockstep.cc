@@ -17,8 +17,8 @@
 #include <vector>
 
 #include "bench/child_process.h"
-#include "bus/authenticated_channels.h"
-#include "bus/udpm_bus.h"
+#include "bus/seal/authenticated_channels.h"
+#include "bus/udpm/udpm_bus.h"
 #include "plant/plant_app.h"
 #include "plant/simulated_rig.h"
 #include "position_ctrl/position_app.h"

@@ -16,8 +16,8 @@
 
 #include "bench/child_process.h"
 #include "bench/echo_peers.h"
-#include "bus/authenticated_channels.h"
-#include "bus/udpm_bus.h"
+#include "bus/seal/authenticated_channels.h"
+#include "bus/udpm/udpm_bus.h"
 #include "pressure_ctrl/pressure_app.h"
 #include "tests/free_udp_port.h"
 #include "timing/histogram.h"

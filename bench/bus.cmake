@@ -1,9 +1,9 @@
 # What the bus costs, a message, and lockstep beside bare LCM in the same pattern.
 find_package(benchmark REQUIRED)
 add_executable(bench_bus ${PROJECT_SOURCE_DIR}/bench/bench_bus.cc)
-target_link_libraries(bench_bus PRIVATE hydro_bus benchmark::benchmark)
+target_link_libraries(bench_bus PRIVATE hydro_udpm benchmark::benchmark)
 add_executable(bench_lockstep ${PROJECT_SOURCE_DIR}/bench/bench_lockstep.cc)
-target_link_libraries(bench_lockstep PRIVATE hydro_plant_app hydro_pressure_app hydro_position_app)
+target_link_libraries(bench_lockstep PRIVATE hydro_udpm hydro_plant_app hydro_pressure_app hydro_position_app)
 target_compile_definitions(bench_lockstep PRIVATE HYDRO_BENCH_CONFIG="${PROJECT_SOURCE_DIR}/config/paper.toml")
 add_executable(bench_event_source ${PROJECT_SOURCE_DIR}/bench/bench_event_source.cc)
-target_link_libraries(bench_event_source PRIVATE hydro_bus hydro_settings)
+target_link_libraries(bench_event_source PRIVATE hydro_udpm hydro_settings)

@@ -18,7 +18,7 @@
 #include <vector>
 
 #include "bench/shared_results.h"
-#include "bus/udpm_bus.h"
+#include "bus/udpm/udpm_bus.h"
 #include "plant/plant_app.h"
 #include "plant/simulated_rig.h"
 #include "position_ctrl/position_app.h"

@@ -10,7 +10,7 @@
 //   publishes is delivered by a later turn of the same or a later HandleUntil(), never inside Publish().
 // - An exception thrown by a handler leaves HandleUntil() (it never travels through C code).
 // - A message that cannot be decoded (another type, truncated) is counted in undecodable() and not delivered.
-// - The seal of an authenticated message (message_seal.h) is never part of what is delivered. Where the bus
+// - The seal of an authenticated message (bus/seal/) is never part of what is delivered. Where the bus
 // has a
 //   key, a message that is not genuine is counted in refused() and not delivered.
 // - A bus is used by one thread.
@@ -26,7 +26,7 @@
 #include <utility>
 #include <vector>
 
-#include "bus/message_seal.h"
+#include "bus/seal_trailer.h"
 
 namespace hydro::bus {
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "base/text_file.h"
-#include "bus/udpm_bus.h"
+#include "bus/udpm/udpm_bus.h"
 #include "launch/doctor/doctor.h"
 #include "launch/launch.h"
 #include "launch/make_key.h"

@@ -10,7 +10,7 @@
 #include <string>
 
 #include "base/new_file.h"
-#include "bus/udpm_bus.h"
+#include "bus/udpm/udpm_bus.h"
 #include "launch/stack_watch.h"
 #include "launch/timing_files.h"
 

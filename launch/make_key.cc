@@ -2,7 +2,7 @@
 
 #include <cstdio>
 
-#include "bus/bus_key.h"
+#include "bus/seal/bus_key.h"
 #include "settings/stack_config.h"
 
 namespace hydro::launch {

@@ -31,7 +31,7 @@ struct LogEvent {
   int size = 0;
 };
 
-// Decodes an event, with a seal (bus/message_seal.h: lcm-logger records it) or without. False: it is not a
+// Decodes an event, with a seal (bus/seal_trailer.h: lcm-logger records it) or without. False: it is not a
 // whole message of that type.
 template <class Message>
 bool DecodeAs(const LogEvent& event, Message& message) {

@@ -5,8 +5,8 @@
 #include <chrono>
 #include <memory>
 
-#include "bus/udpm_bus.h"
-#include "bus/udpm_url.h"
+#include "bus/udpm/udpm_bus.h"
+#include "bus/udpm/udpm_url.h"
 #include "log/log_writer.h"
 #include "process/stop_signal.h"
 #include "process/words.h"

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "bus/udpm_url.h"
+#include "bus/udpm/udpm_url.h"
 
 namespace hydro::launch {
 

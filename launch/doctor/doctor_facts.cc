@@ -17,8 +17,8 @@
 #include <set>
 
 #include "bus/channels.h"
-#include "bus/multicast_self_test.h"
-#include "bus/udpm_bus.h"
+#include "bus/udpm/multicast_self_test.h"
+#include "bus/udpm/udpm_bus.h"
 
 namespace hydro::launch {
 namespace {

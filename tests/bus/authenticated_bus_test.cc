@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "bus/udpm_bus.h"
+#include "bus/udpm/udpm_bus.h"
 #include "tests/free_udp_port.h"
 
 namespace hydro::bus {

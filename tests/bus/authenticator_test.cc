@@ -1,4 +1,4 @@
-#include "bus/authenticator.h"
+#include "bus/seal/authenticator.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "bus/authenticated_channels.h"
+#include "bus/seal/authenticated_channels.h"
 
 namespace hydro::bus {
 namespace {

@@ -10,7 +10,7 @@
 
 #include "bus/channels.h"
 #include "bus/in_process_bus.h"
-#include "bus/udpm_bus.h"
+#include "bus/udpm/udpm_bus.h"
 #include "hydro/motor_command_t.hpp"
 #include "hydro/run_description_t.hpp"
 #include "hydro/state_t.hpp"

@@ -1,4 +1,4 @@
-#include "bus/bus_key.h"
+#include "bus/seal/bus_key.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "bus/udpm_bus.h"
+#include "bus/udpm/udpm_bus.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -10,7 +10,7 @@
 #include <csignal>
 
 #include "base/input_error.h"
-#include "bus/multicast_self_test.h"
+#include "bus/udpm/multicast_self_test.h"
 #include "hydro/state_t.hpp"
 #include "tests/free_udp_port.h"
 

@@ -1,4 +1,4 @@
-#include "bus/udpm_socket.h"
+#include "bus/udpm/udpm_socket.h"
 
 #include <arpa/inet.h>
 #include <gmock/gmock.h>

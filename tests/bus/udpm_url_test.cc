@@ -1,4 +1,4 @@
-#include "bus/udpm_url.h"
+#include "bus/udpm/udpm_url.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -2,8 +2,8 @@
 #include <array>
 #include <vector>
 
-#include "bus/authenticated_channels.h"
-#include "bus/authenticator.h"
+#include "bus/seal/authenticated_channels.h"
+#include "bus/seal/authenticator.h"
 #include "hydro/arm_reference_t.hpp"
 #include "hydro/fault_t.hpp"
 #include "hydro/introduction_t.hpp"

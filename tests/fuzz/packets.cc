@@ -1,7 +1,7 @@
 #include <algorithm>
 
-#include "bus/fragment_assembly.h"
-#include "bus/lcm_packet.h"
+#include "bus/udpm/fragment_assembly.h"
+#include "bus/udpm/lcm_packet.h"
 #include "tests/fuzz/promise.h"
 #include "tests/fuzz/targets.h"
 

@@ -4,8 +4,8 @@
 #include <string_view>
 #include <vector>
 
-#include "bus/bus_key.h"
-#include "bus/udpm_url.h"
+#include "bus/seal/bus_key.h"
+#include "bus/udpm/udpm_url.h"
 #include "settings/bus_url.h"
 #include "settings/model_file.h"
 #include "settings/overrides.h"

@@ -34,7 +34,7 @@
 #include "bus/channels.h"
 #include "bus/clock.h"
 #include "bus/session.h"
-#include "bus/udpm_bus.h"
+#include "bus/udpm/udpm_bus.h"
 
 namespace hydro::launch {
 namespace {

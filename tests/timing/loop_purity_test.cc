@@ -22,7 +22,7 @@
 #include <thread>
 #include <vector>
 
-#include "bus/udpm_bus.h"
+#include "bus/udpm/udpm_bus.h"
 #include "plant/plant_app.h"
 #include "plant/simulated_rig.h"
 #include "position_ctrl/position_app.h"

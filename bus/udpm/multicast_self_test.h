@@ -3,7 +3,7 @@
 
 #include <chrono>
 
-#include "bus/udpm_url.h"
+#include "bus/udpm/udpm_url.h"
 
 namespace hydro::bus {
 

@@ -1,4 +1,4 @@
-#include "bus/udpm_socket.h"
+#include "bus/udpm/udpm_socket.h"
 
 #include <arpa/inet.h>
 #include <fcntl.h>
@@ -14,8 +14,8 @@
 #include <cstring>
 
 #include "bus/bus.h"
-#include "bus/channel_filter.h"
-#include "bus/lcm_packet.h"
+#include "bus/udpm/channel_filter.h"
+#include "bus/udpm/lcm_packet.h"
 
 namespace hydro::bus {
 namespace {

@@ -1,7 +1,7 @@
 // What UdpmBus does with messages that are authenticated (authenticator.h).
 #include <utility>
 
-#include "bus/udpm_bus.h"
+#include "bus/udpm/udpm_bus.h"
 
 namespace hydro::bus {
 namespace {

@@ -1,4 +1,4 @@
-#include "bus/udpm_bus.h"
+#include "bus/udpm/udpm_bus.h"
 
 #include <poll.h>
 #include <pthread.h>
@@ -11,8 +11,8 @@
 #include <string_view>
 #include <utility>
 
-#include "bus/multicast_self_test.h"
-#include "bus/udpm_url.h"
+#include "bus/udpm/multicast_self_test.h"
+#include "bus/udpm/udpm_url.h"
 
 namespace hydro::bus {
 namespace {

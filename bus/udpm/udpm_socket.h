@@ -13,8 +13,8 @@
 #include <string_view>
 #include <vector>
 
-#include "bus/fragment_assembly.h"
-#include "bus/udpm_url.h"
+#include "bus/udpm/fragment_assembly.h"
+#include "bus/udpm/udpm_url.h"
 
 namespace hydro::bus {
 

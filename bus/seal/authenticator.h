@@ -23,8 +23,8 @@
 #include <vector>
 
 #include "bus/bus.h"
-#include "bus/bus_key.h"
 #include "bus/channels.h"
+#include "bus/seal/bus_key.h"
 
 namespace hydro::bus {
 

@@ -1,8 +1,8 @@
-#include "bus/fragment_assembly.h"
+#include "bus/udpm/fragment_assembly.h"
 
 #include <algorithm>
 
-#include "bus/lcm_packet.h"
+#include "bus/udpm/lcm_packet.h"
 
 namespace hydro::bus {
 namespace {

@@ -1,4 +1,4 @@
-#include "bus/multicast_self_test.h"
+#include "bus/udpm/multicast_self_test.h"
 
 #include <arpa/inet.h>
 #include <poll.h>

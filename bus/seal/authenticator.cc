@@ -1,10 +1,10 @@
-#include "bus/authenticator.h"
+#include "bus/seal/authenticator.h"
 
 #include <algorithm>
 #include <stdexcept>
 #include <utility>
 
-#include "bus/authenticated_channels.h"
+#include "bus/seal/authenticated_channels.h"
 #include "bus/session.h"
 
 namespace hydro::bus {

@@ -1,4 +1,4 @@
-#include "bus/channel_filter.h"
+#include "bus/udpm/channel_filter.h"
 
 #include <linux/filter.h>
 #include <sys/socket.h>
@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <cstring>
 
-#include "bus/lcm_packet.h"
+#include "bus/udpm/lcm_packet.h"
 
 namespace hydro::bus {
 namespace {

@@ -10,9 +10,9 @@
 #include <string>
 #include <vector>
 
-#include "bus/authenticator.h"
 #include "bus/bus.h"
-#include "bus/udpm_socket.h"
+#include "bus/seal/authenticator.h"
+#include "bus/udpm/udpm_socket.h"
 
 namespace hydro::bus {
 

@@ -1,7 +1,8 @@
-#include "bus/message_seal.h"
+#include "bus/seal/message_seal.h"
 
 #include <sodium.h>
 
+#include <cstring>
 #include <string>
 
 namespace hydro::bus {

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <string>
 
-#include "bus/message_seal.h"
+#include "bus/seal/message_seal.h"
 
 namespace hydro::bus {
 

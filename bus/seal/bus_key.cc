@@ -1,4 +1,4 @@
-#include "bus/bus_key.h"
+#include "bus/seal/bus_key.h"
 
 #include <fcntl.h>
 #include <sodium.h>
