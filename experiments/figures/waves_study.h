@@ -1,0 +1,100 @@
+// The pressure waves in the lines: the mode, the gains that it allows, a swept sine and trials over the stack.
+#pragma once
+
+#include <complex>
+#include <vector>
+
+#include "experiments/maths/linear_loop.h"
+#include "experiments/runs/pressure_loop_run.h"
+#include "experiments/runs/pressure_sweep.h"
+#include "experiments/studies/experiment.h"
+#include "model/description.h"
+#include "model/linearise.h"
+#include "pressure_ctrl/pressure_law.h"
+
+namespace hydro::experiments {
+
+inline constexpr double kWaveHz = 300;          // the paper
+inline constexpr double kVolumeFraction = 0.1;  // of V_ms on the pump's side of the line: ASSUMED
+inline constexpr double kWaveDamping = 0.01;    // ASSUMED: the paper says nothing
+inline constexpr double kMostFactor = 200;      // on k_p
+inline constexpr double kMostFrequency = 3000;  // rad/s
+
+// What a loop allows.
+struct WaveLimits {
+  GainLimit gain;                // factor on the design's k_p with its k_v
+  double natural_frequency = 0;  // rad/s, with both gains derived from it and zeta = .5
+};
+
+// The loop over the stack beside its limit: how a wave grows or decays after a small step.
+struct GainTrial {
+  double factor = 0;  // of the limit
+  std::vector<double> time;
+  std::vector<double> dp;
+  double growth = 0;    // 1/s, measured
+  double expected = 0;  // 1/s, the pole's real part
+};
+
+// A loop sampled at an interval, with a command delay.
+struct SampledPressureLoop {
+  LoopTiming timing;
+  WaveLimits limits;
+};
+
+// The same line between other volumes, or with another damping.
+struct LineVariant {
+  double volume_fraction = 0;
+  double damping = 0;
+  double closed_form_hz = 0;
+  double mode_hz = 0;
+  WaveLimits limits;
+};
+
+struct WavesStudy {
+  model::Parameters p;
+  pressure_ctrl::PressureGains gains;
+  model::ModelDescription model;
+  model::LinearModel linear;
+
+  // The analog loop.
+  std::complex<double> closed_pole;
+  double mode_hz = 0;
+  double mode_damping = 0;
+  WaveLimits limits;
+  WaveLimits at_pump;  // with the transducers there
+
+  std::vector<SampledPressureLoop> sampled;
+  // 5 kHz, one tick of delay, as config/paper.toml.
+  const SampledPressureLoop& shipped() const { return sampled[3]; }
+  const SampledPressureLoop& slow() const { return sampled[4]; }
+
+  // The swept sine, at the design's gains.
+  PressureSweep sweep;
+  SweptPressureLoop swept;
+  double worst_db = 0;
+  double worst_deg = 0;
+  ResponsePoint peak;
+
+  std::vector<GainTrial> trials;        // just below and just above the shipped loop's limit
+  std::vector<LineVariant> by_volume;   // volume_fraction varies
+  std::vector<LineVariant> by_damping;  // damping varies
+
+  double highest_k_p() const { return limits.gain.factor * gains.k_p; }
+  LinearPressureLoop swept_linear() const { return {linear, {1 / sweep.rate_hz, 0}}; }
+};
+
+// Table 1 under wave effects, analysed and run.
+WavesStudy StudyWaves(const ExperimentOptions& options);
+
+// Hz, of a line with this part of V_ms on the pump's side: w^2 goes with 1/V_p + 1/(V_ms - V_p).
+double ClosedFormHz(double volume_fraction);
+
+// The model of a clamped actuator whose sides both compress.
+model::LinearModel LinearisedClamped(const model::ModelDescription& model);
+// The same with pressure transducers at the pump instead of the actuator.
+model::LinearModel SensedAtPump(model::LinearModel model);
+
+// The wave that the loop sees, in the difference of the sides: the fastest of the visible poles.
+std::complex<double> WavePole(const LinearPressureLoop& loop, const pressure_ctrl::PressureGains& gains);
+
+}  // namespace hydro::experiments
