@@ -112,6 +112,256 @@ page::Panel DpPanel(const std::string& title, std::vector<page::Curve> curves,
           .rules = {}};
 }
 
+struct StickSlipStudy {
+  model::Parameters p;
+  // The shipped assumption: static friction above kinetic.
+  double excess = 0;
+  double speed = 0;  // rad/s, over which the excess falls off
+  double static_torque = 0;
+
+  OpenLoopRun plain;    // Table 1 alone
+  OpenLoopRun cycling;  // with the shipped assumption
+  StickSlipCycles cycles;
+  std::vector<Scanned> plain_scan;  // Table 1 alone at other torques
+  std::vector<page::Curve> scaled;  // of some of them
+  std::vector<Scanned> stribeck_scan;
+
+  // How much static friction cycles need, and what it does.
+  Threshold threshold;
+  double threshold_ratio = 0;
+  std::vector<Scanned> at_rest;
+
+  // In closed form.
+  double creep_dp = 0;        // psi
+  double leak_rate = 0;       // 1/s
+  double slip_dp = 0;         // psi
+  double largest_static = 0;  // in-lbf, without cycles at kFasterTorque
+
+  const PumpChange& stick() const { return plain.changes.at(0); }
+  const PumpChange& slip() const { return plain.changes.at(1); }
+};
+
+void ScanTable1(const model::ModelDescription& table1, StickSlipStudy* study) {
+  for (const double torque : {4.1, 4.5, 5.0, 6.0, 8.0, 10.0}) {
+    const OpenLoopRun run = RunOpenLoop(table1, torque, kDuration / 2);
+    study->plain_scan.push_back({torque, study->p.T_s, run.sticks(), FindCycles(run)});
+    if (torque == 4.5 || torque == 6 || torque == 8 || torque == 10) {
+      study->scaled.push_back(DpCurve(run, fmt::format("T_p = {} in-lbf", torque), -1));
+    }
+  }
+}
+
+void ScanStaticFriction(const model::ModelDescription& stribeck, StickSlipStudy* study) {
+  for (const double at : {4.2, 4.22, 4.4, 4.8, 5.2, 5.6}) {
+    study->at_rest.push_back(Scan(WithStaticAtRest(at), kTorque, at, at > 5 ? 2 * kDuration : kDuration));
+  }
+  for (const double at : {4.4, 4.8}) {
+    study->at_rest.push_back(Scan(WithStaticAtRest(at), kFasterTorque, at, kDuration));
+  }
+  for (const double torque : {5.0, 8.0, 10.0}) {
+    study->stribeck_scan.push_back(Scan(stribeck, torque, study->static_torque, kDuration));
+  }
+}
+
+void SolveInClosedForm(StickSlipStudy* study) {
+  const model::Parameters& p = study->p;
+  // Where Table 1 alone ends: slipping steadily, side 1 at p_3 by its valve, q_2 = 0 in eq. (12), eq. (4).
+  const double creep_per_psi = (p.c_E + p.c_I) / p.D;
+  study->creep_dp = (kTorque - p.T_s) / (p.D + p.b * creep_per_psi);
+  // While the pump sticks, d(dp)/dt = -(beta/V_ms)(2 c_I + c_E) dp by eqs. (13), (14), both valves closed.
+  study->leak_rate = p.beta / p.V_ms * (2 * p.c_I + p.c_E);
+  study->slip_dp = (kTorque - study->static_torque) / p.D;
+  study->largest_static = p.T_s + study->threshold_ratio * (kFasterTorque - p.T_s);
+}
+
+StickSlipStudy RunStudy(const ExperimentOptions& options) {
+  const model::ModelDescription table1 = ShippedModel("table1");
+  const model::ModelDescription stribeck = ShippedModel("table1_stribeck");
+  StickSlipStudy study;
+  study.p = table1.parameters;
+  study.excess = stribeck.effects.at(0).parameters.at("static_excess");
+  study.speed = stribeck.effects.at(0).parameters.at("speed");
+  study.static_torque = study.p.T_s * (1 + study.excess);
+
+  study.plain = RunOpenLoop(table1, kTorque, kDuration);
+  study.cycling = RunOpenLoop(stribeck, kTorque, kDuration);
+  study.cycles = FindCycles(study.cycling);
+  options.progress(0.2);
+  ScanTable1(table1, &study);
+  options.progress(0.4);
+  study.threshold = FindThreshold();
+  study.threshold_ratio = (study.threshold.cycles - study.p.T_s) / (kTorque - study.p.T_s);
+  options.progress(0.6);
+  ScanStaticFriction(stribeck, &study);
+  options.progress(0.9);
+  SolveInClosedForm(&study);
+  return study;
+}
+
+std::string Conditions(const StickSlipStudy& study) {
+  return fmt::format(
+      "Clamped at α = 0, from rest at p_1 = p_2 = p_3 = {} psi, constant T_p = {} in-lbf for {} s, open "
+      "loop. Table 1 alone, and Table 1 with static friction {:.0f} % above kinetic which falls off over {} "
+      "rad/s (pump.stribeck, assumed: the paper measures neither). Sticks are counted by the model's own "
+      "changes of mode, located within {} us.",
+      study.p.p_3, kTorque, kDuration, 100 * study.excess, study.speed, kLocatedWithin * 1e6);
+}
+
+std::string Explanation(const StickSlipStudy& study) {
+  return fmt::format(
+      "Table 1 alone cannot do this at any torque. With equal static and kinetic friction its equations, "
+      "from rest at p_3, contain the torque only as T_p - T_s: 4.1 in-lbf gives the curve of 10 in-lbf, "
+      "scaled, and each sticks once (at {stick_time:.3f} s, here with dp = {stick_dp:.1f} psi), waits while "
+      "leakage lowers dp, slips at (T_p - T_s)/D = {slip_dp:.1f} psi at {slip_time:.3f} s, and creeps on for "
+      "ever at the speed that makes up for the leakage. Where the pump slips from a balance of torques there "
+      "is nothing to throw it beyond. Static friction above kinetic throws it: with {static_torque:.1f} "
+      "in-lbf at rest it sticks {sticks} times in {duration} s, every {period:.2f} s, dp between {low:.0f} "
+      "and {high:.0f} psi, which is Figure 2's behaviour. It takes an excess of {threshold_ratio:.3f} (T_p - "
+      "T_s), so at a given static friction the cycles end as the torque grows, as the paper says. To cycle "
+      "at {torque} and not at {faster_torque} in-lbf, as Figures 2 and 3 do, friction at rest only must be "
+      "between {threshold:.2f} and {largest_static:.2f} in-lbf; the {static_torque:.1f} shipped as an "
+      "assumption cycles at both.",
+      fmt::arg("stick_time", study.stick().time), fmt::arg("stick_dp", study.stick().dp),
+      fmt::arg("slip_dp", study.slip().dp), fmt::arg("slip_time", study.slip().time),
+      fmt::arg("static_torque", study.static_torque), fmt::arg("sticks", study.cycling.sticks()),
+      fmt::arg("duration", kDuration), fmt::arg("period", study.cycles.period),
+      fmt::arg("low", study.cycles.low), fmt::arg("high", study.cycles.high),
+      fmt::arg("threshold_ratio", study.threshold_ratio), fmt::arg("torque", kTorque),
+      fmt::arg("faster_torque", kFasterTorque), fmt::arg("threshold", study.threshold.cycles),
+      fmt::arg("largest_static", study.largest_static));
+}
+
+std::vector<Comparison> Comparisons(const StickSlipStudy& study) {
+  return {
+      {"sticks, Table 1 alone", "", "sustained cycles", 1, static_cast<double>(study.plain.sticks()),
+       "the paper's equations do not cycle: one stick, then creep"},
+      {"dp when it slips again, Table 1 alone", "psi", "", (kTorque - study.p.T_s) / study.p.D,
+       study.slip().dp, "expected: (T_p - T_s)/D"},
+      {"how long that stick lasts, Table 1 alone", "s", "",
+       std::log(study.stick().dp / study.slip().dp) / study.leak_rate, study.slip().time - study.stick().time,
+       "expected: dp leaks at (β/V_ms)(2 c_I + c_E)"},
+      {"dp at the end, Table 1 alone", "psi", "", study.creep_dp, study.plain.dp.back(),
+       "expected: steady creep, side 1 held at p_3"},
+      {"sticks with static above kinetic friction", "", "sustained cycles", page::kAutomatic,
+       static_cast<double>(study.cycling.sticks()), fmt::format("in {} s", kDuration)},
+      {"period of the cycles", "s", "", page::kAutomatic, study.cycles.period,
+       "follows from the assumed friction"},
+      {"dp at each slip of the cycles", "psi", "", study.slip_dp, study.cycles.slip_dp,
+       "expected: (T_p - T_static)/D"},
+      {"how long each stick of the cycles lasts", "s", "",
+       std::log(study.cycles.stick_dp / study.cycles.slip_dp) / study.leak_rate, study.cycles.stick_time,
+       "expected: as above"},
+      {"static friction that cycles need at 6 in-lbf, at rest only", "in-lbf", "", page::kAutomatic,
+       study.threshold.cycles, fmt::format("{:.3f} still creeps", study.threshold.none)},
+  };
+}
+
+Finding TableFinding(const StickSlipStudy& study) {
+  return {
+      3,
+      "Figure 2 shows sustained stick-slip, simulated with eqs. (4), (13), (14) and Table 1, and says that "
+      "it "
+      "does not occur at higher torques.",
+      fmt::format("Table 1 alone sticks exactly once at each of 4.1, 4.5, 5, 6, 8 and 10 in-lbf, at the same "
+                  "{stick_time:.4f} s, and then creeps (dp {end_dp:.1f} psi and {end_speed:.3f} rad/s after "
+                  "{duration} s at {torque} in-lbf). With static friction at rest only, {none:.3f} in-lbf "
+                  "still creeps and {threshold:.3f} cycles at {torque} in-lbf: an excess of "
+                  "{threshold_ratio:.3f} (T_p - T_s). The shipped assumption ({static_torque:.1f} in-lbf, "
+                  "{speed} rad/s) cycles every {period:.2f} s between {low:.0f} and {high:.0f} psi.",
+                  fmt::arg("stick_time", study.stick().time), fmt::arg("end_dp", study.plain.dp.back()),
+                  fmt::arg("end_speed", study.plain.motor_speed.back()), fmt::arg("duration", kDuration),
+                  fmt::arg("torque", kTorque), fmt::arg("none", study.threshold.none),
+                  fmt::arg("threshold", study.threshold.cycles),
+                  fmt::arg("threshold_ratio", study.threshold_ratio),
+                  fmt::arg("static_torque", study.static_torque), fmt::arg("speed", study.speed),
+                  fmt::arg("period", study.cycles.period), fmt::arg("low", study.cycles.low),
+                  fmt::arg("high", study.cycles.high)),
+      "Both are shown. Table 1 stays as printed; config/models/table1_stribeck.toml adds static friction "
+      "above kinetic, marked as an assumption."};
+}
+
+json Describe(const std::vector<Scanned>& scans, double kinetic) {
+  json out = json::array();
+  for (const Scanned& scanned : scans) out.push_back(Describe(scanned, kinetic));
+  return out;
+}
+
+json Numbers(const StickSlipStudy& study) {
+  return {{"torque_in_lbf", kTorque},
+          {"duration_s", kDuration},
+          {"table1",
+           {{"sticks", study.plain.sticks()},
+            {"stick_time_s", study.stick().time},
+            {"stick_dp_psi", study.stick().dp},
+            {"slip_time_s", study.slip().time},
+            {"slip_dp_psi", study.slip().dp},
+            {"final_dp_psi", study.plain.dp.back()},
+            {"final_motor_speed_rad_s", study.plain.motor_speed.back()},
+            {"by_torque", Describe(study.plain_scan, study.p.T_s)}}},
+          {"stribeck",
+           {{"static_excess", study.excess},
+            {"speed_rad_s", study.speed},
+            {"static_torque_in_lbf", study.static_torque},
+            {"sticks", study.cycling.sticks()},
+            {"period_s", study.cycles.period},
+            {"swing_psi", study.cycles.high - study.cycles.low},
+            {"high_psi", study.cycles.high},
+            {"low_psi", study.cycles.low},
+            {"stick_dp_psi", study.cycles.stick_dp},
+            {"slip_dp_psi", study.cycles.slip_dp},
+            {"stick_duration_s", study.cycles.stick_time},
+            {"by_torque", Describe(study.stribeck_scan, study.p.T_s)}}},
+          {"at_rest_only",
+           {{"speed_rad_s", kAtRestOnly},
+            {"largest_static_torque_without_cycles_in_lbf", study.threshold.none},
+            {"smallest_static_torque_with_cycles_in_lbf", study.threshold.cycles},
+            {"threshold_excess_ratio", study.threshold_ratio},
+            {"largest_static_torque_without_cycles_at_10_in_lbf", study.largest_static},
+            {"scan", Describe(study.at_rest, study.p.T_s)}}}};
+}
+
+std::vector<tables::Column> Columns(const StickSlipStudy& study) {
+  const size_t rows = static_cast<size_t>(std::lround(kPictured / 1e-3)) + 1;
+  const auto head = [&](const std::vector<double>& values) {
+    return std::vector<double>(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(rows));
+  };
+  return {{"time_s", head(study.plain.time)},
+          {"table1_dp_psi", head(study.plain.dp)},
+          {"table1_p1_psi", head(study.plain.p1)},
+          {"table1_p2_psi", head(study.plain.p2)},
+          {"table1_motor_speed_rad_s", head(study.plain.motor_speed)},
+          {"stribeck_dp_psi", head(study.cycling.dp)},
+          {"stribeck_p1_psi", head(study.cycling.p1)},
+          {"stribeck_p2_psi", head(study.cycling.p2)},
+          {"stribeck_motor_speed_rad_s", head(study.cycling.motor_speed)}};
+}
+
+Picture CyclesPicture(const StickSlipStudy& study) {
+  page::Panel once = DpPanel("Table 1 alone: one stick, then creep", {DpCurve(study.plain, "", 0)},
+                             ChangeNotes(study.plain, 2));
+  page::Panel often =
+      DpPanel(fmt::format("Static friction {:.0f} % above kinetic: sustained stick-slip", 100 * study.excess),
+              {DpCurve(study.cycling, "", 0)}, {});
+  once.rules = {{"(T_p - T_s)/D", false, (kTorque - study.p.T_s) / study.p.D}};
+  often.rules = {{"(T_p - T_static)/D: slips", false, study.slip_dp}};
+  return {
+      "",
+      {.caption = fmt::format("Open loop, clamped at α = 0, T_p = {} in-lbf from rest. Above: the "
+                              "paper's equations and Table 1. Below: with static friction {:.1f} in-lbf, {} "
+                              "in-lbf sliding, falling off over {} rad/s (assumed).",
+                              kTorque, study.static_torque, study.p.T_s, study.speed),
+       .panels = {once, often},
+       .drawing = ""}};
+}
+
+Picture TorquesPicture(const StickSlipStudy& study) {
+  return {"-torques",
+          {.caption = "Table 1 alone, clamped at α = 0, constant torque from rest: whatever the torque, one "
+                      "stick at the same time. The curves are multiples of each other by T_p - T_s.",
+           .panels = {DpPanel("Table 1 alone at several torques", study.scaled, {})},
+           .drawing = ""}};
+}
+
 Picture ScanPicture(const std::vector<Scanned>& scans, double kinetic, double threshold_ratio) {
   page::Curve period{
       .label = "", .x = {}, .y = {}, .stroke = page::Stroke::kLinePoints, .y_low = {}, .y_high = {}};
@@ -151,200 +401,20 @@ Picture ScanPicture(const std::vector<Scanned>& scans, double kinetic, double th
 }  // namespace
 
 ExperimentResult RunFig2(const ExperimentOptions& options) {
-  const model::ModelDescription table1 = ShippedModel("table1");
-  const model::ModelDescription stribeck = ShippedModel("table1_stribeck");
-  const model::Parameters& p = table1.parameters;
-  const double excess = stribeck.effects.at(0).parameters.at("static_excess");
-  const double speed = stribeck.effects.at(0).parameters.at("speed");
-  const double static_torque = p.T_s * (1 + excess);
-
-  const OpenLoopRun plain = RunOpenLoop(table1, kTorque, kDuration);
-  const OpenLoopRun cycling = RunOpenLoop(stribeck, kTorque, kDuration);
-  const StickSlipCycles cycles = FindCycles(cycling);
-  options.progress(0.2);
-
-  // Table 1 at other torques: the same curve, scaled.
-  std::vector<Scanned> plain_scan;
-  std::vector<page::Curve> scaled;
-  for (const double torque : {4.1, 4.5, 5.0, 6.0, 8.0, 10.0}) {
-    const OpenLoopRun run = RunOpenLoop(table1, torque, kDuration / 2);
-    plain_scan.push_back({torque, p.T_s, run.sticks(), FindCycles(run)});
-    if (torque == 4.5 || torque == 6 || torque == 8 || torque == 10) {
-      scaled.push_back(DpCurve(run, fmt::format("T_p = {} in-lbf", torque), -1));
-    }
-  }
-  options.progress(0.4);
-
-  // How much static friction cycles need, and what it does.
-  const Threshold threshold = FindThreshold();
-  const double threshold_ratio = (threshold.cycles - p.T_s) / (kTorque - p.T_s);
-  options.progress(0.6);
-  std::vector<Scanned> at_rest;
-  for (const double at : {4.2, 4.22, 4.4, 4.8, 5.2, 5.6}) {
-    at_rest.push_back(Scan(WithStaticAtRest(at), kTorque, at, at > 5 ? 2 * kDuration : kDuration));
-  }
-  for (const double at : {4.4, 4.8}) {
-    at_rest.push_back(Scan(WithStaticAtRest(at), kFasterTorque, at, kDuration));
-  }
-  std::vector<Scanned> stribeck_scan;
-  for (const double torque : {5.0, 8.0, 10.0}) {
-    stribeck_scan.push_back(Scan(stribeck, torque, static_torque, kDuration));
-  }
-  options.progress(0.9);
-
-  // Where Table 1 alone ends: slipping steadily, side 1 at p_3 by its valve, q_2 = 0 in eq. (12), eq. (4).
-  const double creep_per_psi = (p.c_E + p.c_I) / p.D;
-  const double creep_dp = (kTorque - p.T_s) / (p.D + p.b * creep_per_psi);
-  // While the pump sticks, d(dp)/dt = -(beta/V_ms)(2 c_I + c_E) dp by eqs. (13), (14) with both valves
-  // closed.
-  const double leak_rate = p.beta / p.V_ms * (2 * p.c_I + p.c_E);
-  const double slip_dp = (kTorque - static_torque) / p.D;
-  const double largest_static = p.T_s + threshold_ratio * (kFasterTorque - p.T_s);
-
-  const PumpChange& stick = plain.changes.at(0);
-  const PumpChange& slip = plain.changes.at(1);
-
+  const StickSlipStudy study = RunStudy(options);
   ExperimentResult result;
-  result.conditions = fmt::format(
-      "Clamped at α = 0, from rest at p_1 = p_2 = p_3 = {} psi, constant T_p = {} in-lbf for {} s, open "
-      "loop. Table 1 alone, and Table 1 with static friction {:.0f} % above kinetic which falls off over {} "
-      "rad/s (pump.stribeck, assumed: the paper measures neither). Sticks are counted by the model's own "
-      "changes of mode, located within {} us.",
-      p.p_3, kTorque, kDuration, 100 * excess, speed, kLocatedWithin * 1e6);
+  result.conditions = Conditions(study);
   result.paper_says =
       "At low voltages the pressure fluctuates erratically: after a peak friction holds the rotor until "
       "leakage has let the pressure drop far enough for the torque to turn the pump once again. Figure 2 "
       "simulates it; at higher torques it does not occur.";
-  result.explanation = fmt::format(
-      "Table 1 alone cannot do this at any torque. With equal static and kinetic friction its equations, "
-      "from "
-      "rest at p_3, contain the torque only as T_p - T_s: 4.1 in-lbf gives the curve of 10 in-lbf, scaled, "
-      "and "
-      "each sticks once (at {:.3f} s, here with dp = {:.1f} psi), waits while leakage lowers dp, slips at "
-      "(T_p - T_s)/D = {:.1f} psi at {:.3f} s, and creeps on for ever at the speed that makes up for the "
-      "leakage. Where the pump slips from a balance of torques there is nothing to throw it beyond. Static "
-      "friction above kinetic "
-      "throws it: with {:.1f} in-lbf at rest it sticks {} times in {} s, every {:.2f} s, dp between {:.0f} "
-      "and "
-      "{:.0f} psi, which is Figure 2's behaviour. It takes an excess of {:.3f} (T_p - T_s), so at a given "
-      "static friction the cycles end as the torque grows, as the paper says. To cycle at {} and not at {} "
-      "in-lbf, as Figures 2 and 3 do, friction at rest only must be between {:.2f} and {:.2f} in-lbf; the "
-      "{:.1f} "
-      "shipped as an assumption cycles at both.",
-      stick.time, stick.dp, slip.dp, slip.time, static_torque, cycling.sticks(), kDuration, cycles.period,
-      cycles.low, cycles.high, threshold_ratio, kTorque, kFasterTorque, threshold.cycles, largest_static,
-      static_torque);
-
-  result.comparisons = {
-      {"sticks, Table 1 alone", "", "sustained cycles", 1, static_cast<double>(plain.sticks()),
-       "the paper's equations do not cycle: one stick, then creep"},
-      {"dp when it slips again, Table 1 alone", "psi", "", (kTorque - p.T_s) / p.D, slip.dp,
-       "expected: (T_p - T_s)/D"},
-      {"how long that stick lasts, Table 1 alone", "s", "", std::log(stick.dp / slip.dp) / leak_rate,
-       slip.time - stick.time, "expected: dp leaks at (β/V_ms)(2 c_I + c_E)"},
-      {"dp at the end, Table 1 alone", "psi", "", creep_dp, plain.dp.back(),
-       "expected: steady creep, side 1 held at p_3"},
-      {"sticks with static above kinetic friction", "", "sustained cycles", page::kAutomatic,
-       static_cast<double>(cycling.sticks()), fmt::format("in {} s", kDuration)},
-      {"period of the cycles", "s", "", page::kAutomatic, cycles.period, "follows from the assumed friction"},
-      {"dp at each slip of the cycles", "psi", "", slip_dp, cycles.slip_dp, "expected: (T_p - T_static)/D"},
-      {"how long each stick of the cycles lasts", "s", "",
-       std::log(cycles.stick_dp / cycles.slip_dp) / leak_rate, cycles.stick_time, "expected: as above"},
-      {"static friction that cycles need at 6 in-lbf, at rest only", "in-lbf", "", page::kAutomatic,
-       threshold.cycles, fmt::format("{:.3f} still creeps", threshold.none)},
-  };
-
-  result.findings = {
-      {3,
-       "Figure 2 shows sustained stick-slip, simulated with eqs. (4), (13), (14) and Table 1, and says that "
-       "it "
-       "does not occur at higher torques.",
-       fmt::format(
-           "Table 1 alone sticks exactly once at each of 4.1, 4.5, 5, 6, 8 and 10 in-lbf, at the same "
-           "{:.4f} s, and then creeps (dp {:.1f} psi and {:.3f} rad/s after {} s at {} in-lbf). "
-           "With static friction at rest only, {:.3f} in-lbf still creeps and {:.3f} cycles at {} "
-           "in-lbf: an excess of {:.3f} (T_p - T_s). The shipped assumption ({:.1f} in-lbf, {} rad/s) "
-           "cycles every {:.2f} s between {:.0f} and {:.0f} psi.",
-           stick.time, plain.dp.back(), plain.motor_speed.back(), kDuration, kTorque, threshold.none,
-           threshold.cycles, kTorque, threshold_ratio, static_torque, speed, cycles.period, cycles.low,
-           cycles.high),
-       "Both are shown. Table 1 stays as printed; config/models/table1_stribeck.toml adds static friction "
-       "above kinetic, marked as an assumption."}};
-
-  json by_torque = json::array();
-  for (const Scanned& scanned : plain_scan) by_torque.push_back(Describe(scanned, p.T_s));
-  json rest = json::array();
-  for (const Scanned& scanned : at_rest) rest.push_back(Describe(scanned, p.T_s));
-  json stribeck_torques = json::array();
-  for (const Scanned& scanned : stribeck_scan) stribeck_torques.push_back(Describe(scanned, p.T_s));
-  result.numbers = JsonText(json{{"torque_in_lbf", kTorque},
-                                 {"duration_s", kDuration},
-                                 {"table1",
-                                  {{"sticks", plain.sticks()},
-                                   {"stick_time_s", stick.time},
-                                   {"stick_dp_psi", stick.dp},
-                                   {"slip_time_s", slip.time},
-                                   {"slip_dp_psi", slip.dp},
-                                   {"final_dp_psi", plain.dp.back()},
-                                   {"final_motor_speed_rad_s", plain.motor_speed.back()},
-                                   {"by_torque", by_torque}}},
-                                 {"stribeck",
-                                  {{"static_excess", excess},
-                                   {"speed_rad_s", speed},
-                                   {"static_torque_in_lbf", static_torque},
-                                   {"sticks", cycling.sticks()},
-                                   {"period_s", cycles.period},
-                                   {"swing_psi", cycles.high - cycles.low},
-                                   {"high_psi", cycles.high},
-                                   {"low_psi", cycles.low},
-                                   {"stick_dp_psi", cycles.stick_dp},
-                                   {"slip_dp_psi", cycles.slip_dp},
-                                   {"stick_duration_s", cycles.stick_time},
-                                   {"by_torque", stribeck_torques}}},
-                                 {"at_rest_only",
-                                  {{"speed_rad_s", kAtRestOnly},
-                                   {"largest_static_torque_without_cycles_in_lbf", threshold.none},
-                                   {"smallest_static_torque_with_cycles_in_lbf", threshold.cycles},
-                                   {"threshold_excess_ratio", threshold_ratio},
-                                   {"largest_static_torque_without_cycles_at_10_in_lbf", largest_static},
-                                   {"scan", rest}}}});
-
-  const size_t rows = static_cast<size_t>(std::lround(kPictured / 1e-3)) + 1;
-  const auto head = [&](const std::vector<double>& values) {
-    return std::vector<double>(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(rows));
-  };
-  result.table.columns = {{"time_s", head(plain.time)},
-                          {"table1_dp_psi", head(plain.dp)},
-                          {"table1_p1_psi", head(plain.p1)},
-                          {"table1_p2_psi", head(plain.p2)},
-                          {"table1_motor_speed_rad_s", head(plain.motor_speed)},
-                          {"stribeck_dp_psi", head(cycling.dp)},
-                          {"stribeck_p1_psi", head(cycling.p1)},
-                          {"stribeck_p2_psi", head(cycling.p2)},
-                          {"stribeck_motor_speed_rad_s", head(cycling.motor_speed)}};
-
-  page::Panel once =
-      DpPanel("Table 1 alone: one stick, then creep", {DpCurve(plain, "", 0)}, ChangeNotes(plain, 2));
-  page::Panel often =
-      DpPanel(fmt::format("Static friction {:.0f} % above kinetic: sustained stick-slip", 100 * excess),
-              {DpCurve(cycling, "", 0)}, {});
-  once.rules = {{"(T_p - T_s)/D", false, (kTorque - p.T_s) / p.D}};
-  often.rules = {{"(T_p - T_static)/D: slips", false, slip_dp}};
-  result.pictures.push_back(
-      {"",
-       {.caption = fmt::format("Open loop, clamped at α = 0, T_p = {} in-lbf from rest. Above: the "
-                               "paper's equations and Table 1. Below: with static friction {:.1f} in-lbf, {} "
-                               "in-lbf sliding, falling off over {} rad/s (assumed).",
-                               kTorque, static_torque, p.T_s, speed),
-        .panels = {once, often},
-        .drawing = ""}});
-  result.pictures.push_back(
-      {"-torques",
-       {.caption = "Table 1 alone, clamped at α = 0, constant torque from rest: whatever the torque, one "
-                   "stick at the same time. The curves are multiples of each other by T_p - T_s.",
-        .panels = {DpPanel("Table 1 alone at several torques", scaled, {})},
-        .drawing = ""}});
-  result.pictures.push_back(ScanPicture(at_rest, p.T_s, threshold_ratio));
+  result.explanation = Explanation(study);
+  result.comparisons = Comparisons(study);
+  result.findings = {TableFinding(study)};
+  result.numbers = JsonText(Numbers(study));
+  result.table.columns = Columns(study);
+  result.pictures = {CyclesPicture(study), TorquesPicture(study),
+                     ScanPicture(study.at_rest, study.p.T_s, study.threshold_ratio)};
   options.progress(1);
   return result;
 }

@@ -30,35 +30,28 @@ struct Bode {
   std::vector<double> clamped_db, free_db, feedforward_db, design_db;
 };
 
-}  // namespace
+// Figure 8's model beside exact linearisations of Table 1's.
+struct DesignStudy {
+  model::Parameters p;
+  DesignModel design;
+  StabilityLimit limit;
+  Margins margins;
 
-ExperimentResult RunFig8(const ExperimentOptions& options) {
-  const model::ModelDescription table1 = ShippedModel("table1");
-  const model::Parameters& p = table1.parameters;
-  const DesignModel design = Figure8Model(p);
-  const StabilityLimit limit = RouthLimit(design);
-  const Margins margins = StabilityMargins(design, kPaperGain);
-
-  // The pressure loop that the real model closes with eq. (16), and the same with the arm free.
+  // The pressure loop that the real model closes with eq. (16), the arm clamped.
   pressure_ctrl::PressureLawSettings law;
-  law.gains = pressure_ctrl::DerivePressureGains(p, 0, design.natural_frequency, design.damping_ratio, 2);
-  const pressure_ctrl::SecondOrder two_sided = ExactPressureLoop(table1, law, 2);
-  const pressure_ctrl::SecondOrder one_sided = ExactPressureLoop(table1, law, 1);
-  const LinearArmLoop arm(table1, law);
-  const double c1 = design.zero * kPaperGain, c2 = kPaperGain;
-  const std::vector<Complex> exact = arm.Poles(c1, c2);
-  pressure_ctrl::PressureLawSettings feedforward = law;
-  feedforward.arm_speed_ratio = p.c / p.D;
-  const LinearArmLoop assisted(table1, feedforward);
-  const std::vector<Complex> exact_assisted = assisted.Poles(c1, c2);
-  const double reflected = p.J * std::pow(p.c / p.D, 2);
-  // A displacement that does not answer the arm's motion leaves Figure 8: the check that nothing else
-  // differs.
-  model::ModelDescription still = table1;
-  still.parameters.c *= 1e-9;
-  const std::vector<Complex> without_motion = LinearArmLoop(still, law).Poles(c1, c2);
-  options.progress(0.5);
+  pressure_ctrl::SecondOrder two_sided;
+  pressure_ctrl::SecondOrder one_sided;
+  // Poles of the whole loop with the arm free.
+  double reflected = 0;  // lbf-in-s^2, the pump's inertia at the arm
+  std::vector<Complex> exact;
+  std::vector<Complex> exact_assisted;  // with arm-speed feed-forward
+  std::vector<Complex> without_motion;  // without the flow that the arm's motion forces
+  Bode bode;
+};
 
+Bode SweepFrequencies(const DesignStudy& study, const LinearArmLoop& arm, const LinearArmLoop& assisted) {
+  const model::Parameters& p = study.p;
+  const DesignModel& design = study.design;
   Bode bode;
   double open_phase = -180, closed_phase = 0;
   for (int i = 0; i <= 400; ++i) {
@@ -75,152 +68,224 @@ ExperimentResult RunFig8(const ExperimentOptions& options) {
       return natural * natural / (s * s + 2 * damping * natural * s + natural * natural);
     };
     bode.design_db.push_back(Decibel(second_order(design.natural_frequency, design.damping_ratio)));
-    bode.clamped_db.push_back(Decibel(p.k_1 * law.gains.k_p / (p.D + p.k_1 * law.gains.k_p) *
-                                      second_order(two_sided.natural_frequency, two_sided.damping_ratio)));
+    bode.clamped_db.push_back(
+        Decibel(p.k_1 * study.law.gains.k_p / (p.D + p.k_1 * study.law.gains.k_p) *
+                second_order(study.two_sided.natural_frequency, study.two_sided.damping_ratio)));
     bode.free_db.push_back(Decibel(arm.Pressure(w)));
     bode.feedforward_db.push_back(Decibel(assisted.Pressure(w)));
   }
+  return bode;
+}
 
-  ExperimentResult result;
-  result.conditions = fmt::format(
+DesignStudy RunStudy(const ExperimentOptions& options) {
+  const model::ModelDescription table1 = ShippedModel("table1");
+  DesignStudy study;
+  study.p = table1.parameters;
+  study.design = Figure8Model(study.p);
+  const model::Parameters& p = study.p;
+  const DesignModel& design = study.design;
+  study.limit = RouthLimit(design);
+  study.margins = StabilityMargins(design, kPaperGain);
+
+  study.law.gains =
+      pressure_ctrl::DerivePressureGains(p, 0, design.natural_frequency, design.damping_ratio, 2);
+  study.two_sided = ExactPressureLoop(table1, study.law, 2);
+  study.one_sided = ExactPressureLoop(table1, study.law, 1);
+
+  const double c1 = design.zero * kPaperGain, c2 = kPaperGain;
+  const LinearArmLoop arm(table1, study.law);
+  study.exact = arm.Poles(c1, c2);
+  study.reflected = p.J * std::pow(p.c / p.D, 2);
+  pressure_ctrl::PressureLawSettings feedforward = study.law;
+  feedforward.arm_speed_ratio = p.c / p.D;
+  const LinearArmLoop assisted(table1, feedforward);
+  study.exact_assisted = assisted.Poles(c1, c2);
+  // A displacement that does not answer the arm's motion leaves Figure 8: the check that nothing else
+  // differs.
+  model::ModelDescription still = table1;
+  still.parameters.c *= 1e-9;
+  study.without_motion = LinearArmLoop(still, study.law).Poles(c1, c2);
+  options.progress(0.5);
+
+  study.bode = SweepFrequencies(study, arm, assisted);
+  return study;
+}
+
+std::string Conditions(const DesignStudy& study) {
+  return fmt::format(
       "Linear: PD with c_1/c_2 = {:g} and g = {:g}, pressure loop with ω_n = {:g} rad/s and ζ = {:g}, k_2 = "
       "{:g} "
       "in-lbf/psi, J_a = {:g} lbf-in-s². Beside it the exact linearisation of Table 1's model at mid-stroke, "
       "the "
       "pump slipping and both sides compressing, under eq. (16) with k_p = {:.4f} V/psi and k_v = {:.3f} psi "
       "s/rad.",
-      design.zero, kPaperGain, design.natural_frequency, design.damping_ratio, p.k_2, p.J_a, law.gains.k_p,
-      law.gains.k_v);
+      study.design.zero, kPaperGain, study.design.natural_frequency, study.design.damping_ratio, study.p.k_2,
+      study.p.J_a, study.law.gains.k_p, study.law.gains.k_v);
+}
+
+std::string Explanation(const DesignStudy& study) {
+  return fmt::format(
+      "With the arm clamped the model closed with eq. (16) is that second-order system: the exact "
+      "linearisation has ω_n = {omega:.2f} rad/s and ζ = {zeta:.4f} (the difference to {design_omega:g} and "
+      "{design_zeta:g} is leakage); one side held by its valve, {one_sided_omega:.1f} rad/s and "
+      "{one_sided_zeta:.3f}. With the arm free it is another system: α' forces the pump to turn c/D = "
+      "{ratio:.1f} times as fast, eq. (16) brakes that speed through k_v, and the arm carries the pump's "
+      "inertia, J (c/D)² = {reflected:.0f} lbf-in-s² beside J_a = {J_a:g}. A slow pole at {slow_pole:.2f} "
+      "1/s remains of the design's four at g = {g:g} (the slowest there: {design_pole:.1f} 1/s). Feeding "
+      "(c/D) α' forward takes the braking out; inertia stays, and the dominant poles are {assisted_pole}. "
+      "With the arm's motion taken out of the flow equations (c → 0) the exact model gives Figure 8's poles "
+      "again, {first_pole} and {last_pole}, but for leakage: nothing else is missing.",
+      fmt::arg("omega", study.two_sided.natural_frequency), fmt::arg("zeta", study.two_sided.damping_ratio),
+      fmt::arg("design_omega", study.design.natural_frequency),
+      fmt::arg("design_zeta", study.design.damping_ratio),
+      fmt::arg("one_sided_omega", study.one_sided.natural_frequency),
+      fmt::arg("one_sided_zeta", study.one_sided.damping_ratio), fmt::arg("ratio", study.p.c / study.p.D),
+      fmt::arg("reflected", study.reflected), fmt::arg("J_a", study.p.J_a),
+      fmt::arg("slow_pole", SlowestPole(study.exact).real()), fmt::arg("g", kPaperGain),
+      fmt::arg("design_pole", SlowestPole(Poles(study.design, kPaperGain)).real()),
+      fmt::arg("assisted_pole", PoleText(SlowestPole(study.exact_assisted))),
+      fmt::arg("first_pole", PoleText(study.without_motion.front())),
+      fmt::arg("last_pole", PoleText(SlowestPole(study.without_motion))));
+}
+
+std::vector<Comparison> Comparisons(const DesignStudy& study) {
+  return {
+      {"ω_n of the pressure loop, clamped", "rad/s", "150", study.design.natural_frequency,
+       study.two_sided.natural_frequency, "exact linearisation, both sides compressing"},
+      {"ζ of the pressure loop, clamped", "", ".5", study.design.damping_ratio, study.two_sided.damping_ratio,
+       "the same"},
+      {"ω_n, one side held at p_3", "rad/s", "150",
+       pressure_ctrl::PressureLoopDynamics(study.p, 0, study.law.gains, 1).natural_frequency,
+       study.one_sided.natural_frequency, "the mode in which the loop works at rest at p_3"},
+      {"gain margin at g = 350", "", "2.2 (770/350)", study.limit.gain / kPaperGain, study.margins.gain, ""},
+      {"phase margin at g = 350", "degrees", "", page::kAutomatic, study.margins.phase_deg,
+       fmt::format("at {:.1f} rad/s", study.margins.gain_crossover)},
+      {"slowest pole at g = 350, arm free", "1/s", "", -SlowestPole(Poles(study.design, kPaperGain)).real(),
+       -SlowestPole(study.exact).real(), "expected: of Figure 8's model; here: of the exact one"},
+      {"reflected inertia of the pump", "lbf-in-s^2", "", page::kAutomatic, study.reflected,
+       fmt::format("J_a = {:g}; Figure 8 has J_a alone", study.p.J_a)},
+  };
+}
+
+json Numbers(const DesignStudy& study) {
+  return {{"gain", kPaperGain},
+          {"critical_gain", study.limit.gain},
+          {"critical_frequency_rad_s", study.limit.frequency},
+          {"poles_at_350", AsPairs(Poles(study.design, kPaperGain))},
+          {"gain_margin", study.margins.gain},
+          {"gain_margin_db", 20 * std::log10(study.margins.gain)},
+          {"phase_margin_deg", study.margins.phase_deg},
+          {"gain_crossover_rad_s", study.margins.gain_crossover},
+          {"bandwidth_rad_s", study.margins.bandwidth},
+          {"linearised",
+           {{"both_sides",
+             {{"natural_frequency_rad_s", study.two_sided.natural_frequency},
+              {"damping_ratio", study.two_sided.damping_ratio}}},
+            {"one_side",
+             {{"natural_frequency_rad_s", study.one_sided.natural_frequency},
+              {"damping_ratio", study.one_sided.damping_ratio}}}}},
+          {"free_arm",
+           {{"reflected_inertia_lb_in_s2", study.reflected},
+            {"arm_inertia_lb_in_s2", study.p.J_a},
+            {"poles_at_350", AsPairs(study.exact)},
+            {"poles_at_350_with_arm_speed_feedforward", AsPairs(study.exact_assisted)},
+            {"poles_at_350_without_arm_flow", AsPairs(study.without_motion)}}}};
+}
+
+std::vector<tables::Column> Columns(const Bode& bode) {
+  return {{"frequency_rad_s", bode.frequency},
+          {"open_loop_db", bode.open_db},
+          {"open_loop_deg", bode.open_deg},
+          {"closed_loop_db", bode.closed_db},
+          {"closed_loop_deg", bode.closed_deg},
+          {"pressure_design_db", bode.design_db},
+          {"pressure_clamped_db", bode.clamped_db},
+          {"pressure_free_arm_db", bode.free_db},
+          {"pressure_free_arm_feedforward_db", bode.feedforward_db}};
+}
+
+Picture DiagramPicture(const DesignModel& design) {
+  return {"",
+          {.caption =
+               fmt::format("The design model of the position loop with its numbers, as the paper's Figure 8. "
+                           "Continuous time; eq. (17) samples it. e = α - α_ref, g = {:g}.",
+                           kPaperGain),
+           .panels = {},
+           .drawing = DrawPositionLoop(design, kPaperGain)}};
+}
+
+page::Axis FrequencyAxis() {
+  return {.label = "frequency, rad/s", .logarithmic = true, .min = 1, .max = 1000};
+}
+
+page::Curve OverFrequency(const Bode& bode, const std::string& label, const std::vector<double>& y,
+                          int colour, page::Stroke stroke = page::Stroke::kLine) {
+  return {label, bode.frequency, y, stroke, colour, {}, {}};
+}
+
+Picture BodePicture(const DesignStudy& study) {
+  const Bode& bode = study.bode;
+  const Margins& margins = study.margins;
+  page::Panel magnitude{
+      .title = "Magnitude",
+      .x = FrequencyAxis(),
+      .y = {.label = "dB", .min = -80, .max = 60},
+      .curves = {OverFrequency(bode, "open loop, -e to α", bode.open_db, 0),
+                 OverFrequency(bode, "closed loop, α_ref to α", bode.closed_db, 1)},
+      .notes = {{fmt::format("gain margin {:.2f} ({:.1f} dB)", margins.gain, 20 * std::log10(margins.gain)),
+                 margins.phase_crossover, -20 * std::log10(margins.gain)}},
+      .rules = {{"", false, 0}}};
+  page::Panel phase{
+      .title = "Phase",
+      .x = FrequencyAxis(),
+      .y = {.label = "degrees", .min = -360, .max = 0},
+      .curves = {OverFrequency(bode, "", bode.open_deg, 0), OverFrequency(bode, "", bode.closed_deg, 1)},
+      .notes = {{fmt::format("phase margin {:.1f}°", margins.phase_deg), margins.gain_crossover,
+                 margins.phase_deg - 180}},
+      .rules = {{"", false, -180}}};
+  return {"-bode",
+          {.caption = fmt::format(
+               "Figure 8's model at g = {:g}: open loop with its margins, and closed loop with the "
+               "derivative on the measurement.",
+               kPaperGain),
+           .panels = {magnitude, phase},
+           .drawing = ""}};
+}
+
+Picture FreeArmPicture(const Bode& bode) {
+  page::Panel pressure{
+      .title = "Δp over Δp_ref",
+      .x = FrequencyAxis(),
+      .y = {.label = "dB", .min = -70, .max = 30},
+      .curves = {OverFrequency(bode, "Figure 8", bode.design_db, 0),
+                 OverFrequency(bode, "exact, arm clamped", bode.clamped_db, 1, page::Stroke::kDashed),
+                 OverFrequency(bode, "exact, arm free", bode.free_db, 2),
+                 OverFrequency(bode, "exact, arm free, with arm-speed feed-forward", bode.feedforward_db, 3)},
+      .notes = {},
+      .rules = {}};
+  return {"-free-arm",
+          {.caption =
+               "What the pressure loop does once the arm may move: Figure 8 takes the clamped loop for it. "
+               "Exact linearisations of Table 1's model at mid-stroke under eq. (16).",
+           .panels = {pressure},
+           .drawing = ""}};
+}
+
+}  // namespace
+
+ExperimentResult RunFig8(const ExperimentOptions& options) {
+  const DesignStudy study = RunStudy(options);
+  ExperimentResult result;
+  result.conditions = Conditions(study);
   result.paper_says =
       "Figure 8 is the model used to choose c_1 and c_2: the closed pressure loop as a second-order system "
       "with "
       "ω_n = 150 rad/s and ζ = .5, then k_2 and 1/(J_a s²), in continuous time although the loop is digital.";
-  result.explanation = fmt::format(
-      "With the arm clamped the model closed with eq. (16) is that second-order system: the exact "
-      "linearisation "
-      "has ω_n = {:.2f} rad/s and ζ = {:.4f} (the difference to {:g} and {:g} is leakage); one side held by "
-      "its "
-      "valve, {:.1f} rad/s and {:.3f}. With the arm free it is another system: α' forces the pump to turn "
-      "c/D = "
-      "{:.1f} times as fast, eq. (16) brakes that speed through k_v, and the arm carries the pump's inertia, "
-      "J "
-      "(c/D)² = {:.0f} lbf-in-s² beside J_a = {:g}. A slow pole at {:.2f} 1/s remains of the design's four "
-      "at "
-      "g = "
-      "{:g} (the slowest there: {:.1f} 1/s). Feeding (c/D) α' forward takes the braking out; inertia stays, "
-      "and "
-      "the dominant poles are {}. With the arm's motion taken out of the flow equations (c → 0) the exact "
-      "model "
-      "gives Figure 8's poles again, {} and {}, but for leakage: nothing else is missing.",
-      two_sided.natural_frequency, two_sided.damping_ratio, design.natural_frequency, design.damping_ratio,
-      one_sided.natural_frequency, one_sided.damping_ratio, p.c / p.D, reflected, p.J_a,
-      SlowestPole(exact).real(), kPaperGain, SlowestPole(Poles(design, kPaperGain)).real(),
-      PoleText(SlowestPole(exact_assisted)), PoleText(without_motion.front()),
-      PoleText(SlowestPole(without_motion)));
-
-  result.comparisons = {
-      {"ω_n of the pressure loop, clamped", "rad/s", "150", design.natural_frequency,
-       two_sided.natural_frequency, "exact linearisation, both sides compressing"},
-      {"ζ of the pressure loop, clamped", "", ".5", design.damping_ratio, two_sided.damping_ratio,
-       "the same"},
-      {"ω_n, one side held at p_3", "rad/s", "150",
-       pressure_ctrl::PressureLoopDynamics(p, 0, law.gains, 1).natural_frequency, one_sided.natural_frequency,
-       "the mode in which the loop works at rest at p_3"},
-      {"gain margin at g = 350", "", "2.2 (770/350)", limit.gain / kPaperGain, margins.gain, ""},
-      {"phase margin at g = 350", "degrees", "", page::kAutomatic, margins.phase_deg,
-       fmt::format("at {:.1f} rad/s", margins.gain_crossover)},
-      {"slowest pole at g = 350, arm free", "1/s", "", -SlowestPole(Poles(design, kPaperGain)).real(),
-       -SlowestPole(exact).real(), "expected: of Figure 8's model; here: of the exact one"},
-      {"reflected inertia of the pump", "lbf-in-s^2", "", page::kAutomatic, reflected,
-       fmt::format("J_a = {:g}; Figure 8 has J_a alone", p.J_a)},
-  };
-
-  result.numbers = JsonText(json{{"gain", kPaperGain},
-                                 {"critical_gain", limit.gain},
-                                 {"critical_frequency_rad_s", limit.frequency},
-                                 {"poles_at_350", AsPairs(Poles(design, kPaperGain))},
-                                 {"gain_margin", margins.gain},
-                                 {"gain_margin_db", 20 * std::log10(margins.gain)},
-                                 {"phase_margin_deg", margins.phase_deg},
-                                 {"gain_crossover_rad_s", margins.gain_crossover},
-                                 {"bandwidth_rad_s", margins.bandwidth},
-                                 {"linearised",
-                                  {{"both_sides",
-                                    {{"natural_frequency_rad_s", two_sided.natural_frequency},
-                                     {"damping_ratio", two_sided.damping_ratio}}},
-                                   {"one_side",
-                                    {{"natural_frequency_rad_s", one_sided.natural_frequency},
-                                     {"damping_ratio", one_sided.damping_ratio}}}}},
-                                 {"free_arm",
-                                  {{"reflected_inertia_lb_in_s2", reflected},
-                                   {"arm_inertia_lb_in_s2", p.J_a},
-                                   {"poles_at_350", AsPairs(exact)},
-                                   {"poles_at_350_with_arm_speed_feedforward", AsPairs(exact_assisted)},
-                                   {"poles_at_350_without_arm_flow", AsPairs(without_motion)}}}});
-  result.table.columns = {{"frequency_rad_s", bode.frequency},
-                          {"open_loop_db", bode.open_db},
-                          {"open_loop_deg", bode.open_deg},
-                          {"closed_loop_db", bode.closed_db},
-                          {"closed_loop_deg", bode.closed_deg},
-                          {"pressure_design_db", bode.design_db},
-                          {"pressure_clamped_db", bode.clamped_db},
-                          {"pressure_free_arm_db", bode.free_db},
-                          {"pressure_free_arm_feedforward_db", bode.feedforward_db}};
-
-  result.pictures.push_back(
-      {"",
-       {.caption =
-            fmt::format("The design model of the position loop with its numbers, as the paper's Figure 8. "
-                        "Continuous time; eq. (17) samples it. e = α - α_ref, g = {:g}.",
-                        kPaperGain),
-        .panels = {},
-        .drawing = DrawPositionLoop(design, kPaperGain)}});
-  const page::Axis frequency{.label = "frequency, rad/s", .logarithmic = true, .min = 1, .max = 1000};
-  const auto curve = [&](const std::string& label, const std::vector<double>& y, int colour,
-                         page::Stroke stroke = page::Stroke::kLine) {
-    return page::Curve{label, bode.frequency, y, stroke, colour, {}, {}};
-  };
-  page::Panel magnitude{
-      .title = "Magnitude",
-      .x = frequency,
-      .y = {.label = "dB", .min = -80, .max = 60},
-      .curves = {curve("open loop, -e to α", bode.open_db, 0),
-                 curve("closed loop, α_ref to α", bode.closed_db, 1)},
-      .notes = {{fmt::format("gain margin {:.2f} ({:.1f} dB)", margins.gain, 20 * std::log10(margins.gain)),
-                 margins.phase_crossover, -20 * std::log10(margins.gain)}},
-      .rules = {{"", false, 0}}};
-  page::Panel phase{.title = "Phase",
-                    .x = frequency,
-                    .y = {.label = "degrees", .min = -360, .max = 0},
-                    .curves = {curve("", bode.open_deg, 0), curve("", bode.closed_deg, 1)},
-                    .notes = {{fmt::format("phase margin {:.1f}°", margins.phase_deg), margins.gain_crossover,
-                               margins.phase_deg - 180}},
-                    .rules = {{"", false, -180}}};
-  result.pictures.push_back(
-      {"-bode",
-       {.caption =
-            fmt::format("Figure 8's model at g = {:g}: open loop with its margins, and closed loop with the "
-                        "derivative on the measurement.",
-                        kPaperGain),
-        .panels = {magnitude, phase},
-        .drawing = ""}});
-  page::Panel pressure{
-      .title = "Δp over Δp_ref",
-      .x = frequency,
-      .y = {.label = "dB", .min = -70, .max = 30},
-      .curves = {curve("Figure 8", bode.design_db, 0),
-                 curve("exact, arm clamped", bode.clamped_db, 1, page::Stroke::kDashed),
-                 curve("exact, arm free", bode.free_db, 2),
-                 curve("exact, arm free, with arm-speed feed-forward", bode.feedforward_db, 3)},
-      .notes = {},
-      .rules = {}};
-  result.pictures.push_back(
-      {"-free-arm",
-       {.caption =
-            "What the pressure loop does once the arm may move: Figure 8 takes the clamped loop for it. "
-            "Exact linearisations of Table 1's model at mid-stroke under eq. (16).",
-        .panels = {pressure},
-        .drawing = ""}});
+  result.explanation = Explanation(study);
+  result.comparisons = Comparisons(study);
+  result.numbers = JsonText(Numbers(study));
+  result.table.columns = Columns(study.bode);
+  result.pictures = {DiagramPicture(study.design), BodePicture(study), FreeArmPicture(study.bode)};
   options.progress(1);
   return result;
 }

@@ -81,216 +81,291 @@ bool SimulatedStepDecays(const DesignModel& model, double interval, DerivativeFo
   return deviation(kSamples - 1000, kSamples) < deviation(2000, 3000);
 }
 
-}  // namespace
+// The loop sampled at one interval.
+struct SampledLoop {
+  double interval = 0;         // s
+  double spectral_radius = 0;  // below 1: stable
+  double critical_gain = 0;
+  std::vector<Complex> poles;                          // in the z plane
+  std::array<runs::StepResponse, kForms.size()> step;  // of each form
 
-ExperimentResult RunFig9(const ExperimentOptions& options) {
-  const model::ModelDescription table1 = ShippedModel("table1");
-  const model::Parameters& p = table1.parameters;
-  const DesignModel design = Figure8Model(p);
-  const StabilityLimit limit = RouthLimit(design);
-  DesignModel printed_ratio = design;
-  printed_ratio.k_2 = kPaperRatio * p.D;
-  const StabilityLimit printed_limit = RouthLimit(printed_ratio);
-  const std::vector<Complex> paper_poles = Poles(design, kPaperGain);
+  bool stable() const { return spectral_radius < 1; }
+  // Without an end there is no overshoot to name.
+  double Overshoot(size_t form) const { return stable() ? step[form].overshoot_percent : kNaN; }
+};
 
-  // The locus.
+struct RootLocusStudy {
+  model::Parameters p;
+  DesignModel design;
+  StabilityLimit limit;
+  DesignModel printed_ratio;  // with k_2 from the ratio that the text prints
+  StabilityLimit printed_limit;
+  std::vector<Complex> paper_poles;
+
   std::vector<double> gains;
-  std::vector<std::vector<Complex>> poles;
-  for (int i = 0; i <= 3000; ++i) {
-    gains.push_back(1200.0 * std::pow(i / 3000.0, 2));  // dense where poles leave the origin
-    poles.push_back(Poles(design, gains.back()));
-  }
-  const auto branches = FollowBranches(poles);
+  std::vector<std::vector<Complex>> poles;     // of each gain
+  std::vector<std::vector<Complex>> branches;  // the same, followed over the gain
 
-  // Sampled.
-  const double largest = LargestStableInterval(design, kPaperGain);
-  json sampled = json::array();
-  json largest_stable;
-  std::vector<page::Panel> step_panels;
+  std::array<runs::StepResponse, kForms.size()> continuous;
+  std::array<SampledLoop, kIntervals.size()> sampled;
+  double largest = 0;  // stable interval, s
+  std::array<bool, kForms.size()> confirmed{};
+
+  bool all_confirmed() const { return confirmed[0] && confirmed[1]; }
+};
+
+void TraceLocus(RootLocusStudy* study) {
+  for (int i = 0; i <= 3000; ++i) {
+    study->gains.push_back(1200.0 * std::pow(i / 3000.0, 2));  // dense where poles leave the origin
+    study->poles.push_back(Poles(study->design, study->gains.back()));
+  }
+  study->branches = FollowBranches(study->poles);
+}
+
+SampledLoop SampleLoop(const DesignModel& design, double interval) {
+  SampledLoop loop{.interval = interval,
+                   .spectral_radius = SpectralRadius(design, kPaperGain, interval),
+                   .critical_gain = SampledCriticalGain(design, interval),
+                   .poles = SampledPoles(design, kPaperGain, interval),
+                   .step = {}};
+  const int points = static_cast<int>(std::lround(interval / 1e-4));
   for (size_t f = 0; f < kForms.size(); ++f) {
-    page::Panel panel;
-    panel.title = kForms[f].name;
-    panel.x = {.label = "time, s", .logarithmic = false, .min = 0, .max = 0.4};
-    panel.y = {
-        .label = "α, rad", .logarithmic = false, .min = f == 0 ? -0.05 : 0.0, .max = f == 0 ? 0.25 : 0.2};
-    const Response continuous = ContinuousStep(design, kPaperGain, kForms[f].form, kStep, kDuration, 5e-4);
-    panel.curves.push_back({"continuous", continuous.time, continuous.angle, page::Stroke::kLine, 0, {}, {}});
-    for (size_t t = 0; t < kIntervals.size(); ++t) {
-      const double interval = kIntervals[t];
-      const Response step = SampledStep(design, kPaperGain, interval, kForms[f].form, kStep, kDuration,
-                                        static_cast<int>(std::lround(interval / 5e-4)));
-      panel.curves.push_back({fmt::format("T = {:g} ms", interval * 1e3),
-                              step.time,
-                              step.angle,
-                              interval == 0.010 ? page::Stroke::kDashed : page::Stroke::kLine,
-                              static_cast<int>(t) + 1,
-                              {},
-                              {}});
-    }
-    panel.rules = {{"", false, kStep}};
-    step_panels.push_back(panel);
-    largest_stable[kForms[f].key] = largest;
+    loop.step[f] = Measure(SampledStep(design, kPaperGain, interval, kForms[f].form, kStep, 2, points));
   }
+  return loop;
+}
+
+RootLocusStudy RunStudy(const ExperimentOptions& options) {
+  RootLocusStudy study;
+  study.p = ShippedModel("table1").parameters;
+  const DesignModel design = study.design = Figure8Model(study.p);
+  study.limit = RouthLimit(design);
+  study.printed_ratio = design;
+  study.printed_ratio.k_2 = kPaperRatio * study.p.D;
+  study.printed_limit = RouthLimit(study.printed_ratio);
+  study.paper_poles = Poles(design, kPaperGain);
+  TraceLocus(&study);
   options.progress(0.3);
-  json continuous;
-  for (const Form& form : kForms) {
-    const runs::StepResponse step = Measure(ContinuousStep(design, kPaperGain, form.form, kStep, 2, 1e-4));
-    continuous[form.key] = {{"overshoot_percent", step.overshoot_percent},
-                            {"settling_time_s", step.settling_time_s.value_or(kNaN)}};
+  for (size_t f = 0; f < kForms.size(); ++f) {
+    study.continuous[f] = Measure(ContinuousStep(design, kPaperGain, kForms[f].form, kStep, 2, 1e-4));
   }
-  std::array<std::array<double, kIntervals.size()>, kForms.size()> overshoot{};
-  for (size_t t = 0; t < kIntervals.size(); ++t) {
-    const double interval = kIntervals[t];
-    const double radius = SpectralRadius(design, kPaperGain, interval);
-    json row = {{"sample_interval_s", interval},
-                {"stable", radius < 1},
-                {"spectral_radius", radius},
-                {"critical_gain", SampledCriticalGain(design, interval)},
-                {"poles_z", AsPairs(SampledPoles(design, kPaperGain, interval))}};
-    for (size_t f = 0; f < kForms.size(); ++f) {
-      const runs::StepResponse step = Measure(SampledStep(design, kPaperGain, interval, kForms[f].form, kStep,
-                                                          2, static_cast<int>(std::lround(interval / 1e-4))));
-      // Without an end there is no overshoot to name.
-      overshoot[f][t] = radius < 1 ? step.overshoot_percent : kNaN;
-      row[kForms[f].key] = {
-          {"overshoot_percent", radius < 1 ? json(step.overshoot_percent) : json(nullptr)},
-          {"settling_time_s", step.settling_time_s ? json(*step.settling_time_s) : json(nullptr)}};
-    }
-    sampled.push_back(row);
-  }
-  json confirmed = json::object();
-  bool all_confirmed = true;
-  for (const Form& form : kForms) {
-    const bool holds = SimulatedStepDecays(design, largest - kResolution, form.form) &&
-                       !SimulatedStepDecays(design, largest + kResolution, form.form);
-    confirmed[form.key] = holds;
-    all_confirmed = all_confirmed && holds;
+  for (size_t t = 0; t < kIntervals.size(); ++t) study.sampled[t] = SampleLoop(design, kIntervals[t]);
+  study.largest = LargestStableInterval(design, kPaperGain);
+  for (size_t f = 0; f < kForms.size(); ++f) {
+    study.confirmed[f] = SimulatedStepDecays(design, study.largest - kResolution, kForms[f].form) &&
+                         !SimulatedStepDecays(design, study.largest + kResolution, kForms[f].form);
   }
   options.progress(0.8);
+  return study;
+}
 
-  ExperimentResult result;
-  result.conditions = fmt::format(
+std::string Conditions(const RootLocusStudy& study) {
+  return fmt::format(
       "Figure 8's linear model, k_2 = {:g} in-lbf/psi, J_a = {:g} lbf-in-s², c_1/c_2 = {:g}; g multiplies "
       "both. "
       "Sampled: eq. (17) at intervals T with its command held (zero-order hold), exact by the matrix "
       "exponential.",
-      p.k_2, p.J_a, design.zero);
-  result.paper_says = "Figure 9: with c_1/c_2 = 30 the loop is stable until g = 770. T is not printed.";
-  result.explanation = fmt::format(
-      "Routh's criterion on the paper's own numbers puts the crossing at g = {:.1f} and {:.1f} rad/s, {:.1f} "
-      "% below "
-      "770, which may well be read off a plot. The transmission ratio that the text prints would need k_2 = "
-      "{:.3f}, "
-      "and gives {:.1f}: further away. Sampling takes gain away: T = 1 ms leaves {:.0f}, 5 ms {:.0f}, and at "
-      "10 ms "
-      "{:.0f}, below the paper's 350. Whether the derivative acts on the error, as eq. (17) prints, or on "
-      "the "
-      "measurement changes only where the reference enters: the poles, and with them the largest stable T, "
-      "are the "
-      "same, {:.2f} ms. {} The forms differ in their zeros, and so in overshoot: at 1 ms {:.1f} % against "
-      "{:.1f} %.",
-      limit.gain, limit.frequency, 100 * (1 - limit.gain / kPaperCriticalGain), printed_ratio.k_2,
-      printed_limit.gain, sampled[0]["critical_gain"].get<double>(),
-      sampled[2]["critical_gain"].get<double>(), sampled[3]["critical_gain"].get<double>(), 1e3 * largest,
-      all_confirmed ? "Simulated steps of both forms die away 0.01 ms below it and grow 0.01 ms above it."
-                    : "Simulated steps do not confirm it.",
-      overshoot[0][0], overshoot[1][0]);
+      study.p.k_2, study.p.J_a, study.design.zero);
+}
 
-  result.comparisons = {
-      {"critical gain g", "psi s/rad", "770", limit.gain, CriticalGainOfPoles(design),
+std::string Explanation(const RootLocusStudy& study) {
+  return fmt::format(
+      "Routh's criterion on the paper's own numbers puts the crossing at g = {critical_gain:.1f} and "
+      "{frequency:.1f} rad/s, {percent_below:.1f} % below 770, which may well be read off a plot. The "
+      "transmission ratio that the text prints would need k_2 = {printed_k_2:.3f}, and gives "
+      "{printed_gain:.1f}: further away. Sampling takes gain away: T = 1 ms leaves {gain_1_ms:.0f}, 5 ms "
+      "{gain_5_ms:.0f}, and at 10 ms {gain_10_ms:.0f}, below the paper's 350. Whether the derivative acts on "
+      "the error, as eq. (17) prints, or on the measurement changes only where the reference enters: the "
+      "poles, and with them the largest stable T, are the same, {largest_ms:.2f} ms. {confirmed} The forms "
+      "differ in their zeros, and so in overshoot: at 1 ms {overshoot_error:.1f} % against "
+      "{overshoot_measurement:.1f} %.",
+      fmt::arg("critical_gain", study.limit.gain), fmt::arg("frequency", study.limit.frequency),
+      fmt::arg("percent_below", 100 * (1 - study.limit.gain / kPaperCriticalGain)),
+      fmt::arg("printed_k_2", study.printed_ratio.k_2), fmt::arg("printed_gain", study.printed_limit.gain),
+      fmt::arg("gain_1_ms", study.sampled[0].critical_gain),
+      fmt::arg("gain_5_ms", study.sampled[2].critical_gain),
+      fmt::arg("gain_10_ms", study.sampled[3].critical_gain),
+      fmt::arg("largest_ms", 1e3 * study.largest),
+      fmt::arg("confirmed",
+               study.all_confirmed()
+                   ? "Simulated steps of both forms die away 0.01 ms below it and grow 0.01 ms above it."
+                   : "Simulated steps do not confirm it."),
+      fmt::arg("overshoot_error", study.sampled[0].Overshoot(0)),
+      fmt::arg("overshoot_measurement", study.sampled[0].Overshoot(1)));
+}
+
+std::vector<Comparison> Comparisons(const RootLocusStudy& study) {
+  std::vector<Comparison> comparisons = {
+      {"critical gain g", "psi s/rad", "770", study.limit.gain, CriticalGainOfPoles(study.design),
        "expected: Routh, closed form; here: where eigenvalues cross"},
-      {"frequency there", "rad/s", "", limit.frequency, std::fabs(Poles(design, limit.gain).back().imag()),
-       ""},
-      {"critical gain with k_2 from 484.7:1", "psi s/rad", "770", printed_limit.gain,
-       CriticalGainOfPoles(printed_ratio), fmt::format("k_2 = {:.3f}", printed_ratio.k_2)},
-      {"largest stable T at g = 350", "ms", "", kNaN, 1e3 * largest, "in either form of the derivative"},
+      {"frequency there", "rad/s", "", study.limit.frequency,
+       std::fabs(Poles(study.design, study.limit.gain).back().imag()), ""},
+      {"critical gain with k_2 from 484.7:1", "psi s/rad", "770", study.printed_limit.gain,
+       CriticalGainOfPoles(study.printed_ratio), fmt::format("k_2 = {:.3f}", study.printed_ratio.k_2)},
+      {"largest stable T at g = 350", "ms", "", kNaN, 1e3 * study.largest,
+       "in either form of the derivative"},
   };
-  for (size_t t = 0; t < kIntervals.size(); ++t) {
-    result.comparisons.push_back(
-        {fmt::format("overshoot at T = {:g} ms, derivative of the measurement", 1e3 * kIntervals[t]), "%", "",
-         kNaN, overshoot[1][t],
-         std::isnan(overshoot[1][t]) ? "unstable" : fmt::format("of the error: {:.1f} %", overshoot[0][t])});
+  for (const SampledLoop& loop : study.sampled) {
+    comparisons.push_back(
+        {fmt::format("overshoot at T = {:g} ms, derivative of the measurement", 1e3 * loop.interval), "%", "",
+         kNaN, loop.Overshoot(1),
+         loop.stable() ? fmt::format("of the error: {:.1f} %", loop.Overshoot(0)) : "unstable"});
   }
-  result.findings = {
+  return comparisons;
+}
+
+std::vector<Finding> Findings(const RootLocusStudy& study) {
+  return {
       {5, "Figure 9 is stable until g = 770.",
-       fmt::format("Routh on Figure 8's model with c_1/c_2 = {:g}, k_2 = {:g} and J_a = {:g}: {:.1f} at "
-                   "{:.0f} rad/s; "
-                   "with k_2 = {:.3f} of the printed ratio {:g}: {:.1f}. Poles at g = {:g}: {} and {}.",
-                   design.zero, p.k_2, p.J_a, limit.gain, limit.frequency, printed_ratio.k_2, kPaperRatio,
-                   printed_limit.gain, kPaperGain, PoleText(paper_poles.front()),
-                   PoleText(paper_poles.back())),
-       fmt::format("Prints {:.1f} beside the paper's 770.", limit.gain)},
+       fmt::format(
+           "Routh on Figure 8's model with c_1/c_2 = {zero:g}, k_2 = {k_2:g} and J_a = {J_a:g}: "
+           "{critical_gain:.1f} at {frequency:.0f} rad/s; with k_2 = {printed_k_2:.3f} of the printed ratio "
+           "{printed_ratio:g}: {printed_gain:.1f}. Poles at g = {g:g}: {first_pole} and {last_pole}.",
+           fmt::arg("zero", study.design.zero), fmt::arg("k_2", study.p.k_2), fmt::arg("J_a", study.p.J_a),
+           fmt::arg("critical_gain", study.limit.gain), fmt::arg("frequency", study.limit.frequency),
+           fmt::arg("printed_k_2", study.printed_ratio.k_2), fmt::arg("printed_ratio", kPaperRatio),
+           fmt::arg("printed_gain", study.printed_limit.gain), fmt::arg("g", kPaperGain),
+           fmt::arg("first_pole", PoleText(study.paper_poles.front())),
+           fmt::arg("last_pole", PoleText(study.paper_poles.back()))),
+       fmt::format("Prints {:.1f} beside the paper's 770.", study.limit.gain)},
       {7,
        "The sampling interval T of eq. (17) is not printed; its derivative acts on the error, so that a step "
        "of "
        "the reference kicks.",
        fmt::format(
-           "Figure 8's model at g = {:g}, overshoot continuous and at T = 1, 2, 5 ms: derivative of the "
-           "measurement {:.1f}, {:.1f}, {:.1f}, {:.1f} %; of the error {:.0f}, {:.0f}, {:.0f}, {:.0f} %. At "
-           "10 "
-           "ms both are {}; the largest stable T is {:.2f} ms in both.",
-           kPaperGain, continuous["on_measurement"]["overshoot_percent"].get<double>(), overshoot[1][0],
-           overshoot[1][1], overshoot[1][2], continuous["on_error"]["overshoot_percent"].get<double>(),
-           overshoot[0][0], overshoot[0][1], overshoot[0][2],
-           SpectralRadius(design, kPaperGain, 0.010) < 1 ? "stable" : "unstable", 1e3 * largest),
+           "Figure 8's model at g = {g:g}, overshoot continuous and at T = 1, 2, 5 ms: derivative of the "
+           "measurement {measurement:.1f}, {measurement_1:.1f}, {measurement_2:.1f}, {measurement_5:.1f} %; "
+           "of the error {error:.0f}, {error_1:.0f}, {error_2:.0f}, {error_5:.0f} %. At 10 ms both are "
+           "{stable_10}; the largest stable T is {largest_ms:.2f} ms in both.",
+           fmt::arg("g", kPaperGain), fmt::arg("measurement", study.continuous[1].overshoot_percent),
+           fmt::arg("measurement_1", study.sampled[0].Overshoot(1)),
+           fmt::arg("measurement_2", study.sampled[1].Overshoot(1)),
+           fmt::arg("measurement_5", study.sampled[2].Overshoot(1)),
+           fmt::arg("error", study.continuous[0].overshoot_percent),
+           fmt::arg("error_1", study.sampled[0].Overshoot(0)),
+           fmt::arg("error_2", study.sampled[1].Overshoot(0)),
+           fmt::arg("error_5", study.sampled[2].Overshoot(0)),
+           fmt::arg("stable_10", study.sampled[3].stable() ? "stable" : "unstable"),
+           fmt::arg("largest_ms", 1e3 * study.largest)),
        "Both forms can be chosen (position.derivative). Figure 10 takes eq. (17) as printed; the default of "
        "a stack is "
        "the derivative of the measurement."}};
+}
 
-  result.numbers =
-      JsonText(json{{"critical_gain", limit.gain},
-                    {"critical_frequency_rad_s", limit.frequency},
-                    {"paper_critical_gain", kPaperCriticalGain},
-                    {"poles_at_350", AsPairs(paper_poles)},
-                    {"printed_ratio", {{"k_2", printed_ratio.k_2}, {"critical_gain", printed_limit.gain}}},
-                    {"continuous", continuous},
-                    {"sampled", sampled},
-                    {"largest_stable_interval_s", largest_stable},
-                    {"largest_stable_interval_confirmed_by_simulation", confirmed}});
-  result.table.columns = {{"gain", gains}};
-  for (size_t b = 0; b < branches.size(); ++b) {
+json Numbers(const RootLocusStudy& study) {
+  json continuous, largest_stable, confirmed;
+  for (size_t f = 0; f < kForms.size(); ++f) {
+    const runs::StepResponse& step = study.continuous[f];
+    continuous[kForms[f].key] = {{"overshoot_percent", step.overshoot_percent},
+                                 {"settling_time_s", step.settling_time_s.value_or(kNaN)}};
+    largest_stable[kForms[f].key] = study.largest;
+    confirmed[kForms[f].key] = study.confirmed[f];
+  }
+  json sampled = json::array();
+  for (const SampledLoop& loop : study.sampled) {
+    json row = {{"sample_interval_s", loop.interval},
+                {"stable", loop.stable()},
+                {"spectral_radius", loop.spectral_radius},
+                {"critical_gain", loop.critical_gain},
+                {"poles_z", AsPairs(loop.poles)}};
+    for (size_t f = 0; f < kForms.size(); ++f) {
+      const runs::StepResponse& step = loop.step[f];
+      row[kForms[f].key] = {
+          {"overshoot_percent", loop.stable() ? json(step.overshoot_percent) : json(nullptr)},
+          {"settling_time_s", step.settling_time_s ? json(*step.settling_time_s) : json(nullptr)}};
+    }
+    sampled.push_back(row);
+  }
+  return {{"critical_gain", study.limit.gain},
+          {"critical_frequency_rad_s", study.limit.frequency},
+          {"paper_critical_gain", kPaperCriticalGain},
+          {"poles_at_350", AsPairs(study.paper_poles)},
+          {"printed_ratio", {{"k_2", study.printed_ratio.k_2}, {"critical_gain", study.printed_limit.gain}}},
+          {"continuous", continuous},
+          {"sampled", sampled},
+          {"largest_stable_interval_s", largest_stable},
+          {"largest_stable_interval_confirmed_by_simulation", confirmed}};
+}
+
+std::vector<tables::Column> Columns(const RootLocusStudy& study) {
+  std::vector<tables::Column> columns = {{"gain", study.gains}};
+  for (size_t b = 0; b < study.branches.size(); ++b) {
     tables::Column re{fmt::format("pole_{}_re_1_s", b + 1), {}},
         im{fmt::format("pole_{}_im_rad_s", b + 1), {}};
-    for (const Complex& pole : branches[b]) {
+    for (const Complex& pole : study.branches[b]) {
       re.values.push_back(pole.real());
       im.values.push_back(pole.imag());
     }
-    result.table.columns.push_back(re);
-    result.table.columns.push_back(im);
+    columns.push_back(re);
+    columns.push_back(im);
   }
+  return columns;
+}
 
+Picture LocusPicture(const RootLocusStudy& study) {
   page::Panel locus{
       .title = "",
       .x = {.label = "real part, 1/s", .logarithmic = false, .min = -200, .max = 100},
       .y = {.label = "imaginary part, rad/s", .logarithmic = false, .min = -200, .max = 200},
       .curves = {},
-      .notes = {{fmt::format("g = {:.1f} at {:.1f} rad/s", limit.gain, limit.frequency), 0, limit.frequency}},
+      .notes = {{fmt::format("g = {:.1f} at {:.1f} rad/s", study.limit.gain, study.limit.frequency), 0,
+                 study.limit.frequency}},
       .rules = {{"", true, 0}, {"", false, 0}},
       .equal_scales = true,
       .height = 1.8};
-  for (size_t b = 0; b < branches.size(); ++b) {
-    locus.curves.push_back(Points(b == 0 ? "locus over g" : "", branches[b], 0, page::Stroke::kLine));
+  for (size_t b = 0; b < study.branches.size(); ++b) {
+    locus.curves.push_back(Points(b == 0 ? "locus over g" : "", study.branches[b], 0, page::Stroke::kLine));
   }
-  locus.curves.push_back(Points("open loop, g = 0", poles.front(), 1));
-  locus.curves.push_back(Points("zero", {Complex(-design.zero, 0)}, 2));
-  locus.curves.push_back(Points(fmt::format("g = {:g}", kPaperGain), paper_poles, 3));
-  locus.curves.push_back(Points(fmt::format("g = {:.1f}", limit.gain), Poles(design, limit.gain), 4));
-  result.pictures.push_back(
-      {"",
-       {.caption = fmt::format(
-            "Root locus of Figure 8's model, c_1/c_2 = {:g}, g from 0 to {:g}. The poles cross the "
-            "imaginary axis at g = {:.1f}; the paper prints 770.",
-            design.zero, gains.back(), limit.gain),
-        .panels = {locus},
-        .drawing = ""}});
-  result.pictures.push_back(
-      {"-steps",
-       {.caption = fmt::format(
-            "Figure 8's model at g = {:g} under the sampled law: a step of {:g} rad. At T = 10 ms the "
-            "loop is unstable.",
-            kPaperGain, kStep),
-        .panels = step_panels,
-        .drawing = ""}});
+  locus.curves.push_back(Points("open loop, g = 0", study.poles.front(), 1));
+  locus.curves.push_back(Points("zero", {Complex(-study.design.zero, 0)}, 2));
+  locus.curves.push_back(Points(fmt::format("g = {:g}", kPaperGain), study.paper_poles, 3));
+  locus.curves.push_back(
+      Points(fmt::format("g = {:.1f}", study.limit.gain), Poles(study.design, study.limit.gain), 4));
+  return {"",
+          {.caption = fmt::format(
+               "Root locus of Figure 8's model, c_1/c_2 = {:g}, g from 0 to {:g}. The poles cross the "
+               "imaginary axis at g = {:.1f}; the paper prints 770.",
+               study.design.zero, study.gains.back(), study.limit.gain),
+           .panels = {locus},
+           .drawing = ""}};
+}
+
+// Steps of the loop under one form of the derivative, continuous and sampled.
+page::Panel StepPanel(const DesignModel& design, size_t f) {
+  page::Panel panel;
+  panel.title = kForms[f].name;
+  panel.x = {.label = "time, s", .logarithmic = false, .min = 0, .max = 0.4};
+  panel.y = {
+      .label = "α, rad", .logarithmic = false, .min = f == 0 ? -0.05 : 0.0, .max = f == 0 ? 0.25 : 0.2};
+  const Response continuous = ContinuousStep(design, kPaperGain, kForms[f].form, kStep, kDuration, 5e-4);
+  panel.curves.push_back({"continuous", continuous.time, continuous.angle, page::Stroke::kLine, 0, {}, {}});
+  for (size_t t = 0; t < kIntervals.size(); ++t) {
+    const double interval = kIntervals[t];
+    const Response step = SampledStep(design, kPaperGain, interval, kForms[f].form, kStep, kDuration,
+                                      static_cast<int>(std::lround(interval / 5e-4)));
+    panel.curves.push_back({fmt::format("T = {:g} ms", interval * 1e3),
+                            step.time,
+                            step.angle,
+                            interval == 0.010 ? page::Stroke::kDashed : page::Stroke::kLine,
+                            static_cast<int>(t) + 1,
+                            {},
+                            {}});
+  }
+  panel.rules = {{"", false, kStep}};
+  return panel;
+}
+
+Picture StepsPicture(const RootLocusStudy& study) {
+  return {"-steps",
+          {.caption = fmt::format(
+               "Figure 8's model at g = {:g} under the sampled law: a step of {:g} rad. At T = 10 ms the "
+               "loop is unstable.",
+               kPaperGain, kStep),
+           .panels = {StepPanel(study.design, 0), StepPanel(study.design, 1)},
+           .drawing = ""}};
+}
+
+Picture SampledPolesPicture(const RootLocusStudy& study) {
   page::Panel plane{.title = "",
                     .x = {.label = "real part of z", .logarithmic = false, .min = -1.1, .max = 1.1},
                     .y = {.label = "imaginary part of z", .logarithmic = false, .min = -1.1, .max = 1.1},
@@ -302,18 +377,32 @@ ExperimentResult RunFig9(const ExperimentOptions& options) {
   std::vector<Complex> circle;
   for (int i = 0; i <= 360; ++i) circle.push_back(std::polar(1.0, i * std::numbers::pi / 180));
   plane.curves.push_back(Points("unit circle", circle, 0, page::Stroke::kDotted));
-  for (size_t t = 0; t < kIntervals.size(); ++t) {
-    plane.curves.push_back(Points(fmt::format("T = {:g} ms", 1e3 * kIntervals[t]),
-                                  SampledPoles(design, kPaperGain, kIntervals[t]), static_cast<int>(t) + 1));
+  for (size_t t = 0; t < study.sampled.size(); ++t) {
+    plane.curves.push_back(Points(fmt::format("T = {:g} ms", 1e3 * study.sampled[t].interval),
+                                  study.sampled[t].poles, static_cast<int>(t) + 1));
   }
-  result.pictures.push_back(
-      {"-sampled",
-       {.caption = fmt::format(
-            "Poles of the sampled loop at g = {:g}, the same in both forms of the derivative: stable "
-            "inside the unit circle.",
-            kPaperGain),
-        .panels = {plane},
-        .drawing = ""}});
+  return {"-sampled",
+          {.caption = fmt::format(
+               "Poles of the sampled loop at g = {:g}, the same in both forms of the derivative: stable "
+               "inside the unit circle.",
+               kPaperGain),
+           .panels = {plane},
+           .drawing = ""}};
+}
+
+}  // namespace
+
+ExperimentResult RunFig9(const ExperimentOptions& options) {
+  const RootLocusStudy study = RunStudy(options);
+  ExperimentResult result;
+  result.conditions = Conditions(study);
+  result.paper_says = "Figure 9: with c_1/c_2 = 30 the loop is stable until g = 770. T is not printed.";
+  result.explanation = Explanation(study);
+  result.comparisons = Comparisons(study);
+  result.findings = Findings(study);
+  result.numbers = JsonText(Numbers(study));
+  result.table.columns = Columns(study);
+  result.pictures = {LocusPicture(study), StepsPicture(study), SampledPolesPicture(study)};
   options.progress(1);
   return result;
 }
