@@ -116,12 +116,38 @@ json CaseJson(const BodeCase& c) {
   return out;
 }
 
+json CasesJson(const std::vector<const BodeCase*>& cases) {
+  json listed = json::array();
+  for (const BodeCase* one : cases) listed.push_back(CaseJson(*one));
+  json numbers = listed.front();
+  numbers.erase("key");
+  numbers.erase("title");
+  numbers["cases"] = listed;
+  return numbers;
+}
+
 std::vector<tables::Column> CaseColumns(const BodeCase& c) {
   Parts measured(c.swept.points);
   return {{c.key + "_frequency_hz", std::move(measured.frequency)},
           {c.key + "_gain_db", std::move(measured.gain_db)},
           {c.key + "_phase_deg", std::move(measured.phase_deg)},
           {c.key + "_coherence", std::move(measured.coherence)}};
+}
+
+std::vector<tables::Column> CaseColumns(const std::vector<const BodeCase*>& cases) {
+  std::vector<tables::Column> columns;
+  for (const BodeCase* one : cases) {
+    for (tables::Column& column : CaseColumns(*one)) columns.push_back(std::move(column));
+  }
+  return columns;
+}
+
+BodeCurve PredictedCurve(const BodeCase& bode_case, const std::string& label, double last_hz,
+                         page::Stroke stroke, int colour) {
+  const LinearPressureLoop loop =
+      LinearLoop(bode_case.sweep, bode_case.mode, {1 / bode_case.sweep.rate_hz, 0});
+  return {label, Sampled(1, last_hz, [&](double hz) { return loop.ClosedGain(bode_case.sweep.gains, hz); }),
+          stroke, colour};
 }
 
 std::vector<page::Panel> BodePanels(const std::string& title, const std::vector<BodeCurve>& curves,

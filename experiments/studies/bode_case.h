@@ -5,6 +5,7 @@
 #include <complex>
 #include <functional>
 #include <nlohmann/json_fwd.hpp>
+#include <numbers>
 #include <string>
 #include <vector>
 
@@ -16,6 +17,9 @@
 #include "tables/table.h"
 
 namespace hydro::experiments {
+
+// "The bandwidth appears to be about 200/(2 pi) = 32 Hz."
+inline constexpr double kPaperBandwidthHz = 200 / (2 * std::numbers::pi);
 
 struct BodeCase {
   std::string key;    // in JSON and as the column's name
@@ -46,9 +50,12 @@ void Evaluate(BodeCase* bode_case, double fit_to_hz, const StackRunner& run_stac
 
 // A JSON object: conditions, results and the points as arrays.
 nlohmann::json CaseJson(const BodeCase& bode_case);
+// The first case's object without its key and title, and all of them in its `cases`.
+nlohmann::json CasesJson(const std::vector<const BodeCase*>& cases);
 
 // frequency_hz, gain_db, phase_deg, coherence, as columns that begin with the case's key.
 std::vector<tables::Column> CaseColumns(const BodeCase& bode_case);
+std::vector<tables::Column> CaseColumns(const std::vector<const BodeCase*>& cases);
 
 // Points (coherence of .8 and above) or curves of one response, for the two panels of a Bode plot.
 struct BodeCurve {
@@ -57,6 +64,10 @@ struct BodeCurve {
   page::Stroke stroke = page::Stroke::kLine;
   int colour = -1;
 };
+// The linearised loop of a case, from 1 Hz on.
+BodeCurve PredictedCurve(const BodeCase& bode_case, const std::string& label, double last_hz,
+                         page::Stroke stroke, int colour);
+
 std::vector<page::Panel> BodePanels(const std::string& title, const std::vector<BodeCurve>& curves,
                                     const std::vector<page::Rule>& vertical, double least_db);
 // The panels with one more below them: the coherence of what was measured, all points of it.
