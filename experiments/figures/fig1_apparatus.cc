@@ -124,42 +124,197 @@ page::Figure Limits(const model::Parameters& p) {
           ""};
 }
 
+constexpr double kTopSpeed = kMotorRpm * kRpm;
+// in-lbf, held against the clamp. Coulomb friction is the same in both.
+constexpr double kLowTorque = 8;
+constexpr double kHighTorque = 16;
+
+// What was run, and what Table 1 amounts to.
+struct Apparatus {
+  model::Parameters p;
+  model::Parameters fast;     // of the 18000 rpm motor
+  double gravity_torque = 0;  // of table1_gravity.toml
+
+  FreeRun free;
+  FreeRun fast_run;
+  double torque_ratio = 0;  // arm torque per motor torque, clamped
+  double unlimited = 0;     // rad/s
+
+  double torque_ratio_lossless = 0;
+  double torque_ratio_leaking = 0;
+  double displacement_ratio = 0;
+  double needed_k2 = 0;  // for the printed ratio
+  double peak = 0;       // in-lbf at the arm
+  double peak_with_friction = 0;
+  double at_limit = 0;        // in-lbf at the seals' limit of dp
+  double at_limit_gauge = 0;  // the same with the low side at p_3
+  double reflected = 0;       // lbf-in-s^2 at the arm
+  double reflected_fast = 0;
+  double unlimited_expected = 0;  // rad/s
+  double arm_mass = 0;            // lbf-s^2/in, of a uniform slender arm
+  double arm_mgl = 0;             // in-lbf
+};
+
+void SolveInClosedForm(Apparatus* a) {
+  const model::Parameters& p = a->p;
+  const model::Parameters& fast = a->fast;
+  a->torque_ratio_lossless = p.k_2 / p.D;
+  // At rest but for leakage, the pump turns at (c_I + c_E) dp / D, and viscous friction takes its share.
+  a->torque_ratio_leaking = p.k_2 / (p.D + p.b * (p.c_I + p.c_E) / p.D);
+  a->displacement_ratio = 1.83 * 1.83 * 2.20 / 2 / 0.00796;  // Table 1's r, d and D
+  a->needed_k2 = kPrintedRatio * p.D;
+  a->peak = p.T_pmax * a->torque_ratio_lossless;
+  a->peak_with_friction = (p.T_pmax - p.T_s) * a->torque_ratio_lossless;
+  a->at_limit = p.k_2 * kPressureLimit;
+  a->at_limit_gauge = p.k_2 * (kPressureLimit - p.p_3);
+  a->reflected = p.J * std::pow(p.c / p.D, 2);
+  a->reflected_fast = fast.J * std::pow(fast.c / fast.D, 2);
+  a->unlimited_expected = (p.T_pmax - p.T_s) / p.b;
+  a->arm_mass = 3 * p.J_a / (kArmLength * kArmLength);
+  a->arm_mgl = a->arm_mass * kGravity * kArmLength / 2;
+}
+
+Apparatus RunApparatus(const ExperimentOptions& options) {
+  const model::ModelDescription model = ShippedModel("table1");
+  const model::ModelDescription fast_model = ShippedModel("motor_18000rpm");
+  Apparatus apparatus;
+  apparatus.p = model.parameters;
+  apparatus.fast = fast_model.parameters;
+  apparatus.gravity_torque = ShippedModel("table1_gravity").parameters.mgl;
+  apparatus.free = RunFree(model, kTopSpeed);
+  apparatus.fast_run = RunFree(fast_model, kFastMotorRpm * kRpm);
+  options.progress(0.3);
+  apparatus.torque_ratio =
+      (HeldTorque(model, kHighTorque) - HeldTorque(model, kLowTorque)) / (kHighTorque - kLowTorque);
+  options.progress(0.8);
+  apparatus.unlimited = UnlimitedSpeed(model);
+  SolveInClosedForm(&apparatus);
+  return apparatus;
+}
+
+std::vector<Comparison> Comparisons(const Apparatus& a) {
+  const model::Parameters& p = a.p;
+  const model::Parameters& fast = a.fast;
+  return {
+      {"transmission ratio of speeds, θ'/α'", "", "484.7", a.displacement_ratio, a.free.speed_ratio,
+       "independent: r^2 d/(2 D) of Table 1; here: the angles turned, free arm"},
+      {"transmission ratio of torques, k_2/D", "", "484.7", a.torque_ratio_lossless, a.torque_ratio,
+       fmt::format("here: clamped, at rest but for leakage, which with viscous friction takes {:.2f} %",
+                   100 * (1 - a.torque_ratio / a.torque_ratio_lossless))},
+      {"k_2 that a ratio of 484.7 needs", "in-lbf/psi", "3.68", a.needed_k2, a.needed_k2,
+       "k_2 = 484.7 D; the paper prints 3.68, \"from the transmission ratio\""},
+      {"theoretical peak torque", "in-lbf", "19388", p.T_pmax * kPrintedRatio, a.peak,
+       fmt::format("independent: 40 in-lbf times 484.7; here: T_pmax k_2/D, {}", InSi(a.peak))},
+      {"peak torque, friction T_s taken off", "in-lbf", "", page::kAutomatic, a.peak_with_friction,
+       fmt::format("{}; it needs dp = {:.0f} psi", InSi(a.peak_with_friction), (p.T_pmax - p.T_s) / p.D)},
+      {"torque at dp = 2000 psi", "in-lbf", "about 7300", page::kAutomatic, a.at_limit,
+       fmt::format("k_2 2000 psi, {}; \"600 ft-lb\" is 7200 in-lb", InSi(a.at_limit))},
+      {"torque at p_2 = 2000 psi, p_1 = p_3", "in-lbf", "about 7300", page::kAutomatic, a.at_limit_gauge,
+       fmt::format("the low side keeps the accumulator's {:g} psi; {}", p.p_3, InSi(a.at_limit_gauge))},
+      {"motor torque for dp = 2000 psi", "in-lbf", "", page::kAutomatic, p.D * kPressureLimit + p.T_s,
+       "D 2000 psi + T_s: half of what the motor can"},
+      {"maximum arm speed", "rpm", "12.4", kMotorRpm / kPrintedRatio, a.free.arm_speed / kRpm,
+       fmt::format("independent: 6000 rpm/484.7; here: free arm at 6000 rpm of the motor, {:.3f} rad/s",
+                   a.free.arm_speed)},
+      {"motor speed at full voltage, no load", "rpm", "6000", a.unlimited_expected / kRpm, a.unlimited / kRpm,
+       "eqs. (1) to (15) have no limit of speed: friction alone balances the torque, (T_pmax - T_s)/b"},
+      {"voltage that holds 6000 rpm, no load", "V", "", page::kAutomatic, (p.b * kTopSpeed + p.T_s) / p.k_1,
+       "(b θ' + T_s)/k_1; the motor's own limit is up to whoever commands it"},
+      {"motor and pump inertia seen by the arm", "lbf-in-s^2", "", page::kAutomatic, a.reflected,
+       fmt::format("J (c/D)^2, {:.0f} times J_a = {:g}", a.reflected / p.J_a, p.J_a)},
+      {"m g l of a uniform slender arm", "in-lbf", "", a.arm_mgl, a.gravity_torque,
+       fmt::format("assumed: J_a = m L^2/3 with L = {:g} in; here: table1_gravity.toml. It holds with dp = "
+                   "{:.1f} psi",
+                   kArmLength, a.gravity_torque / p.k_2)},
+      {"18000 rpm motor: transmission ratio", "", "", 3 * a.torque_ratio_lossless, fast.k_2 / fast.D,
+       "assumed: the same power, torque and speed at the arm, so a pump of D/3"},
+      {"18000 rpm motor: peak torque at the arm", "in-lbf", "", a.peak, fast.T_pmax * fast.k_2 / fast.D,
+       "independent: the 6000 rpm motor's"},
+      {"18000 rpm motor: maximum arm speed", "rpm", "", kMotorRpm * p.D / p.c, a.fast_run.arm_speed / kRpm,
+       "independent: 6000 rpm D/c of Table 1; here: its free arm"},
+      {"18000 rpm motor: inertia seen by the arm", "lbf-in-s^2", "", a.reflected * std::pow(3.0, 2 - 5.0 / 3),
+       a.reflected_fast,
+       "independent: J goes with T_pmax^{5/3} for motors of one shape, and with the ratio squared"},
+      {"18000 rpm motor: time to full speed", "s", "", page::kAutomatic,
+       fast.J * kFastMotorRpm * kRpm / fast.T_pmax,
+       fmt::format("J θ'/T_pmax without load and friction; the 6000 rpm motor: {:.2f} s",
+                   p.J * kTopSpeed / p.T_pmax)},
+  };
+}
+
+std::string Explanation(const Apparatus& a) {
+  return fmt::format(
+      "The two ratios that Table 1 gives, {displacement_ratio:.1f} by displacements and {torque_ratio:.1f} "
+      "by torques, agree with each other within {apart_percent:.1f} %, as energy demands, but not with the "
+      "printed one: 484.7 is {printed_percent:.1f} % above. With Table 1 the peak torque is {peak:.0f} "
+      "in-lbf instead of 19388 and the maximum speed {speed:.2f} rpm instead of 12.4. The torque that the "
+      "seals allow fits \"about 7300\": {at_limit:.0f} in-lbf, or {at_limit_gauge:.0f} when the low side's "
+      "{p_3:g} psi count.",
+      fmt::arg("displacement_ratio", a.displacement_ratio), fmt::arg("torque_ratio", a.torque_ratio_lossless),
+      fmt::arg("apart_percent", 100 * std::abs(a.displacement_ratio / a.torque_ratio_lossless - 1)),
+      fmt::arg("printed_percent", 100 * (kPrintedRatio / a.torque_ratio_lossless - 1)),
+      fmt::arg("peak", a.peak), fmt::arg("speed", a.free.arm_speed / kRpm), fmt::arg("at_limit", a.at_limit),
+      fmt::arg("at_limit_gauge", a.at_limit_gauge), fmt::arg("p_3", a.p.p_3));
+}
+
+std::vector<Finding> Findings(const Apparatus& a) {
+  const model::Parameters& p = a.p;
+  return {
+      {2,
+       "The text gives the transmission ratio as 484.7:1; Table 1 has k_2 = 3.68 \"from the transmission "
+       "ratio\" and D = 0.00796.",
+       fmt::format("k_2/D = {:.1f} (measured on the clamped model: {:.1f}), c/D = {:.1f} (measured on the "
+                   "free arm: {:.1f}); "
+                   "484.7 would need k_2 = {:.3f}.",
+                   a.torque_ratio_lossless, a.torque_ratio, p.c / p.D, a.free.speed_ratio, a.needed_k2),
+       "k_2 and D stay as in Table 1; both ratios are stated."},
+      {6, "The mass m and length l of the arm are not printed, only J_a.",
+       fmt::format("m g l is free: 0 in table1.toml, {:g} in-lbf in table1_gravity.toml, that of a uniform "
+                   "slender arm of {:g} in "
+                   "(m = 3 J_a/L^2 = {:.4f} lbf-s^2/in, m g L/2 = {:.1f} in-lbf). Holding it takes {:.1f} "
+                   "psi, {:.1f} % of "
+                   "the seals' limit.",
+                   a.gravity_torque, kArmLength, a.arm_mass, a.arm_mgl, a.gravity_torque / p.k_2,
+                   100 * a.gravity_torque / p.k_2 / kPressureLimit),
+       "Two model files, both marked as assumptions; the figures use 0 unless they say otherwise."}};
+}
+
+ordered_json Numbers(const Apparatus& a) {
+  const model::Parameters& p = a.p;
+  const model::Parameters& fast = a.fast;
+  return {{"printed_ratio", kPrintedRatio},
+          {"torque_ratio", a.torque_ratio_lossless},
+          {"torque_ratio_measured", a.torque_ratio},
+          {"torque_ratio_with_leakage", a.torque_ratio_leaking},
+          {"displacement_ratio", p.c / p.D},
+          {"displacement_ratio_measured", a.free.speed_ratio},
+          {"k_2_for_printed_ratio_in_lbf_per_psi", a.needed_k2},
+          {"peak_torque_printed_in_lbf", p.T_pmax * kPrintedRatio},
+          {"peak_torque_in_lbf", a.peak},
+          {"peak_torque_N_m", a.peak * kNewtonMetres},
+          {"peak_torque_less_friction_in_lbf", a.peak_with_friction},
+          {"torque_at_2000_psi_in_lbf", a.at_limit},
+          {"torque_at_2000_psi_N_m", a.at_limit * kNewtonMetres},
+          {"torque_at_2000_psi_above_accumulator_in_lbf", a.at_limit_gauge},
+          {"maximum_speed_printed_rpm", kMotorRpm / kPrintedRatio},
+          {"maximum_speed_rpm", a.free.arm_speed / kRpm},
+          {"maximum_speed_rad_s", a.free.arm_speed},
+          {"unlimited_motor_speed_rpm", a.unlimited / kRpm},
+          {"reflected_inertia_lbf_in_s2", a.reflected},
+          {"gravity_torque_assumed_in_lbf", a.gravity_torque},
+          {"motor_18000rpm",
+           {{"assumption", true},
+            {"peak_torque_in_lbf", fast.T_pmax * fast.k_2 / fast.D},
+            {"maximum_speed_rpm", a.fast_run.arm_speed / kRpm},
+            {"ratio", fast.k_2 / fast.D},
+            {"power_kW", fast.T_pmax * kFastMotorRpm * kRpm * kKilowatts},
+            {"reflected_inertia_lbf_in_s2", a.reflected_fast}}}};
+}
+
 }  // namespace
 
 ExperimentResult RunFig1(const ExperimentOptions& options) {
-  const model::ModelDescription model = ShippedModel("table1");
-  const model::Parameters& p = model.parameters;
-  const model::ModelDescription fast_model = ShippedModel("motor_18000rpm");
-  const model::Parameters& fast = fast_model.parameters;
-  const double gravity_torque = ShippedModel("table1_gravity").parameters.mgl;
-  const double top_speed = kMotorRpm * kRpm;
-
-  FreeRun free = RunFree(model, top_speed);
-  const FreeRun fast_run = RunFree(fast_model, kFastMotorRpm * kRpm);
-  options.progress(0.3);
-  // Coulomb friction is the same in both.
-  const double low_torque = 8;
-  const double high_torque = 16;
-  const double torque_ratio =
-      (HeldTorque(model, high_torque) - HeldTorque(model, low_torque)) / (high_torque - low_torque);
-  options.progress(0.8);
-  const double unlimited = UnlimitedSpeed(model);
-
-  const double torque_ratio_lossless = p.k_2 / p.D;
-  // At rest but for leakage, the pump turns at (c_I + c_E) dp / D, and viscous friction takes its share.
-  const double torque_ratio_leaking = p.k_2 / (p.D + p.b * (p.c_I + p.c_E) / p.D);
-  const double displacement_ratio = 1.83 * 1.83 * 2.20 / 2 / 0.00796;  // Table 1's r, d and D
-  const double needed_k2 = kPrintedRatio * p.D;
-  const double peak = p.T_pmax * torque_ratio_lossless;
-  const double peak_with_friction = (p.T_pmax - p.T_s) * torque_ratio_lossless;
-  const double at_limit = p.k_2 * kPressureLimit;
-  const double at_limit_gauge = p.k_2 * (kPressureLimit - p.p_3);
-  const double reflected = p.J * std::pow(p.c / p.D, 2);
-  const double reflected_fast = fast.J * std::pow(fast.c / fast.D, 2);
-  const double unlimited_expected = (p.T_pmax - p.T_s) / p.b;
-  const double arm_mass = 3 * p.J_a / (kArmLength * kArmLength);
-  const double arm_mgl = arm_mass * kGravity * kArmLength / 2;
-
+  Apparatus apparatus = RunApparatus(options);
   ExperimentResult result;
   result.conditions = fmt::format(
       "Table 1. Speeds: the free arm swings through its travel, driven up to {:.0f} rpm of the motor. "
@@ -167,7 +322,7 @@ ExperimentResult RunFig1(const ExperimentOptions& options) {
       "clamped arm, motor torques of {:g} and {:g} in-lbf held for 40 s. The 18000 rpm motor is a model file "
       "of its "
       "own (config/models/motor_18000rpm.toml), an assumption where the paper is silent.",
-      kMotorRpm, low_torque, high_torque);
+      kMotorRpm, kLowTorque, kHighTorque);
   result.paper_says =
       "A 6000 rpm motor with a peak torque of 40 in-lb is geared down hydraulically with a ratio of 484.7:1, "
       "for a "
@@ -176,120 +331,19 @@ ExperimentResult RunFig1(const ExperimentOptions& options) {
       "pressure to 2000 psi and the torque to about 7300 in-lb. An 18000 rpm motor worked excellent, too, "
       "but needed "
       "large cooling fins.";
-  result.comparisons = {
-      {"transmission ratio of speeds, θ'/α'", "", "484.7", displacement_ratio, free.speed_ratio,
-       "independent: r^2 d/(2 D) of Table 1; here: the angles turned, free arm"},
-      {"transmission ratio of torques, k_2/D", "", "484.7", torque_ratio_lossless, torque_ratio,
-       fmt::format("here: clamped, at rest but for leakage, which with viscous friction takes {:.2f} %",
-                   100 * (1 - torque_ratio / torque_ratio_lossless))},
-      {"k_2 that a ratio of 484.7 needs", "in-lbf/psi", "3.68", needed_k2, needed_k2,
-       "k_2 = 484.7 D; the paper prints 3.68, \"from the transmission ratio\""},
-      {"theoretical peak torque", "in-lbf", "19388", p.T_pmax * kPrintedRatio, peak,
-       fmt::format("independent: 40 in-lbf times 484.7; here: T_pmax k_2/D, {}", InSi(peak))},
-      {"peak torque, friction T_s taken off", "in-lbf", "", page::kAutomatic, peak_with_friction,
-       fmt::format("{}; it needs dp = {:.0f} psi", InSi(peak_with_friction), (p.T_pmax - p.T_s) / p.D)},
-      {"torque at dp = 2000 psi", "in-lbf", "about 7300", page::kAutomatic, at_limit,
-       fmt::format("k_2 2000 psi, {}; \"600 ft-lb\" is 7200 in-lb", InSi(at_limit))},
-      {"torque at p_2 = 2000 psi, p_1 = p_3", "in-lbf", "about 7300", page::kAutomatic, at_limit_gauge,
-       fmt::format("the low side keeps the accumulator's {:g} psi; {}", p.p_3, InSi(at_limit_gauge))},
-      {"motor torque for dp = 2000 psi", "in-lbf", "", page::kAutomatic, p.D * kPressureLimit + p.T_s,
-       "D 2000 psi + T_s: half of what the motor can"},
-      {"maximum arm speed", "rpm", "12.4", kMotorRpm / kPrintedRatio, free.arm_speed / kRpm,
-       fmt::format("independent: 6000 rpm/484.7; here: free arm at 6000 rpm of the motor, {:.3f} rad/s",
-                   free.arm_speed)},
-      {"motor speed at full voltage, no load", "rpm", "6000", unlimited_expected / kRpm, unlimited / kRpm,
-       "eqs. (1) to (15) have no limit of speed: friction alone balances the torque, (T_pmax - T_s)/b"},
-      {"voltage that holds 6000 rpm, no load", "V", "", page::kAutomatic, (p.b * top_speed + p.T_s) / p.k_1,
-       "(b θ' + T_s)/k_1; the motor's own limit is up to whoever commands it"},
-      {"motor and pump inertia seen by the arm", "lbf-in-s^2", "", page::kAutomatic, reflected,
-       fmt::format("J (c/D)^2, {:.0f} times J_a = {:g}", reflected / p.J_a, p.J_a)},
-      {"m g l of a uniform slender arm", "in-lbf", "", arm_mgl, gravity_torque,
-       fmt::format("assumed: J_a = m L^2/3 with L = {:g} in; here: table1_gravity.toml. It holds with dp = "
-                   "{:.1f} psi",
-                   kArmLength, gravity_torque / p.k_2)},
-      {"18000 rpm motor: transmission ratio", "", "", 3 * torque_ratio_lossless, fast.k_2 / fast.D,
-       "assumed: the same power, torque and speed at the arm, so a pump of D/3"},
-      {"18000 rpm motor: peak torque at the arm", "in-lbf", "", peak, fast.T_pmax * fast.k_2 / fast.D,
-       "independent: the 6000 rpm motor's"},
-      {"18000 rpm motor: maximum arm speed", "rpm", "", kMotorRpm * p.D / p.c, fast_run.arm_speed / kRpm,
-       "independent: 6000 rpm D/c of Table 1; here: its free arm"},
-      {"18000 rpm motor: inertia seen by the arm", "lbf-in-s^2", "", reflected * std::pow(3.0, 2 - 5.0 / 3),
-       reflected_fast,
-       "independent: J goes with T_pmax^{5/3} for motors of one shape, and with the ratio squared"},
-      {"18000 rpm motor: time to full speed", "s", "", page::kAutomatic,
-       fast.J * kFastMotorRpm * kRpm / fast.T_pmax,
-       fmt::format("J θ'/T_pmax without load and friction; the 6000 rpm motor: {:.2f} s",
-                   p.J * top_speed / p.T_pmax)},
-  };
-  result.explanation = fmt::format(
-      "The two ratios that Table 1 gives, {:.1f} by displacements and {:.1f} by torques, agree with each "
-      "other "
-      "within {:.1f} %, as energy demands, but not with the printed one: 484.7 is {:.1f} % above. With Table "
-      "1 the "
-      "peak torque is {:.0f} in-lbf instead of 19388 and the maximum speed {:.2f} rpm instead of 12.4. The "
-      "torque "
-      "that the seals allow fits \"about 7300\": {:.0f} in-lbf, or {:.0f} when the low side's {:g} psi "
-      "count.",
-      displacement_ratio, torque_ratio_lossless,
-      100 * std::abs(displacement_ratio / torque_ratio_lossless - 1),
-      100 * (kPrintedRatio / torque_ratio_lossless - 1), peak, free.arm_speed / kRpm, at_limit,
-      at_limit_gauge, p.p_3);
-  result.findings = {
-      {2,
-       "The text gives the transmission ratio as 484.7:1; Table 1 has k_2 = 3.68 \"from the transmission "
-       "ratio\" and D = 0.00796.",
-       fmt::format("k_2/D = {:.1f} (measured on the clamped model: {:.1f}), c/D = {:.1f} (measured on the "
-                   "free arm: {:.1f}); "
-                   "484.7 would need k_2 = {:.3f}.",
-                   torque_ratio_lossless, torque_ratio, p.c / p.D, free.speed_ratio, needed_k2),
-       "k_2 and D stay as in Table 1; both ratios are stated."},
-      {6, "The mass m and length l of the arm are not printed, only J_a.",
-       fmt::format("m g l is free: 0 in table1.toml, {:g} in-lbf in table1_gravity.toml, that of a uniform "
-                   "slender arm of {:g} in "
-                   "(m = 3 J_a/L^2 = {:.4f} lbf-s^2/in, m g L/2 = {:.1f} in-lbf). Holding it takes {:.1f} "
-                   "psi, {:.1f} % of "
-                   "the seals' limit.",
-                   gravity_torque, kArmLength, arm_mass, arm_mgl, gravity_torque / p.k_2,
-                   100 * gravity_torque / p.k_2 / kPressureLimit),
-       "Two model files, both marked as assumptions; the figures use 0 unless they say otherwise."}};
-
-  const ordered_json numbers = {{"printed_ratio", kPrintedRatio},
-                                {"torque_ratio", torque_ratio_lossless},
-                                {"torque_ratio_measured", torque_ratio},
-                                {"torque_ratio_with_leakage", torque_ratio_leaking},
-                                {"displacement_ratio", p.c / p.D},
-                                {"displacement_ratio_measured", free.speed_ratio},
-                                {"k_2_for_printed_ratio_in_lbf_per_psi", needed_k2},
-                                {"peak_torque_printed_in_lbf", p.T_pmax * kPrintedRatio},
-                                {"peak_torque_in_lbf", peak},
-                                {"peak_torque_N_m", peak * kNewtonMetres},
-                                {"peak_torque_less_friction_in_lbf", peak_with_friction},
-                                {"torque_at_2000_psi_in_lbf", at_limit},
-                                {"torque_at_2000_psi_N_m", at_limit * kNewtonMetres},
-                                {"torque_at_2000_psi_above_accumulator_in_lbf", at_limit_gauge},
-                                {"maximum_speed_printed_rpm", kMotorRpm / kPrintedRatio},
-                                {"maximum_speed_rpm", free.arm_speed / kRpm},
-                                {"maximum_speed_rad_s", free.arm_speed},
-                                {"unlimited_motor_speed_rpm", unlimited / kRpm},
-                                {"reflected_inertia_lbf_in_s2", reflected},
-                                {"gravity_torque_assumed_in_lbf", gravity_torque},
-                                {"motor_18000rpm",
-                                 {{"assumption", true},
-                                  {"peak_torque_in_lbf", fast.T_pmax * fast.k_2 / fast.D},
-                                  {"maximum_speed_rpm", fast_run.arm_speed / kRpm},
-                                  {"ratio", fast.k_2 / fast.D},
-                                  {"power_kW", fast.T_pmax * kFastMotorRpm * kRpm * kKilowatts},
-                                  {"reflected_inertia_lbf_in_s2", reflected_fast}}}};
-  result.numbers = numbers.dump();
-  result.table = std::move(free.table);
+  result.comparisons = Comparisons(apparatus);
+  result.explanation = Explanation(apparatus);
+  result.findings = Findings(apparatus);
+  result.numbers = Numbers(apparatus).dump();
   result.pictures = {{"",
                       {"The apparatus, after Figure 1 and eqs. (1) to (15), with the numbers of Table 1; "
                        "leakages in in^3/(s psi). "
                        "Arrows show the directions in which θ', q_1, q_2 and α count as positive. Dashed "
                        "pipes are leakages.",
                        {},
-                       ApparatusDrawing(p)}},
-                     {"-limits", Limits(p)}};
+                       ApparatusDrawing(apparatus.p)}},
+                     {"-limits", Limits(apparatus.p)}};
+  result.table = std::move(apparatus.free.table);
   return result;
 }
 

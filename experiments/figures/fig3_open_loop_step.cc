@@ -84,117 +84,154 @@ WithoutValves RunWithoutValves(const model::ModelDescription& model) {
   return run;
 }
 
-}  // namespace
+struct StepStudy {
+  model::Parameters p;
+  OpenLoopRun run;
+  SpringAnalogy spring;
+  WithoutValves bare;
+  double leak_rate = 0;  // 1/s: while the pump sticks, d(dp)/dt = -(beta/V_ms)(2 c_I + c_E) dp
+  double slip_dp = 0;    // psi, (T_p - T_s)/D
 
-ExperimentResult RunFig3(const ExperimentOptions& options) {
+  const PressureExtreme& peak() const { return run.extremes.at(0); }
+  const PumpChange& stick() const { return run.changes.at(0); }
+  const PumpChange& slip() const { return run.changes.at(1); }
+  double bare_dp() const { return bare.dp[bare.peak]; }
+};
+
+StepStudy RunStudy() {
   const model::ModelDescription model = ShippedModel("table1");
   const model::Parameters& p = model.parameters;
-  const OpenLoopRun run = RunOpenLoop(model, kTorque, kDuration);
-  const PressureExtreme& peak = run.extremes.at(0);
-  const PumpChange& stick = run.changes.at(0);
-  const PumpChange& slip = run.changes.at(1);
-  const SpringAnalogy spring = AnalyseSpring(p);
-  const WithoutValves bare = RunWithoutValves(model);
-  const double bare_dp = bare.dp[bare.peak];
-  // While the pump sticks: d(dp)/dt = -(beta/V_ms)(2 c_I + c_E) dp.
-  const double leak_rate = p.beta / p.V_ms * (2 * p.c_I + p.c_E);
-  const double slip_dp = (kTorque - p.T_s) / p.D;
-  options.progress(0.9);
+  return {.p = p,
+          .run = RunOpenLoop(model, kTorque, kDuration),
+          .spring = AnalyseSpring(p),
+          .bare = RunWithoutValves(model),
+          .leak_rate = p.beta / p.V_ms * (2 * p.c_I + p.c_E),
+          .slip_dp = (kTorque - p.T_s) / p.D};
+}
 
-  ExperimentResult result;
-  result.conditions = fmt::format(
-      "Table 1, clamped at α = 0, from rest at p_1 = p_2 = p_3 = {} psi, constant T_p = {} in-lbf ({} "
-      "V), "
-      "open loop. Peak, stick and slip are located within {} us.",
-      p.p_3, kTorque, kTorque / p.k_1, kLocatedWithin * 1e6);
-  result.paper_says =
-      "Figure 3 shows the response to 10 in-lb, experiment and simulation: no sustained stick-slip, and the "
-      "response of a mass-spring-damper to a constant force whose spring is the fluid's compressibility.";
-  result.explanation = fmt::format(
+std::string Explanation(const StepStudy& study) {
+  const model::Parameters& p = study.p;
+  const WithoutValves& bare = study.bare;
+  return fmt::format(
       "It is a mass on a spring. As soon as the pump turns, p_1 would fall below the accumulator, so the "
-      "valve holds "
-      "side 1 at {} psi and one side of fluid is the spring: {:.2f} rad/s, damping ratio {:.3f}. Half a "
-      "damped "
-      "period later, {:.4f} s, dp peaks at {:.1f} psi, as in closed form. Then the pump nearly stands, "
-      "leakage lets p_1 rise again, and at {:.4f} s the pump sticks: to swing back, dp would have to "
-      "overcome "
-      "friction in the other direction as well, (T_p + T_s)/D = {:.0f} psi. It waits {:.2f} s while dp leaks "
-      "to "
-      "(T_p - T_s)/D = {:.1f} psi and creeps on. Without the valves both sides are springs, dp peaks at "
-      "nearly "
-      "the same {:.1f} psi, but p_1 would be below 0 from {:.0f} ms on and reach {:.0f} psi: what the "
-      "paper's "
-      "accumulator is for.",
-      p.p_3, spring.natural_frequency, spring.damping_ratio, spring.peak_time, peak.dp, stick.time,
-      (kTorque + p.T_s) / p.D, slip.time - stick.time, slip.dp, bare_dp, 1e3 * bare.negative_since,
-      bare.p1[bare.peak]);
+      "valve holds side 1 at {p_3} psi and one side of fluid is the spring: {natural_frequency:.2f} rad/s, "
+      "damping ratio {damping_ratio:.3f}. Half a damped period later, {peak_time:.4f} s, dp peaks at "
+      "{peak_dp:.1f} psi, as in closed form. Then the pump nearly stands, leakage lets p_1 rise again, and "
+      "at {stick_time:.4f} s the pump sticks: to swing back, dp would have to overcome friction in the other "
+      "direction as well, (T_p + T_s)/D = {back_dp:.0f} psi. It waits {wait:.2f} s while dp leaks to (T_p - "
+      "T_s)/D = {slip_dp:.1f} psi and creeps on. Without the valves both sides are springs, dp peaks at "
+      "nearly the same {bare_dp:.1f} psi, but p_1 would be below 0 from {negative_ms:.0f} ms on and reach "
+      "{bare_p1:.0f} psi: what the paper's accumulator is for.",
+      fmt::arg("p_3", p.p_3), fmt::arg("natural_frequency", study.spring.natural_frequency),
+      fmt::arg("damping_ratio", study.spring.damping_ratio), fmt::arg("peak_time", study.spring.peak_time),
+      fmt::arg("peak_dp", study.peak().dp), fmt::arg("stick_time", study.stick().time),
+      fmt::arg("back_dp", (kTorque + p.T_s) / p.D), fmt::arg("wait", study.slip().time - study.stick().time),
+      fmt::arg("slip_dp", study.slip().dp), fmt::arg("bare_dp", study.bare_dp()),
+      fmt::arg("negative_ms", 1e3 * bare.negative_since), fmt::arg("bare_p1", bare.p1[bare.peak]));
+}
 
-  result.comparisons = {
-      {"peak of p_2", "psi", "", p.p_3 + spring.peak_dp, peak.p2, "expected: closed form, one side at p_3"},
-      {"peak of dp", "psi", "", spring.peak_dp, peak.dp, ""},
-      {"time of the peak", "s", "", spring.peak_time, peak.time, "expected: half a damped period"},
-      {"pump sticks", "s", "", page::kAutomatic, stick.time,
+std::vector<Comparison> Comparisons(const StepStudy& study) {
+  const model::Parameters& p = study.p;
+  const WithoutValves& bare = study.bare;
+  return {
+      {"peak of p_2", "psi", "", p.p_3 + study.spring.peak_dp, study.peak().p2,
+       "expected: closed form, one side at p_3"},
+      {"peak of dp", "psi", "", study.spring.peak_dp, study.peak().dp, ""},
+      {"time of the peak", "s", "", study.spring.peak_time, study.peak().time,
+       "expected: half a damped period"},
+      {"pump sticks", "s", "", page::kAutomatic, study.stick().time,
        "after the peak the valve closes and both sides compress: no closed form"},
-      {"dp when it slips again", "psi", "", slip_dp, slip.dp, "expected: (T_p - T_s)/D"},
-      {"pump slips again", "s", "", stick.time + std::log(stick.dp / slip_dp) / leak_rate, slip.time,
+      {"dp when it slips again", "psi", "", study.slip_dp, study.slip().dp, "expected: (T_p - T_s)/D"},
+      {"pump slips again", "s", "",
+       study.stick().time + std::log(study.stick().dp / study.slip_dp) / study.leak_rate, study.slip().time,
        "expected: from the stick on, dp leaks at (β/V_ms)(2 c_I + c_E)"},
-      {"peak of dp without the valves", "psi", "", page::kAutomatic, bare_dp, ""},
+      {"peak of dp without the valves", "psi", "", page::kAutomatic, study.bare_dp(), ""},
       {"p_2 then", "psi", "", page::kAutomatic, bare.p2[bare.peak], ""},
       {"p_1 then", "psi", "", page::kAutomatic, bare.p1[bare.peak], "no fluid bears that: it would cavitate"},
   };
+}
 
-  result.numbers = JsonText(json{{"torque_in_lbf", kTorque},
-                                 {"peak_p2_psi", peak.p2},
-                                 {"peak_dp_psi", peak.dp},
-                                 {"peak_time_s", peak.time},
-                                 {"stick_time_s", stick.time},
-                                 {"stick_dp_psi", stick.dp},
-                                 {"slip_time_s", slip.time},
-                                 {"slip_dp_psi", slip.dp},
-                                 {"sticks", run.sticks()},
-                                 {"natural_frequency_rad_s", spring.natural_frequency},
-                                 {"damping_ratio", spring.damping_ratio},
-                                 {"closed_form_peak_time_s", spring.peak_time},
-                                 {"closed_form_peak_dp_psi", spring.peak_dp},
+json Numbers(const StepStudy& study) {
+  const WithoutValves& bare = study.bare;
+  return {{"torque_in_lbf", kTorque},
+                                 {"peak_p2_psi", study.peak().p2},
+                                 {"peak_dp_psi", study.peak().dp},
+                                 {"peak_time_s", study.peak().time},
+                                 {"stick_time_s", study.stick().time},
+                                 {"stick_dp_psi", study.stick().dp},
+                                 {"slip_time_s", study.slip().time},
+                                 {"slip_dp_psi", study.slip().dp},
+                                 {"sticks", study.run.sticks()},
+                                 {"natural_frequency_rad_s", study.spring.natural_frequency},
+                                 {"damping_ratio", study.spring.damping_ratio},
+                                 {"closed_form_peak_time_s", study.spring.peak_time},
+                                 {"closed_form_peak_dp_psi", study.spring.peak_dp},
                                  {"without_valves",
-                                  {{"peak_dp_psi", bare_dp},
+                                  {{"peak_dp_psi", study.bare_dp()},
                                    {"peak_time_s", bare.time[bare.peak]},
                                    {"p2_psi", bare.p2[bare.peak]},
                                    {"p1_psi", bare.p1[bare.peak]},
-                                   {"p1_negative_from_s", bare.negative_since}}}});
-  result.table.columns = {{"time_s", run.time},
-                          {"dp_psi", run.dp},
-                          {"p1_psi", run.p1},
-                          {"p2_psi", run.p2},
-                          {"motor_speed_rad_s", run.motor_speed}};
+                                   {"p1_negative_from_s", bare.negative_since}}}};
+}
 
+std::vector<page::Panel> Panels(const StepStudy& study) {
+  const PressureExtreme& peak = study.peak();
+  const PumpChange& stick = study.stick();
+  const PumpChange& slip = study.slip();
+  const WithoutValves& bare = study.bare;
   const page::Axis time{.label = "time, s", .min = 0, .max = kDuration};
   page::Panel difference{
       .title = "Pressure difference",
       .x = time,
       .y = {.label = "p_2 - p_1, psi", .min = 0},
-      .curves = {page::Line("", run.time, run.dp, 0)},
+      .curves = {page::Line("", study.run.time, study.run.dp, 0)},
       .notes = {{fmt::format("peak {:.1f} psi at {:.4f} s; sticks at {:.4f} s", peak.dp, peak.time,
                              stick.time),
                  peak.time, peak.dp},
                 {fmt::format("slips at {:.3f} s, {:.1f} psi", slip.time, slip.dp), slip.time, slip.dp}},
-      .rules = {{"(T_p - T_s)/D", false, slip_dp}}};
+      .rules = {{"(T_p - T_s)/D", false, study.slip_dp}}};
   page::Panel sides{
       .title = "The two sides",
       .x = time,
       .y = {.label = "pressure, psi"},
-      .curves = {page::Line("p_2", run.time, run.p2, 0), page::Line("p_1", run.time, run.p1, 1),
+      .curves = {page::Line("p_2", study.run.time, study.run.p2, 0),
+                 page::Line("p_1", study.run.time, study.run.p1, 1),
                  page::Line("p_2 without valves, to the first stop", bare.time, bare.p2, 0,
                             page::Stroke::kDashed),
                  page::Line("p_1 without valves", bare.time, bare.p1, 1, page::Stroke::kDashed)},
       .notes = {},
       .rules = {}};
+  return {difference, sides};
+}
+
+}  // namespace
+
+ExperimentResult RunFig3(const ExperimentOptions& options) {
+  const StepStudy study = RunStudy();
+  options.progress(0.9);
+  ExperimentResult result;
+  result.conditions = fmt::format(
+      "Table 1, clamped at α = 0, from rest at p_1 = p_2 = p_3 = {} psi, constant T_p = {} in-lbf ({} "
+      "V), "
+      "open loop. Peak, stick and slip are located within {} us.",
+      study.p.p_3, kTorque, kTorque / study.p.k_1, kLocatedWithin * 1e6);
+  result.paper_says =
+      "Figure 3 shows the response to 10 in-lb, experiment and simulation: no sustained stick-slip, and the "
+      "response of a mass-spring-damper to a constant force whose spring is the fluid's compressibility.";
+  result.explanation = Explanation(study);
+  result.comparisons = Comparisons(study);
+  result.numbers = JsonText(Numbers(study));
+  result.table.columns = {{"time_s", study.run.time},
+                          {"dp_psi", study.run.dp},
+                          {"p1_psi", study.run.p1},
+                          {"p2_psi", study.run.p2},
+                          {"motor_speed_rad_s", study.run.motor_speed}};
   result.pictures.push_back(
       {"",
        {.caption = fmt::format("Open loop, Table 1, clamped at α = 0, T_p = {} in-lbf from rest at p_1 = "
                                "p_2 = p_3. Dashed: if there were no one-way valves.",
                                kTorque),
-        .panels = {difference, sides},
+        .panels = Panels(study),
         .drawing = ""}});
   options.progress(1);
   return result;

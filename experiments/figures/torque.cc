@@ -271,22 +271,114 @@ json Numbers(const Study& study) {
             {"with_arm_speed_feedforward", PathsJson(study.paths_with)}}}};
 }
 
-}  // namespace
-
-ExperimentResult RunTorque(const ExperimentOptions& options) {
-  const Study study = RunStudy(options);
-  const model::Parameters p = PressureLoopParameters();
-  const pressure_ctrl::PressureGains gains = PressureLoopGains();
-  const TorqueOnPath& without = study.pictured(false);
-  const TorqueOnPath& with = study.pictured(true);
-  const TorqueOnPath& fastest = study.paths_with.back();
+std::string ClampedText(const Study& study) {
   const TorqueStep& step = study.steps.at(1);
   const TorqueStep& large = study.steps.back();
   const TorqueSweep& small_sweep = study.sweeps.at(1);
   const TorqueSweep& large_sweep = study.sweeps.at(3);
   const TorqueSweep& held_sweep = study.sweeps.at(4);
-  const double braking = p.k_2 * gains.k_v * p.c / p.D;  // in-lbf per rad/s of the arm
+  return fmt::format(
+      "Clamped, the loop keeps the promise. A step of {step} in-lbf is there (10 to 90 %) in {rise_ms:.0f} "
+      "ms and settles {error:.1f} in-lbf short ({error_with:.1f} with the feed-forward); a step of "
+      "{large_step} takes {large_rise_ms:.0f} ms, because the motor is at its limit. By friction a standing "
+      "pump stays so within ±{friction_band:.1f} in-lbf of its balance. The bandwidth at the arm is "
+      "{small_bandwidth:.1f} Hz for ±{small_amplitude} in-lbf and {large_bandwidth:.1f} for "
+      "±{large_amplitude}, where the motor is at its limit {saturated_percent:.0f} % of the time. For "
+      "{held_mean} ± {held_amplitude} in-lbf it is {held_bandwidth:.1f}: one side held at p_3 would give "
+      "{one_side_bandwidth:.1f}, but the valve lets fluid in within a cycle, and for {both_percent:.0f} % of "
+      "the time both sides compress. ",
+      fmt::arg("step", step.command), fmt::arg("rise_ms", 1e3 * step.rise_time),
+      fmt::arg("error", step.error), fmt::arg("error_with", study.steps_with.at(1).error),
+      fmt::arg("large_step", large.command), fmt::arg("large_rise_ms", 1e3 * large.rise_time),
+      fmt::arg("friction_band", FrictionBandTorque()), fmt::arg("small_bandwidth", small_sweep.bandwidth_hz),
+      fmt::arg("small_amplitude", small_sweep.amplitude),
+      fmt::arg("large_bandwidth", large_sweep.bandwidth_hz),
+      fmt::arg("large_amplitude", large_sweep.amplitude),
+      fmt::arg("saturated_percent", 100 * large_sweep.saturated_fraction),
+      fmt::arg("held_mean", held_sweep.mean), fmt::arg("held_amplitude", held_sweep.amplitude),
+      fmt::arg("held_bandwidth", held_sweep.bandwidth_hz),
+      fmt::arg("one_side_bandwidth", LinearBandwidthHz(1)),
+      fmt::arg("both_percent", 100 * held_sweep.both_compress_fraction));
+}
 
+std::string PathText(const Study& study) {
+  const model::Parameters p = PressureLoopParameters();
+  const TorqueOnPath& without = study.pictured(false);
+  const TorqueOnPath& with = study.pictured(true);
+  const TorqueOnPath& fastest = study.paths_with.back();
+  const double braking = p.k_2 * PressureLoopGains().k_v * p.c / p.D;  // in-lbf per rad/s of the arm
+  return fmt::format(
+      "Along a path, eq. (16) as printed fails: moving the arm turns the pump at (c/D) α', which the k_v "
+      "term brakes with {braking:.0f} in-lbf per rad/s of the arm. At {speed:.2f} rad/s the error is "
+      "{error:.0f} in-lbf, of {commanded:.0f} commanded. Taking that forced speed out of the k_v term "
+      "(pressure.arm_speed_feedforward) leaves at most {error_with:.0f} along the whole path: friction, "
+      "viscous drag and D dp, which the loop pays for with an error, and the pump's inertia where the arm "
+      "accelerates. At {fastest_speed:.2f} rad/s that inertia takes the motor to {motor_torque:.1f} of its "
+      "{torque_limit} in-lbf and the error to {fastest_error:.0f}.",
+      fmt::arg("braking", braking), fmt::arg("speed", without.largest_speed),
+      fmt::arg("error", without.error_at_largest_speed), fmt::arg("commanded", without.command.front()),
+      fmt::arg("error_with", with.largest_error), fmt::arg("fastest_speed", fastest.largest_speed),
+      fmt::arg("motor_torque", fastest.largest_motor_torque), fmt::arg("torque_limit", p.T_pmax),
+      fmt::arg("fastest_error", fastest.largest_error));
+}
+
+std::vector<Comparison> Comparisons(const Study& study) {
+  std::vector<Comparison> comparisons;
+  for (const TorqueStep& s : study.steps) {
+    comparisons.push_back({fmt::format("steady-state error at {} in-lbf, clamped", s.command), "in-lbf", "",
+                           s.closed_form_error, s.error, "expected: balance of eqs. (4) and (16)"});
+  }
+  for (const TorqueStep& s : study.steps_with) {
+    if (s.command != study.steps.at(1).command) continue;
+    comparisons.push_back({fmt::format("the same at {} in-lbf with feed-forward", s.command), "in-lbf",
+                           "could be eliminated", s.closed_form_error, s.error, "left is friction"});
+  }
+  for (const TorqueSweep& sweep : study.sweeps) {
+    comparisons.push_back({"bandwidth at the arm, " + SweepName(sweep), "Hz", "about 32",
+                           LinearBandwidthHz(2), sweep.bandwidth_hz,
+                           fmt::format("expected: linear, both sides compress ({:.0f} % of the time "
+                                       "here; one side: {:.1f} Hz); at the torque "
+                                       "limit {:.0f} % of the time",
+                                       100 * sweep.both_compress_fraction, LinearBandwidthHz(1),
+                                       100 * sweep.saturated_fraction)});
+  }
+  for (const TorqueOnPath* path : {&study.pictured(false), &study.pictured(true)}) {
+    comparisons.push_back({fmt::format("torque error at {:.2f} rad/s {} arm-speed feed-forward",
+                                       path->largest_speed, path->arm_speed_feedforward ? "with" : "without"),
+                           "in-lbf", "", path->closed_form_at_largest_speed, path->error_at_largest_speed,
+                           "expected: eqs. (4) and (16) with the pump speed that the motion forces"});
+  }
+  return comparisons;
+}
+
+std::vector<tables::Column> Columns(const Study& study) {
+  const double k_2 = PressureLoopParameters().k_2;
+  const TorqueOnPath& without = study.pictured(false);
+  const TorqueOnPath& with = study.pictured(true);
+  std::vector<double> torque = without.run.dp, torque_with = with.run.dp;
+  for (double& value : torque) value *= k_2;
+  for (double& value : torque_with) value *= k_2;
+  std::vector<tables::Column> columns = {{"time_s", without.run.time},
+                                         {"arm_angle_rad", without.run.arm_angle},
+                                         {"arm_speed_rad_s", without.run.arm_speed},
+                                         {"torque_command_in_lbf", without.command},
+                                         {"torque_in_lbf", torque},
+                                         {"motor_torque_in_lbf", without.run.torque},
+                                         {"torque_with_arm_speed_feedforward_in_lbf", torque_with},
+                                         {"motor_torque_with_arm_speed_feedforward_in_lbf", with.run.torque}};
+  for (tables::Column& column : columns) {  // every 1 ms is enough here
+    std::vector<double> thinned;
+    for (size_t i = 0; i < column.values.size(); i += 5) thinned.push_back(column.values[i]);
+    column.values = std::move(thinned);
+  }
+  return columns;
+}
+
+}  // namespace
+
+ExperimentResult RunTorque(const ExperimentOptions& options) {
+  const Study study = RunStudy(options);
+  const pressure_ctrl::PressureGains gains = PressureLoopGains();
   ExperimentResult result;
   result.conditions = fmt::format(
       "Table 1, eq. (16) over the stack at {} Hz without delay, k_p = {:.4f} V/psi, k_v = {:.2f} psi s/rad; "
@@ -297,83 +389,10 @@ ExperimentResult RunTorque(const ExperimentOptions& options) {
   result.paper_says =
       "Torque control is needed to exert a given force or to make an arm follow a trajectory; the pressure "
       "loop drives the torque quickly to the desired value, with a bandwidth of about 32 Hz.";
-  result.explanation =
-      fmt::format(
-          "Clamped, the loop keeps the promise. A step of {} in-lbf is there (10 to 90 %) in {:.0f} ms and "
-          "settles "
-          "{:.1f} in-lbf short ({:.1f} with the feed-forward); a step of {} takes {:.0f} ms, because the "
-          "motor is at its "
-          "limit. By friction a standing pump stays so within ±{:.1f} in-lbf of its balance. The bandwidth "
-          "at the "
-          "arm is "
-          "{:.1f} Hz for ±{} in-lbf and {:.1f} for ±{}, where the motor is at its limit {:.0f} % of the "
-          "time. For {} ± "
-          "{} in-lbf it is {:.1f}: one side held at p_3 would give {:.1f}, but the valve lets fluid in "
-          "within a "
-          "cycle, and for {:.0f} % of the time both sides compress. ",
-          step.command, 1e3 * step.rise_time, step.error, study.steps_with.at(1).error, large.command,
-          1e3 * large.rise_time, FrictionBandTorque(), small_sweep.bandwidth_hz, small_sweep.amplitude,
-          large_sweep.bandwidth_hz, large_sweep.amplitude, 100 * large_sweep.saturated_fraction,
-          held_sweep.mean, held_sweep.amplitude, held_sweep.bandwidth_hz, LinearBandwidthHz(1),
-          100 * held_sweep.both_compress_fraction) +
-      fmt::format(
-          "Along a path, eq. (16) as printed fails: moving the arm turns the pump at (c/D) α', which the k_v "
-          "term "
-          "brakes with {:.0f} in-lbf per rad/s of the arm. At {:.2f} rad/s the error is {:.0f} in-lbf, of "
-          "{:.0f} "
-          "commanded. Taking that forced speed out of the k_v term (pressure.arm_speed_feedforward) leaves "
-          "at most {:.0f} along the "
-          "whole path: friction, viscous drag and D dp, which the loop pays for with an error, and the "
-          "pump's "
-          "inertia where the arm accelerates. At {:.2f} rad/s that inertia takes the motor to {:.1f} of its "
-          "{} in-lbf and the "
-          "error to {:.0f}.",
-          braking, without.largest_speed, without.error_at_largest_speed, without.command.front(),
-          with.largest_error, fastest.largest_speed, fastest.largest_motor_torque, p.T_pmax,
-          fastest.largest_error);
-  for (const TorqueStep& s : study.steps) {
-    result.comparisons.push_back({fmt::format("steady-state error at {} in-lbf, clamped", s.command),
-                                  "in-lbf", "", s.closed_form_error, s.error,
-                                  "expected: balance of eqs. (4) and (16)"});
-  }
-  for (const TorqueStep& s : study.steps_with) {
-    if (s.command != step.command) continue;
-    result.comparisons.push_back({fmt::format("the same at {} in-lbf with feed-forward", s.command), "in-lbf",
-                                  "could be eliminated", s.closed_form_error, s.error, "left is friction"});
-  }
-  for (const TorqueSweep& sweep : study.sweeps) {
-    result.comparisons.push_back({"bandwidth at the arm, " + SweepName(sweep), "Hz", "about 32",
-                                  LinearBandwidthHz(2), sweep.bandwidth_hz,
-                                  fmt::format("expected: linear, both sides compress ({:.0f} % of the time "
-                                              "here; one side: {:.1f} Hz); at the torque "
-                                              "limit {:.0f} % of the time",
-                                              100 * sweep.both_compress_fraction, LinearBandwidthHz(1),
-                                              100 * sweep.saturated_fraction)});
-  }
-  for (const TorqueOnPath* path : {&without, &with}) {
-    result.comparisons.push_back(
-        {fmt::format("torque error at {:.2f} rad/s {} arm-speed feed-forward", path->largest_speed,
-                     path->arm_speed_feedforward ? "with" : "without"),
-         "in-lbf", "", path->closed_form_at_largest_speed, path->error_at_largest_speed,
-         "expected: eqs. (4) and (16) with the pump speed that the motion forces"});
-  }
+  result.explanation = ClampedText(study) + PathText(study);
+  result.comparisons = Comparisons(study);
   result.numbers = JsonText(Numbers(study));
-  std::vector<double> torque = without.run.dp, torque_with = with.run.dp;
-  for (double& value : torque) value *= p.k_2;
-  for (double& value : torque_with) value *= p.k_2;
-  result.table.columns = {{"time_s", without.run.time},
-                          {"arm_angle_rad", without.run.arm_angle},
-                          {"arm_speed_rad_s", without.run.arm_speed},
-                          {"torque_command_in_lbf", without.command},
-                          {"torque_in_lbf", torque},
-                          {"motor_torque_in_lbf", without.run.torque},
-                          {"torque_with_arm_speed_feedforward_in_lbf", torque_with},
-                          {"motor_torque_with_arm_speed_feedforward_in_lbf", with.run.torque}};
-  for (tables::Column& column : result.table.columns) {  // every 1 ms is enough here
-    std::vector<double> thinned;
-    for (size_t i = 0; i < column.values.size(); i += 5) thinned.push_back(column.values[i]);
-    column.values = std::move(thinned);
-  }
+  result.table.columns = Columns(study);
   result.pictures = {StepPicture(study), BandwidthPicture(study), PathPicture(study), SpeedPicture(study)};
   options.progress(1);
   return result;
