@@ -1,0 +1,44 @@
+"""What ./demo builds needs no package but those that it installs, and none of the house's upper floors."""
+
+import pathlib
+import re
+import subprocess
+import tempfile
+import unittest
+
+import outcome
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+# Of the packages that `scripts/install-dependencies demo` leaves out: those that CMake finds by a name.
+LEFT_OUT = ("benchmark", "Boost", "Ceres", "Eigen3", "GTest")
+
+
+class DemoPackagesTest(unittest.TestCase):
+    # Tests that the configuration of ./demo is made where the other packages are not there.
+    def test_configures_without_the_others(self):
+        with tempfile.TemporaryDirectory(prefix="hydro-demo-") as build:
+            command = ["cmake", "-S", str(ROOT), "-B", build, "-G", "Ninja", "-D", "HYDRO_ONLY_STACK=ON"]
+            command += [f"-DCMAKE_DISABLE_FIND_PACKAGE_{name}=ON" for name in LEFT_OUT]
+            done = subprocess.run(command, capture_output=True, text=True, check=False)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            self.assertNotIn("comedi", (pathlib.Path(build) / "CMakeCache.txt").read_text())
+            steps = subprocess.run(["ninja", "-C", build, "-t", "commands", "demo_programs"], capture_output=True, text=True, check=True)
+            sources = re.findall(rf"{re.escape(str(ROOT))}/(\w+)/\S+\.cc\b", steps.stdout)
+            self.assertIn("plant", sources)
+            self.assertIn("hydro_log", sources)
+            self.assertEqual(set(sources) & {"bench", "diagnose", "experiments", "maths", "tests"}, set())
+
+    # Tests that ./demo asks for these, and that the whole build still wants the rest.
+    def test_the_rest_is_asked_for_by_the_rest(self):
+        script = (ROOT / "scripts/install-dependencies").read_text()
+        basic, rest = script.split("demo) ;;")
+        for package in ("libceres-dev", "libboost-dev", "libeigen3-dev", "libcomedi-dev", "libgtest-dev", "libbenchmark-dev", "clang-tidy"):
+            self.assertNotIn(package, basic)
+            self.assertIn(package, rest)
+        demo = (ROOT / "demo").read_text()
+        self.assertIn("scripts/install-dependencies demo\n", demo)
+        self.assertIn("scripts/build demo_programs\n", demo)
+
+
+if __name__ == "__main__":
+    outcome.main()
