@@ -1,0 +1,48 @@
+// What the smoother works with on one run: the sensors that it reads, the states that it estimates, and how
+// much each balance's disturbance may wander. For the smoother's own files only: Eigen's types.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "diagnose/data/observed_mode.h"
+#include "diagnose/data/run_data.h"
+#include "diagnose/locate/disturbance_smoother.h"
+#include "diagnose/locate/smoother_record.h"
+#include "model/equations.h"
+
+namespace hydro::diagnose::smoother {
+
+struct Sensor {
+  model::Channel channel = model::Channel::kP1;
+  const std::vector<double>* values = nullptr;
+  double offset = 0, variance = 0;
+  std::vector<float> repeats;  // samples that a reading stays the same; empty where noise hides the steps
+  Vector row;                  // d reading/d state
+  std::array<std::vector<float>, kNoiseDraws> noise;
+};
+
+// Refers to the model and the run.
+struct Setup {
+  const model::ModelDescription& model;
+  const RunData& run;
+  const std::vector<double>& time;
+  double interval = 0;  // s, the median
+  model::ActuatorOptions options;
+  ObservedMode observed;  // pressures as the valves feel them
+  std::vector<Sensor> sensors;
+  int states = 0;                      // of the model
+  int size = 0;                        // with the disturbances
+  std::array<int, kBalances> place{};  // of each disturbance among the states, -1: none
+  std::array<double, kBalances> wander{};
+
+  bool free_arm() const { return run.stimulus.shaft == model::Shaft::kFree; }
+  // 0 where the channel is not measured.
+  double Variance(model::Channel channel) const;
+  // The state that the run begins with.
+  void Begin(const model::Equations& equations, double* state, model::Mode* mode) const;
+};
+
+Setup MakeSetup(const model::ModelDescription& model, const RunData& run, const PressureOffsets& offsets);
+
+}  // namespace hydro::diagnose::smoother
