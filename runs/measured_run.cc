@@ -190,7 +190,7 @@ MeasuredRun ReadTableRun(const std::string& file) {
 
   MeasuredRun run;
   run.file = file;
-  run.rows_are_lines = table.rows_are_lines;
+  run.lines = table.lines;
   run.name = std::filesystem::path(file).stem().string();
   settings::SectionReader document(root, "");
   document.Text("name", &run.name);
@@ -239,7 +239,7 @@ void MeasuredRun::Keep(size_t first, size_t last) {
 
 std::string MeasuredRun::Place(size_t sample) const {
   const size_t row = first_row + sample;
-  return file + (rows_are_lines ? ": line " + std::to_string(row + 2) : ": row " + std::to_string(row + 1));
+  return file + (lines.empty() ? ": row " + std::to_string(row + 1) : ": line " + std::to_string(lines[row]));
 }
 
 MeasuredRun RunOfExport(const tables::Table& table, const std::string& config_text,
@@ -255,7 +255,7 @@ MeasuredRun RunOfExport(const tables::Table& table, const std::string& config_te
 
   MeasuredRun run;
   run.file = table.file;
-  run.rows_are_lines = table.rows_are_lines;
+  run.lines = table.lines;
   run.name = std::filesystem::path(table.file).stem().string();
   run.model_text = model_text;
   settings::SectionReader model = document.Section("model");

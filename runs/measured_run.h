@@ -22,9 +22,9 @@ struct MeasuredSignal {
 
 // Units: s, V, psi, rad, or whatever else the model's coherent units are.
 struct MeasuredRun {
-  std::string name;             // what it calls itself; a log: the file's stem
-  std::string file;             // as given
-  bool rows_are_lines = false;  // of a CSV: samples are named by the file's line
+  std::string name;           // what it calls itself; a log: the file's stem
+  std::string file;           // as given
+  std::vector<size_t> lines;  // of a CSV: the line of each row; empty: messages count rows, from 1
 
   model::Shaft shaft = model::Shaft::kFree;
   double arm_angle_rad = 0;  // kClamped: where the arm is held

@@ -13,7 +13,7 @@ const Column* Table::Find(std::string_view name) const {
 
 std::string Table::Place(size_t row, std::string_view column) const {
   return file + ": " +
-         (rows_are_lines ? "line " + std::to_string(row + 2) : "row " + std::to_string(row + 1)) +
+         (lines.empty() ? "row " + std::to_string(row + 1) : "line " + std::to_string(lines[row])) +
          ", column " + std::string(column);
 }
 

@@ -14,9 +14,8 @@ struct Column {
 };
 
 struct Table {
-  std::string file;  // where it was read from, for messages
-  bool rows_are_lines =
-      false;  // rows are named by the file's line (CSV; the names are line 1), else counted from 1
+  std::string file;             // where it was read from, for messages
+  std::vector<size_t> lines;    // of a CSV: the line of each row; empty: messages count rows, from 1
   std::vector<Column> columns;  // all of the same length
 
   size_t rows() const { return columns.empty() ? 0 : columns.front().values.size(); }
@@ -38,9 +37,8 @@ void WriteTable(const Table& table, const std::string& file);
 // Throws the InputError that WriteTable would for this name; for callers that want to know before they work.
 void CheckTableName(const std::string& file);
 
-// CSV: comma-separated; the first line holds the names; cells may be empty or nan (missing) and quoted; CRLF,
-// a byte order mark and blanks around cells are skipped. Written: the shortest text that reads back as the
-// same bits, missing values as empty cells.
+// CSV, as csv_text.h says; empty cells and nan are missing values. Written: the shortest text that reads back as
+// the same bits, missing values as empty cells.
 Table ReadCsv(const std::string& file);
 void WriteCsv(const Table& table, const std::string& file);
 

@@ -26,13 +26,13 @@ runs::MeasuredRun Clamped() {
   runs::MeasuredRun run;
   run.name = "step";
   run.file = "step.csv";
-  run.rows_are_lines = true;
   run.shaft = model::Shaft::kClamped;
   run.arm_angle_rad = 0.2;
   std::mt19937_64 random(1);
   std::normal_distribution<double> normal;
   for (size_t i = 0; i < 500; ++i) {
     const double t = 1 + 0.001 * static_cast<double>(i);
+    run.lines.push_back(i + 2);
     run.time.push_back(t);
     run.voltage.values.push_back(2);
     run.motor_speed.values.push_back(50 * std::exp(-(t - 1) * 5) + 0.3 * normal(random));

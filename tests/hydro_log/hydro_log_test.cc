@@ -153,7 +153,7 @@ TEST_F(HydroLogTest, BadUsageAndInput) {
       {{"export", Path("log"), "-o", Path("none/out.csv")}, Path("none/out.csv") + ": cannot be created"},
       {{"export", Path("empty"), "-o", out}, "found no message on HYDRO_STATE"},
       {{"export", Path("bad.csv"), "-o", out}, Path("bad.csv") + ": byte 0, event 0"},
-      {{"import", Path("bad.csv"), "-o", out}, Path("bad.csv") + ": line 3, column p1_psi: found 'x'"},
+      {{"import", Path("bad.csv"), "-o", out}, Path("bad.csv") + ": line 3, column p1_psi: found \"x\""},
       {{"import", Path("log"), "-o", out}, Path("log")},
       {{"compare", Path("log"), Path("none")}, Path("none")},
       {{"repair", Path("bad.csv"), "-o", out}, "found no event"},

@@ -121,7 +121,7 @@ TEST_F(RunImportTest, BadTables) {
   } cases[] = {
       {"p1_psi\n1\n", ": found no column time_s"},
       {"time_s,p3_psi\n0,1\n", ": found the column 'p3_psi'; allowed are time_s, tick, voltage_V"},
-      {"time_s,time_s\n0,1\n", ": line 1, column 2: found the name 'time_s' a second time"},
+      {"time_s,time_s\n0,1\n", ": line 1, column 2: found the name \"time_s\" a second time"},
       {"time_s,p1_psi\n0,1\n0,2\n", ": line 3, column time_s: found 0; a time after 0"},
       {"time_s,p1_psi\n0,1\n2,2\n1,2\n", ": line 4, column time_s: found 1; a time after 2"},
       {"time_s,p1_psi\n0,1\n,2\n", ": line 3, column time_s: found nothing"},
@@ -132,9 +132,9 @@ TEST_F(RunImportTest, BadTables) {
       {"time_s,tick\n0,\n", ": line 2, column tick: found nothing; a whole number"},
       {"time_s,tick\n0,1e300\n", ": line 2, column tick: found 1e+300"},
       {"time_s,tick\n0,3\n1,3\n", ": line 3, column tick: found 3; a tick above 3"},
-      {"time_s,p1_psi\n0,abc\n", ": line 2, column p1_psi: found 'abc'"},
-      {"time_s,p1_psi\n0\n", ": line 2: found 1 cells; 2 are needed"},
-      {"", ": found an empty file"},
+      {"time_s,p1_psi\n0,abc\n", ": line 2, column p1_psi: found \"abc\""},
+      {"time_s,p1_psi\n0\n", ": line 2: found 1 cells, allowed 2"},
+      {"", ": found no line of column names"},
   };
   for (const auto& bad : cases) {
     EXPECT_THAT(log::InputErrorOf([&] { ImportCsv(bad.text); }), HasSubstr(Path("x.csv") + bad.says));

@@ -304,7 +304,7 @@ TEST_F(StackConfigFolderTest, NamesTheFileThatIsWrong) {
   Write("p.csv", "time_s,y\n0,zero\n");
   const std::vector<std::string> csv = {"reference.kind=csv", "reference.file=p.csv", "reference.column=y"};
   EXPECT_THAT(InputErrorOf([&] { LoadStackConfig(file, csv); }),
-              HasSubstr("p.csv:2:y: found \"zero\", allowed"));
+              HasSubstr("p.csv: line 2, column y: found \"zero\", allowed"));
   EXPECT_THAT(InputErrorOf([&] { LoadStackConfig((folder_ / "no.toml").string()); }),
               HasSubstr("no.toml: cannot be read: No such file or directory"));
   const std::string no_model = Write("b.toml", Replaced(kConfigText, "file = \"model.toml\"\n", ""));

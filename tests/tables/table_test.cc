@@ -91,6 +91,20 @@ TEST_F(TableTest, CsvOfOthers) {
   EXPECT_EQ(table.Place(1, "time_s"), Path("x.csv") + ": line 3, column time_s");
 }
 
+// Tests that comments and blank lines are skipped and lines still counted, and that names may stand in a comment.
+TEST_F(TableTest, CommentsAndBlankLines) {
+  const Table table = Csv("# recorded on the bench\n\na,b\n1,2\n\n# pause\n3,4\n#end\n");
+  Table expected;
+  expected.columns = {{"a", {1, 3}}, {"b", {2, 4}}};
+  ExpectSame(table, expected);
+  EXPECT_EQ(table.Place(1, "b"), Path("x.csv") + ": line 7, column b");
+  const Table commented = Csv("# bench\n#time,p1\n1,\n3,\" 4\"\n");
+  expected.columns = {{"#time", {1, 3}}, {"p1", {kNan, 4}}};
+  ExpectSame(commented, expected);
+  EXPECT_EQ(commented.Place(0, "p1"), Path("x.csv") + ": line 3, column p1");
+  EXPECT_THAT(log::InputErrorOf([&] { Csv("#a\n"); }), HasSubstr(": found no rows, allowed one or more"));
+}
+
 // Tests that a last line without an end is a row.
 TEST_F(TableTest, NoNewlineAtTheEnd) { EXPECT_EQ(Csv("a,b\n1,2\n3,4").rows(), 2u); }
 
@@ -100,21 +114,20 @@ TEST_F(TableTest, MalformedCsv) {
     std::string text;
     const char* says;
   } cases[] = {
-      {"", ": found an empty file"},
-      {"\n", ": line 1, column 1: found no name"},
-      {"a,b\n", ": line 2: found no rows"},
+      {"", ": found no line of column names"},
+      {"\n", ": found no line of column names"},
+      {"a,b\n", ": found no rows, allowed one or more"},
       {"a,,b\n1,2,3\n", ": line 1, column 2: found no name"},
-      {"a,b,a\n1,2,3\n", ": line 1, column 3: found the name 'a' a second time"},
-      {"a,b\n1,2\n3\n", ": line 3: found 1 cells; 2 are needed"},
-      {"a,b\n1,2,3\n", ": line 2: found 3 cells; 2 are needed"},
-      {"a,b\n1,2\n\n3,4\n", ": line 3: found an empty line"},
-      {"a,b\n1,2\n3,4 5\n", ": line 3, column b: found '4 5'; a number, nan or an empty cell is allowed"},
-      {"a,b\n1,0x10\n", ": line 2, column b: found '0x10'"},
-      {"a,b\n1,1e999\n", ": line 2, column b: found '1e999'"},
-      {"a,b\n1,--2\n", ": line 2, column b: found '--2'"},
-      {"a,b\n1,+-2\n", ": line 2, column b: found '+-2'"},
-      {"a;b\n1;2\n", ": line 2, column a;b: found '1;2'"},
-      {std::string("a,b\n1,\0\n", 8), ": line 2, column b: found '?'"},
+      {"a,b,a\n1,2,3\n", ": line 1, column 3: found the name \"a\" a second time"},
+      {"a,b\n1,2\n3\n", ": line 3: found 1 cells, allowed 2, as many as there are names"},
+      {"a,b\n1,2,3\n", ": line 2: found 3 cells, allowed 2"},
+      {"a,b\n1,2\n3,4 5\n", ": line 3, column b: found \"4 5\", allowed a number, nan or an empty cell"},
+      {"a,b\n1,0x10\n", ": line 2, column b: found \"0x10\""},
+      {"a,b\n1,1e999\n", ": line 2, column b: found \"1e999\""},
+      {"a,b\n1,--2\n", ": line 2, column b: found \"--2\""},
+      {"a,b\n1,+-2\n", ": line 2, column b: found \"+-2\""},
+      {"a;b\n1;2\n", ": line 2, column a;b: found \"1;2\""},
+      {std::string("a,b\n1,\0\n", 8), ": line 2, column b: found \"\\x00\""},
   };
   for (const auto& bad : cases) {
     EXPECT_THAT(log::InputErrorOf([&] { Csv(bad.text); }), HasSubstr(Path("x.csv") + bad.says));
