@@ -18,8 +18,8 @@ namespace hydro::launch {
 // Contract:
 // - Every line that a child printed is passed to the output before its end is reported.
 // - Stop() sends SIGTERM to the children that are not `last`; to the others when those have ended; SIGKILL to
-// each that
-//   is still there a while after its SIGTERM. Only processes that this object started are ever signalled.
+//   each that is still there a while after its SIGTERM. Only processes that this object started are ever
+//   signalled.
 // - The destructor does the same and waits for it, so that no way out leaves a child behind.
 class Supervisor {
  public:

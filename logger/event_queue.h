@@ -1,4 +1,4 @@
-// What was received and waits to be written: between the thread that receives and the one that writes.
+// Received events that wait to be written: the queue between the receiving and the writing thread.
 #pragma once
 
 #include <cstdint>
@@ -11,11 +11,11 @@
 
 namespace hydro::logger {
 
-// Never holds more memory than its limit: where the disk is slower than the bus for longer than that lasts,
-// what comes then is refused and counted. Memory is taken in pieces as it is needed, and used again.
+// Never holds more memory than its limit. When the disk is slower than the bus for longer than that lasts,
+// new events are refused and counted. Memory is allocated in chunks as needed and reused.
 class EventQueue {
  public:
-  // `limit`: bytes, what is being written included; at least one piece.
+  // `limit`: bytes, including what is being written; at least one chunk.
   explicit EventQueue(size_t limit);
 
   struct Event {
@@ -26,15 +26,15 @@ class EventQueue {
     bus::Clock::TimePoint arrived{};  // monotonic, whatever happens to utime's clock
   };
 
-  // Copies the event and returns how many wait then. 0: there was no room, and it was counted as dropped.
+  // Copies the event and returns how many now wait; 0: there was no room, and it was counted as dropped.
   int64_t Push(std::string_view channel, const void* data, size_t size, int64_t utime,
                bus::Clock::TimePoint arrived = {});
 
-  int64_t waiting() const;  // events that have been pushed and not written
+  int64_t waiting() const;  // events that were pushed and are not yet written
   int64_t dropped() const;
-  size_t memory() const;  // bytes taken now
+  size_t memory() const;  // bytes allocated now
 
-  // Some of what waits, in order, and what it gives back when it is done with.
+  // Events taken from the queue, in order. Its destructor returns the memory to the queue.
   class Batch {
    public:
     Batch() = default;
@@ -69,7 +69,7 @@ class EventQueue {
     std::vector<Chunk> chunks_;
   };
 
-  // All that waits now; empty when nothing does. One batch at a time.
+  // Takes all events that wait now, possibly none. One batch at a time.
   Batch Take();
 
  private:

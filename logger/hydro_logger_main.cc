@@ -12,7 +12,7 @@ int main(int argc, char** argv) {
   command_line.AddCommon(&options);
   command_line.AddOption("-o,--output", &logger.file, "FILE to record into (an existing file is replaced)");
   command_line.AddOption("--rotate-mb", &rotate_mb,
-                         "start a new file (FILE-001 ...) when one is larger; 0: never");
+                         "start a new file (FILE-001 ...) when one grows larger; 0: never");
   if (const auto exit_code = command_line.Parse(argc, argv)) return *exit_code;
   if (logger.file.empty()) logger.file = options.log;
   options.log.clear();

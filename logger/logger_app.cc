@@ -17,10 +17,10 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr int64_t kProgressTicks = 16;  // a quarter of the plant's window (plant_app.cc)
-constexpr auto kEchoTime = 200ms;       // how long to wait for our own last words to come back
-constexpr auto kOverflowQuiet = 1s;     // an overflow has ended when nothing was dropped for so long
-constexpr auto kFarewellTime = 500ms;   // how long to wait for the others' last words after a stop
+constexpr int64_t kProgressTicks = 16;  // a quarter of the plant's window (plant_pace.cc)
+constexpr auto kEchoTime = 200ms;       // how long to wait for this logger's own last message to come back
+constexpr auto kOverflowQuiet = 1s;     // an overflow has ended when nothing was dropped for this long
+constexpr auto kFarewellTime = 500ms;   // how long to wait for the others' last messages after a stop
 
 // Fields common to the numbered messages, read without decoding the rest: after the 8 bytes of the type's
 // hash come utime, tick, session and sequence, 8 bytes each, big-endian (LCM's encoding).
@@ -55,7 +55,7 @@ std::string RotatedName(const std::string& file, int n) {
 
 LoggerApp::LoggerApp(bus::Bus& bus, bus::Clock& clock, const settings::StackConfig& config,
                      const LoggerOptions& options)
-    : bus_(Tap(bus)),  // first of all: a subscription to all channels beside earlier ones could lose messages
+    : bus_(Tap(bus)),  // first: subscribing to all channels after other subscriptions could lose messages
       participant_(bus, clock, bus::Channels(config.bus.channel_suffix), "logger"),
       options_(options),
       writer_(std::make_unique<log::LogWriter>(options.file, Opening::kDirect)),
@@ -132,7 +132,7 @@ void LoggerApp::Enqueue(std::string_view channel, const uint8_t* data, size_t si
   largest_queue_total_ = std::max(largest_queue_total_, largest_queue_);
 }
 
-// One fault an episode, however much is left out of the log; it never concerns the voltage.
+// One fault per episode, however much is left out of the log. It never affects the voltage.
 void LoggerApp::CheckOverflow() {
   const int64_t dropped = queue_.dropped();
   const auto now = participant_.clock().Now();
@@ -170,8 +170,7 @@ void LoggerApp::ReportProgress() {
   bus_.Publish(participant_.channels().log_progress, progress);
 }
 
-// Wakes by itself every kFlushPeriod: a notification per message would cost the receiving thread a system
-// call each.
+// Wakes every kFlushPeriod: a notification per message would cost the receiving thread a system call each.
 void LoggerApp::WriteUntilClosed() {
   try {
     for (bool closing = false; !closing;) {
@@ -220,7 +219,7 @@ void LoggerApp::Rotate() {
 
 void LoggerApp::Poll() {
   if (order_ && order_->held_since() && participant_.clock().Now() - *order_->held_since() > kFlushPeriod) {
-    order_->Release();  // what it waits for was lost
+    order_->Release();  // the message that it waits for was lost
   }
   CheckOverflow();
   participant_.statistics().set_lost_messages(lost_ + dropped_);
@@ -248,7 +247,7 @@ bool LoggerApp::finished() const {
   return stop_time_ && (EveryoneHasLeft() || participant_.clock().Now() - *stop_time_ > kFarewellTime);
 }
 
-// Why writing has ended; empty while it goes on.
+// Why writing failed; empty while it works.
 std::string LoggerApp::FailureText() {
   const std::lock_guard lock(mutex_);
   if (!failure_) return "";
@@ -261,7 +260,8 @@ std::string LoggerApp::FailureText() {
 
 int LoggerApp::Finish() {
   int exit_code = participant_.Leave(FailureText());
-  // What has been sent already, up to our own farewell, which comes back to us as everybody's.
+  // Handle what was sent already, up to this logger's own last message, which comes back from the bus like
+  // any other.
   const auto deadline = participant_.clock().Now() + kEchoTime;
   while (!left_ && participant_.clock().Now() < deadline) bus_.HandleUntil(deadline);
   if (order_) order_->Release();

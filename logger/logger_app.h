@@ -1,9 +1,9 @@
 // The logger as an application: records every message on the bus.
 //
-// Messages go from the bus into a queue (event_queue.h) and from there, on a thread of its own, into the
-// file, so that a slow disk delays nobody. The queue takes logger.memory_mb; what comes when it is full is
-// left out of the log, counted, and named as the fault log_overflow. What was received is handed to the
-// kernel at least every kFlushPeriod.
+// Messages go from the bus into a queue (event_queue.h); a separate thread writes them to the file, so that a
+// slow disk delays nobody. The queue holds up to logger.memory_mb. Messages that find it full are left out of
+// the log and counted, and the fault log_overflow is raised. Received messages are handed to the kernel at
+// least every kFlushPeriod.
 #pragma once
 
 #include <array>
@@ -31,17 +31,17 @@ namespace hydro::logger {
 
 struct LoggerOptions {
   std::string file;
-  int64_t rotate_bytes = 0;  // start a new file when one has grown beyond this; 0: never
+  int64_t rotate_bytes = 0;  // a new file is started when one has grown beyond this; 0: never
 };
 
-// Name of the n-th file (n = 0 is `file` itself): run.lcmlog, run-001.lcmlog, run-002.lcmlog ...
+// The name of the n-th file (n = 0 is `file` itself): run.lcmlog, run-001.lcmlog, run-002.lcmlog ...
 std::string RotatedName(const std::string& file, int n);
 
 class LoggerApp : public process::App {
  public:
   static constexpr auto kFlushPeriod = std::chrono::milliseconds(20);
 
-  // Opens the file; throws InputError when that cannot be done.
+  // Opens the file; throws InputError when it cannot be opened.
   LoggerApp(bus::Bus& bus, bus::Clock& clock, const settings::StackConfig& config,
             const LoggerOptions& options);
   ~LoggerApp() override;
@@ -53,7 +53,7 @@ class LoggerApp : public process::App {
  private:
   struct Write {
     bus::Clock::TimePoint began;
-    bus::Clock::Duration latency;  // since the oldest message in it had arrived
+    bus::Clock::Duration latency;  // since the arrival of the oldest message in it
   };
 
   bus::Bus& Tap(bus::Bus& bus);
@@ -75,13 +75,13 @@ class LoggerApp : public process::App {
   LoggerOptions options_;
   std::unique_ptr<log::LogWriter> writer_;  // the writing thread's, once it runs
   int files_ = 1;
-  std::map<std::string, log::RecordedMessage>
-      descriptions_;  // newest HYDRO_RUN message by channel: opens each rotated file
+  // The newest HYDRO_RUN message of each channel: each rotated file begins with them.
+  std::map<std::string, log::RecordedMessage> descriptions_;
 
   std::mutex mutex_;  // guards writes_, closing_, failure_
   std::condition_variable wake_;
   EventQueue queue_;
-  std::vector<Write> writes_;  // done since the last Poll()
+  std::vector<Write> writes_;  // completed since the last Poll()
   bool closing_ = false;
   std::exception_ptr failure_;
   std::atomic<bool> failed_ = false;
@@ -92,14 +92,14 @@ class LoggerApp : public process::App {
   int64_t largest_queue_total_ = 0;
   int64_t state_tick_ = -1;  // newest tick received
   int64_t reported_tick_ = -1;
-  bus::Clock::TimePoint report_again_;     // fewer than kProgressTicks new ticks are reported from then on
-  std::optional<log::CausalOrder> order_;  // of the numbered messages, in lockstep
-  bool left_ = false;                      // our own farewell has come back
-  std::map<int64_t, int8_t> others_;       // state of the other processes, by session
+  bus::Clock::TimePoint report_again_;  // from then on even fewer than kProgressTicks new ticks are reported
+  std::optional<log::CausalOrder> order_;  // lockstep: restores the order of the numbered messages
+  bool left_ = false;                      // this logger's own DONE or FAILED has come back from the bus
+  std::map<int64_t, int8_t> others_;       // the other processes' states, by session
   std::array<std::map<int64_t, int64_t>, 4> next_sequence_;  // by kind and session, to count losses
   int64_t lost_ = 0;
-  int64_t dropped_ = 0;                             // by a queue that was full, at the last look
-  std::optional<bus::Clock::TimePoint> overflow_;   // when that was seen last, while it is a fault
+  int64_t dropped_ = 0;                             // by the full queue, at the last check
+  std::optional<bus::Clock::TimePoint> overflow_;   // during a fault: when the queue last dropped something
   std::optional<bus::Clock::TimePoint> stop_time_;  // when the stop was heard
 };
 

@@ -41,10 +41,9 @@ void LoggerWatch::Heard(int64_t session) {
 
 void LoggerWatch::Gone(int64_t session, const std::string& text, double silence) {
   heard_.erase(session);
-  // The run's end is announced before its logger leaves.
+  // The end of a run is announced before its logger leaves: no fault then.
   if (participant_.stop()) return;
-  participant_.Raise(kCode,
-                     fmt::format("{} does not record any more: {}", participant_.NameOf(session), text),
+  participant_.Raise(kCode, fmt::format("{} no longer records: {}", participant_.NameOf(session), text),
                      silence, bus::ToSeconds(limit_), false);
 }
 
@@ -52,7 +51,7 @@ void LoggerWatch::Poll() {
   const auto now = participant_.clock().Now();
   const auto away = now - polled_.value_or(now);
   polled_ = now;
-  if (away > limit_ / 4) {  // no state was sent, so a logger had nothing to report
+  if (away > limit_ / 4) {  // no state was sent, so loggers had nothing to report
     for (auto& [session, heard] : heard_) heard += away;
   }
   for (const auto& [session, heard] : heard_) {
@@ -62,7 +61,7 @@ void LoggerWatch::Poll() {
          fmt::format("silent for {:.3g} s, allowed are {} s (limits.stale_logger_s)", silence,
                      bus::ToSeconds(limit_)),
          silence);
-    return;  // the map has changed; the next turn sees the rest
+    return;  // the map has changed; the next call sees the rest
   }
 }
 

@@ -1,4 +1,4 @@
-// Is somebody recording? Control does not need a logger, so that it is gone is a warning only.
+// Watches whether the run is being recorded. Control does not need a logger, so losing one is only a warning.
 #pragma once
 
 #include <hydro/log_progress_t.hpp>
@@ -11,14 +11,14 @@
 
 namespace hydro::plant {
 
-// For a run in real time: in lockstep the plant waits for its logger.
+// For runs in real time; in lockstep the plant waits for its logger.
 class LoggerWatch {
  public:
-  // A logger counts as gone when it has been silent for longer than `limit`, or has said that it leaves.
+  // A logger counts as gone when it has been silent for longer than `limit` or has announced that it leaves.
   LoggerWatch(process::Participant& participant, bus::Clock::Duration limit);
 
-  // To be called often while the run goes on: raises logger_gone when a logger that was there is gone, and
-  // ends it when one is heard that was not there. Time in which it was not called does not count as silence.
+  // Call it often during the run. It raises logger_gone when a known logger is gone, and clears the fault
+  // when a new one is heard. Time in which it was not called does not count as silence.
   void Poll();
 
  private:
@@ -28,7 +28,7 @@ class LoggerWatch {
 
   process::Participant& participant_;
   const bus::Clock::Duration limit_;
-  std::map<int64_t, bus::Clock::TimePoint> heard_;  // the loggers that are there, by session
+  std::map<int64_t, bus::Clock::TimePoint> heard_;  // when each logger was last heard, by session
   std::optional<bus::Clock::TimePoint> polled_;
 };
 

@@ -13,7 +13,7 @@ using namespace std::chrono_literals;
 
 // A plant describes itself once a second.
 constexpr auto kOtherStackAlive = 2500ms;
-// A re-arm that names a tick older than this is somebody's recording.
+// A re-arm request that names a tick older than this comes from a recording.
 constexpr double kRearmAge_s = 5;
 
 std::string Line(const std::string& text, const char* key) {
@@ -98,7 +98,7 @@ void OutputSafety::CheckRig(const std::vector<RigFault>& faults) {
   });
 }
 
-void OutputSafety::Explain() {
+void OutputSafety::PublishFaults() {
   if (!changed_) return;
   changed_ = false;
   for (size_t i = 0; i < findings_.size(); ++i) {
@@ -124,14 +124,15 @@ std::string OutputSafety::Latched() const {
   return codes;
 }
 
-// LCM receivers hear every multicast group on their port, so this may be a stack of another group.
+// LCM receivers hear every multicast group on their port, so the other stack may use another group.
 void OutputSafety::OnDescription(const run_description_t& description) {
   if (description.session == participant_.session()) return;
   other_stack_heard_ = participant_.clock().Now();
   const std::string url = Line(description.config_text, "url = ");
   other_stack_ = fmt::format(
-      "another plant is on this port: {} on {} (session {}{}); allowed is one, give a stack a port or a "
-      "bus.channel_suffix of its own",
+      "another plant is on this port: {} on {} (session {}{}); allowed is one: give each stack its own port "
+      "or "
+      "bus.channel_suffix",
       description.program, description.host, description.session, url.empty() ? "" : ", its bus." + url);
 }
 
@@ -140,12 +141,12 @@ void OutputSafety::OnFault(const fault_t& fault) {
   const std::pair key(fault.session, fault.code);
   if (fault.active == 0) {
     remote_.erase(key);
-  } else if (remote_.size() < 64) {  // a stack has fewer; a flood is not kept
+  } else if (remote_.size() < 64) {  // a stack has fewer; a flood of made-up ones is not kept
     remote_.emplace(key, fault);
   }
 }
 
-// What a process that has left, or was replaced, had found does not stand any more.
+// The faults of a process that has left or was replaced no longer count.
 void OutputSafety::OnStatus(const process_status_t& status) {
   const bool left = status.state == process_status_t::DONE || status.state == process_status_t::FAILED;
   std::erase_if(remote_, [&](const auto& entry) {
@@ -154,7 +155,7 @@ void OutputSafety::OnStatus(const process_status_t& status) {
   });
 }
 
-std::string OutputSafety::Standing(const std::vector<Cause>& causes) const {
+std::string OutputSafety::DescribePresent(const std::vector<Cause>& causes) const {
   std::string text;
   for (const Cause cause : causes) {
     text += fmt::format("{}{} persists: {}", text.empty() ? "" : "; ", VoltageGuard::CodeOf(cause),
@@ -166,7 +167,7 @@ std::string OutputSafety::Standing(const std::vector<Cause>& causes) const {
 void OutputSafety::OnRearm(const rearm_t& request) {
   if (request.kind != rearm_t::REQUEST || request.addressee != participant_.session()) return;
   if (limits_.rearm != settings::Rearm::kExplicit) {
-    Answer(request, rearm_t::REFUSED, "limits.rearm is \"restart\": a fault that is latched ends the run");
+    Answer(request, rearm_t::REFUSED, "limits.rearm is \"restart\": a latched fault ends the run");
     return;
   }
   const double age_s =
@@ -177,10 +178,10 @@ void OutputSafety::OnRearm(const rearm_t& request) {
                        participant_.tick(), kRearmAge_s));
     return;
   }
-  std::vector<Cause> standing;
-  const std::vector<Cause> ended = guard_.Release(&standing);
-  if (!standing.empty()) {
-    Answer(request, rearm_t::REFUSED, Standing(standing));
+  std::vector<Cause> present;
+  const std::vector<Cause> ended = guard_.Release(&present);
+  if (!present.empty()) {
+    Answer(request, rearm_t::REFUSED, DescribePresent(present));
     return;
   }
   std::string codes;

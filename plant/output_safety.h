@@ -1,6 +1,6 @@
-// The last say over the voltage, in the plant and in the driver: looks at what was measured, at the commands
-// and at the bus, holds the output at zero while one of the faults of voltage_guard.h is active, and says why
-// on HYDRO_FAULT. Ends them on HYDRO_REARM where limits.rearm is "explicit".
+// The final authority over the voltage, in the plant and in the driver. It checks the measurements, the
+// commands and the bus, holds the output at zero while one of the faults of voltage_guard.h is active, and
+// publishes the reason on HYDRO_FAULT. With limits.rearm = "explicit" HYDRO_REARM ends latched faults.
 #pragma once
 
 #include <array>
@@ -29,8 +29,8 @@ class OutputSafety {
   // Subscribes; `participant` must outlive it and the bus.
   OutputSafety(process::Participant& participant, const settings::StackConfig& config);
 
-  // What was found of a cause in this tick. `describe()` gives the Finding; it is asked only when the fault
-  // begins.
+  // What this tick's check of a cause found. `describe()` returns the Finding and is called only when the
+  // fault begins.
   struct Finding {
     std::string text;  // one line: what was found, what is allowed
     double value = 0;
@@ -44,29 +44,29 @@ class OutputSafety {
     changed_ = true;
   }
 
-  // The limits of [limits] against what the sensors read: a second guard beside the pressure loop's own.
+  // Checks the sensors' readings against [limits], independently of the pressure loop's own check.
   void CheckMeasured(const state_t& state);
 
-  // The machine's clocks (a suspend) and what other processes say on the bus.
+  // Checks the machine's clocks (for a suspend) and whether another stack is heard on the bus.
   void CheckSurroundings();
 
-  // The status of the command in force: where faults are ended explicitly, a loop that went to a safe output
-  // keeps it there.
+  // Checks whether the loops report trouble: with limits.rearm = "explicit" a SAFE command in force, or a
+  // fault of a loop that zeroes the voltage, holds the output at zero until a re-arm.
   void CheckController(bool safe_command);
 
-  // What the rig finds wrong with its readings zeroes the voltage by itself; where faults are ended
-  // explicitly, it stays there.
+  // The rig's own faults zero the voltage while they last; with limits.rearm = "explicit" it stays at zero
+  // after them.
   void CheckRig(const std::vector<RigFault>& faults);
 
-  // What may reach the motor.
+  // The voltage that may reach the motor.
   double Voltage(double commanded) const { return guard_.Voltage(commanded); }
   bool holds() const { return guard_.any(); }
 
-  // Says what has begun and what has gone, after the output is safe. In the mode "restart" a limit that was
-  // passed ends the run.
-  void Explain();
+  // Publishes the faults that began or ended; call it after the output is safe. With limits.rearm = "restart"
+  // an exceeded limit ends the run.
+  void PublishFaults();
 
-  // What stands against the end of the run being a good one: codes of latched faults; empty when none is.
+  // The codes of the latched faults, with which a run does not end well; empty when there are none.
   std::string Latched() const;
 
  private:
@@ -75,7 +75,7 @@ class OutputSafety {
   void OnStatus(const process_status_t& status);
   void OnRearm(const rearm_t& request);
   void Answer(const rearm_t& request, int8_t kind, const std::string& text);
-  std::string Standing(const std::vector<Cause>& causes) const;
+  std::string DescribePresent(const std::vector<Cause>& causes) const;
 
   process::Participant& participant_;
   const settings::LimitsSection limits_;
@@ -84,10 +84,10 @@ class OutputSafety {
   bool changed_ = false;
   std::array<Finding, static_cast<size_t>(Cause::kCount)> findings_;
 
-  bus::Clock::Duration suspended_;  // at the last look
-  std::string other_stack_;         // who else publishes as a plant
+  bus::Clock::Duration suspended_;  // at the last check
+  std::string other_stack_;         // describes the other plant, if one was heard
   std::optional<bus::Clock::TimePoint> other_stack_heard_;
-  // Faults of the loops that zero the voltage, by session and code, for rearm = "explicit".
+  // The loops' faults that zero the voltage, by session and code; kept for rearm = "explicit".
   std::map<std::pair<int64_t, std::string>, fault_t> remote_;
 };
 

@@ -8,18 +8,13 @@
 #include <cmath>
 
 #include "process/stop_signal.h"
-#include "timing/fixed_rate_loop.h"
 
 namespace hydro::plant {
 namespace {
 
 using namespace std::chrono_literals;
 
-constexpr auto kRepeatPeriod = 100ms;    // lockstep: how often an unanswered state is sent again
-constexpr auto kDescriptionPeriod = 1s;  // so that a log or a plot that starts late describes itself too
-constexpr int64_t kLoggerWindowTicks =
-    64;  // lockstep: how far the plant may run ahead of a logger; about half of
-         // what the default receive buffer of Linux (208 KiB) holds
+constexpr auto kDescriptionPeriod = 1s;  // often enough that logs and plots which start late get one too
 
 std::vector<std::string> WithControllers(std::vector<std::string> roles) {
   roles.insert(roles.begin(), {"pressure_ctrl", "position_ctrl"});
@@ -52,7 +47,7 @@ PlantApp::PlantApp(bus::Bus& bus, bus::Clock& clock, const settings::StackConfig
   bus.Subscribe<process_status_t>(channels.process_status,
                                   [this](const process_status_t& status) { roll_call_.Observe(status); });
   bus.Subscribe<log_progress_t>(channels.log_progress, [this](const log_progress_t& progress) {
-    // Only of the loggers that were there when the run began: those that a flood makes up are not kept.
+    // Only loggers that were present when the run began count: a flood of made-up ones is not kept.
     const auto known = log_progress_.find(progress.session);
     if (known != log_progress_.end()) known->second = progress.tick;
   });
@@ -81,29 +76,38 @@ int PlantApp::Run() {
     participant_.Announce(process_status_t::RUNNING);
     PublishDescription();
     for (const int64_t session : roll_call_.Loggers()) log_progress_.emplace(session, -1);
-    try {
-      config_.time.mode == settings::TimeMode::kLockstep ? RunLockstep() : RunRealtime();
-    } catch (const RigError& error) {
-      rig_.Zero();  // zero volts first, explanation second
-      participant_.Raise(error.code(), error.what(), NAN, NAN, true);
-      participant_.RequestStop(error.what(), 1);
-    } catch (...) {
-      rig_.Zero();
-      throw;
-    }
+    DriveRig();
   }
   rig_.Zero();
+  RequestStop();
+  return participant_.Leave();
+}
+
+void PlantApp::DriveRig() {
+  try {
+    config_.time.mode == settings::TimeMode::kLockstep ? RunLockstep() : RunRealtime();
+  } catch (const RigError& error) {
+    rig_.Zero();  // zero volts first, explanation second
+    participant_.Raise(error.code(), error.what(), NAN, NAN, true);
+    participant_.RequestStop(error.what(), 1);
+  } catch (...) {
+    rig_.Zero();
+    throw;
+  }
+}
+
+// Ends the run for every process and gives the reason, unless somebody has done so already.
+void PlantApp::RequestStop() {
   if (process::StopSignal() != 0) {
     participant_.RequestStop(fmt::format("{} was stopped by signal {}", program_, process::StopSignal()), 0);
-  } else {
-    const std::string latched = safety_.Latched();
-    participant_.RequestStop(
-        latched.empty()
-            ? fmt::format("the run is complete after {} s", state_.time)
-            : fmt::format("the run ends after {} s, stopped by {} and not re-armed", state_.time, latched),
-        latched.empty() ? 0 : 1);
+    return;
   }
-  return participant_.Leave();
+  const std::string latched = safety_.Latched();
+  participant_.RequestStop(
+      latched.empty()
+          ? fmt::format("the run is complete after {} s", state_.time)
+          : fmt::format("the run ends after {} s, stopped by {} and not re-armed", state_.time, latched),
+      latched.empty() ? 0 : 1);
 }
 
 std::string PlantApp::failure() const {
@@ -116,7 +120,7 @@ bool PlantApp::Ended() const { return participant_.stop().has_value() || process
 bool PlantApp::WaitForParticipants() {
   const auto start = participant_.clock().Now();
   const auto deadline = start + bus::FromSeconds(config_.time.start_timeout_s);
-  auto next_word = start + 2s;
+  auto next_notice = start + 2s;
   while (!Ended()) {
     const std::vector<std::string> missing = roll_call_.Missing();
     if (missing.empty()) return true;
@@ -128,9 +132,9 @@ bool PlantApp::WaitForParticipants() {
           1);
       return false;
     }
-    if (now >= next_word) {
+    if (now >= next_notice) {
       spdlog::info("waiting for {}", names);
-      next_word = now + 2s;
+      next_notice = now + 2s;
     }
     participant_.bus().HandleUntil(std::min(now + 50ms, deadline));
     Poll();
@@ -138,114 +142,25 @@ bool PlantApp::WaitForParticipants() {
   return false;
 }
 
-void PlantApp::RunLockstep() {
-  const bool simulated = participant_.clock().simulated();
-  const auto start = participant_.clock().Now();
-  const double rate = config_.plant.rate_hz;
-  measured_ = rig_.Read(0);
-  PublishState(0);
-  while (AwaitAnswers() && tick_ != config_.last_tick) {
-    ChooseVoltage();
-    Drive();
-    if (participant_.stop()) break;  // a limit was passed
-    Advance(tick_ + 1);
-    if (simulated) {
-      // Nobody else lets simulated time pass. Each tick from the start: rounding must not add up.
-      const auto due = start + bus::FromSeconds(static_cast<double>(tick_) / rate);
-      while (participant_.bus().HandleUntil(due) > 0) {
-      }
-    }
-    const auto woke = participant_.clock().Now();
-    PublishState(0);
-    if (!simulated) participant_.statistics().RecordCycle(woke, participant_.clock().Now() - woke);
-  }
-}
-
-bool PlantApp::AwaitAnswers() {
-  if (Unanswered().empty()) return true;
-  bus::Bus& bus = participant_.bus();
-  const bus::Clock& clock = participant_.clock();
-  auto now = clock.Now();
-  const auto deadline = now + bus::FromSeconds(config_.time.stall_timeout_s);
-  auto next_repeat = now + kRepeatPeriod;
-  while (!Ended()) {
-    bus.HandleUntil(std::min(next_repeat, deadline));
-    if (!roll_call_.left().empty() && !participant_.stop()) {
-      participant_.RequestStop(
-          fmt::format("{} has left the lockstep run at tick {}", roll_call_.left(), tick_), 1);
-      return false;
-    }
-    const std::string who = Unanswered();
-    now = clock.Now();
-    if (who.empty()) {
-      Poll();
-      return !Ended();
-    }
-    if (now >= deadline) {
-      participant_.RequestStop(fmt::format("{} has not answered tick {} within {} s (time.stall_timeout_s)",
-                                           who, tick_, config_.time.stall_timeout_s),
-                               1);
-      return false;
-    }
-    if (now >= next_repeat) {
-      state_publisher_.Send(state_);  // either it or its answer may have been lost
-      next_repeat = now + kRepeatPeriod;
-    }
-    Poll();
-  }
-  return false;
-}
-
-std::string PlantApp::Unanswered() const {
-  if (tick_ % config_.position_interval_ticks == 0 && newest_pressure_command_tick_ < tick_)
-    return "position_ctrl";
-  if (tick_ % config_.pressure_interval_ticks == 0 && newest_command_tick_ < tick_) return "pressure_ctrl";
-  for (const auto& [session, tick] : log_progress_) {
-    if (tick < tick_ - kLoggerWindowTicks) return "logger";
-  }
-  return "";
-}
-
-void PlantApp::RunRealtime() {
-  const std::chrono::duration<double> period(1 / (config_.plant.rate_hz * config_.time.speed));
-  timing::FixedRateLoop loop(participant_.bus(), participant_.clock(), period, participant_.statistics());
-  measured_ = rig_.Read(0);
-  PublishState(0);
-  while (!Ended() && tick_ != config_.last_tick) {
-    int64_t elapsed = loop.Wait();
-    if (elapsed == 0) continue;  // a signal
-    if (config_.last_tick >= 0) elapsed = std::min(elapsed, config_.last_tick - tick_);
-    participant_.statistics().set_missed_deadlines(loop.skipped());
-    const auto slept = bus::FromSeconds(static_cast<double>(elapsed - 1) * period.count());
-    Advance(tick_ + elapsed);  // under the voltage that was held all that time
-    if (slept > stale_time_) awake_again_ = tick_;
-    PublishState(elapsed - 1);
-    ChooseVoltage();
-    Drive();
-    logger_watch_.Poll();
-    Poll();
-  }
-}
-
-// The voltage that was chosen goes out, unless the sensors give a reason against it; then why is said.
+// Puts out the chosen voltage, or zero when the rig reports a fault; publishes the faults afterwards.
 void PlantApp::Drive() {
   if (!rig_.faults().empty()) {
     voltage_ = 0;
     command_tick_ = -1;
   }
   voltage_ = rig_.Drive(voltage_);
-  NameRigFaults();
-  safety_.Explain();
+  PublishRigFaults();
+  safety_.PublishFaults();
 }
 
-void PlantApp::NameRigFaults() {
+void PlantApp::PublishRigFaults() {
   const std::vector<RigFault>& faults = rig_.faults();
   if (faults.empty() && rig_faults_.empty()) return;
-  const auto names = [&](const std::string& code) {
+  const auto still_there = [&](const std::string& code) {
     return std::any_of(faults.begin(), faults.end(), [&](const RigFault& f) { return f.code == code; });
   };
   for (const std::string& code : rig_faults_) {
-    if (!names(code)) participant_.Clear(code);
+    if (!still_there(code)) participant_.Clear(code);
   }
   rig_faults_.clear();
   for (const RigFault& fault : faults) {

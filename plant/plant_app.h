@@ -1,17 +1,16 @@
-// A rig - the simulated actuator or a board in front of a real one - as an application: it sets the pace of a
+// A rig (the simulated actuator, or a board in front of a real one) as an application that sets the pace of a
 // run.
 //
-// Lockstep: publishes the state of tick k, waits for each command that is due at tick k (and for a logger
-// that has fallen behind), then advances to tick k + 1. The result does not depend on how long anybody took.
+// Lockstep: it publishes the state of tick k, waits for each command that is due at tick k (and for a logger
+// that has fallen behind), then advances to tick k + 1. The result does not depend on how long anyone takes.
 // A participant that does not answer within time.stall_timeout_s ends the run with an error that names it.
 //
-// Real time: wakes at each tick of wall time, reads the rig (a simulated one is advanced under the voltage it
-// holds), publishes the state, and takes the newest command. When it wakes late, all the time it missed has
-// passed under that voltage; it publishes the one state it then has, and counts the ticks it skipped.
+// Real time: it wakes at each tick of wall time, reads the rig (a simulated one advances under the voltage it
+// holds), publishes the state, and takes the newest command. When it wakes late, the time it missed has
+// passed under that voltage; it then publishes one state and counts the ticks it skipped.
 //
-// In both, what OutputSafety finds wrong holds the voltage at zero (docs/safety.md).
-//
-// Either way the command computed from tick k acts from tick k + plant.command_delay_ticks on.
+// In both modes OutputSafety holds the voltage at zero while anything is wrong (docs/safety.md), and the
+// command computed from tick k acts from tick k + plant.command_delay_ticks on.
 #pragma once
 
 #include <cstdint>
@@ -39,27 +38,29 @@ namespace hydro::plant {
 
 class PlantApp {
  public:
-  // `rig` must outlive it. `expected`: roles to wait for beside pressure_ctrl and position_ctrl ("logger").
+  // `rig` must outlive it. `expected`: roles to wait for besides pressure_ctrl and position_ctrl ("logger").
   PlantApp(bus::Bus& bus, bus::Clock& clock, const settings::StackConfig& config, Rig& rig,
            const std::vector<std::string>& expected = {}, const std::string& program = "hydro-plant");
 
-  // The whole run; the rig is driven in it only, and is at zero volts when it ends, also by an exception.
-  // Returns the process's exit code: 0 complete or stopped in order, 1 failed.
+  // The whole run. The rig is driven only within it and is at zero volts when it ends, also after an
+  // exception. Returns the process's exit code: 0 complete or stopped in order, 1 failed.
   int Run();
 
-  // Why the run ended; empty when it ran to its duration.
+  // Why the run failed; empty when it did not.
   std::string failure() const;
   int64_t tick() const { return tick_; }
 
  private:
   bool WaitForParticipants();
+  void DriveRig();
+  void RequestStop();
   void RunLockstep();
   void RunRealtime();
   bool AwaitAnswers();
   std::string Unanswered() const;
   void Advance(int64_t to_tick);
   void Drive();
-  void NameRigFaults();
+  void PublishRigFaults();
   void PublishState(int64_t skipped_ticks);
   void DescribeRun();
   void PublishDescription();
@@ -90,17 +91,17 @@ class PlantApp {
   int64_t command_tick_ = -1;            // tick of the command that voltage_ came from
   bus::SequenceMonitor command_monitor_;
   process::CountedWarning repeated_commands_{"repeated_motor_command"};
-  bool future_command_ = false;         // since the last command that made sense
-  std::optional<int64_t> awake_again_;  // real time: the tick at which a loop that was stopped went on
+  bool future_command_ = false;         // the newest command is for a tick that has not been
+  std::optional<int64_t> awake_again_;  // real time: the tick at which this process went on after a stop
   timing::RoundTripMonitor round_trips_;
   RingQueue<motor_command_t> waiting_commands_;  // received, not yet in force, by tick
   std::optional<motor_command_t> command_;       // in force
   int64_t newest_command_tick_ = -1;
   int64_t newest_pressure_command_tick_ = -1;
   std::map<int64_t, int64_t> log_progress_;  // tick by session, of the loggers that the run began with
-  std::optional<bus::Clock::TimePoint>
-      unanswered_since_;           // real time: the oldest state without an answer was sent then
-  run_description_t description_;  // published again and again
+  // Real time: when the oldest unanswered state was sent.
+  std::optional<bus::Clock::TimePoint> unanswered_since_;
+  run_description_t description_;  // published once a second
   bus::Clock::TimePoint next_description_;
 };
 

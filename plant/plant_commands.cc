@@ -7,12 +7,13 @@
 #include "plant/plant_app.h"
 
 namespace hydro::plant {
+
 void PlantApp::OnMotorCommand(const motor_command_t& command) {
   const auto now = participant_.clock().Now();
   const auto verdict = command_monitor_.Observe(command.session, command.sequence, command.tick, now);
-  if (verdict == bus::SequenceMonitor::Verdict::kDuplicate)
-    return;  // neither obeyed nor taken for a sign of life
-  if (verdict == bus::SequenceMonitor::Verdict::kSecondSender) return;  // ChooseVoltage() sees to it
+  // A duplicate is neither obeyed nor a sign of life.
+  if (verdict == bus::SequenceMonitor::Verdict::kDuplicate) return;
+  if (verdict == bus::SequenceMonitor::Verdict::kSecondSender) return;  // CheckCommand() raises the fault
   if (verdict == bus::SequenceMonitor::Verdict::kRestarted) waiting_commands_.clear();
   future_command_ = command.tick > tick_;
   if (future_command_) {
@@ -34,16 +35,16 @@ void PlantApp::OnMotorCommand(const motor_command_t& command) {
   if (command.tick < newest_due) unanswered_since_ = now - TimeSinceDue(command.tick);
 }
 
-// How long ago the state after that of `tick` asked for an answer: a loop that works off what has piled up,
-// or repeats itself, is not in control however often it sends.
+// How long ago the state that follows `tick` asked for an answer. A loop that works through a backlog, or
+// repeats itself, is not in control, however often it sends.
 bus::Clock::Duration PlantApp::TimeSinceDue(int64_t tick) const {
   const double ticks = static_cast<double>(tick_) - static_cast<double>(tick) -
                        static_cast<double>(config_.pressure_interval_ticks);
   return bus::FromSeconds(std::clamp(ticks / (config_.plant.rate_hz * config_.time.speed), 0.0, 1e8));
 }
 
-// The voltage of the command that is in force from now on, unless something forbids any. Drive() comes first,
-// explanation second.
+// Chooses the voltage of the command in force, or zero while any check fails. Drive() puts it out first and
+// publishes the faults second.
 void PlantApp::ChooseVoltage() {
   const int64_t newest_allowed = tick_ - config_.plant.command_delay_ticks;
   while (!waiting_commands_.empty() && waiting_commands_.front().tick <= newest_allowed) {
@@ -73,7 +74,7 @@ void PlantApp::CheckCommand(const motor_command_t& command) {
                     voltage, voltage_limit_),
         voltage, voltage_limit_};
   });
-  // Contradictory: what came before it is no better.
+  // A sender that contradicts itself: the command before it is no better.
   safety_.Set(Cause::kFutureCommand, future_command_, [] { return Finding{}; });
   safety_.Set(Cause::kSecondCommandSender, command_monitor_.SecondSenderAlive(participant_.clock().Now()),
               [&] {
@@ -83,7 +84,7 @@ void PlantApp::CheckCommand(const motor_command_t& command) {
                                2, 1};
               });
   safety_.CheckController(command_ && command.status == motor_command_t::SAFE);
-  // Lockstep asks for answers again; in real time nobody does.
+  // In lockstep the plant itself asks for repeats; in real time nobody does.
   if (config_.time.mode == settings::TimeMode::kRealtime) {
     repeated_commands_.Update(
         command_monitor_.duplicates(), participant_.clock().Now(),
@@ -108,7 +109,7 @@ void PlantApp::CheckCommandIsFresh() {
                     tick_, 1e3 * bus::ToSeconds(age), 1e3 * bus::ToSeconds(stale_time_)),
         bus::ToSeconds(age), config_.limits.stale_input_s};
   });
-  // After a stop of this process itself, commands from before it say nothing.
+  // After this process itself was stopped, commands from before the stop do not count.
   if (awake_again_ && command_ && command_->tick >= *awake_again_) awake_again_.reset();
   safety_.Set(Cause::kLatePlant, awake_again_.has_value(), [&] {
     const double slept =

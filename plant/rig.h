@@ -11,10 +11,10 @@
 
 namespace hydro::plant {
 
-// Something that a rig says about itself; the fields are those of fault_t.
+// A fault that a rig reports about itself, with the fields of fault_t.
 struct RigFault {
   std::string code;  // docs/faults.md
-  std::string text;  // one line: what was found and what is allowed
+  std::string text;  // one line: what was found, what is allowed
   double value = std::numeric_limits<double>::quiet_NaN();
   double limit = std::numeric_limits<double>::quiet_NaN();
 };
@@ -33,22 +33,22 @@ class Rig {
  public:
   virtual ~Rig() = default;
 
-  // Under which role it is announced on the bus: "plant" or "driver".
+  // The role that it is announced under on the bus: "plant" or "driver".
   virtual std::string role() const = 0;
 
-  // What the sensors read at `tick`; NaN: not measured, or not to be believed. Tick 0 comes first, later ones
-  // follow in increasing order. A simulated actuator gets there under the voltage of the last Drive(). Throws
+  // The sensors' readings at `tick`; NaN: not measured, or not credible. Called for tick 0 first, then for
+  // increasing ticks. A simulated actuator advances there under the voltage of the last Drive(). Throws
   // RigError.
   virtual model::Measurement Read(int64_t tick) = 0;
 
-  // What is wrong with the last reading; as long as anything is, no voltage but zero may be driven.
+  // What is wrong with the last reading. While this is not empty, only zero volts may be driven.
   virtual const std::vector<RigFault>& faults() const = 0;
 
-  // Holds the amplifier voltage (V, of eq. (1)) from now on; before the first call it is zero. Returns the
-  // voltage that really acts, which a limit may have cut. Throws RigError.
+  // Holds the amplifier voltage (V, of eq. (1)) from now on; it is zero before the first call. Returns the
+  // voltage that actually acts, which a limit may have reduced. Throws RigError.
   virtual double Drive(double voltage) = 0;
 
-  // Zero volts, by whatever means are left. At any time, any number of times.
+  // Puts out zero volts by any means left. May be called at any time, any number of times.
   virtual void Zero() noexcept = 0;
 };
 

@@ -5,7 +5,7 @@
 namespace hydro::plant {
 namespace {
 
-constexpr size_t kMostPresent = 256;  // a stack has five processes; what a flood makes up is not kept
+constexpr size_t kMostPresent = 256;  // a stack has five processes; a flood of made-up ones is not kept
 
 }  // namespace
 
@@ -16,7 +16,7 @@ void RollCall::Observe(const process_status_t& status) {
     return;
   }
   const auto found = present_.find(key);
-  if (found == present_.end()) return;  // never took part in this run
+  if (found == present_.end()) return;  // it took no part in this run
   present_.erase(found);
   const bool matters = status.role == "logger" ||
                        std::find(expected_.begin(), expected_.end(), status.role) != expected_.end();

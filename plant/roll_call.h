@@ -1,4 +1,4 @@
-// Who takes part in a run, as their own announcements tell.
+// Who takes part in a run, from the processes' own announcements.
 #pragma once
 
 #include <cstdint>
@@ -12,18 +12,19 @@ namespace hydro::plant {
 
 class RollCall {
  public:
-  // `expected`: the roles without which the run does not start.
+  // `expected`: the roles that a run waits for before it starts.
   explicit RollCall(std::vector<std::string> expected) : expected_(std::move(expected)) {}
 
   void Observe(const process_status_t& status);
 
-  // Expected roles that are not ready, in the order given.
+  // The expected roles that are not ready, in the order given.
   std::vector<std::string> Missing() const;
 
-  // The loggers that are there, by session.
+  // The sessions of the loggers that are present.
   std::vector<int64_t> Loggers() const;
 
-  // "role on host (pid)" of an expected participant or a logger that has left or failed; empty when none has.
+  // The first expected participant or logger that has left or failed, "role on host (process pid): text";
+  // empty when none has.
   const std::string& left() const { return left_; }
 
  private:

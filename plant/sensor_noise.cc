@@ -14,7 +14,7 @@ uint64_t Scatter(uint64_t x) {
   return x ^ (x >> 31);
 }
 
-// In (0, 1]: never 0, whose logarithm Box-Muller could not take.
+// In (0, 1]: never 0, because Box-Muller takes its logarithm.
 double Unit(uint64_t x) { return (static_cast<double>(x >> 11) + 1.0) * 0x1p-53; }
 
 }  // namespace

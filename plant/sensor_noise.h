@@ -1,6 +1,6 @@
-// What the simulated sensors make of the truth: they add noise and round. The noise depends on nothing but
-// the seed, the tick and the signal: the same tick gets the same noise in lockstep, in real time and in
-// hydro-sim, whatever was skipped before.
+// The simulated sensors add noise and round. The noise depends only on the seed, the tick and the signal, so
+// that a tick gets the same noise in lockstep, in real time and in hydro-sim, whichever ticks were skipped
+// before it.
 #pragma once
 
 #include <cstdint>
@@ -10,10 +10,10 @@
 
 namespace hydro::plant {
 
-// Standard normal number for (seed, tick, channel): Box-Muller on two SplitMix64 outputs.
+// A standard normal number for (seed, tick, channel): Box-Muller on two SplitMix64 outputs.
 double StandardNormal(uint64_t seed, int64_t tick, int channel);
 
-// `measurement` as the sensors read it at `tick`: noise added, then rounded to a multiple of the resolution.
+// `measurement` as the sensors read it at `tick`: with noise, then rounded to a multiple of the resolution.
 model::Measurement ReadSensors(const model::Measurement& measurement, const settings::NoiseSection& noise,
                                int64_t seed, int64_t tick);
 

@@ -27,7 +27,8 @@ class SimulatedRig : public Rig {
   settings::NoiseSection noise_;
   int64_t seed_;
   double rate_hz_;
-  std::unique_ptr<trajectory::Trajectory> motion_;  // of a driven shaft; before actuator_, which points to it
+  std::unique_ptr<trajectory::Trajectory>
+      motion_;  // of a driven shaft; declared first, actuator_ points to it
   std::unique_ptr<model::Actuator> actuator_;
   double voltage_ = 0;
   std::vector<RigFault> no_faults_;

@@ -45,8 +45,8 @@ void VoltageGuard::Set(Cause cause, bool present) {
   if (rearm_ == settings::Rearm::kExplicit || Trips(cause)) latched_ |= Bit(cause);
 }
 
-std::vector<VoltageGuard::Cause> VoltageGuard::Release(std::vector<Cause>* standing) {
-  *standing = Listed(present_);
+std::vector<VoltageGuard::Cause> VoltageGuard::Release(std::vector<Cause>* present) {
+  *present = Listed(present_);
   if (present_ != 0) return {};
   std::vector<Cause> ended = Listed(latched_);
   latched_ = 0;

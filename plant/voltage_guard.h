@@ -1,5 +1,5 @@
-// Which faults force zero volts, and until when. Pure: it knows ticks' findings and voltages, and no clock,
-// message or file; the plant and the hardware driver share it.
+// Which faults force zero volts, and until when. Pure: it takes each tick's findings and voltages and knows
+// no clock, message or file. The plant and the hardware driver share it.
 #pragma once
 
 #include <cstdint>
@@ -34,10 +34,10 @@ class VoltageGuard {
   // The fault's name on HYDRO_FAULT.
   static const char* CodeOf(Cause cause);
 
-  // Latches however faults are ended: what was passed cannot be made good by the next input.
+  // Causes that latch in either rearm mode: a good next input does not undo an exceeded limit or a suspend.
   static bool Trips(Cause cause) { return cause >= Cause::kSuspended; }
 
-  // What was found in this tick. A cause that latches stays active when it has gone.
+  // Records whether this tick's check found the cause. One that latches stays active after it has gone.
   void Set(Cause cause, bool present);
 
   bool present(Cause cause) const { return (present_ & Bit(cause)) != 0; }
@@ -46,12 +46,12 @@ class VoltageGuard {
   bool any() const { return (present_ | latched_) != 0; }
   bool any_latched() const { return latched_ != 0; }
 
-  // What may reach the motor of what was asked for.
+  // The part of the commanded voltage that may reach the motor: all or nothing.
   double Voltage(double commanded) const { return any() ? 0 : commanded; }
 
-  // Ends what is latched, unless a cause is still present; returns what was ended. Nothing is ended, and
-  // `standing` has the causes, where one is.
-  std::vector<Cause> Release(std::vector<Cause>* standing);
+  // Ends all latched causes and returns them, unless any cause is still present: then it ends nothing,
+  // returns nothing and fills `present`.
+  std::vector<Cause> Release(std::vector<Cause>* present);
 
  private:
   static uint32_t Bit(Cause cause) { return 1u << static_cast<unsigned>(cause); }

@@ -57,13 +57,13 @@ void PositionApp::OnState(const state_t& state) {
   const auto now = participant_.clock().Now();
   switch (state_monitor_.Observe(state.session, state.sequence, now)) {
     case bus::SequenceMonitor::Verdict::kSecondSender:
-      return;  // the pressure loop names it and goes to zero volts
+      return;  // the pressure loop raises the fault and goes to zero volts
     case bus::SequenceMonitor::Verdict::kRestarted:
       last_sample_tick_ = -1;
       break;
     case bus::SequenceMonitor::Verdict::kDuplicate:
       if (state.tick == last_sample_tick_) Send();  // the plant asks again: the answer may have been lost
-      // Overtaken on its way by states that were no samples: it is still the newest sample.
+      // Later states that were not samples have overtaken it in the network: it is still the newest sample.
       if (state.tick > last_sample_tick_ && state.tick < participant_.tick() && state.tick % interval_ == 0) {
         Sample(state, now);
       }
@@ -104,7 +104,7 @@ void PositionApp::Answer(const state_t& state) {
         pressure_ref = law_.Update(state.arm_angle, reference, intervals);
         if (participant_.any_fault()) participant_.Clear("nonfinite_arm_angle");
       } else {
-        pressure_command_.open_loop = true;  // zero volts: without the arm's angle no pressure is safe
+        pressure_command_.open_loop = true;  // at zero volts: without the arm's angle no pressure is safe
         law_.Reset();
         participant_.Raise(
             "nonfinite_arm_angle",
@@ -131,8 +131,8 @@ void PositionApp::Answer(const state_t& state) {
 
 void PositionApp::Send() {
   arm_reference_.utime = pressure_command_.utime = participant_.clock().Utime();
-  // The pressure command last: the plant waits for it in lockstep, and then a log has both before the next
-  // state.
+  // The pressure command goes last: in lockstep the plant waits for it, so that a log has both before the
+  // next state.
   participant_.bus().Publish(participant_.channels().arm_reference, arm_reference_);
   participant_.bus().Publish(participant_.channels().pressure_command, pressure_command_);
 }
@@ -153,7 +153,7 @@ bool PositionApp::finished() const { return participant_.stop().has_value(); }
 
 int PositionApp::Finish() {
   if (!participant_.stop() && participant_.tick() >= 0) {
-    // The run goes on without this loop: its last pressure must not stay in force until it is stale.
+    // The run goes on without this loop, whose last pressure must not stay in force until it is stale.
     pressure_command_.utime = participant_.clock().Utime();
     pressure_command_.tick = participant_.tick();
     pressure_command_.session = participant_.session();

@@ -1,6 +1,7 @@
 // The sampled position loop as an application: on each tick that is a multiple of its sample interval it
-// publishes the reference and the pressure command that follows from it, eq. (17) for the arm's angle;
-// pressure, torque and open-loop voltage references pass through, limited and quantised alike.
+// publishes the reference and the pressure command that follows from it. A reference of the arm's angle goes
+// through eq. (17); pressure, torque and open-loop voltage references pass through. All pressures are limited
+// and quantised the same way.
 #pragma once
 
 #include <cstdint>

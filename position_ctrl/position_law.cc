@@ -5,6 +5,7 @@
 
 namespace hydro::position_ctrl {
 
+// Eq. (17).
 double PositionLaw::Update(double arm_angle, double arm_ref, int64_t intervals) {
   const double error = arm_angle - arm_ref;
   const double differentiated = settings_.derivative_on_error ? error : arm_angle;

@@ -1,4 +1,5 @@
-// The position loop's law, eq. (17), as a small pure class: its only state is the previous sample.
+// The control law of the position loop, eq. (17), as a small pure class whose only state is the previous
+// sample.
 #pragma once
 
 #include <cstdint>
@@ -10,8 +11,8 @@ struct PositionLawSettings {
   double c1 = 0;                   // psi/rad
   double c2 = 0;                   // psi s/rad
   double sample_interval = 0.005;  // s, T
-  bool derivative_on_error =
-      false;  // true: eq. (17) as printed; false: on the measured angle, no kick at a step
+  // true: eq. (17) as printed; false: the derivative acts on the measured angle, so a step gives no kick.
+  bool derivative_on_error = false;
   double pressure_limit = std::numeric_limits<double>::infinity();  // psi, largest |dp_ref|
 };
 
@@ -19,9 +20,9 @@ class PositionLaw {
  public:
   explicit PositionLaw(const PositionLawSettings& settings) : settings_(settings) {}
 
-  // dp_ref = -c1 e - c2/T (e - e_previous), e = alpha - alpha_ref, limited; eq. (17). `intervals` is how many
+  // Eq. (17), limited: dp_ref = -c1 e - c2/T (e - e_previous), e = alpha - alpha_ref. `intervals`: how many
   // sample intervals have passed since the previous call (more than 1 when samples were missed). The first
-  // sample after Reset() has no derivative.
+  // sample after Reset() has no derivative term.
   double Update(double arm_angle, double arm_ref, int64_t intervals);
 
   void Reset() { has_previous_ = false; }
@@ -32,8 +33,8 @@ class PositionLaw {
   bool has_previous_ = false;
 };
 
-// What a D/A converter of `bits` bits and a range of +/- full_scale makes of `value`: the nearest of its
-// 2^bits levels k full_scale / 2^(bits-1), k = -2^(bits-1) ... 2^(bits-1) - 1. bits = 0: value itself.
+// `value` as a D/A converter of `bits` bits and a range of +/- full_scale puts it out: the nearest of its
+// 2^bits levels k full_scale / 2^(bits-1), k = -2^(bits-1) ... 2^(bits-1) - 1. bits = 0: `value` itself.
 double QuantiseDac(double value, int bits, double full_scale);
 
 }  // namespace hydro::position_ctrl

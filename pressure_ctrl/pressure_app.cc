@@ -22,7 +22,8 @@ motor_command_t ZeroVolts(int64_t tick, int8_t status) {
   return zero;
 }
 
-// psi, what limits.arm_torque_in_lbf leaves of a pressure reference, rounding and the D/A's included.
+// psi: the largest pressure reference that limits.arm_torque_in_lbf allows, with room for rounding and half a
+// D/A step.
 double PressureReferenceLimit(const settings::StackConfig& config) {
   const settings::PositionSection& dac = config.position;
   const double half_step = dac.dac_bits > 0 ? std::ldexp(dac.dac_range_psi, -dac.dac_bits) : 0;
@@ -63,8 +64,8 @@ PressureApp::PressureApp(bus::Bus& bus, bus::Clock& clock, const settings::Stack
       ramp_ticks_(static_cast<int64_t>(std::ceil(config.limits.pressure_ramp_s * config.plant.rate_hz))),
       pressure_limit_(PressureReferenceLimit(config)),
       stale_time_(bus::FromSeconds(config.limits.stale_input_s)),
-      // The plant itself waits stall_timeout_s for whoever is late and then says who; only after that is it
-      // silent.
+      // The plant itself waits stall_timeout_s for a late participant and then names it; only a longer
+      // silence is the plant's own.
       stall_time_(bus::FromSeconds(config.time.stall_timeout_s) + 400ms),
       limits_(config.limits),
       law_(PressureLawSettingsFor(config)),
@@ -90,12 +91,12 @@ void PressureApp::OnState(const state_t& state) {
   const auto now = participant_.clock().Now();
   switch (state_monitor_.Observe(state.session, state.sequence, now)) {
     case bus::SequenceMonitor::Verdict::kSecondSender:
-      return;  // InputsAreSafe() sees to it
+      return;  // InputsAreSafe() raises the fault
     case bus::SequenceMonitor::Verdict::kRestarted:
       Restart();
       break;
     case bus::SequenceMonitor::Verdict::kDuplicate:
-      // The plant asks again: the answer may have been lost.
+      // The plant asks again because the answer may have been lost.
       if (answered_ && last_command_.tick == state.tick) {
         participant_.bus().Publish(participant_.channels().motor_command, last_command_);
       }
@@ -119,14 +120,15 @@ void PressureApp::OnState(const state_t& state) {
 void PressureApp::OnPressureCommand(const pressure_command_t& command) {
   const auto verdict =
       command_monitor_.Observe(command.session, command.sequence, participant_.clock().Now());
-  // A second sender is not obeyed; InputsAreSafe() sees to it.
+  // A second sender is not obeyed; InputsAreSafe() raises the fault.
   if (verdict == bus::SequenceMonitor::Verdict::kSecondSender) return;
   if (verdict == bus::SequenceMonitor::Verdict::kDuplicate) return;
   if (verdict == bus::SequenceMonitor::Verdict::kRestarted) {
     waiting_commands_.clear();
     pressure_command_.reset();
   }
-  // A little ahead is another route through a network; far ahead would hold up all that come after it.
+  // A command a few ticks ahead only took a faster route through the network; one far ahead would hold up all
+  // that follow it in the queue.
   future_command_ =
       participant_.tick() >= 0 && command.tick > SaturatingSum(participant_.tick(), stale_ticks_)
           ? std::optional(command.tick)
@@ -140,8 +142,8 @@ void PressureApp::OnPressureCommand(const pressure_command_t& command) {
   }
 }
 
-// In lockstep every pressure command that is due comes, sooner or later; which one is in force must not
-// depend on when.
+// In lockstep every pressure command that is due arrives sooner or later; which one is in force must not
+// depend on when it does.
 bool PressureApp::AwaitsPressureCommand(int64_t state_tick) const {
   const int64_t newest_allowed = SaturatingDifference(state_tick, delay_);
   if (!lockstep_ || newest_allowed < 0) return false;
@@ -166,29 +168,37 @@ void PressureApp::Answer(const state_t& state) {
     command.pressure_ref = PressureReference(state.tick);
     command.pressure_command_tick = pressure_command_->tick;
   }
-  if (!InputsAreSafe(state)) {
-    command.status = motor_command_t::SAFE;
-  } else if (pressure_command_ && pressure_command_->open_loop) {
-    command.status = motor_command_t::OPEN_LOOP;
-    command.voltage = std::clamp(pressure_command_->voltage, -law_.voltage_limit, law_.voltage_limit);
-    command.saturated = command.voltage != pressure_command_->voltage;
-  } else {
-    command.status = motor_command_t::LAW;
-    const PressureLawOutput output =
-        PressureLaw(law_, {command.pressure_ref, state.p1, state.p2, state.motor_speed, state.arm_speed});
-    if (std::isfinite(output.voltage)) {
-      command.voltage = output.voltage;
-      command.saturated = output.saturated;
-      if (participant_.any_fault()) participant_.Clear("nonfinite_motor_command");
-    } else {  // finite inputs, but gains or a reference whose products overflow
-      command.status = motor_command_t::SAFE;
-      participant_.Raise("nonfinite_motor_command",
-                         fmt::format("tick {}: eq. (16) gives {} V for a reference of {} psi, must be finite",
-                                     state.tick, output.voltage, command.pressure_ref),
-                         output.voltage, NAN, false);
+  if (InputsAreSafe(state)) {
+    if (pressure_command_ && pressure_command_->open_loop) {
+      ApplyOpenLoop(&command);
+    } else {
+      ApplyLaw(state, &command);
     }
   }
   Send(command);
+}
+
+void PressureApp::ApplyOpenLoop(motor_command_t* command) const {
+  command->status = motor_command_t::OPEN_LOOP;
+  command->voltage = std::clamp(pressure_command_->voltage, -law_.voltage_limit, law_.voltage_limit);
+  command->saturated = command->voltage != pressure_command_->voltage;
+}
+
+void PressureApp::ApplyLaw(const state_t& state, motor_command_t* command) {
+  const PressureLawOutput output =
+      PressureLaw(law_, {command->pressure_ref, state.p1, state.p2, state.motor_speed, state.arm_speed});
+  if (!std::isfinite(
+          output.voltage)) {  // the inputs are finite, but a product of gains and reference overflows
+    participant_.Raise("nonfinite_motor_command",
+                       fmt::format("tick {}: eq. (16) gives {} V for a reference of {} psi, must be finite",
+                                   state.tick, output.voltage, command->pressure_ref),
+                       output.voltage, NAN, false);
+    return;  // the command stays SAFE
+  }
+  command->status = motor_command_t::LAW;
+  command->voltage = output.voltage;
+  command->saturated = output.saturated;
+  if (participant_.any_fault()) participant_.Clear("nonfinite_motor_command");
 }
 
 void PressureApp::Send(motor_command_t& command) {

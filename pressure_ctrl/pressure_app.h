@@ -1,9 +1,9 @@
 // The fast pressure loop as an application: a motor command for each plant tick (or each n-th), eq. (16).
 //
 // A state that is stale, not finite, beyond a limit or from a second sender gives zero volts and a named
-// fault (docs/safety.md). A pressure reference that has become stale goes to zero over
-// limits.pressure_ramp_s before the voltage does. What it computes depends on the ticks and contents of
-// messages only, never on when they arrived.
+// fault (docs/safety.md). A stale pressure reference is ramped to zero over limits.pressure_ramp_s before the
+// voltage goes to zero. The result depends only on the ticks and contents of messages, never on when they
+// arrived.
 #pragma once
 
 #include <cstdint>
@@ -21,8 +21,8 @@
 
 namespace hydro::pressure_ctrl {
 
-// The law's settings that a configuration asks for; derives the gains where it gives natural frequency and
-// damping. Throws InputError when they cannot be derived.
+// The law's settings from a configuration. Derives the gains when the configuration gives natural frequency
+// and damping ratio instead; throws InputError when they cannot be derived.
 PressureLawSettings PressureLawSettingsFor(const settings::StackConfig& config);
 
 class PressureApp : public process::App {
@@ -38,6 +38,8 @@ class PressureApp : public process::App {
   void OnState(const state_t& state);
   void OnPressureCommand(const pressure_command_t& command);
   void Answer(const state_t& state);
+  void ApplyOpenLoop(motor_command_t* command) const;
+  void ApplyLaw(const state_t& state, motor_command_t* command);
   bool InputsAreSafe(const state_t& state);
   bool PressureCommandIsSafe(const state_t& state);
   template <class Describe>
@@ -55,10 +57,10 @@ class PressureApp : public process::App {
   const bool lockstep_;
   const int64_t interval_;           // ticks between two commands of this loop
   const int64_t position_interval_;  // ticks between two pressure commands
-  const int64_t delay_;              // ticks from a command's tick to where it acts
-  const int64_t stale_ticks_;        // a pressure command is stale when this much older than it may be
-  const int64_t ramp_ticks_;         // from then on its reference goes to zero in this many ticks
-  const double pressure_limit_;      // psi, of a pressure reference
+  const int64_t delay_;              // ticks from a command's tick to the tick at which it acts
+  const int64_t stale_ticks_;        // a pressure command older than this is stale
+  const int64_t ramp_ticks_;         // its reference then goes to zero within this many ticks
+  const double pressure_limit_;      // psi, largest |pressure reference|
   const bus::Clock::Duration stale_time_;
   const bus::Clock::Duration stall_time_;
   const settings::LimitsSection limits_;
@@ -66,15 +68,15 @@ class PressureApp : public process::App {
 
   bus::SequenceMonitor state_monitor_;
   bus::SequenceMonitor command_monitor_;
-  RingQueue<pressure_command_t> waiting_commands_;      // not yet in force, by tick
+  RingQueue<pressure_command_t> waiting_commands_;      // not yet in force, in order of their ticks
   std::optional<pressure_command_t> pressure_command_;  // in force
-  std::optional<int64_t> future_command_;  // tick of a refused one, while none came that makes sense
-  std::optional<state_t> pending_state_;   // lockstep: waits for the pressure command it needs
+  std::optional<int64_t> future_command_;               // tick of a refused one, until a plausible one comes
+  std::optional<state_t> pending_state_;  // lockstep: waits for the pressure command that it needs
   motor_command_t last_command_;
   bool answered_ = false;
   int64_t sequence_ = 0;
   bus::Clock::TimePoint last_state_time_;
-  bool stalled_ = false;  // lockstep: the plant has gone silent
+  bool stalled_ = false;  // lockstep: the plant is silent
 };
 
 }  // namespace hydro::pressure_ctrl

@@ -1,4 +1,4 @@
-// PressureApp's checks of what it receives: what is not safe gives zero volts and a named fault.
+// PressureApp's checks of its inputs: an unsafe input gives zero volts and a named fault.
 #include <spdlog/fmt/fmt.h>
 
 #include <algorithm>
@@ -17,7 +17,7 @@ bool Finite(const state_t& state, bool with_arm_speed) {
 
 }  // namespace
 
-// A fault while `good` is false; returns `good`.
+// Raises the fault while `good` is false and clears it otherwise; returns `good`.
 template <class Describe>
 bool PressureApp::Check(bool good, const char* code, double value, double limit, Describe&& describe) {
   if (!good) {
@@ -28,8 +28,8 @@ bool PressureApp::Check(bool good, const char* code, double value, double limit,
   return good;
 }
 
-// The same for a limit whose passing ends the run, unless faults are ended explicitly: then the plant holds
-// the voltage at zero from the first safe command on.
+// The same for a limit that ends the run when it is exceeded. With limits.rearm = "explicit" the run goes on,
+// and the plant holds the voltage at zero from the first SAFE command.
 template <class Describe>
 bool PressureApp::CheckLimit(bool good, const char* code, double value, double limit, Describe&& describe) {
   if (limits_.rearm == settings::Rearm::kExplicit) return Check(good, code, value, limit, describe);
@@ -85,7 +85,7 @@ bool PressureApp::PressureCommandIsSafe(const state_t& state) {
             "tick {}: the newest pressure command is {} ticks old, allowed are {} (limits.stale_input_s)",
             state.tick, age, stale_ticks_);
       });
-  // A voltage is not a reference that something could still follow.
+  // Only a pressure reference can be ramped down; an open-loop voltage is cut at once.
   const bool ramps =
       pressure_command_ && !pressure_command_->open_loop && TicksStale(state.tick) < ramp_ticks_;
   bool safe = fresh || ramps;
@@ -118,13 +118,13 @@ bool PressureApp::PressureCommandIsSafe(const state_t& state) {
   return safe;
 }
 
-// How long the pressure command in force has been stale; 0 while it is not.
+// For how many ticks the pressure command in force has been stale; 0 while it is fresh.
 int64_t PressureApp::TicksStale(int64_t tick) const {
   const int64_t age = SaturatingDifference(tick, pressure_command_ ? pressure_command_->tick : 0);
   return std::max<int64_t>(0, SaturatingDifference(age, stale_ticks_));
 }
 
-// The reference in force: held until it is stale, then on its way to zero.
+// The reference in force: held until it is stale, then ramped to zero.
 double PressureApp::PressureReference(int64_t tick) const {
   const int64_t stale = TicksStale(tick);
   const double reference = pressure_command_->pressure_ref;

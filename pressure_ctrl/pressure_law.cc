@@ -8,7 +8,7 @@
 namespace hydro::pressure_ctrl {
 namespace {
 
-// psi per rad of pump rotation: how fast dp rises with pump angle, from eqs. (13) and (14).
+// psi per rad of pump rotation: how steeply dp rises with the pump's angle, from eqs. (13) and (14).
 double PressureStiffness(const model::Parameters& p, double arm_angle, int compressed_sides) {
   if (compressed_sides != 1 && compressed_sides != 2) {
     throw std::invalid_argument("compressed sides: found " + std::to_string(compressed_sides) +
@@ -47,11 +47,12 @@ SecondOrder PressureLoopDynamics(const model::Parameters& p, double arm_angle, c
 }
 
 double SteadyStateFeedforward(const model::Parameters& p, const PressureGains& gains) {
-  const double speed_per_psi =
-      (p.c_I + p.c_E) / p.D;  // rad/s per psi, from p_2' = 0 in eq. (14) with p_1 = p_3
+  // rad/s per psi, from p_2' = 0 in eq. (14) with p_1 = p_3
+  const double speed_per_psi = (p.c_I + p.c_E) / p.D;
   return (p.D + p.b * speed_per_psi) / p.k_1 + gains.k_p * gains.k_v * speed_per_psi;
 }
 
+// Eq. (16).
 PressureLawOutput PressureLaw(const PressureLawSettings& settings, const PressureLawInput& input) {
   const double pressure_error = input.pressure_ref - (input.p2 - input.p1);
   double speed = input.motor_speed;

@@ -1,4 +1,4 @@
-// The pressure loop's law, eq. (16), as pure functions.
+// The control law of the pressure loop, eq. (16), as pure functions.
 #pragma once
 
 #include "model/description.h"
@@ -10,14 +10,14 @@ struct PressureGains {
   double k_v = 0;  // psi s/rad
 };
 
-// Gains of eq. (16) that give the linearised pressure loop (eqs. (4), (13), (14) at the given arm angle,
-// without leakage and Coulomb friction) the natural frequency (rad/s) and damping ratio asked for.
+// The gains of eq. (16) that give the linearised pressure loop (eqs. (4), (13), (14) at the given arm angle,
+// without leakage and Coulomb friction) the requested natural frequency (rad/s) and damping ratio.
 // compressed_sides: 2 when both volumes compress; 1 when side 1 is held at p_3 by its one-way valve.
-// Throws std::invalid_argument when that needs a negative k_p (natural frequency below the open loop's).
+// Throws std::invalid_argument when that needs k_p <= 0 (a natural frequency at or below the open loop's).
 PressureGains DerivePressureGains(const model::Parameters& parameters, double arm_angle,
                                   double natural_frequency, double damping_ratio, int compressed_sides);
 
-// The loop that gains give: the inverse of DerivePressureGains.
+// The inverse of DerivePressureGains: the loop that given gains produce.
 struct SecondOrder {
   double natural_frequency = 0;  // rad/s
   double damping_ratio = 0;
@@ -26,15 +26,17 @@ SecondOrder PressureLoopDynamics(const model::Parameters& parameters, double arm
                                  const PressureGains& gains, int compressed_sides);
 
 // V/psi: the feed-forward "which changes linearly with dp_ref" that removes the steady-state error of a
-// clamped actuator up to Coulomb friction: the torque that holds dp_ref, D dp / k_1, and what the speed that
-// makes up for the leakage costs in viscous friction and in the k_v term. One side is taken to lie at p_3.
+// clamped actuator up to Coulomb friction. It supplies the torque that holds dp_ref, D dp / k_1, and what the
+// pump speed that replaces the leakage costs in viscous friction and in the k_v term. One side is assumed to
+// be at p_3.
 double SteadyStateFeedforward(const model::Parameters& parameters, const PressureGains& gains);
 
 struct PressureLawSettings {
   PressureGains gains;
   double voltage_limit = 0;          // V, T_pmax/k_1
   double reference_feedforward = 0;  // V/psi
-  double arm_speed_ratio = 0;  // c/D: takes the pump speed that arm motion forces out of the k_v term; 0: not
+  double arm_speed_ratio =
+      0;  // c/D: subtracts the pump speed that arm motion forces from the k_v term; 0: off
 };
 
 struct PressureLawInput {
@@ -50,8 +52,8 @@ struct PressureLawOutput {
   bool saturated = false;  // the law asked for more
 };
 
-// v = k_p ((dp_ref - dp) - k_v (theta' - arm_speed_ratio alpha')) + reference_feedforward dp_ref, limited.
-// Eq. (16).
+// Eq. (16) with the optional feed-forwards, limited to +/- voltage_limit:
+//   v = k_p ((dp_ref - dp) - k_v (theta' - arm_speed_ratio alpha')) + reference_feedforward dp_ref
 PressureLawOutput PressureLaw(const PressureLawSettings& settings, const PressureLawInput& input);
 
 }  // namespace hydro::pressure_ctrl

@@ -1,5 +1,5 @@
-// A warning about something that is counted, such as messages that nobody can read: one fault an episode,
-// however many there are.
+// A warning about something that is counted, such as messages that cannot be decoded: one fault per episode,
+// however high the count goes.
 #pragma once
 
 #include <cstdint>
@@ -11,13 +11,13 @@ namespace hydro::process {
 
 class CountedWarning {
  public:
-  // An episode ends when the count has not grown for so long.
+  // An episode ends when the count has not grown for this long.
   static constexpr auto kQuiet = std::chrono::seconds(1);
 
   explicit CountedWarning(std::string code) : code_(std::move(code)) {}
 
-  // To be called often with the count so far. Where it has grown it raises the fault at `faults`, whose text
-  // is `describe(count)`; it never zeroes a voltage. Cheap while nothing is counted.
+  // Call it often with the count so far. When the count has grown, it raises a fault on `faults` with the
+  // text `describe(count)`; the fault never affects the voltage. Cheap while nothing is counted.
   template <class Describe, class Faults>
   void Update(int64_t count, bus::Clock::TimePoint now, Describe&& describe, Faults& faults) {
     if (count == count_ && !active_) return;

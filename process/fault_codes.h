@@ -1,5 +1,5 @@
-// Every fault that a process of the stack can name, and what it does to the voltage. docs/safety.md explains
-// them; a test keeps the two together.
+// Every fault that a process of the stack can raise, and its effect on the voltage. docs/safety.md explains
+// them; a test keeps that page and this list in step.
 #pragma once
 
 #include <span>
@@ -20,7 +20,7 @@ struct FaultCode {
 
 std::span<const FaultCode> FaultCodes();
 
-// True unless `code` is known to leave the voltage alone at first: what is not known is not taken lightly.
+// True unless `code` is known not to zero the voltage at once; an unknown code counts as one that does.
 bool ZeroesVoltage(std::string_view code);
 
 // True when `code` is known to be a warning only.

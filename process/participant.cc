@@ -11,7 +11,7 @@ namespace hydro::process {
 namespace {
 
 constexpr auto kAnnouncementPeriod = std::chrono::milliseconds(100);
-constexpr size_t kMostNames = 256;  // a stack has five processes; what a flood sends is not kept
+constexpr size_t kMostNames = 256;  // a stack has five processes; a flood of made-up ones is not kept
 
 std::string HostName() {
   char name[256] = {};
@@ -39,9 +39,9 @@ Participant::Participant(bus::Bus& bus, bus::Clock& clock, const bus::Channels& 
       names_[status.session] =
           status.role + " on " + status.host + " (process " + std::to_string(status.pid) + ")";
     }
-    const bool calls_the_roll = status.state == process_status_t::READY && status.session != session_ &&
-                                (status.role == "plant" || status.role == "driver");
-    if (calls_the_roll && state_ == process_status_t::RUNNING) Announce(state_, status_text_);
+    const bool plant_asks = status.state == process_status_t::READY && status.session != session_ &&
+                            (status.role == "plant" || status.role == "driver");
+    if (plant_asks && state_ == process_status_t::RUNNING) Announce(state_, status_text_);
   });
 }
 
@@ -94,7 +94,7 @@ void Participant::WatchRefusals() {
     return;
   }
   if (const auto fault = active_.find(RefusalWatch::kCode); fault != active_.end()) {
-    fault->second.text = refusals_.Text();  // all of them, now that there are no more
+    fault->second.text = refusals_.Text();  // with the final count
     fault->second.value = count;
     if (!clock_.simulated()) spdlog::error("{}", fault->second.text);
   }

@@ -1,5 +1,5 @@
-// What every process of a stack does beside its own work: says that it is ready, hears that the run ends,
-// names faults when they begin and when they have gone, and reports how it kept time.
+// What every process of a stack does besides its own work: it announces that it is ready, hears when the run
+// ends, publishes the start and end of faults, and reports how its loop kept time.
 #pragma once
 
 #include <cstdint>
@@ -29,43 +29,43 @@ class Participant {
   const std::string& role() const { return role_; }
   int64_t session() const { return session_; }
 
-  // Announces a new state of this process (process_status_t::READY ...). Ready is announced again ten times a
-  // second by Poll(), so that processes may start in any order; running once more when a plant calls for it
-  // (one that was restarted).
+  // Announces a new state of this process (process_status_t::READY ...). Poll() repeats READY ten times a
+  // second, so that processes may start in any order; RUNNING is repeated when a restarted plant asks who is
+  // there by announcing READY.
   void Announce(int8_t state, const std::string& text = "");
   int8_t state() const { return state_; }
 
-  // Publishes what is due: the ready announcement, the statistics, a warning of messages that were refused.
-  // To be called often; cheap when nothing is due.
+  // Publishes what is due: the READY announcement, statistics, warnings about messages. Call it often; cheap
+  // when nothing is due.
   void Poll();
 
-  // The last plant tick this process knows of; -1 before the first. Written into faults and stops.
+  // The last plant tick that this process knows of; -1 before the first. Faults and stops carry it.
   void set_tick(int64_t tick) { tick_ = tick; }
   int64_t tick() const { return tick_; }
 
-  // A fault begins: publishes it once, until Clear(code). A latched one is cleared by Release(code) only.
-  // Returns true when it was not active before.
+  // Begins a fault and publishes it once; it stays active until Clear(code), a latched one until
+  // Release(code). Returns true when it was not active before.
   bool Raise(const std::string& code, const std::string& text, double value, double limit, bool latched);
   void Clear(const std::string& code);
-  void Release(const std::string& code);  // the operator has ended it
-  // Cheap: no fault is active (the usual case, asked on every tick).
+  void Release(const std::string& code);  // the operator has re-armed
+  // Cheap, because it is asked on every tick.
   bool any_fault() const { return !active_.empty(); }
   bool active(const std::string& code) const { return active_.contains(code); }
   bool latched() const { return latched_ > 0; }
 
-  // "pressure_ctrl on rig (process 4711)" for the session of a process that has announced itself, so that a
-  // fault can name it.
+  // The name of a process that has announced itself, by its session, for the text of a fault:
+  // "pressure_ctrl on rig (process 4711)".
   std::string NameOf(std::optional<int64_t> session) const;
 
-  // Ends the run for everyone. Only the first request of this process counts.
+  // Ends the run for every process. Only this process's first request counts.
   void RequestStop(const std::string& reason, int exit_code);
 
-  // The stop that was heard, from whomever, this process included.
+  // The first stop that was heard, this process's own included.
   const std::optional<stop_t>& stop() const { return stop_; }
 
-  // The last thing a process says, once its output is safe: DONE, or FAILED when the run ended with an error.
-  // Returns the exit code that goes with it: 1 when the run failed, whoever ended it; else 0.
-  // `failure`: why this process alone failed; empty when it did not.
+  // Announces the end, once the output is safe: DONE, or FAILED when the run ended with an error. Returns the
+  // matching exit code: 1 when the run failed, whoever ended it, else 0. `failure`: why this process alone
+  // failed; empty when it did not.
   int Leave(const std::string& failure = "");
 
   timing::LoopStatistics& statistics() { return statistics_; }
@@ -91,7 +91,7 @@ class Participant {
   int64_t fault_sequence_ = 0;
   int latched_ = 0;  // active faults that are latched
   std::map<std::string, fault_t> active_;
-  std::map<int64_t, std::string> names_;  // of the processes heard of, by session
+  std::map<int64_t, std::string> names_;  // of the processes that were heard, by session
   CountedWarning undecodable_;
   CountedWarning unsent_;
   RefusalWatch refusals_;

@@ -8,8 +8,8 @@
 #include "bus/udpm/udpm_bus.h"
 #include "bus/udpm/udpm_url.h"
 #include "log/log_writer.h"
+#include "process/stderr_log.h"
 #include "process/stop_signal.h"
-#include "process/words.h"
 #include "timing/real_time.h"
 
 namespace hydro::process {
@@ -23,18 +23,27 @@ const settings::ProcessSection& SectionOf(const settings::StackConfig& config, c
   return kNone;
 }
 
-// Who can reach the group can drive the actuator: the process that does what commands say, says so.
+timing::RealTimeRequest RealTimeRequestOf(const settings::ProcessSection& section) {
+  timing::RealTimeRequest request;
+  request.priority = section.priority;
+  request.cpu = section.cpu;
+  request.lock_memory = section.lock_memory;
+  return request;
+}
+
+// Without a key, anyone who can reach the multicast group can drive the actuator. Only the process that obeys
+// commands warns.
 void WarnOfOpenNetwork(const std::string& program, const settings::BusSection& bus) {
-  const bool obeys = program == "hydro-plant" || program == "hydro-driver";
+  const bool obeys_commands = program == "hydro-plant" || program == "hydro-driver";
   const int ttl = bus::ParseUdpmUrl(bus.url).ttl;
-  if (!obeys || ttl == 0 || !bus.key_file.empty()) return;
+  if (!obeys_commands || ttl == 0 || !bus.key_file.empty()) return;
   spdlog::warn(
-      "bus.url has ttl={} and there is no bus.key_file: whoever reaches this network can command the motor "
+      "bus.url has ttl={} and there is no bus.key_file: anyone on this network can command the motor "
       "(docs/security.md)",
       ttl);
 }
 
-// --log of a process that has other work: a log that cannot be written any more must not end that work.
+// --log of a process whose main work is another: when the log can no longer be written, that work goes on.
 class Recording {
  public:
   void Open(const std::string& file) { writer_ = std::make_unique<log::LogWriter>(file, Opening::kDirect); }
@@ -51,7 +60,7 @@ class Recording {
     });
   }
 
-  // False when something could not be written.
+  // Returns false when anything could not be written.
   bool Close() {
     if (writer_) Try([&] { writer_->Finish(); });
     return !failed_;
@@ -79,16 +88,11 @@ class Recording {
 
 int RunProcess(const std::string& program, const settings::CommonOptions& options, const ProcessBody& body) {
   return settings::RunProgram(program, [&] {
-    const Words words(program);  // on stderr: stdout is for results
+    const StderrLog log(program);  // stdout is for results
     const settings::StackConfig config = settings::LoadStackConfig(options.config, options.overrides);
     settings::CheckKeepsInputs(options.log, config);
     CatchStopSignals();
-    const settings::ProcessSection& section = SectionOf(config, program);
-    timing::RealTimeRequest request;
-    request.priority = section.priority;
-    request.cpu = section.cpu;
-    request.lock_memory = section.lock_memory;
-    timing::ApplyRealTime(request);
+    timing::ApplyRealTime(RealTimeRequestOf(SectionOf(config, program)));
     bus::UdpmBus bus(
         config.bus.url,
         bus::MakeAuthenticator(config.bus.resolved_key_file, bus::Channels(config.bus.channel_suffix)),

@@ -29,9 +29,9 @@ RefusalWatch::News RefusalWatch::Observe(const bus::RefusedMessages& refused, bu
 
 std::string RefusalWatch::Text() const {
   std::string reasons;
-  const auto add = [&](int64_t bus::RefusedMessages::*reason, const char* says) {
+  const auto add = [&](int64_t bus::RefusedMessages::*reason, const char* description) {
     const int64_t count = newest_.*reason - before_.*reason;
-    if (count > 0) reasons += fmt::format("{}{} {}", reasons.empty() ? "" : ", ", count, says);
+    if (count > 0) reasons += fmt::format("{}{} {}", reasons.empty() ? "" : ", ", count, description);
   };
   add(&bus::RefusedMessages::unsealed, "without a seal");
   add(&bus::RefusedMessages::wrong_seal, "sealed with another key or changed on the way");

@@ -1,4 +1,4 @@
-// Names messages that were refused because they are not genuine (bus.key_file).
+// Warns of messages that were refused because they are not genuine (bus.key_file).
 #pragma once
 
 #include <cstdint>
@@ -10,26 +10,27 @@
 
 namespace hydro::process {
 
-// Pure: counts and time are passed in. A warning: nothing that an intruder sends changes what the stack does.
+// Pure: counts and time are passed in. It is a warning only: nothing that an intruder sends changes what the
+// stack does.
 class RefusalWatch {
  public:
   static constexpr const char* kCode = "unauthenticated_command";
 
   enum class News { kNone, kBegins, kEnds };
 
-  // It begins with the first message that is refused, and ends when none has been for a second.
+  // An episode begins with the first refused message and ends when none has been refused for a second.
   News Observe(const bus::RefusedMessages& refused, bus::Clock::TimePoint now);
 
-  // Messages refused since it began; after it has ended, all of that time.
+  // Messages refused in this episode, or in the last one once it has ended.
   int64_t count() const { return count_; }
 
-  // One line: how many, why, the channel of the last, what to do.
+  // One line: how many, why, the channel of the last one, the setting concerned.
   std::string Text() const;
 
  private:
-  bus::RefusedMessages before_;  // when it began
+  bus::RefusedMessages before_;  // when the episode began
   bus::RefusedMessages newest_;
-  std::optional<bus::Clock::TimePoint> last_;  // while it lasts: when the newest was refused
+  std::optional<bus::Clock::TimePoint> last_;  // in an episode: when the newest was refused
   int64_t count_ = 0;
 };
 

@@ -1,4 +1,4 @@
-// SIGINT and SIGTERM as a flag that loops look at.
+// SIGINT, SIGTERM and SIGHUP as a flag that loops check.
 #pragma once
 
 namespace hydro::process {
@@ -7,7 +7,7 @@ namespace hydro::process {
 // HandleUntil(). Call once, before threads are started.
 void CatchStopSignals();
 
-// The signal that was caught; 0 when none was.
+// The caught signal; 0 when there was none.
 int StopSignal();
 
 }  // namespace hydro::process

@@ -12,9 +12,9 @@ namespace hydro::sim {
 SimulationResult Simulate(const settings::StackConfig& config,
                           const std::function<void(const bus::RawMessage&)>& tap) {
   if (config.last_tick < 0) {
-    throw InputError(
-        config.file +
-        ": time.duration_s: found 0, a simulation needs an end: allowed is > 0 (or --duration S)");
+    throw InputError(config.file +
+                     ": time.duration_s: found 0, allowed is > 0, because a simulation needs an end (or give "
+                     "--duration S)");
   }
   settings::StackConfig lockstep = config;
   lockstep.time.mode = settings::TimeMode::kLockstep;

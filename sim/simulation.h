@@ -1,5 +1,5 @@
-// The whole stack in one process on a simulated clock: the same plant, pressure loop and position loop as the
-// separate processes, in lockstep, over an in-process bus.
+// The whole stack in one process on a simulated clock: the same plant, pressure loop and position loop
+// classes as in the separate processes, in lockstep, over an in-process bus.
 #pragma once
 
 #include <cstdint>
@@ -12,15 +12,15 @@
 namespace hydro::sim {
 
 struct SimulationResult {
-  int64_t ticks = 0;    // the last tick reached
+  int64_t ticks = 0;    // the last tick
   double duration = 0;  // s, plant time of that tick
   int exit_code = 0;    // 0 complete, 1 failed
   std::string failure;  // why, empty when complete
 };
 
-// Runs `config` to its end and hands every message to `tap` (null: none, and nothing is encoded). Runs in
-// lockstep whatever time.mode says. Throws InputError when the configuration has no duration or contradicts
-// the model.
+// Runs `config` to its end, in lockstep whatever time.mode says, and passes every message to `tap` (null:
+// nothing is even encoded). Throws InputError when the configuration has no duration or contradicts the
+// model.
 SimulationResult Simulate(const settings::StackConfig& config,
                           const std::function<void(const bus::RawMessage&)>& tap);
 

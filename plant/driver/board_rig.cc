@@ -34,8 +34,8 @@ BoardRig::BoardRig(const settings::StackConfig& config, const bus::Clock& clock)
   }
   const auto [reach_low, reach_high] = std::minmax({amplifier_.scale * range.minimum_V + amplifier_.offset,
                                                     amplifier_.scale * range.maximum_V + amplifier_.offset});
-  least_ = std::max(reach_low, -amplifier_.limit_V);
-  most_ = std::min(reach_high, amplifier_.limit_V);
+  min_voltage_ = std::max(reach_low, -amplifier_.limit_V);
+  max_voltage_ = std::min(reach_high, amplifier_.limit_V);
 
   zero_.device = board_.device();
   zero_.subdevice = output_.subdevice;
@@ -55,7 +55,7 @@ BoardRig::BoardRig(const settings::StackConfig& config, const bus::Clock& clock)
 
 BoardRig::~BoardRig() {
   if (!zero_.Write()) {
-    std::fprintf(stderr, "hydro-driver: %s does not take zero volts: cut the amplifier's supply\n",
+    std::fprintf(stderr, "hydro-driver: %s does not accept zero volts: cut the amplifier's supply\n",
                  board_.name().c_str());
   }
   DisarmZero();
@@ -73,7 +73,7 @@ model::Measurement BoardRig::Read(int64_t /*tick*/) {
 
 double BoardRig::Drive(double voltage) {
   if (!std::isfinite(voltage)) voltage = 0;
-  voltage = std::clamp(voltage, least_, most_);
+  voltage = std::clamp(voltage, min_voltage_, max_voltage_);
   board_.Write(output_, output_.converter.Code(TerminalVoltage(amplifier_, voltage)));
   if (watchdog_) {
     watchdog_high_ = !watchdog_high_;

@@ -17,17 +17,17 @@ namespace hydro::plant {
 
 class BoardRig : public Rig {
  public:
-  // Opens the board and checks the channels that [driver] names; then the output is at zero, and goes to zero
-  // on every way out of the process (zero_output.h, zero_guardian.h). Throws InputError when the board does
-  // not have what the configuration names, RigError when it does not take the zero.
+  // Opens the board, checks the channels that [driver] names and writes zero volts. From then on the output
+  // goes to zero on every way out of the process (zero_output.h, zero_guardian.h). Throws InputError when the
+  // board lacks what the configuration names, RigError when it does not accept the zero.
   BoardRig(const settings::StackConfig& config, const bus::Clock& clock);
-  // Zero, then closes the board.
+  // Writes zero volts, then closes the board.
   ~BoardRig() override;
 
   std::string role() const override { return "driver"; }
   model::Measurement Read(int64_t tick) override;
   const std::vector<RigFault>& faults() const override { return faults_; }
-  // Changes the watchdog line once the board has taken the voltage.
+  // Toggles the watchdog line once the board has accepted the voltage.
   double Drive(double voltage) override;
   void Zero() noexcept override { zero_.Write(); }
 
@@ -39,8 +39,8 @@ class BoardRig : public Rig {
   BoardChannel output_;
   std::optional<BoardChannel> watchdog_;
   bool watchdog_high_ = false;
-  double most_;   // V of eq. (1), what limit and range allow
-  double least_;  // V
+  double min_voltage_;  // V of eq. (1), what limit and range allow
+  double max_voltage_;  // V
   ZeroOutput zero_;
   std::optional<ZeroGuardian> guardian_;
   BoardSensors sensors_;

@@ -35,7 +35,7 @@ double BoardSensor::Signal() {
       return Counted();
     case Source::kDerivative:
       elapsed_s_ = angle_->elapsed_s_;
-      return derivative_.Update(angle_->unfiltered_, elapsed_s_);  // the angle has the fault, if any
+      return derivative_.Update(angle_->unfiltered_, elapsed_s_);  // the angle raises the fault, if any
     case Source::kNone:
       break;
   }
@@ -59,12 +59,12 @@ double BoardSensor::Analog() {
     const double limit = low ? section_.minimum_V : section_.maximum_V;
     found_ = volts;
     allowed_ = std::isnan(limit) ? volts : limit;
-    complaint_ = std::isnan(limit)
-                     ? fmt::format("{} reads {:.4g} V, an end of its input range: the input is saturated",
-                                   name_, volts)
-                     : fmt::format("{} reads {:.4g} V, {} is {:.4g} V (driver.{}.{}); a broken wire?", name_,
-                                   volts, low ? "the least allowed" : "the most allowed", limit, name_,
-                                   low ? "minimum_V" : "maximum_V");
+    fault_text_ = std::isnan(limit)
+                      ? fmt::format("{} reads {:.4g} V, an end of its input range: the input is saturated",
+                                    name_, volts)
+                      : fmt::format("{} reads {:.4g} V, {} is {:.4g} V (driver.{}.{}); a broken wire?", name_,
+                                    volts, low ? "the least allowed" : "the most allowed", limit, name_,
+                                    low ? "minimum_V" : "maximum_V");
   }
   Judge(!low && !high);
   return low || high ? NAN : section_.scale * volts + section_.offset;
@@ -82,10 +82,11 @@ double BoardSensor::Counted() {
   return section_.scale * static_cast<double>(*count) + section_.offset;
 }
 
-// A loose contact must not switch the voltage on and off at every tick.
+// Several good readings in a row end the fault: a loose contact must not switch the voltage on and off at
+// every tick.
 void BoardSensor::Judge(bool good) {
   good_readings_ = good ? good_readings_ + 1 : 0;
-  if (!good && !fault_) fault_ = RigFault{"sensor_" + name_, complaint_, found_, allowed_};
+  if (!good && !fault_) fault_ = RigFault{"sensor_" + name_, fault_text_, found_, allowed_};
   if (good_readings_ >= kGoodReadings) {
     good_readings_ = kGoodReadings;
     fault_.reset();

@@ -1,4 +1,4 @@
-// One measured signal of a rig: where it comes from on the board, and what its readings are worth.
+// One measured signal of a rig: its source on the board, its scaling, and whether its readings are credible.
 #pragma once
 
 #include <cmath>
@@ -15,27 +15,27 @@ namespace hydro::plant {
 
 class BoardSensor {
  public:
-  // `name`: of its section, e.g. "p1". `angle`: the sensor whose rate this one is, for source "derivative";
-  // it must outlive this one and be read before it. Throws InputError when the board has no such channel.
+  // `name`: of its section, e.g. "p1". `angle`: for source "derivative" the sensor whose rate this one is; it
+  // must outlive this one and be read before it. Throws InputError when the board has no such channel.
   BoardSensor(ComediBoard& board, const bus::Clock& clock, const std::string& name,
               const settings::SensorSection& section, const BoardSensor* angle = nullptr);
 
-  // The signal now. Rates and low passes take the time since the last reading from the clock, right beside
-  // the reading itself, so that a late wake-up makes no false speed. NaN: not measured, or not to be
-  // believed: an analog input at an end of its range, or outside minimum_V to maximum_V. Throws RigError:
-  // "board_error" when the board does not answer, "encoder_lost" when a counter has moved too far to be
-  // followed.
+  // Reads the signal. The clock is read right beside the board, and rates and low passes use that time, so
+  // that a late wake-up causes no false speed. NaN: not measured, or not credible (an analog input at an end
+  // of its range or outside minimum_V to maximum_V). Throws RigError: "board_error" when the board does not
+  // answer, "encoder_lost" when a counter has moved too far to be followed.
   double Read();
 
-  // The fault "sensor_NAME": from a reading that is not to be believed until kGoodReadings in a row are.
+  // The fault "sensor_NAME": lasts from the first reading that is not credible until kGoodReadings good ones
+  // in a row.
   const std::optional<RigFault>& fault() const { return fault_; }
   static constexpr int kGoodReadings = 10;
 
-  // The last reading, for a person.
+  // The last reading, for display.
   const std::string& name() const { return name_; }
   const settings::SensorSection& section() const { return section_; }
   const BoardChannel& channel() const { return channel_; }
-  uint32_t code() const { return code_; }  // what the board said
+  uint32_t code() const { return code_; }  // the board's raw value
   double unfiltered() const { return unfiltered_; }
 
  private:
@@ -58,7 +58,7 @@ class BoardSensor {
   double elapsed_s_ = 0;  // between the last two readings; of a rate, those of its angle
   uint32_t code_ = 0;
   double unfiltered_ = NAN;
-  std::string complaint_;  // what is wrong with the last reading
+  std::string fault_text_;  // what is wrong with the last reading
   double found_ = NAN;
   double allowed_ = NAN;
   std::optional<RigFault> fault_;

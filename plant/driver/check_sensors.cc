@@ -14,7 +14,7 @@ namespace {
 using namespace std::chrono_literals;
 using Source = settings::SensorSection::Source;
 
-// Read more often than shown, so that low passes and rates are those of a run.
+// Readings are more frequent than tables, so that low passes and rates behave as in a run.
 constexpr auto kReadPeriod = 5ms;
 constexpr auto kTablePeriod = 500ms;
 

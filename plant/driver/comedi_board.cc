@@ -9,7 +9,7 @@
 namespace hydro::plant {
 namespace {
 
-// A signal that we catch may interrupt the driver's wait for a conversion: that is no error of the board.
+// A caught signal may interrupt the kernel driver's wait for a conversion, which is no error of the board.
 template <class Call>
 int Uninterrupted(const Call& call) {
   constexpr int kTries = 10;
@@ -87,7 +87,7 @@ BoardChannel ComediBoard::Channel(const std::string& key, const settings::BoardL
   channel.converter.max_code = comedi_get_maxdata(device_, channel.subdevice, channel.channel);
   if (channel.converter.max_code == 0) {
     throw settings::KeyError(file_, key + ".channel", std::to_string(line.channel),
-                             "a channel whose resolution " + name_ + " tells");
+                             "a channel whose resolution " + name_ + " reports");
   }
   return channel;
 }
@@ -128,7 +128,7 @@ BoardChannel ComediBoard::DigitalOutput(const std::string& key, const settings::
   if (comedi_get_subdevice_type(device_, channel.subdevice) == COMEDI_SUBD_DIO &&
       comedi_dio_config(device_, channel.subdevice, channel.channel, COMEDI_OUTPUT) < 0) {
     throw settings::KeyError(file_, key + ".channel", std::to_string(line.channel) + " (" + LastError() + ")",
-                             "a line that can be made an output");
+                             "a line that can be configured as an output");
   }
   return channel;
 }
@@ -137,7 +137,7 @@ uint32_t ComediBoard::Read(const BoardChannel& channel) {
   lsampl_t code = 0;
   const bool analog = channel.converter.minimum_V < channel.converter.maximum_V;
   const int result = Uninterrupted([&] {
-    // The delayed form reads twice with a pause between: for multiplexed inputs that need time to settle.
+    // The delayed form reads twice with a pause in between, for multiplexed inputs that need time to settle.
     return analog && settle_ns_ > 0
                ? comedi_data_read_delayed(device_, channel.subdevice, channel.channel, channel.range,
                                           channel.reference, &code, settle_ns_)

@@ -1,5 +1,5 @@
-// A data-acquisition board behind Comedi: the few of its functions that a rig needs, with errors that name
-// what is wrong.
+// A data-acquisition board behind Comedi: the few functions that a rig needs, with errors that say what is
+// wrong.
 #pragma once
 
 #include <comedilib.h>
@@ -19,19 +19,19 @@ struct BoardChannel {
   unsigned channel = 0;
   unsigned range = 0;
   unsigned reference = 0;
-  ConverterRange converter;  // of a counter or a digital line only max_code
+  ConverterRange converter;  // for a counter or a digital line only max_code
 };
 
 class ComediBoard {
  public:
-  // `file`: the configuration, for errors. Throws InputError when the device cannot be opened.
+  // `file`: the configuration file, for errors. Throws InputError when the device cannot be opened.
   ComediBoard(const std::string& file, const std::string& device, int settle_ns);
   ~ComediBoard();
   ComediBoard(const ComediBoard&) = delete;
   ComediBoard& operator=(const ComediBoard&) = delete;
 
-  // These check that the board has such a channel; they throw InputError that names `key`. The digital one
-  // makes the line an output where it could be either.
+  // These check that the board has such a channel, and throw an InputError that names `key` when it has not.
+  // DigitalOutput() also configures a bidirectional line as an output.
   BoardChannel AnalogInput(const std::string& key, const settings::SensorSection& section);
   BoardChannel Counter(const std::string& key, const settings::BoardLine& line);
   BoardChannel AnalogOutput(const std::string& key, const settings::AmplifierSection& section);

@@ -1,4 +1,4 @@
-// From a board's numbers to signals: scales, encoder counts, low passes. Pure: time is passed in.
+// Turns a board's numbers into signals: scales, encoder counts, low passes. Pure: time is passed in.
 #pragma once
 
 #include <cstdint>
@@ -6,25 +6,25 @@
 
 namespace hydro::plant {
 
-// A converter whose codes 0 to `max_code` stand for `minimum_V` to `maximum_V`, evenly, as Comedi's do.
+// A converter whose codes 0 to `max_code` map linearly to `minimum_V` to `maximum_V`, as Comedi's do.
 struct ConverterRange {
   uint32_t max_code = 0;
   double minimum_V = 0;
   double maximum_V = 0;
 
   double Volts(uint32_t code) const;
-  // The nearest code; beyond the range, its end. NaN gives that of 0 V.
+  // The nearest code; beyond the range, the code at its end. NaN gives the code of 0 V.
   uint32_t Code(double volts) const;
 };
 
-// Counts of an up-and-down counter that wraps from `max_count` to 0 and back.
+// The count of an up/down counter that wraps between `max_count` and 0.
 class EncoderCount {
  public:
   explicit EncoderCount(uint32_t max_count) : modulus_(int64_t{max_count} + 1) {}
 
-  // The count without wraps. The first reading is taken as signed: just below the wrap is just below zero.
-  // Between two readings the counter may move by less than a quarter of its range; nothing when it has moved
-  // more, where a turn forth cannot be told from one back.
+  // The unwrapped count. The first reading counts as signed: just below the wrap means just below zero.
+  // Between two readings the counter must move by less than a quarter of its range; after a larger move the
+  // direction is uncertain and nothing is returned.
   std::optional<int64_t> Update(uint32_t reading);
 
  private:
@@ -35,13 +35,13 @@ class EncoderCount {
 };
 
 // First-order low pass, y' = 2 pi corner (x - y), exact for an input that is held between its samples,
-// however far apart they are. Starts at its first input.
+// however far apart they are. Its output starts at the first input.
 class LowPass {
  public:
-  // `corner_hz` 0: what comes in goes out.
+  // `corner_hz` 0: the input passes unchanged.
   explicit LowPass(double corner_hz) : corner_hz_(corner_hz) {}
 
-  // `elapsed_s` since the last update. NaN goes through, and the next number is a first one.
+  // `elapsed_s`: since the last update. NaN passes through, and the filter starts again at the next number.
   double Update(double input, double elapsed_s);
 
  private:
@@ -49,10 +49,10 @@ class LowPass {
   std::optional<double> output_;
 };
 
-// The rate of a signal from one sample to the next: 0 at first, NaN beside NaN.
+// The rate of a signal from one sample to the next: 0 at the first sample, NaN for NaN.
 class Derivative {
  public:
-  // `elapsed_s` since the last update, above 0; else the rate stays what it was.
+  // `elapsed_s`: since the last update. When it is not above 0 the rate stays as it was.
   double Update(double input, double elapsed_s);
 
  private:

@@ -16,10 +16,10 @@ namespace hydro::plant {
 namespace {
 
 constexpr char kDismissed = 'd';
-constexpr int kPatience_ms = 500;  // with a guardian that was told to end
+constexpr int kExitTimeout_ms = 500;  // for a dismissed guardian
 
-// Everything of ours but `first` and `second` is closed: a pipe or socket that the guardian held open would
-// look like a driver that lives on.
+// Closes every descriptor but these two: a pipe or socket that the guardian held open would make the driver
+// look alive.
 void CloseAllBut(int first, int second) {
   const unsigned low = static_cast<unsigned>(first < second ? first : second);
   const unsigned high = static_cast<unsigned>(first < second ? second : first);
@@ -28,10 +28,10 @@ void CloseAllBut(int first, int second) {
   close_range(high + 1, ~0U, 0);
 }
 
-// The child of a process that may have had threads: only system calls from here on.
+// Runs in the fork of a process that may have threads: only system calls from here on.
 [[noreturn]] void Guard(const ZeroOutput& output, int pipe) {
   prctl(PR_SET_NAME, "hydro-zero");
-  // It dies with the driver, or for nobody: SIGTERM to the whole group must reach the driver alone.
+  // Only the driver's end may end the guardian: it must survive a SIGTERM to the whole process group.
   for (int signal = 1; signal < NSIG; ++signal) {
     if (signal != SIGKILL && signal != SIGSTOP) std::signal(signal, SIG_IGN);
   }
@@ -50,15 +50,15 @@ void CloseAllBut(int first, int second) {
 ZeroGuardian::ZeroGuardian(const ZeroOutput& output) {
   int ends[2];
   if (pipe2(ends, O_CLOEXEC) != 0) {
-    throw std::runtime_error(std::string("the guardian of the output has no pipe: ") + std::strerror(errno));
+    throw std::runtime_error(std::string("cannot create the output guardian's pipe: ") +
+                             std::strerror(errno));
   }
   pid_ = fork();
   if (pid_ < 0) {
     const int error = errno;
     close(ends[0]);
     close(ends[1]);
-    throw std::runtime_error(std::string("the guardian of the output cannot be started: ") +
-                             std::strerror(error));
+    throw std::runtime_error(std::string("cannot start the output guardian: ") + std::strerror(error));
   }
   if (pid_ == 0) {
     close(ends[1]);
@@ -70,7 +70,7 @@ ZeroGuardian::ZeroGuardian(const ZeroOutput& output) {
 
 void ZeroGuardian::Dismiss() {
   if (pipe_ < 0) return;
-  // A guardian that is not there any more must not end us with SIGPIPE.
+  // When the guardian no longer exists, SIGPIPE must not end this process.
   struct sigaction ignore = {}, before = {};
   ignore.sa_handler = SIG_IGN;
   sigaction(SIGPIPE, &ignore, &before);
@@ -79,11 +79,11 @@ void ZeroGuardian::Dismiss() {
   sigaction(SIGPIPE, &before, nullptr);
   close(pipe_);
   pipe_ = -1;
-  for (int i = 0; i < kPatience_ms; ++i) {
+  for (int i = 0; i < kExitTimeout_ms; ++i) {
     if (waitpid(pid_, nullptr, WNOHANG) != 0) return;
     usleep(1000);
   }
-  kill(pid_, SIGKILL);  // somebody has stopped it
+  kill(pid_, SIGKILL);  // it was stopped from outside
   waitpid(pid_, nullptr, 0);
 }
 

@@ -11,13 +11,13 @@ namespace {
 
 constexpr int kTries = 10;
 
-// What the handlers see: the pointer is null or what it points to is complete.
+// What the handlers see: the pointer is null, or the struct it points to is complete.
 ZeroOutput armed_output;
 std::atomic<const ZeroOutput*> armed{nullptr};
 static_assert(std::atomic<const ZeroOutput*>::is_always_lock_free, "signal handlers need it lock-free");
 
 std::terminate_handler previous_terminate = nullptr;
-alignas(16) char handler_stack[64 * 1024];  // of its own: the stack may be what has overflowed
+alignas(16) char handler_stack[64 * 1024];  // separate, because the normal stack may be what has overflowed
 
 void WriteArmed() noexcept {
   if (const ZeroOutput* output = armed.load()) output->Write();
@@ -35,14 +35,14 @@ void OnSignal(int signal) {
   WriteArmed();
   if (Stops(signal)) {
     raise(SIGSTOP);
-    return;  // continued: the run goes on, with the commands that come then
+    return;  // after SIGCONT the run goes on with the commands that come then
   }
-  // The handler was reset when it was entered and the signal is not blocked in it: this ends the process as
-  // the signal would have, with its core dump.
+  // The handler was reset on entry and does not block the signal, so this ends the process as the signal
+  // would have, core dump included.
   raise(signal);
 }
 
-// Those whose default is to do nothing, or that nobody can catch.
+// Signals whose default action is to do nothing, or that cannot be caught.
 bool LeftAlone(int signal) {
   switch (signal) {
     case SIGKILL:
@@ -63,7 +63,7 @@ void CatchEndingSignals() {
     stack_t stack = {};
     stack.ss_sp = handler_stack;
     stack.ss_size = sizeof handler_stack;
-    sigaltstack(&stack, nullptr);  // of this thread, the one that drives
+    sigaltstack(&stack, nullptr);  // for this thread, the one that drives
   }
   for (int signal = 1; signal < NSIG; ++signal) {
     struct sigaction present = {};

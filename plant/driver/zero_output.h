@@ -8,9 +8,9 @@
 namespace hydro::plant {
 
 // Plain numbers, so that a signal handler or a forked child may use it: it allocates nothing, takes no lock
-// and calls only comedi_data_write, comedi_dio_write and comedi_errno. Of libcomedi 0.11 these fill a struct
+// and calls only comedi_data_write, comedi_dio_write and comedi_errno. In libcomedi 0.11 these fill a struct
 // on the stack and make one ioctl; an error is stored in a global int (and printed only at a log level that
-// nobody sets).
+// this project never sets).
 struct ZeroOutput {
   comedi_t* device = nullptr;
   unsigned subdevice = 0;
@@ -23,14 +23,14 @@ struct ZeroOutput {
   unsigned watchdog_channel = 0;
 
   // Writes zero volts, then sets the watchdog line low. Tries again when the board refuses. Async-signal-safe
-  // as far as the above holds; leaves errno alone. Returns whether the board took the zero.
+  // as far as the above holds; preserves errno. Returns whether the board accepted the zero.
   bool Write() const noexcept;
 };
 
-// From now on every way out of this process that it can still act in writes `output` first: exit(),
-// quick_exit(), std::terminate (an exception that nobody catches) and every signal that ends or stops a
-// process, but SIGKILL and SIGSTOP and those that are caught already; the signal then does what it always
-// does. Lasts until DisarmZero(). One output per process; call it after CatchStopSignals().
+// From now on every way out of this process in which it can still act writes `output` first: exit(),
+// quick_exit(), std::terminate (an uncaught exception) and every signal that ends or stops a process, except
+// SIGKILL, SIGSTOP and those that already have a handler. The signal then takes its default action. Lasts
+// until DisarmZero(). One output per process; call it after CatchStopSignals().
 void ArmZero(const ZeroOutput& output);
 void DisarmZero();
 

@@ -281,7 +281,7 @@ class DriverFaultTest(DriverCase):
     def test_board_that_takes_no_zero(self):
         self.board.order("writes_fail")
         self.assertEqual(self.run_["driver"].wait(), 1, self.run_["driver"].report())
-        self.assertIn("does not take zero volts", self.run_["driver"].stderr)
+        self.assertIn("does not accept zero volts", self.run_["driver"].stderr)
         self.board.wait_for(lambda b: b["enabled"] == 0 and b["voltage"] == 0, "the watchdog")
         fault = [f for f in event_log.Log(self.log_file).faults if f.code == "board_error"][0]
         self.assertEqual((fault.source, bool(fault.latched)), ("driver", True))

@@ -46,7 +46,7 @@ class PlacementTest(stack.TestCase):
         threads = []
         for task in os.listdir(f"/proc/{pid}/task"):
             with open(f"/proc/{pid}/task/{task}/comm", encoding="utf-8") as name:
-                if name.read().strip() != "words":
+                if name.read().strip() != "stderr_log":
                     threads.append(int(task))
         return threads
 

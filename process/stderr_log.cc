@@ -1,4 +1,4 @@
-#include "process/words.h"
+#include "process/stderr_log.h"
 
 #include <limits.h>
 #include <poll.h>
@@ -24,20 +24,20 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr size_t kMostLines = 256;
-constexpr auto kLastWords = 1s;
-constexpr int kLook_ms = 50;  // how often a thread that cannot write looks whether it should go on trying
+constexpr auto kFinalWriteTime = 1s;
+constexpr int kRetryPeriod_ms = 50;  // a thread that cannot write checks this often whether to give up
 
 void OnThreadStart() {
   sigset_t all;
   sigfillset(&all);
   pthread_sigmask(SIG_SETMASK, &all, nullptr);
-  pthread_setname_np(pthread_self(), "words");
+  pthread_setname_np(pthread_self(), "stderr_log");
 }
 
 }  // namespace
 
-// Unlike spdlog's own it can give up, and it shows what came over the network as characters only.
-class Words::StderrSink : public spdlog::sinks::base_sink<std::mutex> {
+// Unlike spdlog's own sinks it can give up, and it escapes control characters.
+class StderrLog::Sink : public spdlog::sinks::base_sink<std::mutex> {
  public:
   void GiveUpAt(std::chrono::steady_clock::time_point time) { give_up_ = time; }
 
@@ -55,16 +55,16 @@ class Words::StderrSink : public spdlog::sinks::base_sink<std::mutex> {
     while (!text.empty()) {
       pollfd writable{STDERR_FILENO, POLLOUT, 0};
       const bool last_chance = std::chrono::steady_clock::now() >= give_up_.load();
-      if (poll(&writable, 1, last_chance ? 0 : kLook_ms) == 0) {
+      if (poll(&writable, 1, last_chance ? 0 : kRetryPeriod_ms) == 0) {
         if (last_chance) return;
         continue;
       }
-      // As much as a pipe that can be written to has room for.
+      // A pipe that polls as writable has room for PIPE_BUF bytes.
       const ssize_t written = write(STDERR_FILENO, text.data(), std::min<size_t>(text.size(), PIPE_BUF));
       if (written >= 0) {
         text.remove_prefix(static_cast<size_t>(written));
       } else if (errno != EINTR && errno != EAGAIN) {
-        return;  // nobody reads it any more
+        return;  // the reader has gone
       }
     }
   }
@@ -72,16 +72,16 @@ class Words::StderrSink : public spdlog::sinks::base_sink<std::mutex> {
   std::atomic<std::chrono::steady_clock::time_point> give_up_{std::chrono::steady_clock::time_point::max()};
 };
 
-Words::Words(const std::string& name) : sink_(std::make_shared<StderrSink>()) {
+StderrLog::StderrLog(const std::string& name) : sink_(std::make_shared<Sink>()) {
   spdlog::init_thread_pool(kMostLines, 1, OnThreadStart);
   spdlog::set_default_logger(std::make_shared<spdlog::async_logger>(
       name, sink_, spdlog::thread_pool(), spdlog::async_overflow_policy::overrun_oldest));
   spdlog::set_pattern("%H:%M:%S.%e %n: %v");
 }
 
-Words::~Words() {
-  sink_->GiveUpAt(std::chrono::steady_clock::now() + kLastWords);
-  spdlog::shutdown();  // writes what waits
+StderrLog::~StderrLog() {
+  sink_->GiveUpAt(std::chrono::steady_clock::now() + kFinalWriteTime);
+  spdlog::shutdown();  // writes what still waits
 }
 
 }  // namespace hydro::process

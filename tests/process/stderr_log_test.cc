@@ -1,4 +1,4 @@
-#include "process/words.h"
+#include "process/stderr_log.h"
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
@@ -14,14 +14,14 @@ namespace {
 using namespace std::chrono_literals;
 
 // Standard error is a small pipe.
-class WordsTest : public ::testing::Test {
+class StderrLogTest : public ::testing::Test {
  protected:
-  WordsTest() : stderr_(dup(STDERR_FILENO)) {
+  StderrLogTest() : stderr_(dup(STDERR_FILENO)) {
     EXPECT_EQ(pipe2(pipe_, O_CLOEXEC), 0);
     fcntl(pipe_[1], F_SETPIPE_SZ, 4096);
     dup2(pipe_[1], STDERR_FILENO);
   }
-  ~WordsTest() override {
+  ~StderrLogTest() override {
     dup2(stderr_, STDERR_FILENO);
     for (const int fd : {stderr_, pipe_[0], pipe_[1]}) close(fd);
   }
@@ -38,10 +38,10 @@ class WordsTest : public ::testing::Test {
   int pipe_[2] = {-1, -1};
 };
 
-// Tests that what another process has called itself cannot command the terminal.
-TEST_F(WordsTest, EscapesControlCharacters) {
+// Tests that a name from the network cannot send control sequences to the terminal.
+TEST_F(StderrLogTest, EscapesControlCharacters) {
   {
-    const Words words("hydro-test");
+    const StderrLog log("hydro-test");
     spdlog::error("from \033[2J\r\nhydro-plant: \xff\xc2\x9b!");
   }
   const std::string line = Read();
@@ -50,11 +50,11 @@ TEST_F(WordsTest, EscapesControlCharacters) {
       << line;
 }
 
-// Tests that a terminal that is stopped does not keep a process from ending: nothing reads the pipe.
-TEST_F(WordsTest, EndsThoughNobodyReads) {
+// Tests that a stopped terminal (nothing reads the pipe) does not keep a process from ending.
+TEST_F(StderrLogTest, EndsThoughNobodyReads) {
   const auto start = std::chrono::steady_clock::now();
   {
-    const Words words("hydro-test");
+    const StderrLog log("hydro-test");
     for (int i = 0; i < 100; ++i) spdlog::error("{}", std::string(200, 'x'));
   }
   const auto taken = std::chrono::steady_clock::now() - start;
