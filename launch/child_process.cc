@@ -18,7 +18,8 @@ struct Pipe {
 
   Pipe() {
     int fds[2];
-    if (pipe2(fds, O_CLOEXEC) != 0) throw StartError(std::string("no pipe for a child: ") + strerror(errno));
+    if (pipe2(fds, O_CLOEXEC) != 0)
+      throw StartError(std::string("cannot create a pipe for a child: ") + strerror(errno));
     read = fds[0];
     write = fds[1];
   }
@@ -40,10 +41,10 @@ struct Pipe {
   }
 };
 
-// Runs in the child between fork and exec: only calls that are safe there, no memory.
+// Runs in the child between fork and exec: only async-signal-safe calls, no allocation.
 [[noreturn]] void BecomeProgram(char* const* argv, pid_t launcher, int out, int err, int report) {
   setpgid(0, 0);
-  // The launcher may have died before the request was made: then nobody would tell us.
+  // When the launcher died before that request, the signal would never come.
   prctl(PR_SET_PDEATHSIG, SIGTERM);
   if (getppid() != launcher) _exit(1);
 
@@ -84,7 +85,7 @@ std::string DescribeEnd(const std::string& program, const ProcessEnd& end) {
 ChildProcess::ChildProcess(ChildSpec spec) : spec_(std::move(spec)) {
   Pipe out;
   Pipe err;
-  Pipe report;  // closed by a successful exec; else carries errno
+  Pipe report;  // closed by a successful exec, else carries errno
   std::vector<char*> argv;
   for (std::string& argument : spec_.argv) argv.push_back(argument.data());
   argv.push_back(nullptr);
@@ -94,7 +95,7 @@ ChildProcess::ChildProcess(ChildSpec spec) : spec_(std::move(spec)) {
   if (pid_ < 0) throw StartError(spec_.argv[0] + ": cannot be started: " + strerror(errno));
   if (pid_ == 0) BecomeProgram(argv.data(), launcher, out.write, err.write, report.write);
 
-  setpgid(pid_, pid_);  // also here, so that it holds whoever runs first
+  setpgid(pid_, pid_);  // also here, so that it is done whichever process runs first
   report.CloseWrite();
   int error = 0;
   ssize_t n;

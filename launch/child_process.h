@@ -1,4 +1,4 @@
-// One process that we started: its two output pipes, its end.
+// A process that the launcher started: its two output pipes and how it ended.
 #pragma once
 
 #include <sys/types.h>
@@ -11,14 +11,14 @@
 namespace hydro::launch {
 
 struct ChildSpec {
-  std::string label;              // before each of its lines, e.g. plant
+  std::string label;              // precedes each of its lines, e.g. plant
   std::vector<std::string> argv;  // argv[0] is the path of the program
-  bool last = false;              // is stopped only when all that are not last have ended
+  bool last = false;              // is stopped only when all processes without this mark have ended
 
-  std::string program() const;  // the path's last part, e.g. hydro-plant
+  std::string program() const;  // the last part of the path, e.g. hydro-plant
 };
 
-// How a process ended: by itself with exit_code, or by a signal (then signal != 0).
+// How a process ended: with exit_code, or by a signal (then signal != 0).
 struct ProcessEnd {
   int exit_code = 0;
   int signal = 0;
@@ -33,14 +33,14 @@ class StartError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-// Owns a started process until it has been reaped. Because nobody else reaps it, its pid cannot be given to
-// another process before TryReap() has succeeded, and Signal() can reach only this one.
+// Owns a started process until it has been reaped. Nobody else reaps it, so its pid cannot be reused before
+// TryReap() has succeeded, and Signal() can reach no other process.
 class ChildProcess {
  public:
-  // Starts the program in a process group of its own (a terminal's Ctrl-C does not reach it), with stdin from
-  // /dev/null, all signals unblocked, and SIGTERM on our death, however we die. SIGPIPE is ignored in it:
-  // when we are gone, a line that it prints on its way out must not kill it before it has flushed. Throws
-  // StartError.
+  // Starts the program in its own process group (a terminal's Ctrl-C does not reach it), with stdin from
+  // /dev/null and all signals unblocked. The kernel sends it SIGTERM when the launcher dies, however that
+  // happens. It ignores SIGPIPE, so that after the launcher's death a line that it prints on its way out does
+  // not kill it before it has flushed. Throws StartError.
   explicit ChildProcess(ChildSpec spec);
   ~ChildProcess();
   ChildProcess(const ChildProcess&) = delete;
@@ -51,13 +51,13 @@ class ChildProcess {
   bool running() const { return !end_; }
   const std::optional<ProcessEnd>& end() const { return end_; }
 
-  // Reads its end, if it has ended. True when this call found it.
+  // Checks whether it has ended. True when this call is the first to find so.
   bool TryReap();
 
-  // Sends a signal, unless it has been reaped.
+  // Sends a signal unless it has been reaped.
   void Signal(int signal_number);
 
-  // Our ends of its stdout and stderr, non-blocking; -1 once closed.
+  // The launcher's ends of its stdout and stderr, non-blocking; -1 once closed.
   int out_fd() const { return out_fd_; }
   int err_fd() const { return err_fd_; }
   void CloseOut();

@@ -1,7 +1,8 @@
+// hydro-launch CONFIG: starts, supervises and stops the processes of a stack; or asks something of one that
+// runs.
 #include <algorithm>
 #include <cstdio>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "base/text_file.h"
@@ -14,7 +15,65 @@
 
 namespace {
 
-int Ask(decltype(hydro::launch::StopStack)* request, const hydro::settings::CommonOptions& options) {
+struct Options {
+  hydro::settings::CommonOptions common;
+  hydro::launch::LaunchRequest request;
+  // Instead of starting anything; at most one.
+  bool stop = false;
+  bool rearm = false;
+  bool make_key = false;
+  bool doctor = false;
+};
+
+void AddOptions(hydro::settings::CommandLine* line, Options* options) {
+  line->AddCommon(&options->common, false);
+  line->AddOption("--host", &options->request.host,
+                  "NAME start only the processes whose [[process]] section has this host");
+  line->AddFlag(
+      "--doctor", &options->doctor,
+      "examine this machine and its network for the stack of CONFIG (without CONFIG: for any real-time "
+      "stack), and print what fixes each problem; starts nothing");
+  line->AddOption("--timing", &options->request.timing_file,
+                  "REPORT.json write how the loops kept time, and REPORT.html with plots beside it");
+  line->AddFlag("--stop", &options->stop,
+                "stop the running stack and wait until it has ended; starts nothing");
+  line->AddFlag("--rearm", &options->rearm,
+                "end the faults that hold the voltage at zero (limits.rearm = \"explicit\"); starts nothing");
+  line->AddFlag("--make-key", &options->make_key,
+                "write a new key into CONFIG's bus.key_file; starts nothing");
+}
+
+// The one flag given of those that start nothing; empty when none is. Throws InputError when two are.
+std::string FlagInstead(const Options& options) {
+  const std::vector<std::pair<std::string, bool>> flags = {{"--stop", options.stop},
+                                                           {"--rearm", options.rearm},
+                                                           {"--make-key", options.make_key},
+                                                           {"--doctor", options.doctor}};
+  std::string first;
+  for (const auto& [flag, given] : flags) {
+    if (!given) continue;
+    if (!first.empty()) {
+      throw hydro::InputError(first + ": found " + flag + " beside it, allowed is one of them");
+    }
+    first = flag;
+  }
+  return first;
+}
+
+// Refuses options that `flag` would ignore, because they cannot be what was meant: --stop --log X records
+// nothing. --set and its like say which stack it is, as they did on the command line that started it.
+void CheckNoneIgnored(const hydro::settings::CommandLine& line, const std::string& flag) {
+  std::vector<std::string> allowed = {"--set", "--time", "--duration", "--seed"};
+  if (flag == "--doctor") allowed.emplace_back("--host");
+  for (const std::string& given : line.Given()) {
+    if (given == flag || std::find(allowed.begin(), allowed.end(), given) != allowed.end()) continue;
+    throw hydro::InputError(flag + ": found " + given + " beside it, allowed are CONFIG and " +
+                            hydro::QuotedList(allowed));
+  }
+}
+
+int RunOperatorRequest(decltype(hydro::launch::StopStack)* request,
+                       const hydro::settings::CommonOptions& options) {
   const hydro::settings::StackConfig config =
       hydro::settings::LoadStackConfig(options.config, options.overrides);
   hydro::bus::UdpmBus bus(config.bus.url,
@@ -28,67 +87,29 @@ int Ask(decltype(hydro::launch::StopStack)* request, const hydro::settings::Comm
   return result.exit_code;
 }
 
-// Of the flags with which nothing is started. Returns the one that is given, or nothing.
-std::string TheOneOf(const std::vector<std::pair<std::string, bool>>& flags) {
-  std::string first;
-  for (const auto& [flag, given] : flags) {
-    if (!given) continue;
-    if (!first.empty()) {
-      throw hydro::InputError(first + ": found " + flag + " beside it, allowed is one of them");
-    }
-    first = flag;
+int Run(const hydro::settings::CommandLine& line, const Options& options) {
+  const std::string& config = options.common.config;
+  if (const std::string flag = FlagInstead(options); !flag.empty()) CheckNoneIgnored(line, flag);
+  if (options.doctor) {
+    return hydro::launch::RunDoctor(config, options.common.overrides, options.request.host);
   }
-  return first;
-}
-
-// An option that nobody would look at may not be what was meant: a stack is not recorded by --stop --log X.
-// --set and its like say which stack it is, as the command line that started it did.
-void CheckNoneIgnored(const hydro::settings::CommandLine& line, const std::string& flag) {
-  std::vector<std::string> allowed = {"--set", "--time", "--duration", "--seed"};
-  if (flag == "--doctor") allowed.emplace_back("--host");
-  for (const std::string& given : line.Given()) {
-    if (given == flag || std::find(allowed.begin(), allowed.end(), given) != allowed.end()) continue;
-    throw hydro::InputError(flag + ": found " + given + " beside it, allowed are CONFIG and " +
-                            hydro::QuotedList(allowed));
-  }
+  if (config.empty()) throw hydro::InputError("CONFIG is required; see --help");
+  if (options.make_key) return hydro::launch::MakeKey(options.common);
+  if (options.stop) return RunOperatorRequest(hydro::launch::StopStack, options.common);
+  if (options.rearm) return RunOperatorRequest(hydro::launch::RearmStack, options.common);
+  hydro::launch::LaunchRequest request = options.request;
+  request.config_file = config;
+  request.overrides = options.common.overrides;
+  request.log_file = options.common.log;
+  return hydro::launch::LaunchStack(request);
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  hydro::settings::CommandLine line("hydro-launch",
-                                    "Starts, watches over and stops the processes of a stack.");
-  hydro::settings::CommonOptions options;
-  hydro::launch::LaunchRequest request;
-  line.AddCommon(&options, false);
-  line.AddOption("--host", &request.host,
-                 "NAME start only the processes whose [[process]] section has this host");
-  bool doctor = false;
-  line.AddFlag(
-      "--doctor", &doctor,
-      "examine this machine and its network for the stack of CONFIG (without: for any in real time), and "
-      "print what mends each problem; starts nothing");
-  line.AddOption("--timing", &request.timing_file,
-                 "REPORT.json write there how the loops kept time, and REPORT.html with plots beside it");
-  bool stop = false;
-  bool rearm = false;
-  line.AddFlag("--stop", &stop, "stop the stack that runs, and wait until it has; starts nothing");
-  line.AddFlag("--rearm", &rearm,
-               "end the faults that hold the voltage at zero (limits.rearm = \"explicit\"); starts nothing");
-  bool make_key = false;
-  line.AddFlag("--make-key", &make_key, "write a new key into CONFIG's bus.key_file and start nothing");
+  hydro::settings::CommandLine line("hydro-launch", "Starts, supervises and stops the processes of a stack.");
+  Options options;
+  AddOptions(&line, &options);
   if (const auto code = line.Parse(argc, argv)) return *code;
-  return hydro::settings::RunProgram("hydro-launch", [&] {
-    const std::string instead =
-        TheOneOf({{"--stop", stop}, {"--rearm", rearm}, {"--make-key", make_key}, {"--doctor", doctor}});
-    if (!instead.empty()) CheckNoneIgnored(line, instead);
-    if (doctor) return hydro::launch::RunDoctor(options.config, options.overrides, request.host);
-    if (options.config.empty()) throw hydro::InputError("CONFIG is required; see --help");
-    if (make_key) return hydro::launch::MakeKey(options);
-    if (stop || rearm) return Ask(stop ? hydro::launch::StopStack : hydro::launch::RearmStack, options);
-    request.config_file = options.config;
-    request.overrides = options.overrides;
-    request.log_file = options.log;
-    return hydro::launch::LaunchStack(request);
-  });
+  return hydro::settings::RunProgram("hydro-launch", [&] { return Run(line, options); });
 }

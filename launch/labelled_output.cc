@@ -12,7 +12,7 @@
 namespace hydro::launch {
 namespace {
 
-// One of six terminal colours, the same for the same label in every run.
+// One of six terminal colours, the same for a label in every run.
 std::string ColourOf(std::string_view label) {
   unsigned sum = 0;
   for (const char c : label) sum = sum * 31 + static_cast<unsigned char>(c);
@@ -53,8 +53,8 @@ void LabelledOutput::WriteSome() {
   const ssize_t n =
       write(FdOf(chunk.stream), chunk.bytes.data() + chunk.written, std::min<std::size_t>(left, PIPE_BUF));
   if (n < 0 && (errno == EINTR || errno == EAGAIN)) return;
-  // Whoever read our output has gone (EPIPE), or the disk is full: the stack matters more than its text, so
-  // go on without.
+  // The reader has gone (EPIPE) or the disk is full: the stack matters more than its output, so the line is
+  // discarded.
   const std::size_t done = n < 0 ? left : static_cast<std::size_t>(n);
   chunk.written += done;
   queued_bytes_ -= done;

@@ -1,4 +1,4 @@
-// The lines of several programs on one stdout and one stderr, each with the name of where it came from.
+// The lines of several programs on one stdout and one stderr, each labelled with its source.
 #pragma once
 
 #include <cstddef>
@@ -8,9 +8,10 @@
 
 namespace hydro::launch {
 
-// Lines leave in the order in which they were added, whole: a line of one stream is finished before one of
-// the other is begun, also where both streams are the same file. Nothing is dropped; full() says when to stop
-// reading from the children until the reader of our output has caught up. Nothing here blocks except Flush().
+// Lines are written whole and in the order in which they were added: a line of one stream is complete before
+// one of the other begins, also when both streams are the same file. Nothing is dropped; full() says when to
+// stop reading from the children until the reader of this output has caught up. Nothing here blocks except
+// Flush().
 class LabelledOutput {
  public:
   enum class Stream { kOut, kErr };
@@ -18,24 +19,24 @@ class LabelledOutput {
   // Writes to the two descriptors, which stay the caller's. `colour`: labels are coloured.
   LabelledOutput(int out_fd, int err_fd, bool colour) : out_fd_(out_fd), err_fd_(err_fd), colour_(colour) {}
 
-  // True when labels should be coloured: both are terminals and NO_COLOR is not set.
+  // Whether labels should be coloured: both are terminals and NO_COLOR is not set.
   static bool WantsColour(int out_fd, int err_fd);
 
-  // Labels are padded to the longest that was announced.
+  // Labels are padded to the longest announced one.
   void AnnounceLabel(std::string_view label);
 
-  // Adds one line, "[label]   text". `text` has no line end.
+  // Adds the line "[label]   text". `text` has no line end.
   void Line(Stream stream, std::string_view label, std::string_view text);
 
   // The descriptor that must be writable for the next byte; -1: nothing waits.
   int waiting_fd() const { return queue_.empty() ? -1 : FdOf(queue_.front().stream); }
   bool full() const { return queued_bytes_ > kMostQueued; }
 
-  // Writes at most PIPE_BUF bytes. Called when waiting_fd() is writable it does not block, also where the
-  // descriptor is a blocking one: a pipe that polls writable has that much room.
+  // Writes at most PIPE_BUF bytes. Called when waiting_fd() polls as writable it does not block, even on a
+  // blocking descriptor: a pipe that polls as writable has that much room.
   void WriteSome();
 
-  // Writes all that waits, blocking.
+  // Writes everything that waits, blocking.
   void Flush();
 
  private:

@@ -1,5 +1,4 @@
-// A launch: starts the processes of a stack, watches over them until the run has ended, and ends them in
-// order.
+// A launch: starts the processes of a stack, watches them until the run has ended, and ends them in order.
 #pragma once
 
 #include "launch/launch_plan.h"
@@ -12,19 +11,19 @@ struct LaunchTiming {
   Supervisor::Grace grace;
   // After a stop was heard: how long the processes may take to end by themselves before they get SIGTERM.
   Supervisor::Duration patience = std::chrono::seconds(3);
-  // A process ended with 0 and no stop has been heard: how long the stop may take to arrive.
+  // After a process ended with 0 and no stop was heard: how long the stop may take to arrive.
   Supervisor::Duration stop_arrival = std::chrono::milliseconds(500);
 };
 
-// Runs the plan until no process is left; the children's lines and our own go to `out_fd` and `err_fd`.
-// SIGINT, SIGTERM and SIGHUP end the run in order, a second SIGINT at once. Returns the exit code: 0 the run
-// ended in order, 1 something failed, 2 a process refused its input. Throws InputError for a bad bus URL and
-// BusError where the bus cannot work, before anything is started. Call it before the process has other
-// threads.
+// Runs the plan until no process is left. The children's lines and the launcher's own go to `out_fd` and
+// `err_fd`. SIGINT, SIGTERM and SIGHUP end the run in order, a second SIGINT at once. Returns the exit code:
+// 0 the run ended in order, 1 something failed, 2 a process refused its input. Before anything is started it
+// throws InputError for a bad bus URL and BusError when the bus cannot work. Call it before the process has
+// other threads.
 int Launch(const settings::StackConfig& config, const LaunchPlan& plan, int out_fd, int err_fd,
            const LaunchTiming& timing = {});
 
-// All of hydro-launch behind its command line: loads the configuration, plans, launches.
+// What hydro-launch does with its command line: loads the configuration, plans, launches.
 int LaunchStack(const LaunchRequest& request);
 
 }  // namespace hydro::launch

@@ -22,18 +22,18 @@ struct LaunchPlan {
   std::vector<ChildSpec> children;
   bool spread = false;               // other processes of the stack run on other hosts
   std::vector<std::string> remarks;  // lines that the user should see
-  std::string timing_file;           // where the report on how the loops kept time goes, .json; empty: none
+  std::string timing_file;           // the .json report on how the loops kept time; empty: none
 };
 
-// Programs are taken from `programs_folder`, else from PATH. Throws InputError when a program is missing, and
-// when the hosts of the [[process]] sections and `request.host` do not fit.
+// Programs are looked for in `programs_folder`, then on PATH. Throws InputError when a program is missing or
+// the hosts of the [[process]] sections do not match `request.host`.
 LaunchPlan PlanLaunch(const settings::StackConfig& config, const LaunchRequest& request,
                       const std::string& programs_folder);
 
-// The role under which a program announces itself: "hydro-pressure-ctrl" is "pressure_ctrl".
+// The role that a program announces itself under: "pressure_ctrl" for "hydro-pressure-ctrl".
 std::string RoleOf(const std::string& program);
 
-// The folder of the running program.
+// The folder that the running program is in.
 std::string OwnFolder();
 
 }  // namespace hydro::launch

@@ -12,18 +12,17 @@ class LineAssembler {
  public:
   using LineHandler = std::function<void(std::string_view line)>;  // without its line end
 
-  // A line longer than this is passed on in pieces, so that a program that never ends a line cannot fill
-  // memory.
+  // A longer line is passed on in pieces, so that a program that never ends a line cannot fill the memory.
   static constexpr std::size_t kLongestLine = 64 * 1024;
 
   // Adds bytes and calls `handler` for each line that they complete.
   void Feed(std::string_view bytes, const LineHandler& handler);
 
-  // The pipe has ended: what was begun and never finished counts as a line.
+  // Call it when the pipe has ended: an unfinished line counts as a line.
   void Finish(const LineHandler& handler);
 
  private:
-  std::string begun_;
+  std::string unfinished_;
 };
 
 }  // namespace hydro::launch

@@ -12,7 +12,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr auto kListen = 300ms;  // a second plant would be heard within
+constexpr auto kListen = 300ms;  // long enough to hear a second plant
 constexpr auto kRepeat = 100ms;
 
 }  // namespace

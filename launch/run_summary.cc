@@ -25,7 +25,7 @@ void RunSummary::Add(const loop_statistics_t& report) {
     *loop = Loop{report, report.cycles, report.missed_deadlines, report.lost_messages, report.latency_max_us};
     return;
   }
-  // A process that was killed leaves only its periodic reports; one over a few cycles says little.
+  // A process that was killed leaves only its periodic reports, and a report on a few cycles means little.
   if (report.interval_s >= kMostOfASecond || loop->shown.interval_s < kMostOfASecond) loop->shown = report;
   loop->cycles = SaturatingSum(loop->cycles, report.cycles);
   loop->missed_deadlines = SaturatingSum(loop->missed_deadlines, report.missed_deadlines);

@@ -1,4 +1,4 @@
-// What a run's statistics and faults come down to, as a table for the end of a launch.
+// A run's statistics and faults as a table for the end of a launch.
 #pragma once
 
 #include <cstdint>
@@ -14,14 +14,14 @@ class RunSummary {
   void Add(const loop_statistics_t& report);
   void Add(const fault_t& fault);
 
-  // One line a process, then one a kind of fault. Percentiles are those of the process's report over its
-  // whole run; without one, of the last report that covers most of a second; the largest latency, missed
+  // One line per process, then one per kind of fault. Percentiles come from the process's report on its whole
+  // run or, without one, from its last report that covers most of a second. The largest latency, missed
   // deadlines and lost messages are those of the whole run. Empty when nothing was reported. Times are in
   // microseconds, with or without --si.
   std::vector<std::string> Lines() const;
 
-  // "CODE of SOURCE" of every fault that was still there at the end and is more than a warning,
-  // once, whoever else says the same.
+  // "CODE of SOURCE" of every fault that was still active at the end and is more than a warning, each once,
+  // whatever the session.
   std::vector<std::string> FaultsLeft() const;
 
  private:

@@ -4,6 +4,7 @@
 #include "launch/launch_plan.h"
 
 namespace hydro::launch {
+
 StackWatch::StackWatch(bus::Bus& bus, const bus::Clock& clock, const bus::Channels& channels)
     : bus_(bus), clock_(clock), channels_(channels), session_(bus::RandomSession()) {
   bus.Subscribe<process_status_t>(channels_.process_status, [this](const process_status_t& status) {

@@ -1,5 +1,5 @@
-// What the processes of a stack say about themselves on the bus: who is ready, that the run ends, what went
-// wrong.
+// What the processes of a stack report about themselves on the bus: who is ready, that the run ends, what
+// went wrong.
 #pragma once
 
 #include <sys/types.h>
@@ -26,16 +26,16 @@ class StackWatch {
   // Subscribes. Create it before the processes are started, so that no announcement is missed.
   StackWatch(bus::Bus& bus, const bus::Clock& clock, const bus::Channels& channels);
 
-  // A process of ours, to be waited for.
+  // Adds a process of this launch to wait for.
   void Expect(const std::string& program, pid_t pid);
 
-  // Programs that were expected and have not said that they are ready, in the order given.
+  // The expected programs that have not announced that they are ready, in the order given.
   std::vector<std::string> NotReady() const;
 
-  // Why a process of ours says it failed; empty when it has not said.
+  // Why a process of this launch failed, in its own words; empty when it gave no reason.
   std::string FailureText(const std::string& program, pid_t pid) const;
 
-  // The first stop that anybody else has published.
+  // The first stop that another process has published.
   const std::optional<stop_t>& stop() const { return stop_; }
 
   // Tells every process of the stack, on every host, to end. exit_code: 0 in order, 1 something failed.
@@ -43,7 +43,7 @@ class StackWatch {
 
   const RunSummary& summary() const { return summary_; }
 
-  // What the processes reported about their loops.
+  // The processes' reports on how their loops kept time.
   const timing::TimingRecord& timing() const { return timing_; }
 
  private:
@@ -57,7 +57,7 @@ class StackWatch {
   const bus::Channels channels_;
   const int64_t session_;
   std::vector<Expected> expected_;
-  // The latest of each role and process id: on another host a process of another role may have the same id.
+  // The latest of each role and process id: a process of another role may have the same id on another host.
   std::map<std::pair<std::string, pid_t>, process_status_t> statuses_;
   std::optional<stop_t> stop_;
   RunSummary summary_;

@@ -13,10 +13,10 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr auto kRepeat = 50ms;    // UDP may lose one
-constexpr auto kUnheard = 500ms;  // for so long also to those that have not been heard
+constexpr auto kRepeat = 50ms;    // UDP may lose a message
+constexpr auto kUnheard = 500ms;  // for this long also when no process has been heard
 
-// The processes that are heard, until they say farewell.
+// The processes that are heard, until they announce their end.
 class Presence {
  public:
   Presence(bus::Bus& bus, const bus::Clock& clock, const bus::Channels& channels) : clock_(clock) {
@@ -36,8 +36,8 @@ class Presence {
   size_t count() const { return processes_.size(); }
   bus::Clock::TimePoint newest() const { return newest_; }
 
-  // Those that have not said farewell.
-  std::string Left() const {
+  // The processes that have not announced their end.
+  std::string Remaining() const {
     std::string names;
     for (const auto& [session, process] : processes_) {
       if (!process.left) names += (names.empty() ? "" : ", ") + process.name;
@@ -78,8 +78,8 @@ OperatorResult StopStack(bus::Bus& bus, const bus::Clock& clock, const settings:
   auto next_stop = start;
   while (true) {
     const auto now = clock.Now();
-    const std::string left = presence.Left();
-    if (now >= next_stop && (now - start < kUnheard || !left.empty())) {
+    const std::string remaining = presence.Remaining();
+    if (now >= next_stop && (now - start < kUnheard || !remaining.empty())) {
       stop.utime = clock.Utime();
       bus.Publish(channels.stop, stop);
       next_stop = now + kRepeat;
@@ -87,10 +87,10 @@ OperatorResult StopStack(bus::Bus& bus, const bus::Clock& clock, const settings:
     if (!presence.anybody() && now - start > timing.presence) {
       return {1, "no process of a stack is heard on " + config.bus.url};
     }
-    if (presence.anybody() && left.empty() && now - presence.newest() > timing.quiet) {
+    if (presence.anybody() && remaining.empty() && now - presence.newest() > timing.quiet) {
       return {0, "stopped: " + std::to_string(presence.count()) + " processes have ended"};
     }
-    if (now - start > timing.end) return {1, "has not ended: " + left};
+    if (now - start > timing.end) return {1, "has not ended: " + remaining};
     bus.HandleUntil(now + kRepeat);
   }
 }

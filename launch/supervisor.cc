@@ -34,9 +34,10 @@ int PollTimeoutMs(Supervisor::TimePoint until) {
 Supervisor::Supervisor(LabelledOutput& output, Grace grace) : output_(output), grace_(grace) {
   const sigset_t set = WatchedSignals();
   sigprocmask(SIG_BLOCK, &set, nullptr);
-  signal(SIGPIPE,
-         SIG_IGN);  // a reader of our output that goes away must not end us and leave the motor running
-  signal(SIGCHLD, SIG_DFL);  // where our parent ignored it, children would vanish without a status
+  // A reader of this output that goes away must not end the launcher and leave the motor running.
+  signal(SIGPIPE, SIG_IGN);
+  // If the parent process ignored it, children would vanish without a status.
+  signal(SIGCHLD, SIG_DFL);
   signal_fd_ = signalfd(-1, &set, SFD_NONBLOCK | SFD_CLOEXEC);
   if (signal_fd_ < 0) throw StartError(std::string("signalfd: ") + strerror(errno));
 }
@@ -111,8 +112,8 @@ void Supervisor::Read(Child& child, Stream stream) {
   }
 }
 
-// After its end: what lies in the pipe. A pipe holds 64 KiB; more can only come from a process that the child
-// itself started and that has inherited the pipe, and we do not wait for those.
+// Reads what an ended child left in the pipe. A pipe holds 64 KiB; more can only come from a process that the
+// child started and that inherited the pipe, and those are not waited for.
 void Supervisor::ReadRest(Child& child, Stream stream) {
   const auto fd = [&] { return stream == Stream::kOut ? child.process.out_fd() : child.process.err_fd(); };
   for (int i = 0; i < 16 && fd() >= 0; ++i) {
@@ -132,7 +133,7 @@ void Supervisor::Reap() {
     ReadRest(*child, Stream::kErr);
     const ChildSpec& spec = child->process.spec();
     ended_.push_back({spec.label, spec.program(), child->process.pid(), *child->process.end(),
-                      child->told_at.has_value(), child->hung});
+                      child->terminated_at.has_value(), child->hung});
   }
 }
 
@@ -168,14 +169,14 @@ void Supervisor::TakeStopSteps(TimePoint now) {
   if (running_first() == 0 && !first_gone_at_) first_gone_at_ = now;
   for (const auto& child : children_) {
     if (!child->process.running()) continue;
-    if (!child->told_at) {
+    if (!child->terminated_at) {
       const bool due = child->process.spec().last
                            ? first_gone_at_ && now >= *first_gone_at_ + grace_.before_last
                            : now >= *stop_at_;
       if (!due) continue;
       child->process.Signal(SIGTERM);
-      child->told_at = now;
-    } else if (!child->hung && now >= *child->told_at + GraceOf(*child)) {
+      child->terminated_at = now;
+    } else if (!child->hung && now >= *child->terminated_at + GraceOf(*child)) {
       child->process.Signal(SIGKILL);
       child->hung = true;
     }
@@ -187,8 +188,8 @@ Supervisor::TimePoint Supervisor::NextStopStep() const {
   if (!stop_at_) return next;
   for (const auto& child : children_) {
     if (!child->process.running() || child->hung) continue;
-    if (child->told_at) {
-      next = std::min(next, *child->told_at + GraceOf(*child));
+    if (child->terminated_at) {
+      next = std::min(next, *child->terminated_at + GraceOf(*child));
     } else if (!child->process.spec().last) {
       next = std::min(next, *stop_at_);
     } else if (first_gone_at_) {

@@ -1,5 +1,5 @@
-// Processes that were started together and end together. Knows nothing of the bus or of what the programs
-// are.
+// Starts processes that belong together and ends them together. It knows neither the bus nor what the
+// programs do.
 #pragma once
 
 #include <chrono>
@@ -17,10 +17,10 @@ namespace hydro::launch {
 
 // Contract:
 // - Every line that a child printed is passed to the output before its end is reported.
-// - Stop() sends SIGTERM to the children that are not `last`; to the others when those have ended; SIGKILL to
-//   each that is still there a while after its SIGTERM. Only processes that this object started are ever
-//   signalled.
-// - The destructor does the same and waits for it, so that no way out leaves a child behind.
+// - Stop() sends SIGTERM to the children that are not `last`, then to the `last` ones when the others have
+//   ended, and SIGKILL to any child that has not ended within its grace period. Only processes that this
+//   object started are ever signalled.
+// - The destructor does the same and waits, so that no way out leaves a child behind.
 class Supervisor {
  public:
   using Clock = std::chrono::steady_clock;
@@ -29,8 +29,9 @@ class Supervisor {
 
   struct Grace {
     Duration child = std::chrono::seconds(3);  // from SIGTERM to SIGKILL
-    Duration last = std::chrono::seconds(10);  // the same for `last` ones: a logger may have much to write
-    Duration before_last{};                    // from the end of the others to the SIGTERM of the `last` ones
+    Duration last =
+        std::chrono::seconds(10);  // the same for `last` children: a logger may have much to write
+    Duration before_last{};        // from the end of the others to the SIGTERM for the `last` ones
   };
 
   struct Ended {
@@ -38,12 +39,12 @@ class Supervisor {
     std::string program;
     pid_t pid = -1;
     ProcessEnd end;
-    bool told_to_end = false;  // we had sent it SIGTERM
-    bool hung = false;         // we had to send it SIGKILL because it did not end on SIGTERM
+    bool terminated = false;  // Stop() had sent it SIGTERM
+    bool hung = false;        // it did not end on SIGTERM and was sent SIGKILL
   };
 
-  // From here on SIGINT, SIGTERM and SIGHUP are blocked in this thread and come out of NextSignal(). Create
-  // it before any other thread, so that those inherit the mask.
+  // Blocks SIGINT, SIGTERM and SIGHUP in this thread from now on; NextSignal() returns them. Create it before
+  // any other thread, so that those inherit the mask.
   Supervisor(LabelledOutput& output, Grace grace);
   ~Supervisor();
   Supervisor(const Supervisor&) = delete;
@@ -52,25 +53,24 @@ class Supervisor {
   // Starts a process and returns its pid. Throws StartError.
   pid_t Start(ChildSpec spec);
 
-  // Waits until a child printed or ended, a signal came, or `deadline`; passes output on, and takes the steps
-  // of the stop that are due.
+  // Waits until a child prints or ends, a signal comes, or `deadline`. Passes output on and takes the steps
+  // of a stop that are due.
   void Wait(TimePoint deadline);
 
-  // What Wait() found, oldest first; empty when there is no more.
+  // What Wait() found, oldest first; nothing when there is no more.
   std::optional<Ended> NextEnded();
   std::optional<int> NextSignal();
 
-  // Begins the stop: SIGTERM at `first_signal`, so that those that are about to end by themselves may. A
-  // second call can only make it sooner.
+  // Begins the stop. SIGTERM goes out at `first_signal`, which leaves children that are about to end by
+  // themselves time to do so. A later call can only bring it forward.
   void Stop(TimePoint first_signal);
   bool stopping() const { return stop_at_.has_value(); }
 
-  // SIGKILL to all that are left.
+  // Sends SIGKILL to all children that have not ended.
   void KillAll();
 
-  // Children that are neither ended nor `last`; all that have not ended.
-  int running_first() const;
-  int running() const;
+  int running() const;        // children that have not ended
+  int running_first() const;  // those of them that are not `last`
   // No child is left and all their lines have been written.
   bool finished() const { return running() == 0 && output_.waiting_fd() < 0; }
 
@@ -80,7 +80,7 @@ class Supervisor {
     ChildProcess process;
     LineAssembler out_lines;
     LineAssembler err_lines;
-    std::optional<TimePoint> told_at;
+    std::optional<TimePoint> terminated_at;
     bool hung = false;
   };
 
@@ -99,7 +99,7 @@ class Supervisor {
   std::deque<Ended> ended_;
   std::deque<int> signals_;
   std::optional<TimePoint> stop_at_;
-  std::optional<TimePoint> first_gone_at_;  // when, during a stop, no child was left but the `last` ones
+  std::optional<TimePoint> first_gone_at_;  // during a stop: when only the `last` children were left
 };
 
 }  // namespace hydro::launch

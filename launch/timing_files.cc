@@ -22,7 +22,7 @@ TimingFiles::TimingFiles(const std::string& json) : json_(json) {
     throw InputError("--timing: found " + json + ", allowed is a name that ends in .json");
   }
   page_ = json.substr(0, json.size() - (sizeof kEnding - 1)) + ".html";
-  // Opened and left without a word: only the attempt counts.
+  // Opened and abandoned: only whether they can be opened matters.
   const NewFile json_file(json_, Opening::kTemporary);
   const NewFile page_file(page_, Opening::kTemporary);
 }

@@ -10,11 +10,11 @@ namespace hydro::launch {
 
 class TimingFiles {
  public:
-  // `json`: "REPORT.json". Throws InputError when its name ends otherwise or its folder cannot be written, so
-  // that a run does not have to end before that is known.
+  // `json`: "REPORT.json". Throws InputError when the name ends otherwise or the folder is not writable, so
+  // that this is known before the run starts.
   explicit TimingFiles(const std::string& json);
 
-  // Writes both, each whole or not at all. Throws WriteError or InputError.
+  // Writes both files, each whole or not at all. Throws WriteError or InputError.
   void Write(const std::vector<timing::TimedProcess>& processes, const std::string& source) const;
 
   const std::string& json() const { return json_; }

@@ -14,7 +14,7 @@
 namespace hydro::launch {
 namespace {
 
-// What the checks of real time go by where no configuration says it; that of config/realtime.toml.
+// Assumed for the real-time checks when there is no configuration: the priority in config/realtime.toml.
 constexpr int kUsualPriority = 80;
 
 bool IsOf(const settings::ProcessSection& process, const std::string& host) {

@@ -28,7 +28,7 @@ using namespace std::chrono_literals;
 
 constexpr auto kListenTime = 2s;  // every process of a stack reports once a second
 
-// Empty where it cannot be read.
+// Empty when it cannot be read.
 std::string TextOf(const fs::path& path) {
   std::ifstream file(path);
   return {std::istreambuf_iterator<char>(file), {}};
@@ -46,7 +46,7 @@ std::optional<bool> SwitchOf(const fs::path& path) {
   return word != "0";
 }
 
-// Asked of a socket: files under /sys may be those of another network namespace.
+// Asks a socket, because files under /sys may belong to another network namespace.
 unsigned FlagsOf(const std::string& interface) {
   const int fd = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
   if (fd < 0) return 0;
@@ -133,7 +133,7 @@ void ReadClock(MachineFacts* facts) {
   facts->clock_error_us = state.maxerror;
 }
 
-// Who reports on its loop is named; its messages may carry a seal behind them (a stack with a key).
+// Names the processes that report on their loops. Their messages may end with a seal (a stack with a key).
 void Listen(const DoctorTask& task, MachineFacts* facts) {
   const std::string statistics = bus::Channels().loop_statistics;
   std::map<std::string, std::set<std::string>> stacks;

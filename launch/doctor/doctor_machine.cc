@@ -9,12 +9,12 @@ namespace hydro::launch {
 namespace {
 
 constexpr char kNotAsked[] = "no process here asks for a priority";
-// mlockall() takes all there is and all that comes; LCM's and our threads' stacks are the most of it.
+// mlockall() locks all present and future memory, most of which is the stacks of LCM's threads and ours.
 constexpr int64_t kLockedBytes = 512LL << 20;
 // linux/capability.h
 constexpr int kCapIpcLock = 14;
 constexpr int kCapSysNice = 23;
-// Wake-ups of a general kernel are late by up to tens of milliseconds.
+// A general-purpose kernel's wake-ups are late by up to tens of milliseconds.
 constexpr double kGeneralKernel_s = 0.05;
 
 bool HasCapability(const std::string& process_status, int capability) {

@@ -14,7 +14,7 @@ const NetworkInterface* Find(const MachineFacts& facts, const std::string& name)
   return found == facts.interfaces.end() ? nullptr : &*found;
 }
 
-// The interface that most likely leads to the other hosts; one that is down where none is up.
+// The interface that most likely leads to the other hosts; one that is down when none is up.
 std::string WayOut(const MachineFacts& facts, bool* up) {
   for (const bool wanted : {true, false}) {
     for (const NetworkInterface& candidate : facts.interfaces) {
@@ -85,7 +85,7 @@ Finding SelfTestFinding(const DoctorTask& task, const MachineFacts& facts) {
   if (facts.self_test_error.empty()) {
     return {kCheck, true, fmt::format("a packet sent to {}:{} came back", task.url.group, task.url.port), ""};
   }
-  // The bus's own message has a cure of its own at its end.
+  // The bus's message ends with its own cure, which is cut off here.
   const std::string found = facts.self_test_error.substr(0, facts.self_test_error.find("; "));
   if (found.find("route") != found.npos || found.find("cannot join") != found.npos ||
       found.find("unreachable") != found.npos) {
@@ -142,7 +142,7 @@ Finding NeighbourFinding(const DoctorTask& task, const MachineFacts& facts) {
   return {kCheck, true, found, ""};
 }
 
-// A switch in this machine. Those outside cannot be asked: docs/network.md.
+// A bridge is a switch inside this machine; switches outside cannot be asked (docs/network.md).
 Finding SnoopingFinding(const DoctorTask& task, const MachineFacts& facts) {
   constexpr char kCheck[] = "IGMP snooping";
   const auto route = FindMulticastRoute(facts.routes, task.url.group);

@@ -9,11 +9,11 @@
 namespace hydro::launch {
 namespace {
 
-// linux/route.h, which clashes with the C library's.
+// From linux/route.h, which clashes with the C library's header.
 constexpr uint32_t kUp = 1;
 constexpr uint32_t kReject = 0x200;
 
-// The kernel prints addresses as numbers of this machine, in whose memory they lie in network order.
+// The kernel prints each address, which is in network byte order in memory, as a number in host byte order.
 std::string Describe(uint32_t destination, uint32_t mask) {
   if (mask == 0) return "default";
   char text[INET_ADDRSTRLEN] = {};

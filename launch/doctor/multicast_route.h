@@ -1,4 +1,4 @@
-// Through which interface a multicast group leaves the machine.
+// The interface through which a multicast group leaves the machine.
 #pragma once
 
 #include <optional>
@@ -11,8 +11,8 @@ struct MulticastRoute {
   std::string destination;  // e.g. 224.0.0.0/4; default
 };
 
-// The most specific route to `group` (IPv4, dotted) in the text of /proc/net/route; nothing where there is
-// none or it refuses.
+// The most specific route to `group` (IPv4, dotted) in the text of /proc/net/route; nothing when there is
+// none or it rejects packets.
 std::optional<MulticastRoute> FindMulticastRoute(const std::string& routes, const std::string& group);
 
 }  // namespace hydro::launch

@@ -123,7 +123,7 @@ TEST_F(SupervisorTest, StopsTheLastOnesLast) {
   EXPECT_GT(text.find("logger bye"), text.find("a bye"));
   EXPECT_GT(text.find("logger bye"), text.find("b bye"));
   for (const auto& [label, ended] : ended_) {
-    EXPECT_TRUE(ended.told_to_end) << label;
+    EXPECT_TRUE(ended.terminated) << label;
     EXPECT_FALSE(ended.hung) << label;
     EXPECT_EQ(ended.end.exit_code, 0) << label;
   }
@@ -150,8 +150,8 @@ TEST_F(SupervisorTest, PatienceLetsThemEndThemselves) {
   ASSERT_TRUE(WaitForText("[slow] up"));
   supervisor_->Stop(Supervisor::Clock::now() + 200ms);
   WaitForAll();
-  EXPECT_FALSE(ended_.at("quick").told_to_end);
-  EXPECT_TRUE(ended_.at("slow").told_to_end);
+  EXPECT_FALSE(ended_.at("quick").terminated);
+  EXPECT_TRUE(ended_.at("slow").terminated);
   EXPECT_EQ(ended_.at("slow").end.exit_code, 3);
 }
 
@@ -191,7 +191,7 @@ TEST_F(SupervisorTest, ChildrenHaveOwnGroupAndUnblockedSignals) {
   kill(pid, SIGTERM);
   WaitForAll();
   EXPECT_EQ(ended_.at("a").end.exit_code, 0);
-  EXPECT_FALSE(ended_.at("a").told_to_end);
+  EXPECT_FALSE(ended_.at("a").terminated);
 }
 
 // Tests that what cannot be executed is an error that names it, and leaves nothing behind.

@@ -1,0 +1,41 @@
+// Announces a stop to every process of the stack, several times because UDP may lose messages.
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include "launch/supervisor.h"
+
+namespace hydro::launch {
+
+class StopAnnouncer {
+ public:
+  using TimePoint = Supervisor::TimePoint;
+  // Publishes HYDRO_STOP once. Throws BusError.
+  using Publish = std::function<void(const std::string& reason, int exit_code)>;
+
+  explicit StopAnnouncer(Publish publish) : publish_(std::move(publish)) {}
+
+  // Publishes a stop a few times at once; Repeat() publishes it a few times more. A later announcement
+  // replaces the one before it.
+  void Announce(const std::string& reason, int exit_code);
+
+  // Publishes the announced stop again when that is due. Call it often.
+  void Repeat();
+
+  bool announced() const { return !reason_.empty(); }
+  // Repetitions are left, and when the next is due.
+  bool repeating() const { return repeats_left_ > 0; }
+  TimePoint next_repeat() const { return next_repeat_; }
+
+ private:
+  void PublishOnce();
+
+  Publish publish_;
+  std::string reason_;
+  int exit_code_ = 0;
+  int repeats_left_ = 0;
+  TimePoint next_repeat_;
+};
+
+}  // namespace hydro::launch
