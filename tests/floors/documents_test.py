@@ -1,0 +1,102 @@
+"""Tests that README.md and the pages of docs/ show the house as it is: its rooms, and paths that exist."""
+
+import importlib.machinery
+import importlib.util
+import pathlib
+import re
+import sys
+import tempfile
+import unittest
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+PAGES = ["README.md", "CONTRIBUTING.md", *sorted(p.relative_to(ROOT).as_posix() for p in (ROOT / "docs").glob("*.md"))]
+# What a page may name although it is not in the repository: what is built, written by a program or made by the reader.
+MADE = re.compile(r"(build|out)/.*|config/mine\.toml")
+# A path in a code span: folders of the repository's root, then names; braces and stars as in a shell.
+PATH = re.compile(r"`((?:\./)?[\w@.+-]+(?:/[\w@.,*{}+-]+)+/?)`")
+LINK = re.compile(r"\]\(([^)#\s]+)(?:#[^)]*)?\)")
+
+
+def load_rooms_script():
+    path = str(ROOT / "scripts/rooms")
+    loader = importlib.machinery.SourceFileLoader("rooms", path)
+    module = importlib.util.module_from_spec(importlib.util.spec_from_loader("rooms", loader))
+    loader.exec_module(module)
+    return module
+
+
+def expand(path):
+    """The paths that a shell makes of braces: a/{b,c}.h is a/b.h and a/c.h."""
+    braces = re.search(r"\{([^{}]*)\}", path)
+    if not braces:
+        return [path]
+    start, end = path[: braces.start()], path[braces.end() :]
+    return [full for part in braces.group(1).split(",") for full in expand(start + part + end)]
+
+
+def is_there(path, root):
+    return all(any(root.glob(each.removeprefix("./").rstrip("/"))) for each in expand(path))
+
+
+def missing_paths(text, root):
+    """(line number, path) of each path in a code span that starts with a folder of `root` and does not exist."""
+    tops = {child.name for child in root.iterdir() if child.is_dir() and not child.name.startswith(".")}
+    found = []
+    for number, line in enumerate(text.splitlines(), 1):
+        for path in PATH.findall(line):
+            named = path.removeprefix("./")
+            if named.split("/")[0] not in tops or MADE.fullmatch(named):
+                continue
+            if not is_there(named, root):
+                found.append((number, path))
+    return found
+
+
+class DocumentsTest(unittest.TestCase):
+    def test_rooms_are_current(self):
+        """Tests that README.md and docs/architecture.md show the rooms of cmake/rooms.txt."""
+        pages = load_rooms_script().outdated(ROOT)
+        self.assertEqual(sorted(pages), [], "not current; this mends it: scripts/rooms --write")
+
+    def test_paths_exist(self):
+        """Tests that every path of the repository that a page names in a code span exists."""
+        found = [f"{page}:{number}: {path} does not exist"
+                 for page in PAGES for number, path in missing_paths((ROOT / page).read_text(), ROOT)]
+        self.assertEqual(found, [], "\n".join(found))
+
+    def test_links_lead_somewhere(self):
+        """Tests that every relative link and picture of a page leads to a file."""
+        found = []
+        for page in PAGES:
+            for number, line in enumerate((ROOT / page).read_text().splitlines(), 1):
+                for target in LINK.findall(line):
+                    if "://" not in target and not (ROOT / page).parent.joinpath(target).exists():
+                        found.append(f"{page}:{number}: {target} does not exist")
+        self.assertEqual(found, [], "\n".join(found))
+
+    def test_what_is_wrong_is_found(self):
+        """Tests the checks themselves: a room that was added, a list without markers, paths that do not exist."""
+        rooms = load_rooms_script()
+        with tempfile.TemporaryDirectory() as folder:
+            root = pathlib.Path(folder)
+            for name in ("cmake", "docs", "base"):
+                (root / name).mkdir()
+            (root / "base/text.h").touch()
+            (root / "cmake/rooms.txt").write_text("# head\nbase  text\n")
+            (root / "README.md").write_text("a\n<!-- rooms -->\n<!-- /rooms -->\nb\n")
+            (root / "docs/architecture.md").write_text("<!-- rooms -->\n<!-- /rooms -->\n")
+            for name, text in rooms.outdated(root).items():
+                (root / name).write_text(text)
+            self.assertEqual(rooms.outdated(root), {})
+            self.assertEqual((root / "README.md").read_text(),
+                             "a\n<!-- rooms -->\n| floors, from the top |\n|---|\n| `base/` |\n<!-- /rooms -->\nb\n")
+            (root / "cmake/rooms.txt").write_text("base  text\n\nmodel  equations\n")
+            self.assertEqual(sorted(rooms.outdated(root)), ["README.md", "docs/architecture.md"])
+            (root / "README.md").write_text("no markers\n")
+            self.assertRaisesRegex(ValueError, "README.md: found no <!-- rooms -->", rooms.outdated, root)
+            text = "`base/text.h`\n`base/old.h` and `other/x.h`\n`base/{text,gone}.h` `./base/*.h`"
+            self.assertEqual(missing_paths(text, root), [(2, "base/old.h"), (3, "base/{text,gone}.h")])
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1] + ["-v"])
