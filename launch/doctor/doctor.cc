@@ -68,11 +68,11 @@ std::string FindingsText(const std::vector<Finding>& findings) {
   std::string text;
   for (const Finding& finding : findings) {
     text += fmt::format("{:<8} {:<19} {}\n", finding.ok ? "ok" : "problem", finding.check, finding.found);
-    if (!finding.ok) text += fmt::format("{:<8} {:<19} mend: {}\n", "", "", finding.cure);
+    if (!finding.ok) text += fmt::format("{:<8} {:<19} fix: {}\n", "", "", finding.cure);
   }
   const int problems = Problems(findings);
   if (problems == 0) return text + "all is well\n";
-  return text + fmt::format("{} problem{}; what mends them needs root\n", problems, problems == 1 ? "" : "s");
+  return text + fmt::format("{} problem{}; the fixes need root\n", problems, problems == 1 ? "" : "s");
 }
 
 int RunDoctor(const std::string& config_file, const std::vector<std::string>& overrides,

@@ -35,9 +35,9 @@ Finding PriorityFinding(const DoctorTask& task, const MachineFacts& facts) {
   if (task.priority == 0) return {kCheck, true, kNotAsked, ""};
   if (HasCapability(facts.process_status, kCapSysNice)) return {kCheck, true, "allowed by CAP_SYS_NICE", ""};
   if (facts.rtprio_limit < 0 || facts.rtprio_limit >= task.priority) {
-    return {kCheck, true, fmt::format("allowed, asked for is {}", task.priority), ""};
+    return {kCheck, true, fmt::format("allowed, requested is {}", task.priority), ""};
   }
-  return {kCheck, false, fmt::format("rtprio is {}, asked for is {}", facts.rtprio_limit, task.priority),
+  return {kCheck, false, fmt::format("rtprio is {}, requested is {}", facts.rtprio_limit, task.priority),
           LimitsCure(facts, fmt::format("rtprio {}", task.priority))};
 }
 
@@ -68,9 +68,9 @@ Finding CpuFinding(const DoctorTask& task, const MachineFacts& facts) {
 Finding KernelFinding(const DoctorTask& task, const MachineFacts& facts) {
   constexpr char kCheck[] = "kernel";
   if (facts.realtime_kernel) return {kCheck, true, "PREEMPT_RT", ""};
-  if (task.stale_input_s >= kGeneralKernel_s) return {kCheck, true, "a general one", ""};
+  if (task.stale_input_s >= kGeneralKernel_s) return {kCheck, true, "general-purpose", ""};
   return {kCheck, false,
-          fmt::format("a general one, which wakes late by up to tens of ms; limits.stale_input_s is {:g} s",
+          fmt::format("general-purpose, which wakes late by up to tens of ms; limits.stale_input_s is {:g} s",
                       task.stale_input_s),
           "apt-get install -y linux-image-rt-amd64 && reboot"};
 }
@@ -82,7 +82,7 @@ Finding GovernorFinding(const DoctorTask& task, const MachineFacts& facts) {
                                  [](const std::string& governor) { return governor != "performance"; });
   if (slow == facts.governors.end()) return {kCheck, true, "performance", ""};
   if (task.priority == 0) return {kCheck, true, *slow + "; " + kNotAsked, ""};
-  return {kCheck, false, *slow + ", which lowers the clock of a loop that sleeps; allowed is performance",
+  return {kCheck, false, *slow + ", which slows the clock while a loop sleeps; allowed is performance",
           "echo performance | tee /sys/devices/system/cpu/cpu*/cpufreq/scaling_governor"};
 }
 
@@ -92,8 +92,7 @@ Finding SwapFinding(const DoctorTask& task, const MachineFacts& facts) {
   const bool on = header != facts.swaps.npos && header + 1 < facts.swaps.size();
   if (!on) return {kCheck, true, "off", ""};
   if (task.priority == 0) return {kCheck, true, std::string("on; ") + kNotAsked, ""};
-  return {kCheck, false, "on: its traffic delays the loops, although their own memory is locked",
-          "swapoff -a"};
+  return {kCheck, false, "on: swapping delays the loops, although their own memory is locked", "swapoff -a"};
 }
 
 Finding ClockFinding(const DoctorTask& task, const MachineFacts& facts) {
@@ -110,7 +109,8 @@ Finding ClockFinding(const DoctorTask& task, const MachineFacts& facts) {
       break;
   }
   return {kCheck, false,
-          "not synchronised: control does not care, but times in the logs of two hosts cannot be compared",
+          "not synchronised: control does not depend on it, but times in the logs of two hosts cannot be "
+          "compared",
           facts.timesyncd ? "timedatectl set-ntp true" : "apt-get install -y chrony"};
 }
 

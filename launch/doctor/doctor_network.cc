@@ -45,7 +45,7 @@ Finding RouteFinding(const DoctorTask& task, const MachineFacts& facts) {
   const std::string& group = task.url.group;
   const auto route = FindMulticastRoute(facts.routes, group);
   if (!route) {
-    if (facts.self_test_error.empty()) return {kCheck, true, "of another table than the main one", ""};
+    if (facts.self_test_error.empty()) return {kCheck, true, "in a routing table other than main", ""};
     return {kCheck, false, "there is no route to " + group, RouteCure(task, facts, "224.0.0.0/4")};
   }
   const NetworkInterface* interface = Find(facts, route->interface);
@@ -56,11 +56,12 @@ Finding RouteFinding(const DoctorTask& task, const MachineFacts& facts) {
     return {kCheck, false, found + ", which is down", "ip link set " + route->interface + " up"};
   }
   if (task.url.ttl > 0 && interface != nullptr && interface->loopback) {
-    return {kCheck, false, found + fmt::format(": with ttl={} other hosts are to hear it", task.url.ttl),
+    return {kCheck, false,
+            found + fmt::format(", but with ttl={} other hosts should hear the stack", task.url.ttl),
             RouteCure(task, facts, route->destination == "default" ? "224.0.0.0/4" : route->destination)};
   }
   if (interface != nullptr && !interface->loopback && !interface->multicast) {
-    return {kCheck, false, found + ", which is set to carry no multicast",
+    return {kCheck, false, found + ", on which multicast is switched off",
             "ip link set " + route->interface + " multicast on"};
   }
   return {kCheck, true, found, ""};
@@ -95,8 +96,9 @@ Finding SelfTestFinding(const DoctorTask& task, const MachineFacts& facts) {
   if (found.find("listen on the port") != found.npos) {
     return {
         kCheck, false, found,
-        fmt::format("ss -ulpn 'sport = :{}'  # shows who holds it: end it, or set another port in bus.url",
-                    task.url.port)};
+        fmt::format(
+            "ss -ulpn 'sport = :{}'  # shows which process holds it: end it, or set another port in bus.url",
+            task.url.port)};
   }
   return {kCheck, false, found, FirewallCure(task, facts)};
 }
@@ -121,7 +123,7 @@ std::string Joined(const HeardStack& stack) {
 
 Finding NeighbourFinding(const DoctorTask& task, const MachineFacts& facts) {
   constexpr char kCheck[] = "other stacks";
-  if (facts.listened_s <= 0) return {kCheck, true, "not listened for: see above", ""};
+  if (facts.listened_s <= 0) return {kCheck, true, "could not listen: see above", ""};
   std::vector<std::string> others;
   for (const HeardStack& stack : facts.stacks) {
     if (stack.suffix != task.channel_suffix) {
@@ -147,16 +149,16 @@ Finding SnoopingFinding(const DoctorTask& task, const MachineFacts& facts) {
   constexpr char kCheck[] = "IGMP snooping";
   const auto route = FindMulticastRoute(facts.routes, task.url.group);
   const NetworkInterface* interface = route ? Find(facts, route->interface) : nullptr;
-  if (task.url.ttl == 0) return {kCheck, true, "no matter: ttl=0 stays on this machine", ""};
+  if (task.url.ttl == 0) return {kCheck, true, "does not matter: ttl=0 stays on this machine", ""};
   if (interface == nullptr || !interface->snooping) {
-    return {kCheck, true, "no bridge of this machine; switches outside: docs/network.md", ""};
+    return {kCheck, true, "no bridge on this machine; for switches outside it see docs/network.md", ""};
   }
   if (!*interface->snooping || interface->querier.value_or(false)) {
-    return {kCheck, true, "the bridge " + interface->name + " passes the group on", ""};
+    return {kCheck, true, "the bridge " + interface->name + " forwards the group", ""};
   }
   return {kCheck, false,
           "the bridge " + interface->name +
-              " snoops and nobody asks for members: it stops passing the group on after some minutes",
+              " snoops without a querier: it stops forwarding the group after some minutes",
           "ip link set " + interface->name + " type bridge mcast_querier 1"};
 }
 
@@ -165,17 +167,17 @@ Finding ReachFinding(const DoctorTask& task) {
   if (task.several_hosts && task.url.ttl == 0) {
     bus::UdpmUrl far = task.url;
     far.ttl = 1;
-    return {kCheck, false, "[[process]] names several hosts, and ttl=0 leaves none of them",
+    return {kCheck, false, "[[process]] names several hosts, but with ttl=0 no packet leaves its host",
             fmt::format("sed -i 's|^ *url *=.*|url = \"{}\"|' {}", far.ToString(), task.config)};
   }
   if (task.open_network) {
-    return {kCheck, false,
-            fmt::format("ttl={} and no bus.key_file: whoever is on the network may command the motor",
-                        task.url.ttl),
-            fmt::format("sed -i '/^\\[bus\\]/a key_file = \"bus.key\"' {0} && hydro-launch {0} --make-key  # "
-                        "and copy the key "
-                        "to the other hosts: docs/security.md",
-                        task.config)};
+    return {
+        kCheck, false,
+        fmt::format("ttl={} and no bus.key_file: anyone on the network can command the motor", task.url.ttl),
+        fmt::format("sed -i '/^\\[bus\\]/a key_file = \"bus.key\"' {0} && hydro-launch {0} --make-key  # "
+                    "and copy the key "
+                    "to the other hosts: docs/security.md",
+                    task.config)};
   }
   return {kCheck, true,
           task.url.ttl == 0 ? "this machine alone (ttl=0)" : fmt::format("ttl={}", task.url.ttl), ""};

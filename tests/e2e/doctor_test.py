@@ -40,7 +40,7 @@ class DoctorTest(stack.TestCase):
     def findings(self, text):
         """{check: (ok, what was found, cure or None)}"""
         found = {}
-        for line, mend in re.findall(r"^((?:ok|problem) .*)\n(?: +mend: (.*)\n)?", text, re.MULTILINE):
+        for line, mend in re.findall(r"^((?:ok|problem) .*)\n(?: +fix: (.*)\n)?", text, re.MULTILINE):
             word, check, rest = re.fullmatch(r"(ok|problem) +(.{19}) (.*)", line).groups()
             found[check.strip()] = (word == "ok", rest, mend or None)
             self.assertEqual(word == "ok", not mend, line)
@@ -96,7 +96,7 @@ class DoctorTest(stack.TestCase):
         with open(config, "w", encoding="utf-8") as file:
             file.write(text + '[[process]]\nprogram = "hydro-plant"\nhost = "rig"\n'
                        '[[process]]\nprogram = "hydro-pressure-ctrl"\nhost = "desk"\n')
-        for found in ("names several hosts, and ttl=0", "ttl=1 and no bus.key_file"):
+        for found in ("names several hosts, but with ttl=0", "ttl=1 and no bus.key_file"):
             done = self.doctor(config, expect=1)
             self.assertIn("ttl and hosts", self.problems(done), done.stdout)
             self.assertIn(found, self.findings(done.stdout)["ttl and hosts"][1])
@@ -139,7 +139,7 @@ class DoctorTest(stack.TestCase):
                 "--inh-caps=-sys_nice,-ipc_lock", "--ambient-caps=-all")
         done = self.doctor(config, prefix=weak, expect=1)
         self.assertLessEqual({"real-time priority", "locked memory", "processors"}, self.problems(done), done.stdout)
-        self.assertIn("rtprio is 0, asked for is 80", done.stdout)
+        self.assertIn("rtprio is 0, requested is 80", done.stdout)
         # The same limits are none to who has the capabilities (they cannot be raised everywhere, as root even).
         problems = self.problems(self.doctor(config, prefix=weak[:3], expect=1))
         self.assertIn("processors", problems)

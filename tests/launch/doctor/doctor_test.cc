@@ -105,7 +105,7 @@ TEST_F(DoctorTest, ProblemsAreCounted) {
   const std::vector<Finding> findings = Diagnose(task_, facts_);
   EXPECT_EQ(Problems(findings), 1);
   EXPECT_THAT(FindingsText(findings), HasSubstr("problem  swap"));
-  EXPECT_THAT(FindingsText(findings), HasSubstr("mend: swapoff -a\n"));
+  EXPECT_THAT(FindingsText(findings), HasSubstr("fix: swapoff -a\n"));
   EXPECT_THAT(FindingsText(findings), HasSubstr("1 problem;"));
 }
 
