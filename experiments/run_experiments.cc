@@ -16,7 +16,6 @@
 #include "experiments/report/experiment_files.h"
 #include "experiments/report/progress_display.h"
 #include "experiments/report/report.h"
-#include "page/gnuplot.h"
 
 namespace hydro::experiments {
 namespace {
@@ -94,7 +93,6 @@ int RunExperiments(const std::vector<Experiment>& all, const ExperimentRequest& 
                    std::FILE* errors) {
   const std::vector<Experiment> chosen = ChooseExperiments(all, request);
   CreateFolder(request.folder);
-  page::RunGnuplot("");  // where it is missing, that is said once and before the work
 
   std::vector<std::string> names;
   std::vector<double> costs;

@@ -6,20 +6,19 @@ namespace hydro::page {
 namespace {
 
 struct Ink {
-  const char* colour;
   std::vector<double> dash;
-  int marker;
+  Marker marker;
 };
 
-// Hues that stay apart for the colour-blind (after Okabe and Ito). Neighbours differ in lightness too; those
-// that print in a like grey differ in dashes.
+// One for each of chart.css's colours c0 to c5, whose hues stay apart for the colour-blind (after Okabe and Ito). Neighbours
+// differ in lightness too; those that print in a like grey differ in dashes.
 const std::array<Ink, 6>& Inks() {
-  static const std::array<Ink, 6> inks = {{{"#0b3c6f", {}, 7},
-                                           {"#dd6b00", {}, 5},
-                                           {"#008a68", {11, 3}, 9},
-                                           {"#b05a96", {9, 3, 2, 3}, 13},
-                                           {"#4aa3df", {}, 11},
-                                           {"#6b6b6b", {14, 3, 2, 3, 2, 3}, 6}}};
+  static const std::array<Ink, 6> inks = {{{{}, Marker::kDisc},
+                                           {{}, Marker::kSquare},
+                                           {{11, 3}, Marker::kTriangle},
+                                           {{9, 3, 2, 3}, Marker::kDiamond},
+                                           {{}, Marker::kTriangleDown},
+                                           {{14, 3, 2, 3, 2, 3}, Marker::kRing}}};
   return inks;
 }
 
@@ -28,12 +27,14 @@ constexpr size_t kFewPoints = 300;  // beyond these, separate points get small m
 }  // namespace
 
 CurveStyle StyleOf(const Curve& curve, int place) {
-  const Ink& ink = Inks()[static_cast<size_t>(curve.colour >= 0 ? curve.colour : place) % Inks().size()];
-  CurveStyle style{ink.colour, 1.6, ink.dash, 0, 0};
+  const size_t number = static_cast<size_t>(curve.colour >= 0 ? curve.colour : place) % Inks().size();
+  const Ink& ink = Inks()[number];
+  CurveStyle style{"c" + std::to_string(number), 1.6, ink.dash, Marker::kNone, 0};
   switch (curve.stroke) {
     case Stroke::kLine:
       break;
     case Stroke::kSteps:  // dashes would be lost in its corners
+    case Stroke::kBars:
       style.dash.clear();
       break;
     case Stroke::kDashed:
@@ -51,7 +52,26 @@ CurveStyle StyleOf(const Curve& curve, int place) {
       style.marker = ink.marker;
       break;
   }
-  if (style.marker != 0) style.marker_radius = curve.x.size() <= kFewPoints ? 3.0 : 1.4;
+  if (style.marker != Marker::kNone) style.marker_radius = curve.x.size() <= kFewPoints ? 3.2 : 1.4;
+  switch (curve.weight) {
+    case Weight::kNormal:
+      break;
+    case Weight::kFaint:
+      style.colour += " faint";
+      style.width *= 0.5;
+      style.marker_radius = style.marker == Marker::kNone ? 0 : 1.1;
+      style.dash.clear();
+      break;
+    case Weight::kStrong:
+      style.width *= 1.4;
+      style.marker_radius *= 1.6;
+      break;
+    case Weight::kBackdrop:
+      style.colour = "pale";
+      style.width *= 2;
+      style.dash.clear();
+      break;
+  }
   return style;
 }
 

@@ -1,4 +1,4 @@
-// How curves look: one palette for the whole report.
+// How curves look: one palette for all pictures; chart.css has its colours.
 #pragma once
 
 #include <string>
@@ -8,11 +8,13 @@
 
 namespace hydro::page {
 
+enum class Marker { kNone, kDisc, kSquare, kTriangle, kDiamond, kTriangleDown, kRing };
+
 struct CurveStyle {
-  std::string colour;        // "#rrggbb"
+  std::string colour;        // a class of chart.css: "c0", ..., "pale"; with "faint" where it is
   double width = 1.6;        // pixels; 0: no line
   std::vector<double> dash;  // pixels drawn, not drawn, ...; empty: solid
-  int marker = 0;            // gnuplot's point type; 0: no markers
+  Marker marker = Marker::kNone;
   double marker_radius = 0;  // pixels
 };
 

@@ -1,12 +1,15 @@
 #include "page/panel_drawing.h"
 
+#include <spdlog/fmt/fmt.h>
+
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <numeric>
-#include <ostream>
 
 #include "page/curve_thinning.h"
+#include "page/label_placement.h"
+#include "page/svg.h"
+#include "page/ticks.h"
 #include "page/typeset.h"
 
 namespace hydro::page {
@@ -15,202 +18,309 @@ namespace {
 // Pixels.
 constexpr double kTitleHeight = 22;
 constexpr double kKeyRow = 19;
-constexpr double kKeySample = 32;
+constexpr double kKeySample = 28;
 constexpr double kKeyGap = 22;
-constexpr double kLine = 15;  // from one line of a note to the next
-constexpr double kAside = 7;  // from a point to its note
+constexpr double kTickLabels = 20;
+constexpr double kAxisLabel = 20;
+constexpr double kNoteLine = 15;  // from one line of a note to the next
+constexpr double kAside = 7;      // from a point to its note
 constexpr double kTextSize = 12;
+constexpr double kLabelSize = 13;
+constexpr double kMinBarWidth = 0.8;
 
-constexpr char kRuleColour[] = "#555555";
+// Along an axis, from one number to the next.
+constexpr double kTickRoomX = 72;
+constexpr double kTickRoomY = 27;
 
-std::string Number(double value) {
-  char text[40];
-  std::snprintf(text, sizeof text, "%.9g", value);
-  return text;
-}
+// A tall panel needs no denser numbers than its width has.
+double TickRoomY(double frame_height) { return std::max(kTickRoomY, frame_height / 10); }
 
-// gnuplot scales dashes with the line's width.
-std::string DashType(const CurveStyle& style) {
-  if (style.dash.empty()) return "1";
-  std::string text = "(";
-  for (const double length : style.dash) text += Number(length / (0.5 * style.width)) + ",";
-  text.back() = ')';
-  return text;
-}
-
-std::string SvgDash(const std::vector<double>& dash) {
-  if (dash.empty()) return "";
-  std::string text = " stroke-dasharray=\"";
-  for (const double length : dash) text += Number(length) + ",";
-  text.back() = '"';
-  return text;
-}
-
-// Labelled and unlabelled ticks of a logarithmic axis; gnuplot's own may leave a short one without any.
-std::string LogTicks(const char* axis, const AxisRange& range) {
-  const double decades = std::log10(range.max / range.min);
-  std::string text = std::string("set ") + axis + "tics (";
-  for (int power = static_cast<int>(std::floor(std::log10(range.min)));
-       power <= static_cast<int>(std::ceil(std::log10(range.max))); ++power) {
-    for (int digit = 1; digit <= 9; ++digit) {
-      const double value = digit * std::pow(10.0, power);
-      if (value < range.min * (1 - 1e-9) || value > range.max * (1 + 1e-9)) continue;
-      const bool labelled = decades < 0.7   ? true
-                            : decades < 2.6 ? digit == 1 || digit == 2 || digit == 5
-                                            : digit == 1;
-      text += labelled ? Number(value) : "\"\" " + Number(value) + " 1";
-      text += ",";
-    }
-  }
-  if (text.back() == '(') return "";
-  text.back() = ')';
-  return text + "\n";
+std::vector<Tick> AxisTicks(const Axis& axis, const AxisRange& range, double pixels, double label_pixels) {
+  return axis.ticks.empty() ? Ticks(range, pixels, label_pixels) : axis.ticks;
 }
 
 Box TextBox(double left, double top, double width, double height) {
   return {left, top, left + width, top + height};
 }
 
+// " stroke-width=... stroke-dasharray=..."
+std::string LineAttributes(const CurveStyle& style) {
+  std::string text = fmt::format(" stroke-width=\"{:g}\"", style.width);
+  for (size_t i = 0; i < style.dash.size(); ++i) {
+    text += fmt::format("{}{:g}", i == 0 ? " stroke-dasharray=\"" : " ", style.dash[i]);
+  }
+  return text + (style.dash.empty() ? "" : "\"");
+}
+
+std::string At(double x, double y) { return "M" + Pixels(x) + " " + Pixels(y); }
+
+std::string MarkerShape(Marker marker, double r) {
+  switch (marker) {
+    case Marker::kNone:
+      return "";
+    case Marker::kDisc:
+    case Marker::kRing:
+      return fmt::format("m{0:.4g} 0a{1:.4g} {1:.4g} 0 1 0 {2:.4g} 0a{1:.4g} {1:.4g} 0 1 0 -{2:.4g} 0z", -r,
+                         r, 2 * r);
+    case Marker::kSquare:
+      return fmt::format("m{0:.4g} {0:.4g}h{1:.4g}v{1:.4g}h-{1:.4g}z", -0.88 * r, 1.76 * r);
+    case Marker::kTriangle:
+      return fmt::format("m0 {:.4g}l{:.4g} {:.4g}h{:.4g}z", -1.2 * r, 1.1 * r, 1.9 * r, -2.2 * r);
+    case Marker::kDiamond:
+      return fmt::format("m0 {0:.4g}l{1:.4g} {1:.4g}l-{1:.4g} {1:.4g}l-{1:.4g} -{1:.4g}z", -1.25 * r,
+                         1.25 * r);
+    case Marker::kTriangleDown:
+      return fmt::format("m0 {:.4g}l{:.4g} {:.4g}h{:.4g}z", 1.2 * r, -1.1 * r, -1.9 * r, 2.2 * r);
+  }
+  return "";
+}
+
+// Markers at the points of `data`, "M1 2" each.
+std::string MarkerElement(const CurveStyle& style, const std::vector<std::string>& data) {
+  if (data.empty()) return "";
+  constexpr double kSmall = 2;  // where no shape can be told from a disc
+  const bool small = style.marker_radius < kSmall;
+  std::string path;
+  const std::string shape = small ? "h0" : MarkerShape(style.marker, style.marker_radius);
+  for (const std::string& point : data) path += point + shape;
+  if (small)
+    return SvgPath("dots " + style.colour, path,
+                   fmt::format(" stroke-width=\"{:g}\"", 2 * style.marker_radius));
+  return SvgPath((style.marker == Marker::kRing ? "rings " : "marks ") + style.colour, path);
+}
+
 }  // namespace
 
-std::string SvgText(const std::string& text, double x, double y, const TextStyle& style) {
-  char place[160];
-  if (style.upwards) {
-    std::snprintf(place, sizeof place, "transform=\"translate(%.2f,%.2f) rotate(-90)\"", x, y);
-  } else {
-    std::snprintf(place, sizeof place, "x=\"%.2f\" y=\"%.2f\"", x, y);
-  }
-  return std::string("<text xml:space=\"preserve\" ") + place + " font-family=\"" + kFontFamily +
-         "\" font-size=\"" + Number(style.size) + "\" fill=\"" + style.colour + "\" text-anchor=\"" +
-         style.anchor + "\"" + (style.bold ? " font-weight=\"bold\"" : "") +
-         (style.halo
-              ? " stroke=\"#ffffff\" stroke-width=\"3.5\" stroke-linejoin=\"round\" paint-order=\"stroke\""
-              : "") +
-         ">" + TypesetSvg(text) + "</text>\n";
-}
-
-PanelDrawing::PanelDrawing(const Panel& panel, double left, double right) : panel_(&panel), left_(left) {
-  double x = left;
-  int row = 0;
+PanelDrawing::PanelDrawing(const Panel& panel, const std::string& where) : panel_(&panel), where_(where) {
   for (size_t i = 0; i < panel.curves.size(); ++i) {
     styles_.push_back(StyleOf(panel.curves[i], static_cast<int>(i)));
-    if (panel.curves[i].label.empty()) continue;
-    const double width = kKeySample + 6 + TextWidth(panel.curves[i].label) * kTextSize;
-    if (x > left && x + width > right) {
-      x = left;
+  }
+  geometry_ = FitPanel(panel, {0, 0, 100, 100}, where);
+}
+
+double PanelDrawing::LeftMargin(double frame_height) const {
+  double widest = 0;
+  if (panel_->y.numbers) {
+    for (const Tick& tick : AxisTicks(panel_->y, geometry_.y, frame_height, TickRoomY(frame_height))) {
+      widest = std::max(widest, TextWidth(tick.text) * kTextSize);
+    }
+  }
+  return 8 + (panel_->y.label.empty() ? 0 : kAxisLabel) + widest + 7;
+}
+
+double PanelDrawing::FootHeight() const {
+  return (panel_->x.numbers ? kTickLabels : 4) + (panel_->x.label.empty() ? 0 : kAxisLabel);
+}
+
+double PanelDrawing::HeadHeight(double key_width) {
+  key_.clear();
+  double x = 0;
+  int row = 0;
+  const auto add = [&](const std::string& label, const CurveStyle* style, bool bars) {
+    if (label.empty()) return;
+    const double width = kKeySample + 6 + TextWidth(label) * kTextSize;
+    if (x > 0 && x + width > key_width) {
+      x = 0;
       ++row;
     }
-    key_.push_back({i, x, row});
+    key_.push_back({label, style, bars, x, row});
     x += width + kKeyGap;
+  };
+  for (size_t i = 0; i < panel_->curves.size(); ++i) {
+    add(panel_->curves[i].label, &styles_[i], panel_->curves[i].stroke == Stroke::kBars);
   }
+  for (const Band& band : panel_->bands) add(band.label, nullptr, false);
+  head_height_ = (panel_->title.empty() ? 0 : kTitleHeight) + (key_.empty() ? 0 : kKeyRow * (row + 1) + 4);
+  return head_height_;
 }
 
-double PanelDrawing::head_height() const {
-  return (panel_->title.empty() ? 0 : kTitleHeight) +
-         (key_.empty() ? 0 : kKeyRow * (key_.back().row + 1) + 4);
+std::string PanelDrawing::Draw(const Box& frame) {
+  geometry_ = FitPanel(*panel_, frame, where_);
+  std::string out = SvgClipped(frame, Bands()) + Axes() + SvgClipped(frame, Rules());
+  for (size_t i = 0; i < panel_->curves.size(); ++i) out += CurveElements(i);
+  out += SvgRectangle("frame", frame);
+  if (!panel_->title.empty()) {
+    out += SvgText(panel_->title, frame.left, frame.top - head_height_ + 15, {.look = "title"});
+  }
+  out += Key();
+  if (!panel_->x.label.empty()) {
+    out += SvgText(panel_->x.label, (frame.left + frame.right) / 2,
+                   frame.bottom + (panel_->x.numbers ? 36 : 18), {.look = "label", .anchor = "middle"});
+  }
+  if (!panel_->y.label.empty()) {
+    const double height = frame.bottom - frame.top;
+    const bool fits = TextWidth(panel_->y.label) * kLabelSize <= height + 6;
+    out += SvgText(panel_->y.label, frame.left - LeftMargin(height) + 17, (frame.top + frame.bottom) / 2,
+                   {.look = fits ? "label" : "", .anchor = "middle", .upwards = true});
+  }
+  return out + Labels();
 }
 
-void PanelDrawing::Fit(const Box& frame, const std::string& where) {
-  geometry_ = FitPanel(*panel_, frame, where);
+std::string PanelDrawing::Bands() const {
+  std::string out;
+  const Box& frame = geometry_.frame;
+  for (const Band& band : panel_->bands) {
+    const AxisRange& range = band.vertical ? geometry_.x : geometry_.y;
+    if (band.to < range.min || band.from > range.max) continue;
+    const double from = std::max(band.from, range.min);
+    const double to = std::min(band.to, range.max);
+    Box box = frame;
+    if (band.vertical) {
+      box.left = geometry_.Column(from);
+      box.right = std::max(geometry_.Column(to), box.left + 1);  // thinner it would not be seen
+    } else {
+      box.top = geometry_.Row(to);
+      box.bottom = geometry_.Row(from);
+    }
+    out += SvgRectangle(band.vertical ? "span" : "band", box);
+  }
+  return out;
+}
+
+std::string PanelDrawing::Axes() const {
+  const Box& frame = geometry_.frame;
+  const double width = frame.right - frame.left;
+  const double height = frame.bottom - frame.top;
+  std::string grid, fine_grid, marks, zero, texts;
+  for (const Tick& tick : AxisTicks(panel_->x, geometry_.x, width, kTickRoomX)) {
+    const double x = geometry_.Column(tick.value);
+    (tick.text.empty() ? fine_grid : grid) += At(x, frame.top) + "V" + Pixels(frame.bottom);
+    if (tick.text.empty() || !panel_->x.numbers) continue;
+    marks += At(x, frame.bottom) + "v4";
+    texts += SvgText(tick.text, x, frame.bottom + 17, {.anchor = "middle"});
+  }
+  for (const Tick& tick : AxisTicks(panel_->y, geometry_.y, height, TickRoomY(height))) {
+    const double y = geometry_.Row(tick.value);
+    const bool is_zero = panel_->y.ticks.empty() && !geometry_.y.logarithmic && tick.value == 0;
+    (is_zero ? zero : tick.text.empty() ? fine_grid : grid) += At(frame.left, y) + "H" + Pixels(frame.right);
+    if (tick.text.empty() || !panel_->y.numbers) continue;
+    marks += At(frame.left, y) + "h-4";
+    texts += SvgText(tick.text, frame.left - 7, y + 4, {.anchor = "end"});
+  }
+  std::string out;
+  for (const auto& [look, data] :
+       {std::pair{"fine grid", fine_grid}, {"grid", grid}, {"zero", zero}, {"frame", marks}}) {
+    if (!data.empty()) out += SvgPath(look, data);
+  }
+  return out + texts;
+}
+
+std::string PanelDrawing::Rules() const {
+  std::string data;
+  const Box& frame = geometry_.frame;
+  for (const Rule& rule : panel_->rules) {
+    if (!(rule.vertical ? geometry_.x : geometry_.y).Holds(rule.value)) continue;
+    data += rule.vertical ? At(geometry_.Column(rule.value), frame.top) + "V" + Pixels(frame.bottom)
+                          : At(frame.left, geometry_.Row(rule.value)) + "H" + Pixels(frame.right);
+  }
+  return data.empty() ? "" : SvgPath("rule", data);
 }
 
 std::vector<size_t> PanelDrawing::Drawn(const Curve& curve) const {
-  if (!curve.y_low.empty()) {
+  if (!curve.y_low.empty() || curve.stroke == Stroke::kBars) {
     std::vector<size_t> all(curve.x.size());
     std::iota(all.begin(), all.end(), size_t{0});
     return all;
   }
-  const auto column = [this](double x) { return geometry_.Column(x); };
+  const auto column = [this](double x) { return 2 * geometry_.Column(x); };
   if (curve.stroke == Stroke::kPoints) {
-    return ThinPoints(curve.x, curve.y, column, [this](double y) { return geometry_.Row(y); });
+    return ThinPoints(curve.x, curve.y, column, [this](double y) { return 2 * geometry_.Row(y); });
   }
   return ThinLine(curve.x, curve.y, column);
 }
 
-void PanelDrawing::WriteData(std::ostream& script, size_t number) const {
-  for (size_t i = 0; i < panel_->curves.size(); ++i) {
-    const Curve& curve = panel_->curves[i];
-    script << "$d" << number << '_' << i << " << EOD\n";
-    for (const size_t k : Drawn(curve)) {
-      if (!std::isfinite(geometry_.Column(curve.x[k])) || !std::isfinite(geometry_.Row(curve.y[k]))) {
-        script << '\n';  // breaks the line
-        continue;
+std::string PanelDrawing::LineData(const Curve& curve) const {
+  std::string data;
+  bool pen_up = true;
+  double bar_left = 0;
+  double bar_top = 0;
+  const double bottom = geometry_.frame.bottom;
+  for (const size_t i : Drawn(curve)) {
+    const double x = geometry_.Column(curve.x[i]);
+    const double y = geometry_.Row(curve.y[i]);
+    if (curve.stroke == Stroke::kBars) {
+      if (!pen_up && std::isfinite(x)) {
+        data += At(bar_left, bottom) + "V" + Pixels(bar_top) + "H" +
+                Pixels(std::max(x, bar_left + kMinBarWidth)) + "V" + Pixels(bottom) + "z";
       }
-      script << Number(curve.x[k]) << ' ' << Number(curve.y[k]);
-      if (!curve.y_low.empty()) script << ' ' << Number(curve.y_low[k]) << ' ' << Number(curve.y_high[k]);
-      script << '\n';
+      bar_left = x;
+      bar_top = y;
     }
-    script << "EOD\n";
+    const bool shown = std::isfinite(x) && std::isfinite(y);
+    if (shown && curve.stroke != Stroke::kBars) {
+      if (pen_up) {
+        data += At(x, y);
+      } else if (curve.stroke == Stroke::kSteps) {
+        data += "H" + Pixels(x) + "V" + Pixels(y);
+      } else {
+        data += "L" + Pixels(x) + " " + Pixels(y);
+      }
+    }
+    pen_up = !shown;
   }
+  return data;
 }
 
-void PanelDrawing::WritePlot(std::ostream& script, size_t number, double width, double height) const {
+std::string PanelDrawing::CurveElements(size_t number) const {
+  const Curve& curve = panel_->curves[number];
+  const CurveStyle& style = styles_[number];
+  std::string cut_off;  // at the frame
+  if (!curve.y_low.empty()) {
+    std::string bars;
+    for (size_t i = 0; i < curve.x.size(); ++i) {
+      const double x = geometry_.Column(curve.x[i]);
+      double low = geometry_.Row(curve.y_low[i]);
+      const double high = geometry_.Row(curve.y_high[i]);
+      if (!std::isfinite(low) && curve.y_low[i] <= 0) low = geometry_.frame.bottom;  // on a logarithmic axis
+      if (!std::isfinite(x) || !std::isfinite(low) || !std::isfinite(high)) continue;
+      bars += At(x - 3, low) + "h6m-3 0V" + Pixels(high) + "m-3 0h6";
+    }
+    if (!bars.empty()) cut_off += SvgPath("line " + style.colour, bars, " stroke-width=\"1.1\"");
+  }
+  if (style.width > 0) {
+    const std::string data = LineData(curve);
+    if (!data.empty() && curve.stroke == Stroke::kBars) cut_off += SvgPath("bars " + style.colour, data);
+    if (!data.empty() && curve.stroke != Stroke::kBars)
+      cut_off += SvgPath("line " + style.colour, data, LineAttributes(style));
+  }
+  std::vector<std::string> points;
+  if (style.marker != Marker::kNone) {
+    for (const size_t i : Drawn(curve)) {
+      if (geometry_.Holds(curve.x[i], curve.y[i])) {
+        points.push_back(At(geometry_.Column(curve.x[i]), geometry_.Row(curve.y[i])));
+      }
+    }
+  }
+  return SvgClipped(geometry_.frame, cut_off) + MarkerElement(style, points);
+}
+
+std::string PanelDrawing::Key() const {
   const Box& frame = geometry_.frame;
-  script << "reset\nset encoding utf8\nset minussign\nunset key\nset clip two\nset errorbars small\n"
-         << "set border 31 lw 1 lc rgb \"#000000\"\nset tics scale 0.5,0.25 nomirror\nset format '%h'\n"
-         << "set grid xtics ytics mxtics mytics back lw 0.8 dt 1 lc rgb \"#d4d4d4\", lw 0.6 dt 1 lc rgb "
-            "\"#e9e9e9\"\n"
-         << "set lmargin at screen " << Number(frame.left / width) << "\nset rmargin at screen "
-         << Number(frame.right / width) << "\nset tmargin at screen " << Number(1 - frame.top / height)
-         << "\nset bmargin at screen " << Number(1 - frame.bottom / height) << "\n";
-  const auto axis = [&script](const char* name, const AxisRange& range) {
-    script << "set " << name << "range [" << Number(range.min) << ':' << Number(range.max) << "]\n";
-    if (range.logarithmic) script << "set logscale " << name << "\n" << LogTicks(name, range);
-  };
-  axis("x", geometry_.x);
-  axis("y", geometry_.y);
-  for (const Rule& rule : panel_->rules) {
-    if (!(rule.vertical ? geometry_.x : geometry_.y).Holds(rule.value)) continue;
-    const std::string value = "first " + Number(rule.value);
-    script << "set arrow from " << (rule.vertical ? value + ", graph 0" : "graph 0, " + value) << " to "
-           << (rule.vertical ? value + ", graph 1" : "graph 1, " + value)
-           << " nohead back lw 1 dt (8,6) lc rgb \"" << kRuleColour << "\"\n";
-  }
-  script << "plot ";
-  // Comma-separated; NaN first, so that a panel without a drawable point still gets its axes.
-  script << "NaN notitle";
-  for (size_t i = 0; i < panel_->curves.size(); ++i) {
-    const Curve& curve = panel_->curves[i];
-    const CurveStyle& style = styles_[i];
-    const std::string data = ", $d" + std::to_string(number) + "_" + std::to_string(i);
-    const std::string colour = " lc rgb \"" + style.colour + "\" notitle";
-    if (Drawn(curve).empty()) continue;
-    if (!curve.y_low.empty()) {
-      script << data << " using 1:2:3:4 with yerrorbars pt 0 ps 1 lw 1.1 dt 1" << colour;
-    }
-    if (style.width > 0) {
-      script << data << " using 1:2 with " << (curve.stroke == Stroke::kSteps ? "steps" : "lines") << " lw "
-             << Number(style.width) << " dt " << DashType(style) << colour;
-    }
-    if (style.marker != 0) {
-      script << data << " using 1:2 with points pt " << style.marker << " ps "
-             << Number(style.marker_radius / 4.5) << " lw 1" << colour;
-    }
-  }
-  script << "\n";
-}
-
-std::string PanelDrawing::Key(const std::string& name) const {
   std::string out;
   for (const KeyEntry& entry : key_) {
-    const CurveStyle& style = styles_[entry.curve];
-    const double y = geometry_.frame.top - head_height() + (panel_->title.empty() ? 0 : kTitleHeight) +
-                     kKeyRow * (entry.row + 0.5);
-    char text[240];
-    if (style.width > 0) {
-      std::snprintf(text, sizeof text,
-                    "<path d=\"M%.2f,%.2f h%g\" fill=\"none\" stroke=\"%s\" stroke-width=\"%g\"%s/>\n",
-                    entry.x, y, kKeySample, style.colour.c_str(), style.width, SvgDash(style.dash).c_str());
-      out += text;
+    const double x = frame.left + entry.x;
+    const double y =
+        frame.top - head_height_ + (panel_->title.empty() ? 0 : kTitleHeight) + kKeyRow * (entry.row + 0.5);
+    if (entry.style == nullptr) {
+      const bool span = std::any_of(panel_->bands.begin(), panel_->bands.end(), [&](const Band& band) {
+        return band.label == entry.label && band.vertical;
+      });
+      out += SvgRectangle(span ? "span" : "band", TextBox(x, y - 5, kKeySample, 10));
+    } else if (entry.bars) {
+      out += SvgRectangle("bars " + entry.style->colour, TextBox(x, y - 5, kKeySample, 10));
+    } else {
+      if (entry.style->width > 0) {
+        out += SvgPath("line " + entry.style->colour, At(x, y) + "h" + Pixels(kKeySample),
+                       LineAttributes(*entry.style));
+      }
+      if (entry.style->marker != Marker::kNone) {
+        CurveStyle shown = *entry.style;  // large enough to be seen, and not faint
+        shown.marker_radius = std::max(shown.marker_radius, 3.2);
+        shown.colour = shown.colour.substr(0, shown.colour.find(' '));
+        out += MarkerElement(shown, {At(x + kKeySample / 2, y)});
+      }
     }
-    if (style.marker != 0) {
-      std::snprintf(
-          text, sizeof text,
-          "<use xlink:href=\"#%s-gpPt%d\" transform=\"translate(%.2f,%.2f) scale(3)\" color=\"%s\"/>\n",
-          name.c_str(), style.marker - 1, entry.x + kKeySample / 2, y, style.colour.c_str());
-      out += text;
-    }
-    out += SvgText(panel_->curves[entry.curve].label, entry.x + kKeySample + 6, y + 4, {});
+    out += SvgText(entry.label, x + kKeySample + 6, y + 4);
   }
   return out;
 }
@@ -223,8 +333,10 @@ std::string PanelDrawing::Labels() const {
     for (size_t k = 0; k < drawn.size(); ++k) {
       const size_t from = drawn[k];
       const size_t to = drawn[k + 1 < drawn.size() && curve.stroke != Stroke::kPoints ? k + 1 : k];
-      placement.AddStroke(geometry_.Column(curve.x[from]), geometry_.Row(curve.y[from]),
-                          geometry_.Column(curve.x[to]), geometry_.Row(curve.y[to]));
+      const double x = geometry_.Column(curve.x[from]);
+      const double y = geometry_.Row(curve.y[from]);
+      placement.AddStroke(x, y, geometry_.Column(curve.x[to]), geometry_.Row(curve.y[to]));
+      if (curve.stroke == Stroke::kBars) placement.AddStroke(x, y, x, frame.bottom);
     }
   }
   for (const Rule& rule : panel_->rules) {
@@ -232,75 +344,59 @@ std::string PanelDrawing::Labels() const {
     if (rule.vertical) placement.AddStroke(at, frame.top, at, frame.bottom);
     if (!rule.vertical) placement.AddStroke(frame.left, at, frame.right, at);
   }
-
   std::string out;
-  const auto write = [&out](const std::vector<std::string>& lines, const Box& box, const char* colour) {
-    for (size_t i = 0; i < lines.size(); ++i) {
-      out += SvgText(lines[i], box.left, box.top + kLine * static_cast<double>(i) + 11.5,
-                     {.size = kTextSize, .colour = colour, .halo = true});
+  for (const Note& note : panel_->notes) out += NoteElements(note, placement);
+  for (const Rule& rule : panel_->rules) out += RuleLabel(rule, placement);
+  return out;
+}
+
+std::string PanelDrawing::NoteElements(const Note& note, LabelPlacement& placement) const {
+  if (!geometry_.Holds(note.x, note.y)) return "";
+  const Box& frame = geometry_.frame;
+  const double x = geometry_.Column(note.x);
+  const double y = geometry_.Row(note.y);
+  const std::vector<std::string> lines = WrapText(note.text, 0.4 * (frame.right - frame.left) / kTextSize);
+  double w = 0;
+  for (const std::string& line : lines) w = std::max(w, TextWidth(line) * kTextSize);
+  const double h = kNoteLine * static_cast<double>(lines.size());
+  std::vector<Box> candidates;
+  for (const double away : {kAside, 2.5 * kAside, 5 * kAside}) {
+    for (const Box& box :
+         {TextBox(x + away, y - h - away + 5, w, h), TextBox(x + away, y + away - 5, w, h),
+          TextBox(x - away - w, y - h - away + 5, w, h), TextBox(x - away - w, y + away - 5, w, h),
+          TextBox(x + away, y - h / 2, w, h), TextBox(x - away - w, y - h / 2, w, h),
+          TextBox(x - w / 2, y - h - away, w, h), TextBox(x - w / 2, y + away, w, h)}) {
+      candidates.push_back(box);
     }
-  };
-  for (const Note& note : panel_->notes) {
-    if (!geometry_.Holds(note.x, note.y)) continue;
-    const double x = geometry_.Column(note.x);
-    const double y = geometry_.Row(note.y);
-    const std::vector<std::string> lines = WrapText(note.text, 0.4 * (frame.right - frame.left) / kTextSize);
-    double w = 0;
-    for (const std::string& line : lines) w = std::max(w, TextWidth(line) * kTextSize);
-    const double h = kLine * static_cast<double>(lines.size());
-    std::vector<Box> candidates;
-    for (const double away : {kAside, 2.5 * kAside, 5 * kAside}) {
-      for (const Box& box :
-           {TextBox(x + away, y - h - away + 5, w, h), TextBox(x + away, y + away - 5, w, h),
-            TextBox(x - away - w, y - h - away + 5, w, h), TextBox(x - away - w, y + away - 5, w, h),
-            TextBox(x + away, y - h / 2, w, h), TextBox(x - away - w, y - h / 2, w, h),
-            TextBox(x - w / 2, y - h - away, w, h), TextBox(x - w / 2, y + away, w, h)}) {
-        candidates.push_back(box);
-      }
-    }
-    char dot[120];
-    std::snprintf(dot, sizeof dot, "<circle cx=\"%.2f\" cy=\"%.2f\" r=\"3\" fill=\"#000000\"/>\n", x, y);
-    out += dot;
-    write(lines, placement.Place(candidates), "#000000");
   }
-  for (const Rule& rule : panel_->rules) {
-    if (rule.label.empty() || !(rule.vertical ? geometry_.x : geometry_.y).Holds(rule.value)) continue;
-    const double w = TextWidth(rule.label) * kTextSize;
-    std::vector<Box> candidates;
-    for (int i = 0; i <= 10; ++i) {
-      if (rule.vertical) {
-        const double x = geometry_.Column(rule.value);
-        const double y = frame.top + 4 + (frame.bottom - frame.top - kLine - 8) * i / 10;
-        candidates.push_back(TextBox(x + 5, y, w, kLine));
-        candidates.push_back(TextBox(x - 5 - w, y, w, kLine));
-      } else {
-        const double y = geometry_.Row(rule.value);
-        const double x = frame.right - 6 - w - (frame.right - frame.left - w - 12) * i / 10;
-        candidates.push_back(TextBox(x, y - kLine - 2, w, kLine));
-        candidates.push_back(TextBox(x, y + 2, w, kLine));
-      }
-    }
-    write({rule.label}, placement.Place(candidates), kRuleColour);
+  const Box box = placement.Place(candidates);
+  std::string out = MarkerElement({"ink", 0, {}, Marker::kDisc, 3}, {At(x, y)});
+  for (size_t i = 0; i < lines.size(); ++i) {
+    out += SvgText(lines[i], box.left, box.top + kNoteLine * static_cast<double>(i) + 11.5, {.look = "halo"});
   }
   return out;
 }
 
-std::string PanelDrawing::Texts(const std::string& name) {
+std::string PanelDrawing::RuleLabel(const Rule& rule, LabelPlacement& placement) const {
+  if (rule.label.empty() || !(rule.vertical ? geometry_.x : geometry_.y).Holds(rule.value)) return "";
   const Box& frame = geometry_.frame;
-  std::string out;
-  if (!panel_->title.empty()) {
-    out += SvgText(panel_->title, left_, frame.top - head_height() + 15, {.size = 13.5, .bold = true});
+  const double w = TextWidth(rule.label) * kTextSize;
+  std::vector<Box> candidates;
+  for (int i = 0; i <= 10; ++i) {
+    if (rule.vertical) {
+      const double x = geometry_.Column(rule.value);
+      const double y = frame.top + 4 + (frame.bottom - frame.top - kNoteLine - 8) * i / 10;
+      candidates.push_back(TextBox(x + 5, y, w, kNoteLine));
+      candidates.push_back(TextBox(x - 5 - w, y, w, kNoteLine));
+    } else {
+      const double y = geometry_.Row(rule.value);
+      const double x = frame.right - 6 - w - (frame.right - frame.left - w - 12) * i / 10;
+      candidates.push_back(TextBox(x, y - kNoteLine - 2, w, kNoteLine));
+      candidates.push_back(TextBox(x, y + 2, w, kNoteLine));
+    }
   }
-  out += Key(name);
-  if (!panel_->x.label.empty()) {
-    out += SvgText(panel_->x.label, (frame.left + frame.right) / 2, frame.bottom + 37,
-                   {.size = 13, .anchor = "middle"});
-  }
-  if (!panel_->y.label.empty()) {
-    out += SvgText(panel_->y.label, 20, (frame.top + frame.bottom) / 2,
-                   {.size = 13, .anchor = "middle", .upwards = true});
-  }
-  return out + Labels();
+  const Box box = placement.Place(candidates);
+  return SvgText(rule.label, box.left, box.top + 11.5, {.look = "halo soft"});
 }
 
 }  // namespace hydro::page

@@ -1,8 +1,7 @@
-// One panel of a figure: gnuplot draws axes, grid and curves; all texts but the tick labels are set here.
+// One panel of a figure as SVG: axes, grid, curves, key and labels.
 #pragma once
 
 #include <cstddef>
-#include <iosfwd>
 #include <string>
 #include <vector>
 
@@ -12,51 +11,45 @@
 
 namespace hydro::page {
 
-inline constexpr char kFontFamily[] = "Helvetica, Arial, sans-serif";
-
-struct TextStyle {
-  double size = 12;  // pixels
-  const char* colour = "#000000";
-  const char* anchor = "start";
-  bool bold = false;
-  bool halo = false;     // a white rim, so that it can be read on lines
-  bool upwards = false;  // turned by 90 degrees
-};
-
-// A <text> element; `text` as page/plot.h describes.
-std::string SvgText(const std::string& text, double x, double y, const TextStyle& style);
-
 class PanelDrawing {
  public:
-  // `panel` must outlive this. The key is set between `left` and `right`.
-  PanelDrawing(const Panel& panel, double left, double right);
+  // `panel` must outlive this, `where` is for messages. Throws as FitPanel().
+  PanelDrawing(const Panel& panel, const std::string& where);
 
-  // What title and key need above the frame.
-  double head_height() const;
+  // What ticks and labels need left of a frame of that height, and below it.
+  double LeftMargin(double frame_height) const;
+  double FootHeight() const;
+  // What title and key need above the frame where the key is that wide.
+  double HeadHeight(double key_width);
 
-  // Before what follows. Throws as FitPanel().
-  void Fit(const Box& frame, const std::string& where);
-
-  void WriteData(std::ostream& script, size_t number) const;
-  void WritePlot(std::ostream& script, size_t number, double width, double height) const;
-  // SVG elements; markers in the key are those of the picture `name`.
-  std::string Texts(const std::string& name);
+  // SVG elements, after HeadHeight().
+  std::string Draw(const Box& frame);
 
  private:
   struct KeyEntry {
-    size_t curve = 0;
-    double x = 0;
-    int row = 0;
+    std::string label;
+    const CurveStyle* style;  // null: of a band
+    bool bars;
+    double x;
+    int row;
   };
 
-  std::string Key(const std::string& name) const;
+  std::string Bands() const;
+  std::string Axes() const;
+  std::string Rules() const;
+  std::string CurveElements(size_t number) const;
+  std::string Key() const;
   std::string Labels() const;
+  std::string NoteElements(const Note& note, class LabelPlacement& placement) const;
+  std::string RuleLabel(const Rule& rule, class LabelPlacement& placement) const;
+  std::string LineData(const Curve& curve) const;
   std::vector<size_t> Drawn(const Curve& curve) const;
 
   const Panel* panel_;
-  double left_;
+  std::string where_;
   std::vector<CurveStyle> styles_;
   std::vector<KeyEntry> key_;
+  double head_height_ = 0;
   PanelGeometry geometry_;
 };
 

@@ -4,35 +4,33 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "page/range.h"
+
 namespace hydro::page {
 namespace {
 
+// Of what an axis can show.
 class Extent {
  public:
   explicit Extent(bool positive) : positive_(positive) {}
   void Add(double value) {
-    if (!std::isfinite(value) || (positive_ && value <= 0)) return;
-    low_ = empty() ? value : std::min(low_, value);
-    high_ = high_ < value || !(high_ == high_) ? value : high_;
+    if (!positive_ || value > 0) range_.Include(value);
   }
-  bool empty() const { return std::isnan(low_); }
-  double low() const { return low_; }
-  double high() const { return high_; }
+  const Range& range() const { return range_; }
 
  private:
   bool positive_;
-  double low_ = kAutomatic;
-  double high_ = kAutomatic;
+  Range range_;
 };
 
 // The bounds given, else those of the data with `margin` (a fraction of the range) around.
-AxisRange Fit(const Axis& axis, const Extent& data, double margin, const std::string& where) {
+AxisRange Fit(const Axis& axis, const Range& data, double margin, const std::string& where) {
   AxisRange range{axis.min, axis.max, axis.logarithmic};
   const bool free_min = std::isnan(axis.min);
   const bool free_max = std::isnan(axis.max);
   if ((free_min || free_max) && data.empty()) throw std::invalid_argument(where + ": nothing to show");
-  if (free_min) range.min = free_max ? data.low() : std::min(data.low(), axis.max);
-  if (free_max) range.max = free_min ? data.high() : std::max(data.high(), axis.min);
+  if (free_min) range.min = free_max ? data.low : std::min(data.low, axis.max);
+  if (free_max) range.max = free_min ? data.high : std::max(data.high, axis.min);
   if (axis.logarithmic) {
     const double widen = range.max > range.min ? std::pow(range.max / range.min, margin) : 2;
     if (free_min) range.min /= widen;
@@ -94,7 +92,7 @@ PanelGeometry FitPanel(const Panel& panel, const Box& frame, const std::string& 
   for (const Rule& rule : panel.rules) {
     if (rule.vertical) x_data.Add(rule.value);
   }
-  PanelGeometry geometry{frame, Fit(panel.x, x_data, panel.equal_scales ? 0.05 : 0.0, where), {}};
+  PanelGeometry geometry{frame, Fit(panel.x, x_data.range(), panel.equal_scales ? 0.05 : 0.0, where), {}};
 
   Extent y_data(panel.y.logarithmic);
   const AxisRange& shown = geometry.x;
@@ -114,7 +112,7 @@ PanelGeometry FitPanel(const Panel& panel, const Box& frame, const std::string& 
   for (const Rule& rule : panel.rules) {
     if (!rule.vertical) y_data.Add(rule.value);
   }
-  geometry.y = Fit(panel.y, y_data, 0.06, where);
+  geometry.y = Fit(panel.y, y_data.range(), 0.06, where);
   if (panel.equal_scales) Equalise(geometry);
   return geometry;
 }

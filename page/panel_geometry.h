@@ -1,6 +1,9 @@
 // Where the values of a panel come to lie in the picture.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
 #include <string>
 
 #include "page/label_placement.h"
@@ -19,17 +22,28 @@ struct AxisRange {
 };
 
 struct PanelGeometry {
-  Box frame;  // in pixels of the picture
-  AxisRange x;
-  AxisRange y;
+  Box frame = {};  // in pixels of the picture
+  AxisRange x = {};
+  AxisRange y = {};
 
-  double Column(double value) const { return frame.left + x.Fraction(value) * (frame.right - frame.left); }
-  double Row(double value) const { return frame.bottom - y.Fraction(value) * (frame.bottom - frame.top); }
+  // Far outside is far enough: readers of SVG stumble over huge coordinates.
+  double Column(double value) const {
+    return frame.left + Bounded(x.Fraction(value)) * (frame.right - frame.left);
+  }
+  double Row(double value) const {
+    return frame.bottom - Bounded(y.Fraction(value)) * (frame.bottom - frame.top);
+  }
   bool Holds(double x_value, double y_value) const { return x.Holds(x_value) && y.Holds(y_value); }
+
+ private:
+  static double Bounded(double fraction) {
+    return std::isfinite(fraction) ? std::clamp(fraction, -10.0, 11.0)
+                                   : std::numeric_limits<double>::quiet_NaN();
+  }
 };
 
-// The ranges of a panel: as given, else so that all curves, notes and rules are within. `where` is for
-// messages. Throws std::invalid_argument as RenderSvg() does.
+// The ranges of a panel: as given, else so that all curves, notes and rules are within. `where` is for messages. Throws
+// std::invalid_argument as FigureElement() does.
 PanelGeometry FitPanel(const Panel& panel, const Box& frame, const std::string& where);
 
 }  // namespace hydro::page

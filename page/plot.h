@@ -1,13 +1,14 @@
-// A figure as data: panels of curves over axes, and how it becomes an SVG picture.
+// A figure as data: panels of curves over axes. page/figure_svg.h makes a picture of it.
 //
-// All texts of a figure are plain: Greek and other letters as UTF-8, nothing is interpreted but
+// All texts are plain, with Greek and other letters as UTF-8. Two marks have a meaning:
 //   _x  _ms  _{any text}   a subscript: the letters and digits that follow, or what the braces hold
-//   ^2  ^-1  ^{any text}   the same as a superscript
-// where a letter, digit, prime or closing bracket stands before it: "p_2 - p_1, psi", "s^{-1}", "V_ms". A
-// subscript without braces also needs a symbol of one or two letters there, so that names such as p1_psi and
-// static_excess stay as they are.
+//   ^2  ^-1  ^{any text}   a superscript
+// They count after a letter, digit, prime or closing bracket: "p_2 - p_1, psi", "s^{-1}", "V_ms". A subscript without
+// braces also needs a symbol of one or two letters before it, so that names such as p1_psi and static_excess stay as
+// they are.
 #pragma once
 
+#include <cstddef>
 #include <limits>
 #include <string>
 #include <vector>
@@ -16,35 +17,47 @@ namespace hydro::page {
 
 inline constexpr double kAutomatic = std::numeric_limits<double>::quiet_NaN();
 
-// kSteps holds each value until the next x.
-enum class Stroke { kLine, kDashed, kDotted, kSteps, kPoints, kLinePoints };
+// kSteps holds each value until the next x; kBars does too, and fills what is below down to the edge of the panel.
+enum class Stroke { kLine, kDashed, kDotted, kSteps, kBars, kPoints, kLinePoints };
+
+// How much a curve stands out. kBackdrop: wide and pale, to compare others with.
+enum class Weight { kNormal, kFaint, kStrong, kBackdrop };
 
 struct Curve {
   std::string label;      // in the key; empty: not there
   std::vector<double> x;  // of equal length; a NaN in y breaks the line
   std::vector<double> y;
   Stroke stroke = Stroke::kLine;
-  // 0, 1, 2 ... choose from the report's palette, so that curves of one kind look alike across panels; -1:
-  // the curve's place in its panel.
+  // 0, 1, 2 ... choose from the palette, so that curves of one kind look alike across panels; -1: the curve's place in
+  // its panel.
   int colour = -1;
   // Empty, or bounds of each point, drawn as a vertical bar.
-  std::vector<double> y_low;
-  std::vector<double> y_high;
+  std::vector<double> y_low = {};
+  std::vector<double> y_high = {};
+  Weight weight = Weight::kNormal;
 };
 
 // y over x without bounds.
 Curve Line(const std::string& label, const std::vector<double>& x, const std::vector<double>& y, int colour,
            Stroke stroke = Stroke::kLine);
 
+// A value on an axis and the text there.
+struct Tick {
+  double value = 0;
+  std::string text;
+};
+
 struct Axis {
   std::string label;         // quantity and unit: "pressure difference, psi"
   bool logarithmic = false;  // values that are not positive are not drawn
   double min = kAutomatic;
   double max = kAutomatic;
+  std::vector<Tick> ticks = {};  // instead of round numbers: names of what is compared
+  bool numbers = true;           // false: ticks have no text, the panel below shares them
 };
 
-// Text at a point of the panel (in axis units), with a dot there. It is put on the side of the dot where it
-// hides least. Notes and rules outside a range that was given are not drawn.
+// Text at a point of the panel (in axis units), with a dot there, on the side of the dot where it hides least. Notes,
+// rules and bands outside a range that was given are not drawn.
 struct Note {
   std::string text;
   double x = 0;
@@ -58,6 +71,14 @@ struct Rule {
   double value = 0;
 };
 
+// A shaded stretch of the x axis (vertical) or of the y axis, over the whole panel: a window of time, a noise floor.
+struct Band {
+  std::string label;  // in the key; empty: not there
+  bool vertical = false;
+  double from = 0;
+  double to = 0;
+};
+
 struct Panel {
   std::string title;
   Axis x;
@@ -68,22 +89,20 @@ struct Panel {
   // One unit is as long on both axes (a plane of poles): one of the two ranges, given ones too, is widened.
   bool equal_scales = false;
   double height = 1;  // beside the other panels'
+  double width = 1;   // beside those of its row
+  std::vector<Band> bands = {};
 };
 
-// Panels stand one below the other.
+// Panels stand one below the other, or side by side in rows. The key of a panel reaches over those beside it that have none.
 struct Figure {
   std::string caption;  // what is shown and under which conditions; stands below the picture
   std::vector<Panel> panels;
-  // Instead of panels: a whole <svg> element, drawn otherwise. Its first tag has a viewBox="0 0 WIDTH
-  // HEIGHT"; its ids are its own to keep apart.
-  std::string drawing;
+  // Instead of panels: a whole <svg> element, drawn otherwise. Its first tag has a viewBox="0 0 WIDTH HEIGHT"; its ids
+  // are its own to keep apart.
+  std::string drawing = {};
+  size_t columns = 1;
+  double width = 860;       // pixels
+  double panel_height = 0;  // of a panel's frame, pixels; 0: chosen by the count of panels
 };
-
-// The figure as a self-contained SVG document, its caption included; identical figures give identical bytes.
-// `name` (letters, digits, hyphens) keeps its ids apart from other pictures' in one page. Long curves are
-// thinned to what the eye can see (extremes are kept). Runs gnuplot; throws std::runtime_error saying what to
-// install when that is missing, or what it complained about; std::invalid_argument naming the panel for a
-// figure that cannot be drawn (vectors of unequal length, no panel, nothing to show, an empty range).
-std::string RenderSvg(const Figure& figure, const std::string& name);
 
 }  // namespace hydro::page

@@ -11,7 +11,8 @@
 #include "diagnose/report/diagnosis_in_si.h"
 #include "diagnose/report/report_json.h"
 #include "diagnose/report/report_pictures.h"
-#include "diagnose/report/report_style.h"
+#include "page/figure_svg.h"
+#include "page/html_page.h"
 #include "page/typeset.h"
 #include "settings/command_line.h"
 #include "settings/model_file.h"
@@ -31,13 +32,14 @@ std::string Probability(double p) {
 // Columns whose names begin with '#' hold numbers.
 std::string Table(const std::vector<std::string>& columns, const std::string& rows,
                   const std::string& style = "") {
-  std::string out = "<table" + (style.empty() ? "" : " class=\"" + style + "\"") + ">\n<thead><tr>";
+  std::string out =
+      "<div class=\"table\"><table" + (style.empty() ? "" : " class=\"" + style + "\"") + ">\n<thead><tr>";
   for (const std::string& column : columns) {
     const bool number = column.starts_with('#');
     out += (number ? "<th class=\"number\">" : "<th>") +
            page::TypesetHtml(number ? column.substr(1) : column) + "</th>";
   }
-  return out + "</tr></thead>\n<tbody>\n" + rows + "</tbody>\n</table>\n";
+  return out + "</tr></thead>\n<tbody>\n" + rows + "</tbody>\n</table></div>\n";
 }
 
 std::string Section(const std::string& heading, const std::string& content) {
@@ -76,14 +78,14 @@ std::string GapTable(const Diagnosis& diagnosis, bool si) {
             NumberCell(signal.noise * unit.factor) + cells(signal.fit, unit.factor) +
             cells(signal.held_out, unit.factor) + "</tr>\n";
   }
-  return "<p>Root-mean-square of what is left. <i>Before</i>: the model as given; <i>refitted</i>: its own "
-         "parameters refitted, nothing added; <i>after</i>: with what was found. In noise units 1 is the "
-         "noise "
+  return "<p>Root-mean-square residuals. <i>Before</i>: the model as given; <i>refitted</i>: its own "
+         "parameters "
+         "refitted, nothing added; <i>after</i>: with what was found. In noise units, 1 is the noise "
          "floor.</p>\n" +
          Table({"signal", "unit", "#noise", "#fitted: before", "#refitted", "#after", "#held out: before",
                 "#refitted", "#after"},
                rows) +
-         GapPicture(diagnosis);
+         page::HtmlFigure(GapFigure(diagnosis), "the gap before and after");
 }
 
 std::string Interval(const Estimated& estimated) {
@@ -156,7 +158,7 @@ std::string Where(const Diagnosis& diagnosis) {
     }
     const std::string unit = term.against_unit.empty() ? "" : " (" + term.against_unit + ")";
     out += "<p class=\"lead\">What the balance lacks, with its 95 % interval:</p>\n<div class=\"beside\">\n" +
-           MissingTermPicture(term) +
+           page::HtmlFigure(MissingTermFigure(term), "the missing term") +
            Table({"#" + term.against + unit, "#mean (" + term.unit + ")", "#standard error"}, bins,
                  "narrow small") +
            "</div>\n";
@@ -195,15 +197,20 @@ std::string Next(const Diagnosis& diagnosis) {
 std::string Runs(const Diagnosis& diagnosis, bool si) {
   std::string out;
   for (const RunCurves& run : diagnosis.curves) {
-    const std::string picture = RunPicture(diagnosis, run, si);
-    if (picture.empty()) continue;
+    const std::optional<page::Figure> figure = RunFigure(diagnosis, run, si);
+    if (!figure) continue;
     out += "<h3>" + page::EscapeMarkup(run.run) +
            (run.held_out ? " <span class=\"meta\">held out: <i>after</i> is a model that was not fitted to "
                            "it</span>"
                          : "") +
-           "</h3>\n" + picture;
+           "</h3>\n" + page::HtmlFigure(*figure, "measured and simulated signals of " + run.run);
   }
   return out;
+}
+
+std::string Dependence(const Diagnosis& diagnosis, bool si) {
+  const std::optional<page::Figure> figure = DependenceFigure(diagnosis, si);
+  return figure ? page::HtmlFigure(*figure, "residuals against what they may depend on") : "";
 }
 
 std::string Ranking(const Diagnosis& diagnosis) {
@@ -217,12 +224,13 @@ std::string Ranking(const Diagnosis& diagnosis) {
             "<td>" + (taken ? "taken" : page::TypesetHtml(candidate.rejected_because)) + "</td></tr>\n";
   }
   if (rows.empty()) return "";
-  return "<p>Gaps are in noise units, after the candidate was added and all was refitted; the score is the "
-         "fall of "
-         "the squared gap that its sensitivity promises before any refit; p is the chance that noise alone "
-         "does as "
-         "much, with the number of candidates allowed for. <i>-</i>: not tried, its score being too "
-         "low.</p>\n" +
+  return "<p>Gaps are in noise units, after the candidate was added and all parameters were refitted. The "
+         "score is "
+         "the drop of the squared gap that the candidate's sensitivity promises before any refit. p is the "
+         "probability "
+         "that noise alone does as much, corrected for the number of candidates. <i>-</i>: not tried, "
+         "because its "
+         "score is too low.</p>\n" +
          Table({"#", "candidate", "#score", "#fitted", "#held out", "#p", "rejected because"}, rows);
 }
 
@@ -236,23 +244,22 @@ std::string Remarks(const Diagnosis& diagnosis) {
 
 std::string ReportHtml(const Diagnosis& given, bool si) {
   const Diagnosis diagnosis = si ? InSi(given) : given;
-  return "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<meta name=\"viewport\" "
-         "content=\"width=device-width\">\n<title>" +
-         page::EscapeMarkup("Gap report: " + diagnosis.model.name) + "</title>\n<style>" + kReportStyle +
-         "</style>\n</head>\n<body>\n" + Head(diagnosis) + Section("The gap", GapTable(diagnosis, si)) +
-         Section("What was found", Effects(diagnosis)) +
-         Section("The model's own parameters", OwnParameters(diagnosis)) +
-         Section("Remarks", Remarks(diagnosis)) + Section("Where they disagree", Where(diagnosis)) +
-         Section("The next experiment", Next(diagnosis)) +
-         Section("Measured against before and after", Runs(diagnosis, si)) +
-         Section("What is left, against what it may depend on", DependencePicture(diagnosis, si)) +
-         Section("Every candidate, and why it was rejected", Ranking(diagnosis)) +
-         Section("The model with what was found", "<p>As <code>model.toml</code>:</p>\n<pre>" +
-                                                      Lines(settings::FormatModel(diagnosis.model)) +
-                                                      "</pre>\n") +
-         "<p class=\"meta\">hydro-diagnose " + page::EscapeMarkup(settings::ProgramVersion()) +
-         "; the numbers are in "
-         "report.json.</p>\n</body>\n</html>\n";
+  return page::HtmlPage("Gap report: " + diagnosis.model.name,
+                        Head(diagnosis) + Section("The gap", GapTable(diagnosis, si)) +
+                            Section("What was found", Effects(diagnosis)) +
+                            Section("The model's own parameters", OwnParameters(diagnosis)) +
+                            Section("Remarks", Remarks(diagnosis)) +
+                            Section("Where model and data disagree", Where(diagnosis)) +
+                            Section("The next experiment", Next(diagnosis)) +
+                            Section("Measurements, and the model before and after", Runs(diagnosis, si)) +
+                            Section("Residuals against what they may depend on", Dependence(diagnosis, si)) +
+                            Section("Every candidate, and why it was rejected", Ranking(diagnosis)) +
+                            Section("The model with what was found",
+                                    "<p>As <code>model.toml</code>:</p>\n<pre>" +
+                                        Lines(settings::FormatModel(diagnosis.model)) + "</pre>\n") +
+                            "<p class=\"meta\">hydro-diagnose " +
+                            page::EscapeMarkup(settings::ProgramVersion()) +
+                            "; the numbers are in report.json.</p>\n");
 }
 
 }  // namespace hydro::diagnose

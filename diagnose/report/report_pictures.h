@@ -1,24 +1,25 @@
-// The pictures of report.html, each an SVG element in a <figure>.
+// The pictures of report.html.
 #pragma once
 
-#include <string>
+#include <optional>
 
 #include "diagnose/data/diagnosis.h"
+#include "page/plot.h"
 
 namespace hydro::diagnose {
 
 // The gap before, with refitted parameters and after, in noise units, of all signals and of each.
-std::string GapPicture(const Diagnosis& diagnosis);
+page::Figure GapFigure(const Diagnosis& diagnosis);
 
-// Measured against before and after, and what is left of each, of one run; the places of the disagreement
-// are shaded.
-std::string RunPicture(const Diagnosis& diagnosis, const RunCurves& run, bool si);
+// The signals of one run, measured and simulated before and after, and the residuals of each; the places of the
+// disagreement are shaded. Nothing without time or curves.
+std::optional<page::Figure> RunFigure(const Diagnosis& diagnosis, const RunCurves& run, bool si);
 
-// What is left before and after of all runs, a row each signal, against speed, pressure difference, arm angle
-// and voltage, where those are there; "" without curves.
-std::string DependencePicture(const Diagnosis& diagnosis, bool si);
+// The residuals of all runs before and after, a row for each signal, against speed, pressure difference, arm angle and
+// voltage, where those were measured. Nothing without curves.
+std::optional<page::Figure> DependenceFigure(const Diagnosis& diagnosis, bool si);
 
 // The missing term of a balance against what it depends on.
-std::string MissingTermPicture(const MissingTerm& term);
+page::Figure MissingTermFigure(const MissingTerm& term);
 
 }  // namespace hydro::diagnose

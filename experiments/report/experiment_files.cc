@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "base/new_file.h"
+#include "page/figure_svg.h"
 #include "settings/command_line.h"
 
 namespace hydro::experiments {
@@ -16,7 +17,8 @@ std::vector<RenderedPicture> RenderPictures(const std::string& name, const std::
     if (!suffixes.insert(picture.suffix).second) {
       throw std::logic_error(name + ": two pictures with the suffix '" + picture.suffix + "'");
     }
-    rendered.push_back({name + picture.suffix, page::RenderSvg(picture.figure, name + picture.suffix)});
+    const std::string id = name + picture.suffix;
+    rendered.push_back({id, page::FigureFile(picture.figure, id), page::HtmlFigure(picture.figure, id)});
   }
   return rendered;
 }

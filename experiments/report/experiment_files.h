@@ -10,10 +10,11 @@ namespace hydro::experiments {
 
 struct RenderedPicture {
   std::string name;  // NAME and the picture's suffix
-  std::string svg;
+  std::string svg;   // the file
+  std::string html;  // for the report's page
 };
 
-// The pictures as SVG. Throws what RenderSvg() throws, std::logic_error when a suffix is there twice.
+// Throws what FigureFile() throws, std::logic_error when a suffix is there twice.
 std::vector<RenderedPicture> RenderPictures(const std::string& name, const std::vector<Picture>& pictures);
 
 // The result's numbers beside name, title, program version, options, conditions, comparisons and findings;

@@ -6,13 +6,10 @@
 #include <limits>
 #include <regex>
 
-#include "page/chart.h"
 #include "tests/diagnose/example_diagnosis.h"
 
 namespace hydro::diagnose {
 namespace {
-
-using ::testing::ElementsAre;
 
 // Without printing half a megabyte when it fails.
 bool Has(const std::string& page, const std::string& part) { return page.find(part) != std::string::npos; }
@@ -91,10 +88,10 @@ TEST(ReportHtml, Complete) {
                            "noise floor",
                            "class=\"span\"",
                            "class=\"band\"",
-                           "class=\"line measured\"",
-                           "class=\"line before\"",
-                           "class=\"line after\"",
-                           "class=\"bar found\"",
+                           "class=\"line pale\"",
+                           "class=\"line c1\"",
+                           "class=\"line c0\"",
+                           "class=\"line c0\"",
                            "motor speed (rad/s)",
                            "voltage (V)",
                            "@media print"}) {
@@ -125,15 +122,6 @@ TEST(ReportHtml, OddCurves) {
   EXPECT_FALSE(Has(page, "nan"));
   EXPECT_FALSE(Has(page, "inf\""));
   EXPECT_FALSE(Has(page, "e+"));
-}
-
-// Tests that numbers along an axis are round and within its range.
-TEST(Chart, RoundNumbers) {
-  EXPECT_THAT(page::RoundNumbers({-0.4, 10.2}, 5), ElementsAre(0, 5, 10));
-  EXPECT_THAT(page::RoundNumbers({0, 1}, 5).size(), 6u);
-  EXPECT_TRUE(page::RoundNumbers({1, 1}, 5).empty());
-  EXPECT_EQ(page::Pixels(12.345), "12.3");
-  EXPECT_EQ(page::Pixels(-0.01), "0");
 }
 
 }  // namespace

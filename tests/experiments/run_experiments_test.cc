@@ -174,21 +174,6 @@ TEST_F(RunExperimentsTest, MissingFindingIsAnError) {
   EXPECT_THAT(Read("index.html"), HasSubstr("no experiment gave evidence for it"));
 }
 
-// Tests that a machine without gnuplot hears so once, before anything has run.
-TEST_F(RunExperimentsTest, GnuplotMissing) {
-  const std::string path = std::getenv("PATH");
-  setenv("PATH", "", 1);
-  std::string said;
-  try {
-    Run(Two(), {.name = "all"});
-  } catch (const std::runtime_error& error) {
-    said = error.what();
-  }
-  setenv("PATH", path.c_str(), 1);
-  EXPECT_THAT(said, HasSubstr("apt-get install gnuplot-nox"));
-  EXPECT_EQ(errors_, "");
-}
-
 // Tests that wrong usage is an input error that says what is allowed.
 TEST_F(RunExperimentsTest, WrongUsage) {
   const auto refusal = [&](const ExperimentRequest& request) -> std::string {

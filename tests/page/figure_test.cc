@@ -1,5 +1,3 @@
-#include "page/plot.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -9,9 +7,13 @@
 #include <stdexcept>
 
 #include "page/curve_thinning.h"
-#include "page/gnuplot.h"
+#include "page/drawing_template.h"
+#include "page/figure_svg.h"
+#include "page/html_page.h"
 #include "page/label_placement.h"
 #include "page/panel_geometry.h"
+#include "page/svg.h"
+#include "page/ticks.h"
 #include "page/typeset.h"
 
 namespace hydro::page {
@@ -72,16 +74,17 @@ Figure SmallFigure() {
 
 void ExpectRefused(const Figure& figure, const std::string& why) {
   try {
-    RenderSvg(figure, "x");
+    FigureFile(figure, "x");
     FAIL() << why;
   } catch (const std::invalid_argument& error) {
     EXPECT_THAT(error.what(), HasSubstr(why));
   }
 }
 
-// Tests that a figure becomes a well-formed SVG document with all its texts, escaped, and its own ids.
-TEST(Plot, SvgHoldsTheFigure) {
-  const std::string svg = RenderSvg(SmallFigure(), "fig3-noise");
+// Tests that a figure becomes a well-formed SVG document with all its texts, escaped, and without ids, which two pictures
+// in one page might share.
+TEST(FigureSvg, SvgHoldsTheFigure) {
+  const std::string svg = FigureFile(SmallFigure(), "fig3-noise");
   EXPECT_TRUE(IsBalanced(svg));
   EXPECT_THAT(svg, HasSubstr("<svg"));
   EXPECT_THAT(svg, HasSubstr("xmlns=\"http://www.w3.org/2000/svg\""));
@@ -91,20 +94,17 @@ TEST(Plot, SvgHoldsTheFigure) {
     EXPECT_THAT(svg, HasSubstr(text));
   }
   EXPECT_EQ(Count(svg, "a title"), 2u);  // two panels
-  EXPECT_EQ(Count(svg, "id="), Count(svg, "id=\"fig3_noise") + Count(svg, "id='fig3_noise"));
-  EXPECT_EQ(Count(svg, "href='#gp"), 0u);
-  EXPECT_THAT(svg, Not(HasSubstr("GNUPLOT")));  // no version of a tool, no tool tips
+  EXPECT_EQ(Count(svg, " id="), 0u);
 }
 
-// Tests that identical figures give identical bytes, and that another name changes only ids.
-TEST(Plot, IsDeterministic) {
-  const std::string svg = RenderSvg(SmallFigure(), "a");
-  EXPECT_EQ(svg, RenderSvg(SmallFigure(), "a"));
-  EXPECT_NE(svg, RenderSvg(SmallFigure(), "b"));
+// Tests that identical figures give identical bytes.
+TEST(FigureSvg, IsDeterministic) {
+  const std::string svg = FigureFile(SmallFigure(), "a");
+  EXPECT_EQ(svg, FigureFile(SmallFigure(), "a"));
 }
 
 // Tests that logarithmic axes show positive values only, and that a short one still has labelled ticks.
-TEST(Plot, LogarithmicAxis) {
+TEST(FigureSvg, LogarithmicAxis) {
   Figure figure = SmallFigure();
   figure.panels.resize(1);
   figure.panels[0].x.logarithmic = true;
@@ -114,13 +114,13 @@ TEST(Plot, LogarithmicAxis) {
   figure.panels[0].curves[0].x = {-1, 0, 4, 8};
   figure.panels[0].curves[0].y = {1, 1, 1.5, 2};
   figure.panels[0].notes.clear();
-  const std::string svg = RenderSvg(figure, "x");
+  const std::string svg = FigureFile(figure, "x");
   EXPECT_TRUE(IsBalanced(svg));
   for (const char* tick : {">4<", ">5<", ">8<"}) EXPECT_THAT(svg, HasSubstr(tick));
 }
 
 // Tests that figures that cannot be drawn are refused with the panel's number and what is wrong.
-TEST(Plot, BadFiguresAreRefused) {
+TEST(FigureSvg, BadFiguresAreRefused) {
   ExpectRefused({}, "without panels");
   Figure figure = SmallFigure();
   figure.panels[1].curves[0].y.pop_back();
@@ -142,42 +142,117 @@ TEST(Plot, BadFiguresAreRefused) {
     curve = {"", {0, 1}, {NAN, NAN}, Stroke::kLine, -1, {}, {}};
   }
   ExpectRefused(figure, "nothing to show");
-  EXPECT_THROW(RenderSvg(SmallFigure(), "a\"b"), std::invalid_argument);
   figure = SmallFigure();
   figure.drawing = "<p>no svg</p>";
   ExpectRefused(figure, "viewBox");
 }
 
 // Tests that a drawing is taken as it is, with its caption below it.
-TEST(Plot, DrawingGetsItsCaption) {
+TEST(FigureSvg, DrawingGetsItsCaption) {
   Figure figure;
   figure.caption = "What is drawn";
   figure.drawing = "<svg viewBox=\"0 0 200 100\"><circle r=\"3\"/></svg>";
-  const std::string svg = RenderSvg(figure, "x");
+  const std::string svg = FigureFile(figure, "x");
   EXPECT_TRUE(IsBalanced(svg));
   EXPECT_THAT(svg, HasSubstr(figure.drawing));
   EXPECT_THAT(svg, HasSubstr("What is drawn"));
   EXPECT_THAT(svg, HasSubstr("width=\"200\""));
 }
 
-// Tests that a missing gnuplot is told with what to install, and a script that it refuses with its words.
-TEST(Plot, GnuplotMissingOrFailing) {
-  try {
-    RunGnuplot("plot nonsense(\n");
-    FAIL();
-  } catch (const std::runtime_error& error) {
-    EXPECT_THAT(error.what(), HasSubstr("gnuplot failed: "));
-    EXPECT_THAT(error.what(), Not(HasSubstr("\n")));
+// Tests that what lies beside the axes of a panel is drawn: bars, bands, names at ticks, and points with error bars.
+TEST(FigureSvg, BarsBandsAndNames) {
+  Panel panel;
+  panel.x = {.label = "period, us", .logarithmic = true};
+  panel.y = {.label = "", .min = 0, .max = 3, .ticks = {{1, "plant"}, {2, "logger"}}};
+  panel.curves = {{"count", {1, 10, 100}, {2, NAN, 1}, Stroke::kBars}};
+  panel.bands = {{"noise", false, 0.5, 1}, {"", true, 2, 3}, {"", true, 500, 600}};
+  const std::string svg = FigureElement({.caption = "", .panels = {panel}}, "x");
+  EXPECT_TRUE(IsBalanced(svg));
+  for (const char* part :
+       {"class=\"bars c0\"", "class=\"band\"", ">plant<", ">logger<", ">noise<", ">100<"}) {
+    EXPECT_THAT(svg, HasSubstr(part));
   }
-  const std::string path = std::getenv("PATH");
-  setenv("PATH", "", 1);
-  try {
-    RenderSvg(SmallFigure(), "x");
-    ADD_FAILURE() << "gnuplot was found without a PATH";
-  } catch (const std::runtime_error& error) {
-    EXPECT_THAT(error.what(), HasSubstr("apt-get install gnuplot-nox"));
+  EXPECT_EQ(Count(svg, "class=\"span\""), 1u);  // the other is outside
+  EXPECT_EQ(Count(svg, "z\""), 1u);             // one bar: the second ends at NaN, the third nowhere
+}
+
+// Tests that panels side by side share their rows' heights, and that a key may reach over a panel without one.
+TEST(FigureSvg, Columns) {
+  Panel left;
+  left.curves = {Line("measured", {0, 1}, {0, 1}, 0),
+                 Line("model as given, which takes room", {0, 1}, {1, 0}, 1)};
+  left.width = 0.3;
+  Panel right = left;
+  for (Curve& curve : right.curves) curve.label.clear();
+  const std::string svg = FigureElement(
+      {.caption = "", .panels = {left, right}, .columns = 2, .width = 400, .panel_height = 80}, "x");
+  EXPECT_TRUE(IsBalanced(svg));
+  EXPECT_EQ(Count(svg, "<rect class=\"frame\""), 2u);
+  right.curves[0].label = "another";  // now the key of the left panel has two rows
+  const std::string taller = FigureElement(
+      {.caption = "", .panels = {left, right}, .columns = 2, .width = 400, .panel_height = 80}, "x");
+  EXPECT_LT(svg.substr(0, svg.find("role")), taller.substr(0, taller.find("role")));
+  EXPECT_THROW(FigureElement({.caption = "", .panels = {left}, .columns = 0}, "x"), std::invalid_argument);
+}
+
+// Tests that coordinates stay within reason whatever the data are.
+TEST(FigureSvg, RunawayValues) {
+  Panel panel;
+  panel.y.min = -1;
+  panel.y.max = 1;
+  panel.curves = {Line("", {0, 1, 2, 3}, {0, 1e300, -1e30, INFINITY}, 0)};
+  const std::string svg = FigureElement({.caption = "", .panels = {panel}}, "x");
+  for (const char* bad : {"inf", "nan", "e+", "00000"}) EXPECT_THAT(svg, Not(HasSubstr(bad)));
+}
+
+// Tests that round numbers stand along an axis, within its range and with room between them.
+TEST(Ticks, RoundNumbers) {
+  const auto texts = [](const AxisRange& range, double pixels) {
+    std::string all;
+    for (const Tick& tick : Ticks(range, pixels, 30)) {
+      EXPECT_TRUE(range.Holds(tick.value)) << tick.value;
+      all += tick.text.empty() ? "" : tick.text + " ";
+    }
+    return all;
+  };
+  EXPECT_EQ(texts({-0.4, 10.2, false}, 150), "0 5 10 ");
+  EXPECT_EQ(texts({0, 1, false}, 150), "0 0.2 0.4 0.6 0.8 1 ");
+  EXPECT_EQ(texts({1, 1000, true}, 120), "1 10 100 1000 ");
+  EXPECT_EQ(texts({1, 1000, true}, 60), "1 100 ");
+  EXPECT_EQ(texts({3, 3.5, true}, 90), "3 3.2 3.4 ");
+}
+
+// Tests how numbers are written.
+TEST(Ticks, Numbers) {
+  EXPECT_EQ(TickNumber(0), "0");
+  EXPECT_EQ(TickNumber(-2.5), "−2.5");
+  EXPECT_EQ(TickNumber(0.1 + 0.2), "0.3");
+  EXPECT_EQ(TickNumber(2e-5), "2×10^{−5}");
+  EXPECT_EQ(TickNumber(1e7), "10^{7}");
+  EXPECT_EQ(Pixels(12.345), "12.3");
+  EXPECT_EQ(Pixels(-0.01), "0");
+}
+
+// Tests that a page is whole and needs nothing from elsewhere, and that one sheet covers screens, dark ones, and paper.
+TEST(HtmlPage, IsSelfContained) {
+  const std::string page = HtmlPage("a < b", HtmlFigure(SmallFigure(), "x"));
+  EXPECT_TRUE(page.starts_with("<!DOCTYPE html>"));
+  EXPECT_THAT(page, HasSubstr("<title>a &lt; b</title>"));
+  EXPECT_THAT(page, HasSubstr("<figcaption>A caption at α = 0.</figcaption>"));
+  for (const char* media : {"prefers-color-scheme: dark", "@media print", "max-width: 45rem"}) {
+    EXPECT_THAT(page, HasSubstr(media));
   }
-  setenv("PATH", path.c_str(), 1);
+  for (const char* outside : {"http:", "https:", "src=", "<script", "<link", "@import", "url("}) {
+    EXPECT_THAT(page, Not(HasSubstr(outside)));
+  }
+}
+
+// Tests that a drawing's places and the texts for them are held against each other.
+TEST(DrawingTemplate, FillsAllPlaces) {
+  EXPECT_EQ(FillDrawing("<text>k = {{k}}, {{k}} {{n}}</text>", {{"k", "4"}, {"n", "<3"}}),
+            "<text>k = 4, 4 &lt;3</text>");
+  EXPECT_THROW(FillDrawing("{{k}}", {}), std::logic_error);
+  EXPECT_THROW(FillDrawing("{{k}}", {{"k", "4"}, {"n", "3"}}), std::logic_error);
 }
 
 // Tests that thinning a long curve keeps the extremes of each pixel column, its ends and its gaps, and is

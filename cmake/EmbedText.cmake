@@ -1,0 +1,16 @@
+# embed_texts(TARGET HEADER NAMESPACE SYMBOL=FILE...): a header with the text of each file as a constant, for the sources of the target
+# and those who use it. A file that changes configures the build anew.
+function(embed_texts target header namespace)
+  set(code "#pragma once\nnamespace ${namespace} {\n")
+  foreach(pair ${ARGN})
+    string(REPLACE "=" ";" pair ${pair})
+    list(GET pair 0 symbol)
+    list(GET pair 1 file)
+    file(READ ${CMAKE_CURRENT_SOURCE_DIR}/${file} text)
+    set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${file})
+    string(APPEND code "inline constexpr char ${symbol}[] = R\"text(${text})text\";\n")
+  endforeach()
+  string(APPEND code "}  // namespace ${namespace}\n")
+  file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/generated/${header} CONTENT "${code}" @ONLY)
+  target_include_directories(${target} PRIVATE ${PROJECT_BINARY_DIR}/generated)
+endfunction()
