@@ -15,7 +15,7 @@
 #include "diagnose/report/report_html.h"
 #include "diagnose/report/report_json.h"
 #include "diagnose/report/terminal_summary.h"
-#include "model/parameter_info.h"
+#include "model/terms/parameter_info.h"
 #include "settings/model_file.h"
 #include "settings/toml/section_reader.h"
 

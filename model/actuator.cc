@@ -1,7 +1,7 @@
 #include "model/actuator.h"
 
-#include "model/equations.h"
-#include "model/simulation.h"
+#include "model/equations/equations.h"
+#include "model/integrate/simulation.h"
 
 namespace hydro::model {
 

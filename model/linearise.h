@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "model/equations.h"
+#include "model/equations/equations.h"
 
 namespace hydro::model {
 

@@ -5,8 +5,8 @@
 #include <string>
 #include <utility>
 
-#include "model/parameter_info.h"
-#include "model/response_machine.h"
+#include "model/integrate/response_machine.h"
+#include "model/terms/parameter_info.h"
 
 namespace hydro::model {
 

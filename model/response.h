@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "model/actuator.h"
-#include "model/description.h"
+#include "model/terms/description.h"
 
 namespace hydro::model {
 

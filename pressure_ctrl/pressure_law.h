@@ -1,7 +1,7 @@
 // The control law of the pressure loop, eq. (16), as pure functions.
 #pragma once
 
-#include "model/description.h"
+#include "model/terms/description.h"
 
 namespace hydro::pressure_ctrl {
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "base/input_error.h"
-#include "model/description.h"
+#include "model/terms/actuator_options.h"
 #include "tables/table.h"
 
 namespace hydro::runs {

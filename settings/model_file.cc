@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "base/did_you_mean.h"
-#include "model/parameter_info.h"
+#include "model/terms/parameter_info.h"
 #include "settings/toml/section_reader.h"
 
 namespace hydro::settings {

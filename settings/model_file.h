@@ -4,7 +4,7 @@
 #include <string>
 
 #include "base/input_error.h"
-#include "model/description.h"
+#include "model/terms/description.h"
 
 namespace hydro::settings {
 

@@ -10,7 +10,8 @@
 #include <vector>
 
 #include "base/input_error.h"
-#include "model/description.h"
+#include "model/terms/actuator_options.h"
+#include "model/terms/description.h"
 #include "settings/driver_section.h"
 #include "trajectory/trajectory.h"
 

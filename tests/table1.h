@@ -1,7 +1,7 @@
 // Table 1 of the paper, for tests.
 #pragma once
 
-#include "model/description.h"
+#include "model/terms/description.h"
 
 namespace hydro::testing {
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "diagnose/data/run_data.h"
-#include "model/description.h"
+#include "model/terms/description.h"
 #include "runs/measured_run.h"
 
 namespace hydro::diagnose {

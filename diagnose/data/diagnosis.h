@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "diagnose/data/alignment.h"
-#include "model/description.h"
 #include "model/response.h"
+#include "model/terms/description.h"
 
 namespace hydro::diagnose {
 

@@ -4,7 +4,7 @@
 #include <limits>
 #include <vector>
 
-#include "model/state.h"
+#include "model/terms/state.h"
 
 namespace hydro::diagnose {
 namespace {

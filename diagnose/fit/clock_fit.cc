@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "model/parameter_info.h"
+#include "model/terms/parameter_info.h"
 #include "runs/run_delays.h"
 
 namespace hydro::diagnose {

@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "diagnose/data/run_data.h"
-#include "model/description.h"
-#include "model/parameter_info.h"
 #include "model/response.h"
+#include "model/terms/description.h"
+#include "model/terms/parameter_info.h"
 
 namespace hydro::diagnose {
 

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "diagnose/data/run_data.h"
-#include "model/description.h"
+#include "model/terms/description.h"
 
 namespace hydro::diagnose {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "diagnose/data/observed_mode.h"
-#include "model/equations.h"
+#include "model/equations/equations.h"
 
 namespace hydro::diagnose {
 

@@ -5,7 +5,7 @@
 
 #include "diagnose/data/run_data.h"
 #include "diagnose/locate/disturbance_smoother.h"
-#include "model/description.h"
+#include "model/terms/description.h"
 
 namespace hydro::diagnose {
 

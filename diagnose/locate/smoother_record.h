@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "diagnose/locate/disturbance_smoother.h"
-#include "model/state.h"
+#include "model/terms/state.h"
 
 namespace hydro::diagnose::smoother {
 

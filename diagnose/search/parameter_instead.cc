@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "diagnose/fit/comparison.h"
-#include "model/parameter_info.h"
+#include "model/terms/parameter_info.h"
 
 namespace hydro::diagnose {
 

@@ -9,7 +9,7 @@
 #include "base/parallel.h"
 #include "diagnose/locate/disturbance_smoother.h"
 #include "maths/solve.h"
-#include "model/description.h"
+#include "model/terms/description.h"
 
 namespace hydro::diagnose {
 

@@ -7,7 +7,7 @@
 #include "base/parallel.h"
 #include "diagnose/fit/residuals.h"
 #include "maths/solve.h"
-#include "model/jet.h"
+#include "model/terms/jet.h"
 
 namespace hydro::diagnose {
 

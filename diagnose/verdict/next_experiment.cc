@@ -10,8 +10,8 @@
 #include <optional>
 #include <utility>
 
-#include "model/parameter_info.h"
 #include "model/response.h"
+#include "model/terms/parameter_info.h"
 
 namespace hydro::diagnose {
 

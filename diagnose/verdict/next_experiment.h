@@ -6,7 +6,7 @@
 
 #include "diagnose/data/diagnosis.h"
 #include "diagnose/data/run_data.h"
-#include "model/description.h"
+#include "model/terms/description.h"
 
 namespace hydro::diagnose {
 

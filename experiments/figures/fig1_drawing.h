@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "model/description.h"
+#include "model/terms/description.h"
 
 namespace hydro::experiments {
 

@@ -12,7 +12,7 @@
 #include "experiments/runs/open_loop_run.h"
 #include "experiments/runs/shipped_models.h"
 #include "experiments/studies/json_text.h"
-#include "model/equations.h"
+#include "model/equations/equations.h"
 
 namespace hydro::experiments {
 namespace {

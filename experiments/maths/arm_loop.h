@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "experiments/maths/sampled_position_loop.h"
-#include "model/description.h"
+#include "model/terms/description.h"
 #include "pressure_ctrl/pressure_law.h"
 
 namespace hydro::experiments {

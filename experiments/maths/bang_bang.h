@@ -1,7 +1,7 @@
 // The fastest rest-to-rest move that the motor's torque and speed allow: full torque, then full braking.
 #pragma once
 
-#include "model/description.h"
+#include "model/terms/description.h"
 
 namespace hydro::experiments {
 

@@ -4,7 +4,7 @@
 #include <complex>
 #include <vector>
 
-#include "model/description.h"
+#include "model/terms/description.h"
 
 namespace hydro::experiments {
 

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "model/actuator.h"
-#include "model/equations.h"
-#include "model/simulation.h"
+#include "model/equations/equations.h"
+#include "model/integrate/simulation.h"
 
 namespace hydro::experiments {
 namespace {

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "model/description.h"
+#include "model/terms/description.h"
 #include "tables/table.h"
 
 namespace hydro::experiments {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "experiments/runs/stack_run.h"
-#include "model/description.h"
+#include "model/terms/description.h"
 #include "page/plot.h"
 #include "pressure_ctrl/pressure_law.h"
 

@@ -7,7 +7,7 @@
 
 #include "experiments/maths/frequency_response.h"
 #include "experiments/runs/stack_run.h"
-#include "model/description.h"
+#include "model/terms/description.h"
 #include "pressure_ctrl/pressure_law.h"
 
 namespace hydro::experiments {

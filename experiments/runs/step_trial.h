@@ -3,7 +3,7 @@
 #pragma once
 
 #include "experiments/maths/sampled_position_loop.h"
-#include "model/description.h"
+#include "model/terms/description.h"
 #include "position_ctrl/position_law.h"
 #include "pressure_ctrl/pressure_law.h"
 

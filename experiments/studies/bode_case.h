@@ -12,7 +12,7 @@
 #include "experiments/maths/linear_loop.h"
 #include "experiments/maths/second_order_fit.h"
 #include "experiments/runs/pressure_sweep.h"
-#include "model/mode.h"
+#include "model/terms/mode.h"
 #include "page/plot.h"
 #include "tables/table.h"
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "maths/estimate.h"
-#include "model/description.h"
+#include "model/terms/description.h"
 #include "runs/measured_run.h"
 
 namespace hydro::experiments {

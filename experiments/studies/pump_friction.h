@@ -8,7 +8,7 @@
 
 #include "experiments/studies/steady_speed.h"
 #include "maths/estimate.h"
-#include "model/description.h"
+#include "model/terms/description.h"
 #include "runs/measured_run.h"
 
 namespace hydro::experiments {

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "model/effects/effect.h"
-#include "model/parameter_info.h"
+#include "model/terms/parameter_info.h"
 
 namespace hydro::model {
 

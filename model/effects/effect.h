@@ -16,11 +16,11 @@
 #include <string>
 #include <vector>
 
-#include "model/actuator.h"
-#include "model/parameter_info.h"
-#include "model/power.h"
-#include "model/state.h"
-#include "model/terms.h"
+#include "model/terms/measurement.h"
+#include "model/terms/parameter_info.h"
+#include "model/terms/power.h"
+#include "model/terms/state.h"
+#include "model/terms/terms.h"
 
 namespace hydro::model {
 

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "model/actuator.h"
-#include "model/description.h"
+#include "model/terms/description.h"
+#include "model/terms/measurement.h"
 
 namespace hydro::model {
 

@@ -12,7 +12,7 @@
 #include "diagnose/fit/held_out.h"
 #include "diagnose/fit/start_fit.h"
 #include "diagnose/search/search.h"
-#include "model/state.h"
+#include "model/terms/state.h"
 #include "tests/diagnose/small_runs.h"
 
 namespace hydro::testing {

@@ -8,7 +8,7 @@
 #include <random>
 
 #include "diagnose/data/smoothed_motion.h"
-#include "model/state.h"
+#include "model/terms/state.h"
 #include "tests/diagnose/noisy_rig.h"
 #include "tests/table1.h"
 

@@ -5,7 +5,7 @@
 #include <array>
 #include <numbers>
 
-#include "model/description.h"
+#include "model/terms/description.h"
 #include "pressure_ctrl/pressure_law.h"
 
 namespace hydro::experiments {

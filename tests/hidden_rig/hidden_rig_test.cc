@@ -11,7 +11,7 @@
 #include <sstream>
 
 #include "model/response.h"
-#include "model/state.h"
+#include "model/terms/state.h"
 #include "runs/measured_run.h"
 #include "tests/hidden_rig/cases.h"
 #include "tests/hidden_rig/line.h"

@@ -3,8 +3,8 @@
 
 #include <cmath>
 
-#include "model/evaluate.h"
-#include "model/parameter_info.h"
+#include "model/equations/evaluate.h"
+#include "model/terms/parameter_info.h"
 #include "tests/model/model_case.h"
 #include "tests/model/some_of_each.h"
 

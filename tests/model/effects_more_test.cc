@@ -7,7 +7,7 @@
 #include <set>
 
 #include "model/effects/effect.h"
-#include "model/state_history.h"
+#include "model/equations/state_history.h"
 #include "tests/model/model_case.h"
 
 namespace hydro::testing {

@@ -1,5 +1,5 @@
 // The search for events within a step.
-#include "model/event_search.h"
+#include "model/integrate/event_search.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // Dual numbers: their values are those of double to the last bit, their derivatives those of calculus.
-#include "model/jet.h"
+#include "model/terms/jet.h"
 
 #include <gtest/gtest.h>
 

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <complex>
 
-#include "model/parameter_info.h"
+#include "model/terms/parameter_info.h"
 #include "tests/model/model_case.h"
 #include "tests/model/some_of_each.h"
 #include "trajectory/trajectory.h"

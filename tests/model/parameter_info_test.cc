@@ -1,5 +1,5 @@
 // What is known of parameters and effects.
-#include "model/parameter_info.h"
+#include "model/terms/parameter_info.h"
 
 #include <gtest/gtest.h>
 

@@ -20,14 +20,14 @@ def _rows(file, *rows):
 
 MUTATIONS = [
     *_rows(
-        "model/terms.h",
+        "model/terms/terms.h",
         ("eq1.sign", "std::clamp<T>(p.k_1 * voltage", "std::clamp<T>(-p.k_1 * voltage"),
         ("limit.none", "-p.T_pmax, p.T_pmax)", "T(-1e9), T(1e9))"),
         ("limit.forward_only", "-p.T_pmax, p.T_pmax)", "T(-1e9), p.T_pmax)"),
         ("limit.backward_only", "-p.T_pmax, p.T_pmax)", "-p.T_pmax, T(1e9))"),
     ),
     *_rows(
-        "model/evaluate.h",
+        "model/equations/evaluate.h",
         # (4), the rate while the pump slips.
         ("eq4.torque", "T(((x.torque - x.load", "T(((-x.torque - x.load"),
         ("eq4.load", "T(((x.torque - x.load", "T(((x.torque + x.load"),
@@ -150,7 +150,7 @@ MUTATIONS = [
         ("eq7.clamped", "p.beta / (p.V_ms + p.c * m.arm_angle", "p.beta / (p.V_ms - p.c * m.arm_angle"),
     ),
     *_rows(
-        "model/equations.cc",
+        "model/equations/equations.cc",
         ("eq6.limit", "const double V_1 = p.V_ms - p.c", "const double V_1 = p.V_ms + p.c"),
         ("eq7.limit", "const double V_2 = p.V_ms + p.c", "const double V_2 = p.V_ms - p.c"),
         ("power.mismatch", "(p.c - p.k_2) * dp", "(p.k_2 - p.c) * dp"),
@@ -345,7 +345,7 @@ MUTATIONS = [
     ),
     # Derivatives by parameters, past an event whose time depends on them.
     *_rows(
-        "model/response_machine.h",
+        "model/integrate/response_machine.h",
         ("derivatives.event", "T later = -margin_[which] / slope;", "T later = margin_[which] / slope;"),
         ("derivatives.after_event", "state_[i] -= rate_[i] * later;", "state_[i] += rate_[i] * later;"),
     ),

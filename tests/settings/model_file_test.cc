@@ -3,7 +3,7 @@
 #include <cmath>
 #include <random>
 
-#include "model/parameter_info.h"
+#include "model/terms/parameter_info.h"
 #include "tests/settings/texts.h"
 
 namespace hydro::settings {

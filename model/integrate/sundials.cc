@@ -1,10 +1,10 @@
-#include "model/sundials.h"
+#include "model/integrate/sundials.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "model/switching.h"
+#include "model/integrate/switching.h"
 
 namespace hydro::model {
 

@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "model/effects/effect.h"
-#include "model/equations.h"
-#include "model/state_history.h"
+#include "model/equations/equations.h"
+#include "model/equations/state_history.h"
 #include "trajectory/trajectory.h"
 
 namespace hydro::model {

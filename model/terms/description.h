@@ -43,15 +43,4 @@ struct ModelDescription {
   std::vector<EffectDescription> effects;  // in the file's order
 };
 
-// What holds the actuator's shaft.
-enum class Shaft { kFree, kClamped, kDriven };
-
-// What integrates the equations between events.
-enum class Integrator {
-  kAuto,   // kFast while the mode is not stiff, else kCvode
-  kFast,   // classical Runge-Kutta with an error estimate, this project's own
-  kErk,    // SUNDIALS ARKODE ERKStep, an explicit embedded pair
-  kCvode,  // SUNDIALS CVODE, BDF with the exact Jacobian
-};
-
 }  // namespace hydro::model

@@ -1,8 +1,8 @@
-#include "model/simulation.h"
+#include "model/integrate/simulation.h"
 
-#include "model/cvode_stepper.h"
-#include "model/erk_stepper.h"
-#include "model/runge_kutta.h"
+#include "model/integrate/cvode_stepper.h"
+#include "model/integrate/erk_stepper.h"
+#include "model/integrate/runge_kutta.h"
 
 namespace hydro::model {
 

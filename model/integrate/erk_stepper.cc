@@ -1,4 +1,4 @@
-#include "model/erk_stepper.h"
+#include "model/integrate/erk_stepper.h"
 
 #include <arkode/arkode_erkstep.h>
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "model/description.h"
+#include "model/terms/description.h"
 
 namespace hydro::model {
 

@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "model/switching.h"
+#include "model/integrate/switching.h"
 
 namespace hydro::model {
 

@@ -1,4 +1,4 @@
-#include "model/cvode_stepper.h"
+#include "model/integrate/cvode_stepper.h"
 
 #include <cvode/cvode.h>
 

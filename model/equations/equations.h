@@ -8,12 +8,14 @@
 #include <string>
 #include <vector>
 
-#include "model/actuator.h"
-#include "model/description.h"
-#include "model/mode.h"
-#include "model/power.h"
-#include "model/state.h"
-#include "model/terms.h"
+#include "model/terms/actuator_options.h"
+#include "model/terms/description.h"
+#include "model/terms/measurement.h"
+#include "model/terms/mode.h"
+#include "model/terms/model_error.h"
+#include "model/terms/power.h"
+#include "model/terms/state.h"
+#include "model/terms/terms.h"
 
 namespace hydro::model {
 

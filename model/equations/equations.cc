@@ -1,4 +1,4 @@
-#include "model/equations.h"
+#include "model/equations/equations.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "model/effects/effect.h"
-#include "model/evaluate.h"
+#include "model/equations/evaluate.h"
 
 namespace hydro::model {
 

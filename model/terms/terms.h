@@ -3,9 +3,9 @@
 
 #include <algorithm>
 
-#include "model/description.h"
-#include "model/jet.h"
-#include "model/mode.h"
+#include "model/terms/description.h"
+#include "model/terms/jet.h"
+#include "model/terms/mode.h"
 
 namespace hydro::model {
 

@@ -1,8 +1,8 @@
 // Integrator::kErk: ARKODE's ERKStep with the Dormand-Prince pair of orders 5 and 4.
 #pragma once
 
-#include "model/simulation.h"
-#include "model/sundials.h"
+#include "model/integrate/simulation.h"
+#include "model/integrate/sundials.h"
 
 namespace hydro::model {
 

@@ -7,8 +7,8 @@
 #include <memory>
 #include <string>
 
-#include "model/equations.h"
-#include "model/simulation.h"
+#include "model/equations/equations.h"
+#include "model/integrate/simulation.h"
 
 namespace hydro::model {
 

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <memory>
 
-#include "model/equations.h"
+#include "model/equations/equations.h"
 
 namespace hydro::model {
 

@@ -8,10 +8,9 @@
 #include <string>
 #include <type_traits>
 
-#include "model/evaluate.h"
-#include "model/event_search.h"
-#include "model/response.h"
-#include "model/simulation.h"
+#include "model/equations/evaluate.h"
+#include "model/integrate/event_search.h"
+#include "model/integrate/simulation.h"
 
 namespace hydro::model {
 

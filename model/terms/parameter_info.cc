@@ -1,8 +1,8 @@
-#include "model/parameter_info.h"
+#include "model/terms/parameter_info.h"
 
 #include <limits>
 
-#include "model/actuator.h"
+#include "model/terms/model_error.h"
 
 namespace hydro::model {
 

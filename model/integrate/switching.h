@@ -19,9 +19,9 @@
 #include <sstream>
 #include <utility>
 
-#include "model/evaluate.h"
-#include "model/event_search.h"
-#include "model/simulation.h"
+#include "model/equations/evaluate.h"
+#include "model/integrate/event_search.h"
+#include "model/integrate/simulation.h"
 
 namespace hydro::model {
 

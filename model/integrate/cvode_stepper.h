@@ -4,8 +4,8 @@
 #include <sunlinsol/sunlinsol_dense.h>
 #include <sunmatrix/sunmatrix_dense.h>
 
-#include "model/simulation.h"
-#include "model/sundials.h"
+#include "model/integrate/simulation.h"
+#include "model/integrate/sundials.h"
 
 namespace hydro::model {
 

@@ -6,8 +6,8 @@
 #include <cstddef>
 #include <vector>
 
-#include "model/state.h"
-#include "model/terms.h"
+#include "model/terms/state.h"
+#include "model/terms/terms.h"
 
 namespace hydro::model {
 

@@ -1,0 +1,34 @@
+// The conditions that an actuator runs under, and how it is integrated.
+#pragma once
+
+#include <limits>
+
+#include "trajectory/trajectory.h"
+
+namespace hydro::model {
+
+// What holds the actuator's shaft.
+enum class Shaft { kFree, kClamped, kDriven };
+
+// What integrates the equations between events.
+enum class Integrator {
+  kAuto,   // kFast while the mode is not stiff, else kCvode
+  kFast,   // classical Runge-Kutta with an error estimate, this project's own
+  kErk,    // SUNDIALS ARKODE ERKStep, an explicit embedded pair
+  kCvode,  // SUNDIALS CVODE, BDF with the exact Jacobian
+};
+
+struct ActuatorOptions {
+  Shaft shaft = Shaft::kFree;
+  double arm_angle = 0;  // rad, clamped: where; free: where the arm starts
+  // rad over s, driven: the arm's angle; must be continuous and outlive the model.
+  const trajectory::Trajectory* motion = nullptr;
+  bool bypass = false;  // the two sides are connected: p1 = p2
+  double initial_pressure = std::numeric_limits<double>::quiet_NaN();  // psi, both sides; NaN: p_3
+  Integrator integrator = Integrator::kAuto;
+  double relative_tolerance = 1e-8;
+  // An effect may appear more than once: for derivatives by several of them that have no size yet.
+  bool repeated_effects = false;
+};
+
+}  // namespace hydro::model
