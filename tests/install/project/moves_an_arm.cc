@@ -8,7 +8,7 @@
 #include "log/log_reader.h"
 #include "log/log_writer.h"
 #include "model/actuator.h"
-#include "model/parameter_info.h"
+#include "model/terms/parameter_info.h"
 #include "position_ctrl/position_law.h"
 #include "pressure_ctrl/pressure_law.h"
 #include "process/fault_codes.h"
