@@ -8,7 +8,7 @@
 #include "diagnose/locate/smoother_mode.h"
 #include "diagnose/locate/smoother_record.h"
 #include "diagnose/locate/smoother_setup.h"
-#include "model/equations.h"
+#include "model/equations/equations.h"
 
 namespace hydro::diagnose::smoother {
 

@@ -9,7 +9,7 @@
 #include "diagnose/data/run_data.h"
 #include "diagnose/locate/disturbance_smoother.h"
 #include "diagnose/locate/smoother_record.h"
-#include "model/equations.h"
+#include "model/equations/equations.h"
 
 namespace hydro::diagnose::smoother {
 
