@@ -5,12 +5,11 @@
 #include <map>
 
 #include "base/saturating.h"
+#include "base/units.h"
 #include "runs/run_config.h"
 
 namespace hydro::runs {
 namespace {
-
-constexpr double kKilopascalsPerPsi = 6.894757293168361;
 
 double Seconds(int64_t first_utime, int64_t last_utime) {
   return (static_cast<double>(last_utime) - static_cast<double>(first_utime)) * 1e-6;
@@ -103,8 +102,9 @@ void AddSignal(const std::string& name, const std::string& unit, double scale,
 }
 
 std::vector<SignalInfo> SignalsOf(const RunMessages& messages, bool si) {
-  const double pressure = si ? kKilopascalsPerPsi : 1;
-  const std::string pressure_unit = si ? "kPa" : "psi";
+  const SiUnit shown = si ? *FindSiUnit("psi", 0) : SiUnit{"psi", "psi", 1};
+  const double pressure = shown.factor;
+  const std::string& pressure_unit = shown.to;
   std::vector<SignalInfo> signals;
   const auto add_state = [&](const std::string& name, const std::string& unit, double scale,
                              double state_t::*member) {

@@ -1,9 +1,9 @@
 #include <spdlog/fmt/fmt.h>
 
 #include <nlohmann/json.hpp>
-#include <numbers>
 
 #include "base/saturating.h"
+#include "base/units.h"
 #include "runs/tracking.h"
 
 namespace hydro::runs {
@@ -20,8 +20,7 @@ int64_t LostMessages(const LogInfo& info) {
 }
 
 std::string Angle(double rad, bool si) {
-  return si ? fmt::format("{:.4f} rad ({:.2f} deg)", rad, rad * 180 / std::numbers::pi)
-            : fmt::format("{:.4f} rad", rad);
+  return si ? fmt::format("{:.4f} rad ({:.2f} deg)", rad, Degrees(rad)) : fmt::format("{:.4f} rad", rad);
 }
 
 }  // namespace

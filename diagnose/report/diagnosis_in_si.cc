@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "base/si_units.h"
+#include "base/units.h"
 #include "diagnose/data/run_data.h"
 
 namespace hydro::diagnose {
@@ -22,8 +22,8 @@ void Scale(double factor, std::vector<double>* values) {
 
 // Returns the factor.
 double Convert(Estimated* estimated) {
-  const SiUnit* unit = FindSiUnit(estimated->unit, estimated->value);
-  if (unit == nullptr) return 1;
+  const std::optional<SiUnit> unit = FindSiUnit(estimated->unit, estimated->value);
+  if (!unit.has_value()) return 1;
   estimated->value *= unit->factor;
   estimated->low *= unit->factor;
   estimated->high *= unit->factor;
@@ -34,8 +34,8 @@ double Convert(Estimated* estimated) {
 }  // namespace
 
 ShownUnit UnitOf(model::Channel channel, bool si) {
-  const SiUnit* unit = si ? FindSiUnit(ChannelUnit(channel), 0) : nullptr;
-  if (unit == nullptr) return {ChannelUnit(channel), 1};
+  const std::optional<SiUnit> unit = si ? FindSiUnit(ChannelUnit(channel), 0) : std::nullopt;
+  if (!unit.has_value()) return {ChannelUnit(channel), 1};
   return {unit->to, unit->factor};
 }
 
@@ -45,12 +45,12 @@ Diagnosis InSi(Diagnosis diagnosis) {
   }
   for (ChangedParameter& parameter : diagnosis.parameters) parameter.model *= Convert(&parameter.fitted);
   for (MissingTerm& term : diagnosis.missing) {
-    if (const SiUnit* unit = FindSiUnit(term.unit, Largest(term.mean))) {
+    if (const std::optional<SiUnit> unit = FindSiUnit(term.unit, Largest(term.mean))) {
       Scale(unit->factor, &term.mean);
       Scale(unit->factor, &term.error);
       term.unit = unit->to;
     }
-    if (const SiUnit* unit = FindSiUnit(term.against_unit, Largest(term.at))) {
+    if (const std::optional<SiUnit> unit = FindSiUnit(term.against_unit, Largest(term.at))) {
       Scale(unit->factor, &term.at);
       term.against_unit = unit->to;
     }

@@ -3,10 +3,10 @@
 
 #include <cmath>
 #include <nlohmann/json.hpp>
-#include <numbers>
 #include <string>
 #include <vector>
 
+#include "base/units.h"
 #include "experiments/figures/catalogue.h"
 #include "experiments/figures/fig1_drawing.h"
 #include "experiments/runs/shipped_models.h"
@@ -19,14 +19,11 @@ using nlohmann::ordered_json;
 
 // What the paper prints.
 constexpr double kPrintedRatio = 484.7;
-constexpr double kPressureLimit = 2000;             // psi, seals of the actuator
-constexpr double kMotorRpm = 6000;                  // the motor of the experiments
-constexpr double kFastMotorRpm = 18000;             // the other one
-constexpr double kArmLength = 24;                   // in; ASSUMPTION of table1_gravity.toml
-constexpr double kGravity = 9.80665 / 0.0254;       // in/s^2
-constexpr double kRpm = std::numbers::pi / 30;      // rad/s
-constexpr double kNewtonMetres = 0.112984829;       // in one in-lbf
-constexpr double kKilowatts = kNewtonMetres / 1e3;  // in one in-lbf/s
+constexpr double kPressureLimit = 2000;          // psi, seals of the actuator
+constexpr double kMotorRpm = 6000;               // the motor of the experiments
+constexpr double kFastMotorRpm = 18000;          // the other one
+constexpr double kArmLength = 24;                // in; ASSUMPTION of table1_gravity.toml
+constexpr double kKilowatts = kInchPound / 1e3;  // in one in-lbf/s
 
 struct FreeRun {
   tables::Table table;
@@ -80,7 +77,7 @@ double UnlimitedSpeed(const model::ModelDescription& model) {
   return actuator.Measure().motor_speed;
 }
 
-std::string InSi(double torque) { return fmt::format("{:.0f} N m", torque * kNewtonMetres); }
+std::string InSi(double torque) { return fmt::format("{:.0f} N m", torque * kInchPound); }
 
 // The arm's torque at each of its speeds up to `top_speed` of the motor, rad/s, when `viscous` and `coulomb`
 // friction take their share of the motor's.
@@ -291,10 +288,10 @@ ordered_json Numbers(const Apparatus& a) {
           {"k_2_for_printed_ratio_in_lbf_per_psi", a.needed_k2},
           {"peak_torque_printed_in_lbf", p.T_pmax * kPrintedRatio},
           {"peak_torque_in_lbf", a.peak},
-          {"peak_torque_N_m", a.peak * kNewtonMetres},
+          {"peak_torque_N_m", a.peak * kInchPound},
           {"peak_torque_less_friction_in_lbf", a.peak_with_friction},
           {"torque_at_2000_psi_in_lbf", a.at_limit},
-          {"torque_at_2000_psi_N_m", a.at_limit * kNewtonMetres},
+          {"torque_at_2000_psi_N_m", a.at_limit * kInchPound},
           {"torque_at_2000_psi_above_accumulator_in_lbf", a.at_limit_gauge},
           {"maximum_speed_printed_rpm", kMotorRpm / kPrintedRatio},
           {"maximum_speed_rpm", a.free.arm_speed / kRpm},

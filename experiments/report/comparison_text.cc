@@ -6,14 +6,14 @@
 #include <cstdio>
 #include <cstdlib>
 
-#include "base/si_units.h"
+#include "base/units.h"
 
 namespace hydro::experiments {
 namespace {
 
 constexpr size_t kLineWidth = 108;
 
-const SiUnit* SiUnitOf(const Comparison& row) {
+std::optional<SiUnit> SiUnitOf(const Comparison& row) {
   // NaN compares false, so that one that does not exist decides nothing.
   const bool expected = std::abs(row.expected) > std::abs(row.here) || std::isnan(row.here);
   return FindSiUnit(row.unit, expected ? row.expected : row.here);
@@ -76,8 +76,8 @@ std::string ShownNumber(double value) {
 std::vector<Comparison> InSi(const std::vector<Comparison>& comparisons) {
   std::vector<Comparison> converted = comparisons;
   for (Comparison& row : converted) {
-    const SiUnit* unit = SiUnitOf(row);
-    if (unit == nullptr) continue;
+    const std::optional<SiUnit> unit = SiUnitOf(row);
+    if (!unit.has_value()) continue;
     row.paper = PaperInSi(row.paper, *unit);
     row.expected *= unit->factor;
     row.here *= unit->factor;

@@ -1,0 +1,153 @@
+#include "base/units.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/number_text.h"
+
+namespace hydro {
+namespace {
+
+struct NamedUnit {
+  std::string_view name;
+  Unit unit;
+};
+
+// The size of 1 of it, and its powers of m, kg, s and V. Angles have none.
+constexpr NamedUnit kUnits[] = {
+    {"1", {1, {}}},
+    {"m", {1, {1}}},
+    {"cm", {1e-2, {1}}},
+    {"mm", {1e-3, {1}}},
+    {"in", {kInch, {1}}},
+    {"ft", {12 * kInch, {1}}},
+    {"kg", {1, {0, 1}}},
+    {"s", {1, {0, 0, 1}}},
+    {"rad", {1, {}}},
+    {"rpm", {kRpm, {0, 0, -1}}},
+    {"N", {1, {1, 1, -2}}},
+    {"lbf", {kPoundForce, {1, 1, -2}}},
+    {"lb", {kPoundForce, {1, 1, -2}}},  // the paper's "in-lb"
+    {"kPa", {1e3, {-1, 1, -2}}},
+    {"MPa", {1e6, {-1, 1, -2}}},
+    {"psi", {kPsi, {-1, 1, -2}}},
+    {"V", {1, {0, 0, 0, 1}}},
+};
+
+// What figures are shown in. Pressures alone are separate: kPa or MPa, whichever gives the handier numbers.
+constexpr struct {
+  std::string_view from;
+  std::string_view to;
+} kShownIn[] = {
+    {"in", "mm"},
+    {"in/s", "m/s"},
+    {"in^2", "cm^2"},
+    {"in^3", "cm^3"},
+    {"in^3/s", "cm^3/s"},
+    {"in^3/rad", "cm^3/rad"},
+    {"in^3/(s psi)", "cm^3/(s MPa)"},
+    {"in^3/s/psi", "cm^3/s/MPa"},
+    {"in^3/s/psi^.5", "cm^3/s/MPa^.5"},
+    {"lbf", "N"},
+    {"in-lbf", "N m"},
+    {"in-lb", "N m"},
+    {"ft-lbf", "N m"},
+    {"in-lbf-s", "N m s"},
+    {"in-lbf/rad", "N m/rad"},
+    {"in-lbf/s", "N m/s"},
+    {"in-lbf-s^2", "kg m^2"},
+    {"lbf-in-s^2", "kg m^2"},
+    {"in-lbf/V", "N m/V"},
+    {"in-lbf/psi", "N m/MPa"},
+    {"V/psi", "V/MPa"},
+    {"psi/rad", "MPa/rad"},
+    {"psi s/rad", "kPa s/rad"},
+    {"psi/s", "kPa/s"},
+    {"psi/in^3", "kPa/cm^3"},
+    {"1/psi", "1/MPa"},
+};
+
+// Reads factor after factor off a text.
+class UnitReader {
+ public:
+  explicit UnitReader(std::string_view text) : text_(text) {}
+
+  std::optional<Unit> Whole() {
+    const std::optional<Unit> unit = Product();
+    return text_.empty() ? unit : std::nullopt;
+  }
+
+ private:
+  std::optional<Unit> Product() {
+    std::optional<Unit> product = Power();
+    while (product.has_value() && !text_.empty() && text_.front() != ')') {
+      const bool divided = text_.front() == '/';
+      if (!divided && text_.front() != '-' && text_.front() != ' ') return std::nullopt;
+      text_.remove_prefix(1);
+      const std::optional<Unit> factor = Power();
+      if (!factor.has_value()) return std::nullopt;
+      Multiply(*factor, divided ? -1 : 1, &*product);
+    }
+    return product;
+  }
+
+  std::optional<Unit> Power() {
+    const std::optional<Unit> base = Factor();
+    if (!base.has_value() || !text_.starts_with('^')) return base;
+    text_.remove_prefix(1);
+    const std::optional<double> exponent = ParseNumber(Take("0123456789."));
+    if (!exponent.has_value()) return std::nullopt;
+    Unit power;
+    Multiply(*base, *exponent, &power);
+    return power;
+  }
+
+  std::optional<Unit> Factor() {
+    if (text_.starts_with('(')) {
+      if (++brackets_ > kMostBrackets) return std::nullopt;
+      text_.remove_prefix(1);
+      const std::optional<Unit> inner = Product();
+      if (!text_.starts_with(')')) return std::nullopt;
+      text_.remove_prefix(1);
+      return inner;
+    }
+    const std::string_view name = Take("1abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ");
+    const auto* found = std::ranges::find(kUnits, name, &NamedUnit::name);
+    return found == std::end(kUnits) ? std::nullopt : std::optional<Unit>(found->unit);
+  }
+
+  std::string_view Take(std::string_view characters) {
+    const std::string_view taken = text_.substr(0, text_.find_first_not_of(characters));
+    text_.remove_prefix(taken.size());
+    return taken;
+  }
+
+  static void Multiply(const Unit& factor, double exponent, Unit* product) {
+    product->size *= std::pow(factor.size, exponent);
+    for (size_t i = 0; i < product->powers.size(); ++i) product->powers[i] += exponent * factor.powers[i];
+  }
+
+  static constexpr int kMostBrackets = 8;  // so that no text exhausts the stack
+
+  std::string_view text_;
+  int brackets_ = 0;
+};
+
+SiUnit Conversion(std::string_view from, std::string_view to) {
+  return {std::string(from), std::string(to), ParseUnit(from)->size / ParseUnit(to)->size};
+}
+
+}  // namespace
+
+std::optional<Unit> ParseUnit(std::string_view text) { return UnitReader(text).Whole(); }
+
+std::optional<SiUnit> FindSiUnit(const std::string& unit, double size) {
+  // NaN compares false, so that a value that does not exist decides nothing.
+  if (unit == "psi") return Conversion(unit, std::abs(size) * kPsi >= 1e6 ? "MPa" : "kPa");
+  for (const auto& [from, to] : kShownIn) {
+    if (unit == from) return Conversion(from, to);
+  }
+  return std::nullopt;
+}
+
+}  // namespace hydro

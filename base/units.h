@@ -1,0 +1,40 @@
+// Units of measurement: the one table of them, and how a figure is shown in the SI (--si).
+#pragma once
+
+#include <array>
+#include <numbers>
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace hydro {
+
+inline constexpr double kInch = 0.0254;                        // m
+inline constexpr double kPoundForce = 0.45359237 * 9.80665;    // N
+inline constexpr double kPsi = kPoundForce / (kInch * kInch);  // Pa
+inline constexpr double kInchPound = kPoundForce * kInch;      // N m
+inline constexpr double kGravity = 9.80665 / kInch;            // in/s^2
+inline constexpr double kRpm = std::numbers::pi / 30;          // rad/s
+
+constexpr double Degrees(double radians) { return radians * 180 / std::numbers::pi; }
+
+struct Unit {
+  double size = 1;                 // in the SI's coherent unit of the same powers
+  std::array<double, 4> powers{};  // of m, kg, s and V
+};
+
+// A unit as the programs write it: names from the table, joined by "-" or a blank (times) and "/" (divided by),
+// with powers and brackets: "in-lbf/rad", "in^3/(s psi)", "1/psi", "in^3/s/psi^.5". Empty: it is none.
+std::optional<Unit> ParseUnit(std::string_view text);
+
+struct SiUnit {
+  std::string from;
+  std::string to;
+  double factor;  // value in `to` = factor * value in `from`
+};
+
+// What a figure in one of the paper's units is shown in; empty where the unit is SI already or not known. `size`
+// decides between kPa and MPa: that of the largest value to show.
+std::optional<SiUnit> FindSiUnit(const std::string& unit, double size);
+
+}  // namespace hydro
