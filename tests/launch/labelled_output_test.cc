@@ -57,7 +57,7 @@ TEST_F(LabelledOutputTest, LinesOfTwoStreamsDoNotMix) {
   EXPECT_EQ(Read(), "[a] " + longer + "\n[b] short\n[a] " + longer + "\n");
 }
 
-// Tests that a text from the network cannot command the terminal, nor pass for a line of another process.
+// Tests that text from the network can neither control the terminal nor pass for a line of another process.
 TEST_F(LabelledOutputTest, EscapesControlCharacters) {
   LabelledOutput output(pipe_[1], pipe_[1], false);
   output.Line(Stream::kOut, "a", "\033[2Jx\n[b] y");
@@ -75,7 +75,7 @@ TEST_F(LabelledOutputTest, ColoursTheLabel) {
   EXPECT_NE(text.find("m[plant]\033[0m text\n"), std::string::npos) << text;
 }
 
-// Tests that much waiting text asks for a pause, and that the pause ends when it was written.
+// Tests that full() is true while much text waits, and false once it is written.
 TEST_F(LabelledOutputTest, IsFullUntilWritten) {
   const int null = open("/dev/null", O_WRONLY | O_CLOEXEC);
   LabelledOutput output(null, null, false);
@@ -86,7 +86,7 @@ TEST_F(LabelledOutputTest, IsFullUntilWritten) {
   close(null);
 }
 
-// Tests that a reader that has gone away neither kills us nor holds the output up.
+// Tests that a reader that has gone neither ends this process nor holds the output up.
 TEST_F(LabelledOutputTest, SurvivesAReaderThatIsGone) {
   signal(SIGPIPE, SIG_IGN);
   LabelledOutput output(pipe_[1], pipe_[1], false);

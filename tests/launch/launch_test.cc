@@ -19,8 +19,8 @@ using ::testing::MatchesRegex;
 constexpr char kShortRun[] =
     "status ready;await 2;say tick;stop 0 the run is complete after 1 s;status done;exit 0";
 
-// Tests that a stop that the plant published ends the run with 0, with nothing added by the launch but what
-// it says.
+// Tests that a stop published by the plant ends the run with 0, and that the launch adds nothing but its own
+// lines.
 TEST(LaunchTest, PlantEndsTheRun) {
   StackFolder stack;
   stack.Script("plant", kShortRun);
@@ -68,8 +68,8 @@ TEST(LaunchTest, LoggerIsStoppedLast) {
               Contains("[logger]        arguments " + config + " --set position.c1=300 -o a.lcmlog"));
 }
 
-// Tests that heavy output of all at once arrives whole: every line, once, in order, with its label, on its
-// stream.
+// Tests that heavy output from all processes at once arrives whole: every line once, in order, with its
+// label, on its stream.
 TEST(LaunchTest, HeavyOutputKeepsItsLines) {
   constexpr int kLines = 20000;
   StackFolder stack;
@@ -108,8 +108,8 @@ TEST(LaunchTest, PrintsTimingAndFaults) {
   EXPECT_THAT(launch->WaitForLine("fault over_pressure"), HasSubstr("p1 is 2100 psi, allowed are 2000 psi"));
 }
 
-// Tests that a run that ends with a fault still there has failed, whoever ends it, and that one that ended
-// with a warning, or with a fault that has gone, has not.
+// Tests that a run that ends with an active fault has failed, whoever ends it, and that one that ends with a
+// warning, or with a fault that has ended, has not.
 TEST(LaunchTest, AFaultAtTheEndIsAFailure) {
   const struct {
     const char* says;

@@ -40,7 +40,7 @@ class PlantFaultsTest : public ::testing::Test {
     StartAgain();
   }
 
-  // Another run, of which nothing is left of the one before.
+  // Starts another run, in which nothing is left of the one before.
   void StartAgain() {
     clock_ = DisturbedClock();
     bus_ = std::make_unique<bus::InProcessBus>(&clock_);
@@ -143,7 +143,8 @@ TEST_F(PlantFaultsTest, SuspendEndsTheRun) {
   EXPECT_THAT(failure_, HasSubstr("suspended"));
 }
 
-// Tests that with explicit re-arming it holds zero volts until then, though it is over at once.
+// Tests that with explicit re-arming a suspend holds zero volts until a re-arm, though the suspend is over at
+// once.
 TEST_F(PlantFaultsTest, SuspendWaitsForARearm) {
   config_.limits.rearm = settings::Rearm::kExplicit;
   on_state_ = [this](const state_t& s) {
@@ -157,7 +158,8 @@ TEST_F(PlantFaultsTest, SuspendWaitsForARearm) {
   ExpectVoltage(83, 100, 1.5);
 }
 
-// Tests that a wall clock that is set by ten seconds, forwards and back, changes no state but its time stamp.
+// Tests that setting the wall clock by ten seconds, forwards and back, changes nothing in a state but its
+// time stamp.
 TEST_F(PlantFaultsTest, ClockStepChangesNothing) {
   ASSERT_EQ(Run(), 0);
   const std::vector<state_t> even = states_;
@@ -193,7 +195,7 @@ TEST_F(PlantFaultsTest, FiveTicks) {
   ExpectVoltage(10, faults_[0].tick, 1.5);
 }
 
-// Tests that after a stop of its own the plant acts on nothing that was commanded before it.
+// Tests that after it was stopped itself the plant acts on no command from before the stop.
 TEST_F(PlantFaultsTest, LatePlantWaitsForAFreshCommand) {
   config_.limits.stale_input_s = 0.02;
   int64_t awake = 0;
@@ -212,7 +214,7 @@ TEST_F(PlantFaultsTest, LatePlantWaitsForAFreshCommand) {
   EXPECT_EQ(states_.back().voltage, 1.5);
 }
 
-// Tests that the plant has its own eyes on each limit: zero volts from the tick in which it is passed.
+// Tests that the plant itself watches each limit: zero volts from the tick in which it is exceeded.
 TEST_F(PlantFaultsTest, LimitsEndTheRun) {
   struct Case {
     const char* code;
@@ -283,8 +285,8 @@ TEST_F(PlantFaultsTest, SafeCommand) {
   EXPECT_THAT(failure_, HasSubstr("controller_fault"));
 }
 
-// Tests that a fault that the position loop names is latched too, that it stands until the loop takes it back
-// or is replaced, and that a warning is not.
+// Tests that a fault of the position loop is latched too, that it persists until the loop ends it or is
+// replaced, and that a warning is not latched.
 TEST_F(PlantFaultsTest, FaultOfThePositionLoop) {
   config_.limits.rearm = settings::Rearm::kExplicit;
   const auto fault = [this](const char* code, bool active) {
@@ -311,7 +313,7 @@ TEST_F(PlantFaultsTest, FaultOfThePositionLoop) {
   ExpectVoltage(54, 100, 1.5);
 }
 
-// Tests that a second plant on the channels is named, with the multicast group it says it has.
+// Tests that a second plant on the channels is named, with the multicast group in its description.
 TEST_F(PlantFaultsTest, OtherStack) {
   config_.last_tick = 4000;
   on_state_ = [this](const state_t& s) {
@@ -357,7 +359,7 @@ TEST_F(PlantFaultsTest, LoggerGone) {
   ExpectVoltage(600, 3000, 1.5);
 }
 
-// Tests that a logger that says why it leaves is quoted.
+// Tests that the warning quotes the reason that a leaving logger gives.
 TEST_F(PlantFaultsTest, LoggerFailed) {
   on_state_ = [&](const state_t& s) {
     if (s.tick == 5) Status("logger", 8, process_status_t::RUNNING);

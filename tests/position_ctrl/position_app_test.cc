@@ -152,9 +152,8 @@ TEST_F(PositionAppTest, RepeatsTheAnswerToARepeatedState) {
   EXPECT_EQ(commands_[0].pressure_ref, commands_[1].pressure_ref);
 }
 
-// Tests that a loop that leaves a run that goes on does not leave its last pressure in force, and that at the
-// Tests that a sample that was overtaken on its way by states that are none is answered, one that was
-// overtaken by a newer sample is not, and that neither they nor other overtaken states repeat an answer.
+// Tests that a sample that was overtaken by states that are no samples is answered, that one overtaken by a
+// newer sample is not, and that overtaken states repeat no answer.
 TEST_F(PositionAppTest, OvertakenSamples) {
   Start(WithReference(settings::ReferenceSignal::kArmAngle, 0.1));
   for (const int64_t tick : {0, 1, 2, 3, 4, 6, 7, 5, 8, 6, 15, 10, 14, 20}) SendState(tick, 0);
@@ -167,7 +166,8 @@ TEST_F(PositionAppTest, OvertakenSamples) {
   EXPECT_THAT(numbers, ElementsAre(0, 1, 2, 3));
 }
 
-// end of a run, when everybody leaves, it adds nothing.
+// Tests that a loop that leaves a continuing run does not leave its last pressure in force, and that at the
+// end of a run, when every process leaves, it sends no further command.
 TEST_F(PositionAppTest, LeavesWithZeroVolts) {
   Start(WithReference(settings::ReferenceSignal::kArmAngle, 0));
   SendState(0, 0.1);

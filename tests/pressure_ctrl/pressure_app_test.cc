@@ -162,8 +162,7 @@ TEST_F(PressureAppTest, NonFiniteStateGivesZeroVolts) {
   EXPECT_TRUE(stops_.empty());
 }
 
-// Tests that gains whose products overflow give zero volts and a named fault, never a voltage that is not a
-// number.
+// Tests that gains whose products overflow give zero volts and a fault, never a voltage that is not a number.
 TEST_F(PressureAppTest, OverflowOfTheLawGivesZeroVolts) {
   settings::StackConfig config = SmallStack();
   config.pressure.k_p = 1e300;
@@ -227,8 +226,8 @@ TEST_P(PressureLimitTest, Trips) {
 
 INSTANTIATE_TEST_SUITE_P(BothSides, PressureLimitTest, ::testing::Values(&state_t::p1, &state_t::p2));
 
-// Tests that in real time the reference of a position loop that has gone silent is held for the stale-input
-// limit, goes to zero in a line within limits.pressure_ramp_s, and that then the voltage is zero: counted in
+// Tests that in real time the last reference of a silent position loop is held for the stale-input limit,
+// falls linearly to zero within limits.pressure_ramp_s, and that the voltage is zero then: all counted in
 // ticks, so that a replay does the same. The loop resumes with the next pressure command.
 TEST_F(PressureAppTest, StalePressureReferenceGoesToZeroThenTheVoltage) {
   settings::StackConfig config = SmallStack();
@@ -258,7 +257,7 @@ TEST_F(PressureAppTest, StalePressureReferenceGoesToZeroThenTheVoltage) {
   EXPECT_EQ(faults_.size(), 2u);
 }
 
-// Tests that without a ramp, and for a voltage, which nothing would follow down, zero volts come at once.
+// Tests that without a ramp, and for an open-loop voltage, which cannot be ramped, zero volts come at once.
 TEST_F(PressureAppTest, StaleVoltageGivesZeroVolts) {
   for (const bool open_loop : {false, true}) {
     clock_ = bus::SimulatedClock();
@@ -313,8 +312,8 @@ TEST_F(PressureAppTest, ExcessivePressureReferenceGivesZeroVolts) {
   EXPECT_FALSE(faults_[1].active);
 }
 
-// Tests that a command for a tick that is far from having been is refused, zeroes the voltage, and holds up
-// nothing that comes after it.
+// Tests that a command for a tick far in the future is refused, zeroes the voltage, and does not hold up what
+// comes after it.
 TEST_F(PressureAppTest, FuturePressureCommandGivesZeroVolts) {
   settings::StackConfig config = SmallStack();
   config.time.mode = settings::TimeMode::kRealtime;
@@ -358,8 +357,8 @@ TEST_F(PressureAppTest, ArmAngleLimitTrips) {
   EXPECT_TRUE(app_->finished());
 }
 
-// Tests that where faults are ended explicitly (by the plant, which holds the voltage at zero) this loop goes
-// on and says when the limit is kept again.
+// Tests that with limits.rearm = "explicit" (the plant then holds the voltage at zero) this loop goes on and
+// ends the fault when the limit is kept again.
 TEST_F(PressureAppTest, ExplicitRearmEndsNothingHere) {
   settings::StackConfig config = SmallStack();
   config.limits.rearm = settings::Rearm::kExplicit;

@@ -1,18 +1,18 @@
-// A data-acquisition board that is a file: its registers in shared memory. Who opens the file through the C
-// functions of comedi_functions.cc is the driver; who writes the input registers is the rig behind the board
-// (a test, or simulated_actuator_main.cc). What was last put out stays in the file, whatever became of the
-// driver.
+// A data-acquisition board as a file: its registers are in shared memory. The driver opens the file through
+// the C functions of comedi_functions.cc; the rig behind the board (a test, or simulated_actuator_main.cc)
+// writes the input registers. The last output stays in the file, whatever happens to the driver.
 //
-// Subdevice 0: 8 analog inputs of 16 bits, ranges +/-10 V, +/-5 V and 0 to 10 V. 1: 2 analog outputs of 16
-// bits,
-// +/-10 V, +/-5 V. 2: 8 digital lines, each an input or an output. 3: 2 counters of 24 bits.
+//   subdevice 0   8 analog inputs of 16 bits, ranges +/-10 V, +/-5 V and 0 to 10 V
+//   subdevice 1   2 analog outputs of 16 bits, +/-10 V, +/-5 V
+//   subdevice 2   8 digital lines, each an input or an output
+//   subdevice 3   2 counters of 24 bits
 #pragma once
 
 #include <cstdint>
 
 namespace hydro::testing {
 
-// tests/e2e/board.py reads and writes it as well: each field has 8 bytes but the two of the doorbell.
+// tests/e2e/board.py reads and writes it as well: each field has 8 bytes except the two of the doorbell.
 struct SimulatedBoard {
   static constexpr int64_t kMagic = 0x6472616f62;
   static constexpr int kInputs = 8;
