@@ -1,0 +1,24 @@
+// hydro-plot RUN.csv DIR: pictures of a run.
+#include <string>
+
+#include "base/new_file.h"
+#include "page/figure_svg.h"
+#include "plot/run_figures.h"
+#include "settings/command_line.h"
+
+int main(int argc, char** argv) {
+  hydro::settings::CommandLine line("hydro-plot", "Draws a run as DIR/arm.svg and DIR/pressure.svg.");
+  std::string table;
+  std::string folder;
+  line.AddPositional("RUN", &table, "a table of hydro-log export (csv, mat)");
+  line.AddPositional("DIR", &folder, "where to write");
+  if (const auto code = line.Parse(argc, argv)) return *code;
+  return hydro::settings::RunProgram("hydro-plot", [&] {
+    const hydro::tables::Table run = hydro::tables::ReadTable(table);
+    const std::string arm = hydro::page::FigureFile(hydro::plot::ArmFigure(run), "arm");
+    const std::string pressure = hydro::page::FigureFile(hydro::plot::PressureFigure(run), "pressure");
+    hydro::WriteWholeFile(folder + "/arm.svg", arm);
+    hydro::WriteWholeFile(folder + "/pressure.svg", pressure);
+    return 0;
+  });
+}

@@ -1,0 +1,68 @@
+#include "plot/run_figures.h"
+
+#include <string>
+#include <vector>
+
+#include "base/input_error.h"
+
+namespace hydro::plot {
+namespace {
+
+// Of the palette: what was measured, its companion, what was asked for.
+constexpr int kMeasured = 0, kOther = 1, kReference = 5;
+
+const std::vector<double>& ColumnOf(const tables::Table& run, const std::string& name) {
+  const tables::Column* column = run.Find(name);
+  if (column == nullptr) {
+    throw InputError(run.file + ": found no column " + name + ", needed is a table of hydro-log export");
+  }
+  return column->values;
+}
+
+page::Panel TimePanel(const tables::Table& run, const std::string& title, const std::string& y_label) {
+  const std::vector<double>& time = ColumnOf(run, "time_s");
+  page::Panel panel;
+  panel.title = title;
+  panel.x = {.label = "time, s", .min = time.front(), .max = time.back()};
+  panel.y.label = y_label;
+  return panel;
+}
+
+page::Figure Panels(std::vector<page::Panel> panels, double panel_height) {
+  for (size_t i = 0; i + 1 < panels.size(); ++i) panels[i].x.label.clear();
+  return {.caption = "", .panels = std::move(panels), .width = 900, .panel_height = panel_height};
+}
+
+}  // namespace
+
+page::Figure ArmFigure(const tables::Table& run) {
+  const std::vector<double>& time = ColumnOf(run, "time_s");
+  page::Panel angle = TimePanel(run, "Arm angle", "rad");
+  angle.curves = {
+      page::Line("reference", time, ColumnOf(run, "arm_ref_rad"), kReference, page::Stroke::kSteps),
+      page::Line("measured", time, ColumnOf(run, "arm_angle_rad"), kMeasured)};
+  page::Panel speed = TimePanel(run, "Motor speed", "rad/s");
+  speed.curves = {page::Line("", time, ColumnOf(run, "motor_speed_rad_s"), kMeasured)};
+  speed.height = 0.7;
+  return Panels({angle, speed}, 250);
+}
+
+page::Figure PressureFigure(const tables::Table& run) {
+  const std::vector<double>& time = ColumnOf(run, "time_s");
+  const std::vector<double>& p1 = ColumnOf(run, "p1_psi");
+  const std::vector<double>& p2 = ColumnOf(run, "p2_psi");
+  std::vector<double> difference(p1.size());
+  for (size_t i = 0; i < p1.size(); ++i) difference[i] = p2[i] - p1[i];
+
+  page::Panel loop = TimePanel(run, "Pressure difference p_2 - p_1", "psi");
+  loop.curves = {
+      page::Line("reference", time, ColumnOf(run, "pressure_ref_psi"), kReference, page::Stroke::kSteps),
+      page::Line("measured", time, difference, kMeasured)};
+  page::Panel sides = TimePanel(run, "Pressures", "psi");
+  sides.curves = {page::Line("p_1", time, p1, kOther), page::Line("p_2", time, p2, kMeasured)};
+  page::Panel voltage = TimePanel(run, "Amplifier voltage", "V");
+  voltage.curves = {page::Line("", time, ColumnOf(run, "voltage_V"), kMeasured, page::Stroke::kSteps)};
+  return Panels({loop, sides, voltage}, 150);
+}
+
+}  // namespace hydro::plot

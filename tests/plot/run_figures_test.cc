@@ -1,0 +1,50 @@
+#include "plot/run_figures.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "base/input_error.h"
+#include "page/figure_svg.h"
+
+namespace hydro::plot {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+tables::Table SmallRun() {
+  tables::Table run{"run.csv", {}, {}};
+  for (const char* name : {"time_s", "voltage_V", "pressure_ref_psi", "arm_ref_rad", "motor_speed_rad_s",
+                           "arm_angle_rad", "p1_psi"}) {
+    run.columns.push_back({name, {0, 1, 2}});
+  }
+  run.columns.push_back({"p2_psi", {5, 7, 9}});
+  return run;
+}
+
+// Tests that the pictures show the table's columns over time, and the pressure difference as p2 less p1.
+TEST(RunFigures, ShowTheTable) {
+  const page::Figure pressure = PressureFigure(SmallRun());
+  ASSERT_EQ(pressure.panels.size(), 3u);
+  EXPECT_THAT(pressure.panels[0].curves.at(1).y, ElementsAre(5, 6, 7));
+  EXPECT_THAT(pressure.panels[2].curves.at(0).y, ElementsAre(0, 1, 2));
+  const std::string arm = page::FigureFile(ArmFigure(SmallRun()), "arm");
+  for (const char* text : {">Arm angle<", ">reference<", ">measured<", ">Motor speed<", ">time, s<"}) {
+    EXPECT_THAT(arm, HasSubstr(text));
+  }
+}
+
+// Tests that a table of something else is refused with the column that it lacks.
+TEST(RunFigures, ColumnMissing) {
+  tables::Table run = SmallRun();
+  run.columns.pop_back();
+  try {
+    PressureFigure(run);
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_STREQ(error.what(), "run.csv: found no column p2_psi, needed is a table of hydro-log export");
+  }
+}
+
+}  // namespace
+}  // namespace hydro::plot
