@@ -1,7 +1,10 @@
 #include "base/number_text.h"
 
 #include <charconv>
+#include <cinttypes>
 #include <cmath>
+#include <cstdio>
+#include <cstring>
 
 namespace hydro {
 namespace {
@@ -29,6 +32,33 @@ void AppendNumber(double value, std::string& text) {
 std::string NumberText(double value) {
   std::string text;
   AppendNumber(value, text);
+  return text;
+}
+
+std::string ShortestNumber(double value) {
+  char text[64];
+  // Shortest digits either way; people read 0.0002 more easily than 2e-04.
+  const double size = std::abs(value);
+  const bool plain = value == 0 || (size >= 1e-4 && size < 1e15);
+  const auto end = plain ? std::to_chars(text, text + sizeof text, value, std::chars_format::fixed).ptr
+                         : std::to_chars(text, text + sizeof text, value).ptr;
+  return std::string(text, end);
+}
+
+std::string ShortNumber(double value, int digits) {
+  if (!std::isfinite(value)) return "-";
+  char text[32];
+  std::snprintf(text, sizeof text, "%.*g", digits, value == 0 ? 0.0 : value);  // no -0
+  // It would write 81000 as 8.1e+04.
+  const double size = std::abs(value);
+  if (size >= 1 && size < 1e7 && std::strchr(text, 'e') != nullptr)
+    std::snprintf(text, sizeof text, "%.0f", value);
+  return text;
+}
+
+std::string HexNumber(uint64_t value, int digits) {
+  char text[24];
+  std::snprintf(text, sizeof text, "0x%0*" PRIx64, digits, value);
   return text;
 }
 

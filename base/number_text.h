@@ -1,4 +1,5 @@
-// Numbers as text that does not depend on the locale and gives the same bits back.
+// Numbers as text and back, independent of the locale. Three ways to write a number, by purpose: exact in files,
+// exact in messages, rounded in reports.
 #pragma once
 
 #include <cstdint>
@@ -8,9 +9,21 @@
 
 namespace hydro {
 
-// Appends the shortest text that reads back as the same number ("nan", "inf" and "-inf" for those).
+// For files that programs read: the shortest text that reads back as the same number ("nan", "inf" and "-inf"
+// for those; 0.0002 is "2e-04").
 void AppendNumber(double value, std::string& text);
 std::string NumberText(double value);
+
+// For messages and settings that people read and write: the same digits, without an exponent from 1e-4 to 1e15
+// ("0.0002").
+std::string ShortestNumber(double value);
+
+// For reports: rounded to so many significant digits, or to whole numbers where those have more: 3.14, 81000,
+// 2.6e-05. "-" when it is not finite.
+std::string ShortNumber(double value, int digits = 4);
+
+// "0x001f", with at least so many digits.
+std::string HexNumber(uint64_t value, int digits);
 
 // Reads a whole text as a number; decimal, "inf" and "nan" in any case, a leading '+'. Empty: it is not a
 // number, or is outside the range of a double.

@@ -1,8 +1,6 @@
 #include "base/text_file.h"
 
 #include <algorithm>
-#include <charconv>
-#include <cmath>
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
@@ -119,16 +117,6 @@ std::string PrintableLines(std::string_view text) {
     ++end;
   }
   return printable;
-}
-
-std::string ShortestNumber(double value) {
-  char text[64];
-  // Shortest digits either way; people read 0.0002 more easily than 2e-04.
-  const double size = std::abs(value);
-  const bool plain = value == 0 || (size >= 1e-4 && size < 1e15);
-  const auto end = plain ? std::to_chars(text, text + sizeof text, value, std::chars_format::fixed).ptr
-                         : std::to_chars(text, text + sizeof text, value).ptr;
-  return std::string(text, end);
 }
 
 }  // namespace hydro

@@ -30,9 +30,6 @@ std::string Printable(std::string_view text);
 // Printable, line by line: its own line ends stay.
 std::string PrintableLines(std::string_view text);
 
-// The shortest decimal that reads back as the same double.
-std::string ShortestNumber(double value);
-
 // "\"a\", \"b\" or \"c\"".
 template <class Names>
 std::string QuotedList(const Names& names) {

@@ -1,19 +1,15 @@
 #include "log/log_reader.h"
 
 #include <algorithm>
-#include <cstdio>
 #include <cstring>
 
+#include "base/number_text.h"
 #include "log/log_format.h"
 
 namespace hydro::log {
 namespace {
 
-std::string Hex(uint32_t value) {
-  char text[11];
-  std::snprintf(text, sizeof text, "0x%08x", value);
-  return text;
-}
+std::string Hex(uint32_t value) { return HexNumber(value, 8); }
 
 std::string WrongSyncWord(uint32_t found) {
   return "found sync word " + Hex(found) + "; allowed " + Hex(kLogSyncWord);

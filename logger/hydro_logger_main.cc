@@ -1,4 +1,5 @@
 // hydro-logger CONFIG -o FILE: records the bus.
+#include "base/number_text.h"
 #include "base/text_file.h"
 #include "logger/logger_app.h"
 #include "process/process_main.h"

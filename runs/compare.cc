@@ -1,8 +1,6 @@
 #include "runs/compare.h"
 
-#include <cinttypes>
 #include <cmath>
-#include <cstdio>
 
 #include "base/number_text.h"
 #include "bus/channels.h"
@@ -18,9 +16,7 @@ struct Difference {
 
 std::string FieldText(double value) {
   if (!std::isnan(value)) return NumberText(value);
-  char text[32];
-  std::snprintf(text, sizeof text, "nan (0x%016" PRIx64 ")", std::bit_cast<uint64_t>(value));
-  return text;
+  return "nan (" + HexNumber(std::bit_cast<uint64_t>(value), 16) + ")";
 }
 std::string FieldText(int64_t value) { return std::to_string(value); }
 std::string FieldText(int8_t value) { return std::to_string(value); }

@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include "base/did_you_mean.h"
+#include "base/number_text.h"
 #include "base/text_file.h"
 #include "runs/run_delays.h"
 #include "runs/run_log.h"

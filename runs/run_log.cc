@@ -1,11 +1,11 @@
 #include "runs/run_log.h"
 
 #include <algorithm>
-#include <cstdio>
 #include <map>
 #include <set>
 #include <string_view>
 
+#include "base/number_text.h"
 #include "log/log_format.h"
 #include "log/log_reader.h"
 #include "log/message_kinds.h"
@@ -13,11 +13,7 @@
 namespace hydro::runs {
 namespace {
 
-std::string Hex(uint64_t value) {
-  char text[19];
-  std::snprintf(text, sizeof text, "0x%016llx", static_cast<unsigned long long>(value));
-  return text;
-}
+std::string Hex(uint64_t value) { return HexNumber(value, 16); }
 
 // Where it is, what was found and what is allowed.
 std::string WhyUndecodable(const log::LogEvent& event, const log::MessageKind& kind) {

@@ -13,6 +13,7 @@
 
 #include "base/did_you_mean.h"
 #include "base/input_error.h"
+#include "base/number_text.h"
 #include "base/text_file.h"
 
 namespace hydro::settings {

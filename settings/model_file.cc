@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "base/did_you_mean.h"
+#include "base/number_text.h"
 #include "model/terms/parameter_info.h"
 #include "settings/toml/section_reader.h"
 

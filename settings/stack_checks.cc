@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "base/number_text.h"
 #include "settings/toml/section_reader.h"
 #include "trajectory/trajectory.h"
 

@@ -4,6 +4,7 @@
 #include <map>
 #include <stdexcept>
 
+#include "base/number_text.h"
 #include "tables/csv_points.h"
 
 namespace hydro::settings {

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/did_you_mean.h"
+#include "base/number_text.h"
 #include "base/text_file.h"
 #include "tables/csv_text.h"
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <set>
 
+#include "base/number_text.h"
 #include "base/text_file.h"
 #include "diagnose/data/run_start.h"
 #include "diagnose/data/smoothed_motion.h"

@@ -3,9 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <numeric>
 #include <utility>
+
+#include "base/number_text.h"
 
 namespace hydro::diagnose {
 
@@ -36,11 +37,7 @@ std::vector<size_t> BinsOf(const std::vector<double>& values, const std::vector<
   return first;
 }
 
-std::string Number(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3g", value);
-  return text;
-}
+std::string Number(double value) { return ShortNumber(value, 3); }
 
 double EnergyOf(const Blocks::Block& block) {
   const double ratio = block.value / block.noise;

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "base/short_number.h"
+#include "base/number_text.h"
 #include "base/word_list.h"
 #include "diagnose/data/run_data.h"
 #include "diagnose/report/diagnosis_in_si.h"

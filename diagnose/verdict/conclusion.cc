@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/short_number.h"
+#include "base/number_text.h"
 #include "base/word_list.h"
 #include "diagnose/fit/intervals.h"
 #include "diagnose/locate/locate.h"

@@ -5,7 +5,7 @@
 #include <limits>
 #include <tuple>
 
-#include "base/short_number.h"
+#include "base/number_text.h"
 
 namespace hydro::diagnose {
 

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <cstdlib>
 
+#include "base/number_text.h"
 #include "base/units.h"
 
 namespace hydro::experiments {
@@ -28,9 +28,7 @@ std::string PaperInSi(const std::string& text, const SiUnit& unit) {
   char* end = nullptr;
   const double value = std::strtod(start, &end);
   if (end == start || *end != '\0') return text + " " + unit.from;
-  char number[32];
-  std::snprintf(number, sizeof number, "%.4g", value * unit.factor);
-  return text.substr(0, begin) + number;
+  return text.substr(0, begin) + ShortNumber(value * unit.factor);
 }
 
 // Characters on a terminal (UTF-8).
@@ -66,12 +64,7 @@ std::string Indented(const std::string& text, size_t indent) {
 
 }  // namespace
 
-std::string ShownNumber(double value) {
-  if (!std::isfinite(value)) return "-";
-  char text[32];
-  std::snprintf(text, sizeof text, "%.5g", value == 0 ? 0.0 : value);  // no -0
-  return text;
-}
+std::string ShownNumber(double value) { return ShortNumber(value, 5); }
 
 std::vector<Comparison> InSi(const std::vector<Comparison>& comparisons) {
   std::vector<Comparison> converted = comparisons;

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
+#include "base/number_text.h"
 #include "maths/linear_fit.h"
 
 namespace hydro::experiments {
@@ -11,12 +11,6 @@ namespace {
 
 // Speeds are different when they differ by this much of the fastest.
 constexpr double kDifferentSpeed = 0.05;
-
-std::string Short(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.4g", value);
-  return text;
-}
 
 int DifferentSpeeds(const std::vector<FrictionPoint>& points) {
   std::vector<double> speeds;
@@ -46,12 +40,12 @@ void CheckSupport(const runs::MeasuredRun& run, const SteadySpeeds& found,
                        allowed);
     }
     const SpeedWindow& window = *found.longest_unsteady;
-    throw InputError(run.file + ": found no steady state: in the longest hold, of " + Short(window.voltage) +
-                     " V, the speed still changes by " + Short(window.acceleration) + " +/- " +
-                     Short(window.acceleration_95) + " rad/s^2 from " + Short(window.from) + " s to " +
-                     Short(window.to) + " s, which may take " +
-                     Short(parameters.J * window.LargestAcceleration()) + " of " +
-                     Short(std::abs(parameters.k_1 * window.voltage)) + " in-lbf" + allowed);
+    throw InputError(run.file + ": found no steady state: in the longest hold, of " +
+                     ShortNumber(window.voltage) + " V, the speed still changes by " +
+                     ShortNumber(window.acceleration) + " +/- " + ShortNumber(window.acceleration_95) +
+                     " rad/s^2 from " + ShortNumber(window.from) + " s to " + ShortNumber(window.to) +
+                     " s, which may take " + ShortNumber(parameters.J * window.LargestAcceleration()) +
+                     " of " + ShortNumber(std::abs(parameters.k_1 * window.voltage)) + " in-lbf" + allowed);
   }
   const auto forward = std::count_if(points.begin(), points.end(),
                                      [](const FrictionPoint& point) { return point.torque > 0; });

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <utility>
 
+#include "base/number_text.h"
 #include "settings/toml/section_reader.h"
 
 namespace hydro::plant {

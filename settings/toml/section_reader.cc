@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/did_you_mean.h"
+#include "base/number_text.h"
 
 namespace hydro::settings {
 namespace {

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <sstream>
 
+#include "base/number_text.h"
 #include "base/text_file.h"
 
 namespace hydro::settings {

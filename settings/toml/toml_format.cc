@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "base/number_text.h"
 #include "base/text_file.h"
 #include "settings/toml/toml_document.h"
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <vector>
 
-#include "base/short_number.h"
+#include "base/number_text.h"
 #include "base/word_list.h"
 #include "diagnose/data/sample_interval.h"
 
