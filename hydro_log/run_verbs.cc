@@ -14,12 +14,6 @@ namespace hydro::hydro_log {
 
 namespace {
 
-void WriteText(const std::string& name, const std::string& text) {
-  NewFile file(name, Opening::kTemporary);
-  file.Write(text.data(), text.size());
-  file.Finish();
-}
-
 // Before anything is printed or written.
 void CheckOutput(const std::string& file, const std::string& log) {
   CheckKeeps(file, {log});
@@ -51,7 +45,7 @@ int SummaryVerb::Run() const {
   const runs::Tracking tracking = runs::TrackArm(log);
   const runs::LogInfo info = runs::Summarise(log, si_);
   std::fputs(PrintableLines(runs::SummaryText(tracking, info, si_)).c_str(), stdout);
-  if (!json_.empty()) WriteText(json_, runs::SummaryJson(tracking, info));
+  if (!json_.empty()) WriteWholeFile(json_, runs::SummaryJson(tracking, info));
   return 0;
 }
 
@@ -77,8 +71,8 @@ int TimingVerb::Run() const {
         log_ + ": found no report of a loop (HYDRO_LOOP_STATISTICS); a log of a run of processes is needed");
   }
   std::fputs(PrintableLines(timing::TimingText(processes)).c_str(), stdout);
-  if (!json_.empty()) WriteText(json_, timing::TimingJson(processes, log_));
-  if (!page_.empty()) WriteText(page_, timing::TimingPage(processes, log_));
+  if (!json_.empty()) WriteWholeFile(json_, timing::TimingJson(processes, log_));
+  if (!page_.empty()) WriteWholeFile(page_, timing::TimingPage(processes, log_));
   return 0;
 }
 
