@@ -14,7 +14,7 @@ PAGES = ["README.md", "CONTRIBUTING.md", *sorted(p.relative_to(ROOT).as_posix() 
 MADE = re.compile(r"(build|out)/.*|config/mine\.toml")
 # A path in a code span: folders of the repository's root, then names; braces and stars as in a shell.
 PATH = re.compile(r"`((?:\./)?[\w@.+-]+(?:/[\w@.,*{}+-]+)+/?)`")
-LINK = re.compile(r"\]\(([^)#\s]+)(?:#[^)]*)?\)")
+LINK = re.compile(r"\]\(([^)#\s]+)(?:#[^)]*)?\)|<img src=\"([^\"]+)\"")
 
 
 def load_rooms_script():
@@ -69,7 +69,7 @@ class DocumentsTest(unittest.TestCase):
         found = []
         for page in PAGES:
             for number, line in enumerate((ROOT / page).read_text().splitlines(), 1):
-                for target in LINK.findall(line):
+                for target in map("".join, LINK.findall(line)):
                     if "://" not in target and not (ROOT / page).parent.joinpath(target).exists():
                         found.append(f"{page}:{number}: {target} does not exist")
         self.assertEqual(found, [], "\n".join(found))
