@@ -5,7 +5,8 @@
 #include <string>
 #include <utility>
 
-#include "model/integrate/response_machine.h"
+#include "model/integrate/derivative_stepper.h"
+#include "model/integrate/mode_machine.h"
 #include "model/terms/parameter_info.h"
 
 namespace hydro::model {
@@ -23,6 +24,57 @@ NumbersOf<T> NumbersAs(const NumbersOf<double>& numbers) {
   return result;
 }
 
+// The state and mode that a response starts in, from the base states `base`.
+template <class T>
+Mode StartFrom(Equations* equations, const NumbersOf<T>& numbers, double time, const T* base, T* state) {
+  const EquationData& data = equations->data();
+  Mode mode;
+  T rate[kMaxStates];
+  T margin[kMaxSwitches];
+  Terms<T> terms;
+  const auto evaluate = [&] {
+    EvaluateTerms<Form::kGeneral, T>(data, numbers, time, T(0.0), mode, state, rate, terms);
+  };
+  const int given = data.shaft == Shaft::kFree ? 6 : 4;
+  for (int i = 0; i < data.states; ++i) state[i] = i < given ? base[i] : T(0.0);
+  equations->PassStop(time);
+  evaluate();
+  FindMargins<Form::kGeneral, T>(data, numbers, mode, terms, margin);
+  // Whether an effect has valves of its own shows in the margins: an ideal one's is p - p_3.
+  if (ValueOf(margin[kValve1Switch]) < 0) state[kP1] = terms.p_3;
+  if (ValueOf(margin[kValve2Switch]) < 0) state[kP2] = terms.p_3;
+  evaluate();
+  for (const auto& effect : data.effects) {
+    terms.own = numbers.own.data() + effect->first_parameter();
+    effect->Start(terms, state);
+    effect->StartMode(terms, &mode);
+  }
+  const double speed = ValueOf(state[kMotorSpeed]);
+  mode.pump = static_cast<int8_t>(speed > 0 ? 1 : (speed < 0 ? -1 : 0));
+  return mode;
+}
+
+// How many steps a pass may take in all: a model far too stiff must not take hours.
+int64_t MostSteps(const Stimulus& stimulus, double relative_tolerance) {
+  const double duration = stimulus.time.back() - stimulus.time.front();
+  // The steps of a fourth-order method are as the fourth root of its error.
+  const double finer = std::max(1.0, std::pow(1e-6 / relative_tolerance, 0.25));
+  return static_cast<int64_t>(finer * (20 * static_cast<double>(stimulus.time.size()) + 500 * duration)) +
+         1000;
+}
+
+// Seeds the unknowns [first, first + kJetWidth) as directions, in `numbers` and `base`.
+void Seed(const std::vector<Unknown>& unknowns, size_t first, NumbersOf<Jet>* numbers, Jet* base) {
+  const size_t last = std::min(unknowns.size(), first + static_cast<size_t>(kJetWidth));
+  for (size_t u = first; u < last; ++u) {
+    const Unknown& unknown = unknowns[u];
+    Jet& seeded = unknown.kind == Unknown::Kind::kBase     ? BaseValue(numbers->parameters, unknown.index)
+                  : unknown.kind == Unknown::Kind::kEffect ? numbers->own.at(unknown.index)
+                                                           : base[unknown.index];
+    seeded.v[u - first] = 1;
+  }
+}
+
 // Simulates once with unknowns [first, first + kJetWidth) as directions; none when T is double.
 template <class T>
 void Pass(const ModelDescription& model, const Stimulus& stimulus, const StartState& start,
@@ -36,34 +88,26 @@ void Pass(const ModelDescription& model, const Stimulus& stimulus, const StartSt
   actuator.arm_angle = stimulus.shaft == Shaft::kFree ? start[kArmAngle] : stimulus.arm_angle;
   Equations equations(model, actuator);
   NumbersOf<T> numbers = NumbersAs<T>(equations.data());
-  T state[6];
-  for (size_t i = 0; i < 6; ++i) state[i] = T(start[i]);
-  const size_t last = std::min(unknowns.size(), first + static_cast<size_t>(kJetWidth));
-  if constexpr (!std::is_same_v<T, double>) {
-    for (size_t u = first; u < last; ++u) {
-      const Unknown& unknown = unknowns[u];
-      Jet& seeded = unknown.kind == Unknown::Kind::kBase     ? BaseValue(numbers.parameters, unknown.index)
-                    : unknown.kind == Unknown::Kind::kEffect ? numbers.own.at(unknown.index)
-                                                             : state[unknown.index];
-      seeded.v[u - first] = 1;
-    }
-  }
-  if (stimulus.bypass) state[kP2] = state[kP1];
+  T base[6];
+  for (size_t i = 0; i < 6; ++i) base[i] = T(start[i]);
+  if constexpr (!std::is_same_v<T, double>) Seed(unknowns, first, &numbers, base);
+  if (stimulus.bypass) base[kP2] = base[kP1];
   CompleteNumbers<T>(equations.data(), &numbers);
 
-  ResponseMachine<T> machine(&equations, numbers, options.relative_tolerance);
-  machine.Start(stimulus.time.front(), state);
-  const double duration = stimulus.time.back() - stimulus.time.front();
-  // The steps of a fourth-order method are as the fourth root of its error.
-  const double finer = std::max(1.0, std::pow(1e-6 / options.relative_tolerance, 0.25));
-  machine.AllowSteps(
-      static_cast<int64_t>(finer * (20 * static_cast<double>(stimulus.time.size()) + 500 * duration)) + 1000);
+  ModeMachine<T, Form::kGeneral, DerivativeStepper<T>> machine(
+      &equations, &numbers, &numbers, options.relative_tolerance,
+      MostSteps(stimulus, options.relative_tolerance));
+  T state[kMaxStates];
+  const Mode mode = StartFrom(&equations, numbers, stimulus.time.front(), base, state);
+  machine.Start(stimulus.time.front(), state, mode);
+  const size_t last = std::min(unknowns.size(), first + static_cast<size_t>(kJetWidth));
   const bool values = first == 0;
   size_t row = 0;
   for (size_t k = 0; k < stimulus.time.size(); ++k) {
     if (k > 0) machine.Advance(stimulus.voltage[k - 1], stimulus.time[k]);
     if (k % options.stride != 0) continue;
-    const MeasurementOf<T> measured = machine.Measure();
+    const MeasurementOf<T> measured =
+        ReadSensors<T>(equations.data(), numbers, machine.now().time, machine.now().state, machine.history());
     for (size_t c = 0; c < kChannels; ++c) {
       if (!options.channels[c]) continue;
       const T& value = ChannelOf(measured, c);

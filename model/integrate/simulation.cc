@@ -1,73 +1,43 @@
 #include "model/integrate/simulation.h"
 
+#include "model/integrate/auto_stepper.h"
 #include "model/integrate/cvode_stepper.h"
 #include "model/integrate/erk_stepper.h"
-#include "model/integrate/runge_kutta.h"
+#include "model/integrate/fast_stepper.h"
+#include "model/integrate/mode_machine.h"
 
 namespace hydro::model {
 
 namespace {
 
-// Runge-Kutta until its steps are held back by stability, then CVODE until the mode changes.
-template <Form kForm>
-class AutoStepper {
+template <Form kForm, class Stepper>
+class SimulationOf final : public Simulation {
  public:
-  AutoStepper(const Mode* mode, const double* voltage, Equations* equations, double relative_tolerance)
-      : mode_(mode),
-        voltage_(voltage),
-        equations_(equations),
-        tolerance_(relative_tolerance),
-        fast_(mode, voltage, equations, relative_tolerance) {}
+  SimulationOf(Equations* equations, double initial_pressure, double relative_tolerance)
+      : machine_(equations, &equations->data(), relative_tolerance) {
+    double state[kMaxStates];
+    Mode mode;
+    equations->Start(initial_pressure, state, &mode);
+    machine_.Start(0, state, mode);
+  }
 
-  void Restart(const Point& now) {
-    stiff_ = false;
-    fast_.Restart(now);
-  }
-  void NewVoltage(const Point& now) {
-    if (stiff_) {
-      cvode_->NewVoltage(now);
-    } else {
-      fast_.NewVoltage(now);
-    }
-  }
-  Integrator in_use() const { return stiff_ ? Integrator::kCvode : Integrator::kFast; }
-  void Step(const Point& now, double stop, Point* next) {
-    if (!stiff_ && fast_.stiff()) [[unlikely]] {
-      stiff_ = true;
-      if (!cvode_) cvode_ = std::make_unique<CvodeStepper>(mode_, voltage_, equations_, tolerance_);
-      cvode_->Restart(now);
-    }
-    if (stiff_) [[unlikely]] {
-      cvode_->Step(now, stop, next);
-    } else {
-      fast_.Step(now, stop, next);
-    }
-  }
-  bool Trusts(const Point& now, const Point& at) const { return stiff_ || fast_.Trusts(now, at); }
-  void Interpolate(const Point& now, const Point& next, double time, Point* at) {
-    if (stiff_) {
-      cvode_->Interpolate(now, next, time, at);
-    } else {
-      fast_.Interpolate(now, next, time, at);
-    }
-  }
+  void Advance(double voltage, double until) override { machine_.Advance(voltage, until); }
+  const Point& now() const override { return machine_.now(); }
+  const Mode& mode() const override { return machine_.mode(); }
+  const StateHistory<double>* history() const override { return machine_.history(); }
+  int64_t mode_changes() const override { return machine_.mode_changes(); }
+  Integrator in_use() const override { return machine_.in_use(); }
 
  private:
-  const Mode* mode_;
-  const double* voltage_;
-  Equations* equations_;
-  double tolerance_;
-  bool stiff_ = false;
-  RungeKutta<kForm> fast_;
-  std::unique_ptr<CvodeStepper> cvode_;
+  ModeMachine<double, kForm, Stepper> machine_;
 };
 
 template <template <Form> class Stepper>
 std::unique_ptr<Simulation> MakeForForm(Equations* equations, double initial_pressure,
                                         double relative_tolerance) {
   const auto make = [&]<Form kForm>() -> std::unique_ptr<Simulation> {
-    return std::make_unique<SwitchingSimulation<kForm, Stepper<kForm>>>(equations, initial_pressure,
-                                                                        relative_tolerance);
+    return std::make_unique<SimulationOf<kForm, Stepper<kForm>>>(equations, initial_pressure,
+                                                                 relative_tolerance);
   };
   if (!equations->plain()) return make.template operator()<Form::kGeneral>();
   if (equations->data().shaft == Shaft::kFree) return make.template operator()<Form::kPlainFree>();
@@ -84,13 +54,13 @@ std::unique_ptr<Simulation> MakeSimulation(Equations* equations, Integrator inte
   }
   switch (integrator) {
     case Integrator::kErk:
-      return std::make_unique<SwitchingSimulation<Form::kGeneral, ErkStepper>>(equations, initial_pressure,
-                                                                               relative_tolerance);
+      return std::make_unique<SimulationOf<Form::kGeneral, ErkStepper>>(equations, initial_pressure,
+                                                                        relative_tolerance);
     case Integrator::kCvode:
-      return std::make_unique<SwitchingSimulation<Form::kGeneral, CvodeStepper>>(equations, initial_pressure,
-                                                                                 relative_tolerance);
+      return std::make_unique<SimulationOf<Form::kGeneral, CvodeStepper>>(equations, initial_pressure,
+                                                                          relative_tolerance);
     case Integrator::kFast:
-      return MakeForForm<RungeKutta>(equations, initial_pressure, relative_tolerance);
+      return MakeForForm<FastStepper>(equations, initial_pressure, relative_tolerance);
     case Integrator::kAuto:
       break;
   }

@@ -5,22 +5,9 @@
 #include <memory>
 
 #include "model/equations/equations.h"
+#include "model/integrate/point.h"
 
 namespace hydro::model {
-
-// A state with all that is known at it.
-struct Point {
-  double time = 0;
-  alignas(16) double state[kMaxStates] = {};
-  alignas(16) double rate[kMaxStates] = {};
-  double margin[kMaxSwitches] = {};
-};
-
-// No step is longer, so that a switch which changes and changes back is not stepped over.
-inline constexpr double kLongestStep = 1e-2;  // s
-
-// The same where states between the steps are read.
-inline constexpr double kLongestStepToRead = 2e-3;  // s
 
 class Simulation {
  public:
@@ -42,8 +29,8 @@ class Simulation {
   virtual Integrator in_use() const = 0;
 };
 
-// `equations` must outlive it, and belongs to it while it runs (SetMotionLimit). Throws ModelError.
-
+// `equations` must outlive the simulation and belongs to it while it runs: it calls Equations::Command and PassStop.
+// Throws ModelError.
 std::unique_ptr<Simulation> MakeSimulation(Equations* equations, Integrator integrator,
                                            double initial_pressure, double relative_tolerance);
 

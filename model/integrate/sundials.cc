@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "model/integrate/switching.h"
+#include "model/integrate/where.h"
 
 namespace hydro::model {
 

@@ -10,8 +10,8 @@ namespace hydro::model {
 inline constexpr int kMaxEffectSwitches = 13;
 inline constexpr int kMaxSwitches = 3 + kMaxEffectSwitches;
 
-// Numbers of the base switches, as Equations::Margins and Equations::Cross count them; those of effects
-// follow.
+// Numbers of the base switches, as the margins of Equations::Rates and `which` of Equations::Cross count them; those of
+// effects follow.
 inline constexpr int kPumpSwitch = 0;
 inline constexpr int kValve1Switch = 1;
 inline constexpr int kValve2Switch = 2;

@@ -345,9 +345,12 @@ MUTATIONS = [
     ),
     # Derivatives by parameters, past an event whose time depends on them.
     *_rows(
-        "model/integrate/response_machine.h",
-        ("derivatives.event", "T later = -margin_[which] / slope;", "T later = margin_[which] / slope;"),
-        ("derivatives.after_event", "state_[i] -= rate_[i] * later;", "state_[i] += rate_[i] * later;"),
+        "model/integrate/event_shift.h",
+        ("derivatives.event", "Jet later = -at.margin[which] / slope;", "Jet later = at.margin[which] / slope;"),
+    ),
+    *_rows(
+        "model/integrate/mode_machine.h",
+        ("derivatives.after_event", "Shift(-later);", "Shift(later);"),
     ),
     # The control laws.
     *_rows(

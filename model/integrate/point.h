@@ -1,0 +1,25 @@
+// A state with all that is known at it.
+#pragma once
+
+#include "model/terms/mode.h"
+#include "model/terms/state.h"
+
+namespace hydro::model {
+
+// T is double, or Jet for a state that carries derivatives.
+template <class T>
+struct PointOf {
+  double time = 0;  // s
+  alignas(16) T state[kMaxStates] = {};
+  alignas(16) T rate[kMaxStates] = {};
+  T margin[kMaxSwitches] = {};
+};
+using Point = PointOf<double>;
+
+// No step is longer, so that a switch which changes and changes back is not stepped over.
+inline constexpr double kLongestStep = 1e-2;  // s
+
+// The same where states between the steps are read.
+inline constexpr double kLongestStepToRead = 2e-3;  // s
+
+}  // namespace hydro::model
