@@ -26,16 +26,20 @@ if(HYDRO_PRECOMPILE)
   target_compile_options(hydro_precompiled_computes PRIVATE ${HYDRO_COMPUTES_OPTIONS})
 endif()
 
-# hydro_library(NAME [COMPUTES] [INSTALLED] SOURCES FILES... [PUBLIC LIBS...] [PRIVATE LIBS...]): a static library, hydro_NAME, that
+# hydro_library(NAME [OBJECTS] [COMPUTES] [INSTALLED] SOURCES FILES... [PUBLIC LIBS...] [PRIVATE LIBS...]): a static library, hydro_NAME, that
 # others know as hydro::NAME. Its headers are included by their path from the root, here and where they are installed
 # (include/hydro). COMPUTES: see above. INSTALLED: it and the headers of its folder are what others build on
-# (find_package(hydro), cmake/hydroConfig.cmake.in).
+# (find_package(hydro), cmake/hydroConfig.cmake.in). OBJECTS: objects without a library around them.
 function(hydro_library name)
-  cmake_parse_arguments(arg "COMPUTES;INSTALLED" "" "SOURCES;PUBLIC;PRIVATE" ${ARGN})
+  cmake_parse_arguments(arg "OBJECTS;COMPUTES;INSTALLED" "" "SOURCES;PUBLIC;PRIVATE" ${ARGN})
   if(arg_UNPARSED_ARGUMENTS)
     message(FATAL_ERROR "hydro_library(${name}): unknown: ${arg_UNPARSED_ARGUMENTS}")
   endif()
-  add_library(${name} STATIC ${arg_SOURCES})
+  set(type STATIC)
+  if(arg_OBJECTS)
+    set(type OBJECT)
+  endif()
+  add_library(${name} ${type} ${arg_SOURCES})
   target_include_directories(${name} PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>
                                             $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/hydro>)
   target_compile_features(${name} PUBLIC cxx_std_20)

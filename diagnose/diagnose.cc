@@ -36,6 +36,49 @@ std::vector<const RunData*> Pointers(const std::vector<RunData>& runs) {
   return pointers;
 }
 
+// Whether one of its parameters only adds to a base parameter that the model has: then that may be wrong.
+bool IsTermOfTheModel(const model::EffectInfo& info, const model::Parameters& given) {
+  return std::any_of(info.parameters.begin(), info.parameters.end(),
+                     [&](const model::ParameterInfo& parameter) {
+                       return parameter.adds_to != nullptr && given.*parameter.adds_to != 0;
+                     });
+}
+
+// Whether some effect has the term of this base parameter, which then stands for it where the model has it at 0.
+bool IsTermOfAnEffect(const model::BaseParameter& base) {
+  const std::vector<model::EffectInfo>& catalogue = model::EffectCatalogue();
+  return std::any_of(catalogue.begin(), catalogue.end(), [&](const model::EffectInfo& info) {
+    return std::any_of(
+        info.parameters.begin(), info.parameters.end(),
+        [&](const model::ParameterInfo& parameter) { return parameter.adds_to == base.member; });
+  });
+}
+
+bool IsMeasured(const std::string& channel, const std::vector<const RunData*>& runs) {
+  return std::any_of(runs.begin(), runs.end(), [&](const RunData* run) {
+    return std::any_of(run->signals.begin(), run->signals.end(),
+                       [&](const SignalData& signal) { return ChannelName(signal.channel) == channel; });
+  });
+}
+
+// An effect with every name that it can take in these runs.
+std::vector<Change> Variants(const model::EffectInfo& info, const std::vector<const RunData*>& runs) {
+  std::vector<Change> variants = {{info.id, {}, ""}};
+  for (const model::ParameterInfo& parameter : info.parameters) {
+    if (!parameter.is_name()) continue;
+    std::vector<Change> next;
+    for (const Change& variant : variants) {
+      for (const std::string& name : parameter.names) {
+        if (parameter.role == model::Role::kChannel && !IsMeasured(name, runs)) continue;
+        next.push_back(variant);
+        next.back().names[parameter.name] = name;
+      }
+    }
+    variants = std::move(next);
+  }
+  return variants;
+}
+
 // The effects that may be named, each with every name that it can take in these runs.
 std::vector<Change> EffectChanges(const model::ModelDescription& given,
                                   const std::vector<std::string>& allowed,
@@ -43,29 +86,12 @@ std::vector<Change> EffectChanges(const model::ModelDescription& given,
   std::vector<Change> changes;
   for (const model::EffectInfo& info : model::EffectCatalogue()) {
     if (!allowed.empty() && std::find(allowed.begin(), allowed.end(), info.id) == allowed.end()) continue;
-    // With f above 0 it is the base parameter that may be wrong.
-    if (info.id == "pump.pressure_friction" && given.parameters.f != 0) continue;
+    if (IsTermOfTheModel(info, given.parameters)) continue;
     const bool has =
         std::any_of(given.effects.begin(), given.effects.end(),
                     [&](const model::EffectDescription& effect) { return effect.id == info.id; });
     if (has) continue;
-    std::vector<Change> variants = {{info.id, {}, ""}};
-    for (const model::ParameterInfo& parameter : info.parameters) {
-      if (!parameter.is_name) continue;
-      std::vector<Change> next;
-      for (const Change& variant : variants) {
-        for (const std::string& name : parameter.names) {
-          const bool measured = std::any_of(runs.begin(), runs.end(), [&](const RunData* run) {
-            return std::any_of(run->signals.begin(), run->signals.end(),
-                               [&](const SignalData& signal) { return ChannelName(signal.channel) == name; });
-          });
-          if (!measured) continue;
-          next.push_back(variant);
-          next.back().names[parameter.name] = name;
-        }
-      }
-      variants = std::move(next);
-    }
+    const std::vector<Change> variants = Variants(info, runs);
     changes.insert(changes.end(), variants.begin(), variants.end());
   }
   return changes;
@@ -74,11 +100,10 @@ std::vector<Change> EffectChanges(const model::ModelDescription& given,
 std::vector<size_t> AllowedBase(const model::ModelDescription& given, const std::vector<std::string>& names) {
   std::vector<size_t> allowed;
   for (size_t i = 0; i < model::BaseParameters().size(); ++i) {
-    const std::string& name = model::BaseParameters()[i].info.name;
-    if (!names.empty() && std::find(names.begin(), names.end(), name) == names.end()) continue;
-    if (name == "f" && given.parameters.f == 0 && names.empty())
-      continue;  // the effect pump.pressure_friction
-    allowed.push_back(i);
+    const model::BaseParameter& base = model::BaseParameters()[i];
+    const bool asked = std::find(names.begin(), names.end(), base.info.name) != names.end();
+    const bool otherwise = given.parameters.*base.member != 0 || !IsTermOfAnEffect(base);
+    if (names.empty() ? otherwise : asked) allowed.push_back(i);
   }
   return allowed;
 }

@@ -134,7 +134,7 @@ std::vector<EffectParameter> EffectParameters(const ModelDescription& model) {
     const EffectInfo* info = FindEffect(model.effects[i].id);
     if (info == nullptr) throw ModelError("effect \"" + model.effects[i].id + "\" is not known");
     for (const ParameterInfo& parameter : info->parameters) {
-      if (!parameter.is_name) parameters.push_back({i, parameter.name});
+      if (!parameter.is_name()) parameters.push_back({i, parameter.name});
     }
   }
   return parameters;

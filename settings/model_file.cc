@@ -15,7 +15,7 @@ NumberRange RangeOf(const model::ParameterInfo& info) {
 }
 
 std::string Wanted(const model::ParameterInfo& info) {
-  return RangeOf(info).Says() + " (" + info.unit + ", " + info.says + ")";
+  return RangeOf(info).Says() + " (" + info.unit + ", " + info.meaning + ")";
 }
 
 // c itself, or r and d that give it: c = r^2 d / 2, eqs. (6), (7).
@@ -43,11 +43,11 @@ model::EffectDescription ReadEffect(SectionReader section, const model::EffectIn
   model::EffectDescription effect;
   effect.id = info.id;
   for (const model::ParameterInfo& parameter : info.parameters) {
-    if (parameter.is_name) {
+    if (parameter.is_name()) {
       std::vector<std::pair<std::string, std::string>> choices;
       for (const std::string& name : parameter.names) choices.emplace_back(name, name);
       section.Choice(parameter.name, choices, &effect.names[parameter.name]);
-      section.Require(parameter.name, QuotedList(parameter.names) + " (" + parameter.says + ")");
+      section.Require(parameter.name, QuotedList(parameter.names) + " (" + parameter.meaning + ")");
     } else {
       section.Number(parameter.name, &effect.parameters[parameter.name], RangeOf(parameter));
       section.Require(parameter.name, Wanted(parameter));

@@ -42,7 +42,7 @@ struct MissingTerm {
 };
 
 struct FoundEffect {
-  std::string id, says, equation;
+  std::string id, summary, equation;
   std::vector<Estimated> parameters;
   std::vector<std::string> names;  // "signal = p1"
   std::vector<std::string> tied_with;

@@ -44,6 +44,7 @@ std::vector<FreeParameter> Hypothesis::Free() const {
     const double value = model.parameters.*model::BaseParameters()[i].member;
     FreeParameter parameter{
         {model::Unknown::Kind::kBase, i}, info.name, info.unit, value, info.min, info.max};
+    parameter.role = info.role;
     parameter.logarithmic = !info.min_allowed && value > 0;
     if (parameter.logarithmic) {
       parameter.low = value / kReach;
@@ -63,6 +64,7 @@ std::vector<FreeParameter> Hypothesis::Free() const {
                             value,
                             info.min,
                             info.max};
+    parameter.role = info.role;
     parameter.logarithmic = !info.min_allowed && info.min == 0 && value > 0;
     if (parameter.logarithmic) {
       parameter.low = value / kReach;
@@ -200,7 +202,7 @@ std::vector<Hypothesis> With(const Hypothesis& hypothesis, const Change& change,
   more.model.effects.push_back({change.effect, {}, change.names});
   std::vector<Hypothesis> all = {more};
   for (const model::ParameterInfo& parameter : info.parameters) {
-    if (parameter.is_name) continue;
+    if (parameter.is_name()) continue;
     std::vector<Hypothesis> next;
     for (const Hypothesis& one : all) {
       for (const double start : parameter.starts) {

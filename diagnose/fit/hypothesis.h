@@ -32,6 +32,7 @@ struct FreeParameter {
   double value = 0;
   double low = 0, high = 0;
   bool logarithmic = false;  // positive: fitted as its logarithm
+  model::Role role = model::Role::kSize;
 
   // To what a fit moves, and back.
   double ToFitted(double number) const;

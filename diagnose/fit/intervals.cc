@@ -143,8 +143,8 @@ std::vector<Interval> Intervals(const Fitted& fitted, const std::vector<const Ru
     double half = std::max(white, half_width(by_block(i), static_cast<double>(kBlocksPerRun) * count));
     if (runs.size() > 2) half = std::max(half, half_width(by_run(i), count));
     const FreeParameter& parameter = free[static_cast<size_t>(i)];
-    const double unseen =
-        std::hypot(kIdealised * parameter.value, parameter.unit == "s" ? kInstant * sample : 0);
+    const double unseen = std::hypot(kIdealised * parameter.value,
+                                     parameter.role == model::Role::kTime ? kInstant * sample : 0);
     half = std::hypot(half, 1.96 * std::abs(unseen / parameter.Slope()), 1.96 * by_held(i));
     Interval interval{parameter.Moved(-half), parameter.Moved(half)};
     // A logarithm is positive by itself; its bounds are the fit's, not physics'.

@@ -96,7 +96,7 @@ std::string Interval(const Estimated& estimated) {
 std::string Effects(const Diagnosis& diagnosis) {
   std::string out;
   for (const FoundEffect& effect : diagnosis.effects) {
-    out += "<h3>" + page::EscapeMarkup(effect.id) + ": " + page::TypesetHtml(effect.says) +
+    out += "<h3>" + page::EscapeMarkup(effect.id) + ": " + page::TypesetHtml(effect.summary) +
            "</h3>\n<p class=\"equation\">" + page::TypesetHtml(effect.equation) + "</p>\n";
     std::string rows;
     for (const Estimated& parameter : effect.parameters) {

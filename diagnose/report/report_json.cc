@@ -50,7 +50,7 @@ Json Effects(const Diagnosis& diagnosis) {
           {"value", parameter.value}, {"ci95", Interval(parameter)}, {"unit", parameter.unit}};
     }
     effects.push_back({{"id", effect.id},
-                       {"says", effect.says},
+                       {"says", effect.summary},
                        {"equation", effect.equation},
                        {"parameters", std::move(parameters)},
                        {"names", effect.names},

@@ -20,7 +20,7 @@ std::string EffectText(const FoundEffect& effect) {
   std::vector<std::string> parts;
   for (const Estimated& parameter : effect.parameters) parts.push_back(WithInterval(parameter));
   parts.insert(parts.end(), effect.names.begin(), effect.names.end());
-  std::string text = effect.id + " (" + effect.says + ")";
+  std::string text = effect.id + " (" + effect.summary + ")";
   if (!parts.empty()) text += ": " + Joined(parts);
   if (!effect.tied_with.empty()) text += "; tied with " + Joined(effect.tied_with);
   return text;

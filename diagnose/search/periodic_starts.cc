@@ -9,7 +9,7 @@
 #include "base/parallel.h"
 #include "diagnose/locate/disturbance_smoother.h"
 #include "maths/solve.h"
-#include "model/terms/description.h"
+#include "model/terms/parameter_info.h"
 
 namespace hydro::diagnose {
 
@@ -56,23 +56,23 @@ class Periodogram {
     double explained = 0;  // share of the target's mean square, beyond what the others explain
     double sine = 0, cosine = 0;
   };
-  // `sine`: whether it may have one.
-  Wave At(int periods, bool sine) const {
+  // `sine`, `cosine`: what it may have of either.
+  Wave At(int periods, bool sine, bool cosine) const {
     const MatrixXd all = normal_[static_cast<size_t>(periods - 1)].selfadjointView<Eigen::Lower>();
     const Index last = others_ + 2;
     std::vector<Index> columns;
     for (Index i = 0; i < others_; ++i) columns.push_back(i);
     const double without = Left(all, columns, nullptr);
     if (sine) columns.push_back(others_);
-    columns.push_back(others_ + 1);
+    if (cosine) columns.push_back(others_ + 1);
     VectorXd solution;
     const double with = Left(all, columns, &solution);
     Wave wave;
     wave.periods = periods;
     if (!(all(last, last) > 0)) return wave;
     wave.explained = (without - with) / all(last, last);
-    wave.cosine = solution(solution.size() - 1);
-    if (sine) wave.sine = solution(solution.size() - 2);
+    if (sine) wave.sine = solution(others_);
+    if (cosine) wave.cosine = solution(solution.size() - 1);
     return wave;
   }
 
@@ -95,10 +95,45 @@ class Periodogram {
   std::vector<MatrixXd> normal_;
 };
 
+// A displacement that varies by more than this part of itself is no start for a fit.
+constexpr double kMostOfDisplacement = 0.5;
+
+// An effect that repeats within a turn of the motor, as its parameters' roles tell it.
+struct PeriodicEffect {
+  Change change;
+  const model::ParameterInfo* periods = nullptr;
+  const model::ParameterInfo* amplitude = nullptr;
+  const model::ParameterInfo* phase = nullptr;  // null: it has none
+  bool of_torque = false;                       // else of the displacement
+
+  // Without a phase a torque's wave is a sine, a displacement's a cosine.
+  bool has_sine() const { return phase != nullptr || of_torque; }
+  bool has_cosine() const { return phase != nullptr || !of_torque; }
+};
+
+// Those among `changes`, in their order.
+std::vector<PeriodicEffect> PeriodicAmong(const std::vector<Change>& changes) {
+  std::vector<PeriodicEffect> all;
+  for (const Change& change : changes) {
+    if (change.effect.empty()) continue;
+    PeriodicEffect one{change};
+    for (const model::ParameterInfo& parameter : model::FindEffect(change.effect)->parameters) {
+      if (parameter.role == model::Role::kPeriods) one.periods = &parameter;
+      if (parameter.role == model::Role::kPhase) one.phase = &parameter;
+      if (parameter.role == model::Role::kTorqueWave) one.amplitude = &parameter, one.of_torque = true;
+      if (parameter.role == model::Role::kDisplacementWave) one.amplitude = &parameter;
+    }
+    if (one.periods != nullptr) all.push_back(one);
+  }
+  return all;
+}
+
 // The likeliest, the best first.
-std::vector<Periodogram::Wave> Likeliest(const Periodogram& periodogram, bool sine) {
+std::vector<Periodogram::Wave> Likeliest(const Periodogram& periodogram, const PeriodicEffect& effect) {
   std::vector<Periodogram::Wave> waves;
-  for (int n = 1; n <= kMostPeriods; ++n) waves.push_back(periodogram.At(n, sine));
+  for (int n = 1; n <= kMostPeriods; ++n) {
+    waves.push_back(periodogram.At(n, effect.has_sine(), effect.has_cosine()));
+  }
   std::stable_sort(waves.begin(), waves.end(),
                    [](const auto& a, const auto& b) { return a.explained > b.explained; });
   const double least = std::max(kLeastExplained, kNearlyAsMuch * waves.front().explained);
@@ -107,64 +142,70 @@ std::vector<Periodogram::Wave> Likeliest(const Periodogram& periodogram, bool si
   return waves;
 }
 
-Hypothesis Added(const Hypothesis& hypothesis, const Change& change,
-                 const std::map<std::string, double>& values) {
-  Hypothesis more = hypothesis;
-  more.changes.push_back(change);
-  more.effects.push_back(change.effect);
-  more.model.effects.push_back({change.effect, values, change.names});
+// The hypothesis with the effect, its wave as the torque balance has it: what the torque lacks is
+// -amplitude sin(n theta + phase), and -D dp amplitude cos(n theta + phase) of a displacement's. What other
+// parameters it has are where fits of it start first.
+Hypothesis WithWave(const Hypothesis& hypothesis, const PeriodicEffect& effect, const Periodogram::Wave& wave,
+                    const std::vector<const RunData*>& runs) {
+  Hypothesis more = With(hypothesis, effect.change, SizesOf(hypothesis.model, runs), false).front();
+  std::map<std::string, double>& values = more.model.effects.back().parameters;
+  double amplitude = 0;
+  if (effect.phase != nullptr) {
+    amplitude = std::hypot(wave.sine, wave.cosine);
+    values[effect.phase->name] =
+        effect.of_torque ? std::atan2(-wave.cosine, -wave.sine) : std::atan2(wave.sine, -wave.cosine);
+  } else {
+    amplitude = effect.of_torque ? -wave.sine : -wave.cosine;
+  }
+  if (!effect.of_torque) amplitude = std::clamp(amplitude, -kMostOfDisplacement, kMostOfDisplacement);
+  values[effect.amplitude->name] = std::clamp(amplitude, effect.amplitude->min, effect.amplitude->max);
+  values[effect.periods->name] = wave.periods;
   return more;
+}
+
+// Regressions of what the torque balance of a run lacks, one for each effect; empty where the run cannot be smoothed.
+std::vector<Periodogram> PeriodogramsOf(const Hypothesis& hypothesis,
+                                        const std::vector<PeriodicEffect>& effects, const RunData& data) {
+  // Eq. (4): what the pump's torque lacks, beside a constant, its friction and its displacement.
+  constexpr Index kOthers = 5;
+  std::vector<Periodogram> periodograms(effects.size(), Periodogram(kOthers));
+  SmoothedRun run;
+  try {
+    run = SmoothDisturbances(hypothesis.model, data, {});
+  } catch (const model::ModelError&) {
+    return periodograms;  // another run may do
+  }
+  const double D = hypothesis.model.parameters.D;
+  const Disturbance& torque = run.disturbance[static_cast<size_t>(Balance::kPumpTorque)];
+  for (size_t k = 0; k < torque.value.size(); ++k) {
+    if (!torque.informative[k]) continue;
+    const double speed = run.motor_speed[k], difference = run.p2[k] - run.p1[k];
+    const double sign = speed > 0 ? 1 : -1;
+    const VectorXd others =
+        (VectorXd(kOthers) << 1, sign, speed, sign * (run.p1[k] + run.p2[k]), difference).finished();
+    for (size_t e = 0; e < effects.size(); ++e) {
+      periodograms[e].Add(others, effects[e].of_torque ? 1 : D * difference, run.motor_angle[k],
+                          torque.value[k]);
+    }
+  }
+  return periodograms;
 }
 
 }  // namespace
 
 std::vector<Hypothesis> WithPeriodic(const Hypothesis& hypothesis, const std::vector<Change>& changes,
                                      const std::vector<const RunData*>& runs, int jobs) {
-  const Change cogging = {"motor.cogging", {}, ""}, ripple = {"pump.flow_ripple", {}, ""};
-  const auto asked = [&](const Change& change) {
-    return std::find(changes.begin(), changes.end(), change) != changes.end();
-  };
-  if (!asked(cogging) && !asked(ripple)) return {};
-  // Eq. (4): what the pump's torque lacks, beside a constant, its friction and its displacement.
-  constexpr Index kOthers = 5;
-  const double D = hypothesis.model.parameters.D;
-  std::vector<Periodogram> of_cogging(runs.size(), Periodogram(kOthers)), of_ripple = of_cogging;
-  ParallelFor(runs.size(), jobs, [&](size_t r) {
-    SmoothedRun run;
-    try {
-      run = SmoothDisturbances(hypothesis.model, *runs[r], {});
-    } catch (const model::ModelError&) {
-      return;  // another run may do
-    }
-    const Disturbance& torque = run.disturbance[static_cast<size_t>(Balance::kPumpTorque)];
-    for (size_t k = 0; k < torque.value.size(); ++k) {
-      if (!torque.informative[k]) continue;
-      const double speed = run.motor_speed[k], difference = run.p2[k] - run.p1[k];
-      const double sign = speed > 0 ? 1 : -1;
-      const VectorXd others =
-          (VectorXd(kOthers) << 1, sign, speed, sign * (run.p1[k] + run.p2[k]), difference).finished();
-      if (asked(cogging)) of_cogging[r].Add(others, 1, run.motor_angle[k], torque.value[k]);
-      if (asked(ripple)) of_ripple[r].Add(others, D * difference, run.motor_angle[k], torque.value[k]);
-    }
-  });
-  // In the runs' order, however many threads there were.
-  for (size_t r = 1; r < runs.size(); ++r) {
-    of_cogging[0].Add(of_cogging[r]);
-    of_ripple[0].Add(of_ripple[r]);
-  }
+  const std::vector<PeriodicEffect> effects = PeriodicAmong(changes);
+  if (effects.empty()) return {};
+  std::vector<std::vector<Periodogram>> of_run(runs.size());
+  ParallelFor(runs.size(), jobs,
+              [&](size_t r) { of_run[r] = PeriodogramsOf(hypothesis, effects, *runs[r]); });
   std::vector<Hypothesis> all;
-  if (asked(cogging)) {
-    for (const auto& wave : Likeliest(of_cogging[0], true)) {
-      all.push_back(Added(hypothesis, cogging,
-                          {{"amplitude", std::hypot(wave.sine, wave.cosine)},
-                           {"periods", wave.periods},
-                           {"phase", std::atan2(-wave.cosine, -wave.sine)}}));
-    }
-  }
-  if (asked(ripple)) {
-    for (const auto& wave : Likeliest(of_ripple[0], false)) {
-      all.push_back(Added(hypothesis, ripple,
-                          {{"amplitude", std::clamp(-wave.cosine, -0.5, 0.5)}, {"periods", wave.periods}}));
+  for (size_t e = 0; e < effects.size(); ++e) {
+    // In the runs' order, however many threads there were.
+    for (size_t r = 1; r < runs.size(); ++r) of_run[0][e].Add(of_run[r][e]);
+    for (const Periodogram::Wave& wave : Likeliest(of_run[0][e], effects[e])) {
+      all.push_back(WithWave(hypothesis, effects[e], wave, runs));
     }
   }
   return all;

@@ -49,7 +49,7 @@ FoundEffect Describe(const Change& change, const std::vector<FreeParameter>& fre
   const model::EffectInfo& info = *model::FindEffect(change.effect);
   FoundEffect found;
   found.id = info.id;
-  found.says = info.says;
+  found.summary = info.summary;
   found.equation = info.equation;
   for (const auto& [name, value] : change.names) found.names.push_back(name + " = " + value);
   for (const model::ParameterInfo& parameter : info.parameters) {
@@ -82,7 +82,7 @@ std::string Sentence(const Diagnosis& d) {
                           ShortNumber(d.held_out.after, 3) + " noise units).";
   std::vector<std::string> names;
   for (const FoundEffect& effect : d.effects) {
-    std::string name = effect.says + " [" + effect.id + "]";
+    std::string name = effect.summary + " [" + effect.id + "]";
     if (!effect.tied_with.empty()) name += ", or " + Enumerated(effect.tied_with);
     names.push_back(name);
   }

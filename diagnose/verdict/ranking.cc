@@ -17,7 +17,7 @@ size_t OwnNumbers(const Change& change) {
   if (change.effect.empty()) return 1;
   size_t numbers = 0;
   for (const model::ParameterInfo& parameter : model::FindEffect(change.effect)->parameters)
-    numbers += parameter.is_name ? 0 : 1;
+    numbers += parameter.is_name() ? 0 : 1;
   return numbers;
 }
 

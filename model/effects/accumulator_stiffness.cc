@@ -44,16 +44,17 @@ class Accumulator : public EffectOf<Accumulator> {
   }
 };
 
-}  // namespace
+[[maybe_unused]] const bool kAdded =
+    AddToCatalogue({.info = {.id = "accumulator.stiffness",
+                             .summary = "the accumulator's pressure rises with what is returned to it",
+                             .equation = "p3 rises by stiffness per volume returned to the accumulator",
+                             .confused_with = "parameter p3",
+                             .parameters = {{.name = "stiffness",
+                                             .unit = "psi/in^3",
+                                             .meaning = "pressure per volume",
+                                             .example = 3000}}},
+                    .make = MakeEffect<Accumulator>});
 
-CatalogueEntry AccumulatorStiffness();
-CatalogueEntry AccumulatorStiffness() {
-  return {{"accumulator.stiffness",
-           "the accumulator's pressure rises with what is returned to it",
-           "p3 rises by stiffness per volume returned to the accumulator",
-           "parameter p3",
-           {{"stiffness", "psi/in^3", 0, kUnbounded, true, "pressure per volume"}}},
-          MakeEffect<Accumulator>};
-}
+}  // namespace
 
 }  // namespace hydro::model

@@ -68,17 +68,21 @@ class SealFriction : public EffectOf<SealFriction> {
   }
 };
 
-}  // namespace
+[[maybe_unused]] const bool kAdded =
+    AddToCatalogue({.info = {.id = "actuator.seal_friction",
+                             .summary = "friction of the actuator's seals and the arm's bearing",
+                             .equation = "arm torque - coulomb sgn(alpha') - viscous alpha'",
+                             .confused_with = "parameter m g l on one-way motion",
+                             .parameters = {{.name = "coulomb",
+                                             .unit = "in-lbf",
+                                             .meaning = "Coulomb friction on the arm",
+                                             .example = 100},
+                                            {.name = "viscous",
+                                             .unit = "in-lbf-s",
+                                             .meaning = "viscous friction on the arm",
+                                             .example = 50}}},
+                    .make = MakeEffect<SealFriction>});
 
-CatalogueEntry ActuatorSealFriction();
-CatalogueEntry ActuatorSealFriction() {
-  return {{"actuator.seal_friction",
-           "friction of the actuator's seals and the arm's bearing",
-           "arm torque - coulomb sgn(alpha') - viscous alpha'",
-           "parameter m g l on one-way motion",
-           {{"coulomb", "in-lbf", 0, kUnbounded, true, "Coulomb friction on the arm"},
-            {"viscous", "in-lbf-s", 0, kUnbounded, true, "viscous friction on the arm"}}},
-          MakeEffect<SealFriction>};
-}
+}  // namespace
 
 }  // namespace hydro::model

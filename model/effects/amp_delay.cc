@@ -57,27 +57,22 @@ class Delay : public EffectOf<Delay> {
   size_t first_ = 0;
 };
 
-}  // namespace
+[[maybe_unused]] const bool kAdded =
+    AddToCatalogue({.info = {.id = "amp.delay",
+                             .summary = "the motor torque follows the voltage with a delay",
+                             .equation = "T(t) = k_1 v(t - delay)",
+                             .confused_with = "amp.lag, sensor.skew",
+                             .parameters = {{.name = "delay",
+                                             .unit = "s",
+                                             .meaning = "from a change of the voltage to that of the torque",
+                                             .starts = {2},
+                                             .scale = Scale::kSample,
+                                             .role = Role::kTime,
+                                             .example = 0.002}}},
+                    .make = [](const EffectDescription& description) -> std::unique_ptr<Effect> {
+                      return std::make_unique<Delay>(description.parameters.at("delay"));
+                    }});
 
-CatalogueEntry AmpDelay();
-CatalogueEntry AmpDelay() {
-  return {{"amp.delay",
-           "the motor torque follows the voltage with a delay",
-           "T(t) = k_1 v(t - delay)",
-           "amp.lag, sensor.skew",
-           {{"delay",
-             "s",
-             0,
-             kUnbounded,
-             true,
-             "from a change of the voltage to that of the torque",
-             false,
-             {},
-             {2},
-             Scale::kSample}}},
-          [](const EffectDescription& description) -> std::unique_ptr<Effect> {
-            return std::make_unique<Delay>(description.parameters.at("delay"));
-          }};
-}
+}  // namespace
 
 }  // namespace hydro::model

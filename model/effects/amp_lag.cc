@@ -42,16 +42,21 @@ class Lag : public EffectOf<Lag> {
   }
 };
 
-}  // namespace
+[[maybe_unused]] const bool kAdded =
+    AddToCatalogue({.info = {.id = "amp.lag",
+                             .summary = "the motor torque follows the voltage with a time constant",
+                             .equation = "tau dT/dt + T = k_1 v",
+                             .confused_with = "amp.delay, sensor.pressure_lag",
+                             .parameters = {{.name = "tau",
+                                             .unit = "s",
+                                             .min_allowed = false,
+                                             .meaning = "time constant",
+                                             .starts = {2},
+                                             .scale = Scale::kSample,
+                                             .role = Role::kTime,
+                                             .example = 0.002}}},
+                    .make = MakeEffect<Lag>});
 
-CatalogueEntry AmpLag();
-CatalogueEntry AmpLag() {
-  return {{"amp.lag",
-           "the motor torque follows the voltage with a time constant",
-           "tau dT/dt + T = k_1 v",
-           "amp.delay, sensor.pressure_lag",
-           {{"tau", "s", 0, kUnbounded, false, "time constant", false, {}, {2}, Scale::kSample}}},
-          MakeEffect<Lag>};
-}
+}  // namespace
 
 }  // namespace hydro::model

@@ -47,35 +47,27 @@ class Flexure : public EffectOf<Flexure> {
   }
 };
 
-}  // namespace
+[[maybe_unused]] const bool kAdded =
+    AddToCatalogue({.info = {.id = "arm.flexure",
+                             .summary = "the arm gives between actuator and load",
+                             .equation = "a spring and damper between actuator and arm",
+                             .confused_with = "line.wave, parameter J_a",
+                             .parameters = {{.name = "stiffness",
+                                             .unit = "in-lbf/rad",
+                                             .min_allowed = false,
+                                             .meaning = "torque per twist",
+                                             .starts = {0.001, 0.005, 0.03},
+                                             .scale = Scale::kArmStiffness,
+                                             .example = 6000},
+                                            {.name = "damping",
+                                             .unit = "in-lbf-s",
+                                             .min_allowed = false,
+                                             .meaning = "torque per rate of twist",
+                                             .starts = {0.01},
+                                             .scale = Scale::kArmDamping,
+                                             .example = 60}}},
+                    .make = MakeEffect<Flexure>});
 
-CatalogueEntry ArmFlexure();
-CatalogueEntry ArmFlexure() {
-  return {{"arm.flexure",
-           "the arm gives between actuator and load",
-           "a spring and damper between actuator and arm",
-           "line.wave, parameter J_a",
-           {{"stiffness",
-             "in-lbf/rad",
-             0,
-             kUnbounded,
-             false,
-             "torque per twist",
-             false,
-             {},
-             {0.001, 0.005, 0.03},
-             Scale::kArmStiffness},
-            {"damping",
-             "in-lbf-s",
-             0,
-             kUnbounded,
-             false,
-             "torque per rate of twist",
-             false,
-             {},
-             {0.01},
-             Scale::kArmDamping}}},
-          MakeEffect<Flexure>};
-}
+}  // namespace
 
 }  // namespace hydro::model

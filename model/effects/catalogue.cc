@@ -1,51 +1,50 @@
-// The effects that this program knows. A new effect is a file beside this one and its name in the two lists,
-// or a file anywhere that calls AddToCatalogue.
+#include "model/effects/catalogue.h"
+
 #include <algorithm>
 #include <atomic>
 #include <stdexcept>
 #include <utility>
 
-#include "model/effects/effect.h"
-#include "model/terms/parameter_info.h"
-
 namespace hydro::model {
-
-CatalogueEntry AccumulatorStiffness();
-CatalogueEntry ActuatorSealFriction();
-CatalogueEntry AmpDelay();
-CatalogueEntry AmpLag();
-CatalogueEntry ArmFlexure();
-CatalogueEntry FluidEntrainedAir();
-CatalogueEntry FluidStiffening();
-CatalogueEntry FluidWarming();
-CatalogueEntry LineWave();
-CatalogueEntry MotorCogging();
-CatalogueEntry MotorSpeedTorqueLimit();
-CatalogueEntry PumpFlowRipple();
-CatalogueEntry PumpFrictionAsymmetry();
-CatalogueEntry PumpPressureFriction();
-CatalogueEntry PumpQuadraticDrag();
-CatalogueEntry PumpStribeck();
-CatalogueEntry PumpTurbulentLeakage();
-CatalogueEntry SensorPressureGain();
-CatalogueEntry SensorPressureLag();
-CatalogueEntry SensorPressureOffset();
-CatalogueEntry SensorSign();
-CatalogueEntry SensorSkew();
-CatalogueEntry ValveCheck();
-CatalogueEntry ValveRelief();
-
-const std::vector<double>& PeriodsTried() {
-  static const std::vector<double> periods = {1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 16, 18, 20, 24};
-  return periods;
-}
 
 namespace {
 
-struct Catalogue {
-  std::vector<CatalogueEntry> entries;
-  std::vector<EffectInfo> infos;  // ordered by id
-};
+int Count(const EffectInfo& info, Role role) {
+  return static_cast<int>(
+      std::count_if(info.parameters.begin(), info.parameters.end(),
+                    [&](const ParameterInfo& parameter) { return parameter.role == role; }));
+}
+
+// "" or what is wrong with a parameter by itself.
+std::string Fault(const ParameterInfo& parameter) {
+  if (parameter.name.empty() || parameter.unit.empty() || parameter.meaning.empty()) {
+    return "needs a name, a unit (\"1\" where it has none) and a meaning";
+  }
+  if (parameter.role == Role::kChannel && !parameter.is_name()) return "has Role::kChannel but no names";
+  if (!(parameter.min < parameter.max)) return "has a min that is not below its max";
+  if (parameter.starts.empty()) return "has no starts";
+  return "";
+}
+
+std::string Fault(const CatalogueEntry& entry) {
+  const EffectInfo& info = entry.info;
+  if (info.id.empty() || info.summary.empty() || info.equation.empty()) {
+    return "needs an id, a summary and an equation";
+  }
+  if (entry.make == nullptr) return "has nothing that makes it (MakeEffect)";
+  for (const ParameterInfo& parameter : info.parameters) {
+    const std::string fault = Fault(parameter);
+    if (!fault.empty()) return "parameter \"" + parameter.name + "\" " + fault;
+  }
+  const int waves = Count(info, Role::kTorqueWave) + Count(info, Role::kDisplacementWave);
+  const int periods = Count(info, Role::kPeriods), phases = Count(info, Role::kPhase);
+  if (waves != periods || periods > 1 || phases > periods) {
+    return "needs one parameter with Role::kPeriods, one with Role::kTorqueWave or Role::kDisplacementWave, "
+           "and "
+           "at most one with Role::kPhase, or none of these";
+  }
+  return "";
+}
 
 std::vector<CatalogueEntry>& Added() {
   static std::vector<CatalogueEntry> added;
@@ -53,72 +52,60 @@ std::vector<CatalogueEntry>& Added() {
 }
 std::atomic<bool> catalogue_is_used = false;
 
-// Put together at its first use, and never changed after: references into it stay.
+// Put together when it is first used, and never changed after: references into it stay valid.
 const Catalogue& TheCatalogue() {
   static const Catalogue catalogue = [] {
     catalogue_is_used = true;
-    Catalogue all;
-    all.entries = {
-        AccumulatorStiffness(),
-        ActuatorSealFriction(),
-        AmpDelay(),
-        AmpLag(),
-        ArmFlexure(),
-        FluidEntrainedAir(),
-        FluidStiffening(),
-        FluidWarming(),
-        LineWave(),
-        MotorCogging(),
-        MotorSpeedTorqueLimit(),
-        PumpFlowRipple(),
-        PumpFrictionAsymmetry(),
-        PumpPressureFriction(),
-        PumpQuadraticDrag(),
-        PumpStribeck(),
-        PumpTurbulentLeakage(),
-        SensorPressureGain(),
-        SensorPressureLag(),
-        SensorPressureOffset(),
-        SensorSign(),
-        SensorSkew(),
-        ValveCheck(),
-        ValveRelief(),
-    };
-    all.entries.insert(all.entries.end(), Added().begin(), Added().end());
-    for (const CatalogueEntry& entry : all.entries) all.infos.push_back(entry.info);
-    std::sort(all.infos.begin(), all.infos.end(), [](const auto& a, const auto& b) { return a.id < b.id; });
-    const auto twice = std::adjacent_find(all.infos.begin(), all.infos.end(),
-                                          [](const auto& a, const auto& b) { return a.id == b.id; });
-    if (twice != all.infos.end()) throw std::logic_error("effect \"" + twice->id + "\" is there twice");
-    return all;
+    return Catalogue(Added());
   }();
   return catalogue;
 }
 
 }  // namespace
 
-bool AddToCatalogue(CatalogueEntry entry) {
-  if (catalogue_is_used) {
-    throw std::logic_error("effect \"" + entry.info.id + "\" is added after the catalogue was used");
+Catalogue::Catalogue(std::vector<CatalogueEntry> entries) : entries_(std::move(entries)) {
+  std::sort(entries_.begin(), entries_.end(),
+            [](const auto& a, const auto& b) { return a.info.id < b.info.id; });
+  for (const CatalogueEntry& entry : entries_) {
+    const std::string fault = Fault(entry);
+    if (!fault.empty()) throw std::logic_error("effect \"" + entry.info.id + "\" " + fault);
+    if (!infos_.empty() && infos_.back().id == entry.info.id) {
+      throw std::logic_error("effect \"" + entry.info.id +
+                             "\" was added twice: give one of the two another id");
+    }
+    infos_.push_back(entry.info);
   }
-  Added().push_back(std::move(entry));
-  return true;
 }
 
-const CatalogueEntry* FindCatalogueEntry(const std::string& id) {
-  for (const CatalogueEntry& entry : TheCatalogue().entries) {
+const CatalogueEntry* Catalogue::Find(const std::string& id) const {
+  for (const CatalogueEntry& entry : entries_) {
     if (entry.info.id == id) return &entry;
   }
   return nullptr;
 }
 
-const std::vector<EffectInfo>& EffectCatalogue() { return TheCatalogue().infos; }
+bool AddToCatalogue(CatalogueEntry entry) {
+  if (catalogue_is_used) {
+    throw std::logic_error("effect \"" + entry.info.id + "\" was added after the catalogue was first used");
+  }
+  Added().push_back(std::move(entry));
+  return true;
+}
+
+const CatalogueEntry* FindCatalogueEntry(const std::string& id) { return TheCatalogue().Find(id); }
+
+const std::vector<EffectInfo>& EffectCatalogue() { return TheCatalogue().infos(); }
 
 const EffectInfo* FindEffect(const std::string& id) {
   for (const EffectInfo& info : EffectCatalogue()) {
     if (info.id == id) return &info;
   }
   return nullptr;
+}
+
+const std::vector<double>& PeriodsTried() {
+  static const std::vector<double> periods = {1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 16, 18, 20, 24};
+  return periods;
 }
 
 }  // namespace hydro::model

@@ -1,5 +1,5 @@
-// How a physical effect plugs into the equations. One effect is one file in model/effects/: a small class
-// with its equation as templates on the scalar, its catalogue entry, and one row in docs/effects.md.
+// How a physical effect plugs into the equations. One effect is one file in model/effects/: a small class with its
+// equation as templates on the scalar, and its entry in the catalogue. Nothing else lists it.
 //
 // The right-hand side is evaluated in this order:
 //   properties from the base parameters  -> SetProperties       of each effect
@@ -11,7 +11,6 @@
 // Effects are applied in the order of their ids, so a model does not depend on the order of its file.
 #pragma once
 
-#include <limits>
 #include <memory>
 #include <string>
 #include <vector>
@@ -24,11 +23,7 @@
 
 namespace hydro::model {
 
-// The bound of a parameter that has none.
-inline constexpr double kUnbounded = std::numeric_limits<double>::infinity();
-
-// Periods in a revolution that fits of ripples start from: those of small numbers of poles, teeth, pistons
-// and vanes.
+// Periods in a revolution from which fits of ripples start: those of small numbers of poles, teeth, pistons and vanes.
 const std::vector<double>& PeriodsTried();
 
 class Effect {
@@ -240,19 +235,18 @@ std::unique_ptr<Effect> MakeEffect(const EffectDescription& /*description*/) {
   return std::make_unique<E>();
 }
 
-// A row of the catalogue: what is known of the effect, and how to build it from its description (checked
-// already).
+// A row of the catalogue: what is known of the effect, and how to build it from its description, which has been checked.
 struct CatalogueEntry {
   EffectInfo info;
-  std::unique_ptr<Effect> (*make)(const EffectDescription& description);
+  std::unique_ptr<Effect> (*make)(const EffectDescription& description) = nullptr;
 };
 
-// Makes an effect of the user's own as good as those of the catalogue: models can have it, and the gap finder
-// looks for it. To be called before the catalogue is first used, by one thread; at namespace scope of the
-// effect's file, which is what the result is for:
-//   const bool kAdded = AddToCatalogue({{"arm.spring", ...}, MakeEffect<Spring>});
-// Returns true. Throws std::logic_error when the catalogue has been used already; an id that is there twice
-// is found at the first use.
+// Adds an effect to the catalogue: models can have it, and the gap finder looks for it. Called once in the effect's
+// file, at namespace scope, which is what the result is for:
+//   [[maybe_unused]] const bool kAdded =
+//       AddToCatalogue({.info = {.id = "arm.spring", ...}, .make = MakeEffect<Spring>});
+// The order in which files are linked or initialised makes no difference. Returns true. Throws std::logic_error when
+// the catalogue has been used already; an id that is there twice is found at the first use (Catalogue).
 bool AddToCatalogue(CatalogueEntry entry);
 
 }  // namespace hydro::model

@@ -46,26 +46,23 @@ class EntrainedAir : public EffectOf<EntrainedAir> {
   }
 };
 
-}  // namespace
+[[maybe_unused]] const bool kAdded = AddToCatalogue(
+    {.info =
+         {.id = "fluid.entrained_air",
+          .summary = "air bubbles make the fluid soft at low pressure",
+          .equation = "1/beta_eff = 1/beta + compressibility of air that is `air_fraction` of the volume at "
+                      "atmospheric "
+                      "pressure, compressed polytropically",
+          .confused_with = "parameter beta, fluid.stiffening",
+          // The less air there is, the more a little of it does: a fit that starts from none does not find 1 part in 500.
+          .parameters = {{.name = "air_fraction",
+                          .unit = "1",
+                          .max = 1,
+                          .meaning = "volume of the air at atmospheric pressure over the fluid's",
+                          .starts = {0, 5e-4, 5e-3},
+                          .example = 0.02}}},
+     .make = MakeEffect<EntrainedAir>});
 
-CatalogueEntry FluidEntrainedAir();
-CatalogueEntry FluidEntrainedAir() {
-  return {{"fluid.entrained_air",
-           "air bubbles make the fluid soft at low pressure",
-           "1/beta_eff = 1/beta + compressibility of air that is `air_fraction` of the volume at atmospheric "
-           "pressure, compressed polytropically",
-           "parameter beta, fluid.stiffening",
-           // The less air there is the more a little of it does: from none, 1 part in 500 is not found.
-           {{"air_fraction",
-             "1",
-             0,
-             1,
-             true,
-             "volume of the air at atmospheric pressure over the fluid's",
-             false,
-             {},
-             {0, 5e-4, 5e-3}}}},
-          MakeEffect<EntrainedAir>};
-}
+}  // namespace
 
 }  // namespace hydro::model

@@ -15,16 +15,15 @@ class Stiffening : public EffectOf<Stiffening> {
   }
 };
 
-}  // namespace
+[[maybe_unused]] const bool kAdded = AddToCatalogue(
+    {.info = {.id = "fluid.stiffening",
+              .summary = "the bulk modulus grows with pressure",
+              .equation = "beta + slope p",
+              .confused_with = "fluid.entrained_air",
+              .parameters =
+                  {{.name = "slope", .unit = "1", .meaning = "bulk modulus per pressure", .example = 20}}},
+     .make = MakeEffect<Stiffening>});
 
-CatalogueEntry FluidStiffening();
-CatalogueEntry FluidStiffening() {
-  return {{"fluid.stiffening",
-           "the bulk modulus grows with pressure",
-           "beta + slope p",
-           "fluid.entrained_air",
-           {{"slope", "1", 0, kUnbounded, true, "bulk modulus per pressure"}}},
-          MakeEffect<Stiffening>};
-}
+}  // namespace
 
 }  // namespace hydro::model

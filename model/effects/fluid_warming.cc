@@ -21,16 +21,20 @@ class Warming : public EffectOf<Warming> {
   }
 };
 
-}  // namespace
+[[maybe_unused]] const bool kAdded = AddToCatalogue(
+    {.info =
+         {.id = "fluid.warming",
+          .summary = "viscous friction and leakage drift as the oil warms",
+          .equation =
+              "viscous friction and leakage drift as the oil warms: b exp(-rate t), c_E and c_I exp(+rate t)",
+          .confused_with = "parameter b",
+          .parameters = {{.name = "rate",
+                          .unit = "1/s",
+                          .min = -kUnbounded,
+                          .meaning = "relative change per second",
+                          .example = 2}}},
+     .make = MakeEffect<Warming>});
 
-CatalogueEntry FluidWarming();
-CatalogueEntry FluidWarming() {
-  return {{"fluid.warming",
-           "viscous friction and leakage drift as the oil warms",
-           "viscous friction and leakage drift as the oil warms: b exp(-rate t), c_E and c_I exp(+rate t)",
-           "parameter b",
-           {{"rate", "1/s", -kUnbounded, kUnbounded, true, "relative change per second"}}},
-          MakeEffect<Warming>};
-}
+}  // namespace
 
 }  // namespace hydro::model

@@ -81,30 +81,34 @@ class Wave : public EffectOf<Wave> {
   };
 };
 
-}  // namespace
+[[maybe_unused]] const bool kAdded = AddToCatalogue(
+    {.info = {.id = "line.wave",
+              .summary = "pressure waves in the lines between pump and actuator",
+              .equation = "a line with inertia between the pump's and the actuator's volume on each side; "
+                          "the transducers sit at the actuator",
+              .confused_with = "sensor.pressure_lag, pump.flow_ripple",
+              .parameters = {{.name = "frequency",
+                              .unit = "Hz",
+                              .min_allowed = false,
+                              .meaning = "resonance of the two volumes of one side through the line",
+                              .starts = {0.04, 0.1, 0.25},
+                              .scale = Scale::kRate,
+                              .role = Role::kFrequency,
+                              .example = 300},
+                             {.name = "volume_fraction",
+                              .unit = "1",
+                              .max = 0.999,
+                              .min_allowed = false,
+                              .meaning = "part of V_ms that is at the pump",
+                              .starts = {0.1, 0.35},
+                              .example = 0.2},
+                             {.name = "damping",
+                              .unit = "1",
+                              .meaning = "damping ratio of the resonance",
+                              .starts = {0.03},
+                              .example = 0.05}}},
+     .make = MakeEffect<Wave>});
 
-CatalogueEntry LineWave();
-CatalogueEntry LineWave() {
-  return {
-      {"line.wave",
-       "pressure waves in the lines between pump and actuator",
-       "a line with inertia between the pump's and the actuator's volume on each side; the transducers "
-       "sit at the "
-       "actuator",
-       "sensor.pressure_lag, pump.flow_ripple",
-       {{"frequency",
-         "Hz",
-         0,
-         kUnbounded,
-         false,
-         "resonance of the two volumes of one side through the line",
-         false,
-         {},
-         {0.04, 0.1, 0.25},
-         Scale::kRate},
-        {"volume_fraction", "1", 0, 0.999, false, "part of V_ms that is at the pump", false, {}, {0.1, 0.35}},
-        {"damping", "1", 0, kUnbounded, true, "damping ratio of the resonance", false, {}, {0.03}}}},
-      MakeEffect<Wave>};
-}
+}  // namespace
 
 }  // namespace hydro::model

@@ -31,28 +31,33 @@ class Cogging : public EffectOf<Cogging> {
   }
 };
 
-}  // namespace
+[[maybe_unused]] const bool kAdded =
+    AddToCatalogue({.info = {.id = "motor.cogging",
+                             .summary = "the motor's magnets pull towards fixed angles",
+                             .equation = "T -= amplitude sin(periods theta + phase)",
+                             .confused_with = "pump.flow_ripple",
+                             .parameters = {{.name = "amplitude",
+                                             .unit = "in-lbf",
+                                             .min = -kUnbounded,
+                                             .meaning = "largest cogging torque; negative: half a period on",
+                                             .role = Role::kTorqueWave,
+                                             .example = 2},
+                                            {.name = "periods",
+                                             .unit = "1/rev",
+                                             .min_allowed = false,
+                                             .meaning = "periods in one revolution",
+                                             .starts = PeriodsTried(),
+                                             .role = Role::kPeriods,
+                                             .example = 12},
+                                            {.name = "phase",
+                                             .unit = "rad",
+                                             .min = -kUnbounded,
+                                             .meaning = "phase at theta = 0",
+                                             .starts = {0, std::numbers::pi / 2},
+                                             .role = Role::kPhase,
+                                             .example = 0.4}}},
+                    .make = MakeEffect<Cogging>});
 
-CatalogueEntry MotorCogging();
-CatalogueEntry MotorCogging() {
-  return {
-      {"motor.cogging",
-       "the motor's magnets pull towards fixed angles",
-       "T -= amplitude sin(periods theta + phase)",
-       "pump.flow_ripple",
-       {{"amplitude", "in-lbf", -kUnbounded, kUnbounded, true,
-         "largest cogging torque; negative: half a period on"},
-        {"periods", "1/rev", 0, kUnbounded, false, "periods in one revolution", false, {}, PeriodsTried()},
-        {"phase",
-         "rad",
-         -kUnbounded,
-         kUnbounded,
-         true,
-         "phase at theta = 0",
-         false,
-         {},
-         {0, std::numbers::pi / 2}}}},
-      MakeEffect<Cogging>};
-}
+}  // namespace
 
 }  // namespace hydro::model

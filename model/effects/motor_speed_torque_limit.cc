@@ -76,25 +76,20 @@ class SpeedTorqueLimit : public EffectOf<SpeedTorqueLimit> {
   }
 };
 
-}  // namespace
+[[maybe_unused]] const bool kAdded =
+    AddToCatalogue({.info = {.id = "motor.speed_torque_limit",
+                             .summary = "the motor's largest torque falls with speed",
+                             .equation = "abs(T) <= T_max (1 - abs(theta')/no_load_speed) while driving",
+                             .confused_with = "pump.quadratic_drag",
+                             .parameters = {{.name = "no_load_speed",
+                                             .unit = "rad/s",
+                                             .min_allowed = false,
+                                             .meaning = "speed at which no torque is left",
+                                             .starts = {1.1, 1.6, 3, 30},
+                                             .scale = Scale::kSpeed,
+                                             .example = 300}}},
+                    .make = MakeEffect<SpeedTorqueLimit>});
 
-CatalogueEntry MotorSpeedTorqueLimit();
-CatalogueEntry MotorSpeedTorqueLimit() {
-  return {{"motor.speed_torque_limit",
-           "the motor's largest torque falls with speed",
-           "abs(T) <= T_max (1 - abs(theta')/no_load_speed) while driving",
-           "pump.quadratic_drag",
-           {{"no_load_speed",
-             "rad/s",
-             0,
-             kUnbounded,
-             false,
-             "speed at which no torque is left",
-             false,
-             {},
-             {1.1, 1.6, 3, 30},
-             Scale::kSpeed}}},
-          MakeEffect<SpeedTorqueLimit>};
-}
+}  // namespace
 
 }  // namespace hydro::model

@@ -18,18 +18,27 @@ class FlowRipple : public EffectOf<FlowRipple> {
   }
 };
 
-}  // namespace
+[[maybe_unused]] const bool kAdded = AddToCatalogue(
+    {.info = {.id = "pump.flow_ripple",
+              .summary = "the pump's displacement varies over a revolution",
+              .equation = "D (1 + amplitude cos(periods theta)) in flow and torque",
+              .confused_with = "motor.cogging, line.wave",
+              .parameters = {{.name = "amplitude",
+                              .unit = "1",
+                              .min = -1,
+                              .max = 1,
+                              .meaning = "largest change of D over D; negative: least D at theta = 0",
+                              .role = Role::kDisplacementWave,
+                              .example = 0.1},
+                             {.name = "periods",
+                              .unit = "1/rev",
+                              .min_allowed = false,
+                              .meaning = "periods in one revolution",
+                              .starts = PeriodsTried(),
+                              .role = Role::kPeriods,
+                              .example = 9}}},
+     .make = MakeEffect<FlowRipple>});
 
-CatalogueEntry PumpFlowRipple();
-CatalogueEntry PumpFlowRipple() {
-  return {
-      {"pump.flow_ripple",
-       "the pump's displacement varies over a revolution",
-       "D (1 + amplitude cos(periods theta)) in flow and torque",
-       "motor.cogging, line.wave",
-       {{"amplitude", "1", -1, 1, true, "largest change of D over D; negative: least D at theta = 0"},
-        {"periods", "1/rev", 0, kUnbounded, false, "periods in one revolution", false, {}, PeriodsTried()}}},
-      MakeEffect<FlowRipple>};
-}
+}  // namespace
 
 }  // namespace hydro::model

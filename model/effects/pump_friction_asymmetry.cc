@@ -16,18 +16,23 @@ class FrictionAsymmetry : public EffectOf<FrictionAsymmetry> {
   }
 };
 
-}  // namespace
+[[maybe_unused]] const bool kAdded =
+    AddToCatalogue({.info = {.id = "pump.friction_asymmetry",
+                             .summary = "friction of the pump differs between the directions",
+                             .equation = "T_s -> T_s +/- coulomb, b -> b +/- viscous for theta' > 0 / < 0",
+                             .confused_with = "a torque offset, pump.quadratic_drag",
+                             .parameters = {{.name = "coulomb",
+                                             .unit = "in-lbf",
+                                             .min = -kUnbounded,
+                                             .meaning = "half the difference of Coulomb friction",
+                                             .example = 1},
+                                            {.name = "viscous",
+                                             .unit = "in-lbf-s",
+                                             .min = -kUnbounded,
+                                             .meaning = "half the difference of viscous friction",
+                                             .example = 0.01}}},
+                    .make = MakeEffect<FrictionAsymmetry>});
 
-CatalogueEntry PumpFrictionAsymmetry();
-CatalogueEntry PumpFrictionAsymmetry() {
-  return {
-      {"pump.friction_asymmetry",
-       "friction of the pump differs between the directions",
-       "T_s -> T_s +/- coulomb, b -> b +/- viscous for theta' > 0 / < 0",
-       "a torque offset, pump.quadratic_drag",
-       {{"coulomb", "in-lbf", -kUnbounded, kUnbounded, true, "half the difference of Coulomb friction"},
-        {"viscous", "in-lbf-s", -kUnbounded, kUnbounded, true, "half the difference of viscous friction"}}},
-      MakeEffect<FrictionAsymmetry>};
-}
+}  // namespace
 
 }  // namespace hydro::model

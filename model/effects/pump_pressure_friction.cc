@@ -15,17 +15,18 @@ class PressureFriction : public EffectOf<PressureFriction> {
   }
 };
 
-}  // namespace
+[[maybe_unused]] const bool kAdded = AddToCatalogue(
+    {.info = {.id = "pump.pressure_friction",
+              .summary = "friction of the pump grows with the pressures",
+              .equation = "+ f (p1 + p2) sgn(theta')",
+              .confused_with = "parameter k_1 or D when only one quadrant is run",
+              .parameters = {{.name = "f",
+                              .unit = "in-lbf/psi",
+                              .meaning = "Coulomb friction per pressure, added to the base parameter f",
+                              .adds_to = &Parameters::f,
+                              .example = 0.001}}},
+     .make = MakeEffect<PressureFriction>});
 
-CatalogueEntry PumpPressureFriction();
-CatalogueEntry PumpPressureFriction() {
-  return {{"pump.pressure_friction",
-           "friction of the pump grows with the pressures",
-           "+ f (p1 + p2) sgn(theta')",
-           "parameter k_1 or D when only one quadrant is run",
-           {{"f", "in-lbf/psi", 0, kUnbounded, true,
-             "Coulomb friction per pressure, added to the base parameter f"}}},
-          MakeEffect<PressureFriction>};
-}
+}  // namespace
 
 }  // namespace hydro::model

@@ -15,16 +15,17 @@ class QuadraticDrag : public EffectOf<QuadraticDrag> {
   }
 };
 
-}  // namespace
+[[maybe_unused]] const bool kAdded =
+    AddToCatalogue({.info = {.id = "pump.quadratic_drag",
+                             .summary = "drag of the pump grows with the square of its speed",
+                             .equation = "+ k theta' abs(theta')",
+                             .confused_with = "parameter b",
+                             .parameters = {{.name = "k",
+                                             .unit = "in-lbf-s^2",
+                                             .meaning = "drag per squared speed",
+                                             .example = 0.001}}},
+                    .make = MakeEffect<QuadraticDrag>});
 
-CatalogueEntry PumpQuadraticDrag();
-CatalogueEntry PumpQuadraticDrag() {
-  return {{"pump.quadratic_drag",
-           "drag of the pump grows with the square of its speed",
-           "+ k theta' abs(theta')",
-           "parameter b",
-           {{"k", "in-lbf-s^2", 0, kUnbounded, true, "drag per squared speed"}}},
-          MakeEffect<QuadraticDrag>};
-}
+}  // namespace
 
 }  // namespace hydro::model

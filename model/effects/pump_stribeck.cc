@@ -23,27 +23,25 @@ class Stribeck : public EffectOf<Stribeck> {
   }
 };
 
-}  // namespace
+[[maybe_unused]] const bool kAdded =
+    AddToCatalogue({.info = {.id = "pump.stribeck",
+                             .summary = "static friction above kinetic",
+                             .equation = "T_s becomes T_s (1 + static_excess exp(-(abs(theta')/speed)^2)), "
+                                         "T_s (1 + static_excess) at rest",
+                             .confused_with = "pump.friction_asymmetry",
+                             .parameters = {{.name = "static_excess",
+                                             .unit = "1",
+                                             .meaning = "static friction over kinetic, less 1",
+                                             .example = 0.5},
+                                            {.name = "speed",
+                                             .unit = "rad/s",
+                                             .min_allowed = false,
+                                             .meaning = "motor speed over which the excess falls off",
+                                             .starts = {0.005, 0.03, 0.15},
+                                             .scale = Scale::kSpeed,
+                                             .example = 3}}},
+                    .make = MakeEffect<Stribeck>});
 
-CatalogueEntry PumpStribeck();
-CatalogueEntry PumpStribeck() {
-  return {
-      {"pump.stribeck",
-       "static friction above kinetic",
-       "T_s becomes T_s (1 + static_excess exp(-(abs(theta')/speed)^2)), T_s (1 + static_excess) at rest",
-       "pump.friction_asymmetry",
-       {{"static_excess", "1", 0, kUnbounded, true, "static friction over kinetic, less 1", false, {}, {0}},
-        {"speed",
-         "rad/s",
-         0,
-         kUnbounded,
-         false,
-         "motor speed over which the excess falls off",
-         false,
-         {},
-         {0.005, 0.03, 0.15},
-         Scale::kSpeed}}},
-      MakeEffect<Stribeck>};
-}
+}  // namespace
 
 }  // namespace hydro::model

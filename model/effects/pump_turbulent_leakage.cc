@@ -25,16 +25,15 @@ class TurbulentLeakage : public EffectOf<TurbulentLeakage> {
   static constexpr double kLaminarPart = 2e-4;  // of T_pmax/D
 };
 
-}  // namespace
+[[maybe_unused]] const bool kAdded = AddToCatalogue(
+    {.info = {.id = "pump.turbulent_leakage",
+              .summary = "leakage across the pump's ports as through an orifice",
+              .equation = "cross-port flow + k sgn(dp) sqrt(abs(dp))",
+              .confused_with = "parameter c_I",
+              .parameters =
+                  {{.name = "k", .unit = "in^3/s/psi^.5", .meaning = "flow at dp = 1", .example = 0.001}}},
+     .make = MakeEffect<TurbulentLeakage>});
 
-CatalogueEntry PumpTurbulentLeakage();
-CatalogueEntry PumpTurbulentLeakage() {
-  return {{"pump.turbulent_leakage",
-           "leakage across the pump's ports as through an orifice",
-           "cross-port flow + k sgn(dp) sqrt(abs(dp))",
-           "parameter c_I",
-           {{"k", "in^3/s/psi^.5", 0, kUnbounded, true, "flow at dp = 1"}}},
-          MakeEffect<TurbulentLeakage>};
-}
+}  // namespace
 
 }  // namespace hydro::model

@@ -15,16 +15,19 @@ class PressureGain : public EffectOf<PressureGain> {
   }
 };
 
-}  // namespace
+[[maybe_unused]] const bool kAdded =
+    AddToCatalogue({.info = {.id = "sensor.pressure_gain",
+                             .summary = "the pressure transducers' scale is off",
+                             .equation = "measured pressures scaled by 1 + gain",
+                             .confused_with = "parameters k_1, k_2",
+                             .parameters = {{.name = "gain",
+                                             .unit = "1",
+                                             .min = -1,
+                                             .min_allowed = false,
+                                             .meaning = "relative error of the scale",
+                                             .example = 0.05}}},
+                    .make = MakeEffect<PressureGain>});
 
-CatalogueEntry SensorPressureGain();
-CatalogueEntry SensorPressureGain() {
-  return {{"sensor.pressure_gain",
-           "the pressure transducers' scale is off",
-           "measured pressures scaled by 1 + gain",
-           "parameters k_1, k_2",
-           {{"gain", "1", -1, kUnbounded, false, "relative error of the scale"}}},
-          MakeEffect<PressureGain>};
-}
+}  // namespace
 
 }  // namespace hydro::model

@@ -34,16 +34,21 @@ class PressureLag : public EffectOf<PressureLag> {
   }
 };
 
-}  // namespace
+[[maybe_unused]] const bool kAdded =
+    AddToCatalogue({.info = {.id = "sensor.pressure_lag",
+                             .summary = "the pressure transducers read with a lag",
+                             .equation = "measured pressure follows with a time constant",
+                             .confused_with = "line.wave, amp.lag",
+                             .parameters = {{.name = "tau",
+                                             .unit = "s",
+                                             .min_allowed = false,
+                                             .meaning = "time constant",
+                                             .starts = {2},
+                                             .scale = Scale::kSample,
+                                             .role = Role::kTime,
+                                             .example = 0.003}}},
+                    .make = MakeEffect<PressureLag>});
 
-CatalogueEntry SensorPressureLag();
-CatalogueEntry SensorPressureLag() {
-  return {{"sensor.pressure_lag",
-           "the pressure transducers read with a lag",
-           "measured pressure follows with a time constant",
-           "line.wave, amp.lag",
-           {{"tau", "s", 0, kUnbounded, false, "time constant", false, {}, {2}, Scale::kSample}}},
-          MakeEffect<PressureLag>};
-}
+}  // namespace
 
 }  // namespace hydro::model

@@ -15,17 +15,23 @@ class PressureOffset : public EffectOf<PressureOffset> {
   }
 };
 
-}  // namespace
+[[maybe_unused]] const bool kAdded =
+    AddToCatalogue({.info = {.id = "sensor.pressure_offset",
+                             .summary = "the pressure transducers read too much or too little",
+                             .equation = "measured p1, p2 shifted",
+                             .confused_with = "parameter p3",
+                             .parameters = {{.name = "p1",
+                                             .unit = "psi",
+                                             .min = -kUnbounded,
+                                             .meaning = "what p1's transducer reads too much",
+                                             .example = 3},
+                                            {.name = "p2",
+                                             .unit = "psi",
+                                             .min = -kUnbounded,
+                                             .meaning = "what p2's transducer reads too much",
+                                             .example = -2}}},
+                    .make = MakeEffect<PressureOffset>});
 
-CatalogueEntry SensorPressureOffset();
-CatalogueEntry SensorPressureOffset() {
-  return {{"sensor.pressure_offset",
-           "the pressure transducers read too much or too little",
-           "measured p1, p2 shifted",
-           "parameter p3",
-           {{"p1", "psi", -kUnbounded, kUnbounded, true, "what p1's transducer reads too much"},
-            {"p2", "psi", -kUnbounded, kUnbounded, true, "what p2's transducer reads too much"}}},
-          MakeEffect<PressureOffset>};
-}
+}  // namespace
 
 }  // namespace hydro::model

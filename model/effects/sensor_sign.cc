@@ -20,18 +20,20 @@ class Sign : public EffectOf<Sign> {
   Signal signal_;
 };
 
-}  // namespace
+[[maybe_unused]] const bool kAdded =
+    AddToCatalogue({.info = {.id = "sensor.sign",
+                             .summary = "one channel has the wrong sign",
+                             .equation = "one channel is inverted",
+                             .confused_with = "nothing",
+                             .parameters = {{.name = "signal",
+                                             .unit = "name",
+                                             .meaning = "the channel that is inverted",
+                                             .names = SignalNames(),
+                                             .role = Role::kChannel}}},
+                    .make = [](const EffectDescription& description) -> std::unique_ptr<Effect> {
+                      return std::make_unique<Sign>(SignalOf(description));
+                    }});
 
-CatalogueEntry SensorSign();
-CatalogueEntry SensorSign() {
-  return {{"sensor.sign",
-           "one channel has the wrong sign",
-           "one channel is inverted",
-           "nothing",
-           {{"signal", "name", 0, 0, true, "the channel that is inverted", true, SignalNames()}}},
-          [](const EffectDescription& description) -> std::unique_ptr<Effect> {
-            return std::make_unique<Sign>(SignalOf(description));
-          }};
-}
+}  // namespace
 
 }  // namespace hydro::model

@@ -29,28 +29,27 @@ class Skew : public EffectOf<Skew> {
   double delay_;
 };
 
-}  // namespace
+[[maybe_unused]] const bool kAdded = AddToCatalogue(
+    {.info = {.id = "sensor.skew",
+              .summary = "one channel is recorded late",
+              .equation = "one channel is late by delay",
+              .confused_with = "amp.delay",
+              .parameters = {{.name = "delay",
+                              .unit = "s",
+                              .meaning = "by which the channel is late",
+                              .starts = {0, 10},
+                              .scale = Scale::kSample,
+                              .role = Role::kTime,
+                              .example = 0.001},
+                             {.name = "signal",
+                              .unit = "name",
+                              .meaning = "the channel that is late",
+                              .names = SignalNames(),
+                              .role = Role::kChannel}}},
+     .make = [](const EffectDescription& description) -> std::unique_ptr<Effect> {
+       return std::make_unique<Skew>(SignalOf(description), description.parameters.at("delay"));
+     }});
 
-CatalogueEntry SensorSkew();
-CatalogueEntry SensorSkew() {
-  return {{"sensor.skew",
-           "one channel is recorded late",
-           "one channel is late by delay",
-           "amp.delay",
-           {{"delay",
-             "s",
-             0,
-             kUnbounded,
-             true,
-             "by which the channel is late",
-             false,
-             {},
-             {0, 10},
-             Scale::kSample},
-            {"signal", "name", 0, 0, true, "the channel that is late", true, SignalNames()}}},
-          [](const EffectDescription& description) -> std::unique_ptr<Effect> {
-            return std::make_unique<Skew>(SignalOf(description), description.parameters.at("delay"));
-          }};
-}
+}  // namespace
 
 }  // namespace hydro::model

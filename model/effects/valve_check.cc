@@ -44,35 +44,26 @@ class Check : public EffectOf<Check> {
   }
 };
 
-}  // namespace
+[[maybe_unused]] const bool kAdded = AddToCatalogue(
+    {.info = {.id = "valve.check",
+              .summary = "one-way valves that need a pressure to open and resist the flow",
+              .equation =
+                  "the one-way valve opens at p3 - cracking and passes conductance (p3 - cracking - p)",
+              .confused_with = "parameter p3, accumulator.stiffness",
+              .parameters = {{.name = "cracking",
+                              .unit = "psi",
+                              .meaning = "pressure below p3 at which the valve opens",
+                              .starts = {0.1},
+                              .scale = Scale::kCharge,
+                              .example = 10},
+                             {.name = "conductance",
+                              .unit = "in^3/s/psi",
+                              .meaning = "flow per pressure below that",
+                              .starts = {30, 300},
+                              .scale = Scale::kFlow,
+                              .example = 0.001}}},
+     .make = MakeEffect<Check>});
 
-CatalogueEntry ValveCheck();
-CatalogueEntry ValveCheck() {
-  return {{"valve.check",
-           "one-way valves that need a pressure to open and resist the flow",
-           "the one-way valve opens at p3 - cracking and passes conductance (p3 - cracking - p)",
-           "parameter p3, accumulator.stiffness",
-           {{"cracking",
-             "psi",
-             0,
-             kUnbounded,
-             true,
-             "pressure below p3 at which the valve opens",
-             false,
-             {},
-             {0.1},
-             Scale::kCharge},
-            {"conductance",
-             "in^3/s/psi",
-             0,
-             kUnbounded,
-             true,
-             "flow per pressure below that",
-             false,
-             {},
-             {30, 300},
-             Scale::kFlow}}},
-          MakeEffect<Check>};
-}
+}  // namespace
 
 }  // namespace hydro::model

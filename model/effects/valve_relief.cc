@@ -42,26 +42,23 @@ class Relief : public EffectOf<Relief> {
   }
 };
 
-}  // namespace
+[[maybe_unused]] const bool kAdded =
+    AddToCatalogue({.info = {.id = "valve.relief",
+                             .summary = "relief valves from each side to the accumulator",
+                             .equation = "flow conductance (p - set) out of a side above set",
+                             .confused_with = "parameter c_E",
+                             .parameters = {{.name = "set",
+                                             .unit = "psi",
+                                             .meaning = "pressure at which the valve opens",
+                                             .starts = {0.3, 0.5, 0.7, 0.85, 0.95},
+                                             .scale = Scale::kPressure,
+                                             .example = 200},
+                                            {.name = "conductance",
+                                             .unit = "in^3/s/psi",
+                                             .meaning = "flow per pressure above set",
+                                             .example = 0.001}}},
+                    .make = MakeEffect<Relief>});
 
-CatalogueEntry ValveRelief();
-CatalogueEntry ValveRelief() {
-  return {{"valve.relief",
-           "relief valves from each side to the accumulator",
-           "flow conductance (p - set) out of a side above set",
-           "parameter c_E",
-           {{"set",
-             "psi",
-             0,
-             kUnbounded,
-             true,
-             "pressure at which the valve opens",
-             false,
-             {},
-             {0.3, 0.5, 0.7, 0.85, 0.95},
-             Scale::kPressure},
-            {"conductance", "in^3/s/psi", 0, kUnbounded, true, "flow per pressure above set"}}},
-          MakeEffect<Relief>};
-}
+}  // namespace
 
 }  // namespace hydro::model

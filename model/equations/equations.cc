@@ -5,7 +5,7 @@
 #include <sstream>
 #include <utility>
 
-#include "model/effects/effect.h"
+#include "model/effects/catalogue.h"
 #include "model/equations/evaluate.h"
 
 namespace hydro::model {
@@ -39,8 +39,6 @@ void CheckBounds(const ParameterInfo& info, double value, const std::string& own
 
 }  // namespace
 
-const CatalogueEntry* FindCatalogueEntry(const std::string& id);
-
 Equations::Equations(const ModelDescription& description, const ActuatorOptions& options) {
   data_.parameters = description.parameters;
   data_.shaft = options.shaft;
@@ -70,7 +68,7 @@ Equations::Equations(const ModelDescription& description, const ActuatorOptions&
       throw ModelError("effect \"" + effect.id + "\" is there twice");
     for (const ParameterInfo& info : entry->info.parameters) {
       const std::string owner = effect.id + ".";
-      if (info.is_name) {
+      if (info.is_name()) {
         const auto found = effect.names.find(info.name);
         if (found == effect.names.end()) throw ModelError("parameter " + owner + info.name + " is missing");
         if (std::find(info.names.begin(), info.names.end(), found->second) == info.names.end()) {
@@ -86,7 +84,7 @@ Equations::Equations(const ModelDescription& description, const ActuatorOptions&
     data_.effects.push_back(entry->make(effect));
     const int first_parameter = static_cast<int>(data_.own.size());
     for (const ParameterInfo& info : entry->info.parameters) {
-      if (!info.is_name) data_.own.push_back(effect.parameters.at(info.name));
+      if (!info.is_name()) data_.own.push_back(effect.parameters.at(info.name));
     }
     Effect& made = *data_.effects.back();
     const int first = static_cast<int>(scales_.size());

@@ -1,5 +1,4 @@
-// arm.spring: arm torque - stiffness alpha. An effect that is not in the catalogue, added as a user
-// would: this file is all there is to it.
+// arm.spring: arm torque - stiffness alpha. An effect of a user's own: this file is all there is to it.
 #include "model/effects/effect.h"
 
 namespace hydro::diagnose {
@@ -19,12 +18,12 @@ class Spring : public model::EffectOf<Spring> {
 };
 
 [[maybe_unused]] const bool kAdded = model::AddToCatalogue(
-    {{"arm.spring",
-      "a spring pulls the arm to its middle",
-      "arm torque - stiffness alpha",
-      "parameter m g l",
-      {{"stiffness", "in-lbf/rad", 0, model::kUnbounded, true, "of the spring", false, {}, {0}}}},
-     model::MakeEffect<Spring>});
+    {.info = {.id = "arm.spring",
+              .summary = "a spring pulls the arm to its middle",
+              .equation = "arm torque - stiffness alpha",
+              .confused_with = "parameter m g l",
+              .parameters = {{.name = "stiffness", .unit = "in-lbf/rad", .meaning = "torque per angle"}}},
+     .make = model::MakeEffect<Spring>});
 
 }  // namespace
 

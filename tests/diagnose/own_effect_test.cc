@@ -56,7 +56,7 @@ TEST(OwnEffect, IsInTheCatalogue) {
 // Tests that it cannot be added once the catalogue is in use, when references into it are held.
 TEST(OwnEffect, IsAddedBeforeTheCatalogueIsUsed) {
   const size_t known = model::EffectCatalogue().size();
-  EXPECT_THROW(model::AddToCatalogue({{"arm.other", "", "", "", {}}, nullptr}), std::logic_error);
+  EXPECT_THROW(model::AddToCatalogue({.info = {.id = "arm.other"}}), std::logic_error);
   EXPECT_EQ(model::EffectCatalogue().size(), known);
 }
 
@@ -67,7 +67,7 @@ TEST(OwnEffect, IsFound) {
   EXPECT_EQ(d.verdict, diagnose::Verdict::kNamed) << d.sentence;
   ASSERT_EQ(d.effects.size(), 1) << d.sentence;
   EXPECT_EQ(d.effects[0].id, "arm.spring");
-  EXPECT_EQ(d.effects[0].says, "a spring pulls the arm to its middle");
+  EXPECT_EQ(d.effects[0].summary, "a spring pulls the arm to its middle");
   ASSERT_EQ(d.effects[0].parameters.size(), 1);
   EXPECT_LE(d.effects[0].parameters[0].low, kStiffness);
   EXPECT_GE(d.effects[0].parameters[0].high, kStiffness);

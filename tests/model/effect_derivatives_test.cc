@@ -63,7 +63,7 @@ TEST(EffectDerivatives, EqualDifferenceQuotients) {
         const std::vector<model::Jet> found = Evaluated(equations, mode, state);
         int k = -1;
         for (const model::ParameterInfo& parameter : info.parameters) {
-          if (parameter.is_name) continue;
+          if (parameter.is_name()) continue;
           ++k;
           const double value = effect.parameters.at(parameter.name);
           const auto at = [&](double factor) {
@@ -106,7 +106,7 @@ TEST(EffectDerivatives, AreFiniteWhereTheEffectVanishes) {
     if (info.id == "amp.delay") continue;
     model::EffectDescription effect = SomeOfEach().at(info.id);
     for (const model::ParameterInfo& parameter : info.parameters) {
-      const bool may_vanish = !parameter.is_name && (parameter.min < 0 || parameter.min_allowed);
+      const bool may_vanish = !parameter.is_name() && (parameter.min < 0 || parameter.min_allowed);
       if (may_vanish) effect.parameters[parameter.name] = 0;
     }
     for (int position = -1; position <= 1; ++position) {

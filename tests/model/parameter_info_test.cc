@@ -19,7 +19,7 @@ TEST(BaseParameters, AreComplete) {
   for (const model::BaseParameter& parameter : model::BaseParameters()) {
     EXPECT_TRUE(names.insert(parameter.info.name).second) << parameter.info.name;
     EXPECT_FALSE(parameter.info.unit.empty());
-    EXPECT_FALSE(parameter.info.says.empty());
+    EXPECT_FALSE(parameter.info.meaning.empty());
     EXPECT_EQ(marked.*parameter.member, 0) << parameter.info.name << " shares a member";
     marked.*parameter.member = 1;
     const double value = Table1().*parameter.member;
@@ -35,10 +35,16 @@ TEST(EffectCatalogue, IsComplete) {
   for (const model::EffectInfo& effect : model::EffectCatalogue()) {
     EXPECT_LT(previous, effect.id);
     previous = effect.id;
-    EXPECT_FALSE(effect.says.empty());
+    EXPECT_FALSE(effect.summary.empty());
     EXPECT_FALSE(effect.equation.empty());
     EXPECT_FALSE(effect.parameters.empty());
     EXPECT_EQ(model::FindEffect(effect.id), &effect);
+    for (const model::ParameterInfo& parameter : effect.parameters) {
+      if (parameter.is_name()) continue;
+      const double example = parameter.example;
+      EXPECT_NE(example, 0) << effect.id << "." << parameter.name << " needs an example";
+      EXPECT_TRUE(example >= parameter.min && example <= parameter.max) << effect.id << "." << parameter.name;
+    }
   }
   for (const char* id : {"amp.lag", "line.wave", "pump.pressure_friction", "pump.stribeck"}) {
     EXPECT_NE(model::FindEffect(id), nullptr) << id;
@@ -58,7 +64,7 @@ TEST(EffectCatalogue, IsDocumented) {
   }
   EXPECT_EQ(rows.size(), model::EffectCatalogue().size());
   for (const model::EffectInfo& effect : model::EffectCatalogue()) {
-    std::string row = "| `" + effect.id + "` | " + effect.says + " | " + effect.equation + " | ";
+    std::string row = "| `" + effect.id + "` | " + effect.summary + " | " + effect.equation + " | ";
     for (size_t i = 0; i < effect.parameters.size(); ++i) {
       row += (i > 0 ? ", `" : "`") + effect.parameters[i].name + "` (" + effect.parameters[i].unit + ")";
     }

@@ -64,7 +64,7 @@ TEST(ModelFileTest, RoundTripsBitByBit) {
       model::EffectDescription effect;
       effect.id = info.id;
       for (const model::ParameterInfo& parameter : info.parameters) {
-        if (parameter.is_name) {
+        if (parameter.is_name()) {
           effect.names[parameter.name] = parameter.names.back();
         } else {
           effect.parameters[parameter.name] = number(parameter);

@@ -1,0 +1,30 @@
+// The effects that a program knows. Each file of model/effects/ adds its own (AddToCatalogue in effect.h), as a
+// user's file does.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "model/effects/effect.h"
+
+namespace hydro::model {
+
+class Catalogue {
+ public:
+  // Puts the entries in the order of their ids, whatever order their files were linked in. Throws std::logic_error,
+  // with the id and what is wrong, for an id that is there twice and for an entry that cannot work.
+  explicit Catalogue(std::vector<CatalogueEntry> entries);
+
+  const std::vector<EffectInfo>& infos() const { return infos_; }
+  // Null when no such effect is known.
+  const CatalogueEntry* Find(const std::string& id) const;
+
+ private:
+  std::vector<CatalogueEntry> entries_;
+  std::vector<EffectInfo> infos_;
+};
+
+// The entry of an effect in this program's catalogue; null when no such effect is known.
+const CatalogueEntry* FindCatalogueEntry(const std::string& id);
+
+}  // namespace hydro::model
