@@ -96,9 +96,9 @@ template <Form kForm, class T>
     }
   }
 
-  x.net_torque = x.torque - x.D * dp - x.load;                   // (4)
-  x.q_1 = x.D * x.motor_speed - x.cross_flow + x.outer_flow_1;   // (11)
-  x.q_2 = -x.D * x.motor_speed + x.cross_flow + x.outer_flow_2;  // (12)
+  x.net_torque = x.torque - x.D * dp - x.load;                   // (3), (4)
+  x.q_1 = x.D * x.motor_speed - x.cross_flow + x.outer_flow_1;   // (2), (11)
+  x.q_2 = -x.D * x.motor_speed + x.cross_flow + x.outer_flow_2;  // (2), (12)
   if constexpr (kGeneralForm) {
     for (const auto& effect : m.effects) {
       x.own = n.own.data() + effect->first_parameter();
@@ -122,8 +122,8 @@ template <Form kForm, class T>
     if (kGeneralForm && m.bypass) {  // one pressure; what the arm displaces goes round
       x.free_rate_1 = x.free_rate_2 = -(x.q_1 + x.q_2) / (x.V_1 / x.beta_1 + x.V_2 / x.beta_2);
     } else {
-      x.free_rate_1 = -x.beta_1 / x.V_1 * (x.q_1 - arm_flow);  // (13)
-      x.free_rate_2 = -x.beta_2 / x.V_2 * (x.q_2 + arm_flow);  // (14)
+      x.free_rate_1 = -x.beta_1 / x.V_1 * (x.q_1 - arm_flow);  // (5), (9), (13)
+      x.free_rate_2 = -x.beta_2 / x.V_2 * (x.q_2 + arm_flow);  // (5), (10), (14)
     }
   }
   const bool open_1 = mode.valve_1 != 0;

@@ -56,7 +56,9 @@ TEST(OwnEffect, IsInTheCatalogue) {
 // Tests that it cannot be added once the catalogue is in use, when references into it are held.
 TEST(OwnEffect, IsAddedBeforeTheCatalogueIsUsed) {
   const size_t known = model::EffectCatalogue().size();
-  EXPECT_THROW(model::AddToCatalogue({.info = {.id = "arm.other"}}), std::logic_error);
+  model::CatalogueEntry late;
+  late.info.id = "arm.other";
+  EXPECT_THROW(model::AddToCatalogue(late), std::logic_error);
   EXPECT_EQ(model::EffectCatalogue().size(), known);
 }
 

@@ -3,9 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include <fstream>
 #include <set>
-#include <sstream>
 
 #include "tests/table1.h"
 
@@ -50,27 +48,6 @@ TEST(EffectCatalogue, IsComplete) {
     EXPECT_NE(model::FindEffect(id), nullptr) << id;
   }
   EXPECT_EQ(model::FindEffect("pump.unknown"), nullptr);
-}
-
-// Tests that docs/effects.md has the row of each effect, with its parameters and their units.
-TEST(EffectCatalogue, IsDocumented) {
-  std::ifstream file(HYDRO_EFFECTS_DOCUMENT);
-  std::stringstream text;
-  text << file.rdbuf();
-  std::set<std::string> rows;
-  for (std::string line; std::getline(text, line);) {
-    const bool starts_with_id = line.rfind("| `", 0) == 0 && line.find('.') < line.find('`', 3);
-    if (starts_with_id) rows.insert(line);
-  }
-  EXPECT_EQ(rows.size(), model::EffectCatalogue().size());
-  for (const model::EffectInfo& effect : model::EffectCatalogue()) {
-    std::string row = "| `" + effect.id + "` | " + effect.summary + " | " + effect.equation + " | ";
-    for (size_t i = 0; i < effect.parameters.size(); ++i) {
-      row += (i > 0 ? ", `" : "`") + effect.parameters[i].name + "` (" + effect.parameters[i].unit + ")";
-    }
-    row += " | " + effect.confused_with + " |";
-    EXPECT_TRUE(rows.contains(row)) << "docs/effects.md lacks: " << row;
-  }
 }
 
 }  // namespace

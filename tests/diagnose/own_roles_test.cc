@@ -1,0 +1,181 @@
+// The gap finder treats parameters by their role: twins of the catalogue's effects, with other ids, names and units as a
+// user's own would have, get what the catalogue's get. Without their roles they do not.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <memory>
+
+#include "diagnose/diagnose.h"
+#include "diagnose/fit/intervals.h"
+#include "diagnose/search/periodic_starts.h"
+#include "diagnose/search/resonance.h"
+#include "model/effects/catalogue.h"
+#include "tests/diagnose/small_runs.h"
+
+namespace hydro::testing {
+namespace {
+
+using model::Role;
+using ::testing::Contains;
+using ::testing::Not;
+
+// Registers an effect with the equation of another, whose parameters are in the same order.
+bool AddTwin(const std::string& id, std::unique_ptr<model::Effect> (*make)(const model::EffectDescription&),
+             std::vector<model::ParameterInfo> parameters) {
+  return model::AddToCatalogue({.info = {.id = id,
+                                         .summary = "a twin",
+                                         .equation = "as another",
+                                         .confused_with = "its twin",
+                                         .parameters = std::move(parameters)},
+                                .make = make});
+}
+template <const char* kId>
+std::unique_ptr<model::Effect> MakeAs(const model::EffectDescription& description) {
+  return model::FindCatalogueEntry(kId)->make(description);
+}
+
+constexpr char kCogging[] = "motor.cogging", kRipple[] = "pump.flow_ripple", kLag[] = "amp.lag",
+               kWave[] = "line.wave", kFriction[] = "pump.pressure_friction";
+
+model::ParameterInfo Positive(const std::string& name, const std::string& unit, Role role) {
+  return {
+      .name = name, .unit = unit, .min_allowed = false, .meaning = "of a twin", .starts = {1}, .role = role};
+}
+model::ParameterInfo Any(const std::string& name, const std::string& unit, Role role) {
+  return {.name = name, .unit = unit, .min = -model::kUnbounded, .meaning = "of a twin", .role = role};
+}
+
+[[maybe_unused]] const bool kAdded =
+    AddTwin("own.runout", MakeAs<kCogging>,
+            {Any("height", "lbf", Role::kTorqueWave), Positive("lobes", "per turn", Role::kPeriods),
+             Any("mark", "radians", Role::kPhase)}) &&
+    AddTwin(
+        "own.swash", MakeAs<kRipple>,
+        {Any("tilt", "part", Role::kDisplacementWave), Positive("pistons", "per turn", Role::kPeriods)}) &&
+    AddTwin("own.lag", MakeAs<kLag>, {Positive("after", "seconds", Role::kTime)}) &&
+    AddTwin("own.lag_without_role", MakeAs<kLag>, {Positive("after", "s", Role::kSize)}) &&
+    AddTwin("own.wave", MakeAs<kWave>,
+            {Positive("tone", "1/s", Role::kFrequency), Positive("share", "1", Role::kSize),
+             Any("decay", "1", Role::kSize)}) &&
+    AddTwin("own.wave_without_role", MakeAs<kWave>,
+            {Positive("tone", "Hz", Role::kSize), Positive("share", "1", Role::kSize),
+             Any("decay", "1", Role::kSize)}) &&
+    AddTwin(
+        "own.friction", MakeAs<kFriction>,
+        {{.name = "more", .unit = "in-lbf/psi", .meaning = "of a twin", .adds_to = &model::Parameters::f}}) &&
+    AddTwin("own.side", MakeAs<kFriction>,
+            {{.name = "size", .unit = "1", .meaning = "of a twin"},
+             {.name = "side", .unit = "name", .meaning = "of the pump", .names = {"left", "right"}}}) &&
+    AddTwin("own.channel", MakeAs<kFriction>,
+            {{.name = "size", .unit = "1", .meaning = "of a twin"},
+             {.name = "of",
+              .unit = "name",
+              .meaning = "a channel",
+              .names = {"p1", "arm_angle"},
+              .role = Role::kChannel}});
+
+// Tests that what repeats within a turn is read off the balances, with the same numbers as of the catalogue's.
+TEST(OwnRoles, PeriodsAreReadOffTheBalances) {
+  const std::vector<diagnose::RunData> runs =
+      OneOfEach(Table1With({{"own.runout", {{"height", 1}, {"lobes", 6}, {"mark", 0.7}}, {}}}), 1.0, 1);
+  const auto starts = [&](const std::string& id) {
+    return diagnose::WithPeriodic(WithFree(Table1With(), {}), {{id, {}, ""}}, PointersTo(runs), 1);
+  };
+  const std::vector<diagnose::Hypothesis> own = starts("own.runout"), ours = starts(kCogging);
+  ASSERT_FALSE(own.empty());
+  const std::map<std::string, double>& found = own.front().model.effects.back().parameters;
+  EXPECT_EQ(found.at("lobes"), 6);
+  EXPECT_NEAR(found.at("mark"), 0.7, 0.4);
+  ASSERT_EQ(ours.size(), own.size());
+  for (size_t i = 0; i < own.size(); ++i) {
+    const auto& a = own[i].model.effects.back().parameters;
+    const auto& b = ours[i].model.effects.back().parameters;
+    EXPECT_EQ(a.at("height"), b.at("amplitude"));
+    EXPECT_EQ(a.at("lobes"), b.at("periods"));
+    EXPECT_EQ(a.at("mark"), b.at("phase"));
+  }
+  const std::vector<diagnose::Hypothesis> own_ripple = starts("own.swash"), our_ripple = starts(kRipple);
+  ASSERT_EQ(own_ripple.size(), our_ripple.size());
+  for (size_t i = 0; i < own_ripple.size(); ++i) {
+    EXPECT_EQ(own_ripple[i].model.effects.back().parameters.at("tilt"),
+              our_ripple[i].model.effects.back().parameters.at("amplitude"));
+  }
+}
+
+// The 95 % interval of the only parameter of a lag.
+diagnose::Interval IntervalOf(const std::string& id, const std::string& name,
+                              const std::vector<diagnose::RunData>& runs) {
+  const model::ModelDescription lagging = Table1With({{id, {{name, 0.002}}, {}}});
+  const diagnose::Fitted fitted = diagnose::Fit(WithFree(lagging, {}), PointersTo(runs), StartsOf(runs), {});
+  EXPECT_TRUE(fitted.ok());
+  return diagnose::Intervals(fitted, PointersTo(runs), 1).at(0);
+}
+
+// Tests that the interval of a time allows for what is taken to be immediate, whatever the unit is called.
+TEST(OwnRoles, TimesAreNotSharperThanSensors) {
+  const std::vector<diagnose::RunData> runs = ClampedPair(Table1With({{kLag, {{"tau", 0.002}}, {}}}), 1, 1);
+  const diagnose::Interval ours = IntervalOf(kLag, "tau", runs), own = IntervalOf("own.lag", "after", runs),
+                           without = IntervalOf("own.lag_without_role", "after", runs);
+  EXPECT_EQ(own.low, ours.low);
+  EXPECT_EQ(own.high, ours.high);
+  EXPECT_LT(without.high - without.low, 0.9 * (own.high - own.low));
+}
+
+// Tests that a fit that ended at another ringing is begun again from other frequencies.
+TEST(OwnRoles, FrequenciesAreLookedForAroundTheirEnd) {
+  constexpr double kFrequency = 196;
+  const auto line = [](const std::string& id, double frequency, double fraction, double damping) {
+    return Table1With({{id, {{"tone", frequency}, {"share", fraction}, {"decay", damping}}, {}}});
+  };
+  const std::vector<diagnose::RunData> runs = ClampedPair(line("own.wave", kFrequency, 0.3, 0.012), 0.5, 1);
+  diagnose::SearchContext context;
+  context.given = Table1With();
+  context.runs = context.held_out = PointersTo(runs);
+  diagnose::FitOptions options;
+  options.most_iterations = 15;
+  options.tolerance = 1e-5;
+  const auto found = [&](const std::string& id) {
+    const diagnose::Explanation elsewhere =
+        diagnose::Explain(context, WithFree(line(id, 250, 0.4, 0.02), {}), StartsOf(runs), options);
+    EXPECT_TRUE(elsewhere.fitted.ok());
+    return diagnose::AtBestResonance(context, elsewhere, options)
+        .fitted.hypothesis.model.effects[0]
+        .parameters.at("tone");
+  };
+  EXPECT_NEAR(found("own.wave"), kFrequency, 0.01 * kFrequency);
+  EXPECT_GT(std::abs(found("own.wave_without_role") - kFrequency), 5);
+}
+
+// What the gap finder rates, of the effects that it may name.
+std::vector<std::string> Rated(double f, const std::vector<std::string>& effects) {
+  model::ModelDescription given = Table1With();
+  given.parameters.f = f;
+  diagnose::DiagnoseOptions options;
+  options.effects = effects;
+  options.free = {"b"};
+  const diagnose::RunData run = SmallRun(given, model::Shaft::kClamped, false, 0.4, 0, 1);
+  std::vector<std::string> labels;
+  for (const diagnose::Candidate& candidate :
+       diagnose::Diagnose(given, {run.measured}, {}, options, {}).candidates) {
+    labels.push_back(candidate.id);
+  }
+  return labels;
+}
+
+// Tests that an effect which only adds to a parameter that the model has is left to that parameter.
+TEST(OwnRoles, ATermOfTheModelIsNoEffect) {
+  EXPECT_THAT(Rated(0, {"own.friction"}), Contains("own.friction"));
+  EXPECT_THAT(Rated(1e-3, {"own.friction"}), Not(Contains("own.friction")));
+}
+
+// Tests that names are tried as they are, and those of channels where the runs have the channel.
+TEST(OwnRoles, NamesOfChannelsNeedTheChannel) {
+  const std::vector<std::string> rated = Rated(0, {"own.side", "own.channel"});
+  EXPECT_THAT(rated, Contains("own.side (left)"));
+  EXPECT_THAT(rated, Contains("own.side (right)"));
+  EXPECT_THAT(rated, Contains("own.channel (p1)"));
+  EXPECT_THAT(rated, Not(Contains("own.channel (arm_angle)")));
+}
+
+}  // namespace
+}  // namespace hydro::testing
