@@ -44,7 +44,8 @@ bool IsTermOfTheModel(const model::EffectInfo& info, const model::Parameters& gi
                      });
 }
 
-// Whether some effect has the term of this base parameter, which then stands for it where the model has it at 0.
+// Whether some effect has the term of this base parameter, which then stands for it where the model has it at
+// 0.
 bool IsTermOfAnEffect(const model::BaseParameter& base) {
   const std::vector<model::EffectInfo>& catalogue = model::EffectCatalogue();
   return std::any_of(catalogue.begin(), catalogue.end(), [&](const model::EffectInfo& info) {

@@ -163,7 +163,8 @@ Hypothesis WithWave(const Hypothesis& hypothesis, const PeriodicEffect& effect, 
   return more;
 }
 
-// Regressions of what the torque balance of a run lacks, one for each effect; empty where the run cannot be smoothed.
+// Regressions of what the torque balance of a run lacks, one for each effect; empty where the run cannot be
+// smoothed.
 std::vector<Periodogram> PeriodogramsOf(const Hypothesis& hypothesis,
                                         const std::vector<PeriodicEffect>& effects, const RunData& data) {
   // Eq. (4): what the pump's torque lacks, beside a constant, its friction and its displacement.

@@ -10,9 +10,9 @@
 
 namespace hydro::diagnose {
 
-// `hypothesis` with each effect among `changes` that repeats within a turn (Role::kPeriods), where the torque balance
-// that it leaves open (SmoothDisturbances) plainly repeats too: with the likeliest numbers of periods, and the amplitude
-// and phase that the balance has. Nothing where the runs cannot be smoothed.
+// `hypothesis` with each effect among `changes` that repeats within a turn (Role::kPeriods), where the torque
+// balance that it leaves open (SmoothDisturbances) plainly repeats too: with the likeliest numbers of
+// periods, and the amplitude and phase that the balance has. Nothing where the runs cannot be smoothed.
 std::vector<Hypothesis> WithPeriodic(const Hypothesis& hypothesis, const std::vector<Change>& changes,
                                      const std::vector<const RunData*>& runs, int jobs);
 

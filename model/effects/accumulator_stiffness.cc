@@ -1,9 +1,9 @@
-// accumulator.stiffness: p3 rises by stiffness per volume returned to the accumulator, and falls by as much
-// per volume that the one-way valves take from it. One state: p3. Its start is the base parameter p_3.
+// accumulator.stiffness: p3 rises by `stiffness` per volume returned to the accumulator, and falls by as much
+// per volume that the one-way valves take from it. One state: p3, which starts at the base parameter p_3.
 //
-// An ideal valve that is open holds its side at the p3 that moves, and passes what this takes,
+// An open ideal valve holds its side at the moving p3, and passes the flow that this takes,
 //   u = (V/beta) p3' + flow out of the side = (V/beta)(p3' - free rate),
-// so that p3' = stiffness (flow into the accumulator - sum of u) is linear in p3' and solved for it.
+// so that p3' = stiffness (flow into the accumulator - sum of u) is linear in p3' and is solved for it.
 
 #include "model/effects/effect.h"
 
@@ -31,7 +31,7 @@ class Accumulator : public EffectOf<Accumulator> {
   template <class T>
   void OwnBalances(Terms<T>& x, T* rate) const {
     T flow = x.outer_flow_1 + x.outer_flow_2 + (x.valve_flow_1 + x.valve_flow_2);
-    T held = T(0.0);  // in^3/psi, sides that are held at p3
+    T held = T(0.0);  // in^3/psi, compliance of the sides that are held at p3
     const auto hold = [&](const T& compliance, const T& free_rate) {
       held += compliance;
       flow += compliance * free_rate;

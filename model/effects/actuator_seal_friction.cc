@@ -1,6 +1,6 @@
 // actuator.seal_friction: arm torque - coulomb sgn(alpha') - viscous alpha'. The arm sticks while the net
-// torque on it is within `coulomb`. One switch: 0 the arm sticks, +1 and -1 it moves in that direction. A
-// clamped or driven shaft does not feel it.
+// torque on it is within `coulomb`. One switch: 0, the arm sticks; +1 and -1, it moves in that direction.
+// With a clamped or driven shaft the effect does nothing.
 
 #include <cmath>
 

@@ -1,5 +1,5 @@
 // amp.lag: tau dT/dt + T = k_1 v. One state, T; the limit applies to T_p, which is T within +/- T_pmax.
-// One switch: 0 T is within the limit, +1 and -1 T_p is at that limit.
+// One switch: 0, T is within the limit; +1 and -1, T_p is at that limit.
 
 #include "model/effects/effect.h"
 

@@ -40,8 +40,7 @@ std::string Fault(const CatalogueEntry& entry) {
   const int periods = Count(info, Role::kPeriods), phases = Count(info, Role::kPhase);
   if (waves != periods || periods > 1 || phases > periods) {
     return "needs one parameter with Role::kPeriods, one with Role::kTorqueWave or Role::kDisplacementWave, "
-           "and "
-           "at most one with Role::kPhase, or none of these";
+           "and at most one with Role::kPhase, or none of these";
   }
   return "";
 }

@@ -1,5 +1,5 @@
-// The effects that a program knows. Each file of model/effects/ adds its own (AddToCatalogue in effect.h), as a
-// user's file does.
+// The effects that a program knows. Each file of model/effects/ adds its own (AddToCatalogue in effect.h), as
+// a user's file does.
 #pragma once
 
 #include <string>
@@ -11,8 +11,9 @@ namespace hydro::model {
 
 class Catalogue {
  public:
-  // Puts the entries in the order of their ids, whatever order their files were linked in. Throws std::logic_error,
-  // with the id and what is wrong, for an id that is there twice and for an entry that cannot work.
+  // Puts the entries in the order of their ids, whatever order their files were linked in. Throws
+  // std::logic_error, with the id and what is wrong, for an id that is there twice and for an entry that
+  // cannot work.
   explicit Catalogue(std::vector<CatalogueEntry> entries);
 
   const std::vector<EffectInfo>& infos() const { return infos_; }

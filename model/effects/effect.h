@@ -1,11 +1,11 @@
-// How a physical effect plugs into the equations. One effect is one file in model/effects/: a small class with its
-// equation as templates on the scalar, and its entry in the catalogue. Nothing else lists it.
+// How a physical effect plugs into the equations. One effect is one file in model/effects/: a small class
+// with its equation as templates on the scalar, and its entry in the catalogue. Nothing else lists it.
 //
 // The right-hand side is evaluated in this order:
 //   properties from the base parameters  -> SetProperties       of each effect
 //   torques and flows of eqs. (4), (11), (12) -> AddTorquesAndFlows of each effect
-//   net torque, q_1, q_2                 -> AddStates            of each effect (rates of its states; may
-//   replace q_1, q_2)
+//   net torque, q_1, q_2                 -> AddStates            of each effect (rates of its states;
+//                                                                may replace q_1, q_2)
 //   p1', p2' with closed valves, (13), (14)    -> AddBalances          of each effect (moves p_3)
 //   rates of the base states, eqs. (4), (13), (14), (15)
 // Effects are applied in the order of their ids, so a model does not depend on the order of its file.
@@ -23,7 +23,8 @@
 
 namespace hydro::model {
 
-// Periods in a revolution from which fits of ripples start: those of small numbers of poles, teeth, pistons and vanes.
+// Periods in a revolution from which fits of ripples start: those of small numbers of poles, teeth, pistons
+// and vanes.
 const std::vector<double>& PeriodsTried();
 
 class Effect {
@@ -54,8 +55,8 @@ class Effect {
   virtual int p_3_state() const { return -1; }
   virtual int actuator_angle_state() const { return -1; }
 
-  // What follows is for numbers and, with the same formulas, for numbers that carry derivatives: an effect
-  // writes it once, as templates named Own... (EffectOf).
+  // What follows exists for numbers and for numbers that carry derivatives. An effect writes each formula
+  // once, as a template named Own... (EffectOf).
 
   // Volume of each side that is not at the actuator: V_1 and V_2 must stay above it.
   virtual double FixedVolume(const ParametersOf<double>& base, const double* own) const = 0;
@@ -65,7 +66,8 @@ class Effect {
   virtual void Start(const Terms<double>& x, double* state) const = 0;
   virtual void Start(const Terms<Jet>& x, Jet* state) const = 0;
 
-  // Where its switches stand at the start, for a start in motion; those whose margins say so need nothing.
+  // Where its switches stand when the start is in motion. Switches whose margins settle that need nothing
+  // here.
   virtual void StartMode(const Terms<double>& x, Mode* mode) const = 0;
   virtual void StartMode(const Terms<Jet>& x, Mode* mode) const = 0;
 
@@ -79,8 +81,8 @@ class Effect {
   virtual void AddBalances(Terms<double>&, double* rate) const = 0;
   virtual void AddBalances(Terms<Jet>&, Jet* rate) const = 0;
 
-  // For each switch it adds: a number that is positive while the switch may stay as it is and falls through 0
-  // when it must change; and the change.
+  // For each switch it adds: a margin, which is positive while the switch may stay as it is and falls through
+  // 0 when it must change; and the change.
   virtual void Margins(const Terms<double>& x, double* margin) const = 0;
   virtual void Margins(const Terms<Jet>& x, Jet* margin) const = 0;
   virtual void Cross(int which, const Terms<double>& x, double* state, Mode* mode) const = 0;
@@ -92,8 +94,8 @@ class Effect {
   virtual void Sense(const SenseTerms<double>&, MeasurementOf<double>*) const = 0;
   virtual void Sense(const SenseTerms<Jet>&, MeasurementOf<Jet>*) const = 0;
 
-  // For an effect with a channel that reads late: by how much, and the channel's reading of then put in the
-  // place of that of now. `reach` is the same lateness, for those who keep the states (StateHistory).
+  // For an effect with a channel that reads late: by how much, and the channel's earlier reading put in the
+  // place of its present one. `reach` is the same lateness, for what keeps the earlier states (StateHistory).
   virtual bool reads_late() const { return false; }
   virtual double reach() const { return 0; }
   virtual double Lateness(const double* own) const = 0;
@@ -101,9 +103,10 @@ class Effect {
   virtual void Replace(const MeasurementOf<double>& then, MeasurementOf<double>*) const = 0;
   virtual void Replace(const MeasurementOf<Jet>& then, MeasurementOf<Jet>*) const = 0;
 
-  // For an effect that remembers earlier commands or changes at known times: the voltage from `time` on; when
-  // its equation next jumps; and that this time has been reached. Between stops it holds still. StopShift is
-  // the derivative of the stops' times: 0 with the derivatives that they take from the parameters.
+  // For an effect that remembers earlier commands or changes at known times: Command gives it the voltage
+  // from `time` on, NextStop is when its equation next jumps, PassStop says that this time has been reached.
+  // Between stops the effect does not change. StopShift carries the derivatives of the stops' times by the
+  // parameters; its value is 0.
   virtual void Command(double /*time*/, double /*voltage*/) {}
   virtual double NextStop(double /*time*/) const { return kUnbounded; }
   virtual void PassStop(double /*time*/) {}
@@ -235,18 +238,20 @@ std::unique_ptr<Effect> MakeEffect(const EffectDescription& /*description*/) {
   return std::make_unique<E>();
 }
 
-// A row of the catalogue: what is known of the effect, and how to build it from its description, which has been checked.
+// A row of the catalogue: what is known of the effect, and how to build it from its description, which has
+// been checked.
 struct CatalogueEntry {
   EffectInfo info;
   std::unique_ptr<Effect> (*make)(const EffectDescription& description) = nullptr;
 };
 
-// Adds an effect to the catalogue: models can have it, and the gap finder looks for it. Called once in the effect's
-// file, at namespace scope, which is what the result is for:
+// Adds an effect to the catalogue: models can have it, and the gap finder looks for it. Called once in the
+// effect's file, at namespace scope, which is what the result is for:
 //   [[maybe_unused]] const bool kAdded =
 //       AddToCatalogue({.info = {.id = "arm.spring", ...}, .make = MakeEffect<Spring>});
-// The order in which files are linked or initialised makes no difference. Returns true. Throws std::logic_error when
-// the catalogue has been used already; an id that is there twice is found at the first use (Catalogue).
+// The order in which files are linked or initialised makes no difference. Returns true. Throws
+// std::logic_error when the catalogue has been used already; an id that is there twice is found at the first
+// use (Catalogue).
 bool AddToCatalogue(CatalogueEntry entry);
 
 }  // namespace hydro::model

@@ -25,16 +25,15 @@ class EntrainedAir : public EffectOf<EntrainedAir> {
  private:
   static constexpr double kExponent = 1.4;
 
-  // The one number with a unit in the equations: psi as in the paper, or Pa. Liquids have a beta near 2e5
-  // psi, which is 1.4e9 Pa, so that 1e7 tells the two apart.
+  // The only number with a unit in the equations: psi as in the paper, or Pa. Liquids have a beta near 2e5
+  // psi, which is 1.4e9 Pa: 1e7 separates the two.
   template <class T>
   static double Atmosphere(const ParametersOf<T>& base) {
     return base.beta > T(1e7) ? 101325 : 14.6959;
   }
 
-  // Of a volume of air that has the volume 1 at atmospheric pressure. Below p = 0 the absolute pressure goes
-  // to 0 smoothly and stays above it, so that a vacuum is soft but not an error; at p = 100 psi this adds
-  // 1e-5.
+  // Of air that has the volume 1 at atmospheric pressure. Below p = 0 the absolute pressure approaches 0
+  // smoothly and stays above it, so that a vacuum is soft but not an error; at p = 100 psi this adds 1e-5.
   template <class T>
   static T Compressibility(const T& p, double atmosphere) {
     using std::pow;
@@ -54,7 +53,8 @@ class EntrainedAir : public EffectOf<EntrainedAir> {
                       "atmospheric "
                       "pressure, compressed polytropically",
           .confused_with = "parameter beta, fluid.stiffening",
-          // The less air there is, the more a little of it does: a fit that starts from none does not find 1 part in 500.
+          // The less air there is, the more a little of it does: a fit that starts from none does not find 1
+          // part in 500.
           .parameters = {{.name = "air_fraction",
                           .unit = "1",
                           .max = 1,

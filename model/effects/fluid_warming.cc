@@ -1,5 +1,5 @@
-// fluid.warming: viscous friction and leakage drift as the oil warms: b exp(-rate t), c_E and c_I exp(+rate
-// t).
+// fluid.warming: as the oil warms, viscous friction falls and leakage grows: b exp(-rate t), c_E and c_I
+// exp(+rate t).
 
 #include <cmath>
 

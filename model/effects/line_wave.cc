@@ -1,9 +1,10 @@
 // line.wave: on each side a line with inertia lies between the pump's volume and the actuator's.
-//   pump side      p_p' = -(beta/V_p) (q + Q), with q of eqs. (11), (12) at the pump's pressures, V_p =
-//   volume_fraction V_ms line           I Q' = p_p - p - R Q actuator side  volume V(alpha) - V_p, fed by Q
-//   in the place of -q; transducers and one-way valves are there
-// I makes the two volumes at mid-stroke resonate through the line at `frequency`, and R gives that mode
-// `damping`:
+//   pump side:      p_p' = -(beta/V_p) (q + Q), with q of eqs. (11), (12) at the pump's pressures and
+//                   V_p = volume_fraction V_ms
+//   line:           I Q' = p_p - p - R Q
+//   actuator side:  volume V(alpha) - V_p, fed by Q instead of -q; transducers and one-way valves are here
+// I is such that the two volumes resonate through the line at `frequency` at mid-stroke, and R such that this
+// mode has the damping ratio `damping`:
 //   I w^2 = beta (1/V_p + 1/(V_ms - V_p)),  R = 2 damping I w,  w = 2 pi frequency.
 // States: p_p1, Q_1, p_p2, Q_2.
 

@@ -1,5 +1,5 @@
 // motor.cogging: T -= amplitude sin(periods theta + phase), a conservative torque of the motor's magnets. It
-// acts on the pump at rest too, where friction holds it.
+// also acts on the pump at rest, where friction holds it.
 
 #include <cmath>
 #include <numbers>

@@ -1,8 +1,8 @@
 // motor.speed_torque_limit: abs(T) <= T_max (1 - abs(theta')/no_load_speed) while driving, with T_max =
 // T_pmax: what the supply's voltage leaves above the motor's back EMF. It acts on T_p after every other
-// limit, lag and delay. While braking (torque against speed) only T_pmax limits. One switch: 0 not limited,
-// +1 and -1 on the line in that direction, +2 and -2 turning faster than no_load_speed in that direction,
-// where there is no torque left to drive with.
+// limit, lag and delay. While braking (torque against speed) only T_pmax limits. One switch: 0, not limited;
+// +1 and -1, on the line in that direction; +2 and -2, turning faster than no_load_speed in that direction,
+// where no torque is left to drive with.
 
 #include <cmath>
 

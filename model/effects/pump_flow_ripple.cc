@@ -1,5 +1,4 @@
-// pump.flow_ripple: D (1 + amplitude cos(periods theta)) in flow and torque: the pistons' displacement in
-// turn.
+// pump.flow_ripple: D (1 + amplitude cos(periods theta)) in flow and torque, as the pistons deliver in turn.
 
 #include <cmath>
 

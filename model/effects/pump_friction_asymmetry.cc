@@ -1,5 +1,5 @@
 // pump.friction_asymmetry: T_s -> T_s +/- coulomb, b -> b +/- viscous for theta' > 0 / < 0. At rest too:
-// forward the pump breaks away at T_s + coulomb, backward at T_s - coulomb. Both follow from a constant
+// forward, the pump breaks away at T_s + coulomb, backward at T_s - coulomb. Both follow from a constant
 // torque `coulomb` against forward rotation.
 
 #include "model/effects/effect.h"

@@ -1,5 +1,5 @@
-// pump.pressure_friction: the paper's f in eq. (4), Coulomb friction that grows with the pressures, + f (p1 +
-// p2) sgn(theta').
+// pump.pressure_friction: the paper's f in eq. (4), Coulomb friction that grows with the pressures,
+// + f (p1 + p2) sgn(theta').
 
 #include "model/effects/effect.h"
 

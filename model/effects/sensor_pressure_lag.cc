@@ -1,5 +1,5 @@
-// sensor.pressure_lag: what the pressure transducers read follows the pressure, tau r' + r = p on each side.
-// Gain and offset act on r. States: r of p1, r of p2.
+// sensor.pressure_lag: the transducers' reading r follows the pressure, tau r' + r = p on each side. Gain and
+// offset act on r. States: r of p1, r of p2.
 
 #include "model/effects/effect.h"
 

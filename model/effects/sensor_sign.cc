@@ -1,4 +1,4 @@
-// sensor.sign: one channel is inverted in what is measured. The equations do not change.
+// sensor.sign: one measured channel is inverted. The equations do not change.
 
 #include "model/effects/effect.h"
 #include "model/effects/sensor_signal.h"

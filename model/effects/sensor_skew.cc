@@ -1,5 +1,5 @@
-// sensor.skew: one channel is late by `delay` in what is measured: it reads what it would have read then. The
-// equations do not change. Before the start it reads the first value.
+// sensor.skew: one channel is recorded late: it reads what it would have read `delay` earlier, before the
+// start the first value. The equations do not change.
 
 #include "model/effects/effect.h"
 #include "model/effects/sensor_signal.h"

@@ -1,5 +1,5 @@
 // valve.check: the one-way valve of each side opens at p3 - cracking and passes conductance (p3 - cracking -
-// p). It takes the place of the ideal valve, so p may fall below p3. One switch a side: 0 closed, 1 open.
+// p). It replaces the ideal valve, so p may fall below p3. One switch for each side: 0 closed, 1 open.
 
 #include "model/effects/effect.h"
 

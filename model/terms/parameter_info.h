@@ -1,5 +1,5 @@
-// What is known of each parameter by itself: name, unit, physical bounds, meaning. Model files are checked against
-// it, reports print it, and the gap finder fits by it.
+// What is known of each parameter by itself: name, unit, physical bounds, meaning. Model files are checked
+// against it, reports print it, and the gap finder fits by it.
 #pragma once
 
 #include <cstddef>
@@ -14,8 +14,8 @@ namespace hydro::model {
 // The bound of a parameter that has none.
 inline constexpr double kUnbounded = std::numeric_limits<double>::infinity();
 
-// What the size of a parameter is measured by when a fit starts from it: quantities of a model and of runs, so that
-// nothing depends on the units.
+// What the size of a parameter is measured by when a fit starts from it: quantities of a model and of runs,
+// so that nothing depends on the units.
 enum class Scale {
   kOne,           // the number itself
   kTorque,        // T_pmax
@@ -29,39 +29,45 @@ enum class Scale {
   kArmDamping,    // J_a over kSample
 };
 
-// What a parameter is in its effect's equation, where the gap finder treats it in a way of its own. Nothing else
-// about a parameter, its unit, name or effect, makes a difference to the gap finder.
+// What a parameter is in its effect's equation, where the gap finder treats it in a way of its own. Nothing
+// else about a parameter, its unit, name or effect, makes a difference to the gap finder.
 enum class Role {
-  kSize,  // how much there is of something; fitted from `starts`
-  kTime,  // a delay or time constant, in the model's unit of time. Intervals allow for what runs cannot show:
-          // that what the model takes to be immediate takes a small part of a sample
-  kFrequency,  // of something that resonates. A fit may end where another ringing is nearly in step, and is begun
-               // again around its end
-  kPeriods,           // whole periods in a turn of the motor; read off the torque balance with the next three
-  kPhase,             // in rad, where theta = 0; an effect need not have one
-  kTorqueWave,        // amplitude: torque of the motor -= amplitude sin(periods theta + phase)
-  kDisplacementWave,  // amplitude: D (1 + amplitude cos(periods theta + phase))
-  kChannel,           // a name: that of a measured channel. Tried for each channel that the runs have
+  // How much there is of something: fitted from `starts`.
+  kSize,
+  // A delay or time constant, in the model's unit of time. Its interval allows for what runs cannot show: what
+  // the model takes to be immediate takes a small part of a sample.
+  kTime,
+  // That of something that resonates. A fit may end where another ringing is nearly in step; it is begun again
+  // around its end.
+  kFrequency,
+  // Whole periods in a turn of the motor: read off the torque balance together with the amplitude and phase.
+  kPeriods,
+  kTorqueWave,        // amplitude in: torque of the motor -= amplitude sin(periods theta + phase)
+  kDisplacementWave,  // amplitude in: D (1 + amplitude cos(periods theta + phase))
+  kPhase,             // of either, rad; there need not be one
+  // A name: that of a measured channel. Tried for each channel that the runs have.
+  kChannel,
 };
 
 struct ParameterInfo {
   std::string name;
-  std::string unit;  // in the paper's units
-  double min = 0;    // physical bounds
-  double max = kUnbounded;
+  std::string unit;         // in the paper's units
+  double min = 0;           // smallest physical value
+  double max = kUnbounded;  // largest physical value
   bool min_allowed = true;  // false: must be above min
   std::string meaning;      // one line
   // Not empty: the value is a name, one of these.
   std::vector<std::string> names = {};
-  // Where a fit of the effect starts, in `scale`s: each of them with each of the effect's other parameters'. A
-  // parameter in which the effect is linear at 0 needs 0 only.
+  // Where a fit of the effect starts, in `scale`s: each of them with each of the effect's other parameters'.
+  // A parameter in which the effect is linear at 0 needs 0 only.
   std::vector<double> starts = {0};
   Scale scale = Scale::kOne;
   Role role = Role::kSize;
-  // The base parameter that it is added to, where it is the same term: the gap finder frees one of the two, the base
-  // parameter where that is not 0.
+  // The base parameter that it is added to, where it is the same term: the gap finder frees one of the two,
+  // the base parameter where that is not 0.
   double Parameters::*adds_to = nullptr;
-  // A size at which the effect shows on the paper's rig (Table 1); tests run every effect of the catalogue with it.
+  // A size at which the effect shows on the paper's rig (Table 1); tests run every effect of the catalogue
+  // with it.
   double example = 0;
 
   bool is_name() const { return !names.empty(); }

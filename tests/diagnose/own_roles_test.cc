@@ -1,5 +1,5 @@
-// The gap finder treats parameters by their role: twins of the catalogue's effects, with other ids, names and units as a
-// user's own would have, get what the catalogue's get. Without their roles they do not.
+// The gap finder treats parameters by their role: twins of the catalogue's effects, with other ids, names and
+// units as a user's own would have, get what the catalogue's get. Without their roles they do not.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -74,7 +74,8 @@ model::ParameterInfo Any(const std::string& name, const std::string& unit, Role 
               .names = {"p1", "arm_angle"},
               .role = Role::kChannel}});
 
-// Tests that what repeats within a turn is read off the balances, with the same numbers as of the catalogue's.
+// Tests that what repeats within a turn is read off the balances, with the same numbers as of the
+// catalogue's.
 TEST(OwnRoles, PeriodsAreReadOffTheBalances) {
   const std::vector<diagnose::RunData> runs =
       OneOfEach(Table1With({{"own.runout", {{"height", 1}, {"lobes", 6}, {"mark", 0.7}}, {}}}), 1.0, 1);
