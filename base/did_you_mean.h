@@ -1,4 +1,4 @@
-// The name that a misspelt one was probably meant to be.
+// The name that a misspelling probably meant.
 #pragma once
 
 #include <string>
@@ -6,7 +6,7 @@
 
 namespace hydro {
 
-// The entry of `names` nearest to `found` in single-character edits, or empty when none is near.
+// The entry of `names` nearest to `found` in single-character edits, or empty when none is close.
 std::string Nearest(const std::string& found, const std::vector<std::string>& names);
 
 // ", did you mean \"x\"?" or empty.

@@ -10,9 +10,8 @@ namespace hydro {
 
 class MappedFile {
  public:
-  // Maps a regular file into memory as long as it is now; anything else (a pipe) is read to its end. Throws
-  // InputError naming the file when it cannot be opened or read. The file must not be cut short while it is
-  // mapped.
+  // Maps a regular file at its present length; reads anything else (a pipe) to its end. Throws InputError
+  // with the file's name when it cannot be opened or read. The file must not be truncated while it is mapped.
   explicit MappedFile(const std::string& file);
   ~MappedFile();
   MappedFile(const MappedFile&) = delete;

@@ -14,23 +14,23 @@ class WriteError : public std::runtime_error {
 };
 
 enum class Opening {
-  kDirect,     // under its own name from the start: what was written survives a kill
-  kTemporary,  // as FILE.part, renamed by Finish() and removed when destroyed before: never a partial file
-               // under the name
+  kDirect,  // under its own name from the start: what was written survives a kill
+  // As FILE.part, which Finish() renames and the destructor removes: never a partial file under the name.
+  kTemporary,
 };
 
 // Whether a NewFile, of this process or another, is writing to the file under this name.
 bool IsBeingWritten(const std::string& file);
 
-// Throws InputError when a NewFile of that name could not be created, so that work does not have to be done
-// before that is known; leaves nothing. An empty name is no file.
+// Throws InputError when a NewFile of that name could not be created, so that a program fails before it
+// works. Leaves no file behind. An empty name is no file.
 void CheckCanBeCreated(const std::string& file);
 
 class NewFile {
  public:
-  // Creates the file, replacing an existing one (whoever reads that keeps the old contents). Throws
-  // InputError when it cannot be created or is being written by another process. Something that is not a
-  // regular file, such as /dev/null, is always opened directly.
+  // Creates the file and replaces an existing one, whose readers keep the old contents. Throws InputError
+  // when the file cannot be created or another process is writing it. What is not a regular file, such as
+  // /dev/null, is always opened directly.
   NewFile(const std::string& file, Opening opening);
   ~NewFile();
   NewFile(const NewFile&) = delete;
@@ -54,7 +54,7 @@ class NewFile {
   int descriptor_ = -1;
 };
 
-// Writes a text file, whole or not at all. Throws what NewFile throws.
+// The one way to write a small file: whole or not at all. Throws what NewFile throws.
 void WriteWholeFile(const std::string& file, const std::string& text);
 
 }  // namespace hydro

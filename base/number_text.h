@@ -1,5 +1,5 @@
-// Numbers as text and back, independent of the locale. Three ways to write a number, by purpose: exact in files,
-// exact in messages, rounded in reports.
+// Numbers as text and back, independent of the locale. Three ways to write a number, by purpose: exact in
+// files, exact in messages, rounded in reports.
 #pragma once
 
 #include <cstdint>
@@ -14,8 +14,8 @@ namespace hydro {
 void AppendNumber(double value, std::string& text);
 std::string NumberText(double value);
 
-// For messages and settings that people read and write: the same digits, without an exponent from 1e-4 to 1e15
-// ("0.0002").
+// For messages and settings that people read and write: the same digits, without an exponent from 1e-4 to
+// 1e15 ("0.0002").
 std::string ShortestNumber(double value);
 
 // For reports: rounded to so many significant digits, or to whole numbers where those have more: 3.14, 81000,

@@ -1,4 +1,4 @@
-// A loop whose rounds run on several threads.
+// A loop whose iterations run on several threads.
 #pragma once
 
 #include <atomic>
@@ -10,8 +10,9 @@
 
 namespace hydro {
 
-// Calls work(i) for each i below `count`, on up to `jobs` threads. Results must go to places of their own, so
-// that they do not depend on the order. The first exception is thrown again when all have stopped.
+// Calls work(i) for each i below `count`, on up to `jobs` threads. Each call must write its result to a place
+// of its own, so that results do not depend on the order. Rethrows the first exception when all threads have
+// stopped.
 template <class Work>
 void ParallelFor(size_t count, int jobs, const Work& work) {
   std::atomic<size_t> next = 0;

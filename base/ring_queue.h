@@ -1,4 +1,4 @@
-// A queue for what passes through a loop: after it has been as long as it gets, it allocates nothing more.
+// A queue for a loop: once it has reached its greatest length, it allocates nothing more.
 #pragma once
 
 #include <cstddef>

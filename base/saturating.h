@@ -1,4 +1,4 @@
-// Sums and differences of whole numbers that come from messages and files and may be anything.
+// Sums and differences that saturate, for whole numbers from messages and files, which may have any value.
 #pragma once
 
 #include <cstdint>
@@ -6,14 +6,14 @@
 
 namespace hydro {
 
-// a - b, or the nearest number that there is.
+// a - b, or the nearest value that an int64_t can hold.
 inline int64_t SaturatingDifference(int64_t a, int64_t b) {
   int64_t difference;
   if (!__builtin_sub_overflow(a, b, &difference)) return difference;
   return a < b ? std::numeric_limits<int64_t>::min() : std::numeric_limits<int64_t>::max();
 }
 
-// a + b, or the nearest number that there is.
+// a + b, or the nearest value that an int64_t can hold.
 inline int64_t SaturatingSum(int64_t a, int64_t b) {
   int64_t sum;
   if (!__builtin_add_overflow(a, b, &sum)) return sum;

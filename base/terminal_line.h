@@ -1,4 +1,4 @@
-// A line of a terminal that is drawn over again and again: how far some work is.
+// A progress line on a terminal, redrawn in place.
 #pragma once
 
 #include <cstdio>
@@ -10,13 +10,12 @@ class TerminalLine {
  public:
   // `out` stays the caller's.
   explicit TerminalLine(std::FILE* out) : out_(out) {}
-  // Wipes the line away.
+  // Clears the line.
   ~TerminalLine() { Wipe(); }
   TerminalLine(const TerminalLine&) = delete;
   TerminalLine& operator=(const TerminalLine&) = delete;
 
-  // "[####....] 50 % text" in place of what is there, as much of it as the terminal is wide; `fraction`: 0
-  // to 1.
+  // Shows "[####....] 50 % text", cut to the terminal's width. `fraction`: 0 to 1.
   void Draw(double fraction, const std::string& text);
   // Before anything else is written there.
   void Wipe();

@@ -12,19 +12,19 @@ namespace hydro {
 // The file's bytes. Throws InputError "file: ..." when it cannot be read or is larger than 64 MiB.
 std::string ReadTextFile(const std::string& file);
 
-// A path that `file` (absolute, or relative to the folder of `beside`) means.
+// The path of `file`, which is absolute or relative to the folder of `beside`.
 std::string PathBeside(const std::string& beside, const std::string& file);
 
-// Throws InputError where writing to `output` would replace one of `inputs`, under whatever name. Devices may
-// be both.
+// Throws InputError where writing to `output` would replace one of `inputs`, under whatever name. A device
+// may be both.
 void CheckKeeps(const std::string& output, const std::vector<std::string>& inputs);
 
 // `text` in double quotes on one line: control characters escaped, the middle of long texts left out.
 std::string Quoted(std::string_view text);
 
-// `text` as a terminal may see it: tabs and valid UTF-8 stay, whatever could move its cursor, change its
-// colours or make one line two (control characters, and bytes that are no UTF-8, which 8-bit terminals take
-// for such) becomes "\\x1b".
+// `text` made safe for a terminal: tabs and valid UTF-8 stay. Whatever could move the cursor, change colours
+// or break the line (control characters, and bytes that are not UTF-8, which 8-bit terminals take for control
+// characters) becomes "\\x1b".
 std::string Printable(std::string_view text);
 
 // Printable, line by line: its own line ends stay.

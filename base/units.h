@@ -23,8 +23,8 @@ struct Unit {
   std::array<double, 4> powers{};  // of m, kg, s and V
 };
 
-// A unit as the programs write it: names from the table, joined by "-" or a blank (times) and "/" (divided by),
-// with powers and brackets: "in-lbf/rad", "in^3/(s psi)", "1/psi", "in^3/s/psi^.5". Empty: it is none.
+// A unit as the programs write it: names from the table, joined by "-" or a blank (times) and "/" (divided
+// by), with powers and brackets: "in-lbf/rad", "in^3/(s psi)", "1/psi", "in^3/s/psi^.5". Empty: it is none.
 std::optional<Unit> ParseUnit(std::string_view text);
 
 struct SiUnit {
@@ -33,8 +33,8 @@ struct SiUnit {
   double factor;  // value in `to` = factor * value in `from`
 };
 
-// What a figure in one of the paper's units is shown in; empty where the unit is SI already or not known. `size`
-// decides between kPa and MPa: that of the largest value to show.
+// What a figure in one of the paper's units is shown in; empty where the unit is SI already or not known.
+// `size` decides between kPa and MPa: that of the largest value to show.
 std::optional<SiUnit> FindSiUnit(const std::string& unit, double size);
 
 }  // namespace hydro

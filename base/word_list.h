@@ -1,4 +1,4 @@
-// Words put together.
+// Lists of words in a sentence.
 #pragma once
 
 #include <string>
@@ -10,7 +10,7 @@ namespace hydro {
 std::string Joined(const std::vector<std::string>& parts, const std::string& between = ", ");
 // "a, b and c"
 std::string Enumerated(const std::vector<std::string>& parts);
-// "run sine"; a name that says so itself as it is: "run 5"
+// "run sine"; a name that already begins with "run" stays as it is: "run 5"
 std::string RunNamed(const std::string& name);
 
 }  // namespace hydro

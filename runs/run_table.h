@@ -22,23 +22,23 @@ inline constexpr std::array<const char*, 11> kRunColumns = {"time_s",
                                                             "p1_psi",
                                                             "p2_psi"};
 
-// One row a plant tick (state message), in order of ticks; NaN where there is no value.
-// - voltage_V acts from this row's tick until the next row's. state_t.voltage is what acted before its tick,
-// so it is the
-//   next state's; the last row has the voltage of the motor command that acts next, if the log has it.
-// - pressure_ref_psi is what was in force for the pressure loop at this tick: the motor command's of this
-// tick; where
-//   there is none, the last pressure command's that could have arrived. None before the first, and none in
-//   open loop.
-// - arm_ref_rad is the last arm reference's (of signal ARM_ANGLE) at this tick or before.
-// Throws InputError when the log has no state, or the states of more than one run.
+// One row for each plant tick (state message), in tick order; NaN where there is no value.
+// - voltage_V acts from this row's tick until the next row's. A state carries the voltage that acted before
+//   its tick, so each row takes the next state's; the last row takes that of the motor command that acts
+//   next, if the log has it.
+// - pressure_ref_psi is the reference in force for the pressure loop at this tick: that of this tick's motor
+//   command or, without one, that of the last pressure command that could have arrived. There is none before
+//   the first, and none in open loop.
+// - arm_ref_rad is the last arm reference (signal ARM_ANGLE) up to this tick.
+// Throws InputError when the log has no state, or states of more than one run.
 tables::Table ExportRun(const RunLog& log);
 
-// Writes the log that ExportRun() turns into the same table: for any subset of kRunColumns that has time_s,
-// the columns given come back bit by bit and the others empty (tick: the row number from 0).
-// `program_version` goes into the log's description. Events are received at time_s, so that lcm-logplayer
-// plays the log at the pace of the measurement. Throws InputError naming file, row and column: unknown
-// columns, no time_s, times that do not increase, ticks that are not increasing whole numbers; WriteError.
+// Writes a log that ExportRun() turns back into the same table. The table may hold any subset of kRunColumns
+// that has time_s: the columns given come back bit by bit, the others empty (tick: the row number from 0).
+// `program_version` goes into the log's description. Events are stamped with time_s, so lcm-logplayer plays
+// the log at the pace of the measurement. Throws InputError with file, row and column for unknown columns, a
+// missing time_s, times that do not increase and ticks that are not increasing whole numbers; throws
+// WriteError.
 void ImportRun(const tables::Table& table, const std::string& program_version, const std::string& log_file);
 
 }  // namespace hydro::runs

@@ -1,12 +1,13 @@
 // The command line that every program shares.
 //
 //   int main(int argc, char** argv) {
-//     hydro::CommandLine line("hydro-plant", "The simulated actuator.");
-//     hydro::CommonOptions options;
+//     hydro::settings::CommandLine line("hydro-plant", "The simulated actuator.");
+//     hydro::settings::CommonOptions options;
 //     line.AddCommon(&options);
 //     if (const auto code = line.Parse(argc, argv)) return *code;
-//     return hydro::RunProgram("hydro-plant", [&] { return Run(hydro::LoadStackConfig(options.config,
-//     options.overrides)); });
+//     return hydro::settings::RunProgram("hydro-plant", [&] {
+//       return Run(hydro::settings::LoadStackConfig(options.config, options.overrides));
+//     });
 //   }
 #pragma once
 
@@ -24,14 +25,14 @@ std::string ProgramVersion();
 
 struct CommonOptions {
   std::string config;  // CONFIG
-  std::vector<std::string>
-      overrides;    // --set, and --time, --duration, --seed as what they set; for LoadStackConfig
+  // For LoadStackConfig: --set, and --time, --duration and --seed as the keys that they set.
+  std::vector<std::string> overrides;
   std::string log;  // --log; empty: not given
-  bool si = false;  // --si: figures for a person are in SI
+  bool si = false;  // --si: figures that people read are in SI
 };
 
-// What the targets given to Add... point to is set by Parse() and must outlive it; values not on the command
-// line are left alone.
+// Parse() sets the targets given to Add..., which must outlive it. Targets of options that are not on the
+// command line keep their values.
 class CommandLine {
  public:
   CommandLine(const std::string& program, const std::string& description);
@@ -43,8 +44,8 @@ class CommandLine {
   // Without `config_required` a CONFIG that is not there leaves options->config empty.
   void AddCommon(CommonOptions* options, bool config_required = true);
 
-  // `names` as in "-o,--out"; `help` begins with the value's name in capitals: "FILE where to write". A text
-  // that is empty, as of a shell's variable that is not set, is refused: it would count as not given.
+  // `names` as in "-o,--out"; `help` begins with the value's name in capitals: "FILE where to write". An
+  // empty text, such as that of an unset shell variable, is refused: it would count as not given.
   void AddOption(const std::string& names, std::string* target, const std::string& help,
                  bool required = false);
   // An empty text is a value here.
@@ -71,8 +72,8 @@ class CommandLine {
   // The options and flags that were given, as "--log", in the order of declaration.
   std::vector<std::string> Given() const;
 
-  // Nothing when the program should go on; else the code to exit with now: 0 after --help or --version, 2 for
-  // bad usage, which one line on stderr explains.
+  // Empty when the program should go on; otherwise the code to exit with now: 0 after --help or --version, 2
+  // for bad usage, which one line on stderr explains.
   std::optional<int> Parse(int argc, const char* const* argv);
 
  private:
@@ -81,8 +82,8 @@ class CommandLine {
   std::unique_ptr<Impl> impl_;
 };
 
-// Runs a program's body and turns what it throws into one line "program: ..." on stderr and an exit code: 2
-// for InputError, 1 for anything else.
+// Runs a program's body. An exception becomes one line "program: ..." on stderr and an exit code: 2 for
+// InputError, 1 for anything else.
 int RunProgram(const std::string& program, const std::function<int()>& body);
 
 }  // namespace hydro::settings

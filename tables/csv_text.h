@@ -12,9 +12,10 @@
 namespace hydro::tables {
 
 // The grammar of every CSV file that this project reads. Cells stand between commas, and may be quoted, with
-// commas inside. A byte order mark, blanks around cells, carriage returns, blank lines (which in a table of one
-// column are an empty cell) and lines that begin with # are skipped. The first line that remains holds the names,
-// unless it holds numbers and lines with # came before: then the last of those has the names ("#time,p1").
+// commas inside. A byte order mark, blanks around cells, carriage returns, blank lines (which in a table of
+// one column are an empty cell) and lines that begin with # are skipped. The first line that remains holds
+// the names, unless it holds numbers and lines with # came before: then the last of those has the names
+// ("#time,p1").
 class CsvText {
  public:
   // Reads the names; `file` is for messages. The text must outlive the reader. Throws InputError where there

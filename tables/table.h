@@ -37,8 +37,8 @@ void WriteTable(const Table& table, const std::string& file);
 // Throws the InputError that WriteTable would for this name; for callers that want to know before they work.
 void CheckTableName(const std::string& file);
 
-// CSV, as csv_text.h says; empty cells and nan are missing values. Written: the shortest text that reads back as
-// the same bits, missing values as empty cells.
+// CSV, as csv_text.h says; empty cells and nan are missing values. Written: the shortest text that reads back
+// as the same bits, missing values as empty cells.
 Table ReadCsv(const std::string& file);
 void WriteCsv(const Table& table, const std::string& file);
 

@@ -15,10 +15,11 @@ namespace {
 constexpr int kMostKeyParts = 16;  // what is read here has up to three
 constexpr int kMostBrackets = 16;  // one inside another; what is read here has two
 
-// Bounds the depth of a document before it is parsed. toml++ bounds how deep arrays and inline tables nest, but
-// builds a table inside a table for each part of a dotted key, and a key of a hundred thousand parts exhausts
-// the stack. A document that passes is at most kMostKeyParts * (kMostBrackets + 1) + kMostBrackets levels deep.
-// The scan knows strings and comments as toml++ does and nothing else: toml++ reports what is not TOML.
+// Bounds the depth of a document before it is parsed. toml++ bounds how deep arrays and inline tables nest,
+// but builds a table inside a table for each part of a dotted key, and a key of a hundred thousand parts
+// exhausts the stack. A document that passes is at most kMostKeyParts * (kMostBrackets + 1) + kMostBrackets
+// levels deep. The scan knows strings and comments as toml++ does and nothing else: toml++ reports what is
+// not TOML.
 class DepthScan {
  public:
   explicit DepthScan(std::string_view text) : text_(text) {}

@@ -44,8 +44,9 @@ TomlNode NumberNode(double value);
 TomlNode StringNode(std::string text);
 TomlNode ArrayNode(std::vector<TomlNode> items);
 
-// The only reader of TOML, for trusted and untrusted text alike: no text can exhaust the stack. Throws InputError
-// "name:line: syntax: ..." where the text is not TOML, or nests deeper than any document of this project.
+// The only reader of TOML, for trusted and untrusted text alike: no text can exhaust the stack. Throws
+// InputError "name:line: syntax: ..." where the text is not TOML, or nests deeper than any document of this
+// project.
 TomlNode ParseToml(const std::string& text, const std::string& name);
 
 // TOML text that ParseToml reads back as the same tree, doubles bit by bit.

@@ -44,7 +44,8 @@ TEST(RunConfigTest, DelayAndModelName) {
   EXPECT_EQ(ModelName(DescriptionOf("", "name = 3\n"), "a.lcmlog"), "");
 }
 
-// Tests that no text in a log exhausts the stack: it is refused with one line that names the log and the place.
+// Tests that no text in a log exhausts the stack: it is refused with one line that names the log and the
+// place.
 TEST(RunConfigTest, HostileTexts) {
   for (const size_t size : {20'000, 100'000}) {
     std::string deep = "a";

@@ -91,7 +91,8 @@ TEST_F(TableTest, CsvOfOthers) {
   EXPECT_EQ(table.Place(1, "time_s"), Path("x.csv") + ": line 3, column time_s");
 }
 
-// Tests that comments and blank lines are skipped and lines still counted, and that names may stand in a comment.
+// Tests that comments and blank lines are skipped and lines still counted, and that names may stand in a
+// comment.
 TEST_F(TableTest, CommentsAndBlankLines) {
   const Table table = Csv("# recorded on the bench\n\na,b\n1,2\n\n# pause\n3,4\n#end\n");
   Table expected;
