@@ -97,21 +97,19 @@ json LevelsJson(const Remainder& remainder) {
   return out;
 }
 
-}  // namespace
-
-ExperimentResult RunFig4(const ExperimentOptions& options) {
-  const model::Parameters p = PressureLoopParameters();
-  const TrackingStudy study = RunTrackingStudy(options, "fig4", "square");
-  const TrackingError& error = study.error;
-  const TrackingError& slow = study.by_frequency.front().error;
-  // In this process always: no separate processes keep up with that in real time.
-  const TrackingError finer = MeasureTracking(
+// The wave with the loop sampled ten times as often, nearer to an analog one. In this process always: no
+// separate processes keep up with that in real time.
+TrackingError TrackFinely() {
+  return MeasureTracking(
       RunPressureLoop(RunStackInProcess, {.name = "fig4-50kHz",
                                           .reference = WaveReference("square", kWaveFrequency),
                                           .duration = kWaveDuration,
                                           .motion = "",
                                           .rate = 10 * kLoopRate}),
       kWaveSettled);
+}
+
+std::vector<Remainder> HoldAllLevels(const ExperimentOptions& options, const TrackingStudy& study) {
   std::vector<Remainder> remainders = {
       {"no feed-forward", 0, {}},
       {fmt::format("{:.5f} V/psi: all but friction", study.feedforward), study.feedforward, {}},
@@ -122,51 +120,80 @@ ExperimentResult RunFig4(const ExperimentOptions& options) {
     remainders[i].levels =
         HoldLevels(options.run_stack, fmt::format("fig4-levels-{}", i), remainders[i].feedforward);
   }
+  return remainders;
+}
 
-  ExperimentResult result = DescribeTracking(study);
-  const double jump = 2 * kWaveAmplitude * p.k_1 * study.gains.k_p;
-  result.paper_says =
-      "Figure 4 shows dp following a square wave in experiment and simulation, with |T_p| <= 40 in-lb. A "
-      "small "
-      "feed-forward linear in dp_ref could eliminate the steady-state error.";
-  result.explanation = fmt::format(
-                           "A jump of {} psi asks for 2 A k_1 k_p = {:.0f} in-lbf against {}, so the motor "
-                           "is at its limit for "
-                           "{:.0f} % of the time and dp changes as fast as {} in-lbf can accelerate the "
-                           "pump. It peaks at {:.0f} "
-                           "psi and is called back before it settles. At 1 Hz it has time to settle: {:.1f} "
-                           "% of the time at the limit, RMS error "
-                           "{:.0f} psi instead of {:.0f}. ",
-                           2 * kWaveAmplitude, jump, p.T_pmax, 100 * error.saturated_fraction, p.T_pmax,
-                           error.highest, 100 * slow.saturated_fraction, slow.rms, error.rms) +
-                       SteadyStateText(study);
-  result.comparisons.push_back(
-      {"torque that the loop asks for at a jump", "in-lbf", "limited to 40", jump, study.largest_demand,
-       "expected: 2 A k_1 k_p, had dp settled and the pump stopped before the jump"});
-  result.comparisons.push_back(
-      {"steady peaks of dp", "psi", "", page::kAutomatic, error.highest,
-       fmt::format("the other way {:.1f}; {:.1f} with the loop sampled at 50 kHz, nearer to an analog one",
-                   error.lowest, finer.highest)});
-  result.findings = {
-      {9, "Figure 4's simulation has the constraint |T_p| <= 40 in-lb; its reference is not printed.",
-       fmt::format(
-           "A jump from {:+} to {:+} psi demands 2 A k_1 k_p = {:.0f} in-lbf, {:.1f} times the limit "
-           "({:.0f} at {} Hz, where dp has not settled before it). At {} Hz the motor is at the limit "
-           "{:.0f} % of the time and dp peaks at {:+.1f} and {:+.1f} psi ({:+.1f} and {:+.1f} with the "
-           "loop sampled at 50 kHz).",
-           -kWaveAmplitude, kWaveAmplitude, jump, jump / p.T_pmax, study.largest_demand, kWaveFrequency,
-           kWaveFrequency, 100 * error.saturated_fraction, error.highest, error.lowest, finer.highest,
-           finer.lowest),
-       "Shown in Figure 4, with the torque and its limit below the pressure."}};
+// in-lbf, asked for by a jump of the reference, had dp settled and the pump stopped before it.
+double JumpTorque(const TrackingStudy& study) {
+  return 2 * kWaveAmplitude * PressureLoopParameters().k_1 * study.gains.k_p;
+}
 
-  json numbers = ParseJson(result.numbers);
-  numbers["demand_at_a_settled_jump_in_lbf"] = jump;
+std::string Explanation(const TrackingStudy& study) {
+  const TrackingError& error = study.error;
+  const TrackingError& slow = study.by_frequency.front().error;
+  const double T_pmax = PressureLoopParameters().T_pmax;
+  return fmt::format(
+             "A jump of {} psi asks for 2 A k_1 k_p = {:.0f} in-lbf against {}, so the motor "
+             "is at its limit for "
+             "{:.0f} % of the time and dp changes as fast as {} in-lbf can accelerate the "
+             "pump. It peaks at {:.0f} "
+             "psi and is called back before it settles. At 1 Hz it has time to settle: {:.1f} "
+             "% of the time at the limit, RMS error "
+             "{:.0f} psi instead of {:.0f}. ",
+             2 * kWaveAmplitude, JumpTorque(study), T_pmax, 100 * error.saturated_fraction, T_pmax,
+             error.highest, 100 * slow.saturated_fraction, slow.rms, error.rms) +
+         SteadyStateText(study);
+}
+
+Finding SaturationFinding(const TrackingStudy& study, const TrackingError& finer) {
+  const TrackingError& error = study.error;
+  const double jump = JumpTorque(study);
+  const double T_pmax = PressureLoopParameters().T_pmax;
+  return {9, "Figure 4's simulation has the constraint |T_p| <= 40 in-lb; its reference is not printed.",
+          fmt::format(
+              "A jump from {:+} to {:+} psi demands 2 A k_1 k_p = {:.0f} in-lbf, {:.1f} times the limit "
+              "({:.0f} at {} Hz, where dp has not settled before it). At {} Hz the motor is at the limit "
+              "{:.0f} % of the time and dp peaks at {:+.1f} and {:+.1f} psi ({:+.1f} and {:+.1f} with the "
+              "loop sampled at 50 kHz).",
+              -kWaveAmplitude, kWaveAmplitude, jump, jump / T_pmax, study.largest_demand, kWaveFrequency,
+              kWaveFrequency, 100 * error.saturated_fraction, error.highest, error.lowest, finer.highest,
+              finer.lowest),
+          "Shown in Figure 4, with the torque and its limit below the pressure."};
+}
+
+void AddNumbers(const TrackingStudy& study, const TrackingError& finer,
+                const std::vector<Remainder>& remainders, ExperimentResult* result) {
+  json numbers = ParseJson(result->numbers);
+  numbers["demand_at_a_settled_jump_in_lbf"] = JumpTorque(study);
   numbers["at_50_khz"] = {{"highest_dp_psi", finer.highest}, {"lowest_dp_psi", finer.lowest}};
   numbers["steady_state_by_reference"] = LevelsJson(remainders[0]);
   numbers["with_feedforward"]["steady_state_by_reference"] = LevelsJson(remainders[1]);
   numbers["with_tuned_feedforward"] = {{"feedforward_V_per_psi", study.tuned_feedforward},
                                        {"steady_state_by_reference", LevelsJson(remainders[2])}};
-  result.numbers = JsonText(numbers);
+  result->numbers = JsonText(numbers);
+}
+
+}  // namespace
+
+ExperimentResult RunFig4(const ExperimentOptions& options) {
+  const TrackingStudy study = RunTrackingStudy(options, "fig4", "square");
+  const TrackingError finer = TrackFinely();
+  const std::vector<Remainder> remainders = HoldAllLevels(options, study);
+  ExperimentResult result = DescribeTracking(study);
+  result.paper_says =
+      "Figure 4 shows dp following a square wave in experiment and simulation, with |T_p| <= 40 in-lb. A "
+      "small "
+      "feed-forward linear in dp_ref could eliminate the steady-state error.";
+  result.explanation = Explanation(study);
+  result.comparisons.push_back(
+      {"torque that the loop asks for at a jump", "in-lbf", "limited to 40", JumpTorque(study),
+       study.largest_demand, "expected: 2 A k_1 k_p, had dp settled and the pump stopped before the jump"});
+  result.comparisons.push_back(
+      {"steady peaks of dp", "psi", "", page::kAutomatic, study.error.highest,
+       fmt::format("the other way {:.1f}; {:.1f} with the loop sampled at 50 kHz, nearer to an analog one",
+                   study.error.lowest, finer.highest)});
+  result.findings = {SaturationFinding(study, finer)};
+  AddNumbers(study, finer, remainders, &result);
   result.pictures.push_back(
       {"-hold",
        {.caption = "Closed pressure loop, Table 1, clamped at α = 0. Below: points are runs of the stack, "

@@ -263,26 +263,78 @@ ExperimentResult AnalyseMeasured(const ExperimentOptions& options) {
   return result;
 }
 
+// The simulated rig's runs, one a torque.
+std::vector<runs::MeasuredRun> MeasureAll(const ExperimentOptions& options, const model::Parameters& p) {
+  std::vector<runs::MeasuredRun> runs;
+  for (size_t i = 0; i < std::size(kTorques); ++i) {
+    runs.push_back(Measure(options, i, p));
+    runs.back().name = runs.back().file;
+  }
+  return runs;
+}
+
+std::string Explanation(const LeakageFit& fit) {
+  const auto shift = [&](const std::string& name) {
+    return *std::find_if(fit.shifts.begin(), fit.shifts.end(),
+                         [&](const LeakageShift& one) { return one.parameter == name; });
+  };
+  return fmt::format(
+      "Levenberg-Marquardt on both logarithms gives c_E = {c_E} and c_I = {c_I} in^3/(s psi) (95 %, all else "
+      "known); the residuals are {residuals:.3f} of the noise. {identifiability} While the pump sticks both "
+      "valves are closed; then p_1 + p_2 - 2 p_3 decays with β c_E/V and p_2 - p_1 with β (c_E + 2 c_I)/V: "
+      "the sum of the pressures tells c_E, their difference c_E + 2 c_I. With p_2 - p_1 alone, as on the "
+      "paper's oscilloscope, what these runs tell best is c_E + {c_I_weight:.2f} c_I, and c_I is known "
+      "within {dp_error:.2g} % instead of {error:.2g} % (standard errors; correlation {correlation:.2f}); "
+      "that it is known at all comes from the swings and from when they begin. A run that shows nothing but "
+      "steady creep, one side at p_3, tells c_E + c_I only. The rest of Table 1 is taken as exact and "
+      "matters more than the noise: 1 % more β changes c_E by {beta_c_E:.1f} % and c_I by {beta_c_I:.1f} %, "
+      "1 % more T_s by {T_s_c_E:.1f} % and {T_s_c_I:.1f} %, 1 % more k_1 by {k_1_c_E:.1f} % and "
+      "{k_1_c_I:.1f} %.",
+      fmt::arg("c_E", maths::PlusMinus(fit.c_E)), fmt::arg("c_I", maths::PlusMinus(fit.c_I)),
+      fmt::arg("residuals", fit.rms), fmt::arg("identifiability", Identifiability(fit)),
+      fmt::arg("c_I_weight", fit.all_difference.c_I_weight),
+      fmt::arg("dp_error", 100 * fit.all_difference.c_I_error),
+      fmt::arg("error", 100 * fit.information.c_I_error),
+      fmt::arg("correlation", fit.all_difference.correlation),
+      fmt::arg("beta_c_E", shift("beta").c_E_percent), fmt::arg("beta_c_I", shift("beta").c_I_percent),
+      fmt::arg("T_s_c_E", shift("T_s").c_E_percent), fmt::arg("T_s_c_I", shift("T_s").c_I_percent),
+      fmt::arg("k_1_c_E", shift("k_1").c_E_percent), fmt::arg("k_1_c_I", shift("k_1").c_I_percent));
+}
+
+std::vector<Comparison> Comparisons(const LeakageFit& fit, const StickDecay& decay,
+                                    const model::Parameters& p) {
+  return {{"c_E", "in^3/(s psi)", "6.5e-6", p.c_E, fit.c_E.value, maths::PlusMinus(fit.c_E) + ", 95 %"},
+          {"c_I", "in^3/(s psi)", "1.0e-6", p.c_I, fit.c_I.value, maths::PlusMinus(fit.c_I) + ", 95 %"},
+          {"c_E from the first stick", "in^3/(s psi)", "6.5e-6", p.c_E, decay.c_E,
+           "closed form: decay of p_1 + p_2 - 2 p_3"},
+          {"c_I from the first stick", "in^3/(s psi)", "1.0e-6", p.c_I, decay.c_I,
+           "closed form: decay of p_2 - p_1, less that of the sum"},
+          {"residuals, in noise", "", "", 1, fit.rms, "1: nothing but the sensors' noise is left"}};
+}
+
+Finding NamesFinding(const LeakageFit& fit, size_t runs, double low, double p_3) {
+  return {
+      10, "The text adjusts \"c_E and c_f in (11) and (12)\"; Table 1 lists \"p_s\".",
+      fmt::format(
+          "With c_E and c_I, the only coefficients of (11) and (12), the model explains {} clamped runs to "
+          "{:.3f} of their noise: no third is missing. The side that the pump draws from stays at {:.2f} "
+          "psi while it creeps, Table 1's p_s = {} psi, where (11) and (12) have p_3.",
+          runs, fit.rms, low, p_3),
+      "c_f is read as c_I, p_s as p_3."};
+}
+
 }  // namespace
 
 ExperimentResult RunLeakage(const ExperimentOptions& options) {
   if (!options.measured_run.empty()) return AnalyseMeasured(options);
   const model::ModelDescription model = ShippedModel("table1");
   const model::Parameters& p = model.parameters;
-  std::vector<runs::MeasuredRun> runs;
-  for (size_t i = 0; i < std::size(kTorques); ++i) {
-    runs.push_back(Measure(options, i, p));
-    runs.back().name = runs.back().file;
-  }
+  const std::vector<runs::MeasuredRun> runs = MeasureAll(options, p);
   options.progress(0.2);
   const LeakageFit fit = FitLeakage(model, runs);
   options.progress(0.9);
   const StickDecay decay = FitStick(runs.front(), fit.simulated.front(), p);
   const double low = LowSideWhileCreeping(runs.front());
-  const auto shift = [&](const std::string& name) {
-    return *std::find_if(fit.shifts.begin(), fit.shifts.end(),
-                         [&](const LeakageShift& one) { return one.parameter == name; });
-  };
 
   ExperimentResult result;
   result.conditions = fmt::format(
@@ -291,48 +343,15 @@ ExperimentResult RunLeakage(const ExperimentOptions& options) {
       "{} s, then none. Pressures read with {} psi of noise in steps of {:.3f} psi.",
       kStart, kRelease, kPressureNoise, kPressureStep);
   result.paper_says = kPaperSays;
-  result.explanation = fmt::format(
-      "Levenberg-Marquardt on both logarithms gives c_E = {} and c_I = {} in^3/(s psi) (95 %, all else "
-      "known); "
-      "the residuals are {:.3f} of the noise. {} While the pump sticks both valves are closed; then p_1 + "
-      "p_2 - 2 "
-      "p_3 decays with β c_E/V and p_2 - p_1 with β (c_E + 2 c_I)/V: the sum of the pressures tells c_E, "
-      "their "
-      "difference c_E + 2 c_I. With p_2 - p_1 alone, as on the paper's oscilloscope, what these runs tell "
-      "best is "
-      "c_E + {:.2f} c_I, and c_I is known within {:.2g} % instead of {:.2g} % (standard errors; correlation "
-      "{:.2f}); that it is known at all comes from the swings and from when they begin. A run that shows "
-      "nothing "
-      "but steady creep, one side at p_3, tells c_E + c_I only. The rest of Table 1 is taken as exact and "
-      "matters more than the noise: 1 % more β changes c_E by {:.1f} % and c_I by {:.1f} %, 1 % more T_s by "
-      "{:.1f} % and {:.1f} %, 1 % more k_1 by {:.1f} % and {:.1f} %.",
-      maths::PlusMinus(fit.c_E), maths::PlusMinus(fit.c_I), fit.rms, Identifiability(fit),
-      fit.all_difference.c_I_weight, 100 * fit.all_difference.c_I_error, 100 * fit.information.c_I_error,
-      fit.all_difference.correlation, shift("beta").c_E_percent, shift("beta").c_I_percent,
-      shift("T_s").c_E_percent, shift("T_s").c_I_percent, shift("k_1").c_E_percent, shift("k_1").c_I_percent);
-
+  result.explanation = Explanation(fit);
   json numbers = Numbers(fit);
   numbers["source"] = "simulated rig";
   numbers["stick_decay"] = {
       {"c_E", decay.c_E}, {"c_I", decay.c_I}, {"from_s", decay.from}, {"to_s", decay.to}};
   numbers["low_side_while_creeping_psi"] = low;
   result.numbers = JsonText(numbers);
-  result.comparisons = {
-      {"c_E", "in^3/(s psi)", "6.5e-6", p.c_E, fit.c_E.value, maths::PlusMinus(fit.c_E) + ", 95 %"},
-      {"c_I", "in^3/(s psi)", "1.0e-6", p.c_I, fit.c_I.value, maths::PlusMinus(fit.c_I) + ", 95 %"},
-      {"c_E from the first stick", "in^3/(s psi)", "6.5e-6", p.c_E, decay.c_E,
-       "closed form: decay of p_1 + p_2 - 2 p_3"},
-      {"c_I from the first stick", "in^3/(s psi)", "1.0e-6", p.c_I, decay.c_I,
-       "closed form: decay of p_2 - p_1, less that of the sum"},
-      {"residuals, in noise", "", "", 1, fit.rms, "1: nothing but the sensors' noise is left"}};
-  result.findings = {
-      {10, "The text adjusts \"c_E and c_f in (11) and (12)\"; Table 1 lists \"p_s\".",
-       fmt::format(
-           "With c_E and c_I, the only coefficients of (11) and (12), the model explains {} clamped runs to "
-           "{:.3f} of their noise: no third is missing. The side that the pump draws from stays at {:.2f} "
-           "psi while it creeps, Table 1's p_s = {} psi, where (11) and (12) have p_3.",
-           runs.size(), fit.rms, low, p.p_3),
-       "c_f is read as c_I, p_s as p_3."}};
+  result.comparisons = Comparisons(fit, decay, p);
+  result.findings = {NamesFinding(fit, runs.size(), low, p.p_3)};
   result.table = FitTable(runs, fit);
   result.pictures.push_back(FitPicture(runs, fit, p.p_3,
                                        fmt::format("{} c_E = {}, c_I = {} in^3/(s psi).", result.conditions,
