@@ -62,6 +62,66 @@ void Rethrow(const std::exception_ptr& failure) {
   if (failure) std::rethrow_exception(failure);
 }
 
+// Runs the chosen ones, at most `jobs` at a time. `failures` are theirs, in the same order.
+std::vector<ReportEntry> RunAll(const std::vector<Experiment>& chosen, const ExperimentRequest& request,
+                                std::FILE* errors, std::vector<std::exception_ptr>* failures) {
+  std::vector<std::string> names;
+  std::vector<double> costs;
+  for (const Experiment& experiment : chosen) {
+    names.push_back(experiment.name);
+    costs.push_back(experiment.cost);
+  }
+  std::vector<ReportEntry> entries(chosen.size());
+  failures->resize(chosen.size());
+  ProgressDisplay display(errors, isatty(fileno(errors)) == 1, names, costs);
+  // Longest first, so that none is left alone at the end.
+  std::vector<size_t> order(chosen.size());
+  std::iota(order.begin(), order.end(), size_t{0});
+  std::stable_sort(order.begin(), order.end(), [&](size_t a, size_t b) { return costs[a] > costs[b]; });
+  std::atomic<size_t> next{0};
+  const auto work = [&] {
+    for (size_t i = 0; (i = next++) < order.size();) {
+      const size_t task = order[i];
+      display.Start(task);
+      entries[task] = RunOne(
+          chosen[task], request, [&](double done) { display.Advance(task, done); }, (*failures)[task]);
+      display.Finish(task, !entries[task].failure.empty());
+    }
+  };
+  std::vector<std::jthread> threads;
+  const size_t count = std::min(chosen.size(), static_cast<size_t>(std::max(1, request.jobs)));
+  for (size_t i = 1; i < count; ++i) threads.emplace_back(work);
+  work();
+  threads.clear();  // waits for them
+  return entries;
+}
+
+// Prints what came out and what failed. True: nothing failed.
+bool PrintResults(const std::vector<ReportEntry>& entries, bool si, std::FILE* out, std::FILE* errors) {
+  bool whole = true;
+  for (const ReportEntry& entry : entries) {
+    if (entry.result) std::fprintf(out, "%s\n", SummaryText(entry.experiment, *entry.result, si).c_str());
+  }
+  for (const ReportEntry& entry : entries) {
+    if (entry.failure.empty()) continue;
+    std::fprintf(errors, "hydro-experiment: %s failed: %s\n", entry.experiment.name.c_str(),
+                 entry.failure.c_str());
+    whole = false;
+  }
+  return whole;
+}
+
+// True: each finding has evidence.
+bool PrintMissingFindings(const std::vector<ReportEntry>& entries, std::FILE* errors) {
+  std::string missing;
+  for (const int number : MissingFindings(entries)) {
+    missing += (missing.empty() ? "" : ", ") + std::to_string(number);
+  }
+  if (missing.empty()) return true;
+  std::fprintf(errors, "hydro-experiment: no experiment gave evidence for finding %s\n", missing.c_str());
+  return false;
+}
+
 }  // namespace
 
 std::vector<Experiment> ChooseExperiments(const std::vector<Experiment>& all,
@@ -94,64 +154,18 @@ int RunExperiments(const std::vector<Experiment>& all, const ExperimentRequest& 
   const std::vector<Experiment> chosen = ChooseExperiments(all, request);
   CreateFolder(request.folder);
 
-  std::vector<std::string> names;
-  std::vector<double> costs;
-  for (const Experiment& experiment : chosen) {
-    names.push_back(experiment.name);
-    costs.push_back(experiment.cost);
-  }
-  std::vector<ReportEntry> entries(chosen.size());
-  std::vector<std::exception_ptr> failures(chosen.size());
-  {
-    ProgressDisplay display(errors, isatty(fileno(errors)) == 1, names, costs);
-    // Longest first, so that none is left alone at the end.
-    std::vector<size_t> order(chosen.size());
-    std::iota(order.begin(), order.end(), size_t{0});
-    std::stable_sort(order.begin(), order.end(), [&](size_t a, size_t b) { return costs[a] > costs[b]; });
-    std::atomic<size_t> next{0};
-    const auto work = [&] {
-      for (size_t i = 0; (i = next++) < order.size();) {
-        const size_t task = order[i];
-        display.Start(task);
-        entries[task] = RunOne(
-            chosen[task], request, [&](double done) { display.Advance(task, done); }, failures[task]);
-        display.Finish(task, !entries[task].failure.empty());
-      }
-    };
-    std::vector<std::jthread> threads;
-    const size_t count = std::min(chosen.size(), static_cast<size_t>(std::max(1, request.jobs)));
-    for (size_t i = 1; i < count; ++i) threads.emplace_back(work);
-    work();
-  }
+  std::vector<std::exception_ptr> failures;
+  const std::vector<ReportEntry> entries = RunAll(chosen, request, errors, &failures);
+  const bool report = request.name == "all";
+  if (!report) Rethrow(failures.front());
+  if (report) WriteWholeFile(request.folder + "/index.html", ReportHtml(entries, request));
 
-  if (request.name != "all") {
-    Rethrow(failures.front());
-  } else {
-    WriteWholeFile(request.folder + "/index.html", ReportHtml(entries, request));
-  }
-  for (const ReportEntry& entry : entries) {
-    if (!entry.result) continue;
-    std::fprintf(out, "%s\n", SummaryText(entry.experiment, *entry.result, request.si).c_str());
-  }
-  int exit_code = 0;
-  for (const ReportEntry& entry : entries) {
-    if (entry.failure.empty()) continue;
-    std::fprintf(errors, "hydro-experiment: %s failed: %s\n", entry.experiment.name.c_str(),
-                 entry.failure.c_str());
-    exit_code = 1;
-  }
-  if (request.name == "all") {
-    std::string missing;
-    for (const int number : MissingFindings(entries)) {
-      missing += (missing.empty() ? "" : ", ") + std::to_string(number);
-    }
-    if (!missing.empty()) {
-      std::fprintf(errors, "hydro-experiment: no experiment gave evidence for finding %s\n", missing.c_str());
-      exit_code = 1;
-    }
+  bool whole = PrintResults(entries, request.si, out, errors);
+  if (report) {
+    whole = PrintMissingFindings(entries, errors) && whole;
     std::fprintf(out, "the report is %s/index.html\n", request.folder.c_str());
   }
-  return exit_code;
+  return whole ? 0 : 1;
 }
 
 }  // namespace hydro::experiments

@@ -113,24 +113,86 @@ double TransientTorque(const PumpFriction& friction) {
   return most;
 }
 
-// What the points and lines give for the files and the figure, simulated or measured.
-void AddFit(const PumpFriction& friction, const model::Parameters& p, ExperimentResult* result,
-            json* numbers) {
-  *numbers = {{"T_s", friction.T_s.value},
-              {"b", friction.b.value},
-              {"ci95", {{"T_s", Interval(friction.T_s)}, {"b", Interval(friction.b)}}},
-              {"units", {{"T_s", "in-lbf"}, {"b", "in-lbf-s"}}},
-              {"T_s_forward", friction.T_s_forward.value},
-              {"T_s_forward_ci95", Interval(friction.T_s_forward)},
-              {"T_s_backward", friction.T_s_backward.value},
-              {"T_s_backward_ci95", Interval(friction.T_s_backward)},
-              {"T_s_difference", friction.difference.value},
-              {"T_s_difference_ci95", Interval(friction.difference)},
-              {"scatter_in_lbf", friction.scatter},
-              {"degrees_of_freedom", friction.degrees_of_freedom},
-              {"acceleration_may_take_in_lbf", AccelerationTorque(friction, p)},
-              {"transient_may_take_in_lbf", TransientTorque(friction)},
-              {"k_1", p.k_1}};
+// What the points and lines give for the files, simulated or measured.
+json FitNumbers(const PumpFriction& friction, const model::Parameters& p) {
+  json numbers = {{"T_s", friction.T_s.value},
+                  {"b", friction.b.value},
+                  {"ci95", {{"T_s", Interval(friction.T_s)}, {"b", Interval(friction.b)}}},
+                  {"units", {{"T_s", "in-lbf"}, {"b", "in-lbf-s"}}},
+                  {"T_s_forward", friction.T_s_forward.value},
+                  {"T_s_forward_ci95", Interval(friction.T_s_forward)},
+                  {"T_s_backward", friction.T_s_backward.value},
+                  {"T_s_backward_ci95", Interval(friction.T_s_backward)},
+                  {"T_s_difference", friction.difference.value},
+                  {"T_s_difference_ci95", Interval(friction.difference)},
+                  {"scatter_in_lbf", friction.scatter},
+                  {"degrees_of_freedom", friction.degrees_of_freedom},
+                  {"acceleration_may_take_in_lbf", AccelerationTorque(friction, p)},
+                  {"transient_may_take_in_lbf", TransientTorque(friction)},
+                  {"k_1", p.k_1}};
+  for (const FrictionPoint& point : friction.points) {
+    const SpeedWindow& window = point.window;
+    numbers["points"].push_back({{"voltage_V", window.voltage},
+                                 {"torque_in_lbf", point.torque},
+                                 {"motor_speed_rad_s", window.speed},
+                                 {"standard_error_rad_s", window.speed_error},
+                                 {"from_s", window.from},
+                                 {"to_s", window.to}});
+  }
+  return numbers;
+}
+
+std::vector<tables::Column> FitColumns(const PumpFriction& friction) {
+  std::vector<tables::Column> columns = {{"from_s", {}},
+                                         {"to_s", {}},
+                                         {"voltage_V", {}},
+                                         {"torque_in_lbf", {}},
+                                         {"motor_speed_rad_s", {}},
+                                         {"standard_error_rad_s", {}},
+                                         {"acceleration_rad_s2", {}},
+                                         {"fitted_torque_in_lbf", {}}};
+  for (const FrictionPoint& point : friction.points) {
+    const SpeedWindow& window = point.window;
+    const double row[] = {window.from,  window.to,          window.voltage,      point.torque,
+                          window.speed, window.speed_error, window.acceleration, point.fitted};
+    for (size_t i = 0; i < columns.size(); ++i) columns[i].values.push_back(row[i]);
+  }
+  return columns;
+}
+
+// The line through the points of one direction.
+page::Curve FittedLine(const PumpFriction& friction, double direction, double fastest) {
+  const double intercept = (direction > 0 ? friction.T_s_forward : friction.T_s_backward).value;
+  const double end = direction * 1.15 * fastest;
+  return {.label = direction > 0 ? "b θ' + T_s, forward" : "b θ' - T_s, backward",
+          .x = {0, end},
+          .y = {direction * intercept, direction * intercept + friction.b.value * end},
+          .colour = direction > 0 ? 1 : 2,
+          .y_low = {},
+          .y_high = {}};
+}
+
+// Points less lines, with the speeds' error bars as the torques that they stand for.
+page::Panel ResidualsPanel(const PumpFriction& friction, const page::Axis& speed) {
+  page::Curve residuals{
+      .label = "", .x = {}, .y = {}, .stroke = page::Stroke::kPoints, .colour = 0, .y_low = {}, .y_high = {}};
+  for (const FrictionPoint& point : friction.points) {
+    residuals.x.push_back(point.window.speed);
+    // 95 %; ten blocks leave nine degrees of freedom.
+    const double error = 1e3 * maths::StudentT95(9) * friction.b.value * point.window.speed_error;
+    residuals.y.push_back(1e3 * (point.torque - point.fitted));
+    residuals.y_low.push_back(residuals.y.back() - error);
+    residuals.y_high.push_back(residuals.y.back() + error);
+  }
+  return {.title = "Points less lines, with the 95 % error bars of the speeds",
+          .x = speed,
+          .y = {.label = "10^-3 in-lbf"},
+          .curves = {residuals},
+          .notes = {},
+          .rules = {{"", false, 0}}};
+}
+
+Picture LinesPicture(const PumpFriction& friction, const std::string& conditions) {
   page::Curve points{.label = "steady states",
                      .x = {},
                      .y = {},
@@ -138,74 +200,28 @@ void AddFit(const PumpFriction& friction, const model::Parameters& p, Experiment
                      .colour = 0,
                      .y_low = {},
                      .y_high = {}};
-  page::Curve residuals = points;
-  residuals.label = "";
-  std::vector<std::vector<double>> columns(8);
   double fastest = 0;
   for (const FrictionPoint& point : friction.points) {
-    const SpeedWindow& window = point.window;
-    (*numbers)["points"].push_back({{"voltage_V", window.voltage},
-                                    {"torque_in_lbf", point.torque},
-                                    {"motor_speed_rad_s", window.speed},
-                                    {"standard_error_rad_s", window.speed_error},
-                                    {"from_s", window.from},
-                                    {"to_s", window.to}});
-    const double row[] = {window.from,  window.to,          window.voltage,      point.torque,
-                          window.speed, window.speed_error, window.acceleration, point.fitted};
-    for (size_t i = 0; i < columns.size(); ++i) columns[i].push_back(row[i]);
-    points.x.push_back(window.speed);
+    points.x.push_back(point.window.speed);
     points.y.push_back(point.torque);
-    residuals.x.push_back(window.speed);
-    // The error bar of the speed, 95 %, as the torque it stands for; ten blocks leave nine degrees of
-    // freedom.
-    const double error = 1e3 * maths::StudentT95(9) * friction.b.value * window.speed_error;
-    residuals.y.push_back(1e3 * (point.torque - point.fitted));
-    residuals.y_low.push_back(residuals.y.back() - error);
-    residuals.y_high.push_back(residuals.y.back() + error);
-    fastest = std::max(fastest, std::abs(window.speed));
+    fastest = std::max(fastest, std::abs(point.window.speed));
   }
-  result->table.columns = {{"from_s", columns[0]},
-                           {"to_s", columns[1]},
-                           {"voltage_V", columns[2]},
-                           {"torque_in_lbf", columns[3]},
-                           {"motor_speed_rad_s", columns[4]},
-                           {"standard_error_rad_s", columns[5]},
-                           {"acceleration_rad_s2", columns[6]},
-                           {"fitted_torque_in_lbf", columns[7]}};
-  const auto line = [&](double direction, double intercept) {
-    const double end = direction * 1.15 * fastest;
-    return page::Curve{.label = direction > 0 ? "b θ' + T_s, forward" : "b θ' - T_s, backward",
-                       .x = {0, end},
-                       .y = {direction * intercept, direction * intercept + friction.b.value * end},
-                       .colour = direction > 0 ? 1 : 2,
-                       .y_low = {},
-                       .y_high = {}};
-  };
   const page::Axis speed{.label = "motor speed θ', rad/s", .min = -1.15 * fastest, .max = 1.15 * fastest};
-  page::Panel torque{
-      .title = "Torque against steady speed, both sides connected",
-      .x = speed,
-      .y = {.label = "T_p, in-lbf"},
-      .curves = {points, line(1, friction.T_s_forward.value), line(-1, friction.T_s_backward.value)},
-      .notes = {{fmt::format("T_s = {}", maths::PlusMinus(friction.T_s_forward)), 0,
-                 friction.T_s_forward.value},
-                {fmt::format("T_s = {}", maths::PlusMinus(friction.T_s_backward)), 0,
-                 -friction.T_s_backward.value}},
-      .rules = {},
-      .height = 2};
-  page::Panel rest{.title = "Points less lines, with the 95 % error bars of the speeds",
-                   .x = speed,
-                   .y = {.label = "10^-3 in-lbf"},
-                   .curves = {residuals},
-                   .notes = {},
-                   .rules = {{"", false, 0}}};
-  result->pictures.push_back(
-      {"",
-       {.caption =
-            fmt::format("{} Slope b = {} in-lbf-s, intercepts T_s = {} in-lbf on average (95 %).",
-                        result->conditions, maths::PlusMinus(friction.b), maths::PlusMinus(friction.T_s)),
-        .panels = {torque, rest},
-        .drawing = ""}});
+  page::Panel torque{.title = "Torque against steady speed, both sides connected",
+                     .x = speed,
+                     .y = {.label = "T_p, in-lbf"},
+                     .curves = {points, FittedLine(friction, 1, fastest), FittedLine(friction, -1, fastest)},
+                     .notes = {{fmt::format("T_s = {}", maths::PlusMinus(friction.T_s_forward)), 0,
+                                friction.T_s_forward.value},
+                               {fmt::format("T_s = {}", maths::PlusMinus(friction.T_s_backward)), 0,
+                                -friction.T_s_backward.value}},
+                     .rules = {},
+                     .height = 2};
+  return {"",
+          {.caption = fmt::format("{} Slope b = {} in-lbf-s, intercepts T_s = {} in-lbf on average (95 %).",
+                                  conditions, maths::PlusMinus(friction.b), maths::PlusMinus(friction.T_s)),
+           .panels = {torque, ResidualsPanel(friction, speed)},
+           .drawing = ""}};
 }
 
 struct RampReading {
@@ -283,6 +299,89 @@ Picture RampPicture(const runs::MeasuredRun& run, const std::vector<RampReading>
        .drawing = ""}};
 }
 
+// The simulated rig, measured as the paper measured its own.
+struct RigStudy {
+  model::Parameters p;
+  runs::MeasuredRun ramps;
+  PumpFriction friction;
+  PumpFriction by_angle;              // from the encoder's angles in place of the speeds
+  std::vector<RampReading> readings;  // forward, backward
+  double excess = 0;                  // in-lbf, that the ramp adds to T_s until movement is seen
+};
+
+RigStudy MeasureRig(const ExperimentOptions& options) {
+  RigStudy study;
+  study.p = ShippedModel("table1").parameters;
+  const model::Parameters& p = study.p;
+  study.ramps = MeasureRamps(options);
+  options.progress(0.1);
+  const runs::MeasuredRun holds = MeasureHolds(options);
+  options.progress(0.9);
+  study.friction = FitPumpFriction(holds, SpeedSource::kSpeed, p);
+  study.by_angle = FitPumpFriction(holds, SpeedSource::kAngle, p);
+  study.readings = {ReadRamp(study.ramps, 0, p), ReadRamp(study.ramps, kBackwardFrom, p)};
+  study.excess = BreakAwayExcess(p.k_1 * kRampRate, p.J, kMoved);
+  return study;
+}
+
+std::string Explanation(const RigStudy& study) {
+  const model::Parameters& p = study.p;
+  const PumpFriction& friction = study.friction;
+  const double error_percent =
+      100 * std::max(std::abs(friction.T_s.value / p.T_s - 1), std::abs(friction.b.value / p.b - 1));
+  return fmt::format(
+      "The lines give T_s = {T_s} in-lbf and b = {b} in-lbf-s (95 %, Student, {degrees} degrees of freedom), "
+      "{error_percent:.2g} % at most from the simulated rig's own. The intervals rest on the scatter of "
+      "{holds} holds about the lines and on what is left of the transients, {transient:.2g} in-lbf at most. "
+      "The ramp reads {forward:.4f} in-lbf forward and {backward:.4f} backward, {forward_percent:.2g} and "
+      "{backward_percent:.2g} % above T_s: the motor has to have turned by {moved:.2g} rad to be seen "
+      "moving, and a torque that rises by {rise:.3g} in-lbf/s has grown by (6 J θ T_p'^2)^{{1/3}} = "
+      "{excess:.3g} in-lbf by then. From the encoder's angles in place of the speeds: T_s = {angle_T_s:.6f} "
+      "in-lbf, b = {angle_b:.8f} in-lbf-s. The speed settles with J/b = {time_constant:.2f} s, so holds are "
+      "long.",
+      fmt::arg("T_s", maths::PlusMinus(friction.T_s)), fmt::arg("b", maths::PlusMinus(friction.b)),
+      fmt::arg("degrees", friction.degrees_of_freedom), fmt::arg("error_percent", error_percent),
+      fmt::arg("holds", friction.points.size()), fmt::arg("transient", TransientTorque(friction)),
+      fmt::arg("forward", study.readings[0].torque), fmt::arg("backward", study.readings[1].torque),
+      fmt::arg("forward_percent", 100 * (study.readings[0].torque / p.T_s - 1)),
+      fmt::arg("backward_percent", 100 * (study.readings[1].torque / p.T_s - 1)), fmt::arg("moved", kMoved),
+      fmt::arg("rise", p.k_1 * kRampRate), fmt::arg("excess", study.excess),
+      fmt::arg("angle_T_s", study.by_angle.T_s.value), fmt::arg("angle_b", study.by_angle.b.value),
+      fmt::arg("time_constant", p.J / p.b));
+}
+
+std::vector<Comparison> Comparisons(const RigStudy& study) {
+  const model::Parameters& p = study.p;
+  const PumpFriction& friction = study.friction;
+  return {
+      {"T_s, intercept", "in-lbf", "4.0", p.T_s, friction.T_s.value,
+       fmt::format("+/- {:.2g}: the interval {} the rig's own", friction.T_s.high - friction.T_s.value,
+                   Holds(friction.T_s, p.T_s))},
+      {"b, slope", "in-lbf-s", "0.01455", p.b, friction.b.value,
+       fmt::format("+/- {:.2g}: the interval {} the rig's own", friction.b.high - friction.b.value,
+                   Holds(friction.b, p.b))},
+      {"break-away torque, forward", "in-lbf", "4.0", p.T_s + study.excess, study.readings[0].torque,
+       "expected: T_s and what the ramp adds until movement is seen"},
+      {"break-away torque, backward", "in-lbf", "4.0", p.T_s + study.excess, study.readings[1].torque, ""},
+      {"time constant J/b", "s", "", p.J / p.b, p.J / friction.b.value, "how long to wait for steady speed"},
+  };
+}
+
+json Numbers(const RigStudy& study) {
+  const model::Parameters& p = study.p;
+  json numbers = FitNumbers(study.friction, p);
+  numbers["source"] = "simulated rig";
+  numbers["from_encoder"] = {{"T_s", study.by_angle.T_s.value},
+                             {"b", study.by_angle.b.value},
+                             {"acceleration_may_take_in_lbf", AccelerationTorque(study.by_angle, p)}};
+  numbers["break_away"] = {{"forward_in_lbf", study.readings[0].torque},
+                           {"backward_in_lbf", study.readings[1].torque},
+                           {"ramp_in_lbf_s", p.k_1 * kRampRate},
+                           {"counts_as_moved_rad", kMoved},
+                           {"expected_excess_in_lbf", study.excess}};
+  return numbers;
+}
+
 ExperimentResult AnalyseMeasured(const ExperimentOptions& options) {
   const runs::MeasuredRun run = runs::ReadMeasuredRun(options.measured_run);
   const bool own_model = !run.model_text.empty();
@@ -305,11 +404,12 @@ ExperimentResult AnalyseMeasured(const ExperimentOptions& options) {
       "directions' Coulomb frictions differ by {} in-lbf. Both values are in proportion to k_1.",
       friction.points.size(), friction.scatter, TransientTorque(friction),
       maths::PlusMinus(friction.difference));
-  json numbers;
-  AddFit(friction, p, &result, &numbers);
+  json numbers = FitNumbers(friction, p);
   numbers["source"] = run.file;
   numbers["model"] = model.name;
   result.numbers = JsonText(numbers);
+  result.table.columns = FitColumns(friction);
+  result.pictures = {LinesPicture(friction, result.conditions)};
   result.comparisons = {
       {"T_s", "in-lbf", "", page::kAutomatic, friction.T_s.value, maths::PlusMinus(friction.T_s) + ", 95 %"},
       {"b", "in-lbf-s", "", page::kAutomatic, friction.b.value, maths::PlusMinus(friction.b) + ", 95 %"}};
@@ -320,18 +420,7 @@ ExperimentResult AnalyseMeasured(const ExperimentOptions& options) {
 
 ExperimentResult RunFriction(const ExperimentOptions& options) {
   if (!options.measured_run.empty()) return AnalyseMeasured(options);
-  const model::Parameters p = ShippedModel("table1").parameters;
-  const runs::MeasuredRun ramps = MeasureRamps(options);
-  options.progress(0.1);
-  const runs::MeasuredRun holds = MeasureHolds(options);
-  options.progress(0.9);
-  const PumpFriction friction = FitPumpFriction(holds, SpeedSource::kSpeed, p);
-  const PumpFriction by_angle = FitPumpFriction(holds, SpeedSource::kAngle, p);
-  const std::vector<RampReading> readings = {ReadRamp(ramps, 0, p), ReadRamp(ramps, kBackwardFrom, p)};
-  const double excess = BreakAwayExcess(p.k_1 * kRampRate, p.J, kMoved);
-  const double error_percent =
-      100 * std::max(std::abs(friction.T_s.value / p.T_s - 1), std::abs(friction.b.value / p.b - 1));
-
+  const RigStudy study = MeasureRig(options);
   ExperimentResult result;
   result.conditions = fmt::format(
       "Table 1 with the bypass open (p_1 = p_2), over the stack at 1 kHz. Speed read with {} rad/s of noise "
@@ -341,46 +430,12 @@ ExperimentResult RunFriction(const ExperimentOptions& options) {
       "T_s is the torque of the smallest voltage that turns the motor. Then, with a valve open between the "
       "two sides, constant voltages are held to steady speed and T_p is plotted against speed: the slope is "
       "b, the intercept a check of T_s.";
-  result.explanation = fmt::format(
-      "The lines give T_s = {} in-lbf and b = {} in-lbf-s (95 %, Student, {} degrees of freedom), {:.2g} % "
-      "at "
-      "most from the simulated rig's own. The intervals rest on the scatter of {} holds about the lines and "
-      "on what is left of the transients, {:.2g} in-lbf at most. The ramp reads {:.4f} in-lbf "
-      "forward and {:.4f} backward, {:.2g} and {:.2g} % above T_s: the motor has to have turned by {:.2g} "
-      "rad "
-      "to be seen moving, and a torque that rises by {:.3g} in-lbf/s has grown by (6 J θ T_p'^2)^{{1/3}} = "
-      "{:.3g} in-lbf by then. From the encoder's angles in place of the speeds: T_s = {:.6f} in-lbf, b = "
-      "{:.8f} in-lbf-s. The speed settles with J/b = {:.2f} s, so holds are long.",
-      maths::PlusMinus(friction.T_s), maths::PlusMinus(friction.b), friction.degrees_of_freedom,
-      error_percent, friction.points.size(), TransientTorque(friction), readings[0].torque,
-      readings[1].torque, 100 * (readings[0].torque / p.T_s - 1), 100 * (readings[1].torque / p.T_s - 1),
-      kMoved, p.k_1 * kRampRate, excess, by_angle.T_s.value, by_angle.b.value, p.J / p.b);
-
-  json numbers;
-  AddFit(friction, p, &result, &numbers);
-  numbers["source"] = "simulated rig";
-  numbers["from_encoder"] = {{"T_s", by_angle.T_s.value},
-                             {"b", by_angle.b.value},
-                             {"acceleration_may_take_in_lbf", AccelerationTorque(by_angle, p)}};
-  numbers["break_away"] = {{"forward_in_lbf", readings[0].torque},
-                           {"backward_in_lbf", readings[1].torque},
-                           {"ramp_in_lbf_s", p.k_1 * kRampRate},
-                           {"counts_as_moved_rad", kMoved},
-                           {"expected_excess_in_lbf", excess}};
-  result.numbers = JsonText(numbers);
-  result.comparisons = {
-      {"T_s, intercept", "in-lbf", "4.0", p.T_s, friction.T_s.value,
-       fmt::format("+/- {:.2g}: the interval {} the rig's own", friction.T_s.high - friction.T_s.value,
-                   Holds(friction.T_s, p.T_s))},
-      {"b, slope", "in-lbf-s", "0.01455", p.b, friction.b.value,
-       fmt::format("+/- {:.2g}: the interval {} the rig's own", friction.b.high - friction.b.value,
-                   Holds(friction.b, p.b))},
-      {"break-away torque, forward", "in-lbf", "4.0", p.T_s + excess, readings[0].torque,
-       "expected: T_s and what the ramp adds until movement is seen"},
-      {"break-away torque, backward", "in-lbf", "4.0", p.T_s + excess, readings[1].torque, ""},
-      {"time constant J/b", "s", "", p.J / p.b, p.J / friction.b.value, "how long to wait for steady speed"},
-  };
-  result.pictures.push_back(RampPicture(ramps, readings, p.T_s, p));
+  result.explanation = Explanation(study);
+  result.numbers = JsonText(Numbers(study));
+  result.comparisons = Comparisons(study);
+  result.table.columns = FitColumns(study.friction);
+  result.pictures = {LinesPicture(study.friction, result.conditions),
+                     RampPicture(study.ramps, study.readings, study.p.T_s, study.p)};
   options.progress(1);
   return result;
 }

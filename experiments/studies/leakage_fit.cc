@@ -5,6 +5,7 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -18,6 +19,18 @@ constexpr double kMost = 1e-3;
 constexpr double kStep = 1e-4;          // of a logarithm, for derivatives
 constexpr double kIdentifiable = 0.25;  // half an interval, relative
 constexpr double kNormal95 = 1.96;      // there are thousands of degrees of freedom
+
+// The parameters that are taken as known and matter most.
+struct KnownParameter {
+  const char* name;
+  double model::Parameters::*member;
+};
+constexpr std::array<KnownParameter, 6> kKnown = {{{"k_1", &model::Parameters::k_1},
+                                                   {"T_s", &model::Parameters::T_s},
+                                                   {"D", &model::Parameters::D},
+                                                   {"beta", &model::Parameters::beta},
+                                                   {"V_ms", &model::Parameters::V_ms},
+                                                   {"p_3", &model::Parameters::p_3}}};
 
 model::ModelDescription WithLeakage(model::ModelDescription model, double log_c_E, double log_c_I) {
   model.parameters.c_E = std::exp(log_c_E);
@@ -73,9 +86,8 @@ struct Case {
   }
 };
 
-// Throws where the run cannot support the fit.
-Case MakeCase(const runs::MeasuredRun& run, const model::ModelDescription& model) {
-  const model::Parameters& p = model.parameters;
+// Shaft and sensors that the fit needs.
+void CheckConditions(const runs::MeasuredRun& run, const model::ModelDescription& model) {
   if (run.shaft != model::Shaft::kClamped) {
     throw InputError(run.file + ": found a shaft that is " +
                      (run.shaft == model::Shaft::kFree ? "free" : "driven") +
@@ -96,13 +108,12 @@ Case MakeCase(const runs::MeasuredRun& run, const model::ModelDescription& model
   } catch (const model::ModelError& error) {
     throw InputError(run.file + ": " + error.what());
   }
-  Case result{&run, Noise(run.p1), Noise(run.p2), p.p_3};
-  double largest = 0, least_dp = std::numeric_limits<double>::infinity(), most_dp = -least_dp;
-  size_t resting = run.samples();
+}
+
+// A torque that overcomes friction, and pressure that it builds up.
+void CheckSwing(const runs::MeasuredRun& run, const model::Parameters& p, double largest, double noise) {
+  double least_dp = std::numeric_limits<double>::infinity(), most_dp = -least_dp;
   for (size_t i = 0; i < run.samples(); ++i) {
-    const double torque = std::min(std::abs(p.k_1 * run.voltage.values[i]), p.T_pmax);
-    if (torque > p.T_s) resting = std::min(resting, i + 1);
-    largest = std::max(largest, torque);
     const double dp = run.p2.values[i] - run.p1.values[i];
     if (std::isnan(dp)) continue;
     least_dp = std::min(least_dp, dp);
@@ -115,15 +126,17 @@ Case MakeCase(const runs::MeasuredRun& run, const model::ModelDescription& model
                     "{:.4g} in-lbf){}",
                     run.file, largest, p.T_s, allowed));
   }
-  const double noise = std::hypot(result.p1_noise, result.p2_noise);
   if (!(most_dp - least_dp > 10 * noise)) {
     throw InputError(
         fmt::format("{}: found p_2 - p_1 from {:.4g} to {:.4g} psi with a noise of {:.3g} psi, allowed "
                     "a swing of ten times the noise: torques well above T_s = {:.4g} in-lbf",
                     run.file, least_dp, most_dp, noise, p.T_s));
   }
-  // A voltage that overcomes friction raises the side that it drives the pump to. (A smaller one may stand
-  // against what is left from before.)
+}
+
+// A voltage that overcomes friction raises the side that it drives the pump to. (A smaller one may stand
+// against what is left from before.)
+void CheckDirection(const runs::MeasuredRun& run, const model::Parameters& p) {
   double along = 0;  // V psi
   for (size_t i = 0; i < run.samples(); ++i) {
     const double dp = run.p2.values[i] - run.p1.values[i];
@@ -135,18 +148,37 @@ Case MakeCase(const runs::MeasuredRun& run, const model::ModelDescription& model
                      ": found p_2 - p_1 against the sign of the voltage, allowed p_2 rising under a positive "
                      "voltage: exchange p1 and p2, or give the voltage the scale -1");
   }
-  resting = std::min<size_t>(resting, 100);
+}
+
+// psi, of both sides at the start. Missing first values tell nothing of it; p_3 is what rest tends to.
+double StartPressure(const runs::MeasuredRun& run, double p_3, size_t resting, double noise) {
+  if (std::isnan(run.p1.values.front()) || std::isnan(run.p2.values.front())) return p_3;
   const double p1 = StartOf(run.p1, resting), p2 = StartOf(run.p2, resting);
-  // Missing first values tell nothing of the start; p_3 is what rest tends to.
-  if (!std::isnan(run.p1.values.front()) && !std::isnan(run.p2.values.front())) {
-    if (std::abs(p1 - p2) > 5 * noise) {
-      throw InputError(
-          fmt::format("{}: found a start at p_1 = {:.4g} psi, p_2 = {:.4g} psi, allowed a start at "
-                      "rest with both sides at one pressure: wait without voltage before it",
-                      run.file, p1, p2));
-    }
-    if ((p1 + p2) / 2 > p.p_3 + 5 * noise) result.pressure = (p1 + p2) / 2;
+  if (std::abs(p1 - p2) > 5 * noise) {
+    throw InputError(
+        fmt::format("{}: found a start at p_1 = {:.4g} psi, p_2 = {:.4g} psi, allowed a start at "
+                    "rest with both sides at one pressure: wait without voltage before it",
+                    run.file, p1, p2));
   }
+  return (p1 + p2) / 2 > p_3 + 5 * noise ? (p1 + p2) / 2 : p_3;
+}
+
+// Throws where the run cannot support the fit.
+Case MakeCase(const runs::MeasuredRun& run, const model::ModelDescription& model) {
+  CheckConditions(run, model);
+  const model::Parameters& p = model.parameters;
+  Case result{&run, Noise(run.p1), Noise(run.p2), p.p_3};
+  const double noise = std::hypot(result.p1_noise, result.p2_noise);
+  double largest = 0;  // in-lbf
+  size_t resting = run.samples();
+  for (size_t i = 0; i < run.samples(); ++i) {
+    const double torque = std::min(std::abs(p.k_1 * run.voltage.values[i]), p.T_pmax);
+    if (torque > p.T_s) resting = std::min(resting, i + 1);
+    largest = std::max(largest, torque);
+  }
+  CheckSwing(run, p, largest, noise);
+  CheckDirection(run, p);
+  result.pressure = StartPressure(run, p.p_3, std::min<size_t>(resting, 100), noise);
   return result;
 }
 
@@ -259,6 +291,75 @@ struct FisherSums {
   }
 };
 
+// What all runs tell about the values found.
+struct Evidence {
+  FisherSums sums;
+  double squares = 0;  // of the residuals
+  int64_t count = 0;   // of the residuals
+  // How the gradient of the cost changes with 1 % of each parameter that is taken as known.
+  std::vector<Eigen::Vector2d> pulls = std::vector<Eigen::Vector2d>(kKnown.size(), Eigen::Vector2d::Zero());
+};
+
+// Adds a run to the evidence and its simulation to the fit.
+void AddRun(const model::ModelDescription& model, const double* logs, const Case& run_case,
+            Evidence* evidence, LeakageFit* fit) {
+  const model::ModelDescription found = WithLeakage(model, logs[0], logs[1]);
+  const auto simulate = [&](const model::ModelDescription& with) {
+    return SimulateClamped(
+        with, *run_case.run,
+        run_case.pressure == model.parameters.p_3 ? with.parameters.p_3 : run_case.pressure);
+  };
+  const SimulatedRun simulated = simulate(found);
+  const Eigen::VectorXd residuals = run_case.Residuals(simulated);
+  Eigen::MatrixX2d jacobian(residuals.size(), 2);
+  for (int j = 0; j < 2; ++j) {
+    double up[] = {logs[0], logs[1]}, down[] = {logs[0], logs[1]};
+    up[j] += kStep;
+    down[j] -= kStep;
+    jacobian.col(j) = (run_case.Residuals(simulate(WithLeakage(model, up[0], up[1]))) -
+                       run_case.Residuals(simulate(WithLeakage(model, down[0], down[1])))) /
+                      (2 * kStep);
+  }
+  evidence->sums.Add(run_case, simulated, model.parameters.p_3, jacobian);
+  evidence->squares += residuals.squaredNorm();
+  for (const double residual : residuals) evidence->count += residual != 0;
+  for (size_t i = 0; i < kKnown.size(); ++i) {
+    // A thousandth: small enough to be linear across sticks and slips.
+    model::ModelDescription changed = found;
+    changed.parameters.*kKnown[i].member *= 1.001;
+    evidence->pulls[i] += 10 * jacobian.transpose() * (run_case.Residuals(simulate(changed)) - residuals);
+  }
+  fit->simulated.push_back(simulated);
+  fit->p1_noise.push_back(run_case.p1_noise);
+  fit->p2_noise.push_back(run_case.p2_noise);
+}
+
+// How well the values are told, and by which measurements.
+void SetIntervals(const Evidence& evidence, double c_E, double c_I, LeakageFit* fit) {
+  const FisherSums& sums = evidence.sums;
+  const Eigen::Matrix2d all = sums.floating + sums.held_side;
+  fit->rms = std::sqrt(evidence.squares / static_cast<double>(std::max<int64_t>(1, evidence.count - 2)));
+  fit->information = Information(all, c_E, c_I);
+  fit->floating = Information(sums.floating, c_E, c_I);
+  fit->held = Information(sums.held_side, c_E, c_I);
+  fit->floating_difference = Information(sums.floating_dp, c_E, c_I);
+  fit->held_difference = Information(sums.held_dp, c_E, c_I);
+  fit->all_difference = Information(sums.floating_dp + sums.held_dp, c_E, c_I);
+  // Residuals larger than the noise say that the model lacks something: the intervals grow with them.
+  const double scale = std::max(1.0, fit->rms);
+  fit->c_E = Interval(c_E, scale * fit->information.c_E_error);
+  fit->c_I = Interval(c_I, scale * fit->information.c_I_error);
+  fit->combination =
+      Interval(c_E + fit->information.c_I_weight * c_I, scale * fit->information.combination_error);
+  for (const auto& [estimate, name] : {std::pair(&fit->c_E, "c_E"), std::pair(&fit->c_I, "c_I")}) {
+    if (!(estimate->high <= (1 + kIdentifiable) * estimate->value)) fit->not_identifiable.push_back(name);
+  }
+  for (size_t i = 0; i < kKnown.size(); ++i) {
+    const Eigen::Vector2d shift = -all.ldlt().solve(evidence.pulls[i]);  // one Gauss-Newton step
+    fit->shifts.push_back({kKnown[i].name, 100 * shift[0], 100 * shift[1]});
+  }
+}
+
 }  // namespace
 
 SimulatedRun SimulateClamped(const model::ModelDescription& model, const runs::MeasuredRun& run,
@@ -285,71 +386,10 @@ LeakageFit FitLeakage(const model::ModelDescription& model, const std::vector<ru
   double logs[2];
   LeakageFit fit;
   fit.converged = Solve(model, cases, logs);
-
-  const model::ModelDescription found = WithLeakage(model, logs[0], logs[1]);
-  FisherSums sums;
-  double squares = 0;
-  int64_t count = 0;
-  // How the gradient of the cost changes with each of the parameters that are taken as known.
-  const std::vector<std::pair<const char*, double model::Parameters::*>> known = {
-      {"k_1", &model::Parameters::k_1},   {"T_s", &model::Parameters::T_s},
-      {"D", &model::Parameters::D},       {"beta", &model::Parameters::beta},
-      {"V_ms", &model::Parameters::V_ms}, {"p_3", &model::Parameters::p_3}};
-  std::vector<Eigen::Vector2d> pulls(known.size(), Eigen::Vector2d::Zero());
-  for (const Case& run_case : cases) {
-    const auto simulate = [&](const model::ModelDescription& with) {
-      return SimulateClamped(
-          with, *run_case.run,
-          run_case.pressure == model.parameters.p_3 ? with.parameters.p_3 : run_case.pressure);
-    };
-    const SimulatedRun simulated = simulate(found);
-    const Eigen::VectorXd residuals = run_case.Residuals(simulated);
-    Eigen::MatrixX2d jacobian(residuals.size(), 2);
-    for (int j = 0; j < 2; ++j) {
-      double up[] = {logs[0], logs[1]}, down[] = {logs[0], logs[1]};
-      up[j] += kStep;
-      down[j] -= kStep;
-      jacobian.col(j) = (run_case.Residuals(simulate(WithLeakage(model, up[0], up[1]))) -
-                         run_case.Residuals(simulate(WithLeakage(model, down[0], down[1])))) /
-                        (2 * kStep);
-    }
-    sums.Add(run_case, simulated, model.parameters.p_3, jacobian);
-    squares += residuals.squaredNorm();
-    for (const double residual : residuals) count += residual != 0;
-    for (size_t i = 0; i < known.size(); ++i) {
-      // A thousandth: small enough to be linear across sticks and slips.
-      model::ModelDescription changed = found;
-      changed.parameters.*known[i].second *= 1.001;
-      pulls[i] += 10 * jacobian.transpose() * (run_case.Residuals(simulate(changed)) - residuals);
-    }
-    fit.simulated.push_back(simulated);
-    fit.p1_noise.push_back(run_case.p1_noise);
-    fit.p2_noise.push_back(run_case.p2_noise);
-  }
-
-  const double c_E = found.parameters.c_E, c_I = found.parameters.c_I;
-  const Eigen::Matrix2d all = sums.floating + sums.held_side;
-  fit.rms = std::sqrt(squares / static_cast<double>(std::max<int64_t>(1, count - 2)));
-  fit.information = Information(all, c_E, c_I);
-  fit.floating = Information(sums.floating, c_E, c_I);
-  fit.held = Information(sums.held_side, c_E, c_I);
-  fit.floating_difference = Information(sums.floating_dp, c_E, c_I);
-  fit.held_difference = Information(sums.held_dp, c_E, c_I);
-  fit.all_difference = Information(sums.floating_dp + sums.held_dp, c_E, c_I);
-  // Residuals larger than the noise say that the model lacks something: the intervals grow with them.
-  const double scale = std::max(1.0, fit.rms);
-  fit.c_E = Interval(c_E, scale * fit.information.c_E_error);
-  fit.c_I = Interval(c_I, scale * fit.information.c_I_error);
-  fit.combination =
-      Interval(c_E + fit.information.c_I_weight * c_I, scale * fit.information.combination_error);
-  for (const auto& [estimate, name] : {std::pair(&fit.c_E, "c_E"), std::pair(&fit.c_I, "c_I")}) {
-    if (!(estimate->high <= (1 + kIdentifiable) * estimate->value)) fit.not_identifiable.push_back(name);
-  }
-  for (size_t i = 0; i < known.size(); ++i) {
-    // One Gauss-Newton step; pulls are for 1 % of the parameter.
-    const Eigen::Vector2d shift = -all.ldlt().solve(pulls[i]);
-    fit.shifts.push_back({known[i].first, 100 * shift[0], 100 * shift[1]});
-  }
+  Evidence evidence;
+  for (const Case& run_case : cases) AddRun(model, logs, run_case, &evidence, &fit);
+  const model::Parameters found = WithLeakage(model, logs[0], logs[1]).parameters;
+  SetIntervals(evidence, found.c_E, found.c_I, &fit);
   return fit;
 }
 
