@@ -1,4 +1,4 @@
-// On what a balance's disturbance depends, and where and when it is largest.
+// What a balance's disturbance depends on, and where and when it is largest.
 #pragma once
 
 #include <string>
@@ -32,7 +32,7 @@ MissingTerm TableOf(const Blocks& blocks, const Variable& variable, const std::v
 // when it is spread over all of it, how it changes there.
 std::string RangeOf(const Blocks& blocks, const Variable& variable, const std::vector<double>& averages);
 
-// The stretches of each run, up to five, with most energy; in order of time.
+// The stretches of each run, at most five, with the most energy, in order of time.
 std::vector<Window> WindowsOf(const Blocks& blocks, const std::vector<const RunData*>& runs);
 
 }  // namespace hydro::diagnose

@@ -61,7 +61,7 @@ void Keep(const Setup& setup, const Columns& smoothed, const std::array<uint8_t,
   }
 }
 
-// The way back, after Bryson and Frazier: takes the readings off the record again, last first.
+// The backward pass, after Bryson and Frazier: takes the readings off the record again, last first.
 SmoothedRun SmoothBackwards(const Setup& setup, Record record) {
   const size_t samples = setup.time.size();
   SmoothedRun run = EmptyRun(setup);

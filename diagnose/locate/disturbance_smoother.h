@@ -17,7 +17,7 @@ namespace hydro::diagnose {
 enum class Balance { kPumpTorque, kFlow1, kFlow2, kArmTorque };
 inline constexpr size_t kBalances = 4;
 
-// So many times noise alone, drawn anew, goes through the same filter: how far a disturbance means anything.
+// This many draws of noise alone go through the same filter. They show which disturbances are significant.
 inline constexpr size_t kNoiseDraws = 6;
 
 struct Disturbance {
@@ -33,13 +33,13 @@ struct SmoothedRun {
   std::vector<double> motor_angle, motor_speed, p1, p2, arm_angle, arm_speed;
 };
 
-// What is taken off measured pressures before they are used, psi.
+// psi, subtracted from measured pressures before they are used.
 struct PressureOffsets {
   double p1 = 0, p2 = 0;
 };
 
-// Throws ModelError when the model contradicts the run's conditions. Time and memory grow with the samples;
-// some 3 kB each while it runs.
+// Throws ModelError if the model contradicts the run's conditions. Time and memory grow with the number of
+// samples; each needs about 3 kB while this runs.
 SmoothedRun SmoothDisturbances(const model::ModelDescription& model, const RunData& run,
                                const PressureOffsets& offsets);
 

@@ -1,4 +1,4 @@
-// What a balance's disturbance may depend on, if it is the balance's own term, the command's or the sensors'.
+// The variables that may explain a balance's disturbance: the states, the command, or late sensors.
 #pragma once
 
 #include <vector>
@@ -11,21 +11,22 @@ namespace hydro::diagnose {
 
 class Explanations {
  public:
-  // Both are used as long as this is.
+  // Keeps references to both.
   Explanations(const std::vector<SmoothedRun>& smoothed, const std::vector<const RunData*>& runs)
       : smoothed_(smoothed), runs_(runs) {}
 
-  // Of the balance's own terms; the plain ones come first. `quick`: also what repeats within a turn.
+  // For a missing term of the balance itself; simple variables come first. `quick`: also those that repeat
+  // within a turn.
   std::vector<Variable> States(Balance balance, bool quick) const;
-  // The voltage, how far it is beyond some value, and how far ahead of itself a time constant before.
+  // The voltage, its excess over several limits, and its lead over itself after several lags.
   std::vector<Variable> Commands() const;
-  // What readings that come late do to a balance: the rates of what it is driven by.
+  // The effect of late readings on a balance: the rates of the signals that drive it.
   std::vector<Variable> Lateness(Balance balance) const;
 
  private:
   template <class F>
   Variable Make(const std::string& name, const std::string& unit, const F& f) const;
-  // What repeats with the motor's angle, so many times a turn.
+  // Repeats with the motor's angle, `periods` times a turn.
   Variable Turn(int periods) const;
   // The same, in proportion to the speed or the pressure difference.
   Variable Ripple(Balance balance, int periods) const;

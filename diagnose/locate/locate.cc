@@ -19,7 +19,7 @@ constexpr std::array<const char*, kBalances> kNames = {"pump_torque", "flow_1", 
 constexpr std::array<const char*, kBalances> kUnits = {"in-lbf", "in^3/s", "in^3/s", "in-lbf"};
 
 constexpr double kSmallestShare = 0.02;
-// A variable must explain so much more of the variance than a simpler one to be preferred to it.
+// The extra share of the variance that a variable must explain to be preferred to a simpler one.
 constexpr double kPlainly = 0.06;
 // A dependence that explains less is none.
 constexpr double kDependence = 0.05;
@@ -84,7 +84,7 @@ std::vector<Dependence> Rank(const Blocks& blocks, std::vector<Variable> variabl
   return ranked;
 }
 
-// How much more of the energy lies near reversals of the motor than time does: text, or "".
+// "at reversals" if most of the energy, but little of the time, lies near reversals of the motor; else "".
 std::string AtReversals(const Blocks& blocks, const std::vector<const RunData*>& runs) {
   std::vector<std::vector<double>> reversals(runs.size());
   for (size_t r = 0; r < runs.size(); ++r) {
@@ -125,7 +125,7 @@ std::string WhereOf(const Blocks& blocks, const std::vector<Dependence>& ranked,
   return where;
 }
 
-// Against the variable that explains most, and against the next that explains something.
+// Tables over the variable that explains most, and over the next one that explains anything.
 void Tabulate(const Blocks& blocks, const std::vector<Dependence>& ranked, size_t balance,
               std::vector<MissingTerm>* missing) {
   for (const Dependence& d : ranked) {
@@ -158,7 +158,7 @@ Localisation Locate(const model::ModelDescription& model, const std::vector<cons
   if (found.total == 0) return result;
   const double all = found.total;
 
-  // The sensors' share is what readings at rest take away, if that is most of it.
+  // The sensors' share is what correcting their offsets removes, if that is most of the disagreement.
   double sensor = 0;
   const PressureOffsets offsets = RestOffsets(model, runs);
   if (offsets.p1 != 0 || offsets.p2 != 0) {
@@ -186,7 +186,7 @@ Localisation Locate(const model::ModelDescription& model, const std::vector<cons
     const Blocks& blocks = found.blocks[b];
     ranked[b] = Rank(blocks, explanations.States(balance, blocks.duration < kQuick), smoothed, balance);
     double own = share;
-    // What a list of variables explains plainly better than the balance's own is another's.
+    // Moves to `to` what its variables explain clearly better than the balance's own.
     const auto give = [&](const char* to, std::vector<Variable> variables) {
       if (variables.empty() || own < share) return;
       const std::vector<Dependence> others = Rank(blocks, std::move(variables), smoothed, balance);

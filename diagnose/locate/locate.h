@@ -1,4 +1,4 @@
-// Where simulation and data disagree: residuals of each balance, driven by measured signals.
+// Where the model and the data disagree: what each balance lacks along the measured runs.
 #pragma once
 
 #include <vector>

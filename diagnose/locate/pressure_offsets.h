@@ -9,8 +9,8 @@
 
 namespace hydro::diagnose {
 
-// Both 0 where the transducers agree with each other: then it may as well be p_3 that is wrong; and where a
-// side never rests at its lowest pressure.
+// Both are 0 if the transducers agree with each other, because p_3 may then be what is wrong, and if a side
+// never rests at its lowest pressure.
 PressureOffsets RestOffsets(const model::ModelDescription& model, const std::vector<const RunData*>& runs);
 
 }  // namespace hydro::diagnose

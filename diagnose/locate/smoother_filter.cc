@@ -49,13 +49,13 @@ Matrix Filter::BeginCovariance() const {
   }
   for (size_t b = 0; b < kBalances; ++b) {
     const int at = setup_.place[b];
-    // What wanders in the time that a disturbance is followed in, and a good deal more.
+    // Well above what it wanders in the time in which a disturbance is followed.
     if (at >= 0) covariance(at, at) = 100 * setup_.wander[b] * std::max(setup_.interval, 0.1);
   }
   return covariance;
 }
 
-// Volumes stay above 0 whatever a filter makes of the arm's angle.
+// Keeps the volumes above 0, whatever the filter makes of the arm's angle.
 void Filter::KeepVolumes() {
   if (!setup_.free_arm()) return;
   const model::Parameters& p = setup_.model.parameters;
@@ -248,7 +248,7 @@ void Filter::PropagateColumns(const Matrix& transition) {
   CopyStateToColumns();
 }
 
-// What may have changed between the samples that the equations do not know.
+// Adds what may have changed between the samples and is not in the equations.
 void Filter::AddUncertainty(size_t k, double step) {
   const std::vector<double>& scales = equations_.scales();
   const double speed_wander = 0.3 * setup_.observed.speed_margin;
@@ -273,7 +273,7 @@ void Filter::AddUncertainty(size_t k, double step) {
   }
 }
 
-// An arm that its seals hold: when it lets go is known from coarse angles only.
+// When an arm that its seals hold breaks loose is only known from coarse angles.
 void Filter::ForgetArmAtSwitches() {
   const std::vector<double>& time = setup_.time;
   for (const double at : switched_) {

@@ -1,5 +1,5 @@
-// The smoother's way forth: an extended Kalman filter along a run, with the model's states, a disturbance in
-// each balance that may wander, and the same for draws of noise. For the smoother's own files only.
+// The smoother's forward pass: an extended Kalman filter along a run, with the model's states, a disturbance
+// in each balance that may wander, and the same for draws of noise. For the smoother's own files only.
 #pragma once
 
 #include <array>

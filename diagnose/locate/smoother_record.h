@@ -1,4 +1,4 @@
-// What a smoother's way back needs of its way forth. For disturbance_smoother.cc only: Eigen's types.
+// What the filter records for the backward pass. For the smoother's own files only: Eigen's types.
 #pragma once
 
 #include <Eigen/Core>

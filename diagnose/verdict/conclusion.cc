@@ -15,7 +15,7 @@ namespace hydro::diagnose {
 
 namespace {
 
-// A rival is told apart when it is worse by so many standard errors, block by block.
+// A rival is ruled out if it is worse by this many standard errors, block by block.
 constexpr double kToldApart = 2.5;
 // A base parameter that has to move by more than this factor is not believed.
 constexpr double kImplausible = 2.0;
@@ -25,7 +25,7 @@ struct Rival {
   const Explanation* explanation = nullptr;
 };
 
-// What stands in the place of one change of `best`, and does as well.
+// The changes that can replace one of `best` and do as well.
 std::vector<Rival> Rivals(const std::vector<Explanation>& tried, const Explanation& best,
                           const Change& change) {
   std::vector<Rival> rivals;

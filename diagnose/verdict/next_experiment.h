@@ -1,4 +1,4 @@
-// The experiment that would tell apart models that explain the runs equally well.
+// The experiment that separates models which explain the runs equally well.
 #pragma once
 
 #include <string>

@@ -1,4 +1,4 @@
-// Every candidate with what became of it.
+// Every candidate, and why it was taken or rejected.
 #pragma once
 
 #include <vector>

@@ -1,4 +1,4 @@
-// Measured signals beside those of the models before and after, for tables and pictures.
+// Measured signals with those of the model before and after, for tables and pictures.
 #pragma once
 
 #include <vector>
