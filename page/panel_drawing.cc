@@ -29,7 +29,7 @@ constexpr double kLabelSize = 13;
 constexpr double kMinBarWidth = 0.8;
 
 // Along an axis, from one number to the next.
-constexpr double kTickRoomX = 72;
+constexpr double kTickRoomX = 58;
 constexpr double kTickRoomY = 27;
 
 // A tall panel needs no denser numbers than its width has.
@@ -136,8 +136,12 @@ double PanelDrawing::HeadHeight(double key_width) {
 
 std::string PanelDrawing::Draw(const Box& frame) {
   geometry_ = FitPanel(*panel_, frame, where_);
-  std::string out = SvgClipped(frame, Bands()) + Axes() + SvgClipped(frame, Rules());
-  for (size_t i = 0; i < panel_->curves.size(); ++i) out += CurveElements(i);
+  std::string out = SvgClipped(frame, Bands()) + Axes();
+  // Rules are seen on bars, and below lines.
+  const auto is_bars = [this](size_t i) { return panel_->curves[i].stroke == Stroke::kBars; };
+  for (size_t i = 0; i < panel_->curves.size(); ++i) out += is_bars(i) ? CurveElements(i) : "";
+  out += SvgClipped(frame, Rules());
+  for (size_t i = 0; i < panel_->curves.size(); ++i) out += is_bars(i) ? "" : CurveElements(i);
   out += SvgRectangle("frame", frame);
   if (!panel_->title.empty()) {
     out += SvgText(panel_->title, frame.left, frame.top - head_height_ + 15, {.look = "title"});

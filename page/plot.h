@@ -4,8 +4,8 @@
 //   _x  _ms  _{any text}   a subscript: the letters and digits that follow, or what the braces hold
 //   ^2  ^-1  ^{any text}   a superscript
 // They count after a letter, digit, prime or closing bracket: "p_2 - p_1, psi", "s^{-1}", "V_ms". A subscript without
-// braces also needs a symbol of one or two letters before it, so that names such as p1_psi and static_excess stay as
-// they are.
+// braces also needs a symbol of one or two letters before it, so that names such as p1_psi and static_excess stay
+// unchanged.
 #pragma once
 
 #include <cstddef>
@@ -28,8 +28,8 @@ struct Curve {
   std::vector<double> x;  // of equal length; a NaN in y breaks the line
   std::vector<double> y;
   Stroke stroke = Stroke::kLine;
-  // 0, 1, 2 ... choose from the palette, so that curves of one kind look alike across panels; -1: the curve's place in
-  // its panel.
+  // 0, 1, 2 ... choose from the palette, so that curves of one kind look alike across panels; -1: the
+  // curve's place in its panel.
   int colour = -1;
   // Empty, or bounds of each point, drawn as a vertical bar.
   std::vector<double> y_low = {};

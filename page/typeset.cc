@@ -26,8 +26,7 @@ bool AfterSymbol(std::string_view text, size_t at) {
   return letters <= 2;
 }
 
-// The text that a '_' or '^' at text[at] lowers or raises, and where the rest begins; empty: it is an
-// ordinary character.
+// The text that a '_' or '^' at text[at] lowers or raises, and where the rest begins; empty: an ordinary character.
 std::string_view Script(std::string_view text, size_t at, size_t* next) {
   if (at == 0 || at + 1 >= text.size()) return {};
   const char before = text[at - 1];

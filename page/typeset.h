@@ -1,5 +1,4 @@
-// Text of figures and of the report: plain text with subscripts and superscripts (page/plot.h), as SVG
-// and as HTML.
+// Text of figures and pages: plain text with subscripts and superscripts (page/plot.h), as SVG and as HTML.
 #pragma once
 
 #include <string>
@@ -17,11 +16,10 @@ std::string TypesetHtml(std::string_view text);
 // For the inside of an SVG <text> element: escaped, with tspans.
 std::string TypesetSvg(std::string_view text);
 
-// How wide it will be, in units of the font's size: an estimate for Helvetica and its like.
+// The width of the text in units of the font's size: an estimate for Helvetica and its like.
 double TextWidth(std::string_view text);
 
-// Breaks it at blanks into lines that are no wider than `width` (in units of the font's size), where that is
-// possible.
+// Breaks it at blanks into lines no wider than `width` (in units of the font's size), where that is possible.
 std::vector<std::string> WrapText(std::string_view text, double width);
 
 }  // namespace hydro::page

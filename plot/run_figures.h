@@ -6,8 +6,8 @@
 
 namespace hydro::plot {
 
-// `run` has the columns of hydro-log export (runs/run_table.h). Both throw InputError that names the file and a column that is
-// missing.
+// `run` has the columns of hydro-log export (runs/run_table.h). Both throw an InputError that names the file and the
+// column that is missing.
 
 // The arm's angle with its reference, and the motor's speed.
 page::Figure ArmFigure(const tables::Table& run);

@@ -19,8 +19,7 @@ std::string Left(double fraction, double elapsed) {
 void ProgressBar::Tell(const Progress& progress, double elapsed) {
   if (!terminal_) {
     if (progress.stage == stage_) return;
-    // The first line waits for the second: input that cannot be used ends the work before it, with one line
-    // in all.
+    // The first line waits for the second: unusable input ends the work before that, with one line in all.
     if (stages_ == 1) std::fprintf(out_, "%s\n", stage_.c_str());
     if (stages_ >= 1) std::fprintf(out_, "%s\n", progress.stage.c_str());
     std::fflush(out_);

@@ -1,4 +1,4 @@
-// How far a diagnosis is, for whoever watches.
+// The progress of a diagnosis, for people at a terminal and in logs.
 #pragma once
 
 #include <cstdio>

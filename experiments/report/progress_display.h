@@ -1,4 +1,4 @@
-// How far a set of experiments is, for whoever watches.
+// The progress of a set of experiments, for people at a terminal and in logs.
 #pragma once
 
 #include <cstdio>
@@ -10,7 +10,7 @@
 
 namespace hydro::experiments {
 
-// A bar on a terminal, plain lines in a log. May be told things by several threads.
+// A bar on a terminal, plain lines in a log. Several threads may report to it.
 class ProgressDisplay {
  public:
   // `costs`: of each task, in any unit. Writes to `out`, which stays the caller's; the bar is

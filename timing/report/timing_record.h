@@ -1,4 +1,4 @@
-// What the processes of a run reported about their loops, put together: the source of every timing report.
+// What the processes of a run reported about their loops: the source of every timing report.
 #pragma once
 
 #include <cstdint>
@@ -26,14 +26,14 @@ struct TimingHistogram {
   double Percentile(double percent) const;
 };
 
-// A process, its loop.
+// The loop of one process.
 struct TimedProcess {
   std::string role;
   std::string host;
   int64_t session = 0;
-  bool complete = false;  // it reported over its whole run as it left; else it was killed, or the log is torn
-  loop_statistics_t
-      total;  // over the whole run; where not complete, percentiles are those of the last report
+  bool complete = false;  // it reported on its whole run as it left; else it was killed, or the log is torn
+  // Over the whole run; where that is not complete, the percentiles are the last report's.
+  loop_statistics_t total;
   std::vector<loop_statistics_t> reports;             // one a second, by sequence
   std::map<std::string, TimingHistogram> histograms;  // by loop_histogram_t's names of quantities
 };
