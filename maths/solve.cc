@@ -13,7 +13,7 @@ Eigen::MatrixXd TransposeTimes(const Eigen::MatrixXd& A, const Eigen::MatrixXd& 
   return A.transpose() * B;
 }
 
-Eigensystem EigensystemOf(const Eigen::MatrixXd& A) {
+SymmetricEigensystem SymmetricEigensystemOf(const Eigen::MatrixXd& A) {
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(A);
   return {eigen.eigenvalues(), eigen.eigenvectors()};
 }

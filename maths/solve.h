@@ -1,5 +1,5 @@
-// Solutions of symmetric positive semidefinite systems, compiled once: Eigen's decompositions take g++ some
-// ten seconds in each file that uses them. For .cc files of diagnose/ only.
+// Solutions and eigenvectors of symmetric systems, compiled once: Eigen's decompositions take g++ some ten
+// seconds in each file that uses them. General matrices: maths/matrix_functions.h.
 #pragma once
 
 #include <Eigen/Core>
@@ -12,11 +12,11 @@ Eigen::MatrixXd SolveSymmetric(const Eigen::MatrixXd& A, const Eigen::MatrixXd& 
 // A'B, A'A: products, for the same reason.
 Eigen::MatrixXd TransposeTimes(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B);
 
-// A = V diag(values) V'.
-struct Eigensystem {
+// A = V diag(values) V', of a symmetric matrix; values in increasing order.
+struct SymmetricEigensystem {
   Eigen::VectorXd values;
   Eigen::MatrixXd vectors;  // V
 };
-Eigensystem EigensystemOf(const Eigen::MatrixXd& A);
+SymmetricEigensystem SymmetricEigensystemOf(const Eigen::MatrixXd& A);
 
 }  // namespace hydro::maths

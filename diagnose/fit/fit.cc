@@ -55,7 +55,7 @@ class RunCost : public ceres::CostFunction {
       return true;
     }
     // [J r]' [J r] = V L V'; the rows of L^1/2 V' are as good as those of [J r].
-    const maths::Eigensystem eigen = maths::EigensystemOf(normal);
+    const maths::SymmetricEigensystem eigen = maths::SymmetricEigensystemOf(normal);
     const MatrixXd root = eigen.values.cwiseMax(0.0).cwiseSqrt().asDiagonal() * eigen.vectors.transpose();
     out = root.col(n);
     using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;

@@ -104,7 +104,7 @@ std::vector<Interval> Intervals(const Fitted& fitted, const std::vector<const Ru
     root.matrixL().solveInPlace(share);
     share.transposeInPlace();
     root.matrixL().solveInPlace(share);
-    const maths::Eigensystem eigen = maths::EigensystemOf(share);
+    const maths::SymmetricEigensystem eigen = maths::SymmetricEigensystemOf(share);
     const VectorXd left = 1 - eigen.values.array().max(0.0).min(kMostLeverage);
     VectorXd gradient = scale.asDiagonal() * its_gradient;
     root.matrixL().solveInPlace(gradient);
