@@ -1,5 +1,4 @@
-// hydro-log replay: feeds a recorded state stream through a controller and compares what it answers with the
-// record.
+// hydro-log replay: feeds recorded states to a controller and compares its commands with the recorded ones.
 #pragma once
 
 #include <cstdint>
@@ -19,11 +18,11 @@ struct ReplayResult {
 };
 
 // Builds the controller from the log's own configuration and model and feeds it each recorded state in tick
-// order. The pressure loop gets each pressure command just before the state at which the record says that it
-// was in force, so a real-time run replays exactly, whatever arrived when. What is compared: every field of
-// the answers but utime, session and sequence; commands that wall-clock watchdogs sent (a stale state, the
-// end of the run) are left out. speed: recorded seconds per wall second; 0: as fast as possible. Throws
-// InputError when the log has no description of its run, no states, or none of the controller's commands.
+// order. The pressure loop gets each pressure command just before the first state for which the log shows it
+// in force, so that a real-time run replays exactly, whatever the order of arrival was. Every field of the
+// commands except utime, session and sequence is compared; commands from wall-clock watchdogs (a stale state,
+// the end of the run) are left out. speed: recorded seconds per wall second; 0: as fast as possible. Throws
+// InputError when the log has no description of its run, no states, or no commands of the controller.
 ReplayResult Replay(const runs::RunLog& log, ReplayedController controller, double speed);
 
 }  // namespace hydro::hydro_log

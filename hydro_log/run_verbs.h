@@ -1,4 +1,4 @@
-// The verbs of hydro-log that look at a run as a control loop: summary, timing and replay.
+// The verbs of hydro-log that treat a run as a control loop: summary, timing and replay.
 #pragma once
 
 #include <optional>
@@ -9,8 +9,8 @@
 
 namespace hydro::hydro_log {
 
-// For verbs that show or convert what was recorded: a message that is not this stack's is none of the run, as
-// it was none to the processes that heard it. One line on stderr says what was left out.
+// For verbs that show or convert a recording: messages that this stack cannot decode are left out, as the
+// processes of the run left them out. One line on stderr names them.
 runs::RunLog ReadWithWarning(const std::string& file, const std::optional<std::string>& suffix);
 
 class SummaryVerb {

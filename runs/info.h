@@ -10,14 +10,14 @@
 
 namespace hydro::runs {
 
-// How complete the messages of one channel are, by the sequence numbers of each sender.
+// How complete the messages of one channel are, judged by the sequence numbers of each sender.
 struct ChannelInfo {
   ChannelSummary summary;
   double rate_hz = 0;        // events a second of receive time; 0: fewer than two, or no time passed
   bool numbered = false;     // its messages have sequence numbers; else the counts below mean nothing
   int64_t senders = 0;       // distinct sessions
-  int64_t lost = 0;          // numbers missing between the first and the last of each sender
-  int64_t repeated = 0;      // messages whose number was there already
+  int64_t lost = 0;          // numbers missing between each sender's first and last
+  int64_t repeated = 0;      // messages whose number had been seen
   int64_t before_first = 0;  // messages of its senders that were sent before the log began
 };
 
@@ -68,9 +68,9 @@ struct LogInfo {
   TickInfo ticks;  // states = 0: the log has none
   std::vector<SignalInfo> signals;
   std::vector<LoopInfo> loops;        // by role and host
-  std::vector<ProgramInfo> programs;  // that said they were there
+  std::vector<ProgramInfo> programs;  // that introduced themselves
   std::vector<fault_t> faults;
-  std::vector<stop_t> stops;                                // each once, however often it was said
+  std::vector<stop_t> stops;                                // each once, however often it was sent
   std::vector<run_description_t> descriptions;              // distinct ones
   std::string model_name;                                   // of the first description
   std::vector<std::pair<std::string, std::string>> config;  // of the first description
@@ -79,7 +79,7 @@ struct LogInfo {
 // With `si`, pressures are in kPa instead of psi (for models in the paper's units).
 LogInfo Summarise(const RunLog& log, bool si);
 
-// For a person; several lines.
+// Several lines for people to read.
 std::string InfoText(const LogInfo& info);
 
 // The same as JSON.

@@ -1,4 +1,4 @@
-// The fields of the messages that make up a run, but for utime and session, which differ from run to run.
+// The fields of the messages of a run, except utime and session, which differ from run to run.
 #pragma once
 
 #include <tuple>

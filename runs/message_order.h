@@ -35,7 +35,7 @@ std::strong_ordering CompareMessages(const Message& a, const Message& b) {
       FieldsOf(static_cast<const Message*>(nullptr)));
 }
 
-// The messages in order, each that is the same in every field of FieldsOf() once. Points into `messages`.
+// The messages in order; those that agree in every field of FieldsOf() appear once. Points into `messages`.
 template <class Message>
 std::vector<const Message*> InOrder(const std::vector<Message>& messages) {
   std::vector<const Message*> ordered;

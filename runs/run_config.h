@@ -1,4 +1,4 @@
-// What a log's description says of the run, without the whole configuration being valid for this version.
+// Facts of a run from its log's description, which need not be a valid configuration for this version.
 #pragma once
 
 #include <optional>
@@ -15,11 +15,11 @@ namespace hydro::runs {
 std::vector<std::pair<std::string, std::string>> ConfigEntries(const run_description_t& description,
                                                                const std::string& file);
 
-// plant.command_delay_ticks, 0 or 1: a command computed from tick k acts from tick k + this. 1 where it is
-// not given. Throws InputError when it is something else.
+// plant.command_delay_ticks, 0 or 1: a command computed from tick k acts from tick k + this. The default is
+// 1. Throws InputError for any other value.
 int CommandDelayTicks(const run_description_t& description, const std::string& file);
 
-// The name that the model's text gives itself; empty when it has none.
+// The model's name; empty when its text has none.
 std::string ModelName(const run_description_t& description, const std::string& file);
 
 }  // namespace hydro::runs

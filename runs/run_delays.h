@@ -1,4 +1,4 @@
-// Channels of a recording that are late against the others: put on one clock.
+// Brings channels that were recorded late onto the clock of the others.
 #pragma once
 
 #include <utility>
@@ -8,12 +8,12 @@
 
 namespace hydro::runs {
 
-// A signal of a run and by how much it was recorded late, s (early: below 0).
+// A signal of a run and its delay in s; below 0 when it was recorded early.
 using SignalDelay = std::pair<MeasuredSignal MeasuredRun::*, double>;
 
-// Every such signal is replaced by what it read `delay` later, at the nearest sample: values stay as they
-// were recorded, so that their noise does too. Samples for which there is no such reading are cut off the
-// ends. False, and the run as it was, when fewer than two samples would be left.
+// Replaces each signal by its reading `delay` later, at the nearest sample, so that values and their noise
+// stay as recorded. Cuts off the samples at the ends for which there is no such reading. Returns false, and
+// leaves the run as it was, when fewer than two samples would remain.
 bool RemoveDelays(const std::vector<SignalDelay>& delays, MeasuredRun* run);
 
 }  // namespace hydro::runs

@@ -27,7 +27,7 @@ struct ChannelSummary {
   int64_t undecodable = 0;  // of this stack's type and version they are not: left out
 };
 
-// Messages are in the order of the log, with whatever was lost, repeated or late.
+// Messages are in the order of the log; some may be missing, repeated or late.
 struct RunLog {
   std::string file;
   std::string suffix;  // of the channels that were read
@@ -46,15 +46,15 @@ struct RunLog {
   std::string first_undecodable;  // where the first message that was left out is, and why; empty: none was
 };
 
-// What becomes of a message on one of this stack's channels that is of another type or version, or torn.
+// What to do with a message on one of this stack's channels that is of another type or version, or torn.
 enum class Undecodable {
-  kRefused,  // LogError: for whom all of a run matters
-  kLeftOut,  // counted and left out, as the processes of the run did that heard it
+  kRefused,  // LogError: for callers that need the whole run
+  kLeftOut,  // counted and left out, as the processes of the run left it out
 };
 
 // Reads `file`. Without `suffix`, the suffix of its state channel is found; of several, one must be chosen
 // (InputError names them). A log without any of this stack's channels is not an error here. Throws LogError
-// where the file is damaged: it cannot be told then what else is missing.
+// where the file is damaged, because it is then unknown what else is missing.
 RunLog ReadRunLog(const std::string& file, const std::optional<std::string>& suffix = std::nullopt,
                   Undecodable undecodable = Undecodable::kRefused);
 

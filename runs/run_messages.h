@@ -1,4 +1,4 @@
-// The messages that make up a run: what hydro-log compare and replay look at.
+// The messages that make up a run: what hydro-log compare and replay use.
 #pragma once
 
 #include <vector>

@@ -1,4 +1,4 @@
-// How an arm answers one step of its reference: overshoot, settling, error that remains.
+// The response of an arm to one step of its reference: overshoot, settling time, remaining error.
 #pragma once
 
 #include <cstddef>
@@ -7,7 +7,7 @@
 
 namespace hydro::runs {
 
-// The answer to one step of the reference, until the next step or the end of the run.
+// The response to one step, until the next step or the end of the run.
 struct StepResponse {
   double time_s = 0;
   double from_rad = 0;  // reference before and after

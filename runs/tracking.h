@@ -1,4 +1,4 @@
-// hydro-log summary: how well the arm followed its reference, and how the processes kept time meanwhile.
+// hydro-log summary: how well the arm followed its reference, and how well the processes kept time.
 #pragma once
 
 #include <optional>
@@ -21,11 +21,11 @@ struct Tracking {
   std::vector<StepResponse> steps;  // empty when the reference is not made of steps
 };
 
-// The arm's tracking in a run. A reference counts as made of steps when it changes at most 100 times and
-// rests at least 0.2 s after each change.
+// The arm's tracking in a run. A reference consists of steps when it changes at most 100 times and rests for
+// at least 0.2 s after each change.
 Tracking TrackArm(const RunLog& log);
 
-// For a person; several lines, loop timing and losses included. With `si`, angles are also in degrees.
+// Several lines for people to read, with loop timing and losses. With `si`, angles are also in degrees.
 std::string SummaryText(const Tracking& tracking, const LogInfo& info, bool si);
 
 // The same as JSON.

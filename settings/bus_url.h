@@ -5,8 +5,8 @@
 
 namespace hydro::settings {
 
-// Empty when `url` is udpm://GROUP:PORT with optional ?ttl=N&recv_buf_size=BYTES, else what is allowed. LCM
-// itself takes malformed addresses for others without a word.
+// Empty when `url` is udpm://GROUP:PORT with optional ?ttl=N&recv_buf_size=BYTES; otherwise what is allowed.
+// LCM itself silently reads malformed addresses as other ones.
 std::string WhatIsWrongWithBusUrl(const std::string& url);
 
 }  // namespace hydro::settings

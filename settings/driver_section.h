@@ -10,7 +10,7 @@ namespace hydro::settings {
 class SectionReader;
 struct StackConfig;
 
-// Against what an analog input is measured: Comedi's AREF_GROUND, AREF_COMMON, AREF_DIFF, AREF_OTHER.
+// What an analog input is measured against: Comedi's AREF_GROUND, AREF_COMMON, AREF_DIFF, AREF_OTHER.
 enum class AnalogReference { kGround, kCommon, kDifferential, kOther };
 
 struct BoardLine {
@@ -29,8 +29,8 @@ struct SensorSection {
   double scale = 1;        // kAnalog: unit per V, kCounter: unit per count; its sign is that of the wiring
   double offset = 0;       // unit; the signal is scale * reading + offset
   double low_pass_hz = 0;  // corner of a first-order low pass; 0: none
-  // kAnalog: a reading outside them is no reading. NaN: the ends of the board's range, which then are not
-  // believed either.
+  // kAnalog: a reading outside them counts as missing. NaN: the ends of the board's range, where readings
+  // count as missing as well.
   double minimum_V = std::numeric_limits<double>::quiet_NaN();
   double maximum_V = std::numeric_limits<double>::quiet_NaN();
 };

@@ -15,7 +15,7 @@ NumberRange RangeOf(const model::ParameterInfo& info) {
 }
 
 std::string Wanted(const model::ParameterInfo& info) {
-  return RangeOf(info).Says() + " (" + info.unit + ", " + info.meaning + ")";
+  return RangeOf(info).Allowed() + " (" + info.unit + ", " + info.meaning + ")";
 }
 
 // c itself, or r and d that give it: c = r^2 d / 2, eqs. (6), (7).
@@ -34,7 +34,7 @@ void ReadDisplacement(SectionReader& section, const model::ParameterInfo& info, 
   if (has_r && has_d) {
     *c = r * r * d / 2;
     if (!RangeOf(info).Holds(*c)) {
-      throw section.Error("r", "r^2 d / 2 = " + ShortestNumber(*c), RangeOf(info).Says());
+      throw section.Error("r", "r^2 d / 2 = " + ShortestNumber(*c), RangeOf(info).Allowed());
     }
   }
 }

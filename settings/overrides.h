@@ -8,8 +8,8 @@
 
 namespace hydro::settings {
 
-// Sets each "section.key=value" in the configuration. The value is TOML, or else taken as a string. Throws
-// InputError naming the option where it has no such form.
+// Sets each "section.key=value" in the configuration. A value that is not TOML is taken as a string. Throws
+// InputError with the option where it does not have this form.
 //
 // Where alternatives exclude each other, choosing one by option drops the file's keys of the others: those of
 // another kind when reference.kind (or model.motion.kind) is set, k_p and k_v against natural_frequency_rad_s

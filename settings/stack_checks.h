@@ -1,4 +1,4 @@
-// What several keys of the configuration, or a key and the model, must satisfy together.
+// Checks that involve several keys of the configuration, or a key and the model.
 #pragma once
 
 #include "settings/stack_config.h"
@@ -16,7 +16,7 @@ inline constexpr double kArmAngleShare = 0.98;
 // limits.arm_angle_rad. Throws InputError.
 void CheckAgainstModel(const TomlNode& root, StackConfig* config);
 
-// Checks what holds the shaft and the gains. Throws InputError.
+// Checks the gains and how the shaft is held. Throws InputError.
 void CheckChoices(const TomlNode& root, const StackConfig& config);
 
 }  // namespace hydro::settings

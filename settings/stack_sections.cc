@@ -82,7 +82,7 @@ void ReadPressure(SectionReader section, PressureSection* pressure) {
     } else if (rate->is_number() && kPositive.Holds(rate->AsDouble())) {
       pressure->rate_hz = rate->AsDouble();
     } else {
-      throw section.Error("rate_hz", rate->Shown(), kPositive.Says() + " or \"every_tick\"");
+      throw section.Error("rate_hz", rate->Shown(), kPositive.Allowed() + " or \"every_tick\"");
     }
   }
   section.Number("k_p", &pressure->k_p, kNotNegative);

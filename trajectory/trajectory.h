@@ -42,9 +42,8 @@ enum class Interpolation {
   kCubic,   // monotone cubic (Fritsch-Carlson): smooth, never outside the points' range between two points
 };
 
-// initial before the first step, then each step's value from its time on. Times strictly increase.
-// Throws std::invalid_argument naming the step that breaks this, or a non-finite number. So do the others
-// below.
+// initial before the first step, then each step's value from its time on. Times strictly increase. Like the
+// others below, throws std::invalid_argument, which names the step that breaks this or the non-finite number.
 std::unique_ptr<Trajectory> MakeSteps(double initial, std::vector<Step> steps);
 
 // offset before start; then offset + amplitude sin(2 pi frequency (t - start) + phase).
@@ -55,8 +54,8 @@ std::unique_ptr<Trajectory> MakeSine(double offset, double amplitude, double fre
 // the second.
 std::unique_ptr<Trajectory> MakeSquare(double offset, double amplitude, double frequency_hz, double start);
 
-// offset before start; then a sine whose frequency goes linearly from first_hz to last_hz in duration s, and
-// stays.
+// offset before start; then a sine whose frequency changes linearly from first_hz to last_hz in duration s
+// and then stays.
 std::unique_ptr<Trajectory> MakeChirp(double offset, double amplitude, double first_hz, double last_hz,
                                       double start, double duration);
 

@@ -37,14 +37,14 @@ bool NumberRange::Holds(double value) const {
   return (min_allowed ? value >= min : value > min) && (max_allowed ? value <= max : value < max);
 }
 
-std::string NumberRange::Says() const {
-  std::string says = "a finite number";
-  if (std::isfinite(min)) says += (min_allowed ? " of at least " : " above ") + ShortestNumber(min);
+std::string NumberRange::Allowed() const {
+  std::string allowed = "a finite number";
+  if (std::isfinite(min)) allowed += (min_allowed ? " of at least " : " above ") + ShortestNumber(min);
   if (std::isfinite(max)) {
-    says += std::isfinite(min) ? " and" : "";
-    says += (max_allowed ? " at most " : " below ") + ShortestNumber(max);
+    allowed += std::isfinite(min) ? " and" : "";
+    allowed += (max_allowed ? " at most " : " below ") + ShortestNumber(max);
   }
-  return infinity_allowed ? says + ", or inf" : says;
+  return infinity_allowed ? allowed + ", or inf" : allowed;
 }
 
 SectionReader::SectionReader(const TomlNode& table, std::string path)
@@ -53,7 +53,7 @@ SectionReader::SectionReader(const TomlNode& table, std::string path)
 bool SectionReader::Number(const std::string& key, double* out, const NumberRange& range) {
   const TomlNode* node = Take(key);
   if (node == nullptr) return false;
-  if (!node->is_number() || !range.Holds(node->AsDouble())) throw Error(key, node->Shown(), range.Says());
+  if (!node->is_number() || !range.Holds(node->AsDouble())) throw Error(key, node->Shown(), range.Allowed());
   *out = node->AsDouble();
   return true;
 }

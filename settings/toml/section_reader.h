@@ -1,5 +1,4 @@
-// Reads one section of a TOML document key by key, so that everything it holds is either asked for or an
-// error.
+// Reads one section of a TOML document key by key, so that every key is either asked for or an error.
 #pragma once
 
 #include <cstdint>
@@ -32,7 +31,7 @@ struct NumberRange {
   bool infinity_allowed = false;  // "inf" for "no limit"
 
   bool Holds(double value) const;
-  std::string Says() const;  // "a finite number above 0"
+  std::string Allowed() const;  // "a finite number above 0"
 };
 
 inline constexpr NumberRange kAnyNumber{};

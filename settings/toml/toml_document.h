@@ -1,4 +1,4 @@
-// A TOML document as a tree that remembers the order of its keys and where each came from.
+// A TOML document as a tree that keeps the order of its keys and the place of each.
 #pragma once
 
 #include <cstdint>
