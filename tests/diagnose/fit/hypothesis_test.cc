@@ -1,0 +1,160 @@
+#include "diagnose/fit/hypothesis.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "diagnose/fit/clock_fit.h"
+#include "diagnose/fit/residuals.h"
+#include "tests/diagnose/small_runs.h"
+
+namespace hydro::testing {
+namespace {
+
+using diagnose::Change;
+using diagnose::FreeParameter;
+using diagnose::Hypothesis;
+
+// Tests that what is free can be read, set and moved, positive numbers by their logarithms.
+TEST(Hypothesis, FreeNumbers) {
+  Hypothesis hypothesis = WithFree(Table1With({{"pump.quadratic_drag", {{"k", 2e-4}}, {}}}), {"b", "T_s"});
+  const std::vector<FreeParameter> free = hypothesis.Free();
+  ASSERT_EQ(free.size(), 3u);
+  EXPECT_EQ(free[0].name, "b");
+  EXPECT_EQ(free[0].value, Table1().b);
+  EXPECT_EQ(free[2].name, "pump.quadratic_drag.k");
+  EXPECT_EQ(free[2].value, 2e-4);
+  for (const FreeParameter& parameter : free) {
+    EXPECT_NEAR(parameter.FromFitted(parameter.ToFitted(parameter.value)), parameter.value, 1e-12);
+    EXPECT_NEAR(parameter.Moved(1e-6) - parameter.value, 1e-6 * parameter.Slope(), 1e-11);
+    EXPECT_LT(parameter.low, parameter.value);
+    EXPECT_GT(parameter.high, parameter.value);
+  }
+  hypothesis.Set({0.02, 5, 3e-4});
+  EXPECT_EQ(hypothesis.model.parameters.b, 0.02);
+  EXPECT_EQ(hypothesis.model.parameters.T_s, 5);
+  EXPECT_EQ(hypothesis.model.effects[0].parameters.at("k"), 3e-4);
+  EXPECT_TRUE(hypothesis.Held().Free().empty());
+  EXPECT_EQ(hypothesis.Held().model.parameters.b, 0.02);
+}
+
+// Tests that a change is added with starting points, named, told from another, and taken back whole.
+TEST(Hypothesis, ChangesThereAndBack) {
+  const std::vector<diagnose::RunData> runs = OneOfEach(Table1With(), 0.5, 1);
+  const diagnose::Sizes sizes = diagnose::SizesOf(Table1With(), PointersTo(runs));
+  EXPECT_GT(sizes.pressure, 0);
+  EXPECT_GT(sizes.speed, 0);
+  EXPECT_NEAR(sizes.sample, 1e-3, 1e-9);
+  Hypothesis plain;
+  plain.model = Table1With();
+  const Change drag{"pump.quadratic_drag", {}, ""}, skew{"sensor.skew", {{"signal", "p1"}}, ""},
+      k_1{"", {}, "k_1"};
+  EXPECT_EQ(drag.Label(), "pump.quadratic_drag");
+  EXPECT_EQ(skew.Label(), "sensor.skew (p1)");
+  EXPECT_EQ(k_1.Label(), "parameter k_1");
+  const std::vector<Hypothesis> with = diagnose::With(plain, drag, sizes, false);
+  ASSERT_FALSE(with.empty());
+  for (const Hypothesis& one : with) {
+    EXPECT_TRUE(one.Has(drag));
+    EXPECT_FALSE(one.Has(k_1));
+    ASSERT_EQ(one.model.effects.size(), 1u);
+    EXPECT_EQ(one.model.effects[0].id, "pump.quadratic_drag");
+    ASSERT_NE(one.OneBeyond(plain), nullptr);
+    EXPECT_EQ(*one.OneBeyond(plain), drag);
+    EXPECT_EQ(plain.OneBeyond(one), nullptr);
+  }
+  const std::vector<Hypothesis> elsewhere = diagnose::With(plain, k_1, sizes, true);
+  EXPECT_GT(elsewhere.size(), diagnose::With(plain, k_1, sizes, false).size());
+  Hypothesis both = diagnose::With(with[0], k_1, sizes, false).at(0);
+  both.model.parameters.k_1 = 9;
+  EXPECT_EQ(both.OneBeyond(plain), nullptr);  // two
+  const Hypothesis back = diagnose::Without(both, k_1, Table1With());
+  EXPECT_EQ(back.model.parameters.k_1, Table1().k_1);
+  EXPECT_TRUE(back.Has(drag));
+  EXPECT_TRUE(diagnose::Without(back, drag, Table1With()).model.effects.empty());
+}
+
+// Tests that the truth's residuals are noise of 1, and that their derivatives are differences' limits.
+TEST(Residuals, NoiseAndDerivatives) {
+  diagnose::RunData run = SmallRun(Table1With(), model::Shaft::kClamped, false, 0.5, 0, 1);
+  run.start = {0, 0, Table1().p_3, Table1().p_3, 0.3, 0};  // as the rig was, not as its first samples say
+  const Hypothesis hypothesis = WithFree(Table1With(), {"b", "beta"});
+  const std::vector<FreeParameter> free = hypothesis.Free();
+  const std::vector<model::Unknown> starts = diagnose::StartUnknowns(run);
+  EXPECT_FALSE(starts.empty());
+  const diagnose::Residuals at = diagnose::ResidualsOf(hypothesis.model, run, run.start, free, starts);
+  const size_t n = at.values.size();
+  ASSERT_EQ(at.first.size(), run.signals.size() + 1);
+  EXPECT_EQ(at.first.back(), n);
+  ASSERT_EQ(at.jacobian.size(), n * (free.size() + starts.size()));
+  double square = 0;
+  for (const double value : at.values) square += value * value / static_cast<double>(n);
+  EXPECT_NEAR(std::sqrt(square), 1, 0.3);
+  EXPECT_EQ(diagnose::ResidualsOf(hypothesis.model, run, run.start).values, at.values);
+  for (size_t p = 0; p < free.size(); ++p) {
+    constexpr double kStep = 1e-4;
+    const auto moved = [&](double by) {
+      Hypothesis other = hypothesis;
+      std::vector<double> values = {free[0].value, free[1].value};
+      values[p] = free[p].Moved(by);
+      other.Set(values);
+      return diagnose::ResidualsOf(other.model, run, run.start).values;
+    };
+    const std::vector<double> up = moved(kStep), down = moved(-kStep);
+    double off = 0, size = 0;
+    for (size_t i = 0; i < n; ++i) {
+      const double difference = (up[i] - down[i]) / (2 * kStep);
+      off += std::pow(difference - at.jacobian[p * n + i], 2);
+      size += difference * difference;
+    }
+    EXPECT_GT(size, 0) << free[p].name;
+    EXPECT_LT(std::sqrt(off / size), 0.02) << free[p].name;
+  }
+}
+
+// Tests that runs on one clock are left as they are, and so are runs of which only some were found apart.
+TEST(ClockFit, LeavesWhatIsOnOneClock) {
+  std::vector<diagnose::RunData> runs = ClampedPair(Table1With(), 0.3, 1);
+  const std::vector<double> before = runs[0].measured.voltage.values;
+  std::vector<diagnose::RunData> held_out;
+  std::vector<diagnose::ClockDelay> clocks;
+  const std::vector<size_t> base = {model::BasePlace("b")};
+  diagnose::CorrectClocks(Table1With(), base, 1, &runs, &held_out, &clocks);
+  EXPECT_EQ(runs[0].measured.voltage.values, before);
+  diagnose::ClockDelay one;
+  one.run = runs[0].name;
+  one.signals = {"voltage"};
+  one.delay = 0.01;
+  clocks = {one};
+  diagnose::CorrectClocks(Table1With(), base, 1, &runs, &held_out, &clocks);
+  EXPECT_EQ(clocks[0].delay, 0.01);
+  EXPECT_EQ(runs[0].measured.voltage.values, before);
+}
+
+// Tests that a command which is still late after its correction is put in its place, by whole samples, the held-out run with
+// it, and that the interval says so.
+TEST(ClockFit, FindsWhatWasLeft) {
+  std::vector<diagnose::RunData> runs, held_out;
+  for (int which : {0, 1}) {
+    diagnose::RunData run = SmallRun(Table1With(), model::Shaft::kClamped, false, 0.5, which, 1);
+    runs::MeasuredRun late = run.measured;
+    constexpr size_t kLate = 4;
+    for (size_t k = late.voltage.values.size(); k-- > kLate;)
+      late.voltage.values[k] = late.voltage.values[k - kLate];
+    diagnose::RunData prepared = diagnose::PrepareRun(std::move(late), Table1());
+    (which == 0 ? runs : held_out).push_back(std::move(prepared));
+  }
+  diagnose::ClockDelay clock;
+  clock.run = runs[0].name;
+  clock.signals = {"voltage"};
+  clock.delay = 0.02;
+  clock.error = 0.001;
+  std::vector<diagnose::ClockDelay> clocks = {clock};
+  diagnose::CorrectClocks(Table1With(), {model::BasePlace("b")}, 1, &runs, &held_out, &clocks);
+  EXPECT_NEAR(clocks[0].delay, 0.024, 1e-9);
+  EXPECT_NEAR(clocks[0].error, std::hypot(0.001, 0.004), 1e-9);
+  EXPECT_LT(held_out[0].samples(), 500u);
+}
+
+}  // namespace
+}  // namespace hydro::testing

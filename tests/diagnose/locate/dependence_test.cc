@@ -1,0 +1,198 @@
+#include "diagnose/locate/dependence.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+#include <utility>
+
+#include "diagnose/locate/disagreement.h"
+#include "diagnose/locate/explanations.h"
+
+namespace hydro::diagnose {
+namespace {
+
+constexpr size_t kSamples = 600;
+
+// A second and a half of a disturbance f(x) of one variable x that sweeps -10 to 10 and back, one block a sample; noise of 1.
+struct Case {
+  Blocks blocks;
+  Variable variable;
+  std::vector<double> averages;
+};
+
+template <class F>
+Case Of(const F& f) {
+  Case c;
+  std::mt19937_64 random(3);
+  std::normal_distribution<double> normal;
+  c.variable.name = "motor_speed";
+  c.variable.unit = "rad/s";
+  c.variable.values.resize(1);
+  c.blocks.duration = 0.0025;
+  for (size_t k = 0; k < kSamples; ++k) {
+    const double x = 10 * std::sin(0.021 * static_cast<double>(k));
+    c.variable.values[0].push_back(x);
+    c.averages.push_back(x);
+    c.blocks.blocks.push_back({0, k, k + 1, f(x) + normal(random), 1});
+  }
+  return c;
+}
+
+// Tests that a line in the variable is explained whole, noise by nothing, and a step by bins though by no line.
+TEST(Dependence, ExplainedShare) {
+  const Case line = Of([](double x) { return 2 * x; });
+  EXPECT_GT(Explained(line.blocks, line.averages, true), 0.97);
+  EXPECT_LE(Explained(line.blocks, line.averages, true), 1.02);
+  const Case even = Of([](double x) { return std::abs(x) > 5 ? 6.0 : -6.0; });
+  EXPECT_LT(Explained(even.blocks, even.averages, true), 0.05);
+  EXPECT_GT(Explained(even.blocks, even.averages, false), 0.8);
+  const Case noise = Of([](double) { return 0.0; });
+  EXPECT_LT(Explained(noise.blocks, noise.averages, false), 0.5);
+  // Of what does not change nothing depends.
+  EXPECT_EQ(Explained(line.blocks, std::vector<double>(kSamples, 1.0), false), 0);
+}
+
+// Tests that the table holds the function: bins in order, means on it to their errors.
+TEST(Dependence, Table) {
+  const Case c = Of([](double x) { return x * std::abs(x); });
+  const MissingTerm table = TableOf(c.blocks, c.variable, c.averages);
+  EXPECT_EQ(table.against, "motor_speed");
+  EXPECT_EQ(table.against_unit, "rad/s");
+  ASSERT_GE(table.at.size(), 8u);
+  ASSERT_LE(table.at.size(), 12u);
+  for (size_t i = 0; i < table.at.size(); ++i) {
+    if (i > 0) {
+      EXPECT_GT(table.at[i], table.at[i - 1]);
+    }
+    EXPECT_GT(table.error[i], 0);
+    // Within a bin the function is bent: the mean of it is not it at the mean.
+    EXPECT_NEAR(table.mean[i], table.at[i] * std::abs(table.at[i]), 5 * table.error[i] + 3);
+  }
+  EXPECT_LT(table.mean.front(), -50);
+  EXPECT_GT(table.mean.back(), 50);
+}
+
+// Tests that the range with most of the energy is named: small values, large ones of either sign, or all of it.
+TEST(Dependence, RangeInWords) {
+  const Case near = Of([](double x) { return std::abs(x) < 2 ? 30.0 : 0.0; });
+  EXPECT_EQ(RangeOf(near.blocks, near.variable, near.averages).rfind("|motor_speed| < ", 0), 0u)
+      << RangeOf(near.blocks, near.variable, near.averages);
+  const Case high = Of([](double x) { return x > 8 ? 30 * (x - 8) : 0.0; });
+  EXPECT_EQ(RangeOf(high.blocks, high.variable, high.averages).rfind("motor_speed > ", 0), 0u)
+      << RangeOf(high.blocks, high.variable, high.averages);
+  const Case sign = Of([](double x) { return x > 0 ? 10.0 : -10.0; });
+  EXPECT_EQ(RangeOf(sign.blocks, sign.variable, sign.averages), "changes with the sign of motor_speed");
+  Case given = Of([](double) { return 10.0; });
+  EXPECT_EQ(RangeOf(given.blocks, given.variable, given.averages), "changes with motor_speed");
+  given.variable.where = "|voltage| > 8 V";
+  EXPECT_EQ(RangeOf(given.blocks, given.variable, given.averages), "|voltage| > 8 V");
+}
+
+// Tests that the stretches with energy are found, at their times, and that noise has none.
+TEST(Dependence, Windows) {
+  RunData run;
+  run.name = "square";
+  for (size_t k = 0; k < kSamples; ++k) run.stimulus.time.push_back(0.0025 * static_cast<double>(k));
+  Case c = Of([](double) { return 0.0; });
+  for (Blocks::Block& block : c.blocks.blocks) block.value = 0.5;
+  EXPECT_TRUE(WindowsOf(c.blocks, {&run}).empty());
+  for (size_t k = 100; k < 140; ++k) c.blocks.blocks[k].value = 20;
+  for (size_t k = 400; k < 410; ++k) c.blocks.blocks[k].value = -15;
+  const std::vector<Window> windows = WindowsOf(c.blocks, {&run});
+  ASSERT_EQ(windows.size(), 2u);
+  EXPECT_EQ(windows[0].run, "square");
+  EXPECT_NEAR(windows[0].from, 0.25, 1e-9);
+  EXPECT_NEAR(windows[0].to, 0.35, 1e-9);
+  EXPECT_NEAR(windows[1].from, 1.0, 1e-9);
+  EXPECT_NEAR(windows[1].to, 1.025, 1e-9);
+}
+
+// A smoothed run of which the disturbance of the pump's torque is 3 in-lbf where the motor turns forward; noise of 0.5.
+std::pair<RunData, SmoothedRun> Smoothed(double size) {
+  std::mt19937_64 random(5);
+  std::normal_distribution<double> normal;
+  RunData run;
+  SmoothedRun smoothed;
+  smoothed.measured[static_cast<size_t>(Balance::kPumpTorque)] = true;
+  Disturbance& d = smoothed.disturbance[static_cast<size_t>(Balance::kPumpTorque)];
+  for (size_t k = 0; k < kSamples; ++k) {
+    const double t = 1e-3 * static_cast<double>(k);
+    run.stimulus.time.push_back(t);
+    run.stimulus.voltage.push_back(k < kSamples / 2 ? 10 : 2);
+    smoothed.motor_speed.push_back(20 * std::sin(30 * t));
+    smoothed.motor_angle.push_back(-20 / 30.0 * std::cos(30 * t));
+    smoothed.p1.push_back(100);
+    smoothed.p2.push_back(100 + 200 * t);
+    smoothed.arm_angle.push_back(0);
+    smoothed.arm_speed.push_back(0);
+    d.value.push_back((smoothed.motor_speed.back() > 0 ? size : 0) + 0.5 * normal(random));
+    for (std::vector<double>& draw : d.noise) draw.push_back(0.5 * normal(random));
+    d.informative.push_back(1);
+  }
+  return {std::move(run), std::move(smoothed)};
+}
+
+// Tests that a disturbance is told from noise, and that noise alone is none.
+TEST(Disagreement, BeyondNoise) {
+  const auto [run, smoothed] = Smoothed(3);
+  const Disagreement found = LargestDisagreement({smoothed}, {&run}, Balance::kPumpTorque);
+  EXPECT_TRUE(found.beyond_noise);
+  EXPECT_GT(found.significance, 25);
+  EXPECT_GE(found.blocks.blocks.size(), 100u);
+  const auto [quiet_run, quiet] = Smoothed(0);
+  const Disagreement none = LargestDisagreement({quiet}, {&quiet_run}, Balance::kPumpTorque);
+  EXPECT_FALSE(none.beyond_noise);
+  EXPECT_LT(none.significance, 8);
+  // A balance that was not measured has no blocks.
+  EXPECT_TRUE(LargestDisagreement({smoothed}, {&run}, Balance::kFlow1).blocks.blocks.empty());
+}
+
+// Tests that of all that a balance may depend on, what it does depend on explains most.
+TEST(Explanations, TheRightOneExplainsMost) {
+  const auto [run, smoothed] = Smoothed(3);
+  const std::vector<SmoothedRun> all = {smoothed};
+  const std::vector<const RunData*> runs = {&run};
+  const Explanations explanations(all, runs);
+  const Blocks blocks = LargestDisagreement(all, runs, Balance::kPumpTorque).blocks;
+  double most = 0;
+  std::string name;
+  for (const Variable& variable : explanations.States(Balance::kPumpTorque, false)) {
+    ASSERT_EQ(variable.values.size(), 1u) << variable.name;
+    ASSERT_EQ(variable.values[0].size(), kSamples) << variable.name;
+    const double share =
+        Explained(blocks, Average(variable, blocks, all, Balance::kPumpTorque), variable.linear_only);
+    if (share > most) {
+      most = share;
+      name = variable.name;
+    }
+  }
+  EXPECT_TRUE(name == "motor_speed" || name == "(p1 + p2) sgn(motor_speed)") << name;
+  EXPECT_GT(most, 0.8);
+}
+
+// Tests what is offered: ripples of a turn only on request, none for the arm; limits of the voltage with their places.
+TEST(Explanations, WhatIsOffered) {
+  const auto [run, smoothed] = Smoothed(3);
+  const std::vector<SmoothedRun> all = {smoothed};
+  const std::vector<const RunData*> runs = {&run};
+  const Explanations explanations(all, runs);
+  EXPECT_EQ(explanations.States(Balance::kFlow1, true).size(),
+            explanations.States(Balance::kFlow1, false).size() + 48);
+  EXPECT_EQ(explanations.States(Balance::kArmTorque, true).size(),
+            explanations.States(Balance::kArmTorque, false).size());
+  const std::vector<Variable> commands = explanations.Commands();
+  ASSERT_EQ(commands.size(), 11u);
+  EXPECT_EQ(commands[1].where, "|voltage| > 5 V");
+  EXPECT_TRUE(commands[1].linear_only);
+  EXPECT_DOUBLE_EQ(commands[1].values[0].front(), 5);  // of 10 V
+  EXPECT_DOUBLE_EQ(commands[1].values[0].back(), 0);   // of 2 V
+  // The rate of p2 - p1 is 200 psi/s.
+  const std::vector<Variable> late = explanations.Lateness(Balance::kPumpTorque);
+  ASSERT_EQ(late.size(), 1u);
+  EXPECT_NEAR(late[0].values[0][100], 200, 1e-6);
+  EXPECT_TRUE(explanations.Lateness(Balance::kArmTorque).empty());
+}
+
+}  // namespace
+}  // namespace hydro::diagnose
