@@ -37,6 +37,37 @@ void CheckBounds(const ParameterInfo& info, double value, const std::string& own
   EvaluateTerms<Form::kGeneral, Jet>(m, *m.constants, time, voltage, mode, state, rate, x);
 }
 
+// The same numbers as scalars that could carry derivatives, and carry none.
+std::shared_ptr<const NumbersOf<Jet>> WithoutDerivatives(const EquationData& data) {
+  Parameters parameters = data.parameters;
+  auto constants = std::make_shared<NumbersOf<Jet>>();
+  for (size_t i = 0; i < BaseParameters().size(); ++i) {
+    BaseValue(constants->parameters, i) = Jet(BaseValue(parameters, i));
+  }
+  for (const double value : data.own) constants->own.emplace_back(value);
+  CompleteNumbers<Jet>(data, constants.get());
+  return constants;
+}
+
+// Throws ModelError for a parameter that is missing, not known as a name, or outside its bounds.
+void CheckParameters(const EffectDescription& effect, const EffectInfo& known) {
+  for (const ParameterInfo& info : known.parameters) {
+    const std::string owner = effect.id + ".";
+    if (info.is_name()) {
+      const auto found = effect.names.find(info.name);
+      if (found == effect.names.end()) throw ModelError("parameter " + owner + info.name + " is missing");
+      if (std::find(info.names.begin(), info.names.end(), found->second) == info.names.end()) {
+        throw ModelError("parameter " + owner + info.name + " = \"" + found->second + "\" is not known");
+      }
+    } else {
+      const auto found = effect.parameters.find(info.name);
+      if (found == effect.parameters.end())
+        throw ModelError("parameter " + owner + info.name + " is missing");
+      CheckBounds(info, found->second, owner);
+    }
+  }
+}
+
 }  // namespace
 
 Equations::Equations(const ModelDescription& description, const ActuatorOptions& options) {
@@ -61,53 +92,13 @@ Equations::Equations(const ModelDescription& description, const ActuatorOptions&
   std::vector<EffectDescription> effects = description.effects;
   std::stable_sort(effects.begin(), effects.end(), [](const auto& a, const auto& b) { return a.id < b.id; });
   for (size_t i = 0; i < effects.size(); ++i) {
-    const EffectDescription& effect = effects[i];
-    const CatalogueEntry* entry = FindCatalogueEntry(effect.id);
-    if (entry == nullptr) throw ModelError("effect \"" + effect.id + "\" is not known");
-    if (!options.repeated_effects && i > 0 && effects[i - 1].id == effect.id)
-      throw ModelError("effect \"" + effect.id + "\" is there twice");
-    for (const ParameterInfo& info : entry->info.parameters) {
-      const std::string owner = effect.id + ".";
-      if (info.is_name()) {
-        const auto found = effect.names.find(info.name);
-        if (found == effect.names.end()) throw ModelError("parameter " + owner + info.name + " is missing");
-        if (std::find(info.names.begin(), info.names.end(), found->second) == info.names.end()) {
-          throw ModelError("parameter " + owner + info.name + " = \"" + found->second + "\" is not known");
-        }
-      } else {
-        const auto found = effect.parameters.find(info.name);
-        if (found == effect.parameters.end())
-          throw ModelError("parameter " + owner + info.name + " is missing");
-        CheckBounds(info, found->second, owner);
-      }
-    }
-    data_.effects.push_back(entry->make(effect));
-    const int first_parameter = static_cast<int>(data_.own.size());
-    for (const ParameterInfo& info : entry->info.parameters) {
-      if (!info.is_name()) data_.own.push_back(effect.parameters.at(info.name));
-    }
-    Effect& made = *data_.effects.back();
-    const int first = static_cast<int>(scales_.size());
-    made.Place(first, data_.switches - kFirstEffectSwitch, first_parameter);
-    scales_.resize(first + made.states());
-    data_.switches += made.switches();
-    data_.reads_late |= made.reads_late();
-    data_.reach = std::max(data_.reach, made.reach());
-    if (made.replaces_valves()) data_.ideal_valves = false;
-    if (made.p_3_state() >= 0) data_.p_3_state = made.p_3_state();
-    if (made.actuator_angle_state() >= 0) data_.actuator_angle_state = made.actuator_angle_state();
-    if (scales_.size() > kMaxStates || data_.switches > kMaxSwitches) throw ModelError("too many effects");
-    made.Scales(pressure, p.D * speed, 0.01 * p.T_pmax, scales_.data() + first);
+    if (!options.repeated_effects && i > 0 && effects[i - 1].id == effects[i].id)
+      throw ModelError("effect \"" + effects[i].id + "\" is there twice");
+    AddEffect(effects[i], pressure, p.D * speed);
   }
   data_.states = static_cast<int>(scales_.size());
   CompleteNumbers<double>(data_, &data_);
-  auto constants = std::make_shared<NumbersOf<Jet>>();
-  for (size_t i = 0; i < BaseParameters().size(); ++i) {
-    BaseValue(constants->parameters, i) = Jet(BaseValue(data_.parameters, i));
-  }
-  for (const double value : data_.own) constants->own.emplace_back(value);
-  CompleteNumbers<Jet>(data_, constants.get());
-  data_.constants = std::move(constants);
+  data_.constants = WithoutDerivatives(data_);
 
   if (data_.shaft == Shaft::kDriven) {
     if (data_.motion == nullptr) throw ModelError("a driven shaft needs a motion");
@@ -118,6 +109,29 @@ Equations::Equations(const ModelDescription& description, const ActuatorOptions&
   } else {
     CheckVolumes(data_.arm_angle);
   }
+}
+
+void Equations::AddEffect(const EffectDescription& effect, double pressure, double flow) {
+  const CatalogueEntry* entry = FindCatalogueEntry(effect.id);
+  if (entry == nullptr) throw ModelError("effect \"" + effect.id + "\" is not known");
+  CheckParameters(effect, entry->info);
+  data_.effects.push_back(entry->make(effect));
+  const int first_parameter = static_cast<int>(data_.own.size());
+  for (const ParameterInfo& info : entry->info.parameters) {
+    if (!info.is_name()) data_.own.push_back(effect.parameters.at(info.name));
+  }
+  Effect& made = *data_.effects.back();
+  const int first = static_cast<int>(scales_.size());
+  made.Place(first, data_.switches - kFirstEffectSwitch, first_parameter);
+  scales_.resize(first + made.states());
+  data_.switches += made.switches();
+  data_.reads_late |= made.reads_late();
+  data_.reach = std::max(data_.reach, made.reach());
+  if (made.replaces_valves()) data_.ideal_valves = false;
+  if (made.p_3_state() >= 0) data_.p_3_state = made.p_3_state();
+  if (made.actuator_angle_state() >= 0) data_.actuator_angle_state = made.actuator_angle_state();
+  if (scales_.size() > kMaxStates || data_.switches > kMaxSwitches) throw ModelError("too many effects");
+  made.Scales(pressure, flow, 0.01 * data_.parameters.T_pmax, scales_.data() + first);
 }
 
 std::vector<std::string> Equations::StateNames() const {

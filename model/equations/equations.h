@@ -1,6 +1,5 @@
-// The equations below Actuator: state vectors, modes, rates, exact Jacobians, switches. For those who
-// linearise, estimate or integrate in a way of their own; who only wants the actuator's motion uses
-// actuator.h.
+// The equations below Actuator: state vectors, modes, rates, exact Jacobians, switches. For code that linearises,
+// estimates or integrates in its own way; for the actuator's motion alone, use actuator.h.
 #pragma once
 
 #include <limits>
@@ -41,8 +40,8 @@ struct EquationData : NumbersOf<double> {
   bool bypass = false;
   double arm_angle = 0;                            // clamped
   const trajectory::Trajectory* motion = nullptr;  // driven
-  double motion_limit =
-      std::numeric_limits<double>::infinity();  // s: `motion` is evaluated at times below this
+  // s: `motion` is evaluated at times below this.
+  double motion_limit = std::numeric_limits<double>::infinity();
   std::vector<std::shared_ptr<Effect>> effects;
   int states = 0;
   int switches = kFirstEffectSwitch;
@@ -66,8 +65,7 @@ class Equations {
   bool plain() const { return data_.effects.empty() && !data_.bypass && data_.shaft != Shaft::kDriven; }
   std::vector<std::string> StateNames() const;
 
-  // Sizes (per state) below which absolute errors count: error weights are relative_tolerance * (|y| +
-  // scale).
+  // Sizes (per state) below which absolute errors count: error weights are relative_tolerance * (|y| + scale).
   const std::vector<double>& scales() const { return scales_; }
 
   // State at rest with both pressures at `pressure`, and its mode: all at rest, valves closed.
@@ -76,8 +74,8 @@ class Equations {
   // d state/dt. `margin` (may be null) receives switches() numbers that are positive while the switch may
   // stay as it is and fall through 0 when it must change:
   //   pump slips: speed in its direction; pump sticks: friction limit less net torque
-  //   valve closed: p - p_3; valve open: p_3' (0 unless an effect moves p_3) less the rate that p would have
-  //   with the valve closed
+  //   valve closed: p - p_3
+  //   valve open: p_3' (0 unless an effect moves p_3) less the rate that p would have with the valve closed
   void Rates(double time, double voltage, const Mode& mode, const double* state, double* rate,
              double* margin = nullptr) const;
 
@@ -113,6 +111,9 @@ class Equations {
   void PassStop(double time);
 
  private:
+  // `pressure` and `flow`: sizes that count, for the scales of the effect's states.
+  void AddEffect(const EffectDescription& effect, double pressure, double flow);
+
   EquationData data_;
   std::vector<double> scales_;
 };

@@ -21,8 +21,8 @@ struct Terms {
   const ParametersOf<T>* parameters = nullptr;
   const T* own = nullptr;    // the effect's parameters, in the order of its catalogue entry, names left out
   const T* state = nullptr;  // the whole state vector; an effect finds its own states from first_state() on
-  bool voltage_acts =
-      false;  // `voltage` is the one that acts now, whatever an effect remembers of earlier ones
+  // `voltage` is the one that acts now, whatever an effect remembers of earlier ones.
+  bool voltage_acts = false;
   T motor_angle, motor_speed;
   T arm_angle, arm_speed;
   T p1, p2;  // at the actuator, where the transducers and the one-way valves are
