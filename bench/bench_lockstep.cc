@@ -18,7 +18,7 @@
 
 #include "bench/child_process.h"
 #include "bus/seal/authenticated_channels.h"
-#include "bus/udpm/udpm_bus.h"
+#include "bus/udpm/open_udpm_bus.h"
 #include "plant/plant_app.h"
 #include "plant/simulated_rig.h"
 #include "position_ctrl/position_app.h"
@@ -107,7 +107,9 @@ std::unique_ptr<bus::Authenticator> KeyedOrNot(bool with_key) {
 
 template <class Controller>
 void RunController(const std::string& url, const settings::StackConfig& config, bool with_key) {
-  bus::UdpmBus bus(url, KeyedOrNot(with_key), bus::Receiving::kDirect);  // as the programs do
+  const auto opened =
+      bus::OpenUdpmBus(url, KeyedOrNot(with_key), bus::Receiving::kDirect);  // as the programs do
+  bus::UdpmBus& bus = *opened;
   bus::WallClock clock;
   Controller controller(bus, clock, config);
   process::RunApp(bus, clock, controller);
@@ -120,7 +122,9 @@ double StackTicksPerSecond(int64_t ticks, const std::string& config_file, bool w
   config.last_tick = ticks;
   const ChildProcess fast([&] { RunController<pressure_ctrl::PressureApp>(url, config, with_key); });
   const ChildProcess slow([&] { RunController<position_ctrl::PositionApp>(url, config, with_key); });
-  bus::UdpmBus bus(url, KeyedOrNot(with_key), bus::Receiving::kDirect);  // as the programs do
+  const auto opened =
+      bus::OpenUdpmBus(url, KeyedOrNot(with_key), bus::Receiving::kDirect);  // as the programs do
+  bus::UdpmBus& bus = *opened;
   bus::WallClock clock;
   // The plant's own messages say when it started and ended.
   int64_t started = 0, ended = 0;

@@ -17,7 +17,7 @@
 #include "bench/child_process.h"
 #include "bench/echo_peers.h"
 #include "bus/seal/authenticated_channels.h"
-#include "bus/udpm/udpm_bus.h"
+#include "bus/udpm/open_udpm_bus.h"
 #include "pressure_ctrl/pressure_app.h"
 #include "tests/free_udp_port.h"
 #include "timing/histogram.h"
@@ -41,7 +41,8 @@ std::unique_ptr<bus::Authenticator> KeyedOrNot(bool with_key) {
 class StackPinger : public Pinger {
  public:
   StackPinger(const std::string& url, bus::Receiving receiving, bool with_key)
-      : bus_(url, KeyedOrNot(with_key), receiving), states_(bus_.Advertise<state_t>("HYDRO_STATE")) {
+      : opened_(bus::OpenUdpmBus(url, KeyedOrNot(with_key), receiving)),
+        states_(bus_.Advertise<state_t>("HYDRO_STATE")) {
     bus_.Subscribe<motor_command_t>("HYDRO_MOTOR_COMMAND",
                                     [this](const motor_command_t& command) { answered_ = command.tick; });
   }
@@ -59,7 +60,8 @@ class StackPinger : public Pinger {
   }
 
  private:
-  bus::UdpmBus bus_;
+  std::unique_ptr<bus::UdpmBus> opened_;
+  bus::UdpmBus& bus_ = *opened_;
   bus::Publisher<state_t> states_;
   int64_t answered_ = -1;
   int64_t sequence_ = 0;
@@ -69,7 +71,8 @@ class StackPinger : public Pinger {
 void AnswerOnBus(const std::string& url, bus::Receiving receiving, bool with_key) {
   const settings::StackConfig config =
       settings::LoadStackConfig(HYDRO_BENCH_CONFIG, {"time.mode=realtime", "limits.stale_input_s=1e6"});
-  bus::UdpmBus bus(url, KeyedOrNot(with_key), receiving);
+  const auto opened = bus::OpenUdpmBus(url, KeyedOrNot(with_key), receiving);
+  bus::UdpmBus& bus = *opened;
   bus::WallClock clock;
   pressure_ctrl::PressureApp app(bus, clock, config);
   process::RunApp(bus, clock, app);

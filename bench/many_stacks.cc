@@ -18,7 +18,7 @@
 #include <vector>
 
 #include "bench/shared_results.h"
-#include "bus/udpm/udpm_bus.h"
+#include "bus/udpm/open_udpm_bus.h"
 #include "plant/plant_app.h"
 #include "plant/simulated_rig.h"
 #include "position_ctrl/position_app.h"
@@ -70,25 +70,27 @@ settings::StackConfig ConfigOf(const Options& options, const std::string& url, c
 }
 
 void RunPlant(const settings::StackConfig& config, PlantResult* result) {
-  bus::UdpmBus bus(config.bus.url, nullptr, bus::Receiving::kDirect);
+  const auto opened = bus::OpenUdpmBus(config.bus.url, nullptr, bus::Receiving::kDirect);
+  bus::UdpmBus& bus = *opened;
   bus::WallClock clock;
   const bus::Channels channels(config.bus.channel_suffix);
   plant::SimulatedRig rig(config);
   plant::PlantApp plant(bus, clock, config, rig);
-  bus.Subscribe<motor_command_t>(channels.motor_command, [&](const motor_command_t& command) {
+  bus.Subscribe<motor_command_t>(channels.Of<motor_command_t>(), [&](const motor_command_t& command) {
     ++result->commands;
     if (command.tick < plant.tick()) ++result->late;
   });
-  bus.Subscribe<pressure_command_t>(channels.pressure_command,
+  bus.Subscribe<pressure_command_t>(channels.Of<pressure_command_t>(),
                                     [&](const pressure_command_t&) { ++result->pressure_commands; });
-  bus.Subscribe<state_t>(channels.state, [&](const state_t&) { ++result->states; });
+  bus.Subscribe<state_t>(channels.Of<state_t>(), [&](const state_t&) { ++result->states; });
   result->done = plant.Run() == 0;
   result->due = plant.tick();
 }
 
 template <class Controller>
 void RunController(const settings::StackConfig& config) {
-  bus::UdpmBus bus(config.bus.url, nullptr, bus::Receiving::kDirect);
+  const auto opened = bus::OpenUdpmBus(config.bus.url, nullptr, bus::Receiving::kDirect);
+  bus::UdpmBus& bus = *opened;
   bus::WallClock clock;
   Controller controller(bus, clock, config);
   process::RunApp(bus, clock, controller);
@@ -155,12 +157,12 @@ Row Measure(int stacks, bool own_ports, const Options& options) {
   row.late = commands > 0 ? late / commands : 1;
   row.cores = processor / options.seconds;
   row.sent = (states + commands + 2 * pressure_commands) / options.seconds;
-  row.bytes =
-      (states * WireBytes(channels.state, state_t().getEncodedSize()) +
-       commands * WireBytes(channels.motor_command, motor_command_t().getEncodedSize()) +
-       pressure_commands * (WireBytes(channels.pressure_command, pressure_command_t().getEncodedSize()) +
-                            WireBytes(channels.arm_reference, arm_reference_t().getEncodedSize()))) /
-      options.seconds;
+  row.bytes = (states * WireBytes(channels.Of<state_t>(), state_t().getEncodedSize()) +
+               commands * WireBytes(channels.Of<motor_command_t>(), motor_command_t().getEncodedSize()) +
+               pressure_commands *
+                   (WireBytes(channels.Of<pressure_command_t>(), pressure_command_t().getEncodedSize()) +
+                    WireBytes(channels.Of<arm_reference_t>(), arm_reference_t().getEncodedSize()))) /
+              options.seconds;
   row.arrived = row.sent * kProcesses * (own_ports ? 1 : stacks);
   return row;
 }

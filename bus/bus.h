@@ -1,17 +1,17 @@
 // The seam between an application and the world: typed messages on named channels.
 //
 // An application takes a Bus and a Clock (clock.h), never a socket. The same application runs over LCM UDP
-// multicast (udpm_bus.h), inside one process on a simulated clock (in_process_bus.h) and on a recorded log
-// (log_bus.h).
+// multicast (udpm/open_udpm_bus.h), inside one process on a simulated clock (in_process_bus.h) and on a
+// recorded log (log_bus.h).
 //
-// Contract, the same for every transport:
+// The contract, which every transport keeps (tests/bus/bus_contract_test.cc):
 // - Messages on one channel from one sender arrive in the order they were sent.
 // - Handlers run only inside HandleUntil(), on the thread that calls it, one at a time. What a handler
-//   publishes is delivered by a later turn of the same or a later HandleUntil(), never inside Publish().
+//   publishes is delivered in a later turn of the same HandleUntil() or in a later one, never inside
+//   Publish().
 // - An exception thrown by a handler leaves HandleUntil() (it never travels through C code).
 // - A message that cannot be decoded (another type, truncated) is counted in undecodable() and not delivered.
-// - The seal of an authenticated message (bus/seal/) is never part of what is delivered. Where the bus
-// has a
+// - The seal of an authenticated message (bus/seal/) is never part of what is delivered. Where the bus has a
 //   key, a message that is not genuine is counted in refused() and not delivered.
 // - A bus is used by one thread.
 #pragma once
@@ -30,14 +30,14 @@
 
 namespace hydro::bus {
 
-// The bus cannot work here (no multicast route, bad URL, a self test that failed). what() says what to do
+// The bus cannot work here: no multicast route, a bad URL, a self-test that failed. what() says what to do
 // about it.
 class BusError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-// How to copy, encode and decode one message type without knowing it.
+// How to copy, encode and decode a type of message that is not known when the program is compiled.
 struct MessageType {
   int64_t hash;
   int (*encoded_size)(const void* message);
@@ -73,7 +73,7 @@ const MessageType& TypeOf() {
   return type;
 }
 
-// A message as it crosses the wire or lies in a log. The bytes live only as long as the handler's call.
+// A message as it crosses the wire or lies in a log. Its bytes last only as long as the call of the handler.
 struct RawMessage {
   std::string_view channel;
   const uint8_t* data = nullptr;
@@ -81,18 +81,18 @@ struct RawMessage {
   int64_t receive_utime = 0;  // us since 1970-01-01 UTC, or simulated time, when it was received
 };
 
-// Messages that arrived on an authenticated channel and were not obeyed, by reason.
+// Messages that arrived on an authenticated channel and were not accepted, by reason.
 struct RefusedMessages {
-  int64_t unsealed = 0;        // without a seal: from who knows nothing of the key
-  int64_t wrong_seal = 0;      // from who has another key, or changed on the way
-  int64_t repeated = 0;        // no newer than one that was accepted: played again, or overtaken
-  int64_t unknown_sender = 0;  // genuine, but of a sender that does not answer: a recording of an earlier run
+  int64_t unsealed = 0;        // without a seal: the sender has no key
+  int64_t wrong_seal = 0;      // the sender has another key, or the message changed on the way
+  int64_t repeated = 0;        // no newer than one already accepted: replayed, or overtaken
+  int64_t unknown_sender = 0;  // genuine, but its sender does not answer: a recording of an earlier run
   std::string last_channel;
 
   int64_t total() const { return unsealed + wrong_seal + repeated + unknown_sender; }
 };
 
-// One channel that a bus has looked up already, for messages of one type. Behind Publisher.
+// A channel that the bus has looked up already, for messages of one type: what a Publisher sends through.
 class Outlet {
  public:
   virtual ~Outlet() = default;
@@ -102,14 +102,14 @@ class Outlet {
   virtual void Send(const void* message) = 0;
 };
 
-// The quick way to send many messages on one channel (Bus::Advertise). Copies send on the same channel.
-// Must not be used after its bus is gone.
+// The fast way to send many messages on one channel (Bus::Advertise). Copies send on the same channel. It must
+// not outlive its bus.
 template <class Message>
 class Publisher {
  public:
   explicit Publisher(std::shared_ptr<Outlet> outlet) : outlet_(std::move(outlet)) {}
 
-  // The same as Bus::Publish() on the channel that was advertised.
+  // Does what Bus::Publish() does on the advertised channel.
   void Send(const Message& message) { outlet_->Send(&message); }
 
  private:
@@ -125,15 +125,15 @@ class Bus {
   Bus(const Bus&) = delete;
   Bus& operator=(const Bus&) = delete;
 
-  // Sends `message` on `channel`. Throws BusError when the transport refuses it. A network that is down for
-  // the moment (a cable, an interface) only loses it: see unsent().
+  // Sends `message` on `channel`. Throws BusError when the transport refuses it. While the network is down (a
+  // cable, an interface), messages are merely lost: see unsent().
   template <class Message>
   void Publish(const std::string& channel, const Message& message) {
     PublishTyped(channel, TypeOf<Message>(), &message);
   }
 
-  // Looks `channel` up once, for what is sent in every cycle: advertise in the constructor, Send() in the
-  // loop.
+  // Looks up `channel` once, for messages that are sent in every cycle: advertise in the constructor, Send()
+  // in the loop.
   template <class Message>
   Publisher<Message> Advertise(const std::string& channel) {
     return Publisher<Message>(MakeOutlet(channel, TypeOf<Message>()));
@@ -153,11 +153,10 @@ class Bus {
   // Sends bytes that are encoded already (replay, relay).
   virtual void PublishRaw(const std::string& channel, const void* data, int size) = 0;
 
-  // Handles messages until at least one was handled (then all that are waiting) or `deadline` has passed.
-  // Returns how many were handled; 0 means that the deadline passed, or that a signal arrived: a loop that is
-  // to end on SIGINT looks at its flag after each call. A bus on a simulated clock returns at once when
-  // nothing is waiting, having advanced that clock to the deadline. A handler must not call it
-  // (std::logic_error).
+  // Waits for a message until `deadline`, then handles it and all others that are waiting. Returns how many
+  // it handled; 0 means that the deadline passed or that a signal arrived: a loop that ends on SIGINT checks
+  // its flag after each call. A bus on a simulated clock never waits: when no message does, it advances the
+  // clock to the deadline and returns. A handler must not call this (std::logic_error).
   virtual int HandleUntil(TimePoint deadline) = 0;
 
   // Messages that arrived on a subscribed channel and could not be decoded as its type.
@@ -166,8 +165,8 @@ class Bus {
   // Messages that could not be sent because the network was down.
   virtual int64_t unsent() const { return 0; }
 
-  // The channel of the newest message that could not be decoded; empty when there was none or the transport
-  // does not know.
+  // The channel of the newest message that could not be decoded; empty when there was none, or when the
+  // transport does not know.
   const std::string& undecodable_channel() const { return undecodable_channel_; }
 
   // Messages that were not genuine. None on a bus without a key.
@@ -181,7 +180,7 @@ class Bus {
   virtual void SubscribeTyped(const std::string& channel, const MessageType& type,
                               std::function<void(const void*)> handler) = 0;
 
-  // What Advertise() hands out; by default a plain PublishTyped() on `channel`.
+  // What Advertise() returns; by default it calls PublishTyped() on `channel`.
   virtual std::shared_ptr<Outlet> MakeOutlet(const std::string& channel, const MessageType& type) {
     return std::make_shared<NamedOutlet>(this, channel, type);
   }

@@ -1,5 +1,5 @@
-// Time, as an application sees it. Control laws and the model never see a clock; applications use it for
-// deadlines, watchdogs and statistics only.
+// Time as an application sees it, for deadlines, watchdogs and statistics only. Control laws and the model
+// never see a clock.
 #pragma once
 
 #include <time.h>
@@ -22,10 +22,10 @@ class Clock {
   // Microseconds since 1970-01-01 UTC, for the utime field of messages.
   virtual int64_t Utime() const = 0;
 
-  // How long the machine has been suspended in all since it was started. Now() stands still meanwhile.
+  // How long the machine has been suspended since it was booted. Now() stands still while it is.
   virtual Duration Suspended() const { return {}; }
 
-  // True when no wall time passes by itself: whoever waits on it advances it.
+  // True when time passes only because somebody who waits advances the clock.
   virtual bool simulated() const { return false; }
 };
 

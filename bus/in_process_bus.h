@@ -1,4 +1,5 @@
-// The bus within one process: no sockets, no threads, and no encoding unless somebody listens to the bytes.
+// The bus within one process: no sockets, no threads, and no encoding unless somebody subscribes to the
+// encoded messages.
 #pragma once
 
 #include <array>
@@ -13,8 +14,8 @@
 
 namespace hydro::bus {
 
-// Messages are dispatched in the order in which they were published, on all channels together. A message that
-// nobody subscribes to is not kept. SubscribeAll() handlers see a message before the typed ones do.
+// Dispatches messages in the order in which they were published, across all channels. Does not keep a message
+// that nobody subscribes to. SubscribeAll() handlers see a message before the typed ones do.
 class InProcessBus : public Bus {
  public:
   // `clock` is advanced by HandleUntil() and stamps what SubscribeAll() sees; null: wall time, and
@@ -25,7 +26,8 @@ class InProcessBus : public Bus {
   void SubscribeAll(std::function<void(const RawMessage&)> handler) override;
   void PublishRaw(const std::string& channel, const void* data, int size) override;
 
-  // Handles what is waiting when it is called; what handlers publish meanwhile waits for the next call.
+  // Handles the messages that are waiting when it is called. What handlers publish meanwhile waits for the
+  // next call.
   int HandleUntil(TimePoint deadline) override;
   int64_t undecodable() const override { return undecodable_; }
 
@@ -48,11 +50,11 @@ class InProcessBus : public Bus {
   int64_t undecodable_ = 0;
   bool handling_ = false;
   std::unordered_map<std::string, std::unique_ptr<Channel>> channels_;
-  std::array<Channel*, 16> recent_{};  // by the address of the caller's name, checked against the name itself
+  std::array<Channel*, 16> recent_{};  // by the address of the caller's name, which is then compared
   std::deque<std::function<void(const RawMessage&)>> taps_;
   std::vector<uint8_t> encoded_;  // used again for each message
-  std::vector<Channel*>
-      order_;         // ring: the channels of the waiting messages, oldest first; size a power of 2
+  // Ring of the channels of the waiting messages, oldest first; its size is a power of 2.
+  std::vector<Channel*> order_;
   size_t first_ = 0;  // index of the oldest; counts on, the position is modulo the size
   size_t end_ = 0;    // one past the newest
 };

@@ -1,4 +1,5 @@
-// The bus of a replay: what an application receives comes from a log, what it publishes goes to a comparison.
+// The bus of a replay: an application receives the messages of a log, and what it publishes is compared with
+// them.
 #pragma once
 
 #include <deque>
@@ -12,7 +13,7 @@
 
 namespace hydro::bus {
 
-// Handles the events in the order of the log. Nothing that is published comes back as a message.
+// Handles events in the order of the log. What is published does not come back as a message.
 class LogBus : public Bus {
  public:
   // Fills in the next event, whose receive_utime is the log's timestamp; its bytes and channel must last
@@ -24,7 +25,7 @@ class LogBus : public Bus {
     SimulatedClock* clock = nullptr;
     // Seconds of the log per second of wall time; 0: as fast as possible. With `clock` it must be 0.
     double speed = 0;
-    // What the application publishes; one that is empty drops it.
+    // Called with what the application publishes; where empty, it is dropped.
     std::function<void(const std::string& channel, const MessageType& type, const void* message)> published =
         {};
     std::function<void(const std::string& channel, const void* data, int size)> published_raw = {};

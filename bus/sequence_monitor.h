@@ -1,5 +1,5 @@
-// Watches the session and the sequence numbers of one received channel: nothing is silently lost, and nobody
-// else silently takes over.
+// Watches the session and the sequence numbers of one received channel, so that no message is lost and no
+// second sender takes over without notice.
 #pragma once
 
 #include <cstdint>
@@ -13,17 +13,16 @@ namespace hydro::bus {
 class SequenceMonitor {
  public:
   enum class Verdict {
-    kAccept,        // newer than all before; gap() tells how many are missing before it
-    kDuplicate,     // seen already, or older than what was seen: not to be used again
-    kRestarted,     // the first of a new sender (or of a log that is played again), the old one being silent:
-                    // use it
-    kSecondSender,  // from another sender while the first is alive: not to be used
+    kAccept,     // newer than all before it; gap() says how many are missing in between
+    kDuplicate,  // already seen, or older than one already seen: do not use it
+    kRestarted,  // the first from a new sender (or a log played again) after the old one fell silent: use it
+    kSecondSender,  // from another sender while the first is alive: do not use it
   };
 
   // A sender counts as alive for `alive` after its last message.
   explicit SequenceMonitor(Clock::Duration alive) : alive_(alive) {}
 
-  // To be called for each message in order of arrival.
+  // Call it for each message, in order of arrival.
   Verdict Observe(int64_t session, int64_t sequence, Clock::TimePoint now);
 
   // The same, and a message whose tick is lower than that of one before is kDuplicate.
@@ -37,8 +36,8 @@ class SequenceMonitor {
   std::optional<int64_t> session() const { return session_; }                // of the sender that is followed
   std::optional<int64_t> second_session() const { return second_session_; }  // of the last kSecondSender
 
-  int64_t gap() const { return gap_; }    // messages missing just before the last observed one
-  int64_t lost() const { return lost_; }  // messages missing in all; what came before the first is not
+  int64_t gap() const { return gap_; }                // messages missing just before the last observed one
+  int64_t lost() const { return lost_; }              // messages missing in total, from the first received on
   int64_t duplicates() const { return duplicates_; }  // kDuplicate verdicts
   int64_t restarts() const { return restarts_; }      // kRestarted verdicts
   int64_t ticks_back() const { return ticks_back_; }  // messages in sequence whose tick went back

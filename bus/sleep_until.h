@@ -1,4 +1,4 @@
-// Sleeping on a bus that nobody else can send on.
+// Waiting on a bus on which nobody else can send.
 #pragma once
 
 #include <chrono>

@@ -81,7 +81,7 @@ class Replayer {
       if (speed_ > 0) std::this_thread::sleep_until(wall_start + elapsed / speed_);
       clock_.AdvanceTo(bus::Clock::TimePoint(std::chrono::duration_cast<bus::Clock::Duration>(elapsed)));
       before(tick);
-      bus_.Publish(channels_.state, state);
+      bus_.Publish(channels_.Of<state_t>(), state);
       Deliver();
     }
   }
@@ -125,7 +125,7 @@ ReplayResult ReplayPressure(const runs::RunLog& log, double speed) {
   Replayer replayer(log, speed);
   pressure_ctrl::PressureApp app(replayer.bus(), replayer.clock(), replayer.config());
   std::map<int64_t, motor_command_t> answers;
-  replayer.bus().Subscribe<motor_command_t>(replayer.channels().motor_command,
+  replayer.bus().Subscribe<motor_command_t>(replayer.channels().Of<motor_command_t>(),
                                             [&](const motor_command_t& command) {
                                               if (recorded.contains(command.tick))
                                                 answers.emplace(command.tick, command);
@@ -135,7 +135,7 @@ ReplayResult ReplayPressure(const runs::RunLog& log, double speed) {
     const auto command = recorded.find(tick);
     if (command == recorded.end()) return;
     for (; next != pressure_commands.end() && next->first <= command->second.pressure_command_tick; ++next) {
-      replayer.bus().Publish(replayer.channels().pressure_command, next->second);
+      replayer.bus().Publish(replayer.channels().Of<pressure_command_t>(), next->second);
       replayer.Deliver();
     }
   });
@@ -164,14 +164,16 @@ ReplayResult ReplayPosition(const runs::RunLog& log, double speed) {
   position_ctrl::PositionApp app(replayer.bus(), replayer.clock(), replayer.config());
   std::map<int64_t, pressure_command_t> answers;
   std::map<int64_t, arm_reference_t> answered_references;
-  replayer.bus().Subscribe<pressure_command_t>(replayer.channels().pressure_command,
+  replayer.bus().Subscribe<pressure_command_t>(replayer.channels().Of<pressure_command_t>(),
                                                [&](const auto& command) {
                                                  if (recorded.contains(command.tick))
                                                    answers.emplace(command.tick, command);
                                                });
-  replayer.bus().Subscribe<arm_reference_t>(replayer.channels().arm_reference, [&](const auto& reference) {
-    if (references.contains(reference.tick)) answered_references.emplace(reference.tick, reference);
-  });
+  replayer.bus().Subscribe<arm_reference_t>(replayer.channels().Of<arm_reference_t>(),
+                                            [&](const auto& reference) {
+                                              if (references.contains(reference.tick))
+                                                answered_references.emplace(reference.tick, reference);
+                                            });
   replayer.Feed([](int64_t) {});
   runs::RunMessages record, replay;
   record.pressure_commands = Unnumbered(recorded);

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "base/text_file.h"
-#include "bus/udpm/udpm_bus.h"
+#include "bus/udpm/open_udpm_bus.h"
 #include "launch/doctor/doctor.h"
 #include "launch/launch.h"
 #include "launch/make_key.h"
@@ -76,11 +76,11 @@ int RunOperatorRequest(decltype(hydro::launch::StopStack)* request,
                        const hydro::settings::CommonOptions& options) {
   const hydro::settings::StackConfig config =
       hydro::settings::LoadStackConfig(options.config, options.overrides);
-  hydro::bus::UdpmBus bus(config.bus.url,
-                          hydro::bus::MakeAuthenticator(config.bus.resolved_key_file,
-                                                        hydro::bus::Channels(config.bus.channel_suffix)));
+  const auto bus = hydro::bus::OpenUdpmBus(
+      config.bus.url, hydro::bus::MakeAuthenticator(config.bus.resolved_key_file,
+                                                    hydro::bus::Channels(config.bus.channel_suffix)));
   const hydro::bus::WallClock clock;
-  const hydro::launch::OperatorResult result = request(bus, clock, config, {});
+  const hydro::launch::OperatorResult result = request(*bus, clock, config, {});
   // Names and reasons come from the network.
   std::fprintf(result.exit_code == 0 ? stdout : stderr, "hydro-launch: %s\n",
                hydro::Printable(result.text).c_str());

@@ -24,11 +24,11 @@ OperatorResult RearmStack(bus::Bus& bus, const bus::Clock& clock, const settings
   std::set<int64_t> plants;
   int64_t tick = -1;
   std::optional<rearm_t> answer;
-  bus.Subscribe<state_t>(channels.state, [&](const state_t& state) {
+  bus.Subscribe<state_t>(channels.Of<state_t>(), [&](const state_t& state) {
     plants.insert(state.session);
     tick = state.tick;
   });
-  bus.Subscribe<rearm_t>(channels.rearm, [&](const rearm_t& message) {
+  bus.Subscribe<rearm_t>(channels.Of<rearm_t>(), [&](const rearm_t& message) {
     const bool ours = message.kind != rearm_t::REQUEST && message.addressee == session;
     if (ours && plants.contains(message.session) && !answer) answer = message;
   });
@@ -50,7 +50,7 @@ OperatorResult RearmStack(bus::Bus& bus, const bus::Clock& clock, const settings
     request.kind = rearm_t::REQUEST;
     request.source = "launch";
     request.text = "hydro-launch --rearm";
-    bus.Publish(channels.rearm, request);
+    bus.Publish(channels.Of<rearm_t>(), request);
     for (const auto until = clock.Now() + kRepeat; !answer && clock.Now() < until;) bus.HandleUntil(until);
   }
   if (!answer) return {1, "the plant does not answer"};

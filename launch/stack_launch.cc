@@ -44,9 +44,10 @@ StackLaunch::StackLaunch(const settings::StackConfig& config, const LaunchPlan& 
       timing_(timing),
       output_(out_fd, err_fd, LabelledOutput::WantsColour(out_fd, err_fd)),
       supervisor_(output_, GraceFor(timing, plan)),
-      bus_(config.bus.url,
-           bus::MakeAuthenticator(config.bus.resolved_key_file, bus::Channels(config.bus.channel_suffix))),
-      watch_(bus_, clock_, bus::Channels(config.bus.channel_suffix)),
+      bus_(bus::OpenUdpmBus(
+          config.bus.url,
+          bus::MakeAuthenticator(config.bus.resolved_key_file, bus::Channels(config.bus.channel_suffix)))),
+      watch_(*bus_, clock_, bus::Channels(config.bus.channel_suffix)),
       stop_announcer_([this](const std::string& reason, int exit_code) { PublishStop(reason, exit_code); }) {
   if (!plan.timing_file.empty()) timing_files_.emplace(plan.timing_file);
   output_.AnnounceLabel(kLabel);
@@ -90,7 +91,7 @@ void StackLaunch::StartAll() {
 int StackLaunch::HearBus(TimePoint until) {
   if (bus_failed_) return 0;
   try {
-    return bus_.HandleUntil(until);
+    return bus_->HandleUntil(until);
   } catch (const bus::BusError& error) {
     bus_failed_ = true;
     Fail(error.what(), 1);

@@ -1,10 +1,11 @@
 // One launch of a stack: the bus, the processes and the reports of a run, behind Launch() (launch.h).
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 
-#include "bus/udpm/udpm_bus.h"
+#include "bus/udpm/open_udpm_bus.h"
 #include "launch/labelled_output.h"
 #include "launch/launch.h"
 #include "launch/launch_plan.h"
@@ -52,7 +53,7 @@ class StackLaunch {
   LabelledOutput output_;
   Supervisor supervisor_;  // before the bus, whose threads must not receive the launcher's signals
   bus::WallClock clock_;
-  bus::UdpmBus bus_;
+  std::unique_ptr<bus::UdpmBus> bus_;
   StackWatch watch_;
   std::optional<TimingFiles> timing_files_;
 

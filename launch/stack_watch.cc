@@ -7,19 +7,20 @@ namespace hydro::launch {
 
 StackWatch::StackWatch(bus::Bus& bus, const bus::Clock& clock, const bus::Channels& channels)
     : bus_(bus), clock_(clock), channels_(channels), session_(bus::RandomSession()) {
-  bus.Subscribe<process_status_t>(channels_.process_status, [this](const process_status_t& status) {
+  bus.Subscribe<process_status_t>(channels_.Of<process_status_t>(), [this](const process_status_t& status) {
     statuses_[{status.role, status.pid}] = status;
   });
-  bus.Subscribe<stop_t>(channels_.stop, [this](const stop_t& stop) {
+  bus.Subscribe<stop_t>(channels_.Of<stop_t>(), [this](const stop_t& stop) {
     if (!stop_ && stop.session != session_) stop_ = stop;
   });
-  bus.Subscribe<loop_statistics_t>(channels_.loop_statistics, [this](const loop_statistics_t& report) {
-    summary_.Add(report);
-    timing_.Add(report);
-  });
-  bus.Subscribe<loop_histogram_t>(channels_.loop_histogram,
+  bus.Subscribe<loop_statistics_t>(channels_.Of<loop_statistics_t>(),
+                                   [this](const loop_statistics_t& report) {
+                                     summary_.Add(report);
+                                     timing_.Add(report);
+                                   });
+  bus.Subscribe<loop_histogram_t>(channels_.Of<loop_histogram_t>(),
                                   [this](const loop_histogram_t& histogram) { timing_.Add(histogram); });
-  bus.Subscribe<fault_t>(channels_.fault, [this](const fault_t& fault) { summary_.Add(fault); });
+  bus.Subscribe<fault_t>(channels_.Of<fault_t>(), [this](const fault_t& fault) { summary_.Add(fault); });
 }
 
 void StackWatch::Expect(const std::string& program, pid_t pid) { expected_.push_back({program, pid}); }
@@ -49,7 +50,7 @@ void StackWatch::PublishStop(const std::string& reason, int exit_code) {
   stop.source = "launch";
   stop.reason = reason;
   stop.exit_code = exit_code;
-  bus_.Publish(channels_.stop, stop);
+  bus_.Publish(channels_.Of<stop_t>(), stop);
 }
 
 }  // namespace hydro::launch

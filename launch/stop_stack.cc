@@ -20,11 +20,11 @@ constexpr auto kUnheard = 500ms;  // for this long also when no process has been
 class Presence {
  public:
   Presence(bus::Bus& bus, const bus::Clock& clock, const bus::Channels& channels) : clock_(clock) {
-    bus.Subscribe<state_t>(channels.state, [this](const state_t& s) { Heard(s.session, "plant"); });
-    bus.Subscribe<loop_statistics_t>(channels.loop_statistics, [this](const loop_statistics_t& s) {
+    bus.Subscribe<state_t>(channels.Of<state_t>(), [this](const state_t& s) { Heard(s.session, "plant"); });
+    bus.Subscribe<loop_statistics_t>(channels.Of<loop_statistics_t>(), [this](const loop_statistics_t& s) {
       Heard(s.session, s.role + " on " + s.host);
     });
-    bus.Subscribe<process_status_t>(channels.process_status, [this](const process_status_t& s) {
+    bus.Subscribe<process_status_t>(channels.Of<process_status_t>(), [this](const process_status_t& s) {
       Heard(s.session, s.role + " on " + s.host + " (process " + std::to_string(s.pid) + ")");
       if (s.state == process_status_t::DONE || s.state == process_status_t::FAILED) {
         processes_[s.session].left = true;
@@ -81,7 +81,7 @@ OperatorResult StopStack(bus::Bus& bus, const bus::Clock& clock, const settings:
     const std::string remaining = presence.Remaining();
     if (now >= next_stop && (now - start < kUnheard || !remaining.empty())) {
       stop.utime = clock.Utime();
-      bus.Publish(channels.stop, stop);
+      bus.Publish(channels.Of<stop_t>(), stop);
       next_stop = now + kRepeat;
     }
     if (!presence.anybody() && now - start > timing.presence) {

@@ -30,6 +30,7 @@ void CausalOrder::Take(Kind kind, int64_t tick, RecordedMessage message, bus::Cl
       pressure_command_tick_ = std::max(pressure_command_tick_, tick);
       break;
     case Kind::kArmReference:
+    case Kind::kNone:
       break;
   }
   if (tick > emitted_state_tick_) {

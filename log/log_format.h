@@ -1,7 +1,6 @@
-// The bytes of an LCM event log, as liblcm's lcm_eventlog writes and reads them: events one after the other,
-// each
-//   sync word u32 | event number i64 | timestamp i64 (us) | channel length i32 | data length i32 | channel |
-//   data
+// The bytes of an LCM event log, as liblcm's lcm_eventlog writes and reads them: one event after another, each
+//   sync word u32 | event number i64 | timestamp i64 (us) | channel length i32 | data length i32
+//   | channel | data
 // with all integers big-endian.
 #pragma once
 
@@ -13,8 +12,8 @@ namespace hydro::log {
 
 constexpr uint32_t kLogSyncWord = 0xEDA1DA01;
 constexpr size_t kLogHeaderSize = 28;
-constexpr size_t kMaxLogChannelLength = 63;   // what LCM allows for a channel's name
-constexpr size_t kMaxLogDataSize = 1u << 30;  // far above any message; a longer one is a damaged length
+constexpr size_t kMaxLogChannelLength = 63;   // LCM's limit on the name of a channel
+constexpr size_t kMaxLogDataSize = 1u << 30;  // far above any message: a greater length is damaged
 
 inline uint32_t LoadBigEndian32(const uint8_t* bytes) {
   uint32_t value;

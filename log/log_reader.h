@@ -1,4 +1,4 @@
-// Reads LCM event logs (log_format.h), ours and lcm-logger's, strictly: a place that is not an event is an
+// Reads LCM event logs (log_format.h), ours and lcm-logger's, strictly: anything that is not an event is an
 // error.
 #pragma once
 
@@ -31,8 +31,8 @@ struct LogEvent {
   int size = 0;
 };
 
-// Decodes an event, with a seal (bus/seal_trailer.h: lcm-logger records it) or without. False: it is not a
-// whole message of that type.
+// Decodes an event with or without a seal (bus/seal_trailer.h; lcm-logger records seals). False when it is
+// not a whole message of that type.
 template <class Message>
 bool DecodeAs(const LogEvent& event, Message& message) {
   try {
@@ -49,7 +49,7 @@ std::string ParseLogEvent(const MappedFile& file, int64_t offset, LogEvent& even
 // True when `offset` is the end, or a sync word (or as much of one as the file still holds) stands there.
 bool LogEventMayBeginAt(const MappedFile& file, int64_t offset);
 
-// The byte after an event.
+// The offset of the first byte after an event.
 int64_t EndOf(const LogEvent& event);
 
 class LogReader {

@@ -14,20 +14,19 @@ namespace hydro::log {
 
 class LogWriter {
  public:
-  // Creates `file` (new_file.h): Opening::kDirect for a recording in progress, of which all that was flushed
-  // survives a kill; Opening::kTemporary for a log that is made whole or not at all. Throws InputError when
+  // Creates `file` (new_file.h): Opening::kDirect for a recording in progress, of which everything flushed
+  // survives a kill; Opening::kTemporary for a log that appears whole or not at all. Throws InputError when
   // it cannot be created.
   LogWriter(const std::string& file, Opening opening);
-  // Flushes what is left when kDirect, giving up on errors; removes the file when kTemporary and not
-  // finished.
+  // With kDirect flushes what is left, ignoring errors; with kTemporary removes a file that is not finished.
   ~LogWriter();
   LogWriter(const LogWriter&) = delete;
   LogWriter& operator=(const LogWriter&) = delete;
 
-  // Appends one event to the buffer of 1 MiB, which goes to the file when it is full. `utime`: us since
-  // 1970-01-01 UTC, or simulated time, when the message was received. The channel has 1 to 63 bytes, the data
-  // at most 1 GiB (std::invalid_argument otherwise). Throws WriteError when the disk is full; then the event
-  // is not in the log, and the same call may be tried again.
+  // Appends an event to the buffer of 1 MiB, which is written when it is full. `utime`: us since 1970-01-01
+  // UTC, or simulated time, when the message was received. The channel has 1 to 63 bytes, the data at most 1
+  // GiB (std::invalid_argument otherwise). Throws WriteError when the disk is full; then the event is not in
+  // the log, and the same call may be tried again.
   void Append(std::string_view channel, const void* data, size_t size, int64_t utime);
 
   // The same for a message, encoded in place.
@@ -40,7 +39,7 @@ class LogWriter {
     Commit(channel.size(), static_cast<size_t>(size));
   }
 
-  // Hands everything to the operating system: from then on it survives a kill of this process. Throws
+  // Passes everything to the operating system, after which it survives a kill of this process. Throws
   // WriteError.
   void Flush();
 

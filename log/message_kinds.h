@@ -1,4 +1,4 @@
-// Which type of message lies on which channel, for code that meets them in a log.
+// The table of messages as code that meets them in a log needs it: which type lies on which channel.
 #pragma once
 
 #include <cstdint>
@@ -17,7 +17,7 @@ struct MessageKind {
   bool (*decodes)(const LogEvent& event);  // whether it is a whole message of the type
 };
 
-// All kinds, in the order of bus/channels.h.
+// All kinds, in the order of the table of messages (bus/messages.h).
 const std::vector<MessageKind>& MessageKinds();
 
 // The kind whose channel's name `channel` begins with; the rest is the suffix. Null: none of this stack's.

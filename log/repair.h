@@ -1,4 +1,4 @@
-// hydro-log repair: keeps what can be read of a damaged log.
+// hydro-log repair: keeps what is readable of a damaged log.
 #pragma once
 
 #include <cstdint>
@@ -22,20 +22,20 @@ struct RepairResult {
 
 // Finds the events of a log that can be read. A torn tail loses only the torn event, damage in the middle
 // only the events that it touches:
-// - after a place that is not an event, the next sync word that begins one is sought;
-// - an event whose length is damaged, which shows by what follows it, or by the events that lie inside it, is
-// not kept;
-// - nor is an event on a channel of this stack that is not a whole message, if others on that channel are.
-// Throws InputError when the file cannot be read or holds no event at all though it has bytes.
-// With `out` not empty, writes them to that log, numbered anew, whole or not at all; it may be the same file.
-// Throws InputError or WriteError when that fails.
+// - after bytes that are no event, it looks for the next sync word that begins one;
+// - it drops an event whose length is damaged, which what follows it or lies inside it shows;
+// - it drops an event on a channel of this stack that is not a whole message, if others on that channel are.
+//
+// Throws InputError when the file cannot be read, or has bytes but no event. Unless `out` is empty, writes
+// the events to that log, renumbered, whole or not at all; it may be the same file. Throws InputError or
+// WriteError when that fails.
 RepairResult RepairLog(const std::string& file, const std::string& out);
 
-// Repairs a log under its own name. What it was stays as FILE.damaged, which must not exist; a log that is
-// whole is left alone. Throws InputError, also when the log is still being recorded; WriteError.
+// Repairs a log in place. The original stays as FILE.damaged, which must not exist; a whole log is left
+// alone. Throws InputError, also when the log is still being recorded, and WriteError.
 RepairResult RepairInPlace(const std::string& file);
 
-// One line for what was kept, and one for each place where something was lost.
+// A line for what was kept, and one for each place where something was lost.
 std::string Describe(const RepairResult& result, const std::string& file);
 
 }  // namespace hydro::log

@@ -22,27 +22,7 @@ constexpr auto kEchoTime = 200ms;       // how long to wait for this logger's ow
 constexpr auto kOverflowQuiet = 1s;     // an overflow has ended when nothing was dropped for this long
 constexpr auto kFarewellTime = 500ms;   // how long to wait for the others' last messages after a stop
 
-// Fields common to the numbered messages, read without decoding the rest: after the 8 bytes of the type's
-// hash come utime, tick, session and sequence, 8 bytes each, big-endian (LCM's encoding).
-int64_t ReadInt64(const uint8_t* data) {
-  uint64_t value = 0;
-  for (int i = 0; i < 8; ++i) value = value << 8 | data[i];
-  return static_cast<int64_t>(value);
-}
-constexpr size_t kMostSenders =
-    1024;  // of one kind, whose numbers are followed: what a flood sends is not kept
-constexpr int kTickOffset = 16;
-constexpr int kSessionOffset = 24;
-constexpr int kSequenceOffset = 32;
-
-// Which of the numbered messages lies on `channel`.
-std::optional<log::CausalOrder::Kind> NumberedKind(std::string_view channel, const bus::Channels& channels) {
-  if (channel == channels.state) return log::CausalOrder::Kind::kState;
-  if (channel == channels.motor_command) return log::CausalOrder::Kind::kMotorCommand;
-  if (channel == channels.pressure_command) return log::CausalOrder::Kind::kPressureCommand;
-  if (channel == channels.arm_reference) return log::CausalOrder::Kind::kArmReference;
-  return std::nullopt;
-}
+constexpr size_t kMostSenders = 1024;  // of one kind of message whose numbers are followed: a flood is not
 
 }  // namespace
 
@@ -67,7 +47,7 @@ LoggerApp::LoggerApp(bus::Bus& bus, bus::Clock& clock, const settings::StackConf
                              message.arrived);
                    });
   }
-  bus.Subscribe<process_status_t>(participant_.channels().process_status,
+  bus.Subscribe<process_status_t>(participant_.channels().Of<process_status_t>(),
                                   [this](const process_status_t& status) { OnStatus(status); });
   thread_ = std::thread([this] { WriteUntilClosed(); });
   participant_.Announce(process_status_t::READY);
@@ -90,40 +70,35 @@ LoggerApp::~LoggerApp() {
 void LoggerApp::OnMessage(const bus::RawMessage& message) {
   if (message.channel.empty()) return;  // LCM carries such a message, but no log can hold it
   ++received_;
-  const bus::Channels& channels = participant_.channels();
-  const std::optional<log::CausalOrder::Kind> kind = NumberedKind(message.channel, channels);
-  if (kind && message.size >= kSequenceOffset + 8) {
-    CountSequence(*kind, message);
-  }
-  if (message.channel == channels.state && message.size >= kSequenceOffset) {
-    state_tick_ = ReadInt64(message.data + kTickOffset);
+  const std::optional<bus::LoopNumbers> numbers = bus::ReadLoopNumbers(message, participant_.channels());
+  if (numbers) CountSequence(*numbers);
+  if (numbers && numbers->part == bus::LoopPart::kState) {
+    state_tick_ = numbers->tick;
     participant_.set_tick(state_tick_);
     if (participant_.state() == process_status_t::READY) participant_.Announce(process_status_t::RUNNING);
     // A state that is sent again asks for the answer again; it may have been lost.
     if (state_tick_ >= SaturatingSum(reported_tick_, kProgressTicks) || state_tick_ <= reported_tick_)
       ReportProgress();
   }
-  if (order_ && kind && message.size >= kSequenceOffset) {
+  if (order_ && numbers) {
     const auto now = participant_.clock().Now();
     log::RecordedMessage event{std::string(message.channel),
                                {message.data, message.data + message.size},
                                message.receive_utime,
                                now};
-    order_->Take(*kind, ReadInt64(message.data + kTickOffset), std::move(event), now);
+    order_->Take(numbers->part, numbers->tick, std::move(event), now);
   } else {
     Enqueue(message.channel, message.data, static_cast<size_t>(message.size), message.receive_utime,
             participant_.clock().Now());
   }
 }
 
-void LoggerApp::CountSequence(log::CausalOrder::Kind kind, const bus::RawMessage& message) {
-  const int64_t sequence = ReadInt64(message.data + kSequenceOffset);
-  const int64_t session = ReadInt64(message.data + kSessionOffset);
-  std::map<int64_t, int64_t>& senders = next_sequence_[static_cast<size_t>(kind)];
-  if (senders.size() >= kMostSenders && !senders.contains(session)) return;
-  int64_t& next = senders.try_emplace(session, sequence).first->second;
-  if (sequence > next) lost_ = SaturatingSum(lost_, SaturatingDifference(sequence, next));
-  if (sequence >= next) next = SaturatingSum(sequence, 1);
+void LoggerApp::CountSequence(const bus::LoopNumbers& numbers) {
+  std::map<int64_t, int64_t>& senders = next_sequence_[static_cast<size_t>(numbers.part)];
+  if (senders.size() >= kMostSenders && !senders.contains(numbers.session)) return;
+  int64_t& next = senders.try_emplace(numbers.session, numbers.sequence).first->second;
+  if (numbers.sequence > next) lost_ = SaturatingSum(lost_, SaturatingDifference(numbers.sequence, next));
+  if (numbers.sequence >= next) next = SaturatingSum(numbers.sequence, 1);
 }
 
 void LoggerApp::Enqueue(std::string_view channel, const uint8_t* data, size_t size, int64_t utime,
@@ -167,7 +142,7 @@ void LoggerApp::ReportProgress() {
   progress.session = participant_.session();
   progress.events = received_;
   progress.queue_depth = largest_queue_;
-  bus_.Publish(participant_.channels().log_progress, progress);
+  bus_.Publish(participant_.channels().Of<log_progress_t>(), progress);
 }
 
 // Wakes every kFlushPeriod: a notification per message would cost the receiving thread a system call each.
@@ -199,7 +174,7 @@ LoggerApp::Write LoggerApp::WriteBatch(const EventQueue::Batch& batch) {
     if (!oldest) oldest = event.arrived;
     if (options_.rotate_bytes > 0 && writer_->bytes() >= options_.rotate_bytes) Rotate();
     writer_->Append(event.channel, event.data, event.size, event.utime);
-    if (event.channel == participant_.channels().run) {
+    if (event.channel == participant_.channels().Of<run_description_t>()) {
       const std::string channel(event.channel);
       descriptions_[channel] = {channel, {event.data, event.data + event.size}, event.utime};
     }

@@ -59,7 +59,7 @@ class LoggerApp : public process::App {
   bus::Bus& Tap(bus::Bus& bus);
   void Enqueue(std::string_view channel, const uint8_t* data, size_t size, int64_t utime,
                bus::Clock::TimePoint arrived);
-  void CountSequence(log::CausalOrder::Kind kind, const bus::RawMessage& message);
+  void CountSequence(const bus::LoopNumbers& numbers);
   void CheckOverflow();
   void OnMessage(const bus::RawMessage& message);
   void OnStatus(const process_status_t& status);
@@ -96,7 +96,7 @@ class LoggerApp : public process::App {
   std::optional<log::CausalOrder> order_;  // lockstep: restores the order of the numbered messages
   bool left_ = false;                      // this logger's own DONE or FAILED has come back from the bus
   std::map<int64_t, int8_t> others_;       // the other processes' states, by session
-  std::array<std::map<int64_t, int64_t>, 4> next_sequence_;  // by kind and session, to count losses
+  std::array<std::map<int64_t, int64_t>, bus::kLoopParts> next_sequence_;  // by part and session, for losses
   int64_t lost_ = 0;
   int64_t dropped_ = 0;                             // by the full queue, at the last check
   std::optional<bus::Clock::TimePoint> overflow_;   // during a fault: when the queue last dropped something

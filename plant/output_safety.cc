@@ -31,12 +31,12 @@ OutputSafety::OutputSafety(process::Participant& participant, const settings::St
       suspended_(participant.clock().Suspended()) {
   bus::Bus& bus = participant_.bus();
   const bus::Channels& channels = participant_.channels();
-  bus.Subscribe<run_description_t>(channels.run,
+  bus.Subscribe<run_description_t>(channels.Of<run_description_t>(),
                                    [this](const run_description_t& other) { OnDescription(other); });
-  bus.Subscribe<rearm_t>(channels.rearm, [this](const rearm_t& request) { OnRearm(request); });
+  bus.Subscribe<rearm_t>(channels.Of<rearm_t>(), [this](const rearm_t& request) { OnRearm(request); });
   if (limits_.rearm != settings::Rearm::kExplicit) return;
-  bus.Subscribe<fault_t>(channels.fault, [this](const fault_t& fault) { OnFault(fault); });
-  bus.Subscribe<process_status_t>(channels.process_status,
+  bus.Subscribe<fault_t>(channels.Of<fault_t>(), [this](const fault_t& fault) { OnFault(fault); });
+  bus.Subscribe<process_status_t>(channels.Of<process_status_t>(),
                                   [this](const process_status_t& status) { OnStatus(status); });
 }
 
@@ -202,7 +202,7 @@ void OutputSafety::Answer(const rearm_t& request, int8_t kind, const std::string
   answer.kind = kind;
   answer.source = participant_.role();
   answer.text = text;
-  participant_.bus().Publish(participant_.channels().rearm, answer);
+  participant_.bus().Publish(participant_.channels().Of<rearm_t>(), answer);
 }
 
 }  // namespace hydro::plant

@@ -33,20 +33,20 @@ PlantApp::PlantApp(bus::Bus& bus, bus::Clock& clock, const settings::StackConfig
                                                             3 / (config.plant.rate_hz * config.time.speed)))),
       roll_call_(WithControllers(expected)),
       program_(program),
-      state_publisher_(bus.Advertise<state_t>(participant_.channels().state)),
+      state_publisher_(bus.Advertise<state_t>(participant_.channels().Of<state_t>())),
       stale_time_(bus::FromSeconds(config.limits.stale_input_s)),
       voltage_limit_((1 + 1e-9) * config.model.description.parameters.T_pmax /
                      config.model.description.parameters.k_1),
       command_monitor_(stale_time_) {
   const bus::Channels& channels = participant_.channels();
-  bus.Subscribe<motor_command_t>(channels.motor_command,
+  bus.Subscribe<motor_command_t>(channels.Of<motor_command_t>(),
                                  [this](const motor_command_t& command) { OnMotorCommand(command); });
-  bus.Subscribe<pressure_command_t>(channels.pressure_command, [this](const pressure_command_t& command) {
-    newest_pressure_command_tick_ = command.tick;
-  });
-  bus.Subscribe<process_status_t>(channels.process_status,
+  bus.Subscribe<pressure_command_t>(
+      channels.Of<pressure_command_t>(),
+      [this](const pressure_command_t& command) { newest_pressure_command_tick_ = command.tick; });
+  bus.Subscribe<process_status_t>(channels.Of<process_status_t>(),
                                   [this](const process_status_t& status) { roll_call_.Observe(status); });
-  bus.Subscribe<log_progress_t>(channels.log_progress, [this](const log_progress_t& progress) {
+  bus.Subscribe<log_progress_t>(channels.Of<log_progress_t>(), [this](const log_progress_t& progress) {
     // Only loggers that were present when the run began count: a flood of made-up ones is not kept.
     const auto known = log_progress_.find(progress.session);
     if (known != log_progress_.end()) known->second = progress.tick;
@@ -216,7 +216,7 @@ void PlantApp::Poll() {
 void PlantApp::PublishDescription() {
   next_description_ = participant_.clock().Now() + kDescriptionPeriod;
   description_.utime = participant_.clock().Utime();
-  participant_.bus().Publish(participant_.channels().run, description_);
+  participant_.bus().Publish(participant_.channels().Of<run_description_t>(), description_);
 }
 
 }  // namespace hydro::plant

@@ -49,7 +49,8 @@ PositionApp::PositionApp(bus::Bus& bus, bus::Clock& clock, const settings::Stack
       law_(LawSettingsFor(config)),
       state_monitor_(bus::FromSeconds(config.limits.stale_input_s)),
       last_state_time_(clock.Now()) {
-  bus.Subscribe<state_t>(participant_.channels().state, [this](const state_t& state) { OnState(state); });
+  bus.Subscribe<state_t>(participant_.channels().Of<state_t>(),
+                         [this](const state_t& state) { OnState(state); });
   participant_.Announce(process_status_t::READY);
 }
 
@@ -133,8 +134,8 @@ void PositionApp::Send() {
   arm_reference_.utime = pressure_command_.utime = participant_.clock().Utime();
   // The pressure command goes last: in lockstep the plant waits for it, so that a log has both before the
   // next state.
-  participant_.bus().Publish(participant_.channels().arm_reference, arm_reference_);
-  participant_.bus().Publish(participant_.channels().pressure_command, pressure_command_);
+  participant_.bus().Publish(participant_.channels().Of<arm_reference_t>(), arm_reference_);
+  participant_.bus().Publish(participant_.channels().Of<pressure_command_t>(), pressure_command_);
 }
 
 void PositionApp::Poll() {
@@ -161,7 +162,7 @@ int PositionApp::Finish() {
     pressure_command_.open_loop = true;
     pressure_command_.voltage = 0;
     pressure_command_.pressure_ref = 0;
-    participant_.bus().Publish(participant_.channels().pressure_command, pressure_command_);
+    participant_.bus().Publish(participant_.channels().Of<pressure_command_t>(), pressure_command_);
   }
   return participant_.Leave();
 }

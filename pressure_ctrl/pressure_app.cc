@@ -72,9 +72,10 @@ PressureApp::PressureApp(bus::Bus& bus, bus::Clock& clock, const settings::Stack
       state_monitor_(stale_time_),
       command_monitor_(stale_time_),
       last_state_time_(clock.Now()) {
-  bus.Subscribe<state_t>(participant_.channels().state, [this](const state_t& state) { OnState(state); });
+  bus.Subscribe<state_t>(participant_.channels().Of<state_t>(),
+                         [this](const state_t& state) { OnState(state); });
   bus.Subscribe<pressure_command_t>(
-      participant_.channels().pressure_command,
+      participant_.channels().Of<pressure_command_t>(),
       [this](const pressure_command_t& command) { OnPressureCommand(command); });
   participant_.Announce(process_status_t::READY);
 }
@@ -98,7 +99,7 @@ void PressureApp::OnState(const state_t& state) {
     case bus::SequenceMonitor::Verdict::kDuplicate:
       // The plant asks again because the answer may have been lost.
       if (answered_ && last_command_.tick == state.tick) {
-        participant_.bus().Publish(participant_.channels().motor_command, last_command_);
+        participant_.bus().Publish(participant_.channels().Of<motor_command_t>(), last_command_);
       }
       return;
     case bus::SequenceMonitor::Verdict::kAccept:
@@ -205,7 +206,7 @@ void PressureApp::Send(motor_command_t& command) {
   command.utime = participant_.clock().Utime();
   command.session = participant_.session();
   command.sequence = sequence_++;
-  participant_.bus().Publish(participant_.channels().motor_command, command);
+  participant_.bus().Publish(participant_.channels().Of<motor_command_t>(), command);
   last_command_ = command;
   answered_ = true;
 }

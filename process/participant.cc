@@ -31,10 +31,10 @@ Participant::Participant(bus::Bus& bus, bus::Clock& clock, const bus::Channels& 
       undecodable_("undecodable_message"),
       unsent_("unsent_message"),
       statistics_(role, host_, session_, clock.Now()) {
-  bus_.Subscribe<stop_t>(channels_.stop, [this](const stop_t& stop) {
+  bus_.Subscribe<stop_t>(channels_.Of<stop_t>(), [this](const stop_t& stop) {
     if (!stop_) stop_ = stop;
   });
-  bus_.Subscribe<process_status_t>(channels_.process_status, [this](const process_status_t& status) {
+  bus_.Subscribe<process_status_t>(channels_.Of<process_status_t>(), [this](const process_status_t& status) {
     if (names_.size() < kMostNames && !names_.contains(status.session)) {
       names_[status.session] =
           status.role + " on " + status.host + " (process " + std::to_string(status.pid) + ")";
@@ -58,7 +58,7 @@ void Participant::Announce(int8_t state, const std::string& text) {
   status.pid = getpid();
   status.state = state;
   status.text = text;
-  bus_.Publish(channels_.process_status, status);
+  bus_.Publish(channels_.Of<process_status_t>(), status);
 }
 
 void Participant::Poll() {
@@ -66,7 +66,7 @@ void Participant::Poll() {
   if (state_ == process_status_t::READY && now >= next_announcement_) Announce(state_, status_text_);
   if (loop_statistics_t* report = statistics_.Poll(now)) {
     report->utime = clock_.Utime();
-    bus_.Publish(channels_.loop_statistics, *report);
+    bus_.Publish(channels_.Of<loop_statistics_t>(), *report);
   }
   if (!clock_.simulated()) Publish(statistics_.PollHistogram(now));
   unsent_.Update(
@@ -148,7 +148,7 @@ std::string Participant::NameOf(std::optional<int64_t> session) const {
 void Participant::Publish(loop_histogram_t* histogram) {
   if (histogram == nullptr) return;
   histogram->utime = clock_.Utime();
-  bus_.Publish(channels_.loop_histogram, *histogram);
+  bus_.Publish(channels_.Of<loop_histogram_t>(), *histogram);
 }
 
 void Participant::PublishFault(const fault_t& fault) {
@@ -157,7 +157,7 @@ void Participant::PublishFault(const fault_t& fault) {
   message.tick = tick_;
   message.session = session_;
   message.sequence = fault_sequence_++;
-  bus_.Publish(channels_.fault, message);
+  bus_.Publish(channels_.Of<fault_t>(), message);
 }
 
 void Participant::RequestStop(const std::string& reason, int exit_code) {
@@ -170,7 +170,7 @@ void Participant::RequestStop(const std::string& reason, int exit_code) {
   stop.reason = reason;
   stop.exit_code = exit_code;
   stop_ = stop;
-  bus_.Publish(channels_.stop, stop);
+  bus_.Publish(channels_.Of<stop_t>(), stop);
   if (exit_code != 0 && !clock_.simulated()) spdlog::error("{}", reason);
 }
 
@@ -178,7 +178,7 @@ int Participant::Leave(const std::string& failure) {
   if (!clock_.simulated()) {
     loop_statistics_t total = statistics_.Total(clock_.Now());
     total.utime = clock_.Utime();
-    bus_.Publish(channels_.loop_statistics, total);
+    bus_.Publish(channels_.Of<loop_statistics_t>(), total);
     for (int i = 0; i < timing::kLoopQuantities; ++i) {
       Publish(statistics_.TotalHistogram(static_cast<timing::LoopQuantity>(i), clock_.Now()));
     }

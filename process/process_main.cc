@@ -5,7 +5,7 @@
 #include <chrono>
 #include <memory>
 
-#include "bus/udpm/udpm_bus.h"
+#include "bus/udpm/open_udpm_bus.h"
 #include "bus/udpm/udpm_url.h"
 #include "log/log_writer.h"
 #include "process/stderr_log.h"
@@ -93,10 +93,11 @@ int RunProcess(const std::string& program, const settings::CommonOptions& option
     settings::CheckKeepsInputs(options.log, config);
     CatchStopSignals();
     timing::ApplyRealTime(RealTimeRequestOf(SectionOf(config, program)));
-    bus::UdpmBus bus(
+    const std::unique_ptr<bus::UdpmBus> opened = bus::OpenUdpmBus(
         config.bus.url,
         bus::MakeAuthenticator(config.bus.resolved_key_file, bus::Channels(config.bus.channel_suffix)),
         bus::Receiving::kDirect);
+    bus::UdpmBus& bus = *opened;
     WarnOfOpenNetwork(program, config.bus);
     if (const std::string hint = bus.receive_buffer_hint(); !hint.empty()) spdlog::warn("{}", hint);
     Recording recording;

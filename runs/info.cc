@@ -49,13 +49,13 @@ ChannelInfo ChannelOf(const ChannelSummary& summary, const RunLog& log) {
   const double seconds = Seconds(summary.first_utime, summary.last_utime);
   if (summary.events > 1 && seconds > 0) info.rate_hz = static_cast<double>(summary.events - 1) / seconds;
   const bus::Channels channels(log.suffix);
-  const RunMessages& messages = log.messages;
-  if (summary.channel == channels.state) SequenceCount(messages.states).Fill(info);
-  if (summary.channel == channels.motor_command) SequenceCount(messages.motor_commands).Fill(info);
-  if (summary.channel == channels.pressure_command) SequenceCount(messages.pressure_commands).Fill(info);
-  if (summary.channel == channels.arm_reference) SequenceCount(messages.arm_references).Fill(info);
-  if (summary.channel == channels.fault) SequenceCount(messages.faults).Fill(info);
-  if (summary.channel == channels.loop_statistics) SequenceCount(log.statistics).Fill(info);
+  bus::AnyMessage([&]<class Message>(const bus::MessageRow<Message>&) {
+    if (summary.channel != channels.Of<Message>()) return false;
+    if constexpr (bus::PlacesOf<Message>().sequence >= 0) {
+      if (const auto* const messages = MessagesIn<Message>(log)) SequenceCount(*messages).Fill(info);
+    }
+    return true;
+  });
   return info;
 }
 

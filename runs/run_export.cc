@@ -37,7 +37,7 @@ class Cursor {
 // States of one run, in order of ticks, each tick once.
 std::vector<const state_t*> OrderedStates(const RunLog& log) {
   if (log.messages.states.empty()) {
-    throw InputError(log.file + ": found no message on " + bus::Channels(log.suffix).state +
+    throw InputError(log.file + ": found no message on " + bus::Channels(log.suffix).Of<state_t>() +
                      "; a table needs at least one");
   }
   std::set<int64_t> sessions;
@@ -46,12 +46,12 @@ std::vector<const state_t*> OrderedStates(const RunLog& log) {
   for (size_t k = 1; k < states.size(); ++k) {
     if (states[k]->tick != states[k - 1]->tick) continue;
     throw InputError(log.file + ": found two different states of tick " + std::to_string(states[k]->tick) +
-                     " on " + bus::Channels(log.suffix).state + ", from " + std::to_string(sessions.size()) +
-                     " sender(s); one run by one sender is needed");
+                     " on " + bus::Channels(log.suffix).Of<state_t>() + ", from " +
+                     std::to_string(sessions.size()) + " sender(s); one run by one sender is needed");
   }
   if (sessions.size() > 1) {
     throw InputError(log.file + ": found states from " + std::to_string(sessions.size()) + " senders on " +
-                     bus::Channels(log.suffix).state + "; one run by one sender is needed");
+                     bus::Channels(log.suffix).Of<state_t>() + "; one run by one sender is needed");
   }
   return states;
 }

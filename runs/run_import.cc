@@ -124,7 +124,7 @@ void ImportRun(const tables::Table& table, const std::string& program_version, c
   const bus::Channels channels;
   run_description_t description = Describe(table, program_version, Rate(times, ticks));
   description.utime = Utime(times.front());
-  log.AppendMessage(channels.run, description, description.utime);
+  log.AppendMessage(channels.Of<run_description_t>(), description, description.utime);
 
   int64_t motor_sequence = 0;
   int64_t reference_sequence = 0;
@@ -137,7 +137,7 @@ void ImportRun(const tables::Table& table, const std::string& program_version, c
     command.pressure_ref = reference;
     command.pressure_command_tick = std::isnan(reference) ? -1 : tick;
     command.status = motor_command_t::LAW;
-    log.AppendMessage(channels.motor_command, command, utime);
+    log.AppendMessage(channels.Of<motor_command_t>(), command, utime);
   };
 
   const size_t rows = table.rows();
@@ -158,7 +158,7 @@ void ImportRun(const tables::Table& table, const std::string& program_version, c
     // What acted before the first row is not in a table; the actuator is taken to have been at rest.
     state.voltage = row > 0 ? voltage(row - 1) : has_voltage ? 0 : kMissing;
     state.command_tick = row > 0 && has_voltage ? ticks[row] - 1 : -1;
-    log.AppendMessage(channels.state, state, utime);
+    log.AppendMessage(channels.Of<state_t>(), state, utime);
 
     // A reference is held until the next one; a missing value after one is a reference of its own.
     const double reference = arm_ref(row);
@@ -169,7 +169,7 @@ void ImportRun(const tables::Table& table, const std::string& program_version, c
       message.sequence = reference_sequence++;
       message.signal = arm_reference_t::ARM_ANGLE;
       message.value = last_reference = reference;
-      log.AppendMessage(channels.arm_reference, message, utime);
+      log.AppendMessage(channels.Of<arm_reference_t>(), message, utime);
     }
 
     // The command of tick k acts from tick k + 1 on (the delay that an empty configuration means), so the

@@ -105,32 +105,23 @@ RunLog ReadRunLog(const std::string& file, const std::optional<std::string>& suf
                          [](const ChannelSummary& a, std::string_view name) { return a.channel < name; });
     ++channel->undecodable;
   };
-  // True when the event is on `channel`, and then it is in `messages` or left out.
-  const auto keep = [&]<class Message>(const std::string& channel, std::vector<Message>& messages) {
+  // True when the event is a `Message`, and then it is in its list or left out.
+  const auto take = [&]<class Message>(const bus::MessageRow<Message>&) {
+    const std::string& channel = channels.Of<Message>();
     if (event.channel != channel) return false;
-    if (!log::DecodeAs(event, messages.emplace_back())) {
-      messages.pop_back();
-      leave_out(*log::KindOfChannel(channel));
+    const log::MessageKind& kind = *log::KindOfChannel(channel);
+    if (std::vector<Message>* const messages = MessagesIn<Message>(log)) {
+      if (!log::DecodeAs(event, messages->emplace_back())) {
+        messages->pop_back();
+        leave_out(kind);
+      }
+    } else if (undecodable == Undecodable::kLeftOut && !kind.decodes(event)) {
+      leave_out(kind);  // nobody asks for these messages; only their count would be wrong
     }
     return true;
   };
-  // Nobody asks for what is on these channels; only their count would be wrong.
-  const auto count = [&](const std::string& channel) {
-    if (event.channel != channel) return false;
-    const log::MessageKind& kind = *log::KindOfChannel(channel);
-    if (undecodable == Undecodable::kLeftOut && !kind.decodes(event)) leave_out(kind);
-    return true;
-  };
   reader.Rewind();
-  while (reader.Next(event)) {
-    keep(channels.state, log.messages.states) || keep(channels.motor_command, log.messages.motor_commands) ||
-        keep(channels.pressure_command, log.messages.pressure_commands) ||
-        keep(channels.arm_reference, log.messages.arm_references) ||
-        keep(channels.fault, log.messages.faults) || keep(channels.run, log.descriptions) ||
-        keep(channels.loop_statistics, log.statistics) || keep(channels.loop_histogram, log.histograms) ||
-        keep(channels.stop, log.stops) || keep(channels.process_status, log.statuses) ||
-        keep(channels.log_progress, log.progress) || count(channels.rearm) || count(channels.introduction);
-  }
+  while (reader.Next(event)) bus::AnyMessage(take);
   return log;
 }
 

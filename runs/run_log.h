@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include "bus/channels.h"
@@ -45,6 +46,37 @@ struct RunLog {
   int64_t last_utime = 0;
   std::string first_undecodable;  // where the first message that was left out is, and why; empty: none was
 };
+
+// The list in `log` of one type of message; null: those are only counted.
+template <class Message, class Log>
+auto MessagesIn(Log& log)
+    -> std::conditional_t<std::is_const_v<Log>, const std::vector<Message>, std::vector<Message>>* {
+  if constexpr (std::is_same_v<Message, state_t>) {
+    return &log.messages.states;
+  } else if constexpr (std::is_same_v<Message, motor_command_t>) {
+    return &log.messages.motor_commands;
+  } else if constexpr (std::is_same_v<Message, pressure_command_t>) {
+    return &log.messages.pressure_commands;
+  } else if constexpr (std::is_same_v<Message, arm_reference_t>) {
+    return &log.messages.arm_references;
+  } else if constexpr (std::is_same_v<Message, fault_t>) {
+    return &log.messages.faults;
+  } else if constexpr (std::is_same_v<Message, run_description_t>) {
+    return &log.descriptions;
+  } else if constexpr (std::is_same_v<Message, loop_statistics_t>) {
+    return &log.statistics;
+  } else if constexpr (std::is_same_v<Message, loop_histogram_t>) {
+    return &log.histograms;
+  } else if constexpr (std::is_same_v<Message, stop_t>) {
+    return &log.stops;
+  } else if constexpr (std::is_same_v<Message, process_status_t>) {
+    return &log.statuses;
+  } else if constexpr (std::is_same_v<Message, log_progress_t>) {
+    return &log.progress;
+  } else {
+    return nullptr;
+  }
+}
 
 // What to do with a message on one of this stack's channels that is of another type or version, or torn.
 enum class Undecodable {

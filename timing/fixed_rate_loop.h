@@ -1,4 +1,4 @@
-// A loop with a fixed period on absolute deadlines, which handles messages while it waits.
+// A loop with a fixed period on absolute deadlines that handles messages while it waits.
 #pragma once
 
 #include <chrono>
@@ -10,19 +10,21 @@
 
 namespace hydro::timing {
 
-// Tick 0 is the moment of construction; tick k is due k periods later, whatever happened in between: it never
-// drifts. On a simulated clock every tick comes exactly when it is due.
+// Tick 0 is the moment of construction; tick k is due k periods later whatever happens in between, so the
+// loop never drifts. On a simulated clock every tick comes exactly when it is due.
 class FixedRateLoop {
  public:
   // `period` need not be a whole number of ns. Wake-ups are recorded in `statistics`: the latency of a cycle
   // is the time from its deadline to the wake-up. On a wall clock it lowers the thread's timer slack, which
-  // would make every wake-up 50 us late. Throws std::invalid_argument when the period is not positive.
+  // would otherwise make every wake-up 50 us late. Throws std::invalid_argument when the period is not
+  // positive.
   FixedRateLoop(bus::Bus& bus, const bus::Clock& clock, std::chrono::duration<double, std::nano> period,
                 LoopStatistics& statistics);
 
   // Handles messages until the next tick is due (what is waiting is handled even when it is due already).
   // Returns how many ticks have become due since the last return: 1, or more when some were skipped because
-  // of lateness. Returns 0 when a signal arrived first; the next call goes on waiting for the same tick.
+  // the loop was late. Returns 0 when a signal arrived first; the next call goes on waiting for the same
+  // tick.
   int64_t Wait();
 
   int64_t tick() const { return tick_; }        // the newest tick that was due

@@ -1,4 +1,4 @@
-// Counts of durations, log-linear like HdrHistogram: fixed memory, any percentile to within 1 %.
+// A histogram of durations, log-linear like HdrHistogram: fixed memory, any percentile to within 1 %.
 #pragma once
 
 #include <algorithm>
@@ -8,10 +8,10 @@
 
 namespace hydro::timing {
 
-// Of whole numbers from 0 to kHighest, in any one unit (1 ns to 1 h in ns, for example). Each power of two is
-// divided into 128 buckets; a percentile is the middle of its bucket, so it is wrong by at most 1/256 (0
-// below 256). Lower and higher values are counted as 0 and kHighest. 37 KB; recording allocates nothing and
-// takes some ns.
+// Counts whole numbers from 0 to kHighest, in any one unit (1 ns to 1 h in ns, for example). Each power of
+// two is divided into 128 buckets; a percentile is the middle of its bucket, so it is wrong by at most 1/256
+// (0 below 256). Lower values count as 0, higher ones as kHighest. Takes 37 KB; recording takes a few ns and
+// allocates nothing.
 class Histogram {
  public:
   static constexpr int64_t kHighest = 3'600'000'000'000;
@@ -32,7 +32,7 @@ class Histogram {
   int64_t Min() const { return min_; }  // exact; 0 when nothing was recorded
   int64_t Max() const { return max_; }  // exact; 0 when nothing was recorded
 
-  // Adds what `other` has recorded.
+  // Adds the records of `other`.
   void Merge(const Histogram& other);
 
   // Calls `use(first, last, count)` for each range of values that holds any, in rising order. The ranges are

@@ -1,5 +1,5 @@
-// How a loop keeps time: reported once a second on HYDRO_LOOP_STATISTICS, summed up over the whole run, and
-// as histograms on HYDRO_LOOP_HISTOGRAM.
+// How well a loop keeps time: reported once a second on HYDRO_LOOP_STATISTICS, summarised over the whole run,
+// and as histograms on HYDRO_LOOP_HISTOGRAM.
 #pragma once
 
 #include <array>
@@ -16,12 +16,12 @@
 
 namespace hydro::timing {
 
-// What has a histogram of its own; loop_histogram_t says what each is.
+// The quantities that have a histogram; loop_histogram_t says what each is.
 enum class LoopQuantity { kPeriod, kLatency, kRoundTrip, kQueueDepth, kGap, kSkipped };
 inline constexpr int kLoopQuantities = 6;
 const char* NameOf(LoopQuantity quantity);
 
-// Pure: time is passed in. Recording takes some ns; nothing here allocates after construction but Total().
+// Pure: time is passed in. Recording takes a few ns; after construction only Total() allocates.
 class LoopStatistics {
  public:
   // `role`, `host` and `session` go into each report; the first interval begins at `start`.
@@ -34,14 +34,14 @@ class LoopStatistics {
   // The first command for a state has arrived so long after that state was sent.
   void RecordRoundTrip(bus::Clock::Duration duration);
 
-  // Counters of the whole run; a report holds what was added since the one before. What one call adds counts
-  // as having been missed, or lost, in a row.
+  // Counters of the whole run; a report holds what was added since the previous one. What one call adds
+  // counts as missed, or lost, in a row.
   void set_missed_deadlines(int64_t total);
   void set_lost_messages(int64_t total);
   void AddMissedDeadlines(int64_t count) { set_missed_deadlines(SaturatingSum(total_missed_, count)); }
   void AddLostMessages(int64_t count) { set_lost_messages(SaturatingSum(total_lost_, count)); }
 
-  // Messages that are waiting now; a report holds the most since the one before.
+  // Messages that are waiting now; a report holds the largest number since the previous one.
   void RecordQueueDepth(int64_t depth);
 
   // The report that is due, once a second; null in between. The sender adds utime. Valid until the next call.
@@ -50,11 +50,11 @@ class LoopStatistics {
   // The same over the whole run so far, whenever it is asked for; marked as whole_run.
   loop_statistics_t Total(bus::Clock::TimePoint now) const;
 
-  // The histogram that is due: every two seconds one after the other, so that no single call of a loop has to
-  // send them all; null when none is. Those of which nothing was recorded are left out.
+  // The histogram that is due, or null. Every two seconds all take their turn, one a call, so that no call of
+  // a loop has to send them all; empty ones are left out.
   loop_histogram_t* PollHistogram(bus::Clock::TimePoint now);
 
-  // That of `quantity` so far, marked as whole_run; null when nothing was recorded.
+  // The histogram of `quantity` so far, marked as whole_run; null when it is empty.
   loop_histogram_t* TotalHistogram(LoopQuantity quantity, bus::Clock::TimePoint now);
 
  private:

@@ -1,4 +1,4 @@
-// Real-time scheduling of the calling thread and those that it starts from then on.
+// Real-time scheduling of the calling thread and of those that it starts afterwards.
 #pragma once
 
 #include <string>
@@ -19,9 +19,8 @@ struct RealTimeResult {
   std::vector<std::string> warnings;  // one line for each thing that was refused: what, why, how to permit it
 };
 
-// Does what is asked for and nothing else. What is refused is logged as one warning each, to stderr, and the
-// program goes on without it. Call it before the bus is constructed: LCM's receiving thread inherits all of
-// it.
+// Does what is asked for and nothing else. Logs a warning to stderr for each thing that is refused, and the
+// program goes on without it. Call this before opening the bus: LCM's receiving thread inherits the settings.
 RealTimeResult ApplyRealTime(const RealTimeRequest& request);
 
 }  // namespace hydro::timing

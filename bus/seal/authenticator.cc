@@ -12,10 +12,11 @@ namespace {
 
 using namespace std::chrono_literals;
 
-// A recording that is played fast must not make us send as fast.
+// A recording that is played fast must not make us send equally fast.
 constexpr auto kQuestionPeriod = 10ms;
 
-// Bounds on memory. Only who has the key can fill the first; the oldest of the second make room.
+// Bounds on memory. Only holders of the key can fill the first; in the second, new entries replace the
+// oldest.
 constexpr size_t kMostAdmitted = 65536;
 constexpr size_t kMostWaiting = 64;
 
@@ -70,7 +71,7 @@ Authenticator::Opened Authenticator::Open(std::string_view channel, const void* 
 
   const auto sender = admitted_.find(seal.session);
   if (sender == admitted_.end()) {
-    // An introduction may be the proof that is waited for.
+    // An introduction may be the very proof that is awaited.
     if (*index != 0 && WaitsTooLong(seal.session, now)) {
       Opened opened = Refuse(&RefusedMessages::unknown_sender, channel, size);
       opened.session = seal.session;
@@ -111,7 +112,7 @@ std::optional<introduction_t> Authenticator::Hear(const introduction_t& introduc
   if (opened.session == session_) return std::nullopt;
   const bool answers_us = introduction.answers == session_;
   if (answers_us && !admitted_.contains(opened.session) && admitted_.size() < kMostAdmitted) {
-    // What it sent before is not proved to be new.
+    // Nothing proves that what it sent before is new.
     admitted_[opened.session].fill(opened.counter);
     waiting_.erase(opened.session);
     *admitted = true;

@@ -1,14 +1,15 @@
-// Decides which messages of a stack with a key are genuine and new: seals what this process sends, and checks
-// the seal of what it receives.
+// Decides which messages of a stack with a key are genuine and new: seals what this process sends and checks
+// the seals of what it receives.
 //
-// Accepted is a message whose seal fits (message_seal.h), from a sender that has proved that it is alive now,
-// and whose counter is above that of all before on its channel. The proof is an introduction (introduction_t)
-// that names the session of this bus, a fresh random number: no recording of an earlier run can. So
-// - nothing is accepted from who has no key, or another one;
-// - a recording of an earlier run is refused, whatever it is played to, and one of this run as well;
-// - who is started again has a new session, introduces itself, and is accepted.
+// It accepts a message whose seal is right (message_seal.h), whose sender has proved that it is alive, and
+// whose counter is above all earlier ones on that channel. The proof is an introduction (introduction_t) that
+// names the session of this bus, a fresh random number, which no recording of an earlier run can contain.
+// Therefore
+// - a sender without the key, or with another one, is refused;
+// - a recording is refused, whether of an earlier run or of this one;
+// - a process that restarts has a new session, introduces itself, and is accepted.
 //
-// Pure: time is passed in, what is to be sent is returned.
+// Pure: the caller passes the time in and sends what is returned.
 #pragma once
 
 #include <array>
@@ -32,14 +33,14 @@ class Authenticator {
  public:
   using TimePoint = std::chrono::steady_clock::time_point;
 
-  // How long a genuine sender may take to prove itself before it is taken for a recording.
+  // How long a genuine sender may take to prove itself before it counts as a recording.
   static constexpr auto kIntroductionTime = std::chrono::milliseconds(500);
 
   enum class Verdict {
     kPlain,     // on a channel that is not authenticated
-    kAccepted,  // to be used
-    kWaiting,   // genuine, but its sender has not proved yet that it is alive: not to be used
-    kRefused,   // counted in refused(): not to be used
+    kAccepted,  // use it
+    kWaiting,   // genuine, but its sender has not yet proved that it is alive: do not use it
+    kRefused,   // counted in refused(): do not use it
   };
   struct Opened {
     Verdict verdict = Verdict::kPlain;
@@ -54,22 +55,22 @@ class Authenticator {
   const std::string& introduction_channel() const { return channels_.front(); }
   int64_t session() const { return session_; }
 
-  // Puts a seal after the first `size` of `bytes`, which grow if they must, and returns the size with it;
-  // `size` on a channel that is not authenticated.
+  // Puts a seal after the first `size` of `bytes`, which grow if they must, and returns the size including
+  // the seal; `size` on a channel that is not authenticated.
   int Seal(std::string_view channel, std::vector<uint8_t>* bytes, int size);
 
-  // To be called once for each message that arrives.
+  // Call it once for each message that arrives.
   Opened Open(std::string_view channel, const void* data, int size, TimePoint now);
 
   // What to send first.
   introduction_t Greeting() const { return Introduction(0); }
 
-  // For an introduction that Open() did not refuse: what to answer, if anything. `admitted` tells whether its
-  // sender has proved itself by it.
+  // For an introduction that Open() did not refuse: returns the answer, if one is due. Sets `admitted` when
+  // the introduction has proved its sender.
   std::optional<introduction_t> Hear(const introduction_t& introduction, const Opened& opened,
                                      bool* admitted);
 
-  // For another message that waits: asks its sender to introduce itself, now and then.
+  // For any other message that waits: asks its sender to introduce itself, but not too often.
   std::optional<introduction_t> Ask(int64_t session, TimePoint now);
 
   const RefusedMessages& refused() const { return refused_; }
@@ -87,13 +88,15 @@ class Authenticator {
   std::vector<std::string> channels_;
   int64_t session_;
   uint64_t counter_ = 0;
-  std::unordered_map<int64_t, Counters> admitted_;  // by session; never forgotten, or they could be replayed
-  std::unordered_map<int64_t, TimePoint> waiting_;  // when a session was heard first
+  std::unordered_map<int64_t, Counters>
+      admitted_;  // by session; never removed, or its messages could be replayed
+  std::unordered_map<int64_t, TimePoint> waiting_;  // when a session was first heard
   TimePoint next_question_{};
   RefusedMessages refused_;
 };
 
-// For the stack with that key file; null when `key_file` is empty. Throws InputError (bus_key.h).
+// The authenticator of a stack with that key file; null when `key_file` is empty. Throws InputError
+// (bus_key.h).
 std::unique_ptr<Authenticator> MakeAuthenticator(const std::string& key_file, const Channels& channels);
 
 }  // namespace hydro::bus

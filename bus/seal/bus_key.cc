@@ -32,7 +32,7 @@ class File {
   int fd_;
 };
 
-// Text that holds a key: wiped when it goes.
+// Text that holds a key: wiped on destruction.
 class SecretText {
  public:
   SecretText() = default;
@@ -88,7 +88,7 @@ BusKey ReadBusKey(const std::string& file) {
   StartSodium();
   const File opened(open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
   if (opened.fd() < 0) {
-    // A new key in the place of one that is there would lock the other hosts out.
+    // Replacing an existing key would lock the other hosts out.
     RefuseErrno(file, "cannot be read",
                 errno == ENOENT ? "`hydro-launch CONFIG --make-key` makes one"
                 : errno == EACCES
@@ -121,7 +121,7 @@ BusKey ReadBusKey(const std::string& file) {
                      " characters that are no key, allowed 32 bytes on one line, as 64 hexadecimal digits or "
                      "in base64");
   }
-  if (zeros) {  // what everybody tries first
+  if (zeros) {  // an obvious placeholder
     Refuse(file,
            "found a key of zeros only, allowed random bytes; `hydro-launch CONFIG --make-key` makes one");
   }

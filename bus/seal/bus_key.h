@@ -9,7 +9,7 @@
 
 namespace hydro::bus {
 
-// Wiped from memory when it goes.
+// Wipes its memory when it is destroyed.
 class BusKey {
  public:
   explicit BusKey(const std::array<uint8_t, kBusKeySize>& bytes) : bytes_(bytes) {}
@@ -24,12 +24,12 @@ class BusKey {
 };
 
 // Reads a key file: 32 bytes, as 64 hexadecimal digits or in base64, on one line. Throws InputError that
-// names the file when it cannot be read, holds anything else, or when others than its owner may read or write
-// it. Never shows what is in it.
+// names the file when it cannot be read, holds anything else, or is accessible to anyone but its owner. Never
+// shows its content.
 BusKey ReadBusKey(const std::string& file);
 
-// Writes a new random key, for its owner's eyes only. Throws InputError when the file is there already or
-// cannot be made.
+// Writes a new random key, readable by its owner alone. Throws InputError when the file exists or cannot be
+// created.
 void MakeBusKeyFile(const std::string& file);
 
 }  // namespace hydro::bus

@@ -1,5 +1,5 @@
-// The seal of an authenticated message: a trailer (seal_trailer.h) that names the sender (session), numbers its messages (counter),
-// and proves both with a keyed hash over channel, session, counter and message.
+// The seal of an authenticated message: a trailer (seal_trailer.h) that names the sender (session), numbers
+// its messages (counter), and proves both with a keyed hash over channel, session, counter and message.
 #pragma once
 
 #include <array>
@@ -19,7 +19,7 @@ struct Seal {
   std::array<uint8_t, kSealTagSize> tag{};
 };
 
-// The keyed hash (BLAKE2b of libsodium) over everything that a seal vouches for.
+// The keyed hash (libsodium's BLAKE2b) over everything that a seal vouches for.
 std::array<uint8_t, kSealTagSize> SealTag(const std::array<uint8_t, kBusKeySize>& key,
                                           std::string_view channel, int64_t session, uint64_t counter,
                                           const void* message, int size);
@@ -27,10 +27,10 @@ std::array<uint8_t, kSealTagSize> SealTag(const std::array<uint8_t, kBusKeySize>
 // Writes kSealSize bytes.
 void WriteSeal(const Seal& seal, uint8_t* out);
 
-// Reads the seal at the end of `data`; false: there is none. Verifies nothing.
+// Reads the seal at the end of `data`; false when there is none. Verifies nothing.
 bool ReadSeal(const void* data, int size, Seal* seal);
 
-// In constant time.
+// Compares in constant time.
 bool SameTag(const std::array<uint8_t, kSealTagSize>& a, const std::array<uint8_t, kSealTagSize>& b);
 
 }  // namespace hydro::bus

@@ -14,8 +14,7 @@ namespace {
 constexpr uint32_t kUdpHeader = 8;  // where the filter of a UDP socket begins to look
 constexpr uint32_t kPass = 0xffffffff;
 
-// Bytes at `position` of the channel and its 0, as the filter loads them; what is beyond is 0 and not looked
-// at.
+// The bytes at `position` of the channel and its final 0, as the filter loads them.
 uint32_t Word(const std::string& channel, size_t position, size_t size) {
   uint32_t word = 0;
   for (size_t i = 0; i < size; ++i) {
@@ -25,7 +24,8 @@ uint32_t Word(const std::string& channel, size_t position, size_t size) {
   return word;
 }
 
-// Compares the channel with the packet's, piece by piece; at the first that differs it goes on behind.
+// Compares the channel with the packet's, piece by piece; at the first difference it jumps past this
+// channel's code.
 void AppendChannel(const std::string& channel, std::vector<sock_filter>* program) {
   const size_t length = channel.size() + 1;
   std::vector<sock_filter> code;
@@ -47,7 +47,7 @@ void AppendChannel(const std::string& channel, std::vector<sock_filter>* program
 
 void AttachChannelFilter(int fd, const std::vector<std::string>& channels) {
   std::vector<sock_filter> program{
-      // Anything but a whole message passes: fragments after the first do not say what channel they are of.
+      // Anything but a whole message passes: only the first fragment of a message names its channel.
       BPF_STMT(BPF_LD | BPF_W | BPF_ABS, kUdpHeader),
       BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, kLcmWholeMagic, 1, 0),
       BPF_STMT(BPF_RET | BPF_K, kPass),

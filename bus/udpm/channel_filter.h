@@ -1,4 +1,4 @@
-// Has the kernel drop packets of channels that nobody here listens to, before they wake the process.
+// Makes the kernel drop packets on channels that nobody here subscribes to before they wake the process.
 #pragma once
 
 #include <string>
@@ -6,8 +6,8 @@
 
 namespace hydro::bus {
 
-// Lets through LCM packets (lcm_packet.h) of exactly these channels, and all fragments, at the UDP socket
-// `fd`. Does nothing where the kernel refuses: then more arrives than is wanted.
+// Makes the UDP socket `fd` pass LCM packets (lcm_packet.h) of exactly these channels, and all fragments.
+// Where the kernel refuses the filter, everything arrives.
 void AttachChannelFilter(int fd, const std::vector<std::string>& channels);
 
 }  // namespace hydro::bus

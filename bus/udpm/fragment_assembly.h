@@ -1,4 +1,4 @@
-// Puts messages together that LCM had to cut into several packets.
+// Reassembles messages that LCM split into several packets.
 #pragma once
 
 #include <cstdint>
@@ -9,8 +9,8 @@
 
 namespace hydro::bus {
 
-// Bounded: messages of at most 16 MiB, at most four unfinished at a time (the oldest makes room), and no more
-// memory than the packets had that came.
+// Bounded: messages of at most 16 MiB, at most four incomplete at a time (a new one replaces the oldest), and
+// no more memory than the packets that arrived took.
 class FragmentAssembly {
  public:
   struct Message {
@@ -18,8 +18,8 @@ class FragmentAssembly {
     std::vector<uint8_t> data;
   };
 
-  // Takes a fragment, the whole packet, from a sender. Returns the message when this was the last piece it
-  // lacked; a packet that is not a proper fragment is ignored.
+  // Takes a fragment, as a whole packet, from a sender. Returns the message when this was its last missing
+  // piece. Ignores a packet that is not a valid fragment.
   std::optional<Message> Take(uint64_t sender, const uint8_t* packet, size_t size);
 
  private:

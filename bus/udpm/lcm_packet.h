@@ -1,8 +1,7 @@
-// The form of LCM's UDP multicast packets (udpm_socket.h sends and receives them), as LCM 1.x defines it:
+// The format of LCM's UDP multicast packets, as LCM 1.x defines it (udpm_socket.h sends and receives them):
 //   whole message   "LC02" | sequence number u32 | channel, 0 | data
-//   fragment        "LC03" | sequence number u32 | size of the data u32 | offset u32 | number u16 | of how
-//   many u16 |
-//                   in number 0: channel, 0 | data
+//   fragment        "LC03" | sequence number u32 | size of the data u32 | offset u32 | number u16
+//                   | number of fragments u16 | in fragment 0: channel, 0 | data
 // with all integers big-endian.
 #pragma once
 
@@ -21,14 +20,14 @@ constexpr size_t kLcmLargestFragment = 65487;  // bytes after the header
 constexpr size_t kLcmLargestPacket = 65507;    // UDP's own limit
 constexpr size_t kLcmLongestChannel = 63;
 
-// A number of up to 4 bytes as it stands in a packet.
+// A number of up to 4 bytes, as a packet holds it.
 inline uint32_t LoadLcm(const uint8_t* bytes, size_t size) {
   uint32_t value = 0;
   for (size_t i = 0; i < size; ++i) value = value << 8 | bytes[i];
   return value;
 }
 
-// The 0 behind the channel that begins at `channel`; null where none stands before `end` and within the
+// The 0 that ends the channel beginning at `channel`; null when there is none before `end` or within the
 // longest name.
 inline const uint8_t* EndOfLcmChannel(const uint8_t* channel, const uint8_t* end) {
   const auto most = static_cast<ptrdiff_t>(kLcmLongestChannel + 1);
@@ -37,14 +36,14 @@ inline const uint8_t* EndOfLcmChannel(const uint8_t* channel, const uint8_t* end
   return zero == last ? nullptr : zero;
 }
 
-// A whole message's parts, within its packet.
+// The parts of a whole message, within its packet.
 struct LcmWhole {
   const char* channel = nullptr;
   const uint8_t* data = nullptr;
   size_t size = 0;
 };
 
-// False: `packet` is not a whole message.
+// False when `packet` is not a whole message.
 inline bool ReadLcmWhole(const uint8_t* packet, size_t size, LcmWhole* whole) {
   if (size < kLcmWholeHeader || LoadLcm(packet, 4) != kLcmWholeMagic) return false;
   const uint8_t* const channel = packet + kLcmWholeHeader;

@@ -1,4 +1,5 @@
-// Does multicast work here? LCM finds out too late: it blocks for ten seconds and then aborts the process.
+// Tests whether multicast works here. LCM finds out too late: it blocks for ten seconds and then aborts the
+// process.
 #pragma once
 
 #include <chrono>
@@ -7,10 +8,10 @@
 
 namespace hydro::bus {
 
-// Sends one packet to the group and port of `url` and waits for it to come back, as another process on this
-// machine would receive it. Returns the bytes of receive buffer that the kernel gives when
-// `url.recv_buf_size` is asked for. Throws BusError with the cause and its cure: no route, a firewall, a port
-// that is taken.
+// Sends a packet to the group and port of `url` and waits for it to come back, as another process on this
+// machine would receive it. Returns the size of the receive buffer that the kernel grants when asked for
+// `url.recv_buf_size`. Throws BusError with the cause and its cure: no route, a firewall, a port that is
+// taken.
 int TestMulticast(const UdpmUrl& url, std::chrono::milliseconds timeout = std::chrono::milliseconds(2000));
 
 }  // namespace hydro::bus

@@ -6,24 +6,24 @@
 namespace hydro::bus {
 namespace {
 
-// A message that nobody may take for a real one is still for the record.
+// A refused message is still recorded, under a name that nobody takes for the real channel.
 constexpr const char* kRefusedPrefix = "REFUSED_";
 
-// Bounds of what waits for its sender to prove itself.
+// At most so many messages wait for their senders to prove themselves.
 constexpr size_t kMostHeld = 1024;
 
 }  // namespace
 
 // Not before everybody has subscribed: a subscription to all channels that is made while introductions wait
-// would meet the miscount described in the constructor.
+// would meet LCM's miscount (queued_udpm_bus.cc).
 void UdpmBus::StartIntroductions() {
   introduced_ = true;
   const std::string& channel = authenticator_->introduction_channel();
-  if (all_ == nullptr) SubscribeTyped(channel, TypeOf<introduction_t>(), [](const void*) {});
+  ListenOnce(channel);
   Publish(channel, authenticator_->Greeting());
 }
 
-// What handlers may have of the message that has arrived: its size without the seal, or nothing.
+// How much of the message handlers may have: its size without the seal; nothing when they may not have it.
 std::optional<int> UdpmBus::Authenticate(const RawMessage& arrived) {
   using Verdict = Authenticator::Verdict;
   const auto now = std::chrono::steady_clock::now();
@@ -31,7 +31,7 @@ std::optional<int> UdpmBus::Authenticate(const RawMessage& arrived) {
   if (opened.verdict == Verdict::kPlain) return opened.size;
   if (opened.verdict == Verdict::kRefused) {
     RecordRefused(arrived);
-    // A sender that was merely slow still gets its chance.
+    // A sender that is merely slow still gets its chance.
     if (opened.session != 0) Ask(opened.session, now);
     return std::nullopt;
   }
@@ -45,7 +45,7 @@ std::optional<int> UdpmBus::Authenticate(const RawMessage& arrived) {
     return opened.size;
   }
   if (opened.verdict == Verdict::kAccepted) return opened.size;
-  if (all_ != nullptr && held_.size() < kMostHeld) {
+  if (all_ && held_.size() < kMostHeld) {
     held_.push_back({std::string(arrived.channel),
                      {arrived.data, arrived.data + arrived.size},
                      arrived.receive_utime,
@@ -65,14 +65,14 @@ void UdpmBus::Ask(int64_t session, TimePoint now) {
 }
 
 void UdpmBus::Record(const RawMessage& message) {
-  const size_t count = subscriptions_.size();
+  const size_t count = subscriptions_.size();  // a handler may subscribe
   for (size_t i = 0; i < count; ++i) {
     if (subscriptions_[i].type == nullptr) subscriptions_[i].raw(message);
   }
 }
 
 void UdpmBus::RecordRefused(const RawMessage& arrived) {
-  if (all_ == nullptr) return;
+  if (!all_) return;
   const std::string channel = kRefusedPrefix + std::string(arrived.channel);
   Record({channel, arrived.data, arrived.size, arrived.receive_utime});
 }

@@ -1,10 +1,9 @@
-// The bus over LCM UDP multicast: what separate processes talk over.
+// The bus over LCM UDP multicast, as far as it does not matter who takes the messages from the network:
+// encoding, seals, subscriptions and delivery. DirectUdpmBus and QueuedUdpmBus receive and send;
+// OpenUdpmBus() (open_udpm_bus.h) chooses.
 #pragma once
 
-#include <lcm/lcm.h>
-
 #include <deque>
-#include <exception>
 #include <memory>
 #include <optional>
 #include <string>
@@ -12,36 +11,13 @@
 
 #include "bus/bus.h"
 #include "bus/seal/authenticator.h"
-#include "bus/udpm/udpm_socket.h"
 
 namespace hydro::bus {
 
-// Asked of the kernel for a receiver's buffer where the URL says nothing: none lost up to 150,000 messages/s.
-inline constexpr int kReceiveBufferBytes = 4 << 20;
-
-// Who takes messages from the network.
-enum class Receiving {
-  // A thread of LCM's, into a queue without limit: for who may be busy with something else for long.
-  kQueued,
-  // The thread that calls HandleUntil(), as they come (udpm_socket.h): for loops, which wait for nothing
-  // else.
-  // Half the wake-ups, no allocation; what comes meanwhile waits in the kernel's receive buffer.
-  kDirect,
-};
-
-// Apply real-time scheduling (real_time.h) before constructing it: LCM's receiving thread inherits it.
-// Nothing is dropped here: a queue is unlimited, and the kernel's receive buffer is asked to be large.
 class UdpmBus : public Bus {
  public:
-  // `url` as in udpm_url.h, or "memq://" (private to this object). Proves that multicast works before it
-  // returns. Throws InputError for a bad URL and BusError, with the cure, where multicast does not work.
-  // With an `authenticator` the messages on its channels are sealed, and only genuine ones are delivered.
-  explicit UdpmBus(const std::string& url, std::unique_ptr<Authenticator> authenticator = nullptr,
-                   Receiving receiving = Receiving::kQueued);
-  ~UdpmBus() override;
-
-  // Does not pass on the messages by which LCM tests itself when a process starts. Those that were refused
-  // come as they arrived, on their channel with REFUSED_ before its name.
+  // Does not pass on the messages by which LCM tests itself when a process starts. Refused messages come as
+  // they arrived, on their channel with REFUSED_ before its name.
   void SubscribeAll(std::function<void(const RawMessage&)> handler) override;
   void PublishRaw(const std::string& channel, const void* data, int size) override;
 
@@ -54,30 +30,55 @@ class UdpmBus : public Bus {
     return authenticator_ != nullptr ? authenticator_->refused() : Bus::refused();
   }
 
-  // Bytes of receive buffer that the kernel gave (it counts its own bookkeeping as well); 0 for memq.
-  int receive_buffer_bytes() const { return receive_buffer_bytes_; }
+  // The kernel's receive buffer, in bytes: what was asked for, and what it gave (it counts its own
+  // bookkeeping as well). Both are 0 where there is no network.
+  struct ReceiveBuffer {
+    int asked = 0;
+    int given = 0;
+  };
+  int receive_buffer_bytes() const { return receive_buffer_.given; }
 
   // One line on how to allow a larger receive buffer; empty when it is large enough.
   std::string receive_buffer_hint() const;
 
  protected:
+  UdpmBus(std::unique_ptr<Authenticator> authenticator, ReceiveBuffer receive_buffer);
+
+  // What becomes of a message that waited.
+  enum class Outcome { kNoneWaited, kHandled, kPassedOver };
+
+  // Readable when a message waits.
+  virtual int fd() const = 0;
+
+  // Takes a message that waits and passes it to Deliver(). Never waits for one.
+  virtual Outcome HandleNext() = 0;
+
+  // False: errno says why not.
+  virtual bool Send(const std::string& channel, const void* data, int size) = 0;
+
+  // From now on messages on `channel`, or on all channels, are wanted. Called once for each channel, and no
+  // more once all are.
+  virtual void Listen(const std::string& channel) = 0;
+  virtual void ListenToAll() = 0;
+
+  // Calls the handlers of a message that has arrived, in the order of subscription, if it is genuine. Once
+  // for each message. A handler's exception leaves it.
+  Outcome Deliver(const RawMessage& arrived);
+
   void PublishTyped(const std::string& channel, const MessageType& type, const void* message) override;
   void SubscribeTyped(const std::string& channel, const MessageType& type,
                       std::function<void(const void*)> handler) override;
 
  private:
   struct Subscription {
-    UdpmBus* bus;
-    std::string channel;                // of a typed one
-    const MessageType* type = nullptr;  // null: raw
-    std::shared_ptr<void> message;      // what is decoded into, used again for each message
+    std::string channel;            // of a typed one
+    const MessageType* type;        // null: to all channels
+    std::shared_ptr<void> message;  // what is decoded into, used again for each message
     std::function<void(const void*)> typed;
     std::function<void(const RawMessage&)> raw;
-    bool own =
-        false;  // typed: LCM calls it itself, because it was there before the subscription to all channels
   };
 
-  // Genuine, for a SubscribeAll() handler, as soon as its sender has proved itself.
+  // Genuine: for SubscribeAll() handlers as soon as its sender has proved itself.
   struct HeldMessage {
     std::string channel;
     std::vector<uint8_t> data;
@@ -86,13 +87,9 @@ class UdpmBus : public Bus {
     TimePoint arrived;
   };
 
-  static void OnMessage(const lcm_recv_buf_t* buffer, const char* channel, void* subscription) noexcept;
-  void Deliver(const lcm_recv_buf_t& buffer, const char* channel, Subscription* subscription);
-  void DeliverTyped(const RawMessage& message, Subscription* subscription);
-  void AddSubscription(const std::string& pattern, Subscription* subscription);
-  bool HandleNext();
-  void Dispatch(const UdpmSocket::Message& message);
-  void Send(const std::string& channel, const void* data, int size);
+  void ListenOnce(const std::string& channel);
+  bool DeliverTyped(const RawMessage& message, Subscription* subscription);
+  void SendOrCount(const std::string& channel, const void* data, int size);
 
   // udpm_authentication.cc
   void StartIntroductions();
@@ -103,25 +100,18 @@ class UdpmBus : public Bus {
   void RecordHeld(int64_t session);
   void GiveUpHeld();
 
-  std::unique_ptr<UdpmSocket> socket_;  // of a direct one; else lcm_
-  lcm_t* lcm_ = nullptr;
-  int fd_ = -1;
-  int receive_buffer_bytes_ = 0;
-  int receive_buffer_asked_ = 0;
+  std::unique_ptr<Authenticator> authenticator_;  // null: without a key
+  ReceiveBuffer receive_buffer_;
+  std::deque<Subscription> subscriptions_;  // a handler may subscribe: those before it stay where they are
+  std::vector<std::string> channels_;       // that are listened to
+  bool all_ = false;                        // all are
+  std::vector<uint8_t> encoded_;            // used again for each message
   int64_t undecodable_ = 0;
   int64_t unsent_ = 0;
   bool handling_ = false;
-  bool delivered_ = false;        // the message in hand reached a handler
-  std::exception_ptr exception_;  // thrown by a handler, kept until LCM's C code is off the stack
-  std::deque<Subscription> subscriptions_;
-  Subscription* all_ = nullptr;   // the one that LCM knows as ".*"
-  std::vector<uint8_t> encoded_;  // used again for each message
 
-  std::unique_ptr<Authenticator> authenticator_;  // null: without a key
   bool introduced_ = false;
   std::deque<HeldMessage> held_;
-  bool opened_ = false;            // the message in hand has been looked at
-  std::optional<int> plain_size_;  // and what of it may be delivered
 };
 
 }  // namespace hydro::bus

@@ -1,7 +1,7 @@
-// LCM's UDP multicast, spoken on the thread that uses it.
+// LCM's UDP multicast protocol on the thread that uses it.
 //
-// liblcm receives on a thread of its own, which hands each message on through a queue and a pipe: two
-// wake-ups and some allocations per message. For a loop that answers a message, the wake-up is most of the
+// liblcm receives on a thread of its own, which passes each message on through a queue and a pipe: two
+// wake-ups and several allocations a message. For a loop that answers a message, the wake-up is most of the
 // round trip. Here the loop itself waits on the socket, the kernel's buffer is the queue, and nothing is
 // allocated.
 #pragma once
@@ -26,12 +26,12 @@ class UdpmSocket {
   UdpmSocket(const UdpmSocket&) = delete;
   UdpmSocket& operator=(const UdpmSocket&) = delete;
 
-  // What arrives on `channel`, of 1 to 63 bytes, is wanted; before the first call nothing is.
+  // Receives messages on `channel` (1 to 63 bytes) from now on; before the first call, none.
   void Accept(const std::string& channel);
   void AcceptAll();
 
-  // Sends one message, never waiting. False: errno says why not; ENOBUFS where a network is slower than what
-  // is sent on it.
+  // Sends a message without ever waiting. On false, errno says why; ENOBUFS when the network is slower than
+  // the sender.
   bool Send(std::string_view channel, const void* data, size_t size);
 
   // A received message; it lies in this object until the next call of Receive().
@@ -42,11 +42,11 @@ class UdpmSocket {
     int64_t receive_utime = 0;  // us since 1970-01-01 UTC, by the kernel's stamp
   };
 
-  // The next message that waits, whatever its channel. False: none does. What is not LCM's is skipped.
+  // Takes the next waiting message, whatever its channel; false when none waits. Skips what is not LCM's.
   // Throws BusError.
   bool Receive(Message* message);
 
-  int fd() const { return receiver_; }  // readable when something waits
+  int fd() const { return receiver_; }  // readable when a packet waits
 
  private:
   bool SendFragments(std::string_view channel, const uint8_t* data, size_t size);

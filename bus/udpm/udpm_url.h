@@ -1,4 +1,4 @@
-// The URL of an LCM network, read strictly (LCM itself ignores what it does not know).
+// The URL of an LCM network, read strictly (LCM itself ignores options that it does not know).
 #pragma once
 
 #include <cstdint>
@@ -9,14 +9,14 @@ namespace hydro::bus {
 struct UdpmUrl {
   std::string group = "239.255.76.67";  // IPv4 multicast address
   uint16_t port = 7667;
-  int ttl = 0;            // routers that a packet may cross; 0: stays on this machine, 1: the local network
+  int ttl = 0;            // time to live; 0: a packet stays on this machine, 1: on the local network
   int recv_buf_size = 0;  // bytes asked for the kernel's receive buffer; 0: not given
 
   std::string ToString() const;
 };
 
-// Reads "udpm://GROUP:PORT?ttl=N&recv_buf_size=N"; group, port and options may be left out.
-// Throws InputError that names `text`, what is wrong with it, and an example.
+// Reads "udpm://GROUP:PORT?ttl=N&recv_buf_size=N"; group, port and options may be left out. Throws InputError
+// that names `text`, what is wrong with it, and an example.
 UdpmUrl ParseUdpmUrl(const std::string& text);
 
 }  // namespace hydro::bus

@@ -15,12 +15,12 @@ namespace {
 class Recording {
  public:
   void Take(const bus::RawMessage& message) {
-    Keep(message, channels_.state, log_.messages.states) ||
-        Keep(message, channels_.motor_command, log_.messages.motor_commands) ||
-        Keep(message, channels_.pressure_command, log_.messages.pressure_commands) ||
-        Keep(message, channels_.arm_reference, log_.messages.arm_references) ||
-        Keep(message, channels_.fault, log_.messages.faults) ||
-        Keep(message, channels_.run, log_.descriptions);
+    Keep(message, channels_.Of<state_t>(), log_.messages.states) ||
+        Keep(message, channels_.Of<motor_command_t>(), log_.messages.motor_commands) ||
+        Keep(message, channels_.Of<pressure_command_t>(), log_.messages.pressure_commands) ||
+        Keep(message, channels_.Of<arm_reference_t>(), log_.messages.arm_references) ||
+        Keep(message, channels_.Of<fault_t>(), log_.messages.faults) ||
+        Keep(message, channels_.Of<run_description_t>(), log_.descriptions);
   }
   const runs::RunLog& log() const { return log_; }
   runs::RunLog& log() { return log_; }

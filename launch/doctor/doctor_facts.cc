@@ -18,7 +18,7 @@
 
 #include "bus/channels.h"
 #include "bus/udpm/multicast_self_test.h"
-#include "bus/udpm/udpm_bus.h"
+#include "bus/udpm/open_udpm_bus.h"
 
 namespace hydro::launch {
 namespace {
@@ -135,17 +135,17 @@ void ReadClock(MachineFacts* facts) {
 
 // Names the processes that report on their loops. Their messages may end with a seal (a stack with a key).
 void Listen(const DoctorTask& task, MachineFacts* facts) {
-  const std::string statistics = bus::Channels().loop_statistics;
+  const std::string statistics = bus::Channels().Of<loop_statistics_t>();
   std::map<std::string, std::set<std::string>> stacks;
-  bus::UdpmBus bus(task.url.ToString());
-  bus.SubscribeAll([&](const bus::RawMessage& message) {
+  const auto bus = bus::OpenUdpmBus(task.url.ToString());
+  bus->SubscribeAll([&](const bus::RawMessage& message) {
     if (!message.channel.starts_with("HYDRO_")) ++facts->other_messages;
     loop_statistics_t report;
     if (!message.channel.starts_with(statistics) || report.decode(message.data, 0, message.size) < 0) return;
     stacks[std::string(message.channel.substr(statistics.size()))].insert(report.role + " on " + report.host);
   });
   const auto until = std::chrono::steady_clock::now() + kListenTime;
-  while (std::chrono::steady_clock::now() < until) bus.HandleUntil(until);
+  while (std::chrono::steady_clock::now() < until) bus->HandleUntil(until);
   facts->listened_s = std::chrono::duration<double>(kListenTime).count();
   for (const auto& [suffix, processes] : stacks) {
     facts->stacks.push_back({suffix, {processes.begin(), processes.end()}});

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "bus/udpm/udpm_bus.h"
+#include "bus/udpm/open_udpm_bus.h"
 #include "tests/free_udp_port.h"
 
 namespace hydro::bus {
@@ -27,8 +27,12 @@ std::unique_ptr<Authenticator> MakeOne(uint8_t key_byte) {
                                          std::vector<std::string>{"INTRODUCTION", kCommand, "SECOND"});
 }
 
-class AuthenticatedBusTest : public testing::Test {
+class AuthenticatedBusTest : public testing::TestWithParam<Receiving> {
  protected:
+  // Of a process with that key; 0: without one.
+  UdpmBus& Open(uint8_t key_byte = 0) {
+    return *opened_.emplace_back(OpenUdpmBus(url_, key_byte == 0 ? nullptr : MakeOne(key_byte), GetParam()));
+  }
   template <class Done>
   static void HandleWhileNot(const std::vector<UdpmBus*>& buses, Done done) {
     const auto give_up = std::chrono::steady_clock::now() + 10s;
@@ -57,11 +61,18 @@ class AuthenticatedBusTest : public testing::Test {
 
   std::string url_ = FreeBusUrl();
   std::vector<int64_t> ticks_;
+  std::vector<std::unique_ptr<UdpmBus>> opened_;
 };
 
+INSTANTIATE_TEST_SUITE_P(Transports, AuthenticatedBusTest,
+                         testing::Values(Receiving::kQueued, Receiving::kDirect),
+                         [](const testing::TestParamInfo<Receiving>& param) {
+                           return param.param == Receiving::kQueued ? "Queued" : "Direct";
+                         });
+
 // Tests that commands arrive, once and in order, and that an intruder's are refused and counted between them.
-TEST_F(AuthenticatedBusTest, IntruderIsRefused) {
-  UdpmBus plant(url_, MakeOne(1)), loop(url_, MakeOne(1)), stranger(url_, MakeOne(2)), intruder(url_);
+TEST_P(AuthenticatedBusTest, IntruderIsRefused) {
+  UdpmBus &plant = Open(1), &loop = Open(1), &stranger = Open(2), &intruder = Open();
   Follow(plant);
   loop.Subscribe<motor_command_t>("SECOND", [](const motor_command_t&) {});
   stranger.Subscribe<motor_command_t>("SECOND", [](const motor_command_t&) {});
@@ -85,8 +96,8 @@ TEST_F(AuthenticatedBusTest, IntruderIsRefused) {
 }
 
 // Tests that every subscriber of a channel gets a message though it counts once.
-TEST_F(AuthenticatedBusTest, EverySubscriberIsServed) {
-  UdpmBus plant(url_, MakeOne(1)), loop(url_, MakeOne(1));
+TEST_P(AuthenticatedBusTest, EverySubscriberIsServed) {
+  UdpmBus &plant = Open(1), &loop = Open(1);
   std::vector<std::string> calls;
   plant.Subscribe<motor_command_t>(kCommand, [&](const motor_command_t&) { calls.push_back("first"); });
   Follow(plant);
@@ -102,15 +113,15 @@ TEST_F(AuthenticatedBusTest, EverySubscriberIsServed) {
 
 // Tests that what is recorded is the plain message, that the first of a new sender are in the record though
 // they came before its introduction, and that what was refused is there under another name.
-TEST_F(AuthenticatedBusTest, RecordsPlainMessages) {
-  UdpmBus logger(url_, MakeOne(1)), intruder(url_);
+TEST_P(AuthenticatedBusTest, RecordsPlainMessages) {
+  UdpmBus &logger = Open(1), &intruder = Open();
   std::vector<std::string> record;
   logger.SubscribeAll([&](const RawMessage& message) {
     motor_command_t command{};
     if (command.decode(message.data, 0, message.size) != message.size) return;
     record.push_back(std::string(message.channel) + " " + std::to_string(command.tick));
   });
-  UdpmBus loop(url_, MakeOne(1));
+  UdpmBus& loop = Open(1);
   loop.Subscribe<motor_command_t>("SECOND", [](const motor_command_t&) {});
   for (int64_t tick = 0; tick < 3; ++tick) loop.Publish(kCommand, CommandOf(tick));
   intruder.Publish(kCommand, CommandOf(100));
@@ -122,14 +133,14 @@ TEST_F(AuthenticatedBusTest, RecordsPlainMessages) {
 
 // Tests that a recording, sealed messages and all, is not obeyed by who starts later, and is in the record as
 // refused.
-TEST_F(AuthenticatedBusTest, RecordingIsRefused) {
+TEST_P(AuthenticatedBusTest, RecordingIsRefused) {
   std::vector<std::pair<std::string, std::vector<uint8_t>>> recording;
   {
-    UdpmBus wire(url_);  // without a key: as it comes
+    UdpmBus& wire = Open();  // without a key: as it comes
     wire.SubscribeAll([&](const RawMessage& message) {
       recording.push_back({std::string(message.channel), {message.data, message.data + message.size}});
     });
-    UdpmBus plant(url_, MakeOne(1)), loop(url_, MakeOne(1));
+    UdpmBus &plant = Open(1), &loop = Open(1);
     Follow(plant);
     loop.Subscribe<motor_command_t>("SECOND", [](const motor_command_t&) {});
     Meet(loop, {&plant, &loop, &wire});
@@ -138,9 +149,10 @@ TEST_F(AuthenticatedBusTest, RecordingIsRefused) {
     ASSERT_EQ(ticks_.size(), 19u);
     HandleWhileNot({&wire}, [quiet = 0]() mutable { return ++quiet > 10; });
   }
+  opened_.clear();
   ASSERT_GT(recording.size(), 22u);
   ticks_.clear();
-  UdpmBus plant(url_, MakeOne(1)), player(url_);
+  UdpmBus &plant = Open(1), &player = Open();
   int refused = 0;
   plant.SubscribeAll([&](const RawMessage& message) { refused += message.channel == "REFUSED_COMMAND"; });
   Follow(plant);

@@ -293,12 +293,8 @@ TEST(AuthenticatorTest, ManyUnknownSenders) {
 TEST(AuthenticatedChannelsTest, AreAll) {
   const Channels channels(std::string(32, 'x'));
   const std::vector<std::string> table = AuthenticatedChannels(channels);
-  EXPECT_EQ(table.front(), channels.introduction);
-  EXPECT_THAT(table, testing::UnorderedElementsAre(
-                         channels.state, channels.motor_command, channels.pressure_command,
-                         channels.arm_reference, channels.run, channels.loop_statistics,
-                         channels.loop_histogram, channels.fault, channels.stop, channels.rearm,
-                         channels.process_status, channels.log_progress, channels.introduction));
+  EXPECT_EQ(table.front(), channels.Of<introduction_t>());
+  EXPECT_THAT(table, testing::UnorderedElementsAreArray(channels.names()));
   for (const std::string& channel : table) EXPECT_LE(("REFUSED_" + channel).size(), 63u);
 }
 

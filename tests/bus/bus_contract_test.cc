@@ -10,7 +10,7 @@
 
 #include "bus/channels.h"
 #include "bus/in_process_bus.h"
-#include "bus/udpm/udpm_bus.h"
+#include "bus/udpm/open_udpm_bus.h"
 #include "hydro/motor_command_t.hpp"
 #include "hydro/run_description_t.hpp"
 #include "hydro/state_t.hpp"
@@ -225,12 +225,12 @@ TEST_P(BusContractTest, ChannelNamesAreNotPatterns) {
 TEST_P(BusContractTest, SuffixesSeparate) {
   const Channels one, two("_2");
   std::vector<std::string> seen;
-  bus_->Subscribe<state_t>(one.state,
+  bus_->Subscribe<state_t>(one.Of<state_t>(),
                            [&](const state_t& s) { seen.push_back("one " + std::to_string(s.tick)); });
-  bus_->Subscribe<state_t>(two.state,
+  bus_->Subscribe<state_t>(two.Of<state_t>(),
                            [&](const state_t& s) { seen.push_back("two " + std::to_string(s.tick)); });
-  SendStates(one.state, 1);
-  SendStates(two.state, 2);
+  SendStates(one.Of<state_t>(), 1);
+  SendStates(two.Of<state_t>(), 2);
   HandleWhileNot([&] { return seen.size() >= 3; });
   HandleRest();
   EXPECT_THAT(seen, ElementsAre("one 0", "two 0", "two 1"));
@@ -300,6 +300,11 @@ TEST_P(BusContractTest, HandleUntilDoesNotNest) {
   EXPECT_TRUE(thrown);
 }
 
+std::unique_ptr<Authenticator> MakeKeyed() {
+  return std::make_unique<Authenticator>(
+      BusKey({}), std::vector<std::string>{kIntroductions, "STATE", "COMMAND", "PING", "RUN"});
+}
+
 INSTANTIATE_TEST_SUITE_P(
     Transports, BusContractTest,
     testing::Values(
@@ -307,19 +312,14 @@ INSTANTIATE_TEST_SUITE_P(
                   [](SimulatedClock* clock) { return std::make_unique<InProcessBus>(clock); }},
         Transport{"InProcessWall", false,
                   [](SimulatedClock*) { return std::make_unique<InProcessBus>(nullptr); }},
-        Transport{"Udpm", false, [](SimulatedClock*) { return std::make_unique<UdpmBus>(FreeBusUrl()); }},
+        Transport{"Udpm", false, [](SimulatedClock*) { return OpenUdpmBus(FreeBusUrl()); }},
         Transport{"UdpmWithKey", false,
-                  [](SimulatedClock*) {
-                    auto authenticator = std::make_unique<Authenticator>(
-                        BusKey({}),
-                        std::vector<std::string>{kIntroductions, "STATE", "COMMAND", "PING", "RUN"});
-                    return std::make_unique<UdpmBus>(FreeBusUrl(), std::move(authenticator));
-                  }},
+                  [](SimulatedClock*) { return OpenUdpmBus(FreeBusUrl(), MakeKeyed()); }},
         Transport{"UdpmDirect", false,
-                  [](SimulatedClock*) {
-                    return std::make_unique<UdpmBus>(FreeBusUrl(), nullptr, Receiving::kDirect);
-                  }},
-        Transport{"Memq", false, [](SimulatedClock*) { return std::make_unique<UdpmBus>("memq://"); }}),
+                  [](SimulatedClock*) { return OpenUdpmBus(FreeBusUrl(), nullptr, Receiving::kDirect); }},
+        Transport{"UdpmDirectWithKey", false,
+                  [](SimulatedClock*) { return OpenUdpmBus(FreeBusUrl(), MakeKeyed(), Receiving::kDirect); }},
+        Transport{"Memq", false, [](SimulatedClock*) { return OpenUdpmBus("memq://"); }}),
     [](const testing::TestParamInfo<Transport>& param) { return param.param.name; });
 
 }  // namespace

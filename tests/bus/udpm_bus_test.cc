@@ -1,5 +1,3 @@
-#include "bus/udpm/udpm_bus.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sched.h>
@@ -8,9 +6,12 @@
 #include <unistd.h>
 
 #include <csignal>
+#include <memory>
+#include <vector>
 
 #include "base/input_error.h"
 #include "bus/udpm/multicast_self_test.h"
+#include "bus/udpm/open_udpm_bus.h"
 #include "hydro/state_t.hpp"
 #include "tests/free_udp_port.h"
 
@@ -22,10 +23,26 @@ using testing::HasSubstr;
 
 Bus::TimePoint Soon(std::chrono::nanoseconds delay) { return std::chrono::steady_clock::now() + delay; }
 
+// What holds whoever takes the messages from the network.
+class UdpmBusTest : public testing::TestWithParam<Receiving> {
+ protected:
+  UdpmBus& Open(const std::string& url) {
+    return *opened_.emplace_back(OpenUdpmBus(url, nullptr, GetParam()));
+  }
+
+ private:
+  std::vector<std::unique_ptr<UdpmBus>> opened_;
+};
+
+INSTANTIATE_TEST_SUITE_P(Transports, UdpmBusTest, testing::Values(Receiving::kQueued, Receiving::kDirect),
+                         [](const testing::TestParamInfo<Receiving>& param) {
+                           return param.param == Receiving::kQueued ? "Queued" : "Direct";
+                         });
+
 // Tests that two buses on one port hear each other and one on another port hears neither, in the same group.
-TEST(UdpmBusTest, PortsSeparate) {
+TEST_P(UdpmBusTest, PortsSeparate) {
   const std::string url = FreeBusUrl();
-  UdpmBus one(url), two(url), other(FreeBusUrl());
+  UdpmBus &one = Open(url), &two = Open(url), &other = Open(FreeBusUrl());
   int heard = 0;
   int others_heard = 0;
   two.Subscribe<state_t>("STATE", [&](const state_t&) { ++heard; });
@@ -38,12 +55,12 @@ TEST(UdpmBusTest, PortsSeparate) {
 }
 
 // Tests that the self tests of processes that start are not passed on as messages.
-TEST(UdpmBusTest, SelfTestsAreNotMessages) {
+TEST_P(UdpmBusTest, SelfTestsAreNotMessages) {
   const std::string url = FreeBusUrl();
-  UdpmBus bus(url);
+  UdpmBus& bus = Open(url);
   std::vector<std::string> seen;
   bus.SubscribeAll([&](const RawMessage& message) { seen.emplace_back(message.channel); });
-  UdpmBus late(url);
+  UdpmBus& late = Open(url);
   late.Publish("STATE", state_t{});
   EXPECT_EQ(bus.HandleUntil(Soon(10s)), 1);
   EXPECT_THAT(seen, testing::ElementsAre("STATE"));
@@ -52,30 +69,30 @@ TEST(UdpmBusTest, SelfTestsAreNotMessages) {
 // Tests that nothing is dropped before it is handled, however many messages wait (LCM's own default is 30).
 // The sender hears itself too, which tells when a batch has crossed the network: the kernel's buffer, whose
 // size is not ours, never has to hold more than one batch.
-TEST(UdpmBusTest, QueueIsUnlimited) {
+TEST(OpenUdpmBusTest, QueueIsUnlimited) {
   const std::string url = FreeBusUrl();
-  UdpmBus sender(url), receiver(url);
+  const auto sender = OpenUdpmBus(url), receiver = OpenUdpmBus(url);
   int64_t sent = 0, crossed = 0, received = 0;
   const auto give_up = Soon(10s);
-  sender.Subscribe<state_t>("STATE", [&](const state_t&) { ++crossed; });
-  receiver.Subscribe<state_t>("STATE", [&](const state_t& state) { EXPECT_EQ(state.tick, received++); });
+  sender->Subscribe<state_t>("STATE", [&](const state_t&) { ++crossed; });
+  receiver->Subscribe<state_t>("STATE", [&](const state_t& state) { EXPECT_EQ(state.tick, received++); });
   while (sent < 10'000 && std::chrono::steady_clock::now() < give_up) {
     for (int i = 0; i < 50; ++i) {
       state_t state{};
       state.tick = sent++;
-      sender.Publish("STATE", state);
+      sender->Publish("STATE", state);
     }
-    while (crossed < sent && std::chrono::steady_clock::now() < give_up) sender.HandleUntil(Soon(100ms));
+    while (crossed < sent && std::chrono::steady_clock::now() < give_up) sender->HandleUntil(Soon(100ms));
   }
-  while (received < sent && std::chrono::steady_clock::now() < give_up) receiver.HandleUntil(Soon(100ms));
+  while (received < sent && std::chrono::steady_clock::now() < give_up) receiver->HandleUntil(Soon(100ms));
   EXPECT_EQ(received, 10'000);
 }
 
 void OnAlarm(int) {}
 
 // Tests that a signal ends HandleUntil() early with 0, so that a main can look at its stop flag.
-TEST(UdpmBusTest, SignalEndsTheWait) {
-  UdpmBus bus(FreeBusUrl());
+TEST_P(UdpmBusTest, SignalEndsTheWait) {
+  UdpmBus& bus = Open(FreeBusUrl());
   struct sigaction action {};
   action.sa_handler = OnAlarm;
   sigaction(SIGALRM, &action, nullptr);
@@ -90,8 +107,8 @@ TEST(UdpmBusTest, SignalEndsTheWait) {
 }
 
 // Tests that a channel name that LCM cannot carry is refused, to send on and to listen to.
-TEST(UdpmBusTest, RefusesImpossibleChannels) {
-  UdpmBus bus(FreeBusUrl());
+TEST_P(UdpmBusTest, RefusesImpossibleChannels) {
+  UdpmBus& bus = Open(FreeBusUrl());
   EXPECT_NO_THROW(bus.Publish(std::string(63, 'c'), state_t{}));
   EXPECT_THROW(bus.Publish(std::string(64, 'c'), state_t{}), BusError);
   EXPECT_THROW(bus.Publish("", state_t{}), BusError);
@@ -100,23 +117,23 @@ TEST(UdpmBusTest, RefusesImpossibleChannels) {
 }
 
 // Tests that a bad URL is an input error, before anything is opened.
-TEST(UdpmBusTest, BadUrlIsAnInputError) {
-  EXPECT_THROW(UdpmBus("udp://239.255.76.67:7667"), InputError);
-  EXPECT_THROW(UdpmBus("udpm://10.0.0.1:7667"), InputError);
+TEST(OpenUdpmBusTest, BadUrlIsAnInputError) {
+  EXPECT_THROW(OpenUdpmBus("udp://239.255.76.67:7667"), InputError);
+  EXPECT_THROW(OpenUdpmBus("udpm://10.0.0.1:7667"), InputError);
 }
 
 // Tests that a small receive buffer is reported with the way to a larger one, and a sufficient one is not.
-TEST(UdpmBusTest, ReportsTheReceiveBuffer) {
-  UdpmBus small(FreeBusUrl() + "&recv_buf_size=8192");
+TEST_P(UdpmBusTest, ReportsTheReceiveBuffer) {
+  UdpmBus& small = Open(FreeBusUrl() + "&recv_buf_size=8192");
   EXPECT_GE(small.receive_buffer_bytes(), 8192);
   EXPECT_EQ(small.receive_buffer_hint(), "");
-  UdpmBus huge(FreeBusUrl() + "&recv_buf_size=1073741824");  // no machine allows this much
+  UdpmBus& huge = Open(FreeBusUrl() + "&recv_buf_size=1073741824");  // no machine allows this much
   EXPECT_GT(huge.receive_buffer_bytes(), 0);
   EXPECT_THAT(huge.receive_buffer_hint(), HasSubstr("sysctl -w net.core.rmem_max=1073741824"));
 }
 
 // Tests that a port which another program holds alone is named as such.
-TEST(UdpmBusTest, TakenPortIsABusError) {
+TEST(OpenUdpmBusTest, TakenPortIsABusError) {
   const int fd = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
   sockaddr_in address{};
   address.sin_family = AF_INET;
@@ -124,7 +141,7 @@ TEST(UdpmBusTest, TakenPortIsABusError) {
   ASSERT_EQ(bind(fd, reinterpret_cast<sockaddr*>(&address), length), 0);
   ASSERT_EQ(getsockname(fd, reinterpret_cast<sockaddr*>(&address), &length), 0);
   try {
-    UdpmBus bus("udpm://239.255.76.67:" + std::to_string(ntohs(address.sin_port)));
+    OpenUdpmBus("udpm://239.255.76.67:" + std::to_string(ntohs(address.sin_port)));
     ADD_FAILURE() << "the port was accepted";
   } catch (const BusError& error) {
     EXPECT_THAT(error.what(), HasSubstr("choose another port"));
@@ -134,13 +151,13 @@ TEST(UdpmBusTest, TakenPortIsABusError) {
 
 // Tests that a machine without a multicast route gives one line with the cure. In a child process, which
 // moves into a network namespace of its own that has no route at all.
-TEST(UdpmBusTest, NoRouteIsABusErrorWithTheCure) {
+TEST(OpenUdpmBusTest, NoRouteIsABusErrorWithTheCure) {
   const pid_t child = fork();
   ASSERT_GE(child, 0);
   if (child == 0) {
     if (unshare(CLONE_NEWNET) != 0 && unshare(CLONE_NEWUSER | CLONE_NEWNET) != 0) _exit(77);
     try {
-      UdpmBus bus("udpm://239.255.76.67:7667?ttl=0");
+      OpenUdpmBus("udpm://239.255.76.67:7667?ttl=0");
     } catch (const BusError& error) {
       const std::string what = error.what();
       const bool good =
@@ -159,7 +176,7 @@ TEST(UdpmBusTest, NoRouteIsABusErrorWithTheCure) {
 
 // Tests that a group from which nothing comes back is noticed within the timeout and named: sent to one port,
 // awaited for no time at all.
-TEST(UdpmBusTest, SilenceIsABusError) {
+TEST(OpenUdpmBusTest, SilenceIsABusError) {
   UdpmUrl url;
   url.port = static_cast<uint16_t>(FreeUdpPort());
   try {

@@ -1,26 +1,21 @@
+#include "bus/messages.h"
+
 #include <algorithm>
 #include <array>
 #include <vector>
 
 #include "bus/seal/authenticated_channels.h"
 #include "bus/seal/authenticator.h"
-#include "hydro/arm_reference_t.hpp"
-#include "hydro/fault_t.hpp"
-#include "hydro/introduction_t.hpp"
-#include "hydro/log_progress_t.hpp"
-#include "hydro/loop_histogram_t.hpp"
-#include "hydro/loop_statistics_t.hpp"
-#include "hydro/motor_command_t.hpp"
-#include "hydro/pressure_command_t.hpp"
-#include "hydro/process_status_t.hpp"
-#include "hydro/run_description_t.hpp"
-#include "hydro/state_t.hpp"
-#include "hydro/stop_t.hpp"
 #include "tests/fuzz/promise.h"
 #include "tests/fuzz/targets.h"
 
 namespace hydro::fuzz {
 namespace {
+
+template <class Message>
+const bus::MessageType& TypeOf(const bus::MessageRow<Message>&) {
+  return bus::TypeOf<Message>();
+}
 
 // What decodes is a message: its encoding decodes too, and to the same bytes, but for what stands behind a
 // zero byte in a string, which LCM's encoder leaves out.
@@ -41,7 +36,7 @@ void Decode(const bus::MessageType& type, const uint8_t* data, int size) {
 void Authenticate(const uint8_t* data, int size) {
   static const bus::Channels channels;
   bus::Authenticator receiver(bus::BusKey({1, 2, 3}), bus::AuthenticatedChannels(channels));
-  const auto opened = receiver.Open(channels.motor_command, data, size, {});
+  const auto opened = receiver.Open(channels.Of<motor_command_t>(), data, size, {});
   Promise(opened.verdict == bus::Authenticator::Verdict::kRefused, "what nobody sealed is refused");
   Promise(bus::SizeWithoutSeal(data, size) <= size && bus::SizeWithoutSeal(data, size) >= 0,
           "a seal is in the message");
@@ -51,11 +46,8 @@ void Authenticate(const uint8_t* data, int size) {
 
 void Messages(const uint8_t* data, size_t size) {
   if (size == 0) return;
-  static const std::array<const bus::MessageType*, 12> kTypes = {
-      &bus::TypeOf<state_t>(),           &bus::TypeOf<motor_command_t>(), &bus::TypeOf<pressure_command_t>(),
-      &bus::TypeOf<arm_reference_t>(),   &bus::TypeOf<fault_t>(),         &bus::TypeOf<stop_t>(),
-      &bus::TypeOf<process_status_t>(),  &bus::TypeOf<log_progress_t>(),  &bus::TypeOf<run_description_t>(),
-      &bus::TypeOf<loop_statistics_t>(), &bus::TypeOf<introduction_t>(),  &bus::TypeOf<loop_histogram_t>()};
+  static const auto kTypes =
+      std::apply([](const auto&... row) { return std::array{&TypeOf(row)...}; }, bus::kMessages);
   const bus::MessageType& type = *kTypes[data[0] % kTypes.size()];
   // The type's own hash in front, or no input would get past it; the first bit says otherwise.
   std::vector<uint8_t> bytes;

@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "bus/channels.h"
 #include "bus/in_process_bus.h"
-#include "hydro/log_progress_t.hpp"
 #include "launch/stack_watch.h"
 #include "logger/logger_app.h"
 #include "plant/roll_call.h"
@@ -45,34 +45,27 @@ class Input {
   size_t left_;
 };
 
-// Each message: a byte for the channel, one for the time since the one before, one for the size, and its
-// fields (the type's hash goes before them). `poll` is called after each.
+// Each message: a byte for its row in the table of messages, one for the time since the one before, one for
+// the size, and its fields (the type's hash goes before them). Those of `left_out` are not sent. `poll` is
+// called after each.
 template <class Poll>
-void Feed(Input& input, bus::InProcessBus& bus, bus::SimulatedClock& clock, Poll poll) {
-  struct Place {
-    const std::string* channel;
-    int64_t hash;
-  };
+void Feed(Input& input, bus::InProcessBus& bus, bus::SimulatedClock& clock, std::optional<size_t> left_out,
+          Poll poll) {
   static const bus::Channels channels;
-  static const std::array<Place, 8> places = {{{&channels.state, state_t::getHash()},
-                                               {&channels.pressure_command, pressure_command_t::getHash()},
-                                               {&channels.process_status, process_status_t::getHash()},
-                                               {&channels.stop, stop_t::getHash()},
-                                               {&channels.fault, fault_t::getHash()},
-                                               {&channels.loop_statistics, loop_statistics_t::getHash()},
-                                               {&channels.log_progress, log_progress_t::getHash()},
-                                               {&channels.arm_reference, arm_reference_t::getHash()}}};
+  static const auto hashes = std::apply(
+      [](const auto&... row) { return std::array{std::remove_cvref_t<decltype(row)>::Type::getHash()...}; },
+      bus::kMessages);
   for (size_t count = 0; input.left() > 0 && count < kMostMessages; ++count) {
-    const Place& place = places[input.Byte() % places.size()];
+    const size_t row = input.Byte() % hashes.size();
     clock.AdvanceTo(clock.Now() + std::chrono::milliseconds(input.Byte()));
     std::vector<uint8_t> bytes;
     for (int shift = 56; shift >= 0; shift -= 8) {
-      bytes.push_back(static_cast<uint8_t>(static_cast<uint64_t>(place.hash) >> shift));
+      bytes.push_back(static_cast<uint8_t>(static_cast<uint64_t>(hashes[row]) >> shift));
     }
     const size_t length = input.Byte();
     const std::vector<uint8_t> fields = input.Take(length);
     bytes.insert(bytes.end(), fields.begin(), fields.end());
-    bus.PublishRaw(*place.channel, bytes.data(), static_cast<int>(bytes.size()));
+    if (row != left_out) bus.PublishRaw(channels.names()[row], bytes.data(), static_cast<int>(bytes.size()));
     for (int turn = 0; turn < 5 && bus.HandleUntil(clock.Now()) > 0; ++turn) {
     }
     poll();
@@ -101,13 +94,13 @@ void Processes(const uint8_t* data, size_t size) {
   position_ctrl::PositionApp position(bus, clock, config);
   launch::StackWatch watch(bus, clock, channels);
   plant::RollCall roll_call({"pressure_ctrl"});
-  bus.Subscribe<process_status_t>(channels.process_status,
+  bus.Subscribe<process_status_t>(channels.Of<process_status_t>(),
                                   [&](const process_status_t& status) { roll_call.Observe(status); });
-  bus.Subscribe<motor_command_t>(channels.motor_command, [&](const motor_command_t& command) {
-    // Nobody but the loop sends any here.
+  bus.Subscribe<motor_command_t>(channels.Of<motor_command_t>(), [&](const motor_command_t& command) {
     Promise(std::abs(command.voltage) <= most_volts, "voltages are within what the amplifier takes");
   });
-  Feed(input, bus, clock, [&] {
+  // Nobody but the loop under test sends motor commands here.
+  Feed(input, bus, clock, bus::MessageIndex<motor_command_t>(), [&] {
     pressure.Poll();
     position.Poll();
   });
@@ -125,7 +118,7 @@ void Recorder(const uint8_t* data, size_t size) {
   clock.AdvanceTo(bus::Clock::TimePoint(std::chrono::hours(1)));
   bus::InProcessBus bus(&clock);
   logger::LoggerApp logger(bus, clock, Config(input), {"/dev/null"});
-  Feed(input, bus, clock, [&] { logger.Poll(); });
+  Feed(input, bus, clock, std::nullopt, [&] { logger.Poll(); });
 }
 
 }  // namespace hydro::fuzz

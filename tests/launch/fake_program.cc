@@ -34,7 +34,7 @@
 #include "bus/channels.h"
 #include "bus/clock.h"
 #include "bus/session.h"
-#include "bus/udpm/udpm_bus.h"
+#include "bus/udpm/open_udpm_bus.h"
 
 namespace hydro::launch {
 namespace {
@@ -89,11 +89,12 @@ class FakeProgram {
 
   bus::Bus& bus() {
     if (!bus_) {
-      bus_ = std::make_unique<bus::UdpmBus>(std::getenv("HYDRO_FAKE_URL"));
-      bus_->Subscribe<stop_t>(channels_.stop, [this](const stop_t& stop) { stop_ = stop.reason; });
-      bus_->Subscribe<process_status_t>(channels_.process_status, [this](const process_status_t& status) {
-        if (status.role != role_) ready_.insert(status.role);
-      });
+      bus_ = bus::OpenUdpmBus(std::getenv("HYDRO_FAKE_URL"));
+      bus_->Subscribe<stop_t>(channels_.Of<stop_t>(), [this](const stop_t& stop) { stop_ = stop.reason; });
+      bus_->Subscribe<process_status_t>(channels_.Of<process_status_t>(),
+                                        [this](const process_status_t& status) {
+                                          if (status.role != role_) ready_.insert(status.role);
+                                        });
     }
     return *bus_;
   }
@@ -111,7 +112,7 @@ class FakeProgram {
                    : name == "done"    ? process_status_t::DONE
                                        : process_status_t::FAILED;
     status.text = text;
-    bus().Publish(channels_.process_status, status);
+    bus().Publish(channels_.Of<process_status_t>(), status);
     status_ = name;
   }
 
@@ -126,7 +127,7 @@ class FakeProgram {
     report.latency_max_us = 345;
     report.missed_deadlines = 7;
     report.lost_messages = 3;
-    bus().Publish(channels_.loop_statistics, report);
+    bus().Publish(channels_.Of<loop_statistics_t>(), report);
   }
 
   void PublishFault(const std::string& code, bool active) {
@@ -136,7 +137,7 @@ class FakeProgram {
     fault.code = code;
     fault.text = "p1 is 2100 psi, allowed are 2000 psi";
     fault.active = active;
-    bus().Publish(channels_.fault, fault);
+    bus().Publish(channels_.Of<fault_t>(), fault);
   }
 
   void PublishStop(int code, const std::string& reason) {
@@ -145,7 +146,7 @@ class FakeProgram {
     stop.source = role_;
     stop.reason = reason;
     stop.exit_code = code;
-    bus().Publish(channels_.stop, stop);
+    bus().Publish(channels_.Of<stop_t>(), stop);
   }
 
   // A program that is heavy on output: pieces of lines, on both streams in turn.

@@ -161,7 +161,7 @@ inline void WriteRun(const std::string& file, const runs::RunMessages& run, cons
   description.host = "bench";
   description.rate_hz = 1000;
   description.seed = 7;
-  writer.AppendMessage(channels.run, description, 0);
+  writer.AppendMessage(channels.Of<run_description_t>(), description, 0);
   const auto append_tick = [&writer](const std::string& channel, const auto& messages, int64_t tick) {
     for (const auto& message : messages) {
       if (message.tick == tick) writer.AppendMessage(channel, message, 1000 * tick);
@@ -170,11 +170,11 @@ inline void WriteRun(const std::string& file, const runs::RunMessages& run, cons
   int64_t last = 0;
   for (const state_t& state : run.states) last = std::max(last, state.tick);
   for (int64_t tick = -1; tick <= last; ++tick) {
-    append_tick(channels.state, run.states, tick);
-    append_tick(channels.pressure_command, run.pressure_commands, tick);
-    append_tick(channels.arm_reference, run.arm_references, tick);
-    append_tick(channels.motor_command, run.motor_commands, tick);
-    append_tick(channels.fault, run.faults, tick);
+    append_tick(channels.Of<state_t>(), run.states, tick);
+    append_tick(channels.Of<pressure_command_t>(), run.pressure_commands, tick);
+    append_tick(channels.Of<arm_reference_t>(), run.arm_references, tick);
+    append_tick(channels.Of<motor_command_t>(), run.motor_commands, tick);
+    append_tick(channels.Of<fault_t>(), run.faults, tick);
   }
   writer.Finish();
 }

@@ -22,7 +22,7 @@
 #include <thread>
 #include <vector>
 
-#include "bus/udpm/udpm_bus.h"
+#include "bus/udpm/open_udpm_bus.h"
 #include "plant/plant_app.h"
 #include "plant/simulated_rig.h"
 #include "position_ctrl/position_app.h"
@@ -44,7 +44,9 @@ constexpr auto kBegin = 1200ms, kEnd = 2700ms;
 class Loop {
  public:
   Loop(const std::string& url, std::function<void()> begin, std::function<void()> end)
-      : bus_(url, nullptr, bus::Receiving::kDirect), begin_(std::move(begin)), end_(std::move(end)) {}
+      : opened_(bus::OpenUdpmBus(url, nullptr, bus::Receiving::kDirect)),
+        begin_(std::move(begin)),
+        end_(std::move(end)) {}
 
   void RunPlant(const settings::StackConfig& config) {
     plant::SimulatedRig rig(config);
@@ -72,7 +74,8 @@ class Loop {
     }
   }
 
-  bus::UdpmBus bus_;
+  std::unique_ptr<bus::UdpmBus> opened_;
+  bus::UdpmBus& bus_ = *opened_;
   bus::WallClock clock_;
   std::function<void()> begin_, end_;
   std::optional<bus::Clock::TimePoint> first_;
@@ -117,10 +120,10 @@ TEST_P(LoopPurityTest, TakesNoMemory) {
           [&, i] {
             taken[i] = ReleaseHeapTrap();
             if (++done == kLoops) {
-              bus::UdpmBus bus(url_);
+              const auto bus = bus::OpenUdpmBus(url_);
               stop_t stop{};
               stop.source = "test";
-              bus.Publish("HYDRO_STOP", stop);
+              bus->Publish("HYDRO_STOP", stop);
             }
           });
     });
