@@ -154,24 +154,24 @@ std::vector<Comparison> Comparisons(const StepStudy& study) {
 json Numbers(const StepStudy& study) {
   const WithoutValves& bare = study.bare;
   return {{"torque_in_lbf", kTorque},
-                                 {"peak_p2_psi", study.peak().p2},
-                                 {"peak_dp_psi", study.peak().dp},
-                                 {"peak_time_s", study.peak().time},
-                                 {"stick_time_s", study.stick().time},
-                                 {"stick_dp_psi", study.stick().dp},
-                                 {"slip_time_s", study.slip().time},
-                                 {"slip_dp_psi", study.slip().dp},
-                                 {"sticks", study.run.sticks()},
-                                 {"natural_frequency_rad_s", study.spring.natural_frequency},
-                                 {"damping_ratio", study.spring.damping_ratio},
-                                 {"closed_form_peak_time_s", study.spring.peak_time},
-                                 {"closed_form_peak_dp_psi", study.spring.peak_dp},
-                                 {"without_valves",
-                                  {{"peak_dp_psi", study.bare_dp()},
-                                   {"peak_time_s", bare.time[bare.peak]},
-                                   {"p2_psi", bare.p2[bare.peak]},
-                                   {"p1_psi", bare.p1[bare.peak]},
-                                   {"p1_negative_from_s", bare.negative_since}}}};
+          {"peak_p2_psi", study.peak().p2},
+          {"peak_dp_psi", study.peak().dp},
+          {"peak_time_s", study.peak().time},
+          {"stick_time_s", study.stick().time},
+          {"stick_dp_psi", study.stick().dp},
+          {"slip_time_s", study.slip().time},
+          {"slip_dp_psi", study.slip().dp},
+          {"sticks", study.run.sticks()},
+          {"natural_frequency_rad_s", study.spring.natural_frequency},
+          {"damping_ratio", study.spring.damping_ratio},
+          {"closed_form_peak_time_s", study.spring.peak_time},
+          {"closed_form_peak_dp_psi", study.spring.peak_dp},
+          {"without_valves",
+           {{"peak_dp_psi", study.bare_dp()},
+            {"peak_time_s", bare.time[bare.peak]},
+            {"p2_psi", bare.p2[bare.peak]},
+            {"p1_psi", bare.p1[bare.peak]},
+            {"p1_negative_from_s", bare.negative_since}}}};
 }
 
 std::vector<page::Panel> Panels(const StepStudy& study) {

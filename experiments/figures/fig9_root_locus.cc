@@ -184,8 +184,7 @@ std::string Explanation(const RootLocusStudy& study) {
       fmt::arg("printed_k_2", study.printed_ratio.k_2), fmt::arg("printed_gain", study.printed_limit.gain),
       fmt::arg("gain_1_ms", study.sampled[0].critical_gain),
       fmt::arg("gain_5_ms", study.sampled[2].critical_gain),
-      fmt::arg("gain_10_ms", study.sampled[3].critical_gain),
-      fmt::arg("largest_ms", 1e3 * study.largest),
+      fmt::arg("gain_10_ms", study.sampled[3].critical_gain), fmt::arg("largest_ms", 1e3 * study.largest),
       fmt::arg("confirmed",
                study.all_confirmed()
                    ? "Simulated steps of both forms die away 0.01 ms below it and grow 0.01 ms above it."

@@ -8,8 +8,8 @@
 #include "experiments/runs/pressure_loop_run.h"
 #include "experiments/runs/pressure_sweep.h"
 #include "experiments/studies/experiment.h"
-#include "model/terms/description.h"
 #include "model/linearise.h"
+#include "model/terms/description.h"
 #include "pressure_ctrl/pressure_law.h"
 
 namespace hydro::experiments {

@@ -23,7 +23,7 @@ struct ActuatorOptions {
   double arm_angle = 0;  // rad, clamped: where; free: where the arm starts
   // rad over s, driven: the arm's angle; must be continuous and outlive the model.
   const trajectory::Trajectory* motion = nullptr;
-  bool bypass = false;  // the two sides are connected: p1 = p2
+  bool bypass = false;                                                 // the two sides are connected: p1 = p2
   double initial_pressure = std::numeric_limits<double>::quiet_NaN();  // psi, both sides; NaN: p_3
   Integrator integrator = Integrator::kAuto;
   double relative_tolerance = 1e-8;
