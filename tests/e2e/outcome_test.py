@@ -55,7 +55,7 @@ class OutcomeTest(unittest.TestCase):
         self.assertRegex(partly, r"(?m)^SKIPPED 1 of 2 tests; the others passed$")
         self.assertNotIn("SKIPPED", self.run_file("passes").stderr)
 
-    # Tests that ctest says "Skipped", that scripts/run-tests ends with the reason, and that a failure stays one.
+    # Tests that ctest says "Skipped", that scripts/run-tests gives the reason before ctest's summary, and that a failure stays one.
     def test_in_ctest(self):
         def run(*names):
             lines = "".join(f'add_test({name} "{sys.executable}" "-B" "{self.folder}/{name}.py")\n'
@@ -71,6 +71,7 @@ class OutcomeTest(unittest.TestCase):
         self.assertRegex(good.stdout, r"(?m)^skipped: skips_itself: test_a .*: no board here$")
         self.assertRegex(good.stdout, r"(?m)^skipped: skips_one_of_two: test_a .*: no board here\n +1 of 2 tests; the others passed$")
         self.assertNotIn("skipped: passes", good.stdout)
+        self.assertRegex(good.stdout, r"(?s)skipped: .*\n100% tests passed, 0 tests failed out of 3\n(?!.*skipped: )")
         bad = run("skips_itself", "skips_and_fails")
         self.assertNotEqual(bad.returncode, 0, bad.stdout)
         self.assertRegex(bad.stdout, r"skips_and_fails \.*\*\*\*Failed")
