@@ -12,7 +12,6 @@
 #include "diagnose/verdict/conclusion.h"
 
 namespace hydro::diagnose {
-
 namespace {
 
 constexpr int kMostChanges = 3;
@@ -109,71 +108,98 @@ std::vector<size_t> AllowedBase(const model::ModelDescription& given, const std:
   return allowed;
 }
 
-}  // namespace
-
-Diagnosis Diagnose(const model::ModelDescription& model, std::vector<runs::MeasuredRun> runs,
-                   std::vector<runs::MeasuredRun> held_out, const DiagnoseOptions& options,
-                   const TellProgress& tell) {
-  if (runs.size() == 1 && held_out.empty() && runs.front().samples() >= 300)
-    SplitOff(&runs.front(), &held_out);
-  std::vector<RunData> data, held_out_data;
+// The runs made ready, with one clock each.
+struct PreparedRuns {
+  std::vector<RunData> fitted, held_out;
   std::vector<ClockDelay> clocks;
-  for (runs::MeasuredRun& run : runs)
-    data.push_back(PrepareAligned(std::move(run), model.parameters, &clocks));
-  for (runs::MeasuredRun& run : held_out) {
-    held_out_data.push_back(PrepareAligned(std::move(run), model.parameters, &clocks));
-  }
-  const std::vector<size_t> allowed = AllowedBase(model, options.free);
-  CorrectClocks(model, allowed, options.jobs, &data, &held_out_data, &clocks);
-  NameApart(&data);
-  NameApart(&held_out_data);
+};
 
+PreparedRuns Prepare(const model::ModelDescription& model, const std::vector<size_t>& allowed, int jobs,
+                     std::vector<runs::MeasuredRun> runs, std::vector<runs::MeasuredRun> held_out) {
+  if (runs.size() == 1 && held_out.empty() && runs.front().samples() >= 300) {
+    SplitOff(&runs.front(), &held_out);
+  }
+  PreparedRuns prepared;
+  for (runs::MeasuredRun& run : runs) {
+    prepared.fitted.push_back(PrepareAligned(std::move(run), model.parameters, &prepared.clocks));
+  }
+  for (runs::MeasuredRun& run : held_out) {
+    prepared.held_out.push_back(PrepareAligned(std::move(run), model.parameters, &prepared.clocks));
+  }
+  CorrectClocks(model, allowed, jobs, &prepared.fitted, &prepared.held_out, &prepared.clocks);
+  NameApart(&prepared.fitted);
+  NameApart(&prepared.held_out);
+  return prepared;
+}
+
+SearchContext MakeContext(const model::ModelDescription& model, const PreparedRuns& runs,
+                          const std::vector<size_t>& allowed, const DiagnoseOptions& options,
+                          const TellProgress& tell) {
   SearchContext context;
   context.given = model;
-  context.runs = Pointers(data);
-  context.held_out = Pointers(held_out_data);
+  context.runs = Pointers(runs.fitted);
+  context.held_out = Pointers(runs.held_out);
   context.sizes = SizesOf(model, context.runs);
   context.jobs = options.jobs;
   context.tell = tell;
   context.changes = EffectChanges(model, options.effects, context.runs);
   for (const size_t i : allowed) context.changes.push_back({"", {}, model::BaseParameters()[i].info.name});
+  return context;
+}
+
+// The given model with all base parameters fitted that the runs identify; as given where that fails.
+Explanation Refit(const SearchContext& context, const Hypothesis& as_given, const Explanation& given,
+                  const std::vector<size_t>& allowed) {
+  const std::vector<model::StartState> starts = StartsOf(given.fitted);
+  Hypothesis refitted = as_given;
+  for (const model::EffectDescription& effect : context.given.effects) refitted.effects.push_back(effect.id);
+  refitted.base = Identifiable(as_given, context.runs, starts, allowed, context.sizes, context.jobs);
+  FitOptions fine;
+  fine.tolerance = 1e-5;
+  fine.jobs = context.jobs;
+  Explanation refit = Explain(context, refitted, starts, fine);
+  return refit.fitted.ok() ? refit : given;
+}
+
+// Searches again from the refitted model where that predicts better, and takes what is found if it is
+// better than what `search` has.
+void SearchFromRefit(const SearchContext& context, const Explanation& refit, SearchResult* search) {
+  // So far from the noise, a few changes are not what it takes: the rest is looked for once the parameters
+  // fit.
+  const double gap = search->best.held_out_gap();
+  const bool far = gap > kFar && refit.held_out_gap() < gap;
+  if (!far && !Material(gap, refit.held_out_gap())) return;
+  SearchResult wider = Search(context, refit.fitted.hypothesis, kMostChanges);
+  if (!wider.given.fitted.ok() || !Material(gap, wider.best.held_out_gap())) return;
+  search->best = std::move(wider.best);
+  search->tried.insert(search->tried.end(), wider.tried.begin(), wider.tried.end());
+}
+
+}  // namespace
+
+Diagnosis Diagnose(const model::ModelDescription& model, std::vector<runs::MeasuredRun> runs,
+                   std::vector<runs::MeasuredRun> held_out, const DiagnoseOptions& options,
+                   const TellProgress& tell) {
+  const std::vector<size_t> allowed = AllowedBase(model, options.free);
+  PreparedRuns prepared = Prepare(model, allowed, options.jobs, std::move(runs), std::move(held_out));
+  const SearchContext context = MakeContext(model, prepared, allowed, options, tell);
 
   // Few changes to the model as given first: one wrong value or one missing effect is the likeliest.
-  Hypothesis given;
-  given.model = model;
-  for (const model::EffectDescription& effect : model.effects) given.effects.push_back(effect.id);
-  Hypothesis as_given = given;
-  as_given.effects.clear();
+  Hypothesis as_given;
+  as_given.model = model;
   SearchResult search = Search(context, as_given, kMostChanges);
   if (!search.given.fitted.ok()) {
     throw model::ModelError("the model cannot follow the runs at all: " + search.given.fitted.failure +
                             "; is a shaft's mode or a unit wrong?");
   }
-
-  // All base parameters at once, and the search from there when that predicts better.
   if (tell) tell({"refitting the model's own parameters", 0.92});
-  const std::vector<model::StartState> starts = StartsOf(search.given.fitted);
-  Hypothesis refitted = given;
-  refitted.base = Identifiable(as_given, context.runs, starts, allowed, context.sizes, options.jobs);
-  FitOptions fine;
-  fine.tolerance = 1e-5;
-  fine.jobs = options.jobs;
-  Explanation refit = Explain(context, refitted, starts, fine);
-  if (!refit.fitted.ok()) refit = search.given;
-  // So far from the noise, a few changes are not what it takes: the rest is looked for once the parameters
-  // fit.
-  const bool far = search.best.held_out_gap() > kFar && refit.held_out_gap() < search.best.held_out_gap();
-  if (far || Material(search.best.held_out_gap(), refit.held_out_gap())) {
-    SearchResult wider = Search(context, refit.fitted.hypothesis, kMostChanges);
-    if (wider.given.fitted.ok() && Material(search.best.held_out_gap(), wider.best.held_out_gap())) {
-      search.best = std::move(wider.best);
-      search.tried.insert(search.tried.end(), wider.tried.begin(), wider.tried.end());
-    }
-  }
+  const Explanation refit = Refit(context, as_given, search.given, allowed);
+  SearchFromRefit(context, refit, &search);
+
   Diagnosis diagnosis = Conclude(context, search, refit);
-  const std::vector<std::string> remarks = RecordingRemarks(clocks, context.runs, context.held_out);
+  const std::vector<std::string> remarks = RecordingRemarks(prepared.clocks, context.runs, context.held_out);
   diagnosis.remarks.insert(diagnosis.remarks.begin(), remarks.begin(), remarks.end());
-  diagnosis.recording = std::move(clocks);
+  diagnosis.recording = std::move(prepared.clocks);
   return diagnosis;
 }
 
