@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <functional>
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include "base/word_list.h"
@@ -246,6 +247,80 @@ bool Suits(const runs::MeasuredRun& run) {
          (run.motor_speed.measured() || run.motor_angle.measured()) && run.samples() >= 100;
 }
 
+// Where a part of the run begins and ends.
+std::pair<Index, Index> Part(const Clocks& clocks, int part) {
+  const Index first = clocks.begin(), length = clocks.end() - first;
+  return {first + length * part / kParts, first + length * (part + 1) / kParts};
+}
+
+// Whether both are plainly late, and no shift of one of them alone comes near.
+bool BothAreLate(const Clocks& clocks, const Pair& best, double least) {
+  const int reach = clocks.reach();
+  if (best[0] < least || best[1] < least || std::max(best[0], best[1]) >= reach) return false;
+  const auto torque = [&](int command, int speed) {
+    return clocks.Torque(command, speed, clocks.begin(), clocks.end());
+  };
+  const double open = torque(best[0], best[1]);
+  if (open > kUnbalanced || open > kMassive * torque(0, 0)) return false;
+  for (int one = -reach; one <= reach; ++one) {
+    if (open > kMuchBetter * std::min(torque(one, 0), torque(0, one))) return false;
+  }
+  return true;
+}
+
+// Delays in steps, by the parts of the run.
+struct Parts {
+  std::vector<double> command, speed;
+};
+
+// Each part of the run for itself, as long as it has motion.
+Parts DelaysOfParts(const Clocks& clocks) {
+  Parts parts;
+  for (int part = 0; part < kParts; ++part) {
+    const auto [from, to] = Part(clocks, part);
+    const Pair here = BestTorque(clocks, from, to);
+    const auto at = [&, from = from, to = to](int a, int b) {
+      return clocks.Torque(here[0] + a, here[1] + b, from, to);
+    };
+    const double left = at(0, 0);
+    if (!(left <= kUnbalanced)) continue;
+    const bool inside = std::max(std::abs(here[0]), std::abs(here[1])) < clocks.reach();
+    parts.command.push_back(here[0] + (inside ? Vertex(at(-1, 0), left, at(1, 0)) : 0));
+    parts.speed.push_back(here[1] + (inside ? Vertex(at(0, -1), left, at(0, 1)) : 0));
+  }
+  return parts;
+}
+
+// The arm's delay, steps, with the motor's speed late by `speed`; nothing where too few parts of the run tell it.
+std::optional<Estimate> DelayOfArm(const Clocks& clocks, int speed) {
+  std::vector<double> parts;
+  for (int part = 0; part < kParts; ++part) {
+    const auto [from, to] = Part(clocks, part);
+    const auto flow = [&, from = from, to = to](int arm) { return clocks.Flow(speed, arm, from, to); };
+    const int arm = BestOf(clocks.reach() - 1, flow);
+    if (flow(arm) <= kUnbalanced) parts.push_back(arm + Vertex(flow(arm - 1), flow(arm), flow(arm + 1)));
+  }
+  std::sort(parts.begin(), parts.end());
+  if (parts.size() < kParts / 2) return std::nullopt;
+  // Every part counts as much as any other: where a relief valve opens, flows say less.
+  const size_t half = parts.size() / 2;
+  return Of(parts, parts.size() % 2 == 1 ? parts[half] : (parts[half - 1] + parts[half]) / 2);
+}
+
+// The signals that one clock recorded, by name.
+using Signals = std::vector<std::pair<const char*, runs::MeasuredSignal runs::MeasuredRun::*>>;
+
+ClockDelay DelayOf(const runs::MeasuredRun& run, const Signals& signals, const Estimate& steps, double step,
+                   std::vector<runs::SignalDelay>* moves) {
+  ClockDelay delay{run.name, {}, step * steps.mean, step * std::hypot(steps.error, 0.5)};
+  for (const auto& [name, signal] : signals) {
+    if (!(run.*signal).measured()) continue;
+    delay.signals.emplace_back(name);
+    moves->emplace_back(signal, delay.delay);
+  }
+  return delay;
+}
+
 }  // namespace
 
 std::vector<ClockDelay> AlignClocks(const model::Parameters& model, runs::MeasuredRun* run) {
@@ -257,68 +332,29 @@ std::vector<ClockDelay> AlignClocks(const model::Parameters& model, runs::Measur
   const Clocks clocks(grid, model);
   const double least = std::max(kLeastSamples, kLeastDelay / grid.step);
   if (clocks.reach() <= least) return {};
-  const Index first = clocks.begin(), last = clocks.end();
-
-  const Pair best = BestTorque(clocks, first, last);
-  if (best[0] < least || best[1] < least || std::max(best[0], best[1]) >= clocks.reach()) return {};
-  const auto torque = [&](int command, int speed) { return clocks.Torque(command, speed, first, last); };
-  const double open = torque(best[0], best[1]);
-  if (open > kUnbalanced || open > kMassive * torque(0, 0)) return {};
-  for (int one = -clocks.reach(); one <= clocks.reach(); ++one) {
-    if (open > kMuchBetter * std::min(torque(one, 0), torque(0, one))) return {};
-  }
-  // Each part of the run for itself, as long as it has motion.
-  std::vector<double> command_parts, speed_parts;
-  for (int part = 0; part < kParts; ++part) {
-    const Index from = first + (last - first) * part / kParts,
-                to = first + (last - first) * (part + 1) / kParts;
-    const Pair here = BestTorque(clocks, from, to);
-    const double left = clocks.Torque(here[0], here[1], from, to);
-    if (!(left <= kUnbalanced)) continue;
-    const auto at = [&](int a, int b) { return clocks.Torque(here[0] + a, here[1] + b, from, to); };
-    const bool inside = std::max(std::abs(here[0]), std::abs(here[1])) < clocks.reach();
-    command_parts.push_back(here[0] + (inside ? Vertex(at(-1, 0), left, at(1, 0)) : 0));
-    speed_parts.push_back(here[1] + (inside ? Vertex(at(0, -1), left, at(0, 1)) : 0));
-  }
-  if (command_parts.size() < kParts / 2 || !Agree(command_parts, best[0]) || !Agree(speed_parts, best[1])) {
+  const Pair best = BestTorque(clocks, clocks.begin(), clocks.end());
+  if (!BothAreLate(clocks, best, least)) return {};
+  const Parts parts = DelaysOfParts(clocks);
+  if (parts.command.size() < kParts / 2 || !Agree(parts.command, best[0]) || !Agree(parts.speed, best[1])) {
     return {};
   }
-  const double command = best[0] + Vertex(torque(best[0] - 1, best[1]), open, torque(best[0] + 1, best[1]));
-  const double speed = best[1] + Vertex(torque(best[0], best[1] - 1), open, torque(best[0], best[1] + 1));
+  const auto at = [&](int a, int b) {
+    return clocks.Torque(best[0] + a, best[1] + b, clocks.begin(), clocks.end());
+  };
+  const double command = best[0] + Vertex(at(-1, 0), at(0, 0), at(1, 0));
+  const double speed = best[1] + Vertex(at(0, -1), at(0, 0), at(0, 1));
 
-  std::vector<ClockDelay> delays;
+  using Run = runs::MeasuredRun;
   std::vector<runs::SignalDelay> moves;
-  const auto add =
-      [&](const std::vector<std::pair<const char*, runs::MeasuredSignal runs::MeasuredRun::*>>& signals,
-          const Estimate& steps) {
-        ClockDelay delay{run->name, {}, grid.step * steps.mean, grid.step * std::hypot(steps.error, 0.5)};
-        for (const auto& [name, signal] : signals) {
-          if (!(run->*signal).measured()) continue;
-          delay.signals.emplace_back(name);
-          moves.emplace_back(signal, delay.delay);
-        }
-        delays.push_back(std::move(delay));
-      };
-  add({{"voltage", &runs::MeasuredRun::voltage}, {"pressure_ref", &runs::MeasuredRun::pressure_ref}},
-      Of(command_parts, command));
-  add({{"motor_speed", &runs::MeasuredRun::motor_speed}, {"motor_angle", &runs::MeasuredRun::motor_angle}},
-      Of(speed_parts, speed));
+  std::vector<ClockDelay> delays = {
+      DelayOf(*run, {{"voltage", &Run::voltage}, {"pressure_ref", &Run::pressure_ref}},
+              Of(parts.command, command), grid.step, &moves),
+      DelayOf(*run, {{"motor_speed", &Run::motor_speed}, {"motor_angle", &Run::motor_angle}},
+              Of(parts.speed, speed), grid.step, &moves)};
   if (grid.arm_speed.size() > 0 && grid.arm_speed.allFinite()) {
-    // Every part counts as much as any other: where a relief valve opens, flows say less.
-    std::vector<double> parts;
-    for (int part = 0; part < kParts; ++part) {
-      const Index from = first + (last - first) * part / kParts;
-      const Index to = first + (last - first) * (part + 1) / kParts;
-      const auto flow = [&](int arm) { return clocks.Flow(best[1], arm, from, to); };
-      const int arm = BestOf(clocks.reach() - 1, flow);
-      if (flow(arm) <= kUnbalanced) parts.push_back(arm + Vertex(flow(arm - 1), flow(arm), flow(arm + 1)));
-    }
-    std::sort(parts.begin(), parts.end());
-    if (parts.size() >= kParts / 2) {
-      const size_t half = parts.size() / 2;
-      const Estimate arm =
-          Of(parts, parts.size() % 2 == 1 ? parts[half] : (parts[half - 1] + parts[half]) / 2);
-      add({{"arm_angle", &runs::MeasuredRun::arm_angle}, {"arm_speed", &runs::MeasuredRun::arm_speed}}, arm);
+    if (const std::optional<Estimate> arm = DelayOfArm(clocks, best[1])) {
+      delays.push_back(DelayOf(*run, {{"arm_angle", &Run::arm_angle}, {"arm_speed", &Run::arm_speed}}, *arm,
+                               grid.step, &moves));
     }
   }
   if (!runs::RemoveDelays(moves, run)) return {};

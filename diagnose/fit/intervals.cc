@@ -78,6 +78,93 @@ BlocksOfRun BlocksOf(const Fitted& fitted, const std::vector<FreeParameter>& fre
   return blocks;
 }
 
+// The information that the runs have of the free numbers, all told, scaled to a diagonal of 1.
+class Information {
+ public:
+  Information(const Fitted& fitted, Index p) {
+    MatrixXd information = MatrixXd::Zero(p, p);
+    for (const RunFit& run : fitted.runs) {
+      information += Map<const MatrixXd>(run.information.data(), p, p);
+    }
+    scale_ = (information.diagonal().array() + 1e-300).sqrt().inverse();
+    MatrixXd scaled = scale_.asDiagonal() * information * scale_.asDiagonal();
+    scaled.diagonal().array() += 1e-10;
+    inverse_ =
+        scale_.asDiagonal() * maths::SolveSymmetric(scaled, MatrixXd::Identity(p, p)) * scale_.asDiagonal();
+    root_.compute(scaled);
+  }
+
+  const MatrixXd& inverse() const { return inverse_; }
+
+  // By how much a part of the data moves the fit. The fit has followed it as far as it has leverage; what is
+  // left of its gradient is made up for that (as in leaving it out, the jackknife).
+  VectorXd Influence(const MatrixXd& part, const VectorXd& its_gradient) const {
+    MatrixXd share = scale_.asDiagonal() * part * scale_.asDiagonal();
+    root_.matrixL().solveInPlace(share);
+    share.transposeInPlace();
+    root_.matrixL().solveInPlace(share);
+    const maths::SymmetricEigensystem eigen = maths::SymmetricEigensystemOf(share);
+    const VectorXd left = 1 - eigen.values.array().max(0.0).min(kMostLeverage);
+    VectorXd gradient = scale_.asDiagonal() * its_gradient;
+    root_.matrixL().solveInPlace(gradient);
+    gradient = eigen.vectors * (eigen.vectors.transpose() * gradient).cwiseQuotient(left);
+    root_.matrixU().solveInPlace(gradient);
+    return VectorXd(scale_.asDiagonal() * gradient);
+  }
+
+ private:
+  VectorXd scale_;
+  MatrixXd inverse_;
+  Eigen::LLT<MatrixXd> root_;
+};
+
+// How far the fit is moved by each part of the data, in squares, and by what is held.
+struct Scatter {
+  VectorXd by_block;  // noise scatters from block to block,
+  VectorXd by_run;    // and what the model lacks a little of differs from run to run
+  VectorXd by_held;
+};
+
+Scatter ScatterOf(const Fitted& fitted, const Information& information,
+                  const std::vector<BlocksOfRun>& blocks_of, Index p, Index h) {
+  Scatter scatter{VectorXd::Zero(p), VectorXd::Zero(p), {}};
+  MatrixXd with_held = MatrixXd::Zero(p, h);
+  for (size_t r = 0; r < blocks_of.size(); ++r) {
+    const MatrixXd gradients = blocks_of[r].gradients.topRows(p);
+    for (Index b = 0; b < kBlocksPerRun; ++b) {
+      const MatrixXd& block = blocks_of[r].informations[static_cast<size_t>(b)];
+      scatter.by_block += information.Influence(block.topLeftCorner(p, p), gradients.col(b)).cwiseAbs2();
+      with_held += block.topRightCorner(p, h);
+    }
+    const Map<const MatrixXd> of_run(fitted.runs[r].information.data(), p, p);
+    scatter.by_run += information.Influence(of_run, gradients.rowwise().sum()).cwiseAbs2();
+  }
+  // The fit follows what is held as far as the runs cannot tell it from the free numbers; by logarithms, so
+  // that a relative deviation counts as it is.
+  scatter.by_held = kIdealisedHeld * (information.inverse() * with_held).rowwise().norm();
+  return scatter;
+}
+
+// Half the 95 % interval that so many parts' squares give.
+double HalfWidth(double squares, double parts) {
+  const double t = boost::math::quantile(boost::math::students_t(parts - 1), 0.975);
+  return t * std::sqrt(squares * (parts - 1) / parts);
+}
+
+// The interval of a number of which the runs say +- `half`, in what is fitted.
+Interval Around(const FreeParameter& parameter, double half, double by_held, double sample) {
+  const double unseen =
+      std::hypot(kIdealised * parameter.value, parameter.role == model::Role::kTime ? kInstant * sample : 0);
+  half = std::hypot(half, 1.96 * std::abs(unseen / parameter.Slope()), 1.96 * by_held);
+  Interval interval{parameter.Moved(-half), parameter.Moved(half)};
+  // A logarithm is positive by itself; its bounds are the fit's, not physics'.
+  if (!parameter.logarithmic) {
+    interval.low = std::max(interval.low, std::min(parameter.low, parameter.value));
+    interval.high = std::min(interval.high, std::max(parameter.high, parameter.value));
+  }
+  return interval;
+}
+
 }  // namespace
 
 std::vector<Interval> Intervals(const Fitted& fitted, const std::vector<const RunData*>& runs, int jobs) {
@@ -86,73 +173,19 @@ std::vector<Interval> Intervals(const Fitted& fitted, const std::vector<const Ru
   std::vector<FreeParameter> all = free;  // and behind them what is held
   const std::vector<FreeParameter> held = HeldParameters(fitted.hypothesis);
   all.insert(all.end(), held.begin(), held.end());
-  const auto h = static_cast<Index>(held.size());
   std::vector<BlocksOfRun> blocks_of(runs.size());
   ParallelFor(runs.size(), jobs, [&](size_t r) { blocks_of[r] = BlocksOf(fitted, all, r, *runs[r]); });
-  MatrixXd information = MatrixXd::Zero(p, p);
-  for (const RunFit& run : fitted.runs) information += Map<const MatrixXd>(run.information.data(), p, p);
-  const VectorXd scale = (information.diagonal().array() + 1e-300).sqrt().inverse();
-  MatrixXd scaled = scale.asDiagonal() * information * scale.asDiagonal();
-  scaled.diagonal().array() += 1e-10;
-  const MatrixXd inverse =
-      scale.asDiagonal() * maths::SolveSymmetric(scaled, MatrixXd::Identity(p, p)) * scale.asDiagonal();
-  // By how much a part of the data moves the fit. The fit has followed it as far as it has leverage; what is
-  // left of its gradient is made up for that (as in leaving it out, the jackknife).
-  const Eigen::LLT<MatrixXd> root(scaled);
-  const auto influence = [&](const MatrixXd& part, const VectorXd& its_gradient) {
-    MatrixXd share = scale.asDiagonal() * part * scale.asDiagonal();
-    root.matrixL().solveInPlace(share);
-    share.transposeInPlace();
-    root.matrixL().solveInPlace(share);
-    const maths::SymmetricEigensystem eigen = maths::SymmetricEigensystemOf(share);
-    const VectorXd left = 1 - eigen.values.array().max(0.0).min(kMostLeverage);
-    VectorXd gradient = scale.asDiagonal() * its_gradient;
-    root.matrixL().solveInPlace(gradient);
-    gradient = eigen.vectors * (eigen.vectors.transpose() * gradient).cwiseQuotient(left);
-    root.matrixU().solveInPlace(gradient);
-    return VectorXd(scale.asDiagonal() * gradient);
-  };
-  // Noise scatters from block to block; what the model lacks a little of differs from run to run.
-  VectorXd by_block = VectorXd::Zero(p);
-  VectorXd by_run = VectorXd::Zero(p);
-  MatrixXd with_held = MatrixXd::Zero(p, h);
-  for (size_t r = 0; r < runs.size(); ++r) {
-    const MatrixXd gradients = blocks_of[r].gradients.topRows(p);
-    for (Index b = 0; b < kBlocksPerRun; ++b) {
-      const MatrixXd& block = blocks_of[r].informations[static_cast<size_t>(b)];
-      by_block += influence(block.topLeftCorner(p, p), gradients.col(b)).cwiseAbs2();
-      with_held += block.topRightCorner(p, h);
-    }
-    by_run +=
-        influence(Map<const MatrixXd>(fitted.runs[r].information.data(), p, p), gradients.rowwise().sum())
-            .cwiseAbs2();
-  }
-  // The fit follows what is held as far as the runs cannot tell it from the free numbers; by logarithms, so
-  // that a relative deviation counts as it is.
-  const VectorXd by_held = kIdealisedHeld * (inverse * with_held).rowwise().norm();
-  const auto half_width = [](double squares, double parts) {
-    const double t = boost::math::quantile(boost::math::students_t(parts - 1), 0.975);
-    return t * std::sqrt(squares * (parts - 1) / parts);
-  };
+  const Information information(fitted, p);
+  const Scatter scatter = ScatterOf(fitted, information, blocks_of, p, static_cast<Index>(held.size()));
   const auto count = static_cast<double>(runs.size());
   const double squared_gap = std::max(1.0, fitted.squared_gap());
   const double sample = MedianInterval(runs.front()->stimulus.time);
   std::vector<Interval> intervals;
   for (Index i = 0; i < p; ++i) {
-    const double white = 1.96 * std::sqrt(inverse(i, i) * squared_gap);
-    double half = std::max(white, half_width(by_block(i), static_cast<double>(kBlocksPerRun) * count));
-    if (runs.size() > 2) half = std::max(half, half_width(by_run(i), count));
-    const FreeParameter& parameter = free[static_cast<size_t>(i)];
-    const double unseen = std::hypot(kIdealised * parameter.value,
-                                     parameter.role == model::Role::kTime ? kInstant * sample : 0);
-    half = std::hypot(half, 1.96 * std::abs(unseen / parameter.Slope()), 1.96 * by_held(i));
-    Interval interval{parameter.Moved(-half), parameter.Moved(half)};
-    // A logarithm is positive by itself; its bounds are the fit's, not physics'.
-    if (!parameter.logarithmic) {
-      interval.low = std::max(interval.low, std::min(parameter.low, parameter.value));
-      interval.high = std::min(interval.high, std::max(parameter.high, parameter.value));
-    }
-    intervals.push_back(interval);
+    const double white = 1.96 * std::sqrt(information.inverse()(i, i) * squared_gap);
+    double half = std::max(white, HalfWidth(scatter.by_block(i), static_cast<double>(kBlocksPerRun) * count));
+    if (runs.size() > 2) half = std::max(half, HalfWidth(scatter.by_run(i), count));
+    intervals.push_back(Around(free[static_cast<size_t>(i)], half, scatter.by_held(i), sample));
   }
   return intervals;
 }
