@@ -1,4 +1,5 @@
-// The gap finder: where a model and measured runs disagree, what is missing, and the gap closed.
+// The gap finder: shows where a model and measured runs disagree, names what the model lacks, and closes the
+// gap.
 #pragma once
 
 #include <cstdint>
@@ -13,15 +14,16 @@ namespace hydro::diagnose {
 
 struct DiagnoseOptions {
   std::vector<std::string> effects;  // ids that may be named; empty: the whole catalogue
-  std::vector<std::string> free;  // base parameters that may be refitted; empty: all that the runs identify
+  // Base parameters that may be refitted; empty: all that the runs identify.
+  std::vector<std::string> free;
   int jobs = 1;
   uint64_t seed = 1;
 };
 
-// `held_out` runs decide and are not fitted; when empty, the runs are held out in turn (the last third of a
-// single one). Throws InputError for data that cannot be used, naming run, signal and row; ModelError when
-// the given model cannot follow a run at all. The same arguments give the same diagnosis to the bit, whatever
-// `jobs` is.
+// The `held_out` runs decide and are not fitted; when there are none, each run is held out in turn (the last
+// third of a single run). Throws InputError for data that cannot be used, naming the run, signal and row, and
+// ModelError when the given model cannot follow a run at all. The same arguments give the same diagnosis to
+// the bit, whatever `jobs` is.
 Diagnosis Diagnose(const model::ModelDescription& model, std::vector<runs::MeasuredRun> runs,
                    std::vector<runs::MeasuredRun> held_out, const DiagnoseOptions& options,
                    const TellProgress& tell);

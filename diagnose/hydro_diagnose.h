@@ -1,4 +1,4 @@
-// hydro-diagnose as a function: reads its files, has the diagnosis made, writes and tells it.
+// hydro-diagnose as a function: reads its files, makes the diagnosis, writes the report and prints a summary.
 #pragma once
 
 #include <cstdint>
@@ -15,28 +15,28 @@ struct DiagnoseRequest {
   std::vector<std::string> runs, held_out;  // files
   std::string model, folder;
   std::string effects;  // file; "": the whole catalogue may be named
-  std::string free;     // names with commas; "": all that the runs identify
+  std::string free;     // comma-separated names; "": all that the runs identify
   int jobs = 1;
   int64_t seed = 1;
   bool si = false;
 };
 
-// What makes the diagnosis: Diagnose, or another in tests.
+// What makes the diagnosis: Diagnose, or a stand-in for tests.
 using Diagnoser =
     std::function<Diagnosis(const model::ModelDescription&, std::vector<runs::MeasuredRun>,
                             std::vector<runs::MeasuredRun>, const DiagnoseOptions&, const TellProgress&)>;
 
 // Writes report.html, report.json, model.toml and, when there is a next experiment, next.toml into the
-// request's folder, each whole or not at all, and a summary to `out`. Progress goes to `err` where that is a
-// terminal, as a bar, else to `out`, a line a stage: `err` is for the one line of an error. Throws InputError
-// for what cannot be read or used, a model that cannot follow a run included.
+// request's folder, each file whole or not at all, and a summary to `out`. Progress goes to `err` as a bar
+// when that is a terminal, else to `out`, one line a stage: `err` is kept for the one line of an error.
+// Throws InputError for anything that cannot be read or used, including a model that cannot follow a run.
 void RunDiagnosis(const DiagnoseRequest& request, const Diagnoser& diagnose, std::FILE* out, std::FILE* err);
 
-// The ids that a file of effects names: TOML, effects = ["pump.stribeck", ...]. Throws InputError for unknown
-// ids and keys, and when there are none.
+// The ids in a file of effects: TOML, effects = ["pump.stribeck", ...]. Throws InputError for unknown ids or
+// keys and for an empty list.
 std::vector<std::string> ReadEffectList(const std::string& file);
 
-// The base parameters in "b,T_s". Throws InputError for names that are unknown or missing.
+// Splits a list of base parameters such as "b,T_s". Throws InputError for unknown or missing names.
 std::vector<std::string> SplitFree(const std::string& names);
 
 }  // namespace hydro::diagnose

@@ -1,4 +1,4 @@
-// What a diagnosis finds: the content of report.json and report.html.
+// The result of a diagnosis: the content of report.json and report.html.
 #pragma once
 
 #include <cstddef>
@@ -34,7 +34,7 @@ struct Location {
   std::vector<Window> windows;
 };
 
-// The missing term of a balance against what it depends on: one row a bin, mean and standard error.
+// The missing term of a balance as a function of what it depends on: one row a bin, mean and standard error.
 struct MissingTerm {
   std::string balance, unit;          // of the term, e.g. in-lbf
   std::string against, against_unit;  // "motor_speed", "rad/s"
@@ -52,14 +52,14 @@ struct ChangedParameter {
   Estimated fitted;
   double model = 0;  // as given
   bool implausible = false;
-  std::string why;  // it is called implausible
+  std::string why;  // the reason for calling it implausible
 };
 
-// Root-mean-square residuals; in noise units or, of one signal, in its unit.
+// Root-mean-square residuals, in noise units or, for a single signal, in its unit.
 struct BeforeAfter {
   double before = 0;      // the model as given
   double refit_only = 0;  // its own parameters refitted
-  double after = 0;       // with what was found
+  double after = 0;       // with the changes found
 };
 
 struct SignalGap {
@@ -69,25 +69,27 @@ struct SignalGap {
 };
 
 struct Candidate {
-  std::string id;       // of the effect, or "parameter k_1"
-  double score = 0;     // fall of the squared gap that the score test expects, in noise units squared
-  double fit = 0;       // gap after its refit; NaN: not refitted
+  std::string id;  // of the effect, or "parameter k_1"
+  // Fall of the squared gap that the score test expects, in noise units squared.
+  double score = 0;
+  double fit = 0;       // gap after refitting; NaN: not refitted
   double held_out = 0;  // gap on held-out runs; NaN: not tried
-  double p_value = 1;   // that chance alone improves the fit so much, allowing for the number tried
+  // Probability that chance alone improves the fit this much, allowing for the number tried.
+  double p_value = 1;
   std::string rejected_because;  // "" for those that were taken
 };
 
 // One run as the pictures show it, thinned to what a page can hold.
 struct RunCurves {
   std::string run;
-  bool held_out = false;  // the values are those of a fit that did not see it
+  bool held_out = false;  // the values are from a fit that did not see it
   std::vector<double> time;
   struct Curve {
     model::Channel channel = model::Channel::kP1;
     std::vector<double> measured, before, after;
   };
   std::vector<Curve> curves;
-  // To plot residuals against; may be empty.
+  // Residuals are plotted against these; may be empty.
   std::vector<double> voltage;
 };
 
@@ -99,10 +101,10 @@ struct NextExperiment {
 
 struct Diagnosis {
   Verdict verdict = Verdict::kNothingMissing;
-  std::string sentence;               // the verdict, in one
-  std::vector<ClockDelay> recording;  // clocks that were found apart, and put on one
-  std::vector<std::string>
-      remarks;  // suspects of the recording, what could not be tried, noise unlike what is stated
+  std::string sentence;               // the verdict in one sentence
+  std::vector<ClockDelay> recording;  // clocks found to differ, now aligned
+  // What is suspect in the recordings, what could not be tried, and noise unlike the stated noise.
+  std::vector<std::string> remarks;
   std::vector<Location> location;
   std::vector<MissingTerm> missing;
   std::vector<FoundEffect> effects;
@@ -112,8 +114,9 @@ struct Diagnosis {
   NextExperiment next;
   std::vector<Candidate> candidates;
   std::vector<RunCurves> curves;
-  model::ModelDescription model;                 // with what was found
-  std::vector<std::string> runs, held_out_runs;  // held_out_runs empty: held out in turn
+  model::ModelDescription model;  // with the changes found
+  // When held_out_runs is empty, the runs were held out in turn.
+  std::vector<std::string> runs, held_out_runs;
   size_t samples = 0;
 };
 

@@ -7,7 +7,7 @@ namespace hydro::diagnose {
 
 // The median time between successive samples, s; 1 when there are fewer than two.
 double MedianInterval(const std::vector<double>& time);
-// Of several recordings together.
+// The same over several recordings together.
 double MedianInterval(const std::vector<const std::vector<double>*>& times);
 
 }  // namespace hydro::diagnose

@@ -1,5 +1,5 @@
-// The motion of a driven shaft, from noisy or coarse samples of it: differentiated as they are, they would
-// pump noise.
+// The motion of a driven shaft from noisy or coarse samples. Differentiating the samples directly would pump
+// noise into the simulation.
 #pragma once
 
 #include <memory>
@@ -9,11 +9,11 @@
 
 namespace hydro::diagnose {
 
-// Smoothest motion through samples of an angle and, where measured, of its rate (else empty), NaN where
-// missing; the noises are their standard deviations. How smooth it is the samples say: the jerk is taken for
-// white noise of the strength that makes them likeliest, and the motion is what is then expected of it (a
-// quintic smoothing spline). Constant before the first time and after the last. At least one angle must be
-// there.
+// The smoothest motion through samples of an angle and, if measured, of its rate (else empty); NaN: missing.
+// The noises are their standard deviations. The samples determine how smooth it is: the jerk is modelled as
+// white noise of the strength that makes the samples likeliest, and the motion is its expected value given
+// them (a quintic smoothing spline). The motion is constant before the first time and after the last. At
+// least one angle must be present.
 std::unique_ptr<trajectory::Trajectory> SmoothMotion(const std::vector<double>& time,
                                                      const std::vector<double>& angle, double angle_noise,
                                                      const std::vector<double>& rate, double rate_noise);

@@ -1,4 +1,4 @@
-// Fits a hypothesis to runs by simulation: the free numbers and each run's start are chosen so that predicted
+// Fits a hypothesis to runs by simulation: chooses the free numbers and each run's start so that predicted
 // and measured signals differ least, in noise units.
 #pragma once
 
@@ -15,8 +15,9 @@ struct RunFit {
   model::StartState start{};
   double sum = 0;    // of squared residuals
   size_t count = 0;  // of residuals
-  // At the fitted values, with the unknown start taken out (its best follows the parameters): information and
-  // gradient of sum/2 by the free parameters as they are fitted (logarithms of some), by columns.
+  // At the fitted values, with the unknown start eliminated (its best value follows the parameters):
+  // information and gradient of sum/2 with respect to the free parameters as fitted (some as logarithms), by
+  // columns.
   std::vector<double> information, gradient;
 };
 
@@ -34,21 +35,21 @@ struct Fitted {
 // Each run's start, as fitted.
 std::vector<model::StartState> StartsOf(const Fitted& fitted);
 
-// What is known of the free parameters beforehand: each, as it is fitted (logarithms of some), adds
-// weight (it - centre)^2 to the sum that is least.
+// What is known about the free parameters beforehand: each, as fitted (some as logarithms), adds weight (it -
+// centre)^2 to the sum that is minimised.
 struct Prior {
   std::vector<double> centre, weight;
 };
 
 struct FitOptions {
   int most_iterations = 20;
-  double tolerance = 1e-4;  // relative fall of the sum below which it is done
+  double tolerance = 1e-4;  // stops when the sum falls by less than this, relative
   int jobs = 1;
   const Prior* prior = nullptr;  // in the order of Free()
 };
 
-// `starts`: one a run, where to begin. Never throws ModelError: a model that cannot be simulated is a
-// failure.
+// `starts`: initial guesses, one a run. Never throws ModelError: a model that cannot be simulated is reported
+// as a failure.
 Fitted Fit(const Hypothesis& hypothesis, const std::vector<const RunData*>& runs,
            const std::vector<model::StartState>& starts, const FitOptions& options);
 

@@ -11,7 +11,7 @@ namespace hydro::diagnose {
 struct HeldOut {
   double sum = 0;
   size_t count = 0;
-  // By run: the predicted start, and the model that did not see it.
+  // By run: the predicted start, and the model that did not see the run.
   std::vector<model::StartState> starts;
   std::vector<model::ModelDescription> models;
 
@@ -21,9 +21,10 @@ struct HeldOut {
 // Predicts runs that the fit has not seen; only their starts are fitted.
 HeldOut Predict(const Fitted& fitted, const std::vector<const RunData*>& held_out, int jobs);
 
-// Each of the fit's runs in turn: what the others say of the parameters (with what they cannot tell drawn to
-// the values of `given` and to effects of no size), and how well that predicts it. They are asked by a
-// Gauss-Newton step from the common fit, and by a fit of their own when that step predicts the run badly.
+// Holds out each of the fit's runs in turn: estimates the parameters from the others (parameters that these
+// cannot determine are drawn to the values of `given`, and to effects of zero size) and predicts the run with
+// them. The estimate is a Gauss-Newton step from the common fit, or a separate fit when that step predicts
+// the run badly.
 HeldOut PredictInTurn(const Fitted& fitted, const model::ModelDescription& given,
                       const std::vector<const RunData*>& runs, int jobs);
 

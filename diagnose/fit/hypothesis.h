@@ -1,4 +1,4 @@
-// A model of which some numbers are open: what a fit takes and gives.
+// A model with some numbers left open: the input and the output of a fit.
 #pragma once
 
 #include <map>
@@ -12,7 +12,7 @@
 
 namespace hydro::diagnose {
 
-// Something that may be added to a model or changed in it: an effect (with the names it takes), or, when
+// Something that may be added to a model or changed in it: an effect (with the names it takes) or, when
 // `effect` is empty, the value of a base parameter.
 struct Change {
   std::string effect;
@@ -34,32 +34,33 @@ struct FreeParameter {
   bool logarithmic = false;  // positive: fitted as its logarithm
   model::Role role = model::Role::kSize;
 
-  // To what a fit moves, and back.
+  // Converts to the number that a fit moves, and back.
   double ToFitted(double number) const;
   double FromFitted(double fitted) const;
-  // The value when what is fitted has moved by so much.
+  // The value after the fitted number has moved by this much.
   double Moved(double by) const;
-  // Derivative of the value by what is fitted, there.
+  // Derivative of the value with respect to the fitted number, at the present value.
   double Slope() const { return logarithmic ? value : 1; }
 };
 
 struct Hypothesis {
   model::ModelDescription model;  // with the values of `free`
-  std::vector<Change> changes;    // to the model as given
-  std::vector<size_t> base;  // free base parameters, as in BaseParameters(); those of `changes` among them
+  std::vector<Change> changes;    // relative to the model as given
+  // Free base parameters, as in BaseParameters(), including those of `changes`.
+  std::vector<size_t> base;
   std::vector<std::string> effects;  // ids whose parameters are free
 
   std::vector<FreeParameter> Free() const;
-  // The model with these values, in the order of Free().
+  // Sets the model to these values, in the order of Free().
   void Set(const std::vector<double>& values);
   bool Has(const Change& change) const;
-  // The one change that it has and the other has not; null where there is none or several.
+  // The one change that this hypothesis has and the other lacks; null if there is none or more than one.
   const Change* OneBeyond(const Hypothesis& other) const;
   // The same with nothing free.
   Hypothesis Held() const;
 };
 
-// Sizes of what the runs show, by which starting values are scaled.
+// Magnitudes seen in the runs, used to scale starting values.
 struct Sizes {
   double torque = 0, speed = 0, pressure = 0, charge = 0, sample = 0;
   double flow = 0, arm_stiffness = 0, arm_damping = 0;
@@ -71,11 +72,11 @@ Sizes SizesOf(const model::ModelDescription& model, const std::vector<const RunD
 // The base parameters that the hypothesis holds, as if they were free: those above 0, as logarithms.
 std::vector<FreeParameter> HeldParameters(const Hypothesis& hypothesis);
 
-// The hypothesis with an effect added, once for each of its starting points; a base parameter freed, as it is
-// and, when `elsewhere`, also somewhat smaller and larger.
+// The hypothesis with an effect added, once for each of its starting points, or with a base parameter freed,
+// starting from its value and, when `elsewhere`, also from a somewhat smaller and a somewhat larger one.
 std::vector<Hypothesis> With(const Hypothesis& hypothesis, const Change& change, const Sizes& sizes,
                              bool elsewhere);
-// The hypothesis with the change taken back: base parameters as in `given`.
+// The hypothesis with the change undone; base parameters return to their values in `given`.
 Hypothesis Without(const Hypothesis& hypothesis, const Change& change, const model::ModelDescription& given);
 
 }  // namespace hydro::diagnose

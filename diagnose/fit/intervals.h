@@ -1,4 +1,4 @@
-// How well fitted parameters are known.
+// How precisely the fitted parameters are known.
 #pragma once
 
 #include <vector>
@@ -11,9 +11,9 @@ struct Interval {
   double low = 0, high = 0;
 };
 
-// 95 % intervals of the fit's free parameters, in the order of Free(), allowing for residuals that are not
-// independent: from the scatter of what stretches of each run, and whole runs, say of them; and for what the
-// equations idealise, their own and those of the numbers that are held.
+// 95 % intervals of the fit's free parameters, in the order of Free(). They allow for residuals that are not
+// independent, from the scatter between stretches of each run and between whole runs, and for what the
+// equations idealise, in their own form and in the numbers that are held.
 std::vector<Interval> Intervals(const Fitted& fitted, const std::vector<const RunData*>& runs, int jobs);
 
 }  // namespace hydro::diagnose

@@ -1,4 +1,4 @@
-// A run's residuals against a model, in noise units, with their derivatives.
+// A run's residuals relative to a model, in noise units, with their derivatives.
 #pragma once
 
 #include <cstddef>
@@ -11,23 +11,23 @@
 namespace hydro::diagnose {
 
 struct Residuals {
-  // Predicted less measured, over the noise; signal after signal, each one's valid samples in order of time.
+  // (Predicted - measured) / noise, signal after signal, each signal's valid samples in order of time.
   std::vector<double> values;
-  std::vector<double> jacobian;  // by columns: values.size() a column, one column an unknown
-  std::vector<size_t> first;     // where each of the run's signals begins; one more, the end
+  std::vector<double> jacobian;  // by columns: one column of values.size() an unknown
+  std::vector<size_t> first;     // where each of the run's signals begins, then the end
 };
 
 // Without derivatives. Throws ModelError when the model cannot be simulated.
 Residuals ResidualsOf(const model::ModelDescription& model, const RunData& run,
                       const model::StartState& start);
 
-// With derivatives by the free parameters as a fit moves them (logarithms of some), then by `starts`. The
-// values of `free` are those of the model. Throws as above.
+// With derivatives with respect to the free parameters as a fit moves them (some as logarithms), then with
+// respect to `starts`. The values of `free` are those of the model. Throws as above.
 Residuals ResidualsOf(const model::ModelDescription& model, const RunData& run,
                       const model::StartState& start, const std::vector<FreeParameter>& free,
                       const std::vector<model::Unknown>& starts, bool repeated_effects = false);
 
-// The unknown starts of a run.
+// The unknown start states of a run.
 std::vector<model::Unknown> StartUnknowns(const RunData& run);
 
 }  // namespace hydro::diagnose

@@ -1,6 +1,6 @@
 // What each balance of the model lacks along a measured run: an extended Kalman filter and a Bryson-Frazier
-// smoother, with the model's states and a disturbance in each balance that may wander. Signals are smoothed
-// by the equations themselves, so nothing noisy is ever differentiated.
+// smoother over the model's states and a wandering disturbance in each balance. The equations themselves
+// smooth the signals, so nothing noisy is ever differentiated.
 #pragma once
 
 #include <array>
@@ -17,11 +17,11 @@ namespace hydro::diagnose {
 enum class Balance { kPumpTorque, kFlow1, kFlow2, kArmTorque };
 inline constexpr size_t kBalances = 4;
 
-// This many draws of noise alone go through the same filter. They show which disturbances are significant.
+// This many draws of pure noise go through the same filter. They show which disturbances are significant.
 inline constexpr size_t kNoiseDraws = 6;
 
 struct Disturbance {
-  std::vector<double> value;                           // a sample each; in-lbf or in^3/s
+  std::vector<double> value;                           // one a sample; in-lbf or in^3/s
   std::array<std::vector<double>, kNoiseDraws> noise;  // what the sensors' noise alone makes of it
   std::vector<uint8_t> informative;  // 0: friction at rest or an open valve hides the balance there
 };
@@ -33,7 +33,7 @@ struct SmoothedRun {
   std::vector<double> motor_angle, motor_speed, p1, p2, arm_angle, arm_speed;
 };
 
-// psi, subtracted from measured pressures before they are used.
+// psi; subtracted from the measured pressures before use.
 struct PressureOffsets {
   double p1 = 0, p2 = 0;
 };

@@ -15,10 +15,10 @@ class Explanations {
   Explanations(const std::vector<SmoothedRun>& smoothed, const std::vector<const RunData*>& runs)
       : smoothed_(smoothed), runs_(runs) {}
 
-  // For a missing term of the balance itself; simple variables come first. `quick`: also those that repeat
-  // within a turn.
+  // Candidates for a missing term of the balance itself, simple variables first. `quick`: include those that
+  // repeat within a turn.
   std::vector<Variable> States(Balance balance, bool quick) const;
-  // The voltage, its excess over several limits, and its lead over itself after several lags.
+  // The voltage, its excess over several limits, and its difference from itself after several lags.
   std::vector<Variable> Commands() const;
   // The effect of late readings on a balance: the rates of the signals that drive it.
   std::vector<Variable> Lateness(Balance balance) const;
@@ -26,7 +26,7 @@ class Explanations {
  private:
   template <class F>
   Variable Make(const std::string& name, const std::string& unit, const F& f) const;
-  // Repeats with the motor's angle, `periods` times a turn.
+  // A sinusoid of the motor's angle with this many `periods` a turn.
   Variable Turn(int periods) const;
   // The same, in proportion to the speed or the pressure difference.
   Variable Ripple(Balance balance, int periods) const;

@@ -10,7 +10,7 @@ namespace hydro::diagnose {
 
 struct Localisation {
   std::vector<Location> location;    // by share, largest first; empty when nothing is missing
-  std::vector<MissingTerm> missing;  // of the largest one, against what it depends on most
+  std::vector<MissingTerm> missing;  // of the largest, against what it depends on most
 };
 
 // `model` is the one that disagrees. Balances that the runs do not measure are left out.

@@ -1,4 +1,4 @@
-// Offsets of the pressure transducers, from what they read where a one-way valve holds the pressure.
+// Offsets of the pressure transducers, from their readings where a one-way valve holds the pressure.
 #pragma once
 
 #include <vector>
@@ -9,7 +9,7 @@
 
 namespace hydro::diagnose {
 
-// Both are 0 if the transducers agree with each other, because p_3 may then be what is wrong, and if a side
+// Both are 0 if the transducers agree with each other, because then p_3 may be what is wrong, or if a side
 // never rests at its lowest pressure.
 PressureOffsets RestOffsets(const model::ModelDescription& model, const std::vector<const RunData*>& runs);
 

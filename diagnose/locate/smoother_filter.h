@@ -1,5 +1,5 @@
-// The smoother's forward pass: an extended Kalman filter along a run, with the model's states, a disturbance
-// in each balance that may wander, and the same for draws of noise. For the smoother's own files only.
+// The smoother's forward pass: an extended Kalman filter along a run over the model's states and a wandering
+// disturbance in each balance, run in parallel for draws of noise. Only for the smoother's own files.
 #pragma once
 
 #include <array>
@@ -27,10 +27,10 @@ class Filter {
   void KeepVolumes();
   void CopyStateToColumns();
 
-  // At a sample: what it reads, and the mode from it on.
+  // At a sample: takes its readings and sets the mode from it on.
   void ReadSample(size_t k);
   void Correct(size_t k);
-  // From a sample to the next.
+  // From one sample to the next.
   void Advance(size_t k);
   double Linearise(size_t k);
   Rates DisturbanceRates(size_t k);

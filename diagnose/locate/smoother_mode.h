@@ -1,5 +1,5 @@
-// Which mode the actuator was in at a sample: the switches of the pump and the valves from what was measured,
-// else from the estimated state. For the smoother's own files only.
+// The actuator's mode at a sample: the switches of the pump and the valves from the measurements where they
+// tell, else from the estimated state. Only for the smoother's own files.
 #pragma once
 
 #include <array>
@@ -13,14 +13,14 @@ class ModeAtSample {
  public:
   explicit ModeAtSample(const Setup& setup) : setup_(setup) {}
 
-  // Sets the mode at sample k, which was `mode` before, and which balances the sample informs of. Leaves the
+  // Sets the mode at sample k (`mode` holds the one before) and which balances the sample informs. Leaves the
   // terms and rates of that mode.
   void Set(const model::Equations& equations, size_t k, double voltage, const double* state,
            model::Mode* mode, model::Terms<double>* terms, double* rate,
            std::array<uint8_t, kBalances>* informative);
 
-  // Of side 1 (0) and side 2 (1), at the last sample: near p_3, where its valve may be open or closed; and
-  // the rate of its pressure were the valve closed.
+  // For side 1 (0) and side 2 (1), at the last sample: whether its pressure is near p_3, where its valve may
+  // be open or closed; and the rate of its pressure if the valve were closed.
   bool at_valve(int side) const { return at_valve_[side]; }
   double free_rate(int side) const { return free_rate_[side]; }
 

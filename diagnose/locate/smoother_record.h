@@ -1,4 +1,4 @@
-// What the filter records for the backward pass. For the smoother's own files only: Eigen's types.
+// What the filter records for the backward pass. Only for the smoother's own files: it exposes Eigen's types.
 #pragma once
 
 #include <Eigen/Core>
@@ -19,7 +19,7 @@ using Vector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMostStates, 1>;
 using Columns = Eigen::Matrix<double, Eigen::Dynamic, kColumns, 0, kMostStates, kColumns>;
 using RowOfColumns = Eigen::Matrix<double, 1, kColumns>;
 
-// A sample each; flat, as the number of states is known late.
+// One entry a sample, in flat arrays: the number of states is known only at run time.
 class Record {
  public:
   Record(size_t samples, int size)
@@ -48,7 +48,7 @@ class Record {
   }
   std::array<uint8_t, kBalances>& informative(size_t k) { return informative_[k]; }
 
-  // Readings are added in the order of samples and taken back in reverse.
+  // Readings are added in the order of the samples and removed in reverse.
   void Add(size_t k, const Update& update, const Vector& gain) {
     ++updates_[k];
     update_.push_back(update);

@@ -1,5 +1,5 @@
 // What the smoother works with on one run: the sensors that it reads, the states that it estimates, and how
-// much each balance's disturbance may wander. For the smoother's own files only: Eigen's types.
+// much each balance's disturbance may wander. Only for the smoother's own files: it exposes Eigen's types.
 #pragma once
 
 #include <array>
@@ -17,12 +17,13 @@ struct Sensor {
   model::Channel channel = model::Channel::kP1;
   const std::vector<double>* values = nullptr;
   double offset = 0, variance = 0;
-  std::vector<float> repeats;  // samples that a reading stays the same; empty where noise hides the steps
-  Vector row;                  // d reading/d state
+  // How many samples each reading stays the same; empty where noise hides the steps.
+  std::vector<float> repeats;
+  Vector row;  // d reading/d state
   std::array<std::vector<float>, kNoiseDraws> noise;
 };
 
-// Refers to the model and the run.
+// Keeps references to the model and the run.
 struct Setup {
   const model::ModelDescription& model;
   const RunData& run;
@@ -33,13 +34,13 @@ struct Setup {
   std::vector<Sensor> sensors;
   int states = 0;                      // of the model
   int size = 0;                        // with the disturbances
-  std::array<int, kBalances> place{};  // of each disturbance among the states, -1: none
+  std::array<int, kBalances> place{};  // index of each disturbance among the states; -1: none
   std::array<double, kBalances> wander{};
 
   bool free_arm() const { return run.stimulus.shaft == model::Shaft::kFree; }
   // 0 where the channel is not measured.
   double Variance(model::Channel channel) const;
-  // The state that the run begins with.
+  // Sets the state that the run begins with.
   void Begin(const model::Equations& equations, double* state, model::Mode* mode) const;
 };
 

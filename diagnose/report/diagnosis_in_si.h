@@ -14,8 +14,8 @@ struct ShownUnit {
 // The unit of a channel: the paper's, or SI (kPa).
 ShownUnit UnitOf(model::Channel channel, bool si);
 
-// Parameters, effects and missing terms converted from the paper's units. Signals and curves are unchanged (see UnitOf), and
-// so are the sentences.
+// Converts parameters, effects and missing terms from the paper's units. Signals and curves stay as they are
+// (see UnitOf), and so do the sentences.
 Diagnosis InSi(Diagnosis diagnosis);
 
 }  // namespace hydro::diagnose

@@ -1,4 +1,4 @@
-// The progress of a diagnosis, for people at a terminal and in logs.
+// Shows the progress of a diagnosis, to people at a terminal and in logs.
 #pragma once
 
 #include <cstdio>
@@ -9,11 +9,11 @@
 
 namespace hydro::diagnose {
 
-// A bar with the stage and the time left on a terminal; elsewhere a line when a stage begins, the first one
-// when the second does.
+// On a terminal, a bar with the stage and the time left. Elsewhere, one line when a stage begins; the first
+// line waits for the second stage.
 class ProgressBar {
  public:
-  // `out` stays the caller's. The bar is wiped away in the end.
+  // `out` stays the caller's. The bar is erased at the end.
   ProgressBar(std::FILE* out, bool terminal) : out_(out), terminal_(terminal), line_(out) {}
 
   // `elapsed`: s since the work began.

@@ -1,4 +1,4 @@
-// report.html: a diagnosis for a person, on a screen or on paper.
+// report.html: a diagnosis for people, on a screen or on paper.
 #pragma once
 
 #include <string>
@@ -7,8 +7,8 @@
 
 namespace hydro::diagnose {
 
-// One page that needs nothing else: pictures inline, no scripts, no time of day. Identical diagnoses give
-// identical bytes. With `si`, figures are in SI.
+// One self-contained page: inline pictures, no scripts, no time of day. Identical diagnoses give identical
+// bytes. With `si`, figures are in SI.
 std::string ReportHtml(const Diagnosis& diagnosis, bool si);
 
 }  // namespace hydro::diagnose

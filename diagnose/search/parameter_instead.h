@@ -1,14 +1,16 @@
-// Effects that are none: what a parameter does as well, within what is known of it anyway.
+// Spurious effects: those that a base parameter replaces equally well, within the accuracy to which it is
+// known anyway.
 #pragma once
 
 #include "diagnose/search/search.h"
 
 namespace hydro::diagnose {
 
-// Where friction holds the shaft or lets it slip, a thousandth of a number decides when, and an effect of no
-// size may seem to be needed beside the true ones. Of what was tried: the explanation that has a base
-// parameter in the place of one of several effects of the best, moves it by less than 1 % of its value in
-// `given`, and predicts as well; of several the best. Null when there is none.
+// Where friction holds the shaft or lets it slip, a thousandth of a number decides when, and an effect of
+// zero size may seem necessary beside the true ones. Looks among the explanations tried for one that replaces
+// one of the best explanation's several effects by a base parameter, moves that parameter by less than 1 % of
+// its value in `given`, and predicts as well; if there are several, returns the best. Null when there is
+// none.
 const Explanation* ParameterInstead(const SearchResult& search, const model::ModelDescription& given);
 
 }  // namespace hydro::diagnose

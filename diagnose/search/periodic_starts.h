@@ -1,6 +1,6 @@
-// Starting values of effects that repeat within a turn of the shaft, read off the balances. To a simulation
-// another number of periods is another motion, and its derivatives do not lead from the one to the other; a
-// balance of smoothed signals is a straight line in such an effect, for each whole number of periods.
+// Starting values for effects that repeat within a turn of the shaft, read off the balances. In a simulation,
+// another number of periods is another motion, and derivatives do not lead from one to the other. In a
+// balance of smoothed signals, such an effect is linear for each whole number of periods.
 #pragma once
 
 #include <vector>
@@ -10,9 +10,9 @@
 
 namespace hydro::diagnose {
 
-// `hypothesis` with each effect among `changes` that repeats within a turn (Role::kPeriods), where the torque
-// balance that it leaves open (SmoothDisturbances) plainly repeats too: with the likeliest numbers of
-// periods, and the amplitude and phase that the balance has. Nothing where the runs cannot be smoothed.
+// Adds to `hypothesis` each effect among `changes` that repeats within a turn (Role::kPeriods), if the torque
+// that the balance lacks (SmoothDisturbances) plainly repeats too: with the likeliest numbers of periods, and
+// the amplitude and phase found in the balance. Empty if the runs cannot be smoothed.
 std::vector<Hypothesis> WithPeriodic(const Hypothesis& hypothesis, const std::vector<Change>& changes,
                                      const std::vector<const RunData*>& runs, int jobs);
 

@@ -1,4 +1,4 @@
-// Where a diagnosis stands; told to whoever shows it.
+// How far a diagnosis has come, for whoever displays it.
 #pragma once
 
 #include <functional>
@@ -11,7 +11,7 @@ struct Progress {
   double fraction = 0;  // of all the work, 0 to 1, as far as is known
 };
 
-// Called from one thread at a time.
+// Never called from two threads at once.
 using TellProgress = std::function<void(const Progress&)>;
 
 }  // namespace hydro::diagnose

@@ -12,15 +12,15 @@ namespace hydro::diagnose {
 
 struct Scanned {
   Change change;
-  Hypothesis start;     // with the change, its parameters moved to where the score test expects them
-  double expected = 0;  // fall of the sum of squared residuals that it expects
-  std::string failure;  // "" or why it cannot be judged
-  // Where the runs begin with it; empty: where they do without it.
+  Hypothesis start;     // with the change, moved to where the score test expects it
+  double expected = 0;  // fall of the sum of squared residuals
+  std::string failure;  // why it cannot be judged, or ""
+  // Where the runs begin with the change; empty: where they begin without it.
   std::vector<model::StartState> run_starts;
 };
 
 // One row for each change and starting point, best first within each change. The change's derivatives are
-// projected off those of all that `current` has free and of the runs' starts.
+// projected off those of everything that is free in `current` and of the runs' starts.
 std::vector<std::vector<Scanned>> Scan(const Fitted& current, const std::vector<const RunData*>& runs,
                                        const std::vector<Change>& changes, const Sizes& sizes, bool elsewhere,
                                        int jobs);

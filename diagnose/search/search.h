@@ -1,5 +1,5 @@
-// The search for what a model lacks: effects and parameters are added while that predicts held-out runs
-// materially better, then taken back and exchanged for others.
+// The search for what a model lacks: adds effects and parameters while that predicts held-out runs materially
+// better, then tries removing each and exchanging it for another.
 #pragma once
 
 #include <string>
@@ -13,7 +13,7 @@
 
 namespace hydro::diagnose {
 
-// A hypothesis with what is known of it.
+// A hypothesis and how well it does.
 struct Explanation {
   Fitted fitted;
   HeldOut held_out;
@@ -26,11 +26,12 @@ struct Explanation {
 
 struct Rated {
   Change change;
-  double expected = 0;  // fall of the squared gap that the score test of the given model expects
-  std::string failure;  // of its simulation
+  // Fall of the squared gap that the score test of the given model expects.
+  double expected = 0;
+  std::string failure;  // why it cannot be simulated
 };
 
-// Everything that was tried, by what was added to the given model.
+// Everything that was tried.
 struct SearchResult {
   Explanation given;
   std::vector<Rated> rated;        // all single changes to the given model
@@ -41,24 +42,23 @@ struct SearchResult {
 struct SearchContext {
   model::ModelDescription given;
   std::vector<const RunData*> runs;
-  std::vector<const RunData*> held_out;  // empty: the runs in turn
+  std::vector<const RunData*> held_out;  // empty: the runs are held out in turn
   std::vector<Change> changes;           // those that may be made
   Sizes sizes;
   int jobs = 1;
   TellProgress tell;
 };
 
-// Fits, and predicts the held-out runs, both with the options' jobs.
+// Fits the hypothesis and predicts the held-out runs, both with the options' jobs.
 Explanation Explain(const SearchContext& context, const Hypothesis& hypothesis,
                     const std::vector<model::StartState>& starts, const FitOptions& options);
 
-// The same begun once more from the measured starts, where its fit leaves a gap, and where that is left
-// still, from each run's best (BestStarts); what fits best of these. Starts that were fitted while something
-// was missing made up for it, and may hold the fit where friction or cogging catch the shaft at another
-// place.
+// If the fit leaves a gap, fits again from the measured starts and, if a gap still remains, from each run's
+// best start (BestStarts); returns the best fit. Starts that were fitted while something was missing made up
+// for it, and may trap the fit where friction or cogging catches the shaft in another place.
 Explanation BegunAgain(const SearchContext& context, const Explanation& one, const FitOptions& options);
 
-// From `from` on, a hypothesis without changes of its own.
+// Searches from `from`, a hypothesis without changes of its own.
 SearchResult Search(const SearchContext& context, const Hypothesis& from, int most_changes);
 
 }  // namespace hydro::diagnose

@@ -1,4 +1,4 @@
-// What a search's results mean: the verdict, ties, intervals, reasons.
+// Draws conclusions from a search: the verdict, ties, intervals and reasons.
 #pragma once
 
 #include "diagnose/data/diagnosis.h"

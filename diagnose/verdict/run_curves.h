@@ -1,4 +1,4 @@
-// Measured signals with those of the model before and after, for tables and pictures.
+// Measured signals beside those of the model before and after, for tables and pictures.
 #pragma once
 
 #include <vector>
@@ -12,7 +12,8 @@ namespace hydro::diagnose {
 std::vector<SignalGap> SignalGaps(const SearchContext& context, const Explanation& given,
                                   const Explanation& refit, const Explanation& best);
 
-// One a run, fitted runs first; those held out in turn as predicted by the fit that did not see them.
+// One a run, fitted runs first; runs held out in turn are shown as predicted by the fit that did not see
+// them.
 std::vector<RunCurves> CurvesOf(const SearchContext& context, const Explanation& given,
                                 const Explanation& best);
 
