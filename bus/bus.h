@@ -5,15 +5,15 @@
 // recorded log (log_bus.h).
 //
 // The contract, which every transport keeps (tests/bus/bus_contract_test.cc):
-// - Messages on one channel from one sender arrive in the order they were sent.
+// - Messages from one sender on one channel arrive in the order in which they were sent.
 // - Handlers run only inside HandleUntil(), on the thread that calls it, one at a time. What a handler
-//   publishes is delivered in a later turn of the same HandleUntil() or in a later one, never inside
+//   publishes is delivered in a later turn of the same HandleUntil() or in a later call, never inside
 //   Publish().
-// - An exception thrown by a handler leaves HandleUntil() (it never travels through C code).
+// - An exception thrown by a handler leaves HandleUntil() (it never passes through C code).
 // - A message that cannot be decoded (another type, truncated) is counted in undecodable() and not delivered.
-// - The seal of an authenticated message (bus/seal/) is never part of what is delivered. Where the bus has a
-//   key, a message that is not genuine is counted in refused() and not delivered.
-// - A bus is used by one thread.
+// - The seal of an authenticated message (bus/seal/) is never delivered with it. On a bus with a key, a
+//   message that is not genuine is counted in refused() and not delivered.
+// - Only one thread uses a bus.
 #pragma once
 
 #include <chrono>
@@ -30,14 +30,14 @@
 
 namespace hydro::bus {
 
-// The bus cannot work here: no multicast route, a bad URL, a self-test that failed. what() says what to do
-// about it.
+// The bus cannot work here: no multicast route, a bad URL, a failed self-test. what() says what to do about
+// it.
 class BusError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-// How to copy, encode and decode a type of message that is not known when the program is compiled.
+// How to copy, encode and decode a message type that is not known at compile time.
 struct MessageType {
   int64_t hash;
   int (*encoded_size)(const void* message);
@@ -48,7 +48,7 @@ struct MessageType {
   bool (*decode_into)(void* message, const void* data, int size);  // false: not a message of this type
 };
 
-// True when decoding `size` bytes took all of them but for a seal.
+// True when decoding consumed all `size` bytes, except for a seal.
 inline bool DecodedAll(int decoded, const void* data, int size) {
   return decoded == size || (decoded >= 0 && decoded == SizeWithoutSeal(data, size));
 }
@@ -73,7 +73,7 @@ const MessageType& TypeOf() {
   return type;
 }
 
-// A message as it crosses the wire or lies in a log. Its bytes last only as long as the call of the handler.
+// A message as it crosses the wire or lies in a log. Its bytes are valid only while the handler runs.
 struct RawMessage {
   std::string_view channel;
   const uint8_t* data = nullptr;
@@ -81,7 +81,7 @@ struct RawMessage {
   int64_t receive_utime = 0;  // us since 1970-01-01 UTC, or simulated time, when it was received
 };
 
-// Messages that arrived on an authenticated channel and were not accepted, by reason.
+// Messages refused on authenticated channels, by reason.
 struct RefusedMessages {
   int64_t unsealed = 0;        // without a seal: the sender has no key
   int64_t wrong_seal = 0;      // the sender has another key, or the message changed on the way
@@ -92,7 +92,7 @@ struct RefusedMessages {
   int64_t total() const { return unsealed + wrong_seal + repeated + unknown_sender; }
 };
 
-// A channel that the bus has looked up already, for messages of one type: what a Publisher sends through.
+// A channel that the bus has already looked up, for messages of one type: what a Publisher sends through.
 class Outlet {
  public:
   virtual ~Outlet() = default;
@@ -102,14 +102,14 @@ class Outlet {
   virtual void Send(const void* message) = 0;
 };
 
-// The fast way to send many messages on one channel (Bus::Advertise). Copies send on the same channel. It must
+// The fast way to send many messages on one channel (Bus::Advertise). Copies send on the same channel. Must
 // not outlive its bus.
 template <class Message>
 class Publisher {
  public:
   explicit Publisher(std::shared_ptr<Outlet> outlet) : outlet_(std::move(outlet)) {}
 
-  // Does what Bus::Publish() does on the advertised channel.
+  // Like Bus::Publish() on the advertised channel.
   void Send(const Message& message) { outlet_->Send(&message); }
 
  private:
@@ -118,7 +118,7 @@ class Publisher {
 
 class Bus {
  public:
-  using TimePoint = std::chrono::steady_clock::time_point;  // of the Clock that belongs to this bus
+  using TimePoint = std::chrono::steady_clock::time_point;  // of this bus's Clock
 
   virtual ~Bus() = default;
   Bus() = default;
@@ -126,20 +126,20 @@ class Bus {
   Bus& operator=(const Bus&) = delete;
 
   // Sends `message` on `channel`. Throws BusError when the transport refuses it. While the network is down (a
-  // cable, an interface), messages are merely lost: see unsent().
+  // cable, an interface), messages are lost without an error: see unsent().
   template <class Message>
   void Publish(const std::string& channel, const Message& message) {
     PublishTyped(channel, TypeOf<Message>(), &message);
   }
 
-  // Looks up `channel` once, for messages that are sent in every cycle: advertise in the constructor, Send()
-  // in the loop.
+  // Looks up `channel` once, for messages sent in every cycle: advertise in the constructor, Send() in the
+  // loop.
   template <class Message>
   Publisher<Message> Advertise(const std::string& channel) {
     return Publisher<Message>(MakeOutlet(channel, TypeOf<Message>()));
   }
 
-  // Calls `handler` for each message on exactly `channel`. Subscriptions last as long as the bus.
+  // Calls `handler` for each message on exactly this channel. A subscription lasts as long as the bus.
   template <class Message>
   void Subscribe(const std::string& channel, std::function<void(const Message&)> handler) {
     SubscribeTyped(channel, TypeOf<Message>(), [handler = std::move(handler)](const void* message) {
@@ -147,29 +147,29 @@ class Bus {
     });
   }
 
-  // Calls `handler` with the encoded form of every message on every channel, in order of arrival.
+  // Calls `handler` with every encoded message on every channel, in order of arrival.
   virtual void SubscribeAll(std::function<void(const RawMessage&)> handler) = 0;
 
-  // Sends bytes that are encoded already (replay, relay).
+  // Sends bytes that are already encoded (replay, relay).
   virtual void PublishRaw(const std::string& channel, const void* data, int size) = 0;
 
-  // Waits for a message until `deadline`, then handles it and all others that are waiting. Returns how many
-  // it handled; 0 means that the deadline passed or that a signal arrived: a loop that ends on SIGINT checks
-  // its flag after each call. A bus on a simulated clock never waits: when no message does, it advances the
-  // clock to the deadline and returns. A handler must not call this (std::logic_error).
+  // Waits until `deadline` for a message, then handles it and all others that are waiting. Returns how many
+  // it handled. 0 means that the deadline passed or a signal arrived, so a loop that ends on SIGINT checks
+  // its flag after each call. A bus on a simulated clock never waits: with no message pending, it advances
+  // the clock to the deadline and returns. A handler must not call this (std::logic_error).
   virtual int HandleUntil(TimePoint deadline) = 0;
 
-  // Messages that arrived on a subscribed channel and could not be decoded as its type.
+  // Messages that arrived on a subscribed channel but could not be decoded as its type.
   virtual int64_t undecodable() const = 0;
 
   // Messages that could not be sent because the network was down.
   virtual int64_t unsent() const { return 0; }
 
-  // The channel of the newest message that could not be decoded; empty when there was none, or when the
-  // transport does not know.
+  // The channel of the newest message that could not be decoded; empty when there was none or the transport
+  // does not know.
   const std::string& undecodable_channel() const { return undecodable_channel_; }
 
-  // Messages that were not genuine. None on a bus without a key.
+  // Messages that were not genuine. Always none on a bus without a key.
   virtual const RefusedMessages& refused() const {
     static const RefusedMessages kNone;
     return kNone;

@@ -14,21 +14,21 @@ class Channels {
  public:
   explicit Channels(const std::string& suffix = "");
 
-  // The channel of a type of message, e.g. Of<state_t>(): HYDRO_STATE and the suffix.
+  // The channel of a message type, e.g. Of<state_t>(): HYDRO_STATE plus the suffix.
   template <StackMessage Message>
   const std::string& Of() const {
     return names_[MessageIndex<Message>()];
   }
 
-  // In the order of the table.
+  // In the table's order.
   const std::array<std::string, kMessageCount>& names() const { return names_; }
 
  private:
   std::array<std::string, kMessageCount> names_;
 };
 
-// Reads the numbers of a message without decoding the rest. Nothing: it takes no part in the loops, or is not
-// whole.
+// Reads a message's numbers without decoding the rest. Empty when the message takes no part in the loops or
+// is incomplete.
 std::optional<LoopNumbers> ReadLoopNumbers(const RawMessage& message, const Channels& channels);
 
 }  // namespace hydro::bus

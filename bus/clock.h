@@ -22,10 +22,10 @@ class Clock {
   // Microseconds since 1970-01-01 UTC, for the utime field of messages.
   virtual int64_t Utime() const = 0;
 
-  // How long the machine has been suspended since it was booted. Now() stands still while it is.
+  // How long the machine has been suspended since boot. Now() does not count that time.
   virtual Duration Suspended() const { return {}; }
 
-  // True when time passes only because somebody who waits advances the clock.
+  // True when time passes only because a caller that waits advances the clock.
   virtual bool simulated() const { return false; }
 };
 
@@ -51,7 +51,7 @@ class WallClock : public Clock {
   }
 };
 
-// Starts at 0 and stands still until it is advanced.
+// Starts at 0 and stands still until advanced.
 class SimulatedClock : public Clock {
  public:
   TimePoint Now() const override { return now_; }

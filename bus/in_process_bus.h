@@ -1,4 +1,4 @@
-// The bus within one process: no sockets, no threads, and no encoding unless somebody subscribes to the
+// The bus within one process: no sockets, no threads, and no encoding unless there is a subscriber to the
 // encoded messages.
 #pragma once
 
@@ -14,11 +14,11 @@
 
 namespace hydro::bus {
 
-// Dispatches messages in the order in which they were published, across all channels. Does not keep a message
-// that nobody subscribes to. SubscribeAll() handlers see a message before the typed ones do.
+// Dispatches messages in the order of publication, across all channels. Drops a message that has no
+// subscriber. SubscribeAll() handlers see a message before the typed ones do.
 class InProcessBus : public Bus {
  public:
-  // `clock` is advanced by HandleUntil() and stamps what SubscribeAll() sees; null: wall time, and
+  // HandleUntil() advances `clock`, which also stamps what SubscribeAll() sees. Null: wall time, and
   // HandleUntil() sleeps until the deadline when nothing is waiting.
   explicit InProcessBus(SimulatedClock* clock);
   ~InProcessBus() override;
@@ -26,8 +26,7 @@ class InProcessBus : public Bus {
   void SubscribeAll(std::function<void(const RawMessage&)> handler) override;
   void PublishRaw(const std::string& channel, const void* data, int size) override;
 
-  // Handles the messages that are waiting when it is called. What handlers publish meanwhile waits for the
-  // next call.
+  // Handles the messages waiting at the call. What handlers publish meanwhile waits for the next call.
   int HandleUntil(TimePoint deadline) override;
   int64_t undecodable() const override { return undecodable_; }
 
@@ -50,9 +49,9 @@ class InProcessBus : public Bus {
   int64_t undecodable_ = 0;
   bool handling_ = false;
   std::unordered_map<std::string, std::unique_ptr<Channel>> channels_;
-  std::array<Channel*, 16> recent_{};  // by the address of the caller's name, which is then compared
+  std::array<Channel*, 16> recent_{};  // by the address of the caller's name, whose text is then compared
   std::deque<std::function<void(const RawMessage&)>> taps_;
-  std::vector<uint8_t> encoded_;  // used again for each message
+  std::vector<uint8_t> encoded_;  // reused for each message
   // Ring of the channels of the waiting messages, oldest first; its size is a power of 2.
   std::vector<Channel*> order_;
   size_t first_ = 0;  // index of the oldest; counts on, the position is modulo the size

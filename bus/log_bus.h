@@ -16,33 +16,32 @@ namespace hydro::bus {
 // Handles events in the order of the log. What is published does not come back as a message.
 class LogBus : public Bus {
  public:
-  // Fills in the next event, whose receive_utime is the log's timestamp; its bytes and channel must last
-  // until the next call. False: there is none.
+  // Fills in the next event; its receive_utime is the log's timestamp. Its bytes and channel must stay valid
+  // until the next call. False: the log has ended.
   using EventSource = std::function<bool(RawMessage*)>;
 
   struct Options {
-    // Advanced to each event's timestamp before it is handled, from the first event on; null: wall time.
+    // Advanced to each event's timestamp before it is handled, from the first event on. Null: wall time.
     SimulatedClock* clock = nullptr;
     // Seconds of the log per second of wall time; 0: as fast as possible. With `clock` it must be 0.
     double speed = 0;
-    // Called with what the application publishes; where empty, it is dropped.
+    // Called with what the application publishes. Empty: publications are dropped.
     std::function<void(const std::string& channel, const MessageType& type, const void* message)> published =
         {};
     std::function<void(const std::string& channel, const void* data, int size)> published_raw = {};
   };
 
-  // Throws std::invalid_argument for a speed that is negative or not possible with the clock.
+  // Throws std::invalid_argument for a speed that is negative or does not fit the clock.
   LogBus(EventSource source, Options options);
 
-  // True when every event has been handled or passed over: HandleUntil() will only return 0.
+  // True when every event has been handled or skipped: HandleUntil() will only return 0.
   bool at_end() const { return !has_next_; }
 
   void SubscribeAll(std::function<void(const RawMessage&)> handler) override;
   void PublishRaw(const std::string& channel, const void* data, int size) override;
 
-  // Handles the next event that somebody subscribes to (one at a time, so that the application can act in
-  // between) and returns 1, or returns 0 when it lies beyond `deadline`, at the end of the log, or at a
-  // signal.
+  // Handles the next event that has a subscriber and returns 1: one at a time, so that the application can
+  // act in between. Returns 0 when that event lies beyond `deadline`, at the end of the log, or at a signal.
   int HandleUntil(TimePoint deadline) override;
   int64_t undecodable() const override { return undecodable_; }
 
@@ -72,7 +71,7 @@ class LogBus : public Bus {
   TimePoint wall_start_;  // when the first event is due
   int64_t first_utime_ = 0;
   int64_t undecodable_ = 0;
-  std::deque<Handler> handlers_;  // a handler may subscribe: those before it stay where they are
+  std::deque<Handler> handlers_;  // a handler may subscribe: existing ones stay in place
   std::deque<std::function<void(const RawMessage&)>> taps_;
 };
 

@@ -1,7 +1,7 @@
-// The messages of a stack: one table, from which everything follows that depends on which messages there are.
-// The names of the channels (channels.h), what is sealed (seal/authenticated_channels.h), what the logger
-// orders and counts, what is decoded in logs and repaired, what is fuzzed, and docs/messages.md all derive
-// from it. A new message is one .lcm file in lcmtypes/ and one row here.
+// The messages of a stack: one table, from which everything that depends on the set of messages derives: the
+// names of the channels (channels.h), what is sealed (seal/authenticated_channels.h), what the logger orders
+// and counts, what is decoded in logs and repaired, what is fuzzed, and docs/messages.md. A new message is
+// one .lcm file in lcmtypes/ and one row here.
 #pragma once
 
 #include <array>
@@ -24,19 +24,19 @@ enum class Rate {
   kEvent,             // when something happens, and again while it lasts
 };
 
-// Which part a message has in the control loops. Those that have one are put in order by the logger in
-// lockstep (log/causal_order.h), and it counts those that are missing.
+// A message's role in the control loops. In lockstep the logger puts those with a role in order
+// (log/causal_order.h) and counts missing ones.
 enum class LoopPart { kNone, kState, kMotorCommand, kPressureCommand, kArmReference };
 inline constexpr size_t kLoopParts = 5;
 
-// A row of the table: a message has one type, and a type one channel.
+// A row of the table. Each message has one type, and each type one channel.
 template <class MessageClass>
 struct MessageRow {
   using Type = MessageClass;
   std::string_view channel;  // without the stack's suffix
   std::string_view sender;   // for docs/messages.md
   Rate rate = Rate::kEvent;
-  bool sealed = true;  // where the stack has a key: false lets anybody send it
+  bool sealed = true;  // when the stack has a key; false: anybody may send it
   LoopPart part = LoopPart::kNone;
 };
 
@@ -149,17 +149,16 @@ static_assert(NoChannelBeginsAnother(), "a channel with its suffix could be take
 
 }  // namespace internal
 
-// Where an encoded message holds the numbers that identify it, in bytes from its beginning; -1: it has no
-// such field.
+// Byte offsets of the identifying numbers in an encoded message; -1: the message has no such field.
 struct NumberPlaces {
   int tick = -1;
   int session = -1;
   int sequence = -1;
 };
 
-// LCM encodes the type's hash (8 bytes) and then the fields in the order of the .lcm file. The fields in
-// question come first in all our messages, eight bytes each, so an offset in the struct is one in the
-// encoding (a test encodes every type to prove it).
+// LCM encodes the type's hash (8 bytes), then the fields in the order of the .lcm file. In all our messages
+// the identifying fields come first, eight bytes each, so an offset in the struct is also one in the encoding
+// (a test encodes every type to prove it).
 template <StackMessage Message>
 constexpr NumberPlaces PlacesOf() {
   constexpr int kHashSize = 8;

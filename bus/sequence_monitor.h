@@ -1,5 +1,5 @@
-// Watches the session and the sequence numbers of one received channel, so that no message is lost and no
-// second sender takes over without notice.
+// Watches the session and sequence numbers of one received channel, so that no lost message and no second
+// sender goes unnoticed.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +9,7 @@
 
 namespace hydro::bus {
 
-// Pure: time is passed in. One for each channel that has exactly one sender.
+// Pure: the caller passes the time in. One per channel; the channel must have exactly one sender.
 class SequenceMonitor {
  public:
   enum class Verdict {
@@ -25,7 +25,7 @@ class SequenceMonitor {
   // Call it for each message, in order of arrival.
   Verdict Observe(int64_t session, int64_t sequence, Clock::TimePoint now);
 
-  // The same, and a message whose tick is lower than that of one before is kDuplicate.
+  // The same, but a message with a lower tick than an earlier one is kDuplicate.
   Verdict Observe(int64_t session, int64_t sequence, int64_t tick, Clock::TimePoint now);
 
   // A second sender was heard within the last `alive`.
@@ -33,7 +33,7 @@ class SequenceMonitor {
     return second_heard_ && now - *second_heard_ <= alive_;
   }
 
-  std::optional<int64_t> session() const { return session_; }                // of the sender that is followed
+  std::optional<int64_t> session() const { return session_; }                // of the sender being followed
   std::optional<int64_t> second_session() const { return second_session_; }  // of the last kSecondSender
 
   int64_t gap() const { return gap_; }                // messages missing just before the last observed one
@@ -44,10 +44,10 @@ class SequenceMonitor {
 
  private:
   Clock::Duration alive_;
-  std::optional<int64_t> session_;  // of the sender that is followed; none before the first message
+  std::optional<int64_t> session_;  // of the sender being followed; none before the first message
   int64_t sequence_ = 0;            // its newest
   std::optional<int64_t> tick_;     // its newest
-  Clock::TimePoint heard_{};        // when it was heard last
+  Clock::TimePoint heard_{};        // when it was last heard
   std::optional<int64_t> second_session_;
   std::optional<Clock::TimePoint> second_heard_;
   int64_t gap_ = 0;

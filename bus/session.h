@@ -1,4 +1,4 @@
-// The identity of a process on the bus, by which receivers notice a restart or a second sender.
+// The identity of a process on the bus, by which receivers detect a restart or a second sender.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +10,7 @@ namespace hydro::bus {
 // A random number, never 0.
 int64_t RandomSession();
 
-// RandomSession() on a wall clock; 0 on a simulated one, where every run is bit-identical.
+// RandomSession() on a wall clock; 0 on a simulated one, so that every run is bit-identical.
 int64_t SessionOn(const Clock& clock);
 
 }  // namespace hydro::bus

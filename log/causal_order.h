@@ -1,8 +1,8 @@
-// Restores the order of cause and effect among the messages of a lockstep run.
+// Restores cause and effect as the order of the messages of a lockstep run.
 //
 // The kernel delivers a datagram to one socket after another: the plant may receive an answer, and its next
-// state may reach the logger, before the answer does. In lockstep the causes are known: the state of tick k +
-// 1 follows from the answers to tick k, and an answer to tick k from the state of tick k.
+// state reach the logger, before the answer does. In lockstep the causes are known: the state of tick k + 1
+// follows from the answers to tick k, and an answer to tick k from the state of tick k.
 #pragma once
 
 #include <cstdint>
@@ -29,16 +29,16 @@ class CausalOrder {
  public:
   using Kind = bus::LoopPart;
 
-  // The intervals are those of the loops, in plant ticks. `emit` takes the messages in order, during Take()
-  // and Release().
+  // The intervals are those of the loops, in plant ticks. `emit` receives the messages in order, during
+  // Take() and Release().
   CausalOrder(int64_t pressure_interval, int64_t position_interval,
               std::function<void(RecordedMessage)> emit);
 
-  // A message of `kind` that belongs to `tick`, received at `now`. Emits it at once, unless its cause has not
-  // yet arrived.
+  // A message of `kind` that belongs to `tick`, received at `now`. Emitted at once unless its cause is still
+  // missing.
   void Take(Kind kind, int64_t tick, RecordedMessage message, bus::Clock::TimePoint now);
 
-  // Emits what is held: its cause was lost, or the run is over.
+  // Emits what is held, because its cause was lost or the run is over.
   void Release();
 
   // When the oldest held message began to wait.
@@ -54,7 +54,7 @@ class CausalOrder {
   int64_t motor_command_tick_ = -1;       // newest taken
   int64_t pressure_command_tick_ = -1;    // newest taken
   int64_t emitted_state_tick_ = -1;       // newest emitted
-  std::optional<RecordedMessage> state_;  // waits for the answers to the tick before it
+  std::optional<RecordedMessage> state_;  // waits for the answers to the previous tick
   int64_t state_tick_ = -1;
   std::deque<std::pair<int64_t, RecordedMessage>> answers_;  // with their ticks; wait for that state
   std::optional<bus::Clock::TimePoint> held_since_;

@@ -20,7 +20,7 @@ class LogError : public InputError {
   using InputError::InputError;
 };
 
-// One message of a log. Channel and data live as long as the reader that it came from.
+// One message of a log. Channel and data are valid as long as the reader that returned it.
 struct LogEvent {
   int64_t index = 0;   // place in the log, counted from 0
   int64_t offset = 0;  // byte of the file at which it begins
@@ -32,7 +32,7 @@ struct LogEvent {
 };
 
 // Decodes an event with or without a seal (bus/seal_trailer.h; lcm-logger records seals). False when it is
-// not a whole message of that type.
+// not a complete message of that type.
 template <class Message>
 bool DecodeAs(const LogEvent& event, Message& message) {
   try {
@@ -42,8 +42,8 @@ bool DecodeAs(const LogEvent& event, Message& message) {
   }
 }
 
-// Reads the event at `offset`, which is before the end. Returns an empty string, or what is wrong with it:
-// "found ...; allowed ...". `event.index` is left as it is.
+// Reads the event at `offset`, which must lie before the end. Returns an empty string, or what is wrong:
+// "found ...; allowed ...". Leaves `event.index` alone.
 std::string ParseLogEvent(const MappedFile& file, int64_t offset, LogEvent& event);
 
 // True when `offset` is the end, or a sync word (or as much of one as the file still holds) stands there.
@@ -57,11 +57,11 @@ class LogReader {
   // Opens a log. Throws InputError when it cannot be read. An empty file is a log without events.
   explicit LogReader(const std::string& file) : name_(file), file_(file) {}
 
-  // Reads the next event; false at the end. Throws LogError at the first place that is not an event followed
-  // by the end or by another event: an event with a damaged length is not returned.
+  // Reads the next event; false at the end. An event must be followed by the end or by another event, so one
+  // with a damaged length is not returned. Throws LogError at the first place where this fails.
   bool Next(LogEvent& event);
 
-  // Starts again at the first event.
+  // Rewinds to the first event.
   void Rewind() {
     offset_ = 0;
     index_ = 0;

@@ -14,19 +14,19 @@ namespace hydro::log {
 
 class LogWriter {
  public:
-  // Creates `file` (new_file.h): Opening::kDirect for a recording in progress, of which everything flushed
+  // Creates `file` (new_file.h): Opening::kDirect for a recording in progress, where everything flushed
   // survives a kill; Opening::kTemporary for a log that appears whole or not at all. Throws InputError when
   // it cannot be created.
   LogWriter(const std::string& file, Opening opening);
-  // With kDirect flushes what is left, ignoring errors; with kTemporary removes a file that is not finished.
+  // With kDirect, flushes the rest and ignores errors; with kTemporary, removes an unfinished file.
   ~LogWriter();
   LogWriter(const LogWriter&) = delete;
   LogWriter& operator=(const LogWriter&) = delete;
 
-  // Appends an event to the buffer of 1 MiB, which is written when it is full. `utime`: us since 1970-01-01
-  // UTC, or simulated time, when the message was received. The channel has 1 to 63 bytes, the data at most 1
-  // GiB (std::invalid_argument otherwise). Throws WriteError when the disk is full; then the event is not in
-  // the log, and the same call may be tried again.
+  // Appends an event to the 1 MiB buffer, which is written when full. `utime`: us since 1970-01-01 UTC, or
+  // simulated time, at receipt. The channel has 1 to 63 bytes, the data at most 1 GiB (std::invalid_argument
+  // otherwise). Throws WriteError when the disk is full; the event is then not in the log, and the caller may
+  // try the same call again.
   void Append(std::string_view channel, const void* data, size_t size, int64_t utime);
 
   // The same for a message, encoded in place.
@@ -39,19 +39,20 @@ class LogWriter {
     Commit(channel.size(), static_cast<size_t>(size));
   }
 
-  // Passes everything to the operating system, after which it survives a kill of this process. Throws
+  // Hands everything to the operating system, after which it survives a kill of this process. Throws
   // WriteError.
   void Flush();
 
-  // Flushes, closes and, when kTemporary, gives the file its name. No events can be appended afterwards.
+  // Flushes, closes and, with kTemporary, gives the file its name. No events can be appended afterwards.
   void Finish();
 
-  int64_t bytes() const { return bytes_; }    // length of the log, what is still in the buffer included
+  int64_t bytes() const { return bytes_; }    // length of the log, including what is still in the buffer
   int64_t events() const { return events_; }  // events appended
   const std::string& file() const { return file_.name(); }
 
  private:
-  // Room in the buffer for one event; writes its header and channel there and returns the place for its data.
+  // Makes room in the buffer for one event, writes its header and channel, and returns the place for its
+  // data.
   uint8_t* Reserve(std::string_view channel, size_t size, int64_t utime);
   // Counts the event that Reserve() made room for.
   void Commit(size_t channel_size, size_t size);

@@ -1,4 +1,4 @@
-// The table of messages as code that meets them in a log needs it: which type lies on which channel.
+// The table of messages in the form that readers of logs need: which type lies on which channel.
 #pragma once
 
 #include <cstdint>
@@ -20,7 +20,7 @@ struct MessageKind {
 // All kinds, in the order of the table of messages (bus/messages.h).
 const std::vector<MessageKind>& MessageKinds();
 
-// The kind whose channel's name `channel` begins with; the rest is the suffix. Null: none of this stack's.
+// The kind whose name `channel` begins with; the rest is the suffix. Null: not a channel of this stack.
 const MessageKind* KindOfChannel(std::string_view channel);
 
 }  // namespace hydro::log

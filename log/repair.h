@@ -1,4 +1,4 @@
-// hydro-log repair: keeps what is readable of a damaged log.
+// hydro-log repair: keeps what is readable in a damaged log.
 #pragma once
 
 #include <cstdint>
@@ -7,7 +7,7 @@
 
 namespace hydro::log {
 
-// Bytes of a log that are not kept.
+// Bytes of a log that were not kept.
 struct LostBytes {
   int64_t begin = 0;
   int64_t end = 0;  // first byte after them
@@ -20,22 +20,22 @@ struct RepairResult {
   std::vector<LostBytes> lost;  // in order of the file; empty: the log is whole
 };
 
-// Finds the events of a log that can be read. A torn tail loses only the torn event, damage in the middle
-// only the events that it touches:
+// Finds the readable events of a log. A torn tail loses only the torn event, damage in the middle only the
+// events that it touches:
 // - after bytes that are no event, it looks for the next sync word that begins one;
-// - it drops an event whose length is damaged, which what follows it or lies inside it shows;
-// - it drops an event on a channel of this stack that is not a whole message, if others on that channel are.
+// - it drops an event with a damaged length, which the bytes after or inside it reveal;
+// - it drops an incomplete message on a channel of this stack if others on that channel are complete.
 //
 // Throws InputError when the file cannot be read, or has bytes but no event. Unless `out` is empty, writes
-// the events to that log, renumbered, whole or not at all; it may be the same file. Throws InputError or
+// the events to that log, renumbered, whole or not at all; `out` may be the same file. Throws InputError or
 // WriteError when that fails.
 RepairResult RepairLog(const std::string& file, const std::string& out);
 
-// Repairs a log in place. The original stays as FILE.damaged, which must not exist; a whole log is left
-// alone. Throws InputError, also when the log is still being recorded, and WriteError.
+// Repairs a log in place and keeps the original as FILE.damaged, which must not exist yet. Leaves a whole log
+// alone. Throws WriteError, and InputError, also when the log is still being recorded.
 RepairResult RepairInPlace(const std::string& file);
 
-// A line for what was kept, and one for each place where something was lost.
+// One line for what was kept, and one for each place where something was lost.
 std::string Describe(const RepairResult& result, const std::string& file);
 
 }  // namespace hydro::log

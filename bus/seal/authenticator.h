@@ -1,9 +1,9 @@
-// Decides which messages of a stack with a key are genuine and new: seals what this process sends and checks
+// Decides which messages are genuine and new in a stack with a key: seals what this process sends and checks
 // the seals of what it receives.
 //
 // It accepts a message whose seal is right (message_seal.h), whose sender has proved that it is alive, and
 // whose counter is above all earlier ones on that channel. The proof is an introduction (introduction_t) that
-// names the session of this bus, a fresh random number, which no recording of an earlier run can contain.
+// names the session of this bus, a fresh random number that no recording of an earlier run can contain.
 // Therefore
 // - a sender without the key, or with another one, is refused;
 // - a recording is refused, whether of an earlier run or of this one;
@@ -49,17 +49,17 @@ class Authenticator {
     uint64_t counter = 0;
   };
 
-  // `channels`: those that are authenticated, at most 16, the first that of the introductions.
+  // `channels`: the authenticated ones, at most 16, that of the introductions first.
   Authenticator(const BusKey& key, std::vector<std::string> channels);
 
   const std::string& introduction_channel() const { return channels_.front(); }
   int64_t session() const { return session_; }
 
-  // Puts a seal after the first `size` of `bytes`, which grow if they must, and returns the size including
-  // the seal; `size` on a channel that is not authenticated.
+  // Seals the first `size` of `bytes`, which grow as needed, and returns the size including the seal; on a
+  // channel that is not authenticated, returns `size`.
   int Seal(std::string_view channel, std::vector<uint8_t>* bytes, int size);
 
-  // Call it once for each message that arrives.
+  // Call once for each message that arrives.
   Opened Open(std::string_view channel, const void* data, int size, TimePoint now);
 
   // What to send first.
@@ -70,7 +70,7 @@ class Authenticator {
   std::optional<introduction_t> Hear(const introduction_t& introduction, const Opened& opened,
                                      bool* admitted);
 
-  // For any other message that waits: asks its sender to introduce itself, but not too often.
+  // For any other waiting message: asks its sender to introduce itself, but not too often.
   std::optional<introduction_t> Ask(int64_t session, TimePoint now);
 
   const RefusedMessages& refused() const { return refused_; }

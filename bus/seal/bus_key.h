@@ -9,7 +9,7 @@
 
 namespace hydro::bus {
 
-// Wipes its memory when it is destroyed.
+// Wipes its memory on destruction.
 class BusKey {
  public:
   explicit BusKey(const std::array<uint8_t, kBusKeySize>& bytes) : bytes_(bytes) {}
@@ -23,12 +23,12 @@ class BusKey {
   std::array<uint8_t, kBusKeySize> bytes_;
 };
 
-// Reads a key file: 32 bytes, as 64 hexadecimal digits or in base64, on one line. Throws InputError that
-// names the file when it cannot be read, holds anything else, or is accessible to anyone but its owner. Never
-// shows its content.
+// Reads a key file: 32 bytes, as 64 hexadecimal digits or in base64, on one line. Throws InputError naming
+// the file when it cannot be read, holds anything else, or is accessible to anyone but its owner. Never shows
+// the content.
 BusKey ReadBusKey(const std::string& file);
 
-// Writes a new random key, readable by its owner alone. Throws InputError when the file exists or cannot be
+// Writes a new random key, readable by its owner only. Throws InputError when the file exists or cannot be
 // created.
 void MakeBusKeyFile(const std::string& file);
 

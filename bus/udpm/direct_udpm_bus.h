@@ -1,5 +1,5 @@
-// The bus over UDP multicast whose messages are taken from the socket by the thread that calls HandleUntil(),
-// as they come.
+// The bus over UDP multicast on which the thread that calls HandleUntil() takes messages straight from the
+// socket.
 #pragma once
 
 #include <memory>
@@ -9,8 +9,8 @@
 
 namespace hydro::bus {
 
-// For loops, which wait for nothing else: half the wake-ups of QueuedUdpmBus, and no allocation. What comes
-// meanwhile waits in the kernel's receive buffer.
+// For loops, which wait for nothing else: half the wake-ups of QueuedUdpmBus, and no allocation. Between
+// calls, messages wait in the kernel's receive buffer.
 class DirectUdpmBus : public UdpmBus {
  public:
   DirectUdpmBus(const UdpmUrl& url, std::unique_ptr<Authenticator> authenticator,

@@ -10,7 +10,7 @@
 namespace hydro::bus {
 
 // Bounded: messages of at most 16 MiB, at most four incomplete at a time (a new one replaces the oldest), and
-// no more memory than the packets that arrived took.
+// no more memory than the received packets took.
 class FragmentAssembly {
  public:
   struct Message {

@@ -27,8 +27,7 @@ inline uint32_t LoadLcm(const uint8_t* bytes, size_t size) {
   return value;
 }
 
-// The 0 that ends the channel beginning at `channel`; null when there is none before `end` or within the
-// longest name.
+// The 0 that ends the channel at `channel`; null when there is none before `end` or within the longest name.
 inline const uint8_t* EndOfLcmChannel(const uint8_t* channel, const uint8_t* end) {
   const auto most = static_cast<ptrdiff_t>(kLcmLongestChannel + 1);
   const uint8_t* const last = end - channel > most ? channel + most : end;

@@ -1,4 +1,4 @@
-// Opens the bus over LCM UDP multicast: what separate processes talk over.
+// Opens the bus over LCM UDP multicast, over which separate processes talk.
 #pragma once
 
 #include <memory>
@@ -8,7 +8,7 @@
 
 namespace hydro::bus {
 
-// Asked of the kernel for a receiver's buffer where the URL says nothing: none lost up to 150,000 messages/s.
+// The receive buffer asked of the kernel when the URL names none: no loss up to 150,000 messages/s.
 inline constexpr int kReceiveBufferBytes = 4 << 20;
 
 // Who takes messages from the network.
@@ -18,10 +18,10 @@ enum class Receiving {
 };
 
 // `url` as in udpm_url.h, or "memq://" (queued, and private to the object). Proves that multicast works
-// before it returns. Throws InputError for a bad URL and BusError, with the cure, where multicast does not
-// work. With an `authenticator` the messages on its channels are sealed, and only genuine ones are delivered.
+// before it returns. Throws InputError for a bad URL, and BusError with the cure where multicast does not
+// work. With an `authenticator`, messages on its channels are sealed, and only genuine ones are delivered.
 //
-// Nothing is dropped here: a queue is unlimited, and the kernel's receive buffer is asked to be large.
+// Nothing is dropped here: the queue is unlimited, and the receive buffer asked of the kernel is large.
 std::unique_ptr<UdpmBus> OpenUdpmBus(const std::string& url,
                                      std::unique_ptr<Authenticator> authenticator = nullptr,
                                      Receiving receiving = Receiving::kQueued);

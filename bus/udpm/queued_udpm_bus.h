@@ -1,5 +1,4 @@
-// The bus over UDP multicast whose messages liblcm receives, on a thread of its own and into a queue without
-// limit.
+// The bus over UDP multicast on which liblcm receives, on its own thread and into an unlimited queue.
 #pragma once
 
 #include <lcm/lcm.h>
@@ -12,11 +11,11 @@
 
 namespace hydro::bus {
 
-// For receivers that may be busy with something else for long. Apply real-time scheduling (real_time.h)
-// before constructing it: LCM's receiving thread inherits it.
+// For receivers that may be busy. Apply real-time scheduling (real_time.h) before construction: LCM's
+// receiving thread inherits it.
 class QueuedUdpmBus : public UdpmBus {
  public:
-  // `lcm_url` as liblcm takes it. Throws BusError when liblcm cannot work with it.
+  // `lcm_url` in liblcm's form. Throws BusError when liblcm cannot work with it.
   QueuedUdpmBus(const std::string& lcm_url, std::unique_ptr<Authenticator> authenticator,
                 ReceiveBuffer receive_buffer);
   ~QueuedUdpmBus() override;
@@ -34,10 +33,10 @@ class QueuedUdpmBus : public UdpmBus {
 
   lcm_t* lcm_ = nullptr;
   int fd_ = -1;
-  // Of the message in hand. LCM brings it once for each pattern that it matches.
+  // Of the message in hand. LCM delivers it once for each pattern that it matches.
   bool seen_ = false;
   Outcome outcome_ = Outcome::kPassedOver;
-  std::exception_ptr exception_;  // thrown by a handler, kept until LCM's C code is off the stack
+  std::exception_ptr exception_;  // thrown by a handler, kept until LCM's C code has returned
 };
 
 }  // namespace hydro::bus

@@ -1,6 +1,5 @@
-// The bus over LCM UDP multicast, as far as it does not matter who takes the messages from the network:
-// encoding, seals, subscriptions and delivery. DirectUdpmBus and QueuedUdpmBus receive and send;
-// OpenUdpmBus() (open_udpm_bus.h) chooses.
+// What the buses over LCM UDP multicast share: encoding, seals, subscriptions and delivery. DirectUdpmBus and
+// QueuedUdpmBus receive and send; OpenUdpmBus() (open_udpm_bus.h) chooses one.
 #pragma once
 
 #include <deque>
@@ -16,13 +15,13 @@ namespace hydro::bus {
 
 class UdpmBus : public Bus {
  public:
-  // Does not pass on the messages by which LCM tests itself when a process starts. Refused messages come as
-  // they arrived, on their channel with REFUSED_ before its name.
+  // Withholds the messages by which LCM tests itself when a process starts. Refused messages come as they
+  // arrived, with REFUSED_ before the channel's name.
   void SubscribeAll(std::function<void(const RawMessage&)> handler) override;
   void PublishRaw(const std::string& channel, const void* data, int size) override;
 
-  // Returns 0 early when a signal arrives. Handles at most 4096 messages a call, so that a flood cannot hold
-  // it.
+  // Returns 0 early when a signal arrives. Handles at most 4096 messages per call, so that a flood cannot
+  // trap it.
   int HandleUntil(TimePoint deadline) override;
   int64_t undecodable() const override { return undecodable_; }
   int64_t unsent() const override { return unsent_; }
@@ -30,8 +29,8 @@ class UdpmBus : public Bus {
     return authenticator_ != nullptr ? authenticator_->refused() : Bus::refused();
   }
 
-  // The kernel's receive buffer, in bytes: what was asked for, and what it gave (it counts its own
-  // bookkeeping as well). Both are 0 where there is no network.
+  // The kernel's receive buffer in bytes: what was asked for and what it granted (which includes the kernel's
+  // own bookkeeping). Both are 0 without a network.
   struct ReceiveBuffer {
     int asked = 0;
     int given = 0;
@@ -44,25 +43,25 @@ class UdpmBus : public Bus {
  protected:
   UdpmBus(std::unique_ptr<Authenticator> authenticator, ReceiveBuffer receive_buffer);
 
-  // What becomes of a message that waited.
+  // What became of a waiting message.
   enum class Outcome { kNoneWaited, kHandled, kPassedOver };
 
   // Readable when a message waits.
   virtual int fd() const = 0;
 
-  // Takes a message that waits and passes it to Deliver(). Never waits for one.
+  // Takes one waiting message and passes it to Deliver(). Never waits for one.
   virtual Outcome HandleNext() = 0;
 
-  // False: errno says why not.
+  // False: errno says why.
   virtual bool Send(const std::string& channel, const void* data, int size) = 0;
 
-  // From now on messages on `channel`, or on all channels, are wanted. Called once for each channel, and no
-  // more once all are.
+  // From now on, messages on `channel`, or on all channels, are wanted. Called once for each channel, and no
+  // more once all are wanted.
   virtual void Listen(const std::string& channel) = 0;
   virtual void ListenToAll() = 0;
 
-  // Calls the handlers of a message that has arrived, in the order of subscription, if it is genuine. Once
-  // for each message. A handler's exception leaves it.
+  // If an arrived message is genuine, calls its handlers in the order of subscription. Call once for each
+  // message. A handler's exception leaves it.
   Outcome Deliver(const RawMessage& arrived);
 
   void PublishTyped(const std::string& channel, const MessageType& type, const void* message) override;
@@ -73,12 +72,12 @@ class UdpmBus : public Bus {
   struct Subscription {
     std::string channel;            // of a typed one
     const MessageType* type;        // null: to all channels
-    std::shared_ptr<void> message;  // what is decoded into, used again for each message
+    std::shared_ptr<void> message;  // decoded into, reused for each message
     std::function<void(const void*)> typed;
     std::function<void(const RawMessage&)> raw;
   };
 
-  // Genuine: for SubscribeAll() handlers as soon as its sender has proved itself.
+  // Genuine: delivered to SubscribeAll() handlers as soon as its sender has proved itself.
   struct HeldMessage {
     std::string channel;
     std::vector<uint8_t> data;
@@ -102,10 +101,10 @@ class UdpmBus : public Bus {
 
   std::unique_ptr<Authenticator> authenticator_;  // null: without a key
   ReceiveBuffer receive_buffer_;
-  std::deque<Subscription> subscriptions_;  // a handler may subscribe: those before it stay where they are
+  std::deque<Subscription> subscriptions_;  // a handler may subscribe: existing ones stay in place
   std::vector<std::string> channels_;       // that are listened to
-  bool all_ = false;                        // all are
-  std::vector<uint8_t> encoded_;            // used again for each message
+  bool all_ = false;                        // all channels are
+  std::vector<uint8_t> encoded_;            // reused for each message
   int64_t undecodable_ = 0;
   int64_t unsent_ = 0;
   bool handling_ = false;

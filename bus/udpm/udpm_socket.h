@@ -1,9 +1,8 @@
-// LCM's UDP multicast protocol on the thread that uses it.
+// LCM's UDP multicast protocol on the caller's thread.
 //
-// liblcm receives on a thread of its own, which passes each message on through a queue and a pipe: two
-// wake-ups and several allocations a message. For a loop that answers a message, the wake-up is most of the
-// round trip. Here the loop itself waits on the socket, the kernel's buffer is the queue, and nothing is
-// allocated.
+// liblcm receives on a thread of its own and passes each message on through a queue and a pipe: two wake-ups
+// and several allocations per message. For a loop that answers a message, the wake-up is most of the round
+// trip. Here the loop itself waits on the socket, the kernel's buffer is the queue, and nothing is allocated.
 #pragma once
 
 #include <netinet/in.h>
@@ -26,15 +25,15 @@ class UdpmSocket {
   UdpmSocket(const UdpmSocket&) = delete;
   UdpmSocket& operator=(const UdpmSocket&) = delete;
 
-  // Receives messages on `channel` (1 to 63 bytes) from now on; before the first call, none.
+  // Receives messages on `channel` (1 to 63 bytes) from now on; before the first call, receives none.
   void Accept(const std::string& channel);
   void AcceptAll();
 
-  // Sends a message without ever waiting. On false, errno says why; ENOBUFS when the network is slower than
-  // the sender.
+  // Sends a message and never waits. On false, errno says why: ENOBUFS when the network is slower than the
+  // sender.
   bool Send(std::string_view channel, const void* data, size_t size);
 
-  // A received message; it lies in this object until the next call of Receive().
+  // A received message, valid until the next call of Receive().
   struct Message {
     const char* channel = nullptr;
     const uint8_t* data = nullptr;
@@ -42,7 +41,7 @@ class UdpmSocket {
     int64_t receive_utime = 0;  // us since 1970-01-01 UTC, by the kernel's stamp
   };
 
-  // Takes the next waiting message, whatever its channel; false when none waits. Skips what is not LCM's.
+  // Takes the next waiting message on any channel; false when none waits. Skips packets that are not LCM's.
   // Throws BusError.
   bool Receive(Message* message);
 

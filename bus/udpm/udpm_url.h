@@ -1,4 +1,4 @@
-// The URL of an LCM network, read strictly (LCM itself ignores options that it does not know).
+// The URL of an LCM network, read strictly (LCM itself ignores unknown options).
 #pragma once
 
 #include <cstdint>
@@ -16,7 +16,7 @@ struct UdpmUrl {
 };
 
 // Reads "udpm://GROUP:PORT?ttl=N&recv_buf_size=N"; group, port and options may be left out. Throws InputError
-// that names `text`, what is wrong with it, and an example.
+// naming `text`, what is wrong with it, and an example.
 UdpmUrl ParseUdpmUrl(const std::string& text);
 
 }  // namespace hydro::bus
