@@ -7,7 +7,7 @@ namespace {
 
 const std::vector<std::string> kNames = {"k_p", "k_v", "natural_frequency_rad_s", "damping_ratio", "rate_hz"};
 
-// Tests that misspelt names, names in another case and names without their unit find the right one.
+// Tests that misspelt names, names in the wrong case and names without their unit find the right one.
 TEST(DidYouMeanTest, FindsNearNames) {
   EXPECT_EQ(Nearest("kp", kNames), "k_p");
   EXPECT_EQ(Nearest("natural_frequency", kNames), "natural_frequency_rad_s");
@@ -16,7 +16,7 @@ TEST(DidYouMeanTest, FindsNearNames) {
   EXPECT_EQ(DidYouMean("rate_Hz", kNames), ", did you mean \"rate_hz\"?");
 }
 
-// Tests that another word finds nothing.
+// Tests that an unrelated word finds nothing.
 TEST(DidYouMeanTest, FindsNothingFarAway) {
   EXPECT_EQ(Nearest("colour", kNames), "");
   EXPECT_EQ(Nearest("", kNames), "");

@@ -8,13 +8,14 @@
 namespace hydro {
 namespace {
 
-// Tests that it is a queue, through growing and wrapping around: the same as std::deque under random use.
+// Tests that it is a queue, even while it grows and wraps around: it behaves like std::deque under random
+// use.
 TEST(RingQueueTest, IsAQueue) {
   std::mt19937 random(1);
   RingQueue<int> ring(2);
   std::deque<int> reference;
   for (int i = 0; i < 20'000; ++i) {
-    // More is put in than taken out for a while, then less: it grows, then wraps.
+    // For a while more goes in than comes out, then less: it grows, then wraps.
     const bool put = random() % 100 < (i % 2000 < 1000 ? 60u : 40u);
     if (put || reference.empty()) {
       ring.push_back(i);

@@ -7,7 +7,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-// Tests that text stays as it is, and that what could command a terminal does not reach it.
+// Tests that text stays as it is, and that control sequences never reach a terminal.
 TEST(TextFileTest, Printable) {
   for (const char* text : {"", "a b\tc", "\xc3\xa4\xe2\x82\xac\xf0\x9f\x98\x80\xc2\xa0"}) {
     EXPECT_EQ(Printable(text), text);
@@ -21,7 +21,7 @@ TEST(TextFileTest, Printable) {
   EXPECT_EQ(Printable(std::string_view("\0x", 2)), "\\x00x");
 }
 
-// Tests that line ends stay, the last one or its absence included.
+// Tests that line ends stay, and that a missing last one stays missing.
 TEST(TextFileTest, PrintableLines) {
   EXPECT_EQ(PrintableLines("a\n\n\033b\n"), "a\n\n\\x1bb\n");
   EXPECT_EQ(PrintableLines("a\nb"), "a\nb");
@@ -30,7 +30,8 @@ TEST(TextFileTest, PrintableLines) {
 
 class TextFileFolderTest : public settings::FolderTest {};
 
-// Tests that a file is not written over while it is read, whatever it is called; others and devices may be.
+// Tests that a file is not overwritten while it is being read, under any of its names; other files and
+// devices may be.
 TEST_F(TextFileFolderTest, CheckKeeps) {
   const std::string file = Write("a", "x");
   const std::string other = Write("b", "x");

@@ -5,7 +5,7 @@
 namespace hydro {
 namespace {
 
-// Tests what figures are shown in against handbook values, and that both units measure the same.
+// Tests the displayed units against handbook values, and that both unit systems measure the same.
 TEST(UnitsTest, ShownInSi) {
   const struct {
     const char* from;
@@ -43,7 +43,7 @@ TEST(UnitsTest, ShownInSi) {
   EXPECT_FALSE(FindSiUnit("furlong", 1).has_value());
 }
 
-// Tests compound units, and that nothing else is taken for one.
+// Tests compound units, and that nothing else is mistaken for one.
 TEST(UnitsTest, ParsesCompoundUnits) {
   const std::optional<Unit> stiffness = ParseUnit("psi/(in^3 s^2)");
   ASSERT_TRUE(stiffness.has_value());

@@ -1,4 +1,4 @@
-// UdpmBus with a key, over the network: two processes' buses, and an intruder's without one.
+// UdpmBus with a key, over the network: the buses of two processes, and an intruder's without a key.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -29,7 +29,7 @@ std::unique_ptr<Authenticator> MakeOne(uint8_t key_byte) {
 
 class AuthenticatedBusTest : public testing::TestWithParam<Receiving> {
  protected:
-  // Of a process with that key; 0: without one.
+  // The bus of a process with that key; 0: without a key.
   UdpmBus& Open(uint8_t key_byte = 0) {
     return *opened_.emplace_back(OpenUdpmBus(url_, key_byte == 0 ? nullptr : MakeOne(key_byte), GetParam()));
   }
@@ -45,7 +45,7 @@ class AuthenticatedBusTest : public testing::TestWithParam<Receiving> {
     command.tick = tick;
     return command;
   }
-  // Sends until one arrives: those before the introduction do not.
+  // Sends until one arrives: those sent before the introduction do not.
   void Meet(UdpmBus& sender, const std::vector<UdpmBus*>& buses) {
     HandleWhileNot(buses, [&] {
       if (ticks_.empty()) sender.Publish(kCommand, CommandOf(0));
@@ -70,7 +70,8 @@ INSTANTIATE_TEST_SUITE_P(Transports, AuthenticatedBusTest,
                            return param.param == Receiving::kQueued ? "Queued" : "Direct";
                          });
 
-// Tests that commands arrive, once and in order, and that an intruder's are refused and counted between them.
+// Tests that commands arrive once and in order, and that an intruder's commands among them are refused and
+// counted.
 TEST_P(AuthenticatedBusTest, IntruderIsRefused) {
   UdpmBus &plant = Open(1), &loop = Open(1), &stranger = Open(2), &intruder = Open();
   Follow(plant);
@@ -95,7 +96,7 @@ TEST_P(AuthenticatedBusTest, IntruderIsRefused) {
   EXPECT_EQ(intruder.refused().total(), 0) << "without a key nothing is refused";
 }
 
-// Tests that every subscriber of a channel gets a message though it counts once.
+// Tests that every subscriber of a channel gets a message, though the message counts once.
 TEST_P(AuthenticatedBusTest, EverySubscriberIsServed) {
   UdpmBus &plant = Open(1), &loop = Open(1);
   std::vector<std::string> calls;
@@ -111,8 +112,8 @@ TEST_P(AuthenticatedBusTest, EverySubscriberIsServed) {
   EXPECT_EQ(plant.refused().total(), 0);
 }
 
-// Tests that what is recorded is the plain message, that the first of a new sender are in the record though
-// they came before its introduction, and that what was refused is there under another name.
+// Tests that the record holds the plain message, that it includes a new sender's first messages although they
+// came before its introduction, and that refused messages are in it under another name.
 TEST_P(AuthenticatedBusTest, RecordsPlainMessages) {
   UdpmBus &logger = Open(1), &intruder = Open();
   std::vector<std::string> record;
@@ -131,12 +132,12 @@ TEST_P(AuthenticatedBusTest, RecordsPlainMessages) {
                                                     "REFUSED_COMMAND 100", "FREE 101"));
 }
 
-// Tests that a recording, sealed messages and all, is not obeyed by who starts later, and is in the record as
-// refused.
+// Tests that a process that starts later does not obey a recording, sealed messages included, and records it
+// as refused.
 TEST_P(AuthenticatedBusTest, RecordingIsRefused) {
   std::vector<std::pair<std::string, std::vector<uint8_t>>> recording;
   {
-    UdpmBus& wire = Open();  // without a key: as it comes
+    UdpmBus& wire = Open();  // without a key: sees the raw messages
     wire.SubscribeAll([&](const RawMessage& message) {
       recording.push_back({std::string(message.channel), {message.data, message.data + message.size}});
     });

@@ -34,7 +34,7 @@ Bytes Encoded(const introduction_t& introduction) {
   return bytes;
 }
 
-// One process's end of the bus. Delivery is up to the test.
+// One process's end of the bus. The test delivers the messages.
 class Station {
  public:
   explicit Station(uint8_t key = 1) : authenticator_(KeyOf(key), {kIntroductions, kCommand, kOther}) {}
@@ -48,7 +48,7 @@ class Station {
     return authenticator_.Open(channel, bytes.data(), static_cast<int>(bytes.size()), now).verdict;
   }
 
-  // An introduction arrives; the answer, sealed, or nothing.
+  // Takes an introduction; returns the sealed answer, or nothing.
   Bytes Hear(const Bytes& bytes, bool* admitted = nullptr) {
     const auto opened =
         authenticator_.Open(kIntroductions, bytes.data(), static_cast<int>(bytes.size()), now);
@@ -70,7 +70,7 @@ class Station {
   Authenticator authenticator_;
 };
 
-// `newcomer` starts and is heard by `other`, as over a network that loses nothing.
+// `newcomer` starts and `other` hears it, as over a network that loses nothing.
 void Introduce(Station& newcomer, Station& other) {
   Bytes message = newcomer.Greet();
   Station* receiver = &other;
@@ -83,7 +83,7 @@ void Introduce(Station& newcomer, Station& other) {
 
 const Bytes kMessage = {1, 2, 3, 4, 5, 6, 7, 8, 9};
 
-// Tests that what one station seals the other accepts, in both directions, after three introductions.
+// Tests that each station accepts what the other seals, in both directions, after three introductions.
 TEST(AuthenticatorTest, RightKeyPasses) {
   Station plant, loop;
   const Bytes greeting = loop.Greet();
@@ -101,8 +101,8 @@ TEST(AuthenticatorTest, RightKeyPasses) {
   EXPECT_EQ(plant.refused().total(), 0);
 }
 
-// Tests that the message comes out as it went in, and that its own messages, which multicast brings back,
-// pass.
+// Tests that a message comes out as it went in, and that a station passes its own messages, which multicast
+// brings back.
 TEST(AuthenticatorTest, SizeWithoutTheSeal) {
   Station plant;
   const Bytes sealed = plant.Seal(kMessage);
@@ -114,7 +114,7 @@ TEST(AuthenticatorTest, SizeWithoutTheSeal) {
   EXPECT_EQ(opened.size, static_cast<int>(kMessage.size()));
 }
 
-// Tests that other channels are left alone, whatever comes on them.
+// Tests that other channels are left alone, whatever arrives on them.
 TEST(AuthenticatorTest, OtherChannelsArePlain) {
   Station plant;
   EXPECT_EQ(plant.Seal(kMessage, "MINE"), kMessage);
@@ -122,7 +122,7 @@ TEST(AuthenticatorTest, OtherChannelsArePlain) {
   EXPECT_EQ(plant.Open({}, "MINE"), Verdict::kPlain);
 }
 
-// Tests that who has another key is refused, introductions included.
+// Tests that a sender with another key is refused, introductions included.
 TEST(AuthenticatorTest, WrongKeyIsRefused) {
   Station plant(1), stranger(2);
   Introduce(stranger, plant);
@@ -133,7 +133,7 @@ TEST(AuthenticatorTest, WrongKeyIsRefused) {
   EXPECT_EQ(plant.refused().last_channel, kCommand);
 }
 
-// Tests that no single bit of a sealed message, seal included, may change.
+// Tests that a change of any single bit of a sealed message, seal included, is noticed.
 TEST(AuthenticatorTest, FlippedBitsAreRefused) {
   Station plant, loop;
   Introduce(loop, plant);
@@ -149,7 +149,7 @@ TEST(AuthenticatorTest, FlippedBitsAreRefused) {
   EXPECT_EQ(plant.Open(sealed), Verdict::kAccepted) << "refusing must not use up the counter";
 }
 
-// Tests that a message is for its channel only: not for another of the stack, nor for another stack's.
+// Tests that a message is valid on its own channel only: not on another of the stack, nor in another stack.
 TEST(AuthenticatorTest, OtherChannelIsRefused) {
   Station plant, loop;
   Introduce(loop, plant);
@@ -157,7 +157,7 @@ TEST(AuthenticatorTest, OtherChannelIsRefused) {
   EXPECT_EQ(plant.refused().wrong_seal, 1);
 }
 
-// Tests that every shorter piece, the plain message and nothing at all are refused, and longer ones too.
+// Tests that every truncation, the plain message, an empty one and longer ones are refused.
 TEST(AuthenticatorTest, TruncatedAndPlainAreRefused) {
   Station plant, loop;
   Introduce(loop, plant);
@@ -176,7 +176,8 @@ TEST(AuthenticatorTest, TruncatedAndPlainAreRefused) {
   EXPECT_EQ(plant.Open(kMessage), Verdict::kRefused);
 }
 
-// Tests that a message counts once, that an overtaken one is refused, and that channels have their own order.
+// Tests that a message counts once, that an overtaken one is refused, and that each channel has its own
+// order.
 TEST(AuthenticatorTest, ReplayIsRefused) {
   Station plant, loop;
   Introduce(loop, plant);
@@ -189,8 +190,8 @@ TEST(AuthenticatorTest, ReplayIsRefused) {
   EXPECT_EQ(plant.Open(loop.Seal(kMessage)), Verdict::kAccepted);
 }
 
-// Tests that a recording of an earlier run, introductions and all, is refused by who was not there, at first
-// as one that waits for its sender's introduction, and that the live sender is accepted meanwhile.
+// Tests that a receiver that was not there refuses a recording of an earlier run, introductions and all, at
+// first as a message that waits for its sender's introduction, and meanwhile accepts the live sender.
 TEST(AuthenticatorTest, EarlierRunIsRefused) {
   std::vector<Bytes> introductions, commands;
   {
@@ -220,8 +221,8 @@ TEST(AuthenticatorTest, EarlierRunIsRefused) {
   EXPECT_EQ(plant.Open(commands.back()), Verdict::kRefused);
 }
 
-// Tests that who is started again is accepted once it has introduced itself, and that what it sent before is
-// refused still.
+// Tests that a restarted sender is accepted once it has introduced itself, and that what it sent before the
+// restart is still refused.
 TEST(AuthenticatorTest, RestartIsAccepted) {
   Station plant;
   auto loop = std::make_unique<Station>();
@@ -235,7 +236,7 @@ TEST(AuthenticatorTest, RestartIsAccepted) {
   EXPECT_EQ(plant.Open(before), Verdict::kRefused);
 }
 
-// Tests that a receiver that is started again takes nothing that was sent before its sender answered it.
+// Tests that a restarted receiver takes nothing that was sent before its sender answered it.
 TEST(AuthenticatorTest, RestartedReceiverRefusesWhatWasBefore) {
   Station loop;
   Station first_plant;
@@ -250,7 +251,8 @@ TEST(AuthenticatorTest, RestartedReceiverRefusesWhatWasBefore) {
   EXPECT_EQ(plant.Open(loop.Seal(kMessage)), Verdict::kAccepted);
 }
 
-// Tests that a lost introduction is made up for: who waits is asked, at most every 10 ms, and may come late.
+// Tests that a lost introduction is made up for: a waiting sender is asked, at most every 10 ms, and may
+// answer late.
 TEST(AuthenticatorTest, WaitingSendersAreAsked) {
   Station plant, loop;
   loop.Greet();  // lost
@@ -266,7 +268,7 @@ TEST(AuthenticatorTest, WaitingSendersAreAsked) {
   EXPECT_EQ(plant.Open(loop.Seal(kMessage)), Verdict::kAccepted);
 }
 
-// Tests that an introduction between two others proves nothing to a third.
+// Tests that an introduction between two stations proves nothing to a third.
 TEST(AuthenticatorTest, IntroductionsAreForOne) {
   Station plant, loop, logger;
   const Bytes answer = plant.Hear(loop.Greet());
@@ -276,7 +278,7 @@ TEST(AuthenticatorTest, IntroductionsAreForOne) {
   EXPECT_EQ(logger.Open(plant.Seal(kMessage)), Verdict::kWaiting);
 }
 
-// Tests that many recordings at once neither fill the memory nor keep a live sender out.
+// Tests that many recordings at once neither fill the memory nor lock out a live sender.
 TEST(AuthenticatorTest, ManyUnknownSenders) {
   Station plant;
   for (int i = 0; i < 1000; ++i) {
@@ -288,8 +290,8 @@ TEST(AuthenticatorTest, ManyUnknownSenders) {
   EXPECT_EQ(plant.Open(loop.Seal(kMessage)), Verdict::kAccepted);
 }
 
-// Tests that the table holds every channel of a stack, each once, that of the introductions first, and that
-// with the longest suffix a name with REFUSED_ before it still fits a log.
+// Tests that the table holds every channel of a stack once, the introductions first, and that even with the
+// longest suffix a name with REFUSED_ in front still fits a log.
 TEST(AuthenticatedChannelsTest, AreAll) {
   const Channels channels(std::string(32, 'x'));
   const std::vector<std::string> table = AuthenticatedChannels(channels);
@@ -298,7 +300,7 @@ TEST(AuthenticatedChannelsTest, AreAll) {
   for (const std::string& channel : table) EXPECT_LE(("REFUSED_" + channel).size(), 63u);
 }
 
-// Tests that a decoder without a key takes a sealed message, but nothing else that is longer.
+// Tests that a decoder without a key takes a sealed message, but nothing else that is too long.
 TEST(MessageSealTest, DecodersLeaveTheSealOut) {
   motor_command_t command{};
   command.tick = 77;

@@ -1,4 +1,4 @@
-// The contract of bus.h, held to by every transport.
+// The contract of bus.h, which every transport must keep.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -34,7 +34,7 @@ std::ostream& operator<<(std::ostream& out, const Transport& transport) { return
 
 class BusContractTest : public testing::TestWithParam<Transport> {
  protected:
-  // Handles messages until `done` says so; gives up after a long while, for the test to fail on what is
+  // Handles messages until `done` says so; gives up after a long while, so that the test fails on what is
   // missing.
   template <class Done>
   void HandleWhileNot(Done done) {
@@ -42,7 +42,7 @@ class BusContractTest : public testing::TestWithParam<Transport> {
     while (!done() && std::chrono::steady_clock::now() < give_up) bus_->HandleUntil(Soon(20ms));
   }
 
-  // Handles what still arrives after everything expected has: for tests that something does not come.
+  // Handles late arrivals after everything expected has come: for tests that something does not come.
   void HandleRest() {
     while (bus_->HandleUntil(Soon(50ms)) > 0) {
     }
@@ -64,8 +64,8 @@ class BusContractTest : public testing::TestWithParam<Transport> {
   std::unique_ptr<Bus> bus_ = GetParam().make(&clock_);
 };
 
-// Tests that messages on one channel arrive complete and in the order they were sent, many of them waiting at
-// once: more than LCM's own queue of 30 holds, fewer than the smallest usual receive buffer.
+// Tests that messages on one channel arrive complete and in order with many of them waiting at once: more
+// than LCM's own queue of 30 holds, fewer than the smallest usual receive buffer.
 TEST_P(BusContractTest, KeepsOrder) {
   std::vector<int64_t> ticks;
   bus_->Subscribe<state_t>("STATE", [&](const state_t& state) { ticks.push_back(state.tick); });
@@ -93,7 +93,7 @@ TEST_P(BusContractTest, CarriesEveryField) {
   EXPECT_EQ(received[0].rate_hz, 1e-310);
 }
 
-// Tests that no handler runs inside Publish(), and that what a handler publishes comes in a later turn.
+// Tests that no handler runs inside Publish(), and that messages a handler publishes come in a later turn.
 TEST_P(BusContractTest, HandlersRunOnlyInHandleUntil) {
   std::vector<std::string> events;
   bool handling = false;
@@ -116,7 +116,7 @@ TEST_P(BusContractTest, HandlersRunOnlyInHandleUntil) {
   EXPECT_THAT(events, ElementsAre("state begins", "state ends", "command 0"));
 }
 
-// Tests that handlers which answer each other go on over many turns, each HandleUntil() returning.
+// Tests that handlers which answer each other go on over many turns, with each HandleUntil() returning.
 TEST_P(BusContractTest, HandlersPublishBackAndForth) {
   int64_t last = -1;
   bus_->Subscribe<state_t>("PING", [&](const state_t& state) { bus_->Publish("PONG", state); });
@@ -131,8 +131,8 @@ TEST_P(BusContractTest, HandlersPublishBackAndForth) {
   EXPECT_GE(last, 100);
 }
 
-// Tests that an exception leaves HandleUntil(), skips nothing but that message's other handlers, and that the
-// bus works on.
+// Tests that an exception leaves HandleUntil(), skips only that message's other handlers, and leaves the bus
+// working.
 TEST_P(BusContractTest, ExceptionsLeaveHandleUntil) {
   std::vector<int64_t> ticks;
   bus_->Subscribe<state_t>("STATE", [&](const state_t& state) {
@@ -172,12 +172,12 @@ TEST_P(BusContractTest, CountsUndecodable) {
   EXPECT_EQ(bus_->undecodable(), size + 1);
 }
 
-// Tests that SubscribeAll() sees the bytes of every message of every channel, subscribed otherwise or not.
+// Tests that SubscribeAll() sees the bytes of every message on every channel, subscribed elsewhere or not.
 TEST_P(BusContractTest, TapSeesAll) {
   std::vector<std::string> seen;
   bus_->Subscribe<state_t>("STATE", [](const state_t&) {});
   bus_->SubscribeAll([&](const RawMessage& message) {
-    if (message.channel == kIntroductions) return;  // a bus with a key sends some of its own accord
+    if (message.channel == kIntroductions) return;  // a bus with a key sends some by itself
     EXPECT_GE(message.receive_utime, 0);
     state_t state{};
     const bool decoded = state.decode(message.data, 0, message.size) == message.size;
@@ -190,7 +190,7 @@ TEST_P(BusContractTest, TapSeesAll) {
   EXPECT_THAT(seen, ElementsAre("STATE 0", "STATE 1", "nobody.subscribes 0", "RAW ?"));
 }
 
-// Tests that raw bytes and advertised channels reach typed subscribers like Publish() does, in order.
+// Tests that raw bytes and advertised channels reach typed subscribers in order, as Publish() does.
 TEST_P(BusContractTest, EveryWayOfSendingArrives) {
   std::vector<int64_t> ticks;
   Publisher<state_t> publisher = bus_->Advertise<state_t>("STATE");
@@ -207,7 +207,7 @@ TEST_P(BusContractTest, EveryWayOfSendingArrives) {
   EXPECT_THAT(ticks, ElementsAre(0, 1, 2));
 }
 
-// Tests that a channel name is taken literally: what would be a pattern matches only itself.
+// Tests that a channel name is taken literally: a name that looks like a pattern matches only itself.
 TEST_P(BusContractTest, ChannelNamesAreNotPatterns) {
   const std::vector<std::string> names = {"A.B",  "AxB", "A*",  "A",  "(A|B)", "B",
                                           "[AB]", "A\\", "^A$", "A+", "A-B#/"};
@@ -236,7 +236,7 @@ TEST_P(BusContractTest, SuffixesSeparate) {
   EXPECT_THAT(seen, ElementsAre("one 0", "two 0", "two 1"));
 }
 
-// Tests that every subscriber of a channel is called, in the order of subscription.
+// Tests that every subscriber of a channel is called, in order of subscription.
 TEST_P(BusContractTest, AllSubscribersAreCalled) {
   std::vector<int> called;
   for (int i = 0; i < 3; ++i)
@@ -261,7 +261,7 @@ TEST_P(BusContractTest, HandlersMaySubscribe) {
   EXPECT_EQ(late, 7);
 }
 
-// Tests that without messages HandleUntil() returns 0 at the deadline and not before, and at once when it has
+// Tests that without messages HandleUntil() returns 0 at the deadline and not before, and at once if it has
 // passed.
 TEST_P(BusContractTest, ReturnsAtTheDeadline) {
   bus_->Subscribe<state_t>("STATE", [](const state_t&) {});
@@ -275,7 +275,7 @@ TEST_P(BusContractTest, ReturnsAtTheDeadline) {
   }
 }
 
-// Tests that messages that are waiting are handled even when the deadline has passed.
+// Tests that waiting messages are handled even when the deadline has passed.
 TEST_P(BusContractTest, HandlesWhatWaitsAfterTheDeadline) {
   int states = 0;
   bus_->Subscribe<state_t>("STATE", [&](const state_t&) { ++states; });
@@ -285,7 +285,7 @@ TEST_P(BusContractTest, HandlesWhatWaitsAfterTheDeadline) {
   EXPECT_EQ(states, 5);
 }
 
-// Tests that a handler that calls HandleUntil() is told so.
+// Tests that calling HandleUntil() from a handler is an error.
 TEST_P(BusContractTest, HandleUntilDoesNotNest) {
   bool thrown = false;
   bus_->Subscribe<state_t>("STATE", [&](const state_t&) {

@@ -30,7 +30,7 @@ class BusKeyTest : public testing::Test {
     chmod(file.c_str(), mode);
     return file;
   }
-  // What InputError says of the file; "" when it is taken.
+  // The text of the InputError for the file; "" when the file is accepted.
   static std::string ErrorOf(const std::string& file) {
     try {
       ReadBusKey(file);
@@ -59,7 +59,7 @@ TEST_F(BusKeyTest, ReadsHexAndBase64) {
   }
 }
 
-// Tests that anything else is refused without showing it.
+// Tests that anything else is refused without being shown.
 TEST_F(BusKeyTest, RefusesWhatIsNoKey) {
   const std::string hex = kHex;
   for (const std::string& text :
@@ -73,7 +73,7 @@ TEST_F(BusKeyTest, RefusesWhatIsNoKey) {
   }
 }
 
-// Tests that a file that others may read or write is refused, naming the permissions and the cure.
+// Tests that a file that others may read or write is refused, naming the permissions and the remedy.
 TEST_F(BusKeyTest, RefusesWidePermissions) {
   for (const mode_t mode : {0640, 0604, 0620, 0602, 0610, 0777, 0660}) {
     const std::string file = Write(kHex, mode);
@@ -82,7 +82,7 @@ TEST_F(BusKeyTest, RefusesWidePermissions) {
   for (const mode_t mode : {0600, 0700, 0400}) EXPECT_EQ(ErrorOf(Write(kHex, mode)), "");
 }
 
-// Tests that a file that is not there, a folder and a device are refused.
+// Tests that a missing file, a folder and a device are refused.
 TEST_F(BusKeyTest, RefusesWhatIsNoFile) {
   EXPECT_THAT(ErrorOf(Path("none")), HasSubstr("--make-key"));
   std::filesystem::create_directory(Path("folder"));
@@ -90,12 +90,11 @@ TEST_F(BusKeyTest, RefusesWhatIsNoFile) {
   EXPECT_THAT(ErrorOf("/dev/zero"), HasSubstr("not a file"));
 }
 
-// Tests that where a file is there and cannot be read, a new key is not what is advised: it would lock others
-// out.
+// Tests that an existing but unreadable file brings no advice to make a new key, which would lock others out.
 TEST_F(BusKeyTest, UnreadableFile) {
   const std::string file = Write(kHex, 0000);
   const uid_t user = geteuid();
-  if (user == 0) {  // who may read anything
+  if (user == 0) {  // root may read anything
     ASSERT_EQ(seteuid(65534), 0);
   }
   const std::string error = ErrorOf(file);
@@ -105,7 +104,7 @@ TEST_F(BusKeyTest, UnreadableFile) {
   EXPECT_EQ(ErrorOf(file + "/key").find("--make-key"), std::string::npos);
 }
 
-// Tests that the key that everybody tries first is none.
+// Tests that the key everybody tries first is refused.
 TEST_F(BusKeyTest, RefusesZeros) {
   for (const std::string& text : {std::string(64, '0'), std::string(42, 'A') + "A="}) {
     EXPECT_THAT(ErrorOf(Write(text)), testing::AllOf(HasSubstr("zeros"), HasSubstr("--make-key")));
@@ -113,7 +112,7 @@ TEST_F(BusKeyTest, RefusesZeros) {
   EXPECT_EQ(ErrorOf(Write(std::string(63, '0') + "1")), "");
 }
 
-// Tests that a key that is made can be read, by its owner alone, is new each time, and replaces nothing.
+// Tests that a new key can be read, by its owner alone, differs each time, and replaces no file.
 TEST_F(BusKeyTest, MakesKeys) {
   MakeBusKeyFile(Path("a"));
   MakeBusKeyFile(Path("b"));

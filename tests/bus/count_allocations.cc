@@ -8,7 +8,7 @@ namespace {
 std::atomic<int64_t> allocations = 0;
 }  // namespace
 
-// The replacements are in a file of their own: inlined into their callers they look like mismatched pairs to
+// The replacements have a file of their own: inlined into their callers, they look like mismatched pairs to
 // g++.
 void* operator new(size_t size) {
   ++allocations;

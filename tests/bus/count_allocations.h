@@ -1,4 +1,4 @@
-// Counts what a test program allocates: link count_allocations.cc into it.
+// Counts the allocations of a test program that links count_allocations.cc.
 #pragma once
 
 #include <cstdint>

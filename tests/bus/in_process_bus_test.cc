@@ -13,7 +13,7 @@ namespace {
 using namespace std::chrono_literals;
 using testing::ElementsAre;
 
-// Tests that messages of all channels are handled in the one order in which they were published.
+// Tests that messages of all channels are handled in the order in which they were published.
 TEST(InProcessBusTest, KeepsOrderAcrossChannels) {
   SimulatedClock clock;
   InProcessBus bus(&clock);
@@ -25,7 +25,8 @@ TEST(InProcessBusTest, KeepsOrderAcrossChannels) {
   EXPECT_THAT(seen, ElementsAre("A", "B", "B", "A", "B"));
 }
 
-// Tests that one call handles what was waiting when it began, and that time stands still meanwhile.
+// Tests that one call handles the messages that were waiting when it began, and that time stands still
+// meanwhile.
 TEST(InProcessBusTest, OneTurnAtATime) {
   SimulatedClock clock;
   InProcessBus bus(&clock);
@@ -44,7 +45,7 @@ TEST(InProcessBusTest, OneTurnAtATime) {
   EXPECT_EQ(clock.Now(), Clock::TimePoint());
 }
 
-// Tests that a tap sees a message before its typed handlers do, when it is dispatched, at the simulated time.
+// Tests that a tap sees a message before its typed handlers do, at dispatch and at the simulated time.
 TEST(InProcessBusTest, TapComesFirst) {
   SimulatedClock clock;
   InProcessBus bus(&clock);
@@ -58,7 +59,7 @@ TEST(InProcessBusTest, TapComesFirst) {
   EXPECT_THAT(seen, ElementsAre("tap at 7", "typed"));
 }
 
-// Tests that what nobody subscribes to is not kept for a later subscriber, as on a network.
+// Tests that, as on a network, a message without subscribers is not kept for a later one.
 TEST(InProcessBusTest, KeepsNothingForNobody) {
   SimulatedClock clock;
   InProcessBus bus(&clock);
@@ -69,8 +70,8 @@ TEST(InProcessBusTest, KeepsNothingForNobody) {
   EXPECT_EQ(seen, 0);
 }
 
-// Tests that a message that is being handled stays as it is while its handler publishes so much on the same
-// channel that the queue grows.
+// Tests that a message stays intact while its handler publishes so much on the same channel that the queue
+// grows.
 TEST(InProcessBusTest, MessageInHandStays) {
   SimulatedClock clock;
   InProcessBus bus(&clock);
@@ -96,7 +97,7 @@ TEST(InProcessBusTest, MessageInHandStays) {
   EXPECT_EQ(sum, 1000);
 }
 
-// Tests that the exchange of states and commands allocates nothing once it runs.
+// Tests that exchanging states and commands allocates nothing once it is running.
 TEST(InProcessBusTest, AllocatesNothingInTheSteadyState) {
   SimulatedClock clock;
   InProcessBus bus(&clock);

@@ -37,8 +37,7 @@ LogBus::EventSource Source(const std::vector<Event>& events) {
   };
 }
 
-// Tests that the events come one at a time in the order of the file, at their own times, and that the end is
-// told.
+// Tests that events come one at a time, in file order and at their own times, and that the end is announced.
 TEST(LogBusTest, FeedsEventsAtTheirTimes) {
   const std::vector<Event> events = {StateEvent(0), StateEvent(1), StateEvent(5)};
   SimulatedClock clock;
@@ -62,8 +61,8 @@ TEST(LogBusTest, FeedsEventsAtTheirTimes) {
   EXPECT_THAT(times, ElementsAre(0, 1, 5));
 }
 
-// Tests that channels that nobody subscribes to are passed over, taps see everything, and a time that goes
-// back in the log does not move the clock back.
+// Tests that channels without subscribers are skipped, that taps see everything, and that a time going
+// backwards in the log does not move the clock back.
 TEST(LogBusTest, TapsSeeAllAndTimeNeverGoesBack) {
   const std::vector<Event> events = {StateEvent(2), StateEvent(1, "OTHER"), StateEvent(3)};
   SimulatedClock clock;
@@ -84,7 +83,7 @@ TEST(LogBusTest, TapsSeeAllAndTimeNeverGoesBack) {
   EXPECT_THAT(seen, ElementsAre("STATE2", "OTHER1", "STATE3"));
 }
 
-// Tests that what the application publishes goes to the comparison, with its type, and comes back to nobody.
+// Tests that what the application publishes goes to the comparison, with its type, and does not come back.
 TEST(LogBusTest, PublishedGoesToTheComparison) {
   const std::vector<Event> events = {StateEvent(0), StateEvent(1)};
   SimulatedClock clock;
@@ -107,8 +106,7 @@ TEST(LogBusTest, PublishedGoesToTheComparison) {
   EXPECT_THAT(commands, ElementsAre(0, 1));
 }
 
-// Tests that undecodable events are counted and passed over, and that the replay goes on after a handler
-// threw.
+// Tests that undecodable events are counted and skipped, and that the replay goes on after a handler throws.
 TEST(LogBusTest, SurvivesBadEventsAndHandlers) {
   std::vector<Event> events = {StateEvent(0), StateEvent(1), StateEvent(2)};
   events[1].bytes.pop_back();

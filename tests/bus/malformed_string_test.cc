@@ -9,8 +9,8 @@
 namespace hydro::bus {
 namespace {
 
-// Tests that a string length that no encoder writes (0, negative, beyond the message) makes a message
-// undecodable and nothing worse: what arrives from a network is not trusted.
+// Tests that a string length that no encoder writes (0, negative, beyond the message) makes the message
+// undecodable and does nothing worse: network input is not trusted.
 TEST(MalformedStringTest, BadLengthsAreRefused) {
   fault_t fault{};
   fault.source = "plant";

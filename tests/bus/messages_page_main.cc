@@ -1,5 +1,5 @@
-// messages_page [--write] PAGE FOLDER: whether PAGE (docs/messages.md) is what the table of messages and the
-// .lcm files of FOLDER say; with --write, makes it so.
+// messages_page [--write] PAGE FOLDER: checks PAGE (docs/messages.md) against the table of messages and the
+// .lcm files of FOLDER; with --write, brings it up to date.
 #include <cstdio>
 #include <exception>
 #include <filesystem>

@@ -21,7 +21,7 @@ std::string ErrorOf(const std::string& text) {
   }
 }
 
-// Tests that fields, their units, comments over several lines, arrays and constants are read.
+// Tests that fields, their units, multi-line comments, arrays and constants are read.
 TEST(MessagesPageTest, ReadsAnLcmFile) {
   const LcmStruct sensor = ParseLcm(std::string(kHead) +
                                         "  int32_t count;  // how many\n"
@@ -42,8 +42,8 @@ TEST(MessagesPageTest, ReadsAnLcmFile) {
   EXPECT_TRUE(sensor.fields[2].constant);
 }
 
-// Tests that a number without a unit, a field without a comment and what is no field are refused, with the
-// place.
+// Tests that a number without a unit, a field without a comment and a line that is no field are refused,
+// naming the place.
 TEST(MessagesPageTest, RefusesWhatIsIncomplete) {
   const std::string head = kHead;
   EXPECT_THAT(ErrorOf(head + "  double p1; // pressure\n}\n"), HasSubstr("p1 has no unit"));

@@ -24,7 +24,7 @@ int64_t At(const std::vector<uint8_t>& bytes, int place) {
   return static_cast<int64_t>(value);
 }
 
-// Tests that each type and each channel stands in one row.
+// Tests that each type and each channel has one row.
 TEST(MessagesTest, RowsAreUnique) {
   std::set<std::string> types, channels;
   ForEachMessage([&]<class Message>(const MessageRow<Message>& row) {
@@ -38,7 +38,7 @@ TEST(MessagesTest, RowsAreUnique) {
   EXPECT_EQ(channels.size(), kMessageCount);
 }
 
-// Tests for each type that the places of its numbers are those in the encoded message.
+// Tests for each type that the offsets of its numbers are those in the encoded message.
 TEST(MessagesTest, NumbersAreWhereTheTableSays) {
   ForEachMessage([]<class Message>(const MessageRow<Message>& row) {
     Message message{};
@@ -62,8 +62,8 @@ TEST(MessagesTest, NumbersAreWhereTheTableSays) {
   EXPECT_EQ(PlacesOf<loop_statistics_t>().tick, -1);
 }
 
-// Tests that the numbers are read of the messages of the loops only, on this stack's channels, and of whole
-// ones only.
+// Tests that numbers are read only from the loops' messages, on this stack's channels, and only from whole
+// ones.
 TEST(MessagesTest, ReadsLoopNumbers) {
   const Channels channels("_2");
   int parts = 0;

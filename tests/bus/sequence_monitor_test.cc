@@ -28,8 +28,8 @@ void Check(const std::vector<Step>& steps, SequenceMonitor* monitor) {
   }
 }
 
-// Tests that gaps are counted, duplicates and old messages refused, and that the first message may have any
-// number.
+// Tests that gaps are counted, that duplicates and old messages are refused, and that the first message may
+// have any number.
 TEST(SequenceMonitorTest, GapsAndDuplicates) {
   SequenceMonitor monitor(100ms);
   Check({{1, 10, 0ms, Verdict::kAccept, 0},
@@ -45,7 +45,7 @@ TEST(SequenceMonitorTest, GapsAndDuplicates) {
   EXPECT_EQ(monitor.restarts(), 0);
 }
 
-// Tests that another session is a second sender while the first is alive, and says so for as long.
+// Tests that another session counts as a second sender for as long as the first is alive.
 TEST(SequenceMonitorTest, SecondSender) {
   SequenceMonitor monitor(100ms);
   EXPECT_FALSE(monitor.SecondSenderAlive(Clock::TimePoint(0ms)));
@@ -83,7 +83,7 @@ TEST(SequenceMonitorTest, TakeoverEndsTheSecondSender) {
   EXPECT_FALSE(monitor.SecondSenderAlive(Clock::TimePoint(110ms)));
 }
 
-// Tests that a log that is played again after a silence is a restart, and a repeated message is not, however
+// Tests that a log played again after a silence is a restart, and that a repeated message is not, however
 // late.
 TEST(SequenceMonitorTest, PlayedAgain) {
   SequenceMonitor monitor(100ms);
@@ -96,7 +96,7 @@ TEST(SequenceMonitorTest, PlayedAgain) {
         &monitor);
 }
 
-// Tests that a tick that goes back is refused though the sequence goes on, and is forgotten at a restart.
+// Tests that a tick that goes back is refused even if the sequence goes on, and that a restart clears this.
 TEST(SequenceMonitorTest, TicksGoingBack) {
   SequenceMonitor monitor(100ms);
   const auto observe = [&](int64_t session, int64_t sequence, int64_t tick, std::chrono::milliseconds at) {
@@ -113,7 +113,7 @@ TEST(SequenceMonitorTest, TicksGoingBack) {
   EXPECT_EQ(monitor.lost(), 0);
 }
 
-// Tests that sequence numbers of anybody's making, as far apart as they can be, are counted as best they may.
+// Tests that forged sequence numbers, as far apart as possible, are still counted sensibly.
 TEST(SequenceMonitorTest, ExtremeNumbers) {
   constexpr int64_t kLowest = std::numeric_limits<int64_t>::min();
   constexpr int64_t kHighest = std::numeric_limits<int64_t>::max();

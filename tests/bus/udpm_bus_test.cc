@@ -23,7 +23,7 @@ using testing::HasSubstr;
 
 Bus::TimePoint Soon(std::chrono::nanoseconds delay) { return std::chrono::steady_clock::now() + delay; }
 
-// What holds whoever takes the messages from the network.
+// What holds for both ways of receiving messages from the network.
 class UdpmBusTest : public testing::TestWithParam<Receiving> {
  protected:
   UdpmBus& Open(const std::string& url) {
@@ -39,7 +39,8 @@ INSTANTIATE_TEST_SUITE_P(Transports, UdpmBusTest, testing::Values(Receiving::kQu
                            return param.param == Receiving::kQueued ? "Queued" : "Direct";
                          });
 
-// Tests that two buses on one port hear each other and one on another port hears neither, in the same group.
+// Tests that of two buses on one port and one on another port, in the same group, only the first two hear
+// each other.
 TEST_P(UdpmBusTest, PortsSeparate) {
   const std::string url = FreeBusUrl();
   UdpmBus &one = Open(url), &two = Open(url), &other = Open(FreeBusUrl());
@@ -54,7 +55,7 @@ TEST_P(UdpmBusTest, PortsSeparate) {
   EXPECT_EQ(others_heard, 0);
 }
 
-// Tests that the self tests of processes that start are not passed on as messages.
+// Tests that the self tests of starting processes are not passed on as messages.
 TEST_P(UdpmBusTest, SelfTestsAreNotMessages) {
   const std::string url = FreeBusUrl();
   UdpmBus& bus = Open(url);
@@ -66,9 +67,9 @@ TEST_P(UdpmBusTest, SelfTestsAreNotMessages) {
   EXPECT_THAT(seen, testing::ElementsAre("STATE"));
 }
 
-// Tests that nothing is dropped before it is handled, however many messages wait (LCM's own default is 30).
-// The sender hears itself too, which tells when a batch has crossed the network: the kernel's buffer, whose
-// size is not ours, never has to hold more than one batch.
+// Tests that nothing is dropped before it is handled, however many messages wait (LCM's default is 30). The
+// sender also hears itself, which shows when a batch has crossed the network: the kernel's buffer, whose size
+// we do not control, never has to hold more than one batch.
 TEST(OpenUdpmBusTest, QueueIsUnlimited) {
   const std::string url = FreeBusUrl();
   const auto sender = OpenUdpmBus(url), receiver = OpenUdpmBus(url);
@@ -90,7 +91,7 @@ TEST(OpenUdpmBusTest, QueueIsUnlimited) {
 
 void OnAlarm(int) {}
 
-// Tests that a signal ends HandleUntil() early with 0, so that a main can look at its stop flag.
+// Tests that a signal ends HandleUntil() early with 0, so that main can look at its stop flag.
 TEST_P(UdpmBusTest, SignalEndsTheWait) {
   UdpmBus& bus = Open(FreeBusUrl());
   struct sigaction action {};
@@ -106,7 +107,7 @@ TEST_P(UdpmBusTest, SignalEndsTheWait) {
   setitimer(ITIMER_REAL, &off, nullptr);
 }
 
-// Tests that a channel name that LCM cannot carry is refused, to send on and to listen to.
+// Tests that a channel name that LCM cannot carry is refused, for sending and for listening.
 TEST_P(UdpmBusTest, RefusesImpossibleChannels) {
   UdpmBus& bus = Open(FreeBusUrl());
   EXPECT_NO_THROW(bus.Publish(std::string(63, 'c'), state_t{}));
@@ -122,7 +123,7 @@ TEST(OpenUdpmBusTest, BadUrlIsAnInputError) {
   EXPECT_THROW(OpenUdpmBus("udpm://10.0.0.1:7667"), InputError);
 }
 
-// Tests that a small receive buffer is reported with the way to a larger one, and a sufficient one is not.
+// Tests that a small receive buffer is reported together with how to enlarge it, and a sufficient one is not.
 TEST_P(UdpmBusTest, ReportsTheReceiveBuffer) {
   UdpmBus& small = Open(FreeBusUrl() + "&recv_buf_size=8192");
   EXPECT_GE(small.receive_buffer_bytes(), 8192);
@@ -132,7 +133,7 @@ TEST_P(UdpmBusTest, ReportsTheReceiveBuffer) {
   EXPECT_THAT(huge.receive_buffer_hint(), HasSubstr("sysctl -w net.core.rmem_max=1073741824"));
 }
 
-// Tests that a port which another program holds alone is named as such.
+// Tests that the error names a port that another program holds exclusively.
 TEST(OpenUdpmBusTest, TakenPortIsABusError) {
   const int fd = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
   sockaddr_in address{};
@@ -149,8 +150,8 @@ TEST(OpenUdpmBusTest, TakenPortIsABusError) {
   close(fd);
 }
 
-// Tests that a machine without a multicast route gives one line with the cure. In a child process, which
-// moves into a network namespace of its own that has no route at all.
+// Tests that a machine without a multicast route gives one line with the remedy. Runs in a child process,
+// which moves into a network namespace of its own without any route.
 TEST(OpenUdpmBusTest, NoRouteIsABusErrorWithTheCure) {
   const pid_t child = fork();
   ASSERT_GE(child, 0);
@@ -174,8 +175,8 @@ TEST(OpenUdpmBusTest, NoRouteIsABusErrorWithTheCure) {
   EXPECT_EQ(WEXITSTATUS(status), 0) << "1: the message lacks the cure, 2: no error";
 }
 
-// Tests that a group from which nothing comes back is noticed within the timeout and named: sent to one port,
-// awaited for no time at all.
+// Tests that a group from which nothing comes back is noticed within the timeout and named: it sends to one
+// port and waits no time at all.
 TEST(OpenUdpmBusTest, SilenceIsABusError) {
   UdpmUrl url;
   url.port = static_cast<uint16_t>(FreeUdpPort());

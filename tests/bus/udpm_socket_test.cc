@@ -20,7 +20,7 @@ namespace {
 using namespace std::chrono_literals;
 using testing::ElementsAre;
 
-// liblcm as the other end: what it sends and what it understands is the form's definition.
+// liblcm as the other end: what it sends and understands defines the format.
 class Lcm {
  public:
   explicit Lcm(const std::string& url) : lcm_(lcm_create(url.c_str())) {
@@ -35,7 +35,7 @@ class Lcm {
     ASSERT_EQ(lcm_publish(lcm_, channel.c_str(), data.data(), static_cast<unsigned>(data.size())), 0);
   }
 
-  // The next message but for LCM's own self tests.
+  // The next message, other than LCM's own self tests.
   std::pair<std::string, std::string> Next() {
     const auto give_up = std::chrono::steady_clock::now() + 10s;
     while (seen_.empty() && std::chrono::steady_clock::now() < give_up) lcm_handle_timeout(lcm_, 100);
@@ -57,7 +57,7 @@ class Lcm {
   std::vector<std::pair<std::string, std::string>> seen_;
 };
 
-// Waits for a message and returns "channel: size of the data", or what else there is to say.
+// Waits for a message and returns "channel: size of the data", or says what came instead.
 std::string Next(UdpmSocket& socket, std::string* data = nullptr) {
   const auto give_up = std::chrono::steady_clock::now() + 10s;
   UdpmSocket::Message message;
@@ -71,15 +71,15 @@ std::string Next(UdpmSocket& socket, std::string* data = nullptr) {
   return "nothing came";
 }
 
-// Text of `size` bytes, zeros included, that differs everywhere.
+// A text of `size` bytes, zeros included, without repetition.
 std::string Text(size_t size) {
   std::string text(size, ' ');
   for (size_t i = 0; i < size; ++i) text[i] = static_cast<char>((i * 2654435761u) >> 13);
   return text;
 }
 
-// Tests that liblcm understands what is sent: nothing, a little, the most that one packet holds, and what
-// takes several.
+// Tests that liblcm understands what is sent: nothing, a little, the most that one packet holds, and messages
+// that take several packets.
 TEST(UdpmSocketTest, LcmUnderstandsIt) {
   const std::string url = FreeBusUrl() + "&recv_buf_size=4194304";  // four packets of 64 KB wait at a time
   UdpmSocket socket(ParseUdpmUrl(url));
@@ -93,7 +93,7 @@ TEST(UdpmSocketTest, LcmUnderstandsIt) {
   }
 }
 
-// Tests that what liblcm sends is understood, of the same sizes, with the time of arrival.
+// Tests that messages of the same sizes from liblcm are understood, with their time of arrival.
 TEST(UdpmSocketTest, UnderstandsLcm) {
   const std::string url = FreeBusUrl() + "&recv_buf_size=4194304";  // four packets of 64 KB wait at a time
   UdpmSocket socket(ParseUdpmUrl(url));
@@ -108,8 +108,8 @@ TEST(UdpmSocketTest, UnderstandsLcm) {
   }
 }
 
-// Tests that only the channels that were asked for arrive, in whatever lengths names come: the kernel's
-// comparison works by pieces of four, two and one bytes.
+// Tests that only the requested channels arrive, whatever the length of their names: the kernel compares them
+// in pieces of four, two and one bytes.
 TEST(UdpmSocketTest, OnlyWhatWasAskedFor) {
   const std::string url = FreeBusUrl();
   UdpmSocket sender(ParseUdpmUrl(url)), receiver(ParseUdpmUrl(url));
@@ -166,7 +166,7 @@ TEST(UdpmSocketTest, SkipsWhatIsNotLcm) {
   EXPECT_EQ(Next(socket), "GOOD");
 }
 
-// Tests that fragments are put together whatever their order, and that one that is lost loses one message.
+// Tests that fragments are assembled in any order, and that a lost fragment loses one message.
 TEST(FragmentAssemblyTest, AnyOrder) {
   FragmentAssembly assembly;
   const auto fragment = [](uint8_t sequence, uint8_t number, const std::string& data, uint8_t offset) {

@@ -10,7 +10,7 @@ namespace {
 
 using testing::HasSubstr;
 
-// Tests that every part of a URL is read, and that what is left out has LCM's default.
+// Tests that every part of a URL is read, and that omitted parts take LCM's defaults.
 TEST(UdpmUrlTest, ReadsEveryPart) {
   const UdpmUrl all = ParseUdpmUrl("udpm://239.1.2.3:7000?ttl=1&recv_buf_size=65536");
   EXPECT_EQ(all.group, "239.1.2.3");

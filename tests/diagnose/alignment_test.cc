@@ -23,7 +23,7 @@ using ::testing::UnorderedElementsAre;
 
 constexpr double kStep = 0.005;
 
-// A recorder's run: a clamped actuator at 200 Hz, its command never the same.
+// A recorded run: a clamped actuator at 200 Hz whose command never repeats.
 runs::MeasuredRun Recorded(double friction_per_psi = 0) {
   NoisyRig rig;
   rig.step = kStep;
@@ -35,7 +35,7 @@ runs::MeasuredRun Recorded(double friction_per_psi = 0) {
   return rig.Record("waves", model::Shaft::kClamped, 0.1, 25, false, waves).measured;
 }
 
-// The channels come so much later.
+// Delays these channels by this much.
 runs::MeasuredRun Late(runs::MeasuredRun run, const std::vector<runs::SignalDelay>& delays) {
   std::vector<runs::SignalDelay> back;
   for (const auto& [signal, delay] : delays) back.emplace_back(signal, -delay);
@@ -50,8 +50,8 @@ const ClockDelay* Of(const std::vector<ClockDelay>& clocks, const std::string& s
   return nullptr;
 }
 
-// Tests that motor and command of a late clock are found with their delays and put back, whatever the model
-// has for friction.
+// Tests that a late clock of motor and command is found, its delays are measured and corrected, whatever
+// friction the model has.
 TEST(Alignment, FindsALateClock) {
   const runs::MeasuredRun whole = Recorded(0.0005);
   runs::MeasuredRun run = Late(whole, {{&runs::MeasuredRun::voltage, 0.1},
@@ -67,7 +67,7 @@ TEST(Alignment, FindsALateClock) {
   EXPECT_NEAR(motor->delay, 0.12, 0.01);
   EXPECT_LT(motor->error, 0.03);
   EXPECT_THAT(Says(*motor), HasSubstr("motor_speed and motor_angle are late by 0.1"));
-  // What remains is a piece of what was recorded at first, the pressures untouched.
+  // What remains is a piece of the original recording, with the pressures untouched.
   const auto at =
       std::search(whole.p1.values.begin(), whole.p1.values.end(), run.p1.values.begin(), run.p1.values.end());
   EXPECT_NE(at, whole.p1.values.end());
@@ -83,8 +83,7 @@ void ExpectLeftAlone(const runs::MeasuredRun& recorded, const char* what) {
   EXPECT_EQ(run.p2.values, recorded.p2.values) << what;
 }
 
-// Tests that what is on one clock, and lateness that an effect of the catalogue has a name for, is left as it
-// is.
+// Tests that recordings on one clock, and delays that an effect of the catalogue describes, are left alone.
 TEST(Alignment, LeavesTheRestToTheSearch) {
   const runs::MeasuredRun run = Recorded();
   ExpectLeftAlone(run, "nothing");
@@ -99,7 +98,7 @@ TEST(Alignment, LeavesTheRestToTheSearch) {
   ExpectLeftAlone(blind, "one pressure only");
 }
 
-// Tests that pieces that were put on one clock are no surer than that.
+// Tests that pieces put on one clock claim no more certainty than that allows.
 TEST(Alignment, TimingCountsAsNoise) {
   const runs::MeasuredRun run = Recorded();
   std::vector<ClockDelay> clocks;
@@ -115,7 +114,7 @@ TEST(Alignment, TimingCountsAsNoise) {
   EXPECT_GT(late.Find(model::Channel::kP2)->noise, 2 * plain.Find(model::Channel::kP2)->noise);
 }
 
-// Tests the sentences on recordings that have little in them, or are not what they say.
+// Tests the sentences about recordings that hold little, or are not what they claim to be.
 TEST(RecordingRemarks, SayWhatIsWrong) {
   runs::MeasuredRun run = Recorded();
   const RunData good = PrepareRun(run, testing::Table1());

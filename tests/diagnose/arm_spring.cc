@@ -1,4 +1,4 @@
-// arm.spring: arm torque - stiffness alpha. An effect of a user's own: this file is all there is to it.
+// arm.spring: arm torque - stiffness alpha. A user's own effect: this file is all it takes.
 #include "model/effects/effect.h"
 
 namespace hydro::diagnose {

@@ -16,7 +16,7 @@ namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
-// A run of which only the motor's speed is measured, at 1 kHz: what `speed` says, with noise of 0.3 rad/s.
+// A run that measures only the motor's speed, at 1 kHz: `speed` plus noise of 0.3 rad/s.
 template <class Speed>
 RunData OfSpeed(size_t samples, const Speed& speed, double noise = 0.3) {
   std::mt19937_64 random(7);
@@ -35,7 +35,8 @@ RunData OfSpeed(size_t samples, const Speed& speed, double noise = 0.3) {
   return run;
 }
 
-// Tests that slip in either direction and rest are told apart, and that rest is no passage through zero.
+// Tests that slip in either direction and rest are told apart, and that rest is not taken for a passage
+// through zero.
 TEST(ObservedMode, SlipAndRest) {
   const RunData run = OfSpeed(300, [](double t) { return t < 0.1 ? 20.0 : t < 0.2 ? 0.0 : -20.0; });
   const ObservedMode mode = ObserveMode(run);
@@ -49,7 +50,8 @@ TEST(ObservedMode, SlipAndRest) {
   for (size_t k = 110; k < 190; ++k) EXPECT_EQ(mode.passes[k], 0) << k;
 }
 
-// Tests that a quick reversal passes through zero: there the friction may have either sign, but nothing rests.
+// Tests that a quick reversal is a passage through zero: friction may have either sign there, but nothing
+// rests.
 TEST(ObservedMode, ReversalWithoutRest) {
   const RunData run = OfSpeed(200, [](double t) { return 400 * (0.1 - t); });
   const ObservedMode mode = ObserveMode(run);
@@ -64,7 +66,7 @@ TEST(ObservedMode, ReversalWithoutRest) {
   EXPECT_EQ(mode.turns.back(), -1);
 }
 
-// Tests that missing speeds take the value before them and never come out as numbers that are none.
+// Tests that missing speeds take the value before them and never come out as NaN.
 TEST(ObservedMode, GapsAreFilled) {
   RunData run = OfSpeed(200, [](double) { return 30.0; });
   for (size_t k = 50; k < 80; ++k) run.signals[0].values[k] = kNan;
@@ -76,7 +78,8 @@ TEST(ObservedMode, GapsAreFilled) {
   }
 }
 
-// Tests that a run without a speed or an angle says nothing of the pump, and that pressures are averaged all the same.
+// Tests that a run without a speed or an angle says nothing about the pump, and that its pressures are still
+// averaged.
 TEST(ObservedMode, WithoutASpeed) {
   RunData run = OfSpeed(
       100, [](double) { return 200.0; }, 1.5);
@@ -91,7 +94,8 @@ TEST(ObservedMode, WithoutASpeed) {
   EXPECT_NEAR(mode.p1_margin, 3.5 * 1.5 / std::sqrt(5), 1e-12);
 }
 
-// Tests that a run starts where its first samples' line begins, to what their noise allows, not at the first sample.
+// Tests that a run starts on the line through its first samples, to within their noise, not at the first
+// sample.
 TEST(RunStart, OnTheLineOfTheFirstSamples) {
   RunData moved = testing::SmallRun(testing::Table1With(), model::Shaft::kClamped, false, 0.5, 0, 3);
   const double p1 = moved.start[model::kP1];
@@ -110,7 +114,7 @@ TEST(RunStart, OnTheLineOfTheFirstSamples) {
   EXPECT_FALSE(moved.start_free[model::kArmAngle]) << "the shaft is clamped";
 }
 
-// Tests that with the bypass open both sides start at one pressure, which is one unknown.
+// Tests that with the bypass open both sides start at one pressure, a single unknown.
 TEST(RunStart, OnePressureUnderBypass) {
   RunData run = testing::SmallRun(testing::Table1With(), model::Shaft::kClamped, true, 0.5, 3, 3);
   for (SignalData& signal : run.signals) {
