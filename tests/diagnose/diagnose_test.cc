@@ -1,4 +1,4 @@
-// The whole gap finder on short runs of rigs that the model describes, or nearly.
+// The whole gap finder on short runs of rigs that the model describes, exactly or nearly.
 #include "diagnose/diagnose.h"
 
 #include <gmock/gmock.h>
@@ -27,7 +27,7 @@ model::ModelDescription Dragged() { return Table1With({{"pump.quadratic_drag", {
 
 std::string Json(const diagnose::Diagnosis& d) { return diagnose::ReportJson(d, "next.toml", 0); }
 
-// Some of the catalogue, for what does not depend on all of it.
+// Some of the catalogue, for tests that do not need all of it.
 diagnose::DiagnoseOptions Few() {
   diagnose::DiagnoseOptions options;
   options.effects = {"pump.quadratic_drag", "pump.stribeck", "sensor.pressure_lag", "valve.relief"};
@@ -35,7 +35,7 @@ diagnose::DiagnoseOptions Few() {
   return options;
 }
 
-// The diagnosis that several tests look at: the drag is hidden.
+// The diagnosis that several tests examine: the drag is hidden.
 const diagnose::Diagnosis& OfTheDrag() {
   static const diagnose::Diagnosis diagnosis =
       diagnose::Diagnose(Table1With(), RunsOf(Dragged()), {}, {}, {});
@@ -75,14 +75,14 @@ TEST(Diagnose, NamesAHiddenEffect) {
   EXPECT_EQ(d.curves.size(), 4);
 }
 
-// Tests that the model which it writes needs nothing more.
+// Tests that the model it writes needs nothing more.
 TEST(Diagnose, ItsOwnModelNeedsNothing) {
   const diagnose::Diagnosis d = diagnose::Diagnose(OfTheDrag().model, RunsOf(Dragged()), {}, {}, {});
   EXPECT_EQ(d.verdict, diagnose::Verdict::kNothingMissing) << d.sentence;
   EXPECT_EQ(d.model.effects.size(), 1);
 }
 
-// Tests that a wrong value is told as such, and found.
+// Tests that a wrong parameter value is reported as such, and corrected.
 TEST(Diagnose, WrongParameter) {
   model::ModelDescription truth = Table1With();
   truth.parameters.beta *= 0.8;
@@ -104,7 +104,7 @@ TEST(Diagnose, SameForAnyNumberOfThreads) {
   EXPECT_EQ(Json(Diagnose(Table1With(), RunsOf(Dragged()), {}, options, {})), one);
 }
 
-// Tests that of a single run the last third is held out.
+// Tests that the last third of a single run is held out.
 TEST(Diagnose, SplitsASingleRun) {
   std::vector<runs::MeasuredRun> runs = Measured(ClampedPair(Dragged(), 0.9, 5));
   runs.pop_back();
@@ -115,7 +115,7 @@ TEST(Diagnose, SplitsASingleRun) {
   EXPECT_EQ(d.verdict, diagnose::Verdict::kNamed) << d.sentence;
 }
 
-// Tests that runs that are held out are predicted, not fitted.
+// Tests that held-out runs are predicted, not fitted.
 TEST(Diagnose, HeldOutRuns) {
   std::vector<runs::MeasuredRun> runs = RunsOf(Dragged());
   std::vector<runs::MeasuredRun> held_out = {runs.back()};
@@ -130,7 +130,7 @@ TEST(Diagnose, HeldOutRuns) {
   EXPECT_LT(d.held_out.after, 1.1);
 }
 
-// Tests that only what is allowed is named.
+// Tests that only allowed effects are named.
 TEST(Diagnose, NamesOnlyWhatItMay) {
   diagnose::DiagnoseOptions options;
   options.effects = {"sensor.pressure_lag", "valve.check"};
@@ -145,7 +145,7 @@ TEST(Diagnose, NamesOnlyWhatItMay) {
   EXPECT_NE(d.verdict, diagnose::Verdict::kNothingMissing);
 }
 
-// Tests that only the base parameters that are allowed are changed.
+// Tests that only allowed base parameters are changed.
 TEST(Diagnose, FreesOnlyWhatItMay) {
   model::ModelDescription truth = Table1With();
   truth.parameters.b *= 1.5;
@@ -162,7 +162,7 @@ TEST(Diagnose, FreesOnlyWhatItMay) {
   EXPECT_EQ(parameters, 2);
 }
 
-// Tests that a run whose shaft was held otherwise than it says is not explained by some physics: a gap remains that nothing
+// Tests that no physics explains a run whose shaft was held otherwise than stated: a gap remains that nothing
 // closes, nothing is added to the model, and that run is among the places named.
 TEST(Diagnose, AWrongShaftModeIsNotExplainedAway) {
   std::vector<runs::MeasuredRun> runs = RunsOf(Table1With());

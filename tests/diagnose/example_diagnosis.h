@@ -1,4 +1,4 @@
-// A diagnosis as it might be, for tests of what is told of one.
+// A made-up diagnosis, for tests of how a diagnosis is reported.
 #pragma once
 
 #include "diagnose/data/diagnosis.h"

@@ -1,4 +1,4 @@
-// Fits find the numbers that runs were made with, keep to bounds, and are the same every time.
+// Fits recover the numbers that runs were made with, keep to bounds, and are the same every time.
 #include "diagnose/fit/fit.h"
 
 #include <gtest/gtest.h>
@@ -34,7 +34,7 @@ double ValueOf(const diagnose::Fitted& fitted, const std::string& name) {
   return NAN;
 }
 
-// Tests that wrong base parameters are set right, to the noise.
+// Tests that wrong base parameters are corrected, to within the noise.
 TEST(Fit, RecoversBaseParameters) {
   model::ModelDescription truth = Table1With();
   truth.parameters.k_1 = 4.3;
@@ -52,7 +52,7 @@ TEST(Fit, RecoversBaseParameters) {
   EXPECT_EQ(fitted.runs.size(), runs.size());
 }
 
-// Tests that starts which hold a fit one tooth of the cogging off are given up for the measured ones.
+// Tests that a start which puts a fit one cogging tooth off is given up for the measured one.
 TEST(Explain, BeginsAgainFromTheMeasuredStarts) {
   const model::ModelDescription truth =
       Table1With({{"motor.cogging", {{"amplitude", 1}, {"periods", 6}, {"phase", 0.7}}, {}}});
@@ -78,8 +78,8 @@ TEST(Explain, BeginsAgainFromTheMeasuredStarts) {
   EXPECT_LT(explained.fitted.squared_gap(), 1.15);
 }
 
-// Tests that a run's start is looked for at rest too where the first samples allow it: the measured start of
-// what accelerates from rest is moving, and slips into another tooth of the cogging.
+// Tests that a run's start is also searched for at rest where the first samples allow it: the measured start
+// of a motion that accelerates from rest is already moving, and slips into another tooth of the cogging.
 TEST(FitStart, TriesRest) {
   const model::ModelDescription truth =
       Table1With({{"motor.cogging", {{"amplitude", 1}, {"periods", 6}, {"phase", 0.7}}, {}}});
@@ -101,7 +101,7 @@ TEST(FitStart, TriesRest) {
   EXPECT_EQ(BestStarts(hypothesis, PointersTo(runs), {moving}, 1)[0], fitted.runs[0].start);
 }
 
-// Tests that the numbers of effects are found from where fits start.
+// Tests that effects' parameters are found from the points where fits start.
 TEST(Fit, RecoversEffectParameters) {
   const std::vector<diagnose::RunData> runs =
       ClampedPair(Table1With({{"pump.quadratic_drag", {{"k", 2e-4}}, {}},
@@ -119,7 +119,7 @@ TEST(Fit, RecoversEffectParameters) {
   EXPECT_NEAR(fitted.squared_gap(), 1, 0.1);
 }
 
-// Tests that what is known beforehand decides where it outweighs the runs, and does nothing without weight.
+// Tests that prior knowledge decides where it outweighs the runs, and does nothing without weight.
 TEST(Fit, WeighsWhatIsKnownBeforehand) {
   const std::vector<diagnose::RunData> runs = ClampedPair(Table1With(), 0.5, 1);
   const diagnose::Hypothesis hypothesis = WithFree(Table1With(), {"k_1", "b"});
@@ -134,8 +134,8 @@ TEST(Fit, WeighsWhatIsKnownBeforehand) {
   EXPECT_NEAR(ValueOf(Fit(hypothesis, PointersTo(runs), StartsOf(runs), options), "k_1"), 4.4, 1e-3);
 }
 
-// Tests that runs held out in turn are predicted as by fits to the others, also where the model is so wrong
-// that a straight step from the common fit ends anywhere.
+// Tests that runs held out in turn are predicted as by fits to the others, even where the model is so wrong
+// that a straight step from the common fit could end anywhere.
 TEST(HeldOutInTurn, IsWhatFitsToTheOthersPredict) {
   const model::ModelDescription truth =
       Table1With({{"valve.relief", {{"set", 500}, {"conductance", 3e-3}}, {}},
@@ -182,7 +182,7 @@ TEST(Fit, RecoversStarts) {
   EXPECT_LT(std::abs(fitted.squared_gap() - 1), 0.1);
 }
 
-// Tests that an effect which would be best below its smallest physical value ends there.
+// Tests that an effect whose best fit lies below its smallest physical value ends at that value.
 TEST(Fit, KeepsToBounds) {
   model::ModelDescription truth = Table1With();
   truth.parameters.b = 0.008;
@@ -193,7 +193,7 @@ TEST(Fit, KeepsToBounds) {
   EXPECT_EQ(ValueOf(fitted, "pump.quadratic_drag.k"), 0);
 }
 
-// Tests that what must be above 0 is fitted as its logarithm, also from far away.
+// Tests that a parameter that must be above 0 is fitted by its logarithm, even from far away.
 TEST(Fit, PositiveParametersAreLogarithms) {
   model::ModelDescription wrong = Table1With();
   wrong.parameters.beta = 0.6 * 247000;
@@ -205,7 +205,7 @@ TEST(Fit, PositiveParametersAreLogarithms) {
   EXPECT_NEAR(ValueOf(fitted, "beta"), 247000, 0.02 * 247000);
 }
 
-// Tests that a model which cannot be simulated is told, not thrown.
+// Tests that a model which cannot be simulated is reported, not thrown.
 TEST(Fit, FailuresAreTold) {
   model::ModelDescription stiff = Table1With();
   stiff.parameters.beta = 1e16;
@@ -239,7 +239,7 @@ std::vector<double> AllNumbers(const diagnose::Fitted& fitted) {
   return numbers;
 }
 
-// Tests that a fit is the same to the bit when made again, and for any number of threads.
+// Tests that a fit is the same to the bit when repeated, and for any number of threads.
 TEST(Fit, SameBitsEveryTime) {
   model::ModelDescription truth = Table1With();
   truth.parameters.b = 0.018;

@@ -58,7 +58,7 @@ class HydroDiagnoseTest : public ::testing::Test {
     return names;
   }
 
-  // What is told on standard output, with `diagnosis` found.
+  // What is printed on standard output for `diagnosis`.
   std::string Run(const Diagnosis& diagnosis) {
     return Run([&](const model::ModelDescription& model, std::vector<runs::MeasuredRun> runs,
                    std::vector<runs::MeasuredRun> held_out, const DiagnoseOptions& options,
@@ -90,7 +90,7 @@ class HydroDiagnoseTest : public ::testing::Test {
     std::fclose(err);
     return text;
   }
-  // The one line that is said of a request that cannot be met; nothing must be left behind.
+  // The one-line error for a request that cannot be met; nothing may be left behind.
   std::string ErrorOf(const DiagnoseRequest& request) {
     request_ = request;
     try {
@@ -111,7 +111,7 @@ class HydroDiagnoseTest : public ::testing::Test {
   DiagnoseOptions options_;
 };
 
-// Tests that the files named in the request reach the diagnosis, and what it finds the report.
+// Tests that the files named in the request reach the diagnosis, and that its results reach the report.
 TEST_F(HydroDiagnoseTest, ReadsAndWrites) {
   Write("effects.toml", "effects = [\"pump.stribeck\", \"amp.lag\", \"amp.lag\"]\n");
   request_.held_out = {Path("b.csv")};
@@ -137,7 +137,7 @@ TEST_F(HydroDiagnoseTest, ReadsAndWrites) {
   EXPECT_THAT(told, HasSubstr("tied: The pump's static friction"));
 }
 
-// Tests that the model written is the one found, numbers bit by bit and names of signals too.
+// Tests that the model written is the one found: numbers bit by bit, and names of signals too.
 TEST_F(HydroDiagnoseTest, ModelRoundTrips) {
   const Diagnosis diagnosis = testing::ExampleDiagnosis();
   Run(diagnosis);
@@ -152,7 +152,7 @@ TEST_F(HydroDiagnoseTest, ModelRoundTrips) {
   }
 }
 
-// Tests that the next experiment of an earlier report goes when there is none now.
+// Tests that the next experiment of an earlier report is removed when there is none now.
 TEST_F(HydroDiagnoseTest, NoStaleNextExperiment) {
   Run(testing::ExampleDiagnosis());
   Run(testing::EmptyDiagnosis());
@@ -168,7 +168,7 @@ TEST_F(HydroDiagnoseTest, Deterministic) {
   EXPECT_EQ(Read("out/model.toml"), model);
 }
 
-// Tests that each thing wrong with a request is one line that names it, and leaves nothing behind.
+// Tests that each fault of a request gives one line that names it, and leaves nothing behind.
 TEST_F(HydroDiagnoseTest, Errors) {
   const DiagnoseRequest good = request_;
   const auto error = [&](const std::function<void(DiagnoseRequest&)>& change) {
@@ -203,7 +203,7 @@ TEST_F(HydroDiagnoseTest, Errors) {
   EXPECT_THAT(effects(""), HasSubstr("effects: found nothing"));
 }
 
-// Tests that a model that cannot follow the runs is bad input, that says which model.
+// Tests that a model that cannot follow the runs is bad input, and that the error names the model.
 TEST_F(HydroDiagnoseTest, ModelThatCannotFollow) {
   const Diagnoser diagnoser = [](const model::ModelDescription&, std::vector<runs::MeasuredRun>,
                                  std::vector<runs::MeasuredRun>, const DiagnoseOptions&,
@@ -219,7 +219,7 @@ TEST_F(HydroDiagnoseTest, ModelThatCannotFollow) {
   EXPECT_FALSE(fs::exists(Path("out")));
 }
 
-// Tests that the summary is about ten lines, and says in SI what it says in the paper's units.
+// Tests that the summary has about ten lines, and gives in SI what it gives in the paper's units.
 TEST(TerminalSummary, TenLines) {
   const std::string text = TerminalSummary(testing::ExampleDiagnosis(), "out", false);
   const auto lines = std::count(text.begin(), text.end(), '\n');
@@ -235,7 +235,7 @@ TEST(TerminalSummary, TenLines) {
   EXPECT_LE(std::count_if(text.begin(), text.end(), [](char c) { return c == '\n'; }), 10);
 }
 
-// Tests that a summary of nothing found leaves out what there is not.
+// Tests that the summary of an empty diagnosis leaves out what does not exist.
 TEST(TerminalSummary, NothingMissing) {
   const std::string text = TerminalSummary(testing::EmptyDiagnosis(), "out", false);
   EXPECT_THAT(text, HasSubstr("nothing_missing: The model as given"));
@@ -243,8 +243,8 @@ TEST(TerminalSummary, NothingMissing) {
   EXPECT_THAT(text, Not(HasSubstr("next.toml")));
 }
 
-// Tests that a bar shows stage and time left, never goes back and is wiped away, and that elsewhere each
-// stage is a line.
+// Tests that the progress bar shows stage and time left, never goes back and is wiped away, and that without
+// a terminal each stage is a line.
 TEST(ProgressBar, BarAndLines) {
   const auto told = [](bool terminal) {
     std::FILE* file = std::tmpfile();

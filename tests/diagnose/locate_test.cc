@@ -59,7 +59,7 @@ struct Case {
 
 class HiddenTerm : public ::testing::TestWithParam<Case> {};
 
-// Tests that what is missing from one balance shows in that balance, and what it depends on.
+// Tests that what a balance lacks shows in that balance, together with what it depends on.
 TEST_P(HiddenTerm, ShowsInItsOwnBalance) {
   const Localisation found = LocateOn(GetParam().truth);
   ASSERT_FALSE(found.location.empty());
@@ -117,7 +117,8 @@ TEST(Locate, NothingMissing) {
   }
 }
 
-// Tests that an effect that the model has is not missed, also one with states, switches or delays.
+// Tests that an effect that the model has is not reported as missing, even one with states, switches or
+// delays.
 TEST(Locate, NothingMissingWithEffects) {
   for (const model::ModelDescription& model :
        {With("amp.lag", {{"tau", 0.004}}), With("valve.relief", {{"set", 3000}, {"conductance", 1e-3}}),
@@ -131,7 +132,7 @@ TEST(Locate, NothingMissingWithEffects) {
   }
 }
 
-// Tests that pressures that are recorded late are laid to the sensors.
+// Tests that pressures recorded late are attributed to the sensors.
 TEST(Locate, LateReadings) {
   NoisyRig rig;
   rig.model = Given();
@@ -148,7 +149,7 @@ TEST(Locate, LateReadings) {
   EXPECT_GE(found.location.front().share, 0.85);
 }
 
-// Tests that the table of the missing term is the term that was hidden: friction that grows with pressure.
+// Tests that the table of the missing term is the hidden term: friction that grows with pressure.
 TEST(Locate, TableIsTheHiddenTerm) {
   const Localisation found = LocateOn(With("pump.pressure_friction", {{"f", 2e-4}}));
   ASSERT_FALSE(found.missing.empty());
@@ -163,8 +164,8 @@ TEST(Locate, TableIsTheHiddenTerm) {
   }
 }
 
-// Tests that balances that the run does not measure are left out, and that a speed that only the encoder
-// tells still locates friction.
+// Tests that balances that the run does not measure are left out, and that a speed known from the encoder
+// alone still locates friction.
 TEST(Locate, WhatIsNotMeasured) {
   NoisyRig rig;
   rig.model = Changed(&model::Parameters::T_s, 0.85);
@@ -184,8 +185,8 @@ TEST(Locate, WhatIsNotMeasured) {
   for (const Location& location : found.location) EXPECT_NE(location.balance, "flow_1");
 }
 
-// Tests recordings slower than the pressures' dynamics, with gaps: all is finite, and a plain error shows
-// where it is.
+// Tests recordings slower than the pressures' dynamics, with gaps: all results are finite, and a plain error
+// shows where it is.
 TEST(Locate, SlowRecordings) {
   NoisyRig rig;
   rig.model = Changed(&model::Parameters::T_s, 0.5);

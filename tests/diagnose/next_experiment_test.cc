@@ -31,8 +31,8 @@ RunData Recorded(const model::ModelDescription& model) {
                     [](double t) { return std::fmod(t, 0.5) < 0.25 ? 6.0 : -6.0; });
 }
 
-// Tests that an experiment is found for friction that could be one of two kinds, that it keeps to what the
-// rig has seen, and that a stack can be run from it.
+// Tests that an experiment is found for friction of two possible kinds, that it stays within what the rig has
+// seen, and that a stack can run it.
 TEST(NextExperiment, TellsRivalsApart) {
   const model::ModelDescription drag = With("pump.quadratic_drag", {{"k", 4e-5}});
   const model::ModelDescription pressure = With("pump.pressure_friction", {{"f", 1e-4}});

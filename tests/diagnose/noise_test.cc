@@ -14,8 +14,8 @@ namespace {
 constexpr size_t kSamples = 2000;
 constexpr double kPi = std::numbers::pi;
 
-// The mean estimate over five seeds for signal(t) and white noise at `rate` samples a second; each single one
-// must be near it.
+// The mean estimate over five seeds for signal(t) with white noise, at `rate` samples a second; each single
+// estimate must be near it.
 double MeanEstimate(
     double rate, double noise, const std::function<double(double)>& signal,
     const std::function<void(std::vector<double>&)>& spoil = [](std::vector<double>&) {}) {
@@ -35,14 +35,14 @@ double MeanEstimate(
   return sum;
 }
 
-// A pressure in a run: large, smooth, with a jump now and then.
+// A pressure in a run: large and smooth, with an occasional jump.
 double Motion(double t, double period) {
   const double phase = t / period - std::floor(t / period);
   return 900 * std::sin(2 * kPi * t / period) + (phase < 0.5 ? 200 : -200) +
          (phase > 0.5 ? 300 * std::exp(-(phase - 0.5) * 40) : 0);
 }
 
-// Tests that white noise is found on nothing, and on motion and jumps 600 times as large, at 1 kHz.
+// Tests that white noise is found alone, and under motion and jumps 600 times as large, at 1 kHz.
 TEST(EstimateNoise, OnMotionWithJumps) {
   EXPECT_NEAR(MeanEstimate(1000, 1.5, [](double) { return 100.0; }), 1.5, 0.05 * 1.5);
   EXPECT_NEAR(MeanEstimate(1000, 1.5, [](double t) { return Motion(t, 0.5); }), 1.5, 0.05 * 1.5);
@@ -53,19 +53,19 @@ TEST(EstimateNoise, OnMotionSampledSlowly) {
   EXPECT_NEAR(MeanEstimate(50, 1.5, [](double t) { return Motion(t, 8); }), 1.5, 0.05 * 1.5);
 }
 
-// Tests that an angle that grows a million times beyond the noise does not leak into it.
+// Tests that an angle that grows to a million times the noise does not leak into it.
 TEST(EstimateNoise, OnGrowingAngle) {
   EXPECT_NEAR(MeanEstimate(1000, 1e-3, [](double t) { return 300 * t + 50 * std::sin(2 * kPi * 3 * t); }),
               1e-3, 0.05 * 1e-3);
 }
 
-// Tests that a ripple of one frequency in the upper spectrum, ten times as large as the noise, is no noise.
+// Tests that a ripple of one frequency in the upper spectrum, ten times the noise, does not count as noise.
 TEST(EstimateNoise, RippleIsNoNoise) {
   EXPECT_NEAR(MeanEstimate(1000, 1.5, [](double t) { return 15 * std::sin(2 * kPi * 330.5 * t); }), 1.5,
               0.05 * 1.5);
 }
 
-// Tests that missing values, one by one and in stretches, change nothing.
+// Tests that missing values, single and in stretches, change nothing.
 TEST(EstimateNoise, MissingValues) {
   const auto spoil = [](std::vector<double>& values) {
     for (size_t i = 0; i < values.size(); i += 7) values[i] = std::numeric_limits<double>::quiet_NaN();
@@ -78,7 +78,7 @@ TEST(EstimateNoise, MissingValues) {
 }
 
 // Tests that noise is told from rounding: rounding alone is q/sqrt(12) however slowly the signal moves, and
-// comes on top of noise that is larger than it.
+// adds to noise larger than it.
 TEST(EstimateNoise, Rounding) {
   const double q = 2 * kPi / 16384;
   std::vector<double> slow;
@@ -112,7 +112,7 @@ TEST(EstimateResolution, StepsAndNone) {
   EXPECT_EQ(EstimateResolution({}), 0);
 }
 
-// Tests that series too short for a spectrum, and none at all, have no noise but rounding.
+// Tests that series too short for a spectrum, and empty ones, have no noise but rounding.
 TEST(EstimateNoise, TooShort) {
   EXPECT_EQ(EstimateNoise({}), 0);
   EXPECT_EQ(EstimateNoise(std::vector<double>(200, std::numeric_limits<double>::quiet_NaN())), 0);

@@ -1,4 +1,4 @@
-// An effect of a user's own, in one file (arm_spring.cc): the plant has it and the gap finder finds it.
+// A user's own effect, in one file (arm_spring.cc): the plant has it and the gap finder finds it.
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -20,7 +20,7 @@ constexpr double kStiffness = 2500;  // in-lbf/rad
 
 model::ModelDescription Sprung() { return Table1With({{"arm.spring", {{"stiffness", kStiffness}}, {}}}); }
 
-// A free arm, simulated by Actuator at 1 kHz, with noise on what is measured.
+// A free arm, simulated by Actuator at 1 kHz, with noise on the measured signals.
 runs::MeasuredRun Swing(double volts, double period, uint64_t seed) {
   model::Actuator rig(Sprung(), {});
   runs::MeasuredRun run;
@@ -43,7 +43,7 @@ runs::MeasuredRun Swing(double volts, double period, uint64_t seed) {
 
 std::vector<runs::MeasuredRun> Swings() { return {Swing(3, 0.4, 1), Swing(5, 0.25, 2), Swing(4, 0.6, 3)}; }
 
-// Tests that the catalogue has it like any other, model files and the simulation too.
+// Tests that the catalogue has it like any other effect, and so do model files and the simulation.
 TEST(OwnEffect, IsInTheCatalogue) {
   const model::EffectInfo* info = model::FindEffect("arm.spring");
   ASSERT_NE(info, nullptr);
@@ -53,7 +53,7 @@ TEST(OwnEffect, IsInTheCatalogue) {
   EXPECT_THAT(settings::FormatModel(Sprung()), HasSubstr("[effects.\"arm.spring\"]"));
 }
 
-// Tests that it cannot be added once the catalogue is in use, when references into it are held.
+// Tests that it cannot be added once the catalogue is in use and references into it are held.
 TEST(OwnEffect, IsAddedBeforeTheCatalogueIsUsed) {
   const size_t known = model::EffectCatalogue().size();
   model::CatalogueEntry late;
@@ -78,7 +78,7 @@ TEST(OwnEffect, IsFound) {
   EXPECT_LT(d.held_out.after, 1.1);
 }
 
-// Tests that where it may not be named nothing else is, with confidence.
+// Tests that where it may not be named, nothing else is named with confidence.
 TEST(OwnEffect, NothingElseTakesItsPlace) {
   diagnose::DiagnoseOptions options;
   for (const model::EffectInfo& info : model::EffectCatalogue()) {

@@ -1,5 +1,5 @@
-// The gap finder treats parameters by their role: twins of the catalogue's effects, with other ids, names and
-// units as a user's own would have, get what the catalogue's get. Without their roles they do not.
+// The gap finder treats parameters by their role: twins of the catalogue's effects, with ids, names and units
+// as a user might choose, are treated like the originals. Without roles they are not.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -19,7 +19,7 @@ using model::Role;
 using ::testing::Contains;
 using ::testing::Not;
 
-// Registers an effect with the equation of another, whose parameters are in the same order.
+// Registers an effect with the equation of another, with its parameters in the same order.
 bool AddTwin(const std::string& id, std::unique_ptr<model::Effect> (*make)(const model::EffectDescription&),
              std::vector<model::ParameterInfo> parameters) {
   return model::AddToCatalogue({.info = {.id = id,
@@ -74,8 +74,8 @@ model::ParameterInfo Any(const std::string& name, const std::string& unit, Role 
               .names = {"p1", "arm_angle"},
               .role = Role::kChannel}});
 
-// Tests that what repeats within a turn is read off the balances, with the same numbers as of the
-// catalogue's.
+// Tests that what repeats within a turn is read off the balances, with the same numbers as for the
+// catalogue's effects.
 TEST(OwnRoles, PeriodsAreReadOffTheBalances) {
   const std::vector<diagnose::RunData> runs =
       OneOfEach(Table1With({{"own.runout", {{"height", 1}, {"lobes", 6}, {"mark", 0.7}}, {}}}), 1.0, 1);
@@ -112,7 +112,7 @@ diagnose::Interval IntervalOf(const std::string& id, const std::string& name,
   return diagnose::Intervals(fitted, PointersTo(runs), 1).at(0);
 }
 
-// Tests that the interval of a time allows for what is taken to be immediate, whatever the unit is called.
+// Tests that the interval of a time allows for what is assumed to be immediate, whatever the unit is called.
 TEST(OwnRoles, TimesAreNotSharperThanSensors) {
   const std::vector<diagnose::RunData> runs = ClampedPair(Table1With({{kLag, {{"tau", 0.002}}, {}}}), 1, 1);
   const diagnose::Interval ours = IntervalOf(kLag, "tau", runs), own = IntervalOf("own.lag", "after", runs),
@@ -122,7 +122,7 @@ TEST(OwnRoles, TimesAreNotSharperThanSensors) {
   EXPECT_LT(without.high - without.low, 0.9 * (own.high - own.low));
 }
 
-// Tests that a fit that ended at another ringing is begun again from other frequencies.
+// Tests that a fit that ended at the wrong resonance is restarted from other frequencies.
 TEST(OwnRoles, FrequenciesAreLookedForAroundTheirEnd) {
   constexpr double kFrequency = 196;
   const auto line = [](const std::string& id, double frequency, double fraction, double damping) {
@@ -147,7 +147,7 @@ TEST(OwnRoles, FrequenciesAreLookedForAroundTheirEnd) {
   EXPECT_GT(std::abs(found("own.wave_without_role") - kFrequency), 5);
 }
 
-// What the gap finder rates, of the effects that it may name.
+// The gap finder's ratings of the effects that it may name.
 std::vector<std::string> Rated(double f, const std::vector<std::string>& effects) {
   model::ModelDescription given = Table1With();
   given.parameters.f = f;
@@ -163,13 +163,13 @@ std::vector<std::string> Rated(double f, const std::vector<std::string>& effects
   return labels;
 }
 
-// Tests that an effect which only adds to a parameter that the model has is left to that parameter.
+// Tests that an effect which only adds to a parameter of the model is left to that parameter.
 TEST(OwnRoles, ATermOfTheModelIsNoEffect) {
   EXPECT_THAT(Rated(0, {"own.friction"}), Contains("own.friction"));
   EXPECT_THAT(Rated(1e-3, {"own.friction"}), Not(Contains("own.friction")));
 }
 
-// Tests that names are tried as they are, and those of channels where the runs have the channel.
+// Tests that names are tried as they are, and channel names only where the runs have the channel.
 TEST(OwnRoles, NamesOfChannelsNeedTheChannel) {
   const std::vector<std::string> rated = Rated(0, {"own.side", "own.channel"});
   EXPECT_THAT(rated, Contains("own.side (left)"));

@@ -40,8 +40,8 @@ TEST(ParameterInstead, TakesThePlaceOfATinyEffect) {
   EXPECT_TRUE(instead->fitted.hypothesis.Has(kFriction));
 }
 
-// Tests that it does not where it predicts worse, moves further, was not asked to predict, stands in no
-// effect's place, leaves no other effect, or differs by more than that.
+// Tests that it does not when it predicts worse, moves further, was not asked to predict, replaces no effect,
+// leaves no other effect, or differs by more than that.
 TEST(ParameterInstead, AndOtherwiseNot) {
   const diagnose::Explanation best = Of({kRipple, kAsymmetry}, 1.04);
   EXPECT_EQ(Instead(best, Of({kRipple, kFriction}, 1.3, 0.999)), nullptr);

@@ -30,8 +30,8 @@ std::vector<diagnose::Hypothesis> StartsFor(const model::ModelDescription& truth
   return diagnose::WithPeriodic(WithFree(Table1With(), {}), changes, PointersTo(runs), jobs);
 }
 
-// Tests that a strong cogging has its number of periods, its phase and the order of its size; most of it is
-// left to the fit, since a smoothed disturbance is smaller than the true one.
+// Tests that a strong cogging is read with its number of periods, its phase and its order of magnitude; the
+// fit does most of the rest, since smoothing makes a disturbance smaller than it is.
 TEST(WithPeriodic, ReadsCogging) {
   for (const int periods : {5, 6, 11}) {
     const model::ModelDescription truth =
@@ -49,7 +49,7 @@ TEST(WithPeriodic, ReadsCogging) {
   }
 }
 
-// Tests the same of a displacement that varies, with its sign.
+// Tests the same for a displacement that varies, with its sign.
 TEST(WithPeriodic, ReadsAFlowRipple) {
   for (const double amplitude : {0.1, -0.1}) {
     const std::vector<diagnose::Hypothesis> starts = StartsFor(
@@ -61,7 +61,7 @@ TEST(WithPeriodic, ReadsAFlowRipple) {
   }
 }
 
-// Tests that samples that are missing are left out, and that a run without pressures has no say.
+// Tests that missing samples are left out, and that a run without pressures does not count.
 TEST(WithPeriodic, LeavesOutWhatIsMissing) {
   const model::ModelDescription truth =
       Table1With({{"motor.cogging", {{"amplitude", 1}, {"periods", 6}, {"phase", 0.7}}, {}}});
@@ -81,7 +81,7 @@ TEST(WithPeriodic, LeavesOutWhatIsMissing) {
   EXPECT_EQ(cogging->parameters.at("periods"), 6);
 }
 
-// Tests that what may not be named is not proposed, and that nothing is where nothing repeats.
+// Tests that nothing is proposed that may not be named, or where nothing repeats.
 TEST(WithPeriodic, OnlyWhatIsAskedForAndThere) {
   const model::ModelDescription truth =
       Table1With({{"motor.cogging", {{"amplitude", 1}, {"periods", 6}, {"phase", 0}}, {}}});

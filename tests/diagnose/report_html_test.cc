@@ -11,10 +11,10 @@
 namespace hydro::diagnose {
 namespace {
 
-// Without printing half a megabyte when it fails.
+// Does not print half a megabyte when it fails.
 bool Has(const std::string& page, const std::string& part) { return page.find(part) != std::string::npos; }
 
-// The first tag that is not closed, or closed without being open; "" when there is none.
+// The first tag left open, or closed without being open; "" when there is none.
 std::string UnbalancedTag(const std::string& html) {
   std::vector<std::string> open;
   const std::regex tag(R"(<(/?)([a-zA-Z0-9]+)((?:[^<>"]|"[^"]*")*?)(/?)>)");
@@ -32,7 +32,7 @@ std::string UnbalancedTag(const std::string& html) {
   return open.empty() ? "" : "<" + open.back() + ">";
 }
 
-// Tests that the page needs nothing outside of it and no script.
+// Tests that the page needs no other file and no script.
 TEST(ReportHtml, SelfContained) {
   const std::string page = ReportHtml(testing::ExampleDiagnosis(), false);
   EXPECT_TRUE(page.starts_with("<!DOCTYPE html>"));
@@ -42,13 +42,13 @@ TEST(ReportHtml, SelfContained) {
   }
 }
 
-// Tests that every tag is closed where it should be, with much and with little to show.
+// Tests that every tag is closed where it should be, in full reports and in nearly empty ones.
 TEST(ReportHtml, TagsAreBalanced) {
   EXPECT_EQ(UnbalancedTag(ReportHtml(testing::ExampleDiagnosis(60), false)), "");
   EXPECT_EQ(UnbalancedTag(ReportHtml(testing::EmptyDiagnosis(), true)), "");
 }
 
-// Tests that what comes from files is shown as text.
+// Tests that names and texts from files are shown as text.
 TEST(ReportHtml, Escapes) {
   Diagnosis diagnosis = testing::ExampleDiagnosis(60);
   const std::string evil = "<script>alert(\"1\")</script>&";
@@ -62,7 +62,7 @@ TEST(ReportHtml, Escapes) {
   EXPECT_EQ(UnbalancedTag(page), "");
 }
 
-// Tests that all of the diagnosis is there: verdict, gaps, effects, parameters, places, ties, pictures,
+// Tests that the whole diagnosis is there: verdict, gaps, effects, parameters, places, ties, pictures,
 // ranking, the next experiment.
 TEST(ReportHtml, Complete) {
   const std::string page = ReportHtml(testing::ExampleDiagnosis(), false);

@@ -18,7 +18,7 @@ std::vector<std::string> Keys(const Json& object) {
   return keys;
 }
 
-// Tests that every key which programs rely on is there, by name and with the value it stands for.
+// Tests that every key that programs rely on is there, by name and with its value.
 TEST(ReportJson, Keys) {
   const Json report = Json::parse(ReportJson(testing::ExampleDiagnosis(), "next.toml", 12.5));
   EXPECT_THAT(Keys(report), IsSupersetOf({"verdict", "location", "effects", "parameters", "gap",
@@ -64,7 +64,8 @@ TEST(ReportJson, Keys) {
   EXPECT_EQ(candidate["rejected_because"], "the held-out gap stays 13 times as large");
 }
 
-// Tests that what is not a number is null, and that there is no next experiment where none is needed.
+// Tests that numbers that are not finite become null, and that there is no next experiment where none is
+// needed.
 TEST(ReportJson, Nothing) {
   const Json example = Json::parse(ReportJson(testing::ExampleDiagnosis(), "next.toml", 1));
   EXPECT_TRUE(example["candidates"][2]["held_out"].is_null());
@@ -77,7 +78,7 @@ TEST(ReportJson, Nothing) {
   EXPECT_TRUE(empty["next_experiment"].is_null());
 }
 
-// Tests that a name that is no UTF-8 does not stop the report.
+// Tests that a name that is not UTF-8 does not stop the report.
 TEST(ReportJson, ForeignBytes) {
   Diagnosis diagnosis = testing::EmptyDiagnosis();
   diagnosis.runs = {"caf\xe9"};

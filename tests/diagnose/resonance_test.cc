@@ -1,4 +1,4 @@
-// A frequency that a fit ended at is not the last word where another fits better.
+// A fit that ended at the wrong frequency is moved to one that fits better.
 #include "diagnose/search/resonance.h"
 
 #include <gtest/gtest.h>
@@ -17,8 +17,8 @@ model::ModelDescription WithLine(double frequency, double fraction, double dampi
       {{"line.wave", {{"frequency", frequency}, {"volume_fraction", fraction}, {"damping", damping}}, {}}});
 }
 
-// Tests that a fit which ended at another frequency than the line's is taken to the line's, and one that
-// ended there stays.
+// Tests that a fit which ended at another frequency than the line's is moved to it, and that one which ended
+// there stays.
 TEST(AtBestResonance, GoesToTheLinesFrequency) {
   const std::vector<diagnose::RunData> runs = ClampedPair(WithLine(kFrequency, kFraction, kDamping), 1.0, 1);
   diagnose::SearchContext context;
@@ -43,7 +43,7 @@ TEST(AtBestResonance, GoesToTheLinesFrequency) {
   EXPECT_LE(there.fitted.sum, found.fitted.sum);
 }
 
-// Tests that without a number in Hz nothing is done.
+// Tests that nothing is done without a parameter in Hz.
 TEST(AtBestResonance, LeavesTheOthersAlone) {
   const model::ModelDescription model = Table1With({{"pump.quadratic_drag", {{"k", 1e-4}}, {}}});
   const std::vector<diagnose::RunData> runs = ClampedPair(model, 0.3, 1);

@@ -63,7 +63,7 @@ std::string ErrorOf(const std::function<void(runs::MeasuredRun&)>& change,
   return "no error";
 }
 
-// Tests what is compared, started from and known of a clamped run.
+// Tests which signals of a clamped run are compared, which start it, and what is known of it.
 TEST(PrepareRun, Clamped) {
   const RunData data = PrepareRun(Clamped(), testing::Table1());
   EXPECT_EQ(data.name, "step");
@@ -85,7 +85,7 @@ TEST(PrepareRun, Clamped) {
   EXPECT_THAT(data.start_free, ElementsAre(false, true, true, true, false, false));
 }
 
-// Tests that a first speed that noise alone may have made is none, and a greater one is kept.
+// Tests that a first speed within the noise is dropped, and a larger one is kept.
 TEST(PrepareRun, RestIsRest) {
   testing::NoisyRig rig;
   rig.model = {"Table 1", testing::Table1(), {}};
@@ -97,8 +97,8 @@ TEST(PrepareRun, RestIsRest) {
   }
 }
 
-// Tests that what accelerates from rest may be at rest, beside the line through its first samples; and that
-// what moves at its first sample may not.
+// Tests that a run that accelerates from rest may start at rest, besides starting on the line through its
+// first samples, and that one moving at its first sample may not.
 TEST(PrepareRun, MayBeginAtRest) {
   testing::NoisyRig rig;
   rig.model = {"Table 1", testing::Table1(), {}};
@@ -112,7 +112,7 @@ TEST(PrepareRun, MayBeginAtRest) {
   EXPECT_FALSE(PrepareRun(WithArm(model::Shaft::kFree), testing::Table1()).at_rest.has_value());
 }
 
-// Tests that a free arm is compared and started, its speed from the angle's slope.
+// Tests that a free arm is compared, and starts at a speed from the angle's slope.
 TEST(PrepareRun, Free) {
   const RunData data = PrepareRun(WithArm(model::Shaft::kFree), testing::Table1());
   EXPECT_NE(data.Find(model::Channel::kArmAngle), nullptr);
@@ -141,7 +141,7 @@ TEST(PrepareRun, Bypass) {
   EXPECT_THAT(data.start_free, ElementsAre(false, true, true, false, false, false));
 }
 
-// Tests that what is not measured starts from what is: speed from the angle, pressures at p_3.
+// Tests that unmeasured quantities start from measured ones: speed from the angle, pressures at p_3.
 TEST(PrepareRun, StartOfWhatIsNotMeasured) {
   runs::MeasuredRun run = Clamped();
   run.motor_speed = {};
@@ -180,7 +180,7 @@ TEST(PrepareRun, Refusals) {
       HasSubstr("line 52: arm_angle: found 17 rad"));
 }
 
-// Tests that the limits are those of the model's own units: 100 bar in Pa is nothing unusual in SI.
+// Tests that limits apply in the model's own units: 100 bar in Pa is nothing unusual in SI.
 TEST(PrepareRun, LimitsFollowTheModelsUnits) {
   model::Parameters si = testing::Table1();
   si.beta *= 6894.757;
@@ -189,8 +189,8 @@ TEST(PrepareRun, LimitsFollowTheModelsUnits) {
   EXPECT_NO_THROW(PrepareRun(run, si));
 }
 
-// Tests that what may well stand still does: a voltage, a driven arm, and in a log of the stack without noise
-// a side that stays on its one-way valve.
+// Tests that signals that may stand still are accepted when they do: a voltage, a driven arm, and in a log of
+// the stack without noise a side that stays on its one-way valve.
 TEST(PrepareRun, ConstantButRight) {
   EXPECT_EQ(ErrorOf([](runs::MeasuredRun& run) { run.arm_angle.values.assign(500, 0.1); },
                     WithArm(model::Shaft::kDriven)),
@@ -206,7 +206,7 @@ TEST(PrepareRun, ConstantButRight) {
             "no error");
 }
 
-// Tests that a noise is never 0, by which residuals could not be divided.
+// Tests that a noise is never 0, since residuals are divided by it.
 TEST(PrepareRun, NoiseIsAboveZero) {
   runs::MeasuredRun run = WithArm(model::Shaft::kFree);
   run.arm_angle.values.assign(500, 0.1);
@@ -214,7 +214,7 @@ TEST(PrepareRun, NoiseIsAboveZero) {
   for (const SignalData& signal : PrepareRun(run, testing::Table1()).signals) EXPECT_GT(signal.noise, 0);
 }
 
-// Tests that what a saturated sensor reads counts as missing, and that a side which rests on its one-way
+// Tests that readings of a saturated sensor count as missing, and that those of a side resting on its one-way
 // valve in a run without noise, and a coarse reading of an angle at rest, do not.
 TEST(PrepareRun, Saturation) {
   runs::MeasuredRun run = Clamped();
@@ -241,7 +241,7 @@ TEST(PrepareRun, Saturation) {
   EXPECT_EQ(still.Find(model::Channel::kMotorSpeed)->saturated, 0u);
 }
 
-// Tests that runs of one name are told apart.
+// Tests that runs with the same name are told apart.
 TEST(NameApart, NumbersWhatIsTaken) {
   std::vector<RunData> runs(4);
   runs[0].name = runs[1].name = runs[3].name = "a";
@@ -252,7 +252,7 @@ TEST(NameApart, NumbersWhatIsTaken) {
   EXPECT_THAT(names, ElementsAre("a", "a (2)", "a (2) (2)", "a (3)"));
 }
 
-// The largest error of the smoothed motion's rate against 0.4 sin(2 pi f t), its ends left out, and that of
+// The largest error of the smoothed motion's rate against 0.4 sin(2 pi f t), without its ends, and that of
 // monotone cubics through the samples.
 struct RateErrors {
   double smooth = 0, through = 0;
@@ -289,7 +289,7 @@ TEST(SmoothMotion, EncoderSine) {
   EXPECT_GT(errors.through, 5 * errors.smooth);
 }
 
-// Tests that a motion without noise is followed exactly enough, unevenly sampled and with samples missing.
+// Tests that a noiseless motion is followed exactly enough, even with uneven or missing samples.
 TEST(SmoothMotion, WithoutNoise) {
   std::vector<double> time, angle;
   for (size_t i = 0; i < 1000; ++i) {
@@ -306,7 +306,7 @@ TEST(SmoothMotion, WithoutNoise) {
   EXPECT_EQ(motion->Rate(2), 0);
 }
 
-// Tests that a measured rate makes the motion's rate better.
+// Tests that a measured rate improves the motion's rate.
 TEST(SmoothMotion, MeasuredRate) {
   std::mt19937_64 random(2);
   std::normal_distribution<double> normal;

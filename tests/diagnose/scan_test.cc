@@ -11,7 +11,7 @@
 namespace hydro::testing {
 namespace {
 
-// Every effect without names, sensor.skew of one channel, and every base parameter but f, which is
+// Every effect without names, sensor.skew of one channel, and every base parameter but f, which duplicates
 // pump.pressure_friction.
 std::vector<diagnose::Change> AllChanges() {
   std::vector<diagnose::Change> changes;
@@ -46,7 +46,7 @@ struct Case {
 
 model::ModelDescription Frictional() { return Table1With({{"pump.pressure_friction", {{"f", 4e-4}}, {}}}); }
 
-// Tests that a change which acts linearly is ranked first, with the fall that its refit brings, and that the
+// Tests that a change which acts linearly is ranked first, with the drop that its refit brings, and that the
 // refit has little left to do.
 TEST(Scan, RanksTheHiddenChangeFirst) {
   const Case one(Frictional());
@@ -70,7 +70,7 @@ TEST(Scan, RanksTheHiddenChangeFirst) {
   EXPECT_NEAR(best->start.Free()[0].value, 4e-4, 0.2 * 4e-4);
 }
 
-// Tests that the changes which share a simulation get the numbers that they get alone.
+// Tests that changes that share a simulation get the same numbers as alone.
 TEST(Scan, TogetherAsAlone) {
   const Case one(Frictional());
   const std::vector<diagnose::Change> changes = AllChanges();
@@ -99,7 +99,8 @@ TEST(Scan, PromisesNothingWhereNothingIsMissing) {
   }
 }
 
-// Tests that what is free already promises nothing more: derivatives are taken off those of all that is.
+// Tests that a parameter that is already free promises nothing more: derivatives are projected off those of
+// all free ones.
 TEST(Scan, WhatIsFreeAlreadyGainsNothing) {
   model::ModelDescription truth = Table1With();
   truth.parameters.b = 0.02;

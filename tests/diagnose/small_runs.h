@@ -18,7 +18,7 @@ inline model::ModelDescription Table1With(std::vector<model::EffectDescription> 
   return {"Table 1", Table1(), std::move(effects)};
 }
 
-// Levels of both signs, some too weak to break away, some that saturate the amplifier; each run others.
+// Levels of both signs, some too weak to break away, some that saturate the amplifier; different in each run.
 inline double Levels(double t, int which) {
   constexpr double kLevels[] = {3, -2, 6, 0.8, -5, 4, -7, 1.5, -3, 8, -12, 2, 11, -1, 5};
   return kLevels[(static_cast<int>(t / 0.07) + 4 * which) % 15];
@@ -34,7 +34,7 @@ inline diagnose::RunData SmallRun(const model::ModelDescription& truth, model::S
                                                            : "clamped ") +
                            std::to_string(which);
   const double angle = shaft == model::Shaft::kFree ? -0.1 : 0.3 - 0.2 * which;
-  // A free arm is kept from drifting off by levels that come in pairs.
+  // Levels in pairs keep a free arm from drifting off.
   return rig.Record(name, shaft, angle, duration, bypass, [&](double t) {
     if (shaft != model::Shaft::kFree) return Levels(t, which);
     return std::fmod(t, 0.3) < 0.15 ? 3.0 + which : -3.0 - which;
@@ -69,7 +69,7 @@ inline std::vector<model::StartState> StartsOf(const std::vector<diagnose::RunDa
   return starts;
 }
 
-// The model with these base parameters free, and the parameters of all of its effects.
+// The model with these base parameters and all parameters of its effects free.
 inline diagnose::Hypothesis WithFree(const model::ModelDescription& model,
                                      const std::vector<std::string>& base) {
   diagnose::Hypothesis hypothesis;

@@ -1,4 +1,4 @@
-// What the verdict rests on: intervals, significance, what runs can tell at all.
+// What the verdict rests on: intervals, significance, and what runs can tell.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -13,7 +13,7 @@
 namespace hydro::testing {
 namespace {
 
-// Noise in which each value keeps the part `phi` of the one before; standard deviation 1.
+// Noise in which each value keeps the fraction `phi` of the one before; standard deviation 1.
 std::vector<double> Noise(size_t samples, double phi, std::mt19937_64* random) {
   std::normal_distribution<double> normal;
   std::vector<double> noise = {normal(*random)};
@@ -62,7 +62,7 @@ struct ExactPair {
 
 constexpr uint64_t kSeeds = 30;
 
-// How many of 30 noises have the true values of b, T_s and beta within their intervals.
+// For how many of 30 noises the true values of b, T_s and beta lie within their intervals.
 std::vector<int> Covered(double phi, double duration) {
   const ExactPair pair(duration);
   std::vector<int> covered(3, 0);
@@ -83,7 +83,7 @@ std::vector<int> Covered(double phi, double duration) {
   return covered;
 }
 
-// Tests that 95 % intervals hold the truth about so often; 26 of 30 are reached in 98 of 100 cases.
+// Tests that 95 % intervals hold the truth about that often; 26 of 30 are reached in 98 of 100 cases.
 TEST(Intervals, HoldTheTruth) {
   for (const int covered : Covered(0, 0.4)) EXPECT_GE(covered, 26);
 }
@@ -93,7 +93,7 @@ TEST(Intervals, HoldTheTruthWithCorrelatedNoise) {
   for (const int covered : Covered(0.8, 1)) EXPECT_GE(covered, 26);
 }
 
-// Tests that a time is not said to be known better than sensors are immediate, however little noise there is.
+// Tests that a time is never claimed more certain than sensors are immediate, however little noise there is.
 TEST(Intervals, TimesAreNotSharperThanSensors) {
   const model::ModelDescription lagging = Table1With({{"amp.lag", {{"tau", 0.002}}, {}}});
   const std::vector<diagnose::RunData> runs = ClampedPair(lagging, 2, 1);
@@ -106,8 +106,8 @@ TEST(Intervals, TimesAreNotSharperThanSensors) {
   EXPECT_LT(intervals[0].high - intervals[0].low, 0.2 * sample);
 }
 
-// Tests that a small effect is not said to be known better than the large terms beside it: a little more
-// viscous friction than the model holds is taken for drag.
+// Tests that a small effect is never claimed more certain than the large terms beside it: a little more
+// viscous friction than the model has is mistaken for drag.
 TEST(Intervals, AllowForNumbersThatAreHeld) {
   constexpr double kDrag = 1e-5;
   model::ModelDescription truth = Table1With({{"pump.quadratic_drag", {{"k", kDrag}}, {}}});
@@ -124,7 +124,7 @@ TEST(Intervals, AllowForNumbersThatAreHeld) {
   EXPECT_LT(intervals[0].high - intervals[0].low, k);
 }
 
-// Tests that no interval holds what cannot be: friction that drives.
+// Tests that no interval includes the impossible: friction that drives.
 TEST(Intervals, StayWithinPhysics) {
   model::Parameters smooth = Table1();
   smooth.T_s = 0;
@@ -139,8 +139,8 @@ TEST(Intervals, StayWithinPhysics) {
   EXPECT_GT(intervals[0].high, 0);
 }
 
-// Tests that where there is no effect p-values are uniform: of falls that chance gives, chi-squared times
-// what residuals are worth.
+// Tests that p-values are uniform where there is no effect: drops by chance are chi-squared times the
+// residuals' worth.
 TEST(PValue, IsUniformWithoutAnEffect) {
   std::mt19937_64 random(1);
   std::normal_distribution<double> normal;
@@ -189,7 +189,7 @@ diagnose::Fitted AtTheTruth(const ExactPair& pair) {
   return fitted;
 }
 
-// Tests that residuals of white noise count one each, and those that keep the part phi (1 + phi)/(1 - phi).
+// Tests that white-noise residuals count one each, and those that keep the fraction phi (1 + phi)/(1 - phi).
 TEST(CorrelationOf, CountsWhatIsIndependent) {
   const ExactPair pair(2);
   for (const double phi : {0.0, 0.5, 0.8}) {
@@ -237,13 +237,13 @@ int CountOf(const std::vector<std::string>& told, const std::vector<std::string>
   }));
 }
 
-// Tests that clamped runs tell the pump's numbers but nothing of the arm, and that the units of torque and of
-// volume, which no run tells, are left as given.
+// Tests that clamped runs tell the pump's parameters but nothing about the arm, and that the units of torque
+// and of volume, which no run tells, are left as given.
 TEST(Identifiable, ClampedRunsTellNothingOfTheArm) {
   const std::vector<std::string> told = Told(ClampedPair(Table1With(), 0.6, 1));
   EXPECT_EQ(CountOf(told, {"k_2", "J_a", "mgl"}), 0);
   EXPECT_GE(CountOf(told, {"k_1", "T_pmax", "D", "J", "b", "T_s"}), 4);
-  // Eqs. (4), (13), (14) hold for all of these times any number ...
+  // Eqs. (4), (13), (14) still hold when all of these are multiplied by any number ...
   EXPECT_LT(CountOf(told, {"k_1", "T_pmax", "D", "J", "b", "T_s", "c_E", "c_I"}) +
                 std::min(1, CountOf(told, {"beta", "V_ms"})),
             9);
@@ -251,12 +251,12 @@ TEST(Identifiable, ClampedRunsTellNothingOfTheArm) {
   EXPECT_LT(CountOf(told, {"beta", "V_ms", "c"}), 3);
 }
 
-// Tests that a free arm tells of the arm, but not more than one unit each leaves.
+// Tests that a free arm tells about the arm, up to one unit.
 TEST(Identifiable, AFreeArmTellsOfTheArm) {
   std::vector<diagnose::RunData> runs = OneOfEach(Table1With(), 0.6, 1);
   const std::vector<std::string> told = Told(runs);
   EXPECT_GE(CountOf(told, {"k_2", "J_a"}), 1);
-  EXPECT_LT(CountOf(told, {"k_2", "J_a", "mgl"}), 3);  // eq. (15) holds for all times any number
+  EXPECT_LT(CountOf(told, {"k_2", "J_a", "mgl"}), 3);  // eq. (15) holds for all of them times any number
   EXPECT_LT(CountOf(told, {"k_1", "T_pmax", "D", "J", "b", "T_s", "c_E", "c_I", "V_ms", "c"}), 10);
 }
 
@@ -274,7 +274,7 @@ TEST(Identifiable, WhatIsToldCanBeFitted) {
   }
 }
 
-// Tests that a gap is closed near the noise, and by its share only where there is no noise to speak of.
+// Tests that a gap counts as closed near the noise, and by its share only where there is hardly any noise.
 TEST(Closed, NearTheNoiseOrOfExactSensors) {
   EXPECT_TRUE(diagnose::Closed(200, 1.15 * 1.15 - 1e-9, false));
   EXPECT_FALSE(diagnose::Closed(200, 1.4, false));
@@ -292,7 +292,7 @@ TEST(Closed, NearTheNoiseOrOfExactSensors) {
   EXPECT_TRUE(ExactSensors(PointersTo(runs)));
 }
 
-// Tests what a gain must be to count: a part of the whole and of what is above the noise.
+// Tests how large a gain must be to count: a share of the whole and of what exceeds the noise.
 TEST(Material, AsksForAGainThatMatters) {
   EXPECT_FALSE(diagnose::Material(1.02, 1.00));
   EXPECT_FALSE(diagnose::Material(1.0, 1.0 - 0.5 * diagnose::kLeastGain));

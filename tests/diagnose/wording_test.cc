@@ -11,8 +11,7 @@
 namespace hydro::diagnose {
 namespace {
 
-// Tests that numbers are rounded behind the point only, and written with powers of ten only where that is
-// shorter.
+// Tests that rounding only touches decimals, and that powers of ten appear only where they are shorter.
 TEST(ShortNumber, HasNoPowersOfTenThatNobodyNeeds) {
   EXPECT_EQ(ShortNumber(3.14159), "3.142");
   EXPECT_EQ(ShortNumber(3.14159, 3), "3.14");
@@ -37,14 +36,14 @@ TEST(WordList, JoinsAndEnumerates) {
   EXPECT_EQ(Enumerated({"a", "b", "c"}), "a, b and c");
 }
 
-// Tests that a run whose name says that it is one is not called a run twice.
+// Tests that a run whose name already says "run" is not called a run twice.
 TEST(WordList, NamesRuns) {
   EXPECT_EQ(RunNamed("sine"), "run sine");
   EXPECT_EQ(RunNamed("run 5"), "run 5");
   EXPECT_EQ(RunNamed("runaway"), "run runaway");
 }
 
-// Tests that a gap does not change what is usual, and that recordings are taken together.
+// Tests that a gap does not change the usual interval, and that recordings are taken together.
 TEST(MedianInterval, OfOneAndOfSeveralRecordings) {
   const std::vector<double> slow = {0, 1, 2, 50};
   const std::vector<double> fast = {0, 0.25, 0.5, 0.75, 1, 1.25};

@@ -16,20 +16,20 @@ const ExperimentResult& Result() {
   return result;
 }
 
-// Tests that both ratios are Table 1's, not the printed one, and are what the simulated rig does.
+// Tests that both ratios are Table 1's, not the printed one, and match the simulated rig.
 TEST(Apparatus, Ratios) {
   const auto numbers = ParseJson(Result().numbers);
   EXPECT_NEAR(numbers["torque_ratio"], 3.68 / 0.00796, 1e-9);
   EXPECT_NEAR(numbers["torque_ratio"], 462.3, 0.05);
   EXPECT_NEAR(numbers["displacement_ratio"], 462.8, 0.05);
   EXPECT_NEAR(numbers["k_2_for_printed_ratio_in_lbf_per_psi"], 3.858, 0.0005);
-  // Against leakage the pump creeps at theta' = (c_I + c_E) dp/D, and b theta' is missing from the torque.
+  // Against leakage the pump creeps at theta' = (c_I + c_E) dp/D, which takes b theta' from the torque.
   EXPECT_NEAR(numbers["torque_ratio_measured"], 3.68 / (0.00796 + 0.01455 * 7.5e-6 / 0.00796), 0.01);
   // The free arm's angle per motor angle: leakage and compressed oil take less than 0.01 %.
   EXPECT_NEAR(numbers["displacement_ratio_measured"], 1.83 * 1.83 * 2.2 / 2 / 0.00796, 0.05);
 }
 
-// Tests torques and speeds beside the printed ones.
+// Tests torques and speeds against the printed ones.
 TEST(Apparatus, TorquesAndSpeeds) {
   const auto numbers = ParseJson(Result().numbers);
   EXPECT_NEAR(numbers["peak_torque_printed_in_lbf"], 19388, 0.5);
@@ -40,11 +40,11 @@ TEST(Apparatus, TorquesAndSpeeds) {
   EXPECT_NEAR(numbers["maximum_speed_printed_rpm"], 12.4, 0.05);
   // The motor's last step overshoots 6000 rpm by up to a tick of 1200 rad/s^2, 0.2 %.
   EXPECT_NEAR(numbers["maximum_speed_rpm"], 6000 / 462.79, 0.03);
-  // Eqs. (1) to (15) have no limit of speed: (40 - 4)/0.01455 rad/s, within e^{-30/2} of it after 30 s.
+  // Eqs. (1) to (15) have no speed limit: (40 - 4)/0.01455 rad/s, within e^{-30/2} of it after 30 s.
   EXPECT_NEAR(numbers["unlimited_motor_speed_rpm"], 36 / 0.01455 * 30 / M_PI, 0.1);
 }
 
-// Tests that the assumed 18000 rpm motor has the power of the other one and gives the arm the same.
+// Tests that the assumed 18000 rpm motor has the power of the other one and moves the arm the same.
 TEST(Apparatus, FastMotorIsAnAssumptionOfTheSamePower) {
   const model::Parameters slow = ShippedModel("table1").parameters;
   const model::Parameters fast = ShippedModel("motor_18000rpm").parameters;

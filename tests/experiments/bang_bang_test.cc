@@ -9,7 +9,8 @@
 namespace hydro::experiments {
 namespace {
 
-// Tests that without friction the double integrator's closed form results: 2 sqrt(distance/acceleration).
+// Tests that without friction the result is the double integrator's closed form: 2
+// sqrt(distance/acceleration).
 TEST(BangBang, DoubleIntegrator) {
   const RigidDrive drive{.inertia = 5, .torque = 20, .friction = 0, .viscous = 0, .speed = 1e9};
   const FastestMove move = FastestRestToRest(drive, 0.3);
@@ -17,12 +18,12 @@ TEST(BangBang, DoubleIntegrator) {
   EXPECT_NEAR(move.switch_time, std::sqrt(0.3 / 4), 1e-12);
   EXPECT_NEAR(move.peak_speed, std::sqrt(0.3 * 4), 1e-12);
   EXPECT_FALSE(move.speed_limited);
-  // Into the band: the move to 1.02 of it less the braking over the last 0.04 of it.
+  // Into the band: the move to 1.02 of it, less the braking over the last 0.04 of it.
   EXPECT_NEAR(FastestSettling(drive, 0.3, 0.02), 2 * std::sqrt(0.306 / 4) - std::sqrt(2 * 0.012 / 4), 1e-12);
   EXPECT_NEAR(FastestSettling(drive, 0.3, 0), move.time, 1e-12);
 }
 
-// Tests that a speed limit makes the trapezoid's closed form.
+// Tests that a speed limit gives the closed form of the trapezoid.
 TEST(BangBang, SpeedLimit) {
   const RigidDrive drive{.inertia = 5, .torque = 20, .friction = 0, .viscous = 0, .speed = 0.5};
   const FastestMove move = FastestRestToRest(drive, 0.3);
@@ -30,8 +31,8 @@ TEST(BangBang, SpeedLimit) {
   EXPECT_NEAR(move.time, 0.3 / 0.5 + 0.5 / 4, 1e-12);
 }
 
-// Tests that friction that helps braking and viscosity enter as in a simulation of the motion, and that the
-// switch nearer or later misses the target.
+// Tests that friction, which helps braking, and viscosity enter as in a simulation of the motion, and that
+// switching nearer or later misses the target.
 TEST(BangBang, EqualsSimulationWithFriction) {
   const RigidDrive drive = MakeRigidDrive(ShippedModel("table1").parameters, 628.3);
   const FastestMove move = FastestRestToRest(drive, 0.1);
@@ -55,7 +56,7 @@ TEST(BangBang, EqualsSimulationWithFriction) {
   EXPECT_LT(stop(move.switch_time - 0.001, &time), 0.0996);
 }
 
-// Tests that Table 1's drive has the reflected inertia of the paper's numbers and bounds around 0.38 s.
+// Tests that Table 1's drive has the reflected inertia of the paper's numbers, and bounds around 0.38 s.
 TEST(BangBang, Table1) {
   const model::Parameters p = ShippedModel("table1").parameters;
   const RigidDrive drive = MakeRigidDrive(p, 628.3);

@@ -16,7 +16,7 @@ namespace {
 constexpr double kRate = 2000;  // Hz
 constexpr double kPi = std::numbers::pi;
 
-// At rest for 1 s, a sine from `first` to `last` Hz within `duration` s, at rest for 1 s.
+// Rest for 1 s, a sine from `first` to `last` Hz over `duration` s, rest for 1 s.
 std::vector<double> SweptSine(double amplitude, double first, double last, double duration) {
   std::vector<double> signal(static_cast<size_t>((duration + 2) * kRate));
   for (size_t i = 0; i < signal.size(); ++i) {
@@ -28,7 +28,8 @@ std::vector<double> SweptSine(double amplitude, double first, double last, doubl
   return signal;
 }
 
-// y_k = a1 y_{k-1} + a2 y_{k-2} + b x_{k-1}: a resonance at 24 Hz with damping .5, its exact response known.
+// y_k = a1 y_{k-1} + a2 y_{k-2} + b x_{k-1}: a resonance at 24 Hz with damping .5, whose exact response is
+// known.
 struct Resonance {
   double a1, a2, b;
   Resonance() {
@@ -50,8 +51,8 @@ struct Resonance {
   }
 };
 
-// Tests that a swept sine through a known linear system gives its gain and phase, with coherence 1. What the
-// averaging leaves is below 0.03 dB and 0.15 degrees.
+// Tests that a swept sine through a known linear system gives its gain and phase, with coherence 1. Averaging
+// leaves errors below 0.03 dB and 0.15 degrees.
 TEST(FrequencyResponse, SweptSineGivesLinearSystemsGain) {
   const Resonance system;
   const std::vector<double> x = SweptSine(3, 1, 120, 10);
@@ -88,7 +89,7 @@ TEST(FrequencyResponse, CoherenceIsTheLinearShare) {
   }
 }
 
-// Tests that a pure delay shows as a phase that falls on without jumps.
+// Tests that a pure delay shows as a phase that falls steadily, without jumps.
 TEST(FrequencyResponse, PhaseOfDelayIsUnwrapped) {
   const std::vector<double> x = SweptSine(1, 1, 120, 10);
   std::vector<double> y(x.size());
@@ -101,7 +102,7 @@ TEST(FrequencyResponse, PhaseOfDelayIsUnwrapped) {
   }
 }
 
-// Tests that signals which cannot be analysed are refused, and that bands without input give no point.
+// Tests that signals that cannot be analysed are refused, and that bands without input give no point.
 TEST(FrequencyResponse, RefusesWhatCannotBe) {
   const std::vector<double> x = SweptSine(1, 1, 50, 4);
   EXPECT_THROW(EstimateFrequencyResponse(x, {1, 2}, {.sample_rate_hz = kRate}), std::invalid_argument);
@@ -111,7 +112,7 @@ TEST(FrequencyResponse, RefusesWhatCannotBe) {
   EXPECT_TRUE(EstimateFrequencyResponse(nothing, x, {.sample_rate_hz = kRate}).empty());
 }
 
-// Tests that the bandwidth lies where the gain crosses -3 dB of the passband's, between points too.
+// Tests that the bandwidth is where the gain crosses -3 dB of the passband, even between points.
 TEST(FrequencyResponse, Bandwidth) {
   std::vector<ResponsePoint> points;
   for (double f = 1; f < 100; f *= 1.1) points.push_back({f, 2.0 / std::complex<double>(1, f / 10), 1});
@@ -134,7 +135,7 @@ TEST(SecondOrderFit, RecoversItsOwn) {
   EXPECT_NEAR(fit.model.damping_ratio, 0.5, 1e-6);
   EXPECT_NEAR(fit.model.delay, 0.0004, 1e-8);
   EXPECT_LT(fit.rms_error_db, 1e-5);
-  // Without the delay its 0.4 ms have to be put into wn and zeta, and what is left shows.
+  // Fitted without the delay, wn and zeta must absorb its 0.4 ms, and the remainder shows.
   EXPECT_GT(FitSecondOrder(points, {}).rms_error_deg, 0.1);
   EXPECT_THROW(FitSecondOrder({points.begin(), points.begin() + 3}, {}), std::invalid_argument);
 }

@@ -25,7 +25,7 @@ const model::Parameters& Table1() {
   return parameters;
 }
 
-// One run of the experiment for all that is asserted on it.
+// One run of the experiment, shared by all tests of it.
 class FrictionTest : public testing::Test {
  protected:
   static void SetUpTestSuite() { result_ = new ExperimentResult(RunFriction({})); }
@@ -58,7 +58,7 @@ TEST_F(FrictionTest, RecoversTheRig) {
   }
 }
 
-// Tests that the ramp finds break-away at T_s and what the ramp adds before movement is seen: with the bypass
+// Tests that the ramp finds break-away at T_s plus what the ramp adds before movement shows: with the bypass
 // open, J theta'' = T_p - T_s gives (6 J theta T_p'^2)^(1/3).
 TEST_F(FrictionTest, BreakAwayOnTheRamp) {
   const json ramp = Numbers().at("break_away");
@@ -87,7 +87,7 @@ TEST_F(FrictionTest, Report) {
   EXPECT_THAT(result_->explanation, HasSubstr("95 %"));
 }
 
-// A bypass run without noise, from the model by itself: voltages held one after the other.
+// A noiseless bypass run, from the model alone: voltages held one after the other.
 struct CleanHold {
   double voltage;
   double duration;
@@ -158,8 +158,8 @@ TEST(PumpFrictionTest, IntervalsAreHonest) {
   }
 }
 
-// Tests that the intervals also hold the truth where what is left of the transients, not noise, is the error:
-// it is alike at all points, so that their scatter alone would promise too much.
+// Tests that the intervals also hold the truth where the error is what is left of the transients, not noise:
+// it is alike at all points, so their scatter alone would promise too much.
 TEST(PumpFrictionTest, IntervalsKnowOfTransients) {
   int beyond_scatter = 0;
   for (const SpeedSource source : {SpeedSource::kSpeed, SpeedSource::kAngle}) {
@@ -187,7 +187,7 @@ TEST(PumpFrictionTest, ExactWithoutNoise) {
   }
 }
 
-// Tests that friction which differs between the directions is found as such.
+// Tests that friction that differs between directions is found to.
 TEST(PumpFrictionTest, DirectionsDiffer) {
   const model::ModelDescription model = settings::ParseModel(
       ShippedModelText("table1") + "[effects.\"pump.friction_asymmetry\"]\ncoulomb = 0.3\nviscous = 0.0\n",
@@ -201,7 +201,7 @@ TEST(PumpFrictionTest, DirectionsDiffer) {
   EXPECT_NEAR(friction.T_s.value, 4.0, 0.01);
 }
 
-// Tests that only what is steady is used: holds cut short, and a voltage that does not turn the motor, are
+// Tests that only steady stretches are used: holds cut short, and a voltage that does not turn the motor, are
 // left out.
 TEST(PumpFrictionTest, OnlySteadyHoldsCount) {
   std::vector<CleanHold> holds = BothWays(30);
@@ -225,7 +225,7 @@ TEST(PumpFrictionTest, NoisyCommandAndGaps) {
   EXPECT_NEAR(friction.b.value, 0.01455, 0.0001455);
 }
 
-// Tests each way in which a run can fail to support the fit: the message has what was found and what is
+// Tests each way in which a run can fail to support the fit: the message says what was found and what is
 // allowed.
 TEST(PumpFrictionTest, Errors) {
   const model::ModelDescription model = ShippedModel("table1");
@@ -254,7 +254,7 @@ TEST(PumpFrictionTest, Errors) {
               HasSubstr("found 2 different speeds in 4 steady holds"));
 }
 
-// Tests that a file with its sidecar is analysed like a simulated rig's run, and the angle serves where there
+// Tests that a file with its sidecar is analysed like a run of the simulated rig, using the angle where there
 // is no speed.
 TEST(FrictionRunFile, TableWithSidecar) {
   const std::string stem = testing::TempDir() + "/friction_run_file";
@@ -282,7 +282,7 @@ TEST(FrictionRunFile, TableWithSidecar) {
   std::filesystem::remove(stem + ".toml");
 }
 
-// Tests that a real run which is neither of a bypass nor of steady speeds is refused with the reason.
+// Tests that a real run that has neither an open bypass nor steady speeds is refused with the reason.
 TEST(FrictionRunFile, RealRunWithoutBypass) {
   const std::filesystem::path data = std::filesystem::path(HYDRO_MEASURED_DATA) / "buoy_pto";
   if (!std::filesystem::exists(data)) GTEST_SKIP() << "no measured data at " << data;
@@ -305,7 +305,7 @@ TEST(FrictionRunFile, RealRunWithoutBypass) {
   };
   EXPECT_THAT(error_with("shaft = \"driven\"\n"),
               AllOf(HasSubstr("friction_buoy.csv: found the bypass closed"), HasSubstr("allowed")));
-  // Were it said to be open: the test machine moves the motor to and fro under one current.
+  // If it claimed an open bypass: the test machine moves the motor to and fro under one current.
   EXPECT_THAT(error_with("shaft = \"driven\"\nbypass = true\n"), HasSubstr("friction_buoy.csv: found"));
   std::filesystem::remove(stem + ".csv");
   std::filesystem::remove(stem + ".toml");

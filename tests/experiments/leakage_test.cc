@@ -22,7 +22,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-// One run of the experiment for all that is asserted on it.
+// One run of the experiment, shared by all tests of it.
 class LeakageTest : public testing::Test {
  protected:
   static void SetUpTestSuite() { result_ = new ExperimentResult(RunLeakage({})); }
@@ -33,7 +33,7 @@ class LeakageTest : public testing::Test {
 ExperimentResult* LeakageTest::result_ = nullptr;
 
 // Tests that both coefficients of the simulated rig come back within 5 % from noisy, quantised pressures, are
-// told apart, and that nothing but the sensors' noise is left.
+// told apart, and leave nothing but the sensors' noise.
 TEST_F(LeakageTest, RecoversTheRig) {
   const json numbers = Numbers();
   EXPECT_NEAR(numbers.at("c_E"), 6.5e-6, 0.05 * 6.5e-6);
@@ -47,13 +47,13 @@ TEST_F(LeakageTest, RecoversTheRig) {
     EXPECT_NEAR(numbers.at(name), truth, high - low) << name;
     EXPECT_LT(high - low, 0.05 * truth) << name;
   }
-  // 36000 residuals: their mean square is 1 within 4 sqrt(2/36000), the rounding's share included.
+  // 36000 residuals: their mean square is 1 within 4 sqrt(2/36000), including the share of rounding.
   EXPECT_NEAR(numbers.at("rms_residual"), 1, 0.02);
   EXPECT_LT(std::abs(numbers.at("correlation").get<double>()), 0.99);
 }
 
-// Tests the closed forms of the stick: p_1 + p_2 - 2 p_3 decays with (beta/V) c_E, p_2 - p_1 with
-// (beta/V)(c_E + 2 c_I), which by themselves give both coefficients.
+// Tests the closed forms of the stick: p_1 + p_2 - 2 p_3 decays with (beta/V) c_E and p_2 - p_1 with
+// (beta/V)(c_E + 2 c_I), which suffices to find both coefficients.
 TEST_F(LeakageTest, StickInClosedForm) {
   const json decay = Numbers().at("stick_decay");
   EXPECT_NEAR(decay.at("c_E"), 6.5e-6, 0.05 * 6.5e-6);
@@ -63,8 +63,8 @@ TEST_F(LeakageTest, StickInClosedForm) {
   EXPECT_NEAR(decay.at("to_s"), 0.1 + 1.194, 0.02);
 }
 
-// Tests what tells the two apart: p_2 - p_1 alone, with both sides above p_3, tells c_E + 2 c_I (the rate of
-// its decay) and little else, and so leaves the errors of the two opposed; the two pressures tell both
+// Tests how the two are told apart: p_2 - p_1 alone, with both sides above p_3, tells c_E + 2 c_I (the rate
+// of its decay) and little else, which leaves the errors of the two opposed; the two pressures tell both
 // better.
 TEST_F(LeakageTest, WhatTellsThemApart) {
   const json told = Numbers().at("told_by");
@@ -78,8 +78,8 @@ TEST_F(LeakageTest, WhatTellsThemApart) {
             told.at("one_side_at_p_3").at("c_I_error_percent"));
 }
 
-// Tests the influence of what is taken as known: pressures depend on beta c_E and beta c_I only while the
-// pump sticks, so 1 % more beta gives about 1 % less of both.
+// Tests the influence of assumed values: pressures depend on beta c_E and beta c_I only while the pump
+// sticks, so 1 % more beta gives about 1 % less of both.
 TEST_F(LeakageTest, BulkModulusIsTakenAsKnown) {
   const json shift = Numbers().at("shift_percent_for_1_percent").at("beta");
   EXPECT_NEAR(shift.at("c_E"), -1, 0.3);
@@ -103,7 +103,7 @@ TEST_F(LeakageTest, Report) {
   EXPECT_EQ(result_->table.rows(), 4u * 4501u);
 }
 
-// A clamped run of the model by itself, at 200 Hz: one torque, then none.
+// A clamped run of the model alone, at 200 Hz: one torque, then none.
 runs::MeasuredRun Clamped(const model::ModelDescription& model, double torque, int64_t seed, double noise = 3,
                           int samples = 900) {
   runs::MeasuredRun run;
@@ -132,7 +132,7 @@ model::ModelDescription Leaking(double c_E, double c_I) {
   return model;
 }
 
-// Tests that other leakages are found as well, whatever the model's own say: the fit needs no guess.
+// Tests that other leakages are also found, whatever the model's own are: the fit needs no guess.
 TEST(LeakageFitTest, OtherLeakages) {
   for (const auto& [c_E, c_I] : {std::pair(1.5e-6, 7e-6), std::pair(4e-5, 2e-5), std::pair(7e-7, 3e-7)}) {
     const LeakageFit fit = FitLeakage(ShippedModel("table1"), {Clamped(Leaking(c_E, c_I), 10, 1)});
@@ -143,7 +143,7 @@ TEST(LeakageFitTest, OtherLeakages) {
 }
 
 // Tests that the 95 % intervals are honest: over 40 draws of the noise they hold the truth 35 times or more
-// (which has a probability of 0.986 at 95 %), and that their width is the scatter of the values.
+// (which has a probability of 0.986 at 95 %), and their width matches the scatter of the values.
 TEST(LeakageFitTest, IntervalsAreHonest) {
   const int draws = 40;
   const runs::MeasuredRun clean = Clamped(ShippedModel("table1"), 10, 1, 1e-9);
@@ -167,8 +167,8 @@ TEST(LeakageFitTest, IntervalsAreHonest) {
   EXPECT_NEAR(1.96 * std::sqrt(squares / draws) / half, 1, 0.34);  // 3 sqrt(1/(2 draws))
 }
 
-// Tests that data which tell only one combination are said to: pressures recorded long after the last stick,
-// when one side stays at p_3 and the pump creeps steadily against c_E + c_I.
+// Tests that data which tell only one combination are reported as such: pressures recorded long after the
+// last stick, when one side stays at p_3 and the pump creeps steadily against c_E + c_I.
 TEST(LeakageFitTest, SteadyCreepTellsOnlyTheSum) {
   runs::MeasuredRun run = Clamped(ShippedModel("table1"), 10, 1, 3, 3200);
   for (size_t i = 0; i < run.samples(); ++i) {
@@ -181,14 +181,14 @@ TEST(LeakageFitTest, SteadyCreepTellsOnlyTheSum) {
   run.p2.values[10] = 100;
   const LeakageFit fit = FitLeakage(ShippedModel("table1"), {run});
   EXPECT_THAT(fit.not_identifiable, ElementsAre("c_E", "c_I"));
-  // A trace of the swing, which knows the sticks' c_E + 2 c_I, is left in it.
+  // It still contains a trace of the swing, which knows c_E + 2 c_I from the sticks.
   EXPECT_NEAR(fit.information.c_I_weight, 1, 0.3);
   EXPECT_LT(fit.combination.low, 6.5e-6 + fit.information.c_I_weight * 1e-6);
   EXPECT_GT(fit.combination.high, 6.5e-6 + fit.information.c_I_weight * 1e-6);
   EXPECT_LT(fit.information.correlation, -0.9);
 }
 
-// Tests that the fit does not need the noise to be given, and bears missing values and uneven times.
+// Tests that the fit needs no given noise, and tolerates missing values and uneven times.
 TEST(LeakageFitTest, UnknownNoiseGapsUnevenTimes) {
   runs::MeasuredRun run = Clamped(ShippedModel("table1"), -10, 1);
   run.p1.noise = run.p2.noise = std::nullopt;
@@ -220,7 +220,7 @@ std::string ErrorOf(const runs::MeasuredRun& run) {
   return {};
 }
 
-// Tests each way in which a run can fail to support the fit: the message has what was found and what is
+// Tests each way in which a run can fail to support the fit: the message says what was found and what is
 // allowed.
 TEST(LeakageFitTest, Errors) {
   const runs::MeasuredRun good = Clamped(ShippedModel("table1"), 10, 1);
@@ -253,7 +253,7 @@ TEST(LeakageFitTest, Errors) {
   EXPECT_THAT(ErrorOf(run), AllOf(HasSubstr("clamped.csv: "), HasSubstr("V_1")));
 }
 
-// Tests that a file with its sidecar is analysed like the simulated rig's runs, and that the real recording
+// Tests that a file with its sidecar is analysed like a run of the simulated rig, and that the real recording
 // of a moving piston is refused with the reason.
 TEST(LeakageRunFile, TableWithSidecar) {
   const std::string stem = testing::TempDir() + "/leakage_run_file";
@@ -272,7 +272,7 @@ TEST(LeakageRunFile, TableWithSidecar) {
   EXPECT_THAT(result.findings, IsEmpty());
   EXPECT_TRUE(ParseJson(result.numbers).at("model_describes_run"));
 
-  // Pressures of a wrong scale: numbers come out, and that they mean nothing is said.
+  // Pressures on a wrong scale: numbers come out, together with the warning that they mean nothing.
   std::ofstream(stem + ".toml") << "shaft = \"clamped\"\n[columns]\ntime = \"t\"\nvoltage = \"v\"\n"
                                    "p1 = { column = \"a\", scale = 1.1, offset = -10.0 }\n"
                                    "p2 = { column = \"b\", scale = 1.1, offset = -10.0 }\n";

@@ -53,8 +53,8 @@ struct HandModel {
   }
 };
 
-// Tests that the analog loop has the response and the poles of the hand-made second-order model, with one
-// and with both sides compressing, and with the paper's omega_n and zeta up to what the leakage adds.
+// Tests that the analog loop has the response and the poles of the hand-made second-order model, with one and
+// with both sides compressing, and the paper's omega_n and zeta up to what leakage adds.
 TEST(LinearPressureLoop, AnalogLoopIsSecondOrder) {
   for (const int sides : {1, 2}) {
     const HandModel hand(sides);
@@ -84,7 +84,7 @@ TEST(LinearPressureLoop, TwoSidedGainsOnOneSide) {
   EXPECT_NEAR(-pole.real() / std::abs(pole), 0.707, 0.0005);
 }
 
-// Tests that the sampled loop tends to the analog one, first by the half interval that holding delays.
+// Tests that the sampled loop converges to the analog one, first by the half interval that holding delays.
 TEST(LinearPressureLoop, SampledLoopTendsToAnalog) {
   const model::LinearModel model = Clamped(ShippedModel("table1"), 0);
   const LinearPressureLoop analog(model, {});
@@ -123,7 +123,7 @@ TEST(LinearPressureLoop, GainLimitWithWavesMeetsRouth) {
   }
 }
 
-// Tests the sampled loop's limit by the actuator itself under the sampled law: oscillations decay just below
+// Tests the sampled loop's limit on the actuator itself under the sampled law: oscillations decay just below
 // it and grow just above it. Without Coulomb friction, which would stop them.
 TEST(LinearPressureLoop, SampledLimitIsWhereTheActuatorStartsToOscillate) {
   model::ModelDescription model = ShippedModel("table1");

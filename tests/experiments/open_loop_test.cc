@@ -1,4 +1,4 @@
-// Figures 2 and 3: the clamped actuator in open loop, against closed forms and an integration of its own.
+// Figures 2 and 3: the clamped actuator in open loop, against closed forms and a separate integration.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -29,7 +29,7 @@ const json& Fig3() {
   return numbers;
 }
 
-// Eqs. (4), (13), (14) by Runge-Kutta, with switches at the ends of its steps of 10 us: times to some 10 us.
+// Eqs. (4), (13), (14) by Runge-Kutta, switching at the ends of its steps of 10 us: times to some 10 us.
 struct Cycles {
   std::vector<double> sticks;  // s
   double last_slip_dp = 0;
@@ -81,8 +81,8 @@ const json& AtRest(double torque, double static_torque) {
   throw std::out_of_range("no such row");
 }
 
-// Tests that Table 1 alone sticks exactly once and then creeps, at every low torque, as an integration of its
-// own does with and without the valves.
+// Tests that Table 1 alone sticks exactly once and then creeps, at every low torque, with and without the
+// valves, as the separate integration does.
 TEST(Figure2, Table1SticksOnce) {
   const json& table1 = Fig2()["table1"];
   EXPECT_EQ(table1["sticks"], 1);
@@ -122,8 +122,8 @@ TEST(Figure2, StribeckCycles) {
               1e-5);
 }
 
-// Tests where cycles begin at T_p = 6, and that the bound counts in (T_p - T_s): at T_p = 10 an excess that
-// cycles at 6 does not.
+// Tests where cycles begin at T_p = 6, and that the bound scales with (T_p - T_s): an excess that cycles at
+// T_p = 6 does not at T_p = 10.
 TEST(Figure2, ThresholdOfStaticFriction) {
   EXPECT_FALSE(AtRest(6, 4.2)["sustained"]);
   EXPECT_TRUE(AtRest(6, 4.22)["sustained"]);
@@ -136,8 +136,9 @@ TEST(Figure2, ThresholdOfStaticFriction) {
   EXPECT_GT(Integrate(6, 4.22, true, 10).sticks.size(), 10u);
 }
 
-// Tests periods and swings over the excess ratio .11, .2, .4, .8, against known values and an integration of
-// its own with friction that is static at rest only. dp goes a little beyond where the pump sticks and slips.
+// Tests periods and swings over the excess ratio .11, .2, .4, .8, against known values and a separate
+// integration with friction that is static at rest only. dp overshoots a little where the pump sticks and
+// slips.
 TEST(Figure2, PeriodsAndSwings) {
   struct Row {
     double static_torque, period, stick_dp, slip_dp;
@@ -184,8 +185,8 @@ Peak SecondOrderPeak(double stiffness, double leak) {
   return {time, final_dp * (1 + std::exp(-decay * time))};
 }
 
-// Tests that the 10 in-lbf step peaks, sticks and slips where it is known to, and where the closed form of
-// one side of fluid on the pump's inertia has it.
+// Tests that the 10 in-lbf step peaks, sticks and slips at the known times, and at the times of the closed
+// form of one side of fluid on the pump's inertia.
 TEST(Figure3, PeakStickAndSlip) {
   const json& fig3 = Fig3();
   EXPECT_NEAR(fig3["peak_p2_psi"].get<double>(), 1512.6, 0.05);

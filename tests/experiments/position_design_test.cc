@@ -40,7 +40,7 @@ TEST(PositionDesign, RouthAgreesWithArrayAndEigenvalues) {
       EXPECT_TRUE(array_is_positive(limit.gain * (1 - 1e-9)));
       EXPECT_FALSE(array_is_positive(limit.gain * (1 + 1e-9)));
       EXPECT_NEAR(CriticalGainOfPoles(model), limit.gain, 1e-6 * limit.gain);
-      // A root there, put into the polynomial.
+      // A root there, substituted into the polynomial.
       const auto a = CharacteristicPolynomial(model, limit.gain);
       const Complex s(0, limit.frequency);
       EXPECT_LT(std::abs(a[0] + s * (a[1] + s * (a[2] + s * (a[3] + s * a[4])))), 1e-9 * a[0]);
@@ -63,7 +63,7 @@ TEST(PositionDesign, PaperNumbers) {
   EXPECT_NEAR(RouthLimit(model).gain, 724.7, 0.05);
 }
 
-// Tests that the roots of a polynomial made from roots are those.
+// Tests that the roots of a polynomial built from roots are those roots.
 TEST(PositionDesign, PolynomialRoots) {
   // (s + 1)(s + 10)(s^2 + 4 s + 13)
   const auto roots = PolynomialRoots({130, 183, 67, 15, 1});
@@ -74,7 +74,7 @@ TEST(PositionDesign, PolynomialRoots) {
   EXPECT_NEAR(std::abs(roots[3] + 1.0), 0, 1e-9);
 }
 
-// Tests that the margins are what they say: the loop's gain and phase at the crossovers.
+// Tests that the margins are true: the loop's gain and phase at the crossovers.
 TEST(PositionDesign, Margins) {
   const DesignModel model = Table1Design();
   const Margins margins = StabilityMargins(model, 350);
@@ -105,7 +105,8 @@ TEST(PositionDesign, FastPressureLoopIsSecondOrder) {
   EXPECT_NEAR(response.time[static_cast<size_t>(peak)], std::numbers::pi / damped, 3e-4);
 }
 
-// The sampled loop computed otherwise: Runge-Kutta on the states, the law that the position process runs.
+// The sampled loop computed in another way: Runge-Kutta on the states, with the law that the position process
+// runs.
 Response SimulateByHand(const DesignModel& m, double gain, double interval, bool on_error, double step,
                         double duration) {
   position_ctrl::PositionLaw law(
@@ -167,7 +168,7 @@ TEST(SampledPositionLoop, ApproachesContinuousTime) {
 }
 
 // Tests that the poles of the sampled loop are those of the sampled z-domain equation: the determinant by
-// Krylov's way, from a free motion's samples that obey the poles' recurrence.
+// Krylov's method, from samples of a free motion, which obey the poles' recurrence.
 TEST(SampledPositionLoop, PolesGovernTheMotion) {
   const DesignModel model = Table1Design();
   const double interval = 0.005;
@@ -188,7 +189,7 @@ TEST(SampledPositionLoop, PolesGovernTheMotion) {
 }
 
 // Tests that the exact linearisation with the arm clamped gives the design's loop up to leakage, and with one
-// side held the one that the gains' inverse gives.
+// side held the loop that the inverse of the gains gives.
 TEST(ArmLoop, ClampedIsTheDesign) {
   const model::ModelDescription model = ShippedModel("table1");
   pressure_ctrl::PressureLawSettings law;

@@ -16,7 +16,7 @@ namespace {
 
 using nlohmann::json;
 
-// Each figure once, and its numbers.
+// Runs each figure once and keeps its numbers.
 struct Figures {
   ExperimentResult fig8 = RunFig8({});
   ExperimentResult fig9 = RunFig9({});
@@ -45,7 +45,7 @@ TEST(PositionFigures, CriticalGainAndPoles) {
   EXPECT_NEAR(Outcome().numbers9["printed_ratio"]["critical_gain"], 724.7, 0.05);
 }
 
-// Tests that Figure 8 says where its model comes from and what the free arm does to it.
+// Tests that Figure 8 says where its model comes from and how the free arm changes it.
 TEST(PositionFigures, DesignModelAgainstTheExactOne) {
   const json& linearised = Outcome().numbers8["linearised"]["both_sides"];
   EXPECT_NEAR(linearised["natural_frequency_rad_s"], 150, 0.5);
@@ -59,7 +59,7 @@ TEST(PositionFigures, DesignModelAgainstTheExactOne) {
   ASSERT_EQ(Outcome().fig8.pictures.size(), 3u);
 }
 
-// Tests that the sampled loop overshoots as it should at each interval and in each form, is unstable at 10
+// Tests that the sampled loop has the right overshoot at each interval and in each form, is unstable at 10
 // ms, and that simulation confirms the largest stable interval.
 TEST(PositionFigures, SampledLoop) {
   const json& numbers = Outcome().numbers9;
@@ -119,8 +119,8 @@ TEST(PositionFigures, Causes) {
   EXPECT_NEAR(causes["no_arm_flow"]["settling_time_s"], 0.118, 0.002);
 }
 
-// Tests that the shipped retuned loop settles within 1.3 times the shortest time that torque and speed allow,
-// within the motor's speed, and is what the search finds.
+// Tests that the shipped retuned loop is what the search finds, and settles within 1.3 times the shortest
+// time that torque and speed allow, within the motor's speed.
 TEST(PositionFigures, RetunedLoop) {
   const json& numbers = Outcome().numbers10;
   const double shortest = numbers["bang_bang"]["settling_time_s"];
@@ -131,7 +131,7 @@ TEST(PositionFigures, RetunedLoop) {
   EXPECT_LT(numbers["retuned"]["highest_motor_speed_rad_s"], 628.3);
   EXPECT_GT(numbers["retuned"]["saturated_time_s"], 0.8 * shortest);
   EXPECT_TRUE(numbers["retuned"]["found_by_search"]);
-  // A straight switching line fits one step; others, and noise, must still settle in reasonable time.
+  // A straight switching line fits one step; others, and noisy ones, must still settle in reasonable time.
   ASSERT_EQ(numbers["robustness"].size(), 6u);
   for (const json& row : numbers["robustness"]) {
     if (row["gravity"]) continue;
@@ -140,8 +140,8 @@ TEST(PositionFigures, RetunedLoop) {
   }
 }
 
-// Tests that gravity holds the arm below its target by what statics say: k_2 dp = m g l cos(alpha), c_1 e =
-// dp with the feed-forward, within the friction band of T_s.
+// Tests that gravity holds the arm below its target as statics predict: k_2 dp = m g l cos(alpha), c_1 e = dp
+// with the feed-forward, within the friction band of T_s.
 TEST(PositionFigures, GravityError) {
   const model::Parameters p = ShippedModel("table1_gravity").parameters;
   const json& row = Outcome().numbers10["robustness"][5];
@@ -154,7 +154,7 @@ TEST(PositionFigures, GravityError) {
   EXPECT_NEAR(error, Outcome().numbers10["gravity_error_closed_form_rad"], 0.01 * std::fabs(error));
 }
 
-// Tests that every finding that these figures give evidence for is there, and every picture has a caption.
+// Tests that every finding that these figures support is there, and that every picture has a caption.
 TEST(PositionFigures, FindingsAndPictures) {
   ASSERT_EQ(Outcome().fig9.findings.size(), 2u);
   EXPECT_EQ(Outcome().fig9.findings[0].number, 5);

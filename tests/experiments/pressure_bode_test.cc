@@ -57,7 +57,7 @@ Complex HandLoop(const model::Parameters& p, double stiffness, double leak,
   return p.k_1 * g.k_p * stiffness * hold / (plant + p.k_1 * g.k_p * hold * (stiffness + g.k_v * (s + leak)));
 }
 
-// Largest differences of a case's points from that.
+// Largest differences of a case's points from that loop.
 void ExpectHandLoop(const json& points, const model::Parameters& p, double stiffness, double leak,
                     const pressure_ctrl::PressureGains& g) {
   const auto frequency = points.at("frequency_hz").get<std::vector<double>>();
@@ -76,9 +76,9 @@ pressure_ctrl::PressureGains Gains(const model::Parameters& p, double arm_angle,
   return pressure_ctrl::DerivePressureGains(p, arm_angle, 150, 0.5, sides);
 }
 
-// Tests Figure 6's headline: bandwidth, natural frequency and damping beside the paper's 32 Hz, 150 rad/s and
-// .5, which the paper gives as rough values; the damping also beside the design's .5 with Coulomb friction
-// added by its describing function.
+// Tests Figure 6's headline: bandwidth, natural frequency and damping against the paper's 32 Hz, 150 rad/s
+// and .5, which the paper gives as rough values; the damping also against the design's .5 plus Coulomb
+// friction by its describing function.
 TEST(Fig6, HeadlineBesideThePaper) {
   const json& n = Fig6().numbers;
   EXPECT_NEAR(n.at("bandwidth_hz").get<double>(), 32, 0.12 * 32);
@@ -94,7 +94,7 @@ TEST(Fig6, HeadlineBesideThePaper) {
 }
 
 // Tests that without friction's switching the measured points are those of the linear loop, computed by hand,
-// and the fits the designs: two sides compressing, one, and one with gains for one.
+// and that the fits are the designs: two sides compressing, one, and one with gains for one.
 TEST(Fig6, LinearCasesMeetTheAnalyticLoop) {
   const model::Parameters p = ShippedModel("table1").parameters;
   const double s = p.beta * p.D / p.V_ms;
@@ -117,7 +117,7 @@ TEST(Fig6, LinearCasesMeetTheAnalyticLoop) {
   EXPECT_LT(Fig6().numbers.at("linearised").at("worst_error_deg"), 0.5);
 }
 
-// Tests what amplitude does: friction holds small ones, the torque limit large ones.
+// Tests the effect of amplitude: friction holds small ones, the torque limit large ones.
 TEST(Fig6, AmplitudeFamily) {
   const auto value = [](int amplitude, const char* key) {
     return Fig6().Case("about_zero_" + std::to_string(amplitude)).at(key).get<double>();
@@ -131,14 +131,14 @@ TEST(Fig6, AmplitudeFamily) {
   EXPECT_LT(value(10, "low_frequency_gain"), 0.6);
   EXPECT_EQ(value(60, "saturated_fraction"), 0);
   EXPECT_GT(value(300, "saturated_fraction"), 0.3);
-  // J w^2 dp/s = T_pmax: what the motor can do at 32 Hz.
+  // J w^2 dp/s = T_pmax: the most that the motor can do at 32 Hz.
   const model::Parameters p = ShippedModel("table1").parameters;
   const double reach = p.T_pmax * 2 * p.beta * p.D / p.V_ms / (p.J * 200 * 200);
   EXPECT_NEAR(Fig6().numbers.at("amplitude_that_torque_allows_at_32_hz_psi").get<double>(), reach, 1e-6);
   EXPECT_LT(value(300, "bandwidth_hz"), 20);
 }
 
-// Tests finding 4: the gains that follow from omega_n and zeta, to the digits that are known.
+// Tests finding 4: the gains that follow from omega_n and zeta, to the known digits.
 TEST(Fig6, FindingGains) {
   const json& gains = Fig6().numbers.at("gains");
   EXPECT_NEAR(gains.at("two_sided").at("k_p_V_per_psi").get<double>(), 0.1336, 5e-5);
@@ -209,14 +209,14 @@ TEST(Waves, ModeIsWhereThePaperMeasuredIt) {
   EXPECT_NEAR(n.at("mode_damping").get<double>(), -s.real() / std::abs(s), 1e-9);
   EXPECT_NEAR(n.at("mode_frequency_hz").get<double>(), 300, 3);  // "about 300 hz"
   EXPECT_NEAR(n.at("peak_hz").get<double>(), 300, 3);
-  // A mode with damping d stands out of the slope by 1/(2 d) within a band of 2 d 300 Hz.
+  // A mode with damping d rises above the slope by 1/(2 d) within a band of 2 d 300 Hz.
   EXPECT_GT(n.at("peak_gain_db").get<double>(), -15);
   EXPECT_LT(n.at("linearised").at("worst_error_db"), 0.1);
   EXPECT_LT(n.at("linearised").at("worst_error_deg"), 1);
 }
 
-// Tests the gain that the waves allow against Routh's criterion: k_p with k_v as it is, and omega_n at zeta =
-// .5.
+// Tests the gain that the waves allow against Routh's criterion: k_p with k_v unchanged, and omega_n at zeta
+// = .5.
 TEST(Waves, AllowedGainMeetsRouth) {
   const json& n = Waves().numbers;
   const model::Parameters p = ShippedModel("table1").parameters;
@@ -247,8 +247,8 @@ TEST(Waves, StackConfirmsTheLimit) {
   }
 }
 
-// Tests that the frequency goes with the root of 1/V_p + 1/(V_ms - V_p) as the line's volume changes, up to
-// what the pump's inertia adds, and that less damping allows less gain.
+// Tests that the frequency follows the square root of 1/V_p + 1/(V_ms - V_p) as the line's volume changes, up
+// to what the pump's inertia adds, and that less damping allows less gain.
 TEST(Waves, VolumeAndDamping) {
   const json& rows = Waves().numbers.at("by_line_volume");
   ASSERT_GE(rows.size(), 5u);

@@ -113,7 +113,7 @@ class RunExperimentsTest : public ::testing::Test {
   std::string errors_;
 };
 
-// Tests that one experiment writes its own files and no others, and tells its comparisons.
+// Tests that one experiment writes its own files and no others, and prints its comparisons.
 TEST_F(RunExperimentsTest, OneExperiment) {
   EXPECT_EQ(Run(Two(), {.name = "fig3"}), 0);
   EXPECT_THAT(Files(), UnorderedElementsAre("fig3.json", "fig3.csv", "fig3.svg", "fig3-more.svg"));
@@ -146,7 +146,7 @@ TEST_F(RunExperimentsTest, AllTwice) {
   for (int number = 1; number <= kFindings; ++number) {
     EXPECT_THAT(html, HasSubstr("evidence " + std::to_string(number) + "<"));
   }
-  // Self-contained: nothing is loaded from anywhere, nothing runs.
+  // Self-contained: it loads nothing and runs nothing.
   for (const char* outside : {"src=", "<script", "<link", "@import", "url("}) {
     EXPECT_THAT(html, Not(HasSubstr(outside)));
   }
@@ -154,8 +154,8 @@ TEST_F(RunExperimentsTest, AllTwice) {
   EXPECT_THAT(errors_, Not(HasSubstr("\r")));
 }
 
-// Tests that a failing experiment stops no other, is named in the report, leaves no file, and gives exit
-// code 1.
+// Tests that a failing experiment stops no other, is named in the report, leaves no file, and gives exit code
+// 1.
 TEST_F(RunExperimentsTest, FailureStopsNoOther) {
   std::vector<Experiment> experiments = Two();
   experiments.insert(experiments.begin(), {"fig2", "Figure 2", Failing, 5});
@@ -167,7 +167,7 @@ TEST_F(RunExperimentsTest, FailureStopsNoOther) {
   EXPECT_TRUE(fs::exists(folder_ + "/out/fig3.json"));
 }
 
-// Tests that the whole report is an error when a finding has no evidence; the report says which.
+// Tests that a finding without evidence makes the whole report an error, and that the report names it.
 TEST_F(RunExperimentsTest, MissingFindingIsAnError) {
   EXPECT_EQ(Run({{"fig3", "Figure 3", WithoutFindings}}, {.name = "all"}), 1);
   EXPECT_THAT(errors_, HasSubstr("no experiment gave evidence for finding 4, 5, 6, 7, 8, 9, 10\n"));
@@ -197,7 +197,8 @@ TEST_F(RunExperimentsTest, WrongUsage) {
   EXPECT_THAT(refusal({.name = "fig3", .folder = "/proc/none"}), HasSubstr("--out: the folder '/proc/none'"));
 }
 
-// Tests that an experiment whose numbers are no object, or hide a key of every file, is a programming error.
+// Tests that an experiment whose numbers are no object, or hide a key common to all files, is a programming
+// error.
 TEST(ExperimentFiles, NumbersAreAnObject) {
   ExperimentResult result;
   const Experiment experiment{"x", "X", Invented};
@@ -232,8 +233,8 @@ TEST(ComparisonText, Si) {
   EXPECT_NEAR(si[5].here, 16.387064 / 6.894757e-3, 1e-3);
 }
 
-// Tests that the columns are aligned, also with letters of more than one byte, and that what does not exist
-// is a dash.
+// Tests that the columns are aligned, even with letters of more than one byte, and that a dash stands for
+// missing values.
 TEST(ComparisonText, AlignedTable) {
   EXPECT_EQ(ComparisonsText({{"Δp", "psi", "", NAN, 1412.6, ""}, {"x", "", "12", 3, 4.00001, "why"}}, false),
             "  quantity  paper  independent    here  unit\n"

@@ -48,7 +48,7 @@ TEST(StackRun, GivesTheRunsTable) {
   EXPECT_GT(p2->values.back(), 1000);
 }
 
-// Tests that a run that cannot be is refused with the setup's name.
+// Tests that an impossible run is refused with the setup's name.
 TEST(StackRun, FaultyConfigurationIsRefused) {
   try {
     RunStackInProcess(
@@ -59,7 +59,7 @@ TEST(StackRun, FaultyConfigurationIsRefused) {
   }
 }
 
-// Tests that a run which trips a fault is an error, not a table.
+// Tests that a run that trips a fault is an error, not a table.
 TEST(StackRun, TrippedFaultIsAnError) {
   std::string config = kOpenLoop;
   config += "[limits]\npressure_psi = 500.0\n";

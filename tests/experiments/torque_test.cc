@@ -1,4 +1,4 @@
-// Torque control: errors against balances of torque written out here, bandwidth against the linear loop.
+// Torque control: errors against torque balances written out here, bandwidth against the linear loop.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -29,8 +29,8 @@ const json& Numbers() {
   return numbers;
 }
 
-// Tests what is left of a step of the commanded torque against the clamped arm: an error that pays for D dp,
-// for the creep against leakage and for friction; with the feed-forward, friction alone.
+// Tests what is left of a step of the commanded torque against the clamped arm: an error that covers D dp,
+// the creep against leakage, and friction; with the feed-forward, friction alone.
 TEST(Torque, ClampedSteps) {
   constexpr double kPerPsi = kD + (kB + kK1 * kKp * kKv) * kLeak / kD;
   const json& clamped = Numbers()["clamped"];
@@ -45,20 +45,20 @@ TEST(Torque, ClampedSteps) {
   for (const json& step : clamped["steps_with_feedforward"]) {
     EXPECT_NEAR(step["steady_state_error_in_lbf"].get<double>(), kK2 * kTs / (kK1 * kKp + kPerPsi), 1e-5);
   }
-  // A step of k_1 k_p e <= 40 in-lbf does not saturate, and larger ones rise the slower.
+  // A step of k_1 k_p e <= 40 in-lbf does not saturate; larger ones rise more slowly.
   EXPECT_EQ(clamped["steps"][0]["saturated_fraction_of_first_100_ms"], 0);
   EXPECT_GT(clamped["steps"][3]["rise_time_s"], 1.5 * clamped["steps"][0]["rise_time_s"].get<double>());
 }
 
-// Tests the band of torques at which a standing pump stays so, T_s/(k_1 k_p + D) k_2.
+// Tests the band of torques in which a standing pump stays at rest, T_s/(k_1 k_p + D) k_2.
 TEST(Torque, FrictionBand) {
   EXPECT_NEAR(Numbers()["friction_band_in_lbf"].get<double>(), kK2 * kTs / (kK1 * kKp + kD), 1e-9);
   // D is small beside k_1 k_p.
   EXPECT_NEAR(Numbers()["friction_band_in_lbf"].get<double>(), kK2 * kTs / (kK1 * kKp), 0.5);
 }
 
-// Tests the bandwidth at the arm: 30.4 Hz in closed form, which a sweep that hardly saturates meets within
-// what friction does to it, and much less where the motor is at its limit.
+// Tests the bandwidth at the arm: 30.4 Hz in closed form, which a sweep that hardly saturates matches up to
+// the effect of friction, and far less where the motor is at its limit.
 TEST(Torque, Bandwidth) {
   const double zeta2 = 2 * 0.5 * 0.5;
   const double linear =
@@ -136,7 +136,7 @@ TEST(SmoothPath, IsConsistent) {
   EXPECT_NEAR(largest, path.speed(path.middle()), 1e-5);
 }
 
-// Tests that a table and pictures are there, whole.
+// Tests that the table and the pictures are there, and complete.
 TEST(Torque, TableAndPictures) {
   for (const tables::Column& column : Result().table.columns) {
     EXPECT_EQ(column.values.size(), Result().table.rows()) << column.name;

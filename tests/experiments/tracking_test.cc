@@ -1,5 +1,5 @@
-// Figures 4 and 5: the pressure loop over the stack, against reference trajectories, a loop of its own and
-// closed forms.
+// Figures 4 and 5: the pressure loop over the stack, against reference trajectories, a loop written out here
+// and closed forms.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -109,8 +109,7 @@ Own RunOwnLoop(bool square, double feedforward) {
   return own;
 }
 
-// The feed-forward that pays for D dp and for the creep: per psi, k_1 feedforward = D + (b + k_1 k_p k_v)
-// c/D.
+// The feed-forward that covers D dp and the creep: per psi, k_1 feedforward = D + (b + k_1 k_p k_v) c/D.
 constexpr double kPerPsi = kD + (kB + kK1 * kKp * kKv) * kLeak / kD;
 
 void ExpectLikeOwn(const json& here, const Own& own) {
@@ -119,8 +118,8 @@ void ExpectLikeOwn(const json& here, const Own& own) {
   EXPECT_NEAR(here["highest_dp_psi"].get<double>(), own.highest, 1e-3);
 }
 
-// Tests error and saturation of the square wave and the sine, with and without feed-forward, against the loop
-// written out above.
+// Tests error and saturation for the square wave and the sine, with and without feed-forward, against the
+// loop written out above.
 TEST(Tracking, LikeALoopWrittenOut) {
   ExpectLikeOwn(Fig4(), RunOwnLoop(true, 0));
   ExpectLikeOwn(Fig4()["with_feedforward"], RunOwnLoop(true, kPerPsi / kK1));
@@ -128,8 +127,8 @@ TEST(Tracking, LikeALoopWrittenOut) {
   ExpectLikeOwn(Fig5()["with_feedforward"], RunOwnLoop(false, kPerPsi / kK1));
 }
 
-// Tests that the square wave saturates the motor: about 322 in-lbf asked for at k_p = 0.134, 40 there, and
-// steady peaks near +/-391 psi for a loop that acts continuously.
+// Tests that the square wave saturates the motor: about 322 in-lbf requested at k_p = 0.134, 40 available,
+// and steady peaks near +/-391 psi for a loop that acts continuously.
 TEST(Figure4, Saturates) {
   EXPECT_GT(Fig4()["saturated_fraction"], 0.5);
   EXPECT_NEAR(Fig4()["demand_at_a_settled_jump_in_lbf"].get<double>(), 600 * kK1 * kKp, 1e-9);
@@ -145,7 +144,7 @@ TEST(Figure4, Saturates) {
   EXPECT_NE(Figure4().findings[0].evidence.find("321 in-lbf"), std::string::npos);
 }
 
-// What a held reference leaves: k_1 (k_p e + feedforward ref) = kPerPsi (ref - e) + T_s.
+// The error that a held reference leaves: k_1 (k_p e + feedforward ref) = kPerPsi (ref - e) + T_s.
 double Remains(double reference, double feedforward) {
   return (kPerPsi * reference + kTs - kK1 * feedforward * reference) / (kK1 * kKp + kPerPsi);
 }

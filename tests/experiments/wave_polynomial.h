@@ -1,5 +1,5 @@
-// The pressure loop with waves in its lines as a polynomial, derived by hand: what tests compare eigenvalues
-// with.
+// The pressure loop with waves in its lines as a polynomial, derived by hand: tests compare eigenvalues with
+// it.
 #pragma once
 
 #include <array>

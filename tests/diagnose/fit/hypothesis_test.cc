@@ -15,7 +15,7 @@ using diagnose::Change;
 using diagnose::FreeParameter;
 using diagnose::Hypothesis;
 
-// Tests that what is free can be read, set and moved, positive numbers by their logarithms.
+// Tests that free parameters can be read, set and moved, positive ones by their logarithms.
 TEST(Hypothesis, FreeNumbers) {
   Hypothesis hypothesis = WithFree(Table1With({{"pump.quadratic_drag", {{"k", 2e-4}}, {}}}), {"b", "T_s"});
   const std::vector<FreeParameter> free = hypothesis.Free();
@@ -38,7 +38,7 @@ TEST(Hypothesis, FreeNumbers) {
   EXPECT_EQ(hypothesis.Held().model.parameters.b, 0.02);
 }
 
-// Tests that a change is added with starting points, named, told from another, and taken back whole.
+// Tests that a change is added with its starting points, named, told from another, and fully undone.
 TEST(Hypothesis, ChangesThereAndBack) {
   const std::vector<diagnose::RunData> runs = OneOfEach(Table1With(), 0.5, 1);
   const diagnose::Sizes sizes = diagnose::SizesOf(Table1With(), PointersTo(runs));
@@ -74,10 +74,10 @@ TEST(Hypothesis, ChangesThereAndBack) {
   EXPECT_TRUE(diagnose::Without(back, drag, Table1With()).model.effects.empty());
 }
 
-// Tests that the truth's residuals are noise of 1, and that their derivatives are differences' limits.
+// Tests that the truth's residuals are noise of 1, and that their derivatives match difference quotients.
 TEST(Residuals, NoiseAndDerivatives) {
   diagnose::RunData run = SmallRun(Table1With(), model::Shaft::kClamped, false, 0.5, 0, 1);
-  run.start = {0, 0, Table1().p_3, Table1().p_3, 0.3, 0};  // as the rig was, not as its first samples say
+  run.start = {0, 0, Table1().p_3, Table1().p_3, 0.3, 0};  // as the rig was, not as its first samples suggest
   const Hypothesis hypothesis = WithFree(Table1With(), {"b", "beta"});
   const std::vector<FreeParameter> free = hypothesis.Free();
   const std::vector<model::Unknown> starts = diagnose::StartUnknowns(run);
@@ -112,7 +112,7 @@ TEST(Residuals, NoiseAndDerivatives) {
   }
 }
 
-// Tests that runs on one clock are left as they are, and so are runs of which only some were found apart.
+// Tests that runs on one clock are left alone, and so are runs of which only some were found to be off.
 TEST(ClockFit, LeavesWhatIsOnOneClock) {
   std::vector<diagnose::RunData> runs = ClampedPair(Table1With(), 0.3, 1);
   const std::vector<double> before = runs[0].measured.voltage.values;
@@ -131,8 +131,8 @@ TEST(ClockFit, LeavesWhatIsOnOneClock) {
   EXPECT_EQ(runs[0].measured.voltage.values, before);
 }
 
-// Tests that a command which is still late after its correction is put in its place, by whole samples, the held-out run with
-// it, and that the interval says so.
+// Tests that a command still late after its correction is moved to its place, by whole samples, together with
+// the held-out run, and that the interval allows for it.
 TEST(ClockFit, FindsWhatWasLeft) {
   std::vector<diagnose::RunData> runs, held_out;
   for (int which : {0, 1}) {

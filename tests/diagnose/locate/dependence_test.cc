@@ -14,7 +14,8 @@ namespace {
 
 constexpr size_t kSamples = 600;
 
-// A second and a half of a disturbance f(x) of one variable x that sweeps -10 to 10 and back, one block a sample; noise of 1.
+// One and a half seconds of a disturbance f(x), with x sweeping from -10 to 10 and back, one block a sample;
+// noise of 1.
 struct Case {
   Blocks blocks;
   Variable variable;
@@ -39,7 +40,8 @@ Case Of(const F& f) {
   return c;
 }
 
-// Tests that a line in the variable is explained whole, noise by nothing, and a step by bins though by no line.
+// Tests that a line explains a linear disturbance fully, that nothing explains noise, and that bins but no
+// line explain a step.
 TEST(Dependence, ExplainedShare) {
   const Case line = Of([](double x) { return 2 * x; });
   EXPECT_GT(Explained(line.blocks, line.averages, true), 0.97);
@@ -49,11 +51,11 @@ TEST(Dependence, ExplainedShare) {
   EXPECT_GT(Explained(even.blocks, even.averages, false), 0.8);
   const Case noise = Of([](double) { return 0.0; });
   EXPECT_LT(Explained(noise.blocks, noise.averages, false), 0.5);
-  // Of what does not change nothing depends.
+  // Nothing depends on a quantity that does not change.
   EXPECT_EQ(Explained(line.blocks, std::vector<double>(kSamples, 1.0), false), 0);
 }
 
-// Tests that the table holds the function: bins in order, means on it to their errors.
+// Tests that the table holds the function: bins in order, with means on it to within their errors.
 TEST(Dependence, Table) {
   const Case c = Of([](double x) { return x * std::abs(x); });
   const MissingTerm table = TableOf(c.blocks, c.variable, c.averages);
@@ -66,14 +68,14 @@ TEST(Dependence, Table) {
       EXPECT_GT(table.at[i], table.at[i - 1]);
     }
     EXPECT_GT(table.error[i], 0);
-    // Within a bin the function is bent: the mean of it is not it at the mean.
+    // The function is curved within a bin: its mean differs from its value at the mean.
     EXPECT_NEAR(table.mean[i], table.at[i] * std::abs(table.at[i]), 5 * table.error[i] + 3);
   }
   EXPECT_LT(table.mean.front(), -50);
   EXPECT_GT(table.mean.back(), 50);
 }
 
-// Tests that the range with most of the energy is named: small values, large ones of either sign, or all of it.
+// Tests that the range with most of the energy is named: small values, large ones of either sign, or all.
 TEST(Dependence, RangeInWords) {
   const Case near = Of([](double x) { return std::abs(x) < 2 ? 30.0 : 0.0; });
   EXPECT_EQ(RangeOf(near.blocks, near.variable, near.averages).rfind("|motor_speed| < ", 0), 0u)
@@ -108,7 +110,8 @@ TEST(Dependence, Windows) {
   EXPECT_NEAR(windows[1].to, 1.025, 1e-9);
 }
 
-// A smoothed run of which the disturbance of the pump's torque is 3 in-lbf where the motor turns forward; noise of 0.5.
+// A smoothed run with a disturbance of 3 in-lbf on the pump's torque where the motor turns forward; noise of
+// 0.5.
 std::pair<RunData, SmoothedRun> Smoothed(double size) {
   std::mt19937_64 random(5);
   std::normal_distribution<double> normal;
@@ -133,7 +136,7 @@ std::pair<RunData, SmoothedRun> Smoothed(double size) {
   return {std::move(run), std::move(smoothed)};
 }
 
-// Tests that a disturbance is told from noise, and that noise alone is none.
+// Tests that a disturbance is told from noise, and that noise alone is no disturbance.
 TEST(Disagreement, BeyondNoise) {
   const auto [run, smoothed] = Smoothed(3);
   const Disagreement found = LargestDisagreement({smoothed}, {&run}, Balance::kPumpTorque);
@@ -148,7 +151,7 @@ TEST(Disagreement, BeyondNoise) {
   EXPECT_TRUE(LargestDisagreement({smoothed}, {&run}, Balance::kFlow1).blocks.blocks.empty());
 }
 
-// Tests that of all that a balance may depend on, what it does depend on explains most.
+// Tests that of all the candidates, the one that a balance really depends on explains most.
 TEST(Explanations, TheRightOneExplainsMost) {
   const auto [run, smoothed] = Smoothed(3);
   const std::vector<SmoothedRun> all = {smoothed};
@@ -171,7 +174,7 @@ TEST(Explanations, TheRightOneExplainsMost) {
   EXPECT_GT(most, 0.8);
 }
 
-// Tests what is offered: ripples of a turn only on request, none for the arm; limits of the voltage with their places.
+// Tests the candidates: ripples per turn only on request, none for the arm; voltage limits with their places.
 TEST(Explanations, WhatIsOffered) {
   const auto [run, smoothed] = Smoothed(3);
   const std::vector<SmoothedRun> all = {smoothed};

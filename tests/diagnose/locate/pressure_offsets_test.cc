@@ -30,7 +30,7 @@ RunData Resting(double p1, double p2, bool rests = true) {
 
 model::ModelDescription Model() { return {"Table 1", testing::Table1(), {}}; }
 
-// Tests that transducers which disagree at rest are found off by what they read beside the charge pressure.
+// Tests that transducers that disagree at rest get as offsets their readings relative to the charge pressure.
 TEST(PressureOffsets, FoundAtRest) {
   const double p_3 = testing::Table1().p_3;
   const RunData run = Resting(p_3 + 12, p_3 - 5);
@@ -39,7 +39,7 @@ TEST(PressureOffsets, FoundAtRest) {
   EXPECT_NEAR(offsets.p2, -5, 2);
 }
 
-// Tests that none is found where both read the same (the charge pressure may be wrong), and where nothing rests.
+// Tests that no offset is found where both read the same (the charge pressure may be wrong) or nothing rests.
 TEST(PressureOffsets, NoneWithoutADifferenceOrARest) {
   const double p_3 = testing::Table1().p_3;
   const RunData same = Resting(p_3 + 12, p_3 + 12);

@@ -40,7 +40,8 @@ SmallSearch& OfADrag() {
   return small;
 }
 
-// Tests that every candidate is in the ranking once, what was taken first and without a reason, the others each with one.
+// Tests that the ranking has every candidate once: the chosen one first, without a reason, the others each
+// with one.
 TEST(Ranking, TakenFirstOthersWithAReason) {
   SmallSearch& small = OfADrag();
   const std::vector<diagnose::Candidate> ranking = diagnose::Ranking(small.context, small.search);
@@ -58,7 +59,8 @@ TEST(Ranking, TakenFirstOthersWithAReason) {
   EXPECT_THAT(others, ::testing::UnorderedElementsAre("valve.relief", "parameter beta"));
 }
 
-// Tests the conclusion: the verdict, the effect with its value in its interval, the gaps, the place, whose runs they were.
+// Tests the conclusion: the verdict, the effect with its value in its interval, the gaps, the place, and
+// whose runs they were.
 TEST(Conclusion, NamesTheDrag) {
   SmallSearch& small = OfADrag();
   const diagnose::Diagnosis d = diagnose::Conclude(small.context, small.search, small.search.given);
@@ -92,7 +94,7 @@ TEST(Conclusion, NothingMissing) {
   EXPECT_NEAR(d.held_out.before, 1, 0.1);
 }
 
-// Tests that where nothing that was tried closes the gap, it is called unexplained, with its place.
+// Tests that a gap that nothing tried closes is called unexplained, with its place.
 TEST(Conclusion, Unexplained) {
   SmallSearch& small = OfADrag();
   diagnose::SearchResult none = small.search;
@@ -118,7 +120,7 @@ TEST(RunCurves, GapsBySignal) {
   }
 }
 
-// Tests that there is a picture a run, fitted ones first, each with what was measured and both predictions.
+// Tests that there is a picture for each run, fitted ones first, with the measurement and both predictions.
 TEST(RunCurves, OneARun) {
   SmallSearch& small = OfADrag();
   const std::vector<diagnose::RunCurves> curves =
