@@ -1,11 +1,11 @@
-// The experiments, each a function. Experiments() lists those that there are, with their titles.
+// The experiments, one function each. Experiments() lists them with their titles.
 #pragma once
 
 #include "experiments/studies/experiment.h"
 
 namespace hydro::experiments {
 
-// In the order of the paper.
+// In the paper's order.
 ExperimentResult RunFig1(const ExperimentOptions& options);
 ExperimentResult RunFriction(const ExperimentOptions& options);
 ExperimentResult RunLeakage(const ExperimentOptions& options);

@@ -8,7 +8,7 @@
 
 namespace hydro::experiments {
 
-// The figure, the causes, the retuned loop, and that on other steps.
+// The figure, the causes of the difference, the retuned loop, and the retuned loop on other steps.
 std::vector<Picture> Figure10Pictures(const Figure10Runs& figure);
 
 }  // namespace hydro::experiments

@@ -1,5 +1,5 @@
-// What Figure 10 compares: steps of the arm by the linear design model and by the full one, the full one with
-// causes of their difference switched off, and the retuned loop against what the motor could do.
+// What Figure 10 compares: steps of the arm in the linear design model and in the full model, the full model
+// with single causes of the difference switched off, and the retuned loop against the motor's limits.
 #pragma once
 
 #include <array>
@@ -18,7 +18,7 @@ namespace hydro::experiments {
 inline constexpr double kFigure10Step = 0.1;        // rad; the paper prints none
 inline constexpr double kFigure10Interval = 0.001;  // s; the paper prints none
 
-// The arm in one run of the stack, from the step on.
+// The arm in one run of the stack, starting at the step.
 struct ArmRun {
   std::vector<double> time, angle, torque, speed;  // s, rad, in-lbf, rad/s of the motor
   runs::StepResponse response;
@@ -33,11 +33,11 @@ struct FormRuns {
   ArmRun nonlinear;
 };
 
-// The full model with some of what the linear one lacks switched off.
+// The full model with some of the effects switched off that the linear model lacks.
 struct Cause {
   const char* key;
   const char* says;
-  bool friction, saturation, speed_coupling, arm_flow;  // what is left on
+  bool friction, saturation, speed_coupling, arm_flow;  // effects that stay on
 };
 enum CauseIndex {
   kAllOn,
@@ -53,9 +53,9 @@ extern const std::array<Cause, kCauseCount> kCauses;
 
 struct CauseRuns {
   std::array<ArmRun, kCauseCount> runs;
-  runs::StepResponse exact;           // of the exact linearisation
-  runs::StepResponse exact_assisted;  // the same with arm-speed feed-forward
-  double friction_error = 0;          // rad, within which the pump's friction holds the arm
+  runs::StepResponse exact;           // the exact linearisation
+  runs::StepResponse exact_assisted;  // with arm-speed feed-forward
+  double friction_error = 0;          // rad, band in which the pump's friction holds the arm
 };
 
 // A step of the retuned loop.
@@ -64,28 +64,28 @@ struct RetunedStep {
   double step;  // rad
   bool gravity, noise;
   ArmRun run;
-  double shortest;  // s, to settle, by the motor's limits
+  double shortest;  // s, shortest settling time that the motor's limits allow
 };
 
 struct RetunedRuns {
   RigidDrive drive;
   FastestMove fastest;
-  double shortest = 0;           // s, to settle
+  double shortest = 0;           // s, shortest settling time
   StepTrial shipped;             // config/retuned.toml
-  bool shipped_is_best = false;  // the search, repeated, finds its gains
+  bool shipped_is_best = false;  // a repeated search finds the shipped gains
   ArmRun run;
-  double ratio = 0;  // settling time to the shortest
+  double ratio = 0;  // settling time over the shortest
   std::vector<RetunedStep> steps;
-  double worst_ratio = 0;     // of the steps without gravity
-  double expected_error = 0;  // rad, that holds the arm against gravity after the last step: closed form
+  double worst_ratio = 0;     // over the steps without gravity
+  double expected_error = 0;  // rad, holds the arm against gravity after the last step; closed form
 };
 
 struct Figure10Runs {
   model::ModelDescription model;
   DesignModel design;
   double c1 = 0, c2 = 0;          // psi/rad, psi s/rad
-  std::array<FormRuns, 2> forms;  // derivative on the error, as printed; on the measurement
-  double form_difference = 0;     // rad, at most, between the two in the full model
+  std::array<FormRuns, 2> forms;  // derivative on the error (as printed) and on the measurement
+  double form_difference = 0;     // rad, largest difference between the two in the full model
   CauseRuns causes;               // derivative on the measurement
   RetunedRuns retuned;
 };

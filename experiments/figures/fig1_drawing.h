@@ -7,9 +7,9 @@
 
 namespace hydro::experiments {
 
-// An <svg> element: amplifier, motor, pump, the two lines with leakages, one-way valves, accumulator, bypass
-// and transducers, the rotary actuator and its arm, in the symbols of eqs. (1) to (15), with the parameters
-// (in the paper's units) beside the parts.
+// An <svg> element: amplifier, motor, pump, the two lines with their leakages, one-way valves, accumulator,
+// bypass and transducers, the rotary actuator and its arm. Symbols are those of eqs. (1) to (15); the
+// parameters stand beside the parts, in the paper's units.
 std::string ApparatusDrawing(const model::Parameters& parameters);
 
 }  // namespace hydro::experiments

@@ -1,4 +1,4 @@
-// The paper's Figure 8, drawn: the position loop's block diagram with its numbers.
+// The drawing of the paper's Figure 8: the position loop's block diagram with its numbers.
 #pragma once
 
 #include <string>

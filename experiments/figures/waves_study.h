@@ -1,4 +1,5 @@
-// The pressure waves in the lines: the mode, the gains that it allows, a swept sine and trials over the stack.
+// The pressure waves in the lines: the wave mode, the gains that it allows, a swept sine, and trials over the
+// stack.
 #pragma once
 
 #include <complex>
@@ -14,34 +15,34 @@
 
 namespace hydro::experiments {
 
-inline constexpr double kWaveHz = 300;          // the paper
+inline constexpr double kWaveHz = 300;          // as the paper measured
 inline constexpr double kVolumeFraction = 0.1;  // of V_ms on the pump's side of the line: ASSUMED
 inline constexpr double kWaveDamping = 0.01;    // ASSUMED: the paper says nothing
-inline constexpr double kMostFactor = 200;      // on k_p
+inline constexpr double kMostFactor = 200;      // largest factor on k_p searched
 inline constexpr double kMostFrequency = 3000;  // rad/s
 
-// What a loop allows.
+// What the wave allows in one loop.
 struct WaveLimits {
-  GainLimit gain;                // factor on the design's k_p with its k_v
-  double natural_frequency = 0;  // rad/s, with both gains derived from it and zeta = .5
+  GainLimit gain;                // factor on the design's k_p, k_v unchanged
+  double natural_frequency = 0;  // rad/s, when both gains follow from it and zeta = .5
 };
 
-// The loop over the stack beside its limit: how a wave grows or decays after a small step.
+// The loop, run over the stack close to its limit: how a wave grows or decays after a small step.
 struct GainTrial {
-  double factor = 0;  // of the limit
+  double factor = 0;  // fraction of the limit
   std::vector<double> time;
   std::vector<double> dp;
   double growth = 0;    // 1/s, measured
   double expected = 0;  // 1/s, the pole's real part
 };
 
-// A loop sampled at an interval, with a command delay.
+// The pressure loop at one sampling interval, with a command delay.
 struct SampledPressureLoop {
   LoopTiming timing;
   WaveLimits limits;
 };
 
-// The same line between other volumes, or with another damping.
+// The same line between other volumes, or with other damping.
 struct LineVariant {
   double volume_fraction = 0;
   double damping = 0;
@@ -61,14 +62,14 @@ struct WavesStudy {
   double mode_hz = 0;
   double mode_damping = 0;
   WaveLimits limits;
-  WaveLimits at_pump;  // with the transducers there
+  WaveLimits at_pump;  // with the transducers at the pump
 
   std::vector<SampledPressureLoop> sampled;
-  // 5 kHz, one tick of delay, as config/paper.toml.
+  // 5 kHz with one tick of delay, as in config/paper.toml.
   const SampledPressureLoop& shipped() const { return sampled[3]; }
   const SampledPressureLoop& slow() const { return sampled[4]; }
 
-  // The swept sine, at the design's gains.
+  // The swept sine at the design's gains.
   PressureSweep sweep;
   SweptPressureLoop swept;
   double worst_db = 0;
@@ -83,18 +84,19 @@ struct WavesStudy {
   LinearPressureLoop swept_linear() const { return {linear, {1 / sweep.rate_hz, 0}}; }
 };
 
-// Table 1 under wave effects, analysed and run.
+// Table 1 with wave effects, analysed and run.
 WavesStudy StudyWaves(const ExperimentOptions& options);
 
-// Hz, of a line with this part of V_ms on the pump's side: w^2 goes with 1/V_p + 1/(V_ms - V_p).
+// Wave frequency, Hz, of a line with this fraction of V_ms on the pump's side: w^2 is proportional to 1/V_p +
+// 1/(V_ms - V_p).
 double ClosedFormHz(double volume_fraction);
 
-// The model of a clamped actuator whose sides both compress.
+// The linear model of a clamped actuator with both sides compressing.
 model::LinearModel LinearisedClamped(const model::ModelDescription& model);
-// The same with pressure transducers at the pump instead of the actuator.
+// The same model with the pressure transducers at the pump instead of at the actuator.
 model::LinearModel SensedAtPump(model::LinearModel model);
 
-// The wave that the loop sees, in the difference of the sides: the fastest of the visible poles.
+// The pole of the wave that the loop sees in the pressure difference: the fastest visible pole.
 std::complex<double> WavePole(const LinearPressureLoop& loop, const pressure_ctrl::PressureGains& gains);
 
 }  // namespace hydro::experiments

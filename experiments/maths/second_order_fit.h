@@ -17,12 +17,12 @@ struct SecondOrderModel {
 
   std::complex<double> Gain(double frequency_hz) const;
 
-  // Where the gain is a factor of sqrt 2 below K.
+  // Where the gain is K / sqrt 2.
   double BandwidthHz() const;
 };
 
 struct SecondOrderFitSettings {
-  double first_hz = 0;  // points between these two and with at least this coherence count
+  double first_hz = 0;  // the fit uses points in this range with at least this coherence
   double last_hz = 1e9;
   double least_coherence = 0.8;
   bool with_delay = false;
@@ -30,13 +30,13 @@ struct SecondOrderFitSettings {
 
 struct SecondOrderFit {
   SecondOrderModel model;
-  double rms_error_db = 0;  // of the points that counted
+  double rms_error_db = 0;  // of the points used
   double rms_error_deg = 0;
   int points = 0;
 };
 
-// Least squares of the logarithm of measured over fitted gain: an error of 1 dB weighs as much as one of 6.6
-// degrees. Throws std::invalid_argument when fewer than four points count.
+// Least squares on the logarithm of measured over fitted gain: an error of 1 dB weighs as much as one of 6.6
+// degrees. Throws std::invalid_argument when fewer than four points can be used.
 SecondOrderFit FitSecondOrder(const std::vector<ResponsePoint>& points,
                               const SecondOrderFitSettings& settings);
 

@@ -1,4 +1,4 @@
-// Results for a person at a terminal.
+// Results as text for a terminal.
 #pragma once
 
 #include <string>
@@ -8,18 +8,18 @@
 
 namespace hydro::experiments {
 
-// An aligned table: quantity, paper, independent, here, unit; a remark stands below its row. With `si`, units
-// that have an SI one are converted; what the paper says is converted where it is a number, else its unit is
-// named beside it.
+// An aligned table: quantity, paper, independent, here, unit, with any remark below its row. With `si`, units
+// that have an SI equivalent are converted. The paper's value is converted when it is a number; otherwise its
+// unit is named beside it.
 std::string ComparisonsText(const std::vector<Comparison>& comparisons, bool si);
 
-// The same rows in SI; the function behind --si.
+// The same rows in SI units, for --si.
 std::vector<Comparison> InSi(const std::vector<Comparison>& comparisons);
 
-// A value as it is shown to a person: five digits; "-" for NaN.
+// A value for display: five digits; "-" for NaN.
 std::string ShownNumber(double value);
 
-// All that is shown of an experiment: title, comparisons, explanation, findings.
+// The whole text of an experiment: title, comparisons, explanation, findings.
 std::string SummaryText(const Experiment& experiment, const ExperimentResult& result, bool si);
 
 }  // namespace hydro::experiments

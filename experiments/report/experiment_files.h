@@ -14,16 +14,17 @@ struct RenderedPicture {
   std::string html;  // for the report's page
 };
 
-// Throws what FigureFile() throws, std::logic_error when a suffix is there twice.
+// Throws what FigureFile() throws, and std::logic_error for a repeated suffix.
 std::vector<RenderedPicture> RenderPictures(const std::string& name, const std::vector<Picture>& pictures);
 
-// The result's numbers beside name, title, program version, options, conditions, comparisons and findings; values that
-// are not finite become null. Throws std::logic_error when the numbers are no JSON object or take one of those keys.
+// The result's numbers with name, title, program version, options, conditions, comparisons and findings;
+// values that are not finite become null. Throws std::logic_error when the numbers are not a JSON object or
+// use one of those keys.
 std::string ExperimentJson(const Experiment& experiment, const ExperimentResult& result,
                            const ExperimentOptions& options, bool real_time);
 
-// Writes all of them into `folder`, each whole or not at all. Throws WriteError, or InputError when a file cannot be
-// created there.
+// Writes all of them into `folder`, each whole or not at all. Throws WriteError, or InputError when a file
+// cannot be created there.
 void WriteExperimentFiles(const std::string& folder, const std::string& name, const std::string& json,
                           const tables::Table& table, const std::vector<RenderedPicture>& pictures);
 

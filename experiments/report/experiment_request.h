@@ -1,4 +1,4 @@
-// What was asked of hydro-experiment.
+// What hydro-experiment is asked to do.
 #pragma once
 
 #include <string>
@@ -8,11 +8,11 @@
 namespace hydro::experiments {
 
 struct ExperimentRequest {
-  std::string name = "all";                // or of an experiment
-  std::string folder = "out/experiments";  // is created
-  int jobs = 2;                            // experiments at the same time
+  std::string name = "all";                // or an experiment's name
+  std::string folder = "out/experiments";  // created if missing
+  int jobs = 2;                            // experiments run at the same time
   bool si = false;
-  bool real_time = false;  // for the record; options.run_stack says how
+  bool real_time = false;  // for the record only; options.run_stack decides
   ExperimentOptions options = {};
 };
 

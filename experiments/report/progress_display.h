@@ -1,4 +1,4 @@
-// The progress of a set of experiments, for people at a terminal and in logs.
+// The progress of a set of experiments, on a terminal or in a log.
 #pragma once
 
 #include <cstdio>
@@ -10,11 +10,11 @@
 
 namespace hydro::experiments {
 
-// A bar on a terminal, plain lines in a log. Several threads may report to it.
+// A bar on a terminal, plain lines in a log. Several threads may report progress.
 class ProgressDisplay {
  public:
-  // `costs`: of each task, in any unit. Writes to `out`, which stays the caller's; the bar is
-  // wiped away in the end.
+  // `costs`: the cost of each task, in any unit. Writes to `out`, which the caller keeps; the bar is erased
+  // at the end.
   ProgressDisplay(std::FILE* out, bool terminal, std::vector<std::string> names, std::vector<double> costs);
 
   void Start(size_t task);

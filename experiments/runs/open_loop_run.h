@@ -9,12 +9,12 @@
 
 namespace hydro::experiments {
 
-// How finely changes and extremes are located: they lie within this before the time given.
+// Changes and extremes are located to within this much before the time given.
 inline constexpr double kLocatedWithin = 1e-6;  // s
 
 struct PumpChange {
   double time = 0;      // s
-  bool sticks = false;  // else it slips (again)
+  bool sticks = false;  // else it slips
   double dp = 0;        // psi, p_2 - p_1
 };
 
@@ -33,26 +33,26 @@ struct OpenLoopRun {
   std::vector<double> p2;           // psi
   std::vector<double> motor_speed;  // rad/s
 
-  std::vector<PumpChange> changes;  // but for the break-away at 0 s
+  std::vector<PumpChange> changes;  // except the break-away at 0 s
   std::vector<PressureExtreme> extremes;
 
-  // Changes to sticking, after `from` s.
+  // The number of changes to sticking after `from` s.
   size_t sticks(double from = 0) const;
 };
 
-// From rest at mid-stroke with both pressures at p_3. Throws ModelError.
+// Starts at rest at mid-stroke with both pressures at p_3. Throws ModelError.
 OpenLoopRun RunOpenLoop(const model::ModelDescription& model, double torque, double duration,
                         double sample_interval = 1e-3);
 
-// Sustained cycles of stick and slip, as they are in the second half of a run.
+// Sustained stick-slip cycles, judged in the second half of a run.
 struct StickSlipCycles {
-  bool sustained = false;  // it sticks at least three times there; the rest is 0 when it does not
+  bool sustained = false;  // the pump sticks at least three times; otherwise the rest is 0
   double period = 0;       // s, mean
   double high = 0;         // psi, largest and smallest dp
   double low = 0;
   double stick_dp = 0;  // psi, dp at the last stick, and at the slip that ends a stick
   double slip_dp = 0;
-  double stick_time = 0;  // s, from the last stick that ends within the run to its slip
+  double stick_time = 0;  // s, from stick to slip, of the last stick that ends within the run
 };
 StickSlipCycles FindCycles(const OpenLoopRun& run);
 

@@ -7,7 +7,7 @@
 
 namespace hydro::experiments {
 
-// The text of config/models/NAME.toml; throws std::out_of_range for another name.
+// The text of config/models/NAME.toml. Throws std::out_of_range for an unknown name.
 const std::string& ShippedModelText(const std::string& name);
 model::ModelDescription ShippedModel(const std::string& name);
 

@@ -7,7 +7,7 @@
 namespace hydro::experiments {
 
 // The text of config/NAME.toml with each "section.key=value" of `overrides` applied as --set does. Throws
-// std::out_of_range for another name, InputError for a faulty override.
+// std::out_of_range for an unknown name, InputError for a faulty override.
 std::string ShippedStackText(const std::string& name, const std::vector<std::string>& overrides = {});
 
 }  // namespace hydro::experiments

@@ -1,4 +1,4 @@
-// One run of the control stack for an experiment, as a table of signals: how it is run is exchangeable.
+// One run of the control stack for an experiment, as a table of signals. How it is run is exchangeable.
 #pragma once
 
 #include <functional>
@@ -10,22 +10,21 @@ namespace hydro::experiments {
 
 struct StackSetup {
   std::string name;    // for messages and files: "fig4-feedforward"
-  std::string config;  // a whole configuration (TOML); model.file is only a name there, `model` replaces it
-  std::string model;   // a model file's text (TOML)
+  std::string config;  // a whole configuration (TOML); `model` replaces the file named by model.file
+  std::string model;   // text of a model file (TOML)
 };
 
-// Runs a stack to the end of its time.duration_s and gives its signals, one row a plant tick, with the
-// columns of hydro-log export (runs/run_table.h). Throws InputError for a faulty configuration,
+// Runs a stack to the end of its time.duration_s and returns its signals, one row per plant tick, with the
+// columns of hydro-log export (runs/run_table.h). Throws InputError for a faulty configuration, and
 // std::runtime_error naming the setup when the run failed (a fault tripped).
 using StackRunner = std::function<tables::Table(const StackSetup&)>;
 
-// Plant, pressure loop and position loop in this process, in lockstep on simulated time: bit-identical each
-// time.
+// Runs plant, pressure loop and position loop in this process, in lockstep on simulated time: bit-identical
+// every time.
 tables::Table RunStackInProcess(const StackSetup& setup);
 
-// Separate processes in real time, started by hydro-launch (from `program_folder`); configurations and logs
-// stay in `folder` under the setup's name. The setup's time.mode is overridden, and so is a command delay of
-// 0.
+// Runs separate processes in real time, started by hydro-launch (from `program_folder`); configurations and
+// logs stay in `folder` under the setup's name. Overrides the setup's time.mode, and a command delay of 0.
 StackRunner SeparateProcesses(const std::string& program_folder, const std::string& folder);
 
 }  // namespace hydro::experiments

@@ -1,5 +1,5 @@
-// A step of the arm's reference on the full nonlinear model, as the stack runs it in lockstep but without its
-// messages: for searches that need hundreds of runs.
+// A step of the arm's reference on the full nonlinear model, computed as the stack computes it in lockstep
+// but without messages: for searches that need hundreds of runs.
 #pragma once
 
 #include "experiments/maths/sampled_position_loop.h"
@@ -14,15 +14,14 @@ struct StepTrial {
   pressure_ctrl::PressureLawSettings pressure;
   position_ctrl::PositionLawSettings position;
   double tick = 0;        // s, of plant and pressure loop
-  int interval = 1;       // ticks from one sample of the position loop to the next
+  int interval = 1;       // ticks between samples of the position loop
   int command_delay = 1;  // ticks, as plant.command_delay_ticks
   double step = 0;        // rad
-  double duration = 0;    // s, from the step on
+  double duration = 0;    // s, after the step
 };
 
-// The arm's answer, one point a tick, to a reference that steps from 0 at the first tick. Equals, up to
-// rounding, what the stack gives for the same settings and a step at a sample of the position loop. Throws
-// ModelError.
+// The arm's response, one point per tick, to a reference that steps from 0 at the first tick. Up to rounding,
+// it equals the stack's for the same settings and a step at a sample of the position loop. Throws ModelError.
 Response RunStepTrial(const StepTrial& trial);
 
 }  // namespace hydro::experiments

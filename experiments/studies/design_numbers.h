@@ -15,13 +15,13 @@ inline constexpr double kPaperGain = 350;  // psi s/rad, g of the paper's Figure
 // [[re, im], ...]
 std::vector<std::pair<double, double>> AsPairs(const std::vector<Complex>& poles);
 
-// The pole with the largest real part, of a pair the upper one.
+// The pole with the largest real part; of a pair, the upper one.
 Complex SlowestPole(const std::vector<Complex>& poles);
 
 // "0.312 s", or "never".
 std::string SettlingText(const runs::StepResponse& response);
 
-// "-38.4 ± 113.1j"; of a real pole "-2.52".
+// "-38.4 ± 113.1j", or "-2.52" for a real pole.
 std::string PoleText(const Complex& pole);
 
 }  // namespace hydro::experiments

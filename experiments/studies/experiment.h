@@ -13,49 +13,49 @@
 
 namespace hydro::experiments {
 
-// One line of "what the paper says, what we get".
+// One row of the comparison between the paper's value and ours.
 struct Comparison {
   std::string quantity;  // "peak of p_2"
   std::string unit;      // "psi"; "" for pure numbers
-  std::string paper;     // what the paper prints or its figure shows; "" where it is silent
-  // The same quantity by an independent computation from the paper's equations (closed form, Routh, ...);
-  // NaN: none.
+  std::string paper;     // what the paper prints or its figure shows; "" if it is silent
+  // The same quantity computed independently from the paper's equations (closed form, Routh, ...); NaN: none.
   double expected = std::numeric_limits<double>::quiet_NaN();
-  double here = std::numeric_limits<double>::quiet_NaN();  // what this run gave; NaN: it does not exist
-  std::string remark;                                      // why they differ, what it depends on
+  double here = std::numeric_limits<double>::quiet_NaN();  // what this run gave; NaN: does not exist
+  std::string remark;                                      // why they differ, what the value depends on
 };
 
-// Where the paper contradicts itself or leaves something open. Never silently patched: what the project does
-// is said.
+// Where the paper contradicts itself or leaves something open. The project never patches this silently:
+// `treatment` states what it does.
 struct Finding {
   int number = 0;         // as in docs/experiments.md
   std::string paper;      // what the paper says
-  std::string evidence;   // what was computed here, with figures
+  std::string evidence;   // what was computed here, with numbers
   std::string treatment;  // what the project does
 };
 
 struct Picture {
-  std::string suffix;  // "" is the experiment's own, NAME.svg; "-noise" gives NAME-noise.svg
+  std::string suffix;  // "" gives the experiment's own NAME.svg; "-noise" gives NAME-noise.svg
   page::Figure figure;
 };
 
 struct ExperimentResult {
-  std::string conditions;               // model, mode, rates, references: one or two sentences
+  std::string conditions;               // model, mode, rates, references, in one or two sentences
   std::string paper_says;               // what the paper reports, in a sentence or two
   std::string explanation;              // why the two differ, or that they agree
-  std::vector<Comparison> comparisons;  // in the order of the report
-  std::vector<Finding> findings;        // those that this experiment gives evidence for
-  std::string numbers = "{}";           // a JSON object: the keys of docs/experiments.md and more
+  std::vector<Comparison> comparisons;  // in the report's order
+  std::vector<Finding> findings;        // the findings that this experiment gives evidence for
+  std::string numbers = "{}";           // a JSON object: the keys of docs/experiments.md, and more
   tables::Table table;                  // NAME.csv; columns may be padded with NaN
   std::vector<Picture> pictures;        // the first is NAME.svg
 };
 
 struct ExperimentOptions {
-  StackRunner run_stack = RunStackInProcess;  // how experiments over the stack run it
-  int64_t seed = 1;                           // of every noise
-  bool noise = false;        // sensors as noisy as the paper's plots, for the figures that show them
-  std::string measured_run;  // friction, leakage: analyse this file instead of a simulated rig; "": simulate
-  // Told now and then how much is done, 0 to 1. May be called from any one thread at a time.
+  StackRunner run_stack = RunStackInProcess;  // how experiments run the stack
+  int64_t seed = 1;                           // for all noise
+  bool noise = false;                         // sensor noise like the paper's, for figures that show it
+  std::string measured_run;                   // friction, leakage: file to analyse; "": simulate a rig
+  // Called now and then with the fraction done, 0 to 1. Calls may come from any thread, but never from two at
+  // a time.
   std::function<void(double)> progress = [](double) {};
 };
 
@@ -63,11 +63,11 @@ struct Experiment {
   std::string name;   // "fig3"; names the files
   std::string title;  // "Figure 3: open-loop response to a torque of 10 in-lb"
   ExperimentResult (*run)(const ExperimentOptions&);
-  double cost = 1;  // seconds it takes, roughly: for the progress bar and the order of starting
+  double cost = 1;  // rough duration in seconds, for the progress bar and the starting order
   bool takes_measured_run = false;
 };
 
-// All, in the order of the paper (and of the report).
+// All experiments, in the order of the paper and of the report.
 const std::vector<Experiment>& Experiments();
 
 }  // namespace hydro::experiments

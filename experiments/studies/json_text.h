@@ -1,5 +1,5 @@
-// JSON to text and back: nlohmann's writer and parser, compiled once. They cost seconds in each file that
-// uses them.
+// JSON to text and back: nlohmann's writer and parser, compiled once, because they cost seconds in each file
+// that uses them.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -7,7 +7,7 @@
 
 namespace hydro::experiments {
 
-// Indented by 2; what is not finite is null.
+// Indented by 2; values that are not finite become null.
 std::string JsonText(const nlohmann::json& value);
 
 // Throws nlohmann::json::parse_error.

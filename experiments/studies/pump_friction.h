@@ -1,5 +1,5 @@
-// The friction of motor and pump, T_s and b of eq. (4), from runs in which the two sides are connected: then
-// dp = 0, and a steady speed's torque is T_p = b theta' + T_s sgn(theta').
+// The friction of motor and pump, T_s and b of eq. (4), from runs with the two sides connected: then dp = 0,
+// and at a steady speed T_p = b theta' + T_s sgn(theta').
 #pragma once
 
 #include <optional>
@@ -17,45 +17,45 @@ struct FrictionPoint {
   SpeedWindow window;
   double torque = 0;  // in-lbf, T_p = k_1 v within +/- T_pmax
   double fitted = 0;  // in-lbf, on the line
-  // The most that inertia still takes of it, in-lbf: the approach to a steady speed never ends.
+  // The most that inertia can still take of it, in-lbf: the approach to a steady speed never ends.
   double transient = 0;
 };
 
-// Torque regressed on speed, with a Coulomb friction for each direction and one slope for both. The intervals
-// are Student's, from the points' scatter about the lines, widened by the most that what is left of the
-// transients can shift the value: all points lag in the same way, so that their scatter does not tell it.
+// Torque regressed on speed, with one Coulomb friction for each direction and one slope for both. The
+// intervals are Student's, from the points' scatter about the lines, widened by the most that the remaining
+// transients can shift the value: all points lag in the same way, so their scatter does not show it.
 struct PumpFriction {
-  maths::Estimate T_s;           // in-lbf, the mean of the two directions'
+  maths::Estimate T_s;           // in-lbf, mean of the two directions
   maths::Estimate T_s_forward;   // in-lbf
   maths::Estimate T_s_backward;  // in-lbf, a magnitude
-  maths::Estimate difference;    // in-lbf, forward less backward
+  maths::Estimate difference;    // in-lbf, forward minus backward
   maths::Estimate b;             // in-lbf-s
   double scatter = 0;            // in-lbf, standard deviation of the points about the lines
   int degrees_of_freedom = 0;
   std::vector<FrictionPoint> points;
 };
 
-// From a run with the bypass open; k_1, T_pmax and (to tell what is steady) J are the parameters'. Throws
-// InputError where the run cannot support it, saying what it has: bypass closed; neither speed nor angle of
-// the motor; no steady speed (then how far from it the longest hold is), in one direction only, fewer than
-// three different ones or four in all.
+// Fits a run with the bypass open; `parameters` gives k_1, T_pmax and J (to judge what is steady). Throws
+// InputError, saying what the run has, when it cannot support the fit: bypass closed; neither speed nor angle
+// of the motor; no steady speed (and then how far from it the longest hold is); steady speeds in one
+// direction only, fewer than three different ones, or fewer than four in all.
 PumpFriction FitPumpFriction(const runs::MeasuredRun& run, SpeedSource source,
                              const model::Parameters& parameters);
 
-// The motor's speed where it is measured, else its angle. Throws InputError when neither is.
+// The motor's speed if it is measured, else its angle. Throws InputError when neither is.
 SpeedSource SpeedSourceOf(const runs::MeasuredRun& run);
 
 struct BreakAway {
-  double time = 0;     // s, of the first sample that has moved
+  double time = 0;     // s, the first sample that has moved
   double voltage = 0;  // V there
 };
 
 // The first sample from `from` to `to` (s) whose motor angle differs by more than `moved` rad from that at
-// `from`; none when the motor stays.
+// `from`; none if the motor stays.
 std::optional<BreakAway> FindBreakAway(const runs::MeasuredRun& run, double from, double to, double moved);
 
-// How much more than the friction a torque ramp (in-lbf/s) has reached when the motor has turned by `moved`:
-// from J theta'' = ramp t, theta = ramp t^3 / (6 J). in-lbf.
+// How far above friction a torque ramp (in-lbf/s) is when the motor has turned by `moved`, in in-lbf; from J
+// theta'' = ramp t, theta = ramp t^3 / (6 J).
 double BreakAwayExcess(double ramp, double inertia, double moved);
 
 }  // namespace hydro::experiments

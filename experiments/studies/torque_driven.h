@@ -1,4 +1,4 @@
-// A commanded torque at an arm that is moved along a smooth path.
+// A commanded torque at an arm that is driven along a smooth path.
 #pragma once
 
 #include <string>
@@ -8,8 +8,8 @@
 
 namespace hydro::experiments {
 
-// From -reach to +reach and back, each way a quintic that starts and ends without speed and acceleration,
-// with rests before, between and after.
+// From -reach to +reach and back, each way a quintic with zero speed and acceleration at both ends, and rests
+// before, between and after.
 class SmoothPath {
  public:
   SmoothPath(double reach, double largest_speed);
@@ -18,13 +18,13 @@ class SmoothPath {
   double speed(double time) const;         // rad/s
   double acceleration(double time) const;  // rad/s^2
   double duration() const { return 2 * move_ + 3 * kRest; }
-  double middle() const { return kRest + move_ / 2; }  // s, when it first passes 0, at its largest speed
+  double middle() const { return kRest + move_ / 2; }  // s, when it first passes 0, at its peak speed
 
   static constexpr double kRest = 0.4;  // s
 
  private:
   struct Phase {
-    double share = 0;      // of the move, 0 to 1
+    double share = 0;      // fraction of the move, 0 to 1
     double direction = 0;  // +1, -1, 0 at rest
   };
   Phase At(double time) const;
@@ -33,16 +33,16 @@ class SmoothPath {
   double move_;  // s
 };
 
-// The arm of the shipped gravity model: the torque commanded is what carries it along the path,
-// J_a alpha'' + m g l cos(alpha), eq. (15).
+// The arm of the shipped gravity model under the torque command that carries it along the path: J_a alpha'' +
+// m g l cos(alpha), eq. (15).
 struct TorqueOnPath {
-  double largest_speed = 0;  // rad/s, of the arm
+  double largest_speed = 0;  // rad/s, the arm's
   bool arm_speed_feedforward = false;
   PressureLoopRun run;
   std::vector<double> command;  // in-lbf
   std::vector<double> error;    // in-lbf, command - k_2 dp
-  // The same in closed form at each instant, with the pump turning as the arm's motion and the leakage force
-  // it to: the torque that eq. (4) then needs, given by eq. (16), and the k_v term.
+  // The error in closed form at each instant. The arm's motion and the leakage force the pump to turn; eq.
+  // (4) then needs a torque, which eq. (16) supplies, and the k_v term adds to it.
   std::vector<double> closed_form;
   double largest_error = 0;                 // in-lbf, |command - k_2 dp|
   double rms_error = 0;                     // in-lbf

@@ -1,5 +1,4 @@
-// What Figures 4 and 5 have in common: the closed pressure loop follows a wave, with and without
-// feed-forward.
+// What Figures 4 and 5 share: the closed pressure loop follows a wave, with and without feed-forward.
 #pragma once
 
 #include <string>
@@ -14,26 +13,26 @@ namespace hydro::experiments {
 inline constexpr double kWaveAmplitude = 300;  // psi
 inline constexpr double kWaveFrequency = 10;   // Hz
 inline constexpr double kWaveDuration = 1;     // s
-inline constexpr double kWaveSettled = 0.5;    // s: from here on one period is like the next
+inline constexpr double kWaveSettled = 0.5;    // s; from here on all periods are alike
 inline constexpr double kHoldDuration = 1.5;   // s, of a constant reference
 
 struct TrackingStudy {
   std::string figure;  // "fig4"
-  std::string kind;    // of reference: "square", "sine"
+  std::string kind;    // of the reference: "square", "sine"
 
   pressure_ctrl::PressureGains gains;
-  double feedforward = 0;  // V/psi, pays for all but T_s in the steady state
-  // V/psi, pays for T_s as well at a reference of kWaveAmplitude
+  double feedforward = 0;  // V/psi, supplies all but T_s in the steady state
+  // V/psi, also supplies T_s at a reference of kWaveAmplitude
   double tuned_feedforward = 0;
 
   // The wave without and with feed-forward, and a reference held at its amplitude.
   PressureLoopRun wave, wave_with;
   PressureLoopRun hold, hold_with;
-  PressureLoopRun noisy;  // empty unless asked for
+  PressureLoopRun noisy;  // empty unless requested
 
   TrackingError error, error_with;
   double steady_state_error = 0, steady_state_error_with = 0;  // psi, of the held reference
-  double largest_demand = 0;  // in-lbf, what eq. (16) asks for before the limit, wave without feed-forward
+  double largest_demand = 0;  // in-lbf, what eq. (16) demands before the limit, wave without feed-forward
 
   struct AtFrequency {
     double frequency = 0;  // Hz
@@ -45,13 +44,13 @@ struct TrackingStudy {
 TrackingStudy RunTrackingStudy(const ExperimentOptions& options, const std::string& figure,
                                const std::string& kind);
 
-// Conditions, comparisons, numbers, table and the pictures of the wave; the rest is each figure's own.
+// Conditions, comparisons, numbers, table and the pictures of the wave; each figure adds the rest.
 ExperimentResult DescribeTracking(const TrackingStudy& study);
 
-// What remains when the reference rests, and why.
+// The error that remains when the reference rests, and why.
 std::string SteadyStateText(const TrackingStudy& study);
 
-// Keys of [reference] for the wave.
+// The keys of [reference] that make the wave.
 std::string WaveReference(const std::string& kind, double frequency);
 
 }  // namespace hydro::experiments
