@@ -1,4 +1,5 @@
-// What a message costs within one process: to publish and dispatch it, to authenticate it, to count its time.
+// What a message costs within one process: publishing and dispatching it, authenticating it, counting its
+// time.
 #include <benchmark/benchmark.h>
 
 #include <chrono>
@@ -21,7 +22,7 @@ const std::string kCommand = "HYDRO_MOTOR_COMMAND";
 
 enum class Sending { kByName, kAdvertised };
 
-// A state and its command: two messages a turn.
+// A state and its command: two messages per turn.
 void InProcessExchange(benchmark::State& bench, Sending sending, bool tapped) {
   bus::SimulatedClock clock;
   bus::InProcessBus bus(&clock);
@@ -58,7 +59,7 @@ BENCHMARK_CAPTURE(InProcessExchange, advertised, Sending::kAdvertised, false);
 BENCHMARK_CAPTURE(InProcessExchange, by_name, Sending::kByName, false);
 BENCHMARK_CAPTURE(InProcessExchange, advertised_and_tapped, Sending::kAdvertised, true);
 
-// What authentication adds to a message's way: its seal, and the check of it.
+// What authentication adds to a message: sealing it and checking the seal.
 void SealAndOpen(benchmark::State& bench) {
   bus::Authenticator authenticator(bus::BusKey({1, 2, 3}), bus::AuthenticatedChannels(bus::Channels()));
   state_t state{};

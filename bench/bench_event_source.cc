@@ -1,5 +1,5 @@
-// Sends 128-byte events at a steady rate on an LCM network, numbered, and says how many it sent: what
-// bench/logger_rate has loggers record.
+// Sends numbered 128-byte events at a steady rate on an LCM network and prints how many it sent: the load
+// that bench/logger_rate has loggers record.
 //   bench_event_source URL RATE_HZ SECONDS [CHANNEL]
 #include <array>
 #include <chrono>
@@ -27,7 +27,7 @@ int main(int argc, char** argv) {
     const auto start = steady_clock::now();
     for (int64_t i = 0; i < events; ++i) {
       const auto due = start + nanoseconds(static_cast<int64_t>(1e9 * static_cast<double>(i) / rate));
-      // Of several that are due by then the sleep costs one wake-up, not one each.
+      // When several are due by then, the sleep costs one wake-up, not one each.
       if (due > steady_clock::now() + 50us) hydro::bus::SleepUntil(due);
       std::memcpy(event.data(), &i, sizeof i);
       while (!socket.Send(channel, event.data(), event.size())) std::this_thread::yield();

@@ -1,6 +1,6 @@
 // Lockstep over three processes: the stack (plant, pressure loop, position loop) beside bare LCM that
-// exchanges the same messages in the same pattern, a state each tick answered by the fast controller, each
-// 25th also by the slow one.
+// exchanges the same messages in the same pattern. The fast controller answers each tick's state, the slow
+// one every 25th.
 //   bench_lockstep [TICKS]
 #include <sched.h>
 
@@ -63,7 +63,7 @@ class Plant {
     lcm_.subscribe("SLOW", &Plant::OnSlow, this)->setQueueCapacity(0);
   }
 
-  // One tick of lockstep; a state that is not answered is sent again.
+  // One tick of lockstep; sends a state again if it gets no answer.
   void Step(int64_t tick) {
     state_t state{};
     state.tick = tick;
@@ -91,14 +91,14 @@ double BareTicksPerSecond(int64_t ticks) {
   const ChildProcess fast([&] { Echo<motor_command_t>(url, "FAST", 1).Run(); });
   const ChildProcess slow([&] { Echo<pressure_command_t>(url, "SLOW", kSlowInterval).Run(); });
   Plant plant(url);
-  plant.Step(0);  // returns when both are there
+  plant.Step(0);  // returns once both controllers are there
   const auto start = std::chrono::steady_clock::now();
   for (int64_t tick = 1; tick <= ticks; ++tick) plant.Step(tick);
   const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
   return static_cast<double>(ticks) / elapsed.count();
 }
 
-// With a key all messages are authenticated.
+// With a key, all messages are authenticated.
 std::unique_ptr<bus::Authenticator> KeyedOrNot(bool with_key) {
   if (!with_key) return nullptr;
   return std::make_unique<bus::Authenticator>(bus::BusKey({1, 2, 3}),
@@ -126,7 +126,7 @@ double StackTicksPerSecond(int64_t ticks, const std::string& config_file, bool w
       bus::OpenUdpmBus(url, KeyedOrNot(with_key), bus::Receiving::kDirect);  // as the programs do
   bus::UdpmBus& bus = *opened;
   bus::WallClock clock;
-  // The plant's own messages say when it started and ended.
+  // The plant's own messages tell when it started and ended.
   int64_t started = 0, ended = 0;
   bus.Subscribe<process_status_t>("HYDRO_PROCESS_STATUS", [&](const process_status_t& status) {
     if (status.role == "plant" && status.state == process_status_t::RUNNING) started = status.utime;
@@ -158,7 +158,7 @@ void Compare(int64_t ticks, const std::string& config_file, bool one_core) {
     sched_setaffinity(0, sizeof set, &set);
   }
   std::vector<double> bare, stack, keyed;
-  for (int round = 0; round < kRounds; ++round) {  // alternately, so that both meet the same neighbours
+  for (int round = 0; round < kRounds; ++round) {  // alternate, so that both run beside the same other load
     bare.push_back(BareTicksPerSecond(ticks));
     stack.push_back(StackTicksPerSecond(ticks, config_file, false));
     keyed.push_back(StackTicksPerSecond(ticks, config_file, true));

@@ -1,5 +1,5 @@
 // One 5 kHz tick of the clamped plant (alpha = 0, Table 1) with its pressure loop, eq. (16), held between
-// samples and following a +/-300 psi square wave of 10 Hz. Each path runs the same second over and over; the
+// samples and following a +/-300 psi square wave of 10 Hz. Each path runs the same second repeatedly. The
 // table at the end gives the time per tick, its ratio to the fastest path of the same run, and the largest
 // difference from a tight reference.
 #include <benchmark/benchmark.h>
@@ -20,7 +20,7 @@ namespace {
 constexpr int kTicks = 5000;
 constexpr double kTick = 2e-4;
 
-// p2 - p1 at 0.05, 0.1, ... 1 s: an event-located integration with steps of 1e-6 s.
+// p2 - p1 at 0.05, 0.1, ... 1 s, by event-located integration with steps of 1e-6 s.
 constexpr double kReference[] = {296.568239647, -318.759357681, 320.915787611, -320.29413467,
                                  320.064136811, -320.026163565, 320.038213305, -320.045615907,
                                  320.050248253, -320.052854252, 320.054262393, -320.055009572,
@@ -51,7 +51,7 @@ struct Row {
   double us = 0;
   double error = 0;
 };
-std::map<std::string, Row> rows;  // in the order of their names
+std::map<std::string, Row> rows;  // sorted by name
 std::vector<std::string> order;
 
 void Tick(benchmark::State& state, const std::string& name, const model::ModelDescription& model,
@@ -84,7 +84,7 @@ void Register(const std::string& name, const model::ModelDescription& model,
   })->Unit(benchmark::kMillisecond);
 }
 
-// Keeps the time per tick of each path for the table, and prints as usual.
+// Keeps each path's time per tick for the table, and prints as usual.
 class Reporter : public benchmark::ConsoleReporter {
  public:
   void ReportRuns(const std::vector<Run>& runs) override {

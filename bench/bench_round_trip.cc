@@ -1,5 +1,5 @@
 // A state to the pressure loop and its command back, between two processes: the stack beside bare LCM and
-// other middleware that exchanges as many bytes, in the same run, alternately.
+// other middleware that exchange as many bytes, alternating in the same run.
 //   bench_round_trip [ROUNDS]
 #include <sched.h>
 #include <sys/mman.h>
@@ -37,7 +37,7 @@ std::unique_ptr<bus::Authenticator> KeyedOrNot(bool with_key) {
                                               bus::AuthenticatedChannels(bus::Channels()));
 }
 
-// The plant's end of the bus, waiting as the plant does.
+// The plant's end of the bus; waits as the plant does.
 class StackPinger : public Pinger {
  public:
   StackPinger(const std::string& url, bus::Receiving receiving, bool with_key)
@@ -67,7 +67,7 @@ class StackPinger : public Pinger {
   int64_t sequence_ = 0;
 };
 
-// The pressure loop as hydro-pressure-ctrl runs it.
+// The pressure loop, as hydro-pressure-ctrl runs it.
 void AnswerOnBus(const std::string& url, bus::Receiving receiving, bool with_key) {
   const settings::StackConfig config =
       settings::LoadStackConfig(HYDRO_BENCH_CONFIG, {"time.mode=realtime", "limits.stale_input_s=1e6"});
@@ -109,13 +109,13 @@ std::vector<Peer> Everyone() {
   return peers;
 }
 
-// One round with fresh processes: which core the kernel gives to which thread makes a difference of a third
+// One round with fresh processes. Which core the kernel gives to which thread makes a difference of a third
 // and stays for the life of a process.
 void RunRound(Placement placement, const std::vector<int>& cpus, std::span<timing::Histogram> times) {
   std::vector<Peer> peers = Everyone();
   std::vector<std::unique_ptr<ChildProcess>> echoes;
   if (placement != Placement::kAnywhere) Pin(cpus.front());
-  // All children first: a process must not fork once threads run in it.
+  // Start all children first: a process must not fork once it runs threads.
   for (const Peer& peer : peers) {
     echoes.push_back(std::make_unique<ChildProcess>([&] {
       if (placement == Placement::kTwoCores) Pin(cpus.back());
@@ -153,7 +153,7 @@ void Measure(Placement placement, const std::string& title, int rounds) {
   if (memory == MAP_FAILED) throw std::bad_alloc();
   const std::span<timing::Histogram> times(new (memory) timing::Histogram[peers.size()], peers.size());
   for (int round = 0; round < rounds; ++round) {
-    // In a process of its own too: some of these libraries cannot be used on both sides of a fork.
+    // This too runs in its own process: some of these libraries cannot be used on both sides of a fork.
     const pid_t runner = fork();
     if (runner == 0) {
       try {
@@ -204,7 +204,7 @@ int main(int argc, char** argv) {
     std::fprintf(stderr, "usage: bench_round_trip [ROUNDS]; ROUNDS must be positive\n");
     return 2;
   }
-  // The peers' traffic stays on this machine, as the stack's does.
+  // Keep the peers' traffic on this machine, as the stack's is.
   setenv("CYCLONEDDS_URI",
          "<CycloneDDS><Domain><General><Interfaces><NetworkInterface name=\"lo\" "
          "multicast=\"true\"/></Interfaces>"

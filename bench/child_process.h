@@ -1,4 +1,4 @@
-// A function of a benchmark in a process of its own.
+// Runs a benchmark's function in a process of its own.
 #pragma once
 
 #include <sys/prctl.h>
@@ -11,7 +11,7 @@
 
 namespace hydro {
 
-// Runs `work` in a child process, which is ended with this object, and with its parent if that dies.
+// Runs `work` in a child process. The child ends with this object, or with its parent if that dies.
 class ChildProcess {
  public:
   template <class Work>

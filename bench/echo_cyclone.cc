@@ -1,4 +1,4 @@
-// Cyclone DDS: reliable topics that keep the last value, a waitset at each end.
+// Cyclone DDS: reliable topics that keep the last value, with a waitset at each end.
 #include <dds/dds.h>
 
 #include <stdexcept>
@@ -14,7 +14,7 @@ dds_entity_t Check(dds_return_t result) {
   return result;
 }
 
-// One end: writes one topic, waits for the other.
+// One end: writes one topic and waits for the other.
 class End {
  public:
   End(const dds_topic_descriptor_t* writes, const char* writes_name, const dds_topic_descriptor_t* reads,
@@ -40,7 +40,7 @@ class End {
 
   void Write(const void* message) { Check(dds_write(writer_, message)); }
 
-  // Waits for a message; false: none came for a second.
+  // Waits for a message; false if none came within a second.
   template <class Message>
   bool Read(Message* message) {
     while (true) {

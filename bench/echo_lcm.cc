@@ -1,4 +1,4 @@
-// Bare LCM: handle() in a loop, as its tutorial shows it. The messages are the stack's own types.
+// Bare LCM: handle() in a loop, as in its tutorial, with the stack's own message types.
 #include <hydro/motor_command_t.hpp>
 #include <hydro/state_t.hpp>
 #include <lcm/lcm-cpp.hpp>

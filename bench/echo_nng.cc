@@ -23,7 +23,7 @@ class NngPinger : public Pinger {
     Check(nng_socket_set_ms(socket_, NNG_OPT_RECVTIMEO, 1000));
     Check(nng_socket_set_ms(socket_, NNG_OPT_SENDTIMEO, 1000));
     nng_dialer dialer;
-    // Goes on trying while the other end is not there yet.
+    // Keeps trying until the other end is there.
     Check(nng_dial(socket_, url.c_str(), &dialer, NNG_FLAG_NONBLOCK));
   }
   ~NngPinger() override { nng_close(socket_); }

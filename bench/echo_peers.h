@@ -1,5 +1,5 @@
-// The exchange of a state and its command by other middleware, between two processes: what bench_round_trip
-// measures beside the stack. Each waits blocking, as its manual shows it, and moves as many bytes.
+// The exchange of a state and its command between two processes by other middleware, which bench_round_trip
+// measures beside the stack. Each one blocks while it waits, as its manual shows, and moves as many bytes.
 #pragma once
 
 #include <cstddef>
@@ -11,7 +11,7 @@
 
 namespace hydro {
 
-// Bytes of an encoded state_t and motor_command_t.
+// Sizes in bytes of an encoded state_t and motor_command_t.
 constexpr size_t kStateBytes = 120;
 constexpr size_t kCommandBytes = 66;
 
@@ -19,17 +19,18 @@ constexpr size_t kCommandBytes = 66;
 class Pinger {
  public:
   virtual ~Pinger() = default;
-  // Sends a state with this number and waits for the command with the same; false: none came for a second.
+  // Sends a state with this number and waits for the command with the same number; false if none came within
+  // a second.
   virtual bool Trip(int64_t number) = 0;
 };
 
 struct Peer {
   std::string name;
-  std::function<void()> echo;  // answers for ever; runs in a process of its own
+  std::function<void()> echo;  // answers forever, in its own process
   std::function<std::unique_ptr<Pinger>()> make_pinger;
 };
 
-// Bare LCM, and those that were found when this was built. On ports of their own.
+// Bare LCM, and the other middleware found at build time. Each uses its own ports.
 std::vector<Peer> MakePeers();
 
 Peer LcmPeer();

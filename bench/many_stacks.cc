@@ -1,8 +1,8 @@
 // How many stacks (plant, pressure loop, position loop: three processes each) one machine and one multicast
-// segment carry in real time, with ports of their own and on one port with channel suffixes; and how many
-// hydro-sim carries in one process.
+// segment can run in real time, on a port each and on one shared port with channel suffixes; and how many
+// hydro-sim can run in one process.
 //   many_stacks [--seconds S] [--most N] [--rate HZ] [--priority P]
-// A stack alone is measured before each row, as what it is compared with: the machine may have other work.
+// Each row is compared with a single stack measured just before it, because the machine may have other work.
 #include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
@@ -33,7 +33,8 @@ namespace hydro {
 namespace {
 
 constexpr int kProcesses = 3;
-// Deadlines have gone when more ticks are missed or answered late than this share beside those of one stack.
+// Deadlines count as lost when the share of ticks missed or answered late exceeds that of a single stack by
+// more than this.
 constexpr double kMostMissed = 0.01;
 
 struct Options {
@@ -45,20 +46,20 @@ struct Options {
 
 struct PlantResult {
   int64_t due = 0;       // ticks
-  int64_t states = 0;    // published, one for each tick that was not skipped
+  int64_t states = 0;    // published, one per tick that was not skipped
   int64_t commands = 0;  // motor commands received
-  int64_t late = 0;      // of them after the next tick
+  int64_t late = 0;      // motor commands received after the next tick
   int64_t pressure_commands = 0;
   bool done = false;
 };
 
 struct Row {
-  double missed = 0;   // share of the ticks, skipped by the plant
-  double late = 0;     // share of the states, answered after the next tick
+  double missed = 0;   // share of the ticks that the plant skipped
+  double late = 0;     // share of the states answered after the next tick
   double cores = 0;    // processor time per plant time
   double sent = 0;     // messages a second
-  double bytes = 0;    // a second, on an Ethernet
-  double arrived = 0;  // messages a second that the processes were given by the kernel, all together
+  double bytes = 0;    // bytes a second on Ethernet
+  double arrived = 0;  // messages a second that the kernel delivered to all processes
   bool complete = true;
 };
 
@@ -113,7 +114,7 @@ pid_t Fork(const Options& options, const std::function<void()>& work) {
   _exit(0);
 }
 
-// Bytes that a message takes on an Ethernet: LCM's, UDP's and IP's headers, the frame with its gap.
+// Bytes that a message takes on Ethernet: LCM, UDP and IP headers, the frame and the gap after it.
 double WireBytes(const std::string& channel, int encoded_size) {
   return 8 + static_cast<double>(channel.size()) + 1 + encoded_size + 28 + 38;
 }

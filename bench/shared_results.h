@@ -15,7 +15,7 @@ class SharedResults {
   static_assert(std::is_trivially_copyable_v<Value>);
 
  public:
-  // Zeros. Create it before the children.
+  // Starts with zeros. Create it before the children.
   explicit SharedResults(size_t count) : bytes_(count * sizeof(Value)) {
     void* const memory = mmap(nullptr, bytes_, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
     if (memory == MAP_FAILED) throw std::runtime_error("no shared memory");

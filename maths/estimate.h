@@ -13,7 +13,7 @@ struct Estimate {
   double half_width() const { return (high - low) / 2; }
 };
 
-// "4.000017 +/- 0.000075": as many decimals as the interval is worth.
+// "4.000017 +/- 0.000075", with as many decimals as the interval justifies.
 std::string PlusMinus(const Estimate& estimate);
 
 }  // namespace hydro::maths

@@ -1,5 +1,5 @@
-// Linear algebra of matrices of any size: Eigen's decompositions, compiled once. They cost seconds in each
-// file that instantiates them.
+// Linear algebra on matrices of any size: Eigen's decompositions, compiled once, because they cost seconds in
+// each file that instantiates them.
 #pragma once
 
 #include <Eigen/Core>
@@ -9,19 +9,19 @@ namespace hydro::maths {
 
 struct Eigensystem {
   Eigen::VectorXcd values;
-  Eigen::MatrixXcd vectors;  // columns, of length 1, in the order of the values
+  Eigen::MatrixXcd vectors;  // columns of length 1, in the order of the values
 };
 
-// Of a square matrix, in no particular order.
+// The eigenvalues of a square matrix, in no particular order.
 Eigen::VectorXcd Eigenvalues(const Eigen::MatrixXd& A);
 Eigensystem Eigenvectors(const Eigen::MatrixXd& A);
 
-// exp(A): what x' = A x does in a unit of time.
+// exp(A): the transition matrix of x' = A x over one unit of time.
 Eigen::MatrixXd Exponential(const Eigen::MatrixXd& A);
 
 Eigen::MatrixXd Inverse(const Eigen::MatrixXd& A);
 
-// (s I - A)^-1 b: the states' response at s (or z) to an input that enters by b.
+// (s I - A)^-1 b: the states' response at s (or z) to an input that enters through b.
 Eigen::VectorXcd Resolvent(const Eigen::MatrixXd& A, std::complex<double> s, const Eigen::VectorXd& b);
 
 }  // namespace hydro::maths

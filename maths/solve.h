@@ -1,18 +1,18 @@
-// Solutions and eigenvectors of symmetric systems, compiled once: Eigen's decompositions take g++ some ten
-// seconds in each file that uses them. General matrices: maths/matrix_functions.h.
+// Solutions and eigenvectors of symmetric systems, compiled once: Eigen's decompositions take g++ about ten
+// seconds in each file that uses them. For general matrices see maths/matrix_functions.h.
 #pragma once
 
 #include <Eigen/Core>
 
 namespace hydro::maths {
 
-// X with A X = B.
+// The X that solves A X = B.
 Eigen::MatrixXd SolveSymmetric(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B);
 
-// A'B, A'A: products, for the same reason.
+// The products A'B and A'A, compiled once for the same reason.
 Eigen::MatrixXd TransposeTimes(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B);
 
-// A = V diag(values) V', of a symmetric matrix; values in increasing order.
+// A = V diag(values) V' for a symmetric matrix, values in increasing order.
 struct SymmetricEigensystem {
   Eigen::VectorXd values;
   Eigen::MatrixXd vectors;  // V

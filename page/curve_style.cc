@@ -10,8 +10,9 @@ struct Ink {
   Marker marker;
 };
 
-// One for each of chart.css's colours c0 to c5, whose hues stay apart for the colour-blind (after Okabe and Ito). Neighbours
-// differ in lightness too; those that print in a like grey differ in dashes.
+// One for each of chart.css's colours c0 to c5, whose hues stay distinct for colour-blind readers (after
+// Okabe and Ito). Neighbours differ in lightness too; those that print as a similar grey differ in their
+// dashes.
 const std::array<Ink, 6>& Inks() {
   static const std::array<Ink, 6> inks = {{{{}, Marker::kDisc},
                                            {{}, Marker::kSquare},
@@ -22,7 +23,7 @@ const std::array<Ink, 6>& Inks() {
   return inks;
 }
 
-constexpr size_t kFewPoints = 300;  // beyond these, separate points get small markers
+constexpr size_t kFewPoints = 300;  // beyond this, separate points get small markers
 
 }  // namespace
 
@@ -33,7 +34,7 @@ CurveStyle StyleOf(const Curve& curve, int place) {
   switch (curve.stroke) {
     case Stroke::kLine:
       break;
-    case Stroke::kSteps:  // dashes would be lost in its corners
+    case Stroke::kSteps:  // dashes would be lost in the corners
     case Stroke::kBars:
       style.dash.clear();
       break;

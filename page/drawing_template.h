@@ -1,4 +1,4 @@
-// A drawing whose numbers are filled in: an .svg file with places such as {{k_1}}.
+// A drawing template: an .svg file with placeholders such as {{k_1}}.
 #pragma once
 
 #include <map>
@@ -7,8 +7,8 @@
 
 namespace hydro::page {
 
-// The drawing with the text for each place, escaped. Throws std::logic_error that names a place without a text, or a text
-// without a place.
+// The drawing with each placeholder replaced by its text, escaped. Throws std::logic_error naming a
+// placeholder without a text, or a text without a placeholder.
 std::string FillDrawing(std::string_view drawing, const std::map<std::string, std::string>& texts);
 
 }  // namespace hydro::page

@@ -21,7 +21,7 @@ namespace {
 constexpr double kRight = 18;
 constexpr double kTop = 8;
 constexpr double kGap = 12;
-constexpr double kEmptyHead = 6;  // above a frame without title and key
+constexpr double kEmptyHead = 6;  // above a frame with neither title nor key
 constexpr double kCaptionLine = 18;
 constexpr double kCaptionSize = 13;
 constexpr double kCaptionLeft = 20;
@@ -41,7 +41,7 @@ double PanelHeight(const Figure& figure) {
 struct Column {
   double left = 0;
   double width = 0;
-  double margin = 0;  // left of its frames
+  double margin = 0;  // to the left of its frames
 
   double frame_left() const { return left + margin; }
   double frame_right() const { return left + width - kRight; }
@@ -71,7 +71,7 @@ bool HasKey(const Panel& panel) {
                      [](const Band& band) { return !band.label.empty(); });
 }
 
-// Where the key of panel `i` ends: at its frame's end, or that of those beside it that have none.
+// Where the key of panel `i` ends: at the end of its frame, or of the frames beside it that have no key.
 double KeyEnd(const Figure& figure, const std::vector<Column>& columns, size_t i) {
   size_t column = i % columns.size();
   while (column + 1 < columns.size() && i + 1 < figure.panels.size() && !HasKey(figure.panels[i + 1])) {
@@ -122,7 +122,7 @@ Picture TakeDrawing(const std::string& drawing, const std::string& name) {
       picture.width <= 0 || picture.height <= 0) {
     throw std::invalid_argument(name + ": the drawing is no <svg> with viewBox=\"0 0 WIDTH HEIGHT\"");
   }
-  // A drawing without a size of its own takes the viewBox's.
+  // A drawing without its own size takes the viewBox's.
   picture.content = fmt::format("<svg width=\"{:g}\" height=\"{:g}\">\n{}\n</svg>\n", picture.width,
                                 picture.height, drawing.substr(tag));
   return picture;
@@ -143,7 +143,7 @@ std::string Element(const Picture& picture, const std::string& about, std::strin
       picture.height, EscapeMarkup(about), style, picture.width, picture.height, picture.content);
 }
 
-// What a screen reader says of the picture.
+// The description for screen readers.
 std::string About(const Figure& figure, const std::string& name) {
   if (!figure.caption.empty()) return figure.caption.substr(0, figure.caption.find(". "));
   for (const Panel& panel : figure.panels) {

@@ -1,4 +1,4 @@
-// The frame and the look of every HTML page that the project writes. A page needs nothing but itself.
+// The frame and the look of every HTML page that the project writes. Pages are self-contained.
 #pragma once
 
 #include <string>
@@ -6,10 +6,11 @@
 
 namespace hydro::page {
 
-// A whole document with the style sheets. `title` is plain text, `body` HTML; `wide`: for tables with many columns.
+// A whole document with the style sheets. `title` is plain text, `body` is HTML; `wide` is for tables with
+// many columns.
 std::string HtmlPage(std::string_view title, std::string_view body, bool wide = false);
 
-// The style sheet of pictures, which an SVG file needs as well.
+// The style sheet of pictures, which SVG files need as well.
 std::string_view ChartStyle();
 
 }  // namespace hydro::page

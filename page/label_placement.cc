@@ -7,8 +7,8 @@ namespace hydro::page {
 namespace {
 
 constexpr double kCell = 3;        // pixels
-constexpr int kLabelWeight = 50;   // a label on a label is worse than one on a curve
-constexpr double kOutside = 1000;  // and one that leaves the frame is worst
+constexpr int kLabelWeight = 50;   // covering a label is worse than covering a curve
+constexpr double kOutside = 1000;  // leaving the frame is worst
 
 }  // namespace
 
@@ -21,7 +21,7 @@ LabelPlacement::LabelPlacement(const Box& frame)
 void LabelPlacement::AddStroke(double x0, double y0, double x1, double y1) {
   const double length = std::hypot(x1 - x0, y1 - y0);
   if (!std::isfinite(length)) return;
-  // A line to far beyond the frame is followed no further than is sensible.
+  // Follow a line far beyond the frame only for a sensible distance.
   const int steps = std::clamp(static_cast<int>(std::min(length / kCell, 2000.0)) + 1, 1, 2000);
   for (int i = 0; i <= steps; ++i) {
     const double column = (x0 + (x1 - x0) * i / steps - frame_.left) / kCell;

@@ -1,4 +1,4 @@
-// Where a label in a panel hides least.
+// Places a label in a panel where it hides least.
 #pragma once
 
 #include <vector>
@@ -13,15 +13,15 @@ struct Box {
   double bottom = 0;
 };
 
-// What is drawn in a panel, as a coarse raster.
+// A coarse raster of what is drawn in a panel.
 class LabelPlacement {
  public:
   explicit LabelPlacement(const Box& frame);
 
-  // A stroke from one point to another; parts outside the frame do not count.
+  // Adds a stroke from one point to another; parts outside the frame do not count.
   void AddStroke(double x0, double y0, double x1, double y1);
 
-  // The first of the candidates that hides least and lies within the frame; it then counts as taken.
+  // Returns the candidate within the frame that hides least (the first of equals) and marks it as taken.
   // `candidates` must not be empty.
   Box Place(const std::vector<Box>& candidates);
 
@@ -31,7 +31,7 @@ class LabelPlacement {
   Box frame_;
   int columns_;
   int rows_;
-  std::vector<int> cells_;  // how much is drawn there
+  std::vector<int> cells_;  // how much is drawn in each cell
 };
 
 }  // namespace hydro::page

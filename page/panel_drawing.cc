@@ -22,17 +22,17 @@ constexpr double kKeySample = 28;
 constexpr double kKeyGap = 22;
 constexpr double kTickLabels = 20;
 constexpr double kAxisLabel = 20;
-constexpr double kNoteLine = 15;  // from one line of a note to the next
+constexpr double kNoteLine = 15;  // between the lines of a note
 constexpr double kAside = 7;      // from a point to its note
 constexpr double kTextSize = 12;
 constexpr double kLabelSize = 13;
 constexpr double kMinBarWidth = 0.8;
 
-// Along an axis, from one number to the next.
+// Along an axis, between numbers.
 constexpr double kTickRoomX = 58;
 constexpr double kTickRoomY = 27;
 
-// A tall panel needs no denser numbers than its width has.
+// A tall panel needs numbers no denser than a wide one.
 double TickRoomY(double frame_height) { return std::max(kTickRoomY, frame_height / 10); }
 
 std::vector<Tick> AxisTicks(const Axis& axis, const AxisRange& range, double pixels, double label_pixels) {
@@ -75,10 +75,10 @@ std::string MarkerShape(Marker marker, double r) {
   return "";
 }
 
-// Markers at the points of `data`, "M1 2" each.
+// Markers at the points of `data`, each given as "M1 2".
 std::string MarkerElement(const CurveStyle& style, const std::vector<std::string>& data) {
   if (data.empty()) return "";
-  constexpr double kSmall = 2;  // where no shape can be told from a disc
+  constexpr double kSmall = 2;  // too small to tell a shape from a disc
   const bool small = style.marker_radius < kSmall;
   std::string path;
   const std::string shape = small ? "h0" : MarkerShape(style.marker, style.marker_radius);
@@ -137,7 +137,7 @@ double PanelDrawing::HeadHeight(double key_width) {
 std::string PanelDrawing::Draw(const Box& frame) {
   geometry_ = FitPanel(*panel_, frame, where_);
   std::string out = SvgClipped(frame, Bands()) + Axes();
-  // Rules are seen on bars, and below lines.
+  // Rules lie above bars and below lines.
   const auto is_bars = [this](size_t i) { return panel_->curves[i].stroke == Stroke::kBars; };
   for (size_t i = 0; i < panel_->curves.size(); ++i) out += is_bars(i) ? CurveElements(i) : "";
   out += SvgClipped(frame, Rules());
@@ -171,7 +171,7 @@ std::string PanelDrawing::Bands() const {
     Box box = frame;
     if (band.vertical) {
       box.left = geometry_.Column(from);
-      box.right = std::max(geometry_.Column(to), box.left + 1);  // thinner it would not be seen
+      box.right = std::max(geometry_.Column(to), box.left + 1);  // a thinner one would be invisible
     } else {
       box.top = geometry_.Row(to);
       box.bottom = geometry_.Row(from);
@@ -318,7 +318,7 @@ std::string PanelDrawing::Key() const {
                        LineAttributes(*entry.style));
       }
       if (entry.style->marker != Marker::kNone) {
-        CurveStyle shown = *entry.style;  // large enough to be seen, and not faint
+        CurveStyle shown = *entry.style;  // large enough to see, and not faint
         shown.marker_radius = std::max(shown.marker_radius, 3.2);
         shown.colour = shown.colour.substr(0, shown.colour.find(' '));
         out += MarkerElement(shown, {At(x + kKeySample / 2, y)});

@@ -13,22 +13,22 @@ namespace hydro::page {
 
 class PanelDrawing {
  public:
-  // `panel` must outlive this, `where` is for messages. Throws as FitPanel().
+  // `panel` must outlive this object; `where` is for messages. Throws as FitPanel() does.
   PanelDrawing(const Panel& panel, const std::string& where);
 
-  // What ticks and labels need left of a frame of that height, and below it.
+  // The room that ticks and labels need to the left of a frame of that height, and below it.
   double LeftMargin(double frame_height) const;
   double FootHeight() const;
-  // What title and key need above the frame where the key is that wide.
+  // The room that title and key need above the frame, with a key of that width.
   double HeadHeight(double key_width);
 
-  // SVG elements, after HeadHeight().
+  // The panel's SVG elements. Call HeadHeight() first.
   std::string Draw(const Box& frame);
 
  private:
   struct KeyEntry {
     std::string label;
-    const CurveStyle* style;  // null: of a band
+    const CurveStyle* style;  // null for a band
     bool bars;
     double x;
     int row;

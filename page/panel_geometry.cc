@@ -9,7 +9,7 @@
 namespace hydro::page {
 namespace {
 
-// Of what an axis can show.
+// The range of the values that an axis can show.
 class Extent {
  public:
   explicit Extent(bool positive) : positive_(positive) {}
@@ -23,7 +23,7 @@ class Extent {
   Range range_;
 };
 
-// The bounds given, else those of the data with `margin` (a fraction of the range) around.
+// The given bounds, else the data's range with `margin` (a fraction of it) on each side.
 AxisRange Fit(const Axis& axis, const Range& data, double margin, const std::string& where) {
   AxisRange range{axis.min, axis.max, axis.logarithmic};
   const bool free_min = std::isnan(axis.min);
@@ -38,7 +38,7 @@ AxisRange Fit(const Axis& axis, const Range& data, double margin, const std::str
   } else {
     double widen = margin * (range.max - range.min);
     if (!(range.max > range.min)) widen = range.max == 0 ? 1 : 0.1 * std::abs(range.max);
-    // A quantity that begins at 0 keeps 0 as its edge.
+    // A quantity that starts at 0 keeps 0 as its edge.
     if (free_min && !(range.min == 0 && range.max > 0)) range.min -= widen;
     if (free_max && !(range.max == 0 && range.min < 0)) range.max += widen;
   }
@@ -48,7 +48,7 @@ AxisRange Fit(const Axis& axis, const Range& data, double margin, const std::str
   return range;
 }
 
-// Makes one unit as long on both axes.
+// Gives one unit the same length on both axes.
 void Equalise(PanelGeometry& panel) {
   const double x_unit = (panel.frame.right - panel.frame.left) / (panel.x.max - panel.x.min);
   const double y_unit = (panel.frame.bottom - panel.frame.top) / (panel.y.max - panel.y.min);

@@ -1,4 +1,4 @@
-// Where the values of a panel come to lie in the picture.
+// Maps a panel's values to positions in the picture.
 #pragma once
 
 #include <algorithm>
@@ -26,7 +26,7 @@ struct PanelGeometry {
   AxisRange x = {};
   AxisRange y = {};
 
-  // Far outside is far enough: readers of SVG stumble over huge coordinates.
+  // Clamped far outside the frame, because SVG readers stumble over huge coordinates.
   double Column(double value) const {
     return frame.left + Bounded(x.Fraction(value)) * (frame.right - frame.left);
   }
@@ -42,8 +42,8 @@ struct PanelGeometry {
   }
 };
 
-// The ranges of a panel: as given, else so that all curves, notes and rules are within. `where` is for messages. Throws
-// std::invalid_argument as FigureElement() does.
+// The ranges of a panel: as given, else wide enough for all curves, notes and rules. `where` is for messages.
+// Throws std::invalid_argument as FigureElement() does.
 PanelGeometry FitPanel(const Panel& panel, const Box& frame, const std::string& where);
 
 }  // namespace hydro::page

@@ -1,11 +1,11 @@
-// A figure as data: panels of curves over axes. page/figure_svg.h makes a picture of it.
+// A figure as data: panels of curves over axes. page/figure_svg.h draws it.
 //
-// All texts are plain, with Greek and other letters as UTF-8. Two marks have a meaning:
+// All texts are plain, with Greek and other letters in UTF-8. Two marks have a meaning:
 //   _x  _ms  _{any text}   a subscript: the letters and digits that follow, or what the braces hold
 //   ^2  ^-1  ^{any text}   a superscript
-// They count after a letter, digit, prime or closing bracket: "p_2 - p_1, psi", "s^{-1}", "V_ms". A subscript without
-// braces also needs a symbol of one or two letters before it, so that names such as p1_psi and static_excess stay
-// unchanged.
+// They apply after a letter, digit, prime or closing bracket: "p_2 - p_1, psi", "s^{-1}", "V_ms". A subscript
+// without braces also needs a symbol of one or two letters before it, so that names such as p1_psi and
+// static_excess stay unchanged.
 #pragma once
 
 #include <cstddef>
@@ -17,21 +17,22 @@ namespace hydro::page {
 
 inline constexpr double kAutomatic = std::numeric_limits<double>::quiet_NaN();
 
-// kSteps holds each value until the next x; kBars does too, and fills what is below down to the edge of the panel.
+// kSteps holds each value until the next x. kBars does too, and fills the area below down to the panel's
+// edge.
 enum class Stroke { kLine, kDashed, kDotted, kSteps, kBars, kPoints, kLinePoints };
 
-// How much a curve stands out. kBackdrop: wide and pale, to compare others with.
+// How much a curve stands out. kBackdrop: wide and pale, a background for comparison.
 enum class Weight { kNormal, kFaint, kStrong, kBackdrop };
 
 struct Curve {
-  std::string label;      // in the key; empty: not there
+  std::string label;      // in the key; empty: none
   std::vector<double> x;  // of equal length; a NaN in y breaks the line
   std::vector<double> y;
   Stroke stroke = Stroke::kLine;
-  // 0, 1, 2 ... choose from the palette, so that curves of one kind look alike across panels; -1: the
-  // curve's place in its panel.
+  // 0, 1, 2 ... choose from the palette, so that curves of one kind look alike across panels; -1: the curve's
+  // index in its panel.
   int colour = -1;
-  // Empty, or bounds of each point, drawn as a vertical bar.
+  // Empty, or the bounds of each point, drawn as a vertical bar.
   std::vector<double> y_low = {};
   std::vector<double> y_high = {};
   Weight weight = Weight::kNormal;
@@ -41,7 +42,7 @@ struct Curve {
 Curve Line(const std::string& label, const std::vector<double>& x, const std::vector<double>& y, int colour,
            Stroke stroke = Stroke::kLine);
 
-// A value on an axis and the text there.
+// A value on an axis and its text.
 struct Tick {
   double value = 0;
   std::string text;
@@ -49,15 +50,15 @@ struct Tick {
 
 struct Axis {
   std::string label;         // quantity and unit: "pressure difference, psi"
-  bool logarithmic = false;  // values that are not positive are not drawn
+  bool logarithmic = false;  // values of 0 and below are not drawn
   double min = kAutomatic;
   double max = kAutomatic;
-  std::vector<Tick> ticks = {};  // instead of round numbers: names of what is compared
-  bool numbers = true;           // false: ticks have no text, the panel below shares them
+  std::vector<Tick> ticks = {};  // replace round numbers, e.g. names of what is compared
+  bool numbers = true;           // false: no numbers at the ticks; the panel below shows them
 };
 
-// Text at a point of the panel (in axis units), with a dot there, on the side of the dot where it hides least. Notes,
-// rules and bands outside a range that was given are not drawn.
+// Text at a point of the panel (in axis units), marked by a dot and placed on the side of it where it hides
+// least. Notes, rules and bands outside a given range are not drawn.
 struct Note {
   std::string text;
   double x = 0;
@@ -71,9 +72,10 @@ struct Rule {
   double value = 0;
 };
 
-// A shaded stretch of the x axis (vertical) or of the y axis, over the whole panel: a window of time, a noise floor.
+// A shaded stretch of the x axis (vertical) or of the y axis, over the whole panel: a time window, a noise
+// floor.
 struct Band {
-  std::string label;  // in the key; empty: not there
+  std::string label;  // in the key; empty: none
   bool vertical = false;
   double from = 0;
   double to = 0;
@@ -86,23 +88,25 @@ struct Panel {
   std::vector<Curve> curves;
   std::vector<Note> notes;
   std::vector<Rule> rules;
-  // One unit is as long on both axes (a plane of poles): one of the two ranges, given ones too, is widened.
+  // One unit is as long on both axes (for a plane of poles): one of the two ranges is widened, even if it was
+  // given.
   bool equal_scales = false;
-  double height = 1;  // beside the other panels'
-  double width = 1;   // beside those of its row
+  double height = 1;  // relative to the other panels
+  double width = 1;   // relative to the panels in its row
   std::vector<Band> bands = {};
 };
 
-// Panels stand one below the other, or side by side in rows. The key of a panel reaches over those beside it that have none.
+// Panels stand one below the other, or side by side in rows. A panel's key extends over panels beside it that
+// have none.
 struct Figure {
-  std::string caption;  // what is shown and under which conditions; stands below the picture
+  std::string caption;  // what is shown, under which conditions; stands below the picture
   std::vector<Panel> panels;
-  // Instead of panels: a whole <svg> element, drawn otherwise. Its first tag has a viewBox="0 0 WIDTH HEIGHT"; its ids
-  // are its own to keep apart.
+  // Instead of panels: a whole <svg> element drawn elsewhere. Its first tag has a viewBox="0 0 WIDTH HEIGHT";
+  // it must keep its ids unique.
   std::string drawing = {};
   size_t columns = 1;
   double width = 860;       // pixels
-  double panel_height = 0;  // of a panel's frame, pixels; 0: chosen by the count of panels
+  double panel_height = 0;  // height of a panel's frame, pixels; 0: chosen by the number of panels
 };
 
 }  // namespace hydro::page

@@ -13,7 +13,7 @@ struct Range {
   double high = -std::numeric_limits<double>::infinity();
 
   bool empty() const { return !(low <= high); }
-  // What is not finite does not count.
+  // Ignores values that are not finite.
   void Include(double value) {
     if (!std::isfinite(value)) return;
     low = std::min(low, value);
@@ -22,7 +22,7 @@ struct Range {
   void Include(const std::vector<double>& values) {
     for (const double value : values) Include(value);
   }
-  // An eighteenth wider on each side, and never empty.
+  // Wider by an eighteenth on each side, and never empty.
   Range WithMargin() const {
     if (empty()) return {-1, 1};
     const double margin = high > low ? (high - low) / 18 : std::max(1e-6, std::abs(low) / 10);

@@ -43,7 +43,7 @@ std::string SvgClipped(const Box& box, std::string_view content) {
   if (content.empty()) return "";
   const std::string left = Pixels(box.left), top = Pixels(box.top), width = Pixels(box.right - box.left),
                     height = Pixels(box.bottom - box.top);
-  // An <svg> in an <svg> cuts off what is outside it, and needs no id.
+  // A nested <svg> clips what lies outside it, and needs no id.
   return fmt::format(
       "<svg x=\"{0}\" y=\"{1}\" width=\"{2}\" height=\"{3}\" viewBox=\"{0} {1} {2} {3}\">\n{4}</svg>\n", left,
       top, width, height, content);

@@ -1,4 +1,4 @@
-// Pieces of SVG. How they look (colours, fonts, light and dark) is chart.css's, by class.
+// Pieces of SVG. Their look (colours, fonts, light and dark) comes from chart.css, by class.
 #pragma once
 
 #include <string>
@@ -8,7 +8,7 @@
 
 namespace hydro::page {
 
-// "12.3": a coordinate.
+// A coordinate as text: "12.3".
 std::string Pixels(double value);
 
 struct TextStyle {
@@ -17,15 +17,15 @@ struct TextStyle {
   bool upwards = false;  // turned by 90 degrees
 };
 
-// A <text> element; `text` as page/plot.h describes.
+// A <text> element; `text` is written as page/plot.h describes.
 std::string SvgText(std::string_view text, double x, double y, const TextStyle& style = {});
 
-// A <path> of the classes `look` with further attributes.
+// A <path> with the classes `look` and further attributes.
 std::string SvgPath(std::string_view look, std::string_view data, std::string_view attributes = "");
 
 std::string SvgRectangle(std::string_view look, const Box& box);
 
-// What `content` draws within the box; the rest is cut off.
+// `content` clipped to the box.
 std::string SvgClipped(const Box& box, std::string_view content);
 
 }  // namespace hydro::page

@@ -9,7 +9,7 @@ namespace {
 
 constexpr char kMinus[] = "−";
 
-// 1, 2 or 5 times a power of ten, and at least `least`.
+// The smallest 1, 2 or 5 times a power of ten that is at least `least`.
 double RoundStep(double least) {
   const double decade = std::pow(10, std::floor(std::log10(least)));
   for (const double digit : {1.0, 2.0, 5.0}) {
@@ -32,7 +32,8 @@ std::vector<Tick> LinearTicks(const AxisRange& range, double pixels, double labe
 
 std::vector<Tick> LogarithmicTicks(const AxisRange& range, double pixels, double label_pixels) {
   const double decade_pixels = pixels / std::log10(range.max / range.min);
-  // The digits that get a number: as many as there is room for, the distance from 5 to 10 being 0.3 of a decade, from 9 to 10 0.05.
+  // The digits that get a number: as many as there is room for. From 5 to 10 is 0.3 of a decade, from 9 to 10
+  // is 0.05.
   const auto numbered = [&](int digit, int power) {
     if (digit == 1) {
       const int every = std::max(1, static_cast<int>(std::ceil(label_pixels / decade_pixels)));
@@ -60,7 +61,7 @@ std::vector<Tick> LogarithmicTicks(const AxisRange& range, double pixels, double
 std::vector<Tick> Ticks(const AxisRange& range, double pixels, double label_pixels) {
   if (!range.logarithmic) return LinearTicks(range, pixels, label_pixels);
   std::vector<Tick> ticks = LogarithmicTicks(range, pixels, label_pixels);
-  // An axis over a part of a decade.
+  // An axis over less than a decade.
   const auto has_number = [](const Tick& tick) { return !tick.text.empty(); };
   if (std::count_if(ticks.begin(), ticks.end(), has_number) < 2) {
     AxisRange linear = range;

@@ -1,4 +1,4 @@
-// Where an axis has its ticks, and the numbers at them.
+// The ticks of an axis and their numbers.
 #pragma once
 
 #include <string>
@@ -9,8 +9,9 @@
 
 namespace hydro::page {
 
-// In rising order and within the range: round numbers with room between their labels on an axis that is `pixels` long, whose
-// labels are `label_pixels` long along it. On a logarithmic axis ticks without a number (empty text) stand between those with one.
+// Ticks within the range, in rising order: round numbers with room between their labels on an axis that is
+// `pixels` long, where each label takes `label_pixels` along it. A logarithmic axis also has ticks without a
+// number (empty text) in between.
 std::vector<Tick> Ticks(const AxisRange& range, double pixels, double label_pixels);
 
 // "0.25", "−3", "2×10^{-5}": in the convention of page/plot.h.

@@ -15,8 +15,8 @@ struct Span {
   std::string_view text;
 };
 
-// Whether what stands before text[at] is a symbol, one or two letters, and not a word of a name such as
-// command_delay or p1_psi.
+// Whether text[at] follows a symbol of one or two letters, rather than part of a name such as command_delay
+// or p1_psi.
 bool AfterSymbol(std::string_view text, size_t at) {
   int letters = 0;
   for (size_t i = at; i > 0 && IsWordCharacter(text[i - 1]); --i) {
@@ -26,7 +26,8 @@ bool AfterSymbol(std::string_view text, size_t at) {
   return letters <= 2;
 }
 
-// The text that a '_' or '^' at text[at] lowers or raises, and where the rest begins; empty: an ordinary character.
+// The text that a '_' or '^' at text[at] lowers or raises, and where the rest begins; empty for an ordinary
+// character.
 std::string_view Script(std::string_view text, size_t at, size_t* next) {
   if (at == 0 || at + 1 >= text.size()) return {};
   const char before = text[at - 1];
@@ -70,7 +71,7 @@ std::vector<Span> Spans(std::string_view text) {
 constexpr double kScriptSize = 0.75;
 
 double CharacterWidth(char c) {
-  if ((static_cast<unsigned char>(c) & 0xc0) == 0x80) return 0;  // the rest of a UTF-8 character
+  if ((static_cast<unsigned char>(c) & 0xc0) == 0x80) return 0;  // a continuation byte of UTF-8
   if (std::string_view("ijl.,;:'|!").find(c) != std::string_view::npos) return 0.26;
   if (std::string_view("ftr()[]-/ ").find(c) != std::string_view::npos) return 0.32;
   if (std::string_view("mwMW%@").find(c) != std::string_view::npos) return 0.86;
@@ -120,7 +121,7 @@ std::string TypesetHtml(std::string_view text) {
 
 std::string TypesetSvg(std::string_view text) {
   std::string out;
-  const char* back = nullptr;  // from a script to the line, in the font size of the text
+  const char* back = nullptr;  // shift from a script back to the line, in the text's font size
   for (const Span& span : Spans(text)) {
     const std::string escaped = EscapeMarkup(span.text);
     if (span.level == Level::kBase) {
@@ -129,11 +130,11 @@ std::string TypesetSvg(std::string_view text) {
       continue;
     }
     const bool lower = span.level == Level::kSubscript;
-    // A zero-width space carries the way back when one script follows another.
+    // A zero-width space carries the shift back when one script follows another.
     if (back != nullptr) out += "<tspan dy=\"" + std::string(back) + "\">&#8203;</tspan>";
     out += std::string("<tspan dy=\"") + (lower ? "0.3em" : "-0.5em") + "\" font-size=\"75%\">" + escaped +
            "</tspan>";
-    back = lower ? "-0.225em" : "0.375em";  // em of the script is 75 % of the text's
+    back = lower ? "-0.225em" : "0.375em";  // the script's em is 75 % of the text's
   }
   return out;
 }

@@ -7,19 +7,19 @@
 
 namespace hydro::page {
 
-// With <, >, &, " and ' as entities; control characters as blanks.
+// Text with <, >, &, " and ' as entities and control characters as blanks.
 std::string EscapeMarkup(std::string_view text);
 
-// For the inside of an HTML element: escaped, with <sub> and <sup>.
+// Text for the inside of an HTML element: escaped, with <sub> and <sup>.
 std::string TypesetHtml(std::string_view text);
 
-// For the inside of an SVG <text> element: escaped, with tspans.
+// Text for the inside of an SVG <text> element: escaped, with tspans.
 std::string TypesetSvg(std::string_view text);
 
-// The width of the text in units of the font's size: an estimate for Helvetica and its like.
+// The text's width in units of the font size: an estimate for Helvetica and similar fonts.
 double TextWidth(std::string_view text);
 
-// Breaks it at blanks into lines no wider than `width` (in units of the font's size), where that is possible.
+// Breaks the text at blanks into lines no wider than `width` (in units of the font size) where possible.
 std::vector<std::string> WrapText(std::string_view text, double width);
 
 }  // namespace hydro::page

@@ -8,7 +8,7 @@
 namespace hydro::plot {
 namespace {
 
-// Of the palette: what was measured, its companion, what was asked for.
+// Palette colours: the measured quantity, its companion, its reference.
 constexpr int kMeasured = 0, kOther = 1, kReference = 5;
 
 const std::vector<double>& ColumnOf(const tables::Table& run, const std::string& name) {

@@ -1,4 +1,4 @@
-// A run as pictures: what the arm did, and what the pressures did.
+// A run as pictures: the arm's motion and the pressures.
 #pragma once
 
 #include "page/plot.h"
@@ -6,13 +6,13 @@
 
 namespace hydro::plot {
 
-// `run` has the columns of hydro-log export (runs/run_table.h). Both throw an InputError that names the file and the
-// column that is missing.
+// `run` has the columns of hydro-log export (runs/run_table.h). Both functions throw InputError naming the
+// file and the missing column.
 
-// The arm's angle with its reference, and the motor's speed.
+// The arm's angle and its reference, and the motor's speed.
 page::Figure ArmFigure(const tables::Table& run);
 
-// The pressure difference with its reference, both pressures, and the amplifier's voltage.
+// The pressure difference and its reference, both pressures, and the amplifier's voltage.
 page::Figure PressureFigure(const tables::Table& run);
 
 }  // namespace hydro::plot

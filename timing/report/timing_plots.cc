@@ -17,7 +17,7 @@ page::Figure SmallFigure(page::Panel panel, const std::string& caption) {
 std::optional<page::Figure> HistogramFigure(const TimingHistogram& histogram, double scale,
                                             const std::string& x_label, const std::string& caption) {
   if (histogram.ranges.empty()) return std::nullopt;
-  // A range ends where the next whole number would begin.
+  // A range ends where the next whole number begins.
   const auto begin = [&](const TimingHistogram::Range& range) {
     return scale * std::max(0.5, static_cast<double>(range.first) - 0.5);
   };

@@ -10,14 +10,15 @@
 namespace hydro::timing {
 namespace {
 
-// More than any stack has, and than any run has seconds: what a flood sends is not kept.
+// More processes than any stack has and more reports than any run has seconds: a flood beyond this is
+// dropped.
 constexpr size_t kMostProcesses = 256;
 constexpr size_t kMostReports = 1'000'000;
 constexpr size_t kMostQuantities = 32;
 
 TimingHistogram Read(const loop_histogram_t& message) {
   TimingHistogram histogram{message.count, message.lowest, message.highest, {}};
-  // Of a decoder that is used again the lists may be longer than this message's.
+  // A reused decoder may hold lists longer than this message's.
   const auto ranges =
       std::min({static_cast<size_t>(std::max(message.buckets, 0)), message.bucket_first.size(),
                 message.bucket_last.size(), message.bucket_count.size()});
@@ -37,7 +38,7 @@ size_t PlaceOf(const std::string& role) {
 double Sum(double a, double b) { return a + b; }
 int64_t Sum(int64_t a, int64_t b) { return SaturatingSum(a, b); }
 
-// What the periodic reports of a process that did not come to its last one add up to.
+// The sum of the periodic reports of a process that never sent its last one.
 loop_statistics_t Sum(const std::vector<loop_statistics_t>& reports) {
   loop_statistics_t total = reports.back();
   const auto add = [&](auto member) {

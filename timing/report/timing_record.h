@@ -1,4 +1,4 @@
-// What the processes of a run reported about their loops: the source of every timing report.
+// What a run's processes reported about their loops: the source of every timing report.
 #pragma once
 
 #include <cstdint>
@@ -10,10 +10,10 @@
 
 namespace hydro::timing {
 
-// How often which values were seen, over the whole run. Times are in ns.
+// How often each value was seen over the whole run. Times are in ns.
 struct TimingHistogram {
   struct Range {
-    int64_t first = 0;  // smallest and largest value that it holds
+    int64_t first = 0;  // smallest and largest value in the range
     int64_t last = 0;
     int64_t count = 0;
   };
@@ -31,16 +31,16 @@ struct TimedProcess {
   std::string role;
   std::string host;
   int64_t session = 0;
-  bool complete = false;  // it reported on its whole run as it left; else it was killed, or the log is torn
-  // Over the whole run; where that is not complete, the percentiles are the last report's.
+  bool complete = false;  // reported its whole run on exit; else it was killed, or the log is cut off
+  // Over the whole run; if that is incomplete, the percentiles are the last report's.
   loop_statistics_t total;
-  std::vector<loop_statistics_t> reports;             // one a second, by sequence
-  std::map<std::string, TimingHistogram> histograms;  // by loop_histogram_t's names of quantities
+  std::vector<loop_statistics_t> reports;             // one per second, by sequence
+  std::map<std::string, TimingHistogram> histograms;  // by loop_histogram_t's quantity names
 };
 
 class TimingRecord {
  public:
-  // In any order; a message that comes twice counts once.
+  // Takes messages in any order; a message that comes twice counts once.
   void Add(const loop_statistics_t& report);
   void Add(const loop_histogram_t& histogram);
 
@@ -57,7 +57,7 @@ class TimingRecord {
   std::map<int64_t, Heard> processes_;  // by session
 };
 
-// What `latency` is for a role, in a few words.
+// What `latency` means for a role, in a few words.
 const char* MeaningOfLatency(const std::string& role);
 
 }  // namespace hydro::timing

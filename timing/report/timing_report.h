@@ -1,4 +1,4 @@
-// How the loops of a run kept time, for programs, for a terminal and for a browser.
+// How well the loops of a run kept time: for programs, a terminal and a browser.
 #pragma once
 
 #include <string>
@@ -8,14 +8,13 @@
 
 namespace hydro::timing {
 
-// JSON; times in microseconds, docs/performance.md lists the keys. `source`: where it comes from, e.g. the
-// name of a log.
+// JSON with times in microseconds; docs/performance.md lists the keys. `source` names the origin, e.g. a log.
 std::string TimingJson(const std::vector<TimedProcess>& processes, const std::string& source);
 
-// A table for a terminal; several lines.
+// A table for a terminal, of several lines.
 std::string TimingText(const std::vector<TimedProcess>& processes);
 
-// A page (HTML) that needs nothing but itself: the table, and plots of each process.
+// A self-contained HTML page: the table, and plots of each process.
 std::string TimingPage(const std::vector<TimedProcess>& processes, const std::string& source);
 
 }  // namespace hydro::timing
