@@ -15,10 +15,10 @@ namespace hydro::diagnose {
 namespace {
 
 constexpr int kMostChanges = 3;
-// Squared gap of a model that is wrong all over.
+// The squared gap above which a model is wrong everywhere.
 constexpr double kFar = 25;
 
-// A single run without others to hold out: its last third is held out.
+// Splits off the last third of a single run as the held-out run.
 void SplitOff(runs::MeasuredRun* run, std::vector<runs::MeasuredRun>* held_out) {
   const size_t first = run->samples() * 2 / 3;
   runs::MeasuredRun rest = *run;
@@ -35,7 +35,8 @@ std::vector<const RunData*> Pointers(const std::vector<RunData>& runs) {
   return pointers;
 }
 
-// Whether one of its parameters only adds to a base parameter that the model has: then that may be wrong.
+// Whether one of the effect's parameters only adds to a base parameter that the model has: then that base
+// parameter may be what is wrong.
 bool IsTermOfTheModel(const model::EffectInfo& info, const model::Parameters& given) {
   return std::any_of(info.parameters.begin(), info.parameters.end(),
                      [&](const model::ParameterInfo& parameter) {
@@ -43,8 +44,8 @@ bool IsTermOfTheModel(const model::EffectInfo& info, const model::Parameters& gi
                      });
 }
 
-// Whether some effect has the term of this base parameter, which then stands for it where the model has it at
-// 0.
+// Whether some effect contains this base parameter's term. Where the model has the parameter at 0, the effect
+// then stands for it.
 bool IsTermOfAnEffect(const model::BaseParameter& base) {
   const std::vector<model::EffectInfo>& catalogue = model::EffectCatalogue();
   return std::any_of(catalogue.begin(), catalogue.end(), [&](const model::EffectInfo& info) {
@@ -61,7 +62,7 @@ bool IsMeasured(const std::string& channel, const std::vector<const RunData*>& r
   });
 }
 
-// An effect with every name that it can take in these runs.
+// One change for each name that the effect can take in these runs.
 std::vector<Change> Variants(const model::EffectInfo& info, const std::vector<const RunData*>& runs) {
   std::vector<Change> variants = {{info.id, {}, ""}};
   for (const model::ParameterInfo& parameter : info.parameters) {
@@ -108,7 +109,7 @@ std::vector<size_t> AllowedBase(const model::ModelDescription& given, const std:
   return allowed;
 }
 
-// The runs made ready, with one clock each.
+// The prepared runs, each with all signals on one clock.
 struct PreparedRuns {
   std::vector<RunData> fitted, held_out;
   std::vector<ClockDelay> clocks;
@@ -147,7 +148,8 @@ SearchContext MakeContext(const model::ModelDescription& model, const PreparedRu
   return context;
 }
 
-// The given model with all base parameters fitted that the runs identify; as given where that fails.
+// The given model with all base parameters fitted that the runs identify; the model as given where that
+// fails.
 Explanation Refit(const SearchContext& context, const Hypothesis& as_given, const Explanation& given,
                   const std::vector<size_t>& allowed) {
   const std::vector<model::StartState> starts = StartsOf(given.fitted);
@@ -161,11 +163,10 @@ Explanation Refit(const SearchContext& context, const Hypothesis& as_given, cons
   return refit.fitted.ok() ? refit : given;
 }
 
-// Searches again from the refitted model where that predicts better, and takes what is found if it is
-// better than what `search` has.
+// Searches again from the refitted model if that predicts better, and keeps the result if it beats that of
+// `search`.
 void SearchFromRefit(const SearchContext& context, const Explanation& refit, SearchResult* search) {
-  // So far from the noise, a few changes are not what it takes: the rest is looked for once the parameters
-  // fit.
+  // A few changes do not close so large a gap: search for the rest once the parameters fit.
   const double gap = search->best.held_out_gap();
   const bool far = gap > kFar && refit.held_out_gap() < gap;
   if (!far && !Material(gap, refit.held_out_gap())) return;
@@ -184,7 +185,7 @@ Diagnosis Diagnose(const model::ModelDescription& model, std::vector<runs::Measu
   PreparedRuns prepared = Prepare(model, allowed, options.jobs, std::move(runs), std::move(held_out));
   const SearchContext context = MakeContext(model, prepared, allowed, options, tell);
 
-  // Few changes to the model as given first: one wrong value or one missing effect is the likeliest.
+  // Tries few changes to the model as given first: one wrong value or one missing effect is the likeliest.
   Hypothesis as_given;
   as_given.model = model;
   SearchResult search = Search(context, as_given, kMostChanges);

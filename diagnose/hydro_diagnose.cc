@@ -24,7 +24,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// The folder of the report; one that was made for it goes again unless the report is in it.
+// The folder of the report. If this run created the folder, it removes it again unless the report is in it.
 class ReportFolder {
  public:
   explicit ReportFolder(std::string folder) : folder_(std::move(folder)) {
@@ -42,7 +42,7 @@ class ReportFolder {
   ReportFolder(const ReportFolder&) = delete;
   ReportFolder& operator=(const ReportFolder&) = delete;
 
-  // All of the files, or those of an earlier report stay.
+  // Writes all of the files; if one fails, those of an earlier report stay.
   void Write(const std::vector<std::pair<std::string, std::string>>& files) const {
     std::vector<std::unique_ptr<NewFile>> open;
     for (const auto& [name, text] : files) {
@@ -176,7 +176,7 @@ void RunDiagnosis(const DiagnoseRequest& request, const Diagnoser& diagnose, std
   if (next) files.emplace_back("next.toml", diagnosis.next.config);
   files.emplace_back("report.json", ReportJson(diagnosis, next ? "next.toml" : "", elapsed()));
   folder.Write(files);
-  if (!next) folder.Remove("next.toml");  // of an earlier report
+  if (!next) folder.Remove("next.toml");  // from an earlier report
   std::fputs(TerminalSummary(diagnosis, request.folder, request.si).c_str(), out);
 }
 

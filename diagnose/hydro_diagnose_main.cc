@@ -1,4 +1,4 @@
-// hydro-diagnose RUN...: finds, names, adds and proves what the model lacks.
+// hydro-diagnose RUN...: finds and names what the model lacks, adds it, and proves it on held-out runs.
 #include <algorithm>
 #include <cstdio>
 #include <thread>

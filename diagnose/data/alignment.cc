@@ -27,15 +27,15 @@ constexpr double kLeastDelay = 0.02;    // s, and
 constexpr double kLeastSamples = 2;     // steps
 constexpr double kLongestDelay = 1.0;   // s, and
 constexpr double kLongestShare = 0.02;  // of the run
-constexpr double kUnbalanced = 0.1;     // largest share of a balance left open by delays that are right
-constexpr double kMuchBetter = 0.5;     // than any shift of one channel
+constexpr double kUnbalanced = 0.1;     // largest share of a balance that correct delays leave open
+constexpr double kMuchBetter = 0.5;     // than any shift of a single channel
 constexpr double kMassive = 0.25;       // than no shift
-constexpr int kParts = 8;               // of a run, estimated each for itself
+constexpr int kParts = 8;               // of a run, each estimated by itself
 constexpr double kAgree = 0.2;          // within this share of the delay, or kAgreeSteps
 constexpr double kAgreeSteps = 3;
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
-// Signals on an even grid, smoothed a little; all alike, so that balances go on holding.
+// Signals on an even grid, all smoothed a little in the same way, so that balances still hold.
 struct Grid {
   double step = 0;  // s
   VectorXd voltage, speed, acceleration, p1, p2, p1_rate, p2_rate, arm_speed;
@@ -51,7 +51,7 @@ VectorXd Averaged(const std::vector<double>& time, const std::vector<double>& va
     sum(cell) += values[i];
     count(cell) += 1;
   }
-  // A cell without a value lies on the line between its neighbours.
+  // Fills a cell without a value by linear interpolation between its neighbours.
   Index before = -1;
   for (Index i = 0; i < cells; ++i) {
     if (count(i) == 0) continue;
@@ -110,8 +110,8 @@ Grid MakeGrid(const runs::MeasuredRun& run, const model::Parameters& model) {
   return grid;
 }
 
-// What a linear balance leaves open: mean square over its target's variance; infinity where nothing can be
-// said. `row` fills the regressors of a sample and returns its target, NaN where it does not count.
+// What a linear balance leaves open: mean square over its target's variance; infinity where it cannot be
+// told. `row` fills the regressors of a sample and returns its target, NaN for a sample that does not count.
 template <int N, class Row>
 double Open(Index first, Index last, const Row& row) {
   Eigen::Matrix<double, N + 1, N + 1> normal = Eigen::Matrix<double, N + 1, N + 1>::Zero();
@@ -152,7 +152,7 @@ class Clocks {
   Index begin() const { return reach_ + 2; }
   Index end() const { return grid_.speed.size() - reach_ - 2; }
 
-  // Command and speed shifted by so many steps.
+  // What the torque balance leaves open with command and speed shifted by this many steps.
   double Torque(int command, int speed, Index first, Index last) const {
     return Open<6>(first, last, [&](Index i, double* x) {
       const double rate = grid_.speed(i + speed);
@@ -169,7 +169,7 @@ class Clocks {
   }
   double Flow(int speed, int arm, Index first, Index last) const {
     return Open<5>(first, last, [&](Index i, double* x) {
-      // Where both sides rest on their valves flows say nothing.
+      // Where both sides rest on their valves, the flows carry no information.
       if (grid_.p1(i) < lowest_ && grid_.p2(i) < lowest_) return kNone;
       x[0] = grid_.arm_speed(i + arm);
       x[1] = grid_.p1_rate(i);
@@ -200,7 +200,7 @@ Pair BestTorque(const Clocks& clocks, Index first, Index last) {
     least = open;
     best = {command, speed};
   };
-  // Both late alike first: smooth signals have one valley along that line.
+  // Try equal delays first: smooth signals have a single valley along that line.
   for (int both = -clocks.reach(); both <= clocks.reach(); both += 2) consider(both, both);
   for (Pair from = {clocks.reach() + 1, 0}; from != best;) {
     from = best;
@@ -219,7 +219,7 @@ int BestOf(int reach, const std::function<double(int)>& open) {
   return best;
 }
 
-// The minimum of the parabola through three values, against the middle one.
+// Where the parabola through three equally spaced values has its minimum, relative to the middle one.
 double Vertex(double before, double here, double after) {
   const double bend = before - 2 * here + after;
   return bend > 0 ? std::clamp((before - after) / (2 * bend), -0.5, 0.5) : 0;
@@ -253,7 +253,7 @@ std::pair<Index, Index> Part(const Clocks& clocks, int part) {
   return {first + length * part / kParts, first + length * (part + 1) / kParts};
 }
 
-// Whether both are plainly late, and no shift of one of them alone comes near.
+// Whether both are clearly late, and no shift of one of them alone comes near.
 bool BothAreLate(const Clocks& clocks, const Pair& best, double least) {
   const int reach = clocks.reach();
   if (best[0] < least || best[1] < least || std::max(best[0], best[1]) >= reach) return false;
@@ -268,12 +268,12 @@ bool BothAreLate(const Clocks& clocks, const Pair& best, double least) {
   return true;
 }
 
-// Delays in steps, by the parts of the run.
+// Delays in steps, one for each part of the run.
 struct Parts {
   std::vector<double> command, speed;
 };
 
-// Each part of the run for itself, as long as it has motion.
+// Estimates each part of the run by itself, as long as it has motion.
 Parts DelaysOfParts(const Clocks& clocks) {
   Parts parts;
   for (int part = 0; part < kParts; ++part) {
@@ -291,7 +291,8 @@ Parts DelaysOfParts(const Clocks& clocks) {
   return parts;
 }
 
-// The arm's delay, steps, with the motor's speed late by `speed`; nothing where too few parts of the run tell it.
+// The arm's delay in steps, with the motor's speed late by `speed`; nothing where too few parts of the run
+// determine it.
 std::optional<Estimate> DelayOfArm(const Clocks& clocks, int speed) {
   std::vector<double> parts;
   for (int part = 0; part < kParts; ++part) {
@@ -302,12 +303,12 @@ std::optional<Estimate> DelayOfArm(const Clocks& clocks, int speed) {
   }
   std::sort(parts.begin(), parts.end());
   if (parts.size() < kParts / 2) return std::nullopt;
-  // Every part counts as much as any other: where a relief valve opens, flows say less.
+  // All parts count equally: where a relief valve opens, the flows carry less information.
   const size_t half = parts.size() / 2;
   return Of(parts, parts.size() % 2 == 1 ? parts[half] : (parts[half - 1] + parts[half]) / 2);
 }
 
-// The signals that one clock recorded, by name.
+// The signals recorded by one clock, by name.
 using Signals = std::vector<std::pair<const char*, runs::MeasuredSignal runs::MeasuredRun::*>>;
 
 ClockDelay DelayOf(const runs::MeasuredRun& run, const Signals& signals, const Estimate& steps, double step,
@@ -366,7 +367,7 @@ RunData PrepareAligned(runs::MeasuredRun run, const model::Parameters& model,
   runs::MeasuredRun recorded = run;
   const std::vector<ClockDelay> found = AlignClocks(model, &run);
   if (found.empty()) return PrepareRun(std::move(run), model);
-  PrepareRun(std::move(recorded), model);  // what is wrong with it stands in its own row
+  PrepareRun(std::move(recorded), model);  // errors then name the rows of the recording
   RunData data = PrepareRun(std::move(run), model);
   double error = 0;
   for (const ClockDelay& delay : found) {
@@ -379,7 +380,7 @@ RunData PrepareAligned(runs::MeasuredRun run, const model::Parameters& model,
       const double step = data.stimulus.time[i] - data.stimulus.time[i - 1];
       const double rate = (signal.values[i] - signal.values[i - 1]) / step;
       if (std::isnan(rate)) continue;
-      // Less what noise makes of it.
+      // Less the contribution of noise.
       square += rate * rate - 2 * signal.noise * signal.noise / (step * step);
       count += 1;
     }

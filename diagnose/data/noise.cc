@@ -1,4 +1,5 @@
-// How noisy a series is, from itself: the level of the quietest part of its upper spectrum.
+// Estimates how noisy a series is from the series itself: the level of the quietest part of its upper
+// spectrum.
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
@@ -11,26 +12,26 @@
 namespace hydro::diagnose {
 namespace {
 
-constexpr int kSegment = 64;  // samples that one spectrum is of: an event spoils no more than that
+constexpr int kSegment = 64;  // samples in one spectrum: an event spoils no more than these
 constexpr int kHop = 32;
 constexpr int kFirstBin = kSegment / 4;  // the upper half of the spectrum
 constexpr int kBins = kSegment / 2 - kFirstBin;
 constexpr int kBands = 8;
-// Fourth differences: what is smooth is gone before its side lobes could count.
+// Fourth differences remove what is smooth before its side lobes can count.
 constexpr double kDifference[] = {1, -4, 6, -4, 1};
 constexpr int kOrder = 4;
 
-// Cells of the spectrogram above kClip times the mean are no noise: chance puts 1 in 55 there.
+// Cells of the spectrogram above kClip times the mean are not noise: chance puts 1 in 55 there.
 constexpr double kClip = 4;
 
-// The mean of exponentially distributed powers of which some are something else, larger: those far above the
-// mean are left out, with what that takes from the mean put back.
+// The mean of exponentially distributed powers when some of them are larger because they are not noise:
+// leaves out those far above the mean and corrects the mean for that.
 double NoisePower(std::vector<double> powers) {
   const auto quarter = powers.begin() + static_cast<std::ptrdiff_t>(powers.size() / 4);
   std::nth_element(powers.begin(), quarter, powers.end());
   double mean = *quarter / -std::log(0.75);
   const double tail = std::exp(-kClip);
-  const double kept_mean = 1 - kClip * tail / (1 - tail);  // of an exponential cut off at kClip, its mean 1
+  const double kept_mean = 1 - kClip * tail / (1 - tail);  // of an exponential of mean 1, cut off at kClip
   for (int pass = 0; pass < 30; ++pass) {
     double sum = 0;
     size_t kept = 0;
@@ -46,11 +47,11 @@ double NoisePower(std::vector<double> powers) {
   return mean;
 }
 
-// Windowed cosines and sines of the upper half of the spectrum, a row each.
+// Windowed cosines and sines of the upper half of the spectrum, one a row.
 Eigen::MatrixXd Basis() {
   Eigen::MatrixXd basis(2 * kBins, kSegment);
   for (int bin = 0; bin < kBins; ++bin) {
-    // Between the bins proper, so that the last one is as complex as the others.
+    // Halfway between the usual bins, so that the last one is as complex as the others.
     const double frequency = 2 * std::numbers::pi * (kFirstBin + bin + 0.5) / kSegment;
     for (int i = 0; i < kSegment; ++i) {
       const double window = 0.5 - 0.5 * std::cos(2 * std::numbers::pi * (i + 0.5) / kSegment);  // Hann
@@ -61,7 +62,7 @@ Eigen::MatrixXd Basis() {
   return basis;
 }
 
-// What white noise of unit variance gives in each bin.
+// The power of white noise of unit variance in each bin.
 Eigen::VectorXd WhitePower(const Eigen::MatrixXd& basis) {
   Eigen::MatrixXd response = Eigen::MatrixXd::Zero(basis.rows(), kSegment + kOrder);
   for (int lag = 0; lag <= kOrder; ++lag) {
@@ -71,7 +72,8 @@ Eigen::VectorXd WhitePower(const Eigen::MatrixXd& basis) {
   return Eigen::Map<const Eigen::Matrix2Xd>(each.data(), 2, kBins).colwise().sum().transpose();
 }
 
-// Where segments begin that are for the most part there, as `measured` says; all when there are none.
+// Where segments begin whose samples are mostly present, according to `measured`; all segments when there are
+// none.
 std::vector<int> Segments(const std::vector<double>& measured) {
   std::vector<int> all, whole;
   for (int first = 0; first + kSegment + kOrder <= static_cast<int>(measured.size()); first += kHop) {
@@ -84,7 +86,7 @@ std::vector<int> Segments(const std::vector<double>& measured) {
   return whole.empty() ? all : whole;
 }
 
-// The standard deviation of the noise of a series without gaps, from those segments.
+// The standard deviation of the noise of a series without gaps, estimated from these segments.
 double SpectralNoise(const std::vector<double>& values, const std::vector<int>& segments) {
   const int samples = static_cast<int>(values.size());
   if (samples < kSegment + kOrder) return 0;
@@ -106,10 +108,10 @@ double SpectralNoise(const std::vector<double>& values, const std::vector<int>& 
     }
   }
 
-  // From the quietest two bands upwards, as long as the next one is not louder by more than chance.
+  // Pools bands from the quietest two upwards, until the next one is louder by more than chance allows.
   std::sort(powers.begin(), powers.end(),
             [](const auto& a, const auto& b) { return NoisePower(a) < NoisePower(b); });
-  // Powers a band has that are independent of each other: half the samples' over all of the spectrum.
+  // Independent powers in a band: over the whole spectrum, half as many as samples.
   const double used = kHop * static_cast<double>(segments.size());
   const double independent = std::max(2.0, used / (4.0 * kBands));
   std::vector<double> pooled = powers.front();
@@ -135,7 +137,7 @@ std::vector<Gap> Gaps(const std::vector<double>& values) {
   return gaps;
 }
 
-// The mean of the values on one side of a gap, and where it lies.
+// The mean of the values on one side of a gap, and where that mean lies.
 std::pair<double, double> Beside(const std::vector<double>& values, std::ptrdiff_t from, int step) {
   constexpr int kNeighbours = 2;
   double where = 0, sum = 0;
@@ -159,7 +161,7 @@ double EstimateResolution(const std::vector<double>& values) {
   }
   if (sorted.empty()) return 0;
   std::sort(sorted.begin(), sorted.end());
-  // Rounding of the arithmetic is no step.
+  // Differences within the rounding of the arithmetic are not steps.
   const double same = 1e-12 * std::max(std::abs(sorted.front()), std::abs(sorted.back()));
   std::vector<double> steps;
   for (size_t i = 1; i < sorted.size(); ++i) {
@@ -190,7 +192,7 @@ double EstimateNoise(const std::vector<double>& values) {
   for (const Gap& gap : gaps) {
     std::pair<double, double> before = Beside(values, static_cast<std::ptrdiff_t>(gap.first) - 1, -1);
     std::pair<double, double> after = Beside(values, static_cast<std::ptrdiff_t>(gap.last), +1);
-    // Before the first value and after the last one: that one.
+    // Before the first value and after the last one, hold that value.
     if (gap.first == 0) before = {after.first - 1, after.second};
     if (gap.last == values.size()) after = {before.first + 1, before.second};
     const double slope = (after.second - before.second) / (after.first - before.first);
@@ -200,7 +202,8 @@ double EstimateNoise(const std::vector<double>& values) {
   }
   const std::vector<int> segments = Segments(values);
   double noise = SpectralNoise(whole, segments);
-  // Bridges are quieter than the rest: they get noise as large as was found, until that is what is found.
+  // The bridges over gaps are quieter than the rest: give them noise as large as was found, until the
+  // estimate agrees with it.
   for (int pass = 0; pass < 4 && !gaps.empty(); ++pass) {
     std::mt19937_64 random(0x9a5);
     std::normal_distribution<double> normal;

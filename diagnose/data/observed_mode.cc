@@ -14,7 +14,7 @@ constexpr double kHalfWindow = 2.5e-3;  // s: short against the shortest rest th
 constexpr double kMargin = 3.5;         // standard deviations
 constexpr double kShortestRest = 0.01;  // s
 
-// Centred averages of what is there; NaN where nothing is.
+// Centred averages of the values present; NaN where there are none.
 std::vector<double> Average(const std::vector<double>& values, size_t half) {
   const size_t n = values.size();
   std::vector<double> sum(n + 1, 0.0), count(n + 1, 0.0);
@@ -33,7 +33,7 @@ std::vector<double> Average(const std::vector<double>& values, size_t half) {
   return average;
 }
 
-// Gaps take the value before them, those at the start the first one.
+// Fills each gap with the value before it, and a gap at the start with the first value.
 void FillGaps(std::vector<double>* values) {
   double last = 0;
   for (const double value : *values) {
@@ -70,7 +70,7 @@ void AverageSpeed(const RunData& run, double step, size_t half, double averaging
                        : kMargin * angle->noise * std::sqrt(0.5) / (static_cast<double>(reach) * step);
   const double speed_margin =
       speed == nullptr ? std::numeric_limits<double>::infinity() : averaging * speed->noise;
-  // A difference across samples that are far apart would smear a reversal.
+  // A difference between samples that are far apart would smear a reversal.
   const bool from_speed = speed != nullptr && (speed_margin <= angle_margin || step > kHalfWindow);
   mode->motor_speed =
       from_speed ? Average(speed->values, half) : SpeedFromAngle(angle->values, run.stimulus.time, reach);
@@ -78,7 +78,7 @@ void AverageSpeed(const RunData& run, double step, size_t half, double averaging
   FillGaps(&mode->motor_speed);
 }
 
-// Which way the pump turns from each sample to the next, as far as the averaged speed tells.
+// Which way the pump turns from each sample to the next, as far as the averaged speed shows.
 void FindTurns(ObservedMode* mode) {
   const size_t n = mode->motor_speed.size();
   mode->turns.assign(n, 0);
@@ -99,7 +99,7 @@ void FindTurns(ObservedMode* mode) {
   }
 }
 
-// A rest that is too short to be one is a passage through 0.
+// Turns a rest that is too short to be one into a passage through 0.
 void DropShortRests(const std::vector<double>& time, ObservedMode* mode) {
   const size_t n = time.size();
   for (size_t i = 0; i < n;) {

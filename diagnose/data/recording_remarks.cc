@@ -12,11 +12,11 @@ namespace {
 
 constexpr double kUnlikeStated = 1.5;    // ratio of noises, either way
 constexpr double kMostSaturated = 0.01;  // share of a signal's samples
-constexpr double kMostMissing = 0.05;    // of one that is there at most times
+constexpr double kMostMissing = 0.05;    // of a signal that is present most of the time
 constexpr double kSlowerSensor = 0.5;    // with more missing it is a slower sensor
-constexpr double kGap = 5;               // median intervals
-constexpr double kCoarse = 2;            // steps of so many standard deviations of the noise
-constexpr double kStill = 5;             // noises that a signal moves by
+constexpr double kGap = 5;               // median sample intervals
+constexpr double kCoarse = 2;            // resolution, in standard deviations of the noise
+constexpr double kStill = 5;             // movement of a signal, in standard deviations of the noise
 
 template <class... Values>
 std::string Format(const char* format, Values... values) {
@@ -59,7 +59,7 @@ void RemarkOnSignal(const RunData& run, const SignalData& signal, std::vector<st
   if (missing > kMostMissing && missing < kSlowerSensor) {
     remarks->push_back(name + Format(" is missing in %.3g %% of the rows", 100 * missing));
   }
-  // Noise of a recording without any is that of rounding, q / sqrt(12).
+  // In a recording without noise, the noise is that of rounding, q / sqrt(12).
   if (signal.resolution > kCoarse * signal.noise && !std::isnan(signal.stated_noise)) {
     remarks->push_back(
         name + Format(" is recorded in steps of %.3g %s, coarser than its noise", signal.resolution, unit));

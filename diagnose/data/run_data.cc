@@ -42,8 +42,8 @@ size_t CountValid(const std::vector<double>& values) {
       std::count_if(values.begin(), values.end(), [](double value) { return !std::isnan(value); }));
 }
 
-// What no actuator reaches, in the model's own units; twice what its equations could hold and more, so that
-// only another unit gets there and a wrong parameter does not.
+// Values that no actuator reaches, in the model's own units: at least twice what its equations could hold, so
+// that only a wrong unit exceeds them and a wrong parameter does not.
 double Impossible(const ChannelRow& row, const model::Parameters& model) {
   const std::string name = row.name;
   const double stroke = model.V_ms / model.c;  // where V_1 or V_2 is 0, eqs. (6), (7)
@@ -72,8 +72,8 @@ void CheckSignal(const runs::MeasuredRun& run, const ChannelRow& row, const mode
            std::to_string(kFewestValues) + " values or more, or leave the signal out");
   }
   CheckRange(run, row.name, values, Impossible(row, model), row.unit);
-  // An arm may well stand still; and what a simulation without noise says of a side on its one-way valve, or
-  // of a pump that sticks, is one number.
+  // An arm may well stand still. And a simulation without noise reports a single number for a side on its
+  // one-way valve or a pump that sticks.
   const bool simulated = !run.model_text.empty() && !(run.*row.signal).noise.has_value();
   if (row.arm || simulated) return;
   size_t first = 0;
@@ -88,7 +88,7 @@ void CheckSignal(const runs::MeasuredRun& run, const ChannelRow& row, const mode
 }
 
 // `values` without the samples at the end of a sensor's range, if there are any. Noise makes neighbours
-// differ; where many in a row are the largest or smallest value of all, the sensor reads no further.
+// differ; where many in a row equal the largest or smallest value of all, the sensor reads no further.
 std::vector<double> WithoutEnds(const std::vector<double>& values, const ValueRange& range) {
   constexpr size_t kInARow = 8;
   std::vector<double> rest = values;
@@ -116,18 +116,19 @@ SignalData MakeSignal(const runs::MeasuredRun& run, model::Channel channel) {
   const ValueRange range = RangeOfValues(measured.values);
   const double size = range.size();
   if (size == 0) {
-    // What never moves is as good as it is said to be.
+    // For a signal that never moves, believe the stated noise.
     signal.noise = measured.noise.value_or(1e-5 * std::max(1.0, std::abs(range.high)));
   } else {
     std::vector<double> rest = WithoutEnds(measured.values, range);
     double noise = EstimateNoise(rest);
-    // Without noise above the rounding one cannot tell: what rests at an end of its motion reads the same.
+    // Without noise above the rounding, saturation cannot be told: a signal that rests at an end of its
+    // motion reads the same.
     if (noise >= 0.6 * signal.resolution && noise >= 1e-4 * size) {
       signal.values = std::move(rest);
     } else {
       noise = EstimateNoise(measured.values);
     }
-    // Below 1e-5 of the range it is the simulation that is noisy.
+    // Below 1e-5 of the range, the simulation itself is the source of the noise.
     signal.noise = std::max(noise, 1e-5 * size);
   }
   signal.valid = CountValid(signal.values);
@@ -135,7 +136,7 @@ SignalData MakeSignal(const runs::MeasuredRun& run, model::Channel channel) {
   return signal;
 }
 
-// The motion that a driven shaft is made to follow.
+// The imposed motion of a driven shaft.
 std::unique_ptr<trajectory::Trajectory> ImposedMotion(const runs::MeasuredRun& run,
                                                       const model::Parameters& model) {
   const SignalData angle = MakeSignal(run, model::Channel::kArmAngle);
@@ -196,13 +197,13 @@ RunData PrepareRun(runs::MeasuredRun run, const model::Parameters& model) {
   data.stimulus.bypass = run.bypass;
   data.stimulus.time = run.time;
   data.stimulus.voltage = run.voltage.values;
-  // A thousand times what saturates the amplifier, eq. (1).
+  // A thousand times the voltage that saturates the amplifier, eq. (1).
   CheckRange(run, "voltage", run.voltage.values, 1000 * model.T_pmax / model.k_1, "V");
   for (size_t channel = 0; channel < model::kChannels; ++channel) {
     const ChannelRow& row = kRows[channel];
     if (!(run.*row.signal).measured()) continue;
     CheckSignal(run, row, model);
-    // The arm of a clamped shaft stands still, that of a driven one is imposed.
+    // The arm of a clamped shaft stands still, and that of a driven one is imposed.
     if (row.arm && run.shaft != model::Shaft::kFree) continue;
     SignalData signal = MakeSignal(run, static_cast<model::Channel>(channel));
     if (signal.valid >= kFewestValues) data.signals.push_back(std::move(signal));

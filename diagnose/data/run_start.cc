@@ -11,14 +11,15 @@ namespace {
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
-// A straight line through the first valid samples, at the first time, and its standard errors.
+// The value and slope at the first time of a straight line through the first valid samples, with standard
+// errors.
 struct Line {
   double value = kNone, slope = 0;
   double value_error = 0, slope_error = 0;
 };
 
-// A speed that is nil as far as the samples tell. What begins at rest with a little speed slips where
-// friction or cogging hold it, and the fit then stays one tooth off.
+// Takes a speed for 0 when the samples cannot tell it from 0. A motion that should begin at rest but gets a
+// little speed slips where friction or cogging hold it, and the fit then stays one tooth off.
 constexpr double kAtRest = 3;  // standard errors
 double Rest(double speed, double error) { return std::abs(speed) < kAtRest * error ? 0 : speed; }
 
@@ -27,9 +28,9 @@ Line FirstLine(const std::vector<double>& time, const SignalData& signal) {
   for (size_t i = 0; i < time.size() && rows.size() < 10; ++i) {
     if (!std::isnan(signal.values[i])) rows.push_back(i);
   }
-  // What begins late says nothing of the start's slope.
+  // A signal that begins late says nothing about the slope at the start.
   if (rows[0] > 20) return {signal.values[rows[0]], 0};
-  // Fewer of them where no line passes through ten: a fast event near the start.
+  // Use fewer samples where no line passes through ten: a fast event near the start.
   for (const size_t count : {rows.size(), size_t{5}, size_t{3}}) {
     double t = 0, y = 0, tt = 0, ty = 0, off = 0;
     const double n = static_cast<double>(count);
@@ -72,8 +73,8 @@ void SetStart(const model::Parameters& model, RunData* data) {
 
   double p1 = line(model::Channel::kP1).value, p2 = line(model::Channel::kP2).value;
   if (data->stimulus.bypass) {
-    // One pressure, eqs. (13), (14) added up; p1 stands for both in start_free, and whoever moves it moves
-    // p2.
+    // With the bypass the pressures are equal, by the sum of eqs. (13) and (14): p1 stands for both in
+    // start_free, and code that moves it moves p2 too.
     p1 = p2 = std::isnan(p1) ? p2 : std::isnan(p2) ? p1 : (p1 + p2) / 2;
   }
   data->start[model::kP1] = first_known(p1, model.p_3);
@@ -94,7 +95,7 @@ void SetStart(const model::Parameters& model, RunData* data) {
     data->start[model::kArmAngle] = data->stimulus.arm_angle;
   }
 
-  // Each speed for itself; one that is not measured says nothing against rest.
+  // Each speed is judged by itself; an arm speed that is not measured does not exclude rest.
   model::StartState at_rest = data->start;
   const auto may_rest = [&](model::Channel channel) {
     const SignalData* speed = data->Find(channel);

@@ -12,14 +12,14 @@
 namespace hydro::diagnose {
 namespace {
 
-// Angle, rate and acceleration, in units of time that make them about as large as each other.
+// Angle, rate and acceleration, in a unit of time that gives them similar magnitudes.
 using State = Eigen::Vector3d;
 using Covariance = Eigen::Matrix3d;
 
-// Quintics between points that each have a value, a rate and an acceleration.
+// Quintic polynomials between points that each have a value, a rate and an acceleration.
 class Quintics : public trajectory::Trajectory {
  public:
-  // `unit`: s, the unit of time of the points' rates and accelerations.
+  // `unit`: the unit of time of the points' rates and accelerations, in s.
   Quintics(std::vector<double> times, const std::vector<State>& points, double unit)
       : times_(std::move(times)), first_(points.front()[0]), last_(points.back()[0]) {
     min_ = max_ = first_;
@@ -27,13 +27,13 @@ class Quintics : public trajectory::Trajectory {
       const double h = (times_[i] - times_[i - 1]) / unit;
       const State& a = points[i - 1];
       const State& b = points[i];
-      // Over the part of the way s: value = sum of coefficients[k] s^k.
+      // With s from 0 to 1 over the interval: value = sum of coefficients[k] s^k.
       const double rise = b[0] - a[0] - h * a[1] - h * h * a[2] / 2;
       const double rate = h * (b[1] - a[1] - h * a[2]);
       const double bend = h * h * (b[2] - a[2]) / 2;
       pieces_.push_back({a[0], h * a[1], h * h * a[2] / 2, 10 * rise - 4 * rate + bend,
                          -15 * rise + 7 * rate - 2 * bend, 6 * rise - 3 * rate + bend});
-      // Between samples a smooth motion hardly passes its samples: halves are near enough.
+      // Between samples a smooth motion hardly exceeds its samples: checking the halves is enough.
       for (const double s : {0.5, 1.0}) {
         min_ = std::min(min_, At(pieces_.back(), s));
         max_ = std::max(max_, At(pieces_.back(), s));
@@ -84,7 +84,7 @@ struct Belief {
   State mean = State::Zero();
   Covariance covariance = Covariance::Zero();
 
-  // Takes a reading of one of the states in; returns -2 log likelihood of it.
+  // Takes in a reading of one of the states; returns -2 times its log likelihood.
   double Update(int which, double reading, double noise) {
     const Eigen::Vector3d column = covariance.col(which);
     const double variance = column[which] + noise * noise;
@@ -101,7 +101,7 @@ Eigen::Matrix3d Transition(double h) {
   return transition;
 }
 
-// A Kalman filter over the samples, and Rauch, Tung and Striebel's smoother.
+// A Kalman filter over the samples, and the smoother of Rauch, Tung and Striebel.
 class Smoother {
  public:
   Smoother(const std::vector<double>& time, const std::vector<double>& angle, double angle_noise,
@@ -117,12 +117,12 @@ class Smoother {
     filtered_.resize(time.size());
   }
 
-  // -2 log likelihood of the samples when the jerk is white noise of that strength.
+  // -2 times the log likelihood of the samples when the jerk is white noise of this strength.
   double Misfit(double strength) {
     double misfit = 0;
     Belief now;
     now.mean[0] = first_angle_;
-    // Anything that moves no further than the samples do in one of them.
+    // A vague prior: any motion that moves, within one unit of time, no further than the samples do.
     now.covariance = std::pow(range_ + angle_noise_, 2) * Covariance::Identity();
     for (size_t i = 0; i < time_.size(); ++i) {
       if (i > 0) {
@@ -142,7 +142,7 @@ class Smoother {
     return misfit;
   }
 
-  // After Misfit.
+  // Call after Misfit.
   std::vector<State> Smooth() const {
     std::vector<State> points(time_.size());
     points.back() = filtered_.back().mean;
@@ -178,7 +178,7 @@ std::unique_ptr<trajectory::Trajectory> SmoothMotion(const std::vector<double>& 
     return std::make_unique<Quintics>(std::vector<double>{time.front()}, std::vector<State>{{held, 0, 0}},
                                       1.0);
   }
-  // Steps of a decade over all strengths that could be, then of a fifth around the best.
+  // Search in steps of a decade over all possible strengths, then of a fifth of a decade around the best.
   const double lowest =
       2 * std::log10(smoother.range()) - 5 * std::log10(static_cast<double>(time.size())) - 3;
   const double highest = 2 * std::log10(smoother.range()) + 1;

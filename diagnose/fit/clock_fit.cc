@@ -13,14 +13,14 @@ namespace {
 
 constexpr double kMostCorrection = 0.15;       // s
 constexpr std::array<int, 2> kSteps = {2, 1};  // samples
-constexpr int kRounds = 3;                     // over all clocks, of each step
+constexpr int kRounds = 3;                     // over all clocks, for each step size
 
-// Samples by which command, motor and arm are later than was found.
+// By how many samples command, motor and arm are later than the balances found.
 using Correction = std::array<int, 3>;
 
 double Interval(const RunData& run) { return run.duration() / static_cast<double>(run.samples() - 1); }
 
-// Which clock a signal of ClockDelay::signals is on.
+// The clock of a signal in ClockDelay::signals.
 size_t ClockOf(const std::string& signal) {
   if (signal.starts_with("arm")) return 2;
   return signal.starts_with("motor") ? 1 : 0;
@@ -37,7 +37,7 @@ RunData Corrected(const RunData& run, const Correction& correction, const model:
                                            {&runs::MeasuredRun::arm_speed, step * correction[2]}};
   runs::RemoveDelays(delays, &moved);
   RunData corrected = PrepareRun(std::move(moved), model);
-  // What timing adds to the noise stays.
+  // Keep the noise that timing errors add.
   for (SignalData& signal : corrected.signals) {
     if (const SignalData* before = run.Find(signal.channel)) signal.noise = before->noise;
   }

@@ -22,7 +22,7 @@ BlockSums BlocksOf(const std::vector<const RunData*>& runs, const HeldOut& predi
     try {
       residuals = ResidualsOf(predicted.models[r], *runs[r], predicted.starts[r]);
     } catch (const model::ModelError&) {
-      // Infinitely bad, but comparable.
+      // As bad as infinity, but comparable.
       blocks.sums.insert(blocks.sums.end(), kBlocksPerRun, 1e12);
       continue;
     }
@@ -89,7 +89,7 @@ double CorrelationOf(const std::vector<const RunData*>& runs, const Fitted& fitt
       const size_t n = residuals.first[s + 1] - residuals.first[s];
       double variance = 0;
       for (size_t i = 0; i < n; ++i) variance += x[i] * x[i];
-      // Summed until the correlation is lost (Geyer's initial positive sequence, in pairs).
+      // Sum until the correlation is lost (Geyer's initial positive sequence, in pairs).
       double sum = 1;
       for (size_t lag = 1; lag + 1 < n / 3 && variance > 0; lag += 2) {
         double pair = 0;

@@ -27,9 +27,9 @@ inline constexpr double kLeastShare = 0.25;  // of the squared gap above the noi
 
 bool Material(double squared_gap_before, double squared_gap_after);
 
-// Whether the remaining gap needs no further explanation: it is at most 1.15 times the noise. Where all sensors
-// are exact (noise below 2e-4 of their range, as in a simulation), no model of a rig comes that near; then
-// the gap is closed when 1 % of the squared gap above the noise is left.
+// Whether the remaining gap needs no further explanation: it is at most 1.15 times the noise. Where all
+// sensors are exact (noise below 2e-4 of their range, as in a simulation), no model of a rig comes that near;
+// then the gap is closed when 1 % of the squared gap above the noise is left.
 bool Closed(double squared_gap_before, double squared_gap_after, bool exact_sensors);
 bool ExactSensors(const std::vector<const RunData*>& runs);
 

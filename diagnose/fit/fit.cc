@@ -22,7 +22,7 @@ using Eigen::Map;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-// One run against the hypothesis. What the solver gets is not the residuals, hundred thousands of them, but a
+// One run against the hypothesis. The solver does not get the residuals, hundreds of thousands of them, but a
 // square root of their normal equations: the same cost, gradient and Gauss-Newton matrix in a few numbers.
 class RunCost : public ceres::CostFunction {
  public:
@@ -37,12 +37,12 @@ class RunCost : public ceres::CostFunction {
     set_num_residuals(static_cast<int>(unknowns()) + 1);
   }
 
-  // Simulates at the point that the solver is going to ask for.
+  // Simulates at the point that the solver will ask for next.
   void Prepare(const double* free, const double* start, bool derivatives) {
     can_be_simulated_ = Normal(free, start, derivatives, &prepared_);
   }
 
-  // At the prepared point.
+  // Evaluates at the prepared point.
   bool Evaluate(double const* const* /*parameters*/, double* residuals, double** jacobians) const override {
     const auto p = static_cast<Eigen::Index>(free_.size());
     const auto n = static_cast<Eigen::Index>(unknowns());
@@ -54,7 +54,7 @@ class RunCost : public ceres::CostFunction {
       out(0) = std::sqrt(normal(normal.rows() - 1, normal.rows() - 1));
       return true;
     }
-    // [J r]' [J r] = V L V'; the rows of L^1/2 V' are as good as those of [J r].
+    // [J r]' [J r] = V L V'; the rows of L^1/2 V' serve as well as those of [J r].
     const maths::SymmetricEigensystem eigen = maths::SymmetricEigensystemOf(normal);
     const MatrixXd root = eigen.values.cwiseMax(0.0).cwiseSqrt().asDiagonal() * eigen.vectors.transpose();
     out = root.col(n);
@@ -69,7 +69,7 @@ class RunCost : public ceres::CostFunction {
     return true;
   }
 
-  // [J r]' [J r] at the point, or only r'r.
+  // [J r]' [J r] at the point, or only r'r without derivatives.
   bool Normal(const double* free, const double* start, bool derivatives, MatrixXd* normal) const {
     Hypothesis point = hypothesis_;
     std::vector<FreeParameter> at = free_;
@@ -120,8 +120,9 @@ class RunCost : public ceres::CostFunction {
   bool can_be_simulated_ = false;
 };
 
-// Simulates all runs when the solver goes to another point, on several threads. The solver has one: with more
-// it would add up the runs' costs in the order in which they are ready, and round differently every time.
+// Simulates all runs on several threads when the solver moves to another point. The solver itself uses one
+// thread: with more it would add up the runs' costs in the order in which they finish, and round differently
+// every time.
 class AllRuns : public ceres::EvaluationCallback {
  public:
   AllRuns(const std::vector<double>& values, const std::vector<std::vector<double>>& starts, int jobs)
@@ -164,7 +165,8 @@ Fitted Fit(const Hypothesis& hypothesis, const std::vector<const RunData*>& runs
 
   AllRuns all_runs(values, start_values, options.jobs);
   ceres::Problem::Options with_all_runs;
-  // Its own would leave out a run of which nothing is free: that is not added.
+  // `costs` owns the cost functions: the problem would own only those added to it, and the cost of a run of
+  // which nothing is free is not added.
   with_all_runs.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
   with_all_runs.evaluation_callback = &all_runs;
   ceres::Problem problem(with_all_runs);
@@ -194,7 +196,7 @@ Fitted Fit(const Hypothesis& hypothesis, const std::vector<const RunData*>& runs
     prior = std::make_unique<ceres::NormalPrior>(weight.cwiseSqrt().asDiagonal(), centre);
     problem.AddResidualBlock(prior.get(), nullptr, values.data());
   }
-  FLAGS_minloglevel = google::GLOG_FATAL;  // a step that cannot be simulated is no error
+  FLAGS_minloglevel = google::GLOG_FATAL;  // a step that cannot be simulated is not an error
   ceres::Solver::Options solver;
   solver.linear_solver_type = ceres::DENSE_QR;
   solver.max_num_iterations = options.most_iterations;

@@ -18,11 +18,11 @@ using Eigen::Map;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-// A Gauss-Newton step that predicts a run with so many times the sum of squares that the common fit leaves is
-// not believed: far steps end where the derivatives do not hold.
+// A Gauss-Newton step is not trusted if it predicts a run with more than this multiple of the sum of squares
+// that the common fit leaves: long steps end where the derivatives no longer hold.
 constexpr double kDoubtful = 1.5;
 
-// One run against a model whose parameters are held.
+// Predicts one run with a model whose parameters are held.
 HeldOut PredictRun(const Hypothesis& hypothesis, const RunData& run, const model::StartState& from,
                    double doubtful) {
   const Fitted fitted = FitStart(hypothesis, run, from, doubtful);
@@ -51,7 +51,7 @@ HeldOut Sum(const std::vector<HeldOut>& parts) {
   return all;
 }
 
-// The value without the change.
+// The parameter's value without the change.
 double Neutral(const FreeParameter& parameter, const model::ModelDescription& given) {
   if (parameter.unknown.kind == model::Unknown::Kind::kBase) {
     return given.parameters.*model::BaseParameters()[parameter.unknown.index].member;
@@ -64,8 +64,8 @@ double Neutral(const FreeParameter& parameter, const model::ModelDescription& gi
   return parameter.logarithmic ? parameter.value : 0;
 }
 
-// What little is known beforehand: a base parameter is within a third of what was given, the size of an
-// effect within its own size of none.
+// The weak prior: a base parameter is within a third of its given value, the size of an effect within its own
+// size of zero.
 Prior PriorOf(const std::vector<FreeParameter>& free, const model::ModelDescription& given) {
   constexpr double kBaseSpread = 0.3;
   Prior prior;
@@ -82,7 +82,7 @@ Prior PriorOf(const std::vector<FreeParameter>& free, const model::ModelDescript
   return prior;
 }
 
-// All but one.
+// All elements but one.
 template <class T>
 std::vector<T> Without(const std::vector<T>& all, size_t place) {
   std::vector<T> rest = all;

@@ -9,11 +9,11 @@ namespace hydro::diagnose {
 
 namespace {
 
-// Values that a fit may reach beyond an effect's starting points: so many times more or less.
+// How far a fit may go from an effect's starting points: a factor of this, up or down.
 constexpr double kReach = 300;
 
-// Times its value, for a base parameter whose derivative alone does not show the way: of what resonates, a
-// small change of frequency is a large one of phase.
+// Factors on the value of a base parameter whose derivative alone does not show the way: in a resonance, a
+// small change of frequency is a large change of phase.
 constexpr double kElsewhere[] = {0.8, 1.25};
 
 const model::ParameterInfo& InfoOf(const model::EffectDescription& effect, const std::string& name) {
@@ -147,7 +147,7 @@ Sizes SizesOf(const model::ModelDescription& model, const std::vector<const RunD
       if (std::isfinite(value)) values.push_back(std::abs(value));
     }
     if (values.empty()) return;
-    // Not the very largest: one spike would be it.
+    // A high quantile instead of the maximum, which could be a single spike.
     const auto place =
         values.begin() + static_cast<std::ptrdiff_t>(0.999 * static_cast<double>(values.size() - 1));
     std::nth_element(values.begin(), place, values.end());

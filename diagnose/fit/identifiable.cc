@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kVague = 0.3;  // relative standard deviation
 
-// What a parameter that may be 0 is measured by.
+// The scale of changes of a parameter that may be 0.
 double SizeOf(const FreeParameter& parameter, const Sizes& sizes) {
   if (parameter.value != 0) return std::abs(parameter.value);
   const std::string& name = parameter.name;
@@ -38,14 +38,15 @@ std::vector<size_t> Identifiable(const Hypothesis& given, const std::vector<cons
   for (const RunFit& run : fitted.runs) {
     information += Eigen::Map<const Eigen::MatrixXd>(run.information.data(), p, p);
   }
-  // Relative changes; residuals are in noise units already.
+  // In relative changes; residuals are already in noise units.
   for (Eigen::Index i = 0; i < p; ++i) {
     const FreeParameter& parameter = free[static_cast<size_t>(i)];
     const double size = parameter.logarithmic ? 1 : SizeOf(parameter, sizes);
     information.row(i) *= size;
     information.col(i) *= size;
   }
-  // Pivoted Cholesky: at each turn the one that is told best, given those before.
+  // Pivoted Cholesky: each turn chooses the parameter that the runs determine best, given those already
+  // chosen.
   std::vector<size_t> chosen;
   std::vector<bool> used(free.size(), false);
   for (;;) {

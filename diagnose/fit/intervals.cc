@@ -22,27 +22,27 @@ using Eigen::VectorXd;
 
 constexpr Index kBlocksPerRun = 12;
 
-// A block that has nearly all that is known of a number says nothing of its own scatter; it counts as if it
-// had no more than this part.
+// A block that holds nearly all the information about a number says nothing about its own scatter; it counts
+// as if it held no more than this share.
 constexpr double kMostLeverage = 0.75;
 
-// Relative standard deviation of a number for what its equation idealises. With ten thousands of samples the
-// noise alone leaves a tenth of it; rigs whose friction is rounded a little or whose sensors are of second
-// order moved the numbers found by up to two percent without showing it in any block (bench/gap_score).
+// Relative standard deviation of a number for what its equation idealises. With tens of thousands of samples,
+// noise alone gives a tenth of this. Rigs with slightly rounded friction or second-order sensors moved the
+// numbers found by up to two percent without any block showing it (bench/gap_score).
 constexpr double kIdealised = 0.005;
 
-// The same of each of the model's own numbers that are held: what is found stands beside their terms, and a
-// small effect moves by as much of a large term. Calibrated on such rigs, too.
+// The same for each of the model's own numbers that are held: an effect found stands beside their terms, and
+// a small effect moves by as much as a large term does. Calibrated on the same rigs.
 constexpr double kIdealisedHeld = 0.0003;
 
-// Standard deviation of a time, in sample intervals, for what is taken to be immediate and is not: a
-// tachometer with a filter of a twelfth of a sample, left out of the model, made delays and lags found 0.02
-// to 0.03 samples longer.
+// Standard deviation of a time, in sample intervals, for what the model takes to be immediate and is not: a
+// tachometer with a filter of a twelfth of a sample, left out of the model, made the delays and lags found
+// 0.02 to 0.03 samples longer.
 constexpr double kInstant = 0.02;
 
-// What each stretch of a run says: its gradient and its information, with the run's start taken out.
+// What each stretch of a run contributes: its gradient and its information, with the run's start eliminated.
 struct BlocksOfRun {
-  MatrixXd gradients;  // a column each
+  MatrixXd gradients;  // one column a block
   std::vector<MatrixXd> informations;
 };
 BlocksOfRun BlocksOf(const Fitted& fitted, const std::vector<FreeParameter>& free, size_t r,
@@ -78,7 +78,7 @@ BlocksOfRun BlocksOf(const Fitted& fitted, const std::vector<FreeParameter>& fre
   return blocks;
 }
 
-// The information that the runs have of the free numbers, all told, scaled to a diagonal of 1.
+// The runs' total information about the free numbers, scaled to a diagonal of 1.
 class Information {
  public:
   Information(const Fitted& fitted, Index p) {
@@ -96,8 +96,8 @@ class Information {
 
   const MatrixXd& inverse() const { return inverse_; }
 
-  // By how much a part of the data moves the fit. The fit has followed it as far as it has leverage; what is
-  // left of its gradient is made up for that (as in leaving it out, the jackknife).
+  // How far a part of the data moves the fit. The fit has already followed that part as far as its leverage
+  // goes, so the gradient that is left is scaled up for it (as in the jackknife, which leaves the part out).
   VectorXd Influence(const MatrixXd& part, const VectorXd& its_gradient) const {
     MatrixXd share = scale_.asDiagonal() * part * scale_.asDiagonal();
     root_.matrixL().solveInPlace(share);
@@ -118,10 +118,10 @@ class Information {
   Eigen::LLT<MatrixXd> root_;
 };
 
-// How far the fit is moved by each part of the data, in squares, and by what is held.
+// The squares of how far each part of the data moves the fit, and how far the held numbers move it.
 struct Scatter {
-  VectorXd by_block;  // noise scatters from block to block,
-  VectorXd by_run;    // and what the model lacks a little of differs from run to run
+  VectorXd by_block;  // noise scatters from block to block
+  VectorXd by_run;    // small deficiencies of the model differ from run to run
   VectorXd by_held;
 };
 
@@ -139,25 +139,25 @@ Scatter ScatterOf(const Fitted& fitted, const Information& information,
     const Map<const MatrixXd> of_run(fitted.runs[r].information.data(), p, p);
     scatter.by_run += information.Influence(of_run, gradients.rowwise().sum()).cwiseAbs2();
   }
-  // The fit follows what is held as far as the runs cannot tell it from the free numbers; by logarithms, so
-  // that a relative deviation counts as it is.
+  // The fit follows the held numbers as far as the runs cannot tell them from the free ones; they enter as
+  // logarithms, so a relative deviation counts directly.
   scatter.by_held = kIdealisedHeld * (information.inverse() * with_held).rowwise().norm();
   return scatter;
 }
 
-// Half the 95 % interval that so many parts' squares give.
+// Half the 95 % interval that the squares of this many parts give.
 double HalfWidth(double squares, double parts) {
   const double t = boost::math::quantile(boost::math::students_t(parts - 1), 0.975);
   return t * std::sqrt(squares * (parts - 1) / parts);
 }
 
-// The interval of a number of which the runs say +- `half`, in what is fitted.
+// The interval of a number that the runs give as +- `half`, in the number as fitted.
 Interval Around(const FreeParameter& parameter, double half, double by_held, double sample) {
   const double unseen =
       std::hypot(kIdealised * parameter.value, parameter.role == model::Role::kTime ? kInstant * sample : 0);
   half = std::hypot(half, 1.96 * std::abs(unseen / parameter.Slope()), 1.96 * by_held);
   Interval interval{parameter.Moved(-half), parameter.Moved(half)};
-  // A logarithm is positive by itself; its bounds are the fit's, not physics'.
+  // A logarithm keeps the value positive, and its bounds are the fit's, not physics'.
   if (!parameter.logarithmic) {
     interval.low = std::max(interval.low, std::min(parameter.low, parameter.value));
     interval.high = std::min(interval.high, std::max(parameter.high, parameter.value));
@@ -170,7 +170,7 @@ Interval Around(const FreeParameter& parameter, double half, double by_held, dou
 std::vector<Interval> Intervals(const Fitted& fitted, const std::vector<const RunData*>& runs, int jobs) {
   const std::vector<FreeParameter> free = fitted.hypothesis.Free();
   const auto p = static_cast<Index>(free.size());
-  std::vector<FreeParameter> all = free;  // and behind them what is held
+  std::vector<FreeParameter> all = free;  // followed by those held
   const std::vector<FreeParameter> held = HeldParameters(fitted.hypothesis);
   all.insert(all.end(), held.begin(), held.end());
   std::vector<BlocksOfRun> blocks_of(runs.size());

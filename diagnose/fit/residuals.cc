@@ -6,7 +6,8 @@ namespace hydro::diagnose {
 
 namespace {
 
-// Of a step. With 1e-5 a Stribeck speed of 0.1 rad/s came out 11 % too large, beyond its interval.
+// Relative, of an integration step. With 1e-5, a Stribeck speed of 0.1 rad/s came out 11 % too large, outside
+// its interval.
 constexpr double kTolerance = 1e-7;
 
 }  // namespace

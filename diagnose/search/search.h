@@ -1,5 +1,5 @@
 // The search for what a model lacks: adds effects and parameters while that predicts held-out runs materially
-// better, then tries removing each and exchanging it for another.
+// better, then tries exchanging each for another and removing it.
 #pragma once
 
 #include <string>
