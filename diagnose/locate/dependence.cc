@@ -13,9 +13,9 @@ namespace hydro::diagnose {
 namespace {
 
 constexpr size_t kBins = 12;
-constexpr double kMostOfIt = 0.85;  // of the energy, in the range that is named
-constexpr double kSpread = 0.6;     // of the blocks: a range with more is no place
-constexpr size_t kMostWindows = 5;  // of a run
+constexpr double kMostOfIt = 0.85;  // share of the energy in the range that is named
+constexpr double kSpread = 0.6;     // share of the blocks: a range with more is no place
+constexpr size_t kMostWindows = 5;  // in each run
 
 std::vector<size_t> InOrderOf(const std::vector<double>& values) {
   std::vector<size_t> order(values.size());
@@ -24,7 +24,7 @@ std::vector<size_t> InOrderOf(const std::vector<double>& values) {
   return order;
 }
 
-// Where bins of equal count begin in an ordered list; equal values stay together.
+// Where bins of equal count begin in a sorted list; equal values stay together.
 std::vector<size_t> BinsOf(const std::vector<double>& values, const std::vector<size_t>& order) {
   std::vector<size_t> first = {0};
   const size_t n = order.size();
@@ -44,11 +44,11 @@ double EnergyOf(const Blocks::Block& block) {
   return ratio * ratio - 1;
 }
 
-// The shortest stretch of the ordered blocks with most of the energy: its first and one past its last.
+// The shortest stretch of the sorted blocks with most of the energy: its first block and one past its last.
 std::pair<size_t, size_t> Densest(const Blocks& blocks, const std::vector<size_t>& order) {
   std::vector<double> sum = {0};
   for (const size_t i : order) sum.push_back(sum.back() + EnergyOf(blocks.blocks[i]));
-  // Bins, not blocks: ends are not chosen by single blocks.
+  // Search by bins, so that single blocks do not decide where the stretch ends.
   const size_t n = order.size();
   const size_t parts = std::min<size_t>(n, 48);
   std::pair<size_t, size_t> best = {0, n};
@@ -65,7 +65,7 @@ std::pair<size_t, size_t> Densest(const Blocks& blocks, const std::vector<size_t
   return best;
 }
 
-// Whether the mean is plainly positive on one side of 0 and negative on the other.
+// Whether the mean is clearly positive on one side of 0 and negative on the other.
 bool ChangesSign(const Blocks& blocks, const std::vector<double>& averages) {
   std::array<double, 2> sum{}, weight{};
   for (size_t i = 0; i < averages.size(); ++i) {
@@ -203,7 +203,7 @@ std::vector<Window> WindowsOf(const Blocks& blocks, const std::vector<const RunD
     for (const Blocks::Block& block : blocks.blocks) {
       if (block.run == r) largest = std::max(largest, EnergyOf(block));
     }
-    if (largest < 8) continue;  // chance does that
+    if (largest < 8) continue;  // chance alone does that
     struct Stretch {
       size_t first = 0, end = 0;
       double energy = 0;
@@ -212,7 +212,7 @@ std::vector<Window> WindowsOf(const Blocks& blocks, const std::vector<const RunD
     const std::vector<double>& time = runs[r]->stimulus.time;
     for (const Blocks::Block& block : blocks.blocks) {
       if (block.run != r || EnergyOf(block) < std::max(8.0, 0.2 * largest)) continue;
-      // What is less than a few blocks or 20 ms apart is one.
+      // Stretches less than a few blocks or 20 ms apart count as one.
       const bool joins = !stretches.empty() && time[block.first] - time[stretches.back().end - 1] <=
                                                    std::max(0.02, 2 * blocks.duration);
       if (!joins) stretches.push_back({block.first, block.end, 0});

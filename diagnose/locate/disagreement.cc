@@ -13,13 +13,13 @@ namespace hydro::diagnose {
 namespace {
 
 constexpr std::array<double, 6> kDurations = {0, 0.004, 0.016, 0.064, 0.256, 1.024};  // s
-// So many standard deviations of what noise does, and so much of it: the smoother linearises and holds each
-// mode over a sample, and what that costs stays below.
+// The least significance, in standard deviations, and the least share of the noise's energy: the smoother
+// linearises and holds each mode over a sample, and the errors of that stay below these limits.
 constexpr double kSignificant = 8;
 constexpr double kMaterial = 0.1;
-constexpr double kPlain = 25;          // standard deviations that are enough by themselves
+constexpr double kPlain = 25;          // standard deviations that suffice by themselves
 constexpr size_t kEnoughBlocks = 100;  // to see a dependence
-constexpr size_t kNear = 16;           // blocks on either side whose noise is taken for one
+constexpr size_t kNear = 16;           // blocks on either side whose noise is averaged
 
 Disagreement AtDuration(const std::vector<SmoothedRun>& smoothed, const std::vector<const RunData*>& runs,
                         Balance balance, double duration) {
@@ -35,7 +35,7 @@ Disagreement AtDuration(const std::vector<SmoothedRun>& smoothed, const std::vec
     const size_t length =
         static_cast<size_t>(std::max(1.0, std::round(duration / MedianInterval(runs[r]->stimulus.time))));
     const size_t before = blocks.size();
-    std::vector<double> drawn = {0};  // sums of the draws' squares
+    std::vector<double> drawn = {0};  // cumulative sums of the draws' squares
     for (size_t first = 0; first < samples; first += length) {
       const size_t end = std::min(samples, first + length);
       double sum = 0;
@@ -66,7 +66,7 @@ Disagreement AtDuration(const std::vector<SmoothedRun>& smoothed, const std::vec
   const double count = static_cast<double>(blocks.size());
   if (count == 0) return result;
   result.energy = chi_squared - count;
-  // The noise is known from draws only.
+  // The noise is known only from the draws.
   result.significance = result.energy / std::sqrt(2 * count * (1 + 1.0 / kNoiseDraws));
   result.beyond_noise = result.significance > kPlain ||
                         (result.significance > kSignificant && result.energy > kMaterial * count);

@@ -15,7 +15,7 @@ using smoother::RowOfColumns;
 using smoother::Setup;
 using smoother::Vector;
 
-// Disturbances that vary this much more than noise explains are allowed to, in a second pass.
+// Disturbances that vary this many times more than noise explains may wander further in a second pass.
 constexpr double kLoosenAbove = 3;
 constexpr double kLoosenAtMost = 200;
 
@@ -37,7 +37,7 @@ SmoothedRun EmptyRun(const Setup& setup) {
   return run;
 }
 
-// A sample's smoothed states and disturbances.
+// Stores a sample's smoothed states and disturbances.
 void Keep(const Setup& setup, const Columns& smoothed, const std::array<uint8_t, kBalances>& informative,
           size_t k, SmoothedRun* run) {
   std::vector<double>* const kept[6] = {&run->motor_angle, &run->motor_speed, &run->p1,
@@ -61,7 +61,7 @@ void Keep(const Setup& setup, const Columns& smoothed, const std::array<uint8_t,
   }
 }
 
-// The backward pass, after Bryson and Frazier: takes the readings off the record again, last first.
+// The backward pass, after Bryson and Frazier: removes the readings from the record again, last first.
 SmoothedRun SmoothBackwards(const Setup& setup, Record record) {
   const size_t samples = setup.time.size();
   SmoothedRun run = EmptyRun(setup);
@@ -86,7 +86,7 @@ SmoothedRun SmoothBackwards(const Setup& setup, Record record) {
   return run;
 }
 
-// Mean square change from sample to sample beside that of noise alone.
+// Mean square change from sample to sample, relative to that of noise alone.
 double Unrest(const Disturbance& d) {
   double data = 0, noise = 0;
   for (size_t i = 1; i < d.value.size(); ++i) {

@@ -12,7 +12,7 @@ namespace {
 
 constexpr int kMostPeriods = 24;  // a turn
 
-// Of a smoothed signal, so differences are as smooth as it is.
+// The signal is smoothed, so its differences are as smooth as it is.
 double RateOf(const std::vector<double>& values, const RunData& run, size_t k) {
   const size_t first = k == 0 ? 0 : k - 1, last = std::min(k + 1, values.size() - 1);
   return (values[last] - values[first]) / (run.stimulus.time[last] - run.stimulus.time[first]);
@@ -72,7 +72,7 @@ std::vector<Variable> Explanations::Commands() const {
   std::vector<Variable> all;
   all.push_back(Make("voltage", "V",
                      [](const SmoothedRun&, const RunData& d, size_t k) { return d.stimulus.voltage[k]; }));
-  // A limit shows beyond some voltage only.
+  // A limit shows only beyond some voltage.
   double largest = 0;
   for (const RunData* run : runs_) {
     for (const double v : run->stimulus.voltage) largest = std::max(largest, std::abs(v));

@@ -21,11 +21,11 @@ constexpr std::array<const char*, kBalances> kUnits = {"in-lbf", "in^3/s", "in^3
 constexpr double kSmallestShare = 0.02;
 // The extra share of the variance that a variable must explain to be preferred to a simpler one.
 constexpr double kPlainly = 0.06;
-// A dependence that explains less is none.
+// A dependence that explains less does not count.
 constexpr double kDependence = 0.05;
-constexpr double kQuick = 0.005;  // s: longer blocks do not see what repeats within a turn
+constexpr double kQuick = 0.005;  // s: longer blocks miss what repeats within a turn
 constexpr double kMostlyOffsets = 0.5;
-constexpr double kReversal = 0.02;  // s on either side of one
+constexpr double kReversal = 0.02;  // s on either side of a reversal
 
 struct Found {
   std::array<Blocks, kBalances> blocks;
@@ -57,10 +57,10 @@ struct Dependence {
   Variable variable;
   std::vector<double> averages;
   double explained = 0;
-  size_t simplicity = 0;  // place in the list: the plain ones come first
+  size_t simplicity = 0;  // position in the list: simple variables come first
 };
 
-// Ordered by what they explain.
+// Ordered by how much they explain.
 std::vector<Dependence> Rank(const Blocks& blocks, std::vector<Variable> variables,
                              const std::vector<SmoothedRun>& smoothed, Balance balance) {
   std::vector<Dependence> ranked;
@@ -74,7 +74,7 @@ std::vector<Dependence> Rank(const Blocks& blocks, std::vector<Variable> variabl
   }
   const auto more = [](const Dependence& a, const Dependence& b) { return a.explained > b.explained; };
   std::stable_sort(ranked.begin(), ranked.end(), more);
-  // Of those that explain nearly as much as the best, the simplest.
+  // Of those that explain nearly as much as the best, choose the simplest.
   const double best = ranked.front().explained;
   auto simplest = ranked.begin();
   for (auto d = ranked.begin(); d != ranked.end() && d->explained >= best - kPlainly; ++d) {
@@ -84,7 +84,7 @@ std::vector<Dependence> Rank(const Blocks& blocks, std::vector<Variable> variabl
   return ranked;
 }
 
-// "at reversals" if most of the energy, but little of the time, lies near reversals of the motor; else "".
+// "at reversals" if most of the energy but little of the time lies near reversals of the motor; else "".
 std::string AtReversals(const Blocks& blocks, const std::vector<const RunData*>& runs) {
   std::vector<std::vector<double>> reversals(runs.size());
   for (size_t r = 0; r < runs.size(); ++r) {
@@ -125,7 +125,7 @@ std::string WhereOf(const Blocks& blocks, const std::vector<Dependence>& ranked,
   return where;
 }
 
-// Tables over the variable that explains most, and over the next one that explains anything.
+// Tabulates over the variable that explains most, and over the next one that explains anything.
 void Tabulate(const Blocks& blocks, const std::vector<Dependence>& ranked, size_t balance,
               std::vector<MissingTerm>* missing) {
   for (const Dependence& d : ranked) {
@@ -137,7 +137,7 @@ void Tabulate(const Blocks& blocks, const std::vector<Dependence>& ranked, size_
   }
 }
 
-// Shares of one balance found in several ways add up; the largest says where.
+// Adds up the shares of one balance found in several ways; the largest names the place.
 void AddShare(std::vector<Location>* locations, Location more) {
   for (Location& location : *locations) {
     if (location.balance != more.balance) continue;
@@ -186,7 +186,7 @@ Localisation Locate(const model::ModelDescription& model, const std::vector<cons
     const Blocks& blocks = found.blocks[b];
     ranked[b] = Rank(blocks, explanations.States(balance, blocks.duration < kQuick), smoothed, balance);
     double own = share;
-    // Moves to `to` what its variables explain clearly better than the balance's own.
+    // Moves to `to` the share that its variables explain clearly better than the balance's own do.
     const auto give = [&](const char* to, std::vector<Variable> variables) {
       if (variables.empty() || own < share) return;
       const std::vector<Dependence> others = Rank(blocks, std::move(variables), smoothed, balance);

@@ -10,7 +10,7 @@ namespace hydro::diagnose {
 
 namespace {
 
-// The lowest pressure that a side rests at: where the one-way valve holds it. NaN when it does not show.
+// The lowest pressure at which a side rests: where the one-way valve holds it. NaN if it does not show.
 double Floor(const std::vector<const RunData*>& runs, model::Channel channel) {
   double floor = NAN;
   for (const RunData* run : runs) {
@@ -21,7 +21,7 @@ double Floor(const std::vector<const RunData*>& runs, model::Channel channel) {
     std::erase_if(values, [](double value) { return std::isnan(value); });
     if (values.size() < 100) continue;
     std::sort(values.begin(), values.end());
-    // A plateau: a twentieth of the samples within the noise of each other.
+    // A plateau: a twentieth of the samples agree within the noise.
     const double margin = 2 * (channel == model::Channel::kP1 ? observed.p1_margin : observed.p2_margin);
     const size_t low = values.size() / 100;
     const size_t high = values.size() / 20;
@@ -44,7 +44,7 @@ PressureOffsets RestOffsets(const model::ModelDescription& model, const std::vec
     }
   }
   if (std::isnan(floor_1) || std::isnan(floor_2)) return {};
-  // What the model's own transducers read there.
+  // What the model's own transducers read at that pressure.
   const model::Equations equations(model, model::ActuatorOptions{});
   double state[model::kMaxStates];
   model::Mode mode;

@@ -7,9 +7,9 @@ namespace hydro::diagnose::smoother {
 namespace {
 
 constexpr size_t kArmTorque = static_cast<size_t>(Balance::kArmTorque);
-// The state whose rate each balance gives.
+// The state whose rate each balance determines.
 constexpr int kMoved[kBalances] = {model::kMotorSpeed, model::kP1, model::kP2, model::kArmSpeed};
-// s. For this long before and after a switch of an effect the arm's balance says nothing.
+// s. For this long before and after a switch of an effect, the arm's balance is not informative.
 constexpr double kSwitching = 0.02;
 
 }  // namespace
@@ -49,7 +49,7 @@ Matrix Filter::BeginCovariance() const {
   }
   for (size_t b = 0; b < kBalances; ++b) {
     const int at = setup_.place[b];
-    // Well above what it wanders in the time in which a disturbance is followed.
+    // Well above how far the disturbance wanders in the time in which it is followed.
     if (at >= 0) covariance(at, at) = 100 * setup_.wander[b] * std::max(setup_.interval, 0.1);
   }
   return covariance;
@@ -70,7 +70,7 @@ void Filter::CopyStateToColumns() {
 void Filter::ReadSample(size_t k) {
   Correct(k);
   if (!columns_.allFinite() || !covariance_.allFinite()) {
-    // Lost: begin again from what is measured next.
+    // Lost: begin again from the next measurements.
     Begin();
     record_.Forget(k);
   }
@@ -84,7 +84,7 @@ void Filter::ReadSample(size_t k) {
   mode_at_sample_.Set(equations_, k, voltage, state_, &mode_, &terms_, rate, &record_.informative(k));
 }
 
-// By each reading of the sample in turn.
+// Corrects by each reading of the sample in turn.
 void Filter::Correct(size_t k) {
   const model::Measurement predicted = equations_.Measure(setup_.time[k], state_);
   const Vector before = columns_.col(0);
@@ -113,7 +113,7 @@ void Filter::Correct(size_t k) {
   for (int i = 0; i < setup_.states; ++i) state_[i] = columns_(i, 0);
 }
 
-// The state by Runge-Kutta, its covariance by the exponential of the Jacobian.
+// Advances the state by Runge-Kutta, and its covariance by the exponential of the Jacobian.
 void Filter::Advance(size_t k) {
   const double step = setup_.time[k + 1] - setup_.time[k];
   const double norm = Linearise(k);
@@ -150,7 +150,7 @@ double Filter::Linearise(size_t k) {
   return norm;
 }
 
-// What the disturbances add to the states' rates; their columns of rates_ likewise.
+// What the disturbances add to the states' rates; also fills their columns of rates_.
 Filter::Rates Filter::DisturbanceRates(size_t k) {
   const model::Parameters& p = setup_.model.parameters;
   const std::array<double, kBalances> gain = {
@@ -167,7 +167,7 @@ Filter::Rates Filter::DisturbanceRates(size_t k) {
   return push;
 }
 
-// In 2^halvings steps, and from stop to stop of the equations.
+// Takes 2^halvings steps, each from stop to stop of the equations.
 void Filter::IntegrateState(size_t k, int halvings, const Rates& push) {
   const double voltage = setup_.run.stimulus.voltage[k];
   const double next = setup_.time[k + 1];
@@ -199,7 +199,7 @@ void Filter::RungeKuttaStep(double begin, double h, double voltage, const Rates&
   }
 }
 
-// The switches of effects that the state has passed by the next sample.
+// Crosses the switches of effects that the state has passed by the next sample.
 void Filter::CrossSwitches(size_t k) {
   if (equations_.switches() <= model::kFirstEffectSwitch) return;
   const double time = setup_.time[k + 1];
@@ -213,7 +213,7 @@ void Filter::CrossSwitches(size_t k) {
   }
 }
 
-// The exponential of rates_ times part * 2^halvings: a series for the part, squared.
+// The exponential of rates_ times part * 2^halvings: a series for `part`, squared `halvings` times.
 Matrix Filter::Transition(double part, int halvings) const {
   const int size = setup_.size;
   Matrix term(size, size), power(size, size), square(size, size), transition(size, size);
@@ -248,7 +248,7 @@ void Filter::PropagateColumns(const Matrix& transition) {
   CopyStateToColumns();
 }
 
-// Adds what may have changed between the samples and is not in the equations.
+// Adds the uncertainty of changes between the samples that the equations do not contain.
 void Filter::AddUncertainty(size_t k, double step) {
   const std::vector<double>& scales = equations_.scales();
   const double speed_wander = 0.3 * setup_.observed.speed_margin;
@@ -263,7 +263,7 @@ void Filter::AddUncertainty(size_t k, double step) {
     const double jump = 2 * terms_.coulomb * step / setup_.model.parameters.J;
     speed += jump * jump + speed_wander * speed_wander;
   }
-  // A valve may open and close at any time between the samples near p_3.
+  // Near p_3 a valve may open and close at any time between the samples.
   for (int side = 0; side < 2; ++side) {
     if (!mode_at_sample_.at_valve(side) && !setup_.run.stimulus.bypass) continue;
     const double jump = mode_at_sample_.free_rate(side) * step;
@@ -273,7 +273,8 @@ void Filter::AddUncertainty(size_t k, double step) {
   }
 }
 
-// When an arm that its seals hold breaks loose is only known from coarse angles.
+// Coarse angles alone tell when an arm that its seals hold breaks loose, so its balance is ignored near
+// switches.
 void Filter::ForgetArmAtSwitches() {
   const std::vector<double>& time = setup_.time;
   for (const double at : switched_) {

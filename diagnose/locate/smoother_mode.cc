@@ -10,7 +10,7 @@ constexpr size_t kPumpTorque = static_cast<size_t>(Balance::kPumpTorque);
 constexpr size_t kFlow1 = static_cast<size_t>(Balance::kFlow1);
 constexpr size_t kArmTorque = static_cast<size_t>(Balance::kArmTorque);
 
-// +1, -1: the torque overcomes static friction that way; 0: it does not.
+// The direction, +1 or -1, in which the torque overcomes static friction; 0 if it does not.
 int8_t BreaksAway(const model::Terms<double>& terms) {
   if (std::abs(terms.net_torque) <= terms.breakaway) return 0;
   return terms.net_torque > 0 ? 1 : -1;
@@ -18,7 +18,7 @@ int8_t BreaksAway(const model::Terms<double>& terms) {
 
 }  // namespace
 
-// Where a side's pressure is against p_3.
+// Where a side's pressure lies relative to p_3.
 ModeAtSample::Rest ModeAtSample::RestOf(int side, size_t k, double pressure, double p_3) const {
   const ObservedMode& observed = setup_.observed;
   const std::vector<double>& measured = side == 0 ? observed.p1 : observed.p2;
@@ -26,7 +26,7 @@ ModeAtSample::Rest ModeAtSample::RestOf(int side, size_t k, double pressure, dou
   if (measured.empty() || std::isnan(measured[k])) {
     return pressure <= p_3 + std::max(margin, 1e-3 * std::abs(p_3)) ? Rest::kAt : Rest::kAbove;
   }
-  // Below p_3 no one-way valve holds it: the flow that does is what is missing.
+  // Below p_3 no one-way valve holds the pressure: the flow that does is what is missing.
   if (measured[k] < p_3 - margin) return Rest::kBelow;
   if (measured[k] <= p_3 + margin) return Rest::kAt;
   const size_t reach = 2 * observed.half_window + 1;
@@ -42,7 +42,8 @@ void ModeAtSample::SetPump(size_t k, double speed, const model::Terms<double>& t
   const ObservedMode& observed = setup_.observed;
   if (observed.speed_measured()) {
     mode->pump = observed.turns[k];
-    // Where the model says that it turns and the data that it rests, friction holds it beyond its limit.
+    // Where the model says that the pump turns and the data say that it rests, friction holds it beyond its
+    // limit.
     if (mode->pump == 0) mode->pump = BreaksAway(terms);
     if (observed.passes[k]) (*informative)[kPumpTorque] = 0;
   } else if (mode->pump == 0 || mode->pump * speed <= 0) {
@@ -62,7 +63,8 @@ void ModeAtSample::SetValves(const model::Equations& equations, size_t k, const 
     if (!equations.data().ideal_valves) continue;
     int8_t& valve = side == 0 ? mode->valve_1 : mode->valve_2;
     valve = at_valve_[side] && free_rate[side] < 0 ? 1 : 0;
-    // Just before it opens and just after it closes, an average cannot tell on which side of p_3 it is.
+    // Just before the valve opens and just after it closes, an average cannot tell which side of p_3 the
+    // pressure is on.
     if (at_valve_[side]) (*informative)[kFlow1 + side] = 0;
     free_rate_[side] = free_rate[side];
   }

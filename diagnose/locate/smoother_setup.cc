@@ -11,7 +11,8 @@
 namespace hydro::diagnose::smoother {
 namespace {
 
-// 1/s. A disturbance is followed this fast, so that friction at a reversal is not taken for flow.
+// 1/s. The smoother follows a disturbance this fast, so that it does not take friction at a reversal for
+// flow.
 constexpr double kBandwidth = 500;
 constexpr double kBandwidthPerSample = 0.35;
 
@@ -27,7 +28,7 @@ double ChannelNoise(const SignalData& signal) {
   return std::max(1e-6 * (high - low), 1e-12);
 }
 
-// For each sample, the length of the run of equal values that it is in.
+// For each sample, the length of the run of equal values that contains it.
 std::vector<float> Repeats(const std::vector<double>& values) {
   std::vector<float> repeats(values.size());
   for (size_t i = 0; i < values.size();) {
@@ -47,7 +48,7 @@ Sensor MakeSensor(const SignalData& signal, const PressureOffsets& offsets, std:
   if (signal.channel == model::Channel::kP1) sensor.offset = offsets.p1;
   if (signal.channel == model::Channel::kP2) sensor.offset = offsets.p2;
   const double noise = ChannelNoise(signal);
-  // While a coarse reading stays the same so does its error: it counts once.
+  // While a coarse reading stays the same, so does its error: it counts once.
   const bool coarse = signal.resolution > 0 && noise < 0.6 * signal.resolution;
   sensor.variance = noise * noise;
   if (coarse) sensor.repeats = Repeats(signal.values);
@@ -72,8 +73,9 @@ void ChooseSensors(const PressureOffsets& offsets, Setup* setup) {
   }
 }
 
-// How much a disturbance may wander: as much as makes the smoother follow it with the bandwidth, were there
-// only the sensor of the quantity that the balance moves. `gain` is that quantity's rate per disturbance.
+// How much a disturbance may wander: enough for the smoother to follow it with the bandwidth above if the
+// only sensor were that of the quantity that the balance moves. `gain` is that quantity's rate per
+// disturbance.
 double Wander(const Setup& setup, double gain, double rate_variance, double integral_variance) {
   const double step = setup.interval;
   const double bandwidth = std::min(kBandwidth, kBandwidthPerSample / step);
@@ -85,7 +87,7 @@ double Wander(const Setup& setup, double gain, double rate_variance, double inte
   return wander;
 }
 
-// Balances whose quantity is measured get a disturbance among the states.
+// Gives each balance whose quantity is measured a disturbance among the states.
 void ChooseBalances(Setup* setup) {
   const Setup& s = *setup;
   const model::Parameters& p = s.model.parameters;
@@ -108,8 +110,8 @@ void ChooseBalances(Setup* setup) {
   }
 }
 
-// The sensors read a linear function of the states. A valve feels the pressure, not the reading: observed
-// pressures are scaled back to it.
+// Makes each sensor's reading a linear function of the states. A valve feels the pressure, not the reading,
+// so observed pressures are scaled back to the pressure.
 void LineariseSensors(const model::Equations& equations, Setup* setup) {
   double state[model::kMaxStates];
   model::Mode mode;
@@ -125,7 +127,7 @@ void LineariseSensors(const model::Equations& equations, Setup* setup) {
     const double gain = sensor.row[at];
     std::vector<double>& observed = first ? setup->observed.p1 : setup->observed.p2;
     if (gain == 0) {
-      observed.clear();  // it reads what a state of its own has made of the pressure
+      observed.clear();  // it reads the pressure through a state of its own
       continue;
     }
     const double offset = linear.output[channel] - gain * state[at];

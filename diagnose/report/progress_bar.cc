@@ -19,7 +19,8 @@ std::string Left(double fraction, double elapsed) {
 void ProgressBar::Tell(const Progress& progress, double elapsed) {
   if (!terminal_) {
     if (progress.stage == stage_) return;
-    // The first line waits for the second: unusable input ends the work before that, with one line in all.
+    // The first line waits for the second stage: unusable input ends the work before that, and then the
+    // error's one line is all there is.
     if (stages_ == 1) std::fprintf(out_, "%s\n", stage_.c_str());
     if (stages_ >= 1) std::fprintf(out_, "%s\n", progress.stage.c_str());
     std::fflush(out_);
@@ -27,7 +28,7 @@ void ProgressBar::Tell(const Progress& progress, double elapsed) {
     ++stages_;
     return;
   }
-  // A bar that goes back tells nobody anything.
+  // The bar never goes back.
   furthest_ = std::clamp(progress.fraction, furthest_, 1.0);
   line_.Draw(furthest_, progress.stage + Left(furthest_, elapsed));
 }

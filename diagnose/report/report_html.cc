@@ -166,7 +166,7 @@ std::string Where(const Diagnosis& diagnosis) {
   return out;
 }
 
-// Escaped, with the line breaks of its own.
+// Escaped text that keeps its line breaks.
 std::string Lines(const std::string& text) {
   std::string out, line;
   for (const char c : text) {

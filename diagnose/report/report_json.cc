@@ -145,7 +145,7 @@ std::string ReportJson(const Diagnosis& diagnosis, const std::string& next_confi
                        {"samples", diagnosis.samples},
                        {"version", settings::ProgramVersion()},
                        {"elapsed_s", elapsed_s}};
-  // Names come from files: bytes that are no UTF-8 are replaced instead of refused.
+  // Names come from files: bytes that are not UTF-8 are replaced, not refused.
   return report.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 

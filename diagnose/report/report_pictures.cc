@@ -15,7 +15,7 @@ namespace {
 constexpr double kPageWidth = 960;
 constexpr double kRowHeight = 104;
 
-// The palette's colours, and so the meaning of colours all over the report.
+// Colours of the palette; they mean the same throughout the report.
 constexpr int kAfter = 0, kBefore = 1, kRefit = 5;
 
 constexpr char kBeforeLabel[] = "model as given";
@@ -41,7 +41,7 @@ std::vector<double> Left(const std::vector<double>& measured, const std::vector<
   return left;
 }
 
-// Below which nine hundred and ninety-five of a thousand sizes are.
+// The size that 99.5 % of the values stay below.
 double UsualSize(const std::vector<double>& values) {
   std::vector<double> sizes;
   for (const double value : values) {
@@ -74,7 +74,7 @@ void SetRange(page::Axis& axis, const page::Range& range) {
   axis.max = range.high;
 }
 
-// What a simulation that runs away shows counts up to the size of what was measured.
+// Limits a simulation that runs away to the size of the measured range beyond that range.
 page::Range RangeOf(const Points& measured, const Points& before, const Points& after) {
   page::Range range;
   range.Include(measured.y);
@@ -88,7 +88,7 @@ page::Range RangeOf(const Points& measured, const Points& before, const Points& 
   return range.WithMargin();
 }
 
-// Of residuals, which count up to the size of what was measured.
+// The range of residuals, limited to the size of the measured signal.
 page::Range ResidualRange(const Points& before, const Points& after, double measured_size, double noise) {
   double size = std::max(UsualSize(before.y), UsualSize(after.y));
   if (measured_size > 0) size = std::min(size, measured_size);
@@ -102,7 +102,7 @@ double SizeOf(const std::vector<double>& values) {
   return range.empty() ? 0 : range.high - range.low;
 }
 
-// Means over stretches of time, through which noise does not show.
+// Means over stretches of time, which average the noise away.
 Points RunningMean(const Points& series) {
   constexpr size_t kStretches = 100;
   Points means;
@@ -123,7 +123,7 @@ Points RunningMean(const Points& series) {
   return means;
 }
 
-// What residuals may depend on, over a run's time; nothing where it was not measured.
+// A quantity that residuals may depend on, over a run's time; nothing where it was not measured.
 std::optional<std::vector<double>> Quantity(const RunCurves& run, const std::string& name) {
   if (name == "voltage") {
     if (run.voltage.size() != run.time.size()) return std::nullopt;
@@ -147,7 +147,7 @@ std::optional<std::vector<double>> Quantity(const RunCurves& run, const std::str
   return *values;
 }
 
-// Means of y in bins of x, left out where there are few points.
+// Means of y in bins of x, leaving out bins with few points.
 Points BinMeans(const Points& points, const page::Range& range) {
   constexpr size_t kBins = 18;
   std::array<double, kBins> x{}, y{};
@@ -171,7 +171,7 @@ Points BinMeans(const Points& points, const page::Range& range) {
   return means;
 }
 
-// At most `most` of the points, evenly chosen.
+// At most `most` of the points, evenly spaced.
 Points Some(const Points& points, size_t most) {
   Points some;
   const size_t stride = std::max<size_t>(1, (points.x.size() + most - 1) / most);
@@ -189,8 +189,8 @@ page::Curve Drawn(const std::string& label, const Points& points, int colour, pa
   return curve;
 }
 
-// One signal of a run: measured and simulated, then what is left. The first row of a picture has the keys, the last the
-// numbers of the time axis.
+// One signal of a run: measured and simulated, then the residuals. The first row of a picture has the keys,
+// the last one the numbers of the time axis.
 std::array<page::Panel, 2> SignalPanels(const Diagnosis& diagnosis, const RunCurves& run,
                                         const RunCurves::Curve& curve, const page::Range& time, bool si,
                                         bool first, bool last) {
@@ -237,13 +237,13 @@ std::array<page::Panel, 2> SignalPanels(const Diagnosis& diagnosis, const RunCur
   return {signals, residuals};
 }
 
-// What residuals may depend on.
+// A quantity that residuals may depend on.
 struct Against {
   std::string name, label;
   double factor;
 };
 
-// Those that were measured.
+// The quantities that were measured.
 std::vector<Against> ChooseAgainst(const Diagnosis& diagnosis, bool si) {
   const ShownUnit pressure = UnitOf(model::Channel::kP1, si);
   const std::array<Against, 4> all = {{{"speed", "motor speed (rad/s)", 1},
@@ -341,7 +341,7 @@ page::Figure GapFigure(const Diagnosis& diagnosis) {
       .label = "root-mean-square residual in noise standard deviations", .logarithmic = true, .min = 0.5};
   panel.y.min = 0.4 - static_cast<double>(rows.size());
   panel.y.max = 0.6;
-  // From before to after.
+  // The line from before to after.
   page::Curve way = page::Line("", {}, {}, kRefit);
   page::Curve before = page::Line(kBeforeLabel, {}, {}, kBefore, page::Stroke::kPoints);
   page::Curve refit = page::Line("its own parameters refitted", {}, {}, kRefit, page::Stroke::kPoints);
@@ -351,7 +351,7 @@ page::Figure GapFigure(const Diagnosis& diagnosis) {
     const double y = -static_cast<double>(i);
     panel.y.ticks.push_back({y, rows[i].name});
     const BeforeAfter& gap = rows[i].gap;
-    // What lies below the axis is shown at its end.
+    // Values below the axis are shown at its end.
     const auto shown = [](double value) { return std::isfinite(value) ? std::max(value, 0.5) : value; };
     for (auto [curve, value] :
          {std::pair{&before, gap.before}, {&refit, gap.refit_only}, {&after, gap.after}}) {

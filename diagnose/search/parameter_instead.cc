@@ -10,7 +10,7 @@ namespace hydro::diagnose {
 
 namespace {
 
-// A number that moves by less than this part of itself is within what any data sheet says of it.
+// A number that moves by less than this share of its value stays within the accuracy of any data sheet.
 constexpr double kWithinWhatIsKnown = 0.01;
 
 }  // namespace
@@ -22,7 +22,7 @@ const Explanation* ParameterInstead(const SearchResult& search, const model::Mod
   if (effects < 2) return nullptr;
   const Explanation* instead = nullptr;
   for (const Explanation& other : search.tried) {
-    // Of what was only fitted the prediction is not known.
+    // Explanations that were only fitted have no prediction to compare.
     if (other.blocks.sums.empty() || other.changes().size() != best.changes().size()) continue;
     const Change* own = other.fitted.hypothesis.OneBeyond(best.fitted.hypothesis);
     const Change* gone = best.fitted.hypothesis.OneBeyond(other.fitted.hypothesis);

@@ -20,21 +20,21 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr int kMostPeriods = 48;
-// Of a balance's mean square, what a number of periods must explain to be tried, and what share of the best
-// one's a second must.
+// The least share of a balance's mean square that a number of periods must explain to be tried, and the least
+// share of what the best one explains that a second one must.
 constexpr double kLeastExplained = 0.02;
 constexpr double kNearlyAsMuch = 0.4;
 constexpr size_t kTried = 2;
 
-// A regression's normal equations, by the number of periods: the last row and column are the target's.
+// A regression's normal equations, one for each number of periods; the last row and column are the target's.
 class Periodogram {
  public:
-  // `others`: what the balance may lack besides.
+  // `others`: how many other regressors describe what the balance may lack besides.
   explicit Periodogram(Index others) : others_(others) {
     normal_.assign(kMostPeriods, MatrixXd::Zero(others + 3, others + 3));
   }
 
-  // One sample: `x` has the other regressors; `carrier` is what sine and cosine are multiplied with.
+  // Adds one sample: `x` holds the other regressors; sine and cosine are multiplied by `carrier`.
   void Add(const VectorXd& x, double carrier, double angle, double target) {
     if (!x.allFinite() || !std::isfinite(carrier * angle * target)) return;
     VectorXd row(others_ + 3);
@@ -56,7 +56,7 @@ class Periodogram {
     double explained = 0;  // share of the target's mean square, beyond what the others explain
     double sine = 0, cosine = 0;
   };
-  // `sine`, `cosine`: what it may have of either.
+  // `sine`, `cosine`: whether the wave may have either.
   Wave At(int periods, bool sine, bool cosine) const {
     const MatrixXd all = normal_[static_cast<size_t>(periods - 1)].selfadjointView<Eigen::Lower>();
     const Index last = others_ + 2;
@@ -77,7 +77,7 @@ class Periodogram {
   }
 
  private:
-  // The sum of squares that these columns leave.
+  // The sum of squares left after regression on these columns.
   double Left(const MatrixXd& all, const std::vector<Index>& columns, VectorXd* solution) const {
     const Index last = others_ + 2;
     const MatrixXd inner = all(columns, columns);
@@ -95,23 +95,23 @@ class Periodogram {
   std::vector<MatrixXd> normal_;
 };
 
-// A displacement that varies by more than this part of itself is no start for a fit.
+// A displacement that varies by more than this share of itself is no starting point for a fit.
 constexpr double kMostOfDisplacement = 0.5;
 
-// An effect that repeats within a turn of the motor, as its parameters' roles tell it.
+// An effect that repeats within a turn of the motor, as the roles of its parameters show.
 struct PeriodicEffect {
   Change change;
   const model::ParameterInfo* periods = nullptr;
   const model::ParameterInfo* amplitude = nullptr;
   const model::ParameterInfo* phase = nullptr;  // null: it has none
-  bool of_torque = false;                       // else of the displacement
+  bool of_torque = false;                       // otherwise of the displacement
 
-  // Without a phase a torque's wave is a sine, a displacement's a cosine.
+  // Without a phase, a torque's wave is a sine and a displacement's a cosine.
   bool has_sine() const { return phase != nullptr || of_torque; }
   bool has_cosine() const { return phase != nullptr || !of_torque; }
 };
 
-// Those among `changes`, in their order.
+// The periodic effects among `changes`, in their order.
 std::vector<PeriodicEffect> PeriodicAmong(const std::vector<Change>& changes) {
   std::vector<PeriodicEffect> all;
   for (const Change& change : changes) {
@@ -128,7 +128,7 @@ std::vector<PeriodicEffect> PeriodicAmong(const std::vector<Change>& changes) {
   return all;
 }
 
-// The likeliest, the best first.
+// The likeliest waves, best first.
 std::vector<Periodogram::Wave> Likeliest(const Periodogram& periodogram, const PeriodicEffect& effect) {
   std::vector<Periodogram::Wave> waves;
   for (int n = 1; n <= kMostPeriods; ++n) {
@@ -142,9 +142,9 @@ std::vector<Periodogram::Wave> Likeliest(const Periodogram& periodogram, const P
   return waves;
 }
 
-// The hypothesis with the effect, its wave as the torque balance has it: what the torque lacks is
-// -amplitude sin(n theta + phase), and -D dp amplitude cos(n theta + phase) of a displacement's. What other
-// parameters it has are where fits of it start first.
+// The hypothesis with the effect, its wave taken from the torque balance: the missing torque is -amplitude
+// sin(n theta + phase) or, for a displacement, -D dp amplitude cos(n theta + phase). The effect's other
+// parameters take their first starting point.
 Hypothesis WithWave(const Hypothesis& hypothesis, const PeriodicEffect& effect, const Periodogram::Wave& wave,
                     const std::vector<const RunData*>& runs) {
   Hypothesis more = With(hypothesis, effect.change, SizesOf(hypothesis.model, runs), false).front();
@@ -163,11 +163,12 @@ Hypothesis WithWave(const Hypothesis& hypothesis, const PeriodicEffect& effect, 
   return more;
 }
 
-// Regressions of what the torque balance of a run lacks, one for each effect; empty where the run cannot be
-// smoothed.
+// Regressions of the torque that a run's torque balance lacks, one for each effect; empty where the run
+// cannot be smoothed.
 std::vector<Periodogram> PeriodogramsOf(const Hypothesis& hypothesis,
                                         const std::vector<PeriodicEffect>& effects, const RunData& data) {
-  // Eq. (4): what the pump's torque lacks, beside a constant, its friction and its displacement.
+  // Eq. (4): the regressors of the missing pump torque besides the wave, for a constant, friction and
+  // displacement.
   constexpr Index kOthers = 5;
   std::vector<Periodogram> periodograms(effects.size(), Periodogram(kOthers));
   SmoothedRun run;
@@ -203,7 +204,7 @@ std::vector<Hypothesis> WithPeriodic(const Hypothesis& hypothesis, const std::ve
               [&](size_t r) { of_run[r] = PeriodogramsOf(hypothesis, effects, *runs[r]); });
   std::vector<Hypothesis> all;
   for (size_t e = 0; e < effects.size(); ++e) {
-    // In the runs' order, however many threads there were.
+    // Sum in the order of the runs, so that the number of threads does not matter.
     for (size_t r = 1; r < runs.size(); ++r) of_run[0][e].Add(of_run[r][e]);
     for (const Periodogram::Wave& wave : Likeliest(of_run[0][e], effects[e])) {
       all.push_back(WithWave(hypothesis, effects[e], wave, runs));

@@ -11,8 +11,8 @@ namespace hydro::diagnose {
 
 namespace {
 
-// Where fits are begun again, from the frequency where the last ended: differences of its logarithm. What
-// rings for a tenth of a second tells apart what differs by some 2 % at 300 Hz.
+// Where refits begin: differences of the frequency's logarithm from where the last fit ended. Ringing that
+// lasts a tenth of a second distinguishes frequencies some 2 % apart at 300 Hz.
 constexpr std::array<double, 10> kElsewhere = {-0.22, -0.15, -0.1, -0.06, -0.03, 0.03, 0.06, 0.1, 0.15, 0.22};
 constexpr int kRounds = 3;
 
@@ -25,7 +25,7 @@ Hypothesis Moved(const Hypothesis& hypothesis, size_t place, double by) {
   return moved;
 }
 
-// The best of the fits begun around where this one ended; itself where none is better.
+// The best fit begun around where this one ended; this one itself where none is better.
 Fitted BestAround(const SearchContext& context, const Fitted& fitted, size_t place, FitOptions options) {
   options.jobs = 1;
   std::array<Fitted, kElsewhere.size()> fits;

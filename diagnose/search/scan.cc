@@ -18,18 +18,18 @@ using Eigen::Map;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-// No logarithm is moved further than this by a derivative alone.
+// The furthest that a derivative alone may move a logarithm.
 constexpr double kLongestStep = 1.5;
 
-// A run at the current fit: derivatives by its free numbers and its start.
+// A run at the current fit: its derivatives with respect to the free numbers and the start.
 struct RunBasis {
   VectorXd values;  // residuals
   MatrixXd columns;
   MatrixXd normal;  // columns' columns
 };
 
-// The best move within the bounds, for the normal equations [A b; b' s]: s + 2 b'd + d'A d. The last `own` of
-// the unknowns are bounded, by `low` and `high`. Returns the least value.
+// The best move d within the bounds for the normal equations [A b; b' s]: minimises s + 2 b'd + d'A d. `low`
+// and `high` bound the last `own` unknowns. Returns the minimum.
 double BestMove(const MatrixXd& A, const VectorXd& b, double s, const VectorXd& low, const VectorXd& high,
                 VectorXd* move) {
   const Index n = b.size();
@@ -64,21 +64,22 @@ double BestMove(const MatrixXd& A, const VectorXd& b, double s, const VectorXd& 
   return s + 2 * b.dot(*move) + move->dot(A * *move);
 }
 
-// What the score test needs of one change from one run.
+// What the score test of one change needs from one run.
 struct RunColumns {
   VectorXd values;  // the residuals with the change at its starting point
-  MatrixXd own;     // derivatives by its parameters
+  MatrixXd own;     // derivatives with respect to its parameters
 };
 
 // A change at one of its starting points.
 struct Task {
   size_t change = 0;
   Hypothesis with;
-  std::vector<FreeParameter> own;  // free in it and not before
-  bool moved = false;              // a base parameter that has another value already
+  std::vector<FreeParameter> own;  // free in this hypothesis but not before
+  bool moved = false;              // a base parameter that already has another value
 };
 
-// The parameters in which it does nothing as it stands: their derivatives are all there is to it.
+// The parameters of a change that alters nothing at its starting point: only their derivatives need
+// simulating. Empty for any other change.
 std::vector<size_t> Vanishing(const Task& task) {
   std::vector<size_t> places;
   if (task.moved) return places;
@@ -111,7 +112,7 @@ Scanned Judge(const std::vector<RunBasis>& bases, const std::vector<FreeParamete
     VectorXd right(p + starts + e);
     right << basis.transpose() * values, own.transpose() * values;
     if (!normal.allFinite() || !right.allFinite()) throw model::ModelError("its simulation is not finite");
-    // The run's start is taken out; what is left are the known parameters and the change's own.
+    // Eliminates the run's start; the known parameters and the change's own remain.
     std::vector<Index> keep;
     for (Index i = 0; i < p + starts + e; ++i) {
       if (i < p || i >= p + starts) keep.push_back(i);
@@ -154,7 +155,7 @@ Scanned Judge(const std::vector<RunBasis>& bases, const std::vector<FreeParamete
   return scanned;
 }
 
-// One that acts at its starting point is simulated there by itself.
+// A change that already acts at its starting point gets a simulation of its own.
 std::vector<RunColumns> Alone(const Fitted& current, const std::vector<const RunData*>& runs,
                               const Task& task) {
   std::vector<RunColumns> columns(runs.size());
@@ -168,8 +169,8 @@ std::vector<RunColumns> Alone(const Fitted& current, const std::vector<const Run
   return columns;
 }
 
-// Several that do nothing yet share one simulation; the result by task. False when they do something after
-// all.
+// Changes that do nothing yet share one simulation; `columns` gets the results by task. False if they turn
+// out to do something after all.
 bool Together(const Fitted& current, const std::vector<const RunData*>& runs,
               const std::vector<RunBasis>& bases, const std::vector<const Task*>& tasks,
               std::vector<std::vector<RunColumns>>* columns) {
@@ -179,7 +180,7 @@ bool Together(const Fitted& current, const std::vector<const RunData*>& runs,
       model.effects.push_back(task->with.model.effects.back());
     }
   }
-  // Where each task's parameters are in the common model: effects there are in the order of their ids.
+  // Where each task's parameters are in the common model, which orders effects by their ids.
   const std::vector<model::EffectParameter> all = model::EffectParameters(model);
   std::vector<FreeParameter> vanishing;
   size_t effect = current.hypothesis.model.effects.size();
@@ -249,7 +250,8 @@ std::vector<std::vector<Scanned>> Scan(const Fitted& current, const std::vector<
       tasks.push_back(std::move(task));
     }
   }
-  // Those that do nothing at their starting point share simulations, as many as one pass has directions for.
+  // Changes that do nothing at their starting point share simulations, as many as fit the directions of one
+  // pass.
   std::vector<std::vector<size_t>> groups;
   std::vector<size_t> single;
   size_t directions = 0;
@@ -287,7 +289,7 @@ std::vector<std::vector<Scanned>> Scan(const Fitted& current, const std::vector<
         judged[groups[i][m]] = Judge(bases, known, *members[m], columns[m]);
       }
     } catch (const model::ModelError&) {
-      together = false;  // one of them cannot be simulated; each by itself shows which
+      together = false;  // one of them cannot be simulated; trying each alone shows which
     }
     if (!together) {
       for (const size_t t : groups[i]) alone(t);

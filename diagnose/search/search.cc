@@ -13,26 +13,26 @@ namespace hydro::diagnose {
 
 namespace {
 
-// How many of the score test's best are refitted: at the first step, and at later ones.
+// How many of the score test's best changes are refitted, at the first step and at later ones.
 constexpr size_t kRefitsAtFirst = 6;
 constexpr size_t kRefitsLater = 5;
-// From how many of its starting points each of them.
+// From how many starting points each of them is refitted.
 constexpr size_t kStarts = 3;
-// Below this share of what is expected of the best, a change is not refitted.
+// A change is not refitted if the score test expects less of it than this share of the best.
 constexpr double kWorthTrying = 0.15;
-// How many hypotheses are gone on with.
+// How many hypotheses go on to the next step.
 constexpr size_t kBeam = 2;
-// Those are dropped whose sum of squares is so many times the best's.
+// A hypothesis is dropped if its sum of squares is this many times the best one's.
 constexpr double kBehind = 2;
-// What is tried in the place of a part of an explanation is looked at closely up to so many times its sum of
-// squares, after a coarse fit.
+// In an exchange, candidates are examined closely if, after a coarse fit, their sum of squares is at most
+// this many times that of the explanation they would replace.
 constexpr double kNearlyAsGood = 2;
 // How many refits are compared on held-out runs at each step.
 constexpr size_t kFinalists = 3;
-// Further changes are not looked for below this squared gap on held-out runs.
+// Below this squared gap on held-out runs, the search adds no further changes.
 constexpr double kCloseEnough = 1.25;
 
-// Above this squared gap of its fit an explanation is not begun again to see whether it suffices.
+// Above this squared gap of the fit, an explanation with a change removed is not refitted from other starts.
 constexpr double kNear = 3;
 
 std::vector<model::StartState> MeasuredStarts(const std::vector<const RunData*>& runs) {
@@ -42,8 +42,8 @@ std::vector<model::StartState> MeasuredStarts(const std::vector<const RunData*>&
   return starts;
 }
 
-// Of two that predict alike, the one with fewer new numbers; a value that is wrong before an effect that is
-// missing.
+// Of two that predict equally well, prefers the one with fewer new numbers, and a wrong value to a missing
+// effect.
 double Cost(const Explanation& one) {
   double cost = one.held_out_gap();
   for (const FreeParameter& parameter : one.fitted.hypothesis.Free()) {
@@ -57,7 +57,7 @@ bool SameChanges(const Hypothesis& a, const Hypothesis& b) {
   return std::all_of(a.changes.begin(), a.changes.end(), [&](const Change& change) { return b.Has(change); });
 }
 
-// Two of an effect cannot be in one model; nor is something changed twice.
+// A model cannot contain an effect twice, and nothing is changed twice.
 bool CanAdd(const Hypothesis& hypothesis, const Change& change) {
   if (change.effect.empty()) {
     const size_t place = model::BasePlace(change.parameter);
@@ -93,7 +93,7 @@ class Searcher {
   }
 
  private:
-  // For one that is fitted while no others are.
+  // For a fit that runs while no others do.
   FitOptions WithAllJobs(FitOptions options) const {
     options.jobs = context_.jobs;
     return options;
@@ -103,8 +103,7 @@ class Searcher {
     if (context_.tell) context_.tell({stage, fraction});
   }
 
-  // Takes the best of `next`, hypotheses of `step` + 1 changes, as far as it gains enough, and goes on from
-  // there.
+  // Takes the best of `next`, hypotheses of `step` + 1 changes, if it gains enough, and continues from there.
   void Grow(std::vector<Explanation> next, int step) {
     while (!next.empty()) {
       const auto best = std::min_element(next.begin(), next.end(),
@@ -120,8 +119,8 @@ class Searcher {
     }
   }
 
-  // The score test is a straight line's, and what is far from straight may look worthless in it. Where the
-  // likeliest have not explained the runs, every change that has not been refitted alone is.
+  // The score test is linear, so a strongly nonlinear change may look worthless in it. If the likeliest
+  // changes do not explain the runs, this refits every change that has not yet been refitted alone.
   std::vector<Explanation> TryAllAlone() {
     std::vector<Scanned> pool;
     for (const auto& rows : scanned_alone_) {
@@ -135,8 +134,8 @@ class Searcher {
     return FitAll(pool, StartsOf(result_.given.fitted));
   }
 
-  // Each of the beam with one more change, fitted; the best few by their fit, with their held-out prediction.
-  // Those with a sum of squares above `most` are not predicted.
+  // Adds one more change to each hypothesis of the beam and fits it; returns the best few by their fit, with
+  // held-out predictions. Those with a sum of squares above `most` are not predicted.
   std::vector<Explanation> Extend(const std::vector<Explanation>& beam, int step,
                                   double most = std::numeric_limits<double>::infinity()) {
     std::vector<Scanned> pool, periodic;
@@ -172,7 +171,7 @@ class Searcher {
     return FitAll(pool, StartsOf(beam.front().fitted), most);
   }
 
-  // Fits all; the best few by their fit, with their held-out prediction.
+  // Fits all; returns the best few by their fit, with held-out predictions.
   std::vector<Explanation> FitAll(const std::vector<Scanned>& pool,
                                   const std::vector<model::StartState>& starts,
                                   double most = std::numeric_limits<double>::infinity()) {
@@ -181,7 +180,7 @@ class Searcher {
       const auto& own = pool[i].run_starts;
       fits[i] = Fit(pool[i].start, context_.runs, own.empty() ? starts : own, coarse_);
     });
-    // The best start of each set of changes.
+    // Keep the best start of each set of changes.
     std::vector<Fitted> best;
     for (Fitted& fit : fits) {
       if (!fit.ok()) continue;
@@ -223,15 +222,15 @@ class Searcher {
 
   static std::string Step(int step) { return step == 0 ? "" : ", with " + std::to_string(step) + " found"; }
 
-  // The most promising of a score test: the best start of each of the first few changes, and further ones
-  // that promise nearly as much.
+  // Picks the most promising results of a score test: the first few changes, each from its best starting
+  // points, as long as the test expects enough of them.
   void Pick(const Explanation& from, std::vector<std::vector<Scanned>>* scanned, size_t most,
             size_t most_starts, std::vector<Scanned>* pool) const {
     auto& rows = *scanned;
     std::erase_if(rows, [](const auto& starts) { return starts.empty() || !starts.front().failure.empty(); });
     std::stable_sort(rows.begin(), rows.end(),
                      [](const auto& a, const auto& b) { return a.front().expected > b.front().expected; });
-    // The score test is a straight line's; a curved effect can gain several times what it expects.
+    // The score test is linear; a nonlinear effect can gain several times what the test expects.
     const double least = std::max(0.3 * kLeastGain * static_cast<double>(from.fitted.count),
                                   rows.empty() ? 0 : kWorthTrying * rows.front().front().expected);
     for (size_t i = 0; i < rows.size() && i < most; ++i) {
@@ -253,8 +252,8 @@ class Searcher {
     }
   }
 
-  // Each change is tried to be replaced: a greedy choice may have been second best once others are there.
-  // Where all is explained it is still tried: what does as well is a tie.
+  // Tries to replace each change: a greedy choice may turn out second best once others are there. Tries even
+  // if everything is explained: a replacement that does as well is a tie.
   void Exchange() {
     if (result_.best.changes().size() < 2) return;
     const int rounds = result_.best.held_out_gap() < kCloseEnough ? 1 : 2;
@@ -264,7 +263,7 @@ class Searcher {
       for (const Change& change : changes) {
         Tell("exchanging what was found", 0.9);
         const Hypothesis less = Without(result_.best.fitted.hypothesis, change, context_.given);
-        Explanation reduced;  // its own prediction is not asked for
+        Explanation reduced;  // its own prediction is not needed
         reduced.fitted = Fit(less, context_.runs, StartsOf(result_.best.fitted), WithAllJobs(coarse_));
         if (!reduced.fitted.ok()) continue;
         std::vector<Explanation> others =
@@ -282,7 +281,7 @@ class Searcher {
     }
   }
 
-  // What is not needed any more, now that the others are there.
+  // Removes changes that are no longer needed now that the others are there.
   void TakeBack() {
     bool fewer = true;
     while (fewer && result_.best.changes().size() > 1) {
@@ -306,7 +305,7 @@ class Searcher {
   FitOptions coarse_, fine_;
   SearchResult result_;
   std::vector<std::vector<Scanned>> scanned_alone_;  // every change to the given model
-  std::vector<Change> picked_alone_;                 // of those, what was refitted from where it led
+  std::vector<Change> picked_alone_;                 // those of them refitted from where the score test led
 };
 
 }  // namespace

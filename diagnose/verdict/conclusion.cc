@@ -17,7 +17,7 @@ namespace {
 
 // A rival is ruled out if it is worse by this many standard errors, block by block.
 constexpr double kToldApart = 2.5;
-// A base parameter that has to move by more than this factor is not believed.
+// A base parameter that has to move by more than this factor is implausible.
 constexpr double kImplausible = 2.0;
 
 struct Rival {

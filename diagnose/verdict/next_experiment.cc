@@ -19,12 +19,12 @@ namespace {
 
 constexpr double kDuration = 3;     // s
 constexpr double kRate = 1000;      // Hz
-constexpr size_t kStride = 5;       // samples between those that are compared
-constexpr double kHeadroom = 1.05;  // what was seen, and a little
-constexpr size_t kFinalists = 3;    // of each way to hold the shaft: those that base parameters are tried on
-constexpr double kWorthwhile = 1;   // noise units, below which models look the same
+constexpr size_t kStride = 5;       // every so many samples are compared
+constexpr double kHeadroom = 1.05;  // over what the rig has seen
+constexpr size_t kFinalists = 3;  // for each way to hold the shaft: trials that base parameters are fitted to
+constexpr double kWorthwhile = 1;  // noise units; below this the models look the same
 
-// What the rig has been through, and how well its sensors see.
+// What the rig has been through, and how precisely its sensors measure.
 struct Rig {
   double voltage = 0, pressure = 0, speed = 0;
   double low_angle = std::numeric_limits<double>::infinity(), high_angle = -low_angle;
@@ -68,7 +68,7 @@ struct Trial {
   model::Shaft shaft = model::Shaft::kClamped;
   double arm_angle = 0;
   bool bypass = false;
-  std::string reference;  // keys of [reference]
+  std::string reference;  // keys of the [reference] table
   std::shared_ptr<const trajectory::Trajectory> voltage;
   double separation = 0;
 };
@@ -109,7 +109,7 @@ std::vector<Trial> Voltages(double largest) {
                offset, amplitude, kDuration),
           trajectory::MakeChirp(offset, amplitude, 0.5, 30, 0, kDuration));
     }
-    // Up, down past 0 and back: each level long enough to settle, in both directions.
+    // Up, down past 0 and back: each level lasts long enough to settle, in both directions.
     std::vector<trajectory::Step> steps;
     std::string text = "kind = \"steps\"\nsteps = [";
     constexpr double kLevels[] = {0.3, 0.6, 1, 0.5, 0.1, -0.3, -0.6, -1, -0.5, -0.1, 0.8, -0.8};
@@ -135,7 +135,7 @@ std::vector<Trial> Trials(const Rig& rig, const model::Parameters& p) {
   };
   double low = rig.low_angle, high = rig.high_angle;
   if (high - low < 0.1 * p.V_ms / p.c) {
-    // An arm that was clamped once can be clamped elsewhere.
+    // An arm that was clamped in one place can be clamped in others.
     low -= 0.4 * p.V_ms / p.c;
     high += 0.4 * p.V_ms / p.c;
     const double limit = 0.8 * p.V_ms / p.c;
@@ -191,7 +191,7 @@ bool Inside(const model::Response& response, const Rig& rig, bool free) {
   return true;
 }
 
-// Signals of a response in noise units, one below the other.
+// A response's signals in noise units, stacked into one vector.
 Eigen::VectorXd InNoise(const std::array<std::vector<double>, model::kChannels>& values, const Rig& rig) {
   std::vector<double> all;
   for (size_t channel = 0; channel < model::kChannels; ++channel) {
@@ -205,8 +205,9 @@ double Rms(const Eigen::VectorXd& values) {
   return values.size() == 0 ? 0 : values.norm() / std::sqrt(static_cast<double>(values.size()));
 }
 
-// The smallest root-mean-square difference of two rivals; with `absorb` of what is left of it by the base
-// parameters of either. Nothing when the trial leaves the rig's limits or cannot be simulated.
+// The smallest root-mean-square difference between two rivals; with `absorb`, after the base parameters of
+// either have taken up what they can of it. Nothing when the trial leaves the rig's limits or cannot be
+// simulated.
 std::optional<double> Separation(const std::vector<model::ModelDescription>& rivals, const Trial& trial,
                                  const Rig& rig, bool absorb) {
   std::vector<model::Unknown> unknowns;
@@ -260,7 +261,7 @@ std::string Config(const Trial& trial, const Rig& rig) {
   text += Text("duration_s = %.10g\n\n[plant]\nrate_hz = %.10g\n\n[pressure]\nk_p = 0.0\nk_v = 0.0\n\n",
                kDuration, kRate);
   text += "[reference]\nsignal = \"voltage\"  # past both loops\n" + trial.reference;
-  // Somewhat above what is predicted: a fault would end the run.
+  // Limits somewhat above the prediction: a fault would end the run.
   if (rig.pressure > 0) text += Text("\n[limits]\npressure_psi = %.10g\n", std::ceil(1.2 * rig.pressure));
   return text;
 }

@@ -21,7 +21,7 @@ size_t OwnNumbers(const Change& change) {
   return numbers;
 }
 
-// The tried explanation in which only `change` is added to the given model; null when there is none.
+// The tried explanation that adds only `change` to the given model; null when there is none.
 const Explanation* Alone(const std::vector<Explanation>& tried, const Change& change) {
   const Explanation* best = nullptr;
   for (const Explanation& one : tried) {
@@ -31,7 +31,7 @@ const Explanation* Alone(const std::vector<Explanation>& tried, const Change& ch
   return best;
 }
 
-// The best tried explanation that has all of `best` and `change`.
+// The best tried explanation that has all changes of `best` and `change` as well.
 const Explanation* OnTop(const SearchResult& search, const Change& change) {
   for (const Explanation& one : search.tried) {
     if (one.changes().size() != search.best.changes().size() + 1 || !one.fitted.hypothesis.Has(change))
