@@ -23,16 +23,16 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr double kFinestStep = 0.01;    // s: signals are averaged over this or a sample
-constexpr double kLeastDelay = 0.02;    // s, and
-constexpr double kLeastSamples = 2;     // steps
-constexpr double kLongestDelay = 1.0;   // s, and
-constexpr double kLongestShare = 0.02;  // of the run
+constexpr double kLeastDelay = 0.02;    // s; a delay reaches this
+constexpr double kLeastSamples = 2;     // and this many steps
+constexpr double kLongestDelay = 1.0;   // s; none exceeds this
+constexpr double kLongestShare = 0.02;  // or this share of the run
 constexpr double kUnbalanced = 0.1;     // largest share of a balance that correct delays leave open
-constexpr double kMuchBetter = 0.5;     // than any shift of a single channel
-constexpr double kMassive = 0.25;       // than no shift
+constexpr double kMuchBetter = 0.5;     // most left open, relative to any shift of a single channel
+constexpr double kMassive = 0.25;       // the same, relative to no shift
 constexpr int kParts = 8;               // of a run, each estimated by itself
-constexpr double kAgree = 0.2;          // within this share of the delay, or kAgreeSteps
-constexpr double kAgreeSteps = 3;
+constexpr double kAgree = 0.2;          // parts agree within this share of the delay
+constexpr double kAgreeSteps = 3;       // or this many steps
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 // Signals on an even grid, all smoothed a little in the same way, so that balances still hold.

@@ -273,7 +273,7 @@ void Filter::AddUncertainty(size_t k, double step) {
   }
 }
 
-// Coarse angles alone tell when an arm that its seals hold breaks loose, so its balance is ignored near
+// Only coarse angles show when an arm that its seals hold breaks loose, so the arm's balance is ignored near
 // switches.
 void Filter::ForgetArmAtSwitches() {
   const std::vector<double>& time = setup_.time;
