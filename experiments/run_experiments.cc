@@ -33,10 +33,10 @@ void CreateFolder(const std::string& folder) {
   }
 }
 
-// How much of an experiment is done when its pictures remain to be drawn.
+// The share of an experiment that is done once only its pictures remain to be drawn.
 constexpr double kRunShare = 0.9;
 
-// `failure` keeps the exception, for the caller to decide what it means.
+// `failure` keeps the exception; the caller decides what it means.
 ReportEntry RunOne(const Experiment& experiment, const ExperimentRequest& request,
                    const std::function<void(double)>& progress, std::exception_ptr& failure) {
   ReportEntry entry{experiment, std::nullopt, {}, ""};
@@ -62,7 +62,8 @@ void Rethrow(const std::exception_ptr& failure) {
   if (failure) std::rethrow_exception(failure);
 }
 
-// Runs the chosen ones, at most `jobs` at a time. `failures` are theirs, in the same order.
+// Runs the chosen experiments, at most `jobs` at a time. `failures` holds their exceptions, in the same
+// order.
 std::vector<ReportEntry> RunAll(const std::vector<Experiment>& chosen, const ExperimentRequest& request,
                                 std::FILE* errors, std::vector<std::exception_ptr>* failures) {
   std::vector<std::string> names;
@@ -74,7 +75,7 @@ std::vector<ReportEntry> RunAll(const std::vector<Experiment>& chosen, const Exp
   std::vector<ReportEntry> entries(chosen.size());
   failures->resize(chosen.size());
   ProgressDisplay display(errors, isatty(fileno(errors)) == 1, names, costs);
-  // Longest first, so that none is left alone at the end.
+  // Longest first, so that no long one runs alone at the end.
   std::vector<size_t> order(chosen.size());
   std::iota(order.begin(), order.end(), size_t{0});
   std::stable_sort(order.begin(), order.end(), [&](size_t a, size_t b) { return costs[a] > costs[b]; });
@@ -96,7 +97,7 @@ std::vector<ReportEntry> RunAll(const std::vector<Experiment>& chosen, const Exp
   return entries;
 }
 
-// Prints what came out and what failed. True: nothing failed.
+// Prints the results and the failures. Returns true if nothing failed.
 bool PrintResults(const std::vector<ReportEntry>& entries, bool si, std::FILE* out, std::FILE* errors) {
   bool whole = true;
   for (const ReportEntry& entry : entries) {
@@ -111,7 +112,7 @@ bool PrintResults(const std::vector<ReportEntry>& entries, bool si, std::FILE* o
   return whole;
 }
 
-// True: each finding has evidence.
+// Returns true if each finding has evidence.
 bool PrintMissingFindings(const std::vector<ReportEntry>& entries, std::FILE* errors) {
   std::string missing;
   for (const int number : MissingFindings(entries)) {

@@ -32,7 +32,7 @@ constexpr double kMinBarWidth = 0.8;
 constexpr double kTickRoomX = 58;
 constexpr double kTickRoomY = 27;
 
-// A tall panel needs numbers no denser than a wide one.
+// Even a tall panel needs no more than ten numbers.
 double TickRoomY(double frame_height) { return std::max(kTickRoomY, frame_height / 10); }
 
 std::vector<Tick> AxisTicks(const Axis& axis, const AxisRange& range, double pixels, double label_pixels) {

@@ -32,8 +32,8 @@ std::vector<Tick> LinearTicks(const AxisRange& range, double pixels, double labe
 
 std::vector<Tick> LogarithmicTicks(const AxisRange& range, double pixels, double label_pixels) {
   const double decade_pixels = pixels / std::log10(range.max / range.min);
-  // The digits that get a number: as many as there is room for. From 5 to 10 is 0.3 of a decade, from 9 to 10
-  // is 0.05.
+  // The digits that get a number: as many as there is room for. 5 to 10 takes 0.3 of a decade, 9 to 10 takes
+  // 0.05.
   const auto numbered = [&](int digit, int power) {
     if (digit == 1) {
       const int every = std::max(1, static_cast<int>(std::ceil(label_pixels / decade_pixels)));

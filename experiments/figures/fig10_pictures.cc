@@ -77,7 +77,7 @@ Picture RetunedPicture(const Figure10Runs& figure) {
   const ArmRun& run = figure.retuned.run;
   const ArmRun& assisted = figure.causes.runs[kFeedforward];
   const model::Parameters& p = figure.model.parameters;
-  // The arm's swing on the oil, over the last 0.1 s.
+  // The arm's swing on the oil, during the last 0.1 s.
   const auto tail = run.angle.end() - std::min<ptrdiff_t>(500, std::ssize(run.angle));
   const auto [lowest, highest] = std::minmax_element(tail, run.angle.end());
   const double ripple = (*highest - *lowest) / 2;
@@ -118,7 +118,7 @@ Picture StepsPicture(const Figure10Runs& figure) {
   for (const RetunedStep& r : figure.retuned.steps) {
     std::vector<double> share = r.run.angle;
     for (double& value : share) value /= r.step;
-    // Noise hardly shows: dashed, so that the curve below it is seen.
+    // Noise hardly shows, so this curve is dashed to leave the one below it visible.
     steps.curves.push_back(
         page::Line(r.says, r.run.time, share, -1, r.noise ? page::Stroke::kDashed : page::Stroke::kLine));
   }

@@ -54,8 +54,9 @@ runs::StepResponse Measure(const Response& response, double step) {
   return runs::MeasureStep(response.time, response.angle, 0, response.time.size(), 0, step);
 }
 
-// The error at which the pump holds the arm under eq. (16) and (17), coming from below: leakage keeps it
-// turning forward at what makes up for it, so that friction is fully used. dp holds the arm's weight.
+// The error at which the pump holds the arm under eqs. (16) and (17), approached from below: leakage keeps
+// the pump turning forward just fast enough to make up for it, so friction acts in full. dp holds the arm's
+// weight.
 double HoldingError(const model::Parameters& p, const pressure_ctrl::PressureLawSettings& law, double c1,
                     double angle) {
   const double dp = p.mgl * std::cos(angle) / p.k_2;
@@ -88,7 +89,7 @@ FormRuns RunForm(const Figure10Runs& figure, DerivativeForm form, const StackRun
   return runs;
 }
 
-// One cause after the other switched off, in the full model.
+// Runs the full model with one cause after the other switched off.
 CauseRuns RunCauses(const Figure10Runs& figure, const ExperimentOptions& options) {
   CauseRuns causes;
   for (size_t i = 0; i < kCauses.size(); ++i) {
@@ -99,7 +100,7 @@ CauseRuns RunCauses(const Figure10Runs& figure, const ExperimentOptions& options
     if (!cause.saturation) model.parameters.T_pmax = kNoLimit;
     if (!cause.speed_coupling) settings.push_back("pressure.arm_speed_feedforward=true");
     if (!cause.arm_flow) {
-      // Then both sides compress, too: p_1 stays above p_3.
+      // Then both sides compress as well: p_1 stays above p_3.
       model.parameters.c *= 1e-9;
       settings.push_back("model.initial_pressure_psi=5000");
     }
@@ -125,14 +126,14 @@ CauseRuns RunCauses(const Figure10Runs& figure, const ExperimentOptions& options
 std::string RetunedStack(const RetunedStep& r, int64_t seed) {
   std::vector<std::string> settings = {fmt::format("reference.steps=[[{}, {}]]", kStart, r.step),
                                        "time.duration_s=2.1"};
-  if (r.noise) {  // config/demo.toml's
+  if (r.noise) {  // as in config/demo.toml
     for (const char* noise : {"p1_psi=1", "p2_psi=1", "motor_speed_rad_s=0.1", "arm_angle_rad=0.00002",
                               "arm_speed_rad_s=0.0002"}) {
       settings.push_back(std::string("noise.") + noise);
     }
     settings.push_back(fmt::format("noise.seed={}", seed));
   }
-  // With gravity the arm is let settle where it hangs at 0 before it is moved.
+  // With gravity, the arm first settles where it hangs at 0.
   if (r.gravity) {
     settings[0] = fmt::format("reference.steps=[[2.0, {}]]", r.step);
     settings[1] = "time.duration_s=5.0";
@@ -142,7 +143,7 @@ std::string RetunedStack(const RetunedStep& r, int64_t seed) {
 
 double SettlingTime(const ArmRun& run) { return run.response.settling_time_s.value_or(page::kAutomatic); }
 
-// The retuned loop on other steps, with noise and with gravity.
+// Runs the retuned loop on other steps, with noise and with gravity.
 void RunSteps(const model::ModelDescription& model, const ExperimentOptions& options, RetunedRuns* retuned) {
   const model::ModelDescription heavy = ShippedModel("table1_gravity");
   retuned->steps = {{"0.05 rad", 0.05, false, false, {}, 0},

@@ -1,5 +1,5 @@
-// Figure 10: the arm's step at g = 350, linear design model and full model; why they part; and what the motor
-// could do.
+// Figure 10: the arm's step at g = 350 in the linear design model and in the full model, why the two differ,
+// and what the motor allows.
 #include <spdlog/fmt/fmt.h>
 
 #include <cmath>
@@ -16,7 +16,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr double kAllowedRatio = 1.3;  // settling time to the shortest possible
+constexpr double kAllowedRatio = 1.3;  // settling time over the shortest possible
 
 json AsJson(const runs::StepResponse& r) {
   return {{"overshoot_percent", r.overshoot_percent},
@@ -187,7 +187,7 @@ Finding LinearModelFinding(const Figure10Runs& figure) {
 
 std::vector<tables::Column> Columns(const Figure10Runs& figure) {
   const ArmRun& full = figure.forms[0].nonlinear;
-  // The others are shorter.
+  // Pad the shorter columns.
   const auto padded = [&](std::vector<double> values) {
     values.resize(full.time.size(), page::kAutomatic);
     return values;

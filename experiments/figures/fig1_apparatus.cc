@@ -1,4 +1,4 @@
-// Figure 1: the apparatus, its schematic and what its numbers amount to.
+// Figure 1: the apparatus, its schematic, and what its numbers imply.
 #include <spdlog/fmt/fmt.h>
 
 #include <cmath>
@@ -19,9 +19,9 @@ using nlohmann::ordered_json;
 
 // What the paper prints.
 constexpr double kPrintedRatio = 484.7;
-constexpr double kPressureLimit = 2000;          // psi, seals of the actuator
-constexpr double kMotorRpm = 6000;               // the motor of the experiments
-constexpr double kFastMotorRpm = 18000;          // the other one
+constexpr double kPressureLimit = 2000;          // psi, limit of the actuator's seals
+constexpr double kMotorRpm = 6000;               // the motor used in the experiments
+constexpr double kFastMotorRpm = 18000;          // the other motor
 constexpr double kArmLength = 24;                // in; ASSUMPTION of table1_gravity.toml
 constexpr double kKilowatts = kInchPound / 1e3;  // in one in-lbf/s
 
@@ -31,13 +31,13 @@ struct FreeRun {
   double arm_speed = 0;    // rad/s, at the motor's top speed
 };
 
-// The arm, free and without gravity, from one end of its travel: full torque until the motor has reached
-// `top_speed`, then as much as holds it there.
+// The arm, free and without gravity, from one end of its travel: full torque until the motor reaches
+// `top_speed`, then just the torque that holds it there.
 FreeRun RunFree(const model::ModelDescription& model, double top_speed) {
   const model::Parameters& p = model.parameters;
   constexpr double kTick = 1e-3;
   constexpr int kHold = 250;      // ticks at top speed
-  constexpr int kAveraged = 200;  // of them: hydraulic oscillations are faster
+  constexpr int kAveraged = 200;  // ticks of them averaged: hydraulic oscillations are faster
   model::Actuator actuator(model, {.shaft = model::Shaft::kFree, .arm_angle = -0.75});
   FreeRun run;
   const char* names[] = {"time_s",        "voltage_V",       "motor_angle_rad", "motor_speed_rad_s",
@@ -60,8 +60,7 @@ FreeRun RunFree(const model::ModelDescription& model, double top_speed) {
   return run;
 }
 
-// The arm's torque against a clamp, in-lbf, when a motor torque has been held until nothing moves but what
-// leaks.
+// The arm's torque against a clamp, in-lbf, once a held motor torque has left nothing moving but the leakage.
 double HeldTorque(const model::ModelDescription& model, double motor_torque) {
   model::Actuator actuator(model, {.shaft = model::Shaft::kClamped});
   for (int i = 1; i <= 40; ++i) actuator.Advance(motor_torque / model.parameters.k_1, i);
@@ -79,8 +78,8 @@ double UnlimitedSpeed(const model::ModelDescription& model) {
 
 std::string InSi(double torque) { return fmt::format("{:.0f} N m", torque * kInchPound); }
 
-// The arm's torque at each of its speeds up to `top_speed` of the motor, rad/s, when `viscous` and `coulomb`
-// friction take their share of the motor's.
+// The arm's torque over its speed, up to the motor's `top_speed`, rad/s, after `viscous` and `coulomb`
+// friction take their share of the motor's torque.
 page::Curve Envelope(const std::string& label, const model::Parameters& p, double top_speed, double viscous,
                      double coulomb) {
   page::Curve curve;
@@ -122,11 +121,11 @@ page::Figure Limits(const model::Parameters& p) {
 }
 
 constexpr double kTopSpeed = kMotorRpm * kRpm;
-// in-lbf, held against the clamp. Coulomb friction is the same in both.
+// in-lbf, held against the clamp. Coulomb friction is the same at both torques.
 constexpr double kLowTorque = 8;
 constexpr double kHighTorque = 16;
 
-// What was run, and what Table 1 amounts to.
+// What was run, and what Table 1 implies.
 struct Apparatus {
   model::Parameters p;
   model::Parameters fast;     // of the 18000 rpm motor
@@ -140,10 +139,10 @@ struct Apparatus {
   double torque_ratio_lossless = 0;
   double torque_ratio_leaking = 0;
   double displacement_ratio = 0;
-  double needed_k2 = 0;  // for the printed ratio
+  double needed_k2 = 0;  // the k_2 that the printed ratio needs
   double peak = 0;       // in-lbf at the arm
   double peak_with_friction = 0;
-  double at_limit = 0;        // in-lbf at the seals' limit of dp
+  double at_limit = 0;        // in-lbf at the seals' limit on dp
   double at_limit_gauge = 0;  // the same with the low side at p_3
   double reflected = 0;       // lbf-in-s^2 at the arm
   double reflected_fast = 0;
@@ -156,7 +155,7 @@ void SolveInClosedForm(Apparatus* a) {
   const model::Parameters& p = a->p;
   const model::Parameters& fast = a->fast;
   a->torque_ratio_lossless = p.k_2 / p.D;
-  // At rest but for leakage, the pump turns at (c_I + c_E) dp / D, and viscous friction takes its share.
+  // At rest except for leakage, the pump turns at (c_I + c_E) dp / D, and viscous friction takes its share.
   a->torque_ratio_leaking = p.k_2 / (p.D + p.b * (p.c_I + p.c_E) / p.D);
   a->displacement_ratio = 1.83 * 1.83 * 2.20 / 2 / 0.00796;  // Table 1's r, d and D
   a->needed_k2 = kPrintedRatio * p.D;

@@ -1,5 +1,5 @@
 // Figure 2: the clamped actuator under a low torque, with Table 1 alone and with static friction above
-// kinetic.
+// kinetic friction.
 #include <spdlog/fmt/fmt.h>
 
 #include <cmath>
@@ -20,8 +20,8 @@ using nlohmann::json;
 constexpr double kTorque = 6;         // in-lbf: "low"
 constexpr double kDuration = 20;      // s; cycles are judged in its second half
 constexpr double kPictured = 8;       // s
-constexpr double kFasterTorque = 10;  // in-lbf, of Figure 3, which does not stick and slip
-// Static friction that acts at rest only: its excess is gone at speeds at which the pump has hardly moved.
+constexpr double kFasterTorque = 10;  // in-lbf, Figure 3's, which does not stick and slip
+// Static friction that acts only at rest: its excess vanishes at speeds at which the pump has hardly moved.
 constexpr double kAtRestOnly = 1e-4;  // rad/s
 
 model::ModelDescription WithStaticAtRest(double static_torque) {
@@ -39,8 +39,8 @@ struct Scanned {
   size_t sticks = 0;
   StickSlipCycles cycles;
 
-  // (T_static - T_s)/(T_p - T_s): the equations are the same for all torques when dp is counted in
-  // (T_p - T_s)/D.
+  // (T_static - T_s)/(T_p - T_s): with dp in units of (T_p - T_s)/D, the equations are the same for all
+  // torques.
   double ExcessRatio(double kinetic) const { return (static_torque - kinetic) / (torque - kinetic); }
 };
 
@@ -49,10 +49,10 @@ Scanned Scan(const model::ModelDescription& model, double torque, double static_
   return {torque, static_torque, run.sticks(), FindCycles(run)};
 }
 
-// The least static friction (in-lbf) with sustained cycles at kTorque, bracketed.
+// The least static friction (in-lbf) that gives sustained cycles at kTorque, bracketed.
 struct Threshold {
-  double none = 0;    // does not cycle
-  double cycles = 0;  // does
+  double none = 0;    // no cycles
+  double cycles = 0;  // cycles
 };
 Threshold FindThreshold() {
   Threshold threshold{4.0, 4.4};
@@ -81,7 +81,7 @@ json Describe(const Scanned& scanned, double kinetic) {
   return out;
 }
 
-// The part of a run that is pictured.
+// The part of a run that the picture shows.
 page::Curve DpCurve(const OpenLoopRun& run, const std::string& label, int colour) {
   page::Curve curve{.label = label, .x = {}, .y = {}, .colour = colour, .y_low = {}, .y_high = {}};
   for (size_t i = 0; i < run.time.size() && run.time[i] <= kPictured; ++i) {
@@ -116,17 +116,17 @@ struct StickSlipStudy {
   model::Parameters p;
   // The shipped assumption: static friction above kinetic.
   double excess = 0;
-  double speed = 0;  // rad/s, over which the excess falls off
+  double speed = 0;  // rad/s, scale on which the excess falls off
   double static_torque = 0;
 
   OpenLoopRun plain;    // Table 1 alone
   OpenLoopRun cycling;  // with the shipped assumption
   StickSlipCycles cycles;
   std::vector<Scanned> plain_scan;  // Table 1 alone at other torques
-  std::vector<page::Curve> scaled;  // of some of them
+  std::vector<page::Curve> scaled;  // some of them
   std::vector<Scanned> stribeck_scan;
 
-  // How much static friction cycles need, and what it does.
+  // How much static friction cycles need, and its effect.
   Threshold threshold;
   double threshold_ratio = 0;
   std::vector<Scanned> at_rest;
@@ -135,7 +135,7 @@ struct StickSlipStudy {
   double creep_dp = 0;        // psi
   double leak_rate = 0;       // 1/s
   double slip_dp = 0;         // psi
-  double largest_static = 0;  // in-lbf, without cycles at kFasterTorque
+  double largest_static = 0;  // in-lbf, the largest without cycles at kFasterTorque
 
   const PumpChange& stick() const { return plain.changes.at(0); }
   const PumpChange& slip() const { return plain.changes.at(1); }
@@ -165,7 +165,8 @@ void ScanStaticFriction(const model::ModelDescription& stribeck, StickSlipStudy*
 
 void SolveInClosedForm(StickSlipStudy* study) {
   const model::Parameters& p = study->p;
-  // Where Table 1 alone ends: slipping steadily, side 1 at p_3 by its valve, q_2 = 0 in eq. (12), eq. (4).
+  // The end state of Table 1 alone: slipping steadily, side 1 held at p_3 by its valve, q_2 = 0 in eq. (12),
+  // eq. (4).
   const double creep_per_psi = (p.c_E + p.c_I) / p.D;
   study->creep_dp = (kTorque - p.T_s) / (p.D + p.b * creep_per_psi);
   // While the pump sticks, d(dp)/dt = -(beta/V_ms)(2 c_I + c_E) dp by eqs. (13), (14), both valves closed.

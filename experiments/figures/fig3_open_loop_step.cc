@@ -22,8 +22,8 @@ using nlohmann::json;
 constexpr double kTorque = 10;   // in-lbf
 constexpr double kDuration = 3;  // s
 
-// The second-order response that eqs. (4) and (14) give while the pump turns forward and the valve holds p_1
-// at p_3: from rest to a first peak, in closed form.
+// The second-order response of eqs. (4) and (14) while the pump turns forward and the valve holds p_1 at p_3:
+// from rest to the first peak, in closed form.
 struct SpringAnalogy {
   double natural_frequency = 0;  // rad/s, undamped and without leakage
   double damping_ratio = 0;
@@ -45,8 +45,8 @@ SpringAnalogy AnalyseSpring(const model::Parameters& p) {
   return spring;
 }
 
-// The same step without the one-way valves, until the pump first stands: the model's equations with both
-// switches held closed.
+// The same step without the one-way valves, until the pump first stops: the model's equations with both
+// valves held closed.
 struct WithoutValves {
   std::vector<double> time, dp, p1, p2;
   size_t peak = 0;            // of dp

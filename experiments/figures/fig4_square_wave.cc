@@ -20,7 +20,7 @@ struct Level {
   double error = 0;      // psi, reference - dp at its end
 };
 
-// Rising constant references, each held for 1 s.
+// Increasing constant references, each held for 1 s.
 std::vector<Level> HoldLevels(const StackRunner& run_stack, const std::string& name, double feedforward) {
   std::vector<Level> levels;
   std::string steps;
@@ -40,7 +40,7 @@ std::vector<Level> HoldLevels(const StackRunner& run_stack, const std::string& n
   return levels;
 }
 
-// A feed-forward and what is left with it.
+// A feed-forward and the error that it leaves.
 struct Remainder {
   std::string label;
   double feedforward = 0;
@@ -97,8 +97,8 @@ json LevelsJson(const Remainder& remainder) {
   return out;
 }
 
-// The wave with the loop sampled ten times as often, nearer to an analog one. In this process always: no
-// separate processes keep up with that in real time.
+// The wave with the loop sampled ten times as often, closer to an analog one. Always in this process:
+// separate processes cannot keep up with that rate in real time.
 TrackingError TrackFinely() {
   return MeasureTracking(
       RunPressureLoop(RunStackInProcess, {.name = "fig4-50kHz",
@@ -123,7 +123,7 @@ std::vector<Remainder> HoldAllLevels(const ExperimentOptions& options, const Tra
   return remainders;
 }
 
-// in-lbf, asked for by a jump of the reference, had dp settled and the pump stopped before it.
+// in-lbf, what a jump of the reference demands if dp had settled and the pump stopped before it.
 double JumpTorque(const TrackingStudy& study) {
   return 2 * kWaveAmplitude * PressureLoopParameters().k_1 * study.gains.k_p;
 }

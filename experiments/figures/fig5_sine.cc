@@ -17,7 +17,7 @@ using nlohmann::json;
 
 double Degrees(double radians) { return radians * 180 / std::numbers::pi; }
 
-// The first harmonic of dp per that of the reference, over whole periods.
+// The first harmonic of dp over that of the reference, over whole periods.
 std::complex<double> FirstHarmonic(const PressureLoopRun& run) {
   std::complex<double> in = 0, out = 0;
   for (size_t i = 0; i + 1 < run.time.size(); ++i) {

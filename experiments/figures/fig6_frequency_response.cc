@@ -21,15 +21,15 @@ using nlohmann::json;
 
 constexpr double kFitToHz = 60;
 constexpr double kShownToHz = 100;
-// psi, of a reference about zero. The first is the figure's own.
+// psi, amplitudes of a reference about zero. The first is the figure's own.
 constexpr double kAmplitudes[] = {60, 10, 20, 30, 100, 300};
 
 struct Cases {
   std::vector<BodeCase> about_zero;  // in the order of kAmplitudes
   BodeCase no_friction;              // T_s = 0, both sides compress
   BodeCase one_sided;                // about 1000 psi, side 1 at p_3
-  BodeCase one_sided_gains;          // the same with gains designed for it
-  BodeCase pumped_up;                // about 300 psi, an amplitude that lets side 1 ride above p_3
+  BodeCase one_sided_gains;          // the same, with gains designed for it
+  BodeCase pumped_up;                // about 300 psi, with an amplitude that lets side 1 ride above p_3
 
   template <typename Self>
   static auto List(Self& self) {
@@ -65,7 +65,7 @@ Cases MakeCases(const model::ModelDescription& table1, const pressure_ctrl::Pres
   PressureSweep& free = cases.no_friction.sweep;
   free.model.parameters.T_s = 0;
   free.amplitude = 30;
-  free.initial_pressure = 1500;  // leaks away with (beta/V_ms) c_E = .51/s: above p_3 for the whole sweep
+  free.initial_pressure = 1500;  // leaks away at (beta/V_ms) c_E = .51/s: stays above p_3 for the whole sweep
   free.bands = {{1, 6, 7, 4}, {6, 100, 7, 2}};
   cases.one_sided = make("one_sided", "side 1 held at p_3", Side1Held());
   cases.one_sided.linear = true;
@@ -93,9 +93,9 @@ BodeCurve Predicted(const BodeCase& bode_case, const std::string& label, page::S
   return PredictedCurve(bode_case, label, kShownToHz, stroke, colour);
 }
 
-// Coulomb friction acts on a sine of the motor's speed like a viscous friction 4 T_s/(pi speed) (describing
-// function). At omega_n the speed is k_1 k_p A/B with B all viscous friction, so that B, and zeta with it,
-// grow by 1/(1 - 4 T_s/(pi k_1 k_p A)).
+// On a sine of the motor's speed, Coulomb friction acts like viscous friction 4 T_s/(pi speed) (describing
+// function). At omega_n the speed is k_1 k_p A/B, with B all the viscous friction, so B, and with it zeta,
+// grows by 1/(1 - 4 T_s/(pi k_1 k_p A)).
 double DampingWithFriction(const model::Parameters& p, const pressure_ctrl::PressureGains& gains,
                            double damping_ratio, double amplitude) {
   return damping_ratio / (1 - 4 * p.T_s / (std::numbers::pi * p.k_1 * gains.k_p * amplitude));
@@ -105,13 +105,13 @@ struct MidStrokeStudy {
   model::Parameters p;
   pressure_ctrl::PressureGains two_sided, one_sided;
   Cases cases;
-  double worst_db = 0;  // differences from the linearised loop, of the cases that stay linear
+  double worst_db = 0;  // differences from the linearised loop, over the cases that stay linear
   double worst_deg = 0;
 
   // In closed form.
   SecondOrderModel design = {1, kLoopNaturalFrequency, kLoopDampingRatio, 0};
-  double sticking = 0;     // psi: nothing moves at smaller amplitudes
-  double figure_zeta = 0;  // the design's, and friction's at the figure's amplitude
+  double sticking = 0;     // psi; nothing moves at smaller amplitudes
+  double figure_zeta = 0;  // the design's plus friction's, at the figure's amplitude
   pressure_ctrl::SecondOrder one_sided_rule;
   double followed = 0;  // psi, the amplitude that the motor's torque allows at kPaperBandwidthHz
 
@@ -126,7 +126,7 @@ void SolveInClosedForm(MidStrokeStudy* study) {
   study->figure_zeta =
       DampingWithFriction(p, study->two_sided, kLoopDampingRatio, study->figure().sweep.amplitude);
   study->one_sided_rule = pressure_ctrl::PressureLoopDynamics(p, 0, study->two_sided, 1);
-  // Without feedback's help, at frequencies well above omega_n: J w^2 dp/s is torque, s psi per rad.
+  // Without help from the feedback, well above omega_n: J w^2 dp/s is torque, with s in psi per rad.
   const double stiffness = 2 * p.beta * p.D / p.V_ms;
   const double w = 2 * std::numbers::pi * kPaperBandwidthHz;
   study->followed = p.T_pmax * stiffness / (p.J * w * w);

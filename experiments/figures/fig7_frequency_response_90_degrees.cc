@@ -24,9 +24,9 @@ constexpr double kShownToHz = 200;
 constexpr double kQuarterTurn = std::numbers::pi / 2;
 const std::vector<SweptBand> kBands = {{1, 6, 16, 4}, {6, 200, 16, 2}};
 
-constexpr double kAlike = 1.1;  // a natural frequency within 10 % of mid-stroke's
+constexpr double kAlike = 1.1;  // alike: natural frequency within 10 % of mid-stroke's
 
-// What the model answers when it is asked for an arm angle.
+// The model's error message for an arm angle.
 std::string Refusal(const model::ModelDescription& model, double arm_angle) {
   try {
     model::Actuator actuator(model, {.shaft = model::Shaft::kClamped, .arm_angle = arm_angle});
@@ -72,14 +72,14 @@ Cases MakeCases(const model::ModelDescription& wide, const pressure_ctrl::Pressu
     return made;
   };
   Cases cases;
-  // Friction and saturation act on k_1 k_p A: about as much of both as in Figure 6.
+  // Friction and saturation depend on k_1 k_p A: about as much of both as in Figure 6.
   cases.quarter_turn = make("quarter_turn", "α = π/2", BothCompress(), 20, 0);
   cases.mid_stroke = make("mid_stroke", "α = 0", BothCompress(), 20, 0);
   cases.mid_stroke.sweep.arm_angle = 0;
   cases.large = make("large_amplitude", "α = π/2, ±100 psi", BothCompress(), 100, 0);
   cases.redesigned = make("redesigned", "α = π/2, gains for there", BothCompress(), 150, 0);
   cases.redesigned.sweep.gains = redesigned;
-  // The pump must not reverse: its speed is w dp/s beside the creep (c_E + c_I) dp/D.
+  // The pump must not reverse: its speed is w dp/s on top of the creep (c_E + c_I) dp/D.
   cases.large_side = make("large_side", "side 2 compresses (V_2)", Side1Held(), 2, 1000);
   cases.small_side = make("small_side", "side 1 compresses (V_1)", Side2Held(), 2, -1000);
   cases.small_side.mode.pump = -1;
@@ -97,16 +97,16 @@ json Dynamics(const pressure_ctrl::SecondOrder& loop) {
 struct QuarterTurnStudy {
   model::Parameters table1;
   model::ModelDescription wide;
-  std::string refusal;  // Table 1's, of a quarter turn
+  std::string refusal;  // Table 1's, for a quarter turn
   pressure_ctrl::PressureGains gains, redesigned;
   Cases cases;
 
   // In closed form.
-  double limit = 0;         // rad, at which Table 1's V_1 is 0
-  double V_1 = 0, V_2 = 0;  // in^3, of the wide actuator
+  double limit = 0;         // rad, where Table 1's V_1 is 0
+  double V_1 = 0, V_2 = 0;  // in^3, the wide actuator's
   pressure_ctrl::SecondOrder two_sides, large_side, small_side;
-  double ratio = 0;         // natural frequency beside mid-stroke's
-  double alike_V_ms = 0;    // in^3, that makes the ratio kAlike
+  double ratio = 0;         // natural frequency over mid-stroke's
+  double alike_V_ms = 0;    // in^3, makes the ratio kAlike
   double two_sided_hz = 0;  // bandwidth
 
   const BodeCase& figure() const { return cases.quarter_turn; }
@@ -126,9 +126,9 @@ void SolveInClosedForm(QuarterTurnStudy* study) {
   study->V_2 = p.V_ms + p.c * kQuarterTurn;
   study->two_sides = pressure_ctrl::PressureLoopDynamics(p, kQuarterTurn, gains, 2);
   study->large_side = pressure_ctrl::PressureLoopDynamics(p, kQuarterTurn, gains, 1);
-  // V_1 in V_2's place.
+  // With V_1 in place of V_2.
   study->small_side = pressure_ctrl::PressureLoopDynamics(p, -kQuarterTurn, gains, 1);
-  // omega_n^2 goes with 1/V_1 + 1/V_2 = (2/V_ms)/(1 - (c alpha/V_ms)^2).
+  // omega_n^2 is proportional to 1/V_1 + 1/V_2 = (2/V_ms)/(1 - (c alpha/V_ms)^2).
   const double displaced = p.c * kQuarterTurn / p.V_ms;
   study->ratio = 1 / std::sqrt(1 - displaced * displaced);
   study->alike_V_ms = p.c * kQuarterTurn / std::sqrt(1 - 1 / (kAlike * kAlike));

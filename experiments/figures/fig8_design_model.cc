@@ -19,7 +19,7 @@ using nlohmann::json;
 
 double Decibel(const Complex& z) { return 20 * std::log10(std::abs(z)); }
 
-// Degrees, carried on without jumps from the one before.
+// Degrees, unwrapped from the previous value.
 double Phase(const Complex& z, double previous) {
   const double phase = std::arg(z) * 180 / std::numbers::pi;
   return phase + 360 * std::round((previous - phase) / 360);
@@ -30,14 +30,14 @@ struct Bode {
   std::vector<double> clamped_db, free_db, feedforward_db, design_db;
 };
 
-// Figure 8's model beside exact linearisations of Table 1's.
+// Figure 8's model beside exact linearisations of Table 1's model.
 struct DesignStudy {
   model::Parameters p;
   DesignModel design;
   StabilityLimit limit;
   Margins margins;
 
-  // The pressure loop that the real model closes with eq. (16), the arm clamped.
+  // The pressure loop that eq. (16) closes around the real model, with the arm clamped.
   pressure_ctrl::PressureLawSettings law;
   pressure_ctrl::SecondOrder two_sided;
   pressure_ctrl::SecondOrder one_sided;
@@ -100,8 +100,8 @@ DesignStudy RunStudy(const ExperimentOptions& options) {
   feedforward.arm_speed_ratio = p.c / p.D;
   const LinearArmLoop assisted(table1, feedforward);
   study.exact_assisted = assisted.Poles(c1, c2);
-  // A displacement that does not answer the arm's motion leaves Figure 8: the check that nothing else
-  // differs.
+  // If the displacement does not respond to the arm's motion, Figure 8 must remain: the check that nothing
+  // else differs.
   model::ModelDescription still = table1;
   still.parameters.c *= 1e-9;
   study.without_motion = LinearArmLoop(still, study.law).Poles(c1, c2);

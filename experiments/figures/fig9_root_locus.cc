@@ -1,4 +1,4 @@
-// Figure 9: the root locus of the position loop's design model, and the same loop sampled.
+// Figure 9: the root locus of the position loop's design model, and of the same loop sampled.
 #include <spdlog/fmt/fmt.h>
 
 #include <algorithm>
@@ -21,10 +21,10 @@ using nlohmann::json;
 
 constexpr double kNaN = page::kAutomatic;
 constexpr double kPaperCriticalGain = 770;
-constexpr double kPaperRatio = 484.7;  // of the transmission, as the paper's text prints it
+constexpr double kPaperRatio = 484.7;  // transmission ratio printed in the paper's text
 constexpr double kStep = 0.1;          // rad; the model is linear
 constexpr double kDuration = 0.6;      // s
-constexpr double kResolution = 1e-5;   // s: the largest stable T is confirmed by simulation this far on
+constexpr double kResolution = 1e-5;   // s; simulation confirms the largest stable T to within this
 constexpr std::array<double, 4> kIntervals = {0.001, 0.002, 0.005, 0.010};
 
 struct Form {
@@ -69,7 +69,7 @@ runs::StepResponse Measure(const Response& response) {
   return runs::MeasureStep(response.time, response.angle, 0, response.time.size(), 0, kStep);
 }
 
-// Whether a simulated step dies away: its deviation late in the run against the same earlier.
+// Whether a simulated step dies away: compares its deviation late in the run with that earlier.
 bool SimulatedStepDecays(const DesignModel& model, double interval, DerivativeForm form) {
   constexpr int kSamples = 30000;
   const Response response = SampledStep(model, kPaperGain, interval, form, kStep, kSamples * interval, 1);
@@ -81,16 +81,16 @@ bool SimulatedStepDecays(const DesignModel& model, double interval, DerivativeFo
   return deviation(kSamples - 1000, kSamples) < deviation(2000, 3000);
 }
 
-// The loop sampled at one interval.
+// The loop at one sampling interval.
 struct SampledLoop {
   double interval = 0;         // s
   double spectral_radius = 0;  // below 1: stable
   double critical_gain = 0;
   std::vector<Complex> poles;                          // in the z plane
-  std::array<runs::StepResponse, kForms.size()> step;  // of each form
+  std::array<runs::StepResponse, kForms.size()> step;  // one per form
 
   bool stable() const { return spectral_radius < 1; }
-  // Without an end there is no overshoot to name.
+  // A step that never settles has no overshoot.
   double Overshoot(size_t form) const { return stable() ? step[form].overshoot_percent : kNaN; }
 };
 
@@ -98,13 +98,13 @@ struct RootLocusStudy {
   model::Parameters p;
   DesignModel design;
   StabilityLimit limit;
-  DesignModel printed_ratio;  // with k_2 from the ratio that the text prints
+  DesignModel printed_ratio;  // with k_2 from the ratio printed in the text
   StabilityLimit printed_limit;
   std::vector<Complex> paper_poles;
 
   std::vector<double> gains;
-  std::vector<std::vector<Complex>> poles;     // of each gain
-  std::vector<std::vector<Complex>> branches;  // the same, followed over the gain
+  std::vector<std::vector<Complex>> poles;     // one set per gain
+  std::vector<std::vector<Complex>> branches;  // the same poles, followed over the gain
 
   std::array<runs::StepResponse, kForms.size()> continuous;
   std::array<SampledLoop, kIntervals.size()> sampled;
@@ -329,7 +329,7 @@ Picture LocusPicture(const RootLocusStudy& study) {
            .drawing = ""}};
 }
 
-// Steps of the loop under one form of the derivative, continuous and sampled.
+// Steps of the loop with one form of the derivative, continuous and sampled.
 page::Panel StepPanel(const DesignModel& design, size_t f) {
   page::Panel panel;
   panel.title = kForms[f].name;

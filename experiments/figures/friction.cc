@@ -1,5 +1,5 @@
 // "Determining the System Parameters": T_s from the voltage at which the motor breaks away, then T_s and b
-// from torque against steady speed with the two sides connected.
+// from torque over steady speed with the two sides connected.
 #include <spdlog/fmt/fmt.h>
 
 #include <algorithm>
@@ -26,19 +26,19 @@ constexpr double kEncoderStep = 2 * std::numbers::pi / 16384;  // rad
 constexpr double kSpeedNoise = 0.3;                            // rad/s
 constexpr double kSpeedStep = 0.1;                             // rad/s
 
-// Held voltages in each direction, V: up to 550 of the motor's 628 rad/s (6000 rpm). A hold is 15 time
+// Voltages held in each direction, V: up to 550 of the motor's 628 rad/s (6000 rpm). Each hold lasts 15 time
 // constants J/b.
 constexpr double kVoltages[] = {1.25, 1.625, 2.0, 2.5, 3.0};
 constexpr double kHold = 30;  // s
 
-// The ramps: quickly to what surely does not move the motor, then slowly on.
+// The ramps: quickly to a voltage that surely does not move the motor, then slowly on.
 constexpr double kRampStart = 0.8;                                 // V
 constexpr double kRampEnd = 1.1;                                   // V
 constexpr double kRampTime = 15;                                   // s
-constexpr double kLeadTime = 0.5;                                  // s, to the ramp's start
+constexpr double kLeadTime = 0.5;                                  // s, before the ramp starts
 constexpr double kBackwardFrom = 20;                               // s
 constexpr double kRampRate = (kRampEnd - kRampStart) / kRampTime;  // V/s
-// A reading this far from rest has moved: five steps of the encoder, the last of which begins at its middle.
+// A reading this far from rest counts as moved: five encoder steps, the last of which begins at its middle.
 constexpr double kMoved = 4.5 * kEncoderStep;  // rad
 
 std::string Config(double duration, const std::string& reference, int64_t seed) {
@@ -91,13 +91,12 @@ runs::MeasuredRun MeasureRamps(const ExperimentOptions& options) {
 
 json Interval(const maths::Estimate& estimate) { return {estimate.low, estimate.high}; }
 
-// "Contains" for a text.
+// "Contains" as text.
 const char* Holds(const maths::Estimate& estimate, double truth) {
   return estimate.low <= truth && truth <= estimate.high ? "holds" : "misses";
 }
 
-// The most that acceleration may still take at any of the points, in-lbf, as far as the noise lets it be
-// seen.
+// The most that acceleration can still take at any of the points, in-lbf, as far as the noise reveals it.
 double AccelerationTorque(const PumpFriction& friction, const model::Parameters& p) {
   double most = 0;
   for (const FrictionPoint& point : friction.points) {
@@ -106,14 +105,14 @@ double AccelerationTorque(const PumpFriction& friction, const model::Parameters&
   return most;
 }
 
-// The most that is left of the transients at any of the points, in-lbf: the intervals are wider by it.
+// The largest remaining transient at any of the points, in-lbf; it widens the intervals.
 double TransientTorque(const PumpFriction& friction) {
   double most = 0;
   for (const FrictionPoint& point : friction.points) most = std::max(most, point.transient);
   return most;
 }
 
-// What the points and lines give for the files, simulated or measured.
+// The numbers that the points and lines give for the files, simulated or measured.
 json FitNumbers(const PumpFriction& friction, const model::Parameters& p) {
   json numbers = {{"T_s", friction.T_s.value},
                   {"b", friction.b.value},
@@ -172,7 +171,7 @@ page::Curve FittedLine(const PumpFriction& friction, double direction, double fa
           .y_high = {}};
 }
 
-// Points less lines, with the speeds' error bars as the torques that they stand for.
+// Points minus lines, with the speeds' error bars converted to torques.
 page::Panel ResidualsPanel(const PumpFriction& friction, const page::Axis& speed) {
   page::Curve residuals{
       .label = "", .x = {}, .y = {}, .stroke = page::Stroke::kPoints, .colour = 0, .y_low = {}, .y_high = {}};
@@ -304,9 +303,9 @@ struct RigStudy {
   model::Parameters p;
   runs::MeasuredRun ramps;
   PumpFriction friction;
-  PumpFriction by_angle;              // from the encoder's angles in place of the speeds
+  PumpFriction by_angle;              // from the encoder's angles instead of the speeds
   std::vector<RampReading> readings;  // forward, backward
-  double excess = 0;                  // in-lbf, that the ramp adds to T_s until movement is seen
+  double excess = 0;                  // in-lbf, what the ramp adds to T_s before movement shows
 };
 
 RigStudy MeasureRig(const ExperimentOptions& options) {

@@ -1,4 +1,4 @@
-// "Open and closed-loop experiments": c_E and c_I from clamped open-loop runs, fitted by simulation.
+// "Open and closed-loop experiments": c_E and c_I fitted by simulation to clamped open-loop runs.
 #include <spdlog/fmt/fmt.h>
 
 #include <algorithm>
@@ -19,10 +19,10 @@ namespace {
 
 using nlohmann::json;
 
-// Transducers of the simulated rig: noisy, behind a 12-bit converter over 0 to 2000 psi.
+// Transducers of the simulated rig: noisy, read through a 12-bit converter from 0 to 2000 psi.
 constexpr double kPressureNoise = 3;             // psi
 constexpr double kPressureStep = 2000.0 / 4096;  // psi
-constexpr double kTorques[] = {10, 6, -10, -6};  // in-lbf, a run each
+constexpr double kTorques[] = {10, 6, -10, -6};  // in-lbf, one run each
 constexpr double kStart = 0.1;                   // s, when the torque steps up
 constexpr double kRelease = 2.5;                 // s, when it steps to 0
 constexpr double kDuration = 4.5;                // s
@@ -129,7 +129,7 @@ Picture FitPicture(const std::vector<runs::MeasuredRun>& runs, const LeakageFit&
       const double measured = run.p2.values[i] - run.p1.values[i];
       for (page::Curve* curve : {&dots, &low_dots, &rest}) curve->x.push_back(run.time[i]);
       dots.y.push_back(measured);
-      // Of the side that is lower in the model: the lower reading of two equal pressures is not their mean.
+      // Take the side that is lower in the model: the lower of two readings of equal pressures is biased.
       low_dots.y.push_back((model.p1[i] < model.p2[i] ? run.p1 : run.p2).values[i] - p_3);
       rest.y.push_back((measured - modelled) / noise);
     }
@@ -142,7 +142,7 @@ Picture FitPicture(const std::vector<runs::MeasuredRun>& runs, const LeakageFit&
   return {"", {.caption = caption, .panels = {dp, low, residuals}, .drawing = ""}};
 }
 
-// All runs below each other, as measured and as simulated.
+// All runs one after the other, as measured and as simulated.
 tables::Table FitTable(const std::vector<runs::MeasuredRun>& runs, const LeakageFit& fit) {
   tables::Table table;
   table.columns = {
@@ -161,8 +161,8 @@ tables::Table FitTable(const std::vector<runs::MeasuredRun>& runs, const Leakage
   return table;
 }
 
-// The first stick of a run in closed form: with both valves closed p_1 + p_2 - 2 p_3 decays with (beta/V)
-// c_E, p_2 - p_1 with (beta/V)(c_E + 2 c_I).
+// A run's first stick in closed form: with both valves closed, p_1 + p_2 - 2 p_3 decays at the rate (beta/V)
+// c_E and p_2 - p_1 at (beta/V)(c_E + 2 c_I).
 struct StickDecay {
   double c_E = 0;
   double c_I = 0;
@@ -188,7 +188,7 @@ StickDecay FitStick(const runs::MeasuredRun& run, const SimulatedRun& model, con
   return decay;
 }
 
-// Mean reading of the side that the pump draws from, while it creeps before the release.
+// Mean reading, while the pump creeps before the release, of the side that it draws from.
 double LowSideWhileCreeping(const runs::MeasuredRun& run) {
   const std::vector<double>& low = (run.voltage.values[run.samples() / 4] > 0 ? run.p1 : run.p2).values;
   double sum = 0;
@@ -223,8 +223,8 @@ constexpr char kPaperSays[] =
     "c_E and c_I were adjusted until the simulated pressure difference agreed fairly well with that of the "
     "clamped actuator after a step of voltage.";
 
-// Residuals beyond this many standard deviations of the noise: whatever was fitted makes up for something
-// else.
+// Residuals beyond this many standard deviations of the noise mean that the fit compensates for something
+// that the model lacks.
 constexpr double kDescribed = 5;
 constexpr char kNotDescribed[] =
     "NEITHER is to be believed: the model does not describe this run with any leakage. A wrong scale of a "
@@ -263,7 +263,7 @@ ExperimentResult AnalyseMeasured(const ExperimentOptions& options) {
   return result;
 }
 
-// The simulated rig's runs, one a torque.
+// The simulated rig's runs, one per torque.
 std::vector<runs::MeasuredRun> MeasureAll(const ExperimentOptions& options, const model::Parameters& p) {
   std::vector<runs::MeasuredRun> runs;
   for (size_t i = 0; i < std::size(kTorques); ++i) {

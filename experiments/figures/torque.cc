@@ -18,7 +18,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr double kPathSpeed = 0.15;  // rad/s, the largest along the path that is pictured
+constexpr double kPathSpeed = 0.15;  // rad/s, the peak speed along the path in the picture
 
 struct Study {
   double feedforward = 0;  // V/psi, of the reference
@@ -50,7 +50,7 @@ Study RunStudy(const ExperimentOptions& options) {
     study.sweeps.push_back(RunTorqueSweep(options.run_stack, sweep.mean, sweep.amplitude));
     options.progress(0.2 + 0.1 * static_cast<double>(study.sweeps.size()));
   }
-  // Beyond 0.3 rad/s the k_v term alone would drive the pressure to the seals' limit.
+  // Above 0.3 rad/s, the k_v term alone would drive the pressure to the seals' limit.
   for (const double speed : {0.05, kPathSpeed, 0.3}) {
     study.paths.push_back(RunTorqueOnPath(options.run_stack, speed, false));
   }
@@ -366,7 +366,7 @@ std::vector<tables::Column> Columns(const Study& study) {
                                          {"motor_torque_in_lbf", without.run.torque},
                                          {"torque_with_arm_speed_feedforward_in_lbf", torque_with},
                                          {"motor_torque_with_arm_speed_feedforward_in_lbf", with.run.torque}};
-  for (tables::Column& column : columns) {  // every 1 ms is enough here
+  for (tables::Column& column : columns) {  // 1 ms steps are enough here
     std::vector<double> thinned;
     for (size_t i = 0; i < column.values.size(); i += 5) thinned.push_back(column.values[i]);
     column.values = std::move(thinned);

@@ -19,7 +19,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr double kOil = 7.95e-5;     // lbf s^2/in^4, 0.85 kg/l: ASSUMED, for the length of line only
+constexpr double kOil = 7.95e-5;     // lbf s^2/in^4, 0.85 kg/l: ASSUMED, used only for the length of line
 constexpr double kShownDecay = 100;  // 1/s
 
 json Describe(const WaveLimits& limits, const pressure_ctrl::PressureGains& gains) {
@@ -207,7 +207,7 @@ Picture BodePicture(const WavesStudy& study) {
        .drawing = ""}};
 }
 
-// The real part of the wave's pole over k_p; the pole is followed from gain to gain.
+// The real part of the wave's pole over k_p, followed from gain to gain.
 page::Curve GrowthCurve(const std::string& label, const LinearPressureLoop& loop,
                         const pressure_ctrl::PressureGains& gains) {
   page::Curve curve = page::Line(label, {}, {}, -1);

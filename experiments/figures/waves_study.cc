@@ -14,11 +14,11 @@
 namespace hydro::experiments {
 namespace {
 
-constexpr double kInitialPressure = 1500;  // psi: leaks away slowly, both sides stay above p_3
-constexpr double kTrialStep = 0.2;  // psi: small, so that a growing wave does not reach the torque limit
+constexpr double kInitialPressure = 1500;  // psi; leaks away slowly, so both sides stay above p_3
+constexpr double kTrialStep = 0.2;  // psi; small, so that a growing wave does not reach the torque limit
 
-// Table 1 with waves. Without Coulomb friction: amplitudes at which the pump moves at 300 Hz against 4 in-lbf
-// are beyond the motor.
+// Table 1 with waves, but without Coulomb friction: moving the pump at 300 Hz against 4 in-lbf takes
+// amplitudes beyond the motor.
 model::ModelDescription WithWaves(double frequency_hz, double volume_fraction, double damping) {
   model::ModelDescription model = ShippedModel("table1");
   model.parameters.T_s = 0;
@@ -95,7 +95,7 @@ pressure_psi = inf
   return trial;
 }
 
-// What the linearised loop says: the wave's mode and the gains that it allows.
+// The linearised loop's result: the wave's mode and the gains that it allows.
 void AnalyseAnalogLoop(WavesStudy* study) {
   const LinearPressureLoop analog(study->linear, {});
   const std::complex<double> open_pole = WavePole(analog, {});
@@ -142,7 +142,7 @@ void RunTrials(const StackRunner& run_stack, WavesStudy* study) {
 void VaryLine(WavesStudy* study) {
   for (const double fraction : {0.03, 0.05, 0.1, 0.15, 0.2, 0.3, 0.4, 0.5}) {
     const double hz = ClosedFormHz(fraction);
-    // The line's resistance is kept, too: its damping of the mode goes as 1/w.
+    // Keeps the line's resistance too, so the mode's damping varies as 1/w.
     const double damping = kWaveDamping * kWaveHz / hz;
     const LinearPressureLoop loop(LinearisedClamped(WithWaves(hz, fraction, damping)), {});
     study->by_volume.push_back({fraction, damping, hz, std::abs(WavePole(loop, {})) / (2 * std::numbers::pi),

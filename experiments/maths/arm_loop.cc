@@ -11,9 +11,9 @@
 namespace hydro::experiments {
 namespace {
 
-constexpr double kStartPressure = 500;  // psi, above p_3: both valves are closed
+constexpr double kStartPressure = 500;  // psi, above p_3: both valves closed
 
-// Of the loop with a free arm.
+// Rows of the loop with a free arm.
 enum Row { kSpeed, kDifference, kAlpha, kAlphaRate };
 
 Eigen::Map<const Eigen::MatrixXd> AsMatrix(const std::vector<double>& values, size_t rows) {
@@ -26,7 +26,8 @@ struct Loop {
   Eigen::VectorXd B;  // per dp_ref
 };
 
-// v = k_p ((dp_ref - dp) - k_v (theta' - ratio alpha')) + feedforward dp_ref around the linearised actuator.
+// Closes v = k_p ((dp_ref - dp) - k_v (theta' - ratio alpha')) + feedforward dp_ref around the linearised
+// actuator.
 Loop ClosePressureLoop(const model::ModelDescription& model, const model::ActuatorOptions& options,
                        int compressed_sides, const pressure_ctrl::PressureLawSettings& law) {
   const model::Equations equations(model, options);
@@ -39,8 +40,8 @@ Loop ClosePressureLoop(const model::ModelDescription& model, const model::Actuat
     state[model::kP1] = model.parameters.p_3;
   }
   const model::LinearModel linear = model::Linearise(equations, 0, 0, mode, state.data());
-  // Without the motor's angle, on which nothing depends, and with dp for p1 and p2. At mid-stroke their mean
-  // goes its own way; with side 1 held, p2 alone is dp.
+  // Drops the motor's angle, on which nothing depends, and replaces p1 and p2 by dp. At mid-stroke their mean
+  // evolves independently; with side 1 held, p2 alone is dp.
   const bool free = options.shaft == model::Shaft::kFree;
   const Eigen::Index n = free ? 4 : 2;
   Eigen::MatrixXd to_states = Eigen::MatrixXd::Zero(linear.states, n);
@@ -98,7 +99,7 @@ std::vector<Complex> LinearArmLoop::Poles(double c1, double c2) const {
 
 Response LinearArmLoop::Step(double c1, double c2, double step, double duration, double spacing) const {
   const auto n = static_cast<Eigen::Index>(states_);
-  Eigen::MatrixXd rates = Eigen::MatrixXd::Zero(n + 1, n + 1);  // the reference as one more state
+  Eigen::MatrixXd rates = Eigen::MatrixXd::Zero(n + 1, n + 1);  // the reference is one more state
   rates.topLeftCorner(n, n) = AsMatrix(A_, states_);
   rates.col(kAlpha).head(n) -= c1 * AsMatrix(B_, states_);
   rates.col(kAlphaRate).head(n) -= c2 * AsMatrix(B_, states_);

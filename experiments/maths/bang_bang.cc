@@ -5,8 +5,8 @@
 namespace hydro::experiments {
 namespace {
 
-// Speed v under a constant torque and viscous friction: inertia v' = torque - viscous v, from rest. Braking
-// is the same, backward in time, with a viscous torque that helps: viscous < 0.
+// Speed v from rest under a constant torque and viscous friction: inertia v' = torque - viscous v. Braking is
+// the same backward in time, with a viscous torque that helps: viscous < 0.
 struct Ramp {
   double inertia;
   double torque;
@@ -18,7 +18,7 @@ struct Ramp {
   }
   double Distance(double speed) const {
     const double share = viscous * speed / torque;
-    // What follows loses its digits where viscosity hardly matters: there, by its series.
+    // The formula below loses digits where viscosity hardly matters; use its series there.
     if (std::fabs(share) < 1e-4) return inertia * speed * speed / torque * (0.5 + share / 3);
     return -inertia / viscous * (speed + torque / viscous * std::log1p(-share));
   }
@@ -27,7 +27,7 @@ struct Ramp {
 Ramp Accelerating(const RigidDrive& d) { return {d.inertia, d.torque - d.friction, d.viscous}; }
 Ramp Braking(const RigidDrive& d) { return {d.inertia, d.torque + d.friction, -d.viscous}; }
 
-// The speed below `limit` at which a rising function of it reaches `value`; `limit` when it does not.
+// The speed below `limit` at which a rising function of speed reaches `value`; `limit` if it does not.
 template <class Function>
 double SpeedWhere(const Function& rising, double value, double limit) {
   if (rising(limit) <= value) return limit;
@@ -40,7 +40,7 @@ double SpeedWhere(const Function& rising, double value, double limit) {
 }
 
 double HighestSpeed(const RigidDrive& d) {
-  // At the terminal speed the ramp takes for ever.
+  // The ramp takes forever to reach the terminal speed.
   const double terminal = d.viscous > 0 ? (d.torque - d.friction) / d.viscous : d.speed;
   return std::fmin(d.speed, terminal * (1 - 1e-12));
 }
@@ -74,14 +74,14 @@ FastestMove FastestRestToRest(const RigidDrive& drive, double distance) {
 }
 
 double FastestSettling(const RigidDrive& drive, double distance, double band) {
-  // The move that stops at the band's far edge is the fastest past its near edge.
+  // The move that stops at the band's far edge reaches the near edge soonest.
   const FastestMove move = FastestRestToRest(drive, distance * (1 + band));
   const Ramp down = Braking(drive);
   const double speed_at_edge =
       SpeedWhere([&](double speed) { return down.Distance(speed); }, 2 * band * distance, move.peak_speed);
   double time = move.time - down.Time(speed_at_edge);
-  // A band so wide that braking begins within it: the near edge is passed earlier still, at least at the peak
-  // speed or while accelerating.
+  // If the band is so wide that braking begins within it, a move passes the near edge earlier still, at least
+  // at the peak speed or while accelerating.
   const double before_braking = 2 * band * distance - down.Distance(speed_at_edge);
   if (before_braking > 1e-12 * distance) {
     const Ramp up = Accelerating(drive);

@@ -25,8 +25,8 @@ std::vector<double> HannWindow(size_t length) {
   return window;
 }
 
-// The signal without its mean, with three quarters of a segment of silence before and after it, so that all
-// of it is covered by as many windows.
+// The signal without its mean, with three quarters of a segment of silence before and after it, so that
+// equally many windows cover all of it.
 std::vector<double> WithoutMean(const std::vector<double>& signal, size_t length) {
   const double mean = std::accumulate(signal.begin(), signal.end(), 0.0) / static_cast<double>(signal.size());
   const size_t silence = length - length / 4;
@@ -35,7 +35,7 @@ std::vector<double> WithoutMean(const std::vector<double>& signal, size_t length
   return padded;
 }
 
-// The largest length up to `length` that the transform does fast: factors 2, 3 and 5 only.
+// The largest length up to `length` that transforms fast: factors 2, 3 and 5 only.
 size_t FastLength(size_t length) {
   for (;; --length) {
     size_t rest = length;
@@ -76,8 +76,8 @@ CrossSpectra Average(const std::vector<double>& input, const std::vector<double>
   return sums;
 }
 
-// The gain over lines begin to end as a polynomial in frequency (of degree 2 where there are lines enough),
-// least squares: its value at the centre of power, and the share of the output's power that it explains.
+// The gain over lines begin to end as a polynomial in frequency (of degree 2 where there are enough lines),
+// by least squares: its value at the centre of power, and the share of the output's power that it explains.
 ResponsePoint PointOfBand(const CrossSpectra& spectra, size_t begin, size_t end, double line_hz) {
   double power = 0;
   double moment = 0;

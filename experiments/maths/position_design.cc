@@ -13,7 +13,7 @@
 namespace hydro::experiments {
 namespace {
 
-// Where `falling` passes 0 between two frequencies, on a logarithmic scale.
+// Where `falling` crosses 0 between two frequencies, on a logarithmic scale.
 double Crossing(const std::function<double(double)>& falling, double low, double high) {
   for (int i = 0; i < 100; ++i) {
     const double middle = std::sqrt(low * high);
@@ -55,7 +55,7 @@ std::vector<Complex> PolynomialRoots(const std::vector<double>& coefficients) {
 }
 
 void SortPoles(std::vector<Complex>* poles) {
-  // Rounding must not decide the order of a pair.
+  // Rounding errors must not decide the order of a pair.
   const auto key = [](const Complex& z) { return std::round(z.real() * 1e9); };
   std::sort(poles->begin(), poles->end(), [&](const Complex& a, const Complex& b) {
     return key(a) != key(b) ? key(a) < key(b) : a.imag() > b.imag();
@@ -101,8 +101,8 @@ Margins StabilityMargins(const DesignModel& model, double gain) {
   Margins margins;
   margins.gain = limit.gain / gain;
   margins.phase_crossover = limit.frequency;
-  // The magnitude falls throughout up to the pressure loop's resonance, and beyond it; the highest crossover
-  // lies below the phase crossover, where it is 1/margin < 1.
+  // The magnitude falls up to the pressure loop's resonance, and again beyond it. The highest crossover lies
+  // below the phase crossover, where the magnitude is 1/margin < 1.
   double above = limit.frequency;
   while (std::abs(OpenLoop(model, gain, above / 1.02)) < 1) above /= 1.02;
   margins.gain_crossover =

@@ -15,7 +15,7 @@ constexpr int kStates = 4;
 constexpr int kAngle = 2;
 using Held = Eigen::Matrix<double, kStates + 1, kStates + 1>;
 
-// Over `interval` with dp_ref held.
+// The transition over `interval` with dp_ref held.
 Held Transition(const DesignModel& m, double interval) {
   Held rates = Held::Zero();
   const double squared = m.natural_frequency * m.natural_frequency;
@@ -28,7 +28,7 @@ Held Transition(const DesignModel& m, double interval) {
   return maths::Exponential(rates * interval);
 }
 
-// From one sample to the next, the law closing the loop: the states and the previous sample's angle.
+// The closed loop from one sample to the next: the states and the previous sample's angle.
 Held SampledLoop(const DesignModel& m, double gain, double interval) {
   const Held held = Transition(m, interval);
   Held loop = Held::Zero();
@@ -40,7 +40,7 @@ Held SampledLoop(const DesignModel& m, double gain, double interval) {
   return loop;
 }
 
-// Where `stable` first fails, from a value at which it holds on.
+// The value at which `stable` first fails, starting from one at which it holds.
 double Limit(const std::function<bool(double)>& stable, double from) {
   double low = from;
   while (stable(low * 1.05)) low *= 1.05;
@@ -72,7 +72,7 @@ Response FreeResponse(const std::vector<double>& A, const std::vector<double>& s
 
 Response ContinuousStep(const DesignModel& m, double gain, DerivativeForm form, double step, double duration,
                         double spacing) {
-  // The closed loop in controllable canonical form, its input 1 as a fifth state.
+  // The closed loop in controllable canonical form, with its input of 1 as a fifth state.
   const std::vector<double> denominator = CharacteristicPolynomial(m, gain);
   Held rates = Held::Zero();
   for (int i = 0; i < 3; ++i) rates(i, i + 1) = 1;

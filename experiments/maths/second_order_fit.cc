@@ -14,8 +14,8 @@ namespace {
 
 constexpr double kDegree = std::numbers::pi / 180;
 
-// Residuals: ln |measured/fitted| and the phase of measured/fitted, in radians, point by point.
-// Unknown: ln K, ln wn, ln zeta, delay (kept at 0 unless asked for).
+// Residuals: ln |measured/fitted| and the phase of measured/fitted, in radians, point by point. Unknowns: ln
+// K, ln wn, ln zeta, delay (held at 0 unless requested).
 struct Residuals {
   using Scalar = double;
   enum { NUM_RESIDUALS = Eigen::Dynamic, NUM_PARAMETERS = 4 };
@@ -81,7 +81,7 @@ SecondOrderFit FitSecondOrder(const std::vector<ResponsePoint>& points,
   Residuals residuals = {&counted, PhasesDeg(counted), settings.with_delay};
   for (double& phase : residuals.phases) phase *= kDegree;
 
-  // Start where the phase passes -90 degrees.
+  // Start where the phase crosses -90 degrees.
   double wn = 2 * std::numbers::pi * counted.back().frequency_hz;
   for (size_t i = 0; i < counted.size(); ++i) {
     if (residuals.phases[i] > -std::numbers::pi / 2) continue;

@@ -14,13 +14,13 @@ namespace {
 constexpr size_t kLineWidth = 108;
 
 std::optional<SiUnit> SiUnitOf(const Comparison& row) {
-  // NaN compares false, so that one that does not exist decides nothing.
+  // NaN compares false, so a missing value decides nothing.
   const bool expected = std::abs(row.expected) > std::abs(row.here) || std::isnan(row.here);
   return FindSiUnit(row.unit, expected ? row.expected : row.here);
 }
 
-// "about 7300" in in-lbf -> "about 824.8"; texts with more than one number, or words after it, keep theirs
-// and get its unit.
+// "about 7300" in in-lbf -> "about 824.8". Texts with more than one number, or with words after it, stay
+// unchanged and get their unit.
 std::string PaperInSi(const std::string& text, const SiUnit& unit) {
   const size_t begin = text.find_first_of("0123456789.");
   if (begin == std::string::npos) return text;
@@ -31,7 +31,7 @@ std::string PaperInSi(const std::string& text, const SiUnit& unit) {
   return text.substr(0, begin) + ShortNumber(value * unit.factor);
 }
 
-// Characters on a terminal (UTF-8).
+// Width on a terminal in characters (UTF-8).
 size_t Width(const std::string& text) {
   return static_cast<size_t>(std::count_if(
       text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xc0) != 0x80; }));

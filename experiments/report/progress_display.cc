@@ -30,7 +30,7 @@ void ProgressDisplay::Finish(size_t task, bool failed) {
   ended.done = 1;
   ++finished_;
   line_.Wipe();
-  // One alone speaks for itself: what failed is told by whoever started it.
+  // A single task needs no line of its own; the caller reports its failure.
   if (tasks_.size() > 1 && (!terminal_ || failed)) {
     std::fprintf(out_, "%s %s (%d of %zu)\n", ended.name.c_str(), failed ? "failed" : "done", finished_,
                  tasks_.size());

@@ -22,7 +22,7 @@ class Rig {
                                           std::numeric_limits<double>::quiet_NaN(),
                                           model::ActuatorOptions{}.relative_tolerance)),
         voltage_(voltage) {
-    simulation_->Advance(voltage, 0);  // breaks away, if it does
+    simulation_->Advance(voltage, 0);  // breaks away, if at all
   }
   void Advance(double until) { simulation_->Advance(voltage_, until); }
 
@@ -42,7 +42,7 @@ class Rig {
 
 double SampleTime(size_t i, double interval) { return static_cast<double>(i) * interval; }
 
-// Sample intervals within which the pump or a valve switches, or dp turns.
+// Sample intervals in which the pump or a valve switches, or dp turns.
 std::vector<bool> EventfulIntervals(const model::ModelDescription& model, double voltage, size_t samples,
                                     double interval) {
   Rig rig(model, voltage);
@@ -64,7 +64,7 @@ size_t OpenLoopRun::sticks(double from) const {
   }));
 }
 
-// A first run finds where something happens, a second one looks closely there.
+// A first run finds where something happens; a second one resolves it finely.
 OpenLoopRun RunOpenLoop(const model::ModelDescription& model, double torque, double duration,
                         double sample_interval) {
   const double voltage = torque / model.parameters.k_1;
@@ -91,7 +91,7 @@ OpenLoopRun RunOpenLoop(const model::ModelDescription& model, double torque, dou
       const double time = SampleTime(i, sample_interval) + fraction * sample_interval;
       rig.Advance(k == steps ? SampleTime(i + 1, sample_interval) : time);
       if (rig.sticks() != stuck) run.changes.push_back({time, rig.sticks(), rig.dp()});
-      // dp rests until the pump breaks away: the first extreme is a peak.
+      // dp is constant until the pump breaks away: the first extreme is a peak.
       if (rig.rises() != rose && (rose || !run.extremes.empty())) {
         run.extremes.push_back({time, rose, rig.dp(), rig.p2()});
       }

@@ -48,8 +48,8 @@ const std::vector<double>& Values(const tables::Table& table, const char* name) 
   return column->values;
 }
 
-// Torque of the motor per psi of dp while it creeps steadily: what dp itself takes, and what the speed that
-// makes up for the leakage costs in viscous friction and in the k_v term.
+// Motor torque per psi of dp in a steady creep: what dp itself takes, plus the viscous friction and the k_v
+// term at the speed that makes up for the leakage.
 double CreepTorque(const model::Parameters& p, const pressure_ctrl::PressureGains& gains) {
   return p.D + (p.b + p.k_1 * gains.k_p * gains.k_v) * (p.c_E + p.c_I) / p.D;
 }
@@ -103,7 +103,7 @@ TrackingError MeasureTracking(const PressureLoopRun& run, double from) {
   double squares = 0;
   size_t saturated = 0, count = 0;
   for (size_t i = 0; i < run.time.size(); ++i) {
-    // In separate processes the first ticks have no reference yet.
+    // With separate processes, the first ticks have no reference yet.
     if (run.time[i] < from || std::isnan(run.reference[i])) continue;
     const double e = run.reference[i] - run.dp[i];
     squares += e * e;

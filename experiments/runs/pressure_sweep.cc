@@ -11,14 +11,14 @@ namespace hydro::experiments {
 namespace {
 
 // The sine starts this factor below the band, so that the valves have let in what they will, and ends above
-// it.
+// the band.
 constexpr double kBelow = 4;
 constexpr double kAbove = 1.4;
 
 std::string Configuration(const PressureSweep& sweep, const SweptBand& band) {
   const double initial =
       std::isnan(sweep.initial_pressure) ? sweep.model.parameters.p_3 : sweep.initial_pressure;
-  // The command of tick k acts from tick k on, and the reference is sampled at each tick.
+  // The command of tick k acts from tick k on, and the reference is sampled at every tick.
   return fmt::format(R"([model]
 file = "model.toml"
 shaft = "clamped"

@@ -26,8 +26,8 @@
 namespace hydro::experiments {
 namespace {
 
-// A UDP port that no socket of this machine uses, reserved as long as this lives: so that the stack meets no
-// other one. LCM, which shares its ports, can use it.
+// A UDP port that no socket on this machine uses, reserved for the lifetime of this object, so that the stack
+// meets no other one. LCM shares its ports, so it can use it.
 class ReservedPort {
  public:
   ReservedPort() : socket_(socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0)) {
@@ -55,8 +55,8 @@ class ReservedPort {
   int port_ = 0;
 };
 
-// Runs a program to its end, its output in `output_file`; returns its exit code, 128 + N when signal N ended
-// it. It gets SIGTERM when we die.
+// Runs a program to its end with its output in `output_file`. Returns its exit code, or 128 + N when signal N
+// ended it. The program gets SIGTERM when this process dies.
 int RunToItsEnd(const std::vector<std::string>& command, const std::string& output_file) {
   const int output = open(output_file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
   if (output < 0) throw std::system_error(errno, std::generic_category(), output_file);
@@ -67,7 +67,7 @@ int RunToItsEnd(const std::vector<std::string>& command, const std::string& outp
   const pid_t us = getpid();
   const pid_t pid = fork();
   if (pid == 0) {
-    // Only what is safe between fork and exec in a program with threads.
+    // Only calls that are safe between fork and exec in a program with threads.
     prctl(PR_SET_PDEATHSIG, SIGTERM);
     if (getppid() != us) _exit(1);
     dup2(output, STDOUT_FILENO);
@@ -101,7 +101,7 @@ std::string LastLines(const std::string& file, size_t count) {
 }  // namespace
 
 StackRunner SeparateProcesses(const std::string& program_folder, const std::string& folder) {
-  // Two stacks at a time would take the processor from each other: this is real time.
+  // Two real-time stacks at once would compete for the processor.
   auto one_at_a_time = std::make_shared<std::mutex>();
   return [=](const StackSetup& setup) {
     const std::lock_guard lock(*one_at_a_time);
@@ -125,7 +125,7 @@ StackRunner SeparateProcesses(const std::string& program_folder, const std::stri
                                         "model.file=" + model,
                                         "--set",
                                         "bus.url=" + port.url()};
-    if (parsed.plant.command_delay_ticks == 0) {  // an answer cannot act before it was computed
+    if (parsed.plant.command_delay_ticks == 0) {  // a command cannot act before it is computed
       command.insert(command.end(), {"--set", "plant.command_delay_ticks=1"});
     }
     const int exit_code = RunToItsEnd(command, stem + ".txt");

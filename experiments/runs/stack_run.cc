@@ -11,7 +11,7 @@
 namespace hydro::experiments {
 namespace {
 
-// What ExportRun() needs of a log, taken from the bus instead.
+// Collects from the bus what ExportRun() needs of a log.
 class Recording {
  public:
   void Take(const bus::RawMessage& message) {

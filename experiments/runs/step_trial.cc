@@ -9,7 +9,7 @@ namespace hydro::experiments {
 Response RunStepTrial(const StepTrial& trial) {
   model::Actuator actuator(trial.model, {});
   position_ctrl::PositionLaw position(trial.position);
-  // What the law has seen before the step: the arm at rest at 0.
+  // The law's history before the step: the arm at rest at 0.
   position.Update(0, 0, 1);
   pressure_ctrl::PressureLawInput input;
   double next_pressure_ref = 0;  // computed, not yet in force

@@ -14,7 +14,7 @@ constexpr double kShownCoherence = 0.8;
 constexpr double kTrustedCoherence = 0.99;
 constexpr double kLowHz = 2.5;
 
-// As a column: NaN becomes null in JSON.
+// As in a column: NaN becomes null in JSON.
 json Number(double value) { return std::isfinite(value) ? json(value) : json(nullptr); }
 
 struct Parts {
@@ -199,7 +199,7 @@ std::vector<page::Panel> WithCoherence(std::vector<page::Panel> panels,
                         .notes = {},
                         .rules = {},
                         .height = 0.6};
-  // The range of the panels above, which may have curves beyond the points.
+  // The same range as the panels above, whose curves may extend beyond the points.
   std::vector<double> frequencies;
   for (const page::Curve& curve : panels.front().curves) {
     frequencies.insert(frequencies.end(), curve.x.begin(), curve.x.end());

@@ -14,13 +14,13 @@
 namespace hydro::experiments {
 namespace {
 
-constexpr double kLeast = 1e-9;  // in^3/(s psi), between which leakages are looked for
+constexpr double kLeast = 1e-9;  // in^3/(s psi), bounds of the search
 constexpr double kMost = 1e-3;
-constexpr double kStep = 1e-4;          // of a logarithm, for derivatives
+constexpr double kStep = 1e-4;          // in a logarithm, for derivatives
 constexpr double kIdentifiable = 0.25;  // half an interval, relative
 constexpr double kNormal95 = 1.96;      // there are thousands of degrees of freedom
 
-// The parameters that are taken as known and matter most.
+// The parameters taken as known that matter most.
 struct KnownParameter {
   const char* name;
   double model::Parameters::*member;
@@ -38,7 +38,7 @@ model::ModelDescription WithLeakage(model::ModelDescription model, double log_c_
   return model;
 }
 
-// Standard deviation of a signal's noise, where it is not given: from the differences of neighbours, half of
+// Standard deviation of a signal's noise if it is not given: from the differences of neighbours, half of
 // which are below 0.6745 sqrt(2) deviations.
 double Noise(const runs::MeasuredSignal& signal) {
   if (signal.noise.has_value()) return *signal.noise;
@@ -53,7 +53,7 @@ double Noise(const runs::MeasuredSignal& signal) {
   return std::max(*middle / (0.6745 * std::sqrt(2.0)), 1e-6);
 }
 
-// Mean of the first values while nothing acts yet.
+// Mean of the first values, before anything acts.
 double StartOf(const runs::MeasuredSignal& signal, size_t resting) {
   double sum = 0;
   int count = 0;
@@ -65,7 +65,7 @@ double StartOf(const runs::MeasuredSignal& signal, size_t resting) {
   return sum / count;
 }
 
-// A run with what is needed to compare it with a simulation.
+// A run with what a comparison with a simulation needs.
 struct Case {
   const runs::MeasuredRun* run;
   double p1_noise, p2_noise;
@@ -86,7 +86,7 @@ struct Case {
   }
 };
 
-// Shaft and sensors that the fit needs.
+// Checks for the shaft and sensors that the fit needs.
 void CheckConditions(const runs::MeasuredRun& run, const model::ModelDescription& model) {
   if (run.shaft != model::Shaft::kClamped) {
     throw InputError(run.file + ": found a shaft that is " +
@@ -110,7 +110,7 @@ void CheckConditions(const runs::MeasuredRun& run, const model::ModelDescription
   }
 }
 
-// A torque that overcomes friction, and pressure that it builds up.
+// Checks for a torque that overcomes friction, and for the pressure that it builds up.
 void CheckSwing(const runs::MeasuredRun& run, const model::Parameters& p, double largest, double noise) {
   double least_dp = std::numeric_limits<double>::infinity(), most_dp = -least_dp;
   for (size_t i = 0; i < run.samples(); ++i) {
@@ -134,8 +134,8 @@ void CheckSwing(const runs::MeasuredRun& run, const model::Parameters& p, double
   }
 }
 
-// A voltage that overcomes friction raises the side that it drives the pump to. (A smaller one may stand
-// against what is left from before.)
+// Checks that a voltage that overcomes friction raises the pressure of the side that it drives the pump to.
+// (A smaller voltage may oppose what is left from before.)
 void CheckDirection(const runs::MeasuredRun& run, const model::Parameters& p) {
   double along = 0;  // V psi
   for (size_t i = 0; i < run.samples(); ++i) {
@@ -150,7 +150,8 @@ void CheckDirection(const runs::MeasuredRun& run, const model::Parameters& p) {
   }
 }
 
-// psi, of both sides at the start. Missing first values tell nothing of it; p_3 is what rest tends to.
+// psi, both sides at the start. Missing first values tell nothing about it; p_3 is where the model comes to
+// rest.
 double StartPressure(const runs::MeasuredRun& run, double p_3, size_t resting, double noise) {
   if (std::isnan(run.p1.values.front()) || std::isnan(run.p2.values.front())) return p_3;
   const double p1 = StartOf(run.p1, resting), p2 = StartOf(run.p2, resting);
@@ -182,7 +183,7 @@ Case MakeCase(const runs::MeasuredRun& run, const model::ModelDescription& model
   return result;
 }
 
-// What a Fisher matrix about the logarithms says.
+// The information in a Fisher matrix of the logarithms.
 LeakageInformation Information(const Eigen::Matrix2d& fisher, double c_E, double c_I) {
   LeakageInformation information;
   const double infinity = std::numeric_limits<double>::infinity();
@@ -226,7 +227,7 @@ double Cost(const model::ModelDescription& model, const std::vector<Case>& cases
   return cost;
 }
 
-// Starts from the best of a coarse grid, so that no guess is needed.
+// Starts from the best point of a coarse grid, so that no guess is needed.
 bool Solve(const model::ModelDescription& model, const std::vector<Case>& cases, double* logs) {
   double least = std::numeric_limits<double>::infinity();
   for (const double c_E : {1e-7, 1e-6, 1e-5, 1e-4}) {
@@ -240,7 +241,7 @@ bool Solve(const model::ModelDescription& model, const std::vector<Case>& cases,
     }
   }
   ceres::NumericDiffOptions differences;
-  differences.relative_step_size = 1e-5;  // of logarithms about -12
+  differences.relative_step_size = 1e-5;  // relative to logarithms of about -12
   ceres::Problem problem;
   for (const Case& run_case : cases) {
     auto* cost = new ceres::DynamicNumericDiffCostFunction<RunResiduals, ceres::CENTRAL>(
@@ -269,7 +270,7 @@ maths::Estimate Interval(double value, double relative_error) {
   return {value, value / factor, value * factor};
 }
 
-// Sums up what the runs tell, part by part.
+// Sums the information from the runs, part by part.
 struct FisherSums {
   Eigen::Matrix2d floating = Eigen::Matrix2d::Zero(), held_side = floating, floating_dp = floating,
                   held_dp = floating;
@@ -283,7 +284,7 @@ struct FisherSums {
                                    jacobian.row(k + 1).transpose() * jacobian.row(k + 1);
       const Eigen::RowVector2d dp =
           (run_case.p2_noise * jacobian.row(k + 1) - run_case.p1_noise * jacobian.row(k)) / noise;
-      // The model holds a side at p_3 to the last bit while its valve is open.
+      // The model holds a side at exactly p_3, to the last bit, while its valve is open.
       const bool held = simulated.p1[i] == p_3 || simulated.p2[i] == p_3;
       (held ? held_side : floating) += both;
       (held ? held_dp : floating_dp) += dp.transpose() * dp;
@@ -291,12 +292,12 @@ struct FisherSums {
   }
 };
 
-// What all runs tell about the values found.
+// What all runs tell about the fitted values.
 struct Evidence {
   FisherSums sums;
   double squares = 0;  // of the residuals
   int64_t count = 0;   // of the residuals
-  // How the gradient of the cost changes with 1 % of each parameter that is taken as known.
+  // The change of the cost's gradient with 1 % of each parameter taken as known.
   std::vector<Eigen::Vector2d> pulls = std::vector<Eigen::Vector2d>(kKnown.size(), Eigen::Vector2d::Zero());
 };
 
@@ -324,7 +325,7 @@ void AddRun(const model::ModelDescription& model, const double* logs, const Case
   evidence->squares += residuals.squaredNorm();
   for (const double residual : residuals) evidence->count += residual != 0;
   for (size_t i = 0; i < kKnown.size(); ++i) {
-    // A thousandth: small enough to be linear across sticks and slips.
+    // A thousandth is small enough to be linear across sticks and slips.
     model::ModelDescription changed = found;
     changed.parameters.*kKnown[i].member *= 1.001;
     evidence->pulls[i] += 10 * jacobian.transpose() * (run_case.Residuals(simulate(changed)) - residuals);
@@ -334,7 +335,7 @@ void AddRun(const model::ModelDescription& model, const double* logs, const Case
   fit->p2_noise.push_back(run_case.p2_noise);
 }
 
-// How well the values are told, and by which measurements.
+// How well the values are determined, and by which measurements.
 void SetIntervals(const Evidence& evidence, double c_E, double c_I, LeakageFit* fit) {
   const FisherSums& sums = evidence.sums;
   const Eigen::Matrix2d all = sums.floating + sums.held_side;
@@ -345,7 +346,7 @@ void SetIntervals(const Evidence& evidence, double c_E, double c_I, LeakageFit* 
   fit->floating_difference = Information(sums.floating_dp, c_E, c_I);
   fit->held_difference = Information(sums.held_dp, c_E, c_I);
   fit->all_difference = Information(sums.floating_dp + sums.held_dp, c_E, c_I);
-  // Residuals larger than the noise say that the model lacks something: the intervals grow with them.
+  // Residuals above the noise mean that the model lacks something: widen the intervals by as much.
   const double scale = std::max(1.0, fit->rms);
   fit->c_E = Interval(c_E, scale * fit->information.c_E_error);
   fit->c_I = Interval(c_I, scale * fit->information.c_I_error);

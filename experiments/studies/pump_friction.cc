@@ -9,7 +9,7 @@
 namespace hydro::experiments {
 namespace {
 
-// Speeds are different when they differ by this much of the fastest.
+// Speeds count as different when they differ by this much of the fastest.
 constexpr double kDifferentSpeed = 0.05;
 
 int DifferentSpeeds(const std::vector<FrictionPoint>& points) {
@@ -61,8 +61,9 @@ void CheckSupport(const runs::MeasuredRun& run, const SteadySpeeds& found,
   }
 }
 
-// The most that inertia takes of the torque in a window, in-lbf: what is left, with the time constant J/b of
-// eq. (4), of the speed's difference in the first tenth of the hold; within what the window itself shows.
+// The most that inertia takes of the torque in a window, in-lbf: what is left of the speed difference in the
+// hold's first tenth after decaying with the time constant J/b of eq. (4), limited to what the window itself
+// shows.
 double TransientTorque(const SpeedWindow& window, double J, double b) {
   const double shown = J * window.LargestAcceleration();
   const double surely = J * (std::abs(window.acceleration) - window.acceleration_95);
@@ -77,7 +78,7 @@ double TransientTorque(const SpeedWindow& window, double J, double b) {
 
 using Regressors = std::vector<std::vector<double>>;
 
-// With `errors`, the most that each of the torques may be off by besides its scatter.
+// `errors`, if given: the most that each torque may be off by, besides its scatter.
 maths::Estimate Estimated(const maths::LinearFit& fit, const Regressors& regressors,
                           const std::vector<double>& errors, const std::vector<double>& weights) {
   const double value = fit.Value(weights);

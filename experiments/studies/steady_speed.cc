@@ -9,13 +9,13 @@ namespace hydro::experiments {
 namespace {
 
 constexpr int kBlocks = 10;
-constexpr int kLeastSamples = 3;           // of a block
-constexpr int kStarts = 20;                // stretches that are tried in a hold
-constexpr double kNegligibleDrift = 1e-5;  // of the speed, over a stretch: a trend, but no matter
-constexpr double kLargestShare = 5e-3;     // of the torque that acceleration may take
-constexpr double kSlowest = 0.01;          // of the fastest speed, of the largest voltage: less is none
+constexpr int kLeastSamples = 3;           // per block
+constexpr int kStarts = 20;                // stretches tried per hold
+constexpr double kNegligibleDrift = 1e-5;  // of the speed, over a stretch: a trend, but negligible
+constexpr double kLargestShare = 5e-3;     // of the torque, for acceleration
+constexpr double kSlowest = 0.01;          // of the fastest speed or largest voltage: less counts as zero
 
-// Speed over the samples from first to before end; NaN when too few of them have a value.
+// Speed over the samples from first up to end; NaN when too few of them have a value.
 double BlockSpeed(const runs::MeasuredRun& run, SpeedSource source, size_t first, size_t end) {
   const auto& values = (source == SpeedSource::kSpeed ? run.motor_speed : run.motor_angle).values;
   double sum = 0;
@@ -45,7 +45,7 @@ std::optional<SpeedWindow> LookAt(const runs::MeasuredRun& run, SpeedSource sour
   const double width = window.duration() / kBlocks;
   for (int k = 0; k < kBlocks; ++k) {
     const size_t first = index(from + k * width);
-    // A block of angles ends where the next begins: nothing between them is lost.
+    // A block of angles ends where the next begins, so that nothing between them is lost.
     const size_t end = k + 1 == kBlocks ? hold.last + 1 : index(from + (k + 1) * width);
     const size_t shared = source == SpeedSource::kAngle && k + 1 < kBlocks ? 1 : 0;
     const double speed = BlockSpeed(run, source, first, std::min(end + shared, hold.last + 1));
@@ -69,7 +69,7 @@ double VoltageNoise(const runs::MeasuredRun& run) {
   for (size_t i = 1; i < voltage.size(); ++i) differences.push_back(std::abs(voltage[i] - voltage[i - 1]));
   const auto middle = differences.begin() + static_cast<ptrdiff_t>(differences.size() / 2);
   std::nth_element(differences.begin(), middle, differences.end());
-  return *middle / (0.6745 * std::sqrt(2.0));  // the median size of a normal number is 0.6745 deviations
+  return *middle / (0.6745 * std::sqrt(2.0));  // a normal variable's median magnitude is 0.6745 deviations
 }
 
 }  // namespace

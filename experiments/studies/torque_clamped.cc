@@ -14,9 +14,9 @@ namespace {
 constexpr double kStepDuration = 1.5;  // s
 constexpr double kSweepDuration = 12;  // s
 constexpr double kRest = 1;            // s, before a sweep
-constexpr double kAtMean = 0.6;        // s, from here on the torque rests at its mean
+constexpr double kAtMean = 0.6;        // s; from here on the torque rests at its mean
 
-// The first time at which `values` reach `level`, between samples on a straight line.
+// The first time at which `values` reach `level`, interpolated linearly between samples.
 double FirstTimeAt(const std::vector<double>& times, const std::vector<double>& values, double level) {
   for (size_t i = 1; i < times.size(); ++i) {
     if (values[i] < level) continue;

@@ -25,8 +25,8 @@ std::string Points(double duration, const auto& value) {
   return "[" + out + "]";
 }
 
-// e from k_1 (k_p e - k_p k_v w) = J theta'' + b theta' + T_s sgn(theta') + D (ref - e), where w is the pump
-// speed that the k_v term sees, and the higher side leaks (c_I + c_E) |dp| while the other is at p_3.
+// Solves k_1 (k_p e - k_p k_v w) = J theta'' + b theta' + T_s sgn(theta') + D (ref - e) for e. w is the pump
+// speed that the k_v term sees; the higher side leaks (c_I + c_E) |dp| while the other is at p_3.
 double PathError(const model::Parameters& p, const pressure_ctrl::PressureGains& gains, double reference,
                  double arm_speed, double arm_acceleration, bool arm_speed_feedforward) {
   const double forced = p.c / p.D * arm_speed;
@@ -34,10 +34,10 @@ double PathError(const model::Parameters& p, const pressure_ctrl::PressureGains&
   const double gain = p.k_1 * gains.k_p;
   const double braking = gain * gains.k_v;
   const double seen = arm_speed_feedforward ? 0 : forced;
-  const double turns = forced + leak_per_psi * reference;  // for its sign
+  const double turns = forced + leak_per_psi * reference;  // for the sign of friction
   const double friction = turns == 0 ? 0 : std::copysign(p.T_s, turns);
   const double torque = p.J * p.c / p.D * arm_acceleration + p.b * forced + friction + braking * seen;
-  // leak_per_psi (ref - e) turns the pump as well, and costs b and the k_v term.
+  // leak_per_psi (ref - e) turns the pump as well, which adds b and the k_v term.
   const double per_psi = p.D + (p.b + braking) * leak_per_psi;
   return (torque + per_psi * reference) / (gain + per_psi);
 }
@@ -70,7 +70,7 @@ double SmoothPath::speed(double time) const {
 double SmoothPath::acceleration(double time) const {
   const Phase at = At(time);
   const double s = at.share;
-  // The way back is the way there with time reversed: the same acceleration at the same place.
+  // The way back is the way there in reversed time: the same acceleration at the same place.
   return std::abs(at.direction) * 2 * reach_ / (move_ * move_) * 60 * s * (1 - s) * (1 - 2 * s);
 }
 
@@ -104,7 +104,7 @@ TorqueOnPath RunTorqueOnPath(const StackRunner& run_stack, double largest_speed,
     out.error.push_back(wanted - p.k_2 * out.run.dp[i]);
     out.closed_form.push_back(p.k_2 * PathError(p, gains, wanted / p.k_2, path.speed(time),
                                                 path.acceleration(time), arm_speed_feedforward));
-    // What counts is the torque along the path, not how it rises at first.
+    // Only the torque along the path counts, not its initial rise.
     if (time < SmoothPath::kRest) continue;
     out.largest_motor_torque = std::max(out.largest_motor_torque, std::abs(out.run.torque[i]));
     out.largest_motor_speed = std::max(out.largest_motor_speed, std::abs(out.run.motor_speed[i]));
