@@ -185,7 +185,7 @@ Diagnosis Diagnose(const model::ModelDescription& model, std::vector<runs::Measu
   PreparedRuns prepared = Prepare(model, allowed, options.jobs, std::move(runs), std::move(held_out));
   const SearchContext context = MakeContext(model, prepared, allowed, options, tell);
 
-  // Tries few changes to the model as given first: one wrong value or one missing effect is the likeliest.
+  // Try few changes to the model as given first: one wrong value or one missing effect is the likeliest.
   Hypothesis as_given;
   as_given.model = model;
   SearchResult search = Search(context, as_given, kMostChanges);

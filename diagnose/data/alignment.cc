@@ -23,7 +23,7 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr double kFinestStep = 0.01;    // s: signals are averaged over this or a sample
-constexpr double kLeastDelay = 0.02;    // s; a delay reaches this
+constexpr double kLeastDelay = 0.02;    // s; a delay that is corrected reaches this
 constexpr double kLeastSamples = 2;     // and this many steps
 constexpr double kLongestDelay = 1.0;   // s; none exceeds this
 constexpr double kLongestShare = 0.02;  // or this share of the run

@@ -15,7 +15,7 @@ constexpr double kMostCorrection = 0.15;       // s
 constexpr std::array<int, 2> kSteps = {2, 1};  // samples
 constexpr int kRounds = 3;                     // over all clocks, for each step size
 
-// By how many samples command, motor and arm are later than the balances found.
+// By how many samples command, motor and arm are later than the balances suggest.
 using Correction = std::array<int, 3>;
 
 double Interval(const RunData& run) { return run.duration() / static_cast<double>(run.samples() - 1); }

@@ -35,8 +35,8 @@ struct Fitted {
 // Each run's start, as fitted.
 std::vector<model::StartState> StartsOf(const Fitted& fitted);
 
-// What is known about the free parameters beforehand: each, as fitted (some as logarithms), adds weight (it -
-// centre)^2 to the sum that is minimised.
+// What is known about the free parameters beforehand. Each parameter, as fitted (some as logarithms), adds
+// weight * (parameter - centre)^2 to the sum that is minimised.
 struct Prior {
   std::vector<double> centre, weight;
 };

@@ -31,8 +31,8 @@ constexpr double kMostLeverage = 0.75;
 // numbers found by up to two percent without any block showing it (bench/gap_score).
 constexpr double kIdealised = 0.005;
 
-// The same for each of the model's own numbers that are held: an effect found stands beside their terms, and
-// a small effect moves by as much as a large term does. Calibrated on the same rigs.
+// The same for each of the model's own numbers that are held: an effect found stands beside their terms, so a
+// small effect shifts by this fraction of a large term. Calibrated on the same rigs.
 constexpr double kIdealisedHeld = 0.0003;
 
 // Standard deviation of a time, in sample intervals, for what the model takes to be immediate and is not: a

@@ -26,9 +26,9 @@ class Explanations {
  private:
   template <class F>
   Variable Make(const std::string& name, const std::string& unit, const F& f) const;
-  // A sinusoid of the motor's angle with this many `periods` a turn.
+  // The phase of a wave that repeats `periods` times in a turn of the motor.
   Variable Turn(int periods) const;
-  // The same, in proportion to the speed or the pressure difference.
+  // Such a wave in proportion to the speed or the pressure difference.
   Variable Ripple(Balance balance, int periods) const;
 
   const std::vector<SmoothedRun>& smoothed_;

@@ -78,8 +78,8 @@ struct Task {
   bool moved = false;              // a base parameter that already has another value
 };
 
-// The parameters of a change that alters nothing at its starting point: only their derivatives need
-// simulating. Empty for any other change.
+// The parameters at whose starting values a change does nothing: their derivatives are all there is to it.
+// Empty for a change that acts already.
 std::vector<size_t> Vanishing(const Task& task) {
   std::vector<size_t> places;
   if (task.moved) return places;

@@ -19,7 +19,7 @@ namespace {
 
 constexpr double kDuration = 3;     // s
 constexpr double kRate = 1000;      // Hz
-constexpr size_t kStride = 5;       // every so many samples are compared
+constexpr size_t kStride = 5;       // one sample in this many is compared
 constexpr double kHeadroom = 1.05;  // over what the rig has seen
 constexpr size_t kFinalists = 3;  // for each way to hold the shaft: trials that base parameters are fitted to
 constexpr double kWorthwhile = 1;  // noise units; below this the models look the same
