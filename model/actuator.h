@@ -1,5 +1,5 @@
-// The simulated actuator: eqs. (1) to (15) with their switches and effects, advanced in time. What the plant
-// process, the figures and the gap finder run.
+// The simulated actuator: eqs. (1) to (15) with their switches and effects, advanced in time. The plant
+// process, the figures and the gap finder all run it.
 #pragma once
 
 #include <memory>
@@ -20,8 +20,8 @@ class Actuator {
   Actuator(Actuator&&) noexcept;
   Actuator& operator=(Actuator&&) noexcept;
 
-  // Advances to time `until` (s, not before time()) with the amplifier voltage held. Results do not depend on
-  // anything but the sequence of calls: bit-identical for identical calls. Throws ModelError.
+  // Advances to time `until` (s, not before time()) with the amplifier voltage held. Results depend on
+  // nothing but the sequence of calls: identical calls give identical bits. Throws ModelError.
   void Advance(double voltage, double until);
 
   double time() const;

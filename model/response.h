@@ -1,6 +1,6 @@
-// What a model predicts for a run that was recorded, with exact derivatives: the simulation that fits are
-// made of. It has the equations, modes and effects of Actuator, integrated by a Runge-Kutta method whose
-// steps carry derivatives too; at an event they jump by what its time depends on.
+// What a model predicts for a recorded run, with exact derivatives: the simulation on which fits rest. It has
+// the equations, modes and effects of Actuator, integrated by a Runge-Kutta method whose steps also carry
+// derivatives. At an event the derivatives jump, because the event's time depends on the unknowns.
 #pragma once
 
 #include <array>
@@ -13,7 +13,7 @@
 
 namespace hydro::model {
 
-// What a response is differentiated by.
+// What a response is differentiated with respect to.
 struct Unknown {
   enum class Kind {
     kBase,    // a base parameter: `index` as in BaseParameters()
@@ -26,17 +26,17 @@ struct Unknown {
   bool operator==(const Unknown&) const = default;
 };
 
-// A parameter of an effect that a model has; names are left out.
+// A numeric parameter of one of the model's effects.
 struct EffectParameter {
   size_t effect = 0;  // in ModelDescription::effects
   std::string name;
 };
 
-// All of a model's, effects in the order of their ids, each one's parameters in that of the catalogue. Throws
-// ModelError for an effect that is not known.
+// All of a model's: effects in the order of their ids, each one's parameters in the catalogue's order. Throws
+// ModelError for an unknown effect.
 std::vector<EffectParameter> EffectParameters(const ModelDescription& model);
 
-// What was done to the actuator in a run, and when it was looked at.
+// What was done to the actuator in a run, and when it was sampled.
 struct Stimulus {
   Shaft shaft = Shaft::kFree;
   double arm_angle = 0;                            // rad, clamped
@@ -46,11 +46,11 @@ struct Stimulus {
   std::vector<double> voltage;  // V, each held from its time to the next
 };
 
-// The base states at the first time, by their places in model/state.h; the arm's are used with a free shaft,
-// p2 is p1 with the bypass open. Pressures below p_3 start at p_3. States of effects start from these.
+// The base states at the first time, indexed as in model/state.h. The arm's states are used with a free shaft
+// only; with the bypass open, p2 is p1. Pressures below p_3 start at p_3. States of effects start from these.
 using StartState = std::array<double, 6>;
 
-// Which of the sensors; the order of Measurement.
+// The sensors, in the order of Measurement.
 enum class Channel { kMotorAngle, kMotorSpeed, kArmAngle, kArmSpeed, kP1, kP2 };
 inline constexpr size_t kChannels = 6;
 using ChannelSet = std::array<bool, kChannels>;
@@ -63,7 +63,7 @@ const T& ChannelOf(const MeasurementOf<T>& measured, size_t channel) {
 }
 
 struct Response {
-  // By channel, then sample; empty for channels that are not wanted.
+  // By channel, then sample; empty for channels that were not requested.
   std::array<std::vector<double>, kChannels> values;
   // By unknown, then as values.
   std::vector<std::array<std::vector<double>, kChannels>> derivatives;
@@ -73,11 +73,11 @@ struct ResponseOptions {
   ChannelSet channels = {true, true, true, true, true, true};
   double relative_tolerance = 1e-6;
   bool repeated_effects = false;  // as in ActuatorOptions
-  size_t stride = 1;              // every stride-th sample is looked at; the command changes at all of them
+  size_t stride = 1;              // every stride-th sample is read; the command changes at all of them
 };
 
-// Throws ModelError as Actuator does. Bit-identical for identical arguments; the values do not depend on the
-// unknowns.
+// Throws ModelError as Actuator does. Identical arguments give identical bits, and the values do not depend
+// on which unknowns are chosen.
 Response Respond(const ModelDescription& model, const Stimulus& stimulus, const StartState& start,
                  const std::vector<Unknown>& unknowns, const ResponseOptions& options);
 

@@ -14,7 +14,7 @@ bool WholeNumber(std::string_view text, long min, long max) {
          value <= max;
 }
 
-// Takes what comes before the first `separator`, and it, off `rest`.
+// Removes everything up to and including the first `separator` from `rest`, and returns what came before it.
 std::string_view Take(std::string_view* rest, char separator) {
   const size_t at = rest->find(separator);
   const std::string_view taken = rest->substr(0, at);

@@ -6,7 +6,7 @@
 namespace hydro::settings {
 
 // Empty when `url` is udpm://GROUP:PORT with optional ?ttl=N&recv_buf_size=BYTES; otherwise what is allowed.
-// LCM itself silently reads malformed addresses as other ones.
+// LCM itself silently misreads malformed addresses.
 std::string WhatIsWrongWithBusUrl(const std::string& url);
 
 }  // namespace hydro::settings

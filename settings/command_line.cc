@@ -39,7 +39,7 @@ std::string Filled(const std::string& name, const std::string& text, const std::
   return text;
 }
 
-// The whole of `text` as a number; CLI11's own conversion would take "nan" and "0x10", too.
+// The whole of `text` as a number; CLI11's own conversion would also accept "nan" and "0x10".
 double Number(const std::string& name, const std::string& text) {
   double value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
@@ -229,7 +229,7 @@ void CommandLine::AddOption(const std::string& names, int64_t* target, const std
 
 void CommandLine::AddOption(const std::string& names, std::vector<std::string>* target,
                             const std::string& help, bool required) {
-  // One value each time it is given: what follows may be CONFIG.
+  // One value per occurrence: the next argument may be CONFIG.
   impl_->AddList(names, target, help, required)->allow_extra_args(false);
 }
 

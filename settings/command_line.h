@@ -25,14 +25,14 @@ std::string ProgramVersion();
 
 struct CommonOptions {
   std::string config;  // CONFIG
-  // For LoadStackConfig: --set, and --time, --duration and --seed as the keys that they set.
+  // For LoadStackConfig: the --set options, and --time, --duration and --seed as the keys that they set.
   std::vector<std::string> overrides;
   std::string log;  // --log; empty: not given
-  bool si = false;  // --si: figures that people read are in SI
+  bool si = false;  // show figures in SI
 };
 
-// Parse() sets the targets given to Add..., which must outlive it. Targets of options that are not on the
-// command line keep their values.
+// Parse() sets the targets given to Add..., which must outlive it. The target of an absent option keeps its
+// value.
 class CommandLine {
  public:
   CommandLine(const std::string& program, const std::string& description);
@@ -41,14 +41,14 @@ class CommandLine {
   CommandLine& operator=(CommandLine&&) noexcept;
 
   // CONFIG, --set section.key=value, --time realtime|lockstep, --duration S, --seed N, --log FILE, --si.
-  // Without `config_required` a CONFIG that is not there leaves options->config empty.
+  // Without `config_required`, an absent CONFIG leaves options->config empty.
   void AddCommon(CommonOptions* options, bool config_required = true);
 
-  // `names` as in "-o,--out"; `help` begins with the value's name in capitals: "FILE where to write". An
-  // empty text, such as that of an unset shell variable, is refused: it would count as not given.
+  // `names` as in "-o,--out"; `help` begins with the value's name in capitals: "FILE where to write". Refuses
+  // an empty value, such as that of an unset shell variable, because it would count as not given.
   void AddOption(const std::string& names, std::string* target, const std::string& help,
                  bool required = false);
-  // An empty text is a value here.
+  // Here an empty text is a valid value.
   void AddOption(const std::string& names, std::optional<std::string>* target, const std::string& help);
   void AddOption(const std::string& names, double* target, const std::string& help, bool required = false);
   void AddOption(const std::string& names, int* target, const std::string& help, bool required = false);
@@ -62,18 +62,18 @@ class CommandLine {
   void AddPositional(const std::string& name, std::vector<std::string>* target, const std::string& help,
                      bool required = true);
 
-  // A verb with options of its own, as in `hydro-log info LOG`; then exactly one verb must be given. The
-  // reference stays valid as long as this object does.
+  // A verb with options of its own, as in `hydro-log info LOG`; the command line must then have exactly one
+  // verb. The reference stays valid as long as this object.
   CommandLine& AddVerb(const std::string& name, const std::string& description);
 
-  // The verb that was given; empty before Parse() and where there are none.
+  // The given verb; empty before Parse() and for a program without verbs.
   std::string verb() const;
 
   // The options and flags that were given, as "--log", in the order of declaration.
   std::vector<std::string> Given() const;
 
-  // Empty when the program should go on; otherwise the code to exit with now: 0 after --help or --version, 2
-  // for bad usage, which one line on stderr explains.
+  // Empty when the program should continue; otherwise the code to exit with now: 0 after --help or --version,
+  // 2 for bad usage, which one line on stderr explains.
   std::optional<int> Parse(int argc, const char* const* argv);
 
  private:

@@ -29,8 +29,8 @@ struct SensorSection {
   double scale = 1;        // kAnalog: unit per V, kCounter: unit per count; its sign is that of the wiring
   double offset = 0;       // unit; the signal is scale * reading + offset
   double low_pass_hz = 0;  // corner of a first-order low pass; 0: none
-  // kAnalog: a reading outside them counts as missing. NaN: the ends of the board's range, where readings
-  // count as missing as well.
+  // kAnalog: a reading outside them counts as missing. NaN: the limits are the ends of the board's range, and
+  // readings at the ends also count as missing.
   double minimum_V = std::numeric_limits<double>::quiet_NaN();
   double maximum_V = std::numeric_limits<double>::quiet_NaN();
 };
@@ -46,7 +46,7 @@ struct AmplifierSection {
 
 struct DriverSection {
   std::string device = "/dev/comedi0";
-  int settle_ns = 0;  // ns, from the switching of the input multiplexer to the conversion
+  int settle_ns = 0;  // ns, from switching the input multiplexer to the conversion
   AmplifierSection voltage;
   std::optional<BoardLine> watchdog;  // a digital output that changes at each tick
   SensorSection p1;
@@ -60,8 +60,8 @@ struct DriverSection {
 // Reads [driver] and its sections. Throws InputError.
 DriverSection ReadDriver(SectionReader section);
 
-// Checks that a board can be driven as `config` says: it has [driver], runs in real time at speed 1, and
-// every signal that its loops need is measured. Throws InputError that names hydro-driver.
+// Checks that `config` allows driving a board: it has [driver], runs in real time at speed 1, and measures
+// every signal that its loops need. Throws InputError that names hydro-driver.
 void CheckDriver(const StackConfig& config);
 
 }  // namespace hydro::settings

@@ -1,4 +1,4 @@
-// Model files: TOML with the paper's parameters and the effects that were added to its equations.
+// Model files: TOML with the paper's parameters and the effects added to its equations.
 #pragma once
 
 #include <string>

@@ -70,7 +70,7 @@ bool AnyFromOption(const TomlNode& section, const std::vector<std::string>& keys
   return std::any_of(keys.begin(), keys.end(), [&](const auto& key) { return FromOption(section, key); });
 }
 
-// An option that chose one of two ways drops what the file says for the other.
+// An option that chose one of two alternatives drops the file's keys for the other.
 void DropAlternative(const std::vector<std::string>& chosen, const std::vector<std::string>& other,
                      TomlNode* section) {
   if (!AnyFromOption(*section, chosen) || AnyFromOption(*section, other)) return;

@@ -8,12 +8,13 @@
 
 namespace hydro::settings {
 
-// Sets each "section.key=value" in the configuration. A value that is not TOML is taken as a string. Throws
-// InputError with the option where it does not have this form.
+// Sets each "section.key=value" in the configuration. A value that is not TOML counts as a string. Throws
+// InputError naming the option that does not have this form.
 //
-// Where alternatives exclude each other, choosing one by option drops the file's keys of the others: those of
-// another kind when reference.kind (or model.motion.kind) is set, k_p and k_v against natural_frequency_rad_s
-// and damping_ratio, points against file and column, motion and arm_angle_rad when model.shaft is set.
+// When alternatives exclude each other, choosing one by option drops the file's keys of the others: the keys
+// of another kind when reference.kind (or model.motion.kind) is set, k_p and k_v against
+// natural_frequency_rad_s and damping_ratio, points against file and column, motion and arm_angle_rad when
+// model.shaft is set.
 void ApplyOverrides(const std::vector<std::string>& overrides, TomlNode* root);
 
 }  // namespace hydro::settings

@@ -10,7 +10,7 @@ namespace hydro::settings {
 namespace {
 
 // How many whole `unit`s `value` is; 0 when it is not a whole number of at least one. Decimal fractions such
-// as 0.005 are not exact in binary, hence the tolerance, which is far below what anyone could mean.
+// as 0.005 are not exact in binary, hence the tolerance, far below any difference that anyone could mean.
 int64_t WholeMultiple(double value, double unit) {
   const double ratio = value / unit;
   const double whole = std::round(ratio);
@@ -156,7 +156,7 @@ void CheckAgainstModel(const TomlNode& root, StackConfig* checked) {
   const model::Parameters& p = model.description.parameters;
   const TomlNode* limits = root.Find("limits");
   const bool given = limits != nullptr && limits->Find("arm_angle_rad") != nullptr;
-  // A shaft that is held or moved by something else is not ours to stop.
+  // A shaft that something else holds or moves is not ours to stop.
   if (!given && model.shaft == model::Shaft::kFree)
     checked->limits.arm_angle_rad = kArmAngleShare * p.V_ms / p.c;
   const StackConfig& config = *checked;

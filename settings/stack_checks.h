@@ -6,14 +6,14 @@
 
 namespace hydro::settings {
 
-// Checks the times against the tick and fills the intervals in ticks and the last tick. Throws InputError.
+// Checks the times against the tick and fills in the intervals in ticks and the last tick. Throws InputError.
 void CheckTimes(const TomlNode& root, StackConfig* config);
 
-// The share of V_ms/c, where V_1 or V_2 is 0, that a free arm may use when limits.arm_angle_rad is not given.
+// How much of V_ms/c, where V_1 or V_2 is 0, a free arm may use when limits.arm_angle_rad is not given.
 inline constexpr double kArmAngleShare = 0.98;
 
-// Checks pressures and arm angles against the model, once its description is known, and fills the default of
-// limits.arm_angle_rad. Throws InputError.
+// Checks pressures and arm angles against the model, once its description is known, and fills in the default
+// of limits.arm_angle_rad. Throws InputError.
 void CheckAgainstModel(const TomlNode& root, StackConfig* config);
 
 // Checks the gains and how the shaft is held. Throws InputError.

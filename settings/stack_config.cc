@@ -10,7 +10,7 @@
 namespace hydro::settings {
 namespace {
 
-// Everything but the model file.
+// Everything except the model file.
 StackConfig ReadDocument(TomlNode* root, const std::string& file) {
   root->place = file;
   StackConfig config;

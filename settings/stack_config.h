@@ -39,7 +39,7 @@ struct TrajectorySpec {
 
 struct ModelSection {
   std::string file;           // as given; relative to the configuration's folder
-  std::string resolved_file;  // path it was read from
+  std::string resolved_file;  // the path it was read from
   std::string text;           // the file's text
   model::ModelDescription description;
   model::Shaft shaft = model::Shaft::kFree;  // shaft = "free" | "clamped" | "driven"
@@ -102,33 +102,33 @@ struct ReferenceSection {
   TrajectorySpec trajectory;  // kind = "steps" | "sine" | "square" | "chirp" | "csv"
 };
 
-// How a fault that zeroed the voltage ends. Its codes and what each does: docs/safety.md.
+// How a fault that zeroed the voltage ends. docs/safety.md has the codes and what each does.
 enum class Rearm {
-  kRestart,   // inputs that are good again end it; a limit that was passed ends the run
+  kRestart,   // good inputs end it; a limit that was passed ends the run
   kExplicit,  // the run goes on at zero volts until hydro-launch --rearm
 };
 
 struct LimitsSection {
   double pressure_psi = 2000;  // either side; above it: zero volts and a fault
   double motor_speed_rad_s = std::numeric_limits<double>::infinity();
-  // |alpha|; read from a file, the default is kArmAngleShare V_ms/c for a free shaft (stack_checks.h).
+  // alpha|. Default when read from a file: kArmAngleShare V_ms/c for a free shaft (stack_checks.h).
   double arm_angle_rad = std::numeric_limits<double>::infinity();
   double arm_torque_in_lbf = std::numeric_limits<double>::infinity();  // |k_2 dp_ref| is limited to this
-  double stale_input_s = 0.1;     // older inputs give zero volts and a fault
+  double stale_input_s = 0.1;     // an older input gives zero volts and a fault
   double pressure_ramp_s = 0.2;   // plant time in which a stale pressure reference goes to zero; 0: at once
-  double stale_logger_s = 1;      // a logger that is silent for so long is reported as gone
+  double stale_logger_s = 1;      // a logger silent for longer is reported as gone
   Rearm rearm = Rearm::kRestart;  // rearm = "restart" | "explicit"
 };
 
 struct NoiseSection {
-  // Standard deviations of what the sensors add; 0: none.
+  // Standard deviations of the noise that the sensors add; 0: none.
   double p1_psi = 0;
   double p2_psi = 0;
   double motor_angle_rad = 0;
   double motor_speed_rad_s = 0;
   double arm_angle_rad = 0;
   double arm_speed_rad_s = 0;
-  // Readings, noise included, are rounded to multiples of these; 0: not rounded.
+  // Readings, including noise, are rounded to multiples of these; 0: not rounded.
   double p1_resolution_psi = 0;
   double p2_resolution_psi = 0;
   double motor_angle_resolution_rad = 0;
@@ -171,20 +171,20 @@ struct StackConfig {
   // Plant ticks per sample of the position loop and of the pressure loop (whole numbers, checked when read).
   int64_t position_interval_ticks = 1;
   int64_t pressure_interval_ticks = 1;
-  // Tick at which the run ends; -1: it does not.
+  // The tick at which the run ends; -1: it does not.
   int64_t last_tick = -1;
 };
 
-// Reads `file`, applies `overrides` ("section.key=value", the value in TOML or a bare word), checks
-// everything, and reads the model file it names. Throws InputError (exit 2) naming file, line or key, what
-// was found, what is allowed.
+// Reads `file`, applies `overrides` ("section.key=value", the value in TOML or a bare word), reads the model
+// file that it names, and checks everything. Throws InputError (exit 2) naming file, line or key, what was
+// found, what is allowed.
 StackConfig LoadStackConfig(const std::string& file, const std::vector<std::string>& overrides = {});
 
 // The same from text instead of a file (a log's own description); `model_text` replaces the model file.
 StackConfig ParseStackConfig(const std::string& config_text, const std::string& config_name,
                              const std::string& model_text, const std::string& model_name);
 
-// Throws InputError where writing to `output` would replace a file that `config` was read from, or its key.
+// Throws InputError if writing to `output` would replace a file that `config` was read from, or its key.
 void CheckKeepsInputs(const std::string& output, const StackConfig& config);
 
 // Builds the function that a specification describes.

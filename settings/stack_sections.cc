@@ -206,7 +206,7 @@ void ReadProcesses(SectionReader& document, std::vector<ProcessSection>* process
       throw KeyError(item.place, "process.program", process.program + " beside " + twin,
                      "one of the two: both send states");
     }
-    // Several loggers do no harm; two of the others would contradict each other on the bus.
+    // Several loggers do no harm; two of any other program would contradict each other on the bus.
     if (twice && process.program != "hydro-logger") {
       throw KeyError(item.place, "process.program", "a second " + process.program, "one of it in a stack");
     }

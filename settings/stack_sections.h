@@ -1,4 +1,4 @@
-// Reads each section of the configuration: keys, types and ranges. What concerns several keys is in
+// Reads each section of the configuration: keys, types and ranges. Checks across several keys are in
 // stack_checks.h.
 #pragma once
 
@@ -7,7 +7,7 @@
 
 namespace hydro::settings {
 
-// Fills every section of `config` but the model's description from the document. Throws InputError.
+// Fills every section of `config` from the document, except the model's description. Throws InputError.
 void ReadSections(const TomlNode& root, const std::string& config_file, StackConfig* config);
 
 }  // namespace hydro::settings

@@ -133,7 +133,7 @@ std::unique_ptr<trajectory::Trajectory> CheckedTrajectory(const TrajectorySpec& 
 void EmbedPoints(const TrajectorySpec& spec, TomlNode* section) {
   if (section == nullptr || spec.kind != Kind::kCsv) return;
   const TomlNode* file = section->Find("file");
-  if (file == nullptr) return;  // it has them already
+  if (file == nullptr) return;  // already has its points
   TomlNode points = ArrayNode({});
   points.place = file->place;
   for (const trajectory::Step& point : spec.points) {

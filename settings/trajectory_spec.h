@@ -12,16 +12,15 @@ namespace hydro::settings {
 // The keys that belong to a kind, e.g. "sine"; empty for an unknown kind.
 std::vector<std::string> KeysOfTrajectory(const std::string& kind);
 
-// Reads the keys of a trajectory from `section` and the CSV file it names, relative to the folder of
+// Reads a trajectory's keys from `section` and the CSV file it names, relative to the folder of
 // `config_file`. Throws InputError.
 TrajectorySpec ReadTrajectory(SectionReader& section, const std::string& config_file);
 
-// Throws InputError unless MakeTrajectory takes `spec`.
+// Throws InputError unless MakeTrajectory accepts `spec`.
 std::unique_ptr<trajectory::Trajectory> CheckedTrajectory(const TrajectorySpec& spec,
                                                           const SectionReader& section);
 
-// Puts the points of a CSV trajectory into its section in place of the file, so that the text describes
-// itself.
+// Replaces the file of a CSV trajectory by its points, so that the text describes itself.
 void EmbedPoints(const TrajectorySpec& spec, TomlNode* section);
 
 }  // namespace hydro::settings

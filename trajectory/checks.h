@@ -15,7 +15,7 @@ void RequireFinite(const std::string& what, double value);
 void RequirePositive(const std::string& what, double value);
 
 // Throws std::invalid_argument unless all numbers are finite and the times strictly increase. `what` is the
-// singular, e.g. "step"; items are counted from 1.
+// singular, e.g. "step"; items count from 1.
 void RequireIncreasing(const std::string& what, const std::vector<Step>& items);
 
 }  // namespace hydro::trajectory

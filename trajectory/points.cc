@@ -9,9 +9,9 @@
 namespace hydro::trajectory {
 namespace {
 
-// Slopes at the points that keep each cubic between two points monotone: Fritsch and Carlson, SIAM J. Numer.
-// Anal. 17 (1980). They are 0 at both ends, where the signal joins the constants outside with a continuous
-// rate.
+// Slopes at the points that keep each cubic monotone between its two points: Fritsch and Carlson, SIAM J.
+// Numer. Anal. 17 (1980). They are 0 at both ends, where the signal joins the constants outside with a
+// continuous rate.
 std::vector<double> MonotoneSlopes(const std::vector<Step>& points, const std::vector<double>& secants) {
   std::vector<double> slopes(points.size(), 0.0);
   for (size_t i = 1; i + 1 < points.size(); ++i) {
@@ -66,8 +66,8 @@ class Points : public Trajectory {
       // Hermite form about the first point: slope m0 there, m1 at the second.
       value = from.value + since * (m0 + s * ((3 * rise - 2 * m0 - m1) + s * (m0 + m1 - 2 * rise)));
     }
-    // Rounding must not leave the range of the two points: a driven shaft's volumes are checked by Min and
-    // Max.
+    // Rounding must not leave the range of the two points: Min and Max serve to check a driven shaft's
+    // volumes.
     return std::clamp(value, std::min(from.value, to.value), std::max(from.value, to.value));
   }
 

@@ -22,7 +22,7 @@ class Square : public Trajectory {
     if (t < start_) return start_;
     if (std::isinf(t)) return t;
     const double next = Edge(Half(t) + 1);
-    // Where halves are shorter than the spacing of doubles, the next double is as near as it gets.
+    // Where halves are shorter than the spacing of doubles, the next double is the nearest possible.
     return next > t ? next : std::nextafter(t, std::numeric_limits<double>::infinity());
   }
   bool continuous() const override { return amplitude_ == 0; }
@@ -30,8 +30,8 @@ class Square : public Trajectory {
   double Max() const override { return offset_ + std::abs(amplitude_); }
 
  private:
-  // Start of half period k. A sample taken "at" an edge may be a rounding error before it; edges are early by
-  // more than that, so that they fall on the sample a person would expect.
+  // Start of half period k. A sample taken "at" an edge may lie a rounding error before it. Edges are early
+  // by more than that, so that they fall on the sample that a person would expect.
   double Edge(double k) const {
     if (k == 0) return start_;
     const double since_start = k / (2 * frequency_);
@@ -40,7 +40,7 @@ class Square : public Trajectory {
     return std::max(start_, start_ + since_start - rounding);
   }
 
-  // Half period, counted from 0, that t (not before the start) lies in.
+  // The half period, counted from 0, in which t (not before the start) lies.
   double Half(double t) const {
     const double k = std::floor((t - start_) * 2 * frequency_);
     if (Edge(k + 1) <= t) return k + 1;

@@ -1,5 +1,5 @@
-// A prescribed signal over time: what the position loop follows, and what moves a driven shaft.
-// Pure: a function of time, built once from its specification.
+// A prescribed signal over time: what the position loop follows, and what moves a driven shaft. Pure: a
+// function of time, built once from its specification.
 #pragma once
 
 #include <limits>
@@ -19,7 +19,7 @@ class Trajectory {
   // d Value/dt; 0 at a jump.
   virtual double Rate(double t) const = 0;
 
-  // The first time after t at which Value jumps or its formula changes; infinity when there is none. An
+  // The first time after t at which Value jumps or its formula changes; infinity if there is none. An
   // integrator that follows the signal stops there.
   virtual double NextBreak(double t) const = 0;
 
@@ -43,7 +43,7 @@ enum class Interpolation {
 };
 
 // initial before the first step, then each step's value from its time on. Times strictly increase. Like the
-// others below, throws std::invalid_argument, which names the step that breaks this or the non-finite number.
+// functions below, throws std::invalid_argument naming the offending step or the non-finite number.
 std::unique_ptr<Trajectory> MakeSteps(double initial, std::vector<Step> steps);
 
 // offset before start; then offset + amplitude sin(2 pi frequency (t - start) + phase).
@@ -54,7 +54,7 @@ std::unique_ptr<Trajectory> MakeSine(double offset, double amplitude, double fre
 // the second.
 std::unique_ptr<Trajectory> MakeSquare(double offset, double amplitude, double frequency_hz, double start);
 
-// offset before start; then a sine whose frequency changes linearly from first_hz to last_hz in duration s
+// offset before start; then a sine whose frequency changes linearly from first_hz to last_hz over duration s
 // and then stays.
 std::unique_ptr<Trajectory> MakeChirp(double offset, double amplitude, double first_hz, double last_hz,
                                       double start, double duration);

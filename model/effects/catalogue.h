@@ -11,13 +11,12 @@ namespace hydro::model {
 
 class Catalogue {
  public:
-  // Puts the entries in the order of their ids, whatever order their files were linked in. Throws
-  // std::logic_error, with the id and what is wrong, for an id that is there twice and for an entry that
-  // cannot work.
+  // Sorts the entries by id, so that the order of linking does not matter. Throws std::logic_error, with the
+  // id and what is wrong, for a duplicate id or an entry that cannot work.
   explicit Catalogue(std::vector<CatalogueEntry> entries);
 
   const std::vector<EffectInfo>& infos() const { return infos_; }
-  // Null when no such effect is known.
+  // Null for an unknown effect.
   const CatalogueEntry* Find(const std::string& id) const;
 
  private:
@@ -25,7 +24,7 @@ class Catalogue {
   std::vector<EffectInfo> infos_;
 };
 
-// The entry of an effect in this program's catalogue; null when no such effect is known.
+// The entry of an effect in this program's catalogue; null for an unknown effect.
 const CatalogueEntry* FindCatalogueEntry(const std::string& id);
 
 }  // namespace hydro::model

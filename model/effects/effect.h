@@ -23,7 +23,7 @@
 
 namespace hydro::model {
 
-// Periods in a revolution from which fits of ripples start: those of small numbers of poles, teeth, pistons
+// Periods per revolution from which fits of ripples start: those of small numbers of poles, teeth, pistons
 // and vanes.
 const std::vector<double>& PeriodsTried();
 
@@ -31,8 +31,8 @@ class Effect {
  public:
   virtual ~Effect() = default;
 
-  // States and switches that the effect adds; where they, and its parameters, lie in the state vector, in
-  // Mode::effects and among those of all effects.
+  // The states and switches that the effect adds, and where they and its parameters lie: in the state vector,
+  // in Mode::effects and among the parameters of all effects.
   virtual int states() const { return 0; }
   virtual int switches() const { return 0; }
   int first_state() const { return first_state_; }
@@ -44,30 +44,30 @@ class Effect {
     first_parameter_ = first_parameter;
   }
 
-  // For each state it adds: name with unit, and the size below which absolute instead of relative errors
-  // count.
+  // For each state it adds: the name with its unit, and the size below which absolute rather than relative
+  // errors count.
   virtual std::vector<std::string> StateNames() const { return {}; }
   virtual void Scales(double /*pressure*/, double /*flow*/, double /*torque*/, double* /*scale*/) const {}
 
-  // True when its valves take the place of the ideal one-way valves.
+  // True when its valves replace the ideal one-way valves.
   virtual bool replaces_valves() const { return false; }
-  // Which of its states takes the place of p_3, and of the arm's angle in V_1 and V_2; -1: none.
+  // Which of its states replaces p_3, and which the arm's angle in V_1 and V_2; -1: none.
   virtual int p_3_state() const { return -1; }
   virtual int actuator_angle_state() const { return -1; }
 
-  // What follows exists for numbers and for numbers that carry derivatives. An effect writes each formula
-  // once, as a template named Own... (EffectOf).
+  // The functions below exist for plain numbers and for numbers with derivatives. An effect writes each
+  // formula once, as a template named Own... (EffectOf).
 
-  // Volume of each side that is not at the actuator: V_1 and V_2 must stay above it.
+  // Volume of each side that lies outside the actuator: V_1 and V_2 must stay above it.
   virtual double FixedVolume(const ParametersOf<double>& base, const double* own) const = 0;
   virtual Jet FixedVolume(const ParametersOf<Jet>& base, const Jet* own) const = 0;
 
-  // Its states at the start, from `x`, which holds the base quantities then.
+  // Its states at the start; `x` holds the base quantities at that time.
   virtual void Start(const Terms<double>& x, double* state) const = 0;
   virtual void Start(const Terms<Jet>& x, Jet* state) const = 0;
 
-  // Where its switches stand when the start is in motion. Switches whose margins settle that need nothing
-  // here.
+  // Where its switches stand when the run starts in motion. Switches that settle by their margins need
+  // nothing here.
   virtual void StartMode(const Terms<double>& x, Mode* mode) const = 0;
   virtual void StartMode(const Terms<Jet>& x, Mode* mode) const = 0;
 
@@ -82,20 +82,20 @@ class Effect {
   virtual void AddBalances(Terms<Jet>&, Jet* rate) const = 0;
 
   // For each switch it adds: a margin, which is positive while the switch may stay as it is and falls through
-  // 0 when it must change; and the change.
+  // 0 when it must change, and the change itself.
   virtual void Margins(const Terms<double>& x, double* margin) const = 0;
   virtual void Margins(const Terms<Jet>& x, Jet* margin) const = 0;
   virtual void Cross(int which, const Terms<double>& x, double* state, Mode* mode) const = 0;
   virtual void Cross(int which, const Terms<Jet>& x, Jet* state, Mode* mode) const = 0;
 
-  // What the sensors read: first what the pressure transducers respond to, then what becomes of it.
+  // What the sensors read: first the pressures at the transducers, then the readings made from them.
   virtual void Transduce(const SenseTerms<double>&, MeasurementOf<double>*) const = 0;
   virtual void Transduce(const SenseTerms<Jet>&, MeasurementOf<Jet>*) const = 0;
   virtual void Sense(const SenseTerms<double>&, MeasurementOf<double>*) const = 0;
   virtual void Sense(const SenseTerms<Jet>&, MeasurementOf<Jet>*) const = 0;
 
-  // For an effect with a channel that reads late: by how much, and the channel's earlier reading put in the
-  // place of its present one. `reach` is the same lateness, for what keeps the earlier states (StateHistory).
+  // For an effect that makes a channel read late: by how much, and the substitution of the channel's earlier
+  // reading for its present one. `reach` is the same lateness, for the history of states (StateHistory).
   virtual bool reads_late() const { return false; }
   virtual double reach() const { return 0; }
   virtual double Lateness(const double* own) const = 0;
@@ -104,9 +104,9 @@ class Effect {
   virtual void Replace(const MeasurementOf<Jet>& then, MeasurementOf<Jet>*) const = 0;
 
   // For an effect that remembers earlier commands or changes at known times: Command gives it the voltage
-  // from `time` on, NextStop is when its equation next jumps, PassStop says that this time has been reached.
-  // Between stops the effect does not change. StopShift carries the derivatives of the stops' times by the
-  // parameters; its value is 0.
+  // from `time` on, NextStop is the next time at which its equation jumps, and PassStop says that this time
+  // has been reached. Between stops the effect does not change. StopShift carries the derivatives of the
+  // stops' times with respect to the parameters; its value is 0.
   virtual void Command(double /*time*/, double /*voltage*/) {}
   virtual double NextStop(double /*time*/) const { return kUnbounded; }
   virtual void PassStop(double /*time*/) {}
@@ -121,7 +121,7 @@ class Effect {
   int first_parameter_ = 0;
 };
 
-// Gives the two scalars' virtual functions from the templates that E has.
+// Implements the virtual functions for both scalars with E's templates.
 template <class E>
 class EffectOf : public Effect {
  public:
@@ -232,26 +232,25 @@ class EffectOf : public Effect {
   }
 };
 
-// Makes an effect that its parameters alone describe, for CatalogueEntry.
+// Makes an effect that needs nothing but its parameters, for CatalogueEntry.
 template <class E>
 std::unique_ptr<Effect> MakeEffect(const EffectDescription& /*description*/) {
   return std::make_unique<E>();
 }
 
 // A row of the catalogue: what is known of the effect, and how to build it from its description, which has
-// been checked.
+// already been checked.
 struct CatalogueEntry {
   EffectInfo info;
   std::unique_ptr<Effect> (*make)(const EffectDescription& description) = nullptr;
 };
 
-// Adds an effect to the catalogue: models can have it, and the gap finder looks for it. Called once in the
-// effect's file, at namespace scope, which is what the result is for:
+// Adds an effect to the catalogue, so that models can have it and the gap finder looks for it. Call once in
+// the effect's file at namespace scope; the result exists to allow that:
 //   [[maybe_unused]] const bool kAdded =
 //       AddToCatalogue({.info = {.id = "arm.spring", ...}, .make = MakeEffect<Spring>});
-// The order in which files are linked or initialised makes no difference. Returns true. Throws
-// std::logic_error when the catalogue has been used already; an id that is there twice is found at the first
-// use (Catalogue).
+// The order of linking or initialisation makes no difference. Returns true. Throws std::logic_error when the
+// catalogue has already been used. A duplicate id is reported at the first use (Catalogue).
 bool AddToCatalogue(CatalogueEntry entry);
 
 }  // namespace hydro::model

@@ -1,5 +1,5 @@
-// The equations below Actuator: state vectors, modes, rates, exact Jacobians, switches. For code that linearises,
-// estimates or integrates in its own way; for the actuator's motion alone, use actuator.h.
+// The equations below Actuator: state vectors, modes, rates, exact Jacobians, switches. For code that
+// linearises, estimates or integrates in its own way; for the actuator's motion alone, use actuator.h.
 #pragma once
 
 #include <limits>
@@ -45,18 +45,18 @@ struct EquationData : NumbersOf<double> {
   std::vector<std::shared_ptr<Effect>> effects;
   int states = 0;
   int switches = kFirstEffectSwitch;
-  bool ideal_valves = true;  // false: the one-way valves are an effect's, valve_1 and valve_2 stay closed
-  bool reads_late = false;   // some channel does, by no more than `reach`
+  bool ideal_valves = true;  // false: an effect has the one-way valves; valve_1 and valve_2 stay closed
+  bool reads_late = false;   // some channel does, by at most `reach`
   double reach = 0;          // s
-  int p_3_state = -1;        // where the accumulator's pressure is a state
+  int p_3_state = -1;        // the accumulator's pressure, where it is a state
   int actuator_angle_state = kArmAngle;             // free shaft: what V_1 and V_2 depend on
   std::shared_ptr<const NumbersOf<Jet>> constants;  // the same numbers without derivatives
 };
 
 class Equations {
  public:
-  // Throws ModelError: volumes not above 0, a motion with jumps, effects that are not known or contradict
-  // each other, parameters outside their bounds.
+  // Throws ModelError: volumes not above 0, a motion with jumps, unknown or contradictory effects, parameters
+  // outside their bounds.
   Equations(const ModelDescription& description, const ActuatorOptions& options);
 
   const EquationData& data() const { return data_; }
@@ -65,14 +65,14 @@ class Equations {
   bool plain() const { return data_.effects.empty() && !data_.bypass && data_.shaft != Shaft::kDriven; }
   std::vector<std::string> StateNames() const;
 
-  // Sizes (per state) below which absolute errors count: error weights are relative_tolerance * (|y| + scale).
+  // Size per state below which absolute errors count: error weights are relative_tolerance * (|y| + scale).
   const std::vector<double>& scales() const { return scales_; }
 
-  // State at rest with both pressures at `pressure`, and its mode: all at rest, valves closed.
+  // State with both pressures at `pressure`, and its mode: all at rest, valves closed.
   void Start(double pressure, double* state, Mode* mode) const;
 
-  // d state/dt. `margin` (may be null) receives switches() numbers that are positive while the switch may
-  // stay as it is and fall through 0 when it must change:
+  // d state/dt. `margin` (may be null) receives switches() numbers. Each is positive while its switch may
+  // stay as it is and falls through 0 when it must change:
   //   pump slips: speed in its direction; pump sticks: friction limit less net torque
   //   valve closed: p - p_3
   //   valve open: p_3' (0 unless an effect moves p_3) less the rate that p would have with the valve closed
@@ -82,8 +82,8 @@ class Equations {
   // d rate_i/d state_j at jacobian[i + j * states()], exact (automatic derivatives).
   void Jacobian(double time, double voltage, const Mode& mode, const double* state, double* jacobian) const;
 
-  // Rates and Measure with the derivatives along kJetWidth directions that `voltage` and `state` carry; what
-  // Linearise is made of. The voltage is the one that acts: amp.delay passes it on at once.
+  // Rates and Measure with the derivatives along the kJetWidth directions that `voltage` and `state` carry,
+  // for Linearise. The voltage is the acting one: amp.delay passes it on at once.
   void Differentiate(double time, const Jet& voltage, const Mode& mode, const Jet* state, Jet* rate,
                      MeasurementOf<Jet>* measured) const;
 
@@ -96,22 +96,23 @@ class Equations {
 
   Power PowerBalance(double time, double voltage, const Mode& mode, const double* state) const;
 
-  // What the sensors read. A channel that is late (sensor.skew) reads what `history` has, which needs to know
-  // the states from data().reach seconds ago on; without one it is not late.
+  // What the sensors read. A late channel (sensor.skew) reads from `history`, which must hold the states of
+  // the last data().reach seconds; without a history it is not late.
   Measurement Measure(double time, const double* state, const StateHistory<double>* history = nullptr) const;
 
-  // Throws ModelError when V_1 or V_2 is not above 0 (or above what an effect has elsewhere) at `arm_angle`.
+  // Throws ModelError when V_1 or V_2 at `arm_angle` is not above 0 (or not above the volume that an effect
+  // places elsewhere).
   void CheckVolumes(double arm_angle) const;
 
   // Known stops: times at which the right-hand side jumps by itself. An integrator calls Command when the
-  // voltage changes, steps no further than NextStop, and calls PassStop there; until then the formulas of
-  // before hold.
+  // voltage changes, steps no further than NextStop, and calls PassStop there; until then the earlier
+  // formulas hold.
   void Command(double time, double voltage);
-  double NextStop(double time) const;  // the first one after `time`; infinity when there is none
+  double NextStop(double time) const;  // the first one after `time`; infinity if there is none
   void PassStop(double time);
 
  private:
-  // `pressure` and `flow`: sizes that count, for the scales of the effect's states.
+  // `pressure` and `flow`: magnitudes that matter, for the scales of the effect's states.
   void AddEffect(const EffectDescription& effect, double pressure, double flow);
 
   EquationData data_;

@@ -14,8 +14,7 @@ namespace hydro::model {
 inline double ValueOf(double x) { return x; }
 inline double ValueOf(const Jet& x) { return x.a; }
 
-// Which terms are compiled in. The plain forms have no effects and no bypass, and are what the fast path
-// inlines.
+// Which terms are compiled in. The plain forms have no effects and no bypass; the fast path inlines them.
 enum class Form { kPlainClamped, kPlainFree, kGeneral };
 
 template <Form kForm, class T>
@@ -109,7 +108,7 @@ template <Form kForm, class T>
   }
 
   rate[kMotorAngle] = x.motor_speed;
-  // (4), summed so that the longest chain of operations, through the pressures, is short.
+  // (4), summed in an order that keeps the longest chain of operations, through the pressures, short.
   rate[kMotorSpeed] =
       mode.pump == 0
           ? T(0.0)
@@ -119,7 +118,7 @@ template <Form kForm, class T>
     x.free_rate_2 = -n.stiffness_2 * x.q_2;  // (14)
   } else {
     const T arm_flow = p.c * (kGeneralForm ? x.actuator_speed : x.arm_speed);
-    if (kGeneralForm && m.bypass) {  // one pressure; what the arm displaces goes round
+    if (kGeneralForm && m.bypass) {  // one pressure; what the arm displaces circulates
       x.free_rate_1 = x.free_rate_2 = -(x.q_1 + x.q_2) / (x.V_1 / x.beta_1 + x.V_2 / x.beta_2);
     } else {
       x.free_rate_1 = -x.beta_1 / x.V_1 * (x.q_1 - arm_flow);  // (5), (9), (13)
@@ -224,7 +223,7 @@ void CrossSwitch(const EquationData& m, const NumbersOf<T>& n, int which, double
   }
 }
 
-// The motion at a time that may have derivatives.
+// The motion at a time that may carry derivatives.
 inline double MotionAt(const trajectory::Trajectory& motion, double time) { return motion.Value(time); }
 inline Jet MotionAt(const trajectory::Trajectory& motion, const Jet& time) {
   Jet angle(motion.Value(time.a));
@@ -232,7 +231,7 @@ inline Jet MotionAt(const trajectory::Trajectory& motion, const Jet& time) {
   return angle;
 }
 
-// What the sensors make of this state, none of them late.
+// The sensors' readings of this state, none of them late.
 template <class T>
 [[gnu::always_inline]] inline MeasurementOf<T> ReadPromptly(const EquationData& m, const NumbersOf<T>& n,
                                                             const T& time, const T* state) {
@@ -264,7 +263,7 @@ template <class T>
   return measured;
 }
 
-// The same with late channels put back to what they read then.
+// The same, with late channels replaced by their earlier readings.
 template <class T>
 [[gnu::noinline]] MeasurementOf<T> ReadLate(const EquationData& m, const NumbersOf<T>& n, double time,
                                             const T* state, const StateHistory<T>& history) {

@@ -11,17 +11,17 @@
 
 namespace hydro::model {
 
-// Between the times that it is told, states follow the cubic through both ends with their rates. T is double,
-// or a scalar with derivatives: those of the states are at fixed time, and a time asked for may have
-// derivatives too.
+// Between the recorded times, states follow the cubic through both ends with their rates. T is double, or a
+// scalar with derivatives: those of the states are at fixed time, and a requested time may carry derivatives
+// too.
 template <class T>
 class StateHistory {
  public:
   // Keeps what is needed for times up to `reach` seconds before the last one.
   StateHistory(int states, double reach) : states_(states), reach_(reach) {}
 
-  // The next accepted state, in order of time. Where state or rate jumps (a switch, a new voltage) it is told
-  // twice for one time, from before and from after.
+  // Adds the next accepted state, in order of time. Where state or rate jumps (a switch, a new voltage), add
+  // two for the same time, one from before and one from after.
   void Add(double time, const T* state, const T* rate) {
     if (!times_.empty() && time < times_.back()) Forget();
     times_.push_back(time);
@@ -39,8 +39,8 @@ class StateHistory {
 
   bool empty() const { return times_.empty(); }
 
-  // The state at `*time`; before the first one that, and `*time` becomes its time. After the last one it goes
-  // on at the last rate. Needs not to be empty.
+  // The state at `*time`. Before the first recorded state: that state, and `*time` becomes its time. After
+  // the last one, continues at the last rate. The history must not be empty.
   void At(T* time, T* state) const {
     if (*time < T(times_[first_])) *time = T(times_[first_]);
     const auto after = std::upper_bound(times_.begin() + static_cast<std::ptrdiff_t>(first_), times_.end(),
@@ -77,7 +77,7 @@ class StateHistory {
   double reach_;
   std::vector<double> times_;
   std::vector<T> numbers_;  // at each time the states, then the rates
-  size_t first_ = 0;        // what lies before is not needed any more
+  size_t first_ = 0;        // what lies before is no longer needed
 };
 
 }  // namespace hydro::model

@@ -1,4 +1,4 @@
-// Integrator::kAuto: Runge-Kutta until stability holds its steps back, then CVODE until the mode changes. A
+// Integrator::kAuto: Runge-Kutta until stability limits its steps, then CVODE until the mode changes. A
 // template, for .cc files of model/ only.
 #pragma once
 
@@ -9,7 +9,7 @@
 
 namespace hydro::model {
 
-// A stepper, as ModeMachine needs.
+// A stepper as ModeMachine expects it.
 template <Form kForm>
 class AutoStepper {
  public:

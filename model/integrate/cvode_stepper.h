@@ -18,8 +18,8 @@ class CvodeStepper {
 
   Integrator in_use() const { return Integrator::kCvode; }
   void Restart(const Point& now);
-  // Keeping the history over a jump of the voltage was measured to be cheaper and no less accurate than
-  // starting afresh at order 1: the error test sees the jump.
+  // Measured: keeping the history over a jump of the voltage is cheaper than starting afresh at order 1, and
+  // no less accurate, because the error test sees the jump.
   void NewVoltage(const Point&) {}
   void Step(const Point& now, double stop, Point* next);
   bool Trusts(const Point& /*now*/, const Point& /*at*/) const { return true; }  // as accurate as its steps

@@ -15,7 +15,7 @@ class ErkStepper {
 
   Integrator in_use() const { return Integrator::kErk; }
   void Restart(const Point& now);
-  // An explicit pair keeps nothing of earlier steps that is worth more than starting afresh.
+  // An explicit pair keeps nothing from earlier steps that is worth more than a fresh start.
   void NewVoltage(const Point& now) { Restart(now); }
   void Step(const Point& now, double stop, Point* next);
   bool Trusts(const Point& /*now*/, const Point& /*at*/) const { return true; }  // as accurate as its steps

@@ -29,9 +29,10 @@ inline double DipWithin(double h, const MarginEnds& ends) {
   return ends.g_0 + s * (a + s * (b + s * c)) < 0 ? s * h : kNever;
 }
 
-// Given g(start) = g_start >= 0 and g(end) = g_end < 0: a time t in (start, end] with g(t) < 0 and, within
-// `width` (or what the clock can tell at such times) before it, g >= 0. Illinois, regula falsi that halves
-// the value at an end that stays, with a bisection whenever two of its steps have not halved the interval.
+// Given g(start) = g_start >= 0 and g(end) = g_end < 0: a time t in (start, end] with g(t) < 0 and g >= 0
+// within `width` before it (or within the clock's resolution at such times). Uses the Illinois method, regula
+// falsi that halves the value at an end that stays, with a bisection whenever two steps have not halved the
+// interval.
 template <class Margin>
 double TimeJustPast(double start, double g_start, double end, double g_end, double width, Margin g) {
   width = std::max(width, 8 * std::numeric_limits<double>::epsilon() * std::abs(end));

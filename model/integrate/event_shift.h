@@ -1,4 +1,4 @@
-// How the time of an event depends on what is unknown. For .cc files of model/ only.
+// How the time of an event depends on the unknowns. For .cc files of model/ only.
 #pragma once
 
 #include "model/equations/evaluate.h"
@@ -6,11 +6,11 @@
 
 namespace hydro::model {
 
-// By how much switch `which`, whose margin has just passed 0 at `at`, reaches its boundary later for other numbers:
-// derivatives only, the value is 0. From margin(t, numbers) = 0: dt = -d margin / (d margin/dt).
+// How much later, for other numbers, switch `which`, whose margin has just passed 0 at `at`, reaches its
+// boundary: derivatives only, the value is 0. From margin(t, numbers) = 0: dt = -d margin / (d margin/dt).
 inline Jet EventShift(const EquationData& m, double voltage, const Mode& mode, const PointOf<Jet>& at,
                       int which, Terms<Jet>& terms) {
-  // d margin/dt along the motion: one direction is that of the motion itself.
+  // d margin/dt along the motion: one direction of the Jet is the motion itself.
   Jet moving[kMaxStates], rate[kMaxStates], margin[kMaxSwitches];
   const NumbersOf<Jet>& constants = *m.constants;
   for (int i = 0; i < m.states; ++i) {
@@ -20,7 +20,7 @@ inline Jet EventShift(const EquationData& m, double voltage, const Mode& mode, c
   EvaluateTerms<Form::kGeneral, Jet>(m, constants, at.time, Jet(voltage), mode, moving, rate, terms);
   FindMargins<Form::kGeneral, Jet>(m, constants, mode, terms, margin);
   double slope = margin[which].v[0];
-  if (m.shaft == Shaft::kDriven || !m.effects.empty()) {  // they depend on time too
+  if (m.shaft == Shaft::kDriven || !m.effects.empty()) {  // they also depend on time
     constexpr double kShort = 1e-7;                       // s
     for (int i = 0; i < m.states; ++i) moving[i].v[0] = 0;
     EvaluateTerms<Form::kGeneral, Jet>(m, constants, at.time - kShort, Jet(voltage), mode, moving, rate,
@@ -29,7 +29,7 @@ inline Jet EventShift(const EquationData& m, double voltage, const Mode& mode, c
     FindMargins<Form::kGeneral, Jet>(m, constants, mode, terms, margin);
     slope += (now - margin[which].a) / kShort;
   }
-  if (!(slope < 0)) return Jet(0.0);  // it touches: no first order
+  if (!(slope < 0)) return Jet(0.0);  // it only touches: no first order
   Jet later = -at.margin[which] / slope;
   later.a = 0;
   return later;

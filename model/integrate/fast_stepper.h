@@ -1,5 +1,5 @@
-// Integrator::kFast: Runge-Kutta steps held to a tolerance, inlined for the plain forms. A template, for .cc files of
-// model/ only.
+// Integrator::kFast: Runge-Kutta steps held to a tolerance, inlined for the plain forms. A template, for .cc
+// files of model/ only.
 #pragma once
 
 #include <algorithm>
@@ -59,7 +59,7 @@ class FastStepper {
     }
   }
 
-  // True when one step from `now` to `at`, of which all is known, is accurate enough. Step answers for the
+  // True when one step from `now` to `at`, where everything is known, is accurate enough. Step checks the
   // whole step only, and an event may lie just where the step bends.
   bool Trusts(const Point& now, const Point& at) const {
     if constexpr (!kMayBend) return true;
@@ -72,8 +72,8 @@ class FastStepper {
     return Excess(now, at, h, k2, k3, k4) <= 1;
   }
 
-  // True when stability and not accuracy has limited so many steps under one voltage that an implicit method
-  // is cheaper.
+  // True when stability rather than accuracy has limited so many steps under one voltage that an implicit
+  // method is cheaper.
   bool stiff() const { return unstable_steps_ >= kStiffAfter; }
 
   void Interpolate(const Point& now, const Point&, double time, Point* at) {
@@ -88,15 +88,15 @@ class FastStepper {
   const EquationData& data() const { return equations_.data(); }
   int n() const { return FormSize<kForm>::states(data()); }
 
-  // The plain forms are smooth on the scale of their steps; effects need not be.
+  // The plain forms are smooth on the scale of their steps; effects may not be.
   static constexpr bool kMayBend = kForm == Form::kGeneral;
-  static constexpr double kErrorShare = 0.1;  // of the tolerance for one step, as the steps' errors add up
+  static constexpr double kErrorShare = 0.1;  // of the tolerance, for one step: the errors of steps add up
   static constexpr int kStiffAfter = 50;
   static constexpr double kNearlyUnstable = 2.0;  // h |lambda|; the method is stable up to 2.78
 
-  // (2/15) h d^2/k is h z^4/120 k too, when d is k3 - k2 or the second difference k1 - k2 - k3 + k4, both
-  // z^2/4 k. It sees what k4 and k5 can both lie beyond or both lie in, such as friction that rises within a
-  // small part of the step. The division is spared: the callers multiply the other side by k.
+  // (2/15) h d^2/k is also h z^4/120 k, when d is k3 - k2 or the second difference k1 - k2 - k3 + k4, both
+  // z^2/4 k. It sees what k4 and k5 can both miss by lying beyond it or both inside it, such as friction that
+  // rises within a small part of the step. To avoid the division, the callers multiply the other side by k.
   static double Bend(int i, double h, const double* k1, const double* k2, const double* k3,
                      const double* k4) {
     const double d = std::max(std::abs(k3[i] - k2[i]), std::abs((k1[i] - k2[i]) + (k4[i] - k3[i])));
@@ -106,7 +106,7 @@ class FastStepper {
     return std::max(std::max(std::abs(k1[i]), std::abs(k2[i])), std::abs(k4[i]));
   }
 
-  // Error over allowed error. For a mode with z = lambda h the embedded result is off by h z^3/72 k1 and the
+  // Error over allowed error. For a mode with z = lambda h, the embedded result is off by h z^3/72 k1 and the
   // one that is kept by h z^4/120 k1, so the difference of the two counts by 0.6 z. z is the largest that any
   // component shows.
   double Excess(const Point& now, const Point& next, double h, const double* k2, const double* k3,

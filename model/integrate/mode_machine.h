@@ -1,8 +1,8 @@
 // The mode machine: runs any stepper from event to event, for the simulated plant and for Respond alike. A
 // template, for .cc files of model/ only.
 //
-// A stepper integrates one smooth mode. It is made from pointers to the mode and the voltage, which the machine
-// changes:
+// A stepper integrates one smooth mode. Its constructor takes pointers to the mode and the voltage, which the
+// machine changes:
 //   void Restart(const PointOf<T>& now)     the state or the mode has changed
 //   void NewVoltage(const PointOf<T>& now)  only the voltage has changed
 //   void Step(const PointOf<T>& now, double stop, PointOf<T>* next)
@@ -43,16 +43,17 @@ struct FormSize {
   }
 };
 
-// T is double, or Jet: then all that is seeded in the numbers and in the start is carried along, past events whose
-// times depend on it too. Steps and events are decided on the values alone, so that these are the same bits.
+// T is double or Jet. Jet carries along all derivatives seeded in the numbers and in the start, also past
+// events whose times depend on them. Values alone decide on steps and events, so both types compute the same
+// bits.
 template <class T, Form kForm, class Stepper>
 class ModeMachine {
   static constexpr bool kDerivatives = !std::is_same_v<T, double>;
   static_assert(!kDerivatives || kForm == Form::kGeneral);
 
  public:
-  // `numbers`: those of the equations, seeded where T is Jet. All must outlive the machine, and the equations belong
-  // to it while it runs (Equations::Command, PassStop). `options` go to the stepper.
+  // `numbers`: those of the equations, seeded when T is Jet. All arguments must outlive the machine, which
+  // owns the use of the equations while it runs (Equations::Command, PassStop). `options` go to the stepper.
   template <class... StepperOptions>
   ModeMachine(Equations* equations, const NumbersOf<T>* numbers, const StepperOptions&... options)
       : equations_(*equations),
@@ -62,7 +63,7 @@ class ModeMachine {
   ModeMachine(const ModeMachine&) = delete;  // the stepper has pointers into it
   ModeMachine& operator=(const ModeMachine&) = delete;
 
-  // To be called once, first. `state` has all states; `mode` is settled when the first voltage is known.
+  // Call once, first. `state` has all states; `mode` is settled when the first voltage is known.
   void Start(double time, const T* state, const Mode& mode) {
     now_->time = time;
     std::copy_n(state, equations_.states(), now_->state);
@@ -86,7 +87,7 @@ class ModeMachine {
     while (now_->time < until) {
       double stop = std::min(until, known_stop_);
       if (remembers()) stop = std::min(stop, now_->time + kLongestStepToRead);
-      // A switch on its boundary is given a moment to show to which side it goes.
+      // A switch on its boundary gets a moment to show which way it goes.
       if (fresh_ && OnBoundary()) stop = std::min(stop, now_->time + kMoment);
       fresh_ = false;
       stepper_.Step(*now_, stop, next_);
@@ -116,7 +117,7 @@ class ModeMachine {
   struct Nothing {};
 
   const EquationData& data() const { return equations_.data(); }
-  // Without derivatives they are the equations' own, which the compiler then knows.
+  // Without derivatives these are the equations' own numbers, which the compiler then knows.
   const NumbersOf<T>& numbers() const {
     if constexpr (kDerivatives) {
       return *numbers_;
@@ -145,7 +146,7 @@ class ModeMachine {
     EvaluateHere();
     const bool settled = Settle();
     if constexpr (kDerivatives) {
-      if (!started_ && mode_.pump == 0) {  // it stands still, and would soon if it did not
+      if (!started_ && mode_.pump == 0) {  // at rest, or about to be
         now_->state[kMotorSpeed] = T(0.0);
         EvaluateHere();
       }
@@ -214,8 +215,8 @@ class ModeMachine {
     throw ModelError("no mode fits" + Where(equations_, *now_));
   }
 
-  // A time in the step at which some switch is past its boundary; kNever when there is none. Margins that fall and
-  // rise again within the step are looked at too.
+  // A time in the step at which some switch is past its boundary; kNever if there is none. Also checks
+  // margins that fall and rise again within the step.
   double FirstTrouble() const {
     double trouble = kNever;
     for (int i = 0; i < switches(); ++i) {
@@ -249,7 +250,7 @@ class ModeMachine {
     Evaluate(at);
   }
 
-  // Where an event is looked for: values are enough.
+  // Where to look for an event: values are enough.
   Point& probe() {
     if constexpr (kDerivatives) {
       return probe_;
@@ -258,7 +259,7 @@ class ModeMachine {
     }
   }
 
-  // More events than switches of any machine: two of them undo each other.
+  // More events than any machine's switches have: two of them undo each other.
   void CountEvent() {
     if (now_->time > events_since_ + kLongestStep) {
       events_since_ = now_->time;
@@ -283,7 +284,7 @@ class ModeMachine {
                                       });
     At(event, spare_);  // just past the boundary
     if (event - now_->time > kMoment && !stepper_.Trusts(*now_, *spare_)) {
-      // Half the way first, so that a shorter step goes to the event.
+      // Halfway first, so that a shorter step goes to the event.
       stepper_.Step(*now_, now_->time + 0.5 * (event - now_->time), next_);
       CheckFinite(*next_);
       if (LeastMargin(*next_) >= 0) {
@@ -295,7 +296,7 @@ class ModeMachine {
     CrossAll();
   }
 
-  // Changes all switches whose margin is below 0 here.
+  // Changes all switches whose margin is below 0 at this point.
   void CrossAll() {
     T later{};
     if constexpr (kDerivatives) {
@@ -322,7 +323,7 @@ class ModeMachine {
     Resume(later);
   }
 
-  // Goes on in a right-hand side that has jumped.
+  // Continues in a right-hand side that has jumped.
   void Resume(const T& later) {
     fresh_ = true;
     EvaluateHere();
@@ -335,8 +336,8 @@ class ModeMachine {
     Remember();
   }
 
-  // The state, moved to the true time of an event, which is the present one and `later`; moved back in the mode that
-  // follows, it has what the event's time adds to the derivatives. The values stay.
+  // Shifts the state to the true time of an event, `later` than the present one. Shifted back in the mode
+  // that follows, the state has gained what the event's time adds to the derivatives. The values stay.
   void Shift(const T& later) {
     for (int i = 0; i < data().states; ++i) now_->state[i] += now_->rate[i] * later;
   }

@@ -1,4 +1,4 @@
-// A state with all that is known at it.
+// A state with everything known at it.
 #pragma once
 
 #include "model/terms/mode.h"
@@ -6,7 +6,7 @@
 
 namespace hydro::model {
 
-// T is double, or Jet for a state that carries derivatives.
+// T is double, or Jet for a state with derivatives.
 template <class T>
 struct PointOf {
   double time = 0;  // s
@@ -16,10 +16,10 @@ struct PointOf {
 };
 using Point = PointOf<double>;
 
-// No step is longer, so that a switch which changes and changes back is not stepped over.
+// No step is longer, so that no step misses a switch that changes and changes back.
 inline constexpr double kLongestStep = 1e-2;  // s
 
-// The same where states between the steps are read.
+// The same when states between the steps are read.
 inline constexpr double kLongestStepToRead = 2e-3;  // s
 
 }  // namespace hydro::model

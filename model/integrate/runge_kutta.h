@@ -1,14 +1,15 @@
-// The classical Runge-Kutta method, the only place that has it: whoever steps adds a control of the error. A
+// The classical Runge-Kutta method, which stands here only; each stepper adds its own error control. A
 // template, for .cc files of model/ only.
 #pragma once
 
 namespace hydro::model {
 
-// One step of length h from y at `time`, whose rates are k1, to `next`. `rates(time, y, rate)` is the right-hand
+// One step of length h from y at `time`, with rates k1, to `next`. `rates(time, y, rate)` is the right-hand
 // side. T is double or Jet.
 //
-// The rate at the end of the step, k5, which the next one starts with, also gives an embedded third-order result:
-// their difference h/6 (k4 - k5) overestimates the error of the fourth-order result that is kept.
+// The rate at the end of the step, k5, starts the next step and also gives an embedded third-order result.
+// The difference of the two results, h/6 (k4 - k5), overestimates the error of the fourth-order result, which
+// is kept.
 template <class T, class Rates>
 [[gnu::always_inline]] inline void RungeKuttaStep(int n, double time, double h, const T* y, const T* k1,
                                                   T* k2, T* k3, T* k4, T* stage, T* next,

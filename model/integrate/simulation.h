@@ -1,4 +1,4 @@
-// What Actuator holds: one model in motion, whatever integrates it.
+// What Actuator holds: one model in motion, by whichever integrator.
 #pragma once
 
 #include <cstdint>
@@ -19,18 +19,18 @@ class Simulation {
   virtual const Point& now() const = 0;
   virtual const Mode& mode() const = 0;
 
-  // The states that channels which read late need; null when there are none.
+  // The states that late channels need; null when there are none.
   virtual const StateHistory<double>* history() const = 0;
 
   // Switches that have changed since the start.
   virtual int64_t mode_changes() const = 0;
 
-  // What integrates at present: kFast, kErk or kCvode.
+  // The integrator in use: kFast, kErk or kCvode.
   virtual Integrator in_use() const = 0;
 };
 
-// `equations` must outlive the simulation and belongs to it while it runs: it calls Equations::Command and PassStop.
-// Throws ModelError.
+// `equations` must outlive the simulation, which alone uses them while it runs: it calls Equations::Command
+// and PassStop. Throws ModelError.
 std::unique_ptr<Simulation> MakeSimulation(Equations* equations, Integrator integrator,
                                            double initial_pressure, double relative_tolerance);
 

@@ -12,7 +12,7 @@
 
 namespace hydro::model {
 
-// What SUNDIALS' callbacks get as user data, and what it last complained of.
+// User data of SUNDIALS' callbacks, and its last complaint.
 struct SundialsProblem {
   const Equations* equations;
   const Mode* mode;
@@ -32,13 +32,13 @@ struct NVectorDeleter {
 using NVector = std::unique_ptr<_generic_N_Vector, NVectorDeleter>;
 NVector MakeNVector(int size, SUNContext context);
 
-// Callbacks: the right-hand side of the present mode (1, "try a smaller step", when it is not finite), and
-// the messages.
+// Callbacks: the right-hand side of the present mode (returns 1, "try a smaller step", when it is not
+// finite), and the messages.
 int SundialsRates(double time, N_Vector state, N_Vector rate, void* problem);
 void KeepComplaint(int code, const char* module, const char* function, char* message, void* problem);
 
-// Steps too short for SUNDIALS to start with are taken by Euler's rule; its error, of the order of their
-// square, is below rounding.
+// Euler's rule takes the steps that are too short for SUNDIALS to start with; its error, of the order of
+// their square, is below rounding.
 bool TooShort(double from, double to);
 void EulerStep(const Equations& equations, const Point& now, double stop, Point* next);
 

@@ -1,4 +1,4 @@
-// "... at t = 0.25 s, state motor_angle = 0, ...": where a simulation stands, for its errors.
+// "... at t = 0.25 s, state motor_angle = 0, ...": where a simulation stands, for its error messages.
 #pragma once
 
 #include <sstream>

@@ -1,4 +1,4 @@
-// The conditions that an actuator runs under, and how it is integrated.
+// The conditions under which an actuator runs, and how it is integrated.
 #pragma once
 
 #include <limits>
@@ -21,13 +21,13 @@ enum class Integrator {
 struct ActuatorOptions {
   Shaft shaft = Shaft::kFree;
   double arm_angle = 0;  // rad, clamped: where; free: where the arm starts
-  // rad over s, driven: the arm's angle; must be continuous and outlive the model.
+  // rad over s; driven: the arm's angle. Must be continuous and outlive the model.
   const trajectory::Trajectory* motion = nullptr;
   bool bypass = false;                                                 // the two sides are connected: p1 = p2
   double initial_pressure = std::numeric_limits<double>::quiet_NaN();  // psi, both sides; NaN: p_3
   Integrator integrator = Integrator::kAuto;
   double relative_tolerance = 1e-8;
-  // An effect may appear more than once: for derivatives by several of them that have no size yet.
+  // An effect may appear more than once: for derivatives by several effects that are still of size zero.
   bool repeated_effects = false;
 };
 

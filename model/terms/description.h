@@ -7,8 +7,8 @@
 
 namespace hydro::model {
 
-// Base parameters of eqs. (1) to (15), Table 1. Units need only be coherent; those of the paper are given.
-// T is double, or a scalar that carries derivatives.
+// Base parameters of eqs. (1) to (15), Table 1. Units need only be coherent; those given are the paper's. T
+// is double, or a scalar with derivatives.
 template <class T>
 struct ParametersOf {
   T k_1{};     // in-lbf/V, torque per volt, eq. (1)
@@ -30,11 +30,11 @@ struct ParametersOf {
 };
 using Parameters = ParametersOf<double>;
 
-// An effect that a model has, as written in its file: [effects."id"].
+// One of the model's effects, as written in its file: [effects."id"].
 struct EffectDescription {
   std::string id;                            // as in docs/effects.md
   std::map<std::string, double> parameters;  // name -> value
-  std::map<std::string, std::string> names;  // parameters that are names (a signal)
+  std::map<std::string, std::string> names;  // parameters whose value is a name (a signal)
 };
 
 struct ModelDescription {

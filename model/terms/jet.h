@@ -1,7 +1,7 @@
-// A number with its derivatives along kJetWidth directions (a dual number). As fast here as ceres::Jet, whose
-// division rounds differently from that of numbers; with this one the values are those of double to the last
-// bit, so that a response with derivatives takes the same steps and events as one without. And it spares some
-// thirty files Eigen's headers.
+// A number with its derivatives along kJetWidth directions (a dual number). ceres::Jet is as fast here, but
+// its division rounds differently from that of numbers. With this one the values are those of double to the
+// last bit, so a response with derivatives takes the same steps and events as one without. It also spares
+// some thirty files Eigen's headers.
 #pragma once
 
 #include <cmath>

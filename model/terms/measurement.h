@@ -3,7 +3,7 @@
 
 namespace hydro::model {
 
-// Units of the model. T is double, or a scalar that carries derivatives.
+// In the model's units. T is double, or a scalar with derivatives.
 template <class T>
 struct MeasurementOf {
   T motor_angle{};

@@ -1,4 +1,4 @@
-// The positions of the model's switches. Between two changes of the mode the right-hand side is smooth.
+// The positions of the model's switches. Between two changes of mode the right-hand side is smooth.
 #pragma once
 
 #include <array>
@@ -6,25 +6,25 @@
 
 namespace hydro::model {
 
-// Most switches that effects can add to one model.
+// The most switches that effects can add to one model.
 inline constexpr int kMaxEffectSwitches = 13;
 inline constexpr int kMaxSwitches = 3 + kMaxEffectSwitches;
 
-// Numbers of the base switches, as the margins of Equations::Rates and `which` of Equations::Cross count them; those of
-// effects follow.
+// Numbers of the base switches, in the margins of Equations::Rates and as `which` of Equations::Cross; those
+// of effects follow.
 inline constexpr int kPumpSwitch = 0;
 inline constexpr int kValve1Switch = 1;
 inline constexpr int kValve2Switch = 2;
 inline constexpr int kFirstEffectSwitch = 3;
 
 struct Mode {
-  // The pump: 0 sticks; +1 and -1 slips in that direction, and friction acts against it.
+  // The pump: 0 sticks; +1 or -1 slips in that direction, with friction opposing.
   int8_t pump = 0;
   // The one-way valves from the accumulator: 1 open (the pressure is held at p_3), 0 closed. With the bypass
   // open, valve_1 stands for both.
   int8_t valve_1 = 0;
   int8_t valve_2 = 0;
-  // What effects add; each documents the meaning of its positions.
+  // The effects' switches; each effect documents what its positions mean.
   std::array<int8_t, kMaxEffectSwitches> effects{};
 
   bool operator==(const Mode&) const = default;

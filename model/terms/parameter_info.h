@@ -1,5 +1,5 @@
 // What is known of each parameter by itself: name, unit, physical bounds, meaning. Model files are checked
-// against it, reports print it, and the gap finder fits by it.
+// against it, reports print it, and the gap finder uses it in fits.
 #pragma once
 
 #include <cstddef>
@@ -11,11 +11,11 @@
 
 namespace hydro::model {
 
-// The bound of a parameter that has none.
+// The bound of an unbounded parameter.
 inline constexpr double kUnbounded = std::numeric_limits<double>::infinity();
 
-// What the size of a parameter is measured by when a fit starts from it: quantities of a model and of runs,
-// so that nothing depends on the units.
+// The yardstick for a parameter's size when a fit starts from it: quantities of the model and of the runs, so
+// that nothing depends on the units.
 enum class Scale {
   kOne,           // the number itself
   kTorque,        // T_pmax
@@ -29,23 +29,23 @@ enum class Scale {
   kArmDamping,    // J_a over kSample
 };
 
-// What a parameter is in its effect's equation, where the gap finder treats it in a way of its own. Nothing
-// else about a parameter, its unit, name or effect, makes a difference to the gap finder.
+// A parameter's role in its effect's equation, where the gap finder treats that role specially. Nothing else
+// about a parameter (unit, name, effect) makes a difference to the gap finder.
 enum class Role {
-  // How much there is of something: fitted from `starts`.
+  // An amount of something: fitted from `starts`.
   kSize,
-  // A delay or time constant, in the model's unit of time. Its interval allows for what runs cannot show: what
-  // the model takes to be immediate takes a small part of a sample.
+  // A delay or time constant, in the model's unit of time. Its interval allows for what runs cannot show:
+  // what the model takes to be immediate takes a small part of a sample.
   kTime,
-  // That of something that resonates. A fit may end where another ringing is nearly in step; it is begun again
-  // around its end.
+  // The frequency of something that resonates. A fit may end where another ringing is nearly in step, so it
+  // is restarted around its end.
   kFrequency,
-  // Whole periods in a turn of the motor: read off the torque balance together with the amplitude and phase.
+  // Whole periods per turn of the motor: read off the torque balance together with the amplitude and phase.
   kPeriods,
   kTorqueWave,        // amplitude in: torque of the motor -= amplitude sin(periods theta + phase)
   kDisplacementWave,  // amplitude in: D (1 + amplitude cos(periods theta + phase))
   kPhase,             // of either, rad; there need not be one
-  // A name: that of a measured channel. Tried for each channel that the runs have.
+  // The name of a measured channel. Tried for each channel that the runs have.
   kChannel,
 };
 
@@ -56,15 +56,15 @@ struct ParameterInfo {
   double max = kUnbounded;  // largest physical value
   bool min_allowed = true;  // false: must be above min
   std::string meaning;      // one line
-  // Not empty: the value is a name, one of these.
+  // If not empty, the value is a name, one of these.
   std::vector<std::string> names = {};
-  // Where a fit of the effect starts, in `scale`s: each of them with each of the effect's other parameters'.
-  // A parameter in which the effect is linear at 0 needs 0 only.
+  // Where a fit of the effect starts, in `scale`s: each of these combined with each of the other parameters'.
+  // A parameter in which the effect is linear at 0 needs only 0.
   std::vector<double> starts = {0};
   Scale scale = Scale::kOne;
   Role role = Role::kSize;
-  // The base parameter that it is added to, where it is the same term: the gap finder frees one of the two,
-  // the base parameter where that is not 0.
+  // The base parameter to which it is added as the same term. The gap finder frees one of the two: the base
+  // parameter where that is not 0.
   double Parameters::*adds_to = nullptr;
   // A size at which the effect shows on the paper's rig (Table 1); tests run every effect of the catalogue
   // with it.
@@ -91,10 +91,10 @@ T& BaseValue(ParametersOf<T>& parameters, size_t index) {
 // All base parameters, in the order of Parameters.
 const std::vector<BaseParameter>& BaseParameters();
 
-// Where in BaseParameters() the one of this name is. Throws ModelError when there is none.
+// The position of that name in BaseParameters(). Throws ModelError when there is none.
 size_t BasePlace(const std::string& name);
 
-// What the catalogue knows of an effect. The table in docs/effects.md is written from it.
+// What the catalogue knows of an effect. The table in docs/effects.md is generated from it.
 struct EffectInfo {
   std::string id;                         // "pump.stribeck"
   std::string summary;                    // "static friction above kinetic"
@@ -106,7 +106,7 @@ struct EffectInfo {
 // The effects that this program knows, ordered by id.
 const std::vector<EffectInfo>& EffectCatalogue();
 
-// Null when no such effect is known.
+// Null for an unknown effect.
 const EffectInfo* FindEffect(const std::string& id);
 
 }  // namespace hydro::model

@@ -1,10 +1,9 @@
-// Where each state lies.
+// The layout of the state vector.
 #pragma once
 
 namespace hydro::model {
 
-// The state vector: theta, theta', p1, p2, then alpha, alpha' when the shaft is free, then the states of the
-// effects.
+// The state vector: theta, theta', p1, p2; with a free shaft alpha, alpha'; then the states of the effects.
 inline constexpr int kMotorAngle = 0;
 inline constexpr int kMotorSpeed = 1;
 inline constexpr int kP1 = 2;

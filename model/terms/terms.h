@@ -9,11 +9,11 @@
 
 namespace hydro::model {
 
-// T is double, or Jet for exact derivatives. Signs are those of the paper: the pump turning forward (theta' >
-// 0) moves fluid from side 1 to side 2.
+// T is double, or Jet for exact derivatives. Signs are the paper's: the pump turning forward (theta' > 0)
+// moves fluid from side 1 to side 2.
 template <class T>
 struct Terms {
-  // The instant. Given to effects, not theirs to change.
+  // The instant. Effects read it and must not change it.
   double time = 0;  // s
   const Mode* mode = nullptr;
   bool arm_free = false;  // the shaft is neither clamped nor driven
@@ -21,7 +21,7 @@ struct Terms {
   const ParametersOf<T>* parameters = nullptr;
   const T* own = nullptr;    // the effect's parameters, in the order of its catalogue entry, names left out
   const T* state = nullptr;  // the whole state vector; an effect finds its own states from first_state() on
-  // `voltage` is the one that acts now, whatever an effect remembers of earlier ones.
+  // `voltage` acts now, whatever earlier voltages an effect remembers.
   bool voltage_acts = false;
   T motor_angle, motor_speed;
   T arm_angle, arm_speed;
@@ -34,8 +34,8 @@ struct Terms {
   T beta_1, beta_2;    // eq. (5)
   T V_1, V_2;          // eqs. (6), (7): the fluid whose pressure is p1, p2
   T c_E, c_I, p_3;     // eqs. (11), (12)
-  T pump_p1, pump_p2;  // what the pump sees of p1, p2
-  T actuator_speed;    // of the actuator's own shaft: the arm's unless something gives between the two
+  T pump_p1, pump_p2;  // p1 and p2 as the pump sees them
+  T actuator_speed;    // of the actuator's own shaft: the arm's, unless something between the two gives
 
   // Torques and flows, from the properties; effects change them in AddTorquesAndFlows.
   T load;                        // torque against forward rotation besides D dp, b theta' and friction
@@ -43,7 +43,7 @@ struct Terms {
   T breakaway;                   // largest torque that friction holds while the pump sticks
   T cross_flow;                  // from side 2 to side 1 at the pump
   T outer_flow_1, outer_flow_2;  // from each side to the accumulator
-  T valve_flow_1, valve_flow_2;  // the same through valves of effects, which sit at the actuator
+  T valve_flow_1, valve_flow_2;  // the same through the valves of effects, which are at the actuator
   T arm_torque;                  // on the arm, eq. (15)
 
   T torque_asked;  // of the motor, where motor.speed_torque_limit gives less

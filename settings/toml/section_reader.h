@@ -1,4 +1,4 @@
-// Reads one section of a TOML document key by key, so that every key is either asked for or an error.
+// Reads one section of a TOML document key by key, so that a key that no one asks for is an error.
 #pragma once
 
 #include <cstdint>
@@ -18,8 +18,8 @@ namespace hydro::settings {
 InputError KeyError(const std::string& place, const std::string& key, const std::string& found,
                     const std::string& allowed);
 
-// The same for a dotted key; the place is that of the key or, where it is absent, of the innermost section
-// around it.
+// The same for a dotted key. The place is the key's or, if the key is absent, that of the innermost enclosing
+// section.
 InputError KeyError(const TomlNode& root, const std::string& dotted_key, const std::string& found,
                     const std::string& allowed);
 
@@ -45,7 +45,7 @@ class SectionReader {
 
   bool Has(const std::string& key) const { return table_->Find(key) != nullptr; }
 
-  // These return whether the key is there, and leave `out` alone where it is not. They throw InputError.
+  // These return whether the key is present, and leave `out` alone if not. They throw InputError.
   bool Number(const std::string& key, double* out, const NumberRange& range = kAnyNumber);
   bool Number(const std::string& key, std::optional<double>* out, const NumberRange& range = kAnyNumber);
   bool Integer(const std::string& key, int64_t* out, int64_t min, int64_t max);
@@ -55,17 +55,16 @@ class SectionReader {
   template <class Value>
   bool Choice(const std::string& key, const std::vector<std::pair<std::string, Value>>& choices, Value* out);
 
-  // The section of that name; where there is none, an empty one.
+  // The section of that name; an empty one if there is none.
   SectionReader Section(const std::string& key);
 
-  // The key's node, for what the above do not cover; null where there is none.
+  // The key's node, for what the functions above do not cover; null if there is none.
   const TomlNode* Take(const std::string& key);
 
-  // Says that `key` must be there (checked by Finish).
+  // Declares that `key` must be present (checked by Finish).
   void Require(const std::string& key, const std::string& allowed);
 
-  // Throws InputError for the first key that was never asked for, else for the first required one that is
-  // missing.
+  // Throws InputError for the first key that was never asked for, else for the first missing required one.
   void Finish() const;
 
   InputError Error(const std::string& key, const std::string& found, const std::string& allowed) const;
@@ -77,7 +76,7 @@ class SectionReader {
   std::string Dotted(const std::string& key) const { return path_.empty() ? key : path_ + "." + key; }
 
   const TomlNode* table_;
-  std::shared_ptr<const TomlNode> absent_;  // stands in for a section that is not there
+  std::shared_ptr<const TomlNode> absent_;  // stands in for a missing section
   std::string path_;
   std::vector<std::string> known_;
   std::vector<std::pair<std::string, std::string>> required_;  // key, allowed

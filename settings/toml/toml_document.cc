@@ -12,14 +12,14 @@
 namespace hydro::settings {
 namespace {
 
-constexpr int kMostKeyParts = 16;  // what is read here has up to three
-constexpr int kMostBrackets = 16;  // one inside another; what is read here has two
+constexpr int kMostKeyParts = 16;  // this project's keys have up to three
+constexpr int kMostBrackets = 16;  // one inside another; this project's values have two
 
-// Bounds the depth of a document before it is parsed. toml++ bounds how deep arrays and inline tables nest,
+// Bounds the depth of a document before it is parsed. toml++ bounds the nesting of arrays and inline tables,
 // but builds a table inside a table for each part of a dotted key, and a key of a hundred thousand parts
 // exhausts the stack. A document that passes is at most kMostKeyParts * (kMostBrackets + 1) + kMostBrackets
-// levels deep. The scan knows strings and comments as toml++ does and nothing else: toml++ reports what is
-// not TOML.
+// levels deep. The scan recognises strings and comments as toml++ does and nothing else: toml++ reports text
+// that is not TOML.
 class DepthScan {
  public:
   explicit DepthScan(std::string_view text) : text_(text) {}
@@ -88,7 +88,7 @@ TomlNode Convert(const toml::node& from, const std::string& name) {
   node.place = name + ":" + std::to_string(from.source().begin.line);
   if (const toml::table* table = from.as_table()) {
     node.kind = TomlNode::Kind::kTable;
-    // toml++ sorts by name; people, and the order of effects in a model, go by the file.
+    // toml++ sorts by name; people, and the order of effects in a model, follow the file.
     std::vector<std::pair<const toml::key*, const toml::node*>> entries;
     for (auto&& [key, value] : *table) entries.emplace_back(&key, &value);
     std::stable_sort(entries.begin(), entries.end(), [](const auto& a, const auto& b) {

@@ -1,4 +1,4 @@
-// A TOML document as a tree that keeps the order of its keys and the place of each.
+// A TOML document as a tree that keeps the order of its keys and each one's place.
 #pragma once
 
 #include <cstdint>
@@ -20,7 +20,7 @@ struct TomlNode {
   int64_t integer = 0;              // kInteger
   double number = 0;                // kFloat
   bool boolean = false;             // kBoolean
-  std::string place;                // "file:line", or the option that it came from
+  std::string place;                // "file:line", or the option that set it
   bool from_option = false;         // true: from --set
 
   bool is(Kind k) const { return kind == k; }
@@ -45,7 +45,7 @@ TomlNode StringNode(std::string text);
 TomlNode ArrayNode(std::vector<TomlNode> items);
 
 // The only reader of TOML, for trusted and untrusted text alike: no text can exhaust the stack. Throws
-// InputError "name:line: syntax: ..." where the text is not TOML, or nests deeper than any document of this
+// InputError "name:line: syntax: ..." when the text is not TOML or nests deeper than any document of this
 // project.
 TomlNode ParseToml(const std::string& text, const std::string& name);
 
