@@ -8,7 +8,7 @@
 namespace hydro {
 namespace {
 
-// Levenshtein's distance, upper and lower case alike.
+// Levenshtein distance, ignoring case.
 size_t Edits(const std::string& a, const std::string& b) {
   std::vector<size_t> row(b.size() + 1);
   for (size_t j = 0; j <= b.size(); ++j) row[j] = j;
@@ -31,9 +31,9 @@ size_t Edits(const std::string& a, const std::string& b) {
 std::string Nearest(const std::string& found, const std::vector<std::string>& names) {
   if (found.empty() || found.size() > 64) return "";
   std::string nearest;
-  size_t fewest = found.size() <= 3 ? 1 : 1 + found.size() / 4;  // more edits than this is another word
+  size_t fewest = found.size() <= 3 ? 1 : 1 + found.size() / 4;  // more edits make another word
   for (const std::string& name : names) {
-    // A key with its unit left out or its first part only ("frequency" for "frequency_hz") is near, too.
+    // A key without its unit, or only its first part ("frequency" for "frequency_hz"), also counts as near.
     const bool beginning =
         found.size() >= 4 && name.size() > found.size() && name.compare(0, found.size(), found) == 0;
     const size_t edits = beginning ? 1 : Edits(found, name);

@@ -1,4 +1,4 @@
-// Bad usage, configuration or input: exit 2 and one line.
+// Bad usage, configuration or input: exit code 2 and one line.
 #pragma once
 
 #include <stdexcept>

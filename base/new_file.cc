@@ -29,8 +29,7 @@ bool ExistsAndIsNotRegular(const std::string& file) {
   return stat(file.c_str(), &status) == 0 && !S_ISREG(status.st_mode);
 }
 
-// Removes a file of that name, unless another process holds the lock that every NewFile takes on what it
-// writes.
+// Removes a file of that name, unless another process holds the lock that every NewFile takes on its file.
 void RemoveUnlessBeingWritten(const std::string& path, const std::string& name) {
   const int old = open(path.c_str(), O_WRONLY | O_CLOEXEC);
   if (old < 0) {
@@ -42,13 +41,13 @@ void RemoveUnlessBeingWritten(const std::string& path, const std::string& name) 
   if (locked) {
     throw InputError(name + ": is being written by another process; stop that one or give another name");
   }
-  // Unlinked instead of truncated: a reader that has the old contents mapped keeps them.
+  // Unlinks instead of truncating: a reader that has the old contents mapped keeps them.
   if (unlink(path.c_str()) != 0 && errno != ENOENT) ThrowCannotCreate(name, errno);
 }
 
 }  // namespace
 
-// Every NewFile holds a lock on what it writes.
+// Every NewFile holds a lock on its file.
 bool IsBeingWritten(const std::string& file) {
   const int descriptor = open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
   if (descriptor < 0) return false;
@@ -60,7 +59,7 @@ bool IsBeingWritten(const std::string& file) {
 void CheckCanBeCreated(const std::string& file) {
   struct stat status;
   if (file.empty()) return;
-  // Who reads a pipe would take the attempt for all that comes.
+  // The reader of a pipe would take the attempt for the whole output.
   if (stat(file.c_str(), &status) == 0 && S_ISFIFO(status.st_mode)) return;
   const NewFile attempt(file, Opening::kTemporary);
 }

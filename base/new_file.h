@@ -1,4 +1,4 @@
-// A file that is being written.
+// A file while it is being written.
 #pragma once
 
 #include <cstddef>
@@ -19,18 +19,18 @@ enum class Opening {
   kTemporary,
 };
 
-// Whether a NewFile, of this process or another, is writing to the file under this name.
+// Whether a NewFile, of this process or another, is writing to the file of this name.
 bool IsBeingWritten(const std::string& file);
 
-// Throws InputError when a NewFile of that name could not be created, so that a program fails before it
-// works. Leaves no file behind. An empty name is no file.
+// Throws InputError if a NewFile of that name could not be created, so that a program fails before it works.
+// Leaves no file behind. An empty name is not checked.
 void CheckCanBeCreated(const std::string& file);
 
 class NewFile {
  public:
-  // Creates the file and replaces an existing one, whose readers keep the old contents. Throws InputError
-  // when the file cannot be created or another process is writing it. What is not a regular file, such as
-  // /dev/null, is always opened directly.
+  // Creates the file and replaces an existing one; readers of the old one keep its contents. Throws
+  // InputError when the file cannot be created or another process is writing it. Anything but a regular file,
+  // such as /dev/null, is always opened directly.
   NewFile(const std::string& file, Opening opening);
   ~NewFile();
   NewFile(const NewFile&) = delete;
@@ -40,9 +40,9 @@ class NewFile {
   size_t WriteSome(const void* data, size_t size);
   // Writes all of it. Throws WriteError.
   void Write(const void* data, size_t size);
-  // Removes the last `size` bytes that were written; false where that cannot be done (not a regular file).
+  // Removes the last `size` bytes written; false where that is impossible (not a regular file).
   bool TakeBack(size_t size);
-  // Closes the file and, when temporary, gives it its name. Throws WriteError. Later calls do nothing.
+  // Closes the file and, with kTemporary, gives it its name. Throws WriteError. Later calls do nothing.
   void Finish();
 
   const std::string& name() const { return name_; }  // final name, as given

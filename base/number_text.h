@@ -1,5 +1,5 @@
-// Numbers as text and back, independent of the locale. Three ways to write a number, by purpose: exact in
-// files, exact in messages, rounded in reports.
+// Numbers as text and back, independent of the locale. There are three ways to write a number, by purpose:
+// exact in files, exact in messages, rounded in reports.
 #pragma once
 
 #include <cstdint>
@@ -9,8 +9,8 @@
 
 namespace hydro {
 
-// For files that programs read: the shortest text that reads back as the same number ("nan", "inf" and "-inf"
-// for those; 0.0002 is "2e-04").
+// For files that programs read: the shortest text that reads back as the same number (or "nan", "inf",
+// "-inf"; 0.0002 is "2e-04").
 void AppendNumber(double value, std::string& text);
 std::string NumberText(double value);
 
@@ -18,15 +18,15 @@ std::string NumberText(double value);
 // 1e15 ("0.0002").
 std::string ShortestNumber(double value);
 
-// For reports: rounded to so many significant digits, or to whole numbers where those have more: 3.14, 81000,
+// For reports: rounded to that many significant digits, or to a whole number if that has more: 3.14, 81000,
 // 2.6e-05. "-" when it is not finite.
 std::string ShortNumber(double value, int digits = 4);
 
-// "0x001f", with at least so many digits.
+// "0x001f", with at least that many digits.
 std::string HexNumber(uint64_t value, int digits);
 
-// Reads a whole text as a number; decimal, "inf" and "nan" in any case, a leading '+'. Empty: it is not a
-// number, or is outside the range of a double.
+// Reads a whole text as a number; decimal, "inf" and "nan" in any case, a leading '+'. Empty when it is not a
+// number or is outside the range of a double.
 std::optional<double> ParseNumber(std::string_view text);
 std::optional<int64_t> ParseInteger(std::string_view text);
 

@@ -10,8 +10,8 @@
 
 namespace hydro {
 
-// Calls work(i) for each i below `count`, on up to `jobs` threads. Each call must write its result to a place
-// of its own, so that results do not depend on the order. Rethrows the first exception when all threads have
+// Calls work(i) for each i below `count`, on up to `jobs` threads. Each call must write its result to its own
+// place, so that results do not depend on the order. Rethrows the first exception when all threads have
 // stopped.
 template <class Work>
 void ParallelFor(size_t count, int jobs, const Work& work) {

@@ -1,4 +1,4 @@
-// A queue for a loop: once it has reached its greatest length, it allocates nothing more.
+// A queue for a loop: once it has reached its largest size, it allocates nothing more.
 #pragma once
 
 #include <cstddef>
@@ -10,7 +10,7 @@ namespace hydro {
 template <class Value>
 class RingQueue {
  public:
-  // Room for `capacity` (a power of two) before it grows; it doubles when it must.
+  // Has room for `capacity` values (a power of two); doubles when full.
   explicit RingQueue(size_t capacity = 64) : values_(capacity) {}
 
   bool empty() const { return first_ == end_; }

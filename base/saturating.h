@@ -1,4 +1,4 @@
-// Sums and differences that saturate, for whole numbers from messages and files, which may have any value.
+// Saturating sums and differences, for whole numbers from messages and files, which may have any value.
 #pragma once
 
 #include <cstdint>

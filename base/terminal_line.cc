@@ -9,7 +9,7 @@ namespace hydro {
 namespace {
 
 constexpr int kBarWidth = 30;
-constexpr size_t kUsualColumns = 80;  // of a terminal that does not say
+constexpr size_t kUsualColumns = 80;  // when the terminal does not report its width
 
 size_t Columns(std::FILE* out) {
   winsize size{};
@@ -24,7 +24,7 @@ void TerminalLine::Draw(double fraction, const std::string& text) {
                      std::string(static_cast<size_t>(kBarWidth - filled), '.') + "] " +
                      std::to_string(static_cast<int>(fraction * 100)) + " %" + (text.empty() ? "" : " ") +
                      text;
-  // A line that wraps could not be wiped.
+  // A line that wraps could not be erased.
   line.resize(std::min(line.size(), Columns(out_) - 1));
   if (line == drawn_) return;
   Wipe();

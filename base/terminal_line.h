@@ -8,7 +8,7 @@ namespace hydro {
 
 class TerminalLine {
  public:
-  // `out` stays the caller's.
+  // The caller keeps ownership of `out`.
   explicit TerminalLine(std::FILE* out) : out_(out) {}
   // Clears the line.
   ~TerminalLine() { Wipe(); }
@@ -17,7 +17,7 @@ class TerminalLine {
 
   // Shows "[####....] 50 % text", cut to the terminal's width. `fraction`: 0 to 1.
   void Draw(double fraction, const std::string& text);
-  // Before anything else is written there.
+  // Call before writing anything else to the terminal.
   void Wipe();
 
  private:

@@ -10,7 +10,7 @@
 namespace hydro {
 namespace {
 
-// Bytes of the UTF-8 character that `text` begins with; 0 where there is none.
+// Length in bytes of the UTF-8 character at the start of `text`; 0 if there is none.
 size_t CharacterLength(std::string_view text) {
   const auto byte = [&](size_t i) { return static_cast<unsigned char>(text[i]); };
   const size_t length = byte(0) < 0x80    ? 1

@@ -1,4 +1,4 @@
-// Reading a whole text file, and showing what was found in one.
+// Reads whole text files, and shows what was found in them.
 #pragma once
 
 #include <string>
@@ -15,19 +15,19 @@ std::string ReadTextFile(const std::string& file);
 // The path of `file`, which is absolute or relative to the folder of `beside`.
 std::string PathBeside(const std::string& beside, const std::string& file);
 
-// Throws InputError where writing to `output` would replace one of `inputs`, under whatever name. A device
-// may be both.
+// Throws InputError if writing to `output` would replace one of `inputs`, under whatever name. A device may
+// be both.
 void CheckKeeps(const std::string& output, const std::vector<std::string>& inputs);
 
-// `text` in double quotes on one line: control characters escaped, the middle of long texts left out.
+// `text` in double quotes on one line: control characters escaped, the middle of long texts omitted.
 std::string Quoted(std::string_view text);
 
-// `text` made safe for a terminal: tabs and valid UTF-8 stay. Whatever could move the cursor, change colours
-// or break the line (control characters, and bytes that are not UTF-8, which 8-bit terminals take for control
-// characters) becomes "\\x1b".
+// `text` made safe for a terminal: tabs and valid UTF-8 stay. Anything that could move the cursor, change
+// colours or break the line (control characters, and bytes that are not UTF-8, which 8-bit terminals take for
+// control characters) becomes "\\x1b".
 std::string Printable(std::string_view text);
 
-// Printable, line by line: its own line ends stay.
+// Printable, line by line: the text's own line ends stay.
 std::string PrintableLines(std::string_view text);
 
 // "\"a\", \"b\" or \"c\"".

@@ -13,7 +13,7 @@ struct NamedUnit {
   Unit unit;
 };
 
-// The size of 1 of it, and its powers of m, kg, s and V. Angles have none.
+// The size of 1 of the unit, and its powers of m, kg, s and V. Angles have none.
 constexpr NamedUnit kUnits[] = {
     {"1", {1, {}}},
     {"m", {1, {1}}},
@@ -34,7 +34,7 @@ constexpr NamedUnit kUnits[] = {
     {"V", {1, {0, 0, 0, 1}}},
 };
 
-// What figures are shown in. Pressures alone are separate: kPa or MPa, whichever gives the handier numbers.
+// The units in which figures are shown. Only pressures are separate: kPa or MPa, whichever is handier.
 constexpr struct {
   std::string_view from;
   std::string_view to;
@@ -67,7 +67,7 @@ constexpr struct {
     {"1/psi", "1/MPa"},
 };
 
-// Reads factor after factor off a text.
+// Reads factors off a text one by one.
 class UnitReader {
  public:
   explicit UnitReader(std::string_view text) : text_(text) {}
@@ -142,7 +142,7 @@ SiUnit Conversion(std::string_view from, std::string_view to) {
 std::optional<Unit> ParseUnit(std::string_view text) { return UnitReader(text).Whole(); }
 
 std::optional<SiUnit> FindSiUnit(const std::string& unit, double size) {
-  // NaN compares false, so that a value that does not exist decides nothing.
+  // NaN compares false, so a missing value decides nothing.
   if (unit == "psi") return Conversion(unit, std::abs(size) * kPsi >= 1e6 ? "MPa" : "kPa");
   for (const auto& [from, to] : kShownIn) {
     if (unit == from) return Conversion(from, to);

@@ -1,4 +1,4 @@
-// Units of measurement: the one table of them, and how a figure is shown in the SI (--si).
+// Units of measurement: their one table, and how figures are shown in SI units (--si).
 #pragma once
 
 #include <array>
@@ -19,12 +19,13 @@ inline constexpr double kRpm = std::numbers::pi / 30;          // rad/s
 constexpr double Degrees(double radians) { return radians * 180 / std::numbers::pi; }
 
 struct Unit {
-  double size = 1;                 // in the SI's coherent unit of the same powers
+  double size = 1;                 // in the coherent SI unit of the same powers
   std::array<double, 4> powers{};  // of m, kg, s and V
 };
 
 // A unit as the programs write it: names from the table, joined by "-" or a blank (times) and "/" (divided
-// by), with powers and brackets: "in-lbf/rad", "in^3/(s psi)", "1/psi", "in^3/s/psi^.5". Empty: it is none.
+// by), with powers and brackets: "in-lbf/rad", "in^3/(s psi)", "1/psi", "in^3/s/psi^.5". Empty when the text
+// is not a unit.
 std::optional<Unit> ParseUnit(std::string_view text);
 
 struct SiUnit {
@@ -33,8 +34,8 @@ struct SiUnit {
   double factor;  // value in `to` = factor * value in `from`
 };
 
-// What a figure in one of the paper's units is shown in; empty where the unit is SI already or not known.
-// `size` decides between kPa and MPa: that of the largest value to show.
+// The SI unit in which to show a figure given in one of the paper's units; empty when the unit is SI already
+// or unknown. `size`, the largest value to be shown, decides between kPa and MPa.
 std::optional<SiUnit> FindSiUnit(const std::string& unit, double size);
 
 }  // namespace hydro

@@ -10,7 +10,7 @@ namespace hydro {
 std::string Joined(const std::vector<std::string>& parts, const std::string& between = ", ");
 // "a, b and c"
 std::string Enumerated(const std::vector<std::string>& parts);
-// "run sine"; a name that already begins with "run" stays as it is: "run 5"
+// "run sine"; a name that already begins with "run" stays the same: "run 5"
 std::string RunNamed(const std::string& name);
 
 }  // namespace hydro

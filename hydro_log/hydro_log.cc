@@ -101,9 +101,9 @@ class CompareVerb {
 
  private:
   runs::RunLog ReadComparable(const std::string& file, const std::optional<std::string>& suffix) const {
-    // Bit by bit the same cannot be said of what cannot be read: such a message is refused here.
+    // "Identical bit by bit" cannot be claimed of messages that cannot be read, so they are refused here.
     runs::RunLog log = runs::ReadRunLog(file, suffix ? suffix : suffix_);
-    // Two logs of nothing are not a run repeated.
+    // Two empty logs are not a run and its repetition.
     if (log.messages.states.empty() && log.messages.motor_commands.empty()) {
       throw InputError(file + ": found no state and no motor command; a log of a run is needed");
     }

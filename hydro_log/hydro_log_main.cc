@@ -1,4 +1,4 @@
-// hydro-log VERB: what can be done with logs.
+// hydro-log VERB: everything that can be done with logs.
 #include "hydro_log/hydro_log.h"
 
 int main(int argc, char** argv) { return hydro::hydro_log::RunHydroLog(argc, argv); }

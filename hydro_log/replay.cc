@@ -20,7 +20,7 @@ namespace {
 
 constexpr double kLatestTime = 1e9;  // s; 64 bits of ns hold it
 
-// The first message of each tick: a later one of the same tick is a repetition or a watchdog's.
+// The first message of each tick: a later one of the same tick is a repetition or comes from a watchdog.
 template <class Message>
 std::map<int64_t, Message> ByTick(const std::vector<Message>& messages) {
   std::map<int64_t, Message> by_tick;
@@ -53,7 +53,7 @@ class Replayer {
     config_ = settings::ParseStackConfig(description.config_text, log.file + " (its configuration)",
                                          description.model_text, log.file + " (its model)");
     config_.time.mode =
-        settings::TimeMode::kRealtime;  // nothing is waited for: what is in force is handed over in time
+        settings::TimeMode::kRealtime;  // nothing waits: what is in force is handed over in time
     channels_ = bus::Channels(config_.bus.channel_suffix);
     states_ = ByTick(log.messages.states);
     if (states_.empty()) throw InputError(log.file + ": found no states to feed");
@@ -116,7 +116,7 @@ ReplayResult ReplayPressure(const runs::RunLog& log, double speed) {
   }
   if (recorded.empty()) throw InputError(log.file + ": found no motor commands to compare with");
   const auto pressure_commands = ByTick(log.messages.pressure_commands);
-  // A log that begins in the middle of a run: the pressure command in force then was sent before.
+  // In a log that begins in the middle of a run, the pressure command then in force was sent before.
   while (!recorded.empty() && recorded.begin()->second.pressure_command_tick >= 0 &&
          !pressure_commands.contains(recorded.begin()->second.pressure_command_tick)) {
     recorded.erase(recorded.begin());
@@ -152,7 +152,8 @@ ReplayResult ReplayPosition(const runs::RunLog& log, double speed) {
 
   Replayer replayer(log, speed);
   if (replayer.first_tick() > 0) {
-    // A log that begins in the middle of a run: the derivative of its first sample needs the sample before.
+    // In a log that begins in the middle of a run, the derivative of the first sample needs the sample
+    // before.
     const int64_t interval = replayer.config().position_interval_ticks;
     const int64_t since_sample = replayer.first_tick() % interval;
     const int64_t first_sample = since_sample == 0

@@ -19,9 +19,9 @@ struct ReplayResult {
 
 // Builds the controller from the log's own configuration and model and feeds it each recorded state in tick
 // order. The pressure loop gets each pressure command just before the first state for which the log shows it
-// in force, so that a real-time run replays exactly, whatever the order of arrival was. Every field of the
-// commands except utime, session and sequence is compared; commands from wall-clock watchdogs (a stale state,
-// the end of the run) are left out. speed: recorded seconds per wall second; 0: as fast as possible. Throws
+// in force, so a real-time run replays exactly, whatever the order of arrival was. Compares every field of
+// the commands except utime, session and sequence; leaves out commands from wall-clock watchdogs (a stale
+// state, the end of the run). speed: recorded seconds per wall second; 0: as fast as possible. Throws
 // InputError when the log has no description of its run, no states, or no commands of the controller.
 ReplayResult Replay(const runs::RunLog& log, ReplayedController controller, double speed);
 

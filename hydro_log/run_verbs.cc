@@ -14,7 +14,7 @@ namespace hydro::hydro_log {
 
 namespace {
 
-// Before anything is printed or written.
+// Called before anything is printed or written.
 void CheckOutput(const std::string& file, const std::string& log) {
   CheckKeeps(file, {log});
   CheckCanBeCreated(file);

@@ -9,8 +9,8 @@
 
 namespace hydro::hydro_log {
 
-// For verbs that show or convert a recording: messages that this stack cannot decode are left out, as the
-// processes of the run left them out. One line on stderr names them.
+// For verbs that show or convert a recording. Messages that this stack cannot decode are left out, as the
+// processes of the run did; one line on stderr names them.
 runs::RunLog ReadWithWarning(const std::string& file, const std::optional<std::string>& suffix);
 
 class SummaryVerb {

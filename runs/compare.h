@@ -14,8 +14,8 @@ namespace hydro::runs {
 //
 // Messages are compared in tick order, within a tick by sequence number (faults: source, then sequence), so
 // the order of arrival does not matter. Messages that agree in every field count once, however often they
-// were sent. Every field except utime and session is compared; doubles by their bits, so that -0 differs from
-// 0 and a NaN equals only the same NaN.
+// were sent. Every field except utime and session is compared. Doubles are compared by their bits: -0 differs
+// from 0, and a NaN equals only the same NaN.
 std::optional<std::string> FirstDifference(const RunMessages& a, const std::string& name_a,
                                            const RunMessages& b, const std::string& name_b);
 

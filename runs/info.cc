@@ -136,7 +136,8 @@ std::vector<LoopInfo> LoopsOf(const std::vector<loop_statistics_t>& statistics) 
   for (const loop_statistics_t& report : statistics) {
     LoopInfo& loop = loops[{report.role, report.host}];
     loop.last = report;
-    if (report.whole_run) {  // the process's own sum, which also has what came after its last periodic report
+    if (report
+            .whole_run) {  // the process's own total, which includes what came after its last periodic report
       loop.cycles = report.cycles;
       loop.missed_deadlines = report.missed_deadlines;
       loop.lost_messages = report.lost_messages;
@@ -176,7 +177,7 @@ std::vector<run_description_t> DistinctDescriptions(const std::vector<run_descri
   return distinct;
 }
 
-// Who stops a run says so several times, lest the network loses it.
+// A process that stops a run says so several times, in case the network loses it.
 std::vector<stop_t> DistinctStops(const std::vector<stop_t>& all) {
   std::vector<stop_t> distinct;
   for (const stop_t& stop : all) {

@@ -10,15 +10,15 @@
 
 namespace hydro::runs {
 
-// How complete the messages of one channel are, judged by the sequence numbers of each sender.
+// How complete a channel's messages are, judged by each sender's sequence numbers.
 struct ChannelInfo {
   ChannelSummary summary;
-  double rate_hz = 0;        // events a second of receive time; 0: fewer than two, or no time passed
-  bool numbered = false;     // its messages have sequence numbers; else the counts below mean nothing
+  double rate_hz = 0;        // events per second of receive time; 0: fewer than two, or no time passed
+  bool numbered = false;     // its messages have sequence numbers; otherwise the counts below mean nothing
   int64_t senders = 0;       // distinct sessions
   int64_t lost = 0;          // numbers missing between each sender's first and last
-  int64_t repeated = 0;      // messages whose number had been seen
-  int64_t before_first = 0;  // messages of its senders that were sent before the log began
+  int64_t repeated = 0;      // messages whose number had already been seen
+  int64_t before_first = 0;  // messages that its senders sent before the log began
 };
 
 struct TickInfo {
@@ -27,13 +27,13 @@ struct TickInfo {
   int64_t last = 0;
   double first_time_s = 0;  // plant time of those
   double last_time_s = 0;
-  double rate_hz = 0;     // ticks a second of plant time; 0: fewer than two
+  double rate_hz = 0;     // ticks per second of plant time; 0: fewer than two
   int64_t gaps = 0;       // places where ticks have no state
   int64_t missing = 0;    // ticks without a state
-  int64_t announced = 0;  // of those, how many the plant says it skipped (a late wake-up)
+  int64_t announced = 0;  // how many of those the plant reports as skipped (a late wake-up)
 };
 
-// Smallest and largest value of a signal, missing values (NaN) left out.
+// Smallest and largest value of a signal, without missing values (NaN).
 struct SignalInfo {
   std::string name;  // as in the exported table, without unit
   std::string unit;
@@ -43,7 +43,7 @@ struct SignalInfo {
   double last = 0;
 };
 
-// A process's last report on its loop, and what all its reports add up to.
+// A process's last report on its loop, and the totals of all its reports.
 struct LoopInfo {
   loop_statistics_t last;
   int64_t cycles = 0;
@@ -63,12 +63,12 @@ struct LogInfo {
   int64_t bytes = 0;
   int64_t events = 0;
   double duration_s = 0;          // receive time from the first event to the last
-  std::string first_undecodable;  // as RunLog::first_undecodable; how many is in the channels' summaries
+  std::string first_undecodable;  // as RunLog::first_undecodable; the channels' summaries have the count
   std::vector<ChannelInfo> channels;
   TickInfo ticks;  // states = 0: the log has none
   std::vector<SignalInfo> signals;
   std::vector<LoopInfo> loops;        // by role and host
-  std::vector<ProgramInfo> programs;  // that introduced themselves
+  std::vector<ProgramInfo> programs;  // those that introduced themselves
   std::vector<fault_t> faults;
   std::vector<stop_t> stops;                                // each once, however often it was sent
   std::vector<run_description_t> descriptions;              // distinct ones

@@ -119,7 +119,7 @@ std::string InfoJson(const LogInfo& info) {
                              {"reason", stop.reason},
                              {"exit_code", stop.exit_code}});
   }
-  // Text from a log may not be UTF-8; what is not is replaced instead of refused.
+  // Text from a log may not be UTF-8; invalid bytes are replaced, not refused.
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 

@@ -1,4 +1,4 @@
-// The fields of the messages of a run, except utime and session, which differ from run to run.
+// The fields of a run's messages, without utime and session, which differ from run to run.
 #pragma once
 
 #include <tuple>
@@ -15,7 +15,7 @@ struct MessageField {
 template <class Message, class Value>
 MessageField(const char*, Value Message::*) -> MessageField<Message, Value>;
 
-// FieldsOf(message) is a tuple of MessageField in the order in which messages are sorted and differences are
+// FieldsOf(message) is a tuple of MessageField, in the order by which messages are sorted and differences
 // reported.
 constexpr auto FieldsOf(const state_t*) {
   return std::tuple{

@@ -12,7 +12,7 @@
 
 namespace hydro::runs {
 
-// Integers and strings by value, doubles by bits: a total order in which only the same bits are equal.
+// Integers and strings by value, doubles by bits: a total order in which only identical bits are equal.
 inline std::strong_ordering CompareField(double a, double b) {
   return std::bit_cast<uint64_t>(a) <=> std::bit_cast<uint64_t>(b);
 }

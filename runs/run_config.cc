@@ -12,7 +12,7 @@ namespace {
 using settings::TomlNode;
 using Kind = TomlNode::Kind;
 
-// A log is untrusted input: its text goes through the one door for TOML.
+// A log is untrusted input: its text goes through the only reader of TOML.
 TomlNode Parse(const std::string& text, const std::string& file, const std::string& what) {
   return settings::ParseToml(text, file + ": run description: " + what);
 }
@@ -24,7 +24,7 @@ std::vector<const settings::TomlMember*> SortedMembers(const TomlNode& table) {
   return members;
 }
 
-// Literal where it can be, which needs no escapes.
+// A literal string where possible, which needs no escapes.
 std::string StringText(const std::string& text) {
   const bool literal =
       std::ranges::none_of(text, [](unsigned char c) { return c == '\'' || c < 0x20 || c == 0x7f; });

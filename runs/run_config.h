@@ -1,4 +1,4 @@
-// Facts of a run from its log's description, which need not be a valid configuration for this version.
+// Facts of a run from its log's description, which this version need not accept as a configuration.
 #pragma once
 
 #include <optional>
@@ -10,13 +10,13 @@
 
 namespace hydro::runs {
 
-// The keys of the configuration as "section.key" with their values as TOML, sorted by key; empty when it
-// has none. `file` names the log in messages. Throws InputError when it is not TOML.
+// The keys of the configuration as "section.key" with their values as TOML, sorted by key; empty when it has
+// none. `file` names the log in messages. Throws InputError when the text is not TOML.
 std::vector<std::pair<std::string, std::string>> ConfigEntries(const run_description_t& description,
                                                                const std::string& file);
 
-// plant.command_delay_ticks, 0 or 1: a command computed from tick k acts from tick k + this. The default is
-// 1. Throws InputError for any other value.
+// plant.command_delay_ticks, 0 or 1 (default 1): a command computed from tick k acts from tick k + this.
+// Throws InputError for any other value.
 int CommandDelayTicks(const run_description_t& description, const std::string& file);
 
 // The model's name; empty when its text has none.

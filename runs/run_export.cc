@@ -12,13 +12,13 @@ namespace {
 
 constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 
-// Walks the ordered messages of one channel while the ticks of the rows go up.
+// Walks through the ordered messages of one channel as the rows' ticks increase.
 template <class Message>
 class Cursor {
  public:
   explicit Cursor(const std::vector<Message>& messages) : messages_(InOrder(messages)) {}
 
-  // The last message with a tick of at most `tick`; null when there is none. `tick` never goes down between
+  // The last message with a tick of at most `tick`; null when there is none. `tick` never decreases between
   // calls.
   const Message* LastUpTo(int64_t tick) {
     while (next_ < messages_.size() && messages_[next_]->tick <= tick) ++next_;
@@ -34,7 +34,7 @@ class Cursor {
   size_t next_ = 0;
 };
 
-// States of one run, in order of ticks, each tick once.
+// The states of one run in tick order, each tick once.
 std::vector<const state_t*> OrderedStates(const RunLog& log) {
   if (log.messages.states.empty()) {
     throw InputError(log.file + ": found no message on " + bus::Channels(log.suffix).Of<state_t>() +
@@ -64,7 +64,7 @@ std::vector<arm_reference_t> ArmAngleReferences(const RunLog& log) {
   return references;
 }
 
-// Without those that only end the run: they may share the last tick with a command that was meant to act.
+// The commands without those that only end the run: they may share the last tick with a command meant to act.
 std::vector<motor_command_t> ActingCommands(const RunLog& log) {
   std::vector<motor_command_t> commands;
   for (const motor_command_t& command : log.messages.motor_commands) {
@@ -109,7 +109,7 @@ tables::Table ExportRun(const RunLog& log) {
       voltage = command->voltage;
     }
     const arm_reference_t* arm = reference.LastUpTo(state.tick);
-    // A pressure command of tick k is in force from tick k + delay on, as any command.
+    // Like any command, a pressure command of tick k is in force from tick k + delay on.
     const double values[] = {state.time,
                              static_cast<double>(state.tick),
                              voltage,

@@ -68,7 +68,7 @@ std::vector<int64_t> Ticks(const tables::Table& table) {
   return ticks;
 }
 
-// Ticks per second when the times are even, within what the rounding of their text explains; else 0.
+// Ticks per second if the times are even within the rounding of their text; else 0.
 double Rate(const std::vector<double>& times, const std::vector<int64_t>& ticks) {
   if (times.size() < 2) return 0;
   double rate = static_cast<double>(ticks.back() - ticks.front()) / (times.back() - times.front());
@@ -155,12 +155,12 @@ void ImportRun(const tables::Table& table, const std::string& program_version, c
     state.arm_speed = arm_speed(row);
     state.p1 = p1(row);
     state.p2 = p2(row);
-    // What acted before the first row is not in a table; the actuator is taken to have been at rest.
+    // A table does not tell what acted before its first row; the actuator is taken to have been at rest.
     state.voltage = row > 0 ? voltage(row - 1) : has_voltage ? 0 : kMissing;
     state.command_tick = row > 0 && has_voltage ? ticks[row] - 1 : -1;
     log.AppendMessage(channels.Of<state_t>(), state, utime);
 
-    // A reference is held until the next one; a missing value after one is a reference of its own.
+    // A reference holds until the next one; a missing value after one is a reference of its own.
     const double reference = arm_ref(row);
     if (!SameBits(reference, last_reference)) {
       arm_reference_t message{};
@@ -173,7 +173,7 @@ void ImportRun(const tables::Table& table, const std::string& program_version, c
     }
 
     // The command of tick k acts from tick k + 1 on (the delay that an empty configuration means), so the
-    // last row's voltage is in the command of the tick before it.
+    // command of the tick before carries the last row's voltage.
     const bool next_acts = row + 1 < rows && ticks[row + 1] == ticks[row] + 1;
     const bool last_follows = row + 2 == rows;
     if (row + 1 == rows && !std::isnan(voltage(row)) && (row == 0 || ticks[row - 1] + 1 != ticks[row])) {

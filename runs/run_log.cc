@@ -15,7 +15,7 @@ namespace {
 
 std::string Hex(uint64_t value) { return HexNumber(value, 16); }
 
-// Where it is, what was found and what is allowed.
+// Where the event is, what was found and what is allowed.
 std::string WhyUndecodable(const log::LogEvent& event, const log::MessageKind& kind) {
   const std::string place = "byte " + std::to_string(event.offset) + ", event " +
                             std::to_string(event.index) + " on " + std::string(event.channel) + ": ";
@@ -27,7 +27,7 @@ std::string WhyUndecodable(const log::LogEvent& event, const log::MessageKind& k
   return place + "found " + std::to_string(event.size) + " bytes that are not a whole " + kind.type;
 }
 
-// Counts events by channel; a damaged log is noticed here, before anything is decoded.
+// Counts events by channel; this pass detects a damaged log before anything is decoded.
 void Summarise(log::LogReader& reader, RunLog& log) {
   std::map<std::string_view, ChannelSummary> channels;  // the names lie in the reader's file
   log::LogEvent event;
@@ -105,7 +105,7 @@ RunLog ReadRunLog(const std::string& file, const std::optional<std::string>& suf
                          [](const ChannelSummary& a, std::string_view name) { return a.channel < name; });
     ++channel->undecodable;
   };
-  // True when the event is a `Message`, and then it is in its list or left out.
+  // True when the event is a `Message`; it is then in its list or left out.
   const auto take = [&]<class Message>(const bus::MessageRow<Message>&) {
     const std::string& channel = channels.Of<Message>();
     if (event.channel != channel) return false;

@@ -18,20 +18,20 @@
 
 namespace hydro::runs {
 
-// What a channel of a log holds, one of this stack's or not.
+// What a channel of a log holds, whether it is this stack's or not.
 struct ChannelSummary {
   std::string channel;
   int64_t events = 0;
   int64_t bytes = 0;        // of data
   int64_t first_utime = 0;  // us, when its first and last event were received
   int64_t last_utime = 0;
-  int64_t undecodable = 0;  // of this stack's type and version they are not: left out
+  int64_t undecodable = 0;  // not of this stack's type and version: left out
 };
 
 // Messages are in the order of the log; some may be missing, repeated or late.
 struct RunLog {
   std::string file;
-  std::string suffix;  // of the channels that were read
+  std::string suffix;  // of the channels read
   RunMessages messages;
   std::vector<run_description_t> descriptions;
   std::vector<loop_statistics_t> statistics;
@@ -44,10 +44,10 @@ struct RunLog {
   int64_t bytes = 0;                     // length of the file
   int64_t first_utime = 0;               // us, earliest and latest event received; 0 without events
   int64_t last_utime = 0;
-  std::string first_undecodable;  // where the first message that was left out is, and why; empty: none was
+  std::string first_undecodable;  // where the first left-out message is, and why; empty: none was
 };
 
-// The list in `log` of one type of message; null: those are only counted.
+// The list in `log` of one message type; null: those messages are only counted.
 template <class Message, class Log>
 auto MessagesIn(Log& log)
     -> std::conditional_t<std::is_const_v<Log>, const std::vector<Message>, std::vector<Message>>* {
@@ -78,19 +78,19 @@ auto MessagesIn(Log& log)
   }
 }
 
-// What to do with a message on one of this stack's channels that is of another type or version, or torn.
+// What to do with a message on this stack's channels that is of another type or version, or torn.
 enum class Undecodable {
   kRefused,  // LogError: for callers that need the whole run
   kLeftOut,  // counted and left out, as the processes of the run left it out
 };
 
-// Reads `file`. Without `suffix`, the suffix of its state channel is found; of several, one must be chosen
-// (InputError names them). A log without any of this stack's channels is not an error here. Throws LogError
-// where the file is damaged, because it is then unknown what else is missing.
+// Reads `file`. Without `suffix`, finds the suffix of the log's state channel; if there are several, the
+// caller must choose one (InputError names them). A log without any of this stack's channels is not an error
+// here. Throws LogError if the file is damaged, because what else is missing is then unknown.
 RunLog ReadRunLog(const std::string& file, const std::optional<std::string>& suffix = std::nullopt,
                   Undecodable undecodable = Undecodable::kRefused);
 
-// One line for a person about the messages that were left out; empty when none was.
+// One line for people about the messages left out; empty when none was.
 std::string DescribeUndecodable(const RunLog& log);
 
 }  // namespace hydro::runs

@@ -34,11 +34,11 @@ inline constexpr std::array<const char*, 11> kRunColumns = {"time_s",
 tables::Table ExportRun(const RunLog& log);
 
 // Writes a log that ExportRun() turns back into the same table. The table may hold any subset of kRunColumns
-// that has time_s: the columns given come back bit by bit, the others empty (tick: the row number from 0).
-// `program_version` goes into the log's description. Events are stamped with time_s, so lcm-logplayer plays
-// the log at the pace of the measurement. Throws InputError with file, row and column for unknown columns, a
-// missing time_s, times that do not increase and ticks that are not increasing whole numbers; throws
-// WriteError.
+// that includes time_s: the given columns come back bit by bit, the others empty (tick: the row number from
+// 0). `program_version` goes into the log's description. Events are stamped with time_s, so lcm-logplayer
+// plays the log at the pace of the measurement. Throws InputError with file, row and column for unknown
+// columns, a missing time_s, times that do not increase and ticks that are not increasing whole numbers;
+// throws WriteError.
 void ImportRun(const tables::Table& table, const std::string& program_version, const std::string& log_file);
 
 }  // namespace hydro::runs

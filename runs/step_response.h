@@ -17,11 +17,11 @@ struct StepResponse {
   double final_error_rad = 0;             // arm minus reference, the mean of the last 0.1 s
 };
 
-// Share of the step within which a response counts as settled.
+// The share of the step within which a response counts as settled.
 inline constexpr double kSettlingBand = 0.02;
 
-// Of the samples [begin, end) of `times` (s, increasing) and `angles` (rad), the first at the step, which
-// went from `from` to `to`.
+// For the samples [begin, end) of `times` (s, increasing) and `angles` (rad), the first of them at the step
+// from `from` to `to`.
 StepResponse MeasureStep(const std::vector<double>& times, const std::vector<double>& angles, size_t begin,
                          size_t end, double from, double to);
 

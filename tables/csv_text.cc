@@ -11,8 +11,8 @@ namespace {
 
 constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
 
-// A cell that begins with a quote ends at the comma behind the next one. A quote that nothing closes is a
-// character like any other.
+// A cell that begins with a quote ends at the comma after the next quote. An unclosed quote is an ordinary
+// character.
 size_t EndOfCell(std::string_view line) {
   const size_t first = line.find_first_not_of(" \t");
   if (first == std::string_view::npos || line[first] != '"') return line.find(',');

@@ -14,7 +14,7 @@ struct Column {
 };
 
 struct Table {
-  std::string file;             // where it was read from, for messages
+  std::string file;             // the file it was read from, for messages
   std::vector<size_t> lines;    // of a CSV: the line of each row; empty: messages count rows, from 1
   std::vector<Column> columns;  // all of the same length
 
@@ -26,23 +26,23 @@ struct Table {
 };
 
 // Reads a table: a MAT file when the name ends in .mat, else CSV. Throws InputError naming file, row, column,
-// what was found and what is allowed: names that are empty or given twice, cells that are not numbers, rows
-// or columns of unequal length, a table without rows.
+// what was found and what is allowed: empty or duplicate names, cells that are not numbers, rows or columns
+// of unequal length, a table without rows.
 Table ReadTable(const std::string& file);
 
-// Writes a table, whole or not at all. Throws InputError when the file cannot be created or its name ends
-// neither in .csv nor in .mat, WriteError when the disk is full.
+// Writes a table, whole or not at all. Throws InputError when the file cannot be created or its name ends in
+// neither .csv nor .mat, WriteError when the disk is full.
 void WriteTable(const Table& table, const std::string& file);
 
-// Throws the InputError that WriteTable would for this name; for callers that want to know before they work.
+// Throws the InputError that WriteTable would throw for this name, for callers that check before they work.
 void CheckTableName(const std::string& file);
 
-// CSV, as csv_text.h says; empty cells and nan are missing values. Written: the shortest text that reads back
-// as the same bits, missing values as empty cells.
+// CSV, in the grammar of csv_text.h; empty cells and nan are missing values. Writes the shortest text that
+// reads back as the same bits, and missing values as empty cells.
 Table ReadCsv(const std::string& file);
 void WriteCsv(const Table& table, const std::string& file);
 
-// MAT, version 5 or 7.3: one real vector of numbers a column, named as the column. Written in the MAT 5
+// MAT, version 5 or 7.3: one real vector of numbers per column, under the column's name. Written in the MAT 5
 // format, as column vectors.
 Table ReadMat(const std::string& file);
 void WriteMat(const Table& table, const std::string& file);

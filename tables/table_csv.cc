@@ -63,7 +63,7 @@ void WriteCsv(const Table& table, const std::string& file) {
     for (size_t column = 0; column < table.columns.size(); ++column) {
       if (column > 0) text += ',';
       const double value = table.columns[column].values[row];
-      // A line of nothing but a missing value would be an empty line.
+      // A line with nothing but a missing value would be an empty line.
       if (!std::isnan(value) || table.columns.size() == 1) AppendNumber(value, text);
     }
     text += '\n';

@@ -92,10 +92,10 @@ Column ReadColumn(mat_t* mat, matvar_t* variable, const Table& table) {
 }
 
 constexpr size_t kMat5HeaderSize = 128;
-constexpr size_t kMat5TagSize = 8;  // of each element below the header: its type and its number of bytes
+constexpr size_t kMat5TagSize = 8;  // of each element after the header: its type and byte count
 
-// matio gives memory that it never filled for the values that a MAT 5 file was cut off from: the elements
-// must all be there.
+// When a MAT 5 file is cut off, matio returns unfilled memory for the missing values, so all elements must be
+// there.
 void CheckMat5IsWhole(const std::string& file) {
   const MappedFile contents(file);
   const bool swapped = contents.size() >= kMat5HeaderSize && contents.data()[kMat5HeaderSize - 2] == 'M';
@@ -118,7 +118,7 @@ void CheckMat5IsWhole(const std::string& file) {
 
 Table ReadMat(const std::string& file) {
   SilenceMatio();
-  { const MappedFile readable(file); }  // for the system's reason when it is not
+  { const MappedFile readable(file); }  // throws the system's reason if it is not readable
   const MatFile mat(Mat_Open(file.c_str(), MAT_ACC_RDONLY));
   if (mat == nullptr || Mat_GetVersion(mat.get()) == MAT_FT_MAT4) {
     throw InputError(file + ": found no MAT file of version 5 or 7.3; these are allowed");
@@ -137,7 +137,7 @@ Table ReadMat(const std::string& file) {
 void WriteMat(const Table& table, const std::string& file) {
   SilenceMatio();
   NewFile out(file, Opening::kTemporary);
-  // A header of our own: matio's holds the date, and the same table is to give the same bytes.
+  // Our own header: matio's holds the date, and the same table must give the same bytes.
   MatFile mat(Mat_CreateVer(out.path().c_str(), "MATLAB 5.0 MAT-file, written by hydro-log", MAT_FT_MAT5));
   bool written = mat != nullptr;
   for (const Column& column : table.columns) {
@@ -148,7 +148,7 @@ void WriteMat(const Table& table, const std::string& file) {
         written && variable != nullptr && Mat_VarWrite(mat.get(), variable.get(), MAT_COMPRESSION_NONE) == 0;
   }
   mat.reset();
-  // matio does not tell when its last buffer could not be written; the file's length does.
+  // matio does not report that its last buffer could not be written; the file's length does.
   struct stat status;
   written = written && stat(out.path().c_str(), &status) == 0 &&
             static_cast<size_t>(status.st_size) >= table.rows() * table.columns.size() * sizeof(double);

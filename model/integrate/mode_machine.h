@@ -52,8 +52,9 @@ class ModeMachine {
   static_assert(!kDerivatives || kForm == Form::kGeneral);
 
  public:
-  // `numbers`: those of the equations, seeded when T is Jet. All arguments must outlive the machine, which
-  // owns the use of the equations while it runs (Equations::Command, PassStop). `options` go to the stepper.
+  // `numbers`: those of the equations, seeded when T is Jet. All arguments must outlive the machine, and
+  // nothing else may use the equations while it runs (Equations::Command, PassStop). `options` go to the
+  // stepper.
   template <class... StepperOptions>
   ModeMachine(Equations* equations, const NumbersOf<T>* numbers, const StepperOptions&... options)
       : equations_(*equations),
