@@ -136,8 +136,7 @@ std::vector<LoopInfo> LoopsOf(const std::vector<loop_statistics_t>& statistics) 
   for (const loop_statistics_t& report : statistics) {
     LoopInfo& loop = loops[{report.role, report.host}];
     loop.last = report;
-    if (report
-            .whole_run) {  // the process's own total, which includes what came after its last periodic report
+    if (report.whole_run) {  // the process's own total, with what came after its last periodic report
       loop.cycles = report.cycles;
       loop.missed_deadlines = report.missed_deadlines;
       loop.lost_messages = report.lost_messages;
