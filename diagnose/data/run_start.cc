@@ -73,7 +73,7 @@ void SetStart(const model::Parameters& model, RunData* data) {
 
   double p1 = line(model::Channel::kP1).value, p2 = line(model::Channel::kP2).value;
   if (data->stimulus.bypass) {
-    // With the bypass the pressures are equal, by the sum of eqs. (13) and (14): p1 stands for both in
+    // With the bypass there is a single pressure, eqs. (13) and (14) added up: p1 stands for both in
     // start_free, and code that moves it moves p2 too.
     p1 = p2 = std::isnan(p1) ? p2 : std::isnan(p2) ? p1 : (p1 + p2) / 2;
   }

@@ -10,9 +10,10 @@
 
 namespace hydro::diagnose {
 
-// Adds to `hypothesis` each effect among `changes` that repeats within a turn (Role::kPeriods), if the torque
-// that the balance lacks (SmoothDisturbances) plainly repeats too: with the likeliest numbers of periods, and
-// the amplitude and phase found in the balance. Empty if the runs cannot be smoothed.
+// `hypothesis` with one effect among `changes` that repeats within a turn (Role::kPeriods), for each such
+// effect where the torque that the balance lacks (SmoothDisturbances) clearly repeats too: one hypothesis for
+// each of the likeliest numbers of periods, with the amplitude and phase found in the balance. Empty if the
+// runs cannot be smoothed.
 std::vector<Hypothesis> WithPeriodic(const Hypothesis& hypothesis, const std::vector<Change>& changes,
                                      const std::vector<const RunData*>& runs, int jobs);
 
