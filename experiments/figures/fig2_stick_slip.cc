@@ -51,8 +51,8 @@ Scanned Scan(const model::ModelDescription& model, double torque, double static_
 
 // The least static friction (in-lbf) that gives sustained cycles at kTorque, bracketed.
 struct Threshold {
-  double none = 0;    // no cycles
-  double cycles = 0;  // cycles
+  double none = 0;    // in-lbf, without cycles
+  double cycles = 0;  // in-lbf, with cycles
 };
 Threshold FindThreshold() {
   Threshold threshold{4.0, 4.4};
