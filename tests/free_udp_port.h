@@ -10,7 +10,7 @@
 namespace hydro {
 
 // A port that no socket of this machine uses. It stays reserved until this process ends: other callers get
-// others, while LCM, which shares its ports, can use it.
+// other ports, while LCM, which shares its ports, can use it.
 inline int FreeUdpPort() {
   const int fd = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
   sockaddr_in address{};

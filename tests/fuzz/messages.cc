@@ -17,8 +17,8 @@ const bus::MessageType& TypeOf(const bus::MessageRow<Message>&) {
   return bus::TypeOf<Message>();
 }
 
-// What decodes is a message: its encoding decodes too, and to the same bytes, but for what stands behind a
-// zero byte in a string, which LCM's encoder leaves out.
+// What decodes is a message: its encoding decodes too, to the same bytes, except for what follows a zero byte
+// in a string, which LCM's encoder leaves out.
 void Decode(const bus::MessageType& type, const uint8_t* data, int size) {
   const std::shared_ptr<void> message = type.decode(data, size);
   const std::shared_ptr<void> into = type.create();
@@ -32,7 +32,7 @@ void Decode(const bus::MessageType& type, const uint8_t* data, int size) {
   Promise(type.decode(bytes.data(), encoded_size) != nullptr, "an encoded message decodes");
 }
 
-// Nothing that the fuzzer makes up is taken for genuine.
+// Nothing that the fuzzer makes up may pass for genuine.
 void Authenticate(const uint8_t* data, int size) {
   static const bus::Channels channels;
   bus::Authenticator receiver(bus::BusKey({1, 2, 3}), bus::AuthenticatedChannels(channels));
@@ -49,7 +49,7 @@ void Messages(const uint8_t* data, size_t size) {
   static const auto kTypes =
       std::apply([](const auto&... row) { return std::array{&TypeOf(row)...}; }, bus::kMessages);
   const bus::MessageType& type = *kTypes[data[0] % kTypes.size()];
-  // The type's own hash in front, or no input would get past it; the first bit says otherwise.
+  // Begins with the type's own hash, or no input would get past it; the first bit can change that.
   std::vector<uint8_t> bytes;
   if (data[0] < 0x80) {
     for (int shift = 56; shift >= 0; shift -= 8) {

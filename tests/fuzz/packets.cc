@@ -7,7 +7,7 @@
 
 namespace hydro::fuzz {
 
-// Packets, each behind two bytes for its size; two senders in turn.
+// Packets, each after two bytes for its size; two senders in turn.
 void Packets(const uint8_t* data, size_t size) {
   bus::FragmentAssembly assembly;
   size_t received = 0;

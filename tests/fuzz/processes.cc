@@ -45,9 +45,9 @@ class Input {
   size_t left_;
 };
 
-// Each message: a byte for its row in the table of messages, one for the time since the one before, one for
-// the size, and its fields (the type's hash goes before them). Those of `left_out` are not sent. `poll` is
-// called after each.
+// Each message: a byte for its row in the table of messages, one for the time since the previous message, one
+// for the size, and its fields (the type's hash goes before them). Messages in `left_out` are not sent. Calls
+// `poll` after each.
 template <class Poll>
 void Feed(Input& input, bus::InProcessBus& bus, bus::SimulatedClock& clock, std::optional<size_t> left_out,
           Poll poll) {
@@ -80,7 +80,7 @@ settings::StackConfig Config(Input& input) {
 
 }  // namespace
 
-// The controllers answer; the commands must be what an amplifier may get.
+// The controllers answer; their commands must be fit for an amplifier.
 void Processes(const uint8_t* data, size_t size) {
   spdlog::set_level(spdlog::level::off);
   Input input(data, size);

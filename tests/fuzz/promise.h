@@ -1,4 +1,4 @@
-// How a target says that the code under test broke a promise, and runs what may refuse its input.
+// How a target reports that the code under test broke a promise, and runs code that may refuse its input.
 #pragma once
 
 #include <cstdio>
@@ -11,14 +11,14 @@
 
 namespace hydro::fuzz {
 
-// Ends the process, for libFuzzer to keep the input, when `kept` is false.
+// Ends the process when `kept` is false, so that libFuzzer keeps the input.
 inline void Promise(bool kept, const char* what) {
   if (kept) return;
   std::fprintf(stderr, "broken promise: %s\n", what);
   std::abort();
 }
 
-// Runs `work`; false when it refused its input, which must be in one line.
+// Runs `work`; false when it refused its input, which it must do in one line.
 template <class Work>
 bool Accepts(Work work) {
   try {

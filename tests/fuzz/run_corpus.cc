@@ -1,5 +1,5 @@
-// run_corpus TARGET FOLDER: each file of the folder through the target, and each also cut short and with bits
-// flipped, a little, always the same way. Any failure ends the process (targets.h).
+// run_corpus TARGET FOLDER: runs each file of the folder through the target, and also each file slightly
+// shortened and with some bits flipped, always in the same way. Any failure ends the process (targets.h).
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
@@ -38,7 +38,7 @@ void Run(const hydro::fuzz::Target& target, const Bytes& bytes) {
 
 }  // namespace
 
-// What a file claims must not be allocated: MiB that no input of the corpus needs.
+// No claim in a file may cause an allocation of this size: MiB that no input of the corpus needs.
 extern "C" const char* __asan_default_options() { return "max_allocation_size_mb=64"; }
 
 int main(int argc, char** argv) {

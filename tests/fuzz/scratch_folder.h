@@ -1,4 +1,4 @@
-// Files for readers that take names, in memory where there is such a folder.
+// Files for readers that take names; in memory where the system has such a folder.
 #pragma once
 
 #include <filesystem>

@@ -23,8 +23,8 @@ settings::StackConfig Parse(const std::string& text) {
   return settings::ParseStackConfig(text, "stack.toml", settings::kModelText, "model.toml");
 }
 
-// What was accepted can be run: numbers that others divide by are above zero, and the text says the same
-// again.
+// An accepted configuration can be run: numbers that others divide by are above zero, and its text reads back
+// the same.
 void Check(const settings::StackConfig& config) {
   Promise(config.position_interval_ticks >= 1 && config.pressure_interval_ticks >= 1, "intervals are ticks");
   Promise(config.plant.rate_hz > 0, "the plant ticks");

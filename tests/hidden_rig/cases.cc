@@ -163,8 +163,8 @@ double GapBeyondValues(const Truth& truth, uint64_t seed, const Options& options
   const std::vector<double> without = signals.Of(plain);
   std::vector<double> rest(with.size());
   for (size_t i = 0; i < rest.size(); ++i) rest[i] = with[i] - without[i];
-  // Directions of the parameters, each made orthogonal to those before (twice, for the rounding) and taken
-  // off.
+  // Directions of the parameters, each made orthogonal to those before (twice, because of rounding) and
+  // removed.
   std::vector<std::vector<double>> directions;
   const auto take_off = [](const std::vector<double>& direction, std::vector<double>* from) {
     double along = 0;
@@ -197,7 +197,7 @@ Truth Solve(const Case& c, const Options& options) {
   Truth truth;
   // The arm's weight differs from rig to rig.
   truth.setup.base.mgl = truth.given.mgl = 200 + static_cast<double>(c.seed % 5) * 50;
-  // Gravity would hold play to one side.
+  // Gravity would hold the play to one side.
   if (c.outside >= 0 && OutsideForms()[c.outside].value == &Outside::backlash)
     truth.setup.base.mgl = truth.given.mgl = 20;
   if (!c.parameter.empty()) {
@@ -235,8 +235,7 @@ Truth Solve(const Case& c, const Options& options) {
     if (c.kind != "nothing") truth.gap = Gap(truth, c.seed, options);
     return truth;
   }
-  // Gaps grow about as a power of the size: the secant in logarithms, kept within what is known to bracket
-  // it.
+  // Gaps grow roughly as a power of the size: takes the secant in logarithms, kept within the known bracket.
   double low = c.outside >= 0 ? OutsideForms()[c.outside].smallest : FindEffect(c.effects[0]).smallest;
   double high = c.outside >= 0 ? OutsideForms()[c.outside].largest : FindEffect(c.effects[0]).largest;
   const auto gap_at = [&](double size) {

@@ -40,8 +40,8 @@ struct Options {
 };
 Truth Solve(const Case& c, const Options& options);
 
-// How far the rig is, without noise, from one with Table 1's values (or those given) and nothing else under
-// the same voltages: rms over all samples of all measured signals of all runs, in stated noise units.
+// The rig's distance, without noise, from a rig with Table 1's values (or those given) and nothing else,
+// under the same voltages: rms over all samples of all measured signals of all runs, in stated noise units.
 double Gap(const Truth& truth, uint64_t seed, const Options& options);
 
 // What is left of the gap when the base parameters take the values that close it best, linearised at the

@@ -1,5 +1,4 @@
-// The catalogue's effects as the rig can have them: one number says how large, the rest of the parameters
-// follow.
+// The catalogue's effects as the rig can have them: one number sets the size, the other parameters follow.
 #pragma once
 
 #include <string>
@@ -22,13 +21,13 @@ struct EffectForm {
   std::string id;
   double smallest, largest;  // of the size
   double plain;              // a size that is plain to see
-  // Puts the effect into the rig and says what it is in the catalogue's terms.
+  // Puts the effect into the rig and describes it in the catalogue's terms.
   TrueEffect (*put)(double size, Effects* effects);
 };
 const std::vector<EffectForm>& EffectForms();
 const EffectForm& FindEffect(const std::string& id);
 
-// Base parameters that may be wrong, under the names of model files.
+// Base parameters that may be wrong, by their names in model files.
 struct BaseForm {
   std::string name;
   double Base::*value;

@@ -1,5 +1,5 @@
-// The hidden rig is worth something only if it is right on its own: it agrees with the model where nothing is
-// hidden, and its runs say nothing of what is.
+// The hidden rig is only worth something if it is right on its own: it agrees with the model where nothing is
+// hidden, and its runs say nothing about what is.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -54,7 +54,7 @@ class HiddenRig : public ::testing::Test {
   fs::path folder_;
 };
 
-// Tests that the runs are read as measured runs of the kinds they are, with the stated noise.
+// Tests that the runs are read as measured runs of the right kinds, with the stated noise.
 TEST_F(HiddenRig, RunsAreReadable) {
   const Case c = CaseNamed("nothing-1");
   const Options options = Short(0.5);
@@ -76,7 +76,7 @@ TEST_F(HiddenRig, RunsAreReadable) {
   EXPECT_EQ(bypassed, 2);
 }
 
-// Tests that a seed gives the same files to the bit and another seed others.
+// Tests that a seed gives the same files to the bit, and that another seed gives others.
 TEST_F(HiddenRig, SeedDecides) {
   Case c = CaseNamed("nothing-1");
   const Options options = Short(0.2);
@@ -92,7 +92,7 @@ TEST_F(HiddenRig, SeedDecides) {
   }
 }
 
-// Tests that nothing handed over names what is in the rig, while the key does.
+// Tests that nothing handed over names what is in the rig, and that the key does.
 TEST_F(HiddenRig, OnlyTheKeyTells) {
   const Case c = CaseNamed("triple-pump.stribeck+valve.relief+amp.lag");
   const Options options = Short(0.2);
@@ -134,20 +134,21 @@ TEST_F(HiddenRig, CasesAreComplete) {
   EXPECT_EQ(seeds.size(), AllCases().size());
 }
 
-// Tests that a size is found for the gap asked for.
+// Tests that the size for a requested gap is found.
 TEST_F(HiddenRig, SizeGivesTheGap) {
   const Truth truth = Solve(CaseNamed("pump.quadratic_drag-medium"), Short(0.4));
   EXPECT_TRUE(truth.reached);
   EXPECT_NEAR(truth.gap, 5, 0.3);
 }
 
-// Tests that a tuned line's first resonance is where it was asked for, by shaking it: the ratio of the
-// pressures at its ends has a line of 4 pieces swing against each other only there.
+// Tests, by shaking it, that a tuned line's first resonance is where requested: the ratio of the pressures at
+// its ends has a line of 4 pieces swinging against each other only there.
 TEST_F(HiddenRig, LineRingsWhereAsked) {
   constexpr double kVolume = 3.16, kBeta = 247000, kHz = 150;
   const Line line = TuneLine(kHz, 0.3, 0.0, kVolume, kBeta);
   EXPECT_NEAR(line.volume[0] + 1.5 * line.volume[1], 0.3 * kVolume, 1e-12);
-  // Free swing from unequal pressures, semi-implicit Euler; count the crossings of the mean at the pump.
+  // Swings freely from unequal pressures, by semi-implicit Euler; counts the crossings of the mean at the
+  // pump.
   double pressure[kLineNodes + 1] = {1, 0.5, 0, -0.2, -0.4};
   double flow[kPieces] = {};
   double volume[kLineNodes + 1];
@@ -203,7 +204,7 @@ hydro::model::Parameters ModelParameters(const Base& b) {
 }
 
 // Tests that the rig with nothing hidden and without noise is, in every run, within a noise unit of the model
-// under the same voltages, open loop: two programs written apart agree.
+// under the same voltages, open loop: two independently written programs agree.
 TEST_F(HiddenRig, AgreesWithTheModel) {
   RigSetup setup;
   hydro::model::ModelDescription model;
@@ -240,8 +241,7 @@ TEST_F(HiddenRig, AgreesWithTheModel) {
   }
 }
 
-// Tests that noise and quantisation are what is stated: a bypassed pump at rest reads its pressure with 1.5
-// psi.
+// Tests that noise and quantisation are as stated: a bypassed pump at rest reads its pressure with 1.5 psi.
 TEST_F(HiddenRig, NoiseIsAsStated) {
   Plan plan;
   plan.shaft = Shaft::kClamped;

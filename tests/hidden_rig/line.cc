@@ -6,7 +6,7 @@ namespace hidden_rig {
 
 namespace {
 
-// Of a chain of volumes that rings at w^2 = `square` with unit inertances: what is left of the flow after the
+// For a chain of volumes that rings at w^2 = `square` with unit inertances: the flow that is left after the
 // last volume. It is 0 at a resonance.
 double Rest(const std::array<double, kLineNodes + 1>& compliance, double square) {
   double pressure = 1;
@@ -43,7 +43,7 @@ Line TuneLine(double hz, double pump_fraction, double damping, double mid_volume
   }
   const double w = 2 * 3.14159265358979323846 * hz;
   line.inertance = low / (w * w);
-  // The resistance to a steady flow is that of one lumped inertance, which the catalogue's damping means.
+  // The resistance to a steady flow is that of one lumped inertance, as the catalogue's damping means it.
   line.resistance = 2 * damping * lumped / w;
   return line;
 }

@@ -1,4 +1,4 @@
-// hydro-hidden-rig: writes what a rig records, and apart from it what was in the rig.
+// hydro-hidden-rig: writes what a rig records and, in another place, what was in the rig.
 #include <cstdio>
 #include <cstdlib>
 #include <exception>

@@ -12,8 +12,8 @@ constexpr double kPi = 3.14159265358979323846;
 constexpr double kAtmosphere = 14.696;  // psi
 constexpr double kPolytropic = 1.4;
 
-// LuGre friction of the pump: its bristles give 5 urad. Softer ones would show: a start from rest is
-// free of friction for the time that they take to bend.
+// LuGre friction of the pump: its bristles bend by 5 urad. Softer ones would show: a start from rest is free
+// of friction while they bend.
 constexpr double kPumpBristle = 800000;  // in-lbf/rad
 constexpr double kPumpBristleDamping = 217;
 constexpr double kPumpBristleSpeed = 0.05;  // rad/s, above which the bristles no longer damp
@@ -211,7 +211,7 @@ void Physics::Rates(double t, const State& x, State& rate) const {
   friction += fx_.asymmetry_viscous * std::abs(w) + fx_.quadratic_drag * w * std::abs(w);
   rate[kTheta] = w;
   rate[kOmega] = (torque - D * dp - friction) / base_.J;
-  // The oil warms towards an end temperature that it does not reach in a run.
+  // The oil warms towards an end temperature that it does not reach during a run.
   constexpr double kThermal = 60;  // s
   rate[kHeat] = fx_.warming == 0 ? 0 : 1.014 * fx_.warming - x[kHeat] / kThermal;
 

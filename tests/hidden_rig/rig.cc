@@ -64,7 +64,7 @@ double Value(const Segment& s, double t) {
 }  // namespace
 
 Record RecordRun(const RigSetup& setup, const Plan& plan, const Conditions& conditions) {
-  // Eq. (16) as an experimenter would set it for 120 rad/s, eq. (17) at 200 Hz with the paper's gains.
+  // Eq. (16) as an experimenter would tune it for 120 rad/s, eq. (17) at 200 Hz with the paper's gains.
   constexpr double k_p = 0.08, k_v = 10.0, c1 = 10500, c2 = 350, interval = 0.005;
   constexpr double kLargestVoltage = 11.5, kVoltageStep = 1.0 / 2048, kLargestPressure = 3000;
 
@@ -152,7 +152,7 @@ Record RecordRun(const RigSetup& setup, const Plan& plan, const Conditions& cond
           kVoltageStep * std::round(std::clamp(voltage, -kLargestVoltage, kLargestVoltage) / kVoltageStep);
     }
 
-    // A wrong sign is the recorder's: the loops are wired right.
+    // A wrong sign is the recorder's fault: the loops are wired correctly.
     switch (fx.sign_channel) {
       case Channel::kMotorSpeed:
         true_now.speed = -true_now.speed;

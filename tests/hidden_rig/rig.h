@@ -1,9 +1,8 @@
-// A simulated test rig that is written on its own: it shares no code with the model that is to be tested
-// against it, and its physics is richer. The gap finder gets what its sensors record and must say what is in
-// it.
+// A simulated test rig, written independently: it shares no code with the model that is tested against it,
+// and its physics is richer. The gap finder gets what its sensors record and must say what is in it.
 //
-// Units: in, lbf, s, psi, rad, V. Signs are the paper's: positive motor speed pumps fluid from side 1 to
-// side 2.
+// Units: in, lbf, s, psi, rad, V. Signs are the paper's: positive motor speed pumps fluid from side 1 to side
+// 2.
 #pragma once
 
 #include <cstdint>
@@ -21,7 +20,7 @@ struct Base {
 
 enum class Channel { kNone, kMotorSpeed, kArmAngle, kP1, kP2 };
 
-// What else acts, in the parameters of the catalogue; 0: does not act.
+// What else acts, in the parameters of the catalogue; 0: inactive.
 struct Effects {
   double lag_tau = 0, delay = 0, no_load_speed = 0;
   double cogging = 0, cogging_periods = 6, cogging_phase = 0.7;
@@ -37,7 +36,7 @@ struct Effects {
   Channel skew_channel = Channel::kNone, sign_channel = Channel::kNone;
 };
 
-// What the catalogue does not have.
+// Effects that the catalogue lacks.
 struct Outside {
   double arm_spring = 0;         // in-lbf/rad, about mid-stroke
   double daily_torque = 0;       // in-lbf on the pump, a slow wave over the time of day
@@ -53,7 +52,7 @@ struct Outside {
 
 enum class Shaft { kFree, kClamped, kDriven };
 
-// One run: how the shaft is held, and what is asked of the motor. Each segment holds until the next begins.
+// One run: how the shaft is held, and what the motor is told to do. Each segment lasts until the next begins.
 struct Segment {
   enum class Kind { kVoltage, kPressure, kAngle } kind = Kind::kVoltage;
   enum class Form { kHold, kRamp, kSine, kSquare, kChirp } form = Form::kHold;
@@ -86,8 +85,7 @@ struct Record {
   std::vector<double> time, voltage, pressure_ref, motor_speed, arm_angle, p1, p2;
 };
 
-// Stated standard deviations: the transducers', the tachometer's, and that of the encoder's steps of 2 pi /
-// 2^14.
+// Stated standard deviations: of the transducers, the tachometer, and the encoder's steps of 2 pi / 2^14.
 inline constexpr double kPressureNoise = 1.5;
 inline constexpr double kSpeedNoise = 0.3;
 inline constexpr double kAngleStep = 6.283185307179586 / 16384;

@@ -79,7 +79,7 @@ void WriteRuns(const Case& c, const Truth& truth, const Options& options, const 
             << "time = \"time_s\"\nvoltage = \"voltage_V\"\nmotor_speed = \"motor_speed_rad_s\"\n"
             << "p1 = \"p1_psi\"\np2 = \"p2_psi\"\n";
     if (arm) sidecar << "arm_angle = \"arm_angle_rad\"\n";
-    // What the makers of the sensors state, whatever the noise really is.
+    // What the sensors' makers state, whatever the noise really is.
     sidecar << "\n[noise]\nmotor_speed = " << Float(kSpeedNoise) << "\np1 = " << Float(kPressureNoise)
             << "\np2 = " << Float(kPressureNoise) << "\n";
     if (arm) sidecar << "arm_angle = " << Float(kAngleNoise) << "\n";

@@ -29,7 +29,7 @@ Outcome HydroLog(std::vector<std::string> arguments) {
   return {exit_code, testing::internal::GetCapturedStdout(), testing::internal::GetCapturedStderr()};
 }
 
-// What hydro-log timing needs of a log.
+// What hydro-log timing needs in a log.
 log::EventContents LoopReport() {
   loop_statistics_t report{};
   report.role = "plant";
@@ -40,7 +40,7 @@ log::EventContents LoopReport() {
 
 class HydroLogTest : public log::LogTest {};
 
-// Tests that equal runs print exactly "identical" and that a difference exits 1, also across suffixes.
+// Tests that equal runs print exactly "identical" and that a difference exits 1, even across suffixes.
 TEST_F(HydroLogTest, Compare) {
   runs::RunMessages run = log::SampleRun(9);
   log::WriteRun(Path("a"), run);
@@ -64,7 +64,7 @@ TEST_F(HydroLogTest, CompareOfNothing) {
   EXPECT_EQ(outcome.out, "");
 }
 
-// Tests that a log goes through a table of either kind and back.
+// Tests that a log survives the way through a table of either kind and back.
 TEST_F(HydroLogTest, ExportAndImport) {
   log::WriteRun(Path("log"), log::SampleRun(9));
   for (const char* kind : {".csv", ".mat"}) {
@@ -78,7 +78,7 @@ TEST_F(HydroLogTest, ExportAndImport) {
   }
 }
 
-// Tests what repair says and leaves, with and without damage.
+// Tests what repair prints and leaves, with and without damage.
 TEST_F(HydroLogTest, Repair) {
   log::WriteRun(Path("log"), log::SampleRun(9));
   const std::string whole = log::ReadBytes(Path("log"));
@@ -94,8 +94,8 @@ TEST_F(HydroLogTest, Repair) {
   EXPECT_EQ(HydroLog({"info", Path("log")}).exit_code, 0);
 }
 
-// Tests that a message that cannot be decoded, as a foreign program may send, is no reason to refuse the log:
-// info counts it, the others say so in one line; only what is to be the same bit by bit is refused.
+// Tests that an undecodable message, which a foreign program may send, is no reason to refuse the log: info
+// counts it, and the other verbs mention it in one line; only verbs that promise the same bits refuse.
 TEST_F(HydroLogTest, UndecodableMessages) {
   runs::RunMessages run = log::SampleRun(9);
   log::WriteRun(Path("whole"), run);
@@ -184,7 +184,7 @@ TEST_F(HydroLogTest, BadUsageAndInput) {
   }
 }
 
-// Tests that a disk that is full is a failure of the work, not bad input.
+// Tests that a full disk is a failure of the work, not bad input.
 TEST_F(HydroLogTest, DiskFull) {
   log::WriteRun(Path("log"), log::SampleRun(3));
   const Outcome outcome = HydroLog({"repair", Path("log"), "-o", "/dev/full"});

@@ -79,7 +79,7 @@ class ReplayTest : public ::testing::TestWithParam<ReplayedController> {};
 INSTANTIATE_TEST_SUITE_P(BothControllers, ReplayTest,
                          ::testing::Values(ReplayedController::kPressure, ReplayedController::kPosition));
 
-// Tests that each controller, fed with the record, answers it bit by bit.
+// Tests that each controller, given the record, answers it bit by bit.
 TEST_P(ReplayTest, IsIdentical) {
   const ReplayResult result = Replay(Recorded(), GetParam(), 0);
   EXPECT_EQ(result.difference, std::nullopt);
@@ -112,12 +112,12 @@ TEST(ReplayBitTest, OneBitIsFound) {
   EXPECT_NE(wrong_input->find("tick 100"), std::string::npos) << *wrong_input;
 }
 
-// Tests that a real-time record in which a pressure command came late replays exactly: what was in force
-// counts.
+// Tests that a real-time record with a late pressure command replays exactly: what counts is the command in
+// force.
 TEST(ReplayLateTest, WhatWasInForceCounts) {
   runs::RunLog log = Recorded();
-  // As if the command of tick 50 had arrived after tick 53: the record says which one each answer used, and
-  // with those inputs the recorded answers of ticks 51 to 53 must be the ones of the old command.
+  // As if the command of tick 50 had arrived after tick 53: the record says which command each answer used,
+  // and with those inputs the recorded answers of ticks 51 to 53 must be those of the old command.
   runs::RunLog late = log;
   const auto& law = log.messages;
   const double before = law.pressure_commands.at(9).pressure_ref;
@@ -126,15 +126,16 @@ TEST(ReplayLateTest, WhatWasInForceCounts) {
     command.pressure_command_tick = 45;
     command.pressure_ref = before;
   }
-  // Only the references were rewritten, not the voltages: the replay must notice, and at tick 51, not
-  // elsewhere.
+  // Only the references were rewritten, not the voltages: the replay must notice, at tick 51 and nowhere
+  // else.
   const auto difference = Replay(late, ReplayedController::kPressure, 0).difference;
   ASSERT_TRUE(difference.has_value());
   EXPECT_NE(difference->find("tick 51"), std::string::npos) << *difference;
   EXPECT_NE(difference->find("voltage"), std::string::npos) << *difference;
 }
 
-// Tests that a log that begins in the middle of a run, as a rotated one does, replays from where it can.
+// Tests that a log that begins in the middle of a run, as a rotated one does, replays from the first possible
+// tick.
 TEST_P(ReplayTest, BeginsInTheMiddle) {
   runs::RunLog log = Recorded();
   const auto cut = [](auto& messages) {

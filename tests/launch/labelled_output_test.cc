@@ -33,7 +33,7 @@ class LabelledOutputTest : public ::testing::Test {
   int pipe_[2] = {-1, -1};
 };
 
-// Tests that labels are aligned and that lines leave in the order in which they came, over both streams.
+// Tests that labels are aligned and that lines leave in the order of arrival, across both streams.
 TEST_F(LabelledOutputTest, AlignsAndKeepsOrder) {
   LabelledOutput output(pipe_[1], pipe_[1], false);
   output.AnnounceLabel("plant");
@@ -46,7 +46,7 @@ TEST_F(LabelledOutputTest, AlignsAndKeepsOrder) {
   EXPECT_EQ(output.waiting_fd(), -1);
 }
 
-// Tests that a line longer than one write is finished before the other stream's line is begun.
+// Tests that a line longer than one write is finished before the other stream's line begins.
 TEST_F(LabelledOutputTest, LinesOfTwoStreamsDoNotMix) {
   LabelledOutput output(pipe_[1], pipe_[1], false);
   const std::string longer(3 * PIPE_BUF, 'o');
@@ -57,7 +57,7 @@ TEST_F(LabelledOutputTest, LinesOfTwoStreamsDoNotMix) {
   EXPECT_EQ(Read(), "[a] " + longer + "\n[b] short\n[a] " + longer + "\n");
 }
 
-// Tests that text from the network can neither control the terminal nor pass for a line of another process.
+// Tests that text from the network can neither control the terminal nor pass for another process's line.
 TEST_F(LabelledOutputTest, EscapesControlCharacters) {
   LabelledOutput output(pipe_[1], pipe_[1], false);
   output.Line(Stream::kOut, "a", "\033[2Jx\n[b] y");
@@ -86,7 +86,7 @@ TEST_F(LabelledOutputTest, IsFullUntilWritten) {
   close(null);
 }
 
-// Tests that a reader that has gone neither ends this process nor holds the output up.
+// Tests that a reader that has gone neither ends this process nor blocks the output.
 TEST_F(LabelledOutputTest, SurvivesAReaderThatIsGone) {
   signal(SIGPIPE, SIG_IGN);
   LabelledOutput output(pipe_[1], pipe_[1], false);

@@ -43,7 +43,7 @@ TEST(LaunchFailureTest, ReasonIsPublished) {
               Contains("[plant]         got stop: hydro-position-ctrl ended with exit code 1"));
 }
 
-// Tests that a process's own exit code 2, bad input, is handed on, and that its reason is printed.
+// Tests that a process's own exit code 2, bad input, is passed on, and that its reason is printed.
 TEST(LaunchFailureTest, BadInputOfAChildIsTwo) {
   StackFolder stack;
   stack.Script("position_ctrl", "status failed stack.toml: no such trajectory;exit 2");
@@ -63,7 +63,7 @@ TEST(LaunchFailureTest, EarlyEndIsAFailure) {
               Contains("[launch]        hydro-pressure-ctrl ended though nobody had stopped the run"));
 }
 
-// Tests that a failed run that the plant stopped is told with the plant's reason, once, and gives exit 1.
+// Tests that a failed run that the plant stopped is reported with the plant's reason, once, and gives exit 1.
 TEST(LaunchFailureTest, PlantReportsFailure) {
   StackFolder stack;
   stack.Script("plant",
@@ -86,7 +86,7 @@ TEST(LaunchFailureTest, NotReadyInTime) {
   EXPECT_THAT(line, Not(HasSubstr("hydro-plant")));
 }
 
-// Tests that a process that does not end on SIGTERM is killed, named, and makes the exit 1.
+// Tests that a process that does not end on SIGTERM is killed and named, and makes the exit code 1.
 TEST(LaunchFailureTest, HangingProcessIsKilled) {
   StackFolder stack;
   stack.Script("position_ctrl", "deaf;status ready;wait-term");
@@ -110,8 +110,7 @@ TEST(LaunchFailureTest, MissingProgram) {
   EXPECT_FALSE(std::filesystem::exists(stack.file("started")));
 }
 
-// Tests that something that is no program (a file that cannot be executed as one) gives exit 2 and stops the
-// rest.
+// Tests that a file that cannot be executed as a program gives exit 2 and stops the rest.
 TEST(LaunchFailureTest, ProgramCannotBeExecuted) {
   StackFolder stack({"hydro-plant", "hydro-pressure-ctrl"});
   std::ofstream(stack.file("hydro-position-ctrl")) << "not a program\n";
@@ -133,7 +132,8 @@ TEST(LaunchFailureTest, BadConfiguration) {
   EXPECT_FALSE(std::filesystem::exists(stack.file("started")));
 }
 
-// Tests that what starts nothing refuses options that it would not look at, and that an empty one is none.
+// Tests that modes that start nothing refuse options that they would ignore, and that an empty option counts
+// as none.
 TEST(LaunchFailureTest, OptionsThatWouldBeIgnored) {
   const struct {
     std::vector<std::string> arguments;

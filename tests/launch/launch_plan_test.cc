@@ -69,7 +69,7 @@ TEST_F(LaunchPlanTest, PassesConfigurationAndOverrides) {
                                                  "--set", "time.mode=lockstep", "--set", "position.c1=2"));
 }
 
-// Tests that a logger runs only with --log, is stopped last, and that the plant is told to wait for it.
+// Tests that a logger runs only with --log and is stopped last, and that the plant is told to wait for it.
 TEST_F(LaunchPlanTest, LogAddsALogger) {
   Processes({{"hydro-plant", ""}, {"hydro-logger", ""}});
   EXPECT_THAT(Programs(), ElementsAre("hydro-plant"));
@@ -91,7 +91,7 @@ TEST_F(LaunchPlanTest, LogNeedsNoSection) {
   EXPECT_THAT(Programs(), ElementsAre("hydro-plant", "hydro-logger"));
 }
 
-// Tests that --host takes its own processes only.
+// Tests that --host takes only the processes of that host.
 TEST_F(LaunchPlanTest, HostFilters) {
   Processes({{"hydro-plant", "rig"}, {"hydro-pressure-ctrl", "rig"}, {"hydro-position-ctrl", "desk"}});
   request_.host = "rig";
@@ -101,7 +101,8 @@ TEST_F(LaunchPlanTest, HostFilters) {
   EXPECT_THAT(Programs(), ElementsAre("hydro-position-ctrl"));
 }
 
-// Tests that the logger runs on the host its section names, and that the launch on the other host says where.
+// Tests that the logger runs on the host that its section names, and that the launch on the other host says
+// where.
 TEST_F(LaunchPlanTest, LoggerRunsOnItsHost) {
   Processes({{"hydro-plant", "rig"}, {"hydro-position-ctrl", "desk"}, {"hydro-logger", "desk"}});
   request_.log_file = "a.lcmlog";
@@ -114,7 +115,7 @@ TEST_F(LaunchPlanTest, LoggerRunsOnItsHost) {
   EXPECT_THAT(Programs(), ElementsAre("hydro-position-ctrl", "hydro-logger"));
 }
 
-// Tests that a stack over several hosts is not started without --host, and that the hosts are listed.
+// Tests that a stack over several hosts does not start without --host, and that the hosts are listed.
 TEST_F(LaunchPlanTest, HostsNeedHost) {
   Processes({{"hydro-plant", "rig"}, {"hydro-pressure-ctrl", ""}, {"hydro-position-ctrl", "desk"}});
   EXPECT_THAT(Error(), HasSubstr("stack.toml: [[process]] names the hosts desk, rig; "));
@@ -137,14 +138,14 @@ TEST_F(LaunchPlanTest, ProcessWithoutHostIsPointedOut) {
   EXPECT_THAT(Plan().remarks, ElementsAre(HasSubstr("hydro-position-ctrl names no host")));
 }
 
-// Tests that a host that has only a logger, without --log, is an error instead of nothing at all.
+// Tests that a host with only a logger, without --log, is an error instead of nothing at all.
 TEST_F(LaunchPlanTest, NothingToStart) {
   Processes({{"hydro-plant", "rig"}, {"hydro-logger", "desk"}});
   request_.host = "desk";
   EXPECT_THAT(Error(), HasSubstr("nothing to start on host desk"));
 }
 
-// Tests that a driver that the configuration does not suit is refused before anything is started, and that it
+// Tests that a driver that does not suit the configuration is refused before anything starts, and that it
 // waits for the logger as the plant does.
 TEST_F(LaunchPlanTest, ChecksTheDriver) {
   MakeProgram(folder_ / "hydro-driver");
@@ -160,7 +161,7 @@ TEST_F(LaunchPlanTest, ChecksTheDriver) {
   EXPECT_THAT(Error(), HasSubstr("time.mode: found \"lockstep\""));
 }
 
-// Tests that a program is looked for in the folder first, then on PATH, and that a missing one is named.
+// Tests that a program is searched for in the folder first, then on PATH, and that a missing one is named.
 TEST_F(LaunchPlanTest, FindsPrograms) {
   const std::string path_before = getenv("PATH");
   std::filesystem::create_directory(folder_ / "bin");

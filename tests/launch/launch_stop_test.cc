@@ -1,4 +1,4 @@
-// Signals to a launch, its own death, and what is none of its business.
+// Signals to a launch, its own death, and what it must leave alone.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/syscall.h>
@@ -13,7 +13,7 @@ namespace {
 using ::testing::Contains;
 using ::testing::HasSubstr;
 
-// Refers to one process even after its id was given to another.
+// Refers to one process, even after its id has been reused.
 class Watched {
  public:
   explicit Watched(pid_t pid) : fd_(static_cast<int>(syscall(SYS_pidfd_open, pid, 0))) {
@@ -54,8 +54,8 @@ TEST_P(LaunchSignalTest, EndsInOrder) {
 }
 INSTANTIATE_TEST_SUITE_P(Signals, LaunchSignalTest, ::testing::Values(SIGINT, SIGTERM, SIGHUP));
 
-// Tests that a second SIGINT ends everything at once, also what is deaf: long before its three seconds are
-// over.
+// Tests that a second SIGINT ends everything at once, even deaf processes: long before their three seconds
+// are over.
 TEST(LaunchStopTest, SecondInterruptKills) {
   StackFolder stack;
   stack.Script("plant", "pid;deaf;status ready;wait-term");
@@ -74,8 +74,8 @@ TEST(LaunchStopTest, SecondInterruptKills) {
   EXPECT_TRUE(logger.EndsWithin(std::chrono::milliseconds(0)));
 }
 
-// Tests that a launch that was killed leaves no process within 2 s, and that they end in order though their
-// output goes nowhere any more.
+// Tests that a killed launch leaves no process after 2 s, and that they end in order though nobody reads
+// their output any more.
 TEST(LaunchStopTest, KilledLaunchLeavesNoOrphan) {
   StackFolder stack;
   stack.Script("plant", "pid;status ready;wait-term");
@@ -96,7 +96,7 @@ TEST(LaunchStopTest, KilledLaunchLeavesNoOrphan) {
   EXPECT_TRUE(std::filesystem::exists(stack.file("flushed")));
 }
 
-// Tests that a process of the same name that somebody else started survives a failed launch beside it.
+// Tests that somebody else's process of the same name survives a failed launch beside it.
 TEST(LaunchStopTest, ForeignProcessesAreLeftAlone) {
   StackFolder stack;
   auto environment = stack.environment;
@@ -113,8 +113,7 @@ TEST(LaunchStopTest, ForeignProcessesAreLeftAlone) {
   EXPECT_EQ(foreign.WaitForExit(), 0);
 }
 
-// Tests that a reader that has gone away (hydro-launch | head) does not end the stack; it still stops in
-// order.
+// Tests that a reader that has gone (hydro-launch | head) does not end the stack, which still stops in order.
 TEST(LaunchStopTest, LostReaderDoesNotEndTheRun) {
   StackFolder stack;
   stack.Script("plant", "pid;status ready;wait;touch " + stack.file("ended"));
@@ -128,7 +127,7 @@ TEST(LaunchStopTest, LostReaderDoesNotEndTheRun) {
   EXPECT_TRUE(std::filesystem::exists(stack.file("ended")));
 }
 
-// Tests that a reader that does not read (a stopped terminal) does not keep a stop from its work.
+// Tests that a reader that does not read (a stopped terminal) does not delay a stop.
 TEST(LaunchStopTest, StuckReaderDoesNotHoldTheStop) {
   StackFolder stack;
   stack.Script("plant", "pid;status ready;print 40000;wait");

@@ -1,4 +1,4 @@
-// What a launch does when all goes well, and with what it prints.
+// What a launch does when all goes well, and what it prints.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -68,7 +68,7 @@ TEST(LaunchTest, LoggerIsStoppedLast) {
               Contains("[logger]        arguments " + config + " --set position.c1=300 -o a.lcmlog"));
 }
 
-// Tests that heavy output from all processes at once arrives whole: every line once, in order, with its
+// Tests that heavy output from all processes at once arrives complete: every line once, in order, with its
 // label, on its stream.
 TEST(LaunchTest, HeavyOutputKeepsItsLines) {
   constexpr int kLines = 20000;
@@ -108,8 +108,8 @@ TEST(LaunchTest, PrintsTimingAndFaults) {
   EXPECT_THAT(launch->WaitForLine("fault over_pressure"), HasSubstr("p1 is 2100 psi, allowed are 2000 psi"));
 }
 
-// Tests that a run that ends with an active fault has failed, whoever ends it, and that one that ends with a
-// warning, or with a fault that has ended, has not.
+// Tests that a run that ends with an active fault has failed, however it ended, and that one that ends with a
+// warning, or with a fault that is over, has not.
 TEST(LaunchTest, AFaultAtTheEndIsAFailure) {
   const struct {
     const char* says;
@@ -158,8 +158,7 @@ TEST(LaunchTest, HostFilter) {
   EXPECT_THAT(without->text(), HasSubstr("desk, rig"));
 }
 
-// Tests that the parts of one stack on two hosts (here: two launches) end together, and both with the right
-// code.
+// Tests that the parts of one stack on two hosts (here: two launches) end together, both with the right code.
 TEST(LaunchTest, TwoLaunchesEndTogether) {
   StackFolder stack;
   stack.WriteConfig(

@@ -1,4 +1,4 @@
-// Runs a program with its output read as it comes, for tests of whole processes.
+// Runs a program and reads its output as it comes, for tests of whole processes.
 #pragma once
 
 #include <fcntl.h>
@@ -78,7 +78,7 @@ class LaunchedProgram {
     return all;
   }
 
-  // Reads until a line of either stream contains `part`, and returns that line. Throws when the program ended
+  // Reads until a line of either stream contains `part`, and returns that line. Throws when the program ends
   // first.
   std::string WaitForLine(const std::string& part) {
     const auto deadline = std::chrono::steady_clock::now() + kPatience;

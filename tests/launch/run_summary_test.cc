@@ -24,10 +24,10 @@ loop_statistics_t Report(double interval_s, int64_t cycles, double p50_us, doubl
   return report;
 }
 
-// Tests that nothing heard gives nothing to print.
+// Tests that hearing nothing prints nothing.
 TEST(RunSummaryTest, EmptyWithoutReports) { EXPECT_THAT(RunSummary().Lines(), IsEmpty()); }
 
-// Tests that counts add up over the run while percentiles are those of the last report of a whole second.
+// Tests that counts add up over the run, and that percentiles are those of the last report of a whole second.
 TEST(RunSummaryTest, CountsAddUpPercentilesAreTheLast) {
   RunSummary summary;
   summary.Add(Report(1.0, 1000, 1001, 345));
@@ -41,7 +41,7 @@ TEST(RunSummaryTest, CountsAddUpPercentilesAreTheLast) {
   EXPECT_EQ(lines[1].size(), lines[2].size());
 }
 
-// Tests that a report over the whole run replaces what was added up.
+// Tests that a report over the whole run replaces the sums.
 TEST(RunSummaryTest, WholeRunReplacesTheSum) {
   RunSummary summary;
   summary.Add(Report(1.0, 1000, 1001, 345));
@@ -58,8 +58,8 @@ TEST(RunSummaryTest, ShortRunShowsItsOnlyReport) {
   EXPECT_THAT(summary.Lines().back(), HasSubstr(" 1002 "));
 }
 
-// Tests that repeated faults are one line with their number, and that one that has gone is told from one that
-// has not.
+// Tests that repeated faults share one line with their number, and that an ended fault differs from an active
+// one.
 TEST(RunSummaryTest, FaultsAreCounted) {
   fault_t fault{};
   fault.session = 1;

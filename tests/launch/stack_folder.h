@@ -1,4 +1,4 @@
-// A folder with a copy of hydro-launch, fake programs beside it, and a configuration: a stack of one's own.
+// A folder with a copy of hydro-launch, fake programs beside it, and a configuration: a private stack.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -23,7 +23,7 @@ class StackFolder {
     std::string name = (std::filesystem::temp_directory_path() / "hydro-launch-XXXXXX").string();
     if (mkdtemp(name.data()) == nullptr) throw std::runtime_error("mkdtemp");
     folder_ = name;
-    // hydro-launch looks beside itself: it must be here, not a link to elsewhere.
+    // hydro-launch looks in its own folder: it must be a copy, not a link to elsewhere.
     std::filesystem::copy_file(HYDRO_LAUNCH, folder_ / "hydro-launch");
     for (const std::string& program : programs) {
       std::filesystem::create_symlink(HYDRO_FAKE_PROGRAM, folder_ / program);

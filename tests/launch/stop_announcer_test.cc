@@ -12,8 +12,8 @@ namespace {
 
 using Published = std::vector<std::pair<std::string, int>>;
 
-// Tests that a stop is published three times at once and five times more, each when it is due, and
-// then no more.
+// Tests that a stop is published three times at once and five times more, each when it is due, and then no
+// more.
 TEST(StopAnnouncerTest, RepeatsAsOftenAsItShould) {
   Published published;
   StopAnnouncer announcer(
@@ -38,7 +38,7 @@ TEST(StopAnnouncerTest, RepeatsAsOftenAsItShould) {
   EXPECT_EQ(published, Published(8, {"stopped by SIGINT", 0}));
 }
 
-// Tests that a later announcement replaces the one before it, and starts its repetitions anew.
+// Tests that a later announcement replaces the one before it and restarts its repetitions.
 TEST(StopAnnouncerTest, TheLatestAnnouncementCounts) {
   Published published;
   StopAnnouncer announcer(

@@ -17,7 +17,7 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using namespace std::chrono_literals;
 
-// Runs shell scripts under a supervisor; its output goes to a file that is read back.
+// Runs shell scripts under a supervisor; their output goes to a file that is read back.
 class SupervisorTest : public ::testing::Test {
  protected:
   SupervisorTest() { Make({}); }
@@ -69,8 +69,8 @@ class SupervisorTest : public ::testing::Test {
   std::map<std::string, Supervisor::Ended> ended_;
 };
 
-// A script that waits without a process of its own for SIGTERM, says "up" once it can take it, and "bye"
-// then. (read from a fifo that nobody writes to: the shell itself waits.)
+// A script that waits for SIGTERM without a process of its own, says "up" once it can take it, and then
+// "bye". (read from a fifo that nobody writes to: the shell itself waits.)
 std::string Waiter(const std::string& on_term) {
   return "d=$(mktemp -d); mkfifo $d/f; exec 3<>$d/f; rm -r $d; trap '" + on_term +
          "' TERM; echo up; while :; do read x <&3; done";
@@ -89,7 +89,7 @@ TEST_F(SupervisorTest, ReportsHowAProcessEnded) {
   EXPECT_EQ(DescribeEnd("hydro-plant", ended_.at("five").end), "hydro-plant ended with exit code 5");
 }
 
-// Tests that output is passed on before the end is reported, the unfinished last line too.
+// Tests that output is passed on before the end is reported, including an unfinished last line.
 TEST_F(SupervisorTest, LastWordsComeBeforeTheEnd) {
   Start("a", "echo out; echo err >&2; printf unfinished");
   while (!supervisor_->NextEnded()) supervisor_->Wait(Supervisor::TimePoint::max());
@@ -99,7 +99,7 @@ TEST_F(SupervisorTest, LastWordsComeBeforeTheEnd) {
   EXPECT_THAT(text, HasSubstr("[a] unfinished\n"));
 }
 
-// Tests that a program that left a process of its own behind, which holds the pipe, is still seen to end.
+// Tests that the end of a program is noticed even if it leaves behind a process that holds the pipe.
 TEST_F(SupervisorTest, GrandchildDoesNotHoldTheEnd) {
   Start("a", "sleep 1000 & echo pid $! pid");
   WaitForAll();
@@ -109,7 +109,7 @@ TEST_F(SupervisorTest, GrandchildDoesNotHoldTheEnd) {
   EXPECT_EQ(ended_.at("a").end.exit_code, 0);
 }
 
-// Tests that those marked last get SIGTERM only after all others have ended.
+// Tests that processes marked as last get SIGTERM only after all others have ended.
 TEST_F(SupervisorTest, StopsTheLastOnesLast) {
   Start("logger", Waiter("echo logger bye; exit 0"), true);
   Start("a", Waiter("echo a bye; exit 0"));
@@ -129,8 +129,8 @@ TEST_F(SupervisorTest, StopsTheLastOnesLast) {
   }
 }
 
-// Tests that a process that does not end on SIGTERM is killed after its grace, and then the last ones are
-// stopped.
+// Tests that a process that does not end on SIGTERM is killed after its grace period, and that the last ones
+// are then stopped.
 TEST_F(SupervisorTest, KillsWhatHangs) {
   Make({.child = 50ms, .last = 10s, .before_last = 0s});
   Start("logger", Waiter("exit 0"), true);
@@ -155,7 +155,7 @@ TEST_F(SupervisorTest, PatienceLetsThemEndThemselves) {
   EXPECT_EQ(ended_.at("slow").end.exit_code, 3);
 }
 
-// Tests that KillAll ends everything at once, also what is deaf and what is last.
+// Tests that KillAll ends everything at once, even deaf and last processes.
 TEST_F(SupervisorTest, KillAllKills) {
   Start("logger", Waiter(""), true);
   Start("deaf", Waiter(""));
@@ -194,7 +194,7 @@ TEST_F(SupervisorTest, ChildrenHaveOwnGroupAndUnblockedSignals) {
   EXPECT_FALSE(ended_.at("a").terminated);
 }
 
-// Tests that what cannot be executed is an error that names it, and leaves nothing behind.
+// Tests that a file that cannot be executed gives an error that names it, and leaves nothing behind.
 TEST_F(SupervisorTest, CannotStart) {
   try {
     supervisor_->Start({"a", {"/nonexistent/hydro-plant"}, false});

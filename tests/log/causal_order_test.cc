@@ -13,7 +13,8 @@ using ::testing::ElementsAre;
 using ::testing::IsEmpty;
 using Kind = CausalOrder::Kind;
 
-// Takes messages named after what they are, with both loops acting on every tick or as the test says.
+// Takes messages named after their contents, with both loops acting on every tick unless the test says
+// otherwise.
 class CausalOrderTest : public ::testing::Test {
  protected:
   void Take(Kind kind, int64_t tick) {
@@ -41,7 +42,7 @@ TEST_F(CausalOrderTest, OrderedMessagesPass) {
   EXPECT_FALSE(order_.held_since());
 }
 
-// Tests that a state which overtook an answer to the tick before waits for it.
+// Tests that a state that overtook an answer to the previous tick waits for it.
 TEST_F(CausalOrderTest, StateWaitsForTheAnswersBeforeIt) {
   Take(Kind::kState, 0);
   Take(Kind::kPressureCommand, 0);
@@ -63,7 +64,7 @@ TEST_F(CausalOrderTest, AnswersWaitForTheirState) {
   EXPECT_THAT(out_, ElementsAre("state0", "reference0", "pressure0", "motor0"));
 }
 
-// Tests that a state and an answer to it, both early, come out in order once the late answer is there.
+// Tests that an early state and an early answer to it come out in order once the late answer is there.
 TEST_F(CausalOrderTest, AnswerToAHeldStateStaysBehindIt) {
   Take(Kind::kState, 0);
   Take(Kind::kMotorCommand, 0);

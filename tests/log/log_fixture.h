@@ -1,4 +1,4 @@
-// What the tests of logs share: a folder of their own, and a small run.
+// What the tests of logs share: a folder for each test, and a small run.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -19,7 +19,7 @@
 
 namespace hydro::log {
 
-// A folder that is removed with all that is in it.
+// A folder that is removed with everything in it.
 class LogTest : public testing::Test {
  protected:
   LogTest() {
@@ -40,14 +40,14 @@ inline std::string ReadBytes(const std::string& file) {
 }
 
 inline void WriteBytes(const std::string& file, const std::string& bytes) {
-  // Cutting a file to nothing, or renaming over one, makes ext4 write to the disk at once: slow, ten thousand
-  // times.
+  // Truncating a file to nothing, or renaming over one, makes ext4 write to the disk at once: slow when done
+  // ten thousand times.
   std::filesystem::remove(file);
   std::ofstream out(file, std::ios::binary | std::ios::trunc);
   out << bytes;
 }
 
-// What an event holds, to compare whole logs.
+// The contents of an event, to compare whole logs.
 struct EventContents {
   std::string channel;
   std::string data;
@@ -75,7 +75,7 @@ inline void WriteEvents(const std::string& file, const std::vector<EventContents
   writer.Finish();
 }
 
-// A message on `where` of the InputError that `work` must throw.
+// A matcher for the message of the InputError that `work` must throw, at `where`.
 template <class Work>
 std::string InputErrorOf(Work work) {
   try {
@@ -87,7 +87,7 @@ std::string InputErrorOf(Work work) {
   return {};
 }
 
-// `ticks` ticks of a run at 1 kHz in which every message has all its fields set to something of its own.
+// `ticks` ticks of a run at 1 kHz with messages whose fields all have distinct values.
 inline runs::RunMessages SampleRun(int64_t ticks) {
   runs::RunMessages run;
   for (int64_t tick = 0; tick < ticks; ++tick) {
@@ -145,7 +145,7 @@ inline runs::RunMessages SampleRun(int64_t ticks) {
   return run;
 }
 
-// Tick by tick, as they would have arrived.
+// Tick by tick, in a plausible order of arrival.
 inline void WriteRun(const std::string& file, const runs::RunMessages& run, const std::string& suffix = "",
                      const std::string& config_text = "[plant]\nrate_hz = 1000\n") {
   const bus::Channels channels(suffix);

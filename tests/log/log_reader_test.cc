@@ -26,7 +26,8 @@ TEST_F(LogReaderTest, EmptyFile) {
   EXPECT_TRUE(ReadEvents(Path("log")).empty());
 }
 
-// Tests that a log cut at any byte of any event gives the events before, then an error that names the place.
+// Tests that a log cut at any byte of any event gives the events before it, then an error that names the
+// place.
 TEST_F(LogReaderTest, TruncatedAtEveryByte) {
   WriteEvents(Path("log"), kEvents);
   const std::string bytes = ReadBytes(Path("log"));
@@ -93,7 +94,7 @@ TEST_F(LogReaderTest, DoesNotReturnAnEventOfWrongLength) {
   EXPECT_THROW(reader.Next(event), LogError);
 }
 
-// Tests that something else than a log, and no file at all, are errors that name the file.
+// Tests that a file that is no log, and a missing file, are errors that name the file.
 TEST_F(LogReaderTest, NotALog) {
   WriteBytes(Path("text"), "time_s,tick\n0,1\n");
   EXPECT_THAT(InputErrorOf([&] { ReadEvents(Path("text")); }), HasSubstr(Path("text") + ": byte 0, event 0"));

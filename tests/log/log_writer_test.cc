@@ -44,7 +44,7 @@ TEST_F(LogWriterTest, CountsEventsAndBytes) {
   EXPECT_FALSE(reader.Next(event));
 }
 
-// Tests that a recording holds what was flushed although its writer is still there.
+// Tests that a recording holds what was flushed while its writer is still open.
 TEST_F(LogWriterTest, FlushedEventsAreInTheFileAtOnce) {
   LogWriter writer(Path("log"), Opening::kDirect);
   writer.Append("A", "1", 1, 1);
@@ -53,7 +53,7 @@ TEST_F(LogWriterTest, FlushedEventsAreInTheFileAtOnce) {
   EXPECT_EQ(ReadEvents(Path("log")).size(), 1u);
 }
 
-// Tests that a log of which only complete versions are wanted has its name only when it is finished.
+// Tests that a log that must be complete gets its name only when it is finished.
 TEST_F(LogWriterTest, TemporaryLogAppearsWhenFinished) {
   {
     LogWriter writer(Path("log"), Opening::kTemporary);
@@ -92,8 +92,8 @@ TEST_F(LogWriterTest, CannotCreate) {
   EXPECT_THAT(error, AllOf(HasSubstr(Path("none/log")), HasSubstr("No such file or directory")));
 }
 
-// Tests that a full disk is an error that names the file, that the event is then not counted, and that events
-// before stay.
+// Tests that a full disk is an error that names the file, that the event is then not counted, and that
+// earlier events stay.
 TEST_F(LogWriterTest, DiskFull) {
   LogWriter writer("/dev/full", Opening::kDirect);
   writer.Append("A", "1", 1, 1);
@@ -108,8 +108,8 @@ TEST_F(LogWriterTest, DiskFull) {
   EXPECT_EQ(writer.events(), 1);
 }
 
-// Tests that a file that may not grow any more (as on a disk that fills up) ends with the last event that
-// fits: what is in it can be read.
+// Tests that a file that cannot grow further (as on a disk that fills up) ends with the last event that fits:
+// what is in it can be read.
 TEST_F(LogWriterTest, FullDiskLeavesWholeEvents) {
   const auto old_handler = std::signal(SIGXFSZ, SIG_IGN);
   rlimit before{};
@@ -128,7 +128,7 @@ TEST_F(LogWriterTest, FullDiskLeavesWholeEvents) {
   EXPECT_EQ(ReadEvents(Path("log")).size(), 7u);
 }
 
-// Tests that what LCM could not have sent is refused.
+// Tests that events that LCM could not have sent are refused.
 TEST_F(LogWriterTest, RefusesImpossibleEvents) {
   LogWriter writer(Path("log"), Opening::kDirect);
   EXPECT_THROW(writer.Append("", "1", 1, 1), std::invalid_argument);

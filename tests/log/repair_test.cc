@@ -58,8 +58,8 @@ TEST_F(RepairTest, TornTailAtEveryByte) {
   }
 }
 
-// Tests that a log which was cut at any byte of an event, and to which a new logger appended, loses that
-// event alone.
+// Tests that a log that was cut at any byte of an event, and to which a new logger appended, loses that event
+// alone.
 TEST_F(RepairTest, AppendedAfterATornTailAtEveryByte) {
   std::vector<EventContents> events;
   std::vector<size_t> begins;
@@ -71,8 +71,8 @@ TEST_F(RepairTest, AppendedAfterATornTailAtEveryByte) {
   }
 }
 
-// Tests the same where the torn event's announced length ends in the middle of messages of fixed size, which
-// any bytes are.
+// Tests the same where the torn event's announced length ends inside messages of fixed size, which any bytes
+// are.
 TEST_F(RepairTest, AppendedAfterATornState) {
   WriteRun(Path("log"), SampleRun(3));
   const std::string bytes = ReadBytes(Path("log"));
@@ -85,7 +85,7 @@ TEST_F(RepairTest, AppendedAfterATornState) {
   }
 }
 
-// Tests that bytes missing in the middle, whatever part of an event is left, lose that event alone.
+// Tests that missing bytes in the middle, whatever part of an event is left, lose that event alone.
 TEST_F(RepairTest, MiddleEventCutAtEveryByte) {
   std::vector<EventContents> events;
   std::vector<size_t> begins;
@@ -107,16 +107,16 @@ TEST_F(RepairTest, EveryDamagedByteOfAHeader) {
         char& place = damaged[begins[1] + byte];
         if (place == static_cast<char>(value)) continue;
         place = static_cast<char>(value);
-        // A channel or data length that is a few less, and what follows taken for damage: the numbers of the
-        // events tell.
+        // A channel or data length that is slightly too small, with what follows taken for damage: the
+        // numbers of the events tell.
         EXPECT_EQ(Repaired(damaged), Without(events, 1)) << "byte " << byte << " value " << value;
       }
     }
   }
 }
 
-// Tests that bytes between two events are lost and nothing else, although the event before then does not end
-// at another.
+// Tests that bytes inserted between two events are lost and nothing else, although the event before them then
+// does not end at another.
 TEST_F(RepairTest, GarbageBetweenEvents) {
   WriteRun(Path("log"), SampleRun(3));
   const std::string bytes = ReadBytes(Path("log"));
@@ -128,8 +128,8 @@ TEST_F(RepairTest, GarbageBetweenEvents) {
   EXPECT_EQ(result.lost[0].end - result.lost[0].begin, 7);
 }
 
-// Tests that a message of ours that is damaged inside is left out where others of its channel are whole, and
-// kept where none is: that is another version's log.
+// Tests that one of our messages that is damaged inside is left out where others of its channel are whole,
+// and kept where none is: that is another version's log.
 TEST_F(RepairTest, UndecodableMessages) {
   WriteRun(Path("log"), SampleRun(3));
   std::vector<EventContents> events = ReadEvents(Path("log"));
@@ -164,7 +164,8 @@ TEST_F(RepairTest, NoEventAtAll) {
   EXPECT_FALSE(std::filesystem::exists(Path("out")));
 }
 
-// Tests that repair in place keeps the damaged log beside, and refuses to overwrite an older one.
+// Tests that repair in place keeps the damaged log beside the new one, and refuses to overwrite an older
+// copy.
 TEST_F(RepairTest, InPlace) {
   std::vector<EventContents> events;
   std::vector<size_t> begins;

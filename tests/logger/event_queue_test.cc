@@ -14,8 +14,8 @@ int64_t Push(EventQueue& queue, const std::string& channel, const std::string& d
   return queue.Push(channel, data.data(), data.size(), utime);
 }
 
-// Tests that events come out as they went in, of all sizes, none and larger than a piece of memory among
-// them.
+// Tests that events of all sizes come out as they went in, including empty ones and ones larger than a piece
+// of memory.
 TEST(EventQueueTest, KeepsEventsAndOrder) {
   EventQueue queue(4u << 20);
   const std::vector<size_t> sizes{0, 1, 128, 300'000, 7, 262'000, 65'000, 0};
@@ -37,8 +37,8 @@ TEST(EventQueueTest, KeepsEventsAndOrder) {
   EXPECT_TRUE(queue.Take().empty());
 }
 
-// Tests that its memory never passes the limit, what is being written included, that what does not fit is
-// counted, and that there is room again when something has been written.
+// Tests that its memory, including what is being written, never exceeds the limit, that what does not fit is
+// counted, and that writing makes room again.
 TEST(EventQueueTest, IsBounded) {
   constexpr size_t kLimit = 1u << 20;
   EventQueue queue(kLimit);

@@ -69,8 +69,8 @@ class LoggerAppTest : public log::LogTest {
   std::vector<log_progress_t> progress_;
 };
 
-// Tests that every message is in the file, in order, and that progress is told in steps the plant can wait
-// for.
+// Tests that every message is in the file, in order, and that progress is reported in steps that the plant
+// can wait for.
 TEST_F(LoggerAppTest, RecordsEverything) {
   LoggerApp logger(bus_, clock_, SmallStack(), {file_, 0});
   SendStates(0, 999);
@@ -109,7 +109,7 @@ TEST_F(LoggerAppTest, RotatesBySize) {
   for (int64_t i = 0; i < 1000; ++i) EXPECT_EQ(all[static_cast<size_t>(i)], i);
 }
 
-// Tests that the logger ends by itself after a stop, once all whom it had seen have said farewell.
+// Tests that the logger ends by itself after a stop, once all processes that it has seen have said farewell.
 TEST_F(LoggerAppTest, EndsAfterEveryonesFarewell) {
   LoggerApp logger(bus_, clock_, SmallStack(), {file_, 0});
   process_status_t plant;
@@ -141,7 +141,7 @@ TEST(RotatedNameTest, NumbersBeforeTheExtension) {
   EXPECT_EQ(RotatedName("run", 1), "run-001");
 }
 
-// A clock whose wall time can be set while it runs; safe to read from any thread.
+// A clock whose wall time can be set while it runs; any thread may read it.
 class ClockThatIsSet : public bus::Clock {
  public:
   TimePoint Now() const override { return TimePoint(std::chrono::milliseconds(now_ms_)); }
@@ -155,8 +155,8 @@ class ClockThatIsSet : public bus::Clock {
   std::atomic<int64_t> utime_offset_ = 0;
 };
 
-// Tests that the time from arrival to write is no business of the wall clock: it is set by 10 s forwards, and
-// back, between arrivals and writes.
+// Tests that the time from arrival to write does not depend on the wall clock, which is set by 10 s forwards,
+// and back, between arrivals and writes.
 TEST_F(LoggerAppTest, LatencyWhileTheWallClockIsSet) {
   ClockThatIsSet clock;
   bus::InProcessBus bus(nullptr);  // stamps what it delivers with the wall clock
@@ -188,9 +188,9 @@ TEST_F(LoggerAppTest, LatencyWhileTheWallClockIsSet) {
   EXPECT_EQ(logger.Finish(), 0);
 }
 
-// Tests that a disk that is slower than the bus costs no more memory than was allowed: what has no room is
-// left out of the log, counted, and named as a fault, which goes when the disk has caught up. The disk is a
-// pipe that nobody reads for a while.
+// Tests that a disk slower than the bus takes no more memory than allowed: what has no room is left out of
+// the log, counted, and reported as a fault, which ends when the disk has caught up. The disk is a pipe that
+// nobody reads for a while.
 TEST_F(LoggerAppTest, SlowDisk) {
   ASSERT_EQ(mkfifo(file_.c_str(), 0600), 0);
   const int disk = open(file_.c_str(), O_RDWR | O_CLOEXEC);
@@ -210,7 +210,7 @@ TEST_F(LoggerAppTest, SlowDisk) {
   EXPECT_GT(faults[0].value, 5000);
   EXPECT_LT(faults[0].value, 20'000);
 
-  // The disk is read at last, until the logger has closed it.
+  // The disk is finally read, until the logger has closed it.
   std::vector<uint8_t> bytes;
   std::thread reader([&] {
     std::vector<uint8_t> buffer(1 << 16);
@@ -235,8 +235,8 @@ TEST_F(LoggerAppTest, SlowDisk) {
   std::filesystem::remove(file_);
   std::ofstream(file_, std::ios::binary)
       .write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
-  // The oldest are all there, without a gap, and as many as were not counted; the logger's own reports on its
-  // progress, one to 16 states, count too.
+  // The oldest are all there, without a gap, and exactly as many as were not counted as lost; the logger's
+  // own progress reports, one for 16 states, count too.
   const std::vector<int64_t> ticks = StateTicks(file_);
   EXPECT_GE(static_cast<double>(ticks.size()) + faults[0].value, 20'000);
   EXPECT_LE(static_cast<double>(ticks.size()) + faults[0].value, 20'000 * 17.0 / 16 + 10);

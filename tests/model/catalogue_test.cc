@@ -1,4 +1,4 @@
-// How the catalogue is put together from what the effects' files add.
+// How the catalogue is assembled from the effects' files.
 #include "model/effects/catalogue.h"
 
 #include <gmock/gmock.h>
@@ -44,13 +44,13 @@ TEST(Catalogue, IsOrderedById) {
   EXPECT_EQ(catalogue.Find("pump.d"), nullptr);
 }
 
-// Tests that an id that is there twice is an error, wherever the two stand.
+// Tests that a duplicate id is an error, wherever the two stand.
 TEST(Catalogue, RefusesAnIdThatIsThereTwice) {
   EXPECT_THAT(ErrorOf({Entry("pump.a"), Entry("arm.c"), Entry("pump.a")}),
               HasSubstr("effect \"pump.a\" was added twice"));
 }
 
-// Tests that an entry that could not work is refused, with the effect and what it needs.
+// Tests that an entry that could not work is refused, naming the effect and what it lacks.
 TEST(Catalogue, RefusesEntriesThatCannotWork) {
   using model::Role;
   const auto changed = [](const std::function<void(model::CatalogueEntry*)>& change) {

@@ -1,4 +1,4 @@
-// Cases that have a solution on paper.
+// Cases with a solution on paper.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -59,8 +59,8 @@ TEST_P(ClosedForm, DrivenShaftCompresses) {
   }
 }
 
-// Tests that a shaft that is driven slowly turns the pump through the fluid: once D dp is above T_s, the pump
-// follows at theta' = (c/D) alpha' less leakage, and dp settles at -(T_s + b theta')/D.
+// Tests that a slowly driven shaft turns the pump through the fluid: once D dp exceeds T_s, the pump follows
+// at theta' = (c/D) alpha' less leakage, and dp settles at -(T_s + b theta')/D.
 TEST_P(ClosedForm, DrivenShaftTurnsThePump) {
   model::ModelDescription model = Table1Model();
   model.parameters.c_E = model.parameters.c_I = 0;
@@ -75,8 +75,8 @@ TEST_P(ClosedForm, DrivenShaftTurnsThePump) {
   EXPECT_NEAR(m.p2 - m.p1, -(4 + 0.01455 * speed) / 0.00796, 2);
 }
 
-// Tests that a free arm under gravity alone, with the bypass open, is a pendulum: its energy is kept and its
-// first quarter of small motion about the bottom takes pi/2 sqrt(J_a/mgl).
+// Tests that a free arm under gravity alone, with the bypass open, is a pendulum: its energy is kept, and a
+// quarter period of small motion about the bottom takes pi/2 sqrt(J_a/mgl).
 TEST_P(ClosedForm, Pendulum) {
   model::ModelDescription model = Table1Model();
   model.parameters.mgl = 562;
@@ -90,8 +90,8 @@ TEST_P(ClosedForm, Pendulum) {
   EXPECT_NEAR(actuator.Measure().arm_speed, -0.01 * std::sqrt(562 / 23.3), 1e-6);
 }
 
-// Tests that the clamped arm stands where it was put, and its volumes are those of that angle: side 1 is
-// smaller, so its pressure rises faster under the same flow.
+// Tests that the clamped arm stays where it was put, with the volumes of that angle: side 1 is smaller, so
+// its pressure rises faster under the same flow.
 TEST_P(ClosedForm, ClampedAwayFromMidstroke) {
   model::ModelDescription model = Table1Model();
   model.parameters.c_E = model.parameters.c_I = 0;

@@ -83,7 +83,7 @@ TEST(EffectDerivatives, EqualDifferenceQuotients) {
   }
 }
 
-// Tests that some parameter of each effect does something.
+// Tests that each effect has a parameter that matters.
 TEST(EffectDerivatives, AreNotAllZero) {
   for (const model::EffectInfo& info : model::EffectCatalogue()) {
     if (info.id == "amp.delay" || info.id == "sensor.sign") continue;
@@ -99,8 +99,8 @@ TEST(EffectDerivatives, AreNotAllZero) {
   }
 }
 
-// Tests that a fit can start where an effect vanishes: with every parameter that may be 0 at 0, and the
-// pressures alike, all is finite.
+// Tests that a fit can start where an effect vanishes: with every parameter that may be 0 at 0, and equal
+// pressures, all is finite.
 TEST(EffectDerivatives, AreFiniteWhereTheEffectVanishes) {
   for (const model::EffectInfo& info : model::EffectCatalogue()) {
     if (info.id == "amp.delay") continue;

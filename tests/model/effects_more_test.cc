@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kStiffness = 247000 / 3.16;  // beta/V_ms, psi/in^3
 
-// The pump sticks at both sides' pressure, and nothing leaks but through what the test adds.
+// The pump sticks at equal pressures on both sides, and nothing leaks except through what the test adds.
 model::ModelDescription Sealed(model::EffectDescription effect, double c_E = 0) {
   model::ModelDescription model = Table1Model({std::move(effect)});
   model.parameters.c_E = c_E;
@@ -50,8 +50,8 @@ model::Terms<double> TermsAt(const model::Equations& equations, const std::vecto
   return x;
 }
 
-// Tests that the pressure difference of a pump at rest falls as an orifice lets it: its root falls evenly, at
-// k beta/V.
+// Tests that the pressure difference of a pump at rest falls as an orifice allows: its square root falls
+// linearly, at k beta/V.
 TEST(TurbulentLeakage, RootFallsEvenly) {
   for (const double sign : {1.0, -1.0}) {
     Rig rig(Sealed({"pump.turbulent_leakage", {{"k", 2e-5}}, {}}), HeldAt(600));
@@ -76,7 +76,7 @@ TEST(TurbulentLeakage, SeesThePumpsPressures) {
   EXPECT_NEAR(x.cross_flow, 2e-5 * std::sqrt(400), 1e-8);
 }
 
-// Tests that pressure above `set` flows off with the time constant V/(beta conductance), and that what is
+// Tests that pressure above `set` flows off with the time constant V/(beta conductance), and that pressure
 // below stays.
 TEST(Relief, OpensAboveSet) {
   const model::EffectDescription relief = {"valve.relief", {{"set", 300}, {"conductance", 1e-4}}, {}};
@@ -89,7 +89,7 @@ TEST(Relief, OpensAboveSet) {
     below.Advance(0, 0.1);
     EXPECT_EQ(below.Measure().p2, 299) << Name(integrator);
   }
-  // The side that is pumped up opens just where it passes `set`, and only it.
+  // The side that is pumped up opens just where it passes `set`, and it alone.
   Rig pumped(Sealed(relief), HeldAt(250));
   double before = 0;
   for (int tick = 1; pumped.simulation->mode().effects[1] == 0; ++tick) {
@@ -196,8 +196,8 @@ TEST(SpeedTorqueLimit, LimitsDrivingOnly) {
   }
 }
 
-// Tests that above no_load_speed there is no torque to drive with, and that a torque which is asked for
-// through a lag meets the limit on its way up and leaves it on its way down.
+// Tests that above no_load_speed there is no driving torque, and that a torque requested through a lag meets
+// the limit on its way up and leaves it on its way down.
 TEST(SpeedTorqueLimit, BeyondNoLoadSpeedAndBehindALag) {
   Rig rig(Table1Model({{"motor.speed_torque_limit", {{"no_load_speed", 200}}, {}}, Lag(0.05)}), Bypassed());
   std::set<int> positions;
@@ -231,7 +231,7 @@ TEST(SpeedTorqueLimit, BeyondNoLoadSpeedAndBehindALag) {
   EXPECT_GT(margin[4], 0);
   EXPECT_DOUBLE_EQ(rate[model::kMotorSpeed], -(4 + 0.01455 * 300) / 0.03);
 
-  // Back: to the line when the pump has slowed down, to no limit when torque is asked for against the speed.
+  // Back: to the line when the pump has slowed down, to no limit when the requested torque opposes the speed.
   const model::Mode beyond = mode;
   state[model::kMotorSpeed] = 199;
   equations.Rates(0, 5, mode, state, rate, margin);
@@ -247,7 +247,7 @@ TEST(SpeedTorqueLimit, BeyondNoLoadSpeedAndBehindALag) {
   EXPECT_EQ(mode.effects[1], 0);
 }
 
-// Tests that what is read follows the pressure with a time constant, and that the gain acts on what is read.
+// Tests that the reading follows the pressure with a time constant, and that the gain acts on the reading.
 TEST(PressureLag, FollowsItsClosedForm) {
   const double tau = 0.02, k = kStiffness * 1e-4;
   model::ModelDescription model = Sealed({"sensor.pressure_lag", {{"tau", tau}}, {}}, 1e-4);
@@ -279,8 +279,8 @@ TEST(PressureLag, EachSideHasItsOwn) {
   EXPECT_EQ(read.p2, 400);
 }
 
-// Tests that without friction the motor's energy is the work of its torque less the magnets', and that at
-// rest friction has to hold the cogging torque too.
+// Tests that without friction the motor's energy is the work of its torque less that of the magnets, and that
+// at rest friction has to hold the cogging torque too.
 TEST(Cogging, IsConservativeAndHoldsAtRest) {
   const double A = 3, n = 7, phase = 0.4;
   model::ModelDescription model =
@@ -320,7 +320,7 @@ TEST(FlowRipple, PumpsTheVolumeOfItsAngle) {
 }
 
 // Tests that a side below p3 - cracking fills with the time constant V/(beta conductance), and that the
-// valves replace the ideal ones: near to them when they open at once and pass much, and never beside them.
+// valves replace the ideal ones: close to them when they open at once and pass much, and never in addition.
 TEST(Check, FillsFromBelowCracking) {
   for (const model::Integrator integrator : kIntegrators) {
     model::Actuator actuator(Sealed({"valve.check", {{"cracking", 30}, {"conductance", 1e-4}}, {}}),
@@ -360,8 +360,8 @@ TEST(AccumulatorStiffness, RisesWithWhatReturns) {
   }
 }
 
-// Tests that no fluid is lost with valves that open and close, V/beta (p1 + p2) + p3/stiffness stays; that a
-// side whose valve is open is at p3, and none is below it.
+// Tests that valves that open and close lose no fluid, so that V/beta (p1 + p2) + p3/stiffness stays; that a
+// side whose valve is open is at p3, and that none is below it.
 TEST(AccumulatorStiffness, LosesNoFluid) {
   const double k = 5e3;
   for (const bool bypass : {false, true}) {
@@ -414,7 +414,7 @@ TEST(AccumulatorStiffness, HoldsBothSidesOfTheBypass) {
   EXPECT_NEAR((rate[model::kP1] + rate[model::kP2]) / kStiffness + rate[4] / 5e3, 0, 1e-12);
 }
 
-// Tests that one channel is inverted, offset included, and no other.
+// Tests that one channel is inverted, including its offset, and no other.
 TEST(Sign, InvertsOneChannel) {
   const std::vector<std::pair<std::string, int>> signals = {
       {"motor_speed", 0}, {"motor_angle", 1}, {"arm_angle", 2}, {"p1", 4}, {"p2", 5}};
@@ -437,8 +437,8 @@ TEST(Sign, InvertsOneChannel) {
   }
 }
 
-// Tests that a channel reads what it read `delay` earlier, and its first value before that: through switches
-// and jumps of the voltage, and between ticks.
+// Tests that a channel gives its reading of `delay` earlier, and its first value before that: through
+// switches and jumps of the voltage, and between ticks.
 TEST(Skew, ReadsWhatWasThen) {
   const double delay = 3.1e-3;
   const auto advance = [](model::Actuator* actuator, double until) {  // a voltage that jumps every 2 ms
@@ -515,7 +515,7 @@ TEST(StateHistory, InterpolatesWithDerivatives) {
   }
 }
 
-// Tests an arm on a spring and damper behind a locked actuator against an integration of its own: the trapped
+// Tests an arm on a spring and damper behind a locked actuator against a separate integration: the trapped
 // fluid gives dp = beta log((1 - c a/V)/(1 + c a/V)) in closed form.
 TEST(Flexure, ArmSwingsOnItsSpring) {
   const double K = 6000, B = 60, c = 1.83 * 1.83 * 2.20 / 2, mgl = 562;
@@ -570,7 +570,7 @@ TEST(Flexure, StartsAtRest) {
   EXPECT_NEAR(rate[6], 0, 1e-12);
 }
 
-// Tests that an effect which counts for nothing changes nothing.
+// Tests that an effect of zero size changes nothing.
 TEST(MoreEffects, VanishWithTheirSize) {
   const std::vector<model::EffectDescription> none = {
       {"accumulator.stiffness", {{"stiffness", 0}}, {}},

@@ -1,5 +1,5 @@
-// The table of docs/effects.md, from the catalogue: `effects_table` fails when the document has another, and
-// `effects_table --write` writes it.
+// The table of docs/effects.md, from the catalogue: `effects_table` fails when the document differs,
+// `effects_table --write` updates it.
 #include <fstream>
 #include <iostream>
 #include <sstream>
@@ -37,7 +37,7 @@ std::string Table() {
   return table;
 }
 
-// The document with the table between its two marks; "" where it has no marks.
+// The document with the table between its two marks; "" without marks.
 std::string WithTable(const std::string& document) {
   const size_t begin = document.find(kBegin), end = document.find(kEnd);
   if (begin == std::string::npos || end == std::string::npos || end < begin) return "";

@@ -55,7 +55,7 @@ TEST(AmpLag, LimitsTheTorqueItself) {
   EXPECT_EQ(rig.simulation->mode().effects[0], 0);
 }
 
-// Tests that an effect which counts for nothing changes nothing.
+// Tests that an effect of zero size changes nothing.
 TEST(Effects, VanishWithTheirSize) {
   const std::vector<model::EffectDescription> none = {Stribeck(0, 3),
                                                       {"pump.pressure_friction", {{"f", 0}}, {}},
@@ -86,7 +86,7 @@ TEST(PressureFriction, IsThePapersF) {
   EXPECT_LT(a.Measure().p2, without.Measure().p2 - 10);
 }
 
-// Tests that a delayed command acts exactly `delay` later, also when several are under way.
+// Tests that a delayed command acts exactly `delay` later, even when several are under way.
 TEST(AmpDelay, ShiftsTheCommand) {
   for (const model::Integrator integrator : kIntegrators) {
     model::Actuator plain(Table1Model(), Held(model::Shaft::kClamped, integrator));
@@ -106,8 +106,7 @@ TEST(AmpDelay, ShiftsTheCommand) {
   }
 }
 
-// Tests that seal friction holds the arm until the torque on it passes `coulomb`, and never moves it by
-// itself.
+// Tests that seal friction holds the arm until its torque exceeds `coulomb`, and never moves it by itself.
 TEST(SealFriction, SticksAndSlips) {
   model::ModelDescription model =
       Table1Model({{"actuator.seal_friction", {{"coulomb", 600}, {"viscous", 0}}, {}}});
@@ -163,7 +162,7 @@ TEST(FrictionAsymmetry, DiffersByDirection) {
   EXPECT_NEAR(speed_at(-8), -(8 - 3) / (0.01455 - 0.005), 1e-4);
 }
 
-// Tests that leakage drifts: with the bypass open the common pressure leaks off at a rate that grows.
+// Tests that leakage drifts: with the bypass open the common pressure leaks off at a growing rate.
 TEST(Warming, LeakageDrifts) {
   model::ActuatorOptions options = Held(model::Shaft::kClamped);
   options.bypass = true;
@@ -210,7 +209,7 @@ TEST(Warming, ViscousFrictionDrifts) {
   EXPECT_NEAR(actuator.Measure().motor_speed, speed, 1e-5);
 }
 
-// Tests that a gain is in what is measured only.
+// Tests that a gain affects measurements only.
 TEST(PressureGain, ScalesTheMeasurement) {
   model::Actuator plain(Table1Model(), Held(model::Shaft::kClamped));
   model::Actuator with(Table1Model({{"sensor.pressure_gain", {{"gain", 0.02}}, {}}}),
@@ -233,7 +232,7 @@ TEST(QuadraticDrag, SteadySpeed) {
   }
 }
 
-// Tests that offsets are in what is measured and not in what happens.
+// Tests that offsets affect measurements and not the motion.
 TEST(PressureOffset, ShiftsTheMeasurementOnly) {
   model::Actuator plain(Table1Model(), Held(model::Shaft::kClamped));
   model::Actuator with(Table1Model({{"sensor.pressure_offset", {{"p1", 3}, {"p2", -2}}, {}}}),

@@ -1,4 +1,4 @@
-// What the model refuses, and what it says.
+// What the model refuses, and how its errors read.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -48,8 +48,7 @@ TEST(Errors, LineTakesVolume) {
   EXPECT_THAT(ErrorOfBuilding(Table1Model({Wave(300, 0.2, 0.05)}), options), HasSubstr("|alpha| < 0.686"));
 }
 
-// Tests that a free arm that is driven out of the volume stops with an error that names angle, limit, time
-// and state.
+// Tests that a free arm driven out of its volume stops with an error that names angle, limit, time and state.
 TEST(Errors, FreeArmRunsOut) {
   for (const model::Integrator integrator : kIntegrators) {
     model::Actuator actuator(Table1Model(), Held(model::Shaft::kFree, integrator));
@@ -72,8 +71,8 @@ TEST(Errors, FreeArmRunsOutInOneCall) {
   }
 }
 
-// Tests that numbers which overflow end in an error with time and state, on every path, and not in a silent
-// wrong number.
+// Tests that overflowing numbers end, on every path, in an error with time and state, not in a silently wrong
+// number.
 TEST(Errors, Overflow) {
   model::ModelDescription model = Table1Model();
   model.parameters.k_1 = 1e300;
@@ -101,8 +100,8 @@ TEST(Errors, DrivenMotion) {
   EXPECT_THAT(ErrorOfBuilding(Table1Model(), options), HasSubstr("continuous"));
 }
 
-// Tests that a voltage that is not a number is an error with time and state, and that the actuator stays as
-// it was.
+// Tests that a voltage that is not a number is an error with time and state, and that the actuator stays
+// unchanged.
 TEST(Errors, NotANumber) {
   for (const model::Integrator integrator : kIntegrators) {
     for (const double voltage : {std::nan(""), std::numeric_limits<double>::infinity()}) {
@@ -126,7 +125,7 @@ TEST(Errors, Time) {
   EXPECT_THAT(ErrorOf([&] { actuator.Advance(2.5, std::nan("")); }), HasSubstr("cannot advance"));
 }
 
-// Tests that impossible models are refused by parameter.
+// Tests that impossible models are refused, naming the parameter.
 TEST(Errors, Parameters) {
   model::ModelDescription model = Table1Model();
   model.parameters.J = 0;

@@ -35,7 +35,7 @@ TEST(TimeJustPast, BracketsTheZero) {
   }
 }
 
-// Tests that a margin which is 0 at the start and falls at once gives an event at the start, and one that
+// Tests that a margin that is 0 at the start and falls at once gives an event at the start, and one that
 // first rises gives the later zero.
 TEST(TimeJustPast, StartsOnTheBoundary) {
   EXPECT_LE(model::TimeJustPast(0, 0, 1, -1, kWidth, [](double t) { return -t; }), kWidth);
@@ -43,7 +43,7 @@ TEST(TimeJustPast, StartsOnTheBoundary) {
   EXPECT_NEAR(model::TimeJustPast(0, 0, 1, arch(1), kWidth, arch), 0.4, kWidth);
 }
 
-// Tests that the search ends where the clock's own resolution is coarser than the width.
+// Tests that the search ends where the clock's resolution is coarser than the width.
 TEST(TimeJustPast, EndsAtTheClocksResolution) {
   const double start = 1e6;
   const auto g = [&](double t) { return start + 0.5 - t; };
@@ -51,7 +51,7 @@ TEST(TimeJustPast, EndsAtTheClocksResolution) {
   EXPECT_NEAR(t, start + 0.5, 1e-9);
 }
 
-// Tests that a cubic which dips below 0 between two good ends is seen at its least, and others are not.
+// Tests that a cubic that dips below 0 between two good ends is seen at its minimum, and that others are not.
 TEST(DipWithin, FindsTheLeast) {
   constexpr double kNever = std::numeric_limits<double>::infinity();
   const auto ends = [](double h, double t_least, double g_least) {  // g = g_least + (t - t_least)^2

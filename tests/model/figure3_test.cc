@@ -10,7 +10,7 @@ namespace {
 
 class Figure3 : public ::testing::TestWithParam<model::Integrator> {};
 
-// Tests that peak, stick and second slip come where an independent integration has them.
+// Tests that peak, stick and second slip come at the times of an independent integration.
 TEST_P(Figure3, PeakStickAndSlip) {
   Rig rig(Table1Model(), Held(model::Shaft::kClamped, GetParam()));
   double peak_p2 = 0, peak_dp = 0, peak_time = 0, stick_time = 0, slip_time = 0, slip_dp = 0;
@@ -38,7 +38,7 @@ TEST_P(Figure3, PeakStickAndSlip) {
   EXPECT_NEAR(slip_dp, 753.8, 0.1);
 }
 
-// Tests that while the pump sticks it stands exactly still.
+// Tests that the pump stands exactly still while it sticks.
 TEST_P(Figure3, StickIsStill) {
   Rig rig(Table1Model(), Held(model::Shaft::kClamped, GetParam()));
   rig.simulation->Advance(2.5, 0.3);

@@ -51,8 +51,8 @@ StickSlip Observe(const model::ModelDescription& model, double torque, double du
   return seen;
 }
 
-// Static friction above kinetic at rest only: the excess is gone at 0.01 rad/s, where the pump has hardly
-// moved.
+// Static friction exceeds kinetic friction at rest only: the excess is gone at 0.01 rad/s, where the pump has
+// hardly moved.
 model::ModelDescription WithStatic(double static_torque) {
   return Table1Model({Stribeck(static_torque / 4.0 - 1, 1e-4)});
 }
@@ -87,7 +87,7 @@ TEST(Table1, SlipsAgainAtTheBalance) {
   }
 }
 
-// Tests that a torque below friction moves nothing at all, for ever.
+// Tests that a torque below friction never moves anything.
 TEST(Table1, HoldsBelowFriction) {
   model::Actuator actuator(Table1Model(), Held(model::Shaft::kFree));
   actuator.Advance(3.999 / 4.0, 100);

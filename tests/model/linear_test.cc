@@ -93,7 +93,7 @@ TEST(NaturalFrequency, LineWave) {
   EXPECT_NEAR(-lambda.real() / std::abs(lambda), 0.05, 1e-9);
 }
 
-// Tests that the slow mode of the plant stays in place when the line is added (the volumes add up).
+// Tests that adding the line leaves the plant's slow mode in place (the volumes add up).
 TEST(NaturalFrequency, LineWaveKeepsTheSlowMode) {
   const model::Equations equations(Table1Model({Wave(300, 0.2, 0.05)}), Held(model::Shaft::kClamped));
   const auto lambda = Oscillation(LinearA(equations, Slip(false), Start(equations)), 100);

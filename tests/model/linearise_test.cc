@@ -54,8 +54,8 @@ std::vector<double> Rates(const model::Equations& equations, double voltage, con
   return rate;
 }
 
-// Compares all four matrices at one point with central differences. Each error counts against the size of its
-// row when every input moves by its scale: differences see no less.
+// Compares all four matrices at one point with central differences. Each error counts relative to its row's
+// size when every input moves by its scale: differences resolve no less.
 void ExpectDifferenceQuotients(const model::Equations& equations, double voltage, const model::Mode& mode) {
   const int n = equations.states();
   const std::vector<double> state = Somewhere(equations, mode);
@@ -180,7 +180,7 @@ TEST(Linearise, VoltageActsWithinTheLimitOnly) {
   }
 }
 
-// Tests that what a switch holds has no slope: the pump that sticks, the side whose valve is open, and both
+// Tests that what a switch holds has no slope: the sticking pump, the side whose valve is open, and both
 // sides when the bypass connects them.
 TEST(Linearise, HeldStatesHaveNoSlope) {
   for (const bool bypass : {false, true}) {
@@ -216,8 +216,8 @@ TEST(Linearise, VoltageActsThroughTheLag) {
   }
 }
 
-// Tests that with amp.delay the linear model is that of a voltage which has been held for longer than the
-// delay, whatever was commanded before: what lies behind the delay.
+// Tests that with amp.delay the linear model is that of a voltage held for longer than the delay, whatever
+// was commanded before: it shows what follows the delay.
 TEST(Linearise, TakesADelayedVoltageAsTheOneThatActs) {
   const model::EffectDescription delay = {"amp.delay", {{"delay", 0.01}}, {}};
   const model::Equations plain(Table1Model(), Held(model::Shaft::kClamped));
@@ -240,7 +240,7 @@ TEST(Linearise, TakesADelayedVoltageAsTheOneThatActs) {
   EXPECT_DOUBLE_EQ(Linearise(both, 0, 5, Slip(), with_lag.data()).B[4], 4 / 0.002);
 }
 
-// Tests C and the outputs: what the transducers make of the pressures, and an arm that is not a state.
+// Tests C and the outputs: the transducers' readings of the pressures, and an arm that is not a state.
 TEST(Linearise, ReadsTheSensors) {
   const model::Equations equations(Table1Model({{"sensor.pressure_gain", {{"gain", 0.05}}, {}},
                                                 {"sensor.pressure_offset", {{"p1", 3}, {"p2", -2}}, {}}}),
@@ -286,7 +286,7 @@ TEST(Linearise, HasTheClosedFormsFrequencyResponse) {
 }
 
 // Tests that the linear model goes where the actuator goes: clamped, the equations of one mode are linear, so
-// the exponential series is exact for as long as no switch changes.
+// the exponential series is exact until a switch changes.
 TEST(Linearise, GoesWhereTheActuatorGoes) {
   model::ActuatorOptions options = Held(model::Shaft::kClamped);
   options.initial_pressure = 500;

@@ -39,7 +39,7 @@ inline model::ActuatorOptions Held(model::Shaft shaft,
   return options;
 }
 
-// Equations in motion, with the mode in sight.
+// Equations in motion, with a visible mode.
 struct Rig {
   Rig(const model::ModelDescription& model, const model::ActuatorOptions& options)
       : equations(model, options),

@@ -1,5 +1,5 @@
-// The simulated plant and the model that is fitted run through one mode machine: they agree through every kind of
-// switch, whatever steps between them.
+// The simulated plant and the fitted model run through one mode machine: they agree through every kind of
+// switch, whatever the steps between.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// What is known of parameters and effects.
+// What is known about parameters and effects.
 #include "model/terms/parameter_info.h"
 
 #include <gtest/gtest.h>
@@ -27,7 +27,7 @@ TEST(BaseParameters, AreComplete) {
   EXPECT_EQ(names.size() * sizeof(double), sizeof(model::Parameters));
 }
 
-// Tests that the catalogue is ordered, each entry says all it should, and is found by its id.
+// Tests that the catalogue is ordered, and that each entry is complete and is found by its id.
 TEST(EffectCatalogue, IsComplete) {
   std::string previous;
   for (const model::EffectInfo& effect : model::EffectCatalogue()) {

@@ -209,7 +209,7 @@ INSTANTIATE_TEST_SUITE_P(Cases, Paths, ::testing::ValuesIn(Cases()),
 INSTANTIATE_TEST_SUITE_P(Cases, SymmetricPaths, ::testing::ValuesIn(SymmetricCases()),
                          [](const auto& test) { return test.param.name; });
 
-// Tests that the automatic choice leaves the explicit method when stability would hold it back, and loses no
+// Tests that the automatic choice leaves the explicit method where stability would slow it down, and loses no
 // accuracy.
 TEST(Auto, TakesCvodeWhereTheModelIsStiff) {
   const model::ModelDescription stiff = Table1Model({Wave(2e5, 0.3, 5)});

@@ -15,7 +15,7 @@
 namespace hydro::testing {
 namespace {
 
-// How the actuator is held in a test.
+// How a test holds the actuator.
 struct Holding {
   std::string name;
   model::Shaft shaft = model::Shaft::kClamped;
@@ -46,7 +46,7 @@ model::Stimulus LevelsFor(const Holding& holding, size_t samples = 200) {
   return stimulus;
 }
 
-// Above p_3, so that the start decides.
+// Above p_3, so that the start matters.
 model::StartState SomeStart(double p1 = 150, double p2 = 180) { return {0, 1.5, p1, p2, 0.1, 0.05}; }
 
 model::ResponseOptions Exact(double tolerance) {
@@ -243,7 +243,7 @@ TEST(Response, DerivativesWithAnAccumulatorThatMoves) {
                     1e-5, "accumulator.stiffness");
 }
 
-// Tests that a pump which sticks from the start does not drift off with a slightly different start.
+// Tests that a pump that sticks from the start does not drift off with a slightly different start.
 TEST(Response, StickingAtTheStart) {
   model::Stimulus stimulus = LevelsFor(kHoldings[0], 50);
   std::fill(stimulus.voltage.begin(), stimulus.voltage.end(), 0.5);
@@ -258,14 +258,14 @@ TEST(Response, StickingAtTheStart) {
   EXPECT_GT(moving.derivatives[0][0].back(), 0);
 }
 
-// Tests that a model far too stiff to be followed is an error, soon.
+// Tests that a model far too stiff to be followed soon ends in an error.
 TEST(Response, TooStiffIsAnError) {
   model::ModelDescription model = Table1Model();
   model.parameters.beta = 1e16;
   EXPECT_THROW(Respond(model, LevelsFor(kHoldings[0]), SomeStart(), {}, {}), model::ModelError);
 }
 
-// Tests that it is the actuator's own angle that must leave both volumes above 0, also where the arm gives.
+// Tests that it is the actuator's own angle that must leave both volumes above 0, even where the arm flexes.
 TEST(Response, TheActuatorsAngleHasToStayWithinItsRange) {
   const model::ModelDescription model =
       Table1Model({{"arm.flexure", {{"stiffness", 300}, {"damping", 3000}}, {}}});

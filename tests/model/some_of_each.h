@@ -1,5 +1,4 @@
-// Every effect of the catalogue, of the size that its entry gives as an example, for tests that go through
-// the catalogue.
+// Every effect of the catalogue at the example size of its entry, for tests that go through the catalogue.
 #pragma once
 
 #include <map>
@@ -10,8 +9,8 @@
 
 namespace hydro::testing {
 
-// All but amp.delay, which remembers: its test is another. The motor turns little within a period, so that
-// differences see the slope.
+// All but amp.delay, which has a memory and a test of its own. The motor turns little within a period, so
+// that differences see the slope.
 inline const std::map<std::string, model::EffectDescription>& SomeOfEach() {
   static const std::map<std::string, model::EffectDescription> effects = [] {
     std::map<std::string, model::EffectDescription> by_id;

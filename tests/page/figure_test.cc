@@ -29,7 +29,7 @@ size_t Count(const std::string& text, const std::string& what) {
   return count;
 }
 
-// Whether tags are closed in the order in which they were opened: what makes a browser refuse an SVG.
+// Whether tags are closed in the order in which they were opened: otherwise a browser refuses an SVG.
 bool IsBalanced(const std::string& xml) {
   std::vector<std::string> open;
   for (size_t i = 0; (i = xml.find('<', i)) != std::string::npos;) {
@@ -81,8 +81,8 @@ void ExpectRefused(const Figure& figure, const std::string& why) {
   }
 }
 
-// Tests that a figure becomes a well-formed SVG document with all its texts, escaped, and without ids, which two pictures
-// in one page might share.
+// Tests that a figure becomes a well-formed SVG document with all its texts, escaped, and without ids, which
+// could clash between two pictures on a page.
 TEST(FigureSvg, SvgHoldsTheFigure) {
   const std::string svg = FigureFile(SmallFigure(), "fig3-noise");
   EXPECT_TRUE(IsBalanced(svg));
@@ -103,7 +103,7 @@ TEST(FigureSvg, IsDeterministic) {
   EXPECT_EQ(svg, FigureFile(SmallFigure(), "a"));
 }
 
-// Tests that logarithmic axes show positive values only, and that a short one still has labelled ticks.
+// Tests that logarithmic axes show positive values only, and that even a short one has labelled ticks.
 TEST(FigureSvg, LogarithmicAxis) {
   Figure figure = SmallFigure();
   figure.panels.resize(1);
@@ -147,7 +147,7 @@ TEST(FigureSvg, BadFiguresAreRefused) {
   ExpectRefused(figure, "viewBox");
 }
 
-// Tests that a drawing is taken as it is, with its caption below it.
+// Tests that a drawing is used as it is, with its caption below it.
 TEST(FigureSvg, DrawingGetsItsCaption) {
   Figure figure;
   figure.caption = "What is drawn";
@@ -159,7 +159,8 @@ TEST(FigureSvg, DrawingGetsItsCaption) {
   EXPECT_THAT(svg, HasSubstr("width=\"200\""));
 }
 
-// Tests that what lies beside the axes of a panel is drawn: bars, bands, names at ticks, and points with error bars.
+// Tests that everything that the axes of a panel can hold is drawn: bars, bands, names at ticks, and points
+// with error bars.
 TEST(FigureSvg, BarsBandsAndNames) {
   Panel panel;
   panel.x = {.label = "period, us", .logarithmic = true};
@@ -176,7 +177,8 @@ TEST(FigureSvg, BarsBandsAndNames) {
   EXPECT_EQ(Count(svg, "z\""), 1u);             // one bar: the second ends at NaN, the third nowhere
 }
 
-// Tests that panels side by side share their rows' heights, and that a key may reach over a panel without one.
+// Tests that panels side by side share their rows' heights, and that a key may extend over a panel without
+// one.
 TEST(FigureSvg, Columns) {
   Panel left;
   left.curves = {Line("measured", {0, 1}, {0, 1}, 0),
@@ -195,7 +197,7 @@ TEST(FigureSvg, Columns) {
   EXPECT_THROW(FigureElement({.caption = "", .panels = {left}, .columns = 0}, "x"), std::invalid_argument);
 }
 
-// Tests that coordinates stay within reason whatever the data are.
+// Tests that coordinates stay within reason whatever the data.
 TEST(FigureSvg, RunawayValues) {
   Panel panel;
   panel.y.min = -1;
@@ -205,7 +207,7 @@ TEST(FigureSvg, RunawayValues) {
   for (const char* bad : {"inf", "nan", "e+", "00000"}) EXPECT_THAT(svg, Not(HasSubstr(bad)));
 }
 
-// Tests that round numbers stand along an axis, within its range and with room between them.
+// Tests that an axis has round numbers within its range, with room between them.
 TEST(Ticks, RoundNumbers) {
   const auto texts = [](const AxisRange& range, double pixels) {
     std::string all;
@@ -233,7 +235,8 @@ TEST(Ticks, Numbers) {
   EXPECT_EQ(Pixels(-0.01), "0");
 }
 
-// Tests that a page is whole and needs nothing from elsewhere, and that one sheet covers screens, dark ones, and paper.
+// Tests that a page is complete and loads nothing from elsewhere, and that one sheet covers screens, dark
+// ones, and paper.
 TEST(HtmlPage, IsSelfContained) {
   const std::string page = HtmlPage("a < b", HtmlFigure(SmallFigure(), "x"));
   EXPECT_TRUE(page.starts_with("<!DOCTYPE html>"));
@@ -247,7 +250,7 @@ TEST(HtmlPage, IsSelfContained) {
   }
 }
 
-// Tests that a drawing's places and the texts for them are held against each other.
+// Tests that a drawing's places match the texts given for them.
 TEST(DrawingTemplate, FillsAllPlaces) {
   EXPECT_EQ(FillDrawing("<text>k = {{k}}, {{k}} {{n}}</text>", {{"k", "4"}, {"n", "<3"}}),
             "<text>k = 4, 4 &lt;3</text>");
@@ -255,8 +258,8 @@ TEST(DrawingTemplate, FillsAllPlaces) {
   EXPECT_THROW(FillDrawing("{{k}}", {{"k", "4"}, {"n", "3"}}), std::logic_error);
 }
 
-// Tests that thinning a long curve keeps the extremes of each pixel column, its ends and its gaps, and is
-// short.
+// Tests that thinning a long curve keeps the extremes of each pixel column, its ends and its gaps, and makes
+// it short.
 TEST(Thinning, KeepsExtremesEndsAndGaps) {
   constexpr int kPoints = 100000;
   std::vector<double> x;
@@ -306,7 +309,7 @@ TEST(Thinning, ShortCurvesAndPoints) {
   EXPECT_THAT(ThinPoints(x, y, pixels, pixels), ElementsAre(0, 1, 4));
 }
 
-// Tests that equal scales give one unit the same length on both axes, and that nothing given is cut off.
+// Tests that equal scales give one unit the same length on both axes, and that nothing is cut off.
 TEST(PanelGeometry, EqualScales) {
   Panel panel;
   panel.equal_scales = true;
@@ -321,7 +324,7 @@ TEST(PanelGeometry, EqualScales) {
   EXPECT_LE(geometry.y.min, -120);
 }
 
-// Tests that a label goes where nothing is drawn, and the next one not onto it.
+// Tests that a label goes where nothing is drawn, and the next one not on top of it.
 TEST(LabelPlacement, AvoidsCurvesAndLabels) {
   LabelPlacement placement({0, 0, 100, 100});
   placement.AddStroke(0, 10, 100, 10);

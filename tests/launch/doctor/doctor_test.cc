@@ -1,5 +1,4 @@
-// What the doctor makes of the kernel's texts. The rest of it, which reads them, is
-// tests/e2e/doctor_test.py's.
+// How the doctor interprets the kernel's texts. tests/e2e/doctor_test.py tests the part that reads them.
 #include "launch/doctor/doctor.h"
 
 #include <gmock/gmock.h>
@@ -29,7 +28,7 @@ std::string Table(const std::vector<std::string>& lines) {
   return text;
 }
 
-// A machine on which all is well for a stack of realtime.toml's kind on two hosts.
+// A machine in good order for a stack like realtime.toml on two hosts.
 class DoctorTest : public ::testing::Test {
  protected:
   DoctorTest() {
@@ -63,7 +62,7 @@ class DoctorTest : public ::testing::Test {
     return {};
   }
 
-  // The one problem there is, which is of `check`.
+  // The only problem, which must come from `check`.
   Finding OnlyProblem(const std::string& check) const {
     for (const Finding& finding : Diagnose(task_, facts_)) {
       EXPECT_EQ(finding.ok, finding.check != check) << finding.check << ": " << finding.found;
@@ -99,7 +98,7 @@ TEST_F(DoctorTest, AllIsWell) {
   EXPECT_THAT(FindingsText(findings), HasSubstr("all is well\n"));
 }
 
-// Tests that a problem comes with its cure in the text, and is counted.
+// Tests that a problem is counted and printed with its remedy.
 TEST_F(DoctorTest, ProblemsAreCounted) {
   facts_.swaps += "/swapfile file 1048572 0 -2\n";
   const std::vector<Finding> findings = Diagnose(task_, facts_);
@@ -198,7 +197,8 @@ TEST_F(DoctorTest, OpenNetwork) {
   EXPECT_THAT(OnlyProblem("ttl and hosts").cure, HasSubstr("--make-key"));
 }
 
-// Tests that limits are problems for those who ask for priorities, and may be replaced by capabilities.
+// Tests that limits are problems only for processes that want priorities, and that capabilities can replace
+// them.
 TEST_F(DoctorTest, RealTimeLimits) {
   facts_.rtprio_limit = 79;
   EXPECT_EQ(OnlyProblem("real-time priority").cure,
@@ -237,7 +237,7 @@ TEST_F(DoctorTest, Governor) {
   EXPECT_TRUE(Of("CPU governor").ok);
 }
 
-// Tests that a clock matters where there are several.
+// Tests that clocks matter only where there are several.
 TEST_F(DoctorTest, Clock) {
   EXPECT_THAT(Of("clock").found, HasSubstr("within 1.5 ms"));
   facts_.clock = ClockState::kUnsynchronised;
