@@ -13,7 +13,7 @@ import outcome
 import stack
 
 CODE = "unauthenticated_command"
-# Far above what wake-ups are late by here: no stale input is to be taken for an intruder's doing.
+# Far longer than wake-ups are late here: no stale input must be blamed on an intruder.
 PATIENT = ("--set", "limits.stale_input_s=2")
 
 
@@ -80,7 +80,7 @@ class AuthenticationTest(stack.TestCase):
         for state in acted:
             self.assertEqual(state.voltage, commanded[state.command_tick], state)
 
-    # Tests that a key changes nothing of a run: the log is that of hydro-sim, bit by bit, and holds plain messages.
+    # Tests that a key changes nothing in a run: the log is that of hydro-sim, bit by bit, and holds plain messages.
     def test_lockstep_is_identical(self):
         self.run_program("hydro-sim", stack.config("demo.toml"), "--duration", "1", "-o", self.path("sim.lcmlog"))
         launch = self.launch(stack.config("demo.toml"), "--time", "lockstep", "--duration", "1", *self.keyed, "--log",
@@ -89,7 +89,7 @@ class AuthenticationTest(stack.TestCase):
         self.assert_identical(self.path("sim.lcmlog"), self.path("stack.lcmlog"))
         self.assertEqual({f.code for f in event_log.Log(self.path("stack.lcmlog")).faults}, set())
 
-    # Tests that an intruder without the key who sends commands, states, stops, failures and faults is refused, counted
+    # Tests that the commands, states, stops, failures and faults of an intruder without the key are refused, counted
     # and named, while the run goes on as if nobody had sent anything: to the last bit, in lockstep.
     def test_intruder(self):
         options = ("--duration", "1.5", *self.keyed)
@@ -123,7 +123,7 @@ class AuthenticationTest(stack.TestCase):
                                for kind, changes in attacks] + rubbish:
                 intruder.send(kind, data)
                 sent["REFUSED_" + kind] += 1
-            # Never more under way than the receivers can hold.
+            # Never more in flight than the receivers can hold.
             self.wait_until(lambda: not launch.running or
                             sum(n for channel, n in look().items() if channel in sent) > sum(sent.values()) - 100,
                             "the logger keeps up")
@@ -138,7 +138,7 @@ class AuthenticationTest(stack.TestCase):
 
         sim, run = event_log.Log(self.path("sim.lcmlog")), event_log.Log(self.path("run.lcmlog"))
         for kind in event_log.NUMBERED:
-            # A repetition that was asked for is no difference.
+            # A requested repetition is no difference.
             def essence(messages):
                 return {m.sequence: m._replace(utime=0, session=0) for m in messages}
             self.assertEqual(essence(run.of(kind)), essence(sim.of(kind)), kind)
@@ -152,7 +152,7 @@ class AuthenticationTest(stack.TestCase):
         info = self.run_program("hydro-log", "info", self.path("run.lcmlog"))
         self.assertIn("REFUSED_HYDRO_MOTOR_COMMAND", info.stdout)
 
-    # Tests that a process with another key, or without one, never gets control: the plant does not even take it for
+    # Tests that a process with another key, or without one, never gets control: the plant does not even count it as
     # ready.
     def test_another_key(self):
         other = self.make_key("other")
@@ -168,8 +168,7 @@ class AuthenticationTest(stack.TestCase):
             for role in ("position_ctrl", "pressure_ctrl"):
                 run[role].end()
 
-    # Tests that a recording is refused, played into a later run, and into the run itself: whether it has the seals
-    # or not.
+    # Tests that a recording is refused, in a later run and in the run itself, with the seals or without.
     def test_recording(self):
         recorder, _ = self.recorder("wire.lcmlog")
         self.wait_until(lambda: os.path.exists(self.path("wire.lcmlog")), "the recorder is on the network")
@@ -180,7 +179,7 @@ class AuthenticationTest(stack.TestCase):
         recorder.wait()
         sealed = [e for e in event_log.read_events(self.path("wire.lcmlog")) if e.data[-40:-32] == b"hydroMAC"]
         self.assertGreater(len(sealed), 100)
-        # Both logs read alike, without the key; LCM's logger may have lost some.
+        # Both logs read alike without the key; LCM's logger may have lost some messages.
         rows = {}
         for name in ("wire.lcmlog", "plain.lcmlog"):
             self.run_program("hydro-log", "export", self.path(name), "-o", self.path(name + ".csv"))
@@ -219,7 +218,7 @@ class AuthenticationTest(stack.TestCase):
         self.assert_voltages_are_the_loops_own(run)
         self.assertEqual(len({s.session for s in run.states}), 1)
 
-    # Tests that a pressure loop that was killed and is started again takes over, and a recording of the first does not.
+    # Tests that a pressure loop that was killed and restarted takes over, and that a recording of the first does not.
     def test_restart(self):
         run = self.stack(stack.config("demo.toml"), "--time", "realtime", "--duration", "0", *self.keyed, *PATIENT)
         log = run.start_all(self.path("run.lcmlog"))
@@ -235,7 +234,7 @@ class AuthenticationTest(stack.TestCase):
         run["plant"].send(15)
         self.assertEqual(run["plant"].wait(), 0, run["plant"].report())
 
-    # Tests that a key file that is missing, readable for others or no key stops a program at once, naming the file.
+    # Tests that a key file that is missing, readable by others or not a key stops a program at once, naming the file.
     def test_bad_key_files(self):
         def check(name, found):
             for program in ("hydro-plant", "hydro-pressure-ctrl", "hydro-launch"):
@@ -256,8 +255,8 @@ class AuthenticationTest(stack.TestCase):
         none = self.run_program("hydro-launch", stack.config("demo.toml"), "--make-key", expect=2)
         self.assertIn("bus.key_file", none.stderr)
 
-    # Tests that a plant on a network that others reach says that it has no key, and no other program does. In a
-    # network of its own: nothing leaves this machine.
+    # Tests that a plant on a network that others can reach says that it has no key, and that no other program does. In
+    # a network of its own: nothing leaves this machine.
     def test_warns_of_open_network(self):
         unshare = shutil.which("unshare")
         if unshare is None or os.system(f"{unshare} -n true 2>/dev/null") != 0:

@@ -6,7 +6,7 @@ import event_log
 import outcome
 import stack
 
-# Programs that take a CONFIG, with options that make each do something. FILE stands for an output file.
+# Programs that take a CONFIG, with options that make each of them work. FILE stands for an output file.
 CONFIG_PROGRAMS = {
     "hydro-plant": ["--log", "FILE"],
     "hydro-driver": ["--log", "FILE"],
@@ -24,7 +24,7 @@ LOG_VERBS = {
     "summary": ["LOG", "--json", "FILE"],
 }
 
-# What is done to demo.toml (text to replace, replacement), and what the message must name beside the file.
+# Changes to demo.toml (text to replace, replacement), and what the message must name besides the file.
 CONFIGS = [
     ("unknown key", "rate_hz = 1000 ", "rate_hz = 1000\nrate = 1 ", r'plant: "rate"'),
     ("unknown section", "[plant]", "[pump]\nx = 1\n[plant]", r"pump"),
@@ -74,7 +74,7 @@ class BadInputTest(stack.TestCase):
         code = process.wait()
         said = process.stderr
         self.assertEqual(code, 2, process.report())
-        # hydro-launch shows what a program says, and its own end, with labels; it refuses what it reads itself.
+        # hydro-launch labels what a program prints and how it ended; it refuses what it reads itself.
         self.assertEqual(len(said.splitlines()), 1, process.report())
         self.assertRegex(said, pattern, process.report())
         self.assertEqual(process.stdout, "", process.report())
@@ -86,7 +86,7 @@ class BadInputTest(stack.TestCase):
             with self.subTest(program=name):
                 self.assert_refused(name, [*arguments, *output], pattern)
 
-    # Tests that no program writes its log over the configuration that it reads, or over the model.
+    # Tests that no program overwrites the configuration or the model that it reads with its log.
     def test_log_over_what_is_read(self):
         model = self.write("model.toml", open(os.path.join(stack.CONFIG, "models", "table1.toml"), "rb").read())
         config = self.write("mine.toml", self.demo.replace(os.path.join(stack.CONFIG, "models", "table1.toml"), model))
@@ -99,8 +99,8 @@ class BadInputTest(stack.TestCase):
                     with open(file, "rb") as after:
                         self.assertEqual(after.read(), text)
 
-    # Tests that a launch finds out about a log that cannot be written before it starts anything: what it starts and
-    # stops would stop whom it finds on the port.
+    # Tests that a launch notices a log that cannot be written before it starts anything: a failed start would also stop
+    # other processes on the port.
     def test_log_that_cannot_be_written(self):
         nowhere = self.path(os.path.join("none", "run.lcmlog"))
         self.assert_refused("hydro-launch", [self.write("mine.toml", self.demo), "--log", nowhere],
@@ -114,7 +114,7 @@ class BadInputTest(stack.TestCase):
             with self.subTest(what):
                 self.all_programs([config], pattern)
 
-    # Tests a configuration that does not exist, a folder, an empty one, one that is not text.
+    # Tests a missing configuration, a folder, an empty file, and one that is not text.
     def test_configuration_files(self):
         self.all_programs([self.path("none.toml")], r"none\.toml")
         self.all_programs([self.folder], os.path.basename(self.folder))
@@ -183,7 +183,7 @@ class BadInputTest(stack.TestCase):
         for name, content in logs.items():
             log = self.path(name) if content is None else self.write(name, content)
             for verb, arguments in LOG_VERBS.items():
-                # What is whole of a damaged log is worth looking at: info may count instead of refusing.
+                # The whole part of a damaged log is worth looking at: info may count instead of refusing.
                 if verb == "info" and content is not None:
                     continue
                 with self.subTest(log=name, verb=verb):
@@ -192,7 +192,7 @@ class BadInputTest(stack.TestCase):
                     self.assert_refused("hydro-log", [verb, *({"LOG": log, "GOOD": good}.get(a, a) for a in arguments)],
                                         name.replace(".", r"\."))
 
-    # Tests malformed tables for import, and verbs that are none.
+    # Tests malformed tables for import, and unknown verbs.
     def test_hydro_log_usage(self):
         tables = [
             ("no time", "voltage_V\n1\n", r"time_s"),
@@ -208,7 +208,7 @@ class BadInputTest(stack.TestCase):
         self.assert_refused("hydro-log", [], "verb")
         self.assert_refused("hydro-log", ["export", self.path("x.lcmlog")], "-o|--output")
 
-    # Tests that --help and --version succeed, and say something on stdout only.
+    # Tests that --help and --version succeed, and print on stdout only.
     def test_help_and_version(self):
         for name in [*CONFIG_PROGRAMS, "hydro-log"]:
             for option in ("--help", "--version"):

@@ -11,12 +11,12 @@ OUTAGE_S = 2.0
 AT_REST, IN_MOTION = 3900, 450  # ticks of demo.toml at which an outage begins
 RAMP = 200  # ticks, the default of limits.pressure_ramp_s
 BAD = ("--loss", LOSS, "--delay", DELAY, "--jitter", JITTER, "--seed", 7)
-# limits.stale_input_s is above a round trip and what wake-ups are late by on a shared machine. The gains of demo.toml, made
-# for an immediate network, let the arm swing by 0.2 rad where a round trip takes 40 ms: these are for that.
+# limits.stale_input_s exceeds a round trip plus late wake-ups on a shared machine. The gains of demo.toml, made for an
+# immediate network, let the arm swing by 0.2 rad where a round trip takes 40 ms: these gains suit it.
 DESIGNED_FOR_IT = ("--set", "limits.stale_input_s=0.2", "--set", "position.c1=2000", "--set", "position.c2=400")
-# rad, of steps of 0.1 (two_hosts.GENTLE) or 0.3: the machine of the tests may itself be late for half of the ticks.
+# rad, of steps of 0.1 (two_hosts.GENTLE) or 0.3: the test machine may itself be late for half of the ticks.
 SETTLED = 0.05
-# Channels whose messages are numbered, and from which host they come.
+# Channels with numbered messages, and the host that sends them.
 RIG_CHANNELS = ("HYDRO_STATE", "HYDRO_MOTOR_COMMAND")
 DESK_CHANNELS = ("HYDRO_PRESSURE_COMMAND", "HYDRO_ARM_REFERENCE")
 LAYOUT = {"hydro-plant": "rig", "hydro-pressure-ctrl": "rig", "hydro-position-ctrl": "desk"}
@@ -37,7 +37,7 @@ class BadNetworkCase(two_hosts.TestCase):
             (session, seen), = numbers.items()
             absent = set(range(min(seen), max(seen))) - set(seen)
             dropped = {n for name, s, n, _ in record["missing"][way] if (name, s) == (channel, session)}
-            # What the end of the run has overtaken was still on its way when the logger left.
+            # What the end of the run overtook was still in flight when the logger left.
             settled = max(seen) - 100
             self.assertEqual({n for n in absent if n < settled}, {n for n in dropped if min(seen) < n < settled}, channel)
             self.assertEqual(by_info[channel], len(absent), channel)
@@ -71,7 +71,7 @@ class BadNetworkCase(two_hosts.TestCase):
 class BadNetworkTest(BadNetworkCase):
     relay_options = (*BAD, "--outage", AT_REST, OUTAGE_S)
 
-    # Tests that in real time the stack rides out loss, delay and overtaking, is safe in an outage, settles after it,
+    # Tests that in real time the stack survives loss, delay and overtaking, is safe in an outage and settles after it,
     # and that each host's log tells exactly what was lost on the way to it.
     def test_realtime(self):
         self.run_both("--time", "realtime", "--duration", "10", *DESIGNED_FOR_IT, *two_hosts.GENTLE, logs=two_hosts.HOSTS)
@@ -87,7 +87,7 @@ class BadNetworkTest(BadNetworkCase):
         self.assert_loss_is_told(record, self.log_of("rig"), "b>a", DESK_CHANNELS)
 
         log = event_log.Log(self.log_of("rig"))
-        # On the plant's own host nothing is lost (the plant waits for one logger, which may have been the other one).
+        # Nothing is lost on the plant's own host (the plant waits for one logger, which may have been the other one).
         for channel in RIG_CHANNELS:
             numbers = [message.sequence for message in log.of(channel)]
             self.assertEqual(numbers, list(range(numbers[0], numbers[-1] + 1)), channel)
@@ -99,8 +99,8 @@ class BadNetworkTest(BadNetworkCase):
 class OutageInMotionTest(BadNetworkCase):
     relay_options = (*BAD, "--outage", IN_MOTION, OUTAGE_S)
 
-    # Tests an outage while the arm is on its way: it is at rest on its target in the end, or the run has ended with a limit
-    # and zero volts; which of the two depends on where the last pressure took it.
+    # Tests an outage while the arm is moving: in the end it rests on its target, or a limit has ended the run with zero
+    # volts; which of the two depends on where the last pressure took it.
     def test_realtime(self):
         launches = self.start_both("--time", "realtime", "--duration", "8", *DESIGNED_FOR_IT, logs=("rig",))
         code = launches["rig"].wait(90)
@@ -125,8 +125,8 @@ def by_number(messages):
 class LockstepTest(BadNetworkCase):
     relay_options = BAD
 
-    # Tests that loss, delay and overtaking change not one bit of a lockstep run: what the run waits for is asked for
-    # again. Nobody waits for the references, which are for the log alone: it lacks those that were lost.
+    # Tests that loss, delay and overtaking change no bit of a lockstep run: messages that the run waits for are
+    # requested again. Nobody waits for the references, which are for the log alone: it lacks those that were lost.
     def test_lockstep(self):
         self.run_both("--time", "lockstep", "--duration", "0.5", logs=("rig",))
         record = self.relay_record()

@@ -11,7 +11,7 @@ import outcome
 import two_hosts
 
 
-# Messages are what it takes: a voltage that moves nothing, whatever ticks the machine of the tests is late for.
+# Voltages that move nothing, since messages suffice here, whatever ticks the test machine is late for.
 STILL = ("--set", "reference.signal=voltage", "--set", "reference.steps=[[0.2, 0.2]]")
 
 
@@ -56,7 +56,8 @@ class ClocksTest(two_hosts.TestCase):
                 self.assertLess(value, 9, (report.role, name))
             self.assertEqual(report.lost_messages, 0, report)
 
-    # Tests that in real time a clock that is 10 s behind, drifts, and is set forward by 30 s in the run disturbs nothing.
+    # Tests that in real time a clock that is 10 s behind, drifts, and jumps forward by 30 s during the run disturbs
+    # nothing.
     def test_realtime_forward(self):
         self.run_both("--time", "realtime", "--duration", "3", *STILL, *two_hosts.PATIENT,
                       environments={"desk": self.shifted(-10, drift=0.005, step_s=30, step_after_s=1.5)})
@@ -66,7 +67,7 @@ class ClocksTest(two_hosts.TestCase):
         self.assertGreater(difference[-1], 19)
         self.assert_nothing_but_the_clock(log)
 
-    # Tests the same with the clock of the plant's host, set back in the run.
+    # Tests the same for the clock of the plant's host, set back during the run.
     def test_realtime_back(self):
         self.run_both("--time", "realtime", "--duration", "3", *STILL, *two_hosts.PATIENT,
                       environments={"rig": self.shifted(10, drift=-0.005, step_s=-30, step_after_s=1.5)})

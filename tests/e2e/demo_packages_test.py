@@ -9,12 +9,12 @@ import unittest
 import outcome
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-# Of the packages that `scripts/install-dependencies demo` leaves out: those that CMake finds by a name.
+# Packages that `scripts/install-dependencies demo` leaves out: those that CMake finds by name.
 LEFT_OUT = ("benchmark", "Boost", "Ceres", "Eigen3", "GTest")
 
 
 class DemoPackagesTest(unittest.TestCase):
-    # Tests that the configuration of ./demo is made where the other packages are not there.
+    # Tests that the configuration of ./demo succeeds without the other packages.
     def test_configures_without_the_others(self):
         with tempfile.TemporaryDirectory(prefix="hydro-demo-") as build:
             command = ["cmake", "-S", str(ROOT), "-B", build, "-G", "Ninja", "-D", "HYDRO_ONLY_STACK=ON"]
@@ -28,7 +28,7 @@ class DemoPackagesTest(unittest.TestCase):
             self.assertIn("hydro_log", sources)
             self.assertEqual(set(sources) & {"bench", "diagnose", "experiments", "maths", "tests"}, set())
 
-    # Tests that ./demo asks for these, and that the whole build still wants the rest.
+    # Tests that ./demo requests only these, and that the full build still needs the rest.
     def test_the_rest_is_asked_for_by_the_rest(self):
         script = (ROOT / "scripts/install-dependencies").read_text()
         basic, rest = script.split("demo) ;;")

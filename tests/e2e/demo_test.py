@@ -11,8 +11,8 @@ import stack
 
 
 class DemoTest(stack.TestCase):
-    # Tests that the demo ends in order with the arm at its target, that no message was lost, and that each process
-    # has told how it kept time.
+    # Tests that the demo ends in order with the arm at its target, that no message is lost, and that each process
+    # reports how it kept time.
     def test_arm_reaches_its_target(self):
         log_file, json_file = self.path("demo.lcmlog"), self.path("summary.json")
         launch = self.launch(stack.config("demo.toml"), "--log", log_file)
@@ -37,7 +37,7 @@ class DemoTest(stack.TestCase):
         for state in log.states:
             self.assertEqual(state.tick, expected + state.skipped_ticks)
             expected = state.tick + 1
-        # The log describes itself, and everybody that the logger waited for said goodbye in it.
+        # The log describes itself and holds a farewell from everybody that the logger waited for.
         self.assertEqual(log.descriptions[0].program, "hydro-plant")
         self.assertIn("[reference]", log.descriptions[0].config_text)
         self.assertIn("[parameters]", log.descriptions[0].model_text)

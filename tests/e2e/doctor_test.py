@@ -54,8 +54,8 @@ class DoctorTest(stack.TestCase):
         environment = {**os.environ, "PATH": stack.BIN + ":" + os.environ["PATH"]}
         subprocess.run(self.inside("sh", "-c", cure), check=True, capture_output=True, env=environment)
 
-    # Tests a machine without a multicast route: both that and the delivery that fails for it are named, the command mends
-    # both, and the rest of the checks is done all the same.
+    # Tests a machine without a multicast route: the missing route and the failed delivery are both named, the command
+    # fixes both, and the other checks are still done.
     def test_no_route(self):
         config = stack.config("demo.toml")
         done = self.doctor(config, expect=1)
@@ -68,7 +68,7 @@ class DoctorTest(stack.TestCase):
         done = self.doctor(config, expect=0)
         self.assertTrue(done.stdout.endswith("all is well\n"), done.stdout)
 
-    # Tests that a stack on several hosts wants a route that leaves the machine, and an interface that is up.
+    # Tests that a stack on several hosts requires a route that leaves the machine, and an interface that is up.
     def test_way_out(self):
         self.ip("link", "set", "lo", "up")
         far_end = self.space + "f"
@@ -87,7 +87,7 @@ class DoctorTest(stack.TestCase):
         self.assertIn("veth", self.findings(done.stdout)["multicast route"][1])
         self.assertNotIn("loopback delivery", self.problems(done), done.stdout)
 
-    # Tests that commands that may come from other hosts want a key, and hosts beyond the machine a ttl.
+    # Tests that commands that may come from other hosts require a key, and hosts beyond the machine a ttl.
     def test_open_network(self):
         shutil.copytree(stack.CONFIG, self.path("config"))
         config = os.path.join(self.path("config"), "hosts.toml")
@@ -124,7 +124,7 @@ class DoctorTest(stack.TestCase):
         self.assertEqual(launch.wait(), 0, launch.report())
         self.assertNotIn("other stacks", self.problems(self.doctor(config)))
 
-    # Tests that a process that asks for a priority wants the limits that allow it.
+    # Tests that a process that asks for a priority needs limits that allow it.
     def test_limits(self):
         if shutil.which("setpriv") is None:
             self.skipTest("needs setpriv (package util-linux)")
@@ -140,12 +140,13 @@ class DoctorTest(stack.TestCase):
         done = self.doctor(config, prefix=weak, expect=1)
         self.assertLessEqual({"real-time priority", "locked memory", "processors"}, self.problems(done), done.stdout)
         self.assertIn("rtprio is 0, requested is 80", done.stdout)
-        # The same limits are none to who has the capabilities (they cannot be raised everywhere, as root even).
+        # The same limits do not matter to a process with the capabilities (root cannot raise the limits everywhere
+        # either).
         problems = self.problems(self.doctor(config, prefix=weak[:3], expect=1))
         self.assertIn("processors", problems)
         self.assertFalse({"real-time priority", "locked memory"} & problems, problems)
 
-    # Tests that a configuration that is wrong is an error as everywhere, and that none is needed.
+    # Tests that a bad configuration is an error as everywhere, and that none is required.
     def test_configuration(self):
         done = self.doctor(self.path("none.toml"), expect=2)
         self.assertIn("none.toml", done.stderr)

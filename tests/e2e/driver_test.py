@@ -46,7 +46,7 @@ class DriverCase(stack.TestCase):
         self.assertEqual(registers["output0"], board.ZERO_CODE, what)
 
 
-# Real-time priorities, where they are allowed: the machine that runs the tests may have much else to do.
+# Real-time priorities, where allowed: the test machine may have much else to do.
 PRIORITY = 10
 PROCESSES = "process=[" + ", ".join(
     f'{{ program = "{name}", priority = {PRIORITY} }}'
@@ -70,8 +70,8 @@ class DriverRunTest(DriverCase):
         with open(json_file, encoding="utf-8") as file:
             return event_log.Log(log_file), json.load(file)
 
-    # Tests that with hydro-driver in the place of hydro-plant, and nothing else changed, the arm reaches its
-    # reference; that scales and signs are those of the wiring; that the watchdog line changes at each tick.
+    # Tests that when only hydro-driver replaces hydro-plant, the arm still reaches its reference, that scales and signs
+    # are those of the wiring, and that the watchdog line changes at each tick.
     def test_arm_reaches_its_reference(self):
         log, summary = self.launched()
         self.assertTrue(summary["tracking"]["at_target"], summary)
@@ -92,7 +92,7 @@ class DriverRunTest(DriverCase):
         self.assertGreater(max(s.motor_angle for s in log.states), 1)
         counts = round(last.motor_angle / (2 * math.pi / 4096))
         self.assertAlmostEqual(counts & board.MAX_COUNT, registers["counter0"], delta=20)
-        # Tachometer and encoder, two inputs of two kinds, tell the same: signs and scales of both are right.
+        # Tachometer and encoder, two inputs of different kinds, agree: signs and scales of both are right.
         turned = sum(b.motor_speed * (b.time - a.time) for a, b in zip(log.states, log.states[1:])
                      if b.arm_angle > 0.02 and b.time < 1.0)
         first, then = [[s for s in log.states if s.arm_angle > 0.02 and s.time < 1.0][i] for i in (0, -1)]
@@ -116,7 +116,7 @@ class DriverRunTest(DriverCase):
         self.assertAlmostEqual(self.board.arm_angle, 0.1, delta=0.01)
         self.assertGreater(max(s.motor_speed for s in log.states), 5)
 
-    # Tests that the voltage limit holds at the terminal, and that states tell the voltage that acted.
+    # Tests that the voltage limit holds at the terminal, and that states report the voltage that acted.
     def test_voltage_limit(self):
         log, _ = self.launched("driver.voltage.limit_V=0.5", "time.duration_s=1.5",
                                'reference={ signal = "voltage", steps = [[0.1, 3], [0.7, -3]] }')
@@ -125,8 +125,8 @@ class DriverRunTest(DriverCase):
         self.assertEqual(min(s.voltage for s in log.states), -0.5)
         self.assert_zero(self.board, "limited run")
 
-    # Tests that the board gets zero when it is opened, and nothing else and no watchdog before the roll is complete
-    # and a command has come.
+    # Tests that opening the board sets it to zero, and that nothing else and no watchdog follows before the roll is
+    # complete and a command has come.
     def test_zero_until_all_are_there(self):
         self.assertNotEqual(self.board.output0, board.ZERO_CODE)  # what a program that crashed has left
         run = self.run_by_hand(controllers=False)
@@ -178,26 +178,26 @@ class WaysOutTest(DriverCase):
                        signal.SIGUSR1, signal.SIGALRM, signal.SIGXCPU, signal.SIGRTMIN):
             self.leave(signal.Signals(number).name, self.signal_(number), -number)
 
-    # Tests crashes from within, in the middle of a reading.
+    # Tests crashes from within, during a reading.
     def test_crashes(self):
         for name, code in (("null_pointer", -signal.SIGSEGV), ("stack_overflow", -signal.SIGSEGV),
                            ("abort", -signal.SIGABRT), ("terminate", -signal.SIGABRT),
                            ("throw_number", -signal.SIGABRT), ("throw", 1), ("exit", 3), ("quick_exit", 3)):
             self.leave(name, self.order(name), code)
 
-    # Tests the ways out that give the process no chance: its guardian writes the zero.
+    # Tests exits that give the process no chance: its guardian writes the zero.
     def test_guardian(self):
         self.leave("SIGKILL", self.signal_(signal.SIGKILL), -signal.SIGKILL, at_once=False)
         self.leave("underscore_exit", self.order("underscore_exit"), 3, at_once=False)
 
-    # Tests that an error of the board ends the run with a zero where the board still takes one.
+    # Tests that an error of the board ends the run, with a zero if the board still takes one.
     def test_board_errors(self):
         for name in ("reads_fail", "next_write_fails"):
             driver = self.leave(name, self.order(name), 1)
             self.assertIn("board_error", driver.stderr)
             self.assertRegex(driver.stderr, "driver[.]\\w+: (reading|writing) subdevice")
 
-    # Tests a stop message of another process, here the pressure loop's when the motor is faster than its limit.
+    # Tests a stop message from another process, here the pressure loop's when the motor exceeds its speed limit.
     def test_stop_message(self):
         self.leave("stop message", lambda *_: None, 1, "limits.motor_speed_rad_s=200", driven=False)
         self.assertTrue(any("fault motor_speed_limit" in p.stderr for p in self.processes))
@@ -221,8 +221,8 @@ class DriverFaultTest(DriverCase):
         return self.log.wait_for("HYDRO_FAULT", lambda f: f.code == code and bool(f.active) == active,
                                  f"fault {code}, active {active}", start=start)
 
-    # Tests that a pressure sensor at the end of its range, and one with a broken wire, read NaN, give zero volts and
-    # a fault that names the sensor, and that the run goes on when they are good again.
+    # Tests that a pressure sensor at the end of its range, and one with a broken wire, read NaN, give zero volts and a
+    # fault that names the sensor, and that the run resumes when they are good again.
     def test_sensor_faults(self):
         spans = []
         for order, says in (("input0_high", "p1 reads 10 V"), ("input0_open", "p1 reads 0.0001526 V.*minimum_V")):
@@ -250,15 +250,15 @@ class DriverFaultTest(DriverCase):
         good = [s for s in log.states if spans[0][0] < s.tick <= spans[0][1] and not math.isnan(s.p1)]
         self.assertGreaterEqual(len(good), 9)
 
-    # Tests that signals which interrupt calls of the board are no errors of it.
+    # Tests that calls to the board that signals interrupt are not errors of the board.
     def test_interrupted_calls(self):
         self.board.order("interrupt")
         tick = self.log.wait_for("HYDRO_STATE", lambda s: True, "a state").tick
         self.log.wait_for_tick(tick + 500)
         self.assertFalse([f for f in self.finish().faults if f.code == "board_error"])
 
-    # Tests that a driver that hangs keeps the voltage, and what that is good for: the hardware watchdog takes it from
-    # the motor.
+    # Tests that a hanging driver keeps the voltage, which shows what the hardware watchdog is for: it takes the voltage
+    # from the motor.
     def test_hang_is_for_the_watchdog(self):
         self.run_["driver"].send(signal.SIGSTOP)
         tripped = self.board.wait_for(lambda b: b["trips"] == 1 and b["enabled"] == 0, "the watchdog")
@@ -277,7 +277,7 @@ class DriverFaultTest(DriverCase):
         self.board.wait_for(lambda b: b["nonzero_writes"] > written, "a voltage again")
         self.finish()
 
-    # Tests that a board that takes nothing any more ends the run with 1, and that the watchdog is what is left.
+    # Tests that a board that accepts nothing any more ends the run with 1, and that only the watchdog is left.
     def test_board_that_takes_no_zero(self):
         self.board.order("writes_fail")
         self.assertEqual(self.run_["driver"].wait(), 1, self.run_["driver"].report())
@@ -288,7 +288,7 @@ class DriverFaultTest(DriverCase):
 
 
 class LaunchedDriverTest(DriverCase):
-    # Tests that a driver that is killed under hydro-launch is named, that the output is zero and nothing is left.
+    # Tests that a driver killed under hydro-launch is named, that the output is zero and nothing is left.
     def test_killed(self):
         launch = self.launch(stack.config("driver.toml"), "--duration", "0", *self.options(self.board, SINE))
         self.board.wait_until_driven()

@@ -66,7 +66,7 @@ class MotorCommandTest(fault_case.FaultCase):
         self.assertEqual([s for s in log.states if s.voltage != s.voltage], [])
         self.assert_in_time(log, fault)
 
-    # Tests that more than the amplifier has does not act, not even cut down to what it has; a rounding error is allowed.
+    # Tests that a command beyond the amplifier's limit has no effect, not even clipped; a rounding error is allowed.
     def test_excessive(self):
         self.run_with(self.for_ticks(120, lambda s: [repeated(voltage=-LIMIT * 1.001)]))
         log = self.check_zero_and_back("excessive_motor_command", least=5)
@@ -89,7 +89,7 @@ class MotorCommandTest(fault_case.FaultCase):
         acted = [s for s in log.states if s.command_tick >= first and s.tick <= fault.tick]
         self.assertEqual(acted, [])
 
-    # Tests that commands that come again are not obeyed, do not count as a sign of life, and are reported.
+    # Tests that repeated commands are not obeyed, do not count as a sign of life, and are reported.
     def test_repeated(self):
         last = {}
 
@@ -103,8 +103,8 @@ class MotorCommandTest(fault_case.FaultCase):
         log = self.check_zero_and_back("stale_motor_command", least=20)
         self.assertEqual([s for s in log.states if s.voltage == 2.0], [])
 
-    # Tests that a command that is overtaken by newer ones (another route through a network) is not obeyed when it comes,
-    # and that control goes on under the newer ones.
+    # Tests that a command overtaken by newer ones (another route through a network) is not obeyed when it arrives, and
+    # that control goes on under the newer ones.
     def test_reordered(self):
         self.run_with(self.once(lambda s: [repeated(), repeated(voltage=2.0, sequence=-1, tick=s.tick - 50)]))
         self.wait_for_fault("repeated_motor_command", source="plant")
@@ -112,14 +112,14 @@ class MotorCommandTest(fault_case.FaultCase):
         self.assertEqual([s for s in log.states if s.voltage == 2.0], [])
         self.assertEqual({f.code for f in log.faults if f.tick >= BAD} - {"late_plant"}, {"repeated_motor_command"})
 
-    # Tests the same of one that is numbered as new but was computed from an old state.
+    # Tests the same for a command with a new number that was computed from an old state.
     def test_tick_goes_back(self):
         self.run_with(self.once(lambda s: [repeated(), repeated(voltage=2.0, tick=s.tick - 50)]))
         self.wait_for_fault("repeated_motor_command", source="plant")
         log = self.finish()
         self.assertEqual([s for s in log.states if s.voltage == 2.0], [])
 
-    # Tests that missing sequence numbers are counted and reported, each one.
+    # Tests that every missing sequence number is counted and reported.
     def test_gaps(self):
         self.run_with(self.once(lambda s: [repeated(sequence=self.pressure_loop.sequence + 7)]))
         log = self.finish()
@@ -127,13 +127,13 @@ class MotorCommandTest(fault_case.FaultCase):
         self.assertEqual([s.lost_messages for s in whole], [7])
         self.assertEqual({f.code for f in log.faults} - {"late_plant"}, set())
 
-    # Tests that a command for a tick that has not been is refused and zeroes the voltage until one that makes sense.
+    # Tests that a command for a future tick is refused and zeroes the voltage until a sensible one comes.
     def test_future(self):
         self.run_with(self.for_ticks(120, lambda s: [repeated(voltage=2.0, tick=s.tick + 1000)]))
         log = self.check_zero_and_back("future_motor_command", least=5)
         self.assertEqual([s for s in log.states if s.voltage == 2.0], [])
 
-    # Tests that a loop that answers every state, but too late, is a loop that is stale.
+    # Tests that a loop that answers every state, but too late, counts as stale.
     def test_late(self):
         old = []
         delay = int(2 * STALE * SLOW)
@@ -150,8 +150,8 @@ class MotorCommandTest(fault_case.FaultCase):
         slept = sum(s.skipped_ticks for s in log.states if BAD <= s.tick <= fault.tick)
         self.assertLessEqual(fault.tick - BAD, STALE * SLOW + 5 + slept + 20)
 
-    # Tests that of two that command the motor none is obeyed, that both are named, and that the first goes on when the
-    # second has gone.
+    # Tests that neither of two motor-command senders is obeyed, that both are named, and that the first resumes when
+    # the second has gone.
     def test_two_senders(self):
         second = 777
         self.run_with(self.for_ticks(120, lambda s: [repeated(), repeated(second, voltage=2.0, sequence=s.tick)]),
@@ -164,7 +164,7 @@ class MotorCommandTest(fault_case.FaultCase):
         self.assertIn("pressure_ctrl on test (process 1)", fault.text)
         self.assertIn(f"(session {second})", fault.text)
 
-    # Tests that a command of another type, or of another version of it, is not obeyed, but counted and named.
+    # Tests that a command of another type or version is not obeyed, but counted and named.
     def test_undecodable(self):
         self.run_with(self.once(lambda s: [repeated()]))
         peer = self.peer()
@@ -183,7 +183,7 @@ class MotorCommandTest(fault_case.FaultCase):
         gone = [f for f in log.faults if f.code == "undecodable_message" and not f.active]
         self.assertTrue(gone)
 
-    # Tests that another stack on this port, though of another multicast group, is noticed and named.
+    # Tests that another stack on this port, even in another multicast group, is noticed and named.
     def test_other_group(self):
         self.run_with(self.once(lambda s: [repeated()]))
         other = self.peer(group="239.255.76.99")
@@ -236,15 +236,14 @@ class PressureCommandTest(fault_case.FaultCase):
         log = self.finish()
         self.assertEqual({f.code for f in log.faults if f.source == "pressure_ctrl"} - {"stale_state"}, set())
 
-    # Tests that a reference for a tick that is far from having been is refused, and zeroes the voltage until one comes that
-    # makes sense.
+    # Tests that a reference for a tick far in the future is refused, and zeroes the voltage until a sensible one comes.
     def test_future(self):
         self.run_with(lambda tick: [{"pressure_ref": 100.0, "tick": tick + 5000}])
         log = self.check("future_pressure_command")
         self.assertEqual([c for c in log.motor_commands if c.pressure_ref == 100.0], [])
 
-    # Tests that a loop that answers every sample, but too late, is a loop that is stale: its reference goes to zero, then
-    # the voltage.
+    # Tests that a loop that answers every sample, but too late, counts as stale: its reference goes to zero, then the
+    # voltage.
     def test_late(self):
         hold = 6 + int(STALE * fault_case.RATE)
         self.SPAN = 2 * hold + 400
@@ -259,7 +258,7 @@ class PressureCommandTest(fault_case.FaultCase):
         whole = [c for c in log.motor_commands if c.pressure_ref == 100.0]
         self.assertEqual([c for c in whole if c.tick > hold], [])
 
-    # Tests that of two that command pressures none is obeyed, and that both are named.
+    # Tests that neither of two pressure-command senders is obeyed, and that both are named.
     def test_two_senders(self):
         self.run_with(lambda tick: [{"pressure_ref": 50.0},
                                     {"pressure_ref": 100.0, "session": 777, "sequence": self.position_loop.sequence}])
@@ -269,7 +268,7 @@ class PressureCommandTest(fault_case.FaultCase):
         self.assertIn("(session 777)", fault.text)
         self.assertEqual([c for c in log.motor_commands if c.pressure_ref == 100.0], [])
 
-    # Tests that commands that come again, or are overtaken, are not obeyed, and that what is in force becomes stale.
+    # Tests that repeated or overtaken commands are not obeyed, and that the one in force becomes stale.
     def test_repeated(self):
         self.SPAN = int(STALE * fault_case.RATE) + 700
         self.run_with(lambda tick: [{"pressure_ref": 100.0, "sequence": -1, "tick": tick}])
@@ -310,7 +309,7 @@ class StateTest(fault_case.FaultCase):
                 self.wait_until(lambda k=kind, t=tick: answered(k, t), f"{kind} of tick {tick}")
         return commands["HYDRO_MOTOR_COMMAND"]
 
-    # Tests that a pressure or a speed that is not a number is answered with zero volts in that very tick.
+    # Tests that a pressure or a speed that is not a number is answered with zero volts in that same tick.
     def test_pressures_and_speed(self):
         commands = self.run_with(p2=float("nan"), motor_speed=float("inf"))
         self.wait_for_fault("nonfinite_state", source="pressure_ctrl")

@@ -5,7 +5,7 @@ import fault_case
 import lcm_peer
 import outcome
 
-# A pressure that drives the arm away for as long as it is asked for; negative: the other way.
+# A pressure that drives the arm away for as long as it is commanded; negative: the other way.
 PUSH = 'signal = "pressure"\nkind = "steps"\nsteps = [[0.1, {}]]'
 
 
@@ -31,11 +31,11 @@ class LimitTest(fault_case.FaultCase):
         self.assertTrue([s for s in log.stops if s.exit_code == 1 and code in s.reason])
         last = log.motor_commands[-1]
         self.assertEqual((last.status, last.voltage), (event_log.STOPPED, 0))
-        # The pressure loop finds the same by itself, unless the plant's stop was there first.
+        # The pressure loop finds the same by itself, unless the plant's stop arrived first.
         self.assertLessEqual(set(faults), {"plant", "pressure_ctrl"})
 
-    # Tests that a pressure above its limit, on either side, zeroes the voltage in the tick in which it is measured and
-    # ends the run.
+    # Tests that a pressure above its limit, on either side, zeroes the voltage in the tick that measures it and ends
+    # the run.
     def test_pressure(self):
         for push in (100, -100):
             with self.subTest(push=push):
@@ -69,8 +69,8 @@ class RearmTest(fault_case.FaultCase):
     def rearm(self, expect):
         return self.run_program("hydro-launch", *self.run_.arguments, "--rearm", expect=expect)
 
-    # Tests that the voltage stays zero when the pressure has long gone, that a re-arm ends that, and that the fault is
-    # found again when the limit is passed again.
+    # Tests that the voltage stays zero long after the pressure has fallen, that a re-arm ends this, and that exceeding
+    # the limit again raises the fault again.
     def test_pressure(self):
         self.start_explicit("--set", "limits.pressure_psi=115", config=self.config_with(PUSH.format(100)))
         fault = self.wait_for_fault("pressure_limit", source="plant")
@@ -108,7 +108,7 @@ class RearmTest(fault_case.FaultCase):
         log = self.finish()
         self.assertEqual(self.assert_zero_during(log, "stale_motor_command", "plant", least=300), 0)
 
-    # Tests that what the pressure loop finds is latched too: its safe output keeps the voltage at zero when it is over.
+    # Tests that the pressure loop's faults are latched too: its safe output keeps the voltage at zero afterwards.
     def test_controller_fault(self):
         self.start_explicit("--set", "limits.pressure_ramp_s=0")
         self.wait_for_voltage()
@@ -126,7 +126,8 @@ class RearmTest(fault_case.FaultCase):
         log = self.finish()
         self.assertEqual(self.assert_zero_during(log, "controller_fault", "plant", least=300), 0)
 
-    # Tests that in a stack with a key a re-arm and a stop need it, and that with it they do what they do without.
+    # Tests that in a stack with a key a re-arm and a stop need the key, and that with it they work as they do without
+    # one.
     def test_with_a_key(self):
         key = ("--set", f"bus.key_file={self.path('bus.key')}")
         self.run_program("hydro-launch", self.moving(), *key, "--make-key")
@@ -149,7 +150,7 @@ class RearmTest(fault_case.FaultCase):
         for role in ("plant", "pressure_ctrl", "position_ctrl", "logger"):
             self.assertEqual(self.run_[role].wait(), 0, self.run_[role].report())
 
-    # Tests that a limit that is still passed stands against a re-arm.
+    # Tests that a limit that is still exceeded prevents a re-arm.
     def test_refused_while_the_cause_persists(self):
         self.start_explicit("--set", "limits.arm_angle_rad=0.05", config=self.config_with(PUSH.format(100)))
         fault = self.wait_for_fault("arm_angle_limit", source="plant")
@@ -160,7 +161,7 @@ class RearmTest(fault_case.FaultCase):
         self.assertEqual(self.assert_zero_during(log, "arm_angle_limit", "plant", least=200), 0)
         self.assertEqual([f for f in log.faults if f.code == fault.code and not f.active], [])
 
-    # Tests that a re-arm that is meant for another run (as a log that is played holds), or is old, ends nothing.
+    # Tests that a re-arm meant for another run (as a played log contains), or an old one, ends nothing.
     def test_requests_of_another_run(self):
         self.start_explicit()
         self.wait_for_voltage()
@@ -202,7 +203,7 @@ class RearmTest(fault_case.FaultCase):
             file.write(data[:whole])
         return self.path("copy.lcmlog")
 
-    # Tests that where faults end by themselves there is nothing to re-arm, and that one who asks nobody is told so.
+    # Tests that where faults end by themselves there is nothing to re-arm, and that a re-arm without a stack says so.
     def test_nothing_to_rearm(self):
         self.start_stack()
         self.wait_for_voltage()

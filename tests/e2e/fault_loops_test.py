@@ -41,8 +41,8 @@ class FaultLoopsTest(fault_case.FaultCase):
         self.wait_for_states(100)
         self.check_stale_motor_command(self.finish())
 
-    # Tests the limit of a real-time machine, five ticks (config/realtime.toml), at a rate at which this machine's
-    # late wake-ups are less than a tick or two.
+    # Tests the limit of a real-time machine, five ticks (config/realtime.toml), at a rate at which this machine's late
+    # wake-ups stay below a tick or two.
     def test_five_ticks(self):
         rate, limit = 50, 5
         voltage = self.config_with('signal = "voltage"\nkind = "steps"\ninitial = 1.5')
@@ -63,8 +63,8 @@ class FaultLoopsTest(fault_case.FaultCase):
         self.assertGreater(len(after), 10)
         self.assertEqual([s for s in after if s.voltage != 0], [])
 
-    # Tests that a pressure loop that hangs is the same, that what it answers late to old states moves nothing, and that
-    # control comes back with it.
+    # Tests the same for a pressure loop that hangs, that its late answers to old states move nothing, and that control
+    # comes back with it.
     def test_pressure_loop_hangs(self):
         self.start_moving()
         self.run_["pressure_ctrl"].send(signal.SIGSTOP)
@@ -130,8 +130,8 @@ class FaultLoopsTest(fault_case.FaultCase):
         self.wait_for_voltage()
         self.check_position_loop_gone(self.finish())
 
-    # Tests that the pressure loop answers a plant that hangs with zero volts, and that the plant, when it goes on, acts on
-    # no command from before: zero volts until one that was computed from a state after.
+    # Tests that the pressure loop answers a hanging plant with zero volts, and that the plant, when it goes on, obeys
+    # no command from before: zero volts until a command computed from a later state.
     def test_plant_hangs(self):
         self.start_moving()
         self.run_["plant"].send(signal.SIGSTOP)
@@ -180,7 +180,7 @@ class FaultLoopsTest(fault_case.FaultCase):
         self.assertEqual([s.tick for s in states if s.tick not in answered and s.tick < max(answered)], [])
         self.assertTrue([s for s in states if s.voltage != 0])
 
-    # Tests that control goes on without a logger, that the plant says so, and that it hears when one is back.
+    # Tests that control goes on without a logger, that the plant says so, and that it notices when one is back.
     def test_logger_dies(self):
         self.start_moving("--set", "limits.stale_logger_s=0.6")
         self.run_["logger"].kill()
@@ -195,8 +195,8 @@ class FaultLoopsTest(fault_case.FaultCase):
         self.assertEqual({f.code for f in after.faults if f.active} - {"logger_gone"}, set())
         self.check_control_went_on(after.states[:-1], after.motor_commands)
 
-    # Tests that a full disk ends the logger with 1 and a log that can be read up to there, while control goes on and the
-    # plant says why nobody records any more.
+    # Tests that a full disk ends the logger with 1 and a log that is readable up to there, while control goes on and
+    # the plant says why nobody records any more.
     def test_disk_full(self):
         self.start_stack(roles=())
         self.run_.start("logger", "-o", self.log_file)

@@ -14,7 +14,7 @@ import stack
 
 ROLES = ("plant", "pressure_ctrl", "position_ctrl", "logger")
 LIMIT = 2.0  # s, what is promised
-# Far longer than the tests: a run must not end by itself while they look at it.
+# Far longer than the tests: a run must not end by itself during a test.
 OPTIONS = ("--time", "lockstep", "--duration", "3600")
 
 
@@ -39,7 +39,7 @@ class LockstepKillTest(stack.TestCase):
     def check_log(self):
         log = event_log.Log(self.path("run.lcmlog"), torn_tail=True)
         last = log.states[-1].tick
-        # Lockstep goes nowhere without an answer: at most the tick that was not answered is without one.
+        # Lockstep does not advance without an answer: at most the unanswered tick lacks one.
         self.assertLessEqual(last - max(c.tick for c in log.motor_commands), 1)
         return log
 
@@ -79,7 +79,7 @@ class LockstepKillTest(stack.TestCase):
         self.check_log()
         self.assert_named(run, "logger")
 
-    # Tests that a loop that stalls is as good as dead, and hears of it when it goes on.
+    # Tests that a loop that stalls counts as dead, and is told so when it goes on.
     def test_pressure_ctrl_stalled(self):
         run = self.start_by_hand()
         since = time.monotonic()
@@ -90,7 +90,7 @@ class LockstepKillTest(stack.TestCase):
         self.assertEqual(run["pressure_ctrl"].wait(), 1, run["pressure_ctrl"].report())
         self.assert_named(run, "pressure_ctrl")
 
-    # Tests that a stall that is shorter than time.stall_timeout_s changes nothing but how long the run takes.
+    # Tests that a stall shorter than time.stall_timeout_s changes nothing but the duration of the run.
     def test_short_stall(self):
         lone = self.path("lone.lcmlog")
         self.run_program("hydro-sim", stack.config("demo.toml"), "--duration", "4", "-o", lone)

@@ -47,11 +47,11 @@ class LockstepTest(stack.TestCase):
     def test_paper(self):
         self.compare_all_ways(*PAPER)
 
-    # Tests the same of the demo's stack, whose sensors are noisy.
+    # Tests the same for the demo's stack, whose sensors are noisy.
     def test_demo_with_noise(self):
         self.compare_all_ways(*DEMO)
 
-    # Tests the same of a loop without delay: each motor command acts from the tick that it was computed from.
+    # Tests the same for a loop without delay: each motor command acts from the tick that it was computed from.
     def test_without_command_delay(self):
         for name, arguments in (("paper", PAPER), ("demo", DEMO)):
             with self.subTest(name):
@@ -62,7 +62,7 @@ class LockstepTest(stack.TestCase):
                 for state in event_log.Log(launch).states[1:]:
                     self.assertEqual(state.command_tick, state.tick - 1)  # over the interval that ends here
 
-    # Tests that compare can tell: another seed of the noise, another gain, a shorter run.
+    # Tests that compare notices differences: another seed of the noise, another gain, a shorter run.
     def test_compare_finds_differences(self):
         base = self.run_sim("base.lcmlog", (*DEMO, "--duration", "0.5"))
         for change in (("--seed", "2"), ("--set", "position.c2=1201"), ("--duration", "0.499")):

@@ -106,7 +106,7 @@ class LoggerTest(stack.TestCase):
             events += part
             info = self.run_program("hydro-log", "info", piece)
             self.assertIn("hydro-plant", info.stdout)  # it describes itself
-        # Together they hold, in order, what was sent from when the rotating logger came to when it left.
+        # Together they hold, in order, everything sent between the rotating logger's start and its end.
         joined = [identity(e) for e in events]
         numbered = [item for item in joined if item[0] in event_log.NUMBERED]
         reference = [identity(e) for e in whole.events if e.channel in event_log.NUMBERED]
@@ -120,7 +120,7 @@ class LoggerTest(stack.TestCase):
 
 
 class TornLogTest(stack.TestCase):
-    # Tests that a log that was cut off within its last event loses just that one, and that nothing else takes it.
+    # Tests that a log cut off within its last event loses only that event.
     def test_torn_tail(self):
         log_file = self.path("run.lcmlog")
         self.run_program("hydro-sim", stack.config("demo.toml"), "--duration", "0.2", "-o", log_file)

@@ -39,7 +39,7 @@ class OutcomeTest(unittest.TestCase):
     def run_file(self, name):
         return subprocess.run([sys.executable, "-B", str(self.folder / f"{name}.py")], capture_output=True, text=True, check=False)
 
-    # Tests the exit code of each way to end: only what ran whole and without a failure has passed.
+    # Tests the exit code of each outcome: only a complete run without a failure has passed.
     def test_exit_codes(self):
         for name, code in {"passes": 0, "skips_itself": 77, "skips_one_of_two": 77, "skips_a_part": 77, "skips_and_fails": 1,
                            "fails": 1, "is_empty": 1}.items():
@@ -47,7 +47,7 @@ class OutcomeTest(unittest.TestCase):
                 run = self.run_file(name)
                 self.assertEqual(run.returncode, code, run.stderr)
 
-    # Tests that the reason is printed, and where only some were skipped how many.
+    # Tests that the reason is printed, and the number where only some were skipped.
     def test_reasons(self):
         self.assertRegex(self.run_file("skips_itself").stderr, r"(?m)^SKIPPED test_a .*: no board here$")
         partly = self.run_file("skips_one_of_two").stderr

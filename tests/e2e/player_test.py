@@ -60,7 +60,7 @@ class PlayerTest(stack.TestCase):
     def test_played_to_lockstep(self):
         self.play("lockstep")
 
-    # Tests the same of a pressure loop in real time: its answers depend on ticks, not on when they came.
+    # Tests the same for a pressure loop in real time: its answers depend on ticks, not on arrival times.
     @unittest.skipUnless(PLAYER, "lcm-logplayer is not installed")
     def test_played_to_realtime(self):
         self.play("realtime")
@@ -74,16 +74,16 @@ class PlayerTest(stack.TestCase):
     def test_replay_lockstep(self):
         self.assert_replays(self.record())
 
-    # Tests that it reproduces those of a run in real time, whatever came late there.
+    # Tests that it reproduces those of a run in real time, whatever arrived late there.
     def test_replay_realtime(self):
         self.assert_replays(self.record("--duration", "2", time="realtime"))
 
-    # Tests that it reproduces those of a run in real time without a command delay, where what was in force at a tick
+    # Tests that it reproduces those of a run in real time without a command delay, where the command in force at a tick
     # depends on what had arrived.
     def test_replay_realtime_without_delay(self):
         self.assert_replays(self.record("--duration", "2", "--set", "plant.command_delay_ticks=0", time="realtime"))
 
-    # Tests that replay can tell: a log whose commands came from other gains than it says.
+    # Tests that replay notices differences: a log whose commands came from other gains than it states.
     def test_replay_finds_a_difference(self):
         log_file = self.record("--duration", "0.5")
         with open(log_file, "rb") as file:

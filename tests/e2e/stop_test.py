@@ -35,7 +35,7 @@ class StopTest(stack.TestCase):
                     self.assertEqual(stack.still_running(pids), [])
                     self.check_end(log_file)
 
-    # Tests that the processes of a stack may start in any order: all wait until all are there, and none sleeps.
+    # Tests that the processes of a stack may start in any order: all wait until everybody is there, and none hangs.
     def test_any_order(self):
         alone = self.path("alone.lcmlog")
         self.run_program("hydro-sim", stack.config("demo.toml"), "--duration", "0.3", "-o", alone)
@@ -50,7 +50,7 @@ class StopTest(stack.TestCase):
                     self.assertEqual(process.wait(), 0, process.report())
                 self.assert_identical(alone, log_file)
 
-    # Tests that the plant waits for who is missing, names it, and gives up after time.start_timeout_s.
+    # Tests that the plant waits for missing processes, names them, and gives up after time.start_timeout_s.
     def test_missing_participant(self):
         run = self.stack(stack.config("demo.toml"), "--set", "time.start_timeout_s=2.5")
         run.start("plant")

@@ -39,7 +39,7 @@ class SystemdTest(stack.TestCase):
         done = subprocess.run(["systemd-analyze", "verify", "--man=no", path], capture_output=True, text=True)
         return "" if done.returncode == 0 and not done.stderr else f"exit {done.returncode}: {done.stderr}"
 
-    # Tests that what cmake --install leaves is what systemd reads without a complaint, and that the check would see one.
+    # Tests that systemd reads what cmake --install leaves without a complaint, and that the check would notice one.
     def test_verify(self):
         if shutil.which("systemd-analyze") is None:
             self.skipTest("needs systemd-analyze")

@@ -50,9 +50,8 @@ class PlacementTest(stack.TestCase):
                     threads.append(int(task))
         return threads
 
-    # Tests processor, priority and memory of every program, each with other values, the logger included: of all
-    # threads, because a thread without them would hold up the others. Only the one that speaks to people has nobody
-    # waiting for it.
+    # Tests processor, priority and memory of every program, each with other values, the logger included: for all
+    # threads, because a thread without them would delay the others. Nobody waits for the one that prints.
     def test_each_program(self):
         if not permitted():
             self.skipTest("real-time priority and locked memory are not permitted to this user")
@@ -81,7 +80,7 @@ class PlacementTest(stack.TestCase):
             self.assertEqual(is_locked, lock != "false" and (priority > 0 or lock == "true"), role)
         self.assertEqual(self.launched.stderr, "")
 
-    # Tests that without these keys the kernel's own choice is left alone.
+    # Tests that without these keys the kernel's own choice is kept.
     def test_nothing_asked_for(self):
         roles = ("plant", "pressure_ctrl", "position_ctrl", "logger")
         pids = self.start_with([{"program": f'"{stack.PROGRAMS[role]}"'} for role in roles])

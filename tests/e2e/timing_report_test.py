@@ -14,7 +14,7 @@ TIMES = ("period_us", "latency_us", "round_trip_us")
 
 
 class ReportTest(stack.TestCase):
-    # Tests both reports of one run against each other, against themselves and against what the log holds.
+    # Tests both reports of one run against each other, against themselves and against the contents of the log.
     def test_report(self):
         log_file, report_file = self.path("run.lcmlog"), self.path("report.json")
         launch = self.launch(stack.config("demo.toml"), "--duration", str(DURATION), "--log", log_file, "--timing",
@@ -104,7 +104,7 @@ class ReportTest(stack.TestCase):
         self.assertEqual(re.findall(r"(?:src|href)\s*=|url\(|@import|<script", page), [])
         self.assertNotIn("nan", page)
 
-    # Tests that a report that cannot be written is known before anything is started.
+    # Tests that a report that cannot be written is noticed before anything starts.
     def test_bad_name(self):
         for name, says in (("report.txt", "ends in .json"), (os.path.join("missing", "report.json"), "missing")):
             launch = self.launch(stack.config("demo.toml"), "--duration", "1", "--timing", self.path(name))
@@ -114,7 +114,7 @@ class ReportTest(stack.TestCase):
             self.assertNotIn("ready", launch.stdout)
         self.assertEqual(os.listdir(self.folder), [])
 
-    # Tests that a log of a run on simulated time, which has no wall time to report, is named as such.
+    # Tests that a log of a run on simulated time, which has no wall time to report, is identified as such.
     def test_log_without_reports(self):
         log_file = self.path("sim.lcmlog")
         self.run_program("hydro-sim", stack.config("demo.toml"), "--duration", "0.5", "-o", log_file)

@@ -31,8 +31,8 @@ class StallTest(timing_case.TimingCase):
         self.check_cause_and_effect(log)
         return log, skipped
 
-    # Tests that a plant that stood still skips all ticks of that time in one go, counts them, and says so in its next
-    # state; the slow loop counts the samples that there were none for.
+    # Tests that a stalled plant skips all ticks of that time at once, counts them, and says so in its next state; the
+    # slow loop counts the samples for which there was no state.
     def test_plant(self):
         log, skipped = self.stall("plant")
         longest = max(s.skipped_ticks for s in log.states)
@@ -42,7 +42,7 @@ class StallTest(timing_case.TimingCase):
         self.assertGreaterEqual(self.totals(log)["position_ctrl"].missed_deadlines, longest // timing_case.INTERVAL - 1)
         self.assertEqual(self.totals(log)["pressure_ctrl"].lost_messages, 0)  # nothing was sent, nothing is lost
 
-    # Tests that a pressure loop that stood still counts the states that it did not get, one for one.
+    # Tests that a stalled pressure loop counts every state that it did not get.
     def test_pressure_ctrl(self):
         log, _ = self.stall("pressure_ctrl", few_may_wait="pressure_ctrl")
         answered = {c.tick for c in log.motor_commands if c.status != event_log.STOPPED}
@@ -60,7 +60,7 @@ class StallTest(timing_case.TimingCase):
         waited = self.histogram(log, "pressure_ctrl", "queue_depth").highest
         self.assertGreaterEqual(total.lost_messages + waited, len(self.while_held(log.states)))
 
-    # Tests that a slow loop that stood still goes on in its phase and counts the samples and states it missed.
+    # Tests that a stalled slow loop goes on in its phase and counts the samples and states that it missed.
     def test_position_ctrl(self):
         log, _ = self.stall("position_ctrl", few_may_wait="position_ctrl")
         total = self.totals(log)["position_ctrl"]
@@ -74,7 +74,7 @@ class StallTest(timing_case.TimingCase):
         waited = self.histogram(log, "position_ctrl", "queue_depth").highest
         self.assertGreaterEqual(total.lost_messages + waited, len(self.while_held(log.states)))
 
-    # Tests that a logger that stood still neither disturbs control nor hides what it did not get.
+    # Tests that a stalled logger neither disturbs control nor hides what it did not get.
     def test_logger(self):
         self.start_at_rest()
         before = self.live.count("HYDRO_STATE")

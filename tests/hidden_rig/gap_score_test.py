@@ -33,7 +33,7 @@ def scored(k, r):
 
 
 class Rules(unittest.TestCase):
-    # Tests that a single effect counts when named, or when it is in the tie class of the one named, and not with extras.
+    # Tests that a single effect counts when named, or when tied with the one named, and not with extras.
     def test_single(self):
         k = key("single", ["amp.lag"])
         self.assertTrue(scored(k, report("named", [("amp.lag", [])]))["right"])
@@ -53,7 +53,7 @@ class Rules(unittest.TestCase):
         r["effects"][0]["names"] = ["signal = p1"]
         self.assertFalse(scored(k, r)["right"])
 
-    # Tests that nulls, which stand for numbers that are none, are misses and no crash.
+    # Tests that nulls, which stand for missing numbers, are misses and no crash.
     def test_nulls(self):
         k = key("parameter", parameters=[{"name": "b", "true": 0.02, "model": 0.03}])
         r = report("parameters", parameters=[{"name": "b", "fitted": None, "model": 0.03, "ci95": [None, None]}], after=None)
@@ -63,7 +63,7 @@ class Rules(unittest.TestCase):
         outcome.update(number=1, name="parameter-b")
         self.assertIn("b = -", gap_score.table([outcome], gap_score.judge([outcome]), 1.0))
 
-    # Tests that pairs need the exact set, in any order, and that a tie is told apart from it.
+    # Tests that pairs need the exact set, in any order, and that a tie is distinguished from it.
     def test_pair(self):
         k = key("pair", ["amp.lag", "valve.relief"])
         self.assertTrue(scored(k, report("named", [("valve.relief", []), ("amp.lag", [])]))["right"])
@@ -88,7 +88,7 @@ class Rules(unittest.TestCase):
         self.assertFalse(scored(k, report("parameters", parameters=fitted(0.0211)))["right"])
         self.assertFalse(scored(k, report("named", [("amp.lag", [])]))["right"])
 
-    # Tests that an effect outside the catalogue wants `unexplained`, and that `tied` is wrong but not confident.
+    # Tests that an effect outside the catalogue calls for `unexplained`, and that `tied` is wrong but not confident.
     def test_outside(self):
         k = key("outside", outside={"what": "a spring"})
         self.assertTrue(scored(k, report("unexplained"))["right"])
@@ -154,7 +154,7 @@ class Program(unittest.TestCase):
             ended = self.run_score(folder, finder, "--only", "amp.lag*")
             self.assertEqual(ended.returncode, 0, ended.stdout + ended.stderr)
 
-    # Tests that a finder that fails or does not end is a miss with its reason, not the end of the score.
+    # Tests that a finder that fails or does not end is a miss with its reason, and that scoring continues.
     def test_failures_are_misses(self):
         with tempfile.TemporaryDirectory() as folder:
             ended = self.run_score(folder, "#!/bin/sh\necho 'run.csv: no time' >&2\nexit 2\n")
@@ -164,7 +164,7 @@ class Program(unittest.TestCase):
             ended = self.run_score(folder, "#!/bin/sh\nexec sleep 20\n", "--time-limit", "0.3")
             self.assertIn("not done in 0.3 s", ended.stdout)
 
-    # Tests that nothing to run is said plainly.
+    # Tests that having nothing to run is reported.
     def test_bad_use(self):
         with tempfile.TemporaryDirectory() as folder:
             ended = subprocess.run([sys.executable, "-B", str(SCORE), "--bin", folder], capture_output=True, text=True)
