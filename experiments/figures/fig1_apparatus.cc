@@ -37,7 +37,7 @@ FreeRun RunFree(const model::ModelDescription& model, double top_speed) {
   const model::Parameters& p = model.parameters;
   constexpr double kTick = 1e-3;
   constexpr int kHold = 250;      // ticks at top speed
-  constexpr int kAveraged = 200;  // ticks of them averaged: hydraulic oscillations are faster
+  constexpr int kAveraged = 200;  // of these: hydraulic oscillations are faster
   model::Actuator actuator(model, {.shaft = model::Shaft::kFree, .arm_angle = -0.75});
   FreeRun run;
   const char* names[] = {"time_s",        "voltage_V",       "motor_angle_rad", "motor_speed_rad_s",
@@ -78,7 +78,7 @@ double UnlimitedSpeed(const model::ModelDescription& model) {
 
 std::string InSi(double torque) { return fmt::format("{:.0f} N m", torque * kInchPound); }
 
-// The arm's torque over its speed, up to the motor's `top_speed`, rad/s, after `viscous` and `coulomb`
+// The arm's torque over its speed, up to `top_speed` of the motor, rad/s, after `viscous` and `coulomb`
 // friction take their share of the motor's torque.
 page::Curve Envelope(const std::string& label, const model::Parameters& p, double top_speed, double viscous,
                      double coulomb) {

@@ -1,4 +1,4 @@
-// Figure 9: the root locus of the position loop's design model, and of the same loop sampled.
+// Figure 9: the root locus of the position loop's design model, and the same loop sampled.
 #include <spdlog/fmt/fmt.h>
 
 #include <algorithm>

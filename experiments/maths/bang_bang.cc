@@ -80,8 +80,8 @@ double FastestSettling(const RigidDrive& drive, double distance, double band) {
   const double speed_at_edge =
       SpeedWhere([&](double speed) { return down.Distance(speed); }, 2 * band * distance, move.peak_speed);
   double time = move.time - down.Time(speed_at_edge);
-  // If the band is so wide that braking begins within it, a move passes the near edge earlier still, at least
-  // at the peak speed or while accelerating.
+  // If the band is so wide that braking begins within it, the arm passes the near edge earlier still: at the
+  // peak speed or while accelerating.
   const double before_braking = 2 * band * distance - down.Distance(speed_at_edge);
   if (before_braking > 1e-12 * distance) {
     const Ramp up = Accelerating(drive);

@@ -11,7 +11,7 @@
 namespace hydro::experiments {
 
 struct LoopTiming {
-  double interval = 0;  // s; the voltage is computed at each multiple and held. 0: continuous
+  double interval = 0;  // s; the voltage is computed at each multiple and held; 0: continuous
   int delay_ticks = 0;  // sampled only; 0 or 1: ticks from computing a voltage to its effect
 };
 

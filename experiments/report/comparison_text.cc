@@ -19,8 +19,8 @@ std::optional<SiUnit> SiUnitOf(const Comparison& row) {
   return FindSiUnit(row.unit, expected ? row.expected : row.here);
 }
 
-// "about 7300" in in-lbf -> "about 824.8". Texts with more than one number, or with words after it, stay
-// unchanged and get their unit.
+// "about 7300" in in-lbf -> "about 824.8". Texts with more than one number, or with words after it, keep
+// their numbers and get the original unit appended.
 std::string PaperInSi(const std::string& text, const SiUnit& unit) {
   const size_t begin = text.find_first_of("0123456789.");
   if (begin == std::string::npos) return text;

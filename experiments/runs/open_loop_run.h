@@ -52,7 +52,7 @@ struct StickSlipCycles {
   double low = 0;
   double stick_dp = 0;  // psi, dp at the last stick, and at the slip that ends a stick
   double slip_dp = 0;
-  double stick_time = 0;  // s, from stick to slip, of the last stick that ends within the run
+  double stick_time = 0;  // s, duration of the last stick that ends within the run
 };
 StickSlipCycles FindCycles(const OpenLoopRun& run);
 

@@ -52,15 +52,14 @@ pressure_ctrl::PressureGains PressureLoopGains();
 // to make up for the leakage, D theta' = (c_E + c_I) dp with side 1 at p_3, and eq. (4) balances eq. (16).
 double SettledPressure(double reference, double feedforward);
 
-// The range of dp in which a standing pump stays at rest under that reference: friction holds |T_p - D dp| <=
-// T_s.
+// The range of dp in which friction keeps a standing pump at rest under that reference: |T_p - D dp| <= T_s.
 struct FrictionBand {
   double low = 0;   // psi
   double high = 0;  // psi
 };
 FrictionBand StickingPressures(double reference, double feedforward);
 
-// Over the samples after `from` s.
+// Errors over the samples after `from` s.
 struct TrackingError {
   double rms = 0;                 // psi
   double saturated_fraction = 0;  // fraction of the time with the motor at its torque limit

@@ -54,8 +54,8 @@ struct BreakAway {
 // `from`; none if the motor stays.
 std::optional<BreakAway> FindBreakAway(const runs::MeasuredRun& run, double from, double to, double moved);
 
-// How far above friction a torque ramp (in-lbf/s) is when the motor has turned by `moved`, in in-lbf; from J
-// theta'' = ramp t, theta = ramp t^3 / (6 J).
+// How far a torque ramp (in-lbf/s) has risen above friction, in-lbf, when the motor has turned by `moved`:
+// from J theta'' = ramp t, theta = ramp t^3 / (6 J).
 double BreakAwayExcess(double ramp, double inertia, double moved);
 
 }  // namespace hydro::experiments

@@ -41,8 +41,8 @@ struct TorqueOnPath {
   PressureLoopRun run;
   std::vector<double> command;  // in-lbf
   std::vector<double> error;    // in-lbf, command - k_2 dp
-  // The error in closed form at each instant. The arm's motion and the leakage force the pump to turn; eq.
-  // (4) then needs a torque, which eq. (16) supplies, and the k_v term adds to it.
+  // The error in closed form at each instant: the torque that eq. (4) needs while the arm's motion and the
+  // leakage turn the pump, supplied by eq. (16), plus the k_v term.
   std::vector<double> closed_form;
   double largest_error = 0;                 // in-lbf, |command - k_2 dp|
   double rms_error = 0;                     // in-lbf
