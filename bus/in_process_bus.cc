@@ -9,8 +9,7 @@ namespace {
 
 constexpr size_t kFirstCapacity = 16;
 
-// A message as it waits: a typed copy, or bytes when it was published raw or as another type than the
-// channel's.
+// A waiting message: a typed copy, or bytes when it was published raw or as another type than the channel's.
 struct Slot {
   std::shared_ptr<void> message;
   std::vector<uint8_t> bytes;
@@ -28,7 +27,7 @@ struct Handler {
 struct InProcessBus::Channel {
   std::string name;
   const MessageType* type = nullptr;  // of the slots' typed copies: that of the first publisher or subscriber
-  std::deque<Handler> handlers;       // a handler may subscribe: those before it stay where they are
+  std::deque<Handler> handlers;       // a handler may subscribe: existing ones stay in place
   std::vector<std::unique_ptr<Slot>> slots;  // ring, size a power of 2
   size_t first = 0;
   size_t end = 0;
@@ -40,7 +39,7 @@ struct InProcessBus::Channel {
 
   Slot& Oldest() { return *slots[first & (slots.size() - 1)]; }
 
-  // Slots stay where they are in memory: one of them may be with a handler.
+  // Slots stay in place in memory, because a handler may hold one of them.
   void Grow() {
     std::vector<std::unique_ptr<Slot>> larger(slots.empty() ? kFirstCapacity : 2 * slots.size());
     for (size_t i = 0; i < slots.size(); ++i) larger[i] = std::move(slots[(first + i) & (slots.size() - 1)]);

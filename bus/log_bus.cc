@@ -31,7 +31,7 @@ LogBus::TimePoint LogBus::DueTime() const {
   return wall_start_ + std::chrono::duration_cast<TimePoint::duration>(since);
 }
 
-// False: a signal arrived first.
+// False: a signal came first.
 bool LogBus::WaitUntil(TimePoint time) {
   if (options_.clock != nullptr) {
     options_.clock->AdvanceTo(time);
@@ -52,7 +52,7 @@ int LogBus::HandleUntil(TimePoint deadline) {
     try {
       handled = Dispatch(next_);
     } catch (...) {
-      exception = std::current_exception();  // thrown on below, once the bus stands at the next event
+      exception = std::current_exception();  // rethrown below, once the bus stands at the next event
     }
     handling_ = false;
     ReadNext();

@@ -19,8 +19,8 @@ SequenceMonitor::Verdict SequenceMonitor::Observe(int64_t session, int64_t seque
     return Verdict::kSecondSender;
   }
   heard_ = now;
-  // The same number again is a repetition (lockstep asks again), however long it took; a lower one after a
-  // silence is a log that is played again.
+  // The same number again is a repetition (lockstep asks again), however long ago it came; a lower number
+  // after a silence is a log being played again.
   if (session != *session_ || (sequence < sequence_ && silent)) {
     session_ = session;
     sequence_ = sequence;

@@ -76,7 +76,7 @@ bool LogReader::Next(LogEvent& event) {
   if (!wrong.empty()) ThrowDamaged(name_, offset_, index_, wrong);
   const int64_t end = EndOf(event);
   if (!LogEventMayBeginAt(file_, end)) {
-    // A damaged length shows only by what follows; the event before is not to be trusted either.
+    // Only what follows an event reveals a damaged length; then the event itself cannot be trusted either.
     LogEvent next;
     ThrowDamaged(name_, end, index_ + 1, ParseLogEvent(file_, end, next));
   }

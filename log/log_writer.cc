@@ -9,7 +9,7 @@ namespace hydro::log {
 namespace {
 constexpr size_t kBufferSize = 1u << 20;
 
-// How many of the first `size` bytes of a buffer of events belong to events that are whole in them.
+// How many of the first `size` bytes of a buffer of events belong to events that lie whole within them.
 size_t WholeEvents(const uint8_t* buffer, size_t size) {
   size_t whole = 0;
   while (size - whole >= kLogHeaderSize) {
@@ -33,7 +33,7 @@ LogWriter::~LogWriter() {
   try {
     Flush();
   } catch (const WriteError&) {
-    // A destructor has nobody to tell; whoever wants to know calls Flush() or Finish().
+    // A destructor cannot report errors; a caller who wants to know calls Flush() or Finish().
   }
 }
 
@@ -79,8 +79,8 @@ void LogWriter::Flush() {
   try {
     while (done < used_) done += file_.WriteSome(buffer_.get() + done, used_ - done);
   } catch (const WriteError&) {
-    // What did reach the file must not be written twice when the caller tries again, and an event of which
-    // only a part did would make the log unreadable.
+    // Bytes that did reach the file must not be written twice when the caller tries again, and an event of
+    // which only a part did would make the log unreadable.
     const size_t whole = WholeEvents(buffer_.get(), done);
     if (file_.TakeBack(done - whole)) done = whole;
     std::memmove(buffer_.get(), buffer_.get() + done, used_ - done);

@@ -22,7 +22,7 @@ class Scanner {
  public:
   explicit Scanner(const MappedFile& file) : file_(file) { StoreBigEndian32(kLogSyncWord, sync_); }
 
-  // The first event at `from` or after that can be kept.
+  // The first event at or after `from` that can be kept.
   std::optional<LogEvent> NextToKeep(int64_t from) const {
     for (int64_t offset = NextSync(from); offset < size(); offset = NextSync(offset + 1)) {
       LogEvent event;
@@ -54,7 +54,7 @@ class Scanner {
     return std::nullopt;
   }
 
-  // By their numbers, which in a damaged file may be any.
+  // By their numbers, which may be anything in a damaged file.
   static bool Follows(const LogEvent& next, const LogEvent& event) {
     return static_cast<uint64_t>(next.number) == static_cast<uint64_t>(event.number) + 1;
   }
@@ -63,11 +63,10 @@ class Scanner {
     const int64_t end = EndOf(event);
     LogEvent next;
     if (Parses(end, next) && Follows(next, event)) return true;
-    // An event that was torn, after which more were appended, and one whose length is too large contain
-    // others.
+    // A torn event followed by appended ones contains others, and so does one whose length is too large.
     if (NextSound(event.offset + 4, end).has_value()) return false;
     if (LogEventMayBeginAt(file_, end)) return true;
-    // What follows is damaged: either that alone, or this event's length is too small.
+    // The bytes that follow are damaged: either those alone, or this event's length is too small.
     if (const MessageKind* kind = KindOfChannel(event.channel)) return kind->decodes(event);
     const std::optional<LogEvent> following = NextSound(end, size());
     return !following.has_value() || !Follows(*following, event);
@@ -82,7 +81,7 @@ struct KeptEvent {
   int64_t end;
 };
 
-// Moves events that are no whole message, on channels where others are, from `kept` to `lost`.
+// Moves incomplete messages, on channels where others are complete, from `kept` to `lost`.
 void DropUndecodable(const MappedFile& file, std::vector<KeptEvent>& kept, std::vector<LostBytes>& lost) {
   std::map<std::string_view, const MessageKind*> decodable;
   std::vector<size_t> undecodable;
@@ -101,7 +100,7 @@ void DropUndecodable(const MappedFile& file, std::vector<KeptEvent>& kept, std::
     const KeptEvent place = kept[*k];
     ParseLogEvent(file, place.begin, event);
     const auto kind = decodable.find(event.channel);
-    if (kind == decodable.end()) continue;  // all are: another version's, not damaged
+    if (kind == decodable.end()) continue;  // none is whole: another version's, not damaged
     lost.push_back(
         {place.begin, place.end,
          "an event on " + std::string(event.channel) + " that is not a whole " + kind->second->type});
@@ -162,7 +161,7 @@ RepairResult RepairInPlace(const std::string& file) {
   RepairResult result = RepairLog(file, "");
   if (result.lost.empty()) return result;
   const std::string damaged = file + ".damaged";
-  // A second name instead of a new one: whatever happens now, there is a log under the first.
+  // A second name rather than a new one: whatever happens now, a log exists under the first.
   if (link(file.c_str(), damaged.c_str()) != 0) {
     throw InputError(damaged + ": cannot be created: " + std::strerror(errno) +
                      "; a name that is free for the damaged log, or -o, is needed");

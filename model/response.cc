@@ -24,7 +24,7 @@ NumbersOf<T> NumbersAs(const NumbersOf<double>& numbers) {
   return result;
 }
 
-// The state and mode that a response starts in, from the base states `base`.
+// The initial state and mode of a response, from the base states `base`.
 template <class T>
 Mode StartFrom(Equations* equations, const NumbersOf<T>& numbers, double time, const T* base, T* state) {
   const EquationData& data = equations->data();
@@ -40,7 +40,7 @@ Mode StartFrom(Equations* equations, const NumbersOf<T>& numbers, double time, c
   equations->PassStop(time);
   evaluate();
   FindMargins<Form::kGeneral, T>(data, numbers, mode, terms, margin);
-  // Whether an effect has valves of its own shows in the margins: an ideal one's is p - p_3.
+  // The margins show whether an effect has valves of its own: an ideal valve's margin is p - p_3.
   if (ValueOf(margin[kValve1Switch]) < 0) state[kP1] = terms.p_3;
   if (ValueOf(margin[kValve2Switch]) < 0) state[kP2] = terms.p_3;
   evaluate();
@@ -54,10 +54,10 @@ Mode StartFrom(Equations* equations, const NumbersOf<T>& numbers, double time, c
   return mode;
 }
 
-// How many steps a pass may take in all: a model far too stiff must not take hours.
+// How many steps a pass may take in all, so that a far too stiff model does not take hours.
 int64_t MostSteps(const Stimulus& stimulus, double relative_tolerance) {
   const double duration = stimulus.time.back() - stimulus.time.front();
-  // The steps of a fourth-order method are as the fourth root of its error.
+  // The step of a fourth-order method scales with the fourth root of its error.
   const double finer = std::max(1.0, std::pow(1e-6 / relative_tolerance, 0.25));
   return static_cast<int64_t>(finer * (20 * static_cast<double>(stimulus.time.size()) + 500 * duration)) +
          1000;
@@ -75,7 +75,7 @@ void Seed(const std::vector<Unknown>& unknowns, size_t first, NumbersOf<Jet>* nu
   }
 }
 
-// Simulates once with unknowns [first, first + kJetWidth) as directions; none when T is double.
+// Simulates once with unknowns [first, first + kJetWidth) as directions; with none when T is double.
 template <class T>
 void Pass(const ModelDescription& model, const Stimulus& stimulus, const StartState& start,
           const std::vector<Unknown>& unknowns, size_t first, const ResponseOptions& options,

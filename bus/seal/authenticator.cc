@@ -12,7 +12,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-// A recording that is played fast must not make us send equally fast.
+// A recording played fast must not make us send equally fast.
 constexpr auto kQuestionPeriod = 10ms;
 
 // Bounds on memory. Only holders of the key can fill the first; in the second, new entries replace the
@@ -71,7 +71,7 @@ Authenticator::Opened Authenticator::Open(std::string_view channel, const void* 
 
   const auto sender = admitted_.find(seal.session);
   if (sender == admitted_.end()) {
-    // An introduction may be the very proof that is awaited.
+    // An introduction may be the very proof that we await.
     if (*index != 0 && WaitsTooLong(seal.session, now)) {
       Opened opened = Refuse(&RefusedMessages::unknown_sender, channel, size);
       opened.session = seal.session;
@@ -112,7 +112,7 @@ std::optional<introduction_t> Authenticator::Hear(const introduction_t& introduc
   if (opened.session == session_) return std::nullopt;
   const bool answers_us = introduction.answers == session_;
   if (answers_us && !admitted_.contains(opened.session) && admitted_.size() < kMostAdmitted) {
-    // Nothing proves that what it sent before is new.
+    // Nothing proves that what the sender sent before is new.
     admitted_[opened.session].fill(opened.counter);
     waiting_.erase(opened.session);
     *admitted = true;

@@ -32,7 +32,7 @@ class File {
   int fd_;
 };
 
-// Text that holds a key: wiped on destruction.
+// Text that holds a key, wiped on destruction.
 class SecretText {
  public:
   SecretText() = default;

@@ -12,8 +12,7 @@ static_assert(kSealTagSize >= static_cast<int>(crypto_generichash_BYTES_MIN));
 static_assert(kBusKeySize >= crypto_generichash_KEYBYTES_MIN &&
               kBusKeySize <= crypto_generichash_KEYBYTES_MAX);
 
-constexpr std::string_view kPurpose =
-    "hydro message seal 1";  // keeps this use of the key apart from any other
+constexpr std::string_view kPurpose = "hydro message seal 1";  // separates this use of the key from any other
 
 void StoreBigEndian(uint64_t value, uint8_t* out) {
   for (int i = 0; i < 8; ++i) out[i] = static_cast<uint8_t>(value >> (56 - 8 * i));
@@ -32,7 +31,7 @@ const uint8_t* Bytes(std::string_view text) { return reinterpret_cast<const uint
 std::array<uint8_t, kSealTagSize> SealTag(const std::array<uint8_t, kBusKeySize>& key,
                                           std::string_view channel, int64_t session, uint64_t counter,
                                           const void* message, int size) {
-  // Lengths first: no two different inputs run together into the same bytes.
+  // Lengths first, so that no two different inputs give the same bytes.
   std::array<uint8_t, 32> numbers{};
   StoreBigEndian(channel.size(), numbers.data());
   StoreBigEndian(static_cast<uint64_t>(size), numbers.data() + 8);

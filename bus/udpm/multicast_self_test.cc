@@ -38,7 +38,7 @@ class Socket {
 
 [[noreturn]] void Fail(const UdpmUrl& url, const std::string& what) {
   UdpmUrl shown = url;
-  shown.recv_buf_size = 0;  // not what the user wrote, and not the cause
+  shown.recv_buf_size = 0;  // the user did not write it, and it is not the cause
   throw BusError("multicast does not work for " + shown.ToString() + ": " + what);
 }
 
@@ -51,8 +51,8 @@ void SetOption(int fd, int level, int option, const Value& value) {
   setsockopt(fd, level, option, &value, sizeof value);
 }
 
-// A packet in LCM's format, on the channel of LCM's own self-test so that no receiver is surprised by it,
-// with random bytes by which we recognise it.
+// A packet in LCM's format, on the channel of LCM's own self-test so that it surprises no receiver, with
+// random bytes by which we recognise it.
 std::vector<uint8_t> MakeProbe() {
   constexpr char kHeader[] = "LC02\0\0\0\0LCM_SELF_TEST";  // magic, sequence number, channel with its final 0
   std::vector<uint8_t> probe(kHeader, kHeader + sizeof kHeader);
@@ -101,7 +101,7 @@ int TestMulticast(const UdpmUrl& url, std::chrono::milliseconds timeout) {
   const auto deadline = std::chrono::steady_clock::now() + timeout;
   std::vector<uint8_t> packet(probe.size() + 1);
   while (true) {
-    // Sent repeatedly, as a busy machine may lose a packet.
+    // Sent repeatedly, because a busy machine may lose a packet.
     if (send(sender.fd(), probe.data(), probe.size(), 0) < 0) {
       FailErrno(url, "cannot send to the group", kFirewallCure);
     }

@@ -18,7 +18,7 @@ std::unique_ptr<UdpmBus> OpenUdpmBus(const std::string& url, std::unique_ptr<Aut
   UdpmUrl parsed = ParseUdpmUrl(url);
   if (parsed.recv_buf_size == 0) parsed.recv_buf_size = kReceiveBufferBytes;
   const UdpmBus::ReceiveBuffer buffer{parsed.recv_buf_size, TestMulticast(parsed)};
-  // LCM prints several lines when it gets less than it asks for: we know what it will get.
+  // LCM prints several lines when it gets less than it asks for, so we ask for what we know it will get.
   parsed.recv_buf_size = std::min(buffer.asked, buffer.given);
   if (receiving == Receiving::kDirect) {
     return std::make_unique<DirectUdpmBus>(parsed, std::move(authenticator), buffer);

@@ -10,8 +10,8 @@
 namespace hydro::bus {
 namespace {
 
-// While it lives, threads that are created inherit a mask in which every signal is blocked: signals must
-// reach the application's thread, or HandleUntil() would not notice them.
+// While it lives, new threads inherit a mask that blocks every signal: signals must reach the application's
+// thread, or HandleUntil() would not notice them.
 class SignalsBlocked {
  public:
   SignalsBlocked() {
@@ -27,7 +27,7 @@ class SignalsBlocked {
   sigset_t before_;
 };
 
-// LCM takes a channel to subscribe to as a regular expression.
+// LCM treats the channel of a subscription as a regular expression.
 std::string EscapeRegex(const std::string& channel) {
   std::string pattern;
   for (const char c : channel) {
@@ -51,10 +51,10 @@ QueuedUdpmBus::QueuedUdpmBus(const std::string& lcm_url, std::unique_ptr<Authent
     lcm_destroy(lcm_);
     throw BusError("LCM's self test failed for " + lcm_url + "; see Troubleshooting in README.md");
   }
-  // LCM counts for each subscription how many messages wait, and takes one off for each that is handled and
-  // matches, even one that was queued before the subscription was made; then the last of a burst is never
-  // delivered. Its self test leaves such messages, those of other processes included: take them out before
-  // anybody subscribes.
+  // For each subscription LCM counts the waiting messages, and subtracts one for each handled message that
+  // matches, even one queued before the subscription was made; then the last message of a burst is never
+  // delivered. LCM's self test leaves such messages, including those of other processes: take them out before
+  // anyone subscribes.
   while (Waits()) {
     if (lcm_handle(lcm_) != 0) throw BusError("LCM cannot receive any more");
   }
@@ -68,7 +68,7 @@ bool QueuedUdpmBus::Waits() const {
 }
 
 UdpmBus::Outcome QueuedUdpmBus::HandleNext() {
-  if (!Waits()) return Outcome::kNoneWaited;  // lcm_handle() would wait
+  if (!Waits()) return Outcome::kNoneWaited;  // lcm_handle() would block
   seen_ = false;
   outcome_ = Outcome::kPassedOver;
   if (lcm_handle(lcm_) != 0) throw BusError("LCM cannot receive any more");

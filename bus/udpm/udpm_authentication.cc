@@ -1,4 +1,4 @@
-// What UdpmBus does with messages that are authenticated (authenticator.h).
+// How UdpmBus handles authenticated messages (authenticator.h).
 #include <utility>
 
 #include "bus/udpm/udpm_bus.h"
@@ -6,15 +6,15 @@
 namespace hydro::bus {
 namespace {
 
-// A refused message is still recorded, under a name that nobody takes for the real channel.
+// A refused message is still recorded, under a name that no one mistakes for the real channel.
 constexpr const char* kRefusedPrefix = "REFUSED_";
 
-// At most so many messages wait for their senders to prove themselves.
+// How many messages may wait for their senders to prove themselves.
 constexpr size_t kMostHeld = 1024;
 
 }  // namespace
 
-// Not before everybody has subscribed: a subscription to all channels that is made while introductions wait
+// Not before everyone has subscribed: a subscription to all channels that is made while introductions wait
 // would meet LCM's miscount (queued_udpm_bus.cc).
 void UdpmBus::StartIntroductions() {
   introduced_ = true;
@@ -23,7 +23,7 @@ void UdpmBus::StartIntroductions() {
   Publish(channel, authenticator_->Greeting());
 }
 
-// How much of the message handlers may have: its size without the seal; nothing when they may not have it.
+// How much of the message handlers may see: its size without the seal, or nothing when they must not see it.
 std::optional<int> UdpmBus::Authenticate(const RawMessage& arrived) {
   using Verdict = Authenticator::Verdict;
   const auto now = std::chrono::steady_clock::now();

@@ -39,7 +39,7 @@ void CheckChannel(const std::string& channel) {
   }
 }
 
-// The network may come back: it has worked before (OpenUdpmBus() has seen to that).
+// The network may come back: it has worked before (OpenUdpmBus() checked that).
 bool IsPassing(int error) {
   return error == ENETUNREACH || error == ENETDOWN || error == EHOSTUNREACH || error == EADDRNOTAVAIL ||
          error == ENOBUFS || error == EPERM;  // the last: a firewall
@@ -101,7 +101,7 @@ void UdpmBus::ListenOnce(const std::string& channel) {
 UdpmBus::Outcome UdpmBus::Deliver(const RawMessage& arrived) {
   RawMessage message = arrived;
   if (message.channel == kLcmSelfTest) return Outcome::kPassedOver;
-  bool introduction = false;  // the bus's own business, and for the record
+  bool introduction = false;  // for the bus itself and the record
   if (authenticator_ != nullptr) {
     const std::optional<int> plain_size = Authenticate(message);
     if (!plain_size) return Outcome::kPassedOver;
@@ -109,7 +109,7 @@ UdpmBus::Outcome UdpmBus::Deliver(const RawMessage& arrived) {
     introduction = message.channel == authenticator_->introduction_channel();
   }
   Outcome outcome = Outcome::kPassedOver;
-  // By index: a handler may subscribe. What it adds does not get this message.
+  // By index, because a handler may subscribe. New subscriptions do not get this message.
   const size_t count = subscriptions_.size();
   for (size_t i = 0; i < count; ++i) {
     Subscription& subscription = subscriptions_[i];
@@ -124,7 +124,7 @@ UdpmBus::Outcome UdpmBus::Deliver(const RawMessage& arrived) {
   return outcome;
 }
 
-// False: it cannot be decoded.
+// False: the message cannot be decoded.
 bool UdpmBus::DeliverTyped(const RawMessage& message, Subscription* subscription) {
   if (!subscription->type->decode_into(subscription->message.get(), message.data, message.size)) {
     ++undecodable_;
@@ -160,7 +160,7 @@ void UdpmBus::PublishTyped(const std::string& channel, const MessageType& type, 
 void UdpmBus::SendOrCount(const std::string& channel, const void* data, int size) {
   if (Send(channel, data, size)) return;
   if (!IsPassing(errno)) throw BusError("LCM cannot publish on " + channel + ": " + std::strerror(errno));
-  ++unsent_;  // as if it were lost on its way: whoever waits for it has a watchdog
+  ++unsent_;  // as if lost on its way: whoever waits for it has a watchdog
 }
 
 int UdpmBus::HandleUntil(TimePoint deadline) {
@@ -169,7 +169,7 @@ int UdpmBus::HandleUntil(TimePoint deadline) {
   if (!held_.empty()) GiveUpHeld();
   int handled = 0;
   for (int seen = 0; seen < kMostPerCall; ++seen) {
-    // Once something was handled, only what is there already counts.
+    // Once a message has been handled, only those already waiting count.
     if (handled == 0 && WaitReadable(fd(), deadline) != Wait::kReadable) break;
     const Outcome outcome = HandleNext();
     if (outcome == Outcome::kHandled) ++handled;

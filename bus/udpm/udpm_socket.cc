@@ -29,8 +29,8 @@ void Store(uint32_t value, size_t size, uint8_t* bytes) {
   for (size_t i = 0; i < size; ++i) bytes[i] = static_cast<uint8_t>(value >> (8 * (size - 1 - i)));
 }
 
-// Names the destination each time: a connected socket keeps its source address, and would silently drop what
-// it sends when the interface of that address is down.
+// Names the destination each time: a connected socket keeps its source address, and silently drops packets
+// while the interface of that address is down.
 bool SendAll(int fd, const sockaddr_in& destination, iovec* parts, size_t count) {
   msghdr message{};
   message.msg_name = const_cast<sockaddr_in*>(&destination);
@@ -108,7 +108,7 @@ bool UdpmSocket::Send(std::string_view channel, const void* data, size_t size) {
 }
 
 bool UdpmSocket::SendFragments(std::string_view channel, const uint8_t* data, size_t size) {
-  // As LCM does: every fragment but the last has the largest size allowed, and the first also holds the
+  // As in LCM, every fragment but the last has the largest size allowed, and the first also holds the
   // channel.
   const size_t fragments = (channel.size() + 1 + size + kLcmLargestFragment - 1) / kLcmLargestFragment;
   if (fragments > 65535) {

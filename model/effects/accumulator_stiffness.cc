@@ -1,9 +1,9 @@
 // accumulator.stiffness: p3 rises by `stiffness` per volume returned to the accumulator, and falls by as much
 // per volume that the one-way valves take from it. One state: p3, which starts at the base parameter p_3.
 //
-// An open ideal valve holds its side at the moving p3, and passes the flow that this takes,
+// An open ideal valve holds its side at the moving p3 and passes the flow that this takes,
 //   u = (V/beta) p3' + flow out of the side = (V/beta)(p3' - free rate),
-// so that p3' = stiffness (flow into the accumulator - sum of u) is linear in p3' and is solved for it.
+// so p3' = stiffness (flow into the accumulator - sum of u) is linear in p3' and is solved for it.
 
 #include "model/effects/effect.h"
 

@@ -1,5 +1,5 @@
 // amp.delay: T(t) = k_1 v(t - delay). The voltage is held between commands, so a delayed voltage changes at
-// times known beforehand.
+// times that are known in advance.
 
 #include <cstddef>
 #include <vector>

@@ -1,9 +1,9 @@
-// arm.flexure: a spring and damper between actuator and arm. The actuator's shaft has no mass of its own, so
-// the torque that the pressures give it is what spring and damper pass on to the arm:
+// arm.flexure: a spring and damper between actuator and arm. The actuator's shaft has no inertia of its own,
+// so spring and damper pass on to the arm exactly the torque that the pressures give the shaft:
 //   k_2 dp = stiffness (a - alpha) + damping (a' - alpha'),
 // from which a' follows. One state: a, the angle of the actuator's shaft, on which V_1, V_2 and the flow c a'
 // depend. The arm's sensor reads alpha, and friction (actuator.seal_friction) acts on the arm. A clamped or
-// driven shaft is held at the actuator, and the effect does nothing.
+// driven shaft is held at the actuator; the effect then does nothing.
 
 #include "model/effects/effect.h"
 

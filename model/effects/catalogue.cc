@@ -15,7 +15,7 @@ int Count(const EffectInfo& info, Role role) {
                     [&](const ParameterInfo& parameter) { return parameter.role == role; }));
 }
 
-// "" or what is wrong with a parameter by itself.
+// What is wrong with a parameter by itself, or "".
 std::string Fault(const ParameterInfo& parameter) {
   if (parameter.name.empty() || parameter.unit.empty() || parameter.meaning.empty()) {
     return "needs a name, a unit (\"1\" where it has none) and a meaning";
@@ -51,7 +51,7 @@ std::vector<CatalogueEntry>& Added() {
 }
 std::atomic<bool> catalogue_is_used = false;
 
-// Put together when it is first used, and never changed after: references into it stay valid.
+// Built at the first use and never changed afterwards: references into it stay valid.
 const Catalogue& TheCatalogue() {
   static const Catalogue catalogue = [] {
     catalogue_is_used = true;

@@ -14,7 +14,7 @@ namespace {
 
 class EntrainedAir : public EffectOf<EntrainedAir> {
  public:
-  // After every property of the liquid is known.
+  // Applied when every property of the liquid is known.
   template <class T>
   void OwnTorquesAndFlows(Terms<T>& x) const {
     const double atmosphere = Atmosphere(*x.parameters);
@@ -26,14 +26,14 @@ class EntrainedAir : public EffectOf<EntrainedAir> {
   static constexpr double kExponent = 1.4;
 
   // The only number with a unit in the equations: psi as in the paper, or Pa. Liquids have a beta near 2e5
-  // psi, which is 1.4e9 Pa: 1e7 separates the two.
+  // psi, which is 1.4e9 Pa, so 1e7 separates the two.
   template <class T>
   static double Atmosphere(const ParametersOf<T>& base) {
     return base.beta > T(1e7) ? 101325 : 14.6959;
   }
 
-  // Of air that has the volume 1 at atmospheric pressure. Below p = 0 the absolute pressure approaches 0
-  // smoothly and stays above it, so that a vacuum is soft but not an error; at p = 100 psi this adds 1e-5.
+  // For air that has the volume 1 at atmospheric pressure. Below p = 0 the absolute pressure approaches 0
+  // smoothly and stays above it, so a vacuum is soft but not an error; at p = 100 psi this adds 1e-5.
   template <class T>
   static T Compressibility(const T& p, double atmosphere) {
     using std::pow;
@@ -53,8 +53,8 @@ class EntrainedAir : public EffectOf<EntrainedAir> {
                       "atmospheric "
                       "pressure, compressed polytropically",
           .confused_with = "parameter beta, fluid.stiffening",
-          // The less air there is, the more a little of it does: a fit that starts from none does not find 1
-          // part in 500.
+          // The less air there is, the more each bit of it matters: a fit that starts from none does not find
+          // 1 part in 500.
           .parameters = {{.name = "air_fraction",
                           .unit = "1",
                           .max = 1,

@@ -1,4 +1,4 @@
-// line.wave: on each side a line with inertia lies between the pump's volume and the actuator's.
+// line.wave: on each side, a line with inertia lies between the pump's volume and the actuator's.
 //   pump side:      p_p' = -(beta/V_p) (q + Q), with q of eqs. (11), (12) at the pump's pressures and
 //                   V_p = volume_fraction V_ms
 //   line:           I Q' = p_p - p - R Q

@@ -19,7 +19,7 @@ class Cogging : public EffectOf<Cogging> {
 
   void AddPower(const Terms<double>& x, const double* /*rate*/, Power* power) const override {
     const double stored = Torque(x) * x.motor_speed;
-    power->viscous -= stored;  // where it is as part of the load
+    power->viscous -= stored;  // which contains it as part of the load
     power->effects_stored += stored;
   }
 

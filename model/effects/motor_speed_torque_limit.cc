@@ -69,7 +69,7 @@ class SpeedTorqueLimit : public EffectOf<SpeedTorqueLimit> {
     if (position != 0) return position > 0 ? 1 : -1;
     return x.torque_asked < T(0.0) ? -1 : 1;
   }
-  // Against the speed's direction it is above T_pmax, so that it does not limit there.
+  // Against the direction of the speed, the line lies above T_pmax and so does not limit.
   template <class T>
   static T Line(const Terms<T>& x, double side) {
     return x.parameters->T_pmax * (1.0 - side * x.motor_speed / x.own[0]);

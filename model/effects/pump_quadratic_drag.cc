@@ -10,7 +10,7 @@ class QuadraticDrag : public EffectOf<QuadraticDrag> {
  public:
   template <class T>
   void OwnTorquesAndFlows(Terms<T>& x) const {
-    // The mode knows the direction of slip, so the term stays smooth where |theta'| is not.
+    // The mode knows the direction of slip, so the term stays smooth although |theta'| is not.
     x.load += x.own[0] * static_cast<double>(x.mode->pump) * x.motor_speed * x.motor_speed;
   }
 };

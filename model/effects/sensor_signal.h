@@ -1,4 +1,4 @@
-// The channels that sensor.sign and sensor.skew can be about, by name.
+// The channels that sensor.sign and sensor.skew can apply to, by name.
 #pragma once
 
 #include <string>

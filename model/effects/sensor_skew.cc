@@ -1,5 +1,5 @@
-// sensor.skew: one channel is recorded late: it reads what it would have read `delay` earlier, before the
-// start the first value. The equations do not change.
+// sensor.skew: one channel is recorded late: it reads what it would have read `delay` earlier or, before the
+// start, the first value. The equations do not change.
 
 #include "model/effects/effect.h"
 #include "model/effects/sensor_signal.h"

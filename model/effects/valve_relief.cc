@@ -1,5 +1,5 @@
-// valve.relief: flow conductance (p - set) out of a side above `set`, to the accumulator. The valves sit at
-// the actuator, as the one-way valves do. One switch for each side: 0 closed, 1 open.
+// valve.relief: flow conductance (p - set) out of a side above `set`, to the accumulator. The valves are at
+// the actuator, as the one-way valves are. One switch for each side: 0 closed, 1 open.
 
 #include "model/effects/effect.h"
 

@@ -28,7 +28,7 @@ void CheckBounds(const ParameterInfo& info, double value, const std::string& own
                    (std::isfinite(info.max) ? " to " + Number(info.max) : ""));
 }
 
-// Not inlined: once for all that asks for derivatives.
+// Not inlined: one copy serves every caller that needs derivatives.
 [[gnu::noinline]] void RatesWithDerivatives(const EquationData& m, double time, const Jet& voltage,
                                             const Mode& mode, const Jet* state, bool voltage_acts,
                                             Jet* rate) {
@@ -37,7 +37,7 @@ void CheckBounds(const ParameterInfo& info, double value, const std::string& own
   EvaluateTerms<Form::kGeneral, Jet>(m, *m.constants, time, voltage, mode, state, rate, x);
 }
 
-// The same numbers as scalars that could carry derivatives, and carry none.
+// The same numbers as scalars of type Jet, without derivatives.
 std::shared_ptr<const NumbersOf<Jet>> WithoutDerivatives(const EquationData& data) {
   Parameters parameters = data.parameters;
   auto constants = std::make_shared<NumbersOf<Jet>>();
@@ -49,7 +49,7 @@ std::shared_ptr<const NumbersOf<Jet>> WithoutDerivatives(const EquationData& dat
   return constants;
 }
 
-// Throws ModelError for a parameter that is missing, not known as a name, or outside its bounds.
+// Throws ModelError for a parameter that is missing, has an unknown name, or lies outside its bounds.
 void CheckParameters(const EffectDescription& effect, const EffectInfo& known) {
   for (const ParameterInfo& info : known.parameters) {
     const std::string owner = effect.id + ".";

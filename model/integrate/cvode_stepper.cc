@@ -8,8 +8,8 @@ namespace hydro::model {
 
 namespace {
 
-// Backward differences let more of the local errors add up than the other paths do; with this share of the
-// tolerance the three agree alike.
+// Backward differences accumulate more of the local errors than the other paths do. With this share of the
+// tolerance all three agree equally well.
 constexpr double kErrorShare = 0.03;
 
 int SundialsJacobian(double time, N_Vector state, N_Vector, SUNMatrix jacobian, void* data, N_Vector,
@@ -77,7 +77,7 @@ void CvodeStepper::Step(const Point& now, double stop, Point* next) {
   double time = now.time;
   int flag = CVodeSetStopTime(memory_, stop);
   if (flag == CV_SUCCESS) flag = CVode(memory_, stop, state_.get(), &time, CV_ONE_STEP);
-  if (flag == CV_ERR_FAILURE || flag == CV_CONV_FAILURE) {  // the history may be of no use after a jump
+  if (flag == CV_ERR_FAILURE || flag == CV_CONV_FAILURE) {  // after a jump the history may be useless
     Restart(now);
     flag = CVodeSetStopTime(memory_, stop);
     if (flag == CV_SUCCESS) flag = CVode(memory_, stop, state_.get(), &time, CV_ONE_STEP);
@@ -108,7 +108,7 @@ void CvodeStepper::TakeState(const Point& now, Point* at) const {
     at->state[kMotorSpeed] = now.state[kMotorSpeed];
   }
   const EquationData& data = problem_.equations->data();
-  // What an open valve holds at a p_3 that moves is at that p_3.
+  // A pressure that an open valve holds at a moving p_3 is set to that p_3.
   const auto held = [&](int i) { return data.p_3_state < 0 ? now.state[i] : at->state[data.p_3_state]; };
   if (mode.valve_1) at->state[kP1] = held(kP1);
   if (mode.valve_2 || (data.bypass && mode.valve_1)) at->state[kP2] = held(kP2);
