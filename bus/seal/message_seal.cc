@@ -12,7 +12,8 @@ static_assert(kSealTagSize >= static_cast<int>(crypto_generichash_BYTES_MIN));
 static_assert(kBusKeySize >= crypto_generichash_KEYBYTES_MIN &&
               kBusKeySize <= crypto_generichash_KEYBYTES_MAX);
 
-constexpr std::string_view kPurpose = "hydro message seal 1";  // separates this use of the key from any other
+constexpr std::string_view kPurpose =
+    "hydro message seal 1";  // separates this use of the key from all its other uses
 
 void StoreBigEndian(uint64_t value, uint8_t* out) {
   for (int i = 0; i < 8; ++i) out[i] = static_cast<uint8_t>(value >> (56 - 8 * i));
