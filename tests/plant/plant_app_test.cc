@@ -65,7 +65,7 @@ class PlantAppTest : public ::testing::Test {
     bus_.Publish("HYDRO_PRESSURE_COMMAND", c);
   }
 
-  // Answers every tick as both controllers would, the voltage being the tick's number in mV.
+  // Answers every tick as both controllers would; the voltage is the tick's number in mV.
   void AnswerAll() {
     on_state_ = [this](const state_t& s) {
       if (s.tick % 5 == 0) SendPressureCommand(s.tick);
@@ -117,7 +117,7 @@ TEST_F(PlantAppTest, LockstepWithoutDelay) {
 }
 
 // Tests that a pressure loop that does not answer ends a lockstep run with an error that names it, that the
-// unanswered state was sent again meanwhile, and that it took less than 2 s.
+// unanswered state is resent meanwhile, and that this takes less than 2 s.
 TEST_F(PlantAppTest, LockstepNamesAStalledPressureLoop) {
   on_state_ = [this](const state_t& s) {
     if (s.tick % 5 == 0) SendPressureCommand(s.tick);
@@ -132,14 +132,14 @@ TEST_F(PlantAppTest, LockstepNamesAStalledPressureLoop) {
   EXPECT_EQ(stops_[0].exit_code, 1);
 }
 
-// Tests that a position loop that does not answer is the one that is named.
+// Tests that a position loop that does not answer is the one named.
 TEST_F(PlantAppTest, LockstepNamesAStalledPositionLoop) {
   on_state_ = [this](const state_t& s) { SendVoltage(s.tick, 0); };
   EXPECT_EQ(Run(SmallStack()), 1);
   EXPECT_THAT(failure_, HasSubstr("position_ctrl has not answered tick 0"));
 }
 
-// Tests that a participant that says farewell in the middle of a lockstep run ends it at once, by name.
+// Tests that a participant that says farewell during a lockstep run ends it at once, by name.
 TEST_F(PlantAppTest, LockstepNamesWhoLeft) {
   on_state_ = [this](const state_t& s) {
     if (s.tick % 5 == 0) SendPressureCommand(s.tick);
@@ -158,7 +158,7 @@ TEST_F(PlantAppTest, LockstepNamesWhoLeft) {
   EXPECT_LT(clock_.Now().time_since_epoch(), std::chrono::milliseconds(200));
 }
 
-// Tests that a run does not start without its participants and says who is missing.
+// Tests that a run does not start without its participants and names those missing.
 TEST_F(PlantAppTest, NamesWhoIsNotReady) {
   const settings::StackConfig config = SmallStack();
   SimulatedRig rig(config);
@@ -200,8 +200,8 @@ TEST_F(PlantAppTest, LockstepWaitsForTheLogger) {
   EXPECT_LE(plant.tick(), 64);
 }
 
-// Tests that progress of a logger that was not there when the run began neither holds it up nor is kept: each
-// would be an entry that every tick looks at.
+// Tests that progress of a logger that was not there when the run began neither delays it nor is kept: each
+// would be an entry that every tick examines.
 TEST_F(PlantAppTest, LockstepIgnoresLoggersThatWereNotThere) {
   on_state_ = [this](const state_t& state) {
     for (int64_t i = 0; i < 10; ++i) {
@@ -229,9 +229,8 @@ TEST_F(PlantAppTest, RealtimeTakesTheNewestCommand) {
   EXPECT_TRUE(faults_.empty());
 }
 
-// Tests that a late wake-up integrates the time that was missed under the held command: the state after a gap
-// equals that of a run without the gap in which the same voltage was held, and says how many ticks were
-// skipped.
+// Tests that a late wake-up integrates the missed time under the held command: the state after a gap equals
+// that of a run without the gap in which the same voltage was held, and says how many ticks were skipped.
 TEST_F(PlantAppTest, LateWakeUpIntegratesWhatItMissed) {
   settings::StackConfig config = SmallStack();
   config.time.mode = settings::TimeMode::kRealtime;
@@ -264,8 +263,8 @@ TEST_F(PlantAppTest, LateWakeUpIntegratesWhatItMissed) {
   EXPECT_EQ(skipped, 51 - static_cast<int64_t>(states_.size()));
 }
 
-// Tests that in real time a silent pressure loop gives zero volts after the stale-input limit and a named
-// fault, and that the plant goes on and resumes when commands come again.
+// Tests that in real time a silent pressure loop gives zero volts and a named fault after the stale-input
+// limit, and that the plant goes on and resumes when commands come again.
 TEST_F(PlantAppTest, RealtimeStaleCommandGivesZeroVolts) {
   settings::StackConfig config = SmallStack();
   config.time.mode = settings::TimeMode::kRealtime;
@@ -286,8 +285,8 @@ TEST_F(PlantAppTest, RealtimeStaleCommandGivesZeroVolts) {
   EXPECT_FALSE(faults_[1].active);
 }
 
-// Tests that a pressure loop that was stopped and then works off the states that have piled up moves nothing
-// with answers to states older than the stale-input limit, however many it sends.
+// Tests that a pressure loop that was stopped and then works through piled-up states moves nothing with
+// answers to states older than the stale-input limit, however many it sends.
 TEST_F(PlantAppTest, RealtimeAnswersToOldStatesGiveZeroVolts) {
   settings::StackConfig config = SmallStack();
   config.time.mode = settings::TimeMode::kRealtime;
@@ -352,7 +351,7 @@ TEST_F(PlantAppTest, SecondCommandSenderGivesZeroVolts) {
   EXPECT_EQ(faults_[0].code, "second_motor_command_sender");
 }
 
-// Tests that a command from the future, as a log that is being played would send, is refused.
+// Tests that a command from the future, as a played log would send, is refused.
 TEST_F(PlantAppTest, FutureCommandIsRefused) {
   settings::StackConfig config = SmallStack();
   config.time.mode = settings::TimeMode::kRealtime;
@@ -363,8 +362,7 @@ TEST_F(PlantAppTest, FutureCommandIsRefused) {
   EXPECT_EQ(faults_[0].code, "future_motor_command");
 }
 
-// Tests that a command from the future also ends what acted before it, until a command that makes sense
-// comes.
+// Tests that a command from the future also ends what acted before it, until a sensible command comes.
 TEST_F(PlantAppTest, FutureCommandGivesZeroVolts) {
   settings::StackConfig config = SmallStack();
   config.time.mode = settings::TimeMode::kRealtime;
@@ -381,7 +379,7 @@ TEST_F(PlantAppTest, FutureCommandGivesZeroVolts) {
   EXPECT_FALSE(faults_[1].active);
 }
 
-// Tests that an arm that runs out of its volume ends the run with an error that names the angle.
+// Tests that an arm that leaves its volume ends the run with an error that names the angle.
 TEST_F(PlantAppTest, ModelErrorEndsTheRun) {
   settings::StackConfig config = SmallStack();
   config.model.arm_angle_rad = 0.84;
@@ -397,7 +395,7 @@ TEST_F(PlantAppTest, ModelErrorEndsTheRun) {
   EXPECT_LT(states_.back().tick, 20000);
 }
 
-// Tests that a configuration whose arm angle the model cannot have is bad input, not a failed run.
+// Tests that a configuration with an arm angle that the model cannot have is bad input, not a failed run.
 TEST_F(PlantAppTest, ImpossibleAngleIsBadInput) {
   settings::StackConfig config = SmallStack();
   config.model.arm_angle_rad = 1.5708;

@@ -1,4 +1,4 @@
-// PlantApp's faults on a simulated clock: what the end-to-end tests cannot do to a machine, and exact ticks.
+// PlantApp's faults on a simulated clock: what end-to-end tests cannot do to a machine, and exact ticks.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -40,7 +40,7 @@ class PlantFaultsTest : public ::testing::Test {
     StartAgain();
   }
 
-  // Starts another run, in which nothing is left of the one before.
+  // Starts another run, with nothing left of the one before.
   void StartAgain() {
     clock_ = DisturbedClock();
     bus_ = std::make_unique<bus::InProcessBus>(&clock_);
@@ -128,7 +128,7 @@ class PlantFaultsTest : public ::testing::Test {
   int64_t sequence_ = 0;
 };
 
-// Tests that a machine that was suspended ends the run at zero volts, in the next tick, with a latched fault.
+// Tests that suspending the machine ends the run at zero volts, in the next tick, with a latched fault.
 TEST_F(PlantFaultsTest, SuspendEndsTheRun) {
   on_state_ = [this](const state_t& s) {
     if (s.tick == 50) clock_.suspended = 3h;
@@ -195,7 +195,7 @@ TEST_F(PlantFaultsTest, FiveTicks) {
   ExpectVoltage(10, faults_[0].tick, 1.5);
 }
 
-// Tests that after it was stopped itself the plant acts on no command from before the stop.
+// Tests that after a stop of its own the plant obeys no command from before the stop.
 TEST_F(PlantFaultsTest, LatePlantWaitsForAFreshCommand) {
   config_.limits.stale_input_s = 0.02;
   int64_t awake = 0;
@@ -237,7 +237,7 @@ TEST_F(PlantFaultsTest, LimitsEndTheRun) {
   }
 }
 
-// Tests the rows of a re-arm: to another session, of an old tick, while the cause persists, and a good one.
+// Tests re-arm commands: to another session, of an old tick, while the cause persists, and a good one.
 TEST_F(PlantFaultsTest, Rearm) {
   config_.limits.rearm = settings::Rearm::kExplicit;
   config_.last_tick = 7000;
@@ -333,8 +333,8 @@ TEST_F(PlantFaultsTest, OtherStack) {
   EXPECT_EQ(states_.back().voltage, 1.5);
 }
 
-// Tests that a logger that falls silent is a warning, which ends when there is one again; and that the
-// plant's own silence is none of the logger's.
+// Tests that a logger that falls silent is a warning, which ends when there is one again, and that the
+// plant's own silence is not blamed on the logger.
 TEST_F(PlantFaultsTest, LoggerGone) {
   config_.last_tick = 3000;
   config_.limits.stale_logger_s = 0.5;

@@ -1,4 +1,4 @@
-// PlantApp on a rig that is not the simulated one: when it drives, when it does not, and how it ends.
+// PlantApp on a rig other than the simulated one: when it drives, when it does not, and how it ends.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -16,7 +16,7 @@ namespace {
 
 using testing::SmallStack;
 
-// Remembers what it was told; reads what the test says.
+// Remembers its calls; reads what the test sets.
 class RecordingRig : public Rig {
  public:
   std::string role() const override { return "driver"; }
@@ -91,7 +91,7 @@ class PlantRigTest : public ::testing::Test {
   std::string failure_;
 };
 
-// Tests that a run on any rig drives what was commanded, once at each tick, says who it is, and ends at zero.
+// Tests that a run on any rig drives what was commanded, once per tick, introduces itself, and ends at zero.
 TEST_F(PlantRigTest, DrivesCommands) {
   EXPECT_EQ(Run(), 0);
   EXPECT_EQ(rig_.driven.size(), 100u);
@@ -111,7 +111,7 @@ TEST_F(PlantRigTest, ZeroUntilTheFirstCommand) {
   for (const double voltage : rig_.driven) EXPECT_EQ(voltage, 0);
 }
 
-// Tests that nothing is driven at all while somebody is missing.
+// Tests that nothing is driven while somebody is missing.
 TEST_F(PlantRigTest, NothingBeforeTheRollIsComplete) {
   PlantApp app(bus_, clock_, config_, rig_);
   EXPECT_EQ(app.Run(), 1);
@@ -119,7 +119,7 @@ TEST_F(PlantRigTest, NothingBeforeTheRollIsComplete) {
   EXPECT_GE(rig_.zeros, 1);
 }
 
-// Tests that states tell the voltage that acts where the rig cuts it.
+// Tests that states report the voltage that acts where the rig cuts it.
 TEST_F(PlantRigTest, StatesTellTheVoltageThatActs) {
   voltage_ = 9;
   EXPECT_EQ(Run(), 0);
@@ -128,7 +128,7 @@ TEST_F(PlantRigTest, StatesTellTheVoltageThatActs) {
   EXPECT_GE(states_[7].command_tick, 0);
 }
 
-// Tests that faults of the rig's own give zero volts from that reading on, are named one by one, and end.
+// Tests that the rig's own faults give zero volts from that reading on, are named one by one, and end.
 TEST_F(PlantRigTest, RigFaults) {
   rig_.on_read = [this](int64_t tick) {
     rig_.faults_now.clear();

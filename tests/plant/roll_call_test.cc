@@ -20,7 +20,7 @@ process_status_t Status(const std::string& role, int64_t session, int8_t state) 
   return status;
 }
 
-// Tests that who is missing is known by role until it says that it is ready.
+// Tests that a missing participant is known by role until it says that it is ready.
 TEST(RollCallTest, NamesWhoIsMissing) {
   RollCall roll({"pressure_ctrl", "position_ctrl"});
   EXPECT_THAT(roll.Missing(), ElementsAre("pressure_ctrl", "position_ctrl"));
@@ -31,7 +31,7 @@ TEST(RollCallTest, NamesWhoIsMissing) {
   EXPECT_EQ(roll.left(), "");
 }
 
-// Tests that a participant that leaves is named, and that one of another run, never seen here, is not.
+// Tests that a participant that leaves is named, unless it belongs to another run and was never seen here.
 TEST(RollCallTest, NamesWhoLeft) {
   RollCall roll({"pressure_ctrl"});
   roll.Observe(Status("pressure_ctrl", 9, process_status_t::DONE));
@@ -42,8 +42,8 @@ TEST(RollCallTest, NamesWhoLeft) {
   EXPECT_THAT(roll.Missing(), ElementsAre("pressure_ctrl"));
 }
 
-// Tests that participants with one session, as on a simulated clock, are told apart by role; loggers are
-// known.
+// Tests that participants with one session, as on a simulated clock, are told apart by role, and that loggers
+// are known.
 TEST(RollCallTest, TellsRolesApart) {
   RollCall roll({"pressure_ctrl", "position_ctrl"});
   roll.Observe(Status("pressure_ctrl", 0, process_status_t::READY));
@@ -53,8 +53,8 @@ TEST(RollCallTest, TellsRolesApart) {
   EXPECT_THAT(roll.Loggers(), ElementsAre(5));
 }
 
-// Tests that of a flood of made-up loggers no more than a stack could have is kept, and that those that are
-// known still are heard.
+// Tests that of a flood of made-up loggers only as many as a stack could have are kept, and that the known
+// ones are still heard.
 TEST(RollCallTest, KeepsNoFlood) {
   RollCall roll({"pressure_ctrl"});
   roll.Observe(Status("pressure_ctrl", 1, process_status_t::READY));

@@ -43,8 +43,7 @@ TEST(SensorNoiseTest, IsUncorrelated) {
   EXPECT_NEAR(seeds / n, 0, five_sigma);
 }
 
-// Tests that noise depends on nothing but seed, tick and signal, has the size asked for and leaves the rest
-// alone.
+// Tests that noise depends only on seed, tick and signal, has the requested size and leaves the rest alone.
 TEST(SensorNoiseTest, ScalesAndLeavesTheRestAlone) {
   model::Measurement truth;
   truth.p1 = 100;
@@ -62,7 +61,7 @@ TEST(SensorNoiseTest, ScalesAndLeavesTheRestAlone) {
 }
 
 // Tests that a resolution rounds the noisy reading to its nearest multiple, each signal by its own, and that
-// the rounding of much smaller noise than the resolution hides it.
+// rounding hides noise much smaller than the resolution.
 TEST(SensorNoiseTest, RoundsToTheResolution) {
   model::Measurement truth;
   truth.p1 = 100.3;

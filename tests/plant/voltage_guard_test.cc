@@ -40,7 +40,7 @@ TEST(VoltageGuardTest, EveryCauseHasACode) {
   EXPECT_EQ(codes.size(), AllCauses().size());
 }
 
-// Tests, of each cause in each mode, the voltage of five ticks: before it, with it, when it has gone, and
+// Tests, for each cause in each mode, the voltage of five ticks: before it, with it, after it has gone, and
 // after a re-arm.
 TEST(VoltageGuardTest, TicksInVoltageOut) {
   for (const settings::Rearm rearm : {settings::Rearm::kRestart, settings::Rearm::kExplicit}) {
@@ -66,7 +66,7 @@ TEST(VoltageGuardTest, TicksInVoltageOut) {
   }
 }
 
-// Tests that nothing is released while any cause, be it another one, is present.
+// Tests that nothing is released while any cause, even another one, is present.
 TEST(VoltageGuardTest, ReleasesNothingWhileACauseStands) {
   VoltageGuard guard(settings::Rearm::kExplicit);
   guard.Set(Cause::kStaleCommand, true);
@@ -82,7 +82,7 @@ TEST(VoltageGuardTest, ReleasesNothingWhileACauseStands) {
   EXPECT_EQ(guard.Voltage(7), 7);
 }
 
-// Tests that zero volts stay zero volts for what is not a number, too.
+// Tests that zero volts stay zero volts even for a value that is not a number.
 TEST(VoltageGuardTest, HidesWhatIsNotANumber) {
   VoltageGuard guard(settings::Rearm::kRestart);
   guard.Set(Cause::kNonfiniteCommand, true);
@@ -124,7 +124,7 @@ TEST(FaultCodesTest, AreDocumented) {
   }
 }
 
-// Tests that a code that nobody knows is taken for one that zeroes the voltage.
+// Tests that an unknown code is assumed to zero the voltage.
 TEST(FaultCodesTest, UnknownIsTakenSeriously) {
   EXPECT_TRUE(process::ZeroesVoltage("what_is_this"));
   EXPECT_TRUE(process::ZeroesVoltage("pressure_limit"));

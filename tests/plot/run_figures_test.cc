@@ -34,7 +34,7 @@ TEST(RunFigures, ShowTheTable) {
   }
 }
 
-// Tests that a table of something else is refused with the column that it lacks.
+// Tests that any other table is refused, naming the column that it lacks.
 TEST(RunFigures, ColumnMissing) {
   tables::Table run = SmallRun();
   run.columns.pop_back();

@@ -142,7 +142,7 @@ TEST_F(PositionAppTest, NonFiniteAngleGivesZeroVolts) {
   EXPECT_FALSE(faults_.back().active);
 }
 
-// Tests that a state that is sent again gets the same answer again.
+// Tests that a resent state gets the same answer again.
 TEST_F(PositionAppTest, RepeatsTheAnswerToARepeatedState) {
   Start(WithReference(settings::ReferenceSignal::kArmAngle, 0));
   SendState(0, 0.1);
@@ -152,8 +152,8 @@ TEST_F(PositionAppTest, RepeatsTheAnswerToARepeatedState) {
   EXPECT_EQ(commands_[0].pressure_ref, commands_[1].pressure_ref);
 }
 
-// Tests that a sample that was overtaken by states that are no samples is answered, that one overtaken by a
-// newer sample is not, and that overtaken states repeat no answer.
+// Tests that a sample overtaken by states that are no samples is answered, that one overtaken by a newer
+// sample is not, and that overtaken states repeat no answer.
 TEST_F(PositionAppTest, OvertakenSamples) {
   Start(WithReference(settings::ReferenceSignal::kArmAngle, 0.1));
   for (const int64_t tick : {0, 1, 2, 3, 4, 6, 7, 5, 8, 6, 15, 10, 14, 20}) SendState(tick, 0);
@@ -166,7 +166,7 @@ TEST_F(PositionAppTest, OvertakenSamples) {
   EXPECT_THAT(numbers, ElementsAre(0, 1, 2, 3));
 }
 
-// Tests that a loop that leaves a continuing run does not leave its last pressure in force, and that at the
+// Tests that a loop that leaves a running stack does not leave its last pressure in force, and that at the
 // end of a run, when every process leaves, it sends no further command.
 TEST_F(PositionAppTest, LeavesWithZeroVolts) {
   Start(WithReference(settings::ReferenceSignal::kArmAngle, 0));

@@ -25,7 +25,7 @@ TEST(PositionLawTest, DerivativeOnErrorIsEquation17) {
   EXPECT_DOUBLE_EQ(law.Update(0.02, 0.1, 1), -100 * -0.08 - 3 / 0.005 * -0.1);
 }
 
-// Tests that with the derivative on the measurement a step of the reference does not kick.
+// Tests that with the derivative on the measurement a step of the reference causes no kick.
 TEST(PositionLawTest, DerivativeOnMeasurementDoesNotKick) {
   PositionLaw law(Settings(false));
   law.Update(0.02, 0, 1);
@@ -57,7 +57,7 @@ TEST(PositionLawTest, LimitsTheCommand) {
   EXPECT_EQ(law.Update(-1, 0, 1), 20);
 }
 
-// Tests the D/A converter: nearest of 2^bits levels, one level less on the positive side, nothing with 0
+// Tests the D/A converter: nearest of 2^bits levels, one level less on the positive side, no effect with 0
 // bits.
 TEST(QuantiseDacTest, RoundsToLevels) {
   EXPECT_EQ(QuantiseDac(123.456, 0, 100), 123.456);
@@ -68,7 +68,7 @@ TEST(QuantiseDacTest, RoundsToLevels) {
   EXPECT_DOUBLE_EQ(QuantiseDac(-5000, 12, 2048), -2048);
 }
 
-// Tests that the D/A's error is never more than half a level inside its range, over the range.
+// Tests that the D/A's error within its range never exceeds half a level.
 TEST(QuantiseDacTest, ErrorIsAtMostHalfALevel) {
   const double level = 2000.0 / 512;
   for (double value = -2000; value <= 2000 - level; value += 0.37) {

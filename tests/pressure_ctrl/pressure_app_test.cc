@@ -101,7 +101,7 @@ TEST_F(PressureAppTest, WithoutDelayTheSameTicksPressureCommandActs) {
   EXPECT_DOUBLE_EQ(commands_[0].voltage, Law(120));
 }
 
-// Tests that a due pressure command that comes after its state (another route through a network) changes
+// Tests that a due pressure command that arrives after its state (another route through a network) changes
 // nothing.
 TEST_F(PressureAppTest, LockstepResultDoesNotDependOnArrivalOrder) {
   Start(SmallStack());
@@ -113,7 +113,7 @@ TEST_F(PressureAppTest, LockstepResultDoesNotDependOnArrivalOrder) {
   EXPECT_DOUBLE_EQ(commands_[1].voltage, Law(120));
 }
 
-// Tests that a pressure command that comes early is not used early.
+// Tests that an early pressure command is not used early.
 TEST_F(PressureAppTest, EarlyPressureCommandWaits) {
   Start(SmallStack());
   SendPressure(0, 120);
@@ -122,7 +122,7 @@ TEST_F(PressureAppTest, EarlyPressureCommandWaits) {
   EXPECT_EQ(commands_[0].pressure_command_tick, -1);
 }
 
-// Tests that a state that is sent again gets the same answer again, bit for bit.
+// Tests that a resent state gets the same answer again, bit for bit.
 TEST_F(PressureAppTest, RepeatsTheAnswerToARepeatedState) {
   Start(SmallStack());
   SendState(State(0));
@@ -132,7 +132,7 @@ TEST_F(PressureAppTest, RepeatsTheAnswerToARepeatedState) {
   EXPECT_EQ(commands_[0].sequence, commands_[1].sequence);
 }
 
-// Tests that each non-finite measurement gives zero volts and a fault that goes when the measurement is good
+// Tests that each non-finite measurement gives zero volts and a fault that ends when the measurement is good
 // again.
 TEST_F(PressureAppTest, NonFiniteStateGivesZeroVolts) {
   Start(SmallStack());
@@ -179,8 +179,7 @@ TEST_F(PressureAppTest, OverflowOfTheLawGivesZeroVolts) {
   EXPECT_TRUE(faults_[0].active);
 }
 
-// Tests that a loop that is running announces itself again to a plant that was restarted and is looking for
-// it.
+// Tests that a running loop announces itself again to a restarted plant that is looking for it.
 TEST_F(PressureAppTest, AnswersTheRollCallOfARestartedPlant) {
   Start(SmallStack());
   int announcements = 0;
@@ -226,8 +225,8 @@ TEST_P(PressureLimitTest, Trips) {
 
 INSTANTIATE_TEST_SUITE_P(BothSides, PressureLimitTest, ::testing::Values(&state_t::p1, &state_t::p2));
 
-// Tests that in real time the last reference of a silent position loop is held for the stale-input limit,
-// falls linearly to zero within limits.pressure_ramp_s, and that the voltage is zero then: all counted in
+// Tests that in real time the last reference of a silent position loop is held for the stale-input limit and
+// falls linearly to zero within limits.pressure_ramp_s, and that the voltage is then zero: all counted in
 // ticks, so that a replay does the same. The loop resumes with the next pressure command.
 TEST_F(PressureAppTest, StalePressureReferenceGoesToZeroThenTheVoltage) {
   settings::StackConfig config = SmallStack();
@@ -287,8 +286,8 @@ TEST_F(PressureAppTest, StaleVoltageGivesZeroVolts) {
   }
 }
 
-// Tests that a reference beyond what limits.arm_torque_in_lbf allows is not followed, while one at it is,
-// half a step of the D/A converter included.
+// Tests that a reference beyond what limits.arm_torque_in_lbf allows is not followed, while one at the limit
+// is, plus half a step of the D/A converter.
 TEST_F(PressureAppTest, ExcessivePressureReferenceGivesZeroVolts) {
   settings::StackConfig config = SmallStack();
   config.limits.arm_torque_in_lbf = 368;  // 100 psi
@@ -312,7 +311,7 @@ TEST_F(PressureAppTest, ExcessivePressureReferenceGivesZeroVolts) {
   EXPECT_FALSE(faults_[1].active);
 }
 
-// Tests that a command for a tick far in the future is refused, zeroes the voltage, and does not hold up what
+// Tests that a command for a tick far in the future is refused, zeroes the voltage, and does not delay what
 // comes after it.
 TEST_F(PressureAppTest, FuturePressureCommandGivesZeroVolts) {
   settings::StackConfig config = SmallStack();
@@ -358,7 +357,7 @@ TEST_F(PressureAppTest, ArmAngleLimitTrips) {
 }
 
 // Tests that with limits.rearm = "explicit" (the plant then holds the voltage at zero) this loop goes on and
-// ends the fault when the limit is kept again.
+// ends the fault when the limit is respected again.
 TEST_F(PressureAppTest, ExplicitRearmEndsNothingHere) {
   settings::StackConfig config = SmallStack();
   config.limits.rearm = settings::Rearm::kExplicit;
@@ -379,7 +378,7 @@ TEST_F(PressureAppTest, ExplicitRearmEndsNothingHere) {
   EXPECT_TRUE(stops_.empty());
 }
 
-// Tests that in real time a silent plant gives a zero-volt command first and a fault second.
+// Tests that in real time a silent plant gives first a zero-volt command, then a fault.
 TEST_F(PressureAppTest, StaleStateGivesZeroVolts) {
   settings::StackConfig config = SmallStack();
   config.time.mode = settings::TimeMode::kRealtime;

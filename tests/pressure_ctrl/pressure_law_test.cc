@@ -39,7 +39,7 @@ TEST(PressureLawTest, DerivedGainsMatchThePaper) {
   EXPECT_NEAR(one.k_v, 4.17, 5e-3);
 }
 
-// Tests that the derived gains place the linearised loop's poles where they were asked for, by eigenvalues.
+// Tests, by eigenvalues, that the derived gains place the linearised loop's poles where requested.
 TEST(PressureLawTest, DerivedGainsGiveTheLoopAskedFor) {
   for (const int sides : {1, 2}) {
     for (const double omega : {60.0, 150.0, 400.0}) {
@@ -106,7 +106,7 @@ TEST(PressureLawTest, LeakageMovesTheLoopLittle) {
   EXPECT_NEAR(loop.natural_frequency / omega, 1, 0.005);
 }
 
-// Tests that gains which cannot be had are refused instead of turned into a positive feedback.
+// Tests that impossible gains are refused instead of turned into positive feedback.
 TEST(PressureLawTest, RefusesAFrequencyBelowTheOpenLoop) {
   EXPECT_THROW(DerivePressureGains(Table1(), 0, 15, 0.5, 2), std::invalid_argument);  // open loop: 18.2 rad/s
   EXPECT_NO_THROW(DerivePressureGains(Table1(), 0, 15, 0.5, 1));                      // open loop: 12.9 rad/s

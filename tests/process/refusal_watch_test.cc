@@ -11,8 +11,7 @@ using News = RefusalWatch::News;
 using testing::HasSubstr;
 using testing::Not;
 
-// Tests that a burst is one piece of news when it begins and one, with all that were refused, a second after
-// it.
+// Tests that a burst is reported once when it begins and once, with the total refused, a second later.
 TEST(RefusalWatchTest, BeginsAndEnds) {
   RefusalWatch watch;
   bus::RefusedMessages refused;
@@ -36,7 +35,7 @@ TEST(RefusalWatchTest, BeginsAndEnds) {
   EXPECT_EQ(watch.Observe(refused, now + 10s), News::kNone);
 }
 
-// Tests that a second burst counts anew.
+// Tests that a second burst is counted afresh.
 TEST(RefusalWatchTest, CountsEachBurst) {
   RefusalWatch watch;
   bus::RefusedMessages refused;

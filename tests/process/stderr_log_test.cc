@@ -50,7 +50,7 @@ TEST_F(StderrLogTest, EscapesControlCharacters) {
       << line;
 }
 
-// Tests that a stopped terminal (nothing reads the pipe) does not keep a process from ending.
+// Tests that a stopped terminal (nobody reads the pipe) does not keep a process from ending.
 TEST_F(StderrLogTest, EndsThoughNobodyReads) {
   const auto start = std::chrono::steady_clock::now();
   {

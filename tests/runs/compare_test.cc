@@ -24,13 +24,13 @@ std::optional<std::string> Difference(const RunMessages& a, const RunMessages& b
   return FirstDifference(a, "a.lcmlog", b, "b.lcmlog");
 }
 
-// The smallest change there is.
+// The smallest possible change.
 void Change(double& value) { value = std::nextafter(value, std::numeric_limits<double>::infinity()); }
 void Change(int64_t& value) { ++value; }
 void Change(int8_t& value) { ++value; }
 void Change(std::string& value) { value += '.'; }
 
-// Changes each field of the message `pick` gives in turn, and expects that it is named.
+// Changes each field of the message that `pick` returns in turn, and expects it to be named.
 template <class Pick>
 void ExpectEachFieldNamed(const std::string& channel, Pick pick) {
   const RunMessages a = log::SampleRun(12);
@@ -93,7 +93,7 @@ TEST(CompareTest, WallClockAndSessionsDoNotMatter) {
   EXPECT_EQ(Difference(a, b), std::nullopt);
 }
 
-// Tests that neither the order of arrival nor a message sent again makes a difference.
+// Tests that neither the order of arrival nor a resent message makes a difference.
 TEST(CompareTest, OrderAndRepetitionDoNotMatter) {
   const RunMessages a = log::SampleRun(40);
   RunMessages b = a;
@@ -108,7 +108,7 @@ TEST(CompareTest, OrderAndRepetitionDoNotMatter) {
   EXPECT_EQ(Difference(b, a), std::nullopt);
 }
 
-// Tests that a second message of the same tick and number that says something else is a difference.
+// Tests that a second message of the same tick and number with other contents is a difference.
 TEST(CompareTest, ContradictoryRepetition) {
   const RunMessages a = log::SampleRun(12);
   RunMessages b = a;
@@ -157,7 +157,7 @@ TEST(CompareTest, BitsOfDoubles) {
 }
 
 // Tests that faults of two processes with the same tick and number are told apart, in whatever order they
-// came.
+// arrived.
 TEST(CompareTest, FaultsOfTwoProcesses) {
   RunMessages a = log::SampleRun(3);
   a.faults.push_back(a.faults[0]);

@@ -71,7 +71,7 @@ TEST_F(InfoTest, LostAndRepeatedMessages) {
   EXPECT_EQ(info.ticks.announced, 0);
 }
 
-// Tests that ticks the plant says it skipped are told from those that were lost.
+// Tests that ticks that the plant reports as skipped are told from lost ones.
 TEST_F(InfoTest, SkippedTicks) {
   RunMessages run = log::SampleRun(20);
   run.states.erase(run.states.begin() + 5, run.states.begin() + 8);
@@ -94,7 +94,7 @@ TEST_F(InfoTest, ConfigurationOfTheRun) {
                   Entry("reference.steps", "[[0.2, 0.3], [2.2, -0.2]]"), Entry("time.mode", "'lockstep'")));
 }
 
-// Tests that a stop that was said several times, lest it is lost, is told once, and another sender's too.
+// Tests that a stop repeated against loss is reported once, and another sender's too.
 TEST_F(InfoTest, RepeatedStops) {
   RunLog log;
   for (const int64_t session : {1, 2, 2, 2, 1}) {
@@ -106,7 +106,7 @@ TEST_F(InfoTest, RepeatedStops) {
   EXPECT_EQ(Summarise(log, false).stops.size(), 2u);
 }
 
-// Tests that figures are in SI where that is asked for.
+// Tests that figures are in SI on request.
 TEST_F(InfoTest, SiUnits) {
   const LogInfo info = InfoOf(log::SampleRun(3), true);
   EXPECT_EQ(Signal(info, "p1").unit, "kPa");

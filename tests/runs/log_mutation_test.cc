@@ -12,7 +12,7 @@ namespace {
 
 class LogMutationTest : public log::LogTest {
  protected:
-  // Reads a log of these bytes in every way there is; anything but success or an InputError fails the test.
+  // Reads a log of these bytes in every possible way; anything but success or an InputError fails the test.
   void ReadEveryWay(const std::string& bytes) {
     log::WriteBytes(Path("log"), bytes);
     const auto attempt = [](auto work) {

@@ -55,8 +55,8 @@ std::string With(const std::string& from, const std::string& to, std::string tex
   return text.replace(at, from.size(), to);
 }
 
-// Tests a column that was recorded late: read at the time it belongs to, at the nearest sample, the ends
-// without a reading cut off; errors still name the file's line.
+// Tests a column that was recorded late: it is read at the time it belongs to, at the nearest sample, and the
+// ends without a reading are cut off; errors still name the file's line.
 TEST_F(MeasuredRunTest, Delay) {
   const std::string table =
       "t,amps,rpm,p low,p high,angle\n0,1,0,10,20,0\n1,2,1,11,21,0\n2,3,2,12,22,0\n3,4,3,13,23,0\n";
@@ -75,8 +75,8 @@ TEST_F(MeasuredRunTest, Delay) {
               HasSubstr("delay"));
 }
 
-// Tests that a table with its sidecar is read as it says: names, scale and offset, missing values, the
-// command held, noise.
+// Tests that a table is read as its sidecar says: names, scale and offset, missing values, the held command,
+// noise.
 TEST_F(MeasuredRunTest, TableWithSidecar) {
   const MeasuredRun run = Read();
   EXPECT_EQ(run.name, "bench, clamped");
@@ -98,7 +98,7 @@ TEST_F(MeasuredRunTest, TableWithSidecar) {
   EXPECT_EQ(run.Place(1), Path("run.csv") + ": line 3");
 }
 
-// Tests that only shaft, time and voltage are needed, and what the rest is then.
+// Tests that only shaft, time and voltage are required, and the defaults of the rest.
 TEST_F(MeasuredRunTest, LeastSidecar) {
   const MeasuredRun run =
       Read("shaft = \"free\"\nbypass = true\n[columns]\ntime = \"t\"\nvoltage = \"amps\"\n");
@@ -222,8 +222,8 @@ TEST_F(MeasuredRunTest, Log) {
   EXPECT_EQ(run.p2.noise, std::nullopt);
 }
 
-// Tests that signals which a log does not have are not measured, and that a log which does not say how the
-// shaft was held (an imported table) is refused with what to do.
+// Tests that signals that a log lacks are not measured, and that a log that does not say how the shaft was
+// held (an imported table) is refused with the remedy.
 TEST_F(MeasuredRunTest, ImportedLog) {
   tables::Table table;
   table.file = "x.csv";

@@ -28,7 +28,7 @@ TEST(RunConfigTest, EntriesOfEveryKind) {
                            Entry("p", "[{c = 'x', k = 1}]"), Entry("s", "\"it's\\u000A\""), Entry("z", "1")));
 }
 
-// Tests the delay and the model's name, where they are given and where they are not.
+// Tests the delay and the model's name, given and not given.
 TEST(RunConfigTest, DelayAndModelName) {
   EXPECT_EQ(CommandDelayTicks(DescriptionOf(""), "a.lcmlog"), 1);
   EXPECT_EQ(CommandDelayTicks(DescriptionOf("plant = 3\n"), "a.lcmlog"), 1);

@@ -56,8 +56,8 @@ TEST_F(RunExportTest, Values) {
   EXPECT_EQ(Values(table, "p2_psi")[6], state.p2);
 }
 
-// Tests that the last voltage is the command's that acts next: of the tick before in a loop with delay, else
-// of its own.
+// Tests that the last voltage is that of the command that acts next: of the previous tick in a loop with
+// delay, else of its own.
 TEST_F(RunExportTest, LastVoltage) {
   RunMessages run = log::SampleRun(7);
   EXPECT_EQ(Values(Export(run, "[plant]\ncommand_delay_ticks = 1\n"), "voltage_V").back(), 4.5);
@@ -85,7 +85,7 @@ TEST_F(RunExportTest, OpenLoop) {
   EXPECT_THAT(Values(Export(run), "pressure_ref_psi"), testing::Each(IsNan()));
 }
 
-// Tests that the zero command which ends a run does not stand for the one that acted.
+// Tests that the zero command that ends a run does not stand for the one that acted.
 TEST_F(RunExportTest, StoppedCommandOfTheSameTick) {
   RunMessages run = log::SampleRun(7);
   motor_command_t stopped = run.motor_commands[5];
@@ -105,7 +105,7 @@ TEST_F(RunExportTest, OtherReferences) {
   EXPECT_THAT(Values(Export(run), "arm_ref_rad"), testing::Each(IsNan()));
 }
 
-// Tests that states late, repeated or lost in the log give rows in order of ticks, each once.
+// Tests that states late, repeated or lost in the log give rows in tick order, each once.
 TEST_F(RunExportTest, DisorderedStates) {
   RunMessages run = log::SampleRun(7);
   run.states.erase(run.states.begin() + 3);

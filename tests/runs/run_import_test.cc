@@ -26,7 +26,7 @@ class RunImportTest : public log::LogTest {
     return Import(tables::ReadTable(Path("x.csv")));
   }
 
-  // Expects that export gives the columns of `table` back bit by bit, and nothing in the others.
+  // Expects that export returns the columns of `table` bit by bit, and nothing in the others.
   void ExpectComesBack(const tables::Table& table) {
     const tables::Table back = ExportRun(Import(table));
     ASSERT_EQ(back.rows(), table.rows());
@@ -78,7 +78,7 @@ TEST_F(RunImportTest, EverySubsetOfColumnsComesBack) {
   }
 }
 
-// Tests that an exported run goes in and out again unchanged.
+// Tests that an exported run survives import and export unchanged.
 TEST_F(RunImportTest, ExportedRunComesBack) {
   log::WriteRun(Path("run"), log::SampleRun(50));
   ExpectComesBack(ExportRun(ReadRunLog(Path("run"))));

@@ -28,7 +28,7 @@ TEST_F(RunLogTest, ReadsARun) {
   }
 }
 
-// Tests that of a log of two stacks one must be chosen.
+// Tests that of a log with two stacks one must be chosen.
 TEST_F(RunLogTest, SeveralSuffixes) {
   log::WriteRun(Path("one"), log::SampleRun(3));
   log::WriteRun(Path("two"), log::SampleRun(5), "_2");

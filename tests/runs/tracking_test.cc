@@ -91,7 +91,8 @@ TEST(TrackingTest, SineHasNoSteps) {
   EXPECT_NEAR(tracking.rms_error_rad, 0.01, 0.002);  // the reference is held for 5 ms
 }
 
-// Tests that an arm that holds still at a constant reference is at its target, up to a floor and not beyond.
+// Tests that an arm that holds still at a constant reference is at its target, up to a tolerance and no
+// further.
 TEST(TrackingTest, ConstantReference) {
   const auto constant = [](double) { return 0.2; };
   EXPECT_EQ(TrackArm(MakeRun(
@@ -104,7 +105,7 @@ TEST(TrackingTest, ConstantReference) {
             false);
 }
 
-// Tests that a run without arm-angle references says so instead of dividing by nothing.
+// Tests that a run without arm-angle references says so instead of dividing by zero.
 TEST(TrackingTest, NoReference) {
   RunLog log = MakeRun(
       100, [](double) { return 0.0; }, StepAtOne);

@@ -5,7 +5,7 @@
 namespace hydro::settings {
 namespace {
 
-// Tests that LCM's multicast addresses are taken.
+// Tests that LCM's multicast addresses are accepted.
 TEST(BusUrlTest, TakesMulticastAddresses) {
   for (const char* url : {"udpm://239.255.76.67:7667", "udpm://239.255.76.67:7667?ttl=0",
                           "udpm://224.0.0.1:1", "udpm://239.255.76.67:65535?ttl=255&recv_buf_size=2097152"}) {

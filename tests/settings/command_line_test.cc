@@ -196,7 +196,7 @@ TEST(CommandLineTest, Verbs) {
   EXPECT_THAT(run({"--help"}, &file, &verb).out, AllOf(HasSubstr("info"), HasSubstr("export")));
 }
 
-// Tests what the body's exceptions become.
+// Tests how the body's exceptions are reported.
 TEST(RunProgramTest, ExitCodes) {
   EXPECT_EQ(RunProgram("p", [] { return 0; }), 0);
   EXPECT_EQ(RunProgram("p", [] { return 1; }), 1);

@@ -20,7 +20,7 @@ std::string Chapter(const std::string& heading) {
   return text.substr(begin, text.find("\n## ", begin + 1) - begin);
 }
 
-// The keys that a message about an unknown key lists.
+// The keys listed in the message about an unknown key.
 std::vector<std::string> Allowed(const std::string& error) {
   std::vector<std::string> keys;
   const size_t begin = error.find("allowed ");

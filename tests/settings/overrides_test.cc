@@ -39,7 +39,7 @@ TEST_F(OverridesTest, ValuesAreTomlOrBareWords) {
   EXPECT_EQ(config.position.c1, 1000);
 }
 
-// Tests that the last of several for one key holds, and that the effective text has it.
+// Tests that the last of several values for one key wins, and that the effective text has it.
 TEST_F(OverridesTest, LastOneHolds) {
   const StackConfig config = Load({"position.c1=1", "position.c1=2"});
   EXPECT_EQ(config.position.c1, 2);
@@ -60,7 +60,7 @@ TEST_F(OverridesTest, NestedAndWholeSections) {
   EXPECT_EQ(config.processes[0].cpu, 1);
 }
 
-// Tests that choosing an alternative by option drops what the file says for the other.
+// Tests that choosing an alternative by option drops the file's setting for the other.
 TEST_F(OverridesTest, ChosenAlternativeDropsTheOther) {
   EXPECT_EQ(Load({"reference.kind=sine", "reference.amplitude=0.1"}).reference.trajectory.amplitude, 0.1);
   const StackConfig gains = Load({"pressure.k_p=0.2", "pressure.k_v=5"});
@@ -72,7 +72,7 @@ TEST_F(OverridesTest, ChosenAlternativeDropsTheOther) {
   EXPECT_FALSE(LoadStackConfig(driven, {"model.shaft=clamped", "model.arm_angle_rad=0.1"}).model.motion);
 }
 
-// Tests that the file's own contradictions stay errors, and so do those among options.
+// Tests that contradictions within the file, or among options, remain errors.
 TEST_F(OverridesTest, OtherContradictionsStayErrors) {
   EXPECT_THAT(
       ErrorOf({"reference.amplitude=1"}),

@@ -279,7 +279,7 @@ TEST_F(StackConfigFolderTest, PathsAreRelativeToTheConfiguration) {
   EXPECT_EQ(again.text, config.text);
 }
 
-// Tests that nothing is written over a configuration, its model or its key.
+// Tests that nothing overwrites a configuration, its model or its key.
 TEST_F(StackConfigFolderTest, KeepsItsFiles) {
   const std::string file = Write("a.toml", kConfigText);
   const std::string model = Write("model.toml", kModelText);
@@ -291,7 +291,7 @@ TEST_F(StackConfigFolderTest, KeepsItsFiles) {
   EXPECT_EQ(InputErrorOf([&] { CheckKeepsInputs(Write("log", ""), config); }), "");
 }
 
-// Tests that errors in the files that a configuration names say which file.
+// Tests that errors in files named by a configuration say which file.
 TEST_F(StackConfigFolderTest, NamesTheFileThatIsWrong) {
   const std::string file = Write("a.toml", kConfigText);
   EXPECT_THAT(InputErrorOf([&] { LoadStackConfig(file); }),

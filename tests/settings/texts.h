@@ -1,4 +1,4 @@
-// A valid configuration and model that the tests of this folder change.
+// A valid configuration and model for the tests of this folder to change.
 #pragma once
 
 #include <gmock/gmock.h>
@@ -19,7 +19,7 @@ inline StackConfig Parsed(const std::string& config, const std::string& model = 
   return ParseStackConfig(config, "stack.toml", model, "model.toml");
 }
 
-// What InputError says, or "" when nothing was thrown. Anything else that is thrown fails the test.
+// The text of the InputError, or "" when nothing is thrown. Any other exception fails the test.
 template <class Body>
 std::string InputErrorOf(const Body& body) {
   try {
@@ -36,7 +36,7 @@ inline std::string Replaced(std::string text, const std::string& from, const std
   return at == std::string::npos ? text : text.replace(at, from.size(), to);
 }
 
-// A folder of its own for each test, gone afterwards.
+// A folder for each test, removed afterwards.
 class FolderTest : public ::testing::Test {
  protected:
   FolderTest() {

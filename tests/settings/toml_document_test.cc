@@ -87,7 +87,7 @@ TEST(TomlDocumentTest, RefusesVeryDeepNesting) {
   EXPECT_EQ(ParseToml("a = " + std::string(16, '[') + std::string(16, ']'), "f.toml").members.size(), 1u);
 }
 
-// Tests that the deepest document there can be is read.
+// Tests that the deepest allowed document is read.
 TEST(TomlDocumentTest, ReadsTheDeepestDocument) {
   const std::string key = Repeated("a.", 15) + "a";
   const TomlNode root = ParseToml(

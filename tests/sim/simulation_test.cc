@@ -23,7 +23,7 @@ namespace {
 
 using testing::SmallStack;
 
-// What a run says, as bytes in order.
+// The messages of a run, as bytes in order.
 struct Recording {
   std::vector<std::string> channels;
   std::vector<std::string> messages;
@@ -154,7 +154,7 @@ TEST(SimulationTest, TrippedLimitFails) {
   EXPECT_LT(result.ticks, 2000);
 }
 
-// Tests that a simulation without an end is refused.
+// Tests that an endless simulation is refused.
 TEST(SimulationTest, NeedsADuration) {
   settings::StackConfig config = Step();
   config.last_tick = -1;

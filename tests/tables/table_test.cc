@@ -26,7 +26,7 @@ class TableTest : public log::LogTest {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
-// Equal bit by bit, but that every NaN is a missing value.
+// Equal bit by bit, except that every NaN counts as a missing value.
 void ExpectSame(const Table& a, const Table& b) {
   ASSERT_EQ(a.columns.size(), b.columns.size());
   ASSERT_EQ(a.rows(), b.rows());
@@ -81,7 +81,7 @@ TEST_F(TableTest, OneColumn) {
   ExpectSame(ReadTable(Path("x.csv")), table);
 }
 
-// Tests what other programs' CSV files may look like.
+// Tests variants of CSV files that other programs write.
 TEST_F(TableTest, CsvOfOthers) {
   const Table table =
       Csv("\xef\xbb\xbf\"time_s\" , WindCurr(A),\"a, b\"\r\n 0 ,+1.5, \"2\"\r\n1,NaN,\r\n\r\n");
@@ -204,7 +204,7 @@ TEST_F(TableTest, TruncatedMat) {
   }
 }
 
-// Tests that a name that tells no format is refused.
+// Tests that a name without a known format is refused.
 TEST_F(TableTest, UnknownFormat) {
   EXPECT_THAT(log::InputErrorOf([&] { WriteTable(HardTable(), Path("x.txt")); }),
               HasSubstr("end in .csv or .mat"));

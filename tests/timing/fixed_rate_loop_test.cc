@@ -48,8 +48,7 @@ TEST_F(FixedRateLoopTest, NeverDrifts) {
   EXPECT_EQ(clock_.Now(), bus::Clock::TimePoint(1000s));
 }
 
-// Tests that whoever is late is told how many ticks have passed, and that the next deadline is on the old
-// grid.
+// Tests that a late caller learns how many ticks have passed, and that the next deadline is on the old grid.
 TEST_F(FixedRateLoopTest, CountsSkippedTicks) {
   FixedRateLoop loop(bus_, clock_, 1ms, statistics_);
   EXPECT_EQ(loop.Wait(), 1);
@@ -68,7 +67,7 @@ TEST_F(FixedRateLoopTest, CountsSkippedTicks) {
   EXPECT_DOUBLE_EQ(total.latency_max_us, 2500);
 }
 
-// Tests that messages are handled before the tick, also by a loop that is always late.
+// Tests that messages are handled before the tick, even by a loop that is always late.
 TEST_F(FixedRateLoopTest, HandlesMessagesWhileWaiting) {
   int states = 0;
   bus_.Subscribe<state_t>("STATE", [&](const state_t&) { ++states; });

@@ -1,12 +1,12 @@
-// Counts what a thread takes from the heap, by whatever call: operator new, malloc and its kin, in this
-// program and in the libraries that it uses. Link heap_trap.cc into the test.
+// Counts a thread's heap allocations by any call: operator new, malloc and its kin, in this program and in
+// the libraries that it uses. Link heap_trap.cc into the test.
 #pragma once
 
 #include <cstdint>
 
 namespace hydro::timing {
 
-// Under a sanitizer the heap is the sanitizer's: nothing is counted.
+// Under a sanitizer, which owns the heap, nothing is counted.
 extern const bool kHeapTrapWorks;
 
 // Starts counting on this thread, from 0. With `loud`, the first allocation is also reported on stderr with

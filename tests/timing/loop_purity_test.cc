@@ -1,4 +1,4 @@
-// What the loops of a stack do not do once they run: take memory, and call anything that may block. Built
+// What the loops of a stack never do once they run: allocate memory, or make a call that may block. Built
 // with the optimised programs only (CMakeLists.txt).
 #include <gtest/gtest.h>
 #include <linux/filter.h>

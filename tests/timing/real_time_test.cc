@@ -48,7 +48,7 @@ void DropRights() {
   if (geteuid() == 0 && setresuid(65534, 65534, 65534) != 0) _exit(99);
 }
 
-// Tests that nothing is done and nothing said when nothing is asked for.
+// Tests that without a request nothing is done and nothing printed.
 TEST(RealTimeTest, DoesNothingUnasked) {
   const Outcome outcome = InChild([] {
     const RealTimeResult result = ApplyRealTime({});

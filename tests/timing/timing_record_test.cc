@@ -92,8 +92,8 @@ TEST(TimingRecordTest, NewestHistogram) {
   EXPECT_DOUBLE_EQ(TimingHistogram().Percentile(50), 0);
 }
 
-// Tests that a histogram that no process of ours would send does no harm: lists shorter or longer than they
-// say, ranges upside down, empty ones.
+// Tests that a histogram that none of our processes would send does no harm: lists shorter or longer than
+// stated, inverted ranges, empty ones.
 TEST(TimingRecordTest, ImproperHistogram) {
   TimingRecord record;
   loop_histogram_t histogram = Counts("plant", 1, 1);
@@ -132,7 +132,7 @@ TEST(TimingReportTest, Json) {
   EXPECT_EQ(plant["histograms"]["round_trip_us"]["buckets"][1][2], 1);
 }
 
-// Tests that names from the network are text on the page and in the JSON, nothing else.
+// Tests that names from the network are plain text on the page and in the JSON.
 TEST(TimingReportTest, NamesAreOnlyText) {
   TimingRecord record;
   record.Add(Report("<script>alert(1)</script>\xff", 1, 0, true));

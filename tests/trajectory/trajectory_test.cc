@@ -67,7 +67,7 @@ TEST(StepsTest, ConstantIsContinuous) {
   EXPECT_TRUE(MakeSteps(0.2, {{1, 0.2}})->continuous());
 }
 
-// Tests the sine against its closed form, also far from its start.
+// Tests the sine against its closed form, even far from its start.
 TEST(SineTest, MatchesClosedForm) {
   const auto sine = MakeSine(1.0, 0.5, 2.0, 0.25, 0.0);
   EXPECT_EQ(sine->Value(0.2), 1.0);

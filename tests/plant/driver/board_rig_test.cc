@@ -21,7 +21,7 @@ using ::testing::HasSubstr;
 using testing::SimulatedBoard;
 using Source = settings::SensorSection::Source;
 
-// A rig on a board whose registers the test sets, and a clock that it moves.
+// A rig on a board whose registers the test sets, with a clock that the test moves.
 class BoardRigTest : public ::testing::Test {
  protected:
   BoardRigTest() : file_("/tmp/hydro_board_rig_test_" + std::to_string(getpid())) {
@@ -84,7 +84,7 @@ class BoardRigTest : public ::testing::Test {
   int64_t tick_ = 0;
 };
 
-// Tests that opening the board sets the output to zero, whatever was there, and closing it does again.
+// Tests that opening the board sets the output to zero, whatever it was, and that closing it does so again.
 TEST_F(BoardRigTest, ZeroWhenOpenedAndWhenClosed) {
   ASSERT_NE(board_->outputs[0], SimulatedBoard::kZeroCode);
   auto rig = Open();
@@ -108,7 +108,7 @@ TEST_F(BoardRigTest, Zero) {
   EXPECT_EQ(board_->outputs[0], SimulatedBoard::kZeroCode);
 }
 
-// Tests scale, sign and offset of the amplifier, and that an offset moves the zero, too.
+// Tests scale, sign and offset of the amplifier, and that an offset also moves the zero.
 TEST_F(BoardRigTest, AmplifierScale) {
   config_.driver->voltage.offset = 0.5;  // V at the motor with 0 V at the terminal
   const auto rig = Open();
@@ -121,8 +121,8 @@ TEST_F(BoardRigTest, AmplifierScale) {
   EXPECT_NEAR(Terminal(), 0.25, 2e-4);
 }
 
-// Tests that the limit, or else the output's range, cuts the voltage and that the rig says so; that what is
-// not finite is zero.
+// Tests that the limit, or else the output's range, cuts the voltage and that the rig reports it; that a
+// voltage that is not finite becomes zero.
 TEST_F(BoardRigTest, Limits) {
   config_.driver->voltage.limit_V = 1.5;
   {
@@ -154,7 +154,7 @@ TEST_F(BoardRigTest, Watchdog) {
   EXPECT_EQ(board_->line_writes, 5);
 }
 
-// Tests scales, signs and offsets of analog inputs, and that what is not wired is not measured.
+// Tests scales, signs and offsets of analog inputs, and that unwired inputs are not measured.
 TEST_F(BoardRigTest, AnalogInputs) {
   const auto rig = Open();
   SetVolts(0, 1.5);
@@ -170,7 +170,7 @@ TEST_F(BoardRigTest, AnalogInputs) {
   EXPECT_TRUE(rig->faults().empty()) << "what is not wired is no fault";
 }
 
-// Tests the low pass of a channel: after 1/(2 pi f) a step has come to 63 %.
+// Tests the low pass of a channel: after 1/(2 pi f) a step has reached 63 %.
 TEST_F(BoardRigTest, LowPassOfAChannel) {
   config_.driver->p1.low_pass_hz = 1000 / (2 * M_PI) / 10;  // 10 ticks
   const auto rig = Open();
@@ -181,8 +181,8 @@ TEST_F(BoardRigTest, LowPassOfAChannel) {
   EXPECT_NEAR(Read(*rig).p1, 250 + 1000 * (1 - std::exp(-1)), 0.2);
 }
 
-// Tests that both ends of the range are no readings, with a fault of that sensor's name, that the others are
-// not concerned, and that the fault goes only after ten good readings in a row.
+// Tests that both ends of the range are no readings and give a fault of that sensor's name, that the other
+// sensors are not affected, and that the fault ends only after ten good readings in a row.
 TEST_F(BoardRigTest, SaturatedInput) {
   const auto rig = Open();
   for (const int64_t end : {int64_t{0}, SimulatedBoard::kMaxCode}) {
@@ -264,7 +264,7 @@ TEST_F(BoardRigTest, EncoderLost) {
   }
 }
 
-// Tests that an error of the board names key, channel and cause, and that an interrupted call is none.
+// Tests that an error of the board names key, channel and cause, and that an interrupted call is no error.
 TEST_F(BoardRigTest, BoardErrors) {
   const auto rig = Open();
   board_->order = SimulatedBoard::kInterrupt;
@@ -280,7 +280,7 @@ TEST_F(BoardRigTest, BoardErrors) {
   }
 }
 
-// Tests that the pause for the multiplexer is asked for where it is set, of analog inputs only.
+// Tests that the pause for the multiplexer is requested where it is set, for analog inputs only.
 TEST_F(BoardRigTest, Settling) {
   UseEncoder();
   config_.driver->settle_ns = 5000;
@@ -290,7 +290,8 @@ TEST_F(BoardRigTest, Settling) {
   EXPECT_EQ(board_->reads, 3);
 }
 
-// Tests that what the board lacks is bad input that names the key, and leaves no trace on the board.
+// Tests that a feature that the board lacks is bad input that names the key, and leaves no trace on the
+// board.
 TEST_F(BoardRigTest, WhatTheBoardLacks) {
   config_.driver->p2.line.channel = 8;
   EXPECT_THAT(OpenError(), HasSubstr("rig.toml: driver.p2.channel: found 8, allowed 0 to 7"));
@@ -302,13 +303,13 @@ TEST_F(BoardRigTest, WhatTheBoardLacks) {
   EXPECT_EQ(board_->opened, board_->closed);
 }
 
-// Tests that a board that takes no zero is not driven at all.
+// Tests that a board that takes no zero is never driven.
 TEST_F(BoardRigTest, RefusedZero) {
   board_->order = SimulatedBoard::kWritesFail;
   EXPECT_THROW(Open(), RigError);
 }
 
-// Tests that the guardian writes the zero when the process ends without a word, and does nothing after it was
+// Tests that the guardian writes the zero when the process ends without a word, and does nothing once
 // dismissed.
 TEST_F(BoardRigTest, Guardian) {
   for (const bool dismissed : {false, true}) {
@@ -332,7 +333,7 @@ TEST_F(BoardRigTest, Guardian) {
   }
 }
 
-// Tests that a guardian that somebody has stopped does not keep us from ending.
+// Tests that a stopped guardian does not keep us from ending.
 TEST_F(BoardRigTest, StoppedGuardian) {
   ComediBoard board(config_.file, file_, 0);
   ZeroOutput output;

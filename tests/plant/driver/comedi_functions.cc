@@ -1,5 +1,5 @@
-// Those of libcomedi's C functions that the driver calls, on a SimulatedBoard: linked into unit tests, or
-// loaded before the real libcomedi (LD_PRELOAD) by end-to-end tests.
+// The libcomedi C functions that the driver calls, on a SimulatedBoard: linked into unit tests, or loaded
+// before the real libcomedi (LD_PRELOAD) by end-to-end tests.
 #include <comedilib.h>
 #include <fcntl.h>
 #include <linux/futex.h>
@@ -80,7 +80,7 @@ int64_t SteadyTime() {
   return int64_t{now.tv_sec} * 1000000000 + now.tv_nsec;
 }
 
-// Asks the process behind the board for its registers at this moment, however late it comes to answering.
+// Asks the process behind the board for its registers at this moment, however late it gets to answer.
 void Ring(SimulatedBoard& board) {
   if (board.attended == 0) return;
   std::atomic_ref<uint32_t> request(board.request);

@@ -8,8 +8,8 @@
 namespace hydro::plant {
 namespace {
 
-// Tests that codes and volts of a converter are each other's inverse, that the ends are the ends, and that
-// what is beyond them or is no number cannot get out.
+// Tests that a converter's codes and volts are inverse to each other, that the ends are the ends, and that
+// voltages beyond them, or NaN, cannot get out.
 TEST(ConverterRangeTest, CodesAndVolts) {
   const ConverterRange range{0xffff, -10, 10};
   EXPECT_DOUBLE_EQ(range.Volts(0), -10);
@@ -24,7 +24,7 @@ TEST(ConverterRangeTest, CodesAndVolts) {
   EXPECT_EQ(unipolar.Code(-1), 0u);
 }
 
-// Tests a counter that turns over its wrap and back, in steps of every size that can be told from a wrap.
+// Tests a counter that turns across its wrap and back, in steps of every size that can be told from a wrap.
 TEST(EncoderCountTest, FollowsThroughWraps) {
   for (const int64_t step : {1, 100, 4000, 16383}) {
     EncoderCount count(0xffff);
@@ -48,7 +48,7 @@ TEST(EncoderCountTest, FirstReadingIsSigned) {
   EXPECT_EQ(EncoderCount(0xffffffff).Update(0xfffffffe), -2);
 }
 
-// Tests that a jump of a quarter of the range or more is no count: it may have been a turn the other way.
+// Tests that a jump of a quarter of the range or more is refused: it may have been a turn the other way.
 TEST(EncoderCountTest, ToldFromAWrap) {
   EncoderCount count(0xffff);
   EXPECT_EQ(count.Update(100), 100);
@@ -72,7 +72,7 @@ TEST(LowPassTest, StepResponse) {
   }
 }
 
-// Tests that 0 Hz is no filter, and that after NaN the next number is a first one.
+// Tests that 0 Hz means no filter, and that after NaN the next number counts as the first.
 TEST(LowPassTest, NoneAndNaN) {
   LowPass none(0);
   EXPECT_EQ(none.Update(1, 0.001), 1);
