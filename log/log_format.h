@@ -1,4 +1,4 @@
-// The bytes of an LCM event log, as liblcm's lcm_eventlog writes and reads them: events one after another, each
+// The bytes of an LCM event log, as liblcm's lcm_eventlog writes and reads them: a sequence of events, each
 //   sync word u32 | event number i64 | timestamp i64 (us) | channel length i32 | data length i32
 //   | channel | data
 // with all integers big-endian.

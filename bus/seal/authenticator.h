@@ -44,7 +44,7 @@ class Authenticator {
   };
   struct Opened {
     Verdict verdict = Verdict::kPlain;
-    int size = 0;  // of the message without its seal; the whole size where it is plain or refused
+    int size = 0;  // without its seal; the whole size if the message is plain or refused
     int64_t session = 0;
     uint64_t counter = 0;
   };

@@ -2,11 +2,11 @@
 // with its equation as templates on the scalar, and its entry in the catalogue. Nothing else lists it.
 //
 // The right-hand side is evaluated in this order:
-//   properties from the base parameters  -> SetProperties       of each effect
-//   torques and flows of eqs. (4), (11), (12) -> AddTorquesAndFlows of each effect
-//   net torque, q_1, q_2                 -> AddStates            of each effect (rates of its states;
-//                                                                may replace q_1, q_2)
-//   p1', p2' with closed valves, (13), (14)    -> AddBalances          of each effect (moves p_3)
+//   properties from the base parameters        -> SetProperties of each effect
+//   torques and flows of eqs. (4), (11), (12)  -> AddTorquesAndFlows of each effect
+//   net torque, q_1, q_2                       -> AddStates of each effect (rates of its states; may replace
+//                                                 q_1, q_2)
+//   p1', p2' with closed valves, (13), (14)    -> AddBalances of each effect (moves p_3)
 //   rates of the base states, eqs. (4), (13), (14), (15)
 // Effects are applied in the order of their ids, so a model does not depend on the order of its file.
 #pragma once
