@@ -1,4 +1,4 @@
-"""A stack with a key (bus.key_file): it works as without, and who has not the key has no say in it."""
+"""A stack with a key (bus.key_file): it works as it does without, and nobody without the key can influence it."""
 
 import collections
 import csv
@@ -32,7 +32,7 @@ def encoded(kind, template, **changes):
 
 
 class Sender:
-    """Sends LCM messages as anybody on the network can: written from LCM's description alone."""
+    """Sends LCM messages, as anybody on the network can; written from LCM's description alone."""
 
     def __init__(self, url):
         group, port = re.match(r"udpm://([\d.]+):(\d+)", url).groups()

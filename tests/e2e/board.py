@@ -38,7 +38,7 @@ class Board:
         self.actuator.wait_for("^ready")
 
     def read(self):
-        """All registers and counters, by name."""
+        """All registers and counters by name."""
         with open(self.file, "rb") as file:
             values = _FORMAT.unpack(file.read())
         return dict(zip(_NAMES, values))
@@ -49,7 +49,7 @@ class Board:
         raise AttributeError(name)
 
     def order(self, name):
-        """What goes wrong from the driver's next reading on."""
+        """Sets what goes wrong from the driver's next reading on."""
         with open(self.file, "r+b") as file:
             file.seek(_ORDER_AT)
             file.write(struct.pack("<q", ORDERS.index(name)))
@@ -62,5 +62,5 @@ class Board:
         return self.case.wait_until(look, what)
 
     def wait_until_driven(self):
-        """Until a voltage other than zero is put out."""
+        """Waits for an output voltage other than zero."""
         return self.wait_for(lambda b: b["nonzero_writes"] > 20 and b["output0"] != ZERO_CODE, "a voltage")

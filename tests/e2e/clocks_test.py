@@ -44,7 +44,7 @@ class ClocksTest(two_hosts.TestCase):
         self.assert_identical(log_file, simulated)
 
     def assert_nothing_but_the_clock(self, log):
-        """No fault, nothing lost, and no statistic that a clock that is off got into."""
+        """No fault, nothing lost, and no statistic spoilt by a clock that is off."""
         self.assertEqual({f.code for f in log.faults} - {"late_plant"}, set(), log.faults)
         for kind in event_log.NUMBERED:
             self.assertEqual(event_log.missing_numbers(log.of(kind)), {}, kind)

@@ -1,4 +1,4 @@
-"""What ./demo builds needs no package but those that it installs, and none of the house's upper floors."""
+"""What ./demo builds needs only the packages that it installs, and no room of the upper floors."""
 
 import pathlib
 import re

@@ -1,4 +1,4 @@
-"""hydro-driver with the whole stack, on a simulated board: libcomedi's functions are replaced, nothing of ours is."""
+"""hydro-driver with the whole stack, on a simulated board: only libcomedi's functions are replaced, no code of ours."""
 
 import json
 import math

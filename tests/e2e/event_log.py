@@ -1,6 +1,6 @@
 """Reads LCM event logs and the messages of package hydro in them.
 
-Written from the format's and the types' descriptions alone, so that it judges the programs' own reader and writer
+Written from the descriptions of the format and the types alone, so that it tests the programs' reader and writer
 instead of repeating them.
 """
 
@@ -139,7 +139,7 @@ class Follower:
         self.offset = 0
 
     def new_events(self):
-        """What has been written since the last call, in whole events."""
+        """The whole events written since the last call."""
         try:
             with open(self.path, "rb") as file:
                 file.seek(self.offset)
@@ -192,7 +192,7 @@ class Log:
 
 
 def missing_numbers(messages):
-    """Sequence numbers that are absent, by session: {session: [numbers]}. A session begins with 0."""
+    """Missing sequence numbers by session: {session: [numbers]}. A session begins with 0."""
     by_session = {}
     for message in messages:
         by_session.setdefault(message.session, set()).add(message.sequence)

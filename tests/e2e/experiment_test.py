@@ -1,4 +1,4 @@
-"""hydro-experiment: its files, its exit codes, the same bytes each time, and the stack as separate processes."""
+"""hydro-experiment: its files, its exit codes, identical bytes each time, and the stack as separate processes."""
 
 import json
 import os

@@ -72,12 +72,12 @@ class FaultCase(stack.TestCase):
                                  start=start)
 
     def wait_for_states(self, count):
-        """That many more states."""
+        """Waits for that many more states."""
         goal = self.log.count("HYDRO_STATE") + count
         self.wait_until(lambda: self.log.count("HYDRO_STATE") >= goal, f"{count} more states")
 
     def wait_for_voltage(self):
-        """The next state under a voltage."""
+        """Waits for the next state under a voltage."""
         return self.log.wait_for("HYDRO_STATE", lambda s: s.voltage != 0, "a state under a voltage",
                                  start=self.log.count("HYDRO_STATE"))
 

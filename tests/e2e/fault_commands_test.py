@@ -22,7 +22,7 @@ def repeated(session=4242, **fields):
 
 
 class MotorCommandTest(fault_case.FaultCase):
-    """The pressure loop is the test's: 1 V at each tick, but for what `bad` sends instead at tick BAD."""
+    """The test plays the pressure loop: 1 V at each tick, except for what `bad` sends instead at tick BAD."""
 
     def run_with(self, bad, until=BAD + 100, options=()):
         def answer(state):
@@ -198,7 +198,7 @@ class MotorCommandTest(fault_case.FaultCase):
 
 
 class PressureCommandTest(fault_case.FaultCase):
-    """The position loop is the test's: 50 psi at each sample, but for what `bad` sends for a while from tick BAD on."""
+    """The test plays the position loop: 50 psi at each sample, except for what `bad` sends for a while from tick BAD on."""
 
     LIMIT = 500 / 3.68  # psi, limits.arm_torque_in_lbf / k_2 of demo.toml
     SPAN = 100  # ticks
@@ -281,7 +281,7 @@ class PressureCommandTest(fault_case.FaultCase):
 
 
 class StateTest(fault_case.FaultCase):
-    """The plant is the test's: what its sensors read is not finite from tick BAD to tick GOOD."""
+    """The test plays the plant: its sensors read values that are not finite from tick BAD to tick GOOD."""
 
     GOOD = BAD + 50
 

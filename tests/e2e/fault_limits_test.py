@@ -1,4 +1,4 @@
-"""Rows of docs/safety.md: limits that are passed, and how a latched fault ends (limits.rearm), with the real programs."""
+"""Rows of docs/safety.md: exceeded limits, and how a latched fault ends (limits.rearm), with the real programs."""
 
 import event_log
 import fault_case

@@ -1,4 +1,4 @@
-"""Speaks LCM's UDP protocol without LCM, so that a test can send what no program of ours would, and stand in for one.
+"""Speaks LCM's UDP protocol without LCM, so that a test can send what none of our programs would, or replace one.
 
 Written from the protocol's description: a short message is the magic word, a sequence number, the channel and a zero byte,
 and the data.

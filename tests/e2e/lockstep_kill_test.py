@@ -1,7 +1,7 @@
 """What happens to a lockstep run when one of its processes dies or stalls: it ends by itself, and says who it was.
 
 Documented outcome, by hand and under hydro-launch: within 2 s all others have ended with exit code 1 and have named the
-missing process on stderr. Nobody waits for ever and nobody computes on without an answer.
+missing process on stderr. No process waits for ever or goes on computing without an answer.
 """
 
 import os

@@ -21,7 +21,7 @@ WAKE_UPS = 0.3
 
 
 def identity(event):
-    """What is the same in every logger's log: all but the event's number and time of arrival."""
+    """The part that is the same in every logger's log: all but the event's number and time of arrival."""
     return event.channel, event.data
 
 

@@ -71,7 +71,7 @@ class OrderTest(stack.TestCase):
 
 
 def unrepeated(messages):
-    """Without what was sent again because an answer was late: the same message as one before it."""
+    """The items without messages that were resent because an answer was late, identical to an earlier one."""
     seen, kept = set(), []
     for message in messages:
         key = (message.session, message.sequence)

@@ -63,7 +63,7 @@ class Port:
 
 
 class Process:
-    """A started program, its output read all the time."""
+    """A started program, with its output read continuously."""
 
     def __init__(self, argv, cwd, label):
         self.argv = argv
@@ -135,7 +135,7 @@ class Process:
         self.send(signal.SIGKILL)
 
     def end(self):
-        """Whatever state it is in."""
+        """Kills it, whatever its state."""
         if self.running:
             self.send(signal.SIGKILL)
         self.child.wait()
@@ -199,7 +199,7 @@ class TestCase(unittest.TestCase):
         return Stack(self, config_file, options, url or self.url)
 
     def burn(self, cores):
-        """Other processes that take all they can get of that many cores."""
+        """Starts other processes that load that many cores fully."""
         return [self.start(sys.executable, "-c", "while True: pass", label="burner") for _ in range(cores)]
 
     def assert_identical(self, a, b, *options):
@@ -229,7 +229,7 @@ class Stack:
         return process
 
     def start_all(self, log=None):
-        """All of them, or all but the logger. Returns a view of the log as it grows."""
+        """Starts all of them, or all but the logger. Returns a view of the log as it grows."""
         if log:
             self.start("logger", "-o", log)
         self.start("position_ctrl")

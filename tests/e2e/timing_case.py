@@ -26,7 +26,7 @@ class TimingCase(stack.TestCase):
         self.live.wait_for_tick(200)
 
     def hold(self, role, seconds):
-        """Stops a process for so long, at least."""
+        """Stops a process for at least that long."""
         self.run_[role].send(signal.SIGSTOP)
         self.held_from = time.time()
         time.sleep(seconds)  # the disturbance itself, not a wait for something
@@ -58,7 +58,7 @@ class TimingCase(stack.TestCase):
                 and c.pressure_command_tick >= 0]
 
     def check_ticks(self, log):
-        """Late ticks are skipped, counted and never doubled."""
+        """Late ticks are skipped and counted, never doubled."""
         expected = 0
         for state in log.states:
             self.assertEqual(state.tick, expected + state.skipped_ticks)

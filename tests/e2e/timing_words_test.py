@@ -1,4 +1,4 @@
-"""A terminal that is stopped, or a pipe that nobody empties, holds up no loop."""
+"""A stopped terminal, or a pipe that nobody empties, delays no loop."""
 
 import os
 import signal

@@ -1,4 +1,4 @@
-"""Scoring rules of bench/gap_score, and the program itself with stand-ins for the rig and the gap finder."""
+"""The scoring rules of bench/gap_score, and the program itself with stand-ins for the rig and the gap finder."""
 
 import importlib.machinery
 import importlib.util

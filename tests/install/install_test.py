@@ -1,4 +1,4 @@
-"""Tests that the installed libraries are whole: a project of somebody else finds them, builds, and runs.
+"""Tests that the installed libraries are complete: somebody else's project finds them, builds, and runs.
 
 HYDRO_BUILD is the folder of a finished build, HYDRO_SOURCE that of the sources.
 """
