@@ -82,8 +82,8 @@ class OutcomeTest(unittest.TestCase):
             if path != pathlib.Path(__file__).resolve():
                 self.assertTrue(path.read_text().endswith('if __name__ == "__main__":\n    outcome.main()\n'), path.name)
 
-    # Tests that ctest is told of the exit code for each of them, and of GoogleTest's word for each test that it runs alone.
-    # Of several in one process ctest would see only that none failed, so there a skip is a failure.
+    # Tests that ctest knows the exit code of each of them, and GoogleTest's word for skips of each test that it runs
+    # alone. Of several in one process ctest would only see that none failed, so there a skip is a failure.
     @unittest.skipUnless(BUILD, "needs HYDRO_BUILD, a build folder: ctest sets it")
     def test_ctest_knows(self):
         listing = subprocess.run(["ctest", "--test-dir", BUILD, "--show-only=json-v1"], capture_output=True, text=True, check=True)

@@ -88,8 +88,8 @@ class RealtimeKillTest(stack.TestCase):
         slept = max(s.skipped_ticks for s in log.states)
         self.assertLessEqual(held - last_command, STALE * RATE + 3 + slept + 2)
 
-    # Tests that without a position loop the pressure loop goes to zero volts and says so, until there is one again. The
-    # way there is tested in fault_loops_test.py.
+    # Tests that without a position loop the pressure loop goes to zero volts and says so, until there is one again.
+    # fault_loops_test.py tests the way there.
     def test_position_ctrl_killed(self):
         self.run_["position_ctrl"].kill()
         self.run_["position_ctrl"].wait()
@@ -112,7 +112,7 @@ class RealtimeKillTest(stack.TestCase):
         first_safe = min(c.tick for c in log.motor_commands if c.status == event_log.SAFE)
         self.assertGreaterEqual(first_safe - last, limit + RAMP)
 
-    # Tests that without a plant the pressure loop says zero volts once and names the fault, and that a new plant
+    # Tests that without a plant the pressure loop commands zero volts once and names the fault, and that a new plant
     # finds everybody where it left them.
     def test_plant_killed(self):
         self.run_["plant"].kill()
