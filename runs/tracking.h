@@ -16,7 +16,7 @@ struct Tracking {
   double rms_error_rad = 0;    // over the run
   double final_error_rad = 0;  // arm minus reference, the mean of the last 0.1 s
   double target_rad = 0;       // last reference
-  // final error| within 2 % of the largest step, at least 0.001 rad. None: the reference is still moving.
+  // |final error| within 2 % of the largest step, at least 0.001 rad. None: the reference is still moving.
   std::optional<bool> at_target;
   std::vector<StepResponse> steps;  // empty when the reference is not made of steps
 };

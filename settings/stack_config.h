@@ -111,7 +111,7 @@ enum class Rearm {
 struct LimitsSection {
   double pressure_psi = 2000;  // either side; above it: zero volts and a fault
   double motor_speed_rad_s = std::numeric_limits<double>::infinity();
-  // alpha|. Default when read from a file: kArmAngleShare V_ms/c for a free shaft (stack_checks.h).
+  // |alpha|. Default when read from a file: kArmAngleShare V_ms/c for a free shaft (stack_checks.h).
   double arm_angle_rad = std::numeric_limits<double>::infinity();
   double arm_torque_in_lbf = std::numeric_limits<double>::infinity();  // |k_2 dp_ref| is limited to this
   double stale_input_s = 0.1;     // an older input gives zero volts and a fault
