@@ -18,7 +18,7 @@ using Kind = CausalOrder::Kind;
 class CausalOrderTest : public ::testing::Test {
  protected:
   void Take(Kind kind, int64_t tick) {
-    static constexpr const char* kNames[] = {"state", "motor", "pressure", "reference"};
+    static constexpr const char* kNames[] = {"none", "state", "motor", "pressure", "reference"};
     order_.Take(kind, tick, {kNames[static_cast<int>(kind)] + std::to_string(tick), {}, 0}, now_);
   }
   void TakeAnswers(int64_t tick) {
