@@ -104,7 +104,7 @@ class CompareVerb {
     // "Identical bit by bit" cannot be claimed of messages that cannot be read, so they are refused here.
     runs::RunLog log = runs::ReadRunLog(file, suffix ? suffix : suffix_);
     // Two empty logs are not a run and its repetition.
-    if (log.messages.states.empty() && log.messages.motor_commands.empty()) {
+    if (log.messages.Of<state_t>().empty() && log.messages.Of<motor_command_t>().empty()) {
       throw InputError(file + ": found no state and no motor command; a log of a run is needed");
     }
     return log;

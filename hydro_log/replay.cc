@@ -9,6 +9,7 @@
 #include "base/input_error.h"
 #include "base/number_text.h"
 #include "base/saturating.h"
+#include "bus/channels.h"
 #include "bus/in_process_bus.h"
 #include "position_ctrl/position_app.h"
 #include "pressure_ctrl/pressure_app.h"
@@ -41,11 +42,11 @@ std::vector<Message> Unnumbered(const std::map<int64_t, Message>& by_tick) {
 class Replayer {
  public:
   Replayer(const runs::RunLog& log, double speed) : speed_(speed) {
-    if (log.descriptions.empty()) {
+    if (log.messages.Of<run_description_t>().empty()) {
       throw InputError(log.file +
                        ": found no HYDRO_RUN message; a replay needs the run's configuration and model");
     }
-    const run_description_t& description = log.descriptions.front();
+    const run_description_t& description = log.messages.Of<run_description_t>().front();
     if (description.config_text.empty()) {
       throw InputError(
           log.file + ": its description has no configuration (an imported table); a replay needs the run's");
@@ -55,7 +56,7 @@ class Replayer {
     config_.time.mode =
         settings::TimeMode::kRealtime;  // nothing waits: what is in force is handed over in time
     channels_ = bus::Channels(config_.bus.channel_suffix);
-    states_ = ByTick(log.messages.states);
+    states_ = ByTick(log.messages.Of<state_t>());
     if (states_.empty()) throw InputError(log.file + ": found no states to feed");
     for (const auto& [tick, state] : states_) {
       if (std::abs(state.time) <= kLatestTime) continue;
@@ -111,11 +112,11 @@ ReplayResult Compare(const Replayer& replayer, const runs::RunMessages& recorded
 
 ReplayResult ReplayPressure(const runs::RunLog& log, double speed) {
   std::map<int64_t, motor_command_t> recorded;
-  for (const auto& [tick, command] : ByTick(log.messages.motor_commands)) {
+  for (const auto& [tick, command] : ByTick(log.messages.Of<motor_command_t>())) {
     if (command.status != motor_command_t::STOPPED) recorded.emplace(tick, command);
   }
   if (recorded.empty()) throw InputError(log.file + ": found no motor commands to compare with");
-  const auto pressure_commands = ByTick(log.messages.pressure_commands);
+  const auto pressure_commands = ByTick(log.messages.Of<pressure_command_t>());
   // In a log that begins in the middle of a run, the pressure command then in force was sent before.
   while (!recorded.empty() && recorded.begin()->second.pressure_command_tick >= 0 &&
          !pressure_commands.contains(recorded.begin()->second.pressure_command_tick)) {
@@ -140,14 +141,14 @@ ReplayResult ReplayPressure(const runs::RunLog& log, double speed) {
     }
   });
   runs::RunMessages record, replay;
-  record.motor_commands = Unnumbered(recorded);
-  replay.motor_commands = Unnumbered(answers);
+  record.Of<motor_command_t>() = Unnumbered(recorded);
+  replay.Of<motor_command_t>() = Unnumbered(answers);
   return Compare(replayer, record, replay, recorded.size());
 }
 
 ReplayResult ReplayPosition(const runs::RunLog& log, double speed) {
-  auto recorded = ByTick(log.messages.pressure_commands);
-  auto references = ByTick(log.messages.arm_references);
+  auto recorded = ByTick(log.messages.Of<pressure_command_t>());
+  auto references = ByTick(log.messages.Of<arm_reference_t>());
   if (recorded.empty()) throw InputError(log.file + ": found no pressure commands to compare with");
 
   Replayer replayer(log, speed);
@@ -177,10 +178,10 @@ ReplayResult ReplayPosition(const runs::RunLog& log, double speed) {
                                             });
   replayer.Feed([](int64_t) {});
   runs::RunMessages record, replay;
-  record.pressure_commands = Unnumbered(recorded);
-  record.arm_references = Unnumbered(references);
-  replay.pressure_commands = Unnumbered(answers);
-  replay.arm_references = Unnumbered(answered_references);
+  record.Of<pressure_command_t>() = Unnumbered(recorded);
+  record.Of<arm_reference_t>() = Unnumbered(references);
+  replay.Of<pressure_command_t>() = Unnumbered(answers);
+  replay.Of<arm_reference_t>() = Unnumbered(answered_references);
   return Compare(replayer, record, replay, recorded.size());
 }
 

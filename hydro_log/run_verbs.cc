@@ -41,7 +41,8 @@ SummaryVerb::SummaryVerb(settings::CommandLine& line) {
 int SummaryVerb::Run() const {
   CheckOutput(json_, log_);
   const runs::RunLog log = ReadWithWarning(log_, suffix_);
-  if (log.messages.states.empty()) throw InputError(log_ + ": found no state; a log of a run is needed");
+  if (log.messages.Of<state_t>().empty())
+    throw InputError(log_ + ": found no state; a log of a run is needed");
   const runs::Tracking tracking = runs::TrackArm(log);
   const runs::LogInfo info = runs::Summarise(log, si_);
   std::fputs(PrintableLines(runs::SummaryText(tracking, info, si_)).c_str(), stdout);
@@ -63,8 +64,8 @@ int TimingVerb::Run() const {
   CheckOutput(page_, log_);
   const runs::RunLog log = ReadWithWarning(log_, suffix_);
   timing::TimingRecord record;
-  for (const loop_statistics_t& report : log.statistics) record.Add(report);
-  for (const loop_histogram_t& histogram : log.histograms) record.Add(histogram);
+  for (const loop_statistics_t& report : log.messages.Of<loop_statistics_t>()) record.Add(report);
+  for (const loop_histogram_t& histogram : log.messages.Of<loop_histogram_t>()) record.Add(histogram);
   const std::vector<timing::TimedProcess> processes = record.Processes();
   if (processes.empty()) {
     throw InputError(

@@ -1,5 +1,7 @@
 #include "plant/voltage_guard.h"
 
+#include "process/second_sender.h"
+
 namespace hydro::plant {
 
 const char* VoltageGuard::CodeOf(Cause cause) {
@@ -13,7 +15,7 @@ const char* VoltageGuard::CodeOf(Cause cause) {
     case Cause::kStaleCommand:
       return "stale_motor_command";
     case Cause::kSecondCommandSender:
-      return "second_motor_command_sender";
+      return process::kSecondSender<motor_command_t>;
     case Cause::kOtherStack:
       return "other_stack";
     case Cause::kLatePlant:

@@ -6,6 +6,7 @@
 
 #include "base/saturating.h"
 #include "pressure_ctrl/pressure_app.h"
+#include "process/second_sender.h"
 
 namespace hydro::pressure_ctrl {
 namespace {
@@ -66,12 +67,12 @@ bool PressureApp::InputsAreSafe(const state_t& state) {
         state.tick, state.arm_angle, limits_.arm_angle_rad);
   });
   safe &= PressureCommandIsSafe(state);
-  safe &=
-      Check(!state_monitor_.SecondSenderAlive(participant_.clock().Now()), "second_state_sender", 2, 1, [&] {
-        return fmt::format("two processes send states: {} and {}; allowed is one",
-                           participant_.NameOf(state_monitor_.session()),
-                           participant_.NameOf(state_monitor_.second_session()));
-      });
+  safe &= Check(!state_monitor_.SecondSenderAlive(participant_.clock().Now()),
+                process::kSecondSender<state_t>, 2, 1, [&] {
+                  return fmt::format("two processes send states: {} and {}; allowed is one",
+                                     participant_.NameOf(state_monitor_.session()),
+                                     participant_.NameOf(state_monitor_.second_session()));
+                });
   if (safe && participant_.any_fault()) participant_.Clear("stale_state");
   return safe;
 }
@@ -110,7 +111,7 @@ bool PressureApp::PressureCommandIsSafe(const state_t& state) {
                       future_command_.value_or(0), state.tick);
                 });
   safe &= Check(!command_monitor_.SecondSenderAlive(participant_.clock().Now()),
-                "second_pressure_command_sender", 2, 1, [&] {
+                process::kSecondSender<pressure_command_t>, 2, 1, [&] {
                   return fmt::format("two processes send pressure commands: {} and {}; allowed is one",
                                      participant_.NameOf(command_monitor_.session()),
                                      participant_.NameOf(command_monitor_.second_session()));

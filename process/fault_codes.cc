@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 
+#include "process/second_sender.h"
+
 namespace hydro::process {
 namespace {
 
@@ -10,12 +12,12 @@ constexpr std::array kCodes{
     // Pressure loop.
     FaultCode{"nonfinite_state", FaultEffect::kZeroVolts},
     FaultCode{"stale_state", FaultEffect::kZeroVolts},
-    FaultCode{"second_state_sender", FaultEffect::kZeroVolts},
+    FaultCode{kSecondSender<state_t>, FaultEffect::kZeroVolts},
     FaultCode{"stale_pressure_command", FaultEffect::kRamp},
     FaultCode{"nonfinite_pressure_command", FaultEffect::kZeroVolts},
     FaultCode{"excessive_pressure_command", FaultEffect::kZeroVolts},
     FaultCode{"future_pressure_command", FaultEffect::kZeroVolts},
-    FaultCode{"second_pressure_command_sender", FaultEffect::kZeroVolts},
+    FaultCode{kSecondSender<pressure_command_t>, FaultEffect::kZeroVolts},
     // Position loop.
     FaultCode{"nonfinite_arm_angle", FaultEffect::kZeroVolts},
     // Pressure loop and plant or driver.
@@ -27,7 +29,7 @@ constexpr std::array kCodes{
     FaultCode{"excessive_motor_command", FaultEffect::kZeroVolts},
     FaultCode{"future_motor_command", FaultEffect::kZeroVolts},
     FaultCode{"stale_motor_command", FaultEffect::kZeroVolts},
-    FaultCode{"second_motor_command_sender", FaultEffect::kZeroVolts},
+    FaultCode{kSecondSender<motor_command_t>, FaultEffect::kZeroVolts},
     FaultCode{"other_stack", FaultEffect::kZeroVolts},
     FaultCode{"late_plant", FaultEffect::kZeroVolts},
     FaultCode{"machine_suspended", FaultEffect::kZeroVolts},

@@ -68,12 +68,11 @@ std::optional<std::string> FirstDifference(const RunMessages& a, const std::stri
                                            const RunMessages& b, const std::string& name_b) {
   const bus::Channels channels;
   std::optional<Difference> first;
-  CompareChannel(channels.Of<state_t>(), a.states, name_a, b.states, name_b, first);
-  CompareChannel(channels.Of<motor_command_t>(), a.motor_commands, name_a, b.motor_commands, name_b, first);
-  CompareChannel(channels.Of<pressure_command_t>(), a.pressure_commands, name_a, b.pressure_commands, name_b,
-                 first);
-  CompareChannel(channels.Of<arm_reference_t>(), a.arm_references, name_a, b.arm_references, name_b, first);
-  CompareChannel(channels.Of<fault_t>(), a.faults, name_a, b.faults, name_b, first);
+  bus::ForEachMessage([&]<class Message>(const bus::MessageRow<Message>&) {
+    if constexpr (ComparedMessage<Message>) {
+      CompareChannel(channels.Of<Message>(), a.Of<Message>(), name_a, b.Of<Message>(), name_b, first);
+    }
+  });
   if (!first.has_value()) return std::nullopt;
   return "differ at tick " + std::to_string(first->tick) + ": " + first->text;
 }

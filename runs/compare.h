@@ -10,7 +10,7 @@ namespace hydro::runs {
 
 // The first difference between two runs, as one line: "differ at tick 812: HYDRO_STATE.p2: 101.25 (a) and
 // 101.26 (b)", or which message is missing from which run; empty when they are identical. "First" is the
-// lowest tick and, within a tick, the first channel of RunMessages.
+// lowest tick and, within a tick, the first channel of the table of messages.
 //
 // Messages are compared in tick order, within a tick by sequence number (faults: source, then sequence), so
 // the order of arrival does not matter. Messages that agree in every field count once, however often they

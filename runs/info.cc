@@ -6,6 +6,7 @@
 
 #include "base/saturating.h"
 #include "base/units.h"
+#include "bus/channels.h"
 #include "runs/run_config.h"
 
 namespace hydro::runs {
@@ -52,7 +53,7 @@ ChannelInfo ChannelOf(const ChannelSummary& summary, const RunLog& log) {
   bus::AnyMessage([&]<class Message>(const bus::MessageRow<Message>&) {
     if (summary.channel != channels.Of<Message>()) return false;
     if constexpr (bus::PlacesOf<Message>().sequence >= 0) {
-      if (const auto* const messages = MessagesIn<Message>(log)) SequenceCount(*messages).Fill(info);
+      SequenceCount(log.messages.Of<Message>()).Fill(info);
     }
     return true;
   });
@@ -109,15 +110,15 @@ std::vector<SignalInfo> SignalsOf(const RunMessages& messages, bool si) {
   const auto add_state = [&](const std::string& name, const std::string& unit, double scale,
                              double state_t::*member) {
     AddSignal(
-        name, unit, scale, messages.states, [member](const state_t& state) { return state.*member; },
+        name, unit, scale, messages.Of<state_t>(), [member](const state_t& state) { return state.*member; },
         signals);
   };
   add_state("voltage", "V", 1, &state_t::voltage);
   AddSignal(
-      "pressure_ref", pressure_unit, pressure, messages.motor_commands,
+      "pressure_ref", pressure_unit, pressure, messages.Of<motor_command_t>(),
       [](const motor_command_t& command) { return command.pressure_ref; }, signals);
   AddSignal(
-      "arm_ref", "rad", 1, messages.arm_references,
+      "arm_ref", "rad", 1, messages.Of<arm_reference_t>(),
       [](const arm_reference_t& reference) {
         return reference.signal == arm_reference_t::ARM_ANGLE ? reference.value : std::nan("");
       },
@@ -200,13 +201,13 @@ LogInfo Summarise(const RunLog& log, bool si) {
   info.duration_s = Seconds(log.first_utime, log.last_utime);
   info.first_undecodable = log.first_undecodable;
   for (const ChannelSummary& channel : log.channels) info.channels.push_back(ChannelOf(channel, log));
-  info.ticks = TicksOf(log.messages.states);
+  info.ticks = TicksOf(log.messages.Of<state_t>());
   info.signals = SignalsOf(log.messages, si);
-  info.loops = LoopsOf(log.statistics);
-  info.programs = ProgramsOf(log.statuses);
-  info.faults = log.messages.faults;
-  info.stops = DistinctStops(log.stops);
-  info.descriptions = DistinctDescriptions(log.descriptions);
+  info.loops = LoopsOf(log.messages.Of<loop_statistics_t>());
+  info.programs = ProgramsOf(log.messages.Of<process_status_t>());
+  info.faults = log.messages.Of<fault_t>();
+  info.stops = DistinctStops(log.messages.Of<stop_t>());
+  info.descriptions = DistinctDescriptions(log.messages.Of<run_description_t>());
   if (!info.descriptions.empty()) {
     info.model_name = ModelName(info.descriptions.front(), log.file);
     info.config = ConfigEntries(info.descriptions.front(), log.file);

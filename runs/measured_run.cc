@@ -290,12 +290,12 @@ MeasuredRun ReadMeasuredRun(const std::string& file) {
   const RunLog log = ReadRunLog(file);
   tables::Table table = ExportRun(log);
   table.file = file;
-  if (log.descriptions.empty()) {
+  if (log.messages.Of<run_description_t>().empty()) {
     throw InputError(file +
                      ": found no description of the run, allowed a log that has one, or a table (csv, mat) "
                      "with a sidecar");
   }
-  const run_description_t& description = log.descriptions.front();
+  const run_description_t& description = log.messages.Of<run_description_t>().front();
   return RunOfExport(table, description.config_text, description.model_text);
 }
 

@@ -1,11 +1,17 @@
-// The fields of a run's messages, without utime and session, which differ from run to run.
+// The fields of the messages that are compared between runs, without utime and session, which differ from run
+// to run.
 #pragma once
 
 #include <tuple>
 
-#include "runs/run_messages.h"
+#include "bus/messages.h"
 
 namespace hydro::runs {
+
+// What the loops compute at a tick, and faults: these must be the same whenever a run is repeated.
+template <class Message>
+concept ComparedMessage = bus::PlacesOf<Message>()
+.tick >= 0 && bus::PlacesOf<Message>().sequence >= 0;
 
 template <class Message, class Value>
 struct MessageField {
@@ -15,7 +21,7 @@ struct MessageField {
 template <class Message, class Value>
 MessageField(const char*, Value Message::*) -> MessageField<Message, Value>;
 
-// FieldsOf(message) is a tuple of MessageField, in the order by which messages are sorted and differences
+// FieldsOf(message), one for each ComparedMessage, is a tuple of MessageField, in the order by which messages are sorted and differences
 // reported.
 constexpr auto FieldsOf(const state_t*) {
   return std::tuple{

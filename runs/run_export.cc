@@ -3,6 +3,7 @@
 
 #include "base/input_error.h"
 #include "base/saturating.h"
+#include "bus/channels.h"
 #include "runs/message_order.h"
 #include "runs/run_config.h"
 #include "runs/run_table.h"
@@ -36,13 +37,13 @@ class Cursor {
 
 // The states of one run in tick order, each tick once.
 std::vector<const state_t*> OrderedStates(const RunLog& log) {
-  if (log.messages.states.empty()) {
+  if (log.messages.Of<state_t>().empty()) {
     throw InputError(log.file + ": found no message on " + bus::Channels(log.suffix).Of<state_t>() +
                      "; a table needs at least one");
   }
   std::set<int64_t> sessions;
-  for (const state_t& state : log.messages.states) sessions.insert(state.session);
-  std::vector<const state_t*> states = InOrder(log.messages.states);
+  for (const state_t& state : log.messages.Of<state_t>()) sessions.insert(state.session);
+  std::vector<const state_t*> states = InOrder(log.messages.Of<state_t>());
   for (size_t k = 1; k < states.size(); ++k) {
     if (states[k]->tick != states[k - 1]->tick) continue;
     throw InputError(log.file + ": found two different states of tick " + std::to_string(states[k]->tick) +
@@ -58,7 +59,7 @@ std::vector<const state_t*> OrderedStates(const RunLog& log) {
 
 std::vector<arm_reference_t> ArmAngleReferences(const RunLog& log) {
   std::vector<arm_reference_t> references;
-  for (const arm_reference_t& reference : log.messages.arm_references) {
+  for (const arm_reference_t& reference : log.messages.Of<arm_reference_t>()) {
     if (reference.signal == arm_reference_t::ARM_ANGLE) references.push_back(reference);
   }
   return references;
@@ -67,7 +68,7 @@ std::vector<arm_reference_t> ArmAngleReferences(const RunLog& log) {
 // The commands without those that only end the run: they may share the last tick with a command meant to act.
 std::vector<motor_command_t> ActingCommands(const RunLog& log) {
   std::vector<motor_command_t> commands;
-  for (const motor_command_t& command : log.messages.motor_commands) {
+  for (const motor_command_t& command : log.messages.Of<motor_command_t>()) {
     if (command.status != motor_command_t::STOPPED) commands.push_back(command);
   }
   return commands;
@@ -85,7 +86,8 @@ double PressureReference(const motor_command_t* motor, const pressure_command_t*
 
 tables::Table ExportRun(const RunLog& log) {
   const std::vector<const state_t*> states = OrderedStates(log);
-  const int delay = log.descriptions.empty() ? 1 : CommandDelayTicks(log.descriptions.front(), log.file);
+  const std::vector<run_description_t>& descriptions = log.messages.Of<run_description_t>();
+  const int delay = descriptions.empty() ? 1 : CommandDelayTicks(descriptions.front(), log.file);
 
   tables::Table table;
   table.file = log.file;
@@ -97,7 +99,7 @@ tables::Table ExportRun(const RunLog& log) {
   const std::vector<arm_reference_t> references = ArmAngleReferences(log);
   Cursor<motor_command_t> acting(commands);
   Cursor<motor_command_t> motor(commands);
-  Cursor<pressure_command_t> pressure(log.messages.pressure_commands);
+  Cursor<pressure_command_t> pressure(log.messages.Of<pressure_command_t>());
   Cursor<arm_reference_t> reference(references);
   for (size_t k = 0; k < states.size(); ++k) {
     const state_t& state = *states[k];

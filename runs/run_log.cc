@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "base/number_text.h"
+#include "bus/channels.h"
 #include "log/log_format.h"
 #include "log/log_reader.h"
 #include "log/message_kinds.h"
@@ -109,14 +110,10 @@ RunLog ReadRunLog(const std::string& file, const std::optional<std::string>& suf
   const auto take = [&]<class Message>(const bus::MessageRow<Message>&) {
     const std::string& channel = channels.Of<Message>();
     if (event.channel != channel) return false;
-    const log::MessageKind& kind = *log::KindOfChannel(channel);
-    if (std::vector<Message>* const messages = MessagesIn<Message>(log)) {
-      if (!log::DecodeAs(event, messages->emplace_back())) {
-        messages->pop_back();
-        leave_out(kind);
-      }
-    } else if (undecodable == Undecodable::kLeftOut && !kind.decodes(event)) {
-      leave_out(kind);  // nobody asks for these messages; only their count would be wrong
+    std::vector<Message>& messages = log.messages.Of<Message>();
+    if (!log::DecodeAs(event, messages.emplace_back())) {
+      messages.pop_back();
+      leave_out(*log::KindOfChannel(channel));
     }
     return true;
   };

@@ -1,22 +1,29 @@
-// The messages that make up a run: what hydro-log compare and replay use.
+// The messages of a run, a list for each row of the table of messages.
 #pragma once
 
+#include <tuple>
 #include <vector>
 
-#include "hydro/arm_reference_t.hpp"
-#include "hydro/fault_t.hpp"
-#include "hydro/motor_command_t.hpp"
-#include "hydro/pressure_command_t.hpp"
-#include "hydro/state_t.hpp"
+#include "bus/messages.h"
 
 namespace hydro::runs {
 
-struct RunMessages {
-  std::vector<state_t> states;
-  std::vector<motor_command_t> motor_commands;
-  std::vector<pressure_command_t> pressure_commands;
-  std::vector<arm_reference_t> arm_references;
-  std::vector<fault_t> faults;
+class RunMessages {
+ public:
+  template <bus::StackMessage Message>
+  std::vector<Message>& Of() {
+    return std::get<std::vector<Message>>(lists_);
+  }
+  template <bus::StackMessage Message>
+  const std::vector<Message>& Of() const {
+    return std::get<std::vector<Message>>(lists_);
+  }
+
+ private:
+  template <class... Message>
+  static std::tuple<std::vector<Message>...> ListsFor(const std::tuple<bus::MessageRow<Message>...>&);
+
+  decltype(ListsFor(bus::kMessages)) lists_;
 };
 
 }  // namespace hydro::runs

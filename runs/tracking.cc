@@ -21,13 +21,13 @@ struct Samples {
 // Reference (held since its tick) and angle at each state that has both.
 Samples ReadSamples(const RunLog& log) {
   std::vector<const arm_reference_t*> references;
-  for (const arm_reference_t& reference : log.messages.arm_references) {
+  for (const arm_reference_t& reference : log.messages.Of<arm_reference_t>()) {
     if (reference.signal == arm_reference_t::ARM_ANGLE) references.push_back(&reference);
   }
   const auto by_tick = [](const auto* a, const auto* b) { return a->tick < b->tick; };
   std::stable_sort(references.begin(), references.end(), by_tick);
   std::vector<const state_t*> states;
-  for (const state_t& state : log.messages.states) states.push_back(&state);
+  for (const state_t& state : log.messages.Of<state_t>()) states.push_back(&state);
   std::stable_sort(states.begin(), states.end(), by_tick);
 
   Samples samples;

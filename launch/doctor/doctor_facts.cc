@@ -139,7 +139,9 @@ void Listen(const DoctorTask& task, MachineFacts* facts) {
   std::map<std::string, std::set<std::string>> stacks;
   const auto bus = bus::OpenUdpmBus(task.url.ToString());
   bus->SubscribeAll([&](const bus::RawMessage& message) {
-    if (!message.channel.starts_with("HYDRO_")) ++facts->other_messages;
+    const bool of_a_stack =
+        bus::AnyMessage([&](const auto& row) { return message.channel.starts_with(row.channel); });
+    if (!of_a_stack) ++facts->other_messages;
     loop_statistics_t report;
     if (!message.channel.starts_with(statistics) || report.decode(message.data, 0, message.size) < 0) return;
     stacks[std::string(message.channel.substr(statistics.size()))].insert(report.role + " on " + report.host);

@@ -19,10 +19,9 @@ PATIENT = ("--set", "limits.stale_input_s=2")
 
 def encoded(kind, template, **changes):
     """The bytes of a message of the same type as `template`, the encoded form of one."""
-    fields = [field.split(":") for field in event_log.FIELDS[kind].split()]
     values = dict(event_log.TYPES[kind].decode(template)._asdict(), **changes)
     data = template[:8]  # the type's hash
-    for name, code in fields:
+    for name, code in event_log.FIELDS[kind]:
         if code == "s":
             text = values[name].encode() + b"\0"
             data += struct.pack(">i", len(text)) + text

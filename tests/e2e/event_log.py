@@ -1,40 +1,40 @@
 """Reads LCM event logs and the messages of package hydro in them.
 
-Written from the descriptions of the format and the types alone, so that it tests the programs' reader and writer
-instead of repeating them.
+Written from the description of the format, with the types as docs/messages.md lists them, so that it tests the programs' reader
+and writer instead of repeating them.
 """
 
 import collections
+import os
+import re
 import struct
 
 SYNC_WORD = 0xEDA1DA01
 HEADER = struct.Struct(">IqqII")  # sync word, event number, timestamp us, channel length, data length
 
-# The fields after the 8 bytes of the type's hash, as in lcmtypes/: q int64, i int32, b int8 or boolean, d double,
-# s string (its length with the zero byte as int32, then the bytes), *FIELD int64 as many times as that field says.
-FIELDS = {
-    "HYDRO_STATE": "utime:q tick:q session:q sequence:q time:d motor_angle:d motor_speed:d arm_angle:d arm_speed:d "
-                   "p1:d p2:d voltage:d command_tick:q skipped_ticks:q",
-    "HYDRO_MOTOR_COMMAND": "utime:q tick:q session:q sequence:q voltage:d pressure_ref:d pressure_command_tick:q "
-                           "saturated:b status:b",
-    "HYDRO_PRESSURE_COMMAND": "utime:q tick:q session:q sequence:q pressure_ref:d voltage:d open_loop:b",
-    "HYDRO_ARM_REFERENCE": "utime:q tick:q session:q sequence:q signal:b value:d",
-    "HYDRO_FAULT": "utime:q tick:q session:q sequence:q source:s code:s text:s value:d limit:d latched:b active:b",
-    "HYDRO_STOP": "utime:q tick:q session:q source:s reason:s exit_code:i",
-    "HYDRO_REARM": "utime:q tick:q session:q addressee:q kind:b source:s text:s",
-    "HYDRO_PROCESS_STATUS": "utime:q session:q role:s host:s version:s pid:i state:b text:s",
-    "HYDRO_LOOP_STATISTICS": "utime:q session:q sequence:q role:s host:s whole_run:b interval_s:d cycles:q "
-                             "period_p50_us:d period_p99_us:d period_p999_us:d period_max_us:d latency_p50_us:d "
-                             "latency_p99_us:d latency_p999_us:d latency_max_us:d missed_deadlines:q lost_messages:q "
-                             "queue_depth:q",
-    "HYDRO_LOOP_HISTOGRAM": "utime:q session:q sequence:q role:s host:s quantity:s whole_run:b interval_s:d count:q "
-                            "lowest:q highest:q buckets:i bucket_first:*buckets bucket_last:*buckets "
-                            "bucket_count:*buckets",
-    "HYDRO_LOG_PROGRESS": "utime:q tick:q session:q events:q queue_depth:q",
-    "HYDRO_RUN": "utime:q session:q config_file:s config_text:s model_file:s model_text:s program:s version:s host:s "
-                 "rate_hz:d seed:q",
-}
-NUMBERED = ("HYDRO_STATE", "HYDRO_MOTOR_COMMAND", "HYDRO_PRESSURE_COMMAND", "HYDRO_ARM_REFERENCE")
+# How struct packs a field that is not a string: docs/messages.md names the types.
+CODES = {"int8_t": "b", "int16_t": "h", "int32_t": "i", "int64_t": "q", "float": "f", "double": "d", "boolean": "b", "byte": "B",
+         "string": "s"}
+PAGE = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "docs", "messages.md")
+
+
+def _read_page(path=PAGE):
+    """What docs/messages.md says of each channel: its fields after the 8 bytes of the type's hash, and when it is sent.
+
+    A field is a pair of its name and a code: q int64, i int32, b int8 or boolean, d double, s string (its length with the zero
+    byte as int32, then the bytes), *FIELD int64 as many times as that field says."""
+    with open(path, encoding="utf-8") as file:
+        overview, *sections = file.read().split("\n## ")
+    fields = {}
+    for section in sections:
+        rows = re.findall(r"^\| `(\w+)` \| `(\w+)(?:\[(\w+)\])?` \|", section, re.MULTILINE)
+        fields[section.split("\n", 1)[0]] = [(name, "*" + count if count else CODES[type_]) for name, type_, count in rows]
+    rows = re.findall(r"^\| \[`(\w+)`\]\(#\w+\) \| `(\w+)` \|[^|]*\| ([^|]*) \|", overview, re.MULTILINE)
+    return {channel: fields[type_] for channel, type_, _ in rows}, {channel: rate for channel, _, rate in rows}
+
+
+FIELDS, RATES = _read_page()
+NUMBERED = tuple(channel for channel, rate in RATES.items() if rate.startswith("each "))  # what the loops compute at a tick
 
 # motor_command_t.status and process_status_t.state
 LAW, OPEN_LOOP, SAFE, STOPPED = range(4)
@@ -48,8 +48,7 @@ class LogError(Exception):
 class Type:
     """Decodes the messages of one channel into named tuples."""
 
-    def __init__(self, channel, fields):
-        pairs = [field.split(":") for field in fields.split()]
+    def __init__(self, channel, pairs):
         self.tuple = collections.namedtuple(channel.title().replace("_", ""), [name for name, _ in pairs])
         self.codes = [code for _, code in pairs]
         varies = any(code == "s" or code.startswith("*") for code in self.codes)

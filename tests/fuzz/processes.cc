@@ -11,7 +11,9 @@
 #include "bus/in_process_bus.h"
 #include "launch/stack_watch.h"
 #include "logger/logger_app.h"
+#include "plant/plant_app.h"
 #include "plant/roll_call.h"
+#include "plant/simulated_rig.h"
 #include "position_ctrl/position_app.h"
 #include "pressure_ctrl/pressure_app.h"
 #include "tests/fuzz/promise.h"
@@ -45,27 +47,33 @@ class Input {
   size_t left_;
 };
 
-// Each message: a byte for its row in the table of messages, one for the time since the previous message, one
-// for the size, and its fields (the type's hash goes before them). Messages in `left_out` are not sent. Calls
-// `poll` after each.
-template <class Poll>
-void Feed(Input& input, bus::InProcessBus& bus, bus::SimulatedClock& clock, std::optional<size_t> left_out,
-          Poll poll) {
+// Sends the next message: a byte for its row in the table of messages, one for the time since the previous
+// message, one for the size, and its fields (the type's hash goes before them). Messages in `left_out` are not
+// sent.
+void SendNext(Input& input, bus::InProcessBus& bus, bus::SimulatedClock& clock,
+              std::optional<size_t> left_out) {
   static const bus::Channels channels;
   static const auto hashes = std::apply(
       [](const auto&... row) { return std::array{std::remove_cvref_t<decltype(row)>::Type::getHash()...}; },
       bus::kMessages);
+  const size_t row = input.Byte() % hashes.size();
+  clock.AdvanceTo(clock.Now() + std::chrono::milliseconds(input.Byte()));
+  std::vector<uint8_t> bytes;
+  for (int shift = 56; shift >= 0; shift -= 8) {
+    bytes.push_back(static_cast<uint8_t>(static_cast<uint64_t>(hashes[row]) >> shift));
+  }
+  const size_t length = input.Byte();
+  const std::vector<uint8_t> fields = input.Take(length);
+  bytes.insert(bytes.end(), fields.begin(), fields.end());
+  if (row != left_out) bus.PublishRaw(channels.names()[row], bytes.data(), static_cast<int>(bytes.size()));
+}
+
+// Sends the messages of the input, and calls `poll` after each.
+template <class Poll>
+void Feed(Input& input, bus::InProcessBus& bus, bus::SimulatedClock& clock, std::optional<size_t> left_out,
+          Poll poll) {
   for (size_t count = 0; input.left() > 0 && count < kMostMessages; ++count) {
-    const size_t row = input.Byte() % hashes.size();
-    clock.AdvanceTo(clock.Now() + std::chrono::milliseconds(input.Byte()));
-    std::vector<uint8_t> bytes;
-    for (int shift = 56; shift >= 0; shift -= 8) {
-      bytes.push_back(static_cast<uint8_t>(static_cast<uint64_t>(hashes[row]) >> shift));
-    }
-    const size_t length = input.Byte();
-    const std::vector<uint8_t> fields = input.Take(length);
-    bytes.insert(bytes.end(), fields.begin(), fields.end());
-    if (row != left_out) bus.PublishRaw(channels.names()[row], bytes.data(), static_cast<int>(bytes.size()));
+    SendNext(input, bus, clock, left_out);
     for (int turn = 0; turn < 5 && bus.HandleUntil(clock.Now()) > 0; ++turn) {
     }
     poll();
@@ -109,6 +117,36 @@ void Processes(const uint8_t* data, size_t size) {
   roll_call.Missing();
   pressure.Finish();
   position.Finish();
+}
+
+// The plant with its voltage guard hears one message of the input at each state that it sends, re-arm requests
+// among them. Nobody else sends states here.
+void Plant(const uint8_t* data, size_t size) {
+  spdlog::set_level(spdlog::level::off);
+  Input input(data, size);
+  bus::SimulatedClock clock;
+  clock.AdvanceTo(bus::Clock::TimePoint(std::chrono::hours(1)));
+  bus::InProcessBus bus(&clock);
+  settings::StackConfig config = Config(input);
+  config.limits.rearm = settings::Rearm::kExplicit;
+  config.limits.pressure_psi = 100.5;  // of the 100 psi at the start: commands exceed it, and latch the fault
+  const double most_volts = pressure_ctrl::PressureLawSettingsFor(config).voltage_limit;
+  plant::SimulatedRig rig(config);
+  plant::PlantApp plant(bus, clock, config, rig);
+  const bus::Channels channels;
+  bus.Subscribe<state_t>(channels.Of<state_t>(), [&](const state_t& state) {
+    Promise(std::abs(state.voltage) <= most_volts, "voltages are within what the amplifier takes");
+    Promise(std::isfinite(state.p1) && std::isfinite(state.arm_angle), "the plant's state is finite");
+    if (input.left() > 0) SendNext(input, bus, clock, bus::MessageIndex<state_t>());
+  });
+  for (const char* role : {"pressure_ctrl", "position_ctrl"}) {
+    process_status_t ready{};
+    ready.session = 1;
+    ready.role = role;
+    ready.state = process_status_t::READY;
+    bus.Publish(channels.Of<process_status_t>(), ready);
+  }
+  plant.Run();
 }
 
 void Recorder(const uint8_t* data, size_t size) {

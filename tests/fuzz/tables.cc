@@ -32,7 +32,7 @@ void Table(const uint8_t* data, size_t size) {
     tables::WriteTable(table, folder.Path("again.csv"));
     Accepts([&] {
       runs::ImportRun(table, "fuzz", folder.Path("import.log"));
-      Promise(runs::ReadRunLog(folder.Path("import.log")).messages.states.size() == table.rows(),
+      Promise(runs::ReadRunLog(folder.Path("import.log")).messages.Of<state_t>().size() == table.rows(),
               "an import has a state a row");
       Promise(runs::ExportRun(runs::ReadRunLog(folder.Path("import.log"))).rows() == table.rows(),
               "an import exports as many rows");

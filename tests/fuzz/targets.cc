@@ -7,6 +7,7 @@ const Target* FindTarget(std::string_view name) {
       {"packets", Packets},
       {"messages", Messages},
       {"processes", Processes},
+      {"plant", Plant},
       {"recorder", Recorder},
       {"log", Log},
       {"table", Table},

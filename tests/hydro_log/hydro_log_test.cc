@@ -48,7 +48,7 @@ TEST_F(HydroLogTest, Compare) {
   const Outcome same = HydroLog({"compare", Path("a"), Path("b")});
   EXPECT_EQ(same.exit_code, 0) << same.err;
   EXPECT_EQ(same.out, "identical\n");
-  run.states[4].p2 = 7;
+  run.Of<state_t>()[4].p2 = 7;
   log::WriteRun(Path("b"), run);
   const Outcome different = HydroLog({"compare", Path("a"), Path("b")});
   EXPECT_EQ(different.exit_code, 1);

@@ -90,22 +90,22 @@ TEST_P(ReplayTest, IsIdentical) {
 // Tests that the order of arrival in the log does not matter.
 TEST_P(ReplayTest, OrderOfArrivalDoesNotMatter) {
   runs::RunLog log = Recorded();
-  std::reverse(log.messages.states.begin(), log.messages.states.end());
-  std::reverse(log.messages.pressure_commands.begin(), log.messages.pressure_commands.end());
+  std::reverse(log.messages.Of<state_t>().begin(), log.messages.Of<state_t>().end());
+  std::reverse(log.messages.Of<pressure_command_t>().begin(), log.messages.Of<pressure_command_t>().end());
   EXPECT_EQ(Replay(log, GetParam(), 0).difference, std::nullopt);
 }
 
 // Tests that one flipped bit, in a recorded answer or in a measurement, is found, at its tick.
 TEST(ReplayBitTest, OneBitIsFound) {
   runs::RunLog log = Recorded();
-  double& voltage = log.messages.motor_commands.at(120).voltage;
+  double& voltage = log.messages.Of<motor_command_t>().at(120).voltage;
   voltage = std::bit_cast<double>(std::bit_cast<uint64_t>(voltage) ^ 1);
   const auto wrong_answer = Replay(log, ReplayedController::kPressure, 0).difference;
   ASSERT_TRUE(wrong_answer.has_value());
   EXPECT_NE(wrong_answer->find("tick 120"), std::string::npos) << *wrong_answer;
 
   log = Recorded();
-  double& angle = log.messages.states.at(100).arm_angle;
+  double& angle = log.messages.Of<state_t>().at(100).arm_angle;
   angle = std::bit_cast<double>(std::bit_cast<uint64_t>(angle) ^ (1u << 20));
   const auto wrong_input = Replay(log, ReplayedController::kPosition, 0).difference;
   ASSERT_TRUE(wrong_input.has_value());
@@ -120,8 +120,8 @@ TEST(ReplayLateTest, WhatWasInForceCounts) {
   // and with those inputs the recorded answers of ticks 51 to 53 must be those of the old command.
   runs::RunLog late = log;
   const auto& law = log.messages;
-  const double before = law.pressure_commands.at(9).pressure_ref;
-  for (motor_command_t& command : late.messages.motor_commands) {
+  const double before = law.Of<pressure_command_t>().at(9).pressure_ref;
+  for (motor_command_t& command : late.messages.Of<motor_command_t>()) {
     if (command.tick < 51 || command.tick > 53) continue;
     command.pressure_command_tick = 45;
     command.pressure_ref = before;
@@ -141,10 +141,10 @@ TEST_P(ReplayTest, BeginsInTheMiddle) {
   const auto cut = [](auto& messages) {
     std::erase_if(messages, [](const auto& m) { return m.tick < 103; });
   };
-  cut(log.messages.states);
-  cut(log.messages.motor_commands);
-  cut(log.messages.pressure_commands);
-  cut(log.messages.arm_references);
+  cut(log.messages.Of<state_t>());
+  cut(log.messages.Of<motor_command_t>());
+  cut(log.messages.Of<pressure_command_t>());
+  cut(log.messages.Of<arm_reference_t>());
   const ReplayResult result = Replay(log, GetParam(), 0);
   EXPECT_EQ(result.difference, std::nullopt);
   EXPECT_EQ(result.answers, GetParam() == ReplayedController::kPressure ? 195 : 39);
@@ -154,16 +154,16 @@ TEST_P(ReplayTest, BeginsInTheMiddle) {
 TEST(ReplayErrorTest, SaysWhatIsMissing) {
   runs::RunLog log = Recorded();
   runs::RunLog without = log;
-  without.descriptions.clear();
+  without.messages.Of<run_description_t>().clear();
   EXPECT_THROW(Replay(without, ReplayedController::kPressure, 0), InputError);
   without = log;
-  without.messages.states.clear();
+  without.messages.Of<state_t>().clear();
   EXPECT_THROW(Replay(without, ReplayedController::kPressure, 0), InputError);
   without = log;
-  without.messages.motor_commands.clear();
+  without.messages.Of<motor_command_t>().clear();
   EXPECT_THROW(Replay(without, ReplayedController::kPressure, 0), InputError);
   without = log;
-  without.messages.pressure_commands.clear();
+  without.messages.Of<pressure_command_t>().clear();
   EXPECT_THROW(Replay(without, ReplayedController::kPosition, 0), InputError);
 }
 

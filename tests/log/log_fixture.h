@@ -105,7 +105,7 @@ inline runs::RunMessages SampleRun(int64_t ticks) {
     state.p2 = 200 - x / 7;
     state.voltage = tick == 0 ? 0 : -0.5 + x - 1;
     state.command_tick = tick - 1;
-    run.states.push_back(state);
+    run.Of<state_t>().push_back(state);
     if (tick % 5 == 0) {
       pressure_command_t pressure{};
       pressure.utime = state.utime;
@@ -113,7 +113,7 @@ inline runs::RunMessages SampleRun(int64_t ticks) {
       pressure.sequence = tick / 5;
       pressure.session = 13;
       pressure.pressure_ref = 50 + x;
-      run.pressure_commands.push_back(pressure);
+      run.Of<pressure_command_t>().push_back(pressure);
       arm_reference_t reference{};
       reference.utime = state.utime;
       reference.tick = tick;
@@ -121,7 +121,7 @@ inline runs::RunMessages SampleRun(int64_t ticks) {
       reference.session = 13;
       reference.signal = arm_reference_t::ARM_ANGLE;
       reference.value = 0.2 + x;
-      run.arm_references.push_back(reference);
+      run.Of<arm_reference_t>().push_back(reference);
     }
     motor_command_t command{};
     command.utime = state.utime;
@@ -130,7 +130,7 @@ inline runs::RunMessages SampleRun(int64_t ticks) {
     command.voltage = -0.5 + x;
     command.pressure_command_tick = tick == 0 ? -1 : (tick - 1) / 5 * 5;
     command.pressure_ref = tick == 0 ? 0 : 50 + static_cast<double>(command.pressure_command_tick);
-    run.motor_commands.push_back(command);
+    run.Of<motor_command_t>().push_back(command);
   }
   fault_t fault{};
   fault.tick = 2;
@@ -141,7 +141,7 @@ inline runs::RunMessages SampleRun(int64_t ticks) {
   fault.value = 0.2;
   fault.limit = 0.1;
   fault.active = 1;
-  run.faults.push_back(fault);
+  run.Of<fault_t>().push_back(fault);
   return run;
 }
 
@@ -168,13 +168,13 @@ inline void WriteRun(const std::string& file, const runs::RunMessages& run, cons
     }
   };
   int64_t last = 0;
-  for (const state_t& state : run.states) last = std::max(last, state.tick);
+  for (const state_t& state : run.Of<state_t>()) last = std::max(last, state.tick);
   for (int64_t tick = -1; tick <= last; ++tick) {
-    append_tick(channels.Of<state_t>(), run.states, tick);
-    append_tick(channels.Of<pressure_command_t>(), run.pressure_commands, tick);
-    append_tick(channels.Of<arm_reference_t>(), run.arm_references, tick);
-    append_tick(channels.Of<motor_command_t>(), run.motor_commands, tick);
-    append_tick(channels.Of<fault_t>(), run.faults, tick);
+    append_tick(channels.Of<state_t>(), run.Of<state_t>(), tick);
+    append_tick(channels.Of<pressure_command_t>(), run.Of<pressure_command_t>(), tick);
+    append_tick(channels.Of<arm_reference_t>(), run.Of<arm_reference_t>(), tick);
+    append_tick(channels.Of<motor_command_t>(), run.Of<motor_command_t>(), tick);
+    append_tick(channels.Of<fault_t>(), run.Of<fault_t>(), tick);
   }
   writer.Finish();
 }

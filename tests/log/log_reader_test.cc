@@ -106,15 +106,15 @@ TEST_F(LogReaderTest, NotALog) {
 // Tests that messages of another type, with bytes missing or with bytes too many, do not decode.
 TEST_F(LogReaderTest, DecodesOnlyWholeMessages) {
   const runs::RunMessages run = SampleRun(1);
-  std::vector<uint8_t> bytes(static_cast<size_t>(run.states[0].getEncodedSize()) + 1);
-  run.states[0].encode(bytes.data(), 0, static_cast<int>(bytes.size()));
+  std::vector<uint8_t> bytes(static_cast<size_t>(run.Of<state_t>()[0].getEncodedSize()) + 1);
+  run.Of<state_t>()[0].encode(bytes.data(), 0, static_cast<int>(bytes.size()));
   LogEvent event;
   event.data = bytes.data();
   state_t state;
   motor_command_t command;
   for (int size = 0; size <= static_cast<int>(bytes.size()); ++size) {
     event.size = size;
-    EXPECT_EQ(DecodeAs(event, state), size == run.states[0].getEncodedSize()) << size;
+    EXPECT_EQ(DecodeAs(event, state), size == run.Of<state_t>()[0].getEncodedSize()) << size;
     EXPECT_FALSE(DecodeAs(event, command)) << size;
   }
 }
@@ -122,7 +122,7 @@ TEST_F(LogReaderTest, DecodesOnlyWholeMessages) {
 // Tests that a string whose length is damaged does not decode, whatever the length.
 TEST_F(LogReaderTest, DamagedStringLengths) {
   const runs::RunMessages run = SampleRun(1);
-  const fault_t& fault = run.faults[0];
+  const fault_t& fault = run.Of<fault_t>()[0];
   std::vector<uint8_t> bytes(static_cast<size_t>(fault.getEncodedSize()));
   LogEvent event;
   event.data = bytes.data();

@@ -30,13 +30,14 @@ void Change(int64_t& value) { ++value; }
 void Change(int8_t& value) { ++value; }
 void Change(std::string& value) { value += '.'; }
 
-// Changes each field of the message that `pick` returns in turn, and expects it to be named.
-template <class Pick>
-void ExpectEachFieldNamed(const std::string& channel, Pick pick) {
+// Changes each field of a message in turn, and expects it to be named.
+template <class Message>
+void ExpectEachFieldNamed(const std::string& channel) {
   const RunMessages a = log::SampleRun(12);
+  ASSERT_FALSE(a.Of<Message>().empty()) << channel << ": SampleRun() needs one";
   const auto expect_named = [&](const auto& field) {
     RunMessages b = a;
-    auto& message = pick(b);
+    Message& message = b.Of<Message>()[b.Of<Message>().size() / 2];
     const int64_t tick = message.tick;
     Change(message.*field.member);
     const std::optional<std::string> difference = Difference(a, b);
@@ -47,29 +48,23 @@ void ExpectEachFieldNamed(const std::string& channel, Pick pick) {
                                               "." + field.name + ": "),
                                    HasSubstr(" (a.lcmlog) and "), EndsWith(" (b.lcmlog)")));
   };
-  std::apply(
-      [&](const auto&... field) { (expect_named(field), ...); },
-      FieldsOf(static_cast<std::remove_reference_t<decltype(pick(std::declval<RunMessages&>()))>*>(nullptr)));
+  std::apply([&](const auto&... field) { (expect_named(field), ...); },
+             FieldsOf(static_cast<const Message*>(nullptr)));
 }
 
 // Tests that the smallest difference of any one field of any message is found and named.
 TEST(CompareTest, EachFieldOfEachMessage) {
-  ExpectEachFieldNamed("HYDRO_STATE", [](RunMessages& run) -> state_t& { return run.states[8]; });
-  ExpectEachFieldNamed("HYDRO_MOTOR_COMMAND",
-                       [](RunMessages& run) -> motor_command_t& { return run.motor_commands[7]; });
-  ExpectEachFieldNamed("HYDRO_PRESSURE_COMMAND",
-                       [](RunMessages& run) -> pressure_command_t& { return run.pressure_commands[1]; });
-  ExpectEachFieldNamed("HYDRO_ARM_REFERENCE",
-                       [](RunMessages& run) -> arm_reference_t& { return run.arm_references[2]; });
-  ExpectEachFieldNamed("HYDRO_FAULT", [](RunMessages& run) -> fault_t& { return run.faults[0]; });
+  bus::ForEachMessage([]<class Message>(const bus::MessageRow<Message>& row) {
+    if constexpr (ComparedMessage<Message>) ExpectEachFieldNamed<Message>(std::string(row.channel));
+  });
 }
 
 // Tests the whole line.
 TEST(CompareTest, Line) {
   RunMessages a = log::SampleRun(3);
   RunMessages b = a;
-  a.states[1].p2 = 101.25;
-  b.states[1].p2 = 101.26;
+  a.Of<state_t>()[1].p2 = 101.25;
+  b.Of<state_t>()[1].p2 = 101.26;
   EXPECT_THAT(Difference(a, b),
               Optional(std::string("differ at tick 1: HYDRO_STATE.p2: 101.25 (a.lcmlog) and 101.26 "
                                    "(b.lcmlog)")));
@@ -79,17 +74,14 @@ TEST(CompareTest, Line) {
 TEST(CompareTest, WallClockAndSessionsDoNotMatter) {
   const RunMessages a = log::SampleRun(12);
   RunMessages b = a;
-  const auto change = [](auto& messages) {
-    for (auto& message : messages) {
-      message.utime += 12345;
-      message.session += 99;
+  bus::ForEachMessage([&]<class Message>(const bus::MessageRow<Message>&) {
+    if constexpr (ComparedMessage<Message>) {
+      for (Message& message : b.Of<Message>()) {
+        message.utime += 12345;
+        message.session += 99;
+      }
     }
-  };
-  change(b.states);
-  change(b.motor_commands);
-  change(b.pressure_commands);
-  change(b.arm_references);
-  change(b.faults);
+  });
   EXPECT_EQ(Difference(a, b), std::nullopt);
 }
 
@@ -98,12 +90,12 @@ TEST(CompareTest, OrderAndRepetitionDoNotMatter) {
   const RunMessages a = log::SampleRun(40);
   RunMessages b = a;
   std::mt19937_64 random(1);
-  std::shuffle(b.states.begin(), b.states.end(), random);
-  std::shuffle(b.motor_commands.begin(), b.motor_commands.end(), random);
-  std::reverse(b.arm_references.begin(), b.arm_references.end());
-  b.states.push_back(b.states[3]);
-  b.states.back().utime += 1;  // sent again, later
-  b.pressure_commands.push_back(b.pressure_commands[2]);
+  std::shuffle(b.Of<state_t>().begin(), b.Of<state_t>().end(), random);
+  std::shuffle(b.Of<motor_command_t>().begin(), b.Of<motor_command_t>().end(), random);
+  std::reverse(b.Of<arm_reference_t>().begin(), b.Of<arm_reference_t>().end());
+  b.Of<state_t>().push_back(b.Of<state_t>()[3]);
+  b.Of<state_t>().back().utime += 1;  // sent again, later
+  b.Of<pressure_command_t>().push_back(b.Of<pressure_command_t>()[2]);
   EXPECT_EQ(Difference(a, b), std::nullopt);
   EXPECT_EQ(Difference(b, a), std::nullopt);
 }
@@ -112,8 +104,8 @@ TEST(CompareTest, OrderAndRepetitionDoNotMatter) {
 TEST(CompareTest, ContradictoryRepetition) {
   const RunMessages a = log::SampleRun(12);
   RunMessages b = a;
-  b.motor_commands.push_back(b.motor_commands[3]);
-  b.motor_commands.back().voltage += 1;
+  b.Of<motor_command_t>().push_back(b.Of<motor_command_t>()[3]);
+  b.Of<motor_command_t>().back().voltage += 1;
   EXPECT_THAT(Difference(a, b), Optional(StartsWith("differ at tick ")));
 }
 
@@ -122,7 +114,7 @@ TEST(CompareTest, MissingMessage) {
   const RunMessages whole = log::SampleRun(12);
   for (const int64_t tick : {0, 6, 11}) {
     RunMessages part = whole;
-    part.states.erase(part.states.begin() + tick);
+    part.Of<state_t>().erase(part.Of<state_t>().begin() + tick);
     const std::string place = "differ at tick " + std::to_string(tick) + ": HYDRO_STATE: no such message in ";
     const std::string number = ", sequence " + std::to_string(tick) + " in ";
     EXPECT_THAT(Difference(part, whole), Optional(place + "a.lcmlog" + number + "b.lcmlog"));
@@ -134,10 +126,10 @@ TEST(CompareTest, MissingMessage) {
 TEST(CompareTest, NamesTheFirst) {
   const RunMessages a = log::SampleRun(12);
   RunMessages b = a;
-  b.states[9].p1 += 1;
-  b.motor_commands[4].voltage += 1;
+  b.Of<state_t>()[9].p1 += 1;
+  b.Of<motor_command_t>()[4].voltage += 1;
   EXPECT_THAT(Difference(a, b), Optional(StartsWith("differ at tick 4: HYDRO_MOTOR_COMMAND.voltage")));
-  b.states[4].p1 += 1;
+  b.Of<state_t>()[4].p1 += 1;
   EXPECT_THAT(Difference(a, b), Optional(StartsWith("differ at tick 4: HYDRO_STATE.p1")));
 }
 
@@ -145,14 +137,14 @@ TEST(CompareTest, NamesTheFirst) {
 TEST(CompareTest, BitsOfDoubles) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   RunMessages a = log::SampleRun(3);
-  a.states[1].p1 = nan;
+  a.Of<state_t>()[1].p1 = nan;
   RunMessages b = a;
   EXPECT_EQ(Difference(a, b), std::nullopt);
-  b.states[1].p1 = std::bit_cast<double>(std::bit_cast<uint64_t>(nan) + 1);
+  b.Of<state_t>()[1].p1 = std::bit_cast<double>(std::bit_cast<uint64_t>(nan) + 1);
   EXPECT_THAT(Difference(a, b),
               Optional(HasSubstr("nan (0x7ff8000000000000) (a.lcmlog) and nan (0x7ff8000000000001)")));
-  a.states[1].p1 = 0.0;
-  b.states[1].p1 = -0.0;
+  a.Of<state_t>()[1].p1 = 0.0;
+  b.Of<state_t>()[1].p1 = -0.0;
   EXPECT_THAT(Difference(a, b), Optional(HasSubstr("p1: 0 (a.lcmlog) and -0 (b.lcmlog)")));
 }
 
@@ -160,12 +152,12 @@ TEST(CompareTest, BitsOfDoubles) {
 // arrived.
 TEST(CompareTest, FaultsOfTwoProcesses) {
   RunMessages a = log::SampleRun(3);
-  a.faults.push_back(a.faults[0]);
-  a.faults.back().source = "plant";
+  a.Of<fault_t>().push_back(a.Of<fault_t>()[0]);
+  a.Of<fault_t>().back().source = "plant";
   RunMessages b = a;
-  std::swap(b.faults[0], b.faults[1]);
+  std::swap(b.Of<fault_t>()[0], b.Of<fault_t>()[1]);
   EXPECT_EQ(Difference(a, b), std::nullopt);
-  b.faults.pop_back();
+  b.Of<fault_t>().pop_back();
   EXPECT_NE(Difference(a, b), std::nullopt);
 }
 

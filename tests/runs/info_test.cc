@@ -54,11 +54,11 @@ TEST_F(InfoTest, CompleteRun) {
 // Tests that lost, repeated and late-joined messages are counted by sender.
 TEST_F(InfoTest, LostAndRepeatedMessages) {
   RunMessages run = log::SampleRun(20);
-  run.states.erase(run.states.begin() + 5, run.states.begin() + 8);  // ticks 5 to 7
-  run.states.push_back(run.states[2]);
-  run.motor_commands.erase(run.motor_commands.begin(), run.motor_commands.begin() + 4);
-  run.motor_commands[10].session = 77;  // a second sender: its numbers are its own
-  run.motor_commands[10].sequence = 0;
+  run.Of<state_t>().erase(run.Of<state_t>().begin() + 5, run.Of<state_t>().begin() + 8);  // ticks 5 to 7
+  run.Of<state_t>().push_back(run.Of<state_t>()[2]);
+  run.Of<motor_command_t>().erase(run.Of<motor_command_t>().begin(), run.Of<motor_command_t>().begin() + 4);
+  run.Of<motor_command_t>()[10].session = 77;  // a second sender: its numbers are its own
+  run.Of<motor_command_t>()[10].sequence = 0;
   const LogInfo info = InfoOf(run);
   EXPECT_EQ(Channel(info, "HYDRO_STATE").lost, 3);
   EXPECT_EQ(Channel(info, "HYDRO_STATE").repeated, 1);
@@ -74,8 +74,8 @@ TEST_F(InfoTest, LostAndRepeatedMessages) {
 // Tests that ticks that the plant reports as skipped are told from lost ones.
 TEST_F(InfoTest, SkippedTicks) {
   RunMessages run = log::SampleRun(20);
-  run.states.erase(run.states.begin() + 5, run.states.begin() + 8);
-  run.states[5].skipped_ticks = 2;
+  run.Of<state_t>().erase(run.Of<state_t>().begin() + 5, run.Of<state_t>().begin() + 8);
+  run.Of<state_t>()[5].skipped_ticks = 2;
   const LogInfo info = InfoOf(run);
   EXPECT_EQ(info.ticks.missing, 3);
   EXPECT_EQ(info.ticks.announced, 2);
@@ -101,7 +101,7 @@ TEST_F(InfoTest, RepeatedStops) {
     stop_t stop{};
     stop.session = session;
     stop.reason = "the run is complete";
-    log.stops.push_back(stop);
+    log.messages.Of<stop_t>().push_back(stop);
   }
   EXPECT_EQ(Summarise(log, false).stops.size(), 2u);
 }

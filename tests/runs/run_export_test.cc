@@ -47,7 +47,7 @@ TEST_F(RunExportTest, Values) {
   // A pressure command of tick k is in force from k + 1 on; none at tick 0.
   EXPECT_THAT(Values(table, "pressure_ref_psi"), ElementsAre(IsNan(), 50, 50, 50, 50, 50, 55));
   EXPECT_THAT(Values(table, "arm_ref_rad"), ElementsAre(0.2, 0.2, 0.2, 0.2, 0.2, 5.2, 5.2));
-  const state_t state = log::SampleRun(7).states[6];
+  const state_t state = log::SampleRun(7).Of<state_t>()[6];
   EXPECT_EQ(Values(table, "motor_angle_rad")[6], state.motor_angle);
   EXPECT_EQ(Values(table, "motor_speed_rad_s")[6], state.motor_speed);
   EXPECT_EQ(Values(table, "arm_angle_rad")[6], state.arm_angle);
@@ -62,7 +62,7 @@ TEST_F(RunExportTest, LastVoltage) {
   RunMessages run = log::SampleRun(7);
   EXPECT_EQ(Values(Export(run, "[plant]\ncommand_delay_ticks = 1\n"), "voltage_V").back(), 4.5);
   EXPECT_EQ(Values(Export(run, "[plant]\ncommand_delay_ticks = 0\n"), "voltage_V").back(), 5.5);
-  run.motor_commands.erase(run.motor_commands.begin() + 5);
+  run.Of<motor_command_t>().erase(run.Of<motor_command_t>().begin() + 5);
   EXPECT_THAT(Values(Export(run), "voltage_V").back(), IsNan());
 }
 
@@ -70,29 +70,29 @@ TEST_F(RunExportTest, LastVoltage) {
 // arrived.
 TEST_F(RunExportTest, PressureReferenceWithoutMotorCommands) {
   RunMessages run = log::SampleRun(7);
-  run.motor_commands.clear();
+  run.Of<motor_command_t>().clear();
   EXPECT_THAT(Values(Export(run), "pressure_ref_psi"), ElementsAre(IsNan(), 50, 50, 50, 50, 50, 55));
   EXPECT_THAT(Values(Export(run, "[plant]\ncommand_delay_ticks = 0\n"), "pressure_ref_psi"),
               ElementsAre(50, 50, 50, 50, 50, 55, 55));
-  run.pressure_commands.clear();
+  run.Of<pressure_command_t>().clear();
   EXPECT_THAT(Values(Export(run), "pressure_ref_psi"), testing::Each(IsNan()));
 }
 
 // Tests that in open loop no pressure reference is in force.
 TEST_F(RunExportTest, OpenLoop) {
   RunMessages run = log::SampleRun(7);
-  for (motor_command_t& command : run.motor_commands) command.status = motor_command_t::OPEN_LOOP;
+  for (motor_command_t& command : run.Of<motor_command_t>()) command.status = motor_command_t::OPEN_LOOP;
   EXPECT_THAT(Values(Export(run), "pressure_ref_psi"), testing::Each(IsNan()));
 }
 
 // Tests that the zero command that ends a run does not stand for the one that acted.
 TEST_F(RunExportTest, StoppedCommandOfTheSameTick) {
   RunMessages run = log::SampleRun(7);
-  motor_command_t stopped = run.motor_commands[5];
+  motor_command_t stopped = run.Of<motor_command_t>()[5];
   stopped.sequence = 7;
   stopped.voltage = stopped.pressure_ref = 0;
   stopped.status = motor_command_t::STOPPED;
-  run.motor_commands.push_back(stopped);
+  run.Of<motor_command_t>().push_back(stopped);
   const tables::Table table = Export(run);
   EXPECT_EQ(Values(table, "voltage_V").back(), 4.5);
   EXPECT_EQ(Values(table, "pressure_ref_psi")[5], 50);
@@ -101,19 +101,19 @@ TEST_F(RunExportTest, StoppedCommandOfTheSameTick) {
 // Tests that references of another signal are not the arm's.
 TEST_F(RunExportTest, OtherReferences) {
   RunMessages run = log::SampleRun(3);
-  for (arm_reference_t& reference : run.arm_references) reference.signal = arm_reference_t::PRESSURE;
+  for (arm_reference_t& reference : run.Of<arm_reference_t>()) reference.signal = arm_reference_t::PRESSURE;
   EXPECT_THAT(Values(Export(run), "arm_ref_rad"), testing::Each(IsNan()));
 }
 
 // Tests that states late, repeated or lost in the log give rows in tick order, each once.
 TEST_F(RunExportTest, DisorderedStates) {
   RunMessages run = log::SampleRun(7);
-  run.states.erase(run.states.begin() + 3);
+  run.Of<state_t>().erase(run.Of<state_t>().begin() + 3);
   log::WriteRun(Path("log"), run);
   const RunLog good = ReadRunLog(Path("log"));
   RunLog bad = good;
-  std::swap(bad.messages.states[1], bad.messages.states[4]);
-  bad.messages.states.push_back(bad.messages.states[2]);
+  std::swap(bad.messages.Of<state_t>()[1], bad.messages.Of<state_t>()[4]);
+  bad.messages.Of<state_t>().push_back(bad.messages.Of<state_t>()[2]);
   EXPECT_THAT(Values(ExportRun(bad), "tick"), ElementsAre(0, 1, 2, 4, 5, 6));
   tables::WriteTable(ExportRun(good), Path("good.csv"));
   tables::WriteTable(ExportRun(bad), Path("bad.csv"));
@@ -123,13 +123,13 @@ TEST_F(RunExportTest, DisorderedStates) {
 // Tests that a log of two runs, or of none, is an error.
 TEST_F(RunExportTest, NotOneRun) {
   RunMessages run = log::SampleRun(7);
-  run.states[5].session = 99;
+  run.Of<state_t>()[5].session = 99;
   EXPECT_THAT(log::InputErrorOf([&] { Export(run); }),
               HasSubstr("found states from 2 senders on HYDRO_STATE"));
   run = log::SampleRun(7);
-  run.states[5].tick = 4;
+  run.Of<state_t>()[5].tick = 4;
   EXPECT_THAT(log::InputErrorOf([&] { Export(run); }), HasSubstr("two different states of tick 4"));
-  run.states.clear();
+  run.Of<state_t>().clear();
   EXPECT_THAT(log::InputErrorOf([&] { Export(run); }), HasSubstr("found no message on HYDRO_STATE"));
 }
 

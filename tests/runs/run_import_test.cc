@@ -89,28 +89,29 @@ TEST_F(RunImportTest, TimesAndDescription) {
   const RunLog even = ImportCsv("time_s,p1_psi\n0.5,1\n0.502,2\n0.504,3\n");
   EXPECT_EQ(even.first_utime, 500000);
   EXPECT_EQ(even.last_utime, 504000);
-  ASSERT_EQ(even.descriptions.size(), 1u);
-  EXPECT_EQ(even.descriptions[0].rate_hz, 500);
-  EXPECT_EQ(even.descriptions[0].program, "hydro-log");
-  EXPECT_EQ(even.descriptions[0].version, "1.2.3");
-  EXPECT_EQ(even.descriptions[0].config_file, Path("x.csv"));
-  EXPECT_EQ(ImportCsv("time_s,tick\n0,0\n0.002,2\n0.003,3\n").descriptions[0].rate_hz, 1000);
-  EXPECT_EQ(ImportCsv("time_s\n0\n0.002\n0.003\n").descriptions[0].rate_hz, 0);
-  EXPECT_EQ(ImportCsv("time_s\n7\n").descriptions[0].rate_hz, 0);
+  ASSERT_EQ(even.messages.Of<run_description_t>().size(), 1u);
+  EXPECT_EQ(even.messages.Of<run_description_t>()[0].rate_hz, 500);
+  EXPECT_EQ(even.messages.Of<run_description_t>()[0].program, "hydro-log");
+  EXPECT_EQ(even.messages.Of<run_description_t>()[0].version, "1.2.3");
+  EXPECT_EQ(even.messages.Of<run_description_t>()[0].config_file, Path("x.csv"));
+  EXPECT_EQ(ImportCsv("time_s,tick\n0,0\n0.002,2\n0.003,3\n").messages.Of<run_description_t>()[0].rate_hz,
+            1000);
+  EXPECT_EQ(ImportCsv("time_s\n0\n0.002\n0.003\n").messages.Of<run_description_t>()[0].rate_hz, 0);
+  EXPECT_EQ(ImportCsv("time_s\n7\n").messages.Of<run_description_t>()[0].rate_hz, 0);
 }
 
 // Tests that a voltage acts from its row on, as in a log of the plant.
 TEST_F(RunImportTest, VoltageActsFromItsRow) {
   const RunLog log = ImportCsv("time_s,voltage_V\n0,1\n1,2\n2,3\n");
-  ASSERT_EQ(log.messages.states.size(), 3u);
-  EXPECT_EQ(log.messages.states[0].voltage, 0);
-  EXPECT_EQ(log.messages.states[0].command_tick, -1);
-  EXPECT_EQ(log.messages.states[1].voltage, 1);
-  EXPECT_EQ(log.messages.states[2].voltage, 2);
-  EXPECT_EQ(log.messages.states[2].command_tick, 1);
-  ASSERT_EQ(log.messages.motor_commands.size(), 1u);
-  EXPECT_EQ(log.messages.motor_commands[0].tick, 1);
-  EXPECT_EQ(log.messages.motor_commands[0].voltage, 3);
+  ASSERT_EQ(log.messages.Of<state_t>().size(), 3u);
+  EXPECT_EQ(log.messages.Of<state_t>()[0].voltage, 0);
+  EXPECT_EQ(log.messages.Of<state_t>()[0].command_tick, -1);
+  EXPECT_EQ(log.messages.Of<state_t>()[1].voltage, 1);
+  EXPECT_EQ(log.messages.Of<state_t>()[2].voltage, 2);
+  EXPECT_EQ(log.messages.Of<state_t>()[2].command_tick, 1);
+  ASSERT_EQ(log.messages.Of<motor_command_t>().size(), 1u);
+  EXPECT_EQ(log.messages.Of<motor_command_t>()[0].tick, 1);
+  EXPECT_EQ(log.messages.Of<motor_command_t>()[0].voltage, 3);
 }
 
 // Tests that each kind of bad table is an error that names row and column, and that no log is left.

@@ -21,8 +21,8 @@ TEST_F(RunLogTest, ReadsARun) {
     const RunLog log = ReadRunLog(Path("log"));
     EXPECT_EQ(log.suffix, suffix);
     EXPECT_EQ(FirstDifference(run, "written", log.messages, "read"), std::nullopt);
-    ASSERT_EQ(log.descriptions.size(), 1u);
-    EXPECT_EQ(log.descriptions[0].version, "1.2.3");
+    ASSERT_EQ(log.messages.Of<run_description_t>().size(), 1u);
+    EXPECT_EQ(log.messages.Of<run_description_t>()[0].version, "1.2.3");
     EXPECT_EQ(log.last_utime, 22000);
     EXPECT_EQ(log.bytes, static_cast<int64_t>(std::filesystem::file_size(Path("log"))));
   }
@@ -35,8 +35,8 @@ TEST_F(RunLogTest, SeveralSuffixes) {
   log::WriteBytes(Path("both"), log::ReadBytes(Path("one")) + log::ReadBytes(Path("two")));
   EXPECT_THAT(log::InputErrorOf([&] { ReadRunLog(Path("both")); }),
               AllOf(HasSubstr(Path("both")), HasSubstr("'', '_2'"), HasSubstr("--suffix")));
-  EXPECT_EQ(ReadRunLog(Path("both"), "").messages.states.size(), 3u);
-  EXPECT_EQ(ReadRunLog(Path("both"), "_2").messages.states.size(), 5u);
+  EXPECT_EQ(ReadRunLog(Path("both"), "").messages.Of<state_t>().size(), 3u);
+  EXPECT_EQ(ReadRunLog(Path("both"), "_2").messages.Of<state_t>().size(), 5u);
   EXPECT_THAT(log::InputErrorOf([&] { ReadRunLog(Path("both"), "_3"); }),
               AllOf(HasSubstr("no channel with suffix '_3'"), HasSubstr("'', '_2'")));
 }
@@ -52,7 +52,7 @@ TEST_F(RunLogTest, ForeignChannels) {
   EXPECT_EQ(log.channels[0].bytes, 8);
   EXPECT_EQ(log.channels[0].first_utime, 7);
   EXPECT_EQ(log.channels[0].last_utime, 9);
-  EXPECT_TRUE(log.messages.states.empty());
+  EXPECT_TRUE(log.messages.Of<state_t>().empty());
 }
 
 // Tests that a message of another type or version, or a damaged one, is an error that names event and byte.
@@ -87,7 +87,7 @@ TEST_F(RunLogTest, UndecodableMessageLeftOut) {
   log::WriteEvents(Path("log"), events);
   const RunLog log = ReadRunLog(Path("log"), "", Undecodable::kLeftOut);
   EXPECT_EQ(FirstDifference(run, "written", log.messages, "read"), std::nullopt);
-  EXPECT_EQ(log.messages.states.size(), run.states.size());
+  EXPECT_EQ(log.messages.Of<state_t>().size(), run.Of<state_t>().size());
   for (const ChannelSummary& channel : log.channels) {
     const bool one = channel.channel == "HYDRO_MOTOR_COMMAND" || channel.channel == "HYDRO_REARM";
     EXPECT_EQ(channel.undecodable, channel.channel == "HYDRO_STATE" ? 2 : one ? 1 : 0) << channel.channel;

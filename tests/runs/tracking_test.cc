@@ -17,13 +17,13 @@ RunLog MakeRun(int64_t ticks, const std::function<double(double)>& arm,
     state.tick = tick;
     state.time = 1e-3 * static_cast<double>(tick);
     state.arm_angle = arm(state.time);
-    log.messages.states.push_back(state);
+    log.messages.Of<state_t>().push_back(state);
     if (tick % 5 != 0) continue;
     arm_reference_t sample{};
     sample.tick = tick;
     sample.signal = arm_reference_t::ARM_ANGLE;
     sample.value = reference(state.time);
-    log.messages.arm_references.push_back(sample);
+    log.messages.Of<arm_reference_t>().push_back(sample);
   }
   return log;
 }
@@ -109,7 +109,8 @@ TEST(TrackingTest, ConstantReference) {
 TEST(TrackingTest, NoReference) {
   RunLog log = MakeRun(
       100, [](double) { return 0.0; }, StepAtOne);
-  for (arm_reference_t& reference : log.messages.arm_references) reference.signal = arm_reference_t::PRESSURE;
+  for (arm_reference_t& reference : log.messages.Of<arm_reference_t>())
+    reference.signal = arm_reference_t::PRESSURE;
   EXPECT_FALSE(TrackArm(log).has_reference);
   EXPECT_FALSE(TrackArm(RunLog()).has_reference);
 }
