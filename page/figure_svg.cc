@@ -104,8 +104,8 @@ Picture DrawPanels(const Figure& figure, const std::string& name) {
     const double top = picture.height + head;
     for (size_t i = row; i < end; ++i) {
       const Column& column = columns[i - row];
-      picture.content +=
-          drawings[i].Draw({column.frame_left(), top, column.frame_right(), top + frame_height});
+      picture.content += drawings[i].Draw(
+          {column.frame_left(), top, column.frame_right(), top + frame_height}, column.margin);
     }
     picture.height = top + frame_height + foot + (foot > kGap || end == drawings.size() ? kGap : 0);
   }
@@ -175,7 +175,9 @@ std::string FigureFile(const Figure& figure, const std::string& name) {
     y += kCaptionLine;
   }
   if (!caption.empty()) picture.height = std::ceil(y - 0.15 * kCaptionLine);
-  return Element(picture, About(figure, name), " xmlns=\"http://www.w3.org/2000/svg\"",
+  // Converters of SVG files ignore the style sheet's "white-space" and would drop the blank after a
+  // subscript.
+  return Element(picture, About(figure, name), " xmlns=\"http://www.w3.org/2000/svg\" xml:space=\"preserve\"",
                  fmt::format("<style>{}</style>\n", ChartStyle()));
 }
 

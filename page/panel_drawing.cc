@@ -134,7 +134,7 @@ double PanelDrawing::HeadHeight(double key_width) {
   return head_height_;
 }
 
-std::string PanelDrawing::Draw(const Box& frame) {
+std::string PanelDrawing::Draw(const Box& frame, double left_margin) {
   geometry_ = FitPanel(*panel_, frame, where_);
   std::string out = SvgClipped(frame, Bands()) + Axes();
   // Rules lie above bars and below lines.
@@ -154,7 +154,7 @@ std::string PanelDrawing::Draw(const Box& frame) {
   if (!panel_->y.label.empty()) {
     const double height = frame.bottom - frame.top;
     const bool fits = TextWidth(panel_->y.label) * kLabelSize <= height + 6;
-    out += SvgText(panel_->y.label, frame.left - LeftMargin(height) + 17, (frame.top + frame.bottom) / 2,
+    out += SvgText(panel_->y.label, frame.left - left_margin + 17, (frame.top + frame.bottom) / 2,
                    {.look = fits ? "label" : "", .anchor = "middle", .upwards = true});
   }
   return out + Labels();

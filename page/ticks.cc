@@ -18,16 +18,22 @@ double RoundStep(double least) {
   return 10 * decade;
 }
 
-std::vector<Tick> LinearTicks(const AxisRange& range, double pixels, double label_pixels) {
-  const double most = std::max(2.0, pixels / label_pixels);
-  const double step = RoundStep((range.max - range.min) / most);
+std::vector<Tick> Multiples(const AxisRange& range, double step) {
   std::vector<Tick> ticks;
-  if (!(step > 0) || !std::isfinite(step)) return ticks;
   const double last = std::floor(range.max / step + 1e-9);
   for (double k = std::ceil(range.min / step - 1e-9); k <= last; k += 1) {
     ticks.push_back({k * step, TickNumber(k * step)});
   }
   return ticks;
+}
+
+std::vector<Tick> LinearTicks(const AxisRange& range, double pixels, double label_pixels) {
+  const double most = std::max(2.0, pixels / label_pixels);
+  const double step = RoundStep((range.max - range.min) / most);
+  if (!(step > 0) || !std::isfinite(step)) return {};
+  const std::vector<Tick> ticks = Multiples(range, step);
+  // One number shows no scale. The next smaller round step fits at most five, which a short axis just holds.
+  return ticks.size() > 1 ? ticks : Multiples(range, RoundStep(0.4 * step));
 }
 
 std::vector<Tick> LogarithmicTicks(const AxisRange& range, double pixels, double label_pixels) {

@@ -58,6 +58,7 @@ page::Curve Points(const std::string& label, const std::vector<Complex>& points,
                    page::Stroke stroke = page::Stroke::kPoints) {
   page::Curve curve{
       .label = label, .x = {}, .y = {}, .stroke = stroke, .colour = colour, .y_low = {}, .y_high = {}};
+  if (stroke == page::Stroke::kPoints) curve.weight = page::Weight::kStrong;
   for (const Complex& point : points) {
     curve.x.push_back(point.real());
     curve.y.push_back(point.imag());

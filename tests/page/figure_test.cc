@@ -222,6 +222,7 @@ TEST(Ticks, RoundNumbers) {
   EXPECT_EQ(texts({1, 1000, true}, 120), "1 10 100 1000 ");
   EXPECT_EQ(texts({1, 1000, true}, 60), "1 100 ");
   EXPECT_EQ(texts({3, 3.5, true}, 90), "3 3.2 3.4 ");
+  EXPECT_EQ(texts({-270, 240, false}, 72), "−200 0 200 ");  // never a single number
 }
 
 // Tests how numbers are written.

@@ -15,12 +15,17 @@ namespace {
 
 using page::EscapeMarkup;
 
-std::string CountCell(int64_t count) {
-  return fmt::format("<td class=\"number{}\">{}</td>", count > 0 ? " bad" : "", count);
+// A cell with its label, which a phone shows in place of the table's head.
+std::string Cell(const std::string& label, const std::string& text, const char* look = "number") {
+  return fmt::format("<td class=\"{}\" data-label=\"{}\">{}</td>", look, label, EscapeMarkup(text));
 }
 
-std::string TimeCells(const TimedProcess& process, const std::string& quantity, double p50, double p99,
-                      double highest) {
+std::string CountCell(const char* label, int64_t count) {
+  return Cell(label, std::to_string(count), count > 0 ? "number bad" : "number");
+}
+
+std::string TimeCells(const TimedProcess& process, const std::string& quantity, const std::string& label,
+                      double p50, double p99, double highest) {
   const auto found = process.histograms.find(quantity);
   if (found != process.histograms.end()) {
     p50 = 1e-3 * found->second.Percentile(50);
@@ -28,9 +33,9 @@ std::string TimeCells(const TimedProcess& process, const std::string& quantity, 
     highest = 1e-3 * static_cast<double>(found->second.highest);
   }
   if (!(highest > 0)) return "<td></td><td></td><td></td>";
-  return fmt::format(
-      "<td class=\"number\">{:.1f}</td><td class=\"number\">{:.1f}</td><td class=\"number\">{:.1f}</td>", p50,
-      p99, highest);
+  return Cell(label + " p50, us", fmt::format("{:.1f}", p50)) +
+         Cell(label + " p99, us", fmt::format("{:.1f}", p99)) +
+         Cell(label + " max, us", fmt::format("{:.1f}", highest));
 }
 
 std::string TableHead() {
@@ -50,16 +55,18 @@ std::string TableHead() {
 }
 
 std::string Table(const std::vector<TimedProcess>& processes) {
-  std::string html = "<div class=\"table\"><table>" + TableHead() + "<tbody>\n";
+  std::string html = "<div class=\"table\"><table class=\"stacks\">" + TableHead() + "<tbody>\n";
   for (const TimedProcess& process : processes) {
     const loop_statistics_t& total = process.total;
-    html += fmt::format("<tr><td>{}</td><td>{}</td><td class=\"number\">{}</td>", EscapeMarkup(process.role),
-                        EscapeMarkup(process.host), total.cycles);
-    html += TimeCells(process, "period", total.period_p50_us, total.period_p99_us, total.period_max_us);
-    html += TimeCells(process, "latency", total.latency_p50_us, total.latency_p99_us, total.latency_max_us);
-    html += TimeCells(process, "round_trip", 0, 0, 0);
-    html += CountCell(total.missed_deadlines) + CountCell(total.lost_messages);
-    html += fmt::format("<td class=\"number\">{}</td></tr>\n", total.queue_depth);
+    html += "<tr>" + Cell("process", process.role, "") + Cell("host", process.host, "") +
+            Cell("cycles", std::to_string(total.cycles));
+    html +=
+        TimeCells(process, "period", "period", total.period_p50_us, total.period_p99_us, total.period_max_us);
+    html += TimeCells(process, "latency", "latency", total.latency_p50_us, total.latency_p99_us,
+                      total.latency_max_us);
+    html += TimeCells(process, "round_trip", "round trip", 0, 0, 0);
+    html += CountCell("missed", total.missed_deadlines) + CountCell("lost", total.lost_messages) +
+            Cell("waiting", std::to_string(total.queue_depth)) + "</tr>\n";
   }
   return html +
          "</tbody></table></div>\n<p class=\"meta\">missed: deadlines; lost: messages; waiting: the most "
