@@ -5,6 +5,7 @@
 #include <string>
 #include <utility>
 
+#include "model/equations/read_sensors.h"
 #include "model/integrate/derivative_stepper.h"
 #include "model/integrate/mode_machine.h"
 #include "model/terms/parameter_info.h"

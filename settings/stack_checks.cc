@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "base/number_text.h"
+#include "model/effects/catalogue.h"
 #include "settings/toml/section_reader.h"
 #include "trajectory/trajectory.h"
 
@@ -62,13 +63,6 @@ void CheckAngles(const TomlNode& root, const std::string& section, const Traject
   for (const double extreme : {trajectory->Max(), trajectory->Min()}) {
     CheckAngle(root, section + KeyOf(spec, extreme), extreme, p, allowed);
   }
-}
-
-bool Has(const std::vector<model::EffectDescription>& effects, const std::string& id) {
-  for (const model::EffectDescription& effect : effects) {
-    if (effect.id == id) return true;
-  }
-  return false;
 }
 
 }  // namespace
@@ -167,7 +161,7 @@ void CheckAgainstModel(const TomlNode& root, StackConfig* checked) {
     CheckAngles(root, "reference", config.reference.trajectory, p, allowed);
   }
   const double pressure = model.initial_pressure_psi;
-  if (pressure < 0 || (pressure < p.p_3 && !Has(model.description.effects, "valve.check"))) {
+  if (pressure < 0 || (pressure < p.p_3 && !model::ReplacesValves(model.description.effects))) {
     throw KeyError(root, "model.initial_pressure_psi", ShortestNumber(pressure),
                    "at least p_3 = " + ShortestNumber(p.p_3) + ", below which the one-way valves open");
   }

@@ -1,7 +1,7 @@
 // amp.lag: tau dT/dt + T = k_1 v. One state, T; the limit applies to T_p, which is T within +/- T_pmax.
 // One switch: 0, T is within the limit; +1 and -1, T_p is at that limit.
 
-#include "model/effects/effect.h"
+#include "model/effects/shared_parameters.h"
 
 namespace hydro::model {
 
@@ -47,14 +47,7 @@ class Lag : public EffectOf<Lag> {
                              .summary = "the motor torque follows the voltage with a time constant",
                              .equation = "tau dT/dt + T = k_1 v",
                              .confused_with = "amp.delay, sensor.pressure_lag",
-                             .parameters = {{.name = "tau",
-                                             .unit = "s",
-                                             .min_allowed = false,
-                                             .meaning = "time constant",
-                                             .starts = {2},
-                                             .scale = Scale::kSample,
-                                             .role = Role::kTime,
-                                             .example = 0.002}}},
+                             .parameters = {TimeConstant(0.002)}},
                     .make = MakeEffect<Lag>});
 
 }  // namespace

@@ -93,6 +93,12 @@ bool AddToCatalogue(CatalogueEntry entry) {
 
 const CatalogueEntry* FindCatalogueEntry(const std::string& id) { return TheCatalogue().Find(id); }
 
+bool ReplacesValves(const std::vector<EffectDescription>& effects) {
+  return std::any_of(effects.begin(), effects.end(), [](const EffectDescription& effect) {
+    return FindCatalogueEntry(effect.id)->make(effect)->replaces_valves();
+  });
+}
+
 const std::vector<EffectInfo>& EffectCatalogue() { return TheCatalogue().infos(); }
 
 const EffectInfo* FindEffect(const std::string& id) {

@@ -27,4 +27,7 @@ class Catalogue {
 // The entry of an effect in this program's catalogue; null for an unknown effect.
 const CatalogueEntry* FindCatalogueEntry(const std::string& id);
 
+// True when one of these effects, which have been checked, takes the place of the ideal one-way valves.
+bool ReplacesValves(const std::vector<EffectDescription>& effects);
+
 }  // namespace hydro::model

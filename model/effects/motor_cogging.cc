@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "model/effects/effect.h"
+#include "model/effects/shared_parameters.h"
 
 namespace hydro::model {
 
@@ -42,13 +42,7 @@ class Cogging : public EffectOf<Cogging> {
                                              .meaning = "largest cogging torque; negative: half a period on",
                                              .role = Role::kTorqueWave,
                                              .example = 2},
-                                            {.name = "periods",
-                                             .unit = "1/rev",
-                                             .min_allowed = false,
-                                             .meaning = "periods in one revolution",
-                                             .starts = PeriodsTried(),
-                                             .role = Role::kPeriods,
-                                             .example = 12},
+                                            PeriodsPerRevolution(12),
                                             {.name = "phase",
                                              .unit = "rad",
                                              .min = -kUnbounded,

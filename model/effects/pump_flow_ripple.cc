@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "model/effects/effect.h"
+#include "model/effects/shared_parameters.h"
 
 namespace hydro::model {
 
@@ -29,13 +29,7 @@ class FlowRipple : public EffectOf<FlowRipple> {
                               .meaning = "largest change of D over D; negative: least D at theta = 0",
                               .role = Role::kDisplacementWave,
                               .example = 0.1},
-                             {.name = "periods",
-                              .unit = "1/rev",
-                              .min_allowed = false,
-                              .meaning = "periods in one revolution",
-                              .starts = PeriodsTried(),
-                              .role = Role::kPeriods,
-                              .example = 9}}},
+                             PeriodsPerRevolution(9)}},
      .make = MakeEffect<FlowRipple>});
 
 }  // namespace

@@ -1,7 +1,7 @@
 // sensor.pressure_lag: the transducers' reading r follows the pressure, tau r' + r = p on each side. Gain and
 // offset act on r. States: r of p1, r of p2.
 
-#include "model/effects/effect.h"
+#include "model/effects/shared_parameters.h"
 
 namespace hydro::model {
 
@@ -39,14 +39,7 @@ class PressureLag : public EffectOf<PressureLag> {
                              .summary = "the pressure transducers read with a lag",
                              .equation = "measured pressure follows with a time constant",
                              .confused_with = "line.wave, amp.lag",
-                             .parameters = {{.name = "tau",
-                                             .unit = "s",
-                                             .min_allowed = false,
-                                             .meaning = "time constant",
-                                             .starts = {2},
-                                             .scale = Scale::kSample,
-                                             .role = Role::kTime,
-                                             .example = 0.003}}},
+                             .parameters = {TimeConstant(0.003)}},
                     .make = MakeEffect<PressureLag>});
 
 }  // namespace

@@ -7,6 +7,7 @@
 
 #include "model/effects/catalogue.h"
 #include "model/equations/evaluate.h"
+#include "model/equations/read_sensors.h"
 
 namespace hydro::model {
 

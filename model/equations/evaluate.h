@@ -6,7 +6,6 @@
 
 #include "model/effects/effect.h"
 #include "model/equations/equations.h"
-#include "model/equations/state_history.h"
 #include "trajectory/trajectory.h"
 
 namespace hydro::model {
@@ -17,25 +16,19 @@ inline double ValueOf(const Jet& x) { return x.a; }
 // Which terms are compiled in. The plain forms have no effects and no bypass; the fast path inlines them.
 enum class Form { kPlainClamped, kPlainFree, kGeneral };
 
+// The state, and the arm as its shaft moves it.
 template <Form kForm, class T>
-[[gnu::always_inline]] inline void EvaluateTerms(const EquationData& m, const NumbersOf<T>& n, double time,
-                                                 const T& voltage, const Mode& mode, const T* y, T* rate,
-                                                 Terms<T>& x) {
-  using std::cos;
-  constexpr bool kGeneralForm = kForm == Form::kGeneral;
-  const ParametersOf<T>& p = n.parameters;
+[[gnu::always_inline]] inline void ReadState(const EquationData& m, double time, const T* y, Terms<T>& x) {
   x.motor_angle = y[kMotorAngle];
   x.motor_speed = y[kMotorSpeed];
   x.p1 = y[kP1];
   x.p2 = y[kP2];
-  bool arm_moves_freely = false;
   if constexpr (kForm == Form::kPlainClamped) {
     x.arm_angle = T(m.arm_angle);
     x.arm_speed = T(0.0);
   } else if (kForm == Form::kPlainFree || m.shaft == Shaft::kFree) {
     x.arm_angle = y[kArmAngle];
     x.arm_speed = y[kArmSpeed];
-    arm_moves_freely = true;
   } else if (m.shaft == Shaft::kDriven) {
     const double motion_time = std::min(time, m.motion_limit);
     x.arm_angle = T(m.motion->Value(motion_time));
@@ -44,7 +37,30 @@ template <Form kForm, class T>
     x.arm_angle = T(m.arm_angle);
     x.arm_speed = T(0.0);
   }
+}
 
+template <Form kForm>
+[[gnu::always_inline]] inline bool ArmMovesFreely(const EquationData& m) {
+  if constexpr (kForm == Form::kGeneral) return m.shaft == Shaft::kFree;
+  return kForm == Form::kPlainFree;
+}
+
+// Calls `change(effect)` for each effect, with its parameters in x.own.
+template <class T, class Change>
+[[gnu::always_inline]] inline void ForEachEffect(const EquationData& m, const NumbersOf<T>& n, Terms<T>& x,
+                                                 Change change) {
+  for (const auto& effect : m.effects) {
+    x.own = n.own.data() + effect->first_parameter();
+    change(*effect);
+  }
+}
+
+// The properties of the oil, the pump and the friction: the base parameters as the effects change them.
+template <Form kForm, class T>
+[[gnu::always_inline]] inline void SetProperties(const EquationData& m, const NumbersOf<T>& n, double time,
+                                                 const T& voltage, const Mode& mode, const T* y,
+                                                 Terms<T>& x) {
+  const ParametersOf<T>& p = n.parameters;
   x.torque = LimitedTorque(p, voltage);  // (1)
   x.D = p.D;
   x.b = p.b;
@@ -60,24 +76,28 @@ template <Form kForm, class T>
     x.V_1 = p.V_ms - p.c * x.arm_angle;  // (6)
     x.V_2 = p.V_ms + p.c * x.arm_angle;  // (7)
   }
-  if constexpr (kGeneralForm) {
+  if constexpr (kForm == Form::kGeneral) {
     x.V_1 -= n.fixed_volume;
     x.V_2 -= n.fixed_volume;
     x.time = time;
     x.voltage = voltage;
     x.mode = &mode;
-    x.arm_free = arm_moves_freely;
+    x.arm_free = ArmMovesFreely<kForm>(m);
     x.bypass = m.bypass;
     x.actuator_speed = x.arm_speed;
     x.parameters = &p;
     x.state = y;
-    for (const auto& effect : m.effects) {
-      x.own = n.own.data() + effect->first_parameter();
-      effect->SetProperties(x);
-    }
+    ForEachEffect(m, n, x, [&](const Effect& effect) { effect.SetProperties(x); });
   }
+}
 
-  const double direction = mode.pump;
+// Torques and flows, and the rates of the effects' own states. Returns the pressure difference at the pump.
+template <Form kForm, class T>
+[[gnu::always_inline]] inline T AddTorquesAndFlows(const EquationData& m, const NumbersOf<T>& n, T* rate,
+                                                   Terms<T>& x) {
+  using std::cos;
+  constexpr bool kGeneralForm = kForm == Form::kGeneral;
+  const ParametersOf<T>& p = n.parameters;
   const T dp = x.pump_p2 - x.pump_p1;
   x.load = T(0.0);
   x.coulomb = x.T_s + x.f * (x.pump_p1 + x.pump_p2);
@@ -86,37 +106,32 @@ template <Form kForm, class T>
   x.outer_flow_1 = x.c_E * (x.pump_p1 - x.p_3);
   x.outer_flow_2 = x.c_E * (x.pump_p2 - x.p_3);
   x.arm_torque = p.k_2 * (x.p2 - x.p1);  // (15)
-  if (arm_moves_freely && p.mgl != T(0.0)) x.arm_torque -= p.mgl * cos(x.arm_angle);
+  if (ArmMovesFreely<kForm>(m) && p.mgl != T(0.0)) x.arm_torque -= p.mgl * cos(x.arm_angle);
   if constexpr (kGeneralForm) {
     x.valve_flow_1 = x.valve_flow_2 = T(0.0);
-    for (const auto& effect : m.effects) {
-      x.own = n.own.data() + effect->first_parameter();
-      effect->AddTorquesAndFlows(x);
-    }
+    ForEachEffect(m, n, x, [&](const Effect& effect) { effect.AddTorquesAndFlows(x); });
   }
 
   x.net_torque = x.torque - x.D * dp - x.load;                   // (3), (4)
   x.q_1 = x.D * x.motor_speed - x.cross_flow + x.outer_flow_1;   // (2), (11)
   x.q_2 = -x.D * x.motor_speed + x.cross_flow + x.outer_flow_2;  // (2), (12)
   if constexpr (kGeneralForm) {
-    for (const auto& effect : m.effects) {
-      x.own = n.own.data() + effect->first_parameter();
-      effect->AddStates(x, rate);
-    }
+    ForEachEffect(m, n, x, [&](const Effect& effect) { effect.AddStates(x, rate); });
     x.q_1 += x.valve_flow_1;
     x.q_2 += x.valve_flow_2;
   }
+  return dp;
+}
 
-  rate[kMotorAngle] = x.motor_speed;
-  // (4), summed in an order that keeps the longest chain of operations, through the pressures, short.
-  rate[kMotorSpeed] =
-      mode.pump == 0
-          ? T(0.0)
-          : T(((x.torque - x.load - direction * x.coulomb - x.b * x.motor_speed) - x.D * dp) * n.inverse_J);
+// p1' and p2' with closed valves.
+template <Form kForm, class T>
+[[gnu::always_inline]] inline void FindFreeRates(const EquationData& m, const NumbersOf<T>& n, Terms<T>& x) {
+  constexpr bool kGeneralForm = kForm == Form::kGeneral;
   if constexpr (kForm == Form::kPlainClamped) {
     x.free_rate_1 = -n.stiffness_1 * x.q_1;  // (13)
     x.free_rate_2 = -n.stiffness_2 * x.q_2;  // (14)
   } else {
+    const ParametersOf<T>& p = n.parameters;
     const T arm_flow = p.c * (kGeneralForm ? x.actuator_speed : x.arm_speed);
     if (kGeneralForm && m.bypass) {  // one pressure; what the arm displaces circulates
       x.free_rate_1 = x.free_rate_2 = -(x.q_1 + x.q_2) / (x.V_1 / x.beta_1 + x.V_2 / x.beta_2);
@@ -125,21 +140,43 @@ template <Form kForm, class T>
       x.free_rate_2 = -x.beta_2 / x.V_2 * (x.q_2 + arm_flow);  // (5), (10), (14)
     }
   }
+}
+
+// An open valve holds its side at p_3.
+template <Form kForm, class T>
+[[gnu::always_inline]] inline void SetPressureRates(const EquationData& m, const NumbersOf<T>& n,
+                                                    const Mode& mode, T* rate, Terms<T>& x) {
+  constexpr bool kGeneralForm = kForm == Form::kGeneral;
   const bool open_1 = mode.valve_1 != 0;
   const bool open_2 = kGeneralForm && m.bypass ? open_1 : mode.valve_2 != 0;
   if constexpr (kGeneralForm) {
     x.p_3_rate = T(0.0);
-    for (const auto& effect : m.effects) {
-      x.own = n.own.data() + effect->first_parameter();
-      effect->AddBalances(x, rate);
-    }
+    ForEachEffect(m, n, x, [&](const Effect& effect) { effect.AddBalances(x, rate); });
     rate[kP1] = open_1 ? x.p_3_rate : x.free_rate_1;
     rate[kP2] = open_2 ? x.p_3_rate : x.free_rate_2;
   } else {
     rate[kP1] = open_1 ? T(0.0) : x.free_rate_1;
     rate[kP2] = open_2 ? T(0.0) : x.free_rate_2;
   }
-  if (arm_moves_freely) {
+}
+
+template <Form kForm, class T>
+[[gnu::always_inline]] inline void EvaluateTerms(const EquationData& m, const NumbersOf<T>& n, double time,
+                                                 const T& voltage, const Mode& mode, const T* y, T* rate,
+                                                 Terms<T>& x) {
+  ReadState<kForm>(m, time, y, x);
+  SetProperties<kForm>(m, n, time, voltage, mode, y, x);
+  const T dp = AddTorquesAndFlows<kForm>(m, n, rate, x);
+  const double direction = mode.pump;
+  rate[kMotorAngle] = x.motor_speed;
+  // (4), summed in an order that keeps the longest chain of operations, through the pressures, short.
+  rate[kMotorSpeed] =
+      mode.pump == 0
+          ? T(0.0)
+          : T(((x.torque - x.load - direction * x.coulomb - x.b * x.motor_speed) - x.D * dp) * n.inverse_J);
+  FindFreeRates<kForm>(m, n, x);
+  SetPressureRates<kForm>(m, n, mode, rate, x);
+  if (ArmMovesFreely<kForm>(m)) {
     rate[kArmAngle] = x.arm_speed;
     rate[kArmSpeed] = x.arm_torque * n.inverse_J_a;  // (15)
   }
@@ -159,10 +196,7 @@ template <Form kForm, class T>
     margin[kValve2Switch] = mode.valve_2 ? T(x.p_3_rate - x.free_rate_2) : T(x.p2 - x.p_3);
     if (m.bypass || !m.ideal_valves) margin[kValve2Switch] = T(1.0);  // bypass: valve_1 stands for both
     if (!m.ideal_valves) margin[kValve1Switch] = T(1.0);
-    for (const auto& effect : m.effects) {
-      x.own = n.own.data() + effect->first_parameter();
-      effect->Margins(x, margin);
-    }
+    ForEachEffect(m, n, x, [&](const Effect& effect) { effect.Margins(x, margin); });
   }
 }
 
@@ -221,69 +255,6 @@ void CrossSwitch(const EquationData& m, const NumbersOf<T>& n, int which, double
     if (which == kValve1Switch || m.bypass) state[kP1] = x.p_3;
     if (which == kValve2Switch || m.bypass) state[kP2] = x.p_3;
   }
-}
-
-// The motion at a time that may carry derivatives.
-inline double MotionAt(const trajectory::Trajectory& motion, double time) { return motion.Value(time); }
-inline Jet MotionAt(const trajectory::Trajectory& motion, const Jet& time) {
-  Jet angle(motion.Value(time.a));
-  angle.v = motion.Rate(time.a) * time.v;
-  return angle;
-}
-
-// The sensors' readings of this state, none of them late.
-template <class T>
-[[gnu::always_inline]] inline MeasurementOf<T> ReadPromptly(const EquationData& m, const NumbersOf<T>& n,
-                                                            const T& time, const T* state) {
-  MeasurementOf<T> measured;
-  measured.motor_angle = state[kMotorAngle];
-  measured.motor_speed = state[kMotorSpeed];
-  measured.p1 = state[kP1];
-  measured.p2 = state[kP2];
-  if (m.shaft == Shaft::kFree) {
-    measured.arm_angle = state[kArmAngle];
-    measured.arm_speed = state[kArmSpeed];
-  } else if (m.shaft == Shaft::kDriven) {
-    measured.arm_angle = MotionAt(*m.motion, time);
-    measured.arm_speed = T(m.motion->Rate(ValueOf(time)));
-  } else {
-    measured.arm_angle = T(m.arm_angle);
-  }
-  SenseTerms<T> at;
-  at.time = ValueOf(time);
-  at.state = state;
-  for (const auto& effect : m.effects) {
-    at.own = n.own.data() + effect->first_parameter();
-    effect->Transduce(at, &measured);
-  }
-  for (const auto& effect : m.effects) {
-    at.own = n.own.data() + effect->first_parameter();
-    effect->Sense(at, &measured);
-  }
-  return measured;
-}
-
-// The same, with late channels replaced by their earlier readings.
-template <class T>
-[[gnu::noinline]] MeasurementOf<T> ReadLate(const EquationData& m, const NumbersOf<T>& n, double time,
-                                            const T* state, const StateHistory<T>& history) {
-  MeasurementOf<T> measured = ReadPromptly(m, n, T(time), state);
-  for (const auto& effect : m.effects) {
-    if (!effect->reads_late()) continue;
-    T then = time - effect->Lateness(n.own.data() + effect->first_parameter());
-    T past[kMaxStates];
-    history.At(&then, past);
-    effect->Replace(ReadPromptly(m, n, then, past), &measured);
-  }
-  return measured;
-}
-
-// As Equations::Measure.
-template <class T>
-MeasurementOf<T> ReadSensors(const EquationData& m, const NumbersOf<T>& n, double time, const T* state,
-                             const StateHistory<T>* history = nullptr) {
-  if (history == nullptr || history->empty()) return ReadPromptly(m, n, T(time), state);
-  return ReadLate(m, n, time, state, *history);
 }
 
 // The numbers that follow from n.parameters and n.own.

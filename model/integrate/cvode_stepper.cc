@@ -2,8 +2,6 @@
 
 #include <cvode/cvode.h>
 
-#include <algorithm>
-
 namespace hydro::model {
 
 namespace {
@@ -24,18 +22,13 @@ int SundialsJacobian(double time, N_Vector state, N_Vector, SUNMatrix jacobian, 
 
 CvodeStepper::CvodeStepper(const Mode* mode, const double* voltage, Equations* equations,
                            double relative_tolerance)
-    : problem_{equations, mode, voltage, {}},
-      context_(MakeSundialsContext()),
-      state_(MakeNVector(equations->states(), context_.get())) {
+    : SundialsStepper("CVODE", mode, voltage, equations) {
   const int n = equations->states();
   matrix_ = SUNDenseMatrix(n, n, context_.get());
   solver_ = SUNLinSol_Dense(state_.get(), matrix_, context_.get());
   memory_ = CVodeCreate(CV_BDF, context_.get());
-  NVector floor = MakeNVector(n, context_.get());
   const double local_tolerance = kErrorShare * relative_tolerance;
-  for (int i = 0; i < n; ++i) {
-    N_VGetArrayPointer(floor.get())[i] = local_tolerance * equations->scales()[i];
-  }
+  const NVector floor = Floor(local_tolerance);
   int flags = memory_ == nullptr || solver_ == nullptr ? -1 : 0;
   if (flags == 0) {
     flags |= CVodeSetErrHandlerFn(memory_, KeepComplaint, &problem_);
@@ -61,46 +54,41 @@ void CvodeStepper::Free() {
 }
 
 void CvodeStepper::Restart(const Point& now) {
-  std::copy_n(now.state, problem_.equations->states(), N_VGetArrayPointer(state_.get()));
-  const int flag = CVodeReInit(memory_, now.time, state_.get());
-  if (flag != CV_SUCCESS) ThrowStepFailed("CVODE", problem_, flag, now);
+  CopyToSolver(now);
+  CheckFlag(CVodeReInit(memory_, now.time, state_.get()), now);
 }
 
 void CvodeStepper::Step(const Point& now, double stop, Point* next) {
-  stepped_by_euler_ = TooShort(now.time, stop);
-  if (stepped_by_euler_) {
-    EulerStep(*problem_.equations, now, stop, next);
-    FillPoint(problem_, next);
+  if (StepsByEuler(now, stop, next)) {
     Restart(*next);
     return;
   }
   double time = now.time;
-  int flag = CVodeSetStopTime(memory_, stop);
-  if (flag == CV_SUCCESS) flag = CVode(memory_, stop, state_.get(), &time, CV_ONE_STEP);
+  int flag = Evolve(stop, &time);
   if (flag == CV_ERR_FAILURE || flag == CV_CONV_FAILURE) {  // after a jump the history may be useless
     Restart(now);
-    flag = CVodeSetStopTime(memory_, stop);
-    if (flag == CV_SUCCESS) flag = CVode(memory_, stop, state_.get(), &time, CV_ONE_STEP);
+    flag = Evolve(stop, &time);
   }
-  if (flag < 0) ThrowStepFailed("CVODE", problem_, flag, now);
+  CheckFlag(flag, now);
   next->time = flag == CV_TSTOP_RETURN ? stop : time;
   TakeState(now, next);
-  FillPoint(problem_, next);
+  FillPoint(next);
+}
+
+int CvodeStepper::Evolve(double stop, double* time) {
+  const int flag = CVodeSetStopTime(memory_, stop);
+  return flag == CV_SUCCESS ? CVode(memory_, stop, state_.get(), time, CV_ONE_STEP) : flag;
 }
 
 void CvodeStepper::Interpolate(const Point& now, const Point& /*next*/, double time, Point* at) {
-  if (stepped_by_euler_) {
-    EulerStep(*problem_.equations, now, time, at);
-    return;
-  }
-  const int flag = CVodeGetDky(memory_, time, 0, state_.get());
-  if (flag != CV_SUCCESS) ThrowStepFailed("CVODE", problem_, flag, now);
+  if (InterpolatesByEuler(now, time, at)) return;
+  CheckFlag(CVodeGetDky(memory_, time, 0, state_.get()), now);
   at->time = time;
   TakeState(now, at);
 }
 
 void CvodeStepper::TakeState(const Point& now, Point* at) const {
-  std::copy_n(N_VGetArrayPointer(state_.get()), problem_.equations->states(), at->state);
+  CopyFromSolver(at);
   // What the mode holds still stays still to the last bit, whatever the linear solver's rounding.
   const Mode& mode = *problem_.mode;
   if (mode.pump == 0) {

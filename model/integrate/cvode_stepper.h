@@ -9,33 +9,27 @@
 
 namespace hydro::model {
 
-class CvodeStepper {
+class CvodeStepper : SundialsStepper {
  public:
   CvodeStepper(const Mode* mode, const double* voltage, Equations* equations, double relative_tolerance);
   ~CvodeStepper();
-  CvodeStepper(const CvodeStepper&) = delete;
-  CvodeStepper& operator=(const CvodeStepper&) = delete;
 
+  using SundialsStepper::Trusts;
   Integrator in_use() const { return Integrator::kCvode; }
   void Restart(const Point& now);
   // Measured: keeping the history over a jump of the voltage is cheaper than starting afresh at order 1, and
   // no less accurate, because the error test sees the jump.
   void NewVoltage(const Point&) {}
   void Step(const Point& now, double stop, Point* next);
-  bool Trusts(const Point& /*now*/, const Point& /*at*/) const { return true; }  // as accurate as its steps
   void Interpolate(const Point& now, const Point& next, double time, Point* at);
 
  private:
   void Free();
+  int Evolve(double stop, double* time);
   void TakeState(const Point& now, Point* at) const;
 
-  SundialsProblem problem_;
-  SundialsContext context_;
-  NVector state_;
   SUNMatrix matrix_ = nullptr;
   SUNLinearSolver solver_ = nullptr;
-  void* memory_ = nullptr;
-  bool stepped_by_euler_ = false;
 };
 
 }  // namespace hydro::model

@@ -2,21 +2,14 @@
 
 #include <arkode/arkode_erkstep.h>
 
-#include <algorithm>
-
 namespace hydro::model {
 
 ErkStepper::ErkStepper(const Mode* mode, const double* voltage, Equations* equations,
                        double relative_tolerance)
-    : problem_{equations, mode, voltage, {}},
-      context_(MakeSundialsContext()),
-      state_(MakeNVector(equations->states(), context_.get())) {
+    : SundialsStepper("ARKODE", mode, voltage, equations) {
   memory_ = ERKStepCreate(SundialsRates, 0, state_.get(), context_.get());
   if (memory_ == nullptr) throw ModelError("ARKODE could not be set up");
-  NVector floor = MakeNVector(equations->states(), context_.get());
-  for (int i = 0; i < equations->states(); ++i) {
-    N_VGetArrayPointer(floor.get())[i] = relative_tolerance * equations->scales()[i];
-  }
+  const NVector floor = Floor(relative_tolerance);
   int flags = ERKStepSetErrHandlerFn(memory_, KeepComplaint, &problem_);
   flags |= ERKStepSetUserData(memory_, &problem_);
   flags |= ERKStepSetTableNum(memory_, ARKODE_DORMAND_PRINCE_7_4_5);
@@ -31,37 +24,29 @@ ErkStepper::ErkStepper(const Mode* mode, const double* voltage, Equations* equat
 ErkStepper::~ErkStepper() { ERKStepFree(&memory_); }
 
 void ErkStepper::Restart(const Point& now) {
-  std::copy_n(now.state, problem_.equations->states(), N_VGetArrayPointer(state_.get()));
-  const int flag = ERKStepReset(memory_, now.time, state_.get());
-  if (flag != ARK_SUCCESS) ThrowStepFailed("ARKODE", problem_, flag, now);
+  CopyToSolver(now);
+  CheckFlag(ERKStepReset(memory_, now.time, state_.get()), now);
 }
 
 void ErkStepper::Step(const Point& now, double stop, Point* next) {
-  stepped_by_euler_ = TooShort(now.time, stop);
-  if (stepped_by_euler_) {
-    EulerStep(*problem_.equations, now, stop, next);
-    FillPoint(problem_, next);
+  if (StepsByEuler(now, stop, next)) {
     Restart(*next);
     return;
   }
   double time = now.time;
   int flag = ERKStepSetStopTime(memory_, stop);
   if (flag == ARK_SUCCESS) flag = ERKStepEvolve(memory_, stop, state_.get(), &time, ARK_ONE_STEP);
-  if (flag < 0) ThrowStepFailed("ARKODE", problem_, flag, now);
+  CheckFlag(flag, now);
   next->time = flag == ARK_TSTOP_RETURN ? stop : time;
-  std::copy_n(N_VGetArrayPointer(state_.get()), problem_.equations->states(), next->state);
-  FillPoint(problem_, next);
+  CopyFromSolver(next);
+  FillPoint(next);
 }
 
 void ErkStepper::Interpolate(const Point& now, const Point& /*next*/, double time, Point* at) {
-  if (stepped_by_euler_) {
-    EulerStep(*problem_.equations, now, time, at);
-    return;
-  }
-  const int flag = ERKStepGetDky(memory_, time, 0, state_.get());
-  if (flag != ARK_SUCCESS) ThrowStepFailed("ARKODE", problem_, flag, now);
+  if (InterpolatesByEuler(now, time, at)) return;
+  CheckFlag(ERKStepGetDky(memory_, time, 0, state_.get()), now);
   at->time = time;
-  std::copy_n(N_VGetArrayPointer(state_.get()), problem_.equations->states(), at->state);
+  CopyFromSolver(at);
 }
 
 }  // namespace hydro::model

@@ -23,6 +23,7 @@
 #include <utility>
 
 #include "model/equations/evaluate.h"
+#include "model/equations/state_history.h"
 #include "model/integrate/event_search.h"
 #include "model/integrate/event_shift.h"
 #include "model/integrate/point.h"

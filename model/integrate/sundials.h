@@ -1,4 +1,4 @@
-// What the two SUNDIALS steppers share. For .cc files of model/ only.
+// SUNDIALS, as its two steppers use it. For .cc files of model/ only.
 #pragma once
 
 #include <nvector/nvector_serial.h>
@@ -24,28 +24,55 @@ struct SundialsContextDeleter {
   void operator()(SUNContext context) const { SUNContext_Free(&context); }
 };
 using SundialsContext = std::unique_ptr<_SUNContext, SundialsContextDeleter>;
-SundialsContext MakeSundialsContext();
 
 struct NVectorDeleter {
   void operator()(N_Vector vector) const { N_VDestroy(vector); }
 };
 using NVector = std::unique_ptr<_generic_N_Vector, NVectorDeleter>;
-NVector MakeNVector(int size, SUNContext context);
 
 // Callbacks: the right-hand side of the present mode (returns 1, "try a smaller step", when it is not
 // finite), and the messages.
 int SundialsRates(double time, N_Vector state, N_Vector rate, void* problem);
 void KeepComplaint(int code, const char* module, const char* function, char* message, void* problem);
 
-// Euler's rule takes the steps that are too short for SUNDIALS to start with; its error, of the order of
-// their square, is below rounding.
-bool TooShort(double from, double to);
-void EulerStep(const Equations& equations, const Point& now, double stop, Point* next);
+// What both steppers share: the solver's state vector, steps that are too short for it, and failures.
+class SundialsStepper {
+ public:
+  SundialsStepper(const SundialsStepper&) = delete;
+  SundialsStepper& operator=(const SundialsStepper&) = delete;
 
-// Fills rate and margin of `at` from its time and state.
-void FillPoint(const SundialsProblem& problem, Point* at);
+  bool Trusts(const Point& /*now*/, const Point& /*at*/) const { return true; }  // as accurate as its steps
 
-[[noreturn]] void ThrowStepFailed(const char* integrator, const SundialsProblem& problem, int flag,
-                                  const Point& now);
+ protected:
+  // `name`: of the solver, for errors.
+  SundialsStepper(const char* name, const Mode* mode, const double* voltage, const Equations* equations);
+  ~SundialsStepper() = default;
+
+  // A vector of the absolute tolerances.
+  NVector Floor(double relative_tolerance) const;
+
+  void CopyToSolver(const Point& now);
+  void CopyFromSolver(Point* at) const;
+
+  // Takes the step by Euler's rule when it is too short for the solver to start with; the rule's error, of the
+  // order of the step's square, is then below rounding. False: it is not, and nothing has been done.
+  bool StepsByEuler(const Point& now, double stop, Point* next);
+  // The same within the step that was taken last.
+  bool InterpolatesByEuler(const Point& now, double time, Point* at) const;
+
+  void FillPoint(Point* at) const;  // rate and margin, from its time and state
+
+  // Throws when `flag`, which a function of the solver has returned, is an error.
+  void CheckFlag(int flag, const Point& now) const;
+
+  SundialsProblem problem_;
+  SundialsContext context_;
+  NVector state_;
+  void* memory_ = nullptr;  // the solver's
+
+ private:
+  const char* name_;
+  bool stepped_by_euler_ = false;
+};
 
 }  // namespace hydro::model

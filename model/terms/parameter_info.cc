@@ -4,82 +4,43 @@
 
 namespace hydro::model {
 
+namespace {
+
+BaseParameter NotNegative(double Parameters::*member, const char* name, const char* unit,
+                          const char* meaning) {
+  return {{.name = name, .unit = unit, .meaning = meaning}, member};
+}
+
+BaseParameter Positive(double Parameters::*member, const char* name, const char* unit, const char* meaning) {
+  return {{.name = name, .unit = unit, .min_allowed = false, .meaning = meaning}, member};
+}
+
+BaseParameter AnySign(double Parameters::*member, const char* name, const char* unit, const char* meaning) {
+  return {{.name = name, .unit = unit, .min = -kUnbounded, .meaning = meaning}, member};
+}
+
+}  // namespace
+
 const std::vector<BaseParameter>& BaseParameters() {
   static const std::vector<BaseParameter> parameters = {
-      {{.name = "k_1",
-        .unit = "in-lbf/V",
-        .min = 0,
-        .min_allowed = false,
-        .meaning = "torque per volt of the amplifier, eq. (1)"},
-       &Parameters::k_1},
-      {{.name = "T_pmax",
-        .unit = "in-lbf",
-        .min = 0,
-        .min_allowed = false,
-        .meaning = "limit of the motor torque set by the amplifier"},
-       &Parameters::T_pmax},
-      {{.name = "D",
-        .unit = "in^3/rad",
-        .min = 0,
-        .min_allowed = false,
-        .meaning = "displacement of the pump, eq. (3)"},
-       &Parameters::D},
-      {{.name = "J",
-        .unit = "lbf-in-s^2",
-        .min = 0,
-        .min_allowed = false,
-        .meaning = "inertia of motor and pump, eq. (4)"},
-       &Parameters::J},
-      {{.name = "b", .unit = "in-lbf-s", .meaning = "viscous friction of the pump, eq. (4)"}, &Parameters::b},
-      {{.name = "T_s", .unit = "in-lbf", .meaning = "Coulomb friction of the pump, eq. (4)"},
-       &Parameters::T_s},
-      {{.name = "f", .unit = "in-lbf/psi", .meaning = "Coulomb friction per pressure, eq. (4)"},
-       &Parameters::f},
-      {{.name = "beta",
-        .unit = "psi",
-        .min = 0,
-        .min_allowed = false,
-        .meaning = "bulk modulus of the fluid, eq. (5)"},
-       &Parameters::beta},
-      {{.name = "V_ms",
-        .unit = "in^3",
-        .min = 0,
-        .min_allowed = false,
-        .meaning = "volume of one side at mid-stroke, eqs. (6), (7)"},
-       &Parameters::V_ms},
-      {{.name = "c",
-        .unit = "in^3/rad",
-        .min = 0,
-        .min_allowed = false,
-        .meaning = "displacement of the actuator, r^2 d/2, eqs. (6), (7)"},
-       &Parameters::c},
-      {{.name = "c_E",
-        .unit = "in^3/(s psi)",
-        .meaning = "external leakage to the accumulator, eqs. (11), (12)"},
-       &Parameters::c_E},
-      {{.name = "c_I",
-        .unit = "in^3/(s psi)",
-        .meaning = "internal leakage across the ports, eqs. (11), (12)"},
-       &Parameters::c_I},
-      {{.name = "p_3", .unit = "psi", .meaning = "pressure of the accumulator, eqs. (11), (12)"},
-       &Parameters::p_3},
-      {{.name = "k_2",
-        .unit = "in-lbf/psi",
-        .min = 0,
-        .min_allowed = false,
-        .meaning = "torque on the arm per pressure difference, eq. (15)"},
-       &Parameters::k_2},
-      {{.name = "J_a",
-        .unit = "lbf-in-s^2",
-        .min = 0,
-        .min_allowed = false,
-        .meaning = "inertia of the arm, eq. (15)"},
-       &Parameters::J_a},
-      {{.name = "mgl",
-        .unit = "in-lbf",
-        .min = -kUnbounded,
-        .meaning = "gravity torque of the arm at alpha = 0, eq. (15)"},
-       &Parameters::mgl},
+      Positive(&Parameters::k_1, "k_1", "in-lbf/V", "torque per volt of the amplifier, eq. (1)"),
+      Positive(&Parameters::T_pmax, "T_pmax", "in-lbf", "limit of the motor torque set by the amplifier"),
+      Positive(&Parameters::D, "D", "in^3/rad", "displacement of the pump, eq. (3)"),
+      Positive(&Parameters::J, "J", "lbf-in-s^2", "inertia of motor and pump, eq. (4)"),
+      NotNegative(&Parameters::b, "b", "in-lbf-s", "viscous friction of the pump, eq. (4)"),
+      NotNegative(&Parameters::T_s, "T_s", "in-lbf", "Coulomb friction of the pump, eq. (4)"),
+      NotNegative(&Parameters::f, "f", "in-lbf/psi", "Coulomb friction per pressure, eq. (4)"),
+      Positive(&Parameters::beta, "beta", "psi", "bulk modulus of the fluid, eq. (5)"),
+      Positive(&Parameters::V_ms, "V_ms", "in^3", "volume of one side at mid-stroke, eqs. (6), (7)"),
+      Positive(&Parameters::c, "c", "in^3/rad", "displacement of the actuator, r^2 d/2, eqs. (6), (7)"),
+      NotNegative(&Parameters::c_E, "c_E", "in^3/(s psi)",
+                  "external leakage to the accumulator, eqs. (11), (12)"),
+      NotNegative(&Parameters::c_I, "c_I", "in^3/(s psi)",
+                  "internal leakage across the ports, eqs. (11), (12)"),
+      NotNegative(&Parameters::p_3, "p_3", "psi", "pressure of the accumulator, eqs. (11), (12)"),
+      Positive(&Parameters::k_2, "k_2", "in-lbf/psi", "torque on the arm per pressure difference, eq. (15)"),
+      Positive(&Parameters::J_a, "J_a", "lbf-in-s^2", "inertia of the arm, eq. (15)"),
+      AnySign(&Parameters::mgl, "mgl", "in-lbf", "gravity torque of the arm at alpha = 0, eq. (15)"),
   };
   return parameters;
 }

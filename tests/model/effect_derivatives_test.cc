@@ -1,9 +1,11 @@
 // Derivatives by the effects' parameters: against difference quotients, and finite where an effect vanishes.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "model/equations/evaluate.h"
+#include "model/equations/read_sensors.h"
 #include "model/terms/parameter_info.h"
 #include "tests/model/model_case.h"
 #include "tests/model/some_of_each.h"
@@ -50,7 +52,7 @@ std::vector<double> Somewhere(const model::Equations& equations, int pump) {
 // Tests each parameter of each effect in modes with its switches at every position.
 TEST(EffectDerivatives, EqualDifferenceQuotients) {
   for (const model::EffectInfo& info : model::EffectCatalogue()) {
-    if (info.id == "amp.delay") continue;  // its stops have the derivative
+    if (DelaysCommands(info)) continue;  // its stops have the derivative
     for (int position = -2; position <= 2; ++position) {
       for (const int pump : {-1, 0, 1}) {
         model::Mode mode;
@@ -86,7 +88,10 @@ TEST(EffectDerivatives, EqualDifferenceQuotients) {
 // Tests that each effect has a parameter that matters.
 TEST(EffectDerivatives, AreNotAllZero) {
   for (const model::EffectInfo& info : model::EffectCatalogue()) {
-    if (info.id == "amp.delay" || info.id == "sensor.sign") continue;
+    const bool has_number =
+        std::any_of(info.parameters.begin(), info.parameters.end(),
+                    [](const model::ParameterInfo& parameter) { return !parameter.is_name(); });
+    if (DelaysCommands(info) || !has_number) continue;
     model::Mode mode;
     mode.pump = 1;
     mode.effects.fill(1);
@@ -103,7 +108,7 @@ TEST(EffectDerivatives, AreNotAllZero) {
 // pressures, all is finite.
 TEST(EffectDerivatives, AreFiniteWhereTheEffectVanishes) {
   for (const model::EffectInfo& info : model::EffectCatalogue()) {
-    if (info.id == "amp.delay") continue;
+    if (DelaysCommands(info)) continue;
     model::EffectDescription effect = SomeOfEach().at(info.id);
     for (const model::ParameterInfo& parameter : info.parameters) {
       const bool may_vanish = !parameter.is_name() && (parameter.min < 0 || parameter.min_allowed);

@@ -142,12 +142,14 @@ MUTATIONS = [
         ("valve2.held_pressure", "m.bypass) state[kP2] = x.p_3;", "m.bypass) state[kP2] = T(0.0);"),
         ("valves.switch_swapped", "which == kValve1Switch ? mode->valve_1 : mode->valve_2",
          "which == kValve2Switch ? mode->valve_1 : mode->valve_2"),
-        # Sensors.
-        ("sensors.swapped", "measured.p1 = state[kP1];\n  measured.p2 = state[kP2];",
-         "measured.p1 = state[kP2];\n  measured.p2 = state[kP1];"),
         # (6), (7) of a clamped arm.
         ("eq6.clamped", "p.beta / (p.V_ms - p.c * m.arm_angle", "p.beta / (p.V_ms + p.c * m.arm_angle"),
         ("eq7.clamped", "p.beta / (p.V_ms + p.c * m.arm_angle", "p.beta / (p.V_ms - p.c * m.arm_angle"),
+    ),
+    *_rows(
+        "model/equations/read_sensors.h",
+        ("sensors.swapped", "measured.p1 = state[kP1];\n  measured.p2 = state[kP2];",
+         "measured.p1 = state[kP2];\n  measured.p2 = state[kP1];"),
     ),
     *_rows(
         "model/equations/equations.cc",

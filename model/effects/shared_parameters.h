@@ -1,0 +1,31 @@
+// Parameters that several effects have, described once.
+#pragma once
+
+#include "model/effects/effect.h"
+
+namespace hydro::model {
+
+// tau: a first-order lag.
+inline ParameterInfo TimeConstant(double example) {
+  return {.name = "tau",
+          .unit = "s",
+          .min_allowed = false,
+          .meaning = "time constant",
+          .starts = {2},
+          .scale = Scale::kSample,
+          .role = Role::kTime,
+          .example = example};
+}
+
+// periods: of a ripple over the motor's revolution.
+inline ParameterInfo PeriodsPerRevolution(double example) {
+  return {.name = "periods",
+          .unit = "1/rev",
+          .min_allowed = false,
+          .meaning = "periods in one revolution",
+          .starts = PeriodsTried(),
+          .role = Role::kPeriods,
+          .example = example};
+}
+
+}  // namespace hydro::model

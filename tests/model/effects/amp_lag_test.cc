@@ -1,0 +1,57 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/model/model_case.h"
+
+namespace hydro::testing {
+namespace {
+
+// Tests that the lagged torque follows its closed form, and that the pump starts when it passes T_s.
+TEST(AmpLag, FollowsItsClosedForm) {
+  const double tau = 0.01;
+  for (const model::Integrator integrator : kIntegrators) {
+    Rig rig(Table1Model({Lag(tau)}), Held(model::Shaft::kClamped, integrator));
+    const double start = -tau * std::log(1 - 4.0 / 8.0);  // T = 8 (1 - exp(-t/tau)) reaches T_s = 4
+    rig.simulation->Advance(2, start - 1e-6);
+    EXPECT_EQ(rig.Measure().motor_speed, 0) << Name(integrator);
+    rig.simulation->Advance(2, start + 1e-5);
+    EXPECT_GT(rig.Measure().motor_speed, 0) << Name(integrator);
+    rig.simulation->Advance(2, 0.025);
+    EXPECT_NEAR(rig.simulation->now().state[4], 8 * (1 - std::exp(-2.5)), 1e-5) << Name(integrator);
+    rig.simulation->Advance(-1, 0.045);
+    const double then = 8 * (1 - std::exp(-2.5));
+    EXPECT_NEAR(rig.simulation->now().state[4], -4 + (then + 4) * std::exp(-2.0), 1e-5) << Name(integrator);
+  }
+}
+
+// Tests that the limit applies to the lagged torque: T_p stays at T_pmax while the lagged state is above it.
+TEST(AmpLag, LimitsTheTorqueItself) {
+  const double tau = 0.01;
+  Rig rig(Table1Model({Lag(tau)}), Held(model::Shaft::kClamped));
+  const auto torque = [&] {
+    double rate[model::kMaxStates];
+    model::Terms<double> x;
+    const model::Point& now = rig.simulation->now();
+    rig.equations.Evaluate(now.time, 20, rig.simulation->mode(), now.state, rate, &x);
+    return x.torque;
+  };
+  const double limit_time = -tau * std::log(1 - 0.5);  // T = 80 (1 - exp(-t/tau)) reaches 40
+  rig.simulation->Advance(20, limit_time - 1e-7);
+  EXPECT_EQ(rig.simulation->mode().effects[0], 0);
+  EXPECT_NEAR(torque(), 40, 1e-2);
+  rig.simulation->Advance(20, limit_time + 1e-7);
+  EXPECT_EQ(rig.simulation->mode().effects[0], 1);
+  EXPECT_EQ(torque(), 40);
+  rig.simulation->Advance(20, 0.03);
+  EXPECT_EQ(torque(), 40);
+  // Back within the limit: 80 (1 - exp(-3)) exp(-t/tau) falls to 40.
+  const double release = 0.03 + tau * std::log(2 * (1 - std::exp(-3.0)));
+  rig.simulation->Advance(0, release - 1e-6);
+  EXPECT_EQ(rig.simulation->mode().effects[0], 1);
+  rig.simulation->Advance(0, release + 1e-6);
+  EXPECT_EQ(rig.simulation->mode().effects[0], 0);
+}
+
+}  // namespace
+}  // namespace hydro::testing
