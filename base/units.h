@@ -15,6 +15,7 @@ inline constexpr double kPsi = kPoundForce / (kInch * kInch);  // Pa
 inline constexpr double kInchPound = kPoundForce * kInch;      // N m
 inline constexpr double kGravity = 9.80665 / kInch;            // in/s^2
 inline constexpr double kRpm = std::numbers::pi / 30;          // rad/s
+inline constexpr double kDegree = std::numbers::pi / 180;      // rad
 
 constexpr double Degrees(double radians) { return radians * 180 / std::numbers::pi; }
 

@@ -56,6 +56,56 @@ Json LoopJson(const LoopInfo& loop) {
             {"queue_depth", last.queue_depth}}}};
 }
 
+// The list `items` as JSON, each by `json_of`.
+template <class Items, class JsonOf>
+Json ListJson(const Items& items, JsonOf json_of) {
+  Json json = Json::array();
+  for (const auto& item : items) json.push_back(json_of(item));
+  return json;
+}
+
+Json RunJson(const run_description_t& description) {
+  return {{"program", description.program},
+          {"version", description.version},
+          {"host", description.host},
+          {"config_file", description.config_file},
+          {"model_file", description.model_file},
+          {"rate_hz", description.rate_hz},
+          {"seed", description.seed}};
+}
+
+Json ProgramJson(const ProgramInfo& program) {
+  return {{"role", program.role}, {"host", program.host}, {"version", program.version}};
+}
+
+Json TicksJson(const TickInfo& ticks) {
+  return {{"states", ticks.states},
+          {"first", ticks.first},
+          {"last", ticks.last},
+          {"first_time_s", ticks.first_time_s},
+          {"last_time_s", ticks.last_time_s},
+          {"rate_hz", ticks.rate_hz},
+          {"gaps", ticks.gaps},
+          {"missing", ticks.missing},
+          {"skipped_by_plant", ticks.announced}};
+}
+
+Json FaultJson(const fault_t& fault) {
+  return {{"tick", fault.tick},
+          {"source", fault.source},
+          {"code", fault.code},
+          {"text", fault.text},
+          {"value", fault.value},
+          {"limit", fault.limit},
+          {"latched", fault.latched != 0},
+          {"active", fault.active != 0}};
+}
+
+Json StopJson(const stop_t& stop) {
+  return {
+      {"tick", stop.tick}, {"source", stop.source}, {"reason", stop.reason}, {"exit_code", stop.exit_code}};
+}
+
 }  // namespace
 
 std::string InfoJson(const LogInfo& info) {
@@ -65,60 +115,21 @@ std::string InfoJson(const LogInfo& info) {
   json["bytes"] = info.bytes;
   json["messages"] = info.events;
   json["duration_s"] = info.duration_s;
-  json["runs"] = Json::array();
-  for (const run_description_t& description : info.descriptions) {
-    json["runs"].push_back({{"program", description.program},
-                            {"version", description.version},
-                            {"host", description.host},
-                            {"config_file", description.config_file},
-                            {"model_file", description.model_file},
-                            {"rate_hz", description.rate_hz},
-                            {"seed", description.seed}});
-  }
+  json["runs"] = ListJson(info.descriptions, RunJson);
   json["model_name"] = info.model_name;
   json["config"] = Json::object();
   for (const auto& [key, value] : info.config) json["config"][key] = value;
-  json["processes"] = Json::array();
-  for (const ProgramInfo& program : info.programs) {
-    json["processes"].push_back(
-        {{"role", program.role}, {"host", program.host}, {"version", program.version}});
-  }
+  json["processes"] = ListJson(info.programs, ProgramJson);
   json["channels"] = Json::object();
   for (const ChannelInfo& channel : info.channels)
     json["channels"][channel.summary.channel] = ChannelJson(channel);
   json["first_undecodable"] = info.first_undecodable;
-  const TickInfo& ticks = info.ticks;
-  json["ticks"] = {{"states", ticks.states},
-                   {"first", ticks.first},
-                   {"last", ticks.last},
-                   {"first_time_s", ticks.first_time_s},
-                   {"last_time_s", ticks.last_time_s},
-                   {"rate_hz", ticks.rate_hz},
-                   {"gaps", ticks.gaps},
-                   {"missing", ticks.missing},
-                   {"skipped_by_plant", ticks.announced}};
+  json["ticks"] = TicksJson(info.ticks);
   json["signals"] = Json::object();
   for (const SignalInfo& signal : info.signals) json["signals"][signal.name] = SignalJson(signal);
-  json["loops"] = Json::array();
-  for (const LoopInfo& loop : info.loops) json["loops"].push_back(LoopJson(loop));
-  json["faults"] = Json::array();
-  for (const fault_t& fault : info.faults) {
-    json["faults"].push_back({{"tick", fault.tick},
-                              {"source", fault.source},
-                              {"code", fault.code},
-                              {"text", fault.text},
-                              {"value", fault.value},
-                              {"limit", fault.limit},
-                              {"latched", fault.latched != 0},
-                              {"active", fault.active != 0}});
-  }
-  json["stops"] = Json::array();
-  for (const stop_t& stop : info.stops) {
-    json["stops"].push_back({{"tick", stop.tick},
-                             {"source", stop.source},
-                             {"reason", stop.reason},
-                             {"exit_code", stop.exit_code}});
-  }
+  json["loops"] = ListJson(info.loops, LoopJson);
+  json["faults"] = ListJson(info.faults, FaultJson);
+  json["stops"] = ListJson(info.stops, StopJson);
   // Text from a log may not be UTF-8; invalid bytes are replaced, not refused.
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }

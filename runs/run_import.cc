@@ -97,92 +97,124 @@ run_description_t Describe(const tables::Table& table, const std::string& versio
   return description;
 }
 
+// A column's values, or missing ones where the table has no such column.
+class Values {
+ public:
+  Values(const tables::Table& table, const char* name) : column_(table.Find(name)) {}
+  bool present() const { return column_ != nullptr; }
+  double operator[](size_t row) const { return column_ != nullptr ? column_->values[row] : kMissing; }
+
+ private:
+  const tables::Column* column_;
+};
+
+// Writes a table, which has been checked, as the messages of a run.
+class Import {
+ public:
+  Import(const tables::Table& table, log::LogWriter& log)
+      : log_(log),
+        times_(table.Find("time_s")->values),
+        ticks_(Ticks(table)),
+        voltage_(table, "voltage_V"),
+        pressure_ref_(table, "pressure_ref_psi"),
+        arm_ref_(table, "arm_ref_rad"),
+        motor_angle_(table, "motor_angle_rad"),
+        motor_speed_(table, "motor_speed_rad_s"),
+        arm_angle_(table, "arm_angle_rad"),
+        arm_speed_(table, "arm_speed_rad_s"),
+        p1_(table, "p1_psi"),
+        p2_(table, "p2_psi") {}
+
+  void AppendDescription(run_description_t description) {
+    description.utime = Utime(times_.front());
+    log_.AppendMessage(channels_.Of<run_description_t>(), description, description.utime);
+  }
+
+  void AppendRow(size_t row) {
+    AppendState(row);
+    // A reference holds until the next one; a missing value after one is a reference of its own.
+    if (!SameBits(arm_ref_[row], last_reference_)) AppendReference(row);
+    AppendCommands(row);
+  }
+
+ private:
+  void AppendState(size_t row) {
+    state_t state{};
+    state.utime = Utime(times_[row]);
+    state.tick = ticks_[row];
+    state.sequence = static_cast<int64_t>(row);
+    state.time = times_[row];
+    state.motor_angle = motor_angle_[row];
+    state.motor_speed = motor_speed_[row];
+    state.arm_angle = arm_angle_[row];
+    state.arm_speed = arm_speed_[row];
+    state.p1 = p1_[row];
+    state.p2 = p2_[row];
+    // A table does not tell what acted before its first row; the actuator is taken to have been at rest.
+    state.voltage = row > 0 ? voltage_[row - 1] : voltage_.present() ? 0 : kMissing;
+    state.command_tick = row > 0 && voltage_.present() ? ticks_[row] - 1 : -1;
+    log_.AppendMessage(channels_.Of<state_t>(), state, state.utime);
+  }
+
+  void AppendReference(size_t row) {
+    arm_reference_t message{};
+    message.utime = Utime(times_[row]);
+    message.tick = ticks_[row];
+    message.sequence = reference_sequence_++;
+    message.signal = arm_reference_t::ARM_ANGLE;
+    message.value = last_reference_ = arm_ref_[row];
+    log_.AppendMessage(channels_.Of<arm_reference_t>(), message, message.utime);
+  }
+
+  // The command of tick k acts from tick k + 1 on (the delay that an empty configuration means), so the
+  // command of the tick before carries the last row's voltage.
+  void AppendCommands(size_t row) {
+    const size_t rows = times_.size();
+    const int64_t utime = Utime(times_[row]);
+    const bool next_acts = row + 1 < rows && ticks_[row + 1] == ticks_[row] + 1;
+    const bool last_follows = row + 2 == rows;
+    if (row + 1 == rows && !std::isnan(voltage_[row]) && (row == 0 || ticks_[row - 1] + 1 != ticks_[row])) {
+      AppendCommand(utime, ticks_[row] - 1, voltage_[row], kMissing);
+    }
+    if (!std::isnan(pressure_ref_[row]) || (next_acts && last_follows && !std::isnan(voltage_[row + 1]))) {
+      AppendCommand(utime, ticks_[row], next_acts ? voltage_[row + 1] : kMissing, pressure_ref_[row]);
+    }
+  }
+
+  void AppendCommand(int64_t utime, int64_t tick, double volts, double reference) {
+    motor_command_t command{};
+    command.utime = utime;
+    command.tick = tick;
+    command.sequence = motor_sequence_++;
+    command.voltage = volts;
+    command.pressure_ref = reference;
+    command.pressure_command_tick = std::isnan(reference) ? -1 : tick;
+    command.status = motor_command_t::LAW;
+    log_.AppendMessage(channels_.Of<motor_command_t>(), command, utime);
+  }
+
+  log::LogWriter& log_;
+  const std::vector<double>& times_;
+  const std::vector<int64_t> ticks_;
+  const Values voltage_, pressure_ref_, arm_ref_, motor_angle_, motor_speed_, arm_angle_, arm_speed_, p1_,
+      p2_;
+  const bus::Channels channels_;
+  int64_t motor_sequence_ = 0;
+  int64_t reference_sequence_ = 0;
+  double last_reference_ = kMissing;
+};
+
 }  // namespace
 
 void ImportRun(const tables::Table& table, const std::string& program_version, const std::string& log_file) {
   CheckColumns(table);
   const std::vector<double>& times = table.Find("time_s")->values;
   CheckTimes(table, times);
-  const std::vector<int64_t> ticks = Ticks(table);
-
-  const auto value = [&table](const char* name) {
-    const tables::Column* column = table.Find(name);
-    return [column](size_t row) { return column != nullptr ? column->values[row] : kMissing; };
-  };
-  const auto voltage = value("voltage_V");
-  const auto pressure_ref = value("pressure_ref_psi");
-  const auto arm_ref = value("arm_ref_rad");
-  const auto motor_angle = value("motor_angle_rad");
-  const auto motor_speed = value("motor_speed_rad_s");
-  const auto arm_angle = value("arm_angle_rad");
-  const auto arm_speed = value("arm_speed_rad_s");
-  const auto p1 = value("p1_psi");
-  const auto p2 = value("p2_psi");
-  const bool has_voltage = table.Find("voltage_V") != nullptr;
-
+  const run_description_t description = Describe(table, program_version, Rate(times, Ticks(table)));
   log::LogWriter log(log_file, Opening::kTemporary);
-  const bus::Channels channels;
-  run_description_t description = Describe(table, program_version, Rate(times, ticks));
-  description.utime = Utime(times.front());
-  log.AppendMessage(channels.Of<run_description_t>(), description, description.utime);
-
-  int64_t motor_sequence = 0;
-  int64_t reference_sequence = 0;
-  const auto append_motor_command = [&](int64_t utime, int64_t tick, double volts, double reference) {
-    motor_command_t command{};
-    command.utime = utime;
-    command.tick = tick;
-    command.sequence = motor_sequence++;
-    command.voltage = volts;
-    command.pressure_ref = reference;
-    command.pressure_command_tick = std::isnan(reference) ? -1 : tick;
-    command.status = motor_command_t::LAW;
-    log.AppendMessage(channels.Of<motor_command_t>(), command, utime);
-  };
-
-  const size_t rows = table.rows();
-  double last_reference = kMissing;
-  for (size_t row = 0; row < rows; ++row) {
-    const int64_t utime = Utime(times[row]);
-    state_t state{};
-    state.utime = utime;
-    state.tick = ticks[row];
-    state.sequence = static_cast<int64_t>(row);
-    state.time = times[row];
-    state.motor_angle = motor_angle(row);
-    state.motor_speed = motor_speed(row);
-    state.arm_angle = arm_angle(row);
-    state.arm_speed = arm_speed(row);
-    state.p1 = p1(row);
-    state.p2 = p2(row);
-    // A table does not tell what acted before its first row; the actuator is taken to have been at rest.
-    state.voltage = row > 0 ? voltage(row - 1) : has_voltage ? 0 : kMissing;
-    state.command_tick = row > 0 && has_voltage ? ticks[row] - 1 : -1;
-    log.AppendMessage(channels.Of<state_t>(), state, utime);
-
-    // A reference holds until the next one; a missing value after one is a reference of its own.
-    const double reference = arm_ref(row);
-    if (!SameBits(reference, last_reference)) {
-      arm_reference_t message{};
-      message.utime = utime;
-      message.tick = ticks[row];
-      message.sequence = reference_sequence++;
-      message.signal = arm_reference_t::ARM_ANGLE;
-      message.value = last_reference = reference;
-      log.AppendMessage(channels.Of<arm_reference_t>(), message, utime);
-    }
-
-    // The command of tick k acts from tick k + 1 on (the delay that an empty configuration means), so the
-    // command of the tick before carries the last row's voltage.
-    const bool next_acts = row + 1 < rows && ticks[row + 1] == ticks[row] + 1;
-    const bool last_follows = row + 2 == rows;
-    if (row + 1 == rows && !std::isnan(voltage(row)) && (row == 0 || ticks[row - 1] + 1 != ticks[row])) {
-      append_motor_command(utime, ticks[row] - 1, voltage(row), kMissing);
-    }
-    if (!std::isnan(pressure_ref(row)) || (next_acts && last_follows && !std::isnan(voltage(row + 1)))) {
-      append_motor_command(utime, ticks[row], next_acts ? voltage(row + 1) : kMissing, pressure_ref(row));
-    }
-  }
+  Import import(table, log);
+  import.AppendDescription(description);
+  for (size_t row = 0; row < table.rows(); ++row) import.AppendRow(row);
   log.Finish();
 }
 

@@ -1,29 +1,22 @@
 #include "trajectory/checks.h"
 
 #include <cmath>
-#include <cstdio>
 #include <stdexcept>
 
+#include "base/number_text.h"
+
 namespace hydro::trajectory {
-namespace {
-
-std::string Text(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.15g", value);
-  return text;
-}
-
-}  // namespace
 
 void RequireFinite(const std::string& what, double value) {
   if (!std::isfinite(value)) {
-    throw std::invalid_argument(what + ": found " + Text(value) + ", allowed: a finite number");
+    throw std::invalid_argument(what + ": found " + ShortestNumber(value) + ", allowed: a finite number");
   }
 }
 
 void RequirePositive(const std::string& what, double value) {
   if (!std::isfinite(value) || value <= 0) {
-    throw std::invalid_argument(what + ": found " + Text(value) + ", allowed: a finite number above 0");
+    throw std::invalid_argument(what + ": found " + ShortestNumber(value) +
+                                ", allowed: a finite number above 0");
   }
 }
 
@@ -33,8 +26,9 @@ void RequireIncreasing(const std::string& what, const std::vector<Step>& items) 
     RequireFinite(item + " time", items[i].time);
     RequireFinite(item + " value", items[i].value);
     if (i > 0 && items[i].time <= items[i - 1].time) {
-      throw std::invalid_argument(item + " time: found " + Text(items[i].time) + ", allowed: above " +
-                                  Text(items[i - 1].time) + ", the time before it");
+      throw std::invalid_argument(item + " time: found " + ShortestNumber(items[i].time) +
+                                  ", allowed: above " + ShortestNumber(items[i - 1].time) +
+                                  ", the time before it");
     }
   }
 }

@@ -62,24 +62,17 @@ std::vector<uint8_t> MakeProbe() {
   return probe;
 }
 
-}  // namespace
-
-int TestMulticast(const UdpmUrl& url, std::chrono::milliseconds timeout) {
-  const Socket sender(socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0));
-  const Socket receiver(socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0));
-  if (sender.fd() < 0 || receiver.fd() < 0) FailErrno(url, "no socket", "see `ulimit -n`");
-
-  sockaddr_in group{};
-  group.sin_family = AF_INET;
-  group.sin_port = htons(url.port);
-  inet_pton(AF_INET, url.group.c_str(), &group.sin_addr);
-
+// Sends to the group, from this machine too.
+void Connect(const Socket& sender, const UdpmUrl& url, const sockaddr_in& group) {
   if (connect(sender.fd(), reinterpret_cast<const sockaddr*>(&group), sizeof group) != 0) {
     FailErrno(url, "no route to the group", kCure);
   }
   SetOption(sender.fd(), IPPROTO_IP, IP_MULTICAST_TTL, static_cast<unsigned char>(url.ttl));
   SetOption(sender.fd(), IPPROTO_IP, IP_MULTICAST_LOOP, static_cast<unsigned char>(1));
+}
 
+// Joins the group. Returns the size of the receive buffer that the kernel grants.
+int Listen(const Socket& receiver, const UdpmUrl& url, const sockaddr_in& group) {
   SetOption(receiver.fd(), SOL_SOCKET, SO_REUSEADDR, 1);
   if (url.recv_buf_size > 0) SetOption(receiver.fd(), SOL_SOCKET, SO_RCVBUF, url.recv_buf_size);
   int receive_buffer = 0;
@@ -96,29 +89,49 @@ int TestMulticast(const UdpmUrl& url, std::chrono::milliseconds timeout) {
   if (setsockopt(receiver.fd(), IPPROTO_IP, IP_ADD_MEMBERSHIP, &membership, sizeof membership) != 0) {
     FailErrno(url, "cannot join the group", kCure);
   }
+  return receive_buffer;
+}
+
+// Waits until `deadline` for a packet that is the probe. False: none came.
+bool Receives(const Socket& receiver, const std::vector<uint8_t>& probe,
+              std::chrono::steady_clock::time_point deadline) {
+  std::vector<uint8_t> packet(probe.size() + 1);
+  while (true) {
+    const auto now = std::chrono::steady_clock::now();
+    if (now >= deadline) return false;
+    pollfd waiting{receiver.fd(), POLLIN, 0};
+    const auto left = std::chrono::ceil<std::chrono::milliseconds>(deadline - now);
+    if (poll(&waiting, 1, static_cast<int>(left.count())) <= 0) continue;
+    const ssize_t size = recv(receiver.fd(), packet.data(), packet.size(), MSG_DONTWAIT);
+    if (size == static_cast<ssize_t>(probe.size()) &&
+        std::memcmp(packet.data(), probe.data(), probe.size()) == 0) {
+      return true;
+    }
+  }
+}
+
+}  // namespace
+
+int TestMulticast(const UdpmUrl& url, std::chrono::milliseconds timeout) {
+  const Socket sender(socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0));
+  const Socket receiver(socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0));
+  if (sender.fd() < 0 || receiver.fd() < 0) FailErrno(url, "no socket", "see `ulimit -n`");
+  sockaddr_in group{};
+  group.sin_family = AF_INET;
+  group.sin_port = htons(url.port);
+  inet_pton(AF_INET, url.group.c_str(), &group.sin_addr);
+  Connect(sender, url, group);
+  const int receive_buffer = Listen(receiver, url, group);
 
   const std::vector<uint8_t> probe = MakeProbe();
   const auto deadline = std::chrono::steady_clock::now() + timeout;
-  std::vector<uint8_t> packet(probe.size() + 1);
   while (true) {
     // Sent repeatedly, because a busy machine may lose a packet.
     if (send(sender.fd(), probe.data(), probe.size(), 0) < 0) {
       FailErrno(url, "cannot send to the group", kFirewallCure);
     }
-    const auto next_try =
-        std::min(deadline, std::chrono::steady_clock::now() + std::chrono::milliseconds(100));
-    while (true) {
-      const auto now = std::chrono::steady_clock::now();
-      if (now >= next_try) break;
-      pollfd waiting{receiver.fd(), POLLIN, 0};
-      const auto left = std::chrono::ceil<std::chrono::milliseconds>(next_try - now);
-      if (poll(&waiting, 1, static_cast<int>(left.count())) <= 0) continue;
-      const ssize_t size = recv(receiver.fd(), packet.data(), packet.size(), MSG_DONTWAIT);
-      if (size == static_cast<ssize_t>(probe.size()) &&
-          std::memcmp(packet.data(), probe.data(), probe.size()) == 0) {
-        return receive_buffer;
-      }
-    }
+    const auto next_try = std::chrono::steady_clock::now() + std::chrono::milliseconds(100);
+    if (Receives(receiver, probe, std::min(deadline, next_try))) return receive_buffer;
     if (std::chrono::steady_clock::now() >= deadline) {
       Fail(url, "a packet sent to the group did not come back within " + std::to_string(timeout.count()) +
                     " ms; " + kFirewallCure);

@@ -4,9 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <stdexcept>
 
+#include "base/units.h"
 #include "experiments/maths/arm_loop.h"
 #include "experiments/runs/shipped_models.h"
 #include "experiments/runs/shipped_stacks.h"
@@ -19,9 +19,9 @@ namespace {
 
 constexpr double kStep = kFigure10Step;
 constexpr double kInterval = kFigure10Interval;
-constexpr double kStart = 0.1;                                // s, when the reference steps
-constexpr double kMotorSpeed = 6000 * std::numbers::pi / 30;  // rad/s: "a larger 6000 rpm motor"
-constexpr double kNoLimit = 1e6;                              // in-lbf
+constexpr double kStart = 0.1;               // s, when the reference steps
+constexpr double kMotorSpeed = 6000 * kRpm;  // rad/s: "a larger 6000 rpm motor"
+constexpr double kNoLimit = 1e6;             // in-lbf
 
 ArmRun RunArm(const StackRunner& run_stack, const std::string& name, const std::string& config,
               const model::ModelDescription& model, double step) {

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
+#include "base/units.h"
 #include "experiments/figures/catalogue.h"
 #include "experiments/studies/json_text.h"
 #include "experiments/studies/tracking_study.h"
@@ -14,8 +15,6 @@ namespace hydro::experiments {
 namespace {
 
 using nlohmann::json;
-
-double Degrees(double radians) { return radians * 180 / std::numbers::pi; }
 
 // The first harmonic of dp over that of the reference, over whole periods.
 std::complex<double> FirstHarmonic(const PressureLoopRun& run) {

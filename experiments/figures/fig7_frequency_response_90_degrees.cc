@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "base/units.h"
 #include "experiments/figures/catalogue.h"
 #include "experiments/runs/pressure_loop_run.h"
 #include "experiments/runs/shipped_models.h"
@@ -241,8 +242,7 @@ Finding AngleFinding(const QuarterTurnStudy& study) {
       1, "Figure 7 is at α = π/2, with Table 1's V_ms = 3.16 in^3.",
       fmt::format("Asked for it, the model of Table 1 refuses: \"{}\". V_1 = V_ms - c α is {:.2f} in^3 "
                   "there and reaches 0 at {:.4f} rad = {:.2f}°.",
-                  study.refusal, table1.V_ms - table1.c * kQuarterTurn, study.limit,
-                  study.limit * 180 / std::numbers::pi),
+                  study.refusal, table1.V_ms - table1.c * kQuarterTurn, study.limit, Degrees(study.limit)),
       fmt::format("An arm angle that leaves V_1, V_2 > 0 is an error. config/models/wide_actuator.toml has "
                   "V_ms = {} in^3 (needed: above {:.3f}), marked as an assumption; this figure uses it.",
                   study.wide.parameters.V_ms, table1.c * kQuarterTurn)};

@@ -3,8 +3,8 @@
 
 #include <cmath>
 #include <nlohmann/json.hpp>
-#include <numbers>
 
+#include "base/units.h"
 #include "experiments/figures/catalogue.h"
 #include "experiments/figures/fig8_block_diagram.h"
 #include "experiments/maths/arm_loop.h"
@@ -21,7 +21,7 @@ double Decibel(const Complex& z) { return 20 * std::log10(std::abs(z)); }
 
 // Degrees, unwrapped from the previous value.
 double Phase(const Complex& z, double previous) {
-  const double phase = std::arg(z) * 180 / std::numbers::pi;
+  const double phase = Degrees(std::arg(z));
   return phase + 360 * std::round((previous - phase) / 360);
 }
 

@@ -5,8 +5,8 @@
 #include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
-#include <numbers>
 
+#include "base/units.h"
 #include "experiments/figures/catalogue.h"
 #include "experiments/maths/sampled_position_loop.h"
 #include "experiments/runs/shipped_models.h"
@@ -375,7 +375,7 @@ Picture SampledPolesPicture(const RootLocusStudy& study) {
                     .equal_scales = true,
                     .height = 1.8};
   std::vector<Complex> circle;
-  for (int i = 0; i <= 360; ++i) circle.push_back(std::polar(1.0, i * std::numbers::pi / 180));
+  for (int i = 0; i <= 360; ++i) circle.push_back(std::polar(1.0, i * kDegree));
   plane.curves.push_back(Points("unit circle", circle, 0, page::Stroke::kDotted));
   for (size_t t = 0; t < study.sampled.size(); ++t) {
     plane.curves.push_back(Points(fmt::format("T = {:g} ms", 1e3 * study.sampled[t].interval),

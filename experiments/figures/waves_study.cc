@@ -7,6 +7,7 @@
 #include <numbers>
 #include <string>
 
+#include "base/units.h"
 #include "experiments/runs/shipped_models.h"
 #include "experiments/studies/bode_case.h"
 #include "settings/model_file.h"
@@ -124,7 +125,7 @@ void RunSweep(const StackRunner& run_stack, WavesStudy* study) {
   for (const ResponsePoint& point : study->swept.points) {
     const std::complex<double> error = point.gain / linear.ClosedGain(study->gains, point.frequency_hz);
     study->worst_db = std::max(study->worst_db, std::abs(Decibels(error)));
-    study->worst_deg = std::max(study->worst_deg, std::abs(std::arg(error)) * 180 / std::numbers::pi);
+    study->worst_deg = std::max(study->worst_deg, Degrees(std::abs(std::arg(error))));
     if (point.frequency_hz > 200 && std::abs(point.gain) > std::abs(study->peak.gain)) study->peak = point;
   }
 }

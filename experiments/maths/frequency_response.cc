@@ -11,6 +11,8 @@
 #include <string>
 #include <unsupported/Eigen/FFT>
 
+#include "base/units.h"
+
 namespace hydro::experiments {
 namespace {
 
@@ -146,7 +148,7 @@ double Decibels(std::complex<double> gain) { return 20 * std::log10(std::abs(gai
 std::vector<double> PhasesDeg(const std::vector<ResponsePoint>& points) {
   std::vector<double> phases;
   for (const ResponsePoint& point : points) {
-    double phase = std::arg(point.gain) * 180 / std::numbers::pi;
+    double phase = Degrees(std::arg(point.gain));
     if (!phases.empty()) phase -= 360 * std::round((phase - phases.back()) / 360);
     phases.push_back(phase);
   }

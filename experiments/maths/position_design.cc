@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <numbers>
 #include <stdexcept>
 #include <string>
 
+#include "base/units.h"
 #include "maths/matrix_functions.h"
 
 namespace hydro::experiments {
@@ -107,7 +107,7 @@ Margins StabilityMargins(const DesignModel& model, double gain) {
   while (std::abs(OpenLoop(model, gain, above / 1.02)) < 1) above /= 1.02;
   margins.gain_crossover =
       Crossing([&](double w) { return std::abs(OpenLoop(model, gain, w)) - 1; }, above / 1.02, above);
-  margins.phase_deg = 180 / std::numbers::pi * std::arg(-OpenLoop(model, gain, margins.gain_crossover));
+  margins.phase_deg = Degrees(std::arg(-OpenLoop(model, gain, margins.gain_crossover)));
   double below = model.zero / 100;
   const auto excess = [&](double w) {
     return std::abs(ClosedLoop(model, gain, DerivativeForm::kMeasurement, w)) - std::sqrt(0.5);

@@ -9,10 +9,10 @@
 #include <stdexcept>
 #include <string>
 
+#include "base/units.h"
+
 namespace hydro::experiments {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180;
 
 // Residuals: ln |measured/fitted| and the phase of measured/fitted, in radians, point by point. Unknowns: ln
 // K, ln wn, ln zeta, delay (held at 0 unless requested).

@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
-#include <numbers>
+
+#include "base/units.h"
 
 namespace hydro::experiments {
 namespace {
@@ -76,7 +77,7 @@ void Evaluate(BodeCase* out, double fit_to_hz, const StackRunner& run_stack) {
     if (point.coherence < kTrustedCoherence) continue;
     const std::complex<double> error = point.gain / gain;
     out->worst_error_db = std::max(out->worst_error_db, std::abs(Decibels(error)));
-    out->worst_error_deg = std::max(out->worst_error_deg, std::abs(std::arg(error)) * 180 / std::numbers::pi);
+    out->worst_error_deg = std::max(out->worst_error_deg, Degrees(std::abs(std::arg(error))));
   }
 }
 
