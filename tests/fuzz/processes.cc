@@ -11,13 +11,13 @@
 #include "bus/in_process_bus.h"
 #include "launch/stack_watch.h"
 #include "logger/logger_app.h"
-#include "plant/plant_app.h"
 #include "plant/roll_call.h"
 #include "plant/simulated_rig.h"
 #include "position_ctrl/position_app.h"
 #include "pressure_ctrl/pressure_app.h"
 #include "tests/fuzz/promise.h"
 #include "tests/fuzz/targets.h"
+#include "tests/plant/run_plant.h"
 #include "tests/stack_fixture.h"
 
 namespace hydro::fuzz {
@@ -80,22 +80,30 @@ void Feed(Input& input, bus::InProcessBus& bus, bus::SimulatedClock& clock, std:
   }
 }
 
-settings::StackConfig Config(Input& input) {
-  settings::StackConfig config = testing::SmallStack();
-  config.time.mode = input.Byte() % 2 == 0 ? settings::TimeMode::kLockstep : settings::TimeMode::kRealtime;
-  return config;
-}
+// A bus on which nobody has spoken yet, an hour after the epoch. The input's first byte chooses the stack's
+// time.mode; the rest is messages.
+struct Stage {
+  Stage(const uint8_t* data, size_t size) : input(data, size), config(testing::SmallStack()) {
+    spdlog::set_level(spdlog::level::off);
+    clock.AdvanceTo(bus::Clock::TimePoint(std::chrono::hours(1)));
+    config.time.mode = input.Byte() % 2 == 0 ? settings::TimeMode::kLockstep : settings::TimeMode::kRealtime;
+  }
+
+  Input input;
+  bus::SimulatedClock clock;
+  bus::InProcessBus bus{&clock};
+  settings::StackConfig config;
+};
 
 }  // namespace
 
 // The controllers answer; their commands must be fit for an amplifier.
 void Processes(const uint8_t* data, size_t size) {
-  spdlog::set_level(spdlog::level::off);
-  Input input(data, size);
-  bus::SimulatedClock clock;
-  clock.AdvanceTo(bus::Clock::TimePoint(std::chrono::hours(1)));
-  bus::InProcessBus bus(&clock);
-  const settings::StackConfig config = Config(input);
+  Stage stage(data, size);
+  Input& input = stage.input;
+  bus::SimulatedClock& clock = stage.clock;
+  bus::InProcessBus& bus = stage.bus;
+  settings::StackConfig& config = stage.config;
   const double most_volts = pressure_ctrl::PressureLawSettingsFor(config).voltage_limit;
   const bus::Channels channels;
   pressure_ctrl::PressureApp pressure(bus, clock, config);
@@ -122,41 +130,28 @@ void Processes(const uint8_t* data, size_t size) {
 // The plant with its voltage guard hears one message of the input at each state that it sends, re-arm requests
 // among them. Nobody else sends states here.
 void Plant(const uint8_t* data, size_t size) {
-  spdlog::set_level(spdlog::level::off);
-  Input input(data, size);
-  bus::SimulatedClock clock;
-  clock.AdvanceTo(bus::Clock::TimePoint(std::chrono::hours(1)));
-  bus::InProcessBus bus(&clock);
-  settings::StackConfig config = Config(input);
+  Stage stage(data, size);
+  Input& input = stage.input;
+  bus::SimulatedClock& clock = stage.clock;
+  bus::InProcessBus& bus = stage.bus;
+  settings::StackConfig& config = stage.config;
   config.limits.rearm = settings::Rearm::kExplicit;
   config.limits.pressure_psi = 100.5;  // of the 100 psi at the start: commands exceed it, and latch the fault
   const double most_volts = pressure_ctrl::PressureLawSettingsFor(config).voltage_limit;
   plant::SimulatedRig rig(config);
-  plant::PlantApp plant(bus, clock, config, rig);
   const bus::Channels channels;
   bus.Subscribe<state_t>(channels.Of<state_t>(), [&](const state_t& state) {
     Promise(std::abs(state.voltage) <= most_volts, "voltages are within what the amplifier takes");
     Promise(std::isfinite(state.p1) && std::isfinite(state.arm_angle), "the plant's state is finite");
     if (input.left() > 0) SendNext(input, bus, clock, bus::MessageIndex<state_t>());
   });
-  for (const char* role : {"pressure_ctrl", "position_ctrl"}) {
-    process_status_t ready{};
-    ready.session = 1;
-    ready.role = role;
-    ready.state = process_status_t::READY;
-    bus.Publish(channels.Of<process_status_t>(), ready);
-  }
-  plant.Run();
+  plant::RunPlant(bus, clock, config, rig);
 }
 
 void Recorder(const uint8_t* data, size_t size) {
-  spdlog::set_level(spdlog::level::off);
-  Input input(data, size);
-  bus::SimulatedClock clock;
-  clock.AdvanceTo(bus::Clock::TimePoint(std::chrono::hours(1)));
-  bus::InProcessBus bus(&clock);
-  logger::LoggerApp logger(bus, clock, Config(input), {"/dev/null"});
-  Feed(input, bus, clock, std::nullopt, [&] { logger.Poll(); });
+  Stage stage(data, size);
+  logger::LoggerApp logger(stage.bus, stage.clock, stage.config, {"/dev/null"});
+  Feed(stage.input, stage.bus, stage.clock, std::nullopt, [&] { logger.Poll(); });
 }
 
 }  // namespace hydro::fuzz

@@ -61,132 +61,164 @@ double Value(const Segment& s, double t) {
   return 0;
 }
 
+// Channels as the transducers give them.
+struct Reading {
+  double speed, angle, p1, p2;
+};
+
+// Null for kNone.
+double* Find(Reading& reading, Channel channel) {
+  switch (channel) {
+    case Channel::kMotorSpeed:
+      return &reading.speed;
+    case Channel::kArmAngle:
+      return &reading.angle;
+    case Channel::kP1:
+      return &reading.p1;
+    case Channel::kP2:
+      return &reading.p2;
+    case Channel::kNone:
+      break;
+  }
+  return nullptr;
+}
+
+// The transducers, and what is wrong with them.
+class Sensors {
+ public:
+  Sensors(const Effects& fx, const Conditions& conditions)
+      : fx_(fx),
+        noise_size_(conditions.noise),
+        noise_(conditions.seed),
+        skew_steps_(static_cast<int>(std::lround(fx.skew / kStep))) {}
+
+  // Call once a step, before it.
+  void Remember(const Reading& pure) {
+    if (!(fx_.skew > 0)) return;
+    Reading reading = pure;
+    const double* const channel = Find(reading, fx_.skew_channel);
+    late_.push_back(channel != nullptr ? *channel : reading.p2);
+    if (static_cast<int>(late_.size()) > skew_steps_) late_.pop_front();
+  }
+
+  // What the loops read, and what the recorder does: it gets one channel late. `pure`: without the faults.
+  void Read(const Reading& pure, Reading* loop, Reading* recorded) {
+    *loop = WithErrors(pure);
+    Reading late = pure;
+    double* const channel = Find(late, fx_.skew_channel);
+    if (fx_.skew > 0 && !late_.empty() && channel != nullptr) *channel = late_.front();
+    *recorded = WithErrors(late);
+    if (!(noise_size_ > 0)) return;
+    const double n[4] = {noise_.Next(), noise_.Next(), noise_.Next(), noise_.Next()};
+    AddNoise(n, recorded);
+    AddNoise(n, loop);
+  }
+
+ private:
+  Reading WithErrors(Reading reading) const {
+    reading.p1 = reading.p1 * (1 + fx_.gain) + fx_.offset_p1;
+    reading.p2 = reading.p2 * (1 + fx_.gain) + fx_.offset_p2;
+    return reading;
+  }
+
+  void AddNoise(const double* n, Reading* r) const {
+    r->speed = Quantise(r->speed + kSpeedNoise * noise_size_ * n[0], -600, 600, 12);
+    r->angle = kAngleStep * std::round((r->angle + 0.2 * kAngleStep * n[1]) / kAngleStep);
+    r->p1 = Quantise(r->p1 + kPressureNoise * noise_size_ * n[2], 0, 3000, 12);
+    r->p2 = Quantise(r->p2 + kPressureNoise * noise_size_ * n[3], 0, 3000, 12);
+  }
+
+  const Effects& fx_;
+  double noise_size_;
+  Noise noise_;
+  int skew_steps_;
+  std::deque<double> late_;  // pure values of the late channel, one a step
+};
+
+// Eq. (16) as an experimenter would tune it for 120 rad/s, eq. (17) at 200 Hz with the paper's gains.
+class Loops {
+ public:
+  Loops(const Plan& plan, double rate)
+      : plan_(plan), samples_an_interval_(static_cast<int>(std::lround(kInterval * rate))) {}
+
+  double Voltage(int k, double t, const Reading& read) {
+    const Segment& s = SegmentAt(t);
+    const double wanted = Value(s, t);
+    double voltage = wanted;
+    if (s.kind == Segment::Kind::kVoltage) {
+      pressure_ref_ = 0;
+    } else {
+      if (s.kind == Segment::Kind::kPressure) {
+        pressure_ref_ = wanted;
+      } else if (k % samples_an_interval_ == 0) {
+        const double error = read.angle - wanted;
+        pressure_ref_ = -kC1 * error - (has_previous_ ? kC2 / kInterval * (read.angle - previous_angle_) : 0);
+        previous_angle_ = read.angle;  // derivative on the measurement: no kick from a step of the reference
+        has_previous_ = true;
+      }
+      pressure_ref_ = std::clamp(pressure_ref_, -kLargestPressure, kLargestPressure);
+      voltage = kKp * ((pressure_ref_ - (read.p2 - read.p1)) - kKv * read.speed) + 0.0026 * pressure_ref_;
+    }
+    return kVoltageStep * std::round(std::clamp(voltage, -kLargestVoltage, kLargestVoltage) / kVoltageStep);
+  }
+
+  double pressure_ref() const { return pressure_ref_; }
+
+ private:
+  static constexpr double kKp = 0.08, kKv = 10.0, kC1 = 10500, kC2 = 350, kInterval = 0.005;
+  static constexpr double kLargestVoltage = 11.5, kVoltageStep = 1.0 / 2048, kLargestPressure = 3000;
+
+  const Segment& SegmentAt(double t) {
+    while (segment_ + 1 < plan_.segments.size() && plan_.segments[segment_ + 1].start <= t + 1e-9) {
+      ++segment_;
+      has_previous_ = false;
+    }
+    return plan_.segments[segment_];
+  }
+
+  const Plan& plan_;
+  int samples_an_interval_;
+  size_t segment_ = 0;
+  double pressure_ref_ = 0;
+  double previous_angle_ = 0;
+  bool has_previous_ = false;
+};
+
+void Append(double t, double voltage, double pressure_ref, const Reading& recorded, Record* record) {
+  record->time.push_back(t);
+  record->voltage.push_back(voltage);
+  record->pressure_ref.push_back(pressure_ref);
+  record->motor_speed.push_back(recorded.speed);
+  record->arm_angle.push_back(recorded.angle);
+  record->p1.push_back(recorded.p1);
+  record->p2.push_back(recorded.p2);
+}
+
 }  // namespace
 
 Record RecordRun(const RigSetup& setup, const Plan& plan, const Conditions& conditions) {
-  // Eq. (16) as an experimenter would tune it for 120 rad/s, eq. (17) at 200 Hz with the paper's gains.
-  constexpr double k_p = 0.08, k_v = 10.0, c1 = 10500, c2 = 350, interval = 0.005;
-  constexpr double kLargestVoltage = 11.5, kVoltageStep = 1.0 / 2048, kLargestPressure = 3000;
-
   Physics rig(setup, plan, conditions);
-  Noise noise(conditions.seed);
-  const bool real = conditions.noise > 0;
-  const Effects& fx = setup.effects;
+  Sensors sensors(setup.effects, conditions);
+  Loops loops(plan, conditions.rate);
   const int steps_a_sample = static_cast<int>(std::lround(1 / (conditions.rate * kStep)));
   const int samples = static_cast<int>(std::lround(conditions.seconds * conditions.rate)) + 1;
-  const int samples_an_interval = static_cast<int>(std::lround(interval * conditions.rate));
-  const int skew_steps = static_cast<int>(std::lround(fx.skew / kStep));
-  std::deque<double> late;  // true values of the late channel, one a step
+  const auto& x = rig.state();
+  const auto pure = [&x] { return Reading{x[kTachometer], x[kArm], x[kSensor1b], x[kSensor2b]}; };
 
   Record record;
-  double pressure_ref = 0;
-  double previous_error = 0;
-  bool has_previous = false;
-  size_t segment = 0;
   for (int k = 0; k < samples; ++k) {
     const double t = k / conditions.rate;
-    const auto& x = rig.state();
-    // Channels as the transducers give them.
-    struct Reading {
-      double speed, angle, p1, p2;
-    } true_now{x[kTachometer], x[kArm], x[kSensor1b] * (1 + fx.gain) + fx.offset_p1,
-               x[kSensor2b] * (1 + fx.gain) + fx.offset_p2};
-    Reading loop = true_now;
-    if (fx.skew > 0 && !late.empty()) {
-      const double old = late.front();
-      switch (fx.skew_channel) {
-        case Channel::kMotorSpeed:
-          true_now.speed = old;
-          break;
-        case Channel::kArmAngle:
-          true_now.angle = old;
-          break;
-        case Channel::kP1:
-          true_now.p1 = old * (1 + fx.gain) + fx.offset_p1;
-          break;
-        case Channel::kP2:
-          true_now.p2 = old * (1 + fx.gain) + fx.offset_p2;
-          break;
-        case Channel::kNone:
-          break;
-      }
-    }
-    if (real) {
-      const double n[4] = {noise.Next(), noise.Next(), noise.Next(), noise.Next()};
-      const auto read = [&](Reading& r) {
-        r.speed = Quantise(r.speed + kSpeedNoise * conditions.noise * n[0], -600, 600, 12);
-        r.angle = kAngleStep * std::round((r.angle + 0.2 * kAngleStep * n[1]) / kAngleStep);
-        r.p1 = Quantise(r.p1 + kPressureNoise * conditions.noise * n[2], 0, 3000, 12);
-        r.p2 = Quantise(r.p2 + kPressureNoise * conditions.noise * n[3], 0, 3000, 12);
-      };
-      read(true_now);
-      read(loop);
-    }
-
-    double voltage = 0;
-    if (conditions.voltage != nullptr) {
-      voltage = (*conditions.voltage)[std::min<size_t>(k, conditions.voltage->size() - 1)];
-    } else {
-      while (segment + 1 < plan.segments.size() && plan.segments[segment + 1].start <= t + 1e-9) {
-        ++segment;
-        has_previous = false;
-      }
-      const Segment& s = plan.segments[segment];
-      const double wanted = Value(s, t);
-      if (s.kind == Segment::Kind::kVoltage) {
-        voltage = wanted;
-        pressure_ref = 0;
-      } else {
-        if (s.kind == Segment::Kind::kPressure) {
-          pressure_ref = wanted;
-        } else if (k % samples_an_interval == 0) {
-          const double error = loop.angle - wanted;
-          pressure_ref = -c1 * error - (has_previous ? c2 / interval * (loop.angle - previous_error) : 0);
-          previous_error = loop.angle;  // derivative on the measurement: no kick from a step of the reference
-          has_previous = true;
-        }
-        pressure_ref = std::clamp(pressure_ref, -kLargestPressure, kLargestPressure);
-        voltage = k_p * ((pressure_ref - (loop.p2 - loop.p1)) - k_v * loop.speed) + 0.0026 * pressure_ref;
-      }
-      voltage =
-          kVoltageStep * std::round(std::clamp(voltage, -kLargestVoltage, kLargestVoltage) / kVoltageStep);
-    }
-
+    Reading loop, recorded;
+    sensors.Read(pure(), &loop, &recorded);
+    const double voltage = conditions.voltage != nullptr
+                               ? (*conditions.voltage)[std::min<size_t>(k, conditions.voltage->size() - 1)]
+                               : loops.Voltage(k, t, loop);
     // A wrong sign is the recorder's fault: the loops are wired correctly.
-    switch (fx.sign_channel) {
-      case Channel::kMotorSpeed:
-        true_now.speed = -true_now.speed;
-        break;
-      case Channel::kArmAngle:
-        true_now.angle = -true_now.angle;
-        break;
-      case Channel::kP1:
-        true_now.p1 = -true_now.p1;
-        break;
-      case Channel::kP2:
-        true_now.p2 = -true_now.p2;
-        break;
-      case Channel::kNone:
-        break;
-    }
-    record.time.push_back(t);
-    record.voltage.push_back(voltage);
-    record.pressure_ref.push_back(pressure_ref);
-    record.motor_speed.push_back(true_now.speed);
-    record.arm_angle.push_back(true_now.angle);
-    record.p1.push_back(true_now.p1);
-    record.p2.push_back(true_now.p2);
-
+    if (double* const channel = Find(recorded, setup.effects.sign_channel)) *channel = -*channel;
+    Append(t, voltage, loops.pressure_ref(), recorded, &record);
     if (k + 1 == samples) break;
     for (int i = 0; i < steps_a_sample; ++i) {
-      if (fx.skew > 0) {
-        const double value = fx.skew_channel == Channel::kMotorSpeed ? x[kTachometer]
-                             : fx.skew_channel == Channel::kArmAngle ? x[kArm]
-                             : fx.skew_channel == Channel::kP1       ? x[kSensor1b]
-                                                                     : x[kSensor2b];
-        late.push_back(value);
-        if (static_cast<int>(late.size()) > skew_steps) late.pop_front();
-      }
+      sensors.Remember(pure());
       rig.Step(voltage);
     }
   }

@@ -12,6 +12,7 @@
 #include "base/input_error.h"
 #include "bus/in_process_bus.h"
 #include "plant/simulated_rig.h"
+#include "tests/plant/run_plant.h"
 #include "tests/stack_fixture.h"
 
 namespace hydro::plant {
@@ -34,19 +35,9 @@ class PlantAppTest : public ::testing::Test {
 
   int Run(const settings::StackConfig& config) {
     SimulatedRig rig(config);
-    PlantApp plant(bus_, clock_, config, rig);
-    for (const char* role : {"pressure_ctrl", "position_ctrl"}) {
-      process_status_t ready;
-      ready.session = 1;
-      ready.role = role;
-      ready.state = process_status_t::READY;
-      bus_.Publish("HYDRO_PROCESS_STATUS", ready);
-    }
-    const int exit_code = plant.Run();
-    failure_ = plant.failure();
-    while (bus_.HandleUntil(clock_.Now()) > 0) {
-    }
-    return exit_code;
+    const PlantOutcome outcome = RunPlant(bus_, clock_, config, rig);
+    failure_ = outcome.failure;
+    return outcome.exit_code;
   }
 
   void SendVoltage(int64_t tick, double voltage, int64_t session = 1) {

@@ -9,6 +9,7 @@
 
 #include "bus/in_process_bus.h"
 #include "plant/plant_app.h"
+#include "tests/plant/run_plant.h"
 #include "tests/stack_fixture.h"
 
 namespace hydro::plant {
@@ -63,19 +64,9 @@ class PlantRigTest : public ::testing::Test {
   }
 
   int Run() {
-    PlantApp app(bus_, clock_, config_, rig_, {}, "hydro-driver");
-    for (const char* role : {"pressure_ctrl", "position_ctrl"}) {
-      process_status_t ready;
-      ready.session = 1;
-      ready.role = role;
-      ready.state = process_status_t::READY;
-      bus_.Publish("HYDRO_PROCESS_STATUS", ready);
-    }
-    const int exit_code = app.Run();
-    failure_ = app.failure();
-    while (bus_.HandleUntil(clock_.Now()) > 0) {
-    }
-    return exit_code;
+    const PlantOutcome outcome = RunPlant(bus_, clock_, config_, rig_, "hydro-driver");
+    failure_ = outcome.failure;
+    return outcome.exit_code;
   }
 
   bus::SimulatedClock clock_;
