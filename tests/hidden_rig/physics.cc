@@ -166,13 +166,9 @@ void Physics::AddLine(const State& x, int at, double q, double* rate, double* fe
   *fed = flow[kPieces - 1];
 }
 
-void Physics::Rates(double t, const State& x, State& rate) const {
+// What the motor gives to the pump's shaft.
+double Physics::MotorTorque(double t, const State& x, State& rate) const {
   const double w = x[kOmega];
-  const double pump1 = wave_ ? x[kLine1] : x[kSide1];
-  const double pump2 = wave_ ? x[kLine2] : x[kSide2];
-  const double dp = pump2 - pump1;
-
-  // Motor.
   double asked = base_.k_1 * applied_;
   if (out_.torque_fade > 0) asked *= 1 - x[kFade];
   rate[kCurrent] = fx_.lag_tau > 0 ? (asked - x[kCurrent]) / fx_.lag_tau : 0;
@@ -195,12 +191,12 @@ void Physics::Rates(double t, const State& x, State& rate) const {
     torque -= fx_.cogging * (std::sin(turn) + 0.01 * std::sin(2 * turn));
   }
   if (out_.daily_torque > 0) torque -= out_.daily_torque * std::sin(2 * kPi * (t + day_) / 7.3);
+  return torque;
+}
 
-  // Pump.
-  double D = base_.D;
-  if (fx_.flow_ripple > 0) D *= 1 + fx_.flow_ripple * std::cos(fx_.flow_ripple_periods * x[kTheta]);
-  double warm = 1;
-  if (fx_.warming != 0) warm = std::exp(x[kHeat]);
+// `warm`: by what the oil's warming divides its viscosity.
+double Physics::PumpFriction(const State& x, double pump1, double pump2, double warm) const {
+  const double w = x[kOmega];
   const double g = Coulomb(w, pump1, pump2);
   const double fast = w / kPumpBristleSpeed;
   double friction = kPumpBristle * pump_bristle_ + base_.b / warm * w;
@@ -209,48 +205,31 @@ void Physics::Rates(double t, const State& x, State& rate) const {
         kPumpBristleDamping * std::exp(-fast * fast) * (w - std::abs(w) * kPumpBristle * pump_bristle_ / g);
   }
   friction += fx_.asymmetry_viscous * std::abs(w) + fx_.quadratic_drag * w * std::abs(w);
-  rate[kTheta] = w;
-  rate[kOmega] = (torque - D * dp - friction) / base_.J;
-  // The oil warms towards an end temperature that it does not reach during a run.
-  constexpr double kThermal = 60;  // s
-  rate[kHeat] = fx_.warming == 0 ? 0 : 1.014 * fx_.warming - x[kHeat] / kThermal;
+  return friction;
+}
 
-  // Leakage at the pump.
-  const double p3 = AccumulatorPressure(x);
-  double cross = (base_.c_I * warm + out_.leakage_position * std::abs(x[kActuator])) * dp;
-  if (fx_.turbulent_leakage > 0) cross += fx_.turbulent_leakage * dp / std::sqrt(std::sqrt(dp * dp + 9));
-  const double outer1 = base_.c_E * warm * (pump1 - p3);
-  const double outer2 = base_.c_E * warm * (pump2 - p3);
-  double q1 = D * w - cross + outer1;
-  double q2 = -D * w + cross + outer2;
-  rate[kReturned] = outer1 + outer2;
-
-  // Lines, valves, pressures at the actuator.
-  if (wave_) {
-    double fed1 = 0;
-    double fed2 = 0;
-    AddLine(x, kLine1, q1, rate.data(), &fed1);
-    AddLine(x, kLine2, q2, rate.data(), &fed2);
-    q1 = -fed1;
-    q2 = -fed2;
-  }
+// Flow through relief and check valves: changes what leaves the sides.
+void Physics::AddValves(const State& x, double p3, State& rate, double* q1, double* q2) const {
   if (fx_.relief_conductance > 0) {
     const double out1 = fx_.relief_conductance * Softplus(x[kSide1] - fx_.relief_set, 2);
     const double out2 = fx_.relief_conductance * Softplus(x[kSide2] - fx_.relief_set, 2);
-    q1 += out1;
-    q2 += out2;
+    *q1 += out1;
+    *q2 += out2;
     rate[kReturned] += out1 + out2;
   }
   if (fx_.check_conductance > 0) {
     const double opens = p3 - fx_.check_cracking;
     const double in1 = fx_.check_conductance * Softplus(opens - x[kSide1], 0.1);
     const double in2 = fx_.check_conductance * Softplus(opens - x[kSide2], 0.1);
-    q1 -= in1;
-    q2 -= in2;
+    *q1 -= in1;
+    *q2 -= in2;
     rate[kReturned] -= in1 + in2;
   }
-  const bool driven = plan_.shaft == Shaft::kDriven;
-  const double vane_rate = driven ? MotionRate(t) : x[kActuatorRate];
+}
+
+// The pressures at the actuator, whose vane moves with `vane_rate`.
+void Physics::AddPressures(double t, const State& x, double q1, double q2, double vane_rate,
+                           State& rate) const {
   double softness1 = Volume(x, 1) / BulkModulus(t, x[kSide1]);
   double softness2 = Volume(x, 2) / BulkModulus(t, x[kSide2]);
   double flow1 = -(q1 - base_.c * vane_rate);
@@ -268,45 +247,53 @@ void Physics::Rates(double t, const State& x, State& rate) const {
     rate[kSide1] = flow1 / softness1;
     rate[kSide2] = flow2 / softness2;
   }
+}
 
-  // Arm.
-  rate[kActuator] = rate[kActuatorRate] = rate[kArm] = rate[kArmRate] = 0;
-  if (driven) {
-    rate[kActuator] = rate[kArm] = vane_rate;
-  } else if (plan_.shaft == Shaft::kFree) {
-    double vane = base_.k_2 * (x[kSide2] - x[kSide1]) - fx_.seal_viscous * x[kActuatorRate];
-    if (seal_stiffness_ > 0) {
-      const double quick = x[kActuatorRate] / kSealBristleSpeed;
-      vane -= seal_stiffness_ * seal_bristle_;
-      if (std::abs(quick) < 6) {
-        vane -= seal_damping_ * std::exp(-quick * quick) *
-                (x[kActuatorRate] - std::abs(x[kActuatorRate]) * seal_bristle_ / kSealGive);
-      }
-    }
-    const double angle = x[kArm];
-    double link =
-        -base_.mgl * std::cos(angle) - out_.gravity_sine * std::sin(angle) - out_.arm_spring * angle;
-    if (out_.end_cushion > 0)
-      link -= out_.end_cushion * (Softplus(angle - 0.12, 0.002) - Softplus(-angle - 0.12, 0.002));
-    if (out_.floor_vibration > 0) link += out_.floor_vibration * std::sin(2 * kPi * 9.0 * (t + day_));
-    if (joint_) {
-      const double twist = x[kActuator] - x[kArm];
-      const double play = 0.5 * out_.backlash;
-      const double stretch = twist > play ? twist - play : twist < -play ? twist + play : 0;
-      const double touching = play > 0 ? std::min(1.0, std::abs(stretch) / 2e-6) : 1;
-      const double through =
-          fx_.flexure_stiffness * stretch + touching * fx_.flexure_damping * (x[kActuatorRate] - x[kArmRate]);
-      rate[kActuator] = x[kActuatorRate];
-      rate[kActuatorRate] = (vane - through) / kVaneInertia;
-      rate[kArm] = x[kArmRate];
-      rate[kArmRate] = (through + link) / (base_.J_a - kVaneInertia);
-    } else {
-      rate[kActuator] = rate[kArm] = x[kActuatorRate];
-      rate[kActuatorRate] = rate[kArmRate] = (vane + link) / base_.J_a;
+double Physics::VaneTorque(const State& x) const {
+  double vane = base_.k_2 * (x[kSide2] - x[kSide1]) - fx_.seal_viscous * x[kActuatorRate];
+  if (seal_stiffness_ > 0) {
+    const double quick = x[kActuatorRate] / kSealBristleSpeed;
+    vane -= seal_stiffness_ * seal_bristle_;
+    if (std::abs(quick) < 6) {
+      vane -= seal_damping_ * std::exp(-quick * quick) *
+              (x[kActuatorRate] - std::abs(x[kActuatorRate]) * seal_bristle_ / kSealGive);
     }
   }
+  return vane;
+}
 
-  // Transducers: two poles, the first of which is sensor.pressure_lag's if there is one. Tachometer: one.
+double Physics::LinkTorque(double t, const State& x) const {
+  const double angle = x[kArm];
+  double link = -base_.mgl * std::cos(angle) - out_.gravity_sine * std::sin(angle) - out_.arm_spring * angle;
+  if (out_.end_cushion > 0)
+    link -= out_.end_cushion * (Softplus(angle - 0.12, 0.002) - Softplus(-angle - 0.12, 0.002));
+  if (out_.floor_vibration > 0) link += out_.floor_vibration * std::sin(2 * kPi * 9.0 * (t + day_));
+  return link;
+}
+
+// The arm where nothing outside moves it.
+void Physics::AddArm(double t, const State& x, State& rate) const {
+  const double vane = VaneTorque(x);
+  const double link = LinkTorque(t, x);
+  if (joint_) {
+    const double twist = x[kActuator] - x[kArm];
+    const double play = 0.5 * out_.backlash;
+    const double stretch = twist > play ? twist - play : twist < -play ? twist + play : 0;
+    const double touching = play > 0 ? std::min(1.0, std::abs(stretch) / 2e-6) : 1;
+    const double through =
+        fx_.flexure_stiffness * stretch + touching * fx_.flexure_damping * (x[kActuatorRate] - x[kArmRate]);
+    rate[kActuator] = x[kActuatorRate];
+    rate[kActuatorRate] = (vane - through) / kVaneInertia;
+    rate[kArm] = x[kArmRate];
+    rate[kArmRate] = (through + link) / (base_.J_a - kVaneInertia);
+  } else {
+    rate[kActuator] = rate[kArm] = x[kActuatorRate];
+    rate[kActuatorRate] = rate[kArmRate] = (vane + link) / base_.J_a;
+  }
+}
+
+// Transducers: two poles, the first of which is sensor.pressure_lag's if there is one. Tachometer: one.
+void Physics::AddSensors(const State& x, State& rate) const {
   const double slow = fx_.sensor_tau > 0 ? 0.98 * fx_.sensor_tau : kTransducer;
   const double quick = fx_.sensor_tau > 0 ? std::max(0.02 * fx_.sensor_tau, kTransducer) : kTransducer;
   if (fx_.sensor_tau > 0 || trivia_) {
@@ -317,7 +304,56 @@ void Physics::Rates(double t, const State& x, State& rate) const {
   } else {
     rate[kSensor1] = rate[kSensor1b] = rate[kSensor2] = rate[kSensor2b] = 0;  // Step() copies
   }
-  rate[kTachometer] = trivia_ ? (w - x[kTachometer]) / 8e-5 : 0;
+  rate[kTachometer] = trivia_ ? (x[kOmega] - x[kTachometer]) / 8e-5 : 0;
+}
+
+void Physics::Rates(double t, const State& x, State& rate) const {
+  const double w = x[kOmega];
+  const double pump1 = wave_ ? x[kLine1] : x[kSide1];
+  const double pump2 = wave_ ? x[kLine2] : x[kSide2];
+  const double dp = pump2 - pump1;
+  const double torque = MotorTorque(t, x, rate);
+
+  double D = base_.D;
+  if (fx_.flow_ripple > 0) D *= 1 + fx_.flow_ripple * std::cos(fx_.flow_ripple_periods * x[kTheta]);
+  double warm = 1;
+  if (fx_.warming != 0) warm = std::exp(x[kHeat]);
+  rate[kTheta] = w;
+  rate[kOmega] = (torque - D * dp - PumpFriction(x, pump1, pump2, warm)) / base_.J;
+  // The oil warms towards an end temperature that it does not reach during a run.
+  constexpr double kThermal = 60;  // s
+  rate[kHeat] = fx_.warming == 0 ? 0 : 1.014 * fx_.warming - x[kHeat] / kThermal;
+
+  // Leakage at the pump.
+  const double p3 = AccumulatorPressure(x);
+  double cross = (base_.c_I * warm + out_.leakage_position * std::abs(x[kActuator])) * dp;
+  if (fx_.turbulent_leakage > 0) cross += fx_.turbulent_leakage * dp / std::sqrt(std::sqrt(dp * dp + 9));
+  const double outer1 = base_.c_E * warm * (pump1 - p3);
+  const double outer2 = base_.c_E * warm * (pump2 - p3);
+  double q1 = D * w - cross + outer1;
+  double q2 = -D * w + cross + outer2;
+  rate[kReturned] = outer1 + outer2;
+
+  if (wave_) {
+    double fed1 = 0;
+    double fed2 = 0;
+    AddLine(x, kLine1, q1, rate.data(), &fed1);
+    AddLine(x, kLine2, q2, rate.data(), &fed2);
+    q1 = -fed1;
+    q2 = -fed2;
+  }
+  AddValves(x, p3, rate, &q1, &q2);
+  const bool driven = plan_.shaft == Shaft::kDriven;
+  const double vane_rate = driven ? MotionRate(t) : x[kActuatorRate];
+  AddPressures(t, x, q1, q2, vane_rate, rate);
+
+  rate[kActuator] = rate[kActuatorRate] = rate[kArm] = rate[kArmRate] = 0;
+  if (driven) {
+    rate[kActuator] = rate[kArm] = vane_rate;
+  } else if (plan_.shaft == Shaft::kFree) {
+    AddArm(t, x, rate);
+  }
+  AddSensors(x, rate);
 }
 
 void Physics::Step(double voltage) {

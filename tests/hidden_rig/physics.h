@@ -49,6 +49,14 @@ class Physics {
  private:
   using State = std::array<double, kStates>;
   void Rates(double t, const State& x, State& rate) const;
+  double MotorTorque(double t, const State& x, State& rate) const;
+  double PumpFriction(const State& x, double pump1, double pump2, double warm) const;
+  void AddValves(const State& x, double p3, State& rate, double* q1, double* q2) const;
+  void AddPressures(double t, const State& x, double q1, double q2, double vane_rate, State& rate) const;
+  double VaneTorque(const State& x) const;
+  double LinkTorque(double t, const State& x) const;
+  void AddArm(double t, const State& x, State& rate) const;
+  void AddSensors(const State& x, State& rate) const;
   void AddLine(const State& x, int at, double q, double* rate, double* fed) const;
   double Coulomb(double speed, double p1, double p2) const;
   double Motion(double t) const;

@@ -38,9 +38,7 @@ scale = 0.2
 
 std::string WithDriver(const std::string& driver = kDriver) { return kConfigText + driver; }
 
-// Tests that every key of [driver] reaches its field.
-TEST(DriverSectionTest, ReadsEveryKey) {
-  const StackConfig config = Parsed(kConfigText + std::string(R"([driver]
+const char kEveryKey[] = R"([driver]
 device = "/dev/comedi3"
 settle_ns = 1500
 [driver.voltage]
@@ -90,7 +88,11 @@ source = "analog"
 subdevice = 0
 channel = 2
 scale = 1
-)"));
+)";
+
+// Tests that every key of [driver] reaches its field.
+TEST(DriverSectionTest, ReadsEveryKey) {
+  const StackConfig config = Parsed(WithDriver(kEveryKey));
   ASSERT_TRUE(config.driver);
   const DriverSection& driver = *config.driver;
   EXPECT_EQ(driver.device, "/dev/comedi3");
