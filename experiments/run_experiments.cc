@@ -29,7 +29,7 @@ void CreateFolder(const std::string& folder) {
     error = std::error_code(errno, std::generic_category());
   if (error) {
     throw InputError("--out: the folder '" + folder + "' cannot be used: " + error.message() +
-                     "; a folder that can be created and written to is needed");
+                     "; name a folder that can be created and written to");
   }
 }
 

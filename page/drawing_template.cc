@@ -20,14 +20,14 @@ std::string FillDrawing(std::string_view drawing, const std::map<std::string, st
     const std::string place(drawing.substr(open + 2, close - open - 2));
     const auto text = texts.find(place);
     if (text == texts.end())
-      throw std::logic_error("the drawing has a place '" + place + "' that nothing fills");
+      throw std::logic_error("the drawing has a placeholder '" + place + "' without a text");
     filled.insert(place);
     out += drawing.substr(begin, open - begin);
     out += EscapeMarkup(text->second);
     begin = close + 2;
   }
   for (const auto& [place, text] : texts) {
-    if (!filled.contains(place)) throw std::logic_error("the drawing has no place '" + place + "'");
+    if (!filled.contains(place)) throw std::logic_error("the drawing has no placeholder '" + place + "'");
   }
   return out;
 }

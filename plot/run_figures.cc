@@ -14,7 +14,7 @@ constexpr int kMeasured = 0, kOther = 1, kReference = 5;
 const std::vector<double>& ColumnOf(const tables::Table& run, const std::string& name) {
   const tables::Column* column = run.Find(name);
   if (column == nullptr) {
-    throw InputError(run.file + ": found no column " + name + ", needed is a table of hydro-log export");
+    throw InputError(run.file + ": found no column " + name + ", allowed a table of hydro-log export");
   }
   return column->values;
 }

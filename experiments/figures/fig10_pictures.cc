@@ -65,10 +65,9 @@ Picture CausesPicture(const Figure10Runs& figure) {
   fast.curves.push_back(page::Line("Figure 8", figure.forms[1].linear.time, figure.forms[1].linear.angle, 3,
                                    page::Stroke::kDashed));
   return {"-causes",
-          {.caption = fmt::format(
-               "What makes the full model differ from Figure 8's, switched off one after the other: step of "
-               "{:g} rad at g = {:g}, derivative on the measurement.",
-               kStep, kPaperGain),
+          {.caption = fmt::format("What makes the full model differ from Figure 8's, switched off one after "
+                                  "another: step of {:g} rad at g = {:g}, derivative on the measurement.",
+                                  kStep, kPaperGain),
            .panels = {slow, fast},
            .drawing = ""}};
 }
@@ -81,31 +80,29 @@ Picture RetunedPicture(const Figure10Runs& figure) {
   const auto tail = run.angle.end() - std::min<ptrdiff_t>(500, std::ssize(run.angle));
   const auto [lowest, highest] = std::minmax_element(tail, run.angle.end());
   const double ripple = (*highest - *lowest) / 2;
-  return {
-      "-retuned",
-      {.caption = fmt::format(
-           "The retuned loop of config/retuned.toml. The motor cannot bring the arm into 2 % of {:g} rad, "
-           "to stay, before {:.3f} s; the loop takes {}. The ripple of its torque after that answers the "
-           "arm "
-           "that swings on the oil by {:.0e} rad, hardly damped.",
-           kStep, figure.retuned.shortest, SettlingText(run.response), ripple),
-       .panels = {{.title = "Arm",
-                   .x = kShortTime,
-                   .y = {.label = "α, rad", .min = 0, .max = 0.15},
-                   .curves = {page::Line("retuned", run.time, run.angle, 0),
-                              page::Line("g = 350 with arm-speed feed-forward", assisted.time, assisted.angle,
-                                         1)},
-                   .notes = {},
-                   .rules = {{"", false, kStep}, {"shortest settling", true, figure.retuned.shortest}},
-                   .height = 1.6},
-                  {.title = "Motor torque",
-                   .x = kShortTime,
-                   .y = {.label = "T_p, in-lbf", .min = -45, .max = 45},
-                   .curves = {page::Line("", run.time, run.torque, 0),
-                              page::Line("", assisted.time, assisted.torque, 1)},
-                   .notes = {},
-                   .rules = {{"", false, p.T_pmax}, {"", false, -p.T_pmax}}}},
-       .drawing = ""}};
+  return {"-retuned",
+          {.caption = fmt::format(
+               "The retuned loop of config/retuned.toml. The motor cannot bring the arm to within 2 % of "
+               "{:g} rad, to stay, before {:.3f} s; the loop takes {}. After that its torque ripples, "
+               "because the arm swings on the oil by {:.0e} rad, hardly damped.",
+               kStep, figure.retuned.shortest, SettlingText(run.response), ripple),
+           .panels = {{.title = "Arm",
+                       .x = kShortTime,
+                       .y = {.label = "α, rad", .min = 0, .max = 0.15},
+                       .curves = {page::Line("retuned", run.time, run.angle, 0),
+                                  page::Line("g = 350 with arm-speed feed-forward", assisted.time,
+                                             assisted.angle, 1)},
+                       .notes = {},
+                       .rules = {{"", false, kStep}, {"shortest settling", true, figure.retuned.shortest}},
+                       .height = 1.6},
+                      {.title = "Motor torque",
+                       .x = kShortTime,
+                       .y = {.label = "T_p, in-lbf", .min = -45, .max = 45},
+                       .curves = {page::Line("", run.time, run.torque, 0),
+                                  page::Line("", assisted.time, assisted.torque, 1)},
+                       .notes = {},
+                       .rules = {{"", false, p.T_pmax}, {"", false, -p.T_pmax}}}},
+           .drawing = ""}};
 }
 
 Picture StepsPicture(const Figure10Runs& figure) {
@@ -123,9 +120,8 @@ Picture StepsPicture(const Figure10Runs& figure) {
         page::Line(r.says, r.run.time, share, -1, r.noise ? page::Stroke::kDashed : page::Stroke::kLine));
   }
   return {"-robustness",
-          {.caption = "The retuned loop on other steps, with noise and with gravity (m g "
-                      "l = 562 in-lbf, assumed: the arm "
-                      "starts where the loop holds it), as a share of the step.",
+          {.caption = "The retuned loop on other steps, with noise and with gravity (m g l = 562 in-lbf, "
+                      "assumed: the arm starts where the loop holds it), as a share of the step.",
            .panels = {steps},
            .drawing = ""}};
 }

@@ -111,11 +111,10 @@ page::Figure Limits(const model::Parameters& p) {
                   Envelope("Table 1, without friction", p, top_speed, 0, 0)};
   panel.rules = {{fmt::format("Δp = {:.0f} psi, the limit of the seals", kPressureLimit), false,
                   kPressureLimit * p.k_2}};
-  return {fmt::format(
-              "What the motor's limits, {:g} in-lbf and {:g} rpm, leave for the arm: the torque k_2 (T_pmax "
-              "- T_s "
-              "- b θ')/D up to the speed {:g} rpm D/c, beside the printed ratio; and what the seals bear.",
-              p.T_pmax, kMotorRpm, kMotorRpm),
+  return {fmt::format("What the motor's limits, {:g} in-lbf and {:g} rpm, leave for the arm: the torque k_2 "
+                      "(T_pmax - T_s - b θ')/D up to the speed {:g} rpm D/c. Also shown: the same with the "
+                      "printed ratio, and the limit of the seals.",
+                      p.T_pmax, kMotorRpm, kMotorRpm),
           {panel},
           ""};
 }
@@ -195,27 +194,27 @@ std::vector<Comparison> Comparisons(const Apparatus& a) {
       {"transmission ratio of speeds, θ'/α'", "", "484.7", a.displacement_ratio, a.free.speed_ratio,
        "independent: r^2 d/(2 D) of Table 1; here: the angles turned, free arm"},
       {"transmission ratio of torques, k_2/D", "", "484.7", a.torque_ratio_lossless, a.torque_ratio,
-       fmt::format("here: clamped, at rest but for leakage, which with viscous friction takes {:.2f} %",
+       fmt::format("here: clamped, at rest except for leakage, which costs {:.2f} % through viscous friction",
                    100 * (1 - a.torque_ratio / a.torque_ratio_lossless))},
       {"k_2 that a ratio of 484.7 needs", "in-lbf/psi", "3.68", a.needed_k2, a.needed_k2,
        "k_2 = 484.7 D; the paper prints 3.68, \"from the transmission ratio\""},
       {"theoretical peak torque", "in-lbf", "19388", p.T_pmax * kPrintedRatio, a.peak,
        fmt::format("independent: 40 in-lbf times 484.7; here: T_pmax k_2/D, {}", InSi(a.peak))},
-      {"peak torque, friction T_s taken off", "in-lbf", "", page::kAutomatic, a.peak_with_friction,
+      {"peak torque less friction T_s", "in-lbf", "", page::kAutomatic, a.peak_with_friction,
        fmt::format("{}; it needs dp = {:.0f} psi", InSi(a.peak_with_friction), (p.T_pmax - p.T_s) / p.D)},
       {"torque at dp = 2000 psi", "in-lbf", "about 7300", page::kAutomatic, a.at_limit,
        fmt::format("k_2 2000 psi, {}; \"600 ft-lb\" is 7200 in-lb", InSi(a.at_limit))},
       {"torque at p_2 = 2000 psi, p_1 = p_3", "in-lbf", "about 7300", page::kAutomatic, a.at_limit_gauge,
        fmt::format("the low side keeps the accumulator's {:g} psi; {}", p.p_3, InSi(a.at_limit_gauge))},
       {"motor torque for dp = 2000 psi", "in-lbf", "", page::kAutomatic, p.D * kPressureLimit + p.T_s,
-       "D 2000 psi + T_s: half of what the motor can"},
+       "D 2000 psi + T_s: half of the motor's peak torque"},
       {"maximum arm speed", "rpm", "12.4", kMotorRpm / kPrintedRatio, a.free.arm_speed / kRpm,
        fmt::format("independent: 6000 rpm/484.7; here: free arm at 6000 rpm of the motor, {:.3f} rad/s",
                    a.free.arm_speed)},
       {"motor speed at full voltage, no load", "rpm", "6000", a.unlimited_expected / kRpm, a.unlimited / kRpm,
-       "eqs. (1) to (15) have no limit of speed: friction alone balances the torque, (T_pmax - T_s)/b"},
+       "eqs. (1) to (15) do not limit the speed: only friction balances the torque, (T_pmax - T_s)/b"},
       {"voltage that holds 6000 rpm, no load", "V", "", page::kAutomatic, (p.b * kTopSpeed + p.T_s) / p.k_1,
-       "(b θ' + T_s)/k_1; the motor's own limit is up to whoever commands it"},
+       "(b θ' + T_s)/k_1; whoever commands the motor must respect its limit"},
       {"motor and pump inertia seen by the arm", "lbf-in-s^2", "", page::kAutomatic, a.reflected,
        fmt::format("J (c/D)^2, {:.0f} times J_a = {:g}", a.reflected / p.J_a, p.J_a)},
       {"m g l of a uniform slender arm", "in-lbf", "", a.arm_mgl, a.gravity_torque,
@@ -230,7 +229,7 @@ std::vector<Comparison> Comparisons(const Apparatus& a) {
        "independent: 6000 rpm D/c of Table 1; here: its free arm"},
       {"18000 rpm motor: inertia seen by the arm", "lbf-in-s^2", "", a.reflected * std::pow(3.0, 2 - 5.0 / 3),
        a.reflected_fast,
-       "independent: J goes with T_pmax^{5/3} for motors of one shape, and with the ratio squared"},
+       "independent: J grows as T_pmax^{5/3} for motors of one shape, and at the arm with the ratio squared"},
       {"18000 rpm motor: time to full speed", "s", "", page::kAutomatic,
        fast.J * kFastMotorRpm * kRpm / fast.T_pmax,
        fmt::format("J θ'/T_pmax without load and friction; the 6000 rpm motor: {:.2f} s",
@@ -240,12 +239,11 @@ std::vector<Comparison> Comparisons(const Apparatus& a) {
 
 std::string Explanation(const Apparatus& a) {
   return fmt::format(
-      "The two ratios that Table 1 gives, {displacement_ratio:.1f} by displacements and {torque_ratio:.1f} "
-      "by torques, agree with each other within {apart_percent:.1f} %, as energy demands, but not with the "
-      "printed one: 484.7 is {printed_percent:.1f} % above. With Table 1 the peak torque is {peak:.0f} "
-      "in-lbf instead of 19388 and the maximum speed {speed:.2f} rpm instead of 12.4. The torque that the "
-      "seals allow fits \"about 7300\": {at_limit:.0f} in-lbf, or {at_limit_gauge:.0f} when the low side's "
-      "{p_3:g} psi count.",
+      "Table 1 gives two ratios, {displacement_ratio:.1f} from displacements and {torque_ratio:.1f} from "
+      "torques. They agree within {apart_percent:.1f} %, as conservation of energy demands, but the printed "
+      "484.7 is {printed_percent:.1f} % higher. With Table 1 the peak torque is {peak:.0f} in-lbf instead of "
+      "19388, and the maximum speed is {speed:.2f} rpm instead of 12.4. The torque that the seals allow fits "
+      "\"about 7300\": {at_limit:.0f} in-lbf, or {at_limit_gauge:.0f} if the low side's {p_3:g} psi count.",
       fmt::arg("displacement_ratio", a.displacement_ratio), fmt::arg("torque_ratio", a.torque_ratio_lossless),
       fmt::arg("apart_percent", 100 * std::abs(a.displacement_ratio / a.torque_ratio_lossless - 1)),
       fmt::arg("printed_percent", 100 * (kPrintedRatio / a.torque_ratio_lossless - 1)),
@@ -255,24 +253,20 @@ std::string Explanation(const Apparatus& a) {
 
 std::vector<Finding> Findings(const Apparatus& a) {
   const model::Parameters& p = a.p;
-  return {
-      {2,
-       "The text gives the transmission ratio as 484.7:1; Table 1 has k_2 = 3.68 \"from the transmission "
-       "ratio\" and D = 0.00796.",
-       fmt::format("k_2/D = {:.1f} (measured on the clamped model: {:.1f}), c/D = {:.1f} (measured on the "
-                   "free arm: {:.1f}); "
-                   "484.7 would need k_2 = {:.3f}.",
-                   a.torque_ratio_lossless, a.torque_ratio, p.c / p.D, a.free.speed_ratio, a.needed_k2),
-       "k_2 and D stay as in Table 1; both ratios are stated."},
-      {6, "The mass m and length l of the arm are not printed, only J_a.",
-       fmt::format("m g l is free: 0 in table1.toml, {:g} in-lbf in table1_gravity.toml, that of a uniform "
-                   "slender arm of {:g} in "
-                   "(m = 3 J_a/L^2 = {:.4f} lbf-s^2/in, m g L/2 = {:.1f} in-lbf). Holding it takes {:.1f} "
-                   "psi, {:.1f} % of "
-                   "the seals' limit.",
-                   a.gravity_torque, kArmLength, a.arm_mass, a.arm_mgl, a.gravity_torque / p.k_2,
-                   100 * a.gravity_torque / p.k_2 / kPressureLimit),
-       "Two model files, both marked as assumptions; the figures use 0 unless they say otherwise."}};
+  return {{2,
+           "The text gives the transmission ratio as 484.7:1; Table 1 has k_2 = 3.68 \"from the transmission "
+           "ratio\" and D = 0.00796.",
+           fmt::format("k_2/D = {:.1f} (measured on the clamped model: {:.1f}), c/D = {:.1f} (measured on "
+                       "the free arm: {:.1f}); 484.7 would need k_2 = {:.3f}.",
+                       a.torque_ratio_lossless, a.torque_ratio, p.c / p.D, a.free.speed_ratio, a.needed_k2),
+           "k_2 and D stay as in Table 1; both ratios are stated."},
+          {6, "The mass m and length l of the arm are not printed, only J_a.",
+           fmt::format("m g l is free: 0 in table1.toml, {:g} in-lbf in table1_gravity.toml, that of a "
+                       "uniform slender arm of {:g} in (m = 3 J_a/L^2 = {:.4f} lbf-s^2/in, m g L/2 = {:.1f} "
+                       "in-lbf). Holding it takes {:.1f} psi, {:.1f} % of the seals' limit.",
+                       a.gravity_torque, kArmLength, a.arm_mass, a.arm_mgl, a.gravity_torque / p.k_2,
+                       100 * a.gravity_torque / p.k_2 / kPressureLimit),
+           "Two model files, both marked as assumptions; the figures use 0 unless they say otherwise."}};
 }
 
 ordered_json Numbers(const Apparatus& a) {
@@ -314,28 +308,22 @@ ExperimentResult RunFig1(const ExperimentOptions& options) {
   ExperimentResult result;
   result.conditions = fmt::format(
       "Table 1. Speeds: the free arm swings through its travel, driven up to {:.0f} rpm of the motor. "
-      "Torques: the "
-      "clamped arm, motor torques of {:g} and {:g} in-lbf held for 40 s. The 18000 rpm motor is a model file "
-      "of its "
-      "own (config/models/motor_18000rpm.toml), an assumption where the paper is silent.",
+      "Torques: the clamped arm, motor torques of {:g} and {:g} in-lbf held for 40 s. The 18000 rpm motor is "
+      "a model file of its own (config/models/motor_18000rpm.toml), an assumption where the paper is silent.",
       kMotorRpm, kLowTorque, kHighTorque);
   result.paper_says =
       "A 6000 rpm motor with a peak torque of 40 in-lb is geared down hydraulically with a ratio of 484.7:1, "
-      "for a "
-      "theoretical peak torque of 19388 in-lb and a maximum speed of 12.4 rpm. The seals of the actuator "
-      "limit the "
-      "pressure to 2000 psi and the torque to about 7300 in-lb. An 18000 rpm motor worked excellent, too, "
-      "but needed "
-      "large cooling fins.";
+      "for a theoretical peak torque of 19388 in-lb and a maximum speed of 12.4 rpm. The seals of the "
+      "actuator limit the pressure to 2000 psi and the torque to about 7300 in-lb. An 18000 rpm motor also "
+      "worked very well but needed large cooling fins.";
   result.comparisons = Comparisons(apparatus);
   result.explanation = Explanation(apparatus);
   result.findings = Findings(apparatus);
   result.numbers = Numbers(apparatus).dump();
   result.pictures = {{"",
                       {"The apparatus, after Figure 1 and eqs. (1) to (15), with the numbers of Table 1; "
-                       "leakages in in^3/(s psi). "
-                       "Arrows show the directions in which θ', q_1, q_2 and α count as positive. Dashed "
-                       "pipes are leakages.",
+                       "leakages in in^3/(s psi). Arrows show the directions in which θ', q_1, q_2 and α "
+                       "count as positive. Dashed pipes are leakages.",
                        {},
                        ApparatusDrawing(apparatus.p)}},
                      {"-limits", Limits(apparatus.p)}};

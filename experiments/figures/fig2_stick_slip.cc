@@ -202,26 +202,26 @@ StickSlipStudy RunStudy(const ExperimentOptions& options) {
 std::string Conditions(const StickSlipStudy& study) {
   return fmt::format(
       "Clamped at α = 0, from rest at p_1 = p_2 = p_3 = {} psi, constant T_p = {} in-lbf for {} s, open "
-      "loop. Table 1 alone, and Table 1 with static friction {:.0f} % above kinetic which falls off over {} "
-      "rad/s (pump.stribeck, assumed: the paper measures neither). Sticks are counted by the model's own "
+      "loop. Table 1 alone, and Table 1 with static friction {:.0f} % above kinetic, falling off over {} "
+      "rad/s (pump.stribeck, assumed: the paper measures neither). Sticks are counted from the model's own "
       "changes of mode, located within {} us.",
       study.p.p_3, kTorque, kDuration, 100 * study.excess, study.speed, kLocatedWithin * 1e6);
 }
 
 std::string Explanation(const StickSlipStudy& study) {
   return fmt::format(
-      "Table 1 alone cannot do this at any torque. With equal static and kinetic friction its equations, "
-      "from rest at p_3, contain the torque only as T_p - T_s: 4.1 in-lbf gives the curve of 10 in-lbf, "
-      "scaled, and each sticks once (at {stick_time:.3f} s, here with dp = {stick_dp:.1f} psi), waits while "
-      "leakage lowers dp, slips at (T_p - T_s)/D = {slip_dp:.1f} psi at {slip_time:.3f} s, and creeps on for "
-      "ever at the speed that makes up for the leakage. Where the pump slips from a balance of torques there "
-      "is nothing to throw it beyond. Static friction above kinetic throws it: with {static_torque:.1f} "
-      "in-lbf at rest it sticks {sticks} times in {duration} s, every {period:.2f} s, dp between {low:.0f} "
-      "and {high:.0f} psi, which is Figure 2's behaviour. It takes an excess of {threshold_ratio:.3f} (T_p - "
-      "T_s), so at a given static friction the cycles end as the torque grows, as the paper says. To cycle "
-      "at {torque} and not at {faster_torque} in-lbf, as Figures 2 and 3 do, friction at rest only must be "
-      "between {threshold:.2f} and {largest_static:.2f} in-lbf; the {static_torque:.1f} shipped as an "
-      "assumption cycles at both.",
+      "Table 1 alone cannot do this at any torque. With equal static and kinetic friction, its equations "
+      "from rest at p_3 contain the torque only as T_p - T_s, so 4.1 in-lbf gives the curve of 10 in-lbf, "
+      "scaled. Each sticks once (at {stick_time:.3f} s, here with dp = {stick_dp:.1f} psi), waits while "
+      "leakage lowers dp, slips at (T_p - T_s)/D = {slip_dp:.1f} psi at {slip_time:.3f} s, and then creeps "
+      "at the speed that makes up for the leakage. A pump that slips as soon as the torques balance has "
+      "nothing to drive it further. Static friction above kinetic does drive it further: with "
+      "{static_torque:.1f} in-lbf at rest the pump sticks {sticks} times in {duration} s, every {period:.2f} "
+      "s, with dp between {low:.0f} and {high:.0f} psi, which is Figure 2's behaviour. Cycles need an excess "
+      "of {threshold_ratio:.3f} (T_p - T_s), so at a given static friction they end as the torque grows, as "
+      "the paper says. To cycle at {torque} but not at {faster_torque} in-lbf, as Figures 2 and 3 do, "
+      "friction that is higher only at rest must be between {threshold:.2f} and {largest_static:.2f} in-lbf; "
+      "the {static_torque:.1f} shipped as an assumption cycles at both.",
       fmt::arg("stick_time", study.stick().time), fmt::arg("stick_dp", study.stick().dp),
       fmt::arg("slip_dp", study.slip().dp), fmt::arg("slip_time", study.slip().time),
       fmt::arg("static_torque", study.static_torque), fmt::arg("sticks", study.cycling.sticks()),
@@ -261,8 +261,7 @@ Finding TableFinding(const StickSlipStudy& study) {
   return {
       3,
       "Figure 2 shows sustained stick-slip, simulated with eqs. (4), (13), (14) and Table 1, and says that "
-      "it "
-      "does not occur at higher torques.",
+      "it does not occur at higher torques.",
       fmt::format("Table 1 alone sticks exactly once at each of 4.1, 4.5, 5, 6, 8 and 10 in-lbf, at the same "
                   "{stick_time:.4f} s, and then creeps (dp {end_dp:.1f} psi and {end_speed:.3f} rad/s after "
                   "{duration} s at {torque} in-lbf). With static friction at rest only, {none:.3f} in-lbf "
@@ -345,20 +344,19 @@ Picture CyclesPicture(const StickSlipStudy& study) {
               {DpCurve(study.cycling, "", 0)}, {});
   once.rules = {{"(T_p - T_s)/D", false, (kTorque - study.p.T_s) / study.p.D}};
   often.rules = {{"(T_p - T_static)/D: slips", false, study.slip_dp}};
-  return {
-      "",
-      {.caption = fmt::format("Open loop, clamped at α = 0, T_p = {} in-lbf from rest. Above: the "
-                              "paper's equations and Table 1. Below: with static friction {:.1f} in-lbf, {} "
-                              "in-lbf sliding, falling off over {} rad/s (assumed).",
-                              kTorque, study.static_torque, study.p.T_s, study.speed),
-       .panels = {once, often},
-       .drawing = ""}};
+  return {"",
+          {.caption = fmt::format("Open loop, clamped at α = 0, T_p = {} in-lbf from rest. Above: the "
+                                  "paper's equations and Table 1. Below: with static friction of {:.1f} "
+                                  "in-lbf, which falls off to {} in-lbf over {} rad/s (assumed).",
+                                  kTorque, study.static_torque, study.p.T_s, study.speed),
+           .panels = {once, often},
+           .drawing = ""}};
 }
 
 Picture TorquesPicture(const StickSlipStudy& study) {
   return {"-torques",
-          {.caption = "Table 1 alone, clamped at α = 0, constant torque from rest: whatever the torque, one "
-                      "stick at the same time. The curves are multiples of each other by T_p - T_s.",
+          {.caption = "Table 1 alone, clamped at α = 0, constant torque from rest: at any torque the pump "
+                      "sticks once, at the same time. The curves are in proportion to T_p - T_s.",
            .panels = {DpPanel("Table 1 alone at several torques", study.scaled, {})},
            .drawing = ""}};
 }
@@ -406,9 +404,9 @@ ExperimentResult RunFig2(const ExperimentOptions& options) {
   ExperimentResult result;
   result.conditions = Conditions(study);
   result.paper_says =
-      "At low voltages the pressure fluctuates erratically: after a peak friction holds the rotor until "
-      "leakage has let the pressure drop far enough for the torque to turn the pump once again. Figure 2 "
-      "simulates it; at higher torques it does not occur.";
+      "At low voltages the pressure fluctuates erratically: after a peak, friction holds the rotor until "
+      "leakage has lowered the pressure enough for the torque to turn the pump again. Figure 2 simulates "
+      "this; at higher torques it does not occur.";
   result.explanation = Explanation(study);
   result.comparisons = Comparisons(study);
   result.findings = {TableFinding(study)};

@@ -113,15 +113,16 @@ std::string Explanation(const StepStudy& study) {
   const model::Parameters& p = study.p;
   const WithoutValves& bare = study.bare;
   return fmt::format(
-      "It is a mass on a spring. As soon as the pump turns, p_1 would fall below the accumulator, so the "
-      "valve holds side 1 at {p_3} psi and one side of fluid is the spring: {natural_frequency:.2f} rad/s, "
-      "damping ratio {damping_ratio:.3f}. Half a damped period later, {peak_time:.4f} s, dp peaks at "
-      "{peak_dp:.1f} psi, as in closed form. Then the pump nearly stands, leakage lets p_1 rise again, and "
-      "at {stick_time:.4f} s the pump sticks: to swing back, dp would have to overcome friction in the other "
-      "direction as well, (T_p + T_s)/D = {back_dp:.0f} psi. It waits {wait:.2f} s while dp leaks to (T_p - "
-      "T_s)/D = {slip_dp:.1f} psi and creeps on. Without the valves both sides are springs, dp peaks at "
-      "nearly the same {bare_dp:.1f} psi, but p_1 would be below 0 from {negative_ms:.0f} ms on and reach "
-      "{bare_p1:.0f} psi: what the paper's accumulator is for.",
+      "It is a mass on a spring. As soon as the pump turns, p_1 would fall below the accumulator's pressure, "
+      "so the valve holds side 1 at {p_3} psi, and the fluid of the other side is the spring: "
+      "{natural_frequency:.2f} rad/s, damping ratio {damping_ratio:.3f}. Half a damped period later, at "
+      "{peak_time:.4f} s, dp peaks at {peak_dp:.1f} psi, as in closed form. Then the pump almost stands "
+      "still, leakage lets p_1 rise again, and at {stick_time:.4f} s the pump sticks: to swing back, dp "
+      "would have to overcome friction in the other direction as well, (T_p + T_s)/D = {back_dp:.0f} psi. It "
+      "waits {wait:.2f} s while dp leaks to (T_p - T_s)/D = {slip_dp:.1f} psi, and then creeps on. Without "
+      "the valves both sides are springs, and dp peaks at nearly the same {bare_dp:.1f} psi. But p_1 would "
+      "be negative from {negative_ms:.0f} ms on and reach {bare_p1:.0f} psi, which the paper's accumulator "
+      "prevents.",
       fmt::arg("p_3", p.p_3), fmt::arg("natural_frequency", study.spring.natural_frequency),
       fmt::arg("damping_ratio", study.spring.damping_ratio), fmt::arg("peak_time", study.spring.peak_time),
       fmt::arg("peak_dp", study.peak().dp), fmt::arg("stick_time", study.stick().time),
@@ -147,7 +148,8 @@ std::vector<Comparison> Comparisons(const StepStudy& study) {
        "expected: from the stick on, dp leaks at (β/V_ms)(2 c_I + c_E)"},
       {"peak of dp without the valves", "psi", "", page::kAutomatic, study.bare_dp(), ""},
       {"p_2 then", "psi", "", page::kAutomatic, bare.p2[bare.peak], ""},
-      {"p_1 then", "psi", "", page::kAutomatic, bare.p1[bare.peak], "no fluid bears that: it would cavitate"},
+      {"p_1 then", "psi", "", page::kAutomatic, bare.p1[bare.peak],
+       "no fluid withstands that: it would cavitate"},
   };
 }
 
@@ -211,13 +213,13 @@ ExperimentResult RunFig3(const ExperimentOptions& options) {
   options.progress(0.9);
   ExperimentResult result;
   result.conditions = fmt::format(
-      "Table 1, clamped at α = 0, from rest at p_1 = p_2 = p_3 = {} psi, constant T_p = {} in-lbf ({} "
-      "V), "
+      "Table 1, clamped at α = 0, from rest at p_1 = p_2 = p_3 = {} psi, constant T_p = {} in-lbf ({} V), "
       "open loop. Peak, stick and slip are located within {} us.",
       study.p.p_3, kTorque, kTorque / study.p.k_1, kLocatedWithin * 1e6);
   result.paper_says =
-      "Figure 3 shows the response to 10 in-lb, experiment and simulation: no sustained stick-slip, and the "
-      "response of a mass-spring-damper to a constant force whose spring is the fluid's compressibility.";
+      "Figure 3 shows the response to 10 in-lb, experiment and simulation: no sustained stick-slip. The "
+      "response is that of a mass-spring-damper to a constant force; the spring is the fluid's "
+      "compressibility.";
   result.explanation = Explanation(study);
   result.comparisons = Comparisons(study);
   result.numbers = JsonText(Numbers(study));
@@ -228,8 +230,8 @@ ExperimentResult RunFig3(const ExperimentOptions& options) {
                           {"motor_speed_rad_s", study.run.motor_speed}};
   result.pictures.push_back(
       {"",
-       {.caption = fmt::format("Open loop, Table 1, clamped at α = 0, T_p = {} in-lbf from rest at p_1 = "
-                               "p_2 = p_3. Dashed: if there were no one-way valves.",
+       {.caption = fmt::format("Open loop, Table 1, clamped at α = 0, T_p = {} in-lbf from rest at p_1 = p_2 "
+                               "= p_3. Dashed: without the one-way valves.",
                                kTorque),
         .panels = Panels(study),
         .drawing = ""}});

@@ -113,7 +113,7 @@ std::vector<Remainder> HoldAllLevels(const ExperimentOptions& options, const Tra
   std::vector<Remainder> remainders = {
       {"no feed-forward", 0, {}},
       {fmt::format("{:.5f} V/psi: all but friction", study.feedforward), study.feedforward, {}},
-      {fmt::format("{:.5f} V/psi: nothing left at {} psi", study.tuned_feedforward, kWaveAmplitude),
+      {fmt::format("{:.5f} V/psi: no error at {} psi", study.tuned_feedforward, kWaveAmplitude),
        study.tuned_feedforward,
        {}}};
   for (size_t i = 0; i < remainders.size(); ++i) {
@@ -133,13 +133,10 @@ std::string Explanation(const TrackingStudy& study) {
   const TrackingError& slow = study.by_frequency.front().error;
   const double T_pmax = PressureLoopParameters().T_pmax;
   return fmt::format(
-             "A jump of {} psi asks for 2 A k_1 k_p = {:.0f} in-lbf against {}, so the motor "
-             "is at its limit for "
-             "{:.0f} % of the time and dp changes as fast as {} in-lbf can accelerate the "
-             "pump. It peaks at {:.0f} "
-             "psi and is called back before it settles. At 1 Hz it has time to settle: {:.1f} "
-             "% of the time at the limit, RMS error "
-             "{:.0f} psi instead of {:.0f}. ",
+             "A jump of {} psi demands 2 A k_1 k_p = {:.0f} in-lbf, but the motor has {}, so it is at its "
+             "limit for {:.0f} % of the time, and dp changes as fast as {} in-lbf can accelerate the pump. "
+             "It peaks at {:.0f} psi, and the reference reverses before it settles. At 1 Hz it has time to "
+             "settle: {:.1f} % of the time at the limit, and an RMS error of {:.0f} psi instead of {:.0f}. ",
              2 * kWaveAmplitude, JumpTorque(study), T_pmax, 100 * error.saturated_fraction, T_pmax,
              error.highest, 100 * slow.saturated_fraction, slow.rms, error.rms) +
          SteadyStateText(study);
@@ -182,16 +179,16 @@ ExperimentResult RunFig4(const ExperimentOptions& options) {
   ExperimentResult result = DescribeTracking(study);
   result.paper_says =
       "Figure 4 shows dp following a square wave in experiment and simulation, with |T_p| <= 40 in-lb. A "
-      "small "
-      "feed-forward linear in dp_ref could eliminate the steady-state error.";
+      "small feed-forward linear in dp_ref could eliminate the steady-state error.";
   result.explanation = Explanation(study);
   result.comparisons.push_back(
-      {"torque that the loop asks for at a jump", "in-lbf", "limited to 40", JumpTorque(study),
+      {"torque that the loop demands at a jump", "in-lbf", "limited to 40", JumpTorque(study),
        study.largest_demand, "expected: 2 A k_1 k_p, had dp settled and the pump stopped before the jump"});
   result.comparisons.push_back(
       {"steady peaks of dp", "psi", "", page::kAutomatic, study.error.highest,
-       fmt::format("the other way {:.1f}; {:.1f} with the loop sampled at 50 kHz, nearer to an analog one",
-                   study.error.lowest, finer.highest)});
+       fmt::format(
+           "in the other direction {:.1f}; {:.1f} with the loop sampled at 50 kHz, closer to an analog loop",
+           study.error.lowest, finer.highest)});
   result.findings = {SaturationFinding(study, finer)};
   AddNumbers(study, finer, remainders, &result);
   result.pictures.push_back(

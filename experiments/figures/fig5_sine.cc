@@ -42,19 +42,17 @@ ExperimentResult RunFig5(const ExperimentOptions& options) {
 
   ExperimentResult result = DescribeTracking(study);
   result.paper_says = "Figure 5 shows dp following a sine in experiment and simulation.";
-  result.explanation =
-      fmt::format(
-          "dp follows with {:.2f} times the amplitude, {:.1f} degrees late; a linear loop of ω_n = {} rad/s "
-          "and ζ "
-          "= {} would give {:.2f} and {:.1f}. The motor is at its limit {:.0f} % of the time, but {:.0f} % "
-          "at {} Hz, "
-          "where dp reaches {:.0f} psi only. The lag makes the RMS error of {:.0f} psi ({:.0f} at 1 Hz), not "
-          "the steady-state error, so the feed-forward hardly changes it ({:.0f}). ",
-          std::abs(harmonic), -Degrees(std::arg(harmonic)), kLoopNaturalFrequency, kLoopDampingRatio,
-          std::abs(linear), -Degrees(std::arg(linear)), 100 * study.error.saturated_fraction,
-          100 * fast.saturated_fraction, fast_hz, fast.highest, study.error.rms, slow.rms,
-          study.error_with.rms) +
-      SteadyStateText(study);
+  result.explanation = fmt::format(
+                           "dp follows with {:.2f} times the amplitude, {:.1f} degrees late; a linear loop "
+                           "of ω_n = {} rad/s and ζ = {} would give {:.2f} and {:.1f}. The motor is at its "
+                           "limit {:.0f} % of the time, but {:.0f} % at {} Hz, where dp reaches only {:.0f} "
+                           "psi. The RMS error of {:.0f} psi ({:.0f} at 1 Hz) comes from the lag, not from "
+                           "the steady-state error, so the feed-forward hardly changes it ({:.0f}). ",
+                           std::abs(harmonic), -Degrees(std::arg(harmonic)), kLoopNaturalFrequency,
+                           kLoopDampingRatio, std::abs(linear), -Degrees(std::arg(linear)),
+                           100 * study.error.saturated_fraction, 100 * fast.saturated_fraction, fast_hz,
+                           fast.highest, study.error.rms, slow.rms, study.error_with.rms) +
+                       SteadyStateText(study);
   result.comparisons.push_back({"amplitude of dp beside the reference's", "", "", std::abs(linear),
                                 std::abs(harmonic), "expected: linear, both sides compressing, no friction"});
   result.comparisons.push_back(

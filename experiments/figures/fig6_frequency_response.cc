@@ -74,7 +74,7 @@ Cases MakeCases(const model::ModelDescription& table1, const pressure_ctrl::Pres
   cases.one_sided.sweep.rest_s = 3;
   cases.one_sided_gains = cases.one_sided;
   cases.one_sided_gains.key = "one_sided_own_gains";
-  cases.one_sided_gains.title = "side 1 held at p_3, gains for that";
+  cases.one_sided_gains.title = "side 1 held at p_3, gains designed for it";
   cases.one_sided_gains.sweep.name = "fig6-one_sided_own_gains";
   cases.one_sided_gains.sweep.gains = one_sided;
   cases.one_sided_gains.sweep.amplitude = 3;
@@ -166,23 +166,22 @@ std::string Conditions(const MidStrokeStudy& study) {
 std::string Explanation(const MidStrokeStudy& study) {
   const Cases& cases = study.cases;
   return fmt::format(
-      "The paper prints neither amplitude nor mean of its reference. The figure here is for ±{amplitude} psi "
-      "about zero, the largest of the amplitudes run at which the motor does not saturate (largest torque "
-      "{largest_torque:.1f} of {torque_limit} in-lbf). From p_3 the valves let oil in at each swing until "
-      "both sides ride above p_3, so that both compress {both_percent:.0f} % of the time and the two-sided "
-      "design holds: ω_n = {omega:.0f} rad/s, ζ = {zeta:.2f}, {bandwidth:.1f} Hz. The design itself has "
-      "{design_bandwidth:.1f} Hz; what is missing is Coulomb friction, which damps a sine of amplitude A by "
-      "the factor 1/(1 - (4/π) T_s/(k_1 k_p A)): ζ = {expected_zeta:.2f}. At ±{small_amplitude} psi it "
-      "dominates (gain {small_gain:.2f} at low frequency; below {sticking:.1f} psi = T_s/(k_1 k_p) nothing "
-      "moves); without it ω_n = {no_friction_omega:.1f} and ζ = {no_friction_zeta:.3f} come out. At "
-      "±{large_amplitude} psi the motor saturates {saturated_percent:.0f} % of the time and "
-      "{large_bandwidth:.1f} Hz are left: 40 in-lbf accelerate the pump for {followed:.0f} psi at 32 Hz and "
-      "no more. ±30, ±60 and ±100 psi have {bandwidth_30:.1f}, {bandwidth:.1f} and {bandwidth_100:.1f} Hz: "
-      "amplitudes of this order fit the paper's figure. About {offset} psi, with ±{one_sided_amplitude} psi, "
-      "the pump creeps forward to make up for leakage and never reverses, side 1 stays at p_3 and the same "
-      "gains give {one_sided_omega:.1f} rad/s, {one_sided_zeta:.3f} and {one_sided_bandwidth:.1f} Hz; gains "
-      "for one side ({k_p:.3f}, {k_v:.2f}) bring {restored_omega:.1f} rad/s and {restored_bandwidth:.1f} Hz "
-      "back.",
+      "The paper prints neither amplitude nor mean of its reference. Here it is ±{amplitude} psi about zero, "
+      "the largest amplitude tried at which the motor does not saturate (largest torque {largest_torque:.1f} "
+      "of {torque_limit} in-lbf). From p_3 on, the valves let oil in at each swing until both sides stay "
+      "above p_3, so both compress {both_percent:.0f} % of the time, and the two-sided design holds: ω_n = "
+      "{omega:.0f} rad/s, ζ = {zeta:.2f}, {bandwidth:.1f} Hz. The design itself has {design_bandwidth:.1f} "
+      "Hz; it leaves out Coulomb friction, which damps a sine of amplitude A by the factor 1/(1 - (4/π) "
+      "T_s/(k_1 k_p A)): ζ = {expected_zeta:.2f}. At ±{small_amplitude} psi it dominates (gain "
+      "{small_gain:.2f} at low frequency; below {sticking:.1f} psi = T_s/(k_1 k_p) nothing moves); without "
+      "it the fit gives ω_n = {no_friction_omega:.1f} and ζ = {no_friction_zeta:.3f}. At ±{large_amplitude} "
+      "psi the motor saturates {saturated_percent:.0f} % of the time and only {large_bandwidth:.1f} Hz "
+      "remain: at 32 Hz, 40 in-lbf accelerate the pump enough for {followed:.0f} psi and no more. ±30, ±60 "
+      "and ±100 psi give {bandwidth_30:.1f}, {bandwidth:.1f} and {bandwidth_100:.1f} Hz: amplitudes of this "
+      "order fit the paper's figure. About {offset} psi, with ±{one_sided_amplitude} psi, the pump creeps "
+      "forward to make up for leakage and never reverses, side 1 stays at p_3, and the same gains give "
+      "{one_sided_omega:.1f} rad/s, {one_sided_zeta:.3f} and {one_sided_bandwidth:.1f} Hz; gains for one "
+      "side ({k_p:.3f}, {k_v:.2f}) restore {restored_omega:.1f} rad/s and {restored_bandwidth:.1f} Hz.",
       fmt::arg("amplitude", study.figure().sweep.amplitude),
       fmt::arg("largest_torque", study.figure().swept.largest_torque),
       fmt::arg("torque_limit", study.p.T_pmax),
@@ -224,7 +223,7 @@ std::vector<Comparison> Comparisons(const MidStrokeStudy& study) {
       {"natural frequency, T_s = 0, both sides compress", "rad/s", "", kLoopNaturalFrequency,
        none.fit.model.natural_frequency, ""},
       {"damping ratio, T_s = 0, both sides compress", "", "", kLoopDampingRatio, none.fit.model.damping_ratio,
-       "holding the voltage for 0.2 ms takes the difference"},
+       "holding the voltage for 0.2 ms accounts for the difference"},
       {"bandwidth, T_s = 0, both sides compress", "Hz", "", study.design.BandwidthHz(), none.bandwidth_hz,
        ""},
       {"natural frequency, side 1 held at p_3", "rad/s", "", study.one_sided_rule.natural_frequency,
@@ -235,7 +234,7 @@ std::vector<Comparison> Comparisons(const MidStrokeStudy& study) {
        SecondOrderModel{1, study.one_sided_rule.natural_frequency, study.one_sided_rule.damping_ratio, 0}
            .BandwidthHz(),
        cases.one_sided.bandwidth_hz, ""},
-      {"natural frequency, side 1 held at p_3, gains for that", "rad/s", "", kLoopNaturalFrequency,
+      {"natural frequency, side 1 held at p_3, gains designed for it", "rad/s", "", kLoopNaturalFrequency,
        cases.one_sided_gains.fit.model.natural_frequency, ""},
       {"bandwidth at ±300 psi", "Hz", "", page::kAutomatic, study.large().bandwidth_hz,
        "the motor's torque limit"},
@@ -321,15 +320,14 @@ Picture AmplitudePicture(const MidStrokeStudy& study) {
     family.push_back(
         {fmt::format("±{} psi", one->sweep.amplitude), one->swept.points, page::Stroke::kLinePoints, -1});
   }
-  return {
-      "-amplitude",
-      {.caption = fmt::format("The same at several amplitudes about zero. Small ones are held by Coulomb "
-                              "friction (±{} psi: the pump sticks {:.0f} % of the time), large ones by the "
-                              "motor's {} in-lbf (±{} psi: saturated {:.0f} % of the time).",
-                              small.sweep.amplitude, 100 * small.swept.stuck_fraction, study.p.T_pmax,
-                              large.sweep.amplitude, 100 * large.swept.saturated_fraction),
-       .panels = BodePanels("Amplitude", family, {{"paper: 32 Hz", true, kPaperBandwidthHz}}, -40),
-       .drawing = ""}};
+  return {"-amplitude",
+          {.caption = fmt::format("The same at several amplitudes about zero. Small ones are limited by "
+                                  "Coulomb friction (±{} psi: the pump sticks {:.0f} % of the time), large "
+                                  "ones by the motor's {} in-lbf (±{} psi: saturated {:.0f} % of the time).",
+                                  small.sweep.amplitude, 100 * small.swept.stuck_fraction, study.p.T_pmax,
+                                  large.sweep.amplitude, 100 * large.swept.saturated_fraction),
+           .panels = BodePanels("Amplitude", family, {{"paper: 32 Hz", true, kPaperBandwidthHz}}, -40),
+           .drawing = ""}};
 }
 
 Picture SidesPicture(const MidStrokeStudy& study) {

@@ -78,7 +78,7 @@ Cases MakeCases(const model::ModelDescription& wide, const pressure_ctrl::Pressu
   cases.mid_stroke = make("mid_stroke", "α = 0", BothCompress(), 20, 0);
   cases.mid_stroke.sweep.arm_angle = 0;
   cases.large = make("large_amplitude", "α = π/2, ±100 psi", BothCompress(), 100, 0);
-  cases.redesigned = make("redesigned", "α = π/2, gains for there", BothCompress(), 150, 0);
+  cases.redesigned = make("redesigned", "α = π/2, gains designed for it", BothCompress(), 150, 0);
   cases.redesigned.sweep.gains = redesigned;
   // The pump must not reverse: its speed is w dp/s on top of the creep (c_E + c_I) dp/D.
   cases.large_side = make("large_side", "side 2 compresses (V_2)", Side1Held(), 2, 1000);
@@ -174,18 +174,19 @@ std::string Explanation(const QuarterTurnStudy& study) {
   const Cases& cases = study.cases;
   const BodeCase& figure = study.figure();
   return fmt::format(
-      "Table 1 cannot be at π/2: its V_1 would be negative beyond {limit:.3f} rad. On an actuator that can, "
-      "the volumes part, and the stiffness of the oil, 1/V_1 + 1/V_2, grows by 1/(1 - (c α/V_ms)²) = "
-      "{stiffness:.2f}: the gains that give 150 rad/s at mid-stroke ({mid_stroke_omega:.0f} measured) give "
-      "{omega:.1f} rad/s, ζ = {zeta:.3f} and {bandwidth:.1f} Hz here. Measured at ±{amplitude} psi: "
-      "{measured_omega:.0f} rad/s, {measured_zeta:.2f} and {measured_bandwidth:.1f} Hz; at "
+      "Table 1's actuator cannot be at π/2: its V_1 would be negative beyond {limit:.3f} rad. On one that "
+      "can, the two volumes differ, and the stiffness of the oil, 1/V_1 + 1/V_2, grows by 1/(1 - (c "
+      "α/V_ms)²) = {stiffness:.2f}: the gains that give 150 rad/s at mid-stroke ({mid_stroke_omega:.0f} "
+      "measured) give {omega:.1f} rad/s, ζ = {zeta:.3f} and {bandwidth:.1f} Hz here. Measured at "
+      "±{amplitude} psi: {measured_omega:.0f} rad/s, {measured_zeta:.2f} and {measured_bandwidth:.1f} Hz; at "
       "±{large_amplitude} psi, with the motor saturated {saturated_percent:.0f} % of the time, "
-      "{large_bandwidth:.1f} Hz. Two angles with one bandwidth, as the paper has them, need gains adapted to "
-      "the angle (k_p = {k_p:.4f}, k_v = {k_v:.1f}: {redesigned_omega:.0f} rad/s, {redesigned_bandwidth:.1f} "
-      "Hz) or dead volume: a natural frequency within {alike_percent:.0f} % of mid-stroke's needs V_ms above "
-      "{alike_V_ms:.1f} in^3, {alike_ratio:.1f} times Table 1's. The direction counts, too: about +1000 psi "
-      "the large side 2 compresses ({large_side_omega:.1f} rad/s, ζ {large_side_zeta:.2f}), about -1000 psi "
-      "the small side 1 ({small_side_omega:.1f} rad/s, ζ {small_side_zeta:.2f}), with the other held at p_3.",
+      "{large_bandwidth:.1f} Hz. For one bandwidth at both angles, as in the paper, the gains must be "
+      "adapted to the angle (k_p = {k_p:.4f}, k_v = {k_v:.1f}: {redesigned_omega:.0f} rad/s, "
+      "{redesigned_bandwidth:.1f} Hz), or the dead volume must be larger: a natural frequency within "
+      "{alike_percent:.0f} % of mid-stroke's needs V_ms above {alike_V_ms:.1f} in^3, {alike_ratio:.1f} times "
+      "Table 1's. The direction matters too: about +1000 psi the large side 2 compresses "
+      "({large_side_omega:.1f} rad/s, ζ {large_side_zeta:.2f}), about -1000 psi the small side 1 "
+      "({small_side_omega:.1f} rad/s, ζ {small_side_zeta:.2f}), with the other held at p_3.",
       fmt::arg("limit", study.limit), fmt::arg("stiffness", study.ratio * study.ratio),
       fmt::arg("mid_stroke_omega", cases.mid_stroke.fit.model.natural_frequency),
       fmt::arg("omega", study.two_sides.natural_frequency), fmt::arg("zeta", study.two_sides.damping_ratio),
@@ -216,7 +217,7 @@ std::vector<Comparison> Comparisons(const QuarterTurnStudy& study) {
       {"natural frequency of the fit", "rad/s", "roughly 150", study.two_sides.natural_frequency,
        figure.fit.model.natural_frequency, "expected: 150 rad/s times the stiffness's square root"},
       {"damping ratio of the fit", "", "roughly .5", study.two_sides.damping_ratio,
-       figure.fit.model.damping_ratio, "Coulomb friction adds to the expected"},
+       figure.fit.model.damping_ratio, "Coulomb friction adds to the expected value"},
       {"natural frequency at α = 0, the same gains", "rad/s", "roughly 150", kLoopNaturalFrequency,
        cases.mid_stroke.fit.model.natural_frequency, ""},
       {"bandwidth with gains for π/2", "Hz", "about 32",
@@ -240,8 +241,8 @@ Finding AngleFinding(const QuarterTurnStudy& study) {
   const model::Parameters& table1 = study.table1;
   return {
       1, "Figure 7 is at α = π/2, with Table 1's V_ms = 3.16 in^3.",
-      fmt::format("Asked for it, the model of Table 1 refuses: \"{}\". V_1 = V_ms - c α is {:.2f} in^3 "
-                  "there and reaches 0 at {:.4f} rad = {:.2f}°.",
+      fmt::format("Asked for that angle, the model of Table 1 refuses: \"{}\". V_1 = V_ms - c α is {:.2f} "
+                  "in^3 there and reaches 0 at {:.4f} rad = {:.2f}°.",
                   study.refusal, table1.V_ms - table1.c * kQuarterTurn, study.limit, Degrees(study.limit)),
       fmt::format("An arm angle that leaves V_1, V_2 > 0 is an error. config/models/wide_actuator.toml has "
                   "V_ms = {} in^3 (needed: above {:.3f}), marked as an assumption; this figure uses it.",
@@ -299,9 +300,9 @@ Picture ResponsePicture(const QuarterTurnStudy& study) {
 Picture CasesPicture(const Cases& cases) {
   return {"-cases",
           {.caption = "At α = π/2: a larger amplitude, gains designed for this angle, and either side alone "
-                      "compressing. Curves: the linearised loop of the cases with one side held.",
+                      "compressing. Curves: the linearised loop for the cases with one side held.",
            .panels = BodePanels(
-               "What it depends on",
+               "Influence of amplitude, gains and direction",
                {{cases.large.title, cases.large.swept.points, page::Stroke::kLinePoints, 0},
                 {cases.redesigned.title, cases.redesigned.swept.points, page::Stroke::kLinePoints, 1},
                 {cases.large_side.title, cases.large_side.swept.points, page::Stroke::kPoints, 2},

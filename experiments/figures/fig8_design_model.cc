@@ -114,27 +114,25 @@ DesignStudy RunStudy(const ExperimentOptions& options) {
 std::string Conditions(const DesignStudy& study) {
   return fmt::format(
       "Linear: PD with c_1/c_2 = {:g} and g = {:g}, pressure loop with ω_n = {:g} rad/s and ζ = {:g}, k_2 = "
-      "{:g} "
-      "in-lbf/psi, J_a = {:g} lbf-in-s². Beside it the exact linearisation of Table 1's model at mid-stroke, "
-      "the "
-      "pump slipping and both sides compressing, under eq. (16) with k_p = {:.4f} V/psi and k_v = {:.3f} psi "
-      "s/rad.",
+      "{:g} in-lbf/psi, J_a = {:g} lbf-in-s². Beside it the exact linearisation of Table 1's model at "
+      "mid-stroke, the pump slipping and both sides compressing, under eq. (16) with k_p = {:.4f} V/psi and "
+      "k_v = {:.3f} psi s/rad.",
       study.design.zero, kPaperGain, study.design.natural_frequency, study.design.damping_ratio, study.p.k_2,
       study.p.J_a, study.law.gains.k_p, study.law.gains.k_v);
 }
 
 std::string Explanation(const DesignStudy& study) {
   return fmt::format(
-      "With the arm clamped the model closed with eq. (16) is that second-order system: the exact "
-      "linearisation has ω_n = {omega:.2f} rad/s and ζ = {zeta:.4f} (the difference to {design_omega:g} and "
-      "{design_zeta:g} is leakage); one side held by its valve, {one_sided_omega:.1f} rad/s and "
-      "{one_sided_zeta:.3f}. With the arm free it is another system: α' forces the pump to turn c/D = "
+      "With the arm clamped, the model under eq. (16) is that second-order system: the exact linearisation "
+      "has ω_n = {omega:.2f} rad/s and ζ = {zeta:.4f} (the difference from {design_omega:g} and "
+      "{design_zeta:g} is leakage); with one side held by its valve it has {one_sided_omega:.1f} rad/s and "
+      "{one_sided_zeta:.3f}. With the arm free it is a different system: α' forces the pump to turn c/D = "
       "{ratio:.1f} times as fast, eq. (16) brakes that speed through k_v, and the arm carries the pump's "
-      "inertia, J (c/D)² = {reflected:.0f} lbf-in-s² beside J_a = {J_a:g}. A slow pole at {slow_pole:.2f} "
-      "1/s remains of the design's four at g = {g:g} (the slowest there: {design_pole:.1f} 1/s). Feeding "
-      "(c/D) α' forward takes the braking out; inertia stays, and the dominant poles are {assisted_pole}. "
-      "With the arm's motion taken out of the flow equations (c → 0) the exact model gives Figure 8's poles "
-      "again, {first_pole} and {last_pole}, but for leakage: nothing else is missing.",
+      "inertia, J (c/D)² = {reflected:.0f} lbf-in-s² against J_a = {J_a:g}. The slowest of the design's four "
+      "poles at g = {g:g} is at {design_pole:.1f} 1/s; here a slow pole at {slow_pole:.2f} 1/s dominates. "
+      "Feeding (c/D) α' forward removes the braking; the inertia stays, and the dominant poles are "
+      "{assisted_pole}. With the arm's motion removed from the flow equations (c → 0), the exact model has "
+      "Figure 8's poles again except for leakage, {first_pole} and {last_pole}: nothing else is missing.",
       fmt::arg("omega", study.two_sided.natural_frequency), fmt::arg("zeta", study.two_sided.damping_ratio),
       fmt::arg("design_omega", study.design.natural_frequency),
       fmt::arg("design_zeta", study.design.damping_ratio),
@@ -264,9 +262,8 @@ Picture FreeArmPicture(const Bode& bode) {
       .notes = {},
       .rules = {}};
   return {"-free-arm",
-          {.caption =
-               "What the pressure loop does once the arm may move: Figure 8 takes the clamped loop for it. "
-               "Exact linearisations of Table 1's model at mid-stroke under eq. (16).",
+          {.caption = "The pressure loop once the arm may move, where Figure 8 assumes the clamped loop. "
+                      "Exact linearisations of Table 1's model at mid-stroke under eq. (16).",
            .panels = {pressure},
            .drawing = ""}};
 }
@@ -279,8 +276,8 @@ ExperimentResult RunFig8(const ExperimentOptions& options) {
   result.conditions = Conditions(study);
   result.paper_says =
       "Figure 8 is the model used to choose c_1 and c_2: the closed pressure loop as a second-order system "
-      "with "
-      "ω_n = 150 rad/s and ζ = .5, then k_2 and 1/(J_a s²), in continuous time although the loop is digital.";
+      "with ω_n = 150 rad/s and ζ = .5, then k_2 and 1/(J_a s²), in continuous time although the loop is "
+      "digital.";
   result.explanation = Explanation(study);
   result.comparisons = Comparisons(study);
   result.numbers = JsonText(Numbers(study));

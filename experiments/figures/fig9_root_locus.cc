@@ -163,8 +163,7 @@ RootLocusStudy RunStudy(const ExperimentOptions& options) {
 std::string Conditions(const RootLocusStudy& study) {
   return fmt::format(
       "Figure 8's linear model, k_2 = {:g} in-lbf/psi, J_a = {:g} lbf-in-s², c_1/c_2 = {:g}; g multiplies "
-      "both. "
-      "Sampled: eq. (17) at intervals T with its command held (zero-order hold), exact by the matrix "
+      "both. Sampled: eq. (17) at intervals T with its command held (zero-order hold), exact by the matrix "
       "exponential.",
       study.p.k_2, study.p.J_a, study.design.zero);
 }
@@ -172,9 +171,9 @@ std::string Conditions(const RootLocusStudy& study) {
 std::string Explanation(const RootLocusStudy& study) {
   return fmt::format(
       "Routh's criterion on the paper's own numbers puts the crossing at g = {critical_gain:.1f} and "
-      "{frequency:.1f} rad/s, {percent_below:.1f} % below 770, which may well be read off a plot. The "
-      "transmission ratio that the text prints would need k_2 = {printed_k_2:.3f}, and gives "
-      "{printed_gain:.1f}: further away. Sampling takes gain away: T = 1 ms leaves {gain_1_ms:.0f}, 5 ms "
+      "{frequency:.1f} rad/s, {percent_below:.1f} % below 770, which may well have been read off a plot. The "
+      "transmission ratio that the text prints would need k_2 = {printed_k_2:.3f} and gives "
+      "{printed_gain:.1f}, which is further away. Sampling costs gain: T = 1 ms leaves {gain_1_ms:.0f}, 5 ms "
       "{gain_5_ms:.0f}, and at 10 ms {gain_10_ms:.0f}, below the paper's 350. Whether the derivative acts on "
       "the error, as eq. (17) prints, or on the measurement changes only where the reference enters: the "
       "poles, and with them the largest stable T, are the same, {largest_ms:.2f} ms. {confirmed} The forms "
@@ -230,8 +229,7 @@ std::vector<Finding> Findings(const RootLocusStudy& study) {
        fmt::format("Prints {:.1f} beside the paper's 770.", study.limit.gain)},
       {7,
        "The sampling interval T of eq. (17) is not printed; its derivative acts on the error, so that a step "
-       "of "
-       "the reference kicks.",
+       "of the reference causes a kick.",
        fmt::format(
            "Figure 8's model at g = {g:g}, overshoot continuous and at T = 1, 2, 5 ms: derivative of the "
            "measurement {measurement:.1f}, {measurement_1:.1f}, {measurement_2:.1f}, {measurement_5:.1f} %; "
@@ -248,8 +246,7 @@ std::vector<Finding> Findings(const RootLocusStudy& study) {
            fmt::arg("stable_10", study.sampled[3].stable() ? "stable" : "unstable"),
            fmt::arg("largest_ms", 1e3 * study.largest)),
        "Both forms can be chosen (position.derivative). Figure 10 takes eq. (17) as printed; the default of "
-       "a stack is "
-       "the derivative of the measurement."}};
+       "a stack is the derivative of the measurement."}};
 }
 
 json Numbers(const RootLocusStudy& study) {

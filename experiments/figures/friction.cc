@@ -183,7 +183,7 @@ page::Panel ResidualsPanel(const PumpFriction& friction, const page::Axis& speed
     residuals.y_low.push_back(residuals.y.back() - error);
     residuals.y_high.push_back(residuals.y.back() + error);
   }
-  return {.title = "Points less lines, with the 95 % error bars of the speeds",
+  return {.title = "Points minus lines, with the 95 % error bars of the speeds",
           .x = speed,
           .y = {.label = "10^-3 in-lbf"},
           .curves = {residuals},
@@ -288,14 +288,13 @@ Picture RampPicture(const runs::MeasuredRun& run, const std::vector<RampReading>
     expected.y.push_back(1e3 * std::pow(excess, 3) / (6 * p.J * ramp * ramp));
   }
   angle.curves.push_back(expected);
-  return {
-      "-ramp",
-      {.caption = fmt::format("Break-away: the torque rises by {:.3g} in-lbf/s until an encoder of {:.3g} "
-                              "rad a step has moved by five steps. The dashed line is what eq. (4) gives "
-                              "without viscous friction.",
-                              ramp, kEncoderStep),
-       .panels = {torque, angle},
-       .drawing = ""}};
+  return {"-ramp",
+          {.caption = fmt::format(
+               "Break-away: the torque rises by {:.3g} in-lbf/s until an encoder of {:.3g} rad per step has "
+               "moved by five steps. The dashed line is what eq. (4) gives without viscous friction.",
+               ramp, kEncoderStep),
+           .panels = {torque, angle},
+           .drawing = ""}};
 }
 
 // The simulated rig, measured as the paper measured its own.
@@ -330,14 +329,14 @@ std::string Explanation(const RigStudy& study) {
       100 * std::max(std::abs(friction.T_s.value / p.T_s - 1), std::abs(friction.b.value / p.b - 1));
   return fmt::format(
       "The lines give T_s = {T_s} in-lbf and b = {b} in-lbf-s (95 %, Student, {degrees} degrees of freedom), "
-      "{error_percent:.2g} % at most from the simulated rig's own. The intervals rest on the scatter of "
-      "{holds} holds about the lines and on what is left of the transients, {transient:.2g} in-lbf at most. "
-      "The ramp reads {forward:.4f} in-lbf forward and {backward:.4f} backward, {forward_percent:.2g} and "
-      "{backward_percent:.2g} % above T_s: the motor has to have turned by {moved:.2g} rad to be seen "
-      "moving, and a torque that rises by {rise:.3g} in-lbf/s has grown by (6 J θ T_p'^2)^{{1/3}} = "
-      "{excess:.3g} in-lbf by then. From the encoder's angles in place of the speeds: T_s = {angle_T_s:.6f} "
-      "in-lbf, b = {angle_b:.8f} in-lbf-s. The speed settles with J/b = {time_constant:.2f} s, so holds are "
-      "long.",
+      "at most {error_percent:.2g} % from the simulated rig's own. The intervals rest on the scatter of "
+      "{holds} holds about the lines and on the remaining transients, at most {transient:.2g} in-lbf. The "
+      "ramp reads {forward:.4f} in-lbf forward and {backward:.4f} backward, {forward_percent:.2g} and "
+      "{backward_percent:.2g} % above T_s: the motor must turn by {moved:.2g} rad before it is seen to move, "
+      "and a torque that rises by {rise:.3g} in-lbf/s has grown by (6 J θ T_p'^2)^{{1/3}} = {excess:.3g} "
+      "in-lbf by then. From the encoder's angles instead of the speeds: T_s = {angle_T_s:.6f} in-lbf, b = "
+      "{angle_b:.8f} in-lbf-s. The speed settles with the time constant J/b = {time_constant:.2f} s, so the "
+      "holds are long.",
       fmt::arg("T_s", maths::PlusMinus(friction.T_s)), fmt::arg("b", maths::PlusMinus(friction.b)),
       fmt::arg("degrees", friction.degrees_of_freedom), fmt::arg("error_percent", error_percent),
       fmt::arg("holds", friction.points.size()), fmt::arg("transient", TransientTorque(friction)),
@@ -360,7 +359,7 @@ std::vector<Comparison> Comparisons(const RigStudy& study) {
        fmt::format("+/- {:.2g}: the interval {} the rig's own", friction.b.high - friction.b.value,
                    Holds(friction.b, p.b))},
       {"break-away torque, forward", "in-lbf", "4.0", p.T_s + study.excess, study.readings[0].torque,
-       "expected: T_s and what the ramp adds until movement is seen"},
+       "expected: T_s and what the ramp adds until motion is seen"},
       {"break-away torque, backward", "in-lbf", "4.0", p.T_s + study.excess, study.readings[1].torque, ""},
       {"time constant J/b", "s", "", p.J / p.b, p.J / friction.b.value, "how long to wait for steady speed"},
   };
@@ -398,9 +397,9 @@ ExperimentResult AnalyseMeasured(const ExperimentOptions& options) {
       "With a valve open between the two sides, constant voltages held to steady speed give T_p against "
       "speed; the slope is b, the intercept T_s.";
   result.explanation = fmt::format(
-      "{} steady states were found; the points scatter by {:.3g} in-lbf about the lines, and inertia takes "
-      "{:.2g} in-lbf of one at most, by what is left of the transients: the intervals include both. The "
-      "directions' Coulomb frictions differ by {} in-lbf. Both values are in proportion to k_1.",
+      "{} steady states were found; the points scatter by {:.3g} in-lbf about the lines, and remaining "
+      "transients take at most {:.2g} in-lbf from one: the intervals include both. The Coulomb frictions of "
+      "the two directions differ by {} in-lbf. Both values are in proportion to k_1.",
       friction.points.size(), friction.scatter, TransientTorque(friction),
       maths::PlusMinus(friction.difference));
   json numbers = FitNumbers(friction, p);

@@ -105,7 +105,7 @@ Picture FitPicture(const std::vector<runs::MeasuredRun>& runs, const LeakageFit&
       .curves = {},
       .notes = {},
       .rules = {}};
-  page::Panel residuals{.title = "Measured less fitted, p_2 - p_1",
+  page::Panel residuals{.title = "Measured minus fitted, p_2 - p_1",
                         .x = time,
                         .y = {.label = "standard deviations of the noise"},
                         .curves = {},
@@ -203,19 +203,16 @@ double LowSideWhileCreeping(const runs::MeasuredRun& run) {
 
 std::string Identifiability(const LeakageFit& fit) {
   if (fit.not_identifiable.empty()) {
-    return fmt::format("Both are told apart (correlation of their errors {:.2f}).",
+    return fmt::format("The two can be told apart (correlation of their errors {:.2f}).",
                        fit.information.correlation);
   }
   std::string names = fit.not_identifiable.front();
   if (fit.not_identifiable.size() > 1) names += " and " + fit.not_identifiable.back();
   return fmt::format(
-      "NOT told apart: the interval of {} is wider than +/- 25 % (correlation {:.3f}). What these data tell "
-      "is "
-      "c_E + {:.2f} c_I = {} in^3/(s psi): that sum is all that acts where the low side stays at p_3 (weight "
-      "1) "
-      "or only p_2 - p_1 decays (weight 2). A run in which the pump sticks for long with both sides above "
-      "p_3 "
-      "would tell them apart.",
+      "NOT told apart: the interval of {} is wider than +/- 25 % (correlation {:.3f}). These data determine "
+      "c_E + {:.2f} c_I = {} in^3/(s psi): only that sum has an effect where the low side stays at p_3 "
+      "(weight 1) or only p_2 - p_1 decays (weight 2). A run in which the pump sticks for long with both "
+      "sides above p_3 would separate them.",
       names, fit.information.correlation, fit.information.c_I_weight, maths::PlusMinus(fit.combination));
 }
 
@@ -228,7 +225,8 @@ constexpr char kPaperSays[] =
 constexpr double kDescribed = 5;
 constexpr char kNotDescribed[] =
     "NEITHER is to be believed: the model does not describe this run with any leakage. A wrong scale of a "
-    "pressure or of the voltage, a wrong k_1, T_s or beta, or an effect that the model lacks would do that.";
+    "pressure or of the voltage, a wrong k_1, T_s or beta, or an effect that the model lacks would cause "
+    "that.";
 
 ExperimentResult AnalyseMeasured(const ExperimentOptions& options) {
   const std::vector<runs::MeasuredRun> runs = {runs::ReadMeasuredRun(options.measured_run)};
@@ -245,11 +243,11 @@ ExperimentResult AnalyseMeasured(const ExperimentOptions& options) {
                   run.name, run.arm_angle_rad, model.name);
   result.paper_says = kPaperSays;
   result.explanation = fmt::format(
-      "c_E = {}, c_I = {} in^3/(s psi) (95 %, all else known). {} The residuals are {:.2f} of the noise{}. "
-      "One direction suffices: leakage does not know it.",
+      "c_E = {}, c_I = {} in^3/(s psi) (95 %, all else known). {} The residuals are {:.2f} times the "
+      "noise{}. One direction is enough: leakage does not depend on it.",
       maths::PlusMinus(fit.c_E), maths::PlusMinus(fit.c_I), described ? Identifiability(fit) : kNotDescribed,
       fit.rms,
-      fit.rms > 1.2 ? ", so the model lacks something, and the intervals were widened by as much" : "");
+      fit.rms > 1.2 ? ", so the model lacks something, and the intervals were widened accordingly" : "");
   json numbers = Numbers(fit);
   numbers["model_describes_run"] = described;
   numbers["source"] = run.file;
@@ -280,16 +278,16 @@ std::string Explanation(const LeakageFit& fit) {
   };
   return fmt::format(
       "Levenberg-Marquardt on both logarithms gives c_E = {c_E} and c_I = {c_I} in^3/(s psi) (95 %, all else "
-      "known); the residuals are {residuals:.3f} of the noise. {identifiability} While the pump sticks both "
-      "valves are closed; then p_1 + p_2 - 2 p_3 decays with β c_E/V and p_2 - p_1 with β (c_E + 2 c_I)/V: "
-      "the sum of the pressures tells c_E, their difference c_E + 2 c_I. With p_2 - p_1 alone, as on the "
-      "paper's oscilloscope, what these runs tell best is c_E + {c_I_weight:.2f} c_I, and c_I is known "
-      "within {dp_error:.2g} % instead of {error:.2g} % (standard errors; correlation {correlation:.2f}); "
-      "that it is known at all comes from the swings and from when they begin. A run that shows nothing but "
-      "steady creep, one side at p_3, tells c_E + c_I only. The rest of Table 1 is taken as exact and "
-      "matters more than the noise: 1 % more β changes c_E by {beta_c_E:.1f} % and c_I by {beta_c_I:.1f} %, "
-      "1 % more T_s by {T_s_c_E:.1f} % and {T_s_c_I:.1f} %, 1 % more k_1 by {k_1_c_E:.1f} % and "
-      "{k_1_c_I:.1f} %.",
+      "known); the residuals are {residuals:.3f} times the noise. {identifiability} While the pump sticks "
+      "both valves are closed; then p_1 + p_2 - 2 p_3 decays with β c_E/V and p_2 - p_1 with β (c_E + 2 "
+      "c_I)/V: the sum of the pressures gives c_E, their difference c_E + 2 c_I. With p_2 - p_1 alone, as on "
+      "the paper's oscilloscope, these runs determine c_E + {c_I_weight:.2f} c_I best, and c_I is known "
+      "within {dp_error:.2g} % instead of {error:.2g} % (standard errors; correlation {correlation:.2f}); it "
+      "is known at all only from the swings and from when they begin. A run that shows nothing but steady "
+      "creep, with one side at p_3, gives only c_E + c_I. The rest of Table 1 is taken as exact, and its "
+      "errors matter more than the noise: 1 % more β changes c_E by {beta_c_E:.1f} % and c_I by "
+      "{beta_c_I:.1f} %, 1 % more T_s by {T_s_c_E:.1f} % and {T_s_c_I:.1f} %, 1 % more k_1 by {k_1_c_E:.1f} "
+      "% and {k_1_c_I:.1f} %.",
       fmt::arg("c_E", maths::PlusMinus(fit.c_E)), fmt::arg("c_I", maths::PlusMinus(fit.c_I)),
       fmt::arg("residuals", fit.rms), fmt::arg("identifiability", Identifiability(fit)),
       fmt::arg("c_I_weight", fit.all_difference.c_I_weight),
@@ -309,7 +307,7 @@ std::vector<Comparison> Comparisons(const LeakageFit& fit, const StickDecay& dec
            "closed form: decay of p_1 + p_2 - 2 p_3"},
           {"c_I from the first stick", "in^3/(s psi)", "1.0e-6", p.c_I, decay.c_I,
            "closed form: decay of p_2 - p_1, less that of the sum"},
-          {"residuals, in noise", "", "", 1, fit.rms, "1: nothing but the sensors' noise is left"}};
+          {"residuals, in noise", "", "", 1, fit.rms, "1: only the sensors' noise is left"}};
 }
 
 Finding NamesFinding(const LeakageFit& fit, size_t runs, double low, double p_3) {
@@ -317,8 +315,8 @@ Finding NamesFinding(const LeakageFit& fit, size_t runs, double low, double p_3)
       10, "The text adjusts \"c_E and c_f in (11) and (12)\"; Table 1 lists \"p_s\".",
       fmt::format(
           "With c_E and c_I, the only coefficients of (11) and (12), the model explains {} clamped runs to "
-          "{:.3f} of their noise: no third is missing. The side that the pump draws from stays at {:.2f} "
-          "psi while it creeps, Table 1's p_s = {} psi, where (11) and (12) have p_3.",
+          "{:.3f} times their noise: no third coefficient is missing. While the pump creeps, the side that "
+          "it draws from stays at {:.2f} psi: Table 1's p_s = {} psi is what (11) and (12) call p_3.",
           runs, fit.rms, low, p_3),
       "c_f is read as c_I, p_s as p_3."};
 }
@@ -339,8 +337,7 @@ ExperimentResult RunLeakage(const ExperimentOptions& options) {
   ExperimentResult result;
   result.conditions = fmt::format(
       "Table 1, clamped at α = 0, over the stack at 1 kHz, open loop: T_p = 10, 6, -10 and -6 in-lbf from {} "
-      "to "
-      "{} s, then none. Pressures read with {} psi of noise in steps of {:.3f} psi.",
+      "to {} s, then none. Pressures read with {} psi of noise in steps of {:.3f} psi.",
       kStart, kRelease, kPressureNoise, kPressureStep);
   result.paper_says = kPaperSays;
   result.explanation = Explanation(fit);

@@ -212,13 +212,12 @@ Picture PathPicture(const Study& study) {
                  SignalCurve("closed form", with.run, with.closed_form, 3, end, page::Stroke::kDotted)},
       .notes = {},
       .rules = {}};
-  return {
-      "-path",
-      {.caption = fmt::format("The arm is moved from -0.1 to 0.1 rad and back with up to {:.2f} rad/s while "
-                              "the torque that carries it there is commanded.",
-                              with.largest_speed),
-       .panels = {angle, arm, error},
-       .drawing = ""}};
+  return {"-path",
+          {.caption = fmt::format("The arm is moved from -0.1 to 0.1 rad and back at up to {:.2f} rad/s "
+                                  "while the torque that carries it there is commanded.",
+                                  with.largest_speed),
+           .panels = {angle, arm, error},
+           .drawing = ""}};
 }
 
 Picture SpeedPicture(const Study& study) {
@@ -278,11 +277,11 @@ std::string ClampedText(const Study& study) {
   const TorqueSweep& large_sweep = study.sweeps.at(3);
   const TorqueSweep& held_sweep = study.sweeps.at(4);
   return fmt::format(
-      "Clamped, the loop keeps the promise. A step of {step} in-lbf is there (10 to 90 %) in {rise_ms:.0f} "
-      "ms and settles {error:.1f} in-lbf short ({error_with:.1f} with the feed-forward); a step of "
-      "{large_step} takes {large_rise_ms:.0f} ms, because the motor is at its limit. By friction a standing "
-      "pump stays so within ±{friction_band:.1f} in-lbf of its balance. The bandwidth at the arm is "
-      "{small_bandwidth:.1f} Hz for ±{small_amplitude} in-lbf and {large_bandwidth:.1f} for "
+      "With the arm clamped, the loop keeps that promise. A step of {step} in-lbf rises (10 to 90 %) in "
+      "{rise_ms:.0f} ms and settles {error:.1f} in-lbf short ({error_with:.1f} with the feed-forward); a "
+      "step of {large_step} takes {large_rise_ms:.0f} ms, because the motor is at its limit. Friction keeps "
+      "a pump at rest anywhere within ±{friction_band:.1f} in-lbf of its balance. The bandwidth at the arm "
+      "is {small_bandwidth:.1f} Hz for ±{small_amplitude} in-lbf and {large_bandwidth:.1f} for "
       "±{large_amplitude}, where the motor is at its limit {saturated_percent:.0f} % of the time. For "
       "{held_mean} ± {held_amplitude} in-lbf it is {held_bandwidth:.1f}: one side held at p_3 would give "
       "{one_side_bandwidth:.1f}, but the valve lets fluid in within a cycle, and for {both_percent:.0f} % of "
@@ -336,9 +335,8 @@ std::vector<Comparison> Comparisons(const Study& study) {
   for (const TorqueSweep& sweep : study.sweeps) {
     comparisons.push_back({"bandwidth at the arm, " + SweepName(sweep), "Hz", "about 32",
                            LinearBandwidthHz(2), sweep.bandwidth_hz,
-                           fmt::format("expected: linear, both sides compress ({:.0f} % of the time "
-                                       "here; one side: {:.1f} Hz); at the torque "
-                                       "limit {:.0f} % of the time",
+                           fmt::format("expected: linear, both sides compress ({:.0f} % of the time here; "
+                                       "one side: {:.1f} Hz); at the torque limit {:.0f} % of the time",
                                        100 * sweep.both_compress_fraction, LinearBandwidthHz(1),
                                        100 * sweep.saturated_fraction)});
   }

@@ -44,9 +44,9 @@ page::Panel TrialPanel(const GainTrial& trial) {
 std::string Conditions(const WavesStudy& study) {
   return fmt::format(
       "Table 1 with line.wave: frequency {} Hz, {:.0f} % of V_ms on the pump's side of the line, damping {} "
-      "(the latter two ASSUMED), clamped at α = 0, both sides compressing. Coulomb friction left out: at 300 "
-      "Hz it would hold the pump. Gains k_p = {:.4f} V/psi, k_v = {:.2f} psi s/rad (ω_n = {} rad/s, ζ = {}). "
-      "Swept sine of ±{} psi, 6 to 600 Hz, over the stack at {} Hz without command delay.",
+      "(the last two ASSUMED), clamped at α = 0, both sides compressing. Coulomb friction is left out: at "
+      "300 Hz it would hold the pump. Gains k_p = {:.4f} V/psi, k_v = {:.2f} psi s/rad (ω_n = {} rad/s, ζ = "
+      "{}). Swept sine of ±{} psi, 6 to 600 Hz, over the stack at {} Hz without command delay.",
       kWaveHz, 100 * kVolumeFraction, kWaveDamping, study.gains.k_p, study.gains.k_v, kLoopNaturalFrequency,
       kLoopDampingRatio, study.sweep.amplitude, study.sweep.rate_hz);
 }
@@ -65,16 +65,16 @@ std::string Explanation(const WavesStudy& study) {
       "sensed at the other end of the line, and k_p drives it. With k_v as designed the loop is stable up to "
       "k_p = {k_p_limit:.3f} V/psi, {factor:.1f} times the design's; with ζ = .5 throughout, up to ω_n = "
       "{frequency_limit:.0f} rad/s. So the waves allow {frequency_ratio:.1f} times the paper's 150 rad/s, "
-      "and no \"arbitrary placement\". Transducers at the pump would {at_pump} up to {most_factor} times the "
+      "but no \"arbitrary placement\". Transducers at the pump would {at_pump} up to {most_factor} times the "
       "design's k_p. The damping is the least known number here: with half of it the limit is "
-      "{low_damping_limit:.0f} rad/s, with twice {high_damping_limit:.0f}. Sampling and delay turn the "
+      "{low_damping_limit:.0f} rad/s, with twice {high_damping_limit:.0f}. Sampling and delay shift the "
       "phase: at 5 kHz with one tick of delay the limit is {sampled_k_p_limit:.3f} V/psi, confirmed over the "
       "stack: {growth_below:+.2f} 1/s measured at 95 % of it ({expected_below:+.2f} expected), "
       "{growth_above:+.2f} at 105 % ({expected_above:+.2f}). At 1 kHz the delay itself is the limit, at "
-      "{slow_hz:.0f} Hz and {slow_k_p_limit:.3f} V/psi. The frequency goes with the square root of 1/V_p + "
-      "1/(V_ms - V_p). As a line, {line_volume:.2f} in^3 and this inertance are {line_length:.0f} in of "
-      "{bore} in bore (oil of 0.85 kg/l); by the speed of sound, {sound:.0f} in/s, 300 Hz is a quarter wave "
-      "of {quarter_wave:.0f} in.",
+      "{slow_hz:.0f} Hz and {slow_k_p_limit:.3f} V/psi. The frequency varies as the square root of 1/V_p + "
+      "1/(V_ms - V_p). As a line, {line_volume:.2f} in^3 and this inertance correspond to {line_length:.0f} "
+      "in of {bore} in bore (oil of 0.85 kg/l); by the speed of sound, {sound:.0f} in/s, 300 Hz is a quarter "
+      "wave of {quarter_wave:.0f} in.",
       fmt::arg("mode_hz", study.mode_hz), fmt::arg("mode_damping", study.mode_damping),
       fmt::arg("peak_hz", study.peak.frequency_hz), fmt::arg("peak_db", Decibels(study.peak.gain)),
       fmt::arg("k_p_limit", study.highest_k_p()), fmt::arg("factor", study.limits.gain.factor),
@@ -237,7 +237,7 @@ Picture GainPicture(const WavesStudy& study) {
       {.caption = "Real part of the wave's pole as k_p grows, k_v as designed: above 0 the wave grows. "
                   "Below: the stack at 5 kHz with one tick of delay, just below and just above its limit, "
                   "after a step of 0.2 psi.",
-       .panels = {{.title = "What gain the waves allow",
+       .panels = {{.title = "Gain that the waves allow",
                    .x = {.label = "k_p, V/psi", .min = 0},
                    .y = {.label = "growth of the wave, 1/s", .min = -kShownDecay, .max = 40},
                    .curves = growth,
@@ -262,8 +262,8 @@ Picture VolumePicture(const WavesStudy& study) {
     eigenvalues.y.push_back(line.mode_hz);
   }
   return {"-volume",
-          {.caption = "Frequency of the waves by the volume on the pump's side of the "
-                      "line, the line itself and V_ms kept.",
+          {.caption = "Frequency of the waves over the volume on the pump's side of the line; the line "
+                      "itself and V_ms stay the same.",
            .panels = {{.title = "Frequency and line volume",
                        .x = {.label = "volume at the pump, in^3", .min = 0, .max = 1.8},
                        .y = {.label = "frequency, Hz", .min = 0},

@@ -40,8 +40,7 @@ LinearPressureLoop::LinearPressureLoop(const model::LinearModel& model, const Lo
     : timing_(timing) {
   if (!(timing.interval >= 0) || timing.delay_ticks < 0 || timing.delay_ticks > 1 ||
       (timing.interval == 0 && timing.delay_ticks != 0)) {
-    throw std::invalid_argument(
-        "linear pressure loop: a delay of 0 or 1 ticks, the latter only when sampled");
+    throw std::invalid_argument("linear pressure loop: allowed a delay of 0 ticks, or of 1 if sampled");
   }
   const Eigen::MatrixXd full_A = Map(model.A.data(), model.states, model.states);
   const Eigen::VectorXd full_B = Column(model.B.data(), model.states);

@@ -61,12 +61,11 @@ std::string Section(const ReportEntry& entry, bool si) {
 
 std::string FindingsTable(const std::vector<ReportEntry>& entries) {
   std::string out =
-      "<section id=\"findings\">\n<h2>Where the paper contradicts itself or leaves something open</h2>\n"
-      "<p>Nothing of this is patched silently: each is shown by a run, with what the project does about "
-      "it.</p>\n"
-      "<div class=\"table\"><table>\n<thead><tr><th class=\"number\">no.</th><th>the paper</th><th>evidence "
-      "from these runs</th>"
-      "<th>what the project does</th><th>where</th></tr></thead>\n<tbody>\n";
+      "<section id=\"findings\">\n<h2>Where the paper contradicts itself or leaves something "
+      "open</h2>\n<p>None of this is patched silently: a run shows each point, and the table says what the "
+      "project does about it.</p>\n<div class=\"table\"><table>\n<thead><tr><th "
+      "class=\"number\">no.</th><th>the paper</th><th>evidence from these runs</th><th>what the project "
+      "does</th><th>where</th></tr></thead>\n<tbody>\n";
   const std::vector<int> missing = MissingFindings(entries);
   for (int number = 1; number <= kFindings; ++number) {
     const std::string first = "<tr><td class=\"number\">" + std::to_string(number) + "</td>";

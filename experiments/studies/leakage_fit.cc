@@ -91,16 +91,17 @@ void CheckConditions(const runs::MeasuredRun& run, const model::ModelDescription
   if (run.shaft != model::Shaft::kClamped) {
     throw InputError(run.file + ": found a shaft that is " +
                      (run.shaft == model::Shaft::kFree ? "free" : "driven") +
-                     ", allowed a clamped one: the arm's motion would drown the leakage");
+                     ", allowed a clamped one: the arm's motion would mask the leakage");
   }
   if (run.bypass) {
-    throw InputError(run.file +
-                     ": found the bypass open, allowed a run with it closed: p_1 = p_2 leaks nothing");
+    throw InputError(
+        run.file +
+        ": found the bypass open, allowed a run with it closed: at p_1 = p_2 nothing leaks across");
   }
   for (const auto& [signal, name] : {std::pair(&run.p1, "p1"), std::pair(&run.p2, "p2")}) {
     if (!signal->measured()) {
       throw InputError(run.file + ": found no " + name +
-                       ", allowed a run with p1 and p2: the two sides tell c_E from c_I");
+                       ", allowed a run with p1 and p2: only both sides tell c_E from c_I");
     }
   }
   try {
@@ -157,8 +158,8 @@ double StartPressure(const runs::MeasuredRun& run, double p_3, size_t resting, d
   const double p1 = StartOf(run.p1, resting), p2 = StartOf(run.p2, resting);
   if (std::abs(p1 - p2) > 5 * noise) {
     throw InputError(
-        fmt::format("{}: found a start at p_1 = {:.4g} psi, p_2 = {:.4g} psi, allowed a start at "
-                    "rest with both sides at one pressure: wait without voltage before it",
+        fmt::format("{}: found a start at p_1 = {:.4g} psi, p_2 = {:.4g} psi, allowed a start at rest with "
+                    "both sides at the same pressure: wait without voltage before the run",
                     run.file, p1, p2));
   }
   return (p1 + p2) / 2 > p_3 + 5 * noise ? (p1 + p2) / 2 : p_3;

@@ -104,7 +104,7 @@ PumpFriction FitPumpFriction(const runs::MeasuredRun& run, SpeedSource source,
   if (!run.bypass) {
     throw InputError(run.file +
                      ": found the bypass closed (bypass = false), allowed a run with it open: only then is "
-                     "p_2 - p_1 = 0, and the torque all friction");
+                     "p_2 - p_1 = 0 and all torque friction");
   }
   const SteadySpeeds found = FindSteadySpeeds(run, source, parameters.k_1, parameters.J);
   PumpFriction friction;

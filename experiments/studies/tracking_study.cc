@@ -151,10 +151,9 @@ ExperimentResult DescribeTracking(const TrackingStudy& study) {
   ExperimentResult result;
   result.conditions = fmt::format(
       "Table 1, clamped at α = 0, eq. (16) over the stack at {} Hz without delay, k_p = {:.4f} V/psi and k_v "
-      "= "
-      "{:.2f} psi s/rad (ω_n = {} rad/s, ζ = {}, both sides compressing), |T_p| <= {} in-lbf. Reference: {} "
-      "Hz {}, ±{} psi (the paper prints neither). Errors are over the last {} s; the steady state is that of "
-      "a reference held at {} psi. Feed-forward: {:.5f} V/psi.",
+      "= {:.2f} psi s/rad (ω_n = {} rad/s, ζ = {}, both sides compressing), |T_p| <= {} in-lbf. Reference: "
+      "{} Hz {}, ±{} psi (the paper prints neither). Errors are over the last {} s; the steady state is that "
+      "of a reference held at {} psi. Feed-forward: {:.5f} V/psi.",
       kLoopRate, study.gains.k_p, study.gains.k_v, kLoopNaturalFrequency, kLoopDampingRatio, p.T_pmax,
       kWaveFrequency, wave, kWaveAmplitude, kWaveDuration - kWaveSettled, kWaveAmplitude, study.feedforward);
   result.comparisons = {
@@ -163,7 +162,7 @@ ExperimentResult DescribeTracking(const TrackingStudy& study) {
        "expected: balance of eqs. (4) and (16) while the pump creeps"},
       {"steady-state error with feed-forward", "psi", "could be eliminated",
        kWaveAmplitude - SettledPressure(kWaveAmplitude, study.feedforward), study.steady_state_error_with,
-       "left is T_s, which a term linear in the reference cancels at one reference only"},
+       "T_s remains, which a term linear in the reference cancels at one reference only"},
       {"RMS error without feed-forward", "psi", "", page::kAutomatic, study.error.rms, ""},
       {"RMS error with feed-forward", "psi", "", page::kAutomatic, study.error_with.rms, ""},
       {"time at the torque limit, without feed-forward", "%", "", page::kAutomatic,
@@ -188,10 +187,9 @@ ExperimentResult DescribeTracking(const TrackingStudy& study) {
   if (!study.noisy.time.empty()) {
     result.pictures.push_back(WavePicture(
         "-noise",
-        caption +
-            fmt::format(" Each pressure is measured with Gaussian noise of {} psi, and the loop acts on "
-                        "what is measured (assumed: the paper shows noise and prints no level).",
-                        kPaperPressureNoise),
+        caption + fmt::format(" Each pressure is measured with Gaussian noise of {} psi, and the loop acts "
+                              "on what is measured (assumed: the paper shows noise but prints no level).",
+                              kPaperPressureNoise),
         study.noisy, {}));
   }
   return result;
@@ -203,9 +201,9 @@ std::string SteadyStateText(const TrackingStudy& study) {
       "Held at {} psi, dp settles {:.1f} psi short. Leakage always pulls it down, so in the end the pump "
       "creeps forward, and an error must pay for D dp, for the creep through the k_v term, and for T_s. The "
       "feed-forward of {:.5f} V/psi pays for the first two and leaves {:.1f} psi at every reference, because "
-      "friction does not grow with it; {:.5f} V/psi pays for friction too, but at {} psi only. A pump that "
-      "stands between {:.1f} and {:.1f} psi (without feed-forward) stays so, and leakage carries dp to the "
-      "lower end.",
+      "friction does not grow with it; {:.5f} V/psi pays for friction too, but at {} psi only. A pump at "
+      "rest with dp between {:.1f} and {:.1f} psi (without feed-forward) stays at rest, and leakage carries "
+      "dp to the lower end.",
       kWaveAmplitude, study.steady_state_error, study.feedforward, study.steady_state_error_with,
       study.tuned_feedforward, kWaveAmplitude, band.low, band.high);
 }

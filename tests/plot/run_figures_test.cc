@@ -42,7 +42,7 @@ TEST(RunFigures, ColumnMissing) {
     PressureFigure(run);
     FAIL();
   } catch (const InputError& error) {
-    EXPECT_STREQ(error.what(), "run.csv: found no column p2_psi, needed is a table of hydro-log export");
+    EXPECT_STREQ(error.what(), "run.csv: found no column p2_psi, allowed a table of hydro-log export");
   }
 }
 
