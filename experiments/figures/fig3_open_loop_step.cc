@@ -13,6 +13,7 @@
 #include "experiments/runs/shipped_models.h"
 #include "experiments/studies/json_text.h"
 #include "model/equations/equations.h"
+#include "model/integrate/runge_kutta.h"
 
 namespace hydro::experiments {
 namespace {
@@ -60,8 +61,11 @@ WithoutValves RunWithoutValves(const model::ModelDescription& model) {
   equations.Start(model.parameters.p_3, y.data(), &mode);
   mode.pump = 1;
   const double voltage = kTorque / model.parameters.k_1;
-  const size_t n = static_cast<size_t>(equations.states());
-  std::array<std::array<double, model::kMaxStates>, 4> rate{};
+  const auto rates = [&](double time, const double* at, double* rate) {
+    equations.Rates(time, voltage, mode, at, rate);
+  };
+  std::array<std::array<double, model::kMaxStates>, 4> k{};
+  std::array<double, model::kMaxStates> stage{}, next{};
   WithoutValves run;
   for (int i = 0; i == 0 || y[model::kMotorSpeed] > 0; ++i) {
     const double time = i * kStep;
@@ -71,15 +75,10 @@ WithoutValves RunWithoutValves(const model::ModelDescription& model) {
     run.dp.push_back(y[model::kP2] - y[model::kP1]);
     if (run.dp.back() > run.dp[run.peak]) run.peak = run.dp.size() - 1;
     if (y[model::kP1] < 0 && run.negative_since == 0) run.negative_since = time;
-    for (size_t stage = 0; stage < 4; ++stage) {
-      auto at = y;
-      const double reach = stage == 0 ? 0 : (stage == 3 ? kStep : kStep / 2);
-      for (size_t k = 0; k < n && stage > 0; ++k) at[k] += reach * rate[stage - 1][k];
-      equations.Rates(time + reach, voltage, mode, at.data(), rate[stage].data());
-    }
-    for (size_t k = 0; k < n; ++k) {
-      y[k] += kStep / 6 * (rate[0][k] + 2 * rate[1][k] + 2 * rate[2][k] + rate[3][k]);
-    }
+    rates(time, y.data(), k[0].data());
+    model::RungeKuttaStep(equations.states(), time, kStep, y.data(), k[0].data(), k[1].data(), k[2].data(),
+                          k[3].data(), stage.data(), next.data(), rates);
+    y = next;
   }
   return run;
 }

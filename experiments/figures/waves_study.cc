@@ -8,6 +8,7 @@
 #include <string>
 
 #include "base/units.h"
+#include "experiments/runs/clamped_loop_config.h"
 #include "experiments/runs/shipped_models.h"
 #include "experiments/studies/bode_case.h"
 #include "settings/model_file.h"
@@ -52,33 +53,15 @@ GainTrial RunTrial(const model::ModelDescription& model, const LoopTiming& timin
                    const pressure_ctrl::PressureGains& gains, double factor, const StackRunner& run_stack) {
   constexpr double kDuration = 1.5;
   const double rate = 1 / timing.interval;
-  const tables::Table table =
-      run_stack({fmt::format("waves-{}-of-limit", factor),
-                 fmt::format(R"([model]
-file = "model.toml"
-shaft = "clamped"
-initial_pressure_psi = {}
-[time]
-mode = "lockstep"
-duration_s = {}
-[plant]
-rate_hz = {}
-command_delay_ticks = {}
-[pressure]
-k_p = {}
-k_v = {}
-[position]
-sample_interval_s = {}
-[reference]
-signal = "pressure"
-kind = "steps"
-steps = [[0.1, {}]]
-[limits]
-pressure_psi = inf
-)",
-                             kInitialPressure, kDuration, std::round(rate), timing.delay_ticks, gains.k_p,
-                             gains.k_v, timing.interval, kTrialStep),
-                 settings::FormatModel(model)});
+  const tables::Table table = run_stack(
+      {fmt::format("waves-{}-of-limit", factor),
+       ClampedLoopConfig({.initial_pressure = kInitialPressure,
+                          .duration = kDuration,
+                          .rate_hz = std::round(rate),
+                          .delay_ticks = timing.delay_ticks,
+                          .gains = gains,
+                          .reference = fmt::format("kind = \"steps\"\nsteps = [[0.1, {}]]\n", kTrialStep)}),
+       settings::FormatModel(model)});
   GainTrial trial = {factor, table.Find("time_s")->values, table.Find("p2_psi")->values, 0, 0};
   const std::vector<double>& p1 = table.Find("p1_psi")->values;
   for (size_t i = 0; i < p1.size(); ++i) trial.dp[i] -= p1[i];

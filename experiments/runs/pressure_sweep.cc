@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "experiments/runs/clamped_loop_config.h"
 #include "settings/model_file.h"
 
 namespace hydro::experiments {
@@ -18,38 +19,16 @@ constexpr double kAbove = 1.4;
 std::string Configuration(const PressureSweep& sweep, const SweptBand& band) {
   const double initial =
       std::isnan(sweep.initial_pressure) ? sweep.model.parameters.p_3 : sweep.initial_pressure;
-  // The command of tick k acts from tick k on, and the reference is sampled at every tick.
-  return fmt::format(R"([model]
-file = "model.toml"
-shaft = "clamped"
-arm_angle_rad = {}
-initial_pressure_psi = {}
-[time]
-mode = "lockstep"
-duration_s = {}
-[plant]
-rate_hz = {}
-command_delay_ticks = 0
-[pressure]
-k_p = {}
-k_v = {}
-[position]
-sample_interval_s = {}
-[reference]
-signal = "pressure"
-kind = "chirp"
-offset = {}
-amplitude = {}
-first_frequency_hz = {}
-last_frequency_hz = {}
-start_s = {}
-duration_s = {}
-[limits]
-pressure_psi = inf
-)",
-                     sweep.arm_angle, initial, sweep.rest_s + band.duration_s, sweep.rate_hz, sweep.gains.k_p,
-                     sweep.gains.k_v, 1 / sweep.rate_hz, sweep.offset, sweep.amplitude,
-                     band.first_hz / kBelow, band.last_hz * kAbove, sweep.rest_s, band.duration_s);
+  return ClampedLoopConfig(
+      {.arm_angle = sweep.arm_angle,
+       .initial_pressure = initial,
+       .duration = sweep.rest_s + band.duration_s,
+       .rate_hz = sweep.rate_hz,
+       .gains = sweep.gains,
+       .reference = fmt::format("kind = \"chirp\"\noffset = {}\namplitude = {}\nfirst_frequency_hz = {}\n"
+                                "last_frequency_hz = {}\nstart_s = {}\nduration_s = {}\n",
+                                sweep.offset, sweep.amplitude, band.first_hz / kBelow, band.last_hz * kAbove,
+                                sweep.rest_s, band.duration_s)});
 }
 
 }  // namespace

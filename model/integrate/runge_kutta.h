@@ -1,5 +1,5 @@
 // The classical Runge-Kutta method, which stands here only; each stepper adds its own error control. A
-// template, for .cc files of model/ only.
+// template, for .cc files only.
 #pragma once
 
 namespace hydro::model {
