@@ -54,8 +54,8 @@ class SundialsStepper {
   void CopyToSolver(const Point& now);
   void CopyFromSolver(Point* at) const;
 
-  // Takes the step by Euler's rule when it is too short for the solver to start with; the rule's error, of the
-  // order of the step's square, is then below rounding. False: it is not, and nothing has been done.
+  // Takes the step by Euler's rule when it is too short for the solver to start with; the rule's error, of
+  // the order of the step's square, is then below rounding. False: it is not, and nothing has been done.
   bool StepsByEuler(const Point& now, double stop, Point* next);
   // The same within the step that was taken last.
   bool InterpolatesByEuler(const Point& now, double time, Point* at) const;

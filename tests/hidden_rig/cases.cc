@@ -193,7 +193,12 @@ double GapBeyondValues(const Truth& truth, uint64_t seed, const Options& options
   return RootMeanSquare(rest, std::vector<double>(rest.size(), 0.0));
 }
 
-Truth Solve(const Case& c, const Options& options) {
+namespace {
+
+bool IsSign(const Case& c) { return c.effects == std::vector<std::string>{"sensor.sign"}; }
+
+// The rig before anything is added to it, and the model that is given with it.
+Truth Beginning(const Case& c) {
   Truth truth;
   // The arm's weight differs from rig to rig.
   truth.setup.base.mgl = truth.given.mgl = 200 + static_cast<double>(c.seed % 5) * 50;
@@ -210,38 +215,39 @@ Truth Solve(const Case& c, const Options& options) {
       truth.given.*form.value *= c.factor;
     }
   }
-  const auto put = [&](double size) {
-    truth.effects.clear();
-    truth.setup.effects = {};
-    truth.setup.outside = {};
-    if (c.outside >= 0) {
-      truth.setup.outside.*OutsideForms()[c.outside].value = size;
-    }
-    for (const auto& id : c.effects) {
-      const EffectForm& form = FindEffect(id);
-      truth.effects.push_back(form.put(c.gap > 0 ? size : form.plain, &truth.setup.effects));
-    }
-    if (c.effects == std::vector<std::string>{"sensor.sign"}) {
-      const bool arm = c.size == "small";
-      truth.setup.effects.sign_channel = arm                  ? Channel::kArmAngle
-                                         : c.size == "medium" ? Channel::kP1
-                                                              : Channel::kMotorSpeed;
-      truth.effects[0].channel = arm ? "arm_angle" : c.size == "medium" ? "p1" : "motor_speed";
-    }
-  };
-  put(0);
-  if (c.gap == 0 || c.effects == std::vector<std::string>{"sensor.sign"}) {
-    if (c.kind == "single") put(1);
-    if (c.kind != "nothing") truth.gap = Gap(truth, c.seed, options);
-    return truth;
+  return truth;
+}
+
+// Adds what the case has, at this size.
+void Put(const Case& c, double size, Truth* truth) {
+  truth->effects.clear();
+  truth->setup.effects = {};
+  truth->setup.outside = {};
+  if (c.outside >= 0) {
+    truth->setup.outside.*OutsideForms()[c.outside].value = size;
   }
-  // Gaps grow roughly as a power of the size: takes the secant in logarithms, kept within the known bracket.
+  for (const auto& id : c.effects) {
+    const EffectForm& form = FindEffect(id);
+    truth->effects.push_back(form.put(c.gap > 0 ? size : form.plain, &truth->setup.effects));
+  }
+  if (IsSign(c)) {
+    const bool arm = c.size == "small";
+    truth->setup.effects.sign_channel = arm                  ? Channel::kArmAngle
+                                        : c.size == "medium" ? Channel::kP1
+                                                             : Channel::kMotorSpeed;
+    truth->effects[0].channel = arm ? "arm_angle" : c.size == "medium" ? "p1" : "motor_speed";
+  }
+}
+
+// Searches the size for which the gap is the case's. Gaps grow roughly as a power of the size: takes the
+// secant in logarithms, kept within the known bracket. False: no size reaches it.
+bool FindSize(const Case& c, const Options& options, Truth* truth) {
   double low = c.outside >= 0 ? OutsideForms()[c.outside].smallest : FindEffect(c.effects[0]).smallest;
   double high = c.outside >= 0 ? OutsideForms()[c.outside].largest : FindEffect(c.effects[0]).largest;
   const auto gap_at = [&](double size) {
-    put(size);
+    Put(c, size, truth);
     try {
-      return Gap(truth, c.seed, options);
+      return Gap(*truth, c.seed, options);
     } catch (const std::runtime_error&) {
       return 1000.0;
     }
@@ -249,23 +255,20 @@ Truth Solve(const Case& c, const Options& options) {
   double low_gap = gap_at(low);
   double high_gap = 1000;
   double size = low;
-  truth.gap = low_gap;
-  if (low_gap >= c.gap) {
-    truth.reached = std::abs(low_gap / c.gap - 1) < 0.1;
-    return truth;
-  }
+  truth->gap = low_gap;
+  if (low_gap >= c.gap) return std::abs(low_gap / c.gap - 1) < 0.1;
   double guess = std::min(high, low * std::max(1.5, c.gap / std::max(low_gap, 1e-3)));
   for (int i = 0; i < 24; ++i) {
     size = guess;
-    truth.gap = gap_at(size);
-    if (std::abs(truth.gap / c.gap - 1) < 0.05) return truth;
-    if (truth.gap < c.gap) {
+    truth->gap = gap_at(size);
+    if (std::abs(truth->gap / c.gap - 1) < 0.05) return true;
+    if (truth->gap < c.gap) {
       low = size;
-      low_gap = truth.gap;
+      low_gap = truth->gap;
       if (size >= 0.999 * high) break;  // as large as it gets
     } else {
       high = size;
-      high_gap = truth.gap;
+      high_gap = truth->gap;
     }
     const double fraction =
         high_gap < 999
@@ -275,7 +278,20 @@ Truth Solve(const Case& c, const Options& options) {
     if (high_gap < 999) guess = std::min(guess, high * 0.995);
     if (high / low < 1.0005) break;
   }
-  truth.reached = false;
+  return false;
+}
+
+}  // namespace
+
+Truth Solve(const Case& c, const Options& options) {
+  Truth truth = Beginning(c);
+  Put(c, 0, &truth);
+  if (c.gap == 0 || IsSign(c)) {
+    if (c.kind == "single") Put(c, 1, &truth);
+    if (c.kind != "nothing") truth.gap = Gap(truth, c.seed, options);
+    return truth;
+  }
+  truth.reached = FindSize(c, options, &truth);
   return truth;
 }
 

@@ -11,30 +11,10 @@
 #include "log/log_writer.h"
 #include "settings/stack_config.h"
 #include "sim/simulation.h"
+#include "tests/settings/small_texts.h"
 
 namespace hydro::hydro_log {
 namespace {
-
-const char* const kModel = R"(
-name = "test"
-[parameters]
-k_1 = 4.0
-T_pmax = 40.0
-D = 0.00796
-J = 0.03
-b = 0.01455
-T_s = 4.0
-f = 0.0
-beta = 247000.0
-V_ms = 3.16
-c = 3.68379
-c_E = 6.5e-6
-c_I = 1.0e-6
-p_3 = 100.0
-k_2 = 3.68
-J_a = 23.3
-mgl = 0.0
-)";
 
 const char* const kConfig = R"(
 [model]
@@ -63,7 +43,8 @@ motor_speed_rad_s = 0.1
 runs::RunLog Recorded() {
   std::string folder = ::testing::TempDir() + "/hydro_replay_XXXXXX";  // tests run side by side
   const std::string file = std::string(mkdtemp(folder.data())) + "/run.lcmlog";
-  const settings::StackConfig config = settings::ParseStackConfig(kConfig, "test.toml", kModel, "model.toml");
+  const settings::StackConfig config =
+      settings::ParseStackConfig(kConfig, "test.toml", settings::kModelText, "model.toml");
   log::LogWriter writer(file, Opening::kTemporary);
   const sim::SimulationResult result = sim::Simulate(config, [&](const bus::RawMessage& m) {
     writer.Append(m.channel, m.data, static_cast<size_t>(m.size), m.receive_utime);

@@ -13,6 +13,7 @@
 
 #include "tests/free_udp_port.h"
 #include "tests/launch/launched_program.h"
+#include "tests/settings/small_texts.h"
 
 namespace hydro::launch {
 
@@ -48,11 +49,7 @@ class StackFolder {
 
   // A valid configuration with `more` at its end.
   void WriteConfig(const std::string& more) {
-    std::ofstream(folder_ / "model.toml")
-        << "name = \"test\"\n[parameters]\n"
-           "k_1 = 4.0\nT_pmax = 40.0\nD = 0.00796\nJ = 0.03\nb = 0.01455\nT_s = 4.0\n"
-           "f = 0.0\nbeta = 247000.0\nV_ms = 3.16\nc = 3.68379\nc_E = 6.5e-6\n"
-           "c_I = 1.0e-6\np_3 = 100.0\nk_2 = 3.68\nJ_a = 23.3\nmgl = 0.0\n";
+    std::ofstream(folder_ / "model.toml") << settings::kModelText;
     std::ofstream(config())
         << "[model]\nfile = \"model.toml\"\n[bus]\nurl = \"" << url_
         << "\"\n[plant]\nrate_hz = 1000\n[pressure]\nnatural_frequency_rad_s = 150.0\n"
