@@ -53,29 +53,65 @@ std::vector<RunData> AllCorrected(const std::vector<RunData>& runs, const Correc
   return corrected;
 }
 
-}  // namespace
+// Whether the delays of all runs' clocks were found.
+bool AllFound(const std::vector<RunData>& runs, const std::vector<ClockDelay>& clocks) {
+  return std::all_of(runs.begin(), runs.end(), [&](const RunData& run) {
+    return std::any_of(clocks.begin(), clocks.end(),
+                       [&](const auto& clock) { return clock.run == run.name; });
+  });
+}
 
-void CorrectClocks(const model::ModelDescription& model, const std::vector<size_t>& allowed_base, int jobs,
-                   std::vector<RunData>* runs, std::vector<RunData>* held_out,
-                   std::vector<ClockDelay>* clocks) {
-  if (clocks->empty() || runs->empty()) return;
-  for (const RunData& run : *runs) {
-    const bool found =
-        std::any_of(clocks->begin(), clocks->end(), [&](const auto& clock) { return clock.run == run.name; });
-    if (!found) return;
-  }
-  Hypothesis best;
-  best.model = model;
+// The model with those parameters free that change with the clocks.
+Hypothesis Begin(const model::ModelDescription& model, const std::vector<size_t>& allowed_base) {
+  Hypothesis hypothesis;
+  hypothesis.model = model;
   for (const size_t i : allowed_base) {
     const std::string& name = model::BaseParameters()[i].info.name;
     for (const char* free : {"J", "b", "T_s", "beta", "c_E"}) {
-      if (name == free) best.base.push_back(i);
+      if (name == free) hypothesis.base.push_back(i);
     }
   }
-  double least = std::numeric_limits<double>::infinity();
-  Correction at = {0, 0, 0};
-  const auto consider = [&](const Correction& correction, int iterations) {
-    const std::vector<RunData> moved = AllCorrected(*runs, correction, model.parameters);
+  return hypothesis;
+}
+
+// Looks for the correction with which the model fits best, one clock and one step at a time.
+class CorrectionSearch {
+ public:
+  CorrectionSearch(const std::vector<RunData>& runs, Hypothesis from, int jobs)
+      : runs_(runs), model_(from.model.parameters), best_(std::move(from)), jobs_(jobs) {}
+
+  Correction Run() {
+    Consider(at_, 12);
+    for (const int step : kSteps) {
+      for (int round = 0; round < kRounds; ++round) {
+        if (!MoveEachClock(step)) break;
+      }
+    }
+    return at_;
+  }
+
+ private:
+  // Whether any clock moved.
+  bool MoveEachClock(int step) {
+    const int most = static_cast<int>(kMostCorrection / Interval(runs_.front()));
+    bool moved = false;
+    for (size_t clock = 0; clock < at_.size(); ++clock) {
+      for (const int sign : {1, -1}) {
+        Correction next = at_;
+        bool further = false;
+        do {
+          next[clock] = at_[clock] + sign * step;
+          further = std::abs(next[clock]) <= most && Consider(next, 3);
+          moved |= further;
+        } while (further);
+      }
+    }
+    return moved;
+  }
+
+  // Takes the correction if the model fits better with it than with the best so far.
+  bool Consider(const Correction& correction, int iterations) {
+    const std::vector<RunData> moved = AllCorrected(runs_, correction, model_);
     std::vector<const RunData*> pointers;
     std::vector<model::StartState> starts;
     for (const RunData& run : moved) {
@@ -85,41 +121,38 @@ void CorrectClocks(const model::ModelDescription& model, const std::vector<size_
     FitOptions options;
     options.most_iterations = iterations;
     options.tolerance = 1e-3;
-    options.jobs = jobs;
-    const Fitted fitted = Fit(best, pointers, starts, options);
-    if (!fitted.ok() || !(fitted.squared_gap() < least)) return false;
-    least = fitted.squared_gap();
-    best = fitted.hypothesis;
-    at = correction;
+    options.jobs = jobs_;
+    const Fitted fitted = Fit(best_, pointers, starts, options);
+    if (!fitted.ok() || !(fitted.squared_gap() < least_)) return false;
+    least_ = fitted.squared_gap();
+    best_ = fitted.hypothesis;
+    at_ = correction;
     return true;
-  };
-  consider(at, 12);
-  const int most = static_cast<int>(kMostCorrection / Interval(runs->front()));
-  for (const int step : kSteps) {
-    bool moved = true;
-    for (int round = 0; round < kRounds && moved; ++round) {
-      moved = false;
-      for (size_t clock = 0; clock < at.size(); ++clock) {
-        for (const int sign : {1, -1}) {
-          Correction next = at;
-          bool further = false;
-          do {
-            next[clock] = at[clock] + sign * step;
-            further = std::abs(next[clock]) <= most && consider(next, 3);
-            moved |= further;
-          } while (further);
-        }
-      }
-    }
   }
-  if (at == Correction{0, 0, 0}) return;
+
+  const std::vector<RunData>& runs_;
+  model::Parameters model_;  // as given
+  Hypothesis best_;
+  int jobs_;
+  double least_ = std::numeric_limits<double>::infinity();
+  Correction at_ = {0, 0, 0};
+};
+
+}  // namespace
+
+void CorrectClocks(const model::ModelDescription& model, const std::vector<size_t>& allowed_base, int jobs,
+                   std::vector<RunData>* runs, std::vector<RunData>* held_out,
+                   std::vector<ClockDelay>* clocks) {
+  if (clocks->empty() || runs->empty() || !AllFound(*runs, *clocks)) return;
+  const Correction found = CorrectionSearch(*runs, Begin(model, allowed_base), jobs).Run();
+  if (found == Correction{0, 0, 0}) return;
   for (ClockDelay& clock : *clocks) {
-    const double by = at[ClockOf(clock.signals.front())] * Interval(runs->front());
+    const double by = found[ClockOf(clock.signals.front())] * Interval(runs->front());
     clock.delay += by;
     clock.error = std::hypot(clock.error, by);
   }
-  *runs = AllCorrected(*runs, at, model.parameters);
-  *held_out = AllCorrected(*held_out, at, model.parameters);
+  *runs = AllCorrected(*runs, found, model.parameters);
+  *held_out = AllCorrected(*held_out, found, model.parameters);
 }
 
 }  // namespace hydro::diagnose

@@ -149,68 +149,85 @@ void AddShare(std::vector<Location>* locations, Location more) {
   locations->push_back(std::move(more));
 }
 
+size_t LargestBalance(const Found& found) {
+  return static_cast<size_t>(std::max_element(found.energy.begin(), found.energy.end()) -
+                             found.energy.begin());
+}
+
+// What the search for a place has come to.
+struct Search {
+  std::vector<SmoothedRun> smoothed;
+  Found found;
+  double all = 0;  // the total of `found` before any correction
+  std::array<std::vector<Dependence>, kBalances> ranked;
+  Localisation result;
+};
+
+// The sensors' share is what correcting their offsets removes, if that is most of the disagreement; the
+// search goes on with what is left.
+void CorrectOffsets(const model::ModelDescription& model, const std::vector<const RunData*>& runs,
+                    Search* search) {
+  const PressureOffsets offsets = RestOffsets(model, runs);
+  if (offsets.p1 == 0 && offsets.p2 == 0) return;
+  std::vector<SmoothedRun> corrected = SmoothAll(model, runs, offsets);
+  Found left = Weigh(corrected, runs);
+  if (left.total >= kMostlyOffsets * search->all) return;
+  char where[96];
+  std::snprintf(where, sizeof where, "p1 reads %+.3g psi, p2 %+.3g psi at the valves' pressure", offsets.p1,
+                offsets.p2);
+  search->result.location.push_back({"sensor", 1 - left.total / search->all, where,
+                                     WindowsOf(search->found.blocks[LargestBalance(search->found)], runs)});
+  search->smoothed = std::move(corrected);
+  search->found = std::move(left);
+}
+
+// Places the disagreement of one balance: with the balance itself, with the command or with a sensor.
+void Place(const Explanations& explanations, const std::vector<const RunData*>& runs, size_t b,
+           Search* search) {
+  const double share = search->found.energy[b] / search->all;
+  if (share < kSmallestShare) return;
+  const Balance balance = static_cast<Balance>(b);
+  const Blocks& blocks = search->found.blocks[b];
+  std::vector<Location>& location = search->result.location;
+  std::vector<Dependence>& ranked = search->ranked[b];
+  ranked = Rank(blocks, explanations.States(balance, blocks.duration < kQuick), search->smoothed, balance);
+  double own = share;
+  // Moves to `to` the share that its variables explain clearly better than the balance's own do.
+  const auto give = [&](const char* to, std::vector<Variable> variables) {
+    if (variables.empty() || own < share) return;
+    const std::vector<Dependence> others = Rank(blocks, std::move(variables), search->smoothed, balance);
+    const double explained = others.front().explained;
+    if (explained <= ranked.front().explained + kPlainly) return;
+    const double part = share * std::min(1.0, explained);
+    own -= part;
+    AddShare(&location, {to, part, WhereOf(blocks, {others.front()}, runs), WindowsOf(blocks, runs)});
+    ranked.insert(ranked.begin(), others.front());
+  };
+  if (balance == Balance::kPumpTorque) give("command", explanations.Commands());
+  give("sensor", explanations.Lateness(balance));
+  if (own < kSmallestShare) return;
+  location.push_back({kNames[b], own, WhereOf(blocks, ranked, runs), WindowsOf(blocks, runs)});
+}
+
 }  // namespace
 
 Localisation Locate(const model::ModelDescription& model, const std::vector<const RunData*>& runs) {
-  Localisation result;
-  std::vector<SmoothedRun> smoothed = SmoothAll(model, runs, {});
-  Found found = Weigh(smoothed, runs);
-  if (found.total == 0) return result;
-  const double all = found.total;
-
-  // The sensors' share is what correcting their offsets removes, if that is most of the disagreement.
-  double sensor = 0;
-  const PressureOffsets offsets = RestOffsets(model, runs);
-  if (offsets.p1 != 0 || offsets.p2 != 0) {
-    std::vector<SmoothedRun> corrected = SmoothAll(model, runs, offsets);
-    Found left = Weigh(corrected, runs);
-    if (left.total < kMostlyOffsets * all) {
-      sensor = 1 - left.total / all;
-      char where[96];
-      std::snprintf(where, sizeof where, "p1 reads %+.3g psi, p2 %+.3g psi at the valves' pressure",
-                    offsets.p1, offsets.p2);
-      const size_t largest = static_cast<size_t>(std::max_element(found.energy.begin(), found.energy.end()) -
-                                                 found.energy.begin());
-      result.location.push_back({"sensor", sensor, where, WindowsOf(found.blocks[largest], runs)});
-      smoothed = std::move(corrected);
-      found = std::move(left);
-    }
-  }
-
-  const Explanations explanations(smoothed, runs);
-  std::array<std::vector<Dependence>, kBalances> ranked;
-  for (size_t b = 0; b < kBalances; ++b) {
-    const double share = found.energy[b] / all;
-    if (share < kSmallestShare) continue;
-    const Balance balance = static_cast<Balance>(b);
-    const Blocks& blocks = found.blocks[b];
-    ranked[b] = Rank(blocks, explanations.States(balance, blocks.duration < kQuick), smoothed, balance);
-    double own = share;
-    // Moves to `to` the share that its variables explain clearly better than the balance's own do.
-    const auto give = [&](const char* to, std::vector<Variable> variables) {
-      if (variables.empty() || own < share) return;
-      const std::vector<Dependence> others = Rank(blocks, std::move(variables), smoothed, balance);
-      const double explained = others.front().explained;
-      if (explained <= ranked[b].front().explained + kPlainly) return;
-      const double part = share * std::min(1.0, explained);
-      own -= part;
-      AddShare(&result.location,
-               {to, part, WhereOf(blocks, {others.front()}, runs), WindowsOf(blocks, runs)});
-      ranked[b].insert(ranked[b].begin(), others.front());
-    };
-    if (balance == Balance::kPumpTorque) give("command", explanations.Commands());
-    give("sensor", explanations.Lateness(balance));
-    if (own < kSmallestShare) continue;
-    result.location.push_back({kNames[b], own, WhereOf(blocks, ranked[b], runs), WindowsOf(blocks, runs)});
-  }
-  std::stable_sort(result.location.begin(), result.location.end(),
+  Search search;
+  search.smoothed = SmoothAll(model, runs, {});
+  search.found = Weigh(search.smoothed, runs);
+  search.all = search.found.total;
+  if (search.all == 0) return {};
+  CorrectOffsets(model, runs, &search);
+  const Explanations explanations(search.smoothed, runs);
+  for (size_t b = 0; b < kBalances; ++b) Place(explanations, runs, b, &search);
+  std::vector<Location>& location = search.result.location;
+  std::stable_sort(location.begin(), location.end(),
                    [](const Location& a, const Location& b) { return a.share > b.share; });
-  if (!result.location.empty() && result.location.front().balance != "sensor") {
-    const size_t b = static_cast<size_t>(std::max_element(found.energy.begin(), found.energy.end()) -
-                                         found.energy.begin());
-    Tabulate(found.blocks[b], ranked[b], b, &result.missing);
+  if (!location.empty() && location.front().balance != "sensor") {
+    const size_t b = LargestBalance(search.found);
+    Tabulate(search.found.blocks[b], search.ranked[b], b, &search.result.missing);
   }
-  return result;
+  return std::move(search.result);
 }
 
 }  // namespace hydro::diagnose

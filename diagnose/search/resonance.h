@@ -2,7 +2,7 @@
 // step with the measured one.
 #pragma once
 
-#include "diagnose/search/search.h"
+#include "diagnose/search/explanation.h"
 
 namespace hydro::diagnose {
 

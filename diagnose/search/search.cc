@@ -7,7 +7,9 @@
 #include "diagnose/fit/start_fit.h"
 #include "diagnose/search/parameter_instead.h"
 #include "diagnose/search/periodic_starts.h"
+#include "diagnose/search/refits.h"
 #include "diagnose/search/resonance.h"
+#include "diagnose/search/scan.h"
 
 namespace hydro::diagnose {
 
@@ -18,8 +20,6 @@ constexpr size_t kRefitsAtFirst = 6;
 constexpr size_t kRefitsLater = 5;
 // From how many starting points each of them is refitted.
 constexpr size_t kStarts = 3;
-// A change is not refitted if the score test expects less of it than this share of the best.
-constexpr double kWorthTrying = 0.15;
 // How many hypotheses go on to the next step.
 constexpr size_t kBeam = 2;
 // A hypothesis is dropped if its sum of squares is this many times the best one's.
@@ -35,13 +35,6 @@ constexpr double kCloseEnough = 1.25;
 // Above this squared gap of the fit, an explanation with a change removed is not refitted from other starts.
 constexpr double kNear = 3;
 
-std::vector<model::StartState> MeasuredStarts(const std::vector<const RunData*>& runs) {
-  std::vector<model::StartState> starts;
-  starts.reserve(runs.size());
-  for (const RunData* run : runs) starts.push_back(run->start);
-  return starts;
-}
-
 // Of two that predict equally well, prefers the one with fewer new numbers, and a wrong value to a missing
 // effect.
 double Cost(const Explanation& one) {
@@ -50,11 +43,6 @@ double Cost(const Explanation& one) {
     cost += parameter.unknown.kind == model::Unknown::Kind::kBase ? 0.005 : 0.01;
   }
   return cost;
-}
-
-bool SameChanges(const Hypothesis& a, const Hypothesis& b) {
-  if (a.changes.size() != b.changes.size()) return false;
-  return std::all_of(a.changes.begin(), a.changes.end(), [&](const Change& change) { return b.Has(change); });
 }
 
 // A model cannot contain an effect twice, and nothing is changed twice.
@@ -156,7 +144,7 @@ class Searcher {
         scanned_alone_ = scanned;
       }
       const bool exchange = most < std::numeric_limits<double>::infinity();
-      Pick(from, &scanned, step == 0 ? kRefitsAtFirst : kRefitsLater, exchange ? 1 : kStarts, &pool);
+      Pick(from.fitted, {step == 0 ? kRefitsAtFirst : kRefitsLater, exchange ? 1 : kStarts}, &scanned, &pool);
       for (const Hypothesis& one :
            WithPeriodic(from.fitted.hypothesis, changes, context_.runs, context_.jobs)) {
         periodic.push_back({one.changes.back(), one, 0, "", {}});
@@ -180,28 +168,14 @@ class Searcher {
       const auto& own = pool[i].run_starts;
       fits[i] = Fit(pool[i].start, context_.runs, own.empty() ? starts : own, coarse_);
     });
-    // Keep the best start of each set of changes.
-    std::vector<Fitted> best;
-    for (Fitted& fit : fits) {
-      if (!fit.ok()) continue;
-      const auto same = std::find_if(best.begin(), best.end(), [&](const Fitted& other) {
-        return SameChanges(other.hypothesis, fit.hypothesis);
-      });
-      if (same == best.end()) {
-        best.push_back(std::move(fit));
-      } else if (fit.sum < same->sum) {
-        *same = std::move(fit);
-      }
-    }
     for (const Fitted& fit : fits) {
       if (fit.ok()) continue;
-      const bool by_another_start = std::any_of(best.begin(), best.end(), [&](const Fitted& other) {
-        return SameChanges(other.hypothesis, fit.hypothesis);
+      const bool by_another_start = std::any_of(fits.begin(), fits.end(), [&](const Fitted& other) {
+        return other.ok() && SameChanges(other.hypothesis, fit.hypothesis);
       });
       if (!by_another_start) NoteFailure(fit);
     }
-    std::stable_sort(best.begin(), best.end(),
-                     [](const Fitted& a, const Fitted& b) { return a.sum < b.sum; });
+    const std::vector<Fitted> best = BestOfEach(std::move(fits));
     size_t finalists = 0;
     while (finalists < std::min(best.size(), kFinalists) && best[finalists].sum <= most) ++finalists;
     std::vector<Explanation> explained(finalists);
@@ -221,29 +195,6 @@ class Searcher {
   }
 
   static std::string Step(int step) { return step == 0 ? "" : ", with " + std::to_string(step) + " found"; }
-
-  // Picks the most promising results of a score test: the first few changes, each from its best starting
-  // points, as long as the test expects enough of them.
-  void Pick(const Explanation& from, std::vector<std::vector<Scanned>>* scanned, size_t most,
-            size_t most_starts, std::vector<Scanned>* pool) const {
-    auto& rows = *scanned;
-    std::erase_if(rows, [](const auto& starts) { return starts.empty() || !starts.front().failure.empty(); });
-    std::stable_sort(rows.begin(), rows.end(),
-                     [](const auto& a, const auto& b) { return a.front().expected > b.front().expected; });
-    // The score test is linear; a nonlinear effect can gain several times what the test expects.
-    const double least = std::max(0.3 * kLeastGain * static_cast<double>(from.fitted.count),
-                                  rows.empty() ? 0 : kWorthTrying * rows.front().front().expected);
-    for (size_t i = 0; i < rows.size() && i < most; ++i) {
-      for (size_t s = 0; s < rows[i].size() && s < most_starts; ++s) {
-        if (s > 0 && rows[i][s].expected < 0.5 * rows[i].front().expected) break;
-        if (rows[i][s].expected < least) continue;
-        const bool there = std::any_of(pool->begin(), pool->end(), [&](const Scanned& other) {
-          return s == 0 && SameChanges(other.start, rows[i][s].start);
-        });
-        if (!there) pool->push_back(rows[i][s]);
-      }
-    }
-  }
 
   void NoteFailure(const Fitted& fit) {
     if (fit.hypothesis.changes.size() != 1) return;
@@ -309,34 +260,6 @@ class Searcher {
 };
 
 }  // namespace
-
-Explanation Explain(const SearchContext& context, const Hypothesis& hypothesis,
-                    const std::vector<model::StartState>& starts, const FitOptions& options) {
-  Explanation explanation;
-  explanation.fitted = Fit(hypothesis, context.runs, starts, options);
-  if (!explanation.fitted.ok()) return explanation;
-  if (context.held_out.empty()) {
-    explanation.held_out = PredictInTurn(explanation.fitted, context.given, context.runs, options.jobs);
-    explanation.blocks = BlocksOf(context.runs, explanation.held_out);
-  } else {
-    explanation.held_out = Predict(explanation.fitted, context.held_out, options.jobs);
-    explanation.blocks = BlocksOf(context.held_out, explanation.held_out);
-  }
-  return explanation;
-}
-
-Explanation BegunAgain(const SearchContext& context, const Explanation& one, const FitOptions& options) {
-  if (one.fitted.squared_gap() <= kStartInDoubt) return one;
-  Explanation best = one;
-  const auto begin_at = [&](const std::vector<model::StartState>& starts) {
-    Explanation again = Explain(context, one.fitted.hypothesis, starts, options);
-    if (again.fitted.ok() && again.fitted.sum < best.fitted.sum) best = std::move(again);
-  };
-  begin_at(MeasuredStarts(context.runs));
-  if (best.fitted.squared_gap() <= kStartInDoubt) return best;
-  begin_at(BestStarts(best.fitted.hypothesis, context.runs, StartsOf(best.fitted), options.jobs));
-  return best;
-}
 
 SearchResult Search(const SearchContext& context, const Hypothesis& from, int most_changes) {
   return Searcher(context, most_changes).Run(from);

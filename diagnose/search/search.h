@@ -5,24 +5,10 @@
 #include <string>
 #include <vector>
 
-#include "diagnose/fit/comparison.h"
-#include "diagnose/fit/fit.h"
-#include "diagnose/fit/held_out.h"
-#include "diagnose/search/progress.h"
-#include "diagnose/search/scan.h"
+#include "diagnose/fit/hypothesis.h"
+#include "diagnose/search/explanation.h"
 
 namespace hydro::diagnose {
-
-// A hypothesis and how well it does.
-struct Explanation {
-  Fitted fitted;
-  HeldOut held_out;
-  BlockSums blocks;  // of held_out
-
-  double squared_gap() const { return fitted.squared_gap(); }
-  double held_out_gap() const { return held_out.squared_gap(); }
-  const std::vector<Change>& changes() const { return fitted.hypothesis.changes; }
-};
 
 struct Rated {
   Change change;
@@ -38,25 +24,6 @@ struct SearchResult {
   std::vector<Explanation> tried;  // all that were fitted, in the order of trying
   Explanation best;
 };
-
-struct SearchContext {
-  model::ModelDescription given;
-  std::vector<const RunData*> runs;
-  std::vector<const RunData*> held_out;  // empty: the runs are held out in turn
-  std::vector<Change> changes;           // those that may be made
-  Sizes sizes;
-  int jobs = 1;
-  TellProgress tell;
-};
-
-// Fits the hypothesis and predicts the held-out runs, both with the options' jobs.
-Explanation Explain(const SearchContext& context, const Hypothesis& hypothesis,
-                    const std::vector<model::StartState>& starts, const FitOptions& options);
-
-// If the fit leaves a gap, fits again from the measured starts and, if a gap still remains, from each run's
-// best start (BestStarts); returns the best fit. Starts that were fitted while something was missing made up
-// for it, and may trap the fit where friction or cogging catches the shaft in another place.
-Explanation BegunAgain(const SearchContext& context, const Explanation& one, const FitOptions& options);
 
 // Searches from `from`, a hypothesis without changes of its own.
 SearchResult Search(const SearchContext& context, const Hypothesis& from, int most_changes);

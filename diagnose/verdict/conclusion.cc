@@ -123,22 +123,21 @@ std::string WhyNext(const std::vector<FoundEffect>& effects) {
   return "";
 }
 
-}  // namespace
+BeforeAfter FitGaps(const Explanation& given, const Explanation& refit, const Explanation& best) {
+  return {std::sqrt(given.squared_gap()), std::sqrt(refit.squared_gap()), std::sqrt(best.squared_gap())};
+}
 
-Diagnosis Conclude(const SearchContext& context, const SearchResult& search, const Explanation& refit) {
-  const TellProgress& tell = context.tell;
-  const Explanation& given = search.given;
+BeforeAfter HeldOutGaps(const Explanation& given, const Explanation& refit, const Explanation& best) {
+  return {std::sqrt(given.held_out_gap()), std::sqrt(refit.held_out_gap()), std::sqrt(best.held_out_gap())};
+}
+
+// Fills in the effects and parameters found. Returns the models that do equally well, the best first.
+std::vector<model::ModelDescription> DescribeFound(const SearchContext& context, const SearchResult& search,
+                                                   Diagnosis* d) {
   const Explanation& best = search.best;
-  Diagnosis d;
-  d.fit = {std::sqrt(given.squared_gap()), std::sqrt(refit.squared_gap()), std::sqrt(best.squared_gap())};
-  d.held_out = {std::sqrt(given.held_out_gap()), std::sqrt(refit.held_out_gap()),
-                std::sqrt(best.held_out_gap())};
-
-  if (tell) tell({"intervals", 0.95});
   const std::vector<FreeParameter> free = best.fitted.hypothesis.Free();
   const std::vector<Interval> intervals =
       free.empty() ? std::vector<Interval>{} : Intervals(best.fitted, context.runs, context.jobs);
-  bool tied = false;
   std::vector<model::ModelDescription> rivals = {best.fitted.hypothesis.model};
   for (const Change& change : best.changes()) {
     if (change.effect.empty()) continue;
@@ -147,33 +146,56 @@ Diagnosis Conclude(const SearchContext& context, const SearchResult& search, con
       found.tied_with.push_back(rival.change.Label());
       rivals.push_back(rival.explanation->fitted.hypothesis.model);
     }
-    tied |= !found.tied_with.empty();
-    d.effects.push_back(std::move(found));
+    d->effects.push_back(std::move(found));
   }
   for (size_t i = 0; i < free.size(); ++i) {
     if (free[i].unknown.kind == model::Unknown::Kind::kBase) {
-      d.parameters.push_back(DescribeParameter(free[i], intervals[i], context.given));
+      d->parameters.push_back(DescribeParameter(free[i], intervals[i], context.given));
     }
   }
+  return rivals;
+}
 
-  if (!Closed(given.held_out_gap(), best.held_out_gap(), ExactSensors(context.runs))) {
-    d.verdict = Verdict::kUnexplained;
-  } else if (best.changes().empty() && d.parameters.empty()) {
-    d.verdict = Verdict::kNothingMissing;
-  } else if (d.effects.empty()) {
-    d.verdict = Verdict::kParameters;
-  } else {
-    d.verdict = tied ? Verdict::kTied : Verdict::kNamed;
+// The verdict on what was found: `d` has its effects and parameters.
+Verdict VerdictOn(const SearchContext& context, const SearchResult& search, const Diagnosis& d) {
+  const Explanation& best = search.best;
+  if (!Closed(search.given.held_out_gap(), best.held_out_gap(), ExactSensors(context.runs))) {
+    return Verdict::kUnexplained;
   }
+  if (best.changes().empty() && d.parameters.empty()) return Verdict::kNothingMissing;
+  if (d.effects.empty()) return Verdict::kParameters;
+  const bool tied = std::any_of(d.effects.begin(), d.effects.end(),
+                                [](const FoundEffect& effect) { return !effect.tied_with.empty(); });
+  return tied ? Verdict::kTied : Verdict::kNamed;
+}
+
+void NameRuns(const SearchContext& context, Diagnosis* d) {
+  for (const RunData* run : context.runs) {
+    d->runs.push_back(run->name);
+    d->samples += run->samples();
+  }
+  for (const RunData* run : context.held_out) d->held_out_runs.push_back(run->name);
+}
+
+}  // namespace
+
+Diagnosis Conclude(const SearchContext& context, const SearchResult& search, const Explanation& refit) {
+  const TellProgress& tell = context.tell;
+  const Explanation& given = search.given;
+  const Explanation& best = search.best;
+  Diagnosis d;
+  d.fit = FitGaps(given, refit, best);
+  d.held_out = HeldOutGaps(given, refit, best);
+  if (tell) tell({"intervals", 0.95});
+  const std::vector<model::ModelDescription> rivals = DescribeFound(context, search, &d);
+  d.verdict = VerdictOn(context, search, d);
   d.model = best.fitted.hypothesis.model;
   d.signals = SignalGaps(context, given, refit, best);
   d.candidates = Ranking(context, search);
   d.curves = CurvesOf(context, given, best);
   if (d.verdict != Verdict::kNothingMissing) {
     if (tell) tell({"where the gap is", 0.97});
-    const model::ModelDescription& disagrees =
-        d.verdict == Verdict::kUnexplained ? best.fitted.hypothesis.model : context.given;
-    Localisation located = Locate(disagrees, context.runs);
+    Localisation located = Locate(d.verdict == Verdict::kUnexplained ? d.model : context.given, context.runs);
     d.location = std::move(located.location);
     d.missing = std::move(located.missing);
   }
@@ -181,11 +203,7 @@ Diagnosis Conclude(const SearchContext& context, const SearchResult& search, con
     if (tell) tell({"the next experiment", 0.98});
     d.next = DesignNextExperiment(rivals, context.runs, WhyNext(d.effects));
   }
-  for (const RunData* run : context.runs) {
-    d.runs.push_back(run->name);
-    d.samples += run->samples();
-  }
-  for (const RunData* run : context.held_out) d.held_out_runs.push_back(run->name);
+  NameRuns(context, &d);
   d.sentence = Sentence(d);
   return d;
 }

@@ -40,29 +40,17 @@ diagnose::RunCurves Curves(const std::string& run, bool held_out, size_t samples
   return curves;
 }
 
-}  // namespace
-
-diagnose::Diagnosis ExampleDiagnosis(size_t samples) {
-  diagnose::Diagnosis d;
-  d.verdict = diagnose::Verdict::kTied;
-  d.sentence =
-      "The pump's static friction exceeds its kinetic friction (pump.stribeck), and its friction drifts, "
-      "which "
-      "these runs cannot tell from a temperature.";
-  d.remarks = {"p2 is noisier than stated: 1.62 psi instead of 1.5 psi.",
-               "arm_angle was not measured, so eq. (15) could not be checked."};
-  d.location = {{"pump_torque",
-                 0.93,
-                 "|motor_speed| < 5 rad/s, at reversals",
-                 {{"square <wave>", 1.4, 1.75}, {"square <wave>", 3.0, 3.3}, {"sine", 1.5, 1.7}}},
-                {"flow_2", 0.05, "p2 > 700 psi", {}}};
+diagnose::MissingTerm FrictionTerm() {
   diagnose::MissingTerm term{"pump_torque", "in-lbf", "motor_speed", "rad/s", {}, {}, {}};
   for (int i = -10; i <= 10; ++i) {
     term.at.push_back(12.0 * i);
     term.mean.push_back(2 * std::exp(-std::abs(i) / 2.5) * (i > 0 ? 1 : i < 0 ? -1 : 0));
     term.error.push_back(0.08 + 0.01 * std::abs(i));
   }
-  d.missing = {term};
+  return term;
+}
+
+std::vector<diagnose::FoundEffect> Effects() {
   diagnose::FoundEffect stribeck{
       "pump.stribeck",
       "static friction above kinetic",
@@ -83,7 +71,12 @@ diagnose::Diagnosis ExampleDiagnosis(size_t samples) {
                              {{"delay", 0.0021, 0.0019, 0.0023, "s"}},
                              {"signal = p1"},
                              {"fluid.warming"}};
-  d.effects = {stribeck, warming, skew};
+  return {stribeck, warming, skew};
+}
+
+// The numbers of the gaps, and the parameters.
+void FillGaps(diagnose::Diagnosis* diagnosis) {
+  diagnose::Diagnosis& d = *diagnosis;
   d.parameters = {{{"b", 0.0203, 0.0199, 0.0207, "in-lbf-s"}, 0.01455, false, ""},
                   {{"J", 0.12, 0.09, 0.15, "lbf-in-s^2"}, 0.03, true, "four times what the model says"},
                   {{"p_3", 103, kNan, kNan, "psi"}, 100, false, ""}};
@@ -92,6 +85,27 @@ diagnose::Diagnosis ExampleDiagnosis(size_t samples) {
                {model::Channel::kP2, 1.62, {41.5, 30.5, 1.65}, {45.0, 32.0, 1.7}}};
   d.fit = {22.1, 18.0, 1.04};
   d.held_out = {23.9, 19.5, 1.06};
+}
+
+}  // namespace
+
+diagnose::Diagnosis ExampleDiagnosis(size_t samples) {
+  diagnose::Diagnosis d;
+  d.verdict = diagnose::Verdict::kTied;
+  d.sentence =
+      "The pump's static friction exceeds its kinetic friction (pump.stribeck), and its friction drifts, "
+      "which "
+      "these runs cannot tell from a temperature.";
+  d.remarks = {"p2 is noisier than stated: 1.62 psi instead of 1.5 psi.",
+               "arm_angle was not measured, so eq. (15) could not be checked."};
+  d.location = {{"pump_torque",
+                 0.93,
+                 "|motor_speed| < 5 rad/s, at reversals",
+                 {{"square <wave>", 1.4, 1.75}, {"square <wave>", 3.0, 3.3}, {"sine", 1.5, 1.7}}},
+                {"flow_2", 0.05, "p2 > 700 psi", {}}};
+  d.missing = {FrictionTerm()};
+  d.effects = Effects();
+  FillGaps(&d);
   d.next = {
       "A slow triangle of +/- 200 psi, held at +/- 20 rad/s, would tell fluid.warming from sensor.skew.",
       "[model]\nfile = \"model.toml\"\n", 6.4};

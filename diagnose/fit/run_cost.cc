@@ -1,0 +1,88 @@
+#include "diagnose/fit/run_cost.h"
+
+#include <cmath>
+
+#include "maths/solve.h"
+
+namespace hydro::diagnose {
+
+using Eigen::Map;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+RunCost::RunCost(const Hypothesis& hypothesis, const RunData& run, const model::StartState& start)
+    : hypothesis_(hypothesis),
+      free_(hypothesis.Free()),
+      run_(run),
+      start_(start),
+      starts_(StartUnknowns(run)) {
+  if (!free_.empty()) mutable_parameter_block_sizes()->push_back(static_cast<int>(free_.size()));
+  if (!starts_.empty()) mutable_parameter_block_sizes()->push_back(static_cast<int>(starts_.size()));
+  set_num_residuals(static_cast<int>(unknowns()) + 1);
+}
+
+void RunCost::Prepare(const double* free, const double* start, bool derivatives) {
+  can_be_simulated_ = Normal(free, start, derivatives, &prepared_);
+}
+
+bool RunCost::Evaluate(double const* const* /*parameters*/, double* residuals, double** jacobians) const {
+  const auto p = static_cast<Eigen::Index>(free_.size());
+  const auto n = static_cast<Eigen::Index>(unknowns());
+  Map<VectorXd> out(residuals, n + 1);
+  const MatrixXd& normal = prepared_;
+  if (!can_be_simulated_ || (jacobians != nullptr && normal.rows() != n + 1)) return false;
+  out.setZero();
+  if (jacobians == nullptr) {
+    out(0) = std::sqrt(normal(normal.rows() - 1, normal.rows() - 1));
+    return true;
+  }
+  // [J r]' [J r] = V L V'; the rows of L^1/2 V' serve as well as those of [J r].
+  const maths::SymmetricEigensystem eigen = maths::SymmetricEigensystemOf(normal);
+  const MatrixXd root = eigen.values.cwiseMax(0.0).cwiseSqrt().asDiagonal() * eigen.vectors.transpose();
+  out = root.col(n);
+  using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  int block = 0;
+  if (p > 0) {
+    if (jacobians[block] != nullptr) Map<RowMajor>(jacobians[block], n + 1, p) = root.leftCols(p);
+    ++block;
+  }
+  if (n > p && jacobians[block] != nullptr)
+    Map<RowMajor>(jacobians[block], n + 1, n - p) = root.middleCols(p, n - p);
+  return true;
+}
+
+bool RunCost::Normal(const double* free, const double* start, bool derivatives, MatrixXd* normal) const {
+  Hypothesis point = hypothesis_;
+  std::vector<FreeParameter> at = free_;
+  std::vector<double> values;
+  for (size_t i = 0; i < at.size(); ++i) values.push_back(at[i].value = at[i].FromFitted(free[i]));
+  point.Set(values);
+  model::StartState from = start_;
+  for (size_t i = 0; i < starts_.size(); ++i) from[starts_[i].index] = start[i];
+  Residuals r;
+  try {
+    r = derivatives ? ResidualsOf(point.model, run_, from, at, starts_)
+                    : ResidualsOf(point.model, run_, from);
+  } catch (const model::ModelError&) {
+    return false;
+  }
+  const auto rows = static_cast<Eigen::Index>(r.values.size());
+  const Map<const VectorXd> residual(r.values.data(), rows);
+  if (!derivatives) {
+    *normal = MatrixXd::Constant(1, 1, residual.squaredNorm());
+    return std::isfinite((*normal)(0, 0));
+  }
+  const auto n = static_cast<Eigen::Index>(unknowns());
+  const Map<const MatrixXd> jacobian(r.jacobian.data(), rows, n);
+  normal->resize(n + 1, n + 1);
+  normal->topLeftCorner(n, n).setZero();
+  normal->topLeftCorner(n, n).selfadjointView<Eigen::Lower>().rankUpdate(jacobian.transpose());
+  normal->topLeftCorner(n, n).triangularView<Eigen::Upper>() = normal->topLeftCorner(n, n).transpose();
+  normal->topRightCorner(n, 1) = jacobian.transpose() * residual;
+  normal->bottomLeftCorner(1, n) = normal->topRightCorner(n, 1).transpose();
+  (*normal)(n, n) = residual.squaredNorm();
+  count_ = r.values.size();
+  return normal->allFinite();
+}
+
+}  // namespace hydro::diagnose

@@ -1,0 +1,48 @@
+// One run's residuals as a cost function of Ceres.
+#pragma once
+
+#include <ceres/cost_function.h>
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "diagnose/data/run_data.h"
+#include "diagnose/fit/hypothesis.h"
+#include "diagnose/fit/residuals.h"
+
+namespace hydro::diagnose {
+
+// One run against the hypothesis. The solver does not get the residuals, hundreds of thousands of them, but a
+// square root of their normal equations: the same cost, gradient and Gauss-Newton matrix in a few numbers.
+// Keeps references to the hypothesis and the run.
+class RunCost : public ceres::CostFunction {
+ public:
+  RunCost(const Hypothesis& hypothesis, const RunData& run, const model::StartState& start);
+
+  // Simulates at the point that the solver will ask for next.
+  void Prepare(const double* free, const double* start, bool derivatives);
+
+  // Evaluates at the prepared point.
+  bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override;
+
+  // [J r]' [J r] at the point, or only r'r without derivatives. False where the run cannot be simulated.
+  bool Normal(const double* free, const double* start, bool derivatives, Eigen::MatrixXd* normal) const;
+
+  // How many residuals the last call of Normal with derivatives had.
+  size_t count() const { return count_; }
+  const std::vector<model::Unknown>& starts() const { return starts_; }
+
+ private:
+  size_t unknowns() const { return free_.size() + starts_.size(); }
+
+  const Hypothesis& hypothesis_;
+  std::vector<FreeParameter> free_;
+  const RunData& run_;
+  model::StartState start_;
+  std::vector<model::Unknown> starts_;
+  mutable size_t count_ = 0;
+  Eigen::MatrixXd prepared_;
+  bool can_be_simulated_ = false;
+};
+
+}  // namespace hydro::diagnose

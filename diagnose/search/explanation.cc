@@ -1,0 +1,42 @@
+#include "diagnose/search/explanation.h"
+
+#include "diagnose/fit/start_fit.h"
+
+namespace hydro::diagnose {
+
+std::vector<model::StartState> MeasuredStarts(const std::vector<const RunData*>& runs) {
+  std::vector<model::StartState> starts;
+  starts.reserve(runs.size());
+  for (const RunData* run : runs) starts.push_back(run->start);
+  return starts;
+}
+
+Explanation Explain(const SearchContext& context, const Hypothesis& hypothesis,
+                    const std::vector<model::StartState>& starts, const FitOptions& options) {
+  Explanation explanation;
+  explanation.fitted = Fit(hypothesis, context.runs, starts, options);
+  if (!explanation.fitted.ok()) return explanation;
+  if (context.held_out.empty()) {
+    explanation.held_out = PredictInTurn(explanation.fitted, context.given, context.runs, options.jobs);
+    explanation.blocks = BlocksOf(context.runs, explanation.held_out);
+  } else {
+    explanation.held_out = Predict(explanation.fitted, context.held_out, options.jobs);
+    explanation.blocks = BlocksOf(context.held_out, explanation.held_out);
+  }
+  return explanation;
+}
+
+Explanation BegunAgain(const SearchContext& context, const Explanation& one, const FitOptions& options) {
+  if (one.fitted.squared_gap() <= kStartInDoubt) return one;
+  Explanation best = one;
+  const auto begin_at = [&](const std::vector<model::StartState>& starts) {
+    Explanation again = Explain(context, one.fitted.hypothesis, starts, options);
+    if (again.fitted.ok() && again.fitted.sum < best.fitted.sum) best = std::move(again);
+  };
+  begin_at(MeasuredStarts(context.runs));
+  if (best.fitted.squared_gap() <= kStartInDoubt) return best;
+  begin_at(BestStarts(best.fitted.hypothesis, context.runs, StartsOf(best.fitted), options.jobs));
+  return best;
+}
+
+}  // namespace hydro::diagnose

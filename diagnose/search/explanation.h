@@ -1,0 +1,47 @@
+// An explanation of the runs: a hypothesis, fitted, and how well it predicts runs that it was not fitted to.
+#pragma once
+
+#include <vector>
+
+#include "diagnose/fit/comparison.h"
+#include "diagnose/fit/fit.h"
+#include "diagnose/fit/held_out.h"
+#include "diagnose/search/progress.h"
+
+namespace hydro::diagnose {
+
+// A hypothesis and how well it does.
+struct Explanation {
+  Fitted fitted;
+  HeldOut held_out;
+  BlockSums blocks;  // of held_out
+
+  double squared_gap() const { return fitted.squared_gap(); }
+  double held_out_gap() const { return held_out.squared_gap(); }
+  const std::vector<Change>& changes() const { return fitted.hypothesis.changes; }
+};
+
+// What every step of a search needs.
+struct SearchContext {
+  model::ModelDescription given;
+  std::vector<const RunData*> runs;
+  std::vector<const RunData*> held_out;  // empty: the runs are held out in turn
+  std::vector<Change> changes;           // those that may be made
+  Sizes sizes;
+  int jobs = 1;
+  TellProgress tell;
+};
+
+// Fits the hypothesis and predicts the held-out runs, both with the options' jobs.
+Explanation Explain(const SearchContext& context, const Hypothesis& hypothesis,
+                    const std::vector<model::StartState>& starts, const FitOptions& options);
+
+// Where the runs begin as measured.
+std::vector<model::StartState> MeasuredStarts(const std::vector<const RunData*>& runs);
+
+// If the fit leaves a gap, fits again from the measured starts and, if a gap still remains, from each run's
+// best start (BestStarts); returns the best fit. Starts that were fitted while something was missing made up
+// for it, and may trap the fit where friction or cogging catches the shaft in another place.
+Explanation BegunAgain(const SearchContext& context, const Explanation& one, const FitOptions& options);
+
+}  // namespace hydro::diagnose
