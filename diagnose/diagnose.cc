@@ -16,10 +16,10 @@ namespace {
 
 constexpr int kMostChanges = 3;
 // The squared gap above which a model is wrong everywhere.
-constexpr double kFar = 25;
+constexpr double kWrongEverywhere = 25;
 
 // Splits off the last third of a single run as the held-out run.
-void SplitOff(runs::MeasuredRun* run, std::vector<runs::MeasuredRun>* held_out) {
+void HoldOutLastThird(runs::MeasuredRun* run, std::vector<runs::MeasuredRun>* held_out) {
   const size_t first = run->samples() * 2 / 3;
   runs::MeasuredRun rest = *run;
   rest.name += ", last third";
@@ -118,7 +118,7 @@ struct PreparedRuns {
 PreparedRuns Prepare(const model::ModelDescription& model, const std::vector<size_t>& allowed, int jobs,
                      std::vector<runs::MeasuredRun> runs, std::vector<runs::MeasuredRun> held_out) {
   if (runs.size() == 1 && held_out.empty() && runs.front().samples() >= 300) {
-    SplitOff(&runs.front(), &held_out);
+    HoldOutLastThird(&runs.front(), &held_out);
   }
   PreparedRuns prepared;
   for (runs::MeasuredRun& run : runs) {
@@ -128,21 +128,21 @@ PreparedRuns Prepare(const model::ModelDescription& model, const std::vector<siz
     prepared.held_out.push_back(PrepareAligned(std::move(run), model.parameters, &prepared.clocks));
   }
   CorrectClocks(model, allowed, jobs, &prepared.fitted, &prepared.held_out, &prepared.clocks);
-  NameApart(&prepared.fitted);
-  NameApart(&prepared.held_out);
+  MakeNamesUnique(&prepared.fitted);
+  MakeNamesUnique(&prepared.held_out);
   return prepared;
 }
 
 SearchContext MakeContext(const model::ModelDescription& model, const PreparedRuns& runs,
                           const std::vector<size_t>& allowed, const DiagnoseOptions& options,
-                          const TellProgress& tell) {
+                          const ProgressCallback& report_progress) {
   SearchContext context;
   context.given = model;
   context.runs = Pointers(runs.fitted);
   context.held_out = Pointers(runs.held_out);
   context.sizes = SizesOf(model, context.runs);
   context.jobs = options.jobs;
-  context.tell = tell;
+  context.report_progress = report_progress;
   context.changes = EffectChanges(model, options.effects, context.runs);
   for (const size_t i : allowed) context.changes.push_back({"", {}, model::BaseParameters()[i].info.name});
   return context;
@@ -168,7 +168,7 @@ Explanation Refit(const SearchContext& context, const Hypothesis& as_given, cons
 void SearchFromRefit(const SearchContext& context, const Explanation& refit, SearchResult* search) {
   // A few changes do not close so large a gap: search for the rest once the parameters fit.
   const double gap = search->best.held_out_gap();
-  const bool far = gap > kFar && refit.held_out_gap() < gap;
+  const bool far = gap > kWrongEverywhere && refit.held_out_gap() < gap;
   if (!far && !Material(gap, refit.held_out_gap())) return;
   SearchResult wider = Search(context, refit.fitted.hypothesis, kMostChanges);
   if (!wider.given.fitted.ok() || !Material(gap, wider.best.held_out_gap())) return;
@@ -180,20 +180,19 @@ void SearchFromRefit(const SearchContext& context, const Explanation& refit, Sea
 
 Diagnosis Diagnose(const model::ModelDescription& model, std::vector<runs::MeasuredRun> runs,
                    std::vector<runs::MeasuredRun> held_out, const DiagnoseOptions& options,
-                   const TellProgress& tell) {
+                   const ProgressCallback& report_progress) {
   const std::vector<size_t> allowed = AllowedBase(model, options.free);
   PreparedRuns prepared = Prepare(model, allowed, options.jobs, std::move(runs), std::move(held_out));
-  const SearchContext context = MakeContext(model, prepared, allowed, options, tell);
+  const SearchContext context = MakeContext(model, prepared, allowed, options, report_progress);
 
   // Try few changes to the model as given first: one wrong value or one missing effect is the likeliest.
   Hypothesis as_given;
   as_given.model = model;
   SearchResult search = Search(context, as_given, kMostChanges);
   if (!search.given.fitted.ok()) {
-    throw model::ModelError("the model cannot follow the runs at all: " + search.given.fitted.failure +
-                            "; is a shaft's mode or a unit wrong?");
+    throw model::ModelError(search.given.fitted.failure);
   }
-  if (tell) tell({"refitting the model's own parameters", 0.92});
+  if (report_progress) report_progress({"refitting the model's own parameters", 0.92});
   const Explanation refit = Refit(context, as_given, search.given, allowed);
   SearchFromRefit(context, refit, &search);
 

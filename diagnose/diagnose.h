@@ -26,6 +26,6 @@ struct DiagnoseOptions {
 // the bit, whatever `jobs` is.
 Diagnosis Diagnose(const model::ModelDescription& model, std::vector<runs::MeasuredRun> runs,
                    std::vector<runs::MeasuredRun> held_out, const DiagnoseOptions& options,
-                   const TellProgress& tell);
+                   const ProgressCallback& report_progress);
 
 }  // namespace hydro::diagnose

@@ -31,8 +31,9 @@ class ReportFolder {
     std::error_code error;
     fs::create_directories(folder_, error);
     if (error || !fs::is_directory(folder_) || access(folder_.c_str(), W_OK) != 0) {
-      throw InputError("--out: found " + Quoted(folder_) + ", which is no folder that can be written" +
-                       (error ? " (" + error.message() + ")" : "") + ", allowed one that can");
+      throw InputError("--out: found " + Quoted(folder_) + ", a folder that cannot be written" +
+                       (error ? " (" + error.message() + ")" : "") +
+                       ", allowed a folder that can be written");
     }
   }
   ~ReportFolder() {
@@ -79,26 +80,27 @@ void RequireDifferentFiles(const DiagnoseRequest& request) {
   for (size_t i = 0; i < all.size(); ++i) {
     for (size_t k = 0; k < i; ++k) {
       if (!SameFile(all[i].second, all[k].second)) continue;
-      throw InputError(all[i].first + ": found " + Quoted(all[i].second) + ", which is given as " +
-                       all[k].first + " already, allowed each run once");
+      throw InputError(all[i].first + ": found " + Quoted(all[i].second) + ", already given as " +
+                       all[k].first + ", allowed each run once");
     }
   }
 }
 
-Diagnosis Make(const DiagnoseRequest& request, const Diagnoser& diagnose, const TellProgress& tell) {
+Diagnosis ReadAndDiagnose(const DiagnoseRequest& request, const Diagnoser& diagnose,
+                          const ProgressCallback& report_progress) {
   DiagnoseOptions options;
   if (!request.effects.empty()) options.effects = ReadEffectList(request.effects);
   if (!request.free.empty()) options.free = SplitFree(request.free);
   options.jobs = request.jobs;
   options.seed = static_cast<uint64_t>(request.seed);
   const model::ModelDescription model = settings::LoadModelFile(request.model);
-  tell({"reading the runs", 0});
+  report_progress({"reading the runs", 0});
   std::vector<runs::MeasuredRun> runs = ReadRuns(request.runs), held_out = ReadRuns(request.held_out);
   try {
-    return diagnose(model, std::move(runs), std::move(held_out), options, tell);
+    return diagnose(model, std::move(runs), std::move(held_out), options, report_progress);
   } catch (const model::ModelError& error) {
     throw InputError(request.model + ": found a model that cannot follow the runs: " + error.what() +
-                     "; allowed one that can, and runs whose shaft was held as they say");
+                     ", allowed a model that can: check the shaft and the units that each run states");
   }
 }
 
@@ -108,7 +110,7 @@ std::vector<std::string> ReadEffectList(const std::string& file) {
   settings::TomlNode root = settings::ParseToml(ReadTextFile(file), file);
   root.place = file;
   settings::SectionReader document(root, "");
-  const std::string allowed = "a list of effects' ids, effects = [\"pump.stribeck\", ...]";
+  const std::string allowed = "a list of effect ids, effects = [\"pump.stribeck\", ...]";
   const settings::TomlNode* list = document.Take("effects");
   document.Require("effects", allowed);
   document.Finish();
@@ -139,7 +141,7 @@ std::vector<std::string> SplitFree(const std::string& names) {
     const std::string name = names.substr(begin, end - begin);
     begin = end + 1;
     if (std::find(known.begin(), known.end(), name) == known.end()) {
-      throw InputError("--free: found " + Quoted(name) + ", allowed names with commas between them, of " +
+      throw InputError("--free: found " + Quoted(name) + ", allowed names separated by commas, of " +
                        QuotedList(known) + DidYouMean(name, known));
     }
     if (std::find(free.begin(), free.end(), name) == free.end()) free.push_back(name);
@@ -166,8 +168,9 @@ void RunDiagnosis(const DiagnoseRequest& request, const Diagnoser& diagnose, std
   {
     const bool terminal = isatty(fileno(err)) != 0;
     ProgressBar bar(terminal ? err : out, terminal);
-    diagnosis = Make(request, diagnose, [&](const Progress& progress) { bar.Tell(progress, elapsed()); });
-    bar.Tell({"writing the report", 1}, elapsed());
+    diagnosis =
+        ReadAndDiagnose(request, diagnose, [&](const Progress& progress) { bar.Show(progress, elapsed()); });
+    bar.Show({"writing the report", 1}, elapsed());
   }
   const bool next = !diagnosis.next.config.empty();
   std::vector<std::pair<std::string, std::string>> files;

@@ -24,7 +24,7 @@ struct DiagnoseRequest {
 // What makes the diagnosis: Diagnose, or a stand-in for tests.
 using Diagnoser =
     std::function<Diagnosis(const model::ModelDescription&, std::vector<runs::MeasuredRun>,
-                            std::vector<runs::MeasuredRun>, const DiagnoseOptions&, const TellProgress&)>;
+                            std::vector<runs::MeasuredRun>, const DiagnoseOptions&, const ProgressCallback&)>;
 
 // Writes report.html, report.json, model.toml and, when there is a next experiment, next.toml into the
 // request's folder, each file whole or not at all, and a summary to `out`. Progress goes to `err` as a bar

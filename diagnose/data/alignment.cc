@@ -4,12 +4,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <functional>
 #include <limits>
 #include <optional>
 #include <utility>
 
+#include "base/number_text.h"
 #include "base/word_list.h"
 #include "diagnose/data/shifted_balances.h"
 #include "runs/run_delays.h"
@@ -71,7 +71,7 @@ struct Estimate {
   double mean = 0, error = 0;
 };
 
-Estimate Of(const std::vector<double>& parts, double whole) {
+Estimate EstimateOf(const std::vector<double>& parts, double whole) {
   double square = 0;
   for (const double part : parts) square += (part - whole) * (part - whole);
   const auto n = static_cast<double>(parts.size());
@@ -84,7 +84,7 @@ bool Agree(const std::vector<double>& parts, double whole) {
   });
 }
 
-bool Suits(const runs::MeasuredRun& run) {
+bool CanBeAligned(const runs::MeasuredRun& run) {
   return !run.bypass && run.p1.measured() && run.p2.measured() &&
          (run.motor_speed.measured() || run.motor_angle.measured()) && run.samples() >= 100;
 }
@@ -147,7 +147,7 @@ std::optional<Estimate> DelayOfArm(const ShiftedBalances& balances, int speed) {
   if (parts.size() < kParts / 2) return std::nullopt;
   // All parts count equally: where a relief valve opens, the flows carry less information.
   const size_t half = parts.size() / 2;
-  return Of(parts, parts.size() % 2 == 1 ? parts[half] : (parts[half - 1] + parts[half]) / 2);
+  return EstimateOf(parts, parts.size() % 2 == 1 ? parts[half] : (parts[half - 1] + parts[half]) / 2);
 }
 
 // The signals recorded by one clock, by name.
@@ -167,7 +167,7 @@ ClockDelay DelayOf(const runs::MeasuredRun& run, const Signals& signals, const E
 }  // namespace
 
 std::vector<ClockDelay> AlignClocks(const model::Parameters& model, runs::MeasuredRun* run) {
-  if (!Suits(*run)) return {};
+  if (!CanBeAligned(*run)) return {};
   const EvenSignals even = MakeEven(*run, model);
   for (const VectorXd* signal : {&even.voltage, &even.speed, &even.p1, &even.p2}) {
     if (!signal->allFinite()) return {};
@@ -191,9 +191,9 @@ std::vector<ClockDelay> AlignClocks(const model::Parameters& model, runs::Measur
   std::vector<runs::SignalDelay> moves;
   std::vector<ClockDelay> delays = {
       DelayOf(*run, {{"voltage", &Run::voltage}, {"pressure_ref", &Run::pressure_ref}},
-              Of(parts.command, command), even.step, &moves),
+              EstimateOf(parts.command, command), even.step, &moves),
       DelayOf(*run, {{"motor_speed", &Run::motor_speed}, {"motor_angle", &Run::motor_angle}},
-              Of(parts.speed, speed), even.step, &moves)};
+              EstimateOf(parts.speed, speed), even.step, &moves)};
   if (even.arm_speed.size() > 0 && even.arm_speed.allFinite()) {
     if (const std::optional<Estimate> arm = DelayOfArm(balances, best[1])) {
       delays.push_back(DelayOf(*run, {{"arm_angle", &Run::arm_angle}, {"arm_speed", &Run::arm_speed}}, *arm,
@@ -232,11 +232,11 @@ RunData PrepareAligned(runs::MeasuredRun run, const model::Parameters& model,
   return data;
 }
 
-std::string Says(const ClockDelay& delay) {
-  char text[96];
-  std::snprintf(text, sizeof text, "%s %s by %.3g +- %.2g s", delay.signals.size() > 1 ? "are" : "is",
-                delay.delay < 0 ? "early" : "late", std::abs(delay.delay), delay.error);
-  return RunNamed(delay.run) + ": " + Enumerated(delay.signals) + " " + text + " against p1 and p2";
+std::string DelayRemark(const ClockDelay& delay) {
+  return RunNamed(delay.run) + ": " + Enumerated(delay.signals) +
+         (delay.signals.size() > 1 ? " are " : " is ") + (delay.delay < 0 ? "early" : "late") + " by " +
+         ShortNumber(std::abs(delay.delay), 3) + " +- " + ShortNumber(delay.error, 2) +
+         " s relative to p1 and p2";
 }
 
 }  // namespace hydro::diagnose

@@ -35,7 +35,7 @@ std::vector<ClockDelay> AlignClocks(const model::Parameters& model, runs::Measur
 RunData PrepareAligned(runs::MeasuredRun run, const model::Parameters& model,
                        std::vector<ClockDelay>* delays);
 
-// "run sine: motor_speed is late by 0.334 +- 0.013 s against p1 and p2"
-std::string Says(const ClockDelay& delay);
+// "run sine: motor_speed is late by 0.334 +- 0.013 s relative to p1 and p2"
+std::string DelayRemark(const ClockDelay& delay);
 
 }  // namespace hydro::diagnose

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
+#include "base/number_text.h"
 #include "base/word_list.h"
 #include "diagnose/data/sample_interval.h"
 
@@ -18,12 +18,7 @@ constexpr double kGap = 5;               // median sample intervals
 constexpr double kCoarse = 2;            // resolution, in standard deviations of the noise
 constexpr double kStill = 5;             // movement of a signal, in standard deviations of the noise
 
-template <class... Values>
-std::string Format(const char* format, Values... values) {
-  char text[160];
-  std::snprintf(text, sizeof text, format, values...);
-  return text;
-}
+std::string Percent(double share) { return ShortNumber(100 * share, 3) + " %"; }
 
 void RemarkOnTimes(const RunData& run, std::vector<std::string>* remarks) {
   const std::vector<double>& time = run.stimulus.time;
@@ -37,32 +32,33 @@ void RemarkOnTimes(const RunData& run, std::vector<std::string>* remarks) {
     longest = std::max(longest, interval);
   }
   if (gaps == 0) return;
-  remarks->push_back(RunNamed(run.name) + ": " + Format("%zu", gaps) + (gaps == 1 ? " gap" : " gaps") +
-                     Format(" in time, up to %.3g s, the first after %.6g s", longest, time[first]));
+  remarks->push_back(RunNamed(run.name) + ": " + std::to_string(gaps) + (gaps == 1 ? " gap" : " gaps") +
+                     " in time, up to " + ShortNumber(longest, 3) + " s long, the first after " +
+                     ShortNumber(time[first], 6) + " s");
 }
 
 void RemarkOnSignal(const RunData& run, const SignalData& signal, std::vector<std::string>* remarks) {
   const std::string name = RunNamed(run.name) + ": " + ChannelName(signal.channel);
-  const char* unit = ChannelUnit(signal.channel).c_str();
+  const std::string unit = " " + ChannelUnit(signal.channel);
   const double ratio = signal.noise / signal.stated_noise;
   if (ratio > kUnlikeStated || ratio < 1 / kUnlikeStated) {
-    remarks->push_back(name + Format("'s noise is %.3g %s, stated are %.3g %s", signal.noise, unit,
-                                     signal.stated_noise, unit));
+    remarks->push_back(name + " has a noise of " + ShortNumber(signal.noise, 3) + unit +
+                       " instead of the stated " + ShortNumber(signal.stated_noise, 3) + unit);
   }
   const auto samples = static_cast<double>(run.samples());
   const auto there = static_cast<double>(signal.valid + signal.saturated);
   if (static_cast<double>(signal.saturated) > kMostSaturated * there) {
-    remarks->push_back(name + Format(" is at the end of its range in %.3g %% of its samples",
-                                     100 * static_cast<double>(signal.saturated) / there));
+    remarks->push_back(name + " is at the end of its range in " +
+                       Percent(static_cast<double>(signal.saturated) / there) + " of its samples");
   }
   const double missing = 1 - there / samples;
   if (missing > kMostMissing && missing < kSlowerSensor) {
-    remarks->push_back(name + Format(" is missing in %.3g %% of the rows", 100 * missing));
+    remarks->push_back(name + " is missing in " + Percent(missing) + " of the rows");
   }
   // In a recording without noise, the noise is that of rounding, q / sqrt(12).
   if (signal.resolution > kCoarse * signal.noise && !std::isnan(signal.stated_noise)) {
-    remarks->push_back(
-        name + Format(" is recorded in steps of %.3g %s, coarser than its noise", signal.resolution, unit));
+    remarks->push_back(name + " is recorded in steps of " + ShortNumber(signal.resolution, 3) + unit +
+                       ", coarser than its noise");
   }
 }
 
@@ -84,12 +80,12 @@ void RemarkOnMotion(const std::vector<const RunData*>& runs, std::vector<std::st
     }
   }
   if (speed && high - low < 2 * kStill * noise) {
-    remarks->push_back("the motor hardly turns in any run: friction and inertia cannot be seen");
+    remarks->push_back("the motor hardly turns in any run: friction and inertia cannot be identified");
   } else if (speed && (low > -kStill * noise || high < kStill * noise)) {
-    remarks->push_back("the motor turns one way only: friction cannot be told from a wrong torque");
+    remarks->push_back("the motor turns one way only: friction cannot be distinguished from a wrong torque");
   }
   if (pressure && most_pressure < 2 * kStill) {
-    remarks->push_back("the pressures hardly change in any run: fluid and leakage cannot be seen");
+    remarks->push_back("the pressures hardly change in any run: fluid and leakage cannot be identified");
   }
 }
 
@@ -100,7 +96,7 @@ std::vector<std::string> RecordingRemarks(const std::vector<ClockDelay>& clocks,
                                           const std::vector<const RunData*>& held_out) {
   std::vector<std::string> remarks;
   remarks.reserve(clocks.size());
-  for (const ClockDelay& clock : clocks) remarks.push_back(Says(clock));
+  for (const ClockDelay& clock : clocks) remarks.push_back(DelayRemark(clock));
   for (const auto* some : {&runs, &held_out}) {
     for (const RunData* run : *some) {
       RemarkOnTimes(*run, &remarks);

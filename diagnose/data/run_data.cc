@@ -44,7 +44,7 @@ size_t CountValid(const std::vector<double>& values) {
 
 // Values that no actuator reaches, in the model's own units: at least twice what its equations could hold, so
 // that only a wrong unit exceeds them and a wrong parameter does not.
-double Impossible(const ChannelRow& row, const model::Parameters& model) {
+double LargestPossible(const ChannelRow& row, const model::Parameters& model) {
   const std::string name = row.name;
   const double stroke = model.V_ms / model.c;  // where V_1 or V_2 is 0, eqs. (6), (7)
   if (name == "motor_speed") return 1e5;       // rad/s in every coherent system
@@ -71,7 +71,7 @@ void CheckSignal(const runs::MeasuredRun& run, const ChannelRow& row, const mode
     Refuse(run.file, row.name, valid == 0 ? "no value in any row" : std::to_string(valid) + " values",
            std::to_string(kFewestValues) + " values or more, or leave the signal out");
   }
-  CheckRange(run, row.name, values, Impossible(row, model), row.unit);
+  CheckRange(run, row.name, values, LargestPossible(row, model), row.unit);
   // An arm may well stand still. And a simulation without noise reports a single number for a side on its
   // one-way valve or a pump that sticks.
   const bool simulated = !run.model_text.empty() && !(run.*row.signal).noise.has_value();
@@ -83,7 +83,7 @@ void CheckSignal(const runs::MeasuredRun& run, const ChannelRow& row, const mode
   });
   if (!constant) return;
   Refuse(run.Place(first), row.name,
-         ShortestNumber(values[first]) + " " + row.unit + " there and in every row after it",
+         ShortestNumber(values[first]) + " " + row.unit + " here and in every later row",
          "a signal that changes, or leave it out");
 }
 
@@ -209,8 +209,8 @@ RunData PrepareRun(runs::MeasuredRun run, const model::Parameters& model) {
     if (signal.valid >= kFewestValues) data.signals.push_back(std::move(signal));
   }
   if (data.signals.empty()) {
-    Refuse(run.file, "", "no signal to compare a model with",
-           std::string("one or more of motor_speed, motor_angle, p1, p2") +
+    Refuse(run.file, "", "no signal to compare with a model",
+           std::string("at least one of motor_speed, motor_angle, p1, p2") +
                (run.shaft == model::Shaft::kFree ? ", arm_angle, arm_speed" : ""));
   }
   if (run.shaft == model::Shaft::kDriven) {
@@ -222,7 +222,7 @@ RunData PrepareRun(runs::MeasuredRun run, const model::Parameters& model) {
   return data;
 }
 
-void NameApart(std::vector<RunData>* runs) {
+void MakeNamesUnique(std::vector<RunData>* runs) {
   std::set<std::string> taken;
   for (RunData& run : *runs) {
     const std::string own = run.name;

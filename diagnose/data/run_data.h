@@ -66,7 +66,7 @@ struct ValueRange {
 ValueRange RangeOfValues(const std::vector<double>& values);
 
 // Makes the runs' names unique.
-void NameApart(std::vector<RunData>* runs);
+void MakeNamesUnique(std::vector<RunData>* runs);
 
 // The standard deviation of what no smooth signal explains: white noise and rounding. It comes from the
 // quietest of several bands of the upper spectrum, so that neither the motion nor a ripple of one frequency

@@ -72,7 +72,7 @@ std::vector<double> Speed(const runs::MeasuredSignal& speed, const runs::Measure
 // What a linear balance leaves open: mean square over its target's variance; infinity where it cannot be
 // told. `row` fills the regressors of a sample and returns its target, NaN for a sample that does not count.
 template <int N, class Row>
-double Open(Index first, Index last, const Row& row) {
+double ShareLeftOpen(Index first, Index last, const Row& row) {
   Eigen::Matrix<double, N + 1, N + 1> normal = Eigen::Matrix<double, N + 1, N + 1>::Zero();
   Eigen::Matrix<double, N + 1, 1> x;
   double sum = 0, count = 0;
@@ -129,7 +129,7 @@ ShiftedBalances::ShiftedBalances(EvenSignals signals, const model::Parameters& m
 }
 
 double ShiftedBalances::Torque(int command, int speed, Index first, Index last) const {
-  return Open<6>(first, last, [&](Index i, double* x) {
+  return ShareLeftOpen<6>(first, last, [&](Index i, double* x) {
     const double rate = signals_.speed(i + speed);
     if (std::abs(rate) < slowest_) return kNone;
     const double sign = rate > 0 ? 1 : -1;
@@ -144,7 +144,7 @@ double ShiftedBalances::Torque(int command, int speed, Index first, Index last) 
 }
 
 double ShiftedBalances::Flow(int speed, int arm, Index first, Index last) const {
-  return Open<5>(first, last, [&](Index i, double* x) {
+  return ShareLeftOpen<5>(first, last, [&](Index i, double* x) {
     // Where both sides rest on their valves, the flows carry no information.
     if (signals_.p1(i) < lowest_ && signals_.p2(i) < lowest_) return kNone;
     x[0] = signals_.arm_speed(i + arm);

@@ -16,8 +16,8 @@ struct EvenSignals {
 
 EvenSignals MakeEven(const runs::MeasuredRun& run, const model::Parameters& model);
 
-// The balances as regressions: what the best coefficients leave open, as mean square over the target's variance;
-// infinity where that cannot be told. Shifts are in steps of the grid.
+// The balances as regressions: what the best coefficients leave open, as mean square over the target's
+// variance; infinity where there are too few samples. Shifts are in steps of the grid.
 class ShiftedBalances {
  public:
   ShiftedBalances(EvenSignals signals, const model::Parameters& model);

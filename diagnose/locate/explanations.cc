@@ -2,9 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <numbers>
 #include <string>
+
+#include "base/number_text.h"
 
 namespace hydro::diagnose {
 
@@ -83,9 +84,7 @@ std::vector<Variable> Explanations::Commands() const {
       const double v = d.stimulus.voltage[k];
       return v > from ? v - from : v < -from ? v + from : 0;
     });
-    char where[48];
-    std::snprintf(where, sizeof where, "|voltage| > %.3g V", from);
-    beyond.where = where;
+    beyond.where = "|voltage| > " + ShortNumber(from, 3) + " V";
     beyond.name = "voltage beyond a limit";
     beyond.linear_only = true;
     all.push_back(std::move(beyond));

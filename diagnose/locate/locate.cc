@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdio>
 
+#include "base/number_text.h"
 #include "diagnose/data/observed_mode.h"
 #include "diagnose/locate/dependence.h"
 #include "diagnose/locate/disagreement.h"
@@ -116,7 +116,7 @@ std::string AtReversals(const Blocks& blocks, const std::vector<const RunData*>&
 
 std::string WhereOf(const Blocks& blocks, const std::vector<Dependence>& ranked,
                     const std::vector<const RunData*>& runs) {
-  std::string where = "everywhere alike";
+  std::string where = "the same everywhere";
   if (ranked.front().explained > kDependence) {
     where = RangeOf(blocks, ranked.front().variable, ranked.front().averages);
   }
@@ -149,13 +149,15 @@ void AddShare(std::vector<Location>* locations, Location more) {
   locations->push_back(std::move(more));
 }
 
+std::string WithSign(double value) { return (value < 0 ? "" : "+") + ShortNumber(value, 3); }
+
 size_t LargestBalance(const Found& found) {
   return static_cast<size_t>(std::max_element(found.energy.begin(), found.energy.end()) -
                              found.energy.begin());
 }
 
-// What the search for a place has come to.
-struct Search {
+// The disagreement, and how much of it has been given a place.
+struct Placement {
   std::vector<SmoothedRun> smoothed;
   Found found;
   double all = 0;  // the total of `found` before any correction
@@ -163,39 +165,39 @@ struct Search {
   Localisation result;
 };
 
-// The sensors' share is what correcting their offsets removes, if that is most of the disagreement; the
-// search goes on with what is left.
+// The sensors' share is what correcting their offsets removes, if that is most of the disagreement; what is
+// left is then placed.
 void CorrectOffsets(const model::ModelDescription& model, const std::vector<const RunData*>& runs,
-                    Search* search) {
+                    Placement* placement) {
   const PressureOffsets offsets = RestOffsets(model, runs);
   if (offsets.p1 == 0 && offsets.p2 == 0) return;
   std::vector<SmoothedRun> corrected = SmoothAll(model, runs, offsets);
   Found left = Weigh(corrected, runs);
-  if (left.total >= kMostlyOffsets * search->all) return;
-  char where[96];
-  std::snprintf(where, sizeof where, "p1 reads %+.3g psi, p2 %+.3g psi at the valves' pressure", offsets.p1,
-                offsets.p2);
-  search->result.location.push_back({"sensor", 1 - left.total / search->all, where,
-                                     WindowsOf(search->found.blocks[LargestBalance(search->found)], runs)});
-  search->smoothed = std::move(corrected);
-  search->found = std::move(left);
+  if (left.total >= kMostlyOffsets * placement->all) return;
+  const std::string where = "p1 reads " + WithSign(offsets.p1) + " psi, p2 " + WithSign(offsets.p2) +
+                            " psi at the valves' pressure";
+  placement->result.location.push_back(
+      {"sensor", 1 - left.total / placement->all, where,
+       WindowsOf(placement->found.blocks[LargestBalance(placement->found)], runs)});
+  placement->smoothed = std::move(corrected);
+  placement->found = std::move(left);
 }
 
 // Places the disagreement of one balance: with the balance itself, with the command or with a sensor.
 void Place(const Explanations& explanations, const std::vector<const RunData*>& runs, size_t b,
-           Search* search) {
-  const double share = search->found.energy[b] / search->all;
+           Placement* placement) {
+  const double share = placement->found.energy[b] / placement->all;
   if (share < kSmallestShare) return;
   const Balance balance = static_cast<Balance>(b);
-  const Blocks& blocks = search->found.blocks[b];
-  std::vector<Location>& location = search->result.location;
-  std::vector<Dependence>& ranked = search->ranked[b];
-  ranked = Rank(blocks, explanations.States(balance, blocks.duration < kQuick), search->smoothed, balance);
+  const Blocks& blocks = placement->found.blocks[b];
+  std::vector<Location>& location = placement->result.location;
+  std::vector<Dependence>& ranked = placement->ranked[b];
+  ranked = Rank(blocks, explanations.States(balance, blocks.duration < kQuick), placement->smoothed, balance);
   double own = share;
   // Moves to `to` the share that its variables explain clearly better than the balance's own do.
-  const auto give = [&](const char* to, std::vector<Variable> variables) {
+  const auto move_share = [&](const char* to, std::vector<Variable> variables) {
     if (variables.empty() || own < share) return;
-    const std::vector<Dependence> others = Rank(blocks, std::move(variables), search->smoothed, balance);
+    const std::vector<Dependence> others = Rank(blocks, std::move(variables), placement->smoothed, balance);
     const double explained = others.front().explained;
     if (explained <= ranked.front().explained + kPlainly) return;
     const double part = share * std::min(1.0, explained);
@@ -203,8 +205,8 @@ void Place(const Explanations& explanations, const std::vector<const RunData*>& 
     AddShare(&location, {to, part, WhereOf(blocks, {others.front()}, runs), WindowsOf(blocks, runs)});
     ranked.insert(ranked.begin(), others.front());
   };
-  if (balance == Balance::kPumpTorque) give("command", explanations.Commands());
-  give("sensor", explanations.Lateness(balance));
+  if (balance == Balance::kPumpTorque) move_share("command", explanations.Commands());
+  move_share("sensor", explanations.Lateness(balance));
   if (own < kSmallestShare) return;
   location.push_back({kNames[b], own, WhereOf(blocks, ranked, runs), WindowsOf(blocks, runs)});
 }
@@ -212,22 +214,22 @@ void Place(const Explanations& explanations, const std::vector<const RunData*>& 
 }  // namespace
 
 Localisation Locate(const model::ModelDescription& model, const std::vector<const RunData*>& runs) {
-  Search search;
-  search.smoothed = SmoothAll(model, runs, {});
-  search.found = Weigh(search.smoothed, runs);
-  search.all = search.found.total;
-  if (search.all == 0) return {};
-  CorrectOffsets(model, runs, &search);
-  const Explanations explanations(search.smoothed, runs);
-  for (size_t b = 0; b < kBalances; ++b) Place(explanations, runs, b, &search);
-  std::vector<Location>& location = search.result.location;
+  Placement placement;
+  placement.smoothed = SmoothAll(model, runs, {});
+  placement.found = Weigh(placement.smoothed, runs);
+  placement.all = placement.found.total;
+  if (placement.all == 0) return {};
+  CorrectOffsets(model, runs, &placement);
+  const Explanations explanations(placement.smoothed, runs);
+  for (size_t b = 0; b < kBalances; ++b) Place(explanations, runs, b, &placement);
+  std::vector<Location>& location = placement.result.location;
   std::stable_sort(location.begin(), location.end(),
                    [](const Location& a, const Location& b) { return a.share > b.share; });
   if (!location.empty() && location.front().balance != "sensor") {
-    const size_t b = LargestBalance(search.found);
-    Tabulate(search.found.blocks[b], search.ranked[b], b, &search.result.missing);
+    const size_t b = LargestBalance(placement.found);
+    Tabulate(placement.found.blocks[b], placement.ranked[b], b, &placement.result.missing);
   }
-  return std::move(search.result);
+  return std::move(placement.result);
 }
 
 }  // namespace hydro::diagnose

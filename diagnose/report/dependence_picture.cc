@@ -28,7 +28,7 @@ std::optional<std::vector<double>> Quantity(const RunCurves& run, const std::str
     const std::vector<double>* p1 = find(model::Channel::kP1);
     const std::vector<double>* p2 = find(model::Channel::kP2);
     if (p1 == nullptr || p2 == nullptr) return std::nullopt;
-    return Left(*p2, *p1, 1);
+    return ScaledResiduals(*p2, *p1, 1);
   }
   const std::vector<double>* values =
       find(name == "speed" ? model::Channel::kMotorSpeed : model::Channel::kArmAngle);
@@ -61,7 +61,7 @@ Points BinMeans(const Points& points, const page::Range& range) {
 }
 
 // At most `most` of the points, evenly spaced.
-Points Some(const Points& points, size_t most) {
+Points Thinned(const Points& points, size_t most) {
   Points some;
   const size_t stride = std::max<size_t>(1, (points.x.size() + most - 1) / most);
   for (size_t i = 0; i < points.x.size(); i += stride) {
@@ -123,7 +123,7 @@ page::Panel DependencePanel(const Diagnosis& diagnosis, model::Channel channel, 
       measured_size = std::max(measured_size, unit.factor * SizeOf(curve.measured));
       const std::vector<double> scaled = Scaled(*x, against.factor);
       for (auto [points, simulated] : {std::pair{&before, &curve.before}, {&after, &curve.after}}) {
-        const std::vector<double> left = Left(curve.measured, *simulated, unit.factor);
+        const std::vector<double> left = ScaledResiduals(curve.measured, *simulated, unit.factor);
         if (left.size() != scaled.size()) continue;
         points->x.insert(points->x.end(), scaled.begin(), scaled.end());
         points->y.insert(points->y.end(), left.begin(), left.end());
@@ -139,10 +139,10 @@ page::Panel DependencePanel(const Diagnosis& diagnosis, model::Channel channel, 
   page::Panel panel;
   panel.x = {.label = last ? against.label : "", .min = range.low, .max = range.high, .numbers = last};
   panel.curves = {
-      Drawn(label(kBeforeLabel), Some(before, kMostDots), kBefore, Weight::kFaint, Stroke::kPoints),
-      Drawn(label(kAfterLabel), Some(after, kMostDots), kAfter, Weight::kFaint, Stroke::kPoints),
-      Drawn(label("mean, model as given"), BinMeans(before, range), kBefore, Weight::kStrong),
-      Drawn(label("mean, with what was found"), BinMeans(after, range), kAfter, Weight::kStrong)};
+      DrawnCurve(label(kBeforeLabel), Thinned(before, kMostDots), kBefore, Weight::kFaint, Stroke::kPoints),
+      DrawnCurve(label(kAfterLabel), Thinned(after, kMostDots), kAfter, Weight::kFaint, Stroke::kPoints),
+      DrawnCurve(label("mean, model as given"), BinMeans(before, range), kBefore, Weight::kStrong),
+      DrawnCurve(label("mean, with what was found"), BinMeans(after, range), kAfter, Weight::kStrong)};
   SetRange(panel.y, ResidualRange(before, after, measured_size, noise));
   if (noise > 0) panel.bands = {{label(kNoiseLabel), false, -2 * noise, 2 * noise}};
   return panel;

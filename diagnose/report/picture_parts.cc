@@ -28,8 +28,8 @@ std::vector<double> Scaled(const std::vector<double>& values, double factor) {
   return scaled;
 }
 
-std::vector<double> Left(const std::vector<double>& measured, const std::vector<double>& simulated,
-                         double factor) {
+std::vector<double> ScaledResiduals(const std::vector<double>& measured, const std::vector<double>& simulated,
+                                    double factor) {
   std::vector<double> left;
   if (simulated.size() != measured.size()) return left;
   for (size_t i = 0; i < measured.size(); ++i) left.push_back(factor * (measured[i] - simulated[i]));
@@ -70,8 +70,8 @@ page::Range ResidualRange(const Points& before, const Points& after, double meas
   return page::Range{-size, size}.WithMargin();
 }
 
-page::Curve Drawn(const std::string& label, const Points& points, int colour, page::Weight weight,
-                  page::Stroke stroke) {
+page::Curve DrawnCurve(const std::string& label, const Points& points, int colour, page::Weight weight,
+                       page::Stroke stroke) {
   page::Curve curve = page::Line(label, points.x, points.y, colour, stroke);
   curve.weight = weight;
   return curve;

@@ -27,8 +27,8 @@ struct Points {
 std::vector<double> Scaled(const std::vector<double>& values, double factor);
 
 // measured - simulated, scaled; empty without a simulation.
-std::vector<double> Left(const std::vector<double>& measured, const std::vector<double>& simulated,
-                         double factor);
+std::vector<double> ScaledResiduals(const std::vector<double>& measured, const std::vector<double>& simulated,
+                                    double factor);
 
 // A channel's noise, in the model's unit; 0 where it is not known.
 double NoiseOf(const Diagnosis& diagnosis, model::Channel channel);
@@ -45,7 +45,7 @@ double SizeOf(const std::vector<double>& values);
 // The range of residuals, limited to the size of the measured signal.
 page::Range ResidualRange(const Points& before, const Points& after, double measured_size, double noise);
 
-page::Curve Drawn(const std::string& label, const Points& points, int colour, page::Weight weight,
-                  page::Stroke stroke = page::Stroke::kLine);
+page::Curve DrawnCurve(const std::string& label, const Points& points, int colour, page::Weight weight,
+                       page::Stroke stroke = page::Stroke::kLine);
 
 }  // namespace hydro::diagnose

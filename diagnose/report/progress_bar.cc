@@ -6,7 +6,7 @@
 namespace hydro::diagnose {
 namespace {
 
-std::string Left(double fraction, double elapsed) {
+std::string TimeLeft(double fraction, double elapsed) {
   if (fraction < 0.02 || elapsed < 1 || fraction >= 1) return "";
   const double left = std::ceil(elapsed * (1 - fraction) / fraction);
   const int seconds = static_cast<int>(std::min(left, 359999.0));
@@ -16,7 +16,7 @@ std::string Left(double fraction, double elapsed) {
 
 }  // namespace
 
-void ProgressBar::Tell(const Progress& progress, double elapsed) {
+void ProgressBar::Show(const Progress& progress, double elapsed) {
   if (!terminal_) {
     if (progress.stage == stage_) return;
     // The first line waits for the second stage: unusable input ends the work before that, and then the
@@ -30,7 +30,7 @@ void ProgressBar::Tell(const Progress& progress, double elapsed) {
   }
   // The bar never goes back.
   furthest_ = std::clamp(progress.fraction, furthest_, 1.0);
-  line_.Draw(furthest_, progress.stage + Left(furthest_, elapsed));
+  line_.Draw(furthest_, progress.stage + TimeLeft(furthest_, elapsed));
 }
 
 }  // namespace hydro::diagnose

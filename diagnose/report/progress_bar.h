@@ -17,7 +17,7 @@ class ProgressBar {
   ProgressBar(std::FILE* out, bool terminal) : out_(out), terminal_(terminal), line_(out) {}
 
   // `elapsed`: s since the work began.
-  void Tell(const Progress& progress, double elapsed);
+  void Show(const Progress& progress, double elapsed);
 
  private:
   std::FILE* out_;

@@ -23,11 +23,7 @@ namespace {
 std::string Cell(const std::string& text) { return "<td>" + page::TypesetHtml(text) + "</td>"; }
 std::string NumberCell(double value) { return "<td class=\"number\">" + ShortNumber(value) + "</td>"; }
 
-std::string Probability(double p) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.2g", p);
-  return "<td class=\"number\">" + std::string(std::isfinite(p) ? text : "-") + "</td>";
-}
+std::string Probability(double p) { return "<td class=\"number\">" + ShortNumber(p, 2) + "</td>"; }
 
 // Columns whose names begin with '#' hold numbers.
 std::string Table(const std::vector<std::string>& columns, const std::string& rows,
@@ -79,9 +75,8 @@ std::string GapTable(const Diagnosis& diagnosis, bool si) {
             cells(signal.held_out, unit.factor) + "</tr>\n";
   }
   return "<p>Root-mean-square residuals. <i>Before</i>: the model as given; <i>refitted</i>: its own "
-         "parameters "
-         "refitted, nothing added; <i>after</i>: with what was found. In noise units, 1 is the noise "
-         "floor.</p>\n" +
+         "parameters refitted, nothing added; <i>after</i>: with what was found. In noise units, 1 is the "
+         "noise floor.</p>\n" +
          Table({"signal", "unit", "#noise", "#fitted: before", "#refitted", "#after", "#held out: before",
                 "#refitted", "#after"},
                rows) +
@@ -106,7 +101,7 @@ std::string Effects(const Diagnosis& diagnosis) {
     if (!rows.empty()) out += Table({"parameter", "#value", "#95 % interval", "unit"}, rows, "narrow");
     if (!effect.names.empty()) out += "<p>" + page::EscapeMarkup(Joined(effect.names)) + "</p>\n";
     if (!effect.tied_with.empty()) {
-      out += "<p class=\"flag\">These data cannot tell it from " +
+      out += "<p class=\"flag\">These data cannot distinguish it from " +
              page::EscapeMarkup(Joined(effect.tied_with)) + ".</p>\n";
     }
   }
@@ -200,9 +195,9 @@ std::string Runs(const Diagnosis& diagnosis, bool si) {
     const std::optional<page::Figure> figure = RunFigure(diagnosis, run, si);
     if (!figure) continue;
     out += "<h3>" + page::EscapeMarkup(run.run) +
-           (run.held_out ? " <span class=\"meta\">held out: <i>after</i> is a model that was not fitted to "
-                           "it</span>"
-                         : "") +
+           (run.held_out
+                ? " <span class=\"meta\">held out: <i>after</i> is a model that was not fitted to it</span>"
+                : "") +
            "</h3>\n" + page::HtmlFigure(*figure, "measured and simulated signals of " + run.run);
   }
   return out;
@@ -224,13 +219,10 @@ std::string Ranking(const Diagnosis& diagnosis) {
             "<td>" + (taken ? "taken" : page::TypesetHtml(candidate.rejected_because)) + "</td></tr>\n";
   }
   if (rows.empty()) return "";
-  return "<p>Gaps are in noise units, after the candidate was added and all parameters were refitted. The "
-         "score is "
-         "the drop of the squared gap that the candidate's sensitivity promises before any refit. p is the "
-         "probability "
-         "that noise alone does as much, corrected for the number of candidates. <i>-</i>: not tried, "
-         "because its "
-         "score is too low.</p>\n" +
+  return "<p>Gaps are in noise units, with the candidate added and all parameters refitted. The score is the "
+         "drop in the squared gap that the score test predicts before any refit. p is the probability that "
+         "noise alone achieves as much, corrected for the number of candidates. <i>-</i>: not tried, because "
+         "the score is too low.</p>\n" +
          Table({"#", "candidate", "#score", "#fitted", "#held out", "#p", "rejected because"}, rows);
 }
 

@@ -76,20 +76,20 @@ std::array<page::Panel, 2> SignalPanels(const Diagnosis& diagnosis, const RunCur
   const Points measured = over_time(Scaled(curve.measured, unit.factor));
   const Points before = over_time(Scaled(curve.before, unit.factor));
   const Points after = over_time(Scaled(curve.after, unit.factor));
-  signals.curves = {Drawn(label("measured"), measured, 0, Weight::kBackdrop),
-                    Drawn(label(kBeforeLabel), before, kBefore, Weight::kNormal),
-                    Drawn(label(kAfterLabel), after, kAfter, Weight::kNormal)};
+  signals.curves = {DrawnCurve(label("measured"), measured, 0, Weight::kBackdrop),
+                    DrawnCurve(label(kBeforeLabel), before, kBefore, Weight::kNormal),
+                    DrawnCurve(label(kAfterLabel), after, kAfter, Weight::kNormal)};
   SetRange(signals.y, RangeOf(measured, before, after));
 
   residuals.width = 1 - kSignalShare;
   residuals.y.label = "measured - model";
   if (noise > 0) residuals.bands.push_back({label(kNoiseLabel), false, -2 * noise, 2 * noise});
-  const Points left_before = over_time(Left(curve.measured, curve.before, unit.factor));
-  const Points left_after = over_time(Left(curve.measured, curve.after, unit.factor));
-  residuals.curves = {Drawn("", left_before, kBefore, Weight::kFaint),
-                      Drawn("", left_after, kAfter, Weight::kFaint),
-                      Drawn("", RunningMean(left_before), kBefore, Weight::kStrong),
-                      Drawn(label("means"), RunningMean(left_after), kAfter, Weight::kStrong)};
+  const Points left_before = over_time(ScaledResiduals(curve.measured, curve.before, unit.factor));
+  const Points left_after = over_time(ScaledResiduals(curve.measured, curve.after, unit.factor));
+  residuals.curves = {DrawnCurve("", left_before, kBefore, Weight::kFaint),
+                      DrawnCurve("", left_after, kAfter, Weight::kFaint),
+                      DrawnCurve("", RunningMean(left_before), kBefore, Weight::kStrong),
+                      DrawnCurve(label("means"), RunningMean(left_after), kAfter, Weight::kStrong)};
   SetRange(residuals.y, ResidualRange(left_before, left_after, SizeOf(measured.y), noise));
   return {signals, residuals};
 }

@@ -26,7 +26,8 @@ Explanation Explain(const SearchContext& context, const Hypothesis& hypothesis,
   return explanation;
 }
 
-Explanation BegunAgain(const SearchContext& context, const Explanation& one, const FitOptions& options) {
+Explanation RefitFromOtherStarts(const SearchContext& context, const Explanation& one,
+                                 const FitOptions& options) {
   if (one.fitted.squared_gap() <= kStartInDoubt) return one;
   Explanation best = one;
   const auto begin_at = [&](const std::vector<model::StartState>& starts) {

@@ -29,7 +29,7 @@ struct SearchContext {
   std::vector<Change> changes;           // those that may be made
   Sizes sizes;
   int jobs = 1;
-  TellProgress tell;
+  ProgressCallback report_progress;
 };
 
 // Fits the hypothesis and predicts the held-out runs, both with the options' jobs.
@@ -42,6 +42,7 @@ std::vector<model::StartState> MeasuredStarts(const std::vector<const RunData*>&
 // If the fit leaves a gap, fits again from the measured starts and, if a gap still remains, from each run's
 // best start (BestStarts); returns the best fit. Starts that were fitted while something was missing made up
 // for it, and may trap the fit where friction or cogging catches the shaft in another place.
-Explanation BegunAgain(const SearchContext& context, const Explanation& one, const FitOptions& options);
+Explanation RefitFromOtherStarts(const SearchContext& context, const Explanation& one,
+                                 const FitOptions& options);
 
 }  // namespace hydro::diagnose

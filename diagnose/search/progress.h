@@ -12,6 +12,6 @@ struct Progress {
 };
 
 // Never called from two threads at once.
-using TellProgress = std::function<void(const Progress&)>;
+using ProgressCallback = std::function<void(const Progress&)>;
 
 }  // namespace hydro::diagnose

@@ -31,8 +31,8 @@ std::vector<size_t> Vanishing(const StartingPoint& point) {
 }
 
 // A change that already acts at its starting point gets a simulation of its own.
-std::vector<RunColumns> Alone(const Fitted& current, const std::vector<const RunData*>& runs,
-                              const StartingPoint& point) {
+std::vector<RunColumns> SimulateAlone(const Fitted& current, const std::vector<const RunData*>& runs,
+                                      const StartingPoint& point) {
   std::vector<RunColumns> columns(runs.size());
   for (size_t r = 0; r < runs.size(); ++r) {
     const Residuals residuals = ResidualsOf(point.with.model, *runs[r], current.runs[r].start, point.own, {});
@@ -78,9 +78,9 @@ Combined Combine(const model::ModelDescription& given, const std::vector<const S
 
 // Changes that do nothing yet share one simulation; `columns` gets the results by change. False if they turn
 // out to do something after all.
-bool Together(const Fitted& current, const std::vector<const RunData*>& runs,
-              const std::vector<RunBasis>& bases, const std::vector<const StartingPoint*>& points,
-              std::vector<std::vector<RunColumns>>* columns) {
+bool SimulateTogether(const Fitted& current, const std::vector<const RunData*>& runs,
+                      const std::vector<RunBasis>& bases, const std::vector<const StartingPoint*>& points,
+                      std::vector<std::vector<RunColumns>>* columns) {
   const Combined combined = Combine(current.hypothesis.model, points);
   columns->assign(points.size(), std::vector<RunColumns>(runs.size()));
   for (size_t r = 0; r < runs.size(); ++r) {
@@ -210,7 +210,7 @@ class Scanner {
  private:
   void TestAlone(size_t t) {
     try {
-      scanned_[t] = ScoreTest(bases_, known_, points_[t], Alone(current_, runs_, points_[t]));
+      scanned_[t] = ScoreTest(bases_, known_, points_[t], SimulateAlone(current_, runs_, points_[t]));
     } catch (const model::ModelError& error) {
       scanned_[t].failure = error.what();
       scanned_[t].start = points_[t].with;
@@ -223,7 +223,7 @@ class Scanner {
     std::vector<std::vector<RunColumns>> columns;
     bool together = false;
     try {
-      together = Together(current_, runs_, bases_, members, &columns);
+      together = SimulateTogether(current_, runs_, bases_, members, &columns);
       for (size_t m = 0; together && m < members.size(); ++m) {
         scanned_[group[m]] = ScoreTest(bases_, known_, *members[m], columns[m]);
       }

@@ -33,7 +33,7 @@ constexpr size_t kFinalists = 3;
 constexpr double kCloseEnough = 1.25;
 
 // Above this squared gap of the fit, an explanation with a change removed is not refitted from other starts.
-constexpr double kNear = 3;
+constexpr double kRefitBelow = 3;
 
 // Of two that predict equally well, prefers the one with fewer new numbers, and a wrong value to a missing
 // effect.
@@ -65,14 +65,14 @@ class Searcher {
   }
 
   SearchResult Run(const Hypothesis& from) {
-    Tell("the model as given", 0);
+    ReportProgress("the model as given", 0);
     result_.given = Explain(context_, from, MeasuredStarts(context_.runs), WithAllJobs(fine_));
     if (!result_.given.fitted.ok()) return result_;
     result_.best = result_.given;
     Grow(Extend({result_.given}, 0), 0);
     if (result_.best.held_out_gap() >= kCloseEnough) Grow(TryAllAlone(), 0);
     Exchange();
-    TakeBack();
+    RemoveUnneeded();
     if (const Explanation* instead = ParameterInstead(result_, context_.given)) {
       result_.best = *instead;
     }
@@ -87,8 +87,8 @@ class Searcher {
     return options;
   }
 
-  void Tell(const std::string& stage, double fraction) const {
-    if (context_.tell) context_.tell({stage, fraction});
+  void ReportProgress(const std::string& stage, double fraction) const {
+    if (context_.report_progress) context_.report_progress({stage, fraction});
   }
 
   // Takes the best of `next`, hypotheses of `step` + 1 changes, if it gains enough, and continues from there.
@@ -97,7 +97,7 @@ class Searcher {
       const auto best = std::min_element(next.begin(), next.end(),
                                          [](const auto& a, const auto& b) { return Cost(a) < Cost(b); });
       if (!Material(result_.best.held_out_gap(), best->held_out_gap())) return;
-      *best = BegunAgain(context_, *best, WithAllJobs(fine_));
+      *best = RefitFromOtherStarts(context_, *best, WithAllJobs(fine_));
       std::vector<Explanation> beam(next.begin(),
                                     next.begin() + static_cast<std::ptrdiff_t>(std::min(kBeam, next.size())));
       while (beam.size() > 1 && beam.back().fitted.sum > kBehind * beam.front().fitted.sum) beam.pop_back();
@@ -118,7 +118,7 @@ class Searcher {
       pool.push_back(rows.front());
       if (rows.size() > 1 && rows[1].failure.empty()) pool.push_back(rows[1]);
     }
-    Tell("refitting each effect", 0.8);
+    ReportProgress("refitting each effect", 0.8);
     return FitAll(pool, StartsOf(result_.given.fitted));
   }
 
@@ -129,7 +129,7 @@ class Searcher {
     std::vector<Scanned> pool, periodic;
     const double share = static_cast<double>(step) / most_changes_;
     for (const Explanation& from : beam) {
-      Tell("judging each effect" + Step(step), share);
+      ReportProgress("judging each effect" + Step(step), share);
       std::vector<Change> changes;
       for (const Change& change : context_.changes) {
         if (CanAdd(from.fitted.hypothesis, change)) changes.push_back(change);
@@ -155,7 +155,7 @@ class Searcher {
       for (const Scanned& picked : pool) picked_alone_.push_back(picked.change);
     }
     pool.insert(pool.end(), periodic.begin(), periodic.end());
-    Tell("refitting the likeliest" + Step(step), share + 0.3 / most_changes_);
+    ReportProgress("refitting the likeliest" + Step(step), share + 0.3 / most_changes_);
     return FitAll(pool, StartsOf(beam.front().fitted), most);
   }
 
@@ -212,7 +212,7 @@ class Searcher {
       bool better = false;
       const std::vector<Change> changes = result_.best.changes();
       for (const Change& change : changes) {
-        Tell("exchanging what was found", 0.9);
+        ReportProgress("exchanging what was found", 0.9);
         const Hypothesis less = Without(result_.best.fitted.hypothesis, change, context_.given);
         Explanation reduced;  // its own prediction is not needed
         reduced.fitted = Fit(less, context_.runs, StartsOf(result_.best.fitted), WithAllJobs(coarse_));
@@ -222,7 +222,7 @@ class Searcher {
         for (const Explanation& other : others) {
           if (other.fitted.sum < 0.98 * result_.best.fitted.sum &&
               other.held_out_gap() < result_.best.held_out_gap()) {
-            result_.best = BegunAgain(context_, other, WithAllJobs(fine_));
+            result_.best = RefitFromOtherStarts(context_, other, WithAllJobs(fine_));
             better = true;
           }
         }
@@ -233,7 +233,7 @@ class Searcher {
   }
 
   // Removes changes that are no longer needed now that the others are there.
-  void TakeBack() {
+  void RemoveUnneeded() {
     bool fewer = true;
     while (fewer && result_.best.changes().size() > 1) {
       fewer = false;
@@ -241,7 +241,8 @@ class Searcher {
         const Hypothesis less = Without(result_.best.fitted.hypothesis, change, context_.given);
         Explanation reduced = Explain(context_, less, StartsOf(result_.best.fitted), WithAllJobs(fine_));
         if (!reduced.fitted.ok()) continue;
-        if (reduced.squared_gap() < kNear) reduced = BegunAgain(context_, reduced, WithAllJobs(fine_));
+        if (reduced.squared_gap() < kRefitBelow)
+          reduced = RefitFromOtherStarts(context_, reduced, WithAllJobs(fine_));
         result_.tried.push_back(reduced);
         if (Material(reduced.held_out_gap(), result_.best.held_out_gap())) continue;
         result_.best = reduced;

@@ -16,7 +16,7 @@ namespace hydro::diagnose {
 namespace {
 
 // A rival is ruled out if it is worse by this many standard errors, block by block.
-constexpr double kToldApart = 2.5;
+constexpr double kDistinguished = 2.5;
 // A base parameter that has to move by more than this factor is implausible.
 constexpr double kImplausible = 2.0;
 
@@ -36,7 +36,7 @@ std::vector<Rival> Rivals(const std::vector<Explanation>& tried, const Explanati
     if (instead == nullptr) continue;
     const double t = TValue(other.blocks, best.blocks);
     const double loss = other.held_out_gap() - best.held_out_gap();
-    if (t > kToldApart || loss > std::max(kLeastGain, 0.1 * (best.held_out_gap() - 1))) continue;
+    if (t > kDistinguished || loss > std::max(kLeastGain, 0.1 * (best.held_out_gap() - 1))) continue;
     const bool there =
         std::any_of(rivals.begin(), rivals.end(), [&](const Rival& had) { return had.change == *instead; });
     if (!there) rivals.push_back({*instead, &other});
@@ -118,7 +118,8 @@ std::string Sentence(const Diagnosis& d) {
 
 std::string WhyNext(const std::vector<FoundEffect>& effects) {
   for (const FoundEffect& effect : effects) {
-    if (!effect.tied_with.empty()) return "tells " + effect.id + " from " + Enumerated(effect.tied_with);
+    if (!effect.tied_with.empty())
+      return "distinguishes " + effect.id + " from " + Enumerated(effect.tied_with);
   }
   return "";
 }
@@ -180,13 +181,13 @@ void NameRuns(const SearchContext& context, Diagnosis* d) {
 }  // namespace
 
 Diagnosis Conclude(const SearchContext& context, const SearchResult& search, const Explanation& refit) {
-  const TellProgress& tell = context.tell;
+  const ProgressCallback& report_progress = context.report_progress;
   const Explanation& given = search.given;
   const Explanation& best = search.best;
   Diagnosis d;
   d.fit = FitGaps(given, refit, best);
   d.held_out = HeldOutGaps(given, refit, best);
-  if (tell) tell({"intervals", 0.95});
+  if (report_progress) report_progress({"intervals", 0.95});
   const std::vector<model::ModelDescription> rivals = DescribeFound(context, search, &d);
   d.verdict = VerdictOn(context, search, d);
   d.model = best.fitted.hypothesis.model;
@@ -194,13 +195,13 @@ Diagnosis Conclude(const SearchContext& context, const SearchResult& search, con
   d.candidates = Ranking(context, search);
   d.curves = CurvesOf(context, given, best);
   if (d.verdict != Verdict::kNothingMissing) {
-    if (tell) tell({"where the gap is", 0.97});
+    if (report_progress) report_progress({"where the gap is", 0.97});
     Localisation located = Locate(d.verdict == Verdict::kUnexplained ? d.model : context.given, context.runs);
     d.location = std::move(located.location);
     d.missing = std::move(located.missing);
   }
   if (d.verdict == Verdict::kTied) {
-    if (tell) tell({"the next experiment", 0.98});
+    if (report_progress) report_progress({"the next experiment", 0.98});
     d.next = DesignNextExperiment(rivals, context.runs, WhyNext(d.effects));
   }
   NameRuns(context, &d);

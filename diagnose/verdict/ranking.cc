@@ -22,7 +22,7 @@ size_t OwnNumbers(const Change& change) {
 }
 
 // The tried explanation that adds only `change` to the given model; null when there is none.
-const Explanation* Alone(const std::vector<Explanation>& tried, const Change& change) {
+const Explanation* AddedAlone(const std::vector<Explanation>& tried, const Change& change) {
   const Explanation* best = nullptr;
   for (const Explanation& one : tried) {
     if (one.changes().size() != 1 || !(one.changes().front() == change)) continue;
@@ -32,7 +32,7 @@ const Explanation* Alone(const std::vector<Explanation>& tried, const Change& ch
 }
 
 // The best tried explanation that has all changes of `best` and `change` as well.
-const Explanation* OnTop(const SearchResult& search, const Change& change) {
+const Explanation* AddedToBest(const SearchResult& search, const Change& change) {
   for (const Explanation& one : search.tried) {
     if (one.changes().size() != search.best.changes().size() + 1 || !one.fitted.hypothesis.Has(change))
       continue;
@@ -55,7 +55,7 @@ std::vector<Candidate> Ranking(const SearchContext& context, const SearchResult&
     candidate.score = rated.expected;
     candidate.fit = candidate.held_out = kNan;
     double fall = rated.expected * static_cast<double>(search.given.fitted.count);
-    const Explanation* alone = Alone(search.tried, rated.change);
+    const Explanation* alone = AddedAlone(search.tried, rated.change);
     if (alone != nullptr) {
       candidate.fit = std::sqrt(alone->squared_gap());
       if (!alone->blocks.sums.empty()) candidate.held_out = std::sqrt(alone->held_out_gap());
@@ -63,18 +63,18 @@ std::vector<Candidate> Ranking(const SearchContext& context, const SearchResult&
     }
     candidate.p_value =
         PValue(fall, search.best.squared_gap(), correlation, OwnNumbers(rated.change), search.rated.size());
-    const Explanation* on_top = OnTop(search, rated.change);
+    const Explanation* on_top = AddedToBest(search, rated.change);
     if (search.best.fitted.hypothesis.Has(rated.change)) {
       candidate.rejected_because = "";
     } else if (!rated.failure.empty()) {
       candidate.rejected_because = "could not be tried: " + rated.failure;
     } else if (on_top != nullptr && !search.best.changes().empty()) {
-      candidate.rejected_because =
-          "once " + search.best.changes().front().Label() + " is there, the held-out gap goes from " +
-          Gap(search.best.held_out_gap()) + " to " + Gap(on_top->held_out_gap()) + " only";
+      candidate.rejected_because = "added to " + search.best.changes().front().Label() +
+                                   ", it changes the held-out gap only from " +
+                                   Gap(search.best.held_out_gap()) + " to " + Gap(on_top->held_out_gap());
     } else if (alone != nullptr && !alone->blocks.sums.empty()) {
       candidate.rejected_because = "held-out gap " + Gap(alone->held_out_gap()) + " with it, " +
-                                   Gap(search.best.held_out_gap()) + " with what was taken";
+                                   Gap(search.best.held_out_gap()) + " with what was found";
     } else if (alone != nullptr) {
       candidate.rejected_because = "refitted, it leaves a gap of " + Gap(alone->squared_gap());
     } else {

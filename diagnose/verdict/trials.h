@@ -33,7 +33,8 @@ struct Trial {
   double separation = 0;
 };
 
-// Steps, sines and chirps of several sizes, as far as the rig has been driven, for each way to hold the shaft.
+// Steps, sines and chirps of several sizes, as far as the rig has been driven, for each way to hold the
+// shaft.
 std::vector<Trial> Trials(const Rig& rig, const model::Parameters& p);
 
 model::Stimulus StimulusOf(const Trial& trial);

@@ -66,7 +66,7 @@ TEST(Alignment, FindsALateClock) {
   EXPECT_NEAR(command->delay, 0.10, 0.01);
   EXPECT_NEAR(motor->delay, 0.12, 0.01);
   EXPECT_LT(motor->error, 0.03);
-  EXPECT_THAT(Says(*motor), HasSubstr("motor_speed and motor_angle are late by 0.1"));
+  EXPECT_THAT(DelayRemark(*motor), HasSubstr("motor_speed and motor_angle are late by 0.1"));
   // What remains is a piece of the original recording, with the pressures untouched.
   const auto at =
       std::search(whole.p1.values.begin(), whole.p1.values.end(), run.p1.values.begin(), run.p1.values.end());
@@ -126,7 +126,7 @@ TEST(RecordingRemarks, SayWhatIsWrong) {
   for (size_t i = 1000; i < 1500; ++i) run.p2.values[i] = NAN;
   const RunData bad = PrepareRun(run, testing::Table1());
   EXPECT_THAT(RecordingRemarks({}, {&bad}, {}),
-              ElementsAre(HasSubstr("1 gap in time, up to 3"), HasSubstr("p1's noise is 1."),
+              ElementsAre(HasSubstr("1 gap in time, up to 3"), HasSubstr("p1 has a noise of 1."),
                           HasSubstr("p2 is missing in 10 % of the rows"), HasSubstr("one way only")));
 }
 

@@ -72,8 +72,8 @@ TEST(Explain, BeginsAgainFromTheMeasuredStarts) {
   diagnose::SearchContext context;
   context.given = Table1With();
   context.runs = context.held_out = PointersTo(runs);
-  const diagnose::Explanation explained =
-      diagnose::BegunAgain(context, diagnose::Explain(context, hypothesis, elsewhere, options), options);
+  const diagnose::Explanation explained = diagnose::RefitFromOtherStarts(
+      context, diagnose::Explain(context, hypothesis, elsewhere, options), options);
   ASSERT_TRUE(explained.fitted.ok());
   EXPECT_LT(explained.fitted.squared_gap(), 1.15);
 }

@@ -62,12 +62,12 @@ class HydroDiagnoseTest : public ::testing::Test {
   std::string Run(const Diagnosis& diagnosis) {
     return Run([&](const model::ModelDescription& model, std::vector<runs::MeasuredRun> runs,
                    std::vector<runs::MeasuredRun> held_out, const DiagnoseOptions& options,
-                   const TellProgress& tell) {
+                   const ProgressCallback& report_progress) {
       model_ = model;
       runs_ = std::move(runs);
       held_out_ = std::move(held_out);
       options_ = options;
-      tell({"trying each effect", 0.5});
+      report_progress({"trying each effect", 0.5});
       return diagnosis;
     });
   }
@@ -184,9 +184,9 @@ TEST_F(HydroDiagnoseTest, Errors) {
   EXPECT_THAT(error([&](DiagnoseRequest& r) { r.runs = {Path("none.csv")}; }), HasSubstr("none.csv: "));
   EXPECT_THAT(error([&](DiagnoseRequest& r) { r.model = Path("a.toml"); }), HasSubstr("a.toml"));
   EXPECT_THAT(error([&](DiagnoseRequest& r) { r.held_out = {Path("./a.csv")}; }),
-              HasSubstr("which is given as RUN already"));
+              HasSubstr("already given as RUN, allowed each run once"));
   EXPECT_THAT(error([&](DiagnoseRequest& r) { r.folder = Path("a.csv"); }),
-              HasSubstr("which is no folder that can be written"));
+              HasSubstr("a folder that cannot be written"));
   EXPECT_THAT(error([&](DiagnoseRequest& r) { r.effects = Path("none"); }), HasSubstr("none: "));
 
   const auto effects = [&](const std::string& text) {
@@ -207,7 +207,7 @@ TEST_F(HydroDiagnoseTest, Errors) {
 TEST_F(HydroDiagnoseTest, ModelThatCannotFollow) {
   const Diagnoser diagnoser = [](const model::ModelDescription&, std::vector<runs::MeasuredRun>,
                                  std::vector<runs::MeasuredRun>, const DiagnoseOptions&,
-                                 const TellProgress&) -> Diagnosis {
+                                 const ProgressCallback&) -> Diagnosis {
     throw model::ModelError("arm angle 1.5708 rad leaves V_1 = -2.63 in^3");
   };
   try {
@@ -250,9 +250,9 @@ TEST(ProgressBar, BarAndLines) {
     std::FILE* file = std::tmpfile();
     {
       ProgressBar bar(file, terminal);
-      bar.Tell({"reading", 0}, 0.1);
-      bar.Tell({"trying each effect", 0.25}, 10);
-      bar.Tell({"trying each effect", 0.2}, 11);
+      bar.Show({"reading", 0}, 0.1);
+      bar.Show({"trying each effect", 0.25}, 10);
+      bar.Show({"trying each effect", 0.2}, 11);
     }
     std::string text(static_cast<size_t>(std::ftell(file)), '\0');
     std::rewind(file);
@@ -267,7 +267,7 @@ TEST(ProgressBar, BarAndLines) {
   EXPECT_EQ(told(false), "reading\ntrying each effect\n");
 
   std::FILE* file = std::tmpfile();
-  ProgressBar(file, false).Tell({"reading", 0}, 0);  // what follows is an error
+  ProgressBar(file, false).Show({"reading", 0}, 0);  // what follows is an error
   EXPECT_EQ(std::ftell(file), 0);
   std::fclose(file);
 }

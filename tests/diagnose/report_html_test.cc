@@ -74,7 +74,7 @@ TEST(ReportHtml, Complete) {
                            "1.06",
                            "static_excess",
                            "0.47 to 0.57",
-                           "These data cannot tell it from sensor.skew.",
+                           "These data cannot distinguish it from sensor.skew.",
                            "signal = p1",
                            "implausible: four times",
                            "|motor_speed| &lt; 5 rad/s, at reversals",

@@ -159,7 +159,7 @@ TEST(PrepareRun, Refusals) {
   EXPECT_EQ(ErrorOf([](runs::MeasuredRun& run) { run.time.resize(99); }),
             "step.csv: found 99 samples, allowed 100 or more");
   EXPECT_EQ(ErrorOf([](runs::MeasuredRun& run) { run.p1.values.assign(500, 7.0); }),
-            "step.csv: line 2: p1: found 7 psi there and in every row after it, allowed a signal that "
+            "step.csv: line 2: p1: found 7 psi here and in every later row, allowed a signal that "
             "changes, or leave it out");
   EXPECT_EQ(ErrorOf([](runs::MeasuredRun& run) { run.p2.values.assign(500, kNan); }),
             "step.csv: p2: found no value in any row, allowed 20 values or more, or leave the signal out");
@@ -171,7 +171,7 @@ TEST(PrepareRun, Refusals) {
   EXPECT_THAT(ErrorOf([](runs::MeasuredRun& run) { run.voltage.values[9] = 24000; }),
               HasSubstr("line 11: voltage: found 24000 V, allowed -10000 to 10000"));
   EXPECT_THAT(ErrorOf([](runs::MeasuredRun& run) { run.motor_speed = run.p1 = run.p2 = {}; }),
-              HasSubstr("step.csv: found no signal to compare a model with"));
+              HasSubstr("step.csv: found no signal to compare with a model"));
   EXPECT_THAT(
       ErrorOf([](runs::MeasuredRun& run) { run.arm_angle.values[50] = 0.9; }, WithArm(model::Shaft::kDriven)),
       HasSubstr("line 52: arm_angle: found 0.9 rad"));
@@ -242,11 +242,11 @@ TEST(PrepareRun, Saturation) {
 }
 
 // Tests that runs with the same name are told apart.
-TEST(NameApart, NumbersWhatIsTaken) {
+TEST(MakeNamesUnique, NumbersWhatIsTaken) {
   std::vector<RunData> runs(4);
   runs[0].name = runs[1].name = runs[3].name = "a";
   runs[2].name = "a (2)";
-  NameApart(&runs);
+  MakeNamesUnique(&runs);
   std::vector<std::string> names;
   for (const RunData& run : runs) names.push_back(run.name);
   EXPECT_THAT(names, ElementsAre("a", "a (2)", "a (2) (2)", "a (3)"));

@@ -28,7 +28,9 @@ struct SmallSearch {
     context.held_out = PointersTo(held_out);
     context.sizes = diagnose::SizesOf(context.given, context.runs);
     context.changes = {{"pump.quadratic_drag", {}, ""}, {"valve.relief", {}, ""}, {"", {}, "beta"}};
-    context.tell = [this](const diagnose::Progress& progress) { stages.push_back(progress.stage); };
+    context.report_progress = [this](const diagnose::Progress& progress) {
+      stages.push_back(progress.stage);
+    };
     diagnose::Hypothesis given;
     given.model = context.given;
     search = diagnose::Search(context, given, 2);
