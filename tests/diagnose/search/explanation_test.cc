@@ -1,0 +1,67 @@
+// Explanations of short runs of a rig.
+#include "diagnose/search/explanation.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/diagnose/small_runs.h"
+
+namespace hydro::testing {
+namespace {
+
+struct Rig {
+  std::vector<diagnose::RunData> runs = ClampedPair(Table1With(), 0.5, 1);
+  diagnose::SearchContext context;
+
+  Rig() {
+    context.given = Table1With();
+    context.runs = PointersTo(runs);
+  }
+};
+
+// Tests that measured starts are those of the runs, in their order.
+TEST(MeasuredStarts, AreThoseOfTheRuns) {
+  const Rig rig;
+  EXPECT_EQ(diagnose::MeasuredStarts(rig.context.runs), StartsOf(rig.runs));
+}
+
+// Tests that the true model explains all runs to the noise, with each held out in turn.
+TEST(Explain, HoldsOutEachRunInTurn) {
+  const Rig rig;
+  const diagnose::Explanation one = diagnose::Explain(rig.context, WithFree(Table1With(), {"b", "T_s"}),
+                                                      diagnose::MeasuredStarts(rig.context.runs), {});
+  ASSERT_TRUE(one.fitted.ok());
+  // 0.5 s of 4 signals at 1 kHz: the mean of 4000 squares is within 10 % of 1.
+  EXPECT_NEAR(one.squared_gap(), 1, 0.1);
+  EXPECT_NEAR(one.held_out_gap(), 1, 0.1);
+  EXPECT_EQ(one.held_out.count, one.fitted.count);
+}
+
+// Tests that only the runs held out are predicted if there are any.
+TEST(Explain, PredictsTheHeldOutRuns) {
+  Rig rig;
+  rig.context.held_out = {rig.context.runs.back()};
+  rig.context.runs.pop_back();
+  const diagnose::Explanation one = diagnose::Explain(rig.context, WithFree(Table1With(), {"b"}),
+                                                      diagnose::MeasuredStarts(rig.context.runs), {});
+  ASSERT_TRUE(one.fitted.ok());
+  EXPECT_EQ(one.fitted.runs.size(), 1u);
+  EXPECT_EQ(one.held_out.count, one.fitted.count);  // both runs are equally long
+  EXPECT_NEAR(one.held_out_gap(), 1, 0.15);
+}
+
+// Tests that a fit that leaves no gap is not repeated, and that one from a wrong start is mended.
+TEST(RefitFromOtherStarts, MendsAWrongStart) {
+  const Rig rig;
+  const diagnose::Hypothesis hypothesis = WithFree(Table1With(), {"b"});
+  const std::vector<model::StartState> measured = diagnose::MeasuredStarts(rig.context.runs);
+  diagnose::Explanation stuck = diagnose::Explain(rig.context, hypothesis, measured, {});
+  const double reached = stuck.fitted.sum;
+  EXPECT_EQ(diagnose::RefitFromOtherStarts(rig.context, stuck, {}).fitted.sum, reached);
+
+  stuck.fitted.sum *= 20;  // as if another start had trapped it
+  const diagnose::Explanation mended = diagnose::RefitFromOtherStarts(rig.context, stuck, {});
+  EXPECT_NEAR(mended.fitted.sum, reached, 1e-3 * reached);
+}
+
+}  // namespace
+}  // namespace hydro::testing

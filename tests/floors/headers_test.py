@@ -1,0 +1,60 @@
+"""Tests that every header of a room is included by a test: what no test includes, no test calls directly.
+
+ROOMS are those where this holds. A header that needs no test of its own is in EXEMPT, with the reason."""
+
+import pathlib
+import re
+import unittest
+
+from floors_test import read_floors, room_of
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+INCLUDE = re.compile(r'^\s*#\s*include\s+"([^"]+)"', re.MULTILINE)
+
+ROOMS = {
+    "model/equations", "model", "timing", "pressure_ctrl", "position_ctrl", "logger", "sim", "plot", "experiments/maths",
+    "experiments", "diagnose/data", "diagnose/fit", "diagnose/locate", "diagnose/search", "diagnose/verdict", "diagnose/report",
+    "diagnose",
+}
+# From a header's path to the reason.
+EXEMPT = {}
+
+
+def headers_of(rooms, floors):
+    """The headers of these rooms; those of a room inside another are that room's own."""
+    found = set()
+    for room in rooms:
+        for path in (ROOT / room).rglob("*.h"):
+            name = path.relative_to(ROOT).as_posix()
+            if room_of(name, floors) == room:
+                found.add(name)
+    return found
+
+
+def included_by(folder):
+    """All paths that the sources of the folder include, as they are written."""
+    sources = [path for ending in ("*.cc", "*.h") for path in folder.rglob(ending)]
+    return {name for path in sources for name in INCLUDE.findall(path.read_text())}
+
+
+class HeadersTest(unittest.TestCase):
+    floors = read_floors((ROOT / "cmake/rooms.txt").read_text())
+
+    def test_rooms_exist(self):
+        self.assertEqual(ROOMS - set(self.floors), set())
+        self.assertEqual({room for room in ROOMS if not headers_of({room}, self.floors)}, set())
+
+    def test_every_header_is_included_by_a_test(self):
+        missing = headers_of(ROOMS, self.floors) - included_by(ROOT / "tests") - set(EXEMPT)
+        self.assertEqual(sorted(missing), [], "no file of tests/ includes these: write a test, or give the reason in EXEMPT")
+
+    def test_exemptions_are_needed(self):
+        headers, included = headers_of(set(self.floors), self.floors), included_by(ROOT / "tests")
+        for header, reason in EXEMPT.items():
+            self.assertIn(header, headers)
+            self.assertNotIn(header, included, "a test includes it: take it out of EXEMPT")
+            self.assertTrue(reason.strip())
+
+
+if __name__ == "__main__":
+    unittest.main()
