@@ -71,8 +71,18 @@ TEST_F(RunLogTest, UndecodableMessage) {
               AllOf(HasSubstr("event 1 on HYDRO_STATE: found type hash 0x3f"), HasSubstr("; allowed 0x")));
 }
 
-// Tests that such messages are left out and counted by channel where that is asked for, also on channels that
-// nobody reads, and that nothing else is: not a foreign channel, not another stack's.
+// Tests that it is an error on every channel of the stack.
+TEST_F(RunLogTest, UndecodableMessageOnAnyChannel) {
+  bus::ForEachMessage([&](const auto& row) {
+    const std::string channel(row.channel);
+    log::WriteEvents(Path("log"), {{channel, "nonsense", 1}});
+    EXPECT_THAT(log::InputErrorOf([&] { ReadRunLog(Path("log")); }),
+                HasSubstr("event 0 on " + channel + ": "));
+  });
+}
+
+// Tests that such messages are left out and counted by channel where that is asked for, and that nothing else
+// is: not a foreign channel, not another stack's.
 TEST_F(RunLogTest, UndecodableMessageLeftOut) {
   const RunMessages run = log::SampleRun(3);
   log::WriteRun(Path("log"), run);
