@@ -53,6 +53,8 @@ struct Source {
   double scale = 1;
   double offset = 0;
   double delay = 0;
+
+  ColumnSource Described() const { return {column->name, scale, offset, delay}; }
 };
 
 std::vector<double> Values(const tables::Table& table, const Source& source) {
@@ -148,6 +150,7 @@ void ReadColumns(settings::SectionReader columns, const tables::Table& table, Me
   columns.Finish();
 
   run->time = Times(table, *time);
+  run->time_source = time->Described();
   std::vector<SignalDelay> delays;
   for (size_t i = 0; i < kSignals.size(); ++i) {
     if (!sources[i].has_value()) continue;
@@ -157,7 +160,9 @@ void ReadColumns(settings::SectionReader columns, const tables::Table& table, Me
                           "a column with values, or leave " + std::string(kSignals[i].ours) + " out");
     }
     const bool command = kSignals[i].signal == &MeasuredRun::voltage;
-    (run->*kSignals[i].signal).values = command ? Command(table, *sources[i]) : Values(table, *sources[i]);
+    MeasuredSignal& signal = run->*kSignals[i].signal;
+    signal.values = command ? Command(table, *sources[i]) : Values(table, *sources[i]);
+    signal.source = sources[i]->Described();
     if (sources[i]->delay != 0) delays.emplace_back(kSignals[i].signal, sources[i]->delay);
   }
   if (!RemoveDelays(delays, run)) {

@@ -13,9 +13,16 @@
 
 namespace hydro::runs {
 
+// Where values come from: a column of a table, ours(t) = scale * theirs(t + delay) + offset.
+struct ColumnSource {
+  std::string column;  // its name in the table; "" for logs
+  double scale = 1, offset = 0, delay = 0;
+};
+
 struct MeasuredSignal {
   std::vector<double> values;   // one per sample, in our units; NaN: missing there. Empty: not measured
   std::optional<double> noise;  // standard deviation, if known; above 0
+  ColumnSource source = {};     // what the sidecar says of it
 
   bool measured() const { return !values.empty(); }
 };
@@ -35,6 +42,7 @@ struct MeasuredRun {
   size_t first_row = 0;  // rows of the file cut off before the first sample
 
   std::vector<double> time;     // s, finite and increasing, not always evenly; at least two samples
+  ColumnSource time_source;     // what the sidecar says of it
   MeasuredSignal voltage;       // command of eq. (1), held from each sample to the next; none is missing
   MeasuredSignal pressure_ref;  // of p2 - p1
   MeasuredSignal motor_speed;

@@ -95,6 +95,12 @@ TEST_F(MeasuredRunTest, TableWithSidecar) {
   }
   EXPECT_EQ(run.p1.noise, 1.5);
   EXPECT_EQ(run.p2.noise, std::nullopt);
+  EXPECT_EQ(run.time_source.column, "t");
+  EXPECT_EQ(run.voltage.source.column, "amps");
+  EXPECT_EQ(run.voltage.source.scale, 2);
+  EXPECT_EQ(run.voltage.source.offset, 0.5);
+  EXPECT_EQ(run.p1.source.column, "p low");
+  EXPECT_EQ(run.p1.source.scale, 1);
   EXPECT_EQ(run.Place(1), Path("run.csv") + ": line 3");
 }
 
