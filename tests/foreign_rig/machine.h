@@ -1,0 +1,138 @@
+// The rig's machine: drive, pump, pipes, actuator and arm, stepped at a fixed small step (Heun's method; the
+// bristles exactly, the pipes by their characteristics, ideal valves by projection).
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "bristle.h"
+#include "extras.h"
+#include "pipe.h"
+#include "poppet.h"
+#include "values.h"
+
+namespace foreign_rig {
+
+inline constexpr double kStep = 1e-5;  // s
+
+// What a run has of its own.
+struct Day {
+  bool clamped = true, bypass = false;
+  double arm_angle = 0;                   // rad, at the start
+  double shaft_angle = 0;                 // rad, at the start
+  double pressure_1 = 0, pressure_2 = 0;  // psi above the supply, at the start
+  double celsius = 40;                    // of the oil, at the start
+  double friction = 1;                    // times the dry torque
+  double friction_draw = 0;               // the day's part of Richness::daily_friction, -1 to 1
+  double payload = 0;                     // part of arm weight and inertia added
+  double offset_1 = 0, offset_2 = 0;      // psi, of the pressure amplifiers
+  double supply = 0;                      // psi added to the supply pressure
+  double clock = 0;                       // s, phase of what goes on regardless of the run
+  double prelude = 0;                     // s that the machine ran before the recording
+};
+
+struct Rig {
+  Values values;
+  Effects effects;
+  Outside outside;
+  Richness rich;
+};
+
+struct Reading {
+  double speed = 0, shaft = 0, arm = 0, p1 = 0, p2 = 0;
+};
+
+class Machine {
+ public:
+  Machine(const Rig& rig, const Day& day);
+
+  // One kStep under this command, V. Throws std::runtime_error where the actuator reaches its end or a value
+  // is not finite.
+  void Step(double volts);
+
+  // What ideal transducers give, with the faults of Effects and Day.
+  Reading Read() const;
+
+  // Goes on from where another machine is; parts that only one of the two has start at rest there.
+  void ContinueFrom(const Machine& other);
+
+  double time() const { return static_cast<double>(steps_) * kStep; }
+  // For tests: kinetic and elastic energy, in-lbf, of rotor, arm, oil and shaft.
+  double Energy() const;
+  double pressure_1() const { return x_[kP1]; }
+  double pressure_2() const { return x_[kP2]; }
+  double motor_speed() const { return x_[kOmega]; }
+  double arm_angle() const { return x_[kArm]; }
+  double celsius() const { return x_[kCelsius]; }
+
+ private:
+  enum {
+    kTheta,
+    kOmega,
+    kVane,
+    kVaneRate,
+    kArm,
+    kArmRate,
+    kDrive1,
+    kDrive2,
+    kP1,
+    kP2,
+    kPump1,
+    kPump2,
+    kAir1,
+    kAir2,
+    kCheck1,
+    kCheck2,
+    kRelief1,
+    kRelief2,
+    kCelsius,
+    kReturned,
+    kCreep1,
+    kCreep2,
+    kSense1a,
+    kSense1b,
+    kSense2a,
+    kSense2b,
+    kStates
+  };
+  using State = std::array<double, kStates>;
+  struct Chamber {
+    double volume, compliance;  // in^3, in^3/psi
+  };
+
+  void Rates(const State& x, State& rate) const;
+  double Torque(const State& x, double volts_torque) const;
+  double DryLimit(const State& x) const;
+  double PumpLosses(const State& x, double viscosity) const;
+  double Displacement(const State& x) const;
+  double CrossLeakage(const State& x, double dp, double viscosity) const;
+  Chamber ChamberOf(const State& x, int side) const;
+  void AirRates(const State& x, int side, double volume, double* rate, double* flow) const;
+  void ArmRates(const State& x, State& rate) const;
+  double ShaftTorque(const State& x) const;
+  double Load(const State& x) const;
+  double SupplyPressure(const State& x) const;
+  void StepBristles(double h);
+  void FeedFromSupply();
+  bool joint() const { return rig_.effects.shaft_stiffness > 0 || rig_.outside.backlash > 0; }
+  Reading Plain() const;  // without the late channel
+  double SkewedNow() const;
+  static double* Channel(Reading* reading, Signal signal);
+
+  Rig rig_;
+  Day day_;
+  Bristles pump_bristles_, seal_bristles_;
+  double pump_bend_ = 0, seal_bend_ = 0;
+  Poppet check_, relief_;
+  Pipe pipe_1_, pipe_2_;
+  double pump_volume_ = 0, pipe_volume_ = 0;  // in^3 a side, with a line
+  double vane_inertia_ = 0;
+  State x_{};
+  double volts_ = 0;              // that the drive has
+  std::vector<double> commands_;  // ring, of the drive's delay
+  std::vector<double> late_;      // ring, of the skewed signal
+  size_t command_at_ = 0, late_at_ = 0;
+  long long steps_ = 0;
+};
+
+}  // namespace foreign_rig
