@@ -30,12 +30,14 @@ std::string Printable(std::string_view text);
 // Printable, line by line: the text's own line ends stay.
 std::string PrintableLines(std::string_view text);
 
-// "\"a\", \"b\" or \"c\"".
+// "\"a\", \"b\" or \"c\""; of a very long list the first names and how many there are more.
 template <class Names>
 std::string QuotedList(const Names& names) {
+  constexpr size_t kMost = 100;
   std::string list;
   size_t i = 0;
   for (const auto& name : names) {
+    if (i == kMost) return list + ", ... (" + std::to_string(std::size(names) - kMost) + " more)";
     if (i > 0) list += i + 1 == std::size(names) ? " or " : ", ";
     list += Quoted(name);
     ++i;

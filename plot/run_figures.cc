@@ -1,9 +1,11 @@
 #include "plot/run_figures.h"
 
+#include <cmath>
 #include <string>
 #include <vector>
 
 #include "base/input_error.h"
+#include "base/number_text.h"
 
 namespace hydro::plot {
 namespace {
@@ -19,8 +21,21 @@ const std::vector<double>& ColumnOf(const tables::Table& run, const std::string&
   return column->values;
 }
 
-page::Panel TimePanel(const tables::Table& run, const std::string& title, const std::string& y_label) {
+// A picture over time needs two times, and each after the one before.
+const std::vector<double>& TimesOf(const tables::Table& run) {
   const std::vector<double>& time = ColumnOf(run, "time_s");
+  if (time.size() < 2) throw InputError(run.file + ": found one row, allowed two or more");
+  for (size_t row = 0; row < time.size(); ++row) {
+    const bool after = std::isfinite(time[row]) && (row == 0 || time[row] > time[row - 1]);
+    if (after) continue;
+    throw InputError(run.Place(row, "time_s") + ": found " + NumberText(time[row]) +
+                     ", allowed a time after that of the row before");
+  }
+  return time;
+}
+
+page::Panel TimePanel(const tables::Table& run, const std::string& title, const std::string& y_label) {
+  const std::vector<double>& time = TimesOf(run);
   page::Panel panel;
   panel.title = title;
   panel.x = {.label = "time, s", .min = time.front(), .max = time.back()};
@@ -36,7 +51,7 @@ page::Figure Panels(std::vector<page::Panel> panels, double panel_height) {
 }  // namespace
 
 page::Figure ArmFigure(const tables::Table& run) {
-  const std::vector<double>& time = ColumnOf(run, "time_s");
+  const std::vector<double>& time = TimesOf(run);
   page::Panel angle = TimePanel(run, "Arm angle", "rad");
   angle.curves = {
       page::Line("reference", time, ColumnOf(run, "arm_ref_rad"), kReference, page::Stroke::kSteps),
@@ -48,7 +63,7 @@ page::Figure ArmFigure(const tables::Table& run) {
 }
 
 page::Figure PressureFigure(const tables::Table& run) {
-  const std::vector<double>& time = ColumnOf(run, "time_s");
+  const std::vector<double>& time = TimesOf(run);
   const std::vector<double>& p1 = ColumnOf(run, "p1_psi");
   const std::vector<double>& p2 = ColumnOf(run, "p2_psi");
   std::vector<double> difference(p1.size());

@@ -28,6 +28,15 @@ TEST(TextFileTest, PrintableLines) {
   EXPECT_EQ(PrintableLines(""), "");
 }
 
+// Tests that an error line stays a line when a file has a million columns.
+TEST(TextFileTest, QuotedListOfManyNames) {
+  EXPECT_EQ(QuotedList(std::vector<std::string>{"a", "b", "c"}), "\"a\", \"b\" or \"c\"");
+  EXPECT_TRUE(QuotedList(std::vector<std::string>(100, "a")).ends_with("\"a\" or \"a\""));
+  const std::string list = QuotedList(std::vector<std::string>(1'000'000, "a"));
+  EXPECT_TRUE(list.ends_with("\"a\", \"a\", ... (999900 more)"));
+  EXPECT_LT(list.size(), 1000u);
+}
+
 class TextFileFolderTest : public settings::FolderTest {};
 
 // Tests that a file is not overwritten while it is being read, under any of its names; other files and

@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "base/input_error.h"
 #include "page/figure_svg.h"
 
@@ -44,6 +46,27 @@ TEST(RunFigures, ColumnMissing) {
   } catch (const InputError& error) {
     EXPECT_STREQ(error.what(), "run.csv: found no column p2_psi, allowed a table of hydro-log export");
   }
+}
+
+// Tests that a table whose times do not increase, or that has one row only, is refused in a line about the table.
+TEST(RunFigures, Times) {
+  const auto refusal = [](const std::vector<double>& times) -> std::string {
+    tables::Table run = SmallRun();
+    for (tables::Column& column : run.columns) column.values.resize(times.size());
+    run.columns.front().values = times;
+    try {
+      ArmFigure(run);
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_EQ(refusal({0, 1, 2}), "");
+  EXPECT_EQ(refusal({5}), "run.csv: found one row, allowed two or more");
+  EXPECT_EQ(refusal({0, 2, 2}),
+            "run.csv: row 3, column time_s: found 2, allowed a time after that of the row before");
+  EXPECT_EQ(refusal({0, std::nan(""), 2}),
+            "run.csv: row 2, column time_s: found nan, allowed a time after that of the row before");
 }
 
 }  // namespace

@@ -59,6 +59,27 @@ TEST(CompareTest, EachFieldOfEachMessage) {
   });
 }
 
+// What LCM's encoding of a field's first value takes.
+int EncodedSize(const std::string&) { return 5; }  // its length, and the zero at its end
+template <class Number>
+int EncodedSize(Number) {
+  return sizeof(Number);
+}
+
+// Tests that the list of fields leaves out none but utime and session: a field of a .lcm file that is missing in it would
+// differ between two runs without a word.
+TEST(CompareTest, ListsEveryField) {
+  bus::ForEachMessage([]<class Message>(const bus::MessageRow<Message>& row) {
+    if constexpr (ComparedMessage<Message>) {
+      const Message message{};
+      int size = 8 + 8 + 8;  // the type's hash, utime, session
+      std::apply([&](const auto&... field) { ((size += EncodedSize(message.*field.member)), ...); },
+                 FieldsOf(&message));
+      EXPECT_EQ(size, message.getEncodedSize()) << row.channel;
+    }
+  });
+}
+
 // Tests the whole line.
 TEST(CompareTest, Line) {
   RunMessages a = log::SampleRun(3);
