@@ -12,6 +12,7 @@
 #include "base/did_you_mean.h"
 #include "base/input_error.h"
 #include "base/new_file.h"
+#include "base/text_file.h"
 #include "experiments/report/comparison_text.h"
 #include "experiments/report/experiment_files.h"
 #include "experiments/report/progress_display.h"
@@ -154,6 +155,9 @@ int RunExperiments(const std::vector<Experiment>& all, const ExperimentRequest& 
                    std::FILE* errors) {
   const std::vector<Experiment> chosen = ChooseExperiments(all, request);
   CreateFolder(request.folder);
+  for (const char* ending : {".json", ".csv", ".svg"}) {
+    CheckKeeps(request.folder + "/" + request.name + ending, {request.options.measured_run});
+  }
 
   std::vector<std::exception_ptr> failures;
   const std::vector<ReportEntry> entries = RunAll(chosen, request, errors, &failures);

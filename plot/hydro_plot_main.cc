@@ -2,6 +2,7 @@
 #include <string>
 
 #include "base/new_file.h"
+#include "base/text_file.h"
 #include "page/figure_svg.h"
 #include "plot/run_figures.h"
 #include "settings/command_line.h"
@@ -14,6 +15,7 @@ int main(int argc, char** argv) {
   line.AddPositional("DIR", &folder, "where to write");
   if (const auto code = line.Parse(argc, argv)) return *code;
   return hydro::settings::RunProgram("hydro-plot", [&] {
+    for (const char* picture : {"/arm.svg", "/pressure.svg"}) hydro::CheckKeeps(folder + picture, {table});
     const hydro::tables::Table run = hydro::tables::ReadTable(table);
     const std::string arm = hydro::page::FigureFile(hydro::plot::ArmFigure(run), "arm");
     const std::string pressure = hydro::page::FigureFile(hydro::plot::PressureFigure(run), "pressure");

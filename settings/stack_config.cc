@@ -44,7 +44,13 @@ StackConfig LoadStackConfig(const std::string& file, const std::vector<std::stri
 }
 
 void CheckKeepsInputs(const std::string& output, const StackConfig& config) {
-  CheckKeeps(output, {config.file, config.model.resolved_file, config.bus.resolved_key_file});
+  std::vector<std::string> inputs = {config.file, config.model.resolved_file, config.bus.resolved_key_file};
+  const auto add = [&](const TrajectorySpec& trajectory) {
+    if (!trajectory.file.empty()) inputs.push_back(PathBeside(config.file, trajectory.file));
+  };
+  add(config.reference.trajectory);
+  if (config.model.motion.has_value()) add(*config.model.motion);
+  CheckKeeps(output, inputs);
 }
 
 StackConfig ParseStackConfig(const std::string& config_text, const std::string& config_name,

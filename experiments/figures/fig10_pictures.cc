@@ -60,7 +60,7 @@ Picture CausesPicture(const Figure10Runs& figure) {
     const ArmRun& run = figure.causes.runs[i];
     page::Panel& panel = i < kFeedforward ? slow : fast;
     const auto colour = static_cast<int>(i < kFeedforward ? i : i - kFeedforward);
-    panel.curves.push_back(page::Line(kCauses[i].says, run.time, run.angle, colour));
+    panel.curves.push_back(page::Line(kCauses[i].label, run.time, run.angle, colour));
   }
   fast.curves.push_back(page::Line("Figure 8", figure.forms[1].linear.time, figure.forms[1].linear.angle, 3,
                                    page::Stroke::kDashed));
@@ -117,7 +117,7 @@ Picture StepsPicture(const Figure10Runs& figure) {
     for (double& value : share) value /= r.step;
     // Noise hardly shows, so this curve is dashed to leave the one below it visible.
     steps.curves.push_back(
-        page::Line(r.says, r.run.time, share, -1, r.noise ? page::Stroke::kDashed : page::Stroke::kLine));
+        page::Line(r.label, r.run.time, share, -1, r.noise ? page::Stroke::kDashed : page::Stroke::kLine));
   }
   return {"-robustness",
           {.caption = "The retuned loop on other steps, with noise and with gravity (m g l = 562 in-lbf, "

@@ -36,7 +36,7 @@ struct FormRuns {
 // The full model with some of the effects switched off that the linear model lacks.
 struct Cause {
   const char* key;
-  const char* says;
+  const char* label;                                    // in the figure's key
   bool friction, saturation, speed_coupling, arm_flow;  // effects that stay on
 };
 enum CauseIndex {
@@ -60,8 +60,8 @@ struct CauseRuns {
 
 // A step of the retuned loop.
 struct RetunedStep {
-  std::string says;
-  double step;  // rad
+  std::string label;  // in the figure's key
+  double step;        // rad
   bool gravity, noise;
   ArmRun run;
   double shortest;  // s, shortest settling time that the motor's limits allow

@@ -148,7 +148,7 @@ std::vector<Comparison> Comparisons(const Figure10Runs& figure) {
   };
   for (const RetunedStep& r : retuned.steps) {
     if (r.gravity) continue;
-    comparisons.push_back({"retuned, settling time of " + r.says, "s", "", r.shortest,
+    comparisons.push_back({"retuned, settling time of " + r.label, "s", "", r.shortest,
                            r.run.response.settling_time_s.value_or(page::kAutomatic),
                            fmt::format("overshoot {:.1f} %", r.run.response.overshoot_percent)});
   }

@@ -193,6 +193,10 @@ TEST_F(RunExperimentsTest, WrongUsage) {
   EXPECT_THAT(refusal(run), HasSubstr("--run: found for 'all'"));
   run.name = "friction";
   EXPECT_EQ(refusal(run), "x.csv: no steady state");
+  run.folder = folder_ + "/out";
+  run.options.measured_run = run.folder + "/friction.csv";
+  std::ofstream(run.options.measured_run) << "time_s\n0\n";
+  EXPECT_THAT(refusal(run), HasSubstr("out/friction.csv: found the name of a file that is read"));
   EXPECT_EQ(errors_, "");  // so that the caller's line is the only one
   EXPECT_THAT(refusal({.name = "fig3", .folder = "/proc/none"}), HasSubstr("--out: the folder '/proc/none'"));
 }

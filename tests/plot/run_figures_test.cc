@@ -48,7 +48,7 @@ TEST(RunFigures, ColumnMissing) {
   }
 }
 
-// Tests that a table whose times do not increase, or that has one row only, is refused in a line about the table.
+// Tests that a table whose times do not increase, or with one row only, is refused by a line about the table.
 TEST(RunFigures, Times) {
   const auto refusal = [](const std::vector<double>& times) -> std::string {
     tables::Table run = SmallRun();

@@ -279,13 +279,17 @@ TEST_F(StackConfigFolderTest, PathsAreRelativeToTheConfiguration) {
   EXPECT_EQ(again.text, config.text);
 }
 
-// Tests that nothing overwrites a configuration, its model or its key.
+// Tests that nothing overwrites a configuration, its model, its key or the trajectories that it names.
 TEST_F(StackConfigFolderTest, KeepsItsFiles) {
   const std::string file = Write("a.toml", kConfigText);
   const std::string model = Write("model.toml", kModelText);
   const std::string key = Write("a.key", "");
-  const StackConfig config = LoadStackConfig(file, {"bus.key_file=a.key"});
-  for (const std::string& input : {file, model, key}) {
+  const std::string reference = Write("reference.csv", "time_s,y\n0,0\n1,0.1\n");
+  const std::string motion = Write("motion.csv", "time_s,y\n0,0\n1,0.1\n");
+  const StackConfig config = LoadStackConfig(
+      file, {"bus.key_file=a.key", "reference={ kind = \"csv\", file = \"reference.csv\", column = \"y\" }",
+             "model.shaft=driven", "model.motion={ kind = \"csv\", file = \"motion.csv\", column = \"y\" }"});
+  for (const std::string& input : {file, model, key, reference, motion}) {
     EXPECT_THAT(InputErrorOf([&] { CheckKeepsInputs(input, config); }), HasSubstr(input)) << input;
   }
   EXPECT_EQ(InputErrorOf([&] { CheckKeepsInputs(Write("log", ""), config); }), "");

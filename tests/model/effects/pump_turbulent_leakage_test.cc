@@ -34,5 +34,19 @@ TEST(TurbulentLeakage, SeesThePumpsPressures) {
   EXPECT_NEAR(x.cross_flow, 2e-5 * std::sqrt(400), 1e-8);
 }
 
+// Tests that the flow is laminar below about 2e-4 T_pmax/D, 1 psi for Table 1, and the orifice's above.
+TEST(TurbulentLeakage, LaminarAtSmallDifferences) {
+  const model::Equations equations(Sealed({"pump.turbulent_leakage", {{"k", 2e-5}}, {}}),
+                                   Held(model::Shaft::kClamped));
+  const model::Parameters p = Table1();
+  const double width = 2e-4 * p.T_pmax / p.D;
+  EXPECT_NEAR(width, 1, 0.01);
+  double rate[model::kMaxStates];
+  for (const double dp : {-10.0, -1e-3, 0.0, 1e-3, 1.0, 10.0}) {
+    const model::Terms<double> x = TermsAt(equations, {0, 0, 100, 100 + dp, 0, 0}, rate);
+    EXPECT_NEAR(x.cross_flow, 2e-5 * dp / std::pow(dp * dp + width * width, 0.25), 1e-15) << dp;
+  }
+}
+
 }  // namespace
 }  // namespace hydro::testing
