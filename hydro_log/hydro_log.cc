@@ -44,7 +44,7 @@ class ExportVerb {
  public:
   explicit ExportVerb(settings::CommandLine& line) {
     settings::CommandLine& verb =
-        line.AddVerb("export", "Write a log's run as a table, one row a plant tick.");
+        line.AddVerb("export", "Write a log's run as a table, one row per plant tick.");
     verb.AddPositional("LOG", &log_, "FILE the log");
     verb.AddOption("-o,--output", &out_, "FILE the table: X.csv or X.mat", true);
     verb.AddOption("--suffix", &suffix_, "TEXT suffix of the channels, where the log has several");
@@ -120,7 +120,7 @@ class RepairVerb {
     settings::CommandLine& verb =
         line.AddVerb("repair",
                      "Keep what can be read of a damaged log. Without -o the log is "
-                     "replaced; LOG.damaged is what it was.");
+                     "replaced, and the damaged one kept as LOG.damaged.");
     verb.AddPositional("LOG", &log_, "FILE the log");
     verb.AddOption("-o,--output", &out_, "FILE write the repaired log there and leave LOG alone");
   }

@@ -34,7 +34,7 @@ void AddOptions(hydro::settings::CommandLine* line, Options* options) {
       "examine this machine and its network for the stack of CONFIG (without CONFIG: for any real-time "
       "stack), and print what fixes each problem; starts nothing");
   line->AddOption("--timing", &options->request.timing_file,
-                  "REPORT.json write how the loops kept time, and REPORT.html with plots beside it");
+                  "REPORT.json where to write how the loops kept time; REPORT.html beside it has plots");
   line->AddFlag("--stop", &options->stop,
                 "stop the running stack and wait until it has ended; starts nothing");
   line->AddFlag("--rearm", &options->rearm,

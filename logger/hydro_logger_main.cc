@@ -1,4 +1,7 @@
 // hydro-logger CONFIG -o FILE: records the bus.
+#include <string>
+#include <utility>
+
 #include "base/number_text.h"
 #include "base/text_file.h"
 #include "logger/logger_app.h"
@@ -11,15 +14,16 @@ int main(int argc, char** argv) {
   hydro::logger::LoggerOptions logger;
   double rotate_mb = 0;
   command_line.AddCommon(&options);
-  command_line.AddOption("-o,--output", &logger.file, "FILE to record into (an existing file is replaced)");
+  command_line.AddOption("-o,--output", &logger.file,
+                         "FILE where to record (an existing file is replaced); short for --log");
   command_line.AddOption("--rotate-mb", &rotate_mb,
-                         "start a new file (FILE-001 ...) when one grows larger; 0: never");
+                         "MB start a new file (FILE-001 ...) when one grows larger than this; 0: never");
   if (const auto exit_code = command_line.Parse(argc, argv)) return *exit_code;
-  if (logger.file.empty()) logger.file = options.log;
-  options.log.clear();
+  const std::string log = std::exchange(options.log, "");  // nothing but the logger itself records
   return hydro::process::RunProcess(
       "hydro-logger", options,
       [&](hydro::bus::Bus& bus, hydro::bus::Clock& clock, const hydro::settings::StackConfig& config) {
+        logger.file = hydro::settings::FileToRecord(logger.file, log);
         if (logger.file.empty()) throw hydro::InputError("-o FILE is required");
         hydro::settings::CheckKeepsInputs(logger.file, config);
         if (rotate_mb != 0 && !(rotate_mb >= 0.01 && rotate_mb <= 1e9)) {

@@ -252,10 +252,11 @@ int LoggerApp::Finish() {
     spdlog::warn("{} messages are not in the log: the disk was slower than the bus (logger.memory_mb)",
                  dropped);
   }
-  spdlog::info("{} messages in {}{}, {} bytes in the last; at most {} waited; {} lost before they arrived",
-               received_ - queue_.dropped(), options_.file,
-               files_ > 1 ? fmt::format(" and {} more files", files_ - 1) : "", writer_->bytes(),
-               largest_queue_total_, lost_);
+  const std::string size = files_ > 1 ? fmt::format("{} and {} more files ({} bytes in the last)",
+                                                    options_.file, files_ - 1, writer_->bytes())
+                                      : fmt::format("{} ({} bytes)", options_.file, writer_->bytes());
+  spdlog::info("{} messages in {}; at most {} waited for the disk; {} lost before they arrived",
+               received_ - queue_.dropped(), size, largest_queue_total_, lost_);
   return exit_code;
 }
 

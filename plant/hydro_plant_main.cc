@@ -9,7 +9,8 @@ int main(int argc, char** argv) {
   hydro::settings::CommonOptions options;
   std::vector<std::string> expected;
   command_line.AddCommon(&options);
-  command_line.AddOption("--expect", &expected, "ROLE to wait for besides the two controllers, e.g. logger");
+  command_line.AddOption("--expect", &expected,
+                         "ROLE also wait for this process, besides the two controllers, e.g. logger");
   if (const auto exit_code = command_line.Parse(argc, argv)) return *exit_code;
   return hydro::process::RunProcess(
       "hydro-plant", options,

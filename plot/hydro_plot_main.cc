@@ -11,8 +11,8 @@ int main(int argc, char** argv) {
   hydro::settings::CommandLine line("hydro-plot", "Draws a run as DIR/arm.svg and DIR/pressure.svg.");
   std::string table;
   std::string folder;
-  line.AddPositional("RUN", &table, "a table of hydro-log export (csv, mat)");
-  line.AddPositional("DIR", &folder, "where to write");
+  line.AddPositional("RUN", &table, "FILE a table that hydro-log export wrote (.csv, .mat)");
+  line.AddPositional("DIR", &folder, "FOLDER where to write");
   if (const auto code = line.Parse(argc, argv)) return *code;
   return hydro::settings::RunProgram("hydro-plot", [&] {
     for (const char* picture : {"/arm.svg", "/pressure.svg"}) hydro::CheckKeeps(folder + picture, {table});

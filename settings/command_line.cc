@@ -19,12 +19,13 @@
 namespace hydro::settings {
 namespace {
 
-// "FILE where to write" -> "FILE" and "where to write".
+// "FILE where to write" -> "FILE" and "where to write". A name may have an ending, as in "REPORT.json where
+// to write".
 std::pair<std::string, std::string> SplitHelp(const std::string& help) {
   const size_t space = help.find(' ');
   const std::string first = help.substr(0, space);
   const bool name = first.size() > 1 || space == 1;
-  const bool capitals = std::none_of(first.begin(), first.end(),
+  const bool capitals = std::none_of(first.begin(), std::find(first.begin(), first.end(), '.'),
                                      [](unsigned char c) { return std::islower(c) || std::isspace(c); });
   if (!name || !capitals || space == std::string::npos) return {"VALUE", help};
   return {first, help.substr(space + 1)};
@@ -198,7 +199,7 @@ void CommandLine::AddCommon(CommonOptions* options, bool config_required) {
         if (seed < 0) Refuse(name, text, "a whole number of at least 0");
         return "noise.seed=" + std::to_string(seed);
       });
-  AddOption("--log", &options->log, "FILE records the run there");
+  AddOption("--log", &options->log, "FILE where to record the run");
   AddFlag("--si", &options->si, "print figures in SI units");
 }
 
@@ -304,6 +305,14 @@ std::optional<int> CommandLine::Parse(int argc, const char* const* argv) {
     return 2;
   }
   return std::nullopt;
+}
+
+std::string FileToRecord(const std::string& output, const std::string& log) {
+  if (!output.empty() && !log.empty()) {
+    throw InputError("--log: found " + Quoted(log) + " beside -o " + Quoted(output) +
+                     ", allowed one of them");
+  }
+  return output.empty() ? log : output;
 }
 
 int RunProgram(const std::string& program, const std::function<int()>& body) {

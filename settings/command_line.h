@@ -82,6 +82,10 @@ class CommandLine {
   std::unique_ptr<Impl> impl_;
 };
 
+// Where a program records whose -o is short for --log; empty when neither is given. Throws InputError when both
+// are.
+std::string FileToRecord(const std::string& output, const std::string& log);
+
 // Runs a program's body. An exception becomes one line "program: ..." on stderr and an exit code: 2 for
 // InputError, 1 for anything else.
 int RunProgram(const std::string& program, const std::function<int()>& body);

@@ -42,8 +42,10 @@ int main(int argc, char** argv) {
   hydro::settings::CommonOptions options;
   std::string file;
   command_line.AddCommon(&options);
-  command_line.AddOption("-o,--output", &file, "FILE to log to (without it nothing is logged)");
+  command_line.AddOption(
+      "-o,--output", &file,
+      "FILE where to record the run; short for --log. Without either, nothing is recorded");
   if (const auto exit_code = command_line.Parse(argc, argv)) return *exit_code;
-  if (file.empty()) file = options.log;
-  return hydro::settings::RunProgram("hydro-sim", [&] { return Run(options, file); });
+  return hydro::settings::RunProgram(
+      "hydro-sim", [&] { return Run(options, hydro::settings::FileToRecord(file, options.log)); });
 }

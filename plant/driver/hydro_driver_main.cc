@@ -26,7 +26,8 @@ int main(int argc, char** argv) {
   std::vector<std::string> expected;
   bool check_sensors = false;
   command_line.AddCommon(&options);
-  command_line.AddOption("--expect", &expected, "ROLE to wait for besides the two controllers, e.g. logger");
+  command_line.AddOption("--expect", &expected,
+                         "ROLE also wait for this process, besides the two controllers, e.g. logger");
   command_line.AddFlag("--check-sensors", &check_sensors,
                        "print the sensors' readings and drive nothing, for --duration or until stopped");
   if (const auto exit_code = command_line.Parse(argc, argv)) return *exit_code;

@@ -109,7 +109,7 @@ std::string Often(Rate rate) {
     case Rate::kPeriodic:
       return "every second or two";
     case Rate::kEvent:
-      return "at an event";
+      return "at events, see below";
   }
   return "";
 }

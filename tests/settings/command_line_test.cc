@@ -8,6 +8,7 @@ namespace hydro::settings {
 namespace {
 
 using ::testing::AllOf;
+using ::testing::ContainsRegex;
 using ::testing::ElementsAre;
 using ::testing::EndsWith;
 using ::testing::HasSubstr;
@@ -90,7 +91,7 @@ TEST(CommandLineTest, BadUsage) {
       {{"a.toml", "--seed", "1.5"}, "--seed: found \"1.5\", allowed a whole number"},
       {{"a.toml", "--seed", "-1"}, "--seed: found \"-1\", allowed a whole number of at least 0"},
       {{"a.toml", "--seed", "99999999999999999999"}, "--seed: found \"99999999999999999999\""},
-      {{"a.toml", "--log", ""}, "--log: found \"\", allowed FILE records the run there"},
+      {{"a.toml", "--log", ""}, "--log: found \"\", allowed FILE where to record the run"},
       {{"a.toml", "--log="}, "--log: found nothing after =, allowed a value"},
       {{"--log=", "a.toml"}, "--log: found nothing after =, allowed a value"},
       {{"a.toml", "--set", ""}, "--set: found \"\", allowed SECTION.KEY=VALUE"},
@@ -194,6 +195,30 @@ TEST(CommandLineTest, Verbs) {
   }
   EXPECT_THAT(run({"info", "--help"}, &file, &verb).out, HasSubstr("says what is in a log"));
   EXPECT_THAT(run({"--help"}, &file, &verb).out, AllOf(HasSubstr("info"), HasSubstr("export")));
+}
+
+// Tests that a value's name may have an ending, as in a usage and in an error.
+TEST(CommandLineTest, NameWithEnding) {
+  std::string report;
+  CommandLine line("hydro-test", "tests");
+  line.AddOption("--timing", &report, "REPORT.json where to write");
+  EXPECT_THAT(Parse(line, {"--help"}).out, ContainsRegex("--timing REPORT\\.json +where to write"));
+  CommandLine other("hydro-test", "tests");
+  other.AddOption("--timing", &report, "REPORT.json where to write");
+  EXPECT_THAT(Parse(other, {"--timing"}).err, HasSubstr("--timing: found no value, allowed REPORT.json"));
+}
+
+// Tests that -o and --log are one file, never one of two in silence.
+TEST(CommandLineTest, FileToRecord) {
+  EXPECT_EQ(FileToRecord("", ""), "");
+  EXPECT_EQ(FileToRecord("a", ""), "a");
+  EXPECT_EQ(FileToRecord("", "b"), "b");
+  try {
+    FileToRecord("a", "b");
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_STREQ(error.what(), "--log: found \"b\" beside -o \"a\", allowed one of them");
+  }
 }
 
 // Tests how the body's exceptions are reported.
