@@ -1,6 +1,7 @@
 """Bad input to the real programs: exit code 2, one line on stderr that names the place, and no output file."""
 
 import os
+import subprocess
 
 import event_log
 import outcome
@@ -152,6 +153,8 @@ class BadInputTest(stack.TestCase):
         self.assert_refused("hydro-logger", [stack.config("demo.toml"), "-o", "FILE", "--rotate-mb", "-1"],
                             "rotate-mb")
         self.assert_refused("hydro-sim", [stack.config("demo.toml"), "--duration", "0", "-o", "FILE"], "duration")
+        for name in "hydro-sim", "hydro-logger":
+            self.assert_refused(name, [stack.config("demo.toml"), "-o", "FILE", "--log", "other"], "beside -o")
         self.assert_refused("hydro-launch", [stack.config("demo.toml"), "--host", "nobody", "--log", "FILE"],
                             "nobody")
 
@@ -216,6 +219,16 @@ class BadInputTest(stack.TestCase):
                     process = self.run_program(name, option)
                     self.assertEqual(process.stderr, "")
                     self.assertIn(name, process.stdout)
+
+    # Tests that ./check says what it is rather than building for minutes, and refuses what it does not know.
+    def test_check_takes_no_options(self):
+        check = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "check")
+        for option, code in ("--help", 0), ("-j2", 2):
+            with self.subTest(option=option):
+                process = subprocess.run([check, option], capture_output=True, text=True, timeout=20, check=False)
+                self.assertEqual(process.returncode, code, process.stderr)
+                self.assertIn("CONTRIBUTING.md", process.stdout)
+                self.assertEqual(process.stderr.count("\n"), code // 2)
 
 
 if __name__ == "__main__":
