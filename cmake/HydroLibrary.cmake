@@ -26,12 +26,12 @@ if(HYDRO_PRECOMPILE)
   target_compile_options(hydro_precompiled_computes PRIVATE ${HYDRO_COMPUTES_OPTIONS})
 endif()
 
-# hydro_library(NAME [OBJECTS] [COMPUTES] [INSTALLED] SOURCES FILES... [PUBLIC LIBS...] [PRIVATE LIBS...]): a static library, hydro_NAME, that
+# hydro_library(NAME [OBJECTS] [COMPUTES] [INSTALLED] SOURCES FILES... [HEADERS FILES...] [PUBLIC LIBS...] [PRIVATE LIBS...]): a static library, hydro_NAME, that
 # others know as hydro::NAME. Its headers are included by their path from the root, here and where they are installed
 # (include/hydro). COMPUTES: see above. INSTALLED: it and the headers of its folder are what others build on
-# (find_package(hydro), cmake/hydroConfig.cmake.in). OBJECTS: objects without a library around them.
+# (find_package(hydro), cmake/hydroConfig.cmake.in); with HEADERS only these, where the folder has other libraries. OBJECTS: objects without a library around them.
 function(hydro_library name)
-  cmake_parse_arguments(arg "OBJECTS;COMPUTES;INSTALLED" "" "SOURCES;PUBLIC;PRIVATE" ${ARGN})
+  cmake_parse_arguments(arg "OBJECTS;COMPUTES;INSTALLED" "" "SOURCES;HEADERS;PUBLIC;PRIVATE" ${ARGN})
   if(arg_UNPARSED_ARGUMENTS)
     message(FATAL_ERROR "hydro_library(${name}): unknown: ${arg_UNPARSED_ARGUMENTS}")
   endif()
@@ -56,7 +56,12 @@ function(hydro_library name)
     if(NOT arg_OBJECTS)
       hydro_install_library(${name})
     endif()
-    hydro_install_headers(${arg_SOURCES})
+    if(arg_HEADERS)
+      cmake_path(RELATIVE_PATH CMAKE_CURRENT_SOURCE_DIR BASE_DIRECTORY ${PROJECT_SOURCE_DIR} OUTPUT_VARIABLE room)
+      install(FILES ${arg_HEADERS} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/hydro/${room} COMPONENT development)
+    else()
+      hydro_install_headers(${arg_SOURCES})
+    endif()
   endif()
 endfunction()
 

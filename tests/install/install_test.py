@@ -56,6 +56,16 @@ class InstallTest(unittest.TestCase):
                 self.assertTrue((include / name).is_file(), f"{header} includes {name}")
         self.assertEqual([name for name in headers if re.match("tests|diagnose|experiments|launch|plant", name)], [])
 
+    def test_headers_have_their_libraries(self):
+        """Tests that what an installed header declares is in an installed library."""
+        include = self.prefix / "include/hydro"
+        objects = {name for library in self.prefix.rglob("*.a") for name in run("ar", "t", library).split()}
+        self.assertGreater(len(objects), 50)
+        objects.add("catalogue.cc.o")  # joined with the other effects
+        without = [path.relative_to(include).as_posix() for path in include.rglob("*.h")
+                   if (SOURCE / path.relative_to(include)).with_suffix(".cc").is_file() and f"{path.stem}.cc.o" not in objects]
+        self.assertEqual(without, [])
+
 
 if __name__ == "__main__":
     unittest.main(argv=sys.argv[:1] + ["-v"])
