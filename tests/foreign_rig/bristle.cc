@@ -30,7 +30,7 @@ double Bend(const Bristles& b, double bend, double speed, double limit, double h
   if (speed == 0) return bend;
   const double full = limit / b.stiffness;
   const double slip = SlipShare(b, bend, speed, limit);
-  if (slip <= 0) {
+  if (slip < 1e-6) {  // the quotient below would be all rounding
     const double next = bend + speed * h;
     return std::clamp(next, -full, full);
   }

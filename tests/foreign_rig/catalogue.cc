@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include "draw.h"
+#include "fluid.h"
 
 namespace foreign_rig {
 
@@ -128,7 +129,7 @@ Truth Relief(double s, uint64_t seed, Rig* rig) {
   return {"valve.relief", {{"set", rig->effects.relief_set}}, ""};
 }
 Truth Accumulator(double s, uint64_t, Rig* rig) {
-  rig->effects.accumulator_gas = 1.2 * 115 / s;
+  rig->effects.accumulator_gas = 1.2 * (rig->values.supply_pressure + kAtmosphere) / s;
   return {"accumulator.stiffness", {{"stiffness", s}}, ""};
 }
 Truth Seal(double s, uint64_t seed, Rig* rig) {

@@ -8,7 +8,7 @@ namespace foreign_rig {
 namespace {
 
 // ln(viscosity) = A + kB/(T + kC), for 46 cSt at 40 degrees C and 6.8 cSt at 100.
-constexpr double kB = 879.8, kC = 95.0;
+constexpr double kB = 838.7, kC = 95.0;
 
 }  // namespace
 

@@ -4,6 +4,8 @@
 namespace foreign_rig {
 
 inline constexpr double kAtmosphere = 14.696;  // psi
+// Where all air of a rig is in solution, psi.
+inline constexpr double kAllDissolved = 4000;
 
 // Viscosity relative to that at 40 degrees C, of an ISO VG 46 oil (Vogel's equation).
 double RelativeViscosity(double celsius);

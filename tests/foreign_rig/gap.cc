@@ -11,7 +11,7 @@ namespace foreign_rig {
 namespace {
 
 constexpr double kRate = 500;  // Hz, of comparison
-constexpr int kStepsATick = 200;
+const int kStepsATick = static_cast<int>(std::lround(1 / (kRate * kStep)));
 constexpr int kEvery = 2;  // of this many windows one is compared
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
@@ -39,7 +39,8 @@ void GapMeter::Append(const Reading& a, const Reading& b, const Plan& plan, std:
   if (!plan.day.clamped) to->push_back((a.arm - b.arm) / noise_[kArmAngle]);
 }
 
-// The rig with everything runs through the plan with its loops; the others follow its commands from its states.
+// The rig with everything runs through the plan with its loops; the others follow its commands from its
+// states.
 std::vector<std::vector<double>> GapMeter::AllDifferences(const Rig& with,
                                                           const std::vector<Rig>& others) const {
   std::vector<std::vector<double>> all(others.size());

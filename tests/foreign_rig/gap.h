@@ -1,8 +1,8 @@
 // How far a rig is from one that lacks what is hidden in it, in noise units.
 //
-// Predictions start from the true state every kWindow, so that small differences do not grow without end. What
-// other values of the plain model's parameters could explain is taken off (to first order), since no one would miss
-// an effect that they explain.
+// Predictions start from the true state every kWindow, so that small differences do not grow without end.
+// What other values of the plain model's parameters could explain is taken off (to first order), since no one
+// would miss an effect that they explain.
 #pragma once
 
 #include <vector>
@@ -23,7 +23,8 @@ class GapMeter {
   // Infinite where the machine breaks.
   double Between(const Rig& with, const Rig& without) const;
 
-  // The same, and what is left of it beyond what other values of `without` explain. Takes some ten times as long.
+  // The same, and what is left of it beyond what other values of `without` explain. Takes some ten times as
+  // long.
   struct Parts {
     double gap, beyond;
   };

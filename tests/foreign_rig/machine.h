@@ -1,5 +1,6 @@
 // The rig's machine: drive, pump, pipes, actuator and arm, stepped at a fixed small step (Heun's method; the
-// bristles exactly, the pipes by their characteristics, ideal valves by projection).
+// bristles exactly, the pipes by their characteristics, ideal valves by projection). Where something is stiff
+// a step has parts of 5 us.
 #pragma once
 
 #include <array>
@@ -13,7 +14,7 @@
 
 namespace foreign_rig {
 
-inline constexpr double kStep = 1e-5;  // s
+inline constexpr double kStep = 2e-5;  // s
 
 // What a run has of its own.
 struct Day {
@@ -62,7 +63,9 @@ class Machine {
   double pressure_1() const { return x_[kP1]; }
   double pressure_2() const { return x_[kP2]; }
   double motor_speed() const { return x_[kOmega]; }
+  double shaft_angle() const { return x_[kTheta]; }
   double arm_angle() const { return x_[kArm]; }
+  double arm_rate() const { return x_[kArmRate]; }
   double celsius() const { return x_[kCelsius]; }
 
  private:
@@ -100,7 +103,16 @@ class Machine {
     double volume, compliance;  // in^3, in^3/psi
   };
 
+  void BuildParts();
+  void Place();
+  struct Flows {
+    double side_1, side_2;  // in^3/s, into the actuator's sides
+  };
   void Rates(const State& x, State& rate) const;
+  Flows PumpRates(const State& x, double viscosity, State& rate) const;
+  void ValveRates(const State& x, State& rate, Flows* into) const;
+  void SideRates(const State& x, State& rate, Flows into) const;
+  void TransducerRates(const State& x, State& rate) const;
   double Torque(const State& x, double volts_torque) const;
   double DryLimit(const State& x) const;
   double PumpLosses(const State& x, double viscosity) const;
@@ -114,6 +126,7 @@ class Machine {
   double SupplyPressure(const State& x) const;
   void StepBristles(double h);
   void FeedFromSupply();
+  void Integrate();
   bool joint() const { return rig_.effects.shaft_stiffness > 0 || rig_.outside.backlash > 0; }
   Reading Plain() const;  // without the late channel
   double SkewedNow() const;
@@ -127,6 +140,8 @@ class Machine {
   Pipe pipe_1_, pipe_2_;
   double pump_volume_ = 0, pipe_volume_ = 0;  // in^3 a side, with a line
   double vane_inertia_ = 0;
+  int parts_ = 1;     // of a step
+  double h_ = kStep;  // s, a part
   State x_{};
   double volts_ = 0;              // that the drive has
   std::vector<double> commands_;  // ring, of the drive's delay

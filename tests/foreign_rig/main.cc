@@ -1,4 +1,5 @@
-// hydro-foreign-rig: writes what a rig of the second generation records and, in another place, what was in it.
+// hydro-foreign-rig: writes what a rig of the second generation records and, in another place, what was in
+// it.
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
@@ -19,7 +20,7 @@ constexpr char kHelp[] =
     "model.toml); FILE gets the answers. Another seed is another rig: values, sizes, runs, sensors.\n"
     "  --list       number, name, class, seed of every case\n"
     "  --seed S     instead of the case's own\n"
-    "  --rate HZ    samples a second, a divisor of 100000 (drawn: 200 to 2000)\n"
+    "  --rate HZ    samples a second, a divisor of 50000 (drawn: 200 to 2000)\n"
     "  --seconds T  of each run (5)\n";
 
 using Arguments = std::map<std::string, std::string>;

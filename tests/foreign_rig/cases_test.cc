@@ -1,0 +1,191 @@
+// The rigs as files: drawn from the seed, readable, silent about what is in them.
+#include "tests/foreign_rig/cases.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <set>
+#include <sstream>
+
+#include "model/effects/catalogue.h"
+#include "runs/measured_run.h"
+#include "tests/foreign_rig/gap.h"
+#include "tests/foreign_rig/size.h"
+#include "tests/foreign_rig/write.h"
+
+namespace foreign_rig {
+namespace {
+
+namespace fs = std::filesystem;
+
+class ForeignCases : public ::testing::Test {
+ protected:
+  ForeignCases()
+      : folder_(fs::path(::testing::TempDir()) /
+                (std::string("foreign_") + ::testing::UnitTest::GetInstance()->current_test_info()->name())) {
+    fs::remove_all(folder_);
+  }
+  ~ForeignCases() override { fs::remove_all(folder_); }
+
+  static Case CaseNamed(const std::string& name) {
+    for (const Case& c : AllCases()) {
+      if (c.name == name) return c;
+    }
+    throw std::runtime_error("no case " + name);
+  }
+  static std::string Text(const fs::path& file) {
+    std::ifstream in(file);
+    std::stringstream text;
+    text << in.rdbuf();
+    return text.str();
+  }
+  Solved Write(const Case& c, const std::string& name) const {
+    const Options options{0.5, 500};
+    const Solved solved = Solve(c, options);
+    WriteRuns(c, solved, options, Folder(name));
+    WriteKey(c, solved, Folder(name) + ".json");
+    return solved;
+  }
+  std::string Folder(const std::string& name) const { return (folder_ / name).string(); }
+
+  fs::path folder_;
+};
+
+// Tests that the five runs and the three held out are read as measured runs of several kinds.
+TEST_F(ForeignCases, RunsAreReadable) {
+  Write(CaseNamed("values-1"), "a");
+  int free_runs = 0, bypassed = 0, runs = 0;
+  for (const char* name : {"run1", "run2", "run3", "run4", "run5", "held1", "held2", "held3"}) {
+    const hydro::runs::MeasuredRun run = hydro::runs::ReadMeasuredRun(Folder("a") + "/" + name + ".csv");
+    EXPECT_EQ(run.samples(), 251u);
+    free_runs += run.shaft == hydro::model::Shaft::kFree ? 1 : 0;
+    bypassed += run.bypass ? 1 : 0;
+    ++runs;
+  }
+  EXPECT_EQ(runs, 8);
+  EXPECT_GE(free_runs, 2);
+  EXPECT_GE(bypassed, 1);
+}
+
+// Tests that a seed gives the same files and answers to the bit, and that another seed gives other runs and
+// answers.
+TEST_F(ForeignCases, SeedDecides) {
+  Case c = CaseNamed("sensor.pressure_gain-8");
+  const Solved first = Write(c, "a");
+  Write(c, "b");
+  c.seed += 1;
+  const Solved other = Write(c, "c");
+  EXPECT_EQ(Text(Folder("a") + ".json"), Text(Folder("b") + ".json"));
+  for (const auto& entry : fs::directory_iterator(Folder("a"))) {
+    const fs::path name = entry.path().filename();
+    EXPECT_EQ(Text(entry.path()), Text(fs::path(Folder("b")) / name)) << name;
+    if (name.extension() == ".toml" && name != "model.toml") continue;
+    EXPECT_NE(Text(entry.path()), Text(fs::path(Folder("c")) / name)) << name;
+  }
+  EXPECT_NE(first.effects[0].parameters[0].second, other.effects[0].parameters[0].second);
+  EXPECT_NE(first.rig.values.displacement, other.rig.values.displacement);
+}
+
+// Tests that nothing handed over names what is in the rig, and that the key does.
+TEST_F(ForeignCases, OnlyTheKeyTells) {
+  Write(CaseNamed("sensor.pressure_lag-8"), "a");
+  for (const auto& entry : fs::directory_iterator(Folder("a"))) {
+    const std::string text = Text(entry.path());
+    for (const std::string word : {"lag", "effect", "single", "richness", "given", "gap"})
+      EXPECT_EQ(text.find(word), std::string::npos) << entry.path() << ": " << word;
+  }
+  const std::string key = Text(Folder("a") + ".json");
+  for (const std::string word : {"sensor.pressure_lag", "\"class\": \"single\"", "\"richness\"", "\"tau\""})
+    EXPECT_NE(key.find(word), std::string::npos) << word;
+}
+
+// Tests that every effect of the catalogue is there, in three sizes where it has sizes, and every class.
+TEST_F(ForeignCases, CasesAreComplete) {
+  std::map<std::string, int> kinds;
+  std::set<std::string> names, whats;
+  std::set<uint64_t> seeds;
+  for (const Case& c : AllCases()) {
+    ++kinds[c.kind];
+    names.insert(c.name);
+    seeds.insert(c.seed);
+    whats.insert(c.what);
+  }
+  EXPECT_EQ(kinds["single"], 70);
+  EXPECT_EQ(kinds["pair"], 12);
+  EXPECT_EQ(kinds["nothing"], 24);
+  EXPECT_EQ(kinds["bias"], 6);
+  EXPECT_EQ(kinds["drift"], 6);
+  EXPECT_EQ(kinds["newcomer"], 18);
+  EXPECT_EQ(kinds["outside"], 30);
+  EXPECT_EQ(names.size(), AllCases().size());
+  EXPECT_EQ(seeds.size(), AllCases().size());
+  for (const EffectForm& form : EffectForms()) EXPECT_TRUE(whats.contains(form.id)) << form.id;
+}
+
+// Tests that every number of the model is off, by no more than twice what its kind is known to.
+TEST_F(ForeignCases, EveryValueIsWrong) {
+  for (uint64_t seed = 1; seed <= 50; ++seed) {
+    const Values values = DrawValues(seed);
+    const Values given = DrawGiven(values, seed);
+    for (const ValueForm& form : ValueForms()) {
+      if (values.*form.value == 0) continue;
+      const double off = std::abs(given.*form.value / (values.*form.value) - 1);
+      EXPECT_GE(off, 0.199 * form.uncertainty) << form.name;
+      EXPECT_LE(off, 2.001 * form.uncertainty) << form.name;
+    }
+  }
+}
+
+// Tests that the size for a gap is found, and that what other values explain is not counted.
+TEST_F(ForeignCases, SizeLeavesTheGap) {
+  const Rig plain;
+  std::array<double, kChannels> noise = {0.3, 1e-3, 1e-4, 1.5, 1.5};
+  const std::vector<Plan> plans = DrawPlans(5, 1, 0.3);
+  const GapMeter meter({plans[0], plans[1]}, noise, 1);
+  EXPECT_EQ(meter.Between(plain, plain), 0);
+  Rig stiffer = plain;
+  stiffer.values.bulk_modulus *= 1.002;
+  const GapMeter::Parts parts = meter.BeyondValues(stiffer, plain);
+  EXPECT_LT(parts.beyond, 0.05 * parts.gap);
+  const Sized sized = FindSize(meter, plain, 1e-4, 0.4, 5, [&](double size) {
+    Rig rig = plain;
+    rig.effects.gain = size;
+    return rig;
+  });
+  EXPECT_TRUE(sized.reached);
+  EXPECT_NEAR(sized.parts.beyond, 5, 0.75);
+}
+
+// Tests that a newcomer's table is the right one but for the mistake.
+TEST_F(ForeignCases, MistakesAreInTheTable) {
+  Case c = CaseNamed("newcomer-bar-1");
+  Write(c, "bar");
+  c.what = "";  // the same rig without the mistake
+  Write(c, "right");
+  const auto bar = hydro::runs::ReadMeasuredRun(Folder("bar") + "/run2.csv");
+  const auto right = hydro::runs::ReadMeasuredRun(Folder("right") + "/run2.csv");
+  for (size_t i = 0; i < right.samples(); ++i)
+    EXPECT_NEAR(bar.p2.values[i] * 14.5037738, right.p2.values[i], 1e-3);
+  EXPECT_EQ(bar.motor_speed.values, right.motor_speed.values);
+}
+
+// Tests that a day's values are the run's own, and of the stated spread.
+TEST_F(ForeignCases, DaysDiffer) {
+  Daily daily;
+  daily.friction = 0.1;
+  std::vector<double> all;
+  for (uint64_t seed = 1; seed <= 50; ++seed) {
+    std::vector<Plan> plans = DrawPlans(seed, 1, 0.3);
+    ApplyDaily(daily, seed, &plans);
+    for (const Plan& plan : plans) all.push_back(plan.day.friction - 1);
+  }
+  double square = 0;
+  for (const double off : all) square += off * off / static_cast<double>(all.size());
+  EXPECT_NEAR(std::sqrt(square), 0.1, 0.01);
+}
+
+}  // namespace
+}  // namespace foreign_rig
