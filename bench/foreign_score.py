@@ -45,16 +45,22 @@ def closure_share(report):
 
 
 def weights(key, report):
-    """Every weight that a candidate has, and whether the candidate is what is in the rig."""
+    """Every weight that a candidate has, and whether the candidate is what is in the rig.
+
+    Ids of effects have a dot; a candidate without one is other values, which is right where nothing is missing. Where something outside the
+    catalogue is, other values and closures are neither right nor wrong.
+    """
     true = sorted(effect["id"] for effect in key["effects"])
-    if not true and not key["outside"]:
-        return []  # no agreed name for "nothing"
     judged = []
     for candidate in report.get("candidates") or []:
+        ids = sorted(part.strip() for part in candidate["id"].split("+"))
         if not isinstance(candidate.get("weight"), (int, float)) or candidate["id"].startswith("closure."):
             continue
-        ids = sorted(part.strip() for part in candidate["id"].split("+"))
-        judged.append((candidate["weight"], ids == true if len(ids) > 1 or len(true) == 1 else False))
+        if not any("." in part for part in ids):
+            if key["outside"]:
+                continue
+            ids = []
+        judged.append((candidate["weight"], ids == true and not key["outside"]))
     return judged
 
 

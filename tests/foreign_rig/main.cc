@@ -14,7 +14,7 @@ namespace {
 
 constexpr char kHelp[] =
     "hydro-foreign-rig --list\n"
-    "hydro-foreign-rig --case NAME|N --out DIR [--key FILE] [--seed S] [--rate HZ] [--seconds T]\n"
+    "hydro-foreign-rig --case NAME|N [--out DIR] [--key FILE] [--seed S] [--rate HZ] [--seconds T]\n"
     "Writes five runs to fit and three to hold out, and the model as given (DIR/runN.csv, heldN.csv, their "
     "sidecars,\n"
     "model.toml); FILE gets the answers. Another seed is another rig: values, sizes, runs, sensors.\n"
@@ -58,7 +58,7 @@ void Make(const Arguments& given, foreign_rig::Case c) {
   options.rate = Number(given, "--rate", 0);
   options.seconds = Number(given, "--seconds", options.seconds);
   const foreign_rig::Solved solved = foreign_rig::Solve(c, options);
-  foreign_rig::WriteRuns(c, solved, options, given.at("--out"));
+  if (given.contains("--out")) foreign_rig::WriteRuns(c, solved, options, given.at("--out"));
   if (given.contains("--key")) foreign_rig::WriteKey(c, solved, given.at("--key"));
 }
 
@@ -76,8 +76,8 @@ int Main(int argc, char** argv) {
     }
     return 0;
   }
-  if (!given.contains("--case") || !given.contains("--out"))
-    throw std::invalid_argument("--case and --out: see --help");
+  if (!given.contains("--case") || !(given.contains("--out") || given.contains("--key")))
+    throw std::invalid_argument("--case and --out or --key: see --help");
   const std::string& wanted = given.at("--case");
   for (size_t i = 0; i < cases.size(); ++i) {
     if (wanted != cases[i].name && wanted != std::to_string(i + 1)) continue;

@@ -1,0 +1,185 @@
+"""The rules of bench/foreign_score.py, and bench/gap_score --generation 2 with stand-ins for the rig and the gap finder."""
+
+import importlib.util
+import json
+import pathlib
+import subprocess
+import sys
+import tempfile
+import unittest
+
+BENCH = pathlib.Path(__file__).resolve().parents[2] / "bench"
+_spec = importlib.util.spec_from_file_location("foreign_score", BENCH / "foreign_score.py")
+foreign_score = importlib.util.module_from_spec(_spec)
+_spec.loader.exec_module(foreign_score)
+
+
+def key(kind, effects=(), what="", outside=None, gap=8.0, remark=()):
+    return {"class": kind, "what": what, "gap": gap, "gap_reached": True, "effects": [{"id": e, "parameters": {}} for e in effects],
+            "outside": outside, "remark": list(remark)}
+
+
+def report(verdict, effects=(), **further):
+    return {"verdict": verdict, "effects": [{"id": e, "tied_with": list(ties)} for e, ties in effects], "parameters": [],
+            "gap": {"held_out": {"before": 9, "refit_only": 5, "after": 1.0}}, **further}
+
+
+def scored(k, r):
+    return {**foreign_score.score(k, r, "", 1.0), "name": "case", "number": 1}
+
+
+class Rules(unittest.TestCase):
+    # Tests that an effect counts in each of the three verdicts, or by its tie class, and in no other verdict.
+    def test_single(self):
+        k = key("single", ["amp.lag"])
+        for verdict in ("named", "tied", "partly"):
+            self.assertTrue(scored(k, report(verdict, [("amp.lag", [])]))["right"])
+        self.assertTrue(scored(k, report("tied", [("amp.delay", ["amp.lag"])]))["right"])
+        self.assertFalse(scored(k, report("unexplained", [("amp.lag", [])]))["right"])
+        self.assertFalse(scored(k, report("named", [("amp.delay", [])]))["right"])
+        both = scored(k, report("partly", [("amp.lag", []), ("valve.relief", [])]))
+        self.assertTrue(both["right"])
+        self.assertEqual(both["extra"], 1)
+        self.assertFalse(foreign_score.score(k, None, "not done in 150 s", 150.0)["right"])
+
+    # Tests that an effect of one signal must be seen on it.
+    def test_signal(self):
+        k = key("single", ["sensor.skew"])
+        k["effects"][0]["signal"] = "p2"
+        r = report("named", [("sensor.skew", [])])
+        r["effects"][0]["names"] = ["signal = p2"]
+        self.assertTrue(scored(k, r)["right"])
+        r["effects"][0]["names"] = ["signal = p1"]
+        self.assertFalse(scored(k, r)["right"])
+
+    # Tests that a pair needs both.
+    def test_pair(self):
+        k = key("pair", ["amp.lag", "valve.relief"])
+        self.assertTrue(scored(k, report("partly", [("valve.relief", []), ("amp.lag", [])]))["right"])
+        one = scored(k, report("partly", [("amp.lag", [])]))
+        self.assertFalse(one["right"])
+        self.assertTrue(one["half"])
+
+    # Tests that any effect is a mistake where nothing is missing, and that other values or silence are none.
+    def test_nothing(self):
+        k = key("nothing", what="daily")
+        self.assertTrue(scored(k, report("partly", [("amp.lag", [])]))["any_effect"])
+        for verdict in ("parameters", "partly", "unexplained", "nothing_missing"):
+            self.assertFalse(scored(k, report(verdict))["any_effect"])
+
+    # Tests that a bias may be tied with an asymmetry but not be called one.
+    def test_bias(self):
+        k = key("bias", ["amp.bias"])
+        self.assertTrue(scored(k, report("tied", [("pump.friction_asymmetry", ["amp.bias"])]))["right"])
+        wrong = scored(k, report("named", [("pump.friction_asymmetry", [])]))
+        self.assertTrue(wrong["instead"])
+        self.assertFalse(scored(k, report("unexplained"))["instead"])
+
+    # Tests that a newcomer's mistake needs a remark with a word of each group, in one remark.
+    def test_newcomer(self):
+        k = key("newcomer", what="bar", remark=[["p1", "p2"], ["bar", "14.5"]])
+        self.assertTrue(scored(k, report("unexplained", remarks=["run1: p1 looks like Bar: scale = 14.5038"]))["right"])
+        self.assertFalse(scored(k, report("unexplained", remarks=["p1 is noisy", "a barrier"]))["right"])
+        named = scored(k, report("named", [("fluid.entrained_air", [])], remarks=["p1 and p2 are in bar"]))
+        self.assertTrue(named["remarked"])
+        self.assertTrue(named["instead"])
+        self.assertFalse(named["right"])
+        self.assertFalse(scored(k, report("named", [("sensor.pressure_gain", [])]))["instead"])
+
+    # Tests that only `named` is a confident wrong name, and what a closure takes of the squared gap.
+    def test_outside(self):
+        k = key("outside", outside={"what": "a spring", "function_of": "arm_angle"})
+        self.assertTrue(scored(k, report("named", [("amp.lag", [])]))["confident_wrong"])
+        self.assertFalse(scored(k, report("partly", [("amp.lag", [])]))["confident_wrong"])
+        closed = scored(k, report("unexplained", closure={"id": "closure.arm_torque", "held_out": {"before": 10, "after": 5}}))
+        self.assertAlmostEqual(closed["closure"], 0.75)
+        self.assertIsNone(scored(k, report("unexplained", closure=None))["closure"])
+
+    # Tests the bounds against Clopper and Pearson's closed forms at the ends, and a tabled value between.
+    def test_bounds(self):
+        self.assertAlmostEqual(foreign_score.bound(20, 20, upper=False), 0.05 ** (1 / 20), places=6)
+        self.assertAlmostEqual(foreign_score.bound(0, 20, upper=True), 1 - 0.05 ** (1 / 20), places=6)
+        self.assertAlmostEqual(foreign_score.bound(5, 10, upper=False), 0.2224, places=4)
+        self.assertAlmostEqual(foreign_score.bound(5, 10, upper=True), 0.7776, places=4)
+        self.assertIsNone(foreign_score.bound(0, 0, upper=True))
+
+    # Tests the table of weights: by bins, an explanation of two effects as a whole, other values where nothing is missing, closures left out.
+    def test_reliability(self):
+        candidates = [{"id": "amp.lag", "weight": 0.95}, {"id": "amp.delay", "weight": 0.05}, {"id": "valve.relief"},
+                      {"id": "closure.flow_1", "weight": 0.5}]
+        single = scored(key("single", ["amp.lag"]), report("named", [("amp.lag", [])], candidates=candidates))
+        pair = scored(key("pair", ["amp.lag", "valve.relief"]),
+                      report("named", candidates=[{"id": "valve.relief + amp.lag", "weight": 1.0}, {"id": "amp.lag", "weight": 0.0}]))
+        nothing = scored(key("nothing"), report("parameters", candidates=[{"id": "amp.lag", "weight": 0.05}, {"id": "parameters", "weight": 0.95}]))
+        rows = foreign_score.reliability([single, pair, nothing])
+        self.assertEqual([(low, good, n) for low, _, _, good, n, _ in rows], [(0, 0, 3), (0.9, 3, 3)])
+
+    # Tests the limits of the goals: at 3 noise units, nine of ten, and one in twenty.
+    def test_goals(self):
+        met = lambda outcomes, what: next(c for c in foreign_score.judge(outcomes) if what in c["what"])["met"]
+        good = scored(key("single", ["amp.lag"], gap=3.0), report("named", [("amp.lag", [])]))
+        bad = scored(key("single", ["amp.lag"], gap=3.0), report("unexplained"))
+        small = scored(key("single", ["amp.lag"], gap=2.9), report("unexplained"))
+        self.assertTrue(met([good] * 9 + [bad, small], "single effects"))
+        self.assertFalse(met([good] * 8 + [bad] * 2, "single effects"))
+        calm, wrong = scored(key("nothing"), report("parameters")), scored(key("nothing"), report("tied", [("amp.lag", [])]))
+        self.assertTrue(met([calm] * 19 + [wrong], "nothing missing"))
+        self.assertFalse(met([calm] * 18 + [wrong] * 2, "nothing missing"))
+        self.assertIsNone(met([calm], "single effects"))
+        slow = dict(good, seconds=31.0)
+        self.assertFalse(met([good] * 9 + [slow], "seconds, worst"))
+        self.assertTrue(met([good] * 9 + [slow], "seconds, median"))
+
+    # Tests that gaps by horizon are medians of those reports that have them.
+    def test_horizons(self):
+        r = report("named", [("amp.lag", [])])
+        r["gap"]["horizons"] = [{"seconds": 0.1, "held_out": {"before": 9, "refit_only": 4, "after": 1.2}}]
+        rows = foreign_score.by_horizon([scored(key("single", ["amp.lag"]), r), scored(key("single", ["amp.lag"]), report("unexplained"))])
+        self.assertEqual(rows, [("right", 0.1, 1, [9, 4, 1.2])])
+
+
+RIG = """#!{python}
+import json, pathlib, sys
+if "--list" in sys.argv:
+    print("1 amp.lag-8 single 5\\n2 daily-1 nothing 6")
+    sys.exit(0)
+value = lambda name: sys.argv[sys.argv.index(name) + 1]
+assert "--rate" not in sys.argv and value("--seconds") == "5"
+out = pathlib.Path(value("--out"))
+out.mkdir(parents=True, exist_ok=True)
+for name in ("run1", "held1"):
+    (out / (name + ".csv")).write_text("time\\n0\\n")
+(out / "model.toml").write_text("")
+effects = [] if "daily" in value("--case") else [{{"id": "amp.lag", "parameters": {{}}}}]
+pathlib.Path(value("--key")).write_text(json.dumps({{"class": "single" if effects else "nothing", "what": "", "gap": 8, "gap_reached": True,
+    "effects": effects, "outside": None, "remark": []}}))
+"""
+FINDER = """#!{python}
+import json, pathlib, sys
+held_out = [sys.argv[i + 1] for i, word in enumerate(sys.argv) if word == "--hold-out"]
+assert [pathlib.Path(h).name for h in held_out] == ["held1.csv"], sys.argv
+assert sum("run1.csv" in word for word in sys.argv) == 1
+pathlib.Path(sys.argv[sys.argv.index("--out") + 1], "report.json").write_text(json.dumps({report}))
+"""
+
+
+class Program(unittest.TestCase):
+    # Tests the whole way: runs held out are passed as such, the table names the miss, and the exit code says that a goal was missed.
+    def test_generation_2(self):
+        with tempfile.TemporaryDirectory() as name:
+            folder = pathlib.Path(name)
+            finder = FINDER.format(python=sys.executable, report=report("named", [("amp.lag", [])]))
+            for program, text in (("hydro-foreign-rig", RIG.format(python=sys.executable)), ("finder", finder)):
+                (folder / program).write_text(text)
+                (folder / program).chmod(0o755)
+            ended = subprocess.run([sys.executable, "-B", str(BENCH / "gap_score"), "--generation", "2", "--bin", name, "--diagnose",
+                                    str(folder / "finder"), "--out", str(folder / "out")], capture_output=True, text=True)
+            self.assertEqual(ended.returncode, 1, ended.stderr)
+            self.assertIn("case (gap as made)", ended.stdout)
+            self.assertIn("daily-1 (8) | nothing missing", ended.stdout)
+            self.assertIn("2 ended with a report", ended.stdout)
+            self.assertEqual(len(json.loads((folder / "out/score.json").read_text())["cases"]), 2)
+
+
+if __name__ == "__main__":
+    unittest.main()
