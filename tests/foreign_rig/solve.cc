@@ -152,15 +152,19 @@ void HideEffects(const Case& c, const std::vector<std::string>& ids, const GapMe
 
 // Small things of every machine: a part of the gap, or of the noise where nothing is missing.
 void Enrich(const Case& c, const GapMeter& meter, Solved* s) {
-  Rig rich = s->rig;
-  rich.rich = DrawRichness(c.seed);
-  rich.rich.size = 1;
-  const double at_one = meter.Between(rich, s->rig);
-  if (!std::isfinite(at_one) || !(at_one > 0)) return;
   const bool something = !s->effects.empty() || c.outside >= 0;
   const double asked =
       Draw(c.seed, "richness size").Between(0.05, 0.15) * (something ? std::min(s->gap, 30.0) : 3);
-  rich.rich.size = std::min(3.0, asked / at_one);
+  Rig rich = s->rig;
+  rich.rich = DrawRichness(c.seed);
+  rich.rich.size = 1;
+  // In proportion, then corrected: near sticking, little things are not small.
+  for (int i = 0; i < 5; ++i) {
+    s->richness = meter.Between(rich, s->rig);
+    if (s->richness < 1.2 * asked && (s->richness > 0.7 * asked || rich.rich.size >= 3)) break;
+    rich.rich.size = std::isfinite(s->richness) ? std::min(3.0, rich.rich.size * asked / s->richness)
+                                                : 0.1 * rich.rich.size;
+  }
   s->richness = meter.Between(rich, s->rig);
   s->rig = rich;
 }
