@@ -158,10 +158,13 @@ def judge(outcomes):
                          "met": None if n == 0 else count <= limit * n + 1e-9 if upper else count >= limit * n - 1e-9})
 
     right = lambda o: o["right"]
+    # A diagnosis that never ended named nothing wrong, but proves nothing either.
+    ended = lambda *kinds: [o for o in of(*kinds) if o["ended"]]
+    goal("ended with a report", outcomes, lambda o: o["ended"], 1.0)
     goal("single effects at 3 noise units and more: the right one or its tie class", [o for o in of("single") if o["gap"] >= 3], right, 0.90)
-    goal("nothing missing: any effect named", of("nothing"), lambda o: o["any_effect"], 0.05, upper=True)
-    goal("bias, drift, a newcomer's mistake: a physical effect named instead", of("bias", "drift", "newcomer"), lambda o: o["instead"], 0.05, upper=True)
-    goal("outside the catalogue: a confident wrong name", of("outside"), lambda o: o["confident_wrong"], 0.05, upper=True)
+    goal("nothing missing: any effect named", ended("nothing"), lambda o: o["any_effect"], 0.05, upper=True)
+    goal("bias, drift, a newcomer's mistake: a physical effect named instead", ended("bias", "drift", "newcomer"), lambda o: o["instead"], 0.05, upper=True)
+    goal("outside the catalogue: a confident wrong name", ended("outside"), lambda o: o["confident_wrong"], 0.05, upper=True)
     visible = [o for o in of("outside") if o["gap"] >= 3 and o["function_of"]]
     goal("outside, a function of measured signals, 3 and more: a closure takes 70 %", visible, lambda o: (o["closure"] or 0) >= 0.7, 0.90)
     for what, limit, value in (("seconds, median", 10, median([o["seconds"] for o in outcomes])),
@@ -212,6 +215,9 @@ def table(outcomes, criteria, elapsed):
     ended = sum(1 for o in outcomes if o["ended"])
     if times:
         lines += ["", f"{len(outcomes)} cases in {elapsed:.0f} s, {ended} ended with a report; a diagnosis took {median(times):.1f} s (median), {times[-1]:.1f} s at most"]
+    processor = [o["processor_s"] for o in outcomes if o.get("processor_s")]
+    if processor:
+        lines.append(f"of the processor, which other work does not change: {median(processor):.1f} s (median), {max(processor):.1f} s at most")
     return "\n".join(lines) + "\n"
 
 

@@ -126,6 +126,9 @@ class Rules(unittest.TestCase):
         self.assertTrue(met([calm] * 19 + [wrong], "nothing missing"))
         self.assertFalse(met([calm] * 18 + [wrong] * 2, "nothing missing"))
         self.assertIsNone(met([calm], "single effects"))
+        lost = {**foreign_score.score(key("nothing"), None, "not done in 150 s", 150.0), "name": "case", "number": 1}
+        self.assertIsNone(met([lost] * 3, "nothing missing"))
+        self.assertFalse(met([lost, calm], "ended with a report"))
         slow = dict(good, seconds=31.0)
         self.assertFalse(met([good] * 9 + [slow], "seconds, worst"))
         self.assertTrue(met([good] * 9 + [slow], "seconds, median"))

@@ -39,7 +39,8 @@ Recorder DrawRecorder(uint64_t seed, double slowest) {
   const double step = range / std::ldexp(1.0, 12 + 2 * draw.Index(2));
   for (const int i : {kSide1, kSide2}) r.channels[i] = DrawChannel(draw, pressure, step);
   r.channels[kSide2].filter = r.channels[kSide1].filter;  // two transducers of one make
-  r.averages = draw.Chance(0.3);
+  // A mean is late by half an interval: where intervals are long that would be an effect of its own.
+  r.averages = draw.Chance(0.3) && r.rate >= 1000;
   r.jitter = draw.Chance(0.4) ? draw.Between(0.01, 0.08) : 0;
   r.jitter_known = draw.Chance(0.5);
   r.spikes = draw.Chance(0.2) ? 0.1 : 0;

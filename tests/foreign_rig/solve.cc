@@ -93,7 +93,6 @@ void MakeOdd(const std::string& what, uint64_t seed, Solved* s) {
     if (what == "coloured") {
       c.coloured = draw.Between(0.6, 0.95);
       c.colour_time = draw.LogBetween(0.01, 0.1);
-      c.wander = c.noise * draw.Between(0.5, 1.2);
     }
     if (what == "hum") c.hum = c.noise * draw.Between(0.8, 2);
     if (what == "filters" && i != kArmAngle) c.filter = draw.LogBetween(2e-4, 6e-4);
