@@ -8,6 +8,7 @@
 #include "diagnose/data/run_data.h"
 #include "diagnose/fit/clock_fit.h"
 #include "diagnose/fit/identifiable.h"
+#include "diagnose/recording_first.h"
 #include "diagnose/search/search.h"
 #include "diagnose/verdict/conclusion.h"
 
@@ -181,6 +182,8 @@ void SearchFromRefit(const SearchContext& context, const Explanation& refit, Sea
 Diagnosis Diagnose(const model::ModelDescription& model, std::vector<runs::MeasuredRun> runs,
                    std::vector<runs::MeasuredRun> held_out, const DiagnoseOptions& options,
                    const ProgressCallback& report_progress) {
+  const CheckedRecordings checked = CheckFirst(model, options.effects, options.jobs, &runs, &held_out);
+  if (checked.mend_first) return MendFirst(model, checked, runs, held_out);
   const std::vector<size_t> allowed = AllowedBase(model, options.free);
   PreparedRuns prepared = Prepare(model, allowed, options.jobs, std::move(runs), std::move(held_out));
   const SearchContext context = MakeContext(model, prepared, allowed, options, report_progress);
@@ -199,6 +202,9 @@ Diagnosis Diagnose(const model::ModelDescription& model, std::vector<runs::Measu
   Diagnosis diagnosis = Conclude(context, search, refit);
   const std::vector<std::string> remarks = RecordingRemarks(prepared.clocks, context.runs, context.held_out);
   diagnosis.remarks.insert(diagnosis.remarks.begin(), remarks.begin(), remarks.end());
+  const std::vector<std::string> limits = LimitRemarks(model.parameters, context.runs);
+  diagnosis.remarks.insert(diagnosis.remarks.end(), limits.begin(), limits.end());
+  AddChecked(checked, &diagnosis);
   diagnosis.recording = std::move(prepared.clocks);
   return diagnosis;
 }

@@ -11,6 +11,7 @@
 
 #include "base/did_you_mean.h"
 #include "base/new_file.h"
+#include "diagnose/recording_first.h"
 #include "diagnose/report/progress_bar.h"
 #include "diagnose/report/report_html.h"
 #include "diagnose/report/report_json.h"
@@ -71,6 +72,11 @@ std::vector<runs::MeasuredRun> ReadRuns(const std::vector<std::string>& files) {
 bool SameFile(const std::string& a, const std::string& b) {
   std::error_code error;
   return a == b || (fs::equivalent(a, b, error) && !error);
+}
+
+void RequireJobs(const DiagnoseRequest& request) {
+  if (request.jobs >= 1 && request.jobs <= 256) return;
+  throw InputError("--jobs: found " + std::to_string(request.jobs) + ", allowed 1 to 256");
 }
 
 void RequireDifferentFiles(const DiagnoseRequest& request) {
@@ -149,9 +155,25 @@ std::vector<std::string> SplitFree(const std::string& names) {
   return free;
 }
 
+int CheckRuns(const DiagnoseRequest& request, std::FILE* out) {
+  RequireJobs(request);
+  RequireDifferentFiles(request);
+  const model::ModelDescription model = settings::LoadModelFile(request.model);
+  std::vector<runs::MeasuredRun> runs = ReadRuns(request.runs), held_out = ReadRuns(request.held_out);
+  runs.insert(runs.end(), held_out.begin(), held_out.end());
+  const RecordingReport report = ReportOnRecordings(model, std::move(runs), request.jobs);
+  for (const std::vector<std::string>* lines : {&report.wrong, &report.limits}) {
+    for (const std::string& line : *lines) std::fputs((line + "\n").c_str(), out);
+  }
+  if (report.wrong.empty()) std::fputs("nothing wrong was found in the recordings\n", out);
+  return report.wrong.empty() ? 0 : 1;
+}
+
 void RunDiagnosis(const DiagnoseRequest& request, const Diagnoser& diagnose, std::FILE* out, std::FILE* err) {
-  if (request.jobs < 1 || request.jobs > 256) {
-    throw InputError("--jobs: found " + std::to_string(request.jobs) + ", allowed 1 to 256");
+  RequireJobs(request);
+  if (request.folder.empty()) {
+    throw InputError(
+        "--out: found nothing, allowed a folder that can be written; it is needed without --check");
   }
   if (request.seed < 0) {
     throw InputError("--seed: found " + std::to_string(request.seed) +

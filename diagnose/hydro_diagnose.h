@@ -19,6 +19,7 @@ struct DiagnoseRequest {
   int jobs = 1;
   int64_t seed = 1;
   bool si = false;
+  bool check = false;  // look at the recordings only; no folder is needed
 };
 
 // What makes the diagnosis: Diagnose, or a stand-in for tests.
@@ -31,6 +32,10 @@ using Diagnoser =
 // when that is a terminal, else to `out`, one line a stage: `err` is kept for the one line of an error.
 // Throws InputError for anything that cannot be read or used, including a model that cannot follow a run.
 void RunDiagnosis(const DiagnoseRequest& request, const Diagnoser& diagnose, std::FILE* out, std::FILE* err);
+
+// Looks at the recordings only and prints a line for each thing it finds. Returns the exit code: 0 when nothing
+// is wrong with them, else 1. Throws InputError as above.
+int CheckRuns(const DiagnoseRequest& request, std::FILE* out);
 
 // The ids in a file of effects: TOML, effects = ["pump.stribeck", ...]. Throws InputError for unknown ids or
 // keys and for an empty list.

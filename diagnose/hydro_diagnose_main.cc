@@ -16,8 +16,9 @@ int main(int argc, char** argv) {
   line.AddPositional("RUN", &request.runs,
                      "FILE a measured run: a log, or a table (csv, mat) with a sidecar");
   line.AddOption("--model", &request.model, "MODEL the model as it is, TOML", true);
-  line.AddOption("-o,--out", &request.folder,
-                 "DIR where report.html, report.json, model.toml and next.toml are written", true);
+  line.AddOption(
+      "-o,--out", &request.folder,
+      "DIR where report.html, report.json, model.toml and next.toml are written; required without --check");
   line.AddOption("--hold-out", &request.held_out,
                  "RUN a run that decides and is not fitted; without any, the runs are held out in turn");
   line.AddOption("--effects", &request.effects,
@@ -27,8 +28,11 @@ int main(int argc, char** argv) {
   line.AddOption("--jobs", &request.jobs, "N how much is computed at the same time (the processors)");
   line.AddOption("--seed", &request.seed, "N of all that is random (1)");
   line.AddFlag("--si", &request.si, "print figures in SI units, in report.html too");
+  line.AddFlag("--check", &request.check,
+               "look at the recordings only: 0 nothing is wrong with them, 1 something is");
   if (const auto code = line.Parse(argc, argv)) return *code;
   return hydro::settings::RunProgram("hydro-diagnose", [&] {
+    if (request.check) return hydro::diagnose::CheckRuns(request, stdout);
     hydro::diagnose::RunDiagnosis(request, hydro::diagnose::Diagnose, stdout, stderr);
     return 0;
   });

@@ -10,7 +10,7 @@
 namespace hydro::diagnose {
 namespace {
 
-constexpr double kUnlikeStated = 1.5;    // ratio of noises, either way
+constexpr double kUnlikeStated = 2;      // ratio of noises, either way
 constexpr double kMostSaturated = 0.01;  // share of a signal's samples
 constexpr double kMostMissing = 0.05;    // of a signal that is present most of the time
 constexpr double kSlowerSensor = 0.5;    // with more missing it is a slower sensor
@@ -40,10 +40,10 @@ void RemarkOnTimes(const RunData& run, std::vector<std::string>* remarks) {
 void RemarkOnSignal(const RunData& run, const SignalData& signal, std::vector<std::string>* remarks) {
   const std::string name = RunNamed(run.name) + ": " + ChannelName(signal.channel);
   const std::string unit = " " + ChannelUnit(signal.channel);
-  const double ratio = signal.noise / signal.stated_noise;
+  const double ratio = signal.estimated_noise / signal.stated_noise;
   if (ratio > kUnlikeStated || ratio < 1 / kUnlikeStated) {
-    remarks->push_back(name + " has a noise of " + ShortNumber(signal.noise, 3) + unit +
-                       " instead of the stated " + ShortNumber(signal.stated_noise, 3) + unit);
+    remarks->push_back(name + " has a noise of " + ShortNumber(signal.estimated_noise, 3) + unit +
+                       "; the stated " + ShortNumber(signal.stated_noise, 3) + unit + " is used");
   }
   const auto samples = static_cast<double>(run.samples());
   const auto there = static_cast<double>(signal.valid + signal.saturated);
@@ -89,7 +89,59 @@ void RemarkOnMotion(const std::vector<const RunData*>& runs, std::vector<std::st
   }
 }
 
+// The fewest samples in the time constant of the pump on the oil of both sides, with which its motion shows.
+constexpr double kFewestInMotion = 5;
+
+// s; the pump's inertia on the stiffness of the oil, at mid-stroke: eqs. (4), (13) and (14).
+double PumpOnOil(const model::Parameters& model) {
+  return std::sqrt(model.J * model.V_ms / (2 * model.beta)) / model.D;
+}
+
+void RemarkOnSlowSamples(const model::Parameters& model, const std::vector<const RunData*>& runs,
+                         std::vector<std::string>* remarks) {
+  const double fastest = PumpOnOil(model);
+  std::vector<std::string> slow;
+  double longest = 0;
+  for (const RunData* run : runs) {
+    const double interval = MedianInterval(run->stimulus.time);
+    if (run->stimulus.bypass || kFewestInMotion * interval <= fastest) continue;
+    slow.push_back(run->name);
+    longest = std::max(longest, interval);
+  }
+  if (slow.empty()) return;
+  remarks->push_back((slow.size() == 1 ? RunNamed(slow[0]) : "runs " + Enumerated(slow)) + ": samples " +
+                     ShortNumber(longest, 3) +
+                     " s apart are too slow for the model's fastest motion, whose time constant is " +
+                     ShortNumber(fastest, 2) + " s: what is as fast cannot be judged");
+}
+
+void RemarkOnMissingSignals(const std::vector<const RunData*>& runs, std::vector<std::string>* remarks) {
+  bool motor = false, pressure = false, free = false, arm = false;
+  for (const RunData* run : runs) {
+    free = free || run->stimulus.shaft == model::Shaft::kFree;
+    motor = motor || run->measured.motor_speed.measured() || run->measured.motor_angle.measured();
+    pressure = pressure || run->measured.p1.measured() || run->measured.p2.measured();
+    arm = arm || run->measured.arm_angle.measured() || run->measured.arm_speed.measured();
+  }
+  if (!pressure) remarks->push_back("leakage and valves cannot be judged: no pressure was recorded");
+  if (!motor) {
+    remarks->push_back(
+        "friction and inertia of the pump can hardly be judged: neither its speed nor its angle was "
+        "recorded");
+  }
+  if (free && !arm)
+    remarks->push_back("the arm cannot be judged: neither its angle nor its speed was recorded");
+}
+
 }  // namespace
+
+std::vector<std::string> LimitRemarks(const model::Parameters& model,
+                                      const std::vector<const RunData*>& runs) {
+  std::vector<std::string> remarks;
+  RemarkOnMissingSignals(runs, &remarks);
+  RemarkOnSlowSamples(model, runs, &remarks);
+  return remarks;
+}
 
 std::vector<std::string> RecordingRemarks(const std::vector<ClockDelay>& clocks,
                                           const std::vector<const RunData*>& runs,

@@ -16,4 +16,9 @@ std::vector<std::string> RecordingRemarks(const std::vector<ClockDelay>& clocks,
                                           const std::vector<const RunData*>& runs,
                                           const std::vector<const RunData*>& held_out);
 
+// What these runs cannot show though nothing is wrong with them: signals that no run has, and samples too far
+// apart for the model's fastest motion.
+std::vector<std::string> LimitRemarks(const model::Parameters& model,
+                                      const std::vector<const RunData*>& runs);
+
 }  // namespace hydro::diagnose

@@ -131,6 +131,8 @@ SignalData MakeSignal(const runs::MeasuredRun& run, model::Channel channel) {
     // Below 1e-5 of the range, the simulation itself is the source of the noise.
     signal.noise = std::max(noise, 1e-5 * size);
   }
+  signal.estimated_noise = signal.noise;
+  if (measured.noise.has_value()) signal.noise = *measured.noise;
   signal.valid = CountValid(signal.values);
   signal.saturated = CountValid(measured.values) - signal.valid;
   return signal;

@@ -19,8 +19,9 @@ namespace hydro::diagnose {
 struct SignalData {
   model::Channel channel = model::Channel::kP1;
   std::vector<double> values;  // one a sample; NaN: missing
-  double noise = 0;            // standard deviation in the signal's unit, estimated from the data
+  double noise = 0;            // standard deviation in the signal's unit: as stated, else estimated
   double stated_noise = std::numeric_limits<double>::quiet_NaN();  // what the run itself states
+  double estimated_noise = 0;                                      // from the data, whatever is stated
   double resolution = 0;  // smallest step between values; 0 if none shows
   size_t valid = 0;       // samples that are not missing
   // Samples at the end of the sensor's range: they say only that it was exceeded, and count as missing.

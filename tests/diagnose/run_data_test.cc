@@ -74,8 +74,10 @@ TEST(PrepareRun, Clamped) {
   EXPECT_EQ(data.Find(model::Channel::kArmAngle), nullptr);
   const SignalData* p1 = data.Find(model::Channel::kP1);
   ASSERT_NE(p1, nullptr);
-  EXPECT_NEAR(p1->noise, 1.5, 0.2);
+  EXPECT_EQ(p1->noise, 1.0);  // as stated
   EXPECT_EQ(p1->stated_noise, 1.0);
+  EXPECT_NEAR(p1->estimated_noise, 1.5, 0.2);
+  EXPECT_NEAR(data.Find(model::Channel::kP2)->noise, 1.5, 0.2);
   EXPECT_TRUE(std::isnan(data.Find(model::Channel::kP2)->stated_noise));
   EXPECT_EQ(p1->valid, 500u);
   EXPECT_NEAR(data.start[model::kMotorSpeed], 50, 1);

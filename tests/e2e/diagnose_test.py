@@ -98,6 +98,50 @@ class DiagnoseTest(stack.TestCase):
         self.assertIn("--hold-out", self.run_program("hydro-diagnose", "--help").stdout)
         self.assertRegex(self.run_program("hydro-diagnose", "--version").stdout, r"^hydro-diagnose \d")
 
+    def bench_table(self, name, factors):
+        """A table of a simulated run, its columns multiplied by these factors, with a sidecar."""
+        log, table = self.path("bench.lcmlog"), self.path("bench-export.csv")
+        if not os.path.exists(log):
+            self.run_program("hydro-sim", stack.config("demo.toml"), "--duration", "1.5", "--set", "noise.p1_psi=1.5", "--set",
+                             "noise.p2_psi=1.5", "--set", "noise.motor_speed_rad_s=0.3", "-o", log)
+            self.run_program("hydro-log", "export", log, "-o", table)
+        with open(table, encoding="utf-8") as file:
+            names, *rows = [line.split(",") for line in file.read().split()]
+        columns = [names.index(n) for n in ("time_s", "voltage_V", "motor_speed_rad_s", "p1_psi", "p2_psi", "arm_angle_rad")]
+        rows = [[float(row[k]) * factors.get(names[k], 1) for k in columns] for row in rows]
+        sidecar = SIDECAR.replace("clamped", "free") + 'arm_angle = "arm"\n'
+        return self.run_file(name, rows, [*COLUMNS, "arm"], sidecar)
+
+    # Tests --check: exit code 0 and 1, the line that mends the sidecar, 2 for what cannot be used; and that a diagnosis
+    # of such a recording says the same first and names nothing.
+    def test_check(self):
+        def check(run):
+            return self.start("hydro-diagnose", run, "--model", TABLE1, "--check")
+
+        sound = check(self.bench_table("sound", {}))
+        self.assertEqual(sound.wait(timeout=LONG), 0, sound.report())
+        self.assertEqual(sound.stdout, "nothing wrong was found in the recordings\n")
+        bar = self.bench_table("bar", {"p1_psi": 1 / 14.5038, "p2_psi": 1 / 14.5038})
+        checked = check(bar)
+        self.assertEqual(checked.wait(timeout=LONG), 1, checked.report())
+        self.assertEqual(checked.stderr, "")
+        self.assertIn('p1 = { column = "p1", unit = "bar" }; p2 = { column = "p2", unit = "bar" }', checked.stdout)
+        late = check(self.bench_table("late", {"time_s": 1000}))
+        self.assertEqual(late.wait(timeout=LONG), 1, late.report())
+        self.assertIn('time = { column = "time_s", unit = "ms" }', late.stdout)
+        short = check(self.run_file("short", self.rows[:99]))
+        self.assertEqual(short.wait(timeout=LONG), 2, short.report())
+        self.assertRegex(short.stderr, "found 99 samples")
+
+        self.run_program("hydro-diagnose", bar, "--model", TABLE1, "--out", self.path("out"), timeout=LONG)
+        with open(self.path("out/report.json"), encoding="utf-8") as file:
+            report = json.load(file)
+        self.assertEqual(report["verdict"], "unexplained")
+        self.assertEqual(report["effects"], [])
+        self.assertTrue(report["sentence"].startswith("Mend the recording first: run bar: p1 and p2 are in bar"))
+        self.assertIn(report["remarks"][0], checked.stdout)
+        self.assertIsNone(report["gap"]["held_out"]["after"])
+
     # Tests that a simulated log is diagnosed, that its reports are whole, and the same a second time but for
     # how long it took.
     def test_reports(self):

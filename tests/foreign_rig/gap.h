@@ -12,9 +12,7 @@
 
 namespace foreign_rig {
 
-// Of the order of the machine's own time constants (J/b is 2 s): effects that act slowly show, and chance does
-// not grow.
-inline constexpr double kWindow = 1.2;  // s
+inline constexpr double kWindow = 0.4;  // s
 
 class GapMeter {
  public:

@@ -1,0 +1,31 @@
+// Looks for mistakes in recordings before any physics: signs, exchanged channels and units. A mistake is far
+// larger than what any model lacks, so short predictions with the model as given tell it.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "diagnose/data/recording_mistake.h"
+#include "model/terms/description.h"
+#include "runs/measured_run.h"
+
+namespace hydro::diagnose {
+
+// What explains a run far better than its sidecar.
+struct RecordingFinding {
+  size_t run = 0;
+  std::vector<RecordingMistake> mistakes;  // at most three
+  // Median squared errors of predictions over some 0.05 s, by signals the worst; 1: a tenth of the movement.
+  double as_recorded = 0, corrected = 0;
+};
+
+// One finding at most for each run, in their order. Takes a second or two for eight runs; the results do not
+// depend on `jobs`.
+std::vector<RecordingFinding> CheckRecordings(const model::ModelDescription& model,
+                                              const std::vector<runs::MeasuredRun>& runs, int jobs);
+
+// One line for each kind of finding: what is wrong, in which runs, and the sidecar's lines that mend it.
+std::vector<std::string> FindingRemarks(const std::vector<RecordingFinding>& findings,
+                                        const std::vector<runs::MeasuredRun>& runs);
+
+}  // namespace hydro::diagnose

@@ -1,0 +1,106 @@
+#include "diagnose/recording_first.h"
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+#include "diagnose/data/alignment.h"
+#include "diagnose/data/recording_damage.h"
+#include "diagnose/data/recording_remarks.h"
+#include "diagnose/data/run_data.h"
+
+namespace hydro::diagnose {
+namespace {
+
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+constexpr char kSign[] = "sensor.sign";
+
+// Whether all that is wrong is the sign of single sensors, which the catalogue has as an effect.
+bool OnlySigns(const std::vector<RecordingFinding>& findings) {
+  return std::all_of(findings.begin(), findings.end(), [](const RecordingFinding& finding) {
+    return finding.mistakes.size() == 1 && !finding.mistakes[0].InvertedSensor().empty();
+  });
+}
+
+std::string MendFirstSentence(const CheckedRecordings& checked) {
+  return "Mend the recording first: " + checked.mistakes.front() + ".";
+}
+
+void SetUntried(BeforeAfter* gap) { gap->before = gap->refit_only = gap->after = kNone; }
+
+}  // namespace
+
+CheckedRecordings CheckFirst(const model::ModelDescription& model, const std::vector<std::string>& effects,
+                             int jobs, std::vector<runs::MeasuredRun>* runs,
+                             std::vector<runs::MeasuredRun>* held_out) {
+  CheckedRecordings checked;
+  for (auto* some : {runs, held_out}) {
+    const std::vector<std::string> damage = SetAsideDamage(some);
+    checked.damage.insert(checked.damage.end(), damage.begin(), damage.end());
+  }
+  std::vector<runs::MeasuredRun> all = *runs;
+  all.insert(all.end(), held_out->begin(), held_out->end());
+  const std::vector<RecordingFinding> findings = CheckRecordings(model, all, jobs);
+  checked.mistakes = FindingRemarks(findings, all);
+  const bool may_name_signs =
+      effects.empty() || std::find(effects.begin(), effects.end(), kSign) != effects.end();
+  checked.mend_first = !findings.empty() && !(may_name_signs && OnlySigns(findings));
+  return checked;
+}
+
+Diagnosis MendFirst(const model::ModelDescription& model, const CheckedRecordings& checked,
+                    const std::vector<runs::MeasuredRun>& runs,
+                    const std::vector<runs::MeasuredRun>& held_out) {
+  Diagnosis diagnosis;
+  diagnosis.verdict = Verdict::kUnexplained;
+  diagnosis.sentence = MendFirstSentence(checked) + " Nothing was searched on top of it.";
+  diagnosis.remarks = checked.mistakes;
+  diagnosis.remarks.insert(diagnosis.remarks.end(), checked.damage.begin(), checked.damage.end());
+  SetUntried(&diagnosis.fit);
+  SetUntried(&diagnosis.held_out);
+  diagnosis.model = model;
+  for (const runs::MeasuredRun& run : runs) {
+    diagnosis.runs.push_back(run.name);
+    diagnosis.samples += run.samples();
+  }
+  for (const runs::MeasuredRun& run : held_out) diagnosis.held_out_runs.push_back(run.name);
+  return diagnosis;
+}
+
+void AddChecked(const CheckedRecordings& checked, Diagnosis* diagnosis) {
+  std::vector<std::string> remarks = checked.mistakes;
+  remarks.insert(remarks.end(), checked.damage.begin(), checked.damage.end());
+  diagnosis->remarks.insert(diagnosis->remarks.begin(), remarks.begin(), remarks.end());
+  if (checked.mistakes.empty()) return;
+  diagnosis->sentence = MendFirstSentence(checked) + " " + diagnosis->sentence;
+  const bool named = std::any_of(diagnosis->effects.begin(), diagnosis->effects.end(),
+                                 [](const FoundEffect& effect) { return effect.id == kSign; });
+  if (!named) diagnosis->verdict = Verdict::kUnexplained;
+}
+
+RecordingReport ReportOnRecordings(const model::ModelDescription& model, std::vector<runs::MeasuredRun> runs,
+                                   int jobs) {
+  std::vector<runs::MeasuredRun> none;
+  const CheckedRecordings checked = CheckFirst(model, {}, jobs, &runs, &none);
+  RecordingReport report;
+  report.wrong = checked.mistakes;
+  report.wrong.insert(report.wrong.end(), checked.damage.begin(), checked.damage.end());
+  if (checked.mend_first) return report;  // the rest is said of recordings that can be read
+  std::vector<ClockDelay> clocks;
+  std::vector<RunData> prepared;
+  prepared.reserve(runs.size());
+  for (runs::MeasuredRun& run : runs) {
+    prepared.push_back(PrepareAligned(std::move(run), model.parameters, &clocks));
+  }
+  MakeNamesUnique(&prepared);
+  std::vector<const RunData*> pointers;
+  pointers.reserve(prepared.size());
+  for (const RunData& run : prepared) pointers.push_back(&run);
+  // As runs that are not fitted: what their motion lacks is no fault of the recording.
+  const std::vector<std::string> remarks = RecordingRemarks(clocks, {}, pointers);
+  report.wrong.insert(report.wrong.end(), remarks.begin(), remarks.end());
+  report.limits = LimitRemarks(model.parameters, pointers);
+  return report;
+}
+
+}  // namespace hydro::diagnose

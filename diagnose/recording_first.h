@@ -1,0 +1,45 @@
+// The recordings come first: what is wrong with them is said before any physics, and nothing is named on top of it.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "diagnose/data/diagnosis.h"
+#include "diagnose/fit/recording_check.h"
+#include "model/terms/description.h"
+#include "runs/measured_run.h"
+
+namespace hydro::diagnose {
+
+struct CheckedRecordings {
+  std::vector<std::string> mistakes;  // signs, exchanged channels, units: a line each, with the remedy
+  std::vector<std::string> damage;    // dropouts, spikes, cuts: a line each
+  // The mistakes make a search useless: it would name physics for them.
+  bool mend_first = false;
+};
+
+// Checks the fitted and the held-out runs and sets damaged samples aside. Where `sensor.sign` is among the
+// effects that may be named (none listed: all), a single inverted sensor is left to the search.
+CheckedRecordings CheckFirst(const model::ModelDescription& model, const std::vector<std::string>& effects,
+                             int jobs, std::vector<runs::MeasuredRun>* runs,
+                             std::vector<runs::MeasuredRun>* held_out);
+
+// The diagnosis of runs that must be mended first: `unexplained`, nothing searched.
+Diagnosis MendFirst(const model::ModelDescription& model, const CheckedRecordings& checked,
+                    const std::vector<runs::MeasuredRun>& runs,
+                    const std::vector<runs::MeasuredRun>& held_out);
+
+// Puts the remarks of the check first; where a mistake was left to the search and the search did not name it,
+// nothing else stays named.
+void AddChecked(const CheckedRecordings& checked, Diagnosis* diagnosis);
+
+// What there is to say of recordings alone.
+struct RecordingReport {
+  std::vector<std::string> wrong;   // a line each
+  std::vector<std::string> limits;  // what these runs cannot show, though nothing is wrong with them
+};
+// Throws InputError for data that cannot be used, unless a mistake explains it.
+RecordingReport ReportOnRecordings(const model::ModelDescription& model, std::vector<runs::MeasuredRun> runs,
+                                   int jobs);
+
+}  // namespace hydro::diagnose

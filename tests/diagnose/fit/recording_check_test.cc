@@ -1,0 +1,123 @@
+#include "diagnose/fit/recording_check.h"
+
+#include <gmock/gmock.h>
+
+#include <algorithm>
+
+#include "diagnose/fit/check_windows.h"
+#include "tests/diagnose/noisy_rig.h"
+#include "tests/table1.h"
+
+namespace hydro::diagnose {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+// Two runs of a rig that has more friction than the model that is given, and a relief valve besides.
+class RecordingCheckTest : public ::testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    testing::NoisyRig rig;
+    rig.model = {"rig", testing::Table1(), {{"valve.relief", {{"set", 700.0}, {"conductance", 0.01}}, {}}}};
+    rig.model.parameters.b *= 1.2;
+    rig.model.parameters.beta *= 0.85;
+    recorded_ = new std::vector<runs::MeasuredRun>;
+    for (const RunData& run : rig.RecordAll()) {
+      recorded_->push_back(run.measured);
+      for (auto signal : {&runs::MeasuredRun::voltage, &runs::MeasuredRun::motor_speed,
+                          &runs::MeasuredRun::p1, &runs::MeasuredRun::p2}) {
+        (recorded_->back().*signal).source.column = "X";
+      }
+    }
+  }
+  static void TearDownTestSuite() { delete recorded_; }
+
+  // The remarks when each run is changed like this.
+  template <class Change>
+  static std::vector<std::string> Remarks(const Change& change) {
+    std::vector<runs::MeasuredRun> runs = *recorded_;
+    for (runs::MeasuredRun& run : runs) change(run);
+    return FindingRemarks(CheckRecordings(given_, runs, 2), runs);
+  }
+  static void Multiply(std::vector<double>* values, double factor) {
+    for (double& value : *values) value *= factor;
+  }
+
+  inline static const model::ModelDescription given_ = {"Table 1", testing::Table1(), {}};
+  inline static std::vector<runs::MeasuredRun>* recorded_ = nullptr;
+};
+
+// Tests that a wrong model and a missing effect are not taken for a mistake.
+TEST_F(RecordingCheckTest, NothingInASoundRecording) {
+  EXPECT_THAT(Remarks([](runs::MeasuredRun&) {}), IsEmpty());
+}
+
+// Tests that windows are where signals move, and that a sound model predicts them.
+TEST_F(RecordingCheckTest, Windows) {
+  const std::vector<runs::MeasuredRun> windows = MovingWindows(recorded_->front(), 6);
+  ASSERT_EQ(windows.size(), 6u);
+  int predicted = 0;
+  for (const runs::MeasuredRun& window : windows) {
+    EXPECT_EQ(window.samples(), 50u);
+    const PredictionErrors errors = PredictWindow(given_, window, WindowStart::kFitted);
+    predicted += errors[static_cast<size_t>(model::Channel::kP2)] < 9 ? 1 : 0;
+    EXPECT_TRUE(std::isnan(errors[static_cast<size_t>(model::Channel::kArmAngle)]));
+    runs::MeasuredRun wrong = window;
+    Multiply(&wrong.voltage.values, -1);
+    EXPECT_GT(PredictWindow(given_, wrong, WindowStart::kFitted)[1], 30);
+  }
+  EXPECT_GE(predicted, 4);  // the relief valve, which the model lacks, is open in the others
+}
+
+// Tests signs: of the command, and of the motor.
+TEST_F(RecordingCheckTest, Signs) {
+  const auto voltage = Remarks([](runs::MeasuredRun& run) { Multiply(&run.voltage.values, -1); });
+  ASSERT_EQ(voltage.size(), 1u);
+  EXPECT_THAT(voltage[0], HasSubstr("every run: voltage has the wrong sign"));
+  EXPECT_THAT(voltage[0], HasSubstr("voltage = { column = \"X\", scale = -1 }"));
+  const auto speed = Remarks([](runs::MeasuredRun& run) { Multiply(&run.motor_speed.values, -1); });
+  ASSERT_GE(speed.size(), 1u);
+  EXPECT_THAT(speed[0], HasSubstr("motor_speed has the wrong sign"));
+}
+
+// Tests exchanged pressures; with the bypass open there is nothing to tell them by.
+TEST_F(RecordingCheckTest, ExchangedPressures) {
+  const auto remarks = Remarks([](runs::MeasuredRun& run) { std::swap(run.p1, run.p2); });
+  ASSERT_EQ(remarks.size(), 1u);
+  EXPECT_THAT(remarks[0], HasSubstr("p1 and p2 are exchanged"));
+  EXPECT_EQ(remarks[0].find("bypass"), std::string::npos) << remarks[0];
+}
+
+// Tests units of pressure, speed and time, two at once, and one run of several.
+TEST_F(RecordingCheckTest, Units) {
+  const auto bar = Remarks([](runs::MeasuredRun& run) {
+    Multiply(&run.p1.values, 1 / 14.5038);
+    Multiply(&run.p2.values, 1 / 14.5038);
+  });
+  ASSERT_GE(bar.size(), 1u);
+  EXPECT_THAT(bar[0],
+              HasSubstr("p1 = { column = \"X\", unit = \"bar\" }; p2 = { column = \"X\", unit = \"bar\" }"));
+  const auto both = Remarks([](runs::MeasuredRun& run) {
+    Multiply(&run.motor_speed.values, 9.5493);
+    Multiply(&run.voltage.values, -1);
+  });
+  ASSERT_GE(both.size(), 1u);
+  EXPECT_THAT(both[0], HasSubstr("motor_speed = { column = \"X\", unit = \"rpm\" }"));
+  EXPECT_THAT(both[0], HasSubstr("voltage = { column = \"X\", scale = -1 }"));
+  const auto one = Remarks([](runs::MeasuredRun& run) {
+    if (run.name == "chirp") Multiply(&run.motor_speed.values, 9.5493);
+  });
+  ASSERT_EQ(one.size(), 1u);
+  EXPECT_THAT(one[0], HasSubstr("run chirp: motor_speed is in rpm"));
+}
+
+// Tests that times in milliseconds are found, and quickly: a simulation over them would hardly end.
+TEST_F(RecordingCheckTest, Milliseconds) {
+  const auto remarks = Remarks([](runs::MeasuredRun& run) { Multiply(&run.time, 1000); });
+  ASSERT_EQ(remarks.size(), 1u);
+  EXPECT_THAT(remarks[0], HasSubstr("every run: time is in ms"));
+}
+
+}  // namespace
+}  // namespace hydro::diagnose

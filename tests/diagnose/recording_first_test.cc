@@ -1,0 +1,85 @@
+#include "diagnose/recording_first.h"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+
+#include "tests/diagnose/noisy_rig.h"
+#include "tests/table1.h"
+
+namespace hydro::diagnose {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::StartsWith;
+
+// One clamped run of Table 1, its values multiplied by these factors.
+std::vector<runs::MeasuredRun> Bench(double voltage, double speed) {
+  testing::NoisyRig rig;
+  rig.model = {"Table 1", testing::Table1(), {}};
+  rig.encoder_bits = 14;
+  const RunData data = rig.Record("bench", model::Shaft::kClamped, 0.1, 2, false,
+                                  [](double t) { return std::fmod(t, 0.4) < 0.2 ? 5.0 : -4.0; });
+  std::vector<runs::MeasuredRun> runs = {data.measured};
+  runs[0].motor_angle = {};
+  for (double& value : runs[0].voltage.values) value *= voltage;
+  for (double& value : runs[0].motor_speed.values) value *= speed;
+  return runs;
+}
+
+const model::ModelDescription kGiven = {"Table 1", testing::Table1(), {}};
+
+// Tests that a sound recording passes, and that limits are no faults.
+TEST(RecordingFirst, Sound) {
+  std::vector<runs::MeasuredRun> runs = Bench(1, 1), none;
+  const CheckedRecordings checked = CheckFirst(kGiven, {}, 1, &runs, &none);
+  EXPECT_THAT(checked.mistakes, IsEmpty());
+  EXPECT_THAT(checked.damage, IsEmpty());
+  EXPECT_FALSE(checked.mend_first);
+  runs[0].p1 = runs[0].p2 = {};
+  const RecordingReport report = ReportOnRecordings(kGiven, runs, 1);
+  EXPECT_THAT(report.wrong, IsEmpty());
+  EXPECT_THAT(report.limits, ::testing::ElementsAre(HasSubstr("no pressure was recorded")));
+}
+
+// Tests that a wrong sign of the command ends the diagnosis before the search, and what it then says.
+TEST(RecordingFirst, MendFirst) {
+  std::vector<runs::MeasuredRun> runs = Bench(-1, 1), none;
+  const CheckedRecordings checked = CheckFirst(kGiven, {}, 1, &runs, &none);
+  ASSERT_TRUE(checked.mend_first);
+  const Diagnosis diagnosis = MendFirst(kGiven, checked, runs, none);
+  EXPECT_EQ(diagnosis.verdict, Verdict::kUnexplained);
+  EXPECT_THAT(diagnosis.sentence,
+              StartsWith("Mend the recording first: run bench: voltage has the wrong sign"));
+  EXPECT_THAT(diagnosis.effects, IsEmpty());
+  EXPECT_TRUE(std::isnan(diagnosis.held_out.after));
+  EXPECT_EQ(diagnosis.runs, std::vector<std::string>{"bench"});
+  EXPECT_EQ(diagnosis.samples, runs[0].samples());
+  EXPECT_THAT(ReportOnRecordings(kGiven, runs, 1).wrong, ::testing::ElementsAre(HasSubstr("wrong sign")));
+}
+
+// Tests that an inverted sensor is left to the search where sensor.sign may be named, and that nothing else then
+// stays named.
+TEST(RecordingFirst, InvertedSensor) {
+  std::vector<runs::MeasuredRun> runs = Bench(1, -1), none;
+  EXPECT_TRUE(CheckFirst(kGiven, {"pump.stribeck"}, 1, &runs, &none).mend_first);
+  const CheckedRecordings checked = CheckFirst(kGiven, {}, 1, &runs, &none);
+  ASSERT_EQ(checked.mistakes.size(), 1u);
+  EXPECT_FALSE(checked.mend_first);
+  for (const char* effect : {"sensor.sign", "pump.stribeck"}) {
+    Diagnosis diagnosis;
+    diagnosis.verdict = Verdict::kNamed;
+    diagnosis.sentence = "Found.";
+    diagnosis.effects.resize(1);
+    diagnosis.effects[0].id = effect;
+    AddChecked(checked, &diagnosis);
+    const bool sign = std::string(effect) == "sensor.sign";
+    EXPECT_EQ(diagnosis.verdict, sign ? Verdict::kNamed : Verdict::kUnexplained);
+    EXPECT_THAT(diagnosis.sentence, StartsWith("Mend the recording first: run bench: motor_speed"));
+    EXPECT_EQ(diagnosis.remarks, checked.mistakes);
+  }
+}
+
+}  // namespace
+}  // namespace hydro::diagnose
