@@ -79,9 +79,10 @@ double GapMeter::Between(const Rig& with, const Rig& without) const {
 GapMeter::Parts GapMeter::BeyondValues(const Rig& with, const Rig& without) const {
   std::vector<Rig> others = {without};
   for (const ValueForm& form : ValueForms()) {
+    // Friction by pressure is an effect where the model has none.
+    if (without.values.*form.value == 0) continue;
     others.push_back(without);
-    double& value = others.back().values.*form.value;
-    value = value == 0 ? form.probe : value * 1.001;
+    others.back().values.*form.value *= 1.001;
   }
   try {
     std::vector<std::vector<double>> all = AllDifferences(with, others);

@@ -12,7 +12,9 @@
 
 namespace foreign_rig {
 
-inline constexpr double kWindow = 0.4;  // s
+// Of the order of the machine's own time constants (J/b is 2 s): effects that act slowly show, and chance does
+// not grow.
+inline constexpr double kWindow = 1.2;  // s
 
 class GapMeter {
  public:

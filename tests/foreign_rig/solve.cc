@@ -12,7 +12,7 @@ namespace foreign_rig {
 namespace {
 
 constexpr double kArmReach = 0.3;      // rad
-constexpr double kMeterSeconds = 3.2;  // of each run on which sizes are found
+constexpr double kMeterSeconds = 3.6;  // of each run on which sizes are found
 
 // Effects whose pairs would be one effect, or could not both be seen.
 bool Compatible(const std::string& a, const std::string& b) {

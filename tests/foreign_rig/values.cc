@@ -9,14 +9,14 @@ namespace foreign_rig {
 
 const std::vector<ValueForm>& ValueForms() {
   static const std::vector<ValueForm> forms = {
-      {"k_1", &Values::torque_per_volt, kDataSheet, 0}, {"T_pmax", &Values::torque_limit, kDataSheet, 0},
-      {"D", &Values::displacement, kGeometry, 0},       {"J", &Values::rotor_inertia, kDataSheet, 0},
-      {"b", &Values::viscous_torque, kLoss, 0},         {"T_s", &Values::dry_torque, kLoss, 0},
-      {"f", &Values::pressure_friction, kLoss, 1e-5},   {"beta", &Values::bulk_modulus, kDataSheet, 0},
-      {"V_ms", &Values::mid_volume, kGeometry, 0},      {"c", &Values::vane_volume, kGeometry, 0},
-      {"c_E", &Values::outer_leakage, kLoss, 0},        {"c_I", &Values::cross_leakage, kLoss, 0},
-      {"p_3", &Values::supply_pressure, kDataSheet, 0}, {"k_2", &Values::arm_torque, kGeometry, 0},
-      {"J_a", &Values::arm_inertia, kDataSheet, 0},     {"mgl", &Values::arm_weight, kDataSheet, 0},
+      {"k_1", &Values::torque_per_volt, kDataSheet}, {"T_pmax", &Values::torque_limit, kDataSheet},
+      {"D", &Values::displacement, kGeometry},       {"J", &Values::rotor_inertia, kDataSheet},
+      {"b", &Values::viscous_torque, kLoss},         {"T_s", &Values::dry_torque, kLoss},
+      {"f", &Values::pressure_friction, kLoss},      {"beta", &Values::bulk_modulus, kDataSheet},
+      {"V_ms", &Values::mid_volume, kGeometry},      {"c", &Values::vane_volume, kGeometry},
+      {"c_E", &Values::outer_leakage, kLoss},        {"c_I", &Values::cross_leakage, kLoss},
+      {"p_3", &Values::supply_pressure, kDataSheet}, {"k_2", &Values::arm_torque, kGeometry},
+      {"J_a", &Values::arm_inertia, kDataSheet},     {"mgl", &Values::arm_weight, kDataSheet},
   };
   return forms;
 }

@@ -25,7 +25,6 @@ struct ValueForm {
   std::string name;  // in model files
   double Values::*value;
   double uncertainty;
-  double probe;  // a change that shows the value's influence where the value itself is 0
 };
 const std::vector<ValueForm>& ValueForms();
 

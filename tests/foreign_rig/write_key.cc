@@ -1,6 +1,7 @@
 // The answers.
 #include <fstream>
 
+#include "gap.h"
 #include "text.h"
 #include "write.h"
 
@@ -72,7 +73,7 @@ void WriteKey(const Case& c, const Solved& s, const std::string& file) {
       << ", \"gap_asked\": " << Number(c.gap) << ", \"gap_reached\": " << (s.reached ? "true" : "false")
       << ", \"gap_at_true_values\": " << Number(s.gap_at_truth)
       << ", \"gap_of_model\": " << Number(s.gap_of_model) << ", \"richness\": " << Number(s.richness)
-      << ", \"window_s\": 0.4";
+      << ", \"window_s\": " << Number(kWindow);
   WriteEffects(s.effects, out);
   WriteValues(s, out);
   WriteRecorder(s.recorder, out);
