@@ -55,7 +55,7 @@ double NoiseUnit(const Channel& c) {
 }
 
 Sensing::Sensing(const Recorder& recorder, uint64_t seed, double seconds)
-    : recorder_(recorder), draw_(seed, "noise"), hum_phase_(draw_.Between(0, kTurn)), seconds_(seconds) {
+    : recorder_(recorder), draw_(seed, "noise"), hum_phase_(draw_.Between(0, kTurn)) {
   for (int i = 0; i < kChannels; ++i) {
     colour_[i] = draw_.Normal();
     slope_[i] = draw_.Normal() * recorder.channels[i].wander / seconds;

@@ -60,7 +60,6 @@ class Sensing {
   Draw draw_;
   Sample filtered_{}, sum_{}, colour_{}, slope_{}, held_{};
   double hum_phase_;
-  double seconds_;
   int count_ = 0;
   bool started_ = false;
   int lost_ = 0;  // samples still to be lost
