@@ -38,8 +38,8 @@ std::vector<Case> AllCases() {
     }
   }
   for (size_t i = 0; i < OutsideForms().size(); ++i) {
-    for (const double gap : {1.5, 3.0, 15.0}) {
-      const std::string size = gap == 1.5 ? "1.5" : gap == 3 ? "3" : "15";
+    for (const double gap : {1.5, 3.3, 15.0}) {
+      const std::string size = gap == 1.5 ? "1.5" : gap == 3.3 ? "3" : "15";
       add({"outside" + number(static_cast<int>(i) + 1) + "-" + size, "outside", "", gap, static_cast<int>(i),
            0});
     }

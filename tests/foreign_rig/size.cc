@@ -43,7 +43,7 @@ Sized FindSize(const GapMeter& meter, const Rig& plain, double smallest, double 
   found.size = std::sqrt(smallest * largest);
   // What other values take of the gap changes slowly with the size: guessed, then corrected.
   double left = 0.6;
-  for (int round = 0; round < 3; ++round) {
+  for (int round = 0; round < 4; ++round) {
     found.size = SizeOfGap(gap_at, smallest, largest, asked / left, found.size);
     found.parts = meter.BeyondValues(put(found.size), plain);
     found.reached = std::abs(found.parts.beyond / asked - 1) < kReached;
