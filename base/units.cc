@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "base/number_text.h"
 
@@ -13,25 +14,39 @@ struct NamedUnit {
   Unit unit;
 };
 
-// The size of 1 of the unit, and its powers of m, kg, s and V. Angles have none.
+// The size of 1 of the unit, and its powers of m, kg, s, V and rad.
 constexpr NamedUnit kUnits[] = {
     {"1", {1, {}}},
     {"m", {1, {1}}},
     {"cm", {1e-2, {1}}},
     {"mm", {1e-3, {1}}},
+    {"um", {1e-6, {1}}},
     {"in", {kInch, {1}}},
     {"ft", {12 * kInch, {1}}},
     {"kg", {1, {0, 1}}},
     {"s", {1, {0, 0, 1}}},
-    {"rad", {1, {}}},
-    {"rpm", {kRpm, {0, 0, -1}}},
+    {"ms", {1e-3, {0, 0, 1}}},
+    {"us", {1e-6, {0, 0, 1}}},
+    {"min", {60, {0, 0, 1}}},
+    {"h", {3600, {0, 0, 1}}},
+    {"Hz", {1, {0, 0, -1}}},
+    {"rad", {1, {0, 0, 0, 0, 1}}},
+    {"deg", {kDegree, {0, 0, 0, 0, 1}}},
+    {"rev", {2 * std::numbers::pi, {0, 0, 0, 0, 1}}},
+    {"rpm", {kRpm, {0, 0, -1, 0, 1}}},
     {"N", {1, {1, 1, -2}}},
+    {"kN", {1e3, {1, 1, -2}}},
     {"lbf", {kPoundForce, {1, 1, -2}}},
     {"lb", {kPoundForce, {1, 1, -2}}},  // the paper's "in-lb"
+    {"Pa", {1, {-1, 1, -2}}},
+    {"hPa", {1e2, {-1, 1, -2}}},
     {"kPa", {1e3, {-1, 1, -2}}},
     {"MPa", {1e6, {-1, 1, -2}}},
+    {"mbar", {1e2, {-1, 1, -2}}},
+    {"bar", {1e5, {-1, 1, -2}}},
     {"psi", {kPsi, {-1, 1, -2}}},
     {"V", {1, {0, 0, 0, 1}}},
+    {"mV", {1e-3, {0, 0, 0, 1}}},
 };
 
 // The units in which figures are shown. Only pressures are separate: kPa or MPa, whichever is handier.
@@ -76,6 +91,8 @@ class UnitReader {
     const std::optional<Unit> unit = Product();
     return text_.empty() ? unit : std::nullopt;
   }
+  // What Whole() has read.
+  std::vector<UnitPower>& parts() { return parts_; }
 
  private:
   std::optional<Unit> Product() {
@@ -84,14 +101,17 @@ class UnitReader {
       const bool divided = text_.front() == '/';
       if (!divided && text_.front() != '-' && text_.front() != ' ') return std::nullopt;
       text_.remove_prefix(1);
+      const size_t first = parts_.size();
       const std::optional<Unit> factor = Power();
       if (!factor.has_value()) return std::nullopt;
       Multiply(*factor, divided ? -1 : 1, &*product);
+      RaiseFrom(first, divided ? -1 : 1);
     }
     return product;
   }
 
   std::optional<Unit> Power() {
+    const size_t first = parts_.size();
     const std::optional<Unit> base = Factor();
     if (!base.has_value() || !text_.starts_with('^')) return base;
     text_.remove_prefix(1);
@@ -99,6 +119,7 @@ class UnitReader {
     if (!exponent.has_value()) return std::nullopt;
     Unit power;
     Multiply(*base, *exponent, &power);
+    RaiseFrom(first, *exponent);
     return power;
   }
 
@@ -113,7 +134,9 @@ class UnitReader {
     }
     const std::string_view name = Take("1abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ");
     const auto* found = std::ranges::find(kUnits, name, &NamedUnit::name);
-    return found == std::end(kUnits) ? std::nullopt : std::optional<Unit>(found->unit);
+    if (found == std::end(kUnits)) return std::nullopt;
+    parts_.push_back({found->name, 1});
+    return found->unit;
   }
 
   std::string_view Take(std::string_view characters) {
@@ -127,10 +150,15 @@ class UnitReader {
     for (size_t i = 0; i < product->powers.size(); ++i) product->powers[i] += exponent * factor.powers[i];
   }
 
+  void RaiseFrom(size_t first, double exponent) {
+    for (size_t i = first; i < parts_.size(); ++i) parts_[i].power *= exponent;
+  }
+
   static constexpr int kMostBrackets = 8;  // so that no text exhausts the stack
 
   std::string_view text_;
   int brackets_ = 0;
+  std::vector<UnitPower> parts_;
 };
 
 SiUnit Conversion(std::string_view from, std::string_view to) {
@@ -141,11 +169,36 @@ SiUnit Conversion(std::string_view from, std::string_view to) {
 
 std::optional<Unit> ParseUnit(std::string_view text) { return UnitReader(text).Whole(); }
 
+std::optional<std::vector<UnitPower>> UnitPowers(std::string_view text) {
+  UnitReader reader(text);
+  if (!reader.Whole().has_value()) return std::nullopt;
+  return std::move(reader.parts());
+}
+
+std::vector<std::string_view> UnitNames() {
+  std::vector<std::string_view> names;
+  for (const NamedUnit& unit : kUnits) names.push_back(unit.name);
+  return names;
+}
+
 std::optional<SiUnit> FindSiUnit(const std::string& unit, double size) {
   // NaN compares false, so a missing value decides nothing.
-  if (unit == "psi") return Conversion(unit, std::abs(size) * kPsi >= 1e6 ? "MPa" : "kPa");
+  const auto pressure = [&](double pascals) -> std::optional<SiUnit> {
+    const char* handier = std::abs(size) * pascals >= 1e6 ? "MPa" : "kPa";
+    return unit == handier ? std::nullopt : std::optional<SiUnit>(Conversion(unit, handier));
+  };
+  if (unit == "psi") return pressure(kPsi);
   for (const auto& [from, to] : kShownIn) {
     if (unit == from) return Conversion(from, to);
+  }
+  // Another system's unit for one of these quantities.
+  const std::optional<Unit> own = ParseUnit(unit);
+  if (!own.has_value() || own->powers == std::array<double, 5>{}) return std::nullopt;
+  if (own->powers == ParseUnit("psi")->powers) return pressure(own->size);
+  for (const auto& [from, to] : kShownIn) {
+    if (own->powers != ParseUnit(from)->powers) continue;
+    if (unit == to) return std::nullopt;
+    return Conversion(unit, to);
   }
   return std::nullopt;
 }

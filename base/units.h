@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace hydro {
 
@@ -21,7 +22,7 @@ constexpr double Degrees(double radians) { return radians * 180 / std::numbers::
 
 struct Unit {
   double size = 1;                 // in the coherent SI unit of the same powers
-  std::array<double, 4> powers{};  // of m, kg, s and V
+  std::array<double, 5> powers{};  // of m, kg, s, V and rad
 };
 
 // A unit as the programs write it: names from the table, joined by "-" or a blank (times) and "/" (divided
@@ -29,14 +30,27 @@ struct Unit {
 // is not a unit.
 std::optional<Unit> ParseUnit(std::string_view text);
 
+// A unit of the table to a power.
+struct UnitPower {
+  std::string_view name;
+  double power = 1;
+};
+
+// The parts of such a text in its order: in^3, s^-1 and psi^-1 for "in^3/(s psi)".
+std::optional<std::vector<UnitPower>> UnitPowers(std::string_view text);
+
+// The table's names.
+std::vector<std::string_view> UnitNames();
+
 struct SiUnit {
   std::string from;
   std::string to;
   double factor;  // value in `to` = factor * value in `from`
 };
 
-// The SI unit in which to show a figure given in one of the paper's units; empty when the unit is SI already
-// or unknown. `size`, the largest value to be shown, decides between kPa and MPa.
+// The SI unit in which to show a figure given in the paper's units or a model's own; empty when that is the
+// same unit, or when there is none for it. `size`, the largest value to be shown, decides between kPa and
+// MPa.
 std::optional<SiUnit> FindSiUnit(const std::string& unit, double size);
 
 }  // namespace hydro

@@ -4,6 +4,7 @@
 
 #include "base/did_you_mean.h"
 #include "base/number_text.h"
+#include "base/units.h"
 #include "model/terms/parameter_info.h"
 #include "settings/toml/section_reader.h"
 
@@ -14,12 +15,50 @@ NumberRange RangeOf(const model::ParameterInfo& info) {
   return {.min = info.min, .max = info.max, .min_allowed = info.min_allowed};
 }
 
-std::string Wanted(const model::ParameterInfo& info) {
-  return RangeOf(info).Allowed() + " (" + info.unit + ", " + info.meaning + ")";
+std::string Wanted(const model::ParameterInfo& info, const UnitSystem& units) {
+  return RangeOf(info).Allowed() + " (" + info.UnitIn(units) + ", " + info.meaning + ")";
+}
+
+constexpr char kUnitsAllowed[] = "\"si\", or a table as { length = \"mm\", force = \"N\", arm = \"rad\" }";
+
+// The value of `key` in a table of units: a name of `allowed`, `absent` where there is none.
+std::string_view ReadUnit(SectionReader& section, const std::string& key,
+                          const std::vector<std::string>& allowed, std::string_view absent) {
+  std::vector<std::pair<std::string, std::string_view>> choices;
+  for (const std::string& name : allowed) choices.emplace_back(name, UnitPowers(name)->front().name);
+  section.Choice(key, choices, &absent);
+  return absent;
+}
+
+// units = "si", or a table of names; time, the motor's angle and the command are s, rad and V in all of them.
+UnitSystem ReadUnits(SectionReader& document) {
+  UnitSystem units;
+  const TomlNode* node = document.Take("units");
+  if (node == nullptr) return units;
+  if (node->is(TomlNode::Kind::kString) && node->text == "si") return kSiUnits;
+  if (!node->is(TomlNode::Kind::kTable)) throw document.Error("units", node->Shown(), kUnitsAllowed);
+  SectionReader section(*node, "units");
+  units.length = ReadUnit(section, "length", LengthUnits(), units.length);
+  units.force = ReadUnit(section, "force", ForceUnits(), units.force);
+  ReadUnit(section, "time", {"s"}, "s");
+  ReadUnit(section, "angle", {"rad"}, "rad");
+  units.linear_arm = ReadUnit(section, "arm", {"rad", std::string(units.length)}, "rad") != "rad";
+  section.Finish();
+  return units;
+}
+
+TomlNode UnitsNode(const UnitSystem& units) {
+  if (units == kSiUnits) return StringNode("si");
+  TomlNode table;
+  table.members.push_back({"length", StringNode(std::string(units.length))});
+  table.members.push_back({"force", StringNode(std::string(units.force))});
+  if (units.linear_arm) table.members.push_back({"arm", StringNode(std::string(units.length))});
+  return table;
 }
 
 // c itself, or r and d that give it: c = r^2 d / 2, eqs. (6), (7).
-void ReadDisplacement(SectionReader& section, const model::ParameterInfo& info, double* c) {
+void ReadDisplacement(SectionReader& section, const model::ParameterInfo& info, const UnitSystem& units,
+                      double* c) {
   double r = 0;
   double d = 0;
   const bool has_c = section.Number("c", c, RangeOf(info));
@@ -30,7 +69,7 @@ void ReadDisplacement(SectionReader& section, const model::ParameterInfo& info, 
   }
   if (has_r) section.Require("d", "a finite number above 0 (depth of the actuator; r and d give c)");
   if (has_d) section.Require("r", "a finite number above 0 (radius of the actuator; r and d give c)");
-  if (!has_r && !has_d) section.Require("c", Wanted(info) + ", or r and d");
+  if (!has_r && !has_d) section.Require("c", Wanted(info, units) + ", or r and d");
   if (has_r && has_d) {
     *c = r * r * d / 2;
     if (!RangeOf(info).Holds(*c)) {
@@ -39,7 +78,8 @@ void ReadDisplacement(SectionReader& section, const model::ParameterInfo& info, 
   }
 }
 
-model::EffectDescription ReadEffect(SectionReader section, const model::EffectInfo& info) {
+model::EffectDescription ReadEffect(SectionReader section, const model::EffectInfo& info,
+                                    const UnitSystem& units) {
   model::EffectDescription effect;
   effect.id = info.id;
   for (const model::ParameterInfo& parameter : info.parameters) {
@@ -50,14 +90,15 @@ model::EffectDescription ReadEffect(SectionReader section, const model::EffectIn
       section.Require(parameter.name, QuotedList(parameter.names) + " (" + parameter.meaning + ")");
     } else {
       section.Number(parameter.name, &effect.parameters[parameter.name], RangeOf(parameter));
-      section.Require(parameter.name, Wanted(parameter));
+      section.Require(parameter.name, Wanted(parameter, units));
     }
   }
   section.Finish();
   return effect;
 }
 
-std::vector<model::EffectDescription> ReadEffects(SectionReader section, const TomlNode* table) {
+std::vector<model::EffectDescription> ReadEffects(SectionReader section, const TomlNode* table,
+                                                  const UnitSystem& units) {
   std::vector<model::EffectDescription> effects;
   if (table == nullptr) return effects;
   std::vector<std::string> known;
@@ -66,7 +107,7 @@ std::vector<model::EffectDescription> ReadEffects(SectionReader section, const T
     // [effects.pump.stribeck] without quotes is a table in a table.
     if (const model::EffectInfo* info = model::FindEffect(member.first)) {
       SectionReader reader = section.Section(member.first);
-      effects.push_back(ReadEffect(std::move(reader), *info));
+      effects.push_back(ReadEffect(std::move(reader), *info, units));
       continue;
     }
     std::string id = member.first;
@@ -90,6 +131,7 @@ model::ModelDescription ParseModel(const std::string& text, const std::string& n
   SectionReader document(root, "");
   model::ModelDescription description;
   document.Text("name", &description.name);
+  description.units = ReadUnits(document);
   SectionReader parameters = document.Section("parameters");
   document.Require("parameters", "a section [parameters]");
   SectionReader effects = document.Section("effects");
@@ -98,15 +140,22 @@ model::ModelDescription ParseModel(const std::string& text, const std::string& n
   for (const model::BaseParameter& parameter : model::BaseParameters()) {
     double* value = &(description.parameters.*parameter.member);
     if (parameter.info.name == "c") {
-      ReadDisplacement(parameters, parameter.info, value);
+      ReadDisplacement(parameters, parameter.info, description.units, value);
     } else {
       parameters.Number(parameter.info.name, value, RangeOf(parameter.info));
-      parameters.Require(parameter.info.name, Wanted(parameter.info));
+      parameters.Require(parameter.info.name, Wanted(parameter.info, description.units));
     }
   }
   parameters.Finish();
-  description.effects = ReadEffects(std::move(effects), root.Find("effects"));
+  description.effects = ReadEffects(std::move(effects), root.Find("effects"), description.units);
   return description;
+}
+
+UnitSystem ParseModelUnits(const std::string& text, const std::string& name_for_messages) {
+  TomlNode root = ParseToml(text, name_for_messages);
+  root.place = name_for_messages;
+  SectionReader document(root, "");
+  return ReadUnits(document);
 }
 
 model::ModelDescription LoadModelFile(const std::string& file) {
@@ -116,6 +165,7 @@ model::ModelDescription LoadModelFile(const std::string& file) {
 std::string FormatModel(const model::ModelDescription& description) {
   TomlNode root;
   root.members.push_back({"name", StringNode(description.name)});
+  if (description.units != UnitSystem{}) root.members.push_back({"units", UnitsNode(description.units)});
   TomlNode parameters;
   for (const model::BaseParameter& parameter : model::BaseParameters()) {
     parameters.members.push_back({parameter.info.name, NumberNode(description.parameters.*parameter.member)});

@@ -12,6 +12,10 @@ namespace hydro::settings {
 model::ModelDescription LoadModelFile(const std::string& file);
 model::ModelDescription ParseModel(const std::string& text, const std::string& name_for_messages);
 
+// The units that a model states, whatever else its text holds. Throws InputError for text that is not TOML or
+// units that are not known.
+UnitSystem ParseModelUnits(const std::string& text, const std::string& name_for_messages);
+
 // The TOML text of a model; ParseModel gives the same description back, bit by bit.
 std::string FormatModel(const model::ModelDescription& description);
 

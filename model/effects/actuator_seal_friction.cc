@@ -76,10 +76,12 @@ class SealFriction : public EffectOf<SealFriction> {
                              .parameters = {{.name = "coulomb",
                                              .unit = "in-lbf",
                                              .meaning = "Coulomb friction on the arm",
+                                             .arm = -1,
                                              .example = 100},
                                             {.name = "viscous",
                                              .unit = "in-lbf-s",
                                              .meaning = "viscous friction on the arm",
+                                             .arm = -2,
                                              .example = 50}}},
                     .make = MakeEffect<SealFriction>});
 

@@ -20,11 +20,11 @@ std::string Number(double value) {
   return out.str();
 }
 
-void CheckBounds(const ParameterInfo& info, double value, const std::string& owner) {
+void CheckBounds(const ParameterInfo& info, const UnitSystem& units, double value, const std::string& owner) {
   const bool inside =
       std::isfinite(value) && value <= info.max && (info.min_allowed ? value >= info.min : value > info.min);
   if (inside) return;
-  throw ModelError("parameter " + owner + info.name + " = " + Number(value) + " " + info.unit +
+  throw ModelError("parameter " + owner + info.name + " = " + Number(value) + " " + info.UnitIn(units) +
                    "; allowed is " + (info.min_allowed ? "from " : "above ") + Number(info.min) +
                    (std::isfinite(info.max) ? " to " + Number(info.max) : ""));
 }
@@ -51,7 +51,7 @@ std::shared_ptr<const NumbersOf<Jet>> WithoutDerivatives(const EquationData& dat
 }
 
 // Throws ModelError for a parameter that is missing, has an unknown name, or lies outside its bounds.
-void CheckParameters(const EffectDescription& effect, const EffectInfo& known) {
+void CheckParameters(const EffectDescription& effect, const EffectInfo& known, const UnitSystem& units) {
   for (const ParameterInfo& info : known.parameters) {
     const std::string owner = effect.id + ".";
     if (info.is_name()) {
@@ -64,7 +64,7 @@ void CheckParameters(const EffectDescription& effect, const EffectInfo& known) {
       const auto found = effect.parameters.find(info.name);
       if (found == effect.parameters.end())
         throw ModelError("parameter " + owner + info.name + " is missing");
-      CheckBounds(info, found->second, owner);
+      CheckBounds(info, units, found->second, owner);
     }
   }
 }
@@ -79,7 +79,7 @@ Equations::Equations(const ModelDescription& description, const ActuatorOptions&
   data_.motion = options.shaft == Shaft::kDriven ? options.motion : nullptr;
   const Parameters& p = data_.parameters;
   for (const BaseParameter& parameter : BaseParameters())
-    CheckBounds(parameter.info, p.*parameter.member, "");
+    CheckBounds(parameter.info, description.units, p.*parameter.member, "");
   if (!std::isfinite(options.arm_angle)) throw ModelError("arm angle is not finite");
 
   const double pressure = 0.01 * p.T_pmax / p.D;
@@ -95,7 +95,7 @@ Equations::Equations(const ModelDescription& description, const ActuatorOptions&
   for (size_t i = 0; i < effects.size(); ++i) {
     if (!options.repeated_effects && i > 0 && effects[i - 1].id == effects[i].id)
       throw ModelError("effect \"" + effects[i].id + "\" is there twice");
-    AddEffect(effects[i], pressure, p.D * speed);
+    AddEffect(effects[i], description.units, pressure, p.D * speed);
   }
   data_.states = static_cast<int>(scales_.size());
   CompleteNumbers<double>(data_, &data_);
@@ -112,10 +112,11 @@ Equations::Equations(const ModelDescription& description, const ActuatorOptions&
   }
 }
 
-void Equations::AddEffect(const EffectDescription& effect, double pressure, double flow) {
+void Equations::AddEffect(const EffectDescription& effect, const UnitSystem& units, double pressure,
+                          double flow) {
   const CatalogueEntry* entry = FindCatalogueEntry(effect.id);
   if (entry == nullptr) throw ModelError("effect \"" + effect.id + "\" is not known");
-  CheckParameters(effect, entry->info);
+  CheckParameters(effect, entry->info, units);
   data_.effects.push_back(entry->make(effect));
   const int first_parameter = static_cast<int>(data_.own.size());
   for (const ParameterInfo& info : entry->info.parameters) {

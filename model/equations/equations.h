@@ -113,7 +113,7 @@ class Equations {
 
  private:
   // `pressure` and `flow`: magnitudes that matter, for the scales of the effect's states.
-  void AddEffect(const EffectDescription& effect, double pressure, double flow);
+  void AddEffect(const EffectDescription& effect, const UnitSystem& units, double pressure, double flow);
 
   EquationData data_;
   std::vector<double> scales_;

@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "base/unit_system.h"
+
 namespace hydro::model {
 
 // Base parameters of eqs. (1) to (15), Table 1. Units need only be coherent; those given are the paper's. T
@@ -41,6 +43,7 @@ struct ModelDescription {
   std::string name;
   Parameters parameters;
   std::vector<EffectDescription> effects;  // in the file's order
+  UnitSystem units = {};                   // of all values; the equations do not use them
 };
 
 }  // namespace hydro::model

@@ -6,17 +6,19 @@ namespace hydro::model {
 
 namespace {
 
-BaseParameter NotNegative(double Parameters::*member, const char* name, const char* unit,
-                          const char* meaning) {
-  return {{.name = name, .unit = unit, .meaning = meaning}, member};
+BaseParameter NotNegative(double Parameters::*member, const char* name, const char* unit, const char* meaning,
+                          int arm = 0) {
+  return {{.name = name, .unit = unit, .meaning = meaning, .arm = arm}, member};
 }
 
-BaseParameter Positive(double Parameters::*member, const char* name, const char* unit, const char* meaning) {
-  return {{.name = name, .unit = unit, .min_allowed = false, .meaning = meaning}, member};
+BaseParameter Positive(double Parameters::*member, const char* name, const char* unit, const char* meaning,
+                       int arm = 0) {
+  return {{.name = name, .unit = unit, .min_allowed = false, .meaning = meaning, .arm = arm}, member};
 }
 
-BaseParameter AnySign(double Parameters::*member, const char* name, const char* unit, const char* meaning) {
-  return {{.name = name, .unit = unit, .min = -kUnbounded, .meaning = meaning}, member};
+BaseParameter AnySign(double Parameters::*member, const char* name, const char* unit, const char* meaning,
+                      int arm = 0) {
+  return {{.name = name, .unit = unit, .min = -kUnbounded, .meaning = meaning, .arm = arm}, member};
 }
 
 }  // namespace
@@ -32,15 +34,16 @@ const std::vector<BaseParameter>& BaseParameters() {
       NotNegative(&Parameters::f, "f", "in-lbf/psi", "Coulomb friction per pressure, eq. (4)"),
       Positive(&Parameters::beta, "beta", "psi", "bulk modulus of the fluid, eq. (5)"),
       Positive(&Parameters::V_ms, "V_ms", "in^3", "volume of one side at mid-stroke, eqs. (6), (7)"),
-      Positive(&Parameters::c, "c", "in^3/rad", "displacement of the actuator, r^2 d/2, eqs. (6), (7)"),
+      Positive(&Parameters::c, "c", "in^3/rad", "displacement of the actuator, r^2 d/2, eqs. (6), (7)", -1),
       NotNegative(&Parameters::c_E, "c_E", "in^3/(s psi)",
                   "external leakage to the accumulator, eqs. (11), (12)"),
       NotNegative(&Parameters::c_I, "c_I", "in^3/(s psi)",
                   "internal leakage across the ports, eqs. (11), (12)"),
       NotNegative(&Parameters::p_3, "p_3", "psi", "pressure of the accumulator, eqs. (11), (12)"),
-      Positive(&Parameters::k_2, "k_2", "in-lbf/psi", "torque on the arm per pressure difference, eq. (15)"),
-      Positive(&Parameters::J_a, "J_a", "lbf-in-s^2", "inertia of the arm, eq. (15)"),
-      AnySign(&Parameters::mgl, "mgl", "in-lbf", "gravity torque of the arm at alpha = 0, eq. (15)"),
+      Positive(&Parameters::k_2, "k_2", "in-lbf/psi", "torque on the arm per pressure difference, eq. (15)",
+               -1),
+      Positive(&Parameters::J_a, "J_a", "lbf-in-s^2", "inertia of the arm, eq. (15)", -2),
+      AnySign(&Parameters::mgl, "mgl", "in-lbf", "gravity torque of the arm at alpha = 0, eq. (15)", -1),
   };
   return parameters;
 }

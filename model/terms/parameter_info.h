@@ -51,11 +51,14 @@ enum class Role {
 
 struct ParameterInfo {
   std::string name;
-  std::string unit;         // in the paper's units
+  std::string unit;         // in the paper's units; UnitIn() gives a model's own
   double min = 0;           // smallest physical value
   double max = kUnbounded;  // largest physical value
   bool min_allowed = true;  // false: must be above min
   std::string meaning;      // one line
+  // The power of the arm's coordinate in the unit: -2 for an inertia of the arm. It shows where that is a
+  // length.
+  int arm = 0;
   // If not empty, the value is a name, one of these.
   std::vector<std::string> names = {};
   // Where a fit of the effect starts, in `scale`s: each of these combined with each of the other parameters'.
@@ -71,6 +74,7 @@ struct ParameterInfo {
   double example = 0;
 
   bool is_name() const { return !names.empty(); }
+  std::string UnitIn(const UnitSystem& units) const { return units.UnitFor(unit, arm); }
 };
 
 // A base parameter and where it lies.

@@ -40,7 +40,41 @@ TEST(UnitsTest, ShownInSi) {
   }
   EXPECT_EQ(FindSiUnit("psi", -200)->to, "MPa");
   EXPECT_FALSE(FindSiUnit("rad/s", 1).has_value());
+  EXPECT_FALSE(FindSiUnit("N m", 1).has_value());
+  EXPECT_FALSE(FindSiUnit("kPa", 1).has_value());
   EXPECT_FALSE(FindSiUnit("furlong", 1).has_value());
+}
+
+// Tests that other systems' units are shown in the same SI units, and pressures by their size in Pa.
+TEST(UnitsTest, OtherSystemsInSi) {
+  const struct {
+    const char* from;
+    double size;
+    const char* to;
+    double factor;
+  } rows[] = {{"Pa", 1723242, "MPa", 1e-6},
+              {"Pa", 7e5, "kPa", 1e-3},
+              {"MPa", 0.5, "kPa", 1e3},
+              {"bar", 3, "kPa", 100},
+              {"m^3/(s Pa)", 1, "cm^3/(s MPa)", 1e12},
+              {"N mm", 1, "N m", 1e-3},
+              {"m^3", 1, "cm^3", 1e6},
+              {"N m s^2", 1, "kg m^2", 1},
+              {"m^3/(s Pa^.5)", 1, "cm^3/s/MPa^.5", 1e9}};
+  for (const auto& row : rows) {
+    const std::optional<SiUnit> shown = FindSiUnit(row.from, row.size);
+    ASSERT_TRUE(shown.has_value()) << row.from;
+    EXPECT_EQ(shown->to, row.to);
+    EXPECT_NEAR(shown->factor / row.factor, 1, 1e-12) << row.from;
+  }
+}
+
+// Tests that angles and turns are told from plain numbers: 1 Hz is no motor speed of 1 rad/s.
+TEST(UnitsTest, Angles) {
+  EXPECT_NE(ParseUnit("Hz")->powers, ParseUnit("rad/s")->powers);
+  EXPECT_EQ(ParseUnit("rpm")->powers, ParseUnit("deg/s")->powers);
+  EXPECT_NEAR(ParseUnit("rev/min")->size, kRpm, 1e-15);
+  EXPECT_NEAR(ParseUnit("bar")->size / kPsi, 14.503773773, 1e-8);
 }
 
 // Tests compound units, and that nothing else is mistaken for one.
@@ -48,7 +82,7 @@ TEST(UnitsTest, ParsesCompoundUnits) {
   const std::optional<Unit> stiffness = ParseUnit("psi/(in^3 s^2)");
   ASSERT_TRUE(stiffness.has_value());
   EXPECT_DOUBLE_EQ(stiffness->size, kPsi / (kInch * kInch * kInch));
-  EXPECT_EQ(stiffness->powers, (std::array<double, 4>{-4, 1, -4, 0}));
+  EXPECT_EQ(stiffness->powers, (std::array<double, 5>{-4, 1, -4, 0, 0}));
   EXPECT_DOUBLE_EQ(ParseUnit("rpm")->size, kRpm);
   for (const char* text :
        {"", "psi/", "psi//s", "(psi", "psi)", "psi^", "psi^x", "furlong", "psi*s", "2 psi"}) {

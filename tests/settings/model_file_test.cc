@@ -11,6 +11,7 @@ namespace {
 
 using ::testing::AllOf;
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 std::string With(const std::string& more) { return std::string(kModelText) + more; }
 std::string Changed(const std::string& from, const std::string& to) { return Replaced(kModelText, from, to); }
@@ -86,6 +87,37 @@ TEST(ModelFileTest, RoundTripsBitByBit) {
   }
 }
 
+// Tests that units are labels: the numbers stay, the errors name the model's units, and the text keeps them.
+TEST(ModelFileTest, Units) {
+  EXPECT_EQ(ParseModel(kModelText, "m.toml").units, UnitSystem{});
+  const struct {
+    const char* text;
+    UnitSystem units;
+    const char* c;
+  } models[] = {
+      {"units = \"si\"\n", kSiUnits, "m^3/rad"},
+      {"units = { length = \"m\", force = \"N\", time = \"s\", angle = \"rad\" }\n", kSiUnits, "m^3/rad"},
+      {"units = { length = \"mm\", force = \"N\" }\n", {"mm", "N", false}, "mm^3/rad"},
+      {"units = { arm = \"in\" }\n", {"in", "lbf", true}, "in^2"},
+      {"units = { arm = \"mm\", length = \"mm\", force = \"kN\" }\n", {"mm", "kN", true}, "mm^2"},
+      {"units = { arm = \"rad\" }\n", {}, "in^3/rad"}};
+  for (const auto& one : models) {
+    const model::ModelDescription model = ParseModel(one.text + std::string(kModelText), "m.toml");
+    EXPECT_EQ(model.units, one.units) << one.text;
+    EXPECT_EQ(model.parameters.beta, 247000.0);
+    const std::string text = FormatModel(model);
+    EXPECT_EQ(ParseModel(text, "m.toml").units, one.units) << text;
+    EXPECT_EQ(FormatModel(ParseModel(text, "m.toml")), text);
+    EXPECT_EQ(ParseModelUnits(one.text, "log"), one.units);
+    EXPECT_THAT(InputErrorOf([&] { ParseModel(one.text + Changed("r = 1.83\nd = 2.20\n", ""), "m.toml"); }),
+                HasSubstr("parameters.c: found nothing, allowed a finite number above 0 (" +
+                          std::string(one.c) + ","));
+  }
+  EXPECT_THAT(FormatModel(ParseModel(kModelText, "m.toml")), Not(HasSubstr("units")));
+  EXPECT_THAT(FormatModel(ParseModel("units = \"si\"\n" + std::string(kModelText), "m.toml")),
+              HasSubstr("units = \"si\"\n"));
+}
+
 // Tests that each malformed model is refused with file and line, key, what was found and what is allowed.
 TEST(ModelFileTest, RefusesMalformedModels) {
   const struct {
@@ -141,8 +173,17 @@ TEST(ModelFileTest, RefusesMalformedModels) {
        "m.toml:21: ", "effects.pump.stribeck.speed: found 0"},
       {With("[effects]\n\"amp.lag\" = 3\n"), "m.toml:21: ", "effects.amp.lag: found 3, allowed a section"},
       {With("[[effects]]\nid = \"amp.lag\"\n"), "m.toml:20: ", "effects: found an array, allowed a section"},
-      {With("[extra]\n"),
-       "m.toml:20: ", "\"extra\": found an unknown key, allowed \"name\", \"parameters\" or \"effects\""},
+      {"units = \"metric\"\n" + With(""),
+       "m.toml:1: ", "units: found \"metric\", allowed \"si\", or a table"},
+      {"units = 1\n" + With(""), "m.toml:1: ", "units: found 1, allowed \"si\""},
+      {"units = { length = \"N\" }\n" + With(""), "m.toml:1: ", "units.length: found \"N\", allowed \"m\""},
+      {"units = { force = \"bar\" }\n" + With(""), "m.toml:1: ", "units.force: found \"bar\", allowed \"N\""},
+      {"units = { time = \"ms\" }\n" + With(""), "m.toml:1: ", "units.time: found \"ms\", allowed \"s\""},
+      {"units = { arm = \"mm\" }\n" + With(""),
+       "m.toml:1: ", "units.arm: found \"mm\", allowed \"rad\" or \"in\""},
+      {"units = { pressure = \"bar\" }\n" + With(""), "m.toml:1: ", "\"pressure\": found an unknown key"},
+      {With("[extra]\n"), "m.toml:20: ",
+       "\"extra\": found an unknown key, allowed \"name\", \"units\", \"parameters\" or \"effects\""},
   };
   for (const auto& model : models) {
     const std::string error = InputErrorOf([&] { ParseModel(model.text, "m.toml"); });
