@@ -72,7 +72,11 @@ class ImportVerb {
   int Run() const {
     tables::CheckTableName(table_);
     CheckKeeps(out_, {table_});
-    runs::ImportRun(tables::ReadTable(table_), settings::ProgramVersion(), out_);
+    const tables::Table table = tables::ReadTableWithoutUnits(table_);
+    if (!table.layout.empty()) {
+      std::fprintf(stderr, "hydro-log: %s: read with %s\n", table_.c_str(), table.layout.c_str());
+    }
+    runs::ImportRun(table, settings::ProgramVersion(), out_);
     return 0;
   }
 

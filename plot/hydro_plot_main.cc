@@ -16,7 +16,7 @@ int main(int argc, char** argv) {
   if (const auto code = line.Parse(argc, argv)) return *code;
   return hydro::settings::RunProgram("hydro-plot", [&] {
     for (const char* picture : {"/arm.svg", "/pressure.svg"}) hydro::CheckKeeps(folder + picture, {table});
-    const hydro::tables::Table run = hydro::tables::ReadTable(table);
+    const hydro::tables::Table run = hydro::tables::ReadTableWithoutUnits(table);
     const std::string arm = hydro::page::FigureFile(hydro::plot::ArmFigure(run), "arm");
     const std::string pressure = hydro::page::FigureFile(hydro::plot::PressureFigure(run), "pressure");
     hydro::WriteWholeFile(folder + "/arm.svg", arm);

@@ -8,20 +8,25 @@
 #include <vector>
 
 #include "base/input_error.h"
+#include "tables/csv_cells.h"
+#include "tables/csv_layout.h"
 
 namespace hydro::tables {
 
-// The grammar of every CSV file that this project reads. Commas separate cells; quoted cells may contain
-// commas. A byte order mark, blanks around cells, carriage returns, blank lines (which are an empty cell in a
-// table of one column) and lines that begin with # are skipped. The first remaining line holds the names,
-// unless it holds numbers and lines with # came before: then the last of those has the names ("#time,p1").
+// The grammar of every CSV file that this project reads. Commas separate cells, or what the layout says;
+// quoted cells may contain separators. A byte order mark, blanks around cells, carriage returns, blank lines
+// (which are an empty cell in a table of one column) and lines that begin with # are skipped. The first
+// remaining line holds the names, unless it holds numbers and lines with # came before: then the last of
+// those has the names ("#time,p1").
 class CsvText {
  public:
-  // Reads the names; `file` is for messages. The text must outlive the reader. Throws InputError when there
-  // is no line of names.
-  CsvText(std::string_view text, std::string file);
+  // Reads the names, and the units where the layout has them; `file` is for messages. The text must outlive
+  // the reader. Throws InputError when there is no line of names.
+  CsvText(std::string_view text, std::string file, const CsvLayout& layout = {});
 
   const std::vector<std::string_view>& names() const { return names_; }
+  // One a column, or none.
+  const std::vector<std::string_view>& units() const { return units_; }
 
   // Advances to the next row; false when there is none left. Throws InputError for a row with more or fewer
   // cells than names, and when there is no row at all.
@@ -38,23 +43,27 @@ class CsvText {
   InputError CellError(size_t column, const std::string& allowed) const;
 
  private:
+  void TakeRawLine(std::string_view* line);
   // Removes the next line that is not skipped from the text.
   bool TakeLine(std::string_view* line);
+  // Splits the next line into cells, as many as there are names; false when there is none.
+  bool TakeRow();
+  void ReadUnits();
   bool AllNumbers() const;
 
   std::string_view text_;
   std::string file_;
+  CsvLayout layout_;
   std::vector<std::string_view> names_;
+  std::vector<std::string_view> units_;
   std::vector<std::string_view> cells_;
   std::string_view comment_;  // the last line with #
   std::string_view waiting_;  // a row that was read as the line of names
+  size_t taken_ = 0;          // lines removed from the text
   size_t line_ = 0;
   size_t comment_line_ = 0;
   size_t waiting_line_ = 0;
   bool any_row_ = false;
 };
-
-// Without blanks and carriage returns at both ends.
-std::string_view Trimmed(std::string_view text);
 
 }  // namespace hydro::tables

@@ -1,6 +1,7 @@
 #include "tables/table.h"
 
 #include "base/input_error.h"
+#include "base/text_file.h"
 
 namespace hydro::tables {
 
@@ -17,7 +18,19 @@ std::string Table::Place(size_t row, std::string_view column) const {
          ", column " + std::string(column);
 }
 
-Table ReadTable(const std::string& file) { return file.ends_with(".mat") ? ReadMat(file) : ReadCsv(file); }
+Table ReadTable(const std::string& file, const CsvSettings& settings) {
+  return file.ends_with(".mat") ? ReadMat(file) : ReadCsv(file, settings);
+}
+
+Table ReadTableWithoutUnits(const std::string& file) {
+  Table table = ReadTable(file);
+  for (const Column& column : table.columns) {
+    if (column.unit.empty()) continue;
+    throw InputError(file + ": column " + column.name + ": found the unit " + Quoted(column.unit) +
+                     " in a row of units, allowed columns whose names say their units, and no such row");
+  }
+  return table;
+}
 
 void CheckTableName(const std::string& file) {
   if (file.ends_with(".csv") || file.ends_with(".mat")) return;

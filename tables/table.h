@@ -6,17 +6,21 @@
 #include <string_view>
 #include <vector>
 
+#include "tables/csv_layout.h"
+
 namespace hydro::tables {
 
 struct Column {
   std::string name;
   std::vector<double> values;  // NaN: a missing value
+  std::string unit = {};       // from a row of units, in the words of base/units where there are some
 };
 
 struct Table {
   std::string file;             // the file it was read from, for messages
   std::vector<size_t> lines;    // of a CSV: the line of each row; empty: messages count rows, from 1
   std::vector<Column> columns;  // all of the same length
+  std::string layout;  // how a CSV was read, where that was not the plain way: "semicolons between cells"
 
   size_t rows() const { return columns.empty() ? 0 : columns.front().values.size(); }
   // Null when there is none of that name.
@@ -25,10 +29,14 @@ struct Table {
   std::string Place(size_t row, std::string_view column) const;
 };
 
-// Reads a table: a MAT file when the name ends in .mat, else CSV. Throws InputError naming file, row, column,
-// what was found and what is allowed: empty or duplicate names, cells that are not numbers, rows or columns
-// of unequal length, a table without rows.
-Table ReadTable(const std::string& file);
+// Reads a table: a MAT file when the name ends in .mat, else CSV, whose layout is found where `settings` does
+// not state it (csv_layout.h). Throws InputError naming file, row, column, what was found and what is
+// allowed: empty or duplicate names, cells that are not numbers, rows or columns of unequal length, a table
+// without rows, a text that can be read in two ways.
+Table ReadTable(const std::string& file, const CsvSettings& settings = {});
+
+// The same for a table whose names say its units, such as an export of hydro-log: a row of units is an error.
+Table ReadTableWithoutUnits(const std::string& file);
 
 // Writes a table, whole or not at all. Throws InputError when the file cannot be created or its name ends in
 // neither .csv nor .mat, WriteError when the disk is full.
@@ -39,7 +47,7 @@ void CheckTableName(const std::string& file);
 
 // CSV, in the grammar of csv_text.h; empty cells and nan are missing values. Writes the shortest text that
 // reads back as the same bits, and missing values as empty cells.
-Table ReadCsv(const std::string& file);
+Table ReadCsv(const std::string& file, const CsvSettings& settings = {});
 void WriteCsv(const Table& table, const std::string& file);
 
 // MAT, version 5 or 7.3: one real vector of numbers per column, under the column's name. Written in the MAT 5

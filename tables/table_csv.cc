@@ -9,6 +9,8 @@
 #include "base/text_file.h"
 #include "tables/csv_text.h"
 #include "tables/table.h"
+#include "tables/text_encoding.h"
+#include "tables/unit_cells.h"
 
 namespace hydro::tables {
 namespace {
@@ -32,16 +34,31 @@ void CheckNames(const CsvText& text, const std::vector<Column>& columns) {
 
 }  // namespace
 
-Table ReadCsv(const std::string& file) {
+Table ReadCsv(const std::string& file, const CsvSettings& settings) {
   const MappedFile contents(file);
-  CsvText text({reinterpret_cast<const char*>(contents.data()), contents.size()}, file);
+  std::string_view bytes(reinterpret_cast<const char*>(contents.data()), contents.size());
+  const std::optional<std::string> utf8 = FromUtf16(bytes, file);
+  if (utf8.has_value()) bytes = *utf8;
+  const CsvLayout layout = FindLayout(bytes, file, settings);
+  CsvText text(bytes, file, layout);
   Table table;
   table.file = file;
-  for (const std::string_view name : text.names()) table.columns.push_back({std::string(name), {}});
+  table.layout = Described(layout);
+  if (utf8.has_value()) table.layout = table.layout.empty() ? "UTF-16" : "UTF-16, " + table.layout;
+  // A separator at the end of every line leaves a column that is none.
+  const size_t columns =
+      text.names().size() - (text.names().size() > 1 && text.names().back().empty() ? 1 : 0);
+  for (size_t i = 0; i < columns; ++i) {
+    table.columns.push_back({std::string(text.names()[i]), {}});
+    if (layout.units_row) table.columns.back().unit = UnitOfCell(text.units()[i]);
+  }
   CheckNames(text, table.columns);
   while (text.Next()) {
     table.lines.push_back(text.line());
-    for (size_t i = 0; i < table.columns.size(); ++i) {
+    if (columns < text.names().size() && !text.cell(columns).empty()) {
+      throw text.CellError(columns, "an empty cell, as the column has no name");
+    }
+    for (size_t i = 0; i < columns; ++i) {
       const bool missing = text.cell(i).empty();
       const std::optional<double> value = missing ? std::numeric_limits<double>::quiet_NaN() : text.Number(i);
       if (!value.has_value()) throw text.CellError(i, "a number, nan or an empty cell");

@@ -1,0 +1,17 @@
+// Cells of a row of units, as recorders write them.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace hydro::tables {
+
+// The cell without its brackets, in the words of base/units where there are some: "[°/s]" is "deg/s", "PSI"
+// is "psi", "U/min" is "rpm". Other texts come back as they are.
+std::string UnitOfCell(std::string_view cell);
+
+// Whether the cell is a unit: one of base/units, another that recorders write (A, %, °C), or any text in
+// brackets.
+bool IsUnitCell(std::string_view cell);
+
+}  // namespace hydro::tables
