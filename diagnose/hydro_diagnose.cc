@@ -62,10 +62,10 @@ class ReportFolder {
   std::string folder_;
 };
 
-std::vector<runs::MeasuredRun> ReadRuns(const std::vector<std::string>& files) {
+std::vector<runs::MeasuredRun> ReadRuns(const std::vector<std::string>& files, const UnitSystem& units) {
   std::vector<runs::MeasuredRun> runs;
   runs.reserve(files.size());
-  for (const std::string& file : files) runs.push_back(runs::ReadMeasuredRun(file));
+  for (const std::string& file : files) runs.push_back(runs::ReadMeasuredRun(file, units));
   return runs;
 }
 
@@ -101,7 +101,8 @@ Diagnosis ReadAndDiagnose(const DiagnoseRequest& request, const Diagnoser& diagn
   options.seed = static_cast<uint64_t>(request.seed);
   const model::ModelDescription model = settings::LoadModelFile(request.model);
   report_progress({"reading the runs", 0});
-  std::vector<runs::MeasuredRun> runs = ReadRuns(request.runs), held_out = ReadRuns(request.held_out);
+  std::vector<runs::MeasuredRun> runs = ReadRuns(request.runs, model.units),
+                                 held_out = ReadRuns(request.held_out, model.units);
   try {
     return diagnose(model, std::move(runs), std::move(held_out), options, report_progress);
   } catch (const model::ModelError& error) {
@@ -159,7 +160,8 @@ int CheckRuns(const DiagnoseRequest& request, std::FILE* out) {
   RequireJobs(request);
   RequireDifferentFiles(request);
   const model::ModelDescription model = settings::LoadModelFile(request.model);
-  std::vector<runs::MeasuredRun> runs = ReadRuns(request.runs), held_out = ReadRuns(request.held_out);
+  std::vector<runs::MeasuredRun> runs = ReadRuns(request.runs, model.units),
+                                 held_out = ReadRuns(request.held_out, model.units);
   runs.insert(runs.end(), held_out.begin(), held_out.end());
   const RecordingReport report = ReportOnRecordings(model, std::move(runs), request.jobs);
   for (const std::vector<std::string>* lines : {&report.wrong, &report.limits}) {

@@ -102,10 +102,16 @@ void AddSignal(const std::string& name, const std::string& unit, double scale,
   if (!messages.empty()) signals.push_back(std::move(info));
 }
 
-std::vector<SignalInfo> SignalsOf(const RunMessages& messages, bool si) {
-  const SiUnit shown = si ? *FindSiUnit("psi", 0) : SiUnit{"psi", "psi", 1};
-  const double pressure = shown.factor;
-  const std::string& pressure_unit = shown.to;
+// A unit of the paper in the model's system, or in SI.
+SiUnit ShownUnit(const UnitSystem& units, const std::string& paper, int arm, bool si) {
+  const std::string own = units.UnitFor(paper, arm);
+  const std::optional<SiUnit> shown = si ? FindSiUnit(own, 0) : std::nullopt;
+  return shown.value_or(SiUnit{own, own, 1});
+}
+
+std::vector<SignalInfo> SignalsOf(const RunMessages& messages, const UnitSystem& units, bool si) {
+  const SiUnit pressure = ShownUnit(units, "psi", 0, si);
+  const SiUnit arm_angle = ShownUnit(units, "rad", 1, si), arm_speed = ShownUnit(units, "rad/s", 1, si);
   std::vector<SignalInfo> signals;
   const auto add_state = [&](const std::string& name, const std::string& unit, double scale,
                              double state_t::*member) {
@@ -115,20 +121,20 @@ std::vector<SignalInfo> SignalsOf(const RunMessages& messages, bool si) {
   };
   add_state("voltage", "V", 1, &state_t::voltage);
   AddSignal(
-      "pressure_ref", pressure_unit, pressure, messages.Of<motor_command_t>(),
+      "pressure_ref", pressure.to, pressure.factor, messages.Of<motor_command_t>(),
       [](const motor_command_t& command) { return command.pressure_ref; }, signals);
   AddSignal(
-      "arm_ref", "rad", 1, messages.Of<arm_reference_t>(),
+      "arm_ref", arm_angle.to, arm_angle.factor, messages.Of<arm_reference_t>(),
       [](const arm_reference_t& reference) {
         return reference.signal == arm_reference_t::ARM_ANGLE ? reference.value : std::nan("");
       },
       signals);
   add_state("motor_angle", "rad", 1, &state_t::motor_angle);
   add_state("motor_speed", "rad/s", 1, &state_t::motor_speed);
-  add_state("arm_angle", "rad", 1, &state_t::arm_angle);
-  add_state("arm_speed", "rad/s", 1, &state_t::arm_speed);
-  add_state("p1", pressure_unit, pressure, &state_t::p1);
-  add_state("p2", pressure_unit, pressure, &state_t::p2);
+  add_state("arm_angle", arm_angle.to, arm_angle.factor, &state_t::arm_angle);
+  add_state("arm_speed", arm_speed.to, arm_speed.factor, &state_t::arm_speed);
+  add_state("p1", pressure.to, pressure.factor, &state_t::p1);
+  add_state("p2", pressure.to, pressure.factor, &state_t::p2);
   return signals;
 }
 
@@ -202,16 +208,18 @@ LogInfo Summarise(const RunLog& log, bool si) {
   info.first_undecodable = log.first_undecodable;
   for (const ChannelSummary& channel : log.channels) info.channels.push_back(ChannelOf(channel, log));
   info.ticks = TicksOf(log.messages.Of<state_t>());
-  info.signals = SignalsOf(log.messages, si);
   info.loops = LoopsOf(log.messages.Of<loop_statistics_t>());
   info.programs = ProgramsOf(log.messages.Of<process_status_t>());
   info.faults = log.messages.Of<fault_t>();
   info.stops = DistinctStops(log.messages.Of<stop_t>());
   info.descriptions = DistinctDescriptions(log.messages.Of<run_description_t>());
+  UnitSystem units;
   if (!info.descriptions.empty()) {
+    units = ModelUnits(info.descriptions.front(), log.file);
     info.model_name = ModelName(info.descriptions.front(), log.file);
     info.config = ConfigEntries(info.descriptions.front(), log.file);
   }
+  info.signals = SignalsOf(log.messages, units, si);
   return info;
 }
 

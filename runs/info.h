@@ -76,7 +76,7 @@ struct LogInfo {
   std::vector<std::pair<std::string, std::string>> config;  // of the first description
 };
 
-// With `si`, pressures are in kPa instead of psi (for models in the paper's units).
+// Signals are in the units of the model that the log describes; with `si`, in SI units.
 LogInfo Summarise(const RunLog& log, bool si);
 
 // Several lines for people to read.

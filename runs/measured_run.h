@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/input_error.h"
+#include "base/unit_system.h"
 #include "model/terms/actuator_options.h"
 #include "tables/table.h"
 
@@ -15,8 +16,8 @@ namespace hydro::runs {
 
 // Where values come from: a column of a table, ours(t) = scale * theirs(t + delay) + offset.
 struct ColumnSource {
-  std::string column;  // its name in the table; "" for logs
-  double scale = 1, offset = 0, delay = 0;
+  std::string column;                       // its name in the table; "" for logs
+  double scale = 1, offset = 0, delay = 0;  // a unit that the sidecar states is part of the first two
 };
 
 struct MeasuredSignal {
@@ -27,7 +28,6 @@ struct MeasuredSignal {
   bool measured() const { return !values.empty(); }
 };
 
-// Units: s, V, psi, rad, or the model's other coherent units.
 struct MeasuredRun {
   std::string name;           // its own name; a log: the file's stem
   std::string file;           // as given
@@ -36,6 +36,11 @@ struct MeasuredRun {
   model::Shaft shaft = model::Shaft::kFree;
   double arm_angle_rad = 0;  // kClamped: where the arm is held
   bool bypass = false;       // the valve between the two sides is open: p1 = p2
+
+  // How its table was read, where that was not the plain way: "semicolons between cells, decimal commas".
+  std::string layout;
+
+  UnitSystem units;  // of all values, beside s and V
 
   std::string model_text;  // the model with which a log says it was run (TOML); "" for tables
 
@@ -59,18 +64,20 @@ struct MeasuredRun {
   std::string Place(size_t sample) const;
 };
 
-// Reads a run: FILE.csv or FILE.mat with its sidecar FILE.toml; any other name as a log. Throws InputError
-// naming file, line or key, what was found and what is allowed, for
-// - a sidecar that is missing, or has unknown keys, no shaft, no column for time or voltage, an angle of a
-//   shaft that is not clamped, a driven shaft without arm_angle, or noise of a signal without a column;
+// Reads a run: FILE.csv or FILE.mat with its sidecar (sidecar_search.h); any other name as a log. Its values
+// are then in `units`, those of a model; without them a table is in the paper's, a log in its own model's.
+// Throws InputError naming file, line or key, what was found and what is allowed, for
+// - a sidecar that is missing, or has unknown keys, a unit that is unknown or another signal's, no shaft, no
+//   column for time or voltage, an angle of a shaft that is not clamped, a driven shaft without arm_angle, or
+//   noise of a signal without a column;
 // - a table with columns that are absent or hold no value, numbers that are not finite, times that are
 //   missing or do not increase, or no command in the first row;
-// - a log with damage, messages that cannot be decoded, more than one run, or no description of how the shaft
-//   was held.
-MeasuredRun ReadMeasuredRun(const std::string& file);
+// - a log with damage, messages that cannot be decoded, more than one run, no description of how the shaft
+//   was held, or an arm whose coordinate is not that of `units`.
+MeasuredRun ReadMeasuredRun(const std::string& file, const std::optional<UnitSystem>& units = std::nullopt);
 
 // The run in a table of hydro-log export (runs/run_table.h). `config_text` is the configuration of the run:
-// it gives shaft, bypass and the stated noise of the sensors.
+// it gives shaft, bypass and the stated noise of the sensors; `model_text`, if any, its units.
 MeasuredRun RunOfExport(const tables::Table& table, const std::string& config_text,
                         const std::string& model_text);
 

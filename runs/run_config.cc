@@ -4,6 +4,7 @@
 
 #include "base/input_error.h"
 #include "base/number_text.h"
+#include "settings/model_file.h"
 #include "settings/toml/toml_document.h"
 
 namespace hydro::runs {
@@ -94,6 +95,10 @@ std::string ModelName(const run_description_t& description, const std::string& f
   const TomlNode model = Parse(description.model_text, file, "model");
   const TomlNode* name = model.Find("name");
   return name != nullptr && name->is(Kind::kString) ? name->text : std::string();
+}
+
+UnitSystem ModelUnits(const run_description_t& description, const std::string& file) {
+  return settings::ParseModelUnits(description.model_text, file + " (model)");
 }
 
 }  // namespace hydro::runs

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/unit_system.h"
 #include "hydro/run_description_t.hpp"
 
 namespace hydro::runs {
@@ -21,5 +22,8 @@ int CommandDelayTicks(const run_description_t& description, const std::string& f
 
 // The model's name; empty when its text has none.
 std::string ModelName(const run_description_t& description, const std::string& file);
+
+// The units of the run's model; the paper's where it has no model.
+UnitSystem ModelUnits(const run_description_t& description, const std::string& file);
 
 }  // namespace hydro::runs

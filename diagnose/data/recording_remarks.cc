@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "base/number_text.h"
 #include "base/word_list.h"
@@ -39,7 +40,7 @@ void RemarkOnTimes(const RunData& run, std::vector<std::string>* remarks) {
 
 void RemarkOnSignal(const RunData& run, const SignalData& signal, std::vector<std::string>* remarks) {
   const std::string name = RunNamed(run.name) + ": " + ChannelName(signal.channel);
-  const std::string unit = " " + ChannelUnit(signal.channel);
+  const std::string unit = " " + ChannelUnit(signal.channel, run.measured.units);
   const double ratio = signal.estimated_noise / signal.stated_noise;
   if (ratio > kUnlikeStated || ratio < 1 / kUnlikeStated) {
     remarks->push_back(name + " has a noise of " + ShortNumber(signal.estimated_noise, 3) + unit +
@@ -60,6 +61,23 @@ void RemarkOnSignal(const RunData& run, const SignalData& signal, std::vector<st
     remarks->push_back(name + " is recorded in steps of " + ShortNumber(signal.resolution, 3) + unit +
                        ", coarser than its noise");
   }
+}
+
+// One remark for all runs whose tables were read in one way.
+void RemarkOnLayouts(const std::vector<const RunData*>& runs, std::vector<std::string>* remarks) {
+  std::vector<std::pair<std::string, std::string>> layouts;  // and the runs
+  for (const RunData* run : runs) {
+    const std::string& layout = run->measured.layout;
+    if (layout.empty()) continue;
+    const auto same =
+        std::find_if(layouts.begin(), layouts.end(), [&](const auto& one) { return one.first == layout; });
+    if (same == layouts.end()) {
+      layouts.emplace_back(layout, RunNamed(run->name));
+    } else {
+      same->second += ", " + RunNamed(run->name);
+    }
+  }
+  for (const auto& [layout, names] : layouts) remarks->push_back(names + ": table read with " + layout);
 }
 
 void RemarkOnMotion(const std::vector<const RunData*>& runs, std::vector<std::string>* remarks) {
@@ -149,6 +167,9 @@ std::vector<std::string> RecordingRemarks(const std::vector<ClockDelay>& clocks,
   std::vector<std::string> remarks;
   remarks.reserve(clocks.size());
   for (const ClockDelay& clock : clocks) remarks.push_back(DelayRemark(clock));
+  std::vector<const RunData*> all = runs;
+  all.insert(all.end(), held_out.begin(), held_out.end());
+  RemarkOnLayouts(all, &remarks);
   for (const auto* some : {&runs, &held_out}) {
     for (const RunData* run : *some) {
       RemarkOnTimes(*run, &remarks);

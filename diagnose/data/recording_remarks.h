@@ -9,7 +9,7 @@
 
 namespace hydro::diagnose {
 
-// Remarks on: clocks that differ; noise unlike the stated noise; sensors at the end of their range; gaps;
+// Remarks on: clocks that differ; tables that were not plain CSV; noise unlike the stated noise; sensors at the end of their range; gaps;
 // resolution coarser than the noise; a motor that hardly turns, or turns one way only; pressures that never
 // leave the accumulator's. Empty when there is nothing to remark on.
 std::vector<std::string> RecordingRemarks(const std::vector<ClockDelay>& clocks,

@@ -18,7 +18,7 @@ constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 struct ChannelRow {
   const char* name;
-  const char* unit;
+  const char* unit;  // of the paper
   runs::MeasuredSignal runs::MeasuredRun::*signal;
   bool arm;
 };
@@ -30,6 +30,10 @@ constexpr ChannelRow kRows[model::kChannels] = {
     {"arm_speed", "rad/s", &runs::MeasuredRun::arm_speed, true},
     {"p1", "psi", &runs::MeasuredRun::p1, false},
     {"p2", "psi", &runs::MeasuredRun::p2, false}};
+
+std::string UnitOf(const ChannelRow& row, const UnitSystem& units) {
+  return units.UnitFor(row.unit, row.arm ? 1 : 0);
+}
 
 [[noreturn]] void Refuse(const std::string& place, const std::string& signal, const std::string& found,
                          const std::string& allowed) {
@@ -71,7 +75,7 @@ void CheckSignal(const runs::MeasuredRun& run, const ChannelRow& row, const mode
     Refuse(run.file, row.name, valid == 0 ? "no value in any row" : std::to_string(valid) + " values",
            std::to_string(kFewestValues) + " values or more, or leave the signal out");
   }
-  CheckRange(run, row.name, values, LargestPossible(row, model), row.unit);
+  CheckRange(run, row.name, values, LargestPossible(row, model), UnitOf(row, run.units));
   // An arm may well stand still. And a simulation without noise reports a single number for a side on its
   // one-way valve or a pump that sticks.
   const bool simulated = !run.model_text.empty() && !(run.*row.signal).noise.has_value();
@@ -83,7 +87,7 @@ void CheckSignal(const runs::MeasuredRun& run, const ChannelRow& row, const mode
   });
   if (!constant) return;
   Refuse(run.Place(first), row.name,
-         ShortestNumber(values[first]) + " " + row.unit + " here and in every later row",
+         ShortestNumber(values[first]) + " " + UnitOf(row, run.units) + " here and in every later row",
          "a signal that changes, or leave it out");
 }
 
@@ -147,11 +151,12 @@ std::unique_ptr<trajectory::Trajectory> ImposedMotion(const runs::MeasuredRun& r
   std::unique_ptr<trajectory::Trajectory> motion =
       SmoothMotion(run.time, angle.values, angle.noise, speed.values, speed.noise);
   const double stroke = model.V_ms / model.c;
-  CheckRange(run, "arm_angle", angle.values, stroke, "rad");
+  const std::string unit = ChannelUnit(model::Channel::kArmAngle, run.units);
+  CheckRange(run, "arm_angle", angle.values, stroke, unit);
   if (std::max(-motion->Min(), motion->Max()) >= stroke) {
     Refuse(run.file, "arm_angle", "a motion that reaches the end of the stroke",
-           "angles between -" + ShortestNumber(stroke) + " and " + ShortestNumber(stroke) +
-               " rad, where the model's V_1 and V_2 are above 0");
+           "angles between -" + ShortestNumber(stroke) + " and " + ShortestNumber(stroke) + " " + unit +
+               ", where the model's V_1 and V_2 are above 0");
   }
   return motion;
 }
@@ -164,10 +169,8 @@ const std::string& ChannelName(model::Channel channel) {
   return names.at(static_cast<size_t>(channel));
 }
 
-const std::string& ChannelUnit(model::Channel channel) {
-  static const std::array<std::string, model::kChannels> units = {
-      kRows[0].unit, kRows[1].unit, kRows[2].unit, kRows[3].unit, kRows[4].unit, kRows[5].unit};
-  return units.at(static_cast<size_t>(channel));
+std::string ChannelUnit(model::Channel channel, const UnitSystem& units) {
+  return UnitOf(kRows[static_cast<size_t>(channel)], units);
 }
 
 const SignalData* RunData::Find(model::Channel channel) const {

@@ -49,8 +49,8 @@ struct RunData {
 
 // "motor_speed", as in sidecars and reports.
 const std::string& ChannelName(model::Channel channel);
-// "rad/s"
-const std::string& ChannelUnit(model::Channel channel);
+// "rad/s", in the model's units.
+std::string ChannelUnit(model::Channel channel, const UnitSystem& units);
 
 // Throws InputError, with run, signal and row, for data from which nothing can be learnt: fewer than 100
 // samples, a signal that never changes or is absent, no signal that a model could be compared with, or

@@ -43,7 +43,7 @@ std::vector<FreeParameter> Hypothesis::Free() const {
     const model::ParameterInfo& info = model::BaseParameters()[i].info;
     const double value = model.parameters.*model::BaseParameters()[i].member;
     FreeParameter parameter{
-        {model::Unknown::Kind::kBase, i}, info.name, info.unit, value, info.min, info.max};
+        {model::Unknown::Kind::kBase, i}, info.name, info.UnitIn(model.units), value, info.min, info.max};
     parameter.role = info.role;
     parameter.logarithmic = !info.min_allowed && value > 0;
     if (parameter.logarithmic) {
@@ -60,7 +60,7 @@ std::vector<FreeParameter> Hypothesis::Free() const {
     const double value = effect.parameters.at(all[i].name);
     FreeParameter parameter{{model::Unknown::Kind::kEffect, i},
                             effect.id + "." + info.name,
-                            info.unit,
+                            info.UnitIn(model.units),
                             value,
                             info.min,
                             info.max};

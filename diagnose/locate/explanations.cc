@@ -22,8 +22,8 @@ double RateOf(const std::vector<double>& values, const RunData& run, size_t k) {
 }  // namespace
 
 template <class F>
-Variable Explanations::Make(const std::string& name, const std::string& unit, const F& f) const {
-  Variable variable{name, unit, {}, false, {}};
+Variable Explanations::Make(const std::string& name, const std::string& unit, const F& f, int arm) const {
+  Variable variable{name, units_.UnitFor(unit, arm), {}, false, {}};
   for (size_t r = 0; r < runs_.size(); ++r) {
     std::vector<double> values(runs_[r]->samples());
     for (size_t k = 0; k < values.size(); ++k) values[k] = f(smoothed_[r], *runs_[r], k);
@@ -38,8 +38,10 @@ std::vector<Variable> Explanations::States(Balance balance, bool quick) const {
   const auto sign = [](double x) { return static_cast<double>((x > 0) - (x < 0)); };
   std::vector<Variable> all;  // plain ones first
   if (balance == Balance::kArmTorque) {
-    all.push_back(Make("arm_speed", "rad/s", [](R s, D, size_t k) { return s.arm_speed[k]; }));
-    all.push_back(Make("arm_angle", "rad", [](R s, D, size_t k) { return s.arm_angle[k]; }));
+    all.push_back(Make(
+        "arm_speed", "rad/s", [](R s, D, size_t k) { return s.arm_speed[k]; }, 1));
+    all.push_back(Make(
+        "arm_angle", "rad", [](R s, D, size_t k) { return s.arm_angle[k]; }, 1));
     all.push_back(Make("p2 - p1", "psi", [](R s, D, size_t k) { return s.p2[k] - s.p1[k]; }));
   } else {
     all.push_back(Make("motor_speed", "rad/s", [](R s, D, size_t k) { return s.motor_speed[k]; }));
@@ -57,8 +59,10 @@ std::vector<Variable> Explanations::States(Balance balance, bool quick) const {
                          [one](R s, D d, size_t k) { return RateOf(one ? s.p1 : s.p2, d, k); }));
     }
     all.push_back(Make("p2 - p1", "psi", [](R s, D, size_t k) { return s.p2[k] - s.p1[k]; }));
-    all.push_back(Make("arm_angle", "rad", [](R s, D, size_t k) { return s.arm_angle[k]; }));
-    all.push_back(Make("arm_speed", "rad/s", [](R s, D, size_t k) { return s.arm_speed[k]; }));
+    all.push_back(Make(
+        "arm_angle", "rad", [](R s, D, size_t k) { return s.arm_angle[k]; }, 1));
+    all.push_back(Make(
+        "arm_speed", "rad/s", [](R s, D, size_t k) { return s.arm_speed[k]; }, 1));
   }
   if (quick && balance != Balance::kArmTorque) {
     for (int periods = 1; periods <= kMostPeriods; ++periods) all.push_back(Turn(periods));
@@ -117,9 +121,9 @@ std::vector<Variable> Explanations::Lateness(Balance balance) const {
     all.push_back(Make("motor_acceleration", "rad/s^2", [](const SmoothedRun& s, const RunData& d, size_t k) {
       return RateOf(s.motor_speed, d, k);
     }));
-    all.push_back(Make("arm_acceleration", "rad/s^2", [](const SmoothedRun& s, const RunData& d, size_t k) {
-      return RateOf(s.arm_speed, d, k);
-    }));
+    all.push_back(Make(
+        "arm_acceleration", "rad/s^2",
+        [](const SmoothedRun& s, const RunData& d, size_t k) { return RateOf(s.arm_speed, d, k); }, 1));
   }
   for (Variable& variable : all) variable.linear_only = true;
   return all;

@@ -11,9 +11,10 @@ namespace hydro::diagnose {
 
 class Explanations {
  public:
-  // Keeps references to both.
-  Explanations(const std::vector<SmoothedRun>& smoothed, const std::vector<const RunData*>& runs)
-      : smoothed_(smoothed), runs_(runs) {}
+  // Keeps references to both. `units` are those of the model.
+  Explanations(const std::vector<SmoothedRun>& smoothed, const std::vector<const RunData*>& runs,
+               const UnitSystem& units)
+      : smoothed_(smoothed), runs_(runs), units_(units) {}
 
   // Candidates for a missing term of the balance itself, simple variables first. `quick`: include those that
   // repeat within a turn.
@@ -24,8 +25,9 @@ class Explanations {
   std::vector<Variable> Lateness(Balance balance) const;
 
  private:
+  // `unit` is the paper's, `arm` the power of the arm's coordinate in it.
   template <class F>
-  Variable Make(const std::string& name, const std::string& unit, const F& f) const;
+  Variable Make(const std::string& name, const std::string& unit, const F& f, int arm = 0) const;
   // The phase of a wave that repeats `periods` times in a turn of the motor.
   Variable Turn(int periods) const;
   // Such a wave in proportion to the speed or the pressure difference.
@@ -33,6 +35,7 @@ class Explanations {
 
   const std::vector<SmoothedRun>& smoothed_;
   const std::vector<const RunData*>& runs_;
+  UnitSystem units_;
 };
 
 }  // namespace hydro::diagnose

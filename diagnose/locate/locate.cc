@@ -16,7 +16,12 @@ namespace hydro::diagnose {
 namespace {
 
 constexpr std::array<const char*, kBalances> kNames = {"pump_torque", "flow_1", "flow_2", "arm_torque"};
-constexpr std::array<const char*, kBalances> kUnits = {"in-lbf", "in^3/s", "in^3/s", "in-lbf"};
+
+std::string UnitOf(size_t balance, const UnitSystem& units) {
+  const Balance which = static_cast<Balance>(balance);
+  if (which == Balance::kFlow1 || which == Balance::kFlow2) return units.UnitFor("in^3/s");
+  return units.UnitFor("in-lbf", which == Balance::kArmTorque ? -1 : 0);
+}
 
 constexpr double kSmallestShare = 0.02;
 // The extra share of the variance that a variable must explain to be preferred to a simpler one.
@@ -127,12 +132,12 @@ std::string WhereOf(const Blocks& blocks, const std::vector<Dependence>& ranked,
 
 // Tabulates over the variable that explains most, and over the next one that explains anything.
 void Tabulate(const Blocks& blocks, const std::vector<Dependence>& ranked, size_t balance,
-              std::vector<MissingTerm>* missing) {
+              const UnitSystem& units, std::vector<MissingTerm>* missing) {
   for (const Dependence& d : ranked) {
     if (missing->size() == 2 || (!missing->empty() && d.explained < kDependence)) break;
     MissingTerm table = TableOf(blocks, d.variable, d.averages);
     table.balance = kNames[balance];
-    table.unit = kUnits[balance];
+    table.unit = UnitOf(balance, units);
     missing->push_back(std::move(table));
   }
 }
@@ -174,8 +179,9 @@ void CorrectOffsets(const model::ModelDescription& model, const std::vector<cons
   std::vector<SmoothedRun> corrected = SmoothAll(model, runs, offsets);
   Found left = Weigh(corrected, runs);
   if (left.total >= kMostlyOffsets * placement->all) return;
-  const std::string where = "p1 reads " + WithSign(offsets.p1) + " psi, p2 " + WithSign(offsets.p2) +
-                            " psi at the valves' pressure";
+  const std::string unit = " " + model.units.UnitFor("psi");
+  const std::string where = "p1 reads " + WithSign(offsets.p1) + unit + ", p2 " + WithSign(offsets.p2) +
+                            unit + " at the valves' pressure";
   placement->result.location.push_back(
       {"sensor", 1 - left.total / placement->all, where,
        WindowsOf(placement->found.blocks[LargestBalance(placement->found)], runs)});
@@ -220,14 +226,14 @@ Localisation Locate(const model::ModelDescription& model, const std::vector<cons
   placement.all = placement.found.total;
   if (placement.all == 0) return {};
   CorrectOffsets(model, runs, &placement);
-  const Explanations explanations(placement.smoothed, runs);
+  const Explanations explanations(placement.smoothed, runs, model.units);
   for (size_t b = 0; b < kBalances; ++b) Place(explanations, runs, b, &placement);
   std::vector<Location>& location = placement.result.location;
   std::stable_sort(location.begin(), location.end(),
                    [](const Location& a, const Location& b) { return a.share > b.share; });
   if (!location.empty() && location.front().balance != "sensor") {
     const size_t b = LargestBalance(placement.found);
-    Tabulate(placement.found.blocks[b], placement.ranked[b], b, &placement.result.missing);
+    Tabulate(placement.found.blocks[b], placement.ranked[b], b, model.units, &placement.result.missing);
   }
   return std::move(placement.result);
 }

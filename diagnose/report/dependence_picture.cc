@@ -79,10 +79,11 @@ struct Against {
 
 // The quantities that were measured.
 std::vector<Against> ChooseAgainst(const Diagnosis& diagnosis, bool si) {
-  const ShownUnit pressure = UnitOf(model::Channel::kP1, si);
+  const ShownUnit pressure = UnitOf(model::Channel::kP1, diagnosis.model.units, si);
+  const ShownUnit arm = UnitOf(model::Channel::kArmAngle, diagnosis.model.units, si);
   const std::array<Against, 4> all = {{{"speed", "motor speed (rad/s)", 1},
                                        {"dp", "p_2 - p_1 (" + pressure.unit + ")", pressure.factor},
-                                       {"angle", "arm angle (rad)", 1},
+                                       {"angle", "arm angle (" + arm.unit + ")", arm.factor},
                                        {"voltage", "voltage (V)", 1}}};
   std::vector<Against> chosen;
   for (const Against& against : all) {
@@ -111,7 +112,7 @@ std::vector<model::Channel> ChannelsOf(const Diagnosis& diagnosis) {
 page::Panel DependencePanel(const Diagnosis& diagnosis, model::Channel channel, const Against& against,
                             bool si, bool first, bool last) {
   constexpr size_t kMostDots = 400;
-  const ShownUnit unit = UnitOf(channel, si);
+  const ShownUnit unit = UnitOf(channel, diagnosis.model.units, si);
   const double noise = unit.factor * NoiseOf(diagnosis, channel);
   Points before, after;
   double measured_size = 0;
@@ -165,7 +166,7 @@ std::optional<page::Figure> DependenceFigure(const Diagnosis& diagnosis, bool si
       const bool first = k == 0 && channel == channels.front();
       page::Panel panel =
           DependencePanel(diagnosis, channel, columns[k], si, first, channel == channels.back());
-      if (k == 0) panel.y.label = LabelOf(channel, UnitOf(channel, si).unit);
+      if (k == 0) panel.y.label = LabelOf(channel, UnitOf(channel, diagnosis.model.units, si).unit);
       figure.panels.push_back(std::move(panel));
     }
   }

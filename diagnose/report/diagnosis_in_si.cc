@@ -33,9 +33,10 @@ double Convert(Estimated* estimated) {
 
 }  // namespace
 
-ShownUnit UnitOf(model::Channel channel, bool si) {
-  const std::optional<SiUnit> unit = si ? FindSiUnit(ChannelUnit(channel), 0) : std::nullopt;
-  if (!unit.has_value()) return {ChannelUnit(channel), 1};
+ShownUnit UnitOf(model::Channel channel, const UnitSystem& units, bool si) {
+  const std::string own = ChannelUnit(channel, units);
+  const std::optional<SiUnit> unit = si ? FindSiUnit(own, 0) : std::nullopt;
+  if (!unit.has_value()) return {own, 1};
   return {unit->to, unit->factor};
 }
 

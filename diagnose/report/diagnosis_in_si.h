@@ -11,10 +11,10 @@ struct ShownUnit {
   double factor = 1;  // shown = factor * model's
 };
 
-// The unit of a channel: the paper's, or SI (kPa).
-ShownUnit UnitOf(model::Channel channel, bool si);
+// The unit of a channel: the model's, or SI (kPa).
+ShownUnit UnitOf(model::Channel channel, const UnitSystem& units, bool si);
 
-// Converts parameters, effects and missing terms from the paper's units. Signals and curves stay as they are
+// Converts parameters, effects and missing terms from the model's units. Signals and curves stay as they are
 // (see UnitOf), and so do the sentences.
 Diagnosis InSi(Diagnosis diagnosis);
 

@@ -69,7 +69,7 @@ std::string GapTable(const Diagnosis& diagnosis, bool si) {
   std::string rows = "<tr class=\"all\"><td>all signals</td><td class=\"unit\">noise</td>" + NumberCell(1) +
                      cells(diagnosis.fit, 1) + cells(diagnosis.held_out, 1) + "</tr>\n";
   for (const SignalGap& signal : diagnosis.signals) {
-    const ShownUnit unit = UnitOf(signal.channel, si);
+    const ShownUnit unit = UnitOf(signal.channel, diagnosis.model.units, si);
     rows += "<tr>" + Cell(ChannelName(signal.channel)) + "<td class=\"unit\">" + unit.unit + "</td>" +
             NumberCell(signal.noise * unit.factor) + cells(signal.fit, unit.factor) +
             cells(signal.held_out, unit.factor) + "</tr>\n";

@@ -91,7 +91,7 @@ Json Gap(const BeforeAfter& gap) {
 Json Gaps(const Diagnosis& diagnosis) {
   Json signals = Json::object();
   for (const SignalGap& signal : diagnosis.signals) {
-    signals[ChannelName(signal.channel)] = {{"unit", ChannelUnit(signal.channel)},
+    signals[ChannelName(signal.channel)] = {{"unit", ChannelUnit(signal.channel, diagnosis.model.units)},
                                             {"noise", signal.noise},
                                             {"fit", Gap(signal.fit)},
                                             {"held_out", Gap(signal.held_out)}};

@@ -52,7 +52,7 @@ std::array<page::Panel, 2> SignalPanels(const Diagnosis& diagnosis, const RunCur
                                         const RunCurves::Curve& curve, const page::Range& time, bool si,
                                         bool first, bool last) {
   constexpr double kSignalShare = 0.58;
-  const ShownUnit unit = UnitOf(curve.channel, si);
+  const ShownUnit unit = UnitOf(curve.channel, diagnosis.model.units, si);
   const double noise = unit.factor * NoiseOf(diagnosis, curve.channel);
   const auto over_time = [&](const std::vector<double>& y) {
     return y.size() == run.time.size() ? Points{run.time, y} : Points{};

@@ -29,7 +29,7 @@ std::string EffectText(const FoundEffect& effect) {
 std::string SignalsLine(const Diagnosis& diagnosis, bool si) {
   std::vector<std::string> parts;
   for (const SignalGap& signal : diagnosis.signals) {
-    const ShownUnit unit = UnitOf(signal.channel, si);
+    const ShownUnit unit = UnitOf(signal.channel, diagnosis.model.units, si);
     parts.push_back(ChannelName(signal.channel) + " " + ShortNumber(signal.held_out.before * unit.factor) +
                     " -> " + ShortNumber(signal.held_out.after * unit.factor) + " " + unit.unit + " (noise " +
                     ShortNumber(signal.noise * unit.factor) + ")");

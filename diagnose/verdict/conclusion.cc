@@ -56,7 +56,7 @@ FoundEffect Describe(const Change& change, const std::vector<FreeParameter>& fre
     for (size_t i = 0; i < free.size(); ++i) {
       if (free[i].name != info.id + "." + parameter.name) continue;
       found.parameters.push_back(
-          {parameter.name, free[i].value, intervals[i].low, intervals[i].high, parameter.unit});
+          {parameter.name, free[i].value, intervals[i].low, intervals[i].high, free[i].unit});
     }
   }
   return found;

@@ -7,6 +7,7 @@
 #include <numbers>
 #include <random>
 
+#include "base/word_list.h"
 #include "diagnose/data/recording_remarks.h"
 #include "runs/run_delays.h"
 #include "tests/diagnose/noisy_rig.h"
@@ -128,6 +129,26 @@ TEST(RecordingRemarks, SayWhatIsWrong) {
   EXPECT_THAT(RecordingRemarks({}, {&bad}, {}),
               ElementsAre(HasSubstr("1 gap in time, up to 3"), HasSubstr("p1 has a noise of 1."),
                           HasSubstr("p2 is missing in 10 % of the rows"), HasSubstr("one way only")));
+}
+
+// Tests that the way in which tables were read is one remark for all runs that share it, and none for plain
+// ones; and that noise is in the model's units.
+TEST(RecordingRemarks, SayHowTablesWereRead) {
+  runs::MeasuredRun run = Recorded();
+  run.layout = "decimal commas";
+  run.name = "first";
+  const RunData first = PrepareRun(run, testing::Table1());
+  run.name = "second";
+  const RunData second = PrepareRun(run, testing::Table1());
+  run.layout.clear();
+  const RunData plain = PrepareRun(run, testing::Table1());
+  EXPECT_THAT(
+      RecordingRemarks({}, {&first, &plain}, {&second}),
+      ElementsAre(RunNamed("first") + ", " + RunNamed("second") + ": table read with decimal commas"));
+  run.p1.noise = 0.5;
+  run.units = kSiUnits;
+  const RunData noisy = PrepareRun(run, testing::Table1());
+  EXPECT_THAT(RecordingRemarks({}, {&noisy}, {}), ElementsAre(HasSubstr(" Pa; the stated 0.5 Pa is used")));
 }
 
 }  // namespace

@@ -147,7 +147,8 @@ inline runs::RunMessages SampleRun(int64_t ticks) {
 
 // Tick by tick, in a plausible order of arrival.
 inline void WriteRun(const std::string& file, const runs::RunMessages& run, const std::string& suffix = "",
-                     const std::string& config_text = "[plant]\nrate_hz = 1000\n") {
+                     const std::string& config_text = "[plant]\nrate_hz = 1000\n",
+                     const std::string& model_text = "name = \"Table 1\"\n") {
   const bus::Channels channels(suffix);
   LogWriter writer(file, Opening::kTemporary);
   run_description_t description{};
@@ -155,7 +156,7 @@ inline void WriteRun(const std::string& file, const runs::RunMessages& run, cons
   description.config_file = "demo.toml";
   description.config_text = config_text;
   description.model_file = "table1.toml";
-  description.model_text = "name = \"Table 1\"\n";
+  description.model_text = model_text;
   description.program = "hydro-sim";
   description.version = "1.2.3";
   description.host = "bench";

@@ -114,6 +114,22 @@ TEST_F(InfoTest, SiUnits) {
   EXPECT_EQ(Signal(info, "arm_angle").unit, "rad");
 }
 
+// Tests that signals are in the units of the model that the log describes, and in the same SI units.
+TEST_F(InfoTest, ModelsOwnUnits) {
+  log::WriteRun(Path("si"), log::SampleRun(3), "", "", "name = \"rig\"\nunits = \"si\"\n");
+  const LogInfo own = Summarise(ReadRunLog(Path("si")), false);
+  EXPECT_EQ(Signal(own, "p1").unit, "Pa");
+  EXPECT_EQ(Signal(own, "p1").min, 100);
+  const LogInfo si = Summarise(ReadRunLog(Path("si")), true);
+  EXPECT_EQ(Signal(si, "p1").unit, "kPa");
+  EXPECT_DOUBLE_EQ(Signal(si, "p1").min, 0.1);
+  log::WriteRun(Path("cylinder"), log::SampleRun(3), "", "", "units = { arm = \"in\" }\n");
+  const LogInfo cylinder = Summarise(ReadRunLog(Path("cylinder")), false);
+  EXPECT_EQ(Signal(cylinder, "arm_speed").unit, "in/s");
+  EXPECT_EQ(Signal(cylinder, "motor_speed").unit, "rad/s");
+  EXPECT_EQ(Signal(cylinder, "p1").unit, "psi");
+}
+
 // Tests that the texts hold what matters, for a log with everything and for one with nothing.
 TEST_F(InfoTest, Texts) {
   const LogInfo info = InfoOf(log::SampleRun(11));

@@ -15,6 +15,21 @@ using diagnose::Change;
 using diagnose::FreeParameter;
 using diagnose::Hypothesis;
 
+// Tests that free parameters carry the units of the model.
+TEST(Hypothesis, UnitsOfTheModel) {
+  Hypothesis hypothesis =
+      WithFree(Table1With({{"arm.flexure", {{"stiffness", 1e4}, {"damping", 10}}, {}}}), {"b", "J_a"});
+  EXPECT_EQ(hypothesis.Free()[0].unit, "in-lbf-s");
+  hypothesis.model.units = {"m", "N", true};
+  const std::vector<FreeParameter> free = hypothesis.Free();
+  ASSERT_EQ(free.size(), 4u);
+  EXPECT_EQ(free[0].unit, "N m s");
+  EXPECT_EQ(free[1].unit, "N s^2/m");
+  for (size_t i : {size_t{2}, size_t{3}}) {
+    EXPECT_EQ(free[i].unit, free[i].name == "arm.flexure.stiffness" ? "N/m" : "N s/m") << free[i].name;
+  }
+}
+
 // Tests that free parameters can be read, set and moved, positive ones by their logarithms.
 TEST(Hypothesis, FreeNumbers) {
   Hypothesis hypothesis = WithFree(Table1With({{"pump.quadratic_drag", {{"k", 2e-4}}, {}}}), {"b", "T_s"});

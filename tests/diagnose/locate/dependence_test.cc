@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <map>
 #include <random>
+#include <string>
 #include <utility>
 
 #include "diagnose/locate/disagreement.h"
@@ -156,7 +158,7 @@ TEST(Explanations, TheRightOneExplainsMost) {
   const auto [run, smoothed] = Smoothed(3);
   const std::vector<SmoothedRun> all = {smoothed};
   const std::vector<const RunData*> runs = {&run};
-  const Explanations explanations(all, runs);
+  const Explanations explanations(all, runs, {});
   const Blocks blocks = LargestDisagreement(all, runs, Balance::kPumpTorque).blocks;
   double most = 0;
   std::string name;
@@ -174,12 +176,32 @@ TEST(Explanations, TheRightOneExplainsMost) {
   EXPECT_GT(most, 0.8);
 }
 
+// Tests that candidates carry the units of the model.
+TEST(Explanations, HaveTheModelsUnits) {
+  const auto [run, smoothed] = Smoothed(3);
+  const std::vector<SmoothedRun> all = {smoothed};
+  const std::vector<const RunData*> runs = {&run};
+  const auto units = [&](const UnitSystem& system) {
+    const Explanations explanations(all, runs, system);
+    std::map<std::string, std::string> found;
+    for (const Variable& variable : explanations.States(Balance::kFlow1, false)) {
+      found[variable.name] = variable.unit;
+    }
+    return found;
+  };
+  EXPECT_EQ(units({}).at("p1 rate"), "psi/s");
+  EXPECT_EQ(units(kSiUnits).at("p1 rate"), "Pa/s");
+  EXPECT_EQ(units(kSiUnits).at("p2 - p1"), "Pa");
+  EXPECT_EQ(units({"mm", "N", true}).at("arm_speed"), "mm/s");
+  EXPECT_EQ(units({"mm", "N", true}).at("motor_speed"), "rad/s");
+}
+
 // Tests the candidates: ripples per turn only on request, none for the arm; voltage limits with their places.
 TEST(Explanations, WhatIsOffered) {
   const auto [run, smoothed] = Smoothed(3);
   const std::vector<SmoothedRun> all = {smoothed};
   const std::vector<const RunData*> runs = {&run};
-  const Explanations explanations(all, runs);
+  const Explanations explanations(all, runs, {});
   EXPECT_EQ(explanations.States(Balance::kFlow1, true).size(),
             explanations.States(Balance::kFlow1, false).size() + 48);
   EXPECT_EQ(explanations.States(Balance::kArmTorque, true).size(),

@@ -15,14 +15,26 @@ constexpr double kNewtonMetrePerInchPound = 0.1129848290276167;
 
 // Tests that pressures are shown in kPa, and what is SI already as it is.
 TEST(UnitOf, IsSiOnRequest) {
-  const diagnose::ShownUnit paper = diagnose::UnitOf(model::Channel::kP1, false);
+  const diagnose::ShownUnit paper = diagnose::UnitOf(model::Channel::kP1, {}, false);
   EXPECT_EQ(paper.unit, "psi");
   EXPECT_EQ(paper.factor, 1);
-  const diagnose::ShownUnit si = diagnose::UnitOf(model::Channel::kP1, true);
+  const diagnose::ShownUnit si = diagnose::UnitOf(model::Channel::kP1, {}, true);
   EXPECT_EQ(si.unit, "kPa");
   EXPECT_NEAR(si.factor, kPascalPerPsi / 1000, 1e-9);
-  EXPECT_EQ(diagnose::UnitOf(model::Channel::kMotorSpeed, true).unit, "rad/s");
-  EXPECT_EQ(diagnose::UnitOf(model::Channel::kMotorSpeed, true).factor, 1);
+  EXPECT_EQ(diagnose::UnitOf(model::Channel::kMotorSpeed, {}, true).unit, "rad/s");
+  EXPECT_EQ(diagnose::UnitOf(model::Channel::kMotorSpeed, {}, true).factor, 1);
+}
+
+// Tests the units of models in other systems, as they are and in the same SI units.
+TEST(UnitOf, IsTheModels) {
+  EXPECT_EQ(diagnose::UnitOf(model::Channel::kP1, kSiUnits, false).unit, "Pa");
+  EXPECT_EQ(diagnose::UnitOf(model::Channel::kP1, kSiUnits, false).factor, 1);
+  EXPECT_EQ(diagnose::UnitOf(model::Channel::kP1, kSiUnits, true).unit, "kPa");
+  EXPECT_DOUBLE_EQ(diagnose::UnitOf(model::Channel::kP1, kSiUnits, true).factor, 1e-3);
+  const UnitSystem cylinder{"in", "lbf", true};
+  EXPECT_EQ(diagnose::UnitOf(model::Channel::kArmSpeed, cylinder, false).unit, "in/s");
+  EXPECT_EQ(diagnose::UnitOf(model::Channel::kArmAngle, cylinder, true).unit, "mm");
+  EXPECT_EQ(diagnose::UnitOf(model::Channel::kMotorSpeed, cylinder, false).unit, "rad/s");
 }
 
 // Tests that a value, its interval and the model's value are converted alike, and missing terms with their

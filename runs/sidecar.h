@@ -1,0 +1,14 @@
+// A table of another recorder, read through the sidecar that describes it (docs/measured_runs.md).
+#pragma once
+
+#include <string>
+
+#include "base/unit_system.h"
+#include "runs/measured_run.h"
+
+namespace hydro::runs {
+
+// The run in a CSV or MAT file, in these units. Throws InputError as ReadMeasuredRun does.
+MeasuredRun ReadTableRun(const std::string& file, const UnitSystem& units);
+
+}  // namespace hydro::runs

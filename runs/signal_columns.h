@@ -1,0 +1,36 @@
+// Columns of a table as a run's signals.
+#pragma once
+
+#include <vector>
+
+#include "base/input_error.h"
+#include "runs/measured_run.h"
+#include "tables/table.h"
+
+namespace hydro::runs {
+
+// A column of a table in our units: ours = unit * (scale * theirs + offset).
+struct SignalColumn {
+  const tables::Column* column = nullptr;
+  double scale = 1;
+  double offset = 0;
+  double unit = 1;
+  bool by_row = false;  // the unit is the table's own
+  double delay = 0;     // s, by which it is late
+
+  // As scale and offset alone, without a unit.
+  ColumnSource Described() const { return {column->name, unit * scale, unit * offset, delay}; }
+};
+
+bool AllMissing(const std::vector<double>& values);
+
+// The values in our units. Throws InputError for an infinite one.
+std::vector<double> SignalValues(const tables::Table& table, const SignalColumn& source);
+
+// The times. Throws InputError for one that is missing or not above the one before, and for a single row.
+std::vector<double> SampleTimes(const tables::Table& table, const SignalColumn& source);
+
+// The command, held where a value is missing. Throws InputError for a first row without one.
+std::vector<double> CommandValues(const tables::Table& table, const SignalColumn& source);
+
+}  // namespace hydro::runs
