@@ -1,23 +1,21 @@
 #include "diagnose/diagnose.h"
 
 #include <algorithm>
+#include <atomic>
+#include <chrono>
 #include <utility>
 
+#include "base/number_text.h"
 #include "diagnose/data/alignment.h"
 #include "diagnose/data/recording_remarks.h"
 #include "diagnose/data/run_data.h"
 #include "diagnose/fit/clock_fit.h"
-#include "diagnose/fit/identifiable.h"
 #include "diagnose/recording_first.h"
-#include "diagnose/search/search.h"
+#include "diagnose/search/proof.h"
 #include "diagnose/verdict/conclusion.h"
 
 namespace hydro::diagnose {
 namespace {
-
-constexpr int kMostChanges = 3;
-// The squared gap above which a model is wrong everywhere.
-constexpr double kWrongEverywhere = 25;
 
 // Splits off the last third of a single run as the held-out run.
 void HoldOutLastThird(runs::MeasuredRun* run, std::vector<runs::MeasuredRun>* held_out) {
@@ -149,62 +147,53 @@ SearchContext MakeContext(const model::ModelDescription& model, const PreparedRu
   return context;
 }
 
-// The given model with all base parameters fitted that the runs identify; the model as given where that
-// fails.
-Explanation Refit(const SearchContext& context, const Hypothesis& as_given, const Explanation& given,
-                  const std::vector<size_t>& allowed) {
-  const std::vector<model::StartState> starts = StartsOf(given.fitted);
-  Hypothesis refitted = as_given;
-  for (const model::EffectDescription& effect : context.given.effects) refitted.effects.push_back(effect.id);
-  refitted.base = Identifiable(as_given, context.runs, starts, allowed, context.sizes, context.jobs);
-  FitOptions fine;
-  fine.tolerance = 1e-5;
-  fine.jobs = context.jobs;
-  Explanation refit = Explain(context, refitted, starts, fine);
-  return refit.fitted.ok() ? refit : given;
-}
+// The search's clock: asks whether its time is up, and remembers whether it ever was.
+class TimeLimit {
+ public:
+  explicit TimeLimit(double seconds) : seconds_(seconds) {}
+  bool IsUp() {
+    const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - begin_;
+    if (elapsed.count() > seconds_) struck_ = true;
+    return struck_;
+  }
+  bool struck() const { return struck_; }
+  std::string Remark() const {
+    return "The time limit of " + ShortNumber(seconds_) +
+           " s ended the search: not everything was tried (--time-limit)";
+  }
 
-// Searches again from the refitted model if that predicts better, and keeps the result if it beats that of
-// `search`.
-void SearchFromRefit(const SearchContext& context, const Explanation& refit, SearchResult* search) {
-  // A few changes do not close so large a gap: search for the rest once the parameters fit.
-  const double gap = search->best.held_out_gap();
-  const bool far = gap > kWrongEverywhere && refit.held_out_gap() < gap;
-  if (!far && !Material(gap, refit.held_out_gap())) return;
-  SearchResult wider = Search(context, refit.fitted.hypothesis, kMostChanges);
-  if (!wider.given.fitted.ok() || !Material(gap, wider.best.held_out_gap())) return;
-  search->best = std::move(wider.best);
-  search->tried.insert(search->tried.end(), wider.tried.begin(), wider.tried.end());
-}
+ private:
+  double seconds_;
+  std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+  std::atomic<bool> struck_ = false;
+};
 
 }  // namespace
 
 Diagnosis Diagnose(const model::ModelDescription& model, std::vector<runs::MeasuredRun> runs,
                    std::vector<runs::MeasuredRun> held_out, const DiagnoseOptions& options,
                    const ProgressCallback& report_progress) {
+  TimeLimit limit(options.time_limit);
   const CheckedRecordings checked = CheckFirst(model, options.effects, options.jobs, &runs, &held_out);
   if (checked.mend_first) return MendFirst(model, checked, runs, held_out);
   const std::vector<size_t> allowed = AllowedBase(model, options.free);
   PreparedRuns prepared = Prepare(model, allowed, options.jobs, std::move(runs), std::move(held_out));
-  const SearchContext context = MakeContext(model, prepared, allowed, options, report_progress);
+  SearchContext context = MakeContext(model, prepared, allowed, options, report_progress);
+  context.time_is_up = [&limit] { return limit.IsUp(); };
 
-  // Try few changes to the model as given first: one wrong value or one missing effect is the likeliest.
   Hypothesis as_given;
   as_given.model = model;
-  SearchResult search = Search(context, as_given, kMostChanges);
-  if (!search.given.fitted.ok()) {
-    throw model::ModelError(search.given.fitted.failure);
+  const WideSearch found = SearchAndProve(context, as_given, allowed);
+  if (!found.search.given.fitted.ok()) {
+    throw model::ModelError(found.search.given.fitted.failure);
   }
-  if (report_progress) report_progress({"refitting the model's own parameters", 0.92});
-  const Explanation refit = Refit(context, as_given, search.given, allowed);
-  SearchFromRefit(context, refit, &search);
-
-  Diagnosis diagnosis = Conclude(context, search, refit);
+  Diagnosis diagnosis = Conclude(context, found.search, found.refit);
   const std::vector<std::string> remarks = RecordingRemarks(prepared.clocks, context.runs, context.held_out);
   diagnosis.remarks.insert(diagnosis.remarks.begin(), remarks.begin(), remarks.end());
   const std::vector<std::string> limits = LimitRemarks(model.parameters, context.runs);
   diagnosis.remarks.insert(diagnosis.remarks.end(), limits.begin(), limits.end());
   AddChecked(checked, &diagnosis);
+  if (limit.struck()) diagnosis.remarks.push_back(limit.Remark());
   diagnosis.recording = std::move(prepared.clocks);
   return diagnosis;
 }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -17,6 +18,8 @@ struct DiagnoseOptions {
   // Base parameters that may be refitted; empty: all that the runs identify.
   std::vector<std::string> free;
   int jobs = 1;
+  // s. The search ends then with what it has; a remark says so. Infinity: it takes all the time it needs.
+  double time_limit = std::numeric_limits<double>::infinity();
   uint64_t seed = 1;
 };
 

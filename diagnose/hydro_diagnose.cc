@@ -11,6 +11,8 @@
 
 #include "base/did_you_mean.h"
 #include "base/new_file.h"
+#include "base/number_text.h"
+#include "base/text_file.h"
 #include "diagnose/recording_first.h"
 #include "diagnose/report/progress_bar.h"
 #include "diagnose/report/report_html.h"
@@ -92,12 +94,24 @@ void RequireDifferentFiles(const DiagnoseRequest& request) {
   }
 }
 
+// What RunDiagnosis may write, or remove, in the request's folder.
+constexpr const char* kReportFiles[] = {"report.html", "report.json", "model.toml", "next.toml"};
+
+void RequireInputsKept(const DiagnoseRequest& request) {
+  std::vector<std::string> inputs = request.runs;
+  inputs.insert(inputs.end(), request.held_out.begin(), request.held_out.end());
+  inputs.push_back(request.model);
+  if (!request.effects.empty()) inputs.push_back(request.effects);
+  for (const char* name : kReportFiles) CheckKeeps(request.folder + "/" + name, inputs);
+}
+
 Diagnosis ReadAndDiagnose(const DiagnoseRequest& request, const Diagnoser& diagnose,
                           const ProgressCallback& report_progress) {
   DiagnoseOptions options;
   if (!request.effects.empty()) options.effects = ReadEffectList(request.effects);
   if (!request.free.empty()) options.free = SplitFree(request.free);
   options.jobs = request.jobs;
+  options.time_limit = request.time_limit;
   options.seed = static_cast<uint64_t>(request.seed);
   const model::ModelDescription model = settings::LoadModelFile(request.model);
   report_progress({"reading the runs", 0});
@@ -181,7 +195,12 @@ void RunDiagnosis(const DiagnoseRequest& request, const Diagnoser& diagnose, std
     throw InputError("--seed: found " + std::to_string(request.seed) +
                      ", allowed a whole number of at least 0");
   }
+  if (!(request.time_limit > 0)) {
+    throw InputError("--time-limit: found " + ShortestNumber(request.time_limit) +
+                     ", allowed seconds above 0");
+  }
   RequireDifferentFiles(request);
+  RequireInputsKept(request);
   const ReportFolder folder(request.folder);
 
   const auto begin = std::chrono::steady_clock::now();

@@ -18,6 +18,7 @@ struct DiagnoseRequest {
   std::string free;     // comma-separated names; "": all that the runs identify
   int jobs = 1;
   int64_t seed = 1;
+  double time_limit = 60;  // s
   bool si = false;
   bool check = false;  // look at the recordings only; no folder is needed
 };

@@ -26,6 +26,8 @@ int main(int argc, char** argv) {
   line.AddOption("--free", &request.free,
                  "NAME,... base parameters that may be refitted (all that the runs identify)");
   line.AddOption("--jobs", &request.jobs, "N how much is computed at the same time (the processors)");
+  line.AddOption("--time-limit", &request.time_limit,
+                 "S after which the search ends with what it has, in seconds (60)");
   line.AddOption("--seed", &request.seed, "N of all that is random (1)");
   line.AddFlag("--si", &request.si, "print figures in SI units, in report.html too");
   line.AddFlag("--check", &request.check,

@@ -56,12 +56,12 @@ Mode StartFrom(Equations* equations, const NumbersOf<T>& numbers, double time, c
 }
 
 // How many steps a pass may take in all, so that a far too stiff model does not take hours.
-int64_t MostSteps(const Stimulus& stimulus, double relative_tolerance) {
+int64_t MostSteps(const Stimulus& stimulus, const ResponseOptions& options) {
   const double duration = stimulus.time.back() - stimulus.time.front();
   // The step of a fourth-order method scales with the fourth root of its error.
-  const double finer = std::max(1.0, std::pow(1e-6 / relative_tolerance, 0.25));
-  return static_cast<int64_t>(finer * (20 * static_cast<double>(stimulus.time.size()) + 500 * duration)) +
-         1000;
+  const double finer = std::max(1.0, std::pow(1e-6 / options.relative_tolerance, 0.25));
+  const double samples = static_cast<double>(stimulus.time.size());
+  return static_cast<int64_t>(finer * (options.most_steps_per_sample * samples + 500 * duration)) + 1000;
 }
 
 // Seeds the unknowns [first, first + kJetWidth) as directions, in `numbers` and `base`.
@@ -96,8 +96,7 @@ void Pass(const ModelDescription& model, const Stimulus& stimulus, const StartSt
   CompleteNumbers<T>(equations.data(), &numbers);
 
   ModeMachine<T, Form::kGeneral, DerivativeStepper<T>> machine(
-      &equations, &numbers, &numbers, options.relative_tolerance,
-      MostSteps(stimulus, options.relative_tolerance));
+      &equations, &numbers, &numbers, options.relative_tolerance, MostSteps(stimulus, options));
   T state[kMaxStates];
   const Mode mode = StartFrom(&equations, numbers, stimulus.time.front(), base, state);
   machine.Start(stimulus.time.front(), state, mode);

@@ -72,8 +72,9 @@ struct Response {
 struct ResponseOptions {
   ChannelSet channels = {true, true, true, true, true, true};
   double relative_tolerance = 1e-6;
-  bool repeated_effects = false;  // as in ActuatorOptions
-  size_t stride = 1;              // every stride-th sample is read; the command changes at all of them
+  bool repeated_effects = false;      // as in ActuatorOptions
+  double most_steps_per_sample = 20;  // then ModelError: so that a far too stiff model does not take hours
+  size_t stride = 1;                  // every stride-th sample is read; the command changes at all of them
 };
 
 // Throws ModelError as Actuator does. Identical arguments give identical bits, and the values do not depend

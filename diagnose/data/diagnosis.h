@@ -11,7 +11,12 @@
 
 namespace hydro::diagnose {
 
-enum class Verdict { kNamed, kTied, kParameters, kUnexplained, kNothingMissing };
+enum class Verdict { kNamed, kTied, kPartly, kParameters, kUnexplained, kNothingMissing };
+
+// Whether the verdict leaves a significant gap.
+inline bool IsOpen(Verdict verdict) {
+  return verdict == Verdict::kUnexplained || verdict == Verdict::kPartly;
+}
 
 // A number with its 95 % interval.
 struct Estimated {
@@ -68,6 +73,13 @@ struct SignalGap {
   BeforeAfter fit, held_out;
 };
 
+// Gaps of predictions over a horizon: windows of that length, each from a start of its own.
+struct HorizonGap {
+  double seconds = 0;
+  BeforeAfter fit, held_out;  // in noise units of all signals
+  std::vector<SignalGap> signals;
+};
+
 struct Candidate {
   std::string id;  // of the effect, or "parameter k_1"
   // Fall of the squared gap that the score test expects, in noise units squared.
@@ -111,6 +123,7 @@ struct Diagnosis {
   std::vector<ChangedParameter> parameters;
   std::vector<SignalGap> signals;
   BeforeAfter fit, held_out;
+  std::vector<HorizonGap> horizons;  // the shortest first
   NextExperiment next;
   std::vector<Candidate> candidates;
   std::vector<RunCurves> curves;

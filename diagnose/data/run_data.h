@@ -31,7 +31,7 @@ struct SignalData {
 struct RunData {
   std::string name;  // unique among the runs
   runs::MeasuredRun measured;
-  model::Stimulus stimulus;  // `motion` points to the one below
+  model::Stimulus stimulus;  // `motion` points to the one below, or to that of the whole run
   std::unique_ptr<trajectory::Trajectory> motion;
   model::StartState start{};  // the base states at the first sample, from nearby samples
   // Which of these states are unknown: measured badly or not at all. The others are held (for example the
@@ -40,7 +40,8 @@ struct RunData {
   // The start at rest, if `start` moves but the first speed sample also allows rest: for a motor that
   // accelerates from rest, extrapolation gives a speed.
   std::optional<model::StartState> at_rest;
-  std::vector<SignalData> signals;  // those compared with a simulation
+  std::vector<SignalData> signals;    // those compared with a simulation
+  double most_steps_per_sample = 20;  // that a simulation of it may take
 
   size_t samples() const { return stimulus.time.size(); }
   double duration() const { return stimulus.time.back() - stimulus.time.front(); }

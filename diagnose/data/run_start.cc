@@ -89,8 +89,8 @@ void SetStart(const model::Parameters& model, RunData* data) {
                                                 Rest(arm_angle.slope, arm_angle.slope_error));
     data->start_free[model::kArmAngle] = data->start_free[model::kArmSpeed] = true;
   } else if (data->stimulus.shaft == model::Shaft::kDriven) {
-    data->start[model::kArmAngle] = data->motion->Value(time.front());
-    data->start[model::kArmSpeed] = data->motion->Rate(time.front());
+    data->start[model::kArmAngle] = data->stimulus.motion->Value(time.front());
+    data->start[model::kArmSpeed] = data->stimulus.motion->Rate(time.front());
   } else {
     data->start[model::kArmAngle] = data->stimulus.arm_angle;
   }

@@ -39,6 +39,13 @@ BlockSums BlocksOf(const std::vector<const RunData*>& runs, const HeldOut& predi
   return blocks;
 }
 
+BlockSums LogarithmsOf(const HeldOut& predicted) {
+  BlockSums blocks;
+  for (const double gap : predicted.gaps) blocks.sums.push_back(std::log(std::clamp(gap, 1e-3, 1e12)));
+  blocks.count = static_cast<double>(predicted.count);
+  return blocks;
+}
+
 double TValue(const BlockSums& worse, const BlockSums& better) {
   const size_t n = worse.sums.size();
   double mean = 0;

@@ -14,6 +14,8 @@ struct BlockSums {
   double count = 0;  // total number of residuals
 };
 BlockSums BlocksOf(const std::vector<const RunData*>& runs, const HeldOut& predicted);
+// The logarithms of the squared gaps, a run each: for windows.
+BlockSums LogarithmsOf(const HeldOut& predicted);
 
 // The total excess of `worse` over `better`, divided by its standard error from the scatter of the blocks.
 // Both must have the same blocks.

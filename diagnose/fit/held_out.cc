@@ -47,6 +47,7 @@ HeldOut Sum(const std::vector<HeldOut>& parts) {
     all.count += part.count;
     all.starts.push_back(part.starts.front());
     all.models.push_back(part.models.front());
+    all.gaps.push_back(part.count == 0 ? 0 : part.sum / static_cast<double>(part.count));
   }
   return all;
 }
@@ -91,6 +92,12 @@ std::vector<T> Without(const std::vector<T>& all, size_t place) {
 }
 
 }  // namespace
+
+double HeldOut::typical_squared_gap() const {
+  double logarithms = 0;
+  for (const double gap : gaps) logarithms += std::log(std::clamp(gap, 1e-3, 1e12));
+  return gaps.empty() ? 0 : std::exp(logarithms / static_cast<double>(gaps.size()));
+}
 
 HeldOut Predict(const Fitted& fitted, const std::vector<const RunData*>& held_out, int jobs) {
   std::vector<HeldOut> parts(held_out.size());

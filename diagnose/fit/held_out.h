@@ -11,11 +11,15 @@ namespace hydro::diagnose {
 struct HeldOut {
   double sum = 0;
   size_t count = 0;
-  // By run: the predicted start, and the model that did not see the run.
+  // By run: the predicted start, the model that did not see the run, and its squared gap.
   std::vector<model::StartState> starts;
   std::vector<model::ModelDescription> models;
+  std::vector<double> gaps;
 
   double squared_gap() const { return count == 0 ? 0 : sum / static_cast<double>(count); }
+  // The geometric mean of the runs' squared gaps: what it says of windows does not hang on the worst few, and a
+  // model that halves every window's gap counts the same at any distance from the noise.
+  double typical_squared_gap() const;
 };
 
 // Predicts runs that the fit has not seen; only their starts are fitted.

@@ -28,6 +28,7 @@ Residuals ResidualsOf(const model::ModelDescription& model, const RunData& run,
   options.repeated_effects = repeated_effects;
   options.channels = {};
   options.relative_tolerance = kTolerance;
+  options.most_steps_per_sample = run.most_steps_per_sample;
   for (const SignalData& signal : run.signals) options.channels[static_cast<size_t>(signal.channel)] = true;
   const model::Response response = model::Respond(model, run.stimulus, start, unknowns, options);
 

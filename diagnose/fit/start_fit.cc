@@ -10,7 +10,7 @@ Fitted FitStart(const Hypothesis& hypothesis, const RunData& run, const model::S
                 double doubtful) {
   const Hypothesis held = hypothesis.Held();
   FitOptions options;
-  options.most_iterations = 6;
+  options.most_iterations = 12;
   Fitted best = Fit(held, {&run}, {from}, options);
   const auto begin_at = [&](const model::StartState& start) {
     if (start == from) return;

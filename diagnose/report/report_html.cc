@@ -53,7 +53,7 @@ std::string Head(const Diagnosis& diagnosis) {
               ? "each held out in turn."
               : "held out, and not fitted: " + Joined(diagnosis.held_out_runs) + ".";
   std::string verdict = VerdictName(diagnosis.verdict);
-  const bool open = diagnosis.verdict == Verdict::kUnexplained;
+  const bool open = IsOpen(diagnosis.verdict);
   std::replace(verdict.begin(), verdict.end(), '_', ' ');
   return "<h1>" + page::EscapeMarkup("Gap report: " + diagnosis.model.name) + "</h1>\n<p class=\"meta\">" +
          page::EscapeMarkup(meta) + "</p>\n<p class=\"verdict" + (open ? " unexplained" : "") +

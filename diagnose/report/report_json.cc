@@ -88,16 +88,29 @@ Json Gap(const BeforeAfter& gap) {
   return {{"before", gap.before}, {"refit_only", gap.refit_only}, {"after", gap.after}};
 }
 
-Json Gaps(const Diagnosis& diagnosis) {
+Json SignalGaps(const std::vector<SignalGap>& gaps, const UnitSystem& units) {
   Json signals = Json::object();
-  for (const SignalGap& signal : diagnosis.signals) {
-    signals[ChannelName(signal.channel)] = {{"unit", ChannelUnit(signal.channel, diagnosis.model.units)},
+  for (const SignalGap& signal : gaps) {
+    signals[ChannelName(signal.channel)] = {{"unit", ChannelUnit(signal.channel, units)},
                                             {"noise", signal.noise},
                                             {"fit", Gap(signal.fit)},
                                             {"held_out", Gap(signal.held_out)}};
   }
-  return {
-      {"signals", std::move(signals)}, {"fit", Gap(diagnosis.fit)}, {"held_out", Gap(diagnosis.held_out)}};
+  return signals;
+}
+
+Json Gaps(const Diagnosis& diagnosis) {
+  Json horizons = Json::array();
+  for (const HorizonGap& horizon : diagnosis.horizons) {
+    horizons.push_back({{"seconds", horizon.seconds},
+                        {"signals", SignalGaps(horizon.signals, diagnosis.model.units)},
+                        {"fit", Gap(horizon.fit)},
+                        {"held_out", Gap(horizon.held_out)}});
+  }
+  return {{"signals", SignalGaps(diagnosis.signals, diagnosis.model.units)},
+          {"fit", Gap(diagnosis.fit)},
+          {"held_out", Gap(diagnosis.held_out)},
+          {"horizons", std::move(horizons)}};
 }
 
 Json NextExperimentOf(const Diagnosis& diagnosis, const std::string& next_config) {
@@ -124,7 +137,8 @@ Json Candidates(const Diagnosis& diagnosis) {
 }  // namespace
 
 const std::string& VerdictName(Verdict verdict) {
-  static const std::string names[] = {"named", "tied", "parameters", "unexplained", "nothing_missing"};
+  static const std::string names[] = {"named",      "tied",        "partly",
+                                      "parameters", "unexplained", "nothing_missing"};
   return names[static_cast<size_t>(verdict)];
 }
 

@@ -11,6 +11,8 @@ std::vector<model::StartState> MeasuredStarts(const std::vector<const RunData*>&
   return starts;
 }
 
+bool TimeIsUp(const SearchContext& context) { return context.time_is_up && context.time_is_up(); }
+
 Explanation Explain(const SearchContext& context, const Hypothesis& hypothesis,
                     const std::vector<model::StartState>& starts, const FitOptions& options) {
   Explanation explanation;
@@ -21,7 +23,9 @@ Explanation Explain(const SearchContext& context, const Hypothesis& hypothesis,
     explanation.blocks = BlocksOf(context.runs, explanation.held_out);
   } else {
     explanation.held_out = Predict(explanation.fitted, context.held_out, options.jobs);
-    explanation.blocks = BlocksOf(context.held_out, explanation.held_out);
+    explanation.windows = context.windows;
+    explanation.blocks = context.windows ? LogarithmsOf(explanation.held_out)
+                                         : BlocksOf(context.held_out, explanation.held_out);
   }
   return explanation;
 }

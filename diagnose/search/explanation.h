@@ -1,6 +1,7 @@
 // An explanation of the runs: a hypothesis, fitted, and how well it predicts runs that it was not fitted to.
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include "diagnose/fit/comparison.h"
@@ -14,10 +15,11 @@ namespace hydro::diagnose {
 struct Explanation {
   Fitted fitted;
   HeldOut held_out;
-  BlockSums blocks;  // of held_out
+  BlockSums blocks;      // of held_out; of windows the logarithms of their squared gaps
+  bool windows = false;  // it explains windows, not whole runs
 
   double squared_gap() const { return fitted.squared_gap(); }
-  double held_out_gap() const { return held_out.squared_gap(); }
+  double held_out_gap() const { return windows ? held_out.typical_squared_gap() : held_out.squared_gap(); }
   const std::vector<Change>& changes() const { return fitted.hypothesis.changes; }
 };
 
@@ -26,11 +28,16 @@ struct SearchContext {
   model::ModelDescription given;
   std::vector<const RunData*> runs;
   std::vector<const RunData*> held_out;  // empty: the runs are held out in turn
+  bool windows = false;                  // the runs are windows of runs
   std::vector<Change> changes;           // those that may be made
   Sizes sizes;
   int jobs = 1;
+  std::function<bool()> time_is_up;  // may be empty: the search has all the time it needs
   ProgressCallback report_progress;
 };
+
+// Whether the search has to end with what it has.
+bool TimeIsUp(const SearchContext& context);
 
 // Fits the hypothesis and predicts the held-out runs, both with the options' jobs.
 Explanation Explain(const SearchContext& context, const Hypothesis& hypothesis,

@@ -35,14 +35,21 @@ constexpr double kCloseEnough = 1.25;
 // Above this squared gap of the fit, an explanation with a change removed is not refitted from other starts.
 constexpr double kRefitBelow = 3;
 
+// A refit that has come no nearer than this many times the best one's sum of squares after a few iterations
+// is left as it is.
+constexpr int kIterationsToQualify = 3;
+constexpr double kOutOfTheRace = 6;
+
+constexpr char kNoTime[] = "the time limit ended the search";
+
 // Of two that predict equally well, prefers the one with fewer new numbers, and a wrong value to a missing
 // effect.
 double Cost(const Explanation& one) {
-  double cost = one.held_out_gap();
+  double share = 1;
   for (const FreeParameter& parameter : one.fitted.hypothesis.Free()) {
-    cost += parameter.unknown.kind == model::Unknown::Kind::kBase ? 0.005 : 0.01;
+    share += parameter.unknown.kind == model::Unknown::Kind::kBase ? 0.005 : 0.01;
   }
-  return cost;
+  return std::max(1.0, one.held_out_gap()) * share + std::min(0.0, one.held_out_gap() - 1);
 }
 
 // A model cannot contain an effect twice, and nothing is changed twice.
@@ -71,8 +78,8 @@ class Searcher {
     result_.best = result_.given;
     Grow(Extend({result_.given}, 0), 0);
     if (result_.best.held_out_gap() >= kCloseEnough) Grow(TryAllAlone(), 0);
-    Exchange();
-    RemoveUnneeded();
+    if (!TimeIsUp(context_)) Exchange();
+    if (!TimeIsUp(context_)) RemoveUnneeded();
     if (const Explanation* instead = ParameterInstead(result_, context_.given)) {
       result_.best = *instead;
     }
@@ -103,6 +110,7 @@ class Searcher {
       while (beam.size() > 1 && beam.back().fitted.sum > kBehind * beam.front().fitted.sum) beam.pop_back();
       result_.best = *best;
       if (result_.best.held_out_gap() < kCloseEnough || ++step >= most_changes_) return;
+      if (TimeIsUp(context_)) return;
       next = Extend(beam, step);
     }
   }
@@ -159,15 +167,43 @@ class Searcher {
     return FitAll(pool, StartsOf(beam.front().fitted), most);
   }
 
+  // Fits all, with few iterations, and with more those that are then not far behind the best.
+  std::vector<Fitted> FitInRounds(const std::vector<Scanned>& pool,
+                                  const std::vector<model::StartState>& starts) const {
+    std::vector<Fitted> fits(pool.size());
+    FitOptions first = coarse_, rest = coarse_;
+    first.most_iterations = kIterationsToQualify;
+    rest.most_iterations = coarse_.most_iterations - kIterationsToQualify;
+    ParallelFor(pool.size(), context_.jobs, [&](size_t i) {
+      const std::vector<model::StartState>& own = pool[i].run_starts;
+      fits[i] = FitUnlessTimeIsUp(pool[i].start, own.empty() ? starts : own, first);
+    });
+    double best = std::numeric_limits<double>::infinity();
+    for (const Fitted& fit : fits) {
+      if (fit.ok()) best = std::min(best, fit.sum);
+    }
+    ParallelFor(fits.size(), context_.jobs, [&](size_t i) {
+      if (!fits[i].ok() || fits[i].sum > kOutOfTheRace * best) return;
+      Fitted more = FitUnlessTimeIsUp(fits[i].hypothesis, StartsOf(fits[i]), rest);
+      if (more.ok()) fits[i] = std::move(more);
+    });
+    return fits;
+  }
+
+  Fitted FitUnlessTimeIsUp(const Hypothesis& hypothesis, const std::vector<model::StartState>& starts,
+                           const FitOptions& options) const {
+    if (!TimeIsUp(context_)) return Fit(hypothesis, context_.runs, starts, options);
+    Fitted none;
+    none.hypothesis = hypothesis;
+    none.failure = kNoTime;
+    return none;
+  }
+
   // Fits all; returns the best few by their fit, with held-out predictions.
   std::vector<Explanation> FitAll(const std::vector<Scanned>& pool,
                                   const std::vector<model::StartState>& starts,
                                   double most = std::numeric_limits<double>::infinity()) {
-    std::vector<Fitted> fits(pool.size());
-    ParallelFor(pool.size(), context_.jobs, [&](size_t i) {
-      const auto& own = pool[i].run_starts;
-      fits[i] = Fit(pool[i].start, context_.runs, own.empty() ? starts : own, coarse_);
-    });
+    std::vector<Fitted> fits = FitInRounds(pool, starts);
     for (const Fitted& fit : fits) {
       if (fit.ok()) continue;
       const bool by_another_start = std::any_of(fits.begin(), fits.end(), [&](const Fitted& other) {

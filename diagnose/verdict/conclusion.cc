@@ -7,6 +7,8 @@
 #include "base/word_list.h"
 #include "diagnose/fit/intervals.h"
 #include "diagnose/locate/locate.h"
+#include "diagnose/search/window_search.h"
+#include "diagnose/verdict/horizons.h"
 #include "diagnose/verdict/next_experiment.h"
 #include "diagnose/verdict/ranking.h"
 #include "diagnose/verdict/run_curves.h"
@@ -103,6 +105,10 @@ std::string Sentence(const Diagnosis& d) {
     case Verdict::kTied:
       return "Missing, but these data cannot tell which: " + Enumerated(names) +
              (parameters.empty() ? "" : "; with " + Enumerated(parameters)) + gap;
+    case Verdict::kPartly:
+      return "Missing, but not all that is missing: " + Enumerated(names) +
+             (parameters.empty() ? "" : "; with " + Enumerated(parameters)) +
+             "; no other known effect takes as much of the gap, and what is left has another cause" + gap;
     case Verdict::kUnexplained: {
       const double before = d.held_out.before * d.held_out.before - 1;
       const double left = (d.held_out.after * d.held_out.after - 1) / before;
@@ -157,11 +163,29 @@ std::vector<model::ModelDescription> DescribeFound(const SearchContext& context,
   return rivals;
 }
 
-// The verdict on what was found: `d` has its effects and parameters.
+// Whether what was found takes a material part of the gap on every horizon but at most one, measured on runs
+// that were not fitted: half of the squared gap that the model's own parameters leave.
+bool TakesMaterialPart(const std::vector<HorizonGap>& horizons) {
+  constexpr double kPart = 0.5;
+  size_t material = 0;
+  for (const HorizonGap& horizon : horizons) {
+    const double before = std::pow(std::min(horizon.held_out.before, horizon.held_out.refit_only), 2) - 1;
+    const double after = std::pow(horizon.held_out.after, 2) - 1;
+    material += before > 0 && after < (1 - kPart) * before ? 1 : 0;
+  }
+  return !horizons.empty() && material + 1 >= horizons.size();
+}
+
+// The verdict on what was found: `d` has its effects, parameters and horizons.
 Verdict VerdictOn(const SearchContext& context, const SearchResult& search, const Diagnosis& d) {
   const Explanation& best = search.best;
-  if (!Closed(search.given.held_out_gap(), best.held_out_gap(), ExactSensors(context.runs))) {
-    return Verdict::kUnexplained;
+  const bool exact = ExactSensors(context.runs);
+  if (!Closed(search.given.held_out_gap(), best.held_out_gap(), exact) ||
+      !Closed(search.given.squared_gap(), best.squared_gap(), exact)) {
+    const double refitted = std::min(d.held_out.before, d.held_out.refit_only);
+    const bool found = !d.effects.empty() && TakesMaterialPart(d.horizons) &&
+                       Material(refitted * refitted, best.held_out_gap());
+    return found ? Verdict::kPartly : Verdict::kUnexplained;
   }
   if (best.changes().empty() && d.parameters.empty()) return Verdict::kNothingMissing;
   if (d.effects.empty()) return Verdict::kParameters;
@@ -189,6 +213,7 @@ Diagnosis Conclude(const SearchContext& context, const SearchResult& search, con
   d.held_out = HeldOutGaps(given, refit, best);
   if (report_progress) report_progress({"intervals", 0.95});
   const std::vector<model::ModelDescription> rivals = DescribeFound(context, search, &d);
+  d.horizons = HorizonGaps(context, SearchHorizon(context.runs), given, refit, best);
   d.verdict = VerdictOn(context, search, d);
   d.model = best.fitted.hypothesis.model;
   d.signals = SignalGaps(context, given, refit, best);
@@ -196,7 +221,7 @@ Diagnosis Conclude(const SearchContext& context, const SearchResult& search, con
   d.curves = CurvesOf(context, given, best);
   if (d.verdict != Verdict::kNothingMissing) {
     if (report_progress) report_progress({"where the gap is", 0.97});
-    Localisation located = Locate(d.verdict == Verdict::kUnexplained ? d.model : context.given, context.runs);
+    Localisation located = Locate(IsOpen(d.verdict) ? d.model : context.given, context.runs);
     d.location = std::move(located.location);
     d.missing = std::move(located.missing);
   }

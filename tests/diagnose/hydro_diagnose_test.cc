@@ -177,6 +177,9 @@ TEST_F(HydroDiagnoseTest, Errors) {
     return ErrorOf(request);
   };
   EXPECT_THAT(error([](DiagnoseRequest& r) { r.jobs = 0; }), HasSubstr("--jobs: found 0, allowed 1 to 256"));
+  EXPECT_THAT(error([](DiagnoseRequest& r) { r.time_limit = 0; }), HasSubstr("--time-limit: found 0"));
+  EXPECT_THAT(error([](DiagnoseRequest& r) { r.time_limit = std::nan(""); }),
+              HasSubstr("--time-limit: found"));
   EXPECT_THAT(error([](DiagnoseRequest& r) { r.seed = -1; }), HasSubstr("--seed: found -1"));
   EXPECT_THAT(error([](DiagnoseRequest& r) { r.free = "b,q"; }), HasSubstr("--free: found \"q\", allowed"));
   EXPECT_THAT(error([](DiagnoseRequest& r) { r.free = "b,"; }), HasSubstr("--free: found \"\""));
@@ -201,6 +204,19 @@ TEST_F(HydroDiagnoseTest, Errors) {
   EXPECT_THAT(effects("effects = \"pump.stribeck\"\n"), HasSubstr("effects: found \"pump.stribeck\""));
   EXPECT_THAT(effects("effect = []\n"), HasSubstr("effect"));
   EXPECT_THAT(effects(""), HasSubstr("effects: found nothing"));
+}
+
+// Tests that no report replaces what it was made from.
+TEST_F(HydroDiagnoseTest, KeepsItsInputs) {
+  request_.folder = folder_;
+  const std::string before = Read("model.toml");
+  EXPECT_THAT(ErrorOf(request_), HasSubstr("model.toml"));
+  EXPECT_EQ(Read("model.toml"), before);
+  fs::rename(Path("a.csv"), Path("report.json"));
+  request_.model = Path("other.toml");
+  request_.runs = {Path("b.csv"), Path("report.json")};
+  Write("other.toml", before);
+  EXPECT_THAT(ErrorOf(request_), HasSubstr("report.json"));
 }
 
 // Tests that a model that cannot follow the runs is bad input, and that the error names the model.

@@ -64,6 +64,21 @@ TEST(ReportJson, Keys) {
   EXPECT_EQ(candidate["rejected_because"], "the held-out gap stays 13 times as large");
 }
 
+// Tests that each horizon is reported with its seconds, gaps and signals.
+TEST(ReportJson, Horizons) {
+  Diagnosis diagnosis = testing::EmptyDiagnosis();
+  SignalGap p1;
+  p1.noise = 1.5;
+  p1.held_out = {30, 12, 3};
+  diagnosis.horizons = {{0.1, {8, 7, 1.1}, {9, 7.5, 1.2}, {p1}}};
+  const Json horizon = Json::parse(ReportJson(diagnosis, "", 1))["gap"]["horizons"][0];
+  EXPECT_EQ(horizon["seconds"], 0.1);
+  EXPECT_EQ(horizon["fit"]["refit_only"], 7);
+  EXPECT_EQ(horizon["held_out"]["after"], 1.2);
+  EXPECT_EQ(horizon["signals"]["p1"]["held_out"]["before"], 30);
+  EXPECT_EQ(horizon["signals"]["p1"]["unit"], "psi");
+}
+
 // Tests that numbers that are not finite become null, and that there is no next experiment where none is
 // needed.
 TEST(ReportJson, Nothing) {
@@ -89,6 +104,7 @@ TEST(ReportJson, ForeignBytes) {
 TEST(ReportJson, Verdicts) {
   EXPECT_EQ(VerdictName(Verdict::kNamed), "named");
   EXPECT_EQ(VerdictName(Verdict::kTied), "tied");
+  EXPECT_EQ(VerdictName(Verdict::kPartly), "partly");
   EXPECT_EQ(VerdictName(Verdict::kParameters), "parameters");
   EXPECT_EQ(VerdictName(Verdict::kUnexplained), "unexplained");
   EXPECT_EQ(VerdictName(Verdict::kNothingMissing), "nothing_missing");

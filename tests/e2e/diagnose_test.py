@@ -89,6 +89,8 @@ class DiagnoseTest(stack.TestCase):
             (r"effects\.toml:1: effects: found the unknown effect \"pump\.magic\"", [*given, "--effects", unknown]),
             ("--free: found \"q\"", [*given, "--free", "b,q"]),
             ("--jobs: found 0", [*given, "--jobs", "0"]),
+            ("--time-limit: found 0", [*given, "--time-limit", "0"]),
+            (r"model\.toml", [run, "--model", self.write("model.toml", "name = 'x'\n"), "--out", self.path(".")]),
             ("--seed", [*given, "--seed", "-1"]),
             ("--seed", [*given, "--seed", "x"]),
             ("--sed", [*given, "--sed", "1"]),

@@ -36,7 +36,8 @@ class GapClosedTest(stack.TestCase):
         return log
 
     def diagnose(self, model, out, *logs):
-        self.run_program("hydro-diagnose", *logs, "--model", self.path(model), "--out", self.path(out), timeout=LONG)
+        self.run_program("hydro-diagnose", *logs, "--model", self.path(model), "--out", self.path(out),
+                         "--time-limit", str(LONG), timeout=LONG)
         with open(self.path(os.path.join(out, "report.json")), encoding="utf-8") as file:
             return json.load(file)
 

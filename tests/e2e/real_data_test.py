@@ -30,7 +30,7 @@ class RealDataTest(stack.TestCase):
             file.write(EFFECTS)
         run = self.start("hydro-diagnose", self.path(SINE + ".csv"), "--hold-out", self.path(FRICTION + ".csv"),
                          "--model", os.path.join(EXAMPLE, "model.toml"), "--effects", self.path("effects.toml"),
-                         "--free", "J,b,T_s,c_E", "--out", self.path("out"))
+                         "--free", "J,b,T_s,c_E", "--time-limit", str(LONG), "--out", self.path("out"))
         self.assertEqual(run.wait(LONG), 0, run.report())
         with open(os.path.join(self.path("out"), "report.json"), encoding="utf-8") as file:
             report = json.load(file)

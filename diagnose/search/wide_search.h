@@ -1,0 +1,27 @@
+// A search from the model as given and, if that does not explain the runs, from the model with all of its own
+// parameters refitted.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "diagnose/search/search.h"
+
+namespace hydro::diagnose {
+
+struct WideSearch {
+  SearchResult search;
+  Explanation refit;  // the given model with all base parameters fitted that the runs identify
+};
+
+// `allowed`: indices in BaseParameters() of those that may be refitted. If the given model cannot be simulated,
+// `search.given` says so and the rest is empty.
+WideSearch SearchWidely(const SearchContext& context, const Hypothesis& as_given,
+                        const std::vector<size_t>& allowed);
+
+// The given model with all base parameters fitted that the runs identify; the model as given where that
+// fails.
+Explanation Refit(const SearchContext& context, const Hypothesis& as_given, const Explanation& given,
+                  const std::vector<size_t>& allowed);
+
+}  // namespace hydro::diagnose

@@ -1,0 +1,77 @@
+#include "diagnose/search/window_search.h"
+
+#include <algorithm>
+
+#include "diagnose/data/sample_interval.h"
+#include "diagnose/data/windows.h"
+#include "diagnose/search/refits.h"
+
+namespace hydro::diagnose {
+
+namespace {
+
+// s. Long enough for the arm to move and the pressures to settle, short enough that drift does not drown what
+// is missing.
+constexpr double kHorizon = 0.4;
+constexpr double kFewestSamples = 60;
+constexpr double kWindowsPerRun = 4;
+// Windows that are fitted, and as many again that choose.
+constexpr size_t kMostWindows = 20;
+// Explanations whose squared gap exceeds 1 by this many times that of the best are not worth a trial.
+constexpr double kNear = 1.5;
+
+}  // namespace
+
+double SearchHorizon(const std::vector<const RunData*>& runs) {
+  std::vector<const std::vector<double>*> times;
+  double shortest = runs.front()->duration();
+  for (const RunData* run : runs) {
+    times.push_back(&run->stimulus.time);
+    shortest = std::min(shortest, run->duration());
+  }
+  const double sampled = kFewestSamples * MedianInterval(times);
+  return std::max(std::min(std::max(kHorizon, sampled), shortest / kWindowsPerRun), 0.25 * sampled);
+}
+
+SearchWindows WindowsForSearch(const std::vector<const RunData*>& runs, const model::Parameters& model) {
+  SearchWindows windows;
+  windows.seconds = SearchHorizon(runs);
+  for (const RunData* run : runs) {
+    for (RunData& window : WindowsOf(*run, windows.seconds, model)) windows.all.push_back(std::move(window));
+  }
+  windows.fitted = EvenlySpread(windows.all, kMostWindows, 0, 2);
+  windows.choosing = EvenlySpread(windows.all, kMostWindows, 1, 2);
+  return windows;
+}
+
+SearchContext OnWindows(const SearchContext& context, const SearchWindows& windows) {
+  SearchContext on_windows = context;
+  on_windows.runs = windows.fitted;
+  on_windows.held_out = windows.choosing;
+  on_windows.windows = true;
+  return on_windows;
+}
+
+std::vector<const Explanation*> Leading(const SearchResult& search, size_t most) {
+  std::vector<const Explanation*> leading;
+  for (const Explanation& one : search.tried) {
+    if (!one.blocks.sums.empty() && one.fitted.ok()) leading.push_back(&one);
+  }
+  std::stable_sort(leading.begin(), leading.end(), [](const Explanation* a, const Explanation* b) {
+    return a->held_out_gap() < b->held_out_gap();
+  });
+  leading.insert(leading.begin(), &search.best);
+  const double limit = 1 + kNear * std::max(0.1, search.best.held_out_gap() - 1);
+  std::vector<const Explanation*> chosen;
+  for (const Explanation* one : leading) {
+    if (chosen.size() >= most || one->held_out_gap() > limit) break;
+    const bool there = std::any_of(chosen.begin(), chosen.end(), [&](const Explanation* other) {
+      return SameChanges(other->fitted.hypothesis, one->fitted.hypothesis) &&
+             other->fitted.hypothesis.base == one->fitted.hypothesis.base;
+    });
+    if (!there) chosen.push_back(one);
+  }
+  return chosen;
+}
+
+}  // namespace hydro::diagnose

@@ -1,0 +1,31 @@
+// The search on windows: which explanations predict short stretches of the runs best. It decides at any
+// distance from the noise, and in a fraction of the time that whole runs take; whole runs are then the proof.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "diagnose/data/run_data.h"
+#include "diagnose/search/wide_search.h"
+
+namespace hydro::diagnose {
+
+// Windows cut from runs. Every other one is fitted, and the rest chooses between what was fitted.
+struct SearchWindows {
+  double seconds = 0;
+  std::vector<RunData> all;
+  std::vector<const RunData*> fitted, choosing;  // among `all`
+};
+
+// How long the windows of a search are: 0.4 s, more where samples are slow, less in short runs.
+double SearchHorizon(const std::vector<const RunData*>& runs);
+SearchWindows WindowsForSearch(const std::vector<const RunData*>& runs, const model::Parameters& model);
+
+// The context with `windows` in place of the runs. `windows` must outlive it.
+SearchContext OnWindows(const SearchContext& context, const SearchWindows& windows);
+
+// What is worth a trial on whole runs: the best explanation first, then what predicts the windows about as
+// well, at most `most`.
+std::vector<const Explanation*> Leading(const SearchResult& search, size_t most);
+
+}  // namespace hydro::diagnose

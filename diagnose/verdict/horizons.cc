@@ -1,0 +1,138 @@
+#include "diagnose/verdict/horizons.h"
+
+#include <array>
+#include <cmath>
+
+#include "base/parallel.h"
+#include "diagnose/data/windows.h"
+#include "diagnose/fit/residuals.h"
+#include "diagnose/fit/start_fit.h"
+
+namespace hydro::diagnose {
+
+namespace {
+
+constexpr size_t kMostWindows = 24;  // of one horizon, fitted or held out
+constexpr size_t kModels = 3;        // as given, refitted, with what was found
+
+// Sums of squares by channel, of one model: in noise units and in the signal's own.
+struct Sums {
+  std::array<double, model::kChannels> scaled{}, square{}, count{};
+
+  void Add(const Sums& other) {
+    for (size_t c = 0; c < model::kChannels; ++c) {
+      scaled[c] += other.scaled[c];
+      square[c] += other.square[c];
+      count[c] += other.count[c];
+    }
+  }
+  double Gap() const {
+    double sum = 0, n = 0;
+    for (size_t c = 0; c < model::kChannels; ++c) {
+      sum += scaled[c];
+      n += count[c];
+    }
+    return n > 0 ? std::sqrt(sum / n) : 0;
+  }
+  double Rms(size_t c) const { return count[c] > 0 ? std::sqrt(square[c] / count[c]) : 0; }
+};
+using SumsOfAll = std::array<Sums, kModels>;
+
+// False if the model cannot be simulated over the window.
+bool Predict(const model::ModelDescription& model, const RunData& window, Sums* sums) {
+  Hypothesis hypothesis;
+  hypothesis.model = model;
+  const Fitted fitted = FitStart(hypothesis, window, window.start, kStartInDoubt);
+  if (!fitted.ok()) return false;
+  const Residuals residuals = ResidualsOf(model, window, fitted.runs[0].start);
+  for (size_t s = 0; s + 1 < residuals.first.size(); ++s) {
+    const auto c = static_cast<size_t>(window.signals[s].channel);
+    const double noise = window.signals[s].noise;
+    for (size_t i = residuals.first[s]; i < residuals.first[s + 1]; ++i) {
+      sums->scaled[c] += residuals.values[i] * residuals.values[i];
+      sums->square[c] += residuals.values[i] * residuals.values[i] * noise * noise;
+      sums->count[c] += 1;
+    }
+  }
+  return true;
+}
+
+// A run with the models that predict it.
+struct Predicted {
+  const RunData* run = nullptr;
+  std::array<const model::ModelDescription*, kModels> models{};
+};
+
+SumsOfAll Over(double seconds, const std::vector<Predicted>& runs, int jobs) {
+  std::vector<RunData> windows;
+  std::vector<const Predicted*> owner;
+  for (const Predicted& one : runs) {
+    for (RunData& window : WindowsOf(*one.run, seconds, one.models[0]->parameters)) {
+      windows.push_back(std::move(window));
+      owner.push_back(&one);
+    }
+  }
+  const std::vector<const RunData*> chosen = EvenlySpread(windows, kMostWindows);
+  std::vector<SumsOfAll> parts(chosen.size());
+  std::vector<char> simulated(chosen.size(), 1);
+  ParallelFor(chosen.size(), jobs, [&](size_t w) {
+    const Predicted& by = *owner[static_cast<size_t>(chosen[w] - windows.data())];
+    for (size_t m = 0; m < kModels; ++m) {
+      if (!Predict(*by.models[m], *chosen[w], &parts[w][m])) simulated[w] = 0;
+    }
+  });
+  SumsOfAll all{};
+  for (size_t w = 0; w < chosen.size(); ++w) {
+    for (size_t m = 0; simulated[w] != 0 && m < kModels; ++m) all[m].Add(parts[w][m]);
+  }
+  return all;
+}
+
+BeforeAfter Gaps(const SumsOfAll& sums) { return {sums[0].Gap(), sums[1].Gap(), sums[2].Gap()}; }
+
+std::vector<SignalGap> BySignal(const SumsOfAll& fit, const SumsOfAll& held_out) {
+  std::vector<SignalGap> gaps;
+  for (size_t c = 0; c < model::kChannels; ++c) {
+    const double scaled = fit[0].scaled[c] + held_out[0].scaled[c];
+    const double square = fit[0].square[c] + held_out[0].square[c];
+    if (fit[0].count[c] + held_out[0].count[c] == 0) continue;
+    SignalGap gap;
+    gap.channel = static_cast<model::Channel>(c);
+    gap.noise = scaled > 0 ? std::sqrt(square / scaled) : 0;
+    gap.fit = {fit[0].Rms(c), fit[1].Rms(c), fit[2].Rms(c)};
+    gap.held_out = {held_out[0].Rms(c), held_out[1].Rms(c), held_out[2].Rms(c)};
+    gaps.push_back(gap);
+  }
+  return gaps;
+}
+
+}  // namespace
+
+std::vector<HorizonGap> HorizonGaps(const SearchContext& context, double seconds, const Explanation& given,
+                                    const Explanation& refit, const Explanation& best) {
+  const std::array<const Explanation*, kModels> all = {&given, &refit, &best};
+  std::vector<Predicted> fitted, held_out;
+  for (const RunData* run : context.runs) {
+    fitted.push_back({run, {}});
+    for (size_t m = 0; m < kModels; ++m) fitted.back().models[m] = &all[m]->fitted.hypothesis.model;
+  }
+  const std::vector<const RunData*>& predicted = context.held_out.empty() ? context.runs : context.held_out;
+  for (size_t r = 0; r < predicted.size(); ++r) {
+    held_out.push_back({predicted[r], {}});
+    for (size_t m = 0; m < kModels; ++m) held_out.back().models[m] = &all[m]->held_out.models[r];
+  }
+  std::vector<HorizonGap> horizons;
+  for (const double factor : {0.25, 1.0, 4.0}) {
+    HorizonGap horizon;
+    horizon.seconds = factor * seconds;
+    const SumsOfAll of_fit = Over(horizon.seconds, fitted, context.jobs);
+    const SumsOfAll of_held_out = Over(horizon.seconds, held_out, context.jobs);
+    horizon.fit = Gaps(of_fit);
+    horizon.held_out = Gaps(of_held_out);
+    horizon.signals = BySignal(of_fit, of_held_out);
+    if (!horizon.signals.empty()) horizons.push_back(std::move(horizon));
+  }
+  return horizons;
+}
+
+}  // namespace hydro::diagnose

@@ -1,0 +1,131 @@
+#include "diagnose/data/windows.h"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+
+#include "diagnose/fit/start_fit.h"
+#include "diagnose/verdict/horizons.h"
+#include "model/terms/state.h"
+#include "tests/table1.h"
+
+namespace hydro::diagnose {
+namespace {
+
+using ::testing::SizeIs;
+
+// Two seconds at 1 kHz of the model itself under a slow square wave; the motor's angle is not measured.
+RunData Simulated(const model::ModelDescription& model, double noise) {
+  runs::MeasuredRun run;
+  run.name = run.file = "square";
+  run.shaft = model::Shaft::kClamped;
+  model::Stimulus stimulus;
+  stimulus.shaft = run.shaft;
+  for (int i = 0; i <= 2000; ++i) {
+    stimulus.time.push_back(0.001 * i);
+    stimulus.voltage.push_back(i / 250 % 2 == 0 ? 2 : -1.5);
+  }
+  const model::Response response =
+      model::Respond(model, stimulus, {0, 0, model.parameters.p_3, model.parameters.p_3, 0, 0}, {}, {});
+  run.time = stimulus.time;
+  run.voltage.values = stimulus.voltage;
+  run.motor_speed.values = response.values[static_cast<size_t>(model::Channel::kMotorSpeed)];
+  run.p1.values = response.values[static_cast<size_t>(model::Channel::kP1)];
+  run.p2.values = response.values[static_cast<size_t>(model::Channel::kP2)];
+  uint64_t state = 1;
+  const auto random = [&state] {
+    state = state * 6364136223846793005u + 1442695040888963407u;
+    return (static_cast<double>(state >> 11) / 9007199254740992.0 - 0.5) * std::sqrt(12.0);
+  };
+  for (size_t i = 0; i < run.time.size(); ++i) {
+    run.motor_speed.values[i] += 0.2 * noise * random();
+    run.p1.values[i] += noise * random();
+    run.p2.values[i] += noise * random();
+  }
+  return PrepareRun(std::move(run), model.parameters);
+}
+
+// Tests that windows cover a run without gaps, warm-ups aside, and keep its clock, noise and integrated angle.
+TEST(Windows, CoverTheRun) {
+  const model::ModelDescription model = {"Table 1", testing::Table1(), {}};
+  const RunData run = Simulated(model, 1);
+  const std::vector<RunData> windows = WindowsOf(run, 0.4, model.parameters);
+  ASSERT_THAT(windows, SizeIs(4));  // 0.1 s to warm up, then 4 of 0.4 s in 2 s
+  double end = 0.1;
+  for (const RunData& window : windows) {
+    ASSERT_THAT(window.signals, SizeIs(3));
+    const SignalData& p1 = *window.Find(model::Channel::kP1);
+    EXPECT_EQ(p1.noise, run.Find(model::Channel::kP1)->noise);
+    EXPECT_NEAR(static_cast<double>(p1.valid), 400, 1);
+    size_t first = 0;
+    while (std::isnan(p1.values[first])) ++first;
+    EXPECT_NEAR(window.stimulus.time[first], end, 0.0015);
+    EXPECT_NEAR(window.stimulus.time.front(), end - 0.1, 0.0015);
+    end = window.stimulus.time.back();
+    EXPECT_TRUE(window.start_free[model::kMotorAngle]);
+  }
+  EXPECT_GT(std::abs(windows.back().start[model::kMotorAngle]), 1);
+}
+
+// Tests that a model predicts its own windows to the noise, and that one with friction twice as large does not.
+TEST(Windows, TellAWrongModel) {
+  const model::ModelDescription model = {"Table 1", testing::Table1(), {}};
+  model::ModelDescription wrong = model;
+  wrong.parameters.T_s *= 2;
+  const RunData run = Simulated(model, 1);
+  for (const RunData& window : WindowsOf(run, 0.4, model.parameters)) {
+    const auto gap = [&window](const model::ModelDescription& by) {
+      Hypothesis hypothesis;
+      hypothesis.model = by;
+      const Fitted fitted = FitStart(hypothesis, window, window.start, kStartInDoubt);
+      return fitted.ok() ? fitted.squared_gap() : 1e9;
+    };
+    EXPECT_LT(gap(model), 1.3);
+    EXPECT_GT(gap(wrong), 2);
+  }
+}
+
+// Tests that windows are spread evenly, and that every other one can be chosen.
+TEST(Windows, EvenlySpread) {
+  std::vector<RunData> windows(10);
+  EXPECT_THAT(EvenlySpread(windows, 20), SizeIs(10));
+  const std::vector<const RunData*> odd = EvenlySpread(windows, 20, 1, 2);
+  ASSERT_THAT(odd, SizeIs(5));
+  EXPECT_EQ(odd[4], &windows[9]);
+  const std::vector<const RunData*> some = EvenlySpread(windows, 4);
+  ASSERT_THAT(some, SizeIs(4));
+  EXPECT_EQ(some[0], &windows[0]);
+  EXPECT_EQ(some[3], &windows[7]);
+}
+
+// Tests that the gaps over horizons come down where the model is right, for fitted and held-out runs.
+TEST(Horizons, ShowTheRightModel) {
+  const model::ModelDescription model = {"Table 1", testing::Table1(), {}};
+  model::ModelDescription wrong = model;
+  wrong.parameters.T_s *= 2;
+  const RunData run = Simulated(model, 1);
+  SearchContext context;
+  context.runs = {&run};
+  const auto explanation = [&run](const model::ModelDescription& by) {
+    Explanation one;
+    one.fitted.hypothesis.model = by;
+    one.held_out.models = {by};
+    one.held_out.starts = {run.start};
+    return one;
+  };
+  const std::vector<HorizonGap> gaps =
+      HorizonGaps(context, 0.3, explanation(wrong), explanation(wrong), explanation(model));
+  ASSERT_THAT(gaps, SizeIs(3));
+  for (const HorizonGap& gap : gaps) {
+    EXPECT_GT(gap.fit.before, 1.3) << gap.seconds;
+    EXPECT_EQ(gap.fit.before, gap.fit.refit_only);
+    EXPECT_LT(gap.fit.after, 1.15) << gap.seconds;
+    EXPECT_EQ(gap.held_out.after, gap.fit.after);
+    EXPECT_THAT(gap.signals, SizeIs(3));
+  }
+  EXPECT_EQ(gaps[0].seconds, 0.075);
+  EXPECT_EQ(gaps[2].seconds, 1.2);
+}
+
+}  // namespace
+}  // namespace hydro::diagnose

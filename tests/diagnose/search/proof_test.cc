@@ -1,0 +1,107 @@
+#include "diagnose/search/proof.h"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+
+#include "diagnose/search/wide_search.h"
+#include "diagnose/search/window_search.h"
+#include "tests/table1.h"
+
+namespace hydro::diagnose {
+namespace {
+
+using ::testing::Contains;
+using ::testing::IsEmpty;
+using ::testing::Not;
+using ::testing::SizeIs;
+
+class ProofTest : public ::testing::Test {
+ protected:
+  ProofTest() {
+    given_.model = {"Table 1", testing::Table1(), {}};
+    model::ModelDescription true_model = given_.model;
+    true_model.parameters.b *= 2;
+    for (const uint64_t seed : {1, 2}) runs_.push_back(Recorded(true_model, seed));
+    context_.given = given_.model;
+    context_.runs = {&runs_[0]};
+    context_.held_out = {&runs_[1]};
+    context_.sizes = SizesOf(given_.model, context_.runs);
+    context_.changes = {{"", {}, "b"}, {"", {}, "k_1"}, {"pump.quadratic_drag", {}, ""}};
+  }
+
+  // Two seconds at 500 Hz under a square wave, with noise.
+  static RunData Recorded(const model::ModelDescription& model, uint64_t seed) {
+    runs::MeasuredRun run;
+    run.name = run.file = "square";
+    run.shaft = model::Shaft::kClamped;
+    run.bypass = true;
+    model::Stimulus stimulus;
+    stimulus.shaft = run.shaft;
+    stimulus.bypass = true;
+    for (int i = 0; i < 1000; ++i) {
+      stimulus.time.push_back(0.002 * i);
+      stimulus.voltage.push_back(i / 170 % 2 == 0 ? 2.0 : -2.0 - 0.1 * static_cast<double>(seed));
+    }
+    const model::Response response =
+        model::Respond(model, stimulus, {0, 0, model.parameters.p_3, model.parameters.p_3, 0, 0}, {}, {});
+    run.time = stimulus.time;
+    run.voltage.values = stimulus.voltage;
+    run.motor_speed.values = response.values[static_cast<size_t>(model::Channel::kMotorSpeed)];
+    uint64_t state = seed;
+    for (double& value : run.motor_speed.values) {
+      state = state * 6364136223846793005u + 1442695040888963407u;
+      value += (static_cast<double>(state >> 11) / 9007199254740992.0 - 0.5) * std::sqrt(12.0);
+    }
+    return PrepareRun(std::move(run), model.parameters);
+  }
+
+  Hypothesis given_;
+  std::vector<RunData> runs_;
+  SearchContext context_;
+};
+
+// Tests that the windows are 0.4 s long, that those fitted are others than those that choose, and that
+// only fitted runs are cut.
+TEST_F(ProofTest, WindowsOfFittedRuns) {
+  EXPECT_NEAR(SearchHorizon(context_.runs), 0.4, 1e-9);
+  const SearchWindows windows = WindowsForSearch(context_.runs, given_.model.parameters);
+  ASSERT_THAT(windows.fitted, Not(IsEmpty()));
+  ASSERT_THAT(windows.choosing, Not(IsEmpty()));
+  for (const RunData* fitted : windows.fitted) EXPECT_THAT(windows.choosing, Not(Contains(fitted)));
+  const SearchContext on_windows = OnWindows(context_, windows);
+  EXPECT_TRUE(on_windows.windows);
+  EXPECT_EQ(on_windows.runs, windows.fitted);
+  EXPECT_EQ(on_windows.held_out, windows.choosing);
+}
+
+// Tests that a wrong value is found on windows and proved on a run that was not fitted, that what else leads is
+// no better, and that the refit of all values is there to compare.
+TEST_F(ProofTest, FindsAWrongValue) {
+  const SearchWindows windows = WindowsForSearch(context_.runs, given_.model.parameters);
+  const WideSearch near = SearchWidely(OnWindows(context_, windows), given_, {model::BasePlace("b")});
+  const std::vector<const Explanation*> leading = Leading(near.search, 3);
+  ASSERT_THAT(leading, Not(IsEmpty()));
+  ASSERT_THAT(leading[0]->changes(), SizeIs(1));
+  EXPECT_EQ(leading[0]->changes()[0].Label(), "parameter b");
+  EXPECT_THAT(Leading(near.search, 1), SizeIs(1));
+
+  const WideSearch proved = SearchAndProve(context_, given_, {model::BasePlace("b")});
+  ASSERT_THAT(proved.search.best.changes(), SizeIs(1));
+  EXPECT_EQ(proved.search.best.changes()[0].Label(), "parameter b");
+  EXPECT_GT(proved.search.given.held_out_gap(), 2);
+  EXPECT_LT(proved.search.best.held_out_gap(), 1.2);
+  EXPECT_LT(proved.refit.held_out_gap(), 1.2);
+}
+
+// Tests that a search whose time is up at once ends with the model as given.
+TEST_F(ProofTest, EndsWhenTimeIsUp) {
+  context_.time_is_up = [] { return true; };
+  EXPECT_TRUE(TimeIsUp(context_));
+  const WideSearch proved = SearchAndProve(context_, given_, {model::BasePlace("b")});
+  EXPECT_THAT(proved.search.best.changes(), IsEmpty());
+  EXPECT_TRUE(proved.search.given.fitted.ok());
+}
+
+}  // namespace
+}  // namespace hydro::diagnose
