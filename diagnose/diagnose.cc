@@ -190,6 +190,10 @@ Diagnosis Diagnose(const model::ModelDescription& model, std::vector<runs::Measu
   Diagnosis diagnosis = Conclude(context, found.search, found.refit);
   const std::vector<std::string> remarks = RecordingRemarks(prepared.clocks, context.runs, context.held_out);
   diagnosis.remarks.insert(diagnosis.remarks.begin(), remarks.begin(), remarks.end());
+  std::vector<const RunData*> all = context.runs;
+  all.insert(all.end(), context.held_out.begin(), context.held_out.end());
+  const std::vector<std::string> layouts = LayoutRemarks(all);
+  diagnosis.remarks.insert(diagnosis.remarks.end(), layouts.begin(), layouts.end());
   const std::vector<std::string> limits = LimitRemarks(model.parameters, context.runs);
   diagnosis.remarks.insert(diagnosis.remarks.end(), limits.begin(), limits.end());
   AddChecked(checked, &diagnosis);

@@ -99,7 +99,9 @@ RecordingReport ReportOnRecordings(const model::ModelDescription& model, std::ve
   // As runs that are not fitted: what their motion lacks is no fault of the recording.
   const std::vector<std::string> remarks = RecordingRemarks(clocks, {}, pointers);
   report.wrong.insert(report.wrong.end(), remarks.begin(), remarks.end());
-  report.limits = LimitRemarks(model.parameters, pointers);
+  report.limits = LayoutRemarks(pointers);
+  const std::vector<std::string> limits = LimitRemarks(model.parameters, pointers);
+  report.limits.insert(report.limits.end(), limits.begin(), limits.end());
   return report;
 }
 

@@ -35,8 +35,9 @@ void AddChecked(const CheckedRecordings& checked, Diagnosis* diagnosis);
 
 // What there is to say of recordings alone.
 struct RecordingReport {
-  std::vector<std::string> wrong;   // a line each
-  std::vector<std::string> limits;  // what these runs cannot show, though nothing is wrong with them
+  std::vector<std::string> wrong;  // a line each
+  // How tables were read, and what these runs cannot show, though nothing is wrong with them.
+  std::vector<std::string> limits;
 };
 // Throws InputError for data that cannot be used, unless a mistake explains it.
 RecordingReport ReportOnRecordings(const model::ModelDescription& model, std::vector<runs::MeasuredRun> runs,

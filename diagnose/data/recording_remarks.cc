@@ -63,23 +63,6 @@ void RemarkOnSignal(const RunData& run, const SignalData& signal, std::vector<st
   }
 }
 
-// One remark for all runs whose tables were read in one way.
-void RemarkOnLayouts(const std::vector<const RunData*>& runs, std::vector<std::string>* remarks) {
-  std::vector<std::pair<std::string, std::string>> layouts;  // and the runs
-  for (const RunData* run : runs) {
-    const std::string& layout = run->measured.layout;
-    if (layout.empty()) continue;
-    const auto same =
-        std::find_if(layouts.begin(), layouts.end(), [&](const auto& one) { return one.first == layout; });
-    if (same == layouts.end()) {
-      layouts.emplace_back(layout, RunNamed(run->name));
-    } else {
-      same->second += ", " + RunNamed(run->name);
-    }
-  }
-  for (const auto& [layout, names] : layouts) remarks->push_back(names + ": table read with " + layout);
-}
-
 void RemarkOnMotion(const std::vector<const RunData*>& runs, std::vector<std::string>* remarks) {
   double low = INFINITY, high = -INFINITY, noise = 0, most_pressure = 0;
   bool speed = false, pressure = false;
@@ -153,6 +136,24 @@ void RemarkOnMissingSignals(const std::vector<const RunData*>& runs, std::vector
 
 }  // namespace
 
+std::vector<std::string> LayoutRemarks(const std::vector<const RunData*>& runs) {
+  std::vector<std::string> remarks;
+  std::vector<std::pair<std::string, std::string>> layouts;  // and the runs
+  for (const RunData* run : runs) {
+    const std::string& layout = run->measured.layout;
+    if (layout.empty()) continue;
+    const auto same =
+        std::find_if(layouts.begin(), layouts.end(), [&](const auto& one) { return one.first == layout; });
+    if (same == layouts.end()) {
+      layouts.emplace_back(layout, RunNamed(run->name));
+    } else {
+      same->second += ", " + RunNamed(run->name);
+    }
+  }
+  for (const auto& [layout, names] : layouts) remarks.push_back(names + ": table read with " + layout);
+  return remarks;
+}
+
 std::vector<std::string> LimitRemarks(const model::Parameters& model,
                                       const std::vector<const RunData*>& runs) {
   std::vector<std::string> remarks;
@@ -167,9 +168,6 @@ std::vector<std::string> RecordingRemarks(const std::vector<ClockDelay>& clocks,
   std::vector<std::string> remarks;
   remarks.reserve(clocks.size());
   for (const ClockDelay& clock : clocks) remarks.push_back(DelayRemark(clock));
-  std::vector<const RunData*> all = runs;
-  all.insert(all.end(), held_out.begin(), held_out.end());
-  RemarkOnLayouts(all, &remarks);
   for (const auto* some : {&runs, &held_out}) {
     for (const RunData* run : *some) {
       RemarkOnTimes(*run, &remarks);

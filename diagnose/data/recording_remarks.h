@@ -9,12 +9,15 @@
 
 namespace hydro::diagnose {
 
-// Remarks on: clocks that differ; tables that were not plain CSV; noise unlike the stated noise; sensors at the end of their range; gaps;
+// Remarks on: clocks that differ; noise unlike the stated noise; sensors at the end of their range; gaps;
 // resolution coarser than the noise; a motor that hardly turns, or turns one way only; pressures that never
 // leave the accumulator's. Empty when there is nothing to remark on.
 std::vector<std::string> RecordingRemarks(const std::vector<ClockDelay>& clocks,
                                           const std::vector<const RunData*>& runs,
                                           const std::vector<const RunData*>& held_out);
+
+// How tables were read that were not plain CSV: one remark for all runs that share it. It is no fault.
+std::vector<std::string> LayoutRemarks(const std::vector<const RunData*>& runs);
 
 // What these runs cannot show though nothing is wrong with them: signals that no run has, and samples too far
 // apart for the model's fastest motion.

@@ -133,7 +133,7 @@ TEST(RecordingRemarks, SayWhatIsWrong) {
 
 // Tests that the way in which tables were read is one remark for all runs that share it, and none for plain
 // ones; and that noise is in the model's units.
-TEST(RecordingRemarks, SayHowTablesWereRead) {
+TEST(LayoutRemarks, SayHowTablesWereRead) {
   runs::MeasuredRun run = Recorded();
   run.layout = "decimal commas";
   run.name = "first";
@@ -143,8 +143,9 @@ TEST(RecordingRemarks, SayHowTablesWereRead) {
   run.layout.clear();
   const RunData plain = PrepareRun(run, testing::Table1());
   EXPECT_THAT(
-      RecordingRemarks({}, {&first, &plain}, {&second}),
+      LayoutRemarks({&first, &plain, &second}),
       ElementsAre(RunNamed("first") + ", " + RunNamed("second") + ": table read with decimal commas"));
+  EXPECT_THAT(RecordingRemarks({}, {&first, &plain}, {&second}), IsEmpty());  // no fault
   run.p1.noise = 0.5;
   run.units = kSiUnits;
   const RunData noisy = PrepareRun(run, testing::Table1());
