@@ -27,13 +27,6 @@ void HoldOutLastThird(runs::MeasuredRun* run, std::vector<runs::MeasuredRun>* he
   held_out->push_back(std::move(rest));
 }
 
-std::vector<const RunData*> Pointers(const std::vector<RunData>& runs) {
-  std::vector<const RunData*> pointers;
-  pointers.reserve(runs.size());
-  for (const RunData& run : runs) pointers.push_back(&run);
-  return pointers;
-}
-
 // Whether one of the effect's parameters only adds to a base parameter that the model has: then that base
 // parameter may be what is wrong.
 bool IsTermOfTheModel(const model::EffectInfo& info, const model::Parameters& given) {
@@ -137,8 +130,8 @@ SearchContext MakeContext(const model::ModelDescription& model, const PreparedRu
                           const ProgressCallback& report_progress) {
   SearchContext context;
   context.given = model;
-  context.runs = Pointers(runs.fitted);
-  context.held_out = Pointers(runs.held_out);
+  context.runs = PointersTo(runs.fitted);
+  context.held_out = PointersTo(runs.held_out);
   context.sizes = SizesOf(model, context.runs);
   context.jobs = options.jobs;
   context.report_progress = report_progress;

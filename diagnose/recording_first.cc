@@ -96,9 +96,7 @@ RecordingReport ReportOnRecordings(const model::ModelDescription& model, std::ve
     prepared.push_back(PrepareAligned(std::move(run), model.parameters, &clocks));
   }
   MakeNamesUnique(&prepared);
-  std::vector<const RunData*> pointers;
-  pointers.reserve(prepared.size());
-  for (const RunData& run : prepared) pointers.push_back(&run);
+  const std::vector<const RunData*> pointers = PointersTo(prepared);
   // As runs that are not fitted: what their motion lacks is no fault of the recording.
   const std::vector<std::string> remarks = RecordingRemarks(clocks, {}, pointers);
   report.wrong.insert(report.wrong.end(), remarks.begin(), remarks.end());

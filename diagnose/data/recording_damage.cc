@@ -26,19 +26,7 @@ constexpr double kSpread = 2;        // and this many times what the neighbours 
 constexpr double kChange = 5;        // and this many times the change that 19 of 20 samples stay below
 constexpr size_t kReach = 3;         // neighbours on each side
 constexpr double kGap = 5;           // median sample intervals without a row
-constexpr size_t kFewestSamples = 100;
-constexpr double kStep = 0.05;  // of the command's range: what counts as a step
-
-struct Named {
-  const char* name;
-  runs::MeasuredSignal Run::*signal;
-};
-constexpr Named kSensors[] = {{"motor_speed", &Run::motor_speed},
-                              {"motor_angle", &Run::motor_angle},
-                              {"arm_angle", &Run::arm_angle},
-                              {"arm_speed", &Run::arm_speed},
-                              {"p1", &Run::p1},
-                              {"p2", &Run::p2}};
+constexpr double kStep = 0.05;       // of the command's range: what counts as a step
 
 struct Stretch {
   size_t first, last;  // [first, last)
@@ -133,7 +121,8 @@ std::vector<size_t> Spikes(const std::vector<double>& values) {
 
 // Makes held values and spikes missing; counts, by row, how many sensors hold their value there.
 void SetAside(Run* run, std::vector<size_t>* held_there, size_t* sensors, std::vector<std::string>* lines) {
-  for (const Named& sensor : kSensors) {
+  for (const runs::SignalName& sensor : runs::kSignals) {
+    if (sensor.standard_deviation == nullptr) continue;  // not a sensor's
     std::vector<double>& values = (run->*sensor.signal).values;
     if (values.size() < kFewestSamples) continue;
     const std::vector<Stretch> held = HeldStretches(values);
@@ -149,7 +138,7 @@ void SetAside(Run* run, std::vector<size_t>* held_there, size_t* sensors, std::v
       }
     }
     for (const size_t i : spikes) values[i] = kNone;
-    const std::string place = RunNamed(run->name) + ": " + sensor.name;
+    const std::string place = RunNamed(run->name) + ": " + sensor.ours;
     if (count > 0) {
       lines->push_back(place + " repeats one value in " + std::to_string(held.size()) +
                        (held.size() == 1 ? " stretch, " : " stretches, ") + Counted(count, "sample") +

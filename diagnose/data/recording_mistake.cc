@@ -4,7 +4,9 @@
 #include <numbers>
 
 #include "base/number_text.h"
+#include "base/units.h"
 #include "base/word_list.h"
+#include "runs/measured_signals.h"
 
 namespace hydro::diagnose {
 namespace {
@@ -12,22 +14,7 @@ namespace {
 using Run = runs::MeasuredRun;
 
 constexpr double kPi = std::numbers::pi;
-constexpr double kBar = 14.503773773;  // psi
-
-struct SignalName {
-  SignalOfRun signal;
-  const char* name;      // in a sidecar
-  const char* exported;  // in a table of hydro-log export
-};
-
-constexpr SignalName kSignals[] = {{&Run::voltage, "voltage", "voltage_V"},
-                                   {&Run::motor_speed, "motor_speed", "motor_speed_rad_s"},
-                                   {&Run::motor_angle, "motor_angle", "motor_angle_rad"},
-                                   {&Run::arm_angle, "arm_angle", "arm_angle_rad"},
-                                   {&Run::arm_speed, "arm_speed", "arm_speed_rad_s"},
-                                   {&Run::p1, "p1", "p1_psi"},
-                                   {&Run::p2, "p2", "p2_psi"},
-                                   {&Run::pressure_ref, "pressure_ref", "pressure_ref_psi"}};
+constexpr double kBar = 1e5 / kPsi;  // psi
 
 // A unit in which a column may have been recorded, and what brings it to ours.
 struct UnitFactor {
@@ -50,17 +37,17 @@ constexpr UnitFactor kPressureUnits[] = {{kBar, "bar", "bar"},
                                          {1e-5, "", ""},
                                          {1e6, "", ""},
                                          {1e-6, "", ""}};
-constexpr UnitFactor kSpeedUnits[] = {{kPi / 30, "rpm", "rpm"}, {kPi / 180, "deg/s", "deg/s"},
-                                      {2 * kPi, "rev/s", ""},   {30 / kPi, "", ""},
-                                      {180 / kPi, "", ""},      {0.5 / kPi, "", ""}};
+constexpr UnitFactor kSpeedUnits[] = {{kRpm, "rpm", "rpm"},   {kDegree, "deg/s", "deg/s"},
+                                      {2 * kPi, "rev/s", ""}, {1 / kRpm, "", ""},
+                                      {1 / kDegree, "", ""},  {0.5 / kPi, "", ""}};
 constexpr UnitFactor kAngleUnits[] = {
-    {kPi / 180, "deg", "deg"}, {2 * kPi, "revolutions", ""}, {180 / kPi, "", ""}, {0.5 / kPi, "", ""}};
+    {kDegree, "deg", "deg"}, {2 * kPi, "revolutions", ""}, {1 / kDegree, "", ""}, {0.5 / kPi, "", ""}};
 constexpr UnitFactor kCommandUnits[] = {{1e-3, "mV", ""}, {1e3, "kV", ""}};
 constexpr UnitFactor kTimeUnits[] = {{1e-3, "ms", "ms"}, {1e-6, "us", "us"}, {60, "min", "min"}};
 
 const char* NameOf(SignalOfRun signal) {
-  for (const SignalName& one : kSignals) {
-    if (one.signal == signal) return one.name;
+  for (const runs::SignalName& one : runs::kSignals) {
+    if (one.signal == signal) return one.ours;
   }
   return "";
 }
@@ -222,7 +209,7 @@ std::string SidecarLines(const std::vector<RecordingMistake>& mistakes, const Ru
   // Only what the sidecar says of the columns matters here.
   Run before;
   before.time_source = run.time_source;
-  for (const SignalName& one : kSignals) {
+  for (const runs::SignalName& one : runs::kSignals) {
     (before.*one.signal).source = (run.*one.signal).source;
     if ((before.*one.signal).source.column.empty()) (before.*one.signal).source.column = one.exported;
   }
@@ -236,8 +223,8 @@ std::string SidecarLines(const std::vector<RecordingMistake>& mistakes, const Ru
     lines.push_back(SidecarLine(name, from, to, to.column, UnitOf(mistakes, signal)));
   };
   add("time", before.time_source, after.time_source, nullptr);
-  for (const SignalName& one : kSignals) {
-    add(one.name, (before.*one.signal).source, (after.*one.signal).source, &one.signal);
+  for (const runs::SignalName& one : runs::kSignals) {
+    add(one.ours, (before.*one.signal).source, (after.*one.signal).source, &one.signal);
   }
   return Joined(lines, "; ");
 }

@@ -12,28 +12,21 @@
 namespace hydro::diagnose {
 namespace {
 
-constexpr size_t kFewestSamples = 100;
 constexpr size_t kFewestValues = 20;  // of one signal: slower sensors leave gaps
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
-struct ChannelRow {
-  const char* name;
-  const char* unit;  // of the paper
-  runs::MeasuredSignal runs::MeasuredRun::*signal;
-  bool arm;
-};
-
-constexpr ChannelRow kRows[model::kChannels] = {
-    {"motor_angle", "rad", &runs::MeasuredRun::motor_angle, false},
-    {"motor_speed", "rad/s", &runs::MeasuredRun::motor_speed, false},
-    {"arm_angle", "rad", &runs::MeasuredRun::arm_angle, true},
-    {"arm_speed", "rad/s", &runs::MeasuredRun::arm_speed, true},
-    {"p1", "psi", &runs::MeasuredRun::p1, false},
-    {"p2", "psi", &runs::MeasuredRun::p2, false}};
-
-std::string UnitOf(const ChannelRow& row, const UnitSystem& units) {
-  return units.UnitFor(row.unit, row.arm ? 1 : 0);
+// The row of the table of signals (runs/measured_signals.h).
+constexpr const runs::SignalName* Row(runs::MeasuredSignal runs::MeasuredRun::*signal) {
+  for (const runs::SignalName& one : runs::kSignals) {
+    if (one.signal == signal) return &one;
+  }
+  return nullptr;
 }
+
+constexpr const runs::SignalName* kRows[model::kChannels] = {
+    Row(&runs::MeasuredRun::motor_angle), Row(&runs::MeasuredRun::motor_speed),
+    Row(&runs::MeasuredRun::arm_angle),   Row(&runs::MeasuredRun::arm_speed),
+    Row(&runs::MeasuredRun::p1),          Row(&runs::MeasuredRun::p2)};
 
 [[noreturn]] void Refuse(const std::string& place, const std::string& signal, const std::string& found,
                          const std::string& allowed) {
@@ -41,15 +34,10 @@ std::string UnitOf(const ChannelRow& row, const UnitSystem& units) {
                    allowed);
 }
 
-size_t CountValid(const std::vector<double>& values) {
-  return static_cast<size_t>(
-      std::count_if(values.begin(), values.end(), [](double value) { return !std::isnan(value); }));
-}
-
 // Values that no actuator reaches, in the model's own units: at least twice what its equations could hold, so
 // that only a wrong unit exceeds them and a wrong parameter does not.
-double LargestPossible(const ChannelRow& row, const model::Parameters& model) {
-  const std::string name = row.name;
+double LargestPossible(const runs::SignalName& row, const model::Parameters& model) {
+  const std::string name = row.ours;
   const double stroke = model.V_ms / model.c;  // where V_1 or V_2 is 0, eqs. (6), (7)
   if (name == "motor_speed") return 1e5;       // rad/s in every coherent system
   if (name == "motor_angle") return 1e9;
@@ -68,26 +56,27 @@ void CheckRange(const runs::MeasuredRun& run, const std::string& name, const std
   }
 }
 
-void CheckSignal(const runs::MeasuredRun& run, const ChannelRow& row, const model::Parameters& model) {
+void CheckSignal(const runs::MeasuredRun& run, const runs::SignalName& row, const model::Parameters& model) {
   const std::vector<double>& values = (run.*row.signal).values;
   const size_t valid = CountValid(values);
   if (valid < kFewestValues) {
-    Refuse(run.file, row.name, valid == 0 ? "no value in any row" : std::to_string(valid) + " values",
+    Refuse(run.file, row.ours, valid == 0 ? "no value in any row" : std::to_string(valid) + " values",
            std::to_string(kFewestValues) + " values or more, or leave the signal out");
   }
-  CheckRange(run, row.name, values, LargestPossible(row, model), UnitOf(row, run.units));
+  CheckRange(run, row.ours, values, LargestPossible(row, model), run.units.UnitFor(row.unit, row.arm));
   // An arm may well stand still. And a simulation without noise reports a single number for a side on its
   // one-way valve or a pump that sticks.
   const bool simulated = !run.model_text.empty() && !(run.*row.signal).noise.has_value();
-  if (row.arm || simulated) return;
+  if (row.arm != 0 || simulated) return;
   size_t first = 0;
   while (std::isnan(values[first])) ++first;
   const bool constant = std::all_of(values.begin(), values.end(), [&](double value) {
     return std::isnan(value) || value == values[first];
   });
   if (!constant) return;
-  Refuse(run.Place(first), row.name,
-         ShortestNumber(values[first]) + " " + UnitOf(row, run.units) + " here and in every later row",
+  Refuse(run.Place(first), row.ours,
+         ShortestNumber(values[first]) + " " + run.units.UnitFor(row.unit, row.arm) +
+             " here and in every later row",
          "a signal that changes, or leave it out");
 }
 
@@ -111,7 +100,7 @@ std::vector<double> WithoutEnds(const std::vector<double>& values, const ValueRa
 }
 
 SignalData MakeSignal(const runs::MeasuredRun& run, model::Channel channel) {
-  const runs::MeasuredSignal& measured = run.*kRows[static_cast<size_t>(channel)].signal;
+  const runs::MeasuredSignal& measured = run.*SignalOf(channel).signal;
   SignalData signal;
   signal.channel = channel;
   signal.values = measured.values;
@@ -163,14 +152,50 @@ std::unique_ptr<trajectory::Trajectory> ImposedMotion(const runs::MeasuredRun& r
 
 }  // namespace
 
+const runs::SignalName& SignalOf(model::Channel channel) { return *kRows[static_cast<size_t>(channel)]; }
+
+bool IsCompared(const runs::MeasuredRun& run, model::Channel channel) {
+  const runs::SignalName& row = SignalOf(channel);
+  return (run.*row.signal).measured() && (row.arm == 0 || run.shaft == model::Shaft::kFree);
+}
+
+size_t CountValid(const std::vector<double>& values) {
+  return static_cast<size_t>(
+      std::count_if(values.begin(), values.end(), [](double value) { return !std::isnan(value); }));
+}
+
+model::Stimulus StimulusOf(const runs::MeasuredRun& run) {
+  model::Stimulus stimulus;
+  stimulus.shaft = run.shaft;
+  stimulus.arm_angle = run.arm_angle_rad;
+  stimulus.bypass = run.bypass;
+  stimulus.time = run.time;
+  stimulus.voltage = run.voltage.values;
+  return stimulus;
+}
+
+std::vector<const RunData*> PointersTo(const std::vector<RunData>& runs) {
+  std::vector<const RunData*> pointers;
+  pointers.reserve(runs.size());
+  for (const RunData& run : runs) pointers.push_back(&run);
+  return pointers;
+}
+
+std::vector<model::StartState> MeasuredStarts(const std::vector<const RunData*>& runs) {
+  std::vector<model::StartState> starts;
+  starts.reserve(runs.size());
+  for (const RunData* run : runs) starts.push_back(run->start);
+  return starts;
+}
+
 const std::string& ChannelName(model::Channel channel) {
   static const std::array<std::string, model::kChannels> names = {
-      kRows[0].name, kRows[1].name, kRows[2].name, kRows[3].name, kRows[4].name, kRows[5].name};
+      kRows[0]->ours, kRows[1]->ours, kRows[2]->ours, kRows[3]->ours, kRows[4]->ours, kRows[5]->ours};
   return names.at(static_cast<size_t>(channel));
 }
 
 std::string ChannelUnit(model::Channel channel, const UnitSystem& units) {
-  return UnitOf(kRows[static_cast<size_t>(channel)], units);
+  return units.UnitFor(SignalOf(channel).unit, SignalOf(channel).arm);
 }
 
 const SignalData* RunData::Find(model::Channel channel) const {
@@ -197,20 +222,14 @@ RunData PrepareRun(runs::MeasuredRun run, const model::Parameters& model) {
   }
   RunData data;
   data.name = run.name;
-  data.stimulus.shaft = run.shaft;
-  data.stimulus.arm_angle = run.arm_angle_rad;
-  data.stimulus.bypass = run.bypass;
-  data.stimulus.time = run.time;
-  data.stimulus.voltage = run.voltage.values;
+  data.stimulus = StimulusOf(run);
   // A thousand times the voltage that saturates the amplifier, eq. (1).
   CheckRange(run, "voltage", run.voltage.values, 1000 * model.T_pmax / model.k_1, "V");
-  for (size_t channel = 0; channel < model::kChannels; ++channel) {
-    const ChannelRow& row = kRows[channel];
-    if (!(run.*row.signal).measured()) continue;
-    CheckSignal(run, row, model);
-    // The arm of a clamped shaft stands still, and that of a driven one is imposed.
-    if (row.arm && run.shaft != model::Shaft::kFree) continue;
-    SignalData signal = MakeSignal(run, static_cast<model::Channel>(channel));
+  for (size_t place = 0; place < model::kChannels; ++place) {
+    const auto channel = static_cast<model::Channel>(place);
+    if ((run.*SignalOf(channel).signal).measured()) CheckSignal(run, SignalOf(channel), model);
+    if (!IsCompared(run, channel)) continue;
+    SignalData signal = MakeSignal(run, channel);
     if (signal.valid >= kFewestValues) data.signals.push_back(std::move(signal));
   }
   if (data.signals.empty()) {

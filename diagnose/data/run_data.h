@@ -12,6 +12,7 @@
 
 #include "model/response.h"
 #include "runs/measured_run.h"
+#include "runs/measured_signals.h"
 #include "trajectory/trajectory.h"
 
 namespace hydro::diagnose {
@@ -48,10 +49,27 @@ struct RunData {
   const SignalData* Find(model::Channel channel) const;
 };
 
+// The channel's row in the table of signals: its names, and where a run has it.
+const runs::SignalName& SignalOf(model::Channel channel);
+// Whether a simulation of the run is compared with the channel: it is measured, and is not of an arm that
+// stands still (clamped) or whose motion is imposed (driven).
+bool IsCompared(const runs::MeasuredRun& run, model::Channel channel);
+// Values that are not missing.
+size_t CountValid(const std::vector<double>& values);
+// What was done to the actuator, without the motion of a driven shaft.
+model::Stimulus StimulusOf(const runs::MeasuredRun& run);
+
+std::vector<const RunData*> PointersTo(const std::vector<RunData>& runs);
+// Where the runs begin as measured.
+std::vector<model::StartState> MeasuredStarts(const std::vector<const RunData*>& runs);
+
 // "motor_speed", as in sidecars and reports.
 const std::string& ChannelName(model::Channel channel);
 // "rad/s", in the model's units.
 std::string ChannelUnit(model::Channel channel, const UnitSystem& units);
+
+// A run of fewer samples cannot be used.
+inline constexpr size_t kFewestSamples = 100;
 
 // Throws InputError, with run, signal and row, for data from which nothing can be learnt: fewer than 100
 // samples, a signal that never changes or is absent, no signal that a model could be compared with, or

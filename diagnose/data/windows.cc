@@ -11,8 +11,8 @@ namespace hydro::diagnose {
 
 namespace {
 
-constexpr size_t kFewestSamples = 12;
-constexpr size_t kFewestValues = 8;  // of one signal
+constexpr size_t kFewestCompared = 12;  // samples
+constexpr size_t kFewestValues = 8;     // of one signal
 
 // This share of a window is simulated before it, and not compared: nobody knows the states of effects where it
 // begins, for example what a lagging sensor reads.
@@ -57,8 +57,7 @@ RunData Window(const RunData& run, size_t first, size_t compared, size_t last,
   for (const SignalData& signal : run.signals) {
     SignalData part = signal;
     part.values = Slice(signal.values, first, last);
-    part.valid = static_cast<size_t>(std::count_if(part.values.begin(), part.values.end(),
-                                                   [](double value) { return !std::isnan(value); }));
+    part.valid = CountValid(part.values);
     if (part.valid >= kFewestValues) window.signals.push_back(std::move(part));
   }
   if (window.signals.empty()) return window;
@@ -69,10 +68,8 @@ RunData Window(const RunData& run, size_t first, size_t compared, size_t last,
     window.start_free[model::kMotorAngle] = true;
   }
   for (SignalData& signal : window.signals) {
-    for (size_t i = 0; i < compared - first; ++i) {
-      if (!std::isnan(signal.values[i])) --signal.valid;
-      signal.values[i] = std::numeric_limits<double>::quiet_NaN();
-    }
+    std::fill_n(signal.values.begin(), compared - first, std::numeric_limits<double>::quiet_NaN());
+    signal.valid = CountValid(signal.values);
   }
   std::erase_if(window.signals, [](const SignalData& signal) { return signal.valid < kFewestValues; });
   return window;
@@ -93,7 +90,7 @@ std::vector<RunData> WindowsOf(const RunData& run, double seconds, const model::
     while (last < time.size() && time[last] < end) ++last;
     const bool whole = last < time.size() || time.back() > end - 0.1 * seconds;
     if (!whole) break;
-    if (last - compared >= kFewestSamples) {
+    if (last - compared >= kFewestCompared) {
       RunData window = Window(run, first, compared, last, motor_angle, model);
       if (!window.signals.empty()) windows.push_back(std::move(window));
     }

@@ -20,27 +20,23 @@ namespace {
 using Run = runs::MeasuredRun;
 
 constexpr double kSeconds = 0.05;  // of a window, within these numbers of samples
-constexpr double kFewestSamples = 40, kMostSamples = 200;
+constexpr double kShortest = 40, kLongest = 200;
 constexpr size_t kFewestValues = 12;  // of a signal in a window
 // A prediction need not be better than this share of the movement in the window, and of that in the run.
 constexpr double kOfWindow = 0.1, kOfRun = 0.01;
 constexpr double kMoves = 4;  // times the noise
 
-struct Channel {
-  model::Channel channel;
-  runs::MeasuredSignal Run::*signal;
-  bool arm, angle;
-};
-constexpr Channel kAll[] = {{model::Channel::kMotorAngle, &Run::motor_angle, false, true},
-                            {model::Channel::kMotorSpeed, &Run::motor_speed, false, false},
-                            {model::Channel::kArmAngle, &Run::arm_angle, true, true},
-                            {model::Channel::kArmSpeed, &Run::arm_speed, true, false},
-                            {model::Channel::kP1, &Run::p1, false, false},
-                            {model::Channel::kP2, &Run::p2, false, false}};
+constexpr std::array kAll = {model::Channel::kMotorAngle, model::Channel::kMotorSpeed,
+                             model::Channel::kArmAngle,   model::Channel::kArmSpeed,
+                             model::Channel::kP1,         model::Channel::kP2};
 
-// Whether a simulation is compared with this channel.
-bool Compared(const Run& run, const Channel& channel) {
-  return (run.*channel.signal).measured() && (!channel.arm || run.shaft == model::Shaft::kFree);
+bool IsAngle(model::Channel channel) {
+  return channel == model::Channel::kMotorAngle || channel == model::Channel::kArmAngle;
+}
+
+template <class AnyRun>
+auto& In(AnyRun& run, model::Channel channel) {
+  return run.*SignalOf(channel).signal;
 }
 
 // The standard deviation of the values about their mean, or about a straight line; 0 for fewer than two.
@@ -61,18 +57,20 @@ double Movement(const std::vector<double>& values, size_t first, size_t last, bo
   return std::sqrt(std::max(0.0, square / n));
 }
 
-double Movement(const Run& run, const Channel& channel, size_t first, size_t last) {
-  return Movement((run.*channel.signal).values, first, last, channel.angle);
+double Movement(const Run& run, model::Channel channel, size_t first, size_t last) {
+  return Movement(In(run, channel).values, first, last, IsAngle(channel));
 }
 
-// The run with the noise of its signals estimated, and a little of their movement added.
+// The run with the noise of its signals estimated, and a little of their movement added. It does not say which
+// line of its file a sample is from.
 Run WithErrors(Run run) {
-  for (const Channel& channel : kAll) {
-    runs::MeasuredSignal& signal = run.*channel.signal;
+  run.lines.clear();
+  for (const model::Channel channel : kAll) {
+    runs::MeasuredSignal& signal = In(run, channel);
     if (!signal.measured()) continue;
     const double movement = Movement(signal.values, 0, signal.values.size(), false);
     signal.noise =
-        std::max(std::hypot(EstimateNoise(signal.values), channel.angle ? 0 : kOfRun * movement), 1e-12);
+        std::max(std::hypot(EstimateNoise(signal.values), IsAngle(channel) ? 0 : kOfRun * movement), 1e-12);
   }
   return run;
 }
@@ -80,45 +78,21 @@ Run WithErrors(Run run) {
 // 0 where nothing moves by more than noise.
 double MovementOfAll(const Run& run, size_t first, size_t last) {
   double sum = 0, most = 0;
-  for (const Channel& channel : kAll) {
-    if (!Compared(run, channel)) continue;
-    const double moves = Movement(run, channel, first, last) / (run.*channel.signal).noise.value();
+  for (const model::Channel channel : kAll) {
+    if (!IsCompared(run, channel)) continue;
+    const double moves = Movement(run, channel, first, last) / In(run, channel).noise.value();
     sum += std::log1p(moves * moves);
     most = std::max(most, moves);
   }
   return most > kMoves ? sum : 0;
 }
 
-template <class T>
-std::vector<T> Slice(const std::vector<T>& values, size_t first, size_t last) {
-  if (values.empty()) return {};
-  return {values.begin() + static_cast<std::ptrdiff_t>(first),
-          values.begin() + static_cast<std::ptrdiff_t>(last)};
-}
-
-Run Window(const Run& run, size_t first, size_t last) {
-  Run window;
-  window.name = run.name;
-  window.shaft = run.shaft;
-  window.arm_angle_rad = run.arm_angle_rad;
-  window.bypass = run.bypass;
-  window.time = Slice(run.time, first, last);
-  window.voltage.values = Slice(run.voltage.values, first, last);
-  for (const Channel& channel : kAll) {
-    const runs::MeasuredSignal& signal = run.*channel.signal;
-    (window.*channel.signal).values = Slice(signal.values, first, last);
-    (window.*channel.signal).noise = signal.noise;
-  }
-  return window;
-}
-
-SignalData SignalIn(const Run& window, const Channel& channel) {
-  const runs::MeasuredSignal& measured = window.*channel.signal;
+SignalData SignalIn(const Run& window, model::Channel channel) {
+  const runs::MeasuredSignal& measured = In(window, channel);
   SignalData signal;
-  signal.channel = channel.channel;
+  signal.channel = channel;
   signal.values = measured.values;
-  signal.valid = static_cast<size_t>(std::count_if(signal.values.begin(), signal.values.end(),
-                                                   [](double value) { return !std::isnan(value); }));
+  signal.valid = CountValid(signal.values);
   const double movement = Movement(window, channel, 0, signal.values.size());
   signal.noise = std::hypot(measured.noise.value_or(0), kOfWindow * movement);
   return signal;
@@ -127,19 +101,14 @@ SignalData SignalIn(const Run& window, const Channel& channel) {
 RunData DataOf(const Run& window, const model::Parameters& model) {
   RunData data;
   data.name = window.name;
-  data.stimulus.shaft = window.shaft;
-  data.stimulus.arm_angle = window.arm_angle_rad;
-  data.stimulus.bypass = window.bypass;
-  data.stimulus.time = window.time;
-  data.stimulus.voltage = window.voltage.values;
-  for (const Channel& channel : kAll) {
-    if (!Compared(window, channel)) continue;
+  data.stimulus = StimulusOf(window);
+  for (const model::Channel channel : kAll) {
+    if (!IsCompared(window, channel)) continue;
     SignalData signal = SignalIn(window, channel);
     if (signal.valid >= kFewestValues && !std::isnan(signal.values[0]))
       data.signals.push_back(std::move(signal));
   }
   if (window.shaft == model::Shaft::kDriven) {
-    const std::vector<double> none;
     data.motion = SmoothMotion(window.time, window.arm_angle.values, window.arm_angle.noise.value_or(0),
                                window.arm_speed.values, window.arm_speed.noise.value_or(0));
     data.stimulus.motion = data.motion.get();
@@ -153,8 +122,7 @@ RunData DataOf(const Run& window, const model::Parameters& model) {
 std::vector<Run> MovingWindows(const Run& recorded, size_t most) {
   const Run run = WithErrors(recorded);
   const double interval = MedianInterval(run.time);
-  const auto length =
-      static_cast<size_t>(std::lround(std::clamp(kSeconds / interval, kFewestSamples, kMostSamples)));
+  const auto length = static_cast<size_t>(std::lround(std::clamp(kSeconds / interval, kShortest, kLongest)));
   std::vector<std::pair<double, size_t>> places;  // minus the movement, first sample
   for (size_t first = 0; first + length <= run.samples(); first += std::max<size_t>(1, length / 2)) {
     const double moves = MovementOfAll(run, first, first + length);
@@ -171,16 +139,19 @@ std::vector<Run> MovingWindows(const Run& recorded, size_t most) {
   }
   std::vector<Run> windows;
   windows.reserve(taken.size());
-  for (const size_t first : taken) windows.push_back(Window(run, first, first + length));
+  for (const size_t first : taken) {
+    windows.push_back(run);
+    windows.back().Keep(first, first + length);
+  }
   return windows;
 }
 
 std::array<bool, model::kChannels> ChannelsThatMove(const Run& window) {
   std::array<bool, model::kChannels> move{};
-  for (const Channel& channel : kAll) {
-    if (!Compared(window, channel)) continue;
+  for (const model::Channel channel : kAll) {
+    if (!IsCompared(window, channel)) continue;
     const double moves = Movement(window, channel, 0, window.samples());
-    move[static_cast<size_t>(channel.channel)] = moves > kMoves * (window.*channel.signal).noise.value_or(0);
+    move[static_cast<size_t>(channel)] = moves > kMoves * In(window, channel).noise.value_or(0);
   }
   return move;
 }

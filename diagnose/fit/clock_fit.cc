@@ -112,17 +112,12 @@ class CorrectionSearch {
   // Takes the correction if the model fits better with it than with the best so far.
   bool Consider(const Correction& correction, int iterations) {
     const std::vector<RunData> moved = AllCorrected(runs_, correction, model_);
-    std::vector<const RunData*> pointers;
-    std::vector<model::StartState> starts;
-    for (const RunData& run : moved) {
-      pointers.push_back(&run);
-      starts.push_back(run.start);
-    }
+    const std::vector<const RunData*> pointers = PointersTo(moved);
     FitOptions options;
     options.most_iterations = iterations;
     options.tolerance = 1e-3;
     options.jobs = jobs_;
-    const Fitted fitted = Fit(best_, pointers, starts, options);
+    const Fitted fitted = Fit(best_, pointers, MeasuredStarts(pointers), options);
     if (!fitted.ok() || !(fitted.squared_gap() < least_)) return false;
     least_ = fitted.squared_gap();
     best_ = fitted.hypothesis;

@@ -4,13 +4,6 @@
 
 namespace hydro::diagnose {
 
-std::vector<model::StartState> MeasuredStarts(const std::vector<const RunData*>& runs) {
-  std::vector<model::StartState> starts;
-  starts.reserve(runs.size());
-  for (const RunData* run : runs) starts.push_back(run->start);
-  return starts;
-}
-
 bool TimeIsUp(const SearchContext& context) { return context.time_is_up && context.time_is_up(); }
 
 Explanation Explain(const SearchContext& context, const Hypothesis& hypothesis,

@@ -43,9 +43,6 @@ bool TimeIsUp(const SearchContext& context);
 Explanation Explain(const SearchContext& context, const Hypothesis& hypothesis,
                     const std::vector<model::StartState>& starts, const FitOptions& options);
 
-// Where the runs begin as measured.
-std::vector<model::StartState> MeasuredStarts(const std::vector<const RunData*>& runs);
-
 // If the fit leaves a gap, fits again from the measured starts and, if a gap still remains, from each run's
 // best start (BestStarts); returns the best fit. Starts that were fitted while something was missing made up
 // for it, and may trap the fit where friction or cogging catches the shaft in another place.

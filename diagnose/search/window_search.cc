@@ -13,7 +13,7 @@ namespace {
 // s. Long enough for the arm to move and the pressures to settle, short enough that drift does not drown what
 // is missing.
 constexpr double kHorizon = 0.4;
-constexpr double kFewestSamples = 60;
+constexpr double kShortest = 60;  // samples
 constexpr double kWindowsPerRun = 4;
 // Windows that are fitted, and as many again that choose.
 constexpr size_t kMostWindows = 20;
@@ -29,7 +29,7 @@ double SearchHorizon(const std::vector<const RunData*>& runs) {
     times.push_back(&run->stimulus.time);
     shortest = std::min(shortest, run->duration());
   }
-  const double sampled = kFewestSamples * MedianInterval(times);
+  const double sampled = kShortest * MedianInterval(times);
   return std::max(std::min(std::max(kHorizon, sampled), shortest / kWindowsPerRun), 0.25 * sampled);
 }
 

@@ -57,12 +57,6 @@ inline std::vector<diagnose::RunData> OneOfEach(const model::ModelDescription& t
   return runs;
 }
 
-inline std::vector<const diagnose::RunData*> PointersTo(const std::vector<diagnose::RunData>& runs) {
-  std::vector<const diagnose::RunData*> pointers;
-  for (const diagnose::RunData& run : runs) pointers.push_back(&run);
-  return pointers;
-}
-
 inline std::vector<model::StartState> StartsOf(const std::vector<diagnose::RunData>& runs) {
   std::vector<model::StartState> starts;
   for (const diagnose::RunData& run : runs) starts.push_back(run.start);
