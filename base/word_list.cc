@@ -17,4 +17,8 @@ std::string Enumerated(const std::vector<std::string>& parts) {
 
 std::string RunNamed(const std::string& name) { return name.starts_with("run ") ? name : "run " + name; }
 
+std::string RunsNamed(const std::vector<std::string>& names) {
+  return names.size() == 1 ? RunNamed(names[0]) : "runs " + Enumerated(names);
+}
+
 }  // namespace hydro

@@ -110,8 +110,7 @@ void RemarkOnSlowSamples(const model::Parameters& model, const std::vector<const
     longest = std::max(longest, interval);
   }
   if (slow.empty()) return;
-  remarks->push_back((slow.size() == 1 ? RunNamed(slow[0]) : "runs " + Enumerated(slow)) + ": samples " +
-                     ShortNumber(longest, 3) +
+  remarks->push_back(RunsNamed(slow) + ": samples " + ShortNumber(longest, 3) +
                      " s apart are too slow for the model's fastest motion, whose time constant is " +
                      ShortNumber(fastest, 2) + " s: what is as fast cannot be judged");
 }

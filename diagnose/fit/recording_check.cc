@@ -215,10 +215,7 @@ std::vector<std::string> FindingRemarks(const std::vector<RecordingFinding>& fin
   std::vector<std::string> lines;
   for (const auto& [text, names] : remarks) {
     const bool all = names.size() == runs.size() && names.size() > 1;
-    lines.push_back((all                 ? "every run"
-                     : names.size() == 1 ? RunNamed(names[0])
-                                         : "runs " + Enumerated(names)) +
-                    ": " + text);
+    lines.push_back((all ? "every run" : RunsNamed(names)) + ": " + text);
   }
   return lines;
 }

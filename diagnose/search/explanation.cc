@@ -6,20 +6,25 @@ namespace hydro::diagnose {
 
 bool TimeIsUp(const SearchContext& context) { return context.time_is_up && context.time_is_up(); }
 
+FitOptions FineFit(int jobs) {
+  FitOptions fine;
+  fine.most_iterations = 15;
+  fine.tolerance = 1e-5;
+  fine.jobs = jobs;
+  return fine;
+}
+
 Explanation Explain(const SearchContext& context, const Hypothesis& hypothesis,
                     const std::vector<model::StartState>& starts, const FitOptions& options) {
   Explanation explanation;
   explanation.fitted = Fit(hypothesis, context.runs, starts, options);
   if (!explanation.fitted.ok()) return explanation;
-  if (context.held_out.empty()) {
-    explanation.held_out = PredictInTurn(explanation.fitted, context.given, context.runs, options.jobs);
-    explanation.blocks = BlocksOf(context.runs, explanation.held_out);
-  } else {
-    explanation.held_out = Predict(explanation.fitted, context.held_out, options.jobs);
-    explanation.windows = context.windows;
-    explanation.blocks = context.windows ? LogarithmsOf(explanation.held_out)
-                                         : BlocksOf(context.held_out, explanation.held_out);
-  }
+  explanation.windows = context.windows;
+  explanation.held_out = context.held_out.empty()
+                             ? PredictInTurn(explanation.fitted, context.given, context.runs, options.jobs)
+                             : Predict(explanation.fitted, context.held_out, options.jobs);
+  explanation.blocks = context.windows ? LogarithmsOf(explanation.held_out)
+                                       : BlocksOf(context.predicted(), explanation.held_out);
   return explanation;
 }
 

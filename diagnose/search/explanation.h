@@ -32,12 +32,17 @@ struct SearchContext {
   std::vector<Change> changes;           // those that may be made
   Sizes sizes;
   int jobs = 1;
+  // The runs that an explanation's held_out speaks of.
+  const std::vector<const RunData*>& predicted() const { return held_out.empty() ? runs : held_out; }
   std::function<bool()> time_is_up;  // may be empty: the search has all the time it needs
   ProgressCallback report_progress;
 };
 
 // Whether the search has to end with what it has.
 bool TimeIsUp(const SearchContext& context);
+
+// How what is compared is fitted.
+FitOptions FineFit(int jobs);
 
 // Fits the hypothesis and predicts the held-out runs, both with the options' jobs.
 Explanation Explain(const SearchContext& context, const Hypothesis& hypothesis,

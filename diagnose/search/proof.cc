@@ -10,27 +10,16 @@ namespace {
 
 // How many explanations that lead on windows are tried on whole runs.
 constexpr size_t kMostProved = 5;
-constexpr int kMostChanges = 3;
 // Above this squared gap on windows, no search on whole runs can reach the noise: a window's start is free.
 constexpr double kOutOfReach = 2.5;
-// Below this squared gap on whole runs, there is nothing left to search for.
-constexpr double kReached = 1.25;
-
-FitOptions Fine(const SearchContext& context) {
-  FitOptions fine;
-  fine.most_iterations = 15;
-  fine.tolerance = 1e-5;
-  fine.jobs = context.jobs;
-  return fine;
-}
 
 // Fits the hypothesis to the whole runs; from other starts too where it leaves a small gap, which another start
 // may close.
 Explanation Prove(const SearchContext& context, const Hypothesis& hypothesis) {
   constexpr double kSmall = 4;
-  const Explanation one = Explain(context, hypothesis, MeasuredStarts(context.runs), Fine(context));
+  const Explanation one = Explain(context, hypothesis, MeasuredStarts(context.runs), FineFit(context.jobs));
   const bool small = one.fitted.ok() && one.squared_gap() < kSmall;
-  return small && !TimeIsUp(context) ? RefitFromOtherStarts(context, one, Fine(context)) : one;
+  return small && !TimeIsUp(context) ? RefitFromOtherStarts(context, one, FineFit(context.jobs)) : one;
 }
 
 // Continues from the best explanation on the whole runs.
@@ -55,11 +44,12 @@ WideSearch SearchAndProve(const SearchContext& context, const Hypothesis& as_giv
   }
   WideSearch proved;
   if (context.report_progress) context.report_progress({"predicting the held-out runs", 0.93});
-  proved.search.given = Explain(context, as_given, MeasuredStarts(context.runs), Fine(context));
+  proved.search.given = Explain(context, as_given, MeasuredStarts(context.runs), FineFit(context.jobs));
   if (!proved.search.given.fitted.ok()) return proved;
   proved.search.rated = near.search.rated;
   proved.search.best = proved.search.given;
-  proved.refit = Explain(context, near.refit.fitted.hypothesis, MeasuredStarts(context.runs), Fine(context));
+  proved.refit =
+      Explain(context, near.refit.fitted.hypothesis, MeasuredStarts(context.runs), FineFit(context.jobs));
   if (!proved.refit.fitted.ok()) proved.refit = proved.search.given;
   for (const Explanation* one : Leading(near.search, kMostProved)) {
     if (TimeIsUp(context) && !proved.search.tried.empty()) break;
@@ -68,7 +58,7 @@ WideSearch SearchAndProve(const SearchContext& context, const Hypothesis& as_giv
     if (Material(proved.search.best.held_out_gap(), whole.held_out_gap())) proved.search.best = whole;
     proved.search.tried.push_back(std::move(whole));
   }
-  const bool open = proved.search.best.held_out_gap() >= kReached;
+  const bool open = proved.search.best.held_out_gap() >= kCloseEnough;
   if (open && near.search.best.held_out_gap() < kOutOfReach && !TimeIsUp(context)) {
     SearchOn(context, &proved.search);
   }

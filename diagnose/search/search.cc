@@ -29,8 +29,6 @@ constexpr double kBehind = 2;
 constexpr double kNearlyAsGood = 2;
 // How many refits are compared on held-out runs at each step.
 constexpr size_t kFinalists = 3;
-// Below this squared gap on held-out runs, the search adds no further changes.
-constexpr double kCloseEnough = 1.25;
 
 // Above this squared gap of the fit, an explanation with a change removed is not refitted from other starts.
 constexpr double kRefitBelow = 3;
@@ -67,8 +65,6 @@ class Searcher {
   Searcher(const SearchContext& context, int most_changes) : context_(context), most_changes_(most_changes) {
     coarse_.most_iterations = 8;
     coarse_.tolerance = 1e-3;
-    fine_.most_iterations = 15;
-    fine_.tolerance = 1e-5;
   }
 
   SearchResult Run(const Hypothesis& from) {
@@ -290,7 +286,7 @@ class Searcher {
 
   const SearchContext& context_;
   int most_changes_;
-  FitOptions coarse_, fine_;
+  FitOptions coarse_, fine_ = FineFit(1);
   SearchResult result_;
   std::vector<std::vector<Scanned>> scanned_alone_;  // every change to the given model
   std::vector<Change> picked_alone_;                 // those of them refitted from where the score test led

@@ -25,6 +25,11 @@ struct SearchResult {
   Explanation best;
 };
 
+// The most changes that are made to a model.
+inline constexpr int kMostChanges = 3;
+// Below this squared gap on held-out runs, nothing is left to search for.
+inline constexpr double kCloseEnough = 1.25;
+
 // Searches from `from`, a hypothesis without changes of its own.
 SearchResult Search(const SearchContext& context, const Hypothesis& from, int most_changes);
 

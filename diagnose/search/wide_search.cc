@@ -8,9 +8,23 @@ namespace hydro::diagnose {
 
 namespace {
 
-constexpr int kMostChanges = 3;
 // The squared gap above which a model is wrong everywhere.
 constexpr double kWrongEverywhere = 25;
+
+// The given model with all base parameters fitted that the runs identify; the model as given where that
+// fails.
+Explanation Refit(const SearchContext& context, const Hypothesis& as_given, const Explanation& given,
+                  const std::vector<size_t>& allowed) {
+  const std::vector<model::StartState> starts = StartsOf(given.fitted);
+  Hypothesis refitted = as_given;
+  for (const model::EffectDescription& effect : context.given.effects) refitted.effects.push_back(effect.id);
+  refitted.base = Identifiable(as_given, context.runs, starts, allowed, context.sizes, context.jobs);
+  FitOptions fine;
+  fine.tolerance = 1e-5;
+  fine.jobs = context.jobs;
+  Explanation refit = Explain(context, refitted, starts, fine);
+  return refit.fitted.ok() ? refit : given;
+}
 
 // Searches again from the refitted model if that predicts better, and keeps the result if it beats that of
 // `search`.
@@ -26,19 +40,6 @@ void SearchFromRefit(const SearchContext& context, const Explanation& refit, Sea
 }
 
 }  // namespace
-
-Explanation Refit(const SearchContext& context, const Hypothesis& as_given, const Explanation& given,
-                  const std::vector<size_t>& allowed) {
-  const std::vector<model::StartState> starts = StartsOf(given.fitted);
-  Hypothesis refitted = as_given;
-  for (const model::EffectDescription& effect : context.given.effects) refitted.effects.push_back(effect.id);
-  refitted.base = Identifiable(as_given, context.runs, starts, allowed, context.sizes, context.jobs);
-  FitOptions fine;
-  fine.tolerance = 1e-5;
-  fine.jobs = context.jobs;
-  Explanation refit = Explain(context, refitted, starts, fine);
-  return refit.fitted.ok() ? refit : given;
-}
 
 WideSearch SearchWidely(const SearchContext& context, const Hypothesis& as_given,
                         const std::vector<size_t>& allowed) {

@@ -19,9 +19,4 @@ struct WideSearch {
 WideSearch SearchWidely(const SearchContext& context, const Hypothesis& as_given,
                         const std::vector<size_t>& allowed);
 
-// The given model with all base parameters fitted that the runs identify; the model as given where that
-// fails.
-Explanation Refit(const SearchContext& context, const Hypothesis& as_given, const Explanation& given,
-                  const std::vector<size_t>& allowed);
-
 }  // namespace hydro::diagnose

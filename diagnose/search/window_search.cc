@@ -35,9 +35,9 @@ double SearchHorizon(const std::vector<const RunData*>& runs) {
 
 SearchWindows WindowsForSearch(const std::vector<const RunData*>& runs, const model::Parameters& model) {
   SearchWindows windows;
-  windows.seconds = SearchHorizon(runs);
+  const double seconds = SearchHorizon(runs);
   for (const RunData* run : runs) {
-    for (RunData& window : WindowsOf(*run, windows.seconds, model)) windows.all.push_back(std::move(window));
+    for (RunData& window : WindowsOf(*run, seconds, model)) windows.all.push_back(std::move(window));
   }
   windows.fitted = EvenlySpread(windows.all, kMostWindows, 0, 2);
   windows.choosing = EvenlySpread(windows.all, kMostWindows, 1, 2);

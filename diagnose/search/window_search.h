@@ -12,7 +12,6 @@ namespace hydro::diagnose {
 
 // Windows cut from runs. Every other one is fitted, and the rest chooses between what was fitted.
 struct SearchWindows {
-  double seconds = 0;
   std::vector<RunData> all;
   std::vector<const RunData*> fitted, choosing;  // among `all`
 };

@@ -116,7 +116,7 @@ std::vector<HorizonGap> HorizonGaps(const SearchContext& context, double seconds
     fitted.push_back({run, {}});
     for (size_t m = 0; m < kModels; ++m) fitted.back().models[m] = &all[m]->fitted.hypothesis.model;
   }
-  const std::vector<const RunData*>& predicted = context.held_out.empty() ? context.runs : context.held_out;
+  const std::vector<const RunData*>& predicted = context.predicted();
   for (size_t r = 0; r < predicted.size(); ++r) {
     held_out.push_back({predicted[r], {}});
     for (size_t m = 0; m < kModels; ++m) held_out.back().models[m] = &all[m]->held_out.models[r];

@@ -40,14 +40,10 @@ Sums OfFit(const SearchContext& context, const Explanation& one) {
   return sums;
 }
 
-const std::vector<const RunData*>& HeldOutRuns(const SearchContext& context) {
-  return context.held_out.empty() ? context.runs : context.held_out;
-}
-
 Sums OfHeldOut(const SearchContext& context, const Explanation& one) {
   Sums sums;
-  for (size_t r = 0; r < HeldOutRuns(context).size(); ++r) {
-    sums.Add(*HeldOutRuns(context)[r], one.held_out.models[r], one.held_out.starts[r]);
+  for (size_t r = 0; r < context.predicted().size(); ++r) {
+    sums.Add(*context.predicted()[r], one.held_out.models[r], one.held_out.starts[r]);
   }
   return sums;
 }

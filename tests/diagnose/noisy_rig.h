@@ -18,8 +18,8 @@ struct NoisyRig {
   double pressure_noise = 1.5, speed_noise = 0.3;
   int encoder_bits = 14;
   uint64_t seed = 1;
-  double step = 1e-3;  // s between samples
-  bool speed_measured = true;
+  double step = 1e-3;                                 // s between samples
+  bool speed_measured = true, angle_measured = true;  // of the motor
 
   // `voltage` as a function of time, held from sample to sample.
   template <class Voltage>
@@ -58,7 +58,7 @@ struct NoisyRig {
       return values;
     };
     if (speed_measured) run.motor_speed.values = noisy(model::Channel::kMotorSpeed, speed_noise);
-    run.motor_angle.values = counted(model::Channel::kMotorAngle);
+    if (angle_measured) run.motor_angle.values = counted(model::Channel::kMotorAngle);
     run.p1.values = noisy(model::Channel::kP1, pressure_noise);
     run.p2.values = noisy(model::Channel::kP2, pressure_noise);
     if (shaft == model::Shaft::kFree) run.arm_angle.values = counted(model::Channel::kArmAngle);

@@ -7,6 +7,7 @@
 #include "diagnose/fit/start_fit.h"
 #include "diagnose/verdict/horizons.h"
 #include "model/terms/state.h"
+#include "tests/diagnose/noisy_rig.h"
 #include "tests/table1.h"
 
 namespace hydro::diagnose {
@@ -15,40 +16,18 @@ namespace {
 using ::testing::SizeIs;
 
 // Two seconds at 1 kHz of the model itself under a slow square wave; the motor's angle is not measured.
-RunData Simulated(const model::ModelDescription& model, double noise) {
-  runs::MeasuredRun run;
-  run.name = run.file = "square";
-  run.shaft = model::Shaft::kClamped;
-  model::Stimulus stimulus;
-  stimulus.shaft = run.shaft;
-  for (int i = 0; i <= 2000; ++i) {
-    stimulus.time.push_back(0.001 * i);
-    stimulus.voltage.push_back(i / 250 % 2 == 0 ? 2 : -1.5);
-  }
-  const model::Response response =
-      model::Respond(model, stimulus, {0, 0, model.parameters.p_3, model.parameters.p_3, 0, 0}, {}, {});
-  run.time = stimulus.time;
-  run.voltage.values = stimulus.voltage;
-  run.motor_speed.values = response.values[static_cast<size_t>(model::Channel::kMotorSpeed)];
-  run.p1.values = response.values[static_cast<size_t>(model::Channel::kP1)];
-  run.p2.values = response.values[static_cast<size_t>(model::Channel::kP2)];
-  uint64_t state = 1;
-  const auto random = [&state] {
-    state = state * 6364136223846793005u + 1442695040888963407u;
-    return (static_cast<double>(state >> 11) / 9007199254740992.0 - 0.5) * std::sqrt(12.0);
-  };
-  for (size_t i = 0; i < run.time.size(); ++i) {
-    run.motor_speed.values[i] += 0.2 * noise * random();
-    run.p1.values[i] += noise * random();
-    run.p2.values[i] += noise * random();
-  }
-  return PrepareRun(std::move(run), model.parameters);
+RunData Simulated(const model::ModelDescription& model) {
+  testing::NoisyRig rig;
+  rig.model = model;
+  rig.angle_measured = false;
+  return rig.Record("square", model::Shaft::kClamped, 0, 2.001, false,
+                    [](double t) { return std::fmod(t, 0.5) < 0.25 ? 2 : -1.5; });
 }
 
 // Tests that windows cover a run without gaps, warm-ups aside, and keep its clock, noise and integrated angle.
 TEST(Windows, CoverTheRun) {
   const model::ModelDescription model = {"Table 1", testing::Table1(), {}};
-  const RunData run = Simulated(model, 1);
+  const RunData run = Simulated(model);
   const std::vector<RunData> windows = WindowsOf(run, 0.4, model.parameters);
   ASSERT_THAT(windows, SizeIs(4));  // 0.1 s to warm up, then 4 of 0.4 s in 2 s
   double end = 0.1;
@@ -72,7 +51,7 @@ TEST(Windows, TellAWrongModel) {
   const model::ModelDescription model = {"Table 1", testing::Table1(), {}};
   model::ModelDescription wrong = model;
   wrong.parameters.T_s *= 2;
-  const RunData run = Simulated(model, 1);
+  const RunData run = Simulated(model);
   for (const RunData& window : WindowsOf(run, 0.4, model.parameters)) {
     const auto gap = [&window](const model::ModelDescription& by) {
       Hypothesis hypothesis;
@@ -103,7 +82,7 @@ TEST(Horizons, ShowTheRightModel) {
   const model::ModelDescription model = {"Table 1", testing::Table1(), {}};
   model::ModelDescription wrong = model;
   wrong.parameters.T_s *= 2;
-  const RunData run = Simulated(model, 1);
+  const RunData run = Simulated(model);
   SearchContext context;
   context.runs = {&run};
   const auto explanation = [&run](const model::ModelDescription& by) {

@@ -6,6 +6,7 @@
 
 #include "diagnose/search/wide_search.h"
 #include "diagnose/search/window_search.h"
+#include "tests/diagnose/noisy_rig.h"
 #include "tests/table1.h"
 
 namespace hydro::diagnose {
@@ -30,30 +31,16 @@ class ProofTest : public ::testing::Test {
     context_.changes = {{"", {}, "b"}, {"", {}, "k_1"}, {"pump.quadratic_drag", {}, ""}};
   }
 
-  // Two seconds at 500 Hz under a square wave, with noise.
+  // Two seconds at 500 Hz under a square wave with the bypass open.
   static RunData Recorded(const model::ModelDescription& model, uint64_t seed) {
-    runs::MeasuredRun run;
-    run.name = run.file = "square";
-    run.shaft = model::Shaft::kClamped;
-    run.bypass = true;
-    model::Stimulus stimulus;
-    stimulus.shaft = run.shaft;
-    stimulus.bypass = true;
-    for (int i = 0; i < 1000; ++i) {
-      stimulus.time.push_back(0.002 * i);
-      stimulus.voltage.push_back(i / 170 % 2 == 0 ? 2.0 : -2.0 - 0.1 * static_cast<double>(seed));
-    }
-    const model::Response response =
-        model::Respond(model, stimulus, {0, 0, model.parameters.p_3, model.parameters.p_3, 0, 0}, {}, {});
-    run.time = stimulus.time;
-    run.voltage.values = stimulus.voltage;
-    run.motor_speed.values = response.values[static_cast<size_t>(model::Channel::kMotorSpeed)];
-    uint64_t state = seed;
-    for (double& value : run.motor_speed.values) {
-      state = state * 6364136223846793005u + 1442695040888963407u;
-      value += (static_cast<double>(state >> 11) / 9007199254740992.0 - 0.5) * std::sqrt(12.0);
-    }
-    return PrepareRun(std::move(run), model.parameters);
+    testing::NoisyRig rig;
+    rig.model = model;
+    rig.seed = seed;
+    rig.step = 2e-3;
+    rig.angle_measured = false;
+    const double low = -2.0 - 0.1 * static_cast<double>(seed);
+    return rig.Record("square", model::Shaft::kClamped, 0, 2, true,
+                      [low](double t) { return std::fmod(t, 0.68) < 0.34 ? 2.0 : low; });
   }
 
   Hypothesis given_;
