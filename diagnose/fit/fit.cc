@@ -31,7 +31,7 @@ constexpr char kCannotBeSimulated[] = "its simulation fails";
 // every time.
 class AllRuns : public ceres::EvaluationCallback {
  public:
-  AllRuns(const std::vector<double>& values, const std::vector<std::vector<double>>& starts, int jobs)
+  AllRuns(const std::vector<double>& values, const std::vector<model::StartState>& starts, int jobs)
       : values_(values), starts_(starts), jobs_(jobs) {}
   void Add(RunCost* cost) { costs_.push_back(cost); }
   void PrepareForEvaluation(bool derivatives, bool /*new_point*/) override {
@@ -41,7 +41,7 @@ class AllRuns : public ceres::EvaluationCallback {
 
  private:
   const std::vector<double>& values_;
-  const std::vector<std::vector<double>>& starts_;
+  const std::vector<model::StartState>& starts_;
   int jobs_;
   std::vector<RunCost*> costs_;
 };
@@ -151,12 +151,12 @@ class FitProblem {
       costs_.push_back(std::make_unique<RunCost>(hypothesis_, *runs_[r], starts_[r]));
       RunCost* const cost = costs_.back().get();
       all_runs_.Add(cost);
-      for (const model::Unknown& start : cost->starts()) {
-        start_values_[r].push_back(starts_[r][start.index]);
+      for (size_t i = 0; i < cost->starts().size(); ++i) {
+        start_values_[r][i] = starts_[r][cost->starts()[i].index];
       }
       std::vector<double*> blocks;
       if (!free_.empty()) blocks.push_back(values_.data());
-      if (!start_values_[r].empty()) blocks.push_back(start_values_[r].data());
+      if (!cost->starts().empty()) blocks.push_back(start_values_[r].data());
       if (!blocks.empty()) problem_.AddResidualBlock(cost, nullptr, blocks);
     }
   }
@@ -165,8 +165,8 @@ class FitProblem {
   // longer than the simulations.
   void EliminateStartsFirst(ceres::Solver::Options* solver) {
     auto order = std::make_shared<ceres::ParameterBlockOrdering>();
-    for (std::vector<double>& start : start_values_) {
-      if (!start.empty()) order->AddElementToGroup(start.data(), 0);
+    for (size_t r = 0; r < runs_.size(); ++r) {
+      if (!costs_[r]->starts().empty()) order->AddElementToGroup(start_values_[r].data(), 0);
     }
     order->AddElementToGroup(values_.data(), 1);
     solver->linear_solver_type = ceres::DENSE_SCHUR;
@@ -203,8 +203,10 @@ class FitProblem {
   const std::vector<model::StartState>& starts_;
   int jobs_;
   std::vector<FreeParameter> free_;
-  std::vector<double> values_;                     // of the free parameters, as fitted
-  std::vector<std::vector<double>> start_values_;  // of each run, those that are free
+  std::vector<double> values_;  // of the free parameters, as fitted
+  // Of each run, first those that are free. In one array: the solver eliminates them in the order of their
+  // addresses, and another order would round differently.
+  std::vector<model::StartState> start_values_;
   std::vector<std::unique_ptr<RunCost>> costs_;
   std::unique_ptr<ceres::CostFunction> prior_;
   AllRuns all_runs_;

@@ -8,7 +8,9 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <memory>
 
+#include "diagnose/data/windows.h"
 #include "diagnose/fit/held_out.h"
 #include "diagnose/fit/start_fit.h"
 #include "diagnose/search/search.h"
@@ -253,6 +255,32 @@ TEST(Fit, SameBitsEveryTime) {
   for (int i = 0; i < 2; ++i) {
     EXPECT_EQ(DifferentBits(AllNumbers(FitRuns(hypothesis, runs, 2)), once), 0) << "2 threads";
     EXPECT_EQ(DifferentBits(AllNumbers(FitRuns(hypothesis, runs, 4)), once), 0) << "4 threads";
+  }
+}
+
+// Small memory blocks, freed in an order of their own: what is allocated next lies in another order.
+void ShuffleFreeMemory(int round) {
+  std::vector<std::unique_ptr<double[]>> blocks;
+  for (int i = 0; i < 400; ++i) blocks.push_back(std::make_unique<double[]>(1 + i % 8));
+  for (size_t i = 0; i < blocks.size(); ++i) blocks[(i * (7 + 2 * round)) % blocks.size()].reset();
+}
+
+// Tests that a fit of many windows does not depend on where its numbers lie in memory.
+TEST(Fit, SameBitsWhereverItsNumbersLie) {
+  model::ModelDescription truth = Table1With();
+  truth.parameters.b = 0.018;
+  std::vector<diagnose::RunData> windows;
+  for (const diagnose::RunData& run : OneOfEach(truth, 0.6, 1)) {
+    for (diagnose::RunData& window : diagnose::WindowsOf(run, 0.1, truth.parameters)) {
+      windows.push_back(std::move(window));
+    }
+  }
+  ASSERT_GT(windows.size(), 12);
+  const diagnose::Hypothesis hypothesis = WithFree(Table1With(), {"J", "b", "T_s", "beta"});
+  const std::vector<double> once = AllNumbers(FitRuns(hypothesis, windows));
+  for (int round = 0; round < 4; ++round) {
+    ShuffleFreeMemory(round);
+    EXPECT_EQ(DifferentBits(AllNumbers(FitRuns(hypothesis, windows)), once), 0) << round;
   }
 }
 
