@@ -54,6 +54,7 @@ const char* NameOf(SignalOfRun signal) {
 
 std::string NamesOf(const std::vector<SignalOfRun>& signals) {
   std::vector<std::string> names;
+  names.reserve(signals.size());
   for (const SignalOfRun signal : signals) names.emplace_back(NameOf(signal));
   return Enumerated(names) + (names.size() > 1 ? " are" : " is");
 }

@@ -149,6 +149,7 @@ std::vector<std::string> LayoutRemarks(const std::vector<const RunData*>& runs) 
       same->second += ", " + RunNamed(run->name);
     }
   }
+  remarks.reserve(layouts.size());
   for (const auto& [layout, names] : layouts) remarks.push_back(names + ": table read with " + layout);
   return remarks;
 }
