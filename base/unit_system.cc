@@ -47,7 +47,7 @@ std::string Written(const std::vector<UnitPower>& powers, char times) {
 
 // force / length^2 as one name where there is one; else as the two.
 std::vector<UnitPower> Pressure(const UnitSystem& units) {
-  const std::vector<UnitPower> quotient = {{units.force, 1}, {units.length, -2}};
+  std::vector<UnitPower> quotient = {{units.force, 1}, {units.length, -2}};
   const Unit wanted = *ParseUnit(std::string(units.force) + "/" + std::string(units.length) + "^2");
   for (const std::string_view name : {"psi", "Pa", "kPa", "MPa", "bar"}) {
     const Unit unit = *ParseUnit(name);

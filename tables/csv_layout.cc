@@ -149,6 +149,7 @@ std::optional<Reading> FindReading(const Lines& lines, const std::string& file, 
   if (readings.size() == 1) return readings.front();
   if (readings.size() > 1) {
     std::vector<std::string> names;
+    names.reserve(readings.size());
     for (const Reading& reading : readings) names.emplace_back(NameOf(reading.separator));
     throw InputError(file + ": line " + std::to_string(lines[readings.front().rows].number) +
                      ": found cells that may be separated by " + Joined(names, " or by ") +
