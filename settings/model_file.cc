@@ -25,6 +25,7 @@ constexpr char kUnitsAllowed[] = "\"si\", or a table as { length = \"mm\", force
 std::string_view ReadUnit(SectionReader& section, const std::string& key,
                           const std::vector<std::string>& allowed, std::string_view absent) {
   std::vector<std::pair<std::string, std::string_view>> choices;
+  choices.reserve(allowed.size());
   for (const std::string& name : allowed) choices.emplace_back(name, UnitPowers(name)->front().name);
   section.Choice(key, choices, &absent);
   return absent;
