@@ -53,7 +53,7 @@ def weights(key, report):
     true = sorted(effect["id"] for effect in key["effects"])
     judged = []
     for candidate in report.get("candidates") or []:
-        ids = sorted(part.strip() for part in candidate["id"].split("+"))
+        ids = sorted(part.split("(")[0].strip() for part in candidate["id"].split("+"))  # "sensor.skew (p1)"
         if not isinstance(candidate.get("weight"), (int, float)) or candidate["id"].startswith("closure."):
             continue
         if not any("." in part for part in ids):

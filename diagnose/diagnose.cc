@@ -134,6 +134,7 @@ SearchContext MakeContext(const model::ModelDescription& model, const PreparedRu
   context.held_out = PointersTo(runs.held_out);
   context.sizes = SizesOf(model, context.runs);
   context.jobs = options.jobs;
+  context.seed = options.seed;
   context.report_progress = report_progress;
   context.changes = EffectChanges(model, options.effects, context.runs);
   for (const size_t i : allowed) context.changes.push_back({"", {}, model::BaseParameters()[i].info.name});
@@ -180,7 +181,7 @@ Diagnosis Diagnose(const model::ModelDescription& model, std::vector<runs::Measu
   if (!found.search.given.fitted.ok()) {
     throw model::ModelError(found.search.given.fitted.failure);
   }
-  Diagnosis diagnosis = Conclude(context, found.search, found.refit);
+  Diagnosis diagnosis = Conclude(context, found.search, found.refit, found.windows);
   const std::vector<std::string> remarks = RecordingRemarks(prepared.clocks, context.runs, context.held_out);
   diagnosis.remarks.insert(diagnosis.remarks.begin(), remarks.begin(), remarks.end());
   std::vector<const RunData*> all = context.runs;

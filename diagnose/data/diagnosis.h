@@ -81,7 +81,9 @@ struct HorizonGap {
 };
 
 struct Candidate {
-  std::string id;  // of the effect, or "parameter k_1"
+  // Of the effect, or "parameter k_1"; sets of them are joined with " + ". "parameters": all values refitted;
+  // "as given": the model itself.
+  std::string id;
   // Fall of the squared gap that the score test expects, in noise units squared.
   double score = 0;
   double fit = 0;       // gap after refitting; NaN: not refitted
@@ -89,6 +91,8 @@ struct Candidate {
   // Probability that chance alone improves the fit this much, allowing for the number tried.
   double p_value = 1;
   std::string rejected_because;  // "" for those that were taken
+  // How probable the explanation is among those tried: those of all candidates add to 1.
+  double weight = 0;
 };
 
 // One run as the pictures show it, thinned to what a page can hold.

@@ -216,14 +216,16 @@ std::string Ranking(const Diagnosis& diagnosis) {
     rows += std::string(taken ? "<tr class=\"taken\">" : "<tr>") + "<td class=\"number\">" +
             std::to_string(++rank) + "</td>" + Cell(candidate.id) + NumberCell(candidate.score) +
             NumberCell(candidate.fit) + NumberCell(candidate.held_out) + Probability(candidate.p_value) +
-            "<td>" + (taken ? "taken" : page::TypesetHtml(candidate.rejected_because)) + "</td></tr>\n";
+            Probability(candidate.weight) + "<td>" +
+            (taken ? "taken" : page::TypesetHtml(candidate.rejected_because)) + "</td></tr>\n";
   }
   if (rows.empty()) return "";
   return "<p>Gaps are in noise units, with the candidate added and all parameters refitted. The score is the "
          "drop in the squared gap that the score test predicts before any refit. p is the probability that "
          "noise alone achieves as much, corrected for the number of candidates. <i>-</i>: not tried, because "
          "the score is too low.</p>\n" +
-         Table({"#", "candidate", "#score", "#fitted", "#held out", "#p", "rejected because"}, rows);
+         Table({"#", "candidate", "#score", "#fitted", "#held out", "#p", "#weight", "rejected because"},
+               rows);
 }
 
 std::string Remarks(const Diagnosis& diagnosis) {

@@ -129,6 +129,7 @@ Json Candidates(const Diagnosis& diagnosis) {
                           {"fit", candidate.fit},
                           {"held_out", candidate.held_out},
                           {"p_value", candidate.p_value},
+                          {"weight", candidate.weight},
                           {"rejected_because", candidate.rejected_because}});
   }
   return candidates;

@@ -1,8 +1,22 @@
 #include "diagnose/search/explanation.h"
 
+#include <algorithm>
+
 #include "diagnose/fit/start_fit.h"
 
 namespace hydro::diagnose {
+
+double NumbersFactor(const Hypothesis& hypothesis) {
+  double factor = 1;
+  for (const FreeParameter& parameter : hypothesis.Free()) {
+    factor += parameter.unknown.kind == model::Unknown::Kind::kBase ? 0.005 : 0.01;
+  }
+  return factor;
+}
+
+double Cost(double squared_gap, double numbers_factor) {
+  return std::max(1.0, squared_gap) * numbers_factor + std::min(0.0, squared_gap - 1);
+}
 
 bool TimeIsUp(const SearchContext& context) { return context.time_is_up && context.time_is_up(); }
 

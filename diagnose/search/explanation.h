@@ -1,6 +1,7 @@
 // An explanation of the runs: a hypothesis, fitted, and how well it predicts runs that it was not fitted to.
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <vector>
 
@@ -23,6 +24,11 @@ struct Explanation {
   const std::vector<Change>& changes() const { return fitted.hypothesis.changes; }
 };
 
+// What an explanation costs by its squared gap and its new numbers: of two that predict equally well, the one
+// with fewer numbers costs less, and a wrong value less than a missing effect.
+double NumbersFactor(const Hypothesis& hypothesis);
+double Cost(double squared_gap, double numbers_factor);
+
 // What every step of a search needs.
 struct SearchContext {
   model::ModelDescription given;
@@ -32,6 +38,7 @@ struct SearchContext {
   std::vector<Change> changes;           // those that may be made
   Sizes sizes;
   int jobs = 1;
+  uint64_t seed = 1;
   // The runs that an explanation's held_out speaks of.
   const std::vector<const RunData*>& predicted() const { return held_out.empty() ? runs : held_out; }
   std::function<bool()> time_is_up;  // may be empty: the search has all the time it needs

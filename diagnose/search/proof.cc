@@ -10,8 +10,6 @@ namespace {
 
 // How many explanations that lead on windows are tried on whole runs.
 constexpr size_t kMostProved = 5;
-// Above this squared gap on windows, no search on whole runs can reach the noise: a window's start is free.
-constexpr double kOutOfReach = 2.5;
 
 // Fits the hypothesis to the whole runs; from other starts too where it leaves a small gap, which another start
 // may close.
@@ -20,6 +18,14 @@ Explanation Prove(const SearchContext& context, const Hypothesis& hypothesis) {
   const Explanation one = Explain(context, hypothesis, MeasuredStarts(context.runs), FineFit(context.jobs));
   const bool small = one.fitted.ok() && one.squared_gap() < kSmall;
   return small && !TimeIsUp(context) ? RefitFromOtherStarts(context, one, FineFit(context.jobs)) : one;
+}
+
+WindowTrials TrialsOn(const SearchWindows& windows, const WideSearch& near) {
+  WindowTrials trials{near.search.tried, {}};
+  for (const Explanation* one : {&near.search.given, &near.search.best, &near.refit})
+    trials.tried.push_back(*one);
+  for (const RunData* window : windows.choosing) trials.runs.push_back(window->name);
+  return trials;
 }
 
 // Continues from the best explanation on the whole runs.
@@ -46,6 +52,7 @@ WideSearch SearchAndProve(const SearchContext& context, const Hypothesis& as_giv
   if (context.report_progress) context.report_progress({"predicting the held-out runs", 0.93});
   proved.search.given = Explain(context, as_given, MeasuredStarts(context.runs), FineFit(context.jobs));
   if (!proved.search.given.fitted.ok()) return proved;
+  proved.windows = TrialsOn(windows, near);
   proved.search.rated = near.search.rated;
   proved.search.best = proved.search.given;
   proved.refit =

@@ -40,14 +40,8 @@ constexpr double kOutOfTheRace = 6;
 
 constexpr char kNoTime[] = "the time limit ended the search";
 
-// Of two that predict equally well, prefers the one with fewer new numbers, and a wrong value to a missing
-// effect.
-double Cost(const Explanation& one) {
-  double share = 1;
-  for (const FreeParameter& parameter : one.fitted.hypothesis.Free()) {
-    share += parameter.unknown.kind == model::Unknown::Kind::kBase ? 0.005 : 0.01;
-  }
-  return std::max(1.0, one.held_out_gap()) * share + std::min(0.0, one.held_out_gap() - 1);
+double CostOf(const Explanation& one) {
+  return Cost(one.held_out_gap(), NumbersFactor(one.fitted.hypothesis));
 }
 
 // A model cannot contain an effect twice, and nothing is changed twice.
@@ -98,7 +92,7 @@ class Searcher {
   void Grow(std::vector<Explanation> next, int step) {
     while (!next.empty()) {
       const auto best = std::min_element(next.begin(), next.end(),
-                                         [](const auto& a, const auto& b) { return Cost(a) < Cost(b); });
+                                         [](const auto& a, const auto& b) { return CostOf(a) < CostOf(b); });
       if (!Material(result_.best.held_out_gap(), best->held_out_gap())) return;
       *best = RefitFromOtherStarts(context_, *best, WithAllJobs(fine_));
       std::vector<Explanation> beam(next.begin(),

@@ -3,15 +3,23 @@
 #pragma once
 
 #include <cstddef>
+#include <string>
 #include <vector>
 
 #include "diagnose/search/search.h"
 
 namespace hydro::diagnose {
 
+// What was tried on windows, and the run of each window that it was not fitted to.
+struct WindowTrials {
+  std::vector<Explanation> tried;
+  std::vector<std::string> runs;
+};
+
 struct WideSearch {
   SearchResult search;
-  Explanation refit;  // the given model with all base parameters fitted that the runs identify
+  Explanation refit;     // the given model with all base parameters fitted that the runs identify
+  WindowTrials windows;  // empty without a search on windows
 };
 
 // `allowed`: indices in BaseParameters() of those that may be refitted. If the given model cannot be simulated,

@@ -8,6 +8,7 @@
 #include "diagnose/fit/intervals.h"
 #include "diagnose/locate/locate.h"
 #include "diagnose/search/window_search.h"
+#include "diagnose/verdict/evidence.h"
 #include "diagnose/verdict/horizons.h"
 #include "diagnose/verdict/next_experiment.h"
 #include "diagnose/verdict/ranking.h"
@@ -204,7 +205,8 @@ void NameRuns(const SearchContext& context, Diagnosis* d) {
 
 }  // namespace
 
-Diagnosis Conclude(const SearchContext& context, const SearchResult& search, const Explanation& refit) {
+Diagnosis Conclude(const SearchContext& context, const SearchResult& search, const Explanation& refit,
+                   const WindowTrials& windows) {
   const ProgressCallback& report_progress = context.report_progress;
   const Explanation& given = search.given;
   const Explanation& best = search.best;
@@ -217,7 +219,7 @@ Diagnosis Conclude(const SearchContext& context, const SearchResult& search, con
   d.verdict = VerdictOn(context, search, d);
   d.model = best.fitted.hypothesis.model;
   d.signals = SignalGaps(context, given, refit, best);
-  d.candidates = Ranking(context, search);
+  d.candidates = Ranking(context, search, WeightsOf(context, search, refit, windows), windows);
   d.curves = CurvesOf(context, given, best);
   if (d.verdict != Verdict::kNothingMissing) {
     if (report_progress) report_progress({"where the gap is", 0.97});

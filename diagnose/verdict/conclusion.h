@@ -2,11 +2,12 @@
 #pragma once
 
 #include "diagnose/data/diagnosis.h"
-#include "diagnose/search/search.h"
+#include "diagnose/search/wide_search.h"
 
 namespace hydro::diagnose {
 
-// `refit`: the given model with all identifiable base parameters fitted.
-Diagnosis Conclude(const SearchContext& context, const SearchResult& search, const Explanation& refit);
+// `refit`: the given model with all identifiable base parameters fitted. `windows`: what was tried on them.
+Diagnosis Conclude(const SearchContext& context, const SearchResult& search, const Explanation& refit,
+                   const WindowTrials& windows = {});
 
 }  // namespace hydro::diagnose

@@ -6,6 +6,7 @@
 #include <tuple>
 
 #include "base/number_text.h"
+#include "diagnose/verdict/evidence.h"
 
 namespace hydro::diagnose {
 
@@ -43,55 +44,132 @@ const Explanation* AddedToBest(const SearchResult& search, const Change& change)
   return nullptr;
 }
 
-}  // namespace
+// The best explanation of a claim among those predicted; null when there is none.
+const Explanation* BestOf(const std::vector<Explanation>& tried, const std::string& claim) {
+  const Explanation* best = nullptr;
+  for (const Explanation& one : tried) {
+    if (one.blocks.sums.empty() || ClaimOf(one.fitted.hypothesis) != claim) continue;
+    if (best == nullptr || one.held_out_gap() < best->held_out_gap()) best = &one;
+  }
+  return best;
+}
 
-std::vector<Candidate> Ranking(const SearchContext& context, const SearchResult& search) {
-  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-  const double correlation = CorrelationOf(context.runs, search.best.fitted);
-  std::vector<Candidate> candidates;
-  for (const Rated& rated : search.rated) {
+std::string ComparedGaps(double with_it, double with_what_was_found) {
+  return Gap(with_it) + " with it, " + Gap(with_what_was_found) + " with what was found";
+}
+
+// The ranking of one search.
+class Ranker {
+ public:
+  Ranker(const SearchContext& context, const SearchResult& search, const WindowTrials& windows)
+      : search_(search), windows_(windows), correlation_(CorrelationOf(context.runs, search.best.fitted)) {
+    if (const Explanation* best = BestOf(windows.tried, ClaimOf(search.best.fitted.hypothesis))) {
+      best_on_windows_ = best->held_out_gap();
+    }
+  }
+
+  Candidate Single(const Rated& rated) const {
     Candidate candidate;
     candidate.id = rated.change.Label();
     candidate.score = rated.expected;
     candidate.fit = candidate.held_out = kNan;
-    double fall = rated.expected * static_cast<double>(search.given.fitted.count);
-    const Explanation* alone = AddedAlone(search.tried, rated.change);
+    double fall = rated.expected * static_cast<double>(search_.given.fitted.count);
+    const Explanation* alone = AddedAlone(search_.tried, rated.change);
     if (alone != nullptr) {
-      candidate.fit = std::sqrt(alone->squared_gap());
-      if (!alone->blocks.sums.empty()) candidate.held_out = std::sqrt(alone->held_out_gap());
-      fall = search.given.fitted.sum - alone->fitted.sum;
+      SetGaps(*alone, &candidate);
+      fall = search_.given.fitted.sum - alone->fitted.sum;
     }
-    candidate.p_value =
-        PValue(fall, search.best.squared_gap(), correlation, OwnNumbers(rated.change), search.rated.size());
-    const Explanation* on_top = AddedToBest(search, rated.change);
-    if (search.best.fitted.hypothesis.Has(rated.change)) {
-      candidate.rejected_because = "";
-    } else if (!rated.failure.empty()) {
-      candidate.rejected_because = "could not be tried: " + rated.failure;
-    } else if (on_top != nullptr && !search.best.changes().empty()) {
-      candidate.rejected_because = "added to " + search.best.changes().front().Label() +
-                                   ", it changes the held-out gap only from " +
-                                   Gap(search.best.held_out_gap()) + " to " + Gap(on_top->held_out_gap());
-    } else if (alone != nullptr && !alone->blocks.sums.empty()) {
-      candidate.rejected_because = "held-out gap " + Gap(alone->held_out_gap()) + " with it, " +
-                                   Gap(search.best.held_out_gap()) + " with what was found";
-    } else if (alone != nullptr) {
-      candidate.rejected_because = "refitted, it leaves a gap of " + Gap(alone->squared_gap());
-    } else {
-      const double expected = std::max(0.0, search.given.squared_gap() - rated.expected);
-      candidate.rejected_because = rated.expected <= 0
-                                       ? "the score test expects no gain from it"
-                                       : "the score test expects it to leave a gap of " + Gap(expected);
-    }
-    candidates.push_back(candidate);
+    candidate.p_value = PValue(fall, search_.best.squared_gap(), correlation_, OwnNumbers(rated.change),
+                               search_.rated.size());
+    if (!search_.best.fitted.hypothesis.Has(rated.change)) candidate.rejected_because = Why(rated, alone);
+    return candidate;
   }
+
+  // An explanation that is not a single change.
+  Candidate Other(const std::string& claim) const {
+    Candidate candidate;
+    candidate.id = claim;
+    candidate.score = candidate.fit = candidate.held_out = candidate.p_value = kNan;
+    const Explanation* whole = BestOf(search_.tried, claim);
+    if (whole != nullptr) SetGaps(*whole, &candidate);
+    if (claim == ClaimOf(search_.best.fitted.hypothesis)) return candidate;
+    candidate.rejected_because =
+        whole != nullptr ? "held-out gap " + ComparedGaps(whole->held_out_gap(), search_.best.held_out_gap())
+                         : WhyOnWindows(claim);
+    if (candidate.rejected_because.empty()) candidate.rejected_because = "others explain more";
+    return candidate;
+  }
+
+ private:
+  static constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+  static void SetGaps(const Explanation& one, Candidate* candidate) {
+    candidate->fit = std::sqrt(one.squared_gap());
+    if (!one.blocks.sums.empty()) candidate->held_out = std::sqrt(one.held_out_gap());
+  }
+
+  std::string Why(const Rated& rated, const Explanation* alone) const {
+    if (!rated.failure.empty()) return "could not be tried: " + rated.failure;
+    const Explanation* on_top = AddedToBest(search_, rated.change);
+    if (on_top != nullptr && !search_.best.changes().empty()) {
+      return "added to " + search_.best.changes().front().Label() +
+             ", it changes the held-out gap only from " + Gap(search_.best.held_out_gap()) + " to " +
+             Gap(on_top->held_out_gap());
+    }
+    if (alone != nullptr && !alone->blocks.sums.empty()) {
+      return "held-out gap " + ComparedGaps(alone->held_out_gap(), search_.best.held_out_gap());
+    }
+    std::string on_windows = WhyOnWindows(rated.change.Label());
+    if (!on_windows.empty()) return on_windows;
+    if (alone != nullptr) return "refitted, it leaves a gap of " + Gap(alone->squared_gap());
+    if (rated.expected <= 0) return "the score test expects no gain from it";
+    const double expected = std::max(0.0, search_.given.squared_gap() - rated.expected);
+    return "the score test expects it to leave a gap of " + Gap(expected);
+  }
+
+  // "" for what was not predicted on windows.
+  std::string WhyOnWindows(const std::string& claim) const {
+    const Explanation* one = BestOf(windows_.tried, claim);
+    if (one == nullptr || std::isnan(best_on_windows_)) return "";
+    return "the gap of windows is " + ComparedGaps(one->held_out_gap(), best_on_windows_);
+  }
+
+  const SearchResult& search_;
+  const WindowTrials& windows_;
+  double correlation_;
+  double best_on_windows_ = kNan;
+};
+
+void Sort(std::vector<Candidate>* candidates) {
   const auto order = [](const Candidate& c) {
     const double gap = !std::isnan(c.held_out) ? c.held_out : std::numeric_limits<double>::infinity();
     const double fit = !std::isnan(c.fit) ? c.fit : std::numeric_limits<double>::infinity();
-    return std::make_tuple(!c.rejected_because.empty(), gap, fit, -c.score);
+    const double score = !std::isnan(c.score) ? c.score : 0;
+    return std::make_tuple(!c.rejected_because.empty(), -c.weight, gap, fit, -score);
   };
-  std::stable_sort(candidates.begin(), candidates.end(),
+  std::stable_sort(candidates->begin(), candidates->end(),
                    [&](const Candidate& a, const Candidate& b) { return order(a) < order(b); });
+}
+
+}  // namespace
+
+std::vector<Candidate> Ranking(const SearchContext& context, const SearchResult& search,
+                               const std::map<std::string, double>& weights, const WindowTrials& windows) {
+  const Ranker ranker(context, search, windows);
+  std::vector<Candidate> candidates;
+  std::map<std::string, double> left = weights;
+  for (const Rated& rated : search.rated) {
+    candidates.push_back(ranker.Single(rated));
+    const auto weight = left.find(candidates.back().id);
+    if (weight == left.end()) continue;
+    candidates.back().weight = weight->second;
+    left.erase(weight);
+  }
+  for (const auto& [claim, weight] : left) {
+    candidates.push_back(ranker.Other(claim));
+    candidates.back().weight = weight;
+  }
+  Sort(&candidates);
   return candidates;
 }
 

@@ -58,6 +58,7 @@ TEST(ReportJson, Keys) {
   EXPECT_EQ(report["next_experiment"]["config"], "next.toml");
   EXPECT_THAT(Keys(report["next_experiment"]), IsSupersetOf({"why", "config"}));
   const Json candidate = report["candidates"][1];
+  EXPECT_EQ(candidate["weight"], 0.125);
   EXPECT_EQ(candidate["id"], "pump.friction_asymmetry");
   EXPECT_EQ(candidate["held_out"], 15.1);
   EXPECT_EQ(candidate["p_value"], 0.002);

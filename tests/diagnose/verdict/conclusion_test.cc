@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "diagnose/search/progress.h"
+#include "diagnose/verdict/evidence.h"
 #include "diagnose/verdict/ranking.h"
 #include "diagnose/verdict/run_curves.h"
 #include "tests/diagnose/small_runs.h"
@@ -46,19 +47,24 @@ SmallSearch& OfADrag() {
 // with one.
 TEST(Ranking, TakenFirstOthersWithAReason) {
   SmallSearch& small = OfADrag();
-  const std::vector<diagnose::Candidate> ranking = diagnose::Ranking(small.context, small.search);
-  ASSERT_EQ(ranking.size(), 3u);
+  const auto weights = diagnose::WeightsOf(small.context, small.search, small.search.given, {});
+  const std::vector<diagnose::Candidate> ranking =
+      diagnose::Ranking(small.context, small.search, weights, {});
+  ASSERT_EQ(ranking.size(), 4u);
   EXPECT_EQ(ranking[0].id, "pump.quadratic_drag");
   EXPECT_EQ(ranking[0].rejected_because, "");
   EXPECT_LT(ranking[0].held_out, 1.2);
   EXPECT_LT(ranking[0].p_value, 1e-6);
-  EXPECT_GT(ranking[0].score, ranking[1].score);
+  EXPECT_GT(ranking[0].weight, 0.9);
+  double sum = 0;
+  for (const diagnose::Candidate& candidate : ranking) sum += candidate.weight;
+  EXPECT_NEAR(sum, 1, 1e-9);
   std::vector<std::string> others;
   for (size_t i = 1; i < ranking.size(); ++i) {
     EXPECT_NE(ranking[i].rejected_because, "") << ranking[i].id;
     others.push_back(ranking[i].id);
   }
-  EXPECT_THAT(others, ::testing::UnorderedElementsAre("valve.relief", "parameter beta"));
+  EXPECT_THAT(others, ::testing::UnorderedElementsAre("valve.relief", "parameter beta", "as given"));
 }
 
 // Tests the conclusion: the verdict, the effect with its value in its interval, the gaps, the place, and

@@ -1,0 +1,27 @@
+// The evidence for each explanation that a search tried, on windows and on whole runs.
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "diagnose/search/wide_search.h"
+#include "diagnose/verdict/weights.h"
+
+namespace hydro::diagnose {
+
+// What an explanation claims: the labels of its effects joined with " + "; else the values that it frees, each
+// as "parameter b", or "parameters" where they are more than kMostChanges; else "as given". Values that are
+// fitted beside an effect are not part of the claim.
+std::string ClaimOf(const Hypothesis& hypothesis);
+
+// Of those that were predicted. `runs`: that each block is from.
+Contest ContestOf(const std::vector<const Explanation*>& tried, const std::vector<std::string>& runs);
+
+// How probable each claim is. Windows say it of everything tried there; where they come near the noise, whole
+// runs share out among those proved what windows leave to them. Far from the noise whole runs say little,
+// because small errors add up over them.
+std::map<std::string, double> WeightsOf(const SearchContext& context, const SearchResult& search,
+                                        const Explanation& refit, const WindowTrials& windows);
+
+}  // namespace hydro::diagnose
