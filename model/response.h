@@ -42,6 +42,7 @@ struct Stimulus {
   double arm_angle = 0;                            // rad, clamped
   const trajectory::Trajectory* motion = nullptr;  // rad over s, driven
   bool bypass = false;
+  double begin = 0;             // s, of the whole run: what effects call t counts from there
   std::vector<double> time;     // s, increasing
   std::vector<double> voltage;  // V, each held from its time to the next
 };

@@ -55,6 +55,7 @@ void MeasuredRun::Keep(size_t first, size_t last) {
     values->erase(values->begin() + static_cast<std::ptrdiff_t>(last), values->end());
     values->erase(values->begin(), values->begin() + static_cast<std::ptrdiff_t>(first));
   };
+  begun = Begin();
   for (const SignalName& one : kSignals) keep(&(this->*one.signal).values);
   keep(&time);
   first_row += first;

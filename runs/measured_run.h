@@ -47,6 +47,7 @@ struct MeasuredRun {
   size_t first_row = 0;  // rows of the file cut off before the first sample
 
   std::vector<double> time;     // s, finite and increasing, not always evenly; at least two samples
+  std::optional<double> begun;  // s, the run's first sample, where that is cut off
   ColumnSource time_source;     // what the sidecar says of it
   MeasuredSignal voltage;       // command of eq. (1), held from each sample to the next; none is missing
   MeasuredSignal pressure_ref;  // of p2 - p1
@@ -58,6 +59,8 @@ struct MeasuredRun {
   MeasuredSignal p2;
 
   size_t samples() const { return time.size(); }
+  // The time of the run's first sample, cut off or not.
+  double Begin() const { return begun.value_or(time.front()); }
   // Cuts off the samples before `first` and those from `last` on.
   void Keep(size_t first, size_t last);
   // Where a sample is, for messages: "run.csv: line 17".

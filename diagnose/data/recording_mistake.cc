@@ -200,6 +200,7 @@ std::vector<RecordingMistake> PossibleMistakes(const Run& run) {
 
 void Correct(const RecordingMistake& mistake, Run* run) {
   for (double& time : run->time) time *= mistake.time_factor;
+  if (run->begun.has_value()) *run->begun *= mistake.time_factor;
   run->time_source.scale *= mistake.time_factor;
   run->time_source.offset *= mistake.time_factor;
   for (const auto& [signal, factor] : mistake.factors) Multiply(factor, &(run->*signal));

@@ -169,6 +169,7 @@ model::Stimulus StimulusOf(const runs::MeasuredRun& run) {
   stimulus.shaft = run.shaft;
   stimulus.arm_angle = run.arm_angle_rad;
   stimulus.bypass = run.bypass;
+  stimulus.begin = run.Begin();
   stimulus.time = run.time;
   stimulus.voltage = run.voltage.values;
   return stimulus;

@@ -52,6 +52,7 @@ RunData Window(const RunData& run, size_t first, size_t compared, size_t last,
   window.stimulus.arm_angle = run.stimulus.arm_angle;
   window.stimulus.motion = run.stimulus.motion;
   window.stimulus.bypass = run.stimulus.bypass;
+  window.stimulus.begin = run.stimulus.begin;
   window.stimulus.time = Slice(run.stimulus.time, first, last);
   window.stimulus.voltage = Slice(run.stimulus.voltage, first, last);
   for (const SignalData& signal : run.signals) {

@@ -68,8 +68,7 @@ std::vector<Variable> Explanations::States(Balance balance, bool quick) const {
     for (int periods = 1; periods <= kMostPeriods; ++periods) all.push_back(Turn(periods));
     for (int periods = 1; periods <= kMostPeriods; ++periods) all.push_back(Ripple(balance, periods));
   }
-  all.push_back(
-      Make("time", "s", [](R, D d, size_t k) { return d.stimulus.time[k] - d.stimulus.time.front(); }));
+  all.push_back(Make("time", "s", [](R, D d, size_t k) { return d.stimulus.time[k] - d.stimulus.begin; }));
   return all;
 }
 

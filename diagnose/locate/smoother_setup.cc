@@ -130,8 +130,12 @@ void LineariseSensors(const model::Equations& equations, Setup* setup) {
       observed.clear();  // it reads the pressure through a state of its own
       continue;
     }
-    const double offset = linear.output[channel] - gain * state[at];
-    for (double& value : observed) value = (value - offset) / gain;
+    for (size_t k = 0; k < observed.size();
+         ++k) {  // a drifting sensor's offset differs from sample to sample
+      const model::Measurement reading = equations.Measure(setup->time[k], state);
+      const double offset = model::ChannelOf(reading, channel) - gain * state[at];
+      observed[k] = (observed[k] - offset) / gain;
+    }
   }
 }
 
@@ -142,6 +146,7 @@ model::ActuatorOptions Options(const RunData& run) {
       run.stimulus.shaft == model::Shaft::kFree ? run.start[model::kArmAngle] : run.stimulus.arm_angle;
   options.motion = run.stimulus.motion;
   options.bypass = run.stimulus.bypass;
+  options.begin = run.stimulus.begin;
   return options;
 }
 

@@ -76,10 +76,12 @@ Equations::Equations(const ModelDescription& description, const ActuatorOptions&
   data_.shaft = options.shaft;
   data_.bypass = options.bypass;
   data_.arm_angle = options.arm_angle;
+  data_.begin = options.begin;
   data_.motion = options.shaft == Shaft::kDriven ? options.motion : nullptr;
   const Parameters& p = data_.parameters;
   for (const BaseParameter& parameter : BaseParameters())
     CheckBounds(parameter.info, description.units, p.*parameter.member, "");
+  if (!std::isfinite(options.begin)) throw ModelError("the begin of the run is not finite");
   if (!std::isfinite(options.arm_angle)) throw ModelError("arm angle is not finite");
 
   const double pressure = 0.01 * p.T_pmax / p.D;

@@ -39,6 +39,7 @@ struct EquationData : NumbersOf<double> {
   Shaft shaft = Shaft::kFree;
   bool bypass = false;
   double arm_angle = 0;                            // clamped
+  double begin = 0;                                // s, where the time of effects is 0
   const trajectory::Trajectory* motion = nullptr;  // driven
   // s: `motion` is evaluated at times below this.
   double motion_limit = std::numeric_limits<double>::infinity();

@@ -79,7 +79,7 @@ template <Form kForm, class T>
   if constexpr (kForm == Form::kGeneral) {
     x.V_1 -= n.fixed_volume;
     x.V_2 -= n.fixed_volume;
-    x.time = time;
+    x.time = time - m.begin;
     x.voltage = voltage;
     x.mode = &mode;
     x.arm_free = ArmMovesFreely<kForm>(m);

@@ -35,7 +35,7 @@ template <class T>
     measured.arm_angle = T(m.arm_angle);
   }
   SenseTerms<T> at;
-  at.time = ValueOf(time);
+  at.time = time - m.begin;
   at.state = state;
   for (const auto& effect : m.effects) {
     at.own = n.own.data() + effect->first_parameter();

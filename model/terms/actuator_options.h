@@ -27,6 +27,8 @@ struct ActuatorOptions {
   double initial_pressure = std::numeric_limits<double>::quiet_NaN();  // psi, both sides; NaN: p_3
   Integrator integrator = Integrator::kAuto;
   double relative_tolerance = 1e-8;
+  // s; what effects call t is the time since then: a simulation may begin in the middle of a run.
+  double begin = 0;
   // An effect may appear more than once: for derivatives by several effects that are still of size zero.
   bool repeated_effects = false;
 };

@@ -14,7 +14,7 @@ namespace hydro::model {
 template <class T>
 struct Terms {
   // The instant. Effects read it and must not change it.
-  double time = 0;  // s
+  double time = 0;  // s, since the run's first sample
   const Mode* mode = nullptr;
   bool arm_free = false;  // the shaft is neither clamped nor driven
   bool bypass = false;    // the two sides are connected
@@ -62,7 +62,7 @@ struct Terms {
 // What the sensors' readings are computed from.
 template <class T>
 struct SenseTerms {
-  double time = 0;           // s
+  T time{};                  // s, since the run's first sample
   const T* state = nullptr;  // the whole state vector
   const T* own = nullptr;    // the effect's parameters
 };

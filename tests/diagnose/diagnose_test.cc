@@ -82,6 +82,33 @@ TEST(Diagnose, ItsOwnModelNeedsNothing) {
   EXPECT_EQ(d.model.effects.size(), 1);
 }
 
+// Tests that a constant torque is found as such: friction that differs between the directions has the same term among
+// its two, and may be tied with it.
+TEST(Diagnose, FindsABias) {
+  diagnose::DiagnoseOptions options = Few();
+  options.effects = {"amp.bias", "pump.friction_asymmetry", "pump.quadratic_drag"};
+  const diagnose::Diagnosis d = diagnose::Diagnose(
+      Table1With(), RunsOf(Table1With({{"amp.bias", {{"bias", -0.4}}, {}}})), {}, options, {});
+  ASSERT_EQ(d.effects.size(), 1) << d.sentence;
+  EXPECT_EQ(d.effects[0].id, "amp.bias") << d.sentence;
+  EXPECT_NEAR(d.effects[0].parameters.at(0).value, -0.4, 0.05);
+  EXPECT_LT(d.held_out.after, 1.1);
+}
+
+// Tests that transducers that drift are found as such, with one rate for all runs.
+TEST(Diagnose, FindsADrift) {
+  diagnose::DiagnoseOptions options = Few();
+  options.effects = {"fluid.warming", "sensor.pressure_drift", "sensor.pressure_offset"};
+  const diagnose::Diagnosis d = diagnose::Diagnose(
+      Table1With(), RunsOf(Table1With({{"sensor.pressure_drift", {{"p1", 40}, {"p2", -25}}, {}}})), {},
+      options, {});
+  ASSERT_EQ(d.effects.size(), 1) << d.sentence;
+  EXPECT_EQ(d.effects[0].id, "sensor.pressure_drift") << d.sentence;
+  EXPECT_NEAR(d.effects[0].parameters.at(0).value, 40, 2);
+  EXPECT_NEAR(d.effects[0].parameters.at(1).value, -25, 2);
+  EXPECT_LT(d.held_out.after, 1.1);
+}
+
 // Tests that a wrong parameter value is reported as such, and corrected.
 TEST(Diagnose, WrongParameter) {
   model::ModelDescription truth = Table1With();

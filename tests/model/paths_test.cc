@@ -56,6 +56,9 @@ std::vector<Case> Cases() {
   add("QuadraticDrag", {{"pump.quadratic_drag", {{"k", 1e-3}}, {}}}, Held(model::Shaft::kClamped));
   add("PressureOffset", {{"sensor.pressure_offset", {{"p1", 3}, {"p2", -2}}, {}}},
       Held(model::Shaft::kClamped));
+  add("PressureDrift", {{"sensor.pressure_drift", {{"p1", 20}, {"p2", -30}}, {}}},
+      Held(model::Shaft::kClamped));
+  add("Bias", {{"amp.bias", {{"bias", 0.6}}, {}}}, Held(model::Shaft::kFree));
   add("Delay", {{"amp.delay", {{"delay", 3.33e-4}}, {}}}, Held(model::Shaft::kClamped));
   add("DelayAndLag", {{"amp.delay", {{"delay", 4e-4}}, {}}, Lag(2e-3)}, Held(model::Shaft::kFree));
   add("Warming", {{"fluid.warming", {{"rate", 2}}, {}}}, Held(model::Shaft::kClamped));
@@ -174,8 +177,9 @@ std::vector<Case> SymmetricCases() {
   std::vector<Case> cases = Cases();
   std::erase_if(cases, [](const Case& c) {
     return c.options.shaft == model::Shaft::kDriven || c.model.parameters.mgl != 0 ||
-           c.name == "PressureOffset" || c.name == "FrictionAsymmetry" || c.name == "Cogging" ||
-           c.name == "Sign" || c.name == "Skew" || c.name == "AllOtherEffects";
+           c.name == "PressureOffset" || c.name == "PressureDrift" || c.name == "Bias" ||
+           c.name == "FrictionAsymmetry" || c.name == "Cogging" || c.name == "Sign" || c.name == "Skew" ||
+           c.name == "AllOtherEffects";
   });
   return cases;
 }

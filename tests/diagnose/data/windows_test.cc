@@ -64,6 +64,37 @@ TEST(Windows, TellAWrongModel) {
   }
 }
 
+// Tests that what drifts over a run drifts on in its windows, whatever the recorder's clock said when the run began:
+// one rate holds for all of them, of a sensor and of the oil.
+TEST(Windows, GoOnWithTheTimeOfTheRun) {
+  model::ModelDescription model = {"Table 1", testing::Table1(), {}};
+  model.effects = {{"sensor.pressure_drift", {{"p1", 30}, {"p2", -20}}, {}},
+                   {"fluid.warming", {{"rate", 0.5}}, {}}};
+  RunData run = Simulated(model);
+  for (double& time : run.stimulus.time) time += 1e4;
+  run.stimulus.begin += 1e4;
+  const std::vector<RunData> windows = WindowsOf(run, 0.4, model.parameters);
+  ASSERT_THAT(windows, SizeIs(4));
+  for (const RunData& window : windows) {
+    EXPECT_EQ(window.stimulus.begin, 1e4);
+    const Fitted fitted = FitStart({model, {}, {}, {}}, window, window.start, kStartInDoubt);
+    ASSERT_TRUE(fitted.ok()) << fitted.failure;
+    EXPECT_LT(fitted.squared_gap(), 1.3);
+  }
+}
+
+// Tests that the rest of a run that was cut keeps the time of its first sample.
+TEST(Windows, ACutRunKeepsItsBegin) {
+  runs::MeasuredRun run;
+  for (int k = 0; k < 200; ++k) run.time.push_back(5 + 0.01 * k);
+  run.voltage.values.assign(200, 0);
+  EXPECT_EQ(StimulusOf(run).begin, 5);
+  run.Keep(100, 200);
+  run.Keep(20, 100);
+  EXPECT_EQ(StimulusOf(run).begin, 5);
+  EXPECT_NEAR(StimulusOf(run).time.front(), 6.2, 1e-12);
+}
+
 // Tests that windows are spread evenly, and that every other one can be chosen.
 TEST(Windows, EvenlySpread) {
   std::vector<RunData> windows(10);
