@@ -53,6 +53,8 @@ Json Effects(const Diagnosis& diagnosis) {
                        {"says", effect.summary},
                        {"equation", effect.equation},
                        {"parameters", std::move(parameters)},
+                       {"share", effect.share},
+                       {"weight", effect.weight},
                        {"names", effect.names},
                        {"tied_with", effect.tied_with}});
   }

@@ -11,7 +11,6 @@ namespace hydro::diagnose {
 
 namespace {
 
-constexpr char kAsGiven[] = "as given";
 constexpr char kAllValues[] = "parameters";
 
 std::vector<std::string> PartsOf(const Hypothesis& hypothesis) {
@@ -61,6 +60,23 @@ std::string ClaimOf(const Hypothesis& hypothesis) {
   return said.empty() ? kAsGiven : Joined(said, " + ");
 }
 
+const Explanation* BestOf(const std::vector<Explanation>& tried, const std::string& claim) {
+  const Explanation* best = nullptr;
+  for (const Explanation& one : tried) {
+    if (one.blocks.sums.empty() || ClaimOf(one.fitted.hypothesis) != claim) continue;
+    if (best == nullptr || one.held_out_gap() < best->held_out_gap()) best = &one;
+  }
+  return best;
+}
+
+double LeastGap(const std::vector<Explanation>& tried) {
+  double least = std::numeric_limits<double>::infinity();
+  for (const Explanation& one : tried) {
+    if (!one.blocks.sums.empty()) least = std::min(least, one.held_out_gap());
+  }
+  return least;
+}
+
 Contest ContestOf(const std::vector<const Explanation*>& tried, const std::vector<std::string>& runs) {
   Contest contest;
   contest.runs = runs;
@@ -83,11 +99,7 @@ std::map<std::string, double> WeightsOf(const SearchContext& context, const Sear
                                         const Explanation& refit, const WindowTrials& windows) {
   std::map<std::string, double> near =
       Weights(ContestOf(PointersToAll(windows.tried), windows.runs), context.seed);
-  double least = std::numeric_limits<double>::infinity();
-  for (const Explanation& one : windows.tried) {
-    if (!one.blocks.sums.empty()) least = std::min(least, one.held_out_gap());
-  }
-  if (!near.empty() && least >= kOutOfReach) return near;
+  if (!near.empty() && LeastGap(windows.tried) >= kOutOfReach) return near;
   std::vector<const Explanation*> whole = PointersToAll(search.tried);
   for (const Explanation* one : {&search.given, &search.best, &refit}) whole.push_back(one);
   const std::vector<std::string> runs = RunOfEachBlock(context.predicted(), search.given.blocks.sums.size());

@@ -14,6 +14,12 @@ namespace hydro::diagnose {
 // as "parameter b", or "parameters" where they are more than kMostChanges; else "as given". Values that are
 // fitted beside an effect are not part of the claim.
 std::string ClaimOf(const Hypothesis& hypothesis);
+inline constexpr char kAsGiven[] = "as given";
+
+// The best explanation of a claim among those that were predicted; null when there is none.
+const Explanation* BestOf(const std::vector<Explanation>& tried, const std::string& claim);
+// The least squared gap among those that were predicted; infinite when there is none.
+double LeastGap(const std::vector<Explanation>& tried);
 
 // Of those that were predicted. `runs`: that each block is from.
 Contest ContestOf(const std::vector<const Explanation*>& tried, const std::vector<std::string>& runs);

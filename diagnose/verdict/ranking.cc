@@ -44,16 +44,6 @@ const Explanation* AddedToBest(const SearchResult& search, const Change& change)
   return nullptr;
 }
 
-// The best explanation of a claim among those predicted; null when there is none.
-const Explanation* BestOf(const std::vector<Explanation>& tried, const std::string& claim) {
-  const Explanation* best = nullptr;
-  for (const Explanation& one : tried) {
-    if (one.blocks.sums.empty() || ClaimOf(one.fitted.hypothesis) != claim) continue;
-    if (best == nullptr || one.held_out_gap() < best->held_out_gap()) best = &one;
-  }
-  return best;
-}
-
 std::string ComparedGaps(double with_it, double with_what_was_found) {
   return Gap(with_it) + " with it, " + Gap(with_what_was_found) + " with what was found";
 }
@@ -92,7 +82,12 @@ class Ranker {
     candidate.score = candidate.fit = candidate.held_out = candidate.p_value = kNan;
     const Explanation* whole = BestOf(search_.tried, claim);
     if (whole != nullptr) SetGaps(*whole, &candidate);
-    if (claim == ClaimOf(search_.best.fitted.hypothesis)) return candidate;
+    if (claim == ClaimOf(search_.best.fitted.hypothesis)) {
+      const bool closed =
+          claim != kAsGiven || Closed(search_.given.held_out_gap(), search_.given.held_out_gap(), false);
+      if (!closed) candidate.rejected_because = "it leaves a gap of " + Gap(search_.given.held_out_gap());
+      return candidate;
+    }
     candidate.rejected_because =
         whole != nullptr ? "held-out gap " + ComparedGaps(whole->held_out_gap(), search_.best.held_out_gap())
                          : WhyOnWindows(claim);

@@ -71,6 +71,8 @@ std::vector<diagnose::FoundEffect> Effects() {
                              {{"delay", 0.0021, 0.0019, 0.0023, "s"}},
                              {"signal = p1"},
                              {"fluid.warming"}};
+  stribeck.share = 0.86;
+  stribeck.weight = 0.95;
   return {stribeck, warming, skew};
 }
 

@@ -37,6 +37,9 @@ TEST(ReportJson, Keys) {
   EXPECT_EQ(effect["parameters"]["static_excess"],
             Json({{"value", 0.52}, {"ci95", {0.47, 0.57}}, {"unit", "1"}}));
   EXPECT_EQ(effect["tied_with"], Json::array());
+  EXPECT_EQ(effect["share"], 0.86);
+  EXPECT_EQ(effect["weight"], 0.95);
+  EXPECT_TRUE(report["effects"][1]["share"].is_null()) << "not known";
   EXPECT_EQ(report["effects"][1]["tied_with"], Json({"sensor.skew"}));
 
   EXPECT_EQ(report["parameters"][0], Json({{"name", "b"},

@@ -5,43 +5,13 @@
 
 #include <cmath>
 
-#include "diagnose/search/progress.h"
 #include "diagnose/verdict/evidence.h"
 #include "diagnose/verdict/ranking.h"
 #include "diagnose/verdict/run_curves.h"
-#include "tests/diagnose/small_runs.h"
+#include "tests/diagnose/verdict/small_search.h"
 
 namespace hydro::testing {
 namespace {
-
-struct SmallSearch {
-  std::vector<diagnose::RunData> runs, held_out;
-  diagnose::SearchContext context;
-  diagnose::SearchResult search;
-  std::vector<std::string> stages;
-
-  explicit SmallSearch(const model::ModelDescription& truth) {
-    runs = ClampedPair(truth, 0.5, 5);
-    held_out.push_back(std::move(runs.back()));
-    runs.pop_back();
-    context.given = Table1With();
-    context.runs = PointersTo(runs);
-    context.held_out = PointersTo(held_out);
-    context.sizes = diagnose::SizesOf(context.given, context.runs);
-    context.changes = {{"pump.quadratic_drag", {}, ""}, {"valve.relief", {}, ""}, {"", {}, "beta"}};
-    context.report_progress = [this](const diagnose::Progress& progress) {
-      stages.push_back(progress.stage);
-    };
-    diagnose::Hypothesis given;
-    given.model = context.given;
-    search = diagnose::Search(context, given, 2);
-  }
-};
-
-SmallSearch& OfADrag() {
-  static SmallSearch small(Table1With({{"pump.quadratic_drag", {{"k", 2e-4}}, {}}}));
-  return small;
-}
 
 // Tests that the ranking has every candidate once: the chosen one first, without a reason, the others each
 // with one.

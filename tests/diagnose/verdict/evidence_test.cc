@@ -5,34 +5,13 @@
 
 #include <cmath>
 
-#include "tests/diagnose/small_runs.h"
+#include "tests/diagnose/verdict/made_up.h"
 
 namespace hydro::testing {
 namespace {
 
 using ::testing::ElementsAre;
 using ::testing::UnorderedElementsAre;
-
-diagnose::Hypothesis Freed(const std::vector<std::string>& base, std::vector<diagnose::Change> changes = {}) {
-  diagnose::Hypothesis hypothesis = WithFree(Table1With(), base);
-  hypothesis.changes = std::move(changes);
-  return hypothesis;
-}
-
-// An explanation with this squared gap in each of ten blocks or windows.
-diagnose::Explanation Leaving(double gap, diagnose::Hypothesis hypothesis, bool windows) {
-  diagnose::Explanation one;
-  one.fitted.hypothesis = std::move(hypothesis);
-  one.windows = windows;
-  one.held_out.gaps.assign(10, gap);
-  one.held_out.count = 1000;
-  one.held_out.sum = 1000 * gap;
-  one.blocks.sums.assign(10, windows ? std::log(gap) : 100 * gap);
-  one.blocks.count = 1000;
-  return one;
-}
-
-const diagnose::Change kLag{"amp.lag", {}, ""}, kDelay{"amp.delay", {}, ""};
 
 // Tests each kind of claim: effects in order, whatever values are fitted beside them; few values by name; more
 // as "parameters"; none.

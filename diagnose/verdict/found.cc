@@ -1,0 +1,143 @@
+#include "diagnose/verdict/found.h"
+
+#include <algorithm>
+
+#include "base/word_list.h"
+#include "diagnose/fit/intervals.h"
+#include "diagnose/verdict/plausible.h"
+#include "diagnose/verdict/rivals.h"
+#include "diagnose/verdict/without_effect.h"
+
+namespace hydro::diagnose {
+
+namespace {
+
+std::vector<Interval> IntervalsOf(const SearchContext& context, const Explanation& one) {
+  if (one.fitted.hypothesis.Free().empty()) return {};
+  return Intervals(one.fitted, context.runs, context.jobs);
+}
+
+std::vector<Change> EffectsOf(const Explanation& one) {
+  std::vector<Change> effects;
+  for (const Change& change : one.changes()) {
+    if (!change.effect.empty()) effects.push_back(change);
+  }
+  return effects;
+}
+
+// Where the interval of an effect's single amount reaches to none of it though the runs show some, the interval
+// is that of the profile on this side.
+void RaiseFromNone(const Hypothesis& hypothesis, const Change& change, double lowest,
+                   std::vector<Interval>* intervals) {
+  const std::vector<FreeParameter> free = hypothesis.Free();
+  const std::vector<std::string> amounts = Amounts(*model::FindEffect(change.effect));
+  for (size_t i = 0; i < free.size() && amounts.size() == 1; ++i) {
+    if (free[i].name != change.effect + "." + amounts.front()) continue;
+    const double end = lowest * free[i].value;
+    Interval& interval = (*intervals)[i];
+    (free[i].value > 0 ? interval.low : interval.high) =
+        free[i].value > 0 ? std::max(interval.low, end) : std::min(interval.high, end);
+  }
+}
+
+FoundEffect Describe(const Change& change, const std::vector<FreeParameter>& free,
+                     const std::vector<Interval>& intervals) {
+  const model::EffectInfo& info = *model::FindEffect(change.effect);
+  FoundEffect found;
+  found.id = info.id;
+  found.summary = info.summary;
+  found.equation = info.equation;
+  for (const auto& [name, value] : change.names) found.names.push_back(name + " = " + value);
+  for (const model::ParameterInfo& parameter : info.parameters) {
+    for (size_t i = 0; i < free.size(); ++i) {
+      if (free[i].name != info.id + "." + parameter.name) continue;
+      found.parameters.push_back(
+          {parameter.name, free[i].value, intervals[i].low, intervals[i].high, free[i].unit});
+    }
+  }
+  return found;
+}
+
+ChangedParameter DescribeParameter(const FreeParameter& fitted, const Interval& interval,
+                                   const model::ModelDescription& given) {
+  ChangedParameter changed;
+  changed.fitted = {fitted.name, fitted.value, interval.low, interval.high, fitted.unit};
+  changed.model = given.parameters.*model::BaseParameters()[fitted.unknown.index].member;
+  changed.why = WhyRemarkable(changed);
+  changed.implausible = !changed.why.empty();
+  return changed;
+}
+
+// The weight of all claims that have the change.
+double WeightOf(const Change& change, const std::map<std::string, double>& weights) {
+  const std::string label = " + " + change.Label() + " + ";
+  double sum = 0;
+  for (const auto& [claim, weight] : weights) {
+    if ((" + " + claim + " + ").find(label) != std::string::npos) sum += weight;
+  }
+  return std::min(1.0, sum);
+}
+
+}  // namespace
+
+Kept KeepWhatIsThere(const SearchContext& context, const SearchResult& search) {
+  Kept kept{search, {}};
+  bool dropped = true;
+  while (dropped) {
+    dropped = false;
+    kept.doubts.clear();
+    const Explanation& best = kept.search.best;
+    const std::vector<Interval> intervals = IntervalsOf(context, best);
+    for (const Change& change : EffectsOf(best)) {
+      if (!MayBeNone(best.fitted.hypothesis, change, intervals)) continue;
+      Explanation without = FitWithout(context, kept.search, change);
+      if (without.fitted.ok() && !Material(without.held_out_gap(), best.held_out_gap())) {
+        kept.search.best = std::move(without);
+        dropped = true;
+        break;
+      }
+      if (without.fitted.ok() && ProfileAtNone(context.runs, best.fitted, without.fitted, change).shows)
+        continue;
+      kept.doubts.push_back("the interval of " + change.Label() + " includes none of it");
+    }
+  }
+  return kept;
+}
+
+std::vector<model::ModelDescription> DescribeFound(const SearchContext& context, const Explanation& refit,
+                                                   const WindowTrials& windows,
+                                                   const std::map<std::string, double>& weights, Kept* kept,
+                                                   Diagnosis* d) {
+  const Explanation& best = kept->search.best;
+  const std::vector<FreeParameter> free = best.fitted.hypothesis.Free();
+  std::vector<Interval> intervals = IntervalsOf(context, best);
+  std::vector<model::ModelDescription> rivals = {best.fitted.hypothesis.model};
+  for (const Change& change : EffectsOf(best)) {
+    if (MayBeNone(best.fitted.hypothesis, change, intervals)) {
+      const Explanation without = FitWithout(context, kept->search, change);
+      if (without.fitted.ok()) {
+        const Profile profile = ProfileAtNone(context.runs, best.fitted, without.fitted, change);
+        if (profile.shows) RaiseFromNone(best.fitted.hypothesis, change, profile.lowest, &intervals);
+      }
+    }
+    FoundEffect found = Describe(change, free, intervals);
+    found.share = ShareOf(context, kept->search, windows, change);
+    found.weight = WeightOf(change, weights);
+    for (const Rival& rival : RivalsOf(change, kept->search, refit, windows, weights)) {
+      found.tied_with.push_back(rival.label);
+      rivals.push_back(rival.explanation->fitted.hypothesis.model);
+    }
+    d->effects.push_back(std::move(found));
+  }
+  for (size_t i = 0; i < free.size(); ++i) {
+    if (free[i].unknown.kind == model::Unknown::Kind::kBase) {
+      d->parameters.push_back(DescribeParameter(free[i], intervals[i], context.given));
+    }
+  }
+  const std::vector<std::string> implausible =
+      Implausible(d->parameters, d->effects, context.given.parameters);
+  if (!implausible.empty()) kept->doubts.push_back("no rig is likely to have " + Enumerated(implausible));
+  return rivals;
+}
+
+}  // namespace hydro::diagnose

@@ -1,0 +1,64 @@
+// Verdicts in words.
+#include "diagnose/verdict/sentence.h"
+
+#include <gmock/gmock.h>
+
+namespace hydro::testing {
+namespace {
+
+using diagnose::Verdict;
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::Not;
+using ::testing::StartsWith;
+
+diagnose::Diagnosis With(Verdict verdict, std::vector<std::string> tied_with = {}) {
+  diagnose::Diagnosis d;
+  d.verdict = verdict;
+  d.held_out = {20, 12, 1.05};
+  diagnose::FoundEffect lag;
+  lag.id = "amp.lag";
+  lag.summary = "the amplifier lags";
+  lag.tied_with = std::move(tied_with);
+  d.effects = {lag};
+  return d;
+}
+
+// Tests that rivals are named in words, other values among them.
+TEST(Sentence, RivalsInWords) {
+  EXPECT_EQ(diagnose::Sentence(With(Verdict::kNamed), {}),
+            "Missing: the amplifier lags [amp.lag] (held-out gap 20 to 1.05 noise units).");
+  const diagnose::Diagnosis tied =
+      With(Verdict::kTied, {"amp.delay", "parameter J + parameter b", "parameters"});
+  EXPECT_THAT(diagnose::Sentence(tied, {}), HasSubstr("[amp.lag] (or amp.delay, or other values of J and "
+                                                      "b, or other values of the model's parameters)"));
+  EXPECT_EQ(diagnose::WhyNext(tied.effects),
+            "distinguishes amp.lag from amp.delay, other values of J and b and other values of the model's "
+            "parameters");
+  EXPECT_EQ(diagnose::WhyNext(With(Verdict::kNamed).effects), "");
+}
+
+// Tests that a doubt takes the place of a claim.
+TEST(Sentence, ADoubtIsSaid) {
+  EXPECT_THAT(
+      diagnose::Sentence(With(Verdict::kPartly), {"the interval of amp.lag includes none of it"}),
+      AllOf(StartsWith(
+                "The gap becomes smaller with the amplifier lags [amp.lag], but that is not the cause: "),
+            HasSubstr("includes none of it"), Not(HasSubstr("Missing"))));
+}
+
+// Tests that values alone can explain a part.
+TEST(Sentence, ValuesThatExplainAPart) {
+  diagnose::Diagnosis d = With(Verdict::kPartly);
+  d.effects.clear();
+  diagnose::ChangedParameter b;
+  b.fitted.name = "b";
+  b.fitted.value = 0.03;
+  b.model = 0.02;
+  d.parameters = {b};
+  EXPECT_THAT(diagnose::Sentence(d, {}),
+              StartsWith("Other values explain part of the gap: b = 0.03 instead of 0.02;"));
+}
+
+}  // namespace
+}  // namespace hydro::testing
