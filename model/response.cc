@@ -125,6 +125,15 @@ void Pass(const ModelDescription& model, const Stimulus& stimulus, const StartSt
 
 }  // namespace
 
+std::string EffectParameter::Label() const {
+  return place.has_value() ? name + "[" + std::to_string(*place) + "]" : name;
+}
+
+double& EffectParameter::In(ModelDescription* model) const {
+  EffectDescription& owner = model->effects[effect];
+  return place.has_value() ? owner.lists.at(name).at(*place) : owner.parameters[name];
+}
+
 std::vector<EffectParameter> EffectParameters(const ModelDescription& model) {
   std::vector<size_t> order(model.effects.size());
   for (size_t i = 0; i < order.size(); ++i) order[i] = i;
@@ -135,7 +144,10 @@ std::vector<EffectParameter> EffectParameters(const ModelDescription& model) {
     const EffectInfo* info = FindEffect(model.effects[i].id);
     if (info == nullptr) throw ModelError("effect \"" + model.effects[i].id + "\" is not known");
     for (const ParameterInfo& parameter : info->parameters) {
-      if (!parameter.is_name()) parameters.push_back({i, parameter.name});
+      if (parameter.is_number()) parameters.push_back({i, parameter.name});
+      if (parameter.list != List::kValues) continue;
+      const size_t count = model.effects[i].lists.at(parameter.name).size();
+      for (size_t place = 0; place < count; ++place) parameters.push_back({i, parameter.name, place});
     }
   }
   return parameters;

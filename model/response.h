@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -26,10 +27,16 @@ struct Unknown {
   bool operator==(const Unknown&) const = default;
 };
 
-// A numeric parameter of one of the model's effects.
+// A number of one of the model's effects: a parameter, or one of a list.
 struct EffectParameter {
   size_t effect = 0;  // in ModelDescription::effects
   std::string name;
+  std::optional<size_t> place = std::nullopt;  // in the list
+
+  // "speed", "values[3]"
+  std::string Label() const;
+  // Its value in the model that has it.
+  double& In(ModelDescription* model) const;
 };
 
 // All of a model's: effects in the order of their ids, each one's parameters in the catalogue's order. Throws

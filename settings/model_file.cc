@@ -2,22 +2,15 @@
 
 #include <cmath>
 
-#include "base/did_you_mean.h"
 #include "base/number_text.h"
 #include "base/units.h"
 #include "model/terms/parameter_info.h"
+#include "settings/effect_sections.h"
+#include "settings/parameter_range.h"
 #include "settings/toml/section_reader.h"
 
 namespace hydro::settings {
 namespace {
-
-NumberRange RangeOf(const model::ParameterInfo& info) {
-  return {.min = info.min, .max = info.max, .min_allowed = info.min_allowed};
-}
-
-std::string Wanted(const model::ParameterInfo& info, const UnitSystem& units) {
-  return RangeOf(info).Allowed() + " (" + info.UnitIn(units) + ", " + info.meaning + ")";
-}
 
 constexpr char kUnitsAllowed[] = "\"si\", or a table as { length = \"mm\", force = \"N\", arm = \"rad\" }";
 
@@ -79,51 +72,6 @@ void ReadDisplacement(SectionReader& section, const model::ParameterInfo& info, 
   }
 }
 
-model::EffectDescription ReadEffect(SectionReader section, const model::EffectInfo& info,
-                                    const UnitSystem& units) {
-  model::EffectDescription effect;
-  effect.id = info.id;
-  for (const model::ParameterInfo& parameter : info.parameters) {
-    if (parameter.is_name()) {
-      std::vector<std::pair<std::string, std::string>> choices;
-      for (const std::string& name : parameter.names) choices.emplace_back(name, name);
-      section.Choice(parameter.name, choices, &effect.names[parameter.name]);
-      section.Require(parameter.name, QuotedList(parameter.names) + " (" + parameter.meaning + ")");
-    } else {
-      section.Number(parameter.name, &effect.parameters[parameter.name], RangeOf(parameter));
-      section.Require(parameter.name, Wanted(parameter, units));
-    }
-  }
-  section.Finish();
-  return effect;
-}
-
-std::vector<model::EffectDescription> ReadEffects(SectionReader section, const TomlNode* table,
-                                                  const UnitSystem& units) {
-  std::vector<model::EffectDescription> effects;
-  if (table == nullptr) return effects;
-  std::vector<std::string> known;
-  for (const model::EffectInfo& info : model::EffectCatalogue()) known.push_back(info.id);
-  for (const auto& member : table->members) {
-    // [effects.pump.stribeck] without quotes is a table in a table.
-    if (const model::EffectInfo* info = model::FindEffect(member.first)) {
-      SectionReader reader = section.Section(member.first);
-      effects.push_back(ReadEffect(std::move(reader), *info, units));
-      continue;
-    }
-    std::string id = member.first;
-    if (member.second.is(TomlNode::Kind::kTable) && member.second.members.size() == 1 &&
-        model::FindEffect(id + "." + member.second.members[0].first) != nullptr) {
-      id += "." + member.second.members[0].first;
-      throw InputError(member.second.place + ": effects: found [effects." + id + "], allowed [effects.\"" +
-                       id + "\"]: the id needs quotes");
-    }
-    throw InputError(member.second.place + ": effects: found the unknown effect " + Quoted(id) +
-                     ", allowed " + QuotedList(known) + DidYouMean(id, known));
-  }
-  return effects;
-}
-
 }  // namespace
 
 model::ModelDescription ParseModel(const std::string& text, const std::string& name_for_messages) {
@@ -172,13 +120,7 @@ std::string FormatModel(const model::ModelDescription& description) {
     parameters.members.push_back({parameter.info.name, NumberNode(description.parameters.*parameter.member)});
   }
   root.members.push_back({"parameters", std::move(parameters)});
-  TomlNode effects;
-  for (const model::EffectDescription& effect : description.effects) {
-    TomlNode table;
-    for (const auto& [name, value] : effect.parameters) table.members.push_back({name, NumberNode(value)});
-    for (const auto& [name, value] : effect.names) table.members.push_back({name, StringNode(value)});
-    effects.members.push_back({effect.id, std::move(table)});
-  }
+  TomlNode effects = EffectsNode(description.effects);
   if (!effects.members.empty()) root.members.push_back({"effects", std::move(effects)});
   return FormatToml(root);
 }

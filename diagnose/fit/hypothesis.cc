@@ -57,9 +57,10 @@ std::vector<FreeParameter> Hypothesis::Free() const {
     const model::EffectDescription& effect = model.effects[all[i].effect];
     if (std::find(effects.begin(), effects.end(), effect.id) == effects.end()) continue;
     const model::ParameterInfo& info = InfoOf(effect, all[i].name);
-    const double value = effect.parameters.at(all[i].name);
+    model::ModelDescription own = {{}, {}, {effect}, {}};
+    const double value = model::EffectParameter{0, all[i].name, all[i].place}.In(&own);
     FreeParameter parameter{{model::Unknown::Kind::kEffect, i},
-                            effect.id + "." + info.name,
+                            effect.id + "." + all[i].Label(),
                             info.UnitIn(model.units),
                             value,
                             info.min,
@@ -82,9 +83,9 @@ void Hypothesis::Set(const std::vector<double>& values) {
   for (const size_t i : base) model.parameters.*model::BaseParameters()[i].member = values[next++];
   const std::vector<model::EffectParameter> all = model::EffectParameters(model);
   for (const model::EffectParameter& parameter : all) {
-    model::EffectDescription& effect = model.effects[parameter.effect];
-    if (std::find(effects.begin(), effects.end(), effect.id) == effects.end()) continue;
-    effect.parameters[parameter.name] = values[next++];
+    const std::string& id = model.effects[parameter.effect].id;
+    if (std::find(effects.begin(), effects.end(), id) == effects.end()) continue;
+    parameter.In(&model) = values[next++];
   }
 }
 

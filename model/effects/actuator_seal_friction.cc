@@ -24,6 +24,7 @@ class SealFriction : public EffectOf<SealFriction> {
   template <class T>
   void OwnStates(Terms<T>& x, T* /*rate*/) const {
     if (!x.arm_free) return;
+    x.arm_load = x.arm_torque;
     const int direction = x.mode->effects[first_switch()];
     if (direction == 0) {
       x.arm_torque = T(0.0);
@@ -40,7 +41,7 @@ class SealFriction : public EffectOf<SealFriction> {
     if (!x.arm_free) {
       own = T(1.0);
     } else if (direction == 0) {
-      own = x.own[0] - abs(NetTorque(x));
+      own = x.own[0] - abs(x.arm_load);
     } else {
       own = static_cast<double>(direction) * x.arm_speed;
     }
@@ -51,20 +52,12 @@ class SealFriction : public EffectOf<SealFriction> {
     using std::abs;
     int8_t& direction = mode->effects[first_switch()];
     if (direction != 0) state[kArmSpeed] = T(0.0);
-    const T torque = NetTorque(x);
-    direction = abs(torque) <= x.own[0] ? 0 : (torque > T(0.0) ? 1 : -1);
+    direction = abs(x.arm_load) <= x.own[0] ? 0 : (x.arm_load > T(0.0) ? 1 : -1);
   }
 
   void AddPower(const Terms<double>& x, const double* /*rate*/, Power* power) const override {
     if (!x.arm_free) return;
     power->effects_dissipated += x.own[0] * std::abs(x.arm_speed) + x.own[1] * x.arm_speed * x.arm_speed;
-  }
-
- private:
-  template <class T>
-  static T NetTorque(const Terms<T>& x) {
-    using std::cos;
-    return x.parameters->k_2 * (x.p2 - x.p1) - x.parameters->mgl * cos(x.arm_angle);
   }
 };
 

@@ -65,14 +65,16 @@ const Catalogue& TheCatalogue() {
 Catalogue::Catalogue(std::vector<CatalogueEntry> entries) : entries_(std::move(entries)) {
   std::sort(entries_.begin(), entries_.end(),
             [](const auto& a, const auto& b) { return a.info.id < b.info.id; });
+  const CatalogueEntry* last = nullptr;
   for (const CatalogueEntry& entry : entries_) {
     const std::string fault = Fault(entry);
     if (!fault.empty()) throw std::logic_error("effect \"" + entry.info.id + "\" " + fault);
-    if (!infos_.empty() && infos_.back().id == entry.info.id) {
+    if (last != nullptr && last->info.id == entry.info.id) {
       throw std::logic_error("effect \"" + entry.info.id +
                              "\" was added twice: give one of the two another id");
     }
-    infos_.push_back(entry.info);
+    last = &entry;
+    if (entry.info.listed) infos_.push_back(entry.info);
   }
 }
 
@@ -105,7 +107,8 @@ const EffectInfo* FindEffect(const std::string& id) {
   for (const EffectInfo& info : EffectCatalogue()) {
     if (info.id == id) return &info;
   }
-  return nullptr;
+  const CatalogueEntry* entry = FindCatalogueEntry(id);
+  return entry == nullptr ? nullptr : &entry->info;
 }
 
 const std::vector<double>& PeriodsTried() {

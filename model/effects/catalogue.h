@@ -15,6 +15,7 @@ class Catalogue {
   // id and what is wrong, for a duplicate id or an entry that cannot work.
   explicit Catalogue(std::vector<CatalogueEntry> entries);
 
+  // Of those that are listed.
   const std::vector<EffectInfo>& infos() const { return infos_; }
   // Null for an unknown effect.
   const CatalogueEntry* Find(const std::string& id) const;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <sstream>
 #include <utility>
 
@@ -50,11 +51,42 @@ std::shared_ptr<const NumbersOf<Jet>> WithoutDerivatives(const EquationData& dat
   return constants;
 }
 
+void CheckNames(const EffectDescription& effect, const ParameterInfo& info, const std::string& owner) {
+  const auto found = effect.name_lists.find(info.name);
+  if (found == effect.name_lists.end()) throw ModelError("parameter " + owner + info.name + " is missing");
+  for (const std::string& name : found->second) {
+    if (std::find(info.names.begin(), info.names.end(), name) == info.names.end()) {
+      throw ModelError("parameter " + owner + info.name + ": \"" + name + "\" is not known");
+    }
+  }
+}
+
+void CheckNumbers(const EffectDescription& effect, const ParameterInfo& info, const UnitSystem& units,
+                  const std::string& owner) {
+  const auto found = effect.lists.find(info.name);
+  if (found == effect.lists.end()) {
+    if (info.optional) return;
+    throw ModelError("parameter " + owner + info.name + " is missing");
+  }
+  const std::vector<double>& list = found->second;
+  for (const double value : list) CheckBounds(info, units, value, owner);
+  if (info.list != List::kPlaces) return;
+  const bool increases = std::adjacent_find(list.begin(), list.end(), std::greater_equal<>()) == list.end();
+  if (list.size() < 2 || !increases) {
+    throw ModelError("parameter " + owner + info.name +
+                     " must have two or more numbers, each above the one before");
+  }
+}
+
 // Throws ModelError for a parameter that is missing, has an unknown name, or lies outside its bounds.
 void CheckParameters(const EffectDescription& effect, const EffectInfo& known, const UnitSystem& units) {
   for (const ParameterInfo& info : known.parameters) {
     const std::string owner = effect.id + ".";
-    if (info.is_name()) {
+    if (info.list == List::kNames) {
+      CheckNames(effect, info, owner);
+    } else if (info.list != List::kNone) {
+      CheckNumbers(effect, info, units, owner);
+    } else if (info.is_name()) {
       const auto found = effect.names.find(info.name);
       if (found == effect.names.end()) throw ModelError("parameter " + owner + info.name + " is missing");
       if (std::find(info.names.begin(), info.names.end(), found->second) == info.names.end()) {
@@ -66,6 +98,11 @@ void CheckParameters(const EffectDescription& effect, const EffectInfo& known, c
         throw ModelError("parameter " + owner + info.name + " is missing");
       CheckBounds(info, units, found->second, owner);
     }
+  }
+  const std::optional<ListFault> fault = known.fault == nullptr ? std::nullopt : known.fault(effect);
+  if (fault.has_value()) {
+    throw ModelError("parameter " + effect.id + "." + fault->parameter + ": found " + fault->found +
+                     ", allowed " + fault->allowed);
   }
 }
 
@@ -122,7 +159,10 @@ void Equations::AddEffect(const EffectDescription& effect, const UnitSystem& uni
   data_.effects.push_back(entry->make(effect));
   const int first_parameter = static_cast<int>(data_.own.size());
   for (const ParameterInfo& info : entry->info.parameters) {
-    if (!info.is_name()) data_.own.push_back(effect.parameters.at(info.name));
+    if (info.is_number()) data_.own.push_back(effect.parameters.at(info.name));
+    if (info.list != List::kValues) continue;
+    const std::vector<double>& values = effect.lists.at(info.name);
+    data_.own.insert(data_.own.end(), values.begin(), values.end());
   }
   Effect& made = *data_.effects.back();
   const int first = static_cast<int>(scales_.size());

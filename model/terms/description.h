@@ -37,6 +37,9 @@ struct EffectDescription {
   std::string id;                            // as in docs/effects.md
   std::map<std::string, double> parameters;  // name -> value
   std::map<std::string, std::string> names;  // parameters whose value is a name (a signal)
+  // Parameters whose value is a list, of numbers and of names.
+  std::map<std::string, std::vector<double>> lists = {};
+  std::map<std::string, std::vector<std::string>> name_lists = {};
 };
 
 struct ModelDescription {

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -49,6 +50,14 @@ enum class Role {
   kChannel,
 };
 
+// What a parameter's value is a list of.
+enum class List {
+  kNone,    // it is no list: one number or one name
+  kNames,   // of ParameterInfo::names
+  kPlaces,  // increasing numbers, two or more, which no fit moves
+  kValues,  // numbers, each of which a fit may move
+};
+
 struct ParameterInfo {
   std::string name;
   std::string unit;         // in the paper's units; UnitIn() gives a model's own
@@ -72,8 +81,11 @@ struct ParameterInfo {
   // A size at which the effect shows on the paper's rig (Table 1); tests run every effect of the catalogue
   // with it.
   double example = 0;
+  List list = List::kNone;
+  bool optional = false;  // a list that need not be there
 
-  bool is_name() const { return !names.empty(); }
+  bool is_name() const { return list == List::kNone && !names.empty(); }
+  bool is_number() const { return list == List::kNone && names.empty(); }
   std::string UnitIn(const UnitSystem& units) const { return units.UnitFor(unit, arm); }
 };
 
@@ -98,19 +110,28 @@ const std::vector<BaseParameter>& BaseParameters();
 // The position of that name in BaseParameters(). Throws ModelError when there is none.
 size_t BasePlace(const std::string& name);
 
+// What is wrong with an effect's lists beside each other: of which parameter, what was found, what is allowed.
+struct ListFault {
+  std::string parameter, found, allowed;
+};
+
 // What the catalogue knows of an effect. The table in docs/effects.md is generated from it.
 struct EffectInfo {
   std::string id;                         // "pump.stribeck"
   std::string summary;                    // "static friction above kinetic"
   std::string equation;                   // what it changes in the model's equations, one line
   std::string confused_with;              // what its traces in data are easily taken for
-  std::vector<ParameterInfo> parameters;  // all required
+  std::vector<ParameterInfo> parameters;  // all required but those that are optional
+  // Checks lists that are each in order by themselves; null: nothing to check.
+  std::optional<ListFault> (*fault)(const EffectDescription& effect) = nullptr;
+  // False: model files may have it, but it is no known cause, and nobody looks for it in runs.
+  bool listed = true;
 };
 
-// The effects that this program knows, ordered by id.
+// The listed effects that this program knows, ordered by id.
 const std::vector<EffectInfo>& EffectCatalogue();
 
-// Null for an unknown effect.
+// Listed or not. Null for an unknown effect.
 const EffectInfo* FindEffect(const std::string& id);
 
 }  // namespace hydro::model

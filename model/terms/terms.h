@@ -45,6 +45,7 @@ struct Terms {
   T outer_flow_1, outer_flow_2;  // from each side to the accumulator
   T valve_flow_1, valve_flow_2;  // the same through the valves of effects, which are at the actuator
   T arm_torque;                  // on the arm, eq. (15)
+  T arm_load;                    // the same without the arm's own friction: what that has to hold at rest
 
   T torque_asked;  // of the motor, where motor.speed_torque_limit gives less
 

@@ -90,7 +90,7 @@ TEST(EffectDerivatives, AreNotAllZero) {
   for (const model::EffectInfo& info : model::EffectCatalogue()) {
     const bool has_number =
         std::any_of(info.parameters.begin(), info.parameters.end(),
-                    [](const model::ParameterInfo& parameter) { return !parameter.is_name(); });
+                    [](const model::ParameterInfo& parameter) { return parameter.is_number(); });
     if (DelaysCommands(info) || !has_number) continue;
     model::Mode mode;
     mode.pump = 1;

@@ -87,6 +87,53 @@ TEST(ModelFileTest, RoundTripsBitByBit) {
   }
 }
 
+constexpr char kCurve[] =
+    "[effects.\"closure.flow_1\"]\nagainst = [\"p1\", \"arm_angle\"]\nknots = [0, 1e2]\nknots_2 = [-0.1, "
+    "0.1, 0.3]\n"
+    "values = [0.1, 0.2, 0.30000000000000004, -1, 2, 3]\n";
+
+// Tests that lists of names and numbers are read, and written so that they read back bit by bit.
+TEST(ModelFileTest, Lists) {
+  const model::ModelDescription model = ParseModel(With(kCurve), "m.toml");
+  ASSERT_EQ(model.effects.size(), 1u);
+  EXPECT_EQ(model.effects[0].name_lists.at("against"), (std::vector<std::string>{"p1", "arm_angle"}));
+  EXPECT_EQ(model.effects[0].lists.at("knots"), (std::vector<double>{0, 100}));
+  EXPECT_EQ(model.effects[0].lists.at("values")[2], 0.1 + 0.2);
+  const std::string text = FormatModel(model);
+  const model::ModelDescription back = ParseModel(text, "m.toml");
+  EXPECT_EQ(back.effects[0].lists, model.effects[0].lists);
+  EXPECT_EQ(back.effects[0].name_lists, model.effects[0].name_lists);
+  EXPECT_EQ(FormatModel(back), text);
+}
+
+// Tests that wrong lists are refused with line, key, what was found and what is allowed.
+TEST(ModelFileTest, RefusesWrongLists) {
+  const struct {
+    const char *from, *to, *says;
+  } lists[] = {
+      {"knots = [0, 1e2]\n", "",
+       "m.toml:20: effects.closure.flow_1.knots: found nothing, allowed a list of two or more"},
+      {"[0, 1e2]", "7", "m.toml:22: effects.closure.flow_1.knots: found 7, allowed a list"},
+      {"[0, 1e2]", "[0]", "knots: found a list of 1, allowed a list of two or more finite numbers"},
+      {"[0, 1e2]", "[0, \"a\"]", "knots: found \"a\", allowed"},
+      {"[0, 1e2]", "[0, inf]", "knots: found inf, allowed"},
+      {"[-0.1, 0.1, 0.3]", "[-0.1, 0.1, 0.1]", "knots_2: found 0.1 after 0.1, allowed"},
+      {"knots_2 = [-0.1, 0.1, 0.3]\n", "",
+       "knots_2: found nothing, allowed the knots of the second variable"},
+      {"-1, 2, 3]", "-1, 2]",
+       "m.toml:24: effects.closure.flow_1.values: found 5 values, allowed 6: one a knot"},
+      {"-1, 2, 3]", "-1, 2, nan]", "values: found nan, allowed a list of finite numbers (in^3/s,"},
+      {"[\"p1\", \"arm_angle\"]", "\"p1\"", "against: found \"p1\", allowed a list with some of"},
+      {"[\"p1\", \"arm_angle\"]", "[]", "against: found an empty list, allowed"},
+      {"\"arm_angle\"", "\"arm_angel\"", "did you mean \"arm_angle\"?"},
+      {"\"arm_angle\"", "\"p1\"", "against: found 2 names, allowed one variable, or two that differ"},
+      {"values", "value", "\"value\": found an unknown key"}};
+  for (const auto& one : lists) {
+    const std::string text = With(Replaced(kCurve, one.from, one.to));
+    EXPECT_THAT(InputErrorOf([&] { ParseModel(text, "m.toml"); }), HasSubstr(one.says)) << one.to;
+  }
+}
+
 // Tests that units are labels: the numbers stay, the errors name the model's units, and the text keeps them.
 TEST(ModelFileTest, Units) {
   EXPECT_EQ(ParseModel(kModelText, "m.toml").units, UnitSystem{});
