@@ -15,7 +15,9 @@ namespace {
 
 constexpr int kDraws = 1000;
 
-// How often each block is in a draw of as many runs as there are, and in each of as many blocks as it has.
+// Random weights of blocks: that of their run, and within it their own. All are exponential, as in the Bayesian
+// bootstrap (Rubin 1981). Draws of whole runs would leave out, every now and then, the only run that shows an
+// effect, and what other runs cannot show is no doubt about it.
 class Draws {
  public:
   Draws(const std::vector<std::string>& runs, uint64_t seed) : random_(seed), size_(runs.size()) {
@@ -25,16 +27,18 @@ class Draws {
   }
 
   std::vector<double> Next() {
-    std::vector<double> counts(size_, 0.0);
-    for (size_t i = 0; i < blocks_.size(); ++i) {
-      const std::vector<size_t>& blocks = blocks_[Below(blocks_.size())];
-      for (size_t k = 0; k < blocks.size(); ++k) counts[blocks[Below(blocks.size())]] += 1;
+    std::vector<double> weights(size_, 0.0);
+    for (const std::vector<size_t>& blocks : blocks_) {
+      const double of_run = Exponential() * static_cast<double>(blocks.size());
+      double sum = 0;
+      for (const size_t b : blocks) sum += weights[b] = Exponential();
+      for (const size_t b : blocks) weights[b] *= of_run / sum;
     }
-    return counts;
+    return weights;
   }
 
  private:
-  size_t Below(size_t limit) { return static_cast<size_t>(random_() % limit); }
+  double Exponential() { return -std::log((static_cast<double>(random_() >> 11) + 0.5) * 0x1p-53); }
 
   std::mt19937_64 random_;
   size_t size_;
@@ -70,14 +74,14 @@ class Bootstrap {
   }
 
   // The parts of the win, by id; they add to 1.
-  std::map<std::string, double> Parts(const std::vector<double>& counts) const {
-    const std::vector<double> costs = Costs(Gaps(counts));
+  std::map<std::string, double> Parts(const std::vector<double>& draw) const {
+    const std::vector<double> costs = Costs(Gaps(draw));
     const double least = *std::min_element(costs.begin(), costs.end());
-    const double draw = std::max(kLeastGain, kLeastShare * (least - 1));
+    const double near = std::max(kLeastGain, kLeastShare * (least - 1));
     std::map<std::string, double> parts;
     for (size_t i = 0; i < evidence_.size(); ++i) {
       double& part = parts[evidence_[i].id];
-      part = std::max(part, 1 - (costs[i] - least) / draw);
+      part = std::max(part, 1 - (costs[i] - least) / near);
     }
     double sum = 0;
     for (const auto& [id, part] : parts) sum += part;
@@ -86,15 +90,15 @@ class Bootstrap {
   }
 
  private:
-  std::vector<double> Gaps(const std::vector<double>& counts) const {
-    double blocks = 0;
-    for (const double count : counts) blocks += count;
+  std::vector<double> Gaps(const std::vector<double>& draw) const {
+    double all = 0;
+    for (const double weight : draw) all += weight;
     std::vector<double> gaps;
     gaps.reserve(values_.size());
     for (const std::vector<double>& values : values_) {
       double sum = 0;
-      for (size_t b = 0; b < counts.size(); ++b) sum += counts[b] * values[b];
-      gaps.push_back(geometric_ ? std::exp(sum / blocks) : sum / blocks);
+      for (size_t b = 0; b < draw.size(); ++b) sum += draw[b] * values[b];
+      gaps.push_back(geometric_ ? std::exp(sum / all) : sum / all);
     }
     return gaps;
   }

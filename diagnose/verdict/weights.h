@@ -1,4 +1,4 @@
-// How probable each explanation is among those tried: how often it wins when its evidence is drawn again.
+// How probable each explanation is among those tried: how often it wins when its evidence is weighted at random.
 #pragma once
 
 #include <cstdint>
@@ -23,9 +23,9 @@ struct Contest {
   bool geometric = false;         // the squared gap of all blocks is their geometric mean
 };
 
-// Weights by id; they add to 1. In each of many draws of runs, and of blocks within them, the explanation with
-// the least Cost() wins; those that come near it by less than a material gain share the win, the less the
-// further behind they are. One that adds to another explanation without a material gain has no part. The same
+// Weights by id; they add to 1. In each of many draws of random weights for runs, and for blocks within them, the
+// explanation with the least Cost() wins; those that come near it by less than a material gain share the win, the
+// less the further behind they are. One that adds to another explanation without a material gain has no part. The same
 // for any order of the evidence. Empty without evidence.
 std::map<std::string, double> Weights(const Contest& contest, uint64_t seed);
 

@@ -44,7 +44,8 @@ double Part(double given, double with, double without) {
 
 double ShareOf(const SearchContext& context, const SearchResult& search, const WindowTrials& windows,
                const Change& change) {
-  const Explanation* near = BestOf(windows.tried, ClaimOf(search.best.fitted.hypothesis));
+  const Explanation* near = Find(PointersToAll(windows.tried), search.best.fitted.hypothesis);
+  if (near == nullptr) near = BestOf(windows.tried, ClaimOf(search.best.fitted.hypothesis));
   const Explanation* given = BestOf(windows.tried, kAsGiven);
   if (near == nullptr || given == nullptr) {
     const Explanation without = FitWithout(context, search, change);

@@ -78,16 +78,27 @@ TEST(Weights, NoiseMakesThemFlatter) {
   EXPECT_LT(before, 0.85);
 }
 
-// Tests that what differs from run to run counts as runs, not as blocks: one run out of five that speaks
-// against the rest leaves a doubt, however many blocks it has.
-TEST(Weights, RunsAreDrawnAsAWhole) {
-  diagnose::Evidence lag = Around("amp.lag", {"amp.lag"}, 4, 0, 1);
-  diagnose::Evidence delay = Around("amp.delay", {"amp.delay"}, 4, 0, 1);
-  for (size_t b = 0; b < kBlocks; ++b) lag.squared_gaps[b] = 1;
-  const auto weights = diagnose::Weights(ContestOf({lag, delay}), 1);
-  // Runs 1 to 4 know no difference; a draw of five runs is without run 0 in (4/5)^5 = 0.33 of all draws.
-  EXPECT_GT(weights.at("amp.delay"), 0.33 / 2 - 0.05);
-  EXPECT_LT(weights.at("amp.delay"), 0.4);
+// Tests that what differs from run to run counts as runs, not as blocks: where one run out of five speaks for an
+// explanation and the rest says nothing, a doubt is left that the same evidence spread over all runs would not
+// leave.
+TEST(Weights, RunsAreWeightedAsAWhole) {
+  const diagnose::Evidence delay = Around("amp.delay", {"amp.delay"}, 4, 0, 1);
+  diagnose::Evidence in_one_run = Around("amp.lag", {"amp.lag"}, 4, 0, 1);
+  for (size_t b = 0; b < kBlocks; ++b) in_one_run.squared_gaps[b] = 1;
+  const double doubt = diagnose::Weights(ContestOf({in_one_run, delay}), 1).at("amp.delay");
+  EXPECT_GT(doubt, 0.03);
+  EXPECT_LT(doubt, 0.3);
+  const diagnose::Evidence spread = Around("amp.lag", {"amp.lag"}, 4 * std::pow(0.25, 1.0 / kRuns), 0, 1);
+  EXPECT_LT(diagnose::Weights(ContestOf({spread, delay}), 1).at("amp.delay"), 1e-9);
+}
+
+// Tests that an effect that only one run can show, far above the noise, is not doubted because of the others.
+TEST(Weights, OneRunThatShowsItSuffices) {
+  diagnose::Contest contest =
+      ContestOf({Around("as given", {}, 1, 0.02, 1), Around("valve.relief", {"valve.relief"}, 1, 0.02, 1)});
+  contest.geometric = false;
+  for (size_t b = 0; b < kBlocks; ++b) contest.evidence[0].squared_gaps[b] = 150;
+  EXPECT_GT(diagnose::Weights(contest, 1).at("valve.relief"), 0.98);
 }
 
 // Tests that a second effect that gains nothing takes no weight from the first, and one that gains does.

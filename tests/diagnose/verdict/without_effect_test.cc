@@ -82,6 +82,9 @@ TEST(ShareOf, PartsOnWindows) {
                    Leaving(81, Freed({}, {kRelief}), true), Leaving(11, Freed({}, {kLag}), true)};
   EXPECT_NEAR(diagnose::ShareOf(context, search, windows, kLag), 0.8, 1e-12);
   EXPECT_NEAR(diagnose::ShareOf(context, search, windows, kRelief), 0.1, 1e-12);
+  // What was fitted with other values as well does not speak for what was found without them.
+  windows.tried.push_back(Leaving(0.9, Freed({"b"}, {kLag, kRelief}), true));
+  EXPECT_NEAR(diagnose::ShareOf(context, search, windows, kLag), 0.8, 1e-12);
 }
 
 // Tests that without a gap there is nothing to share.
