@@ -47,6 +47,14 @@ struct MissingTerm {
   std::vector<double> at, mean, error;
 };
 
+// The term of an effect that was found, over the variable that it depends on: what the balance lacks without
+// the effect, and the effect's own term there. Effects that act through time have none.
+struct FoundTerm {
+  std::string effect;
+  MissingTerm missing;
+  std::vector<double> at, value;  // in the units of `missing`; NaN where no sample lies
+};
+
 struct FoundEffect {
   std::string id, summary, equation;
   std::vector<Estimated> parameters;
@@ -128,6 +136,7 @@ struct Diagnosis {
   std::vector<std::string> remarks;
   std::vector<Location> location;
   std::vector<MissingTerm> missing;
+  std::vector<FoundTerm> terms;
   std::vector<FoundEffect> effects;
   std::vector<ChangedParameter> parameters;
   std::vector<SignalGap> signals;

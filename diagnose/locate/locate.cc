@@ -17,12 +17,6 @@ namespace {
 
 constexpr std::array<const char*, kBalances> kNames = {"pump_torque", "flow_1", "flow_2", "arm_torque"};
 
-std::string UnitOf(size_t balance, const UnitSystem& units) {
-  const Balance which = static_cast<Balance>(balance);
-  if (which == Balance::kFlow1 || which == Balance::kFlow2) return units.UnitFor("in^3/s");
-  return units.UnitFor("in-lbf", which == Balance::kArmTorque ? -1 : 0);
-}
-
 constexpr double kSmallestShare = 0.02;
 // The extra share of the variance that a variable must explain to be preferred to a simpler one.
 constexpr double kPlainly = 0.06;
@@ -137,7 +131,7 @@ void Tabulate(const Blocks& blocks, const std::vector<Dependence>& ranked, size_
     if (missing->size() == 2 || (!missing->empty() && d.explained < kDependence)) break;
     MissingTerm table = TableOf(blocks, d.variable, d.averages);
     table.balance = kNames[balance];
-    table.unit = UnitOf(balance, units);
+    table.unit = UnitOf(static_cast<Balance>(balance), units);
     missing->push_back(std::move(table));
   }
 }
@@ -218,6 +212,13 @@ void Place(const Explanations& explanations, const std::vector<const RunData*>& 
 }
 
 }  // namespace
+
+std::string NameOf(Balance balance) { return kNames[static_cast<size_t>(balance)]; }
+
+std::string UnitOf(Balance balance, const UnitSystem& units) {
+  if (balance == Balance::kFlow1 || balance == Balance::kFlow2) return units.UnitFor("in^3/s");
+  return units.UnitFor("in-lbf", balance == Balance::kArmTorque ? -1 : 0);
+}
 
 Localisation Locate(const model::ModelDescription& model, const std::vector<const RunData*>& runs) {
   Placement placement;

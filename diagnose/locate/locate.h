@@ -1,12 +1,18 @@
 // Where the model and the data disagree: what each balance lacks along the measured runs.
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "diagnose/data/diagnosis.h"
 #include "diagnose/data/run_data.h"
+#include "diagnose/locate/disturbance_smoother.h"
 
 namespace hydro::diagnose {
+
+// "pump_torque", and the unit of its terms.
+std::string NameOf(Balance balance);
+std::string UnitOf(Balance balance, const UnitSystem& units);
 
 struct Localisation {
   std::vector<Location> location;    // by share, largest first; empty when nothing is missing

@@ -139,7 +139,9 @@ void LineariseSensors(const model::Equations& equations, Setup* setup) {
   }
 }
 
-model::ActuatorOptions Options(const RunData& run) {
+}  // namespace
+
+model::ActuatorOptions OptionsOf(const RunData& run) {
   model::ActuatorOptions options;
   options.shaft = run.stimulus.shaft;
   options.arm_angle =
@@ -149,8 +151,6 @@ model::ActuatorOptions Options(const RunData& run) {
   options.begin = run.stimulus.begin;
   return options;
 }
-
-}  // namespace
 
 double Setup::Variance(model::Channel channel) const {
   for (const Sensor& sensor : sensors) {
@@ -171,7 +171,7 @@ Setup MakeSetup(const model::ModelDescription& model, const RunData& run, const 
               .run = run,
               .time = run.stimulus.time,
               .interval = MedianInterval(run.stimulus.time),
-              .options = Options(run),
+              .options = OptionsOf(run),
               .observed = ObserveMode(run),
               .sensors = {}};
   const model::Equations equations(model, setup.options);

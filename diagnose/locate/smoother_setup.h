@@ -44,6 +44,9 @@ struct Setup {
   void Begin(const model::Equations& equations, double* state, model::Mode* mode) const;
 };
 
+// The conditions of a run.
+model::ActuatorOptions OptionsOf(const RunData& run);
+
 Setup MakeSetup(const model::ModelDescription& model, const RunData& run, const PressureOffsets& offsets);
 
 }  // namespace hydro::diagnose::smoother

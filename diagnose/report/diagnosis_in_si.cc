@@ -1,6 +1,7 @@
 #include "diagnose/report/diagnosis_in_si.h"
 
 #include <cmath>
+#include <utility>
 
 #include "base/units.h"
 #include "diagnose/data/run_data.h"
@@ -31,6 +32,23 @@ double Convert(Estimated* estimated) {
   return unit->factor;
 }
 
+// Returns the factors of the variable and of the term.
+std::pair<double, double> Convert(MissingTerm* term) {
+  std::pair<double, double> factors = {1, 1};
+  if (const std::optional<SiUnit> unit = FindSiUnit(term->unit, Largest(term->mean))) {
+    Scale(unit->factor, &term->mean);
+    Scale(unit->factor, &term->error);
+    term->unit = unit->to;
+    factors.second = unit->factor;
+  }
+  if (const std::optional<SiUnit> unit = FindSiUnit(term->against_unit, Largest(term->at))) {
+    Scale(unit->factor, &term->at);
+    term->against_unit = unit->to;
+    factors.first = unit->factor;
+  }
+  return factors;
+}
+
 }  // namespace
 
 ShownUnit UnitOf(model::Channel channel, const UnitSystem& units, bool si) {
@@ -45,16 +63,11 @@ Diagnosis InSi(Diagnosis diagnosis) {
     for (Estimated& parameter : effect.parameters) Convert(&parameter);
   }
   for (ChangedParameter& parameter : diagnosis.parameters) parameter.model *= Convert(&parameter.fitted);
-  for (MissingTerm& term : diagnosis.missing) {
-    if (const std::optional<SiUnit> unit = FindSiUnit(term.unit, Largest(term.mean))) {
-      Scale(unit->factor, &term.mean);
-      Scale(unit->factor, &term.error);
-      term.unit = unit->to;
-    }
-    if (const std::optional<SiUnit> unit = FindSiUnit(term.against_unit, Largest(term.at))) {
-      Scale(unit->factor, &term.at);
-      term.against_unit = unit->to;
-    }
+  for (MissingTerm& term : diagnosis.missing) Convert(&term);
+  for (FoundTerm& term : diagnosis.terms) {
+    const std::pair<double, double> factors = Convert(&term.missing);
+    Scale(factors.first, &term.at);
+    Scale(factors.second, &term.value);
   }
   return diagnosis;
 }

@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
 #include <string>
 
 #include "base/number_text.h"
+#include "diagnose/locate/effect_terms.h"
 #include "diagnose/locate/locate.h"
 #include "diagnose/search/window_search.h"
 #include "diagnose/verdict/evidence.h"
@@ -112,6 +114,11 @@ Diagnosis Conclude(const SearchContext& context, const SearchResult& search, con
     Localisation located = Locate(IsOpen(d.verdict) ? d.model : context.given, context.runs);
     d.location = std::move(located.location);
     d.missing = std::move(located.missing);
+  }
+  for (const FoundEffect& effect : d.effects) {
+    if (std::optional<FoundTerm> term = TermOf(d.model, effect.id, context.runs, context.jobs)) {
+      d.terms.push_back(std::move(*term));
+    }
   }
   if (d.verdict == Verdict::kTied) {
     if (report_progress) report_progress({"the next experiment", 0.98});

@@ -87,6 +87,9 @@ void FillGaps(diagnose::Diagnosis* diagnosis) {
                {model::Channel::kP2, 1.62, {41.5, 30.5, 1.65}, {45.0, 32.0, 1.7}}};
   d.fit = {22.1, 18.0, 1.04};
   d.held_out = {23.9, 19.5, 1.06};
+  d.horizons = {{0.1, {5, 4, 1.0}, {6, 5, 1.02}, {}},
+                {0.4, {11, 9, 1.01}, {12, 10, 1.04}, {}},
+                {1.6, {18, 15, 1.02}, {19, 16, 1.05}, {}}};
 }
 
 }  // namespace
@@ -106,6 +109,7 @@ diagnose::Diagnosis ExampleDiagnosis(size_t samples) {
                  {{"square <wave>", 1.4, 1.75}, {"square <wave>", 3.0, 3.3}, {"sine", 1.5, 1.7}}},
                 {"flow_2", 0.05, "p2 > 700 psi", {}}};
   d.missing = {FrictionTerm()};
+  d.terms = {{"pump.stribeck", FrictionTerm(), FrictionTerm().at, FrictionTerm().mean}};
   d.effects = Effects();
   FillGaps(&d);
   d.next = {

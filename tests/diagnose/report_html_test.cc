@@ -99,6 +99,26 @@ TEST(ReportHtml, Complete) {
   }
 }
 
+// Tests the order: what was found, how sure, how much of the gap, what remains, what to measure next, then the
+// details.
+TEST(ReportHtml, AnswersFirst) {
+  const std::string page = ReportHtml(testing::ExampleDiagnosis(60), false);
+  size_t before = 0;
+  for (const char* heading :
+       {"What was found", "How sure that is", "How much of the gap it takes", "What remains, and where",
+        "What to measure next", "Remarks on the recordings", "The gap by signal", "Every candidate"}) {
+    const size_t at = page.find("<h2>" + std::string(heading));
+    ASSERT_NE(at, std::string::npos) << heading;
+    EXPECT_GT(at, before) << heading;
+    before = at;
+  }
+  for (const char* part : {"<td class=\"number\">95 %</td><td class=\"number\">86 %</td>",  // weight, share
+                           "the term of pump.stribeck", "where fluid.warming shows most",
+                           "the gap at each horizon", "whole runs"}) {
+    EXPECT_TRUE(Has(page, part)) << part;
+  }
+}
+
 // Tests that SI replaces the paper's units in tables and pictures.
 TEST(ReportHtml, Si) {
   const std::string page = ReportHtml(testing::ExampleDiagnosis(), true);

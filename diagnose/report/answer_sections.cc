@@ -1,0 +1,205 @@
+#include "diagnose/report/answer_sections.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "base/number_text.h"
+#include "base/word_list.h"
+#include "diagnose/report/html_parts.h"
+#include "diagnose/report/report_pictures.h"
+#include "page/figure_svg.h"
+#include "page/typeset.h"
+
+namespace hydro::diagnose {
+namespace {
+
+// The effect's term over its own variable or, where it acts through time, a stretch in which it shows.
+std::string PictureOf(const Diagnosis& diagnosis, const FoundEffect& effect, bool si) {
+  for (const FoundTerm& term : diagnosis.terms) {
+    if (term.effect != effect.id) continue;
+    return "<p class=\"lead\">What the runs lack without it, with 95 % intervals, and its own term:</p>\n" +
+           page::HtmlFigure(FoundTermFigure(term), "the term of " + effect.id);
+  }
+  const std::optional<Stretch> stretch = WhereItShows(diagnosis, effect);
+  if (!stretch) return "";
+  return "<p class=\"lead\">Where it shows most, in " + page::EscapeMarkup(RunNamed(stretch->curves->run)) +
+         ":</p>\n" +
+         page::HtmlFigure(StretchFigure(diagnosis, *stretch, si), "where " + effect.id + " shows most");
+}
+
+std::string Effect(const Diagnosis& diagnosis, const FoundEffect& effect, bool si) {
+  std::string out = "<h3>" + page::EscapeMarkup(effect.id) + ": " + page::TypesetHtml(effect.summary) +
+                    "</h3>\n<p class=\"equation\">" + page::TypesetHtml(effect.equation) + "</p>\n";
+  std::string rows;
+  for (const Estimated& parameter : effect.parameters) {
+    rows += "<tr>" + Cell(parameter.name) + NumberCell(parameter.value) + IntervalCell(parameter) +
+            Cell(parameter.unit) + "</tr>\n";
+  }
+  if (!rows.empty()) out += Table({"parameter", "#value", "#95 % interval", "unit"}, rows, "narrow");
+  if (!effect.names.empty()) out += "<p>" + page::EscapeMarkup(Joined(effect.names)) + "</p>\n";
+  if (!effect.tied_with.empty()) {
+    out += "<p class=\"flag\">These data cannot distinguish it from " +
+           page::EscapeMarkup(Joined(effect.tied_with)) + ".</p>\n";
+  }
+  return out + PictureOf(diagnosis, effect, si);
+}
+
+std::string OwnParameters(const Diagnosis& diagnosis) {
+  std::string rows;
+  for (const ChangedParameter& parameter : diagnosis.parameters) {
+    const double change = 100 * (parameter.fitted.value / parameter.model - 1);
+    rows += "<tr>" + Cell(parameter.fitted.name) + NumberCell(parameter.model) +
+            NumberCell(parameter.fitted.value) + IntervalCell(parameter.fitted) +
+            Cell(parameter.fitted.unit) + "<td class=\"number\">" +
+            (std::isfinite(change) && change > 0 ? "+" : "") +
+            (std::isfinite(change) ? ShortNumber(std::round(10 * change) / 10) + " %" : "-") + "</td><td" +
+            (parameter.implausible ? " class=\"flag\">implausible" : ">") +
+            (parameter.why.empty() ? ""
+                                   : (parameter.implausible ? ": " : "") + page::TypesetHtml(parameter.why)) +
+            "</td></tr>\n";
+  }
+  if (rows.empty()) return "";
+  return "<h3>Other values of the model's own parameters</h3>\n" +
+         Table({"parameter", "#as given", "#fitted", "#95 % interval", "unit", "#change", ""}, rows);
+}
+
+std::string Windows(const std::vector<Window>& windows) {
+  constexpr size_t kShown = 6;
+  std::string text;
+  for (size_t i = 0; i < std::min(windows.size(), kShown); ++i) {
+    text += (i > 0 ? "; " : "") + windows[i].run + ": " + ShortNumber(windows[i].from) + " to " +
+            ShortNumber(windows[i].to) + " s";
+  }
+  if (windows.size() > kShown) text += "; " + std::to_string(windows.size() - kShown) + " more";
+  return text;
+}
+
+std::string Places(const Diagnosis& diagnosis) {
+  std::string rows;
+  for (const Location& location : diagnosis.location) {
+    rows += "<tr>" + Cell(location.balance) + PercentCell(location.share) + Cell(location.where) + "<td>" +
+            page::EscapeMarkup(Windows(location.windows)) + "</td></tr>\n";
+  }
+  return rows.empty() ? "" : Table({"balance", "#share", "where", "when"}, rows);
+}
+
+std::string MissingTerms(const Diagnosis& diagnosis) {
+  if (diagnosis.missing.empty()) return "";
+  std::string figures;
+  for (const MissingTerm& term : diagnosis.missing) {
+    figures += page::HtmlFigure(MissingTermFigure(term), "the missing term");
+  }
+  return "<p class=\"lead\">What the balance lacks, with 95 % intervals (<code>missing_terms</code> of "
+         "report.json):</p>\n<div class=\"plots\">\n" +
+         figures + "</div>\n";
+}
+
+std::string GapCells(const BeforeAfter& gap) {
+  return NumberCell(gap.before) + NumberCell(gap.refit_only) + NumberCell(gap.after);
+}
+
+}  // namespace
+
+std::string WhatWasFound(const Diagnosis& diagnosis, bool si) {
+  std::string out;
+  for (const FoundEffect& effect : diagnosis.effects) out += Effect(diagnosis, effect, si);
+  out += OwnParameters(diagnosis);
+  return out.empty() ? "<p>Nothing was added to the model, and none of its values was changed.</p>\n" : out;
+}
+
+std::string HowSure(const Diagnosis& diagnosis) {
+  constexpr double kWorthARow = 0.005;
+  constexpr size_t kMostRows = 8;
+  std::string effects, explanations;
+  for (const FoundEffect& effect : diagnosis.effects) {
+    effects += "<tr>" + Cell(effect.id) + PercentCell(effect.weight) + PercentCell(effect.share) +
+               Cell(effect.tied_with.empty() ? "nothing" : Joined(effect.tied_with)) + "</tr>\n";
+  }
+  std::vector<const Candidate*> likeliest;
+  for (const Candidate& candidate : diagnosis.candidates) {
+    if (candidate.weight >= kWorthARow) likeliest.push_back(&candidate);
+  }
+  std::stable_sort(likeliest.begin(), likeliest.end(),
+                   [](const Candidate* a, const Candidate* b) { return a->weight > b->weight; });
+  if (likeliest.size() > kMostRows) likeliest.resize(kMostRows);
+  for (const Candidate* candidate : likeliest) {
+    explanations +=
+        std::string(candidate->rejected_because.empty() ? "<tr class=\"taken\">" : "<tr>") +
+        Cell(candidate->id) + PercentCell(candidate->weight) +
+        (candidate->rejected_because.empty() ? "<td>taken</td>" : Cell(candidate->rejected_because)) +
+        "</tr>\n";
+  }
+  std::string out;
+  if (!effects.empty()) {
+    out += Table({"effect", "#weight", "#share of the gap", "cannot be told from"}, effects, "narrow");
+  }
+  if (!explanations.empty()) {
+    out +=
+        "<p>The weight is how often an explanation wins when the runs, and parts of them, count more or less "
+        "at random; "
+        "all "
+        "weights add to 100 %. The share of the gap is what comes back of the held-out squared gap "
+        "without the effect.</p>\n" +
+        Table({"explanation", "#weight", ""}, explanations, "narrow");
+  }
+  return out;
+}
+
+std::string HowMuchOfTheGap(const Diagnosis& diagnosis) {
+  std::string rows;
+  for (const HorizonGap& horizon : diagnosis.horizons) {
+    rows += "<tr><td class=\"number\">" + ShortNumber(horizon.seconds, 2) + " s</td>" +
+            GapCells(horizon.held_out) + GapCells(horizon.fit) + "</tr>\n";
+  }
+  rows += "<tr class=\"all\"><td class=\"number\">whole runs</td>" + GapCells(diagnosis.held_out) +
+          GapCells(diagnosis.fit) + "</tr>\n";
+  return "<p>Root-mean-square differences between predictions and measurements, in standard deviations of "
+         "the "
+         "noise: 1 is the noise floor. Each prediction reaches that far from a start of its own. "
+         "<i>Before</i>: the "
+         "model as given; <i>refitted</i>: its own values refitted, nothing added; <i>after</i>: with what "
+         "was "
+         "found.</p>\n" +
+         (diagnosis.horizons.empty()
+              ? ""
+              : page::HtmlFigure(HorizonFigure(diagnosis), "the gap at each horizon")) +
+         Table({"#predicted over", "#held out: before", "#refitted", "#after", "#fitted: before", "#refitted",
+                "#after"},
+               rows);
+}
+
+std::string WhatRemains(const Diagnosis& diagnosis) {
+  const std::string after = ShortNumber(diagnosis.held_out.after, 3);
+  std::string out;
+  if (diagnosis.verdict == Verdict::kNothingMissing) {
+    return "<p>Nothing but noise: " + after + " noise units on the held-out runs.</p>\n";
+  }
+  const std::string places = Places(diagnosis);
+  if (IsOpen(diagnosis.verdict)) {
+    out =
+        "<p>" + after + " noise units remain on the held-out runs." +
+        (places.empty() ? " No balance shows where." : " This is where, with what was found in the model:") +
+        "</p>\n";
+  } else {
+    out = "<p>Nothing but noise: " + after + " noise units on the held-out runs." +
+          (places.empty() ? "" : " This is where the model as given disagrees:") + "</p>\n";
+  }
+  return out + places + MissingTerms(diagnosis);
+}
+
+std::string WhatToMeasureNext(const Diagnosis& diagnosis) {
+  const NextExperiment& next = diagnosis.next;
+  if (next.why.empty()) return "";
+  std::string out = "<p>" + page::TypesetHtml(next.why) + "</p>\n";
+  if (next.expected_separation > 0) {
+    out += "<p>The refitted models are expected to differ by " + ShortNumber(next.expected_separation) +
+           " noise units in it.</p>\n";
+  }
+  if (!next.config.empty()) {
+    out += "<p>As <code>next.toml</code>:</p>\n<pre>" + Lines(next.config) + "</pre>\n";
+  }
+  return out;
+}
+
+}  // namespace hydro::diagnose

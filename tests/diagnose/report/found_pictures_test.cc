@@ -1,0 +1,71 @@
+// Pictures of what was found.
+#include <gmock/gmock.h>
+
+#include <cmath>
+
+#include "diagnose/report/diagnosis_in_si.h"
+#include "diagnose/report/report_pictures.h"
+#include "tests/diagnose/example_diagnosis.h"
+
+namespace hydro::testing {
+namespace {
+
+using ::testing::ElementsAre;
+
+// Tests that each horizon is a point of each of the three curves, held out and fitted, and ticks are seconds.
+TEST(HorizonFigure, HasAPointForEachHorizon) {
+  const page::Figure figure = diagnose::HorizonFigure(ExampleDiagnosis(60));
+  ASSERT_EQ(figure.panels.size(), 1u);
+  const page::Panel& panel = figure.panels[0];
+  ASSERT_EQ(panel.curves.size(), 6u);
+  EXPECT_THAT(panel.curves[0].x, ElementsAre(0.1, 0.4, 1.6));
+  EXPECT_THAT(panel.curves[0].y, ElementsAre(6, 12, 19));      // held out, as given
+  EXPECT_THAT(panel.curves[5].y, ElementsAre(1, 1.01, 1.02));  // fitted, with what was found
+  EXPECT_EQ(panel.x.ticks[1].text, "0.4");
+  EXPECT_LT(panel.y.min, 1);
+  EXPECT_GT(panel.y.max, 19);
+}
+
+// Tests that a term's picture has the curve of the effect and the points that are lacking without it, over its
+// own variable.
+TEST(FoundTermFigure, HasTheCurveAndThePoints) {
+  const diagnose::Diagnosis diagnosis = ExampleDiagnosis(60);
+  ASSERT_EQ(diagnosis.terms.size(), 1u);
+  const page::Panel panel = diagnose::FoundTermFigure(diagnosis.terms[0]).panels[0];
+  EXPECT_EQ(panel.x.label, "motor speed (rad/s)");
+  EXPECT_EQ(panel.y.label, "pump torque (in-lbf)");
+  ASSERT_EQ(panel.curves.size(), 2u);
+  EXPECT_EQ(panel.curves[0].y, diagnosis.terms[0].value);
+  EXPECT_EQ(panel.curves[1].y, diagnosis.terms[0].missing.mean);
+  EXPECT_EQ(panel.curves[1].stroke, page::Stroke::kPoints);
+}
+
+// Tests that the curve of a term moves to SI with its points.
+TEST(FoundTermFigure, InSi) {
+  const diagnose::Diagnosis own = ExampleDiagnosis(60), si = diagnose::InSi(own);
+  const diagnose::FoundTerm &before = own.terms[0], &after = si.terms[0];
+  EXPECT_EQ(after.missing.unit, "N m");
+  EXPECT_DOUBLE_EQ(after.value[3] / before.value[3], after.missing.mean[3] / before.missing.mean[3]);
+  EXPECT_EQ(after.at, before.at) << "rad/s stays";
+}
+
+// Tests that an effect on one channel is shown in that channel, where before and after differ most.
+TEST(WhereItShows, IsWhereBeforeAndAfterDifferMost) {
+  diagnose::Diagnosis diagnosis = ExampleDiagnosis(500);
+  diagnose::RunCurves& run = diagnosis.curves[1];
+  for (size_t i = 400; i < 430; ++i) run.curves[1].before[i] += 3000;            // p1
+  const auto stretch = diagnose::WhereItShows(diagnosis, diagnosis.effects[2]);  // signal = p1
+  ASSERT_TRUE(stretch.has_value());
+  EXPECT_EQ(stretch->curves, &diagnosis.curves[1]);
+  EXPECT_EQ(stretch->curve->channel, model::Channel::kP1);
+  EXPECT_LT(stretch->first, 430u);
+  EXPECT_GT(stretch->end, 400u);
+  const page::Panel panel = diagnose::StretchFigure(diagnosis, *stretch, false).panels[0];
+  ASSERT_EQ(panel.curves.size(), 3u);
+  EXPECT_EQ(panel.y.label, "p1 (psi)");
+  EXPECT_EQ(panel.curves[1].x.size(), stretch->end - stretch->first);
+  EXPECT_FALSE(diagnose::WhereItShows(EmptyDiagnosis(), diagnosis.effects[2]).has_value());
+}
+
+}  // namespace
+}  // namespace hydro::testing
