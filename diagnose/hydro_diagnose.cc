@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <system_error>
 #include <utility>
@@ -71,6 +72,27 @@ std::vector<runs::MeasuredRun> ReadRuns(const std::vector<std::string>& files, c
   return runs;
 }
 
+// Adds their file to the names that several runs have, without its folder where that suffices.
+void TellApart(const DiagnoseRequest& request, std::vector<runs::MeasuredRun>* fitted,
+               std::vector<runs::MeasuredRun>* held_out) {
+  std::vector<std::string> files = request.runs;
+  files.insert(files.end(), request.held_out.begin(), request.held_out.end());
+  std::vector<runs::MeasuredRun*> all;
+  for (std::vector<runs::MeasuredRun>* list : {fitted, held_out}) {
+    for (runs::MeasuredRun& run : *list) all.push_back(&run);
+  }
+  std::map<std::string, int> names, labels;
+  for (size_t i = 0; i < all.size(); ++i) {
+    ++names[all[i]->name];
+    ++labels[all[i]->name + " (" + fs::path(files[i]).stem().string() + ")"];
+  }
+  for (size_t i = 0; i < all.size(); ++i) {
+    if (names[all[i]->name] < 2) continue;
+    const std::string label = all[i]->name + " (" + fs::path(files[i]).stem().string() + ")";
+    all[i]->name = labels[label] < 2 ? label : all[i]->name + " (" + files[i] + ")";
+  }
+}
+
 bool SameFile(const std::string& a, const std::string& b) {
   std::error_code error;
   return a == b || (fs::equivalent(a, b, error) && !error);
@@ -117,6 +139,7 @@ Diagnosis ReadAndDiagnose(const DiagnoseRequest& request, const Diagnoser& diagn
   report_progress({"reading the runs", 0});
   std::vector<runs::MeasuredRun> runs = ReadRuns(request.runs, model.units),
                                  held_out = ReadRuns(request.held_out, model.units);
+  TellApart(request, &runs, &held_out);
   try {
     return diagnose(model, std::move(runs), std::move(held_out), options, report_progress);
   } catch (const model::ModelError& error) {
@@ -176,6 +199,7 @@ int CheckRuns(const DiagnoseRequest& request, std::FILE* out) {
   const model::ModelDescription model = settings::LoadModelFile(request.model);
   std::vector<runs::MeasuredRun> runs = ReadRuns(request.runs, model.units),
                                  held_out = ReadRuns(request.held_out, model.units);
+  TellApart(request, &runs, &held_out);
   runs.insert(runs.end(), held_out.begin(), held_out.end());
   const RecordingReport report = ReportOnRecordings(model, std::move(runs), request.jobs);
   for (const std::vector<std::string>* lines : {&report.wrong, &report.limits}) {

@@ -55,6 +55,14 @@ struct FoundTerm {
   std::vector<double> at, value;  // in the units of `missing`; NaN where no sample lies
 };
 
+// A stretch of a run in which an effect that acts through time shows: one signal, in the model's unit, and what the
+// model with what was found predicts with the effect and without it.
+struct FoundStretch {
+  std::string effect, run;
+  model::Channel channel = model::Channel::kP1;
+  std::vector<double> time, measured, with, without;
+};
+
 struct FoundEffect {
   std::string id, summary, equation;
   std::vector<Estimated> parameters;
@@ -137,6 +145,7 @@ struct Diagnosis {
   std::vector<Location> location;
   std::vector<MissingTerm> missing;
   std::vector<FoundTerm> terms;
+  std::vector<FoundStretch> stretches;  // of effects that have no term
   std::vector<FoundEffect> effects;
   std::vector<ChangedParameter> parameters;
   std::vector<SignalGap> signals;

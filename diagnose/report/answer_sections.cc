@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 
 #include "base/number_text.h"
 #include "base/word_list.h"
@@ -21,11 +20,14 @@ std::string PictureOf(const Diagnosis& diagnosis, const FoundEffect& effect, boo
     return "<p class=\"lead\">What the runs lack without it, with 95 % intervals, and its own term:</p>\n" +
            page::HtmlFigure(FoundTermFigure(term), "the term of " + effect.id);
   }
-  const std::optional<Stretch> stretch = WhereItShows(diagnosis, effect);
-  if (!stretch) return "";
-  return "<p class=\"lead\">Where it shows most, in " + page::EscapeMarkup(RunNamed(stretch->curves->run)) +
-         ":</p>\n" +
-         page::HtmlFigure(StretchFigure(diagnosis, *stretch, si), "where " + effect.id + " shows most");
+  for (const FoundStretch& stretch : diagnosis.stretches) {
+    if (stretch.effect != effect.id) continue;
+    return "<p class=\"lead\">Where it shows most, in " + page::EscapeMarkup(RunNamed(stretch.run)) +
+           ":</p>\n" +
+           page::HtmlFigure(StretchFigure(stretch, diagnosis.model.units, si),
+                            "where " + effect.id + " shows most");
+  }
+  return "";
 }
 
 std::string Effect(const Diagnosis& diagnosis, const FoundEffect& effect, bool si) {
@@ -99,6 +101,28 @@ std::string GapCells(const BeforeAfter& gap) {
   return NumberCell(gap.before) + NumberCell(gap.refit_only) + NumberCell(gap.after);
 }
 
+// How many changes an explanation makes.
+size_t Parts(const Candidate& candidate) {
+  size_t parts = 1;
+  for (size_t at = candidate.id.find(" + "); at != std::string::npos; at = candidate.id.find(" + ", at + 3))
+    ++parts;
+  return parts;
+}
+
+// By weight.
+std::vector<const Candidate*> Likeliest(const Diagnosis& diagnosis) {
+  constexpr double kWorthARow = 0.005;
+  constexpr size_t kMostRows = 8;
+  std::vector<const Candidate*> likeliest;
+  for (const Candidate& candidate : diagnosis.candidates) {
+    if (candidate.weight >= kWorthARow) likeliest.push_back(&candidate);
+  }
+  std::stable_sort(likeliest.begin(), likeliest.end(),
+                   [](const Candidate* a, const Candidate* b) { return a->weight > b->weight; });
+  if (likeliest.size() > kMostRows) likeliest.resize(kMostRows);
+  return likeliest;
+}
+
 }  // namespace
 
 std::string WhatWasFound(const Diagnosis& diagnosis, bool si) {
@@ -109,26 +133,22 @@ std::string WhatWasFound(const Diagnosis& diagnosis, bool si) {
 }
 
 std::string HowSure(const Diagnosis& diagnosis) {
-  constexpr double kWorthARow = 0.005;
-  constexpr size_t kMostRows = 8;
   std::string effects, explanations;
+  size_t most_taken = 0;
+  for (const Candidate& candidate : diagnosis.candidates) {
+    if (candidate.rejected_because.empty()) most_taken = std::max(most_taken, Parts(candidate));
+  }
   for (const FoundEffect& effect : diagnosis.effects) {
     effects += "<tr>" + Cell(effect.id) + PercentCell(effect.weight) + PercentCell(effect.share) +
                Cell(effect.tied_with.empty() ? "nothing" : Joined(effect.tied_with)) + "</tr>\n";
   }
-  std::vector<const Candidate*> likeliest;
-  for (const Candidate& candidate : diagnosis.candidates) {
-    if (candidate.weight >= kWorthARow) likeliest.push_back(&candidate);
-  }
-  std::stable_sort(likeliest.begin(), likeliest.end(),
-                   [](const Candidate* a, const Candidate* b) { return a->weight > b->weight; });
-  if (likeliest.size() > kMostRows) likeliest.resize(kMostRows);
-  for (const Candidate* candidate : likeliest) {
-    explanations +=
-        std::string(candidate->rejected_because.empty() ? "<tr class=\"taken\">" : "<tr>") +
-        Cell(candidate->id) + PercentCell(candidate->weight) +
-        (candidate->rejected_because.empty() ? "<td>taken</td>" : Cell(candidate->rejected_because)) +
-        "</tr>\n";
+  for (const Candidate* candidate : Likeliest(diagnosis)) {
+    const bool taken = Parts(*candidate) == most_taken, part = candidate->rejected_because.empty();
+    explanations += std::string(taken && part ? "<tr class=\"taken\">" : "<tr>") + Cell(candidate->id) +
+                    PercentCell(candidate->weight) +
+                    (part ? taken ? "<td>what was found</td>" : "<td>a part of what was found</td>"
+                          : Cell(candidate->rejected_because)) +
+                    "</tr>\n";
   }
   std::string out;
   if (!effects.empty()) {

@@ -12,21 +12,6 @@
 #include "diagnose/report/report_pictures.h"
 
 namespace hydro::diagnose {
-namespace {
-
-// The length of a stretch, in points of a run's curves.
-constexpr size_t kStretch = 60;
-
-// A channel that the effect names; else its pressures where it is of pressure sensors.
-bool MayChange(const FoundEffect& effect, model::Channel channel) {
-  for (const std::string& name : effect.names) {
-    if (name.starts_with("signal = ")) return name == "signal = " + ChannelName(channel);
-  }
-  const bool pressure = channel == model::Channel::kP1 || channel == model::Channel::kP2;
-  return pressure || !effect.id.starts_with("sensor.pressure");
-}
-
-}  // namespace
 
 page::Figure HorizonFigure(const Diagnosis& diagnosis) {
   page::Panel panel;
@@ -67,7 +52,7 @@ page::Figure HorizonFigure(const Diagnosis& diagnosis) {
   }
   panel.y.min = lowest;
   panel.y.max = highest;
-  return {.caption = "", .panels = {panel}, .width = 560, .panel_height = 200};
+  return {.caption = "", .panels = {panel}, .width = 480, .panel_height = 200};
 }
 
 page::Figure FoundTermFigure(const FoundTerm& term) {
@@ -93,54 +78,23 @@ page::Figure FoundTermFigure(const FoundTerm& term) {
   return figure;
 }
 
-std::optional<Stretch> WhereItShows(const Diagnosis& diagnosis, const FoundEffect& effect) {
-  std::optional<Stretch> best;
-  double most = 0;
-  for (const RunCurves& run : diagnosis.curves) {
-    for (const RunCurves::Curve& curve : run.curves) {
-      const double noise = NoiseOf(diagnosis, curve.channel);
-      const size_t size = run.time.size();
-      const bool whole = curve.before.size() == size && curve.after.size() == size && size >= 2;
-      if (!whole || !(noise > 0) || !MayChange(effect, curve.channel)) continue;
-      const size_t length = std::min(kStretch, size);
-      for (size_t first = 0; first + length <= size; first += std::max<size_t>(1, length / 4)) {
-        double sum = 0;
-        for (size_t i = first; i < first + length; ++i) {
-          const double apart = std::abs(curve.after[i] - curve.before[i]) / noise;
-          sum += std::isfinite(apart) ? apart : 0;
-        }
-        if (!(sum > most)) continue;
-        most = sum;
-        best = Stretch{&run, &curve, first, first + length};
-      }
-    }
-  }
-  return best;
-}
-
-page::Figure StretchFigure(const Diagnosis& diagnosis, const Stretch& stretch, bool si) {
-  const ShownUnit unit = UnitOf(stretch.curve->channel, diagnosis.model.units, si);
-  const auto part = [&](const std::vector<double>& values) {
-    const auto begin = values.begin();
-    return std::vector<double>(begin + static_cast<std::ptrdiff_t>(stretch.first),
-                               begin + static_cast<std::ptrdiff_t>(stretch.end));
-  };
-  const std::vector<double> time = part(stretch.curves->time);
+page::Figure StretchFigure(const FoundStretch& stretch, const UnitSystem& units, bool si) {
+  const ShownUnit unit = UnitOf(stretch.channel, units, si);
   const auto points = [&](const std::vector<double>& values) {
-    return Points{time, Scaled(part(values), unit.factor)};
+    return Points{stretch.time, Scaled(values, unit.factor)};
   };
-  const Points measured = points(stretch.curve->measured), before = points(stretch.curve->before),
-               after = points(stretch.curve->after);
+  const Points measured = points(stretch.measured), without = points(stretch.without),
+               with = points(stretch.with);
   page::Panel panel;
-  panel.x = {.label = "time (s)", .min = time.front(), .max = time.back()};
-  panel.y.label = LabelOf(stretch.curve->channel, unit.unit);
+  panel.x = {.label = "time (s)", .min = stretch.time.front(), .max = stretch.time.back()};
+  panel.y.label = LabelOf(stretch.channel, unit.unit);
   page::Range y;
-  for (const Points* one : {&measured, &before, &after}) y.Include(one->y);
+  for (const Points* one : {&measured, &without, &with}) y.Include(one->y);
   SetRange(panel.y, y.WithMargin());
   panel.curves = {DrawnCurve("measured", measured, 0, page::Weight::kBackdrop),
-                  DrawnCurve(kBeforeLabel, before, kBefore, page::Weight::kNormal),
-                  DrawnCurve(kAfterLabel, after, kAfter, page::Weight::kNormal)};
-  return {.caption = "", .panels = {panel}, .width = 560, .panel_height = 180};
+                  DrawnCurve("without the effect", without, kBefore, page::Weight::kNormal),
+                  DrawnCurve("with it", with, kAfter, page::Weight::kNormal)};
+  return {.caption = "", .panels = {panel}, .width = 480, .panel_height = 180};
 }
 
 }  // namespace hydro::diagnose

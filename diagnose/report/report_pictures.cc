@@ -88,7 +88,7 @@ page::Figure MissingTermFigure(const MissingTerm& term) {
   SetRange(panel.x, x.WithMargin());
   SetRange(panel.y, y.WithMargin());
   panel.curves = {found};
-  return {.caption = "", .panels = {panel}, .width = 560, .panel_height = 180};
+  return {.caption = "", .panels = {panel}, .width = 480, .panel_height = 180};
 }
 
 }  // namespace hydro::diagnose

@@ -25,16 +25,8 @@ page::Figure HorizonFigure(const Diagnosis& diagnosis);
 // The term of an effect over its own variable: what the balance lacks without it, and the effect's own.
 page::Figure FoundTermFigure(const FoundTerm& term);
 
-// A stretch of a run in which an effect shows, in one signal.
-struct Stretch {
-  const RunCurves* curves = nullptr;
-  const RunCurves::Curve* curve = nullptr;
-  size_t first = 0, end = 0;
-};
-// Where the model with what was found differs most from the model as given, in noise units, among the signals
-// that the effect changes. Nothing without curves.
-std::optional<Stretch> WhereItShows(const Diagnosis& diagnosis, const FoundEffect& effect);
-page::Figure StretchFigure(const Diagnosis& diagnosis, const Stretch& stretch, bool si);
+// A stretch of a run with an effect and without it.
+page::Figure StretchFigure(const FoundStretch& stretch, const UnitSystem& units, bool si);
 
 // The missing term of a balance against what it depends on.
 page::Figure MissingTermFigure(const MissingTerm& term);

@@ -16,12 +16,26 @@ std::string GapLine(const std::string& what, const BeforeAfter& gap) {
          ShortNumber(gap.after) + " after, in noise units (1 is the noise floor)\n";
 }
 
+std::string Percent(double part) { return ShortNumber(std::round(100 * part)) + " %"; }
+
+std::string HorizonLine(const Diagnosis& diagnosis) {
+  std::vector<std::string> parts;
+  for (const HorizonGap& horizon : diagnosis.horizons) {
+    parts.push_back(ShortNumber(horizon.held_out.before, 3) + " -> " +
+                    ShortNumber(horizon.held_out.after, 3) + " over " + ShortNumber(horizon.seconds, 2) +
+                    " s");
+  }
+  return parts.empty() ? "" : "horizons:   held out, " + Joined(parts, "; ") + "\n";
+}
+
 std::string EffectText(const FoundEffect& effect) {
   std::vector<std::string> parts;
   for (const Estimated& parameter : effect.parameters) parts.push_back(WithInterval(parameter));
   parts.insert(parts.end(), effect.names.begin(), effect.names.end());
   std::string text = effect.id + " (" + effect.summary + ")";
   if (!parts.empty()) text += ": " + Joined(parts);
+  if (effect.weight > 0) text += "; weight " + Percent(effect.weight);
+  if (std::isfinite(effect.share)) text += ", " + Percent(effect.share) + " of the gap";
   if (!effect.tied_with.empty()) text += "; tied with " + Joined(effect.tied_with);
   return text;
 }
@@ -50,14 +64,6 @@ std::string WithInterval(const Estimated& estimated) {
 std::string TerminalSummary(const Diagnosis& given, const std::string& folder, bool si) {
   const Diagnosis diagnosis = si ? InSi(given) : given;
   std::string out = VerdictName(diagnosis.verdict) + ": " + diagnosis.sentence + "\n";
-  out += GapLine("held out:   ", diagnosis.held_out);
-  out += GapLine("fitted:     ", diagnosis.fit);
-  out += SignalsLine(diagnosis, si);
-  if (!diagnosis.location.empty()) {
-    const Location& first = diagnosis.location.front();
-    out += "where:      " + first.balance + ", " + ShortNumber(std::round(100 * first.share)) +
-           " % of the disagreement" + (first.where.empty() ? "" : ": " + first.where) + "\n";
-  }
   std::vector<std::string> effects;
   for (const FoundEffect& effect : diagnosis.effects) effects.push_back(EffectText(effect));
   if (!effects.empty()) out += "effects:    " + Joined(effects, "; ") + "\n";
@@ -67,6 +73,15 @@ std::string TerminalSummary(const Diagnosis& given, const std::string& folder, b
                          (parameter.implausible ? " (implausible)" : ""));
   }
   if (!parameters.empty()) out += "parameters: " + Joined(parameters, "; ") + "\n";
+  out += GapLine("held out:   ", diagnosis.held_out);
+  out += GapLine("fitted:     ", diagnosis.fit);
+  out += HorizonLine(diagnosis);
+  out += SignalsLine(diagnosis, si);
+  if (!diagnosis.location.empty()) {
+    const Location& first = diagnosis.location.front();
+    out += "where:      " + first.balance + ", " + Percent(first.share) + " of the disagreement" +
+           (first.where.empty() ? "" : ": " + first.where) + "\n";
+  }
   if (!diagnosis.next.why.empty()) out += "next:       " + diagnosis.next.why + "\n";
   if (!diagnosis.remarks.empty()) {
     out += "remarks:    " + diagnosis.remarks.front();

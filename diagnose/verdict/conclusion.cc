@@ -10,6 +10,7 @@
 #include "diagnose/locate/effect_terms.h"
 #include "diagnose/locate/locate.h"
 #include "diagnose/search/window_search.h"
+#include "diagnose/verdict/effect_stretch.h"
 #include "diagnose/verdict/evidence.h"
 #include "diagnose/verdict/found.h"
 #include "diagnose/verdict/horizons.h"
@@ -118,6 +119,8 @@ Diagnosis Conclude(const SearchContext& context, const SearchResult& search, con
   for (const FoundEffect& effect : d.effects) {
     if (std::optional<FoundTerm> term = TermOf(d.model, effect.id, context.runs, context.jobs)) {
       d.terms.push_back(std::move(*term));
+    } else if (std::optional<FoundStretch> stretch = StretchOf(context, best, effect.id)) {
+      d.stretches.push_back(std::move(*stretch));
     }
   }
   if (d.verdict == Verdict::kTied) {

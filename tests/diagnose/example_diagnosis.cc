@@ -110,6 +110,13 @@ diagnose::Diagnosis ExampleDiagnosis(size_t samples) {
                 {"flow_2", 0.05, "p2 > 700 psi", {}}};
   d.missing = {FrictionTerm()};
   d.terms = {{"pump.stribeck", FrictionTerm(), FrictionTerm().at, FrictionTerm().mean}};
+  d.stretches = {{"sensor.skew",
+                  "sine",
+                  model::Channel::kP1,
+                  {1, 1.1, 1.2},
+                  {101, 149, 251},
+                  {100, 150, 250},
+                  {100, 200, 300}}};
   d.effects = Effects();
   FillGaps(&d);
   d.next = {

@@ -219,6 +219,24 @@ TEST_F(HydroDiagnoseTest, KeepsItsInputs) {
   EXPECT_THAT(ErrorOf(request_), HasSubstr("report.json"));
 }
 
+// Tests that runs of one name are told apart by their files, and others keep their names.
+TEST_F(HydroDiagnoseTest, RunsOfOneName) {
+  const std::string sidecar = Read("a.toml");
+  fs::create_directory(Path("old"));
+  for (const char* stem : {"c", "old/b", "old/c"}) {
+    fs::copy_file(Path("a.csv"), Path(stem + std::string(".csv")));
+    Write(stem + std::string(".toml"), "name = \"square\"\n" + sidecar);
+  }
+  Write("b.toml", "name = \"square\"\n" + sidecar);
+  request_.runs = {Path("a.csv"), Path("b.csv"), Path("c.csv")};
+  request_.held_out = {Path("old/c.csv")};
+  Run(testing::EmptyDiagnosis());
+  EXPECT_EQ(runs_[0].name, "a");
+  EXPECT_EQ(runs_[1].name, "square (b)");
+  EXPECT_EQ(runs_[2].name, "square (" + Path("c.csv") + ")");
+  EXPECT_EQ(held_out_[0].name, "square (" + Path("old/c.csv") + ")");
+}
+
 // Tests that a model that cannot follow the runs is bad input, and that the error names the model.
 TEST_F(HydroDiagnoseTest, ModelThatCannotFollow) {
   const Diagnoser diagnoser = [](const model::ModelDescription&, std::vector<runs::MeasuredRun>,
@@ -239,7 +257,7 @@ TEST_F(HydroDiagnoseTest, ModelThatCannotFollow) {
 TEST(TerminalSummary, TenLines) {
   const std::string text = TerminalSummary(testing::ExampleDiagnosis(), "out", false);
   const auto lines = std::count(text.begin(), text.end(), '\n');
-  EXPECT_EQ(lines, 10);
+  EXPECT_EQ(lines, 11);
   EXPECT_THAT(text, HasSubstr("23.9 before, 19.5 refitted only, 1.06 after"));
   EXPECT_THAT(text, HasSubstr("p1 44 -> 1.6 psi (noise 1.5)"));
   EXPECT_THAT(text, HasSubstr("static_excess 0.52 [0.47, 0.57]"));
@@ -248,7 +266,9 @@ TEST(TerminalSummary, TenLines) {
   const std::string si = TerminalSummary(testing::ExampleDiagnosis(), "out", true);
   EXPECT_THAT(si, HasSubstr("p1 303.4 -> 11.03 kPa (noise 10.34)"));
   EXPECT_THAT(si, HasSubstr("b 0.002294 [0.002248, 0.002339] N m s, was 0.001644"));
-  EXPECT_LE(std::count_if(text.begin(), text.end(), [](char c) { return c == '\n'; }), 10);
+  EXPECT_THAT(text, HasSubstr("held out, 6 -> 1.02 over 0.1 s; 12 -> 1.04 over 0.4 s"));
+  EXPECT_THAT(text, HasSubstr("weight 95 %, 86 % of the gap"));
+  EXPECT_LT(text.find("effects:"), text.find("held out:")) << "what was found comes first";
 }
 
 // Tests that the summary of an empty diagnosis leaves out what does not exist.

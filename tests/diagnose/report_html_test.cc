@@ -113,7 +113,7 @@ TEST(ReportHtml, AnswersFirst) {
     before = at;
   }
   for (const char* part : {"<td class=\"number\">95 %</td><td class=\"number\">86 %</td>",  // weight, share
-                           "the term of pump.stribeck", "where fluid.warming shows most",
+                           "the term of pump.stribeck", "where sensor.skew shows most",
                            "the gap at each horizon", "whole runs"}) {
     EXPECT_TRUE(Has(page, part)) << part;
   }

@@ -49,22 +49,18 @@ TEST(FoundTermFigure, InSi) {
   EXPECT_EQ(after.at, before.at) << "rad/s stays";
 }
 
-// Tests that an effect on one channel is shown in that channel, where before and after differ most.
-TEST(WhereItShows, IsWhereBeforeAndAfterDifferMost) {
-  diagnose::Diagnosis diagnosis = ExampleDiagnosis(500);
-  diagnose::RunCurves& run = diagnosis.curves[1];
-  for (size_t i = 400; i < 430; ++i) run.curves[1].before[i] += 3000;            // p1
-  const auto stretch = diagnose::WhereItShows(diagnosis, diagnosis.effects[2]);  // signal = p1
-  ASSERT_TRUE(stretch.has_value());
-  EXPECT_EQ(stretch->curves, &diagnosis.curves[1]);
-  EXPECT_EQ(stretch->curve->channel, model::Channel::kP1);
-  EXPECT_LT(stretch->first, 430u);
-  EXPECT_GT(stretch->end, 400u);
-  const page::Panel panel = diagnose::StretchFigure(diagnosis, *stretch, false).panels[0];
+// Tests that a stretch shows the measurement, and the model with the effect and without it, in the shown unit.
+TEST(StretchFigure, ShowsTheModelWithAndWithout) {
+  const diagnose::Diagnosis diagnosis = ExampleDiagnosis(60);
+  ASSERT_EQ(diagnosis.stretches.size(), 1u);
+  const page::Panel panel = diagnose::StretchFigure(diagnosis.stretches[0], {}, false).panels[0];
   ASSERT_EQ(panel.curves.size(), 3u);
   EXPECT_EQ(panel.y.label, "p1 (psi)");
-  EXPECT_EQ(panel.curves[1].x.size(), stretch->end - stretch->first);
-  EXPECT_FALSE(diagnose::WhereItShows(EmptyDiagnosis(), diagnosis.effects[2]).has_value());
+  EXPECT_THAT(panel.curves[1].y, ElementsAre(100, 200, 300));
+  EXPECT_THAT(panel.curves[2].y, ElementsAre(100, 150, 250));
+  const page::Panel si = diagnose::StretchFigure(diagnosis.stretches[0], {}, true).panels[0];
+  EXPECT_EQ(si.y.label, "p1 (kPa)");
+  EXPECT_NEAR(si.curves[1].y[0], 689.5, 0.1);
 }
 
 }  // namespace
