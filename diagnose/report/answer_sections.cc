@@ -175,12 +175,11 @@ std::string HowMuchOfTheGap(const Diagnosis& diagnosis) {
   rows += "<tr class=\"all\"><td class=\"number\">whole runs</td>" + GapCells(diagnosis.held_out) +
           GapCells(diagnosis.fit) + "</tr>\n";
   return "<p>Root-mean-square differences between predictions and measurements, in standard deviations of "
-         "the "
-         "noise: 1 is the noise floor. Each prediction reaches that far from a start of its own. "
-         "<i>Before</i>: the "
-         "model as given; <i>refitted</i>: its own values refitted, nothing added; <i>after</i>: with what "
-         "was "
-         "found.</p>\n" +
+         "the noise: 1 is the noise floor. Each prediction reaches that far from a start of its own. "
+         "<i>Before</i>: "
+         "the model as given; <i>refitted</i>: its own values refitted, nothing added; <i>after</i>: with "
+         "what was "
+         "found. Dashed: the fitted runs.</p>\n" +
          (diagnosis.horizons.empty()
               ? ""
               : page::HtmlFigure(HorizonFigure(diagnosis), "the gap at each horizon")) +

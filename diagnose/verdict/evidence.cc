@@ -42,6 +42,15 @@ std::vector<const Explanation*> PointersToAll(const std::vector<Explanation>& tr
   return all;
 }
 
+// Drops what is materially behind the best on windows.
+void KeepLeading(const WindowTrials& windows, std::map<std::string, double>* weights) {
+  const double least = LeastGap(windows.tried);
+  for (auto& [claim, weight] : *weights) {
+    const Explanation* one = BestOf(windows.tried, claim);
+    if (one != nullptr && Material(one->held_out_gap(), least)) weight = 0;
+  }
+}
+
 }  // namespace
 
 std::string ClaimOf(const Hypothesis& hypothesis) {
@@ -100,6 +109,8 @@ std::map<std::string, double> WeightsOf(const SearchContext& context, const Sear
   std::map<std::string, double> near =
       Weights(ContestOf(PointersToAll(windows.tried), windows.runs), context.seed);
   if (!near.empty() && LeastGap(windows.tried) >= kOutOfReach) return near;
+  // Where whole runs are explained to the noise, what is behind on windows and was not proved for it has no part.
+  if (search.best.held_out_gap() < kCloseEnough) KeepLeading(windows, &near);
   std::vector<const Explanation*> whole = PointersToAll(search.tried);
   for (const Explanation* one : {&search.given, &search.best, &refit}) whole.push_back(one);
   const std::vector<std::string> runs = RunOfEachBlock(context.predicted(), search.given.blocks.sums.size());

@@ -25,8 +25,9 @@ double LeastGap(const std::vector<Explanation>& tried);
 Contest ContestOf(const std::vector<const Explanation*>& tried, const std::vector<std::string>& runs);
 
 // How probable each claim is. Windows say it of everything tried there; where they come near the noise, whole
-// runs share out among those proved what windows leave to them. Far from the noise whole runs say little,
-// because small errors add up over them.
+// runs share out among those proved what windows leave to them. Once whole runs are explained to the noise, what is
+// materially behind on windows has no part. Far from the noise whole runs say little, because small errors add up
+// over them.
 std::map<std::string, double> WeightsOf(const SearchContext& context, const SearchResult& search,
                                         const Explanation& refit, const WindowTrials& windows);
 

@@ -126,6 +126,14 @@ class Ranker {
   std::string WhyOnWindows(const std::string& claim) const {
     const Explanation* one = BestOf(windows_.tried, claim);
     if (one == nullptr || std::isnan(best_on_windows_)) return "";
+    const std::vector<Change>& found = search_.best.changes();
+    const bool adds = !found.empty() && found.size() < one->changes().size() &&
+                      std::all_of(found.begin(), found.end(),
+                                  [&](const Change& change) { return one->fitted.hypothesis.Has(change); });
+    if (adds) {
+      return "added to what was found, it changes the gap of windows only from " + Gap(best_on_windows_) +
+             " to " + Gap(one->held_out_gap());
+    }
     return "the gap of windows is " + ComparedGaps(one->held_out_gap(), best_on_windows_);
   }
 

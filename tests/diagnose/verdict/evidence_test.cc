@@ -46,6 +46,26 @@ TEST(ContestOf, SquaredGapsOfBlocks) {
 
 class WeightsOfTest : public ::testing::Test {
  protected:
+  // A lag that leaves this squared gap on whole runs, and a relief valve that was only tried on windows, where it
+  // is behind in most of them.
+  std::map<std::string, double> WithAnotherOnWindows(double gap_of_lag) {
+    std::vector<diagnose::RunData> runs;
+    runs.push_back(SmallRun(Table1With(), model::Shaft::kClamped, true, 0.2, 0, 1));
+    diagnose::SearchContext context;
+    context.runs = PointersTo(runs);
+    diagnose::WindowTrials windows;
+    for (int i = 0; i < 10; ++i) windows.runs.push_back("run " + std::to_string(i));
+    windows.tried = {Leaving(1.1, Freed({}, {kLag}), true), Scattered(1.4, 2, Freed({}, {kRelief}))};
+    // The gap is that of the blocks.
+    for (size_t w = 0; w < 10; ++w)
+      windows.tried[1].held_out.gaps[w] = std::exp(windows.tried[1].blocks.sums[w]);
+    diagnose::SearchResult search;
+    search.given = Leaving(100, Freed({}), false);
+    search.tried = {Leaving(gap_of_lag, Freed({}, {kLag}), false)};
+    search.best = search.tried[0];
+    return diagnose::WeightsOf(context, search, search.given, windows);
+  }
+
   // A lag and a delay on windows and on whole runs, where the lag fits better on windows and the delay on runs.
   std::map<std::string, double> With(double gap_of_windows) {
     std::vector<diagnose::RunData> runs;
@@ -69,6 +89,14 @@ class WeightsOfTest : public ::testing::Test {
 TEST_F(WeightsOfTest, WholeRunsDecideNearTheNoise) {
   EXPECT_GT(With(1.1).at("amp.delay"), 0.99);
   EXPECT_GT(With(30).at("amp.lag"), 0.99);
+}
+
+// Tests that what is behind on windows, and was therefore not tried on whole runs, takes no weight from what
+// explains whole runs to the noise, but does where they are not explained.
+TEST_F(WeightsOfTest, WhatIsBehindOnWindowsHasNoPartOnceTheNoiseIsReached) {
+  EXPECT_NEAR(WithAnotherOnWindows(1.1).at("amp.lag"), 1, 1e-9);
+  EXPECT_LT(WithAnotherOnWindows(1.6).at("amp.lag"), 0.99);
+  EXPECT_GT(WithAnotherOnWindows(1.6).at("valve.relief"), 0.01);
 }
 
 }  // namespace
