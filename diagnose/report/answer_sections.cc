@@ -7,6 +7,7 @@
 #include "base/word_list.h"
 #include "diagnose/report/html_parts.h"
 #include "diagnose/report/report_pictures.h"
+#include "diagnose/verdict/sentence.h"
 #include "page/figure_svg.h"
 #include "page/typeset.h"
 
@@ -42,7 +43,7 @@ std::string Effect(const Diagnosis& diagnosis, const FoundEffect& effect, bool s
   if (!effect.names.empty()) out += "<p>" + page::EscapeMarkup(Joined(effect.names)) + "</p>\n";
   if (!effect.tied_with.empty()) {
     out += "<p class=\"flag\">These data cannot distinguish it from " +
-           page::EscapeMarkup(Joined(effect.tied_with)) + ".</p>\n";
+           page::TypesetHtml(Joined(InWords(effect.tied_with))) + ".</p>\n";
   }
   return out + PictureOf(diagnosis, effect, si);
 }
@@ -140,7 +141,7 @@ std::string HowSure(const Diagnosis& diagnosis) {
   }
   for (const FoundEffect& effect : diagnosis.effects) {
     effects += "<tr>" + Cell(effect.id) + PercentCell(effect.weight) + PercentCell(effect.share) +
-               Cell(effect.tied_with.empty() ? "nothing" : Joined(effect.tied_with)) + "</tr>\n";
+               Cell(effect.tied_with.empty() ? "nothing" : Joined(InWords(effect.tied_with))) + "</tr>\n";
   }
   for (const Candidate* candidate : Likeliest(diagnosis)) {
     const bool taken = Parts(*candidate) == most_taken, part = candidate->rejected_because.empty();

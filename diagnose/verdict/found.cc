@@ -91,6 +91,7 @@ Kept KeepWhatIsThere(const SearchContext& context, const SearchResult& search) {
     for (const Change& change : EffectsOf(best)) {
       if (!MayBeNone(best.fitted.hypothesis, change, intervals)) continue;
       Explanation without = FitWithout(context, kept.search, change);
+      kept.search.tried.push_back(without);  // it is asked for again
       if (without.fitted.ok() && !Material(without.held_out_gap(), best.held_out_gap())) {
         kept.search.best = std::move(without);
         dropped = true;

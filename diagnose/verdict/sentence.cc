@@ -9,8 +9,7 @@ namespace hydro::diagnose {
 
 namespace {
 
-// "amp.delay", "other values of J and b", "other values of the model's parameters".
-std::string InWords(const std::string& rival) {
+std::string WordsFor(const std::string& rival) {
   const std::string begin = "parameter ", between = " + " + begin;
   if (rival == "parameters") return "other values of the model's parameters";
   if (!rival.starts_with(begin)) return rival;
@@ -23,18 +22,11 @@ std::string InWords(const std::string& rival) {
   return (names.size() == 1 ? "another value of " : "other values of ") + Enumerated(names);
 }
 
-std::vector<std::string> AllInWords(const std::vector<std::string>& rivals) {
-  std::vector<std::string> words;
-  words.reserve(rivals.size());
-  for (const std::string& rival : rivals) words.push_back(InWords(rival));
-  return words;
-}
-
 std::vector<std::string> EffectsOf(const Diagnosis& d) {
   std::vector<std::string> names;
   for (const FoundEffect& effect : d.effects) {
     std::string name = effect.summary + " [" + effect.id + "]";
-    if (!effect.tied_with.empty()) name += " (or " + Joined(AllInWords(effect.tied_with), ", or ") + ")";
+    if (!effect.tied_with.empty()) name += " (or " + Joined(InWords(effect.tied_with), ", or ") + ")";
     names.push_back(name);
   }
   return names;
@@ -103,10 +95,17 @@ std::string Sentence(const Diagnosis& d, const std::vector<std::string>& doubts)
   return "";
 }
 
+std::vector<std::string> InWords(const std::vector<std::string>& rivals) {
+  std::vector<std::string> words;
+  words.reserve(rivals.size());
+  for (const std::string& rival : rivals) words.push_back(WordsFor(rival));
+  return words;
+}
+
 std::string WhyNext(const std::vector<FoundEffect>& effects) {
   for (const FoundEffect& effect : effects) {
     if (!effect.tied_with.empty()) {
-      return "distinguishes " + effect.id + " from " + Enumerated(AllInWords(effect.tied_with));
+      return "distinguishes " + effect.id + " from " + Enumerated(InWords(effect.tied_with));
     }
   }
   return "";

@@ -11,6 +11,9 @@ namespace hydro::diagnose {
 // `doubts`: why what closes the gap cannot be called the cause.
 std::string Sentence(const Diagnosis& diagnosis, const std::vector<std::string>& doubts);
 
+// What `tied_with` has, in words: "amp.delay", "other values of J and b", "other values of the model's parameters".
+std::vector<std::string> InWords(const std::vector<std::string>& rivals);
+
 // What an experiment would tell apart; "" where nothing is tied.
 std::string WhyNext(const std::vector<FoundEffect>& effects);
 

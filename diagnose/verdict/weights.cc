@@ -134,8 +134,11 @@ std::map<std::string, double> Weights(const Contest& contest, uint64_t seed) {
   Draws draws(contest.runs, seed);
   std::map<std::string, double> weights;
   for (int i = 0; i < kDraws; ++i) {
-    for (const auto& [id, part] : bootstrap.Parts(draws.Next())) weights[id] += part / kDraws;
+    for (const auto& [id, part] : bootstrap.Parts(draws.Next())) weights[id] += part;
   }
+  double sum = 0;
+  for (const auto& [id, weight] : weights) sum += weight;
+  for (auto& [id, weight] : weights) weight /= sum;
   return weights;
 }
 

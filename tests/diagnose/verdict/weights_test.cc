@@ -44,6 +44,7 @@ TEST(Weights, AClearWinnerHasAll) {
                  Around("amp.delay", {"amp.delay"}, 4, 0.3, 3)}),
       1);
   EXPECT_GT(weights.at("amp.lag"), 0.99);
+  EXPECT_LE(weights.at("amp.lag"), 1);
   EXPECT_NEAR(Sum(weights), 1, 1e-9);
   EXPECT_EQ(weights.size(), 3u);
 }
