@@ -63,6 +63,22 @@ struct FoundStretch {
   std::vector<double> time, measured, with, without;
 };
 
+// What no known effect explains, as a smooth curve of one variable or a surface over two that is added to a balance.
+// It is a part of the model, and no cause.
+struct Closure {
+  std::string id, unit;  // "closure.pump_torque"; of the values
+  std::vector<std::string> against, against_units;
+  std::vector<std::vector<double>> knots;  // of each variable
+  // At each knot; of two variables row by row, a row for each knot of the first. Below and above: the 95 % band.
+  std::vector<double> value, low, high;
+  // Typical error of held-out predictions over `seconds`, in noise units: of windows, the geometric mean.
+  double before = 0, after = 0;
+  double seconds = 0;
+  // The model has other values than what was found, fitted with the same effects: it predicts windows better.
+  bool on_refit = false;
+  std::string resembles;  // "grows as the square root of |p2 - p1|"
+};
+
 struct FoundEffect {
   std::string id, summary, equation;
   std::vector<Estimated> parameters;
@@ -151,6 +167,7 @@ struct Diagnosis {
   std::vector<SignalGap> signals;
   BeforeAfter fit, held_out;
   std::vector<HorizonGap> horizons;  // the shortest first
+  std::vector<Closure> closures;     // usually none; then the largest first, of different balances
   NextExperiment next;
   std::vector<Candidate> candidates;
   std::vector<RunCurves> curves;

@@ -101,6 +101,7 @@ class FitProblem {
     solver.max_num_iterations = options.most_iterations;
     solver.function_tolerance = options.tolerance;
     solver.parameter_tolerance = 1e-7;
+    solver.initial_trust_region_radius = options.first_radius;
     solver.gradient_tolerance = 0;
     solver.num_threads = 1;
     solver.logging_type = ceres::SILENT;

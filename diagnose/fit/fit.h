@@ -43,7 +43,8 @@ struct Prior {
 
 struct FitOptions {
   int most_iterations = 20;
-  double tolerance = 1e-4;  // stops when the sum falls by less than this, relative
+  double tolerance = 1e-4;    // stops when the sum falls by less than this, relative
+  double first_radius = 1e4;  // of the solver's trust region, in the parameters' own scales
   int jobs = 1;
   const Prior* prior = nullptr;  // in the order of Free()
 };

@@ -2,6 +2,10 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <iterator>
+#include <string>
+#include <utility>
 
 #include "base/number_text.h"
 #include "diagnose/data/observed_mode.h"
@@ -10,6 +14,7 @@
 #include "diagnose/locate/disturbance_smoother.h"
 #include "diagnose/locate/explanations.h"
 #include "diagnose/locate/pressure_offsets.h"
+#include "model/terms/parameter_info.h"
 
 namespace hydro::diagnose {
 
@@ -124,15 +129,51 @@ std::string WhereOf(const Blocks& blocks, const std::vector<Dependence>& ranked,
   return where;
 }
 
+// A thousandth of all values lies below the first, and above the second.
+std::pair<double, double> ReachOf(const Variable& variable) {
+  std::vector<double> all;
+  for (const std::vector<double>& values : variable.values) {
+    std::copy_if(values.begin(), values.end(), std::back_inserter(all),
+                 [](double value) { return std::isfinite(value); });
+  }
+  if (all.empty()) return {0, 0};
+  const size_t edge = all.size() / 1000;
+  const auto low = all.begin() + static_cast<std::ptrdiff_t>(edge);
+  const auto high = all.end() - 1 - static_cast<std::ptrdiff_t>(edge);
+  std::nth_element(all.begin(), low, all.end());
+  const double lowest = *low;
+  std::nth_element(all.begin(), high, all.end());
+  return {lowest, *high};
+}
+
+MissingTerm TableOfBalance(const Blocks& blocks, const Dependence& d, size_t balance,
+                           const UnitSystem& units) {
+  MissingTerm table = TableOf(blocks, d.variable, d.averages);
+  table.balance = kNames[balance];
+  table.unit = UnitOf(static_cast<Balance>(balance), units);
+  return table;
+}
+
+// The balance's tables over what a closure may depend on. `share` is the balance's of the disagreement.
+void AddPossible(const Blocks& blocks, const std::vector<Dependence>& ranked, size_t balance, double share,
+                 const UnitSystem& units, std::vector<PossibleTerm>* possible) {
+  const model::EffectInfo* closure = model::FindEffect(std::string("closure.") + kNames[balance]);
+  const std::vector<std::string>& allowed = closure->parameters.front().names;
+  for (const Dependence& d : ranked) {
+    if (std::find(allowed.begin(), allowed.end(), d.variable.name) == allowed.end()) continue;
+    if (d.variable.linear_only || !(d.explained > kDependence)) continue;
+    const auto [low, high] = ReachOf(d.variable);
+    possible->push_back(
+        {TableOfBalance(blocks, d, balance, units), low, high, share * std::min(1.0, d.explained)});
+  }
+}
+
 // Tabulates over the variable that explains most, and over the next one that explains anything.
 void Tabulate(const Blocks& blocks, const std::vector<Dependence>& ranked, size_t balance,
               const UnitSystem& units, std::vector<MissingTerm>* missing) {
   for (const Dependence& d : ranked) {
     if (missing->size() == 2 || (!missing->empty() && d.explained < kDependence)) break;
-    MissingTerm table = TableOf(blocks, d.variable, d.averages);
-    table.balance = kNames[balance];
-    table.unit = UnitOf(static_cast<Balance>(balance), units);
-    missing->push_back(std::move(table));
+    missing->push_back(TableOfBalance(blocks, d, balance, units));
   }
 }
 
@@ -157,6 +198,7 @@ size_t LargestBalance(const Found& found) {
 
 // The disagreement, and how much of it has been given a place.
 struct Placement {
+  UnitSystem units;
   std::vector<SmoothedRun> smoothed;
   Found found;
   double all = 0;  // the total of `found` before any correction
@@ -193,11 +235,13 @@ void Place(const Explanations& explanations, const std::vector<const RunData*>& 
   std::vector<Location>& location = placement->result.location;
   std::vector<Dependence>& ranked = placement->ranked[b];
   ranked = Rank(blocks, explanations.States(balance, blocks.duration < kQuick), placement->smoothed, balance);
+  AddPossible(blocks, ranked, b, share, placement->units, &placement->result.possible);
   double own = share;
   // Moves to `to` the share that its variables explain clearly better than the balance's own do.
   const auto move_share = [&](const char* to, std::vector<Variable> variables) {
     if (variables.empty() || own < share) return;
     const std::vector<Dependence> others = Rank(blocks, std::move(variables), placement->smoothed, balance);
+    AddPossible(blocks, others, b, share, placement->units, &placement->result.possible);
     const double explained = others.front().explained;
     if (explained <= ranked.front().explained + kPlainly) return;
     const double part = share * std::min(1.0, explained);
@@ -222,6 +266,7 @@ std::string UnitOf(Balance balance, const UnitSystem& units) {
 
 Localisation Locate(const model::ModelDescription& model, const std::vector<const RunData*>& runs) {
   Placement placement;
+  placement.units = model.units;
   placement.smoothed = SmoothAll(model, runs, {});
   placement.found = Weigh(placement.smoothed, runs);
   placement.all = placement.found.total;
@@ -232,6 +277,8 @@ Localisation Locate(const model::ModelDescription& model, const std::vector<cons
   std::vector<Location>& location = placement.result.location;
   std::stable_sort(location.begin(), location.end(),
                    [](const Location& a, const Location& b) { return a.share > b.share; });
+  std::stable_sort(placement.result.possible.begin(), placement.result.possible.end(),
+                   [](const PossibleTerm& a, const PossibleTerm& b) { return a.explained > b.explained; });
   if (!location.empty() && location.front().balance != "sensor") {
     const size_t b = LargestBalance(placement.found);
     Tabulate(placement.found.blocks[b], placement.ranked[b], b, model.units, &placement.result.missing);

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "base/units.h"
+#include "diagnose/closure/resemblance.h"
 #include "diagnose/data/run_data.h"
 
 namespace hydro::diagnose {
@@ -49,6 +50,21 @@ std::pair<double, double> Convert(MissingTerm* term) {
   return factors;
 }
 
+void Convert(Closure* closure) {
+  if (const std::optional<SiUnit> unit = FindSiUnit(closure->unit, Largest(closure->value))) {
+    for (std::vector<double>* values : {&closure->value, &closure->low, &closure->high})
+      Scale(unit->factor, values);
+    closure->unit = unit->to;
+  }
+  for (size_t i = 0; i < closure->knots.size(); ++i) {
+    const std::optional<SiUnit> unit = FindSiUnit(closure->against_units[i], Largest(closure->knots[i]));
+    if (!unit.has_value()) continue;
+    Scale(unit->factor, &closure->knots[i]);
+    closure->against_units[i] = unit->to;
+  }
+  closure->resembles = Resemblance(*closure);  // it may say a place
+}
+
 }  // namespace
 
 ShownUnit UnitOf(model::Channel channel, const UnitSystem& units, bool si) {
@@ -62,6 +78,7 @@ Diagnosis InSi(Diagnosis diagnosis) {
   for (FoundEffect& effect : diagnosis.effects) {
     for (Estimated& parameter : effect.parameters) Convert(&parameter);
   }
+  for (Closure& closure : diagnosis.closures) Convert(&closure);
   for (ChangedParameter& parameter : diagnosis.parameters) parameter.model *= Convert(&parameter.fitted);
   for (MissingTerm& term : diagnosis.missing) Convert(&term);
   for (FoundTerm& term : diagnosis.terms) {

@@ -9,6 +9,7 @@
 #include "base/word_list.h"
 #include "diagnose/data/run_data.h"
 #include "diagnose/report/answer_sections.h"
+#include "diagnose/report/closure_section.h"
 #include "diagnose/report/diagnosis_in_si.h"
 #include "diagnose/report/html_parts.h"
 #include "diagnose/report/report_json.h"
@@ -117,6 +118,7 @@ std::string ReportHtml(const Diagnosis& given, bool si) {
                             Section("How sure that is", HowSure(diagnosis)) +
                             Section("How much of the gap it takes", HowMuchOfTheGap(diagnosis)) +
                             Section("What remains, and where", WhatRemains(diagnosis)) +
+                            Section("What no known effect explains", ClosureSection(diagnosis)) +
                             Section("What to measure next", WhatToMeasureNext(diagnosis)) +
                             Section("Remarks on the recordings", Remarks(diagnosis)) +
                             Section("The gap by signal", GapTable(diagnosis, si)) +

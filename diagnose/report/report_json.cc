@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "diagnose/data/run_data.h"
+#include "diagnose/report/closure_json.h"
 #include "settings/command_line.h"
 
 namespace hydro::diagnose {
@@ -152,6 +153,7 @@ std::string ReportJson(const Diagnosis& diagnosis, const std::string& next_confi
                        {"location", Places(diagnosis)},
                        {"missing_terms", MissingTerms(diagnosis)},
                        {"effects", Effects(diagnosis)},
+                       {"closure", ClosureJson(diagnosis)},
                        {"parameters", ChangedParameters(diagnosis)},
                        {"gap", Gaps(diagnosis)},
                        {"next_experiment", NextExperimentOf(diagnosis, next_config)},

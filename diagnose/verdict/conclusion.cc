@@ -7,6 +7,7 @@
 #include <string>
 
 #include "base/number_text.h"
+#include "diagnose/closure/closure.h"
 #include "diagnose/locate/effect_terms.h"
 #include "diagnose/locate/locate.h"
 #include "diagnose/search/window_search.h"
@@ -110,11 +111,15 @@ Diagnosis Conclude(const SearchContext& context, const SearchResult& search, con
   d.signals = SignalGaps(context, given, refit, best);
   d.candidates = Ranking(context, kept.search, weights, windows);
   d.curves = CurvesOf(context, given, best);
+  ClosedModel closed;
   if (d.verdict != Verdict::kNothingMissing) {
     if (report_progress) report_progress({"where the gap is", 0.97});
-    Localisation located = Locate(IsOpen(d.verdict) ? d.model : context.given, context.runs);
+    const ClosureBase base =
+        IsOpen(d.verdict) ? BaseOfClosure(context, best, refit, windows) : ClosureBase{&given};
+    Localisation located = Locate(base.explanation->fitted.hypothesis.model, context.runs);
     d.location = std::move(located.location);
     d.missing = std::move(located.missing);
+    if (IsOpen(d.verdict)) closed = FindClosure(context, base, located.possible);
   }
   for (const FoundEffect& effect : d.effects) {
     if (std::optional<FoundTerm> term = TermOf(d.model, effect.id, context.runs, context.jobs)) {
@@ -123,12 +128,13 @@ Diagnosis Conclude(const SearchContext& context, const SearchResult& search, con
       d.stretches.push_back(std::move(*stretch));
     }
   }
+  AddClosures(std::move(closed), &d);
   if (d.verdict == Verdict::kTied) {
     if (report_progress) report_progress({"the next experiment", 0.98});
     d.next = DesignNextExperiment(rivals, context.runs, WhyNext(d.effects));
   }
   NameRuns(context, &d);
-  d.sentence = Sentence(d, kept.doubts);
+  d.sentence = Sentence(d, kept.doubts) + ClosureSentence(d.closures);
   return d;
 }
 
