@@ -29,6 +29,7 @@ void AddClosures(ClosedModel closed, Diagnosis* diagnosis) {
 std::string ClosureSentence(const std::vector<Closure>& closures) {
   if (closures.empty()) return "";
   std::vector<std::string> curves;
+  curves.reserve(closures.size());
   for (const Closure& closure : closures) {
     curves.push_back((closure.against.size() == 2 ? "a surface over " : "a curve of ") +
                      Enumerated(closure.against) + " in " + BalanceOf(closure) + ", which " +
