@@ -1,126 +1,21 @@
 #include "model/response.h"
 
 #include <algorithm>
-#include <cmath>
-#include <string>
-#include <utility>
 
-#include "model/equations/read_sensors.h"
-#include "model/integrate/derivative_stepper.h"
-#include "model/integrate/mode_machine.h"
-#include "model/terms/parameter_info.h"
+#include "model/response_pass.h"
 
 namespace hydro::model {
 
 namespace {
 
-template <class T>
-NumbersOf<T> NumbersAs(const NumbersOf<double>& numbers) {
-  NumbersOf<T> result;
-  NumbersOf<double> from = numbers;
-  for (size_t i = 0; i < BaseParameters().size(); ++i) {
-    BaseValue(result.parameters, i) = T(BaseValue(from.parameters, i));
-  }
-  for (const double value : numbers.own) result.own.emplace_back(value);
-  return result;
-}
-
-// The initial state and mode of a response, from the base states `base`.
-template <class T>
-Mode StartFrom(Equations* equations, const NumbersOf<T>& numbers, double time, const T* base, T* state) {
-  const EquationData& data = equations->data();
-  Mode mode;
-  T rate[kMaxStates];
-  T margin[kMaxSwitches];
-  Terms<T> terms;
-  const auto evaluate = [&] {
-    EvaluateTerms<Form::kGeneral, T>(data, numbers, time, T(0.0), mode, state, rate, terms);
-  };
-  const int given = data.shaft == Shaft::kFree ? 6 : 4;
-  for (int i = 0; i < data.states; ++i) state[i] = i < given ? base[i] : T(0.0);
-  equations->PassStop(time);
-  evaluate();
-  FindMargins<Form::kGeneral, T>(data, numbers, mode, terms, margin);
-  // The margins show whether an effect has valves of its own: an ideal valve's margin is p - p_3.
-  if (ValueOf(margin[kValve1Switch]) < 0) state[kP1] = terms.p_3;
-  if (ValueOf(margin[kValve2Switch]) < 0) state[kP2] = terms.p_3;
-  evaluate();
-  for (const auto& effect : data.effects) {
-    terms.own = numbers.own.data() + effect->first_parameter();
-    effect->Start(terms, state);
-    effect->StartMode(terms, &mode);
-  }
-  const double speed = ValueOf(state[kMotorSpeed]);
-  mode.pump = static_cast<int8_t>(speed > 0 ? 1 : (speed < 0 ? -1 : 0));
-  return mode;
-}
-
-// How many steps a pass may take in all, so that a far too stiff model does not take hours.
-int64_t MostSteps(const Stimulus& stimulus, const ResponseOptions& options) {
-  const double duration = stimulus.time.back() - stimulus.time.front();
-  // The step of a fourth-order method scales with the fourth root of its error.
-  const double finer = std::max(1.0, std::pow(1e-6 / options.relative_tolerance, 0.25));
-  const double samples = static_cast<double>(stimulus.time.size());
-  return static_cast<int64_t>(finer * (options.most_steps_per_sample * samples + 500 * duration)) + 1000;
-}
-
-// Seeds the unknowns [first, first + kJetWidth) as directions, in `numbers` and `base`.
-void Seed(const std::vector<Unknown>& unknowns, size_t first, NumbersOf<Jet>* numbers, Jet* base) {
-  const size_t last = std::min(unknowns.size(), first + static_cast<size_t>(kJetWidth));
-  for (size_t u = first; u < last; ++u) {
-    const Unknown& unknown = unknowns[u];
-    Jet& seeded = unknown.kind == Unknown::Kind::kBase     ? BaseValue(numbers->parameters, unknown.index)
-                  : unknown.kind == Unknown::Kind::kEffect ? numbers->own.at(unknown.index)
-                                                           : base[unknown.index];
-    seeded.v[u - first] = 1;
-  }
-}
-
-// Simulates once with unknowns [first, first + kJetWidth) as directions; with none when T is double.
-template <class T>
-void Pass(const ModelDescription& model, const Stimulus& stimulus, const StartState& start,
-          const std::vector<Unknown>& unknowns, size_t first, const ResponseOptions& options,
-          Response* response) {
-  ActuatorOptions actuator;
-  actuator.shaft = stimulus.shaft;
-  actuator.bypass = stimulus.bypass;
-  actuator.begin = stimulus.begin;
-  actuator.repeated_effects = options.repeated_effects;
-  actuator.motion = stimulus.motion;
-  actuator.arm_angle = stimulus.shaft == Shaft::kFree ? start[kArmAngle] : stimulus.arm_angle;
-  Equations equations(model, actuator);
-  NumbersOf<T> numbers = NumbersAs<T>(equations.data());
-  T base[6];
-  for (size_t i = 0; i < 6; ++i) base[i] = T(start[i]);
-  if constexpr (!std::is_same_v<T, double>) Seed(unknowns, first, &numbers, base);
-  if (stimulus.bypass) base[kP2] = base[kP1];
-  CompleteNumbers<T>(equations.data(), &numbers);
-
-  ModeMachine<T, Form::kGeneral, DerivativeStepper<T>> machine(
-      &equations, &numbers, &numbers, options.relative_tolerance, MostSteps(stimulus, options));
-  T state[kMaxStates];
-  const Mode mode = StartFrom(&equations, numbers, stimulus.time.front(), base, state);
-  machine.Start(stimulus.time.front(), state, mode);
-  const size_t last = std::min(unknowns.size(), first + static_cast<size_t>(kJetWidth));
-  const bool values = first == 0;
-  size_t row = 0;
-  for (size_t k = 0; k < stimulus.time.size(); ++k) {
-    if (k > 0) machine.Advance(stimulus.voltage[k - 1], stimulus.time[k]);
-    if (k % options.stride != 0) continue;
-    const MeasurementOf<T> measured =
-        ReadSensors<T>(equations.data(), numbers, machine.now().time, machine.now().state, machine.history());
-    for (size_t c = 0; c < kChannels; ++c) {
-      if (!options.channels[c]) continue;
-      const T& value = ChannelOf(measured, c);
-      if (values) response->values[c][row] = ValueOf(value);
-      if constexpr (!std::is_same_v<T, double>) {
-        for (size_t u = first; u < last; ++u) {
-          response->derivatives[u][c][row] = value.v[u - first];
-        }
-      }
-    }
-    ++row;
-  }
+void PassWithDerivatives(const ModelDescription& model, const Stimulus& stimulus, const StartState& start,
+                         const std::vector<Unknown>& unknowns, size_t first, const ResponseOptions& options,
+                         Response* response) {
+#ifdef HYDRO_WIDE_VECTORS
+  static const bool wide = __builtin_cpu_supports("avx512f") != 0;
+  if (wide) return WidePass(model, stimulus, start, unknowns, first, options, response);
+#endif
+  Pass<Jet>(model, stimulus, start, unknowns, first, options, response);
 }
 
 }  // namespace
@@ -167,7 +62,7 @@ Response Respond(const ModelDescription& model, const Stimulus& stimulus, const 
     Pass<double>(model, stimulus, start, unknowns, 0, options, &response);
   } else {
     for (size_t first = 0; first < unknowns.size(); first += kJetWidth) {
-      Pass<Jet>(model, stimulus, start, unknowns, first, options, &response);
+      PassWithDerivatives(model, stimulus, start, unknowns, first, options, &response);
     }
   }
   return response;

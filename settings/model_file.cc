@@ -72,6 +72,17 @@ void ReadDisplacement(SectionReader& section, const model::ParameterInfo& info, 
   }
 }
 
+// [uncertainty]: relative standard deviations by base parameter.
+std::map<std::string, double> ReadUncertainty(SectionReader section) {
+  std::map<std::string, double> uncertainty;
+  double value = 0;
+  for (const model::BaseParameter& parameter : model::BaseParameters()) {
+    if (section.Number(parameter.info.name, &value, kPositive)) uncertainty[parameter.info.name] = value;
+  }
+  section.Finish();
+  return uncertainty;
+}
+
 }  // namespace
 
 model::ModelDescription ParseModel(const std::string& text, const std::string& name_for_messages) {
@@ -84,6 +95,7 @@ model::ModelDescription ParseModel(const std::string& text, const std::string& n
   SectionReader parameters = document.Section("parameters");
   document.Require("parameters", "a section [parameters]");
   SectionReader effects = document.Section("effects");
+  description.uncertainty = ReadUncertainty(document.Section("uncertainty"));
   document.Finish();
 
   for (const model::BaseParameter& parameter : model::BaseParameters()) {
@@ -120,6 +132,11 @@ std::string FormatModel(const model::ModelDescription& description) {
     parameters.members.push_back({parameter.info.name, NumberNode(description.parameters.*parameter.member)});
   }
   root.members.push_back({"parameters", std::move(parameters)});
+  TomlNode uncertainty;
+  for (const auto& [name, value] : description.uncertainty) {
+    uncertainty.members.push_back({name, NumberNode(value)});
+  }
+  if (!uncertainty.members.empty()) root.members.push_back({"uncertainty", std::move(uncertainty)});
   TomlNode effects = EffectsNode(description.effects);
   if (!effects.members.empty()) root.members.push_back({"effects", std::move(effects)});
   return FormatToml(root);

@@ -226,7 +226,11 @@ std::vector<model::StartState> StartsOf(const Fitted& fitted) {
 Fitted Fit(const Hypothesis& hypothesis, const std::vector<const RunData*>& runs,
            const std::vector<model::StartState>& starts, const FitOptions& options) {
   FitProblem problem(hypothesis, runs, starts, options.jobs);
-  if (options.prior != nullptr) problem.AddPrior(*options.prior);
+  if (options.prior != nullptr) {
+    problem.AddPrior(*options.prior);
+  } else if (hypothesis.known != nullptr) {
+    problem.AddPrior(KnownBefore(hypothesis));
+  }
   if (problem.Solve(options)) return problem.Result();
   Fitted failed;
   failed.hypothesis = hypothesis;

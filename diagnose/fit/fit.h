@@ -35,18 +35,12 @@ struct Fitted {
 // Each run's start, as fitted.
 std::vector<model::StartState> StartsOf(const Fitted& fitted);
 
-// What is known about the free parameters beforehand. Each parameter, as fitted (some as logarithms), adds
-// weight * (parameter - centre)^2 to the sum that is minimised.
-struct Prior {
-  std::vector<double> centre, weight;
-};
-
 struct FitOptions {
   int most_iterations = 20;
   double tolerance = 1e-4;    // stops when the sum falls by less than this, relative
   double first_radius = 1e4;  // of the solver's trust region, in the parameters' own scales
   int jobs = 1;
-  const Prior* prior = nullptr;  // in the order of Free()
+  const Prior* prior = nullptr;  // instead of what the hypothesis knows
 };
 
 // `starts`: initial guesses, one a run. Never throws ModelError: a model that cannot be simulated is reported

@@ -117,7 +117,14 @@ HeldOut PredictInTurn(const Fitted& fitted, const model::ModelDescription& given
     information += Map<const MatrixXd>(run.information.data(), p, p);
     gradient += Map<const VectorXd>(run.gradient.data(), p);
   }
-  const Prior prior = PriorOf(free, given);
+  Prior prior = PriorOf(free, given);
+  const Prior known = KnownBefore(fitted.hypothesis);
+  for (size_t i = 0; i < free.size(); ++i) {
+    if (known.weight[i] > prior.weight[i]) {
+      prior.centre[i] = known.centre[i];
+      prior.weight[i] = known.weight[i];
+    }
+  }
   std::vector<HeldOut> parts(runs.size());
   ParallelFor(runs.size(), jobs, [&](size_t r) {
     Hypothesis others = fitted.hypothesis;

@@ -2,10 +2,12 @@
 #pragma once
 
 #include <map>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "diagnose/data/run_data.h"
+#include "diagnose/fit/prior.h"
 #include "model/response.h"
 #include "model/terms/description.h"
 #include "model/terms/parameter_info.h"
@@ -49,6 +51,8 @@ struct Hypothesis {
   // Free base parameters, as in BaseParameters(), including those of `changes`.
   std::vector<size_t> base;
   std::vector<std::string> effects;  // ids whose parameters are free
+  // What fits know of the free base parameters beforehand; null: nothing.
+  std::shared_ptr<const Knowledge> known;
 
   std::vector<FreeParameter> Free() const;
   // Sets the model to these values, in the order of Free().

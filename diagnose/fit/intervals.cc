@@ -86,6 +86,7 @@ class Information {
     for (const RunFit& run : fitted.runs) {
       information += Map<const MatrixXd>(run.information.data(), p, p);
     }
+    AddKnown(fitted, &information);
     scale_ = (information.diagonal().array() + 1e-300).sqrt().inverse();
     MatrixXd scaled = scale_.asDiagonal() * information * scale_.asDiagonal();
     scaled.diagonal().array() += 1e-10;
@@ -113,6 +114,16 @@ class Information {
   }
 
  private:
+  // What is known beforehand, in the units of the runs' information: residuals as large as the gap.
+  static void AddKnown(const Fitted& fitted, MatrixXd* information) {
+    if (fitted.hypothesis.known == nullptr || !(fitted.hypothesis.known->weight > 0)) return;
+    const Prior prior = KnownBefore(fitted.hypothesis);
+    const double scale = std::max(1.0, fitted.squared_gap()) / fitted.hypothesis.known->weight;
+    for (Index i = 0; i < information->rows(); ++i) {
+      (*information)(i, i) += scale * prior.weight[static_cast<size_t>(i)];
+    }
+  }
+
   VectorXd scale_;
   MatrixXd inverse_;
   Eigen::LLT<MatrixXd> root_;

@@ -1,7 +1,11 @@
 #include "diagnose/search/proof.h"
 
+#include <memory>
 #include <utility>
 
+#include "diagnose/fit/held_out.h"
+#include "diagnose/fit/start_fit.h"
+#include "diagnose/search/horizon_score.h"
 #include "diagnose/search/window_search.h"
 
 namespace hydro::diagnose {
@@ -10,6 +14,10 @@ namespace {
 
 // How many explanations that lead on windows are tried on whole runs.
 constexpr size_t kMostProved = 5;
+// Above this squared gap of whole runs, their drift says less than windows do.
+constexpr double kNearTheNoise = 9;
+// From so many fitted runs on, the held-out runs choose nothing.
+constexpr size_t kFewestToChoose = 2;
 
 // Fits the hypothesis to the whole runs; from other starts too where it leaves a small gap, which another start
 // may close.
@@ -20,11 +28,18 @@ Explanation Prove(const SearchContext& context, const Hypothesis& hypothesis) {
   return small && !TimeIsUp(context) ? RefitFromOtherStarts(context, one, FineFit(context.jobs)) : one;
 }
 
-WindowTrials TrialsOn(const SearchWindows& windows, const WideSearch& near) {
-  WindowTrials trials{near.search.tried, {}};
+WindowTrials TrialsOn(SearchWindows windows, const WideSearch& near, bool decide) {
+  WindowTrials trials;
+  trials.tried = near.search.tried;
   for (const Explanation* one : {&near.search.given, &near.search.best, &near.refit})
     trials.tried.push_back(*one);
+  trials.runs.reserve(windows.choosing.size());
   for (const RunData* window : windows.choosing) trials.runs.push_back(window->name);
+  trials.decide = decide;
+  trials.best = near.search.best.fitted;
+  trials.fitted = std::move(windows.fitted);
+  // A vector that is moved keeps its elements where they are.
+  trials.all = std::make_shared<const std::vector<RunData>>(std::move(windows.all));
   return trials;
 }
 
@@ -32,43 +47,107 @@ WindowTrials TrialsOn(const SearchWindows& windows, const WideSearch& near) {
 void SearchOn(const SearchContext& context, SearchResult* proved) {
   const int changes = static_cast<int>(proved->best.changes().size());
   if (changes >= kMostChanges) return;
-  SearchResult more = Search(context, proved->best.fitted.hypothesis, kMostChanges - changes);
-  if (!more.given.fitted.ok()) return;
+  SearchResult more = Search(context, proved->best, kMostChanges - changes);
   if (Material(proved->best.held_out_gap(), more.best.held_out_gap())) proved->best = std::move(more.best);
   proved->tried.insert(proved->tried.end(), more.tried.begin(), more.tried.end());
+}
+
+// Predicts the held-out runs, which have chosen nothing, with all that was compared.
+void PredictHeldOut(const SearchContext& context, WideSearch* proved) {
+  const auto predict = [&](Explanation* one) {
+    if (one->blocks.sums.empty()) return;
+    one->held_out = Predict(one->fitted, context.held_out, context.jobs);
+    one->blocks = BlocksOf(context.held_out, one->held_out);
+  };
+  predict(&proved->search.given);
+  predict(&proved->refit);
+  predict(&proved->search.best);
+  for (Explanation& one : proved->search.tried) predict(&one);
+}
+
+// The better of the hypothesis with the values that windows gave it and fitted to the whole runs, by what each
+// predicts over several horizons. Values of windows are told from held-out runs alone.
+Explanation WithBetterValues(const SearchContext& context, const Hypothesis& on_windows) {
+  const std::vector<model::StartState> measured = MeasuredStarts(context.runs);
+  Explanation whole = Explain(context, on_windows, measured, FineFit(context.jobs));
+  if (context.held_out.empty()) return whole;
+  FitOptions held;
+  held.most_iterations = 0;
+  held.jobs = context.jobs;
+  Explanation kept =
+      Explain(context, on_windows, BestStarts(on_windows, context.runs, measured, context.jobs), held);
+  if (!whole.fitted.ok() || !kept.fitted.ok()) return kept.fitted.ok() ? kept : whole;
+  const double seconds = SearchHorizon(context.runs);
+  const auto score = [&](const Explanation& one) {
+    return HorizonScore(one.fitted.hypothesis.model, context.runs, seconds, context.jobs);
+  };
+  return score(kept) < score(whole) ? kept : whole;
+}
+
+// Fits what leads on windows to the whole runs, and chooses.
+void Choose(const SearchContext& context, const SearchResult& near, WideSearch* proved) {
+  for (const Explanation* one : Leading(near, kMostProved)) {
+    if (TimeIsUp(context) && !proved->search.tried.empty()) break;
+    Explanation whole = Prove(context, one->fitted.hypothesis);
+    if (!whole.fitted.ok()) continue;
+    if (Material(proved->search.best.held_out_gap(), whole.held_out_gap())) proved->search.best = whole;
+    proved->search.tried.push_back(std::move(whole));
+  }
+  const bool open = proved->search.best.held_out_gap() >= kCloseEnough;
+  if (open && !TimeIsUp(context)) SearchOn(context, &proved->search);
+}
+
+// The explanations of the whole runs: those given, refitted, and near the noise the best of what leads on windows.
+WideSearch ProveInTurn(const SearchContext& context, const Hypothesis& as_given, const WideSearch& near) {
+  // Where runs are enough, they choose by predicting each other.
+  const bool in_turn = context.runs.size() >= kFewestToChoose && !context.held_out.empty();
+  SearchContext choosing = context;
+  if (in_turn) choosing.held_out.clear();
+  const std::vector<model::StartState> measured = MeasuredStarts(context.runs);
+  WideSearch proved;
+  proved.search.given = Explain(choosing, as_given, measured, FineFit(context.jobs));
+  if (!proved.search.given.fitted.ok()) return proved;
+  proved.search.rated = near.search.rated;
+  proved.search.best = proved.search.given;
+  proved.refit = Explain(choosing, near.refit.fitted.hypothesis, measured, FineFit(context.jobs));
+  if (!proved.refit.fitted.ok()) proved.refit = proved.search.given;
+  Choose(choosing, near.search, &proved);
+  if (in_turn) PredictHeldOut(context, &proved);
+  return proved;
+}
+
+// The explanations of the whole runs where no model comes near the noise: windows have chosen.
+WideSearch TakeFromWindows(const SearchContext& context, const Hypothesis& as_given, const WideSearch& near) {
+  WideSearch taken;
+  taken.search.given = Explain(context, as_given, MeasuredStarts(context.runs), FineFit(context.jobs));
+  if (!taken.search.given.fitted.ok()) return taken;
+  taken.search.rated = near.search.rated;
+  taken.refit = WithBetterValues(context, near.refit.fitted.hypothesis);
+  if (!taken.refit.fitted.ok()) taken.refit = taken.search.given;
+  taken.search.best = near.search.best.changes().empty() && near.search.best.fitted.hypothesis.base.empty()
+                          ? taken.search.given
+                          : WithBetterValues(context, near.search.best.fitted.hypothesis);
+  if (!taken.search.best.fitted.ok()) taken.search.best = taken.search.given;
+  taken.search.tried = {taken.refit, taken.search.best};
+  return taken;
 }
 
 }  // namespace
 
 WideSearch SearchAndProve(const SearchContext& context, const Hypothesis& as_given,
                           const std::vector<size_t>& allowed) {
-  const SearchWindows windows = WindowsForSearch(context.runs, context.given.parameters);
+  SearchWindows windows = WindowsForSearch(context.runs, context.given.parameters);
   const WideSearch near =
       windows.choosing.empty() ? WideSearch{} : SearchWidely(OnWindows(context, windows), as_given, allowed);
   if (windows.choosing.empty() || !near.search.given.fitted.ok()) {
     return SearchWidely(context, as_given, allowed);
   }
+  if (context.report_progress) context.report_progress({"fitting the whole runs", 0.93});
   WideSearch proved;
-  if (context.report_progress) context.report_progress({"predicting the held-out runs", 0.93});
-  proved.search.given = Explain(context, as_given, MeasuredStarts(context.runs), FineFit(context.jobs));
-  if (!proved.search.given.fitted.ok()) return proved;
-  proved.windows = TrialsOn(windows, near);
-  proved.search.rated = near.search.rated;
-  proved.search.best = proved.search.given;
-  proved.refit =
-      Explain(context, near.refit.fitted.hypothesis, MeasuredStarts(context.runs), FineFit(context.jobs));
-  if (!proved.refit.fitted.ok()) proved.refit = proved.search.given;
-  for (const Explanation* one : Leading(near.search, kMostProved)) {
-    if (TimeIsUp(context) && !proved.search.tried.empty()) break;
-    Explanation whole = Prove(context, one->fitted.hypothesis);
-    if (!whole.fitted.ok()) continue;
-    if (Material(proved.search.best.held_out_gap(), whole.held_out_gap())) proved.search.best = whole;
-    proved.search.tried.push_back(std::move(whole));
-  }
-  const bool open = proved.search.best.held_out_gap() >= kCloseEnough;
-  if (open && near.search.best.held_out_gap() < kOutOfReach && !TimeIsUp(context)) {
-    SearchOn(context, &proved.search);
-  }
+  if (near.search.best.held_out_gap() < kOutOfReach) proved = ProveInTurn(context, as_given, near);
+  const bool far = proved.search.tried.empty() || proved.search.best.held_out_gap() >= kNearTheNoise;
+  if (far) proved = TakeFromWindows(context, as_given, near);
+  proved.windows = TrialsOn(std::move(windows), near, far);
   return proved;
 }
 

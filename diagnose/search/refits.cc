@@ -9,7 +9,7 @@ namespace hydro::diagnose {
 namespace {
 
 // A change is not refitted if the score test expects less of it than this share of the best.
-constexpr double kWorthTrying = 0.15;
+constexpr double kWorthTrying = 0.25;
 
 }  // namespace
 

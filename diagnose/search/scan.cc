@@ -181,6 +181,7 @@ class Scanner {
       : current_(current),
         runs_(runs),
         known_(current.hypothesis.Free()),
+        prior_(KnownBefore(current.hypothesis)),
         bases_(BasesOf(current, runs, known_, jobs)),
         points_(StartingPoints(current, known_, changes, sizes, elsewhere)),
         scanned_(points_.size()) {}
@@ -210,7 +211,7 @@ class Scanner {
  private:
   void TestAlone(size_t t) {
     try {
-      scanned_[t] = ScoreTest(bases_, known_, points_[t], SimulateAlone(current_, runs_, points_[t]));
+      scanned_[t] = ScoreTest(bases_, known_, prior_, points_[t], SimulateAlone(current_, runs_, points_[t]));
     } catch (const model::ModelError& error) {
       scanned_[t].failure = error.what();
       scanned_[t].start = points_[t].with;
@@ -225,7 +226,7 @@ class Scanner {
     try {
       together = SimulateTogether(current_, runs_, bases_, members, &columns);
       for (size_t m = 0; together && m < members.size(); ++m) {
-        scanned_[group[m]] = ScoreTest(bases_, known_, *members[m], columns[m]);
+        scanned_[group[m]] = ScoreTest(bases_, known_, prior_, *members[m], columns[m]);
       }
     } catch (const model::ModelError&) {
       together = false;  // one of them cannot be simulated; trying each alone shows which
@@ -238,6 +239,7 @@ class Scanner {
   const Fitted& current_;
   const std::vector<const RunData*>& runs_;
   std::vector<FreeParameter> known_;
+  Prior prior_;
   std::vector<RunBasis> bases_;
   std::vector<StartingPoint> points_;
   std::vector<Scanned> scanned_;

@@ -112,7 +112,7 @@ double BestMove(const MatrixXd& A, const VectorXd& b, double s, const VectorXd& 
 }
 
 Scanned ScoreTest(const std::vector<RunBasis>& bases, const std::vector<FreeParameter>& known,
-                  const StartingPoint& point, const std::vector<RunColumns>& columns) {
+                  const Prior& prior, const StartingPoint& point, const std::vector<RunColumns>& columns) {
   const auto p = static_cast<Index>(known.size());
   const auto e = static_cast<Index>(point.own.size());
   NormalEquations all{MatrixXd::Zero(p + e, p + e), VectorXd::Zero(p + e), 0};
@@ -120,6 +120,11 @@ Scanned ScoreTest(const std::vector<RunBasis>& bases, const std::vector<FreePara
   for (size_t r = 0; r < bases.size(); ++r) {
     AddRun(bases[r], columns[r], p, &all);
     before += bases[r].values.squaredNorm();
+  }
+  for (Index i = 0; i < p; ++i) {
+    const auto place = static_cast<size_t>(i);
+    all.A(i, i) += prior.weight[place];
+    all.b(i) += prior.weight[place] * (known[place].ToFitted(known[place].value) - prior.centre[place]);
   }
   VectorXd low(e), high(e), move;
   for (Index i = 0; i < e; ++i) {

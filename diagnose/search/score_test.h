@@ -34,9 +34,9 @@ struct StartingPoint {
 double BestMove(const Eigen::MatrixXd& A, const Eigen::VectorXd& b, double s, const Eigen::VectorXd& low,
                 const Eigen::VectorXd& high, Eigen::VectorXd* move);
 
-// The gain expected of a change, and the point to which its own parameters move for it. Throws
-// model::ModelError when derivatives are not finite.
+// The gain expected of a change, and the point to which its own parameters move for it. `prior`: of `known`,
+// the parameters free before. Throws model::ModelError when derivatives are not finite.
 Scanned ScoreTest(const std::vector<RunBasis>& bases, const std::vector<FreeParameter>& known,
-                  const StartingPoint& point, const std::vector<RunColumns>& columns);
+                  const Prior& prior, const StartingPoint& point, const std::vector<RunColumns>& columns);
 
 }  // namespace hydro::diagnose

@@ -17,9 +17,11 @@ namespace {
 
 // How many of the score test's best changes are refitted, at the first step and at later ones.
 constexpr size_t kRefitsAtFirst = 6;
-constexpr size_t kRefitsLater = 5;
+constexpr size_t kRefitsLater = 4;
+// And how many more if those do not explain the runs.
+constexpr size_t kRefitsMore = 8;
 // From how many starting points each of them is refitted.
-constexpr size_t kStarts = 3;
+constexpr size_t kStarts = 2;
 // How many hypotheses go on to the next step.
 constexpr size_t kBeam = 2;
 // A hypothesis is dropped if its sum of squares is this many times the best one's.
@@ -36,7 +38,7 @@ constexpr double kRefitBelow = 3;
 // A refit that has come no nearer than this many times the best one's sum of squares after a few iterations
 // is left as it is.
 constexpr int kIterationsToQualify = 3;
-constexpr double kOutOfTheRace = 6;
+constexpr double kOutOfTheRace = 3;
 
 constexpr char kNoTime[] = "the time limit ended the search";
 
@@ -56,18 +58,19 @@ bool CanAdd(const Hypothesis& hypothesis, const Change& change) {
 
 class Searcher {
  public:
-  Searcher(const SearchContext& context, int most_changes) : context_(context), most_changes_(most_changes) {
+  Searcher(const SearchContext& context, int most_changes, bool thorough)
+      : context_(context), most_changes_(most_changes), thorough_(thorough) {
     coarse_.most_iterations = 8;
     coarse_.tolerance = 1e-3;
   }
 
-  SearchResult Run(const Hypothesis& from) {
-    ReportProgress("the model as given", 0);
-    result_.given = Explain(context_, from, MeasuredStarts(context_.runs), WithAllJobs(fine_));
-    if (!result_.given.fitted.ok()) return result_;
-    result_.best = result_.given;
-    Grow(Extend({result_.given}, 0), 0);
-    if (result_.best.held_out_gap() >= kCloseEnough) Grow(TryAllAlone(), 0);
+  SearchResult Run(const Explanation& from) {
+    result_.given = result_.best = from;
+    Grow(Extend({from}, 0), 0);
+    const bool nothing = result_.best.changes().size() == from.changes().size();
+    if (thorough_ && nothing && result_.best.held_out_gap() >= kCloseEnough && !TimeIsUp(context_)) {
+      Grow(TryMore(), 0);
+    }
     if (!TimeIsUp(context_)) Exchange();
     if (!TimeIsUp(context_)) RemoveUnneeded();
     if (const Explanation* instead = ParameterInstead(result_, context_.given)) {
@@ -105,16 +108,18 @@ class Searcher {
     }
   }
 
-  // The score test is linear, so a strongly nonlinear change may look worthless in it. If the likeliest
-  // changes do not explain the runs, this refits every change that has not yet been refitted alone.
-  std::vector<Explanation> TryAllAlone() {
+  // The score test is linear, so a strongly nonlinear change may look worth little in it. If the likeliest
+  // changes do not explain the runs, this refits the next few that have not yet been refitted alone.
+  std::vector<Explanation> TryMore() {
+    std::stable_sort(scanned_alone_.begin(), scanned_alone_.end(),
+                     [](const auto& a, const auto& b) { return a.front().expected > b.front().expected; });
     std::vector<Scanned> pool;
     for (const auto& rows : scanned_alone_) {
       const bool tried =
           std::find(picked_alone_.begin(), picked_alone_.end(), rows.front().change) != picked_alone_.end();
       if (tried || !rows.front().failure.empty()) continue;
+      if (pool.size() >= kRefitsMore) break;
       pool.push_back(rows.front());
-      if (rows.size() > 1 && rows[1].failure.empty()) pool.push_back(rows[1]);
     }
     ReportProgress("refitting each effect", 0.8);
     return FitAll(pool, StartsOf(result_.given.fitted));
@@ -280,6 +285,7 @@ class Searcher {
 
   const SearchContext& context_;
   int most_changes_;
+  bool thorough_;
   FitOptions coarse_, fine_ = FineFit(1);
   SearchResult result_;
   std::vector<std::vector<Scanned>> scanned_alone_;  // every change to the given model
@@ -288,8 +294,8 @@ class Searcher {
 
 }  // namespace
 
-SearchResult Search(const SearchContext& context, const Hypothesis& from, int most_changes) {
-  return Searcher(context, most_changes).Run(from);
+SearchResult Search(const SearchContext& context, const Explanation& from, int most_changes, bool thorough) {
+  return Searcher(context, most_changes, thorough).Run(from);
 }
 
 }  // namespace hydro::diagnose

@@ -30,7 +30,9 @@ inline constexpr int kMostChanges = 3;
 // Below this squared gap on held-out runs, nothing is left to search for.
 inline constexpr double kCloseEnough = 1.25;
 
-// Searches from `from`, a hypothesis without changes of its own.
-SearchResult Search(const SearchContext& context, const Hypothesis& from, int most_changes);
+// Searches from `from`, without changes of its own and fitted. `thorough`: where the score test's likeliest changes
+// do not explain the runs, more are refitted.
+SearchResult Search(const SearchContext& context, const Explanation& from, int most_changes,
+                    bool thorough = true);
 
 }  // namespace hydro::diagnose

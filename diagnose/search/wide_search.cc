@@ -1,5 +1,6 @@
 #include "diagnose/search/wide_search.h"
 
+#include <memory>
 #include <utility>
 
 #include "diagnose/fit/identifiable.h"
@@ -8,35 +9,63 @@ namespace hydro::diagnose {
 
 namespace {
 
-// The squared gap above which a model is wrong everywhere.
-constexpr double kWrongEverywhere = 25;
+// Stretches of a signal, in a search horizon, that count as independent of each other.
+constexpr double kIndependent = 10;
+constexpr double kHorizon = 0.4;  // s
+// A refit changes much if it leaves less than one in this many of the squared gap.
+constexpr double kFellFar = 2;
+
+// How many independent pieces of evidence the runs hold, if they are as wrong as a wrong model leaves them.
+double Evidence(const std::vector<const RunData*>& runs) {
+  double pieces = 0;
+  for (const RunData* run : runs) {
+    const double stretches = std::max(1.0, run->duration() / kHorizon);
+    pieces += kIndependent * stretches * static_cast<double>(run->signals.size());
+  }
+  return pieces;
+}
+
+// Adds what is known of base parameters beforehand to a hypothesis whose fit leaves `sum`.
+void Know(const SearchContext& context, double sum, Hypothesis* hypothesis) {
+  hypothesis->known = std::make_shared<Knowledge>(Knowledge{context.given, sum / Evidence(context.runs)});
+}
 
 // The given model with all base parameters fitted that the runs identify; the model as given where that
 // fails.
 Explanation Refit(const SearchContext& context, const Hypothesis& as_given, const Explanation& given,
                   const std::vector<size_t>& allowed) {
+  // The weight of what is known follows the gap that the refit leaves, which is not known beforehand.
   const std::vector<model::StartState> starts = StartsOf(given.fitted);
   Hypothesis refitted = as_given;
   for (const model::EffectDescription& effect : context.given.effects) refitted.effects.push_back(effect.id);
   refitted.base = Identifiable(as_given, context.runs, starts, allowed, context.sizes, context.jobs);
-  FitOptions fine;
-  fine.tolerance = 1e-5;
-  fine.jobs = context.jobs;
-  Explanation refit = Explain(context, refitted, starts, fine);
+  Know(context, given.fitted.sum, &refitted);
+  Fitted fitted = Fit(refitted, context.runs, starts, FineFit(context.jobs));
+  if (fitted.ok() && given.fitted.sum > kFellFar * fitted.sum) {
+    refitted = fitted.hypothesis;
+    Know(context, fitted.sum, &refitted);
+  }
+  if (!fitted.ok()) return given;
+  Explanation refit = Explain(context, refitted, StartsOf(fitted), FineFit(context.jobs));
   return refit.fitted.ok() ? refit : given;
 }
 
-// Searches again from the refitted model if that predicts better, and keeps the result if it beats that of
-// `search`.
-void SearchFromRefit(const SearchContext& context, const Explanation& refit, SearchResult* search) {
-  // A few changes do not close so large a gap: search for the rest once the parameters fit.
-  const double gap = search->best.held_out_gap();
-  const bool far = gap > kWrongEverywhere && refit.held_out_gap() < gap;
-  if (!far && !Material(gap, refit.held_out_gap())) return;
-  SearchResult wider = Search(context, refit.fitted.hypothesis, kMostChanges);
-  if (!wider.given.fitted.ok() || !Material(gap, wider.best.held_out_gap())) return;
-  search->best = std::move(wider.best);
-  search->tried.insert(search->tried.end(), wider.tried.begin(), wider.tried.end());
+// The best explanation's effects in the model as given, where the refit of its values is not needed for them.
+Explanation WithValuesAsGiven(const SearchContext& context, const Hypothesis& as_given,
+                              const Explanation& best) {
+  Hypothesis sparse = as_given;
+  sparse.effects = best.fitted.hypothesis.effects;
+  sparse.changes = best.changes();
+  sparse.model.effects = best.fitted.hypothesis.model.effects;
+  std::erase_if(sparse.changes, [](const Change& change) { return change.effect.empty(); });
+  return Explain(context, sparse, StartsOf(best.fitted), FineFit(context.jobs));
+}
+
+void SearchFrom(const SearchContext& context, const Explanation& from, int most_changes,
+                SearchResult* search) {
+  SearchResult more = Search(context, from, most_changes);
+  if (Material(search->best.held_out_gap(), more.best.held_out_gap())) search->best = std::move(more.best);
+  search->tried.insert(search->tried.end(), more.tried.begin(), more.tried.end());
 }
 
 }  // namespace
@@ -44,12 +73,31 @@ void SearchFromRefit(const SearchContext& context, const Explanation& refit, Sea
 WideSearch SearchWidely(const SearchContext& context, const Hypothesis& as_given,
                         const std::vector<size_t>& allowed) {
   WideSearch wide;
-  // Try few changes to the model as given first: one wrong value or one missing effect is the likeliest.
-  wide.search = Search(context, as_given, kMostChanges);
+  const auto closed = [&] { return wide.search.best.held_out_gap() < kCloseEnough; };
+  const auto report_progress = [&](const char* stage, double fraction) {
+    if (context.report_progress) context.report_progress({stage, fraction});
+  };
+  report_progress("the model as given", 0);
+  wide.search.given = Explain(context, as_given, MeasuredStarts(context.runs), FineFit(context.jobs));
   if (!wide.search.given.fitted.ok()) return wide;
-  if (context.report_progress) context.report_progress({"refitting the model's own parameters", 0.92});
+  report_progress("refitting the model's own parameters", 0.02);
   wide.refit = Refit(context, as_given, wide.search.given, allowed);
-  if (!TimeIsUp(context)) SearchFromRefit(context, wide.refit, &wide.search);
+  // One wrong value or one missing effect is the likeliest.
+  const Explanation given = wide.search.given;
+  wide.search = Search(context, given, 1, false);
+  if (closed() || TimeIsUp(context)) return wide;
+  // No machine has exactly the values that its model has.
+  wide.search.tried.push_back(wide.refit);
+  if (Material(wide.search.best.held_out_gap(), wide.refit.held_out_gap())) wide.search.best = wide.refit;
+  SearchFrom(context, wide.refit, kMostChanges, &wide.search);
+  const Explanation sparse = WithValuesAsGiven(context, as_given, wide.search.best);
+  if (sparse.fitted.ok() && !Material(sparse.held_out_gap(), wide.search.best.held_out_gap())) {
+    wide.search.best = sparse;
+    wide.search.tried.push_back(sparse);
+  }
+  // Several wrong values or missing effects beside values that are right.
+  const bool found = !wide.search.best.changes().empty();
+  if (!closed() && !found && !TimeIsUp(context)) SearchFrom(context, given, kMostChanges, &wide.search);
   return wide;
 }
 

@@ -1,8 +1,9 @@
-// A search from the model as given and, if that does not explain the runs, from the model with all of its own
+// A search from the model as given and, where its values are wrong too, from the model with all of its own
 // parameters refitted.
 #pragma once
 
 #include <cstddef>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -14,11 +15,19 @@ namespace hydro::diagnose {
 struct WindowTrials {
   std::vector<Explanation> tried;
   std::vector<std::string> runs;
+  // Where whole runs are so far from the noise that windows decide: the windows that were fitted, and the fit of
+  // the best explanation to them.
+  bool decide = false;
+  std::shared_ptr<const std::vector<RunData>> all;
+  std::vector<const RunData*> fitted;  // among `all`
+  Fitted best;
 };
 
 struct WideSearch {
   SearchResult search;
-  Explanation refit;     // the given model with all base parameters fitted that the runs identify
+  // The given model with all base parameters fitted that the runs identify, as far as what is known of them
+  // allows.
+  Explanation refit;
   WindowTrials windows;  // empty without a search on windows
 };
 

@@ -16,7 +16,7 @@ constexpr double kHorizon = 0.4;
 constexpr double kShortest = 60;  // samples
 constexpr double kWindowsPerRun = 4;
 // Windows that are fitted, and as many again that choose.
-constexpr size_t kMostWindows = 20;
+constexpr size_t kMostWindows = 16;
 // Explanations whose squared gap exceeds 1 by this many times that of the best are not worth a trial.
 constexpr double kNear = 1.5;
 

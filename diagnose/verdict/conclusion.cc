@@ -39,16 +39,16 @@ double GapToCompare(const Diagnosis& d, const BeforeAfter& gap) {
 }
 
 // Whether what was found takes a material part of the gap on every horizon but at most one, measured on runs
-// that were not fitted: half of the squared gap.
+// that were not fitted: half of the squared gap. Whole runs are one horizon among the others.
 bool TakesMaterialPart(const Diagnosis& d) {
   constexpr double kPart = 0.5;
-  size_t material = 0;
-  for (const HorizonGap& horizon : d.horizons) {
-    const double before = std::pow(GapToCompare(d, horizon.held_out), 2) - 1;
-    const double after = std::pow(horizon.held_out.after, 2) - 1;
-    material += before > 0 && after < (1 - kPart) * before ? 1 : 0;
-  }
-  return !d.horizons.empty() && material + 1 >= d.horizons.size();
+  const auto takes = [&](const BeforeAfter& gap) {
+    const double before = std::pow(GapToCompare(d, gap), 2) - 1;
+    return before > 0 && std::pow(gap.after, 2) - 1 < (1 - kPart) * before;
+  };
+  size_t material = takes(d.held_out) ? 1 : 0;
+  for (const HorizonGap& horizon : d.horizons) material += takes(horizon.held_out) ? 1 : 0;
+  return material >= d.horizons.size();
 }
 
 // The verdict on what was found: `d` has its effects, parameters and horizons.
@@ -59,8 +59,7 @@ Verdict VerdictOn(const SearchContext& context, const Kept& kept, const Diagnosi
   if (!kept.doubts.empty() || !Closed(given.held_out_gap(), best.held_out_gap(), exact) ||
       !Closed(given.squared_gap(), best.squared_gap(), exact)) {
     const bool something = !d.effects.empty() || !d.parameters.empty();
-    const double before = GapToCompare(d, d.held_out);
-    const bool found = something && TakesMaterialPart(d) && Material(before * before, best.held_out_gap());
+    const bool found = something && TakesMaterialPart(d);
     return found ? Verdict::kPartly : Verdict::kUnexplained;
   }
   if (best.changes().empty() && d.parameters.empty()) return Verdict::kNothingMissing;
@@ -96,7 +95,7 @@ Diagnosis Conclude(const SearchContext& context, const SearchResult& search, con
   const ProgressCallback& report_progress = context.report_progress;
   const std::map<std::string, double> weights = WeightsOf(context, search, refit, windows);
   if (report_progress) report_progress({"intervals", 0.95});
-  Kept kept = KeepWhatIsThere(context, search);
+  Kept kept = KeepWhatIsThere(context, search, windows);
   const Explanation& given = search.given;
   const Explanation& best = kept.search.best;
   Diagnosis d;

@@ -4,6 +4,7 @@
 
 #include "base/word_list.h"
 #include "diagnose/fit/intervals.h"
+#include "diagnose/search/refits.h"
 #include "diagnose/verdict/plausible.h"
 #include "diagnose/verdict/rivals.h"
 #include "diagnose/verdict/without_effect.h"
@@ -12,9 +13,49 @@ namespace hydro::diagnose {
 
 namespace {
 
-std::vector<Interval> IntervalsOf(const SearchContext& context, const Explanation& one) {
-  if (one.fitted.hypothesis.Free().empty()) return {};
-  return Intervals(one.fitted, context.runs, context.jobs);
+// The fit that shows how well numbers are known: to windows where these decide, else to the whole runs.
+struct Basis {
+  const Fitted& fitted;
+  const std::vector<const RunData*>& runs;
+};
+
+Basis BasisOf(const SearchContext& context, const Explanation& best, const WindowTrials& windows) {
+  if (windows.decide && SameChanges(windows.best.hypothesis, best.fitted.hypothesis)) {
+    return {windows.best, windows.fitted};
+  }
+  return {best.fitted, context.runs};
+}
+
+// Around the explanation's values, as wide as its basis says.
+std::vector<Interval> IntervalsOf(const SearchContext& context, const Explanation& one,
+                                  const WindowTrials& windows) {
+  const std::vector<FreeParameter> free = one.fitted.hypothesis.Free();
+  if (free.empty()) return {};
+  const Basis basis = BasisOf(context, one, windows);
+  std::vector<Interval> intervals = Intervals(basis.fitted, basis.runs, context.jobs);
+  // Values of whole runs, with what windows say of them: the interval holds both.
+  for (size_t i = 0; i < free.size(); ++i) {
+    intervals[i].low = std::min(intervals[i].low, free[i].value);
+    intervals[i].high = std::max(intervals[i].high, free[i].value);
+  }
+  return intervals;
+}
+
+// The fit of the basis without the change; fails where windows have not tried it.
+Fitted WithoutIt(const SearchContext& context, const SearchResult& search, const WindowTrials& windows,
+                 const Change& change) {
+  const Explanation& best = search.best;
+  if (&BasisOf(context, best, windows).fitted == &best.fitted)
+    return FitWithout(context, search, change).fitted;
+  for (const Explanation& one : windows.tried) {
+    const Change* more = best.fitted.hypothesis.OneBeyond(one.fitted.hypothesis);
+    const bool less = one.changes().size() + 1 == best.changes().size() && more != nullptr && *more == change;
+    if (less && one.fitted.ok() && one.fitted.hypothesis.base == best.fitted.hypothesis.base)
+      return one.fitted;
+  }
+  Fitted none;
+  none.failure = "not tried";
+  return none;
 }
 
 std::vector<Change> EffectsOf(const Explanation& one) {
@@ -80,25 +121,31 @@ double WeightOf(const Change& change, const std::map<std::string, double>& weigh
 
 }  // namespace
 
-Kept KeepWhatIsThere(const SearchContext& context, const SearchResult& search) {
+Kept KeepWhatIsThere(const SearchContext& context, const SearchResult& search, const WindowTrials& windows) {
   Kept kept{search, {}};
   bool dropped = true;
   while (dropped) {
     dropped = false;
     kept.doubts.clear();
     const Explanation& best = kept.search.best;
-    const std::vector<Interval> intervals = IntervalsOf(context, best);
+    const std::vector<Interval> intervals = IntervalsOf(context, best, windows);
+    const Basis basis = BasisOf(context, best, windows);
     for (const Change& change : EffectsOf(best)) {
       if (!MayBeNone(best.fitted.hypothesis, change, intervals)) continue;
-      Explanation without = FitWithout(context, kept.search, change);
-      kept.search.tried.push_back(without);  // it is asked for again
-      if (without.fitted.ok() && !Material(without.held_out_gap(), best.held_out_gap())) {
-        kept.search.best = std::move(without);
-        dropped = true;
-        break;
+      Explanation without;
+      if (&basis.fitted != &best.fitted) {
+        without.fitted = WithoutIt(context, kept.search, windows, change);
+      } else {
+        without = FitWithout(context, kept.search, change);
+        kept.search.tried.push_back(without);  // it is asked for again
+        if (without.fitted.ok() && !Material(without.held_out_gap(), best.held_out_gap())) {
+          kept.search.best = std::move(without);
+          dropped = true;
+          break;
+        }
       }
-      if (without.fitted.ok() && ProfileAtNone(context.runs, best.fitted, without.fitted, change).shows)
-        continue;
+      const bool fitted = without.fitted.ok();
+      if (fitted && ProfileAtNone(basis.runs, basis.fitted, without.fitted, change).shows) continue;
       kept.doubts.push_back("the interval of " + change.Label() + " includes none of it");
     }
   }
@@ -111,13 +158,14 @@ std::vector<model::ModelDescription> DescribeFound(const SearchContext& context,
                                                    Diagnosis* d) {
   const Explanation& best = kept->search.best;
   const std::vector<FreeParameter> free = best.fitted.hypothesis.Free();
-  std::vector<Interval> intervals = IntervalsOf(context, best);
+  std::vector<Interval> intervals = IntervalsOf(context, best, windows);
+  const Basis basis = BasisOf(context, best, windows);
   std::vector<model::ModelDescription> rivals = {best.fitted.hypothesis.model};
   for (const Change& change : EffectsOf(best)) {
     if (MayBeNone(best.fitted.hypothesis, change, intervals)) {
-      const Explanation without = FitWithout(context, kept->search, change);
-      if (without.fitted.ok()) {
-        const Profile profile = ProfileAtNone(context.runs, best.fitted, without.fitted, change);
+      const Fitted without = WithoutIt(context, kept->search, windows, change);
+      if (without.ok()) {
+        const Profile profile = ProfileAtNone(basis.runs, basis.fitted, without, change);
         if (profile.shows) RaiseFromNone(best.fitted.hypothesis, change, profile.lowest, &intervals);
       }
     }
@@ -131,9 +179,11 @@ std::vector<model::ModelDescription> DescribeFound(const SearchContext& context,
     d->effects.push_back(std::move(found));
   }
   for (size_t i = 0; i < free.size(); ++i) {
-    if (free[i].unknown.kind == model::Unknown::Kind::kBase) {
-      d->parameters.push_back(DescribeParameter(free[i], intervals[i], context.given));
-    }
+    if (free[i].unknown.kind != model::Unknown::Kind::kBase) continue;
+    const ChangedParameter changed = DescribeParameter(free[i], intervals[i], context.given);
+    // Of a refit of all values only those that are surely others.
+    const bool as_given = changed.model >= changed.fitted.low && changed.model <= changed.fitted.high;
+    if (best.fitted.hypothesis.known == nullptr || !as_given) d->parameters.push_back(changed);
   }
   const std::vector<std::string> implausible =
       Implausible(d->parameters, d->effects, context.given.parameters);

@@ -18,7 +18,9 @@ struct Kept {
 
 // Drops the effects of which there may be none (MayBeNone) as long as the rest explains the runs as well.
 // Those that are needed though the runs do not show that there is any of them are doubts.
-Kept KeepWhatIsThere(const SearchContext& context, const SearchResult& search);
+// Where windows decide (WindowTrials::decide) nothing is dropped: the search has tried that.
+Kept KeepWhatIsThere(const SearchContext& context, const SearchResult& search,
+                     const WindowTrials& windows = {});
 
 // The effects and the parameters of the best explanation. Returns it and its rivals, as models. Adds a doubt for
 // each number that no rig has.

@@ -47,6 +47,9 @@ struct ModelDescription {
   Parameters parameters;
   std::vector<EffectDescription> effects;  // in the file's order
   UnitSystem units = {};                   // of all values; the equations do not use them
+  // How well base parameters are known, where stated: name -> relative standard deviation. The equations do not
+  // use it; fits do.
+  std::map<std::string, double> uncertainty = {};
 };
 
 }  // namespace hydro::model

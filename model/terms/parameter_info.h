@@ -93,7 +93,12 @@ struct ParameterInfo {
 struct BaseParameter {
   ParameterInfo info;
   double Parameters::*member;
+  double uncertainty;  // relative standard deviation where a model states none
 };
+
+// How well the model knows a base parameter (an index in BaseParameters()): its relative standard deviation, as
+// stated or by kind.
+double UncertaintyOf(const ModelDescription& model, size_t base);
 
 // The member of ParametersOf<T> that BaseParameters() has at `index`.
 template <class T>

@@ -64,7 +64,7 @@ struct OneParameter {
 // the derivatives lead.
 TEST(ScoreTest, ExpectsWhatTheDerivativesRemove) {
   const OneParameter one(0.1);
-  const diagnose::Scanned scanned = diagnose::ScoreTest({one.basis}, {}, one.point, {one.columns});
+  const diagnose::Scanned scanned = diagnose::ScoreTest({one.basis}, {}, {}, one.point, {one.columns});
   EXPECT_NEAR(scanned.expected, one.basis.values.squaredNorm(), 1e-6);
   EXPECT_NEAR(scanned.start.model.parameters.J / Table1().J, std::exp(0.1), 1e-6);
 }
@@ -72,7 +72,7 @@ TEST(ScoreTest, ExpectsWhatTheDerivativesRemove) {
 // Tests that a derivative alone moves a logarithm by 1.5 at most.
 TEST(ScoreTest, DoesNotTrustADerivativeFarAway) {
   const OneParameter one(3);
-  const diagnose::Scanned scanned = diagnose::ScoreTest({one.basis}, {}, one.point, {one.columns});
+  const diagnose::Scanned scanned = diagnose::ScoreTest({one.basis}, {}, {}, one.point, {one.columns});
   EXPECT_NEAR(scanned.start.model.parameters.J / Table1().J, std::exp(1.5), 1e-9);
   EXPECT_LT(scanned.expected, one.basis.values.squaredNorm() - 1);
 }
@@ -81,7 +81,7 @@ TEST(ScoreTest, DoesNotTrustADerivativeFarAway) {
 TEST(ScoreTest, RefusesWhatIsNotFinite) {
   OneParameter one(0.1);
   one.columns.own(2, 0) = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_THROW(diagnose::ScoreTest({one.basis}, {}, one.point, {one.columns}), model::ModelError);
+  EXPECT_THROW(diagnose::ScoreTest({one.basis}, {}, {}, one.point, {one.columns}), model::ModelError);
 }
 
 }  // namespace

@@ -1,0 +1,32 @@
+// What is known of free numbers before the runs speak.
+#pragma once
+
+#include <vector>
+
+#include "model/terms/description.h"
+#include "model/terms/parameter_info.h"
+
+namespace hydro::diagnose {
+
+struct Hypothesis;
+
+// What is known of each free parameter beforehand, in the order of Hypothesis::Free(). Each, as fitted (some as
+// logarithms), adds weight * (parameter - centre)^2 to the sum that is minimised.
+struct Prior {
+  std::vector<double> centre, weight;
+};
+
+// The base parameters as a model gives them and how well it knows them ([uncertainty], or by kind). Residuals of
+// a wrong model are neither white nor of the sensors' size, so that in noise units they would always outweigh
+// what is known. `weight` is the part of the sum of squares that a deviation of one standard deviation has to
+// gain.
+struct Knowledge {
+  model::ModelDescription given;
+  double weight = 0;
+};
+
+// For the hypothesis' free numbers; all weights are 0 where it has no knowledge, and that of a base parameter
+// that is given as 0.
+Prior KnownBefore(const Hypothesis& hypothesis);
+
+}  // namespace hydro::diagnose

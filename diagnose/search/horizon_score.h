@@ -1,0 +1,17 @@
+// How well a model predicts short stretches of runs, at several horizons.
+#pragma once
+
+#include <vector>
+
+#include "diagnose/data/run_data.h"
+#include "model/terms/description.h"
+
+namespace hydro::diagnose {
+
+// The mean, over windows of a quarter, one and four times `seconds` of each run, of the logarithm of the squared
+// gap: what a model that is wrong is worth. Over a whole run its errors would add up to drift. The start of
+// each window is fitted.
+double HorizonScore(const model::ModelDescription& model, const std::vector<const RunData*>& runs,
+                    double seconds, int jobs);
+
+}  // namespace hydro::diagnose
