@@ -92,7 +92,7 @@ class Wave : public EffectOf<Wave> {
                               .unit = "Hz",
                               .min_allowed = false,
                               .meaning = "resonance of the two volumes of one side through the line",
-                              .starts = {0.04, 0.1, 0.25},
+                              .starts = {0.01, 0.02, 0.04, 0.1, 0.25},
                               .scale = Scale::kRate,
                               .role = Role::kFrequency,
                               .example = 300},
