@@ -92,6 +92,7 @@ void Choose(const SearchContext& context, const SearchResult& near, WideSearch* 
     if (!whole.fitted.ok()) continue;
     if (Material(proved->search.best.held_out_gap(), whole.held_out_gap())) proved->search.best = whole;
     proved->search.tried.push_back(std::move(whole));
+    if (proved->search.best.held_out_gap() > kNearTheNoise) return;
   }
   const bool open = proved->search.best.held_out_gap() >= kCloseEnough;
   if (open && !TimeIsUp(context)) SearchOn(context, &proved->search);
