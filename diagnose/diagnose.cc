@@ -13,6 +13,7 @@
 #include "diagnose/recording_first.h"
 #include "diagnose/search/proof.h"
 #include "diagnose/verdict/conclusion.h"
+#include "diagnose/verdict/per_run.h"
 
 namespace hydro::diagnose {
 namespace {
@@ -182,6 +183,10 @@ Diagnosis Diagnose(const model::ModelDescription& model, std::vector<runs::Measu
     throw model::ModelError(found.search.given.fitted.failure);
   }
   Diagnosis diagnosis = Conclude(context, found.search, found.refit, found.windows);
+  if (diagnosis.verdict != Verdict::kNothingMissing || !options.per_run.empty()) {
+    diagnosis.per_run = ValuesByRun(context, diagnosis.model, options.per_run, allowed);
+    for (const ValueByRun& value : diagnosis.per_run) diagnosis.remarks.push_back(RemarkOn(value));
+  }
   const std::vector<std::string> remarks = RecordingRemarks(prepared.clocks, context.runs, context.held_out);
   diagnosis.remarks.insert(diagnosis.remarks.begin(), remarks.begin(), remarks.end());
   std::vector<const RunData*> all = context.runs;

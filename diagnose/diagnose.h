@@ -17,6 +17,8 @@ struct DiagnoseOptions {
   std::vector<std::string> effects;  // ids that may be named; empty: the whole catalogue
   // Base parameters that may be refitted; empty: all that the runs identify.
   std::vector<std::string> free;
+  // Base parameters whose values belong to a run; empty: the one that differs most, if one does.
+  std::vector<std::string> per_run;
   int jobs = 1;
   // s. The search ends then with what it has; a remark says so. Infinity: it takes all the time it needs.
   double time_limit = std::numeric_limits<double>::infinity();

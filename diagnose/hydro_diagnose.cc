@@ -131,7 +131,8 @@ Diagnosis ReadAndDiagnose(const DiagnoseRequest& request, const Diagnoser& diagn
                           const ProgressCallback& report_progress) {
   DiagnoseOptions options;
   if (!request.effects.empty()) options.effects = ReadEffectList(request.effects);
-  if (!request.free.empty()) options.free = SplitFree(request.free);
+  if (!request.free.empty()) options.free = SplitNames("--free", request.free);
+  if (!request.per_run.empty()) options.per_run = SplitNames("--per-run", request.per_run);
   options.jobs = request.jobs;
   options.time_limit = request.time_limit;
   options.seed = static_cast<uint64_t>(request.seed);
@@ -176,7 +177,7 @@ std::vector<std::string> ReadEffectList(const std::string& file) {
   return ids;
 }
 
-std::vector<std::string> SplitFree(const std::string& names) {
+std::vector<std::string> SplitNames(const std::string& option, const std::string& names) {
   std::vector<std::string> known;
   for (const model::BaseParameter& parameter : model::BaseParameters()) known.push_back(parameter.info.name);
   std::vector<std::string> free;
@@ -185,7 +186,7 @@ std::vector<std::string> SplitFree(const std::string& names) {
     const std::string name = names.substr(begin, end - begin);
     begin = end + 1;
     if (std::find(known.begin(), known.end(), name) == known.end()) {
-      throw InputError("--free: found " + Quoted(name) + ", allowed names separated by commas, of " +
+      throw InputError(option + ": found " + Quoted(name) + ", allowed names separated by commas, of " +
                        QuotedList(known) + DidYouMean(name, known));
     }
     if (std::find(free.begin(), free.end(), name) == free.end()) free.push_back(name);

@@ -16,6 +16,7 @@ struct DiagnoseRequest {
   std::string model, folder;
   std::string effects;  // file; "": the whole catalogue may be named
   std::string free;     // comma-separated names; "": all that the runs identify
+  std::string per_run;  // comma-separated names; "": what differs most, if anything does
   int jobs = 1;
   int64_t seed = 1;
   double time_limit = 60;  // s
@@ -42,7 +43,8 @@ int CheckRuns(const DiagnoseRequest& request, std::FILE* out);
 // keys and for an empty list.
 std::vector<std::string> ReadEffectList(const std::string& file);
 
-// Splits a list of base parameters such as "b,T_s". Throws InputError for unknown or missing names.
-std::vector<std::string> SplitFree(const std::string& names);
+// Splits the list of base parameters, such as "b,T_s", that `option` ("--free") has. Throws InputError for unknown
+// or missing names.
+std::vector<std::string> SplitNames(const std::string& option, const std::string& names);
 
 }  // namespace hydro::diagnose

@@ -25,6 +25,9 @@ int main(int argc, char** argv) {
                  "FILE the effects that may be named: TOML, effects = [\"pump.stribeck\", ...] (all)");
   line.AddOption("--free", &request.free,
                  "NAME,... base parameters that may be refitted (all that the runs identify)");
+  line.AddOption(
+      "--per-run", &request.per_run,
+      "NAME,... base parameters whose values belong to a run (the one that differs most, if one does)");
   line.AddOption("--jobs", &request.jobs, "N how much is computed at the same time (the processors)");
   line.AddOption("--time-limit", &request.time_limit,
                  "S after which the search ends with what it has, in seconds (60)");

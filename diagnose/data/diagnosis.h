@@ -97,6 +97,16 @@ struct ChangedParameter {
   std::string why;  // the reason for calling it implausible
 };
 
+// A base parameter with a value for each run, fitted with all others as in the model that was found.
+struct ValueByRun {
+  std::string name, unit;
+  std::vector<Estimated> values;  // named by run; NaN where the run cannot be simulated
+  // The typical gap of the runs' windows that were not fitted, in noise units, with one value and with their own.
+  double before = 0, after = 0;
+
+  double Spread() const;  // relative standard deviation between runs
+};
+
 // Root-mean-square residuals, in noise units or, for a single signal, in its unit.
 struct BeforeAfter {
   double before = 0;      // the model as given
@@ -164,6 +174,7 @@ struct Diagnosis {
   std::vector<FoundStretch> stretches;  // of effects that have no term
   std::vector<FoundEffect> effects;
   std::vector<ChangedParameter> parameters;
+  std::vector<ValueByRun> per_run;
   std::vector<SignalGap> signals;
   BeforeAfter fit, held_out;
   std::vector<HorizonGap> horizons;  // the shortest first

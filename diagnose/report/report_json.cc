@@ -102,6 +102,24 @@ Json SignalGaps(const std::vector<SignalGap>& gaps, const UnitSystem& units) {
   return signals;
 }
 
+Json PerRun(const Diagnosis& diagnosis) {
+  Json all = Json::array();
+  for (const ValueByRun& value : diagnosis.per_run) {
+    Json values = Json::object(), intervals = Json::object();
+    for (const Estimated& run : value.values) {
+      values[run.name] = run.value;
+      intervals[run.name] = {run.low, run.high};
+    }
+    all.push_back({{"name", value.name},
+                   {"values", std::move(values)},
+                   {"ci95", std::move(intervals)},
+                   {"unit", value.unit},
+                   {"spread", value.Spread()},
+                   {"windows", {{"before", value.before}, {"after", value.after}}}});
+  }
+  return all;
+}
+
 Json Gaps(const Diagnosis& diagnosis) {
   Json horizons = Json::array();
   for (const HorizonGap& horizon : diagnosis.horizons) {
@@ -155,6 +173,7 @@ std::string ReportJson(const Diagnosis& diagnosis, const std::string& next_confi
                        {"effects", Effects(diagnosis)},
                        {"closure", ClosureJson(diagnosis)},
                        {"parameters", ChangedParameters(diagnosis)},
+                       {"per_run", PerRun(diagnosis)},
                        {"gap", Gaps(diagnosis)},
                        {"next_experiment", NextExperimentOf(diagnosis, next_config)},
                        {"candidates", Candidates(diagnosis)},
