@@ -23,7 +23,7 @@ constexpr double kWarmUp = 0.25;
 constexpr double kStepsPerSample = 4;
 
 // Squared gap. Windows are compared by the geometric mean of their gaps, and fitted by the same measure.
-constexpr double kLogarithmicAbove = 4;
+constexpr double kLogarithmicAbove = 16;
 
 template <class T>
 std::vector<T> Slice(const std::vector<T>& values, size_t first, size_t last) {
