@@ -63,6 +63,13 @@ void EliminateStart(const MatrixXd& normal, Eigen::Index p, RunFit* run) {
   run->gradient.assign(gradient.data(), gradient.data() + gradient.size());
 }
 
+// The sum of squares above which the run counts by its logarithm.
+double LogarithmicAbove(const RunData& run) {
+  double count = 0;
+  for (const SignalData& signal : run.signals) count += static_cast<double>(signal.valid);
+  return run.logarithmic_above * std::max(1.0, count);
+}
+
 // The solver's problem: all runs against one hypothesis. Owns the numbers that the solver moves.
 class FitProblem {
  public:
@@ -131,7 +138,7 @@ class FitProblem {
         return fitted;
       }
       fitted.runs.push_back(ResultOf(r, normals[r]));
-      fitted.sum += fitted.runs.back().sum;
+      fitted.sum += RobustSumOf(*runs_[r], fitted.runs.back().sum).sum;
       fitted.count += fitted.runs.back().count;
     }
     return fitted;
@@ -158,7 +165,10 @@ class FitProblem {
       std::vector<double*> blocks;
       if (!free_.empty()) blocks.push_back(values_.data());
       if (!cost->starts().empty()) blocks.push_back(start_values_[r].data());
-      if (!blocks.empty()) problem_.AddResidualBlock(cost, nullptr, blocks);
+      const double above = LogarithmicAbove(*runs_[r]);
+      ceres::LossFunction* const loss =
+          std::isfinite(above) ? new ceres::CauchyLoss(std::sqrt(above)) : nullptr;
+      if (!blocks.empty()) problem_.AddResidualBlock(cost, loss, blocks);
     }
   }
 
@@ -195,7 +205,8 @@ class FitProblem {
     }
     run.count = costs_[r]->count();
     run.sum = normal(normal.rows() - 1, normal.rows() - 1);
-    EliminateStart(normal, static_cast<Eigen::Index>(free_.size()), &run);
+    run.weight = RobustSumOf(*runs_[r], run.sum).weight;
+    EliminateStart(normal * run.weight, static_cast<Eigen::Index>(free_.size()), &run);
     return run;
   }
 
@@ -215,6 +226,12 @@ class FitProblem {
 };
 
 }  // namespace
+
+RobustSum RobustSumOf(const RunData& run, double squares) {
+  const double above = LogarithmicAbove(run);
+  if (!std::isfinite(above)) return {squares, 1};
+  return {above * std::log1p(squares / above), 1 / (1 + squares / above)};
+}
 
 std::vector<model::StartState> StartsOf(const Fitted& fitted) {
   std::vector<model::StartState> starts;

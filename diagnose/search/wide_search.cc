@@ -25,13 +25,6 @@ double Evidence(const std::vector<const RunData*>& runs) {
   return pieces;
 }
 
-// Whether one squared gap is better than another by more than chance. Other values of the model's own numbers cost
-// little: no machine has exactly those of its model.
-bool Better(double gap, double than) {
-  constexpr double kPart = 0.05;  // of what lies above the noise
-  return gap < than - std::max(kLeastGain, kPart * (than - 1));
-}
-
 // Adds what is known of base parameters beforehand to a hypothesis whose fit leaves `sum`.
 void Know(const SearchContext& context, double sum, Hypothesis* hypothesis) {
   hypothesis->known = std::make_shared<Knowledge>(Knowledge{context.given, sum / Evidence(context.runs)});
@@ -71,7 +64,7 @@ Explanation WithValuesAsGiven(const SearchContext& context, const Hypothesis& as
 void SearchFrom(const SearchContext& context, const Explanation& from, int most_changes,
                 SearchResult* search) {
   SearchResult more = Search(context, from, most_changes);
-  if (Better(more.best.held_out_gap(), search->best.held_out_gap())) search->best = std::move(more.best);
+  if (Material(search->best.held_out_gap(), more.best.held_out_gap())) search->best = std::move(more.best);
   search->tried.insert(search->tried.end(), more.tried.begin(), more.tried.end());
 }
 
@@ -98,7 +91,7 @@ WideSearch SearchWidely(const SearchContext& context, const Hypothesis& as_given
   if (Material(wide.search.best.held_out_gap(), wide.refit.held_out_gap())) wide.search.best = wide.refit;
   SearchFrom(context, wide.refit, kMostChanges, &wide.search);
   const Explanation sparse = WithValuesAsGiven(context, as_given, wide.search.best);
-  if (sparse.fitted.ok() && !Better(wide.search.best.held_out_gap(), sparse.held_out_gap())) {
+  if (sparse.fitted.ok() && !Material(sparse.held_out_gap(), wide.search.best.held_out_gap())) {
     wide.search.best = sparse;
     wide.search.tried.push_back(sparse);
   }
