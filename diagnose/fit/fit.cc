@@ -74,11 +74,12 @@ double LogarithmicAbove(const RunData& run) {
 class FitProblem {
  public:
   FitProblem(const Hypothesis& hypothesis, const std::vector<const RunData*>& runs,
-             const std::vector<model::StartState>& starts, int jobs)
+             const std::vector<model::StartState>& starts, int jobs, bool squares)
       : hypothesis_(hypothesis),
         runs_(runs),
         starts_(starts),
         jobs_(jobs),
+        squares_(squares),
         free_(hypothesis.Free()),
         start_values_(runs.size()),
         all_runs_(values_, start_values_, jobs),
@@ -167,7 +168,7 @@ class FitProblem {
       if (!cost->starts().empty()) blocks.push_back(start_values_[r].data());
       const double above = LogarithmicAbove(*runs_[r]);
       ceres::LossFunction* const loss =
-          std::isfinite(above) ? new ceres::CauchyLoss(std::sqrt(above)) : nullptr;
+          std::isfinite(above) && !squares_ ? new ceres::CauchyLoss(std::sqrt(above)) : nullptr;
       if (!blocks.empty()) problem_.AddResidualBlock(cost, loss, blocks);
     }
   }
@@ -214,6 +215,7 @@ class FitProblem {
   const std::vector<const RunData*>& runs_;
   const std::vector<model::StartState>& starts_;
   int jobs_;
+  bool squares_;
   std::vector<FreeParameter> free_;
   std::vector<double> values_;  // of the free parameters, as fitted
   // Of each run, first those that are free. In one array: the solver eliminates them in the order of their
@@ -242,7 +244,7 @@ std::vector<model::StartState> StartsOf(const Fitted& fitted) {
 
 Fitted Fit(const Hypothesis& hypothesis, const std::vector<const RunData*>& runs,
            const std::vector<model::StartState>& starts, const FitOptions& options) {
-  FitProblem problem(hypothesis, runs, starts, options.jobs);
+  FitProblem problem(hypothesis, runs, starts, options.jobs, options.squares);
   if (options.prior != nullptr) {
     problem.AddPrior(*options.prior);
   } else if (hypothesis.known != nullptr) {

@@ -47,6 +47,7 @@ struct FitOptions {
   double tolerance = 1e-4;    // stops when the sum falls by less than this, relative
   double first_radius = 1e4;  // of the solver's trust region, in the parameters' own scales
   int jobs = 1;
+  bool squares = false;          // minimises squares whatever RunData::logarithmic_above says: from far away
   const Prior* prior = nullptr;  // instead of what the hypothesis knows
 };
 

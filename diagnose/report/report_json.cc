@@ -126,7 +126,8 @@ Json Gaps(const Diagnosis& diagnosis) {
     horizons.push_back({{"seconds", horizon.seconds},
                         {"signals", SignalGaps(horizon.signals, diagnosis.model.units)},
                         {"fit", Gap(horizon.fit)},
-                        {"held_out", Gap(horizon.held_out)}});
+                        {"held_out", Gap(horizon.held_out)},
+                        {"typical", Gap(horizon.typical)}});
   }
   return {{"signals", SignalGaps(diagnosis.signals, diagnosis.model.units)},
           {"fit", Gap(diagnosis.fit)},

@@ -1,5 +1,6 @@
 #include "diagnose/search/proof.h"
 
+#include <limits>
 #include <memory>
 #include <utility>
 
@@ -65,23 +66,36 @@ void PredictHeldOut(const SearchContext& context, WideSearch* proved) {
   for (Explanation& one : proved->search.tried) predict(&one);
 }
 
-// The better of the hypothesis with the values that windows gave it and fitted to the whole runs, by what each
-// predicts over several horizons. Values of windows are told from held-out runs alone.
-Explanation WithBetterValues(const SearchContext& context, const Hypothesis& on_windows) {
+// The hypothesis with the best of several values: those that windows chose it with, the least squares of the
+// windows, and the least squares of the whole runs, by what they predict over several horizons. Values of windows
+// are told from held-out runs alone.
+Explanation WithBestValues(const SearchContext& context, const SearchContext& windows,
+                           const Fitted& on_windows) {
   const std::vector<model::StartState> measured = MeasuredStarts(context.runs);
-  Explanation whole = Explain(context, on_windows, measured, FineFit(context.jobs));
-  if (context.held_out.empty()) return whole;
+  Explanation best = Explain(context, on_windows.hypothesis, measured, FineFit(context.jobs));
+  if (context.held_out.empty()) return best;
+  FitOptions squares = FineFit(context.jobs);
+  squares.squares = true;
+  const Fitted least = Fit(on_windows.hypothesis, windows.runs, StartsOf(on_windows), squares);
+  const double seconds = SearchHorizon(context.runs);
+  const auto score = [&](const Hypothesis& one) {
+    return HorizonScore(one.model, context.runs, seconds, context.jobs);
+  };
+  double least_score =
+      best.fitted.ok() ? score(best.fitted.hypothesis) : std::numeric_limits<double>::infinity();
   FitOptions held;
   held.most_iterations = 0;
   held.jobs = context.jobs;
-  Explanation kept =
-      Explain(context, on_windows, BestStarts(on_windows, context.runs, measured, context.jobs), held);
-  if (!whole.fitted.ok() || !kept.fitted.ok()) return kept.fitted.ok() ? kept : whole;
-  const double seconds = SearchHorizon(context.runs);
-  const auto score = [&](const Explanation& one) {
-    return HorizonScore(one.fitted.hypothesis.model, context.runs, seconds, context.jobs);
-  };
-  return score(kept) < score(whole) ? kept : whole;
+  for (const Fitted* one : {&on_windows, &least}) {
+    if (!one->ok() || !(score(one->hypothesis) < least_score)) continue;
+    const std::vector<model::StartState> starts =
+        BestStarts(one->hypothesis, context.runs, measured, context.jobs);
+    Explanation kept = Explain(context, one->hypothesis, starts, held);
+    if (!kept.fitted.ok()) continue;
+    least_score = score(one->hypothesis);
+    best = std::move(kept);
+  }
+  return best;
 }
 
 // Fits what leads on windows to the whole runs, and chooses.
@@ -118,16 +132,17 @@ WideSearch ProveInTurn(const SearchContext& context, const Hypothesis& as_given,
 }
 
 // The explanations of the whole runs where no model comes near the noise: windows have chosen.
-WideSearch TakeFromWindows(const SearchContext& context, const Hypothesis& as_given, const WideSearch& near) {
+WideSearch TakeFromWindows(const SearchContext& context, const SearchContext& windows,
+                           const Hypothesis& as_given, const WideSearch& near) {
   WideSearch taken;
   taken.search.given = Explain(context, as_given, MeasuredStarts(context.runs), FineFit(context.jobs));
   if (!taken.search.given.fitted.ok()) return taken;
   taken.search.rated = near.search.rated;
-  taken.refit = WithBetterValues(context, near.refit.fitted.hypothesis);
+  taken.refit = WithBestValues(context, windows, near.refit.fitted);
   if (!taken.refit.fitted.ok()) taken.refit = taken.search.given;
   taken.search.best = near.search.best.changes().empty() && near.search.best.fitted.hypothesis.base.empty()
                           ? taken.search.given
-                          : WithBetterValues(context, near.search.best.fitted.hypothesis);
+                          : WithBestValues(context, windows, near.search.best.fitted);
   if (!taken.search.best.fitted.ok()) taken.search.best = taken.search.given;
   taken.search.tried = {taken.refit, taken.search.best};
   return taken;
@@ -138,8 +153,9 @@ WideSearch TakeFromWindows(const SearchContext& context, const Hypothesis& as_gi
 WideSearch SearchAndProve(const SearchContext& context, const Hypothesis& as_given,
                           const std::vector<size_t>& allowed) {
   SearchWindows windows = WindowsForSearch(context.runs, context.given.parameters);
+  const SearchContext on_windows = OnWindows(context, windows);
   const WideSearch near =
-      windows.choosing.empty() ? WideSearch{} : SearchWidely(OnWindows(context, windows), as_given, allowed);
+      windows.choosing.empty() ? WideSearch{} : SearchWidely(on_windows, as_given, allowed);
   if (windows.choosing.empty() || !near.search.given.fitted.ok()) {
     return SearchWidely(context, as_given, allowed);
   }
@@ -147,7 +163,7 @@ WideSearch SearchAndProve(const SearchContext& context, const Hypothesis& as_giv
   WideSearch proved;
   if (near.search.best.held_out_gap() < kOutOfReach) proved = ProveInTurn(context, as_given, near);
   const bool far = proved.search.tried.empty() || proved.search.best.held_out_gap() >= kNearTheNoise;
-  if (far) proved = TakeFromWindows(context, as_given, near);
+  if (far) proved = TakeFromWindows(context, on_windows, as_given, near);
   proved.windows = TrialsOn(std::move(windows), near, far);
   return proved;
 }

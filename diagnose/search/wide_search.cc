@@ -12,8 +12,6 @@ namespace {
 // Stretches of a signal, in a search horizon, that count as independent of each other.
 constexpr double kIndependent = 10;
 constexpr double kHorizon = 0.4;  // s
-// A refit changes much if it leaves less than one in this many of the squared gap.
-constexpr double kFellFar = 2;
 
 // How many independent pieces of evidence the runs hold, if they are as wrong as a wrong model leaves them.
 double Evidence(const std::vector<const RunData*>& runs) {
@@ -40,12 +38,13 @@ Explanation Refit(const SearchContext& context, const Hypothesis& as_given, cons
   for (const model::EffectDescription& effect : context.given.effects) refitted.effects.push_back(effect.id);
   refitted.base = Identifiable(as_given, context.runs, starts, allowed, context.sizes, context.jobs);
   Know(context, given.fitted.sum, &refitted);
-  Fitted fitted = Fit(refitted, context.runs, starts, FineFit(context.jobs));
-  if (fitted.ok() && given.fitted.sum > kFellFar * fitted.sum) {
-    refitted = fitted.hypothesis;
-    Know(context, fitted.sum, &refitted);
-  }
+  // Far away, the logarithms of windows that no value improves yet would hold the others back.
+  FitOptions squares = FineFit(context.jobs);
+  squares.squares = true;
+  const Fitted fitted = Fit(refitted, context.runs, starts, squares);
   if (!fitted.ok()) return given;
+  refitted = fitted.hypothesis;
+  Know(context, fitted.sum, &refitted);
   Explanation refit = Explain(context, refitted, StartsOf(fitted), FineFit(context.jobs));
   return refit.fitted.ok() ? refit : given;
 }

@@ -39,7 +39,8 @@ double GapToCompare(const Diagnosis& d, const BeforeAfter& gap) {
 }
 
 // Whether what was found takes a material part of the gap on every horizon but at most one, measured on runs
-// that were not fitted: half of the squared gap. Whole runs are one horizon among the others.
+// that were not fitted: half of the squared gap of the typical window. Whole runs are one horizon among the
+// others.
 bool TakesMaterialPart(const Diagnosis& d) {
   constexpr double kPart = 0.5;
   const auto takes = [&](const BeforeAfter& gap) {
@@ -47,7 +48,7 @@ bool TakesMaterialPart(const Diagnosis& d) {
     return before > 0 && std::pow(gap.after, 2) - 1 < (1 - kPart) * before;
   };
   size_t material = takes(d.held_out) ? 1 : 0;
-  for (const HorizonGap& horizon : d.horizons) material += takes(horizon.held_out) ? 1 : 0;
+  for (const HorizonGap& horizon : d.horizons) material += takes(horizon.typical) ? 1 : 0;
   return material >= d.horizons.size();
 }
 

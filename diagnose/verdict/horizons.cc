@@ -18,8 +18,12 @@ constexpr size_t kModels = 3;        // as given, refitted, with what was found
 // Sums of squares by channel, of one model: in noise units and in the signal's own.
 struct Sums {
   std::array<double, model::kChannels> scaled{}, square{}, count{};
+  double logarithms = 0, windows = 0;  // of the windows' gaps
 
+  // Adds one window.
   void Add(const Sums& other) {
+    logarithms += std::log(std::max(1e-3, other.Gap()));
+    windows += 1;
     for (size_t c = 0; c < model::kChannels; ++c) {
       scaled[c] += other.scaled[c];
       square[c] += other.square[c];
@@ -34,6 +38,8 @@ struct Sums {
     }
     return n > 0 ? std::sqrt(sum / n) : 0;
   }
+  // The geometric mean of the windows' gaps: a few windows that no model follows do not decide it.
+  double TypicalGap() const { return windows > 0 ? std::exp(logarithms / windows) : 0; }
   double Rms(size_t c) const { return count[c] > 0 ? std::sqrt(square[c] / count[c]) : 0; }
 };
 using SumsOfAll = std::array<Sums, kModels>;
@@ -89,6 +95,9 @@ SumsOfAll Over(double seconds, const std::vector<Predicted>& runs, int jobs) {
 }
 
 BeforeAfter Gaps(const SumsOfAll& sums) { return {sums[0].Gap(), sums[1].Gap(), sums[2].Gap()}; }
+BeforeAfter TypicalGaps(const SumsOfAll& sums) {
+  return {sums[0].TypicalGap(), sums[1].TypicalGap(), sums[2].TypicalGap()};
+}
 
 std::vector<SignalGap> BySignal(const SumsOfAll& fit, const SumsOfAll& held_out) {
   std::vector<SignalGap> gaps;
@@ -129,6 +138,7 @@ std::vector<HorizonGap> HorizonGaps(const SearchContext& context, double seconds
     const SumsOfAll of_held_out = Over(horizon.seconds, held_out, context.jobs);
     horizon.fit = Gaps(of_fit);
     horizon.held_out = Gaps(of_held_out);
+    horizon.typical = TypicalGaps(of_held_out);
     horizon.signals = BySignal(of_fit, of_held_out);
     if (!horizon.signals.empty()) horizons.push_back(std::move(horizon));
   }
