@@ -1,5 +1,4 @@
 #include "model/response.h"
-
 #include "model/response_pass.h"
 
 namespace hydro::model {

@@ -124,8 +124,8 @@ struct SignalGap {
 struct HorizonGap {
   double seconds = 0;
   BeforeAfter fit, held_out;  // in noise units of all signals
-  BeforeAfter typical;        // the geometric mean of the held-out windows' gaps
   std::vector<SignalGap> signals;
+  BeforeAfter typical = {};  // the geometric mean of the held-out windows' gaps
 };
 
 struct Candidate {

@@ -52,7 +52,7 @@ struct Hypothesis {
   std::vector<size_t> base;
   std::vector<std::string> effects;  // ids whose parameters are free
   // What fits know of the free base parameters beforehand; null: nothing.
-  std::shared_ptr<const Knowledge> known;
+  std::shared_ptr<const Knowledge> known = {};
 
   std::vector<FreeParameter> Free() const;
   // Sets the model to these values, in the order of Free().

@@ -11,15 +11,12 @@ namespace hydro::diagnose {
 namespace {
 
 // s. Long enough for the arm to move and the pressures to settle, short enough that drift does not drown what
-// is missing. Those who record for longer record something slower.
+// is missing. With 2 s, what differs from run to run drowned a laboratory drive's friction.
 constexpr double kHorizon = 0.4;
-constexpr double kLongestHorizon = 2;
-constexpr double kPartOfRun = 1.0 / 12;
 constexpr double kShortest = 60;  // samples
 constexpr double kWindowsPerRun = 4;
 // Windows that are fitted, and as many again that choose.
-constexpr size_t kMostWindows = 16;
-constexpr size_t kFewestWindows = 8;
+constexpr size_t kMostWindows = 20;
 // Explanations whose squared gap exceeds 1 by this many times that of the best are not worth a trial.
 constexpr double kNear = 1.5;
 
@@ -33,8 +30,7 @@ double SearchHorizon(const std::vector<const RunData*>& runs) {
     shortest = std::min(shortest, run->duration());
   }
   const double sampled = kShortest * MedianInterval(times);
-  const double horizon = std::clamp(kPartOfRun * shortest, kHorizon, kLongestHorizon);
-  return std::max(std::min(std::max(horizon, sampled), shortest / kWindowsPerRun), 0.25 * sampled);
+  return std::max(std::min(std::max(kHorizon, sampled), shortest / kWindowsPerRun), 0.25 * sampled);
 }
 
 SearchWindows WindowsForSearch(const std::vector<const RunData*>& runs, const model::Parameters& model) {
@@ -43,10 +39,8 @@ SearchWindows WindowsForSearch(const std::vector<const RunData*>& runs, const mo
   for (const RunData* run : runs) {
     for (RunData& window : WindowsOf(*run, seconds, model)) windows.all.push_back(std::move(window));
   }
-  // As much time in all, whatever the horizon.
-  const auto most = static_cast<size_t>(static_cast<double>(kMostWindows) * kHorizon / seconds);
-  windows.fitted = EvenlySpread(windows.all, std::clamp(most, kFewestWindows, kMostWindows), 0, 2);
-  windows.choosing = EvenlySpread(windows.all, std::clamp(most, kFewestWindows, kMostWindows), 1, 2);
+  windows.fitted = EvenlySpread(windows.all, kMostWindows, 0, 2);
+  windows.choosing = EvenlySpread(windows.all, kMostWindows, 1, 2);
   return windows;
 }
 

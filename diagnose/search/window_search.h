@@ -16,8 +16,7 @@ struct SearchWindows {
   std::vector<const RunData*> fitted, choosing;  // among `all`
 };
 
-// How long the windows of a search are: a twelfth of the shortest run, between 0.4 and 2 s; more where samples are
-// slow, less in short runs.
+// How long the windows of a search are: 0.4 s, more where samples are slow, less in short runs.
 double SearchHorizon(const std::vector<const RunData*>& runs);
 SearchWindows WindowsForSearch(const std::vector<const RunData*>& runs, const model::Parameters& model);
 

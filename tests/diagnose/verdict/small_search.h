@@ -30,7 +30,8 @@ struct SmallSearch {
     };
     diagnose::Hypothesis given;
     given.model = context.given;
-    search = diagnose::Search(context, given, 2);
+    const std::vector<model::StartState> starts = diagnose::MeasuredStarts(context.runs);
+    search = diagnose::Search(context, diagnose::Explain(context, given, starts, diagnose::FineFit(1)), 2);
   }
 };
 
