@@ -87,6 +87,19 @@ TEST(ModelFileTest, RoundTripsBitByBit) {
   }
 }
 
+// Tests that [uncertainty] is read and written, and that wrong keys and values are refused.
+TEST(ModelFileTest, Uncertainty) {
+  const model::ModelDescription model = ParseModel(With("[uncertainty]\nT_s = 0.4\nJ = 0.02\n"), "m.toml");
+  EXPECT_EQ(model.uncertainty, (std::map<std::string, double>{{"J", 0.02}, {"T_s", 0.4}}));
+  EXPECT_EQ(model::UncertaintyOf(model, model::BasePlace("T_s")), 0.4);
+  EXPECT_EQ(model::UncertaintyOf(model, model::BasePlace("c")), 0.01);
+  EXPECT_EQ(ParseModel(FormatModel(model), "m.toml").uncertainty, model.uncertainty);
+  EXPECT_THAT(InputErrorOf([&] { ParseModel(With("[uncertainty]\nT_s = 0\n"), "m.toml"); }),
+              HasSubstr("uncertainty.T_s: found 0"));
+  EXPECT_THAT(InputErrorOf([&] { ParseModel(With("[uncertainty]\nT_x = 0.1\n"), "m.toml"); }),
+              HasSubstr("T_x"));
+}
+
 constexpr char kCurve[] =
     "[effects.\"closure.flow_1\"]\nagainst = [\"p1\", \"arm_angle\"]\nknots = [0, 1e2]\nknots_2 = [-0.1, "
     "0.1, 0.3]\n"
@@ -230,7 +243,8 @@ TEST(ModelFileTest, RefusesMalformedModels) {
        "m.toml:1: ", "units.arm: found \"mm\", allowed \"rad\" or \"in\""},
       {"units = { pressure = \"bar\" }\n" + With(""), "m.toml:1: ", "\"pressure\": found an unknown key"},
       {With("[extra]\n"), "m.toml:20: ",
-       "\"extra\": found an unknown key, allowed \"name\", \"units\", \"parameters\" or \"effects\""},
+       "\"extra\": found an unknown key, allowed \"name\", \"units\", \"parameters\", \"effects\" or "
+       "\"uncertainty\""},
   };
   for (const auto& model : models) {
     const std::string error = InputErrorOf([&] { ParseModel(model.text, "m.toml"); });

@@ -1,0 +1,73 @@
+// What is known of base parameters before the runs speak.
+#include "diagnose/fit/prior.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <memory>
+
+#include "tests/diagnose/small_runs.h"
+
+namespace hydro::testing {
+namespace {
+
+// The model with J and T_s free, and what is known of them.
+diagnose::Hypothesis Known(double weight) {
+  diagnose::Hypothesis hypothesis = WithFree(Table1With(), {"J", "T_s"});
+  model::ModelDescription given = Table1With();
+  given.uncertainty["T_s"] = 0.1;
+  hypothesis.known = std::make_shared<diagnose::Knowledge>(diagnose::Knowledge{given, weight});
+  return hypothesis;
+}
+
+// Tests that a weight counts squared standard deviations, of a logarithm or of the value, stated or by kind.
+TEST(KnownBefore, WeighsByUncertainty) {
+  const diagnose::Prior prior = diagnose::KnownBefore(Known(2));
+  ASSERT_EQ(prior.weight.size(), 2u);
+  EXPECT_DOUBLE_EQ(prior.centre[0], std::log(Table1().J));
+  EXPECT_DOUBLE_EQ(prior.weight[0], 2 / (0.05 * 0.05));
+  EXPECT_DOUBLE_EQ(prior.centre[1], Table1().T_s);
+  EXPECT_DOUBLE_EQ(prior.weight[1], 2 / std::pow(0.1 * Table1().T_s, 2));
+}
+
+// Tests that nothing is known of a value that is given as 0, nor without knowledge.
+TEST(KnownBefore, NothingOfZero) {
+  diagnose::Hypothesis hypothesis = WithFree(Table1With(), {"f"});
+  EXPECT_EQ(diagnose::KnownBefore(hypothesis).weight, std::vector<double>{0});
+  hypothesis.known = std::make_shared<diagnose::Knowledge>(diagnose::Knowledge{Table1With(), 2});
+  ASSERT_EQ(Table1().f, 0);
+  EXPECT_EQ(diagnose::KnownBefore(hypothesis).weight, std::vector<double>{0});
+}
+
+// Tests that a fit follows the runs against weak knowledge and stays as given against strong knowledge.
+TEST(KnownBefore, HoldsAFit) {
+  model::ModelDescription truth = Table1With();
+  truth.parameters.T_s *= 1.3;
+  const std::vector<diagnose::RunData> runs = ClampedPair(truth, 0.4, 3);
+  const auto fitted = [&](double weight) {
+    const diagnose::Fitted fit = diagnose::Fit(Known(weight), PointersTo(runs), StartsOf(runs), {});
+    EXPECT_TRUE(fit.ok());
+    return fit.hypothesis.model.parameters.T_s / Table1().T_s;
+  };
+  EXPECT_NEAR(fitted(1e-6), 1.3, 0.02);
+  EXPECT_NEAR(fitted(1e9), 1, 0.01);
+}
+
+// Tests that a run far off counts by the logarithm, and one near the noise by its squares.
+TEST(RobustSumOf, IsLogarithmicFarOff) {
+  std::vector<diagnose::RunData> runs = ClampedPair(Table1With(), 0.3, 1);
+  diagnose::RunData& run = runs.front();
+  EXPECT_DOUBLE_EQ(diagnose::RobustSumOf(run, 1e9).sum, 1e9);
+  EXPECT_DOUBLE_EQ(diagnose::RobustSumOf(run, 1e9).weight, 1);
+  run.logarithmic_above = 16;
+  double count = 0;
+  for (const diagnose::SignalData& signal : run.signals) count += static_cast<double>(signal.valid);
+  EXPECT_NEAR(diagnose::RobustSumOf(run, count).sum / count, 1, 0.05);
+  const double far = diagnose::RobustSumOf(run, 1e4 * count).sum,
+               further = diagnose::RobustSumOf(run, 1e5 * count).sum;
+  EXPECT_NEAR((further - far) / (16 * count), std::log(10), 0.02);
+  EXPECT_LT(diagnose::RobustSumOf(run, 1e4 * count).weight, 0.01);
+}
+
+}  // namespace
+}  // namespace hydro::testing
