@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 #include "base/parallel.h"
@@ -16,11 +15,7 @@ ClosureWindows WindowsOfRuns(const std::vector<const RunData*>& runs, double sec
                              const model::Parameters& model, size_t most, size_t first, size_t stride) {
   ClosureWindows windows;
   for (const RunData* run : runs) {
-    for (RunData& window : WindowsOf(*run, seconds, model)) {
-      // A curve with many free values fits best by squares.
-      window.logarithmic_above = std::numeric_limits<double>::infinity();
-      windows.all.push_back(std::move(window));
-    }
+    for (RunData& window : WindowsOf(*run, seconds, model)) windows.all.push_back(std::move(window));
   }
   windows.chosen = EvenlySpread(windows.all, most, first, stride);
   return windows;

@@ -43,9 +43,6 @@ struct RunData {
   std::optional<model::StartState> at_rest;
   std::vector<SignalData> signals;    // those compared with a simulation
   double most_steps_per_sample = 20;  // that a simulation of it may take
-  // The squared gap above which a fit counts the run by its logarithm, so that a few stretches that no model
-  // follows do not decide for all; infinity: by its squares.
-  double logarithmic_above = std::numeric_limits<double>::infinity();
 
   size_t samples() const { return stimulus.time.size(); }
   double duration() const { return stimulus.time.back() - stimulus.time.front(); }

@@ -22,9 +22,6 @@ constexpr double kWarmUp = 0.25;
 // that the samples can show.
 constexpr double kStepsPerSample = 4;
 
-// Squared gap. Windows are compared by the geometric mean of their gaps, and fitted by the same measure.
-constexpr double kLogarithmicAbove = 16;
-
 template <class T>
 std::vector<T> Slice(const std::vector<T>& values, size_t first, size_t last) {
   return {values.begin() + static_cast<std::ptrdiff_t>(first),
@@ -51,7 +48,6 @@ RunData Window(const RunData& run, size_t first, size_t compared, size_t last,
   RunData window;
   window.name = run.name;
   window.most_steps_per_sample = kStepsPerSample;
-  window.logarithmic_above = kLogarithmicAbove;
   window.stimulus.shaft = run.stimulus.shaft;
   window.stimulus.arm_angle = run.stimulus.arm_angle;
   window.stimulus.motion = run.stimulus.motion;

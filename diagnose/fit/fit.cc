@@ -63,23 +63,15 @@ void EliminateStart(const MatrixXd& normal, Eigen::Index p, RunFit* run) {
   run->gradient.assign(gradient.data(), gradient.data() + gradient.size());
 }
 
-// The sum of squares above which the run counts by its logarithm.
-double LogarithmicAbove(const RunData& run) {
-  double count = 0;
-  for (const SignalData& signal : run.signals) count += static_cast<double>(signal.valid);
-  return run.logarithmic_above * std::max(1.0, count);
-}
-
 // The solver's problem: all runs against one hypothesis. Owns the numbers that the solver moves.
 class FitProblem {
  public:
   FitProblem(const Hypothesis& hypothesis, const std::vector<const RunData*>& runs,
-             const std::vector<model::StartState>& starts, int jobs, bool squares)
+             const std::vector<model::StartState>& starts, int jobs)
       : hypothesis_(hypothesis),
         runs_(runs),
         starts_(starts),
         jobs_(jobs),
-        squares_(squares),
         free_(hypothesis.Free()),
         start_values_(runs.size()),
         all_runs_(values_, start_values_, jobs),
@@ -139,7 +131,7 @@ class FitProblem {
         return fitted;
       }
       fitted.runs.push_back(ResultOf(r, normals[r]));
-      fitted.sum += RobustSumOf(*runs_[r], fitted.runs.back().sum).sum;
+      fitted.sum += fitted.runs.back().sum;
       fitted.count += fitted.runs.back().count;
     }
     return fitted;
@@ -166,10 +158,7 @@ class FitProblem {
       std::vector<double*> blocks;
       if (!free_.empty()) blocks.push_back(values_.data());
       if (!cost->starts().empty()) blocks.push_back(start_values_[r].data());
-      const double above = LogarithmicAbove(*runs_[r]);
-      ceres::LossFunction* const loss =
-          std::isfinite(above) && !squares_ ? new ceres::CauchyLoss(std::sqrt(above)) : nullptr;
-      if (!blocks.empty()) problem_.AddResidualBlock(cost, loss, blocks);
+      if (!blocks.empty()) problem_.AddResidualBlock(cost, nullptr, blocks);
     }
   }
 
@@ -206,8 +195,7 @@ class FitProblem {
     }
     run.count = costs_[r]->count();
     run.sum = normal(normal.rows() - 1, normal.rows() - 1);
-    run.weight = RobustSumOf(*runs_[r], run.sum).weight;
-    EliminateStart(normal * run.weight, static_cast<Eigen::Index>(free_.size()), &run);
+    EliminateStart(normal, static_cast<Eigen::Index>(free_.size()), &run);
     return run;
   }
 
@@ -215,7 +203,6 @@ class FitProblem {
   const std::vector<const RunData*>& runs_;
   const std::vector<model::StartState>& starts_;
   int jobs_;
-  bool squares_;
   std::vector<FreeParameter> free_;
   std::vector<double> values_;  // of the free parameters, as fitted
   // Of each run, first those that are free. In one array: the solver eliminates them in the order of their
@@ -229,12 +216,6 @@ class FitProblem {
 
 }  // namespace
 
-RobustSum RobustSumOf(const RunData& run, double squares) {
-  const double above = LogarithmicAbove(run);
-  if (!std::isfinite(above)) return {squares, 1};
-  return {above * std::log1p(squares / above), 1 / (1 + squares / above)};
-}
-
 std::vector<model::StartState> StartsOf(const Fitted& fitted) {
   std::vector<model::StartState> starts;
   starts.reserve(fitted.runs.size());
@@ -244,7 +225,7 @@ std::vector<model::StartState> StartsOf(const Fitted& fitted) {
 
 Fitted Fit(const Hypothesis& hypothesis, const std::vector<const RunData*>& runs,
            const std::vector<model::StartState>& starts, const FitOptions& options) {
-  FitProblem problem(hypothesis, runs, starts, options.jobs, options.squares);
+  FitProblem problem(hypothesis, runs, starts, options.jobs);
   if (options.prior != nullptr) {
     problem.AddPrior(*options.prior);
   } else if (hypothesis.known != nullptr) {

@@ -13,11 +13,10 @@ namespace hydro::diagnose {
 
 struct RunFit {
   model::StartState start{};
-  double sum = 0;     // of squared residuals
-  size_t count = 0;   // of residuals
-  double weight = 1;  // of its squares in the fit's sum, to first order
+  double sum = 0;    // of squared residuals
+  size_t count = 0;  // of residuals
   // At the fitted values, with the unknown start eliminated (its best value follows the parameters):
-  // information and gradient of weight sum/2 with respect to the free parameters as fitted (some as logarithms),
+  // information and gradient of sum/2 with respect to the free parameters as fitted (some as logarithms),
   // by columns.
   std::vector<double> information, gradient;
 };
@@ -26,18 +25,12 @@ struct Fitted {
   std::string failure;  // why there is no fit; "" when there is one
   Hypothesis hypothesis;
   std::vector<RunFit> runs;
-  double sum = 0;  // that was minimised: of squared residuals, or see RunData::logarithmic_above
+  double sum = 0;
   size_t count = 0;
 
   bool ok() const { return failure.empty(); }
   double squared_gap() const { return count == 0 ? 0 : sum / static_cast<double>(count); }
 };
-
-// What a run adds to a fit's sum if its squared residuals add up to `squares`.
-struct RobustSum {
-  double sum = 0, weight = 1;  // and its derivative
-};
-RobustSum RobustSumOf(const RunData& run, double squares);
 
 // Each run's start, as fitted.
 std::vector<model::StartState> StartsOf(const Fitted& fitted);
@@ -47,7 +40,6 @@ struct FitOptions {
   double tolerance = 1e-4;    // stops when the sum falls by less than this, relative
   double first_radius = 1e4;  // of the solver's trust region, in the parameters' own scales
   int jobs = 1;
-  bool squares = false;          // minimises squares whatever RunData::logarithmic_above says: from far away
   const Prior* prior = nullptr;  // instead of what the hypothesis knows
 };
 

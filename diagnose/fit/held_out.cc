@@ -30,7 +30,7 @@ HeldOut PredictRun(const Hypothesis& hypothesis, const RunData& run, const model
   part.models.push_back(hypothesis.model);
   if (fitted.ok()) {
     part.starts.push_back(fitted.runs[0].start);
-    part.sum = fitted.runs[0].sum;  // squares: fits alone may count by logarithms
+    part.sum = fitted.sum;
     part.count = fitted.count;
     return part;
   }

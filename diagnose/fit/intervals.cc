@@ -50,7 +50,6 @@ BlocksOfRun BlocksOf(const Fitted& fitted, const std::vector<FreeParameter>& fre
   const std::vector<model::Unknown> unknown_starts = StartUnknowns(run);
   const Residuals residuals =
       ResidualsOf(fitted.hypothesis.model, run, fitted.runs[r].start, free, unknown_starts);
-  const double weight = fitted.runs[r].weight;
   const auto rows = static_cast<Index>(residuals.values.size());
   const auto p = static_cast<Index>(free.size());
   const Index n = p + static_cast<Index>(unknown_starts.size());
@@ -72,8 +71,8 @@ BlocksOfRun BlocksOf(const Fitted& fitted, const std::vector<FreeParameter>& fre
       const Index to = first + (b + 1) * count / kBlocksPerRun;
       const Map<const VectorXd> values(residuals.values.data() + from, to - from);
       const auto rows_of_block = columns.middleRows(from, to - from);
-      blocks.gradients.col(b) += weight * rows_of_block.transpose() * values;
-      blocks.informations[static_cast<size_t>(b)] += weight * rows_of_block.transpose() * rows_of_block;
+      blocks.gradients.col(b) += rows_of_block.transpose() * values;
+      blocks.informations[static_cast<size_t>(b)] += rows_of_block.transpose() * rows_of_block;
     }
   }
   return blocks;

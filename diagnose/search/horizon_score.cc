@@ -28,8 +28,7 @@ double Score(const Hypothesis& hypothesis, const std::vector<const RunData*>& ru
   std::vector<double> gaps(chosen.size());
   ParallelFor(chosen.size(), jobs, [&](size_t w) {
     const Fitted fitted = FitStart(hypothesis, *chosen[w], chosen[w]->start, kStartInDoubt);
-    const double gap = fitted.ok() ? fitted.runs[0].sum / static_cast<double>(fitted.runs[0].count)
-                                   : std::numeric_limits<double>::infinity();
+    const double gap = fitted.ok() ? fitted.squared_gap() : std::numeric_limits<double>::infinity();
     gaps[w] = std::clamp(gap, 1e-3, 1e12);
   });
   double sum = 0;

@@ -1,6 +1,5 @@
 #include "diagnose/search/proof.h"
 
-#include <limits>
 #include <memory>
 #include <utility>
 
@@ -66,36 +65,24 @@ void PredictHeldOut(const SearchContext& context, WideSearch* proved) {
   for (Explanation& one : proved->search.tried) predict(&one);
 }
 
-// The hypothesis with the best of several values: those that windows chose it with, the least squares of the
-// windows, and the least squares of the whole runs, by what they predict over several horizons. Values of windows
-// are told from held-out runs alone.
-Explanation WithBestValues(const SearchContext& context, const SearchContext& windows,
-                           const Fitted& on_windows) {
+// The hypothesis with the better of two values: as fitted to windows and to the whole runs, by what they predict
+// over several horizons. Values of windows are told from held-out runs alone.
+Explanation WithBetterValues(const SearchContext& context, const Fitted& on_windows) {
   const std::vector<model::StartState> measured = MeasuredStarts(context.runs);
-  Explanation best = Explain(context, on_windows.hypothesis, measured, FineFit(context.jobs));
-  if (context.held_out.empty()) return best;
-  FitOptions squares = FineFit(context.jobs);
-  squares.squares = true;
-  const Fitted least = Fit(on_windows.hypothesis, windows.runs, StartsOf(on_windows), squares);
-  const double seconds = SearchHorizon(context.runs);
-  const auto score = [&](const Hypothesis& one) {
-    return HorizonScore(one.model, context.runs, seconds, context.jobs);
-  };
-  double least_score =
-      best.fitted.ok() ? score(best.fitted.hypothesis) : std::numeric_limits<double>::infinity();
+  Explanation whole = Explain(context, on_windows.hypothesis, measured, FineFit(context.jobs));
+  if (context.held_out.empty()) return whole;
   FitOptions held;
   held.most_iterations = 0;
   held.jobs = context.jobs;
-  for (const Fitted* one : {&on_windows, &least}) {
-    if (!one->ok() || !(score(one->hypothesis) < least_score)) continue;
-    const std::vector<model::StartState> starts =
-        BestStarts(one->hypothesis, context.runs, measured, context.jobs);
-    Explanation kept = Explain(context, one->hypothesis, starts, held);
-    if (!kept.fitted.ok()) continue;
-    least_score = score(one->hypothesis);
-    best = std::move(kept);
-  }
-  return best;
+  const std::vector<model::StartState> starts =
+      BestStarts(on_windows.hypothesis, context.runs, measured, context.jobs);
+  Explanation kept = Explain(context, on_windows.hypothesis, starts, held);
+  if (!whole.fitted.ok() || !kept.fitted.ok()) return kept.fitted.ok() ? kept : whole;
+  const double seconds = SearchHorizon(context.runs);
+  const auto score = [&](const Explanation& one) {
+    return HorizonScore(one.fitted.hypothesis.model, context.runs, seconds, context.jobs);
+  };
+  return score(kept) < score(whole) ? kept : whole;
 }
 
 // Fits what leads on windows to the whole runs, and chooses.
@@ -132,17 +119,16 @@ WideSearch ProveInTurn(const SearchContext& context, const Hypothesis& as_given,
 }
 
 // The explanations of the whole runs where no model comes near the noise: windows have chosen.
-WideSearch TakeFromWindows(const SearchContext& context, const SearchContext& windows,
-                           const Hypothesis& as_given, const WideSearch& near) {
+WideSearch TakeFromWindows(const SearchContext& context, const Hypothesis& as_given, const WideSearch& near) {
   WideSearch taken;
   taken.search.given = Explain(context, as_given, MeasuredStarts(context.runs), FineFit(context.jobs));
   if (!taken.search.given.fitted.ok()) return taken;
   taken.search.rated = near.search.rated;
-  taken.refit = WithBestValues(context, windows, near.refit.fitted);
+  taken.refit = WithBetterValues(context, near.refit.fitted);
   if (!taken.refit.fitted.ok()) taken.refit = taken.search.given;
   taken.search.best = near.search.best.changes().empty() && near.search.best.fitted.hypothesis.base.empty()
                           ? taken.search.given
-                          : WithBestValues(context, windows, near.search.best.fitted);
+                          : WithBetterValues(context, near.search.best.fitted);
   if (!taken.search.best.fitted.ok()) taken.search.best = taken.search.given;
   taken.search.tried = {taken.refit, taken.search.best};
   return taken;
@@ -153,9 +139,8 @@ WideSearch TakeFromWindows(const SearchContext& context, const SearchContext& wi
 WideSearch SearchAndProve(const SearchContext& context, const Hypothesis& as_given,
                           const std::vector<size_t>& allowed) {
   SearchWindows windows = WindowsForSearch(context.runs, context.given.parameters);
-  const SearchContext on_windows = OnWindows(context, windows);
   const WideSearch near =
-      windows.choosing.empty() ? WideSearch{} : SearchWidely(on_windows, as_given, allowed);
+      windows.choosing.empty() ? WideSearch{} : SearchWidely(OnWindows(context, windows), as_given, allowed);
   if (windows.choosing.empty() || !near.search.given.fitted.ok()) {
     return SearchWidely(context, as_given, allowed);
   }
@@ -163,7 +148,7 @@ WideSearch SearchAndProve(const SearchContext& context, const Hypothesis& as_giv
   WideSearch proved;
   if (near.search.best.held_out_gap() < kOutOfReach) proved = ProveInTurn(context, as_given, near);
   const bool far = proved.search.tried.empty() || proved.search.best.held_out_gap() >= kNearTheNoise;
-  if (far) proved = TakeFromWindows(context, on_windows, as_given, near);
+  if (far) proved = TakeFromWindows(context, as_given, near);
   proved.windows = TrialsOn(std::move(windows), near, far);
   return proved;
 }

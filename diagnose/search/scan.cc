@@ -116,7 +116,6 @@ std::vector<RunBasis> BasesOf(const Fitted& current, const std::vector<const Run
                                            static_cast<Index>(known.size() + starts.size()));
     bases[r].normal = maths::TransposeTimes(bases[r].columns, bases[r].columns);
     bases[r].values = Map<const VectorXd>(residuals.values.data(), rows);
-    bases[r].weight = RobustSumOf(*runs[r], bases[r].values.squaredNorm()).weight;
   });
   return bases;
 }

@@ -54,9 +54,9 @@ void AddRun(const RunBasis& run, const RunColumns& columns, Index p, NormalEquat
   for (Index i = 0; i < p + starts + e; ++i) {
     if (i < p || i >= p + starts) keep.push_back(i);
   }
-  all->A += run.weight * normal(keep, keep);
-  all->b += run.weight * right(keep);
-  all->s += run.weight * sum;
+  all->A += normal(keep, keep);
+  all->b += right(keep);
+  all->s += sum;
 }
 
 // The hypothesis with the change's own parameters moved; those known before stay.
@@ -119,7 +119,7 @@ Scanned ScoreTest(const std::vector<RunBasis>& bases, const std::vector<FreePara
   double before = 0;
   for (size_t r = 0; r < bases.size(); ++r) {
     AddRun(bases[r], columns[r], p, &all);
-    before += bases[r].weight * bases[r].values.squaredNorm();
+    before += bases[r].values.squaredNorm();
   }
   for (Index i = 0; i < p; ++i) {
     const auto place = static_cast<size_t>(i);

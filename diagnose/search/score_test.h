@@ -13,7 +13,6 @@ struct RunBasis {
   Eigen::VectorXd values;  // residuals
   Eigen::MatrixXd columns;
   Eigen::MatrixXd normal;  // columns' columns
-  double weight = 1;       // of its squares (RunFit::weight)
 };
 
 // What the score test of one change needs from one run.

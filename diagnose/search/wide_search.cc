@@ -38,10 +38,7 @@ Explanation Refit(const SearchContext& context, const Hypothesis& as_given, cons
   for (const model::EffectDescription& effect : context.given.effects) refitted.effects.push_back(effect.id);
   refitted.base = Identifiable(as_given, context.runs, starts, allowed, context.sizes, context.jobs);
   Know(context, given.fitted.sum, &refitted);
-  // Far away, the logarithms of windows that no value improves yet would hold the others back.
-  FitOptions squares = FineFit(context.jobs);
-  squares.squares = true;
-  const Fitted fitted = Fit(refitted, context.runs, starts, squares);
+  const Fitted fitted = Fit(refitted, context.runs, starts, FineFit(context.jobs));
   if (!fitted.ok()) return given;
   refitted = fitted.hypothesis;
   Know(context, fitted.sum, &refitted);

@@ -53,21 +53,5 @@ TEST(KnownBefore, HoldsAFit) {
   EXPECT_NEAR(fitted(1e9), 1, 0.01);
 }
 
-// Tests that a run far off counts by the logarithm, and one near the noise by its squares.
-TEST(RobustSumOf, IsLogarithmicFarOff) {
-  std::vector<diagnose::RunData> runs = ClampedPair(Table1With(), 0.3, 1);
-  diagnose::RunData& run = runs.front();
-  EXPECT_DOUBLE_EQ(diagnose::RobustSumOf(run, 1e9).sum, 1e9);
-  EXPECT_DOUBLE_EQ(diagnose::RobustSumOf(run, 1e9).weight, 1);
-  run.logarithmic_above = 16;
-  double count = 0;
-  for (const diagnose::SignalData& signal : run.signals) count += static_cast<double>(signal.valid);
-  EXPECT_NEAR(diagnose::RobustSumOf(run, count).sum / count, 1, 0.05);
-  const double far = diagnose::RobustSumOf(run, 1e4 * count).sum,
-               further = diagnose::RobustSumOf(run, 1e5 * count).sum;
-  EXPECT_NEAR((further - far) / (16 * count), std::log(10), 0.02);
-  EXPECT_LT(diagnose::RobustSumOf(run, 1e4 * count).weight, 0.01);
-}
-
 }  // namespace
 }  // namespace hydro::testing
