@@ -65,13 +65,13 @@ std::vector<double> Expected(const std::vector<Scanned>& pool) {
 TEST(Pick, TakesTheMostPromising) {
   Fitted from;
   from.count = 1000;  // at least 30 must then be expected of a change
-  std::vector<std::vector<Scanned>> scanned = {{Row(kRelief, 400), Row(kRelief, 210), Row(kRelief, 190)},
+  std::vector<std::vector<Scanned>> scanned = {{Row(kRelief, 400), Row(kRelief, 260), Row(kRelief, 255)},
                                                {Row(kLag, 1000), Row(kLag, 900), Row(kLag, 800)},
-                                               {Row(kFriction, 149)},
+                                               {Row(kFriction, 249)},
                                                {Row({"", {}, "b"}, 2000, "its simulation fails")}};
   std::vector<Scanned> pool;
   Pick(from, {.changes = 5, .starts = 2}, &scanned, &pool);
-  EXPECT_THAT(Expected(pool), ElementsAre(1000, 900, 400, 210));
+  EXPECT_THAT(Expected(pool), ElementsAre(1000, 900, 400, 260));
 
   pool.clear();
   Pick(from, {.changes = 1, .starts = 3}, &scanned, &pool);
