@@ -220,6 +220,7 @@ class Scanner {
 
   void TestTogether(const std::vector<size_t>& group) {
     std::vector<const StartingPoint*> members;
+    members.reserve(group.size());
     for (const size_t t : group) members.push_back(&points_[t]);
     std::vector<std::vector<RunColumns>> columns;
     bool together = false;

@@ -161,6 +161,7 @@ std::vector<ValueByRun> ValuesByRun(const SearchContext& context, const model::M
   const ByRun runs(context, model);
   if (!runs.Possible()) return {};
   std::vector<ValueByRun> values;
+  values.reserve(asked.size());
   for (const std::string& name : asked) values.push_back(runs.FitByRun(model::BasePlace(name)));
   if (!asked.empty()) return values;
   // A value of 0 has no spread, and what the model holds at 0 is an effect's business.
