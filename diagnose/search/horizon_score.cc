@@ -15,7 +15,7 @@ namespace {
 
 constexpr size_t kMostWindows = 16;  // of each horizon
 
-// The logarithm of the mean over one horizon's windows; NaN where the runs are shorter than the horizon.
+// The mean over one horizon's windows; NaN where the runs are shorter than the horizon.
 double Score(const Hypothesis& hypothesis, const std::vector<const RunData*>& runs, double seconds,
              int jobs) {
   std::vector<RunData> windows;
@@ -25,15 +25,15 @@ double Score(const Hypothesis& hypothesis, const std::vector<const RunData*>& ru
     }
   }
   const std::vector<const RunData*> chosen = EvenlySpread(windows, kMostWindows);
-  std::vector<double> gaps(chosen.size());
+  std::vector<double> logarithms(chosen.size());
   ParallelFor(chosen.size(), jobs, [&](size_t w) {
     const Fitted fitted = FitStart(hypothesis, *chosen[w], chosen[w]->start, kStartInDoubt);
     const double gap = fitted.ok() ? fitted.squared_gap() : std::numeric_limits<double>::infinity();
-    gaps[w] = std::clamp(gap, 1e-3, 1e12);
+    logarithms[w] = std::log(std::clamp(gap, 1e-3, 1e12));
   });
   double sum = 0;
-  for (const double gap : gaps) sum += gap;
-  return std::log(sum / static_cast<double>(gaps.size()));
+  for (const double logarithm : logarithms) sum += logarithm;
+  return sum / static_cast<double>(logarithms.size());
 }
 
 }  // namespace

@@ -8,9 +8,9 @@
 
 namespace hydro::diagnose {
 
-// The mean, over horizons of a quarter, one and four times `seconds`, of the logarithm of the squared gap of windows
-// of that length: what a model that is wrong is worth. Over a whole run its errors would add up to drift. The start
-// of each window is fitted.
+// The mean, over windows of a quarter, one and four times `seconds`, of the logarithm of the squared gap: what a model
+// that is wrong is worth. Over a whole run its errors would add up to drift, and a few windows that start where
+// friction holds the shaft would decide a mean of squares. The start of each window is fitted.
 double HorizonScore(const model::ModelDescription& model, const std::vector<const RunData*>& runs,
                     double seconds, int jobs);
 
