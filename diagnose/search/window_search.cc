@@ -1,6 +1,7 @@
 #include "diagnose/search/window_search.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "diagnose/data/sample_interval.h"
 #include "diagnose/data/windows.h"
@@ -17,8 +18,34 @@ constexpr double kShortest = 60;  // samples
 constexpr double kWindowsPerRun = 4;
 // Windows that are fitted, and as many again that choose.
 constexpr size_t kMostWindows = 20;
+// And windows of each extreme of a signal, as many again that choose.
+constexpr size_t kMostExtremes = 1;
 // Explanations whose squared gap exceeds 1 by this many times that of the best are not worth a trial.
 constexpr double kNear = 1.5;
+
+// Adds the windows in which the channel, times the sign, is largest, to what is fitted and to what chooses in turn.
+// What opens or saturates there acts in few windows of a long record.
+void AddExtremes(model::Channel channel, double sign, SearchWindows* windows) {
+  std::vector<std::pair<double, const RunData*>> largest;
+  for (const RunData& window : windows->all) {
+    const SignalData* signal = window.Find(channel);
+    if (signal == nullptr) continue;
+    const ValueRange range = RangeOfValues(signal->values);
+    largest.emplace_back(sign > 0 ? -range.high : range.low, &window);
+  }
+  std::stable_sort(largest.begin(), largest.end(),
+                   [](const auto& a, const auto& b) { return a.first < b.first; });
+  largest.resize(std::min(largest.size(), 2 * kMostExtremes));
+  size_t fitted = 0, choosing = 0;
+  for (const auto& [height, one] : largest) {
+    const bool fits = std::find(windows->fitted.begin(), windows->fitted.end(), one) != windows->fitted.end();
+    const bool chooses =
+        std::find(windows->choosing.begin(), windows->choosing.end(), one) != windows->choosing.end();
+    const bool to_fitted = fits || (!chooses && fitted <= choosing);
+    if (!fits && !chooses) (to_fitted ? windows->fitted : windows->choosing).push_back(one);
+    ++(to_fitted ? fitted : choosing);
+  }
+}
 
 }  // namespace
 
@@ -41,6 +68,10 @@ SearchWindows WindowsForSearch(const std::vector<const RunData*>& runs, const mo
   }
   windows.fitted = EvenlySpread(windows.all, kMostWindows, 0, 2);
   windows.choosing = EvenlySpread(windows.all, kMostWindows, 1, 2);
+  for (const model::Channel channel :
+       {model::Channel::kP1, model::Channel::kP2, model::Channel::kMotorSpeed}) {
+    for (const double sign : {1.0, -1.0}) AddExtremes(channel, sign, &windows);
+  }
   return windows;
 }
 
