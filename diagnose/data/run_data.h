@@ -29,6 +29,12 @@ struct SignalData {
   size_t saturated = 0;
 };
 
+inline constexpr model::StartState kUnknownStart = [] {
+  model::StartState errors;
+  errors.fill(std::numeric_limits<double>::infinity());
+  return errors;
+}();
+
 struct RunData {
   std::string name;  // unique among the runs
   runs::MeasuredRun measured;
@@ -38,6 +44,9 @@ struct RunData {
   // Which of these states are unknown: measured badly or not at all. The others are held (for example the
   // angle of a motor whose angle is not measured).
   std::array<bool, 6> start_free{};
+  // How far each of these may be from `start`, a standard deviation: noise, and what a wrong scale or a late sensor
+  // makes of it. Infinite where nothing was measured.
+  model::StartState start_error = kUnknownStart;
   // The start at rest, if `start` moves but the first speed sample also allows rest: for a motor that
   // accelerates from rest, extrapolation gives a speed.
   std::optional<model::StartState> at_rest;

@@ -55,6 +55,47 @@ Line FirstLine(const std::vector<double>& time, const SignalData& signal) {
   return {signal.values[rows[0]], slope};
 }
 
+// How far the true state may be from what its line says, a standard deviation: noise, a scale that is wrong by
+// `scale`, and a sensor that is late.
+double ErrorOf(const Line& line, double noise, double scale) {
+  constexpr double kLate = 0.005;  // s
+  constexpr double kNoises = 3;
+  return kNoises * noise + scale * std::abs(line.value) + kLate * std::abs(line.slope);
+}
+
+// The same of a speed that is known from the angle alone.
+double SlopeErrorOf(const Line& line) {
+  constexpr double kScale = 0.1;
+  constexpr double kErrors = 5;
+  return kErrors * line.slope_error + kScale * std::abs(line.slope);
+}
+
+void SetStartErrors(RunData* data) {
+  constexpr double kScale = 0.03;  // of a pressure or speed; an angle counts from anywhere
+  const std::vector<double>& time = data->stimulus.time;
+  const auto measured = [&](model::Channel channel, double scale) {
+    const SignalData* const signal = data->Find(channel);
+    return signal == nullptr ? kNone : ErrorOf(FirstLine(time, *signal), signal->noise, scale);
+  };
+  const auto slope = [&](model::Channel angle) {
+    const SignalData* const signal = data->Find(angle);
+    return signal == nullptr ? kNone : SlopeErrorOf(FirstLine(time, *signal));
+  };
+  const auto set = [&](size_t state, double error, double otherwise) {
+    const double known = std::isnan(error) ? otherwise : error;
+    data->start_error[state] = known > 0 ? known : std::numeric_limits<double>::infinity();
+  };
+  using enum model::Channel;
+  const double p1 = measured(kP1, kScale), p2 = measured(kP2, kScale);
+  set(model::kMotorAngle, measured(kMotorAngle, 0), kNone);
+  set(model::kMotorSpeed, measured(kMotorSpeed, kScale), slope(kMotorAngle));
+  set(model::kP1, p1, data->stimulus.bypass ? p2 : kNone);
+  set(model::kP2, p2, kNone);
+  if (data->stimulus.shaft != model::Shaft::kFree) return;
+  set(model::kArmAngle, measured(kArmAngle, 0), kNone);
+  set(model::kArmSpeed, measured(kArmSpeed, kScale), slope(kArmAngle));
+}
+
 }  // namespace
 
 void SetStart(const model::Parameters& model, RunData* data) {
@@ -94,6 +135,7 @@ void SetStart(const model::Parameters& model, RunData* data) {
   } else {
     data->start[model::kArmAngle] = data->stimulus.arm_angle;
   }
+  SetStartErrors(data);
 
   // Each speed is judged by itself; an arm speed that is not measured does not exclude rest.
   model::StartState at_rest = data->start;

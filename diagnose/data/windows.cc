@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "diagnose/data/run_start.h"
+#include "diagnose/data/thinned.h"
 #include "model/terms/state.h"
 
 namespace hydro::diagnose {
@@ -21,6 +22,9 @@ constexpr double kWarmUp = 0.25;
 // A window's simulation may take so many steps for each sample. Models that need more are stiffer than any
 // that the samples can show.
 constexpr double kStepsPerSample = 4;
+
+// Windows of fine recordings are thinned, to no fewer samples than these.
+constexpr size_t kFewestKept = 100;
 
 template <class T>
 std::vector<T> Slice(const std::vector<T>& values, size_t first, size_t last) {
@@ -65,6 +69,7 @@ RunData Window(const RunData& run, size_t first, size_t compared, size_t last,
   SetStart(model, &window);
   if (!motor_angle.empty()) {
     window.start[model::kMotorAngle] = motor_angle[first];
+    window.start_error[model::kMotorAngle] = std::numeric_limits<double>::infinity();
     if (window.at_rest) (*window.at_rest)[model::kMotorAngle] = motor_angle[first];
     window.start_free[model::kMotorAngle] = true;
   }
@@ -72,6 +77,7 @@ RunData Window(const RunData& run, size_t first, size_t compared, size_t last,
     std::fill_n(signal.values.begin(), compared - first, std::numeric_limits<double>::quiet_NaN());
     signal.valid = CountValid(signal.values);
   }
+  Thin(kFewestKept, &window);
   std::erase_if(window.signals, [](const SignalData& signal) { return signal.valid < kFewestValues; });
   return window;
 }

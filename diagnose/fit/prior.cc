@@ -1,10 +1,28 @@
 #include "diagnose/fit/prior.h"
 
 #include <cmath>
+#include <string>
 
 #include "diagnose/fit/hypothesis.h"
 
 namespace hydro::diagnose {
+
+namespace {
+
+// How far a base parameter that is given as 0 may be from it: the size of the pump's greatest torque, of the pressure
+// that it holds, and of its flow and friction at 100 rad/s. It only keeps what no run tells from drifting.
+double VagueDeviation(const model::Parameters& given, const std::string& name) {
+  constexpr double kSpeed = 100;  // rad/s
+  const double pressure = given.T_pmax / given.D;
+  if (name == "f") return given.D;
+  if (name == "b") return given.T_pmax / kSpeed;
+  if (name == "c_E" || name == "c_I") return given.D * kSpeed / pressure;
+  if (name == "p_3") return pressure;
+  if (name == "mgl") return given.k_2 * pressure;
+  return given.T_pmax;
+}
+
+}  // namespace
 
 Prior KnownBefore(const Hypothesis& hypothesis) {
   Prior prior;
@@ -15,9 +33,12 @@ Prior KnownBefore(const Hypothesis& hypothesis) {
     if (known == nullptr || parameter.unknown.kind != model::Unknown::Kind::kBase) continue;
     const size_t base = parameter.unknown.index;
     const double given = known->given.parameters.*model::BaseParameters()[base].member;
-    if (given == 0 || (parameter.logarithmic && given < 0)) continue;
+    if (parameter.logarithmic && given <= 0) continue;
     const double relative = model::UncertaintyOf(known->given, base);
-    const double deviation = parameter.logarithmic ? relative : relative * std::abs(given);
+    const double deviation = given == 0              ? VagueDeviation(known->given.parameters, parameter.name)
+                             : parameter.logarithmic ? relative
+                                                     : relative * std::abs(given);
+    if (!(deviation > 0)) continue;
     prior.centre.back() = parameter.ToFitted(given);
     prior.weight.back() = known->weight / (deviation * deviation);
   }

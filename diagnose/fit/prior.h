@@ -25,8 +25,8 @@ struct Knowledge {
   double weight = 0;
 };
 
-// For the hypothesis' free numbers; all weights are 0 where it has no knowledge, and that of a base parameter
-// that is given as 0.
+// For the hypothesis' free numbers; all weights are 0 where it has no knowledge. Of a base parameter that is given as
+// 0 only its order of magnitude is known.
 Prior KnownBefore(const Hypothesis& hypothesis);
 
 }  // namespace hydro::diagnose

@@ -66,10 +66,19 @@ bool RunCost::Normal(const double* free, const double* start, bool derivatives, 
   } catch (const model::ModelError&) {
     return false;
   }
+  // What is known of the start holds it where the run says nothing, for example below p_3.
+  std::vector<double> off(starts_.size()), weight(starts_.size());
+  double start_sum = 0;
+  for (size_t i = 0; i < starts_.size(); ++i) {
+    const size_t state = starts_[i].index;
+    weight[i] = 1 / run_.start_error[state];
+    off[i] = weight[i] * (start[i] - run_.start[state]);
+    start_sum += off[i] * off[i];
+  }
   const auto rows = static_cast<Eigen::Index>(r.values.size());
   const Map<const VectorXd> residual(r.values.data(), rows);
   if (!derivatives) {
-    *normal = MatrixXd::Constant(1, 1, residual.squaredNorm());
+    *normal = MatrixXd::Constant(1, 1, residual.squaredNorm() + start_sum);
     return std::isfinite((*normal)(0, 0));
   }
   const auto n = static_cast<Eigen::Index>(unknowns());
@@ -80,7 +89,13 @@ bool RunCost::Normal(const double* free, const double* start, bool derivatives, 
   normal->topLeftCorner(n, n).triangularView<Eigen::Upper>() = normal->topLeftCorner(n, n).transpose();
   normal->topRightCorner(n, 1) = jacobian.transpose() * residual;
   normal->bottomLeftCorner(1, n) = normal->topRightCorner(n, 1).transpose();
-  (*normal)(n, n) = residual.squaredNorm();
+  (*normal)(n, n) = residual.squaredNorm() + start_sum;
+  for (size_t i = 0; i < starts_.size(); ++i) {
+    const auto place = static_cast<Eigen::Index>(free_.size() + i);
+    (*normal)(place, place) += weight[i] * weight[i];
+    (*normal)(place, n) += weight[i] * off[i];
+    (*normal)(n, place) = (*normal)(place, n);
+  }
   count_ = r.values.size();
   return normal->allFinite();
 }

@@ -51,7 +51,8 @@ Explanation RefitFromOtherStarts(const SearchContext& context, const Explanation
     if (again.fitted.ok() && again.fitted.sum < best.fitted.sum) best = std::move(again);
   };
   begin_at(MeasuredStarts(context.runs));
-  if (best.fitted.squared_gap() <= kStartInDoubt) return best;
+  // A window is too short to be caught in another place.
+  if (context.windows || best.fitted.squared_gap() <= kStartInDoubt) return best;
   begin_at(BestStarts(best.fitted.hypothesis, context.runs, StartsOf(best.fitted), options.jobs));
   return best;
 }

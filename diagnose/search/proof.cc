@@ -3,6 +3,7 @@
 #include <memory>
 #include <utility>
 
+#include "diagnose/data/thinned.h"
 #include "diagnose/fit/held_out.h"
 #include "diagnose/fit/start_fit.h"
 #include "diagnose/search/horizon_score.h"
@@ -65,15 +66,25 @@ void PredictHeldOut(const SearchContext& context, WideSearch* proved) {
   for (Explanation& one : proved->search.tried) predict(&one);
 }
 
+// The hypothesis as fitted to the whole runs, thinned: where the noise is far, every sample is more than it takes.
+Explanation FittedToWholeRuns(const SearchContext& context, const Hypothesis& hypothesis,
+                              const std::vector<model::StartState>& starts, const FitOptions& held) {
+  std::vector<RunData> thinned;
+  for (const RunData* run : context.runs) thinned.push_back(ThinnedCopy(*run));
+  Explanation whole;
+  whole.fitted = Fit(hypothesis, PointersTo(thinned), starts, FineFit(context.jobs));
+  return whole.fitted.ok() ? Explain(context, whole.fitted.hypothesis, StartsOf(whole.fitted), held) : whole;
+}
+
 // The hypothesis with the better of two values: as fitted to windows and to the whole runs, by what they predict
 // over several horizons. Values of windows are told from held-out runs alone.
 Explanation WithBetterValues(const SearchContext& context, const Fitted& on_windows) {
   const std::vector<model::StartState> measured = MeasuredStarts(context.runs);
-  Explanation whole = Explain(context, on_windows.hypothesis, measured, FineFit(context.jobs));
-  if (context.held_out.empty()) return whole;
   FitOptions held;
   held.most_iterations = 0;
   held.jobs = context.jobs;
+  Explanation whole = FittedToWholeRuns(context, on_windows.hypothesis, measured, held);
+  if (context.held_out.empty()) return whole;
   const std::vector<model::StartState> starts =
       BestStarts(on_windows.hypothesis, context.runs, measured, context.jobs);
   Explanation kept = Explain(context, on_windows.hypothesis, starts, held);

@@ -28,7 +28,7 @@ constexpr size_t kBeam = 2;
 constexpr double kBehind = 2;
 // In an exchange, candidates are examined closely if, after a coarse fit, their sum of squares is at most
 // this many times that of the explanation they would replace.
-constexpr double kNearlyAsGood = 2;
+constexpr double kNearlyAsGood = 1.5;
 // How many refits are compared on held-out runs at each step.
 constexpr size_t kFinalists = 3;
 
@@ -39,6 +39,16 @@ constexpr double kRefitBelow = 3;
 // is left as it is.
 constexpr int kIterationsToQualify = 3;
 constexpr double kOutOfTheRace = 3;
+
+// Of two hypotheses, one with a sum of squares above this many times the other's is not compared with it on
+// held-out runs.
+constexpr double kBehindTheBest = 2;
+
+// The part of the windows' squared gap that each further change has to take, far from the noise.
+constexpr double kLeastShareOfMore = 0.4;
+// Above this squared gap, windows are fitted to this tolerance.
+constexpr double kFar = 9;
+constexpr double kToCompare = 1e-3;
 
 constexpr char kNoTime[] = "the time limit ended the search";
 
@@ -76,6 +86,12 @@ class Searcher {
     if (const Explanation* instead = ParameterInstead(result_, context_.given)) {
       result_.best = *instead;
     }
+    if (ToCompare(result_.best.fitted).tolerance > fine_.tolerance && !TimeIsUp(context_)) {
+      const Explanation& best = result_.best;
+      Explanation settled =
+          Explain(context_, best.fitted.hypothesis, StartsOf(best.fitted), WithAllJobs(fine_));
+      if (settled.fitted.ok()) result_.best = std::move(settled);
+    }
     result_.best = AtBestResonance(context_, result_.best, WithAllJobs(fine_));
     return result_;
   }
@@ -87,8 +103,22 @@ class Searcher {
     return options;
   }
 
+  // How a finalist is fitted: windows far from the noise only as well as it takes to tell what is better.
+  FitOptions ToCompare(const Fitted& fit) const {
+    FitOptions options = fine_;
+    if (context_.windows && fit.squared_gap() > kFar) options.tolerance = kToCompare;
+    return options;
+  }
+
   void ReportProgress(const std::string& stage, double fraction) const {
     if (context_.report_progress) context_.report_progress({stage, fraction});
+  }
+
+  // Whether a further change takes less of the windows' gap than one that is missing would: where another form of
+  // what was found leaves a gap, many changes take a quarter of it.
+  bool RidesAlong(const Explanation& next) const {
+    const double before = result_.best.held_out_gap();
+    return context_.windows && before > kFar && next.held_out_gap() > (1 - kLeastShareOfMore) * before;
   }
 
   // Takes the best of `next`, hypotheses of `step` + 1 changes, if it gains enough, and continues from there.
@@ -97,6 +127,7 @@ class Searcher {
       const auto best = std::min_element(next.begin(), next.end(),
                                          [](const auto& a, const auto& b) { return CostOf(a) < CostOf(b); });
       if (!Material(result_.best.held_out_gap(), best->held_out_gap())) return;
+      if (step > 0 && RidesAlong(*best)) return;
       *best = RefitFromOtherStarts(context_, *best, WithAllJobs(fine_));
       std::vector<Explanation> beam(next.begin(),
                                     next.begin() + static_cast<std::ptrdiff_t>(std::min(kBeam, next.size())));
@@ -208,10 +239,11 @@ class Searcher {
     }
     const std::vector<Fitted> best = BestOfEach(std::move(fits));
     size_t finalists = 0;
-    while (finalists < std::min(best.size(), kFinalists) && best[finalists].sum <= most) ++finalists;
+    const double worth = best.empty() ? 0 : std::min(most, kBehindTheBest * best.front().sum);
+    while (finalists < std::min(best.size(), kFinalists) && best[finalists].sum <= worth) ++finalists;
     std::vector<Explanation> explained(finalists);
     ParallelFor(explained.size(), context_.jobs, [&](size_t i) {
-      explained[i] = Explain(context_, best[i].hypothesis, StartsOf(best[i]), fine_);
+      explained[i] = Explain(context_, best[i].hypothesis, StartsOf(best[i]), ToCompare(best[i]));
     });
     std::erase_if(explained, [](const Explanation& one) { return !one.fitted.ok(); });
     std::stable_sort(explained.begin(), explained.end(),
@@ -238,7 +270,8 @@ class Searcher {
   // if everything is explained: a replacement that does as well is a tie.
   void Exchange() {
     if (result_.best.changes().size() < 2) return;
-    const int rounds = result_.best.held_out_gap() < kCloseEnough ? 1 : 2;
+    const bool far = context_.windows && result_.best.held_out_gap() > kFar;
+    const int rounds = far || result_.best.held_out_gap() < kCloseEnough ? 1 : 2;
     for (int round = 0; round < rounds; ++round) {
       bool better = false;
       const std::vector<Change> changes = result_.best.changes();

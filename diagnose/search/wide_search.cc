@@ -3,8 +3,6 @@
 #include <memory>
 #include <utility>
 
-#include "diagnose/fit/identifiable.h"
-
 namespace hydro::diagnose {
 
 namespace {
@@ -36,7 +34,7 @@ Explanation Refit(const SearchContext& context, const Hypothesis& as_given, cons
   const std::vector<model::StartState> starts = StartsOf(given.fitted);
   Hypothesis refitted = as_given;
   for (const model::EffectDescription& effect : context.given.effects) refitted.effects.push_back(effect.id);
-  refitted.base = Identifiable(as_given, context.runs, starts, allowed, context.sizes, context.jobs);
+  refitted.base = allowed;
   Know(context, given.fitted.sum, &refitted);
   const Fitted fitted = Fit(refitted, context.runs, starts, FineFit(context.jobs));
   if (!fitted.ok()) return given;

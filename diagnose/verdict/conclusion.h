@@ -6,7 +6,7 @@
 
 namespace hydro::diagnose {
 
-// `refit`: the given model with all identifiable base parameters fitted. `windows`: what was tried on them.
+// `refit`: the given model with all base parameters fitted. `windows`: what was tried on them.
 Diagnosis Conclude(const SearchContext& context, const SearchResult& search, const Explanation& refit,
                    const WindowTrials& windows = {});
 

@@ -92,6 +92,7 @@ TEST(FitStart, TriesRest) {
   moving[model::kArmAngle] += 0.02;
   runs[0].at_rest = runs[0].start;
   runs[0].start = moving;
+  runs[0].start_error = diagnose::kUnknownStart;
   diagnose::Hypothesis hypothesis;
   hypothesis.model = truth;
   constexpr double kNoDoubt = std::numeric_limits<double>::infinity();
@@ -101,6 +102,20 @@ TEST(FitStart, TriesRest) {
   EXPECT_LT(fitted.squared_gap(), 1.15);
   EXPECT_EQ(fitted.hypothesis.model.effects[0].parameters, truth.effects[0].parameters);
   EXPECT_EQ(BestStarts(hypothesis, PointersTo(runs), {moving}, 1)[0], fitted.runs[0].start);
+}
+
+// Tests that a start that has gone where the run says nothing, below p_3, comes back: what was measured holds it.
+TEST(FitStart, ComesBackFromBelowTheFloor) {
+  std::vector<diagnose::RunData> runs;
+  runs.push_back(SmallRun(Table1With(), model::Shaft::kClamped, false, 0.6, 2, 1));
+  diagnose::Hypothesis hypothesis;
+  hypothesis.model = Table1With();
+  model::StartState below = runs[0].start;
+  below[model::kP1] = -1000;
+  const diagnose::FitOptions options;
+  EXPECT_LT(Fit(hypothesis, PointersTo(runs), {below}, options).squared_gap(), 1.15);
+  runs[0].start_error = diagnose::kUnknownStart;
+  EXPECT_LT(Fit(hypothesis, PointersTo(runs), {below}, options).runs[0].start[model::kP1], -900);
 }
 
 // Tests that effects' parameters are found from the points where fits start.

@@ -85,6 +85,11 @@ TEST(PrepareRun, Clamped) {
   EXPECT_NEAR(data.start[model::kP2], 140, 3);
   EXPECT_EQ(data.start[model::kArmAngle], 0.2);
   EXPECT_THAT(data.start_free, ElementsAre(false, true, true, true, false, false));
+  // Noise, a scale that may be wrong by 3 %, and a slope; nothing is known of what is not measured.
+  EXPECT_NEAR(data.start_error[model::kP1], 3 * 1.0 + 0.03 * 120, 5);
+  EXPECT_GT(data.start_error[model::kP1], 3 * 1.0 + 0.03 * 115);
+  EXPECT_TRUE(std::isinf(data.start_error[model::kMotorAngle]));
+  EXPECT_TRUE(std::isinf(data.start_error[model::kArmSpeed]));
 }
 
 // Tests that a first speed within the noise is dropped, and a larger one is kept.

@@ -1,0 +1,18 @@
+// Runs with fewer samples, for fits that do not need them all.
+#pragma once
+
+#include <cstddef>
+
+#include "diagnose/data/run_data.h"
+
+namespace hydro::diagnose {
+
+// Keeps every k-th sample of the run, so that neither its samples are closer than 2 ms nor fewer than `fewest` are
+// left. The command counts by its mean over the samples in between; samples where it jumps are kept. A simulation stops at every sample, and far
+// from the noise neighbours say the same: their errors are those of the model.
+void Thin(size_t fewest, RunData* run);
+
+// A copy that refers to the run's motion, without the measured run.
+RunData ThinnedCopy(const RunData& run);
+
+}  // namespace hydro::diagnose
