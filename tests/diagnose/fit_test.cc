@@ -54,12 +54,13 @@ TEST(Fit, RecoversBaseParameters) {
   EXPECT_EQ(fitted.runs.size(), runs.size());
 }
 
-// Tests that a start which puts a fit one cogging tooth off is given up for the measured one.
+// Tests that a start which puts a fit one cogging tooth off is given up for the measured one, where nothing holds it.
 TEST(Explain, BeginsAgainFromTheMeasuredStarts) {
   const model::ModelDescription truth =
       Table1With({{"motor.cogging", {{"amplitude", 1}, {"periods", 6}, {"phase", 0.7}}, {}}});
   std::vector<diagnose::RunData> runs;
   runs.push_back(SmallRun(truth, model::Shaft::kFree, false, 0.6, 2, 1));
+  runs[0].start_error = diagnose::kUnknownStart;
   std::vector<model::StartState> elsewhere = StartsOf(runs);
   elsewhere[0][model::kMotorSpeed] = -60;
   elsewhere[0][model::kArmAngle] += 0.02;
