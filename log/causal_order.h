@@ -2,7 +2,8 @@
 //
 // The kernel delivers a datagram to one socket after another: the plant may receive an answer, and its next
 // state reach the logger, before the answer does. In lockstep the causes are known: the state of tick k + 1
-// follows from the answers to tick k, and an answer to tick k from the state of tick k.
+// follows from the answers to tick k, and an answer to tick k from the state of tick k. Where a command acts from its own
+// tick on, the motor command also follows from the pressure command to the same tick.
 #pragma once
 
 #include <cstdint>
@@ -29,9 +30,10 @@ class CausalOrder {
  public:
   using Kind = bus::LoopPart;
 
-  // The intervals are those of the loops, in plant ticks. `emit` receives the messages in order, during
+  // The intervals are those of the loops, in plant ticks. `same_tick`: the pressure loop waits for the command of the
+  // position loop to the same tick (plant.command_delay_ticks = 0). `emit` receives the messages in order, during
   // Take() and Release().
-  CausalOrder(int64_t pressure_interval, int64_t position_interval,
+  CausalOrder(int64_t pressure_interval, int64_t position_interval, bool same_tick,
               std::function<void(RecordedMessage)> emit);
 
   // A message of `kind` that belongs to `tick`, received at `now`. Emitted at once unless its cause is still
@@ -46,10 +48,14 @@ class CausalOrder {
 
  private:
   bool AnswersAreIn(int64_t tick) const;
+  // Takes an answer whose own cause, if it has one but the state, is there.
+  void TakeAnswer(int64_t tick, RecordedMessage message, bus::Clock::TimePoint now);
+  void TakeMotorCommand(int64_t tick, RecordedMessage message, bus::Clock::TimePoint now);
   void EmitState();
 
   int64_t pressure_interval_;
   int64_t position_interval_;
+  bool same_tick_;
   std::function<void(RecordedMessage)> emit_;
   int64_t motor_command_tick_ = -1;       // newest taken
   int64_t pressure_command_tick_ = -1;    // newest taken
@@ -57,6 +63,8 @@ class CausalOrder {
   std::optional<RecordedMessage> state_;  // waits for the answers to the previous tick
   int64_t state_tick_ = -1;
   std::deque<std::pair<int64_t, RecordedMessage>> answers_;  // with their ticks; wait for that state
+  // With its tick; waits for the pressure command that it follows from.
+  std::optional<std::pair<int64_t, RecordedMessage>> motor_command_;
   std::optional<bus::Clock::TimePoint> held_since_;
 };
 

@@ -42,7 +42,7 @@ LoggerApp::LoggerApp(bus::Bus& bus, bus::Clock& clock, const settings::StackConf
       queue_(static_cast<size_t>(config.logger.memory_mb * 1e6)) {
   if (config.time.mode == settings::TimeMode::kLockstep) {
     order_.emplace(config.pressure_interval_ticks, config.position_interval_ticks,
-                   [this](const log::RecordedMessage& message) {
+                   config.plant.command_delay_ticks == 0, [this](const log::RecordedMessage& message) {
                      Enqueue(message.channel, message.data.data(), message.data.size(), message.utime,
                              message.arrived);
                    });

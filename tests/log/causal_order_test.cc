@@ -29,7 +29,7 @@ class CausalOrderTest : public ::testing::Test {
 
   bus::Clock::TimePoint now_{};
   std::vector<std::string> out_;
-  CausalOrder order_{1, 2, [this](RecordedMessage message) { out_.push_back(message.channel); }};
+  CausalOrder order_{1, 2, false, [this](RecordedMessage message) { out_.push_back(message.channel); }};
 };
 
 // Tests that messages in order pass at once.
@@ -81,6 +81,48 @@ TEST_F(CausalOrderTest, SlowLoopOwesNothingBetweenItsSamples) {
   Take(Kind::kMotorCommand, 1);
   Take(Kind::kState, 2);
   EXPECT_THAT(out_, ElementsAre("state1", "motor1", "state2"));
+}
+
+// Where a command acts from its own tick on.
+class SameTickTest : public CausalOrderTest {
+ protected:
+  SameTickTest() {
+    order_ = CausalOrder(1, 2, true, [this](RecordedMessage message) { out_.push_back(message.channel); });
+  }
+};
+
+// Tests that a motor command waits for the pressure command of its tick, which it follows from, and the next state for
+// it.
+TEST_F(SameTickTest, MotorCommandWaitsForThePressureCommand) {
+  Take(Kind::kState, 0);
+  Take(Kind::kMotorCommand, 0);
+  Take(Kind::kState, 1);
+  EXPECT_THAT(out_, ElementsAre("state0"));
+  EXPECT_TRUE(order_.held_since());
+  Take(Kind::kPressureCommand, 0);
+  EXPECT_THAT(out_, ElementsAre("state0", "pressure0", "motor0", "state1"));
+  EXPECT_FALSE(order_.held_since());
+  Take(Kind::kMotorCommand, 1);  // no sample of the position loop
+  EXPECT_EQ(out_.back(), "motor1");
+}
+
+// Tests that both wait for a state that they overtook, in their order.
+TEST_F(SameTickTest, BothWaitForTheirState) {
+  Take(Kind::kMotorCommand, 0);
+  Take(Kind::kPressureCommand, 0);
+  EXPECT_THAT(out_, IsEmpty());
+  Take(Kind::kState, 0);
+  EXPECT_THAT(out_, ElementsAre("state0", "pressure0", "motor0"));
+  EXPECT_FALSE(order_.held_since());
+}
+
+// Tests that a motor command whose pressure command was lost comes out with Release().
+TEST_F(SameTickTest, LostPressureCommandHoldsNothingForEver) {
+  Take(Kind::kState, 0);
+  Take(Kind::kMotorCommand, 0);
+  order_.Release();
+  EXPECT_THAT(out_, ElementsAre("state0", "motor0"));
+  EXPECT_FALSE(order_.held_since());
 }
 
 // Tests that nothing is lost when an answer never comes: the next state, or Release(), lets out what is held.
