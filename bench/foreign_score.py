@@ -124,7 +124,13 @@ def said_text(report):
 
 def binomial_tail(n, k, p):
     """P(X >= k) of n trials."""
-    return sum(math.comb(n, i) * p ** i * (1 - p) ** (n - i) for i in range(k, n + 1))
+    if p <= 0 or p >= 1:
+        return 1.0 if p >= 1 or k <= 0 else 0.0
+    # By logarithms: of thousands of candidates, the coefficients are beyond any float.
+    def term(i):
+        return math.exp(math.lgamma(n + 1) - math.lgamma(i + 1) - math.lgamma(n - i + 1)
+                        + i * math.log(p) + (n - i) * math.log1p(-p))
+    return min(1.0, sum(term(i) for i in range(k, n + 1)))
 
 
 def bound(good, n, upper):

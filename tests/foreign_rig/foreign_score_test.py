@@ -102,6 +102,8 @@ class Rules(unittest.TestCase):
         self.assertAlmostEqual(foreign_score.bound(5, 10, upper=False), 0.2224, places=4)
         self.assertAlmostEqual(foreign_score.bound(5, 10, upper=True), 0.7776, places=4)
         self.assertIsNone(foreign_score.bound(0, 0, upper=True))
+        # Binomial coefficients that no float holds: the normal approximation of the bound at 2000 +- 37 of 4000.
+        self.assertAlmostEqual(foreign_score.bound(2000, 4000, upper=False), 0.5 - 1.645 * (0.25 / 4000) ** 0.5, places=3)
 
     # Tests the table of weights: by bins, an explanation of two effects as a whole, other values where nothing is missing, closures left out.
     def test_reliability(self):
