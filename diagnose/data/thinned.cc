@@ -9,7 +9,7 @@ namespace hydro::diagnose {
 
 namespace {
 
-constexpr double kFinest = 2e-3;        // s between samples
+constexpr double kFinest = 1e-3;        // s between samples
 constexpr size_t kFewestOfARun = 1000;  // samples
 constexpr double kJump = 0.05;          // of the command's range
 
@@ -38,6 +38,7 @@ void Thin(size_t fewest, RunData* run) {
     for (SignalData& signal : run->signals) signal.values[kept] = signal.values[i];
     i = end;
   }
+  run->most_steps_per_sample *= static_cast<double>(samples) / static_cast<double>(kept);
   stimulus.time.resize(kept);
   stimulus.voltage.resize(kept);
   for (SignalData& signal : run->signals) {
@@ -55,10 +56,8 @@ RunData ThinnedCopy(const RunData& run) {
   copy.start_error = run.start_error;
   copy.at_rest = run.at_rest;
   copy.signals = run.signals;
-  const size_t samples = run.samples();
+  copy.most_steps_per_sample = run.most_steps_per_sample;
   Thin(kFewestOfARun, &copy);
-  const double thinner = static_cast<double>(samples) / static_cast<double>(copy.samples());
-  copy.most_steps_per_sample = run.most_steps_per_sample * thinner;
   return copy;
 }
 

@@ -16,8 +16,8 @@ namespace {
 constexpr double kHorizon = 0.4;
 constexpr double kShortest = 60;  // samples
 constexpr double kWindowsPerRun = 4;
-// Windows that are fitted, and others that choose.
-constexpr size_t kMostFitted = 14, kMostChoosing = 20;
+// Windows that are fitted, and as many others that choose. With 14 fitted, an arm's flexure was lost.
+constexpr size_t kMostWindows = 20;
 // And windows of each extreme of a signal, as many again that choose.
 constexpr size_t kMostExtremes = 1;
 // Explanations whose squared gap exceeds 1 by this many times that of the best are not worth a trial.
@@ -66,8 +66,8 @@ SearchWindows WindowsForSearch(const std::vector<const RunData*>& runs, const mo
   for (const RunData* run : runs) {
     for (RunData& window : WindowsOf(*run, seconds, model)) windows.all.push_back(std::move(window));
   }
-  windows.fitted = EvenlySpread(windows.all, kMostFitted, 0, 2);
-  windows.choosing = EvenlySpread(windows.all, kMostChoosing, 1, 2);
+  windows.fitted = EvenlySpread(windows.all, kMostWindows, 0, 2);
+  windows.choosing = EvenlySpread(windows.all, kMostWindows, 1, 2);
   for (const model::Channel channel :
        {model::Channel::kP1, model::Channel::kP2, model::Channel::kMotorSpeed}) {
     for (const double sign : {1.0, -1.0}) AddExtremes(channel, sign, &windows);

@@ -17,7 +17,7 @@ TEST(HorizonScore, OrdersModels) {
     model.parameters.T_s *= friction;
     return diagnose::HorizonScore(model, PointersTo(runs), 0.4, jobs);
   };
-  EXPECT_NEAR(score(1, 1), 0, 0.15);  // of windows of some 100 samples, with four states free
+  EXPECT_NEAR(score(1, 1), 0, 0.1);
   EXPECT_GT(score(1.1, 1), score(1, 1) + 0.2);
   EXPECT_GT(score(1.5, 1), score(1.1, 1) + 0.2);
   EXPECT_EQ(score(1.1, 2), score(1.1, 1));
