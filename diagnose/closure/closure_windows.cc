@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 #include "base/parallel.h"
 #include "diagnose/data/windows.h"
@@ -14,9 +13,7 @@ namespace hydro::diagnose {
 ClosureWindows WindowsOfRuns(const std::vector<const RunData*>& runs, double seconds,
                              const model::Parameters& model, size_t most, size_t first, size_t stride) {
   ClosureWindows windows;
-  for (const RunData* run : runs) {
-    for (RunData& window : WindowsOf(*run, seconds, model)) windows.all.push_back(std::move(window));
-  }
+  windows.all = WindowsOf(runs, seconds, model);
   windows.chosen = EvenlySpread(windows.all, most, first, stride);
   return windows;
 }

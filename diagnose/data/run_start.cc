@@ -1,5 +1,6 @@
 #include "diagnose/data/run_start.h"
 
+#include <array>
 #include <cmath>
 #include <limits>
 #include <vector>
@@ -12,11 +13,13 @@ namespace {
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 // The value and slope at the first time of a straight line through the first valid samples, with standard
-// errors.
+// errors; of a signal that is not measured the value is NaN.
 struct Line {
   double value = kNone, slope = 0;
   double value_error = 0, slope_error = 0;
+  double noise = 0;  // of the signal
 };
+using Lines = std::array<Line, model::kChannels>;
 
 // Takes a speed for 0 when the samples cannot tell it from 0. A motion that should begin at rest but gets a
 // little speed slips where friction or cogging hold it, and the fit then stays one tooth off.
@@ -55,55 +58,55 @@ Line FirstLine(const std::vector<double>& time, const SignalData& signal) {
   return {signal.values[rows[0]], slope};
 }
 
+Lines FirstLines(const RunData& data) {
+  Lines lines;
+  for (const SignalData& signal : data.signals) {
+    Line& line = lines[static_cast<size_t>(signal.channel)];
+    line = FirstLine(data.stimulus.time, signal);
+    line.noise = signal.noise;
+  }
+  return lines;
+}
+
 // How far the true state may be from what its line says, a standard deviation: noise, a scale that is wrong by
-// `scale`, and a sensor that is late.
-double ErrorOf(const Line& line, double noise, double scale) {
+// `scale`, and a sensor that is late. NaN without a line.
+double ErrorOf(const Line& line, double scale) {
   constexpr double kLate = 0.005;  // s
   constexpr double kNoises = 3;
-  return kNoises * noise + scale * std::abs(line.value) + kLate * std::abs(line.slope);
+  return kNoises * line.noise + scale * std::abs(line.value) + kLate * std::abs(line.slope);
 }
 
 // The same of a speed that is known from the angle alone.
-double SlopeErrorOf(const Line& line) {
+double SlopeErrorOf(const Line& angle) {
   constexpr double kScale = 0.1;
   constexpr double kErrors = 5;
-  return kErrors * line.slope_error + kScale * std::abs(line.slope);
+  return kErrors * angle.slope_error + kScale * std::abs(angle.slope);
 }
 
-void SetStartErrors(RunData* data) {
+void SetStartErrors(const Lines& lines, RunData* data) {
   constexpr double kScale = 0.03;  // of a pressure or speed; an angle counts from anywhere
-  const std::vector<double>& time = data->stimulus.time;
-  const auto measured = [&](model::Channel channel, double scale) {
-    const SignalData* const signal = data->Find(channel);
-    return signal == nullptr ? kNone : ErrorOf(FirstLine(time, *signal), signal->noise, scale);
-  };
-  const auto slope = [&](model::Channel angle) {
-    const SignalData* const signal = data->Find(angle);
-    return signal == nullptr ? kNone : SlopeErrorOf(FirstLine(time, *signal));
-  };
-  const auto set = [&](size_t state, double error, double otherwise) {
+  const auto line = [&lines](model::Channel channel) { return lines[static_cast<size_t>(channel)]; };
+  const auto set = [data](size_t state, double error, double otherwise) {
     const double known = std::isnan(error) ? otherwise : error;
     data->start_error[state] = known > 0 ? known : std::numeric_limits<double>::infinity();
   };
   using enum model::Channel;
-  const double p1 = measured(kP1, kScale), p2 = measured(kP2, kScale);
-  set(model::kMotorAngle, measured(kMotorAngle, 0), kNone);
-  set(model::kMotorSpeed, measured(kMotorSpeed, kScale), slope(kMotorAngle));
+  const double p1 = ErrorOf(line(kP1), kScale), p2 = ErrorOf(line(kP2), kScale);
+  set(model::kMotorAngle, ErrorOf(line(kMotorAngle), 0), kNone);
+  set(model::kMotorSpeed, ErrorOf(line(kMotorSpeed), kScale), SlopeErrorOf(line(kMotorAngle)));
   set(model::kP1, p1, data->stimulus.bypass ? p2 : kNone);
   set(model::kP2, p2, kNone);
   if (data->stimulus.shaft != model::Shaft::kFree) return;
-  set(model::kArmAngle, measured(kArmAngle, 0), kNone);
-  set(model::kArmSpeed, measured(kArmSpeed, kScale), slope(kArmAngle));
+  set(model::kArmAngle, ErrorOf(line(kArmAngle), 0), kNone);
+  set(model::kArmSpeed, ErrorOf(line(kArmSpeed), kScale), SlopeErrorOf(line(kArmAngle)));
 }
 
 }  // namespace
 
 void SetStart(const model::Parameters& model, RunData* data) {
   const std::vector<double>& time = data->stimulus.time;
-  const auto line = [&](model::Channel channel) {
-    const SignalData* signal = data->Find(channel);
-    return signal == nullptr ? Line{} : FirstLine(time, *signal);
-  };
+  const Lines lines = FirstLines(*data);
+  const auto line = [&lines](model::Channel channel) { return lines[static_cast<size_t>(channel)]; };
   const auto first_known = [](double a, double b) { return std::isnan(a) ? b : a; };
   const Line motor_angle = line(model::Channel::kMotorAngle), motor_speed = line(model::Channel::kMotorSpeed);
   data->start[model::kMotorAngle] = first_known(motor_angle.value, 0);
@@ -135,7 +138,7 @@ void SetStart(const model::Parameters& model, RunData* data) {
   } else {
     data->start[model::kArmAngle] = data->stimulus.arm_angle;
   }
-  SetStartErrors(data);
+  SetStartErrors(lines, data);
 
   // Each speed is judged by itself; an arm speed that is not measured does not exclude rest.
   model::StartState at_rest = data->start;

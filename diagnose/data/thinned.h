@@ -8,9 +8,9 @@
 namespace hydro::diagnose {
 
 // Keeps every k-th sample of the run, so that neither its samples are closer than 1 ms nor fewer than `fewest` are
-// left. The command counts by its mean over the samples in between; samples where it jumps are kept.
-// With 2 ms, a flexible arm was lost. A simulation of the run may take as many steps as before. A simulation stops at every sample, and far
-// from the noise neighbours say the same: their errors are those of the model.
+// left: a simulation stops at every sample, and far from the noise neighbours say the same, because their errors are
+// those of the model. With 2 ms, a flexible arm was lost. The command counts by its mean over the samples in between;
+// samples where it jumps are kept. A simulation of the run may take as many steps as before.
 void Thin(size_t fewest, RunData* run);
 
 // A copy that refers to the run's motion, without the measured run.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "diagnose/data/run_start.h"
 #include "diagnose/data/thinned.h"
@@ -104,6 +105,15 @@ std::vector<RunData> WindowsOf(const RunData& run, double seconds, const model::
     // The next one's comparison begins where this one's ends.
     const double next = end - kWarmUp * seconds;
     while (first < last && time[first] < next) ++first;
+  }
+  return windows;
+}
+
+std::vector<RunData> WindowsOf(const std::vector<const RunData*>& runs, double seconds,
+                               const model::Parameters& model) {
+  std::vector<RunData> windows;
+  for (const RunData* run : runs) {
+    for (RunData& window : WindowsOf(*run, seconds, model)) windows.push_back(std::move(window));
   }
   return windows;
 }

@@ -14,6 +14,10 @@ namespace hydro::diagnose {
 // `run`. Signals with too few values in a stretch are left out of it.
 std::vector<RunData> WindowsOf(const RunData& run, double seconds, const model::Parameters& model);
 
+// The same of several runs, run after run.
+std::vector<RunData> WindowsOf(const std::vector<const RunData*>& runs, double seconds,
+                               const model::Parameters& model);
+
 // At most `most` of them, evenly spread, beginning with the one at `first`.
 std::vector<const RunData*> EvenlySpread(const std::vector<RunData>& windows, size_t most, size_t first = 0,
                                          size_t stride = 1);

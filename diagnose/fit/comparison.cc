@@ -41,7 +41,7 @@ BlockSums BlocksOf(const std::vector<const RunData*>& runs, const HeldOut& predi
 
 BlockSums LogarithmsOf(const HeldOut& predicted) {
   BlockSums blocks;
-  for (const double gap : predicted.gaps) blocks.sums.push_back(std::log(std::clamp(gap, 1e-3, 1e12)));
+  for (const double gap : predicted.gaps) blocks.sums.push_back(LogarithmOf(gap));
   blocks.count = static_cast<double>(predicted.count);
   return blocks;
 }

@@ -93,9 +93,11 @@ std::vector<T> Without(const std::vector<T>& all, size_t place) {
 
 }  // namespace
 
+double LogarithmOf(double squared_gap) { return std::log(std::clamp(squared_gap, 1e-3, 1e12)); }
+
 double HeldOut::typical_squared_gap() const {
   double logarithms = 0;
-  for (const double gap : gaps) logarithms += std::log(std::clamp(gap, 1e-3, 1e12));
+  for (const double gap : gaps) logarithms += LogarithmOf(gap);
   return gaps.empty() ? 0 : std::exp(logarithms / static_cast<double>(gaps.size()));
 }
 

@@ -8,6 +8,9 @@
 
 namespace hydro::diagnose {
 
+// The logarithm of a squared gap, of one that is kept finite: what typical gaps are means of.
+double LogarithmOf(double squared_gap);
+
 struct HeldOut {
   double sum = 0;
   size_t count = 0;

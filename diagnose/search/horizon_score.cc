@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <utility>
 
 #include "base/parallel.h"
 #include "diagnose/data/windows.h"
+#include "diagnose/fit/held_out.h"
 #include "diagnose/fit/start_fit.h"
 
 namespace hydro::diagnose {
@@ -18,18 +18,13 @@ constexpr size_t kMostWindows = 16;  // of each horizon
 // The mean over one horizon's windows; NaN where the runs are shorter than the horizon.
 double Score(const Hypothesis& hypothesis, const std::vector<const RunData*>& runs, double seconds,
              int jobs) {
-  std::vector<RunData> windows;
-  for (const RunData* run : runs) {
-    for (RunData& window : WindowsOf(*run, seconds, hypothesis.model.parameters)) {
-      windows.push_back(std::move(window));
-    }
-  }
+  const std::vector<RunData> windows = WindowsOf(runs, seconds, hypothesis.model.parameters);
   const std::vector<const RunData*> chosen = EvenlySpread(windows, kMostWindows);
   std::vector<double> logarithms(chosen.size());
   ParallelFor(chosen.size(), jobs, [&](size_t w) {
     const Fitted fitted = FitStart(hypothesis, *chosen[w], chosen[w]->start, kStartInDoubt);
     const double gap = fitted.ok() ? fitted.squared_gap() : std::numeric_limits<double>::infinity();
-    logarithms[w] = std::log(std::clamp(gap, 1e-3, 1e12));
+    logarithms[w] = LogarithmOf(gap);
   });
   double sum = 0;
   for (const double logarithm : logarithms) sum += logarithm;
@@ -44,7 +39,7 @@ double HorizonScore(const model::ModelDescription& model, const std::vector<cons
   hypothesis.model = model;
   double sum = 0;
   double horizons = 0;
-  for (const double factor : {0.25, 1.0, 4.0}) {
+  for (const double factor : kHorizonFactors) {
     const double score = Score(hypothesis, runs, factor * seconds, jobs);
     if (std::isnan(score)) continue;
     sum += score;

@@ -39,6 +39,7 @@ WindowTrials TrialsOn(SearchWindows windows, const WideSearch& near, bool decide
   trials.decide = decide;
   trials.best = near.search.best.fitted;
   trials.fitted = std::move(windows.fitted);
+  trials.choosing = std::move(windows.choosing);
   // A vector that is moved keeps its elements where they are.
   trials.all = std::make_shared<const std::vector<RunData>>(std::move(windows.all));
   return trials;
@@ -151,7 +152,9 @@ WideSearch SearchAndProve(const SearchContext& context, const Hypothesis& as_giv
                           const std::vector<size_t>& allowed) {
   SearchWindows windows = WindowsForSearch(context.runs, context.given.parameters);
   const WideSearch near =
-      windows.choosing.empty() ? WideSearch{} : SearchWidely(OnWindows(context, windows), as_given, allowed);
+      windows.choosing.empty()
+          ? WideSearch{}
+          : SearchWidely(OnWindows(context, windows.fitted, windows.choosing), as_given, allowed);
   if (windows.choosing.empty() || !near.search.given.fitted.ok()) {
     return SearchWidely(context, as_given, allowed);
   }

@@ -24,7 +24,8 @@ constexpr size_t kRefitsMore = 8;
 constexpr size_t kStarts = 2;
 // How many hypotheses go on to the next step.
 constexpr size_t kBeam = 2;
-// A hypothesis is dropped if its sum of squares is this many times the best one's.
+// A hypothesis is dropped if its sum of squares is this many times the best one's: it is not compared with that on
+// held-out runs, nor taken to the next step.
 constexpr double kBehind = 2;
 // In an exchange, candidates are examined closely if, after a coarse fit, their sum of squares is at most
 // this many times that of the explanation they would replace.
@@ -40,13 +41,9 @@ constexpr double kRefitBelow = 3;
 constexpr int kIterationsToQualify = 3;
 constexpr double kOutOfTheRace = 3;
 
-// Of two hypotheses, one with a sum of squares above this many times the other's is not compared with it on
-// held-out runs.
-constexpr double kBehindTheBest = 2;
-
 // The part of the windows' squared gap that each further change has to take, far from the noise.
 constexpr double kLeastShareOfMore = 0.4;
-// Above this squared gap, windows are fitted to this tolerance.
+// Above this squared gap, windows are far from the noise, and finalists are fitted to this tolerance.
 constexpr double kFar = 9;
 constexpr double kToCompare = 1e-3;
 
@@ -86,7 +83,7 @@ class Searcher {
     if (const Explanation* instead = ParameterInstead(result_, context_.given)) {
       result_.best = *instead;
     }
-    if (ToCompare(result_.best.fitted).tolerance > fine_.tolerance && !TimeIsUp(context_)) {
+    if (AreFar(result_.best.squared_gap()) && !TimeIsUp(context_)) {
       const Explanation& best = result_.best;
       Explanation settled =
           Explain(context_, best.fitted.hypothesis, StartsOf(best.fitted), WithAllJobs(fine_));
@@ -103,10 +100,13 @@ class Searcher {
     return options;
   }
 
+  // Whether windows with this squared gap are far from the noise. Whole runs never count as that.
+  bool AreFar(double squared_gap) const { return context_.windows && squared_gap > kFar; }
+
   // How a finalist is fitted: windows far from the noise only as well as it takes to tell what is better.
   FitOptions ToCompare(const Fitted& fit) const {
     FitOptions options = fine_;
-    if (context_.windows && fit.squared_gap() > kFar) options.tolerance = kToCompare;
+    if (AreFar(fit.squared_gap())) options.tolerance = kToCompare;
     return options;
   }
 
@@ -118,7 +118,7 @@ class Searcher {
   // what was found leaves a gap, many changes take a quarter of it.
   bool RidesAlong(const Explanation& next) const {
     const double before = result_.best.held_out_gap();
-    return context_.windows && before > kFar && next.held_out_gap() > (1 - kLeastShareOfMore) * before;
+    return AreFar(before) && next.held_out_gap() > (1 - kLeastShareOfMore) * before;
   }
 
   // Takes the best of `next`, hypotheses of `step` + 1 changes, if it gains enough, and continues from there.
@@ -239,7 +239,7 @@ class Searcher {
     }
     const std::vector<Fitted> best = BestOfEach(std::move(fits));
     size_t finalists = 0;
-    const double worth = best.empty() ? 0 : std::min(most, kBehindTheBest * best.front().sum);
+    const double worth = best.empty() ? 0 : std::min(most, kBehind * best.front().sum);
     while (finalists < std::min(best.size(), kFinalists) && best[finalists].sum <= worth) ++finalists;
     std::vector<Explanation> explained(finalists);
     ParallelFor(explained.size(), context_.jobs, [&](size_t i) {
@@ -270,8 +270,8 @@ class Searcher {
   // if everything is explained: a replacement that does as well is a tie.
   void Exchange() {
     if (result_.best.changes().size() < 2) return;
-    const bool far = context_.windows && result_.best.held_out_gap() > kFar;
-    const int rounds = far || result_.best.held_out_gap() < kCloseEnough ? 1 : 2;
+    const double gap = result_.best.held_out_gap();
+    const int rounds = AreFar(gap) || gap < kCloseEnough ? 1 : 2;
     for (int round = 0; round < rounds; ++round) {
       bool better = false;
       const std::vector<Change> changes = result_.best.changes();

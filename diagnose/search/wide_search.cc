@@ -9,7 +9,6 @@ namespace {
 
 // Stretches of a signal, in a search horizon, that count as independent of each other.
 constexpr double kIndependent = 10;
-constexpr double kHorizon = 0.4;  // s
 
 // How many independent pieces of evidence the runs hold, if they are as wrong as a wrong model leaves them.
 double Evidence(const std::vector<const RunData*>& runs) {

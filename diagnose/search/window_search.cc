@@ -11,9 +11,6 @@ namespace hydro::diagnose {
 
 namespace {
 
-// s. Long enough for the arm to move and the pressures to settle, short enough that drift does not drown what
-// is missing. With 2 s, what differs from run to run drowned a laboratory drive's friction.
-constexpr double kHorizon = 0.4;
 constexpr double kShortest = 60;  // samples
 constexpr double kWindowsPerRun = 4;
 // Windows that are fitted, and as many others that choose. With 14 fitted, an arm's flexure was lost.
@@ -62,10 +59,7 @@ double SearchHorizon(const std::vector<const RunData*>& runs) {
 
 SearchWindows WindowsForSearch(const std::vector<const RunData*>& runs, const model::Parameters& model) {
   SearchWindows windows;
-  const double seconds = SearchHorizon(runs);
-  for (const RunData* run : runs) {
-    for (RunData& window : WindowsOf(*run, seconds, model)) windows.all.push_back(std::move(window));
-  }
+  windows.all = WindowsOf(runs, SearchHorizon(runs), model);
   windows.fitted = EvenlySpread(windows.all, kMostWindows, 0, 2);
   windows.choosing = EvenlySpread(windows.all, kMostWindows, 1, 2);
   for (const model::Channel channel :
@@ -75,10 +69,11 @@ SearchWindows WindowsForSearch(const std::vector<const RunData*>& runs, const mo
   return windows;
 }
 
-SearchContext OnWindows(const SearchContext& context, const SearchWindows& windows) {
+SearchContext OnWindows(const SearchContext& context, const std::vector<const RunData*>& fitted,
+                        const std::vector<const RunData*>& choosing) {
   SearchContext on_windows = context;
-  on_windows.runs = windows.fitted;
-  on_windows.held_out = windows.choosing;
+  on_windows.runs = fitted;
+  on_windows.held_out = choosing;
   on_windows.windows = true;
   return on_windows;
 }

@@ -20,8 +20,9 @@ struct SearchWindows {
 double SearchHorizon(const std::vector<const RunData*>& runs);
 SearchWindows WindowsForSearch(const std::vector<const RunData*>& runs, const model::Parameters& model);
 
-// The context with `windows` in place of the runs. `windows` must outlive it.
-SearchContext OnWindows(const SearchContext& context, const SearchWindows& windows);
+// The context with windows in place of the runs: those that are fitted, and those that choose.
+SearchContext OnWindows(const SearchContext& context, const std::vector<const RunData*>& fitted,
+                        const std::vector<const RunData*>& choosing);
 
 // What is worth a trial on whole runs: the best explanation first, then what predicts the windows about as
 // well, at most `most`.

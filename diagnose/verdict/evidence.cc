@@ -35,13 +35,6 @@ std::vector<std::string> RunOfEachBlock(const std::vector<const RunData*>& runs,
   return names;
 }
 
-std::vector<const Explanation*> PointersToAll(const std::vector<Explanation>& tried) {
-  std::vector<const Explanation*> all;
-  all.reserve(tried.size());
-  for (const Explanation& one : tried) all.push_back(&one);
-  return all;
-}
-
 // Drops what is materially behind the best on windows.
 void KeepLeading(const WindowTrials& windows, std::map<std::string, double>* weights) {
   const double least = LeastGap(windows.tried);
@@ -52,6 +45,13 @@ void KeepLeading(const WindowTrials& windows, std::map<std::string, double>* wei
 }
 
 }  // namespace
+
+std::vector<const Explanation*> PointersToAll(const std::vector<Explanation>& tried) {
+  std::vector<const Explanation*> all;
+  all.reserve(tried.size());
+  for (const Explanation& one : tried) all.push_back(&one);
+  return all;
+}
 
 std::string ClaimOf(const Hypothesis& hypothesis) {
   std::vector<std::string> said;

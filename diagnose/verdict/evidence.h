@@ -16,6 +16,7 @@ namespace hydro::diagnose {
 std::string ClaimOf(const Hypothesis& hypothesis);
 inline constexpr char kAsGiven[] = "as given";
 
+std::vector<const Explanation*> PointersToAll(const std::vector<Explanation>& tried);
 // The best explanation of a claim among those that were predicted; null when there is none.
 const Explanation* BestOf(const std::vector<Explanation>& tried, const std::string& claim);
 // The least squared gap among those that were predicted; infinite when there is none.

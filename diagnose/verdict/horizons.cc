@@ -7,6 +7,7 @@
 #include "diagnose/data/windows.h"
 #include "diagnose/fit/residuals.h"
 #include "diagnose/fit/start_fit.h"
+#include "diagnose/search/horizon_score.h"
 
 namespace hydro::diagnose {
 
@@ -131,7 +132,7 @@ std::vector<HorizonGap> HorizonGaps(const SearchContext& context, double seconds
     for (size_t m = 0; m < kModels; ++m) held_out.back().models[m] = &all[m]->held_out.models[r];
   }
   std::vector<HorizonGap> horizons;
-  for (const double factor : {0.25, 1.0, 4.0}) {
+  for (const double factor : kHorizonFactors) {
     HorizonGap horizon;
     horizon.seconds = factor * seconds;
     const SumsOfAll of_fit = Over(horizon.seconds, fitted, context.jobs);

@@ -22,11 +22,6 @@ constexpr size_t kMostWindows = 8;
 // A spread below this part of the value is within what any rig repeats.
 constexpr double kLeastSpread = 0.01;
 
-struct WindowsOfRun {
-  std::vector<RunData> all;
-  std::vector<const RunData*> fitted, predicted;
-};
-
 Hypothesis Holding(const model::ModelDescription& model, const std::vector<size_t>& free) {
   Hypothesis hypothesis;
   hypothesis.model = model;
@@ -63,18 +58,19 @@ class ByRun {
     runs_.insert(runs_.end(), context.held_out.begin(), context.held_out.end());
     const double seconds = SearchHorizon(context.runs);
     for (const RunData* run : runs_) {
-      WindowsOfRun windows;
+      SearchWindows windows;
       windows.all = WindowsOf(*run, seconds, model.parameters);
       windows.fitted = EvenlySpread(windows.all, kMostWindows, 0, 2);
-      windows.predicted = EvenlySpread(windows.all, kMostWindows, 1, 2);
+      windows.choosing = EvenlySpread(windows.all, kMostWindows, 1, 2);
       windows_.push_back(std::move(windows));
     }
   }
 
   // Whether each run has windows to fit and to predict.
   bool Possible() const {
-    return runs_.size() > 1 && std::all_of(windows_.begin(), windows_.end(), [](const WindowsOfRun& windows) {
-             return !windows.fitted.empty() && !windows.predicted.empty();
+    return runs_.size() > 1 &&
+           std::all_of(windows_.begin(), windows_.end(), [](const SearchWindows& windows) {
+             return !windows.fitted.empty() && !windows.choosing.empty();
            });
   }
 
@@ -104,7 +100,7 @@ class ByRun {
     value.values.resize(runs_.size());
     std::vector<HeldOut> common(runs_.size()), own(runs_.size());
     ParallelFor(runs_.size(), context_.jobs, [&](size_t r) {
-      const WindowsOfRun& windows = windows_[r];
+      const SearchWindows& windows = windows_[r];
       const std::vector<model::StartState> starts = MeasuredStarts(windows.fitted);
       const Fitted as_given = Fit(Holding(model_, {}), windows.fitted, starts, {});
       const Fitted fitted = Fit(Holding(model_, {base}), windows.fitted,
@@ -117,8 +113,8 @@ class ByRun {
       of_run.value = fitted.hypothesis.Free().front().value;
       of_run.low = interval.low;
       of_run.high = interval.high;
-      common[r] = Predict(as_given, windows.predicted, 1);
-      own[r] = Predict(fitted, windows.predicted, 1);
+      common[r] = Predict(as_given, windows.choosing, 1);
+      own[r] = Predict(fitted, windows.choosing, 1);
     });
     value.before = std::sqrt(Typical(common));
     value.after = std::sqrt(Typical(own));
@@ -135,7 +131,7 @@ class ByRun {
   const SearchContext& context_;
   const model::ModelDescription& model_;
   std::vector<const RunData*> runs_;
-  std::vector<WindowsOfRun> windows_;
+  std::vector<SearchWindows> windows_;
 };
 
 }  // namespace

@@ -77,9 +77,7 @@ std::vector<Rival> RivalsOf(const Change& change, const SearchResult& search, co
   std::vector<Rival> rivals;
   const Explanation* near = BestOf(windows.tried, ClaimOf(search.best.fitted.hypothesis));
   if (near == nullptr || LeastGap(windows.tried) < kOutOfReach) {
-    std::vector<const Explanation*> proved;
-    proved.reserve(search.tried.size() + 1);
-    for (const Explanation& one : search.tried) proved.push_back(&one);
+    std::vector<const Explanation*> proved = PointersToAll(search.tried);
     proved.push_back(&refit);
     AddRivals(change, proved, search.best, weights, &rivals);
   }

@@ -28,13 +28,6 @@ const Explanation* Find(const std::vector<const Explanation*>& tried, const Hypo
   return found;
 }
 
-std::vector<const Explanation*> PointersToAll(const std::vector<Explanation>& tried) {
-  std::vector<const Explanation*> all;
-  all.reserve(tried.size());
-  for (const Explanation& one : tried) all.push_back(&one);
-  return all;
-}
-
 double Part(double given, double with, double without) {
   if (!(given > 1) || !std::isfinite(without)) return std::numeric_limits<double>::quiet_NaN();
   return std::clamp((without - std::max(1.0, with)) / (given - 1), 0.0, 1.0);
@@ -57,8 +50,8 @@ double ShareOf(const SearchContext& context, const SearchResult& search, const W
   Explanation fitted;
   const Explanation* without = Find(PointersToAll(windows.tried), less);
   if (without == nullptr) {
-    const SearchWindows cut = WindowsForSearch(context.runs, context.given.parameters);
-    fitted = Explain(OnWindows(context, cut), less, StartsOf(near->fitted), FineFit(context.jobs));
+    const SearchContext on_windows = OnWindows(context, windows.fitted, windows.choosing);
+    fitted = Explain(on_windows, less, StartsOf(near->fitted), FineFit(context.jobs));
     without = &fitted;
   }
   if (!without->fitted.ok()) return std::numeric_limits<double>::quiet_NaN();

@@ -56,7 +56,7 @@ TEST_F(ProofTest, WindowsOfFittedRuns) {
   ASSERT_THAT(windows.fitted, Not(IsEmpty()));
   ASSERT_THAT(windows.choosing, Not(IsEmpty()));
   for (const RunData* fitted : windows.fitted) EXPECT_THAT(windows.choosing, Not(Contains(fitted)));
-  const SearchContext on_windows = OnWindows(context_, windows);
+  const SearchContext on_windows = OnWindows(context_, windows.fitted, windows.choosing);
   EXPECT_TRUE(on_windows.windows);
   EXPECT_EQ(on_windows.runs, windows.fitted);
   EXPECT_EQ(on_windows.held_out, windows.choosing);
@@ -66,7 +66,8 @@ TEST_F(ProofTest, WindowsOfFittedRuns) {
 // no better, and that the refit of all values is there to compare.
 TEST_F(ProofTest, FindsAWrongValue) {
   const SearchWindows windows = WindowsForSearch(context_.runs, given_.model.parameters);
-  const WideSearch near = SearchWidely(OnWindows(context_, windows), given_, {model::BasePlace("b")});
+  const WideSearch near =
+      SearchWidely(OnWindows(context_, windows.fitted, windows.choosing), given_, {model::BasePlace("b")});
   const std::vector<const Explanation*> leading = Leading(near.search, 3);
   ASSERT_THAT(leading, Not(IsEmpty()));
   ASSERT_THAT(leading[0]->changes(), SizeIs(1));
