@@ -42,14 +42,14 @@ LinearModel Linearise(const Equations& equations, double time, double voltage, c
   inputs[n] = Jet(voltage);
   for (int first = 0; first <= n; first += kJetWidth) {
     const int last = std::min(n + 1, first + kJetWidth);
-    for (int j = first; j < last; ++j) inputs[j].v[j - first] = 1;
+    for (int j = first; j < last; ++j) inputs[j].SetDerivative(j - first, 1);
     equations.Differentiate(time, inputs[n], mode, inputs, rate, &measured);
     for (int j = first; j < last; ++j) {
       double* const rates = j < n ? &model.A[j * n] : model.B.data();
       double* const outputs = j < n ? &model.C[j * kOutputs] : model.D.data();
       for (int i = 0; i < n; ++i) rates[i] = rate[i].v[j - first];
       for (int i = 0; i < kOutputs; ++i) outputs[i] = Output(measured, i).v[j - first];
-      inputs[j].v[j - first] = 0;
+      inputs[j].SetDerivative(j - first, 0);
     }
   }
   for (int i = 0; i < n; ++i) model.rate[i] = rate[i].a;

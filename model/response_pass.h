@@ -73,7 +73,7 @@ inline void Seed(const std::vector<Unknown>& unknowns, size_t first, NumbersOf<J
     Jet& seeded = unknown.kind == Unknown::Kind::kBase     ? BaseValue(numbers->parameters, unknown.index)
                   : unknown.kind == Unknown::Kind::kEffect ? numbers->own.at(unknown.index)
                                                            : base[unknown.index];
-    seeded.v[u - first] = 1;
+    seeded.SetDerivative(static_cast<int>(u - first), 1);
   }
 }
 
@@ -116,7 +116,7 @@ void Pass(const ModelDescription& model, const Stimulus& stimulus, const StartSt
       if (values) response->values[c][row] = ValueOf(value);
       if constexpr (!std::is_same_v<T, double>) {
         for (size_t u = first; u < last; ++u) {
-          response->derivatives[u][c][row] = value.v[u - first];
+          response->derivatives[u][c][row] = value.v[static_cast<int>(u - first)];
         }
       }
     }

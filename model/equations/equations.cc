@@ -225,11 +225,11 @@ void Equations::Jacobian(double time, double voltage, const Mode& mode, const do
   for (int i = 0; i < n; ++i) y[i] = Jet(state[i]);
   for (int first = 0; first < n; first += kJetWidth) {
     const int last = std::min(n, first + kJetWidth);
-    for (int j = first; j < last; ++j) y[j].v[j - first] = 1;
+    for (int j = first; j < last; ++j) y[j].SetDerivative(j - first, 1);
     RatesWithDerivatives(data_, time, Jet(voltage), mode, y, false, rate);
     for (int j = first; j < last; ++j) {
       for (int i = 0; i < n; ++i) jacobian[i + j * n] = rate[i].v[j - first];
-      y[j].v[j - first] = 0;
+      y[j].SetDerivative(j - first, 0);
     }
   }
 }

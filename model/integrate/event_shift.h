@@ -15,14 +15,14 @@ inline Jet EventShift(const EquationData& m, double voltage, const Mode& mode, c
   const NumbersOf<Jet>& constants = *m.constants;
   for (int i = 0; i < m.states; ++i) {
     moving[i] = Jet(at.state[i].a);
-    moving[i].v[0] = at.rate[i].a;
+    moving[i].SetDerivative(0, at.rate[i].a);
   }
   EvaluateTerms<Form::kGeneral, Jet>(m, constants, at.time, Jet(voltage), mode, moving, rate, terms);
   FindMargins<Form::kGeneral, Jet>(m, constants, mode, terms, margin);
   double slope = margin[which].v[0];
   if (m.shaft == Shaft::kDriven || !m.effects.empty()) {  // they also depend on time
     constexpr double kShort = 1e-7;                       // s
-    for (int i = 0; i < m.states; ++i) moving[i].v[0] = 0;
+    for (int i = 0; i < m.states; ++i) moving[i].SetDerivative(0, 0);
     EvaluateTerms<Form::kGeneral, Jet>(m, constants, at.time - kShort, Jet(voltage), mode, moving, rate,
                                        terms);
     const double now = margin[which].a;

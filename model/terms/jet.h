@@ -10,13 +10,52 @@ namespace hydro::model {
 
 inline constexpr int kJetWidth = 8;
 
-struct Jet {
+// The derivatives. GCC handles a vector wider than the processor's registers number by number, through memory, in twice
+// the time, so there are four narrow ones unless the file is compiled for AVX-512.
+#if defined(__AVX512F__)
+// NOLINTNEXTLINE(modernize-use-using): the attribute is of GCC's and Clang's C++
+using JetVector [[gnu::vector_size(kJetWidth * sizeof(double)), gnu::aligned(16)]] = double;
+#else
+struct JetVector {
   // NOLINTNEXTLINE(modernize-use-using): the attribute is of GCC's and Clang's C++
-  using Vector [[gnu::vector_size(kJetWidth * sizeof(double)), gnu::aligned(16)]] = double;
+  using Piece [[gnu::vector_size(2 * sizeof(double))]] = double;
 
+  double operator[](int direction) const { return piece[direction / 2][direction % 2]; }
+
+  Piece piece[4];
+};
+static_assert(sizeof(JetVector) == kJetWidth * sizeof(double));
+
+// A vector whose pieces are of(0) to of(3).
+template <class Of>
+[[gnu::always_inline]] inline JetVector Pieces(const Of& of) {
+  return {{of(0), of(1), of(2), of(3)}};
+}
+[[gnu::always_inline]] inline JetVector operator-(const JetVector& x) {
+  return Pieces([&](int i) { return -x.piece[i]; });
+}
+[[gnu::always_inline]] inline JetVector operator+(const JetVector& x, const JetVector& y) {
+  return Pieces([&](int i) { return x.piece[i] + y.piece[i]; });
+}
+[[gnu::always_inline]] inline JetVector operator-(const JetVector& x, const JetVector& y) {
+  return Pieces([&](int i) { return x.piece[i] - y.piece[i]; });
+}
+[[gnu::always_inline]] inline JetVector operator*(const JetVector& x, double y) {
+  return Pieces([&](int i) { return x.piece[i] * y; });
+}
+[[gnu::always_inline]] inline JetVector operator*(double x, const JetVector& y) { return y * x; }
+[[gnu::always_inline]] inline JetVector operator/(const JetVector& x, double y) {
+  return Pieces([&](int i) { return x.piece[i] / y; });
+}
+inline JetVector& operator+=(JetVector& x, const JetVector& y) { return x = x + y; }
+inline JetVector& operator-=(JetVector& x, const JetVector& y) { return x = x - y; }
+inline JetVector& operator*=(JetVector& x, double y) { return x = x * y; }
+#endif
+
+struct Jet {
   Jet() : a(0), v{} {}
   explicit Jet(double value) : a(value), v{} {}
-  Jet(double value, const Vector& derivatives) : a(value), v(derivatives) {}
+  Jet(double value, const JetVector& derivatives) : a(value), v(derivatives) {}
 
   Jet& operator+=(const Jet& y) {
     a += y.a;
@@ -52,8 +91,16 @@ struct Jet {
     return *this;
   }
 
-  double a;  // the value
-  Vector v;  // d/d each direction
+  void SetDerivative(int direction, double derivative) {
+#if defined(__AVX512F__)
+    v[direction] = derivative;
+#else
+    v.piece[direction / 2][direction % 2] = derivative;
+#endif
+  }
+
+  double a;     // the value
+  JetVector v;  // d/d each direction
 };
 
 inline Jet operator+(const Jet& x) { return x; }

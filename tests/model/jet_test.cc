@@ -14,7 +14,7 @@ namespace {
 
 Jet Seeded(double value, int direction) {
   Jet jet(value);
-  jet.v[direction] = 1;
+  jet.SetDerivative(direction, 1);
   return jet;
 }
 

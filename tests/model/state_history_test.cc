@@ -15,20 +15,20 @@ TEST(StateHistory, InterpolatesWithDerivatives) {
   model::StateHistory<model::Jet> history(1, 10);
   for (const double t : {0.0, 0.3, 0.35, 0.35, 1.0}) {
     model::Jet y(value(t)), rate(slope(t));
-    y.v[3] = 2 * t;  // another parameter's
-    rate.v[3] = 2;
+    y.SetDerivative(3, 2 * t);  // another parameter's
+    rate.SetDerivative(3, 2);
     history.Add(t, &y, &rate);
   }
   for (const double t : {0.0, 0.1, 0.299, 0.3, 0.35, 0.5, 0.99, 1.0}) {
     model::Jet time(t), state;
-    time.v[0] = -1;  // a delay's
+    time.SetDerivative(0, -1);  // a delay's
     history.At(&time, &state);
     EXPECT_NEAR(state.a, value(t), 1e-12) << t;
     EXPECT_NEAR(state.v[0], -slope(t), 1e-12) << t;
     EXPECT_NEAR(state.v[3], 2 * t, 1e-12) << t;
   }
   model::Jet before(-0.5), state;
-  before.v[0] = -1;
+  before.SetDerivative(0, -1);
   history.At(&before, &state);
   EXPECT_EQ(state.a, 1);
   EXPECT_EQ(state.v[0], 0);
