@@ -116,21 +116,20 @@ class FitProblem {
     fitted.hypothesis = hypothesis_;
     std::vector<double> values, at;
     for (size_t i = 0; i < free_.size(); ++i) {
-      values.push_back(std::clamp(free_[i].FromFitted(values_[i]), free_[i].low, free_[i].high));
-      at.push_back(free_[i].ToFitted(values[i]));
+      const double value = free_[i].FromFitted(values_[i]);
+      values.push_back(std::clamp(value, free_[i].low, free_[i].high));
+      at.push_back(values[i] == value ? values_[i] : free_[i].ToFitted(values[i]));
     }
     fitted.hypothesis.Set(values);
-    std::vector<MatrixXd> normals(runs_.size());
-    std::vector<char> simulated(runs_.size());
-    ParallelFor(runs_.size(), jobs_, [&](size_t r) {
-      simulated[r] = costs_[r]->Normal(at.data(), start_values_[r].data(), true, &normals[r]);
-    });
+    std::vector<const MatrixXd*> normals(runs_.size());
+    ParallelFor(runs_.size(), jobs_,
+                [&](size_t r) { normals[r] = costs_[r]->Normal(at.data(), start_values_[r].data()); });
     for (size_t r = 0; r < runs_.size(); ++r) {
-      if (!simulated[r]) {
+      if (normals[r] == nullptr) {
         fitted.failure = kCannotBeSimulated;
         return fitted;
       }
-      fitted.runs.push_back(ResultOf(r, normals[r]));
+      fitted.runs.push_back(ResultOf(r, *normals[r]));
       fitted.sum += fitted.runs.back().sum;
       fitted.count += fitted.runs.back().count;
     }

@@ -1,5 +1,6 @@
 #include "diagnose/fit/run_cost.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "maths/solve.h"
@@ -22,15 +23,33 @@ RunCost::RunCost(const Hypothesis& hypothesis, const RunData& run, const model::
 }
 
 void RunCost::Prepare(const double* free, const double* start, bool derivatives) {
-  can_be_simulated_ = Normal(free, start, derivatives, &prepared_);
+  with_derivatives_ = derivatives;
+  if (!derivatives) {
+    can_be_simulated_ = Simulate(free, start, false, &sum_);
+    return;
+  }
+  at_.assign(free, free + free_.size());
+  at_.insert(at_.end(), start, start + starts_.size());
+  can_be_simulated_ = Simulate(free, start, true, &normal_);
+  if (!can_be_simulated_) at_.clear();
+}
+
+const MatrixXd* RunCost::Normal(const double* free, const double* start) {
+  const size_t p = free_.size();
+  const bool there = at_.size() == unknowns() && normal_.size() > 0 &&
+                     std::equal(free, free + p, at_.data()) &&
+                     std::equal(start, start + starts_.size(), at_.data() + p);
+  if (there) return &normal_;
+  Prepare(free, start, true);
+  return can_be_simulated_ ? &normal_ : nullptr;
 }
 
 bool RunCost::Evaluate(double const* const* /*parameters*/, double* residuals, double** jacobians) const {
   const auto p = static_cast<Eigen::Index>(free_.size());
   const auto n = static_cast<Eigen::Index>(unknowns());
   Map<VectorXd> out(residuals, n + 1);
-  const MatrixXd& normal = prepared_;
-  if (!can_be_simulated_ || (jacobians != nullptr && normal.rows() != n + 1)) return false;
+  const MatrixXd& normal = with_derivatives_ ? normal_ : sum_;
+  if (!can_be_simulated_ || (jacobians != nullptr && !with_derivatives_)) return false;
   out.setZero();
   if (jacobians == nullptr) {
     out(0) = std::sqrt(normal(normal.rows() - 1, normal.rows() - 1));
@@ -51,7 +70,7 @@ bool RunCost::Evaluate(double const* const* /*parameters*/, double* residuals, d
   return true;
 }
 
-bool RunCost::Normal(const double* free, const double* start, bool derivatives, MatrixXd* normal) const {
+bool RunCost::Simulate(const double* free, const double* start, bool derivatives, MatrixXd* normal) {
   Hypothesis point = hypothesis_;
   std::vector<FreeParameter> at = free_;
   std::vector<double> values;

@@ -25,24 +25,30 @@ class RunCost : public ceres::CostFunction {
   // Evaluates at the prepared point.
   bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override;
 
-  // [J r]' [J r] at the point, or only r'r without derivatives. False where the run cannot be simulated.
-  bool Normal(const double* free, const double* start, bool derivatives, Eigen::MatrixXd* normal) const;
+  // [J r]' [J r] at the point; null where the run cannot be simulated. Valid until the next call. Costs nothing at the point
+  // of the last derivatives, where a solver ends.
+  const Eigen::MatrixXd* Normal(const double* free, const double* start);
 
-  // How many residuals the last call of Normal with derivatives had.
+  // How many residuals the run had where derivatives were last computed.
   size_t count() const { return count_; }
   const std::vector<model::Unknown>& starts() const { return starts_; }
 
  private:
   size_t unknowns() const { return free_.size() + starts_.size(); }
+  // [J r]' [J r] at the point, or only r'r without derivatives. False where the run cannot be simulated.
+  bool Simulate(const double* free, const double* start, bool derivatives, Eigen::MatrixXd* normal);
 
   const Hypothesis& hypothesis_;
   std::vector<FreeParameter> free_;
   const RunData& run_;
   model::StartState start_;
   std::vector<model::Unknown> starts_;
-  mutable size_t count_ = 0;
-  Eigen::MatrixXd prepared_;
+  size_t count_ = 0;
   bool can_be_simulated_ = false;
+  bool with_derivatives_ = false;  // what was prepared last
+  Eigen::MatrixXd sum_;            // r'r of the last point without derivatives
+  Eigen::MatrixXd normal_;         // of the last point with derivatives, which is `at_`
+  std::vector<double> at_;
 };
 
 }  // namespace hydro::diagnose

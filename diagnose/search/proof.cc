@@ -49,7 +49,7 @@ WindowTrials TrialsOn(SearchWindows windows, const WideSearch& near, bool decide
 void SearchOn(const SearchContext& context, SearchResult* proved) {
   const int changes = static_cast<int>(proved->best.changes().size());
   if (changes >= kMostChanges) return;
-  SearchResult more = Search(context, proved->best, kMostChanges - changes);
+  SearchResult more = Search(context, proved->best, {kMostChanges - changes});
   if (Material(proved->best.held_out_gap(), more.best.held_out_gap())) proved->best = std::move(more.best);
   proved->tried.insert(proved->tried.end(), more.tried.begin(), more.tried.end());
 }
@@ -73,7 +73,9 @@ Explanation FittedToWholeRuns(const SearchContext& context, const Hypothesis& hy
   std::vector<RunData> thinned;
   for (const RunData* run : context.runs) thinned.push_back(ThinnedCopy(*run));
   Explanation whole;
-  whole.fitted = Fit(hypothesis, PointersTo(thinned), starts, FineFit(context.jobs));
+  FitOptions coarse = FineFit(context.jobs);
+  coarse.tolerance = 1e-3;
+  whole.fitted = Fit(hypothesis, PointersTo(thinned), starts, coarse);
   return whole.fitted.ok() ? Explain(context, whole.fitted.hypothesis, StartsOf(whole.fitted), held) : whole;
 }
 

@@ -8,9 +8,6 @@
 
 namespace hydro::diagnose {
 
-// Above this squared gap on windows, no explanation reaches the noise on whole runs: a window's start is free.
-inline constexpr double kOutOfReach = 2.5;
-
 // Searches on windows (window_search.h), fits what leads there to the whole runs, and predicts those held out.
 // Where that does not reach the noise although windows come near it, searches on from there on the whole runs:
 // what is small or slow shows only over long times. `allowed` as in SearchWidely.

@@ -25,18 +25,27 @@ Hypothesis Moved(const Hypothesis& hypothesis, size_t place, double by) {
   return moved;
 }
 
-// The best fit begun around where this one ended; this one itself where none is better.
-Fitted BestAround(const SearchContext& context, const Fitted& fitted, size_t place, FitOptions options) {
-  options.jobs = 1;
+// The fit begun at the best place around where this one ended, which is told from fits that hold the model's own parameters;
+// this one itself where it is no better.
+Fitted BestAround(const SearchContext& context, const Fitted& fitted, size_t place,
+                  const FitOptions& options) {
+  FitOptions alone = options;
+  alone.jobs = 1;
   std::array<Fitted, kElsewhere.size()> fits;
   ParallelFor(fits.size(), context.jobs, [&](size_t i) {
-    fits[i] = Fit(Moved(fitted.hypothesis, place, kElsewhere[i]), context.runs, StartsOf(fitted), options);
+    Hypothesis moved = Moved(fitted.hypothesis, place, kElsewhere[i]);
+    moved.base.clear();
+    fits[i] = Fit(moved, context.runs, StartsOf(fitted), alone);
   });
-  Fitted best = fitted;
-  for (Fitted& fit : fits) {
-    if (fit.ok() && fit.sum < best.sum) best = std::move(fit);
+  const Fitted* best = nullptr;
+  for (const Fitted& fit : fits) {
+    if (fit.ok() && (best == nullptr || fit.sum < best->sum)) best = &fit;
   }
-  return best;
+  if (best == nullptr) return fitted;
+  Hypothesis from = fitted.hypothesis;
+  from.model = best->hypothesis.model;
+  Fitted refitted = Fit(from, context.runs, StartsOf(*best), options);
+  return refitted.ok() && refitted.sum < fitted.sum ? refitted : fitted;
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include "diagnose/fit/start_fit.h"
 #include "diagnose/search/parameter_instead.h"
 #include "diagnose/search/periodic_starts.h"
+#include "diagnose/search/race.h"
 #include "diagnose/search/refits.h"
 #include "diagnose/search/resonance.h"
 #include "diagnose/search/scan.h"
@@ -36,18 +37,16 @@ constexpr size_t kFinalists = 3;
 // Above this squared gap of the fit, an explanation with a change removed is not refitted from other starts.
 constexpr double kRefitBelow = 3;
 
-// A refit that has come no nearer than this many times the best one's sum of squares after a few iterations
-// is left as it is.
-constexpr int kIterationsToQualify = 3;
-constexpr double kOutOfTheRace = 3;
-
 // The part of the windows' squared gap that each further change has to take, far from the noise.
 constexpr double kLeastShareOfMore = 0.4;
-// Above this squared gap, windows are far from the noise, and finalists are fitted to this tolerance.
-constexpr double kFar = 9;
+// In a race, another change has to come to this part of the sum of squares that it is added to, far from the noise; one to the
+// model as given to this many times that of the rival.
+constexpr double kToStay = 0.9;
+constexpr double kRivalTimes = 1.5;
+constexpr double kNoLimit = std::numeric_limits<double>::infinity();
+// Windows are fitted to this tolerance, to tell what is better, and what was best in the end to the finer one.
 constexpr double kToCompare = 1e-3;
-
-constexpr char kNoTime[] = "the time limit ended the search";
+constexpr double kToSettle = 1e-4;
 
 double CostOf(const Explanation& one) {
   return Cost(one.held_out_gap(), NumbersFactor(one.fitted.hypothesis));
@@ -65,17 +64,18 @@ bool CanAdd(const Hypothesis& hypothesis, const Change& change) {
 
 class Searcher {
  public:
-  Searcher(const SearchContext& context, int most_changes, bool thorough)
-      : context_(context), most_changes_(most_changes), thorough_(thorough) {
+  Searcher(const SearchContext& context, const SearchOptions& options)
+      : context_(context), most_changes_(options.most_changes), options_(options) {
     coarse_.most_iterations = 8;
-    coarse_.tolerance = 1e-3;
+    coarse_.tolerance = kToCompare;
+    if (context.windows) fine_.tolerance = kToCompare;
   }
 
   SearchResult Run(const Explanation& from) {
     result_.given = result_.best = from;
-    Grow(Extend({from}, 0), 0);
+    Grow(Extend({from}, 0, {options_.rival, kRivalTimes}), 0);
     const bool nothing = result_.best.changes().size() == from.changes().size();
-    if (thorough_ && nothing && result_.best.held_out_gap() >= kCloseEnough && !TimeIsUp(context_)) {
+    if (options_.thorough && nothing && result_.best.held_out_gap() >= kCloseEnough && !TimeIsUp(context_)) {
       Grow(TryMore(), 0);
     }
     if (!TimeIsUp(context_)) Exchange();
@@ -83,13 +83,8 @@ class Searcher {
     if (const Explanation* instead = ParameterInstead(result_, context_.given)) {
       result_.best = *instead;
     }
-    if (AreFar(result_.best.squared_gap()) && !TimeIsUp(context_)) {
-      const Explanation& best = result_.best;
-      Explanation settled =
-          Explain(context_, best.fitted.hypothesis, StartsOf(best.fitted), WithAllJobs(fine_));
-      if (settled.fitted.ok()) result_.best = std::move(settled);
-    }
     result_.best = AtBestResonance(context_, result_.best, WithAllJobs(fine_));
+    if (context_.windows && !TimeIsUp(context_)) Settle();
     return result_;
   }
 
@@ -100,15 +95,17 @@ class Searcher {
     return options;
   }
 
-  // Whether windows with this squared gap are far from the noise. Whole runs never count as that.
-  bool AreFar(double squared_gap) const { return context_.windows && squared_gap > kFar; }
-
-  // How a finalist is fitted: windows far from the noise only as well as it takes to tell what is better.
-  FitOptions ToCompare(const Fitted& fit) const {
-    FitOptions options = fine_;
-    if (AreFar(fit.squared_gap())) options.tolerance = kToCompare;
-    return options;
+  // Fits the best explanation of windows finely.
+  void Settle() {
+    FitOptions options = WithAllJobs(fine_);
+    options.tolerance = kToSettle;
+    const Fitted& best = result_.best.fitted;
+    Explanation settled = Explain(context_, best.hypothesis, StartsOf(best), options);
+    if (settled.fitted.ok()) result_.best = std::move(settled);
   }
+
+  // Whether windows with this squared gap are far from the noise. Whole runs never count as that.
+  bool AreFar(double squared_gap) const { return context_.windows && squared_gap > kOutOfReach; }
 
   void ReportProgress(const std::string& stage, double fraction) const {
     if (context_.report_progress) context_.report_progress({stage, fraction});
@@ -135,7 +132,7 @@ class Searcher {
       result_.best = *best;
       if (result_.best.held_out_gap() < kCloseEnough || ++step >= most_changes_) return;
       if (TimeIsUp(context_)) return;
-      next = Extend(beam, step);
+      next = Extend(beam, step, {&result_.best.fitted, AreFar(result_.best.held_out_gap()) ? kToStay : 1});
     }
   }
 
@@ -153,13 +150,13 @@ class Searcher {
       pool.push_back(rows.front());
     }
     ReportProgress("refitting each effect", 0.8);
-    return FitAll(pool, StartsOf(result_.given.fitted));
+    return FitAll(pool, StartsOf(result_.given.fitted), {}, kNoLimit);
   }
 
   // Adds one more change to each hypothesis of the beam and fits it; returns the best few by their fit, with
   // held-out predictions. Those with a sum of squares above `most` are not predicted.
-  std::vector<Explanation> Extend(const std::vector<Explanation>& beam, int step,
-                                  double most = std::numeric_limits<double>::infinity()) {
+  std::vector<Explanation> Extend(const std::vector<Explanation>& beam, int step, const Bar& bar,
+                                  double most = kNoLimit) {
     std::vector<Scanned> pool, periodic;
     const double share = static_cast<double>(step) / most_changes_;
     for (const Explanation& from : beam) {
@@ -177,7 +174,7 @@ class Searcher {
         }
         scanned_alone_ = scanned;
       }
-      const bool exchange = most < std::numeric_limits<double>::infinity();
+      const bool exchange = most < kNoLimit;
       Pick(from.fitted, {step == 0 ? kRefitsAtFirst : kRefitsLater, exchange ? 1 : kStarts}, &scanned, &pool);
       for (const Hypothesis& one :
            WithPeriodic(from.fitted.hypothesis, changes, context_.runs, context_.jobs)) {
@@ -190,46 +187,13 @@ class Searcher {
     }
     pool.insert(pool.end(), periodic.begin(), periodic.end());
     ReportProgress("refitting the likeliest" + Step(step), share + 0.3 / most_changes_);
-    return FitAll(pool, StartsOf(beam.front().fitted), most);
-  }
-
-  // Fits all, with few iterations, and with more those that are then not far behind the best.
-  std::vector<Fitted> FitInRounds(const std::vector<Scanned>& pool,
-                                  const std::vector<model::StartState>& starts) const {
-    std::vector<Fitted> fits(pool.size());
-    FitOptions first = coarse_, rest = coarse_;
-    first.most_iterations = kIterationsToQualify;
-    rest.most_iterations = coarse_.most_iterations - kIterationsToQualify;
-    ParallelFor(pool.size(), context_.jobs, [&](size_t i) {
-      const std::vector<model::StartState>& own = pool[i].run_starts;
-      fits[i] = FitUnlessTimeIsUp(pool[i].start, own.empty() ? starts : own, first);
-    });
-    double best = std::numeric_limits<double>::infinity();
-    for (const Fitted& fit : fits) {
-      if (fit.ok()) best = std::min(best, fit.sum);
-    }
-    ParallelFor(fits.size(), context_.jobs, [&](size_t i) {
-      if (!fits[i].ok() || fits[i].sum > kOutOfTheRace * best) return;
-      Fitted more = FitUnlessTimeIsUp(fits[i].hypothesis, StartsOf(fits[i]), rest);
-      if (more.ok()) fits[i] = std::move(more);
-    });
-    return fits;
-  }
-
-  Fitted FitUnlessTimeIsUp(const Hypothesis& hypothesis, const std::vector<model::StartState>& starts,
-                           const FitOptions& options) const {
-    if (!TimeIsUp(context_)) return Fit(hypothesis, context_.runs, starts, options);
-    Fitted none;
-    none.hypothesis = hypothesis;
-    none.failure = kNoTime;
-    return none;
+    return FitAll(pool, StartsOf(beam.front().fitted), bar, most);
   }
 
   // Fits all; returns the best few by their fit, with held-out predictions.
   std::vector<Explanation> FitAll(const std::vector<Scanned>& pool,
-                                  const std::vector<model::StartState>& starts,
-                                  double most = std::numeric_limits<double>::infinity()) {
-    std::vector<Fitted> fits = FitInRounds(pool, starts);
+                                  const std::vector<model::StartState>& starts, const Bar& bar, double most) {
+    std::vector<Fitted> fits = Race(context_, pool, starts, coarse_, bar);
     for (const Fitted& fit : fits) {
       if (fit.ok()) continue;
       const bool by_another_start = std::any_of(fits.begin(), fits.end(), [&](const Fitted& other) {
@@ -243,7 +207,7 @@ class Searcher {
     while (finalists < std::min(best.size(), kFinalists) && best[finalists].sum <= worth) ++finalists;
     std::vector<Explanation> explained(finalists);
     ParallelFor(explained.size(), context_.jobs, [&](size_t i) {
-      explained[i] = Explain(context_, best[i].hypothesis, StartsOf(best[i]), ToCompare(best[i]));
+      explained[i] = Explain(context_, best[i].hypothesis, StartsOf(best[i]), fine_);
     });
     std::erase_if(explained, [](const Explanation& one) { return !one.fitted.ok(); });
     std::stable_sort(explained.begin(), explained.end(),
@@ -281,8 +245,8 @@ class Searcher {
         Explanation reduced;  // its own prediction is not needed
         reduced.fitted = Fit(less, context_.runs, StartsOf(result_.best.fitted), WithAllJobs(coarse_));
         if (!reduced.fitted.ok()) continue;
-        std::vector<Explanation> others =
-            Extend({reduced}, most_changes_, kNearlyAsGood * result_.best.fitted.sum);
+        std::vector<Explanation> others = Extend({reduced}, most_changes_, {&result_.best.fitted, kBehind},
+                                                 kNearlyAsGood * result_.best.fitted.sum);
         for (const Explanation& other : others) {
           if (other.fitted.sum < 0.98 * result_.best.fitted.sum &&
               other.held_out_gap() < result_.best.held_out_gap()) {
@@ -318,7 +282,7 @@ class Searcher {
 
   const SearchContext& context_;
   int most_changes_;
-  bool thorough_;
+  SearchOptions options_;
   FitOptions coarse_, fine_ = FineFit(1);
   SearchResult result_;
   std::vector<std::vector<Scanned>> scanned_alone_;  // every change to the given model
@@ -327,8 +291,8 @@ class Searcher {
 
 }  // namespace
 
-SearchResult Search(const SearchContext& context, const Explanation& from, int most_changes, bool thorough) {
-  return Searcher(context, most_changes, thorough).Run(from);
+SearchResult Search(const SearchContext& context, const Explanation& from, const SearchOptions& options) {
+  return Searcher(context, options).Run(from);
 }
 
 }  // namespace hydro::diagnose

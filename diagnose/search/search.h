@@ -29,10 +29,17 @@ struct SearchResult {
 inline constexpr int kMostChanges = 3;
 // Below this squared gap on held-out runs, nothing is left to search for.
 inline constexpr double kCloseEnough = 1.25;
+// Above this squared gap on windows, no explanation reaches the noise on whole runs: a window's start is free.
+inline constexpr double kOutOfReach = 2.5;
 
-// Searches from `from`, without changes of its own and fitted. `thorough`: where the score test's likeliest changes
-// do not explain the runs, more are refitted.
-SearchResult Search(const SearchContext& context, const Explanation& from, int most_changes,
-                    bool thorough = true);
+struct SearchOptions {
+  int most_changes = kMostChanges;
+  bool thorough =
+      true;  // where the score test's likeliest changes do not explain the runs, more are refitted
+  const Fitted* rival = nullptr;  // single changes that stay far behind it are not followed up
+};
+
+// Searches from `from`, without changes of its own and fitted.
+SearchResult Search(const SearchContext& context, const Explanation& from, const SearchOptions& options = {});
 
 }  // namespace hydro::diagnose

@@ -54,9 +54,8 @@ Explanation WithValuesAsGiven(const SearchContext& context, const Hypothesis& as
   return Explain(context, sparse, StartsOf(best.fitted), FineFit(context.jobs));
 }
 
-void SearchFrom(const SearchContext& context, const Explanation& from, int most_changes,
-                SearchResult* search) {
-  SearchResult more = Search(context, from, most_changes);
+void SearchFrom(const SearchContext& context, const Explanation& from, SearchResult* search) {
+  SearchResult more = Search(context, from);
   if (Material(search->best.held_out_gap(), more.best.held_out_gap())) search->best = std::move(more.best);
   search->tried.insert(search->tried.end(), more.tried.begin(), more.tried.end());
 }
@@ -77,12 +76,12 @@ WideSearch SearchWidely(const SearchContext& context, const Hypothesis& as_given
   wide.refit = Refit(context, as_given, wide.search.given, allowed);
   // One wrong value or one missing effect is the likeliest.
   const Explanation given = wide.search.given;
-  wide.search = Search(context, given, 1, false);
+  wide.search = Search(context, given, {1, false, context.windows ? &wide.refit.fitted : nullptr});
   if (closed() || TimeIsUp(context)) return wide;
   // No machine has exactly the values that its model has.
   wide.search.tried.push_back(wide.refit);
   if (Material(wide.search.best.held_out_gap(), wide.refit.held_out_gap())) wide.search.best = wide.refit;
-  SearchFrom(context, wide.refit, kMostChanges, &wide.search);
+  SearchFrom(context, wide.refit, &wide.search);
   const Explanation sparse = WithValuesAsGiven(context, as_given, wide.search.best);
   if (sparse.fitted.ok() && !Material(sparse.held_out_gap(), wide.search.best.held_out_gap())) {
     wide.search.best = sparse;
@@ -90,7 +89,7 @@ WideSearch SearchWidely(const SearchContext& context, const Hypothesis& as_given
   }
   // Several wrong values or missing effects beside values that are right.
   const bool found = !wide.search.best.changes().empty();
-  if (!closed() && !found && !TimeIsUp(context)) SearchFrom(context, given, kMostChanges, &wide.search);
+  if (!closed() && !found && !TimeIsUp(context)) SearchFrom(context, given, &wide.search);
   return wide;
 }
 
