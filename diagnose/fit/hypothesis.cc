@@ -183,6 +183,24 @@ std::vector<FreeParameter> HeldParameters(const Hypothesis& hypothesis) {
   return parameters;
 }
 
+namespace {
+
+// Where fits of the effect's parameter begin.
+std::vector<double> StartsOf(const model::ParameterInfo& parameter, const Sizes& sizes) {
+  std::vector<double> starts;
+  if (parameter.role == model::Role::kFrequency && !sizes.ringing.empty()) {
+    // What a resonance is coupled to moves it.
+    for (const double frequency : sizes.ringing) {
+      for (const double factor : {0.7, 0.83, 1.0}) starts.push_back(factor * frequency);
+    }
+    return starts;
+  }
+  for (const double start : parameter.starts) starts.push_back(start * sizes.Of(parameter.scale));
+  return starts;
+}
+
+}  // namespace
+
 std::vector<Hypothesis> With(const Hypothesis& hypothesis, const Change& change, const Sizes& sizes,
                              bool elsewhere) {
   Hypothesis more = hypothesis;
@@ -206,9 +224,9 @@ std::vector<Hypothesis> With(const Hypothesis& hypothesis, const Change& change,
     if (parameter.is_name()) continue;
     std::vector<Hypothesis> next;
     for (const Hypothesis& one : all) {
-      for (const double start : parameter.starts) {
+      for (const double start : StartsOf(parameter, sizes)) {
         next.push_back(one);
-        next.back().model.effects.back().parameters[parameter.name] = start * sizes.Of(parameter.scale);
+        next.back().model.effects.back().parameters[parameter.name] = start;
       }
     }
     all = std::move(next);

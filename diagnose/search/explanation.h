@@ -37,6 +37,7 @@ struct SearchContext {
   bool windows = false;                  // the runs are windows of runs
   std::vector<Change> changes;           // those that may be made
   Sizes sizes;
+  std::vector<double> ringing;  // frequencies at which the runs ring although the refitted model does not, Hz
   int jobs = 1;
   uint64_t seed = 1;
   // The runs that an explanation's held_out speaks of.

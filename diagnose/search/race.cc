@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "base/parallel.h"
+#include "diagnose/fit/residuals.h"
 #include "diagnose/search/refits.h"
 
 namespace hydro::diagnose {
@@ -44,6 +45,42 @@ double MostOf(const Bar& bar, const std::vector<size_t>& sample) {
   double sum = 0;
   for (const size_t r : sample) sum += bar.rival->runs[r].sum;
   return bar.times * sum;
+}
+
+Entry Some(const Entry& all, const std::vector<size_t>& sample) {
+  Entry some;
+  for (const size_t r : sample) {
+    some.runs.push_back(all.runs[r]);
+    some.starts.push_back(all.starts[r]);
+  }
+  return some;
+}
+
+double SumAt(const Hypothesis& hypothesis, const RunData& run, const model::StartState& start) {
+  double sum = 0;
+  try {
+    for (const double value : ResidualsOf(hypothesis.model, run, start).values) sum += value * value;
+  } catch (const model::ModelError&) {
+    return std::numeric_limits<double>::infinity();
+  }
+  return sum;
+}
+
+// Takes the starts of the sample from the fit, and of each other run what it predicts better from: its start so far, which made
+// up for what was missing, or the measured one.
+void StartOthers(const Fitted& fit, const std::vector<size_t>& sample, Entry* entry) {
+  std::vector<bool> fitted(entry->runs.size());
+  for (size_t s = 0; s < sample.size(); ++s) {
+    entry->starts[sample[s]] = fit.runs[s].start;
+    fitted[sample[s]] = true;
+  }
+  for (size_t r = 0; r < fitted.size(); ++r) {
+    if (fitted[r]) continue;
+    const RunData& run = *entry->runs[r];
+    if (SumAt(fit.hypothesis, run, run.start) < SumAt(fit.hypothesis, run, entry->starts[r])) {
+      entry->starts[r] = run.start;
+    }
+  }
 }
 
 // As if all windows were fitted as well as the sample.
@@ -88,9 +125,8 @@ std::vector<bool> InTheRace(const std::vector<Fitted>& fits, double most) {
   return in;
 }
 
-std::vector<Fitted> Race(const SearchContext& context, const std::vector<Scanned>& pool,
-                         const std::vector<model::StartState>& starts, const FitOptions& options,
-                         const Bar& bar) {
+RaceResult Race(const SearchContext& context, const std::vector<Scanned>& pool,
+                const std::vector<model::StartState>& starts, const FitOptions& options, const Bar& bar) {
   FitOptions first = options, rest = options;
   first.most_iterations = kIterationsToQualify;
   rest.most_iterations = options.most_iterations - kIterationsToQualify;
@@ -102,28 +138,26 @@ std::vector<Fitted> Race(const SearchContext& context, const std::vector<Scanned
   std::vector<Entry> entries(pool.size());
   ParallelFor(pool.size(), context.jobs, [&](size_t i) {
     entries[i] = {context.runs, pool[i].run_starts.empty() ? starts : pool[i].run_starts};
-    Entry some;
-    for (const size_t r : sample) {
-      some.runs.push_back(context.runs[r]);
-      some.starts.push_back(entries[i].starts[r]);
-    }
-    fits[i] = FitUnlessTimeIsUp(context, pool[i].start, some, first);
-    for (size_t s = 0; fits[i].ok() && s < sample.size(); ++s) {
-      entries[i].starts[sample[s]] = fits[i].runs[s].start;
-    }
+    fits[i] = FitUnlessTimeIsUp(context, pool[i].start, Some(entries[i], sample), first);
   });
   const std::vector<bool> in = InTheRace(fits, MostOf(bar, sample));
   ParallelFor(fits.size(), context.jobs, [&](size_t i) {
-    if (!fits[i].ok()) return;
-    Fitted more;
-    if (in[i]) more = FitUnlessTimeIsUp(context, fits[i].hypothesis, entries[i], rest);
-    if (in[i] && more.ok()) {
-      fits[i] = std::move(more);
+    if (!in[i]) return;
+    StartOthers(fits[i], sample, &entries[i]);
+    fits[i] = FitUnlessTimeIsUp(context, fits[i].hypothesis, entries[i], rest);
+  });
+  RaceResult result;
+  for (size_t i = 0; i < fits.size(); ++i) {
+    if (!fits[i].ok()) {
+      result.failed.push_back(std::move(fits[i]));
+    } else if (in[i]) {
+      result.leading.push_back(std::move(fits[i]));
     } else {
       ScaleTo(context.runs, &fits[i]);
+      result.behind.push_back(std::move(fits[i]));
     }
-  });
-  return fits;
+  }
+  return result;
 }
 
 }  // namespace hydro::diagnose

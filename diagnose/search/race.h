@@ -14,12 +14,18 @@ struct Bar {
   double times = 1;               // its sum of squares
 };
 
+// What a race ended with, in the order of its pool.
+struct RaceResult {
+  std::vector<Fitted> leading;  // fitted to all windows
+  // Fitted to the sample: their sums of squares are scaled to all windows, and they have the sample's starts.
+  std::vector<Fitted> behind;
+  std::vector<Fitted> failed;  // or ended by the time limit
+};
+
 // Fits all of `pool` with a few of the options' iterations, of windows to a sample of them, and those that then lead with the
-// rest. The sum of squares of one that was left behind is that of the sample, scaled to all windows. `starts`: of each run,
-// where an entry of the pool has none of its own. In the order of `pool`; what the time limit ended fails.
-std::vector<Fitted> Race(const SearchContext& context, const std::vector<Scanned>& pool,
-                         const std::vector<model::StartState>& starts, const FitOptions& options,
-                         const Bar& bar);
+// rest. `starts`: of each run, where an entry of the pool has none of its own.
+RaceResult Race(const SearchContext& context, const std::vector<Scanned>& pool,
+                const std::vector<model::StartState>& starts, const FitOptions& options, const Bar& bar);
 
 // Which of `runs` windows a race begins with: a third of them, evenly spread, and the last few. All of a few.
 std::vector<size_t> RaceSample(size_t runs);

@@ -52,6 +52,14 @@ double CostOf(const Explanation& one) {
   return Cost(one.held_out_gap(), NumbersFactor(one.fitted.hypothesis));
 }
 
+bool IsResonance(const Change& change) {
+  if (change.effect.empty()) return false;
+  const std::vector<model::ParameterInfo>& parameters = model::FindEffect(change.effect)->parameters;
+  return std::any_of(parameters.begin(), parameters.end(), [](const model::ParameterInfo& parameter) {
+    return parameter.role == model::Role::kFrequency;
+  });
+}
+
 // A model cannot contain an effect twice, and nothing is changed twice.
 bool CanAdd(const Hypothesis& hypothesis, const Change& change) {
   if (change.effect.empty()) {
@@ -175,6 +183,7 @@ class Searcher {
         scanned_alone_ = scanned;
       }
       const bool exchange = most < kNoLimit;
+      PickRinging(from.fitted, changes, &pool);
       Pick(from.fitted, {step == 0 ? kRefitsAtFirst : kRefitsLater, exchange ? 1 : kStarts}, &scanned, &pool);
       for (const Hypothesis& one :
            WithPeriodic(from.fitted.hypothesis, changes, context_.runs, context_.jobs)) {
@@ -193,15 +202,14 @@ class Searcher {
   // Fits all; returns the best few by their fit, with held-out predictions.
   std::vector<Explanation> FitAll(const std::vector<Scanned>& pool,
                                   const std::vector<model::StartState>& starts, const Bar& bar, double most) {
-    std::vector<Fitted> fits = Race(context_, pool, starts, coarse_, bar);
-    for (const Fitted& fit : fits) {
-      if (fit.ok()) continue;
-      const bool by_another_start = std::any_of(fits.begin(), fits.end(), [&](const Fitted& other) {
-        return other.ok() && SameChanges(other.hypothesis, fit.hypothesis);
-      });
+    RaceResult race = Race(context_, pool, starts, coarse_, bar);
+    for (const Fitted& fit : race.failed) {
+      const auto same = [&](const Fitted& other) { return SameChanges(other.hypothesis, fit.hypothesis); };
+      const bool by_another_start = std::any_of(race.leading.begin(), race.leading.end(), same) ||
+                                    std::any_of(race.behind.begin(), race.behind.end(), same);
       if (!by_another_start) NoteFailure(fit);
     }
-    const std::vector<Fitted> best = BestOfEach(std::move(fits));
+    const std::vector<Fitted> best = BestOfEach(std::move(race.leading));
     size_t finalists = 0;
     const double worth = best.empty() ? 0 : std::min(most, kBehind * best.front().sum);
     while (finalists < std::min(best.size(), kFinalists) && best[finalists].sum <= worth) ++finalists;
@@ -213,12 +221,27 @@ class Searcher {
     std::stable_sort(explained.begin(), explained.end(),
                      [](const Explanation& a, const Explanation& b) { return a.fitted.sum < b.fitted.sum; });
     for (const Explanation& one : explained) result_.tried.push_back(one);
-    for (size_t i = finalists; i < best.size(); ++i) {
+    std::vector<Fitted> others = BestOfEach(std::move(race.behind));
+    others.insert(others.end(), best.begin() + static_cast<std::ptrdiff_t>(finalists), best.end());
+    for (Fitted& one : others) {
       Explanation fitted_only;
-      fitted_only.fitted = best[i];
-      result_.tried.push_back(fitted_only);
+      fitted_only.fitted = std::move(one);
+      result_.tried.push_back(std::move(fitted_only));
     }
     return explained;
+  }
+
+  // Resonances at the frequencies at which the runs ring: the score test, which is linear, may prefer others.
+  void PickRinging(const Fitted& from, const std::vector<Change>& changes, std::vector<Scanned>* pool) const {
+    std::vector<Change> resonances;
+    for (const Change& change : changes) {
+      if (IsResonance(change)) resonances.push_back(change);
+    }
+    if (context_.ringing.empty() || resonances.empty()) return;
+    Sizes sizes = context_.sizes;
+    sizes.ringing = context_.ringing;
+    auto scanned = Scan(from, context_.runs, resonances, sizes, false, context_.jobs);
+    Pick(from, {resonances.size(), kStarts}, &scanned, pool);
   }
 
   static std::string Step(int step) { return step == 0 ? "" : ", with " + std::to_string(step) + " found"; }

@@ -3,6 +3,8 @@
 #include <memory>
 #include <utility>
 
+#include "diagnose/search/ringing.h"
+
 namespace hydro::diagnose {
 
 namespace {
@@ -62,8 +64,9 @@ void SearchFrom(const SearchContext& context, const Explanation& from, SearchRes
 
 }  // namespace
 
-WideSearch SearchWidely(const SearchContext& context, const Hypothesis& as_given,
+WideSearch SearchWidely(const SearchContext& runs, const Hypothesis& as_given,
                         const std::vector<size_t>& allowed) {
+  SearchContext context = runs;
   WideSearch wide;
   const auto closed = [&] { return wide.search.best.held_out_gap() < kCloseEnough; };
   const auto report_progress = [&](const char* stage, double fraction) {
@@ -74,6 +77,9 @@ WideSearch SearchWidely(const SearchContext& context, const Hypothesis& as_given
   if (!wide.search.given.fitted.ok()) return wide;
   report_progress("refitting the model's own parameters", 0.02);
   wide.refit = Refit(context, as_given, wide.search.given, allowed);
+  if (context.windows) {
+    context.ringing = RingingFrequencies(wide.refit.fitted, context.runs, context.jobs);
+  }
   // One wrong value or one missing effect is the likeliest.
   const Explanation given = wide.search.given;
   wide.search = Search(context, given, {1, false, context.windows ? &wide.refit.fitted : nullptr});
