@@ -47,6 +47,7 @@ Explanation RefitFromOtherStarts(const SearchContext& context, const Explanation
   if (one.fitted.squared_gap() <= kStartInDoubt) return one;
   Explanation best = one;
   const auto begin_at = [&](const std::vector<model::StartState>& starts) {
+    if (TimeIsUp(context)) return;
     Explanation again = Explain(context, one.fitted.hypothesis, starts, options);
     if (again.fitted.ok() && again.fitted.sum < best.fitted.sum) best = std::move(again);
   };

@@ -58,7 +58,7 @@ Explanation AtBestResonance(const SearchContext& context, const Explanation& one
   const std::vector<FreeParameter> free = one.fitted.hypothesis.Free();
   for (size_t place = 0; place < free.size(); ++place) {
     if (free[place].role != model::Role::kFrequency) continue;
-    for (int round = 0; round < kRounds; ++round) {
+    for (int round = 0; round < kRounds && !TimeIsUp(context); ++round) {
       const Fitted other = BestAround(context, best.fitted, place, coarse);
       if (!(other.sum < best.fitted.sum)) break;
       Explanation explained = Explain(context, other.hypothesis, StartsOf(other), options);

@@ -82,7 +82,9 @@ WideSearch SearchWidely(const SearchContext& runs, const Hypothesis& as_given,
   }
   // One wrong value or one missing effect is the likeliest.
   const Explanation given = wide.search.given;
-  wide.search = Search(context, given, {1, false, context.windows ? &wide.refit.fitted : nullptr});
+  // Where the refit comes near the noise, one that does too may take more than a race to get there.
+  const bool rival = context.windows && wide.refit.held_out_gap() > kOutOfReach;
+  wide.search = Search(context, given, {1, false, rival ? &wide.refit.fitted : nullptr});
   if (closed() || TimeIsUp(context)) return wide;
   // No machine has exactly the values that its model has.
   wide.search.tried.push_back(wide.refit);

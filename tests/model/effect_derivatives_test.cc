@@ -18,7 +18,7 @@ std::vector<model::Jet> Evaluated(const model::Equations& equations, const model
                                   const std::vector<double>& state) {
   const model::EquationData& data = equations.data();
   model::NumbersOf<model::Jet> numbers = *data.constants;
-  for (size_t k = 0; k < numbers.own.size(); ++k) numbers.own[k].v[static_cast<int>(k)] = 1;
+  for (size_t k = 0; k < numbers.own.size(); ++k) numbers.own[k].SetDerivative(static_cast<int>(k), 1);
   model::CompleteNumbers<model::Jet>(data, &numbers);
   model::Jet y[model::kMaxStates], rate[model::kMaxStates], margin[model::kMaxSwitches];
   for (int i = 0; i < data.states; ++i) y[i] = model::Jet(state[i]);

@@ -30,8 +30,9 @@ struct Cost {
 // residuals.
 TEST(RunCost, KeepsTheNormalEquations) {
   Cost c;
-  Eigen::MatrixXd normal;
-  ASSERT_TRUE(c.cost.Normal(c.free.data(), c.start.data(), true, &normal));
+  const Eigen::MatrixXd* at_the_point = c.cost.Normal(c.free.data(), c.start.data());
+  ASSERT_NE(at_the_point, nullptr);
+  const Eigen::MatrixXd normal = *at_the_point;
   const auto p = static_cast<Eigen::Index>(c.free.size()), s = static_cast<Eigen::Index>(c.start.size());
   ASSERT_GT(s, 0);
   ASSERT_EQ(normal.rows(), p + s + 1);
@@ -52,19 +53,32 @@ TEST(RunCost, KeepsTheNormalEquations) {
 // Tests that without derivatives the cost is the same, and that nothing else is set.
 TEST(RunCost, WithoutDerivativesOnlyTheCost) {
   Cost c;
-  Eigen::MatrixXd normal, sum;
-  ASSERT_TRUE(c.cost.Normal(c.free.data(), c.start.data(), true, &normal));
-  ASSERT_TRUE(c.cost.Normal(c.free.data(), c.start.data(), false, &sum));
-  ASSERT_EQ(sum.size(), 1);
-  EXPECT_NEAR(sum(0, 0) / normal(normal.rows() - 1, normal.rows() - 1), 1, 1e-6);
+  const Eigen::MatrixXd* at_the_point = c.cost.Normal(c.free.data(), c.start.data());
+  ASSERT_NE(at_the_point, nullptr);
+  const Eigen::MatrixXd normal = *at_the_point;
+  const double sum = normal(normal.rows() - 1, normal.rows() - 1);
 
   c.cost.Prepare(c.free.data(), c.start.data(), false);
   Eigen::VectorXd residuals(normal.rows());
   ASSERT_TRUE(c.cost.Evaluate(nullptr, residuals.data(), nullptr));
-  EXPECT_NEAR(residuals.squaredNorm(), sum(0, 0), 1e-9 * sum(0, 0));
+  EXPECT_NEAR(residuals.squaredNorm() / sum, 1, 1e-6);
   EXPECT_EQ(residuals.tail(residuals.size() - 1).norm(), 0);
   double* jacobians[] = {nullptr, nullptr};
   EXPECT_FALSE(c.cost.Evaluate(nullptr, residuals.data(), jacobians));
+}
+
+// Tests that the normal equations follow the point, also where the solver has tried another one since.
+TEST(RunCost, NormalEquationsOfThePointAskedFor) {
+  Cost c, other;
+  other.free[0] += 0.1;
+  const Eigen::MatrixXd first = *c.cost.Normal(c.free.data(), c.start.data());
+  const Eigen::MatrixXd second = *c.cost.Normal(other.free.data(), c.start.data());
+  c.cost.Prepare(c.free.data(), c.start.data(), false);
+  const Eigen::MatrixXd second_again = *c.cost.Normal(other.free.data(), c.start.data());
+  const Eigen::MatrixXd first_again = *c.cost.Normal(c.free.data(), c.start.data());
+  EXPECT_NE(first, second);
+  EXPECT_EQ(first, first_again);
+  EXPECT_EQ(second, second_again);
 }
 
 }  // namespace

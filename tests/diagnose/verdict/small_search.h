@@ -31,7 +31,7 @@ struct SmallSearch {
     diagnose::Hypothesis given;
     given.model = context.given;
     const std::vector<model::StartState> starts = diagnose::MeasuredStarts(context.runs);
-    search = diagnose::Search(context, diagnose::Explain(context, given, starts, diagnose::FineFit(1)), 2);
+    search = diagnose::Search(context, diagnose::Explain(context, given, starts, diagnose::FineFit(1)), {2});
   }
 };
 
