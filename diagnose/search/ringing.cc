@@ -110,6 +110,7 @@ std::vector<double> RingingFrequencies(const Fitted& fitted, const std::vector<c
   std::sort(peaks.begin(), peaks.end());
   if (peaks.size() > kMostFrequencies) peaks.resize(kMostFrequencies);
   std::vector<double> frequencies;
+  frequencies.reserve(peaks.size());
   for (const auto& [minus_clearness, frequency] : peaks) frequencies.push_back(frequency);
   return frequencies;
 }
