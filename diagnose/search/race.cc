@@ -144,13 +144,14 @@ RaceResult Race(const SearchContext& context, const std::vector<Scanned>& pool,
   ParallelFor(fits.size(), context.jobs, [&](size_t i) {
     if (!in[i]) return;
     StartOthers(fits[i], sample, &entries[i]);
-    fits[i] = FitUnlessTimeIsUp(context, fits[i].hypothesis, entries[i], rest);
+    Fitted more = FitUnlessTimeIsUp(context, fits[i].hypothesis, entries[i], rest);
+    if (more.ok()) fits[i] = std::move(more);  // otherwise it keeps what it has
   });
   RaceResult result;
   for (size_t i = 0; i < fits.size(); ++i) {
     if (!fits[i].ok()) {
       result.failed.push_back(std::move(fits[i]));
-    } else if (in[i]) {
+    } else if (in[i] && fits[i].runs.size() == context.runs.size()) {
       result.leading.push_back(std::move(fits[i]));
     } else {
       ScaleTo(context.runs, &fits[i]);

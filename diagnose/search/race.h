@@ -17,9 +17,10 @@ struct Bar {
 // What a race ended with, in the order of its pool.
 struct RaceResult {
   std::vector<Fitted> leading;  // fitted to all windows
-  // Fitted to the sample: their sums of squares are scaled to all windows, and they have the sample's starts.
+  // Left behind, or ended by the time limit, after the fit to the sample: their sums of squares are scaled to all windows, and they
+  // have the sample's starts.
   std::vector<Fitted> behind;
-  std::vector<Fitted> failed;  // or ended by the time limit
+  std::vector<Fitted> failed;  // or not begun within the time limit
 };
 
 // Fits all of `pool` with a few of the options' iterations, of windows to a sample of them, and those that then lead with the

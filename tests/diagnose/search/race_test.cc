@@ -81,6 +81,14 @@ TEST(Race, LeadersAreFittedToAllWindows) {
       Race(on_windows, pool, MeasuredStarts(windows.fitted), options, {&race.leading[0], 0.1});
   EXPECT_THAT(barred.leading, SizeIs(0));
   EXPECT_THAT(barred.behind, SizeIs(2));
+  // A time limit that strikes after the fits to the sample leaves those.
+  SearchContext limited = on_windows;
+  int asked = 0;
+  limited.time_is_up = [&asked] { return ++asked > 2; };
+  const RaceResult ended = Race(limited, pool, MeasuredStarts(windows.fitted), options, {});
+  EXPECT_THAT(ended.leading, SizeIs(0));
+  EXPECT_THAT(ended.behind, SizeIs(2));
+  EXPECT_THAT(ended.failed, SizeIs(0));
 }
 
 }  // namespace
