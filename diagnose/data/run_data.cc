@@ -7,6 +7,7 @@
 #include "base/number_text.h"
 #include "base/text_file.h"
 #include "diagnose/data/run_start.h"
+#include "diagnose/data/sample_interval.h"
 #include "diagnose/data/smoothed_motion.h"
 
 namespace hydro::diagnose {
@@ -162,6 +163,25 @@ bool IsCompared(const runs::MeasuredRun& run, model::Channel channel) {
 size_t CountValid(const std::vector<double>& values) {
   return static_cast<size_t>(
       std::count_if(values.begin(), values.end(), [](double value) { return !std::isnan(value); }));
+}
+
+size_t CountValid(const RunData& run) {
+  size_t count = 0;
+  for (const SignalData& signal : run.signals) count += signal.valid;
+  return count;
+}
+
+double ShortestDuration(const std::vector<const RunData*>& runs) {
+  double shortest = runs.front()->duration();
+  for (const RunData* run : runs) shortest = std::min(shortest, run->duration());
+  return shortest;
+}
+
+double SampleInterval(const std::vector<const RunData*>& runs) {
+  std::vector<const std::vector<double>*> times;
+  times.reserve(runs.size());
+  for (const RunData* run : runs) times.push_back(&run->stimulus.time);
+  return MedianInterval(times);
 }
 
 model::Stimulus StimulusOf(const runs::MeasuredRun& run) {

@@ -65,6 +65,11 @@ const runs::SignalName& SignalOf(model::Channel channel);
 bool IsCompared(const runs::MeasuredRun& run, model::Channel channel);
 // Values that are not missing.
 size_t CountValid(const std::vector<double>& values);
+// The same of all signals that are compared.
+size_t CountValid(const RunData& run);
+// Of several runs: the shortest one's duration, and the median time between successive samples of all, s.
+double ShortestDuration(const std::vector<const RunData*>& runs);
+double SampleInterval(const std::vector<const RunData*>& runs);
 // What was done to the actuator, without the motion of a driven shaft.
 model::Stimulus StimulusOf(const runs::MeasuredRun& run);
 

@@ -36,7 +36,7 @@ HeldOut PredictRun(const Hypothesis& hypothesis, const RunData& run, const model
   }
   part.starts.push_back(from);
   part.sum = std::numeric_limits<double>::infinity();
-  for (const SignalData& signal : run.signals) part.count += signal.valid;
+  part.count = CountValid(run);
   return part;
 }
 

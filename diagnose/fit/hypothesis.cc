@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "diagnose/data/sample_interval.h"
-
 namespace hydro::diagnose {
 
 namespace {
@@ -154,16 +152,14 @@ Sizes SizesOf(const model::ModelDescription& model, const std::vector<const RunD
     std::nth_element(values.begin(), place, values.end());
     *size = std::max(*size, *place);
   };
-  std::vector<const std::vector<double>*> times;
   for (const RunData* run : runs) {
     largest(run->Find(model::Channel::kMotorSpeed), &sizes.speed);
     largest(run->Find(model::Channel::kP1), &sizes.pressure);
     largest(run->Find(model::Channel::kP2), &sizes.pressure);
-    times.push_back(&run->stimulus.time);
   }
   if (sizes.speed == 0) sizes.speed = p.T_pmax / std::max(p.b, 0.001 * p.T_pmax);
   if (sizes.pressure == 0) sizes.pressure = p.T_pmax / p.D;
-  sizes.sample = MedianInterval(times);
+  sizes.sample = SampleInterval(runs);
   sizes.flow = p.D * sizes.speed / sizes.pressure;
   sizes.arm_stiffness = p.J_a / (sizes.sample * sizes.sample);
   sizes.arm_damping = p.J_a / sizes.sample;

@@ -86,9 +86,7 @@ void StartOthers(const Fitted& fit, const std::vector<size_t>& sample, Entry* en
 // As if all windows were fitted as well as the sample.
 void ScaleTo(const std::vector<const RunData*>& runs, Fitted* fit) {
   size_t count = 0;
-  for (const RunData* run : runs) {
-    for (const SignalData& signal : run->signals) count += signal.valid;
-  }
+  for (const RunData* run : runs) count += CountValid(*run);
   fit->sum = fit->squared_gap() * static_cast<double>(count);
   fit->count = count;
 }

@@ -6,7 +6,6 @@
 #include <numbers>
 
 #include "base/parallel.h"
-#include "diagnose/data/sample_interval.h"
 #include "diagnose/fit/residuals.h"
 
 namespace hydro::diagnose {
@@ -22,15 +21,9 @@ constexpr size_t kMostFrequencies = 3;
 
 // The frequencies looked at.
 std::vector<double> Grid(const std::vector<const RunData*>& runs) {
-  std::vector<const std::vector<double>*> times;
-  double shortest = runs.front()->duration();
-  for (const RunData* run : runs) {
-    times.push_back(&run->stimulus.time);
-    shortest = std::min(shortest, run->duration());
-  }
   std::vector<double> grid;
-  const double highest = kMostOfRate / MedianInterval(times);
-  for (double f = kLeastPeriods / shortest; f < highest; f *= kStep) grid.push_back(f);
+  const double highest = kMostOfRate / SampleInterval(runs);
+  for (double f = kLeastPeriods / ShortestDuration(runs); f < highest; f *= kStep) grid.push_back(f);
   return grid;
 }
 
@@ -69,12 +62,13 @@ std::vector<double> SpectrumOf(const Fitted& fitted, size_t r, const RunData& ru
   for (size_t s = 0; s < run.signals.size(); ++s) {
     const SignalData& signal = run.signals[s];
     if (signal.channel != model::Channel::kP1 && signal.channel != model::Channel::kP2) continue;
-    std::vector<double> time, values;
+    std::vector<double> time;
     for (size_t k = 0; k < run.samples(); ++k) {
       if (!std::isnan(signal.values[k])) time.push_back(run.stimulus.time[k]);
     }
-    values.assign(residuals.values.begin() + static_cast<std::ptrdiff_t>(residuals.first[s]),
-                  residuals.values.begin() + static_cast<std::ptrdiff_t>(residuals.first[s + 1]));
+    const std::vector<double> values(
+        residuals.values.begin() + static_cast<std::ptrdiff_t>(residuals.first[s]),
+        residuals.values.begin() + static_cast<std::ptrdiff_t>(residuals.first[s + 1]));
     if (time.size() > 2) AddSpectrum(time, values, grid, &power);
   }
   return power;

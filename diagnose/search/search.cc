@@ -73,7 +73,7 @@ bool CanAdd(const Hypothesis& hypothesis, const Change& change) {
 class Searcher {
  public:
   Searcher(const SearchContext& context, const SearchOptions& options)
-      : context_(context), most_changes_(options.most_changes), options_(options) {
+      : context_(context), options_(options) {
     coarse_.most_iterations = 8;
     coarse_.tolerance = kToCompare;
     if (context.windows) fine_.tolerance = kToCompare;
@@ -138,7 +138,7 @@ class Searcher {
                                     next.begin() + static_cast<std::ptrdiff_t>(std::min(kBeam, next.size())));
       while (beam.size() > 1 && beam.back().fitted.sum > kBehind * beam.front().fitted.sum) beam.pop_back();
       result_.best = *best;
-      if (result_.best.held_out_gap() < kCloseEnough || ++step >= most_changes_) return;
+      if (result_.best.held_out_gap() < kCloseEnough || ++step >= options_.most_changes) return;
       if (TimeIsUp(context_)) return;
       next = Extend(beam, step, {&result_.best.fitted, AreFar(result_.best.held_out_gap()) ? kToStay : 1});
     }
@@ -166,7 +166,7 @@ class Searcher {
   std::vector<Explanation> Extend(const std::vector<Explanation>& beam, int step, const Bar& bar,
                                   double most = kNoLimit) {
     std::vector<Scanned> pool, periodic;
-    const double share = static_cast<double>(step) / most_changes_;
+    const double share = static_cast<double>(step) / options_.most_changes;
     for (const Explanation& from : beam) {
       ReportProgress("judging each effect" + Step(step), share);
       std::vector<Change> changes;
@@ -195,7 +195,7 @@ class Searcher {
       for (const Scanned& picked : pool) picked_alone_.push_back(picked.change);
     }
     pool.insert(pool.end(), periodic.begin(), periodic.end());
-    ReportProgress("refitting the likeliest" + Step(step), share + 0.3 / most_changes_);
+    ReportProgress("refitting the likeliest" + Step(step), share + 0.3 / options_.most_changes);
     return FitAll(pool, StartsOf(beam.front().fitted), bar, most);
   }
 
@@ -268,8 +268,9 @@ class Searcher {
         Explanation reduced;  // its own prediction is not needed
         reduced.fitted = Fit(less, context_.runs, StartsOf(result_.best.fitted), WithAllJobs(coarse_));
         if (!reduced.fitted.ok()) continue;
-        std::vector<Explanation> others = Extend({reduced}, most_changes_, {&result_.best.fitted, kBehind},
-                                                 kNearlyAsGood * result_.best.fitted.sum);
+        std::vector<Explanation> others =
+            Extend({reduced}, options_.most_changes, {&result_.best.fitted, kBehind},
+                   kNearlyAsGood * result_.best.fitted.sum);
         for (const Explanation& other : others) {
           if (other.fitted.sum < 0.98 * result_.best.fitted.sum &&
               other.held_out_gap() < result_.best.held_out_gap()) {
@@ -304,7 +305,6 @@ class Searcher {
   }
 
   const SearchContext& context_;
-  int most_changes_;
   SearchOptions options_;
   FitOptions coarse_, fine_ = FineFit(1);
   SearchResult result_;

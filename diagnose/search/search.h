@@ -34,9 +34,10 @@ inline constexpr double kOutOfReach = 2.5;
 
 struct SearchOptions {
   int most_changes = kMostChanges;
-  bool thorough =
-      true;  // where the score test's likeliest changes do not explain the runs, more are refitted
-  const Fitted* rival = nullptr;  // single changes that stay far behind it are not followed up
+  // Where the score test's likeliest changes do not explain the runs, more are refitted.
+  bool thorough = true;
+  // Single changes that stay far behind it are not followed up; null: all are.
+  const Fitted* rival = nullptr;
 };
 
 // Searches from `from`, without changes of its own and fitted.

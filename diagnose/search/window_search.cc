@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "diagnose/data/sample_interval.h"
 #include "diagnose/data/windows.h"
 #include "diagnose/search/refits.h"
 
@@ -47,13 +46,8 @@ void AddExtremes(model::Channel channel, double sign, SearchWindows* windows) {
 }  // namespace
 
 double SearchHorizon(const std::vector<const RunData*>& runs) {
-  std::vector<const std::vector<double>*> times;
-  double shortest = runs.front()->duration();
-  for (const RunData* run : runs) {
-    times.push_back(&run->stimulus.time);
-    shortest = std::min(shortest, run->duration());
-  }
-  const double sampled = kShortest * MedianInterval(times);
+  const double shortest = ShortestDuration(runs);
+  const double sampled = kShortest * SampleInterval(runs);
   return std::max(std::min(std::max(kHorizon, sampled), shortest / kWindowsPerRun), 0.25 * sampled);
 }
 
