@@ -22,7 +22,7 @@ constexpr double kWarmUp = 0.25;
 
 // A window's simulation may take so many steps for each sample. Models that need more are stiffer than any
 // that the samples can show.
-constexpr double kStepsPerSample = 4;
+constexpr double kStepsPerSample = 12;
 
 // Windows of fine recordings are thinned, to no fewer samples than these.
 constexpr size_t kFewestKept = 100;

@@ -30,6 +30,7 @@ constexpr double kInOrder = 4;
 // or is wrong by a fifth does; one that predicts nothing does not.
 constexpr double kPredicted = 30;
 const double kFarBetter = std::log(10.0);  // fall of the squared error over all signals
+const double kAlone = std::log(1000.0);    // the same where several other runs do not have the mistake
 const double kStep = std::log(3.0);        // of one mistake of several
 const double kAsGood = std::log(1.5);      // then the mistake that comes first is likelier
 // Simulations over samples further apart than this take too long: another unit of time then comes first, s.
@@ -76,11 +77,12 @@ class RunCheck {
     while (finding.mistakes.size() < kMostMistakes) {
       std::optional<Trial> next = BestNext(finding.mistakes, now);
       if (!next.has_value() || next->gain < (explained ? kFarBetter : kStep)) break;
-      const bool explains =
-          Gain(given, next->errors) >= kFarBetter && WorstSignal(next->errors) <= kPredicted;
+      const double gain = Gain(given, next->errors);
+      const bool explains = gain >= kFarBetter && WorstSignal(next->errors) <= kPredicted;
       if (explained && !explains) break;
       explained = explains;
       finding.mistakes = std::move(next->mistakes);
+      finding.gain = gain;
       now = std::move(next->errors);
       finding.corrected = WorstSignal(now);
       if (finding.corrected <= 1) break;
@@ -102,7 +104,7 @@ class RunCheck {
     const double gain = Gain(given, by_other);
     if (gain < kFarBetter || WorstSignal(by_other) > kPredicted) return std::nullopt;
     if (gain < Gain(given, by_own) - kAsGood) return std::nullopt;
-    return RecordingFinding{own.run, other.mistakes, own.as_recorded, WorstSignal(by_other)};
+    return RecordingFinding{own.run, other.mistakes, own.as_recorded, WorstSignal(by_other), gain};
   }
 
  private:
@@ -206,6 +208,19 @@ const RecordingFinding* MostCommon(const std::vector<RecordingFinding>& findings
   return most;
 }
 
+// Drops what one run of several says alone and weakly: what is missing there may look like a mistake.
+void DropDoubtful(size_t runs, std::vector<RecordingFinding>* findings) {
+  constexpr size_t kSeveral = 3;
+  if (runs < kSeveral) return;
+  const std::vector<RecordingFinding> all = *findings;
+  std::erase_if(*findings, [&](const RecordingFinding& one) {
+    const auto same = std::count_if(all.begin(), all.end(), [&](const RecordingFinding& other) {
+      return other.mistakes == one.mistakes;
+    });
+    return same < 2 && one.gain < kAlone;
+  });
+}
+
 std::string WhatIsWrong(const Mistakes& mistakes) {
   std::vector<std::string> parts;
   for (const RecordingMistake& mistake : mistakes) parts.push_back(mistake.what);
@@ -225,15 +240,16 @@ std::vector<RecordingFinding> CheckRecordings(const model::ModelDescription& mod
     findings.back().run = r;
   }
   // One recorder makes one mistake: a run that cannot tell two apart, for example with the bypass open, follows the others.
-  const RecordingFinding* most = MostCommon(findings);
-  if (most == nullptr) return findings;
-  const RecordingFinding common = *most;
-  ParallelFor(findings.size(), jobs, [&](size_t i) {
-    RecordingFinding& own = findings[i];
-    if (own.mistakes == common.mistakes) return;
-    const auto instead = RunCheck(model, runs[own.run]).Instead(common, own);
-    if (instead.has_value()) own = *instead;
-  });
+  if (const RecordingFinding* most = MostCommon(findings)) {
+    const RecordingFinding common = *most;
+    ParallelFor(findings.size(), jobs, [&](size_t i) {
+      RecordingFinding& own = findings[i];
+      if (own.mistakes == common.mistakes) return;
+      const auto instead = RunCheck(model, runs[own.run]).Instead(common, own);
+      if (instead.has_value()) own = *instead;
+    });
+  }
+  DropDoubtful(runs.size(), &findings);
   return findings;
 }
 

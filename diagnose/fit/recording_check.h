@@ -17,6 +17,7 @@ struct RecordingFinding {
   std::vector<RecordingMistake> mistakes;  // at most three
   // Median squared errors of predictions over some 0.05 s, by signals the worst; 1: a tenth of the movement.
   double as_recorded = 0, corrected = 0;
+  double gain = 0;  // logarithm of the fall of the squared error over all signals, in the median window
 };
 
 // One finding at most for each run, in their order. Takes a second or two for eight runs; the results do not

@@ -1,6 +1,7 @@
 #include "diagnose/fit/residuals.h"
 
 #include <cmath>
+#include <limits>
 
 namespace hydro::diagnose {
 
@@ -58,6 +59,16 @@ Residuals ResidualsOf(const model::ModelDescription& model, const RunData& run,
     for (size_t row = i * rows; row < (i + 1) * rows; ++row) residuals.jacobian[row] *= free[i].Slope();
   }
   return residuals;
+}
+
+double SumOfSquares(const model::ModelDescription& model, const RunData& run, const model::StartState& start) {
+  double sum = 0;
+  try {
+    for (const double value : ResidualsOf(model, run, start).values) sum += value * value;
+  } catch (const model::ModelError&) {
+    return std::numeric_limits<double>::infinity();
+  }
+  return std::isnan(sum) ? std::numeric_limits<double>::infinity() : sum;
 }
 
 std::vector<model::Unknown> StartUnknowns(const RunData& run) {

@@ -27,6 +27,9 @@ Residuals ResidualsOf(const model::ModelDescription& model, const RunData& run,
                       const model::StartState& start, const std::vector<FreeParameter>& free,
                       const std::vector<model::Unknown>& starts, bool repeated_effects = false);
 
+// The sum of the squared residuals; infinite where the model cannot be simulated.
+double SumOfSquares(const model::ModelDescription& model, const RunData& run, const model::StartState& start);
+
 // The unknown start states of a run.
 std::vector<model::Unknown> StartUnknowns(const RunData& run);
 

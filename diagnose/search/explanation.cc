@@ -18,6 +18,11 @@ double Cost(double squared_gap, double numbers_factor) {
   return std::max(1.0, squared_gap) * numbers_factor + std::min(0.0, squared_gap - 1);
 }
 
+bool LeavesNothing(const SearchContext& context, const Explanation& one, double squared_gap) {
+  if (one.held_out_gap() < squared_gap) return true;
+  return context.held_out.empty() && !one.changes().empty() && one.squared_gap() < squared_gap;
+}
+
 bool TimeIsUp(const SearchContext& context) { return context.time_is_up && context.time_is_up(); }
 
 FitOptions FineFit(int jobs) {

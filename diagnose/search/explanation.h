@@ -46,6 +46,10 @@ struct SearchContext {
   ProgressCallback report_progress;
 };
 
+// Whether an explanation leaves nothing to search for: below `squared_gap` on held-out runs, or, where runs are held out in turn, in
+// the fit to all of them. A run that alone shows an effect is predicted badly by the others, whatever is added.
+bool LeavesNothing(const SearchContext& context, const Explanation& one, double squared_gap);
+
 // Whether the search has to end with what it has.
 bool TimeIsUp(const SearchContext& context);
 

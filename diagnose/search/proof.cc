@@ -109,7 +109,7 @@ void Choose(const SearchContext& context, const SearchResult& near, WideSearch* 
     proved->search.tried.push_back(std::move(whole));
     if (proved->search.best.held_out_gap() > kNearTheNoise) return;
   }
-  const bool open = proved->search.best.held_out_gap() >= kCloseEnough;
+  const bool open = !LeavesNothing(context, proved->search.best, kCloseEnough);
   if (open && !TimeIsUp(context)) SearchOn(context, &proved->search);
 }
 

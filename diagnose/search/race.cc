@@ -56,31 +56,28 @@ Entry Some(const Entry& all, const std::vector<size_t>& sample) {
   return some;
 }
 
-double SumAt(const Hypothesis& hypothesis, const RunData& run, const model::StartState& start) {
-  double sum = 0;
-  try {
-    for (const double value : ResidualsOf(hypothesis.model, run, start).values) sum += value * value;
-  } catch (const model::ModelError&) {
-    return std::numeric_limits<double>::infinity();
+// Each of the runs starts where the hypothesis predicts it better from: its start so far, which made up for what was missing, or
+// the measured one.
+void StartBetter(const Hypothesis& hypothesis, const std::vector<size_t>& which, Entry* entry) {
+  for (const size_t r : which) {
+    const RunData& run = *entry->runs[r];
+    const double measured = SumOfSquares(hypothesis.model, run, run.start);
+    if (measured < SumOfSquares(hypothesis.model, run, entry->starts[r])) entry->starts[r] = run.start;
   }
-  return sum;
 }
 
-// Takes the starts of the sample from the fit, and of each other run what it predicts better from: its start so far, which made
-// up for what was missing, or the measured one.
+// Takes the starts of the sample from the fit.
 void StartOthers(const Fitted& fit, const std::vector<size_t>& sample, Entry* entry) {
   std::vector<bool> fitted(entry->runs.size());
   for (size_t s = 0; s < sample.size(); ++s) {
     entry->starts[sample[s]] = fit.runs[s].start;
     fitted[sample[s]] = true;
   }
+  std::vector<size_t> others;
   for (size_t r = 0; r < fitted.size(); ++r) {
-    if (fitted[r]) continue;
-    const RunData& run = *entry->runs[r];
-    if (SumAt(fit.hypothesis, run, run.start) < SumAt(fit.hypothesis, run, entry->starts[r])) {
-      entry->starts[r] = run.start;
-    }
+    if (!fitted[r]) others.push_back(r);
   }
+  StartBetter(fit.hypothesis, others, entry);
 }
 
 // As if all windows were fitted as well as the sample.
@@ -136,6 +133,7 @@ RaceResult Race(const SearchContext& context, const std::vector<Scanned>& pool,
   std::vector<Entry> entries(pool.size());
   ParallelFor(pool.size(), context.jobs, [&](size_t i) {
     entries[i] = {context.runs, pool[i].run_starts.empty() ? starts : pool[i].run_starts};
+    StartBetter(pool[i].start, sample, &entries[i]);
     fits[i] = FitUnlessTimeIsUp(context, pool[i].start, Some(entries[i], sample), first);
   });
   const std::vector<bool> in = InTheRace(fits, MostOf(bar, sample));

@@ -10,6 +10,7 @@
 #include "diagnose/search/race.h"
 #include "diagnose/search/refits.h"
 #include "diagnose/search/resonance.h"
+#include "diagnose/search/ringing_starts.h"
 #include "diagnose/search/scan.h"
 
 namespace hydro::diagnose {
@@ -41,7 +42,7 @@ constexpr double kRefitBelow = 3;
 constexpr double kLeastShareOfMore = 0.4;
 // In a race, another change has to come to this part of the sum of squares that it is added to, far from the noise; one to the
 // model as given to this many times that of the rival.
-constexpr double kToStay = 0.9;
+constexpr double kToStay = 1.2;
 constexpr double kRivalTimes = 1.5;
 constexpr double kNoLimit = std::numeric_limits<double>::infinity();
 // Windows are fitted to this tolerance, to tell what is better, and what was best in the end to the finer one.
@@ -50,14 +51,6 @@ constexpr double kToSettle = 1e-4;
 
 double CostOf(const Explanation& one) {
   return Cost(one.held_out_gap(), NumbersFactor(one.fitted.hypothesis));
-}
-
-bool IsResonance(const Change& change) {
-  if (change.effect.empty()) return false;
-  const std::vector<model::ParameterInfo>& parameters = model::FindEffect(change.effect)->parameters;
-  return std::any_of(parameters.begin(), parameters.end(), [](const model::ParameterInfo& parameter) {
-    return parameter.role == model::Role::kFrequency;
-  });
 }
 
 // A model cannot contain an effect twice, and nothing is changed twice.
@@ -138,7 +131,7 @@ class Searcher {
                                     next.begin() + static_cast<std::ptrdiff_t>(std::min(kBeam, next.size())));
       while (beam.size() > 1 && beam.back().fitted.sum > kBehind * beam.front().fitted.sum) beam.pop_back();
       result_.best = *best;
-      if (result_.best.held_out_gap() < kCloseEnough || ++step >= options_.most_changes) return;
+      if (LeavesNothing(context_, result_.best, kCloseEnough) || ++step >= options_.most_changes) return;
       if (TimeIsUp(context_)) return;
       next = Extend(beam, step, {&result_.best.fitted, AreFar(result_.best.held_out_gap()) ? kToStay : 1});
     }
@@ -183,7 +176,7 @@ class Searcher {
         scanned_alone_ = scanned;
       }
       const bool exchange = most < kNoLimit;
-      PickRinging(from.fitted, changes, &pool);
+      for (Scanned& ringing : RingingStarts(context_, from.fitted, changes)) pool.push_back(std::move(ringing));
       Pick(from.fitted, {step == 0 ? kRefitsAtFirst : kRefitsLater, exchange ? 1 : kStarts}, &scanned, &pool);
       for (const Hypothesis& one :
            WithPeriodic(from.fitted.hypothesis, changes, context_.runs, context_.jobs)) {
@@ -229,19 +222,6 @@ class Searcher {
       result_.tried.push_back(std::move(fitted_only));
     }
     return explained;
-  }
-
-  // Resonances at the frequencies at which the runs ring: the score test, which is linear, may prefer others.
-  void PickRinging(const Fitted& from, const std::vector<Change>& changes, std::vector<Scanned>* pool) const {
-    std::vector<Change> resonances;
-    for (const Change& change : changes) {
-      if (IsResonance(change)) resonances.push_back(change);
-    }
-    if (context_.ringing.empty() || resonances.empty()) return;
-    Sizes sizes = context_.sizes;
-    sizes.ringing = context_.ringing;
-    auto scanned = Scan(from, context_.runs, resonances, sizes, false, context_.jobs);
-    Pick(from, {resonances.size(), kStarts}, &scanned, pool);
   }
 
   static std::string Step(int step) { return step == 0 ? "" : ", with " + std::to_string(step) + " found"; }
