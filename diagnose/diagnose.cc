@@ -120,6 +120,7 @@ PreparedRuns Prepare(const model::ModelDescription& model, const std::vector<siz
   for (runs::MeasuredRun& run : held_out) {
     prepared.held_out.push_back(PrepareAligned(std::move(run), model.parameters, &prepared.clocks));
   }
+  if (!prepared.fitted.empty()) prepared.fitted.front().angle_counts = true;
   CorrectClocks(model, allowed, jobs, &prepared.fitted, &prepared.held_out, &prepared.clocks);
   MakeNamesUnique(&prepared.fitted);
   MakeNamesUnique(&prepared.held_out);

@@ -19,7 +19,7 @@ struct Unknown {
   enum class Kind {
     kBase,    // a base parameter: `index` as in BaseParameters()
     kEffect,  // a parameter of an effect: `index` as in EffectParameters()
-    kStart,   // a base state at the start: `index` as in model/state.h
+    kStart,   // a number of the start: `index` in StartState
   };
   Kind kind = Kind::kBase;
   size_t index = 0;
@@ -54,9 +54,14 @@ struct Stimulus {
   std::vector<double> voltage;  // V, each held from its time to the next
 };
 
-// The base states at the first time, indexed as in model/state.h. The arm's states are used with a free shaft
-// only; with the bypass open, p2 is p1. Pressures below p_3 start at p_3. States of effects start from these.
-using StartState = std::array<double, 6>;
+// The base states at the first time, indexed as in model/state.h, then what no sensor shows. The arm's states are used with a free
+// shaft only; with the bypass open, p2 is p1. Pressures below p_3 start at p_3. States of effects start from these.
+using StartState = std::array<double, 11>;
+// rad: what repeats with the shaft (motor.cogging, pump.flow_ripple) sees this much more than the angle sensor.
+inline constexpr size_t kTurn = 6;
+// psi, four numbers: waves that are under way in the lines of line.wave. Of each side the pump's pressure less the actuator's, and
+// the line's flow times its impedance I w.
+inline constexpr size_t kWaves = 7;
 
 // The sensors, in the order of Measurement.
 enum class Channel { kMotorAngle, kMotorSpeed, kArmAngle, kArmSpeed, kP1, kP2 };

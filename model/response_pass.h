@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -29,6 +30,7 @@ NumbersOf<T> NumbersAs(const NumbersOf<double>& numbers) {
 // The initial state and mode of a response, from the base states `base`.
 template <class T>
 Mode StartFrom(Equations* equations, const NumbersOf<T>& numbers, double time, const T* base, T* state) {
+  // `base` is as StartState.
   const EquationData& data = equations->data();
   Mode mode;
   T rate[kMaxStates];
@@ -39,6 +41,7 @@ Mode StartFrom(Equations* equations, const NumbersOf<T>& numbers, double time, c
   };
   const int given = data.shaft == Shaft::kFree ? 6 : 4;
   for (int i = 0; i < data.states; ++i) state[i] = i < given ? base[i] : T(0.0);
+  state[kMotorAngle] += base[kTurn];
   equations->PassStop(time);
   evaluate();
   FindMargins<Form::kGeneral, T>(data, numbers, mode, terms, margin);
@@ -48,6 +51,7 @@ Mode StartFrom(Equations* equations, const NumbersOf<T>& numbers, double time, c
   evaluate();
   for (const auto& effect : data.effects) {
     terms.own = numbers.own.data() + effect->first_parameter();
+    terms.waves = base + kWaves;
     effect->Start(terms, state);
     effect->StartMode(terms, &mode);
   }
@@ -91,8 +95,9 @@ void Pass(const ModelDescription& model, const Stimulus& stimulus, const StartSt
   actuator.arm_angle = stimulus.shaft == Shaft::kFree ? start[kArmAngle] : stimulus.arm_angle;
   Equations equations(model, actuator);
   NumbersOf<T> numbers = NumbersAs<T>(equations.data());
-  T base[6];
-  for (size_t i = 0; i < 6; ++i) base[i] = T(start[i]);
+  constexpr size_t kNumbers = std::tuple_size_v<StartState>;
+  T base[kNumbers];
+  for (size_t i = 0; i < kNumbers; ++i) base[i] = T(start[i]);
   if constexpr (!std::is_same_v<T, double>) Seed(unknowns, first, &numbers, base);
   if (stimulus.bypass) base[kP2] = base[kP1];
   CompleteNumbers<T>(equations.data(), &numbers);
@@ -108,8 +113,9 @@ void Pass(const ModelDescription& model, const Stimulus& stimulus, const StartSt
   for (size_t k = 0; k < stimulus.time.size(); ++k) {
     if (k > 0) machine.Advance(stimulus.voltage[k - 1], stimulus.time[k]);
     if (k % options.stride != 0) continue;
-    const MeasurementOf<T> measured =
+    MeasurementOf<T> measured =
         ReadSensors<T>(equations.data(), numbers, machine.now().time, machine.now().state, machine.history());
+    measured.motor_angle -= base[kTurn];
     for (size_t c = 0; c < kChannels; ++c) {
       if (!options.channels[c]) continue;
       const T& value = ChannelOf(measured, c);

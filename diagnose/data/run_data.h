@@ -40,10 +40,13 @@ struct RunData {
   runs::MeasuredRun measured;
   model::Stimulus stimulus;  // `motion` points to the one below, or to that of the whole run
   std::unique_ptr<trajectory::Trajectory> motion;
-  model::StartState start{};  // the base states at the first sample, from nearby samples
+  // The first of the fitted runs: phases count from its shaft's angle. The other runs' shafts start anywhere.
+  bool angle_counts = false;
+  bool begins_within = false;  // a window that does not begin where its run does
+  model::StartState start{};   // the base states at the first sample, from nearby samples
   // Which of these states are unknown: measured badly or not at all. The others are held (for example the
   // angle of a motor whose angle is not measured).
-  std::array<bool, 6> start_free{};
+  std::array<bool, std::tuple_size_v<model::StartState>> start_free{};
   // How far each of these may be from `start`, a standard deviation: noise, and what a wrong scale or a late sensor
   // makes of it. Infinite where nothing was measured.
   model::StartState start_error = kUnknownStart;

@@ -49,6 +49,8 @@ RunData ThinnedCopy(const RunData& run) {
   RunData copy;
   copy.name = run.name;
   copy.stimulus = run.stimulus;
+  copy.angle_counts = run.angle_counts;
+  copy.begins_within = run.begins_within;
   copy.start = run.start;
   copy.start_free = run.start_free;
   copy.start_error = run.start_error;

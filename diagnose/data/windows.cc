@@ -53,6 +53,8 @@ RunData Window(const RunData& run, size_t first, size_t compared, size_t last,
   RunData window;
   window.name = run.name;
   window.most_steps_per_sample = kStepsPerSample;
+  window.angle_counts = run.angle_counts;
+  window.begins_within = first > 0;
   window.stimulus.shaft = run.stimulus.shaft;
   window.stimulus.arm_angle = run.stimulus.arm_angle;
   window.stimulus.motion = run.stimulus.motion;

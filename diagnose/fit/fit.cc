@@ -12,6 +12,7 @@
 
 #include "base/parallel.h"
 #include "diagnose/fit/run_cost.h"
+#include "diagnose/fit/turn.h"
 
 namespace hydro::diagnose {
 
@@ -223,7 +224,10 @@ std::vector<model::StartState> StartsOf(const Fitted& fitted) {
 }
 
 Fitted Fit(const Hypothesis& hypothesis, const std::vector<const RunData*>& runs,
-           const std::vector<model::StartState>& starts, const FitOptions& options) {
+           const std::vector<model::StartState>& from, const FitOptions& options) {
+  std::vector<model::StartState> starts = from;
+  ParallelFor(runs.size(), options.jobs,
+              [&](size_t r) { starts[r] = AtBestTurn(hypothesis.model, *runs[r], from[r]); });
   FitProblem problem(hypothesis, runs, starts, options.jobs);
   if (options.prior != nullptr) {
     problem.AddPrior(*options.prior);

@@ -47,7 +47,7 @@ struct BlocksOfRun {
 };
 BlocksOfRun BlocksOf(const Fitted& fitted, const std::vector<FreeParameter>& free, size_t r,
                      const RunData& run) {
-  const std::vector<model::Unknown> unknown_starts = StartUnknowns(run);
+  const std::vector<model::Unknown> unknown_starts = StartUnknowns(fitted.hypothesis.model, run);
   const Residuals residuals =
       ResidualsOf(fitted.hypothesis.model, run, fitted.runs[r].start, free, unknown_starts);
   const auto rows = static_cast<Index>(residuals.values.size());

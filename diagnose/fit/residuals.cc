@@ -1,7 +1,11 @@
 #include "diagnose/fit/residuals.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+
+#include "model/terms/parameter_info.h"
+#include "model/terms/state.h"
 
 namespace hydro::diagnose {
 
@@ -71,10 +75,28 @@ double SumOfSquares(const model::ModelDescription& model, const RunData& run, co
   return std::isnan(sum) ? std::numeric_limits<double>::infinity() : sum;
 }
 
-std::vector<model::Unknown> StartUnknowns(const RunData& run) {
+std::optional<size_t> UnknownTurn(const model::ModelDescription& model, const RunData& run) {
+  bool repeats = false, all_have_phases = true;
+  for (const model::EffectDescription& effect : model.effects) {
+    if (!model::HasRole(effect.id, model::Role::kPeriods)) continue;
+    repeats = true;
+    all_have_phases = all_have_phases && model::HasRole(effect.id, model::Role::kPhase);
+  }
+  if (!repeats || (all_have_phases && run.angle_counts)) return std::nullopt;
+  return run.Find(model::Channel::kMotorAngle) != nullptr ? model::kTurn : static_cast<size_t>(model::kMotorAngle);
+}
+
+std::vector<model::Unknown> StartUnknowns(const model::ModelDescription& model, const RunData& run) {
+  const std::optional<size_t> turn = UnknownTurn(model, run);
+  const bool waves =
+      run.begins_within && std::any_of(model.effects.begin(), model.effects.end(), [](const auto& effect) {
+        return model::HasRole(effect.id, model::Role::kFrequency);
+      });
   std::vector<model::Unknown> unknowns;
   for (size_t i = 0; i < run.start_free.size(); ++i) {
-    if (run.start_free[i]) unknowns.push_back({model::Unknown::Kind::kStart, i});
+    if (run.start_free[i] || turn == i || (waves && i >= model::kWaves)) {
+      unknowns.push_back({model::Unknown::Kind::kStart, i});
+    }
   }
   return unknowns;
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 #include "diagnose/data/run_data.h"
@@ -30,7 +31,11 @@ Residuals ResidualsOf(const model::ModelDescription& model, const RunData& run,
 // The sum of the squared residuals; infinite where the model cannot be simulated.
 double SumOfSquares(const model::ModelDescription& model, const RunData& run, const model::StartState& start);
 
-// The unknown start states of a run.
-std::vector<model::Unknown> StartUnknowns(const RunData& run);
+// The unknown numbers of a run's start: those that are free, and what the model's effects need besides. The shaft's angle as
+// what repeats with it sees it is unknown, but in the run whose zero counts, where that has a phase of its own; waves may be under
+// way in lines where a window begins.
+std::vector<model::Unknown> StartUnknowns(const model::ModelDescription& model, const RunData& run);
+// Which of them is that angle; none where it is known.
+std::optional<size_t> UnknownTurn(const model::ModelDescription& model, const RunData& run);
 
 }  // namespace hydro::diagnose

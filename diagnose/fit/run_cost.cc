@@ -16,7 +16,7 @@ RunCost::RunCost(const Hypothesis& hypothesis, const RunData& run, const model::
       free_(hypothesis.Free()),
       run_(run),
       start_(start),
-      starts_(StartUnknowns(run)) {
+      starts_(StartUnknowns(hypothesis.model, run)) {
   if (!free_.empty()) mutable_parameter_block_sizes()->push_back(static_cast<int>(free_.size()));
   if (!starts_.empty()) mutable_parameter_block_sizes()->push_back(static_cast<int>(starts_.size()));
   set_num_residuals(static_cast<int>(unknowns()) + 1);

@@ -56,25 +56,29 @@ class Periodogram {
     double explained = 0;  // share of the target's mean square, beyond what the others explain
     double sine = 0, cosine = 0;
   };
-  // `sine`, `cosine`: whether the wave may have either.
-  Wave At(int periods, bool sine, bool cosine) const {
+  Wave At(int periods) const {
     const MatrixXd all = normal_[static_cast<size_t>(periods - 1)].selfadjointView<Eigen::Lower>();
     const Index last = others_ + 2;
     std::vector<Index> columns;
     for (Index i = 0; i < others_; ++i) columns.push_back(i);
     const double without = Left(all, columns, nullptr);
-    if (sine) columns.push_back(others_);
-    if (cosine) columns.push_back(others_ + 1);
+    columns.push_back(others_);
+    columns.push_back(others_ + 1);
     VectorXd solution;
     const double with = Left(all, columns, &solution);
     Wave wave;
     wave.periods = periods;
     if (!(all(last, last) > 0)) return wave;
     wave.explained = (without - with) / all(last, last);
-    if (sine) wave.sine = solution(others_);
-    if (cosine) wave.cosine = solution(solution.size() - 1);
+    wave.sine = solution(others_);
+    wave.cosine = solution(others_ + 1);
     return wave;
   }
+
+  // The sum of the carrier's squares: what a wave's amplitude counts by.
+  double carriers() const { return normal_.front()(others_, others_) + normal_.front()(others_ + 1, others_ + 1); }
+  // The sum of the target's squares.
+  double total() const { return normal_.front()(others_ + 2, others_ + 2); }
 
  private:
   // The sum of squares left after regression on these columns.
@@ -106,9 +110,6 @@ struct PeriodicEffect {
   const model::ParameterInfo* phase = nullptr;  // null: it has none
   bool of_torque = false;                       // otherwise of the displacement
 
-  // Without a phase, a torque's wave is a sine and a displacement's a cosine.
-  bool has_sine() const { return phase != nullptr || of_torque; }
-  bool has_cosine() const { return phase != nullptr || !of_torque; }
 };
 
 // The periodic effects among `changes`, in their order.
@@ -128,11 +129,29 @@ std::vector<PeriodicEffect> PeriodicAmong(const std::vector<Change>& changes) {
   return all;
 }
 
-// The likeliest waves, best first.
-std::vector<Periodogram::Wave> Likeliest(const Periodogram& periodogram, const PeriodicEffect& effect) {
+// The likeliest waves, best first, from the periodograms of runs whose shafts start at angles of their own: the part that each
+// explains, their mean amplitude, and the phase of the first that has one.
+std::vector<Periodogram::Wave> Likeliest(const std::vector<Periodogram>& of_run) {
   std::vector<Periodogram::Wave> waves;
   for (int n = 1; n <= kMostPeriods; ++n) {
-    waves.push_back(periodogram.At(n, effect.has_sine(), effect.has_cosine()));
+    Periodogram::Wave all;
+    all.periods = n;
+    double amplitudes = 0, carriers = 0, explained = 0, total = 0;
+    for (const Periodogram& one : of_run) {
+      const Periodogram::Wave wave = one.At(n);
+      amplitudes += one.carriers() * std::hypot(wave.sine, wave.cosine);
+      carriers += one.carriers();
+      explained += wave.explained * one.total();
+      total += one.total();
+      if (all.sine == 0 && all.cosine == 0) all.sine = wave.sine, all.cosine = wave.cosine;
+    }
+    if (total > 0) all.explained = explained / total;
+    const double size = std::hypot(all.sine, all.cosine);
+    if (carriers > 0 && size > 0) {
+      all.sine *= amplitudes / carriers / size;
+      all.cosine *= amplitudes / carriers / size;
+    }
+    waves.push_back(all);
   }
   std::stable_sort(waves.begin(), waves.end(),
                    [](const auto& a, const auto& b) { return a.explained > b.explained; });
@@ -155,7 +174,7 @@ Hypothesis WithWave(const Hypothesis& hypothesis, const PeriodicEffect& effect, 
     values[effect.phase->name] =
         effect.of_torque ? std::atan2(-wave.cosine, -wave.sine) : std::atan2(wave.sine, -wave.cosine);
   } else {
-    amplitude = effect.of_torque ? -wave.sine : -wave.cosine;
+    amplitude = std::hypot(wave.sine, wave.cosine);  // every run's angle is its own
   }
   if (!effect.of_torque) amplitude = std::clamp(amplitude, -kMostOfDisplacement, kMostOfDisplacement);
   values[effect.amplitude->name] = std::clamp(amplitude, effect.amplitude->min, effect.amplitude->max);
@@ -199,14 +218,21 @@ std::vector<Hypothesis> WithPeriodic(const Hypothesis& hypothesis, const std::ve
                                      const std::vector<const RunData*>& runs, int jobs) {
   const std::vector<PeriodicEffect> effects = PeriodicAmong(changes);
   if (effects.empty()) return {};
-  std::vector<std::vector<Periodogram>> of_run(runs.size());
+  std::vector<std::vector<Periodogram>> of_window(runs.size());
   ParallelFor(runs.size(), jobs,
-              [&](size_t r) { of_run[r] = PeriodogramsOf(hypothesis, effects, *runs[r]); });
+              [&](size_t r) { of_window[r] = PeriodogramsOf(hypothesis, effects, *runs[r]); });
   std::vector<Hypothesis> all;
   for (size_t e = 0; e < effects.size(); ++e) {
-    // Sum in the order of the runs, so that the number of threads does not matter.
-    for (size_t r = 1; r < runs.size(); ++r) of_run[0][e].Add(of_run[r][e]);
-    for (const Periodogram::Wave& wave : Likeliest(of_run[0][e], effects[e])) {
+    // Windows of one run have one angle. Sum in the order of the windows, so that the number of threads does not matter.
+    std::vector<Periodogram> of_run;
+    for (size_t r = 0; r < runs.size(); ++r) {
+      if (r > 0 && runs[r]->name == runs[r - 1]->name) {
+        of_run.back().Add(of_window[r][e]);
+      } else {
+        of_run.push_back(of_window[r][e]);
+      }
+    }
+    for (const Periodogram::Wave& wave : Likeliest(of_run)) {
       all.push_back(WithWave(hypothesis, effects[e], wave, runs));
     }
   }

@@ -1,7 +1,6 @@
 #include "diagnose/search/ringing_starts.h"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 #include "base/parallel.h"
@@ -12,20 +11,14 @@ namespace hydro::diagnose {
 
 namespace {
 
-constexpr size_t kMostStarts = 4;  // of one resonance
+constexpr size_t kMostStarts = 2;  // of one resonance at one frequency
+// What begins with so many times the sum of squares that is there does not get below it.
+constexpr double kHopeless = 10;
 
-bool IsResonance(const Change& change) {
-  if (change.effect.empty()) return false;
-  const std::vector<model::ParameterInfo>& parameters = model::FindEffect(change.effect)->parameters;
-  return std::any_of(parameters.begin(), parameters.end(), [](const model::ParameterInfo& parameter) {
-    return parameter.role == model::Role::kFrequency;
-  });
-}
-
-// The starting points of one resonance, the best first.
-std::vector<Scanned> BestStartsOf(const SearchContext& context, const Fitted& from, const Change& change) {
+// The starting points of a resonance that rings at `frequency`, the best first.
+std::vector<Scanned> BestStartsOf(const SearchContext& context, const Fitted& from, const Change& change, double frequency) {
   Sizes sizes = context.sizes;
-  sizes.ringing = context.ringing;
+  sizes.ringing = {frequency};
   const std::vector<Hypothesis> all = With(from.hypothesis, change, sizes, false);
   const std::vector<size_t> sample = RaceSample(context.runs.size());
   std::vector<std::pair<double, size_t>> order(all.size());  // sum of squares, place in `all`
@@ -36,9 +29,11 @@ std::vector<Scanned> BestStartsOf(const SearchContext& context, const Fitted& fr
     }
   });
   std::sort(order.begin(), order.end());
+  double there = 0;
+  for (const size_t r : sample) there += from.runs[r].sum;
   std::vector<Scanned> best;
   for (const auto& [sum, i] : order) {
-    if (best.size() >= kMostStarts || !std::isfinite(sum)) break;
+    if (best.size() >= kMostStarts || !(sum < kHopeless * there)) break;
     best.push_back({change, all[i], 0, "", {}});
   }
   return best;
@@ -49,10 +44,11 @@ std::vector<Scanned> BestStartsOf(const SearchContext& context, const Fitted& fr
 std::vector<Scanned> RingingStarts(const SearchContext& context, const Fitted& from,
                                    const std::vector<Change>& changes) {
   std::vector<Scanned> starts;
-  if (context.ringing.empty()) return starts;
   for (const Change& change : changes) {
-    if (!IsResonance(change)) continue;
-    for (Scanned& start : BestStartsOf(context, from, change)) starts.push_back(std::move(start));
+    if (!model::HasRole(change.effect, model::Role::kFrequency)) continue;
+    for (const double frequency : context.ringing) {
+      for (Scanned& start : BestStartsOf(context, from, change, frequency)) starts.push_back(std::move(start));
+    }
   }
   return starts;
 }

@@ -108,7 +108,7 @@ std::vector<RunBasis> BasesOf(const Fitted& current, const std::vector<const Run
                               const std::vector<FreeParameter>& known, int jobs) {
   std::vector<RunBasis> bases(runs.size());
   ParallelFor(runs.size(), jobs, [&](size_t r) {
-    const std::vector<model::Unknown> starts = StartUnknowns(*runs[r]);
+    const std::vector<model::Unknown> starts = StartUnknowns(current.hypothesis.model, *runs[r]);
     const Residuals residuals =
         ResidualsOf(current.hypothesis.model, *runs[r], current.runs[r].start, known, starts);
     const auto rows = static_cast<Index>(residuals.values.size());

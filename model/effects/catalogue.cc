@@ -103,6 +103,13 @@ bool ReplacesValves(const std::vector<EffectDescription>& effects) {
 
 const std::vector<EffectInfo>& EffectCatalogue() { return TheCatalogue().infos(); }
 
+bool HasRole(const std::string& effect, Role role) {
+  const EffectInfo* info = FindEffect(effect);
+  return info != nullptr &&
+         std::any_of(info->parameters.begin(), info->parameters.end(),
+                     [&](const ParameterInfo& parameter) { return parameter.role == role; });
+}
+
 const EffectInfo* FindEffect(const std::string& id) {
   for (const EffectInfo& info : EffectCatalogue()) {
     if (info.id == id) return &info;

@@ -25,8 +25,16 @@ class Wave : public EffectOf<Wave> {
   }
   template <class T>
   void OwnStart(const Terms<T>& x, T* state) const {
-    state[first_state()] = x.p1;
-    state[first_state() + 2] = x.p2;
+    const int i = first_state();
+    state[i] = x.p1;
+    state[i + 2] = x.p2;
+    if (x.waves == nullptr) return;
+    const Line<T> line(x);
+    const T impedance = 2 * std::numbers::pi * x.own[0] * line.inertance;
+    state[i] += x.waves[0];
+    state[i + 1] += x.waves[1] / impedance;
+    state[i + 2] += x.waves[2];
+    state[i + 3] += x.waves[3] / impedance;
   }
   void Scales(double pressure, double flow, double, double* scale) const override {
     scale[0] = scale[2] = pressure;

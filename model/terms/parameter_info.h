@@ -139,4 +139,7 @@ const std::vector<EffectInfo>& EffectCatalogue();
 // Listed or not. Null for an unknown effect.
 const EffectInfo* FindEffect(const std::string& id);
 
+// Whether one of the effect's parameters has the role; false for an unknown effect.
+bool HasRole(const std::string& effect, Role role);
+
 }  // namespace hydro::model

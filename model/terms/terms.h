@@ -23,6 +23,7 @@ struct Terms {
   const T* state = nullptr;  // the whole state vector; an effect finds its own states from first_state() on
   // `voltage` acts now, whatever earlier voltages an effect remembers.
   bool voltage_acts = false;
+  const T* waves = nullptr;  // at the start, where known: what is under way in the lines, see StartState
   T motor_angle, motor_speed;
   T arm_angle, arm_speed;
   T p1, p2;  // at the actuator, where the transducers and the one-way valves are
