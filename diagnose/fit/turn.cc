@@ -11,7 +11,7 @@ namespace hydro::diagnose {
 
 namespace {
 
-constexpr int kAngles = 6;  // tried, a period
+constexpr int kAngles = 12;  // tried, a period
 
 // The longest period of what repeats with the shaft, rad; 0 if nothing does.
 double PeriodOf(const model::ModelDescription& model) {

@@ -60,6 +60,7 @@ TEST(Explain, BeginsAgainFromTheMeasuredStarts) {
       Table1With({{"motor.cogging", {{"amplitude", 1}, {"periods", 6}, {"phase", 0.7}}, {}}});
   std::vector<diagnose::RunData> runs;
   runs.push_back(SmallRun(truth, model::Shaft::kFree, false, 0.6, 2, 1));
+  runs[0].angle_counts = true;
   runs[0].start_error = diagnose::kUnknownStart;
   std::vector<model::StartState> elsewhere = StartsOf(runs);
   elsewhere[0][model::kMotorSpeed] = -60;
@@ -88,6 +89,7 @@ TEST(FitStart, TriesRest) {
       Table1With({{"motor.cogging", {{"amplitude", 1}, {"periods", 6}, {"phase", 0.7}}, {}}});
   std::vector<diagnose::RunData> runs;
   runs.push_back(SmallRun(truth, model::Shaft::kFree, false, 0.6, 2, 1));
+  runs[0].angle_counts = true;
   model::StartState moving = runs[0].start;
   moving[model::kMotorSpeed] = -60;
   moving[model::kArmAngle] += 0.02;

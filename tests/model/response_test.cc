@@ -221,6 +221,40 @@ TEST(Response, DerivativesEqualDifferenceQuotients) {
   }
 }
 
+// Tests that a shaft that starts turned meets the same teeth as with another phase, though its sensor counts from 0.
+TEST(Response, TurnedShaft) {
+  const auto cogging = [](double phase) {
+    return Table1Model({{"motor.cogging", {{"amplitude", 2}, {"periods", 6}, {"phase", phase}}, {}}});
+  };
+  model::StartState turned = SomeStart();
+  turned[model::kTurn] = 0.2;
+  const model::Stimulus stimulus = LevelsFor(kHoldings[0]);
+  const model::Response by_turn = model::Respond(cogging(0), stimulus, turned, {}, Exact(1e-9));
+  const model::Response by_phase = model::Respond(cogging(1.2), stimulus, SomeStart(), {}, Exact(1e-9));
+  const model::Response neither = model::Respond(cogging(0), stimulus, SomeStart(), {}, Exact(1e-9));
+  EXPECT_EQ(by_turn.values[0][0], 0);
+  double away = 0;
+  for (size_t i = 0; i < stimulus.time.size(); ++i) {
+    EXPECT_NEAR(by_turn.values[0][i], by_phase.values[0][i], 1e-5);
+    away = std::max(away, std::abs(by_turn.values[0][i] - neither.values[0][i]));
+  }
+  EXPECT_GT(away, 0.01);
+}
+
+// Tests derivatives by what no sensor shows of a start: the shaft's angle, and waves in the lines.
+TEST(Response, DerivativesByTheUnseenStart) {
+  const model::ModelDescription model =
+      Table1Model({{"motor.cogging", {{"amplitude", 2}, {"periods", 6}, {"phase", 0}}, {}},
+                   {"line.wave", {{"frequency", 80}, {"volume_fraction", 0.3}, {"damping", 0.05}}, {}}});
+  std::vector<model::Unknown> unknowns;
+  model::StartState start = SomeStart();
+  for (size_t i = model::kTurn; i < start.size(); ++i) {
+    unknowns.push_back({model::Unknown::Kind::kStart, i});
+    start[i] = i == model::kTurn ? 0.3 : 5.0;
+  }
+  ExpectDerivatives(model, LevelsFor(kHoldings[0]), start, unknowns, 1e-4, "unseen");
+}
+
 // Tests derivatives by times: a command that acts late moves known stops, a channel that reads late looks at
 // other states.
 TEST(Response, DerivativesByDelays) {

@@ -64,6 +64,27 @@ TEST(Windows, TellAWrongModel) {
   }
 }
 
+// Tests that a line's wave that is under way where a window begins is no gap: it rings for longer than any warm-up.
+TEST(Windows, WavesAreUnderWay) {
+  const model::ModelDescription model = {
+      "Table 1",
+      testing::Table1(),
+      {{"line.wave", {{"frequency", 110.0}, {"volume_fraction", 0.3}, {"damping", 0.01}}, {}}}};
+  const RunData run = Simulated(model);
+  std::vector<RunData> windows = WindowsOf(run, 0.1, model.parameters);
+  ASSERT_GT(windows.size(), 10);
+  Hypothesis hypothesis;
+  hypothesis.model = model;
+  for (const size_t w : {4, 9}) {
+    RunData& window = windows[w];
+    EXPECT_TRUE(window.begins_within);
+    EXPECT_LT(FitStart(hypothesis, window, window.start, kStartInDoubt).squared_gap(), 1.4);
+    window.begins_within = false;  // as if it began at rest
+    EXPECT_GT(FitStart(hypothesis, window, window.start, kStartInDoubt).squared_gap(), 2.5);
+  }
+  EXPECT_FALSE(windows[0].begins_within);
+}
+
 // Tests that what drifts over a run drifts on in its windows, whatever the recorder's clock said when the run began:
 // one rate holds for all of them, of a sensor and of the oil.
 TEST(Windows, GoOnWithTheTimeOfTheRun) {

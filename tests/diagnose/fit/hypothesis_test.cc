@@ -95,7 +95,7 @@ TEST(Residuals, NoiseAndDerivatives) {
   run.start = {0, 0, Table1().p_3, Table1().p_3, 0.3, 0};  // as the rig was, not as its first samples suggest
   const Hypothesis hypothesis = WithFree(Table1With(), {"b", "beta"});
   const std::vector<FreeParameter> free = hypothesis.Free();
-  const std::vector<model::Unknown> starts = diagnose::StartUnknowns(run);
+  const std::vector<model::Unknown> starts = diagnose::StartUnknowns(hypothesis.model, run);
   EXPECT_FALSE(starts.empty());
   const diagnose::Residuals at = diagnose::ResidualsOf(hypothesis.model, run, run.start, free, starts);
   const size_t n = at.values.size();
