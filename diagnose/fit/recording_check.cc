@@ -208,19 +208,6 @@ const RecordingFinding* MostCommon(const std::vector<RecordingFinding>& findings
   return most;
 }
 
-// Drops what one run of several says alone and weakly: what is missing there may look like a mistake.
-void DropDoubtful(size_t runs, std::vector<RecordingFinding>* findings) {
-  constexpr size_t kSeveral = 3;
-  if (runs < kSeveral) return;
-  const std::vector<RecordingFinding> all = *findings;
-  std::erase_if(*findings, [&](const RecordingFinding& one) {
-    const auto same = std::count_if(all.begin(), all.end(), [&](const RecordingFinding& other) {
-      return other.mistakes == one.mistakes;
-    });
-    return same < 2 && one.gain < kAlone;
-  });
-}
-
 std::string WhatIsWrong(const Mistakes& mistakes) {
   std::vector<std::string> parts;
   for (const RecordingMistake& mistake : mistakes) parts.push_back(mistake.what);
@@ -228,6 +215,19 @@ std::string WhatIsWrong(const Mistakes& mistakes) {
 }
 
 }  // namespace
+
+std::vector<RecordingFinding> WithoutDoubtful(size_t runs, const std::vector<RecordingFinding>& findings) {
+  constexpr size_t kSeveral = 3;
+  if (runs < kSeveral) return findings;
+  std::vector<RecordingFinding> sure;
+  for (const RecordingFinding& one : findings) {
+    const auto same = std::count_if(findings.begin(), findings.end(), [&](const RecordingFinding& other) {
+      return other.mistakes == one.mistakes;
+    });
+    if (same > 1 || one.gain >= kAlone || one.corrected <= kInOrder) sure.push_back(one);
+  }
+  return sure;
+}
 
 std::vector<RecordingFinding> CheckRecordings(const model::ModelDescription& model,
                                               const std::vector<Run>& runs, int jobs) {
@@ -249,8 +249,7 @@ std::vector<RecordingFinding> CheckRecordings(const model::ModelDescription& mod
       if (instead.has_value()) own = *instead;
     });
   }
-  DropDoubtful(runs.size(), &findings);
-  return findings;
+  return WithoutDoubtful(runs.size(), findings);
 }
 
 std::vector<std::string> FindingRemarks(const std::vector<RecordingFinding>& findings,

@@ -25,6 +25,9 @@ struct RecordingFinding {
 std::vector<RecordingFinding> CheckRecordings(const model::ModelDescription& model,
                                               const std::vector<runs::MeasuredRun>& runs, int jobs);
 
+// Without what one run of several says alone and weakly, if it is not in order then: what is missing there may look like a mistake.
+std::vector<RecordingFinding> WithoutDoubtful(size_t runs, const std::vector<RecordingFinding>& findings);
+
 // One line for each kind of finding: what is wrong, in which runs, and the sidecar's lines that mend it.
 std::vector<std::string> FindingRemarks(const std::vector<RecordingFinding>& findings,
                                         const std::vector<runs::MeasuredRun>& runs);

@@ -65,7 +65,8 @@ Residuals ResidualsOf(const model::ModelDescription& model, const RunData& run,
   return residuals;
 }
 
-double SumOfSquares(const model::ModelDescription& model, const RunData& run, const model::StartState& start) {
+double SumOfSquares(const model::ModelDescription& model, const RunData& run,
+                    const model::StartState& start) {
   double sum = 0;
   try {
     for (const double value : ResidualsOf(model, run, start).values) sum += value * value;
@@ -83,7 +84,8 @@ std::optional<size_t> UnknownTurn(const model::ModelDescription& model, const Ru
     all_have_phases = all_have_phases && model::HasRole(effect.id, model::Role::kPhase);
   }
   if (!repeats || (all_have_phases && run.angle_counts)) return std::nullopt;
-  return run.Find(model::Channel::kMotorAngle) != nullptr ? model::kTurn : static_cast<size_t>(model::kMotorAngle);
+  return run.Find(model::Channel::kMotorAngle) != nullptr ? model::kTurn
+                                                          : static_cast<size_t>(model::kMotorAngle);
 }
 
 std::vector<model::Unknown> StartUnknowns(const model::ModelDescription& model, const RunData& run) {

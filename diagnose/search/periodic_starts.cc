@@ -76,7 +76,9 @@ class Periodogram {
   }
 
   // The sum of the carrier's squares: what a wave's amplitude counts by.
-  double carriers() const { return normal_.front()(others_, others_) + normal_.front()(others_ + 1, others_ + 1); }
+  double carriers() const {
+    return normal_.front()(others_, others_) + normal_.front()(others_ + 1, others_ + 1);
+  }
   // The sum of the target's squares.
   double total() const { return normal_.front()(others_ + 2, others_ + 2); }
 
@@ -109,7 +111,6 @@ struct PeriodicEffect {
   const model::ParameterInfo* amplitude = nullptr;
   const model::ParameterInfo* phase = nullptr;  // null: it has none
   bool of_torque = false;                       // otherwise of the displacement
-
 };
 
 // The periodic effects among `changes`, in their order.

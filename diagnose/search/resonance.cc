@@ -2,10 +2,12 @@
 
 #include <array>
 #include <cmath>
+#include <limits>
 #include <utility>
 #include <vector>
 
 #include "base/parallel.h"
+#include "diagnose/search/predicting_starts.h"
 
 namespace hydro::diagnose {
 
@@ -14,6 +16,7 @@ namespace {
 // Where refits begin: differences of the frequency's logarithm from where the last fit ended. Ringing that
 // lasts a tenth of a second distinguishes frequencies some 2 % apart at 300 Hz.
 constexpr std::array<double, 10> kElsewhere = {-0.22, -0.15, -0.1, -0.06, -0.03, 0.03, 0.06, 0.1, 0.15, 0.22};
+constexpr size_t kFitted = 4;  // of these, those that predict best
 constexpr int kRounds = 3;
 
 Hypothesis Moved(const Hypothesis& hypothesis, size_t place, double by) {
@@ -31,12 +34,16 @@ Fitted BestAround(const SearchContext& context, const Fitted& fitted, size_t pla
                   const FitOptions& options) {
   FitOptions alone = options;
   alone.jobs = 1;
-  std::array<Fitted, kElsewhere.size()> fits;
-  ParallelFor(fits.size(), context.jobs, [&](size_t i) {
-    Hypothesis moved = Moved(fitted.hypothesis, place, kElsewhere[i]);
-    moved.base.clear();
-    fits[i] = Fit(moved, context.runs, StartsOf(fitted), alone);
-  });
+  std::vector<Hypothesis> around;
+  for (const double by : kElsewhere) {
+    around.push_back(Moved(fitted.hypothesis, place, by));
+    around.back().base.clear();
+  }
+  const std::vector<Scanned> starts = PredictingStarts(context, {}, around, StartsOf(fitted), fitted, kFitted,
+                                                       std::numeric_limits<double>::infinity());
+  std::vector<Fitted> fits(starts.size());
+  ParallelFor(fits.size(), context.jobs,
+              [&](size_t i) { fits[i] = Fit(starts[i].start, context.runs, starts[i].run_starts, alone); });
   const Fitted* best = nullptr;
   for (const Fitted& fit : fits) {
     if (fit.ok() && (best == nullptr || fit.sum < best->sum)) best = &fit;

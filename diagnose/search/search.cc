@@ -7,6 +7,7 @@
 #include "diagnose/fit/start_fit.h"
 #include "diagnose/search/parameter_instead.h"
 #include "diagnose/search/periodic_starts.h"
+#include "diagnose/search/predicting_starts.h"
 #include "diagnose/search/race.h"
 #include "diagnose/search/refits.h"
 #include "diagnose/search/resonance.h"
@@ -42,7 +43,7 @@ constexpr double kRefitBelow = 3;
 constexpr double kLeastShareOfMore = 0.4;
 // In a race, another change has to come to this part of the sum of squares that it is added to, far from the noise; one to the
 // model as given to this many times that of the rival.
-constexpr double kToStay = 1.2;
+constexpr double kToStay = 1.5;
 constexpr double kRivalTimes = 1.5;
 constexpr double kNoLimit = std::numeric_limits<double>::infinity();
 // Windows are fitted to this tolerance, to tell what is better, and what was best in the end to the finer one.
@@ -176,7 +177,10 @@ class Searcher {
         scanned_alone_ = scanned;
       }
       const bool exchange = most < kNoLimit;
-      for (Scanned& ringing : RingingStarts(context_, from.fitted, changes)) pool.push_back(std::move(ringing));
+      if (!exchange) {
+        for (Scanned& ringing : RingingStarts(context_, from.fitted, changes))
+          pool.push_back(std::move(ringing));
+      }
       Pick(from.fitted, {step == 0 ? kRefitsAtFirst : kRefitsLater, exchange ? 1 : kStarts}, &scanned, &pool);
       for (const Hypothesis& one :
            WithPeriodic(from.fitted.hypothesis, changes, context_.runs, context_.jobs)) {
@@ -236,6 +240,7 @@ class Searcher {
   // Tries to replace each change: a greedy choice may turn out second best once others are there. Tries even
   // if everything is explained: a replacement that does as well is a tie.
   void Exchange() {
+    if (result_.best.changes().size() == 1) ExchangeForConfused();
     if (result_.best.changes().size() < 2) return;
     const double gap = result_.best.held_out_gap();
     const int rounds = AreFar(gap) || gap < kCloseEnough ? 1 : 2;
@@ -261,6 +266,35 @@ class Searcher {
         if (better) break;
       }
       if (!better) return;
+    }
+  }
+
+  // Tries what the catalogue says is easily confused with the one effect that was found in its place: the score test, which is
+  // linear, may have passed it over.
+  void ExchangeForConfused() {
+    const Change found = result_.best.changes().front();
+    if (found.effect.empty()) return;
+    const std::string& confused = model::FindEffect(found.effect)->confused_with;
+    std::vector<Change> others;
+    for (const Change& change : context_.changes) {
+      if (!change.effect.empty() && confused.find(change.effect) != std::string::npos)
+        others.push_back(change);
+    }
+    if (others.empty()) return;
+    ReportProgress("exchanging what was found", 0.9);
+    const Hypothesis less = Without(result_.best.fitted.hypothesis, found, context_.given);
+    const std::vector<model::StartState> starts = StartsOf(result_.best.fitted);
+    std::vector<Scanned> pool;
+    for (const Change& other : others) {
+      for (Scanned& start : PredictingStarts(context_, other, With(less, other, context_.sizes, false),
+                                             starts, result_.best.fitted, 1, kNoLimit)) {
+        pool.push_back(std::move(start));
+      }
+    }
+    for (const Explanation& other :
+         FitAll(pool, starts, {&result_.best.fitted, kBehind}, kNearlyAsGood * result_.best.fitted.sum)) {
+      if (!Material(result_.best.held_out_gap(), other.held_out_gap())) continue;  // a tie at best
+      result_.best = RefitFromOtherStarts(context_, other, WithAllJobs(fine_));
     }
   }
 

@@ -20,7 +20,7 @@ struct NoisyRig {
   uint64_t seed = 1;
   double step = 1e-3;                                 // s between samples
   bool speed_measured = true, angle_measured = true;  // of the motor
-  double turn = 0;                                    // rad: where the shaft starts, as the angle sensor does not see it
+  double turn = 0;  // rad: where the shaft starts, as the angle sensor does not see it
 
   // `voltage` as a function of time, held from sample to sample.
   template <class Voltage>
@@ -42,7 +42,8 @@ struct NoisyRig {
       stimulus.voltage.push_back(voltage(stimulus.time.back()));
     }
     const double p_3 = model.parameters.p_3;
-    const model::Response response = model::Respond(model, stimulus, {0, 0, p_3, p_3, arm_angle, 0, turn}, {}, {});
+    const model::Response response =
+        model::Respond(model, stimulus, {0, 0, p_3, p_3, arm_angle, 0, turn}, {}, {});
     std::mt19937_64 random(seed);
     std::normal_distribution<double> normal;
     const double count = 2 * std::numbers::pi / (1 << encoder_bits);

@@ -13,6 +13,7 @@ namespace {
 
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
+using ::testing::SizeIs;
 
 // Two runs of a rig that has more friction than the model that is given, and a relief valve besides.
 class RecordingCheckTest : public ::testing::Test {
@@ -111,6 +112,28 @@ TEST_F(RecordingCheckTest, Units) {
   });
   ASSERT_EQ(one.size(), 1u);
   EXPECT_THAT(one[0], HasSubstr("run chirp: motor_speed is in rpm"));
+}
+
+// Tests that one run of several that alone says something weakly, and is not in order then, is not believed: offsets and a lag of the
+// motor looked like bar in one run of six. One that is in order then, a great fall or a second run are.
+TEST(RecordingFindings, OneRunAloneSaysItWeakly) {
+  RecordingMistake bar, sign;
+  bar.what = "p1 and p2 are in bar";
+  bar.unit = "bar";
+  sign.what = "voltage has the wrong sign";
+  sign.factors = {{&runs::MeasuredRun::voltage, -1.0}};
+  const RecordingFinding weak = {5, {bar}, 142, 21, 3.6};
+  RecordingFinding in_order = weak, great = weak, other = weak, another = weak;
+  in_order.corrected = 2;
+  great.gain = 11;
+  other.run = 2;
+  another.mistakes = {sign};
+  EXPECT_THAT(WithoutDoubtful(6, {weak}), IsEmpty());
+  EXPECT_THAT(WithoutDoubtful(6, {weak, another}), IsEmpty());
+  EXPECT_THAT(WithoutDoubtful(2, {weak}), SizeIs(1)) << "the other run has as little weight";
+  EXPECT_THAT(WithoutDoubtful(6, {in_order}), SizeIs(1));
+  EXPECT_THAT(WithoutDoubtful(6, {great}), SizeIs(1));
+  EXPECT_THAT(WithoutDoubtful(6, {other, weak}), SizeIs(2));
 }
 
 // Tests that times in milliseconds are found, and quickly: a simulation over them would hardly end.

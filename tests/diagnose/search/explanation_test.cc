@@ -49,6 +49,25 @@ TEST(Explain, PredictsTheHeldOutRuns) {
   EXPECT_NEAR(one.held_out_gap(), 1, 0.15);
 }
 
+// Tests that nothing is left to search for where held-out runs are predicted well, or where what was added fits runs that are held
+// out in turn: a run that alone shows an effect is not predicted by the others.
+TEST(LeavesNothing, HeldOutOrInTheFit) {
+  diagnose::SearchContext context;
+  const diagnose::RunData run;
+  diagnose::Explanation one;
+  one.fitted.sum = 1.1;
+  one.fitted.count = 1;
+  one.held_out.sum = 1.6;
+  one.held_out.count = 1;
+  EXPECT_FALSE(LeavesNothing(context, one, 1.25)) << "nothing was added";
+  one.fitted.hypothesis.changes = {{"valve.relief", {}, ""}};
+  EXPECT_TRUE(LeavesNothing(context, one, 1.25));
+  context.held_out = {&run};
+  EXPECT_FALSE(LeavesNothing(context, one, 1.25)) << "these runs were not fitted";
+  one.held_out.sum = 1.2;
+  EXPECT_TRUE(LeavesNothing(context, one, 1.25));
+}
+
 // Tests that a fit that leaves no gap is not repeated, and that one from a wrong start is mended.
 TEST(RefitFromOtherStarts, MendsAWrongStart) {
   const Rig rig;

@@ -17,7 +17,9 @@ class RingingStartsTest : public ::testing::Test {
  protected:
   RingingStartsTest()
       : runs_(testing::ClampedPair(
-            testing::Table1With({{"line.wave", {{"frequency", 60}, {"volume_fraction", 0.3}, {"damping", 0.02}}, {}}}), 2, 1)),
+            testing::Table1With(
+                {{"line.wave", {{"frequency", 60}, {"volume_fraction", 0.3}, {"damping", 0.02}}, {}}}),
+            2, 1)),
         windows_(WindowsForSearch(PointersTo(runs_), testing::Table1())) {
     context_.runs = windows_.fitted;
     context_.sizes = SizesOf(testing::Table1With(), context_.runs);
