@@ -27,10 +27,9 @@ NumbersOf<T> NumbersAs(const NumbersOf<double>& numbers) {
   return result;
 }
 
-// The initial state and mode of a response, from the base states `base`.
+// The initial state and mode of a response, from `base`, the numbers of a StartState.
 template <class T>
 Mode StartFrom(Equations* equations, const NumbersOf<T>& numbers, double time, const T* base, T* state) {
-  // `base` is as StartState.
   const EquationData& data = equations->data();
   Mode mode;
   T rate[kMaxStates];

@@ -170,15 +170,13 @@ Hypothesis WithWave(const Hypothesis& hypothesis, const PeriodicEffect& effect, 
                     const std::vector<const RunData*>& runs) {
   Hypothesis more = With(hypothesis, effect.change, SizesOf(hypothesis.model, runs), false).front();
   std::map<std::string, double>& values = more.model.effects.back().parameters;
-  double amplitude = 0;
+  double amplitude = std::hypot(wave.sine, wave.cosine);
+  // Without a phase, the angle of each run's shaft stands for it.
   if (effect.phase != nullptr) {
-    amplitude = std::hypot(wave.sine, wave.cosine);
     values[effect.phase->name] =
         effect.of_torque ? std::atan2(-wave.cosine, -wave.sine) : std::atan2(wave.sine, -wave.cosine);
-  } else {
-    amplitude = std::hypot(wave.sine, wave.cosine);  // every run's angle is its own
   }
-  if (!effect.of_torque) amplitude = std::clamp(amplitude, -kMostOfDisplacement, kMostOfDisplacement);
+  if (!effect.of_torque) amplitude = std::min(amplitude, kMostOfDisplacement);
   values[effect.amplitude->name] = std::clamp(amplitude, effect.amplitude->min, effect.amplitude->max);
   values[effect.periods->name] = wave.periods;
   return more;

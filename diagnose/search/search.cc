@@ -41,8 +41,8 @@ constexpr double kRefitBelow = 3;
 
 // The part of the windows' squared gap that each further change has to take, far from the noise.
 constexpr double kLeastShareOfMore = 0.4;
-// In a race, another change has to come to this part of the sum of squares that it is added to, far from the noise; one to the
-// model as given to this many times that of the rival.
+// In a race, far from the noise, another change has to come to so many times the sum of squares that it is added to, after the few
+// iterations of the first round; one to the model as given to so many times that of the rival.
 constexpr double kToStay = 1.5;
 constexpr double kRivalTimes = 1.5;
 constexpr double kNoLimit = std::numeric_limits<double>::infinity();
