@@ -6,11 +6,19 @@
 
 namespace hydro::diagnose {
 
+namespace {
+
+// A start is no result: what further steps gain does not show in a gap.
+constexpr double kStartTolerance = 1e-3;
+
+}  // namespace
+
 Fitted FitStart(const Hypothesis& hypothesis, const RunData& run, const model::StartState& from,
                 double doubtful) {
   const Hypothesis held = hypothesis.Held();
   FitOptions options;
   options.most_iterations = 12;
+  options.tolerance = kStartTolerance;
   Fitted best = Fit(held, {&run}, {from}, options);
   const auto begin_at = [&](const model::StartState& start) {
     if (start == from) return;

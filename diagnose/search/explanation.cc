@@ -1,10 +1,29 @@
 #include "diagnose/search/explanation.h"
 
 #include <algorithm>
+#include <utility>
 
+#include "diagnose/fit/residuals.h"
 #include "diagnose/fit/start_fit.h"
 
 namespace hydro::diagnose {
+
+namespace {
+
+// Of windows: their starts are free, and say no more.
+constexpr double kToSettleWindows = 1e-4;
+
+bool Gains(double sum, double before) { return sum < (1 - kToCompare) * before; }
+
+// The explanation, or as fitted from these starts if that is better.
+Explanation RefitFrom(const SearchContext& context, const Explanation& one,
+                      const std::vector<model::StartState>& starts, const FitOptions& options) {
+  Fitted again = Fit(one.fitted.hypothesis, context.runs, starts, options);
+  const bool better = again.ok() && Gains(again.sum, one.fitted.sum);
+  return better ? ExplanationOf(context, std::move(again), options.jobs) : one;
+}
+
+}  // namespace
 
 double NumbersFactor(const Hypothesis& hypothesis) {
   double factor = 1;
@@ -33,34 +52,55 @@ FitOptions FineFit(int jobs) {
   return fine;
 }
 
-Explanation Explain(const SearchContext& context, const Hypothesis& hypothesis,
-                    const std::vector<model::StartState>& starts, const FitOptions& options) {
+FitOptions FitToCompare(int jobs) {
+  FitOptions compare = FineFit(jobs);
+  compare.tolerance = kToCompare;
+  return compare;
+}
+
+Explanation ExplanationOf(const SearchContext& context, Fitted fitted, int jobs) {
   Explanation explanation;
-  explanation.fitted = Fit(hypothesis, context.runs, starts, options);
+  explanation.fitted = std::move(fitted);
   if (!explanation.fitted.ok()) return explanation;
   explanation.windows = context.windows;
   explanation.held_out = context.held_out.empty()
-                             ? PredictInTurn(explanation.fitted, context.given, context.runs, options.jobs)
-                             : Predict(explanation.fitted, context.held_out, options.jobs);
+                             ? PredictInTurn(explanation.fitted, context.given, context.runs, jobs)
+                             : Predict(explanation.fitted, context.held_out, jobs);
   explanation.blocks = context.windows ? LogarithmsOf(explanation.held_out)
                                        : BlocksOf(context.predicted(), explanation.held_out);
   return explanation;
 }
 
+Explanation Explain(const SearchContext& context, const Hypothesis& hypothesis,
+                    const std::vector<model::StartState>& starts, const FitOptions& options) {
+  return ExplanationOf(context, Fit(hypothesis, context.runs, starts, options), options.jobs);
+}
+
+void Settle(const SearchContext& context, Explanation* one) {
+  FitOptions options = FineFit(context.jobs);
+  if (context.windows) options.tolerance = kToSettleWindows;
+  Explanation settled = Explain(context, one->fitted.hypothesis, StartsOf(one->fitted), options);
+  if (settled.fitted.ok()) *one = std::move(settled);
+}
+
 Explanation RefitFromOtherStarts(const SearchContext& context, const Explanation& one,
                                  const FitOptions& options) {
-  if (one.fitted.squared_gap() <= kStartInDoubt) return one;
-  Explanation best = one;
-  const auto begin_at = [&](const std::vector<model::StartState>& starts) {
-    if (TimeIsUp(context)) return;
-    Explanation again = Explain(context, one.fitted.hypothesis, starts, options);
-    if (again.fitted.ok() && again.fitted.sum < best.fitted.sum) best = std::move(again);
-  };
-  begin_at(MeasuredStarts(context.runs));
+  if (one.fitted.squared_gap() <= kStartInDoubt || TimeIsUp(context)) return one;
+  const Explanation best = RefitFrom(context, one, MeasuredStarts(context.runs), options);
   // A window is too short to be caught in another place.
-  if (context.windows || best.fitted.squared_gap() <= kStartInDoubt) return best;
-  begin_at(BestStarts(best.fitted.hypothesis, context.runs, StartsOf(best.fitted), options.jobs));
-  return best;
+  return context.windows ? best : RefitFromBestStarts(context, best, options);
+}
+
+Explanation RefitFromBestStarts(const SearchContext& context, const Explanation& one,
+                                const FitOptions& options) {
+  if (one.fitted.squared_gap() <= kStartInDoubt || TimeIsUp(context)) return one;
+  const Hypothesis& hypothesis = one.fitted.hypothesis;
+  const std::vector<model::StartState> starts =
+      BestStarts(hypothesis, context.runs, StartsOf(one.fitted), options.jobs);
+  double sum = 0;
+  for (size_t r = 0; r < starts.size(); ++r)
+    sum += SumOfSquares(hypothesis.model, *context.runs[r], starts[r]);
+  return Gains(sum, one.fitted.sum) ? RefitFrom(context, one, starts, options) : one;
 }
 
 }  // namespace hydro::diagnose

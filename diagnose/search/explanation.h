@@ -53,17 +53,28 @@ bool LeavesNothing(const SearchContext& context, const Explanation& one, double 
 // Whether the search has to end with what it has.
 bool TimeIsUp(const SearchContext& context);
 
-// How what is compared is fitted.
+// How what is reported is fitted, and what is only compared: steps that gain less say nothing about which is better.
+inline constexpr double kToCompare = 1e-3;
 FitOptions FineFit(int jobs);
+FitOptions FitToCompare(int jobs);
+
+// What a fit to the context's runs predicts of the held-out ones.
+Explanation ExplanationOf(const SearchContext& context, Fitted fitted, int jobs);
 
 // Fits the hypothesis and predicts the held-out runs, both with the options' jobs.
 Explanation Explain(const SearchContext& context, const Hypothesis& hypothesis,
                     const std::vector<model::StartState>& starts, const FitOptions& options);
 
-// If the fit leaves a gap, fits again from the measured starts and, if a gap still remains, from each run's
-// best start (BestStarts); returns the best fit. Starts that were fitted while something was missing made up
-// for it, and may trap the fit where friction or cogging catches the shaft in another place.
+// Fits an explanation finely, from where it is.
+void Settle(const SearchContext& context, Explanation* one);
+
+// If the fit leaves a gap, fits again from the measured starts and, of whole runs, from each run's best start; returns the best
+// fit. Starts that were fitted while something was missing made up for it, and may trap the fit where friction or cogging catches the
+// shaft in another place.
 Explanation RefitFromOtherStarts(const SearchContext& context, const Explanation& one,
                                  const FitOptions& options);
+// The same from each run's best start (BestStarts) alone, if one is better than the fit's.
+Explanation RefitFromBestStarts(const SearchContext& context, const Explanation& one,
+                                const FitOptions& options);
 
 }  // namespace hydro::diagnose

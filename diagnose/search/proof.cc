@@ -24,9 +24,10 @@ constexpr size_t kFewestToChoose = 2;
 // may close.
 Explanation Prove(const SearchContext& context, const Hypothesis& hypothesis) {
   constexpr double kSmall = 4;
-  const Explanation one = Explain(context, hypothesis, MeasuredStarts(context.runs), FineFit(context.jobs));
+  const FitOptions compare = FitToCompare(context.jobs);
+  const Explanation one = Explain(context, hypothesis, MeasuredStarts(context.runs), compare);
   const bool small = one.fitted.ok() && one.squared_gap() < kSmall;
-  return small && !TimeIsUp(context) ? RefitFromOtherStarts(context, one, FineFit(context.jobs)) : one;
+  return small && !TimeIsUp(context) ? RefitFromBestStarts(context, one, compare) : one;
 }
 
 WindowTrials TrialsOn(SearchWindows windows, const WideSearch& near, bool decide) {
@@ -49,8 +50,10 @@ WindowTrials TrialsOn(SearchWindows windows, const WideSearch& near, bool decide
 void SearchOn(const SearchContext& context, SearchResult* proved) {
   const int changes = static_cast<int>(proved->best.changes().size());
   if (changes >= kMostChanges) return;
-  SearchResult more = Search(context, proved->best, {kMostChanges - changes});
-  if (Material(proved->best.held_out_gap(), more.best.held_out_gap())) proved->best = std::move(more.best);
+  // Windows have tried all: what shows on whole runs alone, an offset or a drift, is linear.
+  const Fitted from = proved->best.fitted;
+  SearchResult more = Search(context, proved->best, {kMostChanges - changes, false, {&from, 1}});
+  proved->best = std::move(more.best);
   proved->tried.insert(proved->tried.end(), more.tried.begin(), more.tried.end());
 }
 
@@ -109,8 +112,13 @@ void Choose(const SearchContext& context, const SearchResult& near, WideSearch* 
     proved->search.tried.push_back(std::move(whole));
     if (proved->search.best.held_out_gap() > kNearTheNoise) return;
   }
+  if (TimeIsUp(context)) return;
   const bool open = !LeavesNothing(context, proved->search.best, kCloseEnough);
-  if (open && !TimeIsUp(context)) SearchOn(context, &proved->search);
+  if (open) {
+    SearchOn(context, &proved->search);
+  } else {
+    Settle(context, &proved->search.best);
+  }
 }
 
 // The explanations of the whole runs: those given, refitted, and near the noise the best of what leads on windows.

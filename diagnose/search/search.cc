@@ -42,13 +42,9 @@ constexpr double kRefitBelow = 3;
 // The part of the windows' squared gap that each further change has to take, far from the noise.
 constexpr double kLeastShareOfMore = 0.4;
 // In a race, far from the noise, another change has to come to so many times the sum of squares that it is added to, after the few
-// iterations of the first round; one to the model as given to so many times that of the rival.
+// iterations of the first round.
 constexpr double kToStay = 1.5;
-constexpr double kRivalTimes = 1.5;
 constexpr double kNoLimit = std::numeric_limits<double>::infinity();
-// Windows are fitted to this tolerance, to tell what is better, and what was best in the end to the finer one.
-constexpr double kToCompare = 1e-3;
-constexpr double kToSettle = 1e-4;
 
 double CostOf(const Explanation& one) {
   return Cost(one.held_out_gap(), NumbersFactor(one.fitted.hypothesis));
@@ -70,12 +66,11 @@ class Searcher {
       : context_(context), options_(options) {
     coarse_.most_iterations = 8;
     coarse_.tolerance = kToCompare;
-    if (context.windows) fine_.tolerance = kToCompare;
   }
 
   SearchResult Run(const Explanation& from) {
     result_.given = result_.best = from;
-    Grow(Extend({from}, 0, {options_.rival, kRivalTimes}), 0);
+    Grow(Extend({from}, 0, options_.bar), 0);
     const bool nothing = result_.best.changes().size() == from.changes().size();
     if (options_.thorough && nothing && result_.best.held_out_gap() >= kCloseEnough && !TimeIsUp(context_)) {
       Grow(TryMore(), 0);
@@ -86,7 +81,7 @@ class Searcher {
       result_.best = *instead;
     }
     result_.best = AtBestResonance(context_, result_.best, WithAllJobs(fine_));
-    if (context_.windows && !TimeIsUp(context_)) Settle();
+    if (!TimeIsUp(context_)) Settle(context_, &result_.best);
     return result_;
   }
 
@@ -95,15 +90,6 @@ class Searcher {
   FitOptions WithAllJobs(FitOptions options) const {
     options.jobs = context_.jobs;
     return options;
-  }
-
-  // Fits the best explanation of windows finely.
-  void Settle() {
-    FitOptions options = WithAllJobs(fine_);
-    options.tolerance = kToSettle;
-    const Fitted& best = result_.best.fitted;
-    Explanation settled = Explain(context_, best.hypothesis, StartsOf(best), options);
-    if (settled.fitted.ok()) result_.best = std::move(settled);
   }
 
   // Whether windows with this squared gap are far from the noise. Whole runs never count as that.
@@ -320,7 +306,7 @@ class Searcher {
 
   const SearchContext& context_;
   SearchOptions options_;
-  FitOptions coarse_, fine_ = FineFit(1);
+  FitOptions coarse_, fine_ = FitToCompare(1);
   SearchResult result_;
   std::vector<std::vector<Scanned>> scanned_alone_;  // every change to the given model
   std::vector<Change> picked_alone_;                 // those of them refitted from where the score test led

@@ -7,6 +7,7 @@
 
 #include "diagnose/fit/hypothesis.h"
 #include "diagnose/search/explanation.h"
+#include "diagnose/search/race.h"
 
 namespace hydro::diagnose {
 
@@ -36,8 +37,8 @@ struct SearchOptions {
   int most_changes = kMostChanges;
   // Where the score test's likeliest changes do not explain the runs, more are refitted.
   bool thorough = true;
-  // Single changes that stay far behind it are not followed up; null: all are.
-  const Fitted* rival = nullptr;
+  // What the first changes have to come near in the race.
+  Bar bar;
 };
 
 // Searches from `from`, without changes of its own and fitted.

@@ -9,6 +9,9 @@ namespace hydro::diagnose {
 
 namespace {
 
+// A single change to the model as given has to come, in the race, to so many times the sum of squares of the refit.
+constexpr double kRivalTimes = 1.5;
+
 // Stretches of a signal, in a search horizon, that count as independent of each other.
 constexpr double kIndependent = 10;
 
@@ -84,7 +87,7 @@ WideSearch SearchWidely(const SearchContext& runs, const Hypothesis& as_given,
   const Explanation given = wide.search.given;
   // Where the refit comes near the noise, one that does too may take more than a race to get there.
   const bool rival = context.windows && wide.refit.held_out_gap() > kOutOfReach;
-  wide.search = Search(context, given, {1, false, rival ? &wide.refit.fitted : nullptr});
+  wide.search = Search(context, given, {1, false, {rival ? &wide.refit.fitted : nullptr, kRivalTimes}});
   if (closed() || TimeIsUp(context)) return wide;
   // No machine has exactly the values that its model has.
   wide.search.tried.push_back(wide.refit);
