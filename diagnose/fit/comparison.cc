@@ -56,9 +56,12 @@ double TValue(const BlockSums& worse, const BlockSums& better) {
   return error > 0 ? mean / error : 0;
 }
 
+double LeastMaterialGain(double squared_gap_before) {
+  return std::max(kLeastGain, kLeastShare * (squared_gap_before - 1));
+}
+
 bool Material(double squared_gap_before, double squared_gap_after) {
-  const double gain = squared_gap_before - squared_gap_after;
-  return gain >= kLeastGain && gain >= kLeastShare * std::max(0.0, squared_gap_before - 1);
+  return squared_gap_before - squared_gap_after >= LeastMaterialGain(squared_gap_before);
 }
 
 bool Closed(double squared_gap_before, double squared_gap_after, bool exact_sensors) {

@@ -26,7 +26,7 @@ double TValue(const BlockSums& worse, const BlockSums& better);
 // true ones of two noise units or more took more than half.
 inline constexpr double kLeastGain = 0.1;    // of the squared gap
 inline constexpr double kLeastShare = 0.25;  // of the squared gap above the noise floor
-
+double LeastMaterialGain(double squared_gap_before);
 bool Material(double squared_gap_before, double squared_gap_after);
 
 // Whether the remaining gap needs no further explanation: it is at most 1.15 times the noise. Where all

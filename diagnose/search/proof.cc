@@ -50,23 +50,21 @@ WindowTrials TrialsOn(SearchWindows windows, const WideSearch& near, bool decide
 void SearchOn(const SearchContext& context, SearchResult* proved) {
   const int changes = static_cast<int>(proved->best.changes().size());
   if (changes >= kMostChanges) return;
-  // Windows have tried all: what shows on whole runs alone, an offset or a drift, is linear.
+  // Windows have tried all. What shows on whole runs alone, an offset or a drift, is linear: a race shows half of its gain at least.
   const Fitted from = proved->best.fitted;
-  SearchResult more = Search(context, proved->best, {kMostChanges - changes, false, {&from, 1}});
+  const double least = 1 - 0.5 * LeastMaterialGain(from.squared_gap()) / from.squared_gap();
+  SearchResult more = Search(context, proved->best, {kMostChanges - changes, false, {&from, least}});
   proved->best = std::move(more.best);
   proved->tried.insert(proved->tried.end(), more.tried.begin(), more.tried.end());
 }
 
-// Predicts the held-out runs, which have chosen nothing, with all that was compared.
+// Predicts the held-out runs, which have chosen nothing, with all else that was compared.
 void PredictHeldOut(const SearchContext& context, WideSearch* proved) {
   const auto predict = [&](Explanation* one) {
     if (one->blocks.sums.empty()) return;
     one->held_out = Predict(one->fitted, context.held_out, context.jobs);
     one->blocks = BlocksOf(context.held_out, one->held_out);
   };
-  predict(&proved->search.given);
-  predict(&proved->refit);
-  predict(&proved->search.best);
   for (Explanation& one : proved->search.tried) predict(&one);
 }
 
@@ -126,7 +124,13 @@ WideSearch ProveInTurn(const SearchContext& context, const Hypothesis& as_given,
   // Where runs are enough, they choose by predicting each other.
   const bool in_turn = context.runs.size() >= kFewestToChoose && !context.held_out.empty();
   SearchContext choosing = context;
-  if (in_turn) choosing.held_out.clear();
+  std::vector<RunData> thinned;
+  if (in_turn) {
+    // The values are fitted to all samples when the choice has been made.
+    for (const RunData* run : context.runs) thinned.push_back(ThinnedCopy(*run));
+    choosing.runs = PointersTo(thinned);
+    choosing.held_out.clear();
+  }
   const std::vector<model::StartState> measured = MeasuredStarts(context.runs);
   WideSearch proved;
   proved.search.given = Explain(choosing, as_given, measured, FineFit(context.jobs));
@@ -136,7 +140,10 @@ WideSearch ProveInTurn(const SearchContext& context, const Hypothesis& as_given,
   proved.refit = Explain(choosing, near.refit.fitted.hypothesis, measured, FineFit(context.jobs));
   if (!proved.refit.fitted.ok()) proved.refit = proved.search.given;
   Choose(choosing, near.search, &proved);
-  if (in_turn) PredictHeldOut(context, &proved);
+  if (in_turn) {
+    for (Explanation* one : {&proved.search.given, &proved.refit, &proved.search.best}) Settle(context, one);
+    PredictHeldOut(context, &proved);
+  }
   return proved;
 }
 

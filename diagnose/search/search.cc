@@ -171,7 +171,9 @@ class Searcher {
       for (const Hypothesis& one :
            WithPeriodic(from.fitted.hypothesis, changes, context_.runs, context_.jobs)) {
         periodic.push_back({one.changes.back(), one, 0, "", {}});
-        periodic.back().run_starts = BestStarts(one, context_.runs, StartsOf(from.fitted), context_.jobs);
+        // A window is too short to be caught in another place.
+        if (!context_.windows)
+          periodic.back().run_starts = BestStarts(one, context_.runs, StartsOf(from.fitted), context_.jobs);
       }
     }
     if (step == 0) {

@@ -27,7 +27,7 @@ const Explanation* AddedAlone(const std::vector<Explanation>& tried, const Chang
   const Explanation* best = nullptr;
   for (const Explanation& one : tried) {
     if (one.changes().size() != 1 || !(one.changes().front() == change)) continue;
-    if (best == nullptr || one.fitted.sum < best->fitted.sum) best = &one;
+    if (best == nullptr || one.squared_gap() < best->squared_gap()) best = &one;
   }
   return best;
 }
@@ -67,7 +67,8 @@ class Ranker {
     const Explanation* alone = AddedAlone(search_.tried, rated.change);
     if (alone != nullptr) {
       SetGaps(*alone, &candidate);
-      fall = search_.given.fitted.sum - alone->fitted.sum;
+      fall = (search_.given.squared_gap() - alone->squared_gap()) *
+             static_cast<double>(search_.given.fitted.count);
     }
     candidate.p_value = PValue(fall, search_.best.squared_gap(), correlation_, OwnNumbers(rated.change),
                                search_.rated.size());

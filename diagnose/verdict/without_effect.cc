@@ -23,7 +23,7 @@ const Explanation* Find(const std::vector<const Explanation*>& tried, const Hypo
     std::sort(its.begin(), its.end());
     if (!one->fitted.ok() || one->blocks.sums.empty() || its != base) continue;
     if (!SameChanges(one->fitted.hypothesis, hypothesis)) continue;
-    if (found == nullptr || one->fitted.sum < found->fitted.sum) found = one;
+    if (found == nullptr || one->squared_gap() < found->squared_gap()) found = one;
   }
   return found;
 }
