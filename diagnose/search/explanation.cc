@@ -85,10 +85,9 @@ void Settle(const SearchContext& context, Explanation* one) {
 
 Explanation RefitFromOtherStarts(const SearchContext& context, const Explanation& one,
                                  const FitOptions& options) {
-  if (one.fitted.squared_gap() <= kStartInDoubt || TimeIsUp(context)) return one;
-  const Explanation best = RefitFrom(context, one, MeasuredStarts(context.runs), options);
   // A window is too short to be caught in another place.
-  return context.windows ? best : RefitFromBestStarts(context, best, options);
+  if (context.windows || one.fitted.squared_gap() <= kStartInDoubt || TimeIsUp(context)) return one;
+  return RefitFromBestStarts(context, RefitFrom(context, one, MeasuredStarts(context.runs), options), options);
 }
 
 Explanation RefitFromBestStarts(const SearchContext& context, const Explanation& one,

@@ -68,8 +68,7 @@ Explanation Explain(const SearchContext& context, const Hypothesis& hypothesis,
 // Fits an explanation finely, from where it is.
 void Settle(const SearchContext& context, Explanation* one);
 
-// If the fit leaves a gap, fits again from the measured starts and, of whole runs, from each run's best start; returns the best
-// fit. Starts that were fitted while something was missing made up for it, and may trap the fit where friction or cogging catches the
+// If a fit of whole runs leaves a gap, fits again from the measured starts and from each run's best start; returns the best fit. Starts that were fitted while something was missing made up for it, and may trap the fit where friction or cogging catches the
 // shaft in another place.
 Explanation RefitFromOtherStarts(const SearchContext& context, const Explanation& one,
                                  const FitOptions& options);

@@ -137,7 +137,7 @@ WideSearch ProveInTurn(const SearchContext& context, const Hypothesis& as_given,
   if (!proved.search.given.fitted.ok()) return proved;
   proved.search.rated = near.search.rated;
   proved.search.best = proved.search.given;
-  proved.refit = Explain(choosing, near.refit.fitted.hypothesis, measured, FineFit(context.jobs));
+  proved.refit = Explain(choosing, near.refit.fitted.hypothesis, measured, FitToCompare(context.jobs));
   if (!proved.refit.fitted.ok()) proved.refit = proved.search.given;
   Choose(choosing, near.search, &proved);
   if (in_turn) {

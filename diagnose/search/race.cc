@@ -14,7 +14,7 @@ namespace {
 constexpr int kIterationsToQualify = 3;
 // One that has then come no nearer than this many times the best one's sum of squares is left as it is.
 constexpr double kOutOfTheRace = 3;
-constexpr size_t kMostInTheRace = 6;
+constexpr size_t kMostInTheRace = 4;
 // Another start of the same change beats it by so much.
 constexpr double kBeaten = 1.1;
 

@@ -31,7 +31,7 @@ RaceResult Race(const SearchContext& context, const std::vector<Scanned>& pool,
 // Which of `runs` windows a race begins with: a third of them, evenly spread, and the last few. All of a few.
 std::vector<size_t> RaceSample(size_t runs);
 
-// Which of the fits go on: those near the best one and with a sum of squares of at most `most`, at most six, and of one
+// Which of the fits go on: those near the best one and with a sum of squares of at most `most`, at most four, and of one
 // change's starts the best.
 std::vector<bool> InTheRace(const std::vector<Fitted>& fits, double most);
 

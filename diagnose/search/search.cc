@@ -60,6 +60,15 @@ bool CanAdd(const Hypothesis& hypothesis, const Change& change) {
                       [&](const model::EffectDescription& effect) { return effect.id == change.effect; });
 }
 
+// Whether the catalogue says that the two effects are easily confused.
+bool AreConfused(const Change& a, const Change& b) {
+  if (a.effect.empty() || b.effect.empty() || a.effect == b.effect) return false;
+  const auto names = [](const Change& one, const Change& other) {
+    return model::FindEffect(one.effect)->confused_with.find(other.effect) != std::string::npos;
+  };
+  return names(a, b) || names(b, a);
+}
+
 class Searcher {
  public:
   Searcher(const SearchContext& context, const SearchOptions& options)
@@ -75,7 +84,9 @@ class Searcher {
     if (options_.thorough && nothing && result_.best.held_out_gap() >= kCloseEnough && !TimeIsUp(context_)) {
       Grow(TryMore(), 0);
     }
-    if (!TimeIsUp(context_)) Exchange();
+    // What `from` has was exchanged where it was found.
+    const bool added = result_.best.changes().size() > from.changes().size();
+    if (added && !TimeIsUp(context_)) Exchange();
     if (!TimeIsUp(context_)) RemoveUnneeded();
     if (const Explanation* instead = ParameterInstead(result_, context_.given)) {
       result_.best = *instead;
@@ -106,6 +117,12 @@ class Searcher {
     return AreFar(before) && next.held_out_gap() > (1 - kLeastShareOfMore) * before;
   }
 
+  // Whether `other` may lead elsewhere than the better `first`.
+  static bool IsWorthFollowing(const Explanation& other, const Explanation& first) {
+    const bool behind = other.fitted.sum > kBehind * first.fitted.sum;
+    return !behind && !AreConfused(other.changes().back(), first.changes().back());
+  }
+
   // Takes the best of `next`, hypotheses of `step` + 1 changes, if it gains enough, and continues from there.
   void Grow(std::vector<Explanation> next, int step) {
     while (!next.empty()) {
@@ -116,7 +133,7 @@ class Searcher {
       *best = RefitFromOtherStarts(context_, *best, WithAllJobs(fine_));
       std::vector<Explanation> beam(next.begin(),
                                     next.begin() + static_cast<std::ptrdiff_t>(std::min(kBeam, next.size())));
-      while (beam.size() > 1 && beam.back().fitted.sum > kBehind * beam.front().fitted.sum) beam.pop_back();
+      while (beam.size() > 1 && !IsWorthFollowing(beam.back(), beam.front())) beam.pop_back();
       result_.best = *best;
       if (LeavesNothing(context_, result_.best, kCloseEnough) || ++step >= options_.most_changes) return;
       if (TimeIsUp(context_)) return;
@@ -142,16 +159,16 @@ class Searcher {
   }
 
   // Adds one more change to each hypothesis of the beam and fits it; returns the best few by their fit, with
-  // held-out predictions. Those with a sum of squares above `most` are not predicted.
+  // held-out predictions. Those with a sum of squares above `most` are not predicted, and `leaving` is not added.
   std::vector<Explanation> Extend(const std::vector<Explanation>& beam, int step, const Bar& bar,
-                                  double most = kNoLimit) {
+                                  double most = kNoLimit, const Change& leaving = {}) {
     std::vector<Scanned> pool, periodic;
     const double share = static_cast<double>(step) / options_.most_changes;
     for (const Explanation& from : beam) {
       ReportProgress("judging each effect" + Step(step), share);
       std::vector<Change> changes;
       for (const Change& change : context_.changes) {
-        if (CanAdd(from.fitted.hypothesis, change)) changes.push_back(change);
+        if (CanAdd(from.fitted.hypothesis, change) && !(change == leaving)) changes.push_back(change);
       }
       auto scanned = Scan(from.fitted, context_.runs, changes, context_.sizes, step == 0, context_.jobs);
       if (step == 0) {
@@ -241,9 +258,10 @@ class Searcher {
         Explanation reduced;  // its own prediction is not needed
         reduced.fitted = Fit(less, context_.runs, StartsOf(result_.best.fitted), WithAllJobs(coarse_));
         if (!reduced.fitted.ok()) continue;
+        without_.push_back(reduced.fitted);
         std::vector<Explanation> others =
             Extend({reduced}, options_.most_changes, {&result_.best.fitted, kBehind},
-                   kNearlyAsGood * result_.best.fitted.sum);
+                   kNearlyAsGood * result_.best.fitted.sum, change);
         for (const Explanation& other : others) {
           if (other.fitted.sum < 0.98 * result_.best.fitted.sum &&
               other.held_out_gap() < result_.best.held_out_gap()) {
@@ -286,14 +304,28 @@ class Searcher {
     }
   }
 
+  // The best explanation, fitted without one of its changes.
+  Fitted FitWithout(const Change& change) const {
+    const Hypothesis less = Without(result_.best.fitted.hypothesis, change, context_.given);
+    for (const Fitted& one : without_) {
+      if (SameChanges(one.hypothesis, less) && one.hypothesis.base == less.base) return one;
+    }
+    return Fit(less, context_.runs, StartsOf(result_.best.fitted), WithAllJobs(coarse_));
+  }
+
   // Removes changes that are no longer needed now that the others are there.
   void RemoveUnneeded() {
     bool fewer = true;
     while (fewer && result_.best.changes().size() > 1) {
       fewer = false;
       for (const Change& change : result_.best.changes()) {
-        const Hypothesis less = Without(result_.best.fitted.hypothesis, change, context_.given);
-        Explanation reduced = Explain(context_, less, StartsOf(result_.best.fitted), WithAllJobs(fine_));
+        const Fitted without = FitWithout(change);
+        if (!without.ok()) continue;
+        if (without.sum > kBehind * result_.best.fitted.sum) {  // it is needed
+          result_.tried.push_back(ExplanationOf(context_, without, context_.jobs));
+          continue;
+        }
+        Explanation reduced = Explain(context_, without.hypothesis, StartsOf(without), WithAllJobs(fine_));
         if (!reduced.fitted.ok()) continue;
         if (reduced.squared_gap() < kRefitBelow)
           reduced = RefitFromOtherStarts(context_, reduced, WithAllJobs(fine_));
@@ -311,6 +343,7 @@ class Searcher {
   FitOptions coarse_, fine_ = FitToCompare(1);
   SearchResult result_;
   std::vector<std::vector<Scanned>> scanned_alone_;  // every change to the given model
+  std::vector<Fitted> without_;                      // the best ones without one of their changes, as exchanged
   std::vector<Change> picked_alone_;                 // those of them refitted from where the score test led
 };
 

@@ -56,7 +56,7 @@ Explanation WithValuesAsGiven(const SearchContext& context, const Hypothesis& as
   sparse.changes = best.changes();
   sparse.model.effects = best.fitted.hypothesis.model.effects;
   std::erase_if(sparse.changes, [](const Change& change) { return change.effect.empty(); });
-  return Explain(context, sparse, StartsOf(best.fitted), FineFit(context.jobs));
+  return Explain(context, sparse, StartsOf(best.fitted), FitToCompare(context.jobs));
 }
 
 void SearchFrom(const SearchContext& context, const Explanation& from, SearchResult* search) {

@@ -51,7 +51,7 @@ double ShareOf(const SearchContext& context, const SearchResult& search, const W
   const Explanation* without = Find(PointersToAll(windows.tried), less);
   if (without == nullptr) {
     const SearchContext on_windows = OnWindows(context, windows.fitted, windows.choosing);
-    fitted = Explain(on_windows, less, StartsOf(near->fitted), FineFit(context.jobs));
+    fitted = Explain(on_windows, less, StartsOf(near->fitted), FitToCompare(context.jobs));
     without = &fitted;
   }
   if (!without->fitted.ok()) return std::numeric_limits<double>::quiet_NaN();
