@@ -7,6 +7,7 @@
 
 #include "base/number_text.h"
 #include "base/word_list.h"
+#include "diagnose/report/html_parts.h"
 #include "diagnose/report/picture_parts.h"
 #include "model/effects/knots.h"
 #include "page/figure_svg.h"
@@ -78,6 +79,22 @@ page::Figure Picture(const Closure& closure) {
   return {.caption = "", .panels = {panel}, .width = 560, .panel_height = 200};
 }
 
+std::string Values(const Closure& closure) {
+  const bool surface = closure.knots.size() == 2;
+  std::vector<std::string> columns = {"#" + Label(closure.against[0], closure.against_units[0])};
+  if (surface) columns.push_back("#" + Label(closure.against[1], closure.against_units[1]));
+  columns.insert(columns.end(), {"#" + Label("value", closure.unit), "#95 % band"});
+  const size_t rows_of = surface ? closure.knots[1].size() : 1;
+  std::string rows;
+  for (size_t i = 0; i < closure.value.size(); ++i) {
+    rows += "<tr>" + NumberCell(closure.knots[0][i / rows_of]) +
+            (surface ? NumberCell(closure.knots[1][i % rows_of]) : "") + NumberCell(closure.value[i]) +
+            "<td class=\"number\">" + ShortNumber(closure.low[i]) + " to " + ShortNumber(closure.high[i]) +
+            "</td></tr>\n";
+  }
+  return Table(columns, rows, "narrow");
+}
+
 std::string GapText(const Closure& closure) {
   const double taken = 1 - std::pow(closure.after / closure.before, 2);
   return "<p>Added to the model" +
@@ -95,7 +112,7 @@ std::string ClosureSection(const Diagnosis& diagnosis) {
     out += "<h3>" + page::EscapeMarkup(closure.id) + " against " +
            page::TypesetHtml(Enumerated(closure.against)) + "</h3>\n<p>It " +
            page::TypesetHtml(closure.resembles) + ".</p>\n" +
-           page::HtmlFigure(Picture(closure), "the closure, with its 95 % band");
+           page::HtmlFigure(Picture(closure), "the closure, with its 95 % band") + Values(closure);
   }
   return out.empty() ? "" : out + GapText(diagnosis.closures.front());
 }

@@ -33,6 +33,21 @@ double Convert(Estimated* estimated) {
   return unit->factor;
 }
 
+// All runs by one unit, that of the largest value.
+void Convert(ValueByRun* value) {
+  std::vector<double> values;
+  for (const Estimated& run : value->values) values.push_back(run.value);
+  const std::optional<SiUnit> unit = FindSiUnit(value->unit, Largest(values));
+  if (!unit.has_value()) return;
+  for (Estimated& run : value->values) {
+    run.value *= unit->factor;
+    run.low *= unit->factor;
+    run.high *= unit->factor;
+    run.unit = unit->to;
+  }
+  value->unit = unit->to;
+}
+
 // Returns the factors of the variable and of the term.
 std::pair<double, double> Convert(MissingTerm* term) {
   std::pair<double, double> factors = {1, 1};
@@ -80,6 +95,7 @@ Diagnosis InSi(Diagnosis diagnosis) {
   }
   for (Closure& closure : diagnosis.closures) Convert(&closure);
   for (ChangedParameter& parameter : diagnosis.parameters) parameter.model *= Convert(&parameter.fitted);
+  for (ValueByRun& value : diagnosis.per_run) Convert(&value);
   for (MissingTerm& term : diagnosis.missing) Convert(&term);
   for (FoundTerm& term : diagnosis.terms) {
     const std::pair<double, double> factors = Convert(&term.missing);

@@ -12,6 +12,7 @@
 #include "diagnose/report/closure_section.h"
 #include "diagnose/report/diagnosis_in_si.h"
 #include "diagnose/report/html_parts.h"
+#include "diagnose/report/per_run_section.h"
 #include "diagnose/report/report_json.h"
 #include "diagnose/report/report_pictures.h"
 #include "page/figure_svg.h"
@@ -119,6 +120,7 @@ std::string ReportHtml(const Diagnosis& given, bool si) {
                             Section("How much of the gap it takes", HowMuchOfTheGap(diagnosis)) +
                             Section("What remains, and where", WhatRemains(diagnosis)) +
                             Section("What no known effect explains", ClosureSection(diagnosis)) +
+                            Section("What differs from run to run", PerRunSection(diagnosis)) +
                             Section("What to measure next", WhatToMeasureNext(diagnosis)) +
                             Section("Remarks on the recordings", Remarks(diagnosis)) +
                             Section("The gap by signal", GapTable(diagnosis, si)) +

@@ -40,7 +40,7 @@ Explanation Refit(const SearchContext& context, const Hypothesis& as_given, cons
   for (const model::EffectDescription& effect : context.given.effects) refitted.effects.push_back(effect.id);
   refitted.base = allowed;
   Know(context, given.fitted.sum, &refitted);
-  const Fitted fitted = Fit(refitted, context.runs, starts, FitToCompare(context.jobs));
+  const Fitted fitted = Fit(refitted, context.runs, starts, FineFit(context.jobs));
   if (!fitted.ok()) return given;
   refitted = fitted.hypothesis;
   Know(context, fitted.sum, &refitted);

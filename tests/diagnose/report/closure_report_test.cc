@@ -82,6 +82,17 @@ TEST(ClosureReport, OnThePage) {
   EXPECT_THAT(page, HasSubstr("with 3 noise units instead of 9: it takes 89 % of the squared gap"));
 }
 
+// Tests the table of a closure's values: a row for each knot, of a surface for each pair of knots.
+TEST(ClosureReport, ValuesInATable) {
+  Diagnosis diagnosis = testing::ExampleDiagnosis();
+  diagnosis.closures = {Curve(), Surface()};
+  const std::string page = ReportHtml(diagnosis, false);
+  EXPECT_THAT(page, HasSubstr("<tr><td class=\"number\">100</td><td class=\"number\">-2</td><td "
+                              "class=\"number\">-2.1 to -1.9</td></tr>"));
+  EXPECT_THAT(page, HasSubstr("<tr><td class=\"number\">0.2</td><td class=\"number\">-500</td><td "
+                              "class=\"number\">2</td><td class=\"number\">1 to 3</td></tr>"));
+}
+
 // Tests that --si converts values, bands, knots and units.
 TEST(ClosureReport, InSi) {
   Diagnosis diagnosis = testing::ExampleDiagnosis();

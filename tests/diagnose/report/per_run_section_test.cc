@@ -1,0 +1,54 @@
+#include "diagnose/report/per_run_section.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "diagnose/report/diagnosis_in_si.h"
+#include "tests/diagnose/example_diagnosis.h"
+
+namespace hydro::diagnose {
+namespace {
+
+using ::testing::HasSubstr;
+
+ValueByRun Friction() {
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+  ValueByRun friction;
+  friction.name = "T_s";
+  friction.unit = "in-lbf";
+  friction.values = {{.name = "monday", .unit = "in-lbf", .value = 2, .low = 1.9, .high = 2.1},
+                     {.name = "tuesday", .unit = "in-lbf", .value = 3, .low = 2.9, .high = 3.1},
+                     {.name = "stuck", .unit = "in-lbf", .value = kNan, .low = kNan, .high = kNan}};
+  friction.before = 4;
+  friction.after = 1.5;
+  return friction;
+}
+
+// Tests a row for each run, one that cannot be simulated too, and nothing where no value differs.
+TEST(PerRunSection, ARowForEachRun) {
+  Diagnosis diagnosis = testing::ExampleDiagnosis();
+  diagnosis.per_run.clear();
+  EXPECT_EQ(PerRunSection(diagnosis), "");
+  diagnosis.per_run = {Friction()};
+  const std::string section = PerRunSection(diagnosis);
+  EXPECT_THAT(section, HasSubstr("<td>tuesday</td><td class=\"number\">3</td><td class=\"number\">2.9 to 3.1</td>"));
+  EXPECT_THAT(section, HasSubstr("cannot be simulated"));
+  EXPECT_THAT(section, HasSubstr("gap of 1.5 instead of 4 noise units"));
+}
+
+// Tests that --si converts the values of all runs alike.
+TEST(PerRunSection, InSi) {
+  Diagnosis diagnosis = testing::ExampleDiagnosis();
+  diagnosis.per_run = {Friction()};
+  const ValueByRun& si = InSi(diagnosis).per_run.front();
+  EXPECT_EQ(si.unit, "N m");
+  EXPECT_NEAR(si.values[0].value / 2, 0.112985, 1e-6);
+  EXPECT_NEAR(si.values[1].high / 3.1, 0.112985, 1e-6);
+  EXPECT_EQ(si.values[1].unit, "N m");
+  EXPECT_EQ(si.before, 4);
+}
+
+}  // namespace
+}  // namespace hydro::diagnose
