@@ -87,7 +87,8 @@ Explanation RefitFromOtherStarts(const SearchContext& context, const Explanation
                                  const FitOptions& options) {
   // A window is too short to be caught in another place.
   if (context.windows || one.fitted.squared_gap() <= kStartInDoubt || TimeIsUp(context)) return one;
-  return RefitFromBestStarts(context, RefitFrom(context, one, MeasuredStarts(context.runs), options), options);
+  return RefitFromBestStarts(context, RefitFrom(context, one, MeasuredStarts(context.runs), options),
+                             options);
 }
 
 Explanation RefitFromBestStarts(const SearchContext& context, const Explanation& one,

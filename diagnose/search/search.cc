@@ -5,6 +5,7 @@
 
 #include "base/parallel.h"
 #include "diagnose/fit/start_fit.h"
+#include "diagnose/search/confused.h"
 #include "diagnose/search/parameter_instead.h"
 #include "diagnose/search/periodic_starts.h"
 #include "diagnose/search/predicting_starts.h"
@@ -58,15 +59,6 @@ bool CanAdd(const Hypothesis& hypothesis, const Change& change) {
   }
   return std::none_of(hypothesis.model.effects.begin(), hypothesis.model.effects.end(),
                       [&](const model::EffectDescription& effect) { return effect.id == change.effect; });
-}
-
-// Whether the catalogue says that the two effects are easily confused.
-bool AreConfused(const Change& a, const Change& b) {
-  if (a.effect.empty() || b.effect.empty() || a.effect == b.effect) return false;
-  const auto names = [](const Change& one, const Change& other) {
-    return model::FindEffect(one.effect)->confused_with.find(other.effect) != std::string::npos;
-  };
-  return names(a, b) || names(b, a);
 }
 
 class Searcher {
@@ -279,12 +271,9 @@ class Searcher {
   // linear, may have passed it over.
   void ExchangeForConfused() {
     const Change found = result_.best.changes().front();
-    if (found.effect.empty()) return;
-    const std::string& confused = model::FindEffect(found.effect)->confused_with;
     std::vector<Change> others;
     for (const Change& change : context_.changes) {
-      if (!change.effect.empty() && confused.find(change.effect) != std::string::npos)
-        others.push_back(change);
+      if (IsConfusedWith(found, change)) others.push_back(change);
     }
     if (others.empty()) return;
     ReportProgress("exchanging what was found", 0.9);
@@ -343,8 +332,8 @@ class Searcher {
   FitOptions coarse_, fine_ = FitToCompare(1);
   SearchResult result_;
   std::vector<std::vector<Scanned>> scanned_alone_;  // every change to the given model
-  std::vector<Fitted> without_;                      // the best ones without one of their changes, as exchanged
-  std::vector<Change> picked_alone_;                 // those of them refitted from where the score test led
+  std::vector<Fitted> without_;       // the best ones without one of their changes, as exchanged
+  std::vector<Change> picked_alone_;  // those of them refitted from where the score test led
 };
 
 }  // namespace

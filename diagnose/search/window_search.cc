@@ -44,14 +44,16 @@ void AddExtremes(model::Channel channel, double sign, SearchWindows* windows) {
 }
 
 bool IsSame(const Explanation& a, const Explanation& b) {
-  return SameChanges(a.fitted.hypothesis, b.fitted.hypothesis) && a.fitted.hypothesis.base == b.fitted.hypothesis.base;
+  return SameChanges(a.fitted.hypothesis, b.fitted.hypothesis) &&
+         a.fitted.hypothesis.base == b.fitted.hypothesis.base;
 }
 
 // Whether `more` is `less` with further changes that gain nothing: whole runs have no part for it either, and what shows on them
 // alone is searched for from the best of them.
 bool AddsNothing(const Explanation& more, const Explanation& less) {
   const Hypothesis& hypothesis = less.fitted.hypothesis;
-  if (less.changes().size() >= more.changes().size() || hypothesis.base != more.fitted.hypothesis.base) return false;
+  if (less.changes().size() >= more.changes().size() || hypothesis.base != more.fitted.hypothesis.base)
+    return false;
   const bool within = std::all_of(less.changes().begin(), less.changes().end(),
                                   [&](const Change& change) { return more.fitted.hypothesis.Has(change); });
   return within && !Material(less.held_out_gap(), more.held_out_gap());
@@ -99,8 +101,8 @@ std::vector<const Explanation*> Leading(const SearchResult& search, size_t most)
   std::vector<const Explanation*> chosen;
   for (const Explanation* one : leading) {
     if (chosen.size() >= most || one->held_out_gap() > limit) break;
-    const bool there =
-        std::any_of(chosen.begin(), chosen.end(), [&](const Explanation* other) { return IsSame(*other, *one); });
+    const bool there = std::any_of(chosen.begin(), chosen.end(),
+                                   [&](const Explanation* other) { return IsSame(*other, *one); });
     const bool adds_nothing = std::any_of(leading.begin(), leading.end(),
                                           [&](const Explanation* less) { return AddsNothing(*one, *less); });
     if (!there && (chosen.empty() || !adds_nothing)) chosen.push_back(one);

@@ -275,6 +275,8 @@ TEST(Material, AsksForAGainThatMatters) {
   EXPECT_FALSE(diagnose::Material(101, 101 - 0.5 * diagnose::kLeastShare * 100));
   EXPECT_TRUE(diagnose::Material(101, 101 - 1.5 * diagnose::kLeastShare * 100));
   EXPECT_FALSE(diagnose::Material(2, 3));
+  EXPECT_EQ(diagnose::LeastMaterialGain(1), diagnose::kLeastGain);
+  EXPECT_EQ(diagnose::LeastMaterialGain(101), diagnose::kLeastShare * 100);
 }
 
 }  // namespace

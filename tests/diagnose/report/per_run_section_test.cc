@@ -18,9 +18,9 @@ ValueByRun Friction() {
   ValueByRun friction;
   friction.name = "T_s";
   friction.unit = "in-lbf";
-  friction.values = {{.name = "monday", .unit = "in-lbf", .value = 2, .low = 1.9, .high = 2.1},
-                     {.name = "tuesday", .unit = "in-lbf", .value = 3, .low = 2.9, .high = 3.1},
-                     {.name = "stuck", .unit = "in-lbf", .value = kNan, .low = kNan, .high = kNan}};
+  friction.values = {{"monday", 2, 1.9, 2.1, "in-lbf"},
+                     {"tuesday", 3, 2.9, 3.1, "in-lbf"},
+                     {"stuck", kNan, kNan, kNan, "in-lbf"}};
   friction.before = 4;
   friction.after = 1.5;
   return friction;
@@ -33,7 +33,8 @@ TEST(PerRunSection, ARowForEachRun) {
   EXPECT_EQ(PerRunSection(diagnosis), "");
   diagnosis.per_run = {Friction()};
   const std::string section = PerRunSection(diagnosis);
-  EXPECT_THAT(section, HasSubstr("<td>tuesday</td><td class=\"number\">3</td><td class=\"number\">2.9 to 3.1</td>"));
+  EXPECT_THAT(section,
+              HasSubstr("<td>tuesday</td><td class=\"number\">3</td><td class=\"number\">2.9 to 3.1</td>"));
   EXPECT_THAT(section, HasSubstr("cannot be simulated"));
   EXPECT_THAT(section, HasSubstr("gap of 1.5 instead of 4 noise units"));
 }

@@ -82,6 +82,30 @@ TEST_F(ProofTest, FindsAWrongValue) {
   EXPECT_LT(proved.refit.held_out_gap(), 1.2);
 }
 
+// An explanation of windows with these changes and this gap.
+Explanation OnWindowsOf(const std::vector<Change>& changes, double squared_gap) {
+  Explanation one;
+  one.windows = true;
+  one.fitted.hypothesis.changes = changes;
+  one.held_out.gaps = {squared_gap};
+  one.blocks.sums = {squared_gap};
+  return one;
+}
+
+// Tests that what adds to another explanation without a material gain is not tried on whole runs, and what adds with one is.
+TEST(Leading, LeavesOutWhatAddsNothing) {
+  const Change bias = {"amp.bias", {}, ""}, drag = {"pump.quadratic_drag", {}, ""}, lag = {"amp.lag", {}, ""};
+  SearchResult near;
+  near.best = OnWindowsOf({bias}, 1.5);
+  near.tried = {OnWindowsOf({bias}, 1.5), OnWindowsOf({bias, drag}, 1.45), OnWindowsOf({lag}, 1.6),
+                OnWindowsOf({lag, drag}, 1.3)};
+  const std::vector<const Explanation*> leading = Leading(near, 5);
+  ASSERT_THAT(leading, SizeIs(3));
+  EXPECT_EQ(leading[0], &near.best);
+  EXPECT_THAT(leading[1]->changes(), ::testing::ElementsAre(lag, drag));
+  EXPECT_THAT(leading[2]->changes(), ::testing::ElementsAre(lag));
+}
+
 // Tests that a search whose time is up at once ends with the model as given.
 TEST_F(ProofTest, EndsWhenTimeIsUp) {
   context_.time_is_up = [] { return true; };
