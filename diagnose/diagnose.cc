@@ -179,6 +179,7 @@ Diagnosis Diagnose(const model::ModelDescription& model, std::vector<runs::Measu
 
   Hypothesis as_given;
   as_given.model = model;
+  as_given.highest_frequency = 0.5 / SampleInterval(context.runs);
   const WideSearch found = SearchAndProve(context, as_given, allowed);
   if (!found.search.given.fitted.ok()) {
     throw model::ModelError(found.search.given.fitted.failure);
@@ -197,6 +198,8 @@ Diagnosis Diagnose(const model::ModelDescription& model, std::vector<runs::Measu
   const std::vector<std::string> limits = LimitRemarks(model.parameters, context.runs);
   diagnosis.remarks.insert(diagnosis.remarks.end(), limits.begin(), limits.end());
   AddChecked(checked, &diagnosis);
+  const std::string doubt = ProofRemark(context);
+  if (!doubt.empty()) diagnosis.remarks.push_back(doubt);
   if (limit.struck()) diagnosis.remarks.push_back(limit.Remark());
   diagnosis.recording = std::move(prepared.clocks);
   return diagnosis;

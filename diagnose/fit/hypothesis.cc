@@ -71,6 +71,8 @@ std::vector<FreeParameter> Hypothesis::Free() const {
     } else if (!info.min_allowed && std::isfinite(info.min)) {
       parameter.low = info.min + 1e-6 * std::max(1.0, std::abs(info.min));
     }
+    if (parameter.role == model::Role::kFrequency && parameter.low < highest_frequency)
+      parameter.high = std::min(parameter.high, highest_frequency);
     free.push_back(parameter);
   }
   return free;

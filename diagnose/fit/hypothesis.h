@@ -1,6 +1,7 @@
 // A model with some numbers left open: the input and the output of a fit.
 #pragma once
 
+#include <limits>
 #include <map>
 #include <memory>
 #include <string>
@@ -53,6 +54,8 @@ struct Hypothesis {
   std::vector<std::string> effects;  // ids whose parameters are free
   // What fits know of the free base parameters beforehand; null: nothing.
   std::shared_ptr<const Knowledge> known = {};
+  // What runs sampled this way can show of a frequency, Hz: beyond half their rate a resonance is any stiffness or resistance.
+  double highest_frequency = std::numeric_limits<double>::infinity();
 
   std::vector<FreeParameter> Free() const;
   // Sets the model to these values, in the order of Free().

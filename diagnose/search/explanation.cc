@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "diagnose/search/wide_search.h"
 #include "diagnose/fit/residuals.h"
 #include "diagnose/fit/start_fit.h"
 
@@ -13,12 +14,25 @@ namespace {
 // Of windows: their starts are free, and say no more.
 constexpr double kToSettleWindows = 1e-4;
 
+// Stretches of a signal, in a search horizon, that count as independent of each other.
+constexpr double kIndependent = 10;
+
+// How many independent pieces of evidence the runs hold, if they are as wrong as a wrong model leaves them.
+double Evidence(const std::vector<const RunData*>& runs) {
+  double pieces = 0;
+  for (const RunData* run : runs) {
+    const double stretches = std::max(1.0, run->duration() / kHorizon);
+    pieces += kIndependent * stretches * static_cast<double>(run->signals.size());
+  }
+  return pieces;
+}
+
 bool Gains(double sum, double before) { return sum < (1 - kToCompare) * before; }
 
-// The explanation, or as fitted from these starts if that is better.
-Explanation RefitFrom(const SearchContext& context, const Explanation& one,
+// The explanation, or as fitted from these values and starts if that is better.
+Explanation RefitFrom(const SearchContext& context, const Explanation& one, const Hypothesis& values,
                       const std::vector<model::StartState>& starts, const FitOptions& options) {
-  Fitted again = Fit(one.fitted.hypothesis, context.runs, starts, options);
+  Fitted again = Fit(values, context.runs, starts, options);
   const bool better = again.ok() && Gains(again.sum, one.fitted.sum);
   return better ? ExplanationOf(context, std::move(again), options.jobs) : one;
 }
@@ -76,6 +90,10 @@ Explanation Explain(const SearchContext& context, const Hypothesis& hypothesis,
   return ExplanationOf(context, Fit(hypothesis, context.runs, starts, options), options.jobs);
 }
 
+std::shared_ptr<const Knowledge> KnownAt(const SearchContext& context, double sum) {
+  return std::make_shared<Knowledge>(Knowledge{context.given, sum / Evidence(context.runs)});
+}
+
 void Settle(const SearchContext& context, Explanation* one) {
   FitOptions options = FineFit(context.jobs);
   if (context.windows) options.tolerance = kToSettleWindows;
@@ -87,8 +105,28 @@ Explanation RefitFromOtherStarts(const SearchContext& context, const Explanation
                                  const FitOptions& options) {
   // A window is too short to be caught in another place.
   if (context.windows || one.fitted.squared_gap() <= kStartInDoubt || TimeIsUp(context)) return one;
-  return RefitFromBestStarts(context, RefitFrom(context, one, MeasuredStarts(context.runs), options),
+  const std::vector<model::StartState> measured = MeasuredStarts(context.runs);
+  return RefitFromBestStarts(context, RefitFrom(context, one, one.fitted.hypothesis, measured, options),
                              options);
+}
+
+Explanation RefitFromGivenValues(const SearchContext& context, const Explanation& one,
+                                 const FitOptions& options) {
+  constexpr int kRounds = 3;
+  Explanation best = one;
+  if (!context.windows || one.fitted.hypothesis.known == nullptr || one.changes().empty()) return one;
+  for (int round = 0; round < kRounds && !TimeIsUp(context); ++round) {
+    const double before = best.fitted.sum;
+    Hypothesis values = best.fitted.hypothesis;
+    for (const size_t place : values.base) {
+      const auto member = model::BaseParameters()[place].member;
+      values.model.parameters.*member = context.given.parameters.*member;
+    }
+    values.known = KnownAt(context, before);
+    best = RefitFrom(context, best, values, MeasuredStarts(context.runs), options);
+    if (best.fitted.sum > 0.5 * before) break;  // what is known counts about as it should
+  }
+  return best;
 }
 
 Explanation RefitFromBestStarts(const SearchContext& context, const Explanation& one,
@@ -100,7 +138,7 @@ Explanation RefitFromBestStarts(const SearchContext& context, const Explanation&
   double sum = 0;
   for (size_t r = 0; r < starts.size(); ++r)
     sum += SumOfSquares(hypothesis.model, *context.runs[r], starts[r]);
-  return Gains(sum, one.fitted.sum) ? RefitFrom(context, one, starts, options) : one;
+  return Gains(sum, one.fitted.sum) ? RefitFrom(context, one, hypothesis, starts, options) : one;
 }
 
 }  // namespace hydro::diagnose

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <vector>
 
 #include "diagnose/fit/comparison.h"
@@ -72,7 +73,14 @@ void Settle(const SearchContext& context, Explanation* one);
 // shaft in another place.
 Explanation RefitFromOtherStarts(const SearchContext& context, const Explanation& one,
                                  const FitOptions& options);
-// The same from each run's best start (BestStarts) alone, if one is better than the fit's.
+// What is known of base parameters beforehand, where a fit leaves `sum`: a deviation of one standard deviation has to gain its part.
+std::shared_ptr<const Knowledge> KnownAt(const SearchContext& context, double sum);
+
+// Of windows with all values refitted: fits again from the values as given, with what is known weighted by the gap that is left now;
+// returns the better fit. Values that were fitted while something was missing made up for it, or were held by what was known.
+Explanation RefitFromGivenValues(const SearchContext& context, const Explanation& one,
+                                 const FitOptions& options);
+// Fits again from each run's best start (BestStarts) alone, if one is better than the fit's.
 Explanation RefitFromBestStarts(const SearchContext& context, const Explanation& one,
                                 const FitOptions& options);
 

@@ -125,7 +125,10 @@ WideSearch ProveInTurn(const SearchContext& context, const Hypothesis& as_given,
   const bool in_turn = context.runs.size() >= kFewestToChoose && !context.held_out.empty();
   SearchContext choosing = context;
   std::vector<RunData> thinned;
-  if (in_turn) {
+  if (!in_turn && !context.held_out.empty()) {
+    // One fitted run chooses too: the other may not move what differs.
+    choosing.held_out.insert(choosing.held_out.begin(), context.runs.begin(), context.runs.end());
+  } else if (in_turn) {
     // The values are fitted to all samples when the choice has been made.
     for (const RunData* run : context.runs) thinned.push_back(ThinnedCopy(*run));
     choosing.runs = PointersTo(thinned);
@@ -140,7 +143,7 @@ WideSearch ProveInTurn(const SearchContext& context, const Hypothesis& as_given,
   proved.refit = Explain(choosing, near.refit.fitted.hypothesis, measured, FitToCompare(context.jobs));
   if (!proved.refit.fitted.ok()) proved.refit = proved.search.given;
   Choose(choosing, near.search, &proved);
-  if (in_turn) {
+  if (!context.held_out.empty()) {
     for (Explanation* one : {&proved.search.given, &proved.refit, &proved.search.best}) Settle(context, one);
     PredictHeldOut(context, &proved);
   }
@@ -164,6 +167,14 @@ WideSearch TakeFromWindows(const SearchContext& context, const Hypothesis& as_gi
 }
 
 }  // namespace
+
+std::string ProofRemark(const SearchContext& context) {
+  if (!context.held_out.empty() && context.runs.size() >= kFewestToChoose) return "";
+  const std::string chosen = context.held_out.empty()
+                                 ? "Each run was predicted from the others, and these predictions also chose"
+                                 : "What was held out also chose, as only one run was fitted";
+  return chosen + ": for a proof, fit two runs or more and name another with --hold-out";
+}
 
 WideSearch SearchAndProve(const SearchContext& context, const Hypothesis& as_given,
                           const std::vector<size_t>& allowed) {

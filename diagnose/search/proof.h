@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <string>
 #include <vector>
 
 #include "diagnose/search/wide_search.h"
@@ -13,5 +14,8 @@ namespace hydro::diagnose {
 // what is small or slow shows only over long times. `allowed` as in SearchWidely.
 WideSearch SearchAndProve(const SearchContext& context, const Hypothesis& as_given,
                           const std::vector<size_t>& allowed);
+
+// What keeps the held-out gap from being a proof: predictions that are reported as held out also chose. Empty where they did not.
+std::string ProofRemark(const SearchContext& context);
 
 }  // namespace hydro::diagnose

@@ -123,6 +123,7 @@ class Searcher {
       if (!Material(result_.best.held_out_gap(), best->held_out_gap())) return;
       if (step > 0 && RidesAlong(*best)) return;
       *best = RefitFromOtherStarts(context_, *best, WithAllJobs(fine_));
+      *best = RefitFromGivenValues(context_, *best, WithAllJobs(fine_));
       std::vector<Explanation> beam(next.begin(),
                                     next.begin() + static_cast<std::ptrdiff_t>(std::min(kBeam, next.size())));
       while (beam.size() > 1 && !IsWorthFollowing(beam.back(), beam.front())) beam.pop_back();

@@ -1,6 +1,5 @@
 #include "diagnose/search/wide_search.h"
 
-#include <memory>
 #include <utility>
 
 #include "diagnose/search/ringing.h"
@@ -12,24 +11,6 @@ namespace {
 // A single change to the model as given has to come, in the race, to so many times the sum of squares of the refit.
 constexpr double kRivalTimes = 1.5;
 
-// Stretches of a signal, in a search horizon, that count as independent of each other.
-constexpr double kIndependent = 10;
-
-// How many independent pieces of evidence the runs hold, if they are as wrong as a wrong model leaves them.
-double Evidence(const std::vector<const RunData*>& runs) {
-  double pieces = 0;
-  for (const RunData* run : runs) {
-    const double stretches = std::max(1.0, run->duration() / kHorizon);
-    pieces += kIndependent * stretches * static_cast<double>(run->signals.size());
-  }
-  return pieces;
-}
-
-// Adds what is known of base parameters beforehand to a hypothesis whose fit leaves `sum`.
-void Know(const SearchContext& context, double sum, Hypothesis* hypothesis) {
-  hypothesis->known = std::make_shared<Knowledge>(Knowledge{context.given, sum / Evidence(context.runs)});
-}
-
 // The given model with all base parameters fitted that the runs identify; the model as given where that
 // fails.
 Explanation Refit(const SearchContext& context, const Hypothesis& as_given, const Explanation& given,
@@ -39,11 +20,11 @@ Explanation Refit(const SearchContext& context, const Hypothesis& as_given, cons
   Hypothesis refitted = as_given;
   for (const model::EffectDescription& effect : context.given.effects) refitted.effects.push_back(effect.id);
   refitted.base = allowed;
-  Know(context, given.fitted.sum, &refitted);
+  refitted.known = KnownAt(context, given.fitted.sum);
   const Fitted fitted = Fit(refitted, context.runs, starts, FineFit(context.jobs));
   if (!fitted.ok()) return given;
   refitted = fitted.hypothesis;
-  Know(context, fitted.sum, &refitted);
+  refitted.known = KnownAt(context, fitted.sum);
   Explanation refit = Explain(context, refitted, StartsOf(fitted), FineFit(context.jobs));
   return refit.fitted.ok() ? refit : given;
 }

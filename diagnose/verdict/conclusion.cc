@@ -47,9 +47,12 @@ bool TakesMaterialPart(const Diagnosis& d) {
     const double before = std::pow(GapToCompare(d, gap), 2) - 1;
     return before > 0 && std::pow(gap.after, 2) - 1 < (1 - kPart) * before;
   };
-  size_t material = takes(d.held_out) ? 1 : 0;
-  for (const HorizonGap& horizon : d.horizons) material += takes(horizon.typical) ? 1 : 0;
-  return material >= d.horizons.size();
+  size_t material = takes(d.held_out) ? 1 : 0, simulated = 0;
+  for (const HorizonGap& horizon : d.horizons) {
+    material += takes(horizon.typical) ? 1 : 0;
+    simulated += std::isfinite(horizon.typical.after) ? 1 : 0;
+  }
+  return material >= std::max<size_t>(simulated, 1);
 }
 
 // The verdict on what was found: `d` has its effects, parameters and horizons.
@@ -119,7 +122,7 @@ Diagnosis Conclude(const SearchContext& context, const SearchResult& search, con
     Localisation located = Locate(base.explanation->fitted.hypothesis.model, context.runs);
     d.location = std::move(located.location);
     d.missing = std::move(located.missing);
-    if (IsOpen(d.verdict)) closed = FindClosure(context, base, located.possible);
+    if (IsOpen(d.verdict) && !TimeIsUp(context)) closed = FindClosure(context, base, located.possible);
   }
   for (const FoundEffect& effect : d.effects) {
     if (std::optional<FoundTerm> term = TermOf(d.model, effect.id, context.runs, context.jobs)) {
@@ -129,7 +132,7 @@ Diagnosis Conclude(const SearchContext& context, const SearchResult& search, con
     }
   }
   AddClosures(std::move(closed), &d);
-  if (d.verdict == Verdict::kTied) {
+  if (rivals.size() > 1 && !TimeIsUp(context)) {
     if (report_progress) report_progress({"the next experiment", 0.98});
     d.next = DesignNextExperiment(rivals, context.runs, WhyNext(d.effects));
   }

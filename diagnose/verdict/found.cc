@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "base/number_text.h"
 #include "base/word_list.h"
 #include "diagnose/fit/intervals.h"
 #include "diagnose/search/refits.h"
@@ -178,12 +179,21 @@ std::vector<model::ModelDescription> DescribeFound(const SearchContext& context,
     }
     d->effects.push_back(std::move(found));
   }
+  std::vector<std::string> unsure;
   for (size_t i = 0; i < free.size(); ++i) {
     if (free[i].unknown.kind != model::Unknown::Kind::kBase) continue;
     const ChangedParameter changed = DescribeParameter(free[i], intervals[i], context.given);
     // Of a refit of all values only those that are surely others.
     const bool as_given = changed.model >= changed.fitted.low && changed.model <= changed.fitted.high;
-    if (best.fitted.hypothesis.known == nullptr || !as_given) d->parameters.push_back(changed);
+    if (best.fitted.hypothesis.known == nullptr || !as_given) {
+      d->parameters.push_back(changed);
+    } else if (changed.fitted.value != changed.model) {
+      unsure.push_back(free[i].name + " = " + ShortNumber(free[i].value) + " (was " + ShortNumber(changed.model) + ")");
+    }
+  }
+  if (!unsure.empty()) {
+    d->remarks.push_back("model.toml has refitted values that these runs do not show to differ from those given: " +
+                         Joined(unsure));
   }
   const std::vector<std::string> implausible =
       Implausible(d->parameters, d->effects, context.given.parameters);

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "base/parallel.h"
 #include "diagnose/data/windows.h"
@@ -14,6 +15,7 @@ namespace hydro::diagnose {
 namespace {
 
 constexpr size_t kMostWindows = 24;  // of one horizon, fitted or held out
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();  // of what was not measured or cannot be simulated
 constexpr size_t kModels = 3;        // as given, refitted, with what was found
 
 // Sums of squares by channel, of one model: in noise units and in the signal's own.
@@ -37,11 +39,11 @@ struct Sums {
       sum += scaled[c];
       n += count[c];
     }
-    return n > 0 ? std::sqrt(sum / n) : 0;
+    return n > 0 ? std::sqrt(sum / n) : kNan;
   }
   // The geometric mean of the windows' gaps: a few windows that no model follows do not decide it.
-  double TypicalGap() const { return windows > 0 ? std::exp(logarithms / windows) : 0; }
-  double Rms(size_t c) const { return count[c] > 0 ? std::sqrt(square[c] / count[c]) : 0; }
+  double TypicalGap() const { return windows > 0 ? std::exp(logarithms / windows) : kNan; }
+  double Rms(size_t c) const { return count[c] > 0 ? std::sqrt(square[c] / count[c]) : kNan; }
 };
 using SumsOfAll = std::array<Sums, kModels>;
 

@@ -113,8 +113,13 @@ class ByRun {
       of_run.value = fitted.hypothesis.Free().front().value;
       of_run.low = interval.low;
       of_run.high = interval.high;
-      common[r] = Predict(as_given, windows.choosing, 1);
       own[r] = Predict(fitted, windows.choosing, 1);
+    });
+    Fitted one;  // the best value that all runs can share: what is wrong with it in all of them is no difference
+    one.hypothesis = Holding(model_, {});
+    one.hypothesis.model.parameters.*model::BaseParameters()[base].member = Common(value.values);
+    ParallelFor(runs_.size(), context_.jobs, [&](size_t r) {
+      if (own[r].count > 0) common[r] = Predict(one, windows_[r].choosing, 1);
     });
     value.before = std::sqrt(Typical(common));
     value.after = std::sqrt(Typical(own));
@@ -122,6 +127,23 @@ class ByRun {
   }
 
  private:
+  // The mean of the runs' values, each by how well its run shows it.
+  static double Common(const std::vector<Estimated>& runs) {
+    double sum = 0, weights = 0;
+    for (const Estimated& run : runs) {
+      const double width = run.high - run.low;
+      if (std::isnan(run.value) || !(width > 0) || !std::isfinite(width)) continue;
+      sum += run.value / (width * width);
+      weights += 1 / (width * width);
+    }
+    if (weights > 0) return sum / weights;
+    double mean = 0, count = 0;
+    for (const Estimated& run : runs) {
+      if (!std::isnan(run.value)) mean += run.value, count += 1;
+    }
+    return count > 0 ? mean / count : 0;
+  }
+
   static double Typical(const std::vector<HeldOut>& runs) {
     HeldOut all;
     for (const HeldOut& run : runs) all.gaps.insert(all.gaps.end(), run.gaps.begin(), run.gaps.end());
@@ -175,6 +197,7 @@ std::vector<ValueByRun> ValuesByRun(const SearchContext& context, const model::M
 }
 
 std::string RemarkOn(const ValueByRun& value) {
+  if (!(value.Spread() > kLeastSpread)) return value.name + " does not differ from run to run";
   double low = std::numeric_limits<double>::infinity(), high = -low;
   for (const Estimated& run : value.values) {
     if (std::isnan(run.value)) continue;

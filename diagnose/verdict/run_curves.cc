@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 namespace hydro::diagnose {
 
@@ -29,7 +30,8 @@ struct Sums {
       }
     }
   }
-  double Rms(size_t c) const { return count[c] > 0 ? std::sqrt(square[c] / count[c]) : 0; }
+  double Rms(size_t c) const { return count[c] > 0 ? std::sqrt(square[c] / count[c])
+                                                      : std::numeric_limits<double>::quiet_NaN(); }
 };
 
 Sums OfFit(const SearchContext& context, const Explanation& one) {

@@ -86,9 +86,9 @@ std::string Sentence(const Diagnosis& d, const std::vector<std::string>& doubts)
     case Verdict::kPartly:
       return Found("Missing, but not all that is missing: ", "Other values explain part of the gap: ",
                    effects, parameters) +
-             (Tied(d) ? "; these data cannot tell it from what is in brackets"
+             (Tied(d) ? "; these data cannot tell what stands before a bracket from what is in it"
                       : "; nothing else that was tried takes as much of the gap") +
-             std::string(", and what is left has another cause") + gap;
+             std::string(", and a significant gap is left") + gap;
     case Verdict::kUnexplained:
       return Unexplained(d, effects) + gap;
   }

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
+#include <utility>
 
 #include "diagnose/search/wide_search.h"
 #include "diagnose/search/window_search.h"
@@ -80,6 +81,16 @@ TEST_F(ProofTest, FindsAWrongValue) {
   EXPECT_GT(proved.search.given.held_out_gap(), 2);
   EXPECT_LT(proved.search.best.held_out_gap(), 1.2);
   EXPECT_LT(proved.refit.held_out_gap(), 1.2);
+}
+
+// Tests that a remark says where the held-out predictions also chose: without runs held out, or with one run fitted.
+TEST_F(ProofTest, SaysWhatIsNoProof) {
+  EXPECT_THAT(ProofRemark(context_), ::testing::HasSubstr("only one run was fitted"));
+  const std::vector<const RunData*> held_out = std::exchange(context_.held_out, {});
+  context_.runs.push_back(&runs_[1]);
+  EXPECT_THAT(ProofRemark(context_), ::testing::HasSubstr("predicted from the others"));
+  context_.held_out = held_out;
+  EXPECT_EQ(ProofRemark(context_), "");
 }
 
 // An explanation of windows with these changes and this gap.
