@@ -81,12 +81,12 @@ BlocksOfRun BlocksOf(const Fitted& fitted, const std::vector<FreeParameter>& fre
 // The runs' total information about the free numbers, scaled to a diagonal of 1.
 class Information {
  public:
-  Information(const Fitted& fitted, Index p) {
+  Information(const Fitted& fitted, Index p, bool with_known = true) {
     MatrixXd information = MatrixXd::Zero(p, p);
     for (const RunFit& run : fitted.runs) {
       information += Map<const MatrixXd>(run.information.data(), p, p);
     }
-    AddKnown(fitted, &information);
+    if (with_known) AddKnown(fitted, &information);
     scale_ = (information.diagonal().array() + 1e-300).sqrt().inverse();
     MatrixXd scaled = scale_.asDiagonal() * information * scale_.asDiagonal();
     scaled.diagonal().array() += 1e-10;
@@ -177,6 +177,17 @@ Interval Around(const FreeParameter& parameter, double half, double by_held, dou
 }
 
 }  // namespace
+
+std::vector<bool> RestOnKnown(const Fitted& fitted) {
+  constexpr double kMuchWider = 3;
+  const auto p = static_cast<Index>(fitted.hypothesis.Free().size());
+  std::vector<bool> rest(static_cast<size_t>(p));
+  if (fitted.hypothesis.known == nullptr || p == 0) return rest;
+  const MatrixXd with = Information(fitted, p).inverse(), without = Information(fitted, p, false).inverse();
+  for (Index i = 0; i < p; ++i)
+    rest[static_cast<size_t>(i)] = without(i, i) > kMuchWider * kMuchWider * with(i, i);
+  return rest;
+}
 
 std::vector<Interval> Intervals(const Fitted& fitted, const std::vector<const RunData*>& runs, int jobs) {
   const std::vector<FreeParameter> free = fitted.hypothesis.Free();

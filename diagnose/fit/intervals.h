@@ -16,4 +16,8 @@ struct Interval {
 // equations idealise, in their own form and in the numbers that are held.
 std::vector<Interval> Intervals(const Fitted& fitted, const std::vector<const RunData*>& runs, int jobs);
 
+// Which of the fit's free numbers, in the order of Hypothesis::Free(), the runs do not show apart from others: without what is known
+// beforehand their standard deviation would be three times as large.
+std::vector<bool> RestOnKnown(const Fitted& fitted);
+
 }  // namespace hydro::diagnose

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <utility>
 
-#include "diagnose/search/wide_search.h"
 #include "diagnose/fit/residuals.h"
 #include "diagnose/fit/start_fit.h"
+#include "diagnose/search/wide_search.h"
 
 namespace hydro::diagnose {
 

@@ -38,7 +38,7 @@ struct SearchOptions {
   // Where the score test's likeliest changes do not explain the runs, more are refitted.
   bool thorough = true;
   // What the first changes have to come near in the race.
-  Bar bar;
+  Bar bar = {};
 };
 
 // Searches from `from`, without changes of its own and fitted.

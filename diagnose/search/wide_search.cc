@@ -1,13 +1,18 @@
 #include "diagnose/search/wide_search.h"
 
+#include <Eigen/Core>
+#include <algorithm>
 #include <utility>
 
 #include "diagnose/search/ringing.h"
+#include "maths/solve.h"
 
 namespace hydro::diagnose {
 
 namespace {
 
+// More other values than these are a refit of all.
+constexpr int kFewValues = 2;
 // A single change to the model as given has to come, in the race, to so many times the sum of squares of the refit.
 constexpr double kRivalTimes = 1.5;
 
@@ -38,6 +43,49 @@ Explanation WithValuesAsGiven(const SearchContext& context, const Hypothesis& as
   sparse.model.effects = best.fitted.hypothesis.model.effects;
   std::erase_if(sparse.changes, [](const Change& change) { return change.effect.empty(); });
   return Explain(context, sparse, StartsOf(best.fitted), FitToCompare(context.jobs));
+}
+
+// How many base parameters the fit surely moves: by four standard deviations of residuals as large as the gap.
+int SurelyOther(const model::ModelDescription& given, const Fitted& fitted) {
+  constexpr double kSurely = 4;
+  const std::vector<FreeParameter> free = fitted.hypothesis.Free();
+  const auto p = static_cast<Eigen::Index>(free.size());
+  Eigen::MatrixXd information = Eigen::MatrixXd::Zero(p, p);
+  for (const RunFit& run : fitted.runs)
+    information += Eigen::Map<const Eigen::MatrixXd>(run.information.data(), p, p);
+  const Prior known = KnownBefore(fitted.hypothesis);
+  for (Eigen::Index i = 0; i < p; ++i) information(i, i) += known.weight[static_cast<size_t>(i)];
+  const Eigen::MatrixXd covariance = maths::SolveSymmetric(information, Eigen::MatrixXd::Identity(p, p));
+  int count = 0;
+  for (Eigen::Index i = 0; i < p; ++i) {
+    const FreeParameter& parameter = free[static_cast<size_t>(i)];
+    if (parameter.unknown.kind != model::Unknown::Kind::kBase) continue;
+    const double before = given.parameters.*model::BaseParameters()[parameter.unknown.index].member;
+    if (parameter.logarithmic && !(before > 0)) continue;
+    const double moved = parameter.ToFitted(parameter.value) - parameter.ToFitted(before);
+    const double variance = std::max(1.0, fitted.squared_gap()) * std::max(0.0, covariance(i, i));
+    count += moved * moved > kSurely * kSurely * variance ? 1 : 0;
+  }
+  return count;
+}
+
+// Takes the best explanation's effects with the values as given, or with one or two others, where that predicts as well as all values
+// refitted.
+void TryFewValues(const SearchContext& context, const Hypothesis& as_given, SearchResult* search) {
+  if (search->best.fitted.hypothesis.known == nullptr) return;
+  if (SurelyOther(context.given, search->best.fitted) > kFewValues) return;
+  const Explanation sparse = WithValuesAsGiven(context, as_given, search->best);
+  if (!sparse.fitted.ok()) return;
+  SearchResult few;
+  few.best = sparse;
+  if (Material(sparse.held_out_gap(), search->best.held_out_gap()) && !TimeIsUp(context)) {
+    SearchContext values = context;
+    std::erase_if(values.changes, [](const Change& change) { return !change.effect.empty(); });
+    few = Search(values, sparse, {kFewValues, false});
+  }
+  search->tried.push_back(sparse);
+  search->tried.insert(search->tried.end(), few.tried.begin(), few.tried.end());
+  if (!Material(few.best.held_out_gap(), search->best.held_out_gap())) search->best = few.best;
 }
 
 void SearchFrom(const SearchContext& context, const Explanation& from, SearchResult* search) {
@@ -74,11 +122,7 @@ WideSearch SearchWidely(const SearchContext& runs, const Hypothesis& as_given,
   wide.search.tried.push_back(wide.refit);
   if (Material(wide.search.best.held_out_gap(), wide.refit.held_out_gap())) wide.search.best = wide.refit;
   SearchFrom(context, wide.refit, &wide.search);
-  const Explanation sparse = WithValuesAsGiven(context, as_given, wide.search.best);
-  if (sparse.fitted.ok() && !Material(sparse.held_out_gap(), wide.search.best.held_out_gap())) {
-    wide.search.best = sparse;
-    wide.search.tried.push_back(sparse);
-  }
+  TryFewValues(context, as_given, &wide.search);
   // Several wrong values or missing effects beside values that are right.
   const bool found = !wide.search.best.changes().empty();
   if (!closed() && !found && !TimeIsUp(context)) SearchFrom(context, given, &wide.search);

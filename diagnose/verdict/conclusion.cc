@@ -92,6 +92,33 @@ void RemarkOnRivals(const std::map<std::string, double>& weights, Diagnosis* d) 
   }
 }
 
+// Whether what was found predicts held-out runs worse than the model as given does.
+bool IsWorse(const BeforeAfter& held_out) {
+  constexpr double kNoticeable = 1.01;
+  return held_out.after > kNoticeable * held_out.before;
+}
+
+// Whether it does so on whole runs and on most horizons: then nothing was found.
+bool IsWorseAlmostEverywhere(const Diagnosis& d) {
+  size_t worse = 0, simulated = 0;
+  for (const HorizonGap& horizon : d.horizons) {
+    if (!std::isfinite(horizon.typical.after)) continue;
+    ++simulated;
+    worse += horizon.typical.after > horizon.typical.before ? 1 : 0;
+  }
+  return IsWorse(d.held_out) && 2 * worse >= simulated;
+}
+
+// Says where the held-out runs do not show what the fitted ones do.
+void RemarkOnSilence(const Explanation& given, const Explanation& best, Diagnosis* d) {
+  const bool something = !d->effects.empty() || !d->parameters.empty();
+  if (IsOpen(d->verdict) || !something || Material(given.held_out_gap(), best.held_out_gap())) return;
+  d->remarks.push_back(
+      "The held-out runs do not show what was found: the model as given predicts them as well. The claim "
+      "rests on the fitted runs alone; "
+      "hold out a run that moves as they do");
+}
+
 }  // namespace
 
 Diagnosis Conclude(const SearchContext& context, const SearchResult& search, const Explanation& refit,
@@ -108,7 +135,15 @@ Diagnosis Conclude(const SearchContext& context, const SearchResult& search, con
   const std::vector<model::ModelDescription> rivals =
       DescribeFound(context, refit, windows, weights, &kept, &d);
   d.horizons = HorizonGaps(context, SearchHorizon(context.runs), given, refit, best);
+  if (IsWorse(d.held_out)) kept.doubts.emplace_back("held-out runs are predicted worse with it than without");
   d.verdict = VerdictOn(context, kept, d);
+  const bool changed = !best.changes().empty() || !best.fitted.hypothesis.base.empty();
+  if (d.verdict == Verdict::kUnexplained && changed && IsWorseAlmostEverywhere(d)) {
+    SearchResult nothing = search;
+    nothing.best = search.given;
+    return Conclude(context, nothing, refit, windows);
+  }
+  RemarkOnSilence(given, best, &d);
   RemarkOnRivals(weights, &d);
   d.model = best.fitted.hypothesis.model;
   d.signals = SignalGaps(context, given, refit, best);

@@ -188,12 +188,27 @@ std::vector<model::ModelDescription> DescribeFound(const SearchContext& context,
     if (best.fitted.hypothesis.known == nullptr || !as_given) {
       d->parameters.push_back(changed);
     } else if (changed.fitted.value != changed.model) {
-      unsure.push_back(free[i].name + " = " + ShortNumber(free[i].value) + " (was " + ShortNumber(changed.model) + ")");
+      unsure.push_back(free[i].name + " = " + ShortNumber(free[i].value) + " (was " +
+                       ShortNumber(changed.model) + ")");
     }
   }
+  std::vector<std::string> resting;
+  const std::vector<bool> rests = RestOnKnown(best.fitted);
+  for (const ChangedParameter& changed : d->parameters) {
+    const auto it = std::find_if(free.begin(), free.end(),
+                                 [&](const FreeParameter& one) { return one.name == changed.fitted.name; });
+    if (rests[static_cast<size_t>(it - free.begin())]) resting.push_back(changed.fitted.name);
+  }
+  if (!resting.empty()) {
+    d->remarks.push_back(
+        "These runs do not show " + Enumerated(resting) +
+        " apart from other values: what is said of them rests on how well the model's values are known "
+        "([uncertainty] in the model file; --free names those to refit)");
+  }
   if (!unsure.empty()) {
-    d->remarks.push_back("model.toml has refitted values that these runs do not show to differ from those given: " +
-                         Joined(unsure));
+    d->remarks.push_back(
+        "model.toml has refitted values that these runs do not show to differ from those given: " +
+        Joined(unsure));
   }
   const std::vector<std::string> implausible =
       Implausible(d->parameters, d->effects, context.given.parameters);

@@ -15,8 +15,9 @@ namespace hydro::diagnose {
 namespace {
 
 constexpr size_t kMostWindows = 24;  // of one horizon, fitted or held out
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();  // of what was not measured or cannot be simulated
-constexpr size_t kModels = 3;        // as given, refitted, with what was found
+constexpr double kNan =
+    std::numeric_limits<double>::quiet_NaN();  // of what was not measured or cannot be simulated
+constexpr size_t kModels = 3;                  // as given, refitted, with what was found
 
 // Sums of squares by channel, of one model: in noise units and in the signal's own.
 struct Sums {

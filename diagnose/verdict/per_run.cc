@@ -115,7 +115,8 @@ class ByRun {
       of_run.high = interval.high;
       own[r] = Predict(fitted, windows.choosing, 1);
     });
-    Fitted one;  // the best value that all runs can share: what is wrong with it in all of them is no difference
+    Fitted
+        one;  // the best value that all runs can share: what is wrong with it in all of them is no difference
     one.hypothesis = Holding(model_, {});
     one.hypothesis.model.parameters.*model::BaseParameters()[base].member = Common(value.values);
     ParallelFor(runs_.size(), context_.jobs, [&](size_t r) {

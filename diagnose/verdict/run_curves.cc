@@ -30,8 +30,9 @@ struct Sums {
       }
     }
   }
-  double Rms(size_t c) const { return count[c] > 0 ? std::sqrt(square[c] / count[c])
-                                                      : std::numeric_limits<double>::quiet_NaN(); }
+  double Rms(size_t c) const {
+    return count[c] > 0 ? std::sqrt(square[c] / count[c]) : std::numeric_limits<double>::quiet_NaN();
+  }
 };
 
 Sums OfFit(const SearchContext& context, const Explanation& one) {

@@ -82,5 +82,43 @@ TEST(RefitFromOtherStarts, MendsAWrongStart) {
   EXPECT_NEAR(mended.fitted.sum, reached, 1e-3 * reached);
 }
 
+// Tests that a value which what was known held while the gap was large is found once the gap is small.
+TEST(RefitFromGivenValues, WeighsWhatIsKnownByTheGapThatIsLeft) {
+  model::ModelDescription truth = Table1With();
+  truth.parameters.b *= 1.4;
+  const std::vector<diagnose::RunData> runs = ClampedPair(truth, 0.5, 1);
+  diagnose::SearchContext context;
+  context.given = Table1With();
+  context.runs = context.held_out = PointersTo(runs);
+  context.windows = true;
+  diagnose::Hypothesis hypothesis = WithFree(Table1With(), {"b"});
+  hypothesis.changes = {{"amp.bias", {}, ""}};
+  const std::vector<model::StartState> measured = diagnose::MeasuredStarts(context.runs);
+  hypothesis.known = diagnose::KnownAt(context, 1e10);  // as before a valve was found
+  const diagnose::Explanation held = diagnose::Explain(context, hypothesis, measured, {});
+  ASSERT_LT(held.fitted.hypothesis.model.parameters.b, 1.1 * Table1().b);
+  const diagnose::Explanation found =
+      diagnose::RefitFromGivenValues(context, held, diagnose::FitToCompare(1));
+  EXPECT_NEAR(found.fitted.hypothesis.model.parameters.b, truth.parameters.b, 0.02 * truth.parameters.b);
+  EXPECT_LT(found.fitted.sum, 0.5 * held.fitted.sum);
+  EXPECT_LT(found.fitted.hypothesis.known->weight, 1e-3 * hypothesis.known->weight);
+}
+
+// Tests that a resonance is not looked for beyond what the samples can show, and that a model's own frequency has no such limit.
+TEST(Hypothesis, FrequenciesBelowHalfTheSamplingRate) {
+  const model::ModelDescription wave =
+      Table1With({{"line.wave", {{"frequency", 300}, {"volume_fraction", 0.1}, {"damping", 0.1}}, {}}});
+  diagnose::Hypothesis hypothesis = WithFree(wave, {});
+  const auto highest = [&] {
+    for (const diagnose::FreeParameter& one : hypothesis.Free()) {
+      if (one.role == model::Role::kFrequency) return one.high;
+    }
+    return 0.0;
+  };
+  EXPECT_GT(highest(), 1000);
+  hypothesis.highest_frequency = 500;
+  EXPECT_EQ(highest(), 500);
+}
+
 }  // namespace
 }  // namespace hydro::testing

@@ -37,7 +37,7 @@ TEST(RaceSample, AThirdAndTheExtremes) {
   for (const size_t place : {0u, 3u, 18u, 21u, 22u, 23u, 24u, 25u}) EXPECT_THAT(sample, Contains(place));
 }
 
-// Tests that what failed, what is far behind and what another start of the same change beats do not go on, nor more than six.
+// Tests that what failed, what is far behind and what another start of the same change beats do not go on, nor more than four.
 TEST(InTheRace, TheBestFew) {
   const std::vector<Fitted> fits = {FitOf("b", 10),   FitOf("J", 29),
                                     FitOf("b", 12),   FitOf("D", 31),
@@ -47,7 +47,7 @@ TEST(InTheRace, TheBestFew) {
   std::vector<Fitted> many;
   for (const char* name : {"b", "J", "D", "T_s", "k_1", "beta", "V_ms", "c"}) many.push_back(FitOf(name, 10));
   const std::vector<bool> in = InTheRace(many, kAny);
-  EXPECT_EQ(std::count(in.begin(), in.end(), true), 6);
+  EXPECT_EQ(std::count(in.begin(), in.end(), true), 4);
 }
 
 // Tests on windows of a pump with twice the friction that the change that explains them leads with a fit to all windows, and
