@@ -72,6 +72,8 @@ std::string Quoted(std::string_view text) {
     const unsigned char c = static_cast<unsigned char>(text[i]);
     if (c == '\n') {
       quoted += "\\n";
+    } else if (c == '\t') {
+      quoted += "\\t";
     } else if (c < 0x20 || c == 0x7f) {
       char code[8];
       std::snprintf(code, sizeof code, "\\x%02x", c);

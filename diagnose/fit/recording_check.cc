@@ -258,9 +258,8 @@ std::vector<std::string> FindingRemarks(const std::vector<RecordingFinding>& fin
   std::vector<std::pair<std::string, std::vector<std::string>>> remarks;
   for (const RecordingFinding& finding : findings) {
     const Run& run = runs[finding.run];
-    const std::string text =
-        WhatIsWrong(finding.mistakes) +
-        ": mend the recording first, with this in the sidecar: " + SidecarLines(finding.mistakes, run);
+    const std::string text = WhatIsWrong(finding.mistakes) +
+                             ": this in the sidecar mends it: " + SidecarLines(finding.mistakes, run);
     const auto same = std::find_if(remarks.begin(), remarks.end(),
                                    [&](const auto& remark) { return remark.first == text; });
     if (same == remarks.end()) {

@@ -216,7 +216,9 @@ std::string WhatToMeasureNext(const Diagnosis& diagnosis) {
     out += "<p>The refitted models are expected to differ by " + ShortNumber(next.expected_separation) +
            " noise units in it.</p>\n";
   }
-  if (!next.config.empty()) {
+  if (next.config.empty()) {
+    out += "<p>No trial within what the rig has done tells them apart.</p>\n";
+  } else {
     out += "<p>As <code>next.toml</code>:</p>\n<pre>" + Lines(next.config) + "</pre>\n";
   }
   return out;

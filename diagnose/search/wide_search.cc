@@ -73,12 +73,12 @@ int SurelyOther(const model::ModelDescription& given, const Fitted& fitted) {
 // refitted.
 void TryFewValues(const SearchContext& context, const Hypothesis& as_given, SearchResult* search) {
   if (search->best.fitted.hypothesis.known == nullptr) return;
-  if (SurelyOther(context.given, search->best.fitted) > kFewValues) return;
   const Explanation sparse = WithValuesAsGiven(context, as_given, search->best);
   if (!sparse.fitted.ok()) return;
   SearchResult few;
   few.best = sparse;
-  if (Material(sparse.held_out_gap(), search->best.held_out_gap()) && !TimeIsUp(context)) {
+  const bool worse = Material(sparse.held_out_gap(), search->best.held_out_gap());
+  if (worse && SurelyOther(context.given, search->best.fitted) <= kFewValues && !TimeIsUp(context)) {
     SearchContext values = context;
     std::erase_if(values.changes, [](const Change& change) { return !change.effect.empty(); });
     few = Search(values, sparse, {kFewValues, false});

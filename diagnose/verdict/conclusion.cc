@@ -15,6 +15,7 @@
 #include "diagnose/verdict/evidence.h"
 #include "diagnose/verdict/found.h"
 #include "diagnose/verdict/horizons.h"
+#include "diagnose/verdict/mains_hum.h"
 #include "diagnose/verdict/next_experiment.h"
 #include "diagnose/verdict/ranking.h"
 #include "diagnose/verdict/run_curves.h"
@@ -144,6 +145,8 @@ Diagnosis Conclude(const SearchContext& context, const SearchResult& search, con
     return Conclude(context, nothing, refit, windows);
   }
   RemarkOnSilence(given, best, &d);
+  const std::vector<std::string> hum = HumRemarks(context.runs, best.fitted);
+  d.remarks.insert(d.remarks.begin(), hum.begin(), hum.end());
   RemarkOnRivals(weights, &d);
   d.model = best.fitted.hypothesis.model;
   d.signals = SignalGaps(context, given, refit, best);

@@ -77,7 +77,7 @@ TEST_F(SidecarTest, WithoutUnit) {
 // Tests that a unit of another quantity and an unknown one are refused with what is allowed.
 TEST_F(SidecarTest, WrongUnits) {
   const std::string place = Path("run.toml") + ":5: columns.p1.unit: found ";
-  const std::string pressures = R"("psi", "bar", "mbar", "Pa", "kPa" or "MPa")";
+  const std::string pressures = R"("psi", "bar", "mbar", "Pa", "hPa", "kPa" or "MPa")";
   EXPECT_THAT(ErrorOf("p1 = { column = \"p\", unit = \"rpm\" }"),
               AllOf(HasSubstr(place + "\"rpm\", no unit of p1, allowed "), HasSubstr(pressures)));
   EXPECT_THAT(ErrorOf("p1 = { column = \"p\", unit = \"barg\" }"),
