@@ -43,7 +43,7 @@ TEST(PerRunSection, ARowForEachRun) {
 TEST(PerRunSection, InSi) {
   Diagnosis diagnosis = testing::ExampleDiagnosis();
   diagnosis.per_run = {Friction()};
-  const ValueByRun& si = InSi(diagnosis).per_run.front();
+  const ValueByRun si = InSi(diagnosis).per_run.front();
   EXPECT_EQ(si.unit, "N m");
   EXPECT_NEAR(si.values[0].value / 2, 0.112985, 1e-6);
   EXPECT_NEAR(si.values[1].high / 3.1, 0.112985, 1e-6);
