@@ -40,8 +40,8 @@ std::unique_ptr<bus::Authenticator> KeyedOrNot(bool with_key) {
 // The plant's end of the bus; waits as the plant does.
 class StackPinger : public Pinger {
  public:
-  StackPinger(const std::string& url, bus::Receiving receiving, bool with_key)
-      : opened_(bus::OpenUdpmBus(url, KeyedOrNot(with_key), receiving)),
+  StackPinger(const std::string& url, bool with_key)
+      : opened_(bus::OpenUdpmBus(url, KeyedOrNot(with_key))),
         states_(bus_.Advertise<state_t>("HYDRO_STATE")) {
     bus_.Subscribe<motor_command_t>("HYDRO_MOTOR_COMMAND",
                                     [this](const motor_command_t& command) { answered_ = command.tick; });
@@ -68,20 +68,20 @@ class StackPinger : public Pinger {
 };
 
 // The pressure loop, as hydro-pressure-ctrl runs it.
-void AnswerOnBus(const std::string& url, bus::Receiving receiving, bool with_key) {
+void AnswerOnBus(const std::string& url, bool with_key) {
   const settings::StackConfig config =
       settings::LoadStackConfig(HYDRO_BENCH_CONFIG, {"time.mode=realtime", "limits.stale_input_s=1e6"});
-  const auto opened = bus::OpenUdpmBus(url, KeyedOrNot(with_key), receiving);
+  const auto opened = bus::OpenUdpmBus(url, KeyedOrNot(with_key));
   bus::UdpmBus& bus = *opened;
   bus::WallClock clock;
   pressure_ctrl::PressureApp app(bus, clock, config);
   process::RunApp(bus, clock, app);
 }
 
-Peer StackPeer(const std::string& name, bus::Receiving receiving, bool with_key = false) {
+Peer StackPeer(const std::string& name, bool with_key = false) {
   const std::string url = FreeBusUrl();
-  return {name, [=] { AnswerOnBus(url, receiving, with_key); },
-          [=] { return std::make_unique<StackPinger>(url, receiving, with_key); }};
+  return {name, [=] { AnswerOnBus(url, with_key); },
+          [=] { return std::make_unique<StackPinger>(url, with_key); }};
 }
 
 enum class Placement { kAnywhere, kOneCore, kTwoCores };
@@ -103,9 +103,8 @@ std::vector<int> Cpus(const cpu_set_t& set) {
 
 std::vector<Peer> Everyone() {
   std::vector<Peer> peers = MakePeers();
-  peers.insert(peers.begin() + 1, StackPeer("stack", bus::Receiving::kDirect));
-  peers.insert(peers.begin() + 2, StackPeer("stack with a key", bus::Receiving::kDirect, true));
-  peers.insert(peers.begin() + 3, StackPeer("stack, LCM's own thread", bus::Receiving::kQueued));
+  peers.insert(peers.begin() + 1, StackPeer("stack"));
+  peers.insert(peers.begin() + 2, StackPeer("stack with a key", true));
   return peers;
 }
 

@@ -71,7 +71,7 @@ settings::StackConfig ConfigOf(const Options& options, const std::string& url, c
 }
 
 void RunPlant(const settings::StackConfig& config, PlantResult* result) {
-  const auto opened = bus::OpenUdpmBus(config.bus.url, nullptr, bus::Receiving::kDirect);
+  const auto opened = bus::OpenUdpmBus(config.bus.url);
   bus::UdpmBus& bus = *opened;
   bus::WallClock clock;
   const bus::Channels channels(config.bus.channel_suffix);
@@ -90,7 +90,7 @@ void RunPlant(const settings::StackConfig& config, PlantResult* result) {
 
 template <class Controller>
 void RunController(const settings::StackConfig& config) {
-  const auto opened = bus::OpenUdpmBus(config.bus.url, nullptr, bus::Receiving::kDirect);
+  const auto opened = bus::OpenUdpmBus(config.bus.url);
   bus::UdpmBus& bus = *opened;
   bus::WallClock clock;
   Controller controller(bus, clock, config);

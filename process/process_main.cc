@@ -95,8 +95,7 @@ int RunProcess(const std::string& program, const settings::CommonOptions& option
     timing::ApplyRealTime(RealTimeRequestOf(SectionOf(config, program)));
     const std::unique_ptr<bus::UdpmBus> opened = bus::OpenUdpmBus(
         config.bus.url,
-        bus::MakeAuthenticator(config.bus.resolved_key_file, bus::Channels(config.bus.channel_suffix)),
-        bus::Receiving::kDirect);
+        bus::MakeAuthenticator(config.bus.resolved_key_file, bus::Channels(config.bus.channel_suffix)));
     bus::UdpmBus& bus = *opened;
     WarnOfOpenNetwork(program, config.bus);
     if (const std::string hint = bus.receive_buffer_hint(); !hint.empty()) spdlog::warn("{}", hint);

@@ -14,12 +14,11 @@ constexpr size_t kMostHeld = 1024;
 
 }  // namespace
 
-// Not before everyone has subscribed: a subscription to all channels that is made while introductions wait
-// would meet LCM's miscount (queued_udpm_bus.cc).
+// Not before everyone has subscribed: who records everything wants the introductions too.
 void UdpmBus::StartIntroductions() {
   introduced_ = true;
   const std::string& channel = authenticator_->introduction_channel();
-  ListenOnce(channel);
+  socket_.Accept(channel);
   Publish(channel, authenticator_->Greeting());
 }
 
@@ -45,7 +44,7 @@ std::optional<int> UdpmBus::Authenticate(const RawMessage& arrived) {
     return opened.size;
   }
   if (opened.verdict == Verdict::kAccepted) return opened.size;
-  if (all_ && held_.size() < kMostHeld) {
+  if (socket_.accepts_all() && held_.size() < kMostHeld) {
     held_.push_back({std::string(arrived.channel),
                      {arrived.data, arrived.data + arrived.size},
                      arrived.receive_utime,
@@ -72,7 +71,7 @@ void UdpmBus::Record(const RawMessage& message) {
 }
 
 void UdpmBus::RecordRefused(const RawMessage& arrived) {
-  if (!all_) return;
+  if (!socket_.accepts_all()) return;
   const std::string channel = kRefusedPrefix + std::string(arrived.channel);
   Record({channel, arrived.data, arrived.size, arrived.receive_utime});
 }

@@ -67,9 +67,11 @@ Wait WaitReadable(int fd, Bus::TimePoint deadline) {
 
 }  // namespace
 
-UdpmBus::UdpmBus(std::unique_ptr<Authenticator> authenticator, ReceiveBuffer receive_buffer)
+UdpmBus::UdpmBus(const UdpmUrl& url, std::unique_ptr<Authenticator> authenticator,
+                 ReceiveBuffer receive_buffer)
     : authenticator_(std::move(authenticator)),
       receive_buffer_(receive_buffer),
+      socket_(url),
       encoded_(kFirstEncodedSize) {}
 
 std::string UdpmBus::receive_buffer_hint() const {
@@ -81,21 +83,21 @@ std::string UdpmBus::receive_buffer_hint() const {
 }
 
 void UdpmBus::SubscribeAll(std::function<void(const RawMessage&)> handler) {
-  if (!std::exchange(all_, true)) ListenToAll();
+  socket_.AcceptAll();
   subscriptions_.push_back({"", nullptr, nullptr, {}, std::move(handler)});
 }
 
 void UdpmBus::SubscribeTyped(const std::string& channel, const MessageType& type,
                              std::function<void(const void*)> handler) {
   CheckChannel(channel);
-  ListenOnce(channel);
+  socket_.Accept(channel);
   subscriptions_.push_back({channel, &type, type.create(), std::move(handler), {}});
 }
 
-void UdpmBus::ListenOnce(const std::string& channel) {
-  if (all_ || std::find(channels_.begin(), channels_.end(), channel) != channels_.end()) return;
-  Listen(channel);
-  channels_.push_back(channel);
+UdpmBus::Outcome UdpmBus::HandleNext() {
+  UdpmSocket::Message message;
+  if (!socket_.Receive(&message)) return Outcome::kNoneWaited;
+  return Deliver({message.channel, message.data, static_cast<int>(message.size), message.receive_utime});
 }
 
 UdpmBus::Outcome UdpmBus::Deliver(const RawMessage& arrived) {
@@ -158,7 +160,7 @@ void UdpmBus::PublishTyped(const std::string& channel, const MessageType& type, 
 }
 
 void UdpmBus::SendOrCount(const std::string& channel, const void* data, int size) {
-  if (Send(channel, data, size)) return;
+  if (socket_.Send(channel, data, static_cast<size_t>(size))) return;
   if (!IsPassing(errno)) throw BusError("LCM cannot publish on " + channel + ": " + std::strerror(errno));
   ++unsent_;  // as if lost on its way: whoever waits for it has a watchdog
 }
@@ -170,7 +172,7 @@ int UdpmBus::HandleUntil(TimePoint deadline) {
   int handled = 0;
   for (int seen = 0; seen < kMostPerCall; ++seen) {
     // Once a message has been handled, only those already waiting count.
-    if (handled == 0 && WaitReadable(fd(), deadline) != Wait::kReadable) break;
+    if (handled == 0 && WaitReadable(socket_.fd(), deadline) != Wait::kReadable) break;
     const Outcome outcome = HandleNext();
     if (outcome == Outcome::kHandled) ++handled;
     if (outcome == Outcome::kNoneWaited && handled > 0) break;

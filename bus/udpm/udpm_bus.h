@@ -1,5 +1,5 @@
-// What the buses over LCM UDP multicast share: encoding, seals, subscriptions and delivery. DirectUdpmBus and
-// QueuedUdpmBus receive and send; OpenUdpmBus() (open_udpm_bus.h) chooses one.
+// The bus over LCM's UDP multicast: encoding, seals, subscriptions and delivery. The thread that calls
+// HandleUntil() takes messages straight from the socket; between calls they wait in the kernel's buffer.
 #pragma once
 
 #include <deque>
@@ -10,11 +10,23 @@
 
 #include "bus/bus.h"
 #include "bus/seal/authenticator.h"
+#include "bus/udpm/udpm_socket.h"
+#include "bus/udpm/udpm_url.h"
 
 namespace hydro::bus {
 
 class UdpmBus : public Bus {
  public:
+  // The kernel's receive buffer in bytes: what was asked for and what it granted (which includes the kernel's
+  // own bookkeeping).
+  struct ReceiveBuffer {
+    int asked = 0;
+    int given = 0;
+  };
+
+  // OpenUdpmBus() (open_udpm_bus.h) makes one, after it has proved that multicast works. Throws BusError.
+  UdpmBus(const UdpmUrl& url, std::unique_ptr<Authenticator> authenticator, ReceiveBuffer receive_buffer);
+
   // Withholds the messages by which LCM tests itself when a process starts. Refused messages come as they
   // arrived, with REFUSED_ before the channel's name.
   void SubscribeAll(std::function<void(const RawMessage&)> handler) override;
@@ -29,41 +41,12 @@ class UdpmBus : public Bus {
     return authenticator_ != nullptr ? authenticator_->refused() : Bus::refused();
   }
 
-  // The kernel's receive buffer in bytes: what was asked for and what it granted (which includes the kernel's
-  // own bookkeeping). Both are 0 without a network.
-  struct ReceiveBuffer {
-    int asked = 0;
-    int given = 0;
-  };
   int receive_buffer_bytes() const { return receive_buffer_.given; }
 
   // One line on how to allow a larger receive buffer; empty when it is large enough.
   std::string receive_buffer_hint() const;
 
  protected:
-  UdpmBus(std::unique_ptr<Authenticator> authenticator, ReceiveBuffer receive_buffer);
-
-  // What became of a waiting message.
-  enum class Outcome { kNoneWaited, kHandled, kPassedOver };
-
-  // Readable when a message waits.
-  virtual int fd() const = 0;
-
-  // Takes one waiting message and passes it to Deliver(). Never waits for one.
-  virtual Outcome HandleNext() = 0;
-
-  // False: errno says why.
-  virtual bool Send(const std::string& channel, const void* data, int size) = 0;
-
-  // From now on, messages on `channel`, or on all channels, are wanted. Called once for each channel, and no
-  // more once all are wanted.
-  virtual void Listen(const std::string& channel) = 0;
-  virtual void ListenToAll() = 0;
-
-  // If an arrived message is genuine, calls its handlers in the order of subscription. Call once for each
-  // message. A handler's exception leaves it.
-  Outcome Deliver(const RawMessage& arrived);
-
   void PublishTyped(const std::string& channel, const MessageType& type, const void* message) override;
   void SubscribeTyped(const std::string& channel, const MessageType& type,
                       std::function<void(const void*)> handler) override;
@@ -86,7 +69,16 @@ class UdpmBus : public Bus {
     TimePoint arrived;
   };
 
-  void ListenOnce(const std::string& channel);
+  // What became of a waiting message.
+  enum class Outcome { kNoneWaited, kHandled, kPassedOver };
+
+  // Takes one waiting message and passes it to Deliver(). Never waits for one.
+  Outcome HandleNext();
+
+  // If an arrived message is genuine, calls its handlers in the order of subscription. Call once for each
+  // message. A handler's exception leaves it.
+  Outcome Deliver(const RawMessage& arrived);
+
   bool DeliverTyped(const RawMessage& message, Subscription* subscription);
   void SendOrCount(const std::string& channel, const void* data, int size);
 
@@ -101,9 +93,8 @@ class UdpmBus : public Bus {
 
   std::unique_ptr<Authenticator> authenticator_;  // null: without a key
   ReceiveBuffer receive_buffer_;
+  UdpmSocket socket_;
   std::deque<Subscription> subscriptions_;  // a handler may subscribe: existing ones stay in place
-  std::vector<std::string> channels_;       // that are listened to
-  bool all_ = false;                        // all channels are
   std::vector<uint8_t> encoded_;            // reused for each message
   int64_t undecodable_ = 0;
   int64_t unsent_ = 0;

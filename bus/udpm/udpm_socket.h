@@ -1,8 +1,10 @@
-// LCM's UDP multicast protocol on the caller's thread.
+// LCM's UDP multicast protocol on the caller's thread, for every program that receives.
 //
-// liblcm receives on a thread of its own and passes each message on through a queue and a pipe: two wake-ups
-// and several allocations per message. For a loop that answers a message, the wake-up is most of the round
-// trip. Here the loop itself waits on the socket, the kernel's buffer is the queue, and nothing is allocated.
+// Two reasons against liblcm 1.3.1's own receiver. Its check of fragments wraps in 32 bits, so that two
+// datagrams from anybody make it write outside its buffer. And it receives on a thread of its own and passes
+// each message on through a queue and a pipe: two wake-ups and several allocations per message. For a loop
+// that answers a message, the wake-up is most of the round trip. Here the loop itself waits on the socket,
+// the kernel's buffer is the queue, and nothing is allocated.
 #pragma once
 
 #include <netinet/in.h>
@@ -28,6 +30,7 @@ class UdpmSocket {
   // Receives messages on `channel` (1 to 63 bytes) from now on; before the first call, receives none.
   void Accept(const std::string& channel);
   void AcceptAll();
+  bool accepts_all() const { return all_; }
 
   // Sends a message and never waits. On false, errno says why: ENOBUFS when the network is slower than the
   // sender.

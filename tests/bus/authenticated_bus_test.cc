@@ -27,11 +27,11 @@ std::unique_ptr<Authenticator> MakeOne(uint8_t key_byte) {
                                          std::vector<std::string>{"INTRODUCTION", kCommand, "SECOND"});
 }
 
-class AuthenticatedBusTest : public testing::TestWithParam<Receiving> {
+class AuthenticatedBusTest : public testing::Test {
  protected:
   // The bus of a process with that key; 0: without a key.
   UdpmBus& Open(uint8_t key_byte = 0) {
-    return *opened_.emplace_back(OpenUdpmBus(url_, key_byte == 0 ? nullptr : MakeOne(key_byte), GetParam()));
+    return *opened_.emplace_back(OpenUdpmBus(url_, key_byte == 0 ? nullptr : MakeOne(key_byte)));
   }
   template <class Done>
   static void HandleWhileNot(const std::vector<UdpmBus*>& buses, Done done) {
@@ -64,15 +64,9 @@ class AuthenticatedBusTest : public testing::TestWithParam<Receiving> {
   std::vector<std::unique_ptr<UdpmBus>> opened_;
 };
 
-INSTANTIATE_TEST_SUITE_P(Transports, AuthenticatedBusTest,
-                         testing::Values(Receiving::kQueued, Receiving::kDirect),
-                         [](const testing::TestParamInfo<Receiving>& param) {
-                           return param.param == Receiving::kQueued ? "Queued" : "Direct";
-                         });
-
 // Tests that commands arrive once and in order, and that an intruder's commands among them are refused and
 // counted.
-TEST_P(AuthenticatedBusTest, IntruderIsRefused) {
+TEST_F(AuthenticatedBusTest, IntruderIsRefused) {
   UdpmBus &plant = Open(1), &loop = Open(1), &stranger = Open(2), &intruder = Open();
   Follow(plant);
   loop.Subscribe<motor_command_t>("SECOND", [](const motor_command_t&) {});
@@ -97,7 +91,7 @@ TEST_P(AuthenticatedBusTest, IntruderIsRefused) {
 }
 
 // Tests that every subscriber of a channel gets a message, though the message counts once.
-TEST_P(AuthenticatedBusTest, EverySubscriberIsServed) {
+TEST_F(AuthenticatedBusTest, EverySubscriberIsServed) {
   UdpmBus &plant = Open(1), &loop = Open(1);
   std::vector<std::string> calls;
   plant.Subscribe<motor_command_t>(kCommand, [&](const motor_command_t&) { calls.push_back("first"); });
@@ -114,7 +108,7 @@ TEST_P(AuthenticatedBusTest, EverySubscriberIsServed) {
 
 // Tests that the record holds the plain message, that it includes a new sender's first messages although they
 // came before its introduction, and that refused messages are in it under another name.
-TEST_P(AuthenticatedBusTest, RecordsPlainMessages) {
+TEST_F(AuthenticatedBusTest, RecordsPlainMessages) {
   UdpmBus &logger = Open(1), &intruder = Open();
   std::vector<std::string> record;
   logger.SubscribeAll([&](const RawMessage& message) {
@@ -134,7 +128,7 @@ TEST_P(AuthenticatedBusTest, RecordsPlainMessages) {
 
 // Tests that a process that starts later does not obey a recording, sealed messages included, and records it
 // as refused.
-TEST_P(AuthenticatedBusTest, RecordingIsRefused) {
+TEST_F(AuthenticatedBusTest, RecordingIsRefused) {
   std::vector<std::pair<std::string, std::vector<uint8_t>>> recording;
   {
     UdpmBus& wire = Open();  // without a key: sees the raw messages

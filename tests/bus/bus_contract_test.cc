@@ -314,12 +314,7 @@ INSTANTIATE_TEST_SUITE_P(
                   [](SimulatedClock*) { return std::make_unique<InProcessBus>(nullptr); }},
         Transport{"Udpm", false, [](SimulatedClock*) { return OpenUdpmBus(FreeBusUrl()); }},
         Transport{"UdpmWithKey", false,
-                  [](SimulatedClock*) { return OpenUdpmBus(FreeBusUrl(), MakeKeyed()); }},
-        Transport{"UdpmDirect", false,
-                  [](SimulatedClock*) { return OpenUdpmBus(FreeBusUrl(), nullptr, Receiving::kDirect); }},
-        Transport{"UdpmDirectWithKey", false,
-                  [](SimulatedClock*) { return OpenUdpmBus(FreeBusUrl(), MakeKeyed(), Receiving::kDirect); }},
-        Transport{"Memq", false, [](SimulatedClock*) { return OpenUdpmBus("memq://"); }}),
+                  [](SimulatedClock*) { return OpenUdpmBus(FreeBusUrl(), MakeKeyed()); }}),
     [](const testing::TestParamInfo<Transport>& param) { return param.param.name; });
 
 }  // namespace

@@ -44,7 +44,7 @@ constexpr auto kBegin = 1200ms, kEnd = 2700ms;
 class Loop {
  public:
   Loop(const std::string& url, std::function<void()> begin, std::function<void()> end)
-      : opened_(bus::OpenUdpmBus(url, nullptr, bus::Receiving::kDirect)),
+      : opened_(bus::OpenUdpmBus(url)),
         begin_(std::move(begin)),
         end_(std::move(end)) {}
 
