@@ -1,55 +1,72 @@
 #include "bus/sequence_monitor.h"
 
+#include <algorithm>
+
 #include "base/saturating.h"
 
 namespace hydro::bus {
 
 SequenceMonitor::Verdict SequenceMonitor::Observe(int64_t session, int64_t sequence, Clock::TimePoint now) {
-  gap_ = 0;
-  if (!session_) {
-    session_ = session;
-    sequence_ = sequence;
-    heard_ = now;
-    return Verdict::kAccept;
-  }
-  const bool silent = now - heard_ > alive_;
-  if (session != *session_ && !silent) {
-    second_heard_ = now;
-    second_session_ = session;
-    return Verdict::kSecondSender;
-  }
-  heard_ = now;
-  // The same number again is a repetition (lockstep asks again), however long ago it came; a lower number
-  // after a silence is a log being played again.
-  if (session != *session_ || (sequence < sequence_ && silent)) {
-    session_ = session;
-    sequence_ = sequence;
-    tick_.reset();
-    second_heard_.reset();
-    ++restarts_;
-    return Verdict::kRestarted;
-  }
-  if (sequence <= sequence_) {
-    ++duplicates_;
-    return Verdict::kDuplicate;
-  }
-  gap_ = SaturatingDifference(SaturatingDifference(sequence, sequence_), 1);
-  lost_ = SaturatingSum(lost_, gap_);
-  sequence_ = sequence;
-  return Verdict::kAccept;
+  return Observe(session, Place{sequence, 0}, now);
 }
 
 SequenceMonitor::Verdict SequenceMonitor::Observe(int64_t session, int64_t sequence, int64_t tick,
                                                   Clock::TimePoint now) {
-  const Verdict verdict = Observe(session, sequence, now);
-  if (verdict != Verdict::kAccept && verdict != Verdict::kRestarted) return verdict;
-  if (tick_ && tick < *tick_) {
-    ++ticks_back_;
-    ++duplicates_;
-    return Verdict::kDuplicate;
+  return Observe(session, Place{sequence, tick}, now);
+}
+
+SequenceMonitor::Verdict SequenceMonitor::Observe(int64_t session, Place place, Clock::TimePoint now) {
+  gap_ = 0;
+  if (FollowsAnother(session, now)) {
+    second_heard_ = now;
+    second_session_ = session;
+    return Verdict::kSecondSender;
   }
-  tick_ = tick;
-  return verdict;
+  const bool silent = now - heard_ > alive_;
+  heard_ = now;
+  if (!session_) {
+    Follow(session, place, now);
+    return Verdict::kAccept;
+  }
+  if (session != *session_) return Restart(session, place, now);
+  if (place.sequence > newest_.sequence && place.tick >= newest_.tick) {
+    const int64_t expected = SaturatingSum(newest_.sequence, 1 + refused_since_);
+    gap_ = std::max<int64_t>(SaturatingDifference(place.sequence, expected), 0);
+    lost_ = SaturatingSum(lost_, gap_);
+    Follow(session, place, now);
+    return Verdict::kAccept;
+  }
+  // The same number again is a repetition (lockstep asks again), however long ago it came; a lower number
+  // after a silence is a log being played again.
+  if (place.sequence < newest_.sequence && silent) return Restart(session, place, now);
+  if (place.sequence != newest_.sequence) {
+    // A sender that goes on behind the newest, for as long as nothing has followed the newest, shows that the
+    // newest was not its own: one message with a far number must not deafen this receiver for good.
+    const bool goes_on = behind_ && place.sequence > behind_->sequence && place.tick >= behind_->tick;
+    behind_ = place;
+    if (goes_on && now - advanced_ > alive_) return Restart(session, place, now);
+  }
+  if (place.sequence > newest_.sequence) {
+    ++ticks_back_;
+    ++refused_since_;
+  }
+  ++duplicates_;
+  return Verdict::kDuplicate;
+}
+
+void SequenceMonitor::Follow(int64_t session, Place place, Clock::TimePoint now) {
+  session_ = session;
+  newest_ = place;
+  advanced_ = now;
+  behind_.reset();
+  refused_since_ = 0;
+}
+
+SequenceMonitor::Verdict SequenceMonitor::Restart(int64_t session, Place place, Clock::TimePoint now) {
+  Follow(session, place, now);
+  second_heard_.reset();
+  ++restarts_;
+  return Verdict::kRestarted;
 }
 
 }  // namespace hydro::bus

@@ -15,7 +15,8 @@ class SequenceMonitor {
   enum class Verdict {
     kAccept,     // newer than all before it; gap() says how many are missing in between
     kDuplicate,  // already seen, or older than one already seen: do not use it
-    kRestarted,  // the first from a new sender (or a log played again) after the old one fell silent: use it
+    kRestarted,  // the first from a new sender (or a log played again) after the old one fell silent, or the
+                 // sender itself, which has gone on for `alive` behind a message that was not its own: use it
     kSecondSender,  // from another sender while the first is alive: do not use it
   };
 
@@ -25,8 +26,14 @@ class SequenceMonitor {
   // Call it for each message, in order of arrival.
   Verdict Observe(int64_t session, int64_t sequence, Clock::TimePoint now);
 
-  // The same, but a message with a lower tick than an earlier one is kDuplicate.
+  // The same, but a message with a lower tick than an earlier one is kDuplicate. A receiver that knows which
+  // ticks have been never passes one that has not.
   Verdict Observe(int64_t session, int64_t sequence, int64_t tick, Clock::TimePoint now);
+
+  // Whether a message from that session would be kSecondSender.
+  bool FollowsAnother(int64_t session, Clock::TimePoint now) const {
+    return session_ && session != *session_ && now - heard_ <= alive_;
+  }
 
   // A second sender was heard within the last `alive`.
   bool SecondSenderAlive(Clock::TimePoint now) const {
@@ -43,11 +50,21 @@ class SequenceMonitor {
   int64_t ticks_back() const { return ticks_back_; }  // messages in sequence whose tick went back
 
  private:
+  struct Place {
+    int64_t sequence = 0;
+    int64_t tick = 0;
+  };
+  Verdict Observe(int64_t session, Place place, Clock::TimePoint now);
+  void Follow(int64_t session, Place place, Clock::TimePoint now);
+  Verdict Restart(int64_t session, Place place, Clock::TimePoint now);
+
   Clock::Duration alive_;
   std::optional<int64_t> session_;  // of the sender being followed; none before the first message
-  int64_t sequence_ = 0;            // its newest
-  std::optional<int64_t> tick_;     // its newest
-  Clock::TimePoint heard_{};        // when it was last heard
+  Place newest_;                    // of its messages
+  Clock::TimePoint advanced_{};     // when that came
+  std::optional<Place> behind_;     // its last message, if that was older than the newest
+  int64_t refused_since_ = 0;       // its messages in sequence whose tick went back, since the newest
+  Clock::TimePoint heard_{};        // when it was last heard at all
   std::optional<int64_t> second_session_;
   std::optional<Clock::TimePoint> second_heard_;
   int64_t gap_ = 0;

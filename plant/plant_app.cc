@@ -43,7 +43,9 @@ PlantApp::PlantApp(bus::Bus& bus, bus::Clock& clock, const settings::StackConfig
                                  [this](const motor_command_t& command) { OnMotorCommand(command); });
   bus.Subscribe<pressure_command_t>(
       channels.Of<pressure_command_t>(),
-      [this](const pressure_command_t& command) { newest_pressure_command_tick_ = command.tick; });
+      [this](const pressure_command_t& command) {
+        if (command.tick <= tick_) newest_pressure_command_tick_ = command.tick;
+      });
   bus.Subscribe<process_status_t>(channels.Of<process_status_t>(),
                                   [this](const process_status_t& status) { roll_call_.Observe(status); });
   bus.Subscribe<log_progress_t>(channels.Of<log_progress_t>(), [this](const log_progress_t& progress) {

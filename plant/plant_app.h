@@ -68,6 +68,7 @@ class PlantApp {
   void CheckCommand(const motor_command_t& command);
   void CheckCommandIsFresh();
   void OnMotorCommand(const motor_command_t& command);
+  void RefuseFutureCommand(const motor_command_t& command);
   bus::Clock::Duration TimeSinceDue(int64_t tick) const;
   void Poll();
   bool Ended() const;

@@ -10,21 +10,17 @@ namespace hydro::plant {
 
 void PlantApp::OnMotorCommand(const motor_command_t& command) {
   const auto now = participant_.clock().Now();
+  // Never counted as the newest: it would make every later good one an old one.
+  if (command.tick > tick_ && !command_monitor_.FollowsAnother(command.session, now)) {
+    RefuseFutureCommand(command);
+    return;
+  }
   const auto verdict = command_monitor_.Observe(command.session, command.sequence, command.tick, now);
   // A duplicate is neither obeyed nor a sign of life.
   if (verdict == bus::SequenceMonitor::Verdict::kDuplicate) return;
   if (verdict == bus::SequenceMonitor::Verdict::kSecondSender) return;  // CheckCommand() raises the fault
   if (verdict == bus::SequenceMonitor::Verdict::kRestarted) waiting_commands_.clear();
-  future_command_ = command.tick > tick_;
-  if (future_command_) {
-    safety_.Set(VoltageGuard::Cause::kFutureCommand, true, [&] {
-      return OutputSafety::Finding{
-          fmt::format("a motor command for tick {} at tick {}; is another run's log being played?",
-                      command.tick, tick_),
-          static_cast<double>(command.tick), static_cast<double>(tick_)};
-    });
-    return;
-  }
+  future_command_ = false;
   if (const auto taken = round_trips_.OnAnswer(command.tick, now)) {
     participant_.statistics().RecordRoundTrip(*taken);
   }
@@ -33,6 +29,16 @@ void PlantApp::OnMotorCommand(const motor_command_t& command) {
   unanswered_since_.reset();
   const int64_t newest_due = tick_ / config_.pressure_interval_ticks * config_.pressure_interval_ticks;
   if (command.tick < newest_due) unanswered_since_ = now - TimeSinceDue(command.tick);
+}
+
+void PlantApp::RefuseFutureCommand(const motor_command_t& command) {
+  future_command_ = true;
+  safety_.Set(VoltageGuard::Cause::kFutureCommand, true, [&] {
+    return OutputSafety::Finding{
+        fmt::format("a motor command for tick {} at tick {}; is another run's log being played?",
+                    command.tick, tick_),
+        static_cast<double>(command.tick), static_cast<double>(tick_)};
+  });
 }
 
 // How long ago the state that follows `tick` asked for an answer. A loop that works through a backlog, or

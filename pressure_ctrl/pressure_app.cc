@@ -119,8 +119,16 @@ void PressureApp::OnState(const state_t& state) {
 }
 
 void PressureApp::OnPressureCommand(const pressure_command_t& command) {
-  const auto verdict =
-      command_monitor_.Observe(command.session, command.sequence, participant_.clock().Now());
+  const auto now = participant_.clock().Now();
+  // A command a few ticks ahead only took a faster route through the network; one far ahead would hold up all
+  // that follow it in the queue, and counted as the newest it would make them old.
+  const bool future =
+      participant_.tick() >= 0 && command.tick > SaturatingSum(participant_.tick(), stale_ticks_);
+  if (future && !command_monitor_.FollowsAnother(command.session, now)) {
+    future_command_ = command.tick;
+    return;
+  }
+  const auto verdict = command_monitor_.Observe(command.session, command.sequence, now);
   // A second sender is not obeyed; InputsAreSafe() raises the fault.
   if (verdict == bus::SequenceMonitor::Verdict::kSecondSender) return;
   if (verdict == bus::SequenceMonitor::Verdict::kDuplicate) return;
@@ -128,13 +136,7 @@ void PressureApp::OnPressureCommand(const pressure_command_t& command) {
     waiting_commands_.clear();
     pressure_command_.reset();
   }
-  // A command a few ticks ahead only took a faster route through the network; one far ahead would hold up all
-  // that follow it in the queue.
-  future_command_ =
-      participant_.tick() >= 0 && command.tick > SaturatingSum(participant_.tick(), stale_ticks_)
-          ? std::optional(command.tick)
-          : std::nullopt;
-  if (future_command_) return;
+  future_command_.reset();
   waiting_commands_.push_back(command);
   if (pending_state_ && !AwaitsPressureCommand(pending_state_->tick)) {
     const state_t state = *pending_state_;

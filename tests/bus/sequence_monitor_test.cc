@@ -113,6 +113,35 @@ TEST(SequenceMonitorTest, TicksGoingBack) {
   EXPECT_EQ(monitor.lost(), 0);
 }
 
+// Tests that a message with a far number, which was not the sender's own, deafens nobody for good: the sender
+// is followed again once it has gone on behind that message for `alive`.
+TEST(SequenceMonitorTest, FarNumber) {
+  constexpr int64_t kFar = int64_t{1} << 62;
+  SequenceMonitor monitor(100ms);
+  Check({{1, 5, 0ms, Verdict::kAccept, 0},
+         {1, kFar, 10ms, Verdict::kAccept, kFar - 6},
+         {1, 6, 20ms, Verdict::kDuplicate, 0},
+         {1, 7, 60ms, Verdict::kDuplicate, 0},
+         {1, 8, 110ms, Verdict::kDuplicate, 0},
+         {1, 9, 111ms, Verdict::kRestarted, 0},
+         {1, 10, 112ms, Verdict::kAccept, 0}},
+        &monitor);
+}
+
+// Tests the same for a far tick, and that the sender must go on: one old message, however often it is
+// repeated, is never followed.
+TEST(SequenceMonitorTest, FarTick) {
+  SequenceMonitor monitor(100ms);
+  const auto observe = [&](int64_t sequence, int64_t tick, std::chrono::milliseconds at) {
+    return monitor.Observe(1, sequence, tick, Clock::TimePoint(at));
+  };
+  EXPECT_EQ(observe(5, 50, 0ms), Verdict::kAccept);
+  EXPECT_EQ(observe(6, int64_t{1} << 62, 10ms), Verdict::kAccept);
+  for (int i = 1; i < 20; ++i) EXPECT_EQ(observe(4, 49, 10ms + i * 20ms), Verdict::kDuplicate);
+  EXPECT_EQ(observe(7, 51, 400ms), Verdict::kRestarted);
+  EXPECT_EQ(observe(8, 52, 401ms), Verdict::kAccept);
+}
+
 // Tests that forged sequence numbers, as far apart as possible, are still counted sensibly.
 TEST(SequenceMonitorTest, ExtremeNumbers) {
   constexpr int64_t kLowest = std::numeric_limits<int64_t>::min();

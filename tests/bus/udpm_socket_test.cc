@@ -160,6 +160,9 @@ TEST(UdpmSocketTest, SkipsWhatIsNotLcm) {
   send("LC03\0\0\0\1\xff\xff\xff\xff\0\0\0\0\0\0\0\1X\0"s);  // of 4 GB
   send("LC03\0\0\0\1\0\0\0\4\0\0\0\xff\0\0\0\1X\0abcd"s);    // beyond its end
   send("LC03\0\0\0\1\0\0\0\4\0\0\0\0\0\2\0\1abcd"s);         // number 2 of 1
+  // These two make liblcm 1.3.1 write outside its buffer: offset plus size wraps in 32 bits.
+  send("LC03\0\0\0\1\0\0\x10\0\0\0\0\0\0\0\0\3X\0"s + std::string(32, 'A'));
+  send("LC03\0\0\0\1\0\0\x10\0\xff\xff\xff\0\0\1\0\3"s + std::string(512, 'B'));
   send("GET / HTTP/1.1\r\n\r\n");
   send("LC02\0\0\0\0GOOD\0!"s);
   close(fd);

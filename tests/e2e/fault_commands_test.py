@@ -133,6 +133,23 @@ class MotorCommandTest(fault_case.FaultCase):
         log = self.check_zero_and_back("future_motor_command", least=5)
         self.assertEqual([s for s in log.states if s.voltage == 2.0], [])
 
+    # Tests that one command of the loop's own session for a tick that never comes does not make every later one old.
+    def test_one_far_tick(self):
+        self.run_with(self.once(lambda s: [repeated(voltage=2.0, tick=1 << 62)]))
+        self.wait_for_fault("future_motor_command")
+        self.wait_for_fault("future_motor_command", active=False)
+        log = self.finish()
+        self.assertEqual([s for s in log.states if s.voltage == 2.0], [])
+        self.assertNotIn("stale_motor_command", {f.code for f in log.faults})
+
+    # Tests the same for one with a number that it never reaches.
+    def test_one_far_number(self):
+        self.run_with(self.once(lambda s: [repeated(sequence=1 << 62)]), until=BAD + int(3 * STALE * SLOW) + 20)
+        self.wait_for_fault("repeated_motor_command")
+        self.wait_for_fault("repeated_motor_command", active=False)
+        log = self.finish()
+        self.assertGreater(log.states[-1].command_tick, BAD + 2 * STALE * SLOW)
+
     # Tests that a loop that answers every state, but too late, counts as stale.
     def test_late(self):
         old = []

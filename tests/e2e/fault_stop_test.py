@@ -1,7 +1,11 @@
 """Rows of docs/safety.md: HYDRO_STOP, from any program and from hydro-launch --stop."""
 
+import struct
+import threading
+
 import event_log
 import fault_case
+import lcm_peer
 import outcome
 import stack
 
@@ -45,6 +49,33 @@ class StopTest(fault_case.FaultCase):
         self.assertRegex(stopper.stdout, "stopped: 4 processes have ended")
         self.assertEqual(launch.wait(), 0, launch.report())
         self.assertRegex(launch.stdout, "stopped by launch: hydro-launch --stop")
+
+    # Tests that --stop ends a stack while anybody sends packets that liblcm's own receiver does not survive, and that the
+    # launcher and the doctor survive them too.
+    def test_stop_among_poisoned_packets(self):
+        launch = self.launch(self.moving(), "--duration", "0", "--log", self.log_file)
+        stack.LiveLog(self, self.log_file).wait_for_tick(50)
+        channel = b"HYDRO_PROCESS_STATUS\0"
+        first = struct.pack(">4sIIIHH", b"LC03", 1, 4096, 0, 0, 3) + channel + b"A" * 32
+        second = struct.pack(">4sIIIHH", b"LC03", 1, 4096, 0xFFFFFF00, 1, 3) + b"B" * 512
+        peer, stop = lcm_peer.Peer(self.url, {}), threading.Event()
+
+        def poison():
+            while not stop.wait(0.005):
+                peer.publish_packet(first)
+                peer.publish_packet(second)
+        sender = threading.Thread(target=poison)
+        sender.start()
+        try:
+            doctor = self.run_program("hydro-launch", self.moving(), "--set", f"bus.url={self.url}", "--doctor", expect=None)
+            self.assertIn(doctor.returncode, (0, 1), doctor)
+            stopper = self.run_program("hydro-launch", self.moving(), "--set", f"bus.url={self.url}", "--stop")
+            self.assertRegex(stopper.stdout, "stopped: 4 processes have ended")
+            self.assertEqual(launch.wait(), 0, launch.report())
+        finally:
+            stop.set()
+            sender.join()
+            peer.close()
 
     # Tests that without a stack it says so, with exit code 1, and that it does not go with --rearm.
     def test_nobody(self):

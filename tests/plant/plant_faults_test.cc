@@ -8,6 +8,7 @@
 #include <hydro/rearm_t.hpp>
 #include <memory>
 #include <set>
+#include <utility>
 #include <vector>
 
 #include "bus/in_process_bus.h"
@@ -193,6 +194,36 @@ TEST_F(PlantFaultsTest, FiveTicks) {
   EXPECT_LE(faults_[0].tick, 50 + 6);
   ExpectVoltage(faults_[0].tick + 1, 100, 0);
   ExpectVoltage(10, faults_[0].tick, 1.5);
+}
+
+// Tests that one command for a tick far in the future, with the loop's own session, costs the voltage only
+// until the next good one.
+TEST_F(PlantFaultsTest, OneFutureCommandDeafensNobody) {
+  on_state_ = [this](const state_t& s) {
+    answering_ = s.tick != 50;
+    if (!answering_) Answer(int64_t{1} << 62, voltage_);
+  };
+  EXPECT_EQ(Run(), 0);
+  EXPECT_THAT(Codes(), ::testing::ElementsAre("+future_motor_command", "-future_motor_command"));
+  ExpectVoltage(52, 52, 0);
+  ExpectVoltage(53, 100, 1.5);
+}
+
+// Tests that one with a far sequence number deafens it for no longer than stale_input_s, so that the last
+// voltage stays in force until then.
+TEST_F(PlantFaultsTest, OneFarNumberDeafensNobody) {
+  config_.limits.stale_input_s = 0.02;
+  on_state_ = [this](const state_t& s) {
+    answering_ = s.tick != 50;
+    if (answering_) return;
+    const int64_t before = std::exchange(sequence_, int64_t{1} << 62);
+    Answer(50, voltage_);
+    sequence_ = before;
+  };
+  EXPECT_EQ(Run(), 0);
+  EXPECT_THAT(Codes(), ::testing::ElementsAre("+repeated_motor_command"));
+  ExpectVoltage(53, 100, 1.5);
+  EXPECT_GT(states_.back().command_tick, 95);
 }
 
 // Tests that after a stop of its own the plant obeys no command from before the stop.
