@@ -142,9 +142,12 @@ class MotorCommandTest(fault_case.FaultCase):
         self.assertEqual([s for s in log.states if s.voltage == 2.0], [])
         self.assertNotIn("stale_motor_command", {f.code for f in log.faults})
 
-    # Tests the same for one with a number that it never reaches.
+    # Tests the same for a number that it never reaches.
     def test_one_far_number(self):
-        self.run_with(self.once(lambda s: [repeated(sequence=1 << 62)]), until=BAD + int(3 * STALE * SLOW) + 20)
+        def commands(state):
+            self.pressure_loop.peer.publish("HYDRO_MOTOR_COMMAND", **repeated(tick=state.tick, sequence=1 << 62))
+            return [repeated()]
+        self.run_with(self.once(commands), until=BAD + int(3 * STALE * SLOW) + 20)
         self.wait_for_fault("repeated_motor_command")
         self.wait_for_fault("repeated_motor_command", active=False)
         log = self.finish()
