@@ -1,11 +1,14 @@
 #include "launch/stack_launch.h"
 
 #include <signal.h>
+#include <spdlog/fmt/fmt.h>
 #include <string.h>
 
 #include <algorithm>
 #include <cstdio>
 #include <vector>
+
+#include "base/input_error.h"
 
 namespace hydro::launch {
 namespace {
@@ -14,6 +17,8 @@ using namespace std::chrono_literals;
 
 constexpr auto kBusPeriod =
     20ms;  // how often the bus is read; processes that print or end wake the launcher at once
+constexpr int kQuestions = 3;
+constexpr auto kAnswerTime = 100ms;       // how long a running process may take to say that it is there
 constexpr auto kFinalMessageTime = 50ms;  // how long a failed process's reason may take to arrive
 
 std::string Join(const std::vector<std::string>& names) {
@@ -47,7 +52,7 @@ StackLaunch::StackLaunch(const settings::StackConfig& config, const LaunchPlan& 
       bus_(bus::OpenUdpmBus(
           config.bus.url,
           bus::MakeAuthenticator(config.bus.resolved_key_file, bus::Channels(config.bus.channel_suffix)))),
-      watch_(*bus_, clock_, bus::Channels(config.bus.channel_suffix)),
+      watch_(*bus_, clock_, bus::Channels(config.bus.channel_suffix), plan.spread),
       stop_announcer_([this](const std::string& reason, int exit_code) { PublishStop(reason, exit_code); }) {
   if (!plan.timing_file.empty()) timing_files_.emplace(plan.timing_file);
   output_.AnnounceLabel(kLabel);
@@ -55,6 +60,7 @@ StackLaunch::StackLaunch(const settings::StackConfig& config, const LaunchPlan& 
 }
 
 int StackLaunch::Run() {
+  RefuseIfOneRuns();
   StartAll();
   while (supervisor_.running() > 0) {
     supervisor_.Wait(Supervisor::Clock::now() + kBusPeriod);
@@ -73,6 +79,27 @@ int StackLaunch::Run() {
   WriteTiming();
   WriteRemainingOutput();
   return exit_code_;
+}
+
+// Two stacks on the same channels drive each other to zero volts, and their messages end up in each other's
+// logs. Asked several times, because UDP may lose a message.
+void StackLaunch::RefuseIfOneRuns() {
+  std::vector<std::string> roles;
+  for (const ChildSpec& child : plan_.children) roles.push_back(RoleOf(child.program()));
+  for (int i = 0; i < kQuestions; ++i) {
+    watch_.AskWhoIsThere();
+    for (const TimePoint until = Supervisor::Clock::now() + kAnswerTime; Supervisor::Clock::now() < until;) {
+      bus_->HandleUntil(until);
+    }
+    const std::vector<std::string> present = watch_.Present(roles);
+    if (present.empty()) continue;
+    throw InputError(fmt::format(
+        "{}: found a stack on {}{} that runs: {}; end it with `hydro-launch {} --stop`, or give this one "
+        "another port in bus.url or another bus.channel_suffix",
+        config_.file, config_.bus.url,
+        config_.bus.channel_suffix.empty() ? "" : " (channels *" + config_.bus.channel_suffix + ")",
+        Join(present), config_.file));
+  }
 }
 
 void StackLaunch::StartAll() {

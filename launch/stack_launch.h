@@ -27,6 +27,7 @@ class StackLaunch {
   int Run();
 
  private:
+  void RefuseIfOneRuns();
   void StartAll();
   int HearBus(TimePoint until);
   void HearLastReports();

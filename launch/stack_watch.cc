@@ -1,17 +1,39 @@
 #include "launch/stack_watch.h"
 
+#include <unistd.h>
+
+#include <algorithm>
+
+#include "base/host_name.h"
 #include "bus/session.h"
 #include "launch/launch_plan.h"
+#include "process/participant.h"
 
 namespace hydro::launch {
+namespace {
 
-StackWatch::StackWatch(bus::Bus& bus, const bus::Clock& clock, const bus::Channels& channels)
-    : bus_(bus), clock_(clock), channels_(channels), session_(bus::RandomSession()) {
+constexpr size_t kMostStatuses = 256;  // a stack has five processes; a flood of made-up ones is not kept
+
+bool HasLeft(const process_status_t& status) {
+  return status.state == process_status_t::DONE || status.state == process_status_t::FAILED;
+}
+
+}  // namespace
+
+StackWatch::StackWatch(bus::Bus& bus, const bus::Clock& clock, const bus::Channels& channels, bool spread)
+    : bus_(bus),
+      clock_(clock),
+      channels_(channels),
+      spread_(spread),
+      host_(HostName()),
+      session_(bus::RandomSession()) {
   bus.Subscribe<process_status_t>(channels_.Of<process_status_t>(), [this](const process_status_t& status) {
-    statuses_[{status.role, status.pid}] = status;
+    const std::pair key(status.role, status.pid);
+    if (status.session == session_) return;
+    if (statuses_.size() < kMostStatuses || statuses_.contains(key)) statuses_[key] = status;
   });
   bus.Subscribe<stop_t>(channels_.Of<stop_t>(), [this](const stop_t& stop) {
-    if (!stop_ && stop.session != session_) stop_ = stop;
+    if (!stop_ && stop.session != session_ && IsForThisStack(stop)) stop_ = stop;
   });
   bus.Subscribe<loop_statistics_t>(channels_.Of<loop_statistics_t>(),
                                    [this](const loop_statistics_t& report) {
@@ -42,6 +64,53 @@ std::string StackWatch::FailureText(const std::string& program, pid_t pid) const
   return failed ? status->second.text : "";
 }
 
+void StackWatch::AskWhoIsThere() {
+  process_status_t question;
+  question.utime = clock_.Utime();
+  question.session = session_;
+  question.role = process::kLaunchRole;
+  question.host = host_;
+  question.version = HYDRO_VERSION;
+  question.pid = getpid();
+  question.state = process_status_t::READY;
+  question.text = "asks who is there";
+  bus_.Publish(channels_.Of<process_status_t>(), question);
+}
+
+std::vector<std::string> StackWatch::Present(const std::vector<std::string>& roles) const {
+  std::vector<std::string> names;
+  for (const auto& [key, status] : statuses_) {
+    if (HasLeft(status) || std::find(roles.begin(), roles.end(), status.role) == roles.end()) continue;
+    names.push_back(status.role + " on " + status.host + " (process " + std::to_string(status.pid) + ")");
+  }
+  return names;
+}
+
+bool StackWatch::BelongsHere(const process_status_t& status) const {
+  if (spread_) return true;
+  return std::any_of(expected_.begin(), expected_.end(), [&](const Expected& expected) {
+    return expected.pid == status.pid && RoleOf(expected.program) == status.role;
+  });
+}
+
+bool StackWatch::IsForThisStack(const stop_t& stop) const {
+  if (stop.addressee == 0) return true;
+  return std::any_of(statuses_.begin(), statuses_.end(), [&](const auto& entry) {
+    return entry.second.session == stop.addressee && BelongsHere(entry.second);
+  });
+}
+
+// The plant, which stands for its run; while none has been heard, each process by itself.
+std::vector<int64_t> StackWatch::Addressees() const {
+  std::vector<int64_t> all;
+  for (const auto& [key, status] : statuses_) {
+    if (!BelongsHere(status) || HasLeft(status)) continue;
+    if (status.role == "plant" || status.role == "driver") return {status.session};
+    all.push_back(status.session);
+  }
+  return all;
+}
+
 void StackWatch::PublishStop(const std::string& reason, int exit_code) {
   stop_t stop;
   stop.utime = clock_.Utime();
@@ -50,7 +119,10 @@ void StackWatch::PublishStop(const std::string& reason, int exit_code) {
   stop.source = "launch";
   stop.reason = reason;
   stop.exit_code = exit_code;
-  bus_.Publish(channels_.Of<stop_t>(), stop);
+  for (const int64_t addressee : Addressees()) {
+    stop.addressee = addressee;
+    bus_.Publish(channels_.Of<stop_t>(), stop);
+  }
 }
 
 }  // namespace hydro::launch

@@ -23,8 +23,15 @@ namespace hydro::launch {
 
 class StackWatch {
  public:
-  // Subscribes. Create it before the processes are started, so that no announcement is missed.
-  StackWatch(bus::Bus& bus, const bus::Clock& clock, const bus::Channels& channels);
+  // Subscribes. Create it before the processes are started, so that no announcement is missed. `spread`:
+  // processes on other hosts belong to the stack too.
+  StackWatch(bus::Bus& bus, const bus::Clock& clock, const bus::Channels& channels, bool spread);
+
+  // Asks every process on the bus to say that it is there. Answers come within milliseconds.
+  void AskWhoIsThere();
+
+  // The processes with one of these roles that have been heard and have not left, by name.
+  std::vector<std::string> Present(const std::vector<std::string>& roles) const;
 
   // Adds a process of this launch to wait for.
   void Expect(const std::string& program, pid_t pid);
@@ -35,10 +42,11 @@ class StackWatch {
   // Why a process of this launch failed, in its own words; empty when it gave no reason.
   std::string FailureText(const std::string& program, pid_t pid) const;
 
-  // The first stop that another process has published.
+  // The first stop of this stack that another process has published.
   const std::optional<stop_t>& stop() const { return stop_; }
 
-  // Tells every process of the stack, on every host, to end. exit_code: 0 in order, 1 something failed.
+  // Tells every process of this stack, on every host, to end; a stack that it does not belong to does not heed
+  // it. exit_code: 0 in order, 1 something failed.
   void PublishStop(const std::string& reason, int exit_code);
 
   const RunSummary& summary() const { return summary_; }
@@ -52,9 +60,15 @@ class StackWatch {
     pid_t pid;
   };
 
+  bool BelongsHere(const process_status_t& status) const;
+  bool IsForThisStack(const stop_t& stop) const;
+  std::vector<int64_t> Addressees() const;
+
   bus::Bus& bus_;
   const bus::Clock& clock_;
   const bus::Channels channels_;
+  const bool spread_;
+  const std::string host_;
   const int64_t session_;
   std::vector<Expected> expected_;
   // The latest of each role and process id: a process of another role may have the same id on another host.

@@ -71,6 +71,7 @@ OperatorResult StopStack(bus::Bus& bus, const bus::Clock& clock, const settings:
   stop_t stop;
   stop.tick = -1;
   stop.session = bus::SessionOn(clock);
+  stop.addressee = 0;  // whoever hears it: an operator who stops is not asked which run
   stop.source = "launch";
   stop.reason = "hydro-launch --stop";
   stop.exit_code = 0;

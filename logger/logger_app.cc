@@ -20,6 +20,7 @@ using namespace std::chrono_literals;
 constexpr int64_t kProgressTicks = 16;  // a quarter of the plant's window (plant_pace.cc)
 constexpr auto kEchoTime = 200ms;       // how long to wait for this logger's own last message to come back
 constexpr auto kOverflowQuiet = 1s;     // an overflow has ended when nothing was dropped for this long
+constexpr auto kPlantAlive = 1s;        // a plant that is silent for longer may be replaced by another
 constexpr auto kFarewellTime = 500ms;   // how long to wait for the others' last messages after a stop
 
 constexpr size_t kMostSenders = 1024;  // of one kind of message whose numbers are followed: a flood is not
@@ -73,6 +74,7 @@ void LoggerApp::OnMessage(const bus::RawMessage& message) {
   const std::optional<bus::LoopNumbers> numbers = bus::ReadLoopNumbers(message, participant_.channels());
   if (numbers) CountSequence(*numbers);
   if (numbers && numbers->part == bus::LoopPart::kState) {
+    FollowPlant(numbers->session);
     state_tick_ = numbers->tick;
     participant_.set_tick(state_tick_);
     if (participant_.state() == process_status_t::READY) participant_.Announce(process_status_t::RUNNING);
@@ -91,6 +93,16 @@ void LoggerApp::OnMessage(const bus::RawMessage& message) {
     Enqueue(message.channel, message.data, static_cast<size_t>(message.size), message.receive_utime,
             participant_.clock().Now());
   }
+}
+
+// The logger records every plant on the bus, but takes part in one run: another's end is not its own.
+void LoggerApp::FollowPlant(int64_t session) {
+  const auto now = participant_.clock().Now();
+  if (session != participant_.run()) {
+    if (followed_heard_ && now - *followed_heard_ <= kPlantAlive) return;
+    participant_.Follow(session);
+  }
+  followed_heard_ = now;
 }
 
 void LoggerApp::CountSequence(const bus::LoopNumbers& numbers) {

@@ -59,6 +59,7 @@ class LoggerApp : public process::App {
   bus::Bus& Tap(bus::Bus& bus);
   void Enqueue(std::string_view channel, const uint8_t* data, size_t size, int64_t utime,
                bus::Clock::TimePoint arrived);
+  void FollowPlant(int64_t session);
   void CountSequence(const bus::LoopNumbers& numbers);
   void CheckOverflow();
   void OnMessage(const bus::RawMessage& message);
@@ -87,6 +88,7 @@ class LoggerApp : public process::App {
   std::atomic<bool> failed_ = false;
   std::thread thread_;
 
+  std::optional<bus::Clock::TimePoint> followed_heard_;  // the last state of the plant whose run this is
   int64_t received_ = 0;
   int64_t largest_queue_ = 0;  // since the last statistics report
   int64_t largest_queue_total_ = 0;

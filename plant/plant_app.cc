@@ -2,11 +2,11 @@
 
 #include <spdlog/fmt/fmt.h>
 #include <spdlog/spdlog.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
 
+#include "base/host_name.h"
 #include "process/stop_signal.h"
 
 namespace hydro::plant {
@@ -41,11 +41,10 @@ PlantApp::PlantApp(bus::Bus& bus, bus::Clock& clock, const settings::StackConfig
   const bus::Channels& channels = participant_.channels();
   bus.Subscribe<motor_command_t>(channels.Of<motor_command_t>(),
                                  [this](const motor_command_t& command) { OnMotorCommand(command); });
-  bus.Subscribe<pressure_command_t>(
-      channels.Of<pressure_command_t>(),
-      [this](const pressure_command_t& command) {
-        if (command.tick <= tick_) newest_pressure_command_tick_ = command.tick;
-      });
+  bus.Subscribe<pressure_command_t>(channels.Of<pressure_command_t>(),
+                                    [this](const pressure_command_t& command) {
+                                      if (command.tick <= tick_) newest_pressure_command_tick_ = command.tick;
+                                    });
   bus.Subscribe<process_status_t>(channels.Of<process_status_t>(),
                                   [this](const process_status_t& status) { roll_call_.Observe(status); });
   bus.Subscribe<log_progress_t>(channels.Of<log_progress_t>(), [this](const log_progress_t& progress) {
@@ -56,8 +55,6 @@ PlantApp::PlantApp(bus::Bus& bus, bus::Clock& clock, const settings::StackConfig
 }
 
 void PlantApp::DescribeRun() {
-  char host[256] = {};
-  gethostname(host, sizeof host - 1);
   description_.session = participant_.session();
   description_.config_file = config_.file;
   description_.config_text = config_.text;
@@ -65,7 +62,7 @@ void PlantApp::DescribeRun() {
   description_.model_text = config_.model.text;
   description_.program = program_;
   description_.version = HYDRO_VERSION;
-  description_.host = host;
+  description_.host = HostName();
   description_.rate_hz = config_.plant.rate_hz;
   description_.seed = config_.seed;
 }

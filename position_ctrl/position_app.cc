@@ -73,6 +73,7 @@ void PositionApp::OnState(const state_t& state) {
       break;
   }
   last_state_time_ = now;
+  participant_.Follow(state.session);
   if (participant_.state() == process_status_t::READY) participant_.Announce(process_status_t::RUNNING);
   if (state.tick <= last_sample_tick_) last_sample_tick_ = -1;  // a log is played again
   participant_.set_tick(state.tick);

@@ -106,6 +106,7 @@ void PressureApp::OnState(const state_t& state) {
       break;
   }
   last_state_time_ = now;
+  participant_.Follow(state.session);
   if (participant_.state() == process_status_t::READY) participant_.Announce(process_status_t::RUNNING);
   if (answered_ && state.tick <= last_command_.tick) Restart();  // a log is played again
   participant_.set_tick(state.tick);

@@ -5,6 +5,7 @@
 
 #include <hydro/loop_statistics_t.hpp>
 
+#include "base/host_name.h"
 #include "bus/session.h"
 
 namespace hydro::process {
@@ -12,11 +13,6 @@ namespace {
 
 constexpr auto kAnnouncementPeriod = std::chrono::milliseconds(100);
 constexpr size_t kMostNames = 256;  // a stack has five processes; a flood of made-up ones is not kept
-
-std::string HostName() {
-  char name[256] = {};
-  return gethostname(name, sizeof name - 1) == 0 ? name : "unknown";
-}
 
 }  // namespace
 
@@ -31,17 +27,22 @@ Participant::Participant(bus::Bus& bus, bus::Clock& clock, const bus::Channels& 
       undecodable_("undecodable_message"),
       unsent_("unsent_message"),
       statistics_(role, host_, session_, clock.Now()) {
+  if (role == "plant" || role == "driver") run_ = session_;
   bus_.Subscribe<stop_t>(channels_.Of<stop_t>(), [this](const stop_t& stop) {
-    if (!stop_) stop_ = stop;
+    const bool meant = stop.addressee == 0 || stop.addressee == session_ || stop.addressee == run_;
+    if (meant && !stop_) stop_ = stop;
   });
   bus_.Subscribe<process_status_t>(channels_.Of<process_status_t>(), [this](const process_status_t& status) {
     if (names_.size() < kMostNames && !names_.contains(status.session)) {
       names_[status.session] =
           status.role + " on " + status.host + " (process " + std::to_string(status.pid) + ")";
     }
-    const bool plant_asks = status.state == process_status_t::READY && status.session != session_ &&
-                            (status.role == "plant" || status.role == "driver");
-    if (plant_asks && state_ == process_status_t::RUNNING) Announce(state_, status_text_);
+    if (status.session == session_) return;
+    const bool plant = status.role == "plant" || status.role == "driver";
+    const bool there = status.state == process_status_t::READY || status.state == process_status_t::RUNNING;
+    if (plant && there && run_ == 0) run_ = status.session;
+    const bool asks = status.state == process_status_t::READY && (plant || status.role == kLaunchRole);
+    if (asks && state_ == process_status_t::RUNNING) Announce(state_, status_text_);
   });
 }
 
@@ -166,6 +167,7 @@ void Participant::RequestStop(const std::string& reason, int exit_code) {
   stop.utime = clock_.Utime();
   stop.tick = tick_;
   stop.session = session_;
+  stop.addressee = run_ != 0 ? run_ : session_;
   stop.source = role_;
   stop.reason = reason;
   stop.exit_code = exit_code;

@@ -20,6 +20,9 @@
 
 namespace hydro::process {
 
+// Under this role hydro-launch asks who is there, before it starts a stack: by announcing READY.
+inline constexpr char kLaunchRole[] = "launch";
+
 class Participant {
  public:
   // `role`: plant, driver, pressure_ctrl, position_ctrl or logger. Subscribes to HYDRO_STOP and
@@ -30,14 +33,19 @@ class Participant {
   int64_t session() const { return session_; }
 
   // Announces a new state of this process (process_status_t::READY ...). Poll() repeats READY ten times a
-  // second, so that processes may start in any order; RUNNING is repeated when a restarted plant asks who is
-  // there by announcing READY.
+  // second, so that processes may start in any order; RUNNING is repeated when a restarted plant or a launcher
+  // asks who is there by announcing READY.
   void Announce(int8_t state, const std::string& text = "");
   int8_t state() const { return state_; }
 
   // Publishes what is due: the READY announcement, statistics, warnings about messages. Call it often; cheap
   // when nothing is due.
   void Poll();
+
+  // The session of the plant (or driver) whose run this process takes part in: the one whose states it follows.
+  // Until it is told, the first plant that announces itself. 0: none yet.
+  void Follow(int64_t plant_session) { run_ = plant_session; }
+  int64_t run() const { return run_; }
 
   // The last plant tick that this process knows of; -1 before the first. Faults and stops carry it.
   void set_tick(int64_t tick) { tick_ = tick; }
@@ -57,10 +65,10 @@ class Participant {
   // "pressure_ctrl on rig (process 4711)".
   std::string NameOf(std::optional<int64_t> session) const;
 
-  // Ends the run for every process. Only this process's first request counts.
+  // Ends this process's run, for every process in it. Only the first request counts.
   void RequestStop(const std::string& reason, int exit_code);
 
-  // The first stop that was heard, this process's own included.
+  // The first stop that was heard and meant this process, its own included. A stop of another run is none.
   const std::optional<stop_t>& stop() const { return stop_; }
 
   // Announces the end, once the output is safe: DONE, or FAILED when the run ended with an error. Returns the
@@ -87,6 +95,7 @@ class Participant {
   int64_t session_;
   int8_t state_ = 0;
   std::string status_text_;
+  int64_t run_ = 0;
   int64_t tick_ = -1;
   int64_t fault_sequence_ = 0;
   int latched_ = 0;  // active faults that are latched

@@ -1,10 +1,9 @@
-#include <unistd.h>
-
 #include <algorithm>
 #include <bit>
 #include <cmath>
 #include <limits>
 
+#include "base/host_name.h"
 #include "base/input_error.h"
 #include "base/number_text.h"
 #include "bus/channels.h"
@@ -91,8 +90,7 @@ run_description_t Describe(const tables::Table& table, const std::string& versio
   description.config_file = table.file;
   description.program = "hydro-log";
   description.version = version;
-  char host[256] = "";
-  if (gethostname(host, sizeof host - 1) == 0) description.host = host;
+  description.host = HostName();
   description.rate_hz = rate_hz;
   return description;
 }

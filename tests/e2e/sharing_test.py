@@ -1,8 +1,10 @@
 """Several stacks, and several senders, on one network."""
 
+import os
 import signal
 
 import event_log
+import lcm_peer
 import outcome
 import stack
 
@@ -72,6 +74,55 @@ class SharingTest(stack.TestCase):
                      start=log.count("HYDRO_MOTOR_COMMAND"))
         plants[0].send(signal.SIGTERM)
         self.assertEqual(plants[0].wait(), 0, plants[0].report())
+
+    # Tests that a second launch on the same channels refuses before it starts anything, names who runs there, and harms
+    # neither the first run nor its end.
+    def test_second_launch_is_refused(self):
+        log_file = self.path("first.lcmlog")
+        first = self.launch(stack.config("demo.toml"), "--time", "realtime", "--duration", "0", "--log", log_file,
+                            "--set", "limits.stale_input_s=0.4")
+        log = stack.LiveLog(self, log_file)
+        log.wait_for_tick(200)
+        second = self.launch(stack.config("demo.toml"), "--duration", "1", "--log", self.path("second.lcmlog"))
+        self.assertEqual(second.wait(), 2, second.report())
+        self.assertEqual(second.stdout, "")
+        self.assertEqual(len(second.stderr.splitlines()), 1, second.report())
+        self.assertRegex(second.stderr, r"found a stack on udpm:.* that runs: .*plant on .* \(process \d+\).*--stop")
+        self.assertFalse(os.path.exists(self.path("second.lcmlog")))
+        log.wait_for_tick(log.count("HYDRO_STATE") + 500)
+        first.send(signal.SIGINT)
+        self.assertEqual(first.wait(), 0, first.report())
+        whole = event_log.Log(log_file)
+        self.assertEqual({f.code for f in whole.faults} - {"late_plant"}, set())
+
+    # Tests that a stop with another run's address ends nobody, and that one with this run's address ends all.
+    def test_stop_of_another_run_is_none(self):
+        run = self.stack(stack.config("demo.toml"), "--time", "realtime", "--duration", "0", "--set",
+                         "limits.stale_input_s=0.4")
+        log_file = self.path("run.lcmlog")
+        run.start("logger", "-o", log_file)
+        for role in ("position_ctrl", "pressure_ctrl"):
+            run.start(role)
+        run.start("plant", "--expect", "logger")
+        log = stack.LiveLog(self, log_file)
+        log.wait_for_tick(100)
+        log.update()
+        session = log.messages["HYDRO_STATE"][0].session
+        peer = lcm_peer.Peer(self.url, lcm_peer.type_hashes(log_file) | stop_hash(self))
+        self.addCleanup(peer.close)
+        for addressee in (session ^ 1, 1, -1):
+            peer.publish("HYDRO_STOP", source="stranger", reason="not yours", session=5, addressee=addressee, exit_code=1)
+        log.wait_for_tick(log.count("HYDRO_STATE") + 300)
+        peer.publish("HYDRO_STOP", source="somebody", reason="yours", session=5, addressee=session)
+        for process in run.processes.values():
+            self.assertEqual(process.wait(), 0, process.report())
+
+
+def stop_hash(case):
+    """The type of HYDRO_STOP, from a short run's own end."""
+    sample = case.path("sample.lcmlog")
+    case.run_program("hydro-sim", stack.config("demo.toml"), "--duration", "0.02", "-o", sample)
+    return lcm_peer.type_hashes(sample)
 
 
 if __name__ == "__main__":
