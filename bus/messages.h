@@ -88,6 +88,10 @@ inline constexpr std::tuple kMessages{
                                  .sender = "every process",
                                  .rate = Rate::kEvent,
                                  .sealed = true},  // starts a run, and ends one in lockstep
+    MessageRow<configuration_t>{.channel = "HYDRO_CONFIGURATION",
+                                .sender = "every process",
+                                .rate = Rate::kEvent,
+                                .sealed = true},  // a process that does not agree is not obeyed
     MessageRow<log_progress_t>{.channel = "HYDRO_LOG_PROGRESS",
                                .sender = "`hydro-logger`",
                                .rate = Rate::kEvent,

@@ -72,15 +72,17 @@ void CheckNoneIgnored(const hydro::settings::CommandLine& line, const std::strin
   }
 }
 
-int RunOperatorRequest(decltype(hydro::launch::StopStack)* request,
-                       const hydro::settings::CommonOptions& options) {
-  const hydro::settings::StackConfig config =
-      hydro::settings::LoadStackConfig(options.config, options.overrides);
+hydro::launch::OperatorResult Rearm(const hydro::settings::StackConfig& config) {
   const auto bus = hydro::bus::OpenUdpmBus(
       config.bus.url, hydro::bus::MakeAuthenticator(config.bus.resolved_key_file,
                                                     hydro::bus::Channels(config.bus.channel_suffix)));
-  const hydro::bus::WallClock clock;
-  const hydro::launch::OperatorResult result = request(*bus, clock, config, {});
+  return hydro::launch::RearmStack(*bus, hydro::bus::WallClock(), config);
+}
+
+int RunOperatorRequest(const hydro::settings::CommonOptions& options, bool stop) {
+  const hydro::settings::StackConfig config =
+      hydro::settings::LoadStackConfig(options.config, options.overrides);
+  const hydro::launch::OperatorResult result = stop ? hydro::launch::StopStack(config) : Rearm(config);
   // Names and reasons come from the network.
   std::fprintf(result.exit_code == 0 ? stdout : stderr, "hydro-launch: %s\n",
                hydro::Printable(result.text).c_str());
@@ -95,8 +97,8 @@ int Run(const hydro::settings::CommandLine& line, const Options& options) {
   }
   if (config.empty()) throw hydro::InputError("CONFIG is required; see --help");
   if (options.make_key) return hydro::launch::MakeKey(options.common);
-  if (options.stop) return RunOperatorRequest(hydro::launch::StopStack, options.common);
-  if (options.rearm) return RunOperatorRequest(hydro::launch::RearmStack, options.common);
+  if (options.stop) return RunOperatorRequest(options.common, true);
+  if (options.rearm) return RunOperatorRequest(options.common, false);
   hydro::launch::LaunchRequest request = options.request;
   request.config_file = config;
   request.overrides = options.common.overrides;

@@ -8,6 +8,8 @@
 #include <set>
 #include <sstream>
 
+#include "process/role.h"
+
 namespace hydro::launch {
 namespace {
 
@@ -101,7 +103,7 @@ std::vector<std::string> ProgramsHere(const settings::StackConfig& config, const
 ChildSpec ChildFor(const std::string& program, const LaunchRequest& request,
                    const std::string& programs_folder) {
   ChildSpec child;
-  child.label = RoleOf(program);
+  child.label = process::RoleOf(program);
   child.argv = {FindProgram(program, programs_folder), request.config_file};
   for (const std::string& override : request.overrides) {
     child.argv.push_back("--set");
@@ -118,12 +120,6 @@ ChildSpec ChildFor(const std::string& program, const LaunchRequest& request,
 }
 
 }  // namespace
-
-std::string RoleOf(const std::string& program) {
-  std::string role = program.starts_with("hydro-") ? program.substr(6) : program;
-  std::replace(role.begin(), role.end(), '-', '_');
-  return role;
-}
 
 std::string OwnFolder() { return fs::read_symlink("/proc/self/exe").parent_path().string(); }
 

@@ -30,9 +30,6 @@ struct LaunchPlan {
 LaunchPlan PlanLaunch(const settings::StackConfig& config, const LaunchRequest& request,
                       const std::string& programs_folder);
 
-// The role that a program announces itself under: "pressure_ctrl" for "hydro-pressure-ctrl".
-std::string RoleOf(const std::string& program);
-
 // The folder that the running program is in.
 std::string OwnFolder();
 

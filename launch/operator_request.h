@@ -24,10 +24,10 @@ struct OperatorResult {
   std::string text;  // one line
 };
 
-// Publishes HYDRO_STOP until every process that is heard has announced its end. Exit code 0; 1 when nobody is
-// there or a process does not end.
-OperatorResult StopStack(bus::Bus& bus, const bus::Clock& clock, const settings::StackConfig& config,
-                         const OperatorTiming& timing = {});
+// Asks the processes of this machine to stop over their local sockets, the one that drives the motor first. Then publishes
+// HYDRO_STOP until every process that is heard has announced its end. Exit code 0; 1 when nobody is there or a process does not
+// end. A bus that cannot work is no obstacle where processes are found on this machine.
+OperatorResult StopStack(const settings::StackConfig& config, const OperatorTiming& timing = {});
 
 // Asks the plant (or driver) to end its latched faults. Exit code 0 when it did or had none; 1 when it
 // refused, or when none is heard or more than one.

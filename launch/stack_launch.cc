@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "base/input_error.h"
+#include "process/role.h"
 
 namespace hydro::launch {
 namespace {
@@ -85,7 +86,7 @@ int StackLaunch::Run() {
 // logs. Asked several times, because UDP may lose a message.
 void StackLaunch::RefuseIfOneRuns() {
   std::vector<std::string> roles;
-  for (const ChildSpec& child : plan_.children) roles.push_back(RoleOf(child.program()));
+  for (const ChildSpec& child : plan_.children) roles.push_back(process::RoleOf(child.program()));
   for (int i = 0; i < kQuestions; ++i) {
     watch_.AskWhoIsThere();
     for (const TimePoint until = Supervisor::Clock::now() + kAnswerTime; Supervisor::Clock::now() < until;) {

@@ -8,6 +8,7 @@
 #include "bus/session.h"
 #include "launch/launch_plan.h"
 #include "process/participant.h"
+#include "process/role.h"
 
 namespace hydro::launch {
 namespace {
@@ -50,7 +51,7 @@ void StackWatch::Expect(const std::string& program, pid_t pid) { expected_.push_
 std::vector<std::string> StackWatch::NotReady() const {
   std::vector<std::string> missing;
   for (const Expected& expected : expected_) {
-    const auto status = statuses_.find({RoleOf(expected.program), expected.pid});
+    const auto status = statuses_.find({process::RoleOf(expected.program), expected.pid});
     if (status == statuses_.end() || status->second.state == process_status_t::FAILED) {
       missing.push_back(expected.program);
     }
@@ -59,7 +60,7 @@ std::vector<std::string> StackWatch::NotReady() const {
 }
 
 std::string StackWatch::FailureText(const std::string& program, pid_t pid) const {
-  const auto status = statuses_.find({RoleOf(program), pid});
+  const auto status = statuses_.find({process::RoleOf(program), pid});
   const bool failed = status != statuses_.end() && status->second.state == process_status_t::FAILED;
   return failed ? status->second.text : "";
 }
@@ -89,7 +90,7 @@ std::vector<std::string> StackWatch::Present(const std::vector<std::string>& rol
 bool StackWatch::BelongsHere(const process_status_t& status) const {
   if (spread_) return true;
   return std::any_of(expected_.begin(), expected_.end(), [&](const Expected& expected) {
-    return expected.pid == status.pid && RoleOf(expected.program) == status.role;
+    return expected.pid == status.pid && process::RoleOf(expected.program) == status.role;
   });
 }
 

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "base/saturating.h"
+#include "settings/agreed_entries.h"
 
 namespace hydro::logger {
 namespace {
@@ -37,7 +38,8 @@ std::string RotatedName(const std::string& file, int n) {
 LoggerApp::LoggerApp(bus::Bus& bus, bus::Clock& clock, const settings::StackConfig& config,
                      const LoggerOptions& options)
     : bus_(Tap(bus)),  // first: subscribing to all channels after other subscriptions could lose messages
-      participant_(bus, clock, bus::Channels(config.bus.channel_suffix), "logger"),
+      participant_(bus, clock, bus::Channels(config.bus.channel_suffix), "logger",
+                   settings::AgreedEntries(config)),
       options_(options),
       writer_(std::make_unique<log::LogWriter>(options.file, Opening::kDirect)),
       queue_(static_cast<size_t>(config.logger.memory_mb * 1e6)) {

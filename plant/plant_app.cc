@@ -8,12 +8,15 @@
 
 #include "base/host_name.h"
 #include "process/stop_signal.h"
+#include "settings/agreed_entries.h"
 
 namespace hydro::plant {
 namespace {
 
 using namespace std::chrono_literals;
 
+// How long a participant may take to say what it runs with; a program of the user's own never does.
+constexpr auto kConfigurationTime = 300ms;
 constexpr auto kDescriptionPeriod = 1s;  // often enough that logs and plots which start late get one too
 
 std::vector<std::string> WithControllers(std::vector<std::string> roles) {
@@ -27,7 +30,8 @@ PlantApp::PlantApp(bus::Bus& bus, bus::Clock& clock, const settings::StackConfig
                    const std::vector<std::string>& expected, const std::string& program)
     : config_(config),
       rig_(rig),
-      participant_(bus, clock, bus::Channels(config.bus.channel_suffix), rig.role()),
+      participant_(bus, clock, bus::Channels(config.bus.channel_suffix), rig.role(),
+                   settings::AgreedEntries(config)),
       safety_(participant_, config),
       logger_watch_(participant_, bus::FromSeconds(std::max(config.limits.stale_logger_s,
                                                             3 / (config.plant.rate_hz * config.time.speed)))),
@@ -52,6 +56,7 @@ PlantApp::PlantApp(bus::Bus& bus, bus::Clock& clock, const settings::StackConfig
     const auto known = log_progress_.find(progress.session);
     if (known != log_progress_.end()) known->second = progress.tick;
   });
+  participant_.OnRefusal([this](int64_t session, const std::string& text) { OnRefusal(session, text); });
 }
 
 void PlantApp::DescribeRun() {
@@ -74,6 +79,7 @@ int PlantApp::Run() {
   if (WaitForParticipants()) {
     participant_.Announce(process_status_t::RUNNING);
     PublishDescription();
+    took_part_ = roll_call_.Participants();
     for (const int64_t session : roll_call_.Loggers()) log_progress_.emplace(session, -1);
     DriveRig();
   }
@@ -97,6 +103,10 @@ void PlantApp::DriveRig() {
 
 // Ends the run for every process and gives the reason, unless somebody has done so already.
 void PlantApp::RequestStop() {
+  if (const std::string reason = process::StopReason(); !reason.empty()) {
+    participant_.RequestStop(reason, 0, process::kLaunchRole);
+    return;
+  }
   if (process::StopSignal() != 0) {
     participant_.RequestStop(fmt::format("{} was stopped by signal {}", program_, process::StopSignal()), 0);
     return;
@@ -116,14 +126,35 @@ std::string PlantApp::failure() const {
 
 bool PlantApp::Ended() const { return participant_.stop().has_value() || process::StopSignal() != 0; }
 
+bool PlantApp::AllHaveSaidTheirConfiguration() const {
+  const std::vector<int64_t> sessions = roll_call_.Participants();
+  return std::all_of(sessions.begin(), sessions.end(),
+                     [&](int64_t session) { return participant_.HasSaidItsConfiguration(session); });
+}
+
+// A stack whose processes do not agree never starts; who joins a run later with another configuration is not obeyed and
+// leaves, and the run goes on.
+void PlantApp::OnRefusal(int64_t session, const std::string& text) {
+  const std::vector<int64_t>& own = took_part_;
+  const bool began_with_it = std::find(own.begin(), own.end(), session) != own.end();
+  if (participant_.state() == process_status_t::READY || began_with_it) participant_.RequestStop(text, 1);
+}
+
 bool PlantApp::WaitForParticipants() {
   const auto start = participant_.clock().Now();
   const auto deadline = start + bus::FromSeconds(config_.time.start_timeout_s);
   auto next_notice = start + 2s;
+  std::optional<bus::Clock::TimePoint> complete;
   while (!Ended()) {
     const std::vector<std::string> missing = roll_call_.Missing();
-    if (missing.empty()) return true;
     const auto now = participant_.clock().Now();
+    if (missing.empty()) {
+      if (!complete) complete = now;
+      if (AllHaveSaidTheirConfiguration() || now - *complete > kConfigurationTime) return true;
+      participant_.bus().HandleUntil(now + 5ms);
+      Poll();
+      continue;
+    }
     const std::string names = fmt::format("{}", fmt::join(missing, ", "));
     if (now >= deadline) {
       participant_.RequestStop(

@@ -52,6 +52,8 @@ class PlantApp {
 
  private:
   bool WaitForParticipants();
+  bool AllHaveSaidTheirConfiguration() const;
+  void OnRefusal(int64_t session, const std::string& text);
   void DriveRig();
   void RequestStop();
   void RunLockstep();
@@ -99,6 +101,7 @@ class PlantApp {
   std::optional<motor_command_t> command_;       // in force
   int64_t newest_command_tick_ = -1;
   int64_t newest_pressure_command_tick_ = -1;
+  std::vector<int64_t> took_part_;           // sessions with which the run began
   std::map<int64_t, int64_t> log_progress_;  // tick by session, of the loggers that the run began with
   // Real time: when the oldest unanswered state was sent.
   std::optional<bus::Clock::TimePoint> unanswered_since_;

@@ -9,6 +9,7 @@
 namespace hydro::plant {
 
 void PlantApp::OnMotorCommand(const motor_command_t& command) {
+  if (participant_.Refuses(command.session)) return;
   const auto now = participant_.clock().Now();
   // Never counted as the newest: it would make every later good one an old one.
   if (command.tick > tick_ && !command_monitor_.FollowsAnother(command.session, now)) {

@@ -36,6 +36,16 @@ std::vector<std::string> RollCall::Missing() const {
   return missing;
 }
 
+std::vector<int64_t> RollCall::Participants() const {
+  std::vector<int64_t> sessions = Loggers();
+  for (const auto& [key, status] : present_) {
+    if (std::find(expected_.begin(), expected_.end(), status.role) != expected_.end()) {
+      sessions.push_back(status.session);
+    }
+  }
+  return sessions;
+}
+
 std::vector<int64_t> RollCall::Loggers() const {
   std::vector<int64_t> sessions;
   for (const auto& [key, status] : present_) {

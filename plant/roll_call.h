@@ -20,6 +20,9 @@ class RollCall {
   // The expected roles that are not ready, in the order given.
   std::vector<std::string> Missing() const;
 
+  // The sessions of the expected participants and loggers that are present.
+  std::vector<int64_t> Participants() const;
+
   // The sessions of the loggers that are present.
   std::vector<int64_t> Loggers() const;
 

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "settings/agreed_entries.h"
+
 namespace hydro::position_ctrl {
 namespace {
 
@@ -37,7 +39,8 @@ PositionLawSettings LawSettingsFor(const settings::StackConfig& config) {
 }  // namespace
 
 PositionApp::PositionApp(bus::Bus& bus, bus::Clock& clock, const settings::StackConfig& config)
-    : participant_(bus, clock, bus::Channels(config.bus.channel_suffix), "position_ctrl"),
+    : participant_(bus, clock, bus::Channels(config.bus.channel_suffix), "position_ctrl",
+                   settings::AgreedEntries(config)),
       lockstep_(config.time.mode == settings::TimeMode::kLockstep),
       interval_(config.position_interval_ticks),
       stall_time_(bus::FromSeconds(config.time.stall_timeout_s) + 400ms),
@@ -55,6 +58,7 @@ PositionApp::PositionApp(bus::Bus& bus, bus::Clock& clock, const settings::Stack
 }
 
 void PositionApp::OnState(const state_t& state) {
+  if (participant_.Refuses(state.session)) return;
   const auto now = participant_.clock().Now();
   switch (state_monitor_.Observe(state.session, state.sequence, now)) {
     case bus::SequenceMonitor::Verdict::kSecondSender:

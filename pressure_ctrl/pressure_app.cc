@@ -8,6 +8,7 @@
 
 #include "base/input_error.h"
 #include "base/saturating.h"
+#include "settings/agreed_entries.h"
 
 namespace hydro::pressure_ctrl {
 namespace {
@@ -54,7 +55,8 @@ PressureLawSettings PressureLawSettingsFor(const settings::StackConfig& config) 
 }
 
 PressureApp::PressureApp(bus::Bus& bus, bus::Clock& clock, const settings::StackConfig& config)
-    : participant_(bus, clock, bus::Channels(config.bus.channel_suffix), "pressure_ctrl"),
+    : participant_(bus, clock, bus::Channels(config.bus.channel_suffix), "pressure_ctrl",
+                   settings::AgreedEntries(config)),
       lockstep_(config.time.mode == settings::TimeMode::kLockstep),
       interval_(config.pressure_interval_ticks),
       position_interval_(config.position_interval_ticks),
@@ -89,6 +91,7 @@ void PressureApp::Restart() {
 }
 
 void PressureApp::OnState(const state_t& state) {
+  if (participant_.Refuses(state.session)) return;
   const auto now = participant_.clock().Now();
   switch (state_monitor_.Observe(state.session, state.sequence, now)) {
     case bus::SequenceMonitor::Verdict::kSecondSender:
@@ -120,6 +123,7 @@ void PressureApp::OnState(const state_t& state) {
 }
 
 void PressureApp::OnPressureCommand(const pressure_command_t& command) {
+  if (participant_.Refuses(command.session)) return;
   const auto now = participant_.clock().Now();
   // A command a few ticks ahead only took a faster route through the network; one far ahead would hold up all
   // that follow it in the queue, and counted as the newest it would make them old.

@@ -52,6 +52,7 @@ constexpr std::array kCodes{
     FaultCode{"undecodable_message", FaultEffect::kWarning},
     FaultCode{"unsent_message", FaultEffect::kWarning},
     FaultCode{"unauthenticated_command", FaultEffect::kWarning},
+    FaultCode{"other_configuration", FaultEffect::kWarning},
 };
 
 }  // namespace

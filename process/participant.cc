@@ -1,8 +1,10 @@
 #include "process/participant.h"
 
+#include <spdlog/fmt/fmt.h>
 #include <spdlog/spdlog.h>
 #include <unistd.h>
 
+#include <cmath>
 #include <hydro/loop_statistics_t.hpp>
 
 #include "base/host_name.h"
@@ -12,43 +14,116 @@ namespace hydro::process {
 namespace {
 
 constexpr auto kAnnouncementPeriod = std::chrono::milliseconds(100);
+constexpr auto kConfigurationPeriod = std::chrono::milliseconds(500);
+constexpr char kOtherConfiguration[] = "other_configuration";
 constexpr size_t kMostNames = 256;  // a stack has five processes; a flood of made-up ones is not kept
+
+bool IsPlant(const std::string& role) { return role == "plant" || role == "driver"; }
+
+bool IsThere(const process_status_t& status) {
+  return status.state == process_status_t::READY || status.state == process_status_t::RUNNING;
+}
 
 }  // namespace
 
 Participant::Participant(bus::Bus& bus, bus::Clock& clock, const bus::Channels& channels,
-                         const std::string& role)
+                         const std::string& role, const std::string& agreed)
     : bus_(bus),
       clock_(clock),
       channels_(channels),
       role_(role),
       host_(HostName()),
       session_(bus::SessionOn(clock)),
+      agreement_(agreed),
       undecodable_("undecodable_message"),
       unsent_("unsent_message"),
       statistics_(role, host_, session_, clock.Now()) {
-  if (role == "plant" || role == "driver") run_ = session_;
+  if (IsPlant(role)) run_ = session_;
   bus_.Subscribe<stop_t>(channels_.Of<stop_t>(), [this](const stop_t& stop) {
     const bool meant = stop.addressee == 0 || stop.addressee == session_ || stop.addressee == run_;
     if (meant && !stop_) stop_ = stop;
   });
-  bus_.Subscribe<process_status_t>(channels_.Of<process_status_t>(), [this](const process_status_t& status) {
-    if (names_.size() < kMostNames && !names_.contains(status.session)) {
-      names_[status.session] =
-          status.role + " on " + status.host + " (process " + std::to_string(status.pid) + ")";
+  bus_.Subscribe<process_status_t>(channels_.Of<process_status_t>(),
+                                   [this](const process_status_t& status) { OnStatus(status); });
+  bus_.Subscribe<configuration_t>(channels_.Of<configuration_t>(),
+                                  [this](const configuration_t& announced) { OnConfiguration(announced); });
+}
+
+void Participant::OnStatus(const process_status_t& status) {
+  if (names_.size() < kMostNames && !names_.contains(status.session)) {
+    names_[status.session] =
+        status.role + " on " + status.host + " (process " + std::to_string(status.pid) + ")";
+  }
+  if (status.session == session_) return;
+  if (IsThere(status)) {
+    if (IsPlant(status.role) && run_ == 0) run_ = status.session;
+    const bool asks =
+        status.state == process_status_t::READY && (IsPlant(status.role) || status.role == kLaunchRole);
+    // Whoever is new is told at once what we run with: a plant starts only when it knows.
+    const bool is_new = answered_.size() < kMostNames && answered_.insert(status.session).second;
+    if (is_new && (state_ == process_status_t::READY || state_ == process_status_t::RUNNING)) {
+      configuration_sent_.reset();
+      PublishConfiguration();
     }
-    if (status.session == session_) return;
-    const bool plant = status.role == "plant" || status.role == "driver";
-    const bool there = status.state == process_status_t::READY || status.state == process_status_t::RUNNING;
-    if (plant && there && run_ == 0) run_ = status.session;
-    const bool asks = status.state == process_status_t::READY && (plant || status.role == kLaunchRole);
     if (asks && state_ == process_status_t::RUNNING) Announce(state_, status_text_);
-  });
+  } else if (Refuses(status.session)) {
+    agreement_.Forget(status.session);
+    if (!agreement_.any()) Clear(kOtherConfiguration);
+  }
+}
+
+// Zero volts need no help here: who is not obeyed becomes stale like a dead sender.
+void Participant::OnConfiguration(const configuration_t& announced) {
+  if (announced.session == session_ || !agreement_.Observe(announced)) return;
+  const std::string who = fmt::format("{} on {} (process {})", announced.role, announced.host, announced.pid);
+  const std::string text =
+      fmt::format("{} has another configuration: {}", who, agreement_.Differences(announced.session));
+  // The plant is right: it holds the rig, and its configuration is in the log.
+  const bool our_plant = IsPlant(announced.role) && (run_ == 0 || announced.session == run_);
+  if (our_plant && !IsPlant(role_)) {
+    LeaveAlone(text);
+    return;
+  }
+  Raise(kOtherConfiguration, text, NAN, NAN, false);
+  if (on_refusal_) on_refusal_(announced.session, text);
+}
+
+// Ends this process and nobody else.
+void Participant::LeaveAlone(const std::string& reason) {
+  if (stop_) return;
+  configuration_sent_.reset();
+  PublishConfiguration();  // so that the plant can say the same
+  stop_t stop{};
+  stop.utime = clock_.Utime();
+  stop.tick = tick_;
+  stop.session = stop.addressee = session_;
+  stop.source = role_;
+  stop.reason = reason;
+  stop.exit_code = 1;
+  stop_ = stop;
+  if (!clock_.simulated()) spdlog::error("{}", reason);
+}
+
+void Participant::PublishConfiguration() {
+  const auto now = clock_.Now();
+  if (agreement_.own().empty() || (configuration_sent_ && now - *configuration_sent_ < kConfigurationPeriod))
+    return;
+  configuration_sent_ = now;
+  configuration_t announced;
+  announced.utime = clock_.Utime();
+  announced.session = session_;
+  announced.role = role_;
+  announced.host = host_;
+  announced.pid = getpid();
+  announced.text = agreement_.own();
+  bus_.Publish(channels_.Of<configuration_t>(), announced);
 }
 
 void Participant::Announce(int8_t state, const std::string& text) {
   state_ = state;
   status_text_ = text;
+  // Before the status, so that nobody counts on a process whose configuration he has not seen.
+  if (state == process_status_t::READY || state == process_status_t::RUNNING) PublishConfiguration();
   next_announcement_ = clock_.Now() + kAnnouncementPeriod;
   process_status_t status;
   status.utime = clock_.Utime();
@@ -161,14 +236,14 @@ void Participant::PublishFault(const fault_t& fault) {
   bus_.Publish(channels_.Of<fault_t>(), message);
 }
 
-void Participant::RequestStop(const std::string& reason, int exit_code) {
+void Participant::RequestStop(const std::string& reason, int exit_code, const std::string& source) {
   if (stop_) return;
   stop_t stop;
   stop.utime = clock_.Utime();
   stop.tick = tick_;
   stop.session = session_;
   stop.addressee = run_ != 0 ? run_ : session_;
-  stop.source = role_;
+  stop.source = source.empty() ? role_ : source;
   stop.reason = reason;
   stop.exit_code = exit_code;
   stop_ = stop;

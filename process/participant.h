@@ -9,11 +9,14 @@
 #include <hydro/stop_t.hpp>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
+#include <utility>
 
 #include "bus/bus.h"
 #include "bus/channels.h"
 #include "bus/clock.h"
+#include "process/agreement.h"
 #include "process/counted_warning.h"
 #include "process/refusal_watch.h"
 #include "timing/loop_statistics.h"
@@ -25,9 +28,11 @@ inline constexpr char kLaunchRole[] = "launch";
 
 class Participant {
  public:
-  // `role`: plant, driver, pressure_ctrl, position_ctrl or logger. Subscribes to HYDRO_STOP and
-  // HYDRO_PROCESS_STATUS.
-  Participant(bus::Bus& bus, bus::Clock& clock, const bus::Channels& channels, const std::string& role);
+  // `role`: plant, driver, pressure_ctrl, position_ctrl or logger. `agreed`: what it runs with
+  // (settings/agreed_entries.h); empty: it is not compared with others. Subscribes to HYDRO_STOP,
+  // HYDRO_PROCESS_STATUS and HYDRO_CONFIGURATION.
+  Participant(bus::Bus& bus, bus::Clock& clock, const bus::Channels& channels, const std::string& role,
+              const std::string& agreed = "");
 
   const std::string& role() const { return role_; }
   int64_t session() const { return session_; }
@@ -46,6 +51,21 @@ class Participant {
   // Until it is told, the first plant that announces itself. 0: none yet.
   void Follow(int64_t plant_session) { run_ = plant_session; }
   int64_t run() const { return run_; }
+
+  // Whether messages of that sender are not to be obeyed, because it runs with another configuration, model or
+  // version. Cheap, because it is asked for every message.
+  bool Refuses(int64_t session) const { return agreement_.Refuses(session); }
+
+  // Whether that sender has said what it runs with (a program of the user's own may never do so); true where this
+  // process compares nothing.
+  bool HasSaidItsConfiguration(int64_t session) const {
+    return agreement_.own().empty() || clock_.simulated() || agreement_.Heard(session);
+  }
+
+  // Calls `handler` with the session of each sender that turns out to be refused, and a line on how it differs.
+  void OnRefusal(std::function<void(int64_t session, const std::string& text)> handler) {
+    on_refusal_ = std::move(handler);
+  }
 
   // The last plant tick that this process knows of; -1 before the first. Faults and stops carry it.
   void set_tick(int64_t tick) { tick_ = tick; }
@@ -66,7 +86,8 @@ class Participant {
   std::string NameOf(std::optional<int64_t> session) const;
 
   // Ends this process's run, for every process in it. Only the first request counts.
-  void RequestStop(const std::string& reason, int exit_code);
+  // `source`: who wants it, if not this process itself.
+  void RequestStop(const std::string& reason, int exit_code, const std::string& source = "");
 
   // The first stop that was heard and meant this process, its own included. A stop of another run is none.
   const std::optional<stop_t>& stop() const { return stop_; }
@@ -82,6 +103,10 @@ class Participant {
   const bus::Channels& channels() const { return channels_; }
 
  private:
+  void OnStatus(const process_status_t& status);
+  void OnConfiguration(const configuration_t& announced);
+  void PublishConfiguration();
+  void LeaveAlone(const std::string& reason);
   void PublishFault(const fault_t& fault);
   void End(const std::string& code);
   void WatchRefusals();
@@ -96,6 +121,10 @@ class Participant {
   int8_t state_ = 0;
   std::string status_text_;
   int64_t run_ = 0;
+  Agreement agreement_;
+  std::optional<bus::Clock::TimePoint> configuration_sent_;
+  std::set<int64_t> answered_;  // who was there when our configuration was sent
+  std::function<void(int64_t, const std::string&)> on_refusal_;
   int64_t tick_ = -1;
   int64_t fault_sequence_ = 0;
   int latched_ = 0;  // active faults that are latched

@@ -8,8 +8,10 @@
 #include "bus/udpm/open_udpm_bus.h"
 #include "bus/udpm/udpm_url.h"
 #include "log/log_writer.h"
+#include "process/role.h"
 #include "process/stderr_log.h"
 #include "process/stop_signal.h"
+#include "process/stop_socket.h"
 #include "timing/real_time.h"
 
 namespace hydro::process {
@@ -92,6 +94,8 @@ int RunProcess(const std::string& program, const settings::CommonOptions& option
     const settings::StackConfig config = settings::LoadStackConfig(options.config, options.overrides);
     settings::CheckKeepsInputs(options.log, config);
     CatchStopSignals();
+    const StopSocket stop_socket(
+        StopSocketPrefix(bus::ParseUdpmUrl(config.bus.url).port, config.bus.channel_suffix), RoleOf(program));
     timing::ApplyRealTime(RealTimeRequestOf(SectionOf(config, program)));
     const std::unique_ptr<bus::UdpmBus> opened = bus::OpenUdpmBus(
         config.bus.url,

@@ -1,12 +1,18 @@
 #include "process/stop_signal.h"
 
+#include <unistd.h>
+
 #include <csignal>
 #include <initializer_list>
+#include <mutex>
 
 namespace hydro::process {
 namespace {
 
 volatile std::sig_atomic_t caught_signal = 0;
+
+std::mutex reason_mutex;
+std::string stop_reason;
 
 void Remember(int signal) { caught_signal = signal; }
 
@@ -22,5 +28,18 @@ void CatchStopSignals() {
 }
 
 int StopSignal() { return caught_signal; }
+
+void StopBecause(const std::string& reason) {
+  {
+    const std::lock_guard lock(reason_mutex);
+    if (stop_reason.empty()) stop_reason = reason;
+  }
+  kill(getpid(), SIGTERM);  // not only the flag: it interrupts a wait
+}
+
+std::string StopReason() {
+  const std::lock_guard lock(reason_mutex);
+  return stop_reason;
+}
 
 }  // namespace hydro::process

@@ -1,6 +1,8 @@
 // SIGINT, SIGTERM and SIGHUP as a flag that loops check.
 #pragma once
 
+#include <string>
+
 namespace hydro::process {
 
 // From now on SIGINT, SIGTERM and SIGHUP set the flag instead of ending the process, and interrupt a waiting
@@ -9,5 +11,11 @@ void CatchStopSignals();
 
 // The caught signal; 0 when there was none.
 int StopSignal();
+
+// Sets the flag as SIGTERM does, for a reason that is told with the end of the run. Any thread may call it.
+void StopBecause(const std::string& reason);
+
+// Why the flag was set; empty when a signal came from elsewhere.
+std::string StopReason();
 
 }  // namespace hydro::process

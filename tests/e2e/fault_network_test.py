@@ -121,6 +121,26 @@ class NetworkTest(fault_case.FaultCase):
         self.cable_out_and_in(lambda: ip("-n", DESK, "link", "set", "veth0", "down"), back)
         self.assertRegex(self.desk[0].stderr, "fault unsent_message: [0-9]+ messages could not be sent")
 
+    # Tests that --stop ends a stack whose network has gone, within the time that it takes the plant to look, though no
+    # process would have stopped by itself.
+    def test_stop_without_network(self):
+        self.arguments = [self.config_with('signal = "voltage"\nkind = "steps"\nsteps = [[0.0, 1.0]]'), "--set", f"bus.url={URL}",
+                          "--time", "realtime", "--duration", "0", "--set", "limits.stale_input_s=60", "--set",
+                          "model.bypass=true"]
+        processes = [self.start_on(RIG, "logger", "-o", self.log_file), self.start_on(RIG, "pressure_ctrl"),
+                     self.start_on(RIG, "position_ctrl"), self.start_on(RIG, "plant", "--expect", "logger")]
+        self.log = stack.LiveLog(self, self.log_file)
+        self.log.wait_for_tick(300)
+        self.wait_for_voltage()
+        ip("-n", RIG, "link", "set", "veth0", "down")
+        argv = ["ip", "netns", "exec", RIG, stack.program("hydro-launch"), *self.arguments, "--stop"]
+        stopper = stack.Process(argv, self.folder, "stopper")
+        self.processes.append(stopper)
+        self.assertEqual(stopper.wait(), 0, stopper.report())
+        self.assertRegex(stopper.stdout, "stopped: 4 processes have ended .over their local sockets")
+        for process in processes:
+            self.assertEqual(process.wait(), 0, process.report())
+
 
 if __name__ == "__main__":
     outcome.main()

@@ -1,0 +1,151 @@
+#include "launch/local_stop.h"
+
+#include <poll.h>
+#include <sys/socket.h>
+#include <sys/un.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <csignal>
+#include <cstdlib>
+#include <cstring>
+#include <fstream>
+#include <set>
+#include <string_view>
+
+#include "bus/udpm/udpm_url.h"
+#include "process/stop_socket.h"
+
+namespace hydro::launch {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr char kRequest[] = "stop hydro-launch --stop";
+constexpr int kAnswer_ms = 500;
+constexpr auto kByThemselves = 500ms;  // how long the others may take to end because the plant has
+
+bool DrivesTheMotor(const std::string& role) { return role == "plant" || role == "driver"; }
+
+// A socket that is connected to that abstract name; -1: nobody listens there, or not to us.
+int Connect(const std::string& name) {
+  sockaddr_un address{};
+  address.sun_family = AF_UNIX;
+  if (name.size() + 1 > sizeof address.sun_path) return -1;
+  std::memcpy(address.sun_path + 1, name.data(), name.size());
+  const auto size = static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + 1 + name.size());
+  const int fd = socket(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0);
+  if (fd < 0) return -1;
+  if (connect(fd, reinterpret_cast<const sockaddr*>(&address), size) == 0) return fd;
+  close(fd);
+  return -1;
+}
+
+// The names of all stop sockets of that stack: the kernel lists them with an @ for the leading zero.
+std::set<std::string> NamesWith(const std::string& prefix) {
+  std::set<std::string> names;
+  std::ifstream table("/proc/net/unix");
+  for (std::string line; std::getline(table, line);) {
+    const size_t at = line.find(" @" + prefix);
+    if (at != std::string::npos) names.insert(line.substr(at + 2));
+  }
+  return names;
+}
+
+}  // namespace
+
+LocalStop::LocalStop(const settings::StackConfig& config) {
+  const std::string prefix =
+      process::StopSocketPrefix(bus::ParseUdpmUrl(config.bus.url).port, config.bus.channel_suffix);
+  for (const std::string& name : NamesWith(prefix)) {
+    const std::string rest = name.substr(prefix.size());
+    const size_t slash = rest.find('/');
+    if (slash == std::string::npos) continue;
+    Process process;
+    process.role = rest.substr(0, slash);
+    process.pid = std::atoi(rest.c_str() + slash + 1);
+    process.connection = Connect(name);
+    if (process.connection >= 0) processes_.push_back(process);
+  }
+}
+
+LocalStop::~LocalStop() {
+  for (const Process& process : processes_) close(process.connection);
+}
+
+void LocalStop::Ask(Process& process) {
+  if (process.asked) return;
+  process.asked = true;
+  send(process.connection, kRequest, sizeof kRequest - 1, MSG_NOSIGNAL);
+  pollfd waiting{process.connection, POLLIN, 0};
+  char answer[8];
+  if (poll(&waiting, 1, kAnswer_ms) > 0 && recv(process.connection, answer, sizeof answer, 0) <= 0) {
+    // Closed without an answer: it has ended already, or does not listen to this user.
+    process.ended = kill(process.pid, 0) != 0 && errno == ESRCH;
+    process.refused = !process.ended;
+  }
+}
+
+void LocalStop::StopMotor() {
+  for (Process& process : processes_) {
+    if (DrivesTheMotor(process.role)) Ask(process);
+  }
+}
+
+bool LocalStop::AllEnded(bool with_loggers) {
+  bool all = true;
+  for (Process& process : processes_) {
+    if (process.ended || process.refused || (!with_loggers && process.role == "logger")) continue;
+    pollfd waiting{process.connection, POLLIN, 0};
+    char answer[8];
+    process.ended =
+        poll(&waiting, 1, 0) > 0 && recv(process.connection, answer, sizeof answer, MSG_DONTWAIT) <= 0;
+    all = all && process.ended;
+  }
+  return all;
+}
+
+void LocalStop::AwaitEnd(bool with_loggers, Duration patience) {
+  const auto until = std::chrono::steady_clock::now() + patience;
+  while (!AllEnded(with_loggers) && std::chrono::steady_clock::now() < until) {
+    std::vector<pollfd> waiting;
+    for (const Process& process : processes_) {
+      if (!process.ended && !process.refused) waiting.push_back({process.connection, POLLIN, 0});
+    }
+    poll(waiting.data(), waiting.size(), 20);
+  }
+}
+
+void LocalStop::StopRest(Duration patience) {
+  AwaitEnd(false, kByThemselves);
+  AllEnded(false);
+  for (Process& process : processes_) {
+    if (!process.ended && process.role != "logger") Ask(process);
+  }
+  AwaitEnd(false, patience);
+  AwaitEnd(true, kByThemselves);
+  for (Process& process : processes_) {
+    if (!process.ended) Ask(process);
+  }
+  AwaitEnd(true, patience);
+}
+
+bool LocalStop::Found(int pid) const {
+  for (const Process& process : processes_) {
+    if (process.pid == pid) return true;
+  }
+  return false;
+}
+
+std::string LocalStop::Left() {
+  AllEnded(true);
+  std::string names;
+  for (const Process& process : processes_) {
+    if (process.ended) continue;
+    names += (names.empty() ? "" : ", ") + process.role + " (process " + std::to_string(process.pid) + ")" +
+             (process.refused ? ", which belongs to another user" : "");
+  }
+  return names;
+}
+
+}  // namespace hydro::launch

@@ -1,0 +1,50 @@
+// Stops the processes of a stack that run on this machine, without the network (process/stop_socket.h).
+#pragma once
+
+#include <chrono>
+#include <string>
+#include <vector>
+
+#include "settings/stack_config.h"
+
+namespace hydro::launch {
+
+class LocalStop {
+ public:
+  using Duration = std::chrono::steady_clock::duration;
+
+  // Finds the processes of the stack.
+  explicit LocalStop(const settings::StackConfig& config);
+  ~LocalStop();
+  LocalStop(const LocalStop&) = delete;
+  LocalStop& operator=(const LocalStop&) = delete;
+
+  // Asks who drives the motor (plant or driver) to stop; the others usually hear of it over the bus.
+  void StopMotor();
+
+  // Asks all that are left, the logger last, and waits until they have ended, for at most `patience`.
+  void StopRest(Duration patience);
+
+  int found() const { return static_cast<int>(processes_.size()); }
+  bool Found(int pid) const;
+
+  // Those that have not ended: "plant (process 4711)", and why, where that is known.
+  std::string Left();
+
+ private:
+  struct Process {
+    std::string role;
+    int pid = 0;
+    int connection = -1;
+    bool asked = false;
+    bool refused = false;  // it belongs to another user
+    bool ended = false;
+  };
+  void Ask(Process& process);
+  bool AllEnded(bool with_loggers);
+  void AwaitEnd(bool with_loggers, Duration patience);
+
+  std::vector<Process> processes_;
+};
+
+}  // namespace hydro::launch

@@ -1,0 +1,46 @@
+// Whether the processes of a stack run with the same configuration, model and version.
+#pragma once
+
+#include <cstdint>
+#include <hydro/configuration_t.hpp>
+#include <map>
+#include <set>
+#include <string>
+#include <utility>
+
+namespace hydro::process {
+
+// Pure: it is told what others announce (HYDRO_CONFIGURATION).
+class Agreement {
+ public:
+  // `own`: lines "key = value", sorted (settings/agreed_entries.h). Empty: this process agrees with everybody.
+  explicit Agreement(std::string own) : own_(std::move(own)) {}
+
+  // True when the sender does not agree and was not known to.
+  bool Observe(const configuration_t& announced);
+
+  // Whether messages of that sender are not to be obeyed. A sender that has announced nothing is not refused: it may be
+  // a program of the user's own.
+  bool Refuses(int64_t session) const { return !refused_.empty() && refused_.contains(session); }
+
+  // In what that sender differs: "pressure.k_p is 3 there, 0.3 here; ...". Empty when it is not refused.
+  std::string Differences(int64_t session) const;
+
+  bool any() const { return !refused_.empty(); }
+  // Whether that sender has announced what it runs with.
+  bool Heard(int64_t session) const { return heard_.contains(session); }
+
+  void Forget(int64_t session) { refused_.erase(session); }
+
+  const std::string& own() const { return own_; }
+
+ private:
+  std::string own_;
+  std::set<int64_t> heard_;
+  std::map<int64_t, std::string> refused_;  // differences, by session
+};
+
+// The keys in which two such texts differ, with both values; empty when they are equal.
+std::string DescribeDifferences(const std::string& here, const std::string& there);
+
+}  // namespace hydro::process
