@@ -9,6 +9,7 @@
 #include <cstring>
 
 #include "base/input_error.h"
+#include "base/read_files.h"
 
 namespace hydro {
 namespace {
@@ -39,6 +40,7 @@ MappedFile::MappedFile(const std::string& file) {
   struct stat status;
   if (fstat(descriptor.get(), &status) != 0) ThrowCannotRead(file, errno);
   if (S_ISREG(status.st_mode)) {
+    RememberRead(file);
     size_ = static_cast<size_t>(status.st_size);
     if (size_ == 0) return;
     void* mapping = mmap(nullptr, size_, PROT_READ, MAP_PRIVATE, descriptor.get(), 0);

@@ -11,6 +11,7 @@
 #include <cstring>
 
 #include "base/input_error.h"
+#include "base/read_files.h"
 
 namespace hydro {
 namespace {
@@ -24,9 +25,19 @@ namespace {
   throw WriteError(file + ": cannot be written: " + std::strerror(error));
 }
 
+void RefuseToReplaceAnInput(const std::string& file) {
+  if (!WasRead(file)) return;
+  throw InputError(file +
+                   ": found the name of a file that is read, allowed: another, so that it is not replaced");
+}
+
 bool ExistsAndIsNotRegular(const std::string& file) {
   struct stat status;
   return stat(file.c_str(), &status) == 0 && !S_ISREG(status.st_mode);
+}
+
+[[noreturn]] void ThrowIsBeingWritten(const std::string& name) {
+  throw InputError(name + ": is being written by another process; stop that one or give another name");
 }
 
 // Removes a file of that name, unless another process holds the lock that every NewFile takes on its file.
@@ -38,11 +49,20 @@ void RemoveUnlessBeingWritten(const std::string& path, const std::string& name) 
   }
   const bool locked = flock(old, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK;
   close(old);
-  if (locked) {
-    throw InputError(name + ": is being written by another process; stop that one or give another name");
-  }
+  if (locked) ThrowIsBeingWritten(name);
   // Unlinks instead of truncating: a reader that has the old contents mapped keeps them.
   if (unlink(path.c_str()) != 0 && errno != ENOENT) ThrowCannotCreate(name, errno);
+}
+
+// FILE.part or, where something has that name already, FILE.part1 and so on: it may be anybody's. Throws where another process is
+// writing to FILE under such a name.
+std::string FreePart(const std::string& name) {
+  for (int i = 0;; ++i) {
+    const std::string part = name + ".part" + (i == 0 ? "" : std::to_string(i));
+    struct stat status;
+    if (lstat(part.c_str(), &status) != 0) return part;
+    if (S_ISREG(status.st_mode) && IsBeingWritten(part)) ThrowIsBeingWritten(name);
+  }
 }
 
 }  // namespace
@@ -70,8 +90,12 @@ NewFile::NewFile(const std::string& file, Opening opening) : name_(file), path_(
     if (descriptor_ < 0) ThrowCannotCreate(name_, errno);
     return;
   }
-  if (opening == Opening::kTemporary) path_ += ".part";
-  RemoveUnlessBeingWritten(path_, name_);
+  RefuseToReplaceAnInput(name_);
+  if (opening == Opening::kTemporary) {
+    path_ = FreePart(name_);
+  } else {
+    RemoveUnlessBeingWritten(path_, name_);
+  }
   descriptor_ = open(path_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
   if (descriptor_ < 0) ThrowCannotCreate(name_, errno);
   flock(descriptor_, LOCK_EX | LOCK_NB);  // a file system without locks only loses the check above

@@ -15,7 +15,8 @@ class WriteError : public std::runtime_error {
 
 enum class Opening {
   kDirect,  // under its own name from the start: what was written survives a kill
-  // As FILE.part, which Finish() renames and the destructor removes: never a partial file under the name.
+  // As FILE.part (or .part1 ..., where that name is taken), which Finish() renames and the destructor removes: never a partial
+  // file under the name.
   kTemporary,
 };
 
@@ -29,7 +30,8 @@ void CheckCanBeCreated(const std::string& file);
 class NewFile {
  public:
   // Creates the file and replaces an existing one; readers of the old one keep its contents. Throws
-  // InputError when the file cannot be created or another process is writing it. Anything but a regular file,
+  // InputError when the file cannot be created, another process is writing it, or this one has read it
+  // (read_files.h). Anything but a regular file,
   // such as /dev/null, is always opened directly.
   NewFile(const std::string& file, Opening opening);
   ~NewFile();

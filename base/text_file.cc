@@ -7,6 +7,8 @@
 #include <fstream>
 #include <system_error>
 
+#include "base/read_files.h"
+
 namespace hydro {
 namespace {
 
@@ -30,10 +32,7 @@ size_t CharacterLength(std::string_view text) {
 
 std::string ReadTextFile(const std::string& file) {
   constexpr size_t kLargest = 64u << 20;
-  std::error_code ignored;
-  if (std::filesystem::is_directory(file, ignored)) {
-    throw InputError(file + ": found a folder, allowed: a file");
-  }
+  CheckIsFile(file);
   errno = 0;
   std::ifstream stream(file, std::ios::binary);
   if (!stream) throw InputError(file + ": cannot be read: " + std::strerror(errno));
@@ -44,7 +43,18 @@ std::string ReadTextFile(const std::string& file) {
     if (text.size() > kLargest) throw InputError(file + ": found more than 64 MiB, allowed: 64 MiB");
   }
   if (stream.bad()) throw InputError(file + ": cannot be read: " + std::strerror(errno));
+  RememberRead(file);
   return text;
+}
+
+void CheckIsFile(const std::string& file) {
+  std::error_code ignored;
+  const std::filesystem::file_status status = std::filesystem::status(file, ignored);
+  const bool folder = std::filesystem::is_directory(status);
+  // Opening a pipe that nobody writes to waits forever.
+  if (folder || std::filesystem::is_fifo(status) || std::filesystem::is_socket(status)) {
+    throw InputError(file + ": found a " + (folder ? "folder" : "pipe") + ", allowed: a file");
+  }
 }
 
 std::string PathBeside(const std::string& beside, const std::string& file) {

@@ -10,6 +10,7 @@
 #include <set>
 #include <string_view>
 
+#include "base/read_files.h"
 #include "log/log_format.h"
 #include "log/log_reader.h"
 #include "log/log_writer.h"
@@ -142,6 +143,7 @@ RepairResult RepairLog(const std::string& file, const std::string& out) {
   for (const KeptEvent& place : kept) result.kept_bytes += place.end - place.begin;
 
   if (!out.empty()) {
+    ForgetRead(file);  // `out` may be the same: RepairInPlace() keeps the original
     LogWriter writer(out, Opening::kTemporary);
     LogEvent event;
     for (const KeptEvent& place : kept) {

@@ -7,6 +7,8 @@
 #include "base/input_error.h"
 #include "base/mapped_file.h"
 #include "base/new_file.h"
+#include "base/read_files.h"
+#include "base/text_file.h"
 #include "tables/table.h"
 
 namespace hydro::tables {
@@ -119,6 +121,8 @@ void CheckMat5IsWhole(const std::string& file) {
 Table ReadMat(const std::string& file) {
   SilenceMatio();
   { const MappedFile readable(file); }  // throws the system's reason if it is not readable
+  CheckIsFile(file);
+  RememberRead(file);
   const MatFile mat(Mat_Open(file.c_str(), MAT_ACC_RDONLY));
   if (mat == nullptr || Mat_GetVersion(mat.get()) == MAT_FT_MAT4) {
     throw InputError(file + ": found no MAT file of version 5 or 7.3; these are allowed");

@@ -1,0 +1,105 @@
+#include "base/new_file.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+
+#include "base/input_error.h"
+#include "base/read_files.h"
+#include "base/text_file.h"
+
+namespace hydro {
+namespace {
+
+using testing::HasSubstr;
+
+std::string ErrorOf(const std::function<void()>& action) {
+  try {
+    action();
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+class NewFileTest : public testing::Test {
+ protected:
+  NewFileTest() {
+    char name[] = "/tmp/hydro_new_file_XXXXXX";
+    folder_ = mkdtemp(name);
+  }
+  ~NewFileTest() override { std::filesystem::remove_all(folder_); }
+
+  std::string Path(const std::string& name) const { return folder_ + "/" + name; }
+  std::string Make(const std::string& name, const std::string& text) const {
+    std::ofstream(Path(name)) << text;
+    return Path(name);
+  }
+  static std::string TextOf(const std::string& file) {
+    std::ifstream stream(file);
+    return {std::istreambuf_iterator<char>(stream), {}};
+  }
+
+  std::string folder_;
+};
+
+// Tests that a file that this process has read is never replaced, whatever path names it.
+TEST_F(NewFileTest, KeepsWhatWasRead) {
+  const std::string input = Make("input.toml", "precious");
+  std::filesystem::create_symlink(input, Path("symlink"));
+  std::filesystem::create_hard_link(input, Path("hardlink"));
+  EXPECT_EQ(ReadTextFile(Path("symlink")), "precious");
+  for (const std::string& name : {input, Path("symlink"), Path("hardlink"), folder_ + "/./input.toml"}) {
+    for (const Opening opening : {Opening::kDirect, Opening::kTemporary}) {
+      EXPECT_THAT(ErrorOf([&] { NewFile(name, opening); }), HasSubstr("a file that is read")) << name;
+    }
+    EXPECT_THAT(ErrorOf([&] { CheckCanBeCreated(name); }), HasSubstr("a file that is read")) << name;
+  }
+  EXPECT_EQ(TextOf(input), "precious");
+  EXPECT_TRUE(std::filesystem::exists(Path("hardlink")));
+  WriteWholeFile(Make("other", "old"), "new");  // what was not read may be replaced
+  EXPECT_EQ(TextOf(Path("other")), "new");
+}
+
+// Tests that what was put in the place of a file that was read, or is to be replaced on purpose, is no input.
+TEST_F(NewFileTest, ForgetsWhatItIsTold) {
+  const std::string input = Make("input", "old");
+  ReadTextFile(input);
+  ForgetRead(input);
+  WriteWholeFile(input, "new");
+  EXPECT_EQ(TextOf(input), "new");
+}
+
+// Tests that a file which happens to have the temporary name is neither replaced nor removed.
+TEST_F(NewFileTest, KeepsAForeignPart) {
+  Make("out.part", "somebody's");
+  ASSERT_EQ(mkfifo(Path("out.part1").c_str(), 0600), 0);
+  WriteWholeFile(Path("out"), "text");
+  EXPECT_EQ(TextOf(Path("out")), "text");
+  EXPECT_EQ(TextOf(Path("out.part")), "somebody's");
+  { const NewFile unfinished(Path("out"), Opening::kTemporary); }
+  EXPECT_EQ(TextOf(Path("out.part")), "somebody's");
+  EXPECT_FALSE(std::filesystem::exists(Path("out.part2")));
+}
+
+// Tests that two at a time are refused under each temporary name.
+TEST_F(NewFileTest, OneWriterAtATime) {
+  Make("out.part", "somebody's");
+  const NewFile first(Path("out"), Opening::kTemporary);
+  EXPECT_THAT(ErrorOf([&] { NewFile(Path("out"), Opening::kTemporary); }), HasSubstr("is being written"));
+}
+
+// Tests that a pipe that nobody writes to is refused instead of waited for.
+TEST_F(NewFileTest, PipesAreNoInputs) {
+  ASSERT_EQ(mkfifo(Path("pipe").c_str(), 0600), 0);
+  EXPECT_THAT(ErrorOf([&] { ReadTextFile(Path("pipe")); }), HasSubstr("found a pipe"));
+}
+
+}  // namespace
+}  // namespace hydro
