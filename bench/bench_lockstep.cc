@@ -107,8 +107,7 @@ std::unique_ptr<bus::Authenticator> KeyedOrNot(bool with_key) {
 
 template <class Controller>
 void RunController(const std::string& url, const settings::StackConfig& config, bool with_key) {
-  const auto opened =
-      bus::OpenUdpmBus(url, KeyedOrNot(with_key));
+  const auto opened = bus::OpenUdpmBus(url, KeyedOrNot(with_key));
   bus::UdpmBus& bus = *opened;
   bus::WallClock clock;
   Controller controller(bus, clock, config);
@@ -122,8 +121,7 @@ double StackTicksPerSecond(int64_t ticks, const std::string& config_file, bool w
   config.last_tick = ticks;
   const ChildProcess fast([&] { RunController<pressure_ctrl::PressureApp>(url, config, with_key); });
   const ChildProcess slow([&] { RunController<position_ctrl::PositionApp>(url, config, with_key); });
-  const auto opened =
-      bus::OpenUdpmBus(url, KeyedOrNot(with_key));
+  const auto opened = bus::OpenUdpmBus(url, KeyedOrNot(with_key));
   bus::UdpmBus& bus = *opened;
   bus::WallClock clock;
   // The plant's own messages tell when it started and ended.

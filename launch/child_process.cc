@@ -4,10 +4,14 @@
 #include <signal.h>
 #include <string.h>
 #include <sys/prctl.h>
+#include <sys/socket.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <cerrno>
+#include <utility>
+
+#include "process/supervision.h"
 
 namespace hydro::launch {
 namespace {
@@ -16,10 +20,12 @@ struct Pipe {
   int read = -1;
   int write = -1;
 
-  Pipe() {
+  enum class Kind { kPipe, kSocket };
+  explicit Pipe(Kind kind = Kind::kPipe) {
     int fds[2];
-    if (pipe2(fds, O_CLOEXEC) != 0)
-      throw StartError(std::string("cannot create a pipe for a child: ") + strerror(errno));
+    const int failed =
+        kind == Kind::kPipe ? pipe2(fds, O_CLOEXEC) : socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, fds);
+    if (failed != 0) throw StartError(std::string("cannot create a pipe for a child: ") + strerror(errno));
     read = fds[0];
     write = fds[1];
   }
@@ -34,15 +40,12 @@ struct Pipe {
     close(write);
     write = -1;
   }
-  int TakeRead() {
-    const int fd = read;
-    read = -1;
-    return fd;
-  }
+  int TakeRead() { return std::exchange(read, -1); }
+  int TakeWrite() { return std::exchange(write, -1); }
 };
 
 // Runs in the child between fork and exec: only async-signal-safe calls, no allocation.
-[[noreturn]] void BecomeProgram(char* const* argv, pid_t launcher, int out, int err, int report) {
+[[noreturn]] void BecomeProgram(char* const* argv, pid_t launcher, int in, int out, int err, int report) {
   setpgid(0, 0);
   // When the launcher died before that request, the signal would never come.
   prctl(PR_SET_PDEATHSIG, SIGTERM);
@@ -57,10 +60,7 @@ struct Pipe {
   sigemptyset(&none);
   sigprocmask(SIG_SETMASK, &none, nullptr);
 
-  const int null = open("/dev/null", O_RDONLY);
-  if (null >= 0 && dup2(null, STDIN_FILENO) >= 0 && dup2(out, STDOUT_FILENO) >= 0 &&
-      dup2(err, STDERR_FILENO) >= 0) {
-    if (null > STDERR_FILENO) close(null);
+  if (dup2(in, STDIN_FILENO) >= 0 && dup2(out, STDOUT_FILENO) >= 0 && dup2(err, STDERR_FILENO) >= 0) {
     execv(argv[0], argv);
   }
   const int error = errno;
@@ -83,6 +83,7 @@ std::string DescribeEnd(const std::string& program, const ProcessEnd& end) {
 }
 
 ChildProcess::ChildProcess(ChildSpec spec) : spec_(std::move(spec)) {
+  Pipe beats(Pipe::Kind::kSocket);
   Pipe out;
   Pipe err;
   Pipe report;  // closed by a successful exec, else carries errno
@@ -93,7 +94,7 @@ ChildProcess::ChildProcess(ChildSpec spec) : spec_(std::move(spec)) {
   const pid_t launcher = getpid();
   pid_ = fork();
   if (pid_ < 0) throw StartError(spec_.argv[0] + ": cannot be started: " + strerror(errno));
-  if (pid_ == 0) BecomeProgram(argv.data(), launcher, out.write, err.write, report.write);
+  if (pid_ == 0) BecomeProgram(argv.data(), launcher, beats.read, out.write, err.write, report.write);
 
   setpgid(pid_, pid_);  // also here, so that it is done whichever process runs first
   report.CloseWrite();
@@ -108,11 +109,13 @@ ChildProcess::ChildProcess(ChildSpec spec) : spec_(std::move(spec)) {
   }
   fcntl(out.read, F_SETFL, O_NONBLOCK);
   fcntl(err.read, F_SETFL, O_NONBLOCK);
+  beat_fd_ = beats.TakeWrite();
   out_fd_ = out.TakeRead();
   err_fd_ = err.TakeRead();
 }
 
 ChildProcess::~ChildProcess() {
+  if (beat_fd_ >= 0) close(beat_fd_);
   CloseOut();
   CloseErr();
 }
@@ -126,6 +129,10 @@ bool ChildProcess::TryReap() {
     end_ = ProcessEnd{WEXITSTATUS(status), 0};
   }
   return true;
+}
+
+void ChildProcess::Beat() {
+  if (running()) send(beat_fd_, &process::kHeartbeat, 1, MSG_DONTWAIT | MSG_NOSIGNAL);
 }
 
 void ChildProcess::Signal(int signal_number) {

@@ -37,8 +37,8 @@ class StartError : public std::runtime_error {
 // TryReap() has succeeded, and Signal() can reach no other process.
 class ChildProcess {
  public:
-  // Starts the program in its own process group (a terminal's Ctrl-C does not reach it), with stdin from
-  // /dev/null and all signals unblocked. The kernel sends it SIGTERM when the launcher dies, however that
+  // Starts the program in its own process group (a terminal's Ctrl-C does not reach it), with a socket for Beat()
+  // as stdin and all signals unblocked. The kernel sends it SIGTERM when the launcher dies, however that
   // happens. It ignores SIGPIPE, so that after the launcher's death a line that it prints on its way out does
   // not kill it before it has flushed. Throws StartError.
   explicit ChildProcess(ChildSpec spec);
@@ -54,6 +54,9 @@ class ChildProcess {
   // Checks whether it has ended. True when this call is the first to find so.
   bool TryReap();
 
+  // Sends a heartbeat (process/supervision.h). Never waits; what the program does not read is lost.
+  void Beat();
+
   // Sends a signal unless it has been reaped.
   void Signal(int signal_number);
 
@@ -66,6 +69,7 @@ class ChildProcess {
  private:
   ChildSpec spec_;
   pid_t pid_ = -1;
+  int beat_fd_ = -1;
   int out_fd_ = -1;
   int err_fd_ = -1;
   std::optional<ProcessEnd> end_;

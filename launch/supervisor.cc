@@ -66,6 +66,7 @@ int Supervisor::running_first() const {
 
 void Supervisor::Wait(TimePoint deadline) {
   TakeStopSteps(Clock::now());
+  for (const auto& child : children_) child->process.Beat();
 
   std::vector<pollfd> polled{{signal_fd_, POLLIN, 0}, {output_.waiting_fd(), POLLOUT, 0}};
   std::vector<std::pair<Child*, Stream>> readers;

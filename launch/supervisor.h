@@ -54,7 +54,8 @@ class Supervisor {
   pid_t Start(ChildSpec spec);
 
   // Waits until a child prints or ends, a signal comes, or `deadline`. Passes output on and takes the steps
-  // of a stop that are due.
+  // of a stop that are due. Sends each child a heartbeat, so call it often: without one a plant goes to zero volts
+  // (limits.stale_supervisor_s).
   void Wait(TimePoint deadline);
 
   // What Wait() found, oldest first; nothing when there is no more.

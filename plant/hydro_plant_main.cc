@@ -2,6 +2,7 @@
 #include "plant/plant_app.h"
 #include "plant/simulated_rig.h"
 #include "process/process_main.h"
+#include "process/supervision.h"
 
 int main(int argc, char** argv) {
   hydro::settings::CommandLine command_line(
@@ -16,6 +17,8 @@ int main(int argc, char** argv) {
       "hydro-plant", options,
       [&](hydro::bus::Bus& bus, hydro::bus::Clock& clock, const hydro::settings::StackConfig& config) {
         hydro::plant::SimulatedRig rig(config);
-        return hydro::plant::PlantApp(bus, clock, config, rig, expected).Run();
+        return hydro::plant::PlantApp(bus, clock, config, rig, expected, "hydro-plant",
+                                      hydro::process::HeartbeatArrived)
+            .Run();
       });
 }

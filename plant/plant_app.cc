@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "base/host_name.h"
 #include "process/stop_signal.h"
@@ -27,7 +28,8 @@ std::vector<std::string> WithControllers(std::vector<std::string> roles) {
 }  // namespace
 
 PlantApp::PlantApp(bus::Bus& bus, bus::Clock& clock, const settings::StackConfig& config, Rig& rig,
-                   const std::vector<std::string>& expected, const std::string& program)
+                   const std::vector<std::string>& expected, const std::string& program,
+                   std::function<bool()> heartbeat)
     : config_(config),
       rig_(rig),
       participant_(bus, clock, bus::Channels(config.bus.channel_suffix), rig.role(),
@@ -37,6 +39,7 @@ PlantApp::PlantApp(bus::Bus& bus, bus::Clock& clock, const settings::StackConfig
                                                             3 / (config.plant.rate_hz * config.time.speed)))),
       roll_call_(WithControllers(expected)),
       program_(program),
+      heartbeat_(std::move(heartbeat)),
       state_publisher_(bus.Advertise<state_t>(participant_.channels().Of<state_t>())),
       stale_time_(bus::FromSeconds(config.limits.stale_input_s)),
       voltage_limit_((1 + 1e-9) * config.model.description.parameters.T_pmax /

@@ -14,6 +14,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <hydro/log_progress_t.hpp>
 #include <hydro/motor_command_t.hpp>
 #include <hydro/pressure_command_t.hpp>
@@ -39,8 +40,11 @@ namespace hydro::plant {
 class PlantApp {
  public:
   // `rig` must outlive it. `expected`: roles to wait for besides pressure_ctrl and position_ctrl ("logger").
+  // `heartbeat`: whether one of the launcher's has come since it was asked last (process/supervision.h); from the
+  // first on, their absence is a fault. None: nobody is asked.
   PlantApp(bus::Bus& bus, bus::Clock& clock, const settings::StackConfig& config, Rig& rig,
-           const std::vector<std::string>& expected = {}, const std::string& program = "hydro-plant");
+           const std::vector<std::string>& expected = {}, const std::string& program = "hydro-plant",
+           std::function<bool()> heartbeat = {});
 
   // The whole run. The rig is driven only within it and is at zero volts when it ends, also after an
   // exception. Returns the process's exit code: 0 complete or stopped in order, 1 failed.
@@ -69,6 +73,7 @@ class PlantApp {
   void ChooseVoltage();
   void CheckCommand(const motor_command_t& command);
   void CheckCommandIsFresh();
+  void CheckSupervisor();
   void OnMotorCommand(const motor_command_t& command);
   void RefuseFutureCommand(const motor_command_t& command);
   bus::Clock::Duration TimeSinceDue(int64_t tick) const;
@@ -82,6 +87,9 @@ class PlantApp {
   LoggerWatch logger_watch_;
   RollCall roll_call_;
   std::string program_;
+  std::function<bool()> heartbeat_;
+  std::optional<bus::Clock::TimePoint> newest_heartbeat_;
+  bus::Clock::TimePoint next_heartbeat_check_;
   bus::Publisher<state_t> state_publisher_;
   const bus::Clock::Duration stale_time_;
   const double voltage_limit_;  // V, T_pmax/k_1 beyond rounding

@@ -7,6 +7,11 @@
 #include "plant/plant_app.h"
 
 namespace hydro::plant {
+namespace {
+
+constexpr auto kHeartbeatCheck = std::chrono::milliseconds(10);
+
+}  // namespace
 
 void PlantApp::OnMotorCommand(const motor_command_t& command) {
   if (participant_.Refuses(command.session)) return;
@@ -59,7 +64,10 @@ void PlantApp::ChooseVoltage() {
     waiting_commands_.pop_front();
   }
   CheckCommand(command_.value_or(motor_command_t{}));
-  if (config_.time.mode == settings::TimeMode::kRealtime) CheckCommandIsFresh();
+  if (config_.time.mode == settings::TimeMode::kRealtime) {
+    CheckCommandIsFresh();
+    CheckSupervisor();
+  }
   safety_.CheckMeasured(state_);
   safety_.CheckRig(rig_.faults());
   safety_.CheckSurroundings();
@@ -103,6 +111,23 @@ void PlantApp::CheckCommand(const motor_command_t& command) {
         },
         participant_);
   }
+}
+
+// Whoever watches the terminal thinks that the launcher is in charge; while it is stopped it is not.
+void PlantApp::CheckSupervisor() {
+  const auto now = participant_.clock().Now();
+  if (!heartbeat_ || now < next_heartbeat_check_) return;
+  next_heartbeat_check_ = now + kHeartbeatCheck;
+  if (heartbeat_()) newest_heartbeat_ = now;
+  const double silence = newest_heartbeat_ ? bus::ToSeconds(now - *newest_heartbeat_) : 0;
+  const double allowed = config_.limits.stale_supervisor_s;
+  safety_.Set(VoltageGuard::Cause::kSupervisorGone, silence > allowed, [&] {
+    return OutputSafety::Finding{fmt::format("tick {}: hydro-launch, which started this process, has not "
+                                             "been heard for {:.2f} s, allowed are {} s "
+                                             "(limits.stale_supervisor_s); is it stopped (Ctrl-Z)?",
+                                             tick_, silence, allowed),
+                                 silence, allowed};
+  });
 }
 
 void PlantApp::CheckCommandIsFresh() {

@@ -24,6 +24,8 @@ const char* VoltageGuard::CodeOf(Cause cause) {
       return "controller_fault";
     case Cause::kRigFault:
       return "rig_fault";
+    case Cause::kSupervisorGone:
+      return "supervisor_gone";
     case Cause::kSuspended:
       return "machine_suspended";
     case Cause::kPressureLimit:

@@ -22,6 +22,7 @@ class VoltageGuard {
     kLatePlant,
     kControllerFault,
     kRigFault,
+    kSupervisorGone,
     kSuspended,
     kPressureLimit,
     kMotorSpeedLimit,

@@ -50,6 +50,7 @@ PositionApp::PositionApp(bus::Bus& bus, bus::Clock& clock, const settings::Stack
       pressure_limit_(config.limits.arm_torque_in_lbf / config.model.description.parameters.k_2),
       section_(config.position),
       law_(LawSettingsFor(config)),
+      return_(std::llround(config.limits.return_s * config.plant.rate_hz)),
       state_monitor_(bus::FromSeconds(config.limits.stale_input_s)),
       last_state_time_(clock.Now()) {
   bus.Subscribe<state_t>(participant_.channels().Of<state_t>(),
@@ -65,6 +66,7 @@ void PositionApp::OnState(const state_t& state) {
       return;  // the pressure loop raises the fault and goes to zero volts
     case bus::SequenceMonitor::Verdict::kRestarted:
       last_sample_tick_ = -1;
+      return_.Reset();
       break;
     case bus::SequenceMonitor::Verdict::kDuplicate:
       if (state.tick == last_sample_tick_) Send();  // the plant asks again: the answer may have been lost
@@ -79,7 +81,11 @@ void PositionApp::OnState(const state_t& state) {
   last_state_time_ = now;
   participant_.Follow(state.session);
   if (participant_.state() == process_status_t::READY) participant_.Announce(process_status_t::RUNNING);
-  if (state.tick <= last_sample_tick_) last_sample_tick_ = -1;  // a log is played again
+  if (state.tick <= last_sample_tick_) {  // a log is played again
+    last_sample_tick_ = -1;
+    return_.Reset();
+  }
+  return_.Observe(state.tick, state.command_tick >= 0);
   participant_.set_tick(state.tick);
   if (state.tick % interval_ == 0) Sample(state, now);
 }
@@ -95,7 +101,7 @@ void PositionApp::Answer(const state_t& state) {
   participant_.statistics().AddMissedDeadlines(intervals - 1);
   last_sample_tick_ = state.tick;
 
-  const double reference = reference_->Value(state.time);
+  const double reference = return_.Reference(reference_->Value(state.time), Present(state), state.tick);
   arm_reference_.tick = state.tick;
   arm_reference_.signal = SignalCode(signal_);
   arm_reference_.value = reference;
@@ -133,6 +139,21 @@ void PositionApp::Answer(const state_t& state) {
   arm_reference_.sequence = pressure_command_.sequence = sequence_++;
   arm_reference_.session = pressure_command_.session = participant_.session();
   Send();
+}
+
+// What the reference refers to, as it is now.
+double PositionApp::Present(const state_t& state) const {
+  switch (signal_) {
+    case settings::ReferenceSignal::kArmAngle:
+      return state.arm_angle;
+    case settings::ReferenceSignal::kPressure:
+      return state.p2 - state.p1;
+    case settings::ReferenceSignal::kTorque:
+      return (state.p2 - state.p1) * torque_per_pressure_;
+    case settings::ReferenceSignal::kVoltage:
+      return 0;
+  }
+  return 0;
 }
 
 void PositionApp::Send() {

@@ -1,7 +1,7 @@
 // The sampled position loop as an application: on each tick that is a multiple of its sample interval it
 // publishes the reference and the pressure command that follows from it. A reference of the arm's angle goes
 // through eq. (17); pressure, torque and open-loop voltage references pass through. All pressures are limited
-// and quantised the same way.
+// and quantised the same way. After zero volts the reference comes back without a jump (reference_return.h).
 #pragma once
 
 #include <cstdint>
@@ -13,6 +13,7 @@
 
 #include "bus/sequence_monitor.h"
 #include "position_ctrl/position_law.h"
+#include "position_ctrl/reference_return.h"
 #include "process/app.h"
 #include "process/participant.h"
 #include "settings/stack_config.h"
@@ -32,6 +33,7 @@ class PositionApp : public process::App {
   void OnState(const state_t& state);
   void Sample(const state_t& state, bus::Clock::TimePoint arrival);
   void Answer(const state_t& state);
+  double Present(const state_t& state) const;
   void Send();
 
   process::Participant participant_;
@@ -44,6 +46,7 @@ class PositionApp : public process::App {
   const double pressure_limit_;       // psi, from limits.arm_torque_in_lbf
   const settings::PositionSection section_;
   PositionLaw law_;
+  ReferenceReturn return_;
 
   bus::SequenceMonitor state_monitor_;
   arm_reference_t arm_reference_;        // the newest sample's

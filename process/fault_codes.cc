@@ -32,6 +32,7 @@ constexpr std::array kCodes{
     FaultCode{kSecondSender<motor_command_t>, FaultEffect::kZeroVolts},
     FaultCode{"other_stack", FaultEffect::kZeroVolts},
     FaultCode{"late_plant", FaultEffect::kZeroVolts},
+    FaultCode{"supervisor_gone", FaultEffect::kZeroVolts},
     FaultCode{"machine_suspended", FaultEffect::kZeroVolts},
     FaultCode{"controller_fault", FaultEffect::kZeroVolts},
     FaultCode{"rig_fault", FaultEffect::kZeroVolts},

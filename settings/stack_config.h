@@ -117,7 +117,10 @@ struct LimitsSection {
   double stale_input_s = 0.1;     // an older input gives zero volts and a fault
   double pressure_ramp_s = 0.2;   // plant time in which a stale pressure reference goes to zero; 0: at once
   double stale_logger_s = 1;      // a logger silent for longer is reported as gone
-  Rearm rearm = Rearm::kRestart;  // rearm = "restart" | "explicit"
+  double return_s = 0.5;          // plant time in which the reference comes back after zero volts; 0: at once
+  double stale_supervisor_s = 1;  // a launcher silent for longer gives zero volts and a fault
+  // rearm = "restart" | "explicit". Default when read from a file: explicit with a driver.
+  Rearm rearm = Rearm::kRestart;
 };
 
 struct NoiseSection {

@@ -128,14 +128,18 @@ void ReadReference(SectionReader section, const std::string& config_file, Refere
   CheckedTrajectory(reference->trajectory, section);
 }
 
-void ReadLimits(SectionReader section, LimitsSection* limits) {
+// `hardware`: a motor that may hurt somebody does not start again unasked.
+void ReadLimits(SectionReader section, bool hardware, LimitsSection* limits) {
+  if (hardware) limits->rearm = Rearm::kExplicit;
   section.Number("pressure_psi", &limits->pressure_psi, kPositiveOrNone);
   section.Number("motor_speed_rad_s", &limits->motor_speed_rad_s, kPositiveOrNone);
   section.Number("arm_angle_rad", &limits->arm_angle_rad, kPositiveOrNone);
   section.Number("arm_torque_in_lbf", &limits->arm_torque_in_lbf, kPositiveOrNone);
   section.Number("stale_input_s", &limits->stale_input_s, kWait);
   section.Number("pressure_ramp_s", &limits->pressure_ramp_s, {.min = 0, .max = 1e6});
+  section.Number("return_s", &limits->return_s, {.min = 0, .max = 1e6});
   section.Number("stale_logger_s", &limits->stale_logger_s, kWait);
+  section.Number("stale_supervisor_s", &limits->stale_supervisor_s, kWait);
   section.Choice<Rearm>("rearm", {{"restart", Rearm::kRestart}, {"explicit", Rearm::kExplicit}},
                         &limits->rearm);
   section.Finish();
@@ -239,7 +243,7 @@ void ReadSections(const TomlNode& root, const std::string& config_file, StackCon
   ReadPressure(std::move(pressure), &config->pressure);
   ReadPosition(std::move(position), &config->position);
   ReadReference(std::move(reference), config_file, &config->reference);
-  ReadLimits(std::move(limits), &config->limits);
+  ReadLimits(std::move(limits), document.Has("driver"), &config->limits);
   ReadNoise(std::move(noise), &config->noise, &config->seed);
   if (document.Has("driver")) config->driver = ReadDriver(std::move(driver));
   ReadLogger(std::move(logger), &config->logger);

@@ -4,6 +4,7 @@
 #include "plant/plant_app.h"
 #include "process/process_main.h"
 #include "process/stop_signal.h"
+#include "process/supervision.h"
 
 namespace {
 
@@ -38,6 +39,8 @@ int main(int argc, char** argv) {
       [&](hydro::bus::Bus& bus, hydro::bus::Clock& clock, const hydro::settings::StackConfig& config) {
         hydro::settings::CheckDriver(config);
         hydro::plant::BoardRig rig(config, clock);
-        return hydro::plant::PlantApp(bus, clock, config, rig, expected, "hydro-driver").Run();
+        return hydro::plant::PlantApp(bus, clock, config, rig, expected, "hydro-driver",
+                                      hydro::process::HeartbeatArrived)
+            .Run();
       });
 }

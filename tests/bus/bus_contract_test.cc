@@ -307,14 +307,13 @@ std::unique_ptr<Authenticator> MakeKeyed() {
 
 INSTANTIATE_TEST_SUITE_P(
     Transports, BusContractTest,
-    testing::Values(
-        Transport{"InProcess", true,
-                  [](SimulatedClock* clock) { return std::make_unique<InProcessBus>(clock); }},
-        Transport{"InProcessWall", false,
-                  [](SimulatedClock*) { return std::make_unique<InProcessBus>(nullptr); }},
-        Transport{"Udpm", false, [](SimulatedClock*) { return OpenUdpmBus(FreeBusUrl()); }},
-        Transport{"UdpmWithKey", false,
-                  [](SimulatedClock*) { return OpenUdpmBus(FreeBusUrl(), MakeKeyed()); }}),
+    testing::Values(Transport{"InProcess", true,
+                              [](SimulatedClock* clock) { return std::make_unique<InProcessBus>(clock); }},
+                    Transport{"InProcessWall", false,
+                              [](SimulatedClock*) { return std::make_unique<InProcessBus>(nullptr); }},
+                    Transport{"Udpm", false, [](SimulatedClock*) { return OpenUdpmBus(FreeBusUrl()); }},
+                    Transport{"UdpmWithKey", false,
+                              [](SimulatedClock*) { return OpenUdpmBus(FreeBusUrl(), MakeKeyed()); }}),
     [](const testing::TestParamInfo<Transport>& param) { return param.param.name; });
 
 }  // namespace

@@ -25,9 +25,7 @@ Bus::TimePoint Soon(std::chrono::nanoseconds delay) { return std::chrono::steady
 
 class UdpmBusTest : public testing::Test {
  protected:
-  UdpmBus& Open(const std::string& url) {
-    return *opened_.emplace_back(OpenUdpmBus(url));
-  }
+  UdpmBus& Open(const std::string& url) { return *opened_.emplace_back(OpenUdpmBus(url)); }
 
  private:
   std::vector<std::unique_ptr<UdpmBus>> opened_;

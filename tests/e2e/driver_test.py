@@ -22,7 +22,8 @@ class DriverCase(stack.TestCase):
         self.board = board.Board(self)
 
     def options(self, the_board, *settings):
-        options = [f"driver.device={the_board.file}", f"limits.stale_input_s={STALE}", *settings]
+        # With a driver the default is "explicit": fault_limits_test tests that.
+        options = [f"driver.device={the_board.file}", f"limits.stale_input_s={STALE}", 'limits.rearm="restart"', *settings]
         return [argument for option in options for argument in ("--set", option)]
 
     def run_by_hand(self, *settings, the_board=None, url=None, log=None, controllers=True, driven=True):

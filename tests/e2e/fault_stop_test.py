@@ -1,5 +1,6 @@
 """Rows of docs/safety.md: HYDRO_STOP, from any program and from hydro-launch --stop."""
 
+import signal
 import struct
 import threading
 
@@ -76,6 +77,29 @@ class StopTest(fault_case.FaultCase):
             stop.set()
             sender.join()
             peer.close()
+
+    # Tests that a launcher that is stopped (Ctrl-Z at its terminal) leaves no motor running that nobody watches: zero volts
+    # until it goes on, and then a reference that starts from where the arm is.
+    def test_launcher_is_suspended(self):
+        launch = self.launch(self.moving(), "--duration", "0", "--log", self.log_file, "--set", "limits.stale_supervisor_s=0.5",
+                             "--set", f"limits.stale_input_s={fault_case.STALE}")
+        self.log = stack.LiveLog(self, self.log_file)
+        self.wait_for_voltage()
+        launch.send(signal.SIGSTOP)
+        fault = self.wait_for_fault("supervisor_gone", source="plant")
+        self.assertRegex(fault.text, "hydro-launch, which started this process, has not been heard .*Ctrl-Z")
+        self.wait_for_states(200)
+        launch.send(signal.SIGCONT)
+        self.wait_for_fault("supervisor_gone", active=False)
+        self.wait_for_voltage()
+        launch.send(signal.SIGINT)
+        self.assertEqual(launch.wait(), 0, launch.report())
+        log = event_log.Log(self.log_file)
+        self.assert_zero_during(log, "supervisor_gone", "plant")
+        held = [s.tick for s in log.states if fault.tick < s.tick and s.command_tick == -1]
+        back = [r for r in log.arm_references if r.tick > held[-1]][0]
+        arm = next(s.arm_angle for s in log.states if s.tick == back.tick)
+        self.assertAlmostEqual(back.value, arm, delta=0.005)
 
     # Tests that without a stack it says so, with exit code 1, and that it does not go with --rearm.
     def test_nobody(self):

@@ -62,7 +62,7 @@ class PlantFaultsTest : public ::testing::Test {
 
   int Run() {
     SimulatedRig rig(config_);
-    PlantApp plant(*bus_, clock_, config_, rig);
+    PlantApp plant(*bus_, clock_, config_, rig, {}, "hydro-plant", heartbeat_);
     for (const char* role : {"pressure_ctrl", "position_ctrl"}) Status(role, 1, process_status_t::READY);
     const int exit_code = plant.Run();
     failure_ = plant.failure();
@@ -120,6 +120,7 @@ class PlantFaultsTest : public ::testing::Test {
   std::unique_ptr<bus::InProcessBus> bus_;
   settings::StackConfig config_ = SmallStack();
   std::function<void(const state_t&)> on_state_;
+  std::function<bool()> heartbeat_;
   bool answering_ = true;
   double voltage_ = 1.5;  // of our answers
   std::vector<state_t> states_;
@@ -224,6 +225,27 @@ TEST_F(PlantFaultsTest, OneFarNumberDeafensNobody) {
   EXPECT_THAT(Codes(), ::testing::ElementsAre("+repeated_motor_command"));
   ExpectVoltage(53, 100, 1.5);
   EXPECT_GT(states_.back().command_tick, 95);
+}
+
+// Tests that a launcher that falls silent after it has been heard gives zero volts until it is heard again, and that
+// one that was never there is not missed.
+TEST_F(PlantFaultsTest, SupervisorGone) {
+  config_.last_tick = 400;
+  config_.limits.stale_supervisor_s = 0.1;
+  bool beats = true;
+  on_state_ = [&](const state_t& s) { beats = s.tick < 100 || s.tick >= 300; };
+  heartbeat_ = [&] { return beats; };
+  EXPECT_EQ(Run(), 0);
+  EXPECT_THAT(Codes(), ::testing::ElementsAre("+supervisor_gone", "-supervisor_gone"));
+  ExpectVoltage(10, 195, 1.5);
+  ExpectVoltage(215, 299, 0);
+  ExpectVoltage(315, 400, 1.5);
+
+  StartAgain();
+  on_state_ = {};
+  heartbeat_ = [] { return false; };
+  EXPECT_EQ(Run(), 0);
+  EXPECT_THAT(faults_, IsEmpty());
 }
 
 // Tests that after a stop of its own the plant obeys no command from before the stop.

@@ -35,8 +35,9 @@ class PositionAppTest : public ::testing::Test {
     }
   }
 
-  void SendState(int64_t tick, double arm_angle) {
+  void SendState(int64_t tick, double arm_angle, int64_t command_tick = 0) {
     state_t s{};
+    s.command_tick = command_tick;
     s.tick = tick;
     s.session = 3;
     s.sequence = tick;
@@ -84,6 +85,23 @@ TEST_F(PositionAppTest, AppliesEquation17) {
   EXPECT_DOUBLE_EQ(commands_[0].pressure_ref, -1000 * 0.001);
   EXPECT_DOUBLE_EQ(commands_[1].pressure_ref, -1000 * (0.002 - 0.1) - 30 / 0.005 * 0.001);
   EXPECT_FALSE(commands_[1].open_loop);
+}
+
+// Tests that after zero volts the reference starts from where the arm is and comes back in return_s, and that the
+// start of a run, when no command is in force yet, is no such case.
+TEST_F(PositionAppTest, ReferenceReturnsWithoutAJump) {
+  settings::StackConfig config = WithReference(settings::ReferenceSignal::kArmAngle, 0.1);
+  config.limits.return_s = 0.02;
+  Start(config);
+  SendState(0, 0, -1);
+  SendState(5, 0.02);
+  for (int64_t tick = 6; tick < 20; ++tick) SendState(tick, 0.04, -1);
+  for (int64_t tick = 20; tick <= 45; ++tick) SendState(tick, 0.04);
+  std::vector<double> values;
+  for (const arm_reference_t& r : references_) values.push_back(r.value);
+  ASSERT_EQ(values.size(), 10u);
+  EXPECT_THAT(values, ElementsAre(0, 0.1, 0.04, 0.04, 0.04, ::testing::DoubleEq(0.055),
+                                  ::testing::DoubleEq(0.07), ::testing::DoubleEq(0.085), 0.1, 0.1));
 }
 
 struct PassThrough {

@@ -144,6 +144,13 @@ TEST(DriverSectionTest, Defaults) {
   EXPECT_EQ(driver.arm_speed.source, Source::kNone);
 }
 
+// Tests that a motor of a real rig does not start again unasked, unless the configuration says so.
+TEST(DriverSectionTest, RearmIsExplicit) {
+  EXPECT_EQ(Parsed(kConfigText).limits.rearm, Rearm::kRestart);
+  EXPECT_EQ(Parsed(WithDriver()).limits.rearm, Rearm::kExplicit);
+  EXPECT_EQ(Parsed(WithDriver() + "[limits]\nrearm = \"restart\"\n").limits.rearm, Rearm::kRestart);
+}
+
 // Tests that each malformed [driver] is refused on one line with its place and key.
 TEST(DriverSectionTest, Errors) {
   const auto changed = [](const std::string& from, const std::string& to) {

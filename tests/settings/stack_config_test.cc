@@ -97,6 +97,8 @@ arm_torque_in_lbf = 7000
 stale_input_s = 0.05
 pressure_ramp_s = 0.3
 stale_logger_s = 2
+stale_supervisor_s = 3
+return_s = 0.7
 arm_angle_rad = 0.7
 rearm = "explicit"
 [noise]
@@ -179,6 +181,8 @@ TEST(StackConfigTest, ReadsEveryKey) {
   EXPECT_EQ(config.limits.stale_input_s, 0.05);
   EXPECT_EQ(config.limits.pressure_ramp_s, 0.3);
   EXPECT_EQ(config.limits.stale_logger_s, 2);
+  EXPECT_EQ(config.limits.stale_supervisor_s, 3);
+  EXPECT_EQ(config.limits.return_s, 0.7);
   EXPECT_EQ(config.limits.arm_angle_rad, 0.7);
   EXPECT_EQ(config.limits.rearm, Rearm::kExplicit);
   EXPECT_EQ(config.noise.p1_psi, 1);

@@ -44,9 +44,7 @@ constexpr auto kBegin = 1200ms, kEnd = 2700ms;
 class Loop {
  public:
   Loop(const std::string& url, std::function<void()> begin, std::function<void()> end)
-      : opened_(bus::OpenUdpmBus(url)),
-        begin_(std::move(begin)),
-        end_(std::move(end)) {}
+      : opened_(bus::OpenUdpmBus(url)), begin_(std::move(begin)), end_(std::move(end)) {}
 
   void RunPlant(const settings::StackConfig& config) {
     plant::SimulatedRig rig(config);
