@@ -6,11 +6,11 @@
 #include <vector>
 
 #include "base/text_file.h"
-#include "bus/udpm/open_udpm_bus.h"
 #include "launch/doctor/doctor.h"
 #include "launch/launch.h"
 #include "launch/make_key.h"
 #include "launch/operator_request.h"
+#include "process/stack_bus.h"
 #include "settings/command_line.h"
 
 namespace {
@@ -73,9 +73,7 @@ void CheckNoneIgnored(const hydro::settings::CommandLine& line, const std::strin
 }
 
 hydro::launch::OperatorResult Rearm(const hydro::settings::StackConfig& config) {
-  const auto bus = hydro::bus::OpenUdpmBus(
-      config.bus.url, hydro::bus::MakeAuthenticator(config.bus.resolved_key_file,
-                                                    hydro::bus::Channels(config.bus.channel_suffix)));
+  const auto bus = hydro::process::OpenStackBus(config.bus);
   return hydro::launch::RearmStack(*bus, hydro::bus::WallClock(), config);
 }
 

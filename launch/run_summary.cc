@@ -11,6 +11,9 @@ namespace hydro::launch {
 namespace {
 
 constexpr double kMostOfASecond = 0.5;
+// A stack has five processes and some forty codes; a flood of made-up ones is not kept.
+constexpr size_t kMostLoops = 64;
+constexpr size_t kMostFaults = 256;
 
 }  // namespace
 
@@ -18,6 +21,7 @@ void RunSummary::Add(const loop_statistics_t& report) {
   auto loop = std::find_if(loops_.begin(), loops_.end(),
                            [&](const Loop& known) { return known.shown.session == report.session; });
   if (loop == loops_.end()) {
+    if (loops_.size() == kMostLoops) return;
     loop = loops_.insert(loops_.end(), Loop{});
     loop->shown = report;
   }
@@ -38,6 +42,7 @@ void RunSummary::Add(const fault_t& fault) {
     return other.first.session == fault.session && other.first.code == fault.code;
   });
   if (known == faults_.end()) {
+    if (faults_.size() == kMostFaults) return;
     known = faults_.insert(faults_.end(), Fault{});
     known->first = fault;
   }

@@ -10,6 +10,7 @@
 
 #include "base/input_error.h"
 #include "process/role.h"
+#include "process/stack_bus.h"
 
 namespace hydro::launch {
 namespace {
@@ -18,6 +19,7 @@ using namespace std::chrono_literals;
 
 constexpr auto kBusPeriod =
     20ms;  // how often the bus is read; processes that print or end wake the launcher at once
+constexpr double kPlantMargin_s = 1;  // its own launch may have begun that much later
 constexpr int kQuestions = 3;
 constexpr auto kAnswerTime = 100ms;       // how long a running process may take to say that it is there
 constexpr auto kFinalMessageTime = 50ms;  // how long a failed process's reason may take to arrive
@@ -50,10 +52,8 @@ StackLaunch::StackLaunch(const settings::StackConfig& config, const LaunchPlan& 
       timing_(timing),
       output_(out_fd, err_fd, LabelledOutput::WantsColour(out_fd, err_fd)),
       supervisor_(output_, GraceFor(timing, plan)),
-      bus_(bus::OpenUdpmBus(
-          config.bus.url,
-          bus::MakeAuthenticator(config.bus.resolved_key_file, bus::Channels(config.bus.channel_suffix)))),
-      watch_(*bus_, clock_, bus::Channels(config.bus.channel_suffix), plan.spread),
+      bus_(process::OpenStackBus(config.bus)),
+      watch_(*bus_, clock_, bus::Channels(config.bus.channel_suffix), plan.spread, !plan.timing_file.empty()),
       stop_announcer_([this](const std::string& reason, int exit_code) { PublishStop(reason, exit_code); }) {
   if (!plan.timing_file.empty()) timing_files_.emplace(plan.timing_file);
   output_.AnnounceLabel(kLabel);
@@ -70,6 +70,7 @@ int StackLaunch::Run() {
     OnSignals();
     while (const auto ended = supervisor_.NextEnded()) OnEnded(*ended);
     CheckReady();
+    CheckPlantIsHeard();
     CheckEarlyEnd();
     stop_announcer_.Repeat();
   }
@@ -186,6 +187,12 @@ void StackLaunch::OnEnded(const Supervisor::Ended& ended) {
     Fail(ended.program + " did not end on SIGTERM and was killed", 1);
     return;
   }
+  if (ended.program == "hydro-logger" && !config_.logger.required && !supervisor_.stopping()) {
+    PrintError(DescribeEnd(ended.program, end) +
+               ": the log ends here; the run goes on (logger.required = false)");
+    if (exit_code_ == 0) exit_code_ = 1;
+    return;
+  }
   const bool as_told = ended.terminated && end.signal == SIGTERM;  // before it caught signals
   if (as_told || (end.signal == 0 && end.exit_code == 0)) {
     if (!supervisor_.stopping() && early_end_.empty()) {
@@ -237,6 +244,23 @@ void StackLaunch::CheckReady() {
   } else if (std::chrono::duration<double>(elapsed).count() > config_.time.start_timeout_s) {
     Fail("not ready within " + Seconds(elapsed, "%.3g s") + " (time.start_timeout_s): " + Join(missing), 1);
   }
+}
+
+// A part of a stack whose plant is on another host, and never heard, would wait forever: it has not been started, the network does
+// not carry it, or it has another key.
+void StackLaunch::CheckPlantIsHeard() {
+  if (plant_heard_ || !plan_.spread || supervisor_.stopping()) return;
+  plant_heard_ = watch_.HasPlant();
+  const double elapsed = std::chrono::duration<double>(Supervisor::Clock::now() - started_).count();
+  if (plant_heard_ || elapsed <= config_.time.start_timeout_s + kPlantMargin_s) return;
+  const int64_t refused = bus_->refused().total();
+  Fail(fmt::format(
+           "no plant or driver is heard on {} within {:.3g} s (time.start_timeout_s){}", config_.bus.url,
+           elapsed,
+           refused > 0
+               ? fmt::format("; {} messages were refused: is bus.key_file the same on each host?", refused)
+               : ""),
+       1);
 }
 
 void StackLaunch::CheckEarlyEnd() {

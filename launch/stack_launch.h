@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "bus/udpm/open_udpm_bus.h"
+#include "bus/udpm/udpm_bus.h"
 #include "launch/labelled_output.h"
 #include "launch/launch.h"
 #include "launch/launch_plan.h"
@@ -36,6 +36,7 @@ class StackLaunch {
   void OnEnded(const Supervisor::Ended& ended);
   void OnStopHeard();
   void CheckReady();
+  void CheckPlantIsHeard();
   void CheckEarlyEnd();
   void RepeatStopForOtherHosts();
   void Fail(const std::string& reason, int exit_code);
@@ -60,6 +61,7 @@ class StackLaunch {
 
   TimePoint started_;
   bool ready_ = false;
+  bool plant_heard_ = false;
   bool bus_failed_ = false;
   bool stop_seen_ = false;  // another process's stop has been acted upon
   bool failing_ = false;    // the run has failed: consequences of that are not reported again

@@ -21,7 +21,8 @@ bool HasLeft(const process_status_t& status) {
 
 }  // namespace
 
-StackWatch::StackWatch(bus::Bus& bus, const bus::Clock& clock, const bus::Channels& channels, bool spread)
+StackWatch::StackWatch(bus::Bus& bus, const bus::Clock& clock, const bus::Channels& channels, bool spread,
+                       bool keep_timing)
     : bus_(bus),
       clock_(clock),
       channels_(channels),
@@ -37,12 +38,14 @@ StackWatch::StackWatch(bus::Bus& bus, const bus::Clock& clock, const bus::Channe
     if (!stop_ && stop.session != session_ && IsForThisStack(stop)) stop_ = stop;
   });
   bus.Subscribe<loop_statistics_t>(channels_.Of<loop_statistics_t>(),
-                                   [this](const loop_statistics_t& report) {
+                                   [this, keep_timing](const loop_statistics_t& report) {
                                      summary_.Add(report);
-                                     timing_.Add(report);
+                                     if (keep_timing) timing_.Add(report);
                                    });
-  bus.Subscribe<loop_histogram_t>(channels_.Of<loop_histogram_t>(),
-                                  [this](const loop_histogram_t& histogram) { timing_.Add(histogram); });
+  if (keep_timing) {
+    bus.Subscribe<loop_histogram_t>(channels_.Of<loop_histogram_t>(),
+                                    [this](const loop_histogram_t& histogram) { timing_.Add(histogram); });
+  }
   bus.Subscribe<fault_t>(channels_.Of<fault_t>(), [this](const fault_t& fault) { summary_.Add(fault); });
 }
 

@@ -24,8 +24,10 @@ namespace hydro::launch {
 class StackWatch {
  public:
   // Subscribes. Create it before the processes are started, so that no announcement is missed. `spread`:
-  // processes on other hosts belong to the stack too.
-  StackWatch(bus::Bus& bus, const bus::Clock& clock, const bus::Channels& channels, bool spread);
+  // processes on other hosts belong to the stack too. `keep_timing`: for timing(), which grows by a report a second and
+  // process.
+  StackWatch(bus::Bus& bus, const bus::Clock& clock, const bus::Channels& channels, bool spread,
+             bool keep_timing);
 
   // Asks every process on the bus to say that it is there. Answers come within milliseconds.
   void AskWhoIsThere();
@@ -39,6 +41,9 @@ class StackWatch {
   // The expected programs that have not announced that they are ready, in the order given.
   std::vector<std::string> NotReady() const;
 
+  // Whether a plant or driver has been heard, on whatever host, and has not left.
+  bool HasPlant() const { return !Present({"plant", "driver"}).empty(); }
+
   // Why a process of this launch failed, in its own words; empty when it gave no reason.
   std::string FailureText(const std::string& program, pid_t pid) const;
 
@@ -51,7 +56,7 @@ class StackWatch {
 
   const RunSummary& summary() const { return summary_; }
 
-  // The processes' reports on how their loops kept time.
+  // The processes' reports on how their loops kept time; empty unless they are kept.
   const timing::TimingRecord& timing() const { return timing_; }
 
  private:

@@ -10,10 +10,10 @@
 #include "base/host_name.h"
 #include "bus/channels.h"
 #include "bus/session.h"
-#include "bus/udpm/open_udpm_bus.h"
 #include "launch/local_stop.h"
 #include "launch/operator_request.h"
 #include "process/participant.h"
+#include "process/stack_bus.h"
 
 namespace hydro::launch {
 namespace {
@@ -132,9 +132,7 @@ OperatorResult StopStack(const settings::StackConfig& config, const OperatorTimi
   OperatorResult result{1, ""};
   std::string remark;
   try {
-    const auto bus = bus::OpenUdpmBus(
-        config.bus.url,
-        bus::MakeAuthenticator(config.bus.resolved_key_file, bus::Channels(config.bus.channel_suffix)));
+    const auto bus = process::OpenStackBus(config.bus);
     result = StopOverBus(*bus, bus::WallClock(), config, timing, local);
   } catch (const bus::BusError& error) {
     if (local.found() == 0) throw;

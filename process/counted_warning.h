@@ -29,7 +29,8 @@ class CountedWarning {
       faults.Raise(code_, describe(count), static_cast<double>(count), 0, false);
     } else if (now - grew_ > kQuiet) {
       active_ = false;
-      faults.Clear(code_);
+      // The first message of a flood began it; the end says how many there were.
+      faults.Clear(code_, describe(count_), static_cast<double>(count_));
     }
   }
 

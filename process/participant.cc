@@ -169,12 +169,7 @@ void Participant::WatchRefusals() {
     Raise(RefusalWatch::kCode, refusals_.Text(), count, 0, false);
     return;
   }
-  if (const auto fault = active_.find(RefusalWatch::kCode); fault != active_.end()) {
-    fault->second.text = refusals_.Text();  // with the final count
-    fault->second.value = count;
-    if (!clock_.simulated()) spdlog::error("{}", fault->second.text);
-  }
-  Clear(RefusalWatch::kCode);
+  Clear(RefusalWatch::kCode, refusals_.Text(), count);
 }
 
 bool Participant::Raise(const std::string& code, const std::string& text, double value, double limit,
@@ -198,6 +193,15 @@ bool Participant::Raise(const std::string& code, const std::string& text, double
 void Participant::Clear(const std::string& code) {
   const auto found = active_.find(code);
   if (found != active_.end() && !found->second.latched) End(code);
+}
+
+void Participant::Clear(const std::string& code, const std::string& text, double value) {
+  const auto found = active_.find(code);
+  if (found == active_.end()) return;
+  if (found->second.text != text && !clock_.simulated()) spdlog::error("{}", text);
+  found->second.text = text;
+  found->second.value = value;
+  Clear(code);
 }
 
 void Participant::Release(const std::string& code) {

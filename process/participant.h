@@ -75,6 +75,8 @@ class Participant {
   // Release(code). Returns true when it was not active before.
   bool Raise(const std::string& code, const std::string& text, double value, double limit, bool latched);
   void Clear(const std::string& code);
+  // The same, with what is known at its end.
+  void Clear(const std::string& code, const std::string& text, double value);
   void Release(const std::string& code);  // the operator has re-armed
   // Cheap, because it is asked on every tick.
   bool any_fault() const { return !active_.empty(); }

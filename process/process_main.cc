@@ -5,10 +5,10 @@
 #include <chrono>
 #include <memory>
 
-#include "bus/udpm/open_udpm_bus.h"
 #include "bus/udpm/udpm_url.h"
 #include "log/log_writer.h"
 #include "process/role.h"
+#include "process/stack_bus.h"
 #include "process/stderr_log.h"
 #include "process/stop_signal.h"
 #include "process/stop_socket.h"
@@ -97,9 +97,7 @@ int RunProcess(const std::string& program, const settings::CommonOptions& option
     const StopSocket stop_socket(
         StopSocketPrefix(bus::ParseUdpmUrl(config.bus.url).port, config.bus.channel_suffix), RoleOf(program));
     timing::ApplyRealTime(RealTimeRequestOf(SectionOf(config, program)));
-    const std::unique_ptr<bus::UdpmBus> opened = bus::OpenUdpmBus(
-        config.bus.url,
-        bus::MakeAuthenticator(config.bus.resolved_key_file, bus::Channels(config.bus.channel_suffix)));
+    const std::unique_ptr<bus::UdpmBus> opened = OpenStackBus(config.bus);
     bus::UdpmBus& bus = *opened;
     WarnOfOpenNetwork(program, config.bus);
     if (const std::string hint = bus.receive_buffer_hint(); !hint.empty()) spdlog::warn("{}", hint);

@@ -141,6 +141,7 @@ struct NoiseSection {
 };
 
 struct LoggerSection {
+  bool required = true;  // hydro-launch stops the stack when the logger ends
   double memory_mb =
       64;  // for what waits to be written; what comes when it is used up is left out of the log
 };

@@ -163,6 +163,7 @@ void ReadNoise(SectionReader section, NoiseSection* noise, int64_t* seed) {
 }
 
 void ReadLogger(SectionReader section, LoggerSection* logger) {
+  section.Boolean("required", &logger->required);
   section.Number("memory_mb", &logger->memory_mb, {.min = 1, .max = 1e5});
   section.Finish();
 }

@@ -127,9 +127,11 @@ std::optional<introduction_t> Authenticator::Ask(int64_t session, TimePoint now)
   return Introduction(session);
 }
 
-std::unique_ptr<Authenticator> MakeAuthenticator(const std::string& key_file, const Channels& channels) {
+std::unique_ptr<Authenticator> MakeAuthenticator(const std::string& key_file, const Channels& channels,
+                                                 int port) {
   if (key_file.empty()) return nullptr;
-  return std::make_unique<Authenticator>(ReadBusKey(key_file), AuthenticatedChannels(channels));
+  return std::make_unique<Authenticator>(KeyForPort(ReadBusKey(key_file), port),
+                                         AuthenticatedChannels(channels));
 }
 
 }  // namespace hydro::bus

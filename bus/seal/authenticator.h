@@ -97,6 +97,7 @@ class Authenticator {
 
 // The authenticator of a stack with that key file; null when `key_file` is empty. Throws InputError
 // (bus_key.h).
-std::unique_ptr<Authenticator> MakeAuthenticator(const std::string& key_file, const Channels& channels);
+std::unique_ptr<Authenticator> MakeAuthenticator(const std::string& key_file, const Channels& channels,
+                                                 int port);
 
 }  // namespace hydro::bus

@@ -82,6 +82,17 @@ size_t ReadAll(const std::string& file, int fd, char* text) {
 
 }  // namespace
 
+BusKey KeyForPort(const BusKey& key, int port) {
+  StartSodium();
+  const std::string context = "hydro bus key, port " + std::to_string(port);
+  std::array<uint8_t, kBusKeySize> derived{};
+  crypto_generichash(derived.data(), derived.size(), reinterpret_cast<const unsigned char*>(context.data()),
+                     context.size(), key.bytes().data(), key.bytes().size());
+  BusKey result(derived);
+  sodium_memzero(derived.data(), derived.size());
+  return result;
+}
+
 BusKey::~BusKey() { sodium_memzero(bytes_.data(), bytes_.size()); }
 
 BusKey ReadBusKey(const std::string& file) {

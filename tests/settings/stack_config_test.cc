@@ -117,6 +117,7 @@ arm_speed_resolution_rad_s = 0.6
 seed = 7
 [logger]
 memory_mb = 12.5
+required = false
 [[process]]
 program = "hydro-driver"
 host = "rig"
@@ -199,6 +200,7 @@ TEST(StackConfigTest, ReadsEveryKey) {
   EXPECT_EQ(config.noise.arm_speed_resolution_rad_s, 0.6);
   EXPECT_EQ(config.seed, 7);
   EXPECT_EQ(config.logger.memory_mb, 12.5);
+  EXPECT_FALSE(config.logger.required);
   ASSERT_EQ(config.processes.size(), 3u);
   EXPECT_EQ(config.processes[0].program, "hydro-driver");
   EXPECT_EQ(config.processes[0].host, "rig");
