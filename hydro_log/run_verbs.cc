@@ -29,6 +29,11 @@ runs::RunLog ReadWithWarning(const std::string& file, const std::optional<std::s
   return log;
 }
 
+void WarnOf(const runs::RunLog& log) {
+  const std::string caution = runs::DescribeCaution(log);
+  if (!caution.empty()) std::fprintf(stderr, "hydro-log: warning: %s\n", Printable(caution).c_str());
+}
+
 SummaryVerb::SummaryVerb(settings::CommandLine& line) {
   settings::CommandLine& verb =
       line.AddVerb("summary", "How well the arm followed its reference, loop timing, losses.");
@@ -63,6 +68,7 @@ int TimingVerb::Run() const {
   CheckOutput(json_, log_);
   CheckOutput(page_, log_);
   const runs::RunLog log = ReadWithWarning(log_, suffix_);
+  WarnOf(log);
   timing::TimingRecord record;
   for (const loop_statistics_t& report : log.messages.Of<loop_statistics_t>()) record.Add(report);
   for (const loop_histogram_t& histogram : log.messages.Of<loop_histogram_t>()) record.Add(histogram);
@@ -93,6 +99,7 @@ int ReplayVerb::Run() const {
   }
   if (!(speed_ >= 0) || std::isinf(speed_)) throw InputError("--speed: must be a number of 0 or more");
   const runs::RunLog log = ReadWithWarning(log_, suffix_);
+  WarnOf(log);
   int exit_code = 0;
   const auto replay = [&](ReplayedController controller, const char* name, const char* commands) {
     const ReplayResult result = Replay(log, controller, speed_);
