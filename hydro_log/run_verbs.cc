@@ -110,6 +110,12 @@ int ReplayVerb::Run() const {
       std::printf("%s: identical, %lld %s from %lld states\n", name, static_cast<long long>(result.answers),
                   commands, static_cast<long long>(result.states));
     }
+    if (result.gap_tick) {
+      std::printf(
+          "%s: compared up to tick %lld, where the log lacks a message; %lld %s after it are not compared\n",
+          name, static_cast<long long>(*result.gap_tick), static_cast<long long>(result.not_compared),
+          commands);
+    }
   };
   if (controller_ != "position") replay(ReplayedController::kPressure, "pressure", "motor commands");
   if (controller_ != "pressure") replay(ReplayedController::kPosition, "position", "pressure commands");

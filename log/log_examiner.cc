@@ -1,5 +1,6 @@
 #include "log/log_examiner.h"
 
+#include <algorithm>
 #include <cstring>
 
 #include "base/number_text.h"
@@ -61,7 +62,9 @@ bool LogExaminer::Unreadable(int64_t offset, const std::string& wrong) {
   return false;
 }
 
+// What no checksum has covered yet is not read in a damaged log: it may be damaged too.
 bool LogExaminer::Damaged(int64_t readable_end, const std::string& where) {
+  if (begun_ && !pending_.empty() && !block_compared_) readable_end = pending_.front().offset;
   verdict_.completeness = Completeness::kDamaged;
   verdict_.readable_end = readable_end;
   verdict_.where = where;
@@ -70,6 +73,8 @@ bool LogExaminer::Damaged(int64_t readable_end, const std::string& where) {
 
 bool LogExaminer::CheckFollows(int64_t offset) const {
   const std::string mark = std::string(kCheckChannel) + std::string(kCheckMagic);
+  // Not the one that stands at `offset` itself and is torn.
+  offset = std::min(offset + static_cast<int64_t>(kLogHeaderSize + mark.size()), size());
   return memmem(file_.data() + offset, file_.size() - static_cast<size_t>(offset), mark.data(),
                 mark.size()) != nullptr;
 }
@@ -110,6 +115,7 @@ bool LogExaminer::TakeCheck(const LogEvent& event) {
   checked_end_ = EndOf(event);
   checked_utime_ = event.utime;
   pending_.clear();
+  block_compared_ = false;
   ended_ = check->kind == CheckKind::kEnd;
   verdict_.found_end = ended_;
   if (ended_) verdict_.ending = check->text;
@@ -143,6 +149,7 @@ bool LogExaminer::CompareBlock(const LogEvent& event, const LogCheck& check) {
                                       : missing < 0 ? Counted(-missing, "byte") + " too many were found"
                                                     : "check events are missing or out of order"));
   }
+  block_compared_ = true;
   size_t same = 0;
   while (same < pending_.size() && same < check.count && pending_[same].checksum == check.ChecksumAt(same)) {
     ++same;

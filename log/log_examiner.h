@@ -40,6 +40,7 @@ class LogExaminer {
   LogVerdict verdict_;
   std::vector<Pending> pending_;
   int64_t messages_ = 0;
+  bool block_compared_ = false;  // pending_ was compared, so what precedes the first difference is right
   bool begun_ = false;
   bool ended_ = false;
   int64_t begin_ = 0;        // byte of the kBegin in force

@@ -26,8 +26,15 @@ class Voucher {
     const std::optional<LogCheck> check = ParseCheck(event);
     if (!check || !check->sound) {
       lost_.push_back({place.begin, place.end, "a damaged check event"});
-      previous_.reset();
-      return;  // what it vouches for stays in the block, before what the next one does
+      result_.found_end = false;
+      if (check && FirstListed(*check) < block_.size()) {
+        // A message that its list lacks is damaged, or the list is there: better one message less than one wrong.
+        Compare(*check);
+        previous_ = check->checksum;
+      } else {
+        previous_.reset();  // what it vouches for stays in the block, before what the next one does
+      }
+      return;
     }
     ++result_.check_events;
     result_.check_bytes += place.end - place.begin;

@@ -21,7 +21,7 @@ struct VouchedEvents {
 };
 
 // Moves events that have another checksum than when they were written from `events` to `lost`. Where a check
-// event is damaged or absent, the messages that it would vouch for are kept and counted as `unvouched`. A log
+// event is absent or beyond reading, the messages that it would vouch for are kept and counted as `unvouched`. A log
 // without check events keeps all of them.
 VouchedEvents KeepVouched(const MappedFile& file, const std::vector<KeptEvent>& events,
                           std::vector<LostBytes>& lost);
