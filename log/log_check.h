@@ -23,8 +23,8 @@ inline constexpr size_t kMostCheckText = 60000;     // bytes
 
 enum class CheckKind : uint8_t {
   kBegin,  // opens a log; its text says where it comes from, if not from a recording
-  kBlock,
-  kEnd,  // ends a log; its text says why, if not because the recording was finished
+  kBlock,  // between; its text is a remark of the recorder
+  kEnd,    // ends a log; its text says why, if not because the recording was finished
 };
 
 // The contents of a check event. The views lie in its bytes.

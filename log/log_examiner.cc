@@ -10,6 +10,8 @@
 namespace hydro::log {
 namespace {
 
+constexpr size_t kMostRemarks = 100;
+
 std::string Byte(int64_t offset) { return "byte " + std::to_string(offset); }
 
 std::string Place(int64_t offset, int64_t index) {
@@ -117,6 +119,9 @@ bool LogExaminer::TakeCheck(const LogEvent& event) {
   pending_.clear();
   block_compared_ = false;
   ended_ = check->kind == CheckKind::kEnd;
+  if (check->kind == CheckKind::kBlock && !check->text.empty() && verdict_.remarks.size() < kMostRemarks) {
+    verdict_.remarks.emplace_back(check->text);
+  }
   verdict_.found_end = ended_;
   if (ended_) verdict_.ending = check->text;
   return true;

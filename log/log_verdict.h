@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include "base/mapped_file.h"
 
@@ -25,8 +26,9 @@ struct LogVerdict {
   int64_t unchecked_messages = 0;
   int64_t unchecked_from = 0;
   std::string note;  // where the log comes from, if not from a recording (hydro-log repair says it here)
-  bool found_end = false;  // the (last) mark of the end was there
-  std::string ending;      // why it ends, if not because the recording was finished (rotation, repair)
+  std::vector<std::string> remarks;  // of the recorder, on what it left out
+  bool found_end = false;            // the (last) mark of the end was there
+  std::string ending;  // why it ends, if not because the recording was finished (rotation, repair)
 };
 
 // Reads all of the file once.

@@ -45,6 +45,7 @@ LogWriter::~LogWriter() {
 }
 
 void LogWriter::MakeRoom(size_t needed) {
+  if (!begun_) needed += kCheckOverhead + CheckDataSize(0, note_.size());
   if (used_ + needed + kMostBlockCheck <= capacity_) return;
   FlushBuffer();
   if (needed + kMostBlockCheck <= capacity_) return;
@@ -59,9 +60,9 @@ uint8_t* LogWriter::Reserve(std::string_view channel, size_t size, int64_t utime
                                 " bytes: a channel of 1 to 63 bytes and at most 1 GiB of data are allowed");
   }
   const size_t needed = kLogHeaderSize + channel.size() + size;
-  MakeRoom(needed + (begun_ ? 0 : kCheckOverhead + CheckDataSize(0, note_.size())));
+  MakeRoom(needed);
   last_utime_ = utime;  // also of the first check: a player waits until the first event's time
-  if (!begun_) AppendCheck(CheckKind::kBegin, note_);
+  Begin();
   return WriteHeader(channel, size, utime);
 }
 
@@ -116,6 +117,17 @@ void LogWriter::Append(std::string_view channel, const void* data, size_t size, 
   Commit(channel.size(), size);
 }
 
+void LogWriter::Begin() {
+  if (!begun_) AppendCheck(CheckKind::kBegin, note_);
+}
+
+void LogWriter::Remark(std::string_view text) {
+  text = text.substr(0, kMostCheckText);
+  MakeRoom(kCheckOverhead + CheckDataSize(0, text.size()));
+  Begin();
+  AppendCheck(CheckKind::kBlock, text);
+}
+
 void LogWriter::Flush() {
   if (!checksums_.empty()) AppendCheck(CheckKind::kBlock, {});
   FlushBuffer();
@@ -140,9 +152,8 @@ void LogWriter::FlushBuffer() {
 void LogWriter::Finish(std::string_view why) {
   why = why.substr(0, kMostCheckText);
   if (!ended_) {
-    const size_t begin = begun_ ? 0 : kCheckOverhead + CheckDataSize(0, note_.size());
-    MakeRoom(begin + kCheckOverhead + CheckDataSize(0, why.size()));
-    if (!begun_) AppendCheck(CheckKind::kBegin, note_);
+    MakeRoom(kCheckOverhead + CheckDataSize(0, why.size()));
+    Begin();
     AppendCheck(CheckKind::kEnd, why);
     ended_ = true;
   }

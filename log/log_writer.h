@@ -44,6 +44,9 @@ class LogWriter {
     Commit(channel.size(), static_cast<size_t>(size));
   }
 
+  // Puts a remark about the recording into the log, where hydro-log info finds it. Throws WriteError.
+  void Remark(std::string_view text);
+
   // Hands everything to the operating system with a checksum, after which it survives a kill of this process.
   // Throws WriteError.
   void Flush();
@@ -57,8 +60,10 @@ class LogWriter {
   const std::string& file() const { return file_.name(); }
 
  private:
-  // Makes room in the buffer for one event and a check event after it.
+  // Makes room in the buffer for one event and a check event after it, and for the first if there is none yet.
   void MakeRoom(size_t needed);
+  // Appends the first check event if there is none yet.
+  void Begin();
   // Makes room for one event, writes its header and channel, and returns the place for its data.
   uint8_t* Reserve(std::string_view channel, size_t size, int64_t utime);
   uint8_t* WriteHeader(std::string_view channel, size_t size, int64_t utime);

@@ -82,6 +82,7 @@ void WriteKept(const MappedFile& contents, const std::vector<KeptEvent>& kept, c
     ParseLogEvent(contents, place.begin, event);
     writer.Append(event.channel, event.data, static_cast<size_t>(event.size), event.utime);
   }
+  for (const std::string& remark : result.verdict.remarks) writer.Remark(remark);
   writer.Finish(EndingOf(result.verdict));
 }
 

@@ -40,6 +40,7 @@ LoggerApp::LoggerApp(bus::Bus& bus, bus::Clock& clock, const settings::StackConf
       options_(options),
       writer_(std::make_unique<log::LogWriter>(options.file, Opening::kDirect)),
       queue_(static_cast<size_t>(config.logger.memory_mb * 1e6)) {
+  watch_.Watch(options.file);
   if (config.time.mode == settings::TimeMode::kLockstep) {
     order_.emplace(config.pressure_interval_ticks, config.position_interval_ticks,
                    config.plant.command_delay_ticks == 0, [this](const log::RecordedMessage& message) {
@@ -68,7 +69,13 @@ LoggerApp::~LoggerApp() {
 }
 
 void LoggerApp::OnMessage(const bus::RawMessage& message) {
-  if (message.channel.empty()) return;  // LCM carries such a message, but no log can hold it
+  // LCM carries a message without a channel, but no log can hold it; and only the writer checks a log.
+  if (message.channel.empty() || message.channel == log::kCheckChannel) return;
+  if (RefusedQuota::IsRefused(message.channel) &&
+      !refused_.Admit(static_cast<size_t>(message.size), participant_.clock().Now())) {
+    ReportRefused();
+    return;
+  }
   ++received_;
   const std::optional<bus::LoopNumbers> numbers = bus::ReadLoopNumbers(message, participant_.channels());
   if (numbers) CountSequence(*numbers);
@@ -91,6 +98,10 @@ void LoggerApp::OnMessage(const bus::RawMessage& message) {
     Enqueue(message.channel, message.data, static_cast<size_t>(message.size), message.receive_utime,
             participant_.clock().Now());
   }
+}
+
+void LoggerApp::ReportRefused() {
+  if (refused_.left_out() == 1) spdlog::warn("{}", refused_.Text());  // once; the total at the end
 }
 
 void LoggerApp::CountSequence(const bus::LoopNumbers& numbers) {
@@ -154,6 +165,7 @@ void LoggerApp::WriteUntilClosed() {
         wake_.wait_for(lock, kFlushPeriod, [this] { return closing_; });
         closing = closing_;
       }
+      LookAtFile(closing ? watch_.LookNow() : watch_.Look(std::chrono::steady_clock::now()));
       const EventQueue::Batch batch = queue_.Take();
       if (batch.empty()) continue;
       const Write write = WriteBatch(batch);
@@ -165,6 +177,14 @@ void LoggerApp::WriteUntilClosed() {
     failure_ = std::current_exception();
     failed_ = true;
   }
+}
+
+// Recording goes on: an open file takes what is written, and may still be copied from /proc.
+void LoggerApp::LookAtFile(std::optional<std::string> wrong) {
+  if (!wrong) return;
+  spdlog::error("{}; recording goes on, and this logger will end with 1", *wrong);
+  const std::lock_guard lock(mutex_);
+  if (gone_.empty()) gone_ = *wrong;
 }
 
 LoggerApp::Write LoggerApp::WriteBatch(const EventQueue::Batch& batch) {
@@ -185,8 +205,11 @@ LoggerApp::Write LoggerApp::WriteBatch(const EventQueue::Batch& batch) {
 }
 
 void LoggerApp::Rotate() {
-  writer_->Finish();
-  writer_ = std::make_unique<log::LogWriter>(RotatedName(options_.file, files_++), Opening::kDirect);
+  const std::string next = RotatedName(options_.file, files_++);
+  writer_->Finish("goes on in " + std::filesystem::path(next).filename().string());
+  LookAtFile(watch_.LookNow());
+  writer_ = std::make_unique<log::LogWriter>(next, Opening::kDirect);
+  watch_.Watch(next);
   for (const auto& [channel, event] : descriptions_) {
     writer_->Append(channel, event.data.data(), event.data.size(), event.utime);
   }
@@ -225,7 +248,7 @@ bool LoggerApp::finished() const {
 // Why writing failed; empty while it works.
 std::string LoggerApp::FailureText() {
   const std::lock_guard lock(mutex_);
-  if (!failure_) return "";
+  if (!failure_) return gone_;
   try {
     std::rethrow_exception(failure_);
   } catch (const std::exception& error) {
@@ -247,7 +270,16 @@ int LoggerApp::Finish() {
   wake_.notify_one();
   thread_.join();
   if (failure_) std::rethrow_exception(failure_);
+  if (const std::string refused = refused_.Text(); !refused.empty()) {
+    spdlog::warn("{}", refused);
+    writer_->Remark(refused);
+  }
+  if (queue_.dropped() > 0) {
+    writer_->Remark(
+        fmt::format("{} messages are not in the log: the disk was slower than the bus", queue_.dropped()));
+  }
   writer_->Finish();
+  if (!gone_.empty()) exit_code = 1;
   if (const int64_t dropped = queue_.dropped(); dropped > 0) {
     spdlog::warn("{} messages are not in the log: the disk was slower than the bus (logger.memory_mb)",
                  dropped);

@@ -117,6 +117,7 @@ std::string InfoJson(const LogInfo& info) {
                  {"readable_bytes", info.verdict.readable_end},
                  {"unchecked_messages", info.verdict.unchecked_messages},
                  {"note", info.verdict.note},
+                 {"remarks", info.verdict.remarks},
                  {"ending", info.verdict.ending}};
   json["suffix"] = info.suffix;
   json["other_suffixes"] = info.other_suffixes;

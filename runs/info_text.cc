@@ -19,6 +19,7 @@ void AppendVerdict(const log::LogVerdict& verdict, std::string& text) {
   Append(text, "log: {}{}{}\n", NameOf(verdict.completeness), verdict.where.empty() ? "" : ": ",
          verdict.where);
   if (!verdict.note.empty()) Append(text, "log: {}\n", verdict.note);
+  for (const std::string& remark : verdict.remarks) Append(text, "log: {}\n", remark);
   if (!verdict.ending.empty()) Append(text, "log: ends here: {}\n", verdict.ending);
   if (verdict.completeness == log::Completeness::kDamaged) {
     text += "what follows is of the messages before the damage; hydro-log repair keeps what can be read\n";

@@ -84,9 +84,12 @@ TEST_F(HydroLogTest, Repair) {
   const std::string whole = log::ReadBytes(Path("log"));
   EXPECT_EQ(HydroLog({"repair", Path("log")}).out, Path("log") + ": nothing to repair\n");
   EXPECT_FALSE(std::filesystem::exists(Path("log.damaged")));
-  log::WriteBytes(Path("log"), whole.substr(0, whole.size() - 1));
+  std::string flipped = whole;
+  flipped[whole.size() / 2] ^= 1;
+  log::WriteBytes(Path("log"), flipped.substr(0, whole.size() - 1));
   const Outcome broken = HydroLog({"info", Path("log")});
   EXPECT_EQ(broken.exit_code, 2);
+  EXPECT_THAT(broken.out, HasSubstr("log: damaged: byte "));
   EXPECT_THAT(broken.err, HasSubstr("hydro-log repair " + Path("log")));
   const Outcome repaired = HydroLog({"repair", Path("log")});
   EXPECT_EQ(repaired.exit_code, 0);
