@@ -68,7 +68,6 @@ int TimingVerb::Run() const {
   CheckOutput(json_, log_);
   CheckOutput(page_, log_);
   const runs::RunLog log = ReadWithWarning(log_, suffix_);
-  WarnOf(log);
   timing::TimingRecord record;
   for (const loop_statistics_t& report : log.messages.Of<loop_statistics_t>()) record.Add(report);
   for (const loop_histogram_t& histogram : log.messages.Of<loop_histogram_t>()) record.Add(histogram);
@@ -77,6 +76,7 @@ int TimingVerb::Run() const {
     throw InputError(
         log_ + ": found no report of a loop (HYDRO_LOOP_STATISTICS); a log of a run of processes is needed");
   }
+  WarnOf(log);
   std::fputs(PrintableLines(timing::TimingText(processes)).c_str(), stdout);
   if (!json_.empty()) WriteWholeFile(json_, timing::TimingJson(processes, log_));
   if (!page_.empty()) WriteWholeFile(page_, timing::TimingPage(processes, log_));
@@ -99,7 +99,6 @@ int ReplayVerb::Run() const {
   }
   if (!(speed_ >= 0) || std::isinf(speed_)) throw InputError("--speed: must be a number of 0 or more");
   const runs::RunLog log = ReadWithWarning(log_, suffix_);
-  WarnOf(log);
   int exit_code = 0;
   const auto replay = [&](ReplayedController controller, const char* name, const char* commands) {
     const ReplayResult result = Replay(log, controller, speed_);
@@ -119,6 +118,7 @@ int ReplayVerb::Run() const {
   };
   if (controller_ != "position") replay(ReplayedController::kPressure, "pressure", "motor commands");
   if (controller_ != "pressure") replay(ReplayedController::kPosition, "position", "pressure commands");
+  WarnOf(log);
   return exit_code;
 }
 

@@ -137,6 +137,14 @@ def read_events(path, torn_tail=False):
     return [event for _, event in read_all_events(path, torn_tail) if event.channel != CHECK_CHANNEL]
 
 
+def write_plain(path, events):
+    """Writes a log as lcm-logger does, without check events."""
+    with open(path, "wb") as file:
+        for number, event in enumerate(events):
+            channel = event.channel.encode()
+            file.write(HEADER.pack(SYNC_WORD, number, event.utime, len(channel), len(event.data)) + channel + event.data)
+
+
 Check = collections.namedtuple("Check", "version kind offset previous checksums text checksum")
 BEGIN, BLOCK, END = range(3)
 CHECK_HEAD = struct.Struct(">8sBBHIQI")  # magic, version, kind, length of the text, count, offset, previous
