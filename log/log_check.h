@@ -1,4 +1,4 @@
-// Check events: what a log says of itself, so that damage is noticed (docs/log_format.md).
+// Check events: what a log says of itself, so that damage is noticed (docs/logs.md).
 //
 // They are events of the log on a channel of their own. Each holds the checksums of the events since the one
 // before it; the first opens the log and the last ends it. LCM's tools read past them: lcm-logplayer picks

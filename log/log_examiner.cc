@@ -5,6 +5,7 @@
 
 #include "base/number_text.h"
 #include "base/saturating.h"
+#include "base/text_file.h"
 #include "log/log_format.h"
 
 namespace hydro::log {
@@ -120,10 +121,10 @@ bool LogExaminer::TakeCheck(const LogEvent& event) {
   block_compared_ = false;
   ended_ = check->kind == CheckKind::kEnd;
   if (check->kind == CheckKind::kBlock && !check->text.empty() && verdict_.remarks.size() < kMostRemarks) {
-    verdict_.remarks.emplace_back(check->text);
+    verdict_.remarks.push_back(Printable(check->text));
   }
   verdict_.found_end = ended_;
-  if (ended_) verdict_.ending = check->text;
+  if (ended_) verdict_.ending = Printable(check->text);
   return true;
 }
 
@@ -140,7 +141,7 @@ bool LogExaminer::TakeBegin(const LogEvent& event, const LogCheck& check) {
   previous_ = check.checksum;
   checked_end_ = EndOf(event);
   checked_utime_ = event.utime;
-  if (!check.text.empty()) verdict_.note += (verdict_.note.empty() ? "" : "; ") + std::string(check.text);
+  if (!check.text.empty()) verdict_.note += (verdict_.note.empty() ? "" : "; ") + Printable(check.text);
   return true;
 }
 

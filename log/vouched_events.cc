@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "base/saturating.h"
+#include "base/text_file.h"
 #include "log/log_check.h"
 #include "log/log_reader.h"
 
@@ -42,7 +43,7 @@ class Voucher {
     Count(event, *check);
     previous_ = check->checksum;
     result_.found_end = check->kind == CheckKind::kEnd;
-    result_.ending = result_.found_end ? check->text : "";
+    result_.ending = result_.found_end ? Printable(check->text) : "";
   }
 
   VouchedEvents Finish() {

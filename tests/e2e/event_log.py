@@ -151,7 +151,7 @@ CHECK_HEAD = struct.Struct(">8sBBHIQI")  # magic, version, kind, length of the t
 
 
 def parse_check(data):
-    """What docs/log_format.md says that the data of a check event hold."""
+    """What docs/logs.md says that the data of a check event hold."""
     magic, version, kind, text_length, count, offset, previous = CHECK_HEAD.unpack_from(data)
     if magic != b"HYDROCHK" or len(data) != CHECK_HEAD.size + 4 * count + text_length + 4:
         raise LogError("a check event of other contents")

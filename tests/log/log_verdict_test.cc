@@ -28,7 +28,7 @@ class LogVerdictTest : public LogTest {
   }
 };
 
-// Tests the bytes of the shortest log, field by field, as docs/log_format.md has them.
+// Tests the bytes of the shortest log, field by field, as docs/logs.md has them.
 TEST_F(LogVerdictTest, FormatByteByByte) {
   {
     LogWriter writer(Path("log"), Opening::kTemporary, "note");
