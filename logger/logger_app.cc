@@ -3,7 +3,6 @@
 #include <spdlog/fmt/fmt.h>
 #include <spdlog/spdlog.h>
 
-#include <filesystem>
 #include <hydro/log_progress_t.hpp>
 #include <hydro/motor_command_t.hpp>
 #include <hydro/pressure_command_t.hpp>
@@ -26,21 +25,13 @@ constexpr size_t kMostSenders = 1024;  // of one kind of message whose numbers a
 
 }  // namespace
 
-std::string RotatedName(const std::string& file, int n) {
-  if (n == 0) return file;
-  const std::filesystem::path path(file);
-  return (path.parent_path() / fmt::format("{}-{:03d}{}", path.stem().string(), n, path.extension().string()))
-      .string();
-}
-
 LoggerApp::LoggerApp(bus::Bus& bus, bus::Clock& clock, const settings::StackConfig& config,
                      const LoggerOptions& options)
     : bus_(Tap(bus)),  // first: subscribing to all channels after other subscriptions could lose messages
       participant_(bus, clock, bus::Channels(config.bus.channel_suffix), "logger"),
       options_(options),
-      writer_(std::make_unique<log::LogWriter>(options.file, Opening::kDirect)),
+      files_(options.file, options.rotate_bytes, participant_.channels().Of<run_description_t>()),
       queue_(static_cast<size_t>(config.logger.memory_mb * 1e6)) {
-  watch_.Watch(options.file);
   if (config.time.mode == settings::TimeMode::kLockstep) {
     order_.emplace(config.pressure_interval_ticks, config.position_interval_ticks,
                    config.plant.command_delay_ticks == 0, [this](const log::RecordedMessage& message) {
@@ -165,7 +156,7 @@ void LoggerApp::WriteUntilClosed() {
         wake_.wait_for(lock, kFlushPeriod, [this] { return closing_; });
         closing = closing_;
       }
-      LookAtFile(closing ? watch_.LookNow() : watch_.Look(std::chrono::steady_clock::now()));
+      if (const auto wrong = files_.Look(closing)) ReportGone(*wrong);
       const EventQueue::Batch batch = queue_.Take();
       if (batch.empty()) continue;
       const Write write = WriteBatch(batch);
@@ -180,11 +171,10 @@ void LoggerApp::WriteUntilClosed() {
 }
 
 // Recording goes on: an open file takes what is written, and may still be copied from /proc.
-void LoggerApp::LookAtFile(std::optional<std::string> wrong) {
-  if (!wrong) return;
-  spdlog::error("{}; recording goes on, and this logger will end with 1", *wrong);
+void LoggerApp::ReportGone(const std::string& wrong) {
+  spdlog::error("{}; recording goes on, and this logger will end with 1", wrong);
   const std::lock_guard lock(mutex_);
-  if (gone_.empty()) gone_ = *wrong;
+  if (gone_.empty()) gone_ = wrong;
 }
 
 LoggerApp::Write LoggerApp::WriteBatch(const EventQueue::Batch& batch) {
@@ -192,27 +182,11 @@ LoggerApp::Write LoggerApp::WriteBatch(const EventQueue::Batch& batch) {
   std::optional<bus::Clock::TimePoint> oldest;
   batch.ForEach([&](const EventQueue::Event& event) {
     if (!oldest) oldest = event.arrived;
-    if (options_.rotate_bytes > 0 && writer_->bytes() >= options_.rotate_bytes) Rotate();
-    writer_->Append(event.channel, event.data, event.size, event.utime);
-    if (event.channel == participant_.channels().Of<run_description_t>()) {
-      const std::string channel(event.channel);
-      descriptions_[channel] = {channel, {event.data, event.data + event.size}, event.utime};
-    }
+    files_.Append(event);
   });
-  writer_->Flush();
+  files_.Flush();
   const auto now = participant_.clock().Now();
   return {began, now - oldest.value_or(now)};
-}
-
-void LoggerApp::Rotate() {
-  const std::string next = RotatedName(options_.file, files_++);
-  writer_->Finish("goes on in " + std::filesystem::path(next).filename().string());
-  LookAtFile(watch_.LookNow());
-  writer_ = std::make_unique<log::LogWriter>(next, Opening::kDirect);
-  watch_.Watch(next);
-  for (const auto& [channel, event] : descriptions_) {
-    writer_->Append(channel, event.data.data(), event.data.size(), event.utime);
-  }
 }
 
 void LoggerApp::Poll() {
@@ -272,21 +246,21 @@ int LoggerApp::Finish() {
   if (failure_) std::rethrow_exception(failure_);
   if (const std::string refused = refused_.Text(); !refused.empty()) {
     spdlog::warn("{}", refused);
-    writer_->Remark(refused);
+    files_.Remark(refused);
   }
   if (queue_.dropped() > 0) {
-    writer_->Remark(
+    files_.Remark(
         fmt::format("{} messages are not in the log: the disk was slower than the bus", queue_.dropped()));
   }
-  writer_->Finish();
+  files_.Finish();
   if (!gone_.empty()) exit_code = 1;
   if (const int64_t dropped = queue_.dropped(); dropped > 0) {
     spdlog::warn("{} messages are not in the log: the disk was slower than the bus (logger.memory_mb)",
                  dropped);
   }
-  const std::string size = files_ > 1 ? fmt::format("{} and {} more files ({} bytes in the last)",
-                                                    options_.file, files_ - 1, writer_->bytes())
-                                      : fmt::format("{} ({} bytes)", options_.file, writer_->bytes());
+  const std::string size = files_.count() > 1 ? fmt::format("{} and {} more files ({} bytes in the last)",
+                                                            options_.file, files_.count() - 1, files_.bytes())
+                                              : fmt::format("{} ({} bytes)", options_.file, files_.bytes());
   spdlog::info("{} messages in {}; at most {} waited for the disk; {} lost before they arrived",
                received_ - queue_.dropped(), size, largest_queue_total_, lost_);
   return exit_code;

@@ -22,9 +22,8 @@
 #include <vector>
 
 #include "log/causal_order.h"
-#include "log/log_writer.h"
 #include "logger/event_queue.h"
-#include "logger/file_watch.h"
+#include "logger/log_files.h"
 #include "logger/refused_quota.h"
 #include "process/app.h"
 #include "process/participant.h"
@@ -36,9 +35,6 @@ struct LoggerOptions {
   std::string file;
   int64_t rotate_bytes = 0;  // a new file is started when one has grown beyond this; 0: never
 };
-
-// The name of the n-th file (n = 0 is `file` itself): run.lcmlog, run-001.lcmlog, run-002.lcmlog ...
-std::string RotatedName(const std::string& file, int n);
 
 class LoggerApp : public process::App {
  public:
@@ -68,8 +64,7 @@ class LoggerApp : public process::App {
   void OnStatus(const process_status_t& status);
   void WriteUntilClosed();
   Write WriteBatch(const EventQueue::Batch& batch);
-  void Rotate();
-  void LookAtFile(std::optional<std::string> wrong);
+  void ReportGone(const std::string& wrong);
   void ReportRefused();
   void ReportProgress();
   bool EveryoneHasLeft() const;
@@ -78,11 +73,7 @@ class LoggerApp : public process::App {
   bus::Bus& bus_;
   process::Participant participant_;
   LoggerOptions options_;
-  std::unique_ptr<log::LogWriter> writer_;  // the writing thread's, once it runs
-  FileWatch watch_;                         // the writing thread's too
-  int files_ = 1;
-  // The newest HYDRO_RUN message of each channel: each rotated file begins with them.
-  std::map<std::string, log::RecordedMessage> descriptions_;
+  LogFiles files_;  // the writing thread's, once it runs
 
   std::mutex mutex_;  // guards writes_, closing_, failure_, gone_
   std::condition_variable wake_;

@@ -129,6 +129,28 @@ class LoggerTest(stack.TestCase):
             self.assertEqual(mine, all_[begin:begin + len(mine)], channel)
 
 
+class DeletedLogTest(stack.TestCase):
+    # Tests that a log that is deleted, or whose folder is moved, is named within two seconds, that the logger goes on, and that
+    # it ends with 1.
+    def test_deleted_or_moved(self):
+        for gone in ("deleted", "moved"):
+            with self.subTest(gone):
+                folder = self.path(gone)
+                os.mkdir(folder)
+                log_file = os.path.join(folder, "run.lcmlog")
+                logger = self.start("hydro-logger", stack.config("demo.toml"), "--set", f"bus.url={self.new_url()}", "-o", log_file)
+                self.wait_until(lambda path=log_file: os.path.exists(path) and os.path.getsize(path) > 0, "a log")
+                if gone == "deleted":
+                    os.remove(log_file)
+                else:
+                    os.rename(folder, folder + "_away")
+                self.wait_until(lambda p=logger: "renamed or deleted" in p.stderr, "a word on it", timeout=4)
+                self.assertIn(log_file, logger.stderr)
+                self.assertTrue(logger.running)
+                logger.send(signal.SIGTERM)
+                self.assertEqual(logger.wait(), 1, logger.report())
+
+
 class TornLogTest(stack.TestCase):
     # Tests that a log cut off within its last message is read to there, with a word on it, and that a repair loses only that
     # message.

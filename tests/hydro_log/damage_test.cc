@@ -226,6 +226,13 @@ TEST_F(DamageTest, EventsMoved) {
   EXPECT_EQ(complete_, 0);
 }
 
+// Tests that a run for the gap finder carries what it lacks.
+TEST_F(DamageTest, MeasuredRunHasACaution) {
+  EXPECT_EQ(runs::ReadMeasuredRun(Path("whole")).caution, "");
+  log::WriteBytes(Path("cut"), bytes_.substr(0, bytes_.size() / 2));
+  EXPECT_THAT(runs::ReadMeasuredRun(Path("cut")).caution, HasSubstr("cut: incomplete: no mark of the end"));
+}
+
 // Tests that after a repair every way of reading works, and that nothing wrong was kept where a checksum could
 // tell.
 TEST_F(DamageTest, Repaired) {
