@@ -57,8 +57,8 @@ bool LogExaminer::TakeEvent(int64_t offset) {
 // The end of an incomplete log may be torn; anywhere else, and in a log whose end nothing vouches for, bytes
 // that are no event are damage.
 bool LogExaminer::Unreadable(int64_t offset, const std::string& wrong) {
-  const bool at_the_end = begun_ && !ended_ && wrong.find("before the end of the file") != std::string::npos;
-  if (!at_the_end || CheckFollows(offset)) return Damaged(offset, Place(offset, messages_) + wrong);
+  const bool torn = begun_ && !ended_ && LogEventIsTornAt(file_, offset) && !CheckFollows(offset);
+  if (!torn) return Damaged(offset, Place(offset, messages_) + wrong);
   verdict_.readable_end = offset;
   Conclude();
   verdict_.where += "; its last event, at " + Byte(offset) + ", is torn";

@@ -61,6 +61,16 @@ bool LogEventMayBeginAt(const MappedFile& file, int64_t offset) {
   return left == 0 || std::memcmp(file.data() + offset, sync, std::min<size_t>(left, 4)) == 0;
 }
 
+bool LogEventIsTornAt(const MappedFile& file, int64_t offset) {
+  if (!LogEventMayBeginAt(file, offset)) return false;
+  const uint8_t* bytes = file.data() + offset;
+  const size_t left = file.size() - static_cast<size_t>(offset);
+  if (left < kLogHeaderSize) return true;
+  const uint32_t channel_length = LoadBigEndian32(bytes + 20), size = LoadBigEndian32(bytes + 24);
+  return channel_length >= 1 && channel_length <= kMaxLogChannelLength && size <= kMaxLogDataSize &&
+         channel_length + size_t{size} > left - kLogHeaderSize;
+}
+
 int64_t EndOf(const LogEvent& event) {
   return event.offset + static_cast<int64_t>(kLogHeaderSize + event.channel.size()) + event.size;
 }

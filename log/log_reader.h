@@ -50,6 +50,9 @@ std::string ParseLogEvent(const MappedFile& file, int64_t offset, LogEvent& even
 // True when `offset` is the end, or a sync word (or as much of one as the file still holds) stands there.
 bool LogEventMayBeginAt(const MappedFile& file, int64_t offset);
 
+// True when what stands at `offset` may be an event that the end of the file cuts off.
+bool LogEventIsTornAt(const MappedFile& file, int64_t offset);
+
 // The offset of the first byte after an event.
 int64_t EndOf(const LogEvent& event);
 
