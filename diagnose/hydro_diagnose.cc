@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cstdio>
 #include <filesystem>
 #include <map>
 #include <memory>
@@ -68,7 +69,11 @@ class ReportFolder {
 std::vector<runs::MeasuredRun> ReadRuns(const std::vector<std::string>& files, const UnitSystem& units) {
   std::vector<runs::MeasuredRun> runs;
   runs.reserve(files.size());
-  for (const std::string& file : files) runs.push_back(runs::ReadMeasuredRun(file, units));
+  for (const std::string& file : files) {
+    runs.push_back(runs::ReadMeasuredRun(file, units));
+    const std::string& caution = runs.back().caution;
+    if (!caution.empty()) std::fprintf(stderr, "hydro-diagnose: warning: %s\n", Printable(caution).c_str());
+  }
   return runs;
 }
 

@@ -28,10 +28,12 @@ class InfoVerb {
     verb.AddFlag("--si", &si_, "print figures in SI units");
   }
   int Run() const {
-    const runs::LogInfo info =
-        runs::Summarise(runs::ReadRunLog(log_, suffix_, runs::Undecodable::kLeftOut), si_);
+    const runs::LogInfo info = runs::Summarise(
+        runs::ReadRunLog(log_, suffix_, runs::Undecodable::kLeftOut, log::OnDamage::kStop), si_);
     std::fputs((json_ ? runs::InfoJson(info) : PrintableLines(runs::InfoText(info))).c_str(), stdout);
-    return 0;
+    if (info.verdict.completeness != log::Completeness::kDamaged) return 0;
+    throw log::LogError(log_ + ": " + info.verdict.where + "; hydro-log repair " + log_ +
+                        " keeps what can be read");
   }
 
  private:
@@ -52,7 +54,10 @@ class ExportVerb {
   int Run() const {
     tables::CheckTableName(out_);
     CheckKeeps(out_, {log_});
-    tables::WriteTable(runs::ExportRun(ReadWithWarning(log_, suffix_)), out_);
+    const runs::RunLog log = ReadWithWarning(log_, suffix_);
+    const tables::Table table = runs::ExportRun(log);
+    WarnOf(log);
+    tables::WriteTable(table, out_);
     return 0;
   }
 
@@ -99,7 +104,9 @@ class CompareVerb {
     const runs::RunLog a = ReadComparable(a_, suffix_a_);
     const runs::RunLog b = ReadComparable(b_, suffix_b_);
     const std::optional<std::string> difference = runs::FirstDifference(a.messages, a_, b.messages, b_);
-    std::puts(difference.value_or("identical").c_str());
+    const bool whole = log::Caution(a.verdict).empty() && log::Caution(b.verdict).empty();
+    const char* identical = whole ? "identical" : "identical in what is there (the logs are not whole)";
+    std::puts(difference.value_or(identical).c_str());
     return difference.has_value() ? 1 : 0;
   }
 
@@ -111,6 +118,7 @@ class CompareVerb {
     if (log.messages.Of<state_t>().empty() && log.messages.Of<motor_command_t>().empty()) {
       throw InputError(file + ": found no state and no motor command; a log of a run is needed");
     }
+    WarnOf(log);
     return log;
   }
 
@@ -130,7 +138,7 @@ class RepairVerb {
   }
   int Run() const {
     const log::RepairResult result = out_.empty() ? log::RepairInPlace(log_) : log::RepairLog(log_, out_);
-    if (result.lost.empty()) {
+    if (!result.mended()) {
       std::printf("%s: nothing to repair\n", log_.c_str());
     } else {
       std::fputs(log::Describe(result, log_).c_str(), stdout);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <map>
 #include <thread>
 #include <vector>
@@ -11,6 +12,7 @@
 #include "base/saturating.h"
 #include "bus/channels.h"
 #include "bus/in_process_bus.h"
+#include "hydro_log/record_gap.h"
 #include "position_ctrl/position_app.h"
 #include "pressure_ctrl/pressure_app.h"
 #include "runs/compare.h"
@@ -70,6 +72,7 @@ class Replayer {
   bus::SimulatedClock& clock() { return clock_; }
   bus::InProcessBus& bus() { return bus_; }
   int64_t first_tick() const { return states_.begin()->first; }
+  std::optional<int64_t> FirstGap() const { return FirstMissingState(states_); }
   int64_t states() const { return static_cast<int64_t>(states_.size()); }
 
   // Sends the states one by one; `before` may send something else first.
@@ -110,6 +113,22 @@ ReplayResult Compare(const Replayer& replayer, const runs::RunMessages& recorded
   return result;
 }
 
+ReplayResult WithGap(ReplayResult result, std::optional<int64_t> gap, int64_t not_compared) {
+  result.gap_tick = gap;
+  result.not_compared = not_compared;
+  return result;
+}
+
+// Takes the commands from tick `gap` on out of the comparison and returns how many those were.
+template <class Commands>
+int64_t CutAt(const std::optional<int64_t>& gap, Commands& commands) {
+  if (!gap) return 0;
+  const auto from = commands.lower_bound(*gap);
+  const auto count = std::distance(from, commands.end());
+  commands.erase(from, commands.end());
+  return count;
+}
+
 ReplayResult ReplayPressure(const runs::RunLog& log, double speed) {
   std::map<int64_t, motor_command_t> recorded;
   for (const auto& [tick, command] : ByTick(log.messages.Of<motor_command_t>())) {
@@ -124,6 +143,12 @@ ReplayResult ReplayPressure(const runs::RunLog& log, double speed) {
   }
 
   Replayer replayer(log, speed);
+  std::optional<int64_t> gap = replayer.FirstGap();
+  if (const auto lost = FirstWithoutPressureCommand(recorded, pressure_commands);
+      lost && (!gap || *lost < *gap)) {
+    gap = lost;
+  }
+  const int64_t not_compared = CutAt(gap, recorded);
   pressure_ctrl::PressureApp app(replayer.bus(), replayer.clock(), replayer.config());
   std::map<int64_t, motor_command_t> answers;
   replayer.bus().Subscribe<motor_command_t>(replayer.channels().Of<motor_command_t>(),
@@ -143,7 +168,7 @@ ReplayResult ReplayPressure(const runs::RunLog& log, double speed) {
   runs::RunMessages record, replay;
   record.Of<motor_command_t>() = Unnumbered(recorded);
   replay.Of<motor_command_t>() = Unnumbered(answers);
-  return Compare(replayer, record, replay, recorded.size());
+  return WithGap(Compare(replayer, record, replay, recorded.size()), gap, not_compared);
 }
 
 ReplayResult ReplayPosition(const runs::RunLog& log, double speed) {
@@ -163,6 +188,9 @@ ReplayResult ReplayPosition(const runs::RunLog& log, double speed) {
     recorded.erase(recorded.begin(), recorded.upper_bound(first_sample));
     references.erase(references.begin(), references.upper_bound(first_sample));
   }
+  const std::optional<int64_t> gap = replayer.FirstGap();
+  const int64_t not_compared = CutAt(gap, recorded);
+  CutAt(gap, references);
   position_ctrl::PositionApp app(replayer.bus(), replayer.clock(), replayer.config());
   std::map<int64_t, pressure_command_t> answers;
   std::map<int64_t, arm_reference_t> answered_references;
@@ -182,7 +210,7 @@ ReplayResult ReplayPosition(const runs::RunLog& log, double speed) {
   record.Of<arm_reference_t>() = Unnumbered(references);
   replay.Of<pressure_command_t>() = Unnumbered(answers);
   replay.Of<arm_reference_t>() = Unnumbered(answered_references);
-  return Compare(replayer, record, replay, recorded.size());
+  return WithGap(Compare(replayer, record, replay, recorded.size()), gap, not_compared);
 }
 
 }  // namespace

@@ -15,6 +15,10 @@ struct ReplayResult {
   int64_t states = 0;                     // fed
   int64_t answers = 0;                    // recorded commands that were compared
   std::optional<std::string> difference;  // the first one, as one line; none: bit-identical
+  // The first tick at which the log lacks what the controller was given; commands from there on were not
+  // compared, and `not_compared` counts them.
+  std::optional<int64_t> gap_tick = std::nullopt;
+  int64_t not_compared = 0;
 };
 
 // Builds the controller from the log's own configuration and model and feeds it each recorded state in tick

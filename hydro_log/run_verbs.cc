@@ -29,6 +29,11 @@ runs::RunLog ReadWithWarning(const std::string& file, const std::optional<std::s
   return log;
 }
 
+void WarnOf(const runs::RunLog& log) {
+  const std::string caution = runs::DescribeCaution(log);
+  if (!caution.empty()) std::fprintf(stderr, "hydro-log: warning: %s\n", Printable(caution).c_str());
+}
+
 SummaryVerb::SummaryVerb(settings::CommandLine& line) {
   settings::CommandLine& verb =
       line.AddVerb("summary", "How well the arm followed its reference, loop timing, losses.");
@@ -71,6 +76,7 @@ int TimingVerb::Run() const {
     throw InputError(
         log_ + ": found no report of a loop (HYDRO_LOOP_STATISTICS); a log of a run of processes is needed");
   }
+  WarnOf(log);
   std::fputs(PrintableLines(timing::TimingText(processes)).c_str(), stdout);
   if (!json_.empty()) WriteWholeFile(json_, timing::TimingJson(processes, log_));
   if (!page_.empty()) WriteWholeFile(page_, timing::TimingPage(processes, log_));
@@ -103,9 +109,16 @@ int ReplayVerb::Run() const {
       std::printf("%s: identical, %lld %s from %lld states\n", name, static_cast<long long>(result.answers),
                   commands, static_cast<long long>(result.states));
     }
+    if (result.gap_tick) {
+      std::printf(
+          "%s: compared up to tick %lld, where the log lacks a message; %lld %s after it are not compared\n",
+          name, static_cast<long long>(*result.gap_tick), static_cast<long long>(result.not_compared),
+          commands);
+    }
   };
   if (controller_ != "position") replay(ReplayedController::kPressure, "pressure", "motor commands");
   if (controller_ != "pressure") replay(ReplayedController::kPosition, "position", "pressure commands");
+  WarnOf(log);
   return exit_code;
 }
 

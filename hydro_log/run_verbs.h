@@ -13,6 +13,9 @@ namespace hydro::hydro_log {
 // processes of the run did; one line on stderr names them.
 runs::RunLog ReadWithWarning(const std::string& file, const std::optional<std::string>& suffix);
 
+// One line on stderr where the log is incomplete or repaired, or holds another stack too.
+void WarnOf(const runs::RunLog& log);
+
 class SummaryVerb {
  public:
   explicit SummaryVerb(settings::CommandLine& line);

@@ -4,6 +4,7 @@
 #include <cstring>
 
 #include "base/number_text.h"
+#include "log/log_check.h"
 #include "log/log_format.h"
 
 namespace hydro::log {
@@ -13,12 +14,6 @@ std::string Hex(uint32_t value) { return HexNumber(value, 8); }
 
 std::string WrongSyncWord(uint32_t found) {
   return "found sync word " + Hex(found) + "; allowed " + Hex(kLogSyncWord);
-}
-
-[[noreturn]] void ThrowDamaged(const std::string& file, int64_t offset, int64_t index,
-                               const std::string& what) {
-  throw LogError(file + ": byte " + std::to_string(offset) + ", event " + std::to_string(index) + ": " +
-                 what + "; hydro-log repair " + file + " keeps what can be read");
 }
 
 }  // namespace
@@ -66,23 +61,39 @@ bool LogEventMayBeginAt(const MappedFile& file, int64_t offset) {
   return left == 0 || std::memcmp(file.data() + offset, sync, std::min<size_t>(left, 4)) == 0;
 }
 
+bool LogEventIsTornAt(const MappedFile& file, int64_t offset) {
+  if (!LogEventMayBeginAt(file, offset)) return false;
+  const uint8_t* bytes = file.data() + offset;
+  const size_t left = file.size() - static_cast<size_t>(offset);
+  if (left < kLogHeaderSize) return true;
+  const uint32_t channel_length = LoadBigEndian32(bytes + 20), size = LoadBigEndian32(bytes + 24);
+  return channel_length >= 1 && channel_length <= kMaxLogChannelLength && size <= kMaxLogDataSize &&
+         channel_length + size_t{size} > left - kLogHeaderSize;
+}
+
 int64_t EndOf(const LogEvent& event) {
   return event.offset + static_cast<int64_t>(kLogHeaderSize + event.channel.size()) + event.size;
 }
 
-bool LogReader::Next(LogEvent& event) {
-  if (offset_ == size()) return false;
-  const std::string wrong = ParseLogEvent(file_, offset_, event);
-  if (!wrong.empty()) ThrowDamaged(name_, offset_, index_, wrong);
-  const int64_t end = EndOf(event);
-  if (!LogEventMayBeginAt(file_, end)) {
-    // Only what follows an event reveals a damaged length; then the event itself cannot be trusted either.
-    LogEvent next;
-    ThrowDamaged(name_, end, index_ + 1, ParseLogEvent(file_, end, next));
+LogReader::LogReader(const std::string& file, OnDamage on_damage)
+    : name_(file), file_(file), on_damage_(on_damage) {
+  try {
+    verdict_ = ExamineLog(file_);
+  } catch (const InputError& error) {
+    throw LogError(file + ": " + error.what());
   }
-  event.index = index_++;
-  offset_ = end;
-  return true;
+}
+
+bool LogReader::Next(LogEvent& event) {
+  while (offset_ < verdict_.readable_end) {
+    ParseLogEvent(file_, offset_, event);
+    offset_ = EndOf(event);
+    if (IsCheck(event)) continue;
+    event.index = index_++;
+    return true;
+  }
+  if (verdict_.completeness != Completeness::kDamaged || on_damage_ == OnDamage::kStop) return false;
+  throw LogError(name_ + ": " + verdict_.where + "; hydro-log repair " + name_ + " keeps what can be read");
 }
 
 }  // namespace hydro::log

@@ -10,6 +10,7 @@
 #include "base/input_error.h"
 #include "base/mapped_file.h"
 #include "bus/bus.h"
+#include "log/log_verdict.h"
 
 namespace hydro::log {
 
@@ -22,7 +23,7 @@ class LogError : public InputError {
 
 // One message of a log. Channel and data are valid as long as the reader that returned it.
 struct LogEvent {
-  int64_t index = 0;   // place in the log, counted from 0
+  int64_t index = 0;   // place among the log's messages, counted from 0
   int64_t offset = 0;  // byte of the file at which it begins
   int64_t number = 0;  // as the writer numbered it
   int64_t utime = 0;   // us since 1970-01-01 UTC, or simulated time, when it was received
@@ -49,16 +50,28 @@ std::string ParseLogEvent(const MappedFile& file, int64_t offset, LogEvent& even
 // True when `offset` is the end, or a sync word (or as much of one as the file still holds) stands there.
 bool LogEventMayBeginAt(const MappedFile& file, int64_t offset);
 
+// True when what stands at `offset` may be an event that the end of the file cuts off.
+bool LogEventIsTornAt(const MappedFile& file, int64_t offset);
+
 // The offset of the first byte after an event.
 int64_t EndOf(const LogEvent& event);
 
+// What to do where a log is damaged.
+enum class OnDamage {
+  kThrow,  // LogError: for callers that need the whole log
+  kStop,   // as at the end: for callers that say so, by the verdict
+};
+
 class LogReader {
  public:
-  // Opens a log. Throws InputError when it cannot be read. An empty file is a log without events.
-  explicit LogReader(const std::string& file) : name_(file), file_(file) {}
+  // Opens a log and goes through it once for its verdict. Throws InputError when it cannot be read. An empty
+  // file is a log without events.
+  explicit LogReader(const std::string& file, OnDamage on_damage = OnDamage::kThrow);
 
-  // Reads the next event; false at the end. An event must be followed by the end or by another event, so one
-  // with a damaged length is not returned. Throws LogError at the first place where this fails.
+  // Reads the next message; false at the end, which in an incomplete log is that of its last whole event.
+  // Check events (log_check.h) are no messages. An event must be followed by the end or by another event, so
+  // one with a damaged length is not returned, and neither is one with a wrong checksum. Throws LogError at
+  // the first place where this fails.
   bool Next(LogEvent& event);
 
   // Rewinds to the first event.
@@ -67,12 +80,15 @@ class LogReader {
     index_ = 0;
   }
 
+  const LogVerdict& verdict() const { return verdict_; }
   const std::string& file() const { return name_; }
   int64_t size() const { return static_cast<int64_t>(file_.size()); }  // bytes
 
  private:
   std::string name_;
   MappedFile file_;
+  OnDamage on_damage_;
+  LogVerdict verdict_;
   int64_t offset_ = 0;
   int64_t index_ = 0;
 };

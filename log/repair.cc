@@ -5,82 +5,18 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <filesystem>
 #include <map>
-#include <optional>
-#include <set>
 #include <string_view>
 
 #include "base/read_files.h"
-#include "log/log_format.h"
 #include "log/log_reader.h"
 #include "log/log_writer.h"
 #include "log/message_kinds.h"
+#include "log/vouched_events.h"
 
 namespace hydro::log {
 namespace {
-
-class Scanner {
- public:
-  explicit Scanner(const MappedFile& file) : file_(file) { StoreBigEndian32(kLogSyncWord, sync_); }
-
-  // The first event at or after `from` that can be kept.
-  std::optional<LogEvent> NextToKeep(int64_t from) const {
-    for (int64_t offset = NextSync(from); offset < size(); offset = NextSync(offset + 1)) {
-      LogEvent event;
-      if (Parses(offset, event) && MayKeep(event)) return event;
-    }
-    return std::nullopt;
-  }
-
- private:
-  int64_t size() const { return static_cast<int64_t>(file_.size()); }
-
-  int64_t NextSync(int64_t from) const {
-    if (from >= size()) return size();
-    const void* found =
-        memmem(file_.data() + from, file_.size() - static_cast<size_t>(from), sync_, sizeof sync_);
-    return found == nullptr ? size() : static_cast<const uint8_t*>(found) - file_.data();
-  }
-
-  bool Parses(int64_t offset, LogEvent& event) const {
-    return offset < size() && ParseLogEvent(file_, offset, event).empty();
-  }
-
-  // The first event in [from, to) that ends where another event, or the end of the file, may be.
-  std::optional<LogEvent> NextSound(int64_t from, int64_t to) const {
-    for (int64_t offset = NextSync(from); offset < to; offset = NextSync(offset + 1)) {
-      LogEvent event;
-      if (Parses(offset, event) && LogEventMayBeginAt(file_, EndOf(event))) return event;
-    }
-    return std::nullopt;
-  }
-
-  // By their numbers, which may be anything in a damaged file.
-  static bool Follows(const LogEvent& next, const LogEvent& event) {
-    return static_cast<uint64_t>(next.number) == static_cast<uint64_t>(event.number) + 1;
-  }
-
-  bool MayKeep(const LogEvent& event) const {
-    const int64_t end = EndOf(event);
-    LogEvent next;
-    if (Parses(end, next) && Follows(next, event)) return true;
-    // A torn event followed by appended ones contains others, and so does one whose length is too large.
-    if (NextSound(event.offset + 4, end).has_value()) return false;
-    if (LogEventMayBeginAt(file_, end)) return true;
-    // The bytes that follow are damaged: either those alone, or this event's length is too small.
-    if (const MessageKind* kind = KindOfChannel(event.channel)) return kind->decodes(event);
-    const std::optional<LogEvent> following = NextSound(end, size());
-    return !following.has_value() || !Follows(*following, event);
-  }
-
-  const MappedFile& file_;
-  uint8_t sync_[4];
-};
-
-struct KeptEvent {
-  int64_t begin;
-  int64_t end;
-};
 
 // Moves incomplete messages, on channels where others are complete, from `kept` to `lost`.
 void DropUndecodable(const MappedFile& file, std::vector<KeptEvent>& kept, std::vector<LostBytes>& lost) {
@@ -110,48 +46,78 @@ void DropUndecodable(const MappedFile& file, std::vector<KeptEvent>& kept, std::
   std::erase_if(kept, [](const KeptEvent& place) { return place.end == place.begin; });
 }
 
-std::string WhyNotKept(const MappedFile& file, int64_t begin) {
+// What a mended log says of itself.
+std::string NoteOf(const RepairResult& result, const std::string& file) {
+  if (!result.mended()) return {};
+  int64_t bytes = 0;
+  for (const LostBytes& lost : result.lost) bytes += lost.end - lost.begin;
+  std::string note = "repaired from " + std::filesystem::path(file).filename().string() + ", which was " +
+                     NameOf(result.verdict.completeness);
+  if (result.lost_messages > 0)
+    note += ", " + std::to_string(result.lost_messages) +
+            (result.lost_messages == 1 ? " message lost" : " messages lost");
+  if (bytes > 0) {
+    note += ", " + std::to_string(bytes) + " bytes at " + std::to_string(result.lost.size()) +
+            (result.lost.size() == 1 ? " place" : " places") + " left out";
+  }
+  if (result.unvouched > 0) {
+    note += ", " + std::to_string(result.unvouched) + " of those kept covered by no checksum";
+  }
+  return note;
+}
+
+// Why the mended log ends where it does.
+std::string EndingOf(const LogVerdict& verdict) {
+  if (verdict.completeness == Completeness::kWithoutChecksums) return "the original had no checksums";
+  return verdict.found_end ? verdict.ending : "the original had no mark of the end";
+}
+
+void WriteKept(const MappedFile& contents, const std::vector<KeptEvent>& kept, const RepairResult& result,
+               const std::string& file, const std::string& out) {
+  std::string note = result.verdict.note;
+  if (const std::string added = NoteOf(result, file); !added.empty())
+    note += (note.empty() ? "" : "; ") + added;
+  ForgetRead(file);  // `out` may be the same: RepairInPlace() keeps the original
+  LogWriter writer(out, Opening::kTemporary, note);
   LogEvent event;
-  const std::string wrong = ParseLogEvent(file, begin, event);
-  return wrong.empty() ? "an event whose length does not fit what follows it" : wrong;
+  for (const KeptEvent& place : kept) {
+    ParseLogEvent(contents, place.begin, event);
+    writer.Append(event.channel, event.data, static_cast<size_t>(event.size), event.utime);
+  }
+  for (const std::string& remark : result.verdict.remarks) writer.Remark(remark);
+  writer.Finish(EndingOf(result.verdict));
 }
 
 }  // namespace
 
+bool RepairResult::mended() const {
+  return !lost.empty() || lost_messages > 0 || verdict.completeness == Completeness::kDamaged ||
+         verdict.completeness == Completeness::kIncomplete;
+}
+
 RepairResult RepairLog(const std::string& file, const std::string& out) {
   const MappedFile contents(file);
   const int64_t size = static_cast<int64_t>(contents.size());
-  const Scanner scanner(contents);
   RepairResult result;
-  std::vector<KeptEvent> kept;
-  int64_t offset = 0;
-  while (offset < size) {
-    const std::optional<LogEvent> event = scanner.NextToKeep(offset);
-    const int64_t begin = event.has_value() ? event->offset : size;
-    if (begin > offset) result.lost.push_back({offset, begin, WhyNotKept(contents, offset)});
-    if (event.has_value()) kept.push_back({begin, EndOf(*event)});
-    offset = event.has_value() ? kept.back().end : size;
-  }
+  result.verdict = ExamineLog(contents);
+  const std::vector<KeptEvent> sound = FindSoundEvents(contents, result.lost);
+  VouchedEvents vouched = KeepVouched(contents, sound, result.lost);
+  std::vector<KeptEvent>& kept = vouched.messages;
   DropUndecodable(contents, kept, result.lost);
   std::sort(result.lost.begin(), result.lost.end(),
             [](const LostBytes& a, const LostBytes& b) { return a.begin < b.begin; });
-  if (kept.empty() && size > 0) {
+  if (kept.empty() && vouched.check_events == 0 && size > 0) {
     throw InputError(file + ": found no event in " + std::to_string(size) +
                      " bytes; an LCM event log is needed");
   }
   result.kept_events = static_cast<int64_t>(kept.size());
   for (const KeptEvent& place : kept) result.kept_bytes += place.end - place.begin;
-
-  if (!out.empty()) {
-    ForgetRead(file);  // `out` may be the same: RepairInPlace() keeps the original
-    LogWriter writer(out, Opening::kTemporary);
-    LogEvent event;
-    for (const KeptEvent& place : kept) {
-      ParseLogEvent(contents, place.begin, event);
-      writer.Append(event.channel, event.data, static_cast<size_t>(event.size), event.utime);
-    }
-    writer.Finish();
-  }
+  result.check_bytes = vouched.check_bytes;
+  result.lost_messages = vouched.lost_messages;
+  result.unvouched = vouched.unvouched;
+  result.verdict.found_end = vouched.found_end;  // the verdict looks no further than the first damage
+  result.verdict.ending = vouched.ending;
+  if (!out.empty()) WriteKept(contents, kept, result, file, out);
   return result;
 }
 
@@ -161,7 +127,7 @@ RepairResult RepairInPlace(const std::string& file) {
                      ": found it being written by another process; a log that is finished, or -o, is needed");
   }
   RepairResult result = RepairLog(file, "");
-  if (result.lost.empty()) return result;
+  if (!result.mended()) return result;
   const std::string damaged = file + ".damaged";
   // A second name rather than a new one: whatever happens now, a log exists under the first.
   if (link(file.c_str(), damaged.c_str()) != 0) {
@@ -178,8 +144,17 @@ RepairResult RepairInPlace(const std::string& file) {
 }
 
 std::string Describe(const RepairResult& result, const std::string& file) {
-  std::string text = file + ": kept " + std::to_string(result.kept_events) + " events, " +
+  std::string text = file + ": kept " + std::to_string(result.kept_events) + " messages, " +
                      std::to_string(result.kept_bytes) + " bytes\n";
+  if (const std::string caution = Caution(result.verdict); !caution.empty())
+    text += file + ": was " + caution + "\n";
+  if (result.lost_messages > 0) {
+    text += file + ": lost " + std::to_string(result.lost_messages) +
+            (result.lost_messages == 1 ? " message" : " messages") + ", as its check events tell\n";
+  }
+  if (result.unvouched > 0) {
+    text += file + ": no checksum covers " + std::to_string(result.unvouched) + " of the messages kept\n";
+  }
   constexpr size_t kMostLines = 20;
   for (const LostBytes& lost : result.lost) {
     if (&lost - result.lost.data() >= static_cast<std::ptrdiff_t>(kMostLines)) {

@@ -3,7 +3,6 @@
 #include <spdlog/fmt/fmt.h>
 #include <spdlog/spdlog.h>
 
-#include <filesystem>
 #include <hydro/log_progress_t.hpp>
 #include <hydro/motor_command_t.hpp>
 #include <hydro/pressure_command_t.hpp>
@@ -28,20 +27,13 @@ constexpr size_t kMostSenders = 1024;  // of one kind of message whose numbers a
 
 }  // namespace
 
-std::string RotatedName(const std::string& file, int n) {
-  if (n == 0) return file;
-  const std::filesystem::path path(file);
-  return (path.parent_path() / fmt::format("{}-{:03d}{}", path.stem().string(), n, path.extension().string()))
-      .string();
-}
-
 LoggerApp::LoggerApp(bus::Bus& bus, bus::Clock& clock, const settings::StackConfig& config,
                      const LoggerOptions& options)
     : bus_(Tap(bus)),  // first: subscribing to all channels after other subscriptions could lose messages
       participant_(bus, clock, bus::Channels(config.bus.channel_suffix), "logger",
                    settings::AgreedEntries(config)),
       options_(options),
-      writer_(std::make_unique<log::LogWriter>(options.file, Opening::kDirect)),
+      files_(options.file, options.rotate_bytes, participant_.channels().Of<run_description_t>()),
       queue_(static_cast<size_t>(config.logger.memory_mb * 1e6)) {
   if (config.time.mode == settings::TimeMode::kLockstep) {
     order_.emplace(config.pressure_interval_ticks, config.position_interval_ticks,
@@ -71,7 +63,13 @@ LoggerApp::~LoggerApp() {
 }
 
 void LoggerApp::OnMessage(const bus::RawMessage& message) {
-  if (message.channel.empty()) return;  // LCM carries such a message, but no log can hold it
+  // LCM carries a message without a channel, but no log can hold it; and only the writer checks a log.
+  if (message.channel.empty() || message.channel == log::kCheckChannel) return;
+  if (RefusedQuota::IsRefused(message.channel) &&
+      !refused_.Admit(static_cast<size_t>(message.size), participant_.clock().Now())) {
+    ReportRefused();
+    return;
+  }
   ++received_;
   const std::optional<bus::LoopNumbers> numbers = bus::ReadLoopNumbers(message, participant_.channels());
   if (numbers) CountSequence(*numbers);
@@ -105,6 +103,10 @@ void LoggerApp::FollowPlant(int64_t session) {
     participant_.Follow(session);
   }
   followed_heard_ = now;
+}
+
+void LoggerApp::ReportRefused() {
+  if (refused_.left_out() == 1) spdlog::warn("{}", refused_.Text());  // once; the total at the end
 }
 
 void LoggerApp::CountSequence(const bus::LoopNumbers& numbers) {
@@ -168,6 +170,7 @@ void LoggerApp::WriteUntilClosed() {
         wake_.wait_for(lock, kFlushPeriod, [this] { return closing_; });
         closing = closing_;
       }
+      if (const auto wrong = files_.Look(closing)) ReportGone(*wrong);
       const EventQueue::Batch batch = queue_.Take();
       if (batch.empty()) continue;
       const Write write = WriteBatch(batch);
@@ -181,29 +184,23 @@ void LoggerApp::WriteUntilClosed() {
   }
 }
 
+// Recording goes on: an open file takes what is written, and may still be copied from /proc.
+void LoggerApp::ReportGone(const std::string& wrong) {
+  spdlog::error("{}; recording goes on, and this logger will end with 1", wrong);
+  const std::lock_guard lock(mutex_);
+  if (gone_.empty()) gone_ = wrong;
+}
+
 LoggerApp::Write LoggerApp::WriteBatch(const EventQueue::Batch& batch) {
   const auto began = participant_.clock().Now();
   std::optional<bus::Clock::TimePoint> oldest;
   batch.ForEach([&](const EventQueue::Event& event) {
     if (!oldest) oldest = event.arrived;
-    if (options_.rotate_bytes > 0 && writer_->bytes() >= options_.rotate_bytes) Rotate();
-    writer_->Append(event.channel, event.data, event.size, event.utime);
-    if (event.channel == participant_.channels().Of<run_description_t>()) {
-      const std::string channel(event.channel);
-      descriptions_[channel] = {channel, {event.data, event.data + event.size}, event.utime};
-    }
+    files_.Append(event);
   });
-  writer_->Flush();
+  files_.Flush();
   const auto now = participant_.clock().Now();
   return {began, now - oldest.value_or(now)};
-}
-
-void LoggerApp::Rotate() {
-  writer_->Finish();
-  writer_ = std::make_unique<log::LogWriter>(RotatedName(options_.file, files_++), Opening::kDirect);
-  for (const auto& [channel, event] : descriptions_) {
-    writer_->Append(channel, event.data.data(), event.data.size(), event.utime);
-  }
 }
 
 void LoggerApp::Poll() {
@@ -239,7 +236,7 @@ bool LoggerApp::finished() const {
 // Why writing failed; empty while it works.
 std::string LoggerApp::FailureText() {
   const std::lock_guard lock(mutex_);
-  if (!failure_) return "";
+  if (!failure_) return gone_;
   try {
     std::rethrow_exception(failure_);
   } catch (const std::exception& error) {
@@ -261,14 +258,23 @@ int LoggerApp::Finish() {
   wake_.notify_one();
   thread_.join();
   if (failure_) std::rethrow_exception(failure_);
-  writer_->Finish();
+  if (const std::string refused = refused_.Text(); !refused.empty()) {
+    spdlog::warn("{}", refused);
+    files_.Remark(refused);
+  }
+  if (queue_.dropped() > 0) {
+    files_.Remark(
+        fmt::format("{} messages are not in the log: the disk was slower than the bus", queue_.dropped()));
+  }
+  files_.Finish();
+  if (!gone_.empty()) exit_code = 1;
   if (const int64_t dropped = queue_.dropped(); dropped > 0) {
     spdlog::warn("{} messages are not in the log: the disk was slower than the bus (logger.memory_mb)",
                  dropped);
   }
-  const std::string size = files_ > 1 ? fmt::format("{} and {} more files ({} bytes in the last)",
-                                                    options_.file, files_ - 1, writer_->bytes())
-                                      : fmt::format("{} ({} bytes)", options_.file, writer_->bytes());
+  const std::string size = files_.count() > 1 ? fmt::format("{} and {} more files ({} bytes in the last)",
+                                                            options_.file, files_.count() - 1, files_.bytes())
+                                              : fmt::format("{} ({} bytes)", options_.file, files_.bytes());
   spdlog::info("{} messages in {}; at most {} waited for the disk; {} lost before they arrived",
                received_ - queue_.dropped(), size, largest_queue_total_, lost_);
   return exit_code;

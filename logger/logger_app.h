@@ -3,7 +3,8 @@
 // Messages go from the bus into a queue (event_queue.h); a separate thread writes them to the file, so that a
 // slow disk delays nobody. The queue holds up to logger.memory_mb. Messages that find it full are left out of
 // the log and counted, and the fault log_overflow is raised. Received messages are handed to the kernel at
-// least every kFlushPeriod.
+// least every kFlushPeriod. Of messages that a bus with a key refuses, a bounded part is recorded
+// (refused_quota.h). A log that is deleted while it is recorded is named at once, and ends the logger with 1.
 #pragma once
 
 #include <array>
@@ -21,8 +22,9 @@
 #include <vector>
 
 #include "log/causal_order.h"
-#include "log/log_writer.h"
 #include "logger/event_queue.h"
+#include "logger/log_files.h"
+#include "logger/refused_quota.h"
 #include "process/app.h"
 #include "process/participant.h"
 #include "settings/stack_config.h"
@@ -33,9 +35,6 @@ struct LoggerOptions {
   std::string file;
   int64_t rotate_bytes = 0;  // a new file is started when one has grown beyond this; 0: never
 };
-
-// The name of the n-th file (n = 0 is `file` itself): run.lcmlog, run-001.lcmlog, run-002.lcmlog ...
-std::string RotatedName(const std::string& file, int n);
 
 class LoggerApp : public process::App {
  public:
@@ -66,7 +65,8 @@ class LoggerApp : public process::App {
   void OnStatus(const process_status_t& status);
   void WriteUntilClosed();
   Write WriteBatch(const EventQueue::Batch& batch);
-  void Rotate();
+  void ReportGone(const std::string& wrong);
+  void ReportRefused();
   void ReportProgress();
   bool EveryoneHasLeft() const;
   std::string FailureText();
@@ -74,21 +74,20 @@ class LoggerApp : public process::App {
   bus::Bus& bus_;
   process::Participant participant_;
   LoggerOptions options_;
-  std::unique_ptr<log::LogWriter> writer_;  // the writing thread's, once it runs
-  int files_ = 1;
-  // The newest HYDRO_RUN message of each channel: each rotated file begins with them.
-  std::map<std::string, log::RecordedMessage> descriptions_;
+  LogFiles files_;  // the writing thread's, once it runs
 
-  std::mutex mutex_;  // guards writes_, closing_, failure_
+  std::mutex mutex_;  // guards writes_, closing_, failure_, gone_
   std::condition_variable wake_;
   EventQueue queue_;
   std::vector<Write> writes_;  // completed since the last Poll()
   bool closing_ = false;
   std::exception_ptr failure_;
+  std::string gone_;  // what became of a file that is no longer where it was recorded
   std::atomic<bool> failed_ = false;
   std::thread thread_;
 
   std::optional<bus::Clock::TimePoint> followed_heard_;  // the last state of the plant whose run this is
+  RefusedQuota refused_;
   int64_t received_ = 0;
   int64_t largest_queue_ = 0;  // since the last statistics report
   int64_t largest_queue_total_ = 0;

@@ -201,7 +201,9 @@ std::vector<stop_t> DistinctStops(const std::vector<stop_t>& all) {
 LogInfo Summarise(const RunLog& log, bool si) {
   LogInfo info;
   info.file = log.file;
+  info.verdict = log.verdict;
   info.suffix = log.suffix;
+  info.other_suffixes = log.other_suffixes;
   info.bytes = log.bytes;
   info.events = log.events;
   info.duration_s = Seconds(log.first_utime, log.last_utime);

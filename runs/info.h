@@ -59,7 +59,9 @@ struct ProgramInfo {
 
 struct LogInfo {
   std::string file;
+  log::LogVerdict verdict;
   std::string suffix;
+  std::vector<std::string> other_suffixes;  // of state channels, not read
   int64_t bytes = 0;
   int64_t events = 0;
   double duration_s = 0;          // receive time from the first event to the last

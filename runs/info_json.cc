@@ -87,7 +87,8 @@ Json TicksJson(const TickInfo& ticks) {
           {"rate_hz", ticks.rate_hz},
           {"gaps", ticks.gaps},
           {"missing", ticks.missing},
-          {"skipped_by_plant", ticks.announced}};
+          {"skipped_by_plant", ticks.announced},
+          {"missing_from_log", ticks.missing - ticks.announced}};
 }
 
 Json FaultJson(const fault_t& fault) {
@@ -111,7 +112,15 @@ Json StopJson(const stop_t& stop) {
 std::string InfoJson(const LogInfo& info) {
   Json json;
   json["file"] = info.file;
+  json["log"] = {{"verdict", NameOf(info.verdict.completeness)},
+                 {"where", info.verdict.where},
+                 {"readable_bytes", info.verdict.readable_end},
+                 {"unchecked_messages", info.verdict.unchecked_messages},
+                 {"note", info.verdict.note},
+                 {"remarks", info.verdict.remarks},
+                 {"ending", info.verdict.ending}};
   json["suffix"] = info.suffix;
+  json["other_suffixes"] = info.other_suffixes;
   json["bytes"] = info.bytes;
   json["messages"] = info.events;
   json["duration_s"] = info.duration_s;

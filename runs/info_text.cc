@@ -15,6 +15,17 @@ void Append(std::string& text, fmt::format_string<Arguments...> format, Argument
 
 std::string Number(double value) { return ShortNumber(value, 6); }
 
+void AppendVerdict(const log::LogVerdict& verdict, std::string& text) {
+  Append(text, "log: {}{}{}\n", NameOf(verdict.completeness), verdict.where.empty() ? "" : ": ",
+         verdict.where);
+  if (!verdict.note.empty()) Append(text, "log: {}\n", verdict.note);
+  for (const std::string& remark : verdict.remarks) Append(text, "log: {}\n", remark);
+  if (!verdict.ending.empty()) Append(text, "log: ends here: {}\n", verdict.ending);
+  if (verdict.completeness == log::Completeness::kDamaged) {
+    text += "what follows is of the messages before the damage; hydro-log repair keeps what can be read\n";
+  }
+}
+
 void AppendDescriptions(const LogInfo& info, std::string& text) {
   for (const run_description_t& description : info.descriptions) {
     Append(text, "run: {} {} on {}, configuration {}, model {}, seed {}\n", description.program,
@@ -50,8 +61,9 @@ void AppendTicks(const TickInfo& ticks, std::string& text) {
   Append(text, "ticks: {}, from {} at {} s to {} at {} s, {} a second of plant time\n", ticks.states,
          ticks.first, Number(ticks.first_time_s), ticks.last, Number(ticks.last_time_s),
          Number(ticks.rate_hz));
-  Append(text, "tick gaps: {}, without state: {}, of which the plant skipped {}\n", ticks.gaps, ticks.missing,
-         ticks.announced);
+  Append(text,
+         "tick gaps: {}, without state: {}, of which the plant skipped {} and {} are missing from the log\n",
+         ticks.gaps, ticks.missing, ticks.announced, ticks.missing - ticks.announced);
 }
 
 void AppendSignals(const LogInfo& info, std::string& text) {
@@ -99,7 +111,11 @@ std::string InfoText(const LogInfo& info) {
   std::string text;
   Append(text, "{}: {} messages, {} bytes, {} s\n", info.file, info.events, info.bytes,
          Number(info.duration_s));
+  AppendVerdict(info.verdict, text);
   if (!info.suffix.empty()) Append(text, "channel suffix: {}\n", info.suffix);
+  for (const std::string& other : info.other_suffixes) {
+    Append(text, "channels with suffix '{}' are not read (--suffix)\n", other);
+  }
   AppendDescriptions(info, text);
   AppendChannels(info, text);
   AppendTicks(info.ticks, text);

@@ -124,6 +124,7 @@ MeasuredRun ReadMeasuredRun(const std::string& file, const std::optional<UnitSys
   }
   const run_description_t& description = log.messages.Of<run_description_t>().front();
   MeasuredRun run = RunOfExport(table, description.config_text, description.model_text);
+  run.caution = DescribeCaution(log);
   if (units.has_value()) Convert(*units, &run);
   return run;
 }

@@ -40,6 +40,10 @@ struct MeasuredRun {
   // How its table was read, where that was not the plain way: "semicolons between cells, decimal commas".
   std::string layout;
 
+  // What a result from it cannot say, because its log is incomplete, repaired or holds another stack too, as one
+  // line (runs/run_log.h); empty when there is nothing.
+  std::string caution;
+
   UnitSystem units;  // of all values, beside s and V
 
   std::string model_text;  // the model with which a log says it was run (TOML); "" for tables
@@ -75,7 +79,7 @@ struct MeasuredRun {
 //   noise of a signal without a column;
 // - a table with columns that are absent or hold no value, numbers that are not finite, times that are
 //   missing or do not increase, or no command in the first row;
-// - a log with damage, messages that cannot be decoded, more than one run, no description of how the shaft
+// - a log with damage (an incomplete one is read to its end and has a `caution`), messages that cannot be decoded, more than one run, no description of how the shaft
 //   was held, or an arm whose coordinate is not that of `units`.
 MeasuredRun ReadMeasuredRun(const std::string& file, const std::optional<UnitSystem>& units = std::nullopt);
 

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <map>
-#include <set>
 #include <string_view>
 
 #include "base/number_text.h"
@@ -10,6 +9,7 @@
 #include "log/log_format.h"
 #include "log/log_reader.h"
 #include "log/message_kinds.h"
+#include "runs/channel_suffix.h"
 
 namespace hydro::runs {
 namespace {
@@ -49,48 +49,20 @@ void Summarise(log::LogReader& reader, RunLog& log) {
   for (auto& [name, channel] : channels) log.channels.push_back(std::move(channel));
 }
 
-std::set<std::string> SuffixesOf(const RunLog& log, bool of_state_only) {
-  std::set<std::string> suffixes;
-  for (const ChannelSummary& channel : log.channels) {
-    const log::MessageKind* kind = log::KindOfChannel(channel.channel);
-    if (kind == nullptr || (of_state_only && kind != &log::MessageKinds().front())) continue;
-    suffixes.insert(channel.channel.substr(kind->channel.size()));
-  }
-  return suffixes;
-}
-
-std::string ListOf(const std::set<std::string>& suffixes) {
-  std::string list;
-  for (const std::string& suffix : suffixes) list += (list.empty() ? "'" : ", '") + suffix + "'";
-  return list;
-}
-
-std::string ChooseSuffix(const RunLog& log, const std::optional<std::string>& wanted) {
-  const std::set<std::string> all = SuffixesOf(log, false);
-  if (wanted.has_value()) {
-    if (all.contains(*wanted)) return *wanted;
-    throw InputError(log.file + ": found no channel with suffix '" + *wanted + "'; the log has " +
-                     (all.empty() ? "no HYDRO_ channel" : ListOf(all)));
-  }
-  std::set<std::string> suffixes = SuffixesOf(log, true);
-  if (suffixes.empty()) suffixes = all;
-  if (suffixes.size() > 1) {
-    throw InputError(log.file + ": found channels with the suffixes " + ListOf(suffixes) +
-                     "; choose one of them with --suffix");
-  }
-  return suffixes.empty() ? "" : *suffixes.begin();
-}
-
 }  // namespace
 
-RunLog ReadRunLog(const std::string& file, const std::optional<std::string>& suffix,
-                  Undecodable undecodable) {
+RunLog ReadRunLog(const std::string& file, const std::optional<std::string>& suffix, Undecodable undecodable,
+                  log::OnDamage on_damage) {
   RunLog log;
   log.file = file;
-  log::LogReader reader(file);
+  log::LogReader reader(file, on_damage);
+  log.verdict = reader.verdict();
   log.bytes = reader.size();
   Summarise(reader, log);
   log.suffix = ChooseSuffix(log, suffix);
+  for (const std::string& other : StateSuffixes(log)) {
+    if (other != log.suffix) log.other_suffixes.push_back(other);
+  }
 
   const bus::Channels channels(log.suffix);
   log::LogEvent event;
@@ -120,6 +92,16 @@ RunLog ReadRunLog(const std::string& file, const std::optional<std::string>& suf
   reader.Rewind();
   while (reader.Next(event)) bus::AnyMessage(take);
   return log;
+}
+
+std::string DescribeCaution(const RunLog& log) {
+  std::string text = log::Caution(log.verdict);
+  if (!log.other_suffixes.empty()) {
+    text += (text.empty() ? "" : "; ") + std::string("read channels with suffix '") + log.suffix +
+            "', not those with '" + log.other_suffixes.front() + "'" +
+            (log.other_suffixes.size() > 1 ? " and others" : "") + " (--suffix)";
+  }
+  return text.empty() ? text : log.file + ": " + text;
 }
 
 std::string DescribeUndecodable(const RunLog& log) {

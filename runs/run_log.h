@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "log/log_reader.h"
 #include "runs/run_messages.h"
 
 namespace hydro::runs {
@@ -23,7 +24,9 @@ struct ChannelSummary {
 // Messages are in the order of the log; some may be missing, repeated or late.
 struct RunLog {
   std::string file;
-  std::string suffix;  // of the channels read
+  log::LogVerdict verdict;
+  std::string suffix;                       // of the channels read
+  std::vector<std::string> other_suffixes;  // of state channels that were not read
   RunMessages messages;
   std::vector<ChannelSummary> channels;  // by name, all that the log holds
   int64_t events = 0;                    // on all channels
@@ -39,11 +42,18 @@ enum class Undecodable {
   kLeftOut,  // counted and left out, as the processes of the run left it out
 };
 
-// Reads `file`. Without `suffix`, finds the suffix of the log's state channel; if there are several, the
-// caller must choose one (InputError names them). A log without any of this stack's channels is not an error
-// here. Throws LogError if the file is damaged, because what else is missing is then unknown.
+// Reads `file`. Without `suffix`, finds the suffix of the log's state channel. If there are several, it is that
+// of the only stack that describes its run, or in a log without any description that of nine states in ten;
+// otherwise the caller must choose one (InputError names them). A log without any of this stack's channels is
+// not an error here. Throws LogError if the file is damaged, because what else is missing is then unknown; with
+// OnDamage::kStop, reads what precedes the damage. An incomplete log is read to its last whole event.
 RunLog ReadRunLog(const std::string& file, const std::optional<std::string>& suffix = std::nullopt,
-                  Undecodable undecodable = Undecodable::kRefused);
+                  Undecodable undecodable = Undecodable::kRefused,
+                  log::OnDamage on_damage = log::OnDamage::kThrow);
+
+// One line for people about what a result from this log cannot say: that it is incomplete or repaired, or holds
+// another stack too; empty when there is nothing.
+std::string DescribeCaution(const RunLog& log);
 
 // One line for people about the messages left out; empty when none was.
 std::string DescribeUndecodable(const RunLog& log);

@@ -30,17 +30,23 @@ std::string SummaryText(const Tracking& tracking, const LogInfo& info, bool si) 
   const auto line = [&](fmt::string_view format, const auto&... arguments) {
     text += fmt::vformat(format, fmt::make_format_args(arguments...)) + "\n";
   };
-  line("{} states over {:.3f} s of plant time, {} ticks skipped (late wake-ups), {} messages lost",
-       info.ticks.states, info.ticks.last_time_s - info.ticks.first_time_s, info.ticks.missing,
-       LostMessages(info));
+  line(
+      "{} states over {:.3f} s of plant time, {} ticks skipped (late wake-ups), {} messages missing from the "
+      "log",
+      info.ticks.states, info.ticks.last_time_s - info.ticks.first_time_s, info.ticks.announced,
+      LostMessages(info));
+  const std::string caution = log::Caution(info.verdict);
+  if (!caution.empty()) line("log: {}", caution);
+  const std::string where = log::EndIsOpen(info.verdict) ? "where this log ends (the run may go on): " : "";
   if (tracking.has_reference) {
     if (tracking.at_target) {
-      line("arm {} its target {}: final error {:.5f} rad, rms error over the run {:.4f} rad",
+      line("{}arm {} its target {}: final error {:.5f} rad, rms error over the run {:.4f} rad", where,
            *tracking.at_target ? "at" : "NOT at", Angle(tracking.target_rad, si), tracking.final_error_rad,
            tracking.rms_error_rad);
     } else {
-      line("the reference still moves at the end: error there {:.5f} rad, rms error over the run {:.4f} rad",
-           tracking.final_error_rad, tracking.rms_error_rad);
+      line(
+          "{}the reference still moves at the end: error there {:.5f} rad, rms error over the run {:.4f} rad",
+          where, tracking.final_error_rad, tracking.rms_error_rad);
     }
     for (const StepResponse& step : tracking.steps) {
       line("  step at {:5.2f} s to {}: overshoot {:4.1f} %, {}, error at the end {:.5f} rad", step.time_s,
@@ -68,10 +74,13 @@ std::string SummaryText(const Tracking& tracking, const LogInfo& info, bool si) 
 }
 
 std::string SummaryJson(const Tracking& tracking, const LogInfo& info) {
-  Json json = {{"ticks", info.ticks.states},
-               {"duration_s", info.ticks.last_time_s - info.ticks.first_time_s},
-               {"skipped_ticks", info.ticks.missing},
-               {"lost_messages", LostMessages(info)}};
+  Json json = {
+      {"ticks", info.ticks.states},
+      {"duration_s", info.ticks.last_time_s - info.ticks.first_time_s},
+      {"skipped_ticks", info.ticks.announced},
+      {"ticks_without_state", info.ticks.missing},
+      {"lost_messages", LostMessages(info)},
+      {"log", {{"verdict", NameOf(info.verdict.completeness)}, {"caution", log::Caution(info.verdict)}}}};
   if (tracking.has_reference) {
     Json steps = Json::array();
     for (const StepResponse& step : tracking.steps) {

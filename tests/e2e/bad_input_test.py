@@ -173,12 +173,16 @@ class BadInputTest(stack.TestCase):
         self.run_program("hydro-sim", stack.config("demo.toml"), "--duration", "0.05", "-o", good)
         with open(good, "rb") as file:
             data = file.read()
+        event_log.write_plain(self.path("plain.lcmlog"), event_log.read_events(good))
+        with open(self.path("plain.lcmlog"), "rb") as file:
+            plain = file.read()
         # Where the tenth event begins.
-        place = sum(event_log.HEADER.size + len(e.channel) + len(e.data) for e in event_log.read_events(good)[:9])
+        place = event_log.read_all_events(good)[9][0]
         logs = {
             "missing.lcmlog": None,
             "random.lcmlog": bytes((i * 7919 + 13) % 251 for i in range(5000)),
-            "torn.lcmlog": data[:-3],
+            "torn.lcmlog": plain[:-3],
+            "flipped.lcmlog": data[:-500] + bytes([data[-500] ^ 16]) + data[-499:],
             "beheaded.lcmlog": data[1:],
             "damaged.lcmlog": data[:place] + b"\xff" * 40 + data[place + 40:],
             "empty.lcmlog": b"",
@@ -194,6 +198,21 @@ class BadInputTest(stack.TestCase):
                         continue  # two runs of which one is empty can be compared: they differ
                     self.assert_refused("hydro-log", [verb, *({"LOG": log, "GOOD": good}.get(a, a) for a in arguments)],
                                         name.replace(".", r"\."))
+
+    # Tests that a log that was cut is read by every verb, which says so.
+    def test_cut_log(self):
+        good = self.path("good.lcmlog")
+        self.run_program("hydro-sim", stack.config("demo.toml"), "--duration", "0.5", "-o", good)
+        with open(good, "rb") as file:
+            data = file.read()
+        for size in (len(data) // 2, event_log.read_all_events(good)[-1][0]):
+            cut = self.write("cut.lcmlog", data[:size])
+            for verb, arguments in LOG_VERBS.items():
+                with self.subTest(verb=verb, size=size):
+                    arguments = [{"LOG": cut, "GOOD": cut, "FILE": self.path(f"{verb}{size}.csv")}.get(a, a) for a in arguments]
+                    done = self.run_program("hydro-log", verb, *arguments)
+                    said = done.stdout if verb in ("info", "summary") else done.stderr
+                    self.assertIn("incomplete: no mark of the end", said)
 
     # Tests malformed tables for import, and unknown verbs.
     def test_hydro_log_usage(self):

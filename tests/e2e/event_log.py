@@ -8,6 +8,7 @@ import collections
 import os
 import re
 import struct
+import zlib
 
 SYNC_WORD = 0xEDA1DA01
 HEADER = struct.Struct(">IqqII")  # sync word, event number, timestamp us, channel length, data length
@@ -90,6 +91,7 @@ class Type:
 
 TYPES = {channel: Type(channel, fields) for channel, fields in FIELDS.items()}
 
+CHECK_CHANNEL = "\nLOG_CHECK"
 Event = collections.namedtuple("Event", "number utime channel data")
 
 
@@ -113,8 +115,9 @@ def _event_at(data, at):
     return Event(number, utime, channel, data[body:body + data_length]), body + data_length
 
 
-def read_events(path, torn_tail=False):
-    """All events of a log in file order. A last event that is cut off is an error unless `torn_tail`."""
+def read_all_events(path, torn_tail=False):
+    """All events of a log in file order, check events among them, each with the byte at which it begins. A last event that is
+    cut off is an error unless `torn_tail`."""
     with open(path, "rb") as file:
         data = file.read()
     events, at = [], 0
@@ -124,9 +127,61 @@ def read_events(path, torn_tail=False):
             if torn_tail:
                 break
             raise LogError(f"{path}: ends within an event that begins at byte {at} of {len(data)}")
-        events.append(found[0])
+        events.append((at, found[0]))
         at = found[1]
     return events
+
+
+def read_events(path, torn_tail=False):
+    """The messages of a log in file order: all its events but the check events."""
+    return [event for _, event in read_all_events(path, torn_tail) if event.channel != CHECK_CHANNEL]
+
+
+def write_plain(path, events):
+    """Writes a log as lcm-logger does, without check events."""
+    with open(path, "wb") as file:
+        for number, event in enumerate(events):
+            channel = event.channel.encode()
+            file.write(HEADER.pack(SYNC_WORD, number, event.utime, len(channel), len(event.data)) + channel + event.data)
+
+
+Check = collections.namedtuple("Check", "version kind offset previous checksums text checksum")
+BEGIN, BLOCK, END = range(3)
+CHECK_HEAD = struct.Struct(">8sBBHIQI")  # magic, version, kind, length of the text, count, offset, previous
+
+
+def parse_check(data):
+    """What docs/logs.md says that the data of a check event hold."""
+    magic, version, kind, text_length, count, offset, previous = CHECK_HEAD.unpack_from(data)
+    if magic != b"HYDROCHK" or len(data) != CHECK_HEAD.size + 4 * count + text_length + 4:
+        raise LogError("a check event of other contents")
+    at = CHECK_HEAD.size
+    checksums = struct.unpack_from(f">{count}I", data, at)
+    text = data[at + 4 * count:at + 4 * count + text_length].decode()
+    return Check(version, kind, offset, previous, checksums, text, struct.unpack(">I", data[-4:])[0])
+
+
+def verify(path):
+    """Compares a whole log with its check events, and returns those. LogError where it is not what was written."""
+    with open(path, "rb") as file:
+        data = file.read()
+    events = read_all_events(path)
+    ends = [at for at, _ in events[1:]] + [len(data)]
+    checks, pending = [], []
+    for (begin, event), end in zip(events, ends):
+        if event.channel != CHECK_CHANNEL:
+            pending.append(zlib.crc32(data[begin:end]))
+            continue
+        check = parse_check(event.data)
+        expected = Check(1, check.kind, begin, checks[-1].checksum if checks else 0, tuple(pending), check.text,
+                         zlib.crc32(data[begin:end - 4]))
+        if check != expected or (check.kind == BEGIN) != (not checks):
+            raise LogError(f"{path}: byte {begin}: {check}, expected {expected}")
+        checks.append(check)
+        pending = []
+    if not checks or checks[-1].kind != END or events[-1][1].channel != CHECK_CHANNEL:
+        raise LogError(f"{path}: no mark of the end")
+    return checks
 
 
 class Follower:
@@ -148,7 +203,8 @@ class Follower:
         self.offset += len(more)
         data, at, events = self.rest + more, 0, []
         while (found := _event_at(data, at)) is not None:
-            events.append(found[0])
+            if found[0].channel != CHECK_CHANNEL:
+                events.append(found[0])
             at = found[1]
         self.rest = data[at:]
         return events

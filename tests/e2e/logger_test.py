@@ -5,6 +5,7 @@ megabytes and is ended by SIGTERM while the run goes on; a third one joins then 
 """
 
 import glob
+import os
 import signal
 import time
 
@@ -54,6 +55,7 @@ class LoggerTest(stack.TestCase):
         self.check_whole(whole)
         self.check_killed(whole, killed_file, kill_time)
         self.check_rotated(whole, rotated_file)
+        self.check_verdicts(whole_file, killed_file)
 
     def check_whole(self, log):
         for kind in event_log.NUMBERED:
@@ -92,6 +94,12 @@ class LoggerTest(stack.TestCase):
                 if e.utime * 1e-6 < kill_time and e.utime * 1e-6 > first and identity(e) not in have]
         print(f"killed logger: lacks the last {1e3 * max(late, default=0):.1f} ms, {len(late)} events")
 
+    def check_verdicts(self, whole_file, killed_file):
+        """Each log says what it is: by our own reader, and the whole one by this folder's."""
+        self.assertIn("\nlog: complete\n", self.run_program("hydro-log", "info", whole_file).stdout)
+        event_log.verify(whole_file)
+        self.assertIn("\nlog: incomplete: ", self.run_program("hydro-log", "info", killed_file).stdout)
+
     def check_rotated(self, whole, first_file):
         pieces = sorted(glob.glob(first_file.replace(".lcmlog", "*.lcmlog")),
                         key=lambda path: (len(path), path))
@@ -104,6 +112,8 @@ class LoggerTest(stack.TestCase):
                 self.assertEqual(part[0].channel, "HYDRO_RUN", piece)
                 part = part[1:]  # a copy of what the piece before it holds
             events += part
+            self.assertEqual(event_log.verify(piece)[-1].text, "" if piece == pieces[-1] else
+                             "goes on in " + os.path.basename(pieces[number + 1]))
             info = self.run_program("hydro-log", "info", piece)
             self.assertIn("hydro-plant", info.stdout)  # it describes itself
         # Together they hold, in order, everything sent between the rotating logger's start and its end.
@@ -119,19 +129,43 @@ class LoggerTest(stack.TestCase):
             self.assertEqual(mine, all_[begin:begin + len(mine)], channel)
 
 
+class DeletedLogTest(stack.TestCase):
+    # Tests that a log that is deleted, or whose folder is moved, is named within two seconds, that the logger goes on, and that
+    # it ends with 1.
+    def test_deleted_or_moved(self):
+        for gone in ("deleted", "moved"):
+            with self.subTest(gone):
+                folder = self.path(gone)
+                os.mkdir(folder)
+                log_file = os.path.join(folder, "run.lcmlog")
+                logger = self.start("hydro-logger", stack.config("demo.toml"), "--set", f"bus.url={self.new_url()}", "-o", log_file)
+                self.wait_until(lambda path=log_file: os.path.exists(path) and os.path.getsize(path) > 0, "a log")
+                if gone == "deleted":
+                    os.remove(log_file)
+                else:
+                    os.rename(folder, folder + "_away")
+                self.wait_until(lambda p=logger: "renamed or deleted" in p.stderr, "a word on it", timeout=4)
+                self.assertIn(log_file, logger.stderr)
+                self.assertTrue(logger.running)
+                logger.send(signal.SIGTERM)
+                self.assertEqual(logger.wait(), 1, logger.report())
+
+
 class TornLogTest(stack.TestCase):
-    # Tests that a log cut off within its last event loses only that event.
+    # Tests that a log cut off within its last message is read to there, with a word on it, and that a repair loses only that
+    # message.
     def test_torn_tail(self):
         log_file = self.path("run.lcmlog")
         self.run_program("hydro-sim", stack.config("demo.toml"), "--duration", "0.2", "-o", log_file)
         before = event_log.read_events(log_file)
         with open(log_file, "rb") as file:
             data = file.read()
+        last = [at for at, event in event_log.read_all_events(log_file) if event.channel != event_log.CHECK_CHANNEL][-1]
         with open(log_file, "wb") as file:
-            file.write(data[:-3])
-        compare = self.run_program("hydro-log", "compare", log_file, log_file, expect=2)
-        self.assertEqual(len(compare.stderr.splitlines()), 1, compare.stderr)
-        self.assertIn(log_file, compare.stderr)
+            file.write(data[:last + 40])
+        compare = self.run_program("hydro-log", "compare", log_file, log_file)
+        self.assertEqual(compare.stdout, "identical in what is there (the logs are not whole)\n")
+        self.assertIn(f"{log_file}: incomplete: ", compare.stderr)
         self.run_program("hydro-log", "repair", log_file)
         self.assertEqual(event_log.read_events(log_file), before[:-1])
 

@@ -5,6 +5,7 @@ import signal
 import unittest
 
 import event_log
+import lcm_peer
 import outcome
 import stack
 
@@ -65,6 +66,27 @@ class PlayerTest(stack.TestCase):
     def test_played_to_realtime(self):
         self.play("realtime")
 
+    # Tests that the check events of a log stay in it: lcm-logplayer passes over them without a word, and a peer of the network
+    # receives exactly the messages.
+    @unittest.skipUnless(PLAYER, "lcm-logplayer is not installed")
+    def test_check_events_are_not_played(self):
+        log_file = self.path("sim.lcmlog")
+        self.run_program("hydro-sim", stack.config("demo.toml"), "--duration", "0.5", "-o", log_file)
+        self.assertGreater(len(event_log.verify(log_file)), 5)
+        url = self.new_url()
+        peer = lcm_peer.Peer(url, {})
+        self.addCleanup(peer.close)
+        player = self.start(PLAYER, "-l", url, "-s", "0.5", log_file)
+        expected = [(e.channel, e.data) for e in event_log.read_events(log_file)]
+        # LCM's own check of multicast sends itself a message first.
+        received = []
+        while len(received) < len(expected) and (more := peer.receive(5)):
+            received += [m for m in more if m[0].startswith("HYDRO_") or event_log.CHECK_CHANNEL in m[0]]
+        self.assertEqual(player.wait(60), 0, player.report())
+        self.assertEqual(received, expected)
+        self.assertEqual(peer.receive(0.2), [])
+        self.assertEqual(player.stderr, "")
+
     def assert_replays(self, log_file):
         replay = self.run_program("hydro-log", "replay", log_file)
         self.assertRegex(replay.stdout, r"(?m)^pressure: identical, [1-9]\d* motor commands from [1-9]\d* states$")
@@ -86,12 +108,10 @@ class PlayerTest(stack.TestCase):
     # Tests that replay notices differences: a log whose commands came from other gains than it states.
     def test_replay_finds_a_difference(self):
         log_file = self.record("--duration", "0.5")
-        with open(log_file, "rb") as file:
-            data = file.read()
-        changed = data.replace(b"c1 = 6000", b"c1 = 6001")
-        self.assertNotEqual(changed, data, "the description holds the gain")
-        with open(log_file, "wb") as file:
-            file.write(changed)
+        events = event_log.read_events(log_file)
+        changed = [e._replace(data=e.data.replace(b"c1 = 6000", b"c1 = 6001")) for e in events]
+        self.assertNotEqual(changed, events, "the description holds the gain")
+        event_log.write_plain(log_file, changed)
         replay = self.run_program("hydro-log", "replay", log_file, expect=1)
         self.assertRegex(replay.stdout, "(?m)^pressure: identical")
         self.assertRegex(replay.stdout, r"(?m)^position: .*tick \d+")

@@ -1,9 +1,12 @@
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <string>
 
+#include "base/text_file.h"
 #include "hydro_log/replay.h"
 #include "log/log_reader.h"
+#include "log/log_writer.h"
 #include "log/repair.h"
 #include "runs/compare.h"
 #include "runs/info.h"
@@ -55,6 +58,38 @@ void ReadAsARun(const std::string& file, const ScratchFolder& folder) {
   Accepts([&] { hydro_log::Replay(log, hydro_log::ReplayedController::kPosition, 0); });
 }
 
+// The bytes as the data of messages in a log with checksums, of which one byte is then changed: whatever it is,
+// the log is not called complete, and what is read of it is its beginning.
+void ChangeOneByte(const uint8_t* data, size_t size, const ScratchFolder& folder) {
+  if (size < 8) return;
+  const std::string file = folder.Path("checked");
+  {
+    log::LogWriter writer(file, Opening::kTemporary);
+    for (size_t at = 0; at < size; at += 50)
+      writer.Append("FUZZ", data + at, std::min<size_t>(50, size - at), 0);
+    writer.Finish();
+  }
+  const int64_t messages = CountEvents(file);
+  std::string bytes = ReadTextFile(file);
+  const size_t place =
+      (static_cast<size_t>(data[0]) << 16 | static_cast<size_t>(data[1]) << 8 | data[2]) % bytes.size();
+  const char change = static_cast<char>(data[3] == 0 ? 1 : data[3]);
+  bytes[place] = static_cast<char>(bytes[place] ^ change);
+  const std::string changed = folder.Write("changed", bytes);
+  try {
+    log::LogReader reader(changed, log::OnDamage::kStop);
+    Promise(reader.verdict().completeness != log::Completeness::kComplete &&
+                reader.verdict().completeness != log::Completeness::kWithoutChecksums,
+            "a changed byte is noticed");
+    log::LogEvent event;
+    int64_t count = 0;
+    while (reader.Next(event)) ++count;
+    // The mark of the end, its channel changed, is one message more.
+    Promise(count <= messages + 1, "no more is read than was written");
+  } catch (const InputError&) {
+  }
+}
+
 }  // namespace
 
 void Log(const uint8_t* data, size_t size) {
@@ -62,6 +97,7 @@ void Log(const uint8_t* data, size_t size) {
   static const ScratchFolder folder;
   const std::string file = folder.Write("log", Text(data, size));
   const bool whole = Accepts([&] { CountEvents(file); });
+  ChangeOneByte(data, size, folder);
   ReadAsARun(file, folder);
   Accepts([&] { runs::ReadMeasuredRun(file); });
   Accepts([&] {
@@ -71,8 +107,12 @@ void Log(const uint8_t* data, size_t size) {
     Promise(!log::Describe(result, file).empty(), "a repair is described");
     int64_t lost = 0;
     for (const log::LostBytes& bytes : result.lost) lost += bytes.end - bytes.begin;
-    Promise(lost + result.kept_bytes == static_cast<int64_t>(size), "every byte is kept or lost");
-    Promise(whole || !result.lost.empty(), "a damaged log loses something");
+    Promise(lost + result.kept_bytes + result.check_bytes == static_cast<int64_t>(size),
+            "every byte is kept or lost");
+    Promise(whole || result.mended(), "a damaged log is mended");
+    const log::LogVerdict verdict = log::LogReader(repaired).verdict();
+    Promise(verdict.completeness == log::Completeness::kComplete, "a repaired log is complete");
+    Promise(!result.mended() || !verdict.note.empty(), "a repaired log says so");
   });
 }
 

@@ -84,14 +84,73 @@ TEST_F(HydroLogTest, Repair) {
   const std::string whole = log::ReadBytes(Path("log"));
   EXPECT_EQ(HydroLog({"repair", Path("log")}).out, Path("log") + ": nothing to repair\n");
   EXPECT_FALSE(std::filesystem::exists(Path("log.damaged")));
-  log::WriteBytes(Path("log"), whole.substr(0, whole.size() - 1));
+  std::string flipped = whole;
+  flipped[whole.size() / 2] ^= 1;
+  log::WriteBytes(Path("log"), flipped);
   const Outcome broken = HydroLog({"info", Path("log")});
   EXPECT_EQ(broken.exit_code, 2);
+  EXPECT_THAT(broken.out, HasSubstr("log: damaged: byte "));
   EXPECT_THAT(broken.err, HasSubstr("hydro-log repair " + Path("log")));
   const Outcome repaired = HydroLog({"repair", Path("log")});
   EXPECT_EQ(repaired.exit_code, 0);
   EXPECT_THAT(repaired.out, AllOf(HasSubstr(": kept "), HasSubstr(": lost bytes ")));
   EXPECT_EQ(HydroLog({"info", Path("log")}).exit_code, 0);
+}
+
+// Tests that each verb says of an incomplete log that it is one, and refuses a damaged one in one line that
+// names file, place and cure.
+TEST_F(HydroLogTest, IncompleteAndDamaged) {
+  log::WriteRun(Path("whole"), log::SampleRun(400));
+  const std::string whole = log::ReadBytes(Path("whole"));
+  log::WriteBytes(Path("cut"), whole.substr(0, whole.size() / 2));
+  std::string flipped = whole;
+  flipped[whole.size() / 2] ^= 4;
+  log::WriteBytes(Path("flipped"), flipped);
+
+  const Outcome info = HydroLog({"info", Path("cut")});
+  EXPECT_EQ(info.exit_code, 0);
+  EXPECT_THAT(info.out, HasSubstr("\nlog: incomplete: no mark of the end at byte "));
+  EXPECT_THAT(HydroLog({"info", "--json", Path("cut")}).out, HasSubstr("\"verdict\": \"incomplete\""));
+  EXPECT_THAT(HydroLog({"info", Path("whole")}).out, HasSubstr("\nlog: complete\n"));
+  EXPECT_THAT(
+      HydroLog({"summary", Path("cut")}).out,
+      AllOf(HasSubstr("\nlog: incomplete: "), HasSubstr("\nwhere this log ends (the run may go on): ")));
+  const Outcome whole_summary = HydroLog({"summary", Path("whole")});
+  EXPECT_THAT(whole_summary.out, testing::Not(HasSubstr("may go on")));
+
+  const Outcome same = HydroLog({"compare", Path("cut"), Path("cut")});
+  EXPECT_EQ(same.out, "identical in what is there (the logs are not whole)\n");
+  for (const std::vector<std::string>& verb : std::vector<std::vector<std::string>>{
+           {"export", "-o", Path("out.csv")}, {"compare", Path("cut")}, {"summary"}}) {
+    std::vector<std::string> arguments = verb;
+    arguments.push_back(Path("cut"));
+    const Outcome cut = HydroLog(arguments);
+    EXPECT_EQ(cut.exit_code, 0) << verb[0] << cut.err;
+    if (verb[0] != "summary") {
+      EXPECT_THAT(cut.err, StartsWith("hydro-log: warning: " + Path("cut") + ": incomplete: ")) << verb[0];
+    }
+    arguments.back() = Path("flipped");
+    const Outcome damaged = HydroLog(arguments);
+    EXPECT_EQ(damaged.exit_code, 2) << verb[0];
+    EXPECT_THAT(damaged.err, AllOf(HasSubstr(Path("flipped") + ": byte "),
+                                   HasSubstr("hydro-log repair " + Path("flipped"))));
+  }
+}
+
+// Tests that messages removed from a log are missing messages, not late wake-ups of the plant.
+TEST_F(HydroLogTest, MissingIsNotSkipped) {
+  runs::RunMessages run = log::SampleRun(400);
+  std::vector<state_t>& states = run.Of<state_t>();
+  states.erase(states.begin() + 100, states.begin() + 250);
+  states[120].skipped_ticks = 0;
+  states.erase(states.begin() + 200, states.begin() + 203);  // three ticks that the plant skipped
+  for (size_t k = 200; k < states.size(); ++k) states[k].sequence -= 3;
+  states[200].skipped_ticks = 3;
+  log::WriteRun(Path("log"), run);
+  const Outcome summary = HydroLog({"summary", Path("log")});
+  EXPECT_THAT(summary.out, HasSubstr(", 3 ticks skipped (late wake-ups), 150 messages missing from the log"));
+  EXPECT_THAT(HydroLog({"info", Path("log")}).out,
+              HasSubstr("without state: 153, of which the plant skipped 3 and 150 are missing from the log"));
 }
 
 // Tests that an undecodable message, which a foreign program may send, is no reason to refuse the log: info

@@ -76,6 +76,32 @@ TEST_P(ReplayTest, OrderOfArrivalDoesNotMatter) {
   EXPECT_EQ(Replay(log, GetParam(), 0).difference, std::nullopt);
 }
 
+// Tests that where the record lacks a state the comparison ends and says so: from there on other answers prove
+// nothing. Ticks that the plant skipped are no such gap.
+TEST_P(ReplayTest, EndsAtAMissingState) {
+  runs::RunLog log = Recorded();
+  std::vector<state_t>& states = log.messages.Of<state_t>();
+  std::erase_if(states, [](const state_t& state) { return state.tick >= 100 && state.tick < 103; });
+  const ReplayResult result = Replay(log, GetParam(), 0);
+  EXPECT_EQ(result.difference, std::nullopt);
+  EXPECT_EQ(result.gap_tick, 100);
+  EXPECT_EQ(result.answers, GetParam() == ReplayedController::kPressure ? 100 : 20);
+  EXPECT_EQ(result.answers + result.not_compared, GetParam() == ReplayedController::kPressure ? 301 : 61);
+  const auto after = std::ranges::find(states, 103, &state_t::tick);
+  after->skipped_ticks = 3;
+  EXPECT_EQ(Replay(log, GetParam(), 0).gap_tick, std::nullopt);
+}
+
+// Tests the same for a pressure command that the pressure loop obeyed and the record lacks.
+TEST(ReplayGapTest, EndsAtAMissingPressureCommand) {
+  runs::RunLog log = Recorded();
+  std::erase_if(log.messages.Of<pressure_command_t>(),
+                [](const pressure_command_t& command) { return command.tick == 100; });
+  const ReplayResult result = Replay(log, ReplayedController::kPressure, 0);
+  EXPECT_EQ(result.difference, std::nullopt);
+  EXPECT_EQ(result.gap_tick, 101);
+}
+
 // Tests that one flipped bit, in a recorded answer or in a measurement, is found, at its tick.
 TEST(ReplayBitTest, OneBitIsFound) {
   runs::RunLog log = Recorded();

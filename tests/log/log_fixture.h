@@ -13,6 +13,7 @@
 
 #include "bus/channels.h"
 #include "hydro/run_description_t.hpp"
+#include "log/log_format.h"
 #include "log/log_reader.h"
 #include "log/log_writer.h"
 #include "runs/run_messages.h"
@@ -73,6 +74,28 @@ inline void WriteEvents(const std::string& file, const std::vector<EventContents
     writer.Append(event.channel, event.data.data(), event.data.size(), event.utime);
   }
   writer.Finish();
+}
+
+// As lcm-logger and versions of this project without checksums write them.
+inline void WritePlain(const std::string& file, const std::vector<EventContents>& events) {
+  std::string bytes;
+  for (size_t k = 0; k < events.size(); ++k) {
+    uint8_t header[kLogHeaderSize];
+    StoreBigEndian32(kLogSyncWord, header);
+    StoreBigEndian64(k, header + 4);
+    StoreBigEndian64(static_cast<uint64_t>(events[k].utime), header + 12);
+    StoreBigEndian32(static_cast<uint32_t>(events[k].channel.size()), header + 20);
+    StoreBigEndian32(static_cast<uint32_t>(events[k].data.size()), header + 24);
+    bytes.append(reinterpret_cast<const char*>(header), sizeof header);
+    bytes += events[k].channel + events[k].data;
+  }
+  WriteBytes(file, bytes);
+}
+
+// The log `file` without its check events.
+inline std::string PlainBytes(const std::string& file) {
+  WritePlain(file + ".plain", ReadEvents(file));
+  return ReadBytes(file + ".plain");
 }
 
 // A matcher for the message of the InputError that `work` must throw, at `where`.

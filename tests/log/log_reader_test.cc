@@ -26,10 +26,10 @@ TEST_F(LogReaderTest, EmptyFile) {
   EXPECT_TRUE(ReadEvents(Path("log")).empty());
 }
 
-// Tests that a log cut at any byte of any event gives the events before it, then an error that names the
+// Tests that a log without checksums cut at any byte of any event gives the events before it, then an error that names the
 // place.
 TEST_F(LogReaderTest, TruncatedAtEveryByte) {
-  WriteEvents(Path("log"), kEvents);
+  WritePlain(Path("log"), kEvents);
   const std::string bytes = ReadBytes(Path("log"));
   size_t begin = 0;
   for (size_t k = 0; k < kEvents.size(); ++k) {
@@ -73,7 +73,7 @@ TEST_F(LogReaderTest, DamagedHeader) {
        "found sync word 0x64eda1da; allowed 0xeda1da01"},
       {"zero byte in the channel", 29, std::string("\0", 1), "found a zero byte in the channel's name"},
   };
-  WriteEvents(Path("log"), kEvents);
+  WritePlain(Path("log"), kEvents);
   const std::string bytes = ReadBytes(Path("log"));
   for (const Damage& damage : damages) {
     std::string damaged = bytes;
@@ -85,7 +85,7 @@ TEST_F(LogReaderTest, DamagedHeader) {
 
 // Tests that an event whose length is wrong is not handed out before the error.
 TEST_F(LogReaderTest, DoesNotReturnAnEventOfWrongLength) {
-  WriteEvents(Path("log"), kEvents);
+  WritePlain(Path("log"), kEvents);
   std::string bytes = ReadBytes(Path("log"));
   bytes[27] = static_cast<char>(bytes[27] - 1);
   WriteBytes(Path("log"), bytes);

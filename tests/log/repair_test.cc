@@ -22,14 +22,14 @@ class RepairTest : public LogTest {
     EXPECT_EQ(static_cast<int64_t>(events.size()), repaired.kept_events);
     int64_t lost = 0;
     for (const LostBytes& place : repaired.lost) lost += place.end - place.begin;
-    EXPECT_EQ(lost + repaired.kept_bytes, static_cast<int64_t>(bytes.size()));
+    EXPECT_EQ(lost + repaired.kept_bytes + repaired.check_bytes, static_cast<int64_t>(bytes.size()));
     return events;
   }
 
   // A log of foreign messages, and the byte at which each begins, and its end.
   std::string Foreign(std::vector<EventContents>& events, std::vector<size_t>& begins) {
     events = {{"ONE", "first data", 1}, {"TWO", "second", 2}, {"THREE", "3rd", 3}, {"FOUR", "the fourth", 4}};
-    WriteEvents(Path("log"), events);
+    WritePlain(Path("log"), events);
     begins = {0};
     for (const EventContents& event : events) {
       begins.push_back(begins.back() + kLogHeaderSize + event.channel.size() + event.data.size());
@@ -75,7 +75,7 @@ TEST_F(RepairTest, AppendedAfterATornTailAtEveryByte) {
 // are.
 TEST_F(RepairTest, AppendedAfterATornState) {
   WriteRun(Path("log"), SampleRun(3));
-  const std::string bytes = ReadBytes(Path("log"));
+  const std::string bytes = PlainBytes(Path("log"));
   const std::vector<EventContents> events = ReadEvents(Path("log"));
   const size_t last = kLogHeaderSize + events.back().channel.size() + events.back().data.size();
   for (size_t cut = 1; cut < last; ++cut) {
@@ -119,7 +119,7 @@ TEST_F(RepairTest, EveryDamagedByteOfAHeader) {
 // does not end at another.
 TEST_F(RepairTest, GarbageBetweenEvents) {
   WriteRun(Path("log"), SampleRun(3));
-  const std::string bytes = ReadBytes(Path("log"));
+  const std::string bytes = PlainBytes(Path("log"));
   const std::vector<EventContents> events = ReadEvents(Path("log"));
   const size_t first = kLogHeaderSize + events[0].channel.size() + events[0].data.size();
   RepairResult result;
@@ -135,11 +135,11 @@ TEST_F(RepairTest, UndecodableMessages) {
   std::vector<EventContents> events = ReadEvents(Path("log"));
   const std::vector<EventContents> whole = events;
   events[1].data[0] = '?';  // the type's hash
-  WriteEvents(Path("log"), events);
+  WritePlain(Path("log"), events);
   EXPECT_EQ(Repaired(ReadBytes(Path("log"))), Without(whole, 1));
 
   for (EventContents& event : events) event.data[0] = '?';
-  WriteEvents(Path("log"), events);
+  WritePlain(Path("log"), events);
   RepairResult result;
   EXPECT_EQ(Repaired(ReadBytes(Path("log")), &result), events);
   EXPECT_TRUE(result.lost.empty());

@@ -109,6 +109,54 @@ TEST_F(LoggerAppTest, RotatesBySize) {
   for (int64_t i = 0; i < 1000; ++i) EXPECT_EQ(all[static_cast<size_t>(i)], i);
 }
 
+// Tests that each file of a rotation says that it is whole and where the recording goes on, and the last that it
+// is the end.
+TEST_F(LoggerAppTest, RotationIsNoCut) {
+  LoggerApp logger(bus_, clock_, SmallStack(), {file_, 20000});
+  SendStates(0, 299);
+  EXPECT_EQ(logger.Finish(), 0);
+  int files = 0;
+  while (std::filesystem::exists(RotatedName(file_, files + 1))) ++files;
+  ASSERT_GT(files, 0);
+  for (int n = 0; n <= files; ++n) {
+    const log::LogVerdict verdict = log::LogReader(RotatedName(file_, n)).verdict();
+    EXPECT_EQ(verdict.completeness, log::Completeness::kComplete);
+    const std::string next = std::filesystem::path(RotatedName(file_, n + 1)).filename().string();
+    EXPECT_EQ(verdict.ending, n == files ? "" : "goes on in " + next);
+  }
+}
+
+// Tests that a check event from the bus is not recorded, and that of refused messages a bounded number is, with
+// a remark on the rest.
+TEST_F(LoggerAppTest, RefusedMessagesAreBounded) {
+  LoggerApp logger(bus_, clock_, SmallStack(), {file_, 0});
+  const std::string data(100, 'x');
+  bus_.PublishRaw(std::string(log::kCheckChannel), data.data(), 100);
+  for (int k = 0; k < 3000; ++k) bus_.PublishRaw("REFUSED_HYDRO_MOTOR_COMMAND", data.data(), 100);
+  Deliver();
+  EXPECT_EQ(logger.Finish(), 0);
+  int64_t refused = 0;
+  for (const log::EventContents& event : log::ReadEvents(file_)) {
+    refused += event.channel == "REFUSED_HYDRO_MOTOR_COMMAND";
+  }
+  EXPECT_EQ(refused, 1000);
+  const log::LogVerdict verdict = log::LogReader(file_).verdict();
+  EXPECT_EQ(verdict.completeness, log::Completeness::kComplete);
+  ASSERT_EQ(verdict.remarks.size(), 1u);
+  EXPECT_EQ(verdict.remarks[0].find("2000 refused messages (200000 bytes) were left out"), 0u);
+}
+
+// Tests that a log that is deleted while it is recorded ends the logger with 1, not before the stop.
+TEST_F(LoggerAppTest, DeletedLog) {
+  LoggerApp logger(bus_, clock_, SmallStack(), {file_, 0});
+  SendStates(0, 9);
+  std::filesystem::remove(file_);
+  std::this_thread::sleep_for(1200ms);
+  logger.Poll();
+  EXPECT_FALSE(logger.finished());
+  EXPECT_EQ(logger.Finish(), 1);
+}
+
 // Tests that the logger ends by itself after a stop, once all processes that it has seen have said farewell.
 TEST_F(LoggerAppTest, EndsAfterEveryonesFarewell) {
   LoggerApp logger(bus_, clock_, SmallStack(), {file_, 0});

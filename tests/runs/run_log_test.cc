@@ -41,6 +41,25 @@ TEST_F(RunLogTest, SeveralSuffixes) {
               AllOf(HasSubstr("no channel with suffix '_3'"), HasSubstr("'', '_2'")));
 }
 
+// Tests that a stray packet on another stack's channel does not make a log unreadable: the stack that describes
+// its run is read, or without any description the one of nearly all states.
+TEST_F(RunLogTest, StraySuffix) {
+  log::WriteRun(Path("log"), log::SampleRun(30));
+  std::vector<log::EventContents> events = log::ReadEvents(Path("log"));
+  log::EventContents stray = events[1];
+  stray.channel += "_X";
+  events.push_back(stray);
+  for (const bool described : {true, false}) {
+    if (!described) std::erase_if(events, [](const auto& event) { return event.channel == "HYDRO_RUN"; });
+    log::WriteEvents(Path("log"), events);
+    const RunLog log = ReadRunLog(Path("log"));
+    EXPECT_EQ(log.suffix, "");
+    EXPECT_THAT(log.other_suffixes, testing::ElementsAre("_X"));
+    EXPECT_THAT(DescribeCaution(log), HasSubstr("read channels with suffix '', not those with '_X'"));
+    EXPECT_EQ(ReadRunLog(Path("log"), "_X").messages.Of<state_t>().size(), 1u);
+  }
+}
+
 // Tests that other programs' messages are counted and otherwise left alone.
 TEST_F(RunLogTest, ForeignChannels) {
   log::WriteEvents(Path("log"), {{"CAMERA", "12345", 7}, {"CAMERA", "678", 9}, {"LIDAR", "", 8}});

@@ -1,0 +1,22 @@
+// Where a record lacks what a controller was given: from there on a replay proves nothing.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+
+#include "hydro/motor_command_t.hpp"
+#include "hydro/pressure_command_t.hpp"
+#include "hydro/state_t.hpp"
+
+namespace hydro::hydro_log {
+
+// The first tick after the first state that has none, and that the plant did not skip.
+std::optional<int64_t> FirstMissingState(const std::map<int64_t, state_t>& states);
+
+// The first tick whose motor command follows from a pressure command that is not there.
+std::optional<int64_t> FirstWithoutPressureCommand(
+    const std::map<int64_t, motor_command_t>& commands,
+    const std::map<int64_t, pressure_command_t>& pressure_commands);
+
+}  // namespace hydro::hydro_log

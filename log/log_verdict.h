@@ -1,0 +1,46 @@
+// Whether a log is what its writer wrote, and all of it.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "base/mapped_file.h"
+
+namespace hydro::log {
+
+enum class Completeness {
+  kComplete,          // every checksum is right, to the mark of the end
+  kIncomplete,        // no such mark: still being recorded, cut off, or its recorder was killed
+  kDamaged,           // something in it is not what was written
+  kWithoutChecksums,  // of lcm-logger or an older version: only its structure could be judged
+};
+
+struct LogVerdict {
+  Completeness completeness = Completeness::kWithoutChecksums;
+  // Damaged and incomplete: where, and what was found there.
+  std::string where;
+  // Events that end at this byte or before can be read; what follows is damaged or torn.
+  int64_t readable_end = 0;
+  // Incomplete: messages after the last check event, which no checksum vouches for, and where they begin.
+  int64_t unchecked_messages = 0;
+  int64_t unchecked_from = 0;
+  std::string note;  // where the log comes from, if not from a recording (hydro-log repair says it here)
+  std::vector<std::string> remarks;  // of the recorder, on what it left out
+  bool found_end = false;            // the (last) mark of the end was there
+  std::string ending;  // why it ends, if not because the recording was finished (rotation, repair)
+};
+
+// Reads all of the file once.
+LogVerdict ExamineLog(const MappedFile& file);
+
+// "complete", "incomplete", "damaged", "without checksums".
+const char* NameOf(Completeness completeness);
+
+// Whether the log says of itself that its recording went on, or may have gone on, after its last message.
+bool EndIsOpen(const LogVerdict& verdict);
+
+// One line about what a reader of the log must know before it trusts a result; empty when there is nothing.
+std::string Caution(const LogVerdict& verdict);
+
+}  // namespace hydro::log

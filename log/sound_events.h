@@ -1,0 +1,30 @@
+// Finds the events of a damaged log by their structure alone.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "base/mapped_file.h"
+
+namespace hydro::log {
+
+// Bytes of a log that were not kept.
+struct LostBytes {
+  int64_t begin = 0;
+  int64_t end = 0;  // first byte after them
+  std::string reason;
+};
+
+struct KeptEvent {
+  int64_t begin;
+  int64_t end;
+};
+
+// The events of `file` that can be kept, in order, check events among them:
+// - after bytes that are no event, it looks for the next sync word that begins one;
+// - it drops an event with a damaged length, which the bytes after or inside it reveal.
+// Appends what lies between them to `lost`.
+std::vector<KeptEvent> FindSoundEvents(const MappedFile& file, std::vector<LostBytes>& lost);
+
+}  // namespace hydro::log

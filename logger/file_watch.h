@@ -1,0 +1,31 @@
+// Notices when the file that is being recorded has been deleted, renamed or replaced, or its folder has gone:
+// writing to it goes on working, and nobody would find the log.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "base/file_identity.h"
+#include "bus/clock.h"
+
+namespace hydro::logger {
+
+class FileWatch {
+ public:
+  static constexpr auto kPeriod = std::chrono::seconds(1);  // of the wall clock, whatever the run's
+
+  // `file` exists and is the one to watch from now on.
+  void Watch(const std::string& file);
+
+  // Looks once a second. Returns what is wrong, once for each file: "run.lcmlog: has been deleted or ...".
+  std::optional<std::string> Look(std::chrono::steady_clock::time_point now);
+  // Looks now.
+  std::optional<std::string> LookNow();
+
+ private:
+  std::string file_;
+  std::optional<FileIdentity> identity_;  // none: nothing to look for any more
+  std::chrono::steady_clock::time_point last_look_{};
+};
+
+}  // namespace hydro::logger

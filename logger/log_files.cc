@@ -1,0 +1,49 @@
+#include "logger/log_files.h"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <filesystem>
+#include <utility>
+
+namespace hydro::logger {
+
+std::string RotatedName(const std::string& file, int n) {
+  if (n == 0) return file;
+  const std::filesystem::path path(file);
+  return (path.parent_path() / fmt::format("{}-{:03d}{}", path.stem().string(), n, path.extension().string()))
+      .string();
+}
+
+LogFiles::LogFiles(std::string file, int64_t rotate_bytes, std::string description_channel)
+    : file_(std::move(file)),
+      rotate_bytes_(rotate_bytes),
+      description_channel_(std::move(description_channel)),
+      writer_(std::make_unique<log::LogWriter>(file_, Opening::kDirect)) {
+  watch_.Watch(file_);
+}
+
+void LogFiles::Append(const EventQueue::Event& event) {
+  if (rotate_bytes_ > 0 && writer_->bytes() >= rotate_bytes_) Rotate();
+  writer_->Append(event.channel, event.data, event.size, event.utime);
+  if (event.channel == description_channel_) {
+    description_ = {description_channel_, {event.data, event.data + event.size}, event.utime};
+  }
+}
+
+void LogFiles::Rotate() {
+  const std::string next = RotatedName(file_, count_++);
+  writer_->Finish("goes on in " + std::filesystem::path(next).filename().string());
+  if (const auto wrong = watch_.LookNow()) gone_ = wrong;
+  writer_ = std::make_unique<log::LogWriter>(next, Opening::kDirect);
+  watch_.Watch(next);
+  if (!description_) return;
+  writer_->Append(description_->channel, description_->data.data(), description_->data.size(),
+                  description_->utime);
+}
+
+std::optional<std::string> LogFiles::Look(bool at_once) {
+  if (gone_) return std::exchange(gone_, std::nullopt);
+  return at_once ? watch_.LookNow() : watch_.Look(std::chrono::steady_clock::now());
+}
+
+}  // namespace hydro::logger

@@ -1,0 +1,55 @@
+// The files of a recording: one, or with a limit of size one after the other.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "log/causal_order.h"
+#include "log/log_writer.h"
+#include "logger/event_queue.h"
+#include "logger/file_watch.h"
+
+namespace hydro::logger {
+
+// The name of the n-th file (n = 0 is `file` itself): run.lcmlog, run-001.lcmlog, run-002.lcmlog ...
+std::string RotatedName(const std::string& file, int n);
+
+class LogFiles {
+ public:
+  // Opens the first file; throws InputError when it cannot be opened. `rotate_bytes`: a new file is started when
+  // one has grown beyond this; 0: never. Each file begins with the newest message of `description_channel`, so
+  // that it describes itself.
+  LogFiles(std::string file, int64_t rotate_bytes, std::string description_channel);
+
+  // Throw WriteError, and InputError when a further file cannot be opened.
+  void Append(const EventQueue::Event& event);
+  void Flush() { writer_->Flush(); }
+  // Ends the recording, with remarks for the log on what was left out.
+  void Remark(std::string_view text) { writer_->Remark(text); }
+  void Finish() { writer_->Finish(); }
+
+  // Whether the present file is still where it was opened: looks once a second, with `at_once` now. Returns what
+  // is wrong, once for each file (file_watch.h).
+  std::optional<std::string> Look(bool at_once);
+
+  int count() const { return count_; }
+  int64_t bytes() const { return writer_->bytes(); }  // of the present file
+
+ private:
+  void Rotate();
+
+  std::string file_;
+  int64_t rotate_bytes_;
+  std::string description_channel_;
+  std::unique_ptr<log::LogWriter> writer_;
+  FileWatch watch_;
+  std::optional<std::string> gone_;  // of a file that was left behind
+  int count_ = 1;
+  std::optional<log::RecordedMessage> description_;
+};
+
+}  // namespace hydro::logger

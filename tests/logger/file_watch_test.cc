@@ -1,0 +1,67 @@
+#include "logger/file_watch.h"
+
+#include "logger/refused_quota.h"
+#include "tests/log/log_fixture.h"
+
+namespace hydro::logger {
+namespace {
+
+using namespace std::chrono_literals;
+
+class FileWatchTest : public log::LogTest {};
+
+// Tests that a file that is there is not complained of, and that a deleted one is, once, a second later.
+TEST_F(FileWatchTest, Deleted) {
+  log::WriteBytes(Path("log"), "x");
+  FileWatch watch;
+  watch.Watch(Path("log"));
+  const auto start = std::chrono::steady_clock::now();
+  EXPECT_EQ(watch.Look(start), std::nullopt);
+  std::filesystem::remove(Path("log"));
+  EXPECT_EQ(watch.Look(start + 900ms), std::nullopt);
+  EXPECT_EQ(watch.Look(start + 1s).value_or("").find(Path("log")), 0u);
+  EXPECT_EQ(watch.Look(start + 3s), std::nullopt);
+}
+
+// Tests that a replaced file and a folder that has gone are noticed, and that devices are left alone.
+TEST_F(FileWatchTest, ReplacedOrMoved) {
+  log::WriteBytes(Path("log"), "x");
+  FileWatch watch;
+  watch.Watch(Path("log"));
+  std::filesystem::rename(Path("log"), Path("other"));
+  log::WriteBytes(Path("log"), "x");
+  EXPECT_NE(watch.LookNow().value_or("").find("another file"), std::string::npos);
+  std::filesystem::create_directory(Path("folder"));
+  log::WriteBytes(Path("folder/log"), "x");
+  watch.Watch(Path("folder/log"));
+  std::filesystem::rename(Path("folder"), Path("moved"));
+  EXPECT_TRUE(watch.LookNow().has_value());
+  watch.Watch("/dev/null");
+  EXPECT_EQ(watch.LookNow(), std::nullopt);
+}
+
+// Tests the bounds of refused messages, by number and by size, in a second and in a run.
+TEST(RefusedQuotaTest, Bounds) {
+  RefusedQuota quota;
+  bus::Clock::TimePoint now{1h};
+  const auto admitted = [&](int count, size_t size) {
+    int64_t sum = 0;
+    for (int k = 0; k < count; ++k) sum += quota.Admit(size, now);
+    return sum;
+  };
+  EXPECT_EQ(admitted(5000, 10), RefusedQuota::kMessagesPerSecond);
+  EXPECT_EQ(quota.left_out(), 4000);
+  now += 1s;
+  EXPECT_EQ(admitted(100, 10 << 10), (RefusedQuota::kBytesPerSecond >> 10) / 10);
+  int64_t rest = 0;
+  for (int second = 0; second < 100; ++second) {
+    now += 1s;
+    rest += admitted(2000, 10);
+  }
+  EXPECT_EQ(rest + 1000 + 25, RefusedQuota::kMessages);
+  EXPECT_NE(quota.Text().find("at most 1000 and 256 KiB a second are recorded, 20000 and 8 MiB in a run"),
+            std::string::npos);
+}
+
+}  // namespace
+}  // namespace hydro::logger
