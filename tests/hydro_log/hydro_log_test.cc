@@ -71,8 +71,8 @@ TEST_F(HydroLogTest, ExportAndImport) {
     const std::string first = Path("first") + kind;
     const std::string second = Path("second") + kind;
     EXPECT_EQ(HydroLog({"export", Path("log"), "-o", first}).exit_code, 0);
-    EXPECT_EQ(HydroLog({"import", first, "-o", Path("imported")}).exit_code, 0);
-    EXPECT_EQ(HydroLog({"export", Path("imported"), "-o", second}).exit_code, 0);
+    EXPECT_EQ(HydroLog({"import", first, "-o", Path("imported") + kind}).exit_code, 0);
+    EXPECT_EQ(HydroLog({"export", Path("imported") + kind, "-o", second}).exit_code, 0);
     EXPECT_EQ(log::ReadBytes(second), log::ReadBytes(first));
     EXPECT_GT(log::ReadBytes(first).size(), 200u);
   }

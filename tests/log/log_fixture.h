@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "base/read_files.h"
 #include "bus/channels.h"
 #include "hydro/run_description_t.hpp"
 #include "log/log_format.h"
@@ -69,6 +70,7 @@ inline std::vector<EventContents> ReadEvents(const std::string& file) {
 }
 
 inline void WriteEvents(const std::string& file, const std::vector<EventContents>& events) {
+  ForgetRead(file);  // each call stands for another process
   LogWriter writer(file, Opening::kTemporary);
   for (const EventContents& event : events) {
     writer.Append(event.channel, event.data.data(), event.data.size(), event.utime);
@@ -173,6 +175,7 @@ inline void WriteRun(const std::string& file, const runs::RunMessages& run, cons
                      const std::string& config_text = "[plant]\nrate_hz = 1000\n",
                      const std::string& model_text = "name = \"Table 1\"\n") {
   const bus::Channels channels(suffix);
+  ForgetRead(file);  // each call stands for another process
   LogWriter writer(file, Opening::kTemporary);
   run_description_t description{};
   description.session = 11;
