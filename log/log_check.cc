@@ -1,6 +1,6 @@
 #include "log/log_check.h"
 
-#include <zlib.h>
+#include <libdeflate.h>
 
 #include <cstring>
 #include <string>
@@ -23,7 +23,7 @@ constexpr size_t kChecksumsAt = 28;
 }  // namespace
 
 uint32_t Checksum(const uint8_t* bytes, size_t size) {
-  return static_cast<uint32_t>(crc32_z(0, bytes, size));
+  return static_cast<uint32_t>(libdeflate_crc32(0, bytes, size));
 }
 
 uint32_t ChecksumOf(const LogEvent& event) {

@@ -41,7 +41,7 @@ struct LogCheck {
   uint32_t ChecksumAt(size_t k) const;
 };
 
-// CRC-32 (zlib's) of `size` bytes.
+// CRC-32 (that of zlib, gzip and PNG) of `size` bytes.
 uint32_t Checksum(const uint8_t* bytes, size_t size);
 
 // CRC-32 of a whole event, header included.
