@@ -150,6 +150,25 @@ class AuthenticationTest(stack.TestCase):
         info = self.run_program("hydro-log", "info", self.path("run.lcmlog"))
         self.assertIn("REFUSED_HYDRO_MOTOR_COMMAND", info.stdout)
 
+    # Tests that a part of a stack that was started with another key than the plant's ends by itself, and says why.
+    def test_part_with_another_key(self):
+        with open(stack.config("demo.toml"), encoding="utf-8") as file:
+            text = file.read().split("[[process]]")[0]
+        models = os.path.join(os.path.dirname(stack.config("demo.toml")), "models")
+        text = text.replace("models/table1.toml", os.path.join(models, "table1.toml"))
+        hosts = {"hydro-plant": "rig", "hydro-pressure-ctrl": "rig", "hydro-position-ctrl": "desk"}
+        for name, host in hosts.items():
+            text += f'\n[[process]]\nprogram = "{name}"\nhost = "{host}"\n'
+        with open(self.path("spread.toml"), "w", encoding="utf-8") as file:
+            file.write(text)
+        limits = ("--set", "time.start_timeout_s=1")
+        rig = self.launch(self.path("spread.toml"), "--host", "rig", *self.keyed, *limits)
+        desk = self.launch(self.path("spread.toml"), "--host", "desk", "--set", f"bus.key_file={self.make_key('other')}", *limits)
+        self.assertEqual(rig.wait(), 1, rig.report())
+        self.assertRegex(rig.stderr, "not ready after 1 s .time.start_timeout_s.: position_ctrl")
+        self.assertEqual(desk.wait(), 1, desk.report())
+        self.assertRegex(desk.stderr, "no plant or driver is heard .*messages were refused: is bus.key_file the same")
+
     # Tests that a process with another key, or without one, never gets control: the plant does not even count it as
     # ready.
     def test_another_key(self):

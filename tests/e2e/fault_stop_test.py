@@ -1,7 +1,9 @@
 """Rows of docs/safety.md: HYDRO_STOP, from any program and from hydro-launch --stop."""
 
+import os
 import signal
 import struct
+import subprocess
 import threading
 
 import event_log
@@ -77,6 +79,23 @@ class StopTest(fault_case.FaultCase):
             stop.set()
             sender.join()
             peer.close()
+
+    # Tests that a logger that is killed takes its stack with it, unless the configuration says that it is not required.
+    def test_logger_is_killed(self):
+        for required in ("true", "false"):
+            with self.subTest(required):
+                log_file = self.path(f"{required}.lcmlog")
+                launch = self.launch(self.moving(), "--duration", "0", "--log", log_file, "--set", f"logger.required={required}",
+                                     url=self.new_url())
+                stack.LiveLog(self, log_file).wait_for_tick(100)
+                children = subprocess.run(["pgrep", "-P", str(launch.child.pid), "-a"], capture_output=True, text=True, check=True)
+                logger = next(line for line in children.stdout.splitlines() if "hydro-logger" in line)
+                os.kill(int(logger.split()[0]), signal.SIGKILL)
+                if required == "false":
+                    launch.wait_for("the run goes on .logger.required = false.")
+                    launch.send(signal.SIGINT)
+                self.assertEqual(launch.wait(), 1, launch.report())
+                self.assertEqual("stopped by SIGINT" in launch.stdout, required == "false", launch.report())
 
     # Tests that a launcher that is stopped (Ctrl-Z at its terminal) leaves no motor running that nobody watches: zero volts
     # until it goes on, and then a reference that starts from where the arm is.
