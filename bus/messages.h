@@ -76,6 +76,10 @@ inline constexpr std::tuple kMessages{
                                  .sealed = true},
     MessageRow<fault_t>{
         .channel = "HYDRO_FAULT", .sender = "every process", .rate = Rate::kEvent, .sealed = true},
+    MessageRow<active_faults_t>{.channel = "HYDRO_ACTIVE_FAULTS",
+                                .sender = "every process that has a fault",
+                                .rate = Rate::kEvent,
+                                .sealed = true},
     MessageRow<stop_t>{.channel = "HYDRO_STOP",
                        .sender = "`hydro-launch`, or the process that ends the run",
                        .rate = Rate::kEvent,

@@ -38,8 +38,10 @@ SequenceMonitor::Verdict SequenceMonitor::Observe(int64_t session, Place place, 
   }
   // The same number again is a repetition (lockstep asks again), however long ago it came; a lower number
   // after a silence is a log being played again.
-  if (place.sequence < newest_.sequence && silent) return Restart(session, place, now);
-  if (place.sequence != newest_.sequence) {
+  // Ticks never go back, however long the silence.
+  const bool earlier = place.tick < newest_.tick;
+  if (place.sequence < newest_.sequence && silent && !earlier) return Restart(session, place, now);
+  if (place.sequence != newest_.sequence && !earlier) {
     // A sender that goes on behind the newest, for as long as nothing has followed the newest, shows that the
     // newest was not its own: one message with a far number must not deafen this receiver for good.
     const bool goes_on = behind_ && place.sequence > behind_->sequence && place.tick >= behind_->tick;
@@ -63,8 +65,9 @@ void SequenceMonitor::Follow(int64_t session, Place place, Clock::TimePoint now)
 }
 
 SequenceMonitor::Verdict SequenceMonitor::Restart(int64_t session, Place place, Clock::TimePoint now) {
+  // Who takes over was the second sender; where the first goes on, the second may be there still.
+  if (session != *session_) second_heard_.reset();
   Follow(session, place, now);
-  second_heard_.reset();
   ++restarts_;
   return Verdict::kRestarted;
 }

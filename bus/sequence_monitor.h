@@ -26,8 +26,8 @@ class SequenceMonitor {
   // Call it for each message, in order of arrival.
   Verdict Observe(int64_t session, int64_t sequence, Clock::TimePoint now);
 
-  // The same, but a message with a lower tick than an earlier one is kDuplicate. A receiver that knows which
-  // ticks have been never passes one that has not.
+  // The same, but a message of the same sender with a lower tick than an earlier one is kDuplicate, always. The
+  // caller never passes a tick that has not been: it would make all later ones lower.
   Verdict Observe(int64_t session, int64_t sequence, int64_t tick, Clock::TimePoint now);
 
   // Whether a message from that session would be kSecondSender.

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstdint>
+#include <hydro/active_faults_t.hpp>
 #include <hydro/fault_t.hpp>
 #include <hydro/rearm_t.hpp>
 #include <hydro/run_description_t.hpp>
@@ -72,6 +73,8 @@ class OutputSafety {
  private:
   void OnDescription(const run_description_t& description);
   void OnFault(const fault_t& fault);
+  void OnActiveFaults(const active_faults_t& active);
+  void ForgetSilentFaults();
   void OnStatus(const process_status_t& status);
   void OnRearm(const rearm_t& request);
   void Answer(const rearm_t& request, int8_t kind, const std::string& text);
@@ -87,8 +90,13 @@ class OutputSafety {
   bus::Clock::Duration suspended_;  // at the last check
   std::string other_stack_;         // describes the other plant, if one was heard
   std::optional<bus::Clock::TimePoint> other_stack_heard_;
-  // The loops' faults that zero the voltage, by session and code; kept for rearm = "explicit".
-  std::map<std::pair<int64_t, std::string>, fault_t> remote_;
+  // The loops' faults that zero the voltage, by session and code, and when they were last heard of; kept for rearm =
+  // "explicit".
+  struct RemoteFault {
+    fault_t fault;
+    bus::Clock::TimePoint heard;
+  };
+  std::map<std::pair<int64_t, std::string>, RemoteFault> remote_;
 };
 
 }  // namespace hydro::plant

@@ -4,7 +4,9 @@
 #include <spdlog/spdlog.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cmath>
+#include <hydro/active_faults_t.hpp>
 #include <hydro/loop_statistics_t.hpp>
 
 #include "base/host_name.h"
@@ -16,6 +18,8 @@ namespace {
 constexpr auto kAnnouncementPeriod = std::chrono::milliseconds(100);
 constexpr auto kConfigurationPeriod = std::chrono::milliseconds(500);
 constexpr char kOtherConfiguration[] = "other_configuration";
+constexpr auto kActiveFaultsPeriod = std::chrono::seconds(1);
+constexpr int kFarewells = 3;       // lists that are empty, after the last fault has ended
 constexpr size_t kMostNames = 256;  // a stack has five processes; a flood of made-up ones is not kept
 
 bool IsPlant(const std::string& role) { return role == "plant" || role == "driver"; }
@@ -158,6 +162,7 @@ void Participant::Poll() {
                bus_.undecodable_channel() + "); they are ignored";
       },
       *this);
+  if (active_faults_left_ > 0 && now >= next_active_faults_) PublishActiveFaults();
   WatchRefusals();
 }
 
@@ -238,6 +243,18 @@ void Participant::PublishFault(const fault_t& fault) {
   message.session = session_;
   message.sequence = fault_sequence_++;
   bus_.Publish(channels_.Of<fault_t>(), message);
+  PublishActiveFaults();
+}
+
+void Participant::PublishActiveFaults() {
+  active_faults_left_ = active_.empty() ? std::min(active_faults_left_, kFarewells + 1) - 1 : kFarewells + 1;
+  next_active_faults_ = clock_.Now() + kActiveFaultsPeriod;
+  active_faults_t message;
+  message.utime = clock_.Utime();
+  message.session = session_;
+  message.role = role_;
+  for (const auto& [code, fault] : active_) message.codes += (message.codes.empty() ? "" : " ") + code;
+  bus_.Publish(channels_.Of<active_faults_t>(), message);
 }
 
 void Participant::RequestStop(const std::string& reason, int exit_code, const std::string& source) {

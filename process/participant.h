@@ -110,6 +110,7 @@ class Participant {
   void PublishConfiguration();
   void LeaveAlone(const std::string& reason);
   void PublishFault(const fault_t& fault);
+  void PublishActiveFaults();
   void End(const std::string& code);
   void WatchRefusals();
   void Publish(loop_histogram_t* histogram);
@@ -129,7 +130,9 @@ class Participant {
   std::function<void(int64_t, const std::string&)> on_refusal_;
   int64_t tick_ = -1;
   int64_t fault_sequence_ = 0;
-  int latched_ = 0;  // active faults that are latched
+  bus::Clock::TimePoint next_active_faults_;
+  int active_faults_left_ = 0;  // messages that are still to be sent; more than 0 while a fault lasts
+  int latched_ = 0;             // active faults that are latched
   std::map<std::string, fault_t> active_;
   std::map<int64_t, std::string> names_;  // of the processes that were heard, by session
   CountedWarning undecodable_;

@@ -128,18 +128,41 @@ TEST(SequenceMonitorTest, FarNumber) {
         &monitor);
 }
 
-// Tests the same for a far tick, and that the sender must go on: one old message, however often it is
-// repeated, is never followed.
-TEST(SequenceMonitorTest, FarTick) {
+// Tests that the sender must go on: one old message, however often it is repeated, is never followed.
+TEST(SequenceMonitorTest, OldMessageRepeated) {
   SequenceMonitor monitor(100ms);
-  const auto observe = [&](int64_t sequence, int64_t tick, std::chrono::milliseconds at) {
-    return monitor.Observe(1, sequence, tick, Clock::TimePoint(at));
+  EXPECT_EQ(monitor.Observe(1, 5, Clock::TimePoint(0ms)), Verdict::kAccept);
+  for (int i = 1; i < 20; ++i) {
+    EXPECT_EQ(monitor.Observe(1, 4, Clock::TimePoint(i * 20ms)), Verdict::kDuplicate);
+  }
+  EXPECT_EQ(monitor.Observe(1, 6, Clock::TimePoint(401ms)), Verdict::kAccept);
+}
+
+// Tests that where ticks are known, an old message of the same sender is old however long the silence was: lockstep
+// may wait that long. Another sender begins where it likes.
+TEST(SequenceMonitorTest, OldTickAfterASilence) {
+  SequenceMonitor monitor(100ms);
+  const auto observe = [&](int64_t session, int64_t sequence, int64_t tick, std::chrono::milliseconds at) {
+    return monitor.Observe(session, sequence, tick, Clock::TimePoint(at));
   };
-  EXPECT_EQ(observe(5, 50, 0ms), Verdict::kAccept);
-  EXPECT_EQ(observe(6, int64_t{1} << 62, 10ms), Verdict::kAccept);
-  for (int i = 1; i < 20; ++i) EXPECT_EQ(observe(4, 49, 10ms + i * 20ms), Verdict::kDuplicate);
-  EXPECT_EQ(observe(7, 51, 400ms), Verdict::kRestarted);
-  EXPECT_EQ(observe(8, 52, 401ms), Verdict::kAccept);
+  EXPECT_EQ(observe(1, 10, 50, 0ms), Verdict::kAccept);
+  EXPECT_EQ(observe(1, 3, 43, 500ms), Verdict::kDuplicate);
+  EXPECT_EQ(observe(1, 4, 44, 1000ms), Verdict::kDuplicate);
+  EXPECT_EQ(observe(1, 11, 51, 1001ms), Verdict::kAccept);
+  EXPECT_EQ(observe(2, 0, 40, 2000ms), Verdict::kRestarted);
+}
+
+// Tests that a second sender is not forgotten because the first is followed again.
+TEST(SequenceMonitorTest, SecondSenderOutlastsAFarNumber) {
+  SequenceMonitor monitor(100ms);
+  Check({{1, 5, 0ms, Verdict::kAccept, 0},
+         {1, 1000, 10ms, Verdict::kAccept, 994},
+         {1, 6, 20ms, Verdict::kDuplicate, 0},
+         {2, 0, 100ms, Verdict::kSecondSender, 0},
+         {1, 7, 111ms, Verdict::kRestarted, 0}},
+        &monitor);
+  EXPECT_TRUE(monitor.SecondSenderAlive(Clock::TimePoint(112ms)));
+  EXPECT_FALSE(monitor.SecondSenderAlive(Clock::TimePoint(201ms)));
 }
 
 // Tests that forged sequence numbers, as far apart as possible, are still counted sensibly.

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <functional>
+#include <hydro/active_faults_t.hpp>
 #include <hydro/fault_t.hpp>
 #include <hydro/log_progress_t.hpp>
 #include <hydro/rearm_t.hpp>
@@ -364,6 +365,45 @@ TEST_F(PlantFaultsTest, FaultOfThePositionLoop) {
   ExpectVoltage(5, 20, 1.5);
   ExpectVoltage(22, 51, 0);
   ExpectVoltage(54, 100, 1.5);
+}
+
+// Tests that a fault which its sender no longer has, or which nobody claims, refuses no re-arm: the message that said
+// that it has ended may be lost, and one with wrong bits may name a process that never was.
+TEST_F(PlantFaultsTest, FaultThatNobodyClaims) {
+  config_.limits.rearm = settings::Rearm::kExplicit;
+  config_.last_tick = 6000;
+  const auto begins = [this](int64_t session, const char* code) {
+    fault_t f{};
+    f.session = session;
+    f.source = "position_ctrl";
+    f.code = code;
+    f.active = true;
+    bus_->Publish("HYDRO_FAULT", f);
+  };
+  const auto has = [this](int64_t session, const char* codes) {
+    active_faults_t list{};
+    list.session = session;
+    list.codes = codes;
+    bus_->Publish("HYDRO_ACTIVE_FAULTS", list);
+  };
+  on_state_ = [&](const state_t& s) {
+    if (s.tick == 10) begins(33, "nonfinite_arm_angle");
+    if (s.tick == 20) has(33, "other nonfinite_arm_angle");
+    if (s.tick == 30) AskToRearm(30);  // persists
+    if (s.tick == 40) has(33, "other");
+    if (s.tick == 50) AskToRearm(50);
+    if (s.tick == 100) begins(77, "nonfinite_arm_angle");
+    if (s.tick == 2500) AskToRearm(2500);  // persists
+    if (s.tick == 2700) AskToRearm(2700);
+  };
+  EXPECT_EQ(Run(), 0);
+  std::vector<int> kinds;
+  for (const rearm_t& answer : answers_) kinds.push_back(answer.kind);
+  EXPECT_THAT(kinds, ::testing::ElementsAre(rearm_t::REFUSED, rearm_t::ACCEPTED, rearm_t::REFUSED,
+                                            rearm_t::ACCEPTED));
+  ExpectVoltage(54, 100, 1.5);
+  ExpectVoltage(102, 2701, 0);
+  ExpectVoltage(2704, 6000, 1.5);
 }
 
 // Tests that a second plant on the channels is named, with the multicast group in its description.
