@@ -1,0 +1,14 @@
+// The programs of a stack, as simulated processes run them: the same applications as in their mains.
+#pragma once
+
+#include "settings/stack_config.h"
+#include "torture/simulated_process.h"
+
+namespace hydro::torture {
+
+class World;
+
+// What the process `number` of that role does with that configuration, which must outlive it.
+SimulatedProcess::Body ProgramOf(Role role, const settings::StackConfig& config, World& world, int number);
+
+}  // namespace hydro::torture
