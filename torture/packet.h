@@ -15,7 +15,7 @@ class PacketPool;
 // Where a packet comes from: what only the simulator knows.
 enum class Origin : uint8_t {
   kProcess,   // a process of the stack sent it, and it is unchanged
-  kRepeated,  // the network delivers it once more
+  kRepeated,  // the same once more, by the network or somebody who has recorded it
   kChanged,   // the network changed its bytes
   kForged,    // an injected fault made it
 };

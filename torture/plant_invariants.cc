@@ -60,7 +60,7 @@ void PlantInvariants::OnDrive(int64_t tick, double voltage) {
     CheckLatched(tick);
     CheckStopped(tick);
     CheckOtherConfiguration(tick);
-    plant_.last_obeyed = observer_.last_obeyed_ = *observer_.now_;
+    observer_.last_obeyed_ = *observer_.now_;
   }
   plant_.tick = tick;
   plant_.voltage = voltage;
@@ -79,11 +79,11 @@ void PlantInvariants::CheckRange(int64_t tick, double voltage) {
 void PlantInvariants::CheckOrigin(int64_t tick, double voltage) {
   const int64_t delay = observer_.config_.plant.command_delay_ticks;
   const int64_t allowed = realtime() ? stale_ticks() + kDetection : 0;
+  // Without a key nothing tells a changed message, or one made up in a genuine sender's name, from others.
+  const ReceivedCommand* const made_up = plant_.NewestFalse(voltage);
+  if (made_up != nullptr && made_up->origin == Origin::kChanged) return;
   const auto command = plant_.Newest(voltage, 0, tick - delay);
   if (!command) {
-    const ReceivedCommand* made_up = plant_.NewestFalse(voltage);
-    // Without a key nothing tells a changed message, or one made up in a genuine sender's name, from others.
-    if (made_up != nullptr && made_up->origin == Origin::kChanged) return;
     observer_.Report("no command is obeyed that is forged or of another run",
                      fmt::format("tick {}: {:.17g} V, which {} commanded", tick, voltage,
                                  made_up != nullptr ? "an intruder" : "nobody"));
@@ -99,6 +99,13 @@ void PlantInvariants::CheckOrigin(int64_t tick, double voltage) {
                      fmt::format("tick {}: {:.6g} V, computed from the readings of tick {}", tick, voltage,
                                  command->tick));
   }
+  if (command->session == plant_.obeyed_session && command->tick < plant_.obeyed_tick) {
+    observer_.Report("no command is obeyed that is repeated",
+                     fmt::format("tick {}: {:.6g} V of the command for tick {} after that for tick {}", tick,
+                                 voltage, command->tick, plant_.obeyed_tick));
+  }
+  plant_.obeyed_session = command->session;
+  plant_.obeyed_tick = command->tick;
   if (plant_.woke_tick < 0) return;
   if (command->tick < plant_.woke_tick) {
     observer_.Report("after a hang of the plant: zero volts until a command from after it",

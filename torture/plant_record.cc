@@ -19,8 +19,9 @@ void PlantRecord::Receive(const ReceivedCommand& command) {
   } else if (senders.size() < 64) {
     senders[command.session] = command.handled;
   }
-  if (command.origin == Origin::kRepeated || command.tick < 0) return;
-  if (command.origin != Origin::kProcess) {
+  if (command.tick < 0) return;
+  // A repetition may arrive before what it repeats.
+  if (command.origin != Origin::kProcess && command.origin != Origin::kRepeated) {
     false_.push_back(command);
     if (false_.size() > kMostFalse) false_.pop_front();
     return;

@@ -64,7 +64,8 @@ class PlantRecord {
   std::map<int64_t, TrueTime> senders;      // by session: when a command of it was received last
   std::optional<int64_t> two_senders_tick;  // since when commands of two have come
   std::map<std::string, bool> zero_faults;  // active faults of its own that zero the voltage: latched
-  TrueTime last_obeyed = -1;
+  int64_t obeyed_tick = -1;                 // of the newest command that was obeyed
+  int64_t obeyed_session = 0;               // the same
   int64_t suspended_ns = 0;
 
  private:

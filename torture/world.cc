@@ -19,11 +19,11 @@ TrueTime FromSeconds(double seconds) { return static_cast<TrueTime>(seconds * 1e
 
 }  // namespace
 
-World::World(const Schedule& schedule, const settings::StackConfig& config)
+World::World(const Schedule& schedule, const Stacks& stacks)
     : schedule_(schedule),
-      config_(config),
-      other_config_(OtherConfig(config)),
-      channels_(config.bus.channel_suffix),
+      config_(stacks.right),
+      other_config_(stacks.other),
+      channels_(config_.bus.channel_suffix),
       network_(schedule.seed, &now_,
                [this](TrueTime time, PacketPtr packet, int receiver) {
                  Push(time, Happening::kArrival, receiver, std::move(packet));

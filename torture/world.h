@@ -19,6 +19,12 @@
 
 namespace hydro::torture {
 
+// What is run.
+struct Stacks {
+  settings::StackConfig right;
+  settings::StackConfig other;  // what FaultKind::kOtherConfiguration starts a process with
+};
+
 struct RunOutcome {
   std::vector<Violation> violations;
   uint64_t trace = 0;  // of everything that happened
@@ -27,7 +33,8 @@ struct RunOutcome {
 
 class World : public NetworkPort {
  public:
-  World(const Schedule& schedule, const settings::StackConfig& config);
+  // `stacks` must outlive it.
+  World(const Schedule& schedule, const Stacks& stacks);
   ~World() override;
 
   // The whole run: start, faults, return to control, end. Stops at the first violation.
@@ -95,8 +102,8 @@ class World : public NetworkPort {
                   Origin origin);
 
   const Schedule schedule_;
-  const settings::StackConfig config_;
-  const settings::StackConfig other_config_;
+  const settings::StackConfig& config_;
+  const settings::StackConfig& other_config_;
   const bus::Channels channels_;
   TrueTime now_ = 0;
   RunOutcome outcome_;

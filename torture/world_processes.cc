@@ -111,7 +111,7 @@ void World::ForgeAgain(const Packet& packet) {
   copy->bytes = packet.bytes;
   copy->channel = packet.channel;
   copy->sender = -1;
-  copy->origin = Origin::kForged;
+  copy->origin = packet.origin == Origin::kProcess ? Origin::kRepeated : packet.origin;
   network_.Send(copy, -1, receivers_);
 }
 
