@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 #include <sys/mman.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -101,6 +102,10 @@ CampaignResult RunCampaign(const CampaignOptions& options) {
       result.findings.push_back(Crash(options, states[i], status));
     }
   }
+  rusage usage{};
+  getrusage(RUSAGE_CHILDREN, &usage);
+  result.cpu_s = static_cast<double>(usage.ru_utime.tv_sec + usage.ru_stime.tv_sec) +
+                 1e-6 * static_cast<double>(usage.ru_utime.tv_usec + usage.ru_stime.tv_usec);
   munmap(states, sizeof(WorkerState) * static_cast<size_t>(options.jobs));
   result.wall_s = std::chrono::duration<double>(Clock::now() - start).count();
   return result;

@@ -35,6 +35,7 @@ struct CampaignResult {
   std::vector<Finding> findings;
   int64_t failed_runs = 0;
   double wall_s = 0;
+  double cpu_s = 0;  // of all processors
 };
 
 // Runs the seeds from the first on. Also a run that crashes this program, or does not end, becomes a finding.

@@ -11,6 +11,8 @@ void ActiveFault::SendStop(bool foreign) {
   stop_t stop{};
   stop.tick = -1;
   stop.session = static_cast<int64_t>(random_.Next() >> 1) + 1;
+  // A second launch ends its own run, whose plant this stack has never heard.
+  if (foreign) stop.addressee = static_cast<int64_t>(random_.Next() >> 1) + 1;
   stop.source = "launch";
   stop.reason = foreign ? "hydro-plant has ended with exit code 1" : "hydro-launch --stop";
   stop.exit_code = foreign ? 1 : 0;
@@ -83,7 +85,7 @@ void ActiveFault::SendChangedCommand() {
       command.voltage = injection_.amount;
       break;
   }
-  world_.Forge(command);
+  world_.Forge(command, Origin::kChanged);
 }
 
 }  // namespace hydro::torture

@@ -4,6 +4,7 @@
 
 #include <map>
 #include <memory>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -29,7 +30,7 @@ class Observer {
   Observer(const settings::StackConfig& config, Network& network, const TrueTime* now, Coverage& coverage);
 
   // A process sends.
-  void OnSent(const Packet& packet);
+  void OnSent(const Packet& packet, const SimulatedProcess& sender);
   // A packet is passed to the handlers of a process.
   void OnHandled(const Packet& packet, const SimulatedProcess& receiver);
   // The plant's sensors give `measured` for `tick`.
@@ -53,7 +54,7 @@ class Observer {
   friend class PlantInvariants;
   PlantRecord& RecordOf(const SimulatedProcess& plant);
   void OnFault(const Packet& packet);
-  bool OnStop(const Packet& packet, int process);
+  bool OnStop(const Packet& packet, const SimulatedProcess& process);
   void OnCommand(const Packet& packet, PlantRecord& plant);
 
   const settings::StackConfig& config_;
@@ -65,8 +66,8 @@ class Observer {
   PlantRecord* newest_plant_ = nullptr;
   std::vector<Violation> violations_;
   TrueTime last_obeyed_ = -1;
-  TrueTime other_configuration_ = -1;  // since when
-  std::map<int, int> stops_;           // exit code of the first genuine stop that a process heard or sent
+  TrueTime other_configuration_ = -1;   // since when
+  std::map<int, std::set<int>> stops_;  // exit codes of the genuine stops that a process heard or sent
 };
 
 }  // namespace hydro::torture

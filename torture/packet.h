@@ -16,8 +16,8 @@ class PacketPool;
 enum class Origin : uint8_t {
   kProcess,   // a process of the stack sent it, and it is unchanged
   kRepeated,  // the same once more, by the network or somebody who has recorded it
-  kChanged,   // the network changed its bytes
-  kForged,    // an injected fault made it
+  kChanged,   // the network changed its bytes, or somebody made it up in the name of a process that lives
+  kForged,    // somebody else made it up
 };
 
 struct Packet {

@@ -48,21 +48,22 @@ class Shrinker {
     return better;
   }
 
+  // Halves durations and amounts, within what their kinds take.
   bool Simplify() {
     bool better = false;
     for (size_t i = 0; i < best_.injections.size(); ++i) {
-      for (double Injection::*number : {&Injection::duration_s, &Injection::amount}) {
-        if (std::abs(best_.injections[i].*number) < 1e-3) continue;
-        Schedule candidate = best_;
-        candidate.injections[i].*number = std::round(best_.injections[i].*number * 5e5) / 1e6;
-        while (Try(candidate)) {
-          better = true;
-          candidate.injections[i].*number = std::round(best_.injections[i].*number * 5e5) / 1e6;
-          if (std::abs(candidate.injections[i].*number) < 1e-3) break;
-        }
-      }
+      const FaultKindInfo& info = InfoOf(best_.injections[i].kind);
+      while (Halve(i, &Injection::duration_s, info.shortest_s)) better = true;
+      while (info.least > 0 && Halve(i, &Injection::amount, info.least)) better = true;
     }
     return better;
+  }
+
+  bool Halve(size_t i, double Injection::*number, double least) {
+    Schedule candidate = best_;
+    double& value = candidate.injections[i].*number;
+    value = std::max(least, std::round(value * 5e5) / 1e6);
+    return value < best_.injections[i].*number * 0.99 && Try(candidate);
   }
 
   // Ends the run right after its last fault, and starts the first one soon.

@@ -42,11 +42,13 @@ int Report(const CampaignOptions& options, const CampaignResult& result) {
                ScheduleText(finding.schedule), finding.file);
   }
   const Coverage& coverage = result.coverage;
-  fmt::print(
-      "seeds from {}: {} runs, {:.0f} s simulated in {:.1f} s ({:.0f} times real time on {} processors), {} "
-      "faults injected\n{}",
-      options.first_seed, coverage.runs, coverage.simulated_s, result.wall_s,
-      coverage.simulated_s / result.wall_s, options.jobs, coverage.injected, coverage.Report());
+  // In lockstep the plant ticks as fast as its network lets it: ticks are what runs have in common.
+  fmt::print("seeds from {}: {} runs, {:.0f} s and {} ticks simulated in {:.1f} s, {} faults injected\n",
+             options.first_seed, coverage.runs, coverage.simulated_s, coverage.ticks, result.wall_s,
+             coverage.injected);
+  fmt::print("{:.0f} ticks a second of one processor: {:.0f} times real time at 1 kHz\n{}",
+             static_cast<double>(coverage.ticks) / result.cpu_s,
+             static_cast<double>(coverage.ticks) / result.cpu_s / 1e3, coverage.Report());
   fmt::print("{} runs failed, in {} ways\n", result.failed_runs, result.findings.size());
   return result.findings.empty() ? 0 : 1;
 }

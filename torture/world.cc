@@ -142,15 +142,15 @@ void World::Arrive(const PacketPtr& packet, int receiver) {
 }
 
 void World::Send(PacketPtr packet, int sender) {
-  const Role role = by_number_[static_cast<size_t>(sender)]->role();
+  const SimulatedProcess& process = *by_number_[static_cast<size_t>(sender)];
   trace_.Add(static_cast<uint64_t>(now_));
   trace_.Add(packet->bytes);
   if (packet->channel == command_channel_) {
     recorded_.push_back(packet);
     if (recorded_.size() > kMostRecorded) recorded_.pop_front();
   }
-  network_.Send(packet, static_cast<int>(role), receivers_);
-  observer_.OnSent(*packet);
+  network_.Send(packet, static_cast<int>(process.role()), receivers_);
+  observer_.OnSent(*packet, process);
 }
 
 void World::Handled(const Packet& packet, int receiver) {
