@@ -37,7 +37,8 @@ Injection Draw(Random& random, double latest_s) {
   injection.target = DrawTarget(random, info.targets);
   injection.duration_s = Rounded(DrawLogarithmic(random, info.shortest_s, info.longest_s), 1e6);
   injection.amount = Rounded(DrawLogarithmic(random, info.least, info.most), 1e6);
-  injection.at_s = Rounded(random.Between(kFirst_s, latest_s - injection.duration_s), 1e6);
+  const double latest_begin_s = std::max(kFirst_s, latest_s - injection.duration_s);
+  injection.at_s = Rounded(random.Between(kFirst_s, latest_begin_s), 1e6);
   injection.seed = random.Next() >> 32;
   return injection;
 }
@@ -60,8 +61,11 @@ Schedule DrawSchedule(uint64_t seed) {
       Injection& later = schedule.injections.back();
       const Injection& earlier = schedule.injections[i - 1];
       later.at_s = Rounded(earlier.at_s + random.Unit() * (earlier.duration_s + 0.02), 1e6);
-      later.at_s = std::min(later.at_s, Rounded(schedule.faults_until_s - later.duration_s, 1e6));
     }
+  }
+  for (const Injection& injection : schedule.injections) {
+    const double end_s = std::ceil((injection.at_s + injection.duration_s) * 10) / 10;
+    schedule.faults_until_s = std::max(schedule.faults_until_s, end_s);
   }
   std::stable_sort(schedule.injections.begin(), schedule.injections.end(),
                    [](const Injection& a, const Injection& b) { return a.at_s < b.at_s; });

@@ -1,6 +1,4 @@
 // hydro-torture: the whole stack in simulation, under faults drawn from a seed.
-#include <spdlog/spdlog.h>
-
 #include "settings/command_line.h"
 #include "torture/torture_command.h"
 
@@ -10,6 +8,5 @@ int main(int argc, char** argv) {
   hydro::torture::TortureOptions options;
   hydro::torture::AddOptions(&line, &options);
   if (const auto code = line.Parse(argc, argv)) return *code;
-  spdlog::set_level(spdlog::level::off);  // what simulated processes log
   return hydro::settings::RunProgram("hydro-torture", [&] { return hydro::torture::Run(options); });
 }

@@ -10,7 +10,7 @@ namespace {
 
 constexpr int64_t kDetection = 5;                          // ticks, docs/safety.md
 constexpr TrueTime kOtherPlantAlive = 2'400'000'000;       // ns; a plant describes itself once a second
-constexpr TrueTime kConfigurationNoticed = 3'000'000'000;  // ns
+constexpr TrueTime kConfigurationNoticed = 2'500'000'000;  // ns: a plant describes itself once a second
 
 }  // namespace
 
