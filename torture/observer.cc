@@ -37,6 +37,7 @@ Observer::Observer(const settings::StackConfig& config, Network& network, const 
       fault_(network.ChannelNumber(bus::Channels(config.bus.channel_suffix).Of<fault_t>())),
       stop_(network.ChannelNumber(bus::Channels(config.bus.channel_suffix).Of<stop_t>())),
       rearm_(network.ChannelNumber(bus::Channels(config.bus.channel_suffix).Of<rearm_t>())),
+      configuration_(network.ChannelNumber(bus::Channels(config.bus.channel_suffix).Of<configuration_t>())),
       run_(network.ChannelNumber(bus::Channels(config.bus.channel_suffix).Of<run_description_t>())) {}
 
 PlantRecord& Observer::RecordOf(const SimulatedProcess& plant) {
@@ -82,6 +83,9 @@ void Observer::OnFault(const Packet& packet) {
 void Observer::OnHandled(const Packet& packet, const SimulatedProcess& receiver) {
   if (packet.channel == state_) return;
   if (packet.channel == stop_ && !OnStop(packet, receiver)) return;
+  // Its plant seems to be misconfigured: it leaves.
+  if (packet.channel == configuration_ && packet.origin == Origin::kChanged)
+    stops_[receiver.number()].insert(1);
   if (receiver.role() != Role::kPlant) return;
   PlantRecord& plant = RecordOf(receiver);
   if (packet.channel == command_) {
@@ -129,7 +133,13 @@ void Observer::OnDrive(const SimulatedProcess& plant, int64_t tick, double volta
   PlantInvariants(*this, RecordOf(plant)).OnDrive(tick, voltage);
 }
 
-void Observer::SetOtherConfiguration(bool present) { other_configuration_ = present ? *now_ : -1; }
+void Observer::SetOtherConfiguration(bool present) {
+  if (!present) {
+    other_configuration_ = -1;
+  } else if (other_configuration_ < 0) {
+    other_configuration_ = *now_;
+  }
+}
 
 void Observer::OnEnd(const SimulatedProcess& process) {
   if (process.killed()) return;
@@ -138,6 +148,8 @@ void Observer::OnEnd(const SimulatedProcess& process) {
     Report("an application throws nothing", fmt::format("{} ended with: {}", name, process.failure()));
     return;
   }
+  // One that finds itself misconfigured leaves alone.
+  if (process.misconfigured() && process.exit_code() == 1) return;
   const auto stop = stops_.find(process.number());
   const bool signalled = process.identity().stop_signal != 0;
   if (stop == stops_.end() && !signalled) {

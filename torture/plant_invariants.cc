@@ -137,7 +137,8 @@ void PlantInvariants::CheckStopped(int64_t tick) {
 
 // Two sessions within the time in which one counts as alive.
 void PlantInvariants::CheckSenders(int64_t tick, double voltage) {
-  const auto alive = static_cast<TrueTime>(observer_.config_.limits.stale_input_s * 1e9);
+  // Less what a clock of the plant may run fast (fault_kinds.cc: drift).
+  const auto alive = static_cast<TrueTime>(0.96 * observer_.config_.limits.stale_input_s * 1e9);
   if (plant_.senders.size() < 2) return;
   std::erase_if(plant_.senders, [&](const auto& entry) { return *observer_.now_ - entry.second > alive; });
   if (plant_.senders.size() < 2) {

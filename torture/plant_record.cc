@@ -14,14 +14,16 @@ bool Same(double a, double b) { return std::bit_cast<uint64_t>(a) == std::bit_ca
 
 void PlantRecord::Receive(const ReceivedCommand& command) {
   const auto last = senders.find(command.session);
-  if (last != senders.end()) {
+  if (command.origin == Origin::kMisconfigured) {
+    // It is refused and counts for nothing; until that is known it may be obeyed.
+  } else if (last != senders.end()) {
     last->second = command.handled;
   } else if (senders.size() < 64) {
     senders[command.session] = command.handled;
   }
   if (command.tick < 0) return;
   // A repetition may arrive before what it repeats.
-  if (command.origin != Origin::kProcess && command.origin != Origin::kRepeated) {
+  if (command.origin == Origin::kChanged || command.origin == Origin::kForged) {
     false_.push_back(command);
     if (false_.size() > kMostFalse) false_.pop_front();
     return;

@@ -20,7 +20,6 @@ SimulatedProcess::SimulatedProcess(int number, Role role, Machine& machine, cons
       identity_(std::move(identity)),
       bus_(number, port, *this, machine, identity_),
       body_(std::move(body)),
-      started_(*now),
       deadline_(*now),
       wake_(*now),
       fiber_([this] { RunBody(); }) {}

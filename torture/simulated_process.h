@@ -57,7 +57,9 @@ class SimulatedProcess : public Waiter {
   bool killed() const { return killed_; }
   int exit_code() const { return exit_code_; }
   const std::string& failure() const { return failure_; }  // of an exception that left the application
-  TrueTime started() const { return started_; }
+  // Whether it runs with another configuration than the rest of the stack.
+  void set_misconfigured(bool misconfigured) { misconfigured_ = misconfigured; }
+  bool misconfigured() const { return misconfigured_; }
 
   // Waiter:
   bool WaitUntil(bus::Bus::TimePoint deadline) override;
@@ -73,13 +75,13 @@ class SimulatedProcess : public Waiter {
   bus::HostedProcess identity_;
   NetworkBus bus_;
   Body body_;
-  TrueTime started_;
   TrueTime deadline_;                   // of its wait
   bus::Bus::TimePoint local_deadline_;  // the same on its own clock
   TrueTime ready_ = kNever;
   TrueTime frozen_until_ = 0;
   int64_t slowness_ns_ = 0;
   TrueTime wake_;
+  bool misconfigured_ = false;
   bool killed_ = false;
   bool interrupted_ = false;  // by a signal that no wait has returned for yet
   int exit_code_ = -1;

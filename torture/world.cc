@@ -143,6 +143,7 @@ void World::Arrive(const PacketPtr& packet, int receiver) {
 
 void World::Send(PacketPtr packet, int sender) {
   const SimulatedProcess& process = *by_number_[static_cast<size_t>(sender)];
+  if (process.misconfigured()) packet->origin = Origin::kMisconfigured;
   trace_.Add(static_cast<uint64_t>(now_));
   trace_.Add(packet->bytes);
   if (packet->channel == command_channel_) {

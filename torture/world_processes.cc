@@ -39,6 +39,7 @@ void World::Start(Role role) {
       std::make_unique<SimulatedProcess>(number, role, MachineOf(role), &now_, identity, *this,
                                          ProgramOf(role, other ? other_config_ : config_, *this, number)));
   SimulatedProcess* const process = processes_.back().get();
+  process->set_misconfigured(other);
   by_number_.back() = process;
   alive_.push_back(process);
   receivers_.push_back({number, static_cast<int>(role)});
@@ -51,10 +52,8 @@ void World::StartAt(Role role, TrueTime time) {
 }
 
 void World::NoteConfigurations() {
-  bool other = false;
-  for (const SimulatedProcess* process : alive_) {
-    other = other || (other_configuration_[static_cast<size_t>(process->role())] && !process->killed());
-  }
+  const bool other = std::any_of(alive_.begin(), alive_.end(),
+                                 [](const SimulatedProcess* process) { return process->misconfigured(); });
   observer_.SetOtherConfiguration(other);
 }
 
@@ -62,6 +61,7 @@ void World::Reap(SimulatedProcess& process) {
   trace_.Add(static_cast<uint64_t>(process.exit_code()) << 32 | static_cast<uint64_t>(process.number()));
   std::erase(alive_, &process);
   std::erase_if(receivers_, [&](const Network::Receiver& r) { return r.number == process.number(); });
+  NoteConfigurations();
   observer_.OnEnd(process);
   if (!ending_ && !process.killed()) StartAt(process.role(), now_ + kRestart);
 }
