@@ -109,11 +109,13 @@ void ActiveFault::Begin() {
 std::optional<int64_t> ActiveFault::Continue() {
   switch (injection_.kind) {
     case FaultKind::kStop:
+      world_.SendStop();
+      return std::nullopt;
     case FaultKind::kForeignStop:
-      SendStop(injection_.kind == FaultKind::kForeignStop);
+      SendForeignStop();
       return std::nullopt;
     case FaultKind::kRearm:
-      SendRearm();
+      world_.SendRearm();
       return std::nullopt;
     case FaultKind::kHugeSequence:
     case FaultKind::kHugeTick:

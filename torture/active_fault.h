@@ -25,8 +25,7 @@ class ActiveFault {
   bool BeginOnNetwork();
   bool BeginOnMachine();
   void BeginOnProcess();
-  void SendStop(bool foreign);
-  void SendRearm();
+  void SendForeignStop();
   void SendSecondPlant();
   void SendSecondSender();
   void SendReplay();

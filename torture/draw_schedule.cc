@@ -52,6 +52,7 @@ Schedule DrawSchedule(uint64_t seed) {
   schedule.lockstep = random.Chance(0.2);
   schedule.explicit_rearm = random.Chance(0.5);
   schedule.stale_input_s = random.Chance(0.3) ? 0.02 : 0.1;
+  schedule.key = random.Chance(0.3);
   schedule.faults_until_s = Rounded(random.Between(3, 20), 10);
   const uint64_t count = 1 + random.Index(kMostInjections);
   for (uint64_t i = 0; i < count; ++i) {

@@ -7,19 +7,17 @@
 
 namespace hydro::torture {
 
-void ActiveFault::SendStop(bool foreign) {
+// A second launch ends its own run, whose plant this stack has never heard.
+void ActiveFault::SendForeignStop() {
   stop_t stop{};
   stop.tick = -1;
   stop.session = static_cast<int64_t>(random_.Next() >> 1) + 1;
-  // A second launch ends its own run, whose plant this stack has never heard.
-  if (foreign) stop.addressee = static_cast<int64_t>(random_.Next() >> 1) + 1;
+  stop.addressee = static_cast<int64_t>(random_.Next() >> 1) + 1;
   stop.source = "launch";
-  stop.reason = foreign ? "hydro-plant has ended with exit code 1" : "hydro-launch --stop";
-  stop.exit_code = foreign ? 1 : 0;
-  world_.Forge(stop, foreign ? Origin::kForged : Origin::kProcess);
+  stop.reason = "hydro-plant has ended with exit code 1";
+  stop.exit_code = 1;
+  world_.Forge(stop);
 }
-
-void ActiveFault::SendRearm() { world_.SendRearm(); }
 
 void ActiveFault::SendSecondPlant() {
   const auto session = static_cast<int64_t>(injection_.seed) + 77;

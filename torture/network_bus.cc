@@ -60,6 +60,10 @@ void NetworkBus::SendTyped(int channel, const bus::MessageType& type, const void
   if (type.encode(message, packet->bytes.data(), size) != size) {
     throw bus::BusError("a message for " + port_.ChannelName(channel) + " cannot be encoded");
   }
+  if (authenticator_ != nullptr) {
+    const int sealed = authenticator_->Seal(port_.ChannelName(channel), &packet->bytes, size);
+    packet->bytes.resize(static_cast<size_t>(sealed));
+  }
   packet->channel = channel;
   packet->sender = number_;
   packet->origin = Origin::kProcess;
@@ -95,6 +99,10 @@ int NetworkBus::HandleUntil(TimePoint deadline) {
     ~Marked() { flag = false; }
   };
   const Marked marked(handling_);
+  if (authenticator_ != nullptr && !introduced_) {
+    introduced_ = true;
+    Introduce(authenticator_->Greeting());
+  }
   int handled = 0;
   for (int seen = 0; seen < kMostPerCall; ++seen) {
     if (inbox_.empty() && (handled > 0 || !waiter_.WaitUntil(deadline))) break;
@@ -110,8 +118,13 @@ int NetworkBus::HandleUntil(TimePoint deadline) {
 }
 
 void NetworkBus::Deliver(const Packet& packet) {
+  int size = static_cast<int>(packet.bytes.size());
+  if (authenticator_ != nullptr) {
+    const std::optional<int> visible = Authenticate(packet);
+    if (!visible) return;
+    size = *visible;
+  }
   port_.Handled(packet, number_);
-  const int size = static_cast<int>(packet.bytes.size());
   if (!taps_.empty()) {
     const bus::RawMessage raw{port_.ChannelName(packet.channel), packet.bytes.data(), size, clock_.Utime()};
     for (size_t i = 0; i < taps_.size(); ++i) taps_[i](raw);

@@ -4,6 +4,7 @@
 #include <deque>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <unordered_map>
@@ -11,6 +12,7 @@
 
 #include "bus/bus.h"
 #include "bus/hosted_process.h"
+#include "bus/seal/authenticator.h"
 #include "torture/packet.h"
 
 namespace hydro::torture {
@@ -45,14 +47,20 @@ class NetworkBus : public bus::Bus {
              const bus::HostedProcess& process)
       : number_(number), port_(port), waiter_(waiter), clock_(clock), process_(process) {}
 
+  // From now on it seals what it sends and refuses what is not genuine. Call it before anything is sent.
+  void UseKey(std::unique_ptr<bus::Authenticator> authenticator);
+
   void SubscribeAll(std::function<void(const bus::RawMessage&)> handler) override;
   void PublishRaw(const std::string& channel, const void* data, int size) override;
   int HandleUntil(TimePoint deadline) override;
   int64_t undecodable() const override { return undecodable_; }
+  const bus::RefusedMessages& refused() const override {
+    return authenticator_ != nullptr ? authenticator_->refused() : Bus::refused();
+  }
   const bus::HostedProcess* process() const override { return &process_; }
 
   bool Hears(int channel) const {
-    return !taps_.empty() ||
+    return !taps_.empty() || channel == introductions_ ||
            (static_cast<size_t>(channel) < typed_.size() && !typed_[static_cast<size_t>(channel)].empty());
   }
   // Puts an arrived packet in the receive buffer; one that is full loses it, as the kernel's does.
@@ -79,12 +87,18 @@ class NetworkBus : public bus::Bus {
   int Number(const std::string& channel);
   void SendTyped(int channel, const bus::MessageType& type, const void* message);
   void Deliver(const Packet& packet);
+  // How much of a packet handlers may see; nothing: it is refused, or not for them.
+  std::optional<int> Authenticate(const Packet& packet);
+  void Introduce(introduction_t introduction);
 
   const int number_;
   NetworkPort& port_;
   Waiter& waiter_;
   const bus::Clock& clock_;
   const bus::HostedProcess& process_;
+  std::unique_ptr<bus::Authenticator> authenticator_;  // null: without a key
+  int introductions_ = -1;                             // number of their channel
+  bool introduced_ = false;
   bool connected_ = true;
   bool handling_ = false;
   std::unordered_map<std::string, int> numbers_;

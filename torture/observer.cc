@@ -81,6 +81,11 @@ void Observer::OnFault(const Packet& packet) {
 }
 
 void Observer::OnHandled(const Packet& packet, const SimulatedProcess& receiver) {
+  if (sealed_ && (packet.origin == Origin::kForged || packet.origin == Origin::kChanged)) {
+    Report("with a key nothing forged or changed is handled",
+           fmt::format("{} has handled such a message on {}", TargetName(static_cast<int>(receiver.role())),
+                       network_.ChannelName(packet.channel)));
+  }
   if (packet.channel == state_) return;
   if (packet.channel == stop_ && !OnStop(packet, receiver)) return;
   // Its plant seems to be misconfigured: it leaves.
@@ -112,13 +117,18 @@ void Observer::OnCommand(const Packet& packet, PlantRecord& plant) {
   constexpr size_t kVoltage = 8 + offsetof(motor_command_t, voltage);
   static const int64_t kHash = motor_command_t::getHash();
   static const auto kSize = static_cast<size_t>(motor_command_t().getEncodedSize());
-  if (packet.bytes.size() != kSize || Load(packet, 0) != kHash) return;  // undecodable
+  if (packet.bytes.size() < kSize || Load(packet, 0) != kHash) return;  // undecodable
   ReceivedCommand command;
   command.tick = Load(packet, kPlaces.tick);
   command.session = Load(packet, kPlaces.session);
   command.sequence = Load(packet, kPlaces.sequence);
   command.voltage = std::bit_cast<double>(Load(packet, kVoltage));
   command.handled = *now_;
+  if (misconfigured_.contains(command.session)) {
+    // It is refused and counts for nothing; until that is known it may be obeyed.
+    if (command.tick >= 0) plant.At(command.tick).answers[1] = command;
+    return;
+  }
   command.origin = packet.origin;
   plant.Receive(command);
 }
@@ -142,7 +152,7 @@ void Observer::SetOtherConfiguration(bool present) {
 }
 
 void Observer::OnEnd(const SimulatedProcess& process) {
-  if (process.killed()) return;
+  if (process.killed() || (process.role() == Role::kOperator && process.failure().empty())) return;
   const std::string_view name = TargetName(static_cast<int>(process.role()));
   if (!process.failure().empty()) {
     Report("an application throws nothing", fmt::format("{} ended with: {}", name, process.failure()));

@@ -29,6 +29,10 @@ class Observer {
  public:
   Observer(const settings::StackConfig& config, Network& network, const TrueTime* now, Coverage& coverage);
 
+  // A process of that session runs with another configuration than the rest of the stack.
+  void AddMisconfigured(int64_t session) { misconfigured_.insert(session); }
+  // Every message is sealed.
+  void SetSealed() { sealed_ = true; }
   // A process sends.
   void OnSent(const Packet& packet, const SimulatedProcess& sender);
   // A packet is passed to the handlers of a process.
@@ -65,6 +69,8 @@ class Observer {
   std::vector<std::unique_ptr<PlantRecord>> plants_;                        // by number of the process
   PlantRecord* newest_plant_ = nullptr;
   std::vector<Violation> violations_;
+  std::set<int64_t> misconfigured_;  // sessions
+  bool sealed_ = false;
   TrueTime last_obeyed_ = -1;
   TrueTime other_configuration_ = -1;   // since when
   std::map<int, std::set<int>> stops_;  // exit codes of the genuine stops that a process heard or sent

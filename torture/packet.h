@@ -14,11 +14,10 @@ class PacketPool;
 
 // Where a packet comes from: what only the simulator knows.
 enum class Origin : uint8_t {
-  kProcess,        // a process of the stack sent it, and it is unchanged
-  kMisconfigured,  // the same, with another configuration than the rest of the stack
-  kRepeated,       // the same once more, by the network or somebody who has recorded it
-  kChanged,  // the network changed its bytes, or somebody made it up in the name of a process that lives
-  kForged,   // somebody else made it up
+  kProcess,   // a process of the stack sent it, and it is unchanged
+  kRepeated,  // the same once more, by the network or somebody who has recorded it
+  kChanged,   // the network changed its bytes, or somebody made it up in the name of a process that lives
+  kForged,    // somebody else made it up
 };
 
 struct Packet {

@@ -7,6 +7,7 @@ namespace hydro::torture {
 namespace {
 
 constexpr size_t kMostFalse = 256;
+constexpr size_t kMostSenders = 64;
 
 bool Same(double a, double b) { return std::bit_cast<uint64_t>(a) == std::bit_cast<uint64_t>(b); }
 
@@ -14,20 +15,19 @@ bool Same(double a, double b) { return std::bit_cast<uint64_t>(a) == std::bit_ca
 
 void PlantRecord::Receive(const ReceivedCommand& command) {
   const auto last = senders.find(command.session);
-  if (command.origin == Origin::kMisconfigured) {
-    // It is refused and counts for nothing; until that is known it may be obeyed.
-  } else if (last != senders.end()) {
+  if (last != senders.end()) {
     last->second = command.handled;
-  } else if (senders.size() < 64) {
+  } else if (senders.size() < kMostSenders) {
     senders[command.session] = command.handled;
   }
-  if (command.tick < 0) return;
-  // A repetition may arrive before what it repeats.
   if (command.origin == Origin::kChanged || command.origin == Origin::kForged) {
     false_.push_back(command);
     if (false_.size() > kMostFalse) false_.pop_front();
     return;
   }
+  if (command.tick < 0) return;
+  genuine = command.handled;
+  // A repetition may arrive before what it repeats.
   Tick& entry = At(command.tick);
   ReceivedCommand& first = entry.answers[0];
   (first.tick < 0 || first.session == command.session ? first : entry.answers[1]) = command;

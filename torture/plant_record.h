@@ -27,6 +27,7 @@ struct ReceivedCommand {
 class PlantRecord {
  public:
   static constexpr int64_t kRemembered = 2048;  // ticks
+  static constexpr TrueTime kLongAgo = -1'000'000'000'000;
 
   struct Tick {
     int64_t tick = -1;
@@ -60,6 +61,7 @@ class PlantRecord {
   TrueTime rearm_request = -1;              // when a request for this plant reached it last
   std::optional<int64_t> other_plant_tick;  // when another one's description reached it last
   TrueTime other_plant = 0;
+  TrueTime genuine = kLongAgo;              // when a process of the stack was heard last
   bool over_limit = false;                  // at the last reading
   std::map<int64_t, TrueTime> senders;      // by session: when a command of it was received last
   std::optional<int64_t> two_senders_tick;  // since when commands of two have come

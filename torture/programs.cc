@@ -2,6 +2,7 @@
 
 #include <memory>
 
+#include "bus/channels.h"
 #include "plant/plant_app.h"
 #include "position_ctrl/position_app.h"
 #include "pressure_ctrl/pressure_app.h"
@@ -12,6 +13,11 @@
 
 namespace hydro::torture {
 namespace {
+
+using namespace std::chrono_literals;
+
+constexpr auto kOperatorRepeats = 50ms;
+constexpr auto kOperatorPatience = 400ms;
 
 template <class Application>
 SimulatedProcess::Body Running(const settings::StackConfig& config) {
@@ -36,6 +42,55 @@ SimulatedProcess::Body ProgramOf(Role role, const settings::StackConfig& config,
         return app->Run();
       };
   }
+}
+
+SimulatedProcess::Body RearmProgram(const settings::StackConfig& config, int64_t plant) {
+  return [&config, plant](bus::Bus& bus, bus::Clock& clock) {
+    const bus::Channels channels(config.bus.channel_suffix);
+    int64_t tick = -1;
+    bool answered = false;
+    bus.Subscribe<state_t>(channels.Of<state_t>(), [&](const state_t& state) {
+      if (state.session == plant) tick = state.tick;
+    });
+    bus.Subscribe<rearm_t>(channels.Of<rearm_t>(), [&](const rearm_t& answer) {
+      answered = answered || (answer.kind != rearm_t::REQUEST && answer.addressee == bus.process()->session);
+    });
+    const auto end = clock.Now() + kOperatorPatience;
+    while (!answered && clock.Now() < end) {
+      for (const auto until = clock.Now() + kOperatorRepeats; !answered && clock.Now() < until;) {
+        bus.HandleUntil(until);
+      }
+      rearm_t request{};
+      request.utime = clock.Utime();
+      request.tick = tick;
+      request.session = bus.process()->session;
+      request.addressee = plant;
+      request.kind = rearm_t::REQUEST;
+      request.source = "launch";
+      request.text = "hydro-launch --rearm";
+      if (!answered && tick >= 0) bus.Publish(channels.Of<rearm_t>(), request);
+    }
+    return 0;
+  };
+}
+
+SimulatedProcess::Body StopProgram(const settings::StackConfig& config) {
+  return [&config](bus::Bus& bus, bus::Clock& clock) {
+    const bus::Channels channels(config.bus.channel_suffix);
+    stop_t stop{};
+    stop.tick = -1;
+    stop.session = bus.process()->session;
+    stop.addressee = 0;
+    stop.source = "launch";
+    stop.reason = "hydro-launch --stop";
+    const auto end = clock.Now() + kOperatorPatience;
+    while (clock.Now() < end) {
+      stop.utime = clock.Utime();
+      bus.Publish(channels.Of<stop_t>(), stop);
+      for (const auto until = clock.Now() + kOperatorRepeats; clock.Now() < until;) bus.HandleUntil(until);
+    }
+    return 0;
+  };
 }
 
 }  // namespace hydro::torture

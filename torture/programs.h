@@ -11,4 +11,9 @@ class World;
 // What the process `number` of that role does with that configuration, which must outlive it.
 SimulatedProcess::Body ProgramOf(Role role, const settings::StackConfig& config, World& world, int number);
 
+// What an operator runs: asks the plant of that session to end its latched faults, as hydro-launch --rearm does; tells
+// everybody to end, as hydro-launch --stop does over the bus.
+SimulatedProcess::Body RearmProgram(const settings::StackConfig& config, int64_t plant);
+SimulatedProcess::Body StopProgram(const settings::StackConfig& config);
+
 }  // namespace hydro::torture

@@ -13,6 +13,7 @@ namespace hydro::torture {
 struct Schedule {
   uint64_t seed = 1;                  // of latencies, clocks, sessions and start times
   bool lockstep = false;              // time.mode
+  bool key = false;                   // messages are sealed
   bool explicit_rearm = false;        // limits.rearm
   double stale_input_s = 0.1;         // limits.stale_input_s
   double faults_until_s = 12;         // all faults have ended by then

@@ -80,10 +80,11 @@ Injection ReadInjection(LineReader line, const std::string& time) {
 }  // namespace
 
 std::string ScheduleText(const Schedule& schedule) {
-  std::string text = fmt::format(
-      "{}\nrun mode={} rearm={} stale={} until={} seed={}\n", kFirstLine,
-      schedule.lockstep ? "lockstep" : "realtime", schedule.explicit_rearm ? "explicit" : "restart",
-      ShortestNumber(schedule.stale_input_s), ShortestNumber(schedule.faults_until_s), schedule.seed);
+  std::string text = fmt::format("{}\nrun mode={} rearm={} key={} stale={} until={} seed={}\n", kFirstLine,
+                                 schedule.lockstep ? "lockstep" : "realtime",
+                                 schedule.explicit_rearm ? "explicit" : "restart",
+                                 schedule.key ? "yes" : "no", ShortestNumber(schedule.stale_input_s),
+                                 ShortestNumber(schedule.faults_until_s), schedule.seed);
   for (const Injection& injection : schedule.injections) {
     text +=
         fmt::format("{} {} target={} for={} amount={} seed={}\n", ShortestNumber(injection.at_s),
@@ -113,6 +114,7 @@ Schedule ReadSchedule(const std::string& file, const std::string& text) {
     }
     schedule.lockstep = line.Value("mode") == "lockstep";
     schedule.explicit_rearm = line.Value("rearm") == "explicit";
+    schedule.key = line.Value("key") == "yes";
     schedule.stale_input_s = line.Number("stale");
     schedule.faults_until_s = line.Number("until");
     schedule.seed = line.Seed("seed");

@@ -35,6 +35,7 @@ World::World(const Schedule& schedule, const Stacks& stacks)
     machines_.push_back(
         std::make_unique<Machine>(host, &now_, random_.Between(10, 1e5), 1.7e9 + random_.Between(0, 1e6)));
   }
+  if (schedule.key) observer_.SetSealed();
   command_channel_ = network_.ChannelNumber(channels_.Of<motor_command_t>());
   for (const Role role : {Role::kPlant, Role::kPressure, Role::kPosition}) {
     Push(static_cast<TrueTime>(random_.Index(kStarts)), Happening::kStart, static_cast<int>(role));
@@ -143,7 +144,6 @@ void World::Arrive(const PacketPtr& packet, int receiver) {
 
 void World::Send(PacketPtr packet, int sender) {
   const SimulatedProcess& process = *by_number_[static_cast<size_t>(sender)];
-  if (process.misconfigured()) packet->origin = Origin::kMisconfigured;
   trace_.Add(static_cast<uint64_t>(now_));
   trace_.Add(packet->bytes);
   if (packet->channel == command_channel_) {

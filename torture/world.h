@@ -63,8 +63,9 @@ class World : public NetworkPort {
   void ForgeAgain(const Packet& packet);
   // The newest motor command that was sent before a time; null: none is remembered.
   const Packet* RecordedCommand(TrueTime before) const;
-  // The operator asks the plant to go on.
+  // An operator's process asks the plant to go on, or everybody to end.
   void SendRearm();
+  void SendStop();
   Coverage& coverage() { return outcome_.coverage; }
 
   // NetworkPort:
@@ -90,6 +91,7 @@ class World : public NetworkPort {
   void Happen(const Event& event);
   void Arrive(const PacketPtr& packet, int receiver);
   void Start(Role role);
+  void Begin(Role role, SimulatedProcess::Body body, bool misconfigured);
   void StartAt(Role role, TrueTime time);
   void Awake(Role role);
   void NoteConfigurations();
@@ -97,7 +99,6 @@ class World : public NetworkPort {
   void EnterPhase(int phase);
   void CheckReturned();
   void CheckEnded();
-  void StopEverything();
   void ForgeBytes(const std::string& channel, const bus::MessageType& type, const void* message,
                   Origin origin);
 

@@ -26,27 +26,18 @@ void World::EnterPhase(int phase) {
   if (phase < kRequests && config_.limits.rearm == settings::Rearm::kExplicit) {
     const PlantRecord* const plant = observer_.newest_plant();
     // An arm that stands beyond its limit stays there: only a new start helps.
-    if (phase == 2 && plant != nullptr && plant->over_limit) StopEverything();
+    if (phase == 2 && plant != nullptr && plant->over_limit) SendStop();
     SendRearm();
     Push(now_ + kSecond / 2, Happening::kPhase, phase + 1);
   } else if (phase == kReturned) {
     CheckReturned();
     ending_ = true;
-    StopEverything();
+    SendStop();
     Push(now_ + kEnd, Happening::kPhase, kEnded);
   } else if (phase == kEnded) {
     CheckEnded();
     over_ = true;
   }
-}
-
-void World::StopEverything() {
-  stop_t stop{};
-  stop.tick = -1;
-  stop.session = 4711;
-  stop.source = "launch";
-  stop.reason = "hydro-launch --stop";
-  Forge(stop, Origin::kProcess);
 }
 
 void World::CheckReturned() {
@@ -64,6 +55,7 @@ void World::CheckReturned() {
 
 void World::CheckEnded() {
   for (const SimulatedProcess* process : alive_) {
+    if (process->role() == Role::kOperator) continue;
     observer_.Report("every run ends", fmt::format("{} has not ended {:.1f} s after a stop",
                                                    TargetName(static_cast<int>(process->role())),
                                                    static_cast<double>(kEnd) * 1e-9));

@@ -2,6 +2,7 @@
 // name.
 #include <algorithm>
 
+#include "bus/seal/authenticated_channels.h"
 #include "torture/active_fault.h"
 #include "torture/programs.h"
 #include "torture/world.h"
@@ -27,19 +28,29 @@ void World::Start(Role role) {
     StartAt(role, awake_at_[index]);
     return;
   }
+  const bool other = other_configuration_[index];
+  Begin(role, ProgramOf(role, other ? other_config_ : config_, *this, static_cast<int>(by_number_.size())),
+        other);
+}
+
+void World::Begin(Role role, SimulatedProcess::Body body, bool misconfigured) {
   const int number = static_cast<int>(by_number_.size());
   Random draw(schedule_.seed, 1000 + static_cast<uint64_t>(number));
   bus::HostedProcess identity;
   identity.host = MachineOf(role).name();
   identity.id = 1000 + number;
   identity.session = static_cast<int64_t>(draw.Next() | 1);
-  const bool other = other_configuration_[index];
   by_number_.push_back(nullptr);
-  processes_.push_back(
-      std::make_unique<SimulatedProcess>(number, role, MachineOf(role), &now_, identity, *this,
-                                         ProgramOf(role, other ? other_config_ : config_, *this, number)));
+  processes_.push_back(std::make_unique<SimulatedProcess>(number, role, MachineOf(role), &now_, identity,
+                                                          *this, std::move(body)));
   SimulatedProcess* const process = processes_.back().get();
-  process->set_misconfigured(other);
+  if (schedule_.key) {
+    static const bus::BusKey kKey({1, 2, 3, 4, 5, 6, 7, 8});
+    process->bus().UseKey(std::make_unique<bus::Authenticator>(kKey, bus::AuthenticatedChannels(channels_),
+                                                               static_cast<int64_t>(draw.Next() | 1)));
+  }
+  process->set_misconfigured(misconfigured);
+  if (misconfigured) observer_.AddMisconfigured(identity.session);
   by_number_.back() = process;
   alive_.push_back(process);
   receivers_.push_back({number, static_cast<int>(role)});
@@ -63,7 +74,8 @@ void World::Reap(SimulatedProcess& process) {
   std::erase_if(receivers_, [&](const Network::Receiver& r) { return r.number == process.number(); });
   NoteConfigurations();
   observer_.OnEnd(process);
-  if (!ending_ && !process.killed()) StartAt(process.role(), now_ + kRestart);
+  if (!ending_ && !process.killed() && process.role() != Role::kOperator)
+    StartAt(process.role(), now_ + kRestart);
 }
 
 void World::Kill(Role role, TrueTime restart_at) {
@@ -123,16 +135,10 @@ const Packet* World::RecordedCommand(TrueTime before) const {
 
 void World::SendRearm() {
   const SimulatedProcess* const plant = Find(Role::kPlant);
-  const PlantRecord* const record = observer_.newest_plant();
-  if (plant == nullptr || record == nullptr) return;
-  rearm_t request{};
-  request.tick = record->tick;
-  request.session = 4711;
-  request.addressee = plant->identity().session;
-  request.kind = rearm_t::REQUEST;
-  request.source = "launch";
-  request.text = "hydro-launch --rearm";
-  Forge(request, Origin::kProcess);
+  if (plant == nullptr) return;
+  Begin(Role::kOperator, RearmProgram(config_, plant->identity().session), false);
 }
+
+void World::SendStop() { Begin(Role::kOperator, StopProgram(config_), false); }
 
 }  // namespace hydro::torture
