@@ -91,6 +91,9 @@ void ActiveFault::BeginOnProcess() {
     case FaultKind::kHang:
       if (process != nullptr) process->FreezeUntil(end());
       break;
+    case FaultKind::kLauncherHang:
+      ++world_.launcher_hangs();
+      break;
     case FaultKind::kSlow:
       if (process != nullptr) process->SetSlowness(static_cast<int64_t>(injection_.amount * 1e9));
       break;
@@ -157,6 +160,7 @@ void ActiveFault::End() {
   if (injection_.kind == FaultKind::kSlow) {
     if (SimulatedProcess* process = world_.Find(role())) process->SetSlowness(0);
   }
+  if (injection_.kind == FaultKind::kLauncherHang) --world_.launcher_hangs();
   if (injection_.kind == FaultKind::kOtherConfiguration) {
     world_.SetOtherConfiguration(role(), false);
     world_.Kill(role(), world_.now() + 20'000'000);

@@ -26,6 +26,7 @@ constexpr std::array<FaultKindInfo, static_cast<size_t>(FaultKind::kCount)> kKin
     {FaultKind::kHang, "hang", kLoops, 0.002, 2, 0, 0, ""},
     {FaultKind::kSlow, "slow", kLoops, 0.01, 2, 0.0001, 0.02, "s, later each time"},
     {FaultKind::kOtherConfiguration, "other_configuration", "pressure_ctrl position_ctrl", 0.5, 6, 0, 0, ""},
+    {FaultKind::kLauncherHang, "launcher_hang", "plant", 0.2, 4, 0, 0, ""},
     {FaultKind::kSensorNan, "sensor_nan", "plant", 0.001, 0.5, 0, 6, "which sensor"},
     {FaultKind::kSensorStick, "sensor_stick", "plant", 0.001, 1, 0, 6, "which sensor"},
     {FaultKind::kSensorSpike, "sensor_spike", "plant", 0.001, 0.003, 0, 6, "which sensor"},

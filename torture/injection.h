@@ -28,6 +28,7 @@ enum class FaultKind : uint8_t {
   kHang,
   kSlow,
   kOtherConfiguration,
+  kLauncherHang,
   // Sensors.
   kSensorNan,
   kSensorStick,

@@ -55,6 +55,7 @@ void Observer::Report(const std::string& invariant, const std::string& text) {
 }
 
 void Observer::OnSent(const Packet& packet, const SimulatedProcess& sender) {
+  if (packet.channel == state_) OnState(packet, sender);
   if (packet.channel == fault_) OnFault(packet);
   if (packet.channel == stop_) OnStop(packet, sender);
 }
@@ -65,6 +66,18 @@ bool Observer::OnStop(const Packet& packet, const SimulatedProcess& process) {
   if (packet.origin == Origin::kForged || !Decode(packet, &stop)) return false;
   stops_[process.number()].insert(stop.exit_code == 0 ? 0 : 1);
   return stop.addressee == 0 || stop.addressee == process.identity().session;
+}
+
+// What a log says happened is what happened.
+void Observer::OnState(const Packet& packet, const SimulatedProcess& sender) {
+  constexpr size_t kVoltage = 8 + offsetof(state_t, voltage);
+  if (sender.role() != Role::kPlant || packet.bytes.size() < kVoltage + 8) return;
+  const double driven = RecordOf(sender).voltage;
+  const auto said = std::bit_cast<double>(Load(packet, kVoltage));
+  if (said == driven) return;
+  Report("a state says what was driven",
+         fmt::format("tick {}: it says {:.17g} V, driven were {:.17g} V",
+                     Load(packet, 8 + offsetof(state_t, tick)), said, driven));
 }
 
 void Observer::OnFault(const Packet& packet) {

@@ -57,6 +57,7 @@ class Observer {
  private:
   friend class PlantInvariants;
   PlantRecord& RecordOf(const SimulatedProcess& plant);
+  void OnState(const Packet& packet, const SimulatedProcess& sender);
   void OnFault(const Packet& packet);
   bool OnStop(const Packet& packet, const SimulatedProcess& process);
   void OnCommand(const Packet& packet, PlantRecord& plant);

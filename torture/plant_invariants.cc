@@ -34,6 +34,7 @@ void PlantInvariants::OnRead(int64_t tick, const model::Measurement& measured, i
     }
   }
   const settings::LimitsSection& limits = observer_.config_.limits;
+  plant_.read_tick = tick;
   PlantRecord::Tick& entry = plant_.At(tick);
   const bool over = measured.p1 > limits.pressure_psi || measured.p2 > limits.pressure_psi ||
                     std::fabs(measured.motor_speed) > limits.motor_speed_rad_s ||

@@ -14,12 +14,7 @@ bool Same(double a, double b) { return std::bit_cast<uint64_t>(a) == std::bit_ca
 }  // namespace
 
 void PlantRecord::Receive(const ReceivedCommand& command) {
-  const auto last = senders.find(command.session);
-  if (last != senders.end()) {
-    last->second = command.handled;
-  } else if (senders.size() < kMostSenders) {
-    senders[command.session] = command.handled;
-  }
+  if (command.tick <= read_tick) Hear(command);  // one for a future tick is another fault
   if (command.origin == Origin::kChanged || command.origin == Origin::kForged) {
     false_.push_back(command);
     if (false_.size() > kMostFalse) false_.pop_front();
@@ -31,6 +26,15 @@ void PlantRecord::Receive(const ReceivedCommand& command) {
   Tick& entry = At(command.tick);
   ReceivedCommand& first = entry.answers[0];
   (first.tick < 0 || first.session == command.session ? first : entry.answers[1]) = command;
+}
+
+void PlantRecord::Hear(const ReceivedCommand& command) {
+  const auto last = senders.find(command.session);
+  if (last != senders.end()) {
+    last->second = command.handled;
+  } else if (senders.size() < kMostSenders) {
+    senders[command.session] = command.handled;
+  }
 }
 
 std::optional<ReceivedCommand> PlantRecord::Newest(double wanted, int64_t oldest, int64_t newest) {

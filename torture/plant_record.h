@@ -50,6 +50,7 @@ class PlantRecord {
   const ReceivedCommand* NewestFalse(double wanted) const;
 
   int64_t tick = -1;       // of the last Drive()
+  int64_t read_tick = 0;   // of the last Read()
   double voltage = 0;      // that it holds
   TrueTime driven = 0;     // when that was
   int64_t woke_tick = -1;  // the first tick after it did not run for longer than allowed; -1: it has answered
@@ -71,6 +72,8 @@ class PlantRecord {
   int64_t suspended_ns = 0;
 
  private:
+  void Hear(const ReceivedCommand& command);
+
   std::array<Tick, kRemembered> ticks_{};
   std::deque<ReceivedCommand> false_;
 };

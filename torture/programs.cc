@@ -38,7 +38,9 @@ SimulatedProcess::Body ProgramOf(Role role, const settings::StackConfig& config,
     default:
       return [&config, &world, number](bus::Bus& bus, bus::Clock& clock) {
         FaultyRig rig(config, world.process(number), world.sensor_faults(), world.observer());
-        const auto app = std::make_unique<plant::PlantApp>(bus, clock, config, rig);
+        const auto app = std::make_unique<plant::PlantApp>(bus, clock, config, rig,
+                                                           std::vector<std::string>{}, "hydro-plant",
+                                                           [&world] { return world.launcher_hangs() == 0; });
         return app->Run();
       };
   }

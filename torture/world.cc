@@ -1,6 +1,7 @@
 #include "torture/world.h"
 
 #include <fmt/format.h>
+#include <malloc.h>
 
 #include <algorithm>
 #include <utility>
@@ -18,6 +19,11 @@ constexpr TrueTime kStarts = 50'000'000;  // ns: the processes of a stack start 
 TrueTime FromSeconds(double seconds) { return static_cast<TrueTime>(seconds * 1e9); }
 
 }  // namespace
+
+size_t AllocatedBytes() {
+  const struct mallinfo2 info = mallinfo2();
+  return info.uordblks + info.hblkhd;
+}
 
 World::World(const Schedule& schedule, const Stacks& stacks)
     : schedule_(schedule),

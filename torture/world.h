@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <deque>
 #include <memory>
@@ -25,6 +26,9 @@ struct Stacks {
   settings::StackConfig other;  // what FaultKind::kOtherConfiguration starts a process with
 };
 
+// What this program has allocated.
+size_t AllocatedBytes();
+
 struct RunOutcome {
   std::vector<Violation> violations;
   uint64_t trace = 0;  // of everything that happened
@@ -46,6 +50,8 @@ class World : public NetworkPort {
   Network& network() { return network_; }
   Observer& observer() { return observer_; }
   std::vector<SensorFault>& sensor_faults() { return sensor_faults_; }
+  // How many injected faults stop the launcher now.
+  int& launcher_hangs() { return launcher_hangs_; }
   Machine& MachineOf(Role role) { return *machines_[static_cast<size_t>(role)]; }
   SimulatedProcess& process(int number) { return *by_number_[static_cast<size_t>(number)]; }
   // The living process of a role; null: none.
@@ -125,9 +131,11 @@ class World : public NetworkPort {
   std::vector<SensorFault> sensor_faults_;
   std::vector<std::unique_ptr<class ActiveFault>> active_;  // by injection
   std::vector<Event> events_;                               // a heap
+  int launcher_hangs_ = 0;
   uint64_t order_ = 0;
   std::deque<PacketPtr> recorded_;  // the newest motor commands
   int command_channel_ = -1;
+  const size_t allocated_ = AllocatedBytes();  // at the start
   bool ending_ = false;
   bool over_ = false;
 };

@@ -17,6 +17,8 @@ constexpr TrueTime kEnd = 2 * kSecond;  // after a stop every process has ended
 constexpr TrueTime kLookBack = kSecond / 4;
 constexpr int kRequests = 6;  // of the operator, half a second apart
 
+constexpr size_t kMostBytes = 16u << 20;
+
 enum Phase { kQuiet = 0, kReturned = 100, kEnded = 200 };
 
 }  // namespace
@@ -54,6 +56,11 @@ void World::CheckReturned() {
 }
 
 void World::CheckEnded() {
+  if (const size_t grown = AllocatedBytes() - std::min(AllocatedBytes(), allocated_); grown > kMostBytes) {
+    observer_.Report(
+        "memory is bounded",
+        fmt::format("the run has taken {} bytes more than at its start, allowed are {}", grown, kMostBytes));
+  }
   for (const SimulatedProcess* process : alive_) {
     if (process->role() == Role::kOperator) continue;
     observer_.Report("every run ends", fmt::format("{} has not ended {:.1f} s after a stop",

@@ -53,6 +53,7 @@ TEST(TortureRunTest, FaultsAreNoticed) {
   const std::pair<Injection, const char*> cases[] = {
       {{1, FaultKind::kHang, 1, 0.5, 0, 1}, "stale_motor_command"},
       {{1, FaultKind::kHang, 0, 0.5, 0, 1}, "late_plant"},
+      {{1, FaultKind::kLauncherHang, 0, 1.5, 0, 1}, "supervisor_gone"},
       {{1, FaultKind::kPartition, 2, 0.5, 0, 1}, "stale_pressure_command"},
       {{1, FaultKind::kPartition, 0, 0.5, 0, 1}, "stale_state"},
       {{1, FaultKind::kSensorNan, 0, 0.1, 0, 1}, "nonfinite_state"},
@@ -69,7 +70,7 @@ TEST(TortureRunTest, FaultsAreNoticed) {
   };
   for (const auto& [injection, code] : cases) {
     Schedule schedule;
-    schedule.faults_until_s = 2;
+    schedule.faults_until_s = 2.5;
     schedule.injections = {injection};
     const RunOutcome outcome = RunSchedule(schedule, "");
     EXPECT_TRUE(outcome.coverage.codes.contains(code)) << code;
