@@ -79,9 +79,8 @@ void PlantInvariants::CheckRange(int64_t tick, double voltage) {
 // Where a voltage comes from: a command that was received, genuine, fresh, and computed from sound readings.
 void PlantInvariants::CheckOrigin(int64_t tick, double voltage) {
   const int64_t delay = observer_.config_.plant.command_delay_ticks;
-  // In lockstep one tick, when a pressure loop has taken another's place: what waits from the old one is
-  // dropped.
-  // A plant that wakes late adds the ticks that it slept through.
+  // A plant that wakes late adds the ticks that it slept through. In lockstep one tick, when a pressure loop
+  // has taken another's place: what waits from the old one is dropped.
   const int64_t slept = tick - std::max<int64_t>(plant_.tick, 0);
   const int64_t allowed = realtime() ? stale_ticks() + kDetection + slept : 1;
   // Without a key nothing tells a changed message, or one made up in a genuine sender's name, from others.
