@@ -26,6 +26,7 @@
 #include <utility>
 #include <vector>
 
+#include "bus/hosted_process.h"
 #include "bus/seal_trailer.h"
 
 namespace hydro::bus {
@@ -164,6 +165,9 @@ class Bus {
 
   // Messages that could not be sent because the network was down.
   virtual int64_t unsent() const { return 0; }
+
+  // The simulated process that this bus belongs to; null: the real one that runs this code.
+  virtual const HostedProcess* process() const { return nullptr; }
 
   // The channel of the newest message that could not be decoded; empty when there was none or the transport
   // does not know.

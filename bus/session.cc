@@ -1,6 +1,10 @@
 #include "bus/session.h"
 
+#include <unistd.h>
+
 #include <random>
+
+#include "base/host_name.h"
 
 namespace hydro::bus {
 
@@ -14,5 +18,10 @@ int64_t RandomSession() {
 }
 
 int64_t SessionOn(const Clock& clock) { return clock.simulated() ? 0 : RandomSession(); }
+
+HostedProcess IdentityOn(const Bus& bus, const Clock& clock) {
+  if (const HostedProcess* hosted = bus.process()) return *hosted;
+  return {HostName(), static_cast<int32_t>(getpid()), SessionOn(clock)};
+}
 
 }  // namespace hydro::bus

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 
+#include "bus/bus.h"
 #include "bus/clock.h"
 
 namespace hydro::bus {
@@ -12,5 +13,9 @@ int64_t RandomSession();
 
 // RandomSession() on a wall clock; 0 on a simulated one, so that every run is bit-identical.
 int64_t SessionOn(const Clock& clock);
+
+// Who this process is: what the bus says of a simulated process (Bus::process()), otherwise the machine's
+// name, the id of this process and SessionOn(clock).
+HostedProcess IdentityOn(const Bus& bus, const Clock& clock);
 
 }  // namespace hydro::bus

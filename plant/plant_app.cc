@@ -7,7 +7,6 @@
 #include <cmath>
 #include <utility>
 
-#include "base/host_name.h"
 #include "process/stop_signal.h"
 #include "settings/agreed_entries.h"
 
@@ -70,7 +69,7 @@ void PlantApp::DescribeRun() {
   description_.model_text = config_.model.text;
   description_.program = program_;
   description_.version = HYDRO_VERSION;
-  description_.host = HostName();
+  description_.host = participant_.host();
   description_.rate_hz = config_.plant.rate_hz;
   description_.seed = config_.seed;
 }
@@ -110,8 +109,8 @@ void PlantApp::RequestStop() {
     participant_.RequestStop(reason, 0, process::kLaunchRole);
     return;
   }
-  if (process::StopSignal() != 0) {
-    participant_.RequestStop(fmt::format("{} was stopped by signal {}", program_, process::StopSignal()), 0);
+  if (const int signal = process::StopSignal(participant_.bus()); signal != 0) {
+    participant_.RequestStop(fmt::format("{} was stopped by signal {}", program_, signal), 0);
     return;
   }
   const std::string latched = safety_.Latched();
@@ -127,7 +126,9 @@ std::string PlantApp::failure() const {
   return stop && stop->exit_code != 0 ? stop->source + ": " + stop->reason : "";
 }
 
-bool PlantApp::Ended() const { return participant_.stop().has_value() || process::StopSignal() != 0; }
+bool PlantApp::Ended() const {
+  return participant_.stop().has_value() || process::StopSignal(participant_.bus()) != 0;
+}
 
 bool PlantApp::AllHaveSaidTheirConfiguration() const {
   const std::vector<int64_t> sessions = roll_call_.Participants();

@@ -6,7 +6,7 @@ namespace hydro::process {
 
 int RunApp(bus::Bus& bus, bus::Clock& clock, App& app) {
   try {
-    while (!app.finished() && StopSignal() == 0) {
+    while (!app.finished() && StopSignal(bus) == 0) {
       const int handled = bus.HandleUntil(clock.Now() + kPollPeriod);
       if (handled > 0) app.OnHandled(handled);
       app.Poll();

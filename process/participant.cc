@@ -2,14 +2,12 @@
 
 #include <spdlog/fmt/fmt.h>
 #include <spdlog/spdlog.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
 #include <hydro/active_faults_t.hpp>
 #include <hydro/loop_statistics_t.hpp>
 
-#include "base/host_name.h"
 #include "bus/session.h"
 
 namespace hydro::process {
@@ -36,15 +34,14 @@ Participant::Participant(bus::Bus& bus, bus::Clock& clock, const bus::Channels& 
       clock_(clock),
       channels_(channels),
       role_(role),
-      host_(HostName()),
-      session_(bus::SessionOn(clock)),
+      identity_(bus::IdentityOn(bus, clock)),
       agreement_(agreed),
       undecodable_("undecodable_message"),
       unsent_("unsent_message"),
-      statistics_(role, host_, session_, clock.Now()) {
-  if (IsPlant(role)) run_ = session_;
+      statistics_(role, identity_.host, session(), clock.Now()) {
+  if (IsPlant(role)) run_ = session();
   bus_.Subscribe<stop_t>(channels_.Of<stop_t>(), [this](const stop_t& stop) {
-    const bool meant = stop.addressee == 0 || stop.addressee == session_ || stop.addressee == run_;
+    const bool meant = stop.addressee == 0 || stop.addressee == session() || stop.addressee == run_;
     if (meant && !stop_) stop_ = stop;
   });
   bus_.Subscribe<process_status_t>(channels_.Of<process_status_t>(),
@@ -58,7 +55,7 @@ void Participant::OnStatus(const process_status_t& status) {
     names_[status.session] =
         status.role + " on " + status.host + " (process " + std::to_string(status.pid) + ")";
   }
-  if (status.session == session_) return;
+  if (status.session == session()) return;
   if (IsThere(status)) {
     if (IsPlant(status.role) && run_ == 0) run_ = status.session;
     const bool asks =
@@ -78,7 +75,7 @@ void Participant::OnStatus(const process_status_t& status) {
 
 // Zero volts need no help here: who is not obeyed becomes stale like a dead sender.
 void Participant::OnConfiguration(const configuration_t& announced) {
-  if (announced.session == session_ || !agreement_.Observe(announced)) return;
+  if (announced.session == session() || !agreement_.Observe(announced)) return;
   const std::string who = fmt::format("{} on {} (process {})", announced.role, announced.host, announced.pid);
   const std::string text =
       fmt::format("{} has another configuration: {}", who, agreement_.Differences(announced.session));
@@ -100,7 +97,7 @@ void Participant::LeaveAlone(const std::string& reason) {
   stop_t stop{};
   stop.utime = clock_.Utime();
   stop.tick = tick_;
-  stop.session = stop.addressee = session_;
+  stop.session = stop.addressee = session();
   stop.source = role_;
   stop.reason = reason;
   stop.exit_code = 1;
@@ -115,10 +112,10 @@ void Participant::PublishConfiguration() {
   configuration_sent_ = now;
   configuration_t announced;
   announced.utime = clock_.Utime();
-  announced.session = session_;
+  announced.session = session();
   announced.role = role_;
-  announced.host = host_;
-  announced.pid = getpid();
+  announced.host = identity_.host;
+  announced.pid = identity_.id;
   announced.text = agreement_.own();
   bus_.Publish(channels_.Of<configuration_t>(), announced);
 }
@@ -131,11 +128,11 @@ void Participant::Announce(int8_t state, const std::string& text) {
   next_announcement_ = clock_.Now() + kAnnouncementPeriod;
   process_status_t status;
   status.utime = clock_.Utime();
-  status.session = session_;
+  status.session = session();
   status.role = role_;
-  status.host = host_;
+  status.host = identity_.host;
   status.version = HYDRO_VERSION;
-  status.pid = getpid();
+  status.pid = identity_.id;
   status.state = state;
   status.text = text;
   bus_.Publish(channels_.Of<process_status_t>(), status);
@@ -240,7 +237,7 @@ void Participant::PublishFault(const fault_t& fault) {
   fault_t message = fault;
   message.utime = clock_.Utime();
   message.tick = tick_;
-  message.session = session_;
+  message.session = session();
   message.sequence = fault_sequence_++;
   bus_.Publish(channels_.Of<fault_t>(), message);
   PublishActiveFaults();
@@ -262,8 +259,8 @@ void Participant::RequestStop(const std::string& reason, int exit_code, const st
   stop_t stop;
   stop.utime = clock_.Utime();
   stop.tick = tick_;
-  stop.session = session_;
-  stop.addressee = run_ != 0 ? run_ : session_;
+  stop.session = session();
+  stop.addressee = run_ != 0 ? run_ : session();
   stop.source = source.empty() ? role_ : source;
   stop.reason = reason;
   stop.exit_code = exit_code;

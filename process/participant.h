@@ -35,7 +35,8 @@ class Participant {
               const std::string& agreed = "");
 
   const std::string& role() const { return role_; }
-  int64_t session() const { return session_; }
+  int64_t session() const { return identity_.session; }
+  const std::string& host() const { return identity_.host; }
 
   // Announces a new state of this process (process_status_t::READY ...). Poll() repeats READY ten times a
   // second, so that processes may start in any order; RUNNING is repeated when a restarted plant or a launcher
@@ -100,7 +101,7 @@ class Participant {
   int Leave(const std::string& failure = "");
 
   timing::LoopStatistics& statistics() { return statistics_; }
-  bus::Bus& bus() { return bus_; }
+  bus::Bus& bus() const { return bus_; }
   const bus::Clock& clock() const { return clock_; }
   const bus::Channels& channels() const { return channels_; }
 
@@ -119,8 +120,7 @@ class Participant {
   bus::Clock& clock_;
   bus::Channels channels_;
   std::string role_;
-  std::string host_;
-  int64_t session_;
+  bus::HostedProcess identity_;
   int8_t state_ = 0;
   std::string status_text_;
   int64_t run_ = 0;

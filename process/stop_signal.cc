@@ -42,4 +42,9 @@ std::string StopReason() {
   return stop_reason;
 }
 
+int StopSignal(const bus::Bus& bus) {
+  const bus::HostedProcess* const hosted = bus.process();
+  return hosted != nullptr ? hosted->stop_signal : caught_signal;
+}
+
 }  // namespace hydro::process

@@ -3,6 +3,8 @@
 
 #include <string>
 
+#include "bus/bus.h"
+
 namespace hydro::process {
 
 // From now on SIGINT, SIGTERM and SIGHUP set the flag instead of ending the process, and interrupt a waiting
@@ -11,6 +13,9 @@ void CatchStopSignals();
 
 // The caught signal; 0 when there was none.
 int StopSignal();
+
+// The same for the process that `bus` belongs to, which may be a simulated one.
+int StopSignal(const bus::Bus& bus);
 
 // Sets the flag as SIGTERM does, for a reason that is told with the end of the run. Any thread may call it.
 void StopBecause(const std::string& reason);

@@ -27,8 +27,8 @@ int64_t NowUtime() {
 
 }  // namespace
 
-Authenticator::Authenticator(const BusKey& key, std::vector<std::string> channels)
-    : key_(key), channels_(std::move(channels)), session_(RandomSession()) {
+Authenticator::Authenticator(const BusKey& key, std::vector<std::string> channels, int64_t session)
+    : key_(key), channels_(std::move(channels)), session_(session) {
   if (channels_.empty() || channels_.size() > kMostChannels) {
     throw std::invalid_argument("an authenticator takes 1 to 16 channels");
   }

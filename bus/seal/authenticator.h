@@ -26,6 +26,7 @@
 #include "bus/bus.h"
 #include "bus/channels.h"
 #include "bus/seal/bus_key.h"
+#include "bus/session.h"
 
 namespace hydro::bus {
 
@@ -50,7 +51,8 @@ class Authenticator {
   };
 
   // `channels`: the authenticated ones, at most 16, that of the introductions first.
-  Authenticator(const BusKey& key, std::vector<std::string> channels);
+  // `session`: of this process's bus; only a simulation gives it one that is not fresh.
+  Authenticator(const BusKey& key, std::vector<std::string> channels, int64_t session = RandomSession());
 
   const std::string& introduction_channel() const { return channels_.front(); }
   int64_t session() const { return session_; }

@@ -1,0 +1,16 @@
+// What a process is called and told where many simulated ones share one real process (torture/).
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+namespace hydro::bus {
+
+struct HostedProcess {
+  std::string host;
+  int32_t id = 0;       // its process id
+  int64_t session = 0;  // its identity on the bus; never 0
+  int stop_signal = 0;  // SIGINT, SIGTERM or SIGHUP, once it has been sent one
+};
+
+}  // namespace hydro::bus

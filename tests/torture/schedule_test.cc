@@ -1,0 +1,63 @@
+#include "torture/schedule.h"
+
+#include <gtest/gtest.h>
+
+#include "base/input_error.h"
+
+namespace hydro::torture {
+namespace {
+
+TEST(ScheduleTest, ReadsWhatItWrites) {
+  for (uint64_t seed = 1; seed <= 1000; ++seed) {
+    const std::string text = ScheduleText(DrawSchedule(seed));
+    EXPECT_EQ(ScheduleText(ReadSchedule("a.torture", text)), text);
+  }
+}
+
+TEST(ScheduleTest, DrawsTheSameFromTheSameSeed) {
+  EXPECT_EQ(ScheduleText(DrawSchedule(5)), ScheduleText(DrawSchedule(5)));
+  EXPECT_NE(ScheduleText(DrawSchedule(5)), ScheduleText(DrawSchedule(6)));
+}
+
+// Tests that what is drawn keeps to the table of kinds, and that all faults have ended when they should have.
+TEST(ScheduleTest, DrawsWithinTheTable) {
+  for (uint64_t seed = 1; seed <= 1000; ++seed) {
+    const Schedule schedule = DrawSchedule(seed);
+    for (const Injection& injection : schedule.injections) {
+      const FaultKindInfo& info = InfoOf(injection.kind);
+      EXPECT_EQ(info.kind, injection.kind);
+      EXPECT_GE(injection.duration_s, info.shortest_s - 1e-6);
+      EXPECT_LE(injection.duration_s, info.longest_s + 1e-6);
+      EXPECT_GE(injection.amount, info.least - 1e-6);
+      EXPECT_LE(injection.amount, info.most + 1e-6);
+      EXPECT_GE(injection.at_s, 0.3);
+      EXPECT_LE(injection.at_s + injection.duration_s, schedule.faults_until_s + 1e-6);
+      EXPECT_NE(info.targets.find(TargetName(injection.target)), std::string_view::npos) << info.name;
+    }
+  }
+}
+
+std::string ErrorOf(const std::string& text) {
+  try {
+    ReadSchedule("a.torture", text);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "none";
+}
+
+TEST(ScheduleTest, NamesWhatIsWrong) {
+  EXPECT_EQ(ErrorOf(""), "a.torture: is empty, allowed is a schedule that begins with hydro-torture 1");
+  EXPECT_EQ(ErrorOf("x"), "a.torture:1: found 'x', allowed is hydro-torture 1");
+  EXPECT_EQ(ErrorOf("hydro-torture 1\n0.5 los target=all for=1 amount=1 seed=1"),
+            "a.torture:2: found 'los', allowed is a kind of fault (hydro-torture --list)");
+  EXPECT_EQ(ErrorOf("hydro-torture 1\n0.5 loss target=me for=1 amount=1 seed=1"),
+            "a.torture:2: found 'me', allowed is target=all or the name of a role");
+  EXPECT_EQ(ErrorOf("hydro-torture 1\n-1 loss target=all for=1 amount=1 seed=1"),
+            "a.torture:2: found '-1', allowed is a time in s from 0 to 1e6");
+  EXPECT_EQ(ErrorOf("hydro-torture 1\n0.5 loss target=all for=x amount=1 seed=1"),
+            "a.torture:2: found 'x', allowed is for=NUMBER");
+}
+
+}  // namespace
+}  // namespace hydro::torture

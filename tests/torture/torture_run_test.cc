@@ -1,0 +1,98 @@
+// Whole runs of the simulator.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <set>
+
+#include "base/text_file.h"
+#include "torture/active_fault.h"
+#include "torture/run_schedule.h"
+
+namespace hydro::torture {
+namespace {
+
+std::string Described(const RunOutcome& outcome) {
+  std::string text;
+  for (const Violation& violation : outcome.violations) {
+    text += violation.invariant + ": " + violation.text + "\n";
+  }
+  return text;
+}
+
+// Tests that a run depends on nothing but its schedule, bit by bit.
+TEST(TortureRunTest, SameSeedSameTrace) {
+  std::set<uint64_t> traces;
+  for (uint64_t seed = 1; seed <= 12; ++seed) {
+    const Schedule schedule = DrawSchedule(seed);
+    const uint64_t first = RunSchedule(schedule, "").trace;
+    EXPECT_EQ(first, RunSchedule(schedule, "").trace) << seed;
+    EXPECT_EQ(first, RunSchedule(ReadSchedule("text", ScheduleText(schedule)), "").trace) << seed;
+    traces.insert(first);
+  }
+  EXPECT_EQ(traces.size(), 12u);
+}
+
+// Tests that without faults a stack moves its arm, in every mode, and none of its processes complains.
+TEST(TortureRunTest, WithoutFaultsAllIsWell) {
+  for (const bool lockstep : {false, true}) {
+    for (const bool explicit_rearm : {false, true}) {
+      Schedule schedule;
+      schedule.lockstep = lockstep;
+      schedule.explicit_rearm = explicit_rearm;
+      schedule.faults_until_s = 1;
+      const RunOutcome outcome = RunSchedule(schedule, "");
+      EXPECT_EQ(Described(outcome), "");
+      EXPECT_TRUE(outcome.coverage.codes.empty()) << outcome.coverage.codes.begin()->first;
+      EXPECT_GT(outcome.coverage.ticks, 5000);
+    }
+  }
+}
+
+// Tests that each kind of fault that has a name of its own is noticed under it.
+TEST(TortureRunTest, FaultsAreNoticed) {
+  const std::pair<Injection, const char*> cases[] = {
+      {{1, FaultKind::kHang, 1, 0.5, 0, 1}, "stale_motor_command"},
+      {{1, FaultKind::kHang, 0, 0.5, 0, 1}, "late_plant"},
+      {{1, FaultKind::kLauncherHang, 0, 1.5, 0, 1}, "supervisor_gone"},
+      {{1, FaultKind::kPartition, 2, 0.5, 0, 1}, "stale_pressure_command"},
+      {{1, FaultKind::kPartition, 0, 0.5, 0, 1}, "stale_state"},
+      {{1, FaultKind::kSensorNan, 0, 0.1, 0, 1}, "nonfinite_state"},
+      {{1, FaultKind::kSensorNan, 0, 0.1, 4, 1}, "nonfinite_arm_angle"},
+      {{1, FaultKind::kSensorSaturate, 0, 0.1, 0, 1}, "pressure_limit"},
+      {{1, FaultKind::kSecondSender, -1, 0.1, 2, 1}, "second_motor_command_sender"},
+      {{1, FaultKind::kSecondPlant, -1, 0.5, 0, 1}, "other_stack"},
+      {{1, FaultKind::kSuspend, 0, 0.5, 0, 1}, "machine_suspended"},
+      {{1, FaultKind::kNonfiniteCommand, -1, 0, 0, 1}, "nonfinite_motor_command"},
+      {{1, FaultKind::kExcessiveCommand, -1, 0, 50, 1}, "excessive_motor_command"},
+      {{1, FaultKind::kHugeTick, -1, 0, 20, 1}, "future_motor_command"},
+      {{1, FaultKind::kRepeat, 1, 0.5, 0.002, 1}, "repeated_motor_command"},
+      {{1, FaultKind::kChange, -1, 0.5, 0.5, 1}, "undecodable_message"},
+  };
+  for (const auto& [injection, code] : cases) {
+    Schedule schedule;
+    schedule.faults_until_s = 2.5;
+    schedule.injections = {injection};
+    const RunOutcome outcome = RunSchedule(schedule, "");
+    EXPECT_TRUE(outcome.coverage.codes.contains(code)) << code;
+    EXPECT_EQ(Described(outcome), "") << code;
+  }
+}
+
+// Tests that what was found once is not found again. A script with a line "# open" still fails.
+TEST(TortureRunTest, FoundSchedulesHold) {
+  int scripts = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(HYDRO_FOUND_FOLDER)) {
+    const std::string text = ReadTextFile(entry.path());
+    const RunOutcome outcome = RunSchedule(ReadSchedule(entry.path(), text), "");
+    ++scripts;
+    if (text.find("\n# open") == std::string::npos) {
+      EXPECT_EQ(Described(outcome), "") << entry.path();
+    } else {
+      EXPECT_NE(Described(outcome), "") << entry.path() << " holds now: take its '# open' away";
+    }
+  }
+  EXPECT_GT(scripts, 0);
+}
+
+}  // namespace
+}  // namespace hydro::torture

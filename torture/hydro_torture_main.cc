@@ -1,0 +1,12 @@
+// hydro-torture: the whole stack in simulation, under faults drawn from a seed.
+#include "settings/command_line.h"
+#include "torture/torture_command.h"
+
+int main(int argc, char** argv) {
+  hydro::settings::CommandLine line("hydro-torture",
+                                    "The whole stack in simulation, under faults drawn from a seed.");
+  hydro::torture::TortureOptions options;
+  hydro::torture::AddOptions(&line, &options);
+  if (const auto code = line.Parse(argc, argv)) return *code;
+  return hydro::settings::RunProgram("hydro-torture", [&] { return hydro::torture::Run(options); });
+}

@@ -1,0 +1,89 @@
+// The injected faults that send messages: the operator's requests, another stack on the network, and somebody
+// who has listened and sends what no process of the stack would.
+#include <cmath>
+#include <limits>
+
+#include "torture/active_fault.h"
+
+namespace hydro::torture {
+
+// A second launch ends its own run, whose plant this stack has never heard.
+void ActiveFault::SendForeignStop() {
+  stop_t stop{};
+  stop.tick = -1;
+  stop.session = static_cast<int64_t>(random_.Next() >> 1) + 1;
+  stop.addressee = static_cast<int64_t>(random_.Next() >> 1) + 1;
+  stop.source = "launch";
+  stop.reason = "hydro-plant has ended with exit code 1";
+  stop.exit_code = 1;
+  world_.Forge(stop);
+}
+
+void ActiveFault::SendSecondPlant() {
+  const auto session = static_cast<int64_t>(injection_.seed) + 77;
+  if (sent_ == 0) {
+    run_description_t run{};
+    run.session = session;
+    run.program = "hydro-plant";
+    run.host = "elsewhere";
+    world_.Forge(run);
+  }
+  state_t state{};
+  state.tick = sent_;
+  state.session = session;
+  state.sequence = sent_++;
+  state.p1 = state.p2 = 100;
+  world_.Forge(state);
+}
+
+void ActiveFault::SendSecondSender() {
+  motor_command_t command{};
+  const PlantRecord* plant = world_.observer().newest_plant();
+  command.tick = plant != nullptr ? plant->tick : 0;
+  command.session = static_cast<int64_t>(injection_.seed) + 99;
+  command.sequence = sent_++;
+  command.voltage = injection_.amount;
+  world_.Forge(command);
+}
+
+void ActiveFault::SendReplay() {
+  const auto before = world_.now() - static_cast<TrueTime>(injection_.amount * 1e9);
+  if (const Packet* packet = world_.RecordedCommand(before)) world_.ForgeAgain(*packet);
+}
+
+void ActiveFault::SendFlood() {
+  process_status_t status{};
+  status.session = static_cast<int64_t>(random_.Next() >> 1);
+  status.role = random_.Chance(0.5) ? "pressure_ctrl" : "logger";
+  status.host = "elsewhere";
+  status.state = process_status_t::READY;
+  status.text = std::string(random_.Index(200), 'x');
+  world_.Forge(status);
+}
+
+void ActiveFault::SendChangedCommand() {
+  const Packet* const packet = world_.RecordedCommand(world_.now());
+  motor_command_t command;
+  if (packet == nullptr || !bus::TypeOf<motor_command_t>().decode_into(
+                               &command, packet->bytes.data(), static_cast<int>(packet->bytes.size()))) {
+    return;
+  }
+  ++command.sequence;
+  switch (injection_.kind) {
+    case FaultKind::kHugeSequence:
+      command.sequence = int64_t{1} << std::lround(injection_.amount);
+      break;
+    case FaultKind::kHugeTick:
+      command.tick += int64_t{1} << std::lround(injection_.amount);
+      break;
+    case FaultKind::kNonfiniteCommand:
+      command.voltage = std::numeric_limits<double>::quiet_NaN();
+      break;
+    default:
+      command.voltage = injection_.amount;
+      break;
+  }
+  world_.Forge(command, Origin::kChanged);
+}
+
+}  // namespace hydro::torture

@@ -1,0 +1,189 @@
+#include "torture/observer.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "bus/messages.h"
+#include "process/fault_codes.h"
+#include "torture/plant_invariants.h"
+
+namespace hydro::torture {
+namespace {
+
+int64_t Load(const Packet& packet, size_t at) {
+  uint64_t value = 0;
+  for (size_t i = 0; i < 8; ++i) value = value << 8 | packet.bytes[at + i];
+  return static_cast<int64_t>(value);
+}
+
+// Decodes a packet; false when it is not of that type.
+template <class Message>
+bool Decode(const Packet& packet, Message* message) {
+  return bus::TypeOf<Message>().decode_into(message, packet.bytes.data(),
+                                            static_cast<int>(packet.bytes.size()));
+}
+
+}  // namespace
+
+Observer::Observer(const settings::StackConfig& config, Network& network, const TrueTime* now,
+                   Coverage& coverage)
+    : config_(config),
+      network_(network),
+      now_(now),
+      coverage_(coverage),
+      state_(network.ChannelNumber(bus::Channels(config.bus.channel_suffix).Of<state_t>())),
+      command_(network.ChannelNumber(bus::Channels(config.bus.channel_suffix).Of<motor_command_t>())),
+      fault_(network.ChannelNumber(bus::Channels(config.bus.channel_suffix).Of<fault_t>())),
+      stop_(network.ChannelNumber(bus::Channels(config.bus.channel_suffix).Of<stop_t>())),
+      rearm_(network.ChannelNumber(bus::Channels(config.bus.channel_suffix).Of<rearm_t>())),
+      configuration_(network.ChannelNumber(bus::Channels(config.bus.channel_suffix).Of<configuration_t>())),
+      run_(network.ChannelNumber(bus::Channels(config.bus.channel_suffix).Of<run_description_t>())) {}
+
+PlantRecord& Observer::RecordOf(const SimulatedProcess& plant) {
+  const auto number = static_cast<size_t>(plant.number());
+  if (plants_.size() <= number) plants_.resize(number + 1);
+  if (!plants_[number]) {
+    plants_[number] = std::make_unique<PlantRecord>();
+    newest_plant_ = plants_[number].get();
+  }
+  return *plants_[number];
+}
+
+void Observer::Report(const std::string& invariant, const std::string& text) {
+  if (violations_.size() < 10) violations_.push_back({invariant, text, *now_});
+}
+
+void Observer::OnSent(const Packet& packet, const SimulatedProcess& sender) {
+  if (packet.channel == state_) OnState(packet, sender);
+  if (packet.channel == fault_) OnFault(packet);
+  if (packet.channel == stop_) OnStop(packet, sender);
+}
+
+// Whether it is a stop that must end this process.
+bool Observer::OnStop(const Packet& packet, const SimulatedProcess& process) {
+  stop_t stop;
+  if (packet.origin == Origin::kForged || !Decode(packet, &stop)) return false;
+  stops_[process.number()].insert(stop.exit_code == 0 ? 0 : 1);
+  return stop.addressee == 0 || stop.addressee == process.identity().session;
+}
+
+// What a log says happened is what happened.
+void Observer::OnState(const Packet& packet, const SimulatedProcess& sender) {
+  constexpr size_t kVoltage = 8 + offsetof(state_t, voltage);
+  if (sender.role() != Role::kPlant || packet.bytes.size() < kVoltage + 8) return;
+  const double driven = RecordOf(sender).voltage;
+  const auto said = std::bit_cast<double>(Load(packet, kVoltage));
+  if (said == driven) return;
+  Report("a state says what was driven",
+         fmt::format("tick {}: it says {:.17g} V, driven were {:.17g} V",
+                     Load(packet, 8 + offsetof(state_t, tick)), said, driven));
+}
+
+void Observer::OnFault(const Packet& packet) {
+  fault_t fault;
+  if (!Decode(packet, &fault)) return;
+  if (fault.active) ++coverage_.codes[fault.code];
+  const auto sender = static_cast<size_t>(packet.sender);
+  if (sender >= plants_.size() || !plants_[sender] || !process::ZeroesVoltage(fault.code)) return;
+  if (fault.active) {
+    plants_[sender]->zero_faults[fault.code] = fault.latched;
+  } else {
+    plants_[sender]->zero_faults.erase(fault.code);
+  }
+}
+
+void Observer::OnHandled(const Packet& packet, const SimulatedProcess& receiver) {
+  if (sealed_ && (packet.origin == Origin::kForged || packet.origin == Origin::kChanged)) {
+    Report("with a key nothing forged or changed is handled",
+           fmt::format("{} has handled such a message on {}", TargetName(static_cast<int>(receiver.role())),
+                       network_.ChannelName(packet.channel)));
+  }
+  if (packet.channel == state_) return;
+  if (packet.channel == stop_ && !OnStop(packet, receiver)) return;
+  // Its plant seems to be misconfigured: it leaves.
+  if (packet.channel == configuration_ && packet.origin == Origin::kChanged)
+    stops_[receiver.number()].insert(1);
+  if (receiver.role() != Role::kPlant) return;
+  PlantRecord& plant = RecordOf(receiver);
+  if (packet.channel == command_) {
+    OnCommand(packet, plant);
+  } else if (packet.channel == stop_) {
+    if (!plant.stop_tick) plant.stop_tick = plant.tick;
+  } else if (packet.channel == rearm_) {
+    rearm_t rearm;
+    if (Decode(packet, &rearm) && rearm.kind == rearm_t::REQUEST &&
+        rearm.addressee == receiver.identity().session) {
+      plant.rearm_request = *now_;
+    }
+  } else if (packet.channel == run_ && packet.sender != receiver.number()) {
+    run_description_t run;
+    if (Decode(packet, &run) && run.session != receiver.identity().session) {
+      plant.other_plant = *now_;
+      if (!plant.other_plant_tick) plant.other_plant_tick = plant.tick;
+    }
+  }
+}
+
+void Observer::OnCommand(const Packet& packet, PlantRecord& plant) {
+  constexpr bus::NumberPlaces kPlaces = bus::PlacesOf<motor_command_t>();
+  constexpr size_t kVoltage = 8 + offsetof(motor_command_t, voltage);
+  static const int64_t kHash = motor_command_t::getHash();
+  static const auto kSize = static_cast<size_t>(motor_command_t().getEncodedSize());
+  if (packet.bytes.size() < kSize || Load(packet, 0) != kHash) return;  // undecodable
+  ReceivedCommand command;
+  command.tick = Load(packet, kPlaces.tick);
+  command.session = Load(packet, kPlaces.session);
+  command.sequence = Load(packet, kPlaces.sequence);
+  command.voltage = std::bit_cast<double>(Load(packet, kVoltage));
+  command.handled = *now_;
+  if (misconfigured_.contains(command.session)) {
+    // It is refused and counts for nothing; until that is known it may be obeyed.
+    if (command.tick >= 0) plant.At(command.tick).answers[1] = command;
+    return;
+  }
+  command.origin = packet.origin;
+  plant.Receive(command);
+}
+
+void Observer::OnRead(const SimulatedProcess& plant, int64_t tick, const model::Measurement& measured,
+                      int64_t suspended_ns) {
+  PlantInvariants(*this, RecordOf(plant)).OnRead(tick, measured, suspended_ns);
+}
+
+void Observer::OnDrive(const SimulatedProcess& plant, int64_t tick, double voltage) {
+  ++coverage_.ticks;
+  PlantInvariants(*this, RecordOf(plant)).OnDrive(tick, voltage);
+}
+
+void Observer::SetOtherConfiguration(bool present) {
+  if (!present) {
+    other_configuration_ = -1;
+  } else if (other_configuration_ < 0) {
+    other_configuration_ = *now_;
+  }
+}
+
+void Observer::OnEnd(const SimulatedProcess& process) {
+  if (process.killed() || (process.role() == Role::kOperator && process.failure().empty())) return;
+  const std::string_view name = TargetName(static_cast<int>(process.role()));
+  if (!process.failure().empty()) {
+    Report("an application throws nothing", fmt::format("{} ended with: {}", name, process.failure()));
+    return;
+  }
+  // One that finds itself misconfigured leaves alone.
+  if (process.misconfigured() && process.exit_code() == 1) return;
+  const auto stop = stops_.find(process.number());
+  const bool signalled = process.identity().stop_signal != 0;
+  if (stop == stops_.end() && !signalled) {
+    Report("a process ends only when told",
+           fmt::format("{} ended by itself with exit code {}", name, process.exit_code()));
+    return;
+  }
+  if (signalled && process.exit_code() == 0) return;
+  if (stop != stops_.end() && stop->second.contains(process.exit_code())) return;
+  Report("the exit code is that of the stop",
+         fmt::format("{} ended with exit code {}", name, process.exit_code()));
+}
+
+}  // namespace hydro::torture

@@ -1,0 +1,43 @@
+#include "torture/run_schedule.h"
+
+#include <spdlog/spdlog.h>
+
+#include <map>
+#include <tuple>
+
+#include "torture/active_fault.h"
+#include "torture/torture_config.h"
+
+namespace hydro::torture {
+namespace {
+
+// What simulated processes log goes nowhere.
+class Silence {
+ public:
+  Silence() : level_(spdlog::get_level()) { spdlog::set_level(spdlog::level::off); }
+  ~Silence() { spdlog::set_level(level_); }
+  Silence(const Silence&) = delete;
+  Silence& operator=(const Silence&) = delete;
+
+ private:
+  spdlog::level::level_enum level_;
+};
+
+}  // namespace
+
+RunOutcome RunSchedule(const Schedule& schedule, const std::string& config_file) {
+  // Reading a configuration takes as long as a second of a run.
+  using Key = std::tuple<std::string, bool, bool, double>;
+  static std::map<Key, Stacks> known;
+  const Key key(config_file, schedule.lockstep, schedule.explicit_rearm, schedule.stale_input_s);
+  auto found = known.find(key);
+  if (found == known.end()) {
+    const settings::StackConfig config = ConfigFor(schedule, config_file);
+    found = known.emplace(key, Stacks{config, OtherConfig(config)}).first;
+  }
+  const Silence silence;
+  World world(schedule, found->second);
+  return world.Run();
+}
+
+}  // namespace hydro::torture

@@ -1,0 +1,32 @@
+// What happens to a stack in one run, and when: all that a run depends on, as text that people can read and
+// `hydro-torture --replay` runs.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "torture/injection.h"
+
+namespace hydro::torture {
+
+struct Schedule {
+  uint64_t seed = 1;                  // of latencies, clocks, sessions and start times
+  bool lockstep = false;              // time.mode
+  bool key = false;                   // messages are sealed
+  bool explicit_rearm = false;        // limits.rearm
+  double stale_input_s = 0.1;         // limits.stale_input_s
+  double faults_until_s = 12;         // all faults have ended by then
+  std::vector<Injection> injections;  // by time
+};
+
+// Draws a schedule.
+Schedule DrawSchedule(uint64_t seed);
+
+// One line each for the run and for every injection.
+std::string ScheduleText(const Schedule& schedule);
+
+// Reads ScheduleText(); throws InputError that names `file` and the line.
+Schedule ReadSchedule(const std::string& file, const std::string& text);
+
+}  // namespace hydro::torture

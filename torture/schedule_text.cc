@@ -1,0 +1,127 @@
+// Schedules as text.
+#include <fmt/format.h>
+
+#include <sstream>
+
+#include "base/input_error.h"
+#include "base/number_text.h"
+#include "torture/schedule.h"
+
+namespace hydro::torture {
+namespace {
+
+constexpr std::string_view kFirstLine = "hydro-torture 1";
+
+class LineReader {
+ public:
+  LineReader(const std::string& file, int number, const std::string& line)
+      : file_(file), number_(number), line_(line), words_(line) {}
+
+  std::string Word() {
+    std::string word;
+    words_ >> word;
+    return word;
+  }
+  double Number(std::string_view key) {
+    const std::string text = Value(key);
+    const auto number = ParseNumber(text);
+    if (!number) throw Error(text, std::string(key) + "=NUMBER");
+    return *number;
+  }
+  uint64_t Seed(std::string_view key) {
+    const std::string text = Value(key);
+    try {
+      size_t used = 0;
+      const uint64_t seed = std::stoull(text, &used);
+      if (used == text.size()) return seed;
+    } catch (const std::exception&) {
+    }
+    throw Error(text, std::string(key) + "=WHOLE NUMBER");
+  }
+  std::string Value(std::string_view key) {
+    const std::string word = Word();
+    if (!word.starts_with(std::string(key) + "=")) throw Error(word, std::string(key) + "=...");
+    return word.substr(key.size() + 1);
+  }
+  InputError Error(const std::string& found, const std::string& allowed) const {
+    return InputError(fmt::format("{}:{}: found '{}', allowed is {}", file_, number_, found, allowed));
+  }
+
+ private:
+  const std::string& file_;
+  int number_;
+  std::string line_;
+  std::istringstream words_;
+};
+
+Injection ReadInjection(LineReader line, const std::string& time) {
+  Injection injection;
+  const auto at = ParseNumber(time);
+  if (!at || !(*at >= 0 && *at < 1e6)) throw line.Error(time, "a time in s from 0 to 1e6");
+  injection.at_s = *at;
+  const std::string name = line.Word();
+  bool found = false;
+  for (const FaultKindInfo& info : FaultKinds()) {
+    if (info.name != name) continue;
+    injection.kind = info.kind;
+    found = true;
+  }
+  if (!found) throw line.Error(name, "a kind of fault (hydro-torture --list)");
+  const std::string target = line.Value("target");
+  const auto number = TargetNamed(target);
+  if (!number) throw line.Error(target, "target=all or the name of a role");
+  injection.target = *number;
+  injection.duration_s = line.Number("for");
+  injection.amount = line.Number("amount");
+  injection.seed = line.Seed("seed");
+  return injection;
+}
+
+}  // namespace
+
+std::string ScheduleText(const Schedule& schedule) {
+  std::string text = fmt::format("{}\nrun mode={} rearm={} key={} stale={} until={} seed={}\n", kFirstLine,
+                                 schedule.lockstep ? "lockstep" : "realtime",
+                                 schedule.explicit_rearm ? "explicit" : "restart",
+                                 schedule.key ? "yes" : "no", ShortestNumber(schedule.stale_input_s),
+                                 ShortestNumber(schedule.faults_until_s), schedule.seed);
+  for (const Injection& injection : schedule.injections) {
+    text +=
+        fmt::format("{} {} target={} for={} amount={} seed={}\n", ShortestNumber(injection.at_s),
+                    InfoOf(injection.kind).name, TargetName(injection.target),
+                    ShortestNumber(injection.duration_s), ShortestNumber(injection.amount), injection.seed);
+  }
+  return text;
+}
+
+Schedule ReadSchedule(const std::string& file, const std::string& text) {
+  Schedule schedule;
+  std::istringstream lines(text);
+  std::string content;
+  bool first = true;
+  for (int number = 1; std::getline(lines, content); ++number) {
+    LineReader line(file, number, content);
+    if (first) {
+      if (content != kFirstLine) throw line.Error(content, std::string(kFirstLine));
+      first = false;
+      continue;
+    }
+    const std::string word = line.Word();
+    if (word.empty() || word.starts_with("#")) continue;
+    if (word != "run") {
+      schedule.injections.push_back(ReadInjection(std::move(line), word));
+      continue;
+    }
+    schedule.lockstep = line.Value("mode") == "lockstep";
+    schedule.explicit_rearm = line.Value("rearm") == "explicit";
+    schedule.key = line.Value("key") == "yes";
+    schedule.stale_input_s = line.Number("stale");
+    schedule.faults_until_s = line.Number("until");
+    schedule.seed = line.Seed("seed");
+  }
+  if (first)
+    throw InputError(file + ": is empty, allowed is a schedule that begins with " + std::string(kFirstLine));
+  return schedule;
+}
+
+}  // namespace hydro::torture

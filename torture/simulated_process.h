@@ -1,0 +1,94 @@
+// A process of the stack in the simulation: its real application on a fiber, with a bus and a machine.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "bus/hosted_process.h"
+#include "torture/fiber.h"
+#include "torture/machine.h"
+#include "torture/network_bus.h"
+
+namespace hydro::torture {
+
+inline constexpr TrueTime kNever = std::numeric_limits<TrueTime>::max() / 4;
+
+// The processes of a stack; also the numbers by which faults name their targets.
+enum class Role : int8_t { kPlant, kPressure, kPosition, kLogger, kOperator, kCount };
+
+class SimulatedProcess : public Waiter {
+ public:
+  // What a process does; returns its exit code.
+  using Body = std::function<int(bus::Bus&, bus::Clock&)>;
+
+  SimulatedProcess(int number, Role role, Machine& machine, const TrueTime* now, bus::HostedProcess identity,
+                   NetworkPort& port, Body body);
+  ~SimulatedProcess() override;
+
+  int number() const { return number_; }
+  Role role() const { return role_; }
+  Machine& machine() const { return machine_; }
+  const bus::HostedProcess& identity() const { return identity_; }
+  NetworkBus& bus() { return bus_; }
+
+  // When it wants to run next.
+  TrueTime wake() const { return wake_; }
+  // Runs it until it waits again or ends.
+  void Resume();
+
+  // A packet that it subscribes to has arrived.
+  void Arrive(PacketPtr packet);
+  // It does not run before `until`, whatever happens.
+  void FreezeUntil(TrueTime until);
+  // It runs so much later than it could, each time, from now on.
+  void SetSlowness(int64_t ns);
+  // Its machine's clock runs differently from now on.
+  void ClockChanged();
+  // SIGKILL: it ends without another message.
+  void Kill();
+  // SIGTERM and the like.
+  void Signal(int signal);
+
+  bool ended() const { return fiber_.done(); }
+  bool killed() const { return killed_; }
+  int exit_code() const { return exit_code_; }
+  const std::string& failure() const { return failure_; }  // of an exception that left the application
+  // Whether it runs with another configuration than the rest of the stack.
+  void set_misconfigured(bool misconfigured) { misconfigured_ = misconfigured; }
+  bool misconfigured() const { return misconfigured_; }
+
+  // Waiter:
+  bool WaitUntil(bus::Bus::TimePoint deadline) override;
+
+ private:
+  void RunBody();
+  void UpdateWake();
+
+  const int number_;
+  const Role role_;
+  Machine& machine_;
+  const TrueTime* now_;
+  bus::HostedProcess identity_;
+  NetworkBus bus_;
+  Body body_;
+  TrueTime deadline_;                   // of its wait
+  bus::Bus::TimePoint local_deadline_;  // the same on its own clock
+  TrueTime ready_ = kNever;
+  TrueTime frozen_until_ = 0;
+  int64_t slowness_ns_ = 0;
+  TrueTime wake_;
+  bool misconfigured_ = false;
+  bool killed_ = false;
+  bool interrupted_ = false;  // by a signal that no wait has returned for yet
+  int exit_code_ = -1;
+  std::string failure_;
+  TrueTime idle_since_ = -1;
+  int idle_turns_ = 0;  // waits at that time that were over at once
+  Fiber fiber_;
+};
+
+}  // namespace hydro::torture

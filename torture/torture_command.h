@@ -1,0 +1,31 @@
+// What the command line of hydro-torture asks for.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "settings/command_line.h"
+
+namespace hydro::torture {
+
+struct TortureOptions {
+  int64_t seed = -1;  // -1: a fresh one
+  double seconds = 60;
+  double hours = 0;  // instead of seconds, if it is not 0
+  int64_t runs = 0;  // 0: as many as there is time for
+  int jobs = 1;
+  std::string config;
+  std::string replay;
+  std::string out = "out/torture";
+  std::vector<std::string> without;
+  bool list = false;
+};
+
+void AddOptions(settings::CommandLine* line, TortureOptions* options);
+
+// Exit code: 0 every invariant held, 1 one did not. Throws InputError.
+int Run(const TortureOptions& options);
+
+}  // namespace hydro::torture

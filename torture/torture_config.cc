@@ -1,0 +1,38 @@
+#include "torture/torture_config.h"
+
+#include <fmt/format.h>
+
+#include "settings/overrides.h"
+#include "settings/toml/toml_document.h"
+#include "torture/torture_texts.h"
+
+namespace hydro::torture {
+namespace {
+
+settings::StackConfig Parsed(const std::vector<std::string>& overrides) {
+  settings::TomlNode stack = settings::ParseToml(kTortureStack, "torture.toml");
+  settings::ApplyOverrides(overrides, &stack);
+  return settings::ParseStackConfig(settings::FormatToml(stack), "torture.toml", kTortureModel,
+                                    "models/table1.toml");
+}
+
+}  // namespace
+
+settings::StackConfig ConfigFor(const Schedule& schedule, const std::string& file) {
+  const std::vector<std::string> overrides{
+      std::string("time.mode=") + (schedule.lockstep ? "lockstep" : "realtime"),
+      "time.duration_s=0",
+      std::string("limits.rearm=") + (schedule.explicit_rearm ? "explicit" : "restart"),
+      fmt::format("limits.stale_input_s={}", schedule.stale_input_s),
+  };
+  return file.empty() ? Parsed(overrides) : settings::LoadStackConfig(file, overrides);
+}
+
+settings::StackConfig OtherConfig(const settings::StackConfig& config) {
+  settings::TomlNode stack = settings::ParseToml(config.text, config.file);
+  settings::ApplyOverrides({"position.c1=3000", "limits.arm_torque_in_lbf=400"}, &stack);
+  return settings::ParseStackConfig(settings::FormatToml(stack), config.file, config.model.text,
+                                    config.model.resolved_file);
+}
+
+}  // namespace hydro::torture

@@ -1,0 +1,18 @@
+// The stacks that are tortured.
+#pragma once
+
+#include <string>
+
+#include "settings/stack_config.h"
+#include "torture/schedule.h"
+
+namespace hydro::torture {
+
+// The configuration of a schedule's stack: the shipped one, or `file` (empty: none), with the schedule's
+// modes.
+settings::StackConfig ConfigFor(const Schedule& schedule, const std::string& file);
+
+// The same stack with other gains and limits: what a process that was restarted by mistake runs.
+settings::StackConfig OtherConfig(const settings::StackConfig& config);
+
+}  // namespace hydro::torture

@@ -1,0 +1,35 @@
+// A number that stands for everything that happened in a run: two runs with the same one were the same.
+#pragma once
+
+#include <cstdint>
+#include <cstring>
+#include <vector>
+
+namespace hydro::torture {
+
+class Trace {
+ public:
+  void Add(uint64_t value) { hash_ = Mixed(hash_ ^ value); }
+  void Add(const std::vector<uint8_t>& bytes) {
+    size_t at = 0;
+    for (; at + 8 <= bytes.size(); at += 8) {
+      uint64_t word;
+      std::memcpy(&word, bytes.data() + at, 8);
+      hash_ = (hash_ ^ word) * 0x9fb21c651e98df25u;
+      hash_ ^= hash_ >> 29;
+    }
+    uint64_t rest = bytes.size();
+    for (; at < bytes.size(); ++at) rest = rest << 8 | bytes[at];
+    Add(rest);
+  }
+  uint64_t value() const { return hash_; }
+
+ private:
+  static uint64_t Mixed(uint64_t x) {
+    x = (x ^ (x >> 32)) * 0xd6e8feb86659fd93u;
+    return x ^ (x >> 32);
+  }
+  uint64_t hash_ = 0x243f6a8885a308d3u;
+};
+
+}  // namespace hydro::torture

@@ -1,0 +1,143 @@
+// A stack and everything around it, simulated: processes on machines, the network between them, and the
+// faults of a schedule. One thread, one order of events: the same schedule gives the same run, bit by bit.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "settings/stack_config.h"
+#include "torture/faulty_rig.h"
+#include "torture/network.h"
+#include "torture/observer.h"
+#include "torture/schedule.h"
+#include "torture/simulated_process.h"
+#include "torture/trace.h"
+
+namespace hydro::torture {
+
+// What is run.
+struct Stacks {
+  settings::StackConfig right;
+  settings::StackConfig other;  // what FaultKind::kOtherConfiguration starts a process with
+};
+
+// What this program has allocated.
+size_t AllocatedBytes();
+
+struct RunOutcome {
+  std::vector<Violation> violations;
+  uint64_t trace = 0;  // of everything that happened
+  Coverage coverage;
+};
+
+class World : public NetworkPort {
+ public:
+  // `stacks` must outlive it.
+  World(const Schedule& schedule, const Stacks& stacks);
+  ~World() override;
+
+  // The whole run: start, faults, return to control, end. Stops at the first violation.
+  RunOutcome Run();
+
+  // For the injector: times are true times.
+  TrueTime now() const { return now_; }
+  const settings::StackConfig& config() const { return config_; }
+  Network& network() { return network_; }
+  Observer& observer() { return observer_; }
+  std::vector<SensorFault>& sensor_faults() { return sensor_faults_; }
+  // How many injected faults stop the launcher now.
+  int& launcher_hangs() { return launcher_hangs_; }
+  Machine& MachineOf(Role role) { return *machines_[static_cast<size_t>(role)]; }
+  SimulatedProcess& process(int number) { return *by_number_[static_cast<size_t>(number)]; }
+  // The living process of a role; null: none.
+  SimulatedProcess* Find(Role role);
+  void Kill(Role role, TrueTime restart_at);
+  // From now on a role starts with the other configuration, or with the right one again.
+  void SetOtherConfiguration(Role role, bool other);
+  // Everything of a machine stands still until `until`, and its clocks count the time as suspended.
+  void Suspend(Role role, TrueTime until);
+  // A message that no process has sent, to everyone. Origin::kProcess: one that the operator may send.
+  template <class Message>
+  void Forge(const Message& message, Origin origin = Origin::kForged) {
+    ForgeBytes(channels_.Of<Message>(), bus::TypeOf<Message>(), &message, origin);
+  }
+  void ForgeAgain(const Packet& packet);
+  // The newest motor command that was sent before a time; null: none is remembered.
+  const Packet* RecordedCommand(TrueTime before) const;
+  // An operator's process asks the plant to go on, or everybody to end.
+  void SendRearm();
+  void SendStop();
+  Coverage& coverage() { return outcome_.coverage; }
+
+  // NetworkPort:
+  int ChannelNumber(const std::string& name) override { return network_.ChannelNumber(name); }
+  const std::string& ChannelName(int channel) const override { return network_.ChannelName(channel); }
+  PacketPtr NewPacket() override { return network_.NewPacket(); }
+  void Send(PacketPtr packet, int sender) override;
+  void Handled(const Packet& packet, int receiver) override;
+
+ private:
+  enum class Happening : uint8_t { kArrival, kBegin, kContinue, kEnd, kStart, kAwake, kPhase };
+  struct Event {
+    TrueTime time;
+    uint64_t order;
+    Happening what;
+    int number;  // receiver, injection, role
+    PacketPtr packet;
+  };
+
+  void Push(TrueTime time, Happening what, int number, PacketPtr packet = nullptr);
+  static bool Later(const Event& a, const Event& b);
+  void Step();
+  void Happen(const Event& event);
+  void Arrive(const PacketPtr& packet, int receiver);
+  void Start(Role role);
+  void Begin(Role role, SimulatedProcess::Body body, bool misconfigured);
+  void StartAt(Role role, TrueTime time);
+  void Awake(Role role);
+  void NoteConfigurations();
+  void Reap(SimulatedProcess& process);
+  void EnterPhase(int phase);
+  void CheckReturned();
+  void CheckEnded();
+  void ForgeBytes(const std::string& channel, const bus::MessageType& type, const void* message,
+                  Origin origin);
+
+  const Schedule schedule_;
+  const settings::StackConfig& config_;
+  const settings::StackConfig& other_config_;
+  const bus::Channels channels_;
+  TrueTime now_ = 0;
+  RunOutcome outcome_;
+  Trace trace_;
+  Network network_;
+  Observer observer_;
+  Random random_;
+  std::vector<std::unique_ptr<Machine>> machines_;  // by role
+  std::vector<std::unique_ptr<SimulatedProcess>> processes_;
+  std::vector<SimulatedProcess*> by_number_;
+  std::vector<SimulatedProcess*> alive_;
+  std::vector<Network::Receiver> receivers_;
+  // By role:
+  std::array<bool, static_cast<size_t>(Role::kCount)> other_configuration_{};
+  std::array<TrueTime, static_cast<size_t>(Role::kCount)> start_at_{};  // when it is started next
+  std::array<TrueTime, static_cast<size_t>(Role::kCount)> awake_at_{};  // when its machine wakes up
+  std::array<TrueTime, static_cast<size_t>(Role::kCount)> asleep_since_{};
+  std::vector<SensorFault> sensor_faults_;
+  std::vector<std::unique_ptr<class ActiveFault>> active_;  // by injection
+  std::vector<Event> events_;                               // a heap
+  int launcher_hangs_ = 0;
+  uint64_t order_ = 0;
+  std::deque<PacketPtr> recorded_;  // the newest motor commands
+  int command_channel_ = -1;
+  const size_t allocated_ = AllocatedBytes();  // at the start
+  bool ending_ = false;
+  bool over_ = false;
+};
+
+}  // namespace hydro::torture

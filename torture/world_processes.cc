@@ -1,0 +1,144 @@
+// The World's processes: their start, their death, the sleep of their machines, and what is sent in nobody's
+// name.
+#include <algorithm>
+
+#include "bus/seal/authenticated_channels.h"
+#include "torture/active_fault.h"
+#include "torture/programs.h"
+#include "torture/world.h"
+
+namespace hydro::torture {
+namespace {
+
+constexpr TrueTime kRestart = 300'000'000;  // ns: how soon whoever watches a process starts it again
+
+}  // namespace
+
+SimulatedProcess* World::Find(Role role) {
+  const auto found = std::find_if(alive_.begin(), alive_.end(), [&](const SimulatedProcess* process) {
+    return process->role() == role && !process->ended() && !process->killed();
+  });
+  return found == alive_.end() ? nullptr : *found;
+}
+
+void World::Start(Role role) {
+  const auto index = static_cast<size_t>(role);
+  if (ending_ || Find(role) != nullptr || start_at_[index] > now_) return;
+  if (awake_at_[index] > now_) {
+    StartAt(role, awake_at_[index]);
+    return;
+  }
+  const bool other = other_configuration_[index];
+  Begin(role, ProgramOf(role, other ? other_config_ : config_, *this, static_cast<int>(by_number_.size())),
+        other);
+}
+
+void World::Begin(Role role, SimulatedProcess::Body body, bool misconfigured) {
+  const int number = static_cast<int>(by_number_.size());
+  Random draw(schedule_.seed, 1000 + static_cast<uint64_t>(number));
+  bus::HostedProcess identity;
+  identity.host = MachineOf(role).name();
+  identity.id = 1000 + number;
+  identity.session = static_cast<int64_t>(draw.Next() | 1);
+  by_number_.push_back(nullptr);
+  processes_.push_back(std::make_unique<SimulatedProcess>(number, role, MachineOf(role), &now_, identity,
+                                                          *this, std::move(body)));
+  SimulatedProcess* const process = processes_.back().get();
+  if (schedule_.key) {
+    static const bus::BusKey kKey({1, 2, 3, 4, 5, 6, 7, 8});
+    process->bus().UseKey(std::make_unique<bus::Authenticator>(kKey, bus::AuthenticatedChannels(channels_),
+                                                               static_cast<int64_t>(draw.Next() | 1)));
+  }
+  process->set_misconfigured(misconfigured);
+  if (misconfigured) observer_.AddMisconfigured(identity.session);
+  by_number_.back() = process;
+  alive_.push_back(process);
+  receivers_.push_back({number, static_cast<int>(role)});
+  NoteConfigurations();
+}
+
+void World::StartAt(Role role, TrueTime time) {
+  start_at_[static_cast<size_t>(role)] = time;
+  Push(time, Happening::kStart, static_cast<int>(role));
+}
+
+void World::NoteConfigurations() {
+  const bool other = std::any_of(alive_.begin(), alive_.end(),
+                                 [](const SimulatedProcess* process) { return process->misconfigured(); });
+  observer_.SetOtherConfiguration(other);
+}
+
+void World::Reap(SimulatedProcess& process) {
+  trace_.Add(static_cast<uint64_t>(process.exit_code()) << 32 | static_cast<uint64_t>(process.number()));
+  std::erase(alive_, &process);
+  std::erase_if(receivers_, [&](const Network::Receiver& r) { return r.number == process.number(); });
+  NoteConfigurations();
+  observer_.OnEnd(process);
+  if (!ending_ && !process.killed() && process.role() != Role::kOperator)
+    StartAt(process.role(), now_ + kRestart);
+}
+
+void World::Kill(Role role, TrueTime restart_at) {
+  if (SimulatedProcess* const process = Find(role)) {
+    process->Kill();
+    process->Resume();
+    Reap(*process);
+  }
+  StartAt(role, restart_at);
+}
+
+void World::SetOtherConfiguration(Role role, bool other) {
+  other_configuration_[static_cast<size_t>(role)] = other;
+}
+
+void World::Suspend(Role role, TrueTime until) {
+  TrueTime& awake_at = awake_at_[static_cast<size_t>(role)];
+  if (awake_at > now_) return;  // asleep already
+  awake_at = until;
+  asleep_since_[static_cast<size_t>(role)] = now_;
+  if (SimulatedProcess* process = Find(role)) process->FreezeUntil(until);
+  Push(until, Happening::kAwake, static_cast<int>(role));
+}
+
+void World::Awake(Role role) {
+  MachineOf(role).Slept(now_ - asleep_since_[static_cast<size_t>(role)]);
+  if (SimulatedProcess* process = Find(role)) process->ClockChanged();
+}
+
+void World::ForgeBytes(const std::string& channel, const bus::MessageType& type, const void* message,
+                       Origin origin) {
+  PacketPtr packet = network_.NewPacket();
+  const int size = type.encoded_size(message);
+  packet->bytes.resize(static_cast<size_t>(size));
+  type.encode(message, packet->bytes.data(), size);
+  packet->channel = network_.ChannelNumber(channel);
+  packet->sender = -1;
+  packet->origin = origin;
+  trace_.Add(packet->bytes);
+  network_.Send(packet, -1, receivers_);
+}
+
+void World::ForgeAgain(const Packet& packet) {
+  PacketPtr copy = network_.NewPacket();
+  copy->bytes = packet.bytes;
+  copy->channel = packet.channel;
+  copy->sender = -1;
+  copy->origin = packet.origin == Origin::kProcess ? Origin::kRepeated : packet.origin;
+  network_.Send(copy, -1, receivers_);
+}
+
+const Packet* World::RecordedCommand(TrueTime before) const {
+  const auto found = std::find_if(recorded_.rbegin(), recorded_.rend(),
+                                  [&](const PacketPtr& packet) { return packet->sent <= before; });
+  return found == recorded_.rend() ? nullptr : found->get();
+}
+
+void World::SendRearm() {
+  const SimulatedProcess* const plant = Find(Role::kPlant);
+  if (plant == nullptr) return;
+  Begin(Role::kOperator, RearmProgram(config_, plant->identity().session), false);
+}
+
+void World::SendStop() { Begin(Role::kOperator, StopProgram(config_), false); }
+
+}  // namespace hydro::torture
