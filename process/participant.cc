@@ -248,7 +248,7 @@ void Participant::PublishActiveFaults() {
   next_active_faults_ = clock_.Now() + kActiveFaultsPeriod;
   active_faults_t message;
   message.utime = clock_.Utime();
-  message.session = session_;
+  message.session = session();
   message.role = role_;
   for (const auto& [code, fault] : active_) message.codes += (message.codes.empty() ? "" : " ") + code;
   bus_.Publish(channels_.Of<active_faults_t>(), message);
