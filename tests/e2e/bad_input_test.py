@@ -1,6 +1,7 @@
 """Bad input to the real programs: exit code 2, one line on stderr that names the place, and no output file."""
 
 import os
+import shutil
 import subprocess
 
 import event_log
@@ -248,6 +249,45 @@ class BadInputTest(stack.TestCase):
                 self.assertEqual(process.returncode, code, process.stderr)
                 self.assertIn("CONTRIBUTING.md", process.stdout)
                 self.assertEqual(process.stderr.count("\n"), code // 2)
+
+
+
+class InputsStayTest(stack.TestCase):
+    """No program writes over what it reads, by whatever path it is named."""
+
+    def test_inputs_stay(self):
+        folder = self.path("inputs")
+        shutil.copytree(os.path.dirname(stack.config("demo.toml")), folder)
+        with open(os.path.join(folder, "reference.csv"), "w", encoding="utf-8") as file:
+            file.write("time_s,arm_ref_rad\n0,0\n1,0.1\n")
+        config = os.path.join(folder, "demo.toml")
+        with open(config, encoding="utf-8") as file:
+            text = file.read()
+        begin, end = text.index("[reference]"), text.index("[limits]")
+        reference = '[reference]\nsignal = "arm_angle"\nkind = "csv"\nfile = "reference.csv"\ncolumn = "arm_ref_rad"\n\n'
+        with open(config, "w", encoding="utf-8") as file:
+            file.write(text[:begin] + reference + text[end:])
+        os.symlink(config, os.path.join(folder, "link.toml"))
+        os.link(os.path.join(folder, "models", "table1.toml"), os.path.join(folder, "hard.toml"))
+        before = self.contents(folder)
+        for name in ("demo.toml", "link.toml", "reference.csv", "models/table1.toml", "hard.toml"):
+            target = os.path.join(folder, name)
+            for program, options in CONFIG_PROGRAMS.items():
+                if program == "hydro-driver":
+                    continue  # it wants a board first
+                arguments = [target if option == "FILE" else option for option in options]
+                refused = self.run_program(program, config, "--set", f"bus.url={self.url}", *arguments, expect=2)
+                self.assertRegex(refused.stderr, "found the name of a file that is read", refused.report())
+        self.assertEqual(self.contents(folder), before)
+
+    @staticmethod
+    def contents(folder):
+        found = {}
+        for place, _, names in os.walk(folder):
+            for name in names:
+                with open(os.path.join(place, name), "rb") as file:
+                    found[os.path.join(place, name)] = file.read()
+        return found
 
 
 if __name__ == "__main__":
