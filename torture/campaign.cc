@@ -88,6 +88,7 @@ CampaignResult RunCampaign(const CampaignOptions& options) {
   const auto start = Clock::now();
   WorkerState* const states = SharedStates(options.jobs);
   std::vector<Child> children;
+  children.reserve(static_cast<size_t>(options.jobs));
   for (int i = 0; i < options.jobs; ++i) children.push_back(StartWorker(options, i, &states[i]));
   CampaignResult result;
   for (int i = 0; i < options.jobs; ++i) {

@@ -93,7 +93,7 @@ int Network::BeginFault(LinkFault fault) {
   if (faults_.empty()) {
     for (size_t sender = 0; sender < newest_.size(); ++sender) newest_of_[sender].fill(newest_[sender]);
   }
-  faults_.emplace_back(next_fault_, std::move(fault));
+  faults_.emplace_back(next_fault_, fault);
   return next_fault_++;
 }
 
