@@ -103,8 +103,15 @@ NewFile::NewFile(const std::string& file, Opening opening) : name_(file), path_(
 
 NewFile::~NewFile() {
   if (descriptor_ < 0) return;
+  if (path_ != name_ && IsStillOurs()) unlink(path_.c_str());
   close(descriptor_);
-  if (path_ != name_) unlink(path_.c_str());
+}
+
+// Whether the temporary name still leads to the file that was written: somebody may have moved it and put another there.
+bool NewFile::IsStillOurs() const {
+  struct stat ours, there;
+  return fstat(descriptor_, &ours) == 0 && lstat(path_.c_str(), &there) == 0 && ours.st_dev == there.st_dev &&
+         ours.st_ino == there.st_ino;
 }
 
 size_t NewFile::WriteSome(const void* data, size_t size) {
@@ -134,9 +141,14 @@ bool NewFile::TakeBack(size_t size) {
 
 void NewFile::Finish() {
   if (descriptor_ < 0) return;
+  const bool ours = path_ == name_ || IsStillOurs();
   const int result = close(descriptor_);
   const int error = errno;
   descriptor_ = -1;
+  if (!ours) {
+    throw WriteError(name_ + ": cannot be written: " + path_ +
+                     " was moved or replaced while it was being written");
+  }
   if (result != 0) {
     if (path_ != name_) unlink(path_.c_str());
     ThrowWriteError(name_, error);

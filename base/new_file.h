@@ -51,6 +51,8 @@ class NewFile {
   const std::string& path() const { return path_; }  // where the bytes are until Finish()
 
  private:
+  bool IsStillOurs() const;
+
   std::string name_;
   std::string path_;
   int descriptor_ = -1;

@@ -2,6 +2,7 @@
 
 #include <poll.h>
 #include <sys/socket.h>
+#include <sys/stat.h>
 #include <sys/un.h>
 #include <unistd.h>
 
@@ -34,11 +35,23 @@ int Connect(const std::string& name) {
   if (name.size() + 1 > sizeof address.sun_path) return -1;
   std::memcpy(address.sun_path + 1, name.data(), name.size());
   const auto size = static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + 1 + name.size());
-  const int fd = socket(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0);
+  // Never waits: whoever listens may be stopped, or a stranger who means harm.
+  const int fd = socket(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
   if (fd < 0) return -1;
   if (connect(fd, reinterpret_cast<const sockaddr*>(&address), size) == 0) return fd;
   close(fd);
   return -1;
+}
+
+// Whether that is a process of this user (or, for root, of anybody) whose program is one of this project's.
+bool IsOurs(int pid) {
+  const std::string folder = "/proc/" + std::to_string(pid);
+  struct stat status;
+  if (pid <= 0 || stat(folder.c_str(), &status) != 0) return false;
+  if (geteuid() != 0 && status.st_uid != geteuid()) return false;
+  std::string name;
+  std::ifstream(folder + "/comm") >> name;
+  return name.starts_with("hydro-");
 }
 
 // The names of all stop sockets of that stack: the kernel lists them with an @ for the leading zero.
@@ -64,17 +77,21 @@ LocalStop::LocalStop(const settings::StackConfig& config) {
     Process process;
     process.role = rest.substr(0, slash);
     process.pid = std::atoi(rest.c_str() + slash + 1);
+    if (!IsOurs(process.pid)) continue;  // anybody may listen under such a name
     process.connection = Connect(name);
-    if (process.connection >= 0) processes_.push_back(process);
+    process.deaf = process.connection < 0;
+    processes_.push_back(process);
   }
 }
 
 LocalStop::~LocalStop() {
-  for (const Process& process : processes_) close(process.connection);
+  for (const Process& process : processes_) {
+    if (process.connection >= 0) close(process.connection);
+  }
 }
 
 void LocalStop::Ask(Process& process) {
-  if (process.asked) return;
+  if (process.asked || process.deaf) return;
   process.asked = true;
   send(process.connection, kRequest, sizeof kRequest - 1, MSG_NOSIGNAL);
   pollfd waiting{process.connection, POLLIN, 0};
@@ -95,7 +112,10 @@ void LocalStop::StopMotor() {
 bool LocalStop::AllEnded(bool with_loggers) {
   bool all = true;
   for (Process& process : processes_) {
-    if (process.ended || process.refused || (!with_loggers && process.role == "logger")) continue;
+    if (process.deaf) process.ended = kill(process.pid, 0) != 0 && errno == ESRCH;
+    if (process.deaf && !process.ended) all = false;
+    if (process.ended || process.refused || process.deaf || (!with_loggers && process.role == "logger"))
+      continue;
     pollfd waiting{process.connection, POLLIN, 0};
     char answer[8];
     process.ended =
@@ -110,7 +130,8 @@ void LocalStop::AwaitEnd(bool with_loggers, Duration patience) {
   while (!AllEnded(with_loggers) && std::chrono::steady_clock::now() < until) {
     std::vector<pollfd> waiting;
     for (const Process& process : processes_) {
-      if (!process.ended && !process.refused) waiting.push_back({process.connection, POLLIN, 0});
+      if (!process.ended && !process.refused && !process.deaf)
+        waiting.push_back({process.connection, POLLIN, 0});
     }
     poll(waiting.data(), waiting.size(), 20);
   }
@@ -143,7 +164,9 @@ std::string LocalStop::Left() {
   for (const Process& process : processes_) {
     if (process.ended) continue;
     names += (names.empty() ? "" : ", ") + process.role + " (process " + std::to_string(process.pid) + ")" +
-             (process.refused ? ", which belongs to another user" : "");
+             (process.refused ? ", which belongs to another user"
+              : process.deaf  ? ", which does not answer"
+                              : "");
   }
   return names;
 }

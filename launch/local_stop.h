@@ -37,6 +37,7 @@ class LocalStop {
     int pid = 0;
     int connection = -1;
     bool asked = false;
+    bool deaf = false;     // it does not take our connection: it is stopped, or hangs
     bool refused = false;  // it belongs to another user
     bool ended = false;
   };

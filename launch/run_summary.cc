@@ -14,6 +14,7 @@ constexpr double kMostOfASecond = 0.5;
 // A stack has five processes and some forty codes; a flood of made-up ones is not kept.
 constexpr size_t kMostLoops = 64;
 constexpr size_t kMostFaults = 256;
+constexpr size_t kLongestText = 500;
 
 }  // namespace
 
@@ -67,7 +68,8 @@ std::vector<std::string> RunSummary::Lines() const {
   for (const Fault& fault : faults_) {
     lines.push_back(fmt::format("fault {} of {}, {}{}: {}", fault.first.code, fault.first.source,
                                 fault.times == 1 ? "once" : fmt::format("{} times", fault.times),
-                                fault.active ? ", still there at the end" : "", fault.first.text));
+                                fault.active ? ", still there at the end" : "",
+                                fault.first.text.substr(0, kLongestText)));
   }
   return lines;
 }

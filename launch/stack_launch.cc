@@ -88,6 +88,7 @@ int StackLaunch::Run() {
 void StackLaunch::RefuseIfOneRuns() {
   std::vector<std::string> roles;
   for (const ChildSpec& child : plan_.children) roles.push_back(process::RoleOf(child.program()));
+  lock_.emplace(config_, roles, plan_.spread);
   for (int i = 0; i < kQuestions; ++i) {
     watch_.AskWhoIsThere();
     for (const TimePoint until = Supervisor::Clock::now() + kAnswerTime; Supervisor::Clock::now() < until;) {

@@ -8,6 +8,7 @@
 #include "bus/udpm/udpm_bus.h"
 #include "launch/labelled_output.h"
 #include "launch/launch.h"
+#include "launch/launch_lock.h"
 #include "launch/launch_plan.h"
 #include "launch/stack_watch.h"
 #include "launch/stop_announcer.h"
@@ -52,6 +53,7 @@ class StackLaunch {
   const settings::StackConfig& config_;
   const LaunchPlan& plan_;
   const LaunchTiming timing_;
+  std::optional<LaunchLock> lock_;
   LabelledOutput output_;
   Supervisor supervisor_;  // before the bus, whose threads must not receive the launcher's signals
   bus::WallClock clock_;

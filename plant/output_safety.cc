@@ -13,8 +13,6 @@ using namespace std::chrono_literals;
 
 // A plant describes itself once a second.
 constexpr auto kOtherStackAlive = 2500ms;
-// A process repeats once a second which faults it has.
-constexpr auto kRemoteFaultAlive = 2500ms;
 // A re-arm request that names a tick older than this comes from a recording.
 constexpr double kRearmAge_s = 5;
 
@@ -38,8 +36,9 @@ OutputSafety::OutputSafety(process::Participant& participant, const settings::St
   bus.Subscribe<rearm_t>(channels.Of<rearm_t>(), [this](const rearm_t& request) { OnRearm(request); });
   if (limits_.rearm != settings::Rearm::kExplicit) return;
   bus.Subscribe<fault_t>(channels.Of<fault_t>(), [this](const fault_t& fault) { OnFault(fault); });
-  bus.Subscribe<active_faults_t>(channels.Of<active_faults_t>(),
-                                 [this](const active_faults_t& active) { OnActiveFaults(active); });
+  bus.Subscribe<active_faults_t>(channels.Of<active_faults_t>(), [this](const active_faults_t& active) {
+    remote_.Observe(active, participant_.clock().Now());
+  });
   bus.Subscribe<process_status_t>(channels.Of<process_status_t>(),
                                   [this](const process_status_t& status) { OnStatus(status); });
 }
@@ -84,11 +83,11 @@ void OutputSafety::CheckSurroundings() {
 
 void OutputSafety::CheckController(bool safe_command) {
   if (limits_.rearm != settings::Rearm::kExplicit) return;
-  if (!remote_.empty()) ForgetSilentFaults();
-  Set(Cause::kControllerFault, safe_command || !remote_.empty(), [&] {
+  const bool remote = remote_.any(participant_.clock().Now());
+  Set(Cause::kControllerFault, safe_command || remote, [&] {
     std::string why = "the pressure loop commands a safe output";
-    if (!remote_.empty()) {
-      const fault_t& first = remote_.begin()->second.fault;
+    if (remote) {
+      const fault_t& first = remote_.first();
       why = fmt::format("{}: {}: {}", first.source, first.code, first.text);
     }
     return Finding{why, NAN, NAN};
@@ -143,44 +142,12 @@ void OutputSafety::OnDescription(const run_description_t& description) {
 
 void OutputSafety::OnFault(const fault_t& fault) {
   if (fault.session == participant_.session() || !process::ZeroesVoltage(fault.code)) return;
-  const std::pair key(fault.session, fault.code);
-  if (fault.active == 0) {
-    remote_.erase(key);
-  } else if (remote_.size() < 64) {  // a stack has fewer; a flood of made-up ones is not kept
-    remote_.emplace(key, RemoteFault{fault, participant_.clock().Now()});
-  }
+  remote_.Observe(fault, participant_.clock().Now());
 }
 
-// What its sender no longer has is gone, though the message that said so may be lost.
-void OutputSafety::OnActiveFaults(const active_faults_t& active) {
-  const std::string codes = " " + active.codes + " ";
-  for (auto entry = remote_.begin(); entry != remote_.end();) {
-    const auto& [session, code] = entry->first;
-    const bool has = codes.find(" " + code + " ") != std::string::npos;
-    if (session != active.session) {
-      ++entry;
-    } else if (has) {
-      entry++->second.heard = participant_.clock().Now();
-    } else {
-      entry = remote_.erase(entry);
-    }
-  }
-}
-
-// A fault that nobody claims any more, of a process that never was (wrong bits) or is silent, must not refuse every re-arm. What
-// it held at zero stays latched.
-void OutputSafety::ForgetSilentFaults() {
-  const auto now = participant_.clock().Now();
-  std::erase_if(remote_, [&](const auto& entry) { return now - entry.second.heard > kRemoteFaultAlive; });
-}
-
-// The faults of a process that has left or was replaced no longer count.
 void OutputSafety::OnStatus(const process_status_t& status) {
   const bool left = status.state == process_status_t::DONE || status.state == process_status_t::FAILED;
-  std::erase_if(remote_, [&](const auto& entry) {
-    const bool same = entry.first.first == status.session;
-    return left ? same : !same && entry.second.fault.source == status.role;
-  });
+  left ? remote_.ForgetSession(status.session) : remote_.ForgetOthersOfRole(status.role, status.session);
 }
 
 std::string OutputSafety::DescribePresent(const std::vector<Cause>& causes) const {

@@ -19,6 +19,7 @@
 #include "plant/rig.h"
 #include "plant/voltage_guard.h"
 #include "process/participant.h"
+#include "process/remote_faults.h"
 #include "settings/stack_config.h"
 
 namespace hydro::plant {
@@ -73,8 +74,6 @@ class OutputSafety {
  private:
   void OnDescription(const run_description_t& description);
   void OnFault(const fault_t& fault);
-  void OnActiveFaults(const active_faults_t& active);
-  void ForgetSilentFaults();
   void OnStatus(const process_status_t& status);
   void OnRearm(const rearm_t& request);
   void Answer(const rearm_t& request, int8_t kind, const std::string& text);
@@ -90,13 +89,7 @@ class OutputSafety {
   bus::Clock::Duration suspended_;  // at the last check
   std::string other_stack_;         // describes the other plant, if one was heard
   std::optional<bus::Clock::TimePoint> other_stack_heard_;
-  // The loops' faults that zero the voltage, by session and code, and when they were last heard of; kept for rearm =
-  // "explicit".
-  struct RemoteFault {
-    fault_t fault;
-    bus::Clock::TimePoint heard;
-  };
-  std::map<std::pair<int64_t, std::string>, RemoteFault> remote_;
+  process::RemoteFaults remote_;  // of the loops; kept for rearm = "explicit"
 };
 
 }  // namespace hydro::plant

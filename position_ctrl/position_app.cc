@@ -5,12 +5,15 @@
 #include <algorithm>
 #include <cmath>
 
+#include "process/fault_codes.h"
 #include "settings/agreed_entries.h"
 
 namespace hydro::position_ctrl {
 namespace {
 
 using namespace std::chrono_literals;
+
+constexpr int64_t kJoiningSamples = 10;  // a first state after so many samples is one of a run that goes on
 
 int8_t SignalCode(settings::ReferenceSignal signal) {
   switch (signal) {
@@ -55,6 +58,20 @@ PositionApp::PositionApp(bus::Bus& bus, bus::Clock& clock, const settings::Stack
       last_state_time_(clock.Now()) {
   bus.Subscribe<state_t>(participant_.channels().Of<state_t>(),
                          [this](const state_t& state) { OnState(state); });
+  bus.Subscribe<fault_t>(participant_.channels().Of<fault_t>(), [this](const fault_t& fault) {
+    if (fault.source == "pressure_ctrl" && !process::IsWarning(fault.code)) {
+      pressure_faults_.Observe(fault, participant_.clock().Now());
+    }
+  });
+  bus.Subscribe<active_faults_t>(participant_.channels().Of<active_faults_t>(),
+                                 [this](const active_faults_t& active) {
+                                   pressure_faults_.Observe(active, participant_.clock().Now());
+                                 });
+  bus.Subscribe<process_status_t>(participant_.channels().Of<process_status_t>(),
+                                  [this](const process_status_t& status) {
+                                    if (status.role == "pressure_ctrl")
+                                      pressure_faults_.ForgetOthersOfRole(status.role, status.session);
+                                  });
   participant_.Announce(process_status_t::READY);
 }
 
@@ -85,9 +102,16 @@ void PositionApp::OnState(const state_t& state) {
     last_sample_tick_ = -1;
     return_.Reset();
   }
-  return_.Observe(state.tick, state.command_tick >= 0);
+  ObserveHold(state);
   participant_.set_tick(state.tick);
   if (state.tick % interval_ == 0) Sample(state, now);
+}
+
+// In lockstep nobody is late, and what the pressure loop says of itself may come at any tick.
+void PositionApp::ObserveHold(const state_t& state) {
+  if (!lockstep_ && last_sample_tick_ < 0 && state.tick > kJoiningSamples * interval_) return_.Join();
+  const bool safe = !lockstep_ && pressure_faults_.any(participant_.clock().Now());
+  return_.Observe(state.tick, state.command_tick >= 0 && !safe, Present(state));
 }
 
 void PositionApp::Sample(const state_t& state, bus::Clock::TimePoint arrival) {
@@ -101,7 +125,7 @@ void PositionApp::Answer(const state_t& state) {
   participant_.statistics().AddMissedDeadlines(intervals - 1);
   last_sample_tick_ = state.tick;
 
-  const double reference = return_.Reference(reference_->Value(state.time), Present(state), state.tick);
+  const double reference = return_.Reference(reference_->Value(state.time), state.tick);
   arm_reference_.tick = state.tick;
   arm_reference_.signal = SignalCode(signal_);
   arm_reference_.value = reference;

@@ -16,6 +16,7 @@
 #include "position_ctrl/reference_return.h"
 #include "process/app.h"
 #include "process/participant.h"
+#include "process/remote_faults.h"
 #include "settings/stack_config.h"
 
 namespace hydro::position_ctrl {
@@ -33,6 +34,7 @@ class PositionApp : public process::App {
   void OnState(const state_t& state);
   void Sample(const state_t& state, bus::Clock::TimePoint arrival);
   void Answer(const state_t& state);
+  void ObserveHold(const state_t& state);
   double Present(const state_t& state) const;
   void Send();
 
@@ -47,6 +49,8 @@ class PositionApp : public process::App {
   const settings::PositionSection section_;
   PositionLaw law_;
   ReferenceReturn return_;
+  process::RemoteFaults
+      pressure_faults_;  // real time: while one lasts, the pressure loop's commands move nothing
 
   bus::SequenceMonitor state_monitor_;
   arm_reference_t arm_reference_;        // the newest sample's

@@ -4,23 +4,22 @@
 
 namespace hydro::position_ctrl {
 
-void ReferenceReturn::Observe(int64_t tick, bool in_command) {
-  if (in_command && held_) {
+void ReferenceReturn::Observe(int64_t tick, bool driven, double present) {
+  // At every state, so that a hold that falls between two samples starts from where the arm is, too.
+  const bool hold = held_ || (begun_ && !driven);
+  if (hold && std::isfinite(present)) from_ = present;
+  if (driven && held_) {
     held_ = false;
     returning_ = ticks_ > 0;
     returned_ = tick;
-  } else if (!in_command && begun_) {
+  } else if (!driven && begun_) {
     held_ = true;
   }
-  begun_ = begun_ || in_command;
+  begun_ = begun_ || driven;
 }
 
-double ReferenceReturn::Reference(double wanted, double present, int64_t tick) {
-  if (held_) {
-    if (!std::isfinite(present)) return wanted;
-    from_ = present;
-    return present;
-  }
+double ReferenceReturn::Reference(double wanted, int64_t tick) {
+  if (held_) return from_;
   if (!returning_) return wanted;
   const double share = static_cast<double>(tick - returned_) / static_cast<double>(ticks_);
   if (share >= 1) {

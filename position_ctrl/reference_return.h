@@ -11,12 +11,16 @@ class ReferenceReturn {
   // `ticks`: in how many plant ticks the reference goes from where the arm is to where it is wanted; 0: at once.
   explicit ReferenceReturn(int64_t ticks) : ticks_(ticks) {}
 
-  // Once for each state. `in_command`: a command is in force. Before the first one, nothing is held: the run begins.
-  void Observe(int64_t tick, bool in_command);
+  // Once for each state. `driven`: a command is in force that may move the motor. Before the first one, nothing is held:
+  // the run begins. `present`: what the reference refers to, as it is measured.
+  void Observe(int64_t tick, bool driven, double present);
 
-  // The reference for the sample at `tick`: `wanted` in normal operation; `present`, the measured value of the same quantity, while
-  // the motor is held; in between, a straight line from one to the other.
-  double Reference(double wanted, double present, int64_t tick);
+  // This loop joins a run that has gone on without it: as after a hold.
+  void Join() { begun_ = held_ = true; }
+
+  // The reference for the sample at `tick`: `wanted` in normal operation; what was measured last while the motor is
+  // held; in between, a straight line from one to the other.
+  double Reference(double wanted, int64_t tick);
 
   // Another run begins.
   void Reset() { *this = ReferenceReturn(ticks_); }

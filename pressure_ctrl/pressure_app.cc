@@ -112,6 +112,7 @@ void PressureApp::OnState(const state_t& state) {
   participant_.Follow(state.session);
   if (participant_.state() == process_status_t::READY) participant_.Announce(process_status_t::RUNNING);
   if (answered_ && state.tick <= last_command_.tick) Restart();  // a log is played again
+  if (participant_.tick() < 0) DropFutureCommands(state.tick);
   participant_.set_tick(state.tick);
   if (state.tick % interval_ != 0) return;
   if (AwaitsPressureCommand(state.tick)) {
@@ -120,6 +121,16 @@ void PressureApp::OnState(const state_t& state) {
   }
   Answer(state);
   participant_.statistics().RecordCycle(now, participant_.clock().Now() - now);
+}
+
+// Before the first state nobody can tell which ticks lie far in the future. One such command at the head of the queue would hold up
+// all others for good.
+void PressureApp::DropFutureCommands(int64_t tick) {
+  for (size_t left = waiting_commands_.size(); left > 0; --left) {
+    const pressure_command_t command = waiting_commands_.front();
+    waiting_commands_.pop_front();
+    if (command.tick <= SaturatingSum(tick, stale_ticks_)) waiting_commands_.push_back(command);
+  }
 }
 
 void PressureApp::OnPressureCommand(const pressure_command_t& command) {

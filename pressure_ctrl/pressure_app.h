@@ -36,6 +36,7 @@ class PressureApp : public process::App {
 
  private:
   void OnState(const state_t& state);
+  void DropFutureCommands(int64_t tick);
   void OnPressureCommand(const pressure_command_t& command);
   void Answer(const state_t& state);
   void ApplyOpenLoop(motor_command_t* command) const;

@@ -5,7 +5,7 @@
 namespace hydro::process {
 namespace {
 
-constexpr size_t kMostRefused = 64;  // a flood of made-up ones is not kept
+constexpr size_t kMostRefused = 4096;  // a flood of made-up ones is not kept
 constexpr size_t kMostHeard = 256;
 constexpr size_t kMostKeys = 6;  // that one line can name
 constexpr size_t kLongestValue = 60;
@@ -53,14 +53,24 @@ std::string DescribeDifferences(const std::string& here, const std::string& ther
 
 bool Agreement::Observe(const configuration_t& announced) {
   if (own_.empty() || announced.text.empty()) return false;
-  if (heard_.size() < kMostHeard) heard_.insert(announced.session);
+  if (heard_.size() >= kMostHeard) heard_.clear();  // a flood: who is still there says it again
+  heard_.insert(announced.session);
   const std::string differences = DescribeDifferences(own_, announced.text);
   if (differences.empty()) {
-    refused_.erase(announced.session);
+    Forget(announced.session);
     return false;
   }
-  if (refused_.size() >= kMostRefused && !refused_.contains(announced.session)) return false;
+  if (refused_.size() >= kMostRefused && !refused_.contains(announced.session)) {
+    // Those that were first refused have most likely gone; one that has not is refused again when it says so again.
+    refused_.erase(order_.front());
+    order_.pop_front();
+  }
+  if (!refused_.contains(announced.session)) order_.push_back(announced.session);
   return refused_.insert_or_assign(announced.session, differences).second;
+}
+
+void Agreement::Forget(int64_t session) {
+  if (refused_.erase(session) > 0) std::erase(order_, session);
 }
 
 std::string Agreement::Differences(int64_t session) const {

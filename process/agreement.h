@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <deque>
 #include <hydro/configuration_t.hpp>
 #include <map>
 #include <set>
@@ -30,7 +31,7 @@ class Agreement {
   // Whether that sender has announced what it runs with.
   bool Heard(int64_t session) const { return heard_.contains(session); }
 
-  void Forget(int64_t session) { refused_.erase(session); }
+  void Forget(int64_t session);
 
   const std::string& own() const { return own_; }
 
@@ -38,6 +39,7 @@ class Agreement {
   std::string own_;
   std::set<int64_t> heard_;
   std::map<int64_t, std::string> refused_;  // differences, by session
+  std::deque<int64_t> order_;               // in which they were first refused
 };
 
 // The keys in which two such texts differ, with both values; empty when they are equal.

@@ -61,7 +61,8 @@ void Participant::OnStatus(const process_status_t& status) {
     const bool asks =
         status.state == process_status_t::READY && (IsPlant(status.role) || status.role == kLaunchRole);
     // Whoever is new is told at once what we run with: a plant starts only when it knows.
-    const bool is_new = answered_.size() < kMostNames && answered_.insert(status.session).second;
+    if (answered_.size() >= kMostNames) answered_.clear();  // saying it once more does no harm
+    const bool is_new = answered_.insert(status.session).second;
     if (is_new && (state_ == process_status_t::READY || state_ == process_status_t::RUNNING)) {
       configuration_sent_.reset();
       PublishConfiguration();

@@ -18,6 +18,7 @@ namespace hydro::process {
 namespace {
 
 constexpr size_t kMostConnections = 8;
+constexpr int kBacklog = 64;  // requests that were given up wait too, while the process is stopped
 
 bool MayStopUs(int connection) {
   ucred peer{};
@@ -59,7 +60,7 @@ StopSocket::StopSocket(const std::string& prefix, const std::string& role) {
   wake_ = eventfd(0, EFD_CLOEXEC);
   const bool listens = listener_ >= 0 && wake_ >= 0 &&
                        bind(listener_, reinterpret_cast<const sockaddr*>(&address), size) == 0 &&
-                       listen(listener_, kMostConnections) == 0;
+                       listen(listener_, kBacklog) == 0;
   if (!listens) return;
   const SignalsBlocked blocked;
   thread_ = std::thread([this] { Listen(); });

@@ -64,7 +64,7 @@ TEST(Explain, BeginsAgainFromTheMeasuredStarts) {
   runs[0].start_error = diagnose::kUnknownStart;
   std::vector<model::StartState> elsewhere = StartsOf(runs);
   elsewhere[0][model::kMotorSpeed] = -60;
-  elsewhere[0][model::kArmAngle] += 0.02;
+  elsewhere[0][model::kArmAngle] += 0.05;
   diagnose::FitOptions options;
   options.most_iterations = 15;
   options.tolerance = 1e-5;
@@ -92,7 +92,7 @@ TEST(FitStart, TriesRest) {
   runs[0].angle_counts = true;
   model::StartState moving = runs[0].start;
   moving[model::kMotorSpeed] = -60;
-  moving[model::kArmAngle] += 0.02;
+  moving[model::kArmAngle] += 0.05;  // so far that no processor's rounding brings it back
   runs[0].at_rest = runs[0].start;
   runs[0].start = moving;
   runs[0].start_error = diagnose::kUnknownStart;

@@ -2,6 +2,7 @@
 
 import os
 import signal
+import subprocess
 
 import event_log
 import lcm_peer
@@ -94,6 +95,36 @@ class SharingTest(stack.TestCase):
         self.assertEqual(first.wait(), 0, first.report())
         whole = event_log.Log(log_file)
         self.assertEqual({f.code for f in whole.faults} - {"late_plant"}, set())
+
+    # Tests that of two launches in the same instant one runs, undisturbed, and the other refuses.
+    def test_two_launches_at_once(self):
+        launches = [self.launch(stack.config("demo.toml"), "--duration", "1", "--set", "limits.stale_input_s=0.5") for _ in range(2)]
+        codes = sorted(launch.wait() for launch in launches)
+        self.assertEqual(codes, [0, 2], launches[0].report() + launches[1].report())
+        refused = next(launch for launch in launches if launch.wait() == 2)
+        self.assertRegex(refused.stderr, "another hydro-launch on this machine|a stack on udpm:")
+        ran = next(launch for launch in launches if launch.wait() == 0)
+        self.assertNotRegex(ran.report(), "second_|other_stack")
+
+    # Tests that a launch refuses beside one whose processes are all stopped, so that none can say that it is there.
+    def test_stopped_stack_counts(self):
+        first = self.launch(stack.config("demo.toml"), "--duration", "0", "--set", "limits.stale_input_s=0.5")
+        first.wait_for("ready after")
+        children = subprocess.run(["pgrep", "-P", str(first.child.pid)], capture_output=True, text=True, check=True).stdout.split()
+        for pid in children:
+            os.kill(int(pid), signal.SIGSTOP)
+        try:
+            second = self.launch(stack.config("demo.toml"), "--duration", "1")
+            self.assertEqual(second.wait(), 2, second.report())
+            # --stop does not wait for what cannot answer, says so, and has stopped what it can when that goes on.
+            stopper = self.launch(stack.config("demo.toml"), "--stop")
+            self.assertEqual(stopper.wait(), 1, stopper.report())
+            self.assertRegex(stopper.stderr, "has not ended: .*plant .process")
+        finally:
+            for pid in children:
+                os.kill(int(pid), signal.SIGCONT)
+        first.send(signal.SIGINT)
+        first.wait()
 
     # Tests that a stop with another run's address ends nobody, and that one with this run's address ends all.
     def test_stop_of_another_run_is_none(self):

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <string>
 
+#include "base/read_files.h"
 #include "base/text_file.h"
 #include "hydro_log/replay.h"
 #include "log/log_reader.h"
@@ -64,6 +65,7 @@ void ChangeOneByte(const uint8_t* data, size_t size, const ScratchFolder& folder
   if (size < 8) return;
   const std::string file = folder.Path("checked");
   {
+    ForgetRead(file);  // each input stands for another process
     log::LogWriter writer(file, Opening::kTemporary);
     for (size_t at = 0; at < size; at += 50)
       writer.Append("FUZZ", data + at, std::min<size_t>(50, size - at), 0);
@@ -102,6 +104,7 @@ void Log(const uint8_t* data, size_t size) {
   Accepts([&] { runs::ReadMeasuredRun(file); });
   Accepts([&] {
     const std::string repaired = folder.Path("repaired");
+    ForgetRead(repaired);
     const log::RepairResult result = log::RepairLog(file, repaired);
     Promise(CountEvents(repaired) == result.kept_events, "a repaired log is whole");
     Promise(!log::Describe(result, file).empty(), "a repair is described");

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "bus/in_process_bus.h"
+#include "position_ctrl/reference_return.h"
 #include "tests/stack_fixture.h"
 
 namespace hydro::position_ctrl {
@@ -102,6 +103,48 @@ TEST_F(PositionAppTest, ReferenceReturnsWithoutAJump) {
   ASSERT_EQ(values.size(), 10u);
   EXPECT_THAT(values, ElementsAre(0, 0.1, 0.04, 0.04, 0.04, ::testing::DoubleEq(0.055),
                                   ::testing::DoubleEq(0.07), ::testing::DoubleEq(0.085), 0.1, 0.1));
+}
+
+// Tests that a hold that falls between two samples starts from where the arm is as well.
+TEST_F(PositionAppTest, ShortHoldDoesNotJump) {
+  settings::StackConfig config = WithReference(settings::ReferenceSignal::kArmAngle, 0.1);
+  config.limits.return_s = 0.02;
+  Start(config);
+  for (int64_t tick = 0; tick <= 10; ++tick) SendState(tick, 0.09);
+  SendState(11, 0.09);
+  SendState(12, 0.09, -1);
+  for (int64_t tick = 13; tick <= 20; ++tick) SendState(tick, 0.09);
+  ASSERT_EQ(references_.size(), 5u);
+  EXPECT_NEAR(references_[3].value, 0.09, 0.002);
+  EXPECT_NEAR(references_[4].value, 0.09, 0.004);
+}
+
+// Tests that a loop that joins a run which has gone on without it, and one whose pressure loop reports a fault that zeroes
+// the voltage, start from where the arm is.
+TEST_F(PositionAppTest, JoiningAndSafeOutputDoNotJump) {
+  settings::StackConfig config = WithReference(settings::ReferenceSignal::kArmAngle, 0.1);
+  config.time.mode = settings::TimeMode::kRealtime;
+  config.limits.return_s = 0.02;
+  Start(config);
+  SendState(1000, 0.05);
+  for (int64_t tick = 1001; tick <= 1030; ++tick) SendState(tick, 0.05);
+  EXPECT_NEAR(references_.front().value, 0.05, 1e-9);
+  EXPECT_EQ(references_.back().value, 0.1);
+  fault_t fault{};
+  fault.session = 9;
+  fault.source = "pressure_ctrl";
+  fault.code = "stale_pressure_command";
+  fault.active = true;
+  bus_.Publish("HYDRO_FAULT", fault);
+  Deliver();
+  SendState(1035, 0.02);
+  EXPECT_EQ(references_.back().value, 0.02);
+  fault.active = false;
+  bus_.Publish("HYDRO_FAULT", fault);
+  Deliver();
+  SendState(1036, 0.02);
+  SendState(1040, 0.02);
+  EXPECT_NEAR(references_.back().value, 0.02 + 0.08 * 4 / 20, 1e-9);
 }
 
 struct PassThrough {

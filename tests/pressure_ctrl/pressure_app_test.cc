@@ -51,6 +51,16 @@ class PressureAppTest : public ::testing::Test {
     Deliver();
   }
 
+  void SendPressure(int64_t tick, double pressure_ref, int64_t sequence) {
+    pressure_command_t c{};
+    c.tick = tick;
+    c.session = 7;
+    c.sequence = sequence;
+    c.pressure_ref = pressure_ref;
+    bus_.Publish("HYDRO_PRESSURE_COMMAND", c);
+    Deliver();
+  }
+
   void SendPressure(int64_t tick, double pressure_ref) {
     pressure_command_t c{};
     c.tick = tick;
@@ -71,6 +81,22 @@ class PressureAppTest : public ::testing::Test {
   std::vector<stop_t> stops_;
   int64_t plant_session_ = 3;
 };
+
+// Tests that a command for a tick that never comes, received before the first state, when nobody can tell, does not hold up all
+// others.
+TEST_F(PressureAppTest, FarCommandBeforeTheFirstState) {
+  settings::StackConfig config = SmallStack();
+  config.time.mode = settings::TimeMode::kRealtime;
+  Start(config);
+  SendPressure(int64_t{1} << 62, 77, -1);
+  SendState(State(0));
+  SendPressure(0, 50);
+  SendState(State(1));
+  SendState(State(2));
+  ASSERT_FALSE(commands_.empty());
+  EXPECT_EQ(commands_.back().pressure_command_tick, 0);
+  EXPECT_EQ(commands_.back().pressure_ref, 50);
+}
 
 // Tests that each tick gets one command, and that the pressure command computed from tick 0 acts from tick 1
 // on.

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <random>
 
+#include "base/read_files.h"
 #include "runs/run_log.h"
 #include "runs/run_table.h"
 #include "tests/log/log_fixture.h"
@@ -18,6 +19,7 @@ constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 class RunImportTest : public log::LogTest {
  protected:
   RunLog Import(const tables::Table& table) {
+    ForgetRead(Path("log"));  // each import stands for another process
     ImportRun(table, "1.2.3", Path("log"));
     return ReadRunLog(Path("log"));
   }
