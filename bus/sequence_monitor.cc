@@ -18,8 +18,7 @@ SequenceMonitor::Verdict SequenceMonitor::Observe(int64_t session, int64_t seque
 SequenceMonitor::Verdict SequenceMonitor::Observe(int64_t session, Place place, Clock::TimePoint now) {
   gap_ = 0;
   if (FollowsAnother(session, now)) {
-    second_heard_ = now;
-    second_session_ = session;
+    Note(session, now);
     return Verdict::kSecondSender;
   }
   const bool silent = now - heard_ > alive_;
@@ -56,6 +55,25 @@ SequenceMonitor::Verdict SequenceMonitor::Observe(int64_t session, Place place, 
   return Verdict::kDuplicate;
 }
 
+bool SequenceMonitor::SecondSenderAlive(Clock::TimePoint now) const {
+  return std::any_of(others_.begin(), others_.end(),
+                     [&](const Other& other) { return other.heard && now - *other.heard <= alive_; });
+}
+
+// In the place of the same session, or of the one that has been silent longest.
+void SequenceMonitor::Note(int64_t session, Clock::TimePoint now) {
+  second_session_ = session;
+  Other* place = &others_.front();
+  for (Other& other : others_) {
+    if (other.session == session) {
+      place = &other;
+      break;
+    }
+    if (!other.heard || (place->heard && *other.heard < *place->heard)) place = &other;
+  }
+  *place = {session, now};
+}
+
 void SequenceMonitor::Follow(int64_t session, Place place, Clock::TimePoint now) {
   session_ = session;
   newest_ = place;
@@ -65,8 +83,10 @@ void SequenceMonitor::Follow(int64_t session, Place place, Clock::TimePoint now)
 }
 
 SequenceMonitor::Verdict SequenceMonitor::Restart(int64_t session, Place place, Clock::TimePoint now) {
-  // Who takes over was the second sender; where the first goes on, the second may be there still.
-  if (session != *session_) second_heard_.reset();
+  // Who takes over was a second sender and is one no more; any other is there still.
+  for (Other& other : others_) {
+    if (other.session == session) other.heard.reset();
+  }
   Follow(session, place, now);
   ++restarts_;
   return Verdict::kRestarted;

@@ -2,6 +2,7 @@
 // sender goes unnoticed.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 
@@ -35,10 +36,8 @@ class SequenceMonitor {
     return session_ && session != *session_ && now - heard_ <= alive_;
   }
 
-  // A second sender was heard within the last `alive`.
-  bool SecondSenderAlive(Clock::TimePoint now) const {
-    return second_heard_ && now - *second_heard_ <= alive_;
-  }
+  // A sender beside the one that is followed was heard within the last `alive`.
+  bool SecondSenderAlive(Clock::TimePoint now) const;
 
   std::optional<int64_t> session() const { return session_; }                // of the sender being followed
   std::optional<int64_t> second_session() const { return second_session_; }  // of the last kSecondSender
@@ -55,6 +54,7 @@ class SequenceMonitor {
     int64_t tick = 0;
   };
   Verdict Observe(int64_t session, Place place, Clock::TimePoint now);
+  void Note(int64_t session, Clock::TimePoint now);
   void Follow(int64_t session, Place place, Clock::TimePoint now);
   Verdict Restart(int64_t session, Place place, Clock::TimePoint now);
 
@@ -66,7 +66,11 @@ class SequenceMonitor {
   int64_t refused_since_ = 0;       // its messages in sequence whose tick went back, since the newest
   Clock::TimePoint heard_{};        // when it was last heard at all
   std::optional<int64_t> second_session_;
-  std::optional<Clock::TimePoint> second_heard_;
+  struct Other {
+    int64_t session = 0;
+    std::optional<Clock::TimePoint> heard;
+  };
+  std::array<Other, 4> others_;  // the last senders beside the one that is followed
   int64_t gap_ = 0;
   int64_t lost_ = 0;
   int64_t duplicates_ = 0;

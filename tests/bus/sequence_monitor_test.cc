@@ -152,6 +152,18 @@ TEST(SequenceMonitorTest, OldTickAfterASilence) {
   EXPECT_EQ(observe(2, 0, 40, 2000ms), Verdict::kRestarted);
 }
 
+// Tests that of two other senders one is not forgotten because the other takes over.
+TEST(SequenceMonitorTest, ThirdSender) {
+  SequenceMonitor monitor(100ms);
+  Check({{1, 0, 0ms, Verdict::kAccept, 0},
+         {2, 0, 20ms, Verdict::kSecondSender, 0},
+         {3, 0, 90ms, Verdict::kSecondSender, 0},
+         {2, 1, 101ms, Verdict::kRestarted, 0}},
+        &monitor);
+  EXPECT_TRUE(monitor.SecondSenderAlive(Clock::TimePoint(190ms)));
+  EXPECT_FALSE(monitor.SecondSenderAlive(Clock::TimePoint(191ms)));
+}
+
 // Tests that a second sender is not forgotten because the first is followed again.
 TEST(SequenceMonitorTest, SecondSenderOutlastsAFarNumber) {
   SequenceMonitor monitor(100ms);

@@ -1,5 +1,6 @@
 """Several stacks, and several senders, on one network."""
 
+import contextlib
 import os
 import signal
 import subprocess
@@ -88,7 +89,7 @@ class SharingTest(stack.TestCase):
         self.assertEqual(second.wait(), 2, second.report())
         self.assertEqual(second.stdout, "")
         self.assertEqual(len(second.stderr.splitlines()), 1, second.report())
-        self.assertRegex(second.stderr, r"found a stack on udpm:.* that runs: .*plant on .* \(process \d+\).*--stop")
+        self.assertRegex(second.stderr, r"found another hydro-launch on this machine that has started a plant on udpm:.*--stop")
         self.assertFalse(os.path.exists(self.path("second.lcmlog")))
         log.wait_for_tick(log.count("HYDRO_STATE") + 500)
         first.send(signal.SIGINT)
@@ -116,15 +117,24 @@ class SharingTest(stack.TestCase):
         try:
             second = self.launch(stack.config("demo.toml"), "--duration", "1")
             self.assertEqual(second.wait(), 2, second.report())
-            # --stop does not wait for what cannot answer, says so, and has stopped what it can when that goes on.
+            # --stop does not wait for what cannot answer; the launcher, which can, kills it.
             stopper = self.launch(stack.config("demo.toml"), "--stop")
-            self.assertEqual(stopper.wait(), 1, stopper.report())
-            self.assertRegex(stopper.stderr, "has not ended: .*plant .process")
+            self.assertEqual(stopper.wait(), 0, stopper.report())
+            self.assertEqual(first.wait(), 1, first.report())
+            self.assertRegex(first.stderr, "hydro-plant did not end on SIGTERM and was killed|was killed")
         finally:
             for pid in children:
-                os.kill(int(pid), signal.SIGCONT)
-        first.send(signal.SIGINT)
-        first.wait()
+                with contextlib.suppress(ProcessLookupError):
+                    os.kill(int(pid), signal.SIGCONT)
+
+    # Tests that a launch refuses beside processes that were started by hand, and names them.
+    def test_beside_processes_started_by_hand(self):
+        run = self.stack(stack.config("demo.toml"), "--time", "realtime", "--duration", "0")
+        run.start("pressure_ctrl")
+        self.wait_until(lambda: run["pressure_ctrl"].running, "a process")
+        second = self.launch(stack.config("demo.toml"), "--duration", "1")
+        self.assertEqual(second.wait(), 2, second.report())
+        self.assertRegex(second.stderr, r"found a stack on udpm:.* that runs: pressure_ctrl on .* \(process \d+\); end it with .*--stop")
 
     # Tests that a stop with another run's address ends nobody, and that one with this run's address ends all.
     def test_stop_of_another_run_is_none(self):
