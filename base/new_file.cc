@@ -58,7 +58,7 @@ void RemoveUnlessBeingWritten(const std::string& path, const std::string& name) 
 // writing to FILE under such a name.
 std::string FreePart(const std::string& name) {
   for (int i = 0;; ++i) {
-    const std::string part = name + ".part" + (i == 0 ? "" : std::to_string(i));
+    std::string part = name + ".part" + (i == 0 ? "" : std::to_string(i));
     struct stat status;
     if (lstat(part.c_str(), &status) != 0) return part;
     if (S_ISREG(status.st_mode) && IsBeingWritten(part)) ThrowIsBeingWritten(name);
