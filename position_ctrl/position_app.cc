@@ -109,7 +109,9 @@ void PositionApp::OnState(const state_t& state) {
 
 // In lockstep nobody is late, and what the pressure loop says of itself may come at any tick.
 void PositionApp::ObserveHold(const state_t& state) {
-  if (!lockstep_ && last_sample_tick_ < 0 && state.tick > kJoiningSamples * interval_) return_.Join();
+  // A record that is replayed from its middle (on simulated time) is no such run: its loop had been there.
+  const bool joins = last_sample_tick_ < 0 && state.tick > kJoiningSamples * interval_;
+  if (!lockstep_ && joins && !participant_.clock().simulated()) return_.Join();
   const bool safe = !lockstep_ && pressure_faults_.any(participant_.clock().Now());
   return_.Observe(state.tick, state.command_tick >= 0 && !safe, Present(state));
 }

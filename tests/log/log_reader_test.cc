@@ -100,7 +100,7 @@ TEST_F(LogReaderTest, NotALog) {
   EXPECT_THAT(InputErrorOf([&] { ReadEvents(Path("text")); }), HasSubstr(Path("text") + ": byte 0, event 0"));
   EXPECT_THAT(InputErrorOf([&] { ReadEvents(Path("none")); }),
               AllOf(HasSubstr(Path("none")), HasSubstr("No such file")));
-  EXPECT_THAT(InputErrorOf([&] { ReadEvents(Path("")); }), HasSubstr("directory"));
+  EXPECT_THAT(InputErrorOf([&] { ReadEvents(Path("")); }), HasSubstr("folder"));
 }
 
 // Tests that messages of another type, with bytes missing or with bytes too many, do not decode.

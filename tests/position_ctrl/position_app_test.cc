@@ -56,7 +56,14 @@ class PositionAppTest : public ::testing::Test {
     return config;
   }
 
-  bus::SimulatedClock clock_;
+  // Stands still until it is advanced, and may pass for a clock of the machine.
+  class TestClock : public bus::SimulatedClock {
+   public:
+    bool simulated() const override { return simulated_; }
+    bool simulated_ = true;
+  };
+
+  TestClock clock_;
   bus::InProcessBus bus_{&clock_};
   std::unique_ptr<PositionApp> app_;
   std::vector<pressure_command_t> commands_;
@@ -125,6 +132,7 @@ TEST_F(PositionAppTest, JoiningAndSafeOutputDoNotJump) {
   settings::StackConfig config = WithReference(settings::ReferenceSignal::kArmAngle, 0.1);
   config.time.mode = settings::TimeMode::kRealtime;
   config.limits.return_s = 0.02;
+  clock_.simulated_ = false;
   Start(config);
   SendState(1000, 0.05);
   for (int64_t tick = 1001; tick <= 1030; ++tick) SendState(tick, 0.05);
