@@ -3,6 +3,7 @@
 #include <spdlog/fmt/fmt.h>
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <hydro/log_progress_t.hpp>
 #include <hydro/motor_command_t.hpp>
 #include <hydro/pressure_command_t.hpp>
@@ -20,7 +21,6 @@ using namespace std::chrono_literals;
 constexpr int64_t kProgressTicks = 16;  // a quarter of the plant's window (plant_pace.cc)
 constexpr auto kEchoTime = 200ms;       // how long to wait for this logger's own last message to come back
 constexpr auto kOverflowQuiet = 1s;     // an overflow has ended when nothing was dropped for this long
-constexpr auto kPlantAlive = 1s;        // a plant that is silent for longer may be replaced by another
 constexpr auto kFarewellTime = 500ms;   // how long to wait for the others' last messages after a stop
 
 constexpr size_t kMostSenders = 1024;  // of one kind of message whose numbers are followed: a flood is not
@@ -33,6 +33,7 @@ LoggerApp::LoggerApp(bus::Bus& bus, bus::Clock& clock, const settings::StackConf
       participant_(bus, clock, bus::Channels(config.bus.channel_suffix), "logger",
                    settings::AgreedEntries(config)),
       options_(options),
+      plant_alive_(bus::FromSeconds(std::max(0.3, 5 / (config.plant.rate_hz * config.time.speed)))),
       files_(options.file, options.rotate_bytes, participant_.channels().Of<run_description_t>()),
       queue_(static_cast<size_t>(config.logger.memory_mb * 1e6)) {
   if (config.time.mode == settings::TimeMode::kLockstep) {
@@ -99,7 +100,7 @@ void LoggerApp::OnMessage(const bus::RawMessage& message) {
 void LoggerApp::FollowPlant(int64_t session) {
   const auto now = participant_.clock().Now();
   if (session != participant_.run()) {
-    if (followed_heard_ && now - *followed_heard_ <= kPlantAlive) return;
+    if (followed_heard_ && now - *followed_heard_ <= plant_alive_) return;
     participant_.Follow(session);
   }
   followed_heard_ = now;

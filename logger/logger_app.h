@@ -74,7 +74,8 @@ class LoggerApp : public process::App {
   bus::Bus& bus_;
   process::Participant participant_;
   LoggerOptions options_;
-  LogFiles files_;  // the writing thread's, once it runs
+  const bus::Clock::Duration plant_alive_;  // a plant that is silent for longer may be replaced by another
+  LogFiles files_;                          // the writing thread's, once it runs
 
   std::mutex mutex_;  // guards writes_, closing_, failure_, gone_
   std::condition_variable wake_;

@@ -41,7 +41,9 @@ Participant::Participant(bus::Bus& bus, bus::Clock& clock, const bus::Channels& 
       statistics_(role, identity_.host, session(), clock.Now()) {
   if (IsPlant(role)) run_ = session();
   bus_.Subscribe<stop_t>(channels_.Of<stop_t>(), [this](const stop_t& stop) {
-    const bool meant = stop.addressee == 0 || stop.addressee == session() || stop.addressee == run_;
+    // Who has not heard of any plant yet cannot tell, and takes part in no run that could be harmed.
+    const bool meant =
+        stop.addressee == 0 || stop.addressee == session() || stop.addressee == run_ || run_ == 0;
     if (meant && !stop_) stop_ = stop;
   });
   bus_.Subscribe<process_status_t>(channels_.Of<process_status_t>(),

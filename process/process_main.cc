@@ -94,9 +94,9 @@ int RunProcess(const std::string& program, const settings::CommonOptions& option
     const settings::StackConfig config = settings::LoadStackConfig(options.config, options.overrides);
     settings::CheckKeepsInputs(options.log, config);
     CatchStopSignals();
+    timing::ApplyRealTime(RealTimeRequestOf(SectionOf(config, program)));
     const StopSocket stop_socket(
         StopSocketPrefix(bus::ParseUdpmUrl(config.bus.url).port, config.bus.channel_suffix), RoleOf(program));
-    timing::ApplyRealTime(RealTimeRequestOf(SectionOf(config, program)));
     const std::unique_ptr<bus::UdpmBus> opened = OpenStackBus(config.bus);
     bus::UdpmBus& bus = *opened;
     WarnOfOpenNetwork(program, config.bus);

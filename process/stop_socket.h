@@ -17,8 +17,8 @@ std::string StopSocketPrefix(int port, const std::string& channel_suffix);
 class StopSocket {
  public:
   // Listens, on a thread of its own, for as long as it lives. A request sets the flag of stop_signal.h with the requester's reason.
-  // Where no socket can be had there is none: a run does not depend on it. Call it before the process has real-time priority,
-  // which the thread would inherit.
+  // Where no socket can be had there is none: a run does not depend on it. The thread inherits the process's
+  // priority and processor: it sleeps until it is asked.
   StopSocket(const std::string& prefix, const std::string& role);
   ~StopSocket();
   StopSocket(const StopSocket&) = delete;
