@@ -10,12 +10,20 @@ import stack
 
 
 class AgreementTest(fault_case.FaultCase):
+    ROLES = ("logger", "position_ctrl", "pressure_ctrl", "plant")
+
     def start_with(self, role, *other):
-        """The stack, in which one process has other options."""
+        """The stack, in which one process has other options. It starts when the rest listen, so that each of them hears it."""
         run = self.run_ = self.stack(self.moving(), "--time", "realtime", "--duration", "0", "--set", f"limits.stale_input_s={fault_case.STALE}")
-        for name in ("logger", "position_ctrl", "pressure_ctrl", "plant"):
-            more = {"logger": ("-o", self.log_file), "plant": ("--expect", "logger")}.get(name, ())
-            run.start(name, *more, *(other if name == role else ()))
+        own = {"logger": ("-o", self.log_file), "plant": ("--expect", "logger")}
+        rest = [name for name in self.ROLES if name != role]
+        for name in rest:
+            run.start(name, *own.get(name, ()))
+        if "logger" in rest:
+            log = stack.LiveLog(self, self.log_file)
+            for name in rest:
+                log.wait_for("HYDRO_PROCESS_STATUS", lambda s, name=name: s.role == name, f"the {name} in the log")
+        run.start(role, *own.get(role, ()), *other)
         return run
 
     def check_refused(self, role, expected, *other):
