@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "torture/injection.h"
+#include "torture/schedule/injection.h"
 #include "torture/world.h"
 
 namespace hydro::torture {

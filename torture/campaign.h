@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "torture/coverage.h"
-#include "torture/observer.h"
-#include "torture/schedule.h"
+#include "torture/invariants/coverage.h"
+#include "torture/invariants/observer.h"
+#include "torture/schedule/schedule.h"
 
 namespace hydro::torture {
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "plant/simulated_rig.h"
-#include "torture/observer.h"
+#include "torture/invariants/observer.h"
 
 namespace hydro::torture {
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "settings/stack_config.h"
-#include "torture/simulated_process.h"
+#include "torture/machines/simulated_process.h"
 
 namespace hydro::torture {
 

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "torture/schedule.h"
+#include "torture/schedule/schedule.h"
 #include "torture/world.h"
 
 namespace hydro::torture {

@@ -3,7 +3,7 @@
 
 #include <functional>
 
-#include "torture/schedule.h"
+#include "torture/schedule/schedule.h"
 
 namespace hydro::torture {
 

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "settings/stack_config.h"
-#include "torture/schedule.h"
+#include "torture/schedule/schedule.h"
 
 namespace hydro::torture {
 

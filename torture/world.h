@@ -12,11 +12,11 @@
 
 #include "settings/stack_config.h"
 #include "torture/faulty_rig.h"
-#include "torture/network.h"
-#include "torture/observer.h"
-#include "torture/schedule.h"
-#include "torture/simulated_process.h"
-#include "torture/trace.h"
+#include "torture/invariants/observer.h"
+#include "torture/machines/network.h"
+#include "torture/machines/simulated_process.h"
+#include "torture/machines/trace.h"
+#include "torture/schedule/schedule.h"
 
 namespace hydro::torture {
 

@@ -1,8 +1,8 @@
-#include "torture/machine.h"
+#include "torture/machines/machine.h"
 
 #include <gtest/gtest.h>
 
-#include "torture/random.h"
+#include "torture/machines/random.h"
 
 namespace hydro::torture {
 namespace {

@@ -1,4 +1,4 @@
-#include "torture/network.h"
+#include "torture/machines/network.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "torture/schedule.h"
+#include "torture/schedule/schedule.h"
 
 #include <gtest/gtest.h>
 

@@ -9,9 +9,9 @@
 #include <string>
 
 #include "bus/hosted_process.h"
-#include "torture/fiber.h"
-#include "torture/machine.h"
-#include "torture/network_bus.h"
+#include "torture/machines/fiber.h"
+#include "torture/machines/machine.h"
+#include "torture/machines/network_bus.h"
 
 namespace hydro::torture {
 

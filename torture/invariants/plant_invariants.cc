@@ -1,4 +1,4 @@
-#include "torture/plant_invariants.h"
+#include "torture/invariants/plant_invariants.h"
 
 #include <fmt/format.h>
 

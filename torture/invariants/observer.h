@@ -11,10 +11,10 @@
 #include "bus/channels.h"
 #include "model/terms/measurement.h"
 #include "settings/stack_config.h"
-#include "torture/coverage.h"
-#include "torture/network.h"
-#include "torture/plant_record.h"
-#include "torture/simulated_process.h"
+#include "torture/invariants/coverage.h"
+#include "torture/invariants/plant_record.h"
+#include "torture/machines/network.h"
+#include "torture/machines/simulated_process.h"
 
 namespace hydro::torture {
 

@@ -1,8 +1,8 @@
 // The table of the faults that a schedule can inject.
 #include <array>
 
-#include "torture/injection.h"
-#include "torture/simulated_process.h"
+#include "torture/machines/simulated_process.h"
+#include "torture/schedule/injection.h"
 
 namespace hydro::torture {
 namespace {

@@ -13,7 +13,7 @@
 #include "bus/bus.h"
 #include "bus/hosted_process.h"
 #include "bus/seal/authenticator.h"
-#include "torture/packet.h"
+#include "torture/machines/packet.h"
 
 namespace hydro::torture {
 

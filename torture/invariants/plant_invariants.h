@@ -5,8 +5,8 @@
 #include <string>
 
 #include "model/terms/measurement.h"
-#include "torture/observer.h"
-#include "torture/plant_record.h"
+#include "torture/invariants/observer.h"
+#include "torture/invariants/plant_record.h"
 
 namespace hydro::torture {
 

@@ -1,4 +1,4 @@
-#include "torture/network_bus.h"
+#include "torture/machines/network_bus.h"
 
 #include <utility>
 

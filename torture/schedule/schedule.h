@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "torture/injection.h"
+#include "torture/schedule/injection.h"
 
 namespace hydro::torture {
 

@@ -1,4 +1,4 @@
-#include "torture/coverage.h"
+#include "torture/invariants/coverage.h"
 
 #include <fmt/format.h>
 

@@ -5,7 +5,7 @@
 
 #include "base/input_error.h"
 #include "base/number_text.h"
-#include "torture/schedule.h"
+#include "torture/schedule/schedule.h"
 
 namespace hydro::torture {
 namespace {

@@ -9,8 +9,8 @@
 #include <optional>
 #include <string>
 
-#include "torture/machine.h"
-#include "torture/packet.h"
+#include "torture/machines/machine.h"
+#include "torture/machines/packet.h"
 
 namespace hydro::torture {
 

@@ -2,8 +2,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "torture/random.h"
-#include "torture/schedule.h"
+#include "torture/machines/random.h"
+#include "torture/schedule/schedule.h"
 
 namespace hydro::torture {
 namespace {

@@ -3,7 +3,7 @@
 #include <utility>
 
 #include "bus/clock.h"
-#include "torture/network_bus.h"
+#include "torture/machines/network_bus.h"
 
 namespace hydro::torture {
 

@@ -1,4 +1,4 @@
-#include "torture/simulated_process.h"
+#include "torture/machines/simulated_process.h"
 
 #include <algorithm>
 #include <stdexcept>

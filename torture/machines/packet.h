@@ -6,7 +6,7 @@
 #include <memory>
 #include <vector>
 
-#include "torture/machine.h"
+#include "torture/machines/machine.h"
 
 namespace hydro::torture {
 

@@ -1,4 +1,4 @@
-#include "torture/plant_record.h"
+#include "torture/invariants/plant_record.h"
 
 #include <algorithm>
 #include <bit>

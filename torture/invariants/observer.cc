@@ -1,4 +1,4 @@
-#include "torture/observer.h"
+#include "torture/invariants/observer.h"
 
 #include <fmt/format.h>
 
@@ -6,7 +6,7 @@
 
 #include "bus/messages.h"
 #include "process/fault_codes.h"
-#include "torture/plant_invariants.h"
+#include "torture/invariants/plant_invariants.h"
 
 namespace hydro::torture {
 namespace {

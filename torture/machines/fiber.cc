@@ -1,4 +1,4 @@
-#include "torture/fiber.h"
+#include "torture/machines/fiber.h"
 
 #include <cxxabi.h>
 

@@ -1,4 +1,4 @@
-#include "torture/machine.h"
+#include "torture/machines/machine.h"
 
 #include <algorithm>
 #include <cmath>

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "torture/injection.h"
+#include "torture/schedule/injection.h"
 
 namespace hydro::torture {
 
