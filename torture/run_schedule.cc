@@ -25,7 +25,7 @@ class Silence {
 
 }  // namespace
 
-RunOutcome RunSchedule(const Schedule& schedule, const std::string& config_file) {
+RunOutcome RunSchedule(const Schedule& schedule, const std::string& config_file, MessageTail* tail) {
   // Reading a configuration takes as long as a second of a run.
   using Key = std::tuple<std::string, bool, bool, double>;
   static std::map<Key, Stacks> known;
@@ -37,6 +37,7 @@ RunOutcome RunSchedule(const Schedule& schedule, const std::string& config_file)
   }
   const Silence silence;
   World world(schedule, found->second);
+  world.SetTail(tail);
   return world.Run();
 }
 

@@ -26,7 +26,9 @@ int List() {
 
 int Replay(const TortureOptions& options) {
   const Schedule schedule = ReadSchedule(options.replay, ReadTextFile(options.replay));
-  const RunOutcome outcome = RunSchedule(schedule, options.config);
+  MessageTail tail(options.tail);
+  const RunOutcome outcome = RunSchedule(schedule, options.config, options.tail > 0 ? &tail : nullptr);
+  fmt::print("{}", tail.Text());
   for (const Violation& violation : outcome.violations) {
     fmt::print("{:.6f} s: {}: {}\n", static_cast<double>(violation.at) * 1e-9, violation.invariant,
                violation.text);
@@ -63,6 +65,8 @@ void AddOptions(settings::CommandLine* line, TortureOptions* options) {
   line->AddOption("--jobs", &options->jobs, "N processors to use; default 1");
   line->AddOption("--config", &options->config, "CONFIG a stack to torture; default: a built-in one");
   line->AddOption("--replay", &options->replay, "FILE the schedule of one run, as a failed run leaves it");
+  line->AddOption("--tail", &options->tail,
+                  "S with --replay: print what was sent and handled in the last S seconds");
   line->AddOption("--out", &options->out,
                   "DIR where to put the schedules of failed runs; default out/torture");
   line->AddOption("--without", &options->without,

@@ -18,6 +18,7 @@ struct TortureOptions {
   int jobs = 1;
   std::string config;
   std::string replay;
+  double tail = 0;  // s of a replay whose messages are printed
   std::string out = "out/torture";
   std::vector<std::string> without;
   bool list = false;

@@ -114,6 +114,7 @@ void World::Happen(const Event& event) {
     case Happening::kBegin:
       ++outcome_.coverage.injected;
       ++outcome_.coverage.kinds[schedule_.injections[static_cast<size_t>(event.number)].kind];
+      TellInjection(event.number, "begins");
       active_[static_cast<size_t>(event.number)]->Begin();
       [[fallthrough]];
     case Happening::kContinue: {
@@ -125,6 +126,7 @@ void World::Happen(const Event& event) {
       break;
     }
     case Happening::kEnd:
+      TellInjection(event.number, "ends");
       active_[static_cast<size_t>(event.number)]->End();
       break;
     case Happening::kStart:
@@ -148,7 +150,26 @@ void World::Arrive(const PacketPtr& packet, int receiver) {
   }
 }
 
+// Only replays that are looked at pay for it.
+void World::Tell(const Packet& packet, int process, const char* what) {
+  if (tail_ == nullptr) return;
+  tail_->AddMessage(now_, NameOf(process), what, network_.ChannelName(packet.channel), packet);
+}
+
+void World::TellInjection(int number, const char* what) {
+  if (tail_ == nullptr) return;
+  const Injection& injection = schedule_.injections[static_cast<size_t>(number)];
+  tail_->Add(now_, fmt::format("{} of {}", InfoOf(injection.kind).name, TargetName(injection.target)), what);
+}
+
+std::string World::NameOf(int process) const {
+  if (process < 0) return "nobody";
+  const SimulatedProcess& sender = *by_number_[static_cast<size_t>(process)];
+  return fmt::format("{} {}", TargetName(static_cast<int>(sender.role())), process);
+}
+
 void World::Send(PacketPtr packet, int sender) {
+  Tell(*packet, sender, "sends");
   const SimulatedProcess& process = *by_number_[static_cast<size_t>(sender)];
   trace_.Add(static_cast<uint64_t>(now_));
   trace_.Add(packet->bytes);
@@ -161,6 +182,7 @@ void World::Send(PacketPtr packet, int sender) {
 }
 
 void World::Handled(const Packet& packet, int receiver) {
+  Tell(packet, receiver, "handles");
   trace_.Add(static_cast<uint64_t>(now_) ^ static_cast<uint64_t>(receiver) << 56);
   observer_.OnHandled(packet, *by_number_[static_cast<size_t>(receiver)]);
 }

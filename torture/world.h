@@ -16,6 +16,7 @@
 #include "torture/machines/network.h"
 #include "torture/machines/simulated_process.h"
 #include "torture/machines/trace.h"
+#include "torture/message_tail.h"
 #include "torture/schedule/schedule.h"
 
 namespace hydro::torture {
@@ -40,6 +41,9 @@ class World : public NetworkPort {
   // `stacks` must outlive it.
   World(const Schedule& schedule, const Stacks& stacks);
   ~World() override;
+
+  // From now on what happens is also told to `tail`, which must outlive the run.
+  void SetTail(MessageTail* tail) { tail_ = tail; }
 
   // The whole run: start, faults, return to control, end. Stops at the first violation.
   RunOutcome Run();
@@ -94,6 +98,9 @@ class World : public NetworkPort {
   void Push(TrueTime time, Happening what, int number, PacketPtr packet = nullptr);
   static bool Later(const Event& a, const Event& b);
   void Step();
+  void Tell(const Packet& packet, int process, const char* what);
+  std::string NameOf(int process) const;
+  void TellInjection(int number, const char* what);
   void Happen(const Event& event);
   void Arrive(const PacketPtr& packet, int receiver);
   void Start(Role role);
@@ -132,6 +139,7 @@ class World : public NetworkPort {
   std::vector<std::unique_ptr<class ActiveFault>> active_;  // by injection
   std::vector<Event> events_;                               // a heap
   int launcher_hangs_ = 0;
+  MessageTail* tail_ = nullptr;
   uint64_t order_ = 0;
   std::deque<PacketPtr> recorded_;  // the newest motor commands
   int command_channel_ = -1;

@@ -1,5 +1,7 @@
 // The World's processes: their start, their death, the sleep of their machines, and what is sent in nobody's
 // name.
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "bus/seal/authenticated_channels.h"
@@ -52,6 +54,8 @@ void World::Begin(Role role, SimulatedProcess::Body body, bool misconfigured) {
   process->set_misconfigured(misconfigured);
   if (misconfigured) observer_.AddMisconfigured(identity.session);
   by_number_.back() = process;
+  if (tail_ != nullptr)
+    tail_->Add(now_, NameOf(number), misconfigured ? "starts with the other configuration" : "starts");
   alive_.push_back(process);
   receivers_.push_back({number, static_cast<int>(role)});
   NoteConfigurations();
@@ -71,6 +75,11 @@ void World::NoteConfigurations() {
 void World::Reap(SimulatedProcess& process) {
   trace_.Add(static_cast<uint64_t>(process.exit_code()) << 32 | static_cast<uint64_t>(process.number()));
   std::erase(alive_, &process);
+  if (tail_ != nullptr) {
+    tail_->Add(
+        now_, NameOf(process.number()),
+        fmt::format("ends with exit code {}{}", process.exit_code(), process.killed() ? ", killed" : ""));
+  }
   std::erase_if(receivers_, [&](const Network::Receiver& r) { return r.number == process.number(); });
   NoteConfigurations();
   observer_.OnEnd(process);
@@ -115,6 +124,7 @@ void World::ForgeBytes(const std::string& channel, const bus::MessageType& type,
   packet->sender = -1;
   packet->origin = origin;
   trace_.Add(packet->bytes);
+  Tell(*packet, -1, "sends");
   network_.Send(packet, -1, receivers_);
 }
 
@@ -124,6 +134,7 @@ void World::ForgeAgain(const Packet& packet) {
   copy->channel = packet.channel;
   copy->sender = -1;
   copy->origin = packet.origin == Origin::kProcess ? Origin::kRepeated : packet.origin;
+  Tell(*copy, -1, "sends");
   network_.Send(copy, -1, receivers_);
 }
 
