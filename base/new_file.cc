@@ -25,12 +25,6 @@ namespace {
   throw WriteError(file + ": cannot be written: " + std::strerror(error));
 }
 
-void RefuseToReplaceAnInput(const std::string& file) {
-  if (!WasRead(file)) return;
-  throw InputError(file +
-                   ": found the name of a file that is read, allowed: another, so that it is not replaced");
-}
-
 bool ExistsAndIsNotRegular(const std::string& file) {
   struct stat status;
   return stat(file.c_str(), &status) == 0 && !S_ISREG(status.st_mode);
@@ -90,7 +84,7 @@ NewFile::NewFile(const std::string& file, Opening opening) : name_(file), path_(
     if (descriptor_ < 0) ThrowCannotCreate(name_, errno);
     return;
   }
-  RefuseToReplaceAnInput(name_);
+  CheckKeeps(name_);
   if (opening == Opening::kTemporary) {
     path_ = FreePart(name_);
   } else {

@@ -1,9 +1,11 @@
 #include "base/read_files.h"
 
+#include <algorithm>
 #include <mutex>
 #include <set>
 
 #include "base/file_identity.h"
+#include "base/input_error.h"
 
 namespace hydro {
 namespace {
@@ -28,6 +30,17 @@ bool WasRead(const std::string& file) {
   if (!identity) return false;
   const std::lock_guard lock(mutex);
   return Read().contains(*identity);
+}
+
+void CheckKeeps(const std::string& output, const std::vector<std::string>& inputs) {
+  const auto identity = IdentityOfRegular(output);
+  if (!identity) return;
+  const bool is_input = std::any_of(inputs.begin(), inputs.end(), [&](const std::string& input) {
+    return IdentityOfRegular(input) == identity;
+  });
+  if (!is_input && !WasRead(output)) return;
+  throw InputError(output +
+                   ": found the name of a file that is read, allowed: another, so that it is not replaced");
 }
 
 void ForgetRead(const std::string& file) {

@@ -5,12 +5,17 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 namespace hydro {
 
 // Any thread may call these.
 void RememberRead(const std::string& file);
 bool WasRead(const std::string& file);
+
+// Throws InputError if writing to `output` would replace what this process has read, or one of `inputs`, which it will read. A
+// device may be both.
+void CheckKeeps(const std::string& output, const std::vector<std::string>& inputs = {});
 
 // For who replaces on purpose what it has read, and has kept it under another name.
 void ForgetRead(const std::string& file);

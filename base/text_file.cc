@@ -61,16 +61,6 @@ std::string PathBeside(const std::string& beside, const std::string& file) {
   return (std::filesystem::path(beside).parent_path() / file).lexically_normal().string();
 }
 
-void CheckKeeps(const std::string& output, const std::vector<std::string>& inputs) {
-  std::error_code absent;
-  if (output.empty() || !std::filesystem::is_regular_file(output, absent)) return;
-  for (const std::string& input : inputs) {
-    if (!std::filesystem::equivalent(output, input, absent)) continue;
-    throw InputError(output +
-                     ": found the name of a file that is read, allowed: another, so that it is not replaced");
-  }
-}
-
 std::string Quoted(std::string_view text) {
   constexpr size_t kLongest = 200;
   std::string quoted = "\"";

@@ -18,10 +18,6 @@ void CheckIsFile(const std::string& file);
 // The path of `file`, which is absolute or relative to the folder of `beside`.
 std::string PathBeside(const std::string& beside, const std::string& file);
 
-// Throws InputError if writing to `output` would replace one of `inputs`, under whatever name. A device may
-// be both.
-void CheckKeeps(const std::string& output, const std::vector<std::string>& inputs);
-
 // `text` in double quotes on one line: control characters escaped, the middle of long texts omitted.
 std::string Quoted(std::string_view text);
 

@@ -14,6 +14,7 @@
 #include "base/did_you_mean.h"
 #include "base/new_file.h"
 #include "base/number_text.h"
+#include "base/read_files.h"
 #include "base/text_file.h"
 #include "diagnose/recording_first.h"
 #include "diagnose/report/progress_bar.h"

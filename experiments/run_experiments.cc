@@ -12,6 +12,7 @@
 #include "base/did_you_mean.h"
 #include "base/input_error.h"
 #include "base/new_file.h"
+#include "base/read_files.h"
 #include "base/text_file.h"
 #include "experiments/report/comparison_text.h"
 #include "experiments/report/experiment_files.h"

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "base/input_error.h"
+#include "base/read_files.h"
 #include "base/text_file.h"
 #include "hydro_log/run_verbs.h"
 #include "log/repair.h"

@@ -5,6 +5,7 @@
 
 #include "base/input_error.h"
 #include "base/new_file.h"
+#include "base/read_files.h"
 #include "base/text_file.h"
 #include "hydro_log/replay.h"
 #include "runs/tracking.h"

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "base/new_file.h"
+#include "base/read_files.h"
 #include "launch/stack_launch.h"
 
 namespace hydro::launch {
@@ -13,11 +14,11 @@ namespace {
 
 // Checked before anything is started: a logger that fails later stops its stack, and with it any other stack
 // that runs on this port.
-void CheckLog(const settings::StackConfig& config, const LaunchPlan& plan, const std::string& file) {
+void CheckLog(const LaunchPlan& plan, const std::string& file) {
   const bool ours = std::any_of(plan.children.begin(), plan.children.end(),
                                 [](const ChildSpec& child) { return child.program() == "hydro-logger"; });
   if (!ours) return;
-  settings::CheckKeepsInputs(file, config);
+  CheckKeeps(file);
   if (IsBeingWritten(file)) {
     throw InputError(file + ": is being written by another process; stop that process or give another name");
   }
@@ -34,7 +35,7 @@ int Launch(const settings::StackConfig& config, const LaunchPlan& plan, int out_
 int LaunchStack(const LaunchRequest& request) {
   const settings::StackConfig config = settings::LoadStackConfig(request.config_file, request.overrides);
   const LaunchPlan plan = PlanLaunch(config, request, OwnFolder());
-  CheckLog(config, plan, request.log_file);
+  CheckLog(plan, request.log_file);
   return Launch(config, plan, STDOUT_FILENO, STDERR_FILENO);
 }
 

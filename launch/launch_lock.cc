@@ -1,36 +1,15 @@
 #include "launch/launch_lock.h"
 
 #include <sys/socket.h>
-#include <sys/un.h>
 #include <unistd.h>
 
 #include <cerrno>
-#include <cstddef>
-#include <cstring>
 
 #include "base/input_error.h"
 #include "bus/udpm/udpm_url.h"
+#include "process/abstract_socket.h"
 
 namespace hydro::launch {
-namespace {
-
-// -1 with errno where the name is taken, or too long.
-int BindAbstract(const std::string& name) {
-  sockaddr_un address{};
-  address.sun_family = AF_UNIX;
-  if (name.size() + 1 > sizeof address.sun_path) return -1;
-  std::memcpy(address.sun_path + 1, name.data(), name.size());
-  const auto size = static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + 1 + name.size());
-  const int fd = socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0);
-  if (fd < 0) return -1;
-  if (bind(fd, reinterpret_cast<const sockaddr*>(&address), size) == 0) return fd;
-  const int error = errno;
-  close(fd);
-  errno = error;
-  return -1;
-}
-
-}  // namespace
 
 LaunchLock::LaunchLock(const settings::StackConfig& config, const std::vector<std::string>& roles,
                        bool spread) {
@@ -40,7 +19,7 @@ LaunchLock::LaunchLock(const settings::StackConfig& config, const std::vector<st
     if (spread && role == "logger") continue;
     errno = 0;
     // A driver takes the plant's place.
-    const int fd = BindAbstract(prefix + (role == "driver" ? "plant" : role));
+    const int fd = process::BindAbstract(SOCK_DGRAM, prefix + (role == "driver" ? "plant" : role));
     if (fd >= 0) {
       sockets_.push_back(fd);
     } else if (errno == EADDRINUSE) {

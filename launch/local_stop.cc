@@ -3,18 +3,18 @@
 #include <poll.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
-#include <sys/un.h>
 #include <unistd.h>
 
 #include <cerrno>
 #include <csignal>
 #include <cstdlib>
-#include <cstring>
 #include <fstream>
 #include <set>
 #include <string_view>
 
 #include "bus/udpm/udpm_url.h"
+#include "process/abstract_socket.h"
+#include "process/role.h"
 #include "process/stop_socket.h"
 
 namespace hydro::launch {
@@ -26,22 +26,7 @@ constexpr char kRequest[] = "stop hydro-launch --stop";
 constexpr int kAnswer_ms = 500;
 constexpr auto kByThemselves = 500ms;  // how long the others may take to end because the plant has
 
-bool DrivesTheMotor(const std::string& role) { return role == "plant" || role == "driver"; }
-
-// A socket that is connected to that abstract name; -1: nobody listens there, or not to us.
-int Connect(const std::string& name) {
-  sockaddr_un address{};
-  address.sun_family = AF_UNIX;
-  if (name.size() + 1 > sizeof address.sun_path) return -1;
-  std::memcpy(address.sun_path + 1, name.data(), name.size());
-  const auto size = static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + 1 + name.size());
-  // Never waits: whoever listens may be stopped, or a stranger who means harm.
-  const int fd = socket(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
-  if (fd < 0) return -1;
-  if (connect(fd, reinterpret_cast<const sockaddr*>(&address), size) == 0) return fd;
-  close(fd);
-  return -1;
-}
+bool HasEnded(int pid) { return kill(pid, 0) != 0 && errno == ESRCH; }
 
 // Whether that is a process of this user (or, for root, of anybody) whose program is one of this project's.
 bool IsOurs(int pid) {
@@ -78,7 +63,8 @@ LocalStop::LocalStop(const settings::StackConfig& config) {
     process.role = rest.substr(0, slash);
     process.pid = std::atoi(rest.c_str() + slash + 1);
     if (!IsOurs(process.pid)) continue;  // anybody may listen under such a name
-    process.connection = Connect(name);
+    // Never waits: whoever listens may be stopped, or a stranger who means harm.
+    process.connection = process::ConnectAbstract(SOCK_SEQPACKET | SOCK_NONBLOCK, name);
     process.deaf = process.connection < 0;
     processes_.push_back(process);
   }
@@ -98,21 +84,21 @@ void LocalStop::Ask(Process& process) {
   char answer[8];
   if (poll(&waiting, 1, kAnswer_ms) > 0 && recv(process.connection, answer, sizeof answer, 0) <= 0) {
     // Closed without an answer: it has ended already, or does not listen to this user.
-    process.ended = kill(process.pid, 0) != 0 && errno == ESRCH;
+    process.ended = HasEnded(process.pid);
     process.refused = !process.ended;
   }
 }
 
 void LocalStop::StopMotor() {
   for (Process& process : processes_) {
-    if (DrivesTheMotor(process.role)) Ask(process);
+    if (process::IsPlant(process.role)) Ask(process);
   }
 }
 
 bool LocalStop::AllEnded(bool with_loggers) {
   bool all = true;
   for (Process& process : processes_) {
-    if (process.deaf) process.ended = kill(process.pid, 0) != 0 && errno == ESRCH;
+    if (process.deaf) process.ended = HasEnded(process.pid);
     if (process.deaf && !process.ended) all = false;
     if (process.ended || process.refused || process.deaf || (!with_loggers && process.role == "logger"))
       continue;
@@ -139,7 +125,6 @@ void LocalStop::AwaitEnd(bool with_loggers, Duration patience) {
 
 void LocalStop::StopRest(Duration patience) {
   AwaitEnd(false, kByThemselves);
-  AllEnded(false);
   for (Process& process : processes_) {
     if (!process.ended && process.role != "logger") Ask(process);
   }

@@ -9,15 +9,12 @@
 #include "launch/launch_plan.h"
 #include "process/participant.h"
 #include "process/role.h"
+#include "process/status.h"
 
 namespace hydro::launch {
 namespace {
 
 constexpr size_t kMostStatuses = 256;  // a stack has five processes; a flood of made-up ones is not kept
-
-bool HasLeft(const process_status_t& status) {
-  return status.state == process_status_t::DONE || status.state == process_status_t::FAILED;
-}
 
 }  // namespace
 
@@ -84,8 +81,9 @@ void StackWatch::AskWhoIsThere() {
 std::vector<std::string> StackWatch::Present(const std::vector<std::string>& roles) const {
   std::vector<std::string> names;
   for (const auto& [key, status] : statuses_) {
-    if (HasLeft(status) || std::find(roles.begin(), roles.end(), status.role) == roles.end()) continue;
-    names.push_back(status.role + " on " + status.host + " (process " + std::to_string(status.pid) + ")");
+    if (process::HasLeft(status) || std::find(roles.begin(), roles.end(), status.role) == roles.end())
+      continue;
+    names.push_back(process::ProcessName(status));
   }
   return names;
 }
@@ -108,8 +106,8 @@ bool StackWatch::IsForThisStack(const stop_t& stop) const {
 std::vector<int64_t> StackWatch::Addressees() const {
   std::vector<int64_t> all;
   for (const auto& [key, status] : statuses_) {
-    if (!BelongsHere(status) || HasLeft(status)) continue;
-    if (status.role == "plant" || status.role == "driver") return {status.session};
+    if (!BelongsHere(status) || process::HasLeft(status)) continue;
+    if (process::IsPlant(status.role)) return {status.session};
     all.push_back(status.session);
   }
   return all;

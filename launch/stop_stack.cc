@@ -14,6 +14,7 @@
 #include "launch/operator_request.h"
 #include "process/participant.h"
 #include "process/stack_bus.h"
+#include "process/status.h"
 
 namespace hydro::launch {
 namespace {
@@ -36,12 +37,12 @@ class Presence {
     });
     bus.Subscribe<process_status_t>(channels.Of<process_status_t>(), [this](const process_status_t& s) {
       if (s.role == process::kLaunchRole) return;  // it only asked
-      Heard(s.session, s.role + " on " + s.host + " (process " + std::to_string(s.pid) + ")");
+      Heard(s.session, process::ProcessName(s));
       const auto found = processes_.find(s.session);
       if (found == processes_.end()) return;
       Process& process = found->second;
       process.local = s.host == host_ && local_.Found(s.pid);
-      process.left = s.state == process_status_t::DONE || s.state == process_status_t::FAILED;
+      process.left = process::HasLeft(s);
     });
   }
 

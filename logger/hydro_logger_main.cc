@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "base/number_text.h"
+#include "base/read_files.h"
 #include "base/text_file.h"
 #include "logger/logger_app.h"
 #include "process/process_main.h"
@@ -25,7 +26,7 @@ int main(int argc, char** argv) {
       [&](hydro::bus::Bus& bus, hydro::bus::Clock& clock, const hydro::settings::StackConfig& config) {
         logger.file = hydro::settings::FileToRecord(logger.file, log);
         if (logger.file.empty()) throw hydro::InputError("-o FILE is required");
-        hydro::settings::CheckKeepsInputs(logger.file, config);
+        hydro::CheckKeeps(logger.file);
         if (rotate_mb != 0 && !(rotate_mb >= 0.01 && rotate_mb <= 1e9)) {
           throw hydro::InputError("--rotate-mb: found " + hydro::ShortestNumber(rotate_mb) +
                                   ", allowed 0 (never) and 0.01 to 1e9");

@@ -2,6 +2,7 @@
 #include <string>
 
 #include "base/new_file.h"
+#include "base/read_files.h"
 #include "base/text_file.h"
 #include "page/figure_svg.h"
 #include "plot/run_figures.h"

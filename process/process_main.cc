@@ -5,6 +5,7 @@
 #include <chrono>
 #include <memory>
 
+#include "base/read_files.h"
 #include "bus/udpm/udpm_url.h"
 #include "log/log_writer.h"
 #include "process/role.h"
@@ -92,7 +93,7 @@ int RunProcess(const std::string& program, const settings::CommonOptions& option
   return settings::RunProgram(program, [&] {
     const StderrLog log(program);  // stdout is for results
     const settings::StackConfig config = settings::LoadStackConfig(options.config, options.overrides);
-    settings::CheckKeepsInputs(options.log, config);
+    CheckKeeps(options.log);
     CatchStopSignals();
     timing::ApplyRealTime(RealTimeRequestOf(SectionOf(config, program)));
     const StopSocket stop_socket(

@@ -1,4 +1,4 @@
-// The role that a program announces itself under.
+// The roles that programs announce themselves under.
 #pragma once
 
 #include <algorithm>
@@ -12,5 +12,8 @@ inline std::string RoleOf(const std::string& program) {
   std::replace(role.begin(), role.end(), '-', '_');
   return role;
 }
+
+// Whether that role holds the rig and sets the pace of a run.
+inline bool IsPlant(const std::string& role) { return role == "plant" || role == "driver"; }
 
 }  // namespace hydro::process

@@ -3,15 +3,14 @@
 #include <poll.h>
 #include <sys/eventfd.h>
 #include <sys/socket.h>
-#include <sys/un.h>
 #include <unistd.h>
 
 #include <array>
 #include <cerrno>
 #include <csignal>
-#include <cstring>
 #include <string_view>
 
+#include "process/abstract_socket.h"
 #include "process/stop_signal.h"
 
 namespace hydro::process {
@@ -51,17 +50,9 @@ std::string StopSocketPrefix(int port, const std::string& channel_suffix) {
 
 StopSocket::StopSocket(const std::string& prefix, const std::string& role) {
   const std::string name = prefix + role + "/" + std::to_string(getpid());
-  sockaddr_un address{};
-  address.sun_family = AF_UNIX;
-  if (name.size() + 1 > sizeof address.sun_path) return;
-  std::memcpy(address.sun_path + 1, name.data(), name.size());  // the leading zero makes it abstract
-  const auto size = static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + 1 + name.size());
-  listener_ = socket(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
+  listener_ = BindAbstract(SOCK_SEQPACKET | SOCK_NONBLOCK, name);
   wake_ = eventfd(0, EFD_CLOEXEC);
-  const bool listens = listener_ >= 0 && wake_ >= 0 &&
-                       bind(listener_, reinterpret_cast<const sockaddr*>(&address), size) == 0 &&
-                       listen(listener_, kBacklog) == 0;
-  if (!listens) return;
+  if (listener_ < 0 || wake_ < 0 || listen(listener_, kBacklog) != 0) return;
   const SignalsBlocked blocked;
   thread_ = std::thread([this] { Listen(); });
 }

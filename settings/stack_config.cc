@@ -1,6 +1,8 @@
 #include "settings/stack_config.h"
 
+#include "base/read_files.h"
 #include "base/text_file.h"
+#include "settings/agreed_entries.h"
 #include "settings/model_file.h"
 #include "settings/overrides.h"
 #include "settings/stack_checks.h"
@@ -40,17 +42,9 @@ StackConfig LoadStackConfig(const std::string& file, const std::vector<std::stri
   config.model.text = ReadTextFile(config.model.resolved_file);
   config.model.description = ParseModel(config.model.text, config.model.resolved_file);
   CheckAgainstModel(root, &config);
+  config.agreed = AgreedEntries(config);
+  RememberRead(config.bus.resolved_key_file);  // whoever opens the bus does
   return config;
-}
-
-void CheckKeepsInputs(const std::string& output, const StackConfig& config) {
-  std::vector<std::string> inputs = {config.file, config.model.resolved_file, config.bus.resolved_key_file};
-  const auto add = [&](const TrajectorySpec& trajectory) {
-    if (!trajectory.file.empty()) inputs.push_back(PathBeside(config.file, trajectory.file));
-  };
-  add(config.reference.trajectory);
-  if (config.model.motion.has_value()) add(*config.model.motion);
-  CheckKeeps(output, inputs);
 }
 
 StackConfig ParseStackConfig(const std::string& config_text, const std::string& config_name,
@@ -61,6 +55,7 @@ StackConfig ParseStackConfig(const std::string& config_text, const std::string& 
   config.model.text = model_text;
   config.model.description = ParseModel(model_text, model_name);
   CheckAgainstModel(root, &config);
+  config.agreed = AgreedEntries(config);
   return config;
 }
 

@@ -155,8 +155,9 @@ struct ProcessSection {
 };
 
 struct StackConfig {
-  std::string file;  // as given on the command line
-  std::string text;  // effective TOML: the file with every override applied
+  std::string file;    // as given on the command line
+  std::string text;    // effective TOML: the file with every override applied
+  std::string agreed;  // what the processes of a stack must have in common (agreed_entries.h); empty: nothing
   ModelSection model;
   BusSection bus;
   TimeSection time;
@@ -187,9 +188,6 @@ StackConfig LoadStackConfig(const std::string& file, const std::vector<std::stri
 // The same from text instead of a file (a log's own description); `model_text` replaces the model file.
 StackConfig ParseStackConfig(const std::string& config_text, const std::string& config_name,
                              const std::string& model_text, const std::string& model_name);
-
-// Throws InputError if writing to `output` would replace a file that `config` was read from, or its key.
-void CheckKeepsInputs(const std::string& output, const StackConfig& config);
 
 // Builds the function that a specification describes.
 std::unique_ptr<trajectory::Trajectory> MakeTrajectory(const TrajectorySpec& spec);

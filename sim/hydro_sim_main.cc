@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <memory>
 
+#include "base/read_files.h"
 #include "log/log_writer.h"
 #include "process/stop_signal.h"
 #include "settings/command_line.h"
@@ -14,7 +15,7 @@ namespace {
 int Run(const hydro::settings::CommonOptions& options, const std::string& file) {
   const hydro::settings::StackConfig config =
       hydro::settings::LoadStackConfig(options.config, options.overrides);
-  hydro::settings::CheckKeepsInputs(file, config);
+  hydro::CheckKeeps(file);
   hydro::process::CatchStopSignals();
   std::unique_ptr<hydro::log::LogWriter> writer;
   if (!file.empty()) writer = std::make_unique<hydro::log::LogWriter>(file, hydro::Opening::kTemporary);

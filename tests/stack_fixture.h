@@ -12,6 +12,7 @@ namespace hydro::testing {
 inline settings::StackConfig SmallStack() {
   settings::StackConfig config;
   config.file = "test.toml";
+  config.agreed = "version = 'test'\n";
   config.model.description.name = "Table 1";
   config.model.description.parameters = Table1();
   config.model.initial_pressure_psi = 100;

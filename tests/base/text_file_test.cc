@@ -1,5 +1,6 @@
 #include "base/text_file.h"
 
+#include "base/read_files.h"
 #include "tests/settings/texts.h"
 
 namespace hydro {

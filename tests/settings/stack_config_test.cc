@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "base/read_files.h"
 #include "tests/settings/texts.h"
 
 namespace hydro::settings {
@@ -296,9 +297,9 @@ TEST_F(StackConfigFolderTest, KeepsItsFiles) {
       file, {"bus.key_file=a.key", "reference={ kind = \"csv\", file = \"reference.csv\", column = \"y\" }",
              "model.shaft=driven", "model.motion={ kind = \"csv\", file = \"motion.csv\", column = \"y\" }"});
   for (const std::string& input : {file, model, key, reference, motion}) {
-    EXPECT_THAT(InputErrorOf([&] { CheckKeepsInputs(input, config); }), HasSubstr(input)) << input;
+    EXPECT_THAT(InputErrorOf([&] { CheckKeeps(input); }), HasSubstr(input)) << input;
   }
-  EXPECT_EQ(InputErrorOf([&] { CheckKeepsInputs(Write("log", ""), config); }), "");
+  EXPECT_EQ(InputErrorOf([&] { CheckKeeps(Write("log", "")); }), "");
 }
 
 // Tests that errors in files named by a configuration say which file.
