@@ -1,18 +1,33 @@
 #include "log/message_kinds.h"
 
 #include "bus/messages.h"
+#include "log/log_format.h"
 
 namespace hydro::log {
+namespace {
+
+std::optional<int64_t> NoSession(const LogEvent&) { return std::nullopt; }
+
+template <class Message>
+std::optional<int64_t> SessionOf(const LogEvent& event) {
+  constexpr int kPlace = bus::PlacesOf<Message>().session;
+  if (kPlace < 0 || event.size < kPlace + 8) return std::nullopt;
+  return static_cast<int64_t>(LoadBigEndian64(event.data + kPlace));
+}
+
+}  // namespace
 
 const std::vector<MessageKind>& MessageKinds() {
   static const std::vector<MessageKind> kinds = [] {
     std::vector<MessageKind> all;
     bus::ForEachMessage([&]<class Message>(const bus::MessageRow<Message>& row) {
       all.push_back({std::string(row.channel), std::string("hydro.") + Message::getTypeName(),
-                     Message::getHash(), [](const LogEvent& event) {
+                     Message::getHash(),
+                     [](const LogEvent& event) {
                        Message message;
                        return DecodeAs(event, message);
-                     }});
+                     },
+                     row.part == bus::LoopPart::kNone ? &NoSession : &SessionOf<Message>});
     });
     return all;
   }();

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -15,6 +16,8 @@ struct MessageKind {
   std::string type;                        // e.g. hydro.state_t
   int64_t hash;                            // what an encoded message of the type begins with
   bool (*decodes)(const LogEvent& event);  // whether it is a whole message of the type
+  // The sender of a message that takes part in the control loops, where a channel has one sender; none of any other.
+  std::optional<int64_t> (*session)(const LogEvent& event);
 };
 
 // All kinds, in the order of the table of messages (bus/messages.h).

@@ -7,6 +7,8 @@
 #include <cstring>
 #include <filesystem>
 #include <map>
+#include <optional>
+#include <set>
 #include <string_view>
 
 #include "base/read_files.h"
@@ -44,6 +46,32 @@ void DropUndecodable(const MappedFile& file, std::vector<KeptEvent>& kept, std::
     kept[*k].end = kept[*k].begin;
   }
   std::erase_if(kept, [](const KeptEvent& place) { return place.end == place.begin; });
+}
+
+// Moves messages that no checksum covers, and whose sender none that one covers has on that channel, from `kept` to `lost`: a
+// flipped bit in a session is one more sender.
+void DropStrangers(const MappedFile& file, std::vector<KeptEvent>& kept, std::vector<LostBytes>& lost) {
+  std::map<std::string, std::set<int64_t>, std::less<>> senders;  // by channel
+  LogEvent event;
+  const auto session = [&](const KeptEvent& place) -> std::optional<int64_t> {
+    ParseLogEvent(file, place.begin, event);
+    const MessageKind* kind = KindOfChannel(event.channel);
+    return kind == nullptr ? std::nullopt : kind->session(event);
+  };
+  for (const KeptEvent& place : kept) {
+    if (!place.vouched) continue;
+    if (const auto sender = session(place)) senders[std::string(event.channel)].insert(*sender);
+  }
+  std::erase_if(kept, [&](const KeptEvent& place) {
+    if (place.vouched) return false;
+    const auto sender = session(place);
+    const auto known = senders.find(event.channel);
+    if (!sender || known == senders.end() || known->second.contains(*sender)) return false;
+    lost.push_back(
+        {place.begin, place.end,
+         "an event on " + std::string(event.channel) + " of a sender that no event with a checksum has"});
+    return true;
+  });
 }
 
 // What a mended log says of itself.
@@ -104,6 +132,7 @@ RepairResult RepairLog(const std::string& file, const std::string& out) {
   VouchedEvents vouched = KeepVouched(contents, sound, result.lost);
   std::vector<KeptEvent>& kept = vouched.messages;
   DropUndecodable(contents, kept, result.lost);
+  DropStrangers(contents, kept, result.lost);
   std::sort(result.lost.begin(), result.lost.end(),
             [](const LostBytes& a, const LostBytes& b) { return a.begin < b.begin; });
   if (kept.empty() && vouched.check_events == 0 && size > 0) {
@@ -114,7 +143,10 @@ RepairResult RepairLog(const std::string& file, const std::string& out) {
   for (const KeptEvent& place : kept) result.kept_bytes += place.end - place.begin;
   result.check_bytes = vouched.check_bytes;
   result.lost_messages = vouched.lost_messages;
-  result.unvouched = vouched.unvouched;
+  if (vouched.unvouched > 0) {
+    result.unvouched =
+        std::count_if(kept.begin(), kept.end(), [](const KeptEvent& place) { return !place.vouched; });
+  }
   result.verdict.found_end = vouched.found_end;  // the verdict looks no further than the first damage
   result.verdict.ending = vouched.ending;
   if (!out.empty()) WriteKept(contents, kept, result, file, out);

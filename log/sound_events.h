@@ -19,6 +19,7 @@ struct LostBytes {
 struct KeptEvent {
   int64_t begin;
   int64_t end;
+  bool vouched = false;  // a checksum says that it is as it was written
 };
 
 // The events of `file` that can be kept, in order, check events among them:

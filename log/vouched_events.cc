@@ -72,6 +72,7 @@ class Voucher {
       if (at < check.count) {
         listed = at + 1;
         result_.messages.push_back(block_[k].place);
+        result_.messages.back().vouched = true;
       } else {
         lost_.push_back({block_[k].place.begin, block_[k].place.end,
                          "an event that has another checksum than when it was written"});
