@@ -23,6 +23,7 @@
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -54,6 +55,16 @@ inline bool DecodedAll(int decoded, const void* data, int size) {
   return decoded == size || (decoded >= 0 && decoded == SizeWithoutSeal(data, size));
 }
 
+// Whether a message that was decoded from another process can be sent on: LCM's strings end at the first zero byte, which a
+// changed or made-up message may have anywhere. Only messages with strings can fail.
+template <class Message>
+bool CanBeEncoded(const Message& message) {
+  if constexpr (std::is_trivially_copyable_v<Message>) return true;
+  const int size = message.getEncodedSize();
+  std::vector<uint8_t> bytes(static_cast<size_t>(size));
+  return message.encode(bytes.data(), 0, size) == size;
+}
+
 template <class Message>
 const MessageType& TypeOf() {
   static const MessageType type{
@@ -64,12 +75,14 @@ const MessageType& TypeOf() {
       },
       [](const void* data, int size) -> std::shared_ptr<void> {
         auto message = std::make_shared<Message>();
-        return DecodedAll(message->decode(data, 0, size), data, size) ? message : nullptr;
+        return DecodedAll(message->decode(data, 0, size), data, size) && CanBeEncoded(*message) ? message
+                                                                                                : nullptr;
       },
       []() -> std::shared_ptr<void> { return std::make_shared<Message>(); },
       [](void* to, const void* from) { *static_cast<Message*>(to) = *static_cast<const Message*>(from); },
       [](void* message, const void* data, int size) {
-        return DecodedAll(static_cast<Message*>(message)->decode(data, 0, size), data, size);
+        return DecodedAll(static_cast<Message*>(message)->decode(data, 0, size), data, size) &&
+               CanBeEncoded(*static_cast<const Message*>(message));
       }};
   return type;
 }

@@ -11,7 +11,7 @@
 #include <utility>
 
 #include "base/saturating.h"
-#include "settings/agreed_entries.h"
+#include "process/status.h"
 
 namespace hydro::logger {
 namespace {
@@ -30,8 +30,7 @@ constexpr size_t kMostSenders = 1024;  // of one kind of message whose numbers a
 LoggerApp::LoggerApp(bus::Bus& bus, bus::Clock& clock, const settings::StackConfig& config,
                      const LoggerOptions& options)
     : bus_(Tap(bus)),  // first: subscribing to all channels after other subscriptions could lose messages
-      participant_(bus, clock, bus::Channels(config.bus.channel_suffix), "logger",
-                   settings::AgreedEntries(config)),
+      participant_(bus, clock, bus::Channels(config.bus.channel_suffix), "logger", config.agreed),
       options_(options),
       plant_alive_(bus::FromSeconds(std::max(0.3, 5 / (config.plant.rate_hz * config.time.speed)))),
       files_(options.file, options.rotate_bytes, participant_.channels().Of<run_description_t>()),
@@ -146,7 +145,7 @@ void LoggerApp::OnStatus(const process_status_t& status) {
   if (status.role != "logger") {
     others_[status.session] = status.state;
   } else if (status.session == participant_.session()) {
-    left_ = status.state == process_status_t::DONE || status.state == process_status_t::FAILED;
+    left_ = process::HasLeft(status);
   }
 }
 

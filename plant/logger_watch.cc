@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "process/status.h"
+
 namespace hydro::plant {
 namespace {
 
@@ -24,8 +26,7 @@ LoggerWatch::LoggerWatch(process::Participant& participant, bus::Clock::Duration
 }
 
 void LoggerWatch::OnStatus(const process_status_t& status) {
-  const bool left = status.state == process_status_t::DONE || status.state == process_status_t::FAILED;
-  if (!left) {
+  if (!process::HasLeft(status)) {
     Heard(status.session);
   } else if (heard_.contains(status.session)) {
     Gone(status.session, status.text.empty() ? "it has left" : status.text, NAN);

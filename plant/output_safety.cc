@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "process/fault_codes.h"
+#include "process/status.h"
 
 namespace hydro::plant {
 namespace {
@@ -146,8 +147,8 @@ void OutputSafety::OnFault(const fault_t& fault) {
 }
 
 void OutputSafety::OnStatus(const process_status_t& status) {
-  const bool left = status.state == process_status_t::DONE || status.state == process_status_t::FAILED;
-  left ? remote_.ForgetSession(status.session) : remote_.ForgetOthersOfRole(status.role, status.session);
+  process::HasLeft(status) ? remote_.ForgetSession(status.session)
+                           : remote_.ForgetOthersOfRole(status.role, status.session);
 }
 
 std::string OutputSafety::DescribePresent(const std::vector<Cause>& causes) const {

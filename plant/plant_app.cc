@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "process/stop_signal.h"
-#include "settings/agreed_entries.h"
 
 namespace hydro::plant {
 namespace {
@@ -31,8 +30,7 @@ PlantApp::PlantApp(bus::Bus& bus, bus::Clock& clock, const settings::StackConfig
                    std::function<bool()> heartbeat)
     : config_(config),
       rig_(rig),
-      participant_(bus, clock, bus::Channels(config.bus.channel_suffix), rig.role(),
-                   settings::AgreedEntries(config)),
+      participant_(bus, clock, bus::Channels(config.bus.channel_suffix), rig.role(), config.agreed),
       safety_(participant_, config),
       logger_watch_(participant_, bus::FromSeconds(std::max(config.limits.stale_logger_s,
                                                             3 / (config.plant.rate_hz * config.time.speed)))),
@@ -139,6 +137,7 @@ bool PlantApp::AllHaveSaidTheirConfiguration() const {
 // A stack whose processes do not agree never starts; who joins a run later with another configuration is not obeyed and
 // leaves, and the run goes on.
 void PlantApp::OnRefusal(int64_t session, const std::string& text) {
+  ForgetCommandsOf(session);
   const std::vector<int64_t>& own = took_part_;
   const bool began_with_it = std::find(own.begin(), own.end(), session) != own.end();
   if (participant_.state() == process_status_t::READY || began_with_it) participant_.RequestStop(text, 1);
@@ -150,27 +149,26 @@ bool PlantApp::WaitForParticipants() {
   auto next_notice = start + 2s;
   std::optional<bus::Clock::TimePoint> complete;
   while (!Ended()) {
-    const std::vector<std::string> missing = roll_call_.Missing();
+    const std::string missing = fmt::format("{}", fmt::join(roll_call_.Missing(), ", "));
     const auto now = participant_.clock().Now();
+    auto until = now + 5ms;
     if (missing.empty()) {
       if (!complete) complete = now;
       if (AllHaveSaidTheirConfiguration() || now - *complete > kConfigurationTime) return true;
-      participant_.bus().HandleUntil(now + 5ms);
-      Poll();
-      continue;
+    } else {
+      if (now >= deadline) {
+        participant_.RequestStop(fmt::format("not ready after {} s (time.start_timeout_s): {}",
+                                             config_.time.start_timeout_s, missing),
+                                 1);
+        return false;
+      }
+      if (now >= next_notice) {
+        spdlog::info("waiting for {}", missing);
+        next_notice = now + 2s;
+      }
+      until = std::min(now + 50ms, deadline);
     }
-    const std::string names = fmt::format("{}", fmt::join(missing, ", "));
-    if (now >= deadline) {
-      participant_.RequestStop(
-          fmt::format("not ready after {} s (time.start_timeout_s): {}", config_.time.start_timeout_s, names),
-          1);
-      return false;
-    }
-    if (now >= next_notice) {
-      spdlog::info("waiting for {}", names);
-      next_notice = now + 2s;
-    }
-    participant_.bus().HandleUntil(std::min(now + 50ms, deadline));
+    participant_.bus().HandleUntil(until);
     Poll();
   }
   return false;
@@ -236,9 +234,6 @@ void PlantApp::PublishState(int64_t skipped_ticks) {
     round_trips_.OnSent(tick_, participant_.clock().Now());
   }
   state_publisher_.Send(state_);
-  if (!unanswered_since_ && tick_ % config_.pressure_interval_ticks == 0) {
-    unanswered_since_ = participant_.clock().Now();
-  }
 }
 
 void PlantApp::Poll() {

@@ -75,8 +75,9 @@ class PlantApp {
   void CheckCommandIsFresh();
   void CheckSupervisor();
   void OnMotorCommand(const motor_command_t& command);
+  void ForgetCommandsOf(int64_t session);
   void RefuseFutureCommand(const motor_command_t& command);
-  bus::Clock::Duration TimeSinceDue(int64_t tick) const;
+  bus::Clock::Duration AgeOfAnswer() const;
   void Poll();
   bool Ended() const;
 
@@ -111,9 +112,7 @@ class PlantApp {
   int64_t newest_pressure_command_tick_ = -1;
   std::vector<int64_t> took_part_;           // sessions with which the run began
   std::map<int64_t, int64_t> log_progress_;  // tick by session, of the loggers that the run began with
-  // Real time: when the oldest unanswered state was sent.
-  std::optional<bus::Clock::TimePoint> unanswered_since_;
-  run_description_t description_;  // published once a second
+  run_description_t description_;            // published once a second
   bus::Clock::TimePoint next_description_;
 };
 

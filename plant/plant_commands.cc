@@ -15,6 +15,8 @@ constexpr auto kHeartbeatCheck = std::chrono::milliseconds(10);
 
 void PlantApp::OnMotorCommand(const motor_command_t& command) {
   if (participant_.Refuses(command.session)) return;
+  // Before the run there is no state that it could answer.
+  if (command.tick < 0 || participant_.state() != process_status_t::RUNNING) return;
   const auto now = participant_.clock().Now();
   // Never counted as the newest: it would make every later good one an old one.
   if (command.tick > tick_ && !command_monitor_.FollowsAnother(command.session, now)) {
@@ -25,16 +27,29 @@ void PlantApp::OnMotorCommand(const motor_command_t& command) {
   // A duplicate is neither obeyed nor a sign of life.
   if (verdict == bus::SequenceMonitor::Verdict::kDuplicate) return;
   if (verdict == bus::SequenceMonitor::Verdict::kSecondSender) return;  // CheckCommand() raises the fault
-  if (verdict == bus::SequenceMonitor::Verdict::kRestarted) waiting_commands_.clear();
+  if (verdict == bus::SequenceMonitor::Verdict::kRestarted) {
+    // The queue stays in order. What the one before has sent for earlier ticks still acts when its time comes: without it an
+    // older command would go on acting.
+    while (!waiting_commands_.empty() && waiting_commands_.back().tick >= command.tick)
+      waiting_commands_.pop_back();
+  }
   future_command_ = false;
   if (const auto taken = round_trips_.OnAnswer(command.tick, now)) {
     participant_.statistics().RecordRoundTrip(*taken);
   }
   waiting_commands_.push_back(command);
   newest_command_tick_ = command.tick;
-  unanswered_since_.reset();
-  const int64_t newest_due = tick_ / config_.pressure_interval_ticks * config_.pressure_interval_ticks;
-  if (command.tick < newest_due) unanswered_since_ = now - TimeSinceDue(command.tick);
+}
+
+// What a sender has commanded before it turned out to run with another configuration does not act either.
+void PlantApp::ForgetCommandsOf(int64_t session) {
+  for (size_t left = waiting_commands_.size(); left > 0; --left) {
+    const motor_command_t command = waiting_commands_.front();
+    waiting_commands_.pop_front();
+    if (command.session != session) waiting_commands_.push_back(command);
+  }
+  if (command_ && command_->session == session) command_.reset();
+  if (command_monitor_.session() == session) newest_command_tick_ = -1;  // lockstep waits for another's
 }
 
 void PlantApp::RefuseFutureCommand(const motor_command_t& command) {
@@ -47,11 +62,15 @@ void PlantApp::RefuseFutureCommand(const motor_command_t& command) {
   });
 }
 
-// How long ago the state that follows `tick` asked for an answer. A loop that works through a backlog, or
-// repeats itself, is not in control, however often it sends.
-bus::Clock::Duration PlantApp::TimeSinceDue(int64_t tick) const {
-  const double ticks = static_cast<double>(tick_) - static_cast<double>(tick) -
-                       static_cast<double>(config_.pressure_interval_ticks);
+// How long the newest state that asks for a command has gone unanswered: the age, in ticks, of what answers, less the interval.
+// A loop that works through a backlog, or repeats itself, is not in control, however often it sends; and what this process
+// itself has slept through makes the command in force older too.
+bus::Clock::Duration PlantApp::AgeOfAnswer() const {
+  const int64_t interval = config_.pressure_interval_ticks;
+  const int64_t answered = !waiting_commands_.empty() ? waiting_commands_.back().tick
+                           : command_                 ? command_->tick
+                                                      : -interval;
+  const auto ticks = static_cast<double>(tick_ - answered - interval);
   return bus::FromSeconds(std::clamp(ticks / (config_.plant.rate_hz * config_.time.speed), 0.0, 1e8));
 }
 
@@ -71,8 +90,9 @@ void PlantApp::ChooseVoltage() {
   safety_.CheckMeasured(state_);
   safety_.CheckRig(rig_.faults());
   safety_.CheckSurroundings();
-  voltage_ = safety_.Voltage(command_ ? command_->voltage : 0);
-  command_tick_ = command_ && !safety_.holds() ? command_->tick : -1;
+  const bool obeys = command_ && !participant_.stop();  // the run may have ended since this tick began
+  voltage_ = safety_.Voltage(obeys ? command_->voltage : 0);
+  command_tick_ = obeys && !safety_.holds() ? command_->tick : -1;
 }
 
 void PlantApp::CheckCommand(const motor_command_t& command) {
@@ -133,8 +153,7 @@ void PlantApp::CheckSupervisor() {
 void PlantApp::CheckCommandIsFresh() {
   using Cause = VoltageGuard::Cause;
   using Finding = OutputSafety::Finding;
-  const auto now = participant_.clock().Now();
-  const auto age = now - unanswered_since_.value_or(now);
+  const auto age = AgeOfAnswer();
   safety_.Set(Cause::kStaleCommand, age > stale_time_, [&] {
     return Finding{
         fmt::format("tick {}: no motor command for {:.0f} ms, allowed are {:.0f} ms (limits.stale_input_s)",

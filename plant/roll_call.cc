@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "process/status.h"
+
 namespace hydro::plant {
 namespace {
 
@@ -11,7 +13,7 @@ constexpr size_t kMostPresent = 256;  // a stack has five processes; a flood of 
 
 void RollCall::Observe(const process_status_t& status) {
   const std::pair key(status.role, status.session);  // on a simulated clock every session is 0
-  if (status.state == process_status_t::READY || status.state == process_status_t::RUNNING) {
+  if (process::IsThere(status)) {
     if (present_.size() < kMostPresent || present_.contains(key)) present_[key] = status;
     return;
   }
@@ -21,7 +23,7 @@ void RollCall::Observe(const process_status_t& status) {
   const bool matters = status.role == "logger" ||
                        std::find(expected_.begin(), expected_.end(), status.role) != expected_.end();
   if (matters && left_.empty()) {
-    left_ = status.role + " on " + status.host + " (process " + std::to_string(status.pid) + ")";
+    left_ = process::ProcessName(status);
     if (!status.text.empty()) left_ += ": " + status.text;
   }
 }

@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "process/fault_codes.h"
-#include "settings/agreed_entries.h"
 
 namespace hydro::position_ctrl {
 namespace {
@@ -42,8 +41,7 @@ PositionLawSettings LawSettingsFor(const settings::StackConfig& config) {
 }  // namespace
 
 PositionApp::PositionApp(bus::Bus& bus, bus::Clock& clock, const settings::StackConfig& config)
-    : participant_(bus, clock, bus::Channels(config.bus.channel_suffix), "position_ctrl",
-                   settings::AgreedEntries(config)),
+    : participant_(bus, clock, bus::Channels(config.bus.channel_suffix), "position_ctrl", config.agreed),
       lockstep_(config.time.mode == settings::TimeMode::kLockstep),
       interval_(config.position_interval_ticks),
       stall_time_(bus::FromSeconds(config.time.stall_timeout_s) + 400ms),

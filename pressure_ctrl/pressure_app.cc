@@ -8,7 +8,6 @@
 
 #include "base/input_error.h"
 #include "base/saturating.h"
-#include "settings/agreed_entries.h"
 
 namespace hydro::pressure_ctrl {
 namespace {
@@ -55,8 +54,7 @@ PressureLawSettings PressureLawSettingsFor(const settings::StackConfig& config) 
 }
 
 PressureApp::PressureApp(bus::Bus& bus, bus::Clock& clock, const settings::StackConfig& config)
-    : participant_(bus, clock, bus::Channels(config.bus.channel_suffix), "pressure_ctrl",
-                   settings::AgreedEntries(config)),
+    : participant_(bus, clock, bus::Channels(config.bus.channel_suffix), "pressure_ctrl", config.agreed),
       lockstep_(config.time.mode == settings::TimeMode::kLockstep),
       interval_(config.pressure_interval_ticks),
       position_interval_(config.position_interval_ticks),
@@ -79,12 +77,19 @@ PressureApp::PressureApp(bus::Bus& bus, bus::Clock& clock, const settings::Stack
   bus.Subscribe<pressure_command_t>(
       participant_.channels().Of<pressure_command_t>(),
       [this](const pressure_command_t& command) { OnPressureCommand(command); });
+  participant_.OnRefusal([this](int64_t session, const std::string&) {
+    if (command_monitor_.session() == session) ForgetPressureCommands();
+  });
   participant_.Announce(process_status_t::READY);
 }
 
-void PressureApp::Restart() {
+void PressureApp::ForgetPressureCommands() {
   waiting_commands_.clear();
   pressure_command_.reset();
+}
+
+void PressureApp::Restart() {
+  ForgetPressureCommands();
   future_command_.reset();
   pending_state_.reset();
   answered_ = false;
@@ -148,10 +153,7 @@ void PressureApp::OnPressureCommand(const pressure_command_t& command) {
   // A second sender is not obeyed; InputsAreSafe() raises the fault.
   if (verdict == bus::SequenceMonitor::Verdict::kSecondSender) return;
   if (verdict == bus::SequenceMonitor::Verdict::kDuplicate) return;
-  if (verdict == bus::SequenceMonitor::Verdict::kRestarted) {
-    waiting_commands_.clear();
-    pressure_command_.reset();
-  }
+  if (verdict == bus::SequenceMonitor::Verdict::kRestarted) ForgetPressureCommands();
   future_command_.reset();
   waiting_commands_.push_back(command);
   if (pending_state_ && !AwaitsPressureCommand(pending_state_->tick)) {

@@ -52,6 +52,7 @@ class PressureApp : public process::App {
   void TakePressureCommandsUpTo(int64_t tick);
   bool AwaitsPressureCommand(int64_t state_tick) const;
   void Send(motor_command_t& command);
+  void ForgetPressureCommands();
   void Restart();
 
   process::Participant participant_;

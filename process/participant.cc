@@ -9,22 +9,20 @@
 #include <hydro/loop_statistics_t.hpp>
 
 #include "bus/session.h"
+#include "process/role.h"
+#include "process/status.h"
 
 namespace hydro::process {
 namespace {
 
 constexpr auto kAnnouncementPeriod = std::chrono::milliseconds(100);
 constexpr auto kConfigurationPeriod = std::chrono::milliseconds(500);
+// Who has missed it, or was told wrongly, is told again.
+constexpr auto kConfigurationAgain = std::chrono::seconds(2);
 constexpr char kOtherConfiguration[] = "other_configuration";
 constexpr auto kActiveFaultsPeriod = std::chrono::seconds(1);
 constexpr int kFarewells = 3;       // lists that are empty, after the last fault has ended
 constexpr size_t kMostNames = 256;  // a stack has five processes; a flood of made-up ones is not kept
-
-bool IsPlant(const std::string& role) { return role == "plant" || role == "driver"; }
-
-bool IsThere(const process_status_t& status) {
-  return status.state == process_status_t::READY || status.state == process_status_t::RUNNING;
-}
 
 }  // namespace
 
@@ -54,8 +52,7 @@ Participant::Participant(bus::Bus& bus, bus::Clock& clock, const bus::Channels& 
 
 void Participant::OnStatus(const process_status_t& status) {
   if (names_.size() < kMostNames && !names_.contains(status.session)) {
-    names_[status.session] =
-        status.role + " on " + status.host + " (process " + std::to_string(status.pid) + ")";
+    names_[status.session] = ProcessName(status);
   }
   if (status.session == session()) return;
   if (IsThere(status)) {
@@ -79,7 +76,7 @@ void Participant::OnStatus(const process_status_t& status) {
 // Zero volts need no help here: who is not obeyed becomes stale like a dead sender.
 void Participant::OnConfiguration(const configuration_t& announced) {
   if (announced.session == session() || !agreement_.Observe(announced)) return;
-  const std::string who = fmt::format("{} on {} (process {})", announced.role, announced.host, announced.pid);
+  const std::string who = ProcessName(announced.role, announced.host, announced.pid);
   const std::string text =
       fmt::format("{} has another configuration: {}", who, agreement_.Differences(announced.session));
   // The plant is right: it holds the rig, and its configuration is in the log.
@@ -97,15 +94,7 @@ void Participant::LeaveAlone(const std::string& reason) {
   if (stop_) return;
   configuration_sent_.reset();
   PublishConfiguration();  // so that the plant can say the same
-  stop_t stop{};
-  stop.utime = clock_.Utime();
-  stop.tick = tick_;
-  stop.session = stop.addressee = session();
-  stop.source = role_;
-  stop.reason = reason;
-  stop.exit_code = 1;
-  stop_ = stop;
-  if (!clock_.simulated()) spdlog::error("{}", reason);
+  Stop(session(), role_, reason, 1);
 }
 
 void Participant::PublishConfiguration() {
@@ -162,6 +151,9 @@ void Participant::Poll() {
                bus_.undecodable_channel() + "); they are ignored";
       },
       *this);
+  if (state_ == process_status_t::RUNNING && !clock_.simulated() && configuration_sent_ &&
+      now - *configuration_sent_ >= kConfigurationAgain)
+    PublishConfiguration();
   if (active_faults_left_ > 0 && now >= next_active_faults_) PublishActiveFaults();
   WatchRefusals();
 }
@@ -259,16 +251,21 @@ void Participant::PublishActiveFaults() {
 
 void Participant::RequestStop(const std::string& reason, int exit_code, const std::string& source) {
   if (stop_) return;
+  Stop(run_ != 0 ? run_ : session(), source.empty() ? role_ : source, reason, exit_code);
+  bus_.Publish(channels_.Of<stop_t>(), *stop_);
+}
+
+void Participant::Stop(int64_t addressee, const std::string& source, const std::string& reason,
+                       int exit_code) {
   stop_t stop;
   stop.utime = clock_.Utime();
   stop.tick = tick_;
   stop.session = session();
-  stop.addressee = run_ != 0 ? run_ : session();
-  stop.source = source.empty() ? role_ : source;
+  stop.addressee = addressee;
+  stop.source = source;
   stop.reason = reason;
   stop.exit_code = exit_code;
   stop_ = stop;
-  bus_.Publish(channels_.Of<stop_t>(), stop);
   if (exit_code != 0 && !clock_.simulated()) spdlog::error("{}", reason);
 }
 

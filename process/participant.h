@@ -109,6 +109,7 @@ class Participant {
   void OnStatus(const process_status_t& status);
   void OnConfiguration(const configuration_t& announced);
   void PublishConfiguration();
+  void Stop(int64_t addressee, const std::string& source, const std::string& reason, int exit_code);
   void LeaveAlone(const std::string& reason);
   void PublishFault(const fault_t& fault);
   void PublishActiveFaults();

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <hydro/fault_t.hpp>
 #include <limits>
 #include <vector>
@@ -29,6 +30,23 @@ TEST(MalformedStringTest, BadLengthsAreRefused) {
     fault_t into;
     EXPECT_FALSE(type.decode_into(&into, bytes.data(), size)) << length;
   }
+}
+
+// Tests that a string with a zero byte inside makes the message undecodable: LCM would cut it there when the receiver repeats it,
+// and what is encoded then is not what was said.
+TEST(MalformedStringTest, AZeroByteInsideIsRefused) {
+  fault_t fault{};
+  fault.text = "no state";
+  std::vector<uint8_t> bytes(static_cast<size_t>(fault.getEncodedSize()));
+  const int size = static_cast<int>(bytes.size());
+  ASSERT_EQ(fault.encode(bytes.data(), 0, size), size);
+  const auto blank = std::find(bytes.begin(), bytes.end(), ' ');
+  ASSERT_NE(blank, bytes.end());
+  *blank = 0;
+  const MessageType& type = TypeOf<fault_t>();
+  EXPECT_EQ(type.decode(bytes.data(), size), nullptr);
+  fault_t into;
+  EXPECT_FALSE(type.decode_into(&into, bytes.data(), size));
 }
 
 }  // namespace

@@ -4,7 +4,9 @@
 
 #include <cmath>
 #include <functional>
+#include <hydro/configuration_t.hpp>
 #include <hydro/fault_t.hpp>
+#include <hydro/stop_t.hpp>
 #include <set>
 
 #include "bus/in_process_bus.h"
@@ -164,6 +166,58 @@ TEST_F(PlantRigTest, OtherExceptions) {
   EXPECT_THROW(Run(), int);
   EXPECT_EQ(rig_.driven.back(), 1.5);
   EXPECT_EQ(rig_.output, 0);
+}
+
+// Tests that once the run has ended nothing is driven, not even in the tick in which that was heard.
+TEST_F(PlantRigTest, NothingIsDrivenOnceTheRunHasEnded) {
+  bus_.Subscribe<state_t>("HYDRO_STATE", [this](const state_t& s) {
+    stop_t stop{};
+    stop.reason = "enough";
+    if (s.tick == 50) bus_.Publish("HYDRO_STOP", stop);
+  });
+  EXPECT_EQ(Run(), 0);
+  ASSERT_EQ(rig_.driven.size(), 51u);
+  EXPECT_EQ(rig_.driven[49], 1.5);
+  EXPECT_EQ(rig_.driven[50], 0);
+}
+
+// Tests that what a loop has commanded before it said that it runs with another configuration never acts, and that what had
+// acted before it is as old as it was.
+TEST_F(PlantRigTest, CommandsOfAMisconfiguredLoopDoNotAct) {
+  config_.limits.stale_input_s = 0.005;
+  bus_.Subscribe<state_t>("HYDRO_STATE", [this](const state_t& s) {
+    if (s.tick == 50) answers_ = false;
+    if (s.tick != 70) return;
+    motor_command_t command{};
+    command.tick = s.tick;
+    command.session = 2;
+    command.voltage = 1;
+    bus_.Publish("HYDRO_MOTOR_COMMAND", command);
+    configuration_t other;
+    other.session = 2;
+    other.role = "pressure_ctrl";
+    other.text = "position.c1 = 1\n";
+    bus_.Publish("HYDRO_CONFIGURATION", other);
+  });
+  EXPECT_EQ(Run(), 0);
+  EXPECT_EQ(rig_.driven[50], 1.5);
+  for (size_t k = 60; k < rig_.driven.size(); ++k) EXPECT_EQ(rig_.driven[k], 0) << k;
+}
+
+// Tests that the time that the plant itself sleeps through counts as the age of the command that acts in it.
+TEST_F(PlantRigTest, SleepMakesTheCommandOlder) {
+  config_.limits.stale_input_s = 0.05;
+  config_.last_tick = 200;
+  bus_.Subscribe<state_t>("HYDRO_STATE", [this](const state_t& s) {
+    if (s.tick == 50) answers_ = false;
+  });
+  rig_.on_read = [this](int64_t tick) {
+    if (tick == 51) clock_.AdvanceTo(clock_.Now() + std::chrono::milliseconds(40));
+  };
+  EXPECT_EQ(Run(), 0);
+  ASSERT_EQ(faults_.size(), 1u);
+  EXPECT_EQ(faults_[0].code, "stale_motor_command");
+  EXPECT_LE(faults_[0].tick, 50 + 50 + 3);
 }
 
 }  // namespace

@@ -90,7 +90,7 @@ void PlantInvariants::CheckOrigin(int64_t tick, double voltage) {
   if (!command) {
     // Nor can it tell who belongs to the stack while nobody else is heard.
     const auto alive = static_cast<TrueTime>(observer_.config_.limits.stale_input_s * 1e9);
-    if (made_up != nullptr && made_up->handled - plant_.genuine > alive) return;
+    if (made_up != nullptr && made_up->silence > alive) return;
     observer_.Report("no command is obeyed that is forged or of another run",
                      fmt::format("tick {}: {:.17g} V, which {} commanded", tick, voltage,
                                  made_up != nullptr ? "an intruder" : "nobody"));

@@ -21,6 +21,7 @@ struct ReceivedCommand {
   int64_t sequence = -1;
   double voltage = 0;
   TrueTime handled = 0;
+  TrueTime silence = 0;  // how long no process of the stack had been heard then
   Origin origin = Origin::kProcess;
 };
 
