@@ -33,8 +33,8 @@ LoggerApp::LoggerApp(bus::Bus& bus, bus::Clock& clock, const settings::StackConf
       participant_(bus, clock, bus::Channels(config.bus.channel_suffix), "logger", config.agreed),
       options_(options),
       plant_alive_(bus::FromSeconds(std::max(0.3, 5 / (config.plant.rate_hz * config.time.speed)))),
-      files_(options.file, options.rotate_bytes, participant_.channels().Of<run_description_t>()),
-      queue_(static_cast<size_t>(config.logger.memory_mb * 1e6)) {
+      recording_({options.file, options.rotate_bytes, static_cast<size_t>(config.logger.memory_mb * 1e6)},
+                 participant_.channels().Of<run_description_t>(), clock) {
   if (config.time.mode == settings::TimeMode::kLockstep) {
     order_.emplace(config.pressure_interval_ticks, config.position_interval_ticks,
                    config.plant.command_delay_ticks == 0, [this](const log::RecordedMessage& message) {
@@ -44,22 +44,13 @@ LoggerApp::LoggerApp(bus::Bus& bus, bus::Clock& clock, const settings::StackConf
   }
   bus.Subscribe<process_status_t>(participant_.channels().Of<process_status_t>(),
                                   [this](const process_status_t& status) { OnStatus(status); });
-  thread_ = std::thread([this] { WriteUntilClosed(); });
+  if (!options_.disk_is_ready) thread_.emplace(recording_);
   participant_.Announce(process_status_t::READY);
 }
 
 bus::Bus& LoggerApp::Tap(bus::Bus& bus) {
   bus.SubscribeAll([this](const bus::RawMessage& message) { OnMessage(message); });
   return bus;
-}
-
-LoggerApp::~LoggerApp() {
-  {
-    const std::lock_guard lock(mutex_);
-    closing_ = true;
-  }
-  wake_.notify_one();
-  if (thread_.joinable()) thread_.join();
 }
 
 void LoggerApp::OnMessage(const bus::RawMessage& message) {
@@ -119,13 +110,13 @@ void LoggerApp::CountSequence(const bus::LoopNumbers& numbers) {
 
 void LoggerApp::Enqueue(std::string_view channel, const uint8_t* data, size_t size, int64_t utime,
                         bus::Clock::TimePoint arrived) {
-  largest_queue_ = std::max(largest_queue_, queue_.Push(channel, data, size, utime, arrived));
+  largest_queue_ = std::max(largest_queue_, recording_.queue().Push(channel, data, size, utime, arrived));
   largest_queue_total_ = std::max(largest_queue_total_, largest_queue_);
 }
 
 // One fault per episode, however much is left out of the log. It never affects the voltage.
 void LoggerApp::CheckOverflow() {
-  const int64_t dropped = queue_.dropped();
+  const int64_t dropped = recording_.queue().dropped();
   const auto now = participant_.clock().Now();
   if (dropped > dropped_) {
     dropped_ = dropped;
@@ -133,7 +124,7 @@ void LoggerApp::CheckOverflow() {
     participant_.Raise("log_overflow",
                        fmt::format("{} messages are not in the log so far: the disk is slower than the bus, "
                                    "and {} MB wait (logger.memory_mb)",
-                                   dropped, static_cast<double>(queue_.memory()) * 1e-6),
+                                   dropped, static_cast<double>(recording_.queue().memory()) * 1e-6),
                        static_cast<double>(dropped), 0, false);
   } else if (overflow_ && now - *overflow_ > kOverflowQuiet) {
     overflow_.reset();
@@ -161,60 +152,18 @@ void LoggerApp::ReportProgress() {
   bus_.Publish(participant_.channels().Of<log_progress_t>(), progress);
 }
 
-// Wakes every kFlushPeriod: a notification per message would cost the receiving thread a system call each.
-void LoggerApp::WriteUntilClosed() {
-  try {
-    for (bool closing = false; !closing;) {
-      {
-        std::unique_lock lock(mutex_);
-        wake_.wait_for(lock, kFlushPeriod, [this] { return closing_; });
-        closing = closing_;
-      }
-      if (const auto wrong = files_.Look(closing)) ReportGone(*wrong);
-      const EventQueue::Batch batch = queue_.Take();
-      if (batch.empty()) continue;
-      const Write write = WriteBatch(batch);
-      const std::lock_guard lock(mutex_);
-      writes_.push_back(write);
-    }
-  } catch (...) {
-    const std::lock_guard lock(mutex_);
-    failure_ = std::current_exception();
-    failed_ = true;
-  }
-}
-
-// Recording goes on: an open file takes what is written, and may still be copied from /proc.
-void LoggerApp::ReportGone(const std::string& wrong) {
-  spdlog::error("{}; recording goes on, and this logger will end with 1", wrong);
-  const std::lock_guard lock(mutex_);
-  if (gone_.empty()) gone_ = wrong;
-}
-
-LoggerApp::Write LoggerApp::WriteBatch(const EventQueue::Batch& batch) {
-  const auto began = participant_.clock().Now();
-  std::optional<bus::Clock::TimePoint> oldest;
-  batch.ForEach([&](const EventQueue::Event& event) {
-    if (!oldest) oldest = event.arrived;
-    files_.Append(event);
-  });
-  files_.Flush();
-  const auto now = participant_.clock().Now();
-  return {began, now - oldest.value_or(now)};
-}
-
 void LoggerApp::Poll() {
-  if (order_ && order_->held_since() && participant_.clock().Now() - *order_->held_since() > kFlushPeriod) {
+  if (order_ && order_->held_since() &&
+      participant_.clock().Now() - *order_->held_since() > WritingThread::kPeriod) {
     order_->Release();  // the message that it waits for was lost
   }
   CheckOverflow();
   participant_.statistics().set_lost_messages(lost_ + dropped_);
   participant_.statistics().RecordQueueDepth(largest_queue_);
   largest_queue_ = 0;
-  {
-    const std::lock_guard lock(mutex_);
-    for (const Write& write : writes_) participant_.statistics().RecordCycle(write.began, write.latency);
-    writes_.clear();
+  if (!thread_ && options_.disk_is_ready()) recording_.WriteWaiting(false);
+  for (const Recording::Write& write : recording_.TakeWrites()) {
+    participant_.statistics().RecordCycle(write.began, write.latency);
   }
   participant_.Poll();
   if (state_tick_ > reported_tick_ && participant_.clock().Now() >= report_again_) ReportProgress();
@@ -229,55 +178,45 @@ bool LoggerApp::EveryoneHasLeft() const {
 }
 
 bool LoggerApp::finished() const {
-  if (failed_) return true;
+  if (recording_.failed()) return true;
   return stop_time_ && (EveryoneHasLeft() || participant_.clock().Now() - *stop_time_ > kFarewellTime);
 }
 
-// Why writing failed; empty while it works.
-std::string LoggerApp::FailureText() {
-  const std::lock_guard lock(mutex_);
-  if (!failure_) return gone_;
-  try {
-    std::rethrow_exception(failure_);
-  } catch (const std::exception& error) {
-    return error.what();
-  }
-}
-
 int LoggerApp::Finish() {
-  int exit_code = participant_.Leave(FailureText());
+  int exit_code = participant_.Leave(recording_.FailureText());
   // Handle what was sent already, up to this logger's own last message, which comes back from the bus like
   // any other.
   const auto deadline = participant_.clock().Now() + kEchoTime;
   while (!left_ && participant_.clock().Now() < deadline) bus_.HandleUntil(deadline);
   if (order_) order_->Release();
-  {
-    const std::lock_guard lock(mutex_);
-    closing_ = true;
-  }
-  wake_.notify_one();
-  thread_.join();
-  if (failure_) std::rethrow_exception(failure_);
+  CloseRecording();
+  if (!recording_.Gone().empty()) exit_code = 1;
+  TellHowMuch();
+  return exit_code;
+}
+
+void LoggerApp::CloseRecording() {
+  thread_ ? thread_->Close() : recording_.WriteWaiting(true);
+  std::vector<std::string> remarks;
   if (const std::string refused = refused_.Text(); !refused.empty()) {
     spdlog::warn("{}", refused);
-    files_.Remark(refused);
+    remarks.push_back(refused);
   }
-  if (queue_.dropped() > 0) {
-    files_.Remark(
-        fmt::format("{} messages are not in the log: the disk was slower than the bus", queue_.dropped()));
+  if (const int64_t dropped = recording_.queue().dropped(); dropped > 0) {
+    remarks.push_back(
+        fmt::format("{} messages are not in the log: the disk was slower than the bus", dropped));
+    spdlog::warn("{} (logger.memory_mb)", remarks.back());
   }
-  files_.Finish();
-  if (!gone_.empty()) exit_code = 1;
-  if (const int64_t dropped = queue_.dropped(); dropped > 0) {
-    spdlog::warn("{} messages are not in the log: the disk was slower than the bus (logger.memory_mb)",
-                 dropped);
-  }
-  const std::string size = files_.count() > 1 ? fmt::format("{} and {} more files ({} bytes in the last)",
-                                                            options_.file, files_.count() - 1, files_.bytes())
-                                              : fmt::format("{} ({} bytes)", options_.file, files_.bytes());
+  recording_.Finish(remarks);
+}
+
+void LoggerApp::TellHowMuch() {
+  const std::string size = recording_.files() > 1
+                               ? fmt::format("{} and {} more files ({} bytes in the last)", options_.file,
+                                             recording_.files() - 1, recording_.bytes())
+                               : fmt::format("{} ({} bytes)", options_.file, recording_.bytes());
   spdlog::info("{} messages in {}; at most {} waited for the disk; {} lost before they arrived",
-               received_ - queue_.dropped(), size, largest_queue_total_, lost_);
-  return exit_code;
+               received_ - recording_.queue().dropped(), size, largest_queue_total_, lost_);
 }
 
 }  // namespace hydro::logger
