@@ -108,6 +108,7 @@ class PlantApp {
   timing::RoundTripMonitor round_trips_;
   RingQueue<motor_command_t> waiting_commands_;  // received, not yet in force, by tick
   std::optional<motor_command_t> command_;       // in force
+  int64_t obeyed_from_ = 0;                      // only commands that answer this tick or a later one act
   int64_t newest_command_tick_ = -1;
   int64_t newest_pressure_command_tick_ = -1;
   std::vector<int64_t> took_part_;           // sessions with which the run began

@@ -90,7 +90,10 @@ void PlantApp::ChooseVoltage() {
   safety_.CheckMeasured(state_);
   safety_.CheckRig(rig_.faults());
   safety_.CheckSurroundings();
-  const bool obeys = command_ && !participant_.stop();  // the run may have ended since this tick began
+  // What was commanded before or while the voltage was held at zero does not come back.
+  if (safety_.holds() || !rig_.faults().empty()) obeyed_from_ = tick_;
+  // The run may have ended since this tick began.
+  const bool obeys = command_ && command_->tick >= obeyed_from_ && !participant_.stop();
   voltage_ = safety_.Voltage(obeys ? command_->voltage : 0);
   command_tick_ = obeys && !safety_.holds() ? command_->tick : -1;
 }

@@ -204,6 +204,21 @@ TEST_F(PlantRigTest, CommandsOfAMisconfiguredLoopDoNotAct) {
   for (size_t k = 60; k < rig_.driven.size(); ++k) EXPECT_EQ(rig_.driven[k], 0) << k;
 }
 
+// Tests that a command from before a fault does not act again when the fault has ended: only a fresh one does.
+TEST_F(PlantRigTest, NothingOldActsAfterAFault) {
+  config_.last_tick = 120;
+  bus_.Subscribe<state_t>("HYDRO_STATE",
+                          [this](const state_t& s) { answers_ = s.tick < 55 || s.tick >= 80; });
+  rig_.on_read = [this](int64_t tick) {
+    rig_.faults_now.clear();
+    if (tick >= 50 && tick < 60) rig_.faults_now.push_back({"sensor_p1", "p1 is gone", 1, 2});
+  };
+  EXPECT_EQ(Run(), 0);
+  EXPECT_EQ(rig_.driven[48], 1.5);
+  for (size_t k = 49; k < 80; ++k) EXPECT_EQ(rig_.driven[k], 0) << k;
+  EXPECT_EQ(rig_.driven[81], 1.5);
+}
+
 // Tests that the time that the plant itself sleeps through counts as the age of the command that acts in it.
 TEST_F(PlantRigTest, SleepMakesTheCommandOlder) {
   config_.limits.stale_input_s = 0.05;

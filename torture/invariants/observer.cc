@@ -63,7 +63,10 @@ void Observer::OnSent(const Packet& packet, const SimulatedProcess& sender) {
 // Whether it is a stop that must end this process.
 bool Observer::OnStop(const Packet& packet, const SimulatedProcess& process) {
   stop_t stop;
-  if (packet.origin == Origin::kForged || !Decode(packet, &stop)) return false;
+  if (!Decode(packet, &stop)) return false;
+  // Who has heard of no plant may obey any stop: there is no run that it could harm.
+  const bool in_a_run = process.role() == Role::kPlant || in_a_run_.contains(process.number());
+  if (packet.origin == Origin::kForged && in_a_run) return false;
   stops_[process.number()].insert(stop.exit_code == 0 ? 0 : 1);
   return stop.addressee == 0 || stop.addressee == process.identity().session;
 }
@@ -99,6 +102,7 @@ void Observer::OnHandled(const Packet& packet, const SimulatedProcess& receiver)
            fmt::format("{} has handled such a message on {}", TargetName(static_cast<int>(receiver.role())),
                        network_.ChannelName(packet.channel)));
   }
+  if (packet.channel == state_ || packet.channel == run_) in_a_run_.insert(receiver.number());
   if (packet.channel == state_) return;
   if (packet.channel == stop_ && !OnStop(packet, receiver)) return;
   // Its plant seems to be misconfigured: it leaves.

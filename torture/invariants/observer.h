@@ -74,6 +74,7 @@ class Observer {
   bool sealed_ = false;
   TrueTime last_obeyed_ = -1;
   TrueTime other_configuration_ = -1;   // since when
+  std::set<int> in_a_run_;              // processes that have heard of a plant
   std::map<int, std::set<int>> stops_;  // exit codes of the genuine stops that a process heard or sent
 };
 

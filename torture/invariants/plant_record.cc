@@ -14,14 +14,15 @@ bool Same(double a, double b) { return std::bit_cast<uint64_t>(a) == std::bit_ca
 }  // namespace
 
 void PlantRecord::Receive(const ReceivedCommand& command) {
-  if (command.tick <= read_tick) Hear(command);  // one for a future tick is another fault
+  if (read_tick < 0 || command.tick < 0) return;  // it answers nothing
+  if (command.tick <= read_tick) Hear(command);   // one for a future tick is another fault
   if (command.origin == Origin::kChanged || command.origin == Origin::kForged) {
     false_.push_back(command);
     false_.back().silence = command.handled - genuine;
     if (false_.size() > kMostFalse) false_.pop_front();
     return;
   }
-  if (command.tick < 0 || command.tick <= read_tick - kRemembered) return;
+  if (command.tick <= read_tick - kRemembered) return;
   genuine = command.handled;
   // A repetition may arrive before what it repeats.
   Tick& entry = At(command.tick);

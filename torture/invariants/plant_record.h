@@ -51,7 +51,7 @@ class PlantRecord {
   const ReceivedCommand* NewestFalse(double wanted) const;
 
   int64_t tick = -1;       // of the last Drive()
-  int64_t read_tick = 0;   // of the last Read()
+  int64_t read_tick = -1;  // of the last Read(); before the first the run has not begun
   double voltage = 0;      // that it holds
   TrueTime driven = 0;     // when that was
   int64_t woke_tick = -1;  // the first tick after it did not run for longer than allowed; -1: it has answered
