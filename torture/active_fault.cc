@@ -65,6 +65,17 @@ bool ActiveFault::BeginOnMachine() {
     case FaultKind::kSuspend:
       for_each([&](Role each) { world_.Suspend(each, end()); });
       return true;
+    case FaultKind::kDiskSlow:
+      world_.disk().SetSlow(true);
+      return true;
+    case FaultKind::kDiskFull:
+      world_.disk().SetFull(true, random_);
+      world_.NoteLogFault(&LogRecord::was_full);
+      return true;
+    case FaultKind::kDiskLie:
+      if (world_.Find(Role::kLogger) != nullptr && world_.disk().Lie(random_))
+        world_.NoteLogFault(&LogRecord::lied);
+      return true;
     case FaultKind::kSensorNan:
     case FaultKind::kSensorStick:
     case FaultKind::kSensorSpike:
@@ -160,6 +171,8 @@ void ActiveFault::End() {
   if (injection_.kind == FaultKind::kSlow) {
     if (SimulatedProcess* process = world_.Find(role())) process->SetSlowness(0);
   }
+  if (injection_.kind == FaultKind::kDiskSlow) world_.disk().SetSlow(false);
+  if (injection_.kind == FaultKind::kDiskFull) world_.disk().SetFull(false, random_);
   if (injection_.kind == FaultKind::kLauncherHang) --world_.launcher_hangs();
   if (injection_.kind == FaultKind::kOtherConfiguration) {
     world_.SetOtherConfiguration(role(), false);

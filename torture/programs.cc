@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "bus/channels.h"
+#include "logger/logger_app.h"
 #include "plant/plant_app.h"
 #include "position_ctrl/position_app.h"
 #include "pressure_ctrl/pressure_app.h"
@@ -35,11 +36,19 @@ SimulatedProcess::Body ProgramOf(Role role, const settings::StackConfig& config,
       return Running<pressure_ctrl::PressureApp>(config);
     case Role::kPosition:
       return Running<position_ctrl::PositionApp>(config);
+    case Role::kLogger:
+      return [&config, &world, number](bus::Bus& bus, bus::Clock& clock) {
+        logger::LoggerOptions options;
+        options.file = world.NewLog(number);
+        options.disk_is_ready = [&world] { return world.disk().ready(); };
+        const auto app = std::make_unique<logger::LoggerApp>(bus, clock, config, options);
+        return process::RunApp(bus, clock, *app);
+      };
     default:
       return [&config, &world, number](bus::Bus& bus, bus::Clock& clock) {
+        const std::vector<std::string> expected(world.has_logger() ? 1 : 0, "logger");
         FaultyRig rig(config, world.process(number), world.sensor_faults(), world.observer());
-        const auto app = std::make_unique<plant::PlantApp>(bus, clock, config, rig,
-                                                           std::vector<std::string>{}, "hydro-plant",
+        const auto app = std::make_unique<plant::PlantApp>(bus, clock, config, rig, expected, "hydro-plant",
                                                            [&world] { return world.launcher_hangs() == 0; });
         return app->Run();
       };

@@ -35,7 +35,8 @@ World::World(const Schedule& schedule, const Stacks& stacks)
                  Push(time, Happening::kArrival, receiver, std::move(packet));
                }),
       observer_(config_, network_, &now_, outcome_.coverage),
-      random_(schedule.seed, 2) {
+      random_(schedule.seed, 2),
+      disk_random_(schedule.seed, 3) {
   static constexpr const char* kHosts[] = {"rig", "loop", "desk", "store", "office"};
   for (const char* host : kHosts) {
     machines_.push_back(
@@ -45,6 +46,9 @@ World::World(const Schedule& schedule, const Stacks& stacks)
   command_channel_ = network_.ChannelNumber(channels_.Of<motor_command_t>());
   for (const Role role : {Role::kPlant, Role::kPressure, Role::kPosition}) {
     Push(static_cast<TrueTime>(random_.Index(kStarts)), Happening::kStart, static_cast<int>(role));
+  }
+  if (schedule.logger) {
+    Push(static_cast<TrueTime>(random_.Index(kStarts)), Happening::kStart, static_cast<int>(Role::kLogger));
   }
   for (size_t i = 0; i < schedule_.injections.size(); ++i) {
     const Injection& injection = schedule_.injections[i];
@@ -185,6 +189,12 @@ void World::Handled(const Packet& packet, int receiver) {
   Tell(packet, receiver, "handles");
   trace_.Add(static_cast<uint64_t>(now_) ^ static_cast<uint64_t>(receiver) << 56);
   observer_.OnHandled(packet, *by_number_[static_cast<size_t>(receiver)]);
+  if (const auto log = logs_.find(receiver); log != logs_.end()) {
+    const auto size = static_cast<int>(packet.bytes.size());
+    const int visible = schedule_.key ? bus::SizeWithoutSeal(packet.bytes.data(), size) : size;
+    log->second.Handle(network_.ChannelName(packet.channel), packet.bytes.data(),
+                       static_cast<size_t>(visible));
+  }
 }
 
 }  // namespace hydro::torture

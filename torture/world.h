@@ -6,13 +6,16 @@
 #include <cstddef>
 #include <cstdint>
 #include <deque>
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "settings/stack_config.h"
 #include "torture/faulty_rig.h"
+#include "torture/invariants/log_record.h"
 #include "torture/invariants/observer.h"
+#include "torture/machines/disk.h"
 #include "torture/machines/network.h"
 #include "torture/machines/simulated_process.h"
 #include "torture/machines/trace.h"
@@ -76,6 +79,12 @@ class World : public NetworkPort {
   // An operator's process asks the plant to go on, or everybody to end.
   void SendRearm();
   void SendStop();
+  Disk& disk() { return disk_; }
+  bool has_logger() const { return schedule_.logger; }
+  // The path of a new log, of the process `number`.
+  std::string NewLog(int number);
+  // Something befalls the log that is being written.
+  void NoteLogFault(bool LogRecord::*what);
   Coverage& coverage() { return outcome_.coverage; }
 
   // NetworkPort:
@@ -109,6 +118,7 @@ class World : public NetworkPort {
   void Awake(Role role);
   void NoteConfigurations();
   void Reap(SimulatedProcess& process);
+  void CheckLog(const SimulatedProcess& logger);
   void EnterPhase(int phase);
   void CheckReturned();
   void CheckEnded();
@@ -140,6 +150,9 @@ class World : public NetworkPort {
   std::vector<Event> events_;                               // a heap
   int launcher_hangs_ = 0;
   MessageTail* tail_ = nullptr;
+  Disk disk_;
+  Random disk_random_;
+  std::map<int, LogRecord> logs_;  // by number of the process that writes it
   uint64_t order_ = 0;
   std::deque<PacketPtr> recorded_;  // the newest motor commands
   int command_channel_ = -1;

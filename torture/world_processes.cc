@@ -82,15 +82,46 @@ void World::Reap(SimulatedProcess& process) {
   }
   std::erase_if(receivers_, [&](const Network::Receiver& r) { return r.number == process.number(); });
   NoteConfigurations();
-  observer_.OnEnd(process);
+  if (process.role() == Role::kLogger) {
+    CheckLog(process);
+  } else {
+    observer_.OnEnd(process);
+  }
   if (!ending_ && !process.killed() && process.role() != Role::kOperator)
     StartAt(process.role(), now_ + kRestart);
 }
 
+std::string World::NewLog(int number) {
+  LogRecord& record = logs_[number];
+  record.file = disk_.NewLog();
+  record.was_full = disk_.full();
+  return record.file;
+}
+
+void World::NoteLogFault(bool LogRecord::*what) {
+  const SimulatedProcess* const logger = Find(Role::kLogger);
+  const auto log = logger == nullptr ? logs_.end() : logs_.find(logger->number());
+  if (log != logs_.end()) log->second.*what = true;
+}
+
+void World::CheckLog(const SimulatedProcess& logger) {
+  const auto log = logs_.find(logger.number());
+  if (log == logs_.end()) return;  // it was killed before it had one
+  // A full disk ends the logger, with an error that its main prints.
+  if (!log->second.was_full) observer_.OnEnd(logger);
+  const std::string wrong = WrongWith(log->second);
+  if (!wrong.empty())
+    observer_.Report("a log is what has happened, or says that it is not", log->second.file + ": " + wrong);
+  logs_.erase(log);
+}
+
 void World::Kill(Role role, TrueTime restart_at) {
   if (SimulatedProcess* const process = Find(role)) {
+    if (role == Role::kLogger) NoteLogFault(&LogRecord::killed);
+    const int64_t written = disk_.size();
     process->Kill();
     process->Resume();
+    if (role == Role::kLogger) disk_.Tear(written, disk_.size(), disk_random_);
     Reap(*process);
   }
   StartAt(role, restart_at);

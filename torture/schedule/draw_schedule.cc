@@ -30,11 +30,14 @@ int DrawTarget(Random& random, std::string_view targets) {
   return allowed[random.Index(allowed.size())];
 }
 
-Injection Draw(Random& random, double latest_s) {
-  const FaultKindInfo& info = FaultKinds()[random.Index(FaultKinds().size())];
+Injection Draw(Random& random, double latest_s, bool logger) {
+  const int none = *TargetNamed("logger");
   Injection injection;
-  injection.kind = info.kind;
-  injection.target = DrawTarget(random, info.targets);
+  do {
+    injection.kind = FaultKinds()[random.Index(FaultKinds().size())].kind;
+    injection.target = DrawTarget(random, InfoOf(injection.kind).targets);
+  } while (!logger && injection.target == none);
+  const FaultKindInfo& info = InfoOf(injection.kind);
   injection.duration_s = Rounded(DrawLogarithmic(random, info.shortest_s, info.longest_s), 1e6);
   injection.amount = Rounded(DrawLogarithmic(random, info.least, info.most), 1e6);
   const double latest_begin_s = std::max(kFirst_s, latest_s - injection.duration_s);
@@ -53,10 +56,11 @@ Schedule DrawSchedule(uint64_t seed) {
   schedule.explicit_rearm = random.Chance(0.5);
   schedule.stale_input_s = random.Chance(0.3) ? 0.02 : 0.1;
   schedule.key = random.Chance(0.3);
+  schedule.logger = random.Chance(0.3);
   schedule.faults_until_s = Rounded(random.Between(3, 20), 10);
   const uint64_t count = 1 + random.Index(kMostInjections);
   for (uint64_t i = 0; i < count; ++i) {
-    schedule.injections.push_back(Draw(random, schedule.faults_until_s));
+    schedule.injections.push_back(Draw(random, schedule.faults_until_s, schedule.logger));
     // What goes wrong together goes wrong differently.
     if (i > 0 && random.Chance(0.3)) {
       Injection& later = schedule.injections.back();

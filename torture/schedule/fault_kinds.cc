@@ -7,8 +7,8 @@
 namespace hydro::torture {
 namespace {
 
-constexpr std::string_view kLoops = "plant pressure_ctrl position_ctrl";
-constexpr std::string_view kLoopsOrAll = "all plant pressure_ctrl position_ctrl";
+constexpr std::string_view kLoops = "plant pressure_ctrl position_ctrl logger";
+constexpr std::string_view kLoopsOrAll = "all plant pressure_ctrl position_ctrl logger";
 
 constexpr std::array<FaultKindInfo, static_cast<size_t>(FaultKind::kCount)> kKinds{{
     {FaultKind::kLoss, "loss", kLoopsOrAll, 0.005, 1.5, 0.01, 1, "probability, per packet that it sends"},
@@ -27,6 +27,9 @@ constexpr std::array<FaultKindInfo, static_cast<size_t>(FaultKind::kCount)> kKin
     {FaultKind::kSlow, "slow", kLoops, 0.01, 2, 0.0001, 0.02, "s, later each time"},
     {FaultKind::kOtherConfiguration, "other_configuration", "pressure_ctrl position_ctrl", 0.5, 6, 0, 0, ""},
     {FaultKind::kLauncherHang, "launcher_hang", "plant", 0.2, 4, 0, 0, ""},
+    {FaultKind::kDiskSlow, "disk_slow", "logger", 0.01, 3, 0, 0, ""},
+    {FaultKind::kDiskFull, "disk_full", "logger", 0.01, 1, 0, 0, ""},
+    {FaultKind::kDiskLie, "disk_lie", "logger", 0, 0, 0, 0, ""},
     {FaultKind::kSensorNan, "sensor_nan", "plant", 0.001, 0.5, 0, 6, "which sensor"},
     {FaultKind::kSensorStick, "sensor_stick", "plant", 0.001, 1, 0, 6, "which sensor"},
     {FaultKind::kSensorSpike, "sensor_spike", "plant", 0.001, 0.003, 0, 6, "which sensor"},

@@ -29,6 +29,10 @@ enum class FaultKind : uint8_t {
   kSlow,
   kOtherConfiguration,
   kLauncherHang,
+  // The logger's disk.
+  kDiskSlow,
+  kDiskFull,
+  kDiskLie,
   // Sensors.
   kSensorNan,
   kSensorStick,

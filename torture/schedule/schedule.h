@@ -11,12 +11,13 @@
 namespace hydro::torture {
 
 struct Schedule {
-  uint64_t seed = 1;                  // of latencies, clocks, sessions and start times
-  bool lockstep = false;              // time.mode
-  bool key = false;                   // messages are sealed
-  bool explicit_rearm = false;        // limits.rearm
-  double stale_input_s = 0.1;         // limits.stale_input_s
-  double faults_until_s = 12;         // all faults have ended by then
+  uint64_t seed = 1;            // of latencies, clocks, sessions and start times
+  bool lockstep = false;        // time.mode
+  bool key = false;             // messages are sealed
+  bool logger = false;          // a logger records; otherwise nobody does, and what befalls one is nothing
+  bool explicit_rearm = false;  // limits.rearm
+  double stale_input_s = 0.1;   // limits.stale_input_s
+  double faults_until_s = 12;   // all faults have ended by then
   std::vector<Injection> injections;  // by time
 };
 

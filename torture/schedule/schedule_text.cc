@@ -80,11 +80,11 @@ Injection ReadInjection(LineReader line, const std::string& time) {
 }  // namespace
 
 std::string ScheduleText(const Schedule& schedule) {
-  std::string text = fmt::format("{}\nrun mode={} rearm={} key={} stale={} until={} seed={}\n", kFirstLine,
-                                 schedule.lockstep ? "lockstep" : "realtime",
-                                 schedule.explicit_rearm ? "explicit" : "restart",
-                                 schedule.key ? "yes" : "no", ShortestNumber(schedule.stale_input_s),
-                                 ShortestNumber(schedule.faults_until_s), schedule.seed);
+  std::string text = fmt::format(
+      "{}\nrun mode={} rearm={} key={} stale={} until={} seed={}{}\n", kFirstLine,
+      schedule.lockstep ? "lockstep" : "realtime", schedule.explicit_rearm ? "explicit" : "restart",
+      schedule.key ? "yes" : "no", ShortestNumber(schedule.stale_input_s),
+      ShortestNumber(schedule.faults_until_s), schedule.seed, schedule.logger ? " logger=yes" : "");
   for (const Injection& injection : schedule.injections) {
     text +=
         fmt::format("{} {} target={} for={} amount={} seed={}\n", ShortestNumber(injection.at_s),
@@ -118,6 +118,10 @@ Schedule ReadSchedule(const std::string& file, const std::string& text) {
     schedule.stale_input_s = line.Number("stale");
     schedule.faults_until_s = line.Number("until");
     schedule.seed = line.Seed("seed");
+    const std::string logger = line.Word();
+    if (!logger.empty() && logger != "logger=yes")
+      throw line.Error(logger, "logger=yes or the end of the line");
+    schedule.logger = !logger.empty();
   }
   if (first)
     throw InputError(file + ": is empty, allowed is a schedule that begins with " + std::string(kFirstLine));
