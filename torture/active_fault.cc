@@ -96,7 +96,9 @@ void ActiveFault::BeginOnProcess() {
       world_.Kill(role(), end());
       break;
     case FaultKind::kOtherConfiguration:
-      world_.SetOtherConfiguration(role(), true);
+    case FaultKind::kOtherVersion:
+      world_.StartWith(role(), injection_.kind == FaultKind::kOtherVersion ? &world_.stacks().other_version
+                                                                           : &world_.stacks().other);
       world_.Kill(role(), world_.now() + 20'000'000);
       break;
     case FaultKind::kHang:
@@ -124,6 +126,9 @@ std::optional<int64_t> ActiveFault::Continue() {
   switch (injection_.kind) {
     case FaultKind::kStop:
       world_.SendStop();
+      return std::nullopt;
+    case FaultKind::kInsider:
+      world_.SendInsider(injection_.amount, injection_.duration_s);
       return std::nullopt;
     case FaultKind::kForeignStop:
       SendForeignStop();
@@ -174,8 +179,8 @@ void ActiveFault::End() {
   if (injection_.kind == FaultKind::kDiskSlow) world_.disk().SetSlow(false);
   if (injection_.kind == FaultKind::kDiskFull) world_.disk().SetFull(false, random_);
   if (injection_.kind == FaultKind::kLauncherHang) --world_.launcher_hangs();
-  if (injection_.kind == FaultKind::kOtherConfiguration) {
-    world_.SetOtherConfiguration(role(), false);
+  if (injection_.kind == FaultKind::kOtherConfiguration || injection_.kind == FaultKind::kOtherVersion) {
+    world_.StartWith(role(), nullptr);
     world_.Kill(role(), world_.now() + 20'000'000);
   }
 }

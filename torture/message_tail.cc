@@ -12,7 +12,7 @@
 namespace hydro::torture {
 namespace {
 
-constexpr std::array kOrigins{"", ", repeated", ", changed or made up", ", forged"};
+constexpr std::array kOrigins{"", ", repeated", ", changed or made up", ", forged", ", of an insider"};
 
 // The fields that tell most, of those that the message has.
 template <class Message>

@@ -85,6 +85,25 @@ SimulatedProcess::Body RearmProgram(const settings::StackConfig& config, int64_t
   };
 }
 
+SimulatedProcess::Body InsiderProgram(const settings::StackConfig& config, double voltage, double seconds) {
+  return [&config, voltage, seconds](bus::Bus& bus, bus::Clock& clock) {
+    const bus::Channels channels(config.bus.channel_suffix);
+    int64_t sequence = 0;
+    bus.Subscribe<state_t>(channels.Of<state_t>(), [&](const state_t& state) {
+      motor_command_t command{};
+      command.utime = clock.Utime();
+      command.tick = state.tick;
+      command.session = bus.process()->session;
+      command.sequence = sequence++;
+      command.voltage = voltage;
+      bus.Publish(channels.Of<motor_command_t>(), command);
+    });
+    const auto end = clock.Now() + bus::FromSeconds(seconds);
+    while (clock.Now() < end) bus.HandleUntil(end);
+    return 0;
+  };
+}
+
 SimulatedProcess::Body StopProgram(const settings::StackConfig& config) {
   return [&config](bus::Bus& bus, bus::Clock& clock) {
     const bus::Channels channels(config.bus.channel_suffix);

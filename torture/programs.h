@@ -14,6 +14,8 @@ SimulatedProcess::Body ProgramOf(Role role, const settings::StackConfig& config,
 // What an operator runs: asks the plant of that session to end its latched faults, as hydro-launch --rearm does; tells
 // everybody to end, as hydro-launch --stop does over the bus.
 SimulatedProcess::Body RearmProgram(const settings::StackConfig& config, int64_t plant);
+// Somebody with the stack's key, who answers each state with a motor command of that voltage.
+SimulatedProcess::Body InsiderProgram(const settings::StackConfig& config, double voltage, double seconds);
 SimulatedProcess::Body StopProgram(const settings::StackConfig& config);
 
 }  // namespace hydro::torture

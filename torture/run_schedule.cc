@@ -33,7 +33,7 @@ RunOutcome RunSchedule(const Schedule& schedule, const std::string& config_file,
   auto found = known.find(key);
   if (found == known.end()) {
     const settings::StackConfig config = ConfigFor(schedule, config_file);
-    found = known.emplace(key, Stacks{config, OtherConfig(config)}).first;
+    found = known.emplace(key, Stacks{config, OtherConfig(config), OtherVersion(config)}).first;
   }
   const Silence silence;
   World world(schedule, found->second);

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <stdexcept>
+
 #include "settings/overrides.h"
 #include "settings/toml/toml_document.h"
 #include "torture/torture_texts.h"
@@ -33,6 +35,14 @@ settings::StackConfig OtherConfig(const settings::StackConfig& config) {
   settings::ApplyOverrides({"position.c1=3000", "limits.arm_torque_in_lbf=400"}, &stack);
   return settings::ParseStackConfig(settings::FormatToml(stack), config.file, config.model.text,
                                     config.model.resolved_file);
+}
+
+settings::StackConfig OtherVersion(settings::StackConfig config) {
+  const std::string key = "version = ";
+  const size_t begin = config.agreed.find(key);
+  if (begin == std::string::npos) throw std::logic_error("processes do not agree on a version");
+  config.agreed.replace(begin, config.agreed.find('\n', begin) - begin, key + "'another'");
+  return config;
 }
 
 }  // namespace hydro::torture

@@ -15,4 +15,7 @@ settings::StackConfig ConfigFor(const Schedule& schedule, const std::string& fil
 // The same stack with other gains and limits: what a process that was restarted by mistake runs.
 settings::StackConfig OtherConfig(const settings::StackConfig& config);
 
+// The same configuration, of a program of another version.
+settings::StackConfig OtherVersion(settings::StackConfig config);
+
 }  // namespace hydro::torture

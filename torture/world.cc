@@ -28,7 +28,7 @@ size_t AllocatedBytes() {
 World::World(const Schedule& schedule, const Stacks& stacks)
     : schedule_(schedule),
       config_(stacks.right),
-      other_config_(stacks.other),
+      stacks_(stacks),
       channels_(config_.bus.channel_suffix),
       network_(schedule.seed, &now_,
                [this](TrueTime time, PacketPtr packet, int receiver) {
@@ -178,6 +178,7 @@ void World::Send(PacketPtr packet, int sender) {
   trace_.Add(static_cast<uint64_t>(now_));
   trace_.Add(packet->bytes);
   if (packet->channel == command_channel_) {
+    if (process.role() == Role::kOperator) packet->origin = Origin::kInsider;
     recorded_.push_back(packet);
     if (recorded_.size() > kMostRecorded) recorded_.pop_front();
   }

@@ -27,7 +27,8 @@ namespace hydro::torture {
 // What is run.
 struct Stacks {
   settings::StackConfig right;
-  settings::StackConfig other;  // what FaultKind::kOtherConfiguration starts a process with
+  settings::StackConfig other;          // what FaultKind::kOtherConfiguration starts a process with
+  settings::StackConfig other_version;  // the same of kOtherVersion
 };
 
 // What this program has allocated.
@@ -64,8 +65,11 @@ class World : public NetworkPort {
   // The living process of a role; null: none.
   SimulatedProcess* Find(Role role);
   void Kill(Role role, TrueTime restart_at);
-  // From now on a role starts with the other configuration, or with the right one again.
-  void SetOtherConfiguration(Role role, bool other);
+  // From now on a role starts with that configuration; null: with the right one again.
+  void StartWith(Role role, const settings::StackConfig* other) {
+    starts_with_[static_cast<size_t>(role)] = other;
+  }
+  const Stacks& stacks() const { return stacks_; }
   // Everything of a machine stands still until `until`, and its clocks count the time as suspended.
   void Suspend(Role role, TrueTime until);
   // A message that no process has sent, to everyone. Origin::kProcess: one that the operator may send.
@@ -79,6 +83,8 @@ class World : public NetworkPort {
   // An operator's process asks the plant to go on, or everybody to end.
   void SendRearm();
   void SendStop();
+  // Somebody who has the stack's key sends motor commands of his own.
+  void SendInsider(double voltage, double seconds);
   Disk& disk() { return disk_; }
   bool has_logger() const { return schedule_.logger; }
   // The path of a new log, of the process `number`.
@@ -127,7 +133,7 @@ class World : public NetworkPort {
 
   const Schedule schedule_;
   const settings::StackConfig& config_;
-  const settings::StackConfig& other_config_;
+  const Stacks& stacks_;
   const bus::Channels channels_;
   TrueTime now_ = 0;
   RunOutcome outcome_;
@@ -141,7 +147,7 @@ class World : public NetworkPort {
   std::vector<SimulatedProcess*> alive_;
   std::vector<Network::Receiver> receivers_;
   // By role:
-  std::array<bool, static_cast<size_t>(Role::kCount)> other_configuration_{};
+  std::array<const settings::StackConfig*, static_cast<size_t>(Role::kCount)> starts_with_{};
   std::array<TrueTime, static_cast<size_t>(Role::kCount)> start_at_{};  // when it is started next
   std::array<TrueTime, static_cast<size_t>(Role::kCount)> awake_at_{};  // when its machine wakes up
   std::array<TrueTime, static_cast<size_t>(Role::kCount)> asleep_since_{};

@@ -30,9 +30,10 @@ void World::Start(Role role) {
     StartAt(role, awake_at_[index]);
     return;
   }
-  const bool other = other_configuration_[index];
-  Begin(role, ProgramOf(role, other ? other_config_ : config_, *this, static_cast<int>(by_number_.size())),
-        other);
+  const settings::StackConfig* const other = starts_with_[index];
+  Begin(role,
+        ProgramOf(role, other != nullptr ? *other : config_, *this, static_cast<int>(by_number_.size())),
+        other != nullptr);
 }
 
 void World::Begin(Role role, SimulatedProcess::Body body, bool misconfigured) {
@@ -127,10 +128,6 @@ void World::Kill(Role role, TrueTime restart_at) {
   StartAt(role, restart_at);
 }
 
-void World::SetOtherConfiguration(Role role, bool other) {
-  other_configuration_[static_cast<size_t>(role)] = other;
-}
-
 void World::Suspend(Role role, TrueTime until) {
   TrueTime& awake_at = awake_at_[static_cast<size_t>(role)];
   if (awake_at > now_) return;  // asleep already
@@ -179,6 +176,10 @@ void World::SendRearm() {
   const SimulatedProcess* const plant = Find(Role::kPlant);
   if (plant == nullptr) return;
   Begin(Role::kOperator, RearmProgram(config_, plant->identity().session), false);
+}
+
+void World::SendInsider(double voltage, double seconds) {
+  Begin(Role::kOperator, InsiderProgram(config_, voltage, seconds), false);
 }
 
 void World::SendStop() { Begin(Role::kOperator, StopProgram(config_), false); }

@@ -16,7 +16,7 @@ bool Same(double a, double b) { return std::bit_cast<uint64_t>(a) == std::bit_ca
 void PlantRecord::Receive(const ReceivedCommand& command) {
   if (read_tick < 0 || command.tick < 0) return;  // it answers nothing
   if (command.tick <= read_tick) Hear(command);   // one for a future tick is another fault
-  if (command.origin == Origin::kChanged || command.origin == Origin::kForged) {
+  if (command.origin != Origin::kProcess && command.origin != Origin::kRepeated) {
     false_.push_back(command);
     false_.back().silence = command.handled - genuine;
     if (false_.size() > kMostFalse) false_.pop_front();

@@ -18,6 +18,7 @@ enum class Origin : uint8_t {
   kRepeated,  // the same once more, by the network or somebody who has recorded it
   kChanged,   // the network changed its bytes, or somebody made it up in the name of a process that lives
   kForged,    // somebody else made it up
+  kInsider,   // the same, but he has the stack's key
 };
 
 struct Packet {

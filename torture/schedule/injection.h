@@ -28,6 +28,7 @@ enum class FaultKind : uint8_t {
   kHang,
   kSlow,
   kOtherConfiguration,
+  kOtherVersion,
   kLauncherHang,
   // The logger's disk.
   kDiskSlow,
@@ -48,6 +49,7 @@ enum class FaultKind : uint8_t {
   kSecondPlant,
   // Somebody who sends what no process of the stack would.
   kSecondSender,
+  kInsider,  // he has the key
   kReplay,
   kHugeSequence,
   kHugeTick,
