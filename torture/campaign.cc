@@ -34,7 +34,7 @@ WorkerState* SharedStates(int count) {
   return static_cast<WorkerState*>(memory);
 }
 
-Child StartWorker(const CampaignOptions& options, int index, WorkerState* state) {
+Child StartWorker(const CampaignOptions& options, int index, WorkerState* states) {
   int ends[2];
   if (pipe(ends) != 0) throw std::runtime_error("no pipe for a worker");
   Child child;
@@ -45,10 +45,10 @@ Child StartWorker(const CampaignOptions& options, int index, WorkerState* state)
     signal(SIGPIPE, SIG_IGN);
     int code = 1;
     try {
-      code = RunWorker(options, index, state, ends[1]);
+      code = RunWorker(options, index, states, ends[1]);
     } catch (const std::exception& error) {
-      std::fprintf(stderr, "hydro-torture: seed %llu: %s\n", static_cast<unsigned long long>(state->seed),
-                   error.what());
+      std::fprintf(stderr, "hydro-torture: seed %llu: %s\n",
+                   static_cast<unsigned long long>(states[index].seed), error.what());
     }
     _exit(code);
   }
@@ -89,7 +89,7 @@ CampaignResult RunCampaign(const CampaignOptions& options) {
   WorkerState* const states = SharedStates(options.jobs);
   std::vector<Child> children;
   children.reserve(static_cast<size_t>(options.jobs));
-  for (int i = 0; i < options.jobs; ++i) children.push_back(StartWorker(options, i, &states[i]));
+  for (int i = 0; i < options.jobs; ++i) children.push_back(StartWorker(options, i, states));
   CampaignResult result;
   for (int i = 0; i < options.jobs; ++i) {
     Child& child = children[static_cast<size_t>(i)];

@@ -18,6 +18,7 @@ struct CampaignOptions {
   int jobs = 1;                      // processes that run at a time
   std::string config;                // a stack of one's own; empty: the shipped one
   std::string out;                   // folder for the schedules that fail
+  bool first_only = false;           // the first run that fails ends the campaign
   std::vector<std::string> without;  // kinds of faults that are not injected
 };
 

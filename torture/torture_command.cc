@@ -71,6 +71,7 @@ void AddOptions(settings::CommandLine* line, TortureOptions* options) {
                   "DIR where to put the schedules of failed runs; default out/torture");
   line->AddOption("--without", &options->without,
                   "KIND a kind of fault that is not injected; may be repeated");
+  line->AddFlag("--first", &options->first, "end at the first run that fails");
   line->AddFlag("--list", &options->list, "lists the kinds of faults");
 }
 
@@ -96,6 +97,7 @@ int Run(const TortureOptions& options) {
   campaign.config = options.config;
   campaign.out = options.out;
   campaign.without = options.without;
+  campaign.first_only = options.first;
   fmt::print("hydro-torture --seed {}\n", campaign.first_seed);
   std::fflush(stdout);
   return Report(campaign, RunCampaign(campaign));

@@ -21,6 +21,7 @@ struct TortureOptions {
   double tail = 0;  // s of a replay whose messages are printed
   std::string out = "out/torture";
   std::vector<std::string> without;
+  bool first = false;
   bool list = false;
 };
 

@@ -56,8 +56,8 @@ Coverage CoverageFrom(const json& text) {
 
 class Worker {
  public:
-  Worker(const CampaignOptions& options, int index, WorkerState* state)
-      : options_(options), index_(index), state_(state) {}
+  Worker(const CampaignOptions& options, int index, WorkerState* states)
+      : options_(options), index_(index), states_(states), state_(&states[index]) {}
 
   std::string Run() {
     const auto jobs = static_cast<uint64_t>(options_.jobs);
@@ -70,7 +70,9 @@ class Worker {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
   }
   bool Over(uint64_t run) const {
-    return Elapsed() >= options_.seconds ||
+    const bool failed =
+        std::any_of(states_, states_ + options_.jobs, [](const WorkerState& s) { return s.failed; });
+    return Elapsed() >= options_.seconds || (options_.first_only && failed) ||
            (options_.most_runs > 0 && run >= static_cast<uint64_t>(options_.most_runs));
   }
 
@@ -86,6 +88,7 @@ class Worker {
     coverage_.Add(outcome.coverage);
     if (outcome.violations.empty()) return;
     ++failed_;
+    state_->failed = true;
     if (findings_.size() < kMostFindings) Record(seed, schedule, outcome.violations.front());
   }
 
@@ -113,6 +116,7 @@ class Worker {
 
   const CampaignOptions& options_;
   const int index_;
+  WorkerState* states_;
   WorkerState* state_;
   const std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
   Coverage coverage_;
@@ -123,8 +127,8 @@ class Worker {
 
 }  // namespace
 
-int RunWorker(const CampaignOptions& options, int index, WorkerState* state, int pipe) {
-  const std::string report = Worker(options, index, state).Run();
+int RunWorker(const CampaignOptions& options, int index, WorkerState* states, int pipe) {
+  const std::string report = Worker(options, index, states).Run();
   for (size_t done = 0; done < report.size();) {
     const ssize_t wrote = write(pipe, report.data() + done, report.size() - done);
     if (wrote <= 0) return 1;

@@ -11,12 +11,14 @@ namespace hydro::torture {
 
 // What a worker and the campaign share in memory.
 struct WorkerState {
-  uint64_t seed = 0;   // that it runs now
-  double began_s = 0;  // since the campaign began
+  uint64_t seed = 0;    // that it runs now
+  double began_s = 0;   // since the campaign began
+  bool failed = false;  // a run has failed
 };
 
-// Runs every `jobs`-th seed until the time is over; writes to `pipe`. Returns the worker's exit code.
-int RunWorker(const CampaignOptions& options, int index, WorkerState* state, int pipe);
+// Runs every `jobs`-th seed until the time is over; writes to `pipe`. `states`: of all workers. Returns the worker's
+// exit code.
+int RunWorker(const CampaignOptions& options, int index, WorkerState* states, int pipe);
 
 // The lines of a worker's report.
 void AddReport(const std::string& text, CampaignResult* result);

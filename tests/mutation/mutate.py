@@ -8,6 +8,9 @@ the whole list takes more than half an hour on two free cores, so it is no part 
 The tests of the folder that a mutation changes run first, up to the first that fails; those of experiments/ when none of
 them does. First of all, everything must pass without a mutation.
 
+--torture: the rules of docs/safety.md instead, one broken at a time, and hydro-torture, which must find each within
+TORTURE_S seconds on fresh seeds; prints how long it took.
+
 exit: 0 every mutation was caught; 1 one survived, no longer applies (its text does not stand exactly once in its file) or
 does not build, or the tests fail without any; 2 bad usage.
 """
@@ -27,13 +30,14 @@ import tempfile
 import time
 
 sys.dont_write_bytecode = True  # the checkout stays as it is
-from mutations import MUTATIONS  # noqa: E402
+from mutations import MUTATIONS, TORTURE_MUTATIONS  # noqa: E402
 
 SOURCE = pathlib.Path(__file__).resolve().parents[2]
 NOT_COPIED = {".git", "build", "out", "__pycache__"}
 # Times what a test program takes otherwise: a wrong sign can make a simulation run for ever, which is noticed too.
 LONGER = 10
 FALLBACK = "experiments"
+TORTURE_S = 600  # s, in which hydro-torture must find a broken rule
 
 
 class Failed(Exception):
@@ -116,6 +120,26 @@ class Tree:
         finally:
             path.write_text(text)
 
+    def torture(self, mutation):
+        """What hydro-torture found, and after how many seconds of running; None when it found nothing."""
+        path = self.source / mutation.file
+        text = path.read_text()
+        try:
+            path.write_text(mutated(text, mutation))
+            self.build_programs("hydro-torture")
+            out = self.build / "torture"
+            done = subprocess.run([str(self.build / "bin" / "hydro-torture"), "--first", "--seconds", str(TORTURE_S),
+                                   "--jobs", str(self.jobs), "--out", str(out)],
+                                  stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, errors="replace")
+            found = re.search(r"^seed \d+ \(after ([\d.]+) s\): (.*)", done.stdout, re.MULTILINE)
+            if done.returncode == 0:
+                return None
+            if not found:
+                raise Failed(f"hydro-torture ended with {done.returncode}:\n{done.stdout[-500:]}")
+            return f"after {found[1]} s: {found[2][:120]}"
+        finally:
+            path.write_text(text)
+
 
 def copy_what_differs(source, target):
     """Makes `target` a copy of `source`. Files that are equal keep their time, so that an earlier build is of use; others
@@ -181,6 +205,21 @@ def run(mutations, work, jobs, fallback):
     return killed == len(mutations)
 
 
+def run_torture(mutations, work):
+    tree = Tree(work / "torture", 2)
+    missed = 0
+    for mutation in mutations:
+        try:
+            found = tree.torture(mutation)
+            verdict, says = ("found", found) if found else ("MISSED", f"nothing found in {TORTURE_S} s")
+        except Failed as error:
+            verdict, says = "ERROR", str(error)
+        missed += verdict != "found"
+        print(f"{verdict:9}{mutation.name:32}{says}", flush=True)
+    print(f"{len(mutations) - missed} of {len(mutations)} found")
+    return missed == 0
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--list", action="store_true", help="print the mutations and end")
@@ -190,35 +229,42 @@ def main():
                         help="mutations at a time, each in a tree of its own (default 1, which builds on two cores)")
     parser.add_argument("--work", type=pathlib.Path, metavar="DIR",
                         help="where the trees go; kept, so that a next run builds less (default: a temporary folder)")
+    parser.add_argument("--torture", action="store_true", help="the broken rules that hydro-torture must find, and no tests")
     parser.add_argument("--model-only", action="store_true", help="do not run the experiments' tests when no other fails")
     arguments = parser.parse_args()
     if arguments.jobs < 1:
         parser.error(f"--jobs: found {arguments.jobs}, must be at least 1")
-    mutations = MUTATIONS
+    known = mutations = TORTURE_MUTATIONS if arguments.torture else MUTATIONS
     if arguments.only:
         for pattern in arguments.only:
-            if not any(fnmatch.fnmatchcase(mutation.name, pattern) for mutation in MUTATIONS):
+            if not any(fnmatch.fnmatchcase(mutation.name, pattern) for mutation in known):
                 parser.error(f"--only: no mutation is named {pattern}; --list prints them")
-        mutations = [m for m in MUTATIONS if any(fnmatch.fnmatchcase(m.name, p) for p in arguments.only)]
+        mutations = [m for m in known if any(fnmatch.fnmatchcase(m.name, p) for p in arguments.only)]
     if arguments.list:
         for mutation in mutations:
             old, new = (" ".join(text.split()) for text in (mutation.old, mutation.new))
             print(f"{mutation.name:32}{mutation.file}: {old}  ->  {new}")
         return 0
-    if check_all_apply(mutations) > 0:
+    if check_all_apply(mutations + TORTURE_MUTATIONS if arguments.dry_run else mutations) > 0:
         return 1
     if arguments.dry_run:
-        print(f"{len(mutations)} mutations, all apply")
+        print(f"{len(mutations)} mutations, all apply; so do {len(TORTURE_MUTATIONS)} for hydro-torture")
         return 0
+
+    def examine(work):
+        if arguments.torture:
+            return run_torture(mutations, work)
+        return run(mutations, work, arguments.jobs, not arguments.model_only)
+
     try:
         if arguments.work:
             work = arguments.work.resolve()
             if work == SOURCE or SOURCE in work.parents:
                 parser.error("--work: must lie outside of the checkout")
             work.mkdir(parents=True, exist_ok=True)
-            return 0 if run(mutations, work, arguments.jobs, not arguments.model_only) else 1
+            return 0 if examine(work) else 1
         with tempfile.TemporaryDirectory(prefix="hydro-mutation-") as work:
-            return 0 if run(mutations, pathlib.Path(work), arguments.jobs, not arguments.model_only) else 1
+            return 0 if examine(pathlib.Path(work)) else 1
     except Failed as error:
         print(f"mutate: {error}", file=sys.stderr)
         return 1

@@ -18,6 +18,40 @@ def _rows(file, *rows):
     return [Mutation(name, file, old, new) for name, old, new in rows]
 
 
+# What hydro-torture must find, each within ten minutes (mutate.py --torture): a hostile trial's findings, its own, and rules of
+# docs/safety.md.
+TORTURE_MUTATIONS = [
+    *_rows("process/participant.cc",
+           ("B2.any_stop_is_obeyed", "stop.addressee == run_ || run_ == 0;", "true;"),
+           ("configuration.said_once", "now - *configuration_sent_ >= kConfigurationAgain", "false"),
+           ("stop.nobody_obeys", "if (meant && !stop_) stop_ = stop;", "if (false && meant && !stop_) stop_ = stop;")),
+    *_rows("log/log_examiner.cc",
+           ("B5.a_cut_log_is_complete", "verdict_.completeness = Completeness::kIncomplete;",
+            "verdict_.completeness = Completeness::kComplete;"),
+           ("B5.a_changed_log_is_complete", "verdict_.completeness = Completeness::kDamaged;",
+            "verdict_.completeness = Completeness::kComplete;")),
+    *_rows("bus/sequence_monitor.cc",
+           ("B6.a_far_number_deafens", "if (goes_on && now - advanced_ > alive_)", "if (false && goes_on)"),
+           ("second_sender.unnoticed", "return other.heard && now - *other.heard <= alive_;", "return false;"),
+           ("duplicate.obeyed", "  ++duplicates_;\n  return Verdict::kDuplicate;", "  ++duplicates_;\n  return Verdict::kAccept;")),
+    *_rows("process/agreement.cc", ("B7.others_are_not_refused", "if (differences.empty()) {", "if (true) {")),
+    *_rows("plant/plant_commands.cc",
+           ("future.obeyed", "if (command.tick > tick_ && !command", "if (false && !command"),
+           ("restart.drops_what_waits", "waiting_commands_.back().tick >= command.tick", "true"),
+           ("before_the_run.obeyed", "if (command.tick < 0 || participant_.state() != process_status_t::RUNNING) return;", ""),
+           ("refused.still_acts", "if (command_ && command_->session == session) command_.reset();", ""),
+           ("hold.old_command_returns", "obeyed_from_ = tick_;", "obeyed_from_ = 0;"),
+           ("stop.drives_on", "command_->tick >= obeyed_from_ && !participant_.stop()", "command_->tick >= obeyed_from_"),
+           ("stale.never", "safety_.Set(Cause::kStaleCommand, age > stale_time_,", "safety_.Set(Cause::kStaleCommand, false,"),
+           ("late.never", "safety_.Set(Cause::kLatePlant, awake_again_.has_value(),",
+            "safety_.Set(Cause::kLatePlant, false,")),
+    *_rows("plant/voltage_guard.cc", ("latch.never", "latched_ |= Bit(cause);", "latched_ |= 0;")),
+    *_rows("plant/output_safety.cc",
+           ("suspend.unnoticed", "Set(Cause::kSuspended, gone > limits_.stale_input_s,", "Set(Cause::kSuspended, false,")),
+    *_rows("bus/bus.h", ("zero_byte.decoded", "return message.encode(bytes.data(), 0, size) == size;", "return true;")),
+    *_rows("logger/recording.cc", ("log.loses_a_batch", "if (batch.empty()) return;", "if (batch.empty() || last) return;")),
+]
+
 MUTATIONS = [
     *_rows(
         "model/terms/terms.h",
