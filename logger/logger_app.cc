@@ -161,13 +161,21 @@ void LoggerApp::Poll() {
   participant_.statistics().set_lost_messages(lost_ + dropped_);
   participant_.statistics().RecordQueueDepth(largest_queue_);
   largest_queue_ = 0;
-  if (!thread_ && options_.disk_is_ready()) recording_.WriteWaiting(false);
+  if (!thread_) TakeTurn();
   for (const Recording::Write& write : recording_.TakeWrites()) {
     participant_.statistics().RecordCycle(write.began, write.latency);
   }
   participant_.Poll();
   if (state_tick_ > reported_tick_ && participant_.clock().Now() >= report_again_) ReportProgress();
   if (participant_.stop() && !stop_time_) stop_time_ = participant_.clock().Now();
+}
+
+// In the place of the writing thread.
+void LoggerApp::TakeTurn() {
+  const auto now = participant_.clock().Now();
+  if (now < next_turn_ || !options_.disk_is_ready()) return;
+  next_turn_ = now + WritingThread::kPeriod;
+  recording_.WriteWaiting(false);
 }
 
 bool LoggerApp::EveryoneHasLeft() const {

@@ -53,6 +53,7 @@ class LoggerApp : public process::App {
   void ReportRefused();
   void ReportProgress();
   bool EveryoneHasLeft() const;
+  void TakeTurn();
   void CloseRecording();
   void TellHowMuch();
 
@@ -62,6 +63,7 @@ class LoggerApp : public process::App {
   const bus::Clock::Duration plant_alive_;  // a plant that is silent for longer may be replaced by another
   Recording recording_;
   std::optional<WritingThread> thread_;
+  bus::Clock::TimePoint next_turn_;  // without a thread
 
   std::optional<bus::Clock::TimePoint> followed_heard_;  // the last state of the plant whose run this is
   RefusedQuota refused_;
