@@ -23,7 +23,6 @@ class RingQueue {
     values_[end_++ & (values_.size() - 1)] = value;
   }
   void pop_front() { ++first_; }
-  void pop_back() { --end_; }
   void clear() { first_ = end_ = 0; }
 
  private:

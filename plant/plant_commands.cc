@@ -28,10 +28,9 @@ void PlantApp::OnMotorCommand(const motor_command_t& command) {
   if (verdict == bus::SequenceMonitor::Verdict::kDuplicate) return;
   if (verdict == bus::SequenceMonitor::Verdict::kSecondSender) return;  // CheckCommand() raises the fault
   if (verdict == bus::SequenceMonitor::Verdict::kRestarted) {
-    // The queue stays in order. What the one before has sent for earlier ticks still acts when its time comes: without it an
-    // older command would go on acting.
-    while (!waiting_commands_.empty() && waiting_commands_.back().tick >= command.tick)
-      waiting_commands_.pop_back();
+    // Nothing of the one before acts, neither what waits nor, once more, what was in force: zero volts until its own do.
+    waiting_commands_.clear();
+    command_.reset();
   }
   future_command_ = false;
   if (const auto taken = round_trips_.OnAnswer(command.tick, now)) {

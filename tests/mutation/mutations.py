@@ -37,7 +37,7 @@ TORTURE_MUTATIONS = [
     *_rows("process/agreement.cc", ("B7.others_are_not_refused", "if (differences.empty()) {", "if (true) {")),
     *_rows("plant/plant_commands.cc",
            ("future.obeyed", "if (command.tick > tick_ && !command", "if (false && !command"),
-           ("restart.drops_what_waits", "waiting_commands_.back().tick >= command.tick", "true"),
+           ("restart.old_command_acts_on", "    waiting_commands_.clear();\n    command_.reset();", "    waiting_commands_.clear();"),
            ("before_the_run.obeyed", "if (command.tick < 0 || participant_.state() != process_status_t::RUNNING) return;", ""),
            ("refused.still_acts", "if (command_ && command_->session == session) command_.reset();", ""),
            ("hold.old_command_returns", "obeyed_from_ = tick_;", "obeyed_from_ = 0;"),

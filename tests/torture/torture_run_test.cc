@@ -78,6 +78,24 @@ TEST(TortureRunTest, FaultsAreNoticed) {
   }
 }
 
+// Tests the same of faults that only a logger can notice.
+TEST(TortureRunTest, FaultsOfTheLoggerAreNoticed) {
+  const std::pair<Injection, const char*> cases[] = {
+      {{1, FaultKind::kCrash, 3, 1.5, 0, 1}, "logger_gone"},
+      {{1, FaultKind::kDiskFull, 3, 1.5, 0, 1}, "logger_gone"},
+      {{1, FaultKind::kDiskSlow, 3, 3, 0, 1}, "log_overflow"},
+  };
+  for (const auto& [injection, code] : cases) {
+    Schedule schedule;
+    schedule.logger = true;
+    schedule.faults_until_s = 4.5;
+    schedule.injections = {injection};
+    const RunOutcome outcome = RunSchedule(schedule, "");
+    EXPECT_TRUE(outcome.coverage.codes.contains(code)) << code;
+    EXPECT_EQ(Described(outcome), "") << code;
+  }
+}
+
 // Tests that what was found once is not found again. A script with a line "# open" still fails.
 TEST(TortureRunTest, FoundSchedulesHold) {
   int scripts = 0;

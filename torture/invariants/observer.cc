@@ -38,7 +38,8 @@ Observer::Observer(const settings::StackConfig& config, Network& network, const 
       stop_(network.ChannelNumber(bus::Channels(config.bus.channel_suffix).Of<stop_t>())),
       rearm_(network.ChannelNumber(bus::Channels(config.bus.channel_suffix).Of<rearm_t>())),
       configuration_(network.ChannelNumber(bus::Channels(config.bus.channel_suffix).Of<configuration_t>())),
-      run_(network.ChannelNumber(bus::Channels(config.bus.channel_suffix).Of<run_description_t>())) {}
+      run_(network.ChannelNumber(bus::Channels(config.bus.channel_suffix).Of<run_description_t>())),
+      statistics_(network.ChannelNumber(bus::Channels(config.bus.channel_suffix).Of<loop_statistics_t>())) {}
 
 PlantRecord& Observer::RecordOf(const SimulatedProcess& plant) {
   const auto number = static_cast<size_t>(plant.number());
@@ -58,6 +59,18 @@ void Observer::OnSent(const Packet& packet, const SimulatedProcess& sender) {
   if (packet.channel == state_) OnState(packet, sender);
   if (packet.channel == fault_) OnFault(packet);
   if (packet.channel == stop_) OnStop(packet, sender);
+  if (packet.channel == statistics_) OnStatistics(packet, sender);
+}
+
+void Observer::OnStatistics(const Packet& packet, const SimulatedProcess& sender) {
+  loop_statistics_t report;
+  const auto counted = losses_.find(sender.number());
+  if (counted == losses_.end() || !counted->second.lost() || !Decode(packet, &report) || !report.whole_run)
+    return;
+  if (report.lost_messages == *counted->second.lost()) return;
+  Report("counts add up",
+         fmt::format("{} says that it has lost {} states; {} of those sent to it did not arrive", report.role,
+                     report.lost_messages, *counted->second.lost()));
 }
 
 // Whether it is a stop that must end this process.
@@ -102,6 +115,8 @@ void Observer::OnHandled(const Packet& packet, const SimulatedProcess& receiver)
            fmt::format("{} has handled such a message on {}", TargetName(static_cast<int>(receiver.role())),
                        network_.ChannelName(packet.channel)));
   }
+  if (packet.channel == state_ && receiver.role() == Role::kPosition)
+    losses_[receiver.number()].Handle(packet);
   if (packet.channel == state_ || packet.channel == run_) in_a_run_.insert(receiver.number());
   if (packet.channel == state_) return;
   if (packet.channel == stop_ && !OnStop(packet, receiver)) return;

@@ -12,6 +12,7 @@
 #include "model/terms/measurement.h"
 #include "settings/stack_config.h"
 #include "torture/invariants/coverage.h"
+#include "torture/invariants/loss_count.h"
 #include "torture/invariants/plant_record.h"
 #include "torture/machines/network.h"
 #include "torture/machines/simulated_process.h"
@@ -59,6 +60,7 @@ class Observer {
   PlantRecord& RecordOf(const SimulatedProcess& plant);
   void OnState(const Packet& packet, const SimulatedProcess& sender);
   void OnFault(const Packet& packet);
+  void OnStatistics(const Packet& packet, const SimulatedProcess& sender);
   bool OnStop(const Packet& packet, const SimulatedProcess& process);
   void OnCommand(const Packet& packet, PlantRecord& plant);
 
@@ -66,14 +68,15 @@ class Observer {
   Network& network_;
   const TrueTime* now_;
   Coverage& coverage_;
-  const int state_, command_, fault_, stop_, rearm_, configuration_, run_;  // channel numbers
-  std::vector<std::unique_ptr<PlantRecord>> plants_;                        // by number of the process
+  const int state_, command_, fault_, stop_, rearm_, configuration_, run_, statistics_;  // channel numbers
+  std::vector<std::unique_ptr<PlantRecord>> plants_;  // by number of the process
   PlantRecord* newest_plant_ = nullptr;
   std::vector<Violation> violations_;
   std::set<int64_t> misconfigured_;  // sessions
   bool sealed_ = false;
   TrueTime last_obeyed_ = -1;
   TrueTime other_configuration_ = -1;   // since when
+  std::map<int, LossCount> losses_;     // of position loops, by number of the process
   std::set<int> in_a_run_;              // processes that have heard of a plant
   std::map<int, std::set<int>> stops_;  // exit codes of the genuine stops that a process heard or sent
 };
