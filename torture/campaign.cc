@@ -6,6 +6,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <chrono>
 #include <csignal>
 #include <filesystem>
@@ -13,6 +14,7 @@
 
 #include "base/input_error.h"
 #include "base/new_file.h"
+#include "process/stop_signal.h"
 #include "torture/worker.h"
 
 namespace hydro::torture {
@@ -57,9 +59,16 @@ Child StartWorker(const CampaignOptions& options, int index, WorkerState* states
   return child;
 }
 
+// A caught signal is for all: each worker ends the run that it is at, and reports.
 void ReadAll(Child* child) {
   char buffer[65536];
-  for (ssize_t size; (size = read(child->pipe, buffer, sizeof buffer)) > 0;) {
+  while (true) {
+    const ssize_t size = read(child->pipe, buffer, sizeof buffer);
+    if (size < 0 && errno == EINTR) {
+      kill(child->pid, SIGTERM);
+      continue;
+    }
+    if (size <= 0) break;
     child->report.append(buffer, static_cast<size_t>(size));
   }
   close(child->pipe);
@@ -93,9 +102,11 @@ CampaignResult RunCampaign(const CampaignOptions& options) {
   CampaignResult result;
   for (int i = 0; i < options.jobs; ++i) {
     Child& child = children[static_cast<size_t>(i)];
+    if (process::StopSignal() != 0) kill(child.pid, SIGTERM);
     ReadAll(&child);
     int status = 0;
-    waitpid(child.pid, &status, 0);
+    while (waitpid(child.pid, &status, 0) < 0 && errno == EINTR) {
+    }
     if (status == 0) {
       AddReport(child.report, &result);
     } else {

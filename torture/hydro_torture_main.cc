@@ -1,4 +1,5 @@
 // hydro-torture: the whole stack in simulation, under faults drawn from a seed.
+#include "process/stop_signal.h"
 #include "settings/command_line.h"
 #include "torture/torture_command.h"
 
@@ -8,5 +9,8 @@ int main(int argc, char** argv) {
   hydro::torture::TortureOptions options;
   hydro::torture::AddOptions(&line, &options);
   if (const auto code = line.Parse(argc, argv)) return *code;
-  return hydro::settings::RunProgram("hydro-torture", [&] { return hydro::torture::Run(options); });
+  return hydro::settings::RunProgram("hydro-torture", [&] {
+    hydro::process::CatchStopSignals();  // Ctrl-C: the report so far
+    return hydro::torture::Run(options);
+  });
 }

@@ -9,6 +9,7 @@
 #include <set>
 
 #include "base/new_file.h"
+#include "process/stop_signal.h"
 #include "torture/active_fault.h"
 #include "torture/run_schedule.h"
 #include "torture/shrink.h"
@@ -72,7 +73,7 @@ class Worker {
   bool Over(uint64_t run) const {
     const bool failed =
         std::any_of(states_, states_ + options_.jobs, [](const WorkerState& s) { return s.failed; });
-    return Elapsed() >= options_.seconds || (options_.first_only && failed) ||
+    return Elapsed() >= options_.seconds || (options_.first_only && failed) || process::StopSignal() != 0 ||
            (options_.most_runs > 0 && run >= static_cast<uint64_t>(options_.most_runs));
   }
 
