@@ -59,6 +59,7 @@ class PlantApp {
   bool AllHaveSaidTheirConfiguration() const;
   void OnRefusal(int64_t session, const std::string& text);
   void DriveRig();
+  void ShowZero();
   void RequestStop();
   void RunLockstep();
   void RunRealtime();

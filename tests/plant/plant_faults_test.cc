@@ -142,7 +142,8 @@ TEST_F(PlantFaultsTest, SuspendEndsTheRun) {
   EXPECT_EQ(faults_[0].tick, 51);
   EXPECT_TRUE(faults_[0].latched);
   EXPECT_EQ(faults_[0].value, 3 * 3600);
-  EXPECT_EQ(states_.back().tick, 51);
+  EXPECT_EQ(states_.back().tick, 52) << "the state that shows zero volts";
+  EXPECT_EQ(states_.back().voltage, 0);
   EXPECT_THAT(failure_, HasSubstr("suspended"));
 }
 
@@ -286,7 +287,8 @@ TEST_F(PlantFaultsTest, LimitsEndTheRun) {
     ASSERT_EQ(faults_.size(), 1u) << c.code;
     EXPECT_EQ(faults_[0].code, c.code);
     EXPECT_TRUE(faults_[0].latched);
-    EXPECT_EQ(faults_[0].tick, states_.back().tick);
+    EXPECT_EQ(faults_[0].tick + 1, states_.back().tick);
+    EXPECT_EQ(states_.back().voltage, 0);
     EXPECT_GT(faults_[0].value, c.value);
   }
 }
