@@ -68,8 +68,7 @@ constexpr std::array kRows{
     SafetyRow{
         .id = "cable",
         .fault = "the cable between two hosts is unplugged, an interface goes down",
-        .detected =
-            "each host's processes see the other's as dead; who cannot send says so (`unsent_message`)",
+        .detected = "each host's processes see the other's as dead; who cannot send says so",
         .codes = "stale_pressure_command logger_gone unsent_message",
         .within = {"as above"},
         .output = SafeOutput::kReferenceRamped,

@@ -6,8 +6,6 @@
 namespace hydro::process {
 namespace {
 
-constexpr std::string_view kNoLogger = "the logger is not simulated: its writing thread runs on wall time";
-
 constexpr std::array kRows{
     SafetyRow{
         .id = "pressure_loop_dies",
@@ -28,7 +26,7 @@ constexpr std::array kRows{
     SafetyRow{
         .id = "pressure_loop_hangs",
         .fault = "pressure loop hangs, then goes on",
-        .detected = "plant: the same; late answers to old states do not count",
+        .detected = "plant: its states go unanswered; late answers to old ones do not count",
         .codes = "stale_motor_command",
         .within = {"`stale_input_s` + 5 ticks", 5, "stale_input_s"},
         .output = SafeOutput::kZeroVolts,
@@ -52,7 +50,7 @@ constexpr std::array kRows{
         .cleared_text = "by itself, with the first timely answer",
         .tests = "fault_commands.MotorCommandTest.test_late "
                  "plant/PlantAppTest.RealtimeAnswersToOldStatesGiveZeroVolts",
-        .injected = "slow:pressure_ctrl delay:pressure_ctrl",
+        .injected = "delay:pressure_ctrl",
     },
     SafetyRow{
         .id = "position_loop_gone",
@@ -72,7 +70,7 @@ constexpr std::array kRows{
                  "fault_loops.FaultLoopsTest.test_position_loop_hangs "
                  "fault_commands.PressureCommandTest.test_late "
                  "pressure_ctrl/PressureAppTest.StaleVoltageGivesZeroVolts",
-        .injected = "crash:position_ctrl hang:position_ctrl suspend:position_ctrl slow:position_ctrl "
+        .injected = "crash:position_ctrl hang:position_ctrl suspend:position_ctrl "
                     "delay:position_ctrl",
     },
     SafetyRow{
@@ -110,6 +108,21 @@ constexpr std::array kRows{
         .injected = "hang:plant",
     },
     SafetyRow{
+        .id = "late",
+        .fault = "a process wakes late, by less than `stale_input_s`",
+        .detected = "itself: `skipped_ticks` in `HYDRO_STATE`, missed deadlines in `HYDRO_LOOP_STATISTICS`",
+        .within = {"-"},
+        .output = SafeOutput::kControlGoesOn,
+        .output_text = "control goes on; a late plant integrates over the ticks that it has missed",
+        .restart = Cleared::kByItself,
+        .explicit_rearm = Cleared::kByItself,
+        .cleared_text = "-",
+        .tests = "plant/PlantAppTest.LateWakeUpIntegratesWhatItMissed "
+                 "timing_stall.StallTest.test_plant timing_stall.StallTest.test_pressure_ctrl "
+                 "timing_stall.StallTest.test_position_ctrl",
+        .injected = "slow",
+    },
+    SafetyRow{
         .id = "launcher_hangs",
         .fault =
             "`hydro-launch`, which started the plant or driver, hangs or is stopped (Ctrl-Z at its terminal)",
@@ -140,61 +153,6 @@ constexpr std::array kRows{
                  "agreement.AgreementTest.test_late_joiner "
                  "plant/PlantRigTest.CommandsOfAMisconfiguredLoopDoNotAct",
         .injected = "other_configuration:pressure_ctrl other_configuration:position_ctrl",
-    },
-    SafetyRow{
-        .id = "logger_dies",
-        .fault = "logger dies or hangs",
-        .detected = "plant",
-        .codes = "logger_gone",
-        .within = {"`limits.stale_logger_s` (1 s)", {}, "stale_logger_s"},
-        .output = SafeOutput::kControlGoesOn,
-        .output_text = "control goes on",
-        .restart = Cleared::kByItself,
-        .explicit_rearm = Cleared::kByItself,
-        .cleared_text = "by itself, when a new logger is heard",
-        .tests = "fault_loops.FaultLoopsTest.test_logger_dies plant/PlantFaultsTest.LoggerGone",
-        .injected = "flood",  // of messages of loggers, among others, that are never heard again
-    },
-    SafetyRow{
-        .id = "disk_full",
-        .fault = "disk full",
-        .detected = "logger: exit code 1, the log ends with a whole event; plant, with the logger's reason",
-        .codes = "logger_gone",
-        .within = {"at once"},
-        .output = SafeOutput::kControlGoesOn,
-        .output_text = "control goes on",
-        .restart = Cleared::kByItself,
-        .explicit_rearm = Cleared::kByItself,
-        .cleared_text = "by itself, when a new logger is heard",
-        .tests = "fault_loops.FaultLoopsTest.test_disk_full plant/PlantFaultsTest.LoggerFailed",
-        .not_injected = kNoLogger,
-    },
-    SafetyRow{
-        .id = "slow_disk",
-        .fault = "the disk is slower than the bus for longer than `logger.memory_mb` lasts",
-        .detected = "logger, with the number of messages that are not in the log",
-        .codes = "log_overflow",
-        .within = {"20 ms"},
-        .output = SafeOutput::kControlGoesOn,
-        .output_text = "control goes on",
-        .restart = Cleared::kByItself,
-        .explicit_rearm = Cleared::kByItself,
-        .cleared_text = "a second after the last",
-        .tests = "logger/LoggerAppTest.SlowDisk",
-        .not_injected = kNoLogger,
-    },
-    SafetyRow{
-        .id = "log_deleted",
-        .fault = "the log is deleted, renamed or replaced, or its folder is",
-        .detected = "logger: an error that names the file",
-        .within = {"1 s"},
-        .output = SafeOutput::kControlGoesOn,
-        .output_text = "control goes on, and so does recording into the open file",
-        .restart = Cleared::kByItself,
-        .explicit_rearm = Cleared::kByItself,
-        .cleared_text = "exit code 1 at the stop",
-        .tests = "logger.DeletedLogTest.test_deleted_or_moved logger/LoggerAppTest.DeletedLog",
-        .not_injected = kNoLogger,
     },
 };
 

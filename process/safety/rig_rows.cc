@@ -12,7 +12,7 @@ constexpr std::array kRows{
     SafetyRow{
         .id = "reading_not_finite",
         .fault = "a sensor's reading is not finite",
-        .detected = "pressure loop (pressures, motor speed)",
+        .detected = "pressure loop, of pressures and motor speed",
         .codes = "nonfinite_state",
         .within = {"the command of that tick", 0},
         .output = SafeOutput::kZeroVolts,

@@ -9,7 +9,8 @@ namespace hydro::process {
 const std::vector<SafetyRow>& SafetyTable() {
   static const std::vector<SafetyRow> table = [] {
     std::vector<SafetyRow> rows;
-    for (const auto part : {ProcessRows(), RigRows(), CommandRows(), NetworkRows(), RunRows()}) {
+    for (const auto part : {ProcessRows(), LoggerRows(), RigRows(), MotorCommandRows(), PressureCommandRows(),
+                            NetworkRows(), RunRows()}) {
       rows.insert(rows.end(), part.begin(), part.end());
     }
     return rows;

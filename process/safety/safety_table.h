@@ -67,8 +67,10 @@ std::vector<std::string_view> WordsOf(std::string_view list);
 
 // The parts of the table, a file each.
 std::span<const SafetyRow> ProcessRows();
+std::span<const SafetyRow> LoggerRows();
 std::span<const SafetyRow> RigRows();
-std::span<const SafetyRow> CommandRows();
+std::span<const SafetyRow> MotorCommandRows();
+std::span<const SafetyRow> PressureCommandRows();
 std::span<const SafetyRow> NetworkRows();
 std::span<const SafetyRow> RunRows();
 

@@ -23,14 +23,14 @@ std::vector<std::string> Coded(std::string_view list) {
   return words;
 }
 
-// "plant: `logger_gone`, a warning"
+// "plant (`logger_gone`, a warning)"
 std::string Detected(const SafetyRow& row) {
   std::string text(row.detected);
   if (row.codes.empty()) return text;
   const std::vector<std::string_view> codes = WordsOf(row.codes);
   const bool warning = std::all_of(codes.begin(), codes.end(), IsWarning);
   const std::string what = warning ? codes.size() == 1 ? ", a warning" : ", warnings" : "";
-  return text + ": " + Joined(Coded(row.codes)) + what;
+  return text + " (" + Joined(Coded(row.codes)) + what + ")";
 }
 
 // The tests of a file or a folder together: `fault_loops` `FaultLoopsTest.test_a`, `FaultLoopsTest.test_b`.

@@ -116,7 +116,7 @@ TEST(SafetyPageTest, WritesBetweenItsMarks) {
   EXPECT_EQ(page.find("old\n"), page.npos);
   EXPECT_THAT(page,
               HasSubstr("| disk full | logger: exit code 1, the log ends with a whole event; plant, with the "
-                        "logger's reason: `logger_gone`, a warning | at once | control goes on |"));
+                        "logger's reason (`logger_gone`, a warning) | at once | control goes on |"));
   EXPECT_THAT(page, HasSubstr("`fault_loops` `FaultLoopsTest.test_disk_full`; `tests/plant` "
                               "`PlantFaultsTest.LoggerFailed` | not reached: the logger is not simulated"));
   EXPECT_THROW(WithSafetyTable("before\n" + end + begin, "p.md"), InputError);

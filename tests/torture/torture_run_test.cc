@@ -1,11 +1,15 @@
 // Whole runs of the simulator.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <filesystem>
+#include <optional>
 #include <set>
 
 #include "base/text_file.h"
+#include "process/safety/safety_table.h"
 #include "torture/active_fault.h"
+#include "torture/invariants/reached_rows.h"
 #include "torture/run_schedule.h"
 
 namespace hydro::torture {
@@ -75,6 +79,36 @@ TEST(TortureRunTest, FaultsAreNoticed) {
     const RunOutcome outcome = RunSchedule(schedule, "");
     EXPECT_TRUE(outcome.coverage.codes.contains(code)) << code;
     EXPECT_EQ(Described(outcome), "") << code;
+  }
+}
+
+// The first fault of that name in the schedule of a seed, alone; nothing if there is none.
+std::optional<Schedule> Alone(uint64_t seed, const NamedFault& named) {
+  Schedule schedule = DrawSchedule(seed);
+  for (Injection injection : schedule.injections) {
+    if (injection.kind != named.kind || (named.target && injection.target != *named.target)) continue;
+    injection.at_s = 1.5;
+    schedule.injections = {injection};
+    schedule.faults_until_s = std::ceil(injection.at_s + injection.duration_s + 1);
+    return schedule;
+  }
+  return std::nullopt;
+}
+
+// Tests that each fault by which a row of the safety table is said to be reached does so by itself.
+TEST(TortureRunTest, RowsAreReachedAsTheTableSays) {
+  for (const process::SafetyRow& row : process::SafetyTable()) {
+    for (const std::string_view word : process::WordsOf(row.injected)) {
+      bool reached = false;
+      int runs = 0;
+      for (uint64_t seed = 1; !reached && runs < 60; ++seed) {
+        const std::optional<Schedule> schedule = Alone(seed, *FaultNamed(word));
+        if (!schedule) continue;
+        ++runs;
+        reached = RunSchedule(*schedule, "").coverage.rows.contains(std::string(row.id));
+      }
+      EXPECT_TRUE(reached) << row.id << " by " << word;
+    }
   }
 }
 

@@ -1,13 +1,10 @@
-// Commands that are not what they should be.
+// Commands without a seal, and motor commands that are not what they should be.
 #include <array>
 
 #include "process/safety/safety_table.h"
 
 namespace hydro::process {
 namespace {
-
-constexpr std::string_view kSmallReferences =
-    "no kind of fault sends pressure commands, and a wrong bit makes them so only now and then";
 
 constexpr std::array kRows{
     SafetyRow{
@@ -120,65 +117,6 @@ constexpr std::array kRows{
         .injected = "repeat:pressure_ctrl overtake:pressure_ctrl replay",
     },
     SafetyRow{
-        .id = "pressure_command_nonfinite",
-        .fault = "pressure command not finite",
-        .detected = "pressure loop",
-        .codes = "nonfinite_pressure_command",
-        .within = {"5 ticks", 5},
-        .output = SafeOutput::kZeroVolts,
-        .output_text = "0 V",
-        .restart = Cleared::kByItself,
-        .explicit_rearm = Cleared::kByRearm,
-        .cleared_text = "by itself, with the next good one",
-        .tests = "fault_commands.PressureCommandTest.test_nonfinite",
-        .not_injected = kSmallReferences,
-    },
-    SafetyRow{
-        .id = "pressure_command_excessive",
-        .fault = "pressure command above `limits.arm_torque_in_lbf` / k_2",
-        .detected = "pressure loop",
-        .codes = "excessive_pressure_command",
-        .within = {"5 ticks", 5},
-        .output = SafeOutput::kZeroVolts,
-        .output_text = "0 V",
-        .restart = Cleared::kByItself,
-        .explicit_rearm = Cleared::kByRearm,
-        .cleared_text = "by itself, with the next good one",
-        .tests = "fault_commands.PressureCommandTest.test_excessive "
-                 "pressure_ctrl/PressureAppTest.ExcessivePressureReferenceGivesZeroVolts",
-        .not_injected = kSmallReferences,
-    },
-    SafetyRow{
-        .id = "pressure_command_future",
-        .fault = "pressure command far in the future",
-        .detected = "pressure loop",
-        .codes = "future_pressure_command",
-        .within = {"5 ticks", 5},
-        .output = SafeOutput::kZeroVolts,
-        .output_text = "0 V",
-        .restart = Cleared::kByItself,
-        .explicit_rearm = Cleared::kByRearm,
-        .cleared_text = "by itself, with the next good one",
-        .tests = "fault_commands.PressureCommandTest.test_future "
-                 "pressure_ctrl/PressureAppTest.FuturePressureCommandGivesZeroVolts",
-        .injected = "change:position_ctrl",
-    },
-    SafetyRow{
-        .id = "pressure_command_repeated",
-        .fault = "pressure commands that arrive twice, or after newer ones",
-        .detected = "pressure loop",
-        .within = {"at once"},
-        .output = SafeOutput::kNotObeyed,
-        .output_text =
-            "they are not obeyed; when nothing newer arrives, the one in force becomes stale, as for a dead "
-            "position loop",
-        .restart = Cleared::kByItself,
-        .explicit_rearm = Cleared::kByItself,
-        .cleared_text = "by itself, with the next pressure command",
-        .tests = "fault_commands.PressureCommandTest.test_repeated",
-        .injected = "repeat:position_ctrl overtake:position_ctrl",
-    },
-    SafetyRow{
         .id = "two_motor_command_senders",
         .fault = "two senders of motor commands",
         .detected = "plant, with the role, host and process id of both",
@@ -193,24 +131,10 @@ constexpr std::array kRows{
                  "plant/PlantAppTest.SecondCommandSenderGivesZeroVolts",
         .injected = "second_sender",
     },
-    SafetyRow{
-        .id = "two_pressure_command_senders",
-        .fault = "two senders of pressure commands",
-        .detected = "pressure loop, with the role, host and process id of both",
-        .codes = "second_pressure_command_sender",
-        .within = {"5 ticks", 5},
-        .output = SafeOutput::kZeroVolts,
-        .output_text = "0 V while both are heard; neither is obeyed",
-        .restart = Cleared::kByItself,
-        .explicit_rearm = Cleared::kByRearm,
-        .cleared_text = "by itself, `stale_input_s` after the second was last heard; the first is followed",
-        .tests = "fault_commands.PressureCommandTest.test_two_senders",
-        .injected = "change:position_ctrl",
-    },
 };
 
 }  // namespace
 
-std::span<const SafetyRow> CommandRows() { return kRows; }
+std::span<const SafetyRow> MotorCommandRows() { return kRows; }
 
 }  // namespace hydro::process
