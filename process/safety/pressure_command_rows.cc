@@ -6,9 +6,6 @@
 namespace hydro::process {
 namespace {
 
-constexpr std::string_view kSmallReferences =
-    "no kind of fault sends pressure commands, and a wrong bit makes them so only now and then";
-
 constexpr std::array kRows{
     SafetyRow{
         .id = "pressure_command_nonfinite",
@@ -22,7 +19,8 @@ constexpr std::array kRows{
         .explicit_rearm = Cleared::kByRearm,
         .cleared_text = "by itself, with the next good one",
         .tests = "fault_commands.PressureCommandTest.test_nonfinite",
-        .not_injected = kSmallReferences,
+        .not_injected =
+            "no kind of fault sends pressure commands, and hardly any wrong bit makes a reference infinite",
     },
     SafetyRow{
         .id = "pressure_command_excessive",
@@ -37,7 +35,7 @@ constexpr std::array kRows{
         .cleared_text = "by itself, with the next good one",
         .tests = "fault_commands.PressureCommandTest.test_excessive "
                  "pressure_ctrl/PressureAppTest.ExcessivePressureReferenceGivesZeroVolts",
-        .not_injected = kSmallReferences,
+        .injected = "change:position_ctrl",
     },
     SafetyRow{
         .id = "pressure_command_future",
