@@ -1,5 +1,5 @@
-// Every fault that a process of the stack can raise, and its effect on the voltage. docs/safety.md explains
-// them; a test keeps that page and this list in step.
+// Every fault that a process of the stack can raise, and its effect on the voltage. docs/faults.md explains
+// them, and process/safety says when they occur; tests keep these and this list in step.
 #pragma once
 
 #include <span>

@@ -33,8 +33,13 @@ json ToJson(const Coverage& coverage) {
   json pairs = json::array(), kinds = json::object();
   for (const auto& [a, b] : coverage.pairs) pairs.push_back({static_cast<int>(a), static_cast<int>(b)});
   for (const auto& [kind, count] : coverage.kinds) kinds[std::to_string(static_cast<int>(kind))] = count;
-  return {{"runs", coverage.runs},   {"injected", coverage.injected}, {"simulated_s", coverage.simulated_s},
-          {"ticks", coverage.ticks}, {"codes", coverage.codes},       {"kinds", kinds},
+  return {{"runs", coverage.runs},
+          {"injected", coverage.injected},
+          {"simulated_s", coverage.simulated_s},
+          {"ticks", coverage.ticks},
+          {"rows", coverage.rows},
+          {"codes", coverage.codes},
+          {"kinds", kinds},
           {"pairs", pairs}};
 }
 
@@ -44,6 +49,7 @@ Coverage CoverageFrom(const json& text) {
   coverage.injected = text["injected"];
   coverage.simulated_s = text["simulated_s"];
   coverage.ticks = text["ticks"];
+  coverage.rows = text["rows"].get<std::set<std::string>>();
   coverage.codes = text["codes"].get<std::map<std::string, int64_t>>();
   for (const auto& [kind, count] : text["kinds"].items()) {
     coverage.kinds[static_cast<FaultKind>(std::stoi(kind))] = count;

@@ -81,6 +81,7 @@ RunOutcome World::Run() {
   outcome_.coverage.runs = 1;
   outcome_.coverage.simulated_s = static_cast<double>(now_) * 1e-9;
   outcome_.coverage.AddPairs(schedule_.injections);
+  outcome_.coverage.AddRows(schedule_.injections);
   return std::move(outcome_);
 }
 

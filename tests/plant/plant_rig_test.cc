@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <hydro/configuration_t.hpp>
@@ -142,6 +143,24 @@ TEST_F(PlantRigTest, RigFaults) {
   EXPECT_EQ(faults_[0].text, "tick 20: p1 is gone");
   EXPECT_EQ(faults_[1].limit, 4);
   EXPECT_EQ(faults_[0].source, "driver");
+}
+
+// Tests that with limits.rearm = "explicit" a rig's fault holds the voltage at zero long after it has ended, and that a
+// run that ends so is no success.
+TEST_F(PlantRigTest, RigFaultWaitsForARearm) {
+  config_.limits.rearm = settings::Rearm::kExplicit;
+  rig_.on_read = [this](int64_t tick) {
+    rig_.faults_now.clear();
+    if (tick >= 20 && tick < 40) rig_.faults_now.push_back({"sensor_p1", "p1 is gone", 1, 2});
+  };
+  EXPECT_EQ(Run(), 1);
+  for (int64_t k = 0; k < 100; ++k) EXPECT_EQ(rig_.driven[k], k + 1 >= 20 ? 0 : 1.5) << k;
+  const auto fault =
+      std::find_if(faults_.begin(), faults_.end(), [](const fault_t& f) { return f.code == "rig_fault"; });
+  ASSERT_NE(fault, faults_.end());
+  EXPECT_EQ(fault->tick, 20);
+  EXPECT_TRUE(fault->latched);
+  EXPECT_EQ(fault->text, "sensor_p1: p1 is gone");
 }
 
 // Tests that an error of the rig ends the run with 1: zero volts, then a latched fault of its name.

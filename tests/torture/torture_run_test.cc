@@ -1,11 +1,17 @@
 // Whole runs of the simulator.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <filesystem>
+#include <optional>
 #include <set>
 
 #include "base/text_file.h"
+#include "plant/voltage_guard.h"
+#include "process/safety/safety_table.h"
 #include "torture/active_fault.h"
+#include "torture/invariants/reached_rows.h"
 #include "torture/run_schedule.h"
 
 namespace hydro::torture {
@@ -93,6 +99,63 @@ TEST(TortureRunTest, FaultsOfTheLoggerAreNoticed) {
     const RunOutcome outcome = RunSchedule(schedule, "");
     EXPECT_TRUE(outcome.coverage.codes.contains(code)) << code;
     EXPECT_EQ(Described(outcome), "") << code;
+  }
+}
+
+// The first fault of that name in the schedule of a seed, alone and for as long as it may last; nothing if there is none.
+std::optional<Schedule> Alone(uint64_t seed, const NamedFault& named) {
+  Schedule schedule = DrawSchedule(seed);
+  for (Injection injection : schedule.injections) {
+    if (injection.kind != named.kind || (named.target && injection.target != *named.target)) continue;
+    injection.at_s = 1.5;
+    injection.duration_s = InfoOf(injection.kind).longest_s;
+    schedule.injections = {injection};
+    schedule.faults_until_s = std::ceil(injection.at_s + injection.duration_s + 1);
+    return schedule;
+  }
+  return std::nullopt;
+}
+
+// Whether a cause that the plant latches with limits.rearm = "explicit" has occurred.
+bool Latched(const RunOutcome& outcome) {
+  using Cause = plant::VoltageGuard::Cause;
+  for (int cause = 0; cause < static_cast<int>(Cause::kCount); ++cause) {
+    if (outcome.coverage.codes.contains(plant::VoltageGuard::CodeOf(static_cast<Cause>(cause)))) return true;
+  }
+  return false;
+}
+
+// Tests that each fault by which a row of the safety table is said to be reached does so by itself, and that all codes of
+// the row occur; and that what zeroes the voltage and needs a re-arm in explicit mode is latched by the plant there.
+TEST(TortureRunTest, RowsAreReachedAsTheTableSays) {
+  std::set<std::string, std::less<>> seen;  // codes
+  for (const process::SafetyRow& row : process::SafetyTable()) {
+    const std::vector<std::string_view> codes = process::WordsOf(row.codes);
+    const auto code_seen = [&](std::string_view code) { return seen.contains(code); };
+    for (const std::string_view word : process::WordsOf(row.injected)) {
+      const bool rearm =
+          row.output == process::SafeOutput::kZeroVolts && row.explicit_rearm == process::Cleared::kByRearm;
+      bool reached = false, all_seen = false, latched = !rearm;
+      int runs = 0;
+      // Some need a wrong bit at one place.
+      for (uint64_t seed = 1; !(reached && all_seen && latched) && runs < 600; ++seed) {
+        const std::optional<Schedule> schedule = Alone(seed, *FaultNamed(word));
+        if (!schedule) continue;
+        ++runs;
+        const RunOutcome outcome = RunSchedule(*schedule, "");
+        const bool now = outcome.coverage.rows.contains(std::string(row.id));
+        reached = reached || now;
+        if (rearm && now && schedule->explicit_rearm) {
+          latched = true;
+          EXPECT_TRUE(Latched(outcome)) << row.id << " by " << word << ", seed " << seed;
+        }
+        for (const auto& [code, count] : outcome.coverage.codes) seen.insert(code);
+        all_seen = std::all_of(codes.begin(), codes.end(), code_seen);
+      }
+      EXPECT_TRUE(reached) << row.id << " by " << word;
+      EXPECT_TRUE(latched) << row.id << " by " << word << ": in no explicit run";
+      EXPECT_TRUE(all_seen) << row.id << ": of " << row.codes;
+    }
   }
 }
 

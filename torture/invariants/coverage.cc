@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "process/fault_codes.h"
+#include "torture/invariants/reached_rows.h"
 
 namespace hydro::torture {
 
@@ -15,6 +16,7 @@ void Coverage::Add(const Coverage& other) {
   ticks += other.ticks;
   for (const auto& [code, count] : other.codes) codes[code] += count;
   for (const auto& [kind, count] : other.kinds) kinds[kind] += count;
+  rows.insert(other.rows.begin(), other.rows.end());
   pairs.insert(other.pairs.begin(), other.pairs.end());
 }
 
@@ -27,6 +29,10 @@ void Coverage::AddPairs(const std::vector<Injection>& injections) {
       pairs.insert(std::minmax(a.kind, b.kind));
     }
   }
+}
+
+void Coverage::AddRows(const std::vector<Injection>& injections) {
+  rows.merge(ReachedRows(injections, codes));
 }
 
 std::string Coverage::Report() const {
@@ -51,9 +57,9 @@ std::string Coverage::Report() const {
     }
   }
   return fmt::format(
-      "fault codes reached: {} of {}; not:{}\nkinds of faults: {} of {}; pairs: {} of {}{}{}\n", known,
+      "fault codes reached: {} of {}; not:{}\nkinds of faults: {} of {}; pairs: {} of {}{}{}\n{}", known,
       process::FaultCodes().size(), codes_missing.empty() ? " none" : codes_missing, kinds.size(), count,
-      pairs.size(), all_pairs, pairs_missing.empty() ? "" : "; not:", pairs_missing);
+      pairs.size(), all_pairs, pairs_missing.empty() ? "" : "; not:", pairs_missing, RowsReport(rows));
 }
 
 }  // namespace hydro::torture

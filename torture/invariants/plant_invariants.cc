@@ -5,10 +5,16 @@
 #include <algorithm>
 #include <cmath>
 
+#include "process/safety/safety_table.h"
+
 namespace hydro::torture {
 namespace {
 
-constexpr int64_t kDetection = 5;                          // ticks, docs/safety.md
+// Ticks, of docs/safety.md.
+const int64_t kDeadLoop = process::TicksWithin("pressure_loop_dies");
+const int64_t kStop = process::TicksWithin("stop");
+const int64_t kTwoSenders = process::TicksWithin("two_motor_command_senders");
+const int64_t kTwoPlants = process::TicksWithin("two_plants");
 constexpr TrueTime kOtherPlantAlive = 2'400'000'000;       // ns; a plant describes itself once a second
 constexpr TrueTime kConfigurationNoticed = 2'500'000'000;  // ns: a plant describes itself once a second
 
@@ -82,7 +88,7 @@ void PlantInvariants::CheckOrigin(int64_t tick, double voltage) {
   // A plant that wakes late adds the ticks that it slept through. In lockstep one tick, when a pressure loop
   // has taken another's place: what waits from the old one is dropped.
   const int64_t slept = tick - std::max<int64_t>(plant_.tick, 0);
-  const int64_t allowed = realtime() ? stale_ticks() + kDetection + slept : 1;
+  const int64_t allowed = realtime() ? stale_ticks() + kDeadLoop + slept : 1;
   // Without a key nothing tells a changed message, or one made up in a genuine sender's name, from others.
   const ReceivedCommand* const made_up = plant_.NewestFalse(voltage);
   if (made_up != nullptr && made_up->origin == Origin::kChanged) return;
@@ -135,7 +141,7 @@ void PlantInvariants::CheckLatched(int64_t tick) {
 }
 
 void PlantInvariants::CheckStopped(int64_t tick) {
-  if (!plant_.stop_tick || tick <= *plant_.stop_tick + kDetection) return;
+  if (!plant_.stop_tick || tick <= *plant_.stop_tick + kStop) return;
   observer_.Report("zero volts after a stop",
                    fmt::format("tick {}: not at zero, stopped at tick {}", tick, *plant_.stop_tick));
 }
@@ -151,7 +157,7 @@ void PlantInvariants::CheckSenders(int64_t tick, double voltage) {
     return;
   }
   if (!plant_.two_senders_tick) plant_.two_senders_tick = tick;
-  if (voltage == 0 || tick <= *plant_.two_senders_tick + kDetection) return;
+  if (voltage == 0 || tick <= *plant_.two_senders_tick + kTwoSenders) return;
   observer_.Report("at most one sender is obeyed",
                    fmt::format("tick {}: {:.6g} V, and two have sent commands since tick {}", tick, voltage,
                                *plant_.two_senders_tick));
@@ -163,7 +169,7 @@ void PlantInvariants::CheckOtherPlant(int64_t tick, double voltage) {
     plant_.other_plant_tick.reset();
     return;
   }
-  if (voltage == 0 || tick <= *plant_.other_plant_tick + kDetection) return;
+  if (voltage == 0 || tick <= *plant_.other_plant_tick + kTwoPlants) return;
   observer_.Report("zero volts with another stack on the network",
                    fmt::format("tick {}: {:.6g} V, another plant was heard at tick {}", tick, voltage,
                                *plant_.other_plant_tick));

@@ -1,0 +1,154 @@
+// Sensors, the board, and readings beyond the limits.
+#include <array>
+
+#include "process/safety/safety_table.h"
+
+namespace hydro::process {
+namespace {
+
+constexpr std::string_view kNoDriver = "the driver and its board are not simulated";
+
+constexpr std::array kRows{
+    SafetyRow{
+        .id = "reading_not_finite",
+        .fault = "a sensor's reading is not finite",
+        .detected = "pressure loop, of pressures and motor speed",
+        .codes = "nonfinite_state",
+        .within = {"the command of that tick", 0},
+        .output = SafeOutput::kZeroVolts,
+        .output_text = "0 V",
+        .restart = Cleared::kByItself,
+        .explicit_rearm = Cleared::kByRearm,
+        .cleared_text = "by itself, with the next good one",
+        .tests = "fault_commands.StateTest.test_pressures_and_speed "
+                 "pressure_ctrl/PressureAppTest.NonFiniteStateGivesZeroVolts",
+        .injected = "sensor_nan:plant",
+    },
+    SafetyRow{
+        .id = "angle_not_finite",
+        .fault = "the arm angle's reading is not finite",
+        .detected = "position loop",
+        .codes = "nonfinite_arm_angle",
+        .within = {"the command of that sample"},
+        .output = SafeOutput::kZeroVolts,
+        .output_text = "0 V: an open-loop command of 0 V",
+        .restart = Cleared::kByItself,
+        .explicit_rearm = Cleared::kByRearm,
+        .cleared_text = "by itself, with the next good one",
+        .tests = "fault_commands.StateTest.test_arm_angle "
+                 "position_ctrl/PositionAppTest.NonFiniteAngleGivesZeroVolts",
+        .injected = "sensor_nan:plant",
+    },
+    SafetyRow{
+        .id = "reading_wrong",
+        .fault = "a sensor's reading is wrong but possible: it sticks, jumps or lies within the limits",
+        .detected = "not at all",
+        .within = {"-"},
+        .output = SafeOutput::kControlGoesOn,
+        .output_text = "control goes on with the wrong reading, until a limit is exceeded",
+        .restart = Cleared::kByItself,
+        .explicit_rearm = Cleared::kByItself,
+        .cleared_text = "-",
+        .injected = "sensor_stick:plant sensor_spike:plant sensor_lie:plant",
+    },
+    SafetyRow{
+        .id = "sensor_input",
+        .fault = "a sensor's input at an end of its range, or outside its allowed readings",
+        .detected = "driver",
+        .codes =
+            "sensor_p1 sensor_p2 sensor_motor_angle sensor_motor_speed sensor_arm_angle sensor_arm_speed",
+        .within = {"the tick in which it is read", 0},
+        .output = SafeOutput::kZeroVolts,
+        .output_text = "NaN in the state, 0 V",
+        .restart = Cleared::kByItself,
+        .explicit_rearm = Cleared::kByRearm,
+        .cleared_text = "by itself, after ten good readings in a row",
+        .tests = "driver.DriverFaultTest.test_sensor_faults plant/PlantRigTest.RigFaults "
+                 "plant/driver/BoardRigTest.SaturatedInput "
+                 "plant/driver/BoardRigTest.PlausibleVolts",
+        .not_injected = kNoDriver,
+    },
+    SafetyRow{
+        .id = "board_refuses",
+        .fault = "the board refuses a reading or an output, a counter jumps",
+        .detected = "driver",
+        .codes = "board_error encoder_lost",
+        .within = {"at once", 0},
+        .output = SafeOutput::kZeroVolts,
+        .output_text = "0 V, if the board accepts it",
+        .restart = Cleared::kRunEnds,
+        .explicit_rearm = Cleared::kRunEnds,
+        .cleared_text = "the run ends, exit code 1, whatever `limits.rearm` is",
+        .tests = "driver.WaysOutTest.test_board_errors driver.DriverFaultTest.test_board_that_takes_no_zero "
+                 "plant/driver/BoardRigTest.EncoderLost plant/driver/BoardRigTest.BoardErrors",
+        .not_injected = kNoDriver,
+    },
+    SafetyRow{
+        .id = "limit_exceeded",
+        .fault =
+            "a pressure above `limits.pressure_psi`, a motor above `limits.motor_speed_rad_s`, an arm beyond "
+            "`limits.arm_angle_rad`",
+        .detected = "plant and pressure loop",
+        .codes = "pressure_limit motor_speed_limit arm_angle_limit",
+        .within = {"the tick in which it is measured", 0},
+        .output = SafeOutput::kZeroVolts,
+        .output_text = "0 V",
+        .restart = Cleared::kRunEnds,
+        .explicit_rearm = Cleared::kByRearm,
+        .cleared_text = "the run ends, exit code 1",
+        .tests = "fault_limits.LimitTest.test_pressure fault_limits.LimitTest.test_motor_speed "
+                 "fault_limits.LimitTest.test_arm_angle fault_limits.LimitTest.test_arm_angle_default "
+                 "plant/PlantFaultsTest.LimitsEndTheRun",
+        .injected = "sensor_saturate:plant",
+    },
+    SafetyRow{
+        .id = "model_error",
+        .fault = "the arm leaves the cylinder, a step of the model fails",
+        .detected = "simulated plant",
+        .codes = "model_error",
+        .within = {"at once", 0},
+        .output = SafeOutput::kZeroVolts,
+        .output_text = "0 V",
+        .restart = Cleared::kRunEnds,
+        .explicit_rearm = Cleared::kRunEnds,
+        .cleared_text = "the run ends, exit code 1, whatever `limits.rearm` is",
+        .tests = "plant/PlantAppTest.ModelErrorEndsTheRun",
+        .injected = "sensor_stick:plant sensor_lie:plant",
+    },
+    SafetyRow{
+        .id = "loop_is_safe",
+        .fault = "with `limits.rearm = \"explicit\"`: a loop goes to a safe output, or raises a fault that "
+                 "zeroes the voltage",
+        .detected = "plant",
+        .codes = "controller_fault",
+        .within = {"1 tick after it is heard", 1},
+        .output = SafeOutput::kZeroVolts,
+        .output_text = "0 V",
+        .restart = Cleared::kByItself,
+        .explicit_rearm = Cleared::kByRearm,
+        .cleared_text = "by a re-arm only, when the loop is well again",
+        .tests = "fault_limits.RearmTest.test_controller_fault plant/PlantFaultsTest.SafeCommand "
+                 "plant/PlantFaultsTest.FaultOfThePositionLoop",
+        .injected = "sensor_nan:plant hang:position_ctrl",
+    },
+    SafetyRow{
+        .id = "rig_fault",
+        .fault = "with `limits.rearm = \"explicit\"`: a sensor fault of the driver",
+        .detected = "the driver's plant",
+        .codes = "rig_fault",
+        .within = {"the tick in which it is read", 0},
+        .output = SafeOutput::kZeroVolts,
+        .output_text = "0 V",
+        .restart = Cleared::kByItself,
+        .explicit_rearm = Cleared::kByRearm,
+        .cleared_text = "by a re-arm only, when the readings are good again",
+        .tests = "plant/PlantRigTest.RigFaultWaitsForARearm",
+        .not_injected = kNoDriver,
+    },
+};
+
+}  // namespace
+
+std::span<const SafetyRow> RigRows() { return kRows; }
+
+}  // namespace hydro::process

@@ -1,0 +1,127 @@
+#include "process/safety/safety_table.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <regex>
+#include <set>
+#include <stdexcept>
+#include <string>
+
+#include "base/input_error.h"
+#include "process/fault_codes.h"
+#include "tests/process/safety_page.h"
+
+namespace hydro::process {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+// What a row's codes do together: the strongest.
+SafeOutput OutputOf(const SafetyRow& row) {
+  const std::vector<std::string_view> codes = WordsOf(row.codes);
+  if (std::any_of(codes.begin(), codes.end(), ZeroesVoltage)) return SafeOutput::kZeroVolts;
+  return std::all_of(codes.begin(), codes.end(), IsWarning) ? SafeOutput::kControlGoesOn
+                                                            : SafeOutput::kReferenceRamped;
+}
+
+// Tests that each row has a name of its own, by which it is found, and says everything.
+TEST(SafetyTableTest, RowsAreWhole) {
+  std::set<std::string_view> ids, faults;
+  for (const SafetyRow& row : SafetyTable()) {
+    EXPECT_TRUE(ids.insert(row.id).second) << row.id;
+    EXPECT_TRUE(faults.insert(row.fault).second) << row.fault;
+    EXPECT_EQ(&SafetyRowOf(row.id), &row);
+    for (const auto text : {row.fault, row.detected, row.within.text, row.output_text, row.cleared_text}) {
+      EXPECT_FALSE(text.empty()) << row.id;
+      EXPECT_EQ(text.find_first_of("|\n"), text.npos) << row.id << ": a cell of a table: " << text;
+    }
+    EXPECT_NE(row.injected.empty(), row.not_injected.empty()) << row.id;
+    EXPECT_FALSE(row.tests.empty() && row.injected.empty()) << row.id << ": nothing shows it";
+  }
+  EXPECT_THROW(SafetyRowOf("sunshine"), std::invalid_argument);
+  EXPECT_EQ(TicksWithin("stop"), 5);
+  EXPECT_THROW(TicksWithin("disk_full"), std::invalid_argument);
+}
+
+TEST(SafetyTableTest, WordsOfAList) {
+  EXPECT_THAT(WordsOf(""), IsEmpty());
+  EXPECT_THAT(WordsOf("a"), ElementsAre("a"));
+  EXPECT_THAT(WordsOf("a b:c d"), ElementsAre("a", "b:c", "d"));
+}
+
+// Tests that every code stands in a row, and that every code of a row exists.
+TEST(SafetyTableTest, HasEveryCode) {
+  std::set<std::string_view> known, named;
+  for (const FaultCode& code : FaultCodes()) known.insert(code.code);
+  for (const SafetyRow& row : SafetyTable()) {
+    for (const std::string_view code : WordsOf(row.codes)) named.insert(code);
+  }
+  EXPECT_EQ(named, known);
+}
+
+// Tests that what a row promises of the voltage is what its codes do: zero volts where one of them zeroes it, a ramp where
+// the strongest is a ramp, and otherwise control goes on.
+TEST(SafetyTableTest, OutputsAreThoseOfTheCodes) {
+  for (const SafetyRow& row : SafetyTable()) {
+    if (row.codes.empty()) continue;
+    const SafeOutput output = row.output == SafeOutput::kNotObeyed ? SafeOutput::kControlGoesOn : row.output;
+    EXPECT_EQ(output, OutputOf(row)) << row.id;
+  }
+}
+
+// Tests that no row allows more ticks than the promise, and that the text of a limit says what a program reads.
+TEST(SafetyTableTest, LimitsSayWhatIsChecked) {
+  int stated = 0;
+  for (const SafetyRow& row : SafetyTable()) {
+    const std::string text(row.within.text);
+    std::smatch number;
+    if (std::regex_search(text, number, std::regex(R"((\d+) ticks?\b)"))) {
+      ASSERT_TRUE(row.within.ticks) << row.id;
+      EXPECT_EQ(std::to_string(*row.within.ticks), number[1]) << row.id;
+    }
+    if (row.within.ticks) {
+      ++stated;
+      EXPECT_GE(*row.within.ticks, 0) << row.id;
+      EXPECT_LE(*row.within.ticks, kZeroVoltsWithinTicks) << row.id;
+    }
+    EXPECT_THAT(text, HasSubstr(std::string(row.within.after))) << row.id;
+  }
+  EXPECT_GT(stated, 15);
+}
+
+// Tests that with limits.rearm = "explicit" no motor starts again unasked: what zeroed the voltage needs a re-arm, or ends
+// the run. A plant that was started anew was asked to.
+TEST(SafetyTableTest, ExplicitAsksForARearm) {
+  for (const SafetyRow& row : SafetyTable()) {
+    const bool zero = row.output == SafeOutput::kZeroVolts || row.output == SafeOutput::kReferenceRamped;
+    EXPECT_EQ(row.explicit_rearm != Cleared::kByItself, zero && row.id != "plant_dies") << row.id;
+    EXPECT_NE(row.restart, Cleared::kByRearm) << row.id << ": \"restart\" knows no re-arm";
+    EXPECT_TRUE(row.explicit_rearm != Cleared::kRunEnds || row.restart == Cleared::kRunEnds) << row.id;
+    EXPECT_EQ(row.restart == Cleared::kRunEnds,
+              std::regex_search(std::string(row.cleared_text), std::regex("the run ends|a new run")))
+        << row.id;
+  }
+}
+
+// Tests that the page keeps what is around the table, and that a page without marks is refused.
+TEST(SafetyPageTest, WritesBetweenItsMarks) {
+  const std::string begin = "<!-- safety_page --write writes this -->\n", end = "<!-- safety_page ends -->\n";
+  const std::string page = WithSafetyTable("before\n" + begin + "old\n" + end + "after\n", "p.md");
+  EXPECT_TRUE(page.starts_with("before\n" + begin + "| fault |")) << page.substr(0, 100);
+  EXPECT_TRUE(page.ends_with("|\n" + end + "after\n"));
+  EXPECT_EQ(page.find("old\n"), page.npos);
+  EXPECT_THAT(page,
+              HasSubstr("| disk full | logger: exit code 1, the log ends with a whole event; plant, with the "
+                        "logger's reason (`logger_gone`, a warning) | at once | control goes on |"));
+  EXPECT_THAT(page, HasSubstr("`fault_loops` `FaultLoopsTest.test_disk_full`; `tests/plant` "
+                              "`PlantFaultsTest.LoggerFailed` | `disk_full` |"));
+  EXPECT_THAT(page, HasSubstr("| not reached: nobody deletes the files of the simulated disk |"));
+  EXPECT_THROW(WithSafetyTable("before\n" + end + begin, "p.md"), InputError);
+}
+
+}  // namespace
+}  // namespace hydro::process
