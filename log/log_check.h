@@ -21,6 +21,9 @@ inline constexpr size_t kMostCheckedEvents = 128;   // between two check events
 inline constexpr size_t kMostCheckedBytes = 16384;  // the same, reached by the last event between them
 inline constexpr size_t kMostCheckText = 60000;     // bytes
 
+// How the text of a kEnd begins where the recording goes on in another file.
+inline constexpr std::string_view kGoesOn = "goes on in ";
+
 enum class CheckKind : uint8_t {
   kBegin,  // opens a log; its text says where it comes from, if not from a recording
   kBlock,  // between; its text is a remark of the recorder
@@ -30,9 +33,10 @@ enum class CheckKind : uint8_t {
 // The contents of a check event. The views lie in its bytes.
 struct LogCheck {
   CheckKind kind = CheckKind::kBlock;
-  int64_t offset = 0;                  // of the check event in its log, in bytes from the log's kBegin
-  uint32_t previous = 0;               // `checksum` of the check event before; 0 in kBegin
-  size_t count = 0;                    // events since then
+  int64_t offset = 0;     // of the check event in its log, in bytes from the log's kBegin
+  uint32_t previous = 0;  // `checksum` of the check event before. In kBegin: of the end of the part that
+                          // this one follows (rotation); 0: of none
+  size_t count = 0;       // events since then
   const uint8_t* checksums = nullptr;  // of those, big-endian u32 each
   std::string_view text;
   uint32_t checksum = 0;  // of the check event itself, up to this field

@@ -135,6 +135,8 @@ bool LogExaminer::TakeBegin(const LogEvent& event, const LogCheck& check) {
     return Damaged(event.offset,
                    Place(event.offset, messages_) + "a log begins here, before the one before it has ended");
   }
+  if (begun_ && !Follows(event, check)) return false;
+  if (!begun_ && check.previous != 0) verdict_.note = "a later part of a recording";
   begun_ = true;
   ended_ = false;
   begin_ = event.offset;
@@ -143,6 +145,18 @@ bool LogExaminer::TakeBegin(const LogEvent& event, const LogCheck& check) {
   checked_utime_ = event.utime;
   if (!check.text.empty()) verdict_.note += (verdict_.note.empty() ? "" : "; ") + Printable(check.text);
   return true;
+}
+
+// The parts of a recording that was rotated, joined in order; or logs that have nothing to do with each other.
+bool LogExaminer::Follows(const LogEvent& event, const LogCheck& check) {
+  const bool goes_on = verdict_.ending.starts_with(kGoesOn);
+  if (check.previous == 0 && !goes_on) return true;
+  if (check.previous == previous_) return true;
+  return Damaged(event.offset,
+                 Place(event.offset, messages_) + "found the beginning of " +
+                     (check.previous == 0 ? "another recording" : "a later part of a recording") +
+                     (goes_on ? ", though the one before says that it " + verdict_.ending : "") +
+                     "; a part is missing, repeated or in another place");
 }
 
 bool LogExaminer::CompareBlock(const LogEvent& event, const LogCheck& check) {

@@ -30,6 +30,7 @@ class LogExaminer {
   bool TakeMessage(const LogEvent& event);
   bool TakeCheck(const LogEvent& event);
   bool TakeBegin(const LogEvent& event, const LogCheck& check);
+  bool Follows(const LogEvent& event, const LogCheck& check);
   bool CompareBlock(const LogEvent& event, const LogCheck& check);
   bool Unreadable(int64_t offset, const std::string& wrong);
   bool Damaged(int64_t readable_end, const std::string& where);

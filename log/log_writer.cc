@@ -25,12 +25,13 @@ size_t WholeEvents(const uint8_t* buffer, size_t size) {
 }
 }  // namespace
 
-LogWriter::LogWriter(const std::string& file, Opening opening, std::string note)
+LogWriter::LogWriter(const std::string& file, Opening opening, std::string note, uint32_t follows)
     : file_(file, opening),
       opening_(opening),
       note_(std::move(note)),
       capacity_(kBufferSize),
-      buffer_(std::make_unique_for_overwrite<uint8_t[]>(kBufferSize)) {
+      buffer_(std::make_unique_for_overwrite<uint8_t[]>(kBufferSize)),
+      previous_(follows) {
   if (note_.size() > kMostCheckText) note_.resize(kMostCheckText);
   checksums_.reserve(4 * kMostCheckedEvents);
 }

@@ -18,8 +18,9 @@ class LogWriter {
  public:
   // Creates `file` (new_file.h): Opening::kDirect for a recording in progress, where everything flushed
   // survives a kill; Opening::kTemporary for a log that appears whole or not at all. Throws InputError when
-  // it cannot be created. `note`: where the log comes from, for readers of it; empty for a recording.
-  LogWriter(const std::string& file, Opening opening, std::string note = {});
+  // it cannot be created. `note`: where the log comes from, for readers of it; empty for a recording. `follows`: of a
+  // recording in parts, last_check() of the part before; 0: it begins here.
+  LogWriter(const std::string& file, Opening opening, std::string note = {}, uint32_t follows = 0);
   // With kDirect, flushes the rest and ignores errors, and the log has no end mark; with kTemporary, removes
   // an unfinished file.
   ~LogWriter();
@@ -55,7 +56,9 @@ class LogWriter {
   // here, if not because it is complete. No events can be appended afterwards.
   void Finish(std::string_view why = {});
 
-  int64_t bytes() const { return bytes_; }    // length of the log, including what is still in the buffer
+  int64_t bytes() const { return bytes_; }  // length of the log, including what is still in the buffer
+  // The checksum of the last check event: after Finish() that of the end, by which the next part names this one.
+  uint32_t last_check() const { return previous_; }
   int64_t events() const { return events_; }  // events appended, checks not among them
   const std::string& file() const { return file_.name(); }
 

@@ -32,9 +32,9 @@ void LogFiles::Append(const EventQueue::Event& event) {
 
 void LogFiles::Rotate() {
   const std::string next = RotatedName(file_, count_++);
-  writer_->Finish("goes on in " + std::filesystem::path(next).filename().string());
+  writer_->Finish(std::string(log::kGoesOn) + std::filesystem::path(next).filename().string());
   if (const auto wrong = watch_.LookNow()) gone_ = wrong;
-  writer_ = std::make_unique<log::LogWriter>(next, Opening::kDirect);
+  writer_ = std::make_unique<log::LogWriter>(next, Opening::kDirect, std::string(), writer_->last_check());
   watch_.Watch(next);
   if (!description_) return;
   writer_->Append(description_->channel, description_->data.data(), description_->data.size(),

@@ -11,7 +11,7 @@
 #include "log/causal_order.h"
 #include "log/log_writer.h"
 #include "logger/event_queue.h"
-#include "logger/file_watch.h"
+#include "base/file_watch.h"
 
 namespace hydro::logger {
 

@@ -5,6 +5,7 @@
 #include <chrono>
 #include <memory>
 
+#include "base/file_watch.h"
 #include "base/read_files.h"
 #include "bus/udpm/udpm_url.h"
 #include "log/log_writer.h"
@@ -49,7 +50,10 @@ void WarnOfOpenNetwork(const std::string& program, const settings::BusSection& b
 // --log of a process whose main work is another: when the log can no longer be written, that work goes on.
 class Recording {
  public:
-  void Open(const std::string& file) { writer_ = std::make_unique<log::LogWriter>(file, Opening::kDirect); }
+  void Open(const std::string& file) {
+    writer_ = std::make_unique<log::LogWriter>(file, Opening::kDirect);
+    watch_.Watch(file);
+  }
 
   void Add(const bus::RawMessage& message) {
     if (!writer_ || message.channel.empty()) return;
@@ -60,17 +64,25 @@ class Recording {
       if (now - flushed_ < kFlushPeriod) return;
       flushed_ = now;
       writer_->Flush();
+      if (const auto wrong = watch_.Look(now)) ReportGone(*wrong);
     });
   }
 
-  // Returns false when anything could not be written.
+  // Returns false when anything could not be written, or the file is no longer where it was.
   bool Close() {
     if (writer_) Try([&] { writer_->Finish(); });
+    if (const auto wrong = watch_.LookNow()) ReportGone(*wrong);
     return !failed_;
   }
 
  private:
   static constexpr auto kFlushPeriod = std::chrono::milliseconds(20);
+
+  // Recording goes on: an open file takes what is written.
+  void ReportGone(const std::string& wrong) {
+    failed_ = true;
+    spdlog::error("{}; this program will end with 1", wrong);
+  }
 
   void Try(const std::function<void()>& write) {
     try {
@@ -83,6 +95,7 @@ class Recording {
   }
 
   std::unique_ptr<log::LogWriter> writer_;
+  FileWatch watch_;
   std::chrono::steady_clock::time_point flushed_;
   bool failed_ = false;
 };

@@ -151,6 +151,18 @@ class DeletedLogTest(stack.TestCase):
                 self.assertEqual(logger.wait(), 1, logger.report())
 
 
+    # Tests the same of --log of a program whose work is another.
+    def test_deleted_log_of_a_loop(self):
+        log_file = self.path("run.lcmlog")
+        loop = self.start("hydro-pressure-ctrl", stack.config("demo.toml"), "--set", f"bus.url={self.new_url()}", "--log", log_file)
+        self.wait_until(lambda: os.path.exists(log_file) and os.path.getsize(log_file) > 0, "a log")
+        os.remove(log_file)
+        self.wait_until(lambda: "renamed or deleted" in loop.stderr, "a word on it", timeout=4)
+        self.assertTrue(loop.running)
+        loop.send(signal.SIGTERM)
+        self.assertEqual(loop.wait(), 1, loop.report())
+
+
 class TornLogTest(stack.TestCase):
     # Tests that a log cut off within its last message is read to there, with a word on it, and that a repair loses only that
     # message.

@@ -1,4 +1,4 @@
-#include "logger/file_watch.h"
+#include "base/file_watch.h"
 
 #include "logger/refused_quota.h"
 #include "tests/log/log_fixture.h"

@@ -127,6 +127,33 @@ TEST_F(LoggerAppTest, RotationIsNoCut) {
   }
 }
 
+// Tests that the files of a rotation joined in order are one complete log, and that one that is missing, repeated or in
+// another place is noticed.
+TEST_F(LoggerAppTest, JoinedParts) {
+  LoggerApp logger(bus_, clock_, SmallStack(), {file_, 20000});
+  SendStates(0, 299);
+  EXPECT_EQ(logger.Finish(), 0);
+  std::vector<std::string> parts;
+  for (int n = 0; std::filesystem::exists(RotatedName(file_, n)); ++n)
+    parts.push_back(log::ReadBytes(RotatedName(file_, n)));
+  ASSERT_GE(parts.size(), 3u);
+  const auto verdict = [&](std::vector<size_t> order) {
+    std::string bytes;
+    for (const size_t part : order) bytes += parts[part];
+    ForgetRead(Path("joined"));
+    log::WriteBytes(Path("joined"), bytes);
+    return log::LogReader(Path("joined"), log::OnDamage::kStop).verdict();
+  };
+  EXPECT_EQ(verdict({0, 1, 2}).completeness, log::Completeness::kComplete);
+  EXPECT_EQ(verdict({1, 2}).completeness, log::Completeness::kComplete);
+  EXPECT_EQ(verdict({1, 2}).note, "a later part of a recording");
+  for (const auto& wrong : std::vector<std::vector<size_t>>{{0, 2}, {0, 0}, {0, 1, 1}, {1, 0}, {0, 2, 1}}) {
+    EXPECT_EQ(verdict(wrong).completeness, log::Completeness::kDamaged) << wrong[1];
+    EXPECT_THAT(verdict(wrong).where, ::testing::HasSubstr("a part is missing, repeated or in another place"))
+        << wrong[1];
+  }
+}
+
 // Tests that a check event from the bus is not recorded, and that of refused messages a bounded number is, with
 // a remark on the rest.
 TEST_F(LoggerAppTest, RefusedMessagesAreBounded) {

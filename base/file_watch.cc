@@ -1,6 +1,6 @@
-#include "logger/file_watch.h"
+#include "base/file_watch.h"
 
-namespace hydro::logger {
+namespace hydro {
 
 void FileWatch::Watch(const std::string& file) {
   file_ = file;
@@ -22,4 +22,4 @@ std::optional<std::string> FileWatch::LookNow() {
                         : ": has been renamed or deleted while it was being recorded, or its folder has");
 }
 
-}  // namespace hydro::logger
+}  // namespace hydro

@@ -2,13 +2,13 @@
 // writing to it goes on working, and nobody would find the log.
 #pragma once
 
+#include <chrono>
 #include <optional>
 #include <string>
 
 #include "base/file_identity.h"
-#include "bus/clock.h"
 
-namespace hydro::logger {
+namespace hydro {
 
 class FileWatch {
  public:
@@ -28,4 +28,4 @@ class FileWatch {
   std::chrono::steady_clock::time_point last_look_{};
 };
 
-}  // namespace hydro::logger
+}  // namespace hydro
