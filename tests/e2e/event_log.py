@@ -161,8 +161,10 @@ def parse_check(data):
     return Check(version, kind, offset, previous, checksums, text, struct.unpack(">I", data[-4:])[0])
 
 
-def verify(path):
-    """Compares a whole log with its check events, and returns those. LogError where it is not what was written."""
+def verify(path, follows=0):
+    """Compares a whole log with its check events, and returns those. LogError where it is not what was written.
+
+    follows: for a later file of a rotation, the checksum of the end of the one before."""
     with open(path, "rb") as file:
         data = file.read()
     events = read_all_events(path)
@@ -173,7 +175,7 @@ def verify(path):
             pending.append(zlib.crc32(data[begin:end]))
             continue
         check = parse_check(event.data)
-        expected = Check(1, check.kind, begin, checks[-1].checksum if checks else 0, tuple(pending), check.text,
+        expected = Check(1, check.kind, begin, checks[-1].checksum if checks else follows, tuple(pending), check.text,
                          zlib.crc32(data[begin:end - 4]))
         if check != expected or (check.kind == BEGIN) != (not checks):
             raise LogError(f"{path}: byte {begin}: {check}, expected {expected}")

@@ -105,15 +105,16 @@ class LoggerTest(stack.TestCase):
                         key=lambda path: (len(path), path))
         self.assertEqual(pieces[0], first_file)
         self.assertGreater(len(pieces), 2)
-        events = []
+        events, before = [], 0
         for number, piece in enumerate(pieces):
             part = event_log.read_events(piece)
             if number > 0:
                 self.assertEqual(part[0].channel, "HYDRO_RUN", piece)
                 part = part[1:]  # a copy of what the piece before it holds
             events += part
-            self.assertEqual(event_log.verify(piece)[-1].text, "" if piece == pieces[-1] else
-                             "goes on in " + os.path.basename(pieces[number + 1]))
+            end = event_log.verify(piece, before)[-1]
+            before = end.checksum
+            self.assertEqual(end.text, "" if piece == pieces[-1] else "goes on in " + os.path.basename(pieces[number + 1]))
             info = self.run_program("hydro-log", "info", piece)
             self.assertIn("hydro-plant", info.stdout)  # it describes itself
         # Together they hold, in order, everything sent between the rotating logger's start and its end.

@@ -85,10 +85,10 @@ void PlantInvariants::CheckRange(int64_t tick, double voltage) {
 // Where a voltage comes from: a command that was received, genuine, fresh, and computed from sound readings.
 void PlantInvariants::CheckOrigin(int64_t tick, double voltage) {
   const int64_t delay = observer_.config_.plant.command_delay_ticks;
-  // A plant that wakes late adds the ticks that it slept through. In lockstep one tick, when a pressure loop
-  // has taken another's place: what waits from the old one is dropped.
+  // A plant that wakes late adds the ticks that it slept through.
   const int64_t slept = tick - std::max<int64_t>(plant_.tick, 0);
-  const int64_t allowed = realtime() ? stale_ticks() + kDeadLoop + slept : 1;
+  const int64_t allowed =
+      realtime() ? stale_ticks() + kDeadLoop + slept : observer_.config_.pressure_interval_ticks - 1;
   // Without a key nothing tells a changed message, or one made up in a genuine sender's name, from others.
   const ReceivedCommand* const made_up = plant_.NewestFalse(voltage);
   if (made_up != nullptr && made_up->origin == Origin::kChanged) return;
