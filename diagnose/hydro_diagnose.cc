@@ -212,7 +212,13 @@ int CheckRuns(const DiagnoseRequest& request, std::FILE* out) {
   for (const std::vector<std::string>* lines : {&report.wrong, &report.limits}) {
     for (const std::string& line : *lines) std::fputs((line + "\n").c_str(), out);
   }
-  if (report.wrong.empty()) std::fputs("nothing wrong was found in the recordings\n", out);
+  if (report.wrong.empty()) {
+    std::fputs(
+        "nothing wrong was found in the recordings, as far as the model as given predicts them: a rig that "
+        "differs much "
+        "from it can hide a mistake\n",
+        out);
+  }
   return report.wrong.empty() ? 0 : 1;
 }
 

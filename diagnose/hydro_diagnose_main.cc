@@ -20,7 +20,7 @@ int main(int argc, char** argv) {
       "-o,--out", &request.folder,
       "DIR where report.html, report.json, model.toml and next.toml are written; required without --check");
   line.AddOption("--hold-out", &request.held_out,
-                 "RUN a run that decides and is not fitted; without any, the runs are held out in turn");
+                 "RUN a run that is not fitted, for the proof; without any, the runs are held out in turn");
   line.AddOption("--effects", &request.effects,
                  "FILE the effects that may be named: TOML, effects = [\"pump.stribeck\", ...] (all)");
   line.AddOption("--free", &request.free,

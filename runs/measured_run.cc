@@ -108,7 +108,7 @@ MeasuredRun RunOfExport(const tables::Table& table, const std::string& config_te
 }
 
 MeasuredRun ReadMeasuredRun(const std::string& file, const std::optional<UnitSystem>& units) {
-  if (file.ends_with(".csv") || file.ends_with(".mat")) {
+  if (tables::IsTable(file)) {
     return ReadTableRun(file, units.value_or(UnitSystem{}));
   }
   if (file.ends_with(".toml")) {

@@ -187,7 +187,7 @@ tables::CsvSettings ReadLayout(settings::SectionReader& document, const std::str
   }
   bool units_row = false;
   if (document.Boolean("units_row", &units_row)) layout.units_row = units_row;
-  if (file.ends_with(".csv")) return layout;
+  if (!file.ends_with(".mat")) return layout;
   for (const char* key : {"separator", "decimal", "skip_lines", "units_row"}) {
     if (document.Has(key)) throw document.Error(key, "it for " + Quoted(file), "it for CSV files only");
   }

@@ -1,9 +1,25 @@
 #include "tables/table.h"
 
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <filesystem>
+
 #include "base/input_error.h"
 #include "base/text_file.h"
 
 namespace hydro::tables {
+namespace {
+
+// ".csv" for "Run.CSV".
+std::string EndingOf(const std::string& file) {
+  std::string ending = std::filesystem::path(file).extension().string();
+  std::transform(ending.begin(), ending.end(), ending.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return ending;
+}
+
+}  // namespace
 
 const Column* Table::Find(std::string_view name) const {
   for (const Column& column : columns) {
@@ -18,8 +34,14 @@ std::string Table::Place(size_t row, std::string_view column) const {
          ", column " + std::string(column);
 }
 
+bool IsTable(const std::string& file) {
+  constexpr std::array kEndings{".csv", ".tsv", ".txt", ".dat", ".mat"};
+  const std::string ending = EndingOf(file);
+  return std::any_of(kEndings.begin(), kEndings.end(), [&](const char* one) { return ending == one; });
+}
+
 Table ReadTable(const std::string& file, const CsvSettings& settings) {
-  return file.ends_with(".mat") ? ReadMat(file) : ReadCsv(file, settings);
+  return EndingOf(file) == ".mat" ? ReadMat(file) : ReadCsv(file, settings);
 }
 
 Table ReadTableWithoutUnits(const std::string& file) {

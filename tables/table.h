@@ -42,6 +42,9 @@ Table ReadTableWithoutUnits(const std::string& file);
 // neither .csv nor .mat, WriteError when the disk is full.
 void WriteTable(const Table& table, const std::string& file);
 
+// Whether a file of that name is read as a table: .csv, .tsv, .txt and .dat as text, .mat; in capitals too.
+bool IsTable(const std::string& file);
+
 // Throws the InputError that WriteTable would throw for this name, for callers that check before they work.
 void CheckTableName(const std::string& file);
 

@@ -112,7 +112,8 @@ void RemarkOnSlowSamples(const model::Parameters& model, const std::vector<const
   if (slow.empty()) return;
   remarks->push_back(RunsNamed(slow) + ": samples " + ShortNumber(longest, 3) +
                      " s apart are too slow for the model's fastest motion, whose time constant is " +
-                     ShortNumber(fastest, 2) + " s: what is as fast cannot be judged");
+                     ShortNumber(fastest, 2) + " s: what is as fast cannot be judged" +
+                     (longest >= 0.5 ? " (is the time in ms? unit = \"ms\")" : ""));
 }
 
 void RemarkOnMissingSignals(const std::vector<const RunData*>& runs, std::vector<std::string>* remarks) {

@@ -187,7 +187,7 @@ std::vector<model::ModelDescription> DescribeFound(const SearchContext& context,
     const bool as_given = changed.model >= changed.fitted.low && changed.model <= changed.fitted.high;
     if (best.fitted.hypothesis.known == nullptr || !as_given) {
       d->parameters.push_back(changed);
-    } else if (changed.fitted.value != changed.model) {
+    } else if (ShortNumber(free[i].value) != ShortNumber(changed.model)) {
       unsure.push_back(free[i].name + " = " + ShortNumber(free[i].value) + " (was " +
                        ShortNumber(changed.model) + ")");
     }

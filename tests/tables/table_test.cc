@@ -210,5 +210,13 @@ TEST_F(TableTest, UnknownFormat) {
               HasSubstr("end in .csv or .mat"));
 }
 
+// Tests which names tell a table, in capitals too.
+TEST(TableNamesTest, TellTables) {
+  for (const char* name : {"run.csv", "Run.CSV", "a/b.c/run.txt", "run.tsv", "run.DAT", "run.mat"}) {
+    EXPECT_TRUE(IsTable(name)) << name;
+  }
+  for (const char* name : {"run.lcmlog", "run", "csv", "run.csv.toml"}) EXPECT_FALSE(IsTable(name)) << name;
+}
+
 }  // namespace
 }  // namespace hydro::tables
