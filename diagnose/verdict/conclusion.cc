@@ -20,6 +20,7 @@
 #include "diagnose/verdict/ranking.h"
 #include "diagnose/verdict/run_curves.h"
 #include "diagnose/verdict/sentence.h"
+#include "diagnose/verdict/shown_noise.h"
 
 namespace hydro::diagnose {
 
@@ -175,7 +176,8 @@ Diagnosis Conclude(const SearchContext& context, const SearchResult& search, con
     d.next = DesignNextExperiment(rivals, context.runs, WhyNext(d.effects));
   }
   NameRuns(context, &d);
-  d.sentence = Sentence(d, kept.doubts) + ClosureSentence(d.closures);
+  d.sentence = Sentence(d, kept.doubts) + ClosureSentence(d.closures) +
+               ShownNoiseSentence(d.verdict, GapInShownNoise(context.predicted(), best.held_out));
   return d;
 }
 
