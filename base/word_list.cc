@@ -1,5 +1,6 @@
 #include "base/word_list.h"
 
+#include <algorithm>
 #include <cstddef>
 
 namespace hydro {
@@ -18,7 +19,9 @@ std::string Enumerated(const std::vector<std::string>& parts) {
 std::string RunNamed(const std::string& name) { return name.starts_with("run ") ? name : "run " + name; }
 
 std::string RunsNamed(const std::vector<std::string>& names) {
-  return names.size() == 1 ? RunNamed(names[0]) : "runs " + Enumerated(names);
+  const bool say_it =
+      std::all_of(names.begin(), names.end(), [](const std::string& name) { return RunNamed(name) == name; });
+  return names.size() == 1 ? RunNamed(names[0]) : (say_it ? "" : "runs ") + Enumerated(names);
 }
 
 }  // namespace hydro

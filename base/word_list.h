@@ -12,7 +12,7 @@ std::string Joined(const std::vector<std::string>& parts, const std::string& bet
 std::string Enumerated(const std::vector<std::string>& parts);
 // "run sine"; a name that already begins with "run" stays the same: "run 5"
 std::string RunNamed(const std::string& name);
-// "run a"; "runs a and b"
+// "run a"; "runs a and b"; "run 5 and run 6"
 std::string RunsNamed(const std::vector<std::string>& names);
 
 }  // namespace hydro

@@ -12,6 +12,7 @@
 #include "diagnose/fit/clock_fit.h"
 #include "diagnose/recording_first.h"
 #include "diagnose/search/proof.h"
+#include "diagnose/verdict/choice_without.h"
 #include "diagnose/verdict/conclusion.h"
 #include "diagnose/verdict/per_run.h"
 
@@ -200,7 +201,8 @@ Diagnosis Diagnose(const model::ModelDescription& model, std::vector<runs::Measu
   const std::vector<std::string> limits = LimitRemarks(model.parameters, context.runs);
   diagnosis.remarks.insert(diagnosis.remarks.end(), limits.begin(), limits.end());
   AddChecked(checked, &diagnosis);
-  const std::string doubt = ProofRemark(context);
+  const std::string doubt =
+      diagnosis.choices.empty() ? ProofRemark(context) : ChoiceRemark(diagnosis.choices);
   if (!doubt.empty()) diagnosis.remarks.push_back(doubt);
   if (limit.struck()) diagnosis.remarks.push_back(limit.Remark());
   diagnosis.recording = std::move(prepared.clocks);

@@ -56,12 +56,14 @@ struct Stimulus {
 
 // The base states at the first time, indexed as in model/state.h, then what no sensor shows. The arm's states are used with a free
 // shaft only; with the bypass open, p2 is p1. Pressures below p_3 start at p_3. States of effects start from these.
-using StartState = std::array<double, 11>;
+using StartState = std::array<double, 12>;
 // rad: what repeats with the shaft (motor.cogging, pump.flow_ripple) sees this much more than the angle sensor.
 inline constexpr size_t kTurn = 6;
 // psi, four numbers: waves that are under way in the lines of line.wave. Of each side the pump's pressure less the actuator's, and
 // the line's flow times its impedance I w.
-inline constexpr size_t kWaves = 7;
+inline constexpr size_t kWaves = 7, kWaveNumbers = 4;
+// in^3: what the accumulator of accumulator.stiffness has taken in already, so that its pressure begins above p_3.
+inline constexpr size_t kReturned = 11;
 
 // The sensors, in the order of Measurement.
 enum class Channel { kMotorAngle, kMotorSpeed, kArmAngle, kArmSpeed, kP1, kP2 };

@@ -51,8 +51,15 @@ Mode StartFrom(Equations* equations, const NumbersOf<T>& numbers, double time, c
   for (const auto& effect : data.effects) {
     terms.own = numbers.own.data() + effect->first_parameter();
     terms.waves = base + kWaves;
+    terms.returned = base + kReturned;
     effect->Start(terms, state);
     effect->StartMode(terms, &mode);
+  }
+  if (data.p_3_state >= 0) {  // p_3 is known only now
+    evaluate();
+    FindMargins<Form::kGeneral, T>(data, numbers, mode, terms, margin);
+    if (ValueOf(margin[kValve1Switch]) < 0) state[kP1] = terms.p_3;
+    if (ValueOf(margin[kValve2Switch]) < 0) state[kP2] = terms.p_3;
   }
   const double speed = ValueOf(state[kMotorSpeed]);
   mode.pump = static_cast<int8_t>(speed > 0 ? 1 : (speed < 0 ? -1 : 0));

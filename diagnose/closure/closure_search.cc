@@ -21,8 +21,7 @@ constexpr int kFirstIterations = 6;
 constexpr int kLastIterations = 10;
 // Far from the noise, friction makes the sum of squares rough: full steps fail.
 constexpr double kFirstRadius = 3;
-constexpr double kNear = 0.3;  // how far the base's own values may move, relative, as a standard deviation
-constexpr double kLoose = 2;   // how far values may go beyond the tables, as a standard deviation
+constexpr double kLoose = 2;  // how far values may go beyond the tables, as a standard deviation
 // What a surface has to take beyond the curve; it has three times as many values.
 constexpr double kSurfaceWorthwhile = 0.5;
 

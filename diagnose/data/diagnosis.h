@@ -157,6 +157,13 @@ struct RunCurves {
   std::vector<double> voltage;
 };
 
+// What the other runs choose among what was tried, where each run is held out in turn.
+struct ChoiceWithout {
+  std::string run;     // that is left out
+  std::string chosen;  // as a candidate's id
+  bool same = false;   // it is what was found with all runs
+};
+
 struct NextExperiment {
   std::string why;
   std::string config;              // TOML of a stack that runs it, "" when none is needed
@@ -186,6 +193,7 @@ struct Diagnosis {
   model::ModelDescription model;  // with the changes found
   // When held_out_runs is empty, the runs were held out in turn.
   std::vector<std::string> runs, held_out_runs;
+  std::vector<ChoiceWithout> choices;  // where they were, and there are three or more
   size_t samples = 0;
 };
 

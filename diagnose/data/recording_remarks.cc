@@ -6,12 +6,12 @@
 
 #include "base/number_text.h"
 #include "base/word_list.h"
+#include "diagnose/data/noise_remarks.h"
 #include "diagnose/data/sample_interval.h"
 
 namespace hydro::diagnose {
 namespace {
 
-constexpr double kUnlikeStated = 2;      // ratio of noises, either way
 constexpr double kMostSaturated = 0.01;  // share of a signal's samples
 constexpr double kMostMissing = 0.05;    // of a signal that is present most of the time
 constexpr double kSlowerSensor = 0.5;    // with more missing it is a slower sensor
@@ -41,11 +41,6 @@ void RemarkOnTimes(const RunData& run, std::vector<std::string>* remarks) {
 void RemarkOnSignal(const RunData& run, const SignalData& signal, std::vector<std::string>* remarks) {
   const std::string name = RunNamed(run.name) + ": " + ChannelName(signal.channel);
   const std::string unit = " " + ChannelUnit(signal.channel, run.measured.units);
-  const double ratio = signal.estimated_noise / signal.stated_noise;
-  if (ratio > kUnlikeStated || ratio < 1 / kUnlikeStated) {
-    remarks->push_back(name + " has a noise of " + ShortNumber(signal.estimated_noise, 3) + unit +
-                       "; the stated " + ShortNumber(signal.stated_noise, 3) + unit + " is used");
-  }
   const auto samples = static_cast<double>(run.samples());
   const auto there = static_cast<double>(signal.valid + signal.saturated);
   if (static_cast<double>(signal.saturated) > kMostSaturated * there) {
@@ -169,11 +164,12 @@ std::vector<std::string> RecordingRemarks(const std::vector<ClockDelay>& clocks,
   std::vector<std::string> remarks;
   remarks.reserve(clocks.size());
   for (const ClockDelay& clock : clocks) remarks.push_back(DelayRemark(clock));
-  for (const auto* some : {&runs, &held_out}) {
-    for (const RunData* run : *some) {
-      RemarkOnTimes(*run, &remarks);
-      for (const SignalData& signal : run->signals) RemarkOnSignal(*run, signal, &remarks);
-    }
+  std::vector<const RunData*> all = runs;
+  all.insert(all.end(), held_out.begin(), held_out.end());
+  for (std::string& remark : NoiseRemarks(all)) remarks.push_back(std::move(remark));
+  for (const RunData* run : all) {
+    RemarkOnTimes(*run, &remarks);
+    for (const SignalData& signal : run->signals) RemarkOnSignal(*run, signal, &remarks);
   }
   if (!runs.empty()) RemarkOnMotion(runs, &remarks);
   return remarks;

@@ -139,6 +139,8 @@ void SetStart(const model::Parameters& model, RunData* data) {
     data->start[model::kArmAngle] = data->stimulus.arm_angle;
   }
   SetStartErrors(lines, data);
+  // As much as the oil of a side gives up from the greatest pressure that the pump holds.
+  data->start_error[model::kReturned] = model.V_ms / model.beta * model.T_pmax / model.D;
 
   // Each speed is judged by itself; an arm speed that is not measured does not exclude rest.
   model::StartState at_rest = data->start;

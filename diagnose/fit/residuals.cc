@@ -94,9 +94,14 @@ std::vector<model::Unknown> StartUnknowns(const model::ModelDescription& model, 
       run.begins_within && std::any_of(model.effects.begin(), model.effects.end(), [](const auto& effect) {
         return model::HasRole(effect.id, model::Role::kFrequency);
       });
+  const bool returned = std::any_of(model.effects.begin(), model.effects.end(), [](const auto& effect) {
+    const model::EffectInfo* info = model::FindEffect(effect.id);
+    return info != nullptr && info->remembers_flow;
+  });
   std::vector<model::Unknown> unknowns;
   for (size_t i = 0; i < run.start_free.size(); ++i) {
-    if (run.start_free[i] || turn == i || (waves && i >= model::kWaves)) {
+    const bool wave = i >= model::kWaves && i < model::kWaves + model::kWaveNumbers;
+    if (run.start_free[i] || turn == i || (waves && wave) || (returned && i == model::kReturned)) {
       unknowns.push_back({model::Unknown::Kind::kStart, i});
     }
   }

@@ -33,7 +33,7 @@ double SumOfSquares(const model::ModelDescription& model, const RunData& run, co
 
 // The unknown numbers of a run's start: those that are free, and what the model's effects need besides. The shaft's angle as
 // what repeats with it sees it is unknown, but in the run whose zero counts, where that has a phase of its own; waves may be under
-// way in lines where a window begins.
+// way in lines where a window begins; an accumulator that remembers what it has taken in may have taken in some before any run.
 std::vector<model::Unknown> StartUnknowns(const model::ModelDescription& model, const RunData& run);
 // Which of them is that angle; none where it is known.
 std::optional<size_t> UnknownTurn(const model::ModelDescription& model, const RunData& run);

@@ -7,6 +7,7 @@
 #include "base/word_list.h"
 #include "diagnose/report/html_parts.h"
 #include "diagnose/report/report_pictures.h"
+#include "diagnose/verdict/choice_without.h"
 #include "diagnose/verdict/sentence.h"
 #include "page/figure_svg.h"
 #include "page/typeset.h"
@@ -175,6 +176,8 @@ std::string HowMuchOfTheGap(const Diagnosis& diagnosis) {
   }
   rows += "<tr class=\"all\"><td class=\"number\">whole runs</td>" + GapCells(diagnosis.held_out) +
           GapCells(diagnosis.fit) + "</tr>\n";
+  const std::string choices =
+      diagnosis.choices.empty() ? "" : "<p>" + page::TypesetHtml(ChoiceRemark(diagnosis.choices)) + ".</p>\n";
   return "<p>Root-mean-square differences between predictions and measurements, in standard deviations of "
          "the noise: 1 is the noise floor. Each prediction reaches that far from a start of its own. "
          "<i>Before</i>: "
@@ -186,7 +189,8 @@ std::string HowMuchOfTheGap(const Diagnosis& diagnosis) {
               : page::HtmlFigure(HorizonFigure(diagnosis), "the gap at each horizon")) +
          Table({"#predicted over", "#held out: before", "#refitted", "#after", "#fitted: before", "#refitted",
                 "#after"},
-               rows);
+               rows) +
+         choices;
 }
 
 std::string WhatRemains(const Diagnosis& diagnosis) {

@@ -54,6 +54,15 @@ void AddCuts(const Closure& closure, page::Panel* panel) {
   }
 }
 
+// Makes room for the band, as far as the curve can still be read: at the last knot, where few samples are, it may
+// be many times as wide as the curve is high. The table has all of it.
+void IncludeBand(const Closure& closure, page::Range* y) {
+  const page::Range curve = *y;
+  const double room = 1.5 * (curve.high - curve.low);
+  for (const double low : closure.low) y->Include(std::max(low, curve.low - room));
+  for (const double high : closure.high) y->Include(std::min(high, curve.high + room));
+}
+
 page::Figure Picture(const Closure& closure) {
   page::Panel panel;
   panel.x.label = Label(closure.against[0], closure.against_units[0]);
@@ -70,8 +79,7 @@ page::Figure Picture(const Closure& closure) {
     page::Curve knots = page::Line("", closure.knots[0], closure.value, kAfter, page::Stroke::kPoints);
     knots.y_low = closure.low;
     knots.y_high = closure.high;
-    y.Include(closure.low);
-    y.Include(closure.high);
+    IncludeBand(closure, &y);
     panel.curves.push_back(std::move(knots));
   }
   SetRange(panel.x, x.WithMargin());
@@ -112,6 +120,10 @@ std::string ClosureSection(const Diagnosis& diagnosis) {
     out += "<h3>" + page::EscapeMarkup(closure.id) + " against " +
            page::TypesetHtml(Enumerated(closure.against)) + "</h3>\n<p>It " +
            page::TypesetHtml(closure.resembles) + ".</p>\n" +
+           (closure.knots.size() == 1
+                ? "<p class=\"lead\">With 95 % intervals at its knots, as far as the picture "
+                  "reaches:</p>\n"
+                : "") +
            page::HtmlFigure(Picture(closure), "the closure, with its 95 % band") + Values(closure);
   }
   return out.empty() ? "" : out + GapText(diagnosis.closures.front());

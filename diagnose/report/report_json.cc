@@ -143,6 +143,13 @@ Json NextExperimentOf(const Diagnosis& diagnosis, const std::string& next_config
           {"expected_separation", next.expected_separation}};
 }
 
+Json ChosenWithout(const Diagnosis& diagnosis) {
+  Json choices = Json::array();
+  for (const ChoiceWithout& choice : diagnosis.choices)
+    choices.push_back({{"run", choice.run}, {"chosen", choice.chosen}, {"same", choice.same}});
+  return choices;
+}
+
 Json Candidates(const Diagnosis& diagnosis) {
   Json candidates = Json::array();
   for (const Candidate& candidate : diagnosis.candidates) {
@@ -181,6 +188,7 @@ std::string ReportJson(const Diagnosis& diagnosis, const std::string& next_confi
                        {"remarks", diagnosis.remarks},
                        {"runs", diagnosis.runs},
                        {"held_out_runs", diagnosis.held_out_runs},
+                       {"chosen_without", ChosenWithout(diagnosis)},
                        {"samples", diagnosis.samples},
                        {"version", settings::ProgramVersion()},
                        {"elapsed_s", elapsed_s}};

@@ -11,6 +11,7 @@
 #include "diagnose/locate/effect_terms.h"
 #include "diagnose/locate/locate.h"
 #include "diagnose/search/window_search.h"
+#include "diagnose/verdict/choice_without.h"
 #include "diagnose/verdict/effect_stretch.h"
 #include "diagnose/verdict/evidence.h"
 #include "diagnose/verdict/found.h"
@@ -20,6 +21,7 @@
 #include "diagnose/verdict/ranking.h"
 #include "diagnose/verdict/run_curves.h"
 #include "diagnose/verdict/sentence.h"
+#include "diagnose/verdict/shown_noise.h"
 
 namespace hydro::diagnose {
 
@@ -175,7 +177,12 @@ Diagnosis Conclude(const SearchContext& context, const SearchResult& search, con
     d.next = DesignNextExperiment(rivals, context.runs, WhyNext(d.effects));
   }
   NameRuns(context, &d);
-  d.sentence = Sentence(d, kept.doubts) + ClosureSentence(d.closures);
+  if (context.held_out.empty()) {
+    d.choices = ChoicesWithoutEach(DecidingContest(context, kept.search, refit, windows),
+                                   ClaimOf(best.fitted.hypothesis));
+  }
+  d.sentence = Sentence(d, kept.doubts) + ClosureSentence(d.closures) +
+               ShownNoiseSentence(d.verdict, GapInShownNoise(context.predicted(), best.held_out));
   return d;
 }
 

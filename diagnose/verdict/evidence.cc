@@ -104,6 +104,14 @@ Contest ContestOf(const std::vector<const Explanation*>& tried, const std::vecto
   return contest;
 }
 
+Contest DecidingContest(const SearchContext& context, const SearchResult& search, const Explanation& refit,
+                        const WindowTrials& windows) {
+  if (windows.decide) return ContestOf(PointersToAll(windows.tried), windows.runs);
+  std::vector<const Explanation*> whole = PointersToAll(search.tried);
+  for (const Explanation* one : {&search.given, &search.best, &refit}) whole.push_back(one);
+  return ContestOf(whole, RunOfEachBlock(context.predicted(), search.given.blocks.sums.size()));
+}
+
 std::map<std::string, double> WeightsOf(const SearchContext& context, const SearchResult& search,
                                         const Explanation& refit, const WindowTrials& windows) {
   std::map<std::string, double> near =
@@ -111,10 +119,8 @@ std::map<std::string, double> WeightsOf(const SearchContext& context, const Sear
   if (!near.empty() && LeastGap(windows.tried) >= kOutOfReach) return near;
   // Where whole runs are explained to the noise, what is behind on windows and was not proved for it has no part.
   if (search.best.held_out_gap() < kCloseEnough) KeepLeading(windows, &near);
-  std::vector<const Explanation*> whole = PointersToAll(search.tried);
-  for (const Explanation* one : {&search.given, &search.best, &refit}) whole.push_back(one);
-  const std::vector<std::string> runs = RunOfEachBlock(context.predicted(), search.given.blocks.sums.size());
-  return Refined(near, Weights(ContestOf(whole, runs), context.seed));
+  WindowTrials none;
+  return Refined(near, Weights(DecidingContest(context, search, refit, none), context.seed));
 }
 
 }  // namespace hydro::diagnose

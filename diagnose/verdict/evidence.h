@@ -25,6 +25,10 @@ double LeastGap(const std::vector<Explanation>& tried);
 // Of those that were predicted. `runs`: that each block is from.
 Contest ContestOf(const std::vector<const Explanation*>& tried, const std::vector<std::string>& runs);
 
+// The evidence that decided between explanations: that of windows where these decide, else that of whole runs.
+Contest DecidingContest(const SearchContext& context, const SearchResult& search, const Explanation& refit,
+                        const WindowTrials& windows);
+
 // How probable each claim is. Windows say it of everything tried there; where they come near the noise, whole
 // runs share out among those proved what windows leave to them. Once whole runs are explained to the noise, what is
 // materially behind on windows has no part. Far from the noise whole runs say little, because small errors add up

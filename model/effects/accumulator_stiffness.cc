@@ -21,6 +21,7 @@ class Accumulator : public EffectOf<Accumulator> {
   template <class T>
   void OwnStart(const Terms<T>& x, T* state) const {
     state[first_state()] = x.parameters->p_3;
+    if (x.returned != nullptr) state[first_state()] += x.own[0] * *x.returned;
   }
 
   template <class T>
@@ -52,7 +53,8 @@ class Accumulator : public EffectOf<Accumulator> {
                              .parameters = {{.name = "stiffness",
                                              .unit = "psi/in^3",
                                              .meaning = "pressure per volume",
-                                             .example = 3000}}},
+                                             .example = 3000}},
+                             .remembers_flow = true},
                     .make = MakeEffect<Accumulator>});
 
 }  // namespace

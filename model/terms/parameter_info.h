@@ -129,6 +129,8 @@ struct EffectInfo {
   std::vector<ParameterInfo> parameters;  // all required but those that are optional
   // Checks lists that are each in order by themselves; null: nothing to check.
   std::optional<ListFault> (*fault)(const EffectDescription& effect) = nullptr;
+  // What flowed before a run begins shows in its states: kReturned of the start.
+  bool remembers_flow = false;
   // False: model files may have it, but it is no known cause, and nobody looks for it in runs.
   bool listed = true;
 };

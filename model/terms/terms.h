@@ -23,7 +23,8 @@ struct Terms {
   const T* state = nullptr;  // the whole state vector; an effect finds its own states from first_state() on
   // `voltage` acts now, whatever earlier voltages an effect remembers.
   bool voltage_acts = false;
-  const T* waves = nullptr;  // at the start, where known: what is under way in the lines, see StartState
+  const T* waves = nullptr;     // at the start, where known: what is under way in the lines, see StartState
+  const T* returned = nullptr;  // the same of the accumulator: what it has taken in already
   T motor_angle, motor_speed;
   T arm_angle, arm_speed;
   T p1, p2;  // at the actuator, where the transducers and the one-way valves are

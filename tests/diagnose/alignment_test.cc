@@ -127,7 +127,7 @@ TEST(RecordingRemarks, SayWhatIsWrong) {
   for (size_t i = 1000; i < 1500; ++i) run.p2.values[i] = NAN;
   const RunData bad = PrepareRun(run, testing::Table1());
   EXPECT_THAT(RecordingRemarks({}, {&bad}, {}),
-              ElementsAre(HasSubstr("1 gap in time, up to 3"), HasSubstr("p1 has a noise of 1."),
+              ElementsAre(HasSubstr("the samples show another noise"), HasSubstr("1 gap in time, up to 3"),
                           HasSubstr("p2 is missing in 10 % of the rows"), HasSubstr("one way only")));
 }
 
@@ -149,7 +149,7 @@ TEST(LayoutRemarks, SayHowTablesWereRead) {
   run.p1.noise = 0.5;
   run.units = kSiUnits;
   const RunData noisy = PrepareRun(run, testing::Table1());
-  EXPECT_THAT(RecordingRemarks({}, {&noisy}, {}), ElementsAre(HasSubstr(" Pa; the stated 0.5 Pa is used")));
+  EXPECT_THAT(RecordingRemarks({}, {&noisy}, {}), ElementsAre(HasSubstr(" Pa, 3.2 times the stated 0.5")));
 }
 
 }  // namespace

@@ -51,6 +51,9 @@ TEST(Diagnose, NothingMissing) {
   EXPECT_NEAR(d.held_out.after, 1, 0.05);
   EXPECT_EQ(d.runs.size(), 4);
   EXPECT_TRUE(d.held_out_runs.empty());
+  // Each run is held out in turn, and the others choose the same without it.
+  EXPECT_EQ(d.choices.size(), 4);
+  for (const diagnose::ChoiceWithout& choice : d.choices) EXPECT_TRUE(choice.same) << choice.run;
 }
 
 // Tests that a hidden effect is named, with its value within the interval and the gap closed.
@@ -150,6 +153,7 @@ TEST(Diagnose, HeldOutRuns) {
   const diagnose::Diagnosis d = diagnose::Diagnose(Table1With(), runs, held_out, Few(), {});
   EXPECT_EQ(d.runs.size(), 3);
   EXPECT_THAT(d.held_out_runs, ElementsAre("bypass 3"));
+  EXPECT_TRUE(d.choices.empty()) << "the held-out run had no part in any choice";
   EXPECT_EQ(d.verdict, diagnose::Verdict::kNamed) << d.sentence;
   ASSERT_EQ(d.effects.size(), 1);
   EXPECT_EQ(d.effects[0].id, "pump.quadratic_drag");

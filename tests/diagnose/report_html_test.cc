@@ -144,5 +144,13 @@ TEST(ReportHtml, OddCurves) {
   EXPECT_FALSE(Has(page, "e+"));
 }
 
+// Tests that the held-out gaps say what chose the model that predicts each run, where runs were held out in turn.
+TEST(ReportHtml, SaysWhatChoseWhat) {
+  Diagnosis diagnosis = testing::ExampleDiagnosis(60);
+  EXPECT_FALSE(Has(ReportHtml(diagnosis, false), "the others choose"));
+  diagnosis.choices = {{"a", "amp.lag", true}, {"b", "as given", false}};
+  EXPECT_TRUE(Has(ReportHtml(diagnosis, false), "without run b the others choose the model as given"));
+}
+
 }  // namespace
 }  // namespace hydro::diagnose

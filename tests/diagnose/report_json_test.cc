@@ -114,5 +114,14 @@ TEST(ReportJson, Verdicts) {
   EXPECT_EQ(VerdictName(Verdict::kNothingMissing), "nothing_missing");
 }
 
+// Tests that what the other runs choose without each run is there, and an empty list where runs were held out by name.
+TEST(ReportJson, WhatIsChosenWithoutEachRun) {
+  Diagnosis diagnosis = testing::ExampleDiagnosis(60);
+  EXPECT_EQ(Json::parse(ReportJson(diagnosis, "", 1))["chosen_without"], Json::array());
+  diagnosis.choices = {{"a", "amp.lag", true}, {"b", "as given", false}};
+  EXPECT_EQ(Json::parse(ReportJson(diagnosis, "", 1))["chosen_without"][1],
+            Json({{"run", "b"}, {"chosen", "as given"}, {"same", false}}));
+}
+
 }  // namespace
 }  // namespace hydro::diagnose

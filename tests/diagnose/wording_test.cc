@@ -41,6 +41,9 @@ TEST(WordList, NamesRuns) {
   EXPECT_EQ(RunNamed("sine"), "run sine");
   EXPECT_EQ(RunNamed("run 5"), "run 5");
   EXPECT_EQ(RunNamed("runaway"), "run runaway");
+  EXPECT_EQ(RunsNamed({"a", "b"}), "runs a and b");
+  EXPECT_EQ(RunsNamed({"run 5", "run 6"}), "run 5 and run 6");
+  EXPECT_EQ(RunsNamed({"run 5", "b"}), "runs run 5 and b");
 }
 
 // Tests that a gap does not change the usual interval, and that recordings are taken together.

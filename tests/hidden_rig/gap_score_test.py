@@ -53,6 +53,17 @@ class Rules(unittest.TestCase):
         r["effects"][0]["names"] = ["signal = p1"]
         self.assertFalse(scored(k, r)["right"])
 
+    # Tests that a table of weights says how often what had a weight was right, and that shares have their bounds.
+    def test_weights_and_bounds(self):
+        r = report("named", [("amp.lag", [])])
+        r["candidates"] = [{"id": "amp.lag", "weight": 0.95}, {"id": "amp.delay", "weight": 0.05}, {"id": "amp.bias", "weight": None}]
+        outcome = scored(key("single", ["amp.lag"]), r)
+        self.assertEqual(outcome["weights"], [(0.95, True), (0.05, False)])
+        outcome.update(number=1, name="amp.lag-plain")
+        text = gap_score.table([outcome], gap_score.judge([outcome]), 1.0)
+        self.assertRegex(text, r"1 of 1 +100 % +>= 5 %")  # 0.05^(1/1)
+        self.assertRegex(text, r"0\.9 to 1\.0 +0\.95 +1 of 1 ")
+
     # Tests that nulls, which stand for missing numbers, are misses and no crash.
     def test_nulls(self):
         k = key("parameter", parameters=[{"name": "b", "true": 0.02, "model": 0.03}])

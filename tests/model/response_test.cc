@@ -248,11 +248,31 @@ TEST(Response, DerivativesByTheUnseenStart) {
                    {"line.wave", {{"frequency", 80}, {"volume_fraction", 0.3}, {"damping", 0.05}}, {}}});
   std::vector<model::Unknown> unknowns;
   model::StartState start = SomeStart();
-  for (size_t i = model::kTurn; i < start.size(); ++i) {
+  for (size_t i = model::kTurn; i < model::kWaves + model::kWaveNumbers; ++i) {
     unknowns.push_back({model::Unknown::Kind::kStart, i});
     start[i] = i == model::kTurn ? 0.3 : 5.0;
   }
   ExpectDerivatives(model, LevelsFor(kHoldings[0]), start, unknowns, 1e-4, "unseen");
+}
+
+// Tests that an accumulator which has taken in some oil already begins with the pressure of that, holds both sides at it, and has
+// the derivative.
+TEST(Response, AccumulatorThatBeginsFull) {
+  const model::ModelDescription model = Table1Model({{"accumulator.stiffness", {{"stiffness", 3e3}}, {}}});
+  model::StartState start = SomeStart(110, 110);
+  start[model::kReturned] = 0.02;
+  const model::Response full = model::Respond(model, LevelsFor(kHoldings[1]), start, {}, {});
+  const auto p1 = static_cast<size_t>(model::Channel::kP1), p2 = static_cast<size_t>(model::Channel::kP2);
+  EXPECT_NEAR(full.values[p1][0], Table1().p_3 + 60, 1e-9);
+  EXPECT_NEAR(full.values[p2][0], Table1().p_3 + 60, 1e-9);
+  start[model::kReturned] = 0;
+  EXPECT_NEAR(model::Respond(model, LevelsFor(kHoldings[1]), start, {}, {}).values[p1][0], 110, 1e-9);
+  for (const double p : {110.0, 200.0}) {
+    start = SomeStart(p, p + 40);
+    start[model::kReturned] = 0.02;
+    ExpectDerivatives(model, LevelsFor(kHoldings[1]), start,
+                      {{model::Unknown::Kind::kStart, model::kReturned}}, 1e-4, "returned");
+  }
 }
 
 // Tests derivatives by times: a command that acts late moves known stops, a channel that reads late looks at

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "diagnose/fit/clock_fit.h"
@@ -87,6 +88,23 @@ TEST(Hypothesis, ChangesThereAndBack) {
   EXPECT_EQ(back.model.parameters.k_1, Table1().k_1);
   EXPECT_TRUE(back.Has(drag));
   EXPECT_TRUE(diagnose::Without(back, drag, Table1With()).model.effects.empty());
+}
+
+// Tests that what an accumulator has taken in before a run is unknown where the model has one that remembers it, held to what
+// oil can give up, and that no other model has this unknown.
+TEST(StartUnknowns, WhatAnAccumulatorHasTakenIn) {
+  const diagnose::RunData run = SmallRun(Table1With(), model::Shaft::kClamped, false, 0.5, 0, 1);
+  const model::Unknown returned = {model::Unknown::Kind::kStart, model::kReturned};
+  const auto has = [&](const model::ModelDescription& model) {
+    const std::vector<model::Unknown> starts = diagnose::StartUnknowns(model, run);
+    return std::find(starts.begin(), starts.end(), returned) != starts.end();
+  };
+  EXPECT_TRUE(has(Table1With({{"accumulator.stiffness", {{"stiffness", 3e3}}, {}}})));
+  EXPECT_FALSE(has(Table1With()));
+  EXPECT_FALSE(
+      has(Table1With({{"line.wave", {{"frequency", 80}, {"volume_fraction", 0.3}, {"damping", 0.05}}, {}}})));
+  EXPECT_EQ(run.start[model::kReturned], 0);
+  EXPECT_NEAR(run.start_error[model::kReturned], 0.064, 0.005);  // in^3, of Table 1
 }
 
 // Tests that the truth's residuals are noise of 1, and that their derivatives match difference quotients.

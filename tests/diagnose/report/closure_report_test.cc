@@ -2,7 +2,9 @@
 #include <gmock/gmock.h>
 
 #include <nlohmann/json.hpp>
+#include <regex>
 
+#include "diagnose/report/closure_section.h"
 #include "diagnose/report/diagnosis_in_si.h"
 #include "diagnose/report/report_html.h"
 #include "diagnose/report/report_json.h"
@@ -91,6 +93,19 @@ TEST(ClosureReport, ValuesInATable) {
                               "class=\"number\">-2.1 to -1.9</td></tr>"));
   EXPECT_THAT(page, HasSubstr("<tr><td class=\"number\">0.2</td><td class=\"number\">-500</td><td "
                               "class=\"number\">2</td><td class=\"number\">1 to 3</td></tr>"));
+}
+
+// Tests that the picture is as high as the curve needs, and not as its band at a knot that few samples reach.
+TEST(ClosureReport, PictureOfTheCurve) {
+  Diagnosis diagnosis = testing::ExampleDiagnosis();
+  diagnosis.closures = {Curve()};
+  diagnosis.closures[0].high.back() = 1000;
+  const std::string section = ClosureSection(diagnosis);
+  const std::string picture =
+      section.substr(section.find("<svg"), section.rfind("</svg>") - section.find("<svg"));
+  EXPECT_THAT(picture, HasSubstr(">2</text>"));
+  EXPECT_FALSE(std::regex_search(picture, std::regex("text-anchor=\"end\"[^>]*>[0-9]{3}"))) << picture;
+  EXPECT_THAT(section, HasSubstr("to 1000</td>"));
 }
 
 // Tests that --si converts values, bands, knots and units.
