@@ -1,0 +1,48 @@
+"""Reads the schedules of hydro-torture (docs/torture.md)."""
+
+import collections
+import glob
+import os
+
+import stack
+
+FOLDER = os.path.join(os.path.dirname(os.path.dirname(os.path.abspath(__file__))), "torture", "real")
+
+Injection = collections.namedtuple("Injection", "at kind target duration amount seed")
+
+
+class Schedule:
+    def __init__(self, path):
+        self.path = path
+        self.name = os.path.splitext(os.path.basename(path))[0]
+        self.injections = []
+        with open(path, encoding="utf-8") as file:
+            lines = [line.split() for line in file.read().splitlines()[1:] if line and not line.startswith("#")]
+        for first, *words in lines:
+            if first == "run":
+                self.run = dict(word.split("=") for word in words)
+                continue
+            values = dict(word.split("=") for word in words[1:])
+            self.injections.append(Injection(float(first), words[0], values["target"], float(values["for"]),
+                                             float(values["amount"]), int(values["seed"])))
+
+    @property
+    def until(self):
+        return float(self.run["until"])
+
+    def text(self, seed, later):
+        """The schedule with another seed of the run and with all faults later by that many s."""
+        run = dict(self.run, seed=seed, until=self.until + later)
+        text = "hydro-torture 1\nrun " + " ".join(f"{key}={value}" for key, value in run.items()) + "\n"
+        for i in self.injections:
+            text += f"{i.at + later} {i.kind} target={i.target} for={i.duration} amount={i.amount} seed={i.seed}\n"
+        return text
+
+
+def all_schedules():
+    return [Schedule(path) for path in sorted(glob.glob(os.path.join(FOLDER, "*.torture")))]
+
+
+def simulate(case, path):
+    """What hydro-torture prints of the faults in a run of that schedule, in which every invariant holds."""
+    return case.run_program(stack.program("hydro-torture"), "--replay", path, "--faults").stdout
