@@ -40,10 +40,6 @@ def of_logs(paths, start_us=0):
     return faults
 
 
-def without(faults, source, code):
-    return [fault for fault in faults if (fault.source, fault.code) != (source, code)]
-
-
 def difference(expected, found):
     """Why `found` is not the same faults in the same order as `expected`; None: it is."""
     for source in sorted({fault.source for fault in expected + found}):

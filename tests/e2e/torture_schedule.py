@@ -30,6 +30,15 @@ class Schedule:
     def until(self):
         return float(self.run["until"])
 
+    def comparable(self, faults):
+        """What of the faults in a run of it does not depend on chance."""
+        for injection in self.injections:
+            if injection.kind == "other_configuration":
+                # The process that is refused: it leaves without a fault if it hears the plant first, and complains of another
+                # process if it hears that first.
+                faults = [f for f in faults if (f.source, f.code) != (injection.target, "other_configuration")]
+        return faults
+
     def text(self, seed, later):
         """The schedule with another seed of the run and with all faults later by that many s."""
         run = dict(self.run, seed=seed, until=self.until + later)
