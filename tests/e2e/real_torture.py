@@ -37,30 +37,29 @@ class Intruder(lcm_peer.Peer):
 class RealTorture:
     ROLES = ("logger", "position_ctrl", "pressure_ctrl", "plant")
 
-    def __init__(self, case, schedule, hashes, key_file=None):
-        self.case, self.schedule = case, schedule
+    def __init__(self, case, schedule, network, url, hashes, key_file=None):
+        self.case, self.schedule, self.network = case, schedule, network
         run = schedule.run
-        settings = {"model.file": f'"{stack.config("models/table1.toml")}"', "time.mode": '"realtime"', "time.duration_s": 0,
+        settings = {"bus.url": url, "model.file": f'"{stack.config("models/table1.toml")}"', "time.mode": '"realtime"', "time.duration_s": 0,
                     "limits.rearm": f'"{run["rearm"]}"', "limits.stale_input_s": run["stale"]}
         if run["key"] == "yes":
             settings["bus.key_file"] = f'"{key_file}"'
-        options = [word for key, value in settings.items() for word in ("--set", f"{key}={value}")]
-        self.stack = case.stack(CONFIG, *options)
-        self.intruder = Intruder(case.url, hashes)
+        self.arguments = [CONFIG, *(word for key, value in settings.items() for word in ("--set", f"{key}={value}"))]
+        self.processes = {}  # by role
+        self.intruder = network.opened_there(lambda: Intruder(url, hashes))
         case.addCleanup(self.intruder.close)
         self.logs = []
         self.other = set()  # roles that start with the other configuration
         self.restart_at = {}  # by role, for those that have ended
-        self.ending = False
         self.plant = None  # its newest state
-        self.start = None  # monotonic time of its first
+        self.began = None  # monotonic time of its first
         self.start_us = 0
         self.commands = collections.deque(maxlen=4096)  # (time, bytes) of the motor commands
         self.sent = collections.Counter()  # by injection
         self.waiting = []  # heap of (time, number, what goes on then)
 
     def now(self):
-        return time.monotonic() - self.start
+        return time.monotonic() - self.began
 
     # Processes.
 
@@ -71,10 +70,14 @@ class RealTorture:
             more = (*more, "-o", self.logs[-1])
         if role == "plant":
             more = (*more, "--expect", "logger")
-        self.stack.start(role, *more)
+        self.processes[role] = self.start_program(role, stack.PROGRAMS[role], *more)
+
+    def start_program(self, place, name, *more):
+        argv = self.network.command(place, [stack.program(name), *self.arguments, *more])
+        return self.case.start(*argv, label=place)
 
     def find(self, role):
-        process = self.stack[role]
+        process = self.processes[role]
         return process if process.running else None
 
     def kill(self, role, restart_at):
@@ -93,7 +96,7 @@ class RealTorture:
                 self.begin(role)
 
     def operator(self, flag):
-        return self.case.start("hydro-launch", *self.stack.arguments, flag, label=f"operator {flag}")
+        return self.start_program("operator", "hydro-launch", flag)
 
     # What is injected: each yields the times at which it goes on.
 
@@ -116,15 +119,20 @@ class RealTorture:
         yield from ()
 
     def other_configuration(self, injection):
-        before = self.stack[injection.target]
+        before = self.processes[injection.target]
         self.other.add(injection.target)
         self.kill(injection.target, self.now() + 0.02)
         yield injection.at + injection.duration
         # A busy machine may take longer to start it: it is refused once, however long that takes.
-        while self.stack[injection.target] is before or self.find(injection.target):
+        while self.processes[injection.target] is before or self.find(injection.target):
             yield self.now() + 0.005
         self.other.discard(injection.target)
         self.kill(injection.target, self.now() + 0.02)
+
+    def partition(self, injection):
+        self.network.connect(injection.target, False)
+        yield injection.at + injection.duration
+        self.network.connect(injection.target, True)
 
     def stop(self, _):
         self.operator("--stop")
@@ -197,7 +205,7 @@ class RealTorture:
             if channel == "HYDRO_STATE":
                 # With a key a seal follows the message.
                 self.plant = event_log.TYPES[channel].decode(data[:8 + event_log.TYPES[channel].fixed.size])
-            elif channel == "HYDRO_MOTOR_COMMAND" and self.start:
+            elif channel == "HYDRO_MOTOR_COMMAND" and self.began:
                 self.commands.append((self.now(), data))
 
     def at(self, moment, generator):
@@ -214,7 +222,7 @@ class RealTorture:
         for role in self.ROLES:
             self.begin(role)
         self.case.wait_until(lambda: self.listen(0.05) or self.plant, "the plant's first state")
-        self.start, self.start_us = time.monotonic(), time.time() * 1e6
+        self.began, self.start_us = time.monotonic(), time.time() * 1e6
         for injection in self.schedule.injections:
             self.at(injection.at, getattr(self, injection.kind)(injection))
         if self.schedule.run["rearm"] == "explicit":
@@ -234,9 +242,8 @@ class RealTorture:
         return self.logs
 
     def end(self):
-        last = dict(self.stack.processes)
-        for role in self.ROLES:
-            self.case.assertTrue(last[role].running, last[role].report())
+        for process in self.processes.values():
+            self.case.assertTrue(process.running, process.report())
         self.case.assertEqual(self.operator("--stop").wait(), 0)
-        for process in last.values():
+        for process in self.processes.values():
             self.case.assertEqual(process.wait(), 0, process.report())

@@ -7,6 +7,7 @@ import os
 import fault_case
 import fault_sequence
 import outcome
+import process_network
 import real_torture
 import stack
 import torture_schedule
@@ -18,16 +19,15 @@ class TortureRealTest(fault_case.FaultCase):
         self.run_program("hydro-launch", stack.config("demo.toml"), "--set", f"bus.key_file={path}", "--make-key")
         return path
 
-    def simulated(self, schedule):
-        return schedule.comparable(fault_sequence.of_simulation(torture_schedule.simulate(self, schedule.path)))
-
     def real(self, schedule):
-        real = real_torture.RealTorture(self, schedule, self.hashes(), self.key_file())
+        network = process_network.Switch(self, real_torture.RealTorture.ROLES) if schedule.needs_hosts else process_network.Loopback()
+        url = self.url.replace("ttl=0", network.url_options)
+        real = real_torture.RealTorture(self, schedule, network, url, self.hashes(), self.key_file())
         logs = real.run()
         return schedule.comparable(fault_sequence.of_logs(logs, real.start_us))
 
     def check(self, schedule):
-        expected, found = self.simulated(schedule), self.real(schedule)
+        expected, found = torture_schedule.simulate(self, schedule), self.real(schedule)
         different = fault_sequence.difference(expected, found)
         print(f"{schedule.name}: {different or f'{len(found)} faults, the same'}", flush=True)
         self.assertIsNone(different, f"\nsimulated:\n{fault_sequence.listed(expected)}"
@@ -37,7 +37,7 @@ class TortureRealTest(fault_case.FaultCase):
     # limit here, not there.
     def test_another_run_is_noticed(self):
         schedule = next(s for s in torture_schedule.all_schedules() if s.name == "far_tick")
-        expected = self.simulated(schedule)
+        expected = torture_schedule.simulate(self, schedule)
         hang = schedule.injections[0]
         self.assertEqual(hang.kind, "hang")
         schedule.injections[0] = hang._replace(duration=1.2)

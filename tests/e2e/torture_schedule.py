@@ -4,7 +4,7 @@ import collections
 import glob
 import os
 
-import stack
+import fault_sequence
 
 FOLDER = os.path.join(os.path.dirname(os.path.dirname(os.path.abspath(__file__))), "torture", "real")
 
@@ -27,6 +27,10 @@ class Schedule:
                                              float(values["amount"]), int(values["seed"])))
 
     @property
+    def needs_hosts(self):
+        return any(injection.kind == "partition" for injection in self.injections)
+
+    @property
     def until(self):
         return float(self.run["until"])
 
@@ -37,6 +41,15 @@ class Schedule:
                 # The process that is refused: it leaves without a fault if it hears the plant first, and complains of another
                 # process if it hears that first.
                 faults = [f for f in faults if (f.source, f.code) != (injection.target, "other_configuration")]
+        return faults
+
+    def logged(self, faults):
+        """Those of a simulated run that its logger hears: what is published by a process that is cut off is in no log, and nothing
+        is in that of a logger that is cut off."""
+        for injection in self.injections:
+            if injection.kind == "partition":
+                end = injection.at + injection.duration
+                faults = [f for f in faults if injection.target not in (f.source, "logger") or not injection.at < f.time < end]
         return faults
 
     def text(self, seed, later):
@@ -52,6 +65,7 @@ def all_schedules():
     return [Schedule(path) for path in sorted(glob.glob(os.path.join(FOLDER, "*.torture")))]
 
 
-def simulate(case, path):
-    """What hydro-torture prints of the faults in a run of that schedule, in which every invariant holds."""
-    return case.run_program(stack.program("hydro-torture"), "--replay", path, "--faults").stdout
+def simulate(case, schedule):
+    """The faults in the log of a simulated run, in which every invariant holds."""
+    output = case.run_program("hydro-torture", "--replay", schedule.path, "--faults").stdout
+    return schedule.comparable(schedule.logged(fault_sequence.of_simulation(output)))
