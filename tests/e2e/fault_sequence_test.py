@@ -59,7 +59,7 @@ class ScheduleTest(stack.TestCase):
     # no two the same, so that none can pass for another.
     def test_no_chance(self):
         schedules = torture_schedule.all_schedules()
-        self.assertEqual(len(schedules), 24)
+        self.assertEqual(len(schedules), 26)
         seen = []
         for schedule in schedules:
             first = self.simulated(schedule, seed=1, later=0)

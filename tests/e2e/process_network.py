@@ -7,6 +7,8 @@ import shutil
 import subprocess
 import unittest
 
+import bad_link
+
 CLONE_NEWNET = 0x40000000
 
 
@@ -73,8 +75,19 @@ class Switch:
             finally:
                 libc.setns(here.fileno(), CLONE_NEWNET)
 
+    def _port(self, place):
+        return f"port{list(self.spaces).index(place)}"
+
     def connect(self, place, connected):
         """The switch forwards what comes from and goes to a place, or nothing of it; the cable stays plugged in."""
-        port = f"port{list(self.spaces).index(place)}"
         state = "3" if connected else "0"  # forwarding, disabled
-        subprocess.run(self.command(None, ["bridge", "link", "set", "dev", port, "state", state]), check=True)
+        subprocess.run(self.command(None, ["bridge", "link", "set", "dev", self._port(place), "state", state]), check=True)
+
+    def make_bad(self, place, delay):
+        """From now on what a place sends is late by `delay` s, or lost if that is None."""
+        self._ip("-n", self.middle, "link", "set", self._port(place), "nomaster")
+        return self.opened_there(lambda: bad_link.BadLink(self._port(place), "net", delay))
+
+    def make_good(self, place):
+        """When its bad link has ended."""
+        self._ip("-n", self.middle, "link", "set", self._port(place), "master", "net")

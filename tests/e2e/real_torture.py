@@ -134,6 +134,18 @@ class RealTorture:
         yield injection.at + injection.duration
         self.network.connect(injection.target, True)
 
+    def bad_link(self, injection):
+        if injection.kind == "loss":
+            self.case.assertEqual(injection.amount, 1, "a share that is lost depends on chance")
+        link = self.network.make_bad(injection.target, injection.amount if injection.kind == "delay" else None)
+        yield injection.at + injection.duration
+        link.end_fault()
+        while not link.ended:
+            yield self.now() + 0.005
+        self.network.make_good(injection.target)
+
+    loss = delay = bad_link
+
     def stop(self, _):
         self.operator("--stop")
         yield from ()

@@ -28,7 +28,7 @@ class Schedule:
 
     @property
     def needs_hosts(self):
-        return any(injection.kind == "partition" for injection in self.injections)
+        return any(injection.kind in ("partition", "loss", "delay") for injection in self.injections)
 
     @property
     def until(self):
