@@ -1,6 +1,7 @@
 """The schedules of tests/torture/real, each in the simulator and on real processes over UDP: the same faults in the same order.
 
-On request (scripts/torture --real), because it takes some four minutes. HYDRO_SCHEDULE=NAME runs one of them."""
+On request (scripts/torture --real), because it takes some five minutes. HYDRO_SCHEDULE=NAME runs one of them, and
+HYDRO_SCHEDULES=FOLDER takes schedules of one's own."""
 
 import os
 
@@ -24,7 +25,7 @@ class TortureRealTest(fault_case.FaultCase):
         url = self.url.replace("ttl=0", network.url_options)
         real = real_torture.RealTorture(self, schedule, network, url, self.hashes(), self.key_file())
         logs = real.run()
-        return schedule.comparable(fault_sequence.of_logs(logs, real.start_us))
+        return schedule.comparable(fault_sequence.of_logs(logs, real.began_us))
 
     def check(self, schedule):
         expected, found = torture_schedule.simulate(self, schedule), self.real(schedule)
@@ -36,7 +37,7 @@ class TortureRealTest(fault_case.FaultCase):
     # Tests that it is noticed when the real processes meet something else than the simulated ones: a loop hangs for longer than its
     # limit here, not there.
     def test_another_run_is_noticed(self):
-        schedule = next(s for s in torture_schedule.all_schedules() if s.name == "far_tick")
+        schedule = torture_schedule.Schedule(os.path.join(torture_schedule.SHIPPED, "far_tick.torture"))
         expected = torture_schedule.simulate(self, schedule)
         hang = schedule.injections[0]
         self.assertEqual(hang.kind, "hang")
