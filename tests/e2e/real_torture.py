@@ -12,6 +12,7 @@ import torture_intruder
 
 RESTART = 0.3  # s: how soon whoever watches a process starts it again, as torture/world_processes.cc
 RETURN = 5.0  # s after the last fault in which control returns, as torture/world_end.cc
+PATIENCE = 0.4  # s of the operator, as torture/programs.cc
 REQUESTS = 6  # of the operator, half a second apart, as torture/world_end.cc
 CONFIG = os.path.join(os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__)))), "torture", "torture.toml")
 OTHER = ("--set", "position.c1=3000", "--set", "limits.arm_torque_in_lbf=400")  # as torture/torture_config.cc
@@ -128,8 +129,11 @@ class RealTorture:
     loss = delay = bad_link
 
     def stop(self, _):
-        self.operator("--stop")
-        yield from ()
+        # hydro-launch asks until nobody is left, also those who are started again meanwhile; the simulated operator gives up.
+        operator = self.operator("--stop")
+        yield self.now() + PATIENCE
+        if operator.running:
+            operator.kill()
 
     def rearm(self, _):
         self.operator("--rearm")

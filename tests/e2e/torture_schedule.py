@@ -45,12 +45,14 @@ class Schedule:
         return faults
 
     def logged(self, faults):
-        """Those of a simulated run that its logger hears: what is published by a process that is cut off is in no log, and nothing
-        is in that of a logger that is cut off."""
+        """Those of a simulated run that its logger hears: what a process publishes while all that it sends is lost is in no log, and
+        nothing is in that of a logger that is cut off."""
         for injection in self.injections:
-            if injection.kind == "partition":
-                end = injection.at + injection.duration
-                faults = [f for f in faults if injection.target not in (f.source, "logger") or not injection.at < f.time < end]
+            if injection.kind not in ("partition", "loss"):
+                continue
+            end = injection.at + injection.duration
+            deaf = injection.kind == "partition" and injection.target == "logger"
+            faults = [f for f in faults if not (deaf or f.source == injection.target) or not injection.at < f.time < end]
         return faults
 
     def text(self, seed, later):
