@@ -8,6 +8,12 @@ import event_log
 import lcm_peer
 
 
+def decoded(channel, data):
+    """A message of a fixed size, without the seal that follows it if the stack has a key."""
+    type_ = event_log.TYPES[channel]
+    return type_.decode(data[:8 + type_.fixed.size])
+
+
 class Intruder(lcm_peer.Peer):
     def __init__(self, url, hashes, now):
         """`now()` is the time of the run; it is asked from the first injection on."""
@@ -27,8 +33,7 @@ class Intruder(lcm_peer.Peer):
             if data in self.own:
                 continue
             if channel == "HYDRO_STATE":
-                # With a key a seal follows the message.
-                self.plant = event_log.TYPES[channel].decode(data[:8 + event_log.TYPES[channel].fixed.size])
+                self.plant = decoded(channel, data)
             elif channel == "HYDRO_MOTOR_COMMAND":
                 self.commands.append((self.now(), data))
 
@@ -76,7 +81,7 @@ class Intruder(lcm_peer.Peer):
     def changed_command(self, injection):
         if not self.commands:
             return
-        command = event_log.TYPES["HYDRO_MOTOR_COMMAND"].decode(self.commands[-1][1])._asdict()
+        command = decoded("HYDRO_MOTOR_COMMAND", self.commands[-1][1])._asdict()
         command["sequence"] += 1
         if injection.kind == "huge_sequence":
             command["sequence"] = 1 << round(injection.amount)
