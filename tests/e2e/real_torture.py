@@ -5,6 +5,7 @@ import heapq
 import itertools
 import os
 import signal
+import tempfile
 import time
 
 import stack
@@ -32,6 +33,7 @@ class RealTorture:
         self.processes = {}  # by role
         self.intruder = network.opened_there(lambda: torture_intruder.Intruder(url, hashes, self.now))
         case.addCleanup(self.intruder.close)
+        self.folder = tempfile.mkdtemp(dir=case.folder)
         self.logs = []
         self.other = set()  # roles that start with the other configuration
         self.restart_at = {}  # by role, for those that have ended
@@ -48,7 +50,7 @@ class RealTorture:
     def begin(self, role):
         more = OTHER if role in self.other else ()
         if role == "logger":
-            self.logs.append(self.case.path(f"run_{len(self.logs)}.lcmlog"))
+            self.logs.append(os.path.join(self.folder, f"run_{len(self.logs)}.lcmlog"))
             more = (*more, "-o", self.logs[-1])
         if role == "plant":
             more = (*more, "--expect", "logger")
