@@ -8,10 +8,10 @@
 #include <string>
 #include <string_view>
 
+#include "base/file_watch.h"
 #include "log/causal_order.h"
 #include "log/log_writer.h"
 #include "logger/event_queue.h"
-#include "base/file_watch.h"
 
 namespace hydro::logger {
 

@@ -56,16 +56,37 @@ std::string Decoded(const std::string& channel, const Packet& packet) {
   return text;
 }
 
+// "stale_state begins"; empty: the message is no fault, or no process has sent it.
+std::string FaultOf(const std::string& channel, const Packet& packet) {
+  fault_t fault;
+  if (packet.origin != Origin::kProcess || !channel.starts_with("HYDRO_FAULT") ||
+      !bus::TypeOf<fault_t>().decode_into(&fault, packet.bytes.data(),
+                                          static_cast<int>(packet.bytes.size()))) {
+    return "";
+  }
+  return fmt::format("{} {}{}", fault.code, fault.active ? "begins" : "ends",
+                     fault.latched ? " latched" : "");
+}
+
 }  // namespace
 
 void MessageTail::AddMessage(TrueTime at, const std::string& who, const std::string& what,
                              const std::string& channel, const Packet& packet) {
-  Add(at, who,
-      fmt::format("{} {}{}{}", what, channel, Decoded(channel, packet),
-                  kOrigins[static_cast<size_t>(packet.origin)]));
+  if (faults_only_) {
+    const std::string fault = what == "sends" ? FaultOf(channel, packet) : "";
+    if (!fault.empty()) Keep(at, who, fault);
+    return;
+  }
+  Keep(at, who,
+       fmt::format("{} {}{}{}", what, channel, Decoded(channel, packet),
+                   kOrigins[static_cast<size_t>(packet.origin)]));
 }
 
 void MessageTail::Add(TrueTime at, const std::string& who, const std::string& text) {
+  if (!faults_only_) Keep(at, who, text);
+}
+
+void MessageTail::Keep(TrueTime at, const std::string& who, const std::string& text) {
   lines_.push_back(
       {at, fmt::format("{:.6f} {}: {}\n", static_cast<double>(at) * 1e-9, who, Printable(text))});
   while (lines_.front().at < at - kept_) lines_.pop_front();

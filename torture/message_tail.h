@@ -13,6 +13,9 @@ class MessageTail {
   // Keeps what is at most that many seconds (true time) older than the newest line.
   explicit MessageTail(double seconds) : kept_(static_cast<TrueTime>(seconds * 1e9)) {}
 
+  // From now on keeps one line for each fault that a process publishes, and nothing else.
+  void KeepFaultsOnly() { faults_only_ = true; }
+
   // `who`: "plant 1000"; `what`: "sends", "handles". The message's numbers and what it is about are decoded.
   void AddMessage(TrueTime at, const std::string& who, const std::string& what, const std::string& channel,
                   const Packet& packet);
@@ -26,7 +29,10 @@ class MessageTail {
     TrueTime at;
     std::string text;
   };
+  void Keep(TrueTime at, const std::string& who, const std::string& text);
+
   const TrueTime kept_;
+  bool faults_only_ = false;
   std::deque<Line> lines_;
 };
 

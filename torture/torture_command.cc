@@ -15,6 +15,8 @@
 namespace hydro::torture {
 namespace {
 
+constexpr double kWholeRun_s = 1e9;
+
 int List() {
   for (const FaultKindInfo& info : FaultKinds()) {
     fmt::print("{:20} target: {}; for {} to {} s", info.name, info.targets, info.shortest_s, info.longest_s);
@@ -26,8 +28,10 @@ int List() {
 
 int Replay(const TortureOptions& options) {
   const Schedule schedule = ReadSchedule(options.replay, ReadTextFile(options.replay));
-  MessageTail tail(options.tail);
-  const RunOutcome outcome = RunSchedule(schedule, options.config, options.tail > 0 ? &tail : nullptr);
+  MessageTail tail(options.faults && options.tail <= 0 ? kWholeRun_s : options.tail);
+  if (options.faults) tail.KeepFaultsOnly();
+  const bool looks = options.faults || options.tail > 0;
+  const RunOutcome outcome = RunSchedule(schedule, options.config, looks ? &tail : nullptr);
   fmt::print("{}", tail.Text());
   for (const Violation& violation : outcome.violations) {
     fmt::print("{:.6f} s: {}: {}\n", static_cast<double>(violation.at) * 1e-9, violation.invariant,
@@ -67,6 +71,8 @@ void AddOptions(settings::CommandLine* line, TortureOptions* options) {
   line->AddOption("--replay", &options->replay, "FILE the schedule of one run, as a failed run leaves it");
   line->AddOption("--tail", &options->tail,
                   "S with --replay: print what was sent and handled in the last S seconds");
+  line->AddFlag("--faults", &options->faults,
+                "with --replay: print each fault that a process publishes, as it begins and ends");
   line->AddOption("--out", &options->out,
                   "DIR where to put the schedules of failed runs; default out/torture");
   line->AddOption("--without", &options->without,

@@ -18,7 +18,8 @@ struct TortureOptions {
   int jobs = 1;
   std::string config;
   std::string replay;
-  double tail = 0;  // s of a replay whose messages are printed
+  double tail = 0;      // s of a replay whose messages are printed
+  bool faults = false;  // a replay prints the faults that its processes publish
   std::string out = "out/torture";
   std::vector<std::string> without;
   bool first = false;
