@@ -150,7 +150,11 @@ bool LogExaminer::TakeBegin(const LogEvent& event, const LogCheck& check) {
 // The parts of a recording that was rotated, joined in order; or logs that have nothing to do with each other.
 bool LogExaminer::Follows(const LogEvent& event, const LogCheck& check) {
   const bool goes_on = verdict_.ending.starts_with(kGoesOn);
-  if (check.previous == 0 && !goes_on) return true;
+  if (check.previous == 0 && !goes_on) {
+    verdict_.note += (verdict_.note.empty() ? "" : "; ") +
+                     std::string("another recording was joined to it at ") + Byte(event.offset);
+    return true;
+  }
   if (check.previous == previous_) return true;
   return Damaged(event.offset,
                  Place(event.offset, messages_) + "found the beginning of " +

@@ -37,7 +37,8 @@ struct LogEvent {
 template <class Message>
 bool DecodeAs(const LogEvent& event, Message& message) {
   try {
-    return bus::DecodedAll(message.decode(event.data, 0, event.size), event.data, event.size);
+    return bus::DecodedAll(message.decode(event.data, 0, event.size), event.data, event.size) &&
+           bus::CanBeEncoded(message);
   } catch (const std::length_error&) {  // lcm-gen's code believes a string length of 0 or less
     return false;
   }

@@ -206,6 +206,16 @@ int LoggerApp::Finish() {
 void LoggerApp::CloseRecording() {
   thread_ ? thread_->Close() : recording_.WriteWaiting(true);
   std::vector<std::string> remarks;
+  const auto left = std::count_if(others_.begin(), others_.end(), [](const auto& other) {
+    return other.second != process_status_t::DONE && other.second != process_status_t::FAILED;
+  });
+  if (left > 0) {
+    remarks.push_back(
+        fmt::format("the end of {} process{} is not in this log: {} not said so within {} ms of the stop",
+                    left, left == 1 ? "" : "es", left == 1 ? "it had" : "they had",
+                    std::chrono::milliseconds(kFarewellTime).count()));
+    spdlog::warn("{}", remarks.back());
+  }
   if (const std::string refused = refused_.Text(); !refused.empty()) {
     spdlog::warn("{}", refused);
     remarks.push_back(refused);

@@ -13,6 +13,9 @@ constexpr size_t kMostPresent = 256;  // a stack has five processes; a flood of 
 
 void RollCall::Observe(const process_status_t& status) {
   const std::pair key(status.role, status.session);  // on a simulated clock every session is 0
+  const bool matters = status.role == "logger" ||
+                       std::find(expected_.begin(), expected_.end(), status.role) != expected_.end();
+  if (!matters) return;
   if (process::IsThere(status)) {
     if (present_.size() < kMostPresent || present_.contains(key)) present_[key] = status;
     return;
@@ -20,9 +23,7 @@ void RollCall::Observe(const process_status_t& status) {
   const auto found = present_.find(key);
   if (found == present_.end()) return;  // it took no part in this run
   present_.erase(found);
-  const bool matters = status.role == "logger" ||
-                       std::find(expected_.begin(), expected_.end(), status.role) != expected_.end();
-  if (matters && left_.empty()) {
+  if (left_.empty()) {
     left_ = process::ProcessName(status);
     if (!status.text.empty()) left_ += ": " + status.text;
   }

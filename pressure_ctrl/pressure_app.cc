@@ -14,6 +14,8 @@ namespace {
 
 using namespace std::chrono_literals;
 
+constexpr size_t kMostBeforeTheRun = 64;  // pressure commands; a few take a faster route than the first state
+
 motor_command_t ZeroVolts(int64_t tick, int8_t status) {
   motor_command_t zero{};
   zero.tick = tick;
@@ -140,6 +142,8 @@ void PressureApp::DropFutureCommands(int64_t tick) {
 
 void PressureApp::OnPressureCommand(const pressure_command_t& command) {
   if (participant_.Refuses(command.session)) return;
+  // Before the run there is no state that it could answer; of what comes before the first one reaches here, little is kept.
+  if (command.tick < 0 || (participant_.tick() < 0 && waiting_commands_.size() >= kMostBeforeTheRun)) return;
   const auto now = participant_.clock().Now();
   // A command a few ticks ahead only took a faster route through the network; one far ahead would hold up all
   // that follow it in the queue, and counted as the newest it would make them old.

@@ -53,10 +53,13 @@ std::string DescribeDifferences(const std::string& here, const std::string& ther
 
 bool Agreement::Observe(const configuration_t& announced) {
   if (own_.empty() || announced.text.empty()) return false;
+  if (agreed_.contains(announced.session)) return false;
   if (heard_.size() >= kMostHeard) heard_.clear();  // a flood: who is still there says it again
   heard_.insert(announced.session);
   const std::string differences = DescribeDifferences(own_, announced.text);
   if (differences.empty()) {
+    if (agreed_.size() >= kMostHeard) agreed_.clear();
+    agreed_.insert(announced.session);
     Forget(announced.session);
     return false;
   }

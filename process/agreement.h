@@ -17,7 +17,8 @@ class Agreement {
   // `own`: lines "key = value", sorted (settings/agreed_entries.h). Empty: this process agrees with everybody.
   explicit Agreement(std::string own) : own_(std::move(own)) {}
 
-  // True when the sender does not agree and was not known to.
+  // True when the sender does not agree and was not known to. Who has once agreed does so as long as it lives: a message that
+  // says otherwise was changed on its way, or made up.
   bool Observe(const configuration_t& announced);
 
   // Whether messages of that sender are not to be obeyed. A sender that has announced nothing is not refused: it may be
@@ -38,6 +39,7 @@ class Agreement {
  private:
   std::string own_;
   std::set<int64_t> heard_;
+  std::set<int64_t> agreed_;
   std::map<int64_t, std::string> refused_;  // differences, by session
   std::deque<int64_t> order_;               // in which they were first refused
 };

@@ -17,6 +17,8 @@ namespace {
 
 constexpr auto kAnnouncementPeriod = std::chrono::milliseconds(100);
 constexpr auto kConfigurationPeriod = std::chrono::milliseconds(500);
+constexpr auto kAnswerPeriod =
+    std::chrono::milliseconds(50);  // at most so often to who is new: one may be a flood
 // Who has missed it, or was told wrongly, is told again.
 constexpr auto kConfigurationAgain = std::chrono::seconds(2);
 constexpr char kOtherConfiguration[] = "other_configuration";
@@ -62,10 +64,8 @@ void Participant::OnStatus(const process_status_t& status) {
     // Whoever is new is told at once what we run with: a plant starts only when it knows.
     if (answered_.size() >= kMostNames) answered_.clear();  // saying it once more does no harm
     const bool is_new = answered_.insert(status.session).second;
-    if (is_new && (state_ == process_status_t::READY || state_ == process_status_t::RUNNING)) {
-      configuration_sent_.reset();
-      PublishConfiguration();
-    }
+    if (is_new) configuration_asked_ = true;
+    AnswerWithConfiguration();
     if (asks && state_ == process_status_t::RUNNING) Announce(state_, status_text_);
   } else if (Refuses(status.session)) {
     agreement_.Forget(status.session);
@@ -95,6 +95,15 @@ void Participant::LeaveAlone(const std::string& reason) {
   configuration_sent_.reset();
   PublishConfiguration();  // so that the plant can say the same
   Stop(session(), role_, reason, 1);
+}
+
+void Participant::AnswerWithConfiguration() {
+  if (!configuration_asked_ || (state_ != process_status_t::READY && state_ != process_status_t::RUNNING))
+    return;
+  if (configuration_sent_ && clock_.Now() - *configuration_sent_ < kAnswerPeriod) return;  // Poll() does
+  configuration_asked_ = false;
+  configuration_sent_.reset();
+  PublishConfiguration();
 }
 
 void Participant::PublishConfiguration() {
@@ -154,6 +163,7 @@ void Participant::Poll() {
   if (state_ == process_status_t::RUNNING && !clock_.simulated() && configuration_sent_ &&
       now - *configuration_sent_ >= kConfigurationAgain)
     PublishConfiguration();
+  AnswerWithConfiguration();
   if (active_faults_left_ > 0 && now >= next_active_faults_) PublishActiveFaults();
   WatchRefusals();
 }

@@ -109,6 +109,7 @@ class Participant {
   void OnStatus(const process_status_t& status);
   void OnConfiguration(const configuration_t& announced);
   void PublishConfiguration();
+  void AnswerWithConfiguration();
   void Stop(int64_t addressee, const std::string& source, const std::string& reason, int exit_code);
   void LeaveAlone(const std::string& reason);
   void PublishFault(const fault_t& fault);
@@ -127,7 +128,8 @@ class Participant {
   int64_t run_ = 0;
   Agreement agreement_;
   std::optional<bus::Clock::TimePoint> configuration_sent_;
-  std::set<int64_t> answered_;  // who was there when our configuration was sent
+  bool configuration_asked_ = false;  // by who is new
+  std::set<int64_t> answered_;        // who was there when our configuration was sent
   std::function<void(int64_t, const std::string&)> on_refusal_;
   int64_t tick_ = -1;
   int64_t fault_sequence_ = 0;

@@ -11,6 +11,7 @@
 #include "torture/active_fault.h"
 #include "torture/campaign.h"
 #include "torture/run_schedule.h"
+#include "torture/torture_config.h"
 
 namespace hydro::torture {
 namespace {
@@ -91,6 +92,13 @@ int Run(const TortureOptions& options) {
       throw InputError("--without: found '" + kind + "', allowed is a kind of fault (--list)");
     }
   }
+  const auto refuse = [](const char* option, double found, const char* allowed) {
+    throw InputError(fmt::format("{}: found {}, allowed {}", option, found, allowed));
+  };
+  if (!(options.seconds > 0 && options.seconds <= 1e8)) refuse("--seconds", options.seconds, "more than 0");
+  if (!(options.hours >= 0 && options.hours <= 1e5)) refuse("--hours", options.hours, "more than 0");
+  if (options.runs < 0) refuse("--runs", static_cast<double>(options.runs), "1 and more");
+  if (!options.config.empty()) ConfigFor(Schedule{}, options.config);  // a wrong one is no violation
   if (options.jobs < 1 || options.jobs > 256) {
     throw InputError(fmt::format("--jobs: found {}, allowed are 1 to 256", options.jobs));
   }

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "process/stop_signal.h"
 #include "torture/active_fault.h"
 #include "torture/programs.h"
 #include "torture/torture_config.h"
@@ -74,7 +75,7 @@ bool World::Later(const Event& a, const Event& b) {
 }
 
 RunOutcome World::Run() {
-  while (!over_ && observer_.violations().empty()) Step();
+  while (!over_ && observer_.violations().empty() && process::StopSignal() == 0) Step();
   outcome_.violations = observer_.violations();
   trace_.Add(static_cast<uint64_t>(now_));
   outcome_.trace = trace_.value();

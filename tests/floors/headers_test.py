@@ -20,7 +20,6 @@ ROOMS = {
 EXEMPT = {
     "diagnose/report/answer_sections.h": "parts of one page, which the tests of report_html.h read as a whole",
     "diagnose/report/closure_json.h": "a part of report.json, which closure_report_test reads as a whole",
-    "diagnose/report/closure_section.h": "a part of the page, which closure_report_test reads as a whole",
     "diagnose/report/html_parts.h": "what the sections of the page share: their tests read its output",
     "diagnose/search/progress.h": "one struct without a function",
     "model/response_pass.h": "the inside of Respond, for two files: the tests of response.h go through it",

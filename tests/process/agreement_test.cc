@@ -99,5 +99,22 @@ TEST(RemoteFaultsTest, Ends) {
   EXPECT_FALSE(faults.any(now + 2501ms));
 }
 
+// Tests that one message that says otherwise does not undo that a process agrees: a configuration does not change while it lives.
+TEST(AgreementTest, WhoHasAgreedStaysAgreed) {
+  Agreement agreement("a = 1\n");
+  configuration_t announced;
+  announced.session = 7;
+  announced.text = "a = 1\n";
+  EXPECT_FALSE(agreement.Observe(announced));
+  announced.text = "a = 2\n";
+  EXPECT_FALSE(agreement.Observe(announced));
+  EXPECT_FALSE(agreement.Refuses(7));
+  announced.session = 8;
+  EXPECT_TRUE(agreement.Observe(announced));
+  announced.text = "a = 1\n";
+  agreement.Observe(announced);
+  EXPECT_FALSE(agreement.Refuses(8)) << "the first was changed on its way";
+}
+
 }  // namespace
 }  // namespace hydro::process

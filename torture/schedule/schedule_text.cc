@@ -1,6 +1,7 @@
 // Schedules as text.
 #include <fmt/format.h>
 
+#include <cmath>
 #include <sstream>
 
 #include "base/input_error.h"
@@ -73,6 +74,10 @@ Injection ReadInjection(LineReader line, const std::string& time) {
   injection.target = *number;
   injection.duration_s = line.Number("for");
   injection.amount = line.Number("amount");
+  // A clock that stands still or runs backwards wakes nobody.
+  if (injection.kind == FaultKind::kDrift && !(std::fabs(injection.amount) < 0.5)) {
+    throw line.Error(ShortestNumber(injection.amount), "amount=A with -0.5 < A < 0.5");
+  }
   injection.seed = line.Seed("seed");
   return injection;
 }
@@ -116,7 +121,10 @@ Schedule ReadSchedule(const std::string& file, const std::string& text) {
     schedule.explicit_rearm = line.Value("rearm") == "explicit";
     schedule.key = line.Value("key") == "yes";
     schedule.stale_input_s = line.Number("stale");
-    schedule.faults_until_s = line.Number("until");
+    const double until = line.Number("until");
+    if (!(until > 0 && until <= 3600))
+      throw line.Error(ShortestNumber(until), "until=S, more than 0 and at most 3600");
+    schedule.faults_until_s = until;
     schedule.seed = line.Seed("seed");
     const std::string logger = line.Word();
     if (!logger.empty() && logger != "logger=yes")
