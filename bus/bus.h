@@ -61,7 +61,8 @@ template <class Message>
 bool CanBeEncoded(const Message& message) {
   if constexpr (std::is_trivially_copyable_v<Message>) return true;
   const int size = message.getEncodedSize();
-  std::vector<uint8_t> bytes(static_cast<size_t>(size));
+  thread_local std::vector<uint8_t> bytes;  // loops take no memory
+  bytes.resize(static_cast<size_t>(size));
   return message.encode(bytes.data(), 0, size) == size;
 }
 

@@ -174,6 +174,13 @@ void OutputSafety::OnRearm(const rearm_t& request) {
                        participant_.tick(), kRearmAge_s));
     return;
   }
+  // Who asked before a fault began has not seen it; and a request that was recorded, or delivered twice, ends nothing new.
+  if (request.tick < newest_cause_tick_) {
+    Answer(request, rearm_t::REFUSED,
+           fmt::format("the request names tick {}; a fault has begun since, at tick {}", request.tick,
+                       newest_cause_tick_));
+    return;
+  }
   std::vector<Cause> present;
   const std::vector<Cause> ended = guard_.Release(&present);
   if (!present.empty()) {

@@ -42,7 +42,10 @@ class OutputSafety {
   void Set(Cause cause, bool present, Describe&& describe) {
     if (present == guard_.present(cause)) return;
     guard_.Set(cause, present);
-    if (present) findings_[static_cast<size_t>(cause)] = describe();
+    if (present) {
+      findings_[static_cast<size_t>(cause)] = describe();
+      newest_cause_tick_ = participant_.tick();
+    }
     changed_ = true;
   }
 
@@ -83,6 +86,7 @@ class OutputSafety {
   const settings::LimitsSection limits_;
   const double ticks_per_s_;  // of wall time
   VoltageGuard guard_;
+  int64_t newest_cause_tick_ = -1;  // when one has begun last
   bool changed_ = false;
   std::array<Finding, static_cast<size_t>(Cause::kCount)> findings_;
 

@@ -91,7 +91,6 @@ int PlantApp::Run() {
 void PlantApp::DriveRig() {
   try {
     config_.time.mode == settings::TimeMode::kLockstep ? RunLockstep() : RunRealtime();
-    if (tick_ != config_.last_tick) ShowZero();
   } catch (const RigError& error) {
     rig_.Zero();  // zero volts first, explanation second
     participant_.Raise(error.code(), error.what(), NAN, NAN, true);
@@ -100,15 +99,6 @@ void PlantApp::DriveRig() {
     rig_.Zero();
     throw;
   }
-}
-
-// A run that was stopped: one more state, in which zero volts act, so that the last one of its log is not the voltage that was
-// driven before. A run of a given length has the states of that length.
-void PlantApp::ShowZero() {
-  voltage_ = rig_.Drive(0);
-  command_tick_ = -1;
-  Advance(tick_ + 1);
-  PublishState(0);
 }
 
 // Ends the run for every process and gives the reason, unless somebody has done so already.

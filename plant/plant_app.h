@@ -59,7 +59,6 @@ class PlantApp {
   bool AllHaveSaidTheirConfiguration() const;
   void OnRefusal(int64_t session, const std::string& text);
   void DriveRig();
-  void ShowZero();
   void RequestStop();
   void RunLockstep();
   void RunRealtime();

@@ -41,10 +41,10 @@ Participant::Participant(bus::Bus& bus, bus::Clock& clock, const bus::Channels& 
       statistics_(role, identity_.host, session(), clock.Now()) {
   if (IsPlant(role)) run_ = session();
   bus_.Subscribe<stop_t>(channels_.Of<stop_t>(), [this](const stop_t& stop) {
-    // Who has not heard of any plant yet cannot tell, and takes part in no run that could be harmed.
-    const bool meant =
-        stop.addressee == 0 || stop.addressee == session() || stop.addressee == run_ || run_ == 0;
+    const bool meant = stop.addressee == 0 || stop.addressee == session() || stop.addressee == run_;
     if (meant && !stop_) stop_ = stop;
+    if (!meant && run_ == 0)
+      early_stop_ = stop;  // of a run that this process has just missed, or of another stack
   });
   bus_.Subscribe<process_status_t>(channels_.Of<process_status_t>(),
                                    [this](const process_status_t& status) { OnStatus(status); });
@@ -57,6 +57,11 @@ void Participant::OnStatus(const process_status_t& status) {
     names_[status.session] = ProcessName(status);
   }
   if (status.session == session()) return;
+  // The plant of that run says that it has left: it was the run for which this process has waited.
+  if (run_ == 0 && !stop_ && early_stop_ && IsPlant(status.role) &&
+      status.session == early_stop_->addressee) {
+    stop_ = early_stop_;
+  }
   if (IsThere(status)) {
     if (IsPlant(status.role) && run_ == 0) run_ = status.session;
     const bool asks =
@@ -111,14 +116,15 @@ void Participant::PublishConfiguration() {
   if (agreement_.own().empty() || (configuration_sent_ && now - *configuration_sent_ < kConfigurationPeriod))
     return;
   configuration_sent_ = now;
-  configuration_t announced;
-  announced.utime = clock_.Utime();
-  announced.session = session();
-  announced.role = role_;
-  announced.host = identity_.host;
-  announced.pid = identity_.id;
-  announced.text = agreement_.own();
-  bus_.Publish(channels_.Of<configuration_t>(), announced);
+  if (announced_.text.empty()) {  // once: loops take no memory
+    announced_.session = session();
+    announced_.role = role_;
+    announced_.host = identity_.host;
+    announced_.pid = identity_.id;
+    announced_.text = agreement_.own();
+  }
+  announced_.utime = clock_.Utime();
+  bus_.Publish(channels_.Of<configuration_t>(), announced_);
 }
 
 void Participant::Announce(int8_t state, const std::string& text) {

@@ -128,6 +128,7 @@ class Participant {
   int64_t run_ = 0;
   Agreement agreement_;
   std::optional<bus::Clock::TimePoint> configuration_sent_;
+  configuration_t announced_;         // what it runs with, as it is sent
   bool configuration_asked_ = false;  // by who is new
   std::set<int64_t> answered_;        // who was there when our configuration was sent
   std::function<void(int64_t, const std::string&)> on_refusal_;
@@ -142,6 +143,7 @@ class Participant {
   CountedWarning unsent_;
   RefusalWatch refusals_;
   std::optional<stop_t> stop_;
+  std::optional<stop_t> early_stop_;  // heard before any plant
   bus::Clock::TimePoint next_announcement_;
   timing::LoopStatistics statistics_;
 };

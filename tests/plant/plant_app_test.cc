@@ -116,7 +116,7 @@ TEST_F(PlantAppTest, LockstepNamesAStalledPressureLoop) {
   };
   EXPECT_EQ(Run(SmallStack()), 1);
   EXPECT_THAT(failure_, HasSubstr("pressure_ctrl has not answered tick 7"));
-  EXPECT_EQ(states_.back().tick, 8) << "the state that shows zero volts";
+  EXPECT_EQ(states_.back().tick, 7);
   EXPECT_GT(states_.size(), 10u);
   EXPECT_LT(clock_.Now().time_since_epoch(), std::chrono::seconds(2));
   ASSERT_EQ(stops_.size(), 1u);
@@ -188,7 +188,7 @@ TEST_F(PlantAppTest, LockstepWaitsForTheLogger) {
   }
   EXPECT_EQ(plant.Run(), 1);
   EXPECT_THAT(plant.failure(), HasSubstr("logger has not answered"));
-  EXPECT_LE(plant.tick(), 64 + 1);
+  EXPECT_LE(plant.tick(), 64);
 }
 
 // Tests that progress of a logger that was not there when the run began neither delays it nor is kept: each
