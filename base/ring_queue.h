@@ -24,6 +24,15 @@ class RingQueue {
   }
   void pop_front() { ++first_; }
   void clear() { first_ = end_ = 0; }
+  // Leaves out those of which `out(value)` is true; the others keep their order.
+  template <class Out>
+  void erase_if(Out&& out) {
+    for (size_t left = size(); left > 0; --left) {
+      const Value value = front();
+      pop_front();
+      if (!out(value)) push_back(value);
+    }
+  }
 
  private:
   void Grow() {

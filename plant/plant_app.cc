@@ -174,12 +174,8 @@ bool PlantApp::WaitForParticipants() {
   return false;
 }
 
-// Puts out the chosen voltage, or zero when the rig reports a fault; publishes the faults afterwards.
+// Puts out the chosen voltage first and publishes the faults second.
 void PlantApp::Drive() {
-  if (!rig_.faults().empty()) {
-    voltage_ = 0;
-    command_tick_ = -1;
-  }
   voltage_ = rig_.Drive(voltage_);
   PublishRigFaults();
   safety_.PublishFaults();

@@ -42,11 +42,7 @@ void PlantApp::OnMotorCommand(const motor_command_t& command) {
 
 // What a sender has commanded before it turned out to run with another configuration does not act either.
 void PlantApp::ForgetCommandsOf(int64_t session) {
-  for (size_t left = waiting_commands_.size(); left > 0; --left) {
-    const motor_command_t command = waiting_commands_.front();
-    waiting_commands_.pop_front();
-    if (command.session != session) waiting_commands_.push_back(command);
-  }
+  waiting_commands_.erase_if([&](const motor_command_t& command) { return command.session == session; });
   if (command_ && command_->session == session) command_.reset();
   if (command_monitor_.session() == session) newest_command_tick_ = -1;  // lockstep waits for another's
 }
@@ -90,11 +86,12 @@ void PlantApp::ChooseVoltage() {
   safety_.CheckRig(rig_.faults());
   safety_.CheckSurroundings();
   // What was commanded before or while the voltage was held at zero does not come back.
-  if (safety_.holds() || !rig_.faults().empty()) obeyed_from_ = tick_;
+  const bool held = safety_.holds() || !rig_.faults().empty();
+  if (held) obeyed_from_ = tick_;
   // The run may have ended since this tick began.
-  const bool obeys = command_ && command_->tick >= obeyed_from_ && !participant_.stop();
+  const bool obeys = !held && command_ && command_->tick >= obeyed_from_ && !participant_.stop();
   voltage_ = safety_.Voltage(obeys ? command_->voltage : 0);
-  command_tick_ = obeys && !safety_.holds() ? command_->tick : -1;
+  command_tick_ = obeys ? command_->tick : -1;
 }
 
 void PlantApp::CheckCommand(const motor_command_t& command) {

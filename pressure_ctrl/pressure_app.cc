@@ -133,11 +133,8 @@ void PressureApp::OnState(const state_t& state) {
 // Before the first state nobody can tell which ticks lie far in the future. One such command at the head of the queue would hold up
 // all others for good.
 void PressureApp::DropFutureCommands(int64_t tick) {
-  for (size_t left = waiting_commands_.size(); left > 0; --left) {
-    const pressure_command_t command = waiting_commands_.front();
-    waiting_commands_.pop_front();
-    if (command.tick <= SaturatingSum(tick, stale_ticks_)) waiting_commands_.push_back(command);
-  }
+  waiting_commands_.erase_if(
+      [&](const pressure_command_t& command) { return command.tick > SaturatingSum(tick, stale_ticks_); });
 }
 
 void PressureApp::OnPressureCommand(const pressure_command_t& command) {

@@ -61,15 +61,7 @@ class PressureAppTest : public ::testing::Test {
     Deliver();
   }
 
-  void SendPressure(int64_t tick, double pressure_ref) {
-    pressure_command_t c{};
-    c.tick = tick;
-    c.session = 7;
-    c.sequence = tick;
-    c.pressure_ref = pressure_ref;
-    bus_.Publish("HYDRO_PRESSURE_COMMAND", c);
-    Deliver();
-  }
+  void SendPressure(int64_t tick, double pressure_ref) { SendPressure(tick, pressure_ref, tick); }
 
   static double Law(double pressure_ref) { return 0.125 * ((pressure_ref - 100) - 8 * 5); }
 
