@@ -97,24 +97,20 @@ void Participant::OnConfiguration(const configuration_t& announced) {
 // Ends this process and nobody else.
 void Participant::LeaveAlone(const std::string& reason) {
   if (stop_) return;
-  configuration_sent_.reset();
-  PublishConfiguration();  // so that the plant can say the same
+  PublishConfiguration({});  // so that the plant can say the same
   Stop(session(), role_, reason, 1);
 }
 
 void Participant::AnswerWithConfiguration() {
-  if (!configuration_asked_ || (state_ != process_status_t::READY && state_ != process_status_t::RUNNING))
-    return;
-  if (configuration_sent_ && clock_.Now() - *configuration_sent_ < kAnswerPeriod) return;  // Poll() does
-  configuration_asked_ = false;
-  configuration_sent_.reset();
-  PublishConfiguration();
+  const bool there = state_ == process_status_t::READY || state_ == process_status_t::RUNNING;
+  if (configuration_asked_ && there) configuration_asked_ = !PublishConfiguration(kAnswerPeriod);
 }
 
-void Participant::PublishConfiguration() {
+// Unless it was sent within `period`: then false.
+bool Participant::PublishConfiguration(bus::Clock::Duration period) {
+  if (agreement_.own().empty()) return true;
   const auto now = clock_.Now();
-  if (agreement_.own().empty() || (configuration_sent_ && now - *configuration_sent_ < kConfigurationPeriod))
-    return;
+  if (configuration_sent_ && now - *configuration_sent_ < period) return false;
   configuration_sent_ = now;
   if (announced_.text.empty()) {  // once: loops take no memory
     announced_.session = session();
@@ -125,13 +121,16 @@ void Participant::PublishConfiguration() {
   }
   announced_.utime = clock_.Utime();
   bus_.Publish(channels_.Of<configuration_t>(), announced_);
+  return true;
 }
 
 void Participant::Announce(int8_t state, const std::string& text) {
   state_ = state;
   status_text_ = text;
   // Before the status, so that nobody counts on a process whose configuration he has not seen.
-  if (state == process_status_t::READY || state == process_status_t::RUNNING) PublishConfiguration();
+  if (state == process_status_t::READY || state == process_status_t::RUNNING) {
+    PublishConfiguration(kConfigurationPeriod);
+  }
   next_announcement_ = clock_.Now() + kAnnouncementPeriod;
   process_status_t status;
   status.utime = clock_.Utime();
@@ -166,9 +165,7 @@ void Participant::Poll() {
                bus_.undecodable_channel() + "); they are ignored";
       },
       *this);
-  if (state_ == process_status_t::RUNNING && !clock_.simulated() && configuration_sent_ &&
-      now - *configuration_sent_ >= kConfigurationAgain)
-    PublishConfiguration();
+  if (state_ == process_status_t::RUNNING && !clock_.simulated()) PublishConfiguration(kConfigurationAgain);
   AnswerWithConfiguration();
   if (active_faults_left_ > 0 && now >= next_active_faults_) PublishActiveFaults();
   WatchRefusals();

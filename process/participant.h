@@ -108,7 +108,7 @@ class Participant {
  private:
   void OnStatus(const process_status_t& status);
   void OnConfiguration(const configuration_t& announced);
-  void PublishConfiguration();
+  bool PublishConfiguration(bus::Clock::Duration period);
   void AnswerWithConfiguration();
   void Stop(int64_t addressee, const std::string& source, const std::string& reason, int exit_code);
   void LeaveAlone(const std::string& reason);

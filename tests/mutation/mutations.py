@@ -23,7 +23,7 @@ def _rows(file, *rows):
 TORTURE_MUTATIONS = [
     *_rows("process/participant.cc",
            ("B2.any_stop_is_obeyed", "stop.addressee == run_;", "true;"),
-           ("configuration.said_once", "now - *configuration_sent_ >= kConfigurationAgain", "false"),
+           ("configuration.said_once", "PublishConfiguration(kConfigurationAgain);", "{}"),
            ("stop.nobody_obeys", "if (meant && !stop_) stop_ = stop;", "if (false && meant && !stop_) stop_ = stop;")),
     *_rows("log/log_examiner.cc",
            ("B5.a_cut_log_is_complete", "verdict_.completeness = Completeness::kIncomplete;",
