@@ -134,7 +134,7 @@ void LoggerApp::CheckOverflow() {
 
 void LoggerApp::OnStatus(const process_status_t& status) {
   if (status.role != "logger") {
-    others_[status.session] = status.state;
+    others_[status.session] = process::HasLeft(status);
   } else if (status.session == participant_.session()) {
     left_ = process::HasLeft(status);
   }
@@ -178,16 +178,13 @@ void LoggerApp::TakeTurn() {
   recording_.WriteWaiting(false);
 }
 
-bool LoggerApp::EveryoneHasLeft() const {
-  for (const auto& [session, state] : others_) {
-    if (state != process_status_t::DONE && state != process_status_t::FAILED) return false;
-  }
-  return true;
+int64_t LoggerApp::StillThere() const {
+  return std::count_if(others_.begin(), others_.end(), [](const auto& other) { return !other.second; });
 }
 
 bool LoggerApp::finished() const {
   if (recording_.failed()) return true;
-  return stop_time_ && (EveryoneHasLeft() || participant_.clock().Now() - *stop_time_ > kFarewellTime);
+  return stop_time_ && (StillThere() == 0 || participant_.clock().Now() - *stop_time_ > kFarewellTime);
 }
 
 int LoggerApp::Finish() {
@@ -206,9 +203,7 @@ int LoggerApp::Finish() {
 void LoggerApp::CloseRecording() {
   thread_ ? thread_->Close() : recording_.WriteWaiting(true);
   std::vector<std::string> remarks;
-  const auto left = std::count_if(others_.begin(), others_.end(), [](const auto& other) {
-    return other.second != process_status_t::DONE && other.second != process_status_t::FAILED;
-  });
+  const int64_t left = StillThere();
   if (left > 0) {
     remarks.push_back(
         fmt::format("the end of {} process{} is not in this log: {} not said so within {} ms of the stop",

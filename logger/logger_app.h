@@ -52,7 +52,7 @@ class LoggerApp : public process::App {
   void OnStatus(const process_status_t& status);
   void ReportRefused();
   void ReportProgress();
-  bool EveryoneHasLeft() const;
+  int64_t StillThere() const;
   void TakeTurn();
   void CloseRecording();
   void TellHowMuch();
@@ -75,7 +75,7 @@ class LoggerApp : public process::App {
   bus::Clock::TimePoint report_again_;  // from then on even fewer than kProgressTicks new ticks are reported
   std::optional<log::CausalOrder> order_;  // lockstep: restores the order of the numbered messages
   bool left_ = false;                      // this logger's own DONE or FAILED has come back from the bus
-  std::map<int64_t, int8_t> others_;       // the other processes' states, by session
+  std::map<int64_t, bool> others_;         // whether each other process has left, by session
   std::array<std::map<int64_t, int64_t>, bus::kLoopParts> next_sequence_;  // by part and session, for losses
   int64_t lost_ = 0;
   int64_t dropped_ = 0;                             // by the full queue, at the last check
