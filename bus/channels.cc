@@ -2,16 +2,9 @@
 
 #include <algorithm>
 
+#include "base/big_endian.h"
+
 namespace hydro::bus {
-namespace {
-
-int64_t ReadInt64(const uint8_t* data) {
-  uint64_t value = 0;
-  for (int i = 0; i < 8; ++i) value = value << 8 | data[i];
-  return static_cast<int64_t>(value);
-}
-
-}  // namespace
 
 Channels::Channels(const std::string& suffix) {
   size_t index = 0;
@@ -30,8 +23,10 @@ std::optional<LoopNumbers> ReadLoopNumbers(const RawMessage& message, const Chan
                     "a message of the loops has a tick, a session and a sequence number");
       constexpr int kEnd = 8 + std::max({kPlaces.tick, kPlaces.session, kPlaces.sequence});
       if (message.size < kEnd) return true;
-      numbers = {row.part, ReadInt64(message.data + kPlaces.tick), ReadInt64(message.data + kPlaces.session),
-                 ReadInt64(message.data + kPlaces.sequence)};
+      const auto read = [&](int place) {
+        return static_cast<int64_t>(LoadBigEndian64(message.data + place));
+      };
+      numbers = {row.part, read(kPlaces.tick), read(kPlaces.session), read(kPlaces.sequence)};
       return true;
     }
   });

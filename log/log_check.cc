@@ -5,6 +5,7 @@
 #include <cstring>
 #include <string>
 
+#include "base/big_endian.h"
 #include "log/log_format.h"
 
 namespace hydro::log {

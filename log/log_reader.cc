@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstring>
 
+#include "base/big_endian.h"
 #include "base/number_text.h"
 #include "log/log_check.h"
 #include "log/log_format.h"

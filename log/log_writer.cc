@@ -4,6 +4,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "base/big_endian.h"
 #include "log/log_format.h"
 
 namespace hydro::log {

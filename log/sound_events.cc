@@ -3,6 +3,7 @@
 #include <cstring>
 #include <optional>
 
+#include "base/big_endian.h"
 #include "log/log_check.h"
 #include "log/log_format.h"
 #include "log/log_reader.h"

@@ -4,6 +4,7 @@
 #include <map>
 #include <string_view>
 
+#include "base/big_endian.h"
 #include "base/number_text.h"
 #include "bus/channels.h"
 #include "log/log_format.h"
@@ -20,7 +21,7 @@ std::string Hex(uint64_t value) { return HexNumber(value, 16); }
 std::string WhyUndecodable(const log::LogEvent& event, const log::MessageKind& kind) {
   const std::string place = "byte " + std::to_string(event.offset) + ", event " +
                             std::to_string(event.index) + " on " + std::string(event.channel) + ": ";
-  const uint64_t hash = event.size >= 8 ? log::LoadBigEndian64(event.data) : 0;
+  const uint64_t hash = event.size >= 8 ? LoadBigEndian64(event.data) : 0;
   if (event.size >= 8 && hash != static_cast<uint64_t>(kind.hash)) {
     return place + "found type hash " + Hex(hash) + "; allowed " + Hex(static_cast<uint64_t>(kind.hash)) +
            " (" + kind.type + " of this version)";

@@ -5,6 +5,8 @@
 #include <cstring>
 #include <string>
 
+#include "base/big_endian.h"
+
 namespace hydro::bus {
 namespace {
 
@@ -15,16 +17,6 @@ static_assert(kBusKeySize >= crypto_generichash_KEYBYTES_MIN &&
 constexpr std::string_view kPurpose =
     "hydro message seal 1";  // separates this use of the key from all its other uses
 
-void StoreBigEndian(uint64_t value, uint8_t* out) {
-  for (int i = 0; i < 8; ++i) out[i] = static_cast<uint8_t>(value >> (56 - 8 * i));
-}
-
-uint64_t LoadBigEndian(const uint8_t* in) {
-  uint64_t value = 0;
-  for (int i = 0; i < 8; ++i) value = value << 8 | in[i];
-  return value;
-}
-
 const uint8_t* Bytes(std::string_view text) { return reinterpret_cast<const uint8_t*>(text.data()); }
 
 }  // namespace
@@ -34,10 +26,10 @@ std::array<uint8_t, kSealTagSize> SealTag(const std::array<uint8_t, kBusKeySize>
                                           const void* message, int size) {
   // Lengths first, so that no two different inputs give the same bytes.
   std::array<uint8_t, 32> numbers{};
-  StoreBigEndian(channel.size(), numbers.data());
-  StoreBigEndian(static_cast<uint64_t>(size), numbers.data() + 8);
-  StoreBigEndian(static_cast<uint64_t>(session), numbers.data() + 16);
-  StoreBigEndian(counter, numbers.data() + 24);
+  StoreBigEndian64(channel.size(), numbers.data());
+  StoreBigEndian64(static_cast<uint64_t>(size), numbers.data() + 8);
+  StoreBigEndian64(static_cast<uint64_t>(session), numbers.data() + 16);
+  StoreBigEndian64(counter, numbers.data() + 24);
 
   std::array<uint8_t, kSealTagSize> tag{};
   crypto_generichash_state state;
@@ -52,8 +44,8 @@ std::array<uint8_t, kSealTagSize> SealTag(const std::array<uint8_t, kBusKeySize>
 
 void WriteSeal(const Seal& seal, uint8_t* out) {
   std::memcpy(out, kSealMagic.data(), kSealMagic.size());
-  StoreBigEndian(static_cast<uint64_t>(seal.session), out + 8);
-  StoreBigEndian(seal.counter, out + 16);
+  StoreBigEndian64(static_cast<uint64_t>(seal.session), out + 8);
+  StoreBigEndian64(seal.counter, out + 16);
   std::memcpy(out + 24, seal.tag.data(), seal.tag.size());
 }
 
@@ -61,8 +53,8 @@ bool ReadSeal(const void* data, int size, Seal* seal) {
   const int message_size = SizeWithoutSeal(data, size);
   if (message_size == size) return false;
   const uint8_t* const in = static_cast<const uint8_t*>(data) + message_size;
-  seal->session = static_cast<int64_t>(LoadBigEndian(in + 8));
-  seal->counter = LoadBigEndian(in + 16);
+  seal->session = static_cast<int64_t>(LoadBigEndian64(in + 8));
+  seal->counter = LoadBigEndian64(in + 16);
   std::memcpy(seal->tag.data(), in + 24, seal->tag.size());
   return true;
 }

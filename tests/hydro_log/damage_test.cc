@@ -4,6 +4,7 @@
 #include <functional>
 #include <random>
 
+#include "base/big_endian.h"
 #include "base/read_files.h"
 #include "hydro_log/hydro_log.h"
 #include "hydro_log/replay.h"
@@ -66,8 +67,8 @@ class DamageTest : public log::LogTest {
     const auto* data = reinterpret_cast<const uint8_t*>(bytes.data());
     while (begins.back() < bytes.size()) {
       const uint8_t* event = data + begins.back();
-      begins.push_back(begins.back() + log::kLogHeaderSize + log::LoadBigEndian32(event + 20) +
-                       log::LoadBigEndian32(event + 24));
+      begins.push_back(begins.back() + log::kLogHeaderSize + LoadBigEndian32(event + 20) +
+                       LoadBigEndian32(event + 24));
     }
     return begins;
   }

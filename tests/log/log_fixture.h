@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "base/big_endian.h"
 #include "base/read_files.h"
 #include "bus/channels.h"
 #include "hydro/run_description_t.hpp"

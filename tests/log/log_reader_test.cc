@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 
+#include "base/big_endian.h"
 #include "log/log_format.h"
 #include "tests/log/log_fixture.h"
 

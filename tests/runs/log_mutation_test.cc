@@ -1,5 +1,6 @@
 #include <random>
 
+#include "base/big_endian.h"
 #include "log/log_format.h"
 #include "log/repair.h"
 #include "runs/compare.h"
@@ -81,9 +82,9 @@ TEST_F(LogMutationTest, RandomBytes) {
     for (char& byte : bytes) byte = static_cast<char>(below(256));
     for (size_t syncs = below(6); syncs > 0; --syncs) {
       uint8_t header[log::kLogHeaderSize] = {};
-      log::StoreBigEndian32(log::kLogSyncWord, header);
-      log::StoreBigEndian32(static_cast<uint32_t>(below(70)), header + 20);
-      log::StoreBigEndian32(static_cast<uint32_t>(below(300)), header + 24);
+      StoreBigEndian32(log::kLogSyncWord, header);
+      StoreBigEndian32(static_cast<uint32_t>(below(70)), header + 20);
+      StoreBigEndian32(static_cast<uint32_t>(below(300)), header + 24);
       bytes.insert(below(bytes.size()), reinterpret_cast<const char*>(header), sizeof header);
     }
     ReadEveryWay(bytes);
