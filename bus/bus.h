@@ -66,6 +66,12 @@ bool CanBeEncoded(const Message& message) {
   return message.encode(bytes.data(), 0, size) == size;
 }
 
+// Decodes all `size` bytes; false: not a message of this type.
+template <class Message>
+bool DecodeInto(Message* message, const void* data, int size) {
+  return DecodedAll(message->decode(data, 0, size), data, size) && CanBeEncoded(*message);
+}
+
 template <class Message>
 const MessageType& TypeOf() {
   static const MessageType type{
@@ -76,14 +82,12 @@ const MessageType& TypeOf() {
       },
       [](const void* data, int size) -> std::shared_ptr<void> {
         auto message = std::make_shared<Message>();
-        return DecodedAll(message->decode(data, 0, size), data, size) && CanBeEncoded(*message) ? message
-                                                                                                : nullptr;
+        return DecodeInto(message.get(), data, size) ? message : nullptr;
       },
       []() -> std::shared_ptr<void> { return std::make_shared<Message>(); },
       [](void* to, const void* from) { *static_cast<Message*>(to) = *static_cast<const Message*>(from); },
       [](void* message, const void* data, int size) {
-        return DecodedAll(static_cast<Message*>(message)->decode(data, 0, size), data, size) &&
-               CanBeEncoded(*static_cast<const Message*>(message));
+        return DecodeInto(static_cast<Message*>(message), data, size);
       }};
   return type;
 }

@@ -37,8 +37,7 @@ struct LogEvent {
 template <class Message>
 bool DecodeAs(const LogEvent& event, Message& message) {
   try {
-    return bus::DecodedAll(message.decode(event.data, 0, event.size), event.data, event.size) &&
-           bus::CanBeEncoded(message);
+    return bus::DecodeInto(&message, event.data, event.size);
   } catch (const std::length_error&) {  // lcm-gen's code believes a string length of 0 or less
     return false;
   }

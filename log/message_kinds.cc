@@ -1,7 +1,7 @@
 #include "log/message_kinds.h"
 
+#include "base/big_endian.h"
 #include "bus/messages.h"
-#include "log/log_format.h"
 
 namespace hydro::log {
 namespace {

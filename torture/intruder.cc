@@ -64,10 +64,7 @@ void ActiveFault::SendFlood() {
 void ActiveFault::SendChangedCommand() {
   const Packet* const packet = world_.RecordedCommand(world_.now());
   motor_command_t command;
-  if (packet == nullptr || !bus::TypeOf<motor_command_t>().decode_into(
-                               &command, packet->bytes.data(), static_cast<int>(packet->bytes.size()))) {
-    return;
-  }
+  if (packet == nullptr || !Decode(*packet, &command)) return;
   ++command.sequence;
   switch (injection_.kind) {
     case FaultKind::kHugeSequence:

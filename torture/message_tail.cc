@@ -6,7 +6,6 @@
 #include <concepts>
 
 #include "base/text_file.h"
-#include "bus/bus.h"
 #include "bus/messages.h"
 
 namespace hydro::torture {
@@ -47,10 +46,7 @@ std::string Decoded(const std::string& channel, const Packet& packet) {
     using Message = typename std::decay_t<decltype(row)>::Type;
     if (!channel.starts_with(row.channel)) return false;
     Message message;
-    if (bus::TypeOf<Message>().decode_into(&message, packet.bytes.data(),
-                                           static_cast<int>(packet.bytes.size()))) {
-      text = Told(message);
-    }
+    if (Decode(packet, &message)) text = Told(message);
     return true;
   });
   return text;
@@ -59,11 +55,8 @@ std::string Decoded(const std::string& channel, const Packet& packet) {
 // "stale_state begins"; empty: the message is no fault, or no process has sent it.
 std::string FaultOf(const std::string& channel, const Packet& packet) {
   fault_t fault;
-  if (packet.origin != Origin::kProcess || !channel.starts_with("HYDRO_FAULT") ||
-      !bus::TypeOf<fault_t>().decode_into(&fault, packet.bytes.data(),
-                                          static_cast<int>(packet.bytes.size()))) {
+  if (packet.origin != Origin::kProcess || !channel.starts_with("HYDRO_FAULT") || !Decode(packet, &fault))
     return "";
-  }
   return fmt::format("{} {}{}", fault.code, fault.active ? "begins" : "ends",
                      fault.latched ? " latched" : "");
 }

@@ -1,4 +1,5 @@
-// What happened in the last moments of a run, a line for each message that was sent or handled: how a person finds out why a schedule fails (hydro-torture --replay FILE --tail S).
+// What happened in the last moments of a run, a line for each message that was sent or handled: how a person finds out
+// why a schedule fails (hydro-torture --replay FILE --tail S).
 #pragma once
 
 #include <deque>

@@ -25,6 +25,14 @@ std::string Described(const RunOutcome& outcome) {
   return text;
 }
 
+// With that fault alone the code occurs, and nothing is violated.
+void ExpectNoticed(Schedule schedule, const Injection& injection, const char* code) {
+  schedule.injections = {injection};
+  const RunOutcome outcome = RunSchedule(schedule, "");
+  EXPECT_TRUE(outcome.coverage.codes.contains(code)) << code;
+  EXPECT_EQ(Described(outcome), "") << code;
+}
+
 // Tests that a run depends on nothing but its schedule, bit by bit.
 TEST(TortureRunTest, SameSeedSameTrace) {
   std::set<uint64_t> traces;
@@ -77,10 +85,7 @@ TEST(TortureRunTest, FaultsAreNoticed) {
   for (const auto& [injection, code] : cases) {
     Schedule schedule;
     schedule.faults_until_s = 2.5;
-    schedule.injections = {injection};
-    const RunOutcome outcome = RunSchedule(schedule, "");
-    EXPECT_TRUE(outcome.coverage.codes.contains(code)) << code;
-    EXPECT_EQ(Described(outcome), "") << code;
+    ExpectNoticed(schedule, injection, code);
   }
 }
 
@@ -95,10 +100,7 @@ TEST(TortureRunTest, FaultsOfTheLoggerAreNoticed) {
     Schedule schedule;
     schedule.logger = true;
     schedule.faults_until_s = 4.5;
-    schedule.injections = {injection};
-    const RunOutcome outcome = RunSchedule(schedule, "");
-    EXPECT_TRUE(outcome.coverage.codes.contains(code)) << code;
-    EXPECT_EQ(Described(outcome), "") << code;
+    ExpectNoticed(schedule, injection, code);
   }
 }
 

@@ -1,7 +1,6 @@
 #include "torture/invariants/loss_count.h"
 
 #include "bus/messages.h"
-#include "log/log_format.h"
 
 namespace hydro::torture {
 
@@ -9,10 +8,7 @@ void LossCount::Handle(const Packet& state) {
   constexpr bus::NumberPlaces kPlaces = bus::PlacesOf<state_t>();
   countable_ = countable_ && state.origin == Origin::kProcess;
   if (!countable_) return;
-  const auto number = [&](int place) {
-    return static_cast<int64_t>(log::LoadBigEndian64(state.bytes.data() + place));
-  };
-  const int64_t session = number(kPlaces.session), sequence = number(kPlaces.sequence);
+  const int64_t session = NumberAt(state, kPlaces.session), sequence = NumberAt(state, kPlaces.sequence);
   if (!session_) {
     session_ = session;
   } else if (session != *session_ || sequence < newest_) {

@@ -9,23 +9,6 @@
 #include "torture/invariants/plant_invariants.h"
 
 namespace hydro::torture {
-namespace {
-
-int64_t Load(const Packet& packet, size_t at) {
-  uint64_t value = 0;
-  for (size_t i = 0; i < 8; ++i) value = value << 8 | packet.bytes[at + i];
-  return static_cast<int64_t>(value);
-}
-
-// Decodes a packet; false when it is not of that type.
-template <class Message>
-bool Decode(const Packet& packet, Message* message) {
-  return bus::TypeOf<Message>().decode_into(message, packet.bytes.data(),
-                                            static_cast<int>(packet.bytes.size()));
-}
-
-}  // namespace
-
 Observer::Observer(const settings::StackConfig& config, Network& network, const TrueTime* now,
                    Coverage& coverage)
     : config_(config),
@@ -89,11 +72,11 @@ void Observer::OnState(const Packet& packet, const SimulatedProcess& sender) {
   constexpr size_t kVoltage = 8 + offsetof(state_t, voltage);
   if (sender.role() != Role::kPlant || packet.bytes.size() < kVoltage + 8) return;
   const double driven = RecordOf(sender).voltage;
-  const auto said = std::bit_cast<double>(Load(packet, kVoltage));
+  const auto said = std::bit_cast<double>(NumberAt(packet, kVoltage));
   if (said == driven) return;
   Report("a state says what was driven",
          fmt::format("tick {}: it says {:.17g} V, driven were {:.17g} V",
-                     Load(packet, 8 + offsetof(state_t, tick)), said, driven));
+                     NumberAt(packet, 8 + offsetof(state_t, tick)), said, driven));
 }
 
 void Observer::OnFault(const Packet& packet) {
@@ -149,12 +132,12 @@ void Observer::OnCommand(const Packet& packet, PlantRecord& plant) {
   constexpr size_t kVoltage = 8 + offsetof(motor_command_t, voltage);
   static const int64_t kHash = motor_command_t::getHash();
   static const auto kSize = static_cast<size_t>(motor_command_t().getEncodedSize());
-  if (packet.bytes.size() < kSize || Load(packet, 0) != kHash) return;  // undecodable
+  if (packet.bytes.size() < kSize || NumberAt(packet, 0) != kHash) return;  // undecodable
   ReceivedCommand command;
-  command.tick = Load(packet, kPlaces.tick);
-  command.session = Load(packet, kPlaces.session);
-  command.sequence = Load(packet, kPlaces.sequence);
-  command.voltage = std::bit_cast<double>(Load(packet, kVoltage));
+  command.tick = NumberAt(packet, kPlaces.tick);
+  command.session = NumberAt(packet, kPlaces.session);
+  command.sequence = NumberAt(packet, kPlaces.sequence);
+  command.voltage = std::bit_cast<double>(NumberAt(packet, kVoltage));
   command.handled = *now_;
   if (misconfigured_.contains(command.session)) {
     // It is refused and counts for nothing; until that is known it may be obeyed.

@@ -6,6 +6,8 @@
 #include <memory>
 #include <vector>
 
+#include "base/big_endian.h"
+#include "bus/bus.h"
 #include "torture/machines/machine.h"
 
 namespace hydro::torture {
@@ -58,5 +60,17 @@ inline void intrusive_ptr_release(Packet* packet) {
 }
 
 using PacketPtr = boost::intrusive_ptr<Packet>;
+
+// Decodes a packet; false when it is not of that type.
+template <class Message>
+bool Decode(const Packet& packet, Message* message) {
+  return bus::TypeOf<Message>().decode_into(message, packet.bytes.data(),
+                                            static_cast<int>(packet.bytes.size()));
+}
+
+// The eight bytes at a place (bus::PlacesOf), which the packet has.
+inline int64_t NumberAt(const Packet& packet, size_t place) {
+  return static_cast<int64_t>(LoadBigEndian64(packet.bytes.data() + place));
+}
 
 }  // namespace hydro::torture

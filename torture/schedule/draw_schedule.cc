@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "process/safety/safety_table.h"
 #include "torture/machines/random.h"
 #include "torture/schedule/schedule.h"
 
@@ -21,13 +22,8 @@ double DrawLogarithmic(Random& random, double low, double high) {
 }
 
 int DrawTarget(Random& random, std::string_view targets) {
-  std::vector<int> allowed;
-  while (!targets.empty()) {
-    const size_t end = std::min(targets.find(' '), targets.size());
-    allowed.push_back(*TargetNamed(targets.substr(0, end)));
-    targets.remove_prefix(std::min(end + 1, targets.size()));
-  }
-  return allowed[random.Index(allowed.size())];
+  const std::vector<std::string_view> allowed = process::WordsOf(targets);
+  return *TargetNamed(allowed[random.Index(allowed.size())]);
 }
 
 Injection Draw(Random& random, double latest_s, bool logger) {
