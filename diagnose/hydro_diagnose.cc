@@ -215,8 +215,7 @@ int CheckRuns(const DiagnoseRequest& request, std::FILE* out) {
   if (report.wrong.empty()) {
     std::fputs(
         "nothing wrong was found in the recordings, as far as the model as given predicts them: a rig that "
-        "differs much "
-        "from it can hide a mistake\n",
+        "differs much from it can hide a mistake\n",
         out);
   }
   return report.wrong.empty() ? 0 : 1;

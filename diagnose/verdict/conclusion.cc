@@ -181,8 +181,10 @@ Diagnosis Conclude(const SearchContext& context, const SearchResult& search, con
     d.choices = ChoicesWithoutEach(DecidingContest(context, kept.search, refit, windows),
                                    ClaimOf(best.fitted.hypothesis));
   }
-  d.sentence = Sentence(d, kept.doubts) + ClosureSentence(d.closures) +
-               ShownNoiseSentence(d.verdict, GapInShownNoise(context.predicted(), best.held_out));
+  d.sentence =
+      Sentence(d, kept.doubts) + ClosureSentence(d.closures) +
+      (IsOpen(d.verdict) ? ShownNoiseSentence(d.verdict, GapInShownNoise(context.predicted(), best.held_out))
+                         : "");
   return d;
 }
 
