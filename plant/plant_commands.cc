@@ -32,6 +32,8 @@ void PlantApp::OnMotorCommand(const motor_command_t& command) {
     waiting_commands_.clear();
     command_.reset();
   }
+  // While another is heard too, neither's act, even if he has long been silent when the tick comes (lockstep waits).
+  if (command_monitor_.SecondSenderAlive(now)) obeyed_from_ = std::max(obeyed_from_, command.tick + 1);
   future_command_ = false;
   if (const auto taken = round_trips_.OnAnswer(command.tick, now)) {
     participant_.statistics().RecordRoundTrip(*taken);

@@ -342,6 +342,24 @@ TEST_F(PlantAppTest, SecondCommandSenderGivesZeroVolts) {
   EXPECT_EQ(faults_[0].code, "second_motor_command_sender");
 }
 
+// Tests that what came while two sent does not act after one of them has gone, although in lockstep the tick waits so long.
+TEST_F(PlantAppTest, CommandSentBesideAnotherNeverActs) {
+  bus::Clock::TimePoint answered_from{};
+  on_state_ = [&](const state_t& s) {
+    if (s.tick == 5 && answered_from == bus::Clock::TimePoint{}) {
+      answered_from = clock_.Now() + std::chrono::milliseconds(300);
+      SendVoltage(5, 9.0, 99);
+    }
+    SendVoltage(s.tick, 1.0);
+    if (s.tick % 5 == 0 && (s.tick != 5 || clock_.Now() > answered_from)) SendPressureCommand(s.tick);
+  };
+  // Tick 5 is repeated, and with it the command: the first one came beside the other sender's.
+  EXPECT_EQ(Run(SmallStack()), 0);
+  ASSERT_EQ(states_.back().tick, 100);
+  for (const state_t& s : states_) EXPECT_NE(s.command_tick, 5) << s.tick;
+  EXPECT_EQ(states_.back().voltage, 1);
+}
+
 // Tests that a command from the future, as a played log would send, is refused.
 TEST_F(PlantAppTest, FutureCommandIsRefused) {
   settings::StackConfig config = SmallStack();
