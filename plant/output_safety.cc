@@ -38,7 +38,7 @@ OutputSafety::OutputSafety(process::Participant& participant, const settings::St
   if (limits_.rearm != settings::Rearm::kExplicit) return;
   bus.Subscribe<fault_t>(channels.Of<fault_t>(), [this](const fault_t& fault) { OnFault(fault); });
   bus.Subscribe<active_faults_t>(channels.Of<active_faults_t>(), [this](const active_faults_t& active) {
-    remote_.Observe(active, participant_.clock().Now());
+    if (active.session != participant_.session()) remote_.Observe(active, participant_.clock().Now());
   });
   bus.Subscribe<process_status_t>(channels.Of<process_status_t>(),
                                   [this](const process_status_t& status) { OnStatus(status); });
@@ -142,8 +142,7 @@ void OutputSafety::OnDescription(const run_description_t& description) {
 }
 
 void OutputSafety::OnFault(const fault_t& fault) {
-  if (fault.session == participant_.session() || !process::ZeroesVoltage(fault.code)) return;
-  remote_.Observe(fault, participant_.clock().Now());
+  if (fault.session != participant_.session()) remote_.Observe(fault, participant_.clock().Now());
 }
 
 void OutputSafety::OnStatus(const process_status_t& status) {

@@ -18,6 +18,7 @@
 
 #include "plant/rig.h"
 #include "plant/voltage_guard.h"
+#include "process/fault_codes.h"
 #include "process/participant.h"
 #include "process/remote_faults.h"
 #include "settings/stack_config.h"
@@ -93,7 +94,9 @@ class OutputSafety {
   bus::Clock::Duration suspended_;  // at the last check
   std::string other_stack_;         // describes the other plant, if one was heard
   std::optional<bus::Clock::TimePoint> other_stack_heard_;
-  process::RemoteFaults remote_;  // of the loops; kept for rearm = "explicit"
+  process::RemoteFaults remote_{[](std::string_view, std::string_view code) {
+    return process::ZeroesVoltage(code);
+  }};  // of the loops; kept for rearm = "explicit"
 };
 
 }  // namespace hydro::plant

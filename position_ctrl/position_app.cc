@@ -57,9 +57,7 @@ PositionApp::PositionApp(bus::Bus& bus, bus::Clock& clock, const settings::Stack
   bus.Subscribe<state_t>(participant_.channels().Of<state_t>(),
                          [this](const state_t& state) { OnState(state); });
   bus.Subscribe<fault_t>(participant_.channels().Of<fault_t>(), [this](const fault_t& fault) {
-    if (fault.source == "pressure_ctrl" && !process::IsWarning(fault.code)) {
-      pressure_faults_.Observe(fault, participant_.clock().Now());
-    }
+    pressure_faults_.Observe(fault, participant_.clock().Now());
   });
   bus.Subscribe<active_faults_t>(participant_.channels().Of<active_faults_t>(),
                                  [this](const active_faults_t& active) {

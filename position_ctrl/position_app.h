@@ -15,6 +15,7 @@
 #include "position_ctrl/position_law.h"
 #include "position_ctrl/reference_return.h"
 #include "process/app.h"
+#include "process/fault_codes.h"
 #include "process/participant.h"
 #include "process/remote_faults.h"
 #include "settings/stack_config.h"
@@ -49,8 +50,10 @@ class PositionApp : public process::App {
   const settings::PositionSection section_;
   PositionLaw law_;
   ReferenceReturn return_;
-  process::RemoteFaults
-      pressure_faults_;  // real time: while one lasts, the pressure loop's commands move nothing
+  // Real time: while one lasts, the pressure loop's commands move nothing.
+  process::RemoteFaults pressure_faults_{[](std::string_view role, std::string_view code) {
+    return role == "pressure_ctrl" && !process::IsWarning(code);
+  }};
 
   bus::SequenceMonitor state_monitor_;
   arm_reference_t arm_reference_;        // the newest sample's

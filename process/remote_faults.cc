@@ -1,5 +1,8 @@
 #include "process/remote_faults.h"
 
+#include <algorithm>
+#include <sstream>
+
 namespace hydro::process {
 namespace {
 
@@ -8,26 +11,40 @@ constexpr size_t kMost = 64;  // a stack has fewer; a flood of made-up ones is n
 }  // namespace
 
 void RemoteFaults::Observe(const fault_t& fault, bus::Clock::TimePoint now) {
+  if (!counts_(fault.source, fault.code)) return;
   const std::pair key(fault.session, fault.code);
   if (fault.active == 0) {
     faults_.erase(key);
-  } else if (faults_.size() < kMost) {
-    faults_.emplace(key, Heard{fault, now});
+    return;
   }
+  // In the place of the one heard longest ago: what its sender lists again is soon back, and until then the others count.
+  if (faults_.size() >= kMost && !faults_.contains(key)) {
+    faults_.erase(std::min_element(faults_.begin(), faults_.end(),
+                                   [](const auto& a, const auto& b) { return a.second.at < b.second.at; }));
+  }
+  faults_.emplace(key, Heard{fault, now});
 }
 
-// What its sender no longer has is gone, though the message that said so may be lost.
+// What its sender no longer has is gone, and what it has is there, though the message that said so may be lost.
 void RemoteFaults::Observe(const active_faults_t& active, bus::Clock::TimePoint now) {
-  const std::string codes = " " + active.codes + " ";
-  for (auto entry = faults_.begin(); entry != faults_.end();) {
-    const auto& [session, code] = entry->first;
-    if (session != active.session) {
-      ++entry;
-    } else if (codes.find(" " + code + " ") != std::string::npos) {
-      entry++->second.at = now;
-    } else {
-      entry = faults_.erase(entry);
+  std::erase_if(faults_, [&](const auto& entry) {
+    const std::string& code = entry.first.second;
+    return entry.first.first == active.session &&
+           (" " + active.codes + " ").find(" " + code + " ") == std::string::npos;
+  });
+  std::istringstream codes(active.codes);
+  for (std::string code; codes >> code;) {
+    if (const auto known = faults_.find({active.session, code}); known != faults_.end()) {
+      known->second.at = now;
+      continue;
     }
+    fault_t fault{};
+    fault.session = active.session;
+    fault.source = active.role;
+    fault.code = code;
+    fault.text = "it lasts";
+    fault.active = true;
+    Observe(fault, now);
   }
 }
 

@@ -6,6 +6,7 @@
 #include <hydro/fault_t.hpp>
 #include <map>
 #include <string>
+#include <string_view>
 #include <utility>
 
 #include "bus/clock.h"
@@ -17,6 +18,10 @@ class RemoteFaults {
  public:
   // A fault that nobody claims for this long is no more: a process lists its own once a second.
   static constexpr auto kAlive = std::chrono::milliseconds(2500);
+
+  // `counts`: which faults matter, by the role that has it and its code; the others are not kept.
+  using Counts = bool (*)(std::string_view role, std::string_view code);
+  explicit RemoteFaults(Counts counts) : counts_(counts) {}
 
   void Observe(const fault_t& fault, bus::Clock::TimePoint now);
   void Observe(const active_faults_t& active, bus::Clock::TimePoint now);
@@ -34,6 +39,7 @@ class RemoteFaults {
     fault_t fault;
     bus::Clock::TimePoint at;
   };
+  Counts counts_;
   std::map<std::pair<int64_t, std::string>, Heard> faults_;  // by session and code
 };
 

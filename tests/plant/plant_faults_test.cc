@@ -407,9 +407,9 @@ TEST_F(PlantFaultsTest, FaultThatNobodyClaims) {
   };
   on_state_ = [&](const state_t& s) {
     if (s.tick == 10) begins(33, "nonfinite_arm_angle");
-    if (s.tick == 20) has(33, "other nonfinite_arm_angle");
+    if (s.tick == 20) has(33, "undecodable_message nonfinite_arm_angle");
     if (s.tick == 30) AskToRearm(30);  // persists
-    if (s.tick == 40) has(33, "other");
+    if (s.tick == 40) has(33, "undecodable_message");
     if (s.tick == 50) AskToRearm(50);
     if (s.tick == 100) begins(77, "nonfinite_arm_angle");
     if (s.tick == 2500) AskToRearm(2500);  // persists

@@ -68,7 +68,7 @@ TEST(RemoteFaultsTest, Ends) {
     return f;
   };
   bus::Clock::TimePoint now{1h};
-  RemoteFaults faults;
+  RemoteFaults faults([](std::string_view, std::string_view code) { return code == "stale_state"; });
   EXPECT_FALSE(faults.any(now));
   faults.Observe(fault(1, "stale_state", true), now);
   EXPECT_TRUE(faults.any(now));
@@ -97,6 +97,34 @@ TEST(RemoteFaultsTest, Ends) {
   EXPECT_FALSE(faults.any(now));
   faults.Observe(fault(1, "stale_state", true), now);
   EXPECT_FALSE(faults.any(now + 2501ms));
+}
+
+// Tests that a fault counts of which only its sender's list is heard, and that a flood of made-up ones never hides it.
+TEST(RemoteFaultsTest, ListsCount) {
+  RemoteFaults faults([](std::string_view role, std::string_view) { return role == "pressure_ctrl"; });
+  bus::Clock::TimePoint now{1h};
+  active_faults_t list{};
+  list.role = "pressure_ctrl";
+  list.codes = "stale_state";
+  list.session = 1;
+  for (int second = 0; second < 3; ++second) {
+    active_faults_t made_up = list;
+    faults.Observe(list, now);
+    for (made_up.session = 100; made_up.session < 200; ++made_up.session) faults.Observe(made_up, now + 10ms);
+    now += 1s;
+    EXPECT_TRUE(faults.any(now));
+  }
+  faults.Observe(list, now += 1s);
+  EXPECT_TRUE(faults.any(now += 2s));
+  EXPECT_EQ(faults.first().session, 1);
+  EXPECT_EQ(faults.first().code, "stale_state");
+  list.codes = "";
+  faults.Observe(list, now);
+  EXPECT_FALSE(faults.any(now));
+  list.role = "logger";
+  list.codes = "stale_state";
+  faults.Observe(list, now);
+  EXPECT_FALSE(faults.any(now));
 }
 
 // Tests that one message that says otherwise does not undo that a process agrees: a configuration does not change while it lives.
