@@ -74,6 +74,11 @@ std::vector<motor_command_t> ActingCommands(const RunLog& log) {
   return commands;
 }
 
+// Whether the log has lost states between the two: what acted at the end of the gap did not act at its beginning.
+bool LacksStates(const state_t& state, const state_t& next) {
+  return next.sequence > SaturatingSum(state.sequence, 1);
+}
+
 double PressureReference(const motor_command_t* motor, const pressure_command_t* pressure) {
   if (motor != nullptr) {
     const bool has_one = motor->pressure_command_tick >= 0 && motor->status != motor_command_t::OPEN_LOOP;
@@ -104,11 +109,13 @@ tables::Table ExportRun(const RunLog& log) {
   for (size_t k = 0; k < states.size(); ++k) {
     const state_t& state = *states[k];
     const int64_t commanding_tick = SaturatingDifference(state.tick, delay);
+    const state_t* const next = k + 1 < states.size() ? states[k + 1] : nullptr;
     double voltage = kMissing;
-    if (k + 1 < states.size()) {
-      voltage = states[k + 1]->voltage;
-    } else if (const motor_command_t* command = acting.At(commanding_tick)) {
-      voltage = command->voltage;
+    if (next != nullptr && !LacksStates(state, *next)) {
+      voltage = next->voltage;
+    } else if (const motor_command_t* command = acting.At(commanding_tick);
+               command != nullptr && (next == nullptr || state.command_tick >= 0)) {
+      voltage = command->voltage;  // unless the plant held zero
     }
     const arm_reference_t* arm = reference.LastUpTo(state.tick);
     // Like any command, a pressure command of tick k is in force from tick k + delay on.

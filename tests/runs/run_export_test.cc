@@ -66,6 +66,18 @@ TEST_F(RunExportTest, LastVoltage) {
   EXPECT_THAT(Values(Export(run), "voltage_V").back(), IsNan());
 }
 
+// Tests that the voltage before a gap is that of the command that acts next, and never what acted at the gap's end.
+TEST_F(RunExportTest, VoltageBeforeAGap) {
+  RunMessages run = log::SampleRun(9);
+  run.Of<state_t>().erase(run.Of<state_t>().begin() + 3, run.Of<state_t>().begin() + 6);
+  EXPECT_THAT(Values(Export(run), "voltage_V"), ElementsAre(-0.5, 0.5, 1.5, 5.5, 6.5, 6.5));
+  RunMessages held = run;
+  held.Of<state_t>()[2].command_tick = -1;  // at zero volts
+  EXPECT_THAT(Values(Export(held), "voltage_V")[2], IsNan());
+  run.Of<motor_command_t>().erase(run.Of<motor_command_t>().begin() + 1);
+  EXPECT_THAT(Values(Export(run), "voltage_V")[2], IsNan());
+}
+
 // Tests that without motor commands the pressure reference is the last pressure command's that could have
 // arrived.
 TEST_F(RunExportTest, PressureReferenceWithoutMotorCommands) {

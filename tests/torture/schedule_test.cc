@@ -1,5 +1,6 @@
 #include "torture/schedule/schedule.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "base/input_error.h"
@@ -57,6 +58,14 @@ TEST(ScheduleTest, NamesWhatIsWrong) {
             "a.torture:2: found '-1', allowed is a time in s from 0 to 1e6");
   EXPECT_EQ(ErrorOf("hydro-torture 1\n0.5 loss target=all for=x amount=1 seed=1"),
             "a.torture:2: found 'x', allowed is for=NUMBER");
+  const std::string run = "run mode=lockstep rearm=restart key=no stale=0.1 until=5 seed=1\n";
+  EXPECT_EQ(ErrorOf("hydro-torture 1\n" + run), "none");
+  EXPECT_THAT(ErrorOf("hydro-torture 1\n"), testing::HasSubstr("found no line of `run`, allowed is one"));
+  EXPECT_THAT(
+      ErrorOf("hydro-torture 1\n" + run + run),
+      testing::AllOf(testing::StartsWith("a.torture:3: "), testing::HasSubstr("the first is line 2")));
+  EXPECT_EQ(ErrorOf("hydro-torture 1\nrun mode=lockstp rearm=restart key=no stale=0.1 until=5 seed=1"),
+            "a.torture:2: found 'lockstp', allowed is mode=realtime or lockstep");
 }
 
 }  // namespace

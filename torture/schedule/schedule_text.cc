@@ -44,6 +44,12 @@ class LineReader {
     if (!word.starts_with(std::string(key) + "=")) throw Error(word, std::string(key) + "=...");
     return word.substr(key.size() + 1);
   }
+  // Whether it is the second of the two.
+  bool Choice(std::string_view key, std::string_view no, std::string_view yes) {
+    const std::string value = Value(key);
+    if (value != no && value != yes) throw Error(value, fmt::format("{}={} or {}", key, no, yes));
+    return value == yes;
+  }
   InputError Error(const std::string& found, const std::string& allowed) const {
     return InputError(fmt::format("{}:{}: found '{}', allowed is {}", file_, number_, found, allowed));
   }
@@ -104,6 +110,7 @@ Schedule ReadSchedule(const std::string& file, const std::string& text) {
   std::istringstream lines(text);
   std::string content;
   bool first = true;
+  int run_line = 0;
   for (int number = 1; std::getline(lines, content); ++number) {
     LineReader line(file, number, content);
     if (first) {
@@ -117,9 +124,12 @@ Schedule ReadSchedule(const std::string& file, const std::string& text) {
       schedule.injections.push_back(ReadInjection(std::move(line), word));
       continue;
     }
-    schedule.lockstep = line.Value("mode") == "lockstep";
-    schedule.explicit_rearm = line.Value("rearm") == "explicit";
-    schedule.key = line.Value("key") == "yes";
+    if (run_line != 0)
+      throw line.Error(content, fmt::format("one line of `run`; the first is line {}", run_line));
+    run_line = number;
+    schedule.lockstep = line.Choice("mode", "realtime", "lockstep");
+    schedule.explicit_rearm = line.Choice("rearm", "restart", "explicit");
+    schedule.key = line.Choice("key", "no", "yes");
     schedule.stale_input_s = line.Number("stale");
     const double until = line.Number("until");
     if (!(until > 0 && until <= 3600))
@@ -133,6 +143,12 @@ Schedule ReadSchedule(const std::string& file, const std::string& text) {
   }
   if (first)
     throw InputError(file + ": is empty, allowed is a schedule that begins with " + std::string(kFirstLine));
+  if (run_line == 0) {
+    throw InputError(
+        file +
+        ": found no line of `run`, allowed is one, as in `run mode=realtime rearm=restart key=no "
+        "stale=0.1 until=5 seed=1`");
+  }
   return schedule;
 }
 
