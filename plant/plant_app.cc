@@ -83,8 +83,9 @@ int PlantApp::Run() {
     for (const int64_t session : roll_call_.Loggers()) log_progress_.emplace(session, -1);
     DriveRig();
   }
-  rig_.Zero();
+  const OutputLeft left = rig_.Zero();
   RequestStop();
+  PublishOutputLeft(left);
   return participant_.Leave();
 }
 
@@ -236,6 +237,17 @@ void PlantApp::Poll() {
   participant_.statistics().set_lost_messages(command_monitor_.lost());
   participant_.Poll();
   if (participant_.clock().Now() >= next_description_) PublishDescription();
+}
+
+void PlantApp::PublishOutputLeft(const OutputLeft& left) {
+  output_left_t message;
+  message.utime = participant_.clock().Utime();
+  message.tick = participant_.tick();
+  message.session = participant_.session();
+  message.role = participant_.role();
+  message.accepted = left.accepted;
+  message.voltage = left.voltage;
+  participant_.bus().Publish(participant_.channels().Of<output_left_t>(), message);
 }
 
 void PlantApp::PublishDescription() {

@@ -70,6 +70,7 @@ class PlantApp {
   void PublishState(int64_t skipped_ticks);
   void DescribeRun();
   void PublishDescription();
+  void PublishOutputLeft(const OutputLeft& left);
   void ChooseVoltage();
   void CheckCommand(const motor_command_t& command);
   void CheckCommandIsFresh();

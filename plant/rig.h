@@ -29,6 +29,12 @@ class RigError : public std::runtime_error {
   std::string code_;
 };
 
+// What the output holds after zero volts were written.
+struct OutputLeft {
+  bool accepted = true;  // false: the board refused the zero
+  double voltage = 0;    // V of eq. (1), read back; NaN: it cannot be read
+};
+
 class Rig {
  public:
   virtual ~Rig() = default;
@@ -49,7 +55,7 @@ class Rig {
   virtual double Drive(double voltage) = 0;
 
   // Puts out zero volts by any means left. May be called at any time, any number of times.
-  virtual void Zero() noexcept = 0;
+  virtual OutputLeft Zero() noexcept = 0;
 };
 
 }  // namespace hydro::plant

@@ -21,7 +21,7 @@ class SimulatedRig : public Rig {
   model::Measurement Read(int64_t tick) override;
   const std::vector<RigFault>& faults() const override { return no_faults_; }
   double Drive(double voltage) override { return voltage_ = voltage; }
-  void Zero() noexcept override { voltage_ = 0; }
+  OutputLeft Zero() noexcept override { return {.accepted = true, .voltage = voltage_ = 0}; }
 
  private:
   settings::NoiseSection noise_;

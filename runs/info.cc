@@ -214,6 +214,7 @@ LogInfo Summarise(const RunLog& log, bool si) {
   info.programs = ProgramsOf(log.messages.Of<process_status_t>());
   info.faults = log.messages.Of<fault_t>();
   info.stops = DistinctStops(log.messages.Of<stop_t>());
+  info.outputs_left = log.messages.Of<output_left_t>();
   info.descriptions = DistinctDescriptions(log.messages.Of<run_description_t>());
   UnitSystem units;
   if (!info.descriptions.empty()) {

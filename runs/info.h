@@ -73,6 +73,7 @@ struct LogInfo {
   std::vector<ProgramInfo> programs;  // those that introduced themselves
   std::vector<fault_t> faults;
   std::vector<stop_t> stops;                                // each once, however often it was sent
+  std::vector<output_left_t> outputs_left;                  // what plants or drivers left at their ends
   std::vector<run_description_t> descriptions;              // distinct ones
   std::string model_name;                                   // of the first description
   std::vector<std::pair<std::string, std::string>> config;  // of the first description
@@ -80,6 +81,9 @@ struct LogInfo {
 
 // Signals are in the units of the model that the log describes; with `si`, in SI units.
 LogInfo Summarise(const RunLog& log, bool si);
+
+// "plant: the output reads back 0 V"
+std::string OutputLeftText(const output_left_t& left);
 
 // Several lines for people to read.
 std::string InfoText(const LogInfo& info);

@@ -107,6 +107,11 @@ Json StopJson(const stop_t& stop) {
       {"tick", stop.tick}, {"source", stop.source}, {"reason", stop.reason}, {"exit_code", stop.exit_code}};
 }
 
+Json OutputLeftJson(const output_left_t& left) {
+  return {
+      {"tick", left.tick}, {"role", left.role}, {"accepted", left.accepted != 0}, {"voltage", left.voltage}};
+}
+
 }  // namespace
 
 std::string InfoJson(const LogInfo& info) {
@@ -139,6 +144,7 @@ std::string InfoJson(const LogInfo& info) {
   json["loops"] = ListJson(info.loops, LoopJson);
   json["faults"] = ListJson(info.faults, FaultJson);
   json["stops"] = ListJson(info.stops, StopJson);
+  json["outputs_left"] = ListJson(info.outputs_left, OutputLeftJson);
   // Text from a log may not be UTF-8; invalid bytes are replaced, not refused.
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }

@@ -70,6 +70,7 @@ std::string SummaryText(const Tracking& tracking, const LogInfo& info, bool si) 
     line("fault at tick {}: {} {} ({})", fault.tick, fault.code, fault.active ? "began" : "ended",
          fault.source);
   }
+  for (const output_left_t& left : info.outputs_left) line("{}", OutputLeftText(left));
   return text;
 }
 

@@ -28,7 +28,7 @@ class FaultyRig : public plant::Rig {
   model::Measurement Read(int64_t tick) override;
   const std::vector<plant::RigFault>& faults() const override { return rig_.faults(); }
   double Drive(double voltage) override;
-  void Zero() noexcept override { rig_.Zero(); }
+  plant::OutputLeft Zero() noexcept override { return rig_.Zero(); }
 
  private:
   plant::SimulatedRig rig_;

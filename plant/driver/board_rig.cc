@@ -72,6 +72,14 @@ model::Measurement BoardRig::Read(int64_t /*tick*/) {
   return measured;
 }
 
+OutputLeft BoardRig::Zero() noexcept {
+  OutputLeft left{.accepted = zero_.Write(), .voltage = NAN};
+  if (const auto code = zero_.ReadBack()) {
+    left.voltage = amplifier_.scale * output_.converter.Volts(*code) + amplifier_.offset;
+  }
+  return left;
+}
+
 double BoardRig::Drive(double voltage) {
   if (!std::isfinite(voltage)) voltage = 0;
   voltage = std::clamp(voltage, min_voltage_, max_voltage_);

@@ -29,7 +29,7 @@ class BoardRig : public Rig {
   const std::vector<RigFault>& faults() const override { return faults_; }
   // Toggles the watchdog line once the board has accepted the voltage.
   double Drive(double voltage) override;
-  void Zero() noexcept override { zero_.Write(); }
+  OutputLeft Zero() noexcept override;
 
   const std::string& board_name() const { return board_.name(); }
 

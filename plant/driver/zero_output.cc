@@ -90,6 +90,14 @@ bool ZeroOutput::Write() const noexcept {
   return written;
 }
 
+std::optional<uint32_t> ZeroOutput::ReadBack() const noexcept {
+  lsampl_t code = 0;
+  for (int i = 0; i < kTries; ++i) {
+    if (comedi_data_read(device, subdevice, channel, range, reference, &code) >= 0) return code;
+  }
+  return std::nullopt;
+}
+
 void ArmZero(const ZeroOutput& output) {
   armed.store(nullptr);
   armed_output = output;

@@ -4,6 +4,7 @@
 #include <comedilib.h>
 
 #include <cstdint>
+#include <optional>
 
 namespace hydro::plant {
 
@@ -25,6 +26,9 @@ struct ZeroOutput {
   // Writes zero volts, then sets the watchdog line low. Tries again when the board refuses. Async-signal-safe
   // as far as the above holds; preserves errno. Returns whether the board accepted the zero.
   bool Write() const noexcept;
+
+  // The code that the output holds; nothing when the board cannot read it back. Not for signal handlers.
+  std::optional<uint32_t> ReadBack() const noexcept;
 };
 
 // From now on every way out of this process in which it can still act writes `output` first: exit(),

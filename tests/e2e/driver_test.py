@@ -80,6 +80,10 @@ class DriverRunTest(DriverCase):
         self.assertIn("driver", {s.role for s in log.statistics})
         self.assertEqual(log.descriptions[0].program, "hydro-driver")
         self.assertEqual([(s.source, s.exit_code) for s in log.stops], [("driver", 0)])
+        # The board's output, read back after the last zero: half a step of 16 bits over 20 V, 2 V at the motor per V.
+        (left,) = log.outputs_left
+        self.assertEqual((left.role, bool(left.accepted)), ("driver", True))
+        self.assertLess(abs(left.voltage), 4e-4)
 
         registers = self.board.read()
         self.assertAlmostEqual(registers["arm_angle"], 0.1, delta=0.01)  # the arm's own word

@@ -236,7 +236,7 @@ class Log:
     def __getattr__(self, name):
         table = {"states": "HYDRO_STATE", "motor_commands": "HYDRO_MOTOR_COMMAND",
                  "pressure_commands": "HYDRO_PRESSURE_COMMAND", "arm_references": "HYDRO_ARM_REFERENCE",
-                 "faults": "HYDRO_FAULT", "stops": "HYDRO_STOP", "statuses": "HYDRO_PROCESS_STATUS",
+                 "faults": "HYDRO_FAULT", "stops": "HYDRO_STOP", "outputs_left": "HYDRO_OUTPUT_LEFT", "statuses": "HYDRO_PROCESS_STATUS",
                  "statistics": "HYDRO_LOOP_STATISTICS", "histograms": "HYDRO_LOOP_HISTOGRAM",
                  "rearms": "HYDRO_REARM",
                  "descriptions": "HYDRO_RUN", "progress": "HYDRO_LOG_PROGRESS"}

@@ -65,6 +65,7 @@ class LoggerTest(stack.TestCase):
         self.assertEqual(log.motor_commands[-1].status, event_log.STOPPED)
         gone = {s.role for s in log.statuses if s.state == event_log.DONE}
         self.assertLessEqual({"plant", "pressure_ctrl", "position_ctrl"}, gone)
+        self.assertEqual([(o.role, bool(o.accepted), o.voltage) for o in log.outputs_left], [("plant", True, 0)])
         # Where no state was sent the plant says so; where one was sent the pressure loop answered it.
         expected = 0
         for state in log.states:

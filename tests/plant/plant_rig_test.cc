@@ -36,10 +36,14 @@ class RecordingRig : public Rig {
     output = std::clamp(voltage, -2.0, 2.0);
     return output;
   }
-  void Zero() noexcept override {
+  OutputLeft Zero() noexcept override {
     output = 0;
     ++zeros;
+    return {.accepted = accepts_zero, .voltage = reads_back};
   }
+
+  bool accepts_zero = true;
+  double reads_back = 0;
 
   std::function<void(int64_t)> on_read;
   std::vector<RigFault> faults_now;
@@ -96,6 +100,28 @@ TEST_F(PlantRigTest, DrivesCommands) {
   EXPECT_EQ(rig_.output, 0);
   EXPECT_TRUE(roles_.contains("driver"));
   EXPECT_FALSE(roles_.contains("plant"));
+}
+
+// Tests that every end says what the output reads back, also one that a failing rig brings about.
+TEST_F(PlantRigTest, SaysWhatItLeft) {
+  std::vector<output_left_t> left;
+  bus_.Subscribe<output_left_t>("HYDRO_OUTPUT_LEFT", [&](const output_left_t& l) { left.push_back(l); });
+  rig_.reads_back = 3e-4;
+  EXPECT_EQ(Run(), 0);
+  ASSERT_EQ(left.size(), 1u);
+  EXPECT_EQ(left[0].role, "driver");
+  EXPECT_EQ(left[0].tick, 100);
+  EXPECT_TRUE(left[0].accepted);
+  EXPECT_EQ(left[0].voltage, 3e-4);
+  rig_.on_read = [](int64_t tick) {
+    if (tick == 7) throw RigError("board_error", "does not answer");
+  };
+  rig_.accepts_zero = false;
+  rig_.reads_back = NAN;
+  EXPECT_EQ(Run(), 1);
+  ASSERT_EQ(left.size(), 2u);
+  EXPECT_FALSE(left[1].accepted);
+  EXPECT_TRUE(std::isnan(left[1].voltage));
 }
 
 // Tests that without a command nothing but zero is driven.

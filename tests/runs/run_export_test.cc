@@ -70,7 +70,7 @@ TEST_F(RunExportTest, LastVoltage) {
 TEST_F(RunExportTest, VoltageBeforeAGap) {
   RunMessages run = log::SampleRun(9);
   run.Of<state_t>().erase(run.Of<state_t>().begin() + 3, run.Of<state_t>().begin() + 6);
-  EXPECT_THAT(Values(Export(run), "voltage_V"), ElementsAre(-0.5, 0.5, 1.5, 5.5, 6.5, 6.5));
+  EXPECT_THAT(Values(Export(run), "voltage_V"), ElementsAre(-0.5, 0.5, 0.5, 5.5, 6.5, 6.5));
   RunMessages held = run;
   held.Of<state_t>()[2].command_tick = -1;  // at zero volts
   EXPECT_THAT(Values(Export(held), "voltage_V")[2], IsNan());

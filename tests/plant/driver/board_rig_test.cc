@@ -104,8 +104,17 @@ TEST_F(BoardRigTest, Zero) {
   const auto rig = Open();
   rig->Drive(-3);
   rig->Zero();
-  rig->Zero();
+  const OutputLeft left = rig->Zero();
   EXPECT_EQ(board_->outputs[0], SimulatedBoard::kZeroCode);
+  EXPECT_TRUE(left.accepted);
+  EXPECT_NEAR(left.voltage, 0, 4e-4);
+  rig->Drive(-3);
+  board_->order = SimulatedBoard::kWritesFail;
+  const OutputLeft stuck = rig->Zero();
+  EXPECT_FALSE(stuck.accepted);
+  EXPECT_NEAR(stuck.voltage, -3, 1e-3);
+  board_->order = SimulatedBoard::kReadsFail;
+  EXPECT_TRUE(std::isnan(rig->Zero().voltage));
 }
 
 // Tests scale, sign and offset of the amplifier, and that an offset also moves the zero.

@@ -144,9 +144,10 @@ int Read(comedi_t* device, unsigned subdevice, unsigned channel, lsampl_t* data)
   Obey(board);
   if (board.order == SimulatedBoard::kReadsFail) return Fail(EIO);
   if (Interrupted(board)) return Fail(EINTR);
-  // One request for all analog inputs, as in a scan, and one for each counter.
-  static const unsigned first_input = channel;
-  if (subdevice == 3 || channel == first_input) Ring(board);
+  // One request for all analog inputs, as in a scan, and one for each counter; an output is a register.
+  static unsigned first_input = SimulatedBoard::kInputs;
+  if (subdevice == 0 && first_input == SimulatedBoard::kInputs) first_input = channel;
+  if (subdevice == 3 || (subdevice == 0 && channel == first_input)) Ring(board);
   ++board.reads;
   if (subdevice == 3) {
     *data = static_cast<lsampl_t>(board.counters[channel]);
@@ -155,6 +156,8 @@ int Read(comedi_t* device, unsigned subdevice, unsigned channel, lsampl_t* data)
     if (channel == 0 && board.order == SimulatedBoard::kInput0High) code = SimulatedBoard::kMaxCode;
     if (channel == 0 && board.order == SimulatedBoard::kInput0Open) code = SimulatedBoard::kZeroCode;
     *data = static_cast<lsampl_t>(code);
+  } else if (subdevice == 1) {
+    *data = static_cast<lsampl_t>(board.outputs[channel]);
   } else {
     return Fail(EINVAL);
   }
