@@ -1,5 +1,5 @@
-// Notices when the file that is being recorded has been deleted, renamed or replaced, or its folder has gone:
-// writing to it goes on working, and nobody would find the log.
+// Notices when the file that is being recorded has been deleted, renamed or replaced, its folder has gone, or another program has cut or
+// overwritten it: writing to it goes on working, and nobody would find the log, or all of it.
 #pragma once
 
 #include <chrono>
@@ -25,6 +25,7 @@ class FileWatch {
  private:
   std::string file_;
   std::optional<FileIdentity> identity_;  // none: nothing to look for any more
+  std::string beginning_;                 // its first bytes; empty until there are enough
   std::chrono::steady_clock::time_point last_look_{};
 };
 

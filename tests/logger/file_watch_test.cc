@@ -1,5 +1,7 @@
 #include "base/file_watch.h"
 
+#include <fstream>
+
 #include "logger/refused_quota.h"
 #include "tests/log/log_fixture.h"
 
@@ -38,6 +40,29 @@ TEST_F(FileWatchTest, ReplacedOrMoved) {
   EXPECT_TRUE(watch.LookNow().has_value());
   watch.Watch("/dev/null");
   EXPECT_EQ(watch.LookNow(), std::nullopt);
+}
+
+// Tests that a file is noticed that another program has cut, wholly or in part, or overwritten, and that growing is none of these.
+TEST_F(FileWatchTest, CutOrOverwritten) {
+  const std::string recorded(300'000, 'x'), more(100'000, 'y');
+  const auto after = [&](const auto& happens) {
+    log::WriteBytes(Path("log"), recorded);
+    std::FILE* const recorder = std::fopen(Path("log").c_str(), "r+b");
+    std::fseek(recorder, 0, SEEK_END);
+    FileWatch watch;
+    watch.Watch(Path("log"));
+    EXPECT_EQ(watch.LookNow(), std::nullopt);
+    happens();
+    std::fwrite(more.data(), 1, more.size(), recorder);
+    std::fclose(recorder);
+    return watch.LookNow().value_or("");
+  };
+  EXPECT_EQ(after([] {}), "");
+  const std::string noticed =
+      Path("log") + ": has been cut or overwritten by another program while it was being recorded";
+  EXPECT_EQ(after([&] { std::filesystem::resize_file(Path("log"), 0); }), noticed);
+  EXPECT_EQ(after([&] { std::filesystem::resize_file(Path("log"), 100); }), noticed);
+  EXPECT_EQ(after([&] { std::ofstream(Path("log")) << std::string(300'000, 'z'); }), noticed);
 }
 
 // Tests the bounds of refused messages, by number and by size, in a second and in a run.
