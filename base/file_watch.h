@@ -12,7 +12,7 @@ namespace hydro {
 
 class FileWatch {
  public:
-  static constexpr auto kPeriod = std::chrono::seconds(1);  // of the wall clock, whatever the run's
+  static constexpr auto kPeriod = std::chrono::seconds(1);
 
   // `file` exists and is the one to watch from now on.
   void Watch(const std::string& file);

@@ -1,6 +1,8 @@
 #include "base/read_files.h"
 
 #include <algorithm>
+#include <filesystem>
+#include <map>
 #include <mutex>
 #include <set>
 
@@ -41,6 +43,23 @@ void CheckKeeps(const std::string& output, const std::vector<std::string>& input
   if (!is_input && !WasRead(output)) return;
   throw InputError(output +
                    ": found the name of a file that is read, allowed: another, so that it is not replaced");
+}
+
+void CheckDistinct(const std::vector<std::string>& outputs) {
+  std::map<std::string, std::string> by_place;
+  for (const std::string& output : outputs) {
+    std::error_code ignored;
+    const std::filesystem::path place =
+        std::filesystem::weakly_canonical(std::filesystem::absolute(output), ignored);
+    const bool device =
+        std::filesystem::exists(place, ignored) && !std::filesystem::is_regular_file(place, ignored);
+    if (output.empty() || device) continue;
+    const auto [known, is_new] = by_place.emplace(place, output);
+    if (is_new) continue;
+    throw InputError(output + ": found two outputs of this name" +
+                     (known->second == output ? "" : " (the other is written " + known->second + ")") +
+                     ", allowed: one, so that neither replaces the other");
+  }
 }
 
 void ForgetRead(const std::string& file) {

@@ -17,6 +17,10 @@ bool WasRead(const std::string& file);
 // device may be both.
 void CheckKeeps(const std::string& output, const std::vector<std::string>& inputs = {});
 
+// Throws InputError if two of the names, which will be written, lead to one file: the second would replace the first. Empty ones are left
+// out, and devices.
+void CheckDistinct(const std::vector<std::string>& outputs);
+
 // For who replaces on purpose what it has read, and has kept it under another name.
 void ForgetRead(const std::string& file);
 

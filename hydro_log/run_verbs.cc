@@ -68,6 +68,7 @@ TimingVerb::TimingVerb(settings::CommandLine& line) {
 int TimingVerb::Run() const {
   CheckOutput(json_, log_);
   CheckOutput(page_, log_);
+  CheckDistinct({json_, page_});
   const runs::RunLog log = ReadWithWarning(log_, suffix_);
   timing::TimingRecord record;
   for (const loop_statistics_t& report : log.messages.Of<loop_statistics_t>()) record.Add(report);

@@ -36,6 +36,10 @@ int LaunchStack(const LaunchRequest& request) {
   const settings::StackConfig config = settings::LoadStackConfig(request.config_file, request.overrides);
   const LaunchPlan plan = PlanLaunch(config, request, OwnFolder());
   CheckLog(plan, request.log_file);
+  if (!plan.timing_file.empty()) {
+    const TimingFiles timing(plan.timing_file);
+    CheckDistinct({request.log_file, timing.json(), timing.page()});
+  }
   return Launch(config, plan, STDOUT_FILENO, STDERR_FILENO);
 }
 

@@ -41,9 +41,9 @@ void LogFiles::Rotate() {
                   description_->utime);
 }
 
-std::optional<std::string> LogFiles::Look(bool at_once) {
+std::optional<std::string> LogFiles::Look(std::chrono::steady_clock::time_point now, bool at_once) {
   if (gone_) return std::exchange(gone_, std::nullopt);
-  return at_once ? watch_.LookNow() : watch_.Look(std::chrono::steady_clock::now());
+  return at_once ? watch_.LookNow() : watch_.Look(now);
 }
 
 }  // namespace hydro::logger

@@ -34,7 +34,7 @@ class LogFiles {
 
   // Whether the present file is still where it was opened: looks once a second, with `at_once` now. Returns what
   // is wrong, once for each file (file_watch.h).
-  std::optional<std::string> Look(bool at_once);
+  std::optional<std::string> Look(std::chrono::steady_clock::time_point now, bool at_once);
 
   int count() const { return count_; }
   int64_t bytes() const { return writer_->bytes(); }  // of the present file

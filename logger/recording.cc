@@ -15,7 +15,7 @@ Recording::Recording(const RecordingOptions& options, const std::string& descrip
 void Recording::WriteWaiting(bool last) {
   if (failed_) return;
   try {
-    if (const auto wrong = files_.Look(last)) ReportGone(*wrong);
+    if (const auto wrong = files_.Look(clock_.Now(), last)) ReportGone(*wrong);
     const EventQueue::Batch batch = queue_.Take();
     if (batch.empty()) return;
     const Write write = WriteBatch(batch);

@@ -108,8 +108,10 @@ void World::NoteLogFault(bool LogRecord::*what) {
 void World::CheckLog(const SimulatedProcess& logger) {
   const auto log = logs_.find(logger.number());
   if (log == logs_.end()) return;  // it was killed before it had one
-  // A full disk ends the logger, with an error that its main prints.
-  if (!log->second.was_full) observer_.OnEnd(logger);
+  disk_.CheckRoom();
+  // A full disk ends the logger, with an error that its main prints; one that lies makes it find another file there.
+  const bool sees_another = log->second.lied && logger.exit_code() == 1 && logger.failure().empty();
+  if (!log->second.was_full && !sees_another) observer_.OnEnd(logger);
   const std::string wrong = WrongWith(log->second);
   if (!wrong.empty())
     observer_.Report("a log is what has happened, or says that it is not", log->second.file + ": " + wrong);

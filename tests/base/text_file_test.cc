@@ -58,5 +58,18 @@ TEST_F(TextFileFolderTest, CheckKeeps) {
   }
 }
 
+// Tests that two outputs may not be one file, whether it is there or not.
+TEST_F(TextFileFolderTest, CheckDistinct) {
+  const std::string file = Write("a", "x");
+  std::filesystem::create_symlink(file, folder_ / "link");
+  const auto error = [](const std::vector<std::string>& outputs) {
+    return settings::InputErrorOf([&] { CheckDistinct(outputs); });
+  };
+  EXPECT_EQ(error({file, (folder_ / "b").string(), "", "", "/dev/null", "/dev/null"}), "");
+  EXPECT_THAT(error({"new", "./new"}),
+              HasSubstr("./new: found two outputs of this name (the other is written new)"));
+  EXPECT_THAT(error({file, (folder_ / "link").string()}), HasSubstr("found two outputs"));
+}
+
 }  // namespace
 }  // namespace hydro

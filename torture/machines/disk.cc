@@ -3,6 +3,7 @@
 #include <fcntl.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
+#include <sys/statvfs.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -60,6 +61,12 @@ void Disk::SetFull(bool full, Random& random) {
   std::signal(SIGXFSZ, SIG_IGN);  // so that write() fails instead
   const auto left = static_cast<rlim_t>(random.Index(kMostThatStillFits));
   LimitFiles(full_ > 0 ? static_cast<rlim_t>(size()) + left : RLIM_INFINITY);
+}
+
+void Disk::CheckRoom() const {
+  struct statvfs room {};
+  if (descriptor_ < 0 || fstatvfs(descriptor_, &room) != 0 || room.f_bavail > 0) return;
+  throw std::runtime_error(folder_ + ": no room is left for the logs of the simulated logger");
 }
 
 int64_t Disk::size() const {

@@ -26,6 +26,8 @@ class Disk {
   // While it is full, a write takes what still fits, and then fails: the kernel refuses it (RLIMIT_FSIZE).
   void SetFull(bool full, Random& random);
   bool full() const { return full_ > 0; }
+  // Throws std::runtime_error when there is no room in the real folder: what a logger then does is no finding.
+  void CheckRoom() const;
 
   // Flips a bit of the newest log; false where it has none.
   bool Lie(Random& random) const;
