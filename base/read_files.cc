@@ -48,12 +48,13 @@ void CheckKeeps(const std::string& output, const std::vector<std::string>& input
 void CheckDistinct(const std::vector<std::string>& outputs) {
   std::map<std::string, std::string> by_place;
   for (const std::string& output : outputs) {
+    if (output.empty()) continue;
     std::error_code ignored;
     const std::filesystem::path place =
         std::filesystem::weakly_canonical(std::filesystem::absolute(output), ignored);
     const bool device =
         std::filesystem::exists(place, ignored) && !std::filesystem::is_regular_file(place, ignored);
-    if (output.empty() || device) continue;
+    if (device) continue;
     const auto [known, is_new] = by_place.emplace(place, output);
     if (is_new) continue;
     throw InputError(output + ": found two outputs of this name" +
