@@ -28,20 +28,25 @@ LoggerWatch::LoggerWatch(process::Participant& participant, bus::Clock::Duration
 void LoggerWatch::OnStatus(const process_status_t& status) {
   if (!process::HasLeft(status)) {
     Heard(status.session);
-  } else if (heard_.contains(status.session)) {
+  } else if (loggers_.contains(status.session)) {
     Gone(status.session, status.text.empty() ? "it has left" : status.text, NAN);
   }
 }
 
 void LoggerWatch::Heard(int64_t session) {
-  const bool is_new = !heard_.contains(session);
-  if (is_new && heard_.size() >= kMostLoggers) return;
-  heard_[session] = participant_.clock().Now();
-  if (is_new && participant_.any_fault()) participant_.Clear(kCode);
+  const auto now = participant_.clock().Now();
+  const auto known = loggers_.find(session);
+  if (known == loggers_.end()) {
+    if (loggers_.size() < kMostLoggers) loggers_[session] = {.heard = now};
+    return;
+  }
+  Logger& logger = known->second;
+  if (!logger.again && participant_.any_fault()) participant_.Clear(kCode);
+  logger = {.heard = now, .again = true};
 }
 
 void LoggerWatch::Gone(int64_t session, const std::string& text, double silence) {
-  heard_.erase(session);
+  loggers_.erase(session);
   // The end of a run is announced before its logger leaves: no fault then.
   if (participant_.stop()) return;
   participant_.Raise(kCode, fmt::format("{} no longer records: {}", participant_.NameOf(session), text),
@@ -53,11 +58,14 @@ void LoggerWatch::Poll() {
   const auto away = now - polled_.value_or(now);
   polled_ = now;
   if (away > limit_ / 4) {  // no state was sent, so loggers had nothing to report
-    for (auto& [session, heard] : heard_) heard += away;
+    for (auto& [session, logger] : loggers_) logger.heard += away;
   }
-  for (const auto& [session, heard] : heard_) {
-    if (now - heard <= limit_) continue;
-    const double silence = bus::ToSeconds(now - heard);
+  // One that was heard once, of a flood of made-up ones say, has recorded nothing.
+  std::erase_if(loggers_,
+                [&](const auto& entry) { return !entry.second.again && now - entry.second.heard > limit_; });
+  for (const auto& [session, logger] : loggers_) {
+    if (now - logger.heard <= limit_) continue;
+    const double silence = bus::ToSeconds(now - logger.heard);
     Gone(session,
          fmt::format("silent for {:.3g} s, allowed are {} s (limits.stale_logger_s)", silence,
                      bus::ToSeconds(limit_)),

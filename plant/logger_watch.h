@@ -18,7 +18,7 @@ class LoggerWatch {
   LoggerWatch(process::Participant& participant, bus::Clock::Duration limit);
 
   // Call it often during the run. It raises logger_gone when a known logger is gone, and clears the fault
-  // when a new one is heard. Time in which it was not called does not count as silence.
+  // when another one is heard twice. Time in which it was not called does not count as silence.
   void Poll();
 
  private:
@@ -28,7 +28,11 @@ class LoggerWatch {
 
   process::Participant& participant_;
   const bus::Clock::Duration limit_;
-  std::map<int64_t, bus::Clock::TimePoint> heard_;  // when each logger was last heard, by session
+  struct Logger {
+    bus::Clock::TimePoint heard;  // last
+    bool again = false;           // more than once
+  };
+  std::map<int64_t, Logger> loggers_;  // by session
   std::optional<bus::Clock::TimePoint> polled_;
 };
 

@@ -471,6 +471,19 @@ TEST_F(PlantFaultsTest, LoggerGone) {
   ExpectVoltage(600, 3000, 1.5);
 }
 
+// Tests that made-up loggers, each heard once, are not missed, and do not hide that one is gone that had recorded.
+TEST_F(PlantFaultsTest, MadeUpLoggers) {
+  config_.last_tick = 3000;
+  config_.limits.stale_logger_s = 0.5;
+  on_state_ = [&](const state_t& s) {
+    if (s.tick < 1000) Status("logger", 8, process_status_t::RUNNING);
+    if (s.tick < 100) Status("logger", 1000 + s.tick, process_status_t::RUNNING);
+  };
+  EXPECT_EQ(Run(), 0);
+  EXPECT_THAT(Codes(), ::testing::ElementsAre("+logger_gone"));
+  EXPECT_GE(faults_[0].tick, 1500);
+}
+
 // Tests that the warning quotes the reason that a leaving logger gives.
 TEST_F(PlantFaultsTest, LoggerFailed) {
   on_state_ = [&](const state_t& s) {
