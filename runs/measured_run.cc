@@ -129,4 +129,8 @@ MeasuredRun ReadMeasuredRun(const std::string& file, const std::optional<UnitSys
   return run;
 }
 
+std::string NameWithCaution(const MeasuredRun& run) {
+  return '"' + run.name + '"' + (run.caution.empty() ? "" : " (" + run.caution + ")");
+}
+
 }  // namespace hydro::runs

@@ -88,4 +88,7 @@ MeasuredRun ReadMeasuredRun(const std::string& file, const std::optional<UnitSys
 MeasuredRun RunOfExport(const tables::Table& table, const std::string& config_text,
                         const std::string& model_text);
 
+// Its name in quotation marks, with its caution in brackets: for texts beside results.
+std::string NameWithCaution(const MeasuredRun& run);
+
 }  // namespace hydro::runs

@@ -390,9 +390,9 @@ ExperimentResult AnalyseMeasured(const ExperimentOptions& options) {
   const PumpFriction friction = FitPumpFriction(run, source, p);
   ExperimentResult result;
   result.conditions = fmt::format(
-      "Measured run \"{}\", bypass open, speed from the motor's {}; k_1 = {} in-lbf/V is that of the model "
+      "Measured run {}, bypass open, speed from the motor's {}; k_1 = {} in-lbf/V is that of the model "
       "\"{}\".",
-      run.name, source == SpeedSource::kSpeed ? "speed" : "angle", p.k_1, model.name);
+      NameWithCaution(run), source == SpeedSource::kSpeed ? "speed" : "angle", p.k_1, model.name);
   result.paper_says =
       "With a valve open between the two sides, constant voltages held to steady speed give T_p against "
       "speed; the slope is b, the intercept T_s.";

@@ -239,8 +239,8 @@ ExperimentResult AnalyseMeasured(const ExperimentOptions& options) {
   options.progress(0.9);
   ExperimentResult result;
   result.conditions =
-      fmt::format("Measured run \"{}\", clamped at {:.4g} rad; all but c_E and c_I as in the model \"{}\".",
-                  run.name, run.arm_angle_rad, model.name);
+      fmt::format("Measured run {}, clamped at {:.4g} rad; all but c_E and c_I as in the model \"{}\".",
+                  NameWithCaution(run), run.arm_angle_rad, model.name);
   result.paper_says = kPaperSays;
   result.explanation = fmt::format(
       "c_E = {}, c_I = {} in^3/(s psi) (95 %, all else known). {} The residuals are {:.2f} times the "

@@ -226,6 +226,18 @@ TEST_F(MeasuredRunTest, Log) {
   EXPECT_DOUBLE_EQ(run.p1.noise.value(), std::sqrt(9 + 12.0));
   EXPECT_DOUBLE_EQ(run.motor_angle.noise.value(), std::sqrt(1 / 12.0));
   EXPECT_EQ(run.p2.noise, std::nullopt);
+  EXPECT_EQ(NameWithCaution(run), "\"a\"");
+}
+
+// Tests that results from a log that ends early name that beside the run.
+TEST_F(MeasuredRunTest, LogWithoutItsEnd) {
+  log::WriteRun(Path("a.lcmlog"), log::SampleRun(7), "",
+                "[model]\nshaft = \"clamped\"\narm_angle_rad = 0.3\n");
+  const std::string bytes = log::ReadBytes(Path("a.lcmlog"));
+  log::WriteBytes(Path("b.lcmlog"), bytes.substr(0, bytes.size() - 30));
+  const MeasuredRun run = ReadMeasuredRun(Path("b.lcmlog"));
+  EXPECT_THAT(run.caution, HasSubstr("incomplete"));
+  EXPECT_EQ(NameWithCaution(run), "\"b\" (" + run.caution + ")");
 }
 
 // Tests that signals that a log lacks are not measured, and that a log that does not say how the shaft was
