@@ -38,7 +38,6 @@ TORTURE_MUTATIONS = [
     *_rows("plant/plant_commands.cc",
            ("future.obeyed", "if (command.tick > tick_ && !command", "if (false && !command"),
            ("restart.old_command_acts_on", "    waiting_commands_.clear();\n    command_.reset();", "    waiting_commands_.clear();"),
-           ("beside_another.acts", "if (command_monitor_.SecondSenderAlive(now)) obeyed_from_", "if (false) obeyed_from_"),
            ("refused.still_acts", "if (command_ && command_->session == session) command_.reset();", ""),
            ("hold.old_command_returns", "obeyed_from_ = tick_;", "obeyed_from_ = 0;"),
            ("stop.drives_on", "command_->tick >= obeyed_from_ && !participant_.stop()", "command_->tick >= obeyed_from_"),
