@@ -77,7 +77,7 @@ void StackLaunch::RefuseIfOneRuns() {
 
 void StackLaunch::StartAll() {
   for (const std::string& remark : plan_.remarks) PrintError(remark);
-  started_ = clock_.Now();
+  started_ = asked_ = clock_.Now();
   for (const ChildSpec& child : plan_.children) {
     try {
       watch_.Expect(child.program(), children_.Start(child));

@@ -38,6 +38,7 @@ class StackLaunch {
   void OnEnded(const Ended& ended);
   void OnStopHeard();
   void CheckReady();
+  void AskWhoIsThere();
   void CheckPlantIsHeard();
   void CheckEarlyEnd();
   void RepeatStopForOtherHosts();
@@ -59,6 +60,7 @@ class StackLaunch {
   StackWatch watch_;
 
   TimePoint started_;
+  TimePoint asked_;  // who is there, while not all are ready
   bool ready_ = false;
   bool plant_heard_ = false;
   bool bus_failed_ = false;

@@ -15,6 +15,8 @@ using namespace std::chrono_literals;
 constexpr double kPlantMargin_s = 1;      // its own launch may have begun that much later
 constexpr auto kFinalMessageTime = 50ms;  // how long a failed process's reason may take to arrive
 
+constexpr auto kQuestionPeriod = 300ms;  // while a process is not ready
+
 }  // namespace
 
 // The terminal may be slow or stopped; a second Ctrl-C still ends the launcher.
@@ -105,6 +107,20 @@ void StackLaunch::CheckReady() {
     Fail(fmt::format("not ready within {:.3g} s (time.start_timeout_s): {}", elapsed,
                      fmt::join(missing, ", ")),
          1);
+  } else if (clock_.Now() >= asked_ + kQuestionPeriod) {
+    // A process that runs says so once: what was lost of that must not end it.
+    asked_ = clock_.Now();
+    AskWhoIsThere();
+  }
+}
+
+void StackLaunch::AskWhoIsThere() {
+  if (bus_failed_) return;
+  try {
+    watch_.AskWhoIsThere();
+  } catch (const bus::BusError& error) {
+    bus_failed_ = true;
+    Fail(error.what(), 1);
   }
 }
 
