@@ -10,6 +10,7 @@
 
 #include <cerrno>
 #include <utility>
+#include <vector>
 
 #include "process/supervision.h"
 
@@ -69,18 +70,6 @@ struct Pipe {
 }
 
 }  // namespace
-
-std::string ChildSpec::program() const {
-  const std::string& path = argv.at(0);
-  return path.substr(path.rfind('/') + 1);  // npos + 1 is 0
-}
-
-std::string DescribeEnd(const std::string& program, const ProcessEnd& end) {
-  if (end.signal == 0) return program + " ended with exit code " + std::to_string(end.exit_code);
-  std::string text = program + " was killed by signal " + std::to_string(end.signal);
-  if (const char* name = sigabbrev_np(end.signal)) text += std::string(" (SIG") + name + ")";
-  return text;
-}
 
 ChildProcess::ChildProcess(ChildSpec spec) : spec_(std::move(spec)) {
   Pipe beats(Pipe::Kind::kSocket);

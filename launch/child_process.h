@@ -4,51 +4,29 @@
 #include <sys/types.h>
 
 #include <optional>
-#include <stdexcept>
-#include <string>
-#include <vector>
+
+#include "launch/logic/child.h"
+#include "launch/logic/stop_sequence.h"
 
 namespace hydro::launch {
 
-struct ChildSpec {
-  std::string label;              // precedes each of its lines, e.g. plant
-  std::vector<std::string> argv;  // argv[0] is the path of the program
-  bool last = false;              // is stopped only when all processes without this mark have ended
-
-  std::string program() const;  // the last part of the path, e.g. hydro-plant
-};
-
-// How a process ended: with exit_code, or by a signal (then signal != 0).
-struct ProcessEnd {
-  int exit_code = 0;
-  int signal = 0;
-};
-
-// "hydro-plant was killed by signal 9 (SIGKILL)", "hydro-plant ended with exit code 1"
-std::string DescribeEnd(const std::string& program, const ProcessEnd& end);
-
-// The program could not be started; what() is one line.
-class StartError : public std::runtime_error {
- public:
-  using std::runtime_error::runtime_error;
-};
-
 // Owns a started process until it has been reaped. Nobody else reaps it, so its pid cannot be reused before
 // TryReap() has succeeded, and Signal() can reach no other process.
-class ChildProcess {
+class ChildProcess : public Stoppable {
  public:
   // Starts the program in its own process group (a terminal's Ctrl-C does not reach it), with a socket for Beat()
   // as stdin and all signals unblocked. The kernel sends it SIGTERM when the launcher dies, however that
   // happens. It ignores SIGPIPE, so that after the launcher's death a line that it prints on its way out does
   // not kill it before it has flushed. Throws StartError.
   explicit ChildProcess(ChildSpec spec);
-  ~ChildProcess();
+  ~ChildProcess() override;
   ChildProcess(const ChildProcess&) = delete;
   ChildProcess& operator=(const ChildProcess&) = delete;
 
   const ChildSpec& spec() const { return spec_; }
   pid_t pid() const { return pid_; }
-  bool running() const { return !end_; }
+  bool running() const override { return !end_; }
+  bool last() const override { return spec_.last; }
   const std::optional<ProcessEnd>& end() const { return end_; }
 
   // Checks whether it has ended. True when this call is the first to find so.
@@ -58,7 +36,7 @@ class ChildProcess {
   void Beat();
 
   // Sends a signal unless it has been reaped.
-  void Signal(int signal_number);
+  void Signal(int signal_number) override;
 
   // The launcher's ends of its stdout and stderr, non-blocking; -1 once closed.
   int out_fd() const { return out_fd_; }

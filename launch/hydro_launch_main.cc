@@ -8,8 +8,9 @@
 #include "base/text_file.h"
 #include "launch/doctor/doctor.h"
 #include "launch/launch.h"
+#include "launch/logic/operator_request.h"
 #include "launch/make_key.h"
-#include "launch/operator_request.h"
+#include "launch/stop_stack.h"
 #include "process/stack_bus.h"
 #include "settings/command_line.h"
 

@@ -3,11 +3,17 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <optional>
 #include <string>
 
 #include "base/new_file.h"
 #include "base/read_files.h"
-#include "launch/stack_launch.h"
+#include "launch/labelled_output.h"
+#include "launch/launch_lock.h"
+#include "launch/logic/stack_launch.h"
+#include "launch/supervisor.h"
+#include "launch/terminal_report.h"
+#include "process/stack_bus.h"
 
 namespace hydro::launch {
 namespace {
@@ -29,7 +35,16 @@ void CheckLog(const LaunchPlan& plan, const std::string& file) {
 
 int Launch(const settings::StackConfig& config, const LaunchPlan& plan, int out_fd, int err_fd,
            const LaunchTiming& timing) {
-  return StackLaunch(config, plan, out_fd, err_fd, timing).Run();
+  std::optional<LaunchLock> lock;  // until all is over
+  LabelledOutput output(out_fd, err_fd, LabelledOutput::WantsColour(out_fd, err_fd));
+  Supervisor supervisor(
+      output, GraceFor(timing, plan));  // before the bus, whose threads must not receive its signals
+  bus::WallClock clock;
+  const auto bus = process::OpenStackBus(config.bus);
+  TerminalReport report(output, config, plan);
+  StackLaunch launch(*bus, clock, supervisor, report, config, plan, timing);
+  lock.emplace(config, RolesOf(plan), plan.spread);
+  return launch.Run();
 }
 
 int LaunchStack(const LaunchRequest& request) {

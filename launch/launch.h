@@ -2,18 +2,9 @@
 #pragma once
 
 #include "launch/launch_plan.h"
-#include "launch/supervisor.h"
 #include "settings/stack_config.h"
 
 namespace hydro::launch {
-
-struct LaunchTiming {
-  Supervisor::Grace grace;
-  // After a stop was heard: how long the processes may take to end by themselves before they get SIGTERM.
-  Supervisor::Duration patience = std::chrono::seconds(3);
-  // After a process ended with 0 and no stop was heard: how long the stop may take to arrive.
-  Supervisor::Duration stop_arrival = std::chrono::milliseconds(500);
-};
 
 // Runs the plan until no process is left. The children's lines and the launcher's own go to `out_fd` and
 // `err_fd`. SIGINT, SIGTERM and SIGHUP end the run in order, a second SIGINT at once. Returns the exit code:

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "launch/child_process.h"
+#include "launch/logic/plan.h"
 #include "settings/stack_config.h"
 
 namespace hydro::launch {
@@ -16,13 +16,6 @@ struct LaunchRequest {
   std::string log_file;                // --log; empty: no logger runs
   std::string host;                    // --host; empty: everything on this machine
   std::string timing_file;             // --timing; empty: no report
-};
-
-struct LaunchPlan {
-  std::vector<ChildSpec> children;
-  bool spread = false;               // other processes of the stack run on other hosts
-  std::vector<std::string> remarks;  // lines that the user should see
-  std::string timing_file;           // the .json report on how the loops kept time; empty: none
 };
 
 // Programs are looked for in `programs_folder`, then on PATH. Throws InputError when a program is missing or

@@ -5,17 +5,18 @@
 #include <string>
 #include <vector>
 
+#include "launch/logic/operator_request.h"
 #include "settings/stack_config.h"
 
 namespace hydro::launch {
 
-class LocalStop {
+class LocalStop : public LocalProcesses {
  public:
   using Duration = std::chrono::steady_clock::duration;
 
   // Finds the processes of the stack.
   explicit LocalStop(const settings::StackConfig& config);
-  ~LocalStop();
+  ~LocalStop() override;
   LocalStop(const LocalStop&) = delete;
   LocalStop& operator=(const LocalStop&) = delete;
 
@@ -25,11 +26,10 @@ class LocalStop {
   // Asks all that are left, the logger last, and waits until they have ended, for at most `patience`.
   void StopRest(Duration patience);
 
-  int found() const { return static_cast<int>(processes_.size()); }
-  bool Found(int pid) const;
+  int found() const override { return static_cast<int>(processes_.size()); }
+  bool Found(int pid) const override;
 
-  // Those that have not ended: "plant (process 4711)", and why, where that is known.
-  std::string Left();
+  std::string Left() override;
 
  private:
   struct Process {

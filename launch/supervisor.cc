@@ -31,7 +31,7 @@ int PollTimeoutMs(Supervisor::TimePoint until) {
 
 }  // namespace
 
-Supervisor::Supervisor(LabelledOutput& output, Grace grace) : output_(output), grace_(grace) {
+Supervisor::Supervisor(LabelledOutput& output, Grace grace) : output_(output), stop_(grace) {
   const sigset_t set = WatchedSignals();
   sigprocmask(SIG_BLOCK, &set, nullptr);
   // A reader of this output that goes away must not end the launcher and leave the motor running.
@@ -48,24 +48,14 @@ Supervisor::~Supervisor() {
   close(signal_fd_);
 }
 
-pid_t Supervisor::Start(ChildSpec spec) {
-  children_.push_back(std::make_unique<Child>(std::move(spec)));
+int32_t Supervisor::Start(const ChildSpec& spec) {
+  children_.push_back(std::make_unique<Child>(spec));
+  stop_.Add(&children_.back()->process);
   return children_.back()->process.pid();
 }
 
-int Supervisor::running() const {
-  return static_cast<int>(std::count_if(children_.begin(), children_.end(),
-                                        [](const auto& child) { return child->process.running(); }));
-}
-
-int Supervisor::running_first() const {
-  return static_cast<int>(std::count_if(children_.begin(), children_.end(), [](const auto& child) {
-    return child->process.running() && !child->process.spec().last;
-  }));
-}
-
 void Supervisor::Wait(TimePoint deadline) {
-  TakeStopSteps(Clock::now());
+  stop_.TakeSteps(Clock::now());
   for (const auto& child : children_) child->process.Beat();
 
   std::vector<pollfd> polled{{signal_fd_, POLLIN, 0}, {output_.waiting_fd(), POLLOUT, 0}};
@@ -80,7 +70,7 @@ void Supervisor::Wait(TimePoint deadline) {
       }
     }
   }
-  if (poll(polled.data(), polled.size(), PollTimeoutMs(std::min(deadline, NextStopStep()))) < 0) return;
+  if (poll(polled.data(), polled.size(), PollTimeoutMs(std::min(deadline, stop_.NextStep()))) < 0) return;
 
   for (std::size_t i = 0; i < readers.size(); ++i) {
     if (polled[2 + i].revents != 0) Read(*readers[i].first, readers[i].second);
@@ -88,7 +78,7 @@ void Supervisor::Wait(TimePoint deadline) {
   if (polled[1].revents != 0) output_.WriteSome();
   ReadSignals();
   Reap();
-  TakeStopSteps(Clock::now());
+  stop_.TakeSteps(Clock::now());
 }
 
 void Supervisor::ReadSignals() {
@@ -134,11 +124,11 @@ void Supervisor::Reap() {
     ReadRest(*child, Stream::kErr);
     const ChildSpec& spec = child->process.spec();
     ended_.push_back({spec.label, spec.program(), child->process.pid(), *child->process.end(),
-                      child->terminated_at.has_value(), child->hung});
+                      stop_.terminated(&child->process), stop_.hung(&child->process)});
   }
 }
 
-std::optional<Supervisor::Ended> Supervisor::NextEnded() {
+std::optional<Ended> Supervisor::NextEnded() {
   if (ended_.empty()) return std::nullopt;
   Ended ended = ended_.front();
   ended_.pop_front();
@@ -152,52 +142,9 @@ std::optional<int> Supervisor::NextSignal() {
   return number;
 }
 
-void Supervisor::Stop(TimePoint first_signal) {
-  stop_at_ = stop_at_ ? std::min(*stop_at_, first_signal) : first_signal;
-}
-
 void Supervisor::KillAll() {
   Stop(Clock::now());
   for (const auto& child : children_) child->process.Signal(SIGKILL);
-}
-
-Supervisor::Duration Supervisor::GraceOf(const Child& child) const {
-  return child.process.spec().last ? grace_.last : grace_.child;
-}
-
-void Supervisor::TakeStopSteps(TimePoint now) {
-  if (!stop_at_) return;
-  if (running_first() == 0 && !first_gone_at_) first_gone_at_ = now;
-  for (const auto& child : children_) {
-    if (!child->process.running()) continue;
-    if (!child->terminated_at) {
-      const bool due = child->process.spec().last
-                           ? first_gone_at_ && now >= *first_gone_at_ + grace_.before_last
-                           : now >= *stop_at_;
-      if (!due) continue;
-      child->process.Signal(SIGTERM);
-      child->terminated_at = now;
-    } else if (!child->hung && now >= *child->terminated_at + GraceOf(*child)) {
-      child->process.Signal(SIGKILL);
-      child->hung = true;
-    }
-  }
-}
-
-Supervisor::TimePoint Supervisor::NextStopStep() const {
-  TimePoint next = TimePoint::max();
-  if (!stop_at_) return next;
-  for (const auto& child : children_) {
-    if (!child->process.running() || child->hung) continue;
-    if (child->terminated_at) {
-      next = std::min(next, *child->terminated_at + GraceOf(*child));
-    } else if (!child->process.spec().last) {
-      next = std::min(next, *stop_at_);
-    } else if (first_gone_at_) {
-      next = std::min(next, *first_gone_at_ + grace_.before_last);
-    }
-  }
-  return next;
 }
 
 }  // namespace hydro::launch

@@ -55,7 +55,7 @@ bool ActiveFault::BeginOnMachine() {
     case FaultKind::kDrift:
       for_each([&](Role each) {
         world_.MachineOf(each).SetDrift(static_cast<int64_t>(injection_.amount * 1e9));
-        if (SimulatedProcess* process = world_.Find(each)) process->ClockChanged();
+        world_.ClockChanged(each);
       });
       return true;
     case FaultKind::kWallClockJump:
@@ -102,10 +102,17 @@ void ActiveFault::BeginOnProcess() {
       world_.Kill(role(), world_.now() + 20'000'000);
       break;
     case FaultKind::kHang:
+    case FaultKind::kLongHang:
       if (process != nullptr) process->FreezeUntil(end());
       break;
     case FaultKind::kLauncherHang:
-      ++world_.launcher_hangs();
+      world_.has_launcher() ? world_.HangLauncher(end()) : void(++world_.launcher_hangs());
+      break;
+    case FaultKind::kLauncherCrash:
+      world_.KillLauncher();
+      break;
+    case FaultKind::kInterrupt:
+      world_.InterruptLauncher();
       break;
     case FaultKind::kSlow:
       if (process != nullptr) process->SetSlowness(static_cast<int64_t>(injection_.amount * 1e9));
@@ -166,7 +173,7 @@ void ActiveFault::End() {
     for (int each = 0; each < static_cast<int>(Role::kOperator); ++each) {
       if (injection_.target != kEveryone && injection_.target != each) continue;
       world_.MachineOf(static_cast<Role>(each)).SetDrift(0);
-      if (SimulatedProcess* process = world_.Find(static_cast<Role>(each))) process->ClockChanged();
+      world_.ClockChanged(static_cast<Role>(each));
     }
   }
   std::vector<SensorFault>& sensors = world_.sensor_faults();
@@ -178,7 +185,8 @@ void ActiveFault::End() {
   }
   if (injection_.kind == FaultKind::kDiskSlow) world_.disk().SetSlow(false);
   if (injection_.kind == FaultKind::kDiskFull) world_.disk().SetFull(false, random_);
-  if (injection_.kind == FaultKind::kLauncherHang) --world_.launcher_hangs();
+  if (injection_.kind == FaultKind::kLauncherHang && !world_.has_launcher()) --world_.launcher_hangs();
+  if (injection_.kind == FaultKind::kInterrupt && injection_.amount >= 2) world_.InterruptLauncher();
   if (injection_.kind == FaultKind::kOtherConfiguration || injection_.kind == FaultKind::kOtherVersion) {
     world_.StartWith(role(), nullptr);
     world_.Kill(role(), world_.now() + 20'000'000);

@@ -15,17 +15,20 @@
 namespace hydro::torture {
 namespace {
 
-using namespace std::chrono_literals;
-
-constexpr auto kOperatorRepeats = 50ms;
-constexpr auto kOperatorPatience = 400ms;
-
 template <class Application>
 SimulatedProcess::Body Running(const settings::StackConfig& config) {
   return [&config](bus::Bus& bus, bus::Clock& clock) {
     const auto app = std::make_unique<Application>(bus, clock, config);  // too large for a fiber's stack
     return process::RunApp(bus, clock, *app);
   };
+}
+
+// Whether a heartbeat has reached a plant. Without a launcher in the simulation one comes all the time, but for its hangs.
+bool Beats(World& world, int number) {
+  SimulatedProcess& plant = world.process(number);
+  const bool beats = world.has_launcher() ? plant.TakeBeat() : world.launcher_hangs() == 0;
+  if (beats) world.observer().OnHeartbeat(plant);
+  return beats;
 }
 
 }  // namespace
@@ -44,45 +47,17 @@ SimulatedProcess::Body ProgramOf(Role role, const settings::StackConfig& config,
         const auto app = std::make_unique<logger::LoggerApp>(bus, clock, config, options);
         return process::RunApp(bus, clock, *app);
       };
+    case Role::kLauncher:
+      return LaunchProgram(config, world, number);
     default:
       return [&config, &world, number](bus::Bus& bus, bus::Clock& clock) {
         const std::vector<std::string> expected(world.has_logger() ? 1 : 0, "logger");
         FaultyRig rig(config, world.process(number), world.sensor_faults(), world.observer());
         const auto app = std::make_unique<plant::PlantApp>(bus, clock, config, rig, expected, "hydro-plant",
-                                                           [&world] { return world.launcher_hangs() == 0; });
+                                                           [&world, number] { return Beats(world, number); });
         return app->Run();
       };
   }
-}
-
-SimulatedProcess::Body RearmProgram(const settings::StackConfig& config, int64_t plant) {
-  return [&config, plant](bus::Bus& bus, bus::Clock& clock) {
-    const bus::Channels channels(config.bus.channel_suffix);
-    int64_t tick = -1;
-    bool answered = false;
-    bus.Subscribe<state_t>(channels.Of<state_t>(), [&](const state_t& state) {
-      if (state.session == plant) tick = state.tick;
-    });
-    bus.Subscribe<rearm_t>(channels.Of<rearm_t>(), [&](const rearm_t& answer) {
-      answered = answered || (answer.kind != rearm_t::REQUEST && answer.addressee == bus.process()->session);
-    });
-    const auto end = clock.Now() + kOperatorPatience;
-    while (!answered && clock.Now() < end) {
-      for (const auto until = clock.Now() + kOperatorRepeats; !answered && clock.Now() < until;) {
-        bus.HandleUntil(until);
-      }
-      rearm_t request{};
-      request.utime = clock.Utime();
-      request.tick = tick;
-      request.session = bus.process()->session;
-      request.addressee = plant;
-      request.kind = rearm_t::REQUEST;
-      request.source = "launch";
-      request.text = "hydro-launch --rearm";
-      if (!answered && tick >= 0) bus.Publish(channels.Of<rearm_t>(), request);
-    }
-    return 0;
-  };
 }
 
 SimulatedProcess::Body InsiderProgram(const settings::StackConfig& config, double voltage, double seconds) {
@@ -100,25 +75,6 @@ SimulatedProcess::Body InsiderProgram(const settings::StackConfig& config, doubl
     });
     const auto end = clock.Now() + bus::FromSeconds(seconds);
     while (clock.Now() < end) bus.HandleUntil(end);
-    return 0;
-  };
-}
-
-SimulatedProcess::Body StopProgram(const settings::StackConfig& config) {
-  return [&config](bus::Bus& bus, bus::Clock& clock) {
-    const bus::Channels channels(config.bus.channel_suffix);
-    stop_t stop{};
-    stop.tick = -1;
-    stop.session = bus.process()->session;
-    stop.addressee = 0;
-    stop.source = "launch";
-    stop.reason = "hydro-launch --stop";
-    const auto end = clock.Now() + kOperatorPatience;
-    while (clock.Now() < end) {
-      stop.utime = clock.Utime();
-      bus.Publish(channels.Of<stop_t>(), stop);
-      for (const auto until = clock.Now() + kOperatorRepeats; clock.Now() < until;) bus.HandleUntil(until);
-    }
     return 0;
   };
 }

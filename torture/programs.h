@@ -11,11 +11,14 @@ class World;
 // What the process `number` of that role does with that configuration, which must outlive it.
 SimulatedProcess::Body ProgramOf(Role role, const settings::StackConfig& config, World& world, int number);
 
-// What an operator runs: asks the plant of that session to end its latched faults, as hydro-launch --rearm does; tells
-// everybody to end, as hydro-launch --stop does over the bus.
-SimulatedProcess::Body RearmProgram(const settings::StackConfig& config, int64_t plant);
+// What hydro-launch does: the launcher's own logic (launch/logic) over simulated children.
+SimulatedProcess::Body LaunchProgram(const settings::StackConfig& config, World& world, int number);
+
+// What an operator runs: hydro-launch --rearm; hydro-launch --stop, which finds nobody on its own machine. `watched`: somebody
+// starts again what has ended, so soon that a patient operator would go on for ever.
+SimulatedProcess::Body RearmProgram(const settings::StackConfig& config);
+SimulatedProcess::Body StopProgram(const settings::StackConfig& config, bool watched);
 // Somebody with the stack's key, who answers each state with a motor command of that voltage.
 SimulatedProcess::Body InsiderProgram(const settings::StackConfig& config, double voltage, double seconds);
-SimulatedProcess::Body StopProgram(const settings::StackConfig& config);
 
 }  // namespace hydro::torture

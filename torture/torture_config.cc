@@ -21,12 +21,13 @@ settings::StackConfig Parsed(const std::vector<std::string>& overrides) {
 }  // namespace
 
 settings::StackConfig ConfigFor(const Schedule& schedule, const std::string& file) {
-  const std::vector<std::string> overrides{
+  std::vector<std::string> overrides{
       std::string("time.mode=") + (schedule.lockstep ? "lockstep" : "realtime"),
       "time.duration_s=0",
       std::string("limits.rearm=") + (schedule.explicit_rearm ? "explicit" : "restart"),
       fmt::format("limits.stale_input_s={}", schedule.stale_input_s),
   };
+  if (!schedule.logger_required) overrides.emplace_back("logger.required=false");
   return file.empty() ? Parsed(overrides) : settings::LoadStackConfig(file, overrides);
 }
 

@@ -37,6 +37,8 @@ World::World(const Schedule& schedule, const Stacks& stacks)
                }),
       observer_(config_, network_, &now_, outcome_.coverage),
       random_(schedule.seed, 2),
+      launches_(config_, network_, &now_, observer_),
+      start_random_(schedule.seed, 5),
       disk_random_(schedule.seed, 3) {
   static constexpr const char* kHosts[] = {"rig", "loop", "desk", "store", "office"};
   for (const char* host : kHosts) {
@@ -45,11 +47,11 @@ World::World(const Schedule& schedule, const Stacks& stacks)
   }
   if (schedule.key) observer_.SetSealed();
   command_channel_ = network_.ChannelNumber(channels_.Of<motor_command_t>());
-  for (const Role role : {Role::kPlant, Role::kPressure, Role::kPosition}) {
+  std::vector<Role> first{Role::kPlant, Role::kPressure, Role::kPosition};
+  if (schedule.logger) first.push_back(Role::kLogger);
+  if (schedule.launcher) first = {Role::kLauncher};
+  for (const Role role : first) {
     Push(static_cast<TrueTime>(random_.Index(kStarts)), Happening::kStart, static_cast<int>(role));
-  }
-  if (schedule.logger) {
-    Push(static_cast<TrueTime>(random_.Index(kStarts)), Happening::kStart, static_cast<int>(Role::kLogger));
   }
   for (size_t i = 0; i < schedule_.injections.size(); ++i) {
     const Injection& injection = schedule_.injections[i];
@@ -144,6 +146,12 @@ void World::Happen(const Event& event) {
     case Happening::kPhase:
       EnterPhase(event.number);
       break;
+    case Happening::kSignal:
+      Signal(*by_number_[static_cast<size_t>(event.number / kSignals)], event.number % kSignals);
+      break;
+    case Happening::kLaunchDue:
+      CheckLaunchIsOver(event.number);
+      break;
   }
 }
 
@@ -151,27 +159,9 @@ void World::Arrive(const PacketPtr& packet, int receiver) {
   for (SimulatedProcess* process : alive_) {
     if (receiver != kEveryone && process->number() != receiver) continue;
     if (process->ended() || process->killed() || !process->bus().Hears(packet->channel)) continue;
-    if (awake_at_[static_cast<size_t>(process->role())] > now_) continue;
+    if (awake_at_[static_cast<size_t>(HomeOf(process->role()))] > now_) continue;
     process->Arrive(packet);
   }
-}
-
-// Only replays that are looked at pay for it.
-void World::Tell(const Packet& packet, int process, const char* what) {
-  if (tail_ == nullptr) return;
-  tail_->AddMessage(now_, NameOf(process), what, network_.ChannelName(packet.channel), packet);
-}
-
-void World::TellInjection(int number, const char* what) {
-  if (tail_ == nullptr) return;
-  const Injection& injection = schedule_.injections[static_cast<size_t>(number)];
-  tail_->Add(now_, fmt::format("{} of {}", InfoOf(injection.kind).name, TargetName(injection.target)), what);
-}
-
-std::string World::NameOf(int process) const {
-  if (process < 0) return "nobody";
-  const SimulatedProcess& sender = *by_number_[static_cast<size_t>(process)];
-  return fmt::format("{} {}", TargetName(static_cast<int>(sender.role())), process);
 }
 
 void World::Send(PacketPtr packet, int sender) {
@@ -186,12 +176,18 @@ void World::Send(PacketPtr packet, int sender) {
   }
   network_.Send(packet, static_cast<int>(process.role()), receivers_);
   observer_.OnSent(*packet, process);
+  if (schedule_.launcher) launches_.OnSent(*packet);
 }
 
 void World::Handled(const Packet& packet, int receiver) {
   Tell(packet, receiver, "handles");
   trace_.Add(static_cast<uint64_t>(now_) ^ static_cast<uint64_t>(receiver) << 56);
-  observer_.OnHandled(packet, *by_number_[static_cast<size_t>(receiver)]);
+  const SimulatedProcess& process = *by_number_[static_cast<size_t>(receiver)];
+  observer_.OnHandled(packet, process);
+  if (process.role() == Role::kLauncher) {
+    launches_.OnHandled(packet, process);
+    NoteCause();
+  }
   if (const auto log = logs_.find(receiver); log != logs_.end()) {
     const auto size = static_cast<int>(packet.bytes.size());
     const int visible = schedule_.key ? bus::SizeWithoutSeal(packet.bytes.data(), size) : size;

@@ -8,11 +8,13 @@
 #include <deque>
 #include <map>
 #include <memory>
+#include <set>
 #include <string>
 #include <vector>
 
 #include "settings/stack_config.h"
 #include "torture/faulty_rig.h"
+#include "torture/invariants/launch_invariants.h"
 #include "torture/invariants/log_record.h"
 #include "torture/invariants/observer.h"
 #include "torture/machines/disk.h"
@@ -60,16 +62,28 @@ class World : public NetworkPort {
   std::vector<SensorFault>& sensor_faults() { return sensor_faults_; }
   // How many injected faults stop the launcher now.
   int& launcher_hangs() { return launcher_hangs_; }
-  Machine& MachineOf(Role role) { return *machines_[static_cast<size_t>(role)]; }
+  Machine& MachineOf(Role role) { return *machines_[static_cast<size_t>(HomeOf(role))]; }
   SimulatedProcess& process(int number) { return *by_number_[static_cast<size_t>(number)]; }
   // The living process of a role; null: none.
   SimulatedProcess* Find(Role role);
+  // Without a launcher somebody starts it again at that time.
   void Kill(Role role, TrueTime restart_at);
+  // Its children are sent SIGTERM by the kernel.
+  void KillLauncher();
+  void InterruptLauncher();
+  void HangLauncher(TrueTime until);
   // From now on a role starts with that configuration; null: with the right one again.
   void StartWith(Role role, const settings::StackConfig* other) {
     starts_with_[static_cast<size_t>(role)] = other;
   }
   const Stacks& stacks() const { return stacks_; }
+  bool has_launcher() const { return schedule_.launcher; }
+  // For a launcher: starts the process of a role; sends a process a signal; says a line.
+  SimulatedProcess& StartChild(Role role);
+  void SendSignal(const SimulatedProcess& process, int signal);
+  void Say(int process, const std::string& text);
+  // The clocks of a role's machine have changed.
+  void ClockChanged(Role role);
   // Everything of a machine stands still until `until`, and its clocks count the time as suspended.
   void Suspend(Role role, TrueTime until);
   // A message that no process has sent, to everyone. Origin::kProcess: one that the operator may send.
@@ -101,7 +115,18 @@ class World : public NetworkPort {
   void Handled(const Packet& packet, int receiver) override;
 
  private:
-  enum class Happening : uint8_t { kArrival, kBegin, kContinue, kEnd, kStart, kAwake, kPhase };
+  enum class Happening : uint8_t {
+    kArrival,
+    kBegin,
+    kContinue,
+    kEnd,
+    kStart,
+    kAwake,
+    kPhase,
+    kSignal,
+    kLaunchDue
+  };
+  static constexpr int kSignals = 64;  // a kSignal's number: that of the process, times this, and the signal
   struct Event {
     TrueTime time;
     uint64_t order;
@@ -119,13 +144,19 @@ class World : public NetworkPort {
   void Happen(const Event& event);
   void Arrive(const PacketPtr& packet, int receiver);
   void Start(Role role);
-  void Begin(Role role, SimulatedProcess::Body body, bool misconfigured);
+  SimulatedProcess& Begin(Role role, SimulatedProcess::Body body, bool misconfigured);
+  SimulatedProcess& BeginRole(Role role);
   void StartAt(Role role, TrueTime time);
   void Awake(Role role);
   void NoteConfigurations();
+  void Signal(SimulatedProcess& process, int signal);
+  void Destroy(SimulatedProcess& process, int signal);
   void Reap(SimulatedProcess& process);
+  void NoteCause();
+  void CheckLaunchIsOver(int launcher);
   void CheckLog(const SimulatedProcess& logger);
   void EnterPhase(int phase);
+  bool StillStopping();
   void CheckReturned();
   void CheckEnded();
   void ForgeBytes(const std::string& channel, const bus::MessageType& type, const void* message,
@@ -155,7 +186,10 @@ class World : public NetworkPort {
   std::vector<std::unique_ptr<class ActiveFault>> active_;  // by injection
   std::vector<Event> events_;                               // a heap
   int launcher_hangs_ = 0;
+  int due_launcher_ = -1;  // the newest for which it is known when it must end
   MessageTail* tail_ = nullptr;
+  LaunchInvariants launches_;
+  Random start_random_;  // how long a launcher's children take to begin
   Disk disk_;
   Random disk_random_;
   std::map<int, LogRecord> logs_;  // by number of the process that writes it
@@ -164,6 +198,9 @@ class World : public NetworkPort {
   int command_channel_ = -1;
   const size_t allocated_ = AllocatedBytes();  // at the start
   bool ending_ = false;
+  std::set<const SimulatedProcess*> stops_;  // operators who wait for the stack to end
+  const SimulatedProcess* last_stop_ = nullptr;
+  TrueTime stopped_at_ = 0;  // when one of them had done so
   bool over_ = false;
 };
 

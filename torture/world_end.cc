@@ -31,6 +31,8 @@ void World::EnterPhase(int phase) {
     if (phase == 2 && plant != nullptr && plant->over_limit) SendStop();
     SendRearm();
     Push(now_ + kSecond / 2, Happening::kPhase, phase + 1);
+  } else if (phase == kReturned && StillStopping()) {
+    Push(now_ + kSecond / 2, Happening::kPhase, kReturned);
   } else if (phase == kReturned) {
     CheckReturned();
     ending_ = true;
@@ -40,6 +42,11 @@ void World::EnterPhase(int phase) {
     CheckEnded();
     over_ = true;
   }
+}
+
+// A stop waits up to 12 s for whoever has fallen silent, and ends what is started meanwhile; then a launch begins anew.
+bool World::StillStopping() {
+  return schedule_.launcher && (!stops_.empty() || (stopped_at_ > 0 && now_ - stopped_at_ < kReturn));
 }
 
 void World::CheckReturned() {
@@ -60,6 +67,11 @@ void World::CheckEnded() {
     observer_.Report(
         "memory is bounded",
         fmt::format("the run has taken {} bytes more than at its start, allowed are {}", grown, kMostBytes));
+  }
+  if (!last_stop_->ended() || last_stop_->exit_code() != 0) {
+    observer_.Report(
+        "an operator's stop says that all have ended",
+        last_stop_->ended() ? fmt::format("its exit code is {}", last_stop_->exit_code()) : "it still waits");
   }
   for (const SimulatedProcess* process : alive_) {
     if (process->role() == Role::kOperator) continue;

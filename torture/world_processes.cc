@@ -1,5 +1,4 @@
-// The World's processes: their start, their death, the sleep of their machines, and what is sent in nobody's
-// name.
+// The World's processes: their start, their death, the sleep of their machines.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -30,13 +29,23 @@ void World::Start(Role role) {
     StartAt(role, awake_at_[index]);
     return;
   }
-  const settings::StackConfig* const other = starts_with_[index];
-  Begin(role,
-        ProgramOf(role, other != nullptr ? *other : config_, *this, static_cast<int>(by_number_.size())),
-        other != nullptr);
+  // Nobody starts a stack that he is about to stop.
+  if (role == Role::kLauncher && !stops_.empty()) {
+    StartAt(role, now_ + kRestart);
+    return;
+  }
+  const SimulatedProcess& process = BeginRole(role);
+  if (role == Role::kLauncher) launches_.OnBegin(process);
 }
 
-void World::Begin(Role role, SimulatedProcess::Body body, bool misconfigured) {
+SimulatedProcess& World::BeginRole(Role role) {
+  const settings::StackConfig* const other = starts_with_[static_cast<size_t>(role)];
+  return Begin(
+      role, ProgramOf(role, other != nullptr ? *other : config_, *this, static_cast<int>(by_number_.size())),
+      other != nullptr);
+}
+
+SimulatedProcess& World::Begin(Role role, SimulatedProcess::Body body, bool misconfigured) {
   const int number = static_cast<int>(by_number_.size());
   Random draw(schedule_.seed, 1000 + static_cast<uint64_t>(number));
   bus::HostedProcess identity;
@@ -60,6 +69,7 @@ void World::Begin(Role role, SimulatedProcess::Body body, bool misconfigured) {
   alive_.push_back(process);
   receivers_.push_back({number, static_cast<int>(role)});
   NoteConfigurations();
+  return *process;
 }
 
 void World::StartAt(Role role, TrueTime time) {
@@ -83,13 +93,24 @@ void World::Reap(SimulatedProcess& process) {
   }
   std::erase_if(receivers_, [&](const Network::Receiver& r) { return r.number == process.number(); });
   NoteConfigurations();
+  if (schedule_.launcher) {
+    launches_.OnEnd(process);
+    // SIGCHLD
+    if (SimulatedProcess* const launcher = Find(Role::kLauncher)) {
+      launcher->Interrupt();
+      NoteCause();
+    }
+  }
   if (process.role() == Role::kLogger) {
     CheckLog(process);
   } else {
     observer_.OnEnd(process);
   }
-  if (!ending_ && !process.killed() && process.role() != Role::kOperator)
-    StartAt(process.role(), now_ + kRestart);
+  if (stops_.erase(&process) > 0) stopped_at_ = now_;
+  if (ending_ || process.role() == Role::kOperator) return;
+  // A launcher's children are its own business; somebody starts it again, however it has ended.
+  const bool restarts = schedule_.launcher ? process.role() == Role::kLauncher : !process.killed();
+  if (restarts) StartAt(process.role(), now_ + kRestart);
 }
 
 std::string World::NewLog(int number) {
@@ -119,15 +140,18 @@ void World::CheckLog(const SimulatedProcess& logger) {
 }
 
 void World::Kill(Role role, TrueTime restart_at) {
-  if (SimulatedProcess* const process = Find(role)) {
-    if (role == Role::kLogger) NoteLogFault(&LogRecord::killed);
-    const int64_t written = disk_.size();
-    process->Kill();
-    process->Resume();
-    if (role == Role::kLogger) disk_.Tear(written, disk_.size(), disk_random_);
-    Reap(*process);
-  }
-  StartAt(role, restart_at);
+  if (SimulatedProcess* const process = Find(role)) Destroy(*process, SIGKILL);
+  if (!schedule_.launcher) StartAt(role, restart_at);
+}
+
+void World::Destroy(SimulatedProcess& process, int signal) {
+  const bool logs = process.role() == Role::kLogger;
+  if (const auto log = logs_.find(process.number()); log != logs_.end()) log->second.killed = true;
+  const int64_t written = disk_.size();
+  process.Kill(signal);
+  process.Resume();
+  if (logs) disk_.Tear(written, disk_.size(), disk_random_);
+  Reap(process);
 }
 
 void World::Suspend(Role role, TrueTime until) {
@@ -135,55 +159,22 @@ void World::Suspend(Role role, TrueTime until) {
   if (awake_at > now_) return;  // asleep already
   awake_at = until;
   asleep_since_[static_cast<size_t>(role)] = now_;
-  if (SimulatedProcess* process = Find(role)) process->FreezeUntil(until);
+  for (SimulatedProcess* process : alive_) {
+    if (HomeOf(process->role()) == role) process->FreezeUntil(until);
+  }
+  if (role == Role::kPlant) launches_.OnFrozen(until);
   Push(until, Happening::kAwake, static_cast<int>(role));
 }
 
 void World::Awake(Role role) {
   MachineOf(role).Slept(now_ - asleep_since_[static_cast<size_t>(role)]);
-  if (SimulatedProcess* process = Find(role)) process->ClockChanged();
+  ClockChanged(role);
 }
 
-void World::ForgeBytes(const std::string& channel, const bus::MessageType& type, const void* message,
-                       Origin origin) {
-  PacketPtr packet = network_.NewPacket();
-  const int size = type.encoded_size(message);
-  packet->bytes.resize(static_cast<size_t>(size));
-  type.encode(message, packet->bytes.data(), size);
-  packet->channel = network_.ChannelNumber(channel);
-  packet->sender = -1;
-  packet->origin = origin;
-  trace_.Add(packet->bytes);
-  Tell(*packet, -1, "sends");
-  network_.Send(packet, -1, receivers_);
+void World::ClockChanged(Role role) {
+  for (SimulatedProcess* process : alive_) {
+    if (HomeOf(process->role()) == role) process->ClockChanged();
+  }
 }
-
-void World::ForgeAgain(const Packet& packet) {
-  PacketPtr copy = network_.NewPacket();
-  copy->bytes = packet.bytes;
-  copy->channel = packet.channel;
-  copy->sender = -1;
-  copy->origin = packet.origin == Origin::kProcess ? Origin::kRepeated : packet.origin;
-  Tell(*copy, -1, "sends");
-  network_.Send(copy, -1, receivers_);
-}
-
-const Packet* World::RecordedCommand(TrueTime before) const {
-  const auto found = std::find_if(recorded_.rbegin(), recorded_.rend(),
-                                  [&](const PacketPtr& packet) { return packet->sent <= before; });
-  return found == recorded_.rend() ? nullptr : found->get();
-}
-
-void World::SendRearm() {
-  const SimulatedProcess* const plant = Find(Role::kPlant);
-  if (plant == nullptr) return;
-  Begin(Role::kOperator, RearmProgram(config_, plant->identity().session), false);
-}
-
-void World::SendInsider(double voltage, double seconds) {
-  Begin(Role::kOperator, InsiderProgram(config_, voltage, seconds), false);
-}
-
-void World::SendStop() { Begin(Role::kOperator, StopProgram(config_), false); }
 
 }  // namespace hydro::torture

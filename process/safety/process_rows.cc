@@ -105,7 +105,7 @@ constexpr std::array kRows{
         .tests = "fault_loops.FaultLoopsTest.test_plant_hangs "
                  "plant/PlantFaultsTest.LatePlantWaitsForAFreshCommand "
                  "driver.DriverFaultTest.test_hang_is_for_the_watchdog",
-        .injected = "hang:plant",
+        .injected = "hang:plant long_hang:plant",
     },
     SafetyRow{
         .id = "late",
@@ -136,6 +136,19 @@ constexpr std::array kRows{
         .cleared_text = "by itself, when it is heard again",
         .tests = "fault_stop.StopTest.test_launcher_is_suspended plant/PlantFaultsTest.SupervisorGone",
         .injected = "launcher_hang:plant",
+    },
+    SafetyRow{
+        .id = "launcher_dies",
+        .fault = "`hydro-launch` dies, however that happens",
+        .detected = "the kernel, which sends SIGTERM to all that it has started",
+        .within = {"at once"},
+        .output = SafeOutput::kZeroVolts,
+        .output_text = "0 V, then all end",
+        .restart = Cleared::kRunEnds,
+        .explicit_rearm = Cleared::kRunEnds,
+        .cleared_text = "a new run",
+        .tests = "launch/LaunchStopTest.KilledLaunchLeavesNoOrphan",
+        .injected = "launcher_crash",
     },
     SafetyRow{
         .id = "other_configuration",

@@ -24,6 +24,12 @@ IMPURE_HEADERS = re.compile(
     r"chrono|ctime|time\.h|random|fstream|filesystem|iostream|ostream|istream|print|cstdio|stdio\.h|thread|future|mutex|"
     r"condition_variable|semaphore|csignal|signal\.h|poll\.h|(sys|net|netinet|arpa|linux)/.*|unistd\.h|fcntl\.h|.*lcm.*|spdlog/.*|"
     r"base/(text_file|new_file|mapped_file|terminal_line)\.h")
+# What a launch decides runs over any clock, bus and children: it asks the system nothing. <signal.h> names signals.
+NO_SYSTEM = ("launch/logic",)
+SYSTEM_HEADERS = re.compile(
+    r"ctime|time\.h|random|fstream|filesystem|thread|future|mutex|condition_variable|poll\.h|(sys|net|netinet|arpa|linux)/.*|"
+    r"unistd\.h|fcntl\.h|bus/udpm/.*|base/(host_name|text_file|new_file|mapped_file|terminal_line)\.h")
+SYSTEM_CALL = re.compile(r"WallClock|_clock::now|\b(?:getpid|fork|kill|raise|getenv|HostName|RandomSession)\s*\(")
 # Experiments and the gap finder know the laws, and never a process.
 NO_PROCESS = ("experiments", "diagnose")
 PROCESS = re.compile(r"process/.*|logger/.*|plant/.*|(pressure|position)_ctrl/\w*_app\.h")
@@ -60,7 +66,10 @@ def problems_in(path, text, floors):
     def problem(number, arrow, why):
         found.append(f"{path}:{number}: {arrow}: {why}")
 
+    systemless = room in NO_SYSTEM
     for number, line in enumerate(text.splitlines(), 1):
+        if systemless and SYSTEM_CALL.search(line.split("//")[0]):
+            problem(number, line.strip(), "what a launch decides asks the system nothing")
         include = INCLUDE.match(COMMENT.sub(" ", line))
         if not include:
             continue
@@ -75,6 +84,8 @@ def problems_in(path, text, floors):
             continue
         if pure and IMPURE_HEADERS.fullmatch(name):
             problem(number, f"{room} -> <{name}>", "the model and the laws read no clock, socket or file")
+        if systemless and SYSTEM_HEADERS.fullmatch(name):
+            problem(number, f"{room} -> <{name}>", "what a launch decides asks the system nothing")
         if other is None:
             continue
         arrow = f"{room} -> {other} ({name})"
@@ -177,6 +188,10 @@ class FloorsTest(unittest.TestCase):
         }
         for (path, text), line in cases.items():
             self.assertEqual(problems_in(path, text, floors), [line])
+        logic = read_floors("launch/logic  text\n")
+        nothing = "what a launch decides asks the system nothing"
+        self.assertEqual(problems_in("launch/logic/a.cc", "#include <unistd.h>\nint id = getpid();  // HostName()\n// WallClock", logic), [
+            f"launch/logic/a.cc:1: launch/logic -> <unistd.h>: {nothing}", f"launch/logic/a.cc:2: int id = getpid();  // HostName(): {nothing}"])
         self.assertEqual(problems_in("model/a.cc", '#include "base/b.h"\n#include <vector>', floors), [])
 
     def test_links_that_are_not_allowed_are_found(self):

@@ -9,7 +9,7 @@
 
 #include "bus/channels.h"
 #include "bus/in_process_bus.h"
-#include "launch/stack_watch.h"
+#include "launch/logic/stack_watch.h"
 #include "logger/logger_app.h"
 #include "plant/roll_call.h"
 #include "plant/simulated_rig.h"

@@ -1,4 +1,4 @@
-#include "launch/run_summary.h"
+#include "launch/logic/run_summary.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "launch/stop_announcer.h"
+#include "launch/logic/stop_announcer.h"
 
 #include <gtest/gtest.h>
 
@@ -16,8 +16,9 @@ using Published = std::vector<std::pair<std::string, int>>;
 // more.
 TEST(StopAnnouncerTest, RepeatsAsOftenAsItShould) {
   Published published;
+  const bus::WallClock clock;
   StopAnnouncer announcer(
-      [&](const std::string& reason, int exit_code) { published.emplace_back(reason, exit_code); });
+      clock, [&](const std::string& reason, int exit_code) { published.emplace_back(reason, exit_code); });
   EXPECT_FALSE(announcer.announced());
   EXPECT_FALSE(announcer.repeating());
   announcer.Repeat();
@@ -41,8 +42,9 @@ TEST(StopAnnouncerTest, RepeatsAsOftenAsItShould) {
 // Tests that a later announcement replaces the one before it and restarts its repetitions.
 TEST(StopAnnouncerTest, TheLatestAnnouncementCounts) {
   Published published;
+  const bus::WallClock clock;
   StopAnnouncer announcer(
-      [&](const std::string& reason, int exit_code) { published.emplace_back(reason, exit_code); });
+      clock, [&](const std::string& reason, int exit_code) { published.emplace_back(reason, exit_code); });
   announcer.Announce("stopped by SIGINT", 0);
   announcer.Announce("plant: arm_angle_limit", 1);
   std::this_thread::sleep_until(announcer.next_repeat());

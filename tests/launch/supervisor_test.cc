@@ -26,7 +26,7 @@ class SupervisorTest : public ::testing::Test {
     close(file_);
   }
 
-  void Make(Supervisor::Grace grace) {
+  void Make(Grace grace) {
     supervisor_.reset();
     supervisor_ = std::make_unique<Supervisor>(output_, grace);
   }
@@ -66,7 +66,7 @@ class SupervisorTest : public ::testing::Test {
   int file_ = open("/tmp", O_TMPFILE | O_RDWR | O_APPEND | O_CLOEXEC, 0600);
   LabelledOutput output_{file_, file_, false};
   std::unique_ptr<Supervisor> supervisor_;
-  std::map<std::string, Supervisor::Ended> ended_;
+  std::map<std::string, Ended> ended_;
 };
 
 // A script that waits for SIGTERM without a process of its own, says "up" once it can take it, and then

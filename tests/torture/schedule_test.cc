@@ -20,6 +20,19 @@ TEST(ScheduleTest, DrawsTheSameFromTheSameSeed) {
   EXPECT_NE(ScheduleText(DrawSchedule(5)), ScheduleText(DrawSchedule(6)));
 }
 
+// Tests that a third of the runs has a launcher, and that only they have faults that need one.
+TEST(ScheduleTest, DrawsLaunchers) {
+  int launchers = 0;
+  for (uint64_t seed = 1; seed <= 1000; ++seed) {
+    const Schedule schedule = DrawSchedule(seed);
+    launchers += schedule.launcher ? 1 : 0;
+    for (const Injection& injection : schedule.injections) {
+      EXPECT_TRUE(schedule.launcher || injection.kind < kFirstOfLauncher) << InfoOf(injection.kind).name;
+    }
+  }
+  EXPECT_NEAR(launchers, 333, 60);
+}
+
 // Tests that what is drawn keeps to the table of kinds, and that all faults have ended when they should have.
 TEST(ScheduleTest, DrawsWithinTheTable) {
   for (uint64_t seed = 1; seed <= 1000; ++seed) {
@@ -56,6 +69,10 @@ TEST(ScheduleTest, NamesWhatIsWrong) {
             "a.torture:2: found 'me', allowed is target=all or the name of a role");
   EXPECT_EQ(ErrorOf("hydro-torture 1\n-1 loss target=all for=1 amount=1 seed=1"),
             "a.torture:2: found '-1', allowed is a time in s from 0 to 1e6");
+  EXPECT_EQ(
+      ErrorOf("hydro-torture 1\nrun mode=realtime rearm=restart key=no stale=0.1 until=1 seed=1 launcher=no"),
+      "a.torture:2: found 'launcher=no', allowed is logger=yes, logger=optional, launcher=yes or the end of "
+      "the line");
   EXPECT_EQ(ErrorOf("hydro-torture 1\n0.5 loss target=all for=x amount=1 seed=1"),
             "a.torture:2: found 'x', allowed is for=NUMBER");
   const std::string run = "run mode=lockstep rearm=restart key=no stale=0.1 until=5 seed=1\n";

@@ -53,6 +53,7 @@ TEST(TortureRunTest, WithoutFaultsAllIsWell) {
       Schedule schedule;
       schedule.lockstep = lockstep;
       schedule.explicit_rearm = explicit_rearm;
+      schedule.launcher = lockstep != explicit_rearm;
       schedule.faults_until_s = 1;
       const RunOutcome outcome = RunSchedule(schedule, "");
       EXPECT_EQ(Described(outcome), "");

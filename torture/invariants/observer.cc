@@ -155,7 +155,19 @@ void Observer::OnRead(const SimulatedProcess& plant, int64_t tick, const model::
 
 void Observer::OnDrive(const SimulatedProcess& plant, int64_t tick, double voltage) {
   ++coverage_.ticks;
-  PlantInvariants(*this, RecordOf(plant)).OnDrive(tick, voltage);
+  PlantRecord& record = RecordOf(plant);
+  if (record.heartbeat) record.unsupervised = plant.machine().Now() - *record.heartbeat;
+  PlantInvariants(*this, record).OnDrive(tick, voltage);
+}
+
+void Observer::OnSignal(const SimulatedProcess& process) {
+  if (process.role() != Role::kPlant) return;
+  PlantRecord& plant = RecordOf(process);
+  if (!plant.stop_tick) plant.stop_tick = plant.tick;
+}
+
+void Observer::OnHeartbeat(const SimulatedProcess& plant) {
+  RecordOf(plant).heartbeat = plant.machine().Now();
 }
 
 void Observer::SetOtherConfiguration(bool present) {
@@ -167,7 +179,9 @@ void Observer::SetOtherConfiguration(bool present) {
 }
 
 void Observer::OnEnd(const SimulatedProcess& process) {
-  if (process.killed() || (process.role() == Role::kOperator && process.failure().empty())) return;
+  // Of launches: LaunchInvariants.
+  const bool other = process.role() == Role::kOperator || process.role() == Role::kLauncher;
+  if (process.killed() || (other && process.failure().empty())) return;
   const std::string_view name = TargetName(static_cast<int>(process.role()));
   if (!process.failure().empty()) {
     Report("an application throws nothing", fmt::format("{} ended with: {}", name, process.failure()));

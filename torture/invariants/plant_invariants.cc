@@ -15,6 +15,8 @@ const int64_t kDeadLoop = process::TicksWithin("pressure_loop_dies");
 const int64_t kStop = process::TicksWithin("stop");
 const int64_t kTwoSenders = process::TicksWithin("two_motor_command_senders");
 const int64_t kTwoPlants = process::TicksWithin("two_plants");
+// s: the plant looks for heartbeats each 10 ms, and may wake late by 20 ms (fault_kinds.cc: slow) each time.
+constexpr double kHeartbeatNoticed_s = 0.06;
 constexpr TrueTime kOtherPlantAlive = 2'400'000'000;       // ns; a plant describes itself once a second
 constexpr TrueTime kConfigurationNoticed = 2'500'000'000;  // ns: a plant describes itself once a second
 
@@ -66,6 +68,7 @@ void PlantInvariants::OnDrive(int64_t tick, double voltage) {
     CheckOrigin(tick, voltage);
     CheckLatched(tick);
     CheckStopped(tick);
+    CheckSupervised(tick);
     CheckOtherConfiguration(tick);
     observer_.last_obeyed_ = *observer_.now_;
   }
@@ -144,6 +147,14 @@ void PlantInvariants::CheckStopped(int64_t tick) {
   if (!plant_.stop_tick || tick <= *plant_.stop_tick + kStop) return;
   observer_.Report("zero volts after a stop",
                    fmt::format("tick {}: not at zero, stopped at tick {}", tick, *plant_.stop_tick));
+}
+
+void PlantInvariants::CheckSupervised(int64_t tick) {
+  const double silence_s = bus::ToSeconds(plant_.unsupervised);
+  // In lockstep, where a plant waits for its loops, nobody asks for a launcher.
+  if (!realtime() || silence_s <= observer_.config_.limits.stale_supervisor_s + kHeartbeatNoticed_s) return;
+  observer_.Report("zero volts without a launcher",
+                   fmt::format("tick {}: not at zero, no heartbeat for {:.3f} s", tick, silence_s));
 }
 
 // Two sessions within the time in which one counts as alive.

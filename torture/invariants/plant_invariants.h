@@ -27,6 +27,7 @@ class PlantInvariants {
   void CheckOrigin(int64_t tick, double voltage);
   void CheckLatched(int64_t tick);
   void CheckStopped(int64_t tick);
+  void CheckSupervised(int64_t tick);
   void CheckSenders(int64_t tick, double voltage);
   void CheckOtherPlant(int64_t tick, double voltage);
   void CheckOtherConfiguration(int64_t tick);

@@ -55,7 +55,9 @@ class PlantRecord {
   double voltage = 0;      // that it holds
   TrueTime driven = 0;     // when that was
   int64_t woke_tick = -1;  // the first tick after it did not run for longer than allowed; -1: it has answered
-  std::optional<int64_t> stop_tick;  // the tick at which a stop reached it
+  std::optional<int64_t> stop_tick;                // the tick at which a stop or a signal reached it
+  std::optional<bus::Clock::TimePoint> heartbeat;  // when one of its launcher reached it last
+  bus::Clock::Duration unsupervised{};             // for how long none has
   // Why the voltage must be zero until a re-arm, or for ever; empty: it need not.
   std::string latched;
   int64_t latched_tick = 0;

@@ -31,10 +31,11 @@ SimulatedProcess::~SimulatedProcess() {
 
 void SimulatedProcess::RunBody() {
   try {
-    if (killed_) throw ProcessKilled();
+    if (killed()) throw ProcessKilled();
+    begun_ = true;
     exit_code_ = body_(bus_, machine_);
   } catch (const ProcessKilled&) {
-    exit_code_ = 137;  // 128 + SIGKILL
+    exit_code_ = 128 + killed_by_;  // as a shell says it
   } catch (const std::exception& error) {
     exit_code_ = 1;  // as settings::RunProgram() does
     failure_ = error.what();
@@ -48,8 +49,8 @@ void SimulatedProcess::Resume() {
   if (ended()) wake_ = kNever;
 }
 
-bool SimulatedProcess::WaitUntil(bus::Bus::TimePoint deadline) {
-  if (killed_) throw ProcessKilled();
+bool SimulatedProcess::Await(bus::Bus::TimePoint deadline, bool packets) {
+  if (killed()) throw ProcessKilled();
   if (std::exchange(interrupted_, false)) return false;
   if (machine_.Now() >= deadline) {
     if (idle_since_ != *now_) {
@@ -66,8 +67,8 @@ bool SimulatedProcess::WaitUntil(bus::Bus::TimePoint deadline) {
     ready_ = kNever;
     UpdateWake();
     fiber_.Suspend();
-    if (killed_) throw ProcessKilled();
-    if (bus_.has_waiting()) return true;
+    if (killed()) throw ProcessKilled();
+    if (packets && bus_.has_waiting()) return true;
   } while (machine_.Now() < deadline && !std::exchange(interrupted_, false));
   return false;
 }
@@ -101,15 +102,19 @@ void SimulatedProcess::ClockChanged() {
   UpdateWake();
 }
 
-void SimulatedProcess::Kill() {
-  if (ended() || killed_) return;
-  killed_ = true;
+void SimulatedProcess::Kill(int signal) {
+  if (ended() || killed()) return;
+  killed_by_ = signal;
   bus_.Disconnect();
   wake_ = *now_;
 }
 
 void SimulatedProcess::Signal(int signal) {
   identity_.stop_signal = signal;
+  Interrupt();
+}
+
+void SimulatedProcess::Interrupt() {
   interrupted_ = true;
   ready_ = std::min(ready_, *now_);
   UpdateWake();

@@ -1,12 +1,14 @@
 // A process of the stack in the simulation: its real application on a fiber, with a bus and a machine.
 #pragma once
 
+#include <csignal>
 #include <cstdint>
 #include <functional>
 #include <limits>
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "bus/hosted_process.h"
 #include "torture/machines/fiber.h"
@@ -18,7 +20,10 @@ namespace hydro::torture {
 inline constexpr TrueTime kNever = std::numeric_limits<TrueTime>::max() / 4;
 
 // The processes of a stack; also the numbers by which faults name their targets.
-enum class Role : int8_t { kPlant, kPressure, kPosition, kLogger, kOperator, kCount };
+enum class Role : int8_t { kPlant, kPressure, kPosition, kLogger, kOperator, kLauncher, kCount };
+
+// Whose machine a role runs on: the launcher starts the plant where it runs itself.
+inline Role HomeOf(Role role) { return role == Role::kLauncher ? Role::kPlant : role; }
 
 class SimulatedProcess : public Waiter {
  public:
@@ -48,13 +53,24 @@ class SimulatedProcess : public Waiter {
   void SetSlowness(int64_t ns);
   // Its machine's clock runs differently from now on.
   void ClockChanged();
-  // SIGKILL: it ends without another message.
-  void Kill();
+  // A signal that it cannot catch: it ends without another message.
+  void Kill(int signal = SIGKILL);
   // SIGTERM and the like.
   void Signal(int signal);
+  // A wait of it returns.
+  void Interrupt();
+  // The signal that it has been sent, once; 0: none.
+  int TakeSignal() { return std::exchange(identity_.stop_signal, 0); }
+  // A heartbeat of its launcher; whether one has come since the last call.
+  void Beat() { beat_ = true; }
+  bool TakeBeat() { return std::exchange(beat_, false); }
 
   bool ended() const { return fiber_.done(); }
-  bool killed() const { return killed_; }
+  // It has run: until then it catches no signals.
+  bool begun() const { return begun_; }
+  TrueTime frozen_until() const { return frozen_until_; }
+  bool killed() const { return killed_by_ != 0; }
+  int killed_by() const { return killed_by_; }  // the signal; 0: it was not
   int exit_code() const { return exit_code_; }
   const std::string& failure() const { return failure_; }  // of an exception that left the application
   // Whether it runs with another configuration than the rest of the stack.
@@ -62,10 +78,13 @@ class SimulatedProcess : public Waiter {
   bool misconfigured() const { return misconfigured_; }
 
   // Waiter:
-  bool WaitUntil(bus::Bus::TimePoint deadline) override;
+  bool WaitUntil(bus::Bus::TimePoint deadline) override { return Await(deadline, true); }
+  // The same, but packets only gather.
+  void SleepUntil(bus::Bus::TimePoint deadline) { Await(deadline, false); }
 
  private:
   void RunBody();
+  bool Await(bus::Bus::TimePoint deadline, bool packets);
   void UpdateWake();
 
   const int number_;
@@ -82,7 +101,9 @@ class SimulatedProcess : public Waiter {
   int64_t slowness_ns_ = 0;
   TrueTime wake_;
   bool misconfigured_ = false;
-  bool killed_ = false;
+  bool begun_ = false;
+  bool beat_ = false;
+  int killed_by_ = 0;
   bool interrupted_ = false;  // by a signal that no wait has returned for yet
   int exit_code_ = -1;
   std::string failure_;

@@ -1,6 +1,7 @@
 // A schedule from a seed.
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "process/safety/safety_table.h"
 #include "torture/machines/random.h"
@@ -26,20 +27,47 @@ int DrawTarget(Random& random, std::string_view targets) {
   return *TargetNamed(allowed[random.Index(allowed.size())]);
 }
 
+void DrawNumbers(Random& random, double latest_s, Injection* injection) {
+  const FaultKindInfo& info = InfoOf(injection->kind);
+  injection->duration_s = Rounded(DrawLogarithmic(random, info.shortest_s, info.longest_s), 1e6);
+  injection->amount = Rounded(DrawLogarithmic(random, info.least, info.most), 1e6);
+  const double latest_begin_s = std::max(kFirst_s, latest_s - injection->duration_s);
+  injection->at_s = Rounded(random.Between(kFirst_s, latest_begin_s), 1e6);
+  injection->seed = random.Next() >> 32;
+}
+
 Injection Draw(Random& random, double latest_s, bool logger) {
   const int none = *TargetNamed("logger");
   Injection injection;
   do {
-    injection.kind = FaultKinds()[random.Index(FaultKinds().size())].kind;
+    injection.kind = static_cast<FaultKind>(random.Index(static_cast<uint64_t>(kFirstOfLauncher)));
     injection.target = DrawTarget(random, InfoOf(injection.kind).targets);
   } while (!logger && injection.target == none);
-  const FaultKindInfo& info = InfoOf(injection.kind);
-  injection.duration_s = Rounded(DrawLogarithmic(random, info.shortest_s, info.longest_s), 1e6);
-  injection.amount = Rounded(DrawLogarithmic(random, info.least, info.most), 1e6);
-  const double latest_begin_s = std::max(kFirst_s, latest_s - injection.duration_s);
-  injection.at_s = Rounded(random.Between(kFirst_s, latest_begin_s), 1e6);
-  injection.seed = random.Next() >> 32;
+  DrawNumbers(random, latest_s, &injection);
   return injection;
+}
+
+// From a stream of its own: without a launcher a seed draws what it would if there were none.
+void DrawLauncher(uint64_t seed, Schedule* schedule) {
+  Random random(seed, 4);
+  schedule->launcher = random.Chance(1.0 / 3);
+  if (!schedule->launcher) return;
+  schedule->logger_required = !schedule->logger || random.Chance(0.5);
+  constexpr FaultKind kKinds[] = {FaultKind::kLauncherHang, FaultKind::kLongHang, FaultKind::kLauncherCrash,
+                                  FaultKind::kInterrupt};
+  for (uint64_t i = random.Index(4); i > 0; --i) {
+    Injection injection;
+    injection.kind = kKinds[random.Index(std::size(kKinds))];
+    injection.target = DrawTarget(random, InfoOf(injection.kind).targets);
+    if (injection.target == *TargetNamed("logger") && !schedule->logger) injection.target = 0;
+    DrawNumbers(random, schedule->faults_until_s, &injection);
+    // While something else goes wrong, as often as not.
+    if (random.Chance(0.5)) {
+      const Injection& other = schedule->injections[random.Index(schedule->injections.size())];
+      injection.at_s = Rounded(other.at_s + random.Unit() * (other.duration_s + 0.02), 1e6);
+    }
+    schedule->injections.push_back(injection);
+  }
 }
 
 }  // namespace
@@ -64,6 +92,7 @@ Schedule DrawSchedule(uint64_t seed) {
       later.at_s = Rounded(earlier.at_s + random.Unit() * (earlier.duration_s + 0.02), 1e6);
     }
   }
+  DrawLauncher(seed, &schedule);
   for (const Injection& injection : schedule.injections) {
     const double end_s = std::ceil((injection.at_s + injection.duration_s) * 10) / 10;
     schedule.faults_until_s = std::max(schedule.faults_until_s, end_s);

@@ -48,10 +48,14 @@ constexpr std::array<FaultKindInfo, static_cast<size_t>(FaultKind::kCount)> kKin
     {FaultKind::kHugeTick, "huge_tick", "all", 0, 0, 4, 62, "power of 2"},
     {FaultKind::kNonfiniteCommand, "nonfinite_command", "all", 0, 0, 0, 0, ""},
     {FaultKind::kExcessiveCommand, "excessive_command", "all", 0, 0, 10.1, 1e6, "V"},
+    {FaultKind::kLongHang, "long_hang", kLoops, 4, 12, 0, 0, ""},
+    {FaultKind::kLauncherCrash, "launcher_crash", "launcher", 0, 0, 0, 0, ""},
+    {FaultKind::kInterrupt, "interrupt", "launcher", 0.001, 2, 1, 3,
+     "SIGINTs: 1, or 2, the second when it ends"},
 }};
 
 constexpr std::array<std::string_view, static_cast<size_t>(Role::kCount)> kRoles{
-    "plant", "pressure_ctrl", "position_ctrl", "logger", "operator"};
+    "plant", "pressure_ctrl", "position_ctrl", "logger", "operator", "launcher"};
 
 }  // namespace
 

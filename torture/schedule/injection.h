@@ -55,8 +55,15 @@ enum class FaultKind : uint8_t {
   kHugeTick,
   kNonfiniteCommand,
   kExcessiveCommand,
+  // The launcher, where one runs, and what only it ends.
+  kLongHang,
+  kLauncherCrash,
+  kInterrupt,
   kCount
 };
+
+// Those from here on are for a launcher: a run without one has none of them.
+inline constexpr FaultKind kFirstOfLauncher = FaultKind::kLongHang;
 
 struct Injection {
   double at_s = 0;

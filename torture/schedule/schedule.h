@@ -15,9 +15,12 @@ struct Schedule {
   bool lockstep = false;        // time.mode
   bool key = false;             // messages are sealed
   bool logger = false;          // a logger records; otherwise nobody does, and what befalls one is nothing
-  bool explicit_rearm = false;  // limits.rearm
-  double stale_input_s = 0.1;   // limits.stale_input_s
-  double faults_until_s = 12;   // all faults have ended by then
+  bool logger_required = true;  // logger.required
+  bool launcher =
+      false;  // a launcher starts, watches and stops the others; otherwise each is started again by itself
+  bool explicit_rearm = false;        // limits.rearm
+  double stale_input_s = 0.1;         // limits.stale_input_s
+  double faults_until_s = 12;         // all faults have ended by then
   std::vector<Injection> injections;  // by time
 };
 

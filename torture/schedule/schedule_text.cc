@@ -88,14 +88,32 @@ Injection ReadInjection(LineReader line, const std::string& time) {
   return injection;
 }
 
+std::string_view LoggerText(const Schedule& schedule) {
+  if (!schedule.logger) return "";
+  return schedule.logger_required ? " logger=yes" : " logger=optional";
+}
+
+// Who takes part besides the plant and the loops.
+void ReadRole(const LineReader& line, const std::string& word, Schedule* schedule) {
+  if (word == "logger=yes" || word == "logger=optional") {
+    schedule->logger = true;
+    schedule->logger_required = word == "logger=yes";
+  } else if (word == "launcher=yes") {
+    schedule->launcher = true;
+  } else {
+    throw line.Error(word, "logger=yes, logger=optional, launcher=yes or the end of the line");
+  }
+}
+
 }  // namespace
 
 std::string ScheduleText(const Schedule& schedule) {
-  std::string text = fmt::format(
-      "{}\nrun mode={} rearm={} key={} stale={} until={} seed={}{}\n", kFirstLine,
-      schedule.lockstep ? "lockstep" : "realtime", schedule.explicit_rearm ? "explicit" : "restart",
-      schedule.key ? "yes" : "no", ShortestNumber(schedule.stale_input_s),
-      ShortestNumber(schedule.faults_until_s), schedule.seed, schedule.logger ? " logger=yes" : "");
+  std::string text =
+      fmt::format("{}\nrun mode={} rearm={} key={} stale={} until={} seed={}{}{}\n", kFirstLine,
+                  schedule.lockstep ? "lockstep" : "realtime",
+                  schedule.explicit_rearm ? "explicit" : "restart", schedule.key ? "yes" : "no",
+                  ShortestNumber(schedule.stale_input_s), ShortestNumber(schedule.faults_until_s),
+                  schedule.seed, LoggerText(schedule), schedule.launcher ? " launcher=yes" : "");
   for (const Injection& injection : schedule.injections) {
     text +=
         fmt::format("{} {} target={} for={} amount={} seed={}\n", ShortestNumber(injection.at_s),
@@ -118,10 +136,10 @@ Schedule ReadSchedule(const std::string& file, const std::string& text) {
       first = false;
       continue;
     }
-    const std::string word = line.Word();
-    if (word.empty() || word.starts_with("#")) continue;
-    if (word != "run") {
-      schedule.injections.push_back(ReadInjection(std::move(line), word));
+    const std::string begin = line.Word();
+    if (begin.empty() || begin.starts_with("#")) continue;
+    if (begin != "run") {
+      schedule.injections.push_back(ReadInjection(std::move(line), begin));
       continue;
     }
     if (run_line != 0)
@@ -136,10 +154,7 @@ Schedule ReadSchedule(const std::string& file, const std::string& text) {
       throw line.Error(ShortestNumber(until), "until=S, more than 0 and at most 3600");
     schedule.faults_until_s = until;
     schedule.seed = line.Seed("seed");
-    const std::string logger = line.Word();
-    if (!logger.empty() && logger != "logger=yes")
-      throw line.Error(logger, "logger=yes or the end of the line");
-    schedule.logger = !logger.empty();
+    for (std::string word = line.Word(); !word.empty(); word = line.Word()) ReadRole(line, word, &schedule);
   }
   if (first)
     throw InputError(file + ": is empty, allowed is a schedule that begins with " + std::string(kFirstLine));

@@ -1,4 +1,4 @@
-#include "launch/run_summary.h"
+#include "launch/logic/run_summary.h"
 
 #include <spdlog/fmt/fmt.h>
 

@@ -2,8 +2,6 @@
 // went wrong.
 #pragma once
 
-#include <sys/types.h>
-
 #include <cstdint>
 #include <hydro/process_status_t.hpp>
 #include <hydro/stop_t.hpp>
@@ -16,7 +14,8 @@
 #include "bus/bus.h"
 #include "bus/channels.h"
 #include "bus/clock.h"
-#include "launch/run_summary.h"
+#include "bus/hosted_process.h"
+#include "launch/logic/run_summary.h"
 #include "timing/report/timing_record.h"
 
 namespace hydro::launch {
@@ -36,7 +35,7 @@ class StackWatch {
   std::vector<std::string> Present(const std::vector<std::string>& roles) const;
 
   // Adds a process of this launch to wait for.
-  void Expect(const std::string& program, pid_t pid);
+  void Expect(const std::string& program, int32_t pid);
 
   // The expected programs that have not announced that they are ready, in the order given.
   std::vector<std::string> NotReady() const;
@@ -45,7 +44,7 @@ class StackWatch {
   bool HasPlant() const { return !Present({"plant", "driver"}).empty(); }
 
   // Why a process of this launch failed, in its own words; empty when it gave no reason.
-  std::string FailureText(const std::string& program, pid_t pid) const;
+  std::string FailureText(const std::string& program, int32_t pid) const;
 
   // The first stop of this stack that another process has published.
   const std::optional<stop_t>& stop() const { return stop_; }
@@ -62,7 +61,7 @@ class StackWatch {
  private:
   struct Expected {
     std::string program;
-    pid_t pid;
+    int32_t pid;
   };
 
   bool BelongsHere(const process_status_t& status) const;
@@ -73,11 +72,10 @@ class StackWatch {
   const bus::Clock& clock_;
   const bus::Channels channels_;
   const bool spread_;
-  const std::string host_;
-  const int64_t session_;
+  const bus::HostedProcess identity_;
   std::vector<Expected> expected_;
   // The latest of each role and process id: a process of another role may have the same id on another host.
-  std::map<std::pair<std::string, pid_t>, process_status_t> statuses_;
+  std::map<std::pair<std::string, int32_t>, process_status_t> statuses_;
   std::optional<stop_t> stop_;
   RunSummary summary_;
   timing::TimingRecord timing_;

@@ -5,7 +5,7 @@
 
 #include "bus/channels.h"
 #include "bus/session.h"
-#include "launch/operator_request.h"
+#include "launch/logic/operator_request.h"
 
 namespace hydro::launch {
 namespace {
@@ -20,7 +20,7 @@ constexpr auto kRepeat = 100ms;
 OperatorResult RearmStack(bus::Bus& bus, const bus::Clock& clock, const settings::StackConfig& config,
                           const OperatorTiming& timing) {
   const bus::Channels channels(config.bus.channel_suffix);
-  const int64_t session = bus::SessionOn(clock);
+  const int64_t session = bus::IdentityOn(bus, clock).session;
   std::set<int64_t> plants;
   int64_t tick = -1;
   std::optional<rearm_t> answer;

@@ -1,12 +1,8 @@
-#include "launch/stack_watch.h"
-
-#include <unistd.h>
+#include "launch/logic/stack_watch.h"
 
 #include <algorithm>
 
-#include "base/host_name.h"
 #include "bus/session.h"
-#include "launch/launch_plan.h"
 #include "process/participant.h"
 #include "process/role.h"
 #include "process/status.h"
@@ -20,19 +16,14 @@ constexpr size_t kMostStatuses = 256;  // a stack has five processes; a flood of
 
 StackWatch::StackWatch(bus::Bus& bus, const bus::Clock& clock, const bus::Channels& channels, bool spread,
                        bool keep_timing)
-    : bus_(bus),
-      clock_(clock),
-      channels_(channels),
-      spread_(spread),
-      host_(HostName()),
-      session_(bus::RandomSession()) {
+    : bus_(bus), clock_(clock), channels_(channels), spread_(spread), identity_(bus::IdentityOn(bus, clock)) {
   bus.Subscribe<process_status_t>(channels_.Of<process_status_t>(), [this](const process_status_t& status) {
     const std::pair key(status.role, status.pid);
-    if (status.session == session_) return;
+    if (status.session == identity_.session) return;
     if (statuses_.size() < kMostStatuses || statuses_.contains(key)) statuses_[key] = status;
   });
   bus.Subscribe<stop_t>(channels_.Of<stop_t>(), [this](const stop_t& stop) {
-    if (!stop_ && stop.session != session_ && IsForThisStack(stop)) stop_ = stop;
+    if (!stop_ && stop.session != identity_.session && IsForThisStack(stop)) stop_ = stop;
   });
   bus.Subscribe<loop_statistics_t>(channels_.Of<loop_statistics_t>(),
                                    [this, keep_timing](const loop_statistics_t& report) {
@@ -46,7 +37,7 @@ StackWatch::StackWatch(bus::Bus& bus, const bus::Clock& clock, const bus::Channe
   bus.Subscribe<fault_t>(channels_.Of<fault_t>(), [this](const fault_t& fault) { summary_.Add(fault); });
 }
 
-void StackWatch::Expect(const std::string& program, pid_t pid) { expected_.push_back({program, pid}); }
+void StackWatch::Expect(const std::string& program, int32_t pid) { expected_.push_back({program, pid}); }
 
 std::vector<std::string> StackWatch::NotReady() const {
   std::vector<std::string> missing;
@@ -59,7 +50,7 @@ std::vector<std::string> StackWatch::NotReady() const {
   return missing;
 }
 
-std::string StackWatch::FailureText(const std::string& program, pid_t pid) const {
+std::string StackWatch::FailureText(const std::string& program, int32_t pid) const {
   const auto status = statuses_.find({process::RoleOf(program), pid});
   const bool failed = status != statuses_.end() && status->second.state == process_status_t::FAILED;
   return failed ? status->second.text : "";
@@ -68,11 +59,11 @@ std::string StackWatch::FailureText(const std::string& program, pid_t pid) const
 void StackWatch::AskWhoIsThere() {
   process_status_t question;
   question.utime = clock_.Utime();
-  question.session = session_;
+  question.session = identity_.session;
   question.role = process::kLaunchRole;
-  question.host = host_;
+  question.host = identity_.host;
   question.version = HYDRO_VERSION;
-  question.pid = getpid();
+  question.pid = identity_.id;
   question.state = process_status_t::READY;
   question.text = "asks who is there";
   bus_.Publish(channels_.Of<process_status_t>(), question);
@@ -117,7 +108,7 @@ void StackWatch::PublishStop(const std::string& reason, int exit_code) {
   stop_t stop;
   stop.utime = clock_.Utime();
   stop.tick = -1;
-  stop.session = session_;
+  stop.session = identity_.session;
   stop.source = "launch";
   stop.reason = reason;
   stop.exit_code = exit_code;

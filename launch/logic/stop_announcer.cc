@@ -1,4 +1,4 @@
-#include "launch/stop_announcer.h"
+#include "launch/logic/stop_announcer.h"
 
 namespace hydro::launch {
 namespace {
@@ -19,13 +19,13 @@ void StopAnnouncer::Announce(const std::string& reason, int exit_code) {
 }
 
 void StopAnnouncer::Repeat() {
-  if (repeats_left_ == 0 || Supervisor::Clock::now() < next_repeat_) return;
+  if (repeats_left_ == 0 || clock_.Now() < next_repeat_) return;
   --repeats_left_;
   PublishOnce();
 }
 
 void StopAnnouncer::PublishOnce() {
-  next_repeat_ = Supervisor::Clock::now() + kRepeatPeriod;
+  next_repeat_ = clock_.Now() + kRepeatPeriod;
   publish_(reason_, exit_code_);
 }
 

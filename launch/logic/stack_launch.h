@@ -1,30 +1,31 @@
-// One launch of a stack: the bus, the processes and the reports of a run, behind Launch() (launch.h).
+// One launch of a stack: starts its processes, watches them until the run has ended, and ends them in order. It decides; what it
+// starts, hears and prints is given to it.
 #pragma once
 
-#include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
-#include "bus/udpm/udpm_bus.h"
-#include "launch/labelled_output.h"
-#include "launch/launch.h"
-#include "launch/launch_lock.h"
-#include "launch/launch_plan.h"
-#include "launch/stack_watch.h"
-#include "launch/stop_announcer.h"
-#include "launch/supervisor.h"
-#include "launch/timing_files.h"
+#include "bus/bus.h"
+#include "bus/clock.h"
+#include "launch/logic/children.h"
+#include "launch/logic/launch_report.h"
+#include "launch/logic/plan.h"
+#include "launch/logic/stack_watch.h"
+#include "launch/logic/stop_announcer.h"
+#include "settings/stack_config.h"
 
 namespace hydro::launch {
 
 class StackLaunch {
  public:
-  using TimePoint = Supervisor::TimePoint;
+  using TimePoint = bus::Clock::TimePoint;
 
-  StackLaunch(const settings::StackConfig& config, const LaunchPlan& plan, int out_fd, int err_fd,
-              const LaunchTiming& timing);
+  // All must outlive it. `children` stop with GraceFor(timing, plan).
+  StackLaunch(bus::Bus& bus, bus::Clock& clock, Children& children, LaunchReport& report,
+              const settings::StackConfig& config, const LaunchPlan& plan, const LaunchTiming& timing);
 
-  // Runs until no process is left; returns the exit code.
+  // Runs until no process is left; returns the exit code. Throws InputError when a process with one of its roles is there already.
   int Run();
 
  private:
@@ -34,9 +35,10 @@ class StackLaunch {
   void HearLastReports();
   void WriteTiming();
   void OnSignals();
-  void OnEnded(const Supervisor::Ended& ended);
+  void OnEnded(const Ended& ended);
   void OnStopHeard();
   void CheckReady();
+  void AskWhoIsThere();
   void CheckPlantIsHeard();
   void CheckEarlyEnd();
   void RepeatStopForOtherHosts();
@@ -45,23 +47,20 @@ class StackLaunch {
   void PublishStop(const std::string& reason, int exit_code);
   void PrintSummary();
   void WriteRemainingOutput();
-  void Print(const std::string& text) { output_.Line(LabelledOutput::Stream::kOut, kLabel, text); }
-  void PrintError(const std::string& text) { output_.Line(LabelledOutput::Stream::kErr, kLabel, text); }
+  void Print(const std::string& text) { report_.Print(text); }
+  void PrintError(const std::string& text) { report_.PrintError(text); }
 
-  static constexpr char kLabel[] = "launch";
-
+  bus::Bus& bus_;
+  bus::Clock& clock_;
+  Children& children_;
+  LaunchReport& report_;
   const settings::StackConfig& config_;
   const LaunchPlan& plan_;
   const LaunchTiming timing_;
-  std::optional<LaunchLock> lock_;
-  LabelledOutput output_;
-  Supervisor supervisor_;  // before the bus, whose threads must not receive the launcher's signals
-  bus::WallClock clock_;
-  std::unique_ptr<bus::UdpmBus> bus_;
   StackWatch watch_;
-  std::optional<TimingFiles> timing_files_;
 
   TimePoint started_;
+  TimePoint asked_;  // who is there, while not all are ready
   bool ready_ = false;
   bool plant_heard_ = false;
   bool bus_failed_ = false;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <chrono>
+#include <cstddef>
 #include <string>
 
 #include "bus/bus.h"
@@ -24,10 +25,23 @@ struct OperatorResult {
   std::string text;  // one line
 };
 
-// Asks the processes of this machine to stop over their local sockets, the one that drives the motor first. Then publishes
-// HYDRO_STOP until every process that is heard has announced its end. Exit code 0; 1 when nobody is there or a process does not
-// end. A bus that cannot work is no obstacle where processes are found on this machine.
-OperatorResult StopStack(const settings::StackConfig& config, const OperatorTiming& timing = {});
+// The processes of this machine that an operator asks to stop besides, without the bus.
+class LocalProcesses {
+ public:
+  virtual ~LocalProcesses() = default;
+  virtual int found() const = 0;
+  virtual bool Found(int pid) const = 0;
+  // Those that have not ended: "plant (process 4711)", and why, where that is known.
+  virtual std::string Left() = 0;
+};
+
+// Publishes HYDRO_STOP until everyone has left who is heard or is among `local`. Exit code 0; 1 when nobody is there or a process
+// does not end.
+OperatorResult StopOverBus(bus::Bus& bus, const bus::Clock& clock, const settings::StackConfig& config,
+                           LocalProcesses& local, const OperatorTiming& timing = {});
+
+// "stopped: 3 processes have ended"
+std::string Stopped(size_t count);
 
 // Asks the plant (or driver) to end its latched faults. Exit code 0 when it did or had none; 1 when it
 // refused, or when none is heard or more than one.

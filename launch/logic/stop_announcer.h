@@ -3,18 +3,19 @@
 
 #include <functional>
 #include <string>
+#include <utility>
 
-#include "launch/supervisor.h"
+#include "bus/clock.h"
 
 namespace hydro::launch {
 
 class StopAnnouncer {
  public:
-  using TimePoint = Supervisor::TimePoint;
+  using TimePoint = bus::Clock::TimePoint;
   // Publishes HYDRO_STOP once. Throws BusError.
   using Publish = std::function<void(const std::string& reason, int exit_code)>;
 
-  explicit StopAnnouncer(Publish publish) : publish_(std::move(publish)) {}
+  StopAnnouncer(const bus::Clock& clock, Publish publish) : clock_(clock), publish_(std::move(publish)) {}
 
   // Publishes a stop a few times at once; Repeat() publishes it a few times more. A later announcement
   // replaces the one before it.
@@ -31,6 +32,7 @@ class StopAnnouncer {
  private:
   void PublishOnce();
 
+  const bus::Clock& clock_;
   Publish publish_;
   std::string reason_;
   int exit_code_ = 0;

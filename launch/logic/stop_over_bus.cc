@@ -1,0 +1,126 @@
+#include <spdlog/fmt/fmt.h>
+
+#include <algorithm>
+#include <hydro/loop_statistics_t.hpp>
+#include <hydro/process_status_t.hpp>
+#include <hydro/state_t.hpp>
+#include <hydro/stop_t.hpp>
+#include <map>
+
+#include "bus/channels.h"
+#include "bus/session.h"
+#include "launch/logic/operator_request.h"
+#include "process/participant.h"
+#include "process/status.h"
+
+namespace hydro::launch {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr size_t kMostProcesses = 256;   // a stack has five; a flood of made-up ones is not kept
+constexpr auto kRepeat = 50ms;           // UDP may lose a message
+constexpr auto kUnheard = 500ms;         // for this long also when no process has been heard
+constexpr auto kLocalPatience = 1500ms;  // for processes of this machine to end because of the bus
+
+// The processes that are heard, until they announce their end.
+class Presence {
+ public:
+  Presence(bus::Bus& bus, const bus::Clock& clock, const bus::Channels& channels, const LocalProcesses& local)
+      : clock_(clock), local_(local), host_(bus::IdentityOn(bus, clock).host) {
+    bus.Subscribe<state_t>(channels.Of<state_t>(), [this](const state_t& s) { Heard(s.session, "plant"); });
+    bus.Subscribe<loop_statistics_t>(channels.Of<loop_statistics_t>(), [this](const loop_statistics_t& s) {
+      Heard(s.session, s.role + " on " + s.host);
+    });
+    bus.Subscribe<process_status_t>(channels.Of<process_status_t>(), [this](const process_status_t& s) {
+      if (s.role == process::kLaunchRole) return;  // it only asked
+      Heard(s.session, process::ProcessName(s));
+      const auto found = processes_.find(s.session);
+      if (found == processes_.end()) return;
+      Process& process = found->second;
+      process.local = s.host == host_ && local_.Found(s.pid);
+      process.left = process::HasLeft(s);
+    });
+  }
+
+  bool anybody() const { return !processes_.empty(); }
+  // How many of them were not found on this machine.
+  size_t others() const {
+    return static_cast<size_t>(std::count_if(processes_.begin(), processes_.end(),
+                                             [](const auto& entry) { return !entry.second.local; }));
+  }
+  bus::Clock::TimePoint newest() const { return newest_; }
+
+  // The processes that have not announced their end.
+  std::string Remaining() const {
+    std::string names;
+    for (const auto& [session, process] : processes_) {
+      if (!process.left) names += (names.empty() ? "" : ", ") + process.name;
+    }
+    return names;
+  }
+
+ private:
+  struct Process {
+    std::string name;
+    bool left = false;
+    bool local = false;  // it was found on this machine
+  };
+
+  void Heard(int64_t session, const std::string& name) {
+    if (processes_.size() >= kMostProcesses && !processes_.contains(session)) return;
+    newest_ = clock_.Now();
+    Process& process = processes_[session];
+    if (process.name.size() < name.size()) process.name = name;
+  }
+
+  const bus::Clock& clock_;
+  const LocalProcesses& local_;
+  const std::string host_;
+  bus::Clock::TimePoint newest_{};
+  std::map<int64_t, Process> processes_;
+};
+
+}  // namespace
+
+std::string Stopped(size_t count) {
+  return fmt::format("stopped: {} process{}", count, count == 1 ? " has ended" : "es have ended");
+}
+
+OperatorResult StopOverBus(bus::Bus& bus, const bus::Clock& clock, const settings::StackConfig& config,
+                           LocalProcesses& local, const OperatorTiming& timing) {
+  const bus::Channels channels(config.bus.channel_suffix);
+  Presence presence(bus, clock, channels, local);
+  stop_t stop;
+  stop.tick = -1;
+  stop.session = bus::IdentityOn(bus, clock).session;
+  stop.addressee = 0;  // whoever hears it: an operator who stops is not asked which run
+  stop.source = process::kLaunchRole;
+  stop.reason = "hydro-launch --stop";
+  stop.exit_code = 0;
+  const auto start = clock.Now();
+  auto next_stop = start;
+  while (true) {
+    const auto now = clock.Now();
+    const std::string remaining = presence.Remaining();
+    const bool here = !local.Left().empty();
+    if (now >= next_stop && (now - start < kUnheard || !remaining.empty())) {
+      stop.utime = clock.Utime();
+      bus.Publish(channels.Of<stop_t>(), stop);
+      next_stop = now + kRepeat;
+    }
+    if (!presence.anybody() && local.found() == 0 && now - start > timing.presence) {
+      return {1, "no process of a stack is heard on " + config.bus.url};
+    }
+    const auto newest = std::max(presence.newest(), start);
+    if ((presence.anybody() || local.found() > 0) && remaining.empty() && !here &&
+        now - newest > timing.quiet) {
+      return {0, Stopped(presence.others() + static_cast<size_t>(local.found()))};
+    }
+    if (here && remaining.empty() && now - newest > kLocalPatience) return {1, ""};
+    if (now - start > timing.end) return {1, "has not ended: " + remaining};
+    bus.HandleUntil(now + kRepeat);
+  }
+}
+
+}  // namespace hydro::launch

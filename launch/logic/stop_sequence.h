@@ -1,0 +1,72 @@
+// In which order, and with how much patience, the children of a launch are stopped.
+#pragma once
+
+#include <chrono>
+#include <optional>
+#include <vector>
+
+#include "bus/clock.h"
+
+namespace hydro::launch {
+
+struct Grace {
+  bus::Clock::Duration child = std::chrono::seconds(3);  // from SIGTERM to SIGKILL
+  bus::Clock::Duration last =
+      std::chrono::seconds(10);        // the same for `last` children: a logger may have much to write
+  bus::Clock::Duration before_last{};  // from the end of the others to the SIGTERM for the `last` ones
+};
+
+// A child as its stop sees it.
+class Stoppable {
+ public:
+  virtual ~Stoppable() = default;
+  virtual bool running() const = 0;
+  virtual bool last() const = 0;
+  virtual void Signal(int signal_number) = 0;
+};
+
+// SIGTERM goes to the children that are not `last`, then to the `last` ones when the others have ended, and SIGKILL to any that
+// has not ended within its grace. Sends nothing by itself: TakeSteps() does what is due.
+class StopSequence {
+ public:
+  using TimePoint = bus::Clock::TimePoint;
+
+  explicit StopSequence(const Grace& grace) : grace_(grace) {}
+
+  // `child` must outlive this.
+  void Add(Stoppable* child) { children_.push_back({child, std::nullopt, false}); }
+
+  // SIGTERM goes out at `first_signal`, which leaves children that are about to end by themselves time to do so. A later call can
+  // only bring it forward.
+  void Begin(TimePoint first_signal);
+  bool begun() const { return stop_at_.has_value(); }
+
+  void TakeSteps(TimePoint now);
+  // When the next step is due; TimePoint::max(): none.
+  TimePoint NextStep() const;
+
+  int running() const;        // children that have not ended
+  int running_first() const;  // those of them that are not `last`
+
+  // Whether it was sent SIGTERM; whether that did not end it, so that it was sent SIGKILL.
+  bool terminated(const Stoppable* child) const;
+  bool hung(const Stoppable* child) const;
+
+ private:
+  struct Step {
+    Stoppable* child;
+    std::optional<TimePoint> terminated_at;
+    bool hung;
+  };
+  bus::Clock::Duration GraceOf(const Stoppable& child) const {
+    return child.last() ? grace_.last : grace_.child;
+  }
+  const Step* Find(const Stoppable* child) const;
+
+  const Grace grace_;
+  std::vector<Step> children_;
+  std::optional<TimePoint> stop_at_;
+  std::optional<TimePoint> first_gone_at_;  // during a stop: when only the `last` children were left
+};
+
+}  // namespace hydro::launch

@@ -1,0 +1,34 @@
+// A launch's own lines, on a terminal among those of its children, and its timing files.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "launch/labelled_output.h"
+#include "launch/logic/launch_report.h"
+#include "launch/logic/plan.h"
+#include "launch/timing_files.h"
+#include "settings/stack_config.h"
+
+namespace hydro::launch {
+
+class TerminalReport : public LaunchReport {
+ public:
+  // Announces the labels. All must outlive it. Throws InputError for a bad name of a timing file.
+  TerminalReport(LabelledOutput& output, const settings::StackConfig& config, const LaunchPlan& plan);
+
+  void Print(const std::string& text) override { output_.Line(LabelledOutput::Stream::kOut, kLabel, text); }
+  void PrintError(const std::string& text) override {
+    output_.Line(LabelledOutput::Stream::kErr, kLabel, text);
+  }
+  std::string WriteTiming(const timing::TimingRecord& record) override;
+
+ private:
+  static constexpr char kLabel[] = "launch";
+
+  LabelledOutput& output_;
+  const settings::StackConfig& config_;
+  std::optional<TimingFiles> timing_files_;
+};
+
+}  // namespace hydro::launch

@@ -1,0 +1,54 @@
+// The launcher as a simulated process.
+#include <memory>
+
+#include "base/input_error.h"
+#include "launch/logic/stack_launch.h"
+#include "torture/active_fault.h"
+#include "torture/launched_children.h"
+#include "torture/programs.h"
+#include "torture/world.h"
+
+namespace hydro::torture {
+namespace {
+
+// What it prints stands in the tail of a replay.
+class TailReport : public launch::LaunchReport {
+ public:
+  TailReport(World& world, int number) : world_(world), number_(number) {}
+  void Print(const std::string& text) override { world_.Say(number_, "says: " + text); }
+  void PrintError(const std::string& text) override { world_.Say(number_, "complains: " + text); }
+  std::string WriteTiming(const timing::TimingRecord& /*record*/) override { return ""; }
+
+ private:
+  World& world_;
+  const int number_;
+};
+
+// What launch::PlanLaunch() makes of a configuration without [[process]] sections.
+launch::LaunchPlan PlanOf(const World& world) {
+  launch::LaunchPlan plan;
+  plan.children = {{"plant", {"hydro-plant"}, false},
+                   {"pressure_ctrl", {"hydro-pressure-ctrl"}, false},
+                   {"position_ctrl", {"hydro-position-ctrl"}, false}};
+  if (world.has_logger()) plan.children.push_back({"logger", {"hydro-logger"}, true});
+  return plan;
+}
+
+}  // namespace
+
+SimulatedProcess::Body LaunchProgram(const settings::StackConfig& config, World& world, int number) {
+  return [&config, &world, number](bus::Bus& bus, bus::Clock& clock) {
+    const launch::LaunchPlan plan = PlanOf(world);
+    const launch::LaunchTiming timing;
+    LaunchedChildren children(world, world.process(number), launch::GraceFor(timing, plan));
+    TailReport report(world, number);
+    try {
+      return std::make_unique<launch::StackLaunch>(bus, clock, children, report, config, plan, timing)->Run();
+    } catch (const InputError& error) {
+      report.PrintError(error.what());
+      return 2;  // as settings::RunProgram() does
+    }
+  };
+}
+
+}  // namespace hydro::torture
