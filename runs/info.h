@@ -82,9 +82,6 @@ struct LogInfo {
 // Signals are in the units of the model that the log describes; with `si`, in SI units.
 LogInfo Summarise(const RunLog& log, bool si);
 
-// "plant: the output reads back 0 V"
-std::string OutputLeftText(const output_left_t& left);
-
 // Several lines for people to read.
 std::string InfoText(const LogInfo& info);
 

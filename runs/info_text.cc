@@ -1,9 +1,9 @@
 #include <spdlog/fmt/fmt.h>
 
-#include <cmath>
 #include <iterator>
 
 #include "base/number_text.h"
+#include "process/output_left.h"
 #include "runs/info.h"
 
 namespace hydro::runs {
@@ -104,18 +104,12 @@ void AppendEnds(const LogInfo& info, std::string& text) {
     Append(text, "stop: tick {}: {}: {} (exit code {})\n", stop.tick, stop.source, stop.reason,
            stop.exit_code);
   }
-  for (const output_left_t& left : info.outputs_left) Append(text, "end: {}\n", OutputLeftText(left));
+  for (const output_left_t& left : info.outputs_left)
+    Append(text, "end: {}\n", process::OutputLeftText(left));
   if (info.outputs_left.empty()) text += "end: no plant or driver says what voltage it left\n";
 }
 
 }  // namespace
-
-std::string OutputLeftText(const output_left_t& left) {
-  const std::string what = left.accepted ? "" : "did NOT accept zero volts and ";
-  const std::string voltage =
-      std::isnan(left.voltage) ? "cannot be read back" : "reads back " + ShortNumber(left.voltage, 3) + " V";
-  return left.role + ": the output " + what + voltage;
-}
 
 std::string InfoText(const LogInfo& info) {
   std::string text;

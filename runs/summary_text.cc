@@ -4,6 +4,7 @@
 
 #include "base/saturating.h"
 #include "base/units.h"
+#include "process/output_left.h"
 #include "runs/tracking.h"
 
 namespace hydro::runs {
@@ -70,7 +71,7 @@ std::string SummaryText(const Tracking& tracking, const LogInfo& info, bool si) 
     line("fault at tick {}: {} {} ({})", fault.tick, fault.code, fault.active ? "began" : "ended",
          fault.source);
   }
-  for (const output_left_t& left : info.outputs_left) line("{}", OutputLeftText(left));
+  for (const output_left_t& left : info.outputs_left) line("{}", process::OutputLeftText(left));
   return text;
 }
 

@@ -6,6 +6,7 @@
 
 #include "base/saturating.h"
 #include "process/fault_codes.h"
+#include "process/output_left.h"
 
 namespace hydro::launch {
 namespace {
@@ -14,6 +15,7 @@ constexpr double kMostOfASecond = 0.5;
 // A stack has five processes and some forty codes; a flood of made-up ones is not kept.
 constexpr size_t kMostLoops = 64;
 constexpr size_t kMostFaults = 256;
+constexpr size_t kMostOutputs = 4;
 constexpr size_t kLongestText = 500;
 
 }  // namespace
@@ -51,6 +53,10 @@ void RunSummary::Add(const fault_t& fault) {
   known->active = fault.active;
 }
 
+void RunSummary::Add(const output_left_t& left) {
+  if (outputs_left_.size() < kMostOutputs) outputs_left_.push_back(left);
+}
+
 std::vector<std::string> RunSummary::Lines() const {
   std::vector<std::string> lines;
   if (!loops_.empty()) {
@@ -71,6 +77,7 @@ std::vector<std::string> RunSummary::Lines() const {
                                 fault.active ? ", still there at the end" : "",
                                 fault.first.text.substr(0, kLongestText)));
   }
+  for (const output_left_t& left : outputs_left_) lines.push_back(process::OutputLeftText(left));
   return lines;
 }
 

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <hydro/fault_t.hpp>
 #include <hydro/loop_statistics_t.hpp>
+#include <hydro/output_left_t.hpp>
 #include <string>
 #include <vector>
 
@@ -13,8 +14,9 @@ class RunSummary {
  public:
   void Add(const loop_statistics_t& report);
   void Add(const fault_t& fault);
+  void Add(const output_left_t& left);
 
-  // One line per process, then one per kind of fault. Percentiles come from the process's report on its whole
+  // One line per process, one per kind of fault, and one per plant or driver on what it left. Percentiles come from the process's report on its whole
   // run or, without one, from its last report that covers most of a second. The largest latency, missed
   // deadlines and lost messages are those of the whole run. Empty when nothing was reported. Times are in
   // microseconds, with or without --si.
@@ -38,7 +40,8 @@ class RunSummary {
     bool active = false;
   };
 
-  std::vector<Loop> loops_;    // by session, in order of their first report
+  std::vector<Loop> loops_;  // by session, in order of their first report
+  std::vector<output_left_t> outputs_left_;
   std::vector<Fault> faults_;  // by sender and code, in order of their first appearance
 };
 

@@ -35,6 +35,8 @@ StackWatch::StackWatch(bus::Bus& bus, const bus::Clock& clock, const bus::Channe
                                     [this](const loop_histogram_t& histogram) { timing_.Add(histogram); });
   }
   bus.Subscribe<fault_t>(channels_.Of<fault_t>(), [this](const fault_t& fault) { summary_.Add(fault); });
+  bus.Subscribe<output_left_t>(channels_.Of<output_left_t>(),
+                               [this](const output_left_t& left) { summary_.Add(left); });
 }
 
 void StackWatch::Expect(const std::string& program, int32_t pid) { expected_.push_back({program, pid}); }

@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 namespace hydro::launch {
 namespace {
 
@@ -56,6 +58,22 @@ TEST(RunSummaryTest, ShortRunShowsItsOnlyReport) {
   RunSummary summary;
   summary.Add(Report(0.2, 200, 1002, 30));
   EXPECT_THAT(summary.Lines().back(), HasSubstr(" 1002 "));
+}
+
+// Tests that the last line says what the output holds, and a refused zero clearly.
+TEST(RunSummaryTest, OutputLeft) {
+  RunSummary summary;
+  summary.Add(Report(0.2, 200, 1002, 30));
+  output_left_t left{};
+  left.role = "driver";
+  left.accepted = 1;
+  left.voltage = 3.05e-4;
+  summary.Add(left);
+  EXPECT_EQ(summary.Lines().back(), "driver: the output reads back 0.000305 V");
+  left.accepted = 0;
+  left.voltage = std::nan("");
+  summary.Add(left);
+  EXPECT_EQ(summary.Lines().back(), "driver: the output did NOT accept zero volts and cannot be read back");
 }
 
 // Tests that repeated faults share one line with their number, and that an ended fault differs from an active

@@ -22,7 +22,8 @@ Observer::Observer(const settings::StackConfig& config, Network& network, const 
       rearm_(network.ChannelNumber(bus::Channels(config.bus.channel_suffix).Of<rearm_t>())),
       configuration_(network.ChannelNumber(bus::Channels(config.bus.channel_suffix).Of<configuration_t>())),
       run_(network.ChannelNumber(bus::Channels(config.bus.channel_suffix).Of<run_description_t>())),
-      statistics_(network.ChannelNumber(bus::Channels(config.bus.channel_suffix).Of<loop_statistics_t>())) {}
+      statistics_(network.ChannelNumber(bus::Channels(config.bus.channel_suffix).Of<loop_statistics_t>())),
+      output_left_(network.ChannelNumber(bus::Channels(config.bus.channel_suffix).Of<output_left_t>())) {}
 
 PlantRecord& Observer::RecordOf(const SimulatedProcess& plant) {
   const auto number = static_cast<size_t>(plant.number());
@@ -43,6 +44,9 @@ void Observer::OnSent(const Packet& packet, const SimulatedProcess& sender) {
   if (packet.channel == fault_) OnFault(packet);
   if (packet.channel == stop_) OnStop(packet, sender);
   if (packet.channel == statistics_) OnStatistics(packet, sender);
+  if (output_left_t left; packet.channel == output_left_ && Decode(packet, &left)) {
+    RecordOf(sender).left_zero = left.accepted != 0 && left.voltage == 0;
+  }
 }
 
 void Observer::OnStatistics(const Packet& packet, const SimulatedProcess& sender) {
@@ -186,6 +190,9 @@ void Observer::OnEnd(const SimulatedProcess& process) {
   if (!process.failure().empty()) {
     Report("an application throws nothing", fmt::format("{} ended with: {}", name, process.failure()));
     return;
+  }
+  if (process.role() == Role::kPlant && !RecordOf(process).left_zero) {
+    Report("a plant that ends leaves zero volts and says so", "the last plant did not");
   }
   // One that finds itself misconfigured leaves alone.
   if (process.misconfigured() && process.exit_code() == 1) return;

@@ -71,7 +71,8 @@ class Observer {
   Network& network_;
   const TrueTime* now_;
   Coverage& coverage_;
-  const int state_, command_, fault_, stop_, rearm_, configuration_, run_, statistics_;  // channel numbers
+  const int state_, command_, fault_, stop_, rearm_, configuration_, run_, statistics_,
+      output_left_;                                   // channel numbers
   std::vector<std::unique_ptr<PlantRecord>> plants_;  // by number of the process
   PlantRecord* newest_plant_ = nullptr;
   std::vector<Violation> violations_;
