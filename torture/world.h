@@ -152,7 +152,7 @@ class World : public NetworkPort {
   void Signal(SimulatedProcess& process, int signal);
   void Destroy(SimulatedProcess& process, int signal);
   void Reap(SimulatedProcess& process);
-  void NoteCause();
+  void NoteDue();
   void CheckLaunchIsOver(int launcher);
   void CheckLog(const SimulatedProcess& logger);
   void EnterPhase(int phase);
@@ -187,6 +187,7 @@ class World : public NetworkPort {
   std::vector<Event> events_;                               // a heap
   int launcher_hangs_ = 0;
   int due_launcher_ = -1;  // the newest for which it is known when it must end
+  TrueTime due_at_ = 0;    // when that is looked at
   MessageTail* tail_ = nullptr;
   LaunchInvariants launches_;
   Random start_random_;  // how long a launcher's children take to begin
