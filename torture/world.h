@@ -22,25 +22,13 @@
 #include "torture/machines/simulated_process.h"
 #include "torture/machines/trace.h"
 #include "torture/message_tail.h"
+#include "torture/run_outcome.h"
 #include "torture/schedule/schedule.h"
 
 namespace hydro::torture {
 
-// What is run.
-struct Stacks {
-  settings::StackConfig right;
-  settings::StackConfig other;          // what FaultKind::kOtherConfiguration starts a process with
-  settings::StackConfig other_version;  // the same of kOtherVersion
-};
-
 // What this program has allocated.
 size_t AllocatedBytes();
-
-struct RunOutcome {
-  std::vector<Violation> violations;
-  uint64_t trace = 0;  // of everything that happened
-  Coverage coverage;
-};
 
 class World : public NetworkPort {
  public:
