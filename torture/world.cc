@@ -186,7 +186,7 @@ void World::Handled(const Packet& packet, int receiver) {
   observer_.OnHandled(packet, process);
   if (process.role() == Role::kLauncher) {
     launches_.OnHandled(packet, process);
-    NoteCause();
+    NoteDue();
   }
   if (const auto log = logs_.find(receiver); log != logs_.end()) {
     const auto size = static_cast<int>(packet.bytes.size());

@@ -22,25 +22,13 @@
 #include "torture/machines/simulated_process.h"
 #include "torture/machines/trace.h"
 #include "torture/message_tail.h"
+#include "torture/run_outcome.h"
 #include "torture/schedule/schedule.h"
 
 namespace hydro::torture {
 
-// What is run.
-struct Stacks {
-  settings::StackConfig right;
-  settings::StackConfig other;          // what FaultKind::kOtherConfiguration starts a process with
-  settings::StackConfig other_version;  // the same of kOtherVersion
-};
-
 // What this program has allocated.
 size_t AllocatedBytes();
-
-struct RunOutcome {
-  std::vector<Violation> violations;
-  uint64_t trace = 0;  // of everything that happened
-  Coverage coverage;
-};
 
 class World : public NetworkPort {
  public:
@@ -152,7 +140,7 @@ class World : public NetworkPort {
   void Signal(SimulatedProcess& process, int signal);
   void Destroy(SimulatedProcess& process, int signal);
   void Reap(SimulatedProcess& process);
-  void NoteCause();
+  void NoteDue();
   void CheckLaunchIsOver(int launcher);
   void CheckLog(const SimulatedProcess& logger);
   void EnterPhase(int phase);
@@ -187,6 +175,7 @@ class World : public NetworkPort {
   std::vector<Event> events_;                               // a heap
   int launcher_hangs_ = 0;
   int due_launcher_ = -1;  // the newest for which it is known when it must end
+  TrueTime due_at_ = 0;    // when that is looked at
   MessageTail* tail_ = nullptr;
   LaunchInvariants launches_;
   Random start_random_;  // how long a launcher's children take to begin

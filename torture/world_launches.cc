@@ -28,8 +28,7 @@ void World::SendSignal(const SimulatedProcess& process, int signal) {
   launches_.OnSignal(process, signal);
   Say(process.number(), fmt::format("is sent signal {}", signal));
   Push(now_, Happening::kSignal, process.number() * kSignals + signal);
-  if (signal == SIGTERM && launches_.due())
-    Push(*launches_.due(), Happening::kLaunchDue, launches_.launcher());
+  NoteDue();
 }
 
 void World::Signal(SimulatedProcess& process, int signal) {
@@ -63,7 +62,7 @@ void World::InterruptLauncher() {
   if (launcher->identity().stop_signal == 0) launches_.OnInterrupt();  // a second one at a time is lost
   Say(launcher->number(), "is sent SIGINT");
   launcher->Signal(SIGINT);
-  NoteCause();
+  NoteDue();
 }
 
 void World::HangLauncher(TrueTime until) {
@@ -74,16 +73,19 @@ void World::HangLauncher(TrueTime until) {
 }
 
 // Looks again when the launch that runs must have ended, if there is a reason to end it.
-void World::NoteCause() {
+void World::NoteDue() {
   const int launcher = launches_.launcher();
-  if (launcher < 0 || launcher == due_launcher_ || !launches_.due()) return;
+  const std::optional<TrueTime> due = launches_.due();
+  if (!due || (launcher == due_launcher_ && *due >= due_at_)) return;
   due_launcher_ = launcher;
-  Push(*launches_.due(), Happening::kLaunchDue, launcher);
+  due_at_ = *due;
+  Push(*due, Happening::kLaunchDue, launcher);
 }
 
 void World::CheckLaunchIsOver(int launcher) {
   if (launches_.launcher() != launcher) return;
   if (const TrueTime due = *launches_.due(); due > now_) {  // it stood still meanwhile
+    due_at_ = due;
     Push(due, Happening::kLaunchDue, launcher);
   } else {
     launches_.ReportOverdue();

@@ -98,7 +98,7 @@ void World::Reap(SimulatedProcess& process) {
     // SIGCHLD
     if (SimulatedProcess* const launcher = Find(Role::kLauncher)) {
       launcher->Interrupt();
-      NoteCause();
+      NoteDue();
     }
   }
   if (process.role() == Role::kLogger) {

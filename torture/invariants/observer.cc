@@ -115,7 +115,7 @@ void Observer::OnHandled(const Packet& packet, const SimulatedProcess& receiver)
   if (packet.channel == command_) {
     OnCommand(packet, plant);
   } else if (packet.channel == stop_) {
-    if (!plant.stop_tick) plant.stop_tick = plant.tick;
+    plant.Stop();
   } else if (packet.channel == rearm_) {
     rearm_t rearm;
     if (Decode(packet, &rearm) && rearm.kind == rearm_t::REQUEST &&
@@ -162,16 +162,6 @@ void Observer::OnDrive(const SimulatedProcess& plant, int64_t tick, double volta
   PlantRecord& record = RecordOf(plant);
   if (record.heartbeat) record.unsupervised = plant.machine().Now() - *record.heartbeat;
   PlantInvariants(*this, record).OnDrive(tick, voltage);
-}
-
-void Observer::OnSignal(const SimulatedProcess& process) {
-  if (process.role() != Role::kPlant) return;
-  PlantRecord& plant = RecordOf(process);
-  if (!plant.stop_tick) plant.stop_tick = plant.tick;
-}
-
-void Observer::OnHeartbeat(const SimulatedProcess& plant) {
-  RecordOf(plant).heartbeat = plant.machine().Now();
 }
 
 void Observer::SetOtherConfiguration(bool present) {

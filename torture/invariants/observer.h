@@ -44,8 +44,10 @@ class Observer {
   // The plant puts out a voltage from `tick` on.
   void OnDrive(const SimulatedProcess& plant, int64_t tick, double voltage);
   // A process is sent a signal that it catches; a heartbeat of its launcher reaches a plant.
-  void OnSignal(const SimulatedProcess& process);
-  void OnHeartbeat(const SimulatedProcess& plant);
+  void OnSignal(const SimulatedProcess& process) {
+    if (process.role() == Role::kPlant) RecordOf(process).Stop();
+  }
+  void OnHeartbeat(const SimulatedProcess& plant) { RecordOf(plant).heartbeat = plant.machine().Now(); }
   // Processes with another configuration than the plant's take part since now, or no longer.
   void SetOtherConfiguration(bool present);
   // A process has ended.

@@ -45,6 +45,11 @@ class PlantRecord {
 
   void Receive(const ReceivedCommand& command);
 
+  // It has been told to end.
+  void Stop() {
+    if (!stop_tick) stop_tick = tick;
+  }
+
   // The newest received command for a tick from `oldest` to `newest` with exactly that voltage.
   std::optional<ReceivedCommand> Newest(double wanted, int64_t oldest, int64_t newest);
   // A made-up or changed one among the last that were received.

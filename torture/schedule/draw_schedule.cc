@@ -55,6 +55,7 @@ void DrawLauncher(uint64_t seed, Schedule* schedule) {
   schedule->logger_required = !schedule->logger || random.Chance(0.5);
   constexpr FaultKind kKinds[] = {FaultKind::kLauncherHang, FaultKind::kLongHang, FaultKind::kLauncherCrash,
                                   FaultKind::kInterrupt};
+  const size_t own = schedule->injections.size();
   for (uint64_t i = random.Index(4); i > 0; --i) {
     Injection injection;
     injection.kind = kKinds[random.Index(std::size(kKinds))];
@@ -63,7 +64,9 @@ void DrawLauncher(uint64_t seed, Schedule* schedule) {
     DrawNumbers(random, schedule->faults_until_s, &injection);
     // While something else goes wrong, as often as not.
     if (random.Chance(0.5)) {
-      const Injection& other = schedule->injections[random.Index(schedule->injections.size())];
+      const size_t first = schedule->injections.size() > own ? own : 0;  // of these, if there is one
+      const Injection& other =
+          schedule->injections[first + random.Index(schedule->injections.size() - first)];
       injection.at_s = Rounded(other.at_s + random.Unit() * (other.duration_s + 0.02), 1e6);
     }
     schedule->injections.push_back(injection);

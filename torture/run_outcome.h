@@ -1,0 +1,25 @@
+// What a run is given, and what comes of it.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "settings/stack_config.h"
+#include "torture/invariants/observer.h"
+
+namespace hydro::torture {
+
+// What is run.
+struct Stacks {
+  settings::StackConfig right;
+  settings::StackConfig other;          // what FaultKind::kOtherConfiguration starts a process with
+  settings::StackConfig other_version;  // the same of kOtherVersion
+};
+
+struct RunOutcome {
+  std::vector<Violation> violations;
+  uint64_t trace = 0;  // of everything that happened
+  Coverage coverage;
+};
+
+}  // namespace hydro::torture
