@@ -1,49 +1,26 @@
 #include "diagnose/data/recording_mistake.h"
 
+#include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "base/number_text.h"
-#include "base/units.h"
 #include "base/word_list.h"
 #include "runs/measured_signals.h"
+#include "runs/signal_unit.h"
 
 namespace hydro::diagnose {
 namespace {
 
 using Run = runs::MeasuredRun;
 
-constexpr double kPi = std::numbers::pi;
-constexpr double kBar = 1e5 / kPsi;  // psi
+// Units in which newcomers record, as a sidecar names them; those of another quantity than a signal's are passed over.
+constexpr const char* kUnits[] = {"bar",   "kPa",  "MPa", "Pa",   "psi", "rpm", "deg/s", "rev/s",
+                                  "rad/s", "deg",  "rev", "rad",  "mm",  "cm",  "m",     "in",
+                                  "mm/s",  "cm/s", "m/s", "in/s", "mV",  "V"};
+constexpr const char* kTimeUnits[] = {"ms", "us", "min", "s"};
+constexpr double kSameScale = 1e-4;  // relative: scales are written with few digits
 
-// A unit in which a column may have been recorded, and what brings it to ours.
-struct UnitFactor {
-  double factor;
-  const char* recorded;  // in words; "" for a factor without a name
-  const char* unit;      // as a sidecar's line names it; "" if it cannot
-};
-
-constexpr UnitFactor kPressureUnits[] = {{kBar, "bar", "bar"},
-                                         {kBar / 100, "kPa", "kPa"},
-                                         {kBar * 10, "MPa", "MPa"},
-                                         {kBar / 1e5, "Pa", "Pa"},
-                                         {1 / kBar, "", ""},
-                                         {100 / kBar, "", ""},
-                                         {0.1 / kBar, "", ""},
-                                         {1e5 / kBar, "", ""},
-                                         {1e3, "", ""},
-                                         {1e-3, "", ""},
-                                         {1e5, "", ""},
-                                         {1e-5, "", ""},
-                                         {1e6, "", ""},
-                                         {1e-6, "", ""}};
-constexpr UnitFactor kSpeedUnits[] = {{kRpm, "rpm", "rpm"},   {kDegree, "deg/s", "deg/s"},
-                                      {2 * kPi, "rev/s", ""}, {1 / kRpm, "", ""},
-                                      {1 / kDegree, "", ""},  {0.5 / kPi, "", ""}};
-constexpr UnitFactor kAngleUnits[] = {
-    {kDegree, "deg", "deg"}, {2 * kPi, "revolutions", ""}, {1 / kDegree, "", ""}, {0.5 / kPi, "", ""}};
-constexpr UnitFactor kCommandUnits[] = {{1e-3, "mV", ""}, {1e3, "kV", ""}};
-constexpr UnitFactor kTimeUnits[] = {{1e-3, "ms", "ms"}, {1e-6, "us", "us"}, {60, "min", "min"}};
+bool IsNear(double a, double b) { return std::abs(a - b) <= kSameScale * std::abs(b); }
 
 const char* NameOf(SignalOfRun signal) {
   for (const runs::SignalName& one : runs::kSignals) {
@@ -68,31 +45,76 @@ std::vector<SignalOfRun> Measured(const Run& run, const std::vector<SignalOfRun>
   return measured;
 }
 
+// The signal's unit in the model.
+std::string UnitOf(const Run& run, SignalOfRun signal) {
+  for (const runs::SignalName& one : runs::kSignals) {
+    if (one.signal == signal) return run.units.UnitFor(one.unit, one.arm);
+  }
+  return "";
+}
+
+// The unit that a column is said to be in: ours where nothing is said; "" where its scale is no unit's.
+template <size_t n>
+std::string StatedUnit(const runs::ColumnSource& source, const std::string& ours,
+                       const char* const (&units)[n]) {
+  if (source.scale == 1) return ours;
+  for (const char* unit : units) {
+    const std::optional<double> factor = runs::UnitFactor(unit, ours);
+    if (factor.has_value() && IsNear(source.scale, *factor)) return unit;
+  }
+  return "";
+}
+
+// What brings a column that is in `unit`, but is said to be in `stated`, to ours; empty where both are the same.
+std::optional<double> FactorBetween(const std::string& unit, const std::string& ours,
+                                    const std::string& stated) {
+  const std::optional<double> factor = runs::UnitFactor(unit, ours);
+  if (!factor.has_value()) return std::nullopt;
+  const double said = stated.empty() ? 1 : runs::UnitFactor(stated, ours).value_or(1);
+  if (IsNear(*factor, said)) return std::nullopt;
+  return *factor / said;
+}
+
+std::string ShaftName(model::Shaft shaft) {
+  for (const auto& [name, one] : runs::kShafts) {
+    if (one == shaft) return name;
+  }
+  return "";
+}
+
+std::string NotIn(const std::string& stated, const std::string& ours) {
+  return stated.empty() || stated == ours ? "" : ", not in " + stated;
+}
+
 class MistakeList {
  public:
   explicit MistakeList(const Run& run) : run_(run) {}
 
-  template <size_t n>
-  void AddUnits(const std::vector<SignalOfRun>& signals, const UnitFactor (&units)[n]) {
+  void AddUnits(const std::vector<SignalOfRun>& signals) {
     const std::vector<SignalOfRun> measured = Measured(run_, signals);
-    if (measured.empty()) return;
-    for (const UnitFactor& unit : units) {
+    if (measured.size() < signals.size()) return;
+    const std::string ours = UnitOf(run_, measured.front());
+    const std::string stated = StatedUnit((run_.*measured.front()).source, ours, kUnits);
+    for (const char* unit : kUnits) {
+      const std::optional<double> factor = FactorBetween(unit, ours, stated);
+      if (!factor.has_value()) continue;
       RecordingMistake mistake;
-      mistake.what = NamesOf(measured) + (*unit.recorded != '\0' ? std::string(" in ") + unit.recorded
-                                                                 : " in another unit, off by a factor of " +
-                                                                       ShortNumber(unit.factor, 4));
-      for (const SignalOfRun signal : measured) mistake.factors.emplace_back(signal, unit.factor);
+      mistake.what = NamesOf(measured) + " in " + unit + NotIn(stated, ours);
       // A reference is in the unit of the pressures; no simulation depends on it.
-      mistake.unit = unit.unit;
+      for (const SignalOfRun signal : measured) mistake.factors.emplace_back(signal, *factor);
+      mistake.unit = unit;
       list_.push_back(std::move(mistake));
     }
   }
   void AddTimes() {
-    for (const UnitFactor& unit : kTimeUnits) {
+    const std::string stated = StatedUnit(run_.time_source, "s", kTimeUnits);
+    for (const char* unit : kTimeUnits) {
+      const std::optional<double> factor = FactorBetween(unit, "s", stated);
+      if (!factor.has_value()) continue;
       RecordingMistake mistake;
-      mistake.what = std::string("time is in ") + unit.recorded;
-      mistake.time_factor = unit.factor;
-      mistake.unit = unit.unit;
+      mistake.what = std::string("time is in ") + unit + NotIn(stated, "s");
+      mistake.time_factor = *factor;
+      mistake.unit = unit;
       list_.push_back(std::move(mistake));
     }
   }
@@ -108,15 +130,10 @@ class MistakeList {
     mistake.what = Enumerated(names) + (names.size() > 1 ? " have" : " has") + " the wrong sign";
     list_.push_back(std::move(mistake));
   }
-  // With the voltage's sign or without.
-  void AddExchange(bool voltage) {
+  void AddExchange() {
     if (!run_.p1.measured() || !run_.p2.measured() || run_.bypass) return;
     RecordingMistake mistake;
     mistake.what = "p1 and p2 are exchanged";
-    if (voltage) {
-      mistake.what += " and voltage has the wrong sign";
-      mistake.factors.emplace_back(&Run::voltage, -1.0);
-    }
     mistake.pressures_exchanged = true;
     list_.push_back(std::move(mistake));
   }
@@ -134,68 +151,80 @@ void Multiply(double factor, runs::MeasuredSignal* signal) {
   signal->source.offset *= factor;
 }
 
-std::string SidecarLine(const std::string& name, const runs::ColumnSource& before,
-                        const runs::ColumnSource& after, const std::string& column, const std::string& unit) {
-  std::string line = name + " = { column = \"" + column + "\"";
-  // A unit says it best, if nothing else is said of the column.
-  const bool plain = before.column == after.column && before.scale == 1 && before.offset == 0;
-  if (plain && !unit.empty()) {
-    line += ", unit = \"" + unit + "\"";
-  } else {
-    if (after.scale != 1) line += ", scale = " + ShortNumber(after.scale, 8);
-    if (after.offset != 0) line += ", offset = " + ShortNumber(after.offset, 8);
+void AddSignals(const Run& run, MistakeList* list) {
+  list->AddSign({&Run::voltage});
+  list->AddExchange();
+  list->AddSign({&Run::motor_speed});
+  list->AddSign({&Run::motor_angle});
+  list->AddSign({&Run::motor_speed, &Run::motor_angle});
+  if (run.shaft != model::Shaft::kClamped) {
+    list->AddSign({&Run::arm_angle});
+    list->AddSign({&Run::arm_speed});
+    list->AddSign({&Run::arm_angle, &Run::arm_speed});
+    list->AddUnits({&Run::arm_angle});
+    list->AddUnits({&Run::arm_speed});
   }
-  if (after.delay != 0) line += ", delay = " + ShortestNumber(after.delay);
-  return line + " }";
-}
-
-bool Same(const runs::ColumnSource& a, const runs::ColumnSource& b) {
-  return a.column == b.column && a.scale == b.scale && a.offset == b.offset;
-}
-
-// The unit that alone is wrong with a signal (null: the times); "" if there is none or more is wrong.
-std::string UnitOf(const std::vector<RecordingMistake>& mistakes, const SignalOfRun* signal) {
-  std::string unit;
-  int concerned = 0;
-  for (const RecordingMistake& mistake : mistakes) {
-    bool concerns = signal == nullptr ? mistake.time_factor != 1 : false;
-    for (const auto& [of, factor] : mistake.factors)
-      concerns = concerns || (signal != nullptr && of == *signal);
-    if (!concerns) continue;
-    ++concerned;
-    unit = mistake.unit;
-  }
-  return concerned == 1 ? unit : "";
+  list->AddUnits({&Run::motor_speed});
+  list->AddUnits({&Run::motor_angle});
+  list->AddUnits({&Run::p1, &Run::p2});
+  list->AddUnits({&Run::p1});
+  list->AddUnits({&Run::p2});
+  list->AddUnits({&Run::voltage});
 }
 
 }  // namespace
 
+bool RecordingMistake::IsSign() const { return !factors.empty() && factors[0].second == -1; }
+
+bool RecordingMistake::IsOfOnePressure() const {
+  return factors.size() == 1 && (factors[0].first == &Run::p1 || factors[0].first == &Run::p2);
+}
+
 std::string RecordingMistake::InvertedSensor() const {
-  const bool sensor = factors.size() == 1 && factors[0].second == -1 && factors[0].first != &Run::voltage;
-  return sensor && !pressures_exchanged && time_factor == 1 ? NameOf(factors[0].first) : "";
+  const bool sensor = factors.size() == 1 && IsSign() && factors[0].first != &Run::voltage;
+  return sensor ? NameOf(factors[0].first) : "";
 }
 
 std::vector<RecordingMistake> PossibleMistakes(const Run& run) {
   MistakeList list(run);
   list.AddTimes();
-  list.AddSign({&Run::voltage});
-  list.AddExchange(false);
-  list.AddSign({&Run::motor_speed});
-  list.AddSign({&Run::motor_angle});
-  list.AddSign({&Run::motor_speed, &Run::motor_angle});
-  list.AddExchange(true);
-  if (run.shaft != model::Shaft::kClamped) {
-    list.AddSign({&Run::arm_angle});
-    list.AddSign({&Run::arm_speed});
-    list.AddSign({&Run::arm_angle, &Run::arm_speed});
-    list.AddUnits({&Run::arm_angle}, kAngleUnits);
-    list.AddUnits({&Run::arm_speed}, kSpeedUnits);
-  }
-  list.AddUnits({&Run::motor_speed}, kSpeedUnits);
-  list.AddUnits({&Run::motor_angle}, kAngleUnits);
-  list.AddUnits({&Run::p1, &Run::p2}, kPressureUnits);
-  list.AddUnits({&Run::voltage}, kCommandUnits);
+  AddSignals(run, &list);
   return list.Take();
+}
+
+std::vector<RecordingMistake> OtherShafts(const Run& run) {
+  std::vector<RecordingMistake> others;
+  for (const auto& [name, shaft] : runs::kShafts) {
+    const bool possible = shaft != model::Shaft::kDriven && run.shaft != model::Shaft::kDriven;
+    if (!possible || shaft == run.shaft || run.bypass) continue;
+    RecordingMistake mistake;
+    mistake.what = "the shaft is " + name + ", not " + ShaftName(run.shaft);
+    mistake.shaft = shaft;
+    others.push_back(std::move(mistake));
+  }
+  return others;
+}
+
+RecordingMistake UnknownUnit(const std::vector<SignalOfRun>& signals, double factor) {
+  RecordingMistake mistake;
+  mistake.what = NamesOf(signals) + " about " + ShortNumber(factor < 1 ? 1 / factor : factor, 2) +
+                 " times too " + (factor < 1 ? "large" : "small") + "; no known unit";
+  for (const SignalOfRun signal : signals) mistake.factors.emplace_back(signal, factor);
+  return mistake;
+}
+
+bool Exclude(const RecordingMistake& a, const RecordingMistake& b) {
+  if ((a.time_factor != 1 && b.time_factor != 1) || (a.pressures_exchanged && b.pressures_exchanged))
+    return true;
+  if (a.shaft.has_value() && b.shaft.has_value()) return true;
+  if (a.IsSign() != b.IsSign()) return false;
+  // Both pressures in one unit are a mistake of their own.
+  const bool pressures = a.IsOfOnePressure() && b.IsOfOnePressure();
+  if (pressures && a.unit == b.unit) return true;
+  return std::any_of(a.factors.begin(), a.factors.end(), [&](const auto& one) {
+    return std::any_of(b.factors.begin(), b.factors.end(),
+                       [&](const auto& other) { return one.first == other.first; });
+  });
 }
 
 void Correct(const RecordingMistake& mistake, Run* run) {
@@ -205,30 +234,7 @@ void Correct(const RecordingMistake& mistake, Run* run) {
   run->time_source.offset *= mistake.time_factor;
   for (const auto& [signal, factor] : mistake.factors) Multiply(factor, &(run->*signal));
   if (mistake.pressures_exchanged) std::swap(run->p1, run->p2);
-}
-
-std::string SidecarLines(const std::vector<RecordingMistake>& mistakes, const Run& run) {
-  // Only what the sidecar says of the columns matters here.
-  Run before;
-  before.time_source = run.time_source;
-  for (const runs::SignalName& one : runs::kSignals) {
-    (before.*one.signal).source = (run.*one.signal).source;
-    if ((before.*one.signal).source.column.empty()) (before.*one.signal).source.column = one.exported;
-  }
-  if (before.time_source.column.empty()) before.time_source.column = "time_s";
-  Run after = before;
-  for (const RecordingMistake& mistake : mistakes) Correct(mistake, &after);
-  std::vector<std::string> lines;
-  const auto add = [&](const char* name, const runs::ColumnSource& from, const runs::ColumnSource& to,
-                       const SignalOfRun* signal) {
-    if (Same(from, to)) return;
-    lines.push_back(SidecarLine(name, from, to, to.column, UnitOf(mistakes, signal)));
-  };
-  add("time", before.time_source, after.time_source, nullptr);
-  for (const runs::SignalName& one : runs::kSignals) {
-    add(one.ours, (before.*one.signal).source, (after.*one.signal).source, &one.signal);
-  }
-  return Joined(lines, "; ");
+  if (mistake.shaft.has_value()) run->shaft = *mistake.shaft;
 }
 
 }  // namespace hydro::diagnose
