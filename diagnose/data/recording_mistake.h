@@ -13,6 +13,9 @@ namespace hydro::diagnose {
 
 using SignalOfRun = runs::MeasuredSignal runs::MeasuredRun::*;
 
+// "motor_speed"
+const char* NameOf(SignalOfRun signal);
+
 struct RecordingMistake {
   std::string what;  // "the voltage has the wrong sign"
   // What the signals are to be multiplied by.

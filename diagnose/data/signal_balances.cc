@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "diagnose/data/balance_rows.h"
 #include "diagnose/data/run_data.h"
 
 namespace hydro::diagnose {
@@ -12,123 +13,15 @@ namespace {
 using Eigen::Index;
 using Eigen::VectorXd;
 using Run = runs::MeasuredRun;
-using Rows = std::vector<std::vector<VectorXd>>;
 
-constexpr double kFloor = 0.01;   // of the squared terms: no model is better known
-constexpr size_t kSegments = 10;  // in a window, each overlapping half of the next
-constexpr size_t kShortest = 3;   // samples of a segment
-constexpr double kLow = 0.05;     // of a pressure's range: there a valve may be open, and no flow balances
+constexpr double kFloor = 0.01;  // of the squared terms: no model is better known
 constexpr size_t kFewestWindows = 3;
 constexpr Index kFewestRows = 3;  // of a window
 
-// A segment of a window, from a sample to another, with the integrals and differences of its signals.
-struct Segment {
-  const Run& window;
-  size_t first, last;
-
-  double Duration() const { return window.time[last] - window.time[first]; }
-  double Difference(const runs::MeasuredSignal& signal) const {
-    return signal.values[last] - signal.values[first];
-  }
-  template <class Value>
-  double Integral(const Value& value) const {
-    double sum = 0;
-    for (size_t i = first; i < last; ++i) {
-      sum += 0.5 * (value(i) + value(i + 1)) * (window.time[i + 1] - window.time[i]);
-    }
-    return sum;
-  }
-  double Integral(const runs::MeasuredSignal& signal) const {
-    return Integral([&signal](size_t i) { return signal.values[i]; });
-  }
-  // Of the torque that the held command asks for, eq. (1).
-  double Torque(const model::Parameters& model, double factor) const {
-    double sum = 0;
-    for (size_t i = first; i < last; ++i) {
-      const double torque =
-          std::clamp(model.k_1 * factor * window.voltage.values[i], -model.T_pmax, model.T_pmax);
-      sum += torque * (window.time[i + 1] - window.time[i]);
-    }
-    return sum;
-  }
-};
-
-template <class Row>
-Rows RowsOf(const std::vector<Run>& windows, const Row& row) {
-  Rows rows;
-  for (const Run& window : windows) {
-    rows.emplace_back();
-    const size_t length = std::max(kShortest, window.samples() / kSegments);
-    for (size_t first = 0; first + length < window.samples(); first += std::max<size_t>(1, length / 2)) {
-      VectorXd terms = row(Segment{window, first, first + length});
-      if (terms.size() > 0 && terms.allFinite()) rows.back().push_back(std::move(terms));
-    }
-  }
-  return rows;
-}
-
-double MotorSpeed(const Run& window, size_t i) {
-  if (window.motor_speed.measured()) return window.motor_speed.values[i];
-  const size_t before = i > 0 ? i - 1 : i, after = std::min(i + 1, window.samples() - 1);
-  return (window.motor_angle.values[after] - window.motor_angle.values[before]) /
-         (window.time[after] - window.time[before]);
-}
-
-Rows RatesOfAngles(const std::vector<Run>& windows, const runs::MeasuredSignal Run::*angle,
-                   const runs::MeasuredSignal Run::*speed) {
-  return RowsOf(windows, [&](const Segment& segment) {
-    return VectorXd{{segment.Difference(segment.window.*angle), segment.Integral(segment.window.*speed)}};
-  });
-}
-
-// Inertia, oil of both columns, viscous and dry friction, and the command's torque at each factor.
-Rows TorqueRows(const model::Parameters& model, const std::vector<Run>& windows, bool bypass, double slowest,
-                const std::vector<double>& commands) {
-  return RowsOf(windows, [&](const Segment& segment) {
-    const Run& window = segment.window;
-    const auto speed = [&window](size_t i) { return MotorSpeed(window, i); };
-    VectorXd row(5 + static_cast<Index>(commands.size()));
-    row(0) = model.J * (speed(segment.last) - speed(segment.first));
-    row(1) = bypass ? 0 : model.D * segment.Integral(window.p1);
-    row(2) = bypass ? 0 : model.D * segment.Integral(window.p2);
-    row(3) = model.b * segment.Integral(speed);
-    row(4) = model.T_s * segment.Integral([&](size_t i) { return std::tanh(speed(i) / slowest); });
-    for (size_t c = 0; c < commands.size(); ++c) {
-      row(5 + static_cast<Index>(c)) = segment.Torque(model, commands[c]);
-    }
-    return row;
-  });
-}
-
-// Compression, that of the displaced volume, the pump's flow, the arm's, leakage out, p_3's part of it, and across.
-Rows FlowRows(const model::Parameters& model, const Run& run, const std::vector<Run>& windows,
-              runs::MeasuredSignal Run::*own, runs::MeasuredSignal Run::*other) {
-  const ValueRange range = RangeOfValues((run.*own).values);
-  const double low = range.low + kLow * range.size();
-  const bool clamped = run.shaft == model::Shaft::kClamped;
-  return RowsOf(windows, [&](const Segment& segment) -> VectorXd {
-    const Run& window = segment.window;
-    const double time = segment.Duration(), pressure = segment.Integral(window.*own);
-    if (!(pressure / time > low)) return {};
-    const double rise = segment.Difference(window.*own) / model.beta;
-    const bool angle = !clamped && window.arm_angle.measured();
-    const double arm = clamped ? run.arm_angle_rad : angle ? window.arm_angle.values[segment.first] : 0;
-    const double moves = clamped ? 0
-                         : angle ? segment.Difference(window.arm_angle)
-                                 : segment.Integral(window.arm_speed);
-    return VectorXd{{model.V_ms * rise, model.c * arm * rise,
-                     model.D * segment.Integral([&window](size_t i) { return MotorSpeed(window, i); }),
-                     model.c * moves, model.c_E * pressure, model.c_E * model.p_3 * time,
-                     model.c_I * pressure,
-                     (window.*other).measured() ? model.c_I * segment.Integral(window.*other) : 0.0}};
-  });
-}
-
 }  // namespace
 
-SignalFactors FactorsOf(const std::vector<RecordingMistake>& mistakes) {
-  SignalFactors factors;
-  const std::pair<SignalOfRun, double SignalFactors::*> members[] = {
+void AddFactors(const RecordingMistake& mistake, SignalFactors* factors) {
+  static constexpr std::pair<SignalOfRun, double SignalFactors::*> kMembers[] = {
       {&Run::voltage, &SignalFactors::voltage},
       {&Run::motor_speed, &SignalFactors::motor_speed},
       {&Run::motor_angle, &SignalFactors::motor_angle},
@@ -136,20 +29,17 @@ SignalFactors FactorsOf(const std::vector<RecordingMistake>& mistakes) {
       {&Run::arm_speed, &SignalFactors::arm_speed},
       {&Run::p1, &SignalFactors::p1},
       {&Run::p2, &SignalFactors::p2}};
-  for (const RecordingMistake& mistake : mistakes) {
-    factors.time *= mistake.time_factor;
-    for (const auto& [signal, factor] : mistake.factors) {
-      for (const auto& [of, member] : members) {
-        if (of != signal) continue;
-        // After an exchange the name means the other column.
-        const bool other = factors.exchanged && (signal == &Run::p1 || signal == &Run::p2);
-        const auto column = !other ? member : signal == &Run::p1 ? &SignalFactors::p2 : &SignalFactors::p1;
-        factors.*column *= factor;
-      }
+  factors->time *= mistake.time_factor;
+  for (const auto& [signal, factor] : mistake.factors) {
+    for (const auto& [of, member] : kMembers) {
+      if (of != signal) continue;
+      // After an exchange the name means the other column.
+      const bool other = factors->exchanged && (signal == &Run::p1 || signal == &Run::p2);
+      const auto column = !other ? member : signal == &Run::p1 ? &SignalFactors::p2 : &SignalFactors::p1;
+      factors->*column *= factor;
     }
-    factors.exchanged = factors.exchanged != mistake.pressures_exchanged;
   }
-  return factors;
+  factors->exchanged = factors->exchanged != mistake.pressures_exchanged;
 }
 
 SignalBalances::SignalBalances(const model::Parameters& model, const Run& run,
@@ -157,7 +47,9 @@ SignalBalances::SignalBalances(const model::Parameters& model, const Run& run,
                                const std::vector<RecordingMistake>& possible) {
   commands_ = {1};
   for (const RecordingMistake& mistake : possible) {
-    const double size = std::abs(FactorsOf({mistake}).voltage);
+    SignalFactors factors;
+    AddFactors(mistake, &factors);
+    const double size = std::abs(factors.voltage);
     if (std::find(commands_.begin(), commands_.end(), size) == commands_.end()) commands_.push_back(size);
   }
   clamped_ = run.shaft == model::Shaft::kClamped;
@@ -180,7 +72,7 @@ SignalBalances::SignalBalances(const model::Parameters& model, const Run& run,
   if (flow_ && run.p2.measured()) flows_[1] = BalanceOf(FlowRows(model, run, windows, &Run::p2, &Run::p1));
 }
 
-SignalBalances::Balance SignalBalances::BalanceOf(const Rows& rows) {
+SignalBalances::Balance SignalBalances::BalanceOf(const BalanceRows& rows) {
   Balance balance;
   Index all = 0;
   for (const auto& window : rows) {

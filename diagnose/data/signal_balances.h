@@ -5,6 +5,7 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "diagnose/data/balance_rows.h"
 #include "diagnose/data/recording_mistake.h"
 #include "model/terms/description.h"
 #include "runs/measured_run.h"
@@ -17,7 +18,8 @@ struct SignalFactors {
   double p1 = 1, p2 = 1;   // of the columns, before they change places
   bool exchanged = false;  // p1 and p2
 };
-SignalFactors FactorsOf(const std::vector<RecordingMistake>& mistakes);
+// Adds what undoes one more mistake.
+void AddFactors(const RecordingMistake& mistake, SignalFactors* factors);
 
 // The balances, integrated over short segments: speeds are the rates of angles; eq. (4), the torque on the pump; eqs.
 // (13) and (14), the flows. None of them has the arm's torque, so what the arm carries does not matter.
@@ -39,7 +41,7 @@ class SignalBalances {
     Eigen::MatrixXd squares;          // of each term, a row for each window
     double LeftOpen(const Eigen::VectorXd& coefficients) const;
   };
-  static Balance BalanceOf(const std::vector<std::vector<Eigen::VectorXd>>& rows);
+  static Balance BalanceOf(const BalanceRows& rows);
   double TorqueLeftOpen(const SignalFactors& factors) const;
   double FlowLeftOpen(const SignalFactors& factors, int side) const;
 

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <array>
-#include <optional>
 #include <vector>
 
 #include "model/response.h"
@@ -25,11 +24,6 @@ std::array<bool, model::kChannels> ChannelsThatMove(const runs::MeasuredRun& win
 using PredictionErrors = std::array<double, model::kChannels>;
 inline constexpr double kUnpredicted = 1e4;
 enum class WindowStart { kFitted, kMeasured };
-
-// The model with the weight of a free arm that its measured motion needs in this window, eq. (15): gravity and friction
-// that the model lacks are as good as constant there. Empty where pressures or the arm's angle are missing.
-std::optional<model::ModelDescription> WithLoadOf(const model::ModelDescription& model,
-                                                  const runs::MeasuredRun& window);
 PredictionErrors PredictWindow(const model::ModelDescription& model, const runs::MeasuredRun& window,
                                WindowStart start);
 

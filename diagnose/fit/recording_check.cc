@@ -8,6 +8,7 @@
 #include "base/parallel.h"
 #include "diagnose/data/other_side.h"
 #include "diagnose/fit/run_check.h"
+#include "diagnose/fit/unknown_findings.h"
 
 namespace hydro::diagnose {
 namespace {
@@ -15,9 +16,8 @@ namespace {
 using Run = runs::MeasuredRun;
 using Mistakes = std::vector<RecordingMistake>;
 
-constexpr size_t kOfEachRun = 3;         // explanations that the other runs are asked about
-const double kAlone = std::log(1000.0);  // gain where several other runs do not have the mistake
-const double kAsGood = std::log(1.5);    // gains that are as good as each other
+constexpr size_t kOfEachRun = 3;       // explanations that the other runs are asked about
+const double kAsGood = std::log(1.5);  // gains that are as good as each other
 
 // What all runs that are not in order say of the same sets of mistakes.
 class Pool {
@@ -152,7 +152,7 @@ std::vector<RecordingFinding> WithoutDoubtful(size_t runs, const std::vector<Rec
     const auto same = std::count_if(findings.begin(), findings.end(), [&](const RecordingFinding& other) {
       return other.mistakes == one.mistakes;
     });
-    if (same > 1 || one.gain >= kAlone || one.corrected <= kInOrder) sure.push_back(one);
+    if (same > 1 || one.gain >= FarAlone() || one.corrected <= kInOrder) sure.push_back(one);
   }
   return sure;
 }
@@ -179,7 +179,9 @@ std::vector<RecordingFinding> CheckRecordings(const model::ModelDescription& mod
       findings.push_back(FindingOf(r, pool.Own(r).front(), as_recorded));
     }
   }
-  return WithoutDoubtful(runs.size(), findings);
+  std::vector<RecordingFinding> sure = WithoutDoubtful(runs.size(), findings);
+  if (sure.empty()) sure = UnknownFactorFindings(checks, jobs);
+  return sure;
 }
 
 }  // namespace hydro::diagnose

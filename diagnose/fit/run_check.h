@@ -30,6 +30,8 @@ struct MistakeTrial {
 
 // Fall of the squared error over all signals that counts as far better, a logarithm.
 double FarBetter();
+// The same where several other runs do not have the mistake, or no known unit explains it.
+double FarAlone();
 // A recording is in order when the median squared error of every signal is below: a fifth of its movement.
 inline constexpr double kInOrder = 4;
 
@@ -48,6 +50,9 @@ class RunCheck {
 
   // These mistakes, as far as this run can have them.
   MistakeTrial Try(const std::vector<RecordingMistake>& mistakes) const;
+
+  // A factor of one signal that is no known unit's, where nothing else explains the run.
+  std::optional<MistakeTrial> UnknownFactor() const;
 
  private:
   using Errors = std::vector<PredictionErrors>;

@@ -175,6 +175,37 @@ TEST_F(RecordingCheckTest, ArmWithoutItsWeight) {
   EXPECT_THAT(remarks[0], HasSubstr("motor_speed is in rpm"));
 }
 
+// Tests that a factor that is no unit's is said as that, once for all runs, and no line is made up for the sidecar.
+TEST_F(RecordingCheckTest, UnknownFactor) {
+  const auto remarks = Remarks([](runs::MeasuredRun& run) {
+    Multiply(&run.p1.values, 3.1);
+    Multiply(&run.p2.values, 3.1);
+  });
+  ASSERT_EQ(remarks.size(), 1u);
+  EXPECT_THAT(remarks[0], HasSubstr("p1 and p2 are about "));
+  EXPECT_THAT(remarks[0], HasSubstr("times too large; no known unit"));
+  EXPECT_THAT(remarks[0], ::testing::Not(HasSubstr("mends")));
+}
+
+// Tests that a shaft that was held otherwise than the sidecar says is not taken for a unit.
+TEST_F(RecordingCheckTest, OtherShaft) {
+  std::vector<runs::MeasuredRun> swing;
+  for (const runs::MeasuredRun& run : *recorded_) {
+    if (run.name == "swing" || run.name == "levels") swing.push_back(run);
+  }
+  ASSERT_EQ(swing.size(), 2u);
+  swing[1].shaft = model::Shaft::kClamped;
+  swing[1].arm_angle = {};
+  auto remarks = FindingRemarks(CheckRecordings(given_, swing, 1), swing);
+  ASSERT_EQ(remarks.size(), 1u);
+  EXPECT_THAT(remarks[0], HasSubstr("run swing: the shaft is free, not clamped"));
+  EXPECT_THAT(remarks[0], HasSubstr("shaft = \"free\""));
+  swing[1].shaft = swing[0].shaft = model::Shaft::kFree;
+  remarks = FindingRemarks(CheckRecordings(given_, swing, 1), swing);
+  ASSERT_EQ(remarks.size(), 1u);
+  EXPECT_THAT(remarks[0], HasSubstr("run levels: the shaft is clamped, not free"));
+}
+
 // Tests that one run of several that alone says something weakly, and is not in order then, is not believed: offsets and a lag of the
 // motor looked like bar in one run of six. One that is in order then, a great fall or a second run are.
 TEST(RecordingFindings, OneRunAloneSaysItWeakly) {
