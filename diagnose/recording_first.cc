@@ -58,7 +58,8 @@ void SetUntried(BeforeAfter* gap) { gap->before = gap->refit_only = gap->after =
 
 CheckedRecordings CheckFirst(const model::ModelDescription& model, const std::vector<std::string>& effects,
                              int jobs, std::vector<runs::MeasuredRun>* runs,
-                             std::vector<runs::MeasuredRun>* held_out) {
+                             std::vector<runs::MeasuredRun>* held_out,
+                             const std::function<bool()>& time_is_up) {
   CheckedRecordings checked;
   for (auto* some : {runs, held_out}) {
     const std::vector<std::string> damage = SetAsideDamage(some);
@@ -66,7 +67,7 @@ CheckedRecordings CheckFirst(const model::ModelDescription& model, const std::ve
   }
   std::vector<runs::MeasuredRun> all = *runs;
   all.insert(all.end(), held_out->begin(), held_out->end());
-  const std::vector<RecordingFinding> findings = CheckRecordings(model, all, jobs);
+  const std::vector<RecordingFinding> findings = CheckRecordings(model, all, jobs, time_is_up);
   checked.mistakes = FindingRemarks(findings, all);
   const bool may_name_signs =
       effects.empty() || std::find(effects.begin(), effects.end(), kSign) != effects.end();
