@@ -55,6 +55,13 @@ RunCheck::RunCheck(const model::ModelDescription& model, const Run& run,
   given_ = slow_ ? Unpredicted() : Predict({}, windows_.size(), WindowStart::kFitted);
   as_recorded_ = WorstSignal(given_);
   in_order_ = as_recorded_ <= kInOrder;
+  if (!in_order_ || slow_ || run_.shaft != model::Shaft::kFree) return;
+  Errors own = PredictWith(Load::kGiven, {}, windows_.size(), WindowStart::kFitted);
+  if (WorstSignal(own) <= kInOrder) return;
+  with_own_load_ = true;
+  in_order_ = false;
+  given_ = std::move(own);
+  as_recorded_ = WorstSignal(given_);
 }
 
 std::vector<MistakeTrial> RunCheck::Explanations() const {
@@ -85,6 +92,7 @@ MistakeTrial RunCheck::Tried(const Mistakes& mistakes) const {
   const bool free = run_.shaft == model::Shaft::kFree && run_.arm_angle.measured();
   const Errors freely =
       free ? PredictWith(Load::kGiven, mistakes, windows_.size(), WindowStart::kFitted) : Errors();
+  if (with_own_load_ && trial.worst > kInOrder) trial.worst = kUnpredicted;
   trial.free_badness = free ? MedianBadness(freely) : std::numeric_limits<double>::quiet_NaN();
   trial.free_worst = free ? WorstSignal(freely) : std::numeric_limits<double>::quiet_NaN();
   return trial;
@@ -98,7 +106,7 @@ RunCheck::Errors RunCheck::Unpredicted() const {
 
 RunCheck::Errors RunCheck::Predict(const Mistakes& mistakes, size_t count, WindowStart start) const {
   const Errors given = PredictWith(Load::kGiven, mistakes, count, start);
-  if (run_.shaft == model::Shaft::kClamped || !run_.arm_angle.measured()) return given;
+  if (with_own_load_ || run_.shaft == model::Shaft::kClamped || !run_.arm_angle.measured()) return given;
   const Errors shown = PredictWith(Load::kShown, mistakes, count, start);
   const bool better = MedianBadness(shown) < MedianBadness(given);
   return better ? shown : given;

@@ -74,6 +74,9 @@ class RunCheck {
   runs::MeasuredRun run_;
   std::vector<RecordingMistake> possible_;
   bool slow_, in_order_ = true;
+  // In order only with the load that the arm's motion shows: a wrong unit of the pressures may pass for that load, so a
+  // mistake counts where the run is in order without it and with the model's own load.
+  bool with_own_load_ = false;
   std::vector<runs::MeasuredRun> windows_;
   std::vector<std::array<bool, model::kChannels>> moves_;
   Errors given_;
