@@ -40,6 +40,19 @@ std::vector<Mistakes> RunCheck::Candidates() const {
   if (order.size() > kBest) order.resize(kBest);
   std::vector<Mistakes> candidates;
   for (auto& [merit, joint] : order) candidates.push_back(std::move(joint));
+  // Each of the best alone, for which few windows with measured starts are a weak witness.
+  std::vector<std::pair<double, Mistakes>> alone;
+  for (const RecordingMistake& mistake : possible_) {
+    if ((slow_ && mistake.time_factor == 1) || time_is_up_()) continue;
+    const double gain = Gain(first, Predict({mistake}, kFirstWindows, WindowStart::kMeasured));
+    if (gain > 0) alone.emplace_back(-gain, Mistakes{mistake});
+  }
+  std::stable_sort(alone.begin(), alone.end(),
+                   [](const auto& a, const auto& b) { return a.first < b.first; });
+  if (alone.size() > kBest) alone.resize(kBest);
+  for (auto& [minus_gain, one] : alone) {
+    if (std::find(candidates.begin(), candidates.end(), one) == candidates.end()) candidates.push_back(one);
+  }
   Mistakes chain = OneByOne();
   for (; !chain.empty(); chain.pop_back()) {
     if (std::find(candidates.begin(), candidates.end(), chain) == candidates.end())
