@@ -171,7 +171,8 @@ Diagnosis Diagnose(const model::ModelDescription& model, std::vector<runs::Measu
                    std::vector<runs::MeasuredRun> held_out, const DiagnoseOptions& options,
                    const ProgressCallback& report_progress) {
   TimeLimit limit(options.time_limit);
-  const CheckedRecordings checked = CheckFirst(model, options.effects, options.jobs, &runs, &held_out);
+  const CheckedRecordings checked =
+      CheckFirst(model, options.effects, options.jobs, &runs, &held_out, [&limit] { return limit.IsUp(); });
   if (checked.mend_first) return MendFirst(model, checked, runs, held_out);
   const std::vector<size_t> allowed = AllowedBase(model, options.free);
   PreparedRuns prepared = Prepare(model, allowed, options.jobs, std::move(runs), std::move(held_out));

@@ -22,6 +22,32 @@ bool OnlySigns(const std::vector<RecordingFinding>& findings) {
   });
 }
 
+bool MayHave(const RecordingMistake& mistake, const std::vector<RecordingMistake>& possible) {
+  return mistake.shaft.has_value() || std::find(possible.begin(), possible.end(), mistake) != possible.end();
+}
+
+// Of these mistakes one at least.
+size_t RunsWith(const std::vector<RecordingMistake>& mistakes,
+                const std::vector<RecordingFinding>& findings) {
+  return static_cast<size_t>(
+      std::count_if(findings.begin(), findings.end(), [&](const RecordingFinding& finding) {
+        return std::any_of(mistakes.begin(), mistakes.end(), [&](const RecordingMistake& mistake) {
+          return std::find(finding.mistakes.begin(), finding.mistakes.end(), mistake) !=
+                 finding.mistakes.end();
+        });
+      }));
+}
+
+// Runs whose arm moves may have an arm in degrees, for example; clamped ones cannot.
+size_t RunsThatMayHave(const std::vector<RecordingMistake>& mistakes,
+                       const std::vector<runs::MeasuredRun>& runs) {
+  return static_cast<size_t>(std::count_if(runs.begin(), runs.end(), [&](const runs::MeasuredRun& run) {
+    const std::vector<RecordingMistake> possible = PossibleMistakes(run);
+    return std::all_of(mistakes.begin(), mistakes.end(),
+                       [&](const RecordingMistake& mistake) { return MayHave(mistake, possible); });
+  }));
+}
+
 std::string MendFirstSentence(const CheckedRecordings& checked) {
   return "Mend the recording first: " + checked.mistakes.front() + ".";
 }
@@ -32,7 +58,8 @@ void SetUntried(BeforeAfter* gap) { gap->before = gap->refit_only = gap->after =
 
 CheckedRecordings CheckFirst(const model::ModelDescription& model, const std::vector<std::string>& effects,
                              int jobs, std::vector<runs::MeasuredRun>* runs,
-                             std::vector<runs::MeasuredRun>* held_out) {
+                             std::vector<runs::MeasuredRun>* held_out,
+                             const std::function<bool()>& time_is_up) {
   CheckedRecordings checked;
   for (auto* some : {runs, held_out}) {
     const std::vector<std::string> damage = SetAsideDamage(some);
@@ -40,13 +67,15 @@ CheckedRecordings CheckFirst(const model::ModelDescription& model, const std::ve
   }
   std::vector<runs::MeasuredRun> all = *runs;
   all.insert(all.end(), held_out->begin(), held_out->end());
-  const std::vector<RecordingFinding> findings = CheckRecordings(model, all, jobs);
+  const std::vector<RecordingFinding> findings = CheckRecordings(model, all, jobs, time_is_up);
   checked.mistakes = FindingRemarks(findings, all);
   const bool may_name_signs =
       effects.empty() || std::find(effects.begin(), effects.end(), kSign) != effects.end();
-  // A recorder's mistake is in most of its runs. What a single run shows may have another cause, a wrong shaft for
-  // example: it is said, and the search goes on.
-  const bool most = 2 * findings.size() >= all.size();
+  // A recorder's mistake is in most of its runs. What a single run shows may have another cause: it is said, and the
+  // search goes on.
+  const bool most = std::any_of(findings.begin(), findings.end(), [&](const RecordingFinding& finding) {
+    return 2 * RunsWith(finding.mistakes, findings) >= RunsThatMayHave(finding.mistakes, all);
+  });
   checked.mend_first = !findings.empty() && most && !(may_name_signs && OnlySigns(findings));
   return checked;
 }

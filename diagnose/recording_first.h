@@ -1,6 +1,7 @@
 // The recordings come first: what is wrong with them is said before any physics, and nothing is named on top of it.
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -19,10 +20,12 @@ struct CheckedRecordings {
 };
 
 // Checks the fitted and the held-out runs and sets damaged samples aside. Where `sensor.sign` is among the
-// effects that may be named (none listed: all), a single inverted sensor is left to the search.
-CheckedRecordings CheckFirst(const model::ModelDescription& model, const std::vector<std::string>& effects,
-                             int jobs, std::vector<runs::MeasuredRun>* runs,
-                             std::vector<runs::MeasuredRun>* held_out);
+// effects that may be named (none listed: all), a single inverted sensor is left to the search. What `time_is_up` cuts off
+// is not found.
+CheckedRecordings CheckFirst(
+    const model::ModelDescription& model, const std::vector<std::string>& effects, int jobs,
+    std::vector<runs::MeasuredRun>* runs, std::vector<runs::MeasuredRun>* held_out,
+    const std::function<bool()>& time_is_up = [] { return false; });
 
 // The diagnosis of runs that must be mended first: `unexplained`, nothing searched.
 Diagnosis MendFirst(const model::ModelDescription& model, const CheckedRecordings& checked,

@@ -31,6 +31,7 @@ struct MeasuredSignal {
 struct MeasuredRun {
   std::string name;           // its own name; a log: the file's stem
   std::string file;           // as given
+  std::string sidecar;        // of a table: the file that describes it; "" for logs
   std::vector<size_t> lines;  // of a CSV: the line of each row; empty: messages count rows, from 1
 
   model::Shaft shaft = model::Shaft::kFree;

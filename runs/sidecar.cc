@@ -213,6 +213,7 @@ MeasuredRun ReadTableRun(const std::string& file, const UnitSystem& units) {
   const tables::Table table = tables::ReadTable(file, ReadLayout(document, file));
   MeasuredRun run;
   run.file = file;
+  run.sidecar = sidecar.file;
   run.lines = table.lines;
   run.layout = table.layout;
   run.units = units;

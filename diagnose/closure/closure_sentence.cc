@@ -28,6 +28,8 @@ void AddClosures(ClosedModel closed, Diagnosis* diagnosis) {
 
 std::string ClosureSentence(const std::vector<Closure>& closures) {
   if (closures.empty()) return "";
+  // What rounds to nothing is no improvement.
+  if (ShortNumber(closures.front().before, 3) == ShortNumber(closures.front().after, 3)) return "";
   std::vector<std::string> curves;
   curves.reserve(closures.size());
   for (const Closure& closure : closures) {

@@ -95,6 +95,8 @@ struct ChangedParameter {
   double model = 0;  // as given
   bool implausible = false;
   std::string why;  // the reason for calling it implausible
+  // The runs do not show it apart from other values: it rests on how well the model's values are known.
+  bool resting = false;
 };
 
 // A base parameter with a value for each run, fitted with all others as in the model that was found.

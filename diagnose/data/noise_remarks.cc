@@ -1,6 +1,7 @@
 #include "diagnose/data/noise_remarks.h"
 
 #include <algorithm>
+#include <filesystem>
 #include <utility>
 
 #include "base/number_text.h"
@@ -20,7 +21,7 @@ struct Unlike {
 // Runs of which the same signals are unlike what is stated, all noisier or all quieter.
 struct Group {
   bool noisier = false, sidecar = false;
-  std::vector<std::string> runs;
+  std::vector<std::string> runs, sidecars;
   std::vector<Unlike> signals;
   const UnitSystem* units = nullptr;
 
@@ -36,6 +37,8 @@ Group GroupOf(const RunData& run, bool noisier) {
   group.noisier = noisier;
   group.runs = {run.name};
   group.units = &run.measured.units;
+  const std::string sidecar = std::filesystem::path(run.measured.sidecar).filename().string();
+  if (!sidecar.empty()) group.sidecars = {sidecar};
   // A log states the noise of its own configuration, which no sidecar can change.
   group.sidecar = !run.measured.time_source.column.empty();
   for (const SignalData& signal : run.signals) {
@@ -47,6 +50,11 @@ Group GroupOf(const RunData& run, bool noisier) {
 
 void Join(const Group& more, Group* group) {
   group->runs.push_back(more.runs.front());
+  for (const std::string& sidecar : more.sidecars) {
+    const bool there =
+        std::find(group->sidecars.begin(), group->sidecars.end(), sidecar) != group->sidecars.end();
+    if (!there) group->sidecars.push_back(sidecar);
+  }
   for (size_t i = 0; i < more.signals.size(); ++i) {
     group->signals[i].stated.push_back(more.signals[i].stated.front());
     group->signals[i].shown.push_back(more.signals[i].shown.front());
@@ -71,7 +79,10 @@ std::string RemarkOn(const Group& group, bool all) {
   return (all ? "every run" : RunsNamed(group.runs)) +
          ": the samples show another noise than is stated, and the stated one counts: " +
          Joined(found, "; ") +
-         (group.sidecar ? "; this in the sidecar mends it: [noise] " + Joined(lines, "; ") : "");
+         (group.sidecar
+              ? "; this in " + (group.sidecars.empty() ? "the sidecar" : Enumerated(group.sidecars)) +
+                    ", under [noise], mends it: " + Joined(lines, "; ")
+              : "");
 }
 
 }  // namespace

@@ -111,15 +111,30 @@ void RemarkOnSlowSamples(const model::Parameters& model, const std::vector<const
                      (longest >= 0.5 ? " (is the time in ms? unit = \"ms\")" : ""));
 }
 
+void RemarkOnOneSide(const std::string& missing, const std::vector<std::string>& names, size_t runs,
+                     std::vector<std::string>* remarks) {
+  if (names.empty()) return;
+  const std::string side = missing.substr(1);
+  remarks->push_back((names.size() == runs && runs > 1 ? "every run" : RunsNamed(names)) + ": " + missing +
+                     " was not recorded: what leaks or opens on side " + side +
+                     ", and how the sides differ, cannot be judged");
+}
+
 void RemarkOnMissingSignals(const std::vector<const RunData*>& runs, std::vector<std::string>* remarks) {
   bool motor = false, pressure = false, free = false, arm = false;
+  std::vector<std::string> without_p1, without_p2;
   for (const RunData* run : runs) {
     free = free || run->stimulus.shaft == model::Shaft::kFree;
     motor = motor || run->measured.motor_speed.measured() || run->measured.motor_angle.measured();
     pressure = pressure || run->measured.p1.measured() || run->measured.p2.measured();
+    const bool p1 = run->measured.p1.measured(), p2 = run->measured.p2.measured();
+    if (p2 && !p1 && !run->stimulus.bypass) without_p1.push_back(run->name);
+    if (p1 && !p2 && !run->stimulus.bypass) without_p2.push_back(run->name);
     arm = arm || run->measured.arm_angle.measured() || run->measured.arm_speed.measured();
   }
   if (!pressure) remarks->push_back("leakage and valves cannot be judged: no pressure was recorded");
+  RemarkOnOneSide("p1", without_p1, runs.size(), remarks);
+  RemarkOnOneSide("p2", without_p2, runs.size(), remarks);
   if (!motor) {
     remarks->push_back(
         "friction and inertia of the pump can hardly be judged: neither its speed nor its angle was "

@@ -216,8 +216,9 @@ void CorrectOffsets(const model::ModelDescription& model, const std::vector<cons
   Found left = Weigh(corrected, runs);
   if (left.total >= kMostlyOffsets * placement->all) return;
   const std::string unit = " " + model.units.UnitFor("psi");
-  const std::string where = "p1 reads " + WithSign(offsets.p1) + unit + ", p2 " + WithSign(offsets.p2) +
-                            unit + " at the valves' pressure";
+  // The model says what the valves hold, so this is a difference from it: p_3 may be what is wrong.
+  const std::string where = "where the valves hold p_3, p1 reads " + WithSign(offsets.p1) + unit +
+                            " and p2 " + WithSign(offsets.p2) + unit + " against the model";
   placement->result.location.push_back(
       {"sensor", 1 - left.total / placement->all, where,
        WindowsOf(placement->found.blocks[LargestBalance(placement->found)], runs)});

@@ -158,11 +158,10 @@ std::string HowSure(const Diagnosis& diagnosis) {
   }
   if (!explanations.empty()) {
     out +=
-        "<p>The weight is how often an explanation wins when the runs, and parts of them, count more or less "
-        "at random; "
-        "all "
-        "weights add to 100 %. The share of the gap is what comes back of the held-out squared gap "
-        "without the effect.</p>\n" +
+        "<p>The weight says how likely an explanation is among those tried: how often it wins when the runs, "
+        "and parts of them, count more or less at random. All weights add to 100 %. The share says how much "
+        "an effect does: the part of the held-out squared gap that comes back without it. An effect may be "
+        "certain and do little.</p>\n" +
         Table({"explanation", "#weight", ""}, explanations, "narrow");
   }
   return out;

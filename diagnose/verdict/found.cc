@@ -194,10 +194,11 @@ std::vector<model::ModelDescription> DescribeFound(const SearchContext& context,
   }
   std::vector<std::string> resting;
   const std::vector<bool> rests = RestOnKnown(best.fitted);
-  for (const ChangedParameter& changed : d->parameters) {
+  for (ChangedParameter& changed : d->parameters) {
     const auto it = std::find_if(free.begin(), free.end(),
                                  [&](const FreeParameter& one) { return one.name == changed.fitted.name; });
-    if (rests[static_cast<size_t>(it - free.begin())]) resting.push_back(changed.fitted.name);
+    changed.resting = rests[static_cast<size_t>(it - free.begin())];
+    if (changed.resting) resting.push_back(changed.fitted.name);
   }
   if (!resting.empty()) {
     d->remarks.push_back(

@@ -35,8 +35,12 @@ std::vector<std::string> EffectsOf(const Diagnosis& d) {
 std::vector<std::string> ParametersOf(const Diagnosis& d) {
   std::vector<std::string> parameters;
   for (const ChangedParameter& changed : d.parameters) {
+    if (changed.resting) continue;
     parameters.push_back(changed.fitted.name + " = " + ShortNumber(changed.fitted.value) + " instead of " +
                          ShortNumber(changed.model));
+  }
+  if (parameters.empty() && !d.parameters.empty() && d.effects.empty()) {
+    parameters.emplace_back("several together, none of which these runs show alone (see the remarks)");
   }
   return parameters;
 }
@@ -53,11 +57,24 @@ bool Tied(const Diagnosis& d) {
                      [](const FoundEffect& effect) { return !effect.tied_with.empty(); });
 }
 
+// Whether the gap falls by what a reader sees in its digits.
+bool Falls(const BeforeAfter& gap) {
+  return gap.after < gap.before && ShortNumber(gap.before, 3) != ShortNumber(gap.after, 3);
+}
+
+std::string GapOf(const BeforeAfter& gap) {
+  const std::string before = ShortNumber(gap.before, 3), after = ShortNumber(gap.after, 3);
+  if (before == after) return " (the held-out gap stays at " + before + " noise units).";
+  return " (held-out gap " + before + " to " + after + " noise units).";
+}
+
 std::string Unexplained(const Diagnosis& d, const std::vector<std::string>& effects) {
   const double before = d.held_out.before * d.held_out.before - 1;
   const double left = (d.held_out.after * d.held_out.after - 1) / before;
   std::string sentence = "Something is missing that no known effect explains";
   if (effects.empty()) return sentence;
+  if (!Falls(d.held_out))
+    return sentence + "; the nearest, " + Enumerated(effects) + ", takes nothing of the held-out gap";
   return sentence + "; the nearest is " + Enumerated(effects) + ", which leaves " +
          ShortNumber(100 * left, 2) + " % of the squared gap";
 }
@@ -65,12 +82,12 @@ std::string Unexplained(const Diagnosis& d, const std::vector<std::string>& effe
 }  // namespace
 
 std::string Sentence(const Diagnosis& d, const std::vector<std::string>& doubts) {
-  const std::string gap = " (held-out gap " + ShortNumber(d.held_out.before, 3) + " to " +
-                          ShortNumber(d.held_out.after, 3) + " noise units).";
+  const std::string gap = GapOf(d.held_out);
   const std::vector<std::string> effects = EffectsOf(d), parameters = ParametersOf(d);
   if (!doubts.empty() && IsOpen(d.verdict)) {
-    return Found("The gap becomes smaller with ", "The gap becomes smaller with other values: ", effects,
-                 parameters) +
+    const std::string begin = Falls(d.held_out) ? "The gap becomes smaller with "
+                                                : "Only the fitted runs are predicted better with ";
+    return Found(begin, begin + "other values: ", effects, parameters) +
            ", but that is not the cause: " + Enumerated(doubts) + gap;
   }
   switch (d.verdict) {

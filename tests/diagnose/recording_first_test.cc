@@ -43,6 +43,21 @@ TEST(RecordingFirst, Sound) {
   EXPECT_THAT(report.limits, ::testing::ElementsAre(HasSubstr("no pressure was recorded")));
 }
 
+// Tests that a missing pressure of one side is not passed over in silence.
+TEST(RecordingFirst, OneSideIsMissing) {
+  std::vector<runs::MeasuredRun> runs = Bench(1, 1);
+  runs[0].p2 = {};
+  EXPECT_THAT(
+      ReportOnRecordings(kGiven, runs, 1).limits,
+      ::testing::Contains(HasSubstr("run bench: p2 was not recorded: what leaks or opens on side 2")));
+}
+
+// Tests that the time limit holds for the check, too: what it cuts off is not found.
+TEST(RecordingFirst, TimeIsUp) {
+  std::vector<runs::MeasuredRun> runs = Bench(-1, 1), none;
+  EXPECT_THAT(CheckFirst(kGiven, {}, 1, &runs, &none, [] { return true; }).mistakes, IsEmpty());
+}
+
 // Tests that a wrong sign of the command ends the diagnosis before the search, and what it then says.
 TEST(RecordingFirst, MendFirst) {
   std::vector<runs::MeasuredRun> runs = Bench(-1, 1), none;

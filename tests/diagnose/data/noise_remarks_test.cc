@@ -41,7 +41,7 @@ TEST(NoiseRemarks, SayHowManyTimesAndWhatMendsIt) {
       ElementsAre(
           "every run: the samples show another noise than is stated, and the stated one counts: "
           "motor_speed 0.9 rad/s, 3 times the stated 0.3; p1 4.5 psi, 3 times the stated 1.5; this in "
-          "the sidecar mends it: [noise] motor_speed = 0.9; p1 = 4.5"));
+          "the sidecar, under [noise], mends it: motor_speed = 0.9; p1 = 4.5"));
 }
 
 // Tests that runs of which other signals are wrong, or that show less than is stated, have remarks of their own.

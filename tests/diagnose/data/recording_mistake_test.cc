@@ -4,6 +4,9 @@
 
 #include <algorithm>
 
+#include "diagnose/data/other_side.h"
+#include "diagnose/data/sidecar_lines.h"
+
 namespace hydro::diagnose {
 namespace {
 
@@ -48,7 +51,8 @@ TEST(RecordingMistake, Correct) {
   EXPECT_NEAR(run.p2.source.scale, 29.0075, 1e-4);
   EXPECT_NEAR(run.p2.source.offset, 43.5113, 1e-4);
   run = Bench();
-  Correct(Mistake("p1 and p2 are exchanged and voltage has the wrong sign"), &run);
+  Correct(Mistake("p1 and p2 are exchanged"), &run);
+  Correct(Mistake("voltage has the wrong sign"), &run);
   EXPECT_THAT(run.p1.values, ElementsAre(40, 50, 60));
   EXPECT_THAT(run.voltage.values, ElementsAre(-1, -2, -3));
   run = Bench();
@@ -64,9 +68,58 @@ TEST(RecordingMistake, SidecarLines) {
             "voltage = { column = \"V\", scale = -1 }");
   EXPECT_EQ(SidecarLines({Mistake("p1 and p2 are in bar")}, run),
             "p1 = { column = \"P1\", unit = \"bar\" }; "
-            "p2 = { column = \"P2\", scale = 29.007548, offset = 43.511321 }");
+            "p2 = { column = \"P2\", scale = 2, offset = 3, unit = \"bar\" }");
   EXPECT_EQ(SidecarLines({Mistake("p1 and p2 are exchanged")}, run),
             "p1 = { column = \"P2\", scale = 2, offset = 3 }; p2 = { column = \"P1\" }");
+}
+
+// Tests that a unit that is stated wrongly is one of the mistakes, with the known units only; beside a sign, too.
+TEST(RecordingMistake, StatedUnit) {
+  runs::MeasuredRun run = Bench();
+  run.p1.source.scale = run.p2.source.scale = 14.5037738;
+  const std::vector<RecordingMistake> all = PossibleMistakes(run);
+  std::vector<std::string> pressures;
+  for (const RecordingMistake& mistake : all) {
+    if (mistake.factors.size() == 2) pressures.push_back(mistake.what);
+  }
+  EXPECT_THAT(pressures, ElementsAre("p1 and p2 are in kPa, not in bar", "p1 and p2 are in MPa, not in bar",
+                                     "p1 and p2 are in Pa, not in bar", "p1 and p2 are in psi, not in bar"));
+  const auto psi = std::find_if(
+      all.begin(), all.end(), [](const auto& one) { return one.what == "p1 and p2 are in psi, not in bar"; });
+  ASSERT_NE(psi, all.end());
+  EXPECT_NEAR(psi->factors[0].second, 1 / 14.5037738, 1e-8);
+  run = Bench();
+  run.motor_speed = {{1, 2, 3}, {}, {"N"}};
+  std::vector<RecordingMistake> both;
+  for (const RecordingMistake& mistake : PossibleMistakes(run)) {
+    if (mistake.what == "motor_speed is in rpm" || mistake.what == "motor_speed has the wrong sign") {
+      both.push_back(mistake);
+    }
+  }
+  EXPECT_EQ(SidecarLines(both, run), "motor_speed = { column = \"N\", scale = -1, unit = \"rpm\" }");
+}
+
+// Tests that every set of mistakes has a twin: the recording seen from the other side.
+TEST(RecordingMistake, SeenFromTheOtherSide) {
+  runs::MeasuredRun run = Bench();
+  run.motor_speed = {{1, 2, 3}, {}, {"N"}};
+  const auto twin = [&run](const std::vector<std::string>& what) {
+    std::vector<RecordingMistake> mistakes;
+    for (const RecordingMistake& one : PossibleMistakes(run)) {
+      if (std::find(what.begin(), what.end(), one.what) != what.end()) mistakes.push_back(one);
+    }
+    std::vector<std::string> other;
+    const auto seen = SeenFromTheOtherSide(mistakes, run);
+    if (!seen.has_value()) return other;
+    for (const RecordingMistake& one : *seen) other.push_back(one.what);
+    return other;
+  };
+  EXPECT_THAT(twin({"voltage has the wrong sign", "p1 and p2 are exchanged", "motor_speed is in rpm"}),
+              ElementsAre("motor_speed has the wrong sign", "motor_speed is in rpm"));
+  EXPECT_THAT(twin({"motor_speed has the wrong sign"}),
+              ElementsAre("voltage has the wrong sign", "p1 and p2 are exchanged"));
+  run.p2 = {};
+  EXPECT_FALSE(SeenFromTheOtherSide({}, run).has_value()) << "no sidecar can exchange one pressure";
 }
 
 // Tests which mistakes the effect sensor.sign can stand for: one sensor, never the command.

@@ -114,6 +114,98 @@ TEST_F(RecordingCheckTest, Units) {
   EXPECT_THAT(one[0], HasSubstr("run chirp: motor_speed is in rpm"));
 }
 
+// Tests mistakes that come together, of which undoing one alone explains nothing.
+TEST_F(RecordingCheckTest, SeveralAtOnce) {
+  const auto three = Remarks([](runs::MeasuredRun& run) {
+    Multiply(&run.motor_speed.values, 9.5493);
+    Multiply(&run.motor_angle.values, -1);
+    Multiply(&run.p1.values, 1 / 14.5038);
+    Multiply(&run.p2.values, 1 / 14.5038);
+  });
+  ASSERT_GE(three.size(), 1u);
+  EXPECT_THAT(three[0], HasSubstr("motor_speed = { column = \"X\", unit = \"rpm\" }"));
+  EXPECT_THAT(three[0], HasSubstr("motor_angle = { column = \"motor_angle_rad\", scale = -1 }"));
+  EXPECT_THAT(three[0], HasSubstr("p1 = { column = \"X\", unit = \"bar\" }"));
+  const auto exchanged = Remarks([](runs::MeasuredRun& run) {
+    std::swap(run.p1, run.p2);
+    Multiply(&run.p1.values, 1 / 14.5038);
+    Multiply(&run.p2.values, 1 / 14.5038);
+  });
+  ASSERT_GE(exchanged.size(), 1u);
+  EXPECT_THAT(exchanged[0], HasSubstr("p1 and p2 are exchanged and p1 and p2 are in bar"));
+}
+
+// Tests that what explains the runs equally well is offered beside it: with the shaft clamped at mid-stroke a wrong sign
+// of the command with exchanged pressures looks like a motor that turns the other way. The weight of an arm that moves
+// freely decides.
+TEST_F(RecordingCheckTest, Ties) {
+  std::vector<runs::MeasuredRun> runs = *recorded_;
+  testing::NoisyRig rig;
+  rig.model = given_;
+  const auto steps = [](double t) { return std::fmod(t, 0.4) < 0.2 ? 5.0 : -4.0; };
+  runs.push_back(rig.Record("middle", model::Shaft::kClamped, 0, 2, false, steps).measured);
+  for (runs::MeasuredRun& run : runs) {
+    Multiply(&run.voltage.values, -1);
+    std::swap(run.p1, run.p2);
+  }
+  const auto all = FindingRemarks(CheckRecordings(given_, runs, 1), runs);
+  ASSERT_GE(all.size(), 1u);
+  EXPECT_THAT(all[0], HasSubstr("voltage has the wrong sign and p1 and p2 are exchanged: this"));
+  const std::vector<runs::MeasuredRun> middle = {runs.back()};
+  const auto clamped = FindingRemarks(CheckRecordings(given_, middle, 1), middle);
+  ASSERT_EQ(clamped.size(), 1u);
+  EXPECT_THAT(clamped[0], HasSubstr("motor_speed and motor_angle have the wrong sign: this"));
+  EXPECT_THAT(clamped[0],
+              HasSubstr("It might also be that voltage has the wrong sign and p1 and p2 are exchanged"));
+}
+
+// Tests that a free arm whose weight the model lacks hides no mistake.
+TEST_F(RecordingCheckTest, ArmWithoutItsWeight) {
+  model::ModelDescription weightless = given_;
+  weightless.parameters.mgl = 0;
+  std::vector<runs::MeasuredRun> swing;
+  for (const runs::MeasuredRun& run : *recorded_) {
+    if (run.name == "swing") swing.push_back(run);
+  }
+  ASSERT_EQ(swing.size(), 1u);
+  EXPECT_THAT(CheckRecordings(weightless, swing, 1), IsEmpty());
+  Multiply(&swing[0].motor_speed.values, 9.5493);
+  const auto remarks = FindingRemarks(CheckRecordings(weightless, swing, 1), swing);
+  ASSERT_EQ(remarks.size(), 1u);
+  EXPECT_THAT(remarks[0], HasSubstr("motor_speed is in rpm"));
+}
+
+// Tests that a factor that is no unit's is said as that, once for all runs, and no line is made up for the sidecar.
+TEST_F(RecordingCheckTest, UnknownFactor) {
+  const auto remarks = Remarks([](runs::MeasuredRun& run) {
+    Multiply(&run.p1.values, 3.1);
+    Multiply(&run.p2.values, 3.1);
+  });
+  ASSERT_EQ(remarks.size(), 1u);
+  EXPECT_THAT(remarks[0], HasSubstr("p1 and p2 are about "));
+  EXPECT_THAT(remarks[0], HasSubstr("times too large; no known unit"));
+  EXPECT_THAT(remarks[0], ::testing::Not(HasSubstr("mends")));
+}
+
+// Tests that a shaft that was held otherwise than the sidecar says is not taken for a unit.
+TEST_F(RecordingCheckTest, OtherShaft) {
+  std::vector<runs::MeasuredRun> swing;
+  for (const runs::MeasuredRun& run : *recorded_) {
+    if (run.name == "swing" || run.name == "levels") swing.push_back(run);
+  }
+  ASSERT_EQ(swing.size(), 2u);
+  swing[1].shaft = model::Shaft::kClamped;
+  swing[1].arm_angle = {};
+  auto remarks = FindingRemarks(CheckRecordings(given_, swing, 1), swing);
+  ASSERT_EQ(remarks.size(), 1u);
+  EXPECT_THAT(remarks[0], HasSubstr("run swing: the shaft is free, not clamped"));
+  EXPECT_THAT(remarks[0], HasSubstr("shaft = \"free\""));
+  swing[1].shaft = swing[0].shaft = model::Shaft::kFree;
+  remarks = FindingRemarks(CheckRecordings(given_, swing, 1), swing);
+  ASSERT_EQ(remarks.size(), 1u);
+  EXPECT_THAT(remarks[0], HasSubstr("run levels: the shaft is clamped, not free"));
+}
+
 // Tests that one run of several that alone says something weakly, and is not in order then, is not believed: offsets and a lag of the
 // motor looked like bar in one run of six. One that is in order then, a great fall or a second run are.
 TEST(RecordingFindings, OneRunAloneSaysItWeakly) {

@@ -60,5 +60,26 @@ TEST(Sentence, ValuesThatExplainAPart) {
               StartsWith("Other values explain part of the gap: b = 0.03 instead of 0.02;"));
 }
 
+// Tests that a change that rounds to nothing is not claimed.
+TEST(Sentence, NoImprovementIsClaimed) {
+  diagnose::Diagnosis d = With(Verdict::kUnexplained);
+  d.held_out = {0.9981, 0.998, 0.9979};
+  EXPECT_THAT(diagnose::Sentence(d, {}), AllOf(HasSubstr("takes nothing of the held-out gap"),
+                                               HasSubstr("the held-out gap stays at 0.998 noise units")));
+  EXPECT_THAT(diagnose::Sentence(d, {"no rig is likely to have it"}),
+              AllOf(StartsWith("Only the fitted runs are predicted better with"), Not(HasSubstr("smaller"))));
+}
+
+// Tests that a value which the runs do not show apart from others is left to its remark.
+TEST(Sentence, ValuesThatRestOnWhatIsKnown) {
+  diagnose::Diagnosis d = With(Verdict::kPartly);
+  diagnose::ChangedParameter b, J;
+  b.fitted.name = "b";
+  J.fitted.name = "J";
+  J.resting = true;
+  d.parameters = {b, J};
+  EXPECT_THAT(diagnose::Sentence(d, {}), AllOf(HasSubstr("b = "), Not(HasSubstr("J = "))));
+}
+
 }  // namespace
 }  // namespace hydro::testing
