@@ -46,7 +46,7 @@ LaunchInvariants::LaunchInvariants(const settings::StackConfig& config, Network&
       status_(network.ChannelNumber(bus::Channels(config.bus.channel_suffix).Of<process_status_t>())) {}
 
 void LaunchInvariants::OnBegin(const SimulatedProcess& launcher) {
-  launch_.emplace();
+  launch_ = Launch{};
   launch_->launcher = launcher.number();
   launch_->frozen_until = launcher.frozen_until();
 }
