@@ -138,6 +138,7 @@ class RepairVerb {
     verb.AddOption("-o,--output", &out_, "FILE write the repaired log there and leave LOG alone");
   }
   int Run() const {
+    if (!out_.empty()) CheckKeeps(out_, {log_});
     const log::RepairResult result = out_.empty() ? log::RepairInPlace(log_) : log::RepairLog(log_, out_);
     if (!result.mended()) {
       std::printf("%s: nothing to repair\n", log_.c_str());

@@ -178,6 +178,16 @@ void LoggerApp::TakeTurn() {
   recording_.WriteWaiting(false);
 }
 
+// A signal that no stop has preceded, as when the launcher was killed, reaches all at once: the others' ends belong to the log.
+void LoggerApp::AwaitFarewells() {
+  if (stop_time_) return;
+  stop_time_ = participant_.clock().Now();
+  while (!finished()) {
+    bus_.HandleUntil(participant_.clock().Now() + process::kPollPeriod);
+    Poll();
+  }
+}
+
 int64_t LoggerApp::StillThere() const {
   return std::count_if(others_.begin(), others_.end(), [](const auto& other) { return !other.second; });
 }
@@ -188,6 +198,7 @@ bool LoggerApp::finished() const {
 }
 
 int LoggerApp::Finish() {
+  AwaitFarewells();
   int exit_code = participant_.Leave(recording_.FailureText());
   // Handle what was sent already, up to this logger's own last message, which comes back from the bus like
   // any other.

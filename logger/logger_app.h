@@ -52,6 +52,7 @@ class LoggerApp : public process::App {
   void OnStatus(const process_status_t& status);
   void ReportRefused();
   void ReportProgress();
+  void AwaitFarewells();
   int64_t StillThere() const;
   void TakeTurn();
   void CloseRecording();

@@ -16,8 +16,10 @@ constexpr auto kHeartbeatCheck = std::chrono::milliseconds(10);
 void PlantApp::OnMotorCommand(const motor_command_t& command) {
   if (participant_.Refuses(command.session)) return;
   // Before the run there is no state that it could answer.
-  if (command.tick < 0 || participant_.state() != process_status_t::RUNNING) return;
+  if (participant_.state() != process_status_t::RUNNING) return;
   const auto now = participant_.clock().Now();
+  // It answers nothing; but who sends such beside the one that is followed is a second sender.
+  if (command.tick < 0 && !command_monitor_.FollowsAnother(command.session, now)) return;
   // Never counted as the newest: it would make every later good one an old one.
   if (command.tick > tick_ && !command_monitor_.FollowsAnother(command.session, now)) {
     RefuseFutureCommand(command);

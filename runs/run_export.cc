@@ -114,8 +114,8 @@ tables::Table ExportRun(const RunLog& log) {
     if (next != nullptr && !LacksStates(state, *next)) {
       voltage = next->voltage;
     } else if (const motor_command_t* command = acting.At(commanding_tick);
-               command != nullptr && (next == nullptr || state.command_tick >= 0)) {
-      voltage = command->voltage;  // unless the plant held zero
+               command != nullptr && next == nullptr && (k == 0 || state.command_tick >= 0)) {
+      voltage = command->voltage;  // unless the plant holds zero; before a gap it may have come too late
     }
     const arm_reference_t* arm = reference.LastUpTo(state.tick);
     // Like any command, a pressure command of tick k is in force from tick k + delay on.

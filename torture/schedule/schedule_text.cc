@@ -11,6 +11,7 @@
 namespace hydro::torture {
 namespace {
 
+constexpr double kLongest_s = 60, kLongestLag_s = 5;
 constexpr std::string_view kFirstLine = "hydro-torture 1";
 
 class LineReader {
@@ -61,6 +62,23 @@ class LineReader {
   std::istringstream words_;
 };
 
+void CheckRanges(const LineReader& line, const FaultKindInfo& info, const Injection& injection) {
+  const std::string target(TargetName(injection.target));
+  if ((" " + std::string(info.targets) + " ").find(" " + target + " ") == std::string::npos) {
+    throw line.Error(target, "target=T with T one of " + std::string(info.targets));
+  }
+  if (!(injection.duration_s >= 0 && injection.duration_s <= kLongest_s)) {
+    throw line.Error(ShortestNumber(injection.duration_s), fmt::format("for=S from 0 to {}", kLongest_s));
+  }
+  // A clock that stands still or runs backwards wakes nobody.
+  const bool drift = injection.kind == FaultKind::kDrift;
+  const bool lag = info.amount.starts_with("s,");  // any, while it ends before the run does
+  const double least = drift ? -0.5 : lag ? 0 : info.least;
+  const double most = drift ? 0.5 : lag ? kLongestLag_s : info.most;
+  if (info.amount.empty() || (injection.amount >= least - 1e-6 && injection.amount <= most + 1e-6)) return;
+  throw line.Error(ShortestNumber(injection.amount), fmt::format("amount=A from {} to {}", least, most));
+}
+
 Injection ReadInjection(LineReader line, const std::string& time) {
   Injection injection;
   const auto at = ParseNumber(time);
@@ -80,10 +98,7 @@ Injection ReadInjection(LineReader line, const std::string& time) {
   injection.target = *number;
   injection.duration_s = line.Number("for");
   injection.amount = line.Number("amount");
-  // A clock that stands still or runs backwards wakes nobody.
-  if (injection.kind == FaultKind::kDrift && !(std::fabs(injection.amount) < 0.5)) {
-    throw line.Error(ShortestNumber(injection.amount), "amount=A with -0.5 < A < 0.5");
-  }
+  CheckRanges(line, InfoOf(injection.kind), injection);
   injection.seed = line.Seed("seed");
   return injection;
 }
