@@ -12,7 +12,7 @@ namespace hydro::process {
 // "plant: the output reads back 0 V"
 inline std::string OutputLeftText(const output_left_t& left) {
   const std::string what = left.accepted ? "" : "did NOT accept zero volts and ";
-  return left.role + ": the output " + what +
+  return left.role.substr(0, 40) + ": the output " + what +
          (std::isnan(left.voltage) ? "cannot be read back"
                                    : "reads back " + ShortNumber(left.voltage, 3) + " V");
 }

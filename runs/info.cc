@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
 
 #include "base/saturating.h"
 #include "base/units.h"
@@ -183,6 +184,20 @@ std::vector<run_description_t> DistinctDescriptions(const std::vector<run_descri
   return distinct;
 }
 
+// Each plant's or driver's last word; of a process that has sent no state it means nothing.
+std::vector<output_left_t> OutputsLeft(const RunMessages& messages) {
+  std::set<int64_t> plants;
+  for (const state_t& state : messages.Of<state_t>()) plants.insert(state.session);
+  for (const run_description_t& run : messages.Of<run_description_t>()) plants.insert(run.session);
+  std::map<int64_t, output_left_t> last;
+  for (const output_left_t& left : messages.Of<output_left_t>()) {
+    if (plants.contains(left.session)) last[left.session] = left;
+  }
+  std::vector<output_left_t> all;
+  for (const auto& [session, left] : last) all.push_back(left);
+  return all;
+}
+
 // A process that stops a run says so several times, in case the network loses it.
 std::vector<stop_t> DistinctStops(const std::vector<stop_t>& all) {
   std::vector<stop_t> distinct;
@@ -214,7 +229,7 @@ LogInfo Summarise(const RunLog& log, bool si) {
   info.programs = ProgramsOf(log.messages.Of<process_status_t>());
   info.faults = log.messages.Of<fault_t>();
   info.stops = DistinctStops(log.messages.Of<stop_t>());
-  info.outputs_left = log.messages.Of<output_left_t>();
+  info.outputs_left = OutputsLeft(log.messages);
   info.descriptions = DistinctDescriptions(log.messages.Of<run_description_t>());
   UnitSystem units;
   if (!info.descriptions.empty()) {

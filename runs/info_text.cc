@@ -3,15 +3,26 @@
 #include <iterator>
 
 #include "base/number_text.h"
+#include "base/text_file.h"
 #include "process/output_left.h"
 #include "runs/info.h"
 
 namespace hydro::runs {
 namespace {
 
+// Text from a log may hold anything: a line's end in it must not look like a line of this program's, nor fill the screen.
+std::string Shown(const std::string& text) {
+  constexpr size_t kLongest = 500;
+  return Printable(text.size() <= kLongest ? text : text.substr(0, kLongest) + "...");
+}
+template <class Value>
+const Value& Shown(const Value& value) {
+  return value;
+}
+
 template <class... Arguments>
 void Append(std::string& text, fmt::format_string<Arguments...> format, Arguments&&... arguments) {
-  fmt::format_to(std::back_inserter(text), format, std::forward<Arguments>(arguments)...);
+  fmt::format_to(std::back_inserter(text), fmt::runtime(fmt::string_view(format)), Shown(arguments)...);
 }
 
 std::string Number(double value) { return ShortNumber(value, 6); }

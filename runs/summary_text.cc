@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/saturating.h"
+#include "base/text_file.h"
 #include "base/units.h"
 #include "process/output_left.h"
 #include "runs/tracking.h"
@@ -62,16 +63,16 @@ std::string SummaryText(const Tracking& tracking, const LogInfo& info, bool si) 
          "period p99", "late p50", "late p99", "late max", "missed", "lost");
     for (const LoopInfo& loop : info.loops) {
       line("{:<14} {:>8} {:>7.0f} us {:>7.0f} us {:>7.0f} us {:>7.0f} us {:>7.0f} us {:>7} {:>6}",
-           loop.last.role, loop.cycles, loop.last.period_p50_us, loop.last.period_p99_us,
+           Printable(loop.last.role), loop.cycles, loop.last.period_p50_us, loop.last.period_p99_us,
            loop.last.latency_p50_us, loop.last.latency_p99_us, loop.last.latency_max_us,
            loop.missed_deadlines, loop.lost_messages);
     }
   }
   for (const fault_t& fault : info.faults) {
-    line("fault at tick {}: {} {} ({})", fault.tick, fault.code, fault.active ? "began" : "ended",
-         fault.source);
+    line("fault at tick {}: {} {} ({})", fault.tick, Printable(fault.code), fault.active ? "began" : "ended",
+         Printable(fault.source));
   }
-  for (const output_left_t& left : info.outputs_left) line("{}", process::OutputLeftText(left));
+  for (const output_left_t& left : info.outputs_left) line("{}", Printable(process::OutputLeftText(left)));
   return text;
 }
 

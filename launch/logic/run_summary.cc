@@ -54,7 +54,13 @@ void RunSummary::Add(const fault_t& fault) {
 }
 
 void RunSummary::Add(const output_left_t& left) {
-  if (outputs_left_.size() < kMostOutputs) outputs_left_.push_back(left);
+  const auto known = std::find_if(outputs_left_.begin(), outputs_left_.end(),
+                                  [&](const output_left_t& one) { return one.session == left.session; });
+  if (known != outputs_left_.end()) {
+    *known = left;
+  } else if (outputs_left_.size() < kMostOutputs) {
+    outputs_left_.push_back(left);
+  }
 }
 
 std::vector<std::string> RunSummary::Lines() const {

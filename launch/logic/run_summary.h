@@ -22,6 +22,8 @@ class RunSummary {
   // microseconds, with or without --si.
   std::vector<std::string> Lines() const;
 
+  bool says_what_was_left() const { return !outputs_left_.empty(); }
+
   // "CODE of SOURCE" of every fault that was still active at the end and is more than a warning, each once,
   // whatever the session.
   std::vector<std::string> FaultsLeft() const;

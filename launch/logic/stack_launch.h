@@ -67,6 +67,7 @@ class StackLaunch {
   bool stop_seen_ = false;  // another process's stop has been acted upon
   bool failing_ = false;    // the run has failed: consequences of that are not reported again
   bool killed_ = false;
+  bool plant_killed_ = false;  // a plant or driver ended by a signal, and could say no more
   int interrupts_ = 0;
   int exit_code_ = 0;
   std::string early_end_;      // a program that ended with 0 although no stop was heard

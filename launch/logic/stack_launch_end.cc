@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "launch/logic/stack_launch.h"
+#include "process/role.h"
 
 namespace hydro::launch {
 namespace {
@@ -44,6 +45,7 @@ void StackLaunch::OnSignals() {
 
 void StackLaunch::OnEnded(const Ended& ended) {
   const ProcessEnd& end = ended.end;
+  plant_killed_ = plant_killed_ || (end.signal != 0 && process::IsPlant(process::RoleOf(ended.program)));
   if (killed_) return;
   if (ended.hung) {
     Fail(ended.program + " did not end on SIGTERM and was killed", 1);

@@ -35,8 +35,16 @@ StackWatch::StackWatch(bus::Bus& bus, const bus::Clock& clock, const bus::Channe
                                     [this](const loop_histogram_t& histogram) { timing_.Add(histogram); });
   }
   bus.Subscribe<fault_t>(channels_.Of<fault_t>(), [this](const fault_t& fault) { summary_.Add(fault); });
-  bus.Subscribe<output_left_t>(channels_.Of<output_left_t>(),
-                               [this](const output_left_t& left) { summary_.Add(left); });
+  bus.Subscribe<output_left_t>(channels_.Of<output_left_t>(), [this](const output_left_t& left) {
+    if (IsOfAPlant(left.session)) summary_.Add(left);
+  });
+}
+
+bool StackWatch::IsOfAPlant(int64_t session) const {
+  return std::any_of(statuses_.begin(), statuses_.end(), [&](const auto& entry) {
+    const auto& [role, status] = entry;
+    return process::IsPlant(role.first) && status.session == session;
+  });
 }
 
 void StackWatch::Expect(const std::string& program, int32_t pid) { expected_.push_back({program, pid}); }

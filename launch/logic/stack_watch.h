@@ -64,6 +64,7 @@ class StackWatch {
     int32_t pid;
   };
 
+  bool IsOfAPlant(int64_t session) const;
   bool BelongsHere(const process_status_t& status) const;
   bool IsForThisStack(const stop_t& stop) const;
   std::vector<int64_t> Addressees() const;

@@ -180,6 +180,12 @@ TEST_F(StackLaunchTest, DeathEndsTheRun) {
   EXPECT_LT(clock_.Now().time_since_epoch(), 2s);
 }
 
+// Tests that a plant that was killed, and could not say what voltage it left, is named as that.
+TEST_F(StackLaunchTest, KilledPlantSaysNothingOfItsOutput) {
+  EXPECT_EQ(Run(1s, [&] { children_.End("hydro-plant", {0, SIGKILL}); }), 1);
+  EXPECT_THAT(report_.errors, Contains(HasSubstr("no plant or driver has said what voltage it left")));
+}
+
 // Tests that exit code 2 is passed on: a process has refused its input.
 TEST_F(StackLaunchTest, RefusedInput) {
   EXPECT_EQ(Run(1s, [&] { children_.End("hydro-pressure-ctrl", {2, 0}); }), 2);

@@ -81,7 +81,7 @@ TEST(ScheduleTest, NamesWhatIsWrong) {
   EXPECT_EQ(ErrorOf("hydro-torture 1\n0.5 hang target=plant for=nan amount=0 seed=1"),
             "a.torture:2: found 'nan', allowed is for=S from 0 to 60");
   EXPECT_EQ(ErrorOf("hydro-torture 1\n0.5 flood target=all for=1 amount=1e12 seed=1"),
-            "a.torture:2: found '1e+12', allowed is amount=A from 100 to 20000");
+            "a.torture:2: found '1000000000000', allowed is amount=A from 100 to 20000");
   const std::string run = "run mode=lockstep rearm=restart key=no stale=0.1 until=5 seed=1\n";
   EXPECT_EQ(ErrorOf("hydro-torture 1\n" + run), "none");
   EXPECT_THAT(ErrorOf("hydro-torture 1\n"), testing::HasSubstr("found no line of `run`, allowed is one"));
