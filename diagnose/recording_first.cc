@@ -4,6 +4,7 @@
 #include <limits>
 #include <utility>
 
+#include "base/word_list.h"
 #include "diagnose/data/alignment.h"
 #include "diagnose/data/recording_damage.h"
 #include "diagnose/data/recording_remarks.h"
@@ -48,6 +49,17 @@ size_t RunsThatMayHave(const std::vector<RecordingMistake>& mistakes,
   }));
 }
 
+std::string UnjudgedLine(const std::vector<size_t>& unpredicted, const std::vector<runs::MeasuredRun>& runs) {
+  if (unpredicted.empty()) return "";
+  std::vector<std::string> names;
+  names.reserve(unpredicted.size());
+  for (const size_t r : unpredicted) names.push_back(runs[r].name);
+  return RunsNamed(names) +
+         ": not predicted at all by the model as given, and no known mistake of a recording explains that: "
+         "look at columns, shaft, bypass and "
+         "the model's units";
+}
+
 std::string MendFirstSentence(const CheckedRecordings& checked) {
   return "Mend the recording first: " + checked.mistakes.front() + ".";
 }
@@ -67,7 +79,9 @@ CheckedRecordings CheckFirst(const model::ModelDescription& model, const std::ve
   }
   std::vector<runs::MeasuredRun> all = *runs;
   all.insert(all.end(), held_out->begin(), held_out->end());
-  const std::vector<RecordingFinding> findings = CheckRecordings(model, all, jobs, time_is_up);
+  std::vector<size_t> unpredicted;
+  const std::vector<RecordingFinding> findings = CheckRecordings(model, all, jobs, time_is_up, &unpredicted);
+  checked.unjudged = UnjudgedLine(unpredicted, all);
   checked.mistakes = FindingRemarks(findings, all);
   const bool may_name_signs =
       effects.empty() || std::find(effects.begin(), effects.end(), kSign) != effects.end();
@@ -117,6 +131,7 @@ RecordingReport ReportOnRecordings(const model::ModelDescription& model, std::ve
   RecordingReport report;
   report.wrong = checked.mistakes;
   report.wrong.insert(report.wrong.end(), checked.damage.begin(), checked.damage.end());
+  if (!checked.unjudged.empty()) report.limits.push_back(checked.unjudged);
   if (checked.mend_first) return report;  // the rest is said of recordings that can be read
   std::vector<ClockDelay> clocks;
   std::vector<RunData> prepared;
@@ -129,7 +144,8 @@ RecordingReport ReportOnRecordings(const model::ModelDescription& model, std::ve
   // As runs that are not fitted: what their motion lacks is no fault of the recording.
   const std::vector<std::string> remarks = RecordingRemarks(clocks, {}, pointers);
   report.wrong.insert(report.wrong.end(), remarks.begin(), remarks.end());
-  report.limits = LayoutRemarks(pointers);
+  const std::vector<std::string> layouts = LayoutRemarks(pointers);
+  report.limits.insert(report.limits.end(), layouts.begin(), layouts.end());
   const std::vector<std::string> limits = LimitRemarks(model.parameters, pointers);
   report.limits.insert(report.limits.end(), limits.begin(), limits.end());
   return report;

@@ -13,9 +13,9 @@ namespace {
 using Run = runs::MeasuredRun;
 
 // Units in which newcomers record, as a sidecar names them; those of another quantity than a signal's are passed over.
-constexpr const char* kUnits[] = {"bar",   "kPa",  "MPa", "Pa",   "psi", "rpm", "deg/s", "rev/s",
-                                  "rad/s", "deg",  "rev", "rad",  "mm",  "cm",  "m",     "in",
-                                  "mm/s",  "cm/s", "m/s", "in/s", "mV",  "V"};
+constexpr const char* kUnits[] = {"bar",   "mbar",  "kPa",  "MPa", "Pa",   "psi", "rpm", "deg/s",
+                                  "rev/s", "rad/s", "deg",  "rev", "rad",  "mm",  "cm",  "m",
+                                  "in",    "mm/s",  "cm/s", "m/s", "in/s", "mV",  "V"};
 constexpr const char* kTimeUnits[] = {"ms", "us", "min", "s"};
 constexpr double kSameScale = 1e-4;  // relative: scales are written with few digits
 

@@ -22,12 +22,13 @@ std::string WhatIsWrong(const Mistakes& mistakes) {
 struct Remark {
   const RecordingFinding* finding;
   std::string lines;
+  std::vector<Mistakes> tied;  // those that other lines mend
   std::vector<std::string> tied_lines;
   std::vector<std::string> names, sidecars;
 
   bool Takes(const Remark& other) const {
-    return finding->mistakes == other.finding->mistakes && finding->tied == other.finding->tied &&
-           lines == other.lines && tied_lines == other.tied_lines;
+    return finding->mistakes == other.finding->mistakes && tied == other.tied && lines == other.lines &&
+           tied_lines == other.tied_lines;
   }
 };
 
@@ -45,16 +46,16 @@ std::string Text(const Remark& remark) {
   const std::string where = Where(remark.sidecars, mistakes);
   std::string text = WhatIsWrong(mistakes);
   bool even = false;
-  for (const Mistakes& other : remark.finding->tied) even = even || other.size() <= mistakes.size();
+  for (const Mistakes& other : remark.tied) even = even || other.size() <= mistakes.size();
   if (even) text = "either " + text;
-  for (const Mistakes& other : remark.finding->tied) {
+  for (const Mistakes& other : remark.tied) {
     if (other.size() <= mistakes.size()) text += ", or " + WhatIsWrong(other);
   }
   if (even) text += " (the runs cannot tell which)";
   if (remark.lines.empty()) return text;
   text += ": this " + where + " mends it: " + remark.lines;
-  for (size_t t = 0; t < remark.finding->tied.size(); ++t) {
-    const Mistakes& other = remark.finding->tied[t];
+  for (size_t t = 0; t < remark.tied.size(); ++t) {
+    const Mistakes& other = remark.tied[t];
     if (other.size() > mistakes.size()) {
       text += ". It might also be that " + WhatIsWrong(other) + ", which would explain the runs as well";
     }
@@ -74,8 +75,16 @@ std::vector<std::string> FindingRemarks(const std::vector<RecordingFinding>& fin
   std::vector<Remark> remarks;  // in the order of the first run
   for (const RecordingFinding& finding : findings) {
     const Run& run = runs[finding.run];
-    Remark next{&finding, SidecarLines(finding.mistakes, run), {}, {run.name}, {}};
-    for (const Mistakes& other : finding.tied) next.tied_lines.push_back(SidecarLines(other, run));
+    Remark next{&finding, SidecarLines(finding.mistakes, run), {}, {}, {run.name}, {}};
+    for (const Mistakes& other : finding.tied) {
+      std::string lines = SidecarLines(other, run);
+      const bool same =
+          !lines.empty() && lines == next.lines;  // signs of two sensors, one by one or together
+      if (same || std::find(next.tied_lines.begin(), next.tied_lines.end(), lines) != next.tied_lines.end())
+        continue;
+      next.tied.push_back(other);
+      next.tied_lines.push_back(std::move(lines));
+    }
     const std::string sidecar = std::filesystem::path(run.sidecar).filename().string();
     const auto same = std::find_if(remarks.begin(), remarks.end(),
                                    [&](const Remark& remark) { return remark.Takes(next); });

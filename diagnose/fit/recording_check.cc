@@ -16,6 +16,8 @@ namespace {
 using Run = runs::MeasuredRun;
 using Mistakes = std::vector<RecordingMistake>;
 
+// A median squared error in the unit of kInOrder's: as large as the signal's movement.
+constexpr double kUnlike = 100;
 constexpr size_t kOfEachRun = 3;       // explanations that the other runs are asked about
 const double kAsGood = std::log(1.5);  // gains that are as good as each other
 
@@ -159,7 +161,8 @@ std::vector<RecordingFinding> WithoutDoubtful(size_t runs, const std::vector<Rec
 
 std::vector<RecordingFinding> CheckRecordings(const model::ModelDescription& model,
                                               const std::vector<Run>& runs, int jobs,
-                                              const std::function<bool()>& time_is_up) {
+                                              const std::function<bool()>& time_is_up,
+                                              std::vector<size_t>* unpredicted) {
   std::vector<std::optional<RunCheck>> checks(runs.size());
   ParallelFor(runs.size(), jobs, [&](size_t r) { checks[r].emplace(model, runs[r], time_is_up); });
   const Pool pool(checks, runs, jobs, time_is_up);
@@ -181,6 +184,11 @@ std::vector<RecordingFinding> CheckRecordings(const model::ModelDescription& mod
   }
   std::vector<RecordingFinding> sure = WithoutDoubtful(runs.size(), findings);
   if (sure.empty()) sure = UnknownFactorFindings(checks, jobs);
+  for (size_t r = 0; unpredicted != nullptr && r < runs.size(); ++r) {
+    const bool said =
+        std::any_of(sure.begin(), sure.end(), [r](const RecordingFinding& one) { return one.run == r; });
+    if (!said && !checks[r]->IsInOrder() && checks[r]->as_recorded() > kUnlike) unpredicted->push_back(r);
+  }
   return sure;
 }
 

@@ -23,11 +23,13 @@ struct RecordingFinding {
   std::vector<std::vector<RecordingMistake>> tied = {};
 };
 
-// One finding at most for each run, in their order. Takes a second or two for eight runs; the results do not
+// One finding at most for each run, in their order. `unpredicted`: runs of which nothing is found, and which the model as given does not
+// predict at all, so that nothing can be said. Takes a second or two for eight runs; the results do not
 // depend on `jobs`. What `time_is_up` cuts off is not found.
 std::vector<RecordingFinding> CheckRecordings(
     const model::ModelDescription& model, const std::vector<runs::MeasuredRun>& runs, int jobs,
-    const std::function<bool()>& time_is_up = [] { return false; });
+    const std::function<bool()>& time_is_up = [] { return false; },
+    std::vector<size_t>* unpredicted = nullptr);
 
 // Without what one run of several says alone and weakly, if it is not in order then: what is missing there may look like a mistake.
 std::vector<RecordingFinding> WithoutDoubtful(size_t runs, const std::vector<RecordingFinding>& findings);

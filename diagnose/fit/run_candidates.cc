@@ -39,6 +39,7 @@ std::vector<Mistakes> RunCheck::Candidates() const {
                    [](const auto& a, const auto& b) { return a.first < b.first; });
   if (order.size() > kBest) order.resize(kBest);
   std::vector<Mistakes> candidates;
+  candidates.reserve(order.size());
   for (auto& [merit, joint] : order) candidates.push_back(std::move(joint));
   // Each of the best alone, for which few windows with measured starts are a weak witness.
   std::vector<std::pair<double, Mistakes>> alone;
@@ -99,6 +100,7 @@ std::optional<RecordingMistake> RunCheck::BestNext(const Mistakes& found) const 
 }
 
 std::optional<MistakeTrial> RunCheck::UnknownFactor() const {
+  if (slow_) return std::nullopt;  // its times are wrong, or too far apart for the model
   const SignalBalances balances(model_.parameters, run_, windows_, possible_);
   std::optional<MistakeTrial> best;
   for (const RecordingMistake& factor : UnknownFactors(balances, run_)) {

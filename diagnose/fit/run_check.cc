@@ -105,9 +105,9 @@ RunCheck::Errors RunCheck::Unpredicted() const {
 }
 
 RunCheck::Errors RunCheck::Predict(const Mistakes& mistakes, size_t count, WindowStart start) const {
-  const Errors given = PredictWith(Load::kGiven, mistakes, count, start);
+  Errors given = PredictWith(Load::kGiven, mistakes, count, start);
   if (with_own_load_ || run_.shaft == model::Shaft::kClamped || !run_.arm_angle.measured()) return given;
-  const Errors shown = PredictWith(Load::kShown, mistakes, count, start);
+  Errors shown = PredictWith(Load::kShown, mistakes, count, start);
   const bool better = MedianBadness(shown) < MedianBadness(given);
   return better ? shown : given;
 }

@@ -48,7 +48,7 @@ std::string LaunchInvariants::WhatFailed() const {
 }
 
 std::string LaunchInvariants::WhatMayHaveFailed() const {
-  if (const std::string failed = WhatFailed(); !failed.empty()) return failed;
+  if (std::string failed = WhatFailed(); !failed.empty()) return failed;
   if (!launch_->may_fail.empty()) return launch_->may_fail;
   if (launch_->early_end) return "a process ended and no stop was heard";
   // Where the motor obeys, all are there, whatever has been lost of what they said.

@@ -228,6 +228,32 @@ TEST(RecordingFindings, OneRunAloneSaysItWeakly) {
   EXPECT_THAT(WithoutDoubtful(6, {other, weak}), SizeIs(2));
 }
 
+// Tests that pressures in mbar are told from kPa, also with times in us, which no simulation could follow.
+TEST_F(RecordingCheckTest, Millibars) {
+  const auto remarks = Remarks([](runs::MeasuredRun& run) {
+    for (auto signal : {&runs::MeasuredRun::p1, &runs::MeasuredRun::p2})
+      Multiply(&(run.*signal).values, 68.947573);
+    Multiply(&run.time, 1e6);
+  });
+  ASSERT_THAT(remarks, SizeIs(1));
+  EXPECT_THAT(remarks[0], HasSubstr("time is in us and p1 and p2 are in mbar"));
+}
+
+// Tests that a run which nothing predicts is said to be that: columns exchanged, say.
+TEST_F(RecordingCheckTest, NotPredictedAtAll) {
+  std::vector<runs::MeasuredRun> runs = *recorded_;
+  std::swap(runs[1].p1.values, runs[1].motor_speed.values);
+  std::vector<size_t> unpredicted;
+  const auto findings = CheckRecordings(
+      given_, runs, 2, [] { return false; }, &unpredicted);
+  EXPECT_THAT(findings, IsEmpty());
+  EXPECT_THAT(unpredicted, ::testing::ElementsAre(1u));
+  unpredicted.clear();
+  CheckRecordings(
+      given_, *recorded_, 2, [] { return false; }, &unpredicted);
+  EXPECT_THAT(unpredicted, IsEmpty());
+}
+
 // Tests that times in milliseconds are found, and quickly: a simulation over them would hardly end.
 TEST_F(RecordingCheckTest, Milliseconds) {
   const auto remarks = Remarks([](runs::MeasuredRun& run) { Multiply(&run.time, 1000); });
