@@ -194,6 +194,7 @@ std::vector<output_left_t> OutputsLeft(const RunMessages& messages) {
     if (plants.contains(left.session)) last[left.session] = left;
   }
   std::vector<output_left_t> all;
+  all.reserve(last.size());
   for (const auto& [session, left] : last) all.push_back(left);
   return all;
 }
