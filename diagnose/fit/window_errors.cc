@@ -25,6 +25,7 @@ double MedianOf(std::vector<double> values) {
 
 double MedianBadness(const std::vector<PredictionErrors>& windows) {
   std::vector<double> all;
+  all.reserve(windows.size());
   for (const PredictionErrors& errors : windows) all.push_back(Badness(errors));
   return MedianOf(all);
 }
