@@ -9,6 +9,7 @@
 #include "diagnose/data/recording_damage.h"
 #include "diagnose/data/recording_remarks.h"
 #include "diagnose/data/run_data.h"
+#include "diagnose/data/twin_pressures.h"
 
 namespace hydro::diagnose {
 namespace {
@@ -49,6 +50,15 @@ size_t RunsThatMayHave(const std::vector<RecordingMistake>& mistakes,
   }));
 }
 
+std::vector<std::string> RunsWithTwinPressures(const std::vector<runs::MeasuredRun>& runs) {
+  std::vector<std::string> lines;
+  for (const runs::MeasuredRun& run : runs) {
+    std::string line = TwinPressures(run);
+    if (!line.empty()) lines.push_back(std::move(line));
+  }
+  return lines;
+}
+
 std::string UnjudgedLine(const std::vector<size_t>& unpredicted, const std::vector<runs::MeasuredRun>& runs) {
   if (unpredicted.empty()) return "";
   std::vector<std::string> names;
@@ -79,10 +89,16 @@ CheckedRecordings CheckFirst(const model::ModelDescription& model, const std::ve
   }
   std::vector<runs::MeasuredRun> all = *runs;
   all.insert(all.end(), held_out->begin(), held_out->end());
+  const std::vector<std::string> twins = RunsWithTwinPressures(all);
   std::vector<size_t> unpredicted;
-  const std::vector<RecordingFinding> findings = CheckRecordings(model, all, jobs, time_is_up, &unpredicted);
+  std::vector<RecordingFinding> findings = CheckRecordings(model, all, jobs, time_is_up, &unpredicted);
+  // What is to be mended there first may look like any other mistake.
+  const auto is_twin = [&](size_t run) { return !TwinPressures(all[run]).empty(); };
+  std::erase_if(findings, [&](const RecordingFinding& one) { return is_twin(one.run); });
+  std::erase_if(unpredicted, is_twin);
   checked.unjudged = UnjudgedLine(unpredicted, all);
   checked.mistakes = FindingRemarks(findings, all);
+  checked.mistakes.insert(checked.mistakes.begin(), twins.begin(), twins.end());
   const bool may_name_signs =
       effects.empty() || std::find(effects.begin(), effects.end(), kSign) != effects.end();
   // A recorder's mistake is in most of its runs. What a single run shows may have another cause: it is said, and the
@@ -90,7 +106,8 @@ CheckedRecordings CheckFirst(const model::ModelDescription& model, const std::ve
   const bool most = std::any_of(findings.begin(), findings.end(), [&](const RecordingFinding& finding) {
     return 2 * RunsWith(finding.mistakes, findings) >= RunsThatMayHave(finding.mistakes, all);
   });
-  checked.mend_first = !findings.empty() && most && !(may_name_signs && OnlySigns(findings));
+  checked.mend_first =
+      !twins.empty() || (!findings.empty() && most && !(may_name_signs && OnlySigns(findings)));
   return checked;
 }
 

@@ -53,6 +53,28 @@ bool HasNoise(const std::vector<double>& values, double noise) {
   return noise >= kAboveSteps * EstimateResolution(values) && noise >= 1e-4 * RangeOfValues(values).size();
 }
 
+// The change from one sample to the next that 19 of 20 stay below.
+double UsualChange(const std::vector<double>& values) {
+  std::vector<double> changes;
+  for (size_t i = 1; i < values.size(); ++i) {
+    const double change = std::abs(values[i] - values[i - 1]);
+    if (!std::isnan(change)) changes.push_back(change);
+  }
+  if (changes.empty()) return 0;
+  const auto most = changes.begin() + static_cast<std::ptrdiff_t>(changes.size() * 19 / 20);
+  std::nth_element(changes.begin(), most, changes.end());
+  return *most;
+}
+
+// A few equal values far from those on both sides, on the same side of both: what a recorder writes for "nothing", -999 say.
+bool IsSentinel(const std::vector<double>& values, const Stretch& one, double leap) {
+  if (one.first == 0 || one.last == values.size() || one.last - one.first >= kShortestHold) return false;
+  const double before = values[one.first - 1] - values[one.first];
+  const double after = values[one.last] - values[one.first];
+  return before * after > 0 &&
+         std::min(std::abs(before), std::abs(after)) > leap + kSpread * std::abs(after - before);
+}
+
 std::vector<Stretch> HeldStretches(const std::vector<double>& values) {
   const double noise = EstimateNoise(values);
   if (noise <= 0 || !HasNoise(values, noise)) return {};
@@ -68,9 +90,14 @@ std::vector<Stretch> HeldStretches(const std::vector<double>& values) {
   const double n = static_cast<double>(values.size());
   const double chance = std::min(0.9, repeats / n);
   const ValueRange range = RangeOfValues(values);
+  const double leap = std::max(kSpike * noise, kChange * UsualChange(values));
   std::vector<Stretch> held;
   for (const Stretch& one : equal) {
     const size_t length = one.last - one.first;
+    if (IsSentinel(values, one, leap)) {
+      held.push_back(one);
+      continue;
+    }
     if (length < kShortestHold) continue;
     if (n * std::pow(chance, static_cast<double>(length - 1)) > kByChance) continue;
     // At the end of its range the sensor reads no further, unless the value is far from those beside it.
@@ -84,19 +111,6 @@ std::vector<Stretch> HeldStretches(const std::vector<double>& values) {
     held.push_back({one.first + (own ? 1 : 0), one.last});
   }
   return held;
-}
-
-// The change from one sample to the next that 19 of 20 stay below.
-double UsualChange(const std::vector<double>& values) {
-  std::vector<double> changes;
-  for (size_t i = 1; i < values.size(); ++i) {
-    const double change = std::abs(values[i] - values[i - 1]);
-    if (!std::isnan(change)) changes.push_back(change);
-  }
-  if (changes.empty()) return 0;
-  const auto most = changes.begin() + static_cast<std::ptrdiff_t>(changes.size() * 19 / 20);
-  std::nth_element(changes.begin(), most, changes.end());
-  return *most;
 }
 
 std::vector<size_t> Spikes(const std::vector<double>& values) {

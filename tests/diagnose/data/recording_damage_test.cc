@@ -66,6 +66,16 @@ TEST(RecordingDamage, Zeros) {
   EXPECT_EQ(Missing(runs[0].p1.values), 20u);
 }
 
+// Tests that a few equal values far from all others, as a recorder writes for "nothing", become missing whatever their number.
+TEST(RecordingDamage, Sentinels) {
+  for (const size_t length : {2, 3, 5, 7}) {
+    std::vector<runs::MeasuredRun> runs = {Bench()};
+    for (size_t i = 300; i < 300 + length; ++i) runs[0].p1.values[i] = -999;
+    EXPECT_THAT(LinesOf(&runs), ElementsAre(HasSubstr(std::to_string(length) + " samples"))) << length;
+    EXPECT_EQ(Missing(runs[0].p1.values), length);
+  }
+}
+
 // Tests that the end of a sensor's range, an encoder at rest and a slow sensor are no dropouts.
 TEST(RecordingDamage, WhatIsNone) {
   runs::MeasuredRun saturated = Bench();
