@@ -19,8 +19,7 @@ constexpr std::array kRows{
         .explicit_rearm = Cleared::kByItself,
         .cleared_text = "by itself, when a new logger is heard",
         .tests = "fault_loops.FaultLoopsTest.test_logger_dies plant/PlantFaultsTest.LoggerGone",
-        // A flood: of messages of loggers, among others, that are never heard again.
-        .injected = "crash:logger hang:logger partition:logger flood",
+        .injected = "crash:logger hang:logger partition:logger",
     },
     SafetyRow{
         .id = "disk_full",
