@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <map>
 #include <utility>
 
 #include "base/word_list.h"
@@ -50,15 +51,6 @@ size_t RunsThatMayHave(const std::vector<RecordingMistake>& mistakes,
   }));
 }
 
-std::vector<std::string> RunsWithTwinPressures(const std::vector<runs::MeasuredRun>& runs) {
-  std::vector<std::string> lines;
-  for (const runs::MeasuredRun& run : runs) {
-    std::string line = TwinPressures(run);
-    if (!line.empty()) lines.push_back(std::move(line));
-  }
-  return lines;
-}
-
 std::string UnjudgedLine(const std::vector<size_t>& unpredicted, const std::vector<runs::MeasuredRun>& runs) {
   if (unpredicted.empty()) return "";
   std::vector<std::string> names;
@@ -66,8 +58,7 @@ std::string UnjudgedLine(const std::vector<size_t>& unpredicted, const std::vect
   for (const size_t r : unpredicted) names.push_back(runs[r].name);
   return RunsNamed(names) +
          ": not predicted at all by the model as given, and no known mistake of a recording explains that: "
-         "look at columns, shaft, bypass and "
-         "the model's units";
+         "look at columns, shaft, bypass and the model's units";
 }
 
 std::string MendFirstSentence(const CheckedRecordings& checked) {
@@ -89,16 +80,19 @@ CheckedRecordings CheckFirst(const model::ModelDescription& model, const std::ve
   }
   std::vector<runs::MeasuredRun> all = *runs;
   all.insert(all.end(), held_out->begin(), held_out->end());
-  const std::vector<std::string> twins = RunsWithTwinPressures(all);
+  std::map<size_t, std::string> twins;  // by run, what is wrong
+  for (size_t r = 0; r < all.size(); ++r) {
+    if (std::string wrong = TwinPressures(all[r]); !wrong.empty()) twins[r] = std::move(wrong);
+  }
   std::vector<size_t> unpredicted;
   std::vector<RecordingFinding> findings = CheckRecordings(model, all, jobs, time_is_up, &unpredicted);
   // What is to be mended there first may look like any other mistake.
-  const auto is_twin = [&](size_t run) { return !TwinPressures(all[run]).empty(); };
-  std::erase_if(findings, [&](const RecordingFinding& one) { return is_twin(one.run); });
-  std::erase_if(unpredicted, is_twin);
+  std::erase_if(findings, [&](const RecordingFinding& one) { return twins.contains(one.run); });
+  std::erase_if(unpredicted, [&](size_t run) { return twins.contains(run); });
   checked.unjudged = UnjudgedLine(unpredicted, all);
   checked.mistakes = FindingRemarks(findings, all);
-  checked.mistakes.insert(checked.mistakes.begin(), twins.begin(), twins.end());
+  for (auto twin = twins.rbegin(); twin != twins.rend(); ++twin)
+    checked.mistakes.insert(checked.mistakes.begin(), twin->second);
   const bool may_name_signs =
       effects.empty() || std::find(effects.begin(), effects.end(), kSign) != effects.end();
   // A recorder's mistake is in most of its runs. What a single run shows may have another cause: it is said, and the

@@ -6,6 +6,7 @@
 
 #include "base/number_text.h"
 #include "base/word_list.h"
+#include "maths/median.h"
 
 namespace hydro::diagnose {
 namespace {
@@ -61,16 +62,10 @@ void Join(const Group& more, Group* group) {
   }
 }
 
-double Median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 std::string RemarkOn(const Group& group, bool all) {
   std::vector<std::string> found, lines;
   for (const Unlike& signal : group.signals) {
-    const double stated = Median(signal.stated), shown = Median(signal.shown);
+    const double stated = maths::Median(signal.stated), shown = maths::Median(signal.shown);
     const std::string& name = ChannelName(signal.channel);
     found.push_back(name + " " + ShortNumber(shown, 3) + " " + ChannelUnit(signal.channel, *group.units) +
                     ", " + ShortNumber(shown / stated, 2) + " times the stated " + ShortNumber(stated, 3));

@@ -6,6 +6,7 @@
 
 #include "diagnose/data/balance_rows.h"
 #include "diagnose/data/run_data.h"
+#include "maths/median.h"
 
 namespace hydro::diagnose {
 namespace {
@@ -111,9 +112,7 @@ double SignalBalances::Balance::LeftOpen(const VectorXd& coefficients) const {
     if (of > 0) shares.push_back(std::log(std::max(kFloor, left / of)));
   }
   if (shares.empty()) return 0;
-  const auto middle = shares.begin() + static_cast<std::ptrdiff_t>(shares.size() / 2);
-  std::nth_element(shares.begin(), middle, shares.end());
-  return *middle;
+  return maths::Median(shares);
 }
 
 double SignalBalances::TorqueLeftOpen(const SignalFactors& f) const {

@@ -9,6 +9,7 @@
 #include "diagnose/data/sample_interval.h"
 #include "diagnose/fit/arm_load.h"
 #include "diagnose/fit/window_errors.h"
+#include "maths/median.h"
 
 namespace hydro::diagnose {
 namespace {
@@ -133,7 +134,7 @@ double RunCheck::WorstSignal(const Errors& windows) const {
     for (size_t w = 0; w < windows.size(); ++w) {
       if (moves_[w][channel] && !std::isnan(windows[w][channel])) errors.push_back(windows[w][channel]);
     }
-    if (!errors.empty()) worst = std::max(worst, MedianOf(errors));
+    if (!errors.empty()) worst = std::max(worst, maths::Median(errors));
   }
   return worst;
 }

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "maths/median.h"
+
 namespace hydro::diagnose {
 namespace {
 
@@ -17,17 +19,11 @@ double Badness(const PredictionErrors& errors) {
 
 }  // namespace
 
-double MedianOf(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 double MedianBadness(const std::vector<PredictionErrors>& windows) {
   std::vector<double> all;
   all.reserve(windows.size());
   for (const PredictionErrors& errors : windows) all.push_back(Badness(errors));
-  return MedianOf(all);
+  return maths::Median(all);
 }
 
 double Gain(const std::vector<PredictionErrors>& from, const std::vector<PredictionErrors>& to) {
@@ -39,7 +35,7 @@ double Gain(const std::vector<PredictionErrors>& from, const std::vector<Predict
     }
     gains.push_back(Badness(before) - Badness(to[w]));
   }
-  return MedianOf(gains);
+  return maths::Median(gains);
 }
 
 }  // namespace hydro::diagnose

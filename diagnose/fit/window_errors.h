@@ -7,8 +7,6 @@
 
 namespace hydro::diagnose {
 
-double MedianOf(std::vector<double> values);
-
 // How badly the median window is predicted: the logarithms of its signals' squared errors, added up.
 double MedianBadness(const std::vector<PredictionErrors>& windows);
 

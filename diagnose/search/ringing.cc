@@ -7,6 +7,7 @@
 
 #include "base/parallel.h"
 #include "diagnose/fit/residuals.h"
+#include "maths/median.h"
 
 namespace hydro::diagnose {
 
@@ -77,11 +78,9 @@ std::vector<double> SpectrumOf(const Fitted& fitted, size_t r, const RunData& ru
 // How far the spectrum at `f`, without the slope that steps have, stands out from around it.
 double Clearness(const std::vector<double>& level, size_t f) {
   const size_t from = f < kAround ? 0 : f - kAround, to = std::min(level.size(), f + kAround + 1);
-  std::vector<double> around(level.begin() + static_cast<std::ptrdiff_t>(from),
-                             level.begin() + static_cast<std::ptrdiff_t>(to));
-  const auto middle = around.begin() + static_cast<std::ptrdiff_t>(around.size() / 2);
-  std::nth_element(around.begin(), middle, around.end());
-  return *middle > 0 ? level[f] / *middle : 0;
+  const double around = maths::Median(
+      {level.begin() + static_cast<std::ptrdiff_t>(from), level.begin() + static_cast<std::ptrdiff_t>(to)});
+  return around > 0 ? level[f] / around : 0;
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <limits>
 
+#include "maths/median.h"
 #include "model/actuator.h"
 
 namespace hydro::experiments {
@@ -48,9 +49,7 @@ double Noise(const runs::MeasuredSignal& signal) {
     if (!std::isnan(difference)) differences.push_back(difference);
   }
   if (differences.empty()) return 1;
-  const auto middle = differences.begin() + static_cast<ptrdiff_t>(differences.size() / 2);
-  std::nth_element(differences.begin(), middle, differences.end());
-  return std::max(*middle / (0.6745 * std::sqrt(2.0)), 1e-6);
+  return std::max(maths::Median(std::move(differences)) / (0.6745 * std::sqrt(2.0)), 1e-6);
 }
 
 // Mean of the first values, before anything acts.

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "maths/linear_fit.h"
+#include "maths/median.h"
 
 namespace hydro::experiments {
 namespace {
@@ -67,9 +68,8 @@ double VoltageNoise(const runs::MeasuredRun& run) {
   std::vector<double> differences;
   const std::vector<double>& voltage = run.voltage.values;
   for (size_t i = 1; i < voltage.size(); ++i) differences.push_back(std::abs(voltage[i] - voltage[i - 1]));
-  const auto middle = differences.begin() + static_cast<ptrdiff_t>(differences.size() / 2);
-  std::nth_element(differences.begin(), middle, differences.end());
-  return *middle / (0.6745 * std::sqrt(2.0));  // a normal variable's median magnitude is 0.6745 deviations
+  return maths::Median(std::move(differences)) /
+         (0.6745 * std::sqrt(2.0));  // a normal variable's median magnitude is 0.6745 deviations
 }
 
 }  // namespace

@@ -1,11 +1,13 @@
 // Schedules as text.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <sstream>
 
 #include "base/input_error.h"
 #include "base/number_text.h"
+#include "process/safety/safety_table.h"
 #include "torture/schedule/schedule.h"
 
 namespace hydro::torture {
@@ -63,9 +65,10 @@ class LineReader {
 };
 
 void CheckRanges(const LineReader& line, const FaultKindInfo& info, const Injection& injection) {
-  const std::string target(TargetName(injection.target));
-  if ((" " + std::string(info.targets) + " ").find(" " + target + " ") == std::string::npos) {
-    throw line.Error(target, "target=T with T one of " + std::string(info.targets));
+  const std::string_view target = TargetName(injection.target);
+  const std::vector<std::string_view> targets = process::WordsOf(info.targets);
+  if (std::find(targets.begin(), targets.end(), target) == targets.end()) {
+    throw line.Error(std::string(target), "target=T with T one of " + std::string(info.targets));
   }
   if (!(injection.duration_s >= 0 && injection.duration_s <= kLongest_s)) {
     throw line.Error(ShortestNumber(injection.duration_s), fmt::format("for=S from 0 to {}", kLongest_s));

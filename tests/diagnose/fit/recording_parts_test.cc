@@ -12,6 +12,7 @@
 #include "diagnose/fit/unknown_factor.h"
 #include "diagnose/fit/unknown_findings.h"
 #include "diagnose/fit/window_errors.h"
+#include "maths/median.h"
 #include "tests/diagnose/noisy_rig.h"
 #include "tests/table1.h"
 
@@ -167,7 +168,8 @@ TEST(ArmLoad, WeightFromTheMotion) {
 
 // Tests medians of errors, and that a gain counts the signals that both have.
 TEST(WindowErrors, Medians) {
-  EXPECT_EQ(MedianOf({3, 1, 2}), 2);
+  EXPECT_EQ(maths::Median({3, 1, 2}), 2);
+  EXPECT_EQ(maths::Median({4, 3, 1, 2}), 3);
   PredictionErrors bad, good;
   bad.fill(std::nan(""));
   good.fill(std::nan(""));
