@@ -1,7 +1,7 @@
 #include "diagnose/data/sample_interval.h"
 
-#include <utility>
 #include <cstddef>
+#include <utility>
 
 #include "maths/median.h"
 
