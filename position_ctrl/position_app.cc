@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "design/configured_laws.h"
 #include "process/fault_codes.h"
 
 namespace hydro::position_ctrl {
@@ -28,16 +29,6 @@ int8_t SignalCode(settings::ReferenceSignal signal) {
   return arm_reference_t::ARM_ANGLE;
 }
 
-PositionLawSettings LawSettingsFor(const settings::StackConfig& config) {
-  PositionLawSettings settings;
-  settings.c1 = config.position.c1;
-  settings.c2 = config.position.c2;
-  settings.sample_interval = static_cast<double>(config.position_interval_ticks) / config.plant.rate_hz;
-  settings.derivative_on_error = config.position.derivative_on_error;
-  settings.pressure_limit = config.limits.arm_torque_in_lbf / config.model.description.parameters.k_2;
-  return settings;
-}
-
 }  // namespace
 
 PositionApp::PositionApp(bus::Bus& bus, bus::Clock& clock, const settings::StackConfig& config)
@@ -50,7 +41,7 @@ PositionApp::PositionApp(bus::Bus& bus, bus::Clock& clock, const settings::Stack
       torque_per_pressure_(config.model.description.parameters.k_2),
       pressure_limit_(config.limits.arm_torque_in_lbf / config.model.description.parameters.k_2),
       section_(config.position),
-      law_(LawSettingsFor(config)),
+      law_(design::PositionLawSettingsFor(config)),
       return_(std::llround(config.limits.return_s * config.plant.rate_hz)),
       state_monitor_(bus::FromSeconds(config.limits.stale_input_s)),
       last_state_time_(clock.Now()) {

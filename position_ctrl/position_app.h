@@ -12,8 +12,8 @@
 #include <optional>
 
 #include "bus/sequence_monitor.h"
-#include "position_ctrl/position_law.h"
-#include "position_ctrl/reference_return.h"
+#include "position_ctrl/law/position_law.h"
+#include "position_ctrl/law/reference_return.h"
 #include "process/app.h"
 #include "process/fault_codes.h"
 #include "process/participant.h"

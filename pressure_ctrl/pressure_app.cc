@@ -4,10 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
 
-#include "base/input_error.h"
 #include "base/saturating.h"
+#include "design/configured_laws.h"
 
 namespace hydro::pressure_ctrl {
 namespace {
@@ -34,27 +33,6 @@ double PressureReferenceLimit(const settings::StackConfig& config) {
 
 }  // namespace
 
-PressureLawSettings PressureLawSettingsFor(const settings::StackConfig& config) {
-  const model::Parameters& parameters = config.model.description.parameters;
-  const settings::PressureSection& section = config.pressure;
-  PressureLawSettings law;
-  try {
-    law.gains = section.k_p ? PressureGains{*section.k_p, section.k_v.value_or(0)}
-                            : DerivePressureGains(parameters, 0, section.natural_frequency_rad_s.value(),
-                                                  section.damping_ratio.value(), section.compressed_sides);
-  } catch (const std::invalid_argument& error) {
-    throw InputError(fmt::format("{}: pressure.natural_frequency_rad_s: {}", config.file, error.what()));
-  }
-  law.voltage_limit = parameters.T_pmax / parameters.k_1;
-  if (section.reference_feedforward_V_psi) {
-    law.reference_feedforward = *section.reference_feedforward_V_psi;
-  } else if (section.reference_feedforward) {
-    law.reference_feedforward = SteadyStateFeedforward(parameters, law.gains);
-  }
-  if (section.arm_speed_feedforward) law.arm_speed_ratio = parameters.c / parameters.D;
-  return law;
-}
-
 PressureApp::PressureApp(bus::Bus& bus, bus::Clock& clock, const settings::StackConfig& config)
     : participant_(bus, clock, bus::Channels(config.bus.channel_suffix), "pressure_ctrl", config.agreed),
       lockstep_(config.time.mode == settings::TimeMode::kLockstep),
@@ -70,7 +48,7 @@ PressureApp::PressureApp(bus::Bus& bus, bus::Clock& clock, const settings::Stack
       // silence is the plant's own.
       stall_time_(bus::FromSeconds(config.time.stall_timeout_s) + 400ms),
       limits_(config.limits),
-      law_(PressureLawSettingsFor(config)),
+      law_(design::PressureLawSettingsFor(config)),
       state_monitor_(stale_time_),
       command_monitor_(stale_time_),
       last_state_time_(clock.Now()) {

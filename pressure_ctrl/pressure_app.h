@@ -14,16 +14,12 @@
 
 #include "base/ring_queue.h"
 #include "bus/sequence_monitor.h"
-#include "pressure_ctrl/pressure_law.h"
+#include "pressure_ctrl/law/pressure_law.h"
 #include "process/app.h"
 #include "process/participant.h"
 #include "settings/stack_config.h"
 
 namespace hydro::pressure_ctrl {
-
-// The law's settings from a configuration. Derives the gains when the configuration gives natural frequency
-// and damping ratio instead; throws InputError when they cannot be derived.
-PressureLawSettings PressureLawSettingsFor(const settings::StackConfig& config);
 
 class PressureApp : public process::App {
  public:

@@ -6,7 +6,7 @@
 
 namespace hydro::experiments {
 
-Response RunStepTrial(const StepTrial& trial) {
+design::Response RunStepTrial(const StepTrial& trial) {
   model::Actuator actuator(trial.model, {});
   position_ctrl::PositionLaw position(trial.position);
   // The law's history before the step: the arm at rest at 0.
@@ -15,7 +15,7 @@ Response RunStepTrial(const StepTrial& trial) {
   double next_pressure_ref = 0;  // computed, not yet in force
   double voltage = 0;            // acting
   double next_voltage = 0;       // computed, not yet acting
-  Response response;
+  design::Response response;
   const auto ticks = static_cast<int>(std::lround(trial.duration / trial.tick));
   for (int k = 0; k <= ticks; ++k) {
     const model::Measurement m = actuator.Measure();

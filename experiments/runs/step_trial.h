@@ -2,10 +2,10 @@
 // but without messages: for searches that need hundreds of runs.
 #pragma once
 
-#include "experiments/maths/sampled_position_loop.h"
+#include "design/sampled_position_loop.h"
 #include "model/terms/description.h"
-#include "position_ctrl/position_law.h"
-#include "pressure_ctrl/pressure_law.h"
+#include "position_ctrl/law/position_law.h"
+#include "pressure_ctrl/law/pressure_law.h"
 
 namespace hydro::experiments {
 
@@ -22,6 +22,6 @@ struct StepTrial {
 
 // The arm's response, one point per tick, to a reference that steps from 0 at the first tick. Up to rounding,
 // it equals the stack's for the same settings and a step at a sample of the position loop. Throws ModelError.
-Response RunStepTrial(const StepTrial& trial);
+design::Response RunStepTrial(const StepTrial& trial);
 
 }  // namespace hydro::experiments

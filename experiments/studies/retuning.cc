@@ -39,7 +39,7 @@ StepTrial TrialOf(const std::string& config_text, const std::string& model_text,
   return trial;
 }
 
-std::vector<Candidate> SearchGains(StepTrial trial, const RigidDrive& drive) {
+std::vector<Candidate> SearchGains(StepTrial trial, const design::RigidDrive& drive) {
   const double design_step = trial.step;
   std::vector<Candidate> candidates;
   for (int c1 = 8000; c1 <= 20000; c1 += 2000) {
@@ -50,9 +50,9 @@ std::vector<Candidate> SearchGains(StepTrial trial, const RigidDrive& drive) {
       trial.position.c2 = candidate.c2;
       for (const double factor : {0.9, 1.0, 1.1}) {
         trial.step = factor * design_step;
-        const double shortest = FastestSettling(drive, trial.step, runs::kSettlingBand);
+        const double shortest = design::FastestSettling(drive, trial.step, runs::kSettlingBand);
         trial.duration = 2 * shortest;
-        const Response response = RunStepTrial(trial);
+        const design::Response response = RunStepTrial(trial);
         const auto settling =
             runs::MeasureStep(response.time, response.angle, 0, response.time.size(), 0, trial.step)
                 .settling_time_s;

@@ -175,7 +175,7 @@ TEST(StepTrial, EqualsTheStack) {
       ShippedStackText("retuned", {"reference.steps=[[0.1, 0.1]]", "time.duration_s=0.6"});
   StepTrial trial = TrialOf(config, ShippedModelText("table1"), 0.1);
   trial.duration = 0.5;
-  const Response response = RunStepTrial(trial);
+  const design::Response response = RunStepTrial(trial);
   const tables::Table table = RunStackInProcess({"trial", config, ShippedModelText("table1")});
   const tables::Column* angle = table.Find("arm_angle_rad");
   ASSERT_NE(angle, nullptr);

@@ -432,7 +432,7 @@ MUTATIONS = [
     ),
     # The control laws.
     *_rows(
-        "pressure_ctrl/pressure_law.cc",
+        "pressure_ctrl/law/pressure_law.cc",
         ("eq16.reference", "const double pressure_error = input.pressure_ref -",
          "const double pressure_error = -input.pressure_ref -"),
         ("eq16.pressure", "input.pressure_ref - (input.p2 - input.p1)", "input.pressure_ref + (input.p2 - input.p1)"),
@@ -453,7 +453,7 @@ MUTATIONS = [
         ("gains.damping", "(p.b + p.k_1 * gains.k_p", "(p.b - p.k_1 * gains.k_p"),
     ),
     *_rows(
-        "position_ctrl/position_law.cc",
+        "position_ctrl/law/position_law.cc",
         ("eq17.error", "arm_angle - arm_ref;", "arm_angle + arm_ref;"),
         ("eq17.c1", "= -settings_.c1 * error", "= settings_.c1 * error"),
         ("eq17.c2", "pressure_ref -= settings_.c2", "pressure_ref += settings_.c2"),

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "bus/in_process_bus.h"
-#include "position_ctrl/reference_return.h"
+#include "position_ctrl/law/reference_return.h"
 #include "tests/stack_fixture.h"
 
 namespace hydro::position_ctrl {

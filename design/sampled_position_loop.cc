@@ -1,4 +1,4 @@
-#include "experiments/maths/sampled_position_loop.h"
+#include "design/sampled_position_loop.h"
 
 #include <Eigen/Core>
 #include <algorithm>
@@ -7,7 +7,7 @@
 
 #include "maths/matrix_functions.h"
 
-namespace hydro::experiments {
+namespace hydro::design {
 namespace {
 
 // dp, dp', alpha, alpha', and the held dp_ref.
@@ -137,4 +137,4 @@ double SampledCriticalGain(const DesignModel& model, double interval) {
   return Limit([&](double gain) { return SpectralRadius(model, gain, interval) < 1; }, 1);
 }
 
-}  // namespace hydro::experiments
+}  // namespace hydro::design

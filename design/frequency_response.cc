@@ -1,4 +1,4 @@
-#include "experiments/maths/frequency_response.h"
+#include "design/frequency_response.h"
 
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
@@ -13,7 +13,7 @@
 
 #include "base/units.h"
 
-namespace hydro::experiments {
+namespace hydro::design {
 namespace {
 
 using Spectrum = std::vector<std::complex<double>>;
@@ -168,4 +168,4 @@ double BandwidthHz(const std::vector<ResponsePoint>& points, double passband_gai
   return std::numeric_limits<double>::quiet_NaN();
 }
 
-}  // namespace hydro::experiments
+}  // namespace hydro::design

@@ -1,4 +1,4 @@
-#include "experiments/maths/frequency_response.h"
+#include "design/frequency_response.h"
 
 #include <gtest/gtest.h>
 
@@ -8,9 +8,9 @@
 #include <random>
 #include <stdexcept>
 
-#include "experiments/maths/second_order_fit.h"
+#include "design/second_order_fit.h"
 
-namespace hydro::experiments {
+namespace hydro::design {
 namespace {
 
 constexpr double kRate = 2000;  // Hz
@@ -153,4 +153,4 @@ TEST(SecondOrderFit, FarFromTheStart) {
 }
 
 }  // namespace
-}  // namespace hydro::experiments
+}  // namespace hydro::design

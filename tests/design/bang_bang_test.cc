@@ -1,4 +1,4 @@
-#include "experiments/maths/bang_bang.h"
+#include "design/bang_bang.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 
 #include "experiments/runs/shipped_models.h"
 
-namespace hydro::experiments {
+namespace hydro::design {
 namespace {
 
 // Tests that without friction the result is the double integrator's closed form: 2
@@ -67,4 +67,4 @@ TEST(BangBang, Table1) {
 }
 
 }  // namespace
-}  // namespace hydro::experiments
+}  // namespace hydro::design

@@ -1,8 +1,8 @@
-#include "experiments/maths/bang_bang.h"
+#include "design/bang_bang.h"
 
 #include <cmath>
 
-namespace hydro::experiments {
+namespace hydro::design {
 namespace {
 
 // Speed v from rest under a constant torque and viscous friction: inertia v' = torque - viscous v. Braking is
@@ -92,4 +92,4 @@ double FastestSettling(const RigidDrive& drive, double distance, double band) {
   return time;
 }
 
-}  // namespace hydro::experiments
+}  // namespace hydro::design

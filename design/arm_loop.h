@@ -4,11 +4,11 @@
 
 #include <vector>
 
-#include "experiments/maths/sampled_position_loop.h"
+#include "design/sampled_position_loop.h"
 #include "model/terms/description.h"
-#include "pressure_ctrl/pressure_law.h"
+#include "pressure_ctrl/law/pressure_law.h"
 
-namespace hydro::experiments {
+namespace hydro::design {
 
 // The actuator of eqs. (4), (13), (14), (15) at rest at mid-stroke, with the pump slipping and both sides
 // compressing, under the pressure law, eq. (16), without limits. Linear from dp_ref to every state.
@@ -40,4 +40,4 @@ pressure_ctrl::SecondOrder ExactPressureLoop(const model::ModelDescription& mode
                                              const pressure_ctrl::PressureLawSettings& law,
                                              int compressed_sides);
 
-}  // namespace hydro::experiments
+}  // namespace hydro::design

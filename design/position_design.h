@@ -6,7 +6,7 @@
 
 #include "model/terms/description.h"
 
-namespace hydro::experiments {
+namespace hydro::design {
 
 using Complex = std::complex<double>;
 
@@ -65,4 +65,4 @@ struct Margins {
 // Throws std::domain_error when the loop is unstable at this gain.
 Margins StabilityMargins(const DesignModel& model, double gain);
 
-}  // namespace hydro::experiments
+}  // namespace hydro::design

@@ -1,4 +1,4 @@
-#include "experiments/maths/arm_loop.h"
+#include "design/arm_loop.h"
 
 #include <Eigen/Core>
 #include <algorithm>
@@ -8,7 +8,7 @@
 #include "maths/matrix_functions.h"
 #include "model/linearise.h"
 
-namespace hydro::experiments {
+namespace hydro::design {
 namespace {
 
 constexpr double kStartPressure = 500;  // psi, above p_3: both valves closed
@@ -120,4 +120,4 @@ pressure_ctrl::SecondOrder ExactPressureLoop(const model::ModelDescription& mode
   return {std::abs(*upper), -upper->real() / std::abs(*upper)};
 }
 
-}  // namespace hydro::experiments
+}  // namespace hydro::design

@@ -6,9 +6,9 @@
 #include <numbers>
 
 #include "model/terms/description.h"
-#include "pressure_ctrl/pressure_law.h"
+#include "pressure_ctrl/law/pressure_law.h"
 
-namespace hydro::experiments {
+namespace hydro::design {
 
 // For the difference of the two sides, at mid-stroke with both compressing and line.wave of this frequency
 // (Hz), volume fraction and damping:
@@ -41,4 +41,4 @@ inline bool RouthStable(const std::array<double, 5>& q) {
   return q[2] * q[3] > q[4] * q[1] && q[1] * q[2] * q[3] > q[4] * q[1] * q[1] + q[0] * q[3] * q[3];
 }
 
-}  // namespace hydro::experiments
+}  // namespace hydro::design

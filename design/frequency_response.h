@@ -4,7 +4,7 @@
 #include <complex>
 #include <vector>
 
-namespace hydro::experiments {
+namespace hydro::design {
 
 struct ResponsePoint {
   double frequency_hz = 0;
@@ -43,4 +43,4 @@ std::vector<double> PhasesDeg(const std::vector<ResponsePoint>& points);
 // below it at the end.
 double BandwidthHz(const std::vector<ResponsePoint>& points, double passband_gain);
 
-}  // namespace hydro::experiments
+}  // namespace hydro::design

@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "model/linearise.h"
-#include "pressure_ctrl/pressure_law.h"
+#include "pressure_ctrl/law/pressure_law.h"
 
-namespace hydro::experiments {
+namespace hydro::design {
 
 struct LoopTiming {
   double interval = 0;  // s; the voltage is computed at each multiple and held; 0: continuous
@@ -65,4 +65,4 @@ struct GainLimit {
 GainLimit LargestStableFactor(const LinearPressureLoop& loop, const pressure_ctrl::PressureGains& gains,
                               double most);
 
-}  // namespace hydro::experiments
+}  // namespace hydro::design

@@ -1,4 +1,4 @@
-#include "experiments/maths/position_design.h"
+#include "design/position_design.h"
 
 #include <gtest/gtest.h>
 
@@ -7,13 +7,13 @@
 #include <cmath>
 #include <numbers>
 
-#include "experiments/maths/arm_loop.h"
-#include "experiments/maths/sampled_position_loop.h"
+#include "design/arm_loop.h"
+#include "design/sampled_position_loop.h"
 #include "experiments/runs/shipped_models.h"
-#include "position_ctrl/position_law.h"
+#include "position_ctrl/law/position_law.h"
 #include "runs/step_response.h"
 
-namespace hydro::experiments {
+namespace hydro::design {
 namespace {
 
 DesignModel Table1Design() { return Figure8Model(ShippedModel("table1").parameters); }
@@ -229,4 +229,4 @@ TEST(ArmLoop, ArmFlowIsTheDifference) {
 }
 
 }  // namespace
-}  // namespace hydro::experiments
+}  // namespace hydro::design

@@ -1,4 +1,4 @@
-#include "experiments/maths/linear_loop.h"
+#include "design/linear_loop.h"
 
 #include <Eigen/Core>
 #include <algorithm>
@@ -8,7 +8,7 @@
 
 #include "maths/matrix_functions.h"
 
-namespace hydro::experiments {
+namespace hydro::design {
 namespace {
 
 using Complex = std::complex<double>;
@@ -160,4 +160,4 @@ GainLimit LargestStableFactor(const LinearPressureLoop& loop, const pressure_ctr
   return {low, loop.LeastDampedPole({high * gains.k_p, gains.k_v}).imag() / (2 * std::numbers::pi)};
 }
 
-}  // namespace hydro::experiments
+}  // namespace hydro::design

@@ -4,9 +4,9 @@
 #include <complex>
 #include <vector>
 
-#include "experiments/maths/frequency_response.h"
+#include "design/frequency_response.h"
 
-namespace hydro::experiments {
+namespace hydro::design {
 
 // K wn^2 / (s^2 + 2 zeta wn s + wn^2) exp(-s delay)
 struct SecondOrderModel {
@@ -40,4 +40,4 @@ struct SecondOrderFit {
 SecondOrderFit FitSecondOrder(const std::vector<ResponsePoint>& points,
                               const SecondOrderFitSettings& settings);
 
-}  // namespace hydro::experiments
+}  // namespace hydro::design

@@ -5,9 +5,9 @@
 #include <cstddef>
 #include <vector>
 
-#include "experiments/maths/position_design.h"
+#include "design/position_design.h"
 
-namespace hydro::experiments {
+namespace hydro::design {
 
 // alpha over time.
 struct Response {
@@ -41,4 +41,4 @@ double LargestStableInterval(const DesignModel& model, double gain);
 // The gain, psi s/rad, at which the sampled loop becomes unstable.
 double SampledCriticalGain(const DesignModel& model, double interval);
 
-}  // namespace hydro::experiments
+}  // namespace hydro::design

@@ -3,7 +3,7 @@
 
 #include "model/terms/description.h"
 
-namespace hydro::experiments {
+namespace hydro::design {
 
 // Motor, pump and arm as one rigid body (incompressible fluid, no leakage), referred to the arm; eqs. (4),
 // (15): (J (c/D)(k_2/D) + J_a) alpha'' = (k_2/D)(T_p - T_s sign(alpha') - b (c/D) alpha').
@@ -32,4 +32,4 @@ FastestMove FastestRestToRest(const RigidDrive& drive, double distance);
 // may still be moving then, as fast as full braking can stop it within the band.
 double FastestSettling(const RigidDrive& drive, double distance, double band);
 
-}  // namespace hydro::experiments
+}  // namespace hydro::design

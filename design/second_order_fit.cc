@@ -1,4 +1,4 @@
-#include "experiments/maths/second_order_fit.h"
+#include "design/second_order_fit.h"
 
 #include <ceres/tiny_solver.h>
 #include <ceres/tiny_solver_autodiff_function.h>
@@ -11,7 +11,7 @@
 
 #include "base/units.h"
 
-namespace hydro::experiments {
+namespace hydro::design {
 namespace {
 
 // Residuals: ln |measured/fitted| and the phase of measured/fitted, in radians, point by point. Unknowns: ln
@@ -108,4 +108,4 @@ SecondOrderFit FitSecondOrder(const std::vector<ResponsePoint>& points,
   return fit;
 }
 
-}  // namespace hydro::experiments
+}  // namespace hydro::design

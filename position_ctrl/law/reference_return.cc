@@ -1,4 +1,4 @@
-#include "position_ctrl/reference_return.h"
+#include "position_ctrl/law/reference_return.h"
 
 #include <cmath>
 

@@ -1,4 +1,4 @@
-#include "experiments/maths/linear_loop.h"
+#include "design/linear_loop.h"
 
 #include <gtest/gtest.h>
 
@@ -7,9 +7,9 @@
 
 #include "experiments/runs/shipped_models.h"
 #include "model/actuator.h"
-#include "tests/experiments/wave_polynomial.h"
+#include "tests/design/wave_polynomial.h"
 
-namespace hydro::experiments {
+namespace hydro::design {
 namespace {
 
 using Complex = std::complex<double>;
@@ -158,4 +158,4 @@ TEST(LinearPressureLoop, SampledLimitIsWhereTheActuatorStartsToOscillate) {
 }
 
 }  // namespace
-}  // namespace hydro::experiments
+}  // namespace hydro::design

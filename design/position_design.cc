@@ -1,4 +1,4 @@
-#include "experiments/maths/position_design.h"
+#include "design/position_design.h"
 
 #include <Eigen/Core>
 #include <algorithm>
@@ -10,7 +10,7 @@
 #include "base/units.h"
 #include "maths/matrix_functions.h"
 
-namespace hydro::experiments {
+namespace hydro::design {
 namespace {
 
 // Where `falling` crosses 0 between two frequencies, on a logarithmic scale.
@@ -117,4 +117,4 @@ Margins StabilityMargins(const DesignModel& model, double gain) {
   return margins;
 }
 
-}  // namespace hydro::experiments
+}  // namespace hydro::design
