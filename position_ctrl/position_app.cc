@@ -4,8 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
-#include "design/configured_laws.h"
+#include "base/input_error.h"
 #include "process/fault_codes.h"
 
 namespace hydro::position_ctrl {
@@ -37,11 +38,15 @@ PositionApp::PositionApp(bus::Bus& bus, bus::Clock& clock, const settings::Stack
       interval_(config.position_interval_ticks),
       stall_time_(bus::FromSeconds(config.time.stall_timeout_s) + 400ms),
       signal_(config.reference.signal),
+      reference_text_(settings::ReferenceText(config)),
       reference_(settings::MakeTrajectory(config.reference.trajectory)),
       torque_per_pressure_(config.model.description.parameters.k_2),
-      pressure_limit_(config.limits.arm_torque_in_lbf / config.model.description.parameters.k_2),
       section_(config.position),
-      law_(design::PositionLawSettingsFor(config)),
+      rate_hz_(config.plant.rate_hz),
+      values_(tuning::ValuesOf(config)),
+      law_(values_.position),
+      tuning_(participant_, [this](const tuned_settings_t& settings) { return WhyNot(settings); }),
+      transfer_(std::llround(config.limits.transfer_s * config.plant.rate_hz)),
       return_(std::llround(config.limits.return_s * config.plant.rate_hz)),
       state_monitor_(bus::FromSeconds(config.limits.stale_input_s)),
       last_state_time_(clock.Now()) {
@@ -59,6 +64,7 @@ PositionApp::PositionApp(bus::Bus& bus, bus::Clock& clock, const settings::Stack
                                     if (status.role == "pressure_ctrl")
                                       pressure_faults_.ForgetOthersOfRole(status.role, status.session);
                                   });
+  reference_in_force_ = reference_text_;
   participant_.Announce(process_status_t::READY);
 }
 
@@ -108,13 +114,55 @@ void PositionApp::Sample(const state_t& state, bus::Clock::TimePoint arrival) {
   participant_.statistics().RecordCycle(arrival, participant_.clock().Now() - arrival);
 }
 
+// Why this loop cannot act by the settings; empty: it can.
+std::string PositionApp::WhyNot(const tuned_settings_t& settings) const {
+  try {
+    if (!settings.reference.empty() &&
+        settings::ParseReference(settings.reference).signal != signal_) {
+      return "reference.signal takes a restart";
+    }
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  tuning::TunedValues values = values_;
+  return tuning::Read(settings, torque_per_pressure_, &values);
+}
+
+void PositionApp::TakeSettingsAt(int64_t tick) {
+  const tuned_settings_t* settings = tuning_.TakeDueAt(tick);
+  if (settings == nullptr) return;
+  if (!law_before_) law_before_ = values_.position;
+  tuning::Read(*settings, torque_per_pressure_, &values_);  // good: it was prepared
+  law_.Retune(values_.position);
+  const std::string& text = settings->reference.empty() ? reference_text_ : settings->reference;
+  const double from = static_cast<double>(settings->reference_from) / rate_hz_;
+  if (text == reference_in_force_ && from == reference_from_) return;
+  reference_ = settings::MakeTrajectory(settings::ParseReference(text).trajectory);
+  reference_in_force_ = text;
+  reference_from_ = from;
+  return_.Depart(arm_reference_.value, tick);
+}
+
+// psi: eq. (17), without a jump when its gains have changed.
+double PositionApp::AskedByLaw(const state_t& state, double reference, int64_t intervals) {
+  const auto before = std::exchange(law_before_, std::nullopt);
+  if (before && last_sample_tick_ >= 0) {
+    const double was = law_.Preview(*before, state.arm_angle, reference, intervals) + transfer_.Offset(state.tick);
+    transfer_.Begin(was, law_.Preview(values_.position, state.arm_angle, reference, intervals), state.tick);
+  }
+  const double asked = law_.UpdateUnlimited(state.arm_angle, reference, intervals);
+  const double left = transfer_.Offset(state.tick);
+  return law_.Limited(left == 0 ? asked : asked + left);
+}
+
 void PositionApp::Answer(const state_t& state) {
+  TakeSettingsAt(state.tick);
   if (last_sample_tick_ < 0) law_.Reset();
   const int64_t intervals = last_sample_tick_ < 0 ? 1 : (state.tick - last_sample_tick_) / interval_;
   participant_.statistics().AddMissedDeadlines(intervals - 1);
   last_sample_tick_ = state.tick;
 
-  const double reference = return_.Reference(reference_->Value(state.time), state.tick);
+  const double reference = return_.Reference(reference_->Value(state.time - reference_from_), state.tick);
   arm_reference_.tick = state.tick;
   arm_reference_.signal = SignalCode(signal_);
   arm_reference_.value = reference;
@@ -126,11 +174,12 @@ void PositionApp::Answer(const state_t& state) {
   switch (signal_) {
     case settings::ReferenceSignal::kArmAngle:
       if (std::isfinite(state.arm_angle)) {
-        pressure_ref = law_.Update(state.arm_angle, reference, intervals);
+        pressure_ref = AskedByLaw(state, reference, intervals);
         if (participant_.any_fault()) participant_.Clear("nonfinite_arm_angle");
       } else {
         pressure_command_.open_loop = true;  // at zero volts: without the arm's angle no pressure is safe
         law_.Reset();
+        transfer_.Forget();
         participant_.Raise(
             "nonfinite_arm_angle",
             fmt::format("tick {}: the arm angle is {}, must be finite", state.tick, state.arm_angle),
@@ -146,7 +195,7 @@ void PositionApp::Answer(const state_t& state) {
     case settings::ReferenceSignal::kVoltage:
       break;
   }
-  pressure_ref = std::clamp(pressure_ref, -pressure_limit_, pressure_limit_);
+  pressure_ref = law_.Limited(pressure_ref);
   pressure_command_.pressure_ref = QuantiseDac(pressure_ref, section_.dac_bits, section_.dac_range_psi);
 
   arm_reference_.sequence = pressure_command_.sequence = sequence_++;
@@ -180,6 +229,7 @@ void PositionApp::Send() {
 void PositionApp::Poll() {
   participant_.statistics().set_lost_messages(state_monitor_.lost());
   participant_.Poll();
+  tuning_.Poll();
   if (!lockstep_ || participant_.state() != process_status_t::RUNNING || participant_.stop()) return;
   const auto silence = participant_.clock().Now() - last_state_time_;
   if (silence > stall_time_) {

@@ -19,6 +19,9 @@
 #include "process/participant.h"
 #include "process/remote_faults.h"
 #include "settings/stack_config.h"
+#include "tuning/bumpless_transfer.h"
+#include "tuning/tuned_values.h"
+#include "tuning/tuning_follower.h"
 
 namespace hydro::position_ctrl {
 
@@ -37,6 +40,9 @@ class PositionApp : public process::App {
   void Answer(const state_t& state);
   void ObserveHold(const state_t& state);
   double Present(const state_t& state) const;
+  std::string WhyNot(const tuned_settings_t& settings) const;
+  void TakeSettingsAt(int64_t tick);
+  double AskedByLaw(const state_t& state, double reference, int64_t intervals);
   void Send();
 
   process::Participant participant_;
@@ -44,11 +50,18 @@ class PositionApp : public process::App {
   const int64_t interval_;  // ticks between two samples
   const bus::Clock::Duration stall_time_;
   const settings::ReferenceSignal signal_;
-  const std::unique_ptr<trajectory::Trajectory> reference_;
+  const std::string reference_text_;  // as configured
+  std::unique_ptr<trajectory::Trajectory> reference_;
+  std::string reference_in_force_;
+  double reference_from_ = 0;         // s, plant time at which it begins
   const double torque_per_pressure_;  // k_2
-  const double pressure_limit_;       // psi, from limits.arm_torque_in_lbf
   const settings::PositionSection section_;
+  const double rate_hz_;
+  tuning::TunedValues values_;        // in force
   PositionLaw law_;
+  tuning::TuningFollower tuning_;
+  tuning::BumplessTransfer transfer_;
+  std::optional<PositionLawSettings> law_before_;  // a change begins with the next sample
   ReferenceReturn return_;
   // Real time: while one lasts, the pressure loop's commands move nothing.
   process::RemoteFaults pressure_faults_{[](std::string_view role, std::string_view code) {

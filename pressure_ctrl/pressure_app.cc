@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "base/saturating.h"
-#include "design/configured_laws.h"
 
 namespace hydro::pressure_ctrl {
 namespace {
@@ -23,12 +22,9 @@ motor_command_t ZeroVolts(int64_t tick, int8_t status) {
   return zero;
 }
 
-// psi: the largest pressure reference that limits.arm_torque_in_lbf allows, with room for rounding and half a
-// D/A step.
-double PressureReferenceLimit(const settings::StackConfig& config) {
-  const settings::PositionSection& dac = config.position;
-  const double half_step = dac.dac_bits > 0 ? std::ldexp(dac.dac_range_psi, -dac.dac_bits) : 0;
-  return (1 + 1e-9) * config.limits.arm_torque_in_lbf / config.model.description.parameters.k_2 + half_step;
+// psi: with room for rounding and half a D/A step.
+double LargestPressureReference(const tuning::TunedValues& values, double half_dac_step) {
+  return (1 + 1e-9) * values.position.pressure_limit + half_dac_step;
 }
 
 }  // namespace
@@ -42,13 +38,18 @@ PressureApp::PressureApp(bus::Bus& bus, bus::Clock& clock, const settings::Stack
       stale_ticks_(delay_ + position_interval_ +
                    static_cast<int64_t>(std::ceil(config.limits.stale_input_s * config.plant.rate_hz))),
       ramp_ticks_(static_cast<int64_t>(std::ceil(config.limits.pressure_ramp_s * config.plant.rate_hz))),
-      pressure_limit_(PressureReferenceLimit(config)),
+      k_2_(config.model.description.parameters.k_2),
+      half_dac_step_(config.position.dac_bits > 0
+                         ? std::ldexp(config.position.dac_range_psi, -config.position.dac_bits)
+                         : 0),
       stale_time_(bus::FromSeconds(config.limits.stale_input_s)),
       // The plant itself waits stall_timeout_s for a late participant and then names it; only a longer
       // silence is the plant's own.
       stall_time_(bus::FromSeconds(config.time.stall_timeout_s) + 400ms),
-      limits_(config.limits),
-      law_(design::PressureLawSettingsFor(config)),
+      values_(tuning::ValuesOf(config)),
+      pressure_limit_(LargestPressureReference(values_, half_dac_step_)),
+      tuning_(participant_, [this](const tuned_settings_t& settings) { return WhyNot(settings); }),
+      transfer_(std::llround(config.limits.transfer_s * config.plant.rate_hz)),
       state_monitor_(stale_time_),
       command_monitor_(stale_time_),
       last_state_time_(clock.Now()) {
@@ -161,14 +162,44 @@ void PressureApp::TakePressureCommandsUpTo(int64_t tick) {
   }
 }
 
+std::string PressureApp::WhyNot(const tuned_settings_t& settings) const {
+  tuning::TunedValues values = values_;
+  return tuning::Read(settings, k_2_, &values);
+}
+
+void PressureApp::TakeSettingsAt(int64_t tick) {
+  const tuned_settings_t* settings = tuning_.TakeDueAt(tick);
+  if (settings == nullptr) return;
+  if (!law_before_) law_before_ = values_.pressure;
+  tuning::Read(*settings, k_2_, &values_);  // good: it was prepared
+  pressure_limit_ = LargestPressureReference(values_, half_dac_step_);
+}
+
+// V: what keeps the voltage from jumping when the gains have changed.
+double PressureApp::Transfer(const PressureLawInput& input, int64_t tick) {
+  if (law_before_) {
+    const bool begun = answered_ && last_command_.status == motor_command_t::LAW;
+    const double left = transfer_.Offset(tick);
+    if (begun) {
+      transfer_.Begin(UnlimitedPressureLaw(*law_before_, input) + left,
+                      UnlimitedPressureLaw(values_.pressure, input), tick);
+    }
+    law_before_.reset();
+  }
+  return transfer_.Offset(tick);
+}
+
 void PressureApp::Answer(const state_t& state) {
+  TakeSettingsAt(state.tick);
   TakePressureCommandsUpTo(SaturatingDifference(state.tick, delay_));
   motor_command_t command = ZeroVolts(state.tick, motor_command_t::SAFE);
   if (pressure_command_) {
     command.pressure_ref = PressureReference(state.tick);
     command.pressure_command_tick = pressure_command_->tick;
   }
-  if (InputsAreSafe(state)) {
+  if (!InputsAreSafe(state)) {
+    transfer_.Forget();
+  } else {
     if (pressure_command_ && pressure_command_->open_loop) {
       ApplyOpenLoop(&command);
     } else {
@@ -180,13 +211,14 @@ void PressureApp::Answer(const state_t& state) {
 
 void PressureApp::ApplyOpenLoop(motor_command_t* command) const {
   command->status = motor_command_t::OPEN_LOOP;
-  command->voltage = std::clamp(pressure_command_->voltage, -law_.voltage_limit, law_.voltage_limit);
+  command->voltage = std::clamp(pressure_command_->voltage, -values_.pressure.voltage_limit, values_.pressure.voltage_limit);
   command->saturated = command->voltage != pressure_command_->voltage;
 }
 
 void PressureApp::ApplyLaw(const state_t& state, motor_command_t* command) {
-  const PressureLawOutput output =
-      PressureLaw(law_, {command->pressure_ref, state.p1, state.p2, state.motor_speed, state.arm_speed});
+  PressureLawInput input{command->pressure_ref, state.p1, state.p2, state.motor_speed, state.arm_speed};
+  input.transfer = Transfer(input, state.tick);
+  const PressureLawOutput output = PressureLaw(values_.pressure, input);
   if (!std::isfinite(
           output.voltage)) {  // the inputs are finite, but a product of gains and reference overflows
     participant_.Raise("nonfinite_motor_command",
@@ -213,6 +245,7 @@ void PressureApp::Send(motor_command_t& command) {
 void PressureApp::Poll() {
   participant_.statistics().set_lost_messages(SaturatingSum(state_monitor_.lost(), command_monitor_.lost()));
   participant_.Poll();
+  tuning_.Poll();
   if (participant_.state() != process_status_t::RUNNING || participant_.stop()) return;
   const auto silence = participant_.clock().Now() - last_state_time_;
   if (lockstep_) {
@@ -228,7 +261,7 @@ void PressureApp::Poll() {
     participant_.Raise("stale_state",
                        fmt::format("no state for {:.0f} ms, allowed are {:.0f} ms (limits.stale_input_s)",
                                    1e3 * bus::ToSeconds(silence), 1e3 * bus::ToSeconds(stale_time_)),
-                       bus::ToSeconds(silence), limits_.stale_input_s, false);
+                       bus::ToSeconds(silence), values_.limits.stale_input_s, false);
   }
 }
 

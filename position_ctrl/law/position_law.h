@@ -23,13 +23,26 @@ class PositionLaw {
   // Eq. (17), limited: dp_ref = -c1 e - c2/T (e - e_previous), e = alpha - alpha_ref. `intervals`: how many
   // sample intervals have passed since the previous call (more than 1 when samples were missed). The first
   // sample after Reset() has no derivative term.
-  double Update(double arm_angle, double arm_ref, int64_t intervals);
+  double Update(double arm_angle, double arm_ref, int64_t intervals) {
+    return Limited(UpdateUnlimited(arm_angle, arm_ref, intervals));
+  }
+
+  // The same without the limit, and the limit.
+  double UpdateUnlimited(double arm_angle, double arm_ref, int64_t intervals);
+  double Limited(double pressure_ref) const;
+
+  // What UpdateUnlimited() would give, by other settings: the law itself stays as it is.
+  double Preview(const PositionLawSettings& other, double arm_angle, double arm_ref, int64_t intervals) const;
+
+  // Acts by other settings from the next Update() on. The previous sample stays known.
+  void Retune(const PositionLawSettings& settings);
 
   void Reset() { has_previous_ = false; }
 
  private:
   PositionLawSettings settings_;
-  double previous_ = 0;  // rad, the error or the angle of the previous sample
+  double previous_error_ = 0;  // rad, of the previous sample
+  double previous_angle_ = 0;  // rad
   bool has_previous_ = false;
 };
 

@@ -18,6 +18,13 @@ void ReferenceReturn::Observe(int64_t tick, bool driven, double present) {
   begun_ = begun_ || driven;
 }
 
+void ReferenceReturn::Depart(double from, int64_t tick) {
+  if (held_) return;  // it comes back to the new one
+  from_ = from;
+  returning_ = ticks_ > 0;
+  returned_ = tick;
+}
+
 double ReferenceReturn::Reference(double wanted, int64_t tick) {
   if (held_) return from_;
   if (!returning_) return wanted;

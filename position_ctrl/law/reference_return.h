@@ -22,6 +22,9 @@ class ReferenceReturn {
   // held; in between, a straight line from one to the other.
   double Reference(double wanted, int64_t tick);
 
+  // Another reference is followed from `tick` on: it is reached in the same way, from where the one before was.
+  void Depart(double from, int64_t tick);
+
   // Another run begins.
   void Reset() { *this = ReferenceReturn(ticks_); }
 

@@ -53,12 +53,17 @@ double SteadyStateFeedforward(const model::Parameters& p, const PressureGains& g
 }
 
 // Eq. (16).
-PressureLawOutput PressureLaw(const PressureLawSettings& settings, const PressureLawInput& input) {
+double UnlimitedPressureLaw(const PressureLawSettings& settings, const PressureLawInput& input) {
   const double pressure_error = input.pressure_ref - (input.p2 - input.p1);
   double speed = input.motor_speed;
   if (settings.arm_speed_ratio != 0) speed -= settings.arm_speed_ratio * input.arm_speed;
   const double voltage = settings.gains.k_p * (pressure_error - settings.gains.k_v * speed) +
                          settings.reference_feedforward * input.pressure_ref;
+  return input.transfer == 0 ? voltage : voltage + input.transfer;
+}
+
+PressureLawOutput PressureLaw(const PressureLawSettings& settings, const PressureLawInput& input) {
+  const double voltage = UnlimitedPressureLaw(settings, input);
   PressureLawOutput output;
   output.voltage = std::clamp(voltage, -settings.voltage_limit, settings.voltage_limit);
   output.saturated = output.voltage != voltage;

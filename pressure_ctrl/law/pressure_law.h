@@ -45,6 +45,7 @@ struct PressureLawInput {
   double p2 = 0;            // psi
   double motor_speed = 0;   // rad/s
   double arm_speed = 0;     // rad/s, used only with arm_speed_ratio
+  double transfer = 0;      // V, added: what is left of the law before a change of gains
 };
 
 struct PressureLawOutput {
@@ -52,8 +53,11 @@ struct PressureLawOutput {
   bool saturated = false;  // the law asked for more
 };
 
-// Eq. (16) with the optional feed-forwards, limited to +/- voltage_limit:
-//   v = k_p ((dp_ref - dp) - k_v (theta' - arm_speed_ratio alpha')) + reference_feedforward dp_ref
+// Eq. (16) with the optional feed-forwards, V, without a limit:
+//   v = k_p ((dp_ref - dp) - k_v (theta' - arm_speed_ratio alpha')) + reference_feedforward dp_ref + transfer
+double UnlimitedPressureLaw(const PressureLawSettings& settings, const PressureLawInput& input);
+
+// The same, limited to +/- voltage_limit.
 PressureLawOutput PressureLaw(const PressureLawSettings& settings, const PressureLawInput& input);
 
 }  // namespace hydro::pressure_ctrl
