@@ -1,0 +1,25 @@
+// Where the actuator of a configuration works: the points at which its equations are linearised.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "model/linearise.h"
+#include "settings/stack_config.h"
+
+namespace hydro::design {
+
+struct OperatingCase {
+  std::string name;          // "both sides compress, arm at 0 rad"
+  model::LinearModel model;  // the pump slips
+  int actuator_angle = -1;   // the state of the actuator's own angle; -1: the arm is not free
+};
+
+// The arm at mid-stroke and at both ends of limits.arm_angle_rad (where a clamped arm is; at the middle and the ends of a
+// driven one's motion). Without that limit, at half of V_ms/c, where a side would be empty, or as far as the reference goes
+// if that is more: towards V_ms/c a side gets stiffer without end. In each place with both sides compressing and with each side held at p_3 by its valve. A model with effects is looked at
+// with the pump slipping either way, fast enough that no friction falls with speed any more. A pump that sticks is no case:
+// no voltage moves it, so that no loop is closed. Throws model::ModelError.
+std::vector<OperatingCase> OperatingCases(const settings::StackConfig& config);
+
+}  // namespace hydro::design
