@@ -120,8 +120,10 @@ void TuningDesk::Propose(tuning::PreparedChange change) {
   change.message.version = ++newest_version_;
   change.message.acts_at = -1;
   change.message.source = pending_->request.source;
-  // A reference that stays goes on; a new one begins when it takes effect.
-  change.message.reference_from = change.new_reference ? -1 : in_force_.message.reference_from;
+  // A reference that stays, or comes back, goes on; a new one begins when it takes effect.
+  change.message.reference_from = pending_->request.kind == tuning_request_t::UNDO ? before_.back().message.reference_from
+                                  : change.new_reference                           ? -1
+                                                         : in_force_.message.reference_from;
   pending_->version = Version{std::move(change.config), std::move(change.message)};
   pending_->text = std::move(change.text);
   pending_->deadline = participant_.clock().Now() + kAnswerTime;

@@ -8,6 +8,7 @@
 #include "base/input_error.h"
 #include "base/number_text.h"
 #include "base/text_file.h"
+#include "design/loop_check.h"
 #include "settings/toml/toml_entries.h"
 #include "tuning/reference_range.h"
 #include "tuning/tunable_keys.h"
@@ -51,6 +52,36 @@ std::string LoosenedLimit(const settings::LimitsSection& before, const settings:
            "the re-arm, or by a restart";
   }
   return "";
+}
+
+// 1 and more: unstable.
+double SpectralRadius(const design::LoopCheck& check) {
+  double radius = 0;
+  for (const auto& loop : {check.pressure, check.position}) {
+    if (loop) radius = std::max(radius, loop->worst.spectral_radius);
+  }
+  return radius;
+}
+
+// Fills in the loops' margins as `text`, or why they forbid the change; returns whether they permit it.
+bool LoopsPermit(const settings::StackConfig& in_force, const settings::StackConfig& next, std::string* text) {
+  const auto gains = [](const settings::StackConfig& config) {
+    tuned_settings_t message;
+    Write(ValuesOf(config), &message);
+    std::vector<double> values;
+    for (size_t i = 0; i < message.names.size(); ++i) {
+      if (!message.names[i].starts_with("limits.") && !message.names[i].starts_with("noise.")) {
+        values.push_back(message.values[i]);
+      }
+    }
+    return values;
+  };
+  if (gains(in_force) == gains(next)) return true;
+  const design::LoopCheck check = design::CheckLoops(next);
+  if (check.unjudged.empty() || check.pressure) *text = design::Describe(check);
+  if (check.stable()) return true;
+  // From loops that are unstable already, a change may lead towards stable ones.
+  return SpectralRadius(check) < SpectralRadius(design::CheckLoops(in_force));
 }
 
 }  // namespace
@@ -119,6 +150,11 @@ PreparedChange PrepareChange(const settings::StackConfig& configured, const sett
   if (!situation.held) change.text = LoosenedLimit(in_force.limits, next->limits);
   if (change.text.empty()) change.text = WhatTheRigCannotFollow(*next);
   if (!change.text.empty()) return change;
+  std::string margins;
+  if (!LoopsPermit(in_force, *next, &margins)) {
+    change.text = "would be unstable: " + margins;
+    return change;
+  }
 
   const std::string reference = settings::ReferenceText(*next);
   change.new_reference = reference != settings::ReferenceText(in_force);
@@ -128,6 +164,7 @@ PreparedChange PrepareChange(const settings::StackConfig& configured, const sett
   if (change.text.empty()) change.text = "nothing differs from what is in force";
   if (change.text.ends_with('\n')) change.text.pop_back();
   std::replace(change.text.begin(), change.text.end(), '\n', ',');
+  if (!margins.empty()) change.text += "; " + margins;
   change.config = std::move(next);
   return change;
 }

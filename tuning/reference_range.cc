@@ -32,9 +32,7 @@ std::string WhatTheRigCannotFollow(const settings::StackConfig& config) {
   // psi: what the motor holds against the pump at rest, or the limit of either side
   const double pressure = std::min(p.T_pmax / p.D, config.limits.pressure_psi);
   switch (config.reference.signal) {
-    case settings::ReferenceSignal::kArmAngle: {
-      const double angle = config.limits.arm_angle_rad;
-      if (largest > angle) return Beyond("an angle", largest, angle, "limits.arm_angle_rad, rad");
+    case settings::ReferenceSignal::kArmAngle: {  // the angle itself is checked with the configuration
       const double speed = config.limits.motor_speed_rad_s * p.D / p.c;
       const double fastest = FastestSwing(config.reference.trajectory);
       if (fastest > speed) return Beyond("a speed", fastest, speed, "limits.motor_speed_rad_s at the arm, rad/s");

@@ -40,7 +40,7 @@ void TuningFollower::OnSettings(const tuned_settings_t& settings) {
     case tuned_settings_t::DECIDED:
       if (settings.version == in_force_ || settings.acts_at < 0) return;
       if (known) {
-        waiting_->acts_at = settings.acts_at;
+        *waiting_ = settings;  // as proposed, and from when on
       } else {
         Keep(settings);
       }
@@ -52,9 +52,7 @@ void TuningFollower::OnSettings(const tuned_settings_t& settings) {
     case tuned_settings_t::IN_FORCE:
       // Not heard when it was decided. One that is decided, and waits for its tick, stays.
       if (settings.version != in_force_ && !known) Keep(settings);
-      if (waiting_ && waiting_->version == settings.version && waiting_->acts_at < 0) {
-        waiting_->acts_at = settings.acts_at;
-      }
+      if (waiting_ && waiting_->version == settings.version && waiting_->acts_at < 0) *waiting_ = settings;
       return;
     default:
       return;
