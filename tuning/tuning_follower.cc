@@ -23,7 +23,8 @@ TuningFollower::TuningFollower(process::Participant& participant, Prepare prepar
 }
 
 void TuningFollower::OnSettings(const tuned_settings_t& settings) {
-  if (settings.session != participant_.run() || participant_.Refuses(settings.session)) return;
+  const int64_t run = participant_.run();  // 0: of no plant yet
+  if ((run != 0 && settings.session != run) || participant_.Refuses(settings.session)) return;
   if (settings.session != plant_) {  // another run: it begins as configured, or as its plant says
     plant_ = settings.session;
     waiting_.reset();
