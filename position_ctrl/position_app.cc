@@ -90,6 +90,7 @@ void PositionApp::OnState(const state_t& state) {
   }
   last_state_time_ = now;
   participant_.Follow(state.session);
+  if (AwaitsSettings(state)) return;
   if (participant_.state() == process_status_t::READY) participant_.Announce(process_status_t::RUNNING);
   if (state.tick <= last_sample_tick_) {  // a log is played again
     last_sample_tick_ = -1;
@@ -126,6 +127,15 @@ std::string PositionApp::WhyNot(const tuned_settings_t& settings) const {
   }
   tuning::TunedValues values = values_;
   return tuning::Read(settings, torque_per_pressure_, &values);
+}
+
+// As the pressure loop does: who joins a run acts by the values in force there.
+bool PositionApp::AwaitsSettings(const state_t& state) {
+  const bool first = participant_.tick() < 0 && !joined_;
+  if (first && !lockstep_ && !participant_.clock().simulated() && state.tick > kJoiningSamples * interval_) {
+    joined_ = participant_.clock().Now();
+  }
+  return joined_ && tuning_.Awaits(*joined_);
 }
 
 void PositionApp::TakeSettingsAt(int64_t tick) {

@@ -42,6 +42,7 @@ class PositionApp : public process::App {
   double Present(const state_t& state) const;
   std::string WhyNot(const tuned_settings_t& settings) const;
   void TakeSettingsAt(int64_t tick);
+  bool AwaitsSettings(const state_t& state);
   double AskedByLaw(const state_t& state, double reference, int64_t intervals);
   void Send();
 
@@ -60,6 +61,7 @@ class PositionApp : public process::App {
   tuning::TunedValues values_;        // in force
   PositionLaw law_;
   tuning::TuningFollower tuning_;
+  std::optional<bus::Clock::TimePoint> joined_;  // a run that went on without this loop, whose values are not known yet
   tuning::BumplessTransfer transfer_;
   std::optional<PositionLawSettings> law_before_;  // a change begins with the next sample
   ReferenceReturn return_;

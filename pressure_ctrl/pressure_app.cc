@@ -12,6 +12,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
+constexpr int64_t kJoiningSamples = 10;  // of the position loop: a first state after so many is one of a run that goes on
 constexpr size_t kMostBeforeTheRun = 64;  // pressure commands; a few take a faster route than the first state
 
 motor_command_t ZeroVolts(int64_t tick, int8_t status) {
@@ -96,6 +97,7 @@ void PressureApp::OnState(const state_t& state) {
   }
   last_state_time_ = now;
   participant_.Follow(state.session);
+  if (AwaitsSettings(state)) return;
   if (participant_.state() == process_status_t::READY) participant_.Announce(process_status_t::RUNNING);
   if (answered_ && state.tick <= last_command_.tick) Restart();  // a log is played again
   if (participant_.tick() < 0) DropFutureCommands(state.tick);
@@ -165,6 +167,15 @@ void PressureApp::TakePressureCommandsUpTo(int64_t tick) {
 std::string PressureApp::WhyNot(const tuned_settings_t& settings) const {
   tuning::TunedValues values = values_;
   return tuning::Read(settings, k_2_, &values);
+}
+
+// A loop that joins a run acts by the values in force there, not by those of its configuration: until it has heard them, by none.
+bool PressureApp::AwaitsSettings(const state_t& state) {
+  const bool first = participant_.tick() < 0 && !joined_;
+  if (first && !lockstep_ && !participant_.clock().simulated() && state.tick > kJoiningSamples * position_interval_) {
+    joined_ = participant_.clock().Now();
+  }
+  return joined_ && tuning_.Awaits(*joined_);
 }
 
 void PressureApp::TakeSettingsAt(int64_t tick) {

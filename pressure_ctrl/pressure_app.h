@@ -52,6 +52,7 @@ class PressureApp : public process::App {
   bool AwaitsPressureCommand(int64_t state_tick) const;
   std::string WhyNot(const tuned_settings_t& settings) const;
   void TakeSettingsAt(int64_t tick);
+  bool AwaitsSettings(const state_t& state);
   double Transfer(const PressureLawInput& input, int64_t tick);
   void Send(motor_command_t& command);
   void ForgetPressureCommands();
@@ -71,6 +72,7 @@ class PressureApp : public process::App {
   tuning::TunedValues values_;       // in force
   double pressure_limit_;            // psi, largest |pressure reference|
   tuning::TuningFollower tuning_;
+  std::optional<bus::Clock::TimePoint> joined_;  // a run that went on without this loop, whose values are not known yet
   tuning::BumplessTransfer transfer_;
   std::optional<PressureLawSettings> law_before_;  // a change begins with the next use of the law
 

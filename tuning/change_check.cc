@@ -107,6 +107,13 @@ std::vector<std::string> ParseChanges(const std::string& lines) {
   return changes;
 }
 
+std::string OnOneLine(const std::string& changes) {
+  std::string line;
+  std::istringstream text(changes);
+  for (std::string change; std::getline(text, change);) line += (line.empty() ? "" : ", ") + change;
+  return line;
+}
+
 std::string DifferenceOf(const settings::StackConfig& from, const settings::StackConfig& to) {
   const auto before = TunableEntries(from), after = TunableEntries(to);
   std::string lines;
@@ -162,8 +169,7 @@ PreparedChange PrepareChange(const settings::StackConfig& configured, const sett
   change.message.changes = DifferenceOf(configured, *next);
   change.text = DifferenceOf(in_force, *next);
   if (change.text.empty()) change.text = "nothing differs from what is in force";
-  if (change.text.ends_with('\n')) change.text.pop_back();
-  std::replace(change.text.begin(), change.text.end(), '\n', ',');
+  change.text = OnOneLine(change.text);
   if (!margins.empty()) change.text += "; " + margins;
   change.config = std::move(next);
   return change;

@@ -17,6 +17,9 @@ std::vector<std::string> ParseChanges(const std::string& lines);
 // What differs between two configurations in tunable keys: a line "key = value", in TOML, for each, in the order of keys.
 std::string DifferenceOf(const settings::StackConfig& from, const settings::StackConfig& to);
 
+// The same lines on one line, for people: "key = value, key = value".
+std::string OnOneLine(const std::string& changes);
+
 struct Situation {
   bool held = false;       // the voltage is held at zero until a re-arm: limits may be loosened
   bool simulated = false;  // the rig is the simulated one: its noise may be changed

@@ -31,7 +31,7 @@ void TuningFollower::OnSettings(const tuned_settings_t& settings) {
     status_.refused = -1;
     if (in_force_ != 0) in_force_ = -1;  // that plant's numbers are not this one's
   }
-  heard_ = true;
+
   const bool known = waiting_ && waiting_->version == settings.version;
   switch (settings.stage) {
     case tuned_settings_t::PROPOSED:
@@ -51,6 +51,7 @@ void TuningFollower::OnSettings(const tuned_settings_t& settings) {
       if (known) waiting_.reset();
       return;
     case tuned_settings_t::IN_FORCE:
+      heard_ = true;
       // Not heard when it was decided. One that is decided, and waits for its tick, stays.
       if (settings.version != in_force_ && !known) Keep(settings);
       if (waiting_ && waiting_->version == settings.version && waiting_->acts_at < 0) *waiting_ = settings;

@@ -106,6 +106,9 @@ void Replace(Document* document, const Place& place, const std::string& value) {
     const std::string& old = document->lines[place.last];
     const size_t end = place.comment == 0 ? 0 : old.find_last_not_of(" \t", place.comment - 1) + 1;
     behind = old.substr(end, place.comment - end) + behind;
+    // A shorter value leaves the comment where it stood.
+    const size_t length = place.first == place.last ? end - place.value : 0;
+    if (value.size() < length) behind.insert(0, length - value.size(), ' ');
   }
   document->lines[place.first] = document->lines[place.first].substr(0, place.value) + value + behind;
   document->lines.erase(document->lines.begin() + static_cast<std::ptrdiff_t>(place.first) + 1,

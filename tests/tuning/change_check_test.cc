@@ -53,7 +53,7 @@ TEST(PrepareChange, DerivesGainsAnew) {
   EXPECT_EQ(ValueOf(change.message, "pressure.k_p"), gains.k_p);
   EXPECT_EQ(ValueOf(change.message, "position.c2"), 400);
   EXPECT_EQ(change.message.changes, "position.c2 = 400\npressure.natural_frequency_rad_s = 120\n");
-  EXPECT_THAT(change.text, StartsWith("position.c2 = 400,pressure.natural_frequency_rad_s = 120; pressure loop: "));
+  EXPECT_THAT(change.text, StartsWith("position.c2 = 400, pressure.natural_frequency_rad_s = 120; pressure loop: "));
   EXPECT_EQ(change.message.reference, "");
   EXPECT_FALSE(change.new_reference);
 }
