@@ -23,20 +23,6 @@ const char* NameOf(Sides sides) {
   return sides == Sides::kSecond ? "side 2 compresses" : "side 1 compresses";
 }
 
-// Of a free arm. The default of the limit is no place to work at: a side's volume is nearly 0 there, and so stiff that
-// hardly a loop is stable.
-double LargestArmAngle(const settings::StackConfig& config) {
-  const model::Parameters& p = config.model.description.parameters;
-  const double stop = p.V_ms / p.c;
-  if (config.limits.arm_angle_rad < settings::kArmAngleShare * stop) return config.limits.arm_angle_rad;
-  double angle = std::max(kUsualShare * stop, std::fabs(config.model.arm_angle_rad));
-  if (config.reference.signal == settings::ReferenceSignal::kArmAngle) {
-    const auto reference = settings::MakeTrajectory(config.reference.trajectory);
-    angle = std::max({angle, std::fabs(reference->Min()), std::fabs(reference->Max())});
-  }
-  return std::min(angle, settings::kArmAngleShare * stop);
-}
-
 std::vector<double> ArmAngles(const settings::StackConfig& config) {
   const settings::ModelSection& model = config.model;
   if (model.shaft == model::Shaft::kClamped) return {model.arm_angle_rad};
@@ -92,7 +78,8 @@ OperatingCase CaseAt(const settings::StackConfig& config, double arm_angle, Side
   result.model = model::Linearise(equations, 0, 0, mode, state);
   if (running.high_pressure && free) {
     // What leaks there would make the pressures depend on the arm's angle as they never do in equilibrium.
-    const auto column = static_cast<size_t>(equations.data().actuator_angle_state * result.model.states);
+    const auto column =
+        static_cast<size_t>(equations.data().actuator_angle_state) * static_cast<size_t>(result.model.states);
     result.model.A[column + model::kP1] = result.model.A[column + model::kP2] = 0;
   }
   if (free) result.actuator_angle = equations.data().actuator_angle_state;
@@ -115,6 +102,18 @@ std::vector<Running> WaysToRun(const model::ModelDescription& model) {
 }
 
 }  // namespace
+
+double LargestArmAngle(const settings::StackConfig& config) {
+  const model::Parameters& p = config.model.description.parameters;
+  const double stop = p.V_ms / p.c;
+  if (config.limits.arm_angle_rad < settings::kArmAngleShare * stop) return config.limits.arm_angle_rad;
+  double angle = std::max(kUsualShare * stop, std::fabs(config.model.arm_angle_rad));
+  if (config.reference.signal == settings::ReferenceSignal::kArmAngle) {
+    const auto reference = settings::MakeTrajectory(config.reference.trajectory);
+    angle = std::max({angle, std::fabs(reference->Min()), std::fabs(reference->Max())});
+  }
+  return std::min(angle, settings::kArmAngleShare * stop);
+}
 
 std::vector<OperatingCase> OperatingCases(const settings::StackConfig& config) {
   const std::vector<Running> ways = WaysToRun(config.model.description);
