@@ -55,6 +55,14 @@ void Add(const LoopMargins& margins, const std::string& name, std::optional<Chec
   all.worst = WorstOf(all.worst, margins);
 }
 
+double BandwidthOf(const LinearStack& stack, const position_ctrl::PositionLawSettings& law) {
+  const auto filter = [&](const std::complex<double>& z) -> std::complex<double> {
+    if (law.derivative_on_error) return 1;
+    return law.c1 / (law.c1 + law.c2 / law.sample_interval * (1.0 - 1.0 / z));
+  };
+  return BandwidthHz([&](double factor) { return stack.Poles(1, factor); }, stack.period(), filter);
+}
+
 void Check(const settings::StackConfig& config, LoopCheck* check) {
   const bool closes_position = config.reference.signal == settings::ReferenceSignal::kArmAngle;
   const StackTiming timing = TimingOf(config);
@@ -76,6 +84,9 @@ void Check(const settings::StackConfig& config, LoopCheck* check) {
       const bool stable = checked.position->stable;
       checked.position = LoopMargins{.stable = stable, .spectral_radius = checked.position->spectral_radius};
       if (!stable) checked.position->gain = checked.position->phase_deg = checked.position->delay = 0;
+    }
+    if (checked.position->stable && both.position_sampled_once()) {
+      checked.position->bandwidth_hz = BandwidthOf(both, position);
     }
     Add(*checked.position, point.name, &check->position);
     check->position->margins_known = both.position_sampled_once();

@@ -67,6 +67,15 @@ class Sweep {
     return crossings;
   }
 
+  // rad a period: the highest at which the closed loop behind `filter` still has a gain of 1/sqrt(2).
+  double Bandwidth(const std::function<Complex(const Complex&)>& filter) const {
+    for (size_t i = angles_.size(); i-- > 0;) {
+      const Complex closed = filter(std::polar(1.0, angles_[i])) * loop_[i] / (1.0 + loop_[i]);
+      if (std::norm(closed) >= 0.5) return angles_[i];
+    }
+    return 0;
+  }
+
   double LeastDistance() const {
     double least = std::numeric_limits<double>::infinity();
     for (const Complex& loop : loop_) least = std::min(least, std::abs(loop + 1.0));
@@ -199,6 +208,14 @@ LoopMargins MarginsOf(const PolesOf& poles, double period) {
   return margins;
 }
 
+double BandwidthHz(const PolesOf& poles, double period,
+                   const std::function<Complex(const Complex&)>& filter) {
+  std::vector<Complex> closed = poles(1);
+  std::vector<Complex> open = poles(0);
+  Cancel(&closed, &open);
+  return Sweep(std::move(closed), std::move(open)).Bandwidth(filter) / (2 * kPi * period);
+}
+
 LoopMargins WorstOf(const LoopMargins& a, const LoopMargins& b) {
   LoopMargins worst = a.gain <= b.gain ? a : b;
   const LoopMargins& phase = a.phase_deg <= b.phase_deg ? a : b;
@@ -208,6 +225,7 @@ LoopMargins WorstOf(const LoopMargins& a, const LoopMargins& b) {
   worst.phase_deg = phase.phase_deg;
   worst.phase_hz = phase.phase_hz;
   worst.delay = std::min(a.delay, b.delay);
+  worst.bandwidth_hz = std::min(a.bandwidth_hz, b.bandwidth_hz);
   worst.damping_ratio = std::min(a.damping_ratio, b.damping_ratio);
   worst.distance = std::min(a.distance, b.distance);
   return worst;

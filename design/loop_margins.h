@@ -24,6 +24,9 @@ struct LoopMargins {
   // Of the oscillating poles that the loop moves. A pole faster than half the loop's samples appears as a slower one that
   // decays as fast.
   double damping_ratio = 1;
+  // Hz, from the loop's reference to its output: where the gain falls below 1/sqrt(2) for good. Only of the position
+  // loop (see BandwidthHz); 0 for an unstable loop.
+  double bandwidth_hz = 0;
   // The least distance of the loop's response from -1 in the complex plane, the inverse of the largest sensitivity; 0 for
   // an unstable loop.
   double distance = std::numeric_limits<double>::infinity();
@@ -34,6 +37,12 @@ struct LoopMargins {
 // 1 + L(z) = product of (z - closed pole)/(z - open pole), so nothing but eigenvalues is needed.
 LoopMargins MarginsOf(const std::function<std::vector<std::complex<double>>(double factor)>& poles,
                       double period);
+
+// The bandwidth of filter(z) L(z)/(1 + L(z)) of a stable loop: `filter` is what a reference goes through before it enters where
+// the output is fed back, e.g. c1/(c1 + c2 (1 - 1/z)/T) for a derivative on the measured output alone.
+double BandwidthHz(const std::function<std::vector<std::complex<double>>(double factor)>& poles,
+                   double period,
+                   const std::function<std::complex<double>(const std::complex<double>& z)>& filter);
 
 // The worst of both, number by number.
 LoopMargins WorstOf(const LoopMargins& a, const LoopMargins& b);

@@ -1,0 +1,33 @@
+// The gains that hydro-tune chooses, and a configuration with them.
+#pragma once
+
+#include <limits>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "settings/stack_config.h"
+
+namespace hydro::tune {
+
+struct Gains {
+  double natural_frequency = 0;  // rad/s, of the pressure loop with both sides compressing at mid-stroke
+  double damping_ratio = 0;
+  double c1 = 0;  // psi/rad
+  double c2 = 0;  // psi s/rad
+  // rad/s^2, of the braking curve before eq. (17) (position_ctrl/law/braking_curve.h); infinity: eq. (17) alone.
+  double deceleration = std::numeric_limits<double>::infinity();
+};
+
+// Those of a configuration.
+Gains GainsOf(const settings::StackConfig& config);
+
+// The configuration with these gains, both feed-forwards of eq. (16), and the derivative of eq. (17) on the measured angle. It
+// keeps the way in which eq. (16) is given: k_p and k_v, or natural frequency and damping. Throws InputError when no
+// gains of eq. (16) follow.
+settings::StackConfig With(settings::StackConfig config, const Gains& gains);
+
+// What With changes, as "section.key" and its value in TOML.
+std::vector<std::pair<std::string, std::string>> ChangedKeys(const settings::StackConfig& tuned);
+
+}  // namespace hydro::tune
