@@ -20,7 +20,7 @@ namespace hydro::experiments {
 namespace {
 
 using nlohmann::json;
-using design::Complex = std::complex<double>;
+using Complex = std::complex<double>;
 constexpr double kPi = std::numbers::pi;
 
 struct Ran {
@@ -49,11 +49,11 @@ const Ran& Waves() {
 
 // Closed loop of eq. (16) on eqs. (4), (13), (14), written out by hand: dp' = s theta' - a dp,
 // J theta'' = k_1 v - D dp - b theta'. The voltage is held for an interval, which delays it by half of that.
-design::Complex HandLoop(const model::Parameters& p, double stiffness, double leak,
+Complex HandLoop(const model::Parameters& p, double stiffness, double leak,
                  const pressure_ctrl::PressureGains& g, double hz) {
-  const design::Complex s(0, 2 * kPi * hz);
-  const design::Complex hold = std::exp(-s * 1e-4);
-  const design::Complex plant = (p.J * s + p.b) * (s + leak) + stiffness * p.D;
+  const Complex s(0, 2 * kPi * hz);
+  const Complex hold = std::exp(-s * 1e-4);
+  const Complex plant = (p.J * s + p.b) * (s + leak) + stiffness * p.D;
   return p.k_1 * g.k_p * stiffness * hold / (plant + p.k_1 * g.k_p * hold * (stiffness + g.k_v * (s + leak)));
 }
 
@@ -63,7 +63,7 @@ void ExpectHandLoop(const json& points, const model::Parameters& p, double stiff
   const auto frequency = points.at("frequency_hz").get<std::vector<double>>();
   ASSERT_GE(frequency.size(), 28u);
   for (size_t i = 0; i < frequency.size(); ++i) {
-    const design::Complex expected = HandLoop(p, stiffness, leak, g, frequency[i]);
+    const Complex expected = HandLoop(p, stiffness, leak, g, frequency[i]);
     EXPECT_GT(points.at("coherence")[i].get<double>(), 0.99) << frequency[i];
     EXPECT_NEAR(points.at("gain_db")[i].get<double>(), 20 * std::log10(std::abs(expected)), 0.1)
         << frequency[i];
@@ -194,11 +194,11 @@ TEST(Fig7, EitherSideMeetsTheAnalyticLoop) {
 TEST(Waves, ModeIsWhereThePaperMeasuredIt) {
   const json& n = Waves().numbers;
   const model::Parameters p = ShippedModel("table1").parameters;
-  const auto q = WavePolynomial(p, 300, n.at("volume_fraction"), n.at("damping_assumed"), {0, 0});
-  design::Complex s(0, 2 * kPi * 300);
+  const auto q = design::WavePolynomial(p, 300, n.at("volume_fraction"), n.at("damping_assumed"), {0, 0});
+  Complex s(0, 2 * kPi * 300);
   for (int i = 0; i < 50; ++i) {
-    design::Complex value = 0;
-    design::Complex slope = 0;
+    Complex value = 0;
+    Complex slope = 0;
     for (int k = 4; k >= 0; --k) {
       slope = slope * s + value;
       value = value * s + q[k];
@@ -224,10 +224,10 @@ TEST(Waves, AllowedGainMeetsRouth) {
   const double k_p = n.at("highest_stable_k_p_V_per_psi");
   const double omega = n.at("highest_stable_natural_frequency_rad_s");
   for (const double beside : {1 - 1e-5, 1 + 1e-5}) {
-    EXPECT_EQ(RouthStable(WavePolynomial(p, 300, n.at("volume_fraction"), n.at("damping_assumed"),
+    EXPECT_EQ(design::RouthStable(WavePolynomial(p, 300, n.at("volume_fraction"), n.at("damping_assumed"),
                                          {beside * k_p, design.k_v})),
               beside < 1);
-    EXPECT_EQ(RouthStable(WavePolynomial(p, 300, n.at("volume_fraction"), n.at("damping_assumed"),
+    EXPECT_EQ(design::RouthStable(WavePolynomial(p, 300, n.at("volume_fraction"), n.at("damping_assumed"),
                                          pressure_ctrl::DerivePressureGains(p, 0, beside * omega, 0.5, 2))),
               beside < 1);
   }
