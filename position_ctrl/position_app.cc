@@ -156,7 +156,7 @@ void PositionApp::TakeSettingsAt(int64_t tick) {
 // psi: eq. (17), without a jump when its gains have changed.
 double PositionApp::AskedByLaw(const state_t& state, double reference, int64_t intervals) {
   const auto before = std::exchange(law_before_, std::nullopt);
-  if (before && last_sample_tick_ >= 0) {
+  if (before && sequence_ > 0) {
     const double was = law_.Preview(*before, state.arm_angle, reference, intervals) + transfer_.Offset(state.tick);
     transfer_.Begin(was, law_.Preview(values_.position, state.arm_angle, reference, intervals), state.tick);
   }

@@ -5,7 +5,6 @@
 
 namespace hydro::position_ctrl {
 
-// Eq. (17).
 double PositionLaw::UpdateUnlimited(double arm_angle, double arm_ref, int64_t intervals) {
   const double pressure_ref = Preview(settings_, arm_angle, arm_ref, intervals);
   previous_error_ = arm_angle - arm_ref;
@@ -14,6 +13,7 @@ double PositionLaw::UpdateUnlimited(double arm_angle, double arm_ref, int64_t in
   return pressure_ref;
 }
 
+// Eq. (17).
 double PositionLaw::Preview(const PositionLawSettings& settings, double arm_angle, double arm_ref,
                             int64_t intervals) const {
   const double error = arm_angle - arm_ref;

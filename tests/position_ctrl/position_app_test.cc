@@ -10,6 +10,7 @@
 #include "bus/in_process_bus.h"
 #include "position_ctrl/law/reference_return.h"
 #include "tests/stack_fixture.h"
+#include "tuning/tuned_values.h"
 
 namespace hydro::position_ctrl {
 namespace {
@@ -45,6 +46,19 @@ class PositionAppTest : public ::testing::Test {
     s.time = 1e-3 * static_cast<double>(tick);
     s.arm_angle = arm_angle;
     bus_.Publish("HYDRO_STATE", s);
+    Deliver();
+  }
+
+  // The plant says which values are in force.
+  void SendSettings(int64_t version, const std::function<void(tuning::TunedValues&)>& change = {}) {
+    tuning::TunedValues values = tuning::ValuesOf(SmallStack());
+    if (change) change(values);
+    tuned_settings_t settings{};
+    settings.session = 3;
+    settings.version = version;
+    settings.stage = tuned_settings_t::IN_FORCE;
+    tuning::Write(values, &settings);
+    bus_.Publish("HYDRO_SETTINGS", settings);
     Deliver();
   }
 
@@ -134,6 +148,9 @@ TEST_F(PositionAppTest, JoiningAndSafeOutputDoNotJump) {
   config.limits.return_s = 0.02;
   clock_.simulated_ = false;
   Start(config);
+  SendState(999, 0.05);
+  EXPECT_TRUE(references_.empty()) << "it does not know yet which values are in force";
+  SendSettings(0);
   SendState(1000, 0.05);
   for (int64_t tick = 1001; tick <= 1030; ++tick) SendState(tick, 0.05);
   EXPECT_NEAR(references_.front().value, 0.05, 1e-9);
@@ -153,6 +170,21 @@ TEST_F(PositionAppTest, JoiningAndSafeOutputDoNotJump) {
   SendState(1036, 0.02);
   SendState(1040, 0.02);
   EXPECT_NEAR(references_.back().value, 0.02 + 0.08 * 4 / 20, 1e-9);
+}
+
+// Tests that a loop that joins a run acts by the values in force there, from its first command on.
+TEST_F(PositionAppTest, ActsByTheValuesInForceWhenItJoins) {
+  settings::StackConfig config = WithReference(settings::ReferenceSignal::kArmAngle, 0.1);
+  config.time.mode = settings::TimeMode::kRealtime;
+  config.limits.return_s = 0;
+  clock_.simulated_ = false;
+  Start(config);
+  SendState(1000, 0.05);
+  EXPECT_TRUE(commands_.empty());
+  SendSettings(4, [](tuning::TunedValues& values) { values.position.c1 = 2000; });
+  SendState(1005, 0.05);
+  ASSERT_EQ(commands_.size(), 1u);
+  EXPECT_DOUBLE_EQ(commands_[0].pressure_ref, 2000 * 0.05);
 }
 
 struct PassThrough {

@@ -90,7 +90,7 @@ TEST(PrepareChange, RefusesWithTheReason) {
       {{"reference.steps=[[0, 2.5]]"}, "reference.steps: found arm angle 2.5 rad"},
       {{"limits.arm_angle_rad=0.05"}, "allowed |alpha| <= 0.05 rad (limits.arm_angle_rad)"},
       {{"limits.motor_speed_rad_s=100", "reference.kind=sine", "reference.amplitude=0.2", "reference.frequency_hz=2"},
-       "reference: found a speed of 2.513, allowed 0.2163 (limits.motor_speed_rad_s at the arm, rad/s)"},
+       "reference: found a speed of 2.513, allowed 0.2161 (limits.motor_speed_rad_s at the arm, rad/s)"},
       {{"reference.signal=\"pressure\""}, "reference.signal: no such value"},
   };
   for (const auto& c : cases) {
