@@ -127,17 +127,23 @@ void Insert(Document* document, const std::string& dotted, const std::string& va
   }
 }
 
+// A value as TomlEntries() writes it.
+std::string Canonical(const std::string& value, const std::string& name) {
+  const auto entries = TomlEntries(ParseToml("value = " + value, name));
+  return entries.size() == 1 ? entries.front().second : value;
+}
+
 void CheckResult(const std::string& before, const std::string& after, const std::string& name,
                  const std::vector<TomlEntry>& changed, const std::vector<std::string>& removed) {
   std::map<std::string, std::string> expected;
   for (const auto& [key, value] : TomlEntries(ParseToml(before, name))) expected[key] = value;
   for (const std::string& key : removed) expected.erase(key);
-  for (const auto& [key, value] : changed) expected[key] = value;
+  for (const auto& [key, value] : changed) expected[key] = Canonical(value, name);
   std::map<std::string, std::string> found;
   for (const auto& [key, value] : TomlEntries(ParseToml(after, name))) found[key] = value;
   if (found == expected) return;
   for (const auto& [key, value] : changed) {
-    if (found[key] != value) {
+    if (found[key] != expected[key]) {
       throw InputError(name + ": " + key + ": cannot be changed in place to " + value +
                        "; write it as a line of its own under [section]");
     }
