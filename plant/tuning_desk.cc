@@ -22,6 +22,7 @@ constexpr double kLead_s = 0.02;        // from the decision to its effect: seve
 constexpr double kOldRequest_s = 5;     // a request that names a tick older than this comes from a recording
 constexpr size_t kMostUndo = 100;
 constexpr size_t kMostSessions = 64;    // whose last answer is kept, should they ask again
+constexpr size_t kMostControllers = 16;
 constexpr size_t kMostText = 1 << 16;   // bytes of a request
 
 }  // namespace
@@ -134,12 +135,15 @@ void TuningDesk::Propose(tuning::PreparedChange change) {
 void TuningDesk::OnStatus(const tuning_status_t& status) {
   if (status.plant != participant_.session() || participant_.Refuses(status.session)) return;
   if (status.role != "pressure_ctrl" && status.role != "position_ctrl") return;
-  controllers_[status.role] = {.session = status.session,
-                               .ready_for = status.ready_for,
-                               .in_force = status.in_force,
-                               .refused = status.refused,
-                               .text = status.text,
-                               .heard = participant_.clock().Now()};
+  const auto now = participant_.clock().Now();
+  std::erase_if(controllers_, [&](const auto& known) { return now - known.second.heard > kAlive; });  // those that have left
+  if (controllers_.size() >= kMostControllers && !controllers_.contains(status.session)) return;
+  controllers_[status.session] = {.role = status.role,
+                                  .ready_for = status.ready_for,
+                                  .in_force = status.in_force,
+                                  .refused = status.refused,
+                                  .text = status.text,
+                                  .heard = now};
 }
 
 // A controller of the user's own may know nothing of this: what concerns it cannot be changed.
@@ -148,7 +152,9 @@ std::string TuningDesk::WhoIsMissing(const std::vector<std::string>& changes) co
                                       std::pair{"reference.", "position_ctrl"}}) {
     const bool concerned = std::any_of(changes.begin(), changes.end(),
                                        [&](const std::string& change) { return change.find(section) == 0; });
-    if (concerned && !controllers_.contains(role)) {
+    const bool there = std::any_of(controllers_.begin(), controllers_.end(),
+                                   [&, role = std::string(role)](const auto& known) { return known.second.role == role; });
+    if (concerned && !there) {
       return fmt::format("{} does not take part in tuning: it has said nothing of its values (a program of your own?)", role);
     }
   }
@@ -158,12 +164,12 @@ std::string TuningDesk::WhoIsMissing(const std::vector<std::string>& changes) co
 // Who cannot act by the proposal, or has not said so yet; empty: all can.
 std::string TuningDesk::NotReady(bool* impossible) const {
   const int64_t version = pending_->version->message.version;
-  for (const auto& [role, controller] : controllers_) {
+  for (const auto& [session, controller] : controllers_) {
     if (participant_.clock().Now() - controller.heard > kAlive) continue;  // it has left
     *impossible = controller.refused == version;
-    if (*impossible) return fmt::format("{} cannot act by it: {}", role, controller.text);
+    if (*impossible) return fmt::format("{} cannot act by it: {}", controller.role, controller.text);
     if (controller.ready_for != version && controller.in_force != version) {
-      return fmt::format("{} has not answered", role);
+      return fmt::format("{} has not answered", controller.role);
     }
   }
   return "";

@@ -60,7 +60,7 @@ class TuningDesk {
   };
   struct Pending;  // the change that is being made
   struct Controller {
-    int64_t session = 0;
+    std::string role;
     int64_t ready_for = -1;
     int64_t in_force = -1;
     int64_t refused = -1;
@@ -94,7 +94,7 @@ class TuningDesk {
   std::vector<Version> before_;  // what was in force before it, newest last, for UNDO
   int64_t newest_version_ = 0;   // that was ever proposed
   std::unique_ptr<Pending> pending_;
-  std::map<std::string, Controller> controllers_;  // by role
+  std::map<int64_t, Controller> controllers_;      // by session; those that were heard lately
   std::map<int64_t, tuning_answer_t> answers_;     // the last to each session that asked
   std::vector<int64_t> asked_;                     // these sessions, oldest first
   std::vector<tuned_settings_t> followed_;         // reversed: the next one last

@@ -39,7 +39,6 @@ PositionApp::PositionApp(bus::Bus& bus, bus::Clock& clock, const settings::Stack
       stall_time_(bus::FromSeconds(config.time.stall_timeout_s) + 400ms),
       signal_(config.reference.signal),
       reference_text_(settings::ReferenceText(config)),
-      reference_(settings::MakeTrajectory(config.reference.trajectory)),
       torque_per_pressure_(config.model.description.parameters.k_2),
       section_(config.position),
       rate_hz_(config.plant.rate_hz),
@@ -52,6 +51,8 @@ PositionApp::PositionApp(bus::Bus& bus, bus::Clock& clock, const settings::Stack
       last_state_time_(clock.Now()) {
   bus.Subscribe<state_t>(participant_.channels().Of<state_t>(),
                          [this](const state_t& state) { OnState(state); });
+  bus.Subscribe<arm_plan_t>(participant_.channels().Of<arm_plan_t>(),
+                            [this](const arm_plan_t& plan) { OnPlan(plan); });
   bus.Subscribe<fault_t>(participant_.channels().Of<fault_t>(), [this](const fault_t& fault) {
     pressure_faults_.Observe(fault, participant_.clock().Now());
   });
@@ -65,6 +66,7 @@ PositionApp::PositionApp(bus::Bus& bus, bus::Clock& clock, const settings::Stack
                                       pressure_faults_.ForgetOthersOfRole(status.role, status.session);
                                   });
   reference_in_force_ = reference_text_;
+  Follow(config.reference.trajectory);
   participant_.Announce(process_status_t::READY);
 }
 
@@ -138,6 +140,38 @@ bool PositionApp::AwaitsSettings(const state_t& state) {
   return joined_ && tuning_.Awaits(*joined_);
 }
 
+void PositionApp::Follow(const settings::TrajectorySpec& reference) {
+  reference_ = settings::MakeTrajectory(reference);
+  planner_.reset();
+  if (reference.kind != settings::TrajectorySpec::Kind::kPlanner) return;
+  planner_.emplace(reference.initial,
+                   PlanLimits{.timeout_s = reference.timeout_s,
+                              .delay_s = reference.delay_s,
+                              .largest_speed = reference.max_speed_rad_s,
+                              .largest_angle = values_.limits.arm_angle_rad},
+                   rate_hz_);
+}
+
+void PositionApp::OnPlan(const arm_plan_t& plan) {
+  if (!planner_ || participant_.tick() < 0) return;
+  std::string why = planner_->Take(plan, participant_.tick());
+  if (why.empty()) return;
+  ++plans_refused_;
+  plan_refused_ = std::move(why);
+}
+
+void PositionApp::NotePlanner(int64_t tick) {
+  const bool silent = planner_->silent(tick);
+  if (!silent) {
+    if (participant_.any_fault()) participant_.Clear("silent_planner");
+  } else if (!participant_.active("silent_planner")) {
+    const double limit = planner_->limits().timeout_s;
+    participant_.Raise("silent_planner",
+                       fmt::format("tick {}: no plan for more than {} s (reference.timeout_s): the reference holds", tick, limit),
+                       limit, limit, false);
+  }
+}
+
 void PositionApp::TakeSettingsAt(int64_t tick) {
   const tuned_settings_t* settings = tuning_.TakeDueAt(tick);
   if (settings == nullptr) return;
@@ -147,20 +181,23 @@ void PositionApp::TakeSettingsAt(int64_t tick) {
   const std::string& text = settings->reference.empty() ? reference_text_ : settings->reference;
   const double from = static_cast<double>(settings->reference_from) / rate_hz_;
   if (text == reference_in_force_ && from == reference_from_) return;
-  reference_ = settings::MakeTrajectory(settings::ParseReference(text).trajectory);
+  Follow(settings::ParseReference(text).trajectory);
   reference_in_force_ = text;
   reference_from_ = from;
   return_.Depart(arm_reference_.value, tick);
 }
 
 // psi: eq. (17), without a jump when its gains have changed.
-double PositionApp::AskedByLaw(const state_t& state, double reference, int64_t intervals) {
+double PositionApp::AskedByLaw(const state_t& state, double reference, const PlannedPoint& ahead, int64_t intervals) {
   const auto before = std::exchange(law_before_, std::nullopt);
   if (before && sequence_ > 0) {
     const double was = law_.Preview(*before, state.arm_angle, reference, intervals) + transfer_.Offset(state.tick);
     transfer_.Begin(was, law_.Preview(values_.position, state.arm_angle, reference, intervals), state.tick);
   }
-  const double asked = law_.UpdateUnlimited(state.arm_angle, reference, intervals);
+  double asked = law_.UpdateUnlimited(state.arm_angle, reference, intervals);
+  // What a planner knows ahead: eq. (17) differentiates the measured angle alone, or the error, which has the reference's speed already.
+  if (ahead.torque != 0) asked += ahead.torque / torque_per_pressure_;
+  if (ahead.speed != 0 && !values_.position.derivative_on_error) asked += values_.position.c2 * ahead.speed;
   const double left = transfer_.Offset(state.tick);
   return law_.Limited(left == 0 ? asked : asked + left);
 }
@@ -172,7 +209,10 @@ void PositionApp::Answer(const state_t& state) {
   participant_.statistics().AddMissedDeadlines(intervals - 1);
   last_sample_tick_ = state.tick;
 
-  const double reference = return_.Reference(reference_->Value(state.time - reference_from_), state.tick);
+  const PlannedPoint planned = planner_ ? planner_->At(state.tick) : PlannedPoint{};
+  if (planner_) NotePlanner(state.tick);
+  const double wanted = planner_ ? planned.angle : reference_->Value(state.time - reference_from_);
+  const double reference = return_.Reference(wanted, state.tick);
   arm_reference_.tick = state.tick;
   arm_reference_.signal = SignalCode(signal_);
   arm_reference_.value = reference;
@@ -184,7 +224,7 @@ void PositionApp::Answer(const state_t& state) {
   switch (signal_) {
     case settings::ReferenceSignal::kArmAngle:
       if (std::isfinite(state.arm_angle)) {
-        pressure_ref = AskedByLaw(state, reference, intervals);
+        pressure_ref = AskedByLaw(state, reference, reference == wanted ? planned : PlannedPoint{}, intervals);
         if (participant_.any_fault()) participant_.Clear("nonfinite_arm_angle");
       } else {
         pressure_command_.open_loop = true;  // at zero volts: without the arm's angle no pressure is safe
@@ -240,6 +280,12 @@ void PositionApp::Poll() {
   participant_.statistics().set_lost_messages(state_monitor_.lost());
   participant_.Poll();
   tuning_.Poll();
+  if (plans_refused_ > 0) {
+    refused_plans_.Update(
+        plans_refused_, participant_.clock().Now(),
+        [&](int64_t count) { return fmt::format("{} plans in all are not followed; the newest: {}", count, plan_refused_); },
+        participant_);
+  }
   if (!lockstep_ || participant_.state() != process_status_t::RUNNING || participant_.stop()) return;
   const auto silence = participant_.clock().Now() - last_state_time_;
   if (silence > stall_time_) {

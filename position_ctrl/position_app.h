@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstdint>
+#include <hydro/arm_plan_t.hpp>
 #include <hydro/arm_reference_t.hpp>
 #include <hydro/pressure_command_t.hpp>
 #include <hydro/state_t.hpp>
@@ -14,6 +15,7 @@
 #include "bus/sequence_monitor.h"
 #include "position_ctrl/law/position_law.h"
 #include "position_ctrl/law/reference_return.h"
+#include "position_ctrl/plan_follower.h"
 #include "process/app.h"
 #include "process/fault_codes.h"
 #include "process/participant.h"
@@ -36,6 +38,9 @@ class PositionApp : public process::App {
 
  private:
   void OnState(const state_t& state);
+  void OnPlan(const arm_plan_t& plan);
+  void NotePlanner(int64_t tick);
+  void Follow(const settings::TrajectorySpec& reference);
   void Sample(const state_t& state, bus::Clock::TimePoint arrival);
   void Answer(const state_t& state);
   void ObserveHold(const state_t& state);
@@ -43,7 +48,7 @@ class PositionApp : public process::App {
   std::string WhyNot(const tuned_settings_t& settings) const;
   void TakeSettingsAt(int64_t tick);
   bool AwaitsSettings(const state_t& state);
-  double AskedByLaw(const state_t& state, double reference, int64_t intervals);
+  double AskedByLaw(const state_t& state, double reference, const PlannedPoint& ahead, int64_t intervals);
   void Send();
 
   process::Participant participant_;
@@ -53,6 +58,10 @@ class PositionApp : public process::App {
   const settings::ReferenceSignal signal_;
   const std::string reference_text_;  // as configured
   std::unique_ptr<trajectory::Trajectory> reference_;
+  std::optional<PlanFollower> planner_;  // reference.kind = "planner"
+  process::CountedWarning refused_plans_{"refused_arm_plan"};
+  int64_t plans_refused_ = 0;
+  std::string plan_refused_;  // why the newest was
   std::string reference_in_force_;
   double reference_from_ = 0;         // s, plant time at which it begins
   const double torque_per_pressure_;  // k_2

@@ -19,9 +19,9 @@ namespace hydro::settings {
 
 // A Trajectory as the configuration describes it ([reference], [model.motion]).
 struct TrajectorySpec {
-  enum class Kind { kSteps, kSine, kSquare, kChirp, kCsv };
+  enum class Kind { kSteps, kSine, kSquare, kChirp, kCsv, kPlanner };
   Kind kind = Kind::kSteps;
-  double initial = 0;                   // kSteps: before the first step
+  double initial = 0;                   // kSteps, kPlanner: before the first step or plan
   std::vector<trajectory::Step> steps;  // kSteps: [[time_s, value], ...]
   double offset = 0;                    // kSine, kSquare, kChirp
   double amplitude = 0;                 // kSine, kSquare, kChirp
@@ -31,6 +31,9 @@ struct TrajectorySpec {
   double first_frequency_hz = 0.1;      // kChirp
   double last_frequency_hz = 10;        // kChirp
   double duration_s = 10;               // kChirp
+  double timeout_s = 0.2;               // kPlanner: a plan older than this (plant time) is followed no further
+  double delay_s = 0.01;                // kPlanner: from the tick that a plan was made from to its effect
+  double max_speed_rad_s = std::numeric_limits<double>::infinity();  // kPlanner: of the reference
   std::string file;                     // kCsv, relative to the configuration's folder
   std::string column;                   // kCsv: the value's column; time is the column time_s
   trajectory::Interpolation interpolation = trajectory::Interpolation::kLinear;  // kCsv

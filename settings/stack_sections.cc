@@ -26,6 +26,9 @@ void ReadModel(SectionReader section, const std::string& config_file, ModelSecti
   section.Finish();
   if (!section.Has("motion")) return;
   model->motion = ReadTrajectory(motion, config_file);
+  if (model->motion->kind == TrajectorySpec::Kind::kPlanner) {
+    throw motion.Error("kind", "\"planner\"", "a motion that is known before: \"steps\", \"sine\", \"square\", \"chirp\" or \"csv\"");
+  }
   motion.Finish();
   CheckedTrajectory(*model->motion, motion);
 }
@@ -218,6 +221,9 @@ void ReadReference(SectionReader section, const std::string& config_file, Refere
                                    {"voltage", ReferenceSignal::kVoltage}},
                                   &reference->signal);
   reference->trajectory = ReadTrajectory(section, config_file);
+  if (reference->trajectory.kind == TrajectorySpec::Kind::kPlanner && reference->signal != ReferenceSignal::kArmAngle) {
+    throw section.Error("kind", "\"planner\" with another signal", "it with signal = \"arm_angle\"");
+  }
   section.Finish();
   CheckedTrajectory(reference->trajectory, section);
 }

@@ -187,6 +187,84 @@ TEST_F(PositionAppTest, ActsByTheValuesInForceWhenItJoins) {
   EXPECT_DOUBLE_EQ(commands_[0].pressure_ref, 2000 * 0.05);
 }
 
+arm_plan_t Plan(int64_t sequence, int64_t tick, const std::vector<double>& time, const std::vector<double>& angle) {
+  arm_plan_t plan;
+  plan.session = 8;
+  plan.sequence = sequence;
+  plan.tick = tick;
+  plan.count = static_cast<int32_t>(time.size());
+  plan.time = time;
+  plan.arm_angle = angle;
+  plan.arm_speed.assign(time.size(), 0);
+  plan.torque.assign(time.size(), 0);
+  return plan;
+}
+
+class PlannerTest : public PositionAppTest {
+ protected:
+  void StartPlanned() {
+    settings::StackConfig config = WithReference(settings::ReferenceSignal::kArmAngle, 0);
+    config.reference.trajectory.kind = settings::TrajectorySpec::Kind::kPlanner;
+    config.reference.trajectory.initial = 0.02;
+    config.reference.trajectory.timeout_s = 0.03;
+    config.limits.arm_angle_rad = 0.5;
+    Start(config);
+  }
+
+  void Send(const arm_plan_t& plan) {
+    bus_.Publish("HYDRO_ARM_PLAN", plan);
+    Deliver();
+  }
+};
+
+// Tests that a plan is followed from ten milliseconds after the tick that it was made from, with its speed and torque ahead of
+// eq. (17): c1 = 1000, c2 = 30, k_2 = 3.68.
+TEST_F(PlannerTest, APlanIsFollowed) {
+  StartPlanned();
+  SendState(0, 0.02);
+  arm_plan_t plan = Plan(0, 0, {0, 0.02}, {0, 0.2});
+  plan.arm_speed = {10, 10};
+  plan.torque = {36.8, 36.8};
+  Send(plan);
+  for (int64_t tick = 1; tick <= 15; ++tick) SendState(tick, 0.02);
+  ASSERT_EQ(references_.size(), 4u);
+  EXPECT_EQ(references_[1].value, 0.02) << "at tick 5 it is not in force yet";
+  EXPECT_DOUBLE_EQ(references_[2].value, 0.1);
+  EXPECT_DOUBLE_EQ(references_[3].value, 0.15);
+  EXPECT_DOUBLE_EQ(commands_[2].pressure_ref, 1000 * (0.1 - 0.02) + 30 * 10 + 36.8 / SmallStack().model.description.parameters.k_2);
+}
+
+TEST_F(PlannerTest, APlanThatIsWrongIsNotFollowed) {
+  StartPlanned();
+  SendState(0, 0.02);
+  Send(Plan(0, 0, {0, 1}, {0.02, NAN}));
+  Send(Plan(1, 0, {0, 1}, {0.02, 0.6}));
+  for (int64_t tick = 1; tick <= 15; ++tick) SendState(tick, 0.02);
+  app_->Poll();
+  Deliver();
+  EXPECT_EQ(references_.back().value, 0.02);
+  ASSERT_EQ(faults_.size(), 1u);
+  EXPECT_EQ(faults_[0].code, "refused_arm_plan");
+  EXPECT_THAT(faults_[0].text, ::testing::HasSubstr("2 plans in all are not followed; the newest: point 1: found arm angle 0.6 rad"));
+}
+
+TEST_F(PlannerTest, ASilentPlannersReferenceIsHeld) {
+  StartPlanned();
+  SendState(0, 0.02);
+  Send(Plan(0, -1, {0, 0.1}, {0, 0.1}));
+  for (int64_t tick = 1; tick <= 80; ++tick) SendState(tick, 0.02);
+  EXPECT_NEAR(references_.back().value, references_[6].value, 1e-12) << "30 ms after the plan it is held";
+  EXPECT_LT(references_.back().value, 0.05);
+  ASSERT_EQ(faults_.size(), 1u);
+  EXPECT_EQ(faults_[0].code, "silent_planner");
+  EXPECT_TRUE(faults_[0].active);
+  Send(Plan(1, -1, {0, 0.1}, {0, 0.1}));
+  SendState(85, 0.02);
+  Deliver();
+  ASSERT_EQ(faults_.size(), 2u);
+  EXPECT_FALSE(faults_[1].active);
+}
+
 struct PassThrough {
   settings::ReferenceSignal signal;
   double pressure_ref, voltage;

@@ -10,6 +10,7 @@
 #include <hydro/tuned_settings_t.hpp>
 #include <hydro/tuning_answer_t.hpp>
 #include <hydro/tuning_request_t.hpp>
+#include <hydro/tuning_status_t.hpp>
 #include <map>
 #include <vector>
 
@@ -52,6 +53,7 @@ class LiveTuningTest : public ::testing::Test {
     states_.clear();
     commands_.clear();
     Listen();
+    if (listen_) listen_();
     settings::StackConfig config = settings::Changed(settings::Parsed(config_), {"time.mode=lockstep"});
     config.last_tick = std::llround(duration_s * config.plant.rate_hz);
     plant::SimulatedRig rig(config);
@@ -88,6 +90,26 @@ class LiveTuningTest : public ::testing::Test {
     return nullptr;
   }
 
+  void SayAsPositionLoop(int64_t ready_for, int64_t refused, const std::string& text) {
+    tuning_status_t status;
+    status.session = 55;
+    status.role = "position_ctrl";
+    status.plant = states_.back().session;
+    status.in_force = 0;
+    status.since = -1;
+    status.ready_for = ready_for;
+    status.refused = refused;
+    status.text = text;
+    bus_->Publish("HYDRO_TUNING_STATUS", status);
+  }
+
+  void ExpectNothingDecided() const {
+    for (const tuned_settings_t& s : settings_) {
+      EXPECT_NE(s.stage, tuned_settings_t::DECIDED) << s.version;
+      EXPECT_TRUE(s.stage != tuned_settings_t::IN_FORCE || s.version == 0) << s.version;
+    }
+  }
+
   template <class Message>
   static const Message& AtTick(const std::vector<Message>& messages, int64_t tick) {
     for (const Message& message : messages) {
@@ -100,6 +122,7 @@ class LiveTuningTest : public ::testing::Test {
   std::unique_ptr<bus::InProcessBus> bus_;
   std::map<int64_t, std::function<void()>> at_;  // by tick
   std::vector<tuned_settings_t> follow_;
+  std::function<void()> listen_;  // besides
   std::vector<state_t> states_;
   std::vector<motor_command_t> commands_;
   std::vector<pressure_command_t> pressures_;
@@ -248,6 +271,65 @@ TEST_F(LiveTuningTest, AReferenceBeginsAtItsTick) {
   EXPECT_EQ(AtTick(references_, at + 500).value, 0.2);
   EXPECT_EQ(AtTick(references_, at + 975).value, 0.2);
   EXPECT_EQ(AtTick(references_, at + 1000).value, 0.05);
+}
+
+// Tests that a change that one controller cannot act by changes nothing in the others, and that a controller that has been heard
+// once and then says nothing ends a request too.
+TEST_F(LiveTuningTest, AControllerThatCannotEndsTheRequest) {
+  // A third controller, played here: it takes part, and refuses whatever is proposed.
+  listen_ = [&] {
+    bus_->Subscribe<tuned_settings_t>("HYDRO_SETTINGS", [this](const tuned_settings_t& s) {
+      if (s.stage == tuned_settings_t::PROPOSED) SayAsPositionLoop(s.version - 1, s.version, "its file is gone");
+    });
+  };
+  at_[500] = [&] { Ask(1, "pressure.natural_frequency_rad_s=130"); };
+  ASSERT_EQ(Run(0.3), 0);
+  ASSERT_NE(AnswerTo(1), nullptr);
+  EXPECT_FALSE(AnswerTo(1)->accepted);
+  EXPECT_THAT(AnswerTo(1)->text, HasSubstr("position_ctrl cannot act by it: its file is gone; nothing has changed"));
+  ExpectNothingDecided();
+}
+
+TEST_F(LiveTuningTest, AControllerThatIsSilentEndsTheRequest) {
+  listen_ = [&] {
+    bus_->Subscribe<tuned_settings_t>("HYDRO_SETTINGS", [this](const tuned_settings_t& s) {
+      // Says again and again that it acts by version 0.
+      if (s.stage == tuned_settings_t::PROPOSED) SayAsPositionLoop(0, -1, "");
+    });
+  };
+  at_[500] = [&] { Ask(1, "pressure.natural_frequency_rad_s=130"); };
+  ASSERT_EQ(Run(1.0), 0);
+  ASSERT_NE(AnswerTo(1), nullptr);
+  EXPECT_FALSE(AnswerTo(1)->accepted);
+  EXPECT_THAT(AnswerTo(1)->text, HasSubstr("position_ctrl has not answered; nothing has changed"));
+  ExpectNothingDecided();
+}
+
+// Tests that a request that is old, for another plant, or not one, changes nothing.
+TEST_F(LiveTuningTest, StrangeRequests) {
+  at_[500] = [&] {
+    tuning_request_t request;
+    request.tick = 500;
+    request.session = 78;
+    request.request = 1;
+    request.addressee = states_.back().session + 1;
+    request.kind = tuning_request_t::SET;
+    request.changes = "position.c2=400";
+    bus_->Publish("HYDRO_TUNING_REQUEST", request);  // another plant's
+    Ask(1, "position.c2=400", 7);
+    Ask(2, std::string(70000, 'x'));
+    Ask(3, "position.c2=400\nposition.c2=401");
+  };
+  at_[600] = [&] { Ask(4, std::string(70000, 'x')); };
+  at_[700] = [&] { Ask(5, "position.c2=400\nposition.c2=401"); };
+  ASSERT_EQ(Run(0.3), 0);
+  ASSERT_NE(AnswerTo(1), nullptr);
+  EXPECT_THAT(AnswerTo(1)->text, HasSubstr("unknown kind"));
+  ASSERT_NE(AnswerTo(4), nullptr);
+  EXPECT_THAT(AnswerTo(4)->text, HasSubstr("longer than 64 KiB"));
+  ASSERT_NE(AnswerTo(5), nullptr);
+  EXPECT_THAT(AnswerTo(5)->text, HasSubstr("found twice"));
+  ExpectNothingDecided();
 }
 
 // Tests that another run that follows the decisions of this one is the same, bit by bit.
