@@ -137,13 +137,13 @@ void TuningDesk::OnStatus(const tuning_status_t& status) {
   if (status.role != "pressure_ctrl" && status.role != "position_ctrl") return;
   const auto now = participant_.clock().Now();
   std::erase_if(controllers_, [&](const auto& known) { return now - known.second.heard > kAlive; });  // those that have left
-  if (controllers_.size() >= kMostControllers && !controllers_.contains(status.session)) return;
-  controllers_[status.session] = {.role = status.role,
-                                  .ready_for = status.ready_for,
-                                  .in_force = status.in_force,
-                                  .refused = status.refused,
-                                  .text = status.text,
-                                  .heard = now};
+  const std::pair key{status.role, status.session};
+  if (controllers_.size() >= kMostControllers && !controllers_.contains(key)) return;
+  controllers_[key] = {.ready_for = status.ready_for,
+                       .in_force = status.in_force,
+                       .refused = status.refused,
+                       .text = status.text,
+                       .heard = now};
 }
 
 // A controller of the user's own may know nothing of this: what concerns it cannot be changed.
@@ -153,7 +153,7 @@ std::string TuningDesk::WhoIsMissing(const std::vector<std::string>& changes) co
     const bool concerned = std::any_of(changes.begin(), changes.end(),
                                        [&](const std::string& change) { return change.find(section) == 0; });
     const bool there = std::any_of(controllers_.begin(), controllers_.end(),
-                                   [&, role = std::string(role)](const auto& known) { return known.second.role == role; });
+                                   [&, role = std::string(role)](const auto& known) { return known.first.first == role; });
     if (concerned && !there) {
       return fmt::format("{} does not take part in tuning: it has said nothing of its values (a program of your own?)", role);
     }
@@ -164,12 +164,12 @@ std::string TuningDesk::WhoIsMissing(const std::vector<std::string>& changes) co
 // Who cannot act by the proposal, or has not said so yet; empty: all can.
 std::string TuningDesk::NotReady(bool* impossible) const {
   const int64_t version = pending_->version->message.version;
-  for (const auto& [session, controller] : controllers_) {
+  for (const auto& [key, controller] : controllers_) {
     if (participant_.clock().Now() - controller.heard > kAlive) continue;  // it has left
     *impossible = controller.refused == version;
-    if (*impossible) return fmt::format("{} cannot act by it: {}", controller.role, controller.text);
+    if (*impossible) return fmt::format("{} cannot act by it: {}", key.first, controller.text);
     if (controller.ready_for != version && controller.in_force != version) {
-      return fmt::format("{} has not answered", controller.role);
+      return fmt::format("{} has not answered", key.first);
     }
   }
   return "";

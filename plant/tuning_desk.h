@@ -18,6 +18,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "plant/aside.h"
@@ -60,7 +61,6 @@ class TuningDesk {
   };
   struct Pending;  // the change that is being made
   struct Controller {
-    std::string role;
     int64_t ready_for = -1;
     int64_t in_force = -1;
     int64_t refused = -1;
@@ -94,7 +94,7 @@ class TuningDesk {
   std::vector<Version> before_;  // what was in force before it, newest last, for UNDO
   int64_t newest_version_ = 0;   // that was ever proposed
   std::unique_ptr<Pending> pending_;
-  std::map<int64_t, Controller> controllers_;      // by session; those that were heard lately
+  std::map<std::pair<std::string, int64_t>, Controller> controllers_;  // by role and session; those that were heard lately
   std::map<int64_t, tuning_answer_t> answers_;     // the last to each session that asked
   std::vector<int64_t> asked_;                     // these sessions, oldest first
   std::vector<tuned_settings_t> followed_;         // reversed: the next one last
