@@ -11,7 +11,8 @@
 namespace hydro::tune {
 
 struct Gains {
-  double natural_frequency = 0;  // rad/s, of the pressure loop with both sides compressing at mid-stroke
+  // rad/s, of the pressure loop at mid-stroke, with as many sides compressing as pressure.compressed_sides says (both for k_p and k_v).
+  double natural_frequency = 0;
   double damping_ratio = 0;
   double c1 = 0;  // psi/rad
   double c2 = 0;  // psi s/rad
@@ -27,7 +28,7 @@ Gains GainsOf(const settings::StackConfig& config);
 // gains of eq. (16) follow.
 settings::StackConfig With(settings::StackConfig config, const Gains& gains);
 
-// What With changes, as "section.key" and its value in TOML.
-std::vector<std::pair<std::string, std::string>> ChangedKeys(const settings::StackConfig& tuned);
+// The keys that With may change, as "section.key" and its value in TOML.
+std::vector<std::pair<std::string, std::string>> GainKeys(const settings::StackConfig& config);
 
 }  // namespace hydro::tune

@@ -15,7 +15,7 @@
 namespace hydro::tune {
 namespace {
 
-constexpr double kPatience = 2.5;     // times the shortest settling time that a trial lasts
+constexpr double kPatience = 2.5;  // times the shortest settling time that a trial lasts
 constexpr double kAim = 1.08;
 constexpr double kUrge = 5;
 constexpr double kFault = 10;         // added to a ratio where the plant would have stopped

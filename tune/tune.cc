@@ -1,0 +1,190 @@
+#include "tune/tune.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <stdexcept>
+#include <utility>
+
+#include "base/new_file.h"
+#include "base/number_text.h"
+#include "base/read_files.h"
+#include "base/terminal_line.h"
+#include "base/text_file.h"
+#include "settings/stack_config.h"
+#include "settings/toml/toml_document.h"
+#include "tune/gain_file.h"
+#include "tune/refusal.h"
+#include "tune/report.h"
+#include "tune/search.h"
+#include "tune/simulated_step.h"
+
+namespace hydro::tune {
+namespace {
+
+using Keys = std::vector<std::pair<std::string, std::string>>;
+
+void CheckRange(const char* option, int value, int least, int most) {
+  if (value >= least && value <= most) return;
+  throw InputError(std::string(option) + ": found " + std::to_string(value) + ", allowed " +
+                   std::to_string(least) + " to " + std::to_string(most));
+}
+
+settings::StackConfig Load(const TuneRequest& request) {
+  std::vector<std::string> overrides;
+  if (request.interval) {
+    if (!ParseNumber(*request.interval)) {
+      throw InputError("--interval: found " + Quoted(*request.interval) + ", allowed a number of seconds");
+    }
+    overrides.push_back("position.sample_interval_s=" + *request.interval);
+  }
+  settings::StackConfig config = settings::LoadStackConfig(request.config, overrides);
+  const auto refuse = [&](const std::string& key, const std::string& found, const std::string& allowed) {
+    throw InputError(config.file + ": " + key + ": found " + found + ", allowed " + allowed +
+                     ", because hydro-tune judges steps of the arm's angle");
+  };
+  if (config.reference.signal != settings::ReferenceSignal::kArmAngle) {
+    refuse("reference.signal", "another signal", "\"arm_angle\"");
+  }
+  if (config.model.shaft != model::Shaft::kFree) refuse("model.shaft", "a shaft that is held", "\"free\"");
+  if (config.model.bypass) refuse("model.bypass", "true", "false");
+  return config;
+}
+
+// One search after the other on one scale.
+class ProgressLine {
+ public:
+  ProgressLine(std::FILE* out, bool terminal) : out_(out), terminal_(terminal), line_(out) {}
+  void Show(double done, const char* what) {
+    const int percent = static_cast<int>(100 * done);
+    if (percent == shown_) return;
+    // A log gets a line a quarter.
+    if (!terminal_ && percent / 25 != shown_ / 25)
+      std::fprintf(out_, "hydro-tune: %d %%, %s\n", percent, what);
+    shown_ = percent;
+    if (terminal_) line_.Draw(done, what);
+  }
+
+ private:
+  std::FILE* out_;
+  bool terminal_;
+  TerminalLine line_;
+  int shown_ = 0;
+};
+
+Proposal ProposalOf(const StepJudge& judge, std::string name, Tried tried) {
+  Proposal proposal;
+  proposal.name = std::move(name);
+  for (const double step : judge.steps())
+    proposal.steps.push_back(judge.Try(tried.gains, judge.Nominal(step)));
+  proposal.uncertain = UncertainMargins(judge, tried.gains);
+  proposal.tried = std::move(tried);
+  return proposal;
+}
+
+// Paths in a configuration count from its folder.
+void MovePath(const std::string& key, const std::string& given, const std::string& resolved,
+              const std::string& output, Keys* keys) {
+  if (given.empty() || std::filesystem::path(given).is_absolute()) return;
+  const std::filesystem::path folder = std::filesystem::absolute(output).parent_path();
+  const std::string moved = std::filesystem::proximate(std::filesystem::weakly_canonical(resolved),
+                                                       std::filesystem::weakly_canonical(folder))
+                                .string();
+  if (moved != given) keys->emplace_back(key, settings::TomlString(moved));
+}
+
+// The given text with the gains of `tuned`; read back, because a text that spells its sections in another way could mean
+// something else.
+std::string TunedText(const settings::StackConfig& given, const settings::StackConfig& tuned,
+                      const std::string& output) {
+  const std::string before = ReadTextFile(given.file);
+  const Keys old =
+      GainKeys(settings::ParseStackConfig(before, given.file, given.model.text, given.model.file));
+  Keys keys;
+  for (const auto& key : GainKeys(tuned)) {
+    if (std::find(old.begin(), old.end(), key) == old.end()) keys.push_back(key);
+  }
+  MovePath("model.file", given.model.file, given.model.resolved_file, output, &keys);
+  MovePath("bus.key_file", given.bus.key_file, given.bus.resolved_key_file, output, &keys);
+  const std::string& points = given.reference.trajectory.file;
+  MovePath("reference.file", points, points.empty() ? "" : PathBeside(given.file, points), output, &keys);
+  std::string text = WithKeys(before, keys);
+  bool same = false;
+  try {
+    const settings::StackConfig read =
+        settings::ParseStackConfig(text, output, given.model.text, given.model.file);
+    same = GainKeys(read) == GainKeys(tuned);
+  } catch (const InputError&) {
+    same = false;
+  }
+  if (!same) {
+    throw InputError(
+        given.file +
+        ": found keys of [pressure] or [position] that do not stand on lines of their own, allowed \"key = "
+        "value\" "
+        "lines under [pressure] and [position], so that the gains can be changed and all else kept");
+  }
+  return text;
+}
+
+void WriteReport(const TuningReport& report, const std::string& folder, bool si) {
+  std::filesystem::create_directories(folder);
+  WriteWholeFile(folder + "/tune.svg", ReportPicture(report));
+  WriteWholeFile(folder + "/tune.html", ReportPage(report, si));
+}
+
+// The gains as the stack's own programs run them: nothing that was left out of the search can differ.
+void RunOnTheStack(const StepJudge& judge, Proposal* proposal) {
+  const settings::StackConfig tuned = With(judge.config(), proposal->tried.gains);
+  for (size_t i = 0; i < judge.steps().size(); ++i) {
+    const double saturated = proposal->steps[i].saturated;
+    proposal->steps[i] = SimulateStep(tuned, judge.Nominal(judge.steps()[i]));
+    proposal->steps[i].saturated = saturated;
+  }
+}
+
+void Refuse(const settings::StackConfig& config, const std::string& why) {
+  if (!why.empty()) throw std::runtime_error(config.file + ": " + why);
+}
+
+}  // namespace
+
+int Tune(const TuneRequest& request, std::FILE* out, std::FILE* progress, bool terminal) {
+  CheckRange("--jobs", request.jobs, 1, 64);
+  CheckRange("--samples", request.samples, 0, 100);
+  const Goals goals = ParseGoals(request.goals);
+  const settings::StackConfig config = Load(request);
+  CheckKeeps(request.output);
+  CheckCanBeCreated(request.output);
+  if (!request.output.empty()) TunedText(config, With(config, GainsOf(config)), request.output);
+  const StepJudge judge(config, {.goals = goals, .samples = request.samples, .noise = request.noise});
+  Refuse(config, RefusalByTheMotor(judge, goals));
+
+  ProgressLine line(progress, terminal);
+  const Gains pressure = ChoosePressureLoop(config);
+  const SearchResult fixed = SearchGains(judge, goals, pressure, false, request.jobs,
+                                         [&](double done) { line.Show(0.25 * done, "gains of eq. (17)"); });
+  const SearchResult curve = SearchGains(judge, goals, pressure, true, request.jobs, [&](double done) {
+    line.Show(0.25 + 0.75 * done, "gains with a braking curve");
+  });
+  Refuse(config, RefusalBySearch(judge, goals, fixed));
+
+  TuningReport report;
+  report.config = config.file;
+  report.judge = &judge;
+  report.noise = request.noise;
+  report.proposals.push_back(ProposalOf(judge, "as configured", TryGains(judge, GainsOf(config))));
+  report.proposals.push_back(ProposalOf(judge, "proposed", fixed.best));
+  RunOnTheStack(judge, &report.proposals.back());
+  if (curve.found) report.proposals.push_back(ProposalOf(judge, "with a braking curve", curve.best));
+  report.trade_offs = TradeOffs(fixed.tried);
+  report.tried = fixed.tried;
+  const std::string text = ReportText(report, request.si);
+  std::fwrite(text.data(), 1, text.size(), out);
+  if (!request.folder.empty()) WriteReport(report, request.folder, request.si);
+  if (!request.output.empty()) {
+    WriteWholeFile(request.output, TunedText(config, With(config, fixed.best.gains), request.output));
+  }
+  return 0;
+}
+
+}  // namespace hydro::tune
