@@ -25,10 +25,12 @@ Gains GainsOf(const settings::StackConfig& config) {
   return {.natural_frequency = loop.natural_frequency,
           .damping_ratio = loop.damping_ratio,
           .c1 = config.position.c1,
-          .c2 = config.position.c2};
+          .c2 = config.position.c2,
+          .as_configured = true};
 }
 
 settings::StackConfig With(settings::StackConfig config, const Gains& gains) {
+  if (gains.as_configured) return config;
   settings::PressureSection& pressure = config.pressure;
   pressure.reference_feedforward = true;
   pressure.reference_feedforward_V_psi.reset();

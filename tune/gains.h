@@ -18,9 +18,10 @@ struct Gains {
   double c2 = 0;  // psi s/rad
   // rad/s^2, of the braking curve before eq. (17) (position_ctrl/law/braking_curve.h); infinity: eq. (17) alone.
   double deceleration = std::numeric_limits<double>::infinity();
+  bool as_configured = false;  // the configuration as it is, whatever the numbers above say
 };
 
-// Those of a configuration.
+// Those of a configuration, as it is.
 Gains GainsOf(const settings::StackConfig& config);
 
 // The configuration with these gains, both feed-forwards of eq. (16), and the derivative of eq. (17) on the measured angle. It

@@ -67,6 +67,11 @@ std::string MarginsText(const Proposal& proposal) {
   return text;
 }
 
+std::string RatioText(double ratio) {
+  if (ratio >= kStopped) return "stops";  // a limit ended the run
+  return ratio >= kNeverSettled ? "never" : fmt::format("{:.2f}", ratio);
+}
+
 std::string StepsText(const TuningReport& report) {
   std::string text = fmt::format("  {:>8} {:>9}", "step rad", "bound s");
   for (const Proposal& proposal : report.proposals) text += fmt::format("  | {:^30}", proposal.name);
@@ -81,14 +86,15 @@ std::string StepsText(const TuningReport& report) {
     for (const Proposal& proposal : report.proposals) {
       const StepResult& r = proposal.steps[i];
       text += fmt::format("  | {:>9} {:>6} {:>13.1f}", r.settled ? Number(r.settling) : "never",
-                          r.settled ? fmt::format("{:.2f}", r.ratio) : "-", r.overshoot_percent);
+                          RatioText(r.ratio), r.overshoot_percent);
     }
     text += "\n";
   }
   const auto row = [&](const char* what, const auto& value) {
     text += fmt::format("  {:<18}", what);
-    for (const Proposal& proposal : report.proposals)
-      text += fmt::format("  | {:>16.2f} {:>13}", value(proposal), "");
+    for (const Proposal& proposal : report.proposals) {
+      text += fmt::format("  | {:>16} {:>13}", RatioText(value(proposal)), "");
+    }
     text += "\n";
   };
   row("over the travel", [](const Proposal& p) { return p.tried.steps.ratio; });
@@ -101,9 +107,9 @@ std::string TradeOffText(const TuningReport& report) {
                                  "uncertain", "band Hz", "c1", "c2");
   for (const TradeOff& row : report.trade_offs) {
     const Tried& t = row.tried;
-    text += fmt::format("  {:>11} {:>8.2f} {:>10.2f} {:>8} {:>10} {:>12}\n", ">= " + Number(row.gain_margin),
-                        t.steps.ratio, t.steps.uncertain_ratio, Number(t.check.position->worst.bandwidth_hz),
-                        Number(t.gains.c1), Number(t.gains.c2));
+    text += fmt::format("  {:>11} {:>8} {:>10} {:>8} {:>10} {:>12}\n", ">= " + Number(row.gain_margin),
+                        RatioText(t.steps.ratio), RatioText(t.steps.uncertain_ratio),
+                        Number(t.check.position->worst.bandwidth_hz), Number(t.gains.c1), Number(t.gains.c2));
   }
   return text;
 }

@@ -14,12 +14,6 @@
 #include "sim/simulation.h"
 
 namespace hydro::tune {
-namespace {
-
-constexpr double kPatience = 2.5;  // times the shortest settling time
-
-}  // namespace
-
 StepResult SimulateStep(settings::StackConfig config, const StepCase& step) {
   const double interval = config.position.sample_interval_s;
   // With a weight the arm first comes to rest where it hangs.
@@ -30,7 +24,7 @@ StepResult SimulateStep(settings::StackConfig config, const StepCase& step) {
   // Half a tick early, so that no rounding makes it a sample late.
   config.reference.trajectory.steps = {{start - 0.5 / config.plant.rate_hz, step.step}};
   config.model.arm_angle_rad = 0;
-  config.last_tick = std::llround((start + kPatience * step.shortest) * config.plant.rate_hz);
+  config.last_tick = std::llround((start + kNeverSettled * step.shortest) * config.plant.rate_hz);
   std::vector<double> time;
   std::vector<double> angle;
   const std::string states = bus::Channels(config.bus.channel_suffix).Of<state_t>();

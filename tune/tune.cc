@@ -126,6 +126,15 @@ std::string TunedText(const settings::StackConfig& given, const settings::StackC
   return text;
 }
 
+// Before the search, with gains that all differ from the given ones.
+void CheckCanBeChanged(const settings::StackConfig& config, const std::string& output) {
+  Gains other = GainsOf(config);
+  other.as_configured = false;
+  for (double* gain : {&other.natural_frequency, &other.damping_ratio, &other.c1, &other.c2})
+    *gain = 1.5 * *gain + 1;
+  TunedText(config, With(config, other), output);
+}
+
 void WriteReport(const TuningReport& report, const std::string& folder, bool si) {
   std::filesystem::create_directories(folder);
   WriteWholeFile(folder + "/tune.svg", ReportPicture(report));
@@ -155,7 +164,7 @@ int Tune(const TuneRequest& request, std::FILE* out, std::FILE* progress, bool t
   const settings::StackConfig config = Load(request);
   CheckKeeps(request.output);
   CheckCanBeCreated(request.output);
-  if (!request.output.empty()) TunedText(config, With(config, GainsOf(config)), request.output);
+  if (!request.output.empty()) CheckCanBeChanged(config, request.output);
   const StepJudge judge(config, {.goals = goals, .samples = request.samples, .noise = request.noise});
   Refuse(config, RefusalByTheMotor(judge, goals));
 
