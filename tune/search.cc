@@ -4,7 +4,6 @@
 #include <array>
 #include <atomic>
 #include <cmath>
-#include <limits>
 #include <mutex>
 #include <stdexcept>
 #include <utility>
@@ -19,7 +18,6 @@ namespace {
 constexpr int kSlopes = 14;
 constexpr std::array<double, 8> kGainShares = {1, 0.8, 0.63, 0.5, 0.4, 0.3, 0.22, 0.15};
 constexpr std::array<double, 7> kDecelerationShares = {0.7, 0.8, 0.88, 0.95, 1.02, 1.1, 1.17};
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 bool Keeps(const design::CheckedLoop& loop) {
   return loop.worst.stable && loop.worst.gain >= kLeastGainMargin &&
