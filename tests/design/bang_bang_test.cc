@@ -9,6 +9,8 @@
 namespace hydro::design {
 namespace {
 
+using experiments::ShippedModel;
+
 // Tests that without friction the result is the double integrator's closed form: 2
 // sqrt(distance/acceleration).
 TEST(BangBang, DoubleIntegrator) {

@@ -12,6 +12,8 @@
 namespace hydro::design {
 namespace {
 
+using experiments::ShippedModel;
+
 using Complex = std::complex<double>;
 constexpr double kPi = std::numbers::pi;
 

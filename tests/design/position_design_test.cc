@@ -16,6 +16,8 @@
 namespace hydro::design {
 namespace {
 
+using experiments::ShippedModel;
+
 DesignModel Table1Design() { return Figure8Model(ShippedModel("table1").parameters); }
 
 runs::StepResponse Measure(const Response& response, double step) {
