@@ -14,8 +14,9 @@ pressure_ctrl::PressureLawSettings PressureLawSettingsFor(const settings::StackC
   pressure_ctrl::PressureLawSettings law;
   try {
     law.gains = section.k_p ? pressure_ctrl::PressureGains{*section.k_p, section.k_v.value_or(0)}
-                            : pressure_ctrl::DerivePressureGains(parameters, 0, section.natural_frequency_rad_s.value(),
-                                                  section.damping_ratio.value(), section.compressed_sides);
+                            : pressure_ctrl::DerivePressureGains(
+                                  parameters, 0, section.natural_frequency_rad_s.value(),
+                                  section.damping_ratio.value(), section.compressed_sides);
   } catch (const std::invalid_argument& error) {
     throw InputError(fmt::format("{}: pressure.natural_frequency_rad_s: {}", config.file, error.what()));
   }

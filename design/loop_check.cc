@@ -63,10 +63,10 @@ double BandwidthOf(const LinearStack& stack, const position_ctrl::PositionLawSet
   return BandwidthHz([&](double factor) { return stack.Poles(1, factor); }, stack.period(), filter);
 }
 
-void Check(const settings::StackConfig& config, LoopCheck* check) {
+void Check(const settings::StackConfig& config, const pressure_ctrl::PressureLawSettings& pressure,
+           LoopCheck* check) {
   const bool closes_position = config.reference.signal == settings::ReferenceSignal::kArmAngle;
   const StackTiming timing = TimingOf(config);
-  const pressure_ctrl::PressureLawSettings pressure = PressureLawSettingsFor(config);
   const position_ctrl::PositionLawSettings position = PositionLawSettingsFor(config);
   const bool moves_arm = config.model.shaft == model::Shaft::kFree && !config.model.bypass;
   for (const OperatingCase& point : OperatingCases(config)) {
@@ -75,7 +75,8 @@ void Check(const settings::StackConfig& config, LoopCheck* check) {
     model::LinearModel held = point.model;
     FreezeArmAngle(point.actuator_angle, &held);
     const LinearStack alone(held, timing, pressure, nullptr);
-    checked.pressure = MarginsOf([&](double factor) { return alone.Poles(factor, 0); }, alone.period());
+    checked.pressure =
+        MarginsOf([&](double factor) { return alone.Poles(factor, 0); }, alone.period(), Drift::kIgnored);
     Add(checked.pressure, point.name, &check->pressure);
     if (!closes_position || !moves_arm) continue;
     const LinearStack both(point.model, timing, pressure, &position);
@@ -132,10 +133,21 @@ bool LoopCheck::stable() const {
 }
 
 LoopCheck CheckLoops(const settings::StackConfig& config) {
+  try {
+    return CheckLoops(config, PressureLawSettingsFor(config));
+  } catch (const std::exception& error) {
+    LoopCheck check;
+    check.unjudged = fmt::format("the loops cannot be judged: {}", error.what());
+    return check;
+  }
+}
+
+LoopCheck CheckLoops(const settings::StackConfig& config,
+                     const pressure_ctrl::PressureLawSettings& pressure) {
   LoopCheck check;
   if (config.reference.signal == settings::ReferenceSignal::kVoltage) return check;
   try {
-    Check(config, &check);
+    Check(config, pressure, &check);
   } catch (const std::exception& error) {
     check = LoopCheck();
     check.unjudged = fmt::format("the loops cannot be judged: {}", error.what());

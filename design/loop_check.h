@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "design/loop_margins.h"
+#include "pressure_ctrl/law/pressure_law.h"
 #include "settings/stack_config.h"
 
 namespace hydro::design {
@@ -26,8 +27,8 @@ struct CheckedCase {
 
 struct LoopCheck {
   // Eq. (16) with a constant reference, cut at the voltage: `gain` is a factor on k_p with k_v as it is, `delay` what the
-  // amplifier may be late more than configured. A free arm's angle is held (not its speed): where a pressure drives it is
-  // not this loop's affair.
+  // amplifier may be late more than configured. Where a pressure drives a free arm is
+  // not this loop's affair: the arm's angle is held (not its speed), and a drift that does not oscillate is left out.
   std::optional<CheckedLoop> pressure;
   // Eq. (17) around the closed pressure loop, cut at the pressure reference: `gain` is a factor on both c1 and c2. Unstable
   // with a stable pressure loop: it is the position loop that makes it so.
@@ -43,6 +44,9 @@ struct LoopCheck {
 // for voltage. Limits, the D/A converter's steps, noise and Coulomb friction are left out: a loop that is stable here may still
 // overshoot after saturation. Throws nothing for a configuration that settings accepts.
 LoopCheck CheckLoops(const settings::StackConfig& config);
+
+// The same with gains that do not follow from the configuration's model: of a rig that is not quite as its model says.
+LoopCheck CheckLoops(const settings::StackConfig& config, const pressure_ctrl::PressureLawSettings& pressure);
 
 // One line for a person: "pressure loop: gain margin 3.1, phase margin 48 deg at 21 Hz, ... (worst: side 2 compresses, arm
 // at 0.82 rad)".

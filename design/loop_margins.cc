@@ -14,6 +14,7 @@ using PolesOf = std::function<std::vector<Complex>(double)>;
 constexpr double kPi = std::numbers::pi;
 constexpr double kRounding = 1e-8;    // an integrator's pole may come out this far beyond the unit circle
 constexpr double kLeastAngle = 1e-6;  // rad a period: the lowest frequency
+constexpr double kSlow = 0.05;        // of the highest crossover: below it is drift
 constexpr double kLeastGain = 1e-9;   // loop gains below this are rounding errors
 
 double Radius(const std::vector<Complex>& poles) {
@@ -22,7 +23,23 @@ double Radius(const std::vector<Complex>& poles) {
   return radius;
 }
 
-bool Stable(const std::vector<Complex>& poles) { return Radius(poles) < 1 + kRounding; }
+// What decides about stability.
+class Stability {
+ public:
+  Stability(const PolesOf& poles, Drift drift) : poles_(poles), drift_(drift) {}
+
+  bool Holds(std::vector<Complex> poles) const {
+    if (drift_ == Drift::kIgnored) {
+      std::erase_if(poles, [](const Complex& pole) { return pole.imag() == 0 && pole.real() > 0; });
+    }
+    return Radius(poles) < 1 + kRounding;
+  }
+  bool Holds(double factor) const { return Holds(poles_(factor)); }
+
+ private:
+  const PolesOf& poles_;
+  Drift drift_;
+};
 
 // Takes out what is in both lists: poles that the loop does not move.
 void Cancel(std::vector<Complex>* a, std::vector<Complex>* b) {
@@ -133,9 +150,9 @@ std::vector<Candidate> CriticalFactors(const Sweep& sweep) {
 }
 
 // A stable loop: the nearest factors beyond which it is not.
-void GainLimits(const PolesOf& poles, const std::vector<Candidate>& candidates, double period,
+void GainLimits(const Stability& stability, const std::vector<Candidate>& candidates, double period,
                 LoopMargins* margins) {
-  const auto fails = [&](double factor) { return !Stable(poles(factor)); };
+  const auto fails = [&](double factor) { return !stability.Holds(factor); };
   for (const Candidate& candidate : candidates) {
     if (candidate.factor <= 1 || !fails(candidate.factor * (1 + 1e-4))) continue;
     margins->gain = candidate.factor;
@@ -150,19 +167,22 @@ void GainLimits(const PolesOf& poles, const std::vector<Candidate>& candidates, 
 }
 
 // An unstable loop: how much less gain is stable.
-void StableGain(const PolesOf& poles, const std::vector<Candidate>& candidates, double period,
+void StableGain(const Stability& stability, const std::vector<Candidate>& candidates, double period,
                 LoopMargins* margins) {
   margins->gain = 0;
   for (size_t i = candidates.size(); i-- > 0;) {
-    if (candidates[i].factor >= 1 || !Stable(poles(candidates[i].factor * (1 - 1e-4)))) continue;
+    if (candidates[i].factor >= 1 || !stability.Holds(candidates[i].factor * (1 - 1e-4))) continue;
     margins->gain = candidates[i].factor;
     margins->gain_hz = candidates[i].angle / (2 * kPi * period);
     return;
   }
 }
 
-void PhaseLimits(const Sweep& sweep, double period, LoopMargins* margins) {
-  for (const double angle : sweep.Crossings([](const Complex& loop) { return std::abs(loop) - 1; })) {
+void PhaseLimits(const Sweep& sweep, double period, Drift drift, LoopMargins* margins) {
+  const std::vector<double> crossovers =
+      sweep.Crossings([](const Complex& loop) { return std::abs(loop) - 1; });
+  for (const double angle : crossovers) {
+    if (drift == Drift::kIgnored && angle < kSlow * crossovers.back()) continue;
     const double ahead = std::arg(-sweep.Loop(std::polar(1.0, angle)));  // of -180 degrees
     const double degrees = std::fabs(ahead) * 180 / kPi;
     if (degrees < margins->phase_deg) {
@@ -187,22 +207,23 @@ double LeastDamping(const std::vector<Complex>& poles) {
 
 }  // namespace
 
-LoopMargins MarginsOf(const PolesOf& poles, double period) {
+LoopMargins MarginsOf(const PolesOf& poles, double period, Drift drift) {
+  const Stability stability(poles, drift);
   std::vector<Complex> closed = poles(1);
   std::vector<Complex> open = poles(0);
   LoopMargins margins;
   margins.spectral_radius = Radius(closed);
-  margins.stable = Stable(closed);
+  margins.stable = stability.Holds(closed);
   Cancel(&closed, &open);
   margins.damping_ratio = LeastDamping(closed);
   const Sweep sweep(std::move(closed), std::move(open));
   const std::vector<Candidate> candidates = CriticalFactors(sweep);
   if (margins.stable) {
-    GainLimits(poles, candidates, period, &margins);
-    PhaseLimits(sweep, period, &margins);
+    GainLimits(stability, candidates, period, &margins);
+    PhaseLimits(sweep, period, drift, &margins);
     margins.distance = sweep.LeastDistance();
   } else {
-    StableGain(poles, candidates, period, &margins);
+    StableGain(stability, candidates, period, &margins);
     margins.phase_deg = margins.delay = margins.distance = 0;
   }
   return margins;

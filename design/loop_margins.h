@@ -32,11 +32,16 @@ struct LoopMargins {
   double distance = std::numeric_limits<double>::infinity();
 };
 
+// Whether a pole on the positive real axis, a motion that grows without oscillating, makes a loop unstable. Ignored, the
+// response far below the highest frequency with a gain of 1 does not count either: it belongs to whoever stops that
+// motion.
+enum class Drift { kCounts, kIgnored };
+
 // `poles` gives the closed loop's poles in the z plane, sampled every `period` s, with the loop's gain multiplied by a
 // factor: as many poles for each factor. The open loop's response follows from those with 1 and with 0,
 // 1 + L(z) = product of (z - closed pole)/(z - open pole), so nothing but eigenvalues is needed.
 LoopMargins MarginsOf(const std::function<std::vector<std::complex<double>>(double factor)>& poles,
-                      double period);
+                      double period, Drift drift = Drift::kCounts);
 
 // The bandwidth of filter(z) L(z)/(1 + L(z)) of a stable loop: `filter` is what a reference goes through before it enters where
 // the output is fed back, e.g. c1/(c1 + c2 (1 - 1/z)/T) for a derivative on the measured output alone.

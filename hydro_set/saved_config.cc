@@ -5,6 +5,7 @@
 
 #include "base/input_error.h"
 #include "base/text_file.h"
+#include "settings/moved_paths.h"
 #include "settings/toml/toml_edit.h"
 #include "tuning/change_check.h"
 #include "tuning/tunable_keys.h"
@@ -34,12 +35,13 @@ settings::StackConfig ConfigInForce(const run_description_t& run, const tuned_se
   return settings::Changed(configured, tuning::ParseChanges(in_force.changes));
 }
 
-std::string SavedText(const std::string& file, const run_description_t& run, const tuned_settings_t& in_force) {
+std::string SavedText(const std::string& file, const std::string& output, const run_description_t& run,
+                      const tuned_settings_t& in_force) {
   const settings::StackConfig config = ConfigInForce(run, in_force);
   if (file.empty()) return config.text;
   const std::string text = ReadTextFile(file);
   const auto before = Entries(text, file), after = Entries(config.text, file);
-  std::vector<settings::TomlEntry> changed;
+  std::vector<settings::TomlEntry> changed = settings::MovedPaths(settings::LoadStackConfig(file), output);
   std::vector<std::string> removed;
   for (const auto& [key, value] : after) {
     const auto was = before.find(key);

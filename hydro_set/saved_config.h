@@ -13,8 +13,9 @@ namespace hydro::hydro_set {
 // description is not one of this version.
 settings::StackConfig ConfigInForce(const run_description_t& run, const tuned_settings_t& in_force);
 
-// The text of `file`, the configuration that the stack was started with, with the values in force and all else as it is; without a file, the
-// run's own text, which has no comments. Throws InputError.
-std::string SavedText(const std::string& file, const run_description_t& run, const tuned_settings_t& in_force);
+// The text of `file`, the configuration that the stack was started with, with the values in force and all else as it is, for a file `output`, which
+// may lie in another folder; without a file, the run's own text, which has no comments. Throws InputError.
+std::string SavedText(const std::string& file, const std::string& output, const run_description_t& run,
+                      const tuned_settings_t& in_force);
 
 }  // namespace hydro::hydro_set

@@ -14,15 +14,23 @@ double Rounded(double value) { return ParseNumber(ShortNumber(value, 5)).value_o
 }  // namespace
 
 Gains GainsOf(const settings::StackConfig& config) {
-  const pressure_ctrl::SecondOrder loop = pressure_ctrl::PressureLoopDynamics(
-      config.model.description.parameters, 0, design::PressureLawSettingsFor(config).gains, 2);
+  const settings::PressureSection& pressure = config.pressure;
+  pressure_ctrl::SecondOrder loop;
+  if (pressure.k_p) {
+    loop = pressure_ctrl::PressureLoopDynamics(config.model.description.parameters, 0,
+                                               design::PressureLawSettingsFor(config).gains, 2);
+  } else {
+    loop = {pressure.natural_frequency_rad_s.value_or(0), pressure.damping_ratio.value_or(0)};
+  }
   return {.natural_frequency = loop.natural_frequency,
           .damping_ratio = loop.damping_ratio,
           .c1 = config.position.c1,
-          .c2 = config.position.c2};
+          .c2 = config.position.c2,
+          .as_configured = true};
 }
 
 settings::StackConfig With(settings::StackConfig config, const Gains& gains) {
+  if (gains.as_configured) return config;
   settings::PressureSection& pressure = config.pressure;
   pressure.reference_feedforward = true;
   pressure.reference_feedforward_V_psi.reset();
@@ -39,7 +47,6 @@ settings::StackConfig With(settings::StackConfig config, const Gains& gains) {
   } else {
     pressure.natural_frequency_rad_s = Rounded(gains.natural_frequency);
     pressure.damping_ratio = Rounded(gains.damping_ratio);
-    pressure.compressed_sides = 2;
   }
   config.position.c1 = Rounded(gains.c1);
   config.position.c2 = Rounded(gains.c2);
@@ -47,8 +54,8 @@ settings::StackConfig With(settings::StackConfig config, const Gains& gains) {
   return config;
 }
 
-std::vector<std::pair<std::string, std::string>> ChangedKeys(const settings::StackConfig& tuned) {
-  const settings::PressureSection& pressure = tuned.pressure;
+std::vector<std::pair<std::string, std::string>> GainKeys(const settings::StackConfig& config) {
+  const settings::PressureSection& pressure = config.pressure;
   std::vector<std::pair<std::string, std::string>> keys;
   const auto add = [&](const char* key, double value) { keys.emplace_back(key, ShortestNumber(value)); };
   if (pressure.k_p) {
@@ -57,14 +64,18 @@ std::vector<std::pair<std::string, std::string>> ChangedKeys(const settings::Sta
   } else {
     add("pressure.natural_frequency_rad_s", pressure.natural_frequency_rad_s.value_or(0));
     add("pressure.damping_ratio", pressure.damping_ratio.value_or(0));
-    keys.emplace_back("pressure.compressed_sides", "2");
   }
-  keys.emplace_back("pressure.reference_feedforward", "true");
-  keys.emplace_back("pressure.arm_speed_feedforward", "true");
-  add("position.sample_interval_s", tuned.position.sample_interval_s);
-  add("position.c1", tuned.position.c1);
-  add("position.c2", tuned.position.c2);
-  keys.emplace_back("position.derivative", "\"measurement\"");
+  if (pressure.reference_feedforward_V_psi) {
+    add("pressure.reference_feedforward", *pressure.reference_feedforward_V_psi);
+  } else {
+    keys.emplace_back("pressure.reference_feedforward", pressure.reference_feedforward ? "true" : "false");
+  }
+  keys.emplace_back("pressure.arm_speed_feedforward", pressure.arm_speed_feedforward ? "true" : "false");
+  add("position.sample_interval_s", config.position.sample_interval_s);
+  add("position.c1", config.position.c1);
+  add("position.c2", config.position.c2);
+  keys.emplace_back("position.derivative",
+                    config.position.derivative_on_error ? "\"error\"" : "\"measurement\"");
   return keys;
 }
 

@@ -4,7 +4,6 @@
 #include <array>
 #include <atomic>
 #include <cmath>
-#include <limits>
 #include <mutex>
 #include <stdexcept>
 #include <utility>
@@ -19,7 +18,6 @@ namespace {
 constexpr int kSlopes = 14;
 constexpr std::array<double, 8> kGainShares = {1, 0.8, 0.63, 0.5, 0.4, 0.3, 0.22, 0.15};
 constexpr std::array<double, 7> kDecelerationShares = {0.7, 0.8, 0.88, 0.95, 1.02, 1.1, 1.17};
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 bool Keeps(const design::CheckedLoop& loop) {
   return loop.worst.stable && loop.worst.gain >= kLeastGainMargin &&
@@ -29,10 +27,12 @@ bool Keeps(const design::CheckedLoop& loop) {
 // Smaller is better.
 double Cost(const Goals& goals, const Tried& tried) {
   const double speed = tried.steps.score();
-  if (!goals.any()) return speed;
   const double misses = Misses(goals, tried);
   if (misses > 0) return 1e3 * misses + speed;
-  return 1 / tried.check.position->worst.gain + 0.01 * speed;
+  const bool fast_enough = goals.bandwidth_hz || goals.settling_s;
+  if (!fast_enough) return speed;
+  // What never settles is no proposal, whatever its margins are.
+  return 1 / tried.check.position->worst.gain + 0.01 * speed + (tried.steps.ratio >= kNeverSettled ? 1 : 0);
 }
 
 // The straight line of eq. (17) that brakes in time from a step, 1/s: full speed half-way, at the largest deceleration.
@@ -202,7 +202,8 @@ Tried TryGains(const StepJudge& judge, const Gains& gains) {
 }
 
 Gains ChoosePressureLoop(const settings::StackConfig& config) {
-  const Gains given = GainsOf(config);
+  Gains given = GainsOf(config);
+  given.as_configured = false;
   for (const double frequency : {1.0, 0.85, 0.7, 0.6, 0.5, 0.4}) {
     for (const double damping : {given.damping_ratio, 0.5, 0.7, 1.0}) {
       Gains gains = given;

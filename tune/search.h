@@ -34,8 +34,8 @@ using Progress = std::function<void(double)>;
 // slower ones that do. Throws std::runtime_error when there are none.
 Gains ChoosePressureLoop(const settings::StackConfig& config);
 
-// Gains of the position loop around `pressure`: those that meet the goals with the widest margins, or, without goals (or where no
-// gains meet them), the fastest. `braking`: with a braking curve before eq. (17).
+// Gains of the position loop around `pressure`: those that meet a goal of bandwidth or settling time with the widest margins; without
+// one the fastest; where no gains meet the goals, those that come nearest. `braking`: with a braking curve before eq. (17).
 SearchResult SearchGains(const StepJudge& judge, const Goals& goals, const Gains& pressure, bool braking,
                          int jobs, const Progress& progress);
 

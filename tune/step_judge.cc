@@ -15,10 +15,8 @@
 namespace hydro::tune {
 namespace {
 
-constexpr double kPatience = 2.5;     // times the shortest settling time that a trial lasts
 constexpr double kAim = 1.08;
 constexpr double kUrge = 5;
-constexpr double kFault = 10;         // added to a ratio where the plant would have stopped
 constexpr double kUsedTravel = 0.9;   // of the arm's range, from which steps start towards the middle
 constexpr double kSpeedShare = 0.95;  // of limits.motor_speed_rad_s, that a braking curve asks for
 constexpr int64_t kSampleSeed = 20261123;
@@ -118,7 +116,7 @@ StepTrial StepJudge::Trial(const Gains& gains, const StepCase& step) const {
   trial.seed = config_.seed;
   trial.start = step.start;
   trial.step = step.step;
-  trial.duration = kPatience * step.shortest;
+  trial.duration = kNeverSettled * step.shortest;
   if (p.mgl > 0) {
     // The arm first comes to rest where it hangs.
     const double sample = trial.tick * trial.interval;
@@ -133,7 +131,7 @@ StepResult StepJudge::Try(const Gains& gains, const StepCase& step, StepRun* kep
   try {
     run = RunStepTrial(trial);
   } catch (const model::ModelError&) {  // the arm ran into its stop
-    return {.ratio = kPatience + kFault};
+    return {.ratio = kNeverSettled + kStopped};
   }
   const design::Response& response = run.response;
   // With a weight the arm hangs below its reference; what it settles to is then its own end.
@@ -152,11 +150,12 @@ StepResult StepJudge::Try(const Gains& gains, const StepCase& step, StepRun* kep
   result.overshoot_percent = measured.overshoot_percent;
   result.error = response.angle.back() - step.step;
   result.saturated = run.saturated;
-  result.ratio = result.settled ? result.settling / step.shortest
-                                : kPatience + std::min(1.0, std::fabs(measured.final_error_rad / step.step));
+  result.ratio = result.settled
+                     ? result.settling / step.shortest
+                     : kNeverSettled + std::min(1.0, std::fabs(measured.final_error_rad / step.step));
   const bool stops = run.highest_pressure > config_.limits.pressure_psi ||
                      run.highest_speed > config_.limits.motor_speed_rad_s;
-  if (step.model == 0 && stops) result.ratio += kFault;
+  if (step.model == 0 && stops) result.ratio += kStopped;
   if (kept != nullptr) *kept = std::move(run);
   return result;
 }

@@ -11,6 +11,11 @@
 
 namespace hydro::tune {
 
+// A trial lasts this many times the shortest settling time; a ratio from here on means that the arm never settled.
+inline constexpr double kNeverSettled = 2.5;
+// Added where a limit would have ended the run, or the arm ran into its stop.
+inline constexpr double kStopped = 10;
+
 // One step that is tried.
 struct StepCase {
   size_t model = 0;     // 0: as its file says; else a sample of what may be true instead
@@ -39,7 +44,7 @@ struct StepVerdict {
 };
 
 struct JudgeSettings {
-  Goals goals;
+  Goals goals = {};
   int samples = 8;     // of the model
   bool noise = false;  // sensors with the configuration's noise, or with a usual one where it has none
 };

@@ -65,8 +65,8 @@ StepRun RunStepTrial(const StepTrial& trial) {
   StepRun run;
   const auto before = static_cast<int>(std::lround(trial.rest / trial.tick));
   const auto ticks = before + static_cast<int>(std::lround(trial.duration / trial.tick));
-  run.response.time.reserve(static_cast<size_t>(ticks - before + 1));
-  run.response.angle.reserve(static_cast<size_t>(ticks - before + 1));
+  run.response.time.reserve(static_cast<size_t>(ticks - before) + 1);
+  run.response.angle.reserve(static_cast<size_t>(ticks - before) + 1);
   for (int k = 0; k <= ticks; ++k) {
     const model::Measurement now = actuator.Measure();
     if (k >= before) {

@@ -115,7 +115,8 @@ CauseRuns RunCauses(const Figure10Runs& figure, const ExperimentOptions& options
   pressure_ctrl::PressureLawSettings assisted = law;
   assisted.arm_speed_ratio = p.c / p.D;
   const auto exact = [&](const pressure_ctrl::PressureLawSettings& with) {
-    return Measure(design::LinearArmLoop(figure.model, with).Step(figure.c1, figure.c2, kStep, 4, 1e-3), kStep);
+    return Measure(design::LinearArmLoop(figure.model, with).Step(figure.c1, figure.c2, kStep, 4, 1e-3),
+                   kStep);
   };
   causes.exact = exact(law);
   causes.exact_assisted = exact(assisted);

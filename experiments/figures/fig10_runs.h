@@ -9,9 +9,9 @@
 #include "design/bang_bang.h"
 #include "design/position_design.h"
 #include "design/sampled_position_loop.h"
-#include "tune/step_trial.h"
 #include "experiments/studies/experiment.h"
 #include "runs/step_response.h"
+#include "tune/step_trial.h"
 
 namespace hydro::experiments {
 
@@ -71,7 +71,7 @@ struct RetunedRuns {
   design::RigidDrive drive;
   design::FastestMove fastest;
   double shortest = 0;           // s, shortest settling time
-  tune::StepTrial shipped;             // config/retuned.toml
+  tune::StepTrial shipped;       // config/retuned.toml
   bool shipped_is_best = false;  // a repeated search finds the shipped gains
   ArmRun run;
   double ratio = 0;  // settling time over the shortest

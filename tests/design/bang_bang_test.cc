@@ -9,6 +9,8 @@
 namespace hydro::design {
 namespace {
 
+using experiments::ShippedModel;
+
 // Tests that without friction the result is the double integrator's closed form: 2
 // sqrt(distance/acceleration).
 TEST(BangBang, DoubleIntegrator) {
@@ -34,7 +36,7 @@ TEST(BangBang, SpeedLimit) {
 // Tests that friction, which helps braking, and viscosity enter as in a simulation of the motion, and that
 // switching nearer or later misses the target.
 TEST(BangBang, EqualsSimulationWithFriction) {
-  const RigidDrive drive = MakeRigidDrive(experiments::ShippedModel("table1").parameters, 628.3);
+  const RigidDrive drive = MakeRigidDrive(ShippedModel("table1").parameters, 628.3);
   const FastestMove move = FastestRestToRest(drive, 0.1);
   const auto stop = [&](double switch_time, double* time) {
     double angle = 0, speed = 0, t = 0;
@@ -58,7 +60,7 @@ TEST(BangBang, EqualsSimulationWithFriction) {
 
 // Tests that Table 1's drive has the reflected inertia of the paper's numbers, and bounds around 0.38 s.
 TEST(BangBang, Table1) {
-  const model::Parameters p = experiments::ShippedModel("table1").parameters;
+  const model::Parameters p = ShippedModel("table1").parameters;
   const RigidDrive drive = MakeRigidDrive(p, 628.3);
   EXPECT_NEAR(p.J * std::pow(p.c / p.D, 2), 6430, 10);
   EXPECT_NEAR(drive.inertia, 6430 + 23.3, 20);

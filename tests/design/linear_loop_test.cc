@@ -12,6 +12,8 @@
 namespace hydro::design {
 namespace {
 
+using experiments::ShippedModel;
+
 using Complex = std::complex<double>;
 constexpr double kPi = std::numbers::pi;
 
@@ -27,14 +29,14 @@ model::LinearModel Clamped(const model::ModelDescription& model, int valve_1_ope
 
 // Table 1 with waves in its lines.
 model::ModelDescription WithWaves(double volume_fraction, double damping) {
-  model::ModelDescription model = experiments::ShippedModel("table1");
+  model::ModelDescription model = ShippedModel("table1");
   model.effects.push_back(
       {"line.wave", {{"frequency", 300}, {"volume_fraction", volume_fraction}, {"damping", damping}}, {}});
   return model;
 }
 
 pressure_ctrl::PressureGains PaperGains(int sides) {
-  return pressure_ctrl::DerivePressureGains(experiments::ShippedModel("table1").parameters, 0, 150, 0.5, sides);
+  return pressure_ctrl::DerivePressureGains(ShippedModel("table1").parameters, 0, 150, 0.5, sides);
 }
 
 // With x = (dp, theta'): dp' = s theta' - a dp, J theta'' = k_1 v - D dp - b theta'. By hand from eqs. (4),
@@ -42,7 +44,7 @@ pressure_ctrl::PressureGains PaperGains(int sides) {
 struct HandModel {
   double s, a, J, b, D, k_1;
   explicit HandModel(int sides) {
-    const model::Parameters p = experiments::ShippedModel("table1").parameters;
+    const model::Parameters p = ShippedModel("table1").parameters;
     s = sides * p.beta * p.D / p.V_ms;
     a = p.beta / p.V_ms * (p.c_E + sides * p.c_I);
     J = p.J, b = p.b, D = p.D, k_1 = p.k_1;
@@ -59,7 +61,7 @@ TEST(LinearPressureLoop, AnalogLoopIsSecondOrder) {
   for (const int sides : {1, 2}) {
     const HandModel hand(sides);
     const pressure_ctrl::PressureGains gains = PaperGains(sides);
-    const LinearPressureLoop loop(Clamped(experiments::ShippedModel("table1"), sides == 1), {});
+    const LinearPressureLoop loop(Clamped(ShippedModel("table1"), sides == 1), {});
     for (double f = 0.1; f < 1000; f *= 1.7) {
       const Complex expected = hand.Closed(gains, Complex(0, 2 * kPi * f));
       EXPECT_LT(std::abs(loop.ClosedGain(gains, f) / expected - 1.0), 1e-9) << f;
@@ -75,7 +77,7 @@ TEST(LinearPressureLoop, AnalogLoopIsSecondOrder) {
 // Tests the paper's two-sided gains on the plant of one side, omega_n 106.5 and zeta .707: omega_n^2 is
 // halved but for the leakage a = beta (c_E + c_I)/V_ms, which adds 2 zeta omega_n a = 150 a to it.
 TEST(LinearPressureLoop, TwoSidedGainsOnOneSide) {
-  const LinearPressureLoop loop(Clamped(experiments::ShippedModel("table1"), 1), {});
+  const LinearPressureLoop loop(Clamped(ShippedModel("table1"), 1), {});
   const Complex pole = loop.LeastDampedPole(PaperGains(2));
   const double a = HandModel(1).a;
   EXPECT_NEAR(std::norm(pole), 150 * 150 / 2 + 150 * a, 0.1);
@@ -86,7 +88,7 @@ TEST(LinearPressureLoop, TwoSidedGainsOnOneSide) {
 
 // Tests that the sampled loop converges to the analog one, first by the half interval that holding delays.
 TEST(LinearPressureLoop, SampledLoopTendsToAnalog) {
-  const model::LinearModel model = Clamped(experiments::ShippedModel("table1"), 0);
+  const model::LinearModel model = Clamped(ShippedModel("table1"), 0);
   const LinearPressureLoop analog(model, {});
   const pressure_ctrl::PressureGains gains = PaperGains(2);
   for (const double interval : {1e-4, 1e-5}) {
@@ -126,7 +128,7 @@ TEST(LinearPressureLoop, GainLimitWithWavesMeetsRouth) {
 // Tests the sampled loop's limit on the actuator itself under the sampled law: oscillations decay just below
 // it and grow just above it. Without Coulomb friction, which would stop them.
 TEST(LinearPressureLoop, SampledLimitIsWhereTheActuatorStartsToOscillate) {
-  model::ModelDescription model = experiments::ShippedModel("table1");
+  model::ModelDescription model = ShippedModel("table1");
   model.parameters.T_s = 0;
   const double interval = 2e-3;
   const pressure_ctrl::PressureGains gains = PaperGains(2);

@@ -16,7 +16,9 @@
 namespace hydro::design {
 namespace {
 
-DesignModel Table1Design() { return Figure8Model(experiments::ShippedModel("table1").parameters); }
+using experiments::ShippedModel;
+
+DesignModel Table1Design() { return Figure8Model(ShippedModel("table1").parameters); }
 
 runs::StepResponse Measure(const Response& response, double step) {
   return runs::MeasureStep(response.time, response.angle, 0, response.time.size(), 0, step);
@@ -191,7 +193,7 @@ TEST(SampledPositionLoop, PolesGovernTheMotion) {
 // Tests that the exact linearisation with the arm clamped gives the design's loop up to leakage, and with one
 // side held the loop that the inverse of the gains gives.
 TEST(ArmLoop, ClampedIsTheDesign) {
-  const model::ModelDescription model = experiments::ShippedModel("table1");
+  const model::ModelDescription model = ShippedModel("table1");
   pressure_ctrl::PressureLawSettings law;
   law.gains = pressure_ctrl::DerivePressureGains(model.parameters, 0, 150, 0.5, 2);
   const pressure_ctrl::SecondOrder two = ExactPressureLoop(model, law, 2),
@@ -209,7 +211,7 @@ TEST(ArmLoop, ClampedIsTheDesign) {
 // Tests that without flow from the arm's motion and without leakage the exact model is Figure 8's, and that
 // with the flow its slow pole is that of the rigid transmission, c_1 per (b + k_1 k_p k_v)(c/D) and c_2.
 TEST(ArmLoop, ArmFlowIsTheDifference) {
-  model::ModelDescription model = experiments::ShippedModel("table1");
+  model::ModelDescription model = ShippedModel("table1");
   model.parameters.c_E = model.parameters.c_I = 0;
   const model::Parameters& p = model.parameters;
   pressure_ctrl::PressureLawSettings law;
