@@ -100,7 +100,7 @@ TEST_F(TuneProgram, AnswersWrongInputWithOneLine) {
       {kRetuned + " --interval x", "--interval: found \"x\""},
       {kRetuned + " --interval 0.00013", "sample_interval_s"},
       {same + " -o " + same, "same.toml"},
-      {inline_table + " -o " + (folder_ / "o.toml").string(), "lines of their own"},
+      {inline_table + " -o " + (folder_ / "o.toml").string(), "a line of its own"},
       {(folder_ / "missing.toml").string(), "missing.toml"},
       {"", "CONFIG"}};
   for (const auto& [arguments, expected] : cases) {
