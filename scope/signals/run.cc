@@ -69,7 +69,7 @@ std::vector<ChannelInfo> Run::Channels() const {
 }
 
 size_t Run::memory() const {
-  size_t bytes = ticks.memory() + ghost.memory();
+  size_t bytes = ticks.memory() + ghost.memory() + (messages != nullptr ? messages->memory() : 0);
   for (const auto& [role, history] : loops) bytes += history.memory();
   return bytes;
 }

@@ -13,6 +13,7 @@
 #include "scope/signals/channel_list.h"
 #include "scope/signals/events.h"
 #include "scope/signals/history.h"
+#include "scope/signals/message_store.h"
 #include "settings/stack_config.h"
 
 namespace hydro::scope {
@@ -63,6 +64,9 @@ struct Run {
   std::optional<run_description_t> description;
   std::shared_ptr<const settings::StackConfig> config;  // of the description; null where this version cannot read it
   std::string config_problem;                           // why
+  std::unique_ptr<MessageStore> messages;  // as received; null for a log
+  std::string log_file;                    // of a log
+  std::string suffix;                      // of the channels' names
   uint64_t revision = 0;  // grows when channels or facts above change, not with samples and events
 
  private:

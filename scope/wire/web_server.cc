@@ -55,8 +55,7 @@ class SocketSession;
 
 class WebServer::Impl {
  public:
-  Impl(const WebServerOptions& given, Site* its_site)
-      : options(given), site(*its_site), acceptor_(io), timer_(io) {
+  explicit Impl(const WebServerOptions& given) : options(given), acceptor_(io), timer_(io) {
     error_code error;
     const auto address = asio::ip::make_address(options.address, error);
     if (error) {
@@ -88,7 +87,7 @@ class WebServer::Impl {
   int conversations() const { return static_cast<int>(sockets.size()); }
 
   WebServerOptions options;
-  Site& site;
+  Site* site = nullptr;
   std::optional<Access> access;
   int port = 0;
   int connections = 0;
@@ -271,7 +270,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     now_.path = std::move(target->path);
     now_.query = std::move(target->query);
     const bool socket = websocket::is_upgrade(request);
-    if (socket || !server_.site.IsPublic(now_.path)) {
+    if (socket || !server_.site->IsPublic(now_.path)) {
       const auto token = now_.query.find("token");
       const std::string_view in_query = token == now_.query.end() ? "" : std::string_view(token->second);
       if (!server_.access->TokenRight(Field(http::field::authorization), in_query)) {
@@ -288,7 +287,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
   void Upgrade() {
     const auto offered = ListOf(Field(http::field::sec_websocket_protocol));
     std::string chosen;
-    auto conversation = server_.site.Converse(now_.path, offered, &chosen);
+    auto conversation = server_.site->Converse(now_.path, offered, &chosen);
     if (conversation == nullptr) {
       return Refuse(404, "no web socket at " + now_.path + " for that subprotocol; there is /live with "
                          "hydro.scope.v1, and any path with foxglove.websocket.v1 or foxglove.sdk.v1");
@@ -299,7 +298,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
   }
 
   void ReadBody() {
-    const int64_t limit = now_.method == "POST" ? server_.site.BodyLimit(now_) : 0;
+    const int64_t limit = now_.method == "POST" ? server_.site->BodyLimit(now_) : 0;
     const auto length = header_->content_length();
     if (length && *length > static_cast<uint64_t>(limit)) {
       return Refuse(413, "the body has " + std::to_string(*length) + " bytes, allowed are " +
@@ -320,7 +319,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
   }
 
   void ReadBodyUpTo(int64_t limit) {
-    now_.body_file = now_.method == "POST" ? server_.site.BodyFile(now_) : "";
+    now_.body_file = now_.method == "POST" ? server_.site->BodyFile(now_) : "";
     if (now_.body_file.empty()) {
       text_.emplace(std::move(*header_));
       text_->body_limit(std::min<uint64_t>(static_cast<uint64_t>(limit), kMostInMemory));
@@ -368,7 +367,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     }
     text_.reset();
     file_.reset();
-    server_.site.Answer(std::move(now_), [self = shared_from_this(), keep](Response response) {
+    server_.site->Answer(std::move(now_), [self = shared_from_this(), keep](Response response) {
       self->Send(std::move(response), keep);
     });
   }
@@ -491,11 +490,13 @@ void WebServer::Impl::Turn() {
   });
 }
 
-WebServer::WebServer(const WebServerOptions& options, Site* site)
-    : impl_(std::make_unique<Impl>(options, site)) {}
+WebServer::WebServer(const WebServerOptions& options) : impl_(std::make_unique<Impl>(options)) {}
 WebServer::~WebServer() = default;
 int WebServer::port() const { return impl_->port; }
-void WebServer::Admit(Access access) { impl_->access.emplace(std::move(access)); }
+void WebServer::Open(Access access, Site* site) {
+  impl_->access.emplace(std::move(access));
+  impl_->site = site;
+}
 void WebServer::Run(const std::function<std::chrono::microseconds()>& turn) { impl_->Run(turn); }
 void WebServer::Post(std::function<void()> work) { asio::post(impl_->io, std::move(work)); }
 int WebServer::connections() const { return impl_->connections; }

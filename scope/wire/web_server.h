@@ -29,15 +29,15 @@ struct WebServerOptions {
 class WebServer {
  public:
   // Listens from now on. Throws InputError for an address or a port that cannot be had.
-  WebServer(const WebServerOptions& options, Site* site);
+  explicit WebServer(const WebServerOptions& options);
   ~WebServer();
   WebServer(const WebServer&) = delete;
   WebServer& operator=(const WebServer&) = delete;
 
   int port() const;
 
-  // Call before Run(), with the port known.
-  void Admit(Access access);
+  // Whom to serve, and what. Call before Run(), with the port known.
+  void Open(Access access, Site* site);
 
   // Serves until `turn`, which is called at once and then after the time that it returned last, returns a negative one.
   // After each turn, every conversation is asked for what is new.
