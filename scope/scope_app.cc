@@ -16,6 +16,7 @@
 #include "base/text_file.h"
 #include "process/stack_bus.h"
 #include "process/stop_signal.h"
+#include "scope/ghost_desk.h"
 #include "scope/live_feed.h"
 #include "scope/scope_site.h"
 #include "scope/signals/log_run.h"
@@ -59,13 +60,6 @@ double CpuSeconds() {
   return seconds(usage.ru_utime) + seconds(usage.ru_stime);
 }
 
-// No ghost is built in yet.
-class NoGhost : public GhostSwitch {
- public:
-  Outcome Switch(uint32_t, bool, double) override { return {false, "not available in this build", {}}; }
-  Outcome Sync(uint32_t) override { return {false, "not available in this build", {}}; }
-};
-
 class ScopeApp {
  public:
   explicit ScopeApp(const ScopeRequest& request) : page_(request.page) {
@@ -93,7 +87,7 @@ class ScopeApp {
     const auto post = [&server](std::function<void()> work) { server.Post(std::move(work)); };
     SideWork work(post);
     OperatorDesk desk(config_, section_.control, post, nullptr);
-    NoGhost ghost;
+    GhostDesk ghost(&runs_);
     LiveContext context{.runs = runs_,
                         .desk = desk,
                         .ghost = ghost,
@@ -102,10 +96,10 @@ class ScopeApp {
                         .frames = &frames_,
                         .dropped = &dropped_};
     ScopeSite site(page_, context, &work, static_cast<int64_t>(section_.upload_mb * 1e6));
-    site.more_status = [&] { return MoreStatus(server); };
+    site.more_status = [&] { return MoreStatus(server) + ",\"ghost_skipped\":" + std::to_string(ghost.skipped()); };
     server.Open(Access(token_, server.port(), section_.hosts, section_.origins), &site);
     Announce(server.port());
-    server.Run([&] { return Turn(server.conversations()); });
+    server.Run([&] { return Turn(server.conversations(), &ghost); });
     return 0;
   }
 
@@ -142,10 +136,11 @@ class ScopeApp {
     std::fflush(stdout);
   }
 
-  std::chrono::microseconds Turn(int clients) {
+  std::chrono::microseconds Turn(int clients, GhostDesk* ghost) {
     if (process::StopSignal() != 0) return std::chrono::microseconds(-1);
+    if (feed_ != nullptr) feed_->Poll();
+    ghost->Poll();
     if (feed_ == nullptr) return clients > 0 ? kWatchedTurn : kLogTurn;
-    feed_->Poll();
     return clients > 0 ? kWatchedTurn : kLoneTurn;
   }
 

@@ -86,7 +86,6 @@ void Intake::OnState(const state_t& state, int64_t utime) {
   tick_ = state.tick;
   time_ = state.time;
   ticks_.Add(state, utime);
-  if (on_state) on_state(state);
 }
 
 void Intake::OnReference(const arm_reference_t& reference) {

@@ -30,9 +30,6 @@ class Intake {
   // No more is coming for now: rows that wait for answers are complete.
   void Flush() { ticks_.Flush(); }
 
-  // Told of each state of the run, for the ghost.
-  std::function<void(const state_t&)> on_state;
-
   int64_t states() const { return states_; }
   int64_t undecodable() const { return undecodable_; }
   int64_t foreign() const { return foreign_; }  // states of a second plant

@@ -80,7 +80,9 @@ std::optional<double> View::EarliestNew() const {
   for (const Signal& signal : signals_) {
     const History& history = *signal.history;
     const auto sent = sent_.find(&history);
-    const History::Row row = std::max(history.begin(), sent == sent_.end() ? 0 : sent->second);
+    // A ghost that begins anew has fewer rows than it had.
+    const bool known = sent != sent_.end() && sent->second <= history.end();
+    const History::Row row = std::max(history.begin(), known ? sent->second : 0);
     if (row < history.end()) earliest = std::min(earliest.value_or(history.time(row)), history.time(row));
   }
   return earliest;
