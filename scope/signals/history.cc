@@ -35,7 +35,7 @@ bool History::Append(double time, const double* values) {
   if (!std::isfinite(time) || (end_ > first_ && !(time > last_time()))) return false;
   if (blocks_.empty() || blocks_.back()->rows == kBlockRows) {
     blocks_.push_back(std::make_unique<Block>(columns_));
-    if (end_ - first_ >= most_rows_ && blocks_.size() > 2) {
+    if (blocks_.size() > 2 && end_ - first_ - kBlockRows >= most_rows_) {
       first_ += blocks_.front()->rows;
       blocks_.pop_front();
     }
