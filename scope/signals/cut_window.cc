@@ -2,24 +2,11 @@
 
 #include <hydro/run_description_t.hpp>
 #include <hydro/state_t.hpp>
-#include <stdexcept>
 
 #include "log/message_kinds.h"
+#include "scope/signals/decoded.h"
 
 namespace hydro::scope {
-namespace {
-
-template <class Message>
-bool Decoded(Message* message, const uint8_t* data, int size) {
-  try {
-    return bus::DecodeInto(message, data, size);
-  } catch (const std::length_error&) {
-    return false;
-  }
-}
-
-}  // namespace
-
 CutWindow::CutWindow(const std::string& suffix, int64_t session, double t0, double t1)
     : channels_(suffix), session_(session), t0_(t0), t1_(t1) {}
 

@@ -3,20 +3,14 @@
 #include <cmath>
 #include <utility>
 
+#include "scope/signals/decoded.h"
+
 namespace hydro::scope {
 namespace {
 
 constexpr int64_t kAlive = 1000000;    // us; a plant silent for longer may be replaced by another
 constexpr double kRest = 0.1;          // s; a reference that changes after less is no step
 constexpr double kLongestTime = 1e12;  // s
-
-bool Decode(auto* message, const uint8_t* data, int size) {
-  try {
-    return bus::DecodeInto(message, data, size);
-  } catch (const std::length_error&) {  // lcm-gen's code believes a string length of 0 or less
-    return false;
-  }
-}
 
 }  // namespace
 
@@ -27,16 +21,16 @@ Intake::Intake(const std::string& suffix, std::function<Run*(int64_t session)> n
 
 void Intake::Take(std::string_view channel, const uint8_t* data, int size, int64_t utime) {
   if (channel == channels_.Of<state_t>()) {
-    Decode(&state_, data, size) ? OnState(state_, utime) : void(++undecodable_);
+    Decoded(&state_, data, size) ? OnState(state_, utime) : void(++undecodable_);
   } else if (channel == channels_.Of<motor_command_t>()) {
-    if (!Decode(&command_, data, size)) {
+    if (!Decoded(&command_, data, size)) {
       ++undecodable_;
     } else if (run_ != nullptr) {
       ticks_.Add(command_, utime);
     }
   } else if (channel == channels_.Of<arm_reference_t>()) {
     arm_reference_t reference;
-    Decode(&reference, data, size) ? OnReference(reference) : void(++undecodable_);
+    Decoded(&reference, data, size) ? OnReference(reference) : void(++undecodable_);
   } else {
     TakeRare(channel, data, size, utime);
   }

@@ -8,6 +8,7 @@
 #include "base/text_file.h"
 #include "process/participant.h"
 #include "process/status.h"
+#include "scope/signals/decoded.h"
 #include "scope/signals/intake.h"
 
 namespace hydro::scope {
@@ -36,21 +37,12 @@ std::set<std::string> Words(const std::string& text) {
   return words;
 }
 
-template <class Message>
-bool DecodeRare(Message* message, const uint8_t* data, int size) {
-  try {
-    return bus::DecodeInto(message, data, size);
-  } catch (const std::length_error&) {
-    return false;
-  }
-}
-
 }  // namespace
 
 bool Intake::TakeRare(std::string_view channel, const uint8_t* data, int size, int64_t utime) {
   const auto take = [&]<class Message>(auto on_message, Message message) {
     if (channel != channels_.Of<Message>()) return false;
-    if (!DecodeRare(&message, data, size)) {
+    if (!Decoded(&message, data, size)) {
       ++undecodable_;
     } else if (run_ != nullptr || std::is_same_v<Message, run_description_t>) {
       on_message(message);

@@ -6,6 +6,7 @@
 #include <hydro/state_t.hpp>
 
 #include "base/input_error.h"
+#include "scope/signals/decoded.h"
 #include "tests/scope/recorded_run.h"
 
 namespace hydro::scope {
@@ -20,7 +21,7 @@ std::vector<GhostSample> Samples(const settings::StackConfig& config) {
   for (const RecordedMessage& message : Record(config)) {
     if (message.channel != "HYDRO_STATE") continue;
     state_t state{};
-    state.decode(message.data.data(), 0, static_cast<int>(message.data.size()));
+    EXPECT_TRUE(Decoded(&state, message.data.data(), static_cast<int>(message.data.size())));
     samples.push_back({state.time,
                        state.voltage,
                        {state.motor_angle, state.motor_speed, state.arm_angle, state.arm_speed, state.p1, state.p2},

@@ -7,6 +7,7 @@
 #include <memory>
 #include <vector>
 
+#include "scope/signals/decoded.h"
 #include "tests/scope/recorded_run.h"
 
 namespace hydro::scope {
@@ -67,8 +68,12 @@ TEST_F(IntakeTest, TakesARun) {
   std::vector<motor_command_t> commands;
   for (const RecordedMessage& message : Record(DemoConfig({"time.mode=lockstep", "time.duration_s=1"}))) {
     const int size = static_cast<int>(message.data.size());
-    if (message.channel == "HYDRO_STATE") states.emplace_back().decode(message.data.data(), 0, size);
-    if (message.channel == "HYDRO_MOTOR_COMMAND") commands.emplace_back().decode(message.data.data(), 0, size);
+    if (message.channel == "HYDRO_STATE") {
+      EXPECT_TRUE(Decoded(&states.emplace_back(), message.data.data(), size));
+    }
+    if (message.channel == "HYDRO_MOTOR_COMMAND") {
+      EXPECT_TRUE(Decoded(&commands.emplace_back(), message.data.data(), size));
+    }
     intake_.Take(message.channel, message.data.data(), size, message.utime);
   }
   intake_.Flush();
