@@ -34,6 +34,8 @@ constexpr auto kLoneTurn = 20ms;     // without: often enough for the kernel's b
 constexpr auto kLogTurn = 50ms;      // a log does not change
 constexpr double kBytesPerTick = 600;  // of messages, generously
 
+std::string FileName(const std::string& path) { return path.substr(path.find_last_of('/') + 1); }
+
 bool IsConfig(const std::string& file) { return file.ends_with(".toml"); }
 
 // A token from outside makes tests and scripts possible; a short one would be no secret.
@@ -106,7 +108,7 @@ class ScopeApp {
  private:
   void Listen() {
     const double ticks = section_.history_s * config_->plant.rate_hz;
-    runs_.StartLive(config_->file, config_->bus.channel_suffix, static_cast<uint64_t>(ticks * 1.1) + 10000,
+    runs_.StartLive(FileName(config_->file), config_->bus.channel_suffix, static_cast<uint64_t>(ticks * 1.1) + 10000,
                     static_cast<size_t>(ticks * kBytesPerTick) + (16 << 20));
     bus_ = process::OpenStackBus(config_->bus);
     feed_ = std::make_unique<LiveFeed>(*bus_, clock_, config_->bus.channel_suffix, section_.history_s, &runs_);
@@ -117,7 +119,7 @@ class ScopeApp {
 
   void OpenLog(const std::string& file) {
     std::string problem;
-    const std::string name = file.substr(file.find_last_of('/') + 1);
+    const std::string name = FileName(file);
     for (auto& run : OpenLogRuns(file, name, &problem)) runs_.Add(std::move(run));
     if (!problem.empty()) std::fprintf(stderr, "hydro-scope: warning: %s\n", Printable(problem).c_str());
     std::fprintf(stderr, "hydro-scope: %s is open, %.0f MB of memory\n", Printable(name).c_str(),

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <utility>
 
+#include "base/number_text.h"
 #include "scope/signals/decoded.h"
 
 namespace hydro::scope {
@@ -89,7 +90,7 @@ void Intake::OnReference(const arm_reference_t& reference) {
   if (reference_ && reference.value != *reference_) {
     if (t - rests_since_ >= kRest) {
       AddEvent(t, "step", "position_ctrl", "",
-               "reference from " + std::to_string(*reference_) + " to " + std::to_string(reference.value));
+               "reference from " + ShortNumber(*reference_) + " to " + ShortNumber(reference.value));
     }
     rests_since_ = t;
   }

@@ -54,6 +54,7 @@ class WebSocket:
         self.head = head.decode()
         status = int(self.head.split()[1])
         if status != 101:
+            self.socket.close()
             raise Refused(status)
 
     def send(self, message):
