@@ -10,6 +10,7 @@
 #include "base/text_file.h"
 #include "runs/run_table.h"
 #include "scope/cut_out.h"
+#include "scope/foxglove_conversation.h"
 #include "scope/live_messages.h"
 #include "scope/signals/log_run.h"
 #include "settings/command_line.h"
@@ -79,6 +80,11 @@ std::string ScopeSite::BodyFile(const Request& head) {
 
 std::unique_ptr<Conversation> ScopeSite::Converse(const std::string& path, const std::vector<std::string>& offered,
                                                   std::string* chosen) {
+  for (const std::string& subprotocol : offered) {
+    if (!FoxgloveConversation::Speaks(subprotocol)) continue;
+    *chosen = subprotocol;
+    return std::make_unique<FoxgloveConversation>(&context_.runs);
+  }
   constexpr char kOurs[] = "hydro.scope.v1";
   const bool ours = std::find(offered.begin(), offered.end(), kOurs) != offered.end();
   if (path != "/live" || (!offered.empty() && !ours)) return nullptr;

@@ -15,6 +15,15 @@ struct Header {
   uint32_t data_size;
 };
 
+// The message at `bytes`; returns how long it is there.
+size_t ReadMessage(const uint8_t* bytes, MessageStore::Message* message) {
+  Header header;
+  std::memcpy(&header, bytes, sizeof header);
+  const auto* const channel = reinterpret_cast<const char*>(bytes + sizeof header);
+  *message = {{channel, header.channel_size}, bytes + sizeof header + header.channel_size, header.data_size, header.utime};
+  return sizeof header + header.channel_size + header.data_size;
+}
+
 }  // namespace
 
 MessageStore::MessageStore(size_t most_bytes) : most_blocks_(std::max<size_t>(2, most_bytes / kBlock)) {}
@@ -23,7 +32,7 @@ void MessageStore::Add(const Message& message, double t) {
   const size_t needed = sizeof(Header) + message.channel.size() + message.size;
   if (needed > kBlock) return;
   if (blocks_.empty() || blocks_.back().used + needed > kBlock) {
-    if (blocks_.size() >= most_blocks_) blocks_.pop_front();
+    if (blocks_.size() >= most_blocks_) DropFirst();
     blocks_.push_back({std::make_shared<std::vector<uint8_t>>(kBlock), 0, t});
   }
   Block& block = blocks_.back();
@@ -34,11 +43,44 @@ void MessageStore::Add(const Message& message, double t) {
   std::memcpy(at + sizeof header, message.channel.data(), message.channel.size());
   std::memcpy(at + sizeof header + message.channel.size(), message.data, message.size);
   block.used += needed;
+  ++added_;
   block.last_t = t;
 }
 
 void MessageStore::DropBefore(double t) {
-  while (blocks_.size() > 1 && blocks_.front().last_t < t) blocks_.pop_front();
+  while (blocks_.size() > 1 && blocks_.front().last_t < t) DropFirst();
+}
+
+void MessageStore::DropFirst() {
+  blocks_.pop_front();
+  ++dropped_blocks_;
+}
+
+MessageStore::Place MessageStore::End() const {
+  if (blocks_.empty()) return {dropped_blocks_, 0, added_};
+  return {dropped_blocks_ + blocks_.size() - 1, blocks_.back().used, added_};
+}
+
+bool MessageStore::Read(Place* place, Message* message) const {
+  while (place->block >= dropped_blocks_ && place->block - dropped_blocks_ < blocks_.size()) {
+    const Block& block = blocks_[place->block - dropped_blocks_];
+    if (place->at < block.used) {
+      place->at += ReadMessage(block.bytes->data() + place->at, message);
+      ++place->message;
+      return true;
+    }
+    if (place->block - dropped_blocks_ + 1 == blocks_.size()) return false;
+    ++place->block;
+    place->at = 0;
+  }
+  return false;
+}
+
+uint64_t MessageStore::CatchUp(Place* place, uint64_t most) const {
+  const uint64_t behind = added_ - place->message;
+  if (place->block >= dropped_blocks_ && behind <= most) return 0;
+  *place = End();
+  return behind;
 }
 
 MessageStore::Snapshot MessageStore::Take() const {
@@ -53,13 +95,9 @@ size_t MessageStore::memory() const { return blocks_.size() * kBlock; }
 void MessageStore::Snapshot::ForEach(const std::function<void(const Message&)>& visit) const {
   for (const Part& part : parts_) {
     for (size_t at = 0; at < part.used;) {
-      const uint8_t* const bytes = part.bytes->data() + at;
-      Header header;
-      std::memcpy(&header, bytes, sizeof header);
-      const auto* const channel = reinterpret_cast<const char*>(bytes + sizeof header);
-      visit({{channel, header.channel_size}, bytes + sizeof header + header.channel_size, header.data_size,
-             header.utime});
-      at += sizeof header + header.channel_size + header.data_size;
+      Message message;
+      at += ReadMessage(part.bytes->data() + at, &message);
+      visit(message);
     }
   }
 }

@@ -44,6 +44,19 @@ class MessageStore {
   };
   Snapshot Take() const;
 
+  // Reading along: a place between two messages.
+  struct Place {
+    uint64_t block = 0;  // counted from the first that ever was
+    size_t at = 0;
+    uint64_t message = 0;  // counted likewise
+  };
+  // After the newest message.
+  Place End() const;
+  // The message there, valid until the store changes, and goes on; false: there is none yet.
+  bool Read(Place* place, Message* message) const;
+  // Where more than `most` messages follow, or some were dropped, goes to the end. Returns how many are left out.
+  uint64_t CatchUp(Place* place, uint64_t most) const;
+
   size_t memory() const;
 
  private:
@@ -53,7 +66,11 @@ class MessageStore {
     double last_t = 0;
   };
 
+  void DropFirst();
+
   size_t most_blocks_;
+  uint64_t dropped_blocks_ = 0;
+  uint64_t added_ = 0;  // messages
   std::deque<Block> blocks_;
 };
 
