@@ -88,6 +88,7 @@ class ScopeApp {
     WebServer server(options);
     const auto post = [&server](std::function<void()> work) { server.Post(std::move(work)); };
     SideWork work(post);
+    DiagnoseJobs jobs(work.folder(), post);
     OperatorDesk desk(config_, section_.control, post, nullptr);
     GhostDesk ghost(&runs_);
     LiveContext context{.runs = runs_,
@@ -97,7 +98,7 @@ class ScopeApp {
                         .now = [] { return std::chrono::steady_clock::now(); },
                         .frames = &frames_,
                         .dropped = &dropped_};
-    ScopeSite site(page_, context, &work, static_cast<int64_t>(section_.upload_mb * 1e6));
+    ScopeSite site(page_, context, &work, &jobs, static_cast<int64_t>(section_.upload_mb * 1e6));
     site.more_status = [&] { return MoreStatus(server) + ",\"ghost_skipped\":" + std::to_string(ghost.skipped()); };
     server.Open(Access(token_, server.port(), section_.hosts, section_.origins), &site);
     Announce(server.port());

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "base/input_error.h"
+#include "base/number_text.h"
 #include "base/text_file.h"
 #include "runs/run_table.h"
 #include "scope/cut_out.h"
@@ -23,6 +24,7 @@ using nlohmann::json;
 
 constexpr int64_t kMostJson = 65536;
 constexpr size_t kMostRuns = 16;
+constexpr char kJobs[] = "/api/jobs/";
 
 InputError Wrong(const std::string& what) { return InputError(what); }
 
@@ -61,10 +63,10 @@ std::string Stem(const std::string& name) { return name.substr(0, name.find_last
 
 }  // namespace
 
-ScopeSite::ScopeSite(PageFiles page, LiveContext context, SideWork* work, int64_t upload_bytes)
-    : page_(std::move(page)), context_(std::move(context)), work_(*work), upload_bytes_(upload_bytes) {}
+ScopeSite::ScopeSite(PageFiles page, LiveContext context, SideWork* work, DiagnoseJobs* jobs, int64_t upload_bytes)
+    : page_(std::move(page)), context_(std::move(context)), work_(*work), jobs_(*jobs), upload_bytes_(upload_bytes) {}
 
-bool ScopeSite::IsPublic(const std::string& path) const { return PageFiles::Has(path); }
+bool ScopeSite::IsPublic(const std::string& path) const { return PageFiles::Has(path) || DiagnoseJobs::IsReport(path); }
 
 int64_t ScopeSite::BodyLimit(const Request& head) const {
   if (!head.path.starts_with("/api/")) return 0;
@@ -95,6 +97,7 @@ std::unique_ptr<Conversation> ScopeSite::Converse(const std::string& path, const
 void ScopeSite::Answer(Request request, std::function<void(Response)> reply) {
   try {
     const bool post = request.method == "POST";
+    if (DiagnoseJobs::IsReport(request.path) && !post) return reply(jobs_.Report(request.path));
     if (IsPublic(request.path) && !post) return reply(page_.Answer(request.path));
     if (request.path == "/api/status" && !post) {
       Response response;
@@ -104,6 +107,13 @@ void ScopeSite::Answer(Request request, std::function<void(Response)> reply) {
     if (request.path == "/api/open" && post) return Open(request, reply);
     if (request.path == "/api/close" && post) return Close(request, reply);
     if (request.path == "/api/cut" && post) return Cut(request, reply);
+    if (request.path == "/api/diagnose" && post) return Diagnose(request, reply);
+    if (request.path.starts_with(kJobs) && !post) {
+      const auto number = ParseInteger(request.path.substr(sizeof kJobs - 1));
+      Response response;
+      response.body = number && *number > 0 && *number < 1000000 ? jobs_.Status(static_cast<int>(*number)) : "";
+      return reply(response.body.empty() ? ErrorResponse(404, "there is no such job") : response);
+    }
     reply(ErrorResponse(404, "found " + request.method + " " + Printable(request.path.substr(0, 100)) +
                                  "; docs/scope_protocol.md lists what there is"));
   } catch (const std::exception& error) {
@@ -202,6 +212,17 @@ void ScopeSite::Cut(const Request& request, const Reply& reply) {
     return [reply, response] { reply(response); };
   });
   if (!taken) reply(ErrorResponse(503, "too much is being cut out at once; try again"));
+}
+
+void ScopeSite::Diagnose(const Request& request, const Reply& reply) {
+  const json body = BodyOf(request);
+  const Run* const run = context_.runs.Find(RunIdOf(body));
+  if (run == nullptr) throw Wrong("run: found " + body.value("run", json(0)).dump() + ", allowed is one that is open");
+  const std::string model = run->description ? run->description->model_text : std::string();
+  const int job = jobs_.Start(CutSourceOf(*run), model, NumberOf(body, "t0"), NumberOf(body, "t1"));
+  Response response;
+  response.body = "{\"job\":" + std::to_string(job) + "}\n";
+  reply(std::move(response));
 }
 
 }  // namespace hydro::scope

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "scope/diagnose_jobs.h"
 #include "scope/live_conversation.h"
 #include "scope/page_files.h"
 #include "scope/side_work.h"
@@ -16,7 +17,7 @@ namespace hydro::scope {
 class ScopeSite : public Site {
  public:
   // `upload_bytes`: of a log that is handed in.
-  ScopeSite(PageFiles page, LiveContext context, SideWork* work, int64_t upload_bytes);
+  ScopeSite(PageFiles page, LiveContext context, SideWork* work, DiagnoseJobs* jobs, int64_t upload_bytes);
 
   bool IsPublic(const std::string& path) const override;
   int64_t BodyLimit(const Request& head) const override;
@@ -34,10 +35,12 @@ class ScopeSite : public Site {
   void Open(const Request& request, const Reply& reply);
   void Close(const Request& request, const Reply& reply);
   void Cut(const Request& request, const Reply& reply);
+  void Diagnose(const Request& request, const Reply& reply);
 
   PageFiles page_;
   LiveContext context_;
   SideWork& work_;
+  DiagnoseJobs& jobs_;
   int64_t upload_bytes_;
 };
 

@@ -94,6 +94,29 @@ class ServerTest(stack.TestCase):
             scope.json("POST", "/api/close", {"run": run})
         self.assertEqual(len(scope.status()["runs"]), 1)
 
+    # Tests that a window is diagnosed: its job ends with a verdict and a report, which is shown without the token, in a sandbox.
+    def test_diagnose(self):
+        scope = self.scope()
+        self.assertEqual(scope.request("GET", "/api/jobs/1")[0], 404)
+        job = scope.json("POST", "/api/diagnose", {"run": 0, "t0": 0.1, "t1": 0.6})["job"]
+        self.assertEqual(scope.request("POST", "/api/diagnose", {"run": 0, "t0": 0, "t1": 1})[0], 400)  # one at a time
+        status = {}
+
+        def ended():
+            status.update(scope.json("GET", f"/api/jobs/{job}"))
+            return status["state"] != "running"
+
+        self.wait_until(ended, "the diagnosis ends", timeout=120)
+        self.assertEqual(status["state"], "done", status)
+        self.assertNotEqual(status["sentence"], "")
+        code, headers, report = scope.request("GET", status["report"], token=None)
+        self.assertEqual(code, 200)
+        self.assertIn("sandbox allow-scripts;", headers["Content-Security-Policy"])
+        self.assertIn(b"<html", report)
+        self.assertEqual(scope.request("GET", "/api/reports/" + "0" * 32, token=None)[0], 404)
+        failed = scope.json("POST", "/api/diagnose", {"run": 0, "t0": 50, "t1": 51})["job"]
+        self.wait_until(lambda: scope.json("GET", f"/api/jobs/{failed}")["state"] == "failed", "the other one fails")
+
     # Tests that bad requests are answered by what was found and what is allowed.
     def test_bad_requests(self):
         scope = self.scope()
