@@ -1,8 +1,7 @@
 #include "scope/ghost_desk.h"
 
-#include <sys/resource.h>
-#include <sys/syscall.h>
-#include <unistd.h>
+#include <pthread.h>
+#include <sched.h>
 
 #include <algorithm>
 #include <condition_variable>
@@ -21,7 +20,6 @@ constexpr size_t kMostGhosts = 4;
 constexpr size_t kBatch = 16384;       // samples given to a thread at a time
 constexpr double kFirstLive = 10;      // s of history that a live ghost begins with
 constexpr double kMostBehind = 2;      // s of plant time, then it leaves samples out
-constexpr int kNiceThread = 10;        // lower than the server's own
 
 }  // namespace
 
@@ -70,7 +68,8 @@ class GhostDesk::Worker {
 
  private:
   void Loop() {
-    setpriority(PRIO_PROCESS, static_cast<id_t>(syscall(SYS_gettid)), kNiceThread);
+    const sched_param parameters{};
+    pthread_setschedparam(pthread_self(), SCHED_IDLE, &parameters);  // only where nobody else wants the processor
     std::vector<GhostSample> samples;
     std::vector<Result> results;
     while (true) {

@@ -1,10 +1,12 @@
 #include "scope/scope_app.h"
 
+#include <sched.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cctype>
+#include <cerrno>
 #include <chrono>
 #include <csignal>
 #include <cstdio>
@@ -60,6 +62,16 @@ double CpuSeconds() {
     return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
   };
   return seconds(usage.ru_utime) + seconds(usage.ru_stime);
+}
+
+// The loops of the stack must not notice that a scope runs beside them. As a batch process it interrupts nobody when it
+// wakes up. A lower class yet (SCHED_IDLE) would leave the stop button without a processor on a busy machine.
+void GiveWay() {
+  const sched_param parameters{};
+  const bool batch = sched_setscheduler(0, SCHED_BATCH, &parameters) == 0;
+  errno = 0;
+  const bool lower = nice(kNice) != -1 || errno == 0;
+  if (!batch || !lower) std::fprintf(stderr, "hydro-scope: warning: cannot lower its own priority\n");
 }
 
 class ScopeApp {
@@ -180,7 +192,7 @@ class ScopeApp {
 int RunScope(const ScopeRequest& request) {
   process::CatchStopSignals();
   std::signal(SIGPIPE, SIG_IGN);
-  if (nice(kNice) == -1) std::fprintf(stderr, "hydro-scope: runs at its usual priority\n");
+  GiveWay();
   ScopeApp app(request);
   return app.Run();
 }
