@@ -16,6 +16,7 @@
 #include "position_ctrl/position_app.h"
 #include "pressure_ctrl/pressure_app.h"
 #include "runs/compare.h"
+#include "runs/tuning_history.h"
 #include "settings/stack_config.h"
 
 namespace hydro::hydro_log {
@@ -43,7 +44,8 @@ std::vector<Message> Unnumbered(const std::map<int64_t, Message>& by_tick) {
 
 class Replayer {
  public:
-  Replayer(const runs::RunLog& log, double speed) : speed_(speed) {
+  // `role`: of the process that is replayed.
+  Replayer(const runs::RunLog& log, double speed, const std::string& role) : speed_(speed) {
     if (log.messages.Of<run_description_t>().empty()) {
       throw InputError(log.file +
                        ": found no HYDRO_RUN message; a replay needs the run's configuration and model");
@@ -60,6 +62,11 @@ class Replayer {
     channels_ = bus::Channels(config_.bus.channel_suffix);
     states_ = ByTick(log.messages.Of<state_t>());
     if (states_.empty()) throw InputError(log.file + ": found no states to feed");
+    for (tuned_settings_t settings : runs::TuningHistory(log.messages)) {
+      settings.acts_at = runs::EffectTick(log.messages, settings, role);
+      settings.stage = tuned_settings_t::DECIDED;
+      tunings_.push_back(std::move(settings));
+    }
     for (const auto& [tick, state] : states_) {
       if (std::abs(state.time) <= kLatestTime) continue;
       throw InputError(log.file + ": found the state of tick " + std::to_string(tick) + " at " +
@@ -78,6 +85,7 @@ class Replayer {
   // Sends the states one by one; `before` may send something else first.
   template <class Before>
   void Feed(Before before) {
+    auto next = tunings_.begin();
     const double first_time = states_.begin()->second.time;
     const auto wall_start = std::chrono::steady_clock::now();
     for (const auto& [tick, state] : states_) {
@@ -85,6 +93,10 @@ class Replayer {
       if (speed_ > 0) std::this_thread::sleep_until(wall_start + elapsed / speed_);
       clock_.AdvanceTo(bus::Clock::TimePoint(std::chrono::duration_cast<bus::Clock::Duration>(elapsed)));
       before(tick);
+      for (; next != tunings_.end() && next->acts_at <= tick; ++next) {
+        bus_.Publish(channels_.Of<tuned_settings_t>(), *next);
+        Deliver();
+      }
       bus_.Publish(channels_.Of<state_t>(), state);
       Deliver();
     }
@@ -100,6 +112,7 @@ class Replayer {
   settings::StackConfig config_;
   bus::Channels channels_;
   std::map<int64_t, state_t> states_;
+  std::vector<tuned_settings_t> tunings_;  // acts_at: from when the replayed process acted by them
   bus::SimulatedClock clock_;
   bus::InProcessBus bus_{&clock_};
 };
@@ -142,7 +155,7 @@ ReplayResult ReplayPressure(const runs::RunLog& log, double speed) {
     recorded.erase(recorded.begin());
   }
 
-  Replayer replayer(log, speed);
+  Replayer replayer(log, speed, "pressure_ctrl");
   std::optional<int64_t> gap = replayer.FirstGap();
   if (const auto lost = FirstWithoutPressureCommand(recorded, pressure_commands);
       lost && (!gap || *lost < *gap)) {
@@ -176,7 +189,7 @@ ReplayResult ReplayPosition(const runs::RunLog& log, double speed) {
   auto references = ByTick(log.messages.Of<arm_reference_t>());
   if (recorded.empty()) throw InputError(log.file + ": found no pressure commands to compare with");
 
-  Replayer replayer(log, speed);
+  Replayer replayer(log, speed, "position_ctrl");
   if (replayer.first_tick() > 0) {
     // In a log that begins in the middle of a run, the derivative of the first sample needs the sample
     // before.

@@ -53,6 +53,13 @@ class OutputSafety {
   // Checks the sensors' readings against [limits], independently of the pressure loop's own check.
   void CheckMeasured(const state_t& state);
 
+  // The limits of pressure, motor speed and arm angle that hold from now on.
+  void set_limits(const settings::LimitsSection& limits) {
+    limits_.pressure_psi = limits.pressure_psi;
+    limits_.motor_speed_rad_s = limits.motor_speed_rad_s;
+    limits_.arm_angle_rad = limits.arm_angle_rad;
+  }
+
   // Checks the machine's clocks (for a suspend) and whether another stack is heard on the bus.
   void CheckSurroundings();
 
@@ -84,7 +91,7 @@ class OutputSafety {
   std::string DescribePresent(const std::vector<Cause>& causes) const;
 
   process::Participant& participant_;
-  const settings::LimitsSection limits_;
+  settings::LimitsSection limits_;
   const double ticks_per_s_;  // of wall time
   VoltageGuard guard_;
   int64_t newest_cause_tick_ = -1;  // when one has begun last

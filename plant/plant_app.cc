@@ -32,6 +32,13 @@ PlantApp::PlantApp(bus::Bus& bus, bus::Clock& clock, const settings::StackConfig
       rig_(rig),
       participant_(bus, clock, bus::Channels(config.bus.channel_suffix), rig.role(), config.agreed),
       safety_(participant_, config),
+      tuning_(participant_, config, rig.simulated(),
+              {.apply =
+                   [this](const tuning::TunedValues& values) {
+                     safety_.set_limits(values.limits);
+                     rig_.SetNoise(values.noise);
+                   },
+               .held = [this] { return !safety_.Latched().empty(); }}),
       logger_watch_(participant_, bus::FromSeconds(std::max(config.limits.stale_logger_s,
                                                             3 / (config.plant.rate_hz * config.time.speed)))),
       roll_call_(WithControllers(expected)),
@@ -202,6 +209,7 @@ void PlantApp::PublishRigFaults() {
 void PlantApp::Advance(int64_t to_tick) {
   state_.voltage = voltage_;
   state_.command_tick = command_tick_;
+  tuning_.OnTick(to_tick);
   measured_ = rig_.Read(to_tick);
   tick_ = to_tick;
   participant_.set_tick(tick_);
@@ -236,6 +244,7 @@ void PlantApp::PublishState(int64_t skipped_ticks) {
 void PlantApp::Poll() {
   participant_.statistics().set_lost_messages(command_monitor_.lost());
   participant_.Poll();
+  tuning_.Poll();
   if (participant_.clock().Now() >= next_description_) PublishDescription();
 }
 

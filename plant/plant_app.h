@@ -31,6 +31,7 @@
 #include "plant/output_safety.h"
 #include "plant/rig.h"
 #include "plant/roll_call.h"
+#include "plant/tuning_desk.h"
 #include "process/participant.h"
 #include "settings/stack_config.h"
 #include "timing/round_trip_monitor.h"
@@ -49,6 +50,9 @@ class PlantApp {
   // The whole run. The rig is driven only within it and is at zero volts when it ends, also after an
   // exception. Returns the process's exit code: 0 complete or stopped in order, 1 failed.
   int Run();
+
+  // The changes that were decided in another run, to be made again at the same ticks (TuningDesk). Before Run().
+  void FollowTuning(std::vector<tuned_settings_t> decided) { tuning_.Follow(std::move(decided)); }
 
   // Why the run failed; empty when it did not.
   std::string failure() const;
@@ -86,6 +90,7 @@ class PlantApp {
   Rig& rig_;
   process::Participant participant_;
   OutputSafety safety_;
+  TuningDesk tuning_;
   LoggerWatch logger_watch_;
   RollCall roll_call_;
   std::string program_;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "model/actuator.h"
+#include "settings/stack_config.h"
 
 namespace hydro::plant {
 
@@ -53,6 +54,10 @@ class Rig {
   // Holds the amplifier voltage (V, of eq. (1)) from now on; it is zero before the first call. Returns the
   // voltage that actually acts, which a limit may have reduced. Throws RigError.
   virtual double Drive(double voltage) = 0;
+
+  // A simulated rig's sensors have this noise from now on; a real one's have their own.
+  virtual void SetNoise(const settings::NoiseSection&) {}
+  virtual bool simulated() const { return false; }
 
   // Puts out zero volts by any means left. May be called at any time, any number of times.
   virtual OutputLeft Zero() noexcept = 0;

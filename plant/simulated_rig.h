@@ -21,6 +21,8 @@ class SimulatedRig : public Rig {
   model::Measurement Read(int64_t tick) override;
   const std::vector<RigFault>& faults() const override { return no_faults_; }
   double Drive(double voltage) override { return voltage_ = voltage; }
+  void SetNoise(const settings::NoiseSection& noise) override { noise_ = noise; }
+  bool simulated() const override { return true; }
   OutputLeft Zero() noexcept override { return {.accepted = true, .voltage = voltage_ = 0}; }
 
  private:

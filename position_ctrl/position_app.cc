@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
+#include "base/input_error.h"
 #include "process/fault_codes.h"
 
 namespace hydro::position_ctrl {
@@ -28,16 +30,6 @@ int8_t SignalCode(settings::ReferenceSignal signal) {
   return arm_reference_t::ARM_ANGLE;
 }
 
-PositionLawSettings LawSettingsFor(const settings::StackConfig& config) {
-  PositionLawSettings settings;
-  settings.c1 = config.position.c1;
-  settings.c2 = config.position.c2;
-  settings.sample_interval = static_cast<double>(config.position_interval_ticks) / config.plant.rate_hz;
-  settings.derivative_on_error = config.position.derivative_on_error;
-  settings.pressure_limit = config.limits.arm_torque_in_lbf / config.model.description.parameters.k_2;
-  return settings;
-}
-
 }  // namespace
 
 PositionApp::PositionApp(bus::Bus& bus, bus::Clock& clock, const settings::StackConfig& config)
@@ -46,16 +38,21 @@ PositionApp::PositionApp(bus::Bus& bus, bus::Clock& clock, const settings::Stack
       interval_(config.position_interval_ticks),
       stall_time_(bus::FromSeconds(config.time.stall_timeout_s) + 400ms),
       signal_(config.reference.signal),
-      reference_(settings::MakeTrajectory(config.reference.trajectory)),
+      reference_text_(settings::ReferenceText(config)),
       torque_per_pressure_(config.model.description.parameters.k_2),
-      pressure_limit_(config.limits.arm_torque_in_lbf / config.model.description.parameters.k_2),
       section_(config.position),
-      law_(LawSettingsFor(config)),
+      rate_hz_(config.plant.rate_hz),
+      values_(tuning::ValuesOf(config)),
+      law_(values_.position),
+      tuning_(participant_, [this](const tuned_settings_t& settings) { return WhyNot(settings); }),
+      transfer_(std::llround(config.limits.transfer_s * config.plant.rate_hz)),
       return_(std::llround(config.limits.return_s * config.plant.rate_hz)),
       state_monitor_(bus::FromSeconds(config.limits.stale_input_s)),
       last_state_time_(clock.Now()) {
   bus.Subscribe<state_t>(participant_.channels().Of<state_t>(),
                          [this](const state_t& state) { OnState(state); });
+  bus.Subscribe<arm_plan_t>(participant_.channels().Of<arm_plan_t>(),
+                            [this](const arm_plan_t& plan) { OnPlan(plan); });
   bus.Subscribe<fault_t>(participant_.channels().Of<fault_t>(), [this](const fault_t& fault) {
     pressure_faults_.Observe(fault, participant_.clock().Now());
   });
@@ -68,6 +65,8 @@ PositionApp::PositionApp(bus::Bus& bus, bus::Clock& clock, const settings::Stack
                                     if (status.role == "pressure_ctrl")
                                       pressure_faults_.ForgetOthersOfRole(status.role, status.session);
                                   });
+  reference_in_force_ = reference_text_;
+  Follow(config.reference.trajectory);
   participant_.Announce(process_status_t::READY);
 }
 
@@ -93,6 +92,7 @@ void PositionApp::OnState(const state_t& state) {
   }
   last_state_time_ = now;
   participant_.Follow(state.session);
+  if (AwaitsSettings(state)) return;
   if (participant_.state() == process_status_t::READY) participant_.Announce(process_status_t::RUNNING);
   if (state.tick <= last_sample_tick_) {  // a log is played again
     last_sample_tick_ = -1;
@@ -117,13 +117,102 @@ void PositionApp::Sample(const state_t& state, bus::Clock::TimePoint arrival) {
   participant_.statistics().RecordCycle(arrival, participant_.clock().Now() - arrival);
 }
 
+// Why this loop cannot act by the settings; empty: it can.
+std::string PositionApp::WhyNot(const tuned_settings_t& settings) const {
+  try {
+    if (!settings.reference.empty() &&
+        settings::ParseReference(settings.reference).signal != signal_) {
+      return "reference.signal takes a restart";
+    }
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  tuning::TunedValues values = values_;
+  return tuning::Read(settings, torque_per_pressure_, &values);
+}
+
+// As the pressure loop does: who joins a run acts by the values in force there.
+bool PositionApp::AwaitsSettings(const state_t& state) {
+  const bool first = participant_.tick() < 0 && !joined_;
+  if (first && !lockstep_ && !participant_.clock().simulated() && state.tick > kJoiningSamples * interval_) {
+    joined_ = participant_.clock().Now();
+  }
+  return joined_ && tuning_.Awaits(*joined_);
+}
+
+void PositionApp::Follow(const settings::TrajectorySpec& reference) {
+  reference_ = settings::MakeTrajectory(reference);
+  planner_.reset();
+  if (reference.kind != settings::TrajectorySpec::Kind::kPlanner) return;
+  planner_.emplace(reference.initial,
+                   PlanLimits{.timeout_s = reference.timeout_s,
+                              .delay_s = reference.delay_s,
+                              .largest_speed = reference.max_speed_rad_s,
+                              .largest_angle = values_.limits.arm_angle_rad},
+                   rate_hz_);
+}
+
+void PositionApp::OnPlan(const arm_plan_t& plan) {
+  if (!planner_ || participant_.tick() < 0) return;
+  std::string why = planner_->Take(plan, participant_.tick());
+  if (why.empty()) return;
+  ++plans_refused_;
+  plan_refused_ = std::move(why);
+}
+
+void PositionApp::NotePlanner(int64_t tick) {
+  const bool silent = planner_->silent(tick);
+  if (!silent) {
+    if (participant_.any_fault()) participant_.Clear("silent_planner");
+  } else if (!participant_.active("silent_planner")) {
+    const double limit = planner_->limits().timeout_s;
+    participant_.Raise("silent_planner",
+                       fmt::format("tick {}: no plan for more than {} s (reference.timeout_s): the reference holds", tick, limit),
+                       limit, limit, false);
+  }
+}
+
+void PositionApp::TakeSettingsAt(int64_t tick) {
+  const tuned_settings_t* settings = tuning_.TakeDueAt(tick);
+  if (settings == nullptr) return;
+  if (!law_before_) law_before_ = values_.position;
+  tuning::Read(*settings, torque_per_pressure_, &values_);  // good: it was prepared
+  law_.Retune(values_.position);
+  const std::string& text = settings->reference.empty() ? reference_text_ : settings->reference;
+  const double from = static_cast<double>(settings->reference_from) / rate_hz_;
+  if (text == reference_in_force_ && from == reference_from_) return;
+  Follow(settings::ParseReference(text).trajectory);
+  reference_in_force_ = text;
+  reference_from_ = from;
+  return_.Depart(arm_reference_.value, tick);
+}
+
+// psi: eq. (17), without a jump when its gains have changed.
+double PositionApp::AskedByLaw(const state_t& state, double reference, const PlannedPoint& ahead, int64_t intervals) {
+  const auto before = std::exchange(law_before_, std::nullopt);
+  if (before && sequence_ > 0) {
+    const double was = law_.Preview(*before, state.arm_angle, reference, intervals) + transfer_.Offset(state.tick);
+    transfer_.Begin(was, law_.Preview(values_.position, state.arm_angle, reference, intervals), state.tick);
+  }
+  double asked = law_.UpdateUnlimited(state.arm_angle, reference, intervals);
+  // What a planner knows ahead: eq. (17) differentiates the measured angle alone, or the error, which has the reference's speed already.
+  if (ahead.torque != 0) asked += ahead.torque / torque_per_pressure_;
+  if (ahead.speed != 0 && !values_.position.derivative_on_error) asked += values_.position.c2 * ahead.speed;
+  const double left = transfer_.Offset(state.tick);
+  return law_.Limited(left == 0 ? asked : asked + left);
+}
+
 void PositionApp::Answer(const state_t& state) {
+  TakeSettingsAt(state.tick);
   if (last_sample_tick_ < 0) law_.Reset();
   const int64_t intervals = last_sample_tick_ < 0 ? 1 : (state.tick - last_sample_tick_) / interval_;
   participant_.statistics().AddMissedDeadlines(intervals - 1);
   last_sample_tick_ = state.tick;
 
-  const double reference = return_.Reference(reference_->Value(state.time), state.tick);
+  const PlannedPoint planned = planner_ ? planner_->At(state.tick) : PlannedPoint{};
+  if (planner_) NotePlanner(state.tick);
+  const double wanted = planner_ ? planned.angle : reference_->Value(state.time - reference_from_);
+  const double reference = return_.Reference(wanted, state.tick);
   arm_reference_.tick = state.tick;
   arm_reference_.signal = SignalCode(signal_);
   arm_reference_.value = reference;
@@ -135,11 +224,12 @@ void PositionApp::Answer(const state_t& state) {
   switch (signal_) {
     case settings::ReferenceSignal::kArmAngle:
       if (std::isfinite(state.arm_angle)) {
-        pressure_ref = law_.Update(state.arm_angle, reference, intervals);
+        pressure_ref = AskedByLaw(state, reference, reference == wanted ? planned : PlannedPoint{}, intervals);
         if (participant_.any_fault()) participant_.Clear("nonfinite_arm_angle");
       } else {
         pressure_command_.open_loop = true;  // at zero volts: without the arm's angle no pressure is safe
         law_.Reset();
+        transfer_.Forget();
         participant_.Raise(
             "nonfinite_arm_angle",
             fmt::format("tick {}: the arm angle is {}, must be finite", state.tick, state.arm_angle),
@@ -155,7 +245,7 @@ void PositionApp::Answer(const state_t& state) {
     case settings::ReferenceSignal::kVoltage:
       break;
   }
-  pressure_ref = std::clamp(pressure_ref, -pressure_limit_, pressure_limit_);
+  pressure_ref = law_.Limited(pressure_ref);
   pressure_command_.pressure_ref = QuantiseDac(pressure_ref, section_.dac_bits, section_.dac_range_psi);
 
   arm_reference_.sequence = pressure_command_.sequence = sequence_++;
@@ -189,6 +279,13 @@ void PositionApp::Send() {
 void PositionApp::Poll() {
   participant_.statistics().set_lost_messages(state_monitor_.lost());
   participant_.Poll();
+  tuning_.Poll();
+  if (plans_refused_ > 0) {
+    refused_plans_.Update(
+        plans_refused_, participant_.clock().Now(),
+        [&](int64_t count) { return fmt::format("{} plans in all are not followed; the newest: {}", count, plan_refused_); },
+        participant_);
+  }
   if (!lockstep_ || participant_.state() != process_status_t::RUNNING || participant_.stop()) return;
   const auto silence = participant_.clock().Now() - last_state_time_;
   if (silence > stall_time_) {

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstdint>
+#include <hydro/arm_plan_t.hpp>
 #include <hydro/arm_reference_t.hpp>
 #include <hydro/pressure_command_t.hpp>
 #include <hydro/state_t.hpp>
@@ -12,13 +13,17 @@
 #include <optional>
 
 #include "bus/sequence_monitor.h"
-#include "position_ctrl/position_law.h"
-#include "position_ctrl/reference_return.h"
+#include "position_ctrl/law/position_law.h"
+#include "position_ctrl/law/reference_return.h"
+#include "position_ctrl/plan_follower.h"
 #include "process/app.h"
 #include "process/fault_codes.h"
 #include "process/participant.h"
 #include "process/remote_faults.h"
 #include "settings/stack_config.h"
+#include "tuning/bumpless_transfer.h"
+#include "tuning/tuned_values.h"
+#include "tuning/tuning_follower.h"
 
 namespace hydro::position_ctrl {
 
@@ -33,10 +38,17 @@ class PositionApp : public process::App {
 
  private:
   void OnState(const state_t& state);
+  void OnPlan(const arm_plan_t& plan);
+  void NotePlanner(int64_t tick);
+  void Follow(const settings::TrajectorySpec& reference);
   void Sample(const state_t& state, bus::Clock::TimePoint arrival);
   void Answer(const state_t& state);
   void ObserveHold(const state_t& state);
   double Present(const state_t& state) const;
+  std::string WhyNot(const tuned_settings_t& settings) const;
+  void TakeSettingsAt(int64_t tick);
+  bool AwaitsSettings(const state_t& state);
+  double AskedByLaw(const state_t& state, double reference, const PlannedPoint& ahead, int64_t intervals);
   void Send();
 
   process::Participant participant_;
@@ -44,11 +56,23 @@ class PositionApp : public process::App {
   const int64_t interval_;  // ticks between two samples
   const bus::Clock::Duration stall_time_;
   const settings::ReferenceSignal signal_;
-  const std::unique_ptr<trajectory::Trajectory> reference_;
+  const std::string reference_text_;  // as configured
+  std::unique_ptr<trajectory::Trajectory> reference_;
+  std::optional<PlanFollower> planner_;  // reference.kind = "planner"
+  process::CountedWarning refused_plans_{"refused_arm_plan"};
+  int64_t plans_refused_ = 0;
+  std::string plan_refused_;  // why the newest was
+  std::string reference_in_force_;
+  double reference_from_ = 0;         // s, plant time at which it begins
   const double torque_per_pressure_;  // k_2
-  const double pressure_limit_;       // psi, from limits.arm_torque_in_lbf
   const settings::PositionSection section_;
+  const double rate_hz_;
+  tuning::TunedValues values_;        // in force
   PositionLaw law_;
+  tuning::TuningFollower tuning_;
+  std::optional<bus::Clock::TimePoint> joined_;  // a run that went on without this loop, whose values are not known yet
+  tuning::BumplessTransfer transfer_;
+  std::optional<PositionLawSettings> law_before_;  // a change begins with the next sample
   ReferenceReturn return_;
   // Real time: while one lasts, the pressure loop's commands move nothing.
   process::RemoteFaults pressure_faults_{[](std::string_view role, std::string_view code) {

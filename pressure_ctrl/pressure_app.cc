@@ -4,9 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
 
-#include "base/input_error.h"
 #include "base/saturating.h"
 
 namespace hydro::pressure_ctrl {
@@ -14,6 +12,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
+constexpr int64_t kJoiningSamples = 10;  // of the position loop: a first state after so many is one of a run that goes on
 constexpr size_t kMostBeforeTheRun = 64;  // pressure commands; a few take a faster route than the first state
 
 motor_command_t ZeroVolts(int64_t tick, int8_t status) {
@@ -24,36 +23,12 @@ motor_command_t ZeroVolts(int64_t tick, int8_t status) {
   return zero;
 }
 
-// psi: the largest pressure reference that limits.arm_torque_in_lbf allows, with room for rounding and half a
-// D/A step.
-double PressureReferenceLimit(const settings::StackConfig& config) {
-  const settings::PositionSection& dac = config.position;
-  const double half_step = dac.dac_bits > 0 ? std::ldexp(dac.dac_range_psi, -dac.dac_bits) : 0;
-  return (1 + 1e-9) * config.limits.arm_torque_in_lbf / config.model.description.parameters.k_2 + half_step;
+// psi: with room for rounding and half a D/A step.
+double LargestPressureReference(const tuning::TunedValues& values, double half_dac_step) {
+  return (1 + 1e-9) * values.position.pressure_limit + half_dac_step;
 }
 
 }  // namespace
-
-PressureLawSettings PressureLawSettingsFor(const settings::StackConfig& config) {
-  const model::Parameters& parameters = config.model.description.parameters;
-  const settings::PressureSection& section = config.pressure;
-  PressureLawSettings law;
-  try {
-    law.gains = section.k_p ? PressureGains{*section.k_p, section.k_v.value_or(0)}
-                            : DerivePressureGains(parameters, 0, section.natural_frequency_rad_s.value(),
-                                                  section.damping_ratio.value(), section.compressed_sides);
-  } catch (const std::invalid_argument& error) {
-    throw InputError(fmt::format("{}: pressure.natural_frequency_rad_s: {}", config.file, error.what()));
-  }
-  law.voltage_limit = parameters.T_pmax / parameters.k_1;
-  if (section.reference_feedforward_V_psi) {
-    law.reference_feedforward = *section.reference_feedforward_V_psi;
-  } else if (section.reference_feedforward) {
-    law.reference_feedforward = SteadyStateFeedforward(parameters, law.gains);
-  }
-  if (section.arm_speed_feedforward) law.arm_speed_ratio = parameters.c / parameters.D;
-  return law;
-}
 
 PressureApp::PressureApp(bus::Bus& bus, bus::Clock& clock, const settings::StackConfig& config)
     : participant_(bus, clock, bus::Channels(config.bus.channel_suffix), "pressure_ctrl", config.agreed),
@@ -64,13 +39,18 @@ PressureApp::PressureApp(bus::Bus& bus, bus::Clock& clock, const settings::Stack
       stale_ticks_(delay_ + position_interval_ +
                    static_cast<int64_t>(std::ceil(config.limits.stale_input_s * config.plant.rate_hz))),
       ramp_ticks_(static_cast<int64_t>(std::ceil(config.limits.pressure_ramp_s * config.plant.rate_hz))),
-      pressure_limit_(PressureReferenceLimit(config)),
+      k_2_(config.model.description.parameters.k_2),
+      half_dac_step_(config.position.dac_bits > 0
+                         ? std::ldexp(config.position.dac_range_psi, -config.position.dac_bits)
+                         : 0),
       stale_time_(bus::FromSeconds(config.limits.stale_input_s)),
       // The plant itself waits stall_timeout_s for a late participant and then names it; only a longer
       // silence is the plant's own.
       stall_time_(bus::FromSeconds(config.time.stall_timeout_s) + 400ms),
-      limits_(config.limits),
-      law_(PressureLawSettingsFor(config)),
+      values_(tuning::ValuesOf(config)),
+      pressure_limit_(LargestPressureReference(values_, half_dac_step_)),
+      tuning_(participant_, [this](const tuned_settings_t& settings) { return WhyNot(settings); }),
+      transfer_(std::llround(config.limits.transfer_s * config.plant.rate_hz)),
       state_monitor_(stale_time_),
       command_monitor_(stale_time_),
       last_state_time_(clock.Now()) {
@@ -117,6 +97,7 @@ void PressureApp::OnState(const state_t& state) {
   }
   last_state_time_ = now;
   participant_.Follow(state.session);
+  if (AwaitsSettings(state)) return;
   if (participant_.state() == process_status_t::READY) participant_.Announce(process_status_t::RUNNING);
   if (answered_ && state.tick <= last_command_.tick) Restart();  // a log is played again
   if (participant_.tick() < 0) DropFutureCommands(state.tick);
@@ -183,14 +164,53 @@ void PressureApp::TakePressureCommandsUpTo(int64_t tick) {
   }
 }
 
+std::string PressureApp::WhyNot(const tuned_settings_t& settings) const {
+  tuning::TunedValues values = values_;
+  return tuning::Read(settings, k_2_, &values);
+}
+
+// A loop that joins a run acts by the values in force there, not by those of its configuration: until it has heard them, by none.
+bool PressureApp::AwaitsSettings(const state_t& state) {
+  const bool first = participant_.tick() < 0 && !joined_;
+  if (first && !lockstep_ && !participant_.clock().simulated() && state.tick > kJoiningSamples * position_interval_) {
+    joined_ = participant_.clock().Now();
+  }
+  return joined_ && tuning_.Awaits(*joined_);
+}
+
+void PressureApp::TakeSettingsAt(int64_t tick) {
+  const tuned_settings_t* settings = tuning_.TakeDueAt(tick);
+  if (settings == nullptr) return;
+  if (!law_before_) law_before_ = values_.pressure;
+  tuning::Read(*settings, k_2_, &values_);  // good: it was prepared
+  pressure_limit_ = LargestPressureReference(values_, half_dac_step_);
+}
+
+// V: what keeps the voltage from jumping when the gains have changed.
+double PressureApp::Transfer(const PressureLawInput& input, int64_t tick) {
+  if (law_before_) {
+    const bool begun = answered_ && last_command_.status == motor_command_t::LAW;
+    const double left = transfer_.Offset(tick);
+    if (begun) {
+      transfer_.Begin(UnlimitedPressureLaw(*law_before_, input) + left,
+                      UnlimitedPressureLaw(values_.pressure, input), tick);
+    }
+    law_before_.reset();
+  }
+  return transfer_.Offset(tick);
+}
+
 void PressureApp::Answer(const state_t& state) {
+  TakeSettingsAt(state.tick);
   TakePressureCommandsUpTo(SaturatingDifference(state.tick, delay_));
   motor_command_t command = ZeroVolts(state.tick, motor_command_t::SAFE);
   if (pressure_command_) {
     command.pressure_ref = PressureReference(state.tick);
     command.pressure_command_tick = pressure_command_->tick;
   }
-  if (InputsAreSafe(state)) {
+  if (!InputsAreSafe(state)) {
+    transfer_.Forget();
+  } else {
     if (pressure_command_ && pressure_command_->open_loop) {
       ApplyOpenLoop(&command);
     } else {
@@ -202,13 +222,14 @@ void PressureApp::Answer(const state_t& state) {
 
 void PressureApp::ApplyOpenLoop(motor_command_t* command) const {
   command->status = motor_command_t::OPEN_LOOP;
-  command->voltage = std::clamp(pressure_command_->voltage, -law_.voltage_limit, law_.voltage_limit);
+  command->voltage = std::clamp(pressure_command_->voltage, -values_.pressure.voltage_limit, values_.pressure.voltage_limit);
   command->saturated = command->voltage != pressure_command_->voltage;
 }
 
 void PressureApp::ApplyLaw(const state_t& state, motor_command_t* command) {
-  const PressureLawOutput output =
-      PressureLaw(law_, {command->pressure_ref, state.p1, state.p2, state.motor_speed, state.arm_speed});
+  PressureLawInput input{command->pressure_ref, state.p1, state.p2, state.motor_speed, state.arm_speed};
+  input.transfer = Transfer(input, state.tick);
+  const PressureLawOutput output = PressureLaw(values_.pressure, input);
   if (!std::isfinite(
           output.voltage)) {  // the inputs are finite, but a product of gains and reference overflows
     participant_.Raise("nonfinite_motor_command",
@@ -235,6 +256,7 @@ void PressureApp::Send(motor_command_t& command) {
 void PressureApp::Poll() {
   participant_.statistics().set_lost_messages(SaturatingSum(state_monitor_.lost(), command_monitor_.lost()));
   participant_.Poll();
+  tuning_.Poll();
   if (participant_.state() != process_status_t::RUNNING || participant_.stop()) return;
   const auto silence = participant_.clock().Now() - last_state_time_;
   if (lockstep_) {
@@ -250,7 +272,7 @@ void PressureApp::Poll() {
     participant_.Raise("stale_state",
                        fmt::format("no state for {:.0f} ms, allowed are {:.0f} ms (limits.stale_input_s)",
                                    1e3 * bus::ToSeconds(silence), 1e3 * bus::ToSeconds(stale_time_)),
-                       bus::ToSeconds(silence), limits_.stale_input_s, false);
+                       bus::ToSeconds(silence), values_.limits.stale_input_s, false);
   }
 }
 

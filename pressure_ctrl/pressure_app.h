@@ -14,16 +14,15 @@
 
 #include "base/ring_queue.h"
 #include "bus/sequence_monitor.h"
-#include "pressure_ctrl/pressure_law.h"
+#include "pressure_ctrl/law/pressure_law.h"
 #include "process/app.h"
 #include "process/participant.h"
 #include "settings/stack_config.h"
+#include "tuning/bumpless_transfer.h"
+#include "tuning/tuned_values.h"
+#include "tuning/tuning_follower.h"
 
 namespace hydro::pressure_ctrl {
-
-// The law's settings from a configuration. Derives the gains when the configuration gives natural frequency
-// and damping ratio instead; throws InputError when they cannot be derived.
-PressureLawSettings PressureLawSettingsFor(const settings::StackConfig& config);
 
 class PressureApp : public process::App {
  public:
@@ -51,6 +50,10 @@ class PressureApp : public process::App {
   int64_t TicksStale(int64_t tick) const;
   void TakePressureCommandsUpTo(int64_t tick);
   bool AwaitsPressureCommand(int64_t state_tick) const;
+  std::string WhyNot(const tuned_settings_t& settings) const;
+  void TakeSettingsAt(int64_t tick);
+  bool AwaitsSettings(const state_t& state);
+  double Transfer(const PressureLawInput& input, int64_t tick);
   void Send(motor_command_t& command);
   void ForgetPressureCommands();
   void Restart();
@@ -62,11 +65,16 @@ class PressureApp : public process::App {
   const int64_t delay_;              // ticks from a command's tick to the tick at which it acts
   const int64_t stale_ticks_;        // a pressure command older than this is stale
   const int64_t ramp_ticks_;         // its reference then goes to zero within this many ticks
-  const double pressure_limit_;      // psi, largest |pressure reference|
+  const double k_2_;                 // in-lbf/psi
+  const double half_dac_step_;       // psi
   const bus::Clock::Duration stale_time_;
   const bus::Clock::Duration stall_time_;
-  const settings::LimitsSection limits_;
-  const PressureLawSettings law_;
+  tuning::TunedValues values_;       // in force
+  double pressure_limit_;            // psi, largest |pressure reference|
+  tuning::TuningFollower tuning_;
+  std::optional<bus::Clock::TimePoint> joined_;  // a run that went on without this loop, whose values are not known yet
+  tuning::BumplessTransfer transfer_;
+  std::optional<PressureLawSettings> law_before_;  // a change begins with the next use of the law
 
   bus::SequenceMonitor state_monitor_;
   bus::SequenceMonitor command_monitor_;

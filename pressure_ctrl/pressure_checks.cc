@@ -33,7 +33,7 @@ bool PressureApp::Check(bool good, const char* code, double value, double limit,
 // and the plant holds the voltage at zero from the first SAFE command.
 template <class Describe>
 bool PressureApp::CheckLimit(bool good, const char* code, double value, double limit, Describe&& describe) {
-  if (limits_.rearm == settings::Rearm::kExplicit) return Check(good, code, value, limit, describe);
+  if (values_.limits.rearm == settings::Rearm::kExplicit) return Check(good, code, value, limit, describe);
   if (!good && participant_.Raise(code, describe(), value, limit, true)) {
     participant_.RequestStop(fmt::format("fault {}: {}", code, describe()), 1);
   }
@@ -42,29 +42,29 @@ bool PressureApp::CheckLimit(bool good, const char* code, double value, double l
 
 bool PressureApp::InputsAreSafe(const state_t& state) {
   if (participant_.latched()) return false;
-  bool safe = Check(Finite(state, law_.arm_speed_ratio != 0), "nonfinite_state", NAN, NAN, [&] {
+  bool safe = Check(Finite(state, values_.pressure.arm_speed_ratio != 0), "nonfinite_state", NAN, NAN, [&] {
     return fmt::format("tick {}: p1 {}, p2 {}, motor speed {}, arm speed {}; all must be finite", state.tick,
                        state.p1, state.p2, state.motor_speed, state.arm_speed);
   });
   const double pressure = std::fmax(state.p1, state.p2);
   safe &=
-      CheckLimit(!(pressure > limits_.pressure_psi), "pressure_limit", pressure, limits_.pressure_psi, [&] {
+      CheckLimit(!(pressure > values_.limits.pressure_psi), "pressure_limit", pressure, values_.limits.pressure_psi, [&] {
         return fmt::format("tick {}: p{} is {:.6g} psi, allowed is {} psi (limits.pressure_psi)", state.tick,
-                           state.p1 > state.p2 ? 1 : 2, pressure, limits_.pressure_psi);
+                           state.p1 > state.p2 ? 1 : 2, pressure, values_.limits.pressure_psi);
       });
   const double speed = std::fabs(state.motor_speed);
   safe &= CheckLimit(
-      !(speed > limits_.motor_speed_rad_s), "motor_speed_limit", speed, limits_.motor_speed_rad_s, [&] {
+      !(speed > values_.limits.motor_speed_rad_s), "motor_speed_limit", speed, values_.limits.motor_speed_rad_s, [&] {
         return fmt::format(
             "tick {}: the motor turns at {:.6g} rad/s, allowed is {} rad/s (limits.motor_speed_rad_s)",
-            state.tick, speed, limits_.motor_speed_rad_s);
+            state.tick, speed, values_.limits.motor_speed_rad_s);
       });
   const double angle = std::fabs(state.arm_angle);
-  safe &= CheckLimit(!(angle > limits_.arm_angle_rad), "arm_angle_limit", angle, limits_.arm_angle_rad, [&] {
+  safe &= CheckLimit(!(angle > values_.limits.arm_angle_rad), "arm_angle_limit", angle, values_.limits.arm_angle_rad, [&] {
     return fmt::format(
         "tick {}: the arm is at {:.6g} rad, allowed is |alpha| <= {:.6g} rad "
         "(limits.arm_angle_rad)",
-        state.tick, state.arm_angle, limits_.arm_angle_rad);
+        state.tick, state.arm_angle, values_.limits.arm_angle_rad);
   });
   safe &= PressureCommandIsSafe(state);
   safe &= Check(!state_monitor_.SecondSenderAlive(participant_.clock().Now()),

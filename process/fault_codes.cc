@@ -20,6 +20,8 @@ constexpr std::array kCodes{
     FaultCode{kSecondSender<pressure_command_t>, FaultEffect::kZeroVolts},
     // Position loop.
     FaultCode{"nonfinite_arm_angle", FaultEffect::kZeroVolts},
+    FaultCode{"refused_arm_plan", FaultEffect::kWarning},
+    FaultCode{"silent_planner", FaultEffect::kWarning},
     // Pressure loop and plant or driver.
     FaultCode{"pressure_limit", FaultEffect::kZeroVolts},
     FaultCode{"motor_speed_limit", FaultEffect::kZeroVolts},

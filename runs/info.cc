@@ -9,6 +9,7 @@
 #include "base/units.h"
 #include "bus/channels.h"
 #include "runs/run_config.h"
+#include "runs/tuning_history.h"
 
 namespace hydro::runs {
 namespace {
@@ -230,6 +231,7 @@ LogInfo Summarise(const RunLog& log, bool si) {
   info.programs = ProgramsOf(log.messages.Of<process_status_t>());
   info.faults = log.messages.Of<fault_t>();
   info.stops = DistinctStops(log.messages.Of<stop_t>());
+  info.tunings = TuningHistory(log.messages);
   info.outputs_left = OutputsLeft(log.messages);
   info.descriptions = DistinctDescriptions(log.messages.Of<run_description_t>());
   UnitSystem units;

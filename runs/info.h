@@ -73,6 +73,7 @@ struct LogInfo {
   std::vector<ProgramInfo> programs;  // those that introduced themselves
   std::vector<fault_t> faults;
   std::vector<stop_t> stops;                                // each once, however often it was sent
+  std::vector<tuned_settings_t> tunings;                    // changes of values while the run went on
   std::vector<output_left_t> outputs_left;                  // what plants or drivers left at their ends
   std::vector<run_description_t> descriptions;              // distinct ones
   std::string model_name;                                   // of the first description

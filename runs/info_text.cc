@@ -6,6 +6,7 @@
 #include "base/text_file.h"
 #include "process/output_left.h"
 #include "runs/info.h"
+#include "runs/tuning_history.h"
 
 namespace hydro::runs {
 namespace {
@@ -115,6 +116,7 @@ void AppendEnds(const LogInfo& info, std::string& text) {
     Append(text, "stop: tick {}: {}: {} (exit code {})\n", stop.tick, stop.source, stop.reason,
            stop.exit_code);
   }
+  for (const tuned_settings_t& tuning : info.tunings) Append(text, "tuned: {}\n", DescribeTuning(tuning));
   for (const output_left_t& left : info.outputs_left)
     Append(text, "end: {}\n", process::OutputLeftText(left));
   if (info.outputs_left.empty()) text += "end: no plant or driver says what voltage it left\n";

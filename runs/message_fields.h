@@ -8,11 +8,6 @@
 
 namespace hydro::runs {
 
-// What the loops compute at a tick, and faults: these must be the same whenever a run is repeated.
-template <class Message>
-concept ComparedMessage = bus::PlacesOf<Message>()
-.tick >= 0 && bus::PlacesOf<Message>().sequence >= 0;
-
 template <class Message, class Value>
 struct MessageField {
   const char* name;
@@ -21,7 +16,7 @@ struct MessageField {
 template <class Message, class Value>
 MessageField(const char*, Value Message::*) -> MessageField<Message, Value>;
 
-// FieldsOf(message), one for each ComparedMessage, is a tuple of MessageField, in the order by which messages are sorted and differences
+// FieldsOf(message), one for each message that is compared, is a tuple of MessageField, in the order by which messages are sorted and differences
 // reported.
 constexpr auto FieldsOf(const state_t*) {
   return std::tuple{
@@ -80,5 +75,9 @@ constexpr auto FieldsOf(const fault_t*) {
       MessageField{"text", &fault_t::text},
   };
 }
+
+// What the loops compute at a tick, and faults: these must be the same whenever a run is repeated.
+template <class Message>
+concept ComparedMessage = requires(const Message* message) { FieldsOf(message); };
 
 }  // namespace hydro::runs

@@ -7,6 +7,7 @@
 #include "base/units.h"
 #include "process/output_left.h"
 #include "runs/tracking.h"
+#include "runs/tuning_history.h"
 
 namespace hydro::runs {
 namespace {
@@ -72,6 +73,7 @@ std::string SummaryText(const Tracking& tracking, const LogInfo& info, bool si) 
     line("fault at tick {}: {} {} ({})", fault.tick, Printable(fault.code), fault.active ? "began" : "ended",
          Printable(fault.source));
   }
+  for (const tuned_settings_t& tuning : info.tunings) line("tuned: {}", Printable(DescribeTuning(tuning)));
   for (const output_left_t& left : info.outputs_left) line("{}", Printable(process::OutputLeftText(left)));
   return text;
 }
@@ -111,6 +113,14 @@ std::string SummaryJson(const Tracking& tracking, const LogInfo& info) {
                       {"text", fault.text}});
   }
   json["faults"] = faults;
+  Json tunings = Json::array();
+  for (const tuned_settings_t& tuning : info.tunings) {
+    tunings.push_back({{"version", tuning.version},
+                       {"tick", tuning.acts_at},
+                       {"changes", tuning.changes},
+                       {"source", tuning.source}});
+  }
+  json["tunings"] = tunings;
   return json.dump(2) + "\n";
 }
 

@@ -1,9 +1,11 @@
 #include "scope/ghost_desk.h"
 
-#include <pthread.h>
-#include <sched.h>
+#include <sys/resource.h>
+#include <sys/syscall.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
 #include <condition_variable>
 #include <mutex>
 #include <thread>
@@ -19,11 +21,13 @@ namespace {
 constexpr size_t kMostGhosts = 4;
 constexpr size_t kBatch = 16384;       // samples given to a thread at a time
 constexpr double kFirstLive = 10;      // s of history that a live ghost begins with
+constexpr int kNiceThread = 15;        // below the server's own, but not so low that it could not be ended
 constexpr double kMostBehind = 2;      // s of plant time, then it leaves samples out
 
 }  // namespace
 
-// A thread with a ghost. Its queues are short: one batch in, one out.
+// A thread with a ghost. One batch goes in, one comes out. The server's side never waits for the mutex: the thread may have
+// lost the processor while it holds it.
 class GhostDesk::Worker {
  public:
   struct Result {
@@ -34,9 +38,9 @@ class GhostDesk::Worker {
   Worker(std::shared_ptr<const settings::StackConfig> config, double resync_s)
       : ghost_(std::move(config), resync_s), thread_([this] { Loop(); }) {}
   ~Worker() {
+    ended_ = true;
     {
-      const std::lock_guard lock(mutex_);
-      ended_ = true;
+      const std::lock_guard lock(mutex_);  // it either waits, or has not looked yet
     }
     changed_.notify_all();
     thread_.join();
@@ -44,32 +48,22 @@ class GhostDesk::Worker {
   Worker(const Worker&) = delete;
   Worker& operator=(const Worker&) = delete;
 
-  // False: it is still busy with the batch before.
-  bool ready() const {
-    const std::lock_guard lock(mutex_);
-    return in_.empty() && !busy_;
-  }
-  void Push(std::vector<GhostSample> samples) {
-    {
-      const std::lock_guard lock(mutex_);
-      in_ = std::move(samples);
-    }
-    changed_.notify_all();
-  }
-  std::vector<Result> Take(std::string* problem) {
-    const std::lock_guard lock(mutex_);
+  // Takes what is ready; then, with `*next` not empty, hands it over if the thread is idle, and empties it.
+  std::vector<Result> Exchange(std::vector<GhostSample>* next, std::string* problem) {
+    const std::unique_lock lock(mutex_, std::try_to_lock);
+    if (!lock.owns_lock()) return {};
     *problem = problem_;
+    if (in_.empty() && !busy_ && !next->empty()) {
+      in_ = std::exchange(*next, {});
+      changed_.notify_all();
+    }
     return std::exchange(out_, {});
   }
-  void Sync() {
-    const std::lock_guard lock(mutex_);
-    sync_ = true;
-  }
+  void Sync() { sync_ = true; }
 
  private:
   void Loop() {
-    const sched_param parameters{};
-    pthread_setschedparam(pthread_self(), SCHED_IDLE, &parameters);  // only where nobody else wants the processor
+    setpriority(PRIO_PROCESS, static_cast<id_t>(syscall(SYS_gettid)), kNiceThread);
     std::vector<GhostSample> samples;
     std::vector<Result> results;
     while (true) {
@@ -82,25 +76,26 @@ class GhostDesk::Worker {
         if (ended_) return;
         samples = std::exchange(in_, {});
         busy_ = true;
-        if (std::exchange(sync_, false)) ghost_.Sync();
       }
+      if (sync_.exchange(false)) ghost_.Sync();
       results.clear();
       results.reserve(samples.size());
       for (const GhostSample& sample : samples) {
+        if (ended_) return;
         if (const auto row = ghost_.Add(sample)) results.push_back({sample.time, *row});
       }
     }
   }
 
   Ghost ghost_;
-  mutable std::mutex mutex_;
+  std::mutex mutex_;
   std::condition_variable changed_;
   std::vector<GhostSample> in_;
   std::vector<Result> out_;
   std::string problem_;
-  bool sync_ = false;
+  std::atomic<bool> sync_ = false;
+  std::atomic<bool> ended_ = false;
   bool busy_ = false;
-  bool ended_ = false;
   std::thread thread_;  // last: it uses all of the above
 };
 
@@ -108,7 +103,8 @@ struct GhostDesk::Beside {
   const Run* run = nullptr;
   std::unique_ptr<Worker> worker;
   double resync_s = 0;
-  History::Row fed = 0;  // rows before it have been given to the worker
+  History::Row fed = 0;  // rows before it have been given to the worker, or are in `next`
+  std::vector<GhostSample> next;
   bool gap = false;      // some were left out before it
   bool complete = false;  // of a log: told
   std::string problem;
@@ -152,18 +148,25 @@ Outcome GhostDesk::Sync(uint32_t run) {
 }
 
 void GhostDesk::Collect(Run& run, Beside& beside) {
-  std::string problem;
+  std::string problem = beside.problem;
   const bool was_empty = run.ghost.empty();
-  for (const Worker::Result& result : beside.worker->Take(&problem)) run.ghost.Append(result.time, result.row.data());
+  const bool had_next = !beside.next.empty();
+  const auto results = beside.worker->Exchange(&beside.next, &problem);
+  for (const Worker::Result& result : results) run.ghost.Append(result.time, result.row.data());
   if (was_empty && !run.ghost.empty()) ++run.revision;
   if (problem != beside.problem) {
     beside.problem = problem;
     run.events.Add({0, run.last_time(), "mark", "ghost", "model_error", problem});
   }
+  const bool all_given = beside.fed == run.ticks.end() && beside.next.empty() && !had_next;
+  if (all_given && !results.empty() && run.kind != Run::Kind::kLive && !beside.complete) {
+    beside.complete = true;
+    ++run.revision;  // whoever shows the run asks again
+  }
 }
 
 void GhostDesk::Feed(Run& run, Beside& beside) {
-  if (!beside.worker->ready()) return;
+  if (!beside.next.empty()) return;  // the thread is still busy with the batch before
   const History& ticks = run.ticks;
   if (beside.fed < ticks.begin()) {
     skipped_ += static_cast<int64_t>(ticks.begin() - beside.fed);
@@ -177,7 +180,7 @@ void GhostDesk::Feed(Run& run, Beside& beside) {
     beside.fed = next;
     beside.gap = true;
   }
-  std::vector<GhostSample> samples;
+  std::vector<GhostSample>& samples = beside.next;
   const auto value = [&](TickColumn column) { return ticks.value(beside.fed, static_cast<size_t>(column)); };
   for (; beside.fed < ticks.end() && samples.size() < kBatch; ++beside.fed) {
     GhostSample sample;
@@ -191,12 +194,6 @@ void GhostDesk::Feed(Run& run, Beside& beside) {
                       sample.time - ticks.time(beside.fed - 1) > expected;
     sample.after_gap = lost || std::exchange(beside.gap, false);
     samples.push_back(sample);
-  }
-  if (!samples.empty()) {
-    beside.worker->Push(std::move(samples));
-  } else if (!live && !beside.complete) {
-    beside.complete = true;
-    ++run.revision;  // whoever shows the run asks again
   }
 }
 
@@ -219,8 +216,8 @@ void GhostDesk::Poll() {
       Switch(id, true, resync_s);
       continue;
     }
-    Collect(*run, beside);
     Feed(*run, beside);
+    Collect(*run, beside);
     ++ghost;
   }
 }

@@ -82,7 +82,7 @@ void DropOtherKinds(TomlNode* section) {
   if (kind == nullptr || !kind->from_option || !kind->is(Kind::kString)) return;
   const std::vector<std::string> own = KeysOfTrajectory(kind->text);
   if (own.empty()) return;
-  for (const char* other : {"steps", "sine", "square", "chirp", "csv"}) {
+  for (const char* other : {"steps", "sine", "square", "chirp", "csv", "planner"}) {
     for (const std::string& key : KeysOfTrajectory(other)) {
       const bool fits = std::find(own.begin(), own.end(), key) != own.end();
       if (!fits && !FromOption(*section, key)) section->Erase(key);

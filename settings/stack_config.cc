@@ -28,6 +28,17 @@ StackConfig ReadDocument(TomlNode* root, const std::string& file) {
   return config;
 }
 
+StackConfig WithModel(TomlNode* root, const std::string& config_name, const std::string& model_text,
+                      const std::string& model_name) {
+  StackConfig config = ReadDocument(root, config_name);
+  config.model.resolved_file = model_name;
+  config.model.text = model_text;
+  config.model.description = ParseModel(model_text, model_name);
+  CheckAgainstModel(*root, &config);
+  config.agreed = AgreedEntries(config);
+  return config;
+}
+
 }  // namespace
 
 StackConfig LoadStackConfig(const std::string& file, const std::vector<std::string>& overrides) {
@@ -50,13 +61,27 @@ StackConfig LoadStackConfig(const std::string& file, const std::vector<std::stri
 StackConfig ParseStackConfig(const std::string& config_text, const std::string& config_name,
                              const std::string& model_text, const std::string& model_name) {
   TomlNode root = ParseToml(config_text, config_name);
-  StackConfig config = ReadDocument(&root, config_name);
-  config.model.resolved_file = model_name;
-  config.model.text = model_text;
-  config.model.description = ParseModel(model_text, model_name);
-  CheckAgainstModel(root, &config);
-  config.agreed = AgreedEntries(config);
-  return config;
+  return WithModel(&root, config_name, model_text, model_name);
+}
+
+StackConfig Changed(const StackConfig& config, const std::vector<std::string>& changes) {
+  TomlNode root = ParseToml(config.text, config.file);
+  ApplyOverrides(changes, &root);
+  return WithModel(&root, config.file, config.model.text, config.model.resolved_file);
+}
+
+ReferenceSection ParseReference(const std::string& text) {
+  const TomlNode root = ParseToml(text, "reference");
+  ReferenceSection reference;
+  ReadReference(SectionReader(root, "").Section("reference"), "", &reference);
+  return reference;
+}
+
+std::string ReferenceText(const StackConfig& config) {
+  TomlNode root = ParseToml(config.text, config.file);
+  TomlNode alone;
+  if (TomlNode* reference = root.Find("reference")) alone.members.push_back({"reference", *reference});
+  return FormatToml(alone);
 }
 
 }  // namespace hydro::settings

@@ -19,9 +19,9 @@ namespace hydro::settings {
 
 // A Trajectory as the configuration describes it ([reference], [model.motion]).
 struct TrajectorySpec {
-  enum class Kind { kSteps, kSine, kSquare, kChirp, kCsv };
+  enum class Kind { kSteps, kSine, kSquare, kChirp, kCsv, kPlanner };
   Kind kind = Kind::kSteps;
-  double initial = 0;                   // kSteps: before the first step
+  double initial = 0;                   // kSteps, kPlanner: before the first step or plan
   std::vector<trajectory::Step> steps;  // kSteps: [[time_s, value], ...]
   double offset = 0;                    // kSine, kSquare, kChirp
   double amplitude = 0;                 // kSine, kSquare, kChirp
@@ -31,6 +31,9 @@ struct TrajectorySpec {
   double first_frequency_hz = 0.1;      // kChirp
   double last_frequency_hz = 10;        // kChirp
   double duration_s = 10;               // kChirp
+  double timeout_s = 0.2;               // kPlanner: a plan older than this (plant time) is followed no further
+  double delay_s = 0.01;                // kPlanner: from the tick that a plan was made from to its effect
+  double max_speed_rad_s = std::numeric_limits<double>::infinity();  // kPlanner: of the reference
   std::string file;                     // kCsv, relative to the configuration's folder
   std::string column;                   // kCsv: the value's column; time is the column time_s
   trajectory::Interpolation interpolation = trajectory::Interpolation::kLinear;  // kCsv
@@ -118,6 +121,7 @@ struct LimitsSection {
   double pressure_ramp_s = 0.2;   // plant time in which a stale pressure reference goes to zero; 0: at once
   double stale_logger_s = 1;      // a logger silent for longer is reported as gone
   double return_s = 0.5;          // plant time in which the reference comes back after zero volts; 0: at once
+  double transfer_s = 0.1;  // plant time in which a change of gains while the stack runs passes; 0: at once
   double stale_supervisor_s = 1;  // a launcher silent for longer gives zero volts and a fault
   // rearm = "restart" | "explicit". Default when read from a file: explicit with a driver.
   Rearm rearm = Rearm::kRestart;
@@ -188,6 +192,16 @@ StackConfig LoadStackConfig(const std::string& file, const std::vector<std::stri
 // The same from text instead of a file (a log's own description); `model_text` replaces the model file.
 StackConfig ParseStackConfig(const std::string& config_text, const std::string& config_name,
                              const std::string& model_text, const std::string& model_name);
+
+// `config` with some entries changed, each "section.key=value" as with --set, and the same model. Throws
+// InputError.
+StackConfig Changed(const StackConfig& config, const std::vector<std::string>& changes);
+
+// A section [reference] alone, as TOML. Throws InputError.
+ReferenceSection ParseReference(const std::string& text);
+
+// The section [reference] of `config`, which ParseReference() reads.
+std::string ReferenceText(const StackConfig& config);
 
 // Builds the function that a specification describes.
 std::unique_ptr<trajectory::Trajectory> MakeTrajectory(const TrajectorySpec& spec);

@@ -27,6 +27,9 @@ void ReadModel(SectionReader section, const std::string& config_file, ModelSecti
   section.Finish();
   if (!section.Has("motion")) return;
   model->motion = ReadTrajectory(motion, config_file);
+  if (model->motion->kind == TrajectorySpec::Kind::kPlanner) {
+    throw motion.Error("kind", "\"planner\"", "a motion that is known before: \"steps\", \"sine\", \"square\", \"chirp\" or \"csv\"");
+  }
   motion.Finish();
   CheckedTrajectory(*model->motion, motion);
 }
@@ -117,18 +120,6 @@ void ReadPosition(SectionReader section, PositionSection* position) {
   section.Finish();
 }
 
-void ReadReference(SectionReader section, const std::string& config_file, ReferenceSection* reference) {
-  section.Choice<ReferenceSignal>("signal",
-                                  {{"arm_angle", ReferenceSignal::kArmAngle},
-                                   {"pressure", ReferenceSignal::kPressure},
-                                   {"torque", ReferenceSignal::kTorque},
-                                   {"voltage", ReferenceSignal::kVoltage}},
-                                  &reference->signal);
-  reference->trajectory = ReadTrajectory(section, config_file);
-  section.Finish();
-  CheckedTrajectory(reference->trajectory, section);
-}
-
 // `hardware`: a motor that may hurt somebody does not start again unasked.
 void ReadLimits(SectionReader section, bool hardware, LimitsSection* limits) {
   if (hardware) limits->rearm = Rearm::kExplicit;
@@ -139,6 +130,7 @@ void ReadLimits(SectionReader section, bool hardware, LimitsSection* limits) {
   section.Number("stale_input_s", &limits->stale_input_s, kWait);
   section.Number("pressure_ramp_s", &limits->pressure_ramp_s, {.min = 0, .max = 1e6});
   section.Number("return_s", &limits->return_s, {.min = 0, .max = 1e6});
+  section.Number("transfer_s", &limits->transfer_s, {.min = 0, .max = 1e6});
   section.Number("stale_logger_s", &limits->stale_logger_s, kWait);
   section.Number("stale_supervisor_s", &limits->stale_supervisor_s, kWait);
   section.Choice<Rearm>("rearm", {{"restart", Rearm::kRestart}, {"explicit", Rearm::kExplicit}},
@@ -221,6 +213,21 @@ void ReadProcesses(SectionReader& document, std::vector<ProcessSection>* process
 }
 
 }  // namespace
+
+void ReadReference(SectionReader section, const std::string& config_file, ReferenceSection* reference) {
+  section.Choice<ReferenceSignal>("signal",
+                                  {{"arm_angle", ReferenceSignal::kArmAngle},
+                                   {"pressure", ReferenceSignal::kPressure},
+                                   {"torque", ReferenceSignal::kTorque},
+                                   {"voltage", ReferenceSignal::kVoltage}},
+                                  &reference->signal);
+  reference->trajectory = ReadTrajectory(section, config_file);
+  if (reference->trajectory.kind == TrajectorySpec::Kind::kPlanner && reference->signal != ReferenceSignal::kArmAngle) {
+    throw section.Error("kind", "\"planner\" with another signal", "it with signal = \"arm_angle\"");
+  }
+  section.Finish();
+  CheckedTrajectory(reference->trajectory, section);
+}
 
 void ReadSections(const TomlNode& root, const std::string& config_file, StackConfig* config) {
   SectionReader document(root, "");

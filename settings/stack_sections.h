@@ -7,6 +7,9 @@
 
 namespace hydro::settings {
 
+// The section [reference]. Throws InputError.
+void ReadReference(SectionReader section, const std::string& config_file, ReferenceSection* reference);
+
 // Fills every section of `config` from the document, except the model's description. Throws InputError.
 void ReadSections(const TomlNode& root, const std::string& config_file, StackConfig* config);
 

@@ -19,6 +19,7 @@ const std::map<std::string, std::vector<std::string>>& KeysOfKinds() {
       {"square", {"offset", "amplitude", "frequency_hz", "start_s"}},
       {"chirp", {"offset", "amplitude", "first_frequency_hz", "last_frequency_hz", "duration_s", "start_s"}},
       {"csv", {"file", "column", "interpolation", "points"}},
+      {"planner", {"initial", "timeout_s", "delay_s", "max_speed_rad_s"}},
   };
   return keys;
 }
@@ -96,11 +97,19 @@ TrajectorySpec ReadTrajectory(SectionReader& section, const std::string& config_
                         {"sine", Kind::kSine},
                         {"square", Kind::kSquare},
                         {"chirp", Kind::kChirp},
-                        {"csv", Kind::kCsv}},
+                        {"csv", Kind::kCsv},
+                        {"planner", Kind::kPlanner}},
                        &spec.kind);
   if (spec.kind == Kind::kSteps) {
     section.Number("initial", &spec.initial);
     ReadPairs(section, "steps", &spec.steps);
+    return spec;
+  }
+  if (spec.kind == Kind::kPlanner) {
+    section.Number("initial", &spec.initial);
+    section.Number("timeout_s", &spec.timeout_s, {.min = 0, .max = 1e6, .min_allowed = false});
+    section.Number("delay_s", &spec.delay_s, {.min = 0, .max = 10});
+    section.Number("max_speed_rad_s", &spec.max_speed_rad_s, {.min = 0, .min_allowed = false, .infinity_allowed = true});
     return spec;
   }
   if (spec.kind == Kind::kCsv) {
@@ -156,6 +165,8 @@ std::unique_ptr<trajectory::Trajectory> MakeTrajectory(const TrajectorySpec& spe
     case Kind::kChirp:
       return trajectory::MakeChirp(spec.offset, spec.amplitude, spec.first_frequency_hz,
                                    spec.last_frequency_hz, spec.start_s, spec.duration_s);
+    case Kind::kPlanner:  // what a planner wants comes while the stack runs
+      return trajectory::MakeSteps(spec.initial, {});
     case Kind::kCsv:
       break;
   }

@@ -7,15 +7,19 @@
 #include "base/read_files.h"
 #include "log/log_writer.h"
 #include "process/stop_signal.h"
+#include "runs/run_log.h"
+#include "runs/tuning_history.h"
 #include "settings/command_line.h"
 #include "sim/simulation.h"
 
 namespace {
 
-int Run(const hydro::settings::CommonOptions& options, const std::string& file) {
+int Run(const hydro::settings::CommonOptions& options, const std::string& file, const std::string& tunings_of) {
   const hydro::settings::StackConfig config =
       hydro::settings::LoadStackConfig(options.config, options.overrides);
   hydro::CheckKeeps(file);
+  std::vector<hydro::tuned_settings_t> tunings;
+  if (!tunings_of.empty()) tunings = hydro::runs::TuningHistory(hydro::runs::ReadRunLog(tunings_of).messages);
   hydro::process::CatchStopSignals();
   std::unique_ptr<hydro::log::LogWriter> writer;
   if (!file.empty()) writer = std::make_unique<hydro::log::LogWriter>(file, hydro::Opening::kTemporary);
@@ -26,7 +30,7 @@ int Run(const hydro::settings::CommonOptions& options, const std::string& file) 
     };
   }
   const auto start = std::chrono::steady_clock::now();
-  const hydro::sim::SimulationResult result = hydro::sim::Simulate(config, tap);
+  const hydro::sim::SimulationResult result = hydro::sim::Simulate(config, tap, tunings);
   const double wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   if (writer) writer->Finish();
   if (!result.failure.empty()) std::fprintf(stderr, "hydro-sim: %s\n", result.failure.c_str());
@@ -41,12 +45,14 @@ int main(int argc, char** argv) {
   hydro::settings::CommandLine command_line("hydro-sim",
                                             "The whole stack in one process on a simulated clock.");
   hydro::settings::CommonOptions options;
-  std::string file;
+  std::string file, tunings_of;
   command_line.AddCommon(&options);
   command_line.AddOption(
       "-o,--output", &file,
       "FILE where to record the run; short for --log. Without either, nothing is recorded");
+  command_line.AddOption("--tuning", &tunings_of,
+                         "LOG change values as was done in that run (hydro-set), at the same ticks");
   if (const auto exit_code = command_line.Parse(argc, argv)) return *exit_code;
   return hydro::settings::RunProgram(
-      "hydro-sim", [&] { return Run(options, hydro::settings::FileToRecord(file, options.log)); });
+      "hydro-sim", [&] { return Run(options, hydro::settings::FileToRecord(file, options.log), tunings_of); });
 }

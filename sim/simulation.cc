@@ -10,7 +10,8 @@
 namespace hydro::sim {
 
 SimulationResult Simulate(const settings::StackConfig& config,
-                          const std::function<void(const bus::RawMessage&)>& tap) {
+                          const std::function<void(const bus::RawMessage&)>& tap,
+                          const std::vector<tuned_settings_t>& tunings) {
   if (config.last_tick < 0) {
     throw InputError(config.file +
                      ": time.duration_s: found 0, allowed is > 0, because a simulation needs an end (or give "
@@ -26,6 +27,7 @@ SimulationResult Simulate(const settings::StackConfig& config,
   pressure_ctrl::PressureApp pressure(bus, clock, lockstep);
   position_ctrl::PositionApp position(bus, clock, lockstep);
 
+  plant.FollowTuning(tunings);
   SimulationResult result;
   result.exit_code = plant.Run();
   const auto dispatch_all = [&] {

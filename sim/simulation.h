@@ -4,7 +4,9 @@
 
 #include <cstdint>
 #include <functional>
+#include <hydro/tuned_settings_t.hpp>
 #include <string>
+#include <vector>
 
 #include "bus/bus.h"
 #include "settings/stack_config.h"
@@ -21,7 +23,9 @@ struct SimulationResult {
 // Runs `config` to its end, in lockstep whatever time.mode says, and passes every message to `tap` (null:
 // nothing is even encoded). Throws InputError when the configuration has no duration or contradicts the
 // model.
+// `tunings`: changes that were decided in another run, made again at the same ticks.
 SimulationResult Simulate(const settings::StackConfig& config,
-                          const std::function<void(const bus::RawMessage&)>& tap);
+                          const std::function<void(const bus::RawMessage&)>& tap,
+                          const std::vector<tuned_settings_t>& tunings = {});
 
 }  // namespace hydro::sim

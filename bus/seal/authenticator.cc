@@ -30,7 +30,7 @@ int64_t NowUtime() {
 Authenticator::Authenticator(const BusKey& key, std::vector<std::string> channels, int64_t session)
     : key_(key), channels_(std::move(channels)), session_(session) {
   if (channels_.empty() || channels_.size() > kMostChannels) {
-    throw std::invalid_argument("an authenticator takes 1 to 16 channels");
+    throw std::invalid_argument("an authenticator takes 1 to 32 channels");
   }
   admitted_[session_] = {};  // multicast brings our own messages back
 }

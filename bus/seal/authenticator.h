@@ -50,7 +50,7 @@ class Authenticator {
     uint64_t counter = 0;
   };
 
-  // `channels`: the authenticated ones, at most 16, that of the introductions first.
+  // `channels`: the authenticated ones, at most 32, that of the introductions first.
   // `session`: of this process's bus; only a simulation gives it one that is not fresh.
   Authenticator(const BusKey& key, std::vector<std::string> channels, int64_t session = RandomSession());
 
@@ -78,7 +78,7 @@ class Authenticator {
   const RefusedMessages& refused() const { return refused_; }
 
  private:
-  static constexpr size_t kMostChannels = 16;
+  static constexpr size_t kMostChannels = 32;
   using Counters = std::array<uint64_t, kMostChannels>;  // the newest accepted, by channel
 
   std::optional<size_t> IndexOf(std::string_view channel) const;

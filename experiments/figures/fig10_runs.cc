@@ -7,7 +7,7 @@
 #include <stdexcept>
 
 #include "base/units.h"
-#include "experiments/maths/arm_loop.h"
+#include "design/arm_loop.h"
 #include "experiments/runs/shipped_models.h"
 #include "experiments/runs/shipped_stacks.h"
 #include "experiments/studies/design_numbers.h"
@@ -50,7 +50,7 @@ ArmRun RunArm(const StackRunner& run_stack, const std::string& name, const std::
   return run;
 }
 
-runs::StepResponse Measure(const Response& response, double step) {
+runs::StepResponse Measure(const design::Response& response, double step) {
   return runs::MeasureStep(response.time, response.angle, 0, response.time.size(), 0, step);
 }
 
@@ -76,11 +76,11 @@ std::string Figure10Stack(const Figure10Runs& figure, const std::vector<std::str
   return ShippedStackText("paper", settings);
 }
 
-FormRuns RunForm(const Figure10Runs& figure, DerivativeForm form, const StackRunner& run_stack) {
+FormRuns RunForm(const Figure10Runs& figure, design::DerivativeForm form, const StackRunner& run_stack) {
   const int points = static_cast<int>(std::lround(kInterval * 5000));
-  const char* name = form == DerivativeForm::kError ? "error" : "measurement";
+  const char* name = form == design::DerivativeForm::kError ? "error" : "measurement";
   FormRuns runs;
-  runs.linear = SampledStep(figure.design, kPaperGain, kInterval, form, kStep, 2, points);
+  runs.linear = design::SampledStep(figure.design, kPaperGain, kInterval, form, kStep, 2, points);
   runs.linear_step = Measure(runs.linear, kStep);
   runs.nonlinear =
       RunArm(run_stack, fmt::format("fig10-{}", name),
@@ -115,7 +115,8 @@ CauseRuns RunCauses(const Figure10Runs& figure, const ExperimentOptions& options
   pressure_ctrl::PressureLawSettings assisted = law;
   assisted.arm_speed_ratio = p.c / p.D;
   const auto exact = [&](const pressure_ctrl::PressureLawSettings& with) {
-    return Measure(LinearArmLoop(figure.model, with).Step(figure.c1, figure.c2, kStep, 4, 1e-3), kStep);
+    return Measure(design::LinearArmLoop(figure.model, with).Step(figure.c1, figure.c2, kStep, 4, 1e-3),
+                   kStep);
   };
   causes.exact = exact(law);
   causes.exact_assisted = exact(assisted);
@@ -155,7 +156,7 @@ void RunSteps(const model::ModelDescription& model, const ExperimentOptions& opt
   for (RetunedStep& r : retuned->steps) {
     r.run = RunArm(options.run_stack, "fig10-retuned-" + std::to_string(&r - retuned->steps.data()),
                    RetunedStack(r, options.seed), r.gravity ? heavy : model, r.step);
-    r.shortest = FastestSettling(retuned->drive, r.step, runs::kSettlingBand);
+    r.shortest = design::FastestSettling(retuned->drive, r.step, runs::kSettlingBand);
     if (!r.gravity) retuned->worst_ratio = std::max(retuned->worst_ratio, SettlingTime(r.run) / r.shortest);
   }
   const runs::StepResponse& sagging = retuned->steps.back().run.response;
@@ -165,9 +166,9 @@ void RunSteps(const model::ModelDescription& model, const ExperimentOptions& opt
 
 RetunedRuns RunRetuned(const model::ModelDescription& model, const ExperimentOptions& options) {
   RetunedRuns retuned;
-  retuned.drive = MakeRigidDrive(model.parameters, kMotorSpeed);
-  retuned.fastest = FastestRestToRest(retuned.drive, kStep);
-  retuned.shortest = FastestSettling(retuned.drive, kStep, runs::kSettlingBand);
+  retuned.drive = design::MakeRigidDrive(model.parameters, kMotorSpeed);
+  retuned.fastest = design::FastestRestToRest(retuned.drive, kStep);
+  retuned.shortest = design::FastestSettling(retuned.drive, kStep, runs::kSettlingBand);
   retuned.shipped = TrialOf(ShippedStackText("retuned"), ShippedModelText("table1"), kStep);
   const Candidate best = SearchGains(retuned.shipped, retuned.drive).front();
   retuned.shipped_is_best = best.c1 == retuned.shipped.position.c1 && best.c2 == retuned.shipped.position.c2;
@@ -194,11 +195,11 @@ const std::array<Cause, kCauseCount> kCauses = {{
 Figure10Runs RunFigure10(const ExperimentOptions& options) {
   Figure10Runs figure;
   figure.model = ShippedModel("table1");
-  figure.design = Figure8Model(figure.model.parameters);
+  figure.design = design::Figure8Model(figure.model.parameters);
   figure.c1 = figure.design.zero * kPaperGain;
   figure.c2 = kPaperGain;
-  figure.forms = {RunForm(figure, DerivativeForm::kError, options.run_stack),
-                  RunForm(figure, DerivativeForm::kMeasurement, options.run_stack)};
+  figure.forms = {RunForm(figure, design::DerivativeForm::kError, options.run_stack),
+                  RunForm(figure, design::DerivativeForm::kMeasurement, options.run_stack)};
   const std::vector<double>& on_error = figure.forms[0].nonlinear.angle;
   for (size_t i = 0; i < on_error.size(); ++i) {
     figure.form_difference =

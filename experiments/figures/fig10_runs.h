@@ -6,12 +6,12 @@
 #include <string>
 #include <vector>
 
-#include "experiments/maths/bang_bang.h"
-#include "experiments/maths/position_design.h"
-#include "experiments/maths/sampled_position_loop.h"
-#include "experiments/runs/step_trial.h"
+#include "design/bang_bang.h"
+#include "design/position_design.h"
+#include "design/sampled_position_loop.h"
 #include "experiments/studies/experiment.h"
 #include "runs/step_response.h"
+#include "tune/step_trial.h"
 
 namespace hydro::experiments {
 
@@ -28,7 +28,7 @@ struct ArmRun {
 
 // The figure with one form of the derivative.
 struct FormRuns {
-  Response linear;
+  design::Response linear;
   runs::StepResponse linear_step;
   ArmRun nonlinear;
 };
@@ -68,10 +68,10 @@ struct RetunedStep {
 };
 
 struct RetunedRuns {
-  RigidDrive drive;
-  FastestMove fastest;
+  design::RigidDrive drive;
+  design::FastestMove fastest;
   double shortest = 0;           // s, shortest settling time
-  StepTrial shipped;             // config/retuned.toml
+  tune::StepTrial shipped;       // config/retuned.toml
   bool shipped_is_best = false;  // a repeated search finds the shipped gains
   ArmRun run;
   double ratio = 0;  // settling time over the shortest
@@ -82,7 +82,7 @@ struct RetunedRuns {
 
 struct Figure10Runs {
   model::ModelDescription model;
-  DesignModel design;
+  design::DesignModel design;
   double c1 = 0, c2 = 0;          // psi/rad, psi s/rad
   std::array<FormRuns, 2> forms;  // derivative on the error (as printed) and on the measurement
   double form_difference = 0;     // rad, largest difference between the two in the full model

@@ -109,7 +109,7 @@ struct MidStrokeStudy {
   double worst_deg = 0;
 
   // In closed form.
-  SecondOrderModel design = {1, kLoopNaturalFrequency, kLoopDampingRatio, 0};
+  design::SecondOrderModel design = {1, kLoopNaturalFrequency, kLoopDampingRatio, 0};
   double sticking = 0;     // psi; nothing moves at smaller amplitudes
   double figure_zeta = 0;  // the design's plus friction's, at the figure's amplitude
   pressure_ctrl::SecondOrder one_sided_rule;
@@ -231,7 +231,7 @@ std::vector<Comparison> Comparisons(const MidStrokeStudy& study) {
       {"damping ratio, side 1 held at p_3", "", "", study.one_sided_rule.damping_ratio,
        cases.one_sided.fit.model.damping_ratio, "expected: .5 √2"},
       {"bandwidth, side 1 held at p_3", "Hz", "",
-       SecondOrderModel{1, study.one_sided_rule.natural_frequency, study.one_sided_rule.damping_ratio, 0}
+       design::SecondOrderModel{1, study.one_sided_rule.natural_frequency, study.one_sided_rule.damping_ratio, 0}
            .BandwidthHz(),
        cases.one_sided.bandwidth_hz, ""},
       {"natural frequency, side 1 held at p_3, gains designed for it", "rad/s", "", kLoopNaturalFrequency,

@@ -134,7 +134,7 @@ void SolveInClosedForm(QuarterTurnStudy* study) {
   study->ratio = 1 / std::sqrt(1 - displaced * displaced);
   study->alike_V_ms = p.c * kQuarterTurn / std::sqrt(1 - 1 / (kAlike * kAlike));
   study->two_sided_hz =
-      SecondOrderModel{1, study->two_sides.natural_frequency, study->two_sides.damping_ratio, 0}
+      design::SecondOrderModel{1, study->two_sides.natural_frequency, study->two_sides.damping_ratio, 0}
           .BandwidthHz();
 }
 
@@ -221,7 +221,7 @@ std::vector<Comparison> Comparisons(const QuarterTurnStudy& study) {
       {"natural frequency at α = 0, the same gains", "rad/s", "roughly 150", kLoopNaturalFrequency,
        cases.mid_stroke.fit.model.natural_frequency, ""},
       {"bandwidth with gains for π/2", "Hz", "about 32",
-       SecondOrderModel{1, kLoopNaturalFrequency, kLoopDampingRatio, 0}.BandwidthHz(),
+       design::SecondOrderModel{1, kLoopNaturalFrequency, kLoopDampingRatio, 0}.BandwidthHz(),
        cases.redesigned.bandwidth_hz, ""},
       {"natural frequency, only V_2 compresses", "rad/s", "", study.large_side.natural_frequency,
        cases.large_side.fit.model.natural_frequency, ""},

@@ -7,7 +7,7 @@
 
 namespace hydro::experiments {
 
-std::string DrawPositionLoop(const DesignModel& m, double gain) {
+std::string DrawPositionLoop(const design::DesignModel& m, double gain) {
   const auto number = [](double value) { return fmt::format("{:g}", value); };
   return page::FillDrawing(kPositionLoopDrawing,
                            {{"zero", number(m.zero)},

@@ -3,11 +3,11 @@
 
 #include <string>
 
-#include "experiments/maths/position_design.h"
+#include "design/position_design.h"
 
 namespace hydro::experiments {
 
 // An <svg> element for Figure::drawing.
-std::string DrawPositionLoop(const DesignModel& model, double gain);
+std::string DrawPositionLoop(const design::DesignModel& model, double gain);
 
 }  // namespace hydro::experiments

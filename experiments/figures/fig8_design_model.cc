@@ -7,7 +7,7 @@
 #include "base/units.h"
 #include "experiments/figures/catalogue.h"
 #include "experiments/figures/fig8_block_diagram.h"
-#include "experiments/maths/arm_loop.h"
+#include "design/arm_loop.h"
 #include "experiments/runs/shipped_models.h"
 #include "experiments/studies/design_numbers.h"
 #include "experiments/studies/json_text.h"
@@ -17,10 +17,10 @@ namespace {
 
 using nlohmann::json;
 
-double Decibel(const Complex& z) { return 20 * std::log10(std::abs(z)); }
+double Decibel(const design::Complex& z) { return 20 * std::log10(std::abs(z)); }
 
 // Degrees, unwrapped from the previous value.
-double Phase(const Complex& z, double previous) {
+double Phase(const design::Complex& z, double previous) {
   const double phase = Degrees(std::arg(z));
   return phase + 360 * std::round((previous - phase) / 360);
 }
@@ -33,9 +33,9 @@ struct Bode {
 // Figure 8's model beside exact linearisations of Table 1's model.
 struct DesignStudy {
   model::Parameters p;
-  DesignModel design;
-  StabilityLimit limit;
-  Margins margins;
+  design::DesignModel design;
+  design::StabilityLimit limit;
+  design::Margins margins;
 
   // The pressure loop that eq. (16) closes around the real model, with the arm clamped.
   pressure_ctrl::PressureLawSettings law;
@@ -43,27 +43,27 @@ struct DesignStudy {
   pressure_ctrl::SecondOrder one_sided;
   // Poles of the whole loop with the arm free.
   double reflected = 0;  // lbf-in-s^2, the pump's inertia at the arm
-  std::vector<Complex> exact;
-  std::vector<Complex> exact_assisted;  // with arm-speed feed-forward
-  std::vector<Complex> without_motion;  // without the flow that the arm's motion forces
+  std::vector<design::Complex> exact;
+  std::vector<design::Complex> exact_assisted;  // with arm-speed feed-forward
+  std::vector<design::Complex> without_motion;  // without the flow that the arm's motion forces
   Bode bode;
 };
 
-Bode SweepFrequencies(const DesignStudy& study, const LinearArmLoop& arm, const LinearArmLoop& assisted) {
+Bode SweepFrequencies(const DesignStudy& study, const design::LinearArmLoop& arm, const design::LinearArmLoop& assisted) {
   const model::Parameters& p = study.p;
-  const DesignModel& design = study.design;
+  const design::DesignModel& design = study.design;
   Bode bode;
   double open_phase = -180, closed_phase = 0;
   for (int i = 0; i <= 400; ++i) {
     const double w = std::pow(10.0, 3.0 * i / 400);  // 1 to 1000 rad/s
-    const Complex open = OpenLoop(design, kPaperGain, w);
-    const Complex closed = ClosedLoop(design, kPaperGain, DerivativeForm::kMeasurement, w);
+    const design::Complex open = design::OpenLoop(design, kPaperGain, w);
+    const design::Complex closed = design::ClosedLoop(design, kPaperGain, design::DerivativeForm::kMeasurement, w);
     bode.frequency.push_back(w);
     bode.open_db.push_back(Decibel(open));
     bode.open_deg.push_back(open_phase = Phase(open, open_phase));
     bode.closed_db.push_back(Decibel(closed));
     bode.closed_deg.push_back(closed_phase = Phase(closed, closed_phase));
-    const Complex s(0, w);
+    const design::Complex s(0, w);
     const auto second_order = [&](double natural, double damping) {
       return natural * natural / (s * s + 2 * damping * natural * s + natural * natural);
     };
@@ -81,30 +81,30 @@ DesignStudy RunStudy(const ExperimentOptions& options) {
   const model::ModelDescription table1 = ShippedModel("table1");
   DesignStudy study;
   study.p = table1.parameters;
-  study.design = Figure8Model(study.p);
+  study.design = design::Figure8Model(study.p);
   const model::Parameters& p = study.p;
-  const DesignModel& design = study.design;
-  study.limit = RouthLimit(design);
-  study.margins = StabilityMargins(design, kPaperGain);
+  const design::DesignModel& design = study.design;
+  study.limit = design::RouthLimit(design);
+  study.margins = design::StabilityMargins(design, kPaperGain);
 
   study.law.gains =
       pressure_ctrl::DerivePressureGains(p, 0, design.natural_frequency, design.damping_ratio, 2);
-  study.two_sided = ExactPressureLoop(table1, study.law, 2);
-  study.one_sided = ExactPressureLoop(table1, study.law, 1);
+  study.two_sided = design::ExactPressureLoop(table1, study.law, 2);
+  study.one_sided = design::ExactPressureLoop(table1, study.law, 1);
 
   const double c1 = design.zero * kPaperGain, c2 = kPaperGain;
-  const LinearArmLoop arm(table1, study.law);
+  const design::LinearArmLoop arm(table1, study.law);
   study.exact = arm.Poles(c1, c2);
   study.reflected = p.J * std::pow(p.c / p.D, 2);
   pressure_ctrl::PressureLawSettings feedforward = study.law;
   feedforward.arm_speed_ratio = p.c / p.D;
-  const LinearArmLoop assisted(table1, feedforward);
+  const design::LinearArmLoop assisted(table1, feedforward);
   study.exact_assisted = assisted.Poles(c1, c2);
   // If the displacement does not respond to the arm's motion, Figure 8 must remain: the check that nothing
   // else differs.
   model::ModelDescription still = table1;
   still.parameters.c *= 1e-9;
-  study.without_motion = LinearArmLoop(still, study.law).Poles(c1, c2);
+  study.without_motion = design::LinearArmLoop(still, study.law).Poles(c1, c2);
   options.progress(0.5);
 
   study.bode = SweepFrequencies(study, arm, assisted);
@@ -140,7 +140,7 @@ std::string Explanation(const DesignStudy& study) {
       fmt::arg("one_sided_zeta", study.one_sided.damping_ratio), fmt::arg("ratio", study.p.c / study.p.D),
       fmt::arg("reflected", study.reflected), fmt::arg("J_a", study.p.J_a),
       fmt::arg("slow_pole", SlowestPole(study.exact).real()), fmt::arg("g", kPaperGain),
-      fmt::arg("design_pole", SlowestPole(Poles(study.design, kPaperGain)).real()),
+      fmt::arg("design_pole", SlowestPole(design::Poles(study.design, kPaperGain)).real()),
       fmt::arg("assisted_pole", PoleText(SlowestPole(study.exact_assisted))),
       fmt::arg("first_pole", PoleText(study.without_motion.front())),
       fmt::arg("last_pole", PoleText(SlowestPole(study.without_motion))));
@@ -158,7 +158,7 @@ std::vector<Comparison> Comparisons(const DesignStudy& study) {
       {"gain margin at g = 350", "", "2.2 (770/350)", study.limit.gain / kPaperGain, study.margins.gain, ""},
       {"phase margin at g = 350", "degrees", "", page::kAutomatic, study.margins.phase_deg,
        fmt::format("at {:.1f} rad/s", study.margins.gain_crossover)},
-      {"slowest pole at g = 350, arm free", "1/s", "", -SlowestPole(Poles(study.design, kPaperGain)).real(),
+      {"slowest pole at g = 350, arm free", "1/s", "", -SlowestPole(design::Poles(study.design, kPaperGain)).real(),
        -SlowestPole(study.exact).real(), "expected: of Figure 8's model; here: of the exact one"},
       {"reflected inertia of the pump", "lbf-in-s^2", "", page::kAutomatic, study.reflected,
        fmt::format("J_a = {:g}; Figure 8 has J_a alone", study.p.J_a)},
@@ -169,7 +169,7 @@ json Numbers(const DesignStudy& study) {
   return {{"gain", kPaperGain},
           {"critical_gain", study.limit.gain},
           {"critical_frequency_rad_s", study.limit.frequency},
-          {"poles_at_350", AsPairs(Poles(study.design, kPaperGain))},
+          {"poles_at_350", AsPairs(design::Poles(study.design, kPaperGain))},
           {"gain_margin", study.margins.gain},
           {"gain_margin_db", 20 * std::log10(study.margins.gain)},
           {"phase_margin_deg", study.margins.phase_deg},
@@ -202,7 +202,7 @@ std::vector<tables::Column> Columns(const Bode& bode) {
           {"pressure_free_arm_feedforward_db", bode.feedforward_db}};
 }
 
-Picture DiagramPicture(const DesignModel& design) {
+Picture DiagramPicture(const design::DesignModel& design) {
   return {"",
           {.caption =
                fmt::format("The design model of the position loop with its numbers, as the paper's Figure 8. "
@@ -223,7 +223,7 @@ page::Curve OverFrequency(const Bode& bode, const std::string& label, const std:
 
 Picture BodePicture(const DesignStudy& study) {
   const Bode& bode = study.bode;
-  const Margins& margins = study.margins;
+  const design::Margins& margins = study.margins;
   page::Panel magnitude{
       .title = "Magnitude",
       .x = FrequencyAxis(),

@@ -8,7 +8,7 @@
 
 #include "base/units.h"
 #include "experiments/figures/catalogue.h"
-#include "experiments/maths/sampled_position_loop.h"
+#include "design/sampled_position_loop.h"
 #include "experiments/runs/shipped_models.h"
 #include "experiments/studies/design_numbers.h"
 #include "experiments/studies/json_text.h"
@@ -28,23 +28,23 @@ constexpr double kResolution = 1e-5;   // s; simulation confirms the largest sta
 constexpr std::array<double, 4> kIntervals = {0.001, 0.002, 0.005, 0.010};
 
 struct Form {
-  DerivativeForm form;
+  design::DerivativeForm form;
   const char* key;
   const char* name;
 };
 constexpr std::array<Form, 2> kForms = {
-    Form{DerivativeForm::kError, "on_error", "Derivative of the error, eq. (17) as printed"},
-    Form{DerivativeForm::kMeasurement, "on_measurement", "Derivative of the measurement"}};
+    Form{design::DerivativeForm::kError, "on_error", "Derivative of the error, eq. (17) as printed"},
+    Form{design::DerivativeForm::kMeasurement, "on_measurement", "Derivative of the measurement"}};
 
 // Branches of the locus: the poles over the gain, each followed from one gain to the next.
-std::vector<std::vector<Complex>> FollowBranches(const std::vector<std::vector<Complex>>& poles) {
-  std::vector<std::vector<Complex>> branches(poles.front().size());
+std::vector<std::vector<design::Complex>> FollowBranches(const std::vector<std::vector<design::Complex>>& poles) {
+  std::vector<std::vector<design::Complex>> branches(poles.front().size());
   for (size_t b = 0; b < branches.size(); ++b) branches[b].push_back(poles.front()[b]);
   for (size_t i = 1; i < poles.size(); ++i) {
-    std::vector<Complex> left = poles[i];
+    std::vector<design::Complex> left = poles[i];
     for (auto& branch : branches) {
       const auto nearest =
-          std::min_element(left.begin(), left.end(), [&](const Complex& a, const Complex& b) {
+          std::min_element(left.begin(), left.end(), [&](const design::Complex& a, const design::Complex& b) {
             return std::abs(a - branch.back()) < std::abs(b - branch.back());
           });
       branch.push_back(*nearest);
@@ -54,26 +54,26 @@ std::vector<std::vector<Complex>> FollowBranches(const std::vector<std::vector<C
   return branches;
 }
 
-page::Curve Points(const std::string& label, const std::vector<Complex>& points, int colour,
+page::Curve Points(const std::string& label, const std::vector<design::Complex>& points, int colour,
                    page::Stroke stroke = page::Stroke::kPoints) {
   page::Curve curve{
       .label = label, .x = {}, .y = {}, .stroke = stroke, .colour = colour, .y_low = {}, .y_high = {}};
   if (stroke == page::Stroke::kPoints) curve.weight = page::Weight::kStrong;
-  for (const Complex& point : points) {
+  for (const design::Complex& point : points) {
     curve.x.push_back(point.real());
     curve.y.push_back(point.imag());
   }
   return curve;
 }
 
-runs::StepResponse Measure(const Response& response) {
+runs::StepResponse Measure(const design::Response& response) {
   return runs::MeasureStep(response.time, response.angle, 0, response.time.size(), 0, kStep);
 }
 
 // Whether a simulated step dies away: compares its deviation late in the run with that earlier.
-bool SimulatedStepDecays(const DesignModel& model, double interval, DerivativeForm form) {
+bool SimulatedStepDecays(const design::DesignModel& model, double interval, design::DerivativeForm form) {
   constexpr int kSamples = 30000;
-  const Response response = SampledStep(model, kPaperGain, interval, form, kStep, kSamples * interval, 1);
+  const design::Response response = design::SampledStep(model, kPaperGain, interval, form, kStep, kSamples * interval, 1);
   const auto deviation = [&](size_t from, size_t to) {
     double most = 0;
     for (size_t i = from; i < to; ++i) most = std::max(most, std::fabs(response.angle[i] - kStep));
@@ -87,7 +87,7 @@ struct SampledLoop {
   double interval = 0;         // s
   double spectral_radius = 0;  // below 1: stable
   double critical_gain = 0;
-  std::vector<Complex> poles;                          // in the z plane
+  std::vector<design::Complex> poles;                          // in the z plane
   std::array<runs::StepResponse, kForms.size()> step;  // one per form
 
   bool stable() const { return spectral_radius < 1; }
@@ -97,15 +97,15 @@ struct SampledLoop {
 
 struct RootLocusStudy {
   model::Parameters p;
-  DesignModel design;
-  StabilityLimit limit;
-  DesignModel printed_ratio;  // with k_2 from the ratio printed in the text
-  StabilityLimit printed_limit;
-  std::vector<Complex> paper_poles;
+  design::DesignModel design;
+  design::StabilityLimit limit;
+  design::DesignModel printed_ratio;  // with k_2 from the ratio printed in the text
+  design::StabilityLimit printed_limit;
+  std::vector<design::Complex> paper_poles;
 
   std::vector<double> gains;
-  std::vector<std::vector<Complex>> poles;     // one set per gain
-  std::vector<std::vector<Complex>> branches;  // the same poles, followed over the gain
+  std::vector<std::vector<design::Complex>> poles;     // one set per gain
+  std::vector<std::vector<design::Complex>> branches;  // the same poles, followed over the gain
 
   std::array<runs::StepResponse, kForms.size()> continuous;
   std::array<SampledLoop, kIntervals.size()> sampled;
@@ -118,20 +118,20 @@ struct RootLocusStudy {
 void TraceLocus(RootLocusStudy* study) {
   for (int i = 0; i <= 3000; ++i) {
     study->gains.push_back(1200.0 * std::pow(i / 3000.0, 2));  // dense where poles leave the origin
-    study->poles.push_back(Poles(study->design, study->gains.back()));
+    study->poles.push_back(design::Poles(study->design, study->gains.back()));
   }
   study->branches = FollowBranches(study->poles);
 }
 
-SampledLoop SampleLoop(const DesignModel& design, double interval) {
+SampledLoop SampleLoop(const design::DesignModel& design, double interval) {
   SampledLoop loop{.interval = interval,
-                   .spectral_radius = SpectralRadius(design, kPaperGain, interval),
-                   .critical_gain = SampledCriticalGain(design, interval),
-                   .poles = SampledPoles(design, kPaperGain, interval),
+                   .spectral_radius = design::SpectralRadius(design, kPaperGain, interval),
+                   .critical_gain = design::SampledCriticalGain(design, interval),
+                   .poles = design::SampledPoles(design, kPaperGain, interval),
                    .step = {}};
   const int points = static_cast<int>(std::lround(interval / 1e-4));
   for (size_t f = 0; f < kForms.size(); ++f) {
-    loop.step[f] = Measure(SampledStep(design, kPaperGain, interval, kForms[f].form, kStep, 2, points));
+    loop.step[f] = Measure(design::SampledStep(design, kPaperGain, interval, kForms[f].form, kStep, 2, points));
   }
   return loop;
 }
@@ -139,19 +139,19 @@ SampledLoop SampleLoop(const DesignModel& design, double interval) {
 RootLocusStudy RunStudy(const ExperimentOptions& options) {
   RootLocusStudy study;
   study.p = ShippedModel("table1").parameters;
-  const DesignModel design = study.design = Figure8Model(study.p);
-  study.limit = RouthLimit(design);
+  const design::DesignModel design = study.design = design::Figure8Model(study.p);
+  study.limit = design::RouthLimit(design);
   study.printed_ratio = design;
   study.printed_ratio.k_2 = kPaperRatio * study.p.D;
-  study.printed_limit = RouthLimit(study.printed_ratio);
-  study.paper_poles = Poles(design, kPaperGain);
+  study.printed_limit = design::RouthLimit(study.printed_ratio);
+  study.paper_poles = design::Poles(design, kPaperGain);
   TraceLocus(&study);
   options.progress(0.3);
   for (size_t f = 0; f < kForms.size(); ++f) {
-    study.continuous[f] = Measure(ContinuousStep(design, kPaperGain, kForms[f].form, kStep, 2, 1e-4));
+    study.continuous[f] = Measure(design::ContinuousStep(design, kPaperGain, kForms[f].form, kStep, 2, 1e-4));
   }
   for (size_t t = 0; t < kIntervals.size(); ++t) study.sampled[t] = SampleLoop(design, kIntervals[t]);
-  study.largest = LargestStableInterval(design, kPaperGain);
+  study.largest = design::LargestStableInterval(design, kPaperGain);
   for (size_t f = 0; f < kForms.size(); ++f) {
     study.confirmed[f] = SimulatedStepDecays(design, study.largest - kResolution, kForms[f].form) &&
                          !SimulatedStepDecays(design, study.largest + kResolution, kForms[f].form);
@@ -195,12 +195,12 @@ std::string Explanation(const RootLocusStudy& study) {
 
 std::vector<Comparison> Comparisons(const RootLocusStudy& study) {
   std::vector<Comparison> comparisons = {
-      {"critical gain g", "psi s/rad", "770", study.limit.gain, CriticalGainOfPoles(study.design),
+      {"critical gain g", "psi s/rad", "770", study.limit.gain, design::CriticalGainOfPoles(study.design),
        "expected: Routh, closed form; here: where eigenvalues cross"},
       {"frequency there", "rad/s", "", study.limit.frequency,
-       std::fabs(Poles(study.design, study.limit.gain).back().imag()), ""},
+       std::fabs(design::Poles(study.design, study.limit.gain).back().imag()), ""},
       {"critical gain with k_2 from 484.7:1", "psi s/rad", "770", study.printed_limit.gain,
-       CriticalGainOfPoles(study.printed_ratio), fmt::format("k_2 = {:.3f}", study.printed_ratio.k_2)},
+       design::CriticalGainOfPoles(study.printed_ratio), fmt::format("k_2 = {:.3f}", study.printed_ratio.k_2)},
       {"largest stable T at g = 350", "ms", "", kNaN, 1e3 * study.largest,
        "in either form of the derivative"},
   };
@@ -289,7 +289,7 @@ std::vector<tables::Column> Columns(const RootLocusStudy& study) {
   for (size_t b = 0; b < study.branches.size(); ++b) {
     tables::Column re{fmt::format("pole_{}_re_1_s", b + 1), {}},
         im{fmt::format("pole_{}_im_rad_s", b + 1), {}};
-    for (const Complex& pole : study.branches[b]) {
+    for (const design::Complex& pole : study.branches[b]) {
       re.values.push_back(pole.real());
       im.values.push_back(pole.imag());
     }
@@ -314,10 +314,10 @@ Picture LocusPicture(const RootLocusStudy& study) {
     locus.curves.push_back(Points(b == 0 ? "locus over g" : "", study.branches[b], 0, page::Stroke::kLine));
   }
   locus.curves.push_back(Points("open loop, g = 0", study.poles.front(), 1));
-  locus.curves.push_back(Points("zero", {Complex(-study.design.zero, 0)}, 2));
+  locus.curves.push_back(Points("zero", {design::Complex(-study.design.zero, 0)}, 2));
   locus.curves.push_back(Points(fmt::format("g = {:g}", kPaperGain), study.paper_poles, 3));
   locus.curves.push_back(
-      Points(fmt::format("g = {:.1f}", study.limit.gain), Poles(study.design, study.limit.gain), 4));
+      Points(fmt::format("g = {:.1f}", study.limit.gain), design::Poles(study.design, study.limit.gain), 4));
   return {"",
           {.caption = fmt::format(
                "Root locus of Figure 8's model, c_1/c_2 = {:g}, g from 0 to {:g}. The poles cross the "
@@ -328,17 +328,17 @@ Picture LocusPicture(const RootLocusStudy& study) {
 }
 
 // Steps of the loop with one form of the derivative, continuous and sampled.
-page::Panel StepPanel(const DesignModel& design, size_t f) {
+page::Panel StepPanel(const design::DesignModel& design, size_t f) {
   page::Panel panel;
   panel.title = kForms[f].name;
   panel.x = {.label = "time, s", .logarithmic = false, .min = 0, .max = 0.4};
   panel.y = {
       .label = "α, rad", .logarithmic = false, .min = f == 0 ? -0.05 : 0.0, .max = f == 0 ? 0.25 : 0.2};
-  const Response continuous = ContinuousStep(design, kPaperGain, kForms[f].form, kStep, kDuration, 5e-4);
+  const design::Response continuous = design::ContinuousStep(design, kPaperGain, kForms[f].form, kStep, kDuration, 5e-4);
   panel.curves.push_back({"continuous", continuous.time, continuous.angle, page::Stroke::kLine, 0, {}, {}});
   for (size_t t = 0; t < kIntervals.size(); ++t) {
     const double interval = kIntervals[t];
-    const Response step = SampledStep(design, kPaperGain, interval, kForms[f].form, kStep, kDuration,
+    const design::Response step = design::SampledStep(design, kPaperGain, interval, kForms[f].form, kStep, kDuration,
                                       static_cast<int>(std::lround(interval / 5e-4)));
     panel.curves.push_back({fmt::format("T = {:g} ms", interval * 1e3),
                             step.time,
@@ -371,7 +371,7 @@ Picture SampledPolesPicture(const RootLocusStudy& study) {
                     .rules = {{"", true, 0}, {"", false, 0}},
                     .equal_scales = true,
                     .height = 1.8};
-  std::vector<Complex> circle;
+  std::vector<design::Complex> circle;
   for (int i = 0; i <= 360; ++i) circle.push_back(std::polar(1.0, i * kDegree));
   plane.curves.push_back(Points("unit circle", circle, 0, page::Stroke::kDotted));
   for (size_t t = 0; t < study.sampled.size(); ++t) {

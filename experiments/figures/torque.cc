@@ -150,9 +150,9 @@ Picture BandwidthPicture(const Study& study) {
   for (const TorqueSweep& sweep : study.sweeps) {
     page::Curve gains{.label = SweepName(sweep), .x = {}, .y = {}, .y_low = {}, .y_high = {}};
     page::Curve coherences = gains;
-    for (const ResponsePoint& point : sweep.points) {
+    for (const design::ResponsePoint& point : sweep.points) {
       gains.x.push_back(point.frequency_hz);
-      gains.y.push_back(Decibels(point.gain));
+      gains.y.push_back(design::Decibels(point.gain));
       coherences.x.push_back(point.frequency_hz);
       coherences.y.push_back(point.coherence);
     }
@@ -248,7 +248,7 @@ json Numbers(const Study& study) {
   json sweeps = json::array();
   for (const TorqueSweep& sweep : study.sweeps) {
     double least = 1;
-    for (const ResponsePoint& point : sweep.points) least = std::min(least, point.coherence);
+    for (const design::ResponsePoint& point : sweep.points) least = std::min(least, point.coherence);
     sweeps.push_back({{"mean_in_lbf", sweep.mean},
                       {"amplitude_in_lbf", sweep.amplitude},
                       {"bandwidth_hz", std::isnan(sweep.bandwidth_hz) ? json() : json(sweep.bandwidth_hz)},

@@ -76,7 +76,7 @@ std::string Explanation(const WavesStudy& study) {
       "in of {bore} in bore (oil of 0.85 kg/l); by the speed of sound, {sound:.0f} in/s, 300 Hz is a quarter "
       "wave of {quarter_wave:.0f} in.",
       fmt::arg("mode_hz", study.mode_hz), fmt::arg("mode_damping", study.mode_damping),
-      fmt::arg("peak_hz", study.peak.frequency_hz), fmt::arg("peak_db", Decibels(study.peak.gain)),
+      fmt::arg("peak_hz", study.peak.frequency_hz), fmt::arg("peak_db", design::Decibels(study.peak.gain)),
       fmt::arg("k_p_limit", study.highest_k_p()), fmt::arg("factor", study.limits.gain.factor),
       fmt::arg("frequency_limit", study.limits.natural_frequency),
       fmt::arg("frequency_ratio", study.limits.natural_frequency / kLoopNaturalFrequency),
@@ -141,11 +141,11 @@ json ByDamping(const WavesStudy& study) {
 std::vector<tables::Column> Columns(const WavesStudy& study) {
   tables::Column frequency{"frequency_hz", {}};
   tables::Column gain{"gain_db", {}};
-  tables::Column phase{"phase_deg", PhasesDeg(study.swept.points)};
+  tables::Column phase{"phase_deg", design::PhasesDeg(study.swept.points)};
   tables::Column coherence{"coherence", {}};
-  for (const ResponsePoint& point : study.swept.points) {
+  for (const design::ResponsePoint& point : study.swept.points) {
     frequency.values.push_back(point.frequency_hz);
-    gain.values.push_back(Decibels(point.gain));
+    gain.values.push_back(design::Decibels(point.gain));
     coherence.values.push_back(point.coherence);
   }
   return {frequency, gain, phase, coherence};
@@ -161,7 +161,7 @@ json Numbers(const WavesStudy& study, const std::vector<tables::Column>& columns
                    {{"frequency_hz", std::abs(study.closed_pole) / (2 * std::numbers::pi)},
                     {"damping", -study.closed_pole.real() / std::abs(study.closed_pole)}}},
                   {"peak_hz", study.peak.frequency_hz},
-                  {"peak_gain_db", Decibels(study.peak.gain)},
+                  {"peak_gain_db", design::Decibels(study.peak.gain)},
                   {"k_p_V_per_psi", study.gains.k_p},
                   {"k_v_psi_s_per_rad", study.gains.k_v},
                   {"sensors_at_pump", Describe(study.at_pump, study.gains)},
@@ -188,8 +188,8 @@ json Numbers(const WavesStudy& study, const std::vector<tables::Column>& columns
 
 Picture BodePicture(const WavesStudy& study) {
   const pressure_ctrl::PressureGains& gains = study.gains;
-  const LinearPressureLoop linear = study.swept_linear();
-  const LinearPressureLoop rigid(LinearisedClamped(ShippedModel("table1")), {1 / study.sweep.rate_hz, 0});
+  const design::LinearPressureLoop linear = study.swept_linear();
+  const design::LinearPressureLoop rigid(LinearisedClamped(ShippedModel("table1")), {1 / study.sweep.rate_hz, 0});
   return {
       "",
       {.caption = fmt::format("Closed pressure loop with waves in the lines ({} Hz, damping {}), swept sine "
@@ -208,7 +208,7 @@ Picture BodePicture(const WavesStudy& study) {
 }
 
 // The real part of the wave's pole over k_p, followed from gain to gain.
-page::Curve GrowthCurve(const std::string& label, const LinearPressureLoop& loop,
+page::Curve GrowthCurve(const std::string& label, const design::LinearPressureLoop& loop,
                         const pressure_ctrl::PressureGains& gains) {
   page::Curve curve = page::Line(label, {}, {}, -1);
   std::complex<double> wave = WavePole(loop, gains);
@@ -227,10 +227,10 @@ page::Curve GrowthCurve(const std::string& label, const LinearPressureLoop& loop
 Picture GainPicture(const WavesStudy& study) {
   const pressure_ctrl::PressureGains& gains = study.gains;
   const std::vector<page::Curve> growth = {
-      GrowthCurve("analog", LinearPressureLoop(study.linear, {}), gains),
-      GrowthCurve("5 kHz, one tick of delay", LinearPressureLoop(study.linear, study.shipped().timing),
+      GrowthCurve("analog", design::LinearPressureLoop(study.linear, {}), gains),
+      GrowthCurve("5 kHz, one tick of delay", design::LinearPressureLoop(study.linear, study.shipped().timing),
                   gains),
-      GrowthCurve("analog, transducers at the pump", LinearPressureLoop(SensedAtPump(study.linear), {}),
+      GrowthCurve("analog, transducers at the pump", design::LinearPressureLoop(SensedAtPump(study.linear), {}),
                   gains)};
   return {
       "-gain",

@@ -31,7 +31,7 @@ model::ModelDescription WithWaves(double frequency_hz, double volume_fraction, d
   return model;
 }
 
-WaveLimits FindLimits(const LinearPressureLoop& loop, const model::Parameters& p,
+WaveLimits FindLimits(const design::LinearPressureLoop& loop, const model::Parameters& p,
                       const pressure_ctrl::PressureGains& gains) {
   const auto stable = [&](double natural_frequency) {
     return loop.Growth(pressure_ctrl::DerivePressureGains(p, 0, natural_frequency, kLoopDampingRatio, 2)) < 0;
@@ -46,10 +46,10 @@ WaveLimits FindLimits(const LinearPressureLoop& loop, const model::Parameters& p
     const double middle = 0.5 * (low + high);
     (stable(middle) ? low : high) = middle;
   }
-  return {LargestStableFactor(loop, gains, kMostFactor), low};
+  return {design::LargestStableFactor(loop, gains, kMostFactor), low};
 }
 
-GainTrial RunTrial(const model::ModelDescription& model, const LoopTiming& timing,
+GainTrial RunTrial(const model::ModelDescription& model, const design::LoopTiming& timing,
                    const pressure_ctrl::PressureGains& gains, double factor, const StackRunner& run_stack) {
   constexpr double kDuration = 1.5;
   const double rate = 1 / timing.interval;
@@ -65,7 +65,7 @@ GainTrial RunTrial(const model::ModelDescription& model, const LoopTiming& timin
   GainTrial trial = {factor, table.Find("time_s")->values, table.Find("p2_psi")->values, 0, 0};
   const std::vector<double>& p1 = table.Find("p1_psi")->values;
   for (size_t i = 0; i < p1.size(); ++i) trial.dp[i] -= p1[i];
-  trial.expected = LinearPressureLoop(LinearisedClamped(model), timing).LeastDampedPole(gains).real();
+  trial.expected = design::LinearPressureLoop(LinearisedClamped(model), timing).LeastDampedPole(gains).real();
   // Swings over about half a period, in two windows.
   const auto half_period = static_cast<size_t>(std::lround(rate / kWaveHz / 2));
   const auto swing = [&](double from, double to) {
@@ -81,19 +81,19 @@ GainTrial RunTrial(const model::ModelDescription& model, const LoopTiming& timin
 
 // The linearised loop's result: the wave's mode and the gains that it allows.
 void AnalyseAnalogLoop(WavesStudy* study) {
-  const LinearPressureLoop analog(study->linear, {});
+  const design::LinearPressureLoop analog(study->linear, {});
   const std::complex<double> open_pole = WavePole(analog, {});
   study->closed_pole = WavePole(analog, study->gains);
   study->mode_hz = std::abs(open_pole) / (2 * std::numbers::pi);
   study->mode_damping = -open_pole.real() / std::abs(open_pole);
   study->limits = FindLimits(analog, study->p, study->gains);
-  study->at_pump = FindLimits(LinearPressureLoop(SensedAtPump(study->linear), {}), study->p, study->gains);
+  study->at_pump = FindLimits(design::LinearPressureLoop(SensedAtPump(study->linear), {}), study->p, study->gains);
 }
 
 void AnalyseSampledLoops(WavesStudy* study) {
   study->sampled = {{{1e-4, 0}, {}}, {{1e-4, 1}, {}}, {{2e-4, 0}, {}}, {{2e-4, 1}, {}}, {{1e-3, 1}, {}}};
   for (SampledPressureLoop& one : study->sampled) {
-    one.limits = FindLimits(LinearPressureLoop(study->linear, one.timing), study->p, study->gains);
+    one.limits = FindLimits(design::LinearPressureLoop(study->linear, one.timing), study->p, study->gains);
   }
 }
 
@@ -104,10 +104,10 @@ void RunSweep(const StackRunner& run_stack, WavesStudy* study) {
   sweep.rate_hz = 10000;
   sweep.bands = {{6, 100, 5, 1.5, 16}, {100, 250, 5, 2, 64}, {250, 350, 6, 4, 400}, {350, 600, 5, 2, 64}};
   study->swept = RunPressureSweep(sweep, run_stack);
-  const LinearPressureLoop linear = study->swept_linear();
-  for (const ResponsePoint& point : study->swept.points) {
+  const design::LinearPressureLoop linear = study->swept_linear();
+  for (const design::ResponsePoint& point : study->swept.points) {
     const std::complex<double> error = point.gain / linear.ClosedGain(study->gains, point.frequency_hz);
-    study->worst_db = std::max(study->worst_db, std::abs(Decibels(error)));
+    study->worst_db = std::max(study->worst_db, std::abs(design::Decibels(error)));
     study->worst_deg = std::max(study->worst_deg, Degrees(std::abs(std::arg(error))));
     if (point.frequency_hz > 200 && std::abs(point.gain) > std::abs(study->peak.gain)) study->peak = point;
   }
@@ -128,12 +128,12 @@ void VaryLine(WavesStudy* study) {
     const double hz = ClosedFormHz(fraction);
     // Keeps the line's resistance too, so the mode's damping varies as 1/w.
     const double damping = kWaveDamping * kWaveHz / hz;
-    const LinearPressureLoop loop(LinearisedClamped(WithWaves(hz, fraction, damping)), {});
+    const design::LinearPressureLoop loop(LinearisedClamped(WithWaves(hz, fraction, damping)), {});
     study->by_volume.push_back({fraction, damping, hz, std::abs(WavePole(loop, {})) / (2 * std::numbers::pi),
                                 FindLimits(loop, study->p, study->gains)});
   }
   for (const double damping : {0.005, 0.01, 0.02, 0.05}) {
-    const LinearPressureLoop loop(LinearisedClamped(WithWaves(kWaveHz, kVolumeFraction, damping)), {});
+    const design::LinearPressureLoop loop(LinearisedClamped(WithWaves(kWaveHz, kVolumeFraction, damping)), {});
     study->by_damping.push_back({kVolumeFraction, damping, kWaveHz,
                                  std::abs(WavePole(loop, {})) / (2 * std::numbers::pi),
                                  FindLimits(loop, study->p, study->gains)});
@@ -161,7 +161,7 @@ model::LinearModel SensedAtPump(model::LinearModel model) {
   return model;
 }
 
-std::complex<double> WavePole(const LinearPressureLoop& loop, const pressure_ctrl::PressureGains& gains) {
+std::complex<double> WavePole(const design::LinearPressureLoop& loop, const pressure_ctrl::PressureGains& gains) {
   std::complex<double> wave = 0;
   for (const std::complex<double> pole : loop.VisiblePoles(gains)) {
     if (pole.imag() > wave.imag()) wave = pole;

@@ -5,13 +5,13 @@
 #include <complex>
 #include <vector>
 
-#include "experiments/maths/linear_loop.h"
+#include "design/linear_loop.h"
 #include "experiments/runs/pressure_loop_run.h"
 #include "experiments/runs/pressure_sweep.h"
 #include "experiments/studies/experiment.h"
 #include "model/linearise.h"
 #include "model/terms/description.h"
-#include "pressure_ctrl/pressure_law.h"
+#include "pressure_ctrl/law/pressure_law.h"
 
 namespace hydro::experiments {
 
@@ -23,7 +23,7 @@ inline constexpr double kMostFrequency = 3000;  // rad/s
 
 // What the wave allows in one loop.
 struct WaveLimits {
-  GainLimit gain;                // factor on the design's k_p, k_v unchanged
+  design::GainLimit gain;                // factor on the design's k_p, k_v unchanged
   double natural_frequency = 0;  // rad/s, when both gains follow from it and zeta = .5
 };
 
@@ -38,7 +38,7 @@ struct GainTrial {
 
 // The pressure loop at one sampling interval, with a command delay.
 struct SampledPressureLoop {
-  LoopTiming timing;
+  design::LoopTiming timing;
   WaveLimits limits;
 };
 
@@ -74,14 +74,14 @@ struct WavesStudy {
   SweptPressureLoop swept;
   double worst_db = 0;
   double worst_deg = 0;
-  ResponsePoint peak;
+  design::ResponsePoint peak;
 
   std::vector<GainTrial> trials;        // just below and just above the shipped loop's limit
   std::vector<LineVariant> by_volume;   // volume_fraction varies
   std::vector<LineVariant> by_damping;  // damping varies
 
   double highest_k_p() const { return limits.gain.factor * gains.k_p; }
-  LinearPressureLoop swept_linear() const { return {linear, {1 / sweep.rate_hz, 0}}; }
+  design::LinearPressureLoop swept_linear() const { return {linear, {1 / sweep.rate_hz, 0}}; }
 };
 
 // Table 1 with wave effects, analysed and run.
@@ -97,6 +97,6 @@ model::LinearModel LinearisedClamped(const model::ModelDescription& model);
 model::LinearModel SensedAtPump(model::LinearModel model);
 
 // The pole of the wave that the loop sees in the pressure difference: the fastest visible pole.
-std::complex<double> WavePole(const LinearPressureLoop& loop, const pressure_ctrl::PressureGains& gains);
+std::complex<double> WavePole(const design::LinearPressureLoop& loop, const pressure_ctrl::PressureGains& gains);
 
 }  // namespace hydro::experiments

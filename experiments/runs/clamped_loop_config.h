@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "pressure_ctrl/pressure_law.h"
+#include "pressure_ctrl/law/pressure_law.h"
 
 namespace hydro::experiments {
 

@@ -8,7 +8,7 @@
 #include "experiments/runs/stack_run.h"
 #include "model/terms/description.h"
 #include "page/plot.h"
-#include "pressure_ctrl/pressure_law.h"
+#include "pressure_ctrl/law/pressure_law.h"
 
 namespace hydro::experiments {
 

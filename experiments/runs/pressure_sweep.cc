@@ -59,13 +59,13 @@ SweptPressureLoop RunPressureSweep(const PressureSweep& sweep, const StackRunner
       result.largest_torque = std::max(result.largest_torque, torque);
     }
     rows += static_cast<double>(input.size());
-    const auto points = EstimateFrequencyResponse(input, output,
+    const auto points = design::EstimateFrequencyResponse(input, output,
                                                   {.sample_rate_hz = sweep.rate_hz,
                                                    .segment_s = band.segment_s,
                                                    .first_hz = band.first_hz,
                                                    .last_hz = band.last_hz,
                                                    .points_per_decade = band.points_per_decade});
-    for (const ResponsePoint& point : points) {
+    for (const design::ResponsePoint& point : points) {
       const bool new_one =
           result.points.empty() || point.frequency_hz > result.points.back().frequency_hz + 0.01;
       if (new_one) result.points.push_back(point);

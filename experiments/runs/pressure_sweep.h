@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
-#include "experiments/maths/frequency_response.h"
+#include "design/frequency_response.h"
 #include "experiments/runs/stack_run.h"
 #include "model/terms/description.h"
-#include "pressure_ctrl/pressure_law.h"
+#include "pressure_ctrl/law/pressure_law.h"
 
 namespace hydro::experiments {
 
@@ -40,7 +40,7 @@ struct PressureSweep {
 
 // What the loop did, over all runs. Fractions are of the sweeps' time.
 struct SweptPressureLoop {
-  std::vector<ResponsePoint> points;  // dp per dp_ref, samples per samples
+  std::vector<design::ResponsePoint> points;  // dp per dp_ref, samples per samples
   double saturated_fraction = 0;      // voltage at its limit
   double stuck_fraction = 0;          // pump at rest
   double both_compress_fraction = 0;  // both valves closed: p1, p2 > p_3

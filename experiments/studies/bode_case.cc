@@ -20,10 +20,10 @@ json Number(double value) { return std::isfinite(value) ? json(value) : json(nul
 
 struct Parts {
   std::vector<double> frequency, gain_db, phase_deg, coherence;
-  explicit Parts(const std::vector<ResponsePoint>& points) : phase_deg(PhasesDeg(points)) {
-    for (const ResponsePoint& point : points) {
+  explicit Parts(const std::vector<design::ResponsePoint>& points) : phase_deg(design::PhasesDeg(points)) {
+    for (const design::ResponsePoint& point : points) {
       frequency.push_back(point.frequency_hz);
-      gain_db.push_back(Decibels(point.gain));
+      gain_db.push_back(design::Decibels(point.gain));
       coherence.push_back(point.coherence);
     }
   }
@@ -49,34 +49,34 @@ model::Mode Side2Held() {
   return mode;
 }
 
-LinearPressureLoop LinearLoop(const PressureSweep& sweep, const model::Mode& mode, const LoopTiming& timing) {
+design::LinearPressureLoop LinearLoop(const PressureSweep& sweep, const model::Mode& mode, const design::LoopTiming& timing) {
   const model::Equations equations(sweep.model,
                                    {.shaft = model::Shaft::kClamped, .arm_angle = sweep.arm_angle});
   double state[model::kMaxStates];
   model::Mode start;
   equations.Start(1000, state, &start);
-  return LinearPressureLoop(model::Linearise(equations, 0, 0, mode, state), timing);
+  return design::LinearPressureLoop(model::Linearise(equations, 0, 0, mode, state), timing);
 }
 
 void Evaluate(BodeCase* out, double fit_to_hz, const StackRunner& run_stack) {
   out->swept = RunPressureSweep(out->sweep, run_stack);
-  const std::vector<ResponsePoint>& points = out->swept.points;
-  out->fit = FitSecondOrder(points, {.last_hz = fit_to_hz, .least_coherence = kShownCoherence});
+  const std::vector<design::ResponsePoint>& points = out->swept.points;
+  out->fit = design::FitSecondOrder(points, {.last_hz = fit_to_hz, .least_coherence = kShownCoherence});
   double low_points = 0;
-  for (const ResponsePoint& point : points) {
+  for (const design::ResponsePoint& point : points) {
     if (point.frequency_hz > kLowHz) break;
     out->low_gain += std::abs(point.gain);
     low_points += 1;
   }
   out->low_gain /= low_points;
-  out->bandwidth_hz = BandwidthHz(points, out->low_gain);
-  const LinearPressureLoop loop = LinearLoop(out->sweep, out->mode, {1 / out->sweep.rate_hz, 0});
-  for (const ResponsePoint& point : points) {
+  out->bandwidth_hz = design::BandwidthHz(points, out->low_gain);
+  const design::LinearPressureLoop loop = LinearLoop(out->sweep, out->mode, {1 / out->sweep.rate_hz, 0});
+  for (const design::ResponsePoint& point : points) {
     const std::complex<double> gain = loop.ClosedGain(out->sweep.gains, point.frequency_hz);
     out->predicted.push_back({point.frequency_hz, gain, 1});
     if (point.coherence < kTrustedCoherence) continue;
     const std::complex<double> error = point.gain / gain;
-    out->worst_error_db = std::max(out->worst_error_db, std::abs(Decibels(error)));
+    out->worst_error_db = std::max(out->worst_error_db, std::abs(design::Decibels(error)));
     out->worst_error_deg = std::max(out->worst_error_deg, Degrees(std::abs(std::arg(error))));
   }
 }
@@ -94,7 +94,7 @@ json CaseJson(const BodeCase& c) {
               {"k_v_psi_s_per_rad", c.sweep.gains.k_v},
               {"low_frequency_gain", c.low_gain},
               {"bandwidth_hz", Number(c.bandwidth_hz)},
-              {"bandwidth_from_0_db_hz", Number(BandwidthHz(c.swept.points, 1))},
+              {"bandwidth_from_0_db_hz", Number(design::BandwidthHz(c.swept.points, 1))},
               {"natural_frequency_rad_s", c.fit.model.natural_frequency},
               {"damping_ratio", c.fit.model.damping_ratio},
               {"static_gain", c.fit.model.static_gain},
@@ -145,7 +145,7 @@ std::vector<tables::Column> CaseColumns(const std::vector<const BodeCase*>& case
 
 BodeCurve PredictedCurve(const BodeCase& bode_case, const std::string& label, double last_hz,
                          page::Stroke stroke, int colour) {
-  const LinearPressureLoop loop =
+  const design::LinearPressureLoop loop =
       LinearLoop(bode_case.sweep, bode_case.mode, {1 / bode_case.sweep.rate_hz, 0});
   return {label, Sampled(1, last_hz, [&](double hz) { return loop.ClosedGain(bode_case.sweep.gains, hz); }),
           stroke, colour};
@@ -222,10 +222,10 @@ std::vector<page::Panel> WithCoherence(std::vector<page::Panel> panels,
   return panels;
 }
 
-std::vector<ResponsePoint> Sampled(double first_hz, double last_hz,
+std::vector<design::ResponsePoint> Sampled(double first_hz, double last_hz,
                                    const std::function<std::complex<double>(double)>& gain) {
   constexpr int kIntervals = 300;
-  std::vector<ResponsePoint> points;
+  std::vector<design::ResponsePoint> points;
   for (int i = 0; i <= kIntervals; ++i) {
     const double frequency = first_hz * std::pow(last_hz / first_hz, static_cast<double>(i) / kIntervals);
     points.push_back({frequency, gain(frequency), 1});

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "experiments/maths/linear_loop.h"
-#include "experiments/maths/second_order_fit.h"
+#include "design/linear_loop.h"
+#include "design/second_order_fit.h"
 #include "experiments/runs/pressure_sweep.h"
 #include "model/terms/mode.h"
 #include "page/plot.h"
@@ -28,10 +28,10 @@ struct BodeCase {
   bool linear = false;  // the loop stays in that mode, so the prediction must agree
 
   SweptPressureLoop swept;
-  SecondOrderFit fit;                    // without delay, over the points up to the fit's last_hz
+  design::SecondOrderFit fit;                    // without delay, over the points up to the fit's last_hz
   double low_gain = 0;                   // dp per dp_ref, mean of the points up to 2.5 Hz
   double bandwidth_hz = 0;               // 3 dB below low_gain; NaN: beyond the sweep
-  std::vector<ResponsePoint> predicted;  // at the measured frequencies
+  std::vector<design::ResponsePoint> predicted;  // at the measured frequencies
   double worst_error_db = 0;             // of measured over predicted, where the coherence exceeds .99
   double worst_error_deg = 0;
 };
@@ -42,7 +42,7 @@ model::Mode Side1Held();
 model::Mode Side2Held();
 
 // The linearised loop at the sweep's arm angle, at 1000 psi.
-LinearPressureLoop LinearLoop(const PressureSweep& sweep, const model::Mode& mode, const LoopTiming& timing);
+design::LinearPressureLoop LinearLoop(const PressureSweep& sweep, const model::Mode& mode, const design::LoopTiming& timing);
 
 // Runs the sweep and evaluates it: fills all fields but the first five.
 void Evaluate(BodeCase* bode_case, double fit_to_hz, const StackRunner& run_stack);
@@ -59,7 +59,7 @@ std::vector<tables::Column> CaseColumns(const std::vector<const BodeCase*>& case
 // One response for the two panels of a Bode plot, as points (coherence of .8 and above) or as curves.
 struct BodeCurve {
   std::string label;
-  std::vector<ResponsePoint> points;
+  std::vector<design::ResponsePoint> points;
   page::Stroke stroke = page::Stroke::kLine;
   int colour = -1;
 };
@@ -74,7 +74,7 @@ std::vector<page::Panel> WithCoherence(std::vector<page::Panel> panels,
                                        const std::vector<BodeCurve>& measured);
 
 // A response sampled densely enough for a smooth curve.
-std::vector<ResponsePoint> Sampled(double first_hz, double last_hz,
+std::vector<design::ResponsePoint> Sampled(double first_hz, double last_hz,
                                    const std::function<std::complex<double>(double)>& gain);
 
 }  // namespace hydro::experiments

@@ -9,37 +9,14 @@
 
 namespace hydro::experiments {
 
-StepTrial TrialOf(const std::string& config_text, const std::string& model_text, double step) {
-  const settings::StackConfig config =
-      settings::ParseStackConfig(config_text, "configuration", model_text, "model");
-  const model::Parameters& p = config.model.description.parameters;
-  StepTrial trial;
-  trial.model = config.model.description;
-  if (config.pressure.k_p) {
-    trial.pressure.gains = {*config.pressure.k_p, *config.pressure.k_v};
-  } else {
-    trial.pressure.gains = pressure_ctrl::DerivePressureGains(
-        p, config.model.arm_angle_rad, *config.pressure.natural_frequency_rad_s,
-        *config.pressure.damping_ratio, config.pressure.compressed_sides);
-  }
-  trial.pressure.voltage_limit = p.T_pmax / p.k_1;
-  if (config.pressure.reference_feedforward) {
-    trial.pressure.reference_feedforward = pressure_ctrl::SteadyStateFeedforward(p, trial.pressure.gains);
-  }
-  if (config.pressure.arm_speed_feedforward) trial.pressure.arm_speed_ratio = p.c / p.D;
-  trial.position.c1 = config.position.c1;
-  trial.position.c2 = config.position.c2;
-  trial.position.sample_interval = config.position.sample_interval_s;
-  trial.position.derivative_on_error = config.position.derivative_on_error;
-  trial.position.pressure_limit = config.limits.arm_torque_in_lbf / p.k_2;
-  trial.tick = 1 / config.plant.rate_hz;
-  trial.interval = static_cast<int>(config.position_interval_ticks);
-  trial.command_delay = config.plant.command_delay_ticks;
+tune::StepTrial TrialOf(const std::string& config_text, const std::string& model_text, double step) {
+  tune::StepTrial trial =
+      tune::TrialOf(settings::ParseStackConfig(config_text, "configuration", model_text, "model"));
   trial.step = step;
   return trial;
 }
 
-std::vector<Candidate> SearchGains(StepTrial trial, const RigidDrive& drive) {
+std::vector<Candidate> SearchGains(tune::StepTrial trial, const design::RigidDrive& drive) {
   const double design_step = trial.step;
   std::vector<Candidate> candidates;
   for (int c1 = 8000; c1 <= 20000; c1 += 2000) {
@@ -50,9 +27,9 @@ std::vector<Candidate> SearchGains(StepTrial trial, const RigidDrive& drive) {
       trial.position.c2 = candidate.c2;
       for (const double factor : {0.9, 1.0, 1.1}) {
         trial.step = factor * design_step;
-        const double shortest = FastestSettling(drive, trial.step, runs::kSettlingBand);
+        const double shortest = design::FastestSettling(drive, trial.step, runs::kSettlingBand);
         trial.duration = 2 * shortest;
-        const Response response = RunStepTrial(trial);
+        const design::Response response = tune::RunStepTrial(trial).response;
         const auto settling =
             runs::MeasureStep(response.time, response.angle, 0, response.time.size(), 0, trial.step)
                 .settling_time_s;

@@ -4,14 +4,14 @@
 #include <string>
 #include <vector>
 
-#include "experiments/maths/bang_bang.h"
-#include "experiments/runs/step_trial.h"
+#include "design/bang_bang.h"
+#include "tune/step_trial.h"
 
 namespace hydro::experiments {
 
 // A step of `step` rad under a stack's configuration (whole TOML) and model (TOML): gains, rates, limits.
 // What a StepTrial lacks (noise, quantisation) is left out.
-StepTrial TrialOf(const std::string& config, const std::string& model, double step);
+tune::StepTrial TrialOf(const std::string& config, const std::string& model, double step);
 
 struct Candidate {
   double c1 = 0;  // psi/rad
@@ -25,6 +25,6 @@ struct Candidate {
 // between 6 and 16 1/s, on steps of 0.9, 1 and 1.1 times trial.step, so that the result does not depend on
 // the length of one step. (Below 8000 psi/rad, friction alone may leave an error of more than 1 % of 0.1
 // rad.) Best first; among equals, smaller gains first.
-std::vector<Candidate> SearchGains(StepTrial trial, const RigidDrive& drive);
+std::vector<Candidate> SearchGains(tune::StepTrial trial, const design::RigidDrive& drive);
 
 }  // namespace hydro::experiments

@@ -89,10 +89,10 @@ TorqueSweep RunTorqueSweep(const StackRunner& run_stack, double mean, double amp
   }
   sweep.saturated_fraction = static_cast<double>(saturated) / (kSweepDuration * kLoopRate);
   sweep.both_compress_fraction = static_cast<double>(both) / (kSweepDuration * kLoopRate);
-  sweep.points = EstimateFrequencyResponse(
+  sweep.points = design::EstimateFrequencyResponse(
       commanded, torque,
       {.sample_rate_hz = kLoopRate, .segment_s = 1, .first_hz = 2, .last_hz = kSweepLast - 5});
-  sweep.bandwidth_hz = BandwidthHz(sweep.points, std::abs(sweep.points.front().gain));
+  sweep.bandwidth_hz = design::BandwidthHz(sweep.points, std::abs(sweep.points.front().gain));
   return sweep;
 }
 

@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "experiments/maths/frequency_response.h"
+#include "design/frequency_response.h"
 #include "experiments/runs/pressure_loop_run.h"
 #include "experiments/studies/experiment.h"
 
@@ -27,7 +27,7 @@ TorqueStep RunTorqueStep(const StackRunner& run_stack, double command, double fe
 struct TorqueSweep {
   double mean = 0;                    // in-lbf, the commanded torque's
   double amplitude = 0;               // in-lbf
-  std::vector<ResponsePoint> points;  // arm torque per commanded torque
+  std::vector<design::ResponsePoint> points;  // arm torque per commanded torque
   double bandwidth_hz = 0;            // 3 dB below the gain of the lowest points; NaN: beyond the sweep
   double saturated_fraction = 0;      // fraction of the time
   // Fraction of the time with both pressures above p_3: a valve that opened in an earlier cycle has let fluid

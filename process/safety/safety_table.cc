@@ -10,7 +10,7 @@ const std::vector<SafetyRow>& SafetyTable() {
   static const std::vector<SafetyRow> table = [] {
     std::vector<SafetyRow> rows;
     for (const auto part : {ProcessRows(), LoggerRows(), RigRows(), MotorCommandRows(), PressureCommandRows(),
-                            NetworkRows(), RunRows()}) {
+                            TuningRows(), NetworkRows(), RunRows()}) {
       rows.insert(rows.end(), part.begin(), part.end());
     }
     return rows;

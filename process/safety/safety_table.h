@@ -71,6 +71,7 @@ std::span<const SafetyRow> LoggerRows();
 std::span<const SafetyRow> RigRows();
 std::span<const SafetyRow> MotorCommandRows();
 std::span<const SafetyRow> PressureCommandRows();
+std::span<const SafetyRow> TuningRows();
 std::span<const SafetyRow> NetworkRows();
 std::span<const SafetyRow> RunRows();
 

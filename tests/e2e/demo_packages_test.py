@@ -10,7 +10,7 @@ import outcome
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 # Packages that `scripts/install-dependencies demo` leaves out: those that CMake finds by name.
-LEFT_OUT = ("benchmark", "Boost", "Ceres", "Eigen3", "GTest")
+LEFT_OUT = ("benchmark", "Boost", "Ceres", "GTest")
 
 
 class DemoPackagesTest(unittest.TestCase):
@@ -26,13 +26,13 @@ class DemoPackagesTest(unittest.TestCase):
             sources = re.findall(rf"{re.escape(str(ROOT))}/(\w+)/\S+\.cc\b", steps.stdout)
             self.assertIn("plant", sources)
             self.assertIn("hydro_log", sources)
-            self.assertEqual(set(sources) & {"bench", "diagnose", "experiments", "maths", "tests"}, set())
+            self.assertEqual(set(sources) & {"bench", "diagnose", "experiments", "tests", "tune"}, set())
 
     # Tests that ./demo requests only these, and that the full build still needs the rest.
     def test_the_rest_is_asked_for_by_the_rest(self):
         script = (ROOT / "scripts/install-dependencies").read_text()
         basic, rest = script.split("demo) ;;")
-        for package in ("libceres-dev", "libboost-dev", "libeigen3-dev", "libcomedi-dev", "libgtest-dev", "libbenchmark-dev", "clang-tidy"):
+        for package in ("libceres-dev", "libboost-dev", "libcomedi-dev", "libgtest-dev", "libbenchmark-dev", "clang-tidy"):
             self.assertNotIn(package, basic)
             self.assertIn(package, rest)
         demo = (ROOT / "demo").read_text()

@@ -23,13 +23,13 @@ def _read_page(path=PAGE):
     """What docs/messages.md says of each channel: its fields after the 8 bytes of the type's hash, and when it is sent.
 
     A field is a pair of its name and a code: q int64, i int32, b int8 or boolean, d double, s string (its length with the zero
-    byte as int32, then the bytes), *FIELD int64 as many times as that field says."""
+    byte as int32, then the bytes), *FIELD:CODE that as many times as the field says."""
     with open(path, encoding="utf-8") as file:
         overview, *sections = file.read().split("\n## ")
     fields = {}
     for section in sections:
         rows = re.findall(r"^\| `(\w+)` \| `(\w+)(?:\[(\w+)\])?` \|", section, re.MULTILINE)
-        fields[section.split("\n", 1)[0]] = [(name, "*" + count if count else CODES[type_]) for name, type_, count in rows]
+        fields[section.split("\n", 1)[0]] = [(name, f"*{count}:{CODES[type_]}" if count else CODES[type_]) for name, type_, count in rows]
     rows = re.findall(r"^\| \[`(\w+)`\]\(#\w+\) \| `(\w+)` \|[^|]*\| ([^|]*) \|", overview, re.MULTILINE)
     return {channel: fields[type_] for channel, type_, _ in rows}, {channel: rate for channel, _, rate in rows}
 
@@ -62,20 +62,27 @@ class Type:
             return self.tuple._make(self.fixed.unpack_from(data, 8))
         values, at = [], 8
         for code in self.codes:
-            if code == "s":
-                (length,) = struct.unpack_from(">i", data, at)
-                values.append(data[at + 4:at + 3 + length].decode())
-                at += 4 + length
-            elif code.startswith("*"):
-                length = values[self.tuple._fields.index(code[1:])]
-                values.append(struct.unpack_from(f">{length}q", data, at))
-                at += 8 * length
+            if code.startswith("*"):
+                count, code = code[1:].split(":")
+                items = []
+                for _ in range(values[self.tuple._fields.index(count)]):
+                    item, at = self._value(code, data, at)
+                    items.append(item)
+                values.append(tuple(items))
             else:
-                values.append(struct.unpack_from(">" + code, data, at)[0])
-                at += struct.calcsize(">" + code)
+                value, at = self._value(code, data, at)
+                values.append(value)
         if at != len(data):
             raise LogError(f"{self.tuple.__name__}: {len(data)} bytes, decoded {at}")
         return self.tuple._make(values)
+
+    @staticmethod
+    def _value(code, data, at):
+        """A field's value, and where the next begins."""
+        if code == "s":
+            (length,) = struct.unpack_from(">i", data, at)
+            return data[at + 4:at + 3 + length].decode(), at + 4 + length
+        return struct.unpack_from(">" + code, data, at)[0], at + struct.calcsize(">" + code)
 
     def encode(self, type_hash, message):
         """The bytes of a message; `type_hash` is the 8 bytes that open each message of this type."""

@@ -13,8 +13,8 @@
 #include "experiments/figures/catalogue.h"
 #include "experiments/runs/shipped_models.h"
 #include "experiments/studies/json_text.h"
-#include "pressure_ctrl/pressure_law.h"
-#include "tests/experiments/wave_polynomial.h"
+#include "pressure_ctrl/law/pressure_law.h"
+#include "tests/design/wave_polynomial.h"
 
 namespace hydro::experiments {
 namespace {
@@ -194,7 +194,7 @@ TEST(Fig7, EitherSideMeetsTheAnalyticLoop) {
 TEST(Waves, ModeIsWhereThePaperMeasuredIt) {
   const json& n = Waves().numbers;
   const model::Parameters p = ShippedModel("table1").parameters;
-  const auto q = WavePolynomial(p, 300, n.at("volume_fraction"), n.at("damping_assumed"), {0, 0});
+  const auto q = design::WavePolynomial(p, 300, n.at("volume_fraction"), n.at("damping_assumed"), {0, 0});
   Complex s(0, 2 * kPi * 300);
   for (int i = 0; i < 50; ++i) {
     Complex value = 0;
@@ -224,10 +224,10 @@ TEST(Waves, AllowedGainMeetsRouth) {
   const double k_p = n.at("highest_stable_k_p_V_per_psi");
   const double omega = n.at("highest_stable_natural_frequency_rad_s");
   for (const double beside : {1 - 1e-5, 1 + 1e-5}) {
-    EXPECT_EQ(RouthStable(WavePolynomial(p, 300, n.at("volume_fraction"), n.at("damping_assumed"),
+    EXPECT_EQ(design::RouthStable(design::WavePolynomial(p, 300, n.at("volume_fraction"), n.at("damping_assumed"),
                                          {beside * k_p, design.k_v})),
               beside < 1);
-    EXPECT_EQ(RouthStable(WavePolynomial(p, 300, n.at("volume_fraction"), n.at("damping_assumed"),
+    EXPECT_EQ(design::RouthStable(design::WavePolynomial(p, 300, n.at("volume_fraction"), n.at("damping_assumed"),
                                          pressure_ctrl::DerivePressureGains(p, 0, beside * omega, 0.5, 2))),
               beside < 1);
   }

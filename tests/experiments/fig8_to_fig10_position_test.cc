@@ -173,9 +173,9 @@ TEST(PositionFigures, FindingsAndPictures) {
 TEST(StepTrial, EqualsTheStack) {
   const std::string config =
       ShippedStackText("retuned", {"reference.steps=[[0.1, 0.1]]", "time.duration_s=0.6"});
-  StepTrial trial = TrialOf(config, ShippedModelText("table1"), 0.1);
+  tune::StepTrial trial = TrialOf(config, ShippedModelText("table1"), 0.1);
   trial.duration = 0.5;
-  const Response response = RunStepTrial(trial);
+  const design::Response response = tune::RunStepTrial(trial).response;
   const tables::Table table = RunStackInProcess({"trial", config, ShippedModelText("table1")});
   const tables::Column* angle = table.Find("arm_angle_rad");
   ASSERT_NE(angle, nullptr);

@@ -17,8 +17,8 @@ TARGET = re.compile(r"\b(hydro_library|hydro_program|target_link_libraries)\(\s*
 # they may not.
 PURE = {
     "model": {"base", "trajectory", "model"},
-    "pressure_ctrl/pressure_law": {"model", "pressure_ctrl"},
-    "position_ctrl/position_law": {"model", "position_ctrl"},
+    "pressure_ctrl/law": {"model", "pressure_ctrl"},
+    "position_ctrl/law": {"model", "position_ctrl"},
 }
 IMPURE_HEADERS = re.compile(
     r"chrono|ctime|time\.h|random|fstream|filesystem|iostream|ostream|istream|print|cstdio|stdio\.h|thread|future|mutex|"

@@ -12,7 +12,8 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 INCLUDE = re.compile(r'^\s*#\s*include\s+"([^"]+)"', re.MULTILINE)
 
 ROOMS = {
-    "model/equations", "model", "timing", "pressure_ctrl", "position_ctrl", "logger", "process/safety", "sim", "plot", "experiments/maths",
+    "model/equations", "model", "timing", "pressure_ctrl", "pressure_ctrl/law", "position_ctrl",
+    "position_ctrl/law", "logger", "process/safety", "sim", "plot", "design",
     "experiments", "diagnose/data", "diagnose/fit", "diagnose/locate", "diagnose/search", "diagnose/verdict", "diagnose/report",
     "diagnose",
 }

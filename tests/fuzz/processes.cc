@@ -9,6 +9,7 @@
 
 #include "bus/channels.h"
 #include "bus/in_process_bus.h"
+#include "design/configured_laws.h"
 #include "launch/logic/stack_watch.h"
 #include "logger/logger_app.h"
 #include "plant/roll_call.h"
@@ -104,7 +105,7 @@ void Processes(const uint8_t* data, size_t size) {
   bus::SimulatedClock& clock = stage.clock;
   bus::InProcessBus& bus = stage.bus;
   settings::StackConfig& config = stage.config;
-  const double most_volts = pressure_ctrl::PressureLawSettingsFor(config).voltage_limit;
+  const double most_volts = design::PressureLawSettingsFor(config).voltage_limit;
   const bus::Channels channels;
   pressure_ctrl::PressureApp pressure(bus, clock, config);
   position_ctrl::PositionApp position(bus, clock, config);
@@ -137,7 +138,7 @@ void Plant(const uint8_t* data, size_t size) {
   settings::StackConfig& config = stage.config;
   config.limits.rearm = settings::Rearm::kExplicit;
   config.limits.pressure_psi = 100.5;  // of the 100 psi at the start: commands exceed it, and latch the fault
-  const double most_volts = pressure_ctrl::PressureLawSettingsFor(config).voltage_limit;
+  const double most_volts = design::PressureLawSettingsFor(config).voltage_limit;
   plant::SimulatedRig rig(config);
   const bus::Channels channels;
   bus.Subscribe<state_t>(channels.Of<state_t>(), [&](const state_t& state) {

@@ -432,7 +432,7 @@ MUTATIONS = [
     ),
     # The control laws.
     *_rows(
-        "pressure_ctrl/pressure_law.cc",
+        "pressure_ctrl/law/pressure_law.cc",
         ("eq16.reference", "const double pressure_error = input.pressure_ref -",
          "const double pressure_error = -input.pressure_ref -"),
         ("eq16.pressure", "input.pressure_ref - (input.p2 - input.p1)", "input.pressure_ref + (input.p2 - input.p1)"),
@@ -453,12 +453,12 @@ MUTATIONS = [
         ("gains.damping", "(p.b + p.k_1 * gains.k_p", "(p.b - p.k_1 * gains.k_p"),
     ),
     *_rows(
-        "position_ctrl/position_law.cc",
-        ("eq17.error", "arm_angle - arm_ref;", "arm_angle + arm_ref;"),
-        ("eq17.c1", "= -settings_.c1 * error", "= settings_.c1 * error"),
-        ("eq17.c2", "pressure_ref -= settings_.c2", "pressure_ref += settings_.c2"),
-        ("eq17.difference", "(differentiated - previous_)", "(differentiated + previous_)"),
-        ("eq17.derivative_of", "derivative_on_error ? error : arm_angle", "derivative_on_error ? arm_angle : error"),
+        "position_ctrl/law/position_law.cc",
+        ("eq17.error", "const double error = arm_angle - arm_ref;", "const double error = arm_angle + arm_ref;"),
+        ("eq17.c1", "= -settings.c1 * error", "= settings.c1 * error"),
+        ("eq17.c2", "pressure_ref -= settings.c2", "pressure_ref += settings.c2"),
+        ("eq17.difference", "error - previous_error_ : arm_angle - previous_angle_", "error + previous_error_ : arm_angle + previous_angle_"),
+        ("eq17.derivative_of", "settings.derivative_on_error ? error - previous_error_", "!settings.derivative_on_error ? error - previous_error_"),
         ("eq17.limit", "std::clamp(pressure_ref, -settings_.pressure_limit, settings_.pressure_limit)",
          "pressure_ref"),
     ),

@@ -8,8 +8,9 @@
 #include <vector>
 
 #include "bus/in_process_bus.h"
-#include "position_ctrl/reference_return.h"
+#include "position_ctrl/law/reference_return.h"
 #include "tests/stack_fixture.h"
+#include "tuning/tuned_values.h"
 
 namespace hydro::position_ctrl {
 namespace {
@@ -45,6 +46,19 @@ class PositionAppTest : public ::testing::Test {
     s.time = 1e-3 * static_cast<double>(tick);
     s.arm_angle = arm_angle;
     bus_.Publish("HYDRO_STATE", s);
+    Deliver();
+  }
+
+  // The plant says which values are in force.
+  void SendSettings(int64_t version, const std::function<void(tuning::TunedValues&)>& change = {}) {
+    tuning::TunedValues values = tuning::ValuesOf(SmallStack());
+    if (change) change(values);
+    tuned_settings_t settings{};
+    settings.session = 3;
+    settings.version = version;
+    settings.stage = tuned_settings_t::IN_FORCE;
+    tuning::Write(values, &settings);
+    bus_.Publish("HYDRO_SETTINGS", settings);
     Deliver();
   }
 
@@ -134,6 +148,9 @@ TEST_F(PositionAppTest, JoiningAndSafeOutputDoNotJump) {
   config.limits.return_s = 0.02;
   clock_.simulated_ = false;
   Start(config);
+  SendState(999, 0.05);
+  EXPECT_TRUE(references_.empty()) << "it does not know yet which values are in force";
+  SendSettings(0);
   SendState(1000, 0.05);
   for (int64_t tick = 1001; tick <= 1030; ++tick) SendState(tick, 0.05);
   EXPECT_NEAR(references_.front().value, 0.05, 1e-9);
@@ -153,6 +170,99 @@ TEST_F(PositionAppTest, JoiningAndSafeOutputDoNotJump) {
   SendState(1036, 0.02);
   SendState(1040, 0.02);
   EXPECT_NEAR(references_.back().value, 0.02 + 0.08 * 4 / 20, 1e-9);
+}
+
+// Tests that a loop that joins a run acts by the values in force there, from its first command on.
+TEST_F(PositionAppTest, ActsByTheValuesInForceWhenItJoins) {
+  settings::StackConfig config = WithReference(settings::ReferenceSignal::kArmAngle, 0.1);
+  config.time.mode = settings::TimeMode::kRealtime;
+  config.limits.return_s = 0;
+  clock_.simulated_ = false;
+  Start(config);
+  SendState(1000, 0.05);
+  EXPECT_TRUE(commands_.empty());
+  SendSettings(4, [](tuning::TunedValues& values) { values.position.c1 = 2000; });
+  SendState(1005, 0.05);
+  ASSERT_EQ(commands_.size(), 1u);
+  EXPECT_DOUBLE_EQ(commands_[0].pressure_ref, 2000 * 0.05);
+}
+
+arm_plan_t Plan(int64_t sequence, int64_t tick, const std::vector<double>& time, const std::vector<double>& angle) {
+  arm_plan_t plan;
+  plan.session = 8;
+  plan.sequence = sequence;
+  plan.tick = tick;
+  plan.count = static_cast<int32_t>(time.size());
+  plan.time = time;
+  plan.arm_angle = angle;
+  plan.arm_speed.assign(time.size(), 0);
+  plan.torque.assign(time.size(), 0);
+  return plan;
+}
+
+class PlannerTest : public PositionAppTest {
+ protected:
+  void StartPlanned() {
+    settings::StackConfig config = WithReference(settings::ReferenceSignal::kArmAngle, 0);
+    config.reference.trajectory.kind = settings::TrajectorySpec::Kind::kPlanner;
+    config.reference.trajectory.initial = 0.02;
+    config.reference.trajectory.timeout_s = 0.03;
+    config.limits.arm_angle_rad = 0.5;
+    Start(config);
+  }
+
+  void Send(const arm_plan_t& plan) {
+    bus_.Publish("HYDRO_ARM_PLAN", plan);
+    Deliver();
+  }
+};
+
+// Tests that a plan is followed from ten milliseconds after the tick that it was made from, with its speed and torque ahead of
+// eq. (17): c1 = 1000, c2 = 30, k_2 = 3.68.
+TEST_F(PlannerTest, APlanIsFollowed) {
+  StartPlanned();
+  SendState(0, 0.02);
+  arm_plan_t plan = Plan(0, 0, {0, 0.02}, {0, 0.2});
+  plan.arm_speed = {10, 10};
+  plan.torque = {36.8, 36.8};
+  Send(plan);
+  for (int64_t tick = 1; tick <= 15; ++tick) SendState(tick, 0.02);
+  ASSERT_EQ(references_.size(), 4u);
+  EXPECT_EQ(references_[1].value, 0.02) << "at tick 5 it is not in force yet";
+  EXPECT_DOUBLE_EQ(references_[2].value, 0.1);
+  EXPECT_DOUBLE_EQ(references_[3].value, 0.15);
+  EXPECT_DOUBLE_EQ(commands_[2].pressure_ref, 1000 * (0.1 - 0.02) + 30 * 10 + 36.8 / SmallStack().model.description.parameters.k_2);
+}
+
+TEST_F(PlannerTest, APlanThatIsWrongIsNotFollowed) {
+  StartPlanned();
+  SendState(0, 0.02);
+  Send(Plan(0, 0, {0, 1}, {0.02, NAN}));
+  Send(Plan(1, 0, {0, 1}, {0.02, 0.6}));
+  for (int64_t tick = 1; tick <= 15; ++tick) SendState(tick, 0.02);
+  app_->Poll();
+  Deliver();
+  EXPECT_EQ(references_.back().value, 0.02);
+  ASSERT_EQ(faults_.size(), 1u);
+  EXPECT_EQ(faults_[0].code, "refused_arm_plan");
+  EXPECT_THAT(faults_[0].text, ::testing::HasSubstr("2 plans in all are not followed; the newest: point 1: found arm angle 0.6 rad"));
+}
+
+TEST_F(PlannerTest, ASilentPlannersReferenceIsHeld) {
+  StartPlanned();
+  SendState(0, 0.02);
+  Send(Plan(0, -1, {0, 0.1}, {0, 0.1}));
+  for (int64_t tick = 1; tick <= 80; ++tick) SendState(tick, 0.02);
+  EXPECT_NEAR(references_.back().value, references_[6].value, 1e-12) << "30 ms after the plan it is held";
+  EXPECT_LT(references_.back().value, 0.05);
+  ASSERT_EQ(faults_.size(), 1u);
+  EXPECT_EQ(faults_[0].code, "silent_planner");
+  EXPECT_TRUE(faults_[0].active);
+  Send(Plan(1, -1, {0, 0.1}, {0, 0.1}));
+  SendState(85, 0.02);
+  Deliver();
+  ASSERT_EQ(faults_.size(), 2u);
+  EXPECT_FALSE(faults_[1].active);
 }
 
 struct PassThrough {

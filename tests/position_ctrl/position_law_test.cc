@@ -1,4 +1,4 @@
-#include "position_ctrl/position_law.h"
+#include "position_ctrl/law/position_law.h"
 
 #include <gtest/gtest.h>
 

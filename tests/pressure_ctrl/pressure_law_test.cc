@@ -1,4 +1,4 @@
-#include "pressure_ctrl/pressure_law.h"
+#include "pressure_ctrl/law/pressure_law.h"
 
 #include <gtest/gtest.h>
 

@@ -9,8 +9,8 @@
 #include "log/log_writer.h"
 #include "model/actuator.h"
 #include "model/terms/parameter_info.h"
-#include "position_ctrl/position_law.h"
-#include "pressure_ctrl/pressure_law.h"
+#include "position_ctrl/law/position_law.h"
+#include "pressure_ctrl/law/pressure_law.h"
 #include "process/fault_codes.h"
 #include "settings/model_file.h"
 

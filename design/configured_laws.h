@@ -1,0 +1,17 @@
+// The settings of the two control laws as a configuration gives them.
+#pragma once
+
+#include "position_ctrl/law/position_law.h"
+#include "pressure_ctrl/law/pressure_law.h"
+#include "settings/stack_config.h"
+
+namespace hydro::design {
+
+// Eq. (16). Derives the gains when the configuration gives natural frequency and damping ratio instead; throws
+// InputError when they cannot be derived.
+pressure_ctrl::PressureLawSettings PressureLawSettingsFor(const settings::StackConfig& config);
+
+// Eq. (17).
+position_ctrl::PositionLawSettings PositionLawSettingsFor(const settings::StackConfig& config);
+
+}  // namespace hydro::design

@@ -1,0 +1,56 @@
+#include "hydro_set/saved_config.h"
+
+#include <algorithm>
+#include <map>
+
+#include "base/input_error.h"
+#include "base/text_file.h"
+#include "settings/moved_paths.h"
+#include "settings/toml/toml_edit.h"
+#include "tuning/change_check.h"
+#include "tuning/tunable_keys.h"
+
+namespace hydro::hydro_set {
+namespace {
+
+// Keys that one alternative drops for another have no place in the table alone: reference and pressure are compared whole.
+bool Concerned(const std::string& key) {
+  return tuning::FindTunable(key) != nullptr || key.starts_with("reference.") || key.starts_with("pressure.");
+}
+
+std::map<std::string, std::string> Entries(const std::string& text, const std::string& name) {
+  std::map<std::string, std::string> entries;
+  for (const auto& [key, value] : settings::TomlEntries(settings::ParseToml(text, name))) {
+    if (Concerned(key)) entries.emplace(key, value);
+  }
+  return entries;
+}
+
+}  // namespace
+
+settings::StackConfig ConfigInForce(const run_description_t& run, const tuned_settings_t& in_force) {
+  const settings::StackConfig configured =
+      settings::ParseStackConfig(run.config_text, run.config_file, run.model_text, run.model_file);
+  if (in_force.changes.empty()) return configured;
+  return settings::Changed(configured, tuning::ParseChanges(in_force.changes));
+}
+
+std::string SavedText(const std::string& file, const std::string& output, const run_description_t& run,
+                      const tuned_settings_t& in_force) {
+  const settings::StackConfig config = ConfigInForce(run, in_force);
+  if (file.empty()) return config.text;
+  const std::string text = ReadTextFile(file);
+  const auto before = Entries(text, file), after = Entries(config.text, file);
+  std::vector<settings::TomlEntry> changed = settings::MovedPaths(settings::LoadStackConfig(file), output);
+  std::vector<std::string> removed;
+  for (const auto& [key, value] : after) {
+    const auto was = before.find(key);
+    if (was == before.end() || was->second != value) changed.emplace_back(key, value);
+  }
+  for (const auto& [key, value] : before) {
+    if (!after.contains(key)) removed.push_back(key);
+  }
+  return settings::EditToml(text, file, changed, removed);
+}
+
+}  // namespace hydro::hydro_set

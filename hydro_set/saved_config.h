@@ -1,0 +1,21 @@
+// The configuration with the values in force, as a file that hydro-launch loads.
+#pragma once
+
+#include <hydro/run_description_t.hpp>
+#include <hydro/tuned_settings_t.hpp>
+#include <string>
+
+#include "settings/stack_config.h"
+
+namespace hydro::hydro_set {
+
+// What the stack runs with: its configuration (from its description) with the values in force. Throws InputError when the
+// description is not one of this version.
+settings::StackConfig ConfigInForce(const run_description_t& run, const tuned_settings_t& in_force);
+
+// The text of `file`, the configuration that the stack was started with, with the values in force and all else as it is, for a file `output`, which
+// may lie in another folder; without a file, the run's own text, which has no comments. Throws InputError.
+std::string SavedText(const std::string& file, const std::string& output, const run_description_t& run,
+                      const tuned_settings_t& in_force);
+
+}  // namespace hydro::hydro_set

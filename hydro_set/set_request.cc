@@ -1,0 +1,191 @@
+#include "hydro_set/set_request.h"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <filesystem>
+#include <map>
+#include <optional>
+
+#include "base/input_error.h"
+#include "base/new_file.h"
+#include "base/text_file.h"
+#include "bus/channels.h"
+#include "hydro_set/saved_config.h"
+#include "hydro_set/tuning_client.h"
+#include "settings/toml/toml_entries.h"
+#include "tuning/change_check.h"
+#include "tuning/tunable_keys.h"
+
+namespace hydro::hydro_set {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr auto kPresence = 2500ms;    // a plant says once a second what is in force
+constexpr auto kTakeEffect = 2s;
+constexpr auto kTurn = 20ms;
+
+void Print(std::FILE* to, const std::string& text) { std::fputs((Printable(text) + "\n").c_str(), to); }
+
+std::string Changes(const tuned_settings_t& settings) {
+  return settings.changes.empty() ? "as configured" : tuning::OnOneLine(settings.changes);
+}
+
+class Setter {
+ public:
+  Setter(bus::Bus& bus, const bus::Clock& clock, const settings::BusSection& section, const SetRequest& request,
+         const SetOutput& output)
+      : bus_(bus),
+        clock_(clock),
+        url_(section.url),
+        request_(request),
+        output_(output),
+        client_(bus, clock, bus::Channels(section.channel_suffix), "hydro-set") {}
+
+  int Run() {
+    if (!FindStack()) return 1;
+    if ((!request_.changes.empty() || request_.undo) && !Change()) return 1;
+    if (request_.list) List();
+    if (!request_.save.empty()) Save();
+    if (request_.watch) Watch();
+    return 0;
+  }
+
+ private:
+  template <class Until>
+  bool Wait(bus::Clock::Duration longest, Until until) {
+    const auto deadline = clock_.Now() + longest;
+    while (!until()) {
+      if (clock_.Now() >= deadline || output_.interrupted()) return false;
+      bus_.HandleUntil(clock_.Now() + kTurn);
+      client_.Poll();
+    }
+    return true;
+  }
+
+  bool FindStack() {
+    const bool found = Wait(kPresence, [&] { return client_.in_force() && client_.run() && !client_.plants().empty(); });
+    if (client_.plants().size() > 1) {
+      Print(output_.err, fmt::format("hydro-set: heard {} plants on {}, allowed is one", client_.plants().size(), url_));
+      return false;
+    }
+    if (found) return true;
+    Print(output_.err,
+          client_.plants().empty()
+              ? fmt::format("hydro-set: no running stack is heard on {}; start one with hydro-launch, or name its configuration: "
+                            "hydro-set CONFIG ...",
+                            url_)
+              : fmt::format("hydro-set: the plant on {} does not say which values are in force; is it of this version?", url_));
+    return false;
+  }
+
+  bool Change() {
+    if (request_.undo) {
+      client_.Undo();
+    } else {
+      client_.Set(fmt::format("{}", fmt::join(request_.changes, "\n")));
+    }
+    std::optional<tuning_answer_t> answer;
+    Wait(kPresence * 2, [&] { return (answer = client_.TakeAnswer()).has_value(); });
+    if (!answer || !answer->accepted) {
+      Print(output_.err, "hydro-set: refused: " + (answer ? answer->text : std::string("interrupted")));
+      return false;
+    }
+    Print(output_.out, fmt::format("version {}: {}", answer->version, answer->text));
+    const bool acts = Wait(kTakeEffect, [&] { return client_.ActBy(answer->version); });
+    std::string who;
+    for (const auto& [role, status] : client_.controllers()) {
+      who += fmt::format("{}{} {}", who.empty() ? "" : ", ", role,
+                         status.in_force == answer->version ? fmt::format("since tick {}", status.since)
+                                                            : std::string("has not said so"));
+    }
+    Print(acts ? output_.out : output_.err,
+          fmt::format("acts from tick {} on ({:.3f} s): {}", answer->acts_at,
+                      static_cast<double>(answer->acts_at) / client_.run()->rate_hz, who));
+    return acts;
+  }
+
+  std::map<std::string, std::string> ValuesInForce() const {
+    std::map<std::string, std::string> values;
+    const tuned_settings_t& in_force = *client_.in_force();
+    for (size_t i = 0; i < in_force.names.size(); ++i) values[in_force.names[i]] = fmt::format("{:g}", in_force.values[i]);
+    const settings::StackConfig config = ConfigInForce(*client_.run(), in_force);
+    for (auto& [key, value] : settings::TomlEntries(settings::ParseToml(config.text, config.file))) values[key] = value;
+    return values;
+  }
+
+  void List() const {
+    const auto values = ValuesInForce();
+    Print(output_.out, fmt::format("{:<34} {:<22} {:<12} {:<14} {}", "key", "value in force", "unit", "acts in", "what it does"));
+    for (const tuning::TunableKey& row : tuning::TunableKeys()) {
+      const auto value = values.find(std::string(row.key));
+      Print(output_.out, fmt::format("{:<34} {:<22} {:<12} {:<14} {}", row.key, value == values.end() ? "-" : value->second,
+                                     row.unit, row.acts_in, row.what));
+    }
+    const tuned_settings_t& in_force = *client_.in_force();
+    Print(output_.out, fmt::format("version {} in force since tick {}: {}", in_force.version, in_force.acts_at,
+                                   Changes(in_force)));
+  }
+
+  void Save() const {
+    const std::string text = SavedText(request_.config_file, request_.save, *client_.run(), *client_.in_force());
+    NewFile file(request_.save, Opening::kTemporary);
+    file.Write(text.data(), text.size());
+    file.Finish();
+    Print(output_.out, fmt::format("{}: the configuration with version {}", request_.save, client_.in_force()->version));
+  }
+
+  void Watch() {
+    std::optional<int64_t> shown;
+    std::map<std::string, int64_t> acting;
+    while (!output_.interrupted()) {
+      const tuned_settings_t& in_force = *client_.in_force();
+      if (shown != in_force.version) {
+        shown = in_force.version;
+        Print(output_.out, fmt::format("version {} from tick {} on: {}{}", in_force.version, in_force.acts_at,
+                                       Changes(in_force), in_force.source.empty() ? "" : " (" + in_force.source + ")"));
+      }
+      for (const auto& [role, status] : client_.controllers()) {
+        const auto known = acting.find(role);
+        if (known == acting.end() || known->second != status.in_force) {
+          Print(output_.out, fmt::format("{} acts by version {} since tick {}", role, status.in_force, status.since));
+          acting[role] = status.in_force;
+        }
+      }
+      std::fflush(output_.out);
+      bus_.HandleUntil(clock_.Now() + kTurn);
+    }
+  }
+
+  bus::Bus& bus_;
+  const bus::Clock& clock_;
+  const std::string url_;
+  const SetRequest& request_;
+  const SetOutput& output_;
+  TuningClient client_;
+};
+
+}  // namespace
+
+void CheckRequest(const SetRequest& request) {
+  if (!request.changes.empty()) tuning::ParseChanges(fmt::format("{}", fmt::join(request.changes, "\n")));
+  if (request.undo && !request.changes.empty()) {
+    throw InputError("--undo: found " + Quoted(request.changes.front()) + " beside it, allowed is one of the two");
+  }
+  if (request.changes.empty() && !request.undo && !request.list && !request.watch && request.save.empty()) {
+    throw InputError("found nothing to do, allowed KEY=VALUE..., --undo, --list, --watch or --save FILE; see --help");
+  }
+  if (request.save.empty()) return;
+  std::error_code none;
+  if (!request.config_file.empty() && std::filesystem::equivalent(request.save, request.config_file, none)) {
+    throw InputError("--save: found " + Quoted(request.save) + ", which is CONFIG; give another file, so that nothing is lost");
+  }
+  CheckCanBeCreated(request.save);
+}
+
+int RunSet(bus::Bus& bus, const bus::Clock& clock, const settings::BusSection& section, const SetRequest& request,
+           const SetOutput& output) {
+  return Setter(bus, clock, section, request, output).Run();
+}
+
+}  // namespace hydro::hydro_set

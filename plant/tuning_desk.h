@@ -1,0 +1,104 @@
+// The plant's side of a change of values while the stack runs. It holds what is in force, and decides: a request is checked
+// (tuning/change_check.h), proposed to the controllers, and, when each of them can act by it, decided for one tick; else nothing has changed.
+//
+//   asked -> checked -> proposed -> decided -> in force
+//              |            |
+//              v            v
+//           refused     withdrawn (a controller cannot, or does not answer)
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <hydro/process_status_t.hpp>
+#include <hydro/tuned_settings_t.hpp>
+#include <hydro/tuning_answer_t.hpp>
+#include <hydro/tuning_request_t.hpp>
+#include <hydro/tuning_status_t.hpp>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "plant/aside.h"
+#include "process/participant.h"
+#include "settings/stack_config.h"
+#include "tuning/change_check.h"
+#include "tuning/tuned_values.h"
+
+namespace hydro::plant {
+
+class TuningDesk {
+ public:
+  // What the plant itself does by new values; `held`: whether the voltage is held at zero until a re-arm.
+  struct Hooks {
+    std::function<void(const tuning::TunedValues&)> apply;
+    std::function<bool()> held;
+  };
+
+  // Subscribes; `participant` must outlive it and the bus.
+  TuningDesk(process::Participant& participant, const settings::StackConfig& config, bool simulated_rig,
+             Hooks hooks);
+  ~TuningDesk();
+
+  // Changes that were decided in another run (its log): they take effect at the same ticks. In the order of ticks.
+  void Follow(std::vector<tuned_settings_t> decided);
+
+  // Before the state of `tick` is published: what is decided for it takes effect. Cheap when nothing is.
+  void OnTick(int64_t tick);
+
+  // Checks, proposes, decides, and reports what is due. Cheap when nothing is.
+  void Poll();
+
+  int64_t version() const { return in_force_.message.version; }
+
+ private:
+  // Values, and the configuration that they come from.
+  struct Version {
+    std::shared_ptr<const settings::StackConfig> config;
+    tuned_settings_t message;
+  };
+  struct Pending;  // the change that is being made
+  struct Controller {
+    int64_t ready_for = -1;
+    int64_t in_force = -1;
+    int64_t refused = -1;
+    std::string text;
+    bus::Clock::TimePoint heard;
+  };
+
+  void OnRequest(const tuning_request_t& request);
+  void OnStatus(const tuning_status_t& status);
+  void Begin(const tuning_request_t& request);
+  std::string WhyNot(const tuning_request_t& request) const;
+  std::string WhoIsMissing(const std::vector<std::string>& changes) const;
+  void Propose(tuning::PreparedChange change);
+  void AwaitControllers();
+  std::string NotReady(bool* impossible) const;
+  void Decide();
+  void Refuse(const std::string& why);
+  void Answer(bool accepted, int64_t acts_at, const std::string& text);
+  void TakeEffect(Version version);
+  void FollowAt(int64_t tick);
+  void Publish(const tuned_settings_t& settings, int8_t stage);
+  int64_t TickOfEffect() const;
+
+  process::Participant& participant_;
+  const std::shared_ptr<const settings::StackConfig> configured_;
+  const bool simulated_rig_;
+  const Hooks hooks_;
+  Aside aside_;
+  tuning::TunedValues values_;  // in force
+  Version in_force_;
+  std::vector<Version> before_;  // what was in force before it, newest last, for UNDO
+  int64_t newest_version_ = 0;   // that was ever proposed
+  std::unique_ptr<Pending> pending_;
+  std::map<std::pair<std::string, int64_t>, Controller> controllers_;  // by role and session; those that were heard lately
+  std::map<int64_t, tuning_answer_t> answers_;     // the last to each session that asked
+  std::vector<int64_t> asked_;                     // these sessions, oldest first
+  std::vector<tuned_settings_t> followed_;         // reversed: the next one last
+  bus::Clock::TimePoint next_report_;
+};
+
+}  // namespace hydro::plant

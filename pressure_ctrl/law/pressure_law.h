@@ -1,0 +1,63 @@
+// The control law of the pressure loop, eq. (16), as pure functions.
+#pragma once
+
+#include "model/terms/description.h"
+
+namespace hydro::pressure_ctrl {
+
+struct PressureGains {
+  double k_p = 0;  // V/psi
+  double k_v = 0;  // psi s/rad
+};
+
+// The gains of eq. (16) that give the linearised pressure loop (eqs. (4), (13), (14) at the given arm angle,
+// without leakage and Coulomb friction) the requested natural frequency (rad/s) and damping ratio.
+// compressed_sides: 2 when both volumes compress; 1 when side 1 is held at p_3 by its one-way valve.
+// Throws std::invalid_argument when that needs k_p <= 0 (a natural frequency at or below the open loop's).
+PressureGains DerivePressureGains(const model::Parameters& parameters, double arm_angle,
+                                  double natural_frequency, double damping_ratio, int compressed_sides);
+
+// The inverse of DerivePressureGains: the loop that given gains produce.
+struct SecondOrder {
+  double natural_frequency = 0;  // rad/s
+  double damping_ratio = 0;
+};
+SecondOrder PressureLoopDynamics(const model::Parameters& parameters, double arm_angle,
+                                 const PressureGains& gains, int compressed_sides);
+
+// V/psi: the feed-forward "which changes linearly with dp_ref" that removes the steady-state error of a
+// clamped actuator up to Coulomb friction. It supplies the torque that holds dp_ref, D dp / k_1, and what the
+// pump speed that replaces the leakage costs in viscous friction and in the k_v term. One side is assumed to
+// be at p_3.
+double SteadyStateFeedforward(const model::Parameters& parameters, const PressureGains& gains);
+
+struct PressureLawSettings {
+  PressureGains gains;
+  double voltage_limit = 0;          // V, T_pmax/k_1
+  double reference_feedforward = 0;  // V/psi
+  double arm_speed_ratio =
+      0;  // c/D: subtracts the pump speed that arm motion forces from the k_v term; 0: off
+};
+
+struct PressureLawInput {
+  double pressure_ref = 0;  // psi, dp_ref
+  double p1 = 0;            // psi
+  double p2 = 0;            // psi
+  double motor_speed = 0;   // rad/s
+  double arm_speed = 0;     // rad/s, used only with arm_speed_ratio
+  double transfer = 0;      // V, added: what is left of the law before a change of gains
+};
+
+struct PressureLawOutput {
+  double voltage = 0;      // V, within +/- voltage_limit
+  bool saturated = false;  // the law asked for more
+};
+
+// Eq. (16) with the optional feed-forwards, V, without a limit:
+//   v = k_p ((dp_ref - dp) - k_v (theta' - arm_speed_ratio alpha')) + reference_feedforward dp_ref + transfer
+double UnlimitedPressureLaw(const PressureLawSettings& settings, const PressureLawInput& input);
+
+// The same, limited to +/- voltage_limit.
+PressureLawOutput PressureLaw(const PressureLawSettings& settings, const PressureLawInput& input);
+
+}  // namespace hydro::pressure_ctrl

@@ -1,0 +1,73 @@
+// Changes of values and plans while a stack runs.
+#include <array>
+
+#include "process/safety/safety_table.h"
+
+namespace hydro::process {
+namespace {
+
+constexpr std::array kRows{
+    SafetyRow{
+        .id = "tuning_refused",
+        .fault = "values that would make a loop unstable, loosen a limit while the motor may move, or are none",
+        .detected = "plant or driver, before they act",
+        .within = {"at once"},
+        .output = SafeOutput::kNotObeyed,
+        .output_text = "the values in force stay, all of them; the answer says why",
+        .restart = Cleared::kByItself,
+        .explicit_rearm = Cleared::kByItself,
+        .cleared_text = "nothing has changed",
+        .tests = "tuning.TuningTest.test_refused tuning/LiveTuningTest.WhatIsRefusedChangesNothing "
+                 "tuning/PrepareChange.RefusesWithTheReason tuning/PrepareChange.LimitsAreLoosenedOnlyWhileHeld",
+        .not_injected = "no kind of fault asks for other values",
+    },
+    SafetyRow{
+        .id = "tuning_torn",
+        .fault = "a controller cannot act by new values, does not answer, or starts after they were decided",
+        .detected = "plant or driver, before it decides; the controller, by what the plant says is in force",
+        .within = {"0.5 s"},
+        .output = SafeOutput::kNotObeyed,
+        .output_text = "nothing changes anywhere; who starts later acts by the values in force from its first command on",
+        .restart = Cleared::kByItself,
+        .explicit_rearm = Cleared::kByItself,
+        .cleared_text = "nothing has changed",
+        .tests = "tuning.TuningTest.test_controller_restarted tuning/LiveTuningTest.AControllerThatCannotEndsTheRequest "
+                 "tuning/LiveTuningTest.AControllerThatIsSilentEndsTheRequest "
+                 "position_ctrl/PositionAppTest.ActsByTheValuesInForceWhenItJoins",
+        .not_injected = "no kind of fault asks for other values",
+    },
+    SafetyRow{
+        .id = "plan_refused",
+        .fault = "a plan (`reference.kind = \"planner\"`) beyond the limits, not finite, or of a second planner",
+        .detected = "position loop",
+        .codes = "refused_arm_plan",
+        .within = {"at once"},
+        .output = SafeOutput::kNotObeyed,
+        .output_text = "the plan before it is followed to its end, then held",
+        .restart = Cleared::kByItself,
+        .explicit_rearm = Cleared::kByItself,
+        .cleared_text = "a second after the last",
+        .tests = "position_ctrl/PositionAppTest.APlanThatIsWrongIsNotFollowed position_ctrl/PlanFollower.RefusesWithTheReason",
+        .not_injected = "no kind of fault sends plans",
+    },
+    SafetyRow{
+        .id = "planner_silent",
+        .fault = "the planner sends no plan any more",
+        .detected = "position loop, `reference.timeout_s` of plant time after the newest",
+        .codes = "silent_planner",
+        .within = {"at the next sample"},
+        .output = SafeOutput::kControlGoesOn,
+        .output_text = "the reference holds where it is",
+        .restart = Cleared::kByItself,
+        .explicit_rearm = Cleared::kByItself,
+        .cleared_text = "with the next plan",
+        .tests = "position_ctrl/PositionAppTest.ASilentPlannersReferenceIsHeld position_ctrl/PlanFollower.HoldsWhenThePlannerIsSilent",
+        .not_injected = "no kind of fault sends plans",
+    },
+};
+
+}  // namespace
+
+std::span<const SafetyRow> TuningRows() { return kRows; }
+
+}  // namespace hydro::process

@@ -1,0 +1,181 @@
+#include "settings/toml/toml_edit.h"
+
+#include <algorithm>
+#include <map>
+#include <optional>
+#include <sstream>
+
+#include "base/text_file.h"
+
+namespace hydro::settings {
+namespace {
+
+std::string Trimmed(const std::string& text) {
+  const size_t first = text.find_first_not_of(" \t\r");
+  return first == std::string::npos ? "" : text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
+}
+
+std::vector<std::string> LinesOf(const std::string& text) {
+  std::vector<std::string> lines;
+  std::istringstream stream(text);
+  for (std::string line; std::getline(stream, line);) lines.push_back(std::move(line));
+  return lines;
+}
+
+// Walks over TOML value text, outside strings: whether a comment begins, and how deep the brackets are.
+struct ValueScan {
+  int depth = 0;
+  char quote = 0;
+
+  // Returns where a comment begins in `line` from `from` on; its length where there is none.
+  size_t Scan(const std::string& line, size_t from) {
+    for (size_t i = from; i < line.size(); ++i) {
+      const char c = line[i];
+      if (quote != 0) {
+        if (c == '\\' && quote == '"') ++i;
+        else if (c == quote) quote = 0;
+      } else if (c == '"' || c == '\'') {
+        quote = c;
+      } else if (c == '#') {
+        return i;
+      } else if (c == '[' || c == '{') {
+        ++depth;
+      } else if (c == ']' || c == '}') {
+        --depth;
+      }
+    }
+    return line.size();
+  }
+};
+
+struct Place {
+  size_t first = 0;     // line of the key
+  size_t last = 0;      // line where its value ends
+  size_t value = 0;     // column of the value in `first`
+  size_t comment = 0;   // column behind the value in `last`
+};
+
+struct Document {
+  std::vector<std::string> lines;
+  std::map<std::string, Place> keys;             // by dotted name, of tables that occur once
+  std::map<std::string, size_t> section_ends;    // line behind the last key of each section; "" is the document's head
+};
+
+Document Read(const std::string& text) {
+  Document document;
+  document.lines = LinesOf(text);
+  std::string section;
+  bool in_array = false;  // [[...]]: several have the same name
+  document.section_ends[""] = 0;
+  for (size_t i = 0; i < document.lines.size(); ++i) {
+    const std::string line = Trimmed(document.lines[i]);
+    if (line.empty() || line.front() == '#') continue;
+    if (line.front() == '[') {
+      in_array = line.starts_with("[[");
+      section = Trimmed(line.substr(1, line.find(']') - 1));
+      if (!in_array) document.section_ends[section] = i + 1;
+      continue;
+    }
+    const size_t equals = document.lines[i].find('=');
+    if (equals == std::string::npos) continue;
+    Place place{.first = i, .last = i};
+    place.value = document.lines[i].find_first_not_of(" \t", equals + 1);
+    if (place.value == std::string::npos) continue;
+    ValueScan scan;
+    place.comment = scan.Scan(document.lines[i], place.value);
+    while (scan.depth > 0 && place.last + 1 < document.lines.size()) place.comment = scan.Scan(document.lines[++place.last], 0);
+    if (!in_array) {
+      const std::string key = Trimmed(document.lines[i].substr(0, equals));
+      document.keys[section.empty() ? key : section + "." + key] = place;
+      document.section_ends[section] = place.last + 1;
+    }
+    i = place.last;
+  }
+  return document;
+}
+
+std::string Joined(const std::vector<std::string>& lines) {
+  std::string text;
+  for (const std::string& line : lines) text += line + "\n";
+  return text;
+}
+
+void Replace(Document* document, const Place& place, const std::string& value) {
+  std::string behind = document->lines[place.last].substr(place.comment);
+  if (!behind.empty()) {
+    const std::string& old = document->lines[place.last];
+    const size_t end = place.comment == 0 ? 0 : old.find_last_not_of(" \t", place.comment - 1) + 1;
+    behind = old.substr(end, place.comment - end) + behind;
+    // A shorter value leaves the comment where it stood.
+    const size_t length = place.first == place.last ? end - place.value : 0;
+    if (value.size() < length) behind.insert(0, length - value.size(), ' ');
+  }
+  document->lines[place.first] = document->lines[place.first].substr(0, place.value) + value + behind;
+  document->lines.erase(document->lines.begin() + static_cast<std::ptrdiff_t>(place.first) + 1,
+                        document->lines.begin() + static_cast<std::ptrdiff_t>(place.last) + 1);
+}
+
+void Insert(Document* document, const std::string& dotted, const std::string& value) {
+  const size_t dot = dotted.rfind('.');
+  const std::string section = dot == std::string::npos ? "" : dotted.substr(0, dot);
+  const std::string line = dotted.substr(dot == std::string::npos ? 0 : dot + 1) + " = " + value;
+  const auto end = document->section_ends.find(section);
+  if (end != document->section_ends.end()) {
+    document->lines.insert(document->lines.begin() + static_cast<std::ptrdiff_t>(end->second), line);
+  } else {
+    document->lines.insert(document->lines.end(), {"", "[" + section + "]", line});
+  }
+}
+
+// A value as TomlEntries() writes it.
+std::string Canonical(const std::string& value, const std::string& name) {
+  const auto entries = TomlEntries(ParseToml("value = " + value, name));
+  return entries.size() == 1 ? entries.front().second : value;
+}
+
+void CheckResult(const std::string& before, const std::string& after, const std::string& name,
+                 const std::vector<TomlEntry>& changed, const std::vector<std::string>& removed) {
+  std::map<std::string, std::string> expected;
+  for (const auto& [key, value] : TomlEntries(ParseToml(before, name))) expected[key] = value;
+  for (const std::string& key : removed) expected.erase(key);
+  for (const auto& [key, value] : changed) expected[key] = Canonical(value, name);
+  std::map<std::string, std::string> found;
+  for (const auto& [key, value] : TomlEntries(ParseToml(after, name))) found[key] = value;
+  if (found == expected) return;
+  for (const auto& [key, value] : changed) {
+    if (found[key] != expected[key]) {
+      throw InputError(name + ": " + key + ": cannot be changed in place to " + value +
+                       "; write it as a line of its own under [section]");
+    }
+  }
+  throw InputError(name + ": cannot be changed in place; write each key as a line of its own under its [section]");
+}
+
+}  // namespace
+
+std::string EditToml(const std::string& text, const std::string& name, const std::vector<TomlEntry>& changed,
+                     const std::vector<std::string>& removed) {
+  std::string edited = text;
+  for (const auto& [key, value] : changed) {
+    Document document = Read(edited);
+    const auto place = document.keys.find(key);
+    if (place != document.keys.end()) {
+      Replace(&document, place->second, value);
+    } else {
+      Insert(&document, key, value);
+    }
+    edited = Joined(document.lines);
+  }
+  for (const std::string& key : removed) {
+    Document document = Read(edited);
+    const auto place = document.keys.find(key);
+    if (place == document.keys.end()) continue;
+    document.lines.erase(document.lines.begin() + static_cast<std::ptrdiff_t>(place->second.first),
+                         document.lines.begin() + static_cast<std::ptrdiff_t>(place->second.last) + 1);
+    edited = Joined(document.lines);
+  }
+  CheckResult(text, edited, name, changed, removed);
+  return edited;
+}
+
+}  // namespace hydro::settings

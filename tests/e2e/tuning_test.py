@@ -1,0 +1,107 @@
+"""hydro-set against a running stack: one tick for all, refusals, undo, files, a controller that starts again, a stack with a key."""
+
+import re
+import signal
+import subprocess
+
+import event_log
+import fault_case
+import outcome
+import stack
+
+
+class TuningTest(fault_case.FaultCase):
+    def set(self, *arguments, expect=0):
+        """Runs hydro-set on the stack of this test."""
+        return self.run_program("hydro-set", self.config_file, "--set", f"bus.url={self.url}", *arguments, expect=expect)
+
+    def start_moving(self):
+        self.config_file = self.moving()
+        self.start_stack(config=self.config_file)
+        self.wait_for_voltage()
+
+    def replay(self):
+        done = self.run_program("hydro-log", "replay", self.log_file, timeout=120)
+        self.assertIn("pressure: identical", done.stdout)
+        self.assertIn("position: identical", done.stdout)
+
+    # Tests that a change acts on the tick that is named, in both loops, that the replay of its log follows it, and that the summary tells it.
+    def test_change_and_undo(self):
+        self.start_moving()
+        done = self.set("position.c2=900", "pressure.natural_frequency_rad_s=140")
+        self.assertRegex(done.stdout, r"version 1: position.c2 = 900, pressure.natural_frequency_rad_s = 140; pressure loop: gain margin")
+        tick = re.search(r"acts from tick (\d+) on .*: position_ctrl since tick (\d+), pressure_ctrl since tick (\d+)", done.stdout)
+        self.assertIsNotNone(tick, done.stdout)
+        self.assertEqual({tick[1]}, {tick[2], tick[3]})
+        self.assertRegex(self.set("--list").stdout, r"(?m)^position\.c2 +900 +psi s/rad +position_ctrl ")
+        self.set("--undo")
+        self.assertRegex(self.set("--list").stdout, r"(?m)^position\.c2 +1200 ")
+        log = self.finish()
+        self.assertEqual(log.faults, [])
+        self.replay()
+        summary = self.run_program("hydro-log", "summary", self.log_file).stdout
+        self.assertIn(f"tuned: version 1 from tick {tick[1]} on: position.c2 = 900, pressure.natural_frequency_rad_s = 140 (hydro-set)", summary)
+
+    # Tests that what is refused is said with the reason and exit code 1, and changes nothing.
+    def test_refused(self):
+        self.start_moving()
+        for changes, says in (
+                (("position.c2=9000",), "refused: would be unstable: .*position loop: UNSTABLE"),
+                (("limits.pressure_psi=9000", "position.c2=900"), "refused: limits.pressure_psi: found 9000, allowed up to 2000"),
+                (("plant.rate_hz=500",), "refused: plant.rate_hz: cannot be changed while the stack runs"),
+                (("position.c3=5",), 'refused: position.c3: no such value, did you mean "position.c1"'),
+                (("--undo",), "refused: nothing to undo")):
+            done = self.set(*changes, expect=1)
+            self.assertRegex(done.stderr, says)
+            self.assertEqual(len(done.stderr.strip().split("\n")), 1, done.stderr)
+        self.assertIn("version 0 in force", self.set("--list").stdout)
+        self.finish()
+
+    # Tests wrong usage, and that nobody is there.
+    def test_bad_usage(self):
+        self.config_file = stack.config("demo.toml")
+        for arguments, says in (((), "found nothing to do"), (("position.c2=1", "--undo"), "--undo: found"),
+                                (("a.toml", "position.c2=1"), "found a second CONFIG"), (("position.c2",), "found a second CONFIG"),
+                                (("--save", stack.config("demo.toml")), "which is CONFIG"),
+                                (("position.c2=1", "position.c2=2"), "found twice")):
+            done = self.set(*arguments, expect=2)
+            self.assertRegex(done.stderr, says)
+            self.assertEqual(len(done.stderr.strip().split("\n")), 1, done.stderr)
+        lonely = self.path("lonely.toml")
+        with open(lonely, "w", encoding="utf-8") as file:
+            file.write(f'[model]\nfile = "{stack.CONFIG}/models/table1.toml"\n[bus]\nurl = "{self.url}"\n[pressure]\nk_p = 0.1\nk_v = 8\n')
+        self.config_file = lonely
+        self.assertIn("no running stack is heard on " + self.url, self.set("position.c2=1", expect=1).stderr)
+
+    # Tests that the saved file is the configuration with only the changed lines changed, and that a stack starts with it.
+    def test_save(self):
+        self.start_moving()
+        saved = self.path("saved.toml")
+        self.set("position.c2=900", "--save", saved)
+        self.finish()
+        done = subprocess.run(["diff", self.config_file, saved], capture_output=True, text=True, check=False)
+        self.assertRegex(done.stdout, r"^(\d+)c\1\n< c2 = 1200\.0 +# psi s/rad.*\n---\n> c2 = 900 +# psi s/rad.*\n$")
+        self.run_program("hydro-sim", saved, "--duration", "0.2", "-o", self.path("saved.lcmlog"))
+
+    # Tests that a controller that is killed and started again acts by the values in force, from its first command on.
+    def test_controller_restarted(self):
+        self.start_moving()
+        self.set("position.c2=900")
+        old = self.run_["position_ctrl"]
+        session = self.log.wait_for("HYDRO_PRESSURE_COMMAND", lambda c: True, "a pressure command").session
+        old.send(signal.SIGKILL)
+        old.wait()
+        self.wait_for_fault("stale_pressure_command")
+        again = self.start("hydro-position-ctrl", *self.run_.arguments)
+        self.wait_for_fault("stale_pressure_command", active=False)
+        mine = lambda s: s.session != session and s.role == "position_ctrl" and s.in_force == 1
+        self.log.wait_for("HYDRO_TUNING_STATUS", mine, "the restarted position loop at version 1")
+        log = self.finish()
+        self.assertEqual(again.wait(), 0, again.report())
+        first = min(c.tick for c in log.of("HYDRO_PRESSURE_COMMAND") if c.session != session)
+        since = [s.since for s in log.of("HYDRO_TUNING_STATUS") if mine(s)]
+        self.assertLessEqual(since[0], first)
+
+
+if __name__ == "__main__":
+    outcome.main()

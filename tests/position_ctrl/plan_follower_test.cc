@@ -1,0 +1,98 @@
+#include "position_ctrl/plan_follower.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <vector>
+
+namespace hydro::position_ctrl {
+namespace {
+
+using ::testing::HasSubstr;
+
+constexpr double kNone = std::numeric_limits<double>::infinity();
+
+arm_plan_t Plan(int64_t session, int64_t sequence, const std::vector<double>& time, const std::vector<double>& angle,
+                const std::vector<double>& speed) {
+  arm_plan_t plan;
+  plan.session = session;
+  plan.sequence = sequence;
+  plan.tick = -1;
+  plan.count = static_cast<int32_t>(time.size());
+  plan.time = time;
+  plan.arm_angle = angle;
+  plan.arm_speed = speed;
+  plan.torque.assign(time.size(), 5);
+  return plan;
+}
+
+// At 1 kHz, without delay.
+PlanFollower Follower(double largest_speed = kNone) {
+  return {0.1, {.timeout_s = 0.2, .delay_s = 0, .largest_speed = largest_speed, .largest_angle = 1}, 1000};
+}
+
+// Tests that the reference goes through the points with their speeds: a cubic's own points and speeds give that cubic.
+TEST(PlanFollower, GoesThroughThePoints) {
+  const auto angle = [](double t) { return 0.1 + 2 * t - 30 * t * t + 100 * t * t * t; };
+  const auto speed = [](double t) { return 2 - 60 * t + 300 * t * t; };
+  PlanFollower follower = Follower();
+  std::vector<double> times{0, 0.03, 0.1}, angles, speeds;
+  for (const double t : times) {
+    angles.push_back(angle(t));
+    speeds.push_back(speed(t));
+  }
+  ASSERT_EQ(follower.Take(Plan(1, 0, times, angles, speeds), 0), "");
+  for (int64_t tick = 0; tick < 100; tick += 5) {
+    const PlannedPoint point = follower.At(tick);
+    EXPECT_NEAR(point.angle, angle(1e-3 * static_cast<double>(tick)), 1e-12) << tick;
+    EXPECT_NEAR(point.speed, speed(1e-3 * static_cast<double>(tick)), 1e-9) << tick;
+    EXPECT_EQ(point.torque, 5);
+  }
+  // Behind its last point it holds.
+  EXPECT_EQ(follower.At(150).angle, angles.back());
+  EXPECT_EQ(follower.At(150).speed, 0);
+}
+
+TEST(PlanFollower, HoldsWhenThePlannerIsSilent) {
+  PlanFollower follower = Follower();
+  EXPECT_FALSE(follower.silent(1000)) << "there was none yet";
+  ASSERT_EQ(follower.Take(Plan(1, 0, {0, 1}, {0, 1}, {1, 1}), 0), "");
+  for (int64_t tick = 0; tick <= 200; tick += 5) EXPECT_NEAR(follower.At(tick).angle, 1e-3 * static_cast<double>(tick), 1e-12);
+  EXPECT_FALSE(follower.silent(200));
+  for (int64_t tick = 205; tick <= 900; tick += 5) EXPECT_NEAR(follower.At(tick).angle, 0.2, 1e-12) << tick;
+  EXPECT_TRUE(follower.silent(205));
+  EXPECT_EQ(follower.At(905).speed, 0);
+}
+
+TEST(PlanFollower, LimitsTheSpeed) {
+  PlanFollower follower = Follower(0.5);
+  EXPECT_EQ(follower.At(0).angle, 0.1);
+  ASSERT_EQ(follower.Take(Plan(1, 0, {0}, {0.3}, {9}), 0), "");
+  EXPECT_DOUBLE_EQ(follower.At(10).angle, 0.105);
+  EXPECT_DOUBLE_EQ(follower.At(30).angle, 0.115);
+}
+
+// Tests that the newest plan counts, whatever comes behind it, and that another planner's only when the first is silent.
+TEST(PlanFollower, FollowsOnePlannersNewest) {
+  PlanFollower follower = Follower();
+  ASSERT_EQ(follower.Take(Plan(1, 5, {0}, {0.2}, {0}), 0), "");
+  EXPECT_EQ(follower.Take(Plan(1, 4, {0}, {0.3}, {0}), 1), "") << "overtaken";
+  EXPECT_THAT(follower.Take(Plan(2, 0, {0}, {0.4}, {0}), 2), HasSubstr("another planner is followed already"));
+  EXPECT_EQ(follower.At(5).angle, 0.2);
+  EXPECT_EQ(follower.Take(Plan(2, 0, {0}, {0.4}, {0}), 300), "");
+  EXPECT_EQ(follower.At(305).angle, 0.4);
+}
+
+TEST(PlanFollower, RefusesWithTheReason) {
+  PlanFollower follower = Follower();
+  EXPECT_THAT(follower.Take(Plan(1, 0, {}, {}, {}), 0), HasSubstr("found 0 points, allowed 1 to 256"));
+  EXPECT_THAT(follower.Take(Plan(1, 0, {0, 0}, {0, 0}, {0, 0}), 0), HasSubstr("point 1: its time must be above"));
+  EXPECT_THAT(follower.Take(Plan(1, 0, {NAN}, {0}, {0}), 0), HasSubstr("point 0: all numbers must be finite"));
+  EXPECT_THAT(follower.Take(Plan(1, 0, {0}, {-1.5}, {0}), 0), HasSubstr("found arm angle -1.5 rad, allowed |alpha| <= 1"));
+  EXPECT_EQ(follower.At(5).angle, 0.1);
+}
+
+}  // namespace
+}  // namespace hydro::position_ctrl

@@ -1,0 +1,40 @@
+#include "tune/goals.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/settings/texts.h"
+
+namespace hydro::tune {
+namespace {
+
+using settings::InputErrorOf;
+using ::testing::HasSubstr;
+
+TEST(Goals, AreRead) {
+  const Goals goals =
+      ParseGoals({"bandwidth_hz=3.5", "overshoot_percent=0", "settling_s=0.4", "step_rad=.1"});
+  EXPECT_EQ(goals.bandwidth_hz, 3.5);
+  EXPECT_EQ(goals.overshoot_percent, 0);
+  EXPECT_EQ(goals.settling_s, 0.4);
+  EXPECT_EQ(goals.step_rad, 0.1);
+  EXPECT_TRUE(goals.any());
+  EXPECT_FALSE(ParseGoals({}).any());
+  EXPECT_FALSE(ParseGoals({"step_rad=0.2"}).any()) << "a step is what goals are about, not one of them";
+}
+
+TEST(Goals, ThatAreWrongAreNamed) {
+  const auto error = [](const std::vector<std::string>& texts) {
+    return InputErrorOf([&] { ParseGoals(texts); });
+  };
+  EXPECT_THAT(error({"speed=3"}),
+              HasSubstr("--goal: found \"speed=3\", allowed NAME=VALUE with NAME \"bandwidth_hz\""));
+  EXPECT_THAT(error({"settling_s"}), HasSubstr("allowed settling_s= a finite number above 0"));
+  EXPECT_THAT(error({"settling_s=0"}), HasSubstr("found \"settling_s=0\""));
+  EXPECT_THAT(error({"overshoot_percent=-1"}), HasSubstr("from 0 on"));
+  EXPECT_THAT(error({"step_rad=inf"}), HasSubstr("finite"));
+  EXPECT_THAT(error({"step_rad=0.1", "step_rad=0.2"}), HasSubstr("step_rad twice"));
+}
+
+}  // namespace
+}  // namespace hydro::tune

@@ -1,0 +1,147 @@
+#include "tuning/change_check.h"
+
+#include <algorithm>
+
+#include "pressure_ctrl/law/pressure_law.h"
+#include "settings/trajectory_spec.h"
+#include "tests/settings/texts.h"
+#include "tuning/tunable_keys.h"
+
+namespace hydro::tuning {
+namespace {
+
+using settings::InputErrorOf;
+using settings::kConfigText;
+using settings::Parsed;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::StartsWith;
+
+// At 5 kHz: at 1 kHz these gains are unstable where both sides compress.
+const std::string kFast = settings::Replaced(kConfigText, "rate_hz = 1000", "rate_hz = 5000");
+
+double ValueOf(const tuned_settings_t& message, const std::string& name) {
+  for (size_t i = 0; i < message.names.size(); ++i) {
+    if (message.names[i] == name) return message.values[i];
+  }
+  ADD_FAILURE() << name;
+  return 0;
+}
+
+PreparedChange Prepared(const std::vector<std::string>& changes, const Situation& situation = {},
+                        const std::string& config = kFast) {
+  const settings::StackConfig configured = Parsed(config);
+  return PrepareChange(configured, configured, changes, situation);
+}
+
+TEST(ParseChanges, ReadsLines) {
+  EXPECT_THAT(ParseChanges("position.c2=900\n\n pressure.k_p = 0.1 \n"),
+              ElementsAre("position.c2=900", " pressure.k_p = 0.1 "));
+  EXPECT_THAT(InputErrorOf([] { ParseChanges("position.c2"); }), HasSubstr("\"position.c2\": allowed key=value"));
+  EXPECT_THAT(InputErrorOf([] { ParseChanges("a.b=1\na.b=2"); }), HasSubstr("a.b: found twice"));
+  EXPECT_THAT(InputErrorOf([] { ParseChanges("\n"); }), HasSubstr("found no value"));
+  std::string many;
+  for (int i = 0; i < 65; ++i) many += "k" + std::to_string(i) + "=1\n";
+  EXPECT_THAT(InputErrorOf([&] { ParseChanges(many); }), HasSubstr("more than 64 values"));
+}
+
+// Tests that gains follow from natural frequency and damping ratio, and that the message has what differs.
+TEST(PrepareChange, DerivesGainsAnew) {
+  const PreparedChange change = Prepared({"pressure.natural_frequency_rad_s=120", "position.c2=400"});
+  ASSERT_NE(change.config, nullptr) << change.text;
+  const auto gains = pressure_ctrl::DerivePressureGains(change.config->model.description.parameters, 0, 120, 0.5, 2);
+  EXPECT_EQ(ValueOf(change.message, "pressure.k_p"), gains.k_p);
+  EXPECT_EQ(ValueOf(change.message, "position.c2"), 400);
+  EXPECT_EQ(change.message.changes, "position.c2 = 400\npressure.natural_frequency_rad_s = 120\n");
+  EXPECT_THAT(change.text, StartsWith("position.c2 = 400, pressure.natural_frequency_rad_s = 120; pressure loop: "));
+  EXPECT_EQ(change.message.reference, "");
+  EXPECT_FALSE(change.new_reference);
+}
+
+// Tests that gains take the place of what they were derived from, and the other way round.
+TEST(PrepareChange, OneAlternativeTakesTheOthersPlace) {
+  const settings::StackConfig configured = Parsed(kFast);
+  const PreparedChange gains = PrepareChange(configured, configured, {"pressure.k_p=0.13", "pressure.k_v=8"}, {});
+  ASSERT_NE(gains.config, nullptr) << gains.text;
+  EXPECT_FALSE(gains.config->pressure.natural_frequency_rad_s);
+  const PreparedChange back = PrepareChange(configured, *gains.config,
+                                            {"pressure.natural_frequency_rad_s=140", "pressure.damping_ratio=0.5"}, {});
+  ASSERT_NE(back.config, nullptr) << back.text;
+  EXPECT_FALSE(back.config->pressure.k_p);
+  EXPECT_EQ(back.message.changes, "pressure.natural_frequency_rad_s = 140\n");
+  EXPECT_EQ(settings::Changed(configured, ParseChanges(back.message.changes)).text, back.config->text);
+}
+
+TEST(PrepareChange, RefusesWithTheReason) {
+  const struct {
+    std::vector<std::string> changes;
+    const char* says;
+  } cases[] = {
+      {{"position.c3=1"}, "position.c3: no such value, did you mean \"position.c1\"?"},
+      {{"plant.rate_hz=2000"}, "plant.rate_hz: cannot be changed while the stack runs"},
+      {{"bus.url=udpm://239.1.1.1:7"}, "bus.url: cannot be changed"},
+      {{"position.c2=abc"}, "position.c2=abc: position.c2: found \"abc\""},
+      {{"position.c2=-1"}, "found -1, allowed"},
+      {{"pressure.natural_frequency_rad_s=1"}, "must be above the open loop's"},
+      {{"position.c1=10500", "position.c2=5000"}, "would be unstable: "},
+      {{"limits.pressure_psi=2500"}, "limits.pressure_psi: found 2500, allowed up to 2000, which is in force"},
+      {{"limits.pressure_psi=inf"}, "allowed up to 2000"},
+      {{"noise.p1_psi=1"}, "noise.p1_psi: the rig is a real one"},
+      {{"reference.steps=[[0, 2.5]]"}, "reference.steps: found arm angle 2.5 rad"},
+      {{"limits.arm_angle_rad=0.05"}, "allowed |alpha| <= 0.05 rad (limits.arm_angle_rad)"},
+      {{"limits.motor_speed_rad_s=100", "reference.kind=sine", "reference.amplitude=0.2", "reference.frequency_hz=2"},
+       "reference: found a speed of 2.513, allowed 0.2161 (limits.motor_speed_rad_s at the arm, rad/s)"},
+      {{"reference.signal=\"pressure\""}, "reference.signal: no such value"},
+  };
+  for (const auto& c : cases) {
+    const PreparedChange change = Prepared(c.changes);
+    EXPECT_EQ(change.config, nullptr) << c.changes.front();
+    EXPECT_THAT(change.text, HasSubstr(c.says)) << c.changes.front();
+    EXPECT_EQ(change.text.find('\n'), std::string::npos);
+  }
+}
+
+// Tests that one bad value of several leaves all as they were.
+TEST(PrepareChange, AllOrNone) {
+  EXPECT_EQ(Prepared({"position.c2=400", "position.c1=-1"}).config, nullptr);
+}
+
+TEST(PrepareChange, LimitsAreLoosenedOnlyWhileHeld) {
+  EXPECT_NE(Prepared({"limits.pressure_psi=1500"}).config, nullptr);
+  EXPECT_EQ(Prepared({"limits.pressure_psi=2500"}).config, nullptr);
+  EXPECT_NE(Prepared({"limits.pressure_psi=2500"}, {.held = true}).config, nullptr);
+}
+
+TEST(PrepareChange, AReferenceTravelsAsText) {
+  const PreparedChange change = Prepared({"reference.kind=sine", "reference.amplitude=0.05", "reference.frequency_hz=0.5"});
+  ASSERT_NE(change.config, nullptr) << change.text;
+  EXPECT_TRUE(change.new_reference);
+  const settings::ReferenceSection reference = settings::ParseReference(change.message.reference);
+  EXPECT_EQ(reference.trajectory.kind, settings::TrajectorySpec::Kind::kSine);
+  EXPECT_EQ(reference.trajectory.amplitude, 0.05);
+  EXPECT_EQ(reference.signal, settings::ReferenceSignal::kArmAngle);
+}
+
+// Tests that every row of the table is a key of the configuration: with a value that no key allows, it is the value that is refused.
+TEST(TunableKeys, AreKeysOfTheConfiguration) {
+  for (const TunableKey& row : TunableKeys()) {
+    const std::string key(row.key);
+    const std::string last = key.substr(key.find('.') + 1);
+    std::vector<std::string> kind;
+    for (const char* name : {"steps", "sine", "chirp"}) {
+      const auto keys = settings::KeysOfTrajectory(name);
+      if (kind.empty() && std::find(keys.begin(), keys.end(), last) != keys.end()) {
+        kind = {std::string("reference.kind=") + name};
+      }
+    }
+    if (last == "points" || last == "interpolation") kind = {"reference.kind=csv", "reference.points=[[0, 0], [1, 0.1]]"};
+    const std::string config =
+        key.starts_with("reference.") ? settings::Changed(Parsed(kFast), kind).text : kFast;
+    const PreparedChange change = Prepared({key + "={}"}, {.held = true, .simulated = true}, config);
+    EXPECT_EQ(change.config, nullptr);
+    EXPECT_THAT(change.text, ::testing::AnyOf(HasSubstr(key + ": found"), HasSubstr(key + "[")));
+  }
+}
+
+}  // namespace
+}  // namespace hydro::tuning

@@ -1,0 +1,35 @@
+// The gains that hydro-tune chooses, and a configuration with them.
+#pragma once
+
+#include <limits>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "settings/stack_config.h"
+
+namespace hydro::tune {
+
+struct Gains {
+  // rad/s, of the pressure loop at mid-stroke, with as many sides compressing as pressure.compressed_sides says (both for k_p and k_v).
+  double natural_frequency = 0;
+  double damping_ratio = 0;
+  double c1 = 0;  // psi/rad
+  double c2 = 0;  // psi s/rad
+  // rad/s^2, of the braking curve before eq. (17) (position_ctrl/law/braking_curve.h); infinity: eq. (17) alone.
+  double deceleration = std::numeric_limits<double>::infinity();
+  bool as_configured = false;  // the configuration as it is, whatever the numbers above say
+};
+
+// Those of a configuration, as it is.
+Gains GainsOf(const settings::StackConfig& config);
+
+// The configuration with these gains, both feed-forwards of eq. (16), and the derivative of eq. (17) on the measured angle. It
+// keeps the way in which eq. (16) is given: k_p and k_v, or natural frequency and damping. Throws InputError when no
+// gains of eq. (16) follow.
+settings::StackConfig With(settings::StackConfig config, const Gains& gains);
+
+// The keys that With may change, as "section.key" and its value in TOML.
+std::vector<std::pair<std::string, std::string>> GainKeys(const settings::StackConfig& config);
+
+}  // namespace hydro::tune

@@ -1,0 +1,167 @@
+#include "tune/tune.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <stdexcept>
+#include <utility>
+
+#include "base/new_file.h"
+#include "base/number_text.h"
+#include "base/read_files.h"
+#include "base/terminal_line.h"
+#include "base/text_file.h"
+#include "settings/stack_config.h"
+#include "settings/moved_paths.h"
+#include "settings/toml/toml_edit.h"
+#include "tune/refusal.h"
+#include "tune/report.h"
+#include "tune/search.h"
+#include "tune/simulated_step.h"
+
+namespace hydro::tune {
+namespace {
+
+using Keys = std::vector<std::pair<std::string, std::string>>;
+
+void CheckRange(const char* option, int value, int least, int most) {
+  if (value >= least && value <= most) return;
+  throw InputError(std::string(option) + ": found " + std::to_string(value) + ", allowed " +
+                   std::to_string(least) + " to " + std::to_string(most));
+}
+
+settings::StackConfig Load(const TuneRequest& request) {
+  std::vector<std::string> overrides;
+  if (request.interval) {
+    if (!ParseNumber(*request.interval)) {
+      throw InputError("--interval: found " + Quoted(*request.interval) + ", allowed a number of seconds");
+    }
+    overrides.push_back("position.sample_interval_s=" + *request.interval);
+  }
+  settings::StackConfig config = settings::LoadStackConfig(request.config, overrides);
+  const auto refuse = [&](const std::string& key, const std::string& found, const std::string& allowed) {
+    throw InputError(config.file + ": " + key + ": found " + found + ", allowed " + allowed +
+                     ", because hydro-tune judges steps of the arm's angle");
+  };
+  if (config.reference.signal != settings::ReferenceSignal::kArmAngle) {
+    refuse("reference.signal", "another signal", "\"arm_angle\"");
+  }
+  if (config.model.shaft != model::Shaft::kFree) refuse("model.shaft", "a shaft that is held", "\"free\"");
+  if (config.model.bypass) refuse("model.bypass", "true", "false");
+  return config;
+}
+
+// One search after the other on one scale.
+class ProgressLine {
+ public:
+  ProgressLine(std::FILE* out, bool terminal) : out_(out), terminal_(terminal), line_(out) {}
+  void Show(double done, const char* what) {
+    const int percent = static_cast<int>(100 * done);
+    if (percent == shown_) return;
+    // A log gets a line a quarter.
+    if (!terminal_ && percent / 25 != shown_ / 25)
+      std::fprintf(out_, "hydro-tune: %d %%, %s\n", percent, what);
+    shown_ = percent;
+    if (terminal_) line_.Draw(done, what);
+  }
+
+ private:
+  std::FILE* out_;
+  bool terminal_;
+  TerminalLine line_;
+  int shown_ = 0;
+};
+
+Proposal ProposalOf(const StepJudge& judge, std::string name, Tried tried) {
+  Proposal proposal;
+  proposal.name = std::move(name);
+  for (const double step : judge.steps())
+    proposal.steps.push_back(judge.Try(tried.gains, judge.Nominal(step)));
+  proposal.uncertain = UncertainMargins(judge, tried.gains);
+  proposal.tried = std::move(tried);
+  return proposal;
+}
+
+// The given text with the gains of `tuned`, for a file `output`.
+std::string TunedText(const settings::StackConfig& given, const settings::StackConfig& tuned,
+                      const std::string& output) {
+  const std::string before = ReadTextFile(given.file);
+  const Keys old =
+      GainKeys(settings::ParseStackConfig(before, given.file, given.model.text, given.model.file));
+  Keys keys = settings::MovedPaths(given, output);
+  for (const auto& key : GainKeys(tuned)) {
+    if (std::find(old.begin(), old.end(), key) == old.end()) keys.push_back(key);
+  }
+  return settings::EditToml(before, given.file, keys, {});
+}
+
+// Before the search, with gains that all differ from the given ones.
+void CheckCanBeChanged(const settings::StackConfig& config, const std::string& output) {
+  Gains other = GainsOf(config);
+  other.as_configured = false;
+  for (double* gain : {&other.natural_frequency, &other.damping_ratio, &other.c1, &other.c2})
+    *gain = 1.5 * *gain + 1;
+  TunedText(config, With(config, other), output);
+}
+
+void WriteReport(const TuningReport& report, const std::string& folder, bool si) {
+  std::filesystem::create_directories(folder);
+  WriteWholeFile(folder + "/tune.svg", ReportPicture(report));
+  WriteWholeFile(folder + "/tune.html", ReportPage(report, si));
+}
+
+// The gains as the stack's own programs run them: nothing that was left out of the search can differ.
+void RunOnTheStack(const StepJudge& judge, Proposal* proposal) {
+  const settings::StackConfig tuned = With(judge.config(), proposal->tried.gains);
+  for (size_t i = 0; i < judge.steps().size(); ++i) {
+    const double saturated = proposal->steps[i].saturated;
+    proposal->steps[i] = SimulateStep(tuned, judge.Nominal(judge.steps()[i]));
+    proposal->steps[i].saturated = saturated;
+  }
+}
+
+void Refuse(const settings::StackConfig& config, const std::string& why) {
+  if (!why.empty()) throw std::runtime_error(config.file + ": " + why);
+}
+
+}  // namespace
+
+int Tune(const TuneRequest& request, std::FILE* out, std::FILE* progress, bool terminal) {
+  CheckRange("--jobs", request.jobs, 1, 64);
+  CheckRange("--samples", request.samples, 0, 100);
+  const Goals goals = ParseGoals(request.goals);
+  const settings::StackConfig config = Load(request);
+  CheckKeeps(request.output);
+  CheckCanBeCreated(request.output);
+  if (!request.output.empty()) CheckCanBeChanged(config, request.output);
+  const StepJudge judge(config, {.goals = goals, .samples = request.samples, .noise = request.noise});
+  Refuse(config, RefusalByTheMotor(judge, goals));
+
+  ProgressLine line(progress, terminal);
+  const Gains pressure = ChoosePressureLoop(config);
+  const SearchResult fixed = SearchGains(judge, goals, pressure, false, request.jobs,
+                                         [&](double done) { line.Show(0.25 * done, "gains of eq. (17)"); });
+  const SearchResult curve = SearchGains(judge, goals, pressure, true, request.jobs, [&](double done) {
+    line.Show(0.25 + 0.75 * done, "gains with a braking curve");
+  });
+  Refuse(config, RefusalBySearch(judge, goals, fixed));
+
+  TuningReport report;
+  report.config = config.file;
+  report.judge = &judge;
+  report.noise = request.noise;
+  report.proposals.push_back(ProposalOf(judge, "as configured", TryGains(judge, GainsOf(config))));
+  report.proposals.push_back(ProposalOf(judge, "proposed", fixed.best));
+  RunOnTheStack(judge, &report.proposals.back());
+  if (curve.found) report.proposals.push_back(ProposalOf(judge, "with a braking curve", curve.best));
+  report.trade_offs = TradeOffs(fixed.tried);
+  report.tried = fixed.tried;
+  const std::string text = ReportText(report, request.si);
+  std::fwrite(text.data(), 1, text.size(), out);
+  if (!request.folder.empty()) WriteReport(report, request.folder, request.si);
+  if (!request.output.empty()) {
+    WriteWholeFile(request.output, TunedText(config, With(config, fixed.best.gains), request.output));
+  }
+  return 0;
+}
+
+}  // namespace hydro::tune

@@ -1,0 +1,27 @@
+// hydro-tune: from a configuration and goals to gains, a report and a configuration with them.
+#pragma once
+
+#include <cstdio>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace hydro::tune {
+
+struct TuneRequest {
+  std::string config;                   // the file
+  std::vector<std::string> goals;       // as ParseGoals reads them
+  std::optional<std::string> interval;  // s, T; none: the configuration's
+  std::string output;                   // the configuration with the gains; empty: none
+  std::string folder;                   // of the report; empty: none
+  int samples = 8;
+  int jobs = 2;
+  bool noise = false;
+  bool si = false;
+};
+
+// Tables go to `out`, progress to `progress` (a bar on a terminal). Returns 0. Throws InputError for wrong input, and
+// std::runtime_error naming the limit for goals that cannot be met; then nothing is written.
+int Tune(const TuneRequest& request, std::FILE* out, std::FILE* progress, bool terminal);
+
+}  // namespace hydro::tune

@@ -1,0 +1,178 @@
+#include "tuning/change_check.h"
+
+#include <algorithm>
+#include <array>
+#include <map>
+#include <sstream>
+
+#include "base/input_error.h"
+#include "base/number_text.h"
+#include "base/text_file.h"
+#include "design/loop_check.h"
+#include "settings/toml/toml_entries.h"
+#include "tuning/reference_range.h"
+#include "tuning/tunable_keys.h"
+#include "tuning/tuned_values.h"
+
+namespace hydro::tuning {
+namespace {
+
+constexpr size_t kMostChanges = 64;
+
+std::string KeyOf(const std::string& change) {
+  std::string key = change.substr(0, change.find('='));
+  key.erase(key.find_last_not_of(" \t") + 1);
+  key.erase(0, key.find_first_not_of(" \t"));
+  return key;
+}
+
+std::map<std::string, std::string> TunableEntries(const settings::StackConfig& config) {
+  std::map<std::string, std::string> entries;
+  for (const auto& [key, value] : settings::TomlEntries(settings::ParseToml(config.text, config.file))) {
+    if (FindTunable(key) != nullptr) entries.emplace(key, value);
+  }
+  return entries;
+}
+
+struct Limit {
+  const char* key;
+  double settings::LimitsSection::*value;
+};
+constexpr std::array kLimits{Limit{"limits.pressure_psi", &settings::LimitsSection::pressure_psi},
+                             Limit{"limits.motor_speed_rad_s", &settings::LimitsSection::motor_speed_rad_s},
+                             Limit{"limits.arm_angle_rad", &settings::LimitsSection::arm_angle_rad},
+                             Limit{"limits.arm_torque_in_lbf", &settings::LimitsSection::arm_torque_in_lbf}};
+
+std::string LoosenedLimit(const settings::LimitsSection& before, const settings::LimitsSection& after) {
+  for (const Limit& limit : kLimits) {
+    const double was = before.*limit.value, is = after.*limit.value;
+    if (!(is > was)) continue;
+    return std::string(limit.key) + ": found " + ShortestNumber(is) + ", allowed up to " + ShortestNumber(was) +
+           ", which is in force: a limit is loosened only while a fault holds zero volts (limits.rearm = \"explicit\"), before "
+           "the re-arm, or by a restart";
+  }
+  return "";
+}
+
+// 1 and more: unstable.
+double SpectralRadius(const design::LoopCheck& check) {
+  double radius = 0;
+  for (const auto& loop : {check.pressure, check.position}) {
+    if (loop) radius = std::max(radius, loop->worst.spectral_radius);
+  }
+  return radius;
+}
+
+// Fills in the loops' margins as `text`, or why they forbid the change; returns whether they permit it.
+bool LoopsPermit(const settings::StackConfig& in_force, const settings::StackConfig& next, std::string* text) {
+  const auto gains = [](const settings::StackConfig& config) {
+    tuned_settings_t message;
+    Write(ValuesOf(config), &message);
+    std::vector<double> values;
+    for (size_t i = 0; i < message.names.size(); ++i) {
+      if (!message.names[i].starts_with("limits.") && !message.names[i].starts_with("noise.")) {
+        values.push_back(message.values[i]);
+      }
+    }
+    return values;
+  };
+  if (gains(in_force) == gains(next)) return true;
+  const design::LoopCheck check = design::CheckLoops(next);
+  if (check.unjudged.empty() || check.pressure) *text = design::Describe(check);
+  if (check.stable()) return true;
+  // From loops that are unstable already, a change may lead towards stable ones.
+  return SpectralRadius(check) < SpectralRadius(design::CheckLoops(in_force));
+}
+
+}  // namespace
+
+std::vector<std::string> ParseChanges(const std::string& lines) {
+  std::vector<std::string> changes;
+  std::istringstream text(lines);
+  for (std::string line; std::getline(text, line);) {
+    if (line.find_first_not_of(" \t\r") == std::string::npos) continue;
+    const std::string key = KeyOf(line);
+    if (line.find('=') == std::string::npos || key.empty()) {
+      throw InputError(Quoted(line) + ": allowed key=value, e.g. position.c2=900");
+    }
+    if (std::any_of(changes.begin(), changes.end(), [&](const auto& other) { return KeyOf(other) == key; })) {
+      throw InputError(key + ": found twice, allowed once in a change");
+    }
+    if (changes.size() == kMostChanges) {
+      throw InputError("found more than " + std::to_string(kMostChanges) + " values in one change");
+    }
+    changes.push_back(line);
+  }
+  if (changes.empty()) throw InputError("found no value, allowed key=value, e.g. position.c2=900");
+  return changes;
+}
+
+std::string OnOneLine(const std::string& changes) {
+  std::string line;
+  std::istringstream text(changes);
+  for (std::string change; std::getline(text, change);) line += (line.empty() ? "" : ", ") + change;
+  return line;
+}
+
+std::string DifferenceOf(const settings::StackConfig& from, const settings::StackConfig& to) {
+  const auto before = TunableEntries(from), after = TunableEntries(to);
+  std::string lines;
+  for (const auto& [key, value] : after) {
+    const auto was = before.find(key);
+    if (was == before.end() || was->second != value) lines += key + " = " + value + "\n";
+  }
+  return lines;
+}
+
+PreparedChange PrepareChange(const settings::StackConfig& configured, const settings::StackConfig& in_force,
+                             const std::vector<std::string>& changes, const Situation& situation) {
+  PreparedChange refused;
+  for (const std::string& change : changes) {
+    const std::string key = KeyOf(change);
+    if (FindTunable(key) == nullptr) refused.text = WhyNotTunable(key);
+    if (key.starts_with("noise.") && !situation.simulated) {
+      refused.text = key + ": the rig is a real one, whose noise is its own";
+    }
+    if (!refused.text.empty()) return refused;
+  }
+  try {
+    auto next = std::make_shared<settings::StackConfig>(settings::Changed(in_force, changes));
+    return PrepareChange(configured, in_force, std::move(next), situation);
+  } catch (const InputError& error) {
+    refused.text = error.what();
+    if (refused.text.starts_with("--set ")) refused.text.erase(0, 6);
+  }
+  return refused;
+}
+
+PreparedChange PrepareChange(const settings::StackConfig& configured, const settings::StackConfig& in_force,
+                             std::shared_ptr<const settings::StackConfig> next, const Situation& situation) {
+  PreparedChange change;
+  try {
+    Write(ValuesOf(*next), &change.message);
+  } catch (const InputError& error) {  // gains that cannot be derived
+    change.text = error.what();
+    return change;
+  }
+  if (!situation.held) change.text = LoosenedLimit(in_force.limits, next->limits);
+  if (change.text.empty()) change.text = WhatTheRigCannotFollow(*next);
+  if (!change.text.empty()) return change;
+  std::string margins;
+  if (!LoopsPermit(in_force, *next, &margins)) {
+    change.text = "would be unstable: " + margins;
+    return change;
+  }
+
+  const std::string reference = settings::ReferenceText(*next);
+  change.new_reference = reference != settings::ReferenceText(in_force);
+  if (reference != settings::ReferenceText(configured)) change.message.reference = reference;
+  change.message.changes = DifferenceOf(configured, *next);
+  change.text = DifferenceOf(in_force, *next);
+  if (change.text.empty()) change.text = "nothing differs from what is in force";
+  change.text = OnOneLine(change.text);
+  if (!margins.empty()) change.text += "; " + margins;
+  change.config = std::move(next);
+  return change;
+}
+
+}  // namespace hydro::tuning

@@ -1,0 +1,73 @@
+#include "tuning/tunable_keys.h"
+
+#include <algorithm>
+#include <array>
+#include <vector>
+
+#include "base/did_you_mean.h"
+
+namespace hydro::tuning {
+namespace {
+
+constexpr std::string_view kPressure = "pressure_ctrl", kPosition = "position_ctrl", kPlant = "plant";
+
+constexpr std::array kKeys{
+    TunableKey{"pressure.k_p", "V/psi", "gain on the pressure error, eq. (16)", kPressure},
+    TunableKey{"pressure.k_v", "psi s/rad", "gain on the motor's speed, eq. (16)", kPressure},
+    TunableKey{"pressure.natural_frequency_rad_s", "rad/s", "of the pressure loop; k_p and k_v follow",
+               kPressure},
+    TunableKey{"pressure.damping_ratio", "1", "of the pressure loop; k_p and k_v follow", kPressure},
+    TunableKey{"pressure.compressed_sides", "1", "1 or 2: the case for which k_p and k_v are derived", kPressure},
+    TunableKey{"pressure.reference_feedforward", "V/psi", "true, false or a gain: the voltage that holds dp_ref",
+               kPressure},
+    TunableKey{"pressure.arm_speed_feedforward", "", "true or false: takes the arm's motion out of the k_v term",
+               kPressure},
+    TunableKey{"position.c1", "psi/rad", "gain on the arm's angle error, eq. (17)", kPosition},
+    TunableKey{"position.c2", "psi s/rad", "gain on its derivative, eq. (17)", kPosition},
+    TunableKey{"position.derivative", "", "\"error\" or \"measurement\": what eq. (17) differentiates", kPosition},
+    TunableKey{"reference.kind", "", "steps, sine, square, chirp, csv (points) or planner", kPosition},
+    TunableKey{"reference.initial", "rad, psi, in-lbf or V", "before the first step or plan", kPosition},
+    TunableKey{"reference.steps", "s, and as initial", "[[time, value], ...]", kPosition},
+    TunableKey{"reference.offset", "rad, psi, in-lbf or V", "middle of a sine, square or chirp", kPosition},
+    TunableKey{"reference.amplitude", "rad, psi, in-lbf or V", "of a sine, square or chirp", kPosition},
+    TunableKey{"reference.frequency_hz", "Hz", "of a sine or square", kPosition},
+    TunableKey{"reference.phase_rad", "rad", "of a sine", kPosition},
+    TunableKey{"reference.start_s", "s", "when a sine, square or chirp begins", kPosition},
+    TunableKey{"reference.first_frequency_hz", "Hz", "of a chirp", kPosition},
+    TunableKey{"reference.last_frequency_hz", "Hz", "of a chirp", kPosition},
+    TunableKey{"reference.duration_s", "s", "of a chirp", kPosition},
+    TunableKey{"reference.points", "s, and as initial", "[[time, value], ...] of a csv reference", kPosition},
+    TunableKey{"reference.interpolation", "", "linear or hold, between points", kPosition},
+    TunableKey{"reference.timeout_s", "s", "a plan older than this is followed no further", kPosition},
+    TunableKey{"reference.max_speed_rad_s", "rad/s", "of the reference that follows a planner", kPosition},
+    TunableKey{"limits.pressure_psi", "psi", "above it on either side: zero volts and a fault", kPressure},
+    TunableKey{"limits.motor_speed_rad_s", "rad/s", "above it: zero volts and a fault", kPressure},
+    TunableKey{"limits.arm_angle_rad", "rad", "beyond it: zero volts and a fault", kPressure},
+    TunableKey{"limits.arm_torque_in_lbf", "in-lbf", "what the position loop may ask for", kPosition},
+    TunableKey{"noise.p1_psi", "psi", "standard deviation of the simulated sensor's noise", kPlant},
+    TunableKey{"noise.p2_psi", "psi", "standard deviation of the simulated sensor's noise", kPlant},
+    TunableKey{"noise.motor_angle_rad", "rad", "standard deviation of the simulated sensor's noise", kPlant},
+    TunableKey{"noise.motor_speed_rad_s", "rad/s", "standard deviation of the simulated sensor's noise", kPlant},
+    TunableKey{"noise.arm_angle_rad", "rad", "standard deviation of the simulated sensor's noise", kPlant},
+    TunableKey{"noise.arm_speed_rad_s", "rad/s", "standard deviation of the simulated sensor's noise", kPlant},
+};
+
+}  // namespace
+
+std::span<const TunableKey> TunableKeys() { return kKeys; }
+
+const TunableKey* FindTunable(std::string_view key) {
+  const auto found = std::find_if(kKeys.begin(), kKeys.end(), [&](const auto& row) { return row.key == key; });
+  return found == kKeys.end() ? nullptr : &*found;
+}
+
+std::string WhyNotTunable(const std::string& key) {
+  std::vector<std::string> names;
+  names.reserve(kKeys.size());
+  for (const TunableKey& row : kKeys) names.emplace_back(row.key);
+  const std::string meant = DidYouMean(key, names);
+  if (!meant.empty()) return key + ": no such value" + meant;
+  return key + ": cannot be changed while the stack runs (hydro-set --list shows what can); change the configuration and restart";
+}
+
+}  // namespace hydro::tuning

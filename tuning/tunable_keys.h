@@ -1,0 +1,26 @@
+// What may be changed while a stack runs: one table, from which hydro-set --list, the page, the checks and docs/tuning.md
+// derive.
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+
+namespace hydro::tuning {
+
+struct TunableKey {
+  std::string_view key;      // of the configuration, e.g. "position.c2"
+  std::string_view unit;     // "" where the value is a word or a list
+  std::string_view what;     // for a person, what it does
+  std::string_view acts_in;  // role of the process that acts by it: pressure_ctrl, position_ctrl, plant
+};
+
+std::span<const TunableKey> TunableKeys();
+
+// The row of `key`; null: it takes a restart.
+const TunableKey* FindTunable(std::string_view key);
+
+// Why `key` cannot be changed while the stack runs, and what is meant or allowed instead, as one line.
+std::string WhyNotTunable(const std::string& key);
+
+}  // namespace hydro::tuning

@@ -1,0 +1,102 @@
+#include "tuning/tuning_follower.h"
+
+#include <utility>
+
+namespace hydro::tuning {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr auto kStatusPeriod = 1s;
+constexpr auto kLongestWait = 1500ms;  // the plant says once a second what is in force
+
+}  // namespace
+
+TuningFollower::TuningFollower(process::Participant& participant, Prepare prepare)
+    : participant_(participant), prepare_(std::move(prepare)) {
+  status_ = {};
+  status_.role = participant.role();
+  status_.since = status_.refused = -1;
+  participant.bus().Subscribe<tuned_settings_t>(
+      participant.channels().Of<tuned_settings_t>(),
+      [this](const tuned_settings_t& settings) { OnSettings(settings); });
+}
+
+void TuningFollower::OnSettings(const tuned_settings_t& settings) {
+  const int64_t run = participant_.run();  // 0: of no plant yet
+  if ((run != 0 && settings.session != run) || participant_.Refuses(settings.session)) return;
+  if (settings.session != plant_) {  // another run: it begins as configured, or as its plant says
+    plant_ = settings.session;
+    waiting_.reset();
+    status_.refused = -1;
+    if (in_force_ != 0) in_force_ = -1;  // that plant's numbers are not this one's
+  }
+
+  const bool known = waiting_ && waiting_->version == settings.version;
+  switch (settings.stage) {
+    case tuned_settings_t::PROPOSED:
+      if (settings.version != in_force_ && !known) Keep(settings);
+      Say();
+      return;
+    case tuned_settings_t::DECIDED:
+      if (settings.version == in_force_ || settings.acts_at < 0) return;
+      if (known) {
+        *waiting_ = settings;  // as proposed, and from when on
+      } else {
+        Keep(settings);
+      }
+      Say();
+      return;
+    case tuned_settings_t::WITHDRAWN:
+      if (known) waiting_.reset();
+      return;
+    case tuned_settings_t::IN_FORCE:
+      heard_ = true;
+      // Not heard when it was decided. One that is decided, and waits for its tick, stays.
+      if (settings.version != in_force_ && !known) Keep(settings);
+      if (waiting_ && waiting_->version == settings.version && waiting_->acts_at < 0) *waiting_ = settings;
+      return;
+    default:
+      return;
+  }
+}
+
+void TuningFollower::Keep(const tuned_settings_t& settings) {
+  status_.text = prepare_(settings);
+  if (status_.text.empty()) {
+    waiting_ = settings;
+  } else {
+    status_.refused = settings.version;
+  }
+}
+
+const tuned_settings_t* TuningFollower::TakeDueAt(int64_t tick) {
+  if (!waiting_ || waiting_->acts_at < 0 || tick < waiting_->acts_at) return nullptr;
+  taken_ = std::move(*waiting_);
+  waiting_.reset();
+  in_force_ = taken_.version;
+  status_.since = tick;
+  next_status_ = {};  // said soon, not in the middle of a cycle
+  return &taken_;
+}
+
+bool TuningFollower::Awaits(bus::Clock::TimePoint joined) const {
+  return !heard_ && participant_.clock().Now() - joined < kLongestWait;
+}
+
+void TuningFollower::Poll() {
+  if (participant_.state() == process_status_t::RUNNING && participant_.clock().Now() >= next_status_) Say();
+}
+
+void TuningFollower::Say() {
+  next_status_ = participant_.clock().Now() + kStatusPeriod;
+  status_.utime = participant_.clock().Utime();
+  status_.tick = participant_.tick();
+  status_.session = participant_.session();
+  status_.plant = plant_;
+  status_.in_force = in_force_;
+  status_.ready_for = waiting_ ? waiting_->version : in_force_;
+  participant_.bus().Publish(participant_.channels().Of<tuning_status_t>(), status_);
+}
+
+}  // namespace hydro::tuning
