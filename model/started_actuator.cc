@@ -16,7 +16,8 @@ ActuatorOptions At(ActuatorOptions options, const StartState& start) {
 
 class StartedActuator::Impl {
  public:
-  Impl(const ModelDescription& description, const ActuatorOptions& options, const StartState& start, double time)
+  Impl(const ModelDescription& description, const ActuatorOptions& options, const StartState& start,
+       double time)
       : equations(description, At(options, start)), turn(start[kTurn]) {
     StartState base = start;
     if (options.bypass) base[kP2] = base[kP1];

@@ -12,8 +12,8 @@ class StartedActuator {
  public:
   // At `time` (s; what effects call t begins at options.begin) in the state `start`, as Respond begins; of the options, the
   // start's pressures and arm angle are not used. Throws ModelError as Actuator does.
-  StartedActuator(const ModelDescription& description, const ActuatorOptions& options, const StartState& start,
-                  double time);
+  StartedActuator(const ModelDescription& description, const ActuatorOptions& options,
+                  const StartState& start, double time);
   ~StartedActuator();
   StartedActuator(StartedActuator&&) noexcept;
   StartedActuator& operator=(StartedActuator&&) noexcept;

@@ -25,9 +25,9 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr auto kTimeLimit = 300s;         // its own limit is 60 s of search
+constexpr auto kTimeLimit = 300s;  // its own limit is 60 s of search
 constexpr char kReports[] = "/api/reports/";
-constexpr size_t kMostJobs = 8;           // kept
+constexpr size_t kMostJobs = 8;  // kept
 constexpr size_t kLongestLine = 500;
 
 // Beside this program, as all of them are installed.
@@ -40,8 +40,9 @@ std::string Program() {
 // Starts hydro-diagnose on the window in the folder. What it prints can be read from ends[0].
 pid_t StartProgram(const std::string& folder, int ends[2]) {
   if (pipe2(ends, O_CLOEXEC) != 0) throw InputError("no pipe: errno " + std::to_string(errno));
-  std::vector<std::string> arguments = {"nice", "-n", "10", Program(), folder + "/window.lcmlog", "--model",
-                                        folder + "/model_before.toml", "--out", folder};
+  std::vector<std::string> arguments = {
+      "nice",  "-n",  "10", Program(), folder + "/window.lcmlog", "--model", folder + "/model_before.toml",
+      "--out", folder};
   std::vector<char*> argv;
   argv.reserve(arguments.size() + 1);
   for (std::string& argument : arguments) argv.push_back(argument.data());
@@ -160,7 +161,8 @@ std::string DiagnoseJobs::Status(int number) const {
   const auto found = jobs_.find(number);
   if (found == jobs_.end()) return {};
   const Job& job = found->second;
-  std::string text = "{\"job\":" + std::to_string(number) + ",\"state\":" + TextJson(job.state) + ",\"text\":" + TextJson(job.text);
+  std::string text = "{\"job\":" + std::to_string(number) + ",\"state\":" + TextJson(job.state) +
+                     ",\"text\":" + TextJson(job.text);
   if (job.state == "done") {
     text += ",\"sentence\":" + TextJson(job.sentence) + ",\"verdict\":" + TextJson(job.verdict) +
             ",\"report\":" + TextJson(job.report);

@@ -55,7 +55,8 @@ FoxgloveConversation::FoxgloveConversation(RunTable* runs) : runs_(*runs) {
 
 void FoxgloveConversation::Complain(const std::string& text) {
   ++wrong_;
-  if (replies_.size() < kMostReplies) replies_.push_back(Text({{"op", "status"}, {"level", 2}, {"message", text}}));
+  if (replies_.size() < kMostReplies)
+    replies_.push_back(Text({{"op", "status"}, {"level", 2}, {"message", text}}));
 }
 
 void FoxgloveConversation::Hear(std::string_view message, bool binary) {
@@ -70,17 +71,20 @@ void FoxgloveConversation::Subscribe(std::string_view message) {
   }
   const std::string op = object["op"];
   const auto list = object.find(op == "subscribe" ? "subscriptions" : "subscriptionIds");
-  if (op != "subscribe" && op != "unsubscribe") return Complain("\"" + Printable(op.substr(0, 40)) + "\": this server is read-only");
+  if (op != "subscribe" && op != "unsubscribe")
+    return Complain("\"" + Printable(op.substr(0, 40)) + "\": this server is read-only");
   if (list == object.end() || !list->is_array()) return Complain(op + ": found no list");
   for (const json& item : *list) {
     if (op == "unsubscribe") {
-      if (!item.is_number_unsigned()) return Complain("unsubscribe: found " + item.dump() + ", allowed are ids");
+      if (!item.is_number_unsigned())
+        return Complain("unsubscribe: found " + item.dump() + ", allowed are ids");
       for (auto& [channel, ids] : subscriptions_) ids.erase(item.get<uint32_t>());
       continue;
     }
     const auto number = [&](const char* key) -> uint64_t {
       const auto field = item.is_object() ? item.find(key) : item.end();
-      return item.is_object() && field != item.end() && field->is_number_unsigned() ? field->get<uint64_t>() : UINT64_MAX;
+      return item.is_object() && field != item.end() && field->is_number_unsigned() ? field->get<uint64_t>()
+                                                                                    : UINT64_MAX;
     };
     const uint64_t id = number("id");
     const uint64_t channel = number("channelId");

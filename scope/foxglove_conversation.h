@@ -38,7 +38,7 @@ class FoxgloveConversation : public Conversation {
   MessageStore::Place place_{};
   std::deque<std::string> replies_;
   std::map<std::string, std::map<uint32_t, size_t>, std::less<>> subscriptions_;  // by channel: id, topic
-  std::deque<Message> ready_;                                                     // of one message, to several subscriptions
+  std::deque<Message> ready_;  // of one message, to several subscriptions
   std::string cdr_;
   uint64_t skipped_ = 0;
   int wrong_ = 0;

@@ -137,12 +137,13 @@ FoxgloveTopic Topic(const char* topic, const char* type) {
 }  // namespace
 
 const std::vector<FoxgloveTopic>& FoxgloveTopics() {
-  static const std::vector<FoxgloveTopic> topics = {Topic<state_t>("/hydro/state", "State"),
-                                                    Topic<motor_command_t>("/hydro/motor_command", "MotorCommand"),
-                                                    Topic<pressure_command_t>("/hydro/pressure_command", "PressureCommand"),
-                                                    Topic<arm_reference_t>("/hydro/arm_reference", "ArmReference"),
-                                                    Topic<fault_t>("/hydro/fault", "Fault"),
-                                                    Topic<loop_statistics_t>("/hydro/loop_statistics", "LoopStatistics")};
+  static const std::vector<FoxgloveTopic> topics = {
+      Topic<state_t>("/hydro/state", "State"),
+      Topic<motor_command_t>("/hydro/motor_command", "MotorCommand"),
+      Topic<pressure_command_t>("/hydro/pressure_command", "PressureCommand"),
+      Topic<arm_reference_t>("/hydro/arm_reference", "ArmReference"),
+      Topic<fault_t>("/hydro/fault", "Fault"),
+      Topic<loop_statistics_t>("/hydro/loop_statistics", "LoopStatistics")};
   return topics;
 }
 

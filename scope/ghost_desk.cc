@@ -19,10 +19,10 @@ namespace hydro::scope {
 namespace {
 
 constexpr size_t kMostGhosts = 4;
-constexpr size_t kBatch = 16384;       // samples given to a thread at a time
-constexpr double kFirstLive = 10;      // s of history that a live ghost begins with
-constexpr int kNiceThread = 15;        // below the server's own, but not so low that it could not be ended
-constexpr double kMostBehind = 2;      // s of plant time, then it leaves samples out
+constexpr size_t kBatch = 16384;   // samples given to a thread at a time
+constexpr double kFirstLive = 10;  // s of history that a live ghost begins with
+constexpr int kNiceThread = 15;    // below the server's own, but not so low that it could not be ended
+constexpr double kMostBehind = 2;  // s of plant time, then it leaves samples out
 
 }  // namespace
 
@@ -105,7 +105,7 @@ struct GhostDesk::Beside {
   double resync_s = 0;
   History::Row fed = 0;  // rows before it have been given to the worker, or are in `next`
   std::vector<GhostSample> next;
-  bool gap = false;      // some were left out before it
+  bool gap = false;       // some were left out before it
   bool complete = false;  // of a log: told
   std::string problem;
 };
@@ -115,12 +115,15 @@ GhostDesk::~GhostDesk() = default;
 
 Outcome GhostDesk::Switch(uint32_t id, bool on, double resync_s) {
   Run* const run = runs_.Find(id);
-  if (run == nullptr) return {false, "run: found " + std::to_string(id) + ", allowed is one that is open", {}};
+  if (run == nullptr)
+    return {false, "run: found " + std::to_string(id) + ", allowed is one that is open", {}};
   ghosts_.erase(id);
   if (!on) return {true, "the ghost is off", {}};
   if (run->config == nullptr) {
-    return {false, run->config_problem.empty() ? "the run has not described itself yet: no HYDRO_RUN"
-                                               : "no model: " + run->config_problem, {}};
+    return {false,
+            run->config_problem.empty() ? "the run has not described itself yet: no HYDRO_RUN"
+                                        : "no model: " + run->config_problem,
+            {}};
   }
   if (ghosts_.size() >= kMostGhosts) return {false, "4 ghosts are there already, switch one off", {}};
   auto beside = std::make_unique<Beside>();
@@ -174,7 +177,8 @@ void GhostDesk::Feed(Run& run, Beside& beside) {
     beside.gap = true;
   }
   const bool live = run.kind == Run::Kind::kLive;
-  if (live && beside.fed < ticks.end() && run.last_time() - ticks.time(beside.fed) > kFirstLive + kMostBehind) {
+  if (live && beside.fed < ticks.end() &&
+      run.last_time() - ticks.time(beside.fed) > kFirstLive + kMostBehind) {
     const History::Row next = ticks.LowerBound(run.last_time() - kMostBehind / 4);
     skipped_ += static_cast<int64_t>(next - beside.fed);
     beside.fed = next;
@@ -186,8 +190,9 @@ void GhostDesk::Feed(Run& run, Beside& beside) {
     GhostSample sample;
     sample.time = ticks.time(beside.fed);
     sample.voltage = value(TickColumn::kVoltage);
-    sample.measured = {value(TickColumn::kMotorAngle), value(TickColumn::kMotorSpeed), value(TickColumn::kArmAngle),
-                       value(TickColumn::kArmSpeed),   value(TickColumn::kP1),         value(TickColumn::kP2)};
+    sample.measured = {value(TickColumn::kMotorAngle), value(TickColumn::kMotorSpeed),
+                       value(TickColumn::kArmAngle),   value(TickColumn::kArmSpeed),
+                       value(TickColumn::kP1),         value(TickColumn::kP2)};
     // Ticks that the plant skipped are no gap: its voltage acted on.
     const double expected = run.spacing() * (value(TickColumn::kSkipped) + 1.5);
     const bool lost = beside.fed > ticks.begin() && run.spacing() > 0 &&

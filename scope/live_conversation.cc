@@ -33,7 +33,8 @@ void LiveConversation::Reply(uint32_t id, bool ok, const std::string& text, cons
 // An answer may come when this conversation is over.
 Done LiveConversation::ReplyTo(uint32_t id) {
   return [id, replies = std::weak_ptr(replies_)](const Outcome& outcome) {
-    if (const auto here = replies.lock()) here->push_back(ReplyMessage(id, outcome.ok, outcome.text, outcome.data));
+    if (const auto here = replies.lock())
+      here->push_back(ReplyMessage(id, outcome.ok, outcome.text, outcome.data));
   };
 }
 
@@ -88,7 +89,8 @@ void LiveConversation::Take(const LiveRequest& request) {
       return;
     case Op::kArm: {
       const auto trigger = triggers_.find(request.id);
-      if (trigger == triggers_.end()) throw InputError("arm: there is no trigger " + std::to_string(request.id));
+      if (trigger == triggers_.end())
+        throw InputError("arm: there is no trigger " + std::to_string(request.id));
       trigger->second.Arm();
       return;
     }
@@ -132,7 +134,8 @@ bool LiveConversation::Next(Message* message) {
     revision_ = context_.runs.revision();
     return Text(HelloMessage(context_.runs.All(), context_.desk.control()), message);
   }
-  return NextReply(message) || NextEvent(message) || NextCapture(message) || NextStatus(message) || NextFrame(message);
+  return NextReply(message) || NextEvent(message) || NextCapture(message) || NextStatus(message) ||
+         NextFrame(message);
 }
 
 bool LiveConversation::NextReply(Message* message) {
@@ -145,7 +148,8 @@ bool LiveConversation::NextReply(Message* message) {
   const LiveRequest request = std::move(waiting_.front());
   waiting_.pop_front();
   try {
-    return request.op == LiveRequest::Op::kGet ? Binary(Bins(request), message) : Text(Values(request), message);
+    return request.op == LiveRequest::Op::kGet ? Binary(Bins(request), message)
+                                               : Text(Values(request), message);
   } catch (const InputError& error) {
     return Text(ReplyMessage(request.id, false, Printable(error.what())), message);
   }
@@ -164,7 +168,8 @@ std::string LiveConversation::Values(const LiveRequest& request) {
   const std::vector<Signal> signals = FindSignals(run, request.view.channels);
   constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
   const auto row_at = [&](const History& history) {
-    const History::Row after = history.LowerBound(std::nextafter(request.t, std::numeric_limits<double>::infinity()));
+    const History::Row after =
+        history.LowerBound(std::nextafter(request.t, std::numeric_limits<double>::infinity()));
     return after > history.begin() ? std::optional(after - 1) : std::nullopt;
   };
   const auto tick = row_at(run.ticks);
@@ -175,8 +180,9 @@ std::string LiveConversation::Values(const LiveRequest& request) {
   }
   const double t = tick ? run.ticks.time(*tick) : kMissing;
   const std::string list = NumbersJson({t});
-  return ReplyMessage(request.id, true, "",
-                      "{\"t\":" + list.substr(1, list.size() - 2) + ",\"values\":" + NumbersJson(values) + "}");
+  return ReplyMessage(
+      request.id, true, "",
+      "{\"t\":" + list.substr(1, list.size() - 2) + ",\"values\":" + NumbersJson(values) + "}");
 }
 
 bool LiveConversation::NextEvent(Message* message) {
@@ -227,6 +233,11 @@ bool LiveConversation::NextStatus(Message* message) {
   }
   if (dropped_.Now(now)) {
     if (std::string text = Dropped(); !text.empty()) return Text(std::move(text), message);
+  }
+  const Tuning* const tuning = context_.desk.tuning();
+  if (tuning != nullptr && tuning->message() != tuning_) {
+    tuning_ = tuning->message();
+    return Text(tuning_, message);
   }
   const Run* const live = context_.runs.live();
   if (live == nullptr) return false;

@@ -33,7 +33,8 @@ struct LiveContext {
   RunTable& runs;
   OperatorDesk& desk;
   GhostSwitch& ghost;
-  std::function<double()> silent_s;  // wall time since the last state of the live run; negative: none has come
+  std::function<double()>
+      silent_s;  // wall time since the last state of the live run; negative: none has come
   std::function<std::chrono::steady_clock::time_point()> now;
   int64_t* frames = nullptr;   // binary messages sent, of all clients
   int64_t* dropped = nullptr;  // frames not made for clients that were too slow
@@ -100,6 +101,7 @@ class LiveConversation : public Conversation {
   Due processes_{std::chrono::milliseconds(1000)};
   Due runs_{std::chrono::milliseconds(200)};
   Due dropped_{std::chrono::milliseconds(1000)};
+  std::string tuning_;  // the message that was sent last
   uint64_t told_bins_ = 0;
   uint64_t told_frames_ = 0;
   uint64_t past_bins_ = 0;  // of views that have ended

@@ -5,12 +5,13 @@
 namespace hydro::scope {
 namespace {
 
-constexpr int kMostTurns = 4;       // of up to 4096 messages: a flood must not keep the browsers waiting
+constexpr int kMostTurns = 4;         // of up to 4096 messages: a flood must not keep the browsers waiting
 constexpr double kQuietAfter = 0.05;  // s without a state: no answers are coming
 
 }  // namespace
 
-LiveFeed::LiveFeed(bus::Bus& bus, const bus::Clock& clock, const std::string& suffix, double history_s, RunTable* runs)
+LiveFeed::LiveFeed(bus::Bus& bus, const bus::Clock& clock, const std::string& suffix, double history_s,
+                   RunTable* runs)
     : bus_(bus), clock_(clock), history_s_(history_s), runs_(*runs), intake_(suffix, [this](int64_t) {
         Run* const run = first_run_ ? runs_.live() : &runs_.RestartLive();
         first_run_ = false;
@@ -26,8 +27,9 @@ void LiveFeed::OnMessage(const bus::RawMessage& message) {
   if (!channels_.contains(channel_)) return;
   ++messages_;
   intake_.Take(message.channel, message.data, message.size, message.receive_utime);
-  runs_.live()->messages->Add({message.channel, message.data, static_cast<size_t>(message.size), message.receive_utime},
-                              intake_.now());
+  runs_.live()->messages->Add(
+      {message.channel, message.data, static_cast<size_t>(message.size), message.receive_utime},
+      intake_.now());
 }
 
 void LiveFeed::Poll() {

@@ -17,7 +17,8 @@ namespace hydro::scope {
 class LiveFeed {
  public:
   // `runs` has a live run. `history_s`: how much of it is kept.
-  LiveFeed(bus::Bus& bus, const bus::Clock& clock, const std::string& suffix, double history_s, RunTable* runs);
+  LiveFeed(bus::Bus& bus, const bus::Clock& clock, const std::string& suffix, double history_s,
+           RunTable* runs);
 
   // Takes what has arrived. Never waits.
   void Poll();

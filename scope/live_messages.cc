@@ -19,8 +19,11 @@ const char* KindName(Run::Kind kind) {
 }
 
 json Described(const ChannelInfo& channel) {
-  json object{{"id", channel.id}, {"label", channel.label}, {"group", channel.group},
-              {"unit", channel.unit}, {"step", channel.step}};
+  json object{{"id", channel.id},
+              {"label", channel.label},
+              {"group", channel.group},
+              {"unit", channel.unit},
+              {"step", channel.step}};
   if (!channel.si_unit.empty()) object["si"] = {{"unit", channel.si_unit}, {"factor", channel.si_factor}};
   return object;
 }
@@ -42,9 +45,12 @@ json Noise(const Run& run) {
   json noise = json::object();
   if (run.config == nullptr) return noise;
   const settings::NoiseSection& n = run.config->noise;
-  noise = {{"p1", n.p1_psi},           {"p2", n.p2_psi},
-           {"motor_angle", n.motor_angle_rad}, {"motor_speed", n.motor_speed_rad_s},
-           {"arm_angle", n.arm_angle_rad},     {"arm_speed", n.arm_speed_rad_s}};
+  noise = {{"p1", n.p1_psi},
+           {"p2", n.p2_psi},
+           {"motor_angle", n.motor_angle_rad},
+           {"motor_speed", n.motor_speed_rad_s},
+           {"arm_angle", n.arm_angle_rad},
+           {"arm_speed", n.arm_speed_rad_s}};
   return noise;
 }
 

@@ -87,11 +87,13 @@ class Fields {
 
 const std::map<std::string, LiveRequest::Op>& Operations() {
   using Op = LiveRequest::Op;
-  static const std::map<std::string, Op> operations{
-      {"view", Op::kView},   {"unview", Op::kUnview},    {"get", Op::kGet},     {"values", Op::kValues},
-      {"trigger", Op::kTrigger}, {"untrigger", Op::kUntrigger}, {"arm", Op::kArm}, {"mark", Op::kMark},
-      {"ghost", Op::kGhost}, {"ghost_sync", Op::kGhostSync}, {"stop", Op::kStop}, {"rearm", Op::kRearm},
-      {"set", Op::kSet},     {"undo", Op::kUndo}};
+  static const std::map<std::string, Op> operations{{"view", Op::kView},       {"unview", Op::kUnview},
+                                                    {"get", Op::kGet},         {"values", Op::kValues},
+                                                    {"trigger", Op::kTrigger}, {"untrigger", Op::kUntrigger},
+                                                    {"arm", Op::kArm},         {"mark", Op::kMark},
+                                                    {"ghost", Op::kGhost},     {"ghost_sync", Op::kGhostSync},
+                                                    {"stop", Op::kStop},       {"rearm", Op::kRearm},
+                                                    {"set", Op::kSet},         {"undo", Op::kUndo}};
   return operations;
 }
 
@@ -104,7 +106,8 @@ TriggerRequest ReadTrigger(const Fields& fields, const LiveRequest& request) {
   trigger.level = fields.Number("level", 0);
   using Edge = TriggerRequest::Edge;
   trigger.edge = fields.Choice<Edge>(
-      "edge", {{"rising", Edge::kRising}, {"falling", Edge::kFalling}, {"either", Edge::kEither}}, Edge::kRising);
+      "edge", {{"rising", Edge::kRising}, {"falling", Edge::kFalling}, {"either", Edge::kEither}},
+      Edge::kRising);
   trigger.hysteresis = fields.Number("hysteresis", 0);
   trigger.holdoff = fields.Number("holdoff", 0);
   trigger.pre = fields.Number("pre", 0.25);
@@ -112,8 +115,8 @@ TriggerRequest ReadTrigger(const Fields& fields, const LiveRequest& request) {
   trigger.mode = fields.Choice<Mode>(
       "mode", {{"auto", Mode::kAuto}, {"normal", Mode::kNormal}, {"single", Mode::kSingle}}, Mode::kNormal);
   using On = TriggerRequest::On;
-  trigger.on =
-      fields.Choice<On>("on", {{"level", On::kLevel}, {"fault", On::kFault}, {"step", On::kStep}}, On::kLevel);
+  trigger.on = fields.Choice<On>("on", {{"level", On::kLevel}, {"fault", On::kFault}, {"step", On::kStep}},
+                                 On::kLevel);
   trigger.span = fields.Number("span", 1);
   trigger.pixels = request.view.pixels;
   return trigger;

@@ -62,13 +62,13 @@ void OperatorDesk::Rearm(Done done) {
 
 void OperatorDesk::Set(const std::vector<std::string>& entries, Done done) {
   if (Refused(done)) return;
-  if (tuning_ == nullptr) return done({false, "not available in this build", {}});
+  if (tuning_ == nullptr) return done({false, "nothing can be set here", {}});
   tuning_->Set(entries, std::move(done));
 }
 
 void OperatorDesk::Undo(Done done) {
   if (Refused(done)) return;
-  if (tuning_ == nullptr) return done({false, "not available in this build", {}});
+  if (tuning_ == nullptr) return done({false, "nothing can be set here", {}});
   tuning_->Undo(std::move(done));
 }
 

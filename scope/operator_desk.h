@@ -28,11 +28,13 @@ class Tuning {
   // Calls `done` once, on the server's thread.
   virtual void Set(const std::vector<std::string>& entries, Done done) = 0;
   virtual void Undo(Done done) = 0;
+  // The message "tuning" with the values in force; empty: not known.
+  virtual const std::string& message() const = 0;
 };
 
 class OperatorDesk {
  public:
-  // `post` runs work on the server's thread. `tuning` may be null: then it says so. Without `config` (a log is shown) there is
+  // `post` runs work on the server's thread. `tuning` may be null: then nothing can be set. Without `config` (a log is shown) there is
   // no stack.
   OperatorDesk(std::shared_ptr<const settings::StackConfig> config, bool control,
                std::function<void(std::function<void()>)> post, Tuning* tuning);
@@ -48,6 +50,7 @@ class OperatorDesk {
   void Undo(Done done);
 
   bool control() const { return control_; }
+  const Tuning* tuning() const { return tuning_; }  // null: none
 
  private:
   // A request of one kind: one thread at a time.

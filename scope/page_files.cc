@@ -27,7 +27,8 @@ constexpr std::array<Type, 5> kTypes{{{".html", "text/html; charset=utf-8"},
                                       {".png", "image/png"}}};
 
 const char* TypeOf(const std::string& name) {
-  const auto type = std::find_if(kTypes.begin(), kTypes.end(), [&](const Type& t) { return name.ends_with(t.ending); });
+  const auto type =
+      std::find_if(kTypes.begin(), kTypes.end(), [&](const Type& t) { return name.ends_with(t.ending); });
   return type == kTypes.end() ? nullptr : type->type;
 }
 
@@ -37,7 +38,8 @@ bool IsPlain(const std::string& name) {
     return std::isalnum(c) != 0 || c == '.' || c == '-' || c == '_' || c == '/';
   });
   return plain && !name.starts_with('.') && !name.starts_with('/') && name.find("/.") == std::string::npos &&
-         name.find("..") == std::string::npos && !name.starts_with("node_modules") && !name.starts_with("tests");
+         name.find("..") == std::string::npos && !name.starts_with("node_modules") &&
+         !name.starts_with("tests");
 }
 
 constexpr char kNoPage[] =
@@ -48,7 +50,8 @@ constexpr char kNoPage[] =
 
 PageFiles::PageFiles(std::string folder) : folder_(std::move(folder)) {
   if (!folder_.empty() && !std::filesystem::is_regular_file(folder_ + "/index.html")) {
-    throw InputError("--page " + folder_ + ": found no index.html there, allowed is the folder of the page's sources");
+    throw InputError("--page " + folder_ +
+                     ": found no index.html there, allowed is the folder of the page's sources");
   }
 }
 

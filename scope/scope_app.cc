@@ -20,6 +20,7 @@
 #include "process/stop_signal.h"
 #include "scope/ghost_desk.h"
 #include "scope/live_feed.h"
+#include "scope/live_tuning.h"
 #include "scope/scope_site.h"
 #include "scope/signals/log_run.h"
 #include "scope/wire/web_server.h"
@@ -45,9 +46,9 @@ std::string Token() {
   const char* const given = std::getenv("HYDRO_SCOPE_TOKEN");
   if (given == nullptr) return FreshToken();
   const std::string token = given;
-  const bool right = token.size() >= 16 && token.size() <= 128 && std::all_of(token.begin(), token.end(), [](unsigned char c) {
-    return std::isalnum(c) != 0;
-  });
+  const bool right =
+      token.size() >= 16 && token.size() <= 128 &&
+      std::all_of(token.begin(), token.end(), [](unsigned char c) { return std::isalnum(c) != 0; });
   if (!right) {
     throw InputError("HYDRO_SCOPE_TOKEN: found " + std::to_string(token.size()) +
                      " bytes, allowed are 16 to 128 letters and digits");
@@ -101,7 +102,7 @@ class ScopeApp {
     const auto post = [&server](std::function<void()> work) { server.Post(std::move(work)); };
     SideWork work(post);
     DiagnoseJobs jobs(work.folder(), post);
-    OperatorDesk desk(config_, section_.control, post, nullptr);
+    OperatorDesk desk(config_, section_.control, post, tuning_.get());
     GhostDesk ghost(&runs_);
     LiveContext context{.runs = runs_,
                         .desk = desk,
@@ -111,7 +112,9 @@ class ScopeApp {
                         .frames = &frames_,
                         .dropped = &dropped_};
     ScopeSite site(page_, context, &work, &jobs, static_cast<int64_t>(section_.upload_mb * 1e6));
-    site.more_status = [&] { return MoreStatus(server) + ",\"ghost_skipped\":" + std::to_string(ghost.skipped()); };
+    site.more_status = [&] {
+      return MoreStatus(server) + ",\"ghost_skipped\":" + std::to_string(ghost.skipped());
+    };
     server.Open(Access(token_, server.port(), section_.hosts, section_.origins), &site);
     Announce(server.port());
     server.Run([&] { return Turn(server.conversations(), &ghost); });
@@ -121,10 +124,14 @@ class ScopeApp {
  private:
   void Listen() {
     const double ticks = section_.history_s * config_->plant.rate_hz;
-    runs_.StartLive(FileName(config_->file), config_->bus.channel_suffix, static_cast<uint64_t>(ticks * 1.1) + 10000,
+    runs_.StartLive(FileName(config_->file), config_->bus.channel_suffix,
+                    static_cast<uint64_t>(ticks * 1.1) + 10000,
                     static_cast<size_t>(ticks * kBytesPerTick) + (16 << 20));
     bus_ = process::OpenStackBus(config_->bus);
-    feed_ = std::make_unique<LiveFeed>(*bus_, clock_, config_->bus.channel_suffix, section_.history_s, &runs_);
+    feed_ =
+        std::make_unique<LiveFeed>(*bus_, clock_, config_->bus.channel_suffix, section_.history_s, &runs_);
+    tuning_ = std::make_unique<LiveTuning>(*bus_, clock_, bus::Channels(config_->bus.channel_suffix),
+                                           section_.control);
     if (const std::string hint = bus_->receive_buffer_hint(); !hint.empty()) {
       std::fprintf(stderr, "hydro-scope: %s\n", hint.c_str());
     }
@@ -143,7 +150,8 @@ class ScopeApp {
     const bool any = section_.bind != "127.0.0.1" && section_.bind != "::1" && section_.bind != "localhost";
     if (any) {
       std::fprintf(stderr,
-                   "hydro-scope: warning: listening on %s without encryption: whoever reads the network reads the token; "
+                   "hydro-scope: warning: listening on %s without encryption: whoever reads the network "
+                   "reads the token; "
                    "put a server with TLS in front of 127.0.0.1 instead\n",
                    section_.bind.c_str());
     }
@@ -154,6 +162,7 @@ class ScopeApp {
   std::chrono::microseconds Turn(int clients, GhostDesk* ghost) {
     if (process::StopSignal() != 0) return std::chrono::microseconds(-1);
     if (feed_ != nullptr) feed_->Poll();
+    if (tuning_ != nullptr) tuning_->Poll();
     ghost->Poll();
     if (feed_ == nullptr) return clients > 0 ? kWatchedTurn : kLogTurn;
     return clients > 0 ? kWatchedTurn : kLoneTurn;
@@ -162,8 +171,9 @@ class ScopeApp {
   std::string MoreStatus(const WebServer& server) const {
     std::string text = "\"clients\":" + std::to_string(server.conversations()) +
                        ",\"connections\":" + std::to_string(server.connections()) +
-                       ",\"refused\":" + std::to_string(server.refused()) + ",\"frames\":" + std::to_string(frames_) +
-                       ",\"dropped\":" + std::to_string(dropped_) + ",\"cpu_s\":" + std::to_string(CpuSeconds());
+                       ",\"refused\":" + std::to_string(server.refused()) +
+                       ",\"frames\":" + std::to_string(frames_) + ",\"dropped\":" + std::to_string(dropped_) +
+                       ",\"cpu_s\":" + std::to_string(CpuSeconds());
     if (feed_ != nullptr) {
       const bus::RefusedMessages& refused = bus_->refused();
       text += ",\"messages\":" + std::to_string(feed_->messages()) +
@@ -183,6 +193,7 @@ class ScopeApp {
   bus::WallClock clock_;
   std::unique_ptr<bus::UdpmBus> bus_;
   std::unique_ptr<LiveFeed> feed_;
+  std::unique_ptr<LiveTuning> tuning_;
   int64_t frames_ = 0;
   int64_t dropped_ = 0;
 };

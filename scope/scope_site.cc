@@ -45,7 +45,8 @@ double NumberOf(const json& body, const char* key) {
 
 uint32_t RunIdOf(const json& body) {
   const double id = body.contains("run") ? NumberOf(body, "run") : 0;
-  if (!(id >= 0 && id <= 4294967295.0)) throw Wrong("run: found " + body["run"].dump() + ", allowed is a run's number");
+  if (!(id >= 0 && id <= 4294967295.0))
+    throw Wrong("run: found " + body["run"].dump() + ", allowed is a run's number");
   return static_cast<uint32_t>(id);
 }
 
@@ -63,10 +64,17 @@ std::string Stem(const std::string& name) { return name.substr(0, name.find_last
 
 }  // namespace
 
-ScopeSite::ScopeSite(PageFiles page, LiveContext context, SideWork* work, DiagnoseJobs* jobs, int64_t upload_bytes)
-    : page_(std::move(page)), context_(std::move(context)), work_(*work), jobs_(*jobs), upload_bytes_(upload_bytes) {}
+ScopeSite::ScopeSite(PageFiles page, LiveContext context, SideWork* work, DiagnoseJobs* jobs,
+                     int64_t upload_bytes)
+    : page_(std::move(page)),
+      context_(std::move(context)),
+      work_(*work),
+      jobs_(*jobs),
+      upload_bytes_(upload_bytes) {}
 
-bool ScopeSite::IsPublic(const std::string& path) const { return PageFiles::Has(path) || DiagnoseJobs::IsReport(path); }
+bool ScopeSite::IsPublic(const std::string& path) const {
+  return PageFiles::Has(path) || DiagnoseJobs::IsReport(path);
+}
 
 int64_t ScopeSite::BodyLimit(const Request& head) const {
   if (!head.path.starts_with("/api/")) return 0;
@@ -80,7 +88,8 @@ std::string ScopeSite::BodyFile(const Request& head) {
   return work_.FreshFile(table ? ".csv" : ".lcmlog");
 }
 
-std::unique_ptr<Conversation> ScopeSite::Converse(const std::string& path, const std::vector<std::string>& offered,
+std::unique_ptr<Conversation> ScopeSite::Converse(const std::string& path,
+                                                  const std::vector<std::string>& offered,
                                                   std::string* chosen) {
   for (const std::string& subprotocol : offered) {
     if (!FoxgloveConversation::Speaks(subprotocol)) continue;
@@ -111,7 +120,8 @@ void ScopeSite::Answer(Request request, std::function<void(Response)> reply) {
     if (request.path.starts_with(kJobs) && !post) {
       const auto number = ParseInteger(request.path.substr(sizeof kJobs - 1));
       Response response;
-      response.body = number && *number > 0 && *number < 1000000 ? jobs_.Status(static_cast<int>(*number)) : "";
+      response.body =
+          number && *number > 0 && *number < 1000000 ? jobs_.Status(static_cast<int>(*number)) : "";
       return reply(response.body.empty() ? ErrorResponse(404, "there is no such job") : response);
     }
     reply(ErrorResponse(404, "found " + request.method + " " + Printable(request.path.substr(0, 100)) +
@@ -147,7 +157,8 @@ void ScopeSite::Open(const Request& request, const Reply& reply) {
         std::remove(file.c_str());
       }
       std::string problem;
-      auto opened = std::make_shared<std::vector<std::unique_ptr<Run>>>(OpenLogRuns(log_file, name, &problem));
+      auto opened =
+          std::make_shared<std::vector<std::unique_ptr<Run>>>(OpenLogRuns(log_file, name, &problem));
       return [this, opened, name, problem, reply] {
         uint32_t first = 0;
         for (size_t i = 0; i < opened->size(); ++i) {
@@ -177,7 +188,8 @@ void ScopeSite::Close(const Request& request, const Reply& reply) {
   const uint32_t id = RunIdOf(BodyOf(request));
   const Run* const run = context_.runs.Find(id);
   const std::string file = run != nullptr && run->log_file.starts_with(work_.folder()) ? run->log_file : "";
-  if (!context_.runs.Close(id)) throw Wrong("run: found " + std::to_string(id) + ", allowed is a log that is open");
+  if (!context_.runs.Close(id))
+    throw Wrong("run: found " + std::to_string(id) + ", allowed is a log that is open");
   if (!file.empty()) std::remove(file.c_str());
   Response response;
   response.body = "{}\n";
@@ -187,11 +199,14 @@ void ScopeSite::Close(const Request& request, const Reply& reply) {
 void ScopeSite::Cut(const Request& request, const Reply& reply) {
   const json body = BodyOf(request);
   const Run* const run = context_.runs.Find(RunIdOf(body));
-  if (run == nullptr) throw Wrong("run: found " + body.value("run", json(0)).dump() + ", allowed is one that is open");
+  if (run == nullptr)
+    throw Wrong("run: found " + body.value("run", json(0)).dump() + ", allowed is one that is open");
   const double t0 = NumberOf(body, "t0");
   const double t1 = NumberOf(body, "t1");
-  const std::string format = body.contains("format") && body["format"].is_string() ? body["format"].get<std::string>() : "";
-  if (format != "lcmlog" && format != "csv") throw Wrong("format: found " + Quoted(format) + ", allowed is \"lcmlog\" or \"csv\"");
+  const std::string format =
+      body.contains("format") && body["format"].is_string() ? body["format"].get<std::string>() : "";
+  if (format != "lcmlog" && format != "csv")
+    throw Wrong("format: found " + Quoted(format) + ", allowed is \"lcmlog\" or \"csv\"");
   const bool si = body.contains("si") && body["si"] == true;
   const std::string log_file = work_.FreshFile(".lcmlog");
   const std::string table_file = work_.FreshFile(".csv");
@@ -217,7 +232,8 @@ void ScopeSite::Cut(const Request& request, const Reply& reply) {
 void ScopeSite::Diagnose(const Request& request, const Reply& reply) {
   const json body = BodyOf(request);
   const Run* const run = context_.runs.Find(RunIdOf(body));
-  if (run == nullptr) throw Wrong("run: found " + body.value("run", json(0)).dump() + ", allowed is one that is open");
+  if (run == nullptr)
+    throw Wrong("run: found " + body.value("run", json(0)).dump() + ", allowed is one that is open");
   const std::string model = run->description ? run->description->model_text : std::string();
   const int job = jobs_.Start(CutSourceOf(*run), model, NumberOf(body, "t0"), NumberOf(body, "t1"));
   Response response;

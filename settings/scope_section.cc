@@ -39,8 +39,8 @@ ScopeSection ReadScope(SectionReader section) {
   section.Boolean("control", &scope.control);
   section.Number("history_s", &scope.history_s, {.min = 1, .max = 3600});
   section.Number("upload_mb", &scope.upload_mb, {.min = 1, .max = 1e5});
-  ReadNames(section, "hosts", "a list of names as in a browser's address line, e.g. [\"rig.lab:8443\"]", false,
-            &scope.hosts);
+  ReadNames(section, "hosts", "a list of names as in a browser's address line, e.g. [\"rig.lab:8443\"]",
+            false, &scope.hosts);
   ReadNames(section, "origins", "a list of origins without a path, e.g. [\"https://rig.lab\"]", true,
             &scope.origins);
   section.Finish();

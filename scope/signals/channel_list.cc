@@ -49,7 +49,12 @@ std::vector<ChannelInfo> Described(const Rows& rows, const UnitSystem& units) {
   std::vector<ChannelInfo> channels;
   channels.reserve(rows.size());
   for (const Row& row : rows) {
-    ChannelInfo info{.id = row.id, .label = row.label, .group = row.group, .unit = row.unit, .step = row.step, .si_unit = {}};
+    ChannelInfo info{.id = row.id,
+                     .label = row.label,
+                     .group = row.group,
+                     .unit = row.unit,
+                     .step = row.step,
+                     .si_unit = {}};
     const std::string paper = row.unit;
     if (!paper.empty() && paper != "us" && paper != "sigma" && paper != "V") {
       info.unit = units.UnitFor(paper, row.arm);

@@ -33,7 +33,16 @@ enum class TickColumn : size_t {
 inline constexpr size_t kTickColumns = 16;
 
 // Of its history of the ghost.
-enum class GhostColumn : size_t { kP1, kP2, kDp, kMotorSpeed, kArmAngle, kResidualP1, kResidualP2, kResidualMotorSpeed };
+enum class GhostColumn : size_t {
+  kP1,
+  kP2,
+  kDp,
+  kMotorSpeed,
+  kArmAngle,
+  kResidualP1,
+  kResidualP2,
+  kResidualMotorSpeed
+};
 inline constexpr size_t kGhostColumns = 8;
 
 // Of the history of a role's loop: a row for each report.

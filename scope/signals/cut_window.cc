@@ -42,7 +42,8 @@ bool CutWindow::Keeps(std::string_view channel, const uint8_t* data, int size) {
     return first_tick_ && numbers->tick >= *first_tick_ && numbers->tick <= last_tick_;
   }
   const log::MessageKind* const kind = log::KindOfChannel(channel);
-  const bool ours = kind != nullptr && channel == kind->channel + channels_.Of<state_t>().substr(sizeof "HYDRO_STATE" - 1);
+  const bool ours =
+      kind != nullptr && channel == kind->channel + channels_.Of<state_t>().substr(sizeof "HYDRO_STATE" - 1);
   return ours && first_tick_ && !over_;
 }
 

@@ -10,8 +10,8 @@ namespace hydro::scope {
 
 struct Event {
   uint64_t n = 0;
-  double t = 0;  // s, plant time
-  std::string kind;  // fault, fault_end, step, stop, rearm, tuning, gap, mark, restart
+  double t = 0;        // s, plant time
+  std::string kind;    // fault, fault_end, step, stop, rearm, tuning, gap, mark, restart
   std::string source;  // role
   std::string code;
   std::string text;

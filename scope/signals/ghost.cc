@@ -111,9 +111,13 @@ std::optional<Ghost::Row> Ghost::Add(const GhostSample& sample) {
   At(row, GhostColumn::kDp) = ghost.p2 - ghost.p1;
   At(row, GhostColumn::kMotorSpeed) = ghost.motor_speed;
   At(row, GhostColumn::kArmAngle) = ghost.arm_angle;
-  const auto residual = [&](double of, double model, double sigma) { return fresh ? kMissing : (of - model) / sigma; };
-  At(row, GhostColumn::kResidualP1) = residual(measured.p1, ghost.p1, Sigma(noise.p1_psi, noise.p1_resolution_psi, p1_));
-  At(row, GhostColumn::kResidualP2) = residual(measured.p2, ghost.p2, Sigma(noise.p2_psi, noise.p2_resolution_psi, p2_));
+  const auto residual = [&](double of, double model, double sigma) {
+    return fresh ? kMissing : (of - model) / sigma;
+  };
+  At(row, GhostColumn::kResidualP1) =
+      residual(measured.p1, ghost.p1, Sigma(noise.p1_psi, noise.p1_resolution_psi, p1_));
+  At(row, GhostColumn::kResidualP2) =
+      residual(measured.p2, ghost.p2, Sigma(noise.p2_psi, noise.p2_resolution_psi, p2_));
   At(row, GhostColumn::kResidualMotorSpeed) =
       residual(measured.motor_speed, ghost.motor_speed,
                Sigma(noise.motor_speed_rad_s, noise.motor_speed_resolution_rad_s, motor_speed_));

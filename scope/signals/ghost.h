@@ -18,7 +18,7 @@ namespace hydro::scope {
 
 // What was measured at a tick.
 struct GhostSample {
-  double time = 0;  // s
+  double time = 0;     // s
   double voltage = 0;  // V, that acted since the tick before
   model::Measurement measured;
   bool after_gap = false;  // states are missing before it: what acted meanwhile is not known

@@ -7,7 +7,7 @@ namespace hydro::scope {
 namespace {
 
 constexpr uint64_t kBlockRows = 4096;
-constexpr uint64_t kFineRows = 16;    // of the stretches of the first level
+constexpr uint64_t kFineRows = 16;     // of the stretches of the first level
 constexpr uint64_t kCoarseRows = 256;  // of the second
 constexpr uint64_t kFine = kBlockRows / kFineRows;
 constexpr uint64_t kCoarse = kBlockRows / kCoarseRows;
@@ -73,13 +73,13 @@ double History::last_time() const {
 }
 
 History::Row History::LowerBound(double time) const {
-  const auto block = std::partition_point(blocks_.begin(), blocks_.end(), [&](const auto& b) {
-    return b->times[b->rows - 1] < time;
-  });
+  const auto block = std::partition_point(blocks_.begin(), blocks_.end(),
+                                          [&](const auto& b) { return b->times[b->rows - 1] < time; });
   if (block == blocks_.end()) return end_;
   const auto* const begin = (*block)->times.data();
   const auto* const found = std::lower_bound(begin, begin + (*block)->rows, time);
-  return first_ + static_cast<uint64_t>(block - blocks_.begin()) * kBlockRows + static_cast<uint64_t>(found - begin);
+  return first_ + static_cast<uint64_t>(block - blocks_.begin()) * kBlockRows +
+         static_cast<uint64_t>(found - begin);
 }
 
 History::Row History::LowerBoundFrom(Row hint, double time) const {

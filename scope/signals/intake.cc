@@ -16,9 +16,9 @@ constexpr double kLongestTime = 1e12;  // s
 }  // namespace
 
 Intake::Intake(const std::string& suffix, std::function<Run*(int64_t session)> next_run)
-    : channels_(suffix), next_run_(std::move(next_run)), ticks_([this](double time, const PendingTicks::Row& row) {
-        run_->ticks.Append(time, row.data());
-      }) {}
+    : channels_(suffix),
+      next_run_(std::move(next_run)),
+      ticks_([this](double time, const PendingTicks::Row& row) { run_->ticks.Append(time, row.data()); }) {}
 
 void Intake::Take(std::string_view channel, const uint8_t* data, int size, int64_t utime) {
   if (channel == channels_.Of<state_t>()) {
@@ -44,7 +44,8 @@ double Intake::TimeOf(int64_t tick) const {
 
 bool Intake::Follow(const state_t& state, int64_t utime) {
   // A plant that begins anew under its old name: a log that is played again.
-  const bool again = state.session == session_ && state.tick < tick_ && state.sequence < sequence_ && state.time < time_ - 0.5;
+  const bool again = state.session == session_ && state.tick < tick_ && state.sequence < sequence_ &&
+                     state.time < time_ - 0.5;
   if (state.session == session_ && !again) return true;
   if (session_ && !again && !left_ && utime - heard_utime_ < kAlive) {
     ++foreign_;
@@ -60,6 +61,7 @@ bool Intake::Follow(const state_t& state, int64_t utime) {
   left_ = false;
   sequence_ = -1;
   reference_.reset();
+  tuning_version_ = 0;
   active_.clear();
   doubted_.clear();
   time_ = state.time;
@@ -75,7 +77,8 @@ void Intake::OnState(const state_t& state, int64_t utime) {
   if (sequence_ >= 0 && state.sequence <= sequence_) return;  // repeated, or overtaken
   if (sequence_ >= 0 && state.sequence > sequence_ + 1) {
     const int64_t missing = state.sequence - sequence_ - 1;
-    AddEvent(state.time, "gap", "", "", std::to_string(missing) + (missing == 1 ? " state" : " states") + " missing");
+    AddEvent(state.time, "gap", "", "",
+             std::to_string(missing) + (missing == 1 ? " state" : " states") + " missing");
   }
   sequence_ = state.sequence;
   tick_ = state.tick;

@@ -51,11 +51,14 @@ class Intake {
   void OnFault(const fault_t& fault);
   void OnActiveFaults(const active_faults_t& active);
   void OnStop(const stop_t& stop, int64_t utime);
+  void OnSettings(const tuned_settings_t& settings);
+  void OnTuningAnswer(const tuning_answer_t& answer);
   void OnRearm(const rearm_t& rearm, int64_t utime);
   void OnStatus(const process_status_t& status, int64_t utime);
   void OnStatistics(const loop_statistics_t& statistics, int64_t utime);
   ProcessReport& Report(const std::string& role, const std::string& host, int64_t utime);
-  void AddEvent(double t, std::string kind, const std::string& source, const std::string& code, std::string text);
+  void AddEvent(double t, std::string kind, const std::string& source, const std::string& code,
+                std::string text);
 
   const bus::Channels channels_;
   std::function<Run*(int64_t)> next_run_;
@@ -81,9 +84,12 @@ class Intake {
   std::optional<double> reference_;
   double rests_since_ = 0;
 
-  std::map<int64_t, int64_t> fault_sequence_;        // the newest of each sender
+  std::map<int64_t, int64_t> fault_sequence_;            // the newest of each sender
   std::map<std::string, std::set<std::string>> active_;  // faults by role
-  std::map<std::string, std::set<std::string>> doubted_;  // active here, and missing from the role's last list
+  std::map<std::string, std::set<std::string>>
+      doubted_;                  // active here, and missing from the role's last list
+  int64_t tuning_version_ = 0;   // the newest that is an event
+  int64_t tuning_request_ = -1;  // refused last
   std::string last_stop_;
   std::string last_rearm_;
   int64_t last_stop_utime_ = 0;

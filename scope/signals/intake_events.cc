@@ -8,6 +8,7 @@
 #include "base/text_file.h"
 #include "process/participant.h"
 #include "process/status.h"
+#include "runs/tuning_history.h"
 #include "scope/signals/decoded.h"
 #include "scope/signals/intake.h"
 
@@ -22,11 +23,16 @@ std::string Shown(const std::string& text) { return Printable(text.substr(0, kMo
 
 std::string StateName(const process_status_t& status) {
   switch (status.state) {
-    case process_status_t::READY: return "ready";
-    case process_status_t::RUNNING: return "running";
-    case process_status_t::DONE: return "done";
-    case process_status_t::FAILED: return "failed";
-    default: return "";
+    case process_status_t::READY:
+      return "ready";
+    case process_status_t::RUNNING:
+      return "running";
+    case process_status_t::DONE:
+      return "done";
+    case process_status_t::FAILED:
+      return "failed";
+    default:
+      return "";
   }
 }
 
@@ -53,6 +59,8 @@ bool Intake::TakeRare(std::string_view channel, const uint8_t* data, int size, i
          take([&](const active_faults_t& m) { OnActiveFaults(m); }, active_faults_t{}) ||
          take([&](const stop_t& m) { OnStop(m, utime); }, stop_t{}) ||
          take([&](const rearm_t& m) { OnRearm(m, utime); }, rearm_t{}) ||
+         take([&](const tuned_settings_t& m) { OnSettings(m); }, tuned_settings_t{}) ||
+         take([&](const tuning_answer_t& m) { OnTuningAnswer(m); }, tuning_answer_t{}) ||
          take([&](const process_status_t& m) { OnStatus(m, utime); }, process_status_t{}) ||
          take([&](const loop_statistics_t& m) { OnStatistics(m, utime); }, loop_statistics_t{}) ||
          take([&](const run_description_t& m) { OnDescription(m); }, run_description_t{});
@@ -83,7 +91,8 @@ void Intake::OnFault(const fault_t& fault) {
   } else {
     active.erase(Shown(fault.code));
   }
-  AddEvent(TimeOf(fault.tick), fault.active != 0 ? "fault" : "fault_end", fault.source, fault.code, fault.text);
+  AddEvent(TimeOf(fault.tick), fault.active != 0 ? "fault" : "fault_end", fault.source, fault.code,
+           fault.text);
 }
 
 // The list makes good for messages that were lost: one that it names and that is not known here has begun; one that two
@@ -123,6 +132,22 @@ void Intake::OnStop(const stop_t& stop, int64_t utime) {
   if (!repeated) AddEvent(TimeOf(stop.tick), "stop", stop.source, "", stop.reason);
 }
 
+// Said when it is decided, with the tick on which it acts, and again once a second.
+void Intake::OnSettings(const tuned_settings_t& settings) {
+  const bool certain =
+      settings.stage == tuned_settings_t::DECIDED || settings.stage == tuned_settings_t::IN_FORCE;
+  if (settings.session != session_ || !certain || settings.version <= tuning_version_) return;
+  tuning_version_ = settings.version;
+  AddEvent(TimeOf(settings.acts_at), "tuning", settings.source, "version " + std::to_string(settings.version),
+           runs::DescribeTuning(settings));
+}
+
+void Intake::OnTuningAnswer(const tuning_answer_t& answer) {
+  if (answer.session != session_ || answer.accepted != 0 || answer.request == tuning_request_) return;
+  tuning_request_ = answer.request;
+  AddEvent(TimeOf(answer.tick), "tuning", "plant", "refused", answer.text);
+}
+
 void Intake::OnRearm(const rearm_t& rearm, int64_t utime) {
   if (rearm.kind == rearm_t::REQUEST || rearm.session != session_) return;
   const std::string what = std::to_string(rearm.kind) + rearm.text;
@@ -130,8 +155,8 @@ void Intake::OnRearm(const rearm_t& rearm, int64_t utime) {
   last_rearm_ = what;
   last_rearm_utime_ = utime;
   if (repeated) return;
-  AddEvent(TimeOf(rearm.tick), "rearm", rearm.source, rearm.kind == rearm_t::ACCEPTED ? "accepted" : "refused",
-           rearm.text);
+  AddEvent(TimeOf(rearm.tick), "rearm", rearm.source,
+           rearm.kind == rearm_t::ACCEPTED ? "accepted" : "refused", rearm.text);
 }
 
 ProcessReport& Intake::Report(const std::string& role, const std::string& host, int64_t utime) {
@@ -156,7 +181,8 @@ void Intake::OnStatus(const process_status_t& status, int64_t utime) {
 void Intake::OnStatistics(const loop_statistics_t& statistics, int64_t utime) {
   if (statistics.whole_run != 0) return;  // the sum of those before
   ProcessReport& report = Report(statistics.role, statistics.host, utime);
-  if (statistics.interval_s > 0) report.rate_hz = static_cast<double>(statistics.cycles) / statistics.interval_s;
+  if (statistics.interval_s > 0)
+    report.rate_hz = static_cast<double>(statistics.cycles) / statistics.interval_s;
   report.missed += statistics.missed_deadlines;
   report.lost += statistics.lost_messages;
   report.latency_p99_us = statistics.latency_p99_us;

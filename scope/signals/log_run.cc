@@ -32,7 +32,8 @@ std::string SuffixOf(log::LogReader& reader, const std::string& file) {
 
 }  // namespace
 
-std::vector<std::unique_ptr<Run>> OpenLogRuns(const std::string& file, const std::string& name, std::string* problem) {
+std::vector<std::unique_ptr<Run>> OpenLogRuns(const std::string& file, const std::string& name,
+                                              std::string* problem) {
   log::LogReader reader(file, log::OnDamage::kStop);
   const std::string suffix = SuffixOf(reader, file);
   std::vector<std::unique_ptr<Run>> runs;

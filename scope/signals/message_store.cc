@@ -20,7 +20,10 @@ size_t ReadMessage(const uint8_t* bytes, MessageStore::Message* message) {
   Header header;
   std::memcpy(&header, bytes, sizeof header);
   const auto* const channel = reinterpret_cast<const char*>(bytes + sizeof header);
-  *message = {{channel, header.channel_size}, bytes + sizeof header + header.channel_size, header.data_size, header.utime};
+  *message = {{channel, header.channel_size},
+              bytes + sizeof header + header.channel_size,
+              header.data_size,
+              header.utime};
   return sizeof header + header.channel_size + header.data_size;
 }
 

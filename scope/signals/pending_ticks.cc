@@ -52,7 +52,8 @@ void PendingTicks::Add(const state_t& state, int64_t utime) {
 void PendingTicks::Answer(Tick& tick, const motor_command_t& command, int64_t utime) {
   if (tick.commanded) return;
   tick.commanded = true;
-  const bool has_reference = command.pressure_command_tick >= 0 && command.status != motor_command_t::OPEN_LOOP;
+  const bool has_reference =
+      command.pressure_command_tick >= 0 && command.status != motor_command_t::OPEN_LOOP;
   At(tick.row, TickColumn::kDpRef) = has_reference ? command.pressure_ref : kMissing;
   At(tick.row, TickColumn::kVoltageAsked) = command.voltage;
   At(tick.row, TickColumn::kSaturated) = command.saturated != 0 ? 1 : 0;

@@ -21,7 +21,9 @@ class PendingTicks {
   using Row = std::array<double, kTickColumns>;
 
   // `emit` receives the rows in the order of their times.
-  explicit PendingTicks(std::function<void(double time, const Row& row)> emit) : emit_(std::move(emit)) { Reset(); }
+  explicit PendingTicks(std::function<void(double time, const Row& row)> emit) : emit_(std::move(emit)) {
+    Reset();
+  }
 
   // `utime`: us, when the message arrived. States must come in the order of their ticks.
   void Add(const state_t& state, int64_t utime);

@@ -41,8 +41,8 @@ void Run::Describe(const run_description_t& given) {
     const UnitSystem units = runs::ModelUnits(given, name);
     tick_channels_ = TickChannels(units);
     ghost_channels_ = GhostChannels(units);
-    config = std::make_shared<const settings::StackConfig>(
-        settings::ParseStackConfig(given.config_text, name + " (HYDRO_RUN)", given.model_text, given.model_file));
+    config = std::make_shared<const settings::StackConfig>(settings::ParseStackConfig(
+        given.config_text, name + " (HYDRO_RUN)", given.model_text, given.model_file));
   } catch (const InputError& error) {
     config_problem = error.what();
   }

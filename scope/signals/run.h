@@ -58,12 +58,13 @@ struct Run {
   double rate_hz = 0;
   History ticks;
   History ghost;
-  std::map<std::string, History> loops;           // by role
+  std::map<std::string, History> loops;            // by role
   std::map<std::string, ProcessReport> processes;  // by role, and host where several have it
   EventList events;
   std::optional<run_description_t> description;
-  std::shared_ptr<const settings::StackConfig> config;  // of the description; null where this version cannot read it
-  std::string config_problem;                           // why
+  std::shared_ptr<const settings::StackConfig>
+      config;                              // of the description; null where this version cannot read it
+  std::string config_problem;              // why
   std::unique_ptr<MessageStore> messages;  // as received; null for a log
   std::string log_file;                    // of a log
   std::string suffix;                      // of the channels' names

@@ -16,7 +16,8 @@ Trigger::Trigger(TriggerRequest request, const Run& run) : request_(std::move(re
   FindSignals(run, request_.channels);
   if (request_.on == TriggerRequest::On::kLevel) FindSignals(run, {request_.channel});
   const auto check = [](const char* name, double value, bool right, const char* allowed) {
-    if (!right) throw InputError(std::string(name) + ": found " + ShortestNumber(value) + ", allowed is " + allowed);
+    if (!right)
+      throw InputError(std::string(name) + ": found " + ShortestNumber(value) + ", allowed is " + allowed);
   };
   check("level", request_.level, std::isfinite(request_.level), "a finite number");
   check("hysteresis", request_.hysteresis, request_.hysteresis >= 0, "0 or above");
@@ -80,7 +81,8 @@ void Trigger::Scan(const Run& run) {
 
 void Trigger::ScanEvents(const Run& run) {
   const char* const kind = request_.on == TriggerRequest::On::kFault ? "fault" : "step";
-  for (next_event_ = std::max(next_event_, run.events.first()); next_event_ <= run.events.last(); ++next_event_) {
+  for (next_event_ = std::max(next_event_, run.events.first()); next_event_ <= run.events.last();
+       ++next_event_) {
     const Event& event = run.events.At(next_event_);
     if (event.kind == kind) Fire(event.t);
   }
@@ -95,7 +97,8 @@ Trigger::Capture Trigger::Captured(const Run& run, double t, const char* state) 
     grid.first = -static_cast<int64_t>(std::floor(request_.pre * request_.span / spacing));
     grid.bins = static_cast<uint32_t>(std::floor(request_.span / spacing)) + 1;
   }
-  return {state, t, EncodeBins(request_.id, request_.run, kTriggerCapture, grid, FindSignals(run, request_.channels))};
+  return {state, t,
+          EncodeBins(request_.id, request_.run, kTriggerCapture, grid, FindSignals(run, request_.channels))};
 }
 
 std::optional<Trigger::Capture> Trigger::Next(const Run& run) {
@@ -120,7 +123,8 @@ std::optional<Trigger::Capture> Trigger::Next(const Run& run) {
     state_ = State::kStopped;
     return Capture{"stopped", now, {}};
   }
-  if (request_.mode == TriggerRequest::Mode::kAuto && !fired_ && now - shown_ >= std::max(request_.span, 0.5)) {
+  if (request_.mode == TriggerRequest::Mode::kAuto && !fired_ &&
+      now - shown_ >= std::max(request_.span, 0.5)) {
     shown_ = now;
     return Captured(run, now - post, "auto");
   }

@@ -39,7 +39,8 @@ void CheckWindow(double span, double pixels, size_t channels) {
   if (!(span > 0 && span <= kLongestSpan)) {
     throw InputError("span: found " + ShortestNumber(span) + ", allowed is above 0 to 1000000 s");
   }
-  const double most = std::min(kMostPixels, std::floor(kMostNumbers / static_cast<double>(std::max<size_t>(channels, 1))));
+  const double most =
+      std::min(kMostPixels, std::floor(kMostNumbers / static_cast<double>(std::max<size_t>(channels, 1))));
   if (!(pixels >= 1 && pixels <= most)) {
     throw InputError("pixels: found " + ShortestNumber(pixels) + ", allowed is 1 to " + ShortestNumber(most) +
                      " for so many channels");
@@ -48,7 +49,8 @@ void CheckWindow(double span, double pixels, size_t channels) {
 
 View::View(ViewRequest request, const Run& run) : request_(std::move(request)) {
   CheckWindow(request_.span, request_.pixels, request_.channels.size());
-  if (!(request_.fps > 0)) throw InputError("fps: found " + ShortestNumber(request_.fps) + ", allowed is above 0");
+  if (!(request_.fps > 0))
+    throw InputError("fps: found " + ShortestNumber(request_.fps) + ", allowed is above 0");
   request_.fps = std::min(request_.fps, 60.0);
   FindSignals(run, request_.channels);
 }

@@ -16,7 +16,7 @@ struct ViewRequest {
   uint32_t id = 0;
   uint32_t run = 0;
   std::vector<std::string> channels;
-  double span = 10;       // s
+  double span = 10;  // s
   uint32_t pixels = 1000;
   double fps = 60;
 };

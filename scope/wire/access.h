@@ -14,7 +14,8 @@ namespace hydro::scope {
 class Access {
  public:
   // `hosts` ("name" or "name:port") and `origins` ("https://name") are allowed besides those of this machine at `port`.
-  Access(std::string token, int port, std::vector<std::string> hosts, const std::vector<std::string>& origins);
+  Access(std::string token, int port, std::vector<std::string> hosts,
+         const std::vector<std::string>& origins);
 
   // Whether the request names a host that this server is known by, and comes from no foreign page.
   bool HostAllowed(std::string_view host) const;

@@ -164,13 +164,12 @@ class SocketSession : public std::enable_shared_from_this<SocketSession> {
     if (!conversation_->Next(&message_)) return;
     writing_ = true;
     socket_.binary(message_.binary);
-    socket_.async_write(asio::buffer(message_.bytes),
-                        [self = shared_from_this()](error_code error, size_t) {
-                          self->writing_ = false;
-                          if (error) return self->Drop();
-                          if (!self->reading_) self->Read();
-                          self->Pump();
-                        });
+    socket_.async_write(asio::buffer(message_.bytes), [self = shared_from_this()](error_code error, size_t) {
+      self->writing_ = false;
+      if (error) return self->Drop();
+      if (!self->reading_) self->Read();
+      self->Pump();
+    });
   }
 
  private:
@@ -230,20 +229,20 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     header_->header_limit(kMostHeader);
     header_->body_limit(std::numeric_limits<uint64_t>::max());  // BodyLimit() has the say
     stream_.expires_after(server_.options.header_time);
-    http::async_read_header(stream_, buffer_, *header_,
-                            [self = shared_from_this()](error_code error, size_t) {
-                              if (!error) return self->TakeHeader();
-                              if (error == http::error::header_limit) {
-                                return self->Refuse(431, "the request's header exceeds 8192 bytes");
-                              }
-                              if (error == http::error::end_of_stream || error == beast::error::timeout) {
-                                return self->Shut();
-                              }
-                              // What is not HTTP gets an answer, so that its sender sees why.
-                              if (error.category() == http::make_error_code(http::error::bad_method).category()) {
-                                self->Refuse(400, "found no HTTP request: " + error.message());
-                              }
-                            });
+    http::async_read_header(
+        stream_, buffer_, *header_, [self = shared_from_this()](error_code error, size_t) {
+          if (!error) return self->TakeHeader();
+          if (error == http::error::header_limit) {
+            return self->Refuse(431, "the request's header exceeds 8192 bytes");
+          }
+          if (error == http::error::end_of_stream || error == beast::error::timeout) {
+            return self->Shut();
+          }
+          // What is not HTTP gets an answer, so that its sender sees why.
+          if (error.category() == http::make_error_code(http::error::bad_method).category()) {
+            self->Refuse(400, "found no HTTP request: " + error.message());
+          }
+        });
   }
 
   std::string_view Field(http::field name) const { return View(header_->get()[name]); }
@@ -252,12 +251,14 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     const auto& request = header_->get();
     if (full_) return Refuse(503, "too many connections; close other pages of this program");
     if (!server_.access->HostAllowed(Field(http::field::host))) {
-      return Refuse(403, "the Host header names another machine; hosts besides 127.0.0.1 and localhost are "
-                         "allowed by scope.hosts");
+      return Refuse(403,
+                    "the Host header names another machine; hosts besides 127.0.0.1 and localhost are "
+                    "allowed by scope.hosts");
     }
     if (!server_.access->OriginAllowed(Field(http::field::origin))) {
-      return Refuse(403, "a page of another origin; origins besides this program's own are allowed by "
-                         "scope.origins");
+      return Refuse(403,
+                    "a page of another origin; origins besides this program's own are allowed by "
+                    "scope.origins");
     }
     if (request.count(http::field::host) != 1 || request.count(http::field::origin) > 1 ||
         request.count(http::field::authorization) > 1) {
@@ -274,8 +275,9 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
       const auto token = now_.query.find("token");
       const std::string_view in_query = token == now_.query.end() ? "" : std::string_view(token->second);
       if (!server_.access->TokenRight(Field(http::field::authorization), in_query)) {
-        return Refuse(401, "the token is missing or wrong; open the address that hydro-scope printed when it "
-                           "started");
+        return Refuse(401,
+                      "the token is missing or wrong; open the address that hydro-scope printed when it "
+                      "started");
       }
     }
     now_.query.erase("token");
@@ -289,8 +291,9 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     std::string chosen;
     auto conversation = server_.site->Converse(now_.path, offered, &chosen);
     if (conversation == nullptr) {
-      return Refuse(404, "no web socket at " + now_.path + " for that subprotocol; there is /live with "
-                         "hydro.scope.v1, and any path with foxglove.websocket.v1 or foxglove.sdk.v1");
+      return Refuse(404, "no web socket at " + now_.path +
+                             " for that subprotocol; there is /live with "
+                             "hydro.scope.v1, and any path with foxglove.websocket.v1 or foxglove.sdk.v1");
     }
     const auto session = std::make_shared<SocketSession>(server_, std::move(counted_), std::move(stream_),
                                                          std::move(conversation));
@@ -301,8 +304,8 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     const int64_t limit = now_.method == "POST" ? server_.site->BodyLimit(now_) : 0;
     const auto length = header_->content_length();
     if (length && *length > static_cast<uint64_t>(limit)) {
-      return Refuse(413, "the body has " + std::to_string(*length) + " bytes, allowed are " +
-                             std::to_string(limit));
+      return Refuse(
+          413, "the body has " + std::to_string(*length) + " bytes, allowed are " + std::to_string(limit));
     }
     if (beast::iequals(header_->get()[http::field::expect], "100-continue")) return Continue(limit);
     ReadBodyUpTo(limit);

@@ -16,8 +16,9 @@ TEST(AccessTest, Hosts) {
   for (const char* host : {"127.0.0.1:8765", "localhost:8765", "LOCALHOST:8765", "[::1]:8765", "rig.lab"}) {
     EXPECT_TRUE(Server().HostAllowed(host)) << host;
   }
-  for (const char* host : {"", "127.0.0.1", "127.0.0.1:8766", "localhost", "evil.example:8765", "evil.example",
-                           "127.0.0.1:8765.evil.example", "rig.lab:8765", "127.0.0.1:8765 "}) {
+  for (const char* host :
+       {"", "127.0.0.1", "127.0.0.1:8766", "localhost", "evil.example:8765", "evil.example",
+        "127.0.0.1:8765.evil.example", "rig.lab:8765", "127.0.0.1:8765 "}) {
     EXPECT_FALSE(Server().HostAllowed(host)) << host;
   }
 }
@@ -37,7 +38,8 @@ TEST(AccessTest, Origins) {
 TEST(AccessTest, Tokens) {
   EXPECT_TRUE(Server().TokenRight("Bearer 0123456789abcdef", ""));
   EXPECT_TRUE(Server().TokenRight("", "0123456789abcdef"));
-  for (const char* wrong : {"", "0", "0123456789abcde", "0123456789abcdee", "0123456789abcdef0", "0123456789abcdef0123456789abcdef"}) {
+  for (const char* wrong : {"", "0", "0123456789abcde", "0123456789abcdee", "0123456789abcdef0",
+                            "0123456789abcdef0123456789abcdef"}) {
     EXPECT_FALSE(Server().TokenRight("", wrong)) << wrong;
     EXPECT_FALSE(Server().TokenRight(std::string("Bearer ") + wrong, "")) << wrong;
   }

@@ -130,7 +130,8 @@ TEST(BinsTest, HeldValuesLast) {
 // Tests the layout of the binary message.
 TEST(BinsTest, Encodes) {
   const History history = Ramp(10, -1);
-  const std::string bytes = EncodeBins(7, 3, kLastIncomplete | kTriggerCapture, {0, 0.001, 1, 1}, {{&history, 0, 0}});
+  const std::string bytes =
+      EncodeBins(7, 3, kLastIncomplete | kTriggerCapture, {0, 0.001, 1, 1}, {{&history, 0, 0}});
   ASSERT_EQ(bytes.size(), 40u + 16);
   uint32_t numbers[4];
   std::memcpy(numbers, bytes.data(), 16);

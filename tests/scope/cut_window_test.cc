@@ -19,7 +19,8 @@ TEST(CutWindowTest, KeepsTheWindow) {
   CutWindow window("", 0, 0.5, 0.75);
   std::map<std::string, int> kept;
   store.Take().ForEach([&](const MessageStore::Message& message) {
-    if (window.Keeps(message.channel, message.data, static_cast<int>(message.size))) ++kept[std::string(message.channel)];
+    if (window.Keeps(message.channel, message.data, static_cast<int>(message.size)))
+      ++kept[std::string(message.channel)];
   });
   EXPECT_EQ(window.states(), 251);
   EXPECT_EQ(kept["HYDRO_STATE"], 251);
@@ -57,10 +58,12 @@ TEST(MessageStoreTest, IsBounded) {
     });
     return result;
   };
-  for (int64_t i = 0; i < 1000; ++i) store.Add({"CHANNEL", data.data(), data.size(), i}, static_cast<double>(i));
+  for (int64_t i = 0; i < 1000; ++i)
+    store.Add({"CHANNEL", data.data(), data.size(), i}, static_cast<double>(i));
   const auto snapshot = store.Take();
   EXPECT_EQ(count(snapshot), std::pair(1000, int64_t{999}));
-  for (int64_t i = 1000; i < 100000; ++i) store.Add({"CHANNEL", data.data(), data.size(), i}, static_cast<double>(i));
+  for (int64_t i = 1000; i < 100000; ++i)
+    store.Add({"CHANNEL", data.data(), data.size(), i}, static_cast<double>(i));
   EXPECT_LE(store.memory(), size_t{5} << 20);
   EXPECT_EQ(count(store.Take()).second, 99999);
   EXPECT_EQ(count(snapshot), std::pair(1000, int64_t{999}));

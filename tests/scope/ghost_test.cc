@@ -12,9 +12,14 @@
 namespace hydro::scope {
 namespace {
 
-const std::vector<std::string> kQuiet = {"time.mode=lockstep",         "time.duration_s=3",      "noise.p1_psi=0",
-                                         "noise.p2_psi=0",             "noise.arm_angle_rad=0",  "noise.arm_speed_rad_s=0",
-                                         "noise.motor_speed_rad_s=0", "reference.steps=[[0.1, 0.1], [1, -0.1], [2, 0]]"};
+const std::vector<std::string> kQuiet = {"time.mode=lockstep",
+                                         "time.duration_s=3",
+                                         "noise.p1_psi=0",
+                                         "noise.p2_psi=0",
+                                         "noise.arm_angle_rad=0",
+                                         "noise.arm_speed_rad_s=0",
+                                         "noise.motor_speed_rad_s=0",
+                                         "reference.steps=[[0.1, 0.1], [1, -0.1], [2, 0]]"};
 
 std::vector<GhostSample> Samples(const settings::StackConfig& config) {
   std::vector<GhostSample> samples;
@@ -22,10 +27,11 @@ std::vector<GhostSample> Samples(const settings::StackConfig& config) {
     if (message.channel != "HYDRO_STATE") continue;
     state_t state{};
     EXPECT_TRUE(Decoded(&state, message.data.data(), static_cast<int>(message.data.size())));
-    samples.push_back({state.time,
-                       state.voltage,
-                       {state.motor_angle, state.motor_speed, state.arm_angle, state.arm_speed, state.p1, state.p2},
-                       false});
+    samples.push_back(
+        {state.time,
+         state.voltage,
+         {state.motor_angle, state.motor_speed, state.arm_angle, state.arm_speed, state.p1, state.p2},
+         false});
   }
   return samples;
 }
@@ -135,7 +141,8 @@ TEST(GhostTest, BeginsFromWhatIsMeasured) {
 TEST(GhostTest, FollowsAClampedShaft) {
   auto overrides = kQuiet;
   overrides.back() = "reference.steps=[[0.1, 20], [1, -20]]";
-  overrides.insert(overrides.end(), {"model.shaft=clamped", "model.arm_angle_rad=0.2", "reference.signal=pressure"});
+  overrides.insert(overrides.end(),
+                   {"model.shaft=clamped", "model.arm_angle_rad=0.2", "reference.signal=pressure"});
   const auto config = DemoConfig(overrides);
   EXPECT_LT(Worst(config, Samples(config), 0.5), 0.05);
 }

@@ -18,7 +18,8 @@ class IntakeTest : public ::testing::Test {
   template <class Message>
   void Take(const std::string& channel, const Message& message) {
     const RecordedMessage recorded = Encoded(channel, message, utime_);
-    intake_.Take(recorded.channel, recorded.data.data(), static_cast<int>(recorded.data.size()), recorded.utime);
+    intake_.Take(recorded.channel, recorded.data.data(), static_cast<int>(recorded.data.size()),
+                 recorded.utime);
   }
   void State(int64_t tick, int64_t session = 7) {
     utime_ += 1000;
@@ -82,7 +83,9 @@ TEST_F(IntakeTest, TakesARun) {
   ASSERT_EQ(run.ticks.end(), states.size());
   EXPECT_EQ(run.rate_hz, 1000);
   ASSERT_NE(run.config, nullptr) << run.config_problem;
-  const auto value = [&](size_t row, TickColumn column) { return run.ticks.value(row, static_cast<size_t>(column)); };
+  const auto value = [&](size_t row, TickColumn column) {
+    return run.ticks.value(row, static_cast<size_t>(column));
+  };
   for (size_t k = 0; k < states.size(); ++k) {
     ASSERT_EQ(run.ticks.time(k), states[k].time);
     ASSERT_EQ(value(k, TickColumn::kP1), states[k].p1);
@@ -189,7 +192,8 @@ TEST_F(IntakeTest, Reports) {
 TEST_F(IntakeTest, Undecodable) {
   State(0);
   const uint8_t bytes[40] = {};
-  for (const char* channel : {"HYDRO_STATE", "HYDRO_MOTOR_COMMAND", "HYDRO_ARM_REFERENCE", "HYDRO_FAULT", "HYDRO_RUN"}) {
+  for (const char* channel :
+       {"HYDRO_STATE", "HYDRO_MOTOR_COMMAND", "HYDRO_ARM_REFERENCE", "HYDRO_FAULT", "HYDRO_RUN"}) {
     intake_.Take(channel, bytes, sizeof bytes, 0);
     intake_.Take(channel, bytes, 0, 0);
   }

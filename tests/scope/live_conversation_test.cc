@@ -37,7 +37,8 @@ class LiveConversationTest : public ::testing::Test {
   // All that it has to say now.
   static std::vector<Conversation::Message> All(Conversation* conversation) {
     std::vector<Conversation::Message> messages;
-    for (Conversation::Message message; conversation->Next(&message) && messages.size() < 10000;) messages.push_back(message);
+    for (Conversation::Message message; conversation->Next(&message) && messages.size() < 10000;)
+      messages.push_back(message);
     return messages;
   }
   static std::vector<json> Texts(Conversation* conversation) {
@@ -81,7 +82,8 @@ TEST_F(LiveConversationTest, Greets) {
 TEST_F(LiveConversationTest, Answers) {
   const auto conversation = Converse();
   All(conversation.get());
-  conversation->Hear(R"({"op":"get","id":8,"run":0,"channels":["p1"],"t0":0.1,"t1":0.2,"pixels":1000})", false);
+  conversation->Hear(R"({"op":"get","id":8,"run":0,"channels":["p1"],"t0":0.1,"t1":0.2,"pixels":1000})",
+                     false);
   const auto answer = All(conversation.get());
   ASSERT_TRUE(answer.at(0).binary);
   const DecodedBins bins = Decode(answer[0].bytes);
@@ -89,7 +91,8 @@ TEST_F(LiveConversationTest, Answers) {
   EXPECT_EQ(bins.flags, uint32_t{kAnswerToGet});
   EXPECT_EQ(bins.min[0].front(), 100);
   EXPECT_EQ(bins.max[0].back(), 200);
-  const json values = Reply(conversation.get(), R"({"op":"values","id":9,"run":0,"channels":["p1","p2"],"t":0.1234})");
+  const json values =
+      Reply(conversation.get(), R"({"op":"values","id":9,"run":0,"channels":["p1","p2"],"t":0.1234})");
   EXPECT_EQ(values["id"], 9);
   EXPECT_EQ(values["data"]["t"], 0.123);
   EXPECT_EQ(values["data"]["values"], json::parse("[123.0, null]"));
@@ -102,8 +105,9 @@ TEST_F(LiveConversationTest, RefusesWithAReason) {
   const auto conversation = Converse();
   for (const char* request :
        {R"({"op":"get","id":1,"run":5,"channels":["p1"],"t0":0,"t1":1})",
-        R"({"op":"get","id":1,"run":0,"channels":["p3"],"t0":0,"t1":1})", R"({"op":"view","id":1,"run":0,"channels":["p3"],"span":1})",
-        R"({"op":"arm","id":1})", R"({"op":"stop","id":1})", R"({"op":"rearm","id":1})", R"({"op":"set","id":1,"entries":[]})",
+        R"({"op":"get","id":1,"run":0,"channels":["p3"],"t0":0,"t1":1})",
+        R"({"op":"view","id":1,"run":0,"channels":["p3"],"span":1})", R"({"op":"arm","id":1})",
+        R"({"op":"stop","id":1})", R"({"op":"rearm","id":1})", R"({"op":"set","id":1,"entries":[]})",
         R"({"op":"undo","id":1})", R"({"op":"ghost","id":1})", R"({"op":"nothing","id":1})"}) {
     const json reply = Reply(conversation.get(), request);
     EXPECT_EQ(reply["ok"], false) << request;
@@ -131,8 +135,9 @@ TEST_F(LiveConversationTest, ListensToSoMuch) {
 TEST_F(LiveConversationTest, Limits) {
   const auto conversation = Converse();
   const auto ask = [&](const std::string& op, int id) {
-    return Reply(conversation.get(), R"({"op":")" + op + R"(","id":)" + std::to_string(id) +
-                                         R"(,"run":0,"channels":["p1"],"channel":"p1","span":1,"pixels":100})");
+    return Reply(conversation.get(),
+                 R"({"op":")" + op + R"(","id":)" + std::to_string(id) +
+                     R"(,"run":0,"channels":["p1"],"channel":"p1","span":1,"pixels":100})");
   };
   for (int id = 0; id < 16; ++id) EXPECT_TRUE(ask("view", id).is_null());
   EXPECT_EQ(ask("view", 16)["ok"], false);
@@ -147,7 +152,9 @@ TEST_F(LiveConversationTest, Limits) {
 TEST_F(LiveConversationTest, TellsWhatWasDropped) {
   const auto conversation = Converse();
   for (const char* id : {"1", "2"}) {
-    conversation->Hear(std::string(R"({"op":"view","id":)") + id + R"(,"run":0,"channels":["p1"],"span":0.1,"pixels":100})", false);
+    conversation->Hear(
+        std::string(R"({"op":"view","id":)") + id + R"(,"run":0,"channels":["p1"],"span":0.1,"pixels":100})",
+        false);
   }
   All(conversation.get());
   EXPECT_EQ(frames_, 2);
@@ -178,8 +185,10 @@ TEST_F(LiveConversationTest, FollowsARestart) {
   bool restarted = false;
   bool listed = false;
   for (const json& text : Texts(conversation.get())) {
-    restarted = restarted || (text["op"] == "event" && text["run"] == 0 && text["n"] == 1 && text["kind"] == "restart");
-    listed = listed || (text["op"] == "runs" && text["runs"].size() == 2 && text["runs"][1]["kind"] == "past");
+    restarted = restarted ||
+                (text["op"] == "event" && text["run"] == 0 && text["n"] == 1 && text["kind"] == "restart");
+    listed =
+        listed || (text["op"] == "runs" && text["runs"].size() == 2 && text["runs"][1]["kind"] == "past");
   }
   EXPECT_TRUE(restarted);
   EXPECT_TRUE(listed);

@@ -31,7 +31,8 @@ TEST(LiveRequestTest, Reads) {
   EXPECT_EQ(trigger.trigger.pre, 0.5);
   EXPECT_EQ(trigger.trigger.pixels, 800u);
   EXPECT_EQ(trigger.trigger.channels, std::vector<std::string>{"dp"});
-  EXPECT_EQ(ParseLiveRequest(R"({"op":"set","entries":["position.c2=900"]})", &id).entries.at(0), "position.c2=900");
+  EXPECT_EQ(ParseLiveRequest(R"({"op":"set","entries":["position.c2=900"]})", &id).entries.at(0),
+            "position.c2=900");
 }
 
 // Tests that whatever is wrong is named, with what is allowed, and the request's number is known where it has one.

@@ -19,7 +19,8 @@ struct RecordedMessage {
 inline std::vector<RecordedMessage> Record(const settings::StackConfig& config) {
   std::vector<RecordedMessage> messages;
   sim::Simulate(config, [&](const bus::RawMessage& message) {
-    messages.push_back({std::string(message.channel), {message.data, message.data + message.size}, message.receive_utime});
+    messages.push_back(
+        {std::string(message.channel), {message.data, message.data + message.size}, message.receive_utime});
   });
   return messages;
 }
@@ -27,7 +28,8 @@ inline std::vector<RecordedMessage> Record(const settings::StackConfig& config) 
 // A message of its own making.
 template <class Message>
 RecordedMessage Encoded(const std::string& channel, const Message& message, int64_t utime) {
-  RecordedMessage recorded{channel, std::vector<uint8_t>(static_cast<size_t>(message.getEncodedSize())), utime};
+  RecordedMessage recorded{channel, std::vector<uint8_t>(static_cast<size_t>(message.getEncodedSize())),
+                           utime};
   message.encode(recorded.data.data(), 0, static_cast<int>(recorded.data.size()));
   return recorded;
 }

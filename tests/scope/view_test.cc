@@ -16,7 +16,8 @@ namespace {
 using namespace std::chrono_literals;
 
 View::TimePoint At(double seconds) {
-  return View::TimePoint(std::chrono::duration_cast<View::TimePoint::duration>(std::chrono::duration<double>(seconds)));
+  return View::TimePoint(
+      std::chrono::duration_cast<View::TimePoint::duration>(std::chrono::duration<double>(seconds)));
 }
 
 ViewRequest Request(double span, uint32_t pixels) {

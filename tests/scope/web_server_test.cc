@@ -62,7 +62,8 @@ class TestSite : public Site {
     response.body = request.method + " " + request.path + " " + request.body;
     reply(std::move(response));
   }
-  std::unique_ptr<Conversation> Converse(const std::string& path, const std::vector<std::string>&, std::string*) override {
+  std::unique_ptr<Conversation> Converse(const std::string& path, const std::vector<std::string>&,
+                                         std::string*) override {
     if (path != "/live") return nullptr;
     return std::make_unique<Chatter>(&made, &open, &heard);
   }
@@ -143,8 +144,10 @@ class WebServerTest : public ::testing::Test {
     return client.ReadAll().substr(0, 12);
   }
   std::string Upgrade(const std::string& path, const std::string& more = "") const {
-    return Head("GET " + path, "Upgrade: websocket\r\nConnection: Upgrade\r\nSec-WebSocket-Version: 13\r\n"
-                               "Sec-WebSocket-Key: AAAAAAAAAAAAAAAAAAAAAA==\r\n" + more);
+    return Head("GET " + path,
+                "Upgrade: websocket\r\nConnection: Upgrade\r\nSec-WebSocket-Version: 13\r\n"
+                "Sec-WebSocket-Key: AAAAAAAAAAAAAAAAAAAAAA==\r\n" +
+                    more);
   }
   template <class Condition>
   static bool Eventually(Condition condition) {
@@ -199,10 +202,12 @@ TEST_F(WebServerTest, LimitsRequests) {
   EXPECT_EQ(Ask("\x16\x03\x01\x02 no HTTP at all\r\n\r\n"), "HTTP/1.1 400");
   EXPECT_EQ(Ask(Head("POST /api", bearer + "Content-Length: 1001\r\n")), "HTTP/1.1 413");
   EXPECT_EQ(Ask(Head("POST /api", bearer + "Content-Length: 99999999999999\r\n")), "HTTP/1.1 413");
-  EXPECT_EQ(Ask(Head("POST /api", bearer + "Transfer-Encoding: chunked\r\n") + "7d0\r\n" + std::string(2000, 'x') + "\r\n0\r\n\r\n"),
+  EXPECT_EQ(Ask(Head("POST /api", bearer + "Transfer-Encoding: chunked\r\n") + "7d0\r\n" +
+                std::string(2000, 'x') + "\r\n0\r\n\r\n"),
             "HTTP/1.1 413");
   EXPECT_EQ(Ask(Head("GET /api", bearer + "Content-Length: 5\r\n") + "hello"), "HTTP/1.1 413");
-  EXPECT_EQ(Ask(Head("POST /api", bearer + "Connection: close\r\nContent-Length: 5\r\n") + "hello"), "HTTP/1.1 200");
+  EXPECT_EQ(Ask(Head("POST /api", bearer + "Connection: close\r\nContent-Length: 5\r\n") + "hello"),
+            "HTTP/1.1 200");
 }
 
 // Tests that a connection serves several requests.
@@ -284,7 +289,8 @@ TEST_F(WebServerTest, ClientsLeave) {
   huge.Send(upgrade);
   huge.ReadUntil("\r\n\r\n");
   const int heard = site_.heard;
-  huge.Send(std::string("\x81\xff", 2) + std::string("\0\0\0\0\0\1\0\1", 8) + std::string(4, '\0') + std::string(65537, 'x'));
+  huge.Send(std::string("\x81\xff", 2) + std::string("\0\0\0\0\0\1\0\1", 8) + std::string(4, '\0') +
+            std::string(65537, 'x'));
   huge.ReadAll();
   EXPECT_TRUE(Eventually([&] { return site_.open == 0; }));
   EXPECT_EQ(site_.heard, heard);
