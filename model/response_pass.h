@@ -12,6 +12,7 @@
 #include "model/integrate/derivative_stepper.h"
 #include "model/integrate/mode_machine.h"
 #include "model/response.h"
+#include "model/start_from.h"
 #include "model/terms/parameter_info.h"
 
 namespace hydro::model {
@@ -25,45 +26,6 @@ NumbersOf<T> NumbersAs(const NumbersOf<double>& numbers) {
   }
   for (const double value : numbers.own) result.own.emplace_back(value);
   return result;
-}
-
-// The initial state and mode of a response, from `base`, the numbers of a StartState.
-template <class T>
-Mode StartFrom(Equations* equations, const NumbersOf<T>& numbers, double time, const T* base, T* state) {
-  const EquationData& data = equations->data();
-  Mode mode;
-  T rate[kMaxStates];
-  T margin[kMaxSwitches];
-  Terms<T> terms;
-  const auto evaluate = [&] {
-    EvaluateTerms<Form::kGeneral, T>(data, numbers, time, T(0.0), mode, state, rate, terms);
-  };
-  const int given = data.shaft == Shaft::kFree ? 6 : 4;
-  for (int i = 0; i < data.states; ++i) state[i] = i < given ? base[i] : T(0.0);
-  state[kMotorAngle] += base[kTurn];
-  equations->PassStop(time);
-  evaluate();
-  FindMargins<Form::kGeneral, T>(data, numbers, mode, terms, margin);
-  // The margins show whether an effect has valves of its own: an ideal valve's margin is p - p_3.
-  if (ValueOf(margin[kValve1Switch]) < 0) state[kP1] = terms.p_3;
-  if (ValueOf(margin[kValve2Switch]) < 0) state[kP2] = terms.p_3;
-  evaluate();
-  for (const auto& effect : data.effects) {
-    terms.own = numbers.own.data() + effect->first_parameter();
-    terms.waves = base + kWaves;
-    terms.returned = base + kReturned;
-    effect->Start(terms, state);
-    effect->StartMode(terms, &mode);
-  }
-  if (data.p_3_state >= 0) {  // p_3 is known only now
-    evaluate();
-    FindMargins<Form::kGeneral, T>(data, numbers, mode, terms, margin);
-    if (ValueOf(margin[kValve1Switch]) < 0) state[kP1] = terms.p_3;
-    if (ValueOf(margin[kValve2Switch]) < 0) state[kP2] = terms.p_3;
-  }
-  const double speed = ValueOf(state[kMotorSpeed]);
-  mode.pump = static_cast<int8_t>(speed > 0 ? 1 : (speed < 0 ? -1 : 0));
-  return mode;
 }
 
 // How many steps a pass may take in all, so that a far too stiff model does not take hours.

@@ -10,8 +10,8 @@
 namespace hydro::settings {
 namespace {
 
-constexpr std::array<std::string_view, 6> kSections{"bus.",    "logger.", "noise.",
-                                                    "driver.", "process", "model.file"};
+constexpr std::array<std::string_view, 7> kSections{"bus.",    "logger.", "noise.",    "driver.",
+                                                    "process", "scope.",  "model.file"};
 constexpr std::array<std::string_view, 7> kKeys{
     "time.duration_s",          "time.start_timeout_s", "time.stall_timeout_s", "plant.integrator",
     "plant.relative_tolerance", "reference.file",       "model.motion.file"};

@@ -4,6 +4,7 @@
 #include <cctype>
 
 #include "settings/bus_url.h"
+#include "settings/scope_section.h"
 #include "settings/trajectory_spec.h"
 
 namespace hydro::settings {
@@ -241,6 +242,7 @@ void ReadSections(const TomlNode& root, const std::string& config_file, StackCon
   SectionReader noise = document.Section("noise");
   SectionReader driver = document.Section("driver");
   SectionReader logger = document.Section("logger");
+  SectionReader scope = document.Section("scope");
   document.Take("process");
   document.Finish();
 
@@ -255,6 +257,7 @@ void ReadSections(const TomlNode& root, const std::string& config_file, StackCon
   ReadNoise(std::move(noise), &config->noise, &config->seed);
   if (document.Has("driver")) config->driver = ReadDriver(std::move(driver));
   ReadLogger(std::move(logger), &config->logger);
+  ReadScope(std::move(scope));  // hydro-scope takes it from the text: settings/scope_section.h
   ReadProcesses(document, &config->processes);
 }
 

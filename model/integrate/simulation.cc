@@ -13,12 +13,10 @@ namespace {
 template <Form kForm, class Stepper>
 class SimulationOf final : public Simulation {
  public:
-  SimulationOf(Equations* equations, double initial_pressure, double relative_tolerance)
+  SimulationOf(Equations* equations, double time, const double* state, const Mode& mode,
+               double relative_tolerance)
       : machine_(equations, &equations->data(), relative_tolerance) {
-    double state[kMaxStates];
-    Mode mode;
-    equations->Start(initial_pressure, state, &mode);
-    machine_.Start(0, state, mode);
+    machine_.Start(time, state, mode);
   }
 
   void Advance(double voltage, double until) override { machine_.Advance(voltage, until); }
@@ -33,10 +31,10 @@ class SimulationOf final : public Simulation {
 };
 
 template <template <Form> class Stepper>
-std::unique_ptr<Simulation> MakeForForm(Equations* equations, double initial_pressure,
-                                        double relative_tolerance) {
+std::unique_ptr<Simulation> MakeForForm(Equations* equations, double time, const double* state,
+                                        const Mode& mode, double relative_tolerance) {
   const auto make = [&]<Form kForm>() -> std::unique_ptr<Simulation> {
-    return std::make_unique<SimulationOf<kForm, Stepper<kForm>>>(equations, initial_pressure,
+    return std::make_unique<SimulationOf<kForm, Stepper<kForm>>>(equations, time, state, mode,
                                                                  relative_tolerance);
   };
   if (!equations->plain()) return make.template operator()<Form::kGeneral>();
@@ -46,25 +44,34 @@ std::unique_ptr<Simulation> MakeForForm(Equations* equations, double initial_pre
 
 }  // namespace
 
-std::unique_ptr<Simulation> MakeSimulation(Equations* equations, Integrator integrator,
-                                           double initial_pressure, double relative_tolerance) {
+std::unique_ptr<Simulation> MakeSimulationFrom(Equations* equations, Integrator integrator, double time,
+                                               const double* state, const Mode& mode,
+                                               double relative_tolerance) {
   if (!(relative_tolerance > 0 && relative_tolerance < 1)) {
     throw ModelError("relative tolerance " + std::to_string(relative_tolerance) +
                      "; allowed is above 0 and below 1");
   }
   switch (integrator) {
     case Integrator::kErk:
-      return std::make_unique<SimulationOf<Form::kGeneral, ErkStepper>>(equations, initial_pressure,
+      return std::make_unique<SimulationOf<Form::kGeneral, ErkStepper>>(equations, time, state, mode,
                                                                         relative_tolerance);
     case Integrator::kCvode:
-      return std::make_unique<SimulationOf<Form::kGeneral, CvodeStepper>>(equations, initial_pressure,
+      return std::make_unique<SimulationOf<Form::kGeneral, CvodeStepper>>(equations, time, state, mode,
                                                                           relative_tolerance);
     case Integrator::kFast:
-      return MakeForForm<FastStepper>(equations, initial_pressure, relative_tolerance);
+      return MakeForForm<FastStepper>(equations, time, state, mode, relative_tolerance);
     case Integrator::kAuto:
       break;
   }
-  return MakeForForm<AutoStepper>(equations, initial_pressure, relative_tolerance);
+  return MakeForForm<AutoStepper>(equations, time, state, mode, relative_tolerance);
+}
+
+std::unique_ptr<Simulation> MakeSimulation(Equations* equations, Integrator integrator,
+                                           double initial_pressure, double relative_tolerance) {
+  double state[kMaxStates];
+  Mode mode;
+  equations->Start(initial_pressure, state, &mode);
+  return MakeSimulationFrom(equations, integrator, 0, state, mode, relative_tolerance);
 }
 
 }  // namespace hydro::model

@@ -34,4 +34,9 @@ class Simulation {
 std::unique_ptr<Simulation> MakeSimulation(Equations* equations, Integrator integrator,
                                            double initial_pressure, double relative_tolerance);
 
+// The same from any state: `state` has all of the equations' states; `mode` is settled with the first voltage.
+std::unique_ptr<Simulation> MakeSimulationFrom(Equations* equations, Integrator integrator, double time,
+                                               const double* state, const Mode& mode,
+                                               double relative_tolerance);
+
 }  // namespace hydro::model

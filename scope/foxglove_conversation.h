@@ -1,0 +1,47 @@
+// The conversation with Foxglove, Lichtblick or PlotJuggler: their web-socket protocol, version 1, read-only.
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <map>
+#include <string>
+
+#include "scope/run_table.h"
+#include "scope/signals/message_store.h"
+#include "scope/wire/site.h"
+
+namespace hydro::scope {
+
+// Sends the messages of the running stack on the topics that the client subscribes to. They are read out of the run's store
+// when the client is ready for them: one that is more than kMostBehind messages late goes on with the newest.
+class FoxgloveConversation : public Conversation {
+ public:
+  static constexpr uint64_t kMostBehind = 20000;
+
+  explicit FoxgloveConversation(RunTable* runs);
+
+  // Whether a subprotocol is one of those.
+  static bool Speaks(const std::string& subprotocol);
+
+  void Hear(std::string_view message, bool binary) override;
+  bool Next(Message* message) override;
+  bool over() const override { return wrong_ >= 20; }
+
+  uint64_t skipped() const { return skipped_; }
+
+ private:
+  void Subscribe(std::string_view message);
+  void Complain(const std::string& text);
+
+  RunTable& runs_;
+  const MessageStore* store_ = nullptr;  // that the place is in
+  MessageStore::Place place_{};
+  std::deque<std::string> replies_;
+  std::map<std::string, std::map<uint32_t, size_t>, std::less<>> subscriptions_;  // by channel: id, topic
+  std::deque<Message> ready_;  // of one message, to several subscriptions
+  std::string cdr_;
+  uint64_t skipped_ = 0;
+  int wrong_ = 0;
+};
+
+}  // namespace hydro::scope

@@ -1,0 +1,23 @@
+// The messages of a stack as Foxglove's protocol carries them: encoded as CDR, described by ROS 2 message definitions, which
+// Foxglove, Lichtblick and PlotJuggler read.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace hydro::scope {
+
+struct FoxgloveTopic {
+  std::string topic;    // "/hydro/state"
+  std::string channel;  // of LCM, without the stack's suffix
+  std::string schema_name;
+  std::string schema;  // a ROS 2 message definition
+  // Writes the message as CDR, little endian. False: the bytes are no such message.
+  bool (*encode)(const uint8_t* data, int size, std::string* cdr);
+};
+
+const std::vector<FoxgloveTopic>& FoxgloveTopics();
+
+}  // namespace hydro::scope

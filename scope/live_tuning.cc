@@ -1,0 +1,109 @@
+#include "scope/live_tuning.h"
+
+#include <map>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "base/input_error.h"
+#include "base/number_text.h"
+#include "base/text_file.h"
+#include "hydro_set/saved_config.h"
+#include "runs/tuning_history.h"
+#include "settings/toml/toml_entries.h"
+#include "tuning/tunable_keys.h"
+
+namespace hydro::scope {
+namespace {
+
+using json = nlohmann::ordered_json;
+
+json ValueOf(const std::string& toml) {
+  if (const auto number = ParseNumber(toml)) return *number;
+  return toml;
+}
+
+}  // namespace
+
+LiveTuning::LiveTuning(bus::Bus& bus, const bus::Clock& clock, const bus::Channels& channels, bool control)
+    : client_(bus, clock, channels, "hydro-scope"), control_(control) {}
+
+bool LiveTuning::Ready(const Done& done) {
+  if (!client_.in_force() || !client_.run()) {
+    done({false, "no running stack has said which values are in force", {}});
+  } else if (client_.asking()) {
+    done({false, "another change is under way, try again", {}});
+  } else {
+    return true;
+  }
+  return false;
+}
+
+void LiveTuning::Set(const std::vector<std::string>& entries, Done done) {
+  if (!Ready(done)) return;
+  std::string changes;
+  for (const std::string& entry : entries) changes += (changes.empty() ? "" : "\n") + entry;
+  waiting_ = std::move(done);
+  client_.Set(changes);
+}
+
+void LiveTuning::Undo(Done done) {
+  if (!Ready(done)) return;
+  waiting_ = std::move(done);
+  client_.Undo();
+}
+
+void LiveTuning::Poll() {
+  client_.Poll();
+  if (const auto answer = client_.TakeAnswer(); answer && waiting_) {
+    json data;
+    if (answer->accepted) {
+      const double rate_hz = client_.run()->rate_hz;
+      data = {{"tick", answer->acts_at},
+              {"t", rate_hz > 0 ? json(static_cast<double>(answer->acts_at) / rate_hz) : json()},
+              {"version", answer->version}};
+    }
+    std::exchange(waiting_, nullptr)(
+        {answer->accepted != 0, PrintableLines(answer->text), data.is_null() ? "" : data.dump()});
+  }
+  const auto& in_force = client_.in_force();
+  if (!in_force || !client_.run() || client_.run()->session != in_force->session) return;
+  if (session_ == in_force->session && version_ == in_force->version) return;
+  session_ = in_force->session;
+  version_ = in_force->version;
+  Describe();
+}
+
+void LiveTuning::Describe() {
+  const tuned_settings_t& in_force = *client_.in_force();
+  json entries = json::array();
+  try {
+    const settings::StackConfig config = hydro_set::ConfigInForce(*client_.run(), in_force);
+    std::map<std::string, std::string> values;
+    for (size_t i = 0; i < in_force.names.size(); ++i)
+      values[in_force.names[i]] = NumberText(in_force.values[i]);
+    for (auto& [key, value] : settings::TomlEntries(settings::ParseToml(config.text, config.file)))
+      values[key] = value;
+    for (const tuning::TunableKey& row : tuning::TunableKeys()) {
+      const auto value = values.find(std::string(row.key));
+      if (value == values.end()) continue;
+      entries.push_back({{"key", row.key},
+                         {"value", ValueOf(value->second)},
+                         {"unit", row.unit},
+                         {"what", row.what},
+                         {"acts_in", row.acts_in}});
+    }
+  } catch (const InputError&) {
+    // A stack of another version: nothing to show, and the plant refuses what this one asks.
+  }
+  const std::string text = in_force.version > 0 ? Printable(runs::DescribeTuning(in_force)) : std::string();
+  message_ = json({{"op", "tuning"},
+                   {"run", 0},
+                   {"control", control_},
+                   {"version", in_force.version},
+                   {"acts_at", in_force.acts_at},
+                   {"text", text},
+                   {"entries", entries}})
+                 .dump(-1, ' ', false, json::error_handler_t::replace);
+}
+
+}  // namespace hydro::scope

@@ -1,0 +1,44 @@
+// Tuning from the page: the values in force, and requests for others, over the scope's own bus. Without a request it only
+// listens.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "bus/bus.h"
+#include "bus/channels.h"
+#include "bus/clock.h"
+#include "hydro_set/tuning_client.h"
+#include "scope/operator_desk.h"
+
+namespace hydro::scope {
+
+class LiveTuning : public Tuning {
+ public:
+  // `control`: whether the page may ask, for the message.
+  LiveTuning(bus::Bus& bus, const bus::Clock& clock, const bus::Channels& channels, bool control);
+
+  void Set(const std::vector<std::string>& entries, Done done) override;
+  void Undo(Done done) override;
+  const std::string& message() const override { return message_; }
+
+  // Follows what has been heard. Call it after each turn of the bus.
+  void Poll();
+
+ private:
+  // Whether a request can be sent now; otherwise says why not.
+  bool Ready(const Done& done);
+  void Describe();
+
+  hydro_set::TuningClient client_;
+  bool control_;
+  Done waiting_;  // for the answer; null: nothing is asked
+  std::string message_;
+  // Of the values in the message.
+  std::optional<int64_t> session_;
+  int64_t version_ = -1;
+};
+
+}  // namespace hydro::scope

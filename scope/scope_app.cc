@@ -1,0 +1,211 @@
+#include "scope/scope_app.h"
+
+#include <sched.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cerrno>
+#include <chrono>
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
+#include <memory>
+#include <utility>
+
+#include "base/input_error.h"
+#include "base/text_file.h"
+#include "process/stack_bus.h"
+#include "process/stop_signal.h"
+#include "scope/ghost_desk.h"
+#include "scope/live_feed.h"
+#include "scope/live_tuning.h"
+#include "scope/scope_site.h"
+#include "scope/signals/log_run.h"
+#include "scope/wire/web_server.h"
+#include "settings/scope_section.h"
+
+namespace hydro::scope {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr int kNice = 5;             // a scope gives way to what drives a motor without a real-time priority
+constexpr auto kWatchedTurn = 16ms;  // with clients: 60 frames a second
+constexpr auto kLoneTurn = 20ms;     // without: often enough for the kernel's buffer
+constexpr auto kLogTurn = 50ms;      // a log does not change
+constexpr double kBytesPerTick = 600;  // of messages, generously
+
+std::string FileName(const std::string& path) { return path.substr(path.find_last_of('/') + 1); }
+
+bool IsConfig(const std::string& file) { return file.ends_with(".toml"); }
+
+// A token from outside makes tests and scripts possible; a short one would be no secret.
+std::string Token() {
+  const char* const given = std::getenv("HYDRO_SCOPE_TOKEN");
+  if (given == nullptr) return FreshToken();
+  const std::string token = given;
+  const bool right =
+      token.size() >= 16 && token.size() <= 128 &&
+      std::all_of(token.begin(), token.end(), [](unsigned char c) { return std::isalnum(c) != 0; });
+  if (!right) {
+    throw InputError("HYDRO_SCOPE_TOKEN: found " + std::to_string(token.size()) +
+                     " bytes, allowed are 16 to 128 letters and digits");
+  }
+  return token;
+}
+
+double CpuSeconds() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  const auto seconds = [](const timeval& time) {
+    return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
+  };
+  return seconds(usage.ru_utime) + seconds(usage.ru_stime);
+}
+
+// The loops of the stack must not notice that a scope runs beside them. As a batch process it interrupts nobody when it
+// wakes up. A lower class yet (SCHED_IDLE) would leave the stop button without a processor on a busy machine.
+void GiveWay() {
+  const sched_param parameters{};
+  const bool batch = sched_setscheduler(0, SCHED_BATCH, &parameters) == 0;
+  errno = 0;
+  const bool lower = nice(kNice) != -1 || errno == 0;
+  if (!batch || !lower) std::fprintf(stderr, "hydro-scope: warning: cannot lower its own priority\n");
+}
+
+class ScopeApp {
+ public:
+  explicit ScopeApp(const ScopeRequest& request) : page_(request.page) {
+    if (IsConfig(request.input)) {
+      config_ = std::make_shared<const settings::StackConfig>(
+          settings::LoadStackConfig(request.input, request.overrides));
+      section_ = settings::ScopeSectionOf(config_->text, config_->file);
+    } else if (!request.overrides.empty()) {
+      throw InputError("--set: found it beside a log, allowed is it beside CONFIG");
+    }
+    if (request.port) section_.port = *request.port;
+    token_ = Token();
+    if (config_ != nullptr) {
+      Listen();
+    } else {
+      OpenLog(request.input);
+    }
+  }
+
+  int Run() {
+    WebServerOptions options;
+    options.address = section_.bind;
+    options.port = section_.port;
+    WebServer server(options);
+    const auto post = [&server](std::function<void()> work) { server.Post(std::move(work)); };
+    SideWork work(post);
+    DiagnoseJobs jobs(work.folder(), post);
+    OperatorDesk desk(config_, section_.control, post, tuning_.get());
+    GhostDesk ghost(&runs_);
+    LiveContext context{.runs = runs_,
+                        .desk = desk,
+                        .ghost = ghost,
+                        .silent_s = [this] { return feed_ == nullptr ? -1 : feed_->silent_s(); },
+                        .now = [] { return std::chrono::steady_clock::now(); },
+                        .frames = &frames_,
+                        .dropped = &dropped_};
+    ScopeSite site(page_, context, &work, &jobs, static_cast<int64_t>(section_.upload_mb * 1e6));
+    site.more_status = [&] {
+      return MoreStatus(server) + ",\"ghost_skipped\":" + std::to_string(ghost.skipped());
+    };
+    server.Open(Access(token_, server.port(), section_.hosts, section_.origins), &site);
+    Announce(server.port());
+    server.Run([&] { return Turn(server.conversations(), &ghost); });
+    return 0;
+  }
+
+ private:
+  void Listen() {
+    const double ticks = section_.history_s * config_->plant.rate_hz;
+    runs_.StartLive(FileName(config_->file), config_->bus.channel_suffix,
+                    static_cast<uint64_t>(ticks * 1.1) + 10000,
+                    static_cast<size_t>(ticks * kBytesPerTick) + (16 << 20));
+    bus_ = process::OpenStackBus(config_->bus);
+    feed_ =
+        std::make_unique<LiveFeed>(*bus_, clock_, config_->bus.channel_suffix, section_.history_s, &runs_);
+    tuning_ = std::make_unique<LiveTuning>(*bus_, clock_, bus::Channels(config_->bus.channel_suffix),
+                                           section_.control);
+    if (const std::string hint = bus_->receive_buffer_hint(); !hint.empty()) {
+      std::fprintf(stderr, "hydro-scope: %s\n", hint.c_str());
+    }
+  }
+
+  void OpenLog(const std::string& file) {
+    std::string problem;
+    const std::string name = FileName(file);
+    for (auto& run : OpenLogRuns(file, name, &problem)) runs_.Add(std::move(run));
+    if (!problem.empty()) std::fprintf(stderr, "hydro-scope: warning: %s\n", Printable(problem).c_str());
+    std::fprintf(stderr, "hydro-scope: %s is open, %.0f MB of memory\n", Printable(name).c_str(),
+                 static_cast<double>(runs_.memory()) / 1e6);
+  }
+
+  void Announce(int port) const {
+    const bool any = section_.bind != "127.0.0.1" && section_.bind != "::1" && section_.bind != "localhost";
+    if (any) {
+      std::fprintf(stderr,
+                   "hydro-scope: warning: listening on %s without encryption: whoever reads the network "
+                   "reads the token; "
+                   "put a server with TLS in front of 127.0.0.1 instead\n",
+                   section_.bind.c_str());
+    }
+    std::printf("hydro-scope: open http://127.0.0.1:%d/#token=%s\n", port, token_.c_str());
+    std::fflush(stdout);
+  }
+
+  std::chrono::microseconds Turn(int clients, GhostDesk* ghost) {
+    if (process::StopSignal() != 0) return std::chrono::microseconds(-1);
+    if (feed_ != nullptr) feed_->Poll();
+    if (tuning_ != nullptr) tuning_->Poll();
+    ghost->Poll();
+    if (feed_ == nullptr) return clients > 0 ? kWatchedTurn : kLogTurn;
+    return clients > 0 ? kWatchedTurn : kLoneTurn;
+  }
+
+  std::string MoreStatus(const WebServer& server) const {
+    std::string text = "\"clients\":" + std::to_string(server.conversations()) +
+                       ",\"connections\":" + std::to_string(server.connections()) +
+                       ",\"refused\":" + std::to_string(server.refused()) +
+                       ",\"frames\":" + std::to_string(frames_) + ",\"dropped\":" + std::to_string(dropped_) +
+                       ",\"cpu_s\":" + std::to_string(CpuSeconds());
+    if (feed_ != nullptr) {
+      const bus::RefusedMessages& refused = bus_->refused();
+      text += ",\"messages\":" + std::to_string(feed_->messages()) +
+              ",\"states\":" + std::to_string(feed_->intake().states()) +
+              ",\"undecodable\":" + std::to_string(feed_->intake().undecodable()) +
+              ",\"foreign_states\":" + std::to_string(feed_->intake().foreign()) +
+              ",\"messages_refused\":" + std::to_string(refused.total());
+    }
+    return text;
+  }
+
+  PageFiles page_;
+  std::shared_ptr<const settings::StackConfig> config_;  // null: a log is shown
+  settings::ScopeSection section_;
+  std::string token_;
+  RunTable runs_;
+  bus::WallClock clock_;
+  std::unique_ptr<bus::UdpmBus> bus_;
+  std::unique_ptr<LiveFeed> feed_;
+  std::unique_ptr<LiveTuning> tuning_;
+  int64_t frames_ = 0;
+  int64_t dropped_ = 0;
+};
+
+}  // namespace
+
+int RunScope(const ScopeRequest& request) {
+  process::CatchStopSignals();
+  std::signal(SIGPIPE, SIG_IGN);
+  GiveWay();
+  ScopeApp app(request);
+  return app.Run();
+}
+
+}  // namespace hydro::scope

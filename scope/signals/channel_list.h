@@ -1,0 +1,69 @@
+// The channels that a scope shows, and where their values lie.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "base/unit_system.h"
+
+namespace hydro::scope {
+
+// The columns of a run's history of ticks: one row for each state. Held ones have a value at every tick.
+enum class TickColumn : size_t {
+  kDp,
+  kDpRef,
+  kPressureError,
+  kP1,
+  kP2,
+  kArmAngle,
+  kArmRef,
+  kArmSpeed,
+  kMotorSpeed,
+  kMotorAngle,
+  kVoltage,
+  kVoltageAsked,
+  kSaturated,
+  kLatency,
+  kPeriod,
+  kSkipped,
+};
+inline constexpr size_t kTickColumns = 16;
+
+// Of its history of the ghost.
+enum class GhostColumn : size_t {
+  kP1,
+  kP2,
+  kDp,
+  kMotorSpeed,
+  kArmAngle,
+  kResidualP1,
+  kResidualP2,
+  kResidualMotorSpeed
+};
+inline constexpr size_t kGhostColumns = 8;
+
+// Of the history of a role's loop: a row for each report.
+enum class LoopColumn : size_t { kLatencyP99, kMissed };
+inline constexpr size_t kLoopColumns = 2;
+inline constexpr double kLoopHold = 2.5;  // s: reports come once a second
+
+struct ChannelInfo {
+  std::string id;
+  std::string label;
+  std::string group;
+  std::string unit;
+  bool step = false;     // held between samples
+  std::string si_unit;   // empty: it is shown as it is
+  double si_factor = 1;  // value in si_unit = factor * value
+};
+
+// Those of the ticks and of the ghost, in the order of the columns, in a model's units.
+std::vector<ChannelInfo> TickChannels(const UnitSystem& units);
+std::vector<ChannelInfo> GhostChannels(const UnitSystem& units);
+// "loop.<role>.latency_p99_us" and "loop.<role>.missed".
+std::vector<ChannelInfo> LoopChannels(const std::string& role);
+
+}  // namespace hydro::scope

@@ -1,0 +1,66 @@
+// The model beside the rig: driven by the voltage that was sent, set to the measured state now and then. What it does and the
+// rig does not is the gap between them, live.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <deque>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "model/started_actuator.h"
+#include "scope/signals/channel_list.h"
+#include "scope/signals/noise_estimate.h"
+#include "settings/stack_config.h"
+
+namespace hydro::scope {
+
+// What was measured at a tick.
+struct GhostSample {
+  double time = 0;     // s
+  double voltage = 0;  // V, that acted since the tick before
+  model::Measurement measured;
+  bool after_gap = false;  // states are missing before it: what acted meanwhile is not known
+};
+
+class Ghost {
+ public:
+  using Row = std::array<double, kGhostColumns>;
+
+  // The model, how its shaft is held and the noise are those of `config`. `resync_s`: s of plant time after which it is set
+  // to the measured state again; 0: only by Sync() and after gaps. Throws InputError for one below 0.
+  Ghost(std::shared_ptr<const settings::StackConfig> config, double resync_s);
+  ~Ghost();
+
+  // The ghost's values at the sample's time and what is measured less those, in standard deviations of the noise; none while
+  // it waits for a state to begin from. Where it begins, its values are the measured ones, and the residuals missing.
+  std::optional<Row> Add(const GhostSample& sample);
+
+  // Begins anew with the next sample.
+  void Sync() { sync_ = true; }
+
+  // Why it does not run, or the model's last error; empty when there was none.
+  const std::string& problem() const { return problem_; }
+  int64_t starts() const { return starts_; }
+
+ private:
+  void Start(const GhostSample& sample);
+  std::optional<double> Slope(double model::Measurement::*angle) const;
+  double Sigma(double given, double resolution, const NoiseEstimate& estimate) const;
+
+  std::shared_ptr<const settings::StackConfig> config_;
+  double resync_s_;
+  std::unique_ptr<trajectory::Trajectory> motion_;  // of a driven shaft; the actuator points to it
+  std::optional<model::StartedActuator> actuator_;
+  std::deque<GhostSample> newest_;
+  double started_ = 0;  // s
+  bool sync_ = false;
+  int64_t starts_ = 0;
+  std::string problem_;
+  NoiseEstimate p1_;
+  NoiseEstimate p2_;
+  NoiseEstimate motor_speed_;
+};
+
+}  // namespace hydro::scope

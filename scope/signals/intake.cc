@@ -1,0 +1,104 @@
+#include "scope/signals/intake.h"
+
+#include <cmath>
+#include <utility>
+
+#include "base/number_text.h"
+#include "scope/signals/decoded.h"
+
+namespace hydro::scope {
+namespace {
+
+constexpr int64_t kAlive = 1000000;    // us; a plant silent for longer may be replaced by another
+constexpr double kRest = 0.1;          // s; a reference that changes after less is no step
+constexpr double kLongestTime = 1e12;  // s
+
+}  // namespace
+
+Intake::Intake(const std::string& suffix, std::function<Run*(int64_t session)> next_run)
+    : channels_(suffix),
+      next_run_(std::move(next_run)),
+      ticks_([this](double time, const PendingTicks::Row& row) { run_->ticks.Append(time, row.data()); }) {}
+
+void Intake::Take(std::string_view channel, const uint8_t* data, int size, int64_t utime) {
+  if (channel == channels_.Of<state_t>()) {
+    Decoded(&state_, data, size) ? OnState(state_, utime) : void(++undecodable_);
+  } else if (channel == channels_.Of<motor_command_t>()) {
+    if (!Decoded(&command_, data, size)) {
+      ++undecodable_;
+    } else if (run_ != nullptr) {
+      ticks_.Add(command_, utime);
+    }
+  } else if (channel == channels_.Of<arm_reference_t>()) {
+    arm_reference_t reference;
+    Decoded(&reference, data, size) ? OnReference(reference) : void(++undecodable_);
+  } else {
+    TakeRare(channel, data, size, utime);
+  }
+}
+
+double Intake::TimeOf(int64_t tick) const {
+  if (tick < 0 || run_ == nullptr || !(run_->rate_hz > 0)) return time_;
+  return time_ + static_cast<double>(tick - tick_) / run_->rate_hz;
+}
+
+bool Intake::Follow(const state_t& state, int64_t utime) {
+  // A plant that begins anew under its old name: a log that is played again.
+  const bool again = state.session == session_ && state.tick < tick_ && state.sequence < sequence_ &&
+                     state.time < time_ - 0.5;
+  if (state.session == session_ && !again) return true;
+  if (session_ && !again && !left_ && utime - heard_utime_ < kAlive) {
+    ++foreign_;
+    return false;
+  }
+  ticks_.Flush();
+  ticks_.Reset();
+  const bool first = !session_;
+  run_ = next_run_(state.session);
+  run_->session = state.session;
+  if (early_description_ && early_description_->session == state.session) run_->Describe(*early_description_);
+  session_ = state.session;
+  left_ = false;
+  sequence_ = -1;
+  reference_.reset();
+  tuning_version_ = 0;
+  active_.clear();
+  doubted_.clear();
+  time_ = state.time;
+  tick_ = state.tick;
+  if (!first) AddEvent(state.time, "restart", "plant", "", "the plant has started again");
+  return true;
+}
+
+void Intake::OnState(const state_t& state, int64_t utime) {
+  ++states_;
+  if (!(std::abs(state.time) < kLongestTime) || !Follow(state, utime)) return;
+  heard_utime_ = utime;
+  if (sequence_ >= 0 && state.sequence <= sequence_) return;  // repeated, or overtaken
+  if (sequence_ >= 0 && state.sequence > sequence_ + 1) {
+    const int64_t missing = state.sequence - sequence_ - 1;
+    AddEvent(state.time, "gap", "", "",
+             std::to_string(missing) + (missing == 1 ? " state" : " states") + " missing");
+  }
+  sequence_ = state.sequence;
+  tick_ = state.tick;
+  time_ = state.time;
+  ticks_.Add(state, utime);
+}
+
+void Intake::OnReference(const arm_reference_t& reference) {
+  if (run_ == nullptr) return;
+  ticks_.Add(reference);
+  const double t = TimeOf(reference.tick);
+  if (reference_ && reference.value != *reference_) {
+    if (t - rests_since_ >= kRest) {
+      AddEvent(t, "step", "position_ctrl", "",
+               "reference from " + ShortNumber(*reference_) + " to " + ShortNumber(reference.value));
+    }
+    rests_since_ = t;
+  }
+  if (!reference_) rests_since_ = t;
+  reference_ = reference.value;
+}
+
+}  // namespace hydro::scope

@@ -1,0 +1,78 @@
+// A run as a scope knows it: live, or out of a log.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "hydro/run_description_t.hpp"
+#include "scope/signals/bins.h"
+#include "scope/signals/channel_list.h"
+#include "scope/signals/events.h"
+#include "scope/signals/history.h"
+#include "scope/signals/message_store.h"
+#include "settings/stack_config.h"
+
+namespace hydro::scope {
+
+// What is known of a process of a running stack.
+struct ProcessReport {
+  std::string role;
+  std::string host;
+  std::string state;  // ready, running, done, failed; empty: it has not said
+  std::string text;   // why it waits or failed
+  double rate_hz = 0;
+  int64_t missed = 0;  // deadlines, since the scope listens
+  int64_t lost = 0;    // messages
+  double latency_p99_us = 0;
+  std::string faults;  // those that last, with blanks between
+  int64_t heard_utime = 0;
+};
+
+struct Run {
+  enum class Kind { kLive, kPast, kLog };
+
+  Run(uint32_t its_id, std::string its_name, Kind its_kind, uint64_t most_rows);
+
+  // What its messages say it runs with, or was recorded with. Describes the channels in the model's units.
+  void Describe(const run_description_t& given);
+
+  // The column of a channel; none for an unknown id.
+  std::optional<Signal> Find(const std::string& channel_id) const;
+  // Those that have values, or may get some.
+  std::vector<ChannelInfo> Channels() const;
+
+  double first_time() const { return ticks.empty() ? 0 : ticks.time(ticks.begin()); }
+  double last_time() const { return ticks.empty() ? 0 : ticks.last_time(); }
+  // s, between two ticks; 0 where they are uneven or not known.
+  double spacing() const { return rate_hz > 0 ? 1 / rate_hz : 0; }
+  size_t memory() const;
+
+  uint32_t id;
+  std::string name;
+  Kind kind;
+  int64_t session = 0;
+  double rate_hz = 0;
+  History ticks;
+  History ghost;
+  std::map<std::string, History> loops;            // by role
+  std::map<std::string, ProcessReport> processes;  // by role, and host where several have it
+  EventList events;
+  std::optional<run_description_t> description;
+  std::shared_ptr<const settings::StackConfig>
+      config;                              // of the description; null where this version cannot read it
+  std::string config_problem;              // why
+  std::unique_ptr<MessageStore> messages;  // as received; null for a log
+  std::string log_file;                    // of a log
+  std::string suffix;                      // of the channels' names
+  uint64_t revision = 0;  // grows when channels or facts above change, not with samples and events
+
+ private:
+  std::vector<ChannelInfo> tick_channels_;
+  std::vector<ChannelInfo> ghost_channels_;
+};
+
+}  // namespace hydro::scope

@@ -1,0 +1,76 @@
+#include "scope/wire/access.h"
+
+#include <sys/random.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cerrno>
+#include <cstdint>
+#include <stdexcept>
+#include <utility>
+
+namespace hydro::scope {
+namespace {
+
+bool SameText(std::string_view a, std::string_view b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                    [](unsigned char x, unsigned char y) { return std::tolower(x) == std::tolower(y); });
+}
+
+bool SameSecret(std::string_view given, std::string_view secret) {
+  // Every byte of the secret is looked at, whatever was given; only the given text's own length decides how long it takes.
+  unsigned difference = given.size() == secret.size() ? 0 : 1;
+  for (size_t i = 0; i < secret.size(); ++i) {
+    const char other = given.empty() ? '\0' : given[i % given.size()];
+    difference |= static_cast<unsigned char>(other) ^ static_cast<unsigned char>(secret[i]);
+  }
+  return difference == 0;
+}
+
+}  // namespace
+
+Access::Access(std::string token, int port, std::vector<std::string> hosts,
+               const std::vector<std::string>& origins)
+    : token_(std::move(token)), hosts_(std::move(hosts)) {
+  for (const char* name : {"127.0.0.1", "localhost", "[::1]"}) {
+    hosts_.push_back(std::string(name) + ":" + std::to_string(port));
+    if (port == 80) hosts_.emplace_back(name);
+  }
+  for (const std::string& host : hosts_) {
+    origins_.push_back("http://" + host);
+    origins_.push_back("https://" + host);
+  }
+  origins_.insert(origins_.end(), origins.begin(), origins.end());
+}
+
+bool Access::HostAllowed(std::string_view host) const {
+  return std::any_of(hosts_.begin(), hosts_.end(), [&](const auto& known) { return SameText(known, host); });
+}
+
+bool Access::OriginAllowed(std::string_view origin) const {
+  return origin.empty() || std::any_of(origins_.begin(), origins_.end(),
+                                       [&](const auto& known) { return SameText(known, origin); });
+}
+
+bool Access::TokenRight(std::string_view authorization, std::string_view query_token) const {
+  constexpr std::string_view kBearer = "Bearer ";
+  if (authorization.empty()) return SameSecret(query_token, token_);
+  const bool bearer = authorization.starts_with(kBearer);
+  return SameSecret(bearer ? authorization.substr(kBearer.size()) : "", token_);
+}
+
+std::string FreshToken() {
+  std::array<uint8_t, 16> bytes{};
+  if (getrandom(bytes.data(), bytes.size(), 0) != static_cast<ssize_t>(bytes.size())) {
+    throw std::runtime_error("the kernel gave no random numbers, errno " + std::to_string(errno));
+  }
+  std::string text;
+  for (const uint8_t byte : bytes) {
+    text += "0123456789abcdef"[byte >> 4];
+    text += "0123456789abcdef"[byte & 15];
+  }
+  return text;
+}
+
+}  // namespace hydro::scope

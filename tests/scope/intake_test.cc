@@ -1,0 +1,206 @@
+#include "scope/signals/intake.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <hydro/messages.hpp>
+#include <memory>
+#include <vector>
+
+#include "scope/signals/decoded.h"
+#include "tests/scope/recorded_run.h"
+
+namespace hydro::scope {
+namespace {
+
+class IntakeTest : public ::testing::Test {
+ protected:
+  template <class Message>
+  void Take(const std::string& channel, const Message& message) {
+    const RecordedMessage recorded = Encoded(channel, message, utime_);
+    intake_.Take(recorded.channel, recorded.data.data(), static_cast<int>(recorded.data.size()),
+                 recorded.utime);
+  }
+  void State(int64_t tick, int64_t session = 7) {
+    utime_ += 1000;
+    state_t state{};
+    state.tick = tick;
+    state.sequence = tick;
+    state.session = session;
+    state.time = static_cast<double>(tick) / 1000;
+    state.p1 = static_cast<double>(tick);
+    Take("HYDRO_STATE", state);
+  }
+  void Fault(int64_t sequence, bool active) {
+    fault_t fault{};
+    fault.session = 3;
+    fault.sequence = sequence;
+    fault.tick = -1;
+    fault.source = "pressure_ctrl";
+    fault.code = "stale_state";
+    fault.text = "no state for 0.1 s";
+    fault.active = active ? 1 : 0;
+    Take("HYDRO_FAULT", fault);
+  }
+  void ActiveFaults(const std::string& codes) {
+    active_faults_t active{};
+    active.role = "pressure_ctrl";
+    active.codes = codes;
+    Take("HYDRO_ACTIVE_FAULTS", active);
+  }
+  std::vector<std::string> Kinds() const {
+    std::vector<std::string> kinds;
+    const EventList& events = runs_.back()->events;
+    for (uint64_t n = events.first(); n <= events.last(); ++n) kinds.push_back(events.At(n).kind);
+    return kinds;
+  }
+
+  int64_t utime_ = 1000000;
+  std::vector<std::unique_ptr<scope::Run>> runs_;
+  Intake intake_{"", [this](int64_t) {
+                   runs_.push_back(std::make_unique<scope::Run>(0, "test", scope::Run::Kind::kLive, 100000));
+                   return runs_.back().get();
+                 }};
+};
+
+// Tests that every state of a recorded run becomes a row with its exact values, and that the commands stand at their ticks.
+TEST_F(IntakeTest, TakesARun) {
+  std::vector<state_t> states;
+  std::vector<motor_command_t> commands;
+  for (const RecordedMessage& message : Record(DemoConfig({"time.mode=lockstep", "time.duration_s=1"}))) {
+    const int size = static_cast<int>(message.data.size());
+    if (message.channel == "HYDRO_STATE") {
+      EXPECT_TRUE(Decoded(&states.emplace_back(), message.data.data(), size));
+    }
+    if (message.channel == "HYDRO_MOTOR_COMMAND") {
+      EXPECT_TRUE(Decoded(&commands.emplace_back(), message.data.data(), size));
+    }
+    intake_.Take(message.channel, message.data.data(), size, message.utime);
+  }
+  intake_.Flush();
+  ASSERT_EQ(runs_.size(), 1u);
+  const auto& run = *runs_[0];
+  ASSERT_EQ(run.ticks.end(), states.size());
+  EXPECT_EQ(run.rate_hz, 1000);
+  ASSERT_NE(run.config, nullptr) << run.config_problem;
+  const auto value = [&](size_t row, TickColumn column) {
+    return run.ticks.value(row, static_cast<size_t>(column));
+  };
+  for (size_t k = 0; k < states.size(); ++k) {
+    ASSERT_EQ(run.ticks.time(k), states[k].time);
+    ASSERT_EQ(value(k, TickColumn::kP1), states[k].p1);
+    ASSERT_EQ(value(k, TickColumn::kDp), states[k].p2 - states[k].p1);
+    ASSERT_EQ(value(k, TickColumn::kVoltage), states[k].voltage);
+    ASSERT_EQ(value(k, TickColumn::kArmRef), states[k].time < 0.2 ? 0 : 0.3);
+  }
+  for (const motor_command_t& command : commands) {
+    const auto row = static_cast<size_t>(command.tick);
+    if (command.status == motor_command_t::STOPPED) continue;
+    ASSERT_EQ(value(row, TickColumn::kVoltageAsked), command.voltage);
+    if (command.pressure_command_tick >= 0) {
+      ASSERT_EQ(value(row, TickColumn::kDpRef), command.pressure_ref);
+    }
+  }
+  EXPECT_EQ(Kinds().front(), "step");
+  EXPECT_EQ(runs_[0]->events.At(1).t, 0.2);
+}
+
+// Tests that missing states are a gap, and repeated ones nothing.
+TEST_F(IntakeTest, Gaps) {
+  for (const int64_t tick : {0, 1, 2, 2, 1, 6, 7}) State(tick);
+  intake_.Flush();
+  EXPECT_EQ(runs_[0]->ticks.end(), 5u);
+  EXPECT_EQ(Kinds(), (std::vector<std::string>{"gap"}));
+  EXPECT_EQ(runs_[0]->events.At(1).text, "3 states missing");
+  EXPECT_EQ(runs_[0]->events.At(1).t, 0.006);
+}
+
+// Tests that a fault is an event once, however often its message comes.
+TEST_F(IntakeTest, FaultsAreEventsOnce) {
+  State(0);
+  Fault(0, true);
+  Fault(0, true);
+  ActiveFaults("stale_state");
+  ActiveFaults("stale_state");
+  Fault(1, false);
+  ActiveFaults("");
+  EXPECT_EQ(Kinds(), (std::vector<std::string>{"fault", "fault_end"}));
+  EXPECT_EQ(runs_[0]->events.At(1).code, "stale_state");
+  EXPECT_EQ(runs_[0]->events.At(1).source, "pressure_ctrl");
+}
+
+// Tests that a fault whose message was lost is known from the list, and its end too: not at the first list without it, which may
+// have been sent before.
+TEST_F(IntakeTest, LostFaultsAreMadeGood) {
+  State(0);
+  ActiveFaults("stale_state limit");
+  EXPECT_EQ(Kinds(), (std::vector<std::string>{"fault", "fault"}));
+  ActiveFaults("limit");
+  EXPECT_EQ(Kinds().size(), 2u);
+  ActiveFaults("limit");
+  EXPECT_EQ(Kinds(), (std::vector<std::string>{"fault", "fault", "fault_end"}));
+}
+
+// Tests that a plant that starts again begins a new run, and a second one beside it does not.
+TEST_F(IntakeTest, FollowsOnePlant) {
+  for (int64_t tick = 0; tick < 10; ++tick) {
+    State(tick);
+    State(tick, 8);
+  }
+  EXPECT_EQ(runs_.size(), 1u);
+  EXPECT_EQ(intake_.foreign(), 10);
+  utime_ += 2000000;  // silence
+  State(0, 8);
+  ASSERT_EQ(runs_.size(), 2u);
+  EXPECT_EQ(runs_[0]->ticks.end(), 10u);
+  EXPECT_EQ(Kinds(), (std::vector<std::string>{"restart"}));
+}
+
+// Tests that after a stop the next plant need not wait, and that a stop sent many times is one event.
+TEST_F(IntakeTest, Stops) {
+  State(0);
+  stop_t stop{};
+  stop.tick = 0;
+  stop.source = "launch";
+  stop.reason = "hydro-launch --stop";
+  for (int i = 0; i < 5; ++i) Take("HYDRO_STOP", stop);
+  EXPECT_EQ(Kinds(), (std::vector<std::string>{"stop"}));
+  State(0, 9);
+  EXPECT_EQ(runs_.size(), 2u);
+}
+
+// Tests that reports make processes and channels known, and that made-up roles are bounded.
+TEST_F(IntakeTest, Reports) {
+  State(0);
+  loop_statistics_t statistics{};
+  for (int i = 0; i < 1000; ++i) {
+    statistics.role = "role" + std::to_string(i);
+    statistics.host = "rig";
+    statistics.interval_s = 1;
+    statistics.cycles = 1000;
+    statistics.latency_p99_us = 42;
+    Take("HYDRO_LOOP_STATISTICS", statistics);
+  }
+  EXPECT_EQ(runs_[0]->processes.size(), 64u);
+  EXPECT_EQ(runs_[0]->loops.size(), 64u);
+  EXPECT_EQ(runs_[0]->processes.at("role0 on rig").rate_hz, 1000);
+  ASSERT_TRUE(runs_[0]->Find("loop.role0.latency_p99_us"));
+  EXPECT_EQ(runs_[0]->loops.at("role0").value(0, 0), 42);
+}
+
+// Tests that what is no message is counted and left out.
+TEST_F(IntakeTest, Undecodable) {
+  State(0);
+  const uint8_t bytes[40] = {};
+  for (const char* channel :
+       {"HYDRO_STATE", "HYDRO_MOTOR_COMMAND", "HYDRO_ARM_REFERENCE", "HYDRO_FAULT", "HYDRO_RUN"}) {
+    intake_.Take(channel, bytes, sizeof bytes, 0);
+    intake_.Take(channel, bytes, 0, 0);
+  }
+  intake_.Take("ANOTHER", bytes, sizeof bytes, 0);
+  EXPECT_EQ(intake_.undecodable(), 10);
+  EXPECT_EQ(runs_.size(), 1u);
+}
+
+}  // namespace
+}  // namespace hydro::scope

@@ -1,0 +1,91 @@
+"""hydro-scope beside a stack that runs: it shows what the log has, stops the stack, and takes no part in it."""
+
+import unittest
+
+import scope_case
+import stack
+
+
+class LiveTest(stack.TestCase):
+    def pair(self, *options):
+        """A stack that records itself, and a scope that listens."""
+        url = self.new_url()
+        scope = scope_case.Scope(self, stack.config("demo.toml"), "--set", f"bus.url={url}", *options)
+        log = self.path("run.lcmlog")
+        launch = self.launch(stack.config("demo.toml"), "--duration", "0", "--log", log, *options, url=url)
+        return scope, launch, log
+
+    def until_time(self, client, t):
+        return client.until(lambda m: m["op"] == "clock" and m["last"] >= t)
+
+    # Tests that what is shown live is what the log has, to the last bit, and that the stack does not know of the scope.
+    def test_shows_what_is_recorded(self):
+        scope, launch, log = self.pair()
+        client = scope.live()
+        self.assertEqual(client.until(lambda m: m["op"] == "hello")["runs"][0]["kind"], "live")
+        client.send({"op": "view", "id": 1, "run": 0, "channels": ["p1", "arm_angle"], "span": 1, "pixels": 100})
+        self.assertGreater(client.until(lambda m: m["op"] == "bins")["bins"], 0)
+        self.until_time(client, 1.5)
+        processes = client.until(lambda m: m["op"] == "processes" and len(m["list"]) == 4)
+        self.assertEqual({p["role"] for p in processes["list"]}, {"plant", "pressure_ctrl", "position_ctrl", "logger"})
+        client.send({"op": "get", "id": 2, "run": 0, "channels": ["p1", "voltage_asked"], "t0": 0.5, "t1": 1, "pixels": 4000})
+        shown = client.until(lambda m: m["op"] == "bins" and m["id"] == 2)
+        reply = scope_case.ask(client, 3, op="stop")
+        self.assertTrue(reply["ok"], reply)
+        self.assertEqual(launch.wait(), 0, launch.report())
+        recorded = scope_case.Scope(self, log).live()
+        recorded.send({"op": "get", "id": 2, "run": 0, "channels": ["p1", "voltage_asked"], "t0": 0.5, "t1": 1, "pixels": 4000})
+        kept = recorded.until(lambda m: m["op"] == "bins")
+        self.assertEqual(shown["bins"], kept["bins"])
+        self.assertEqual(str(shown["channels"]), str(kept["channels"]))  # NaN where a tick was skipped
+        self.assertNotIn("scope", self.run_program("hydro-log", "info", log).stdout.split("config")[0])
+
+    # Tests that faults are told, and that re-arming and setting need [scope] control.
+    def test_read_only(self):
+        scope, launch, _ = self.pair()
+        client = scope.live()
+        self.until_time(client, 0.3)
+        for number, op in enumerate(("rearm", "set", "undo")):
+            reply = scope_case.ask(client, 10 + number, op=op, entries=["position.c2=900"])
+            self.assertFalse(reply["ok"])
+            self.assertIn("control = true", reply["text"])
+        scope_case.ask(client, 20, op="stop")
+        stop = scope.live().until(lambda m: m["op"] == "event" and m["kind"] == "stop")
+        self.assertEqual(stop["text"], "hydro-launch --stop")
+        launch.wait()
+
+    # Tests that a stack that starts again is a new run under the old number, and the one before stays.
+    def test_restart(self):
+        scope, launch, _ = self.pair()
+        client = scope.live()
+        self.until_time(client, 0.5)
+        scope_case.ask(client, 1, op="stop")
+        launch.wait()
+        url = next(a for a in scope.process.argv if a.startswith("bus.url="))[len("bus.url="):]
+        again = self.launch(stack.config("demo.toml"), "--duration", "0", url=url)
+        client.until(lambda m: m["op"] == "event" and m["kind"] == "restart")
+        runs = client.until(lambda m: m["op"] == "runs" and len(m["runs"]) == 2)["runs"]
+        self.assertEqual([run["kind"] for run in runs], ["live", "past"])
+        scope_case.ask(client, 2, op="stop")
+        again.wait()
+
+    # Tests that the ghost beside a running stack appears, and its residuals are noise: some sigma.
+    def test_ghost(self):
+        scope, launch, _ = self.pair()
+        client = scope.live()
+        self.until_time(client, 1.3)
+        reply = scope_case.ask(client, 1, op="ghost", run=0, on=True, resync_s=0.5)
+        self.assertTrue(reply["ok"], reply)
+        client.until(lambda m: m["op"] == "runs" and any(c["id"] == "ghost.p1" for c in m["runs"][0]["channels"]))
+        self.until_time(client, 2.5)
+        client.send({"op": "get", "id": 2, "run": 0, "channels": ["residual.p1"], "t0": 1.5, "t1": 2, "pixels": 4000})
+        bins = client.until(lambda m: m["op"] == "bins")
+        values = [v for v in bins["channels"][0][0] if v == v]
+        self.assertGreater(len(values), 300)
+        self.assertLess(sorted(map(abs, values))[len(values) // 2], 5)
+        scope_case.ask(client, 3, op="stop")
+        launch.wait()
+
+
+if __name__ == "__main__":
+    unittest.main()
