@@ -1,0 +1,9 @@
+// Values in the units of the stack (inch, pound-force, psi) or in SI: the factors come with the channels.
+
+export function unitOf(channel, si) {
+  return si && channel.si ? channel.si.unit : channel.unit;
+}
+
+export function factorOf(channel, si) {
+  return si && channel.si ? channel.si.factor : 1;
+}
