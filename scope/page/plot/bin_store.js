@@ -74,10 +74,12 @@ export class BinStore {
   }
 }
 
-// The bins of one answer of the server (a "get" or a capture) in the form of between().
-export function binsOf(frame, channels) {
+// The bins of one answer of the server (a "get" or a capture) in the form of between(). Where the server widened bins to
+// the sampling interval, each is one sample, and stands at that sample's time rather than in the bin's middle.
+export function binsOf(frame, channels, rate_hz = 0) {
   const bins = { t: new Float64Array(frame.bins), min: {}, max: {}, width: frame.width };
-  for (let i = 0; i < frame.bins; i += 1) bins.t[i] = frame.t0 + (i + 0.5) * frame.width;
+  const offset = Math.abs(frame.width * rate_hz - 1) < 0.01 ? 0 : 0.5;
+  for (let i = 0; i < frame.bins; i += 1) bins.t[i] = frame.t0 + (i + offset) * frame.width;
   channels.forEach((id, c) => {
     bins.min[id] = frame.min[c];
     bins.max[id] = frame.max[c];

@@ -1,0 +1,60 @@
+// Faults, steps, stops, tunings, gaps and marks as a list; a press shows the moment. New faults are also said to those who
+// cannot see the marks.
+
+import { byId, el } from '../dom.js';
+import { colourOf } from '../plot/colours.js';
+import { runTime } from '../settings/numbers.js';
+import { section } from './section.js';
+
+const kNames = { fault: 'fault', fault_end: 'fault over', step: 'step', stop: 'STOP', rearm: 're-armed', tuning: 'tuning', gap: 'gap', mark: 'mark', restart: 'restart' };
+const kMostShown = 200;
+const kQuiet_ms = 2000;
+
+export class EventsPanel {
+  #asked = false;
+  #said_ms = -Infinity;
+  #joined_ms = performance.now();
+
+  constructor(scope, display, signals) {
+    Object.assign(this, { scope, display });
+    this.list = el('ol', { class: 'events', tabindex: '0', 'aria-label': 'Events, newest first' });
+    this.empty = el('p', { class: 'hint', text: 'Nothing has happened yet. M marks a moment.' });
+    this.filter = el('label', { class: 'check' }, this.all = el('input', { type: 'checkbox', checked: true, onchange: () => this.#show() }), 'steps too');
+    this.count = el('span', { class: 'count' });
+    this.element = section('events', 'Events', true, el('div', { class: 'row' }, this.count, this.filter), this.empty, this.list);
+    signals.on('events', () => this.#ask());
+    signals.on('run', () => this.#ask());
+    signals.on('hello', () => { this.#joined_ms = performance.now(); });
+    signals.on('event', (event) => this.#say(event));
+  }
+
+  #ask() {
+    if (this.#asked) return;
+    this.#asked = true;
+    requestAnimationFrame(() => { this.#asked = false; this.#show(); });
+  }
+
+  #show() {
+    const all = this.scope.eventsOf();
+    const events = all.filter((event) => this.all.checked || event.kind !== 'step');
+    const faults = all.filter((event) => event.kind === 'fault').length;
+    this.count.textContent = `${all.length} events, ${faults} ${faults === 1 ? 'fault' : 'faults'}`;
+    this.empty.hidden = events.length > 0;
+    const shown = [...events].sort((one, other) => other.t - one.t || other.n - one.n).slice(0, kMostShown);
+    this.list.replaceChildren(...shown.map((event) => this.#item(event)));
+  }
+
+  #item(event) {
+    const what = [event.source, event.code, event.text].filter(Boolean).join(': ');
+    return el('li', { 'data-kind': event.kind, class: colourOf(event) }, el('button', { type: 'button', title: 'Show this moment', onclick: () => this.display.centre(event.t) },
+      el('span', { class: 'time', text: runTime(event.t) }), el('span', { class: 'kind', text: kNames[event.kind] ?? event.kind }), el('span', { class: 'what', text: what })));
+  }
+
+  // What the server sends again on connecting is no news, and a storm of faults is said once.
+  #say(event) {
+    const now = performance.now();
+    if (event.kind !== 'fault' || now - this.#joined_ms < 1000 || now - this.#said_ms < kQuiet_ms) return;
+    this.#said_ms = now;
+    byId('fault').textContent = `Fault at ${runTime(event.t)} s: ${[event.source, event.code, event.text].filter(Boolean).join(' ')}`;
+  }
+}
