@@ -1,13 +1,13 @@
 // The whole run in one bar, with the window that the panes show; drag or press to go there. For logs: play, step, speed.
 
-import { choice, el, setText } from '../dom.js';
-import { readColours } from '../plot/colours.js';
-import { colourOf } from '../plot/colours.js';
+import { choice, el, icon, setText } from '../dom.js';
+import { colourOf, readColours } from '../plot/colours.js';
 import { kSpeeds } from '../plot/player.js';
 import { runTime } from '../settings/numbers.js';
 import { WindowCache } from '../plot/window_cache.js';
 
 const kRedraw_ms = 250;
+const kIcons = { start: 'M2 3h2v10H2zM9 3v10L4 8zM15 3v10L10 8z', play: 'M4 2.5v11L14 8z', pause: 'M4 3h3v10H4zM9 3h3v10H9z', on: 'M4 3v10l6-5zM11 3h2v10h-2z', one_back: 'M12 3v10L6 8zM3 3h2v10H3z' };
 
 export class Transport {
   #drawn_ms = 0;
@@ -18,11 +18,11 @@ export class Transport {
     Object.assign(this, { scope, display, player });
     this.cache = new WindowCache(scope.link, () => this.#draw(true));
     this.canvas = el('canvas', { class: 'overview', role: 'slider', tabindex: '0', 'aria-label': 'Window in the run', 'aria-valuemin': '0' });
-    const button = (text, label, act) => el('button', { type: 'button', text, 'aria-label': label, title: label, onclick: act });
-    this.play = button('▶', 'Play (Space)', () => player.toggle());
+    const button = (sign, label, act) => el('button', { type: 'button', 'aria-label': label, title: label, onclick: act }, icon(kIcons[sign]));
+    this.play = button('play', 'Play or pause (Space)', () => player.toggle());
     this.speed = choice(kSpeeds.map((speed) => [String(speed), `${speed}×`]), '1', (speed) => player.setSpeed(Number(speed)), { 'aria-label': 'Speed' });
-    this.controls = el('div', { class: 'row controls' }, button('⏮', 'To the start (Home)', () => display.seek(display.first)),
-      button('‹', 'One sample back (,)', () => player.step(-1)), this.play, button('›', 'One sample on (.)', () => player.step(1)), this.speed);
+    this.controls = el('div', { class: 'row controls' }, button('start', 'To the start (Home)', () => display.seek(display.first)),
+      button('one_back', 'One sample back (,)', () => player.step(-1)), this.play, button('on', 'One sample on (.)', () => player.step(1)), this.speed);
     this.ends = el('span', { class: 'ends' });
     host.append(this.controls, this.canvas, this.ends);
     this.#listen();
@@ -61,7 +61,7 @@ export class Transport {
     const { scope, display, canvas } = this;
     if (!scope.run || (!now && scope.live && ms - this.#drawn_ms < kRedraw_ms && display.mode === 'follow')) return;
     this.#drawn_ms = ms;
-    setText(this.play, this.player.playing ? '⏸' : '▶');
+    this.play.querySelector('path').setAttribute('d', kIcons[this.player.playing ? 'pause' : 'play']);
     const { first, last } = display;
     const { t0, t1 } = display.window.t1 > display.window.t0 ? display.frame() : { t0: first, t1: last };
     setText(this.ends, `${runTime(Math.max(first, t0), 100)} – ${runTime(Math.min(last, t1), 100)} of ${runTime(last, 100)} s`);

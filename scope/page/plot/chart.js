@@ -10,6 +10,8 @@ import { extent, StickyRange } from './value_range.js';
 
 const kFont = '11px Helvetica, Arial, "Liberation Sans", sans-serif';
 const kLeft = 62;
+const kLeftNarrow = 46;               // on a phone every pixel counts
+const kNarrow_px = 520;
 const kRight = 14;
 const kTimeAxis = 24;
 
@@ -21,7 +23,7 @@ export class Chart {
   #frame = { t0: 0, t1: 1, origin: 0 };
   #limits = [{ low: -1, high: 1 }, { low: -1, high: 1 }];
 
-  // options: {traces, units, si, colours, time_axis: show its labels, right: leave room for a second axis, rate_hz,
+  // options: {traces, units, si, colours, time_axis: show its labels, right: leave room for a second axis, rate_hz, limits,
   // below(u, chart), above(u, chart): draw under and over the curves}
   constructor(host, options) {
     this.options = options;
@@ -80,12 +82,20 @@ export class Chart {
       const bins = this.#binsOf(one);
       if (one.axis !== axis || one.hidden || !bins) continue;
       const shift = this.#shiftOf(one);
-      const found = extent(bins, [one.id], this.#frame.t0 - shift, this.#frame.t1 - shift);
-      if (!found) continue;
+      const seen = extent(bins, [one.id], this.#frame.t0 - shift, this.#frame.t1 - shift);
+      if (!seen) continue;
+      const found = this.#withLimits(seen, one);
       const factor = factorOf(one.channel, this.options.si);
       all = { low: Math.min(all?.low ?? Infinity, found.low * factor), high: Math.max(all?.high ?? -Infinity, found.high * factor) };
     }
     return all;
+  }
+
+  // The motor's limits come into view when the voltage comes near them, and not before: a small voltage stays legible.
+  #withLimits(found, one) {
+    const limit = one.id === 'voltage' ? this.options.limits?.voltage_V : undefined;
+    if (!limit || Math.max(-found.low, found.high) < 0.5 * limit) return found;
+    return { low: Math.min(found.low, -limit), high: Math.max(found.high, limit) };
   }
 
   #data() {
@@ -120,6 +130,7 @@ export class Chart {
   #uplotOptions() {
     const { traces, units, colours, time_axis, right } = this.options;
     const common = { font: kFont, stroke: () => colours.soft, ticks: { stroke: () => colours.line, width: 1, size: 4 } };
+    const left = this.host.clientWidth < kNarrow_px ? kLeftNarrow : kLeft;
     const scale = (axis) => ({ auto: true, range: () => [this.#limits[axis].low, this.#limits[axis].high] });
     const values = (u, splits) => splits.map((value) => short(Math.abs(value) < 1e-12 ? 0 : Number(value.toPrecision(10))).replace(/(\.\d*?)0+$/, '$1').replace(/\.$/, ''));
     return {
@@ -129,9 +140,9 @@ export class Chart {
       scales: { x: { time: false, range: (u, low, high) => [low, high] }, y0: scale(0), y1: scale(1) },
       axes: [
         { ...common, scale: 'x', size: time_axis ? kTimeAxis : 0, gap: 3, incrs: kSteps, space: 90, grid: { stroke: () => colours.fine, width: 1 },
-          values: time_axis ? (u, splits, i, space, step) => splits.map((t) => timeLabel(t, step)) : () => [], ticks: { ...common.ticks, show: time_axis } },
-        { ...common, scale: 'y0', size: kLeft, gap: 4, incrs: kSteps, space: 26, grid: { stroke: () => colours.fine, width: 1 }, values },
-        { ...common, scale: 'y1', side: 1, show: right, size: kLeft, gap: 4, incrs: kSteps, space: 26, grid: { show: false }, values: units.length > 1 ? values : () => [], ticks: { ...common.ticks, show: units.length > 1 } },
+          values: time_axis ? (u, splits, i, space, step) => splits.map((t, k) => (k === splits.length - 1 ? `${timeLabel(t, step)} s` : timeLabel(t, step))) : () => [], ticks: { ...common.ticks, show: time_axis } },
+        { ...common, scale: 'y0', size: left, gap: 4, incrs: kSteps, space: 20, grid: { stroke: () => colours.fine, width: 1 }, values },
+        { ...common, scale: 'y1', side: 1, show: right, size: left, gap: 4, incrs: kSteps, space: 20, grid: { show: false }, values: units.length > 1 ? values : () => [], ticks: { ...common.ticks, show: units.length > 1 } },
       ],
       series: [{}, ...traces.map((one) => this.#series(one)), { scale: 'y1', show: false }],
       hooks: {

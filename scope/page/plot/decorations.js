@@ -2,11 +2,13 @@
 // trigger's level.
 
 import uPlot from '../uplot/uPlot.esm.js';
+import { runTime } from '../settings/numbers.js';
 import { factorOf } from '../settings/units.js';
 import { colourOf } from './colours.js';
 import { bridge, gapsIn } from './trace_path.js';
 
-// state: {colours, traces, si, limits, events, cursors, trigger: {t, level, pre} or null, rate_hz, first, last, top: is the first pane}
+// state: {colours, traces, si, limits, events, cursors, trigger: {t, channel, level} or null,
+// head: of the playback or null, rate_hz, first, last, top: is the first pane}
 export function drawBelow(ctx, chart, state) {
   clipped(ctx, chart, () => {
     drawBeyondRun(ctx, chart, state);
@@ -18,6 +20,7 @@ export function drawBelow(ctx, chart, state) {
 export function drawAbove(ctx, chart, state) {
   clipped(ctx, chart, () => {
     drawEvents(ctx, chart, state);
+    if (state.head !== null) drawHead(ctx, chart, state);
     if (state.trigger) drawTrigger(ctx, chart, state);
     drawCursors(ctx, chart, state);
   });
@@ -46,6 +49,13 @@ function shade(ctx, chart, from, to, colour, alpha) {
 // Before the run's first sample there is nothing to see, and that is not a line at zero.
 function drawBeyondRun(ctx, chart, { colours, first }) {
   if (Number.isFinite(first)) shade(ctx, chart, chart.frame.t0, first, colours.panel, 1);
+}
+
+// The head of a playback; what comes after it is pale.
+function drawHead(ctx, chart, { colours, head }) {
+  const { top, height } = chart.plot.bbox;
+  shade(ctx, chart, head, chart.frame.t1, colours.paper, 0.72);
+  rule(ctx, chart.x(head), top, chart.x(head), top + height, colours.accent, [], 1.2);
 }
 
 function drawGaps(ctx, chart, { colours, traces, rate_hz, first, last }) {
@@ -106,7 +116,7 @@ function label(ctx, x, top, text, colour, colours) {
   ctx.font = `${10.5 * ratio}px Helvetica, Arial, "Liberation Sans", sans-serif`;
   ctx.textBaseline = 'top';
   ctx.textAlign = 'left';
-  const shown = text.length > 28 ? `${text.slice(0, 27)}…` : text;
+  const shown = text.length > 32 ? `${text.slice(0, 31)}…` : text;
   const width = ctx.measureText(shown).width;
   ctx.globalAlpha = 0.85;
   ctx.fillStyle = colours.paper;
@@ -117,9 +127,12 @@ function label(ctx, x, top, text, colour, colours) {
   return x + width + 12 * ratio;
 }
 
-function drawTrigger(ctx, chart, { colours, trigger, traces, si }) {
+function drawTrigger(ctx, chart, { colours, trigger, traces, si, top: labels }) {
   const { top, height, left, width } = chart.plot.bbox;
-  if (trigger.t !== null) rule(ctx, chart.x(trigger.t), top, chart.x(trigger.t), top + height, colours.trigger, [6, 3]);
+  if (trigger.t !== null) {
+    rule(ctx, chart.x(trigger.t), top, chart.x(trigger.t), top + height, colours.trigger, [6, 3]);
+    if (labels) label(ctx, chart.x(trigger.t), top, `trigger at ${runTime(trigger.t)} s`, colours.trigger, colours);
+  }
   const one = traces.find((candidate) => candidate.kind === 'measured' && candidate.id === trigger.channel);
   if (!one || trigger.level === null) return;
   const y = chart.y(trigger.level * factorOf(one.channel, si), one.axis);

@@ -28,7 +28,7 @@ export class Pane {
     this.#acceptChannels();
     const state = () => ({ ...context.state(), traces: this.parts.traces, top: index === 0 });
     this.chartOptions = {
-      ...this.parts, si: scope.preferences.si, colours: context.colours, time_axis: is_last, right, rate_hz: scope.run.rate_hz,
+      ...this.parts, si: scope.preferences.si, colours: context.colours, time_axis: is_last, right, rate_hz: scope.run.rate_hz, limits: scope.run.limits,
       below: (ctx, chart) => drawBelow(ctx, chart, state()), above: (ctx, chart) => drawAbove(ctx, chart, state()),
     };
   }

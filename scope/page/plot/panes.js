@@ -53,6 +53,7 @@ export class Panes {
     return {
       colours: this.colours, si: scope.preferences.si, limits: scope.run.limits, events: scope.eventsOf(), cursors: this.cursors.at,
       trigger: this.trigger.drawn(), rate_hz: scope.run.rate_hz, first: display.first, last: display.last,
+      head: display.mode === 'follow' && !scope.live ? display.head : null,
     };
   }
 
@@ -70,7 +71,7 @@ export class Panes {
     this.frames += 1;
     if (now_ms - this.values_ms > kValues_ms || this.hover !== null) {
       this.values_ms = now_ms;
-      const at = this.hover ?? (this.display.mode === 'follow' ? this.display.last : frame.t1);
+      const at = this.hover ?? (this.display.mode === 'follow' ? (this.scope.live ? this.display.last : this.display.head ?? frame.t1) : frame.t1);
       for (const pane of this.panes) pane.showValues(frame.bins, at);
     }
     this.signals.emit('drawn', frame);

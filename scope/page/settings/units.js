@@ -1,7 +1,8 @@
 // Values in the units of the stack (inch, pound-force, psi) or in SI: the factors come with the channels.
 
 export function unitOf(channel, si) {
-  return si && channel.si ? channel.si.unit : channel.unit;
+  const unit = si && channel.si ? channel.si.unit : channel.unit;
+  return unit === 'us' ? 'µs' : unit;
 }
 
 export function factorOf(channel, si) {
