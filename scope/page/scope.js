@@ -96,15 +96,10 @@ export class Scope {
     } else {
       const fewer = shown.channels.length !== again.channels.length;
       this.run = again;
-      if (shown.session !== again.session) this.#restarted();
+      if (shown.session !== again.session) this.signals.emit('restart', again);
       if (fewer || this.layout.panes.length === 0) this.#channelsChanged();
     }
     this.signals.emit('runs');
-  }
-
-  // The stack was started again: its time begins anew, and so does the picture.
-  #restarted() {
-    this.signals.emit('restart', this.run);
   }
 
   #channelsChanged() {
@@ -125,8 +120,10 @@ export class Scope {
   }
 
   #event(event) {
-    const list = this.events.get(event.run) ?? [];
-    if (list.some((one) => one.n === event.n)) return;
+    let list = this.events.get(event.run) ?? [];
+    const known = list.find((one) => one.n === event.n);
+    if (known && known.t === event.t && known.kind === event.kind) return;
+    if (known) list = [];             // the stack was started again: its events are numbered anew
     list.push(event);
     if (list.length > kMostEvents) list.shift();
     this.events.set(event.run, list);

@@ -1,11 +1,14 @@
 // What the server streams for one view: the newest bins of each channel, on a grid of equal widths. Bin k covers
-// [k width, (k + 1) width). Holds a fixed number of bins, so that a day of streaming takes no more memory than a minute.
+// [(k + phase) width, (k + 1 + phase) width); the server chooses the grid: whole multiples of the width (phase 0), or, for
+// bins of a sample each, bins centred on the samples (phase 0.5). Holds a fixed number of bins, so that a day of
+// streaming takes no more memory than a minute.
 
 export class BinStore {
-  // channels: ids in the order of the frames; width: of a bin, s; capacity: bins kept.
-  constructor(channels, width, capacity) {
+  // channels: ids in the order of the frames; capacity: bins kept.
+  constructor(channels, capacity) {
     this.channels = channels;
-    this.width = width;
+    this.width = 1;                  // s, of the frames
+    this.phase = 0;
     this.capacity = capacity;
     this.first = 0;                  // index of the oldest bin kept
     this.end = 0;                    // one past the newest
@@ -14,12 +17,14 @@ export class BinStore {
   }
 
   get empty() { return this.end === this.first; }
-  get last() { return this.end * this.width; }
+  get last() { return (this.end + this.phase) * this.width; }
 
   // A frame replaces the bins that it repeats (the newest was incomplete); bins between are without samples.
   add(frame) {
     if (frame.bins === 0) return;
-    const start = Math.round(frame.t0 / this.width);
+    // A quarter of a bin keeps rounding errors of t0 from choosing another bin, on either grid.
+    const start = Math.floor(frame.t0 / frame.width + 0.25);
+    if (this.empty || frame.width !== this.width) this.#regrid(frame, start);
     const stop = start + frame.bins;
     if (this.empty || start > this.end + this.capacity || stop <= this.first) this.#restart(start);
     for (let k = this.end; k < start; k += 1) this.#clear(k);
@@ -37,11 +42,11 @@ export class BinStore {
   // The bins of [t0, t1] and one on either side, in order, with the bin's middle as time.
   // {t: Float64Array, min: {id: Float64Array}, max: {id: ...}, width}
   between(t0, t1) {
-    const from = Math.max(this.first, Math.floor(t0 / this.width) - 1);
-    const to = Math.max(from, Math.min(this.end, Math.ceil(t1 / this.width) + 1));
+    const from = Math.max(this.first, Math.floor(t0 / this.width - this.phase) - 1);
+    const to = Math.max(from, Math.min(this.end, Math.ceil(t1 / this.width - this.phase) + 1));
     const count = to - from;
     const bins = { t: new Float64Array(count), min: {}, max: {}, width: this.width };
-    for (let i = 0; i < count; i += 1) bins.t[i] = (from + i + 0.5) * this.width;
+    for (let i = 0; i < count; i += 1) bins.t[i] = (from + i + 0.5 + this.phase) * this.width;
     this.channels.forEach((id, c) => {
       bins.min[id] = this.#copy(this.min[c], from, count);
       bins.max[id] = this.#copy(this.max[c], from, count);
@@ -66,6 +71,12 @@ export class BinStore {
       this.min[c][slot] = NaN;
       this.max[c][slot] = NaN;
     }
+  }
+
+  #regrid(frame, start) {
+    this.width = frame.width;
+    this.phase = Math.round(2 * (frame.t0 / frame.width - start)) / 2;
+    this.#restart(start);
   }
 
   #restart(k) {

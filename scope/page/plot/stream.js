@@ -27,7 +27,7 @@ export class Stream {
     else this.#before = null;
     this.#silence();
     this.#asked = asked;
-    this.#store = new BinStore(channels, span / asked.pixels, Math.ceil(asked.pixels * kSpare) + 4);
+    this.#store = new BinStore(channels, Math.ceil(asked.pixels * kSpare) + 4);
     this.#resume();
   }
 

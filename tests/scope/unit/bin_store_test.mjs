@@ -30,7 +30,7 @@ test('torn and foreign frames are refused', () => {
 
 // Tests that the newest bin, sent again when it is complete, replaces its first version.
 test('a bin that is sent again replaces the first', () => {
-  const store = new BinStore(['dp'], 0.5, 8);
+  const store = new BinStore(['dp'], 8);
   store.add(frame(1.0, 0.5, [10, 20]));
   store.add(frame(1.5, 0.5, [25, 30]));
   const bins = store.between(1, 2.4);
@@ -41,7 +41,7 @@ test('a bin that is sent again replaces the first', () => {
 
 // Tests that bins that were never sent are without samples, and that the store keeps its size.
 test('gaps are without samples, and the oldest bins go', () => {
-  const store = new BinStore(['dp'], 1, 4);
+  const store = new BinStore(['dp'], 4);
   store.add(frame(0, 1, [1, 2]));
   store.add(frame(4, 1, [5, 6]));
   assert.equal(store.first, 2);
@@ -50,11 +50,22 @@ test('gaps are without samples, and the oldest bins go', () => {
 
 // Tests that a frame longer than the store leaves its newest bins, and that a restart of the run begins anew.
 test('long frames and restarts', () => {
-  const store = new BinStore(['dp'], 1, 4);
+  const store = new BinStore(['dp'], 4);
   store.add(frame(0, 1, [1, 2, 3, 4, 5, 6]));
   assert.deepEqual([...store.between(0, 10).min.dp], [3, 4, 5, 6]);
   store.add(frame(100, 1, [7]));
   assert.deepEqual([...store.between(0, 200).min.dp], [7]);
   store.add(frame(0, 1, [8, 9]));
   assert.deepEqual([...store.between(0, 200).min.dp], [8, 9]);
+});
+
+// Tests that bins centred on samples stand at the samples, whatever the last digits of their first bin's time.
+test('bins of one sample stand at the sample', () => {
+  const store = new BinStore(['dp'], 8);
+  store.add(frame(4999.5 * 0.001, 0.001, [1, 2]));
+  store.add(frame(5001.5 * 0.001 + 1e-12, 0.001, [3]));
+  store.add(frame(5002.5 * 0.001 - 1e-12, 0.001, [4]));
+  const bins = store.between(5, 5.003);
+  assert.deepEqual([...bins.t].map((t) => Number(t.toFixed(9))), [5, 5.001, 5.002, 5.003]);
+  assert.deepEqual([...bins.min.dp], [1, 2, 3, 4]);
 });
