@@ -38,6 +38,8 @@ export function listen(table, root = document) {
 
 function isTyping(target, key) {
   if (!(target instanceof HTMLElement)) return false;
+  // Letters mean nothing in a field of numbers, but for the exponent's.
+  if (target.matches('input[type=number]') && /^[a-df-z?]$/i.test(key)) return false;
   if (target.matches('textarea, select, [contenteditable]')) return true;
   if (target.matches('input')) return !['checkbox', 'radio', 'button', 'range'].includes(target.type) || key.startsWith('Arrow') || key === ' ' || key === 'Home' || key === 'End';
   return key === ' ' && target.matches('button, summary, a');

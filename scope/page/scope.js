@@ -2,6 +2,7 @@
 // Signals: "runs", "run" (another one is shown), "layout", "preferences", "clock", "events", "restart".
 
 import * as layouts from './settings/layout.js';
+import { baseName } from './settings/run_name.js';
 import { loadPreferences, savePreferences } from './settings/preferences.js';
 
 const kMostEvents = 2000;
@@ -49,7 +50,7 @@ export class Scope {
     const run = this.runs.find((one) => one.run === number);
     if (!run || run === this.run) return;
     this.run = run;
-    this.layout = layouts.loadLayout(this.storage, run.name) ?? layouts.defaultLayout(this.known);
+    this.layout = layouts.loadLayout(this.storage, baseName(run.name)) ?? layouts.defaultLayout(this.known);
     this.ghost = false;
     this.signals.emit('run', run);
     this.signals.emit('layout');
@@ -57,12 +58,12 @@ export class Scope {
 
   setLayout(layout) {
     this.layout = layout;
-    layouts.saveLayout(this.storage, this.run.name, layout);
+    layouts.saveLayout(this.storage, baseName(this.run.name), layout);
     this.signals.emit('layout');
   }
 
   resetLayout() {
-    layouts.forgetLayout(this.storage, this.run.name);
+    layouts.forgetLayout(this.storage, baseName(this.run.name));
     this.layout = layouts.defaultLayout(this.known);
     this.signals.emit('layout');
   }
@@ -103,7 +104,7 @@ export class Scope {
   }
 
   #channelsChanged() {
-    const kept = layouts.loadLayout(this.storage, this.run.name);
+    const kept = layouts.loadLayout(this.storage, baseName(this.run.name));
     this.layout = kept ?? layouts.defaultLayout(this.known);
     if (this.ghost) this.layout = layouts.withResiduals(this.layout, this.known);
     this.signals.emit('layout');

@@ -14,7 +14,9 @@ export function showDialog(title, content, buttons = []) {
     el('div', { class: 'row buttons' }, ...last.map(({ text, act, main }) => el('button', {
       type: 'button', text, class: main ? 'main' : '', onclick: () => { closeDialog(); act?.(); },
     }))));
-  dialog.onkeydown = (event) => {
+  // On STOP too, which is one of the dialog's stops.
+  dialog.onkeydown = byId('stop').onkeydown = (event) => {
+    if (!dialog.open) return;
     if (event.key === 'Escape') { closeDialog(); event.stopPropagation(); }
     if (event.key === 'Tab') keepInside(dialog, event);
   };

@@ -2,6 +2,7 @@
 
 import { el, offerFile, setText } from '../dom.js';
 import { pngOf, svgOf } from '../plot/picture.js';
+import { baseName } from '../settings/run_name.js';
 import { section } from './section.js';
 import { showDialog } from './dialog.js';
 
@@ -52,11 +53,11 @@ export class FilesPanel {
 
   #name(ending) {
     const { t0, t1 } = this.display.frame();
-    return `${this.scope.run.name.replace(/\.[a-z]+$/, '').replace(/[^\w.-]+/g, '_')}_${t0.toFixed(2)}-${t1.toFixed(2)}.${ending}`;
+    return `${baseName(this.scope.run.name).replace(/\.[a-z]+$/, '').replace(/[^\w.-]+/g, '_')}_${t0.toFixed(2)}-${t1.toFixed(2)}.${ending}`;
   }
 
   async #png() { offerFile(this.#name('png'), await pngOf(this.panes.panes, this.panes.colours)); }
-  #svg() { offerFile(this.#name('svg'), svgOf(this.panes.panes, this.panes.colours, this.scope.run.name)); }
+  #svg() { offerFile(this.#name('svg'), svgOf(this.panes.panes, this.panes.colours, baseName(this.scope.run.name))); }
 
   async #diagnose() {
     const { t0, t1 } = this.#window();
@@ -87,7 +88,8 @@ export class FilesPanel {
     for (const file of files) {
       setText(this.result, `opening ${file.name}`);
       const opened = await this.api.openLog(file);
-      setText(this.result, `${opened.name ?? file.name} is open`);
+      setText(this.result, `${opened.name ?? file.name} is open${opened.problem ? `, but: ${opened.problem}` : ''}`);
+      this.result.dataset.state = opened.problem ? 'bad' : '';
       this.opened = opened.run;
       this.#show(opened.run);
     }

@@ -2,6 +2,7 @@
 // one, with a shift in time.
 
 import { el, field, setText } from '../dom.js';
+import { baseName } from '../settings/run_name.js';
 import { section } from './section.js';
 
 const kResync_s = 0.5;
@@ -65,7 +66,7 @@ export class GhostPanel {
     this.sync.disabled = !scope.ghost;
     const others = scope.runs.filter((one) => one.run !== scope.run?.run);
     this.other.replaceChildren(el('option', { value: '', text: others.length > 0 ? 'nothing' : 'nothing (drop a log on the page)' }),
-      ...others.map((one) => el('option', { value: String(one.run), text: one.name, selected: one.run === this.overlay.number })));
+      ...others.map((one) => el('option', { value: String(one.run), text: `${baseName(one.name)}${one.kind === 'past' ? ' (before the restart)' : ''}`, selected: one.run === this.overlay.number })));
     this.other.disabled = others.length === 0;
   }
 }

@@ -2,9 +2,11 @@
 
 import { byId, setText } from '../dom.js';
 import { withPane } from '../settings/layout.js';
+import { baseName } from '../settings/run_name.js';
 import { duration, runTime } from '../settings/numbers.js';
 import { kDivisions } from '../plot/time_window.js';
 
+const kKinds = { live: ' (live)', past: ' (before the restart)' };
 const kThemes = { auto: 'light', light: 'dark', dark: 'auto' };
 const kThemeNames = { auto: 'Auto', light: 'Light', dark: 'Dark' };
 
@@ -48,10 +50,10 @@ export class Toolbar {
   #runs() {
     const { runs, run } = this.scope;
     const select = byId('run');
-    const options = runs.map((one) => Object.assign(document.createElement('option'), { value: String(one.run), textContent: `${one.name}${one.kind === 'live' ? ' (live)' : ''}`, selected: one.run === run?.run }));
+    const options = runs.map((one) => Object.assign(document.createElement('option'), { value: String(one.run), textContent: `${baseName(one.name)}${kKinds[one.kind] ?? ''}`, selected: one.run === run?.run }));
     select.replaceChildren(...options);
     select.disabled = runs.length < 2;
-    document.title = run ? `${run.name} · hydro-scope` : 'hydro-scope';
+    document.title = run ? `${baseName(run.name)} · hydro-scope` : 'hydro-scope';
   }
 }
 
