@@ -10,7 +10,7 @@ export class LinkPanel {
   #dropped = { bins: 0, frames: 0 };
 
   constructor(scope, link, api, signals, notice) {
-    Object.assign(this, { scope, link, api, notice });
+    Object.assign(this, { scope, link, api, signals, notice });
     signals.on('link', (news) => this.#link(news));
     signals.on('clock', (run) => this.#clock(run));
     signals.on('run', () => this.#lamp());
@@ -41,6 +41,11 @@ export class LinkPanel {
     const { state } = this.link;
     const silent = run?.kind === 'live' && run.silent_s > kSilent_s;
     const lamp = byId('link');
+    const stale = String(run?.kind === 'live' && (silent || state !== 'open'));
+    if (document.body.dataset.stale !== stale) {
+      document.body.dataset.stale = stale;
+      this.signals.emit('silence');
+    }
     const shown = state === 'open' && silent ? 'stuck' : state === 'open' && run?.kind === 'log' ? 'log' : state;
     lamp.dataset.state = shown;
     const words = state !== 'open' ? kWords[state] : silent ? (run.running === false ? 'run ended' : 'stack silent') : run?.kind === 'log' ? 'log' : run ? 'live' : 'waiting for a stack';

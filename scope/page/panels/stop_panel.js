@@ -1,5 +1,5 @@
-// STOP and re-arm. One press sends STOP; it is repeated until the server confirms that the voltage is held at zero, or
-// the user says that this is no longer wanted. Re-arming says what it will do before it does it.
+// STOP and re-arm. One press sends STOP; it is repeated until the server confirms that the stack has stopped with its
+// output at zero, or the user says that this is no longer wanted. Re-arming says what it will do before it does it.
 
 import { byId, el } from '../dom.js';
 import { showDialog } from './dialog.js';
@@ -18,7 +18,7 @@ export class StopPanel {
     this.rearm = byId('rearm');
     this.stop.addEventListener('click', () => this.press());
     this.rearm.addEventListener('click', () => this.#askRearm());
-    for (const name of ['run', 'runs', 'hello', 'link']) signals.on(name, () => this.#show());
+    for (const name of ['run', 'runs', 'hello', 'link', 'silence']) signals.on(name, () => this.#show());
     signals.on('restart', () => this.#set('', ''));
     signals.on('event', (event) => { if (event.kind === 'rearm' && this.#state === 'confirmed') this.#set('', ''); });
   }
@@ -33,7 +33,7 @@ export class StopPanel {
       this.#set('asked', tries === 1 ? 'STOP is sent; not confirmed yet' : this.#text);
       try {
         const reply = await this.scope.link.request({ op: 'stop' });
-        if (reply.ok) { this.#trying = false; this.#set('confirmed', reply.text || 'the voltage is held at zero'); break; }
+        if (reply.ok) { this.#trying = false; this.#set('confirmed', (reply.text || 'the voltage is held at zero').replace(/^stopped: */i, '')); break; }
         this.#set('failed', `STOP is not confirmed: ${reply.text}. Trying again (${tries})`);
       } catch (error) {
         this.#set('failed', `STOP is not confirmed: ${error.message}. Trying again (${tries}); use the rig's own switch if it must stop now`);
@@ -64,13 +64,14 @@ export class StopPanel {
     this.stop.dataset.state = this.#state;
     // aria-disabled, not disabled: the button can still be reached, and says why it does nothing.
     this.stop.setAttribute('aria-disabled', String(log));
-    this.stop.title = log ? 'This is a log: there is nothing to stop' : 'Zero volts at once (S; F9 anywhere)';
+    this.stop.title = log ? 'This is a log: there is nothing to stop' : 'Zero volts at once, and the stack ends (S; F9 anywhere). hydro-launch starts it again';
     this.rearm.disabled = this.#whyNoRearm() !== '';
-    this.rearm.title = this.#whyNoRearm() || 'End the faults and stops that hold the voltage at zero';
+    this.rearm.title = this.#whyNoRearm() || 'End the latched faults that hold the voltage at zero';
   }
 
   #whyNoRearm() {
     if (!this.run) return 'This is a log: there is nothing to re-arm';
+    if (this.run.running === false) return 'The stack is not running: hydro-launch starts it';
     if (!this.scope.control) return 'This page may not re-arm: [scope] control = true in the configuration allows it';
     if (this.scope.link.state !== 'open') return 'There is no connection to hydro-scope';
     return '';
@@ -80,7 +81,7 @@ export class StopPanel {
     const faults = activeFaults(this.scope.eventsOf(this.run));
     const held = faults.length === 0 ? 'No fault is active that this page knows of.' : 'These hold the voltage at zero now:';
     showDialog('Re-arm?', [
-      el('p', { text: 'Re-arming ends every stop and every latched fault whose cause is gone. The control loops then act again: from the next tick the motor gets the voltage that they ask for, and the arm moves towards its reference as it is at that moment.' }),
+      el('p', { text: 'Re-arming ends every latched fault whose cause is gone (limits.rearm = "explicit"). The control loops then act again: from the next tick the motor gets the voltage that they ask for, and the arm moves towards its reference as it is at that moment.' }),
       el('p', { text: held }),
       ...(faults.length > 0 ? [el('ul', {}, ...faults.map((fault) => el('li', { text: `${fault.source || 'stack'}: ${fault.code || ''} ${fault.text || ''}` })))] : []),
       el('p', { class: 'strong', text: 'Look at the rig: nobody may be within the reach of the arm.' }),
