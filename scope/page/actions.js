@@ -38,11 +38,12 @@ export function makeActions(parts) {
       else if (cursors.at[name] === null) cursors.place(name, (t0 + t1) / 2);
       else cursors.choose(name);
     },
-    mark: () => {
+    // words: the user's note, '' for a number in place of it.
+    mark: (words) => {
       if (!scope.run) return;
       const t = panes.hover ?? (display.mode === 'follow' ? display.last : (display.frame().t0 + display.frame().t1) / 2);
       const marks = scope.eventsOf().filter((event) => event.kind === 'mark').length;
-      link.send({ op: 'mark', run: scope.run.run, t, text: `mark ${marks + 1}` });
+      link.send({ op: 'mark', run: scope.run.run, t, text: typeof words === 'string' && words.length > 1 ? words : `mark ${marks + 1}` });
     },
     trigger: () => { if (scope.live) { if (trigger.on) trigger.stop(); else trigger.start(); } },
     arm: () => { if (trigger.on && trigger.settings.mode === 'single') trigger.arm(); },
@@ -54,15 +55,16 @@ export function makeActions(parts) {
     sample: (key) => player.step(key === '.' ? 1 : -1),
     units: () => scope.prefer({ si: !scope.preferences.si }),
     theme: () => parts.toolbar.nextTheme(),
-    help: () => showHelp(parts.keys),
+    help: () => showHelp(parts.keys, scope.hello?.program),
   };
   return actions;
 }
 
-function showHelp(keys) {
+function showHelp(keys, program) {
   const rows = keys.flatMap(({ name, what }) => [el('dt', {}, el('kbd', { text: name })), el('dd', { text: what })]);
   showDialog('Keys and gestures', [
     el('dl', { class: 'keys' }, ...rows),
     el('p', { text: 'Wheel: zoom about the pointer; with Shift: pan. Drag: pan; with Shift: zoom to what was dragged over. Two fingers: zoom. Double press: follow the newest again. Drag a cursor or the trigger’s level. Drag a channel’s name to another pane; press it to hide the curve.' }),
+    el('p', { class: 'hint', text: program ?? '' }),
   ]);
 }

@@ -57,6 +57,7 @@ byId('side').append(...[
 ].map((panel) => panel.element));
 
 listen(parts.keys);
+signals.on('mark', actions.mark);
 // The address is opened again with a fresh token in it: the server was restarted, and its new line was pressed.
 addEventListener('hashchange', () => {
   const token = takeToken(location, history, sessionStorage);

@@ -38,6 +38,24 @@ test('a phone', async () => {
   await phone.context().close();
 });
 
+// Tests that two fingers zoom: what was between them stays between them.
+test('pinch', async () => {
+  const phone = await openPage(browser, scope.address, { viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true });
+  await streaming(phone);
+  const box = await phone.locator('.chart').first().boundingBox();
+  const y = box.y + box.height / 2;
+  const touch = await phone.context().newCDPSession(phone);
+  const fingers = (type, ...at) => touch.send('Input.dispatchTouchEvent', { type, touchPoints: at.map((x, id) => ({ x, y, id })) });
+  const before = await phone.evaluate(() => { const { t0, t1 } = hydroScope.display.frame(); return t1 - t0; });
+  await fingers('touchStart', box.x + 150, box.x + 210);
+  await fingers('touchMove', box.x + 120, box.x + 240);
+  await fingers('touchMove', box.x + 90, box.x + 270);
+  await fingers('touchEnd');
+  const span = await phone.evaluate(() => hydroScope.display.window.t1 - hydroScope.display.window.t0);
+  assert.ok(Math.abs(span / before - 1 / 3) < 0.05, `${span} of ${before} s`);
+  await phone.context().close();
+});
+
 // Tests that keys alone pause, zoom, pan, set cursors and move them, mark, hide, and open and close the help.
 test('the keyboard alone', async () => {
   await page.keyboard.press('Space');
@@ -77,6 +95,14 @@ test('names and focus', async () => {
   }
   assert.deepEqual(outlines.filter(({ width }) => parseFloat(width) < 2), []);
   assert.ok(new Set(outlines.map(({ id }) => id)).size >= 8);
+});
+
+// Tests that a channel's name can be dragged to another pane.
+test('a channel is dragged to another pane', async () => {
+  await page.dragAndDrop('[data-channel=arm_ref]', '[data-pane="0"] .chart');
+  await until(page, () => hydroScope.scope.layout.panes[0].channels.includes('arm_ref'));
+  assert.deepEqual(await page.evaluate(() => hydroScope.scope.layout.panes[2].channels), ['arm_angle']);
+  await page.getByRole('button', { name: 'Default panes' }).click();
 });
 
 // Tests that panes that were arranged are there again after a reload, under this configuration's name.

@@ -24,11 +24,25 @@ test('the server is started again', async () => {
   await scope.program.stop('SIGKILL');
   await page.locator('#link[data-state=lost]').waitFor();
   await page.getByText('No connection to hydro-scope: what is shown is old.').waitFor();
-  await bench.scope(undefined, { port: scope.port });
+  scope = await bench.scope(undefined, { port: scope.port });
   await page.locator('#link[data-state=open]').waitFor();
   await page.locator('.notice [data-subject=link]').waitFor({ state: 'detached' });
   const frames = await page.evaluate(() => hydroScope.panes.frames);
   await until(page, (before) => hydroScope.panes.frames > before + 10 && hydroScope.display.frame().bins.t.length > 10, frames);
+});
+
+// Tests that a server that hangs with its connections open is named as silent, and that the page goes on when it does.
+test('the server hangs', async () => {
+  scope.program.child.kill('SIGSTOP');
+  try {
+    await page.locator('#link[data-state=stuck]').waitFor();
+    await page.getByText('what is shown may be old').waitFor();
+  } finally {
+    scope.program.child.kill('SIGCONT');
+  }
+  await page.locator('#link[data-state=open]').waitFor();
+  const frames = await page.evaluate(() => hydroScope.panes.frames);
+  await until(page, (before) => hydroScope.panes.frames > before + 10, frames);
 });
 
 // Tests that a stack that ends is named as silent, and that a new one is shown from its first second on.

@@ -16,16 +16,23 @@ export class EventsPanel {
   #joined_ms = performance.now();
 
   constructor(scope, display, signals) {
-    Object.assign(this, { scope, display });
+    Object.assign(this, { scope, display, signals });
     this.list = el('ol', { class: 'events', tabindex: '0', 'aria-label': 'Events, newest first' });
     this.empty = el('p', { class: 'hint', text: 'Nothing has happened yet. M marks a moment.' });
     this.filter = el('label', { class: 'check' }, this.all = el('input', { type: 'checkbox', checked: true, onchange: () => this.#show() }), 'steps too');
+    this.words = el('input', { type: 'text', maxlength: 120, placeholder: 'note for a mark', 'aria-label': 'Note for a mark', onkeydown: (event) => { if (event.key === 'Enter') this.#mark(); } });
     this.count = el('span', { class: 'count' });
-    this.element = section('events', 'Events', true, el('div', { class: 'row' }, this.count, this.filter), this.empty, this.list);
+    this.element = section('events', 'Events', true, el('div', { class: 'row nowrap' }, this.words, el('button', { type: 'button', text: 'Mark', title: 'Mark now (M)', onclick: () => this.#mark() })),
+      el('div', { class: 'row' }, this.count, this.filter), this.empty, this.list);
     signals.on('events', () => this.#ask());
     signals.on('run', () => this.#ask());
     signals.on('hello', () => { this.#joined_ms = performance.now(); });
     signals.on('event', (event) => this.#say(event));
+  }
+
+  #mark() {
+    this.signals.emit('mark', this.words.value.trim());
+    this.words.value = '';
   }
 
   #ask() {

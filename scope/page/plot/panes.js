@@ -5,6 +5,8 @@ import { unitOf } from '../settings/units.js';
 import { readColours } from './colours.js';
 import { Pane } from './pane.js';
 
+const kCalm_ms = 250;                 // between frames for those who asked for less motion
+const kMostPixels = 4000;
 const kValues_ms = 120;               // how often the values beside the names change: digits faster than that are not read
 
 export class Panes {
@@ -16,7 +18,7 @@ export class Panes {
   constructor(parts) {
     Object.assign(this, parts);
     this.colours = readColours();
-    this.dirty = true;
+    this.calm = matchMedia('(prefers-reduced-motion: reduce)');
     this.asked = false;
     this.values_ms = 0;
     for (const name of ['layout', 'run', 'overlay', 'rebuild']) this.signals.on(name, () => this.rebuild());
@@ -60,7 +62,9 @@ export class Panes {
   #ask() {
     if (this.asked) return;
     this.asked = true;
-    requestAnimationFrame((now) => { this.asked = false; this.#draw(now); });
+    const draw = () => requestAnimationFrame((now) => { this.asked = false; this.#draw(now); });
+    if (this.calm.matches && this.display.mode === 'follow') setTimeout(draw, kCalm_ms);
+    else draw();
   }
 
   #draw(now_ms) {
@@ -81,7 +85,7 @@ export class Panes {
     const chart = this.panes[0]?.chart;
     if (!chart) return;
     this.panes.forEach((pane) => pane.chart.resize());
-    const width = this.panes[0].chart.plot.over.clientWidth * devicePixelRatio;
+    const width = Math.min(kMostPixels, this.panes[0].chart.plot.over.clientWidth * devicePixelRatio);
     if (width > 0 && Math.abs(width - this.display.pixels) > 1) {
       this.display.pixels = width;
       this.display.subscribe();
