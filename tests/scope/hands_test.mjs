@@ -1,5 +1,6 @@
 // Tests of the page in the hand: a phone, the keyboard alone, light and dark, panes as the user arranged them.
 import assert from 'node:assert/strict';
+import { createRequire } from 'node:module';
 import { after, before, test } from 'node:test';
 import { openBrowser, openPage, streaming, until } from './browser.mjs';
 import { Bench } from './stack.mjs';
@@ -128,6 +129,22 @@ test('SI units', async () => {
   await until(page, () => Math.abs(Number(document.querySelector('[data-channel=p1] .value').textContent)) < 14);
   await page.keyboard.press('u');
 });
+
+// Tests that the checks of axe find nothing to mend, with every section open, on a desk and on a phone.
+for (const width of [1280, 390]) {
+  test(`accessibility by axe at ${width} pixels`, async () => {
+    const { source } = createRequire(new URL('../../scope/page/package.json', import.meta.url))('axe-core');
+    const audited = await openPage(browser, scope.address, { viewport: { width, height: 844 } });
+    await streaming(audited);
+    await audited.evaluate(() => document.querySelectorAll('details.section').forEach((one) => { one.open = true; }));
+    await audited.keyboard.press('c');
+    await audited.locator('[data-cell="dp.difference"]').waitFor();
+    await audited.evaluate(source);
+    const { violations } = await audited.evaluate(() => globalThis.axe.run());
+    assert.deepEqual(violations.map(({ id, nodes }) => `${id}: ${nodes[0].html}`), []);
+    await audited.context().close();
+  });
+}
 
 // Tests that words on the page keep a contrast of 4.5 to 1 in light and in dark (WCAG AA).
 for (const colours of ['light', 'dark']) {

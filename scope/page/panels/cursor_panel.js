@@ -13,7 +13,7 @@ export class CursorPanel {
     this.spans = el('dl', { class: 'spans' });
     this.rows = el('tbody');
     this.table = el('table', {}, el('caption', { class: 'unseen', text: 'Values at the cursors' }),
-      el('thead', {}, el('tr', {}, ...['', 'A', 'B', 'B − A', ''].map((text) => el('th', { text, scope: 'col' })))), this.rows);
+      el('thead', {}, el('tr', {}, ...['channel', 'A', 'B', 'B − A', 'unit'].map((text, i) => el('th', { scope: 'col' }, el('span', { class: i % 4 === 0 ? 'unseen' : '', text }))))), this.rows);
     this.element = section('cursors', 'Cursors', true, this.hint, this.spans, this.table);
     signals.on('cursors', () => this.#show());
     signals.on('preferences', () => this.#show());

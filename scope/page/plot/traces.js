@@ -23,8 +23,3 @@ export function tracesOf(pane, { channel, ghost, overlay, si }) {
   });
   return { traces, units: units.slice(0, kMostUnits) };
 }
-
-// References and commands are drawn lighter than what is measured: the eye looks for what the rig does.
-export function isReference(id) {
-  return id.endsWith('_ref') || id.endsWith('_asked');
-}
