@@ -23,7 +23,12 @@ export class GhostPanel {
       el('label', { class: 'check' }, this.resync, `set to the measured state every ${kResync_s} s`), el('div', { class: 'row' }, this.sync), this.why,
       field('Lay over', this.other), field('Shift', this.number, 's'), this.slider);
     for (const name of ['runs', 'run', 'layout']) signals.on(name, () => this.#show());
-    signals.on('op:runs', () => { if (scope.ghost) scope.setGhost(true); });
+    // The ghost's channels are there once it has values: then its pane comes.
+    signals.on('op:runs', () => {
+      const has_values = scope.known.some((id) => id.startsWith('ghost.'));
+      if (scope.ghost && has_values && !this.had_values) scope.setGhost(true);
+      this.had_values = has_values;
+    });
     signals.on('link', ({ state }) => { if (state === 'open' && scope.ghost) this.#send(); });
     signals.on('restart', () => { if (scope.ghost) this.#send(); });
   }

@@ -2,6 +2,7 @@
 // own bins (the run's, the ghost's, another run's), and a path of minima and maxima.
 
 import uPlot from '../uplot/uPlot.esm.js';
+import { between } from './colours.js';
 import { factorOf } from '../settings/units.js';
 import { short } from '../settings/numbers.js';
 import { bridge, trace } from './trace_path.js';
@@ -123,7 +124,7 @@ export class Chart {
     const { colours } = this.options;
     const look = { measured: {}, ghost: { dash: [5, 4] }, overlay: { dash: [2, 2], alpha: 0.8 } }[one.kind];
     return {
-      scale: `y${one.axis}`, stroke: colours[one.colour], ...look, width: kLine,
+      scale: `y${one.axis}`, stroke: strokeOf(one, colours), ...look, width: kLine,
       points: { show: false }, paths: (u, index) => this.#path(index),
     };
   }
@@ -152,6 +153,11 @@ export class Chart {
       },
     };
   }
+}
+
+// Of a trace, as the pictures of a window use it too.
+export function strokeOf(one, colours) {
+  return one.kind === 'ghost' ? between(colours[one.colour], colours.ink) : colours[one.colour];
 }
 
 function timeLabel(t, step) {

@@ -16,3 +16,11 @@ export function colourOf(event) {
   if (event.kind === 'mark' || event.kind === 'tuning' || event.kind === 'rearm') return 'accent';
   return 'soft';
 }
+
+// Half way between two colours #rrggbb: the ghost's curve must be told from the measured one that it lies on.
+export function between(one, other) {
+  const parts = (colour) => colour.match(/[0-9a-f]{2}/gi).map((hex) => parseInt(hex, 16));
+  const a = parts(one);
+  const b = parts(other);
+  return `#${a.map((value, i) => Math.round((value + b[i]) / 2).toString(16).padStart(2, '0')).join('')}`;
+}

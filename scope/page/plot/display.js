@@ -23,6 +23,7 @@ export class Display {
     this.cache = new WindowCache(scope.link, () => signals.emit('draw'));
     signals.on('run', () => this.#begin());
     signals.on('restart', () => this.#begin());
+    signals.on('runs', () => { if (!scope.live) this.cache.forget(); });   // a log's ghost may be complete by now
     for (const name of ['data', 'clock', 'layout', 'preferences', 'events']) signals.on(name, () => this.#changed());
   }
 

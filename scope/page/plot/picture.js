@@ -3,6 +3,7 @@
 import { el } from '../dom.js';
 import { factorOf, unitOf } from '../settings/units.js';
 import { runTime } from '../settings/numbers.js';
+import { strokeOf } from './chart.js';
 import { bridge, trace } from './trace_path.js';
 
 const kTitle_px = 18;
@@ -78,7 +79,7 @@ function paneSvg(pane, colours, offset) {
     trace(pen, bins, bins.min[one.id], bins.max[one.id], { x: (t) => chart.x(t + shift), y: (v) => chart.y(v * factor, one.axis),
       held: one.channel.step === true, bridge_s: bridge(one.channel, chart.options.rate_hz, bins.width) });
     const dash = { ghost: ' stroke-dasharray="5 4"', overlay: ' stroke-dasharray="2 2"' }[one.kind] ?? '';
-    out.push(`<path clip-path="url(#${id})" d="${steps.join('')}" fill="none" stroke="${colours[one.colour]}" stroke-width="1.2" stroke-linejoin="round"${dash}/>`);
+    out.push(`<path clip-path="url(#${id})" d="${steps.join('')}" fill="none" stroke="${strokeOf(one, colours)}" stroke-width="1.2" stroke-linejoin="round"${dash}/>`);
   }
   return out;
 }

@@ -1,8 +1,10 @@
 // Values in the units of the stack (inch, pound-force, psi) or in SI: the factors come with the channels.
 
+const kSigns = { us: 'µs', sigma: 'σ' };
+
 export function unitOf(channel, si) {
   const unit = si && channel.si ? channel.si.unit : channel.unit;
-  return unit === 'us' ? 'µs' : unit;
+  return kSigns[unit] ?? unit;
 }
 
 export function factorOf(channel, si) {
