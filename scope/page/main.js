@@ -45,7 +45,7 @@ const parts = { signals, api, link, scope, display, overlay, cursors, trigger, p
 const actions = makeActions(parts);
 parts.keys = keyTable(actions);
 parts.stop = new StopPanel(scope, signals, notice);
-parts.ghost = new GhostPanel(scope, overlay, signals);
+parts.ghost = new GhostPanel(scope, display, overlay, signals);
 parts.toolbar = new Toolbar(parts, actions);
 
 new LinkPanel(scope, link, api, signals, notice);

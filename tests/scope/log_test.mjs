@@ -151,6 +151,10 @@ test('a log that is dropped on the page opens', async () => {
     return bins.t[bins.max.p1.findIndex((value) => value === 900)] + shift;
   });
   assert.ok(Math.abs(shifted - kSpike.t - 0.5) < 0.02, `the spike of the other run is at ${shifted}`);
+  await page.getByRole('button', { name: 'Align steps' }).click();
+  await until(page, () => hydroScope.overlay.shift === 0);
+  await page.getByLabel('Shift of the other run').press('ArrowRight');
+  assert.equal(await page.evaluate(() => hydroScope.overlay.shift), 0.001);
 });
 
 test('no errors in the page', () => assert.deepEqual(page.problems, []));

@@ -6,23 +6,27 @@ import { baseName } from '../settings/run_name.js';
 import { section } from './section.js';
 
 const kResync_s = 0.5;
-const kReach_s = 5;                   // of the slider, either way
+const kReach_s = 5;                   // of the slider, either way, around the number last given
 
 export class GhostPanel {
-  constructor(scope, overlay, signals) {
-    Object.assign(this, { scope, overlay });
+  constructor(scope, display, overlay, signals) {
+    Object.assign(this, { scope, display, overlay });
     this.on = el('input', { type: 'checkbox', onchange: () => this.toggle() });
     this.resync = el('input', { type: 'checkbox', checked: true, onchange: () => this.#send() });
     this.sync = el('button', { type: 'button', text: 'Sync now', onclick: () => scope.link.send({ op: 'ghost_sync', run: scope.run.run }) });
+    this.middle = 0;
+    this.said = el('output', { class: 'result', role: 'status' });
     this.why = el('p', { class: 'hint' });
     this.other = el('select', { onchange: () => overlay.lay(this.other.value === '' ? null : Number(this.other.value)) });
-    this.slider = el('input', { type: 'range', min: -kReach_s, max: kReach_s, step: 0.001, value: '0', 'aria-label': 'Shift of the other run, s', oninput: () => this.#shift(this.slider.value) });
-    this.number = el('input', { type: 'number', step: 'any', value: '0', onchange: () => this.#shift(this.number.value) });
+    this.slider = el('input', { type: 'range', min: -kReach_s, max: kReach_s, step: 0.001, value: '0', 'aria-label': 'Shift of the other run, s', oninput: () => this.#set(this.middle + Number(this.slider.value)) });
+    this.number = el('input', { type: 'number', step: 'any', value: '0', onchange: () => this.#centre(this.number.value === '' ? NaN : Number(this.number.value)) });
+    this.here = el('button', { type: 'button', text: 'Begin here', title: 'Shift its start to the left of the window', onclick: () => this.#centre(display.frame().t0 - overlay.run.first) });
+    this.steps = el('button', { type: 'button', text: 'Align steps', title: 'Shift its first step of the reference onto the first one in the window', onclick: () => this.#alignSteps() });
     this.element = section('ghost', 'Ghost and overlay', false,
       el('label', { class: 'check' }, this.on, 'Model beside the rig (dashed), residual below'),
       el('label', { class: 'check' }, this.resync, `set to the measured state every ${kResync_s} s`), el('div', { class: 'row' }, this.sync), this.why,
-      field('Lay over', this.other), field('Shift', this.number, 's'), this.slider);
-    for (const name of ['runs', 'run', 'layout']) signals.on(name, () => this.#show());
+      field('Lay over', this.other), field('Shift', this.number, 's'), this.slider, el('div', { class: 'row' }, this.here, this.steps), this.said);
+    for (const name of ['runs', 'run', 'layout', 'overlay']) signals.on(name, () => this.#show());
     // The ghost's channels are there once it has values: then its pane comes.
     signals.on('op:runs', () => {
       const has_values = scope.known.some((id) => id.startsWith('ghost.'));
@@ -57,12 +61,28 @@ export class GhostPanel {
     this.#show();
   }
 
-  #shift(text) {
-    const shift = Number(text);
-    if (text === '' || !Number.isFinite(shift)) return;
-    this.slider.value = String(shift);
-    if (document.activeElement !== this.number) this.number.value = String(shift);
-    this.overlay.setShift(shift);
+  // Around this shift the slider moves from now on.
+  #centre(shift) {
+    if (!Number.isFinite(shift)) return;
+    this.middle = shift;
+    this.slider.value = '0';
+    this.#set(shift);
+  }
+
+  #set(shift) {
+    const rounded = Number(shift.toFixed(6));
+    if (document.activeElement !== this.number) this.number.value = String(rounded);
+    this.overlay.setShift(rounded);
+  }
+
+  #alignSteps() {
+    const { t0, t1 } = this.display.frame();
+    const steps = (run) => this.scope.eventsOf(run).filter((event) => event.kind === 'step').map((event) => event.t).sort((a, b) => a - b);
+    const here = steps(this.scope.run).find((t) => t >= t0 && t <= t1);
+    const there = steps(this.overlay.run)[0];
+    const missing = here === undefined ? 'no step of the reference in the window' : there === undefined ? 'the other run has no step of its reference' : '';
+    setText(this.said, missing);
+    if (!missing) this.#centre(here - there);
   }
 
   #show() {
@@ -73,5 +93,6 @@ export class GhostPanel {
     this.other.replaceChildren(el('option', { value: '', text: others.length > 0 ? 'nothing' : 'nothing (drop a log on the page)' }),
       ...others.map((one) => el('option', { value: String(one.run), text: `${baseName(one.name)}${one.kind === 'past' ? ' (before the restart)' : ''}`, selected: one.run === this.overlay.number })));
     this.other.disabled = others.length === 0;
+    for (const one of [this.number, this.slider, this.here, this.steps]) one.disabled = this.overlay.run === null;
   }
 }
