@@ -71,6 +71,9 @@ export class Bench {
 
   constructor() {
     this.folder = mkdtempSync(path.join(tmpdir(), 'hydro-scope-'));
+    // However this process ends, its programs do not outlive it.
+    process.on('exit', () => this.#programs.forEach(({ over, child }) => { if (!over) child.kill('SIGINT'); }));
+    for (const signal of ['SIGINT', 'SIGTERM']) process.once(signal, () => process.exit(1));
   }
 
   static async make() {

@@ -14,6 +14,7 @@ const kLeftNarrow = 46;               // on a phone every pixel counts
 const kNarrow_px = 520;
 const kRight = 14;
 const kTimeAxis = 24;
+const kLabel_px = 14;                 // between numbers of a value axis at least: a low pane still has two
 // One pixel exactly: drawn without a graphics processor, anything wider takes ten times as long (4 and 50 ms for six panes).
 const kLine = 1;
 
@@ -143,8 +144,8 @@ export class Chart {
       axes: [
         { ...common, scale: 'x', size: time_axis ? kTimeAxis : 0, gap: 3, incrs: kSteps, space: 90, grid: { stroke: () => colours.fine, width: 1 },
           values: time_axis ? (u, splits, i, space, step) => splits.map((t, k) => (k === splits.length - 1 ? `${timeLabel(t, step)} s` : timeLabel(t, step))) : () => [], ticks: { ...common.ticks, show: time_axis } },
-        { ...common, scale: 'y0', size: left, gap: 4, incrs: kSteps, space: 20, grid: { stroke: () => colours.fine, width: 1 }, values },
-        { ...common, scale: 'y1', side: 1, show: right, size: left, gap: 4, incrs: kSteps, space: 20, grid: { show: false }, values: units.length > 1 ? values : () => [], ticks: { ...common.ticks, show: units.length > 1 } },
+        { ...common, scale: 'y0', size: left, gap: 4, incrs: kSteps, space: kLabel_px, grid: { stroke: () => colours.fine, width: 1 }, values },
+        { ...common, scale: 'y1', side: 1, show: right, size: left, gap: 4, incrs: kSteps, space: kLabel_px, grid: { show: false }, values: units.length > 1 ? values : () => [], ticks: { ...common.ticks, show: units.length > 1 } },
       ],
       series: [{}, ...traces.map((one) => this.#series(one)), { scale: 'y1', show: false }],
       hooks: {
