@@ -143,7 +143,7 @@ test('a log that is dropped on the page opens', async () => {
   await page.getByLabel('Lay over').selectOption('spike.lcmlog');
   await page.locator('#section-ghost').getByRole('spinbutton').fill('0.5');
   await page.locator('#section-ghost').getByRole('spinbutton').press('Enter');
-  await until(page, () => hydroScope.panes.panes[1].chart.other?.bins.t.length > 100);
+  await until(page, () => hydroScope.panes.panes[1].chart.other?.bins.t.length > 100 && hydroScope.panes.panes[1].chart.other.shift === 0.5);
   const pane = await paneOf('p1');
   await until(page, (p) => hydroScope.panes.panes[p].chart.y(900) > hydroScope.panes.panes[p].chart.plot.bbox.top, pane);
   const shifted = await page.evaluate(() => {

@@ -14,7 +14,7 @@ const kLeftNarrow = 46;               // on a phone every pixel counts
 const kNarrow_px = 520;
 const kRight = 14;
 const kTimeAxis = 24;
-const kLabel_px = 14;                 // between numbers of a value axis at least: a low pane still has two
+const kLabel_px = 12;                 // between numbers of a value axis at least: a low pane still has two
 // One pixel exactly: drawn without a graphics processor, anything wider takes ten times as long (4 and 50 ms for six panes).
 const kLine = 1;
 

@@ -17,6 +17,7 @@ export class CursorTool {
     signals.on('run', () => this.clear());
     signals.on('restart', () => this.clear());
     signals.on('layout', () => this.#changed());
+    signals.on('link', ({ state }) => { if (state === 'open' && this.shown) this.#changed(); });
   }
 
   get shown() { return this.at.a !== null || this.at.b !== null; }

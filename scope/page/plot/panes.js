@@ -7,6 +7,7 @@ import { Pane } from './pane.js';
 
 const kCalm_ms = 250;                 // between frames for those who asked for less motion
 const kMostPixels = 4000;
+const kSettle_ms = 1700;
 const kValues_ms = 120;               // how often the values beside the names change: digits faster than that are not read
 
 export class Panes {
@@ -37,10 +38,12 @@ export class Panes {
     const count = scope.layout.panes.length;
     const right = scope.layout.panes.some((pane) => new Set(pane.channels.map((id) => scope.channel(id)).filter(Boolean).map((one) => unitOf(one, scope.preferences.si))).size > 1);
     const open = this.#openMenu();
+    const focused = document.activeElement?.dataset?.channel;
     this.panes = scope.layout.panes.map((_, i) => new Pane({ scope, overlay: this.overlay, colours: this.colours, state: () => this.#state() }, i, { is_last: i === count - 1, right }));
     this.host.replaceChildren(...this.panes.map((pane) => pane.element), ...(count === 0 ? [this.#nothing()] : []));
     this.panes.forEach((pane) => pane.start());
     if (open !== null) this.#openAgain(open);
+    else if (focused) this.host.querySelector(`.chip[data-channel="${CSS.escape(focused)}"]`)?.focus();
     this.#measure();
     this.#ask();
   }
@@ -78,7 +81,15 @@ export class Panes {
       const at = this.hover ?? (this.display.mode === 'follow' ? (this.scope.live ? this.display.last : this.display.head ?? frame.t1) : frame.t1);
       for (const pane of this.panes) pane.showValues(frame.bins, at);
     }
+    this.#settle();
     this.signals.emit('drawn', frame);
+  }
+
+  // Where nothing streams, the picture is drawn once more after a while, so that value axes that were wide can shrink.
+  #settle() {
+    clearTimeout(this.settling);
+    if (!this.scope.live && !this.settled) this.settling = setTimeout(() => { this.settled = true; this.#ask(); }, kSettle_ms);
+    else this.settled = false;
   }
 
   #measure() {

@@ -56,6 +56,7 @@ export class WindowCache {
       this.#have = { key, ...wide, width: (t1 - t0) / pixels, end, asked_ms: now, bins: binsOf(answer, channels, run.rate_hz) };
     } catch {
       this.#failed_ms = performance.now();
+      setTimeout(this.#redraw, kRetry_ms);
     }
     this.#busy = false;
     this.#redraw();
