@@ -9,8 +9,10 @@ import { section } from './section.js';
 const kNames = { fault: 'fault', fault_end: 'fault over', step: 'step', stop: 'STOP', rearm: 're-armed', tuning: 'tuning', gap: 'gap', mark: 'mark', restart: 'restart' };
 const kMostShown = 200;
 const kQuiet_ms = 2000;
+const kRenew_ms = 150;                // a storm of events must not take the time of the drawing
 
 export class EventsPanel {
+  items = new Map();                  // event -> its element
   #asked = false;
   #said_ms = -Infinity;
   #joined_ms = performance.now();
@@ -38,7 +40,7 @@ export class EventsPanel {
   #ask() {
     if (this.#asked) return;
     this.#asked = true;
-    requestAnimationFrame(() => { this.#asked = false; this.#show(); });
+    setTimeout(() => { this.#asked = false; this.#show(); }, kRenew_ms);
   }
 
   #show() {
@@ -48,7 +50,19 @@ export class EventsPanel {
     this.count.textContent = `${all.length} events, ${faults} ${faults === 1 ? 'fault' : 'faults'}`;
     this.empty.hidden = events.length > 0;
     const shown = [...events].sort((one, other) => other.t - one.t || other.n - one.n).slice(0, kMostShown);
-    this.list.replaceChildren(...shown.map((event) => this.#item(event)));
+    this.#lay(shown);
+  }
+
+  // Items that are there stay, so that the focus and the place that one has scrolled to stay too.
+  #lay(shown) {
+    const kept = new Map();
+    shown.forEach((event, i) => {
+      const item = this.items.get(event) ?? this.#item(event);
+      kept.set(event, item);
+      if (this.list.children[i] !== item) this.list.insertBefore(item, this.list.children[i] ?? null);
+    });
+    while (this.list.children.length > shown.length) this.list.lastElementChild.remove();
+    this.items = kept;
   }
 
   #item(event) {

@@ -57,7 +57,7 @@ export class FilesPanel {
   }
 
   async #png() { offerFile(this.#name('png'), await pngOf(this.panes.panes, this.panes.colours)); }
-  #svg() { offerFile(this.#name('svg'), svgOf(this.panes.panes, this.panes.colours, baseName(this.scope.run.name))); }
+  #svg() { offerFile(this.#name('svg'), svgOf(this.panes.panes, this.panes.colours, baseName(this.scope.run.name), this.scope.eventsOf())); }
 
   async #diagnose() {
     const { t0, t1 } = this.#window();

@@ -4,6 +4,7 @@ import { el } from '../dom.js';
 import { factorOf, unitOf } from '../settings/units.js';
 import { runTime } from '../settings/numbers.js';
 import { strokeOf } from './chart.js';
+import { colourOf } from './colours.js';
 import { bridge, trace } from './trace_path.js';
 
 const kTitle_px = 18;
@@ -33,13 +34,13 @@ export function pngOf(panes, colours) {
   return new Promise((done) => sheet.toBlob(done, 'image/png'));
 }
 
-// A Blob of image/svg+xml: paths, axes with numbers, names.
-export function svgOf(panes, colours, name) {
+// A Blob of image/svg+xml: paths, axes with numbers, names, marks of the events (whose words appear on pointing).
+export function svgOf(panes, colours, name, events) {
   const width = panes[0].host.clientWidth;
   const parts = [];
   let top = 0;
   for (const pane of panes) {
-    parts.push(...paneSvg(pane, colours, top));
+    parts.push(...paneSvg(pane, colours, top, events));
     top += pane.host.clientHeight + kTitle_px;
   }
   const { t0, t1 } = panes[0].chart.frame;
@@ -58,7 +59,7 @@ function titleOf(pane) {
     .map((one) => ({ text: `${one.id} [${unitOf(one.channel, pane.chart.options.si)}]`, colour: one.colour }))];
 }
 
-function paneSvg(pane, colours, offset) {
+function paneSvg(pane, colours, offset, events) {
   const { chart } = pane;
   const ratio = devicePixelRatio;
   const { left, top, width, height } = chart.plot.bbox;
@@ -67,7 +68,7 @@ function paneSvg(pane, colours, offset) {
   const names = titleOf(pane).map(({ text, colour }) => `<tspan fill="${colours[colour] ?? colours.ink}">${escaped(text)}  </tspan>`).join('');
   const out = [`<text x="${box.x}" y="${offset + 13}" xml:space="preserve">${names}</text>`,
     `<clipPath id="${id}"><rect x="${box.x}" y="${box.y}" width="${box.w}" height="${box.h}"/></clipPath>`,
-    `<rect x="${box.x}" y="${box.y}" width="${box.w}" height="${box.h}" fill="none" stroke="${colours.line}"/>`, ...axesSvg(chart, box, colours)];
+    `<rect x="${box.x}" y="${box.y}" width="${box.w}" height="${box.h}" fill="none" stroke="${colours.line}"/>`, ...axesSvg(chart, box, colours), ...eventsSvg(chart, box, colours, events)];
   for (const one of chart.options.traces.filter((candidate) => !candidate.hidden)) {
     const bins = one.kind === 'overlay' ? chart.other?.bins : chart.frame.bins;
     const shift = one.kind === 'overlay' ? chart.other?.shift ?? 0 : 0;
@@ -82,6 +83,15 @@ function paneSvg(pane, colours, offset) {
     out.push(`<path clip-path="url(#${id})" d="${steps.join('')}" fill="none" stroke="${strokeOf(one, colours)}" stroke-width="1.2" stroke-linejoin="round"${dash}/>`);
   }
   return out;
+}
+
+function eventsSvg(chart, box, colours, events) {
+  const { t0, t1 } = chart.frame;
+  return events.filter(({ t }) => t >= t0 && t <= t1).map((event) => {
+    const x = (box.x + (event.t - t0) / (t1 - t0) * box.w).toFixed(2);
+    const words = [runTime(event.t), 's', event.kind, event.source, event.code, event.text].filter(Boolean).join(' ');
+    return `<path d="M${x} ${box.y}v${box.h}" stroke="${colours[colourOf(event)]}" stroke-dasharray="2 3" stroke-opacity="${event.kind === 'step' ? 0.4 : 0.8}"><title>${escaped(words)}</title></path>`;
+  });
 }
 
 // The numbers that uPlot put on its axes, at the same places.
