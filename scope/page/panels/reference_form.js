@@ -13,9 +13,11 @@ const kKinds = {
     ['duration_s', 'In', 's', 10], ['offset', 'Offset', '', 0]], fixed: fromNow },
 };
 
-// A periodic reference begins at its phase 0 now, not at the run's start.
+// A periodic reference begins at its phase 0 from now, not at the run's start; a little later, as the set takes a while.
+const kAhead_s = 0.2;
+
 function fromNow(last) {
-  return [`reference.start_s=${last.toFixed(3)}`];
+  return [`reference.start_s=${(last + kAhead_s).toFixed(3)}`];
 }
 
 export class ReferenceForm {

@@ -6,7 +6,8 @@ const kReach = 5;                     // a slider without limits goes from a fif
 
 export class TuningRow {
   // edited(row): called at each change by the user
-  constructor(entry, control, edited) {
+  constructor(given, control, edited) {
+    const entry = { ...given, value: read(given.value) };
     this.edited = edited;
     this.in_force = el('span', { class: 'number', title: 'in force' });
     const what = [entry.what, entry.acts_in && `(${entry.acts_in})`].filter(Boolean).join(' ');
@@ -21,7 +22,8 @@ export class TuningRow {
   get changed() { return this.given !== text(this.entry.value); }
 
   // The value in force; keep: what the user has typed stays.
-  show(entry, keep) {
+  show(given, keep) {
+    const entry = { ...given, value: read(given.value) };
     this.entry = entry;
     setText(this.in_force, shown(entry.value));
     if (this.input && !keep) {
@@ -63,10 +65,17 @@ function aroundValue(middle) {
   };
 }
 
+// Numbers may come as text, as in a configuration; null: the key is not set.
+function read(value) {
+  return typeof value === 'string' && value.trim() !== '' && Number.isFinite(Number(value)) ? Number(value) : value ?? null;
+}
+
 function text(value) {
+  if (value === null) return '';
   return typeof value === 'string' ? value : JSON.stringify(value);
 }
 
 function shown(value) {
+  if (value === null) return '–';
   return typeof value === 'number' ? String(Number(value.toPrecision(6))) : text(value);
 }
