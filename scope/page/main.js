@@ -8,6 +8,7 @@ import { Connection } from './link/connection.js';
 import { takeToken } from './link/token.js';
 import { CursorPanel } from './panels/cursor_panel.js';
 import { EventsPanel } from './panels/events_panel.js';
+import { FaultNotice } from './panels/fault_notice.js';
 import { FilesPanel } from './panels/files_panel.js';
 import { GhostPanel } from './panels/ghost_panel.js';
 import { LinkPanel } from './panels/link_panel.js';
@@ -48,6 +49,7 @@ parts.stop = new StopPanel(scope, signals, notice);
 parts.ghost = new GhostPanel(scope, display, overlay, signals);
 parts.toolbar = new Toolbar(parts, actions);
 
+new FaultNotice(scope, signals, notice);
 new LinkPanel(scope, link, api, signals, notice);
 new Gestures({ host: byId('panes'), panes, display, cursors, trigger, signals, box: byId('box') });
 new Transport({ host: byId('transport'), scope, display, player, signals });

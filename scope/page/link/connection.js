@@ -53,11 +53,12 @@ export class Connection {
     return true;
   }
 
-  // The reply {ok, text, data}, or, for a "get", the frame. Fails with an Error when there is no connection or no answer.
-  request(message) {
+  // The reply {ok, text, data}, or, for a "get", the frame. Fails with an Error when there is no connection, or no answer
+  // within patience_ms.
+  request(message, patience_ms = kRequest_ms) {
     const id = this.nextId();
     return new Promise((done, fail) => {
-      const timer = setTimeout(() => this.#fail(id, 'the server did not answer within 10 s'), kRequest_ms);
+      const timer = setTimeout(() => this.#fail(id, `the server did not answer within ${patience_ms / 1000} s`), patience_ms);
       this.#pending.set(id, { done, fail, timer });
       if (!this.send({ ...message, id })) this.#fail(id, 'no connection to hydro-scope');
     });

@@ -3,6 +3,13 @@
 import { choice, el } from '../dom.js';
 import * as layouts from '../settings/layout.js';
 
+// A press elsewhere closes an open menu.
+addEventListener('pointerdown', (event) => {
+  for (const menu of document.querySelectorAll('.menu[open]')) {
+    if (!menu.contains(event.target)) menu.open = false;
+  }
+});
+
 export function paneMenu(scope, index) {
   const pane = scope.layout.panes[index];
   const set = (layout) => scope.setLayout(layout);

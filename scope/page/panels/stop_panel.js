@@ -2,9 +2,11 @@
 // output at zero, or the user says that this is no longer wanted. Re-arming says what it will do before it does it.
 
 import { byId, el } from '../dom.js';
+import { activeFaults } from '../settings/active_faults.js';
 import { showDialog } from './dialog.js';
 
 const kAgain_ms = 500;
+const kPatience_ms = 5000;            // a stack takes a second or two to end; then STOP is sent again
 
 export class StopPanel {
   #trying = false;
@@ -32,7 +34,7 @@ export class StopPanel {
     for (let tries = 1; this.#trying; tries += 1) {
       this.#set('asked', tries === 1 ? 'STOP is sent; not confirmed yet' : this.#text);
       try {
-        const reply = await this.scope.link.request({ op: 'stop' });
+        const reply = await this.scope.link.request({ op: 'stop' }, kPatience_ms);
         if (reply.ok) { this.#trying = false; this.#set('confirmed', (reply.text || 'the voltage is held at zero').replace(/^stopped: */i, '')); break; }
         this.#set('failed', `STOP is not confirmed: ${reply.text}. Trying again (${tries})`);
       } catch (error) {
@@ -97,17 +99,4 @@ export class StopPanel {
       this.notice.say('rearm', `Not re-armed: ${error.message}`, 'bad', [{ text: 'Dismiss', act: () => this.notice.clear('rearm') }]);
     }
   }
-}
-
-// Faults and stops that have begun and not ended.
-export function activeFaults(events) {
-  const active = new Map();
-  for (const event of events) {
-    const name = `${event.source}|${event.code ?? event.text}`;
-    if (event.kind === 'fault') active.set(name, event);
-    else if (event.kind === 'stop') active.set('stop', event);
-    else if (event.kind === 'fault_end') active.delete(name);
-    else if (event.kind === 'rearm' || event.kind === 'restart') active.clear();
-  }
-  return [...active.values()];
 }

@@ -4,6 +4,8 @@ import { test } from 'node:test';
 import { cursorNear, cursorRows, interval, moved, noCursors, placed } from '../../../scope/page/plot/cursors.js';
 import { fitted, following, stepped, zoomed } from '../../../scope/page/plot/time_window.js';
 import { bridge, gapsIn, trace } from '../../../scope/page/plot/trace_path.js';
+import { between, colourOf } from '../../../scope/page/plot/colours.js';
+import { tracesOf } from '../../../scope/page/plot/traces.js';
 import { extent, StickyRange } from '../../../scope/page/plot/value_range.js';
 
 // Tests that the time base goes 1, 2, 5, 10 both ways, and from values in between to the next one.
@@ -85,4 +87,20 @@ test('cursors measure intervals and differences', () => {
   assert.equal(cursorNear(cursors, 1.1, 0.2), 'a');
   assert.equal(cursorNear(cursors, 1.3, 0.01), null);
   assert.deepEqual(cursorRows(['dp'], { values: [3] }, { values: [10] }), [{ id: 'dp', a: 3, b: 10, difference: 7 }]);
+});
+
+// Tests that a pane draws its channels, the ghost's and the other run's of the same name, on an axis for each unit.
+test('the traces of a pane', () => {
+  const channels = { p1: { id: 'p1', unit: 'psi' }, voltage: { id: 'voltage', unit: 'V' }, 'ghost.p1': { id: 'ghost.p1', unit: 'psi' } };
+  const { traces, units } = tracesOf({ channels: ['p1', 'voltage', 'gone'], hidden: ['voltage'] },
+    { channel: (id) => channels[id], ghost: true, overlay: (id) => (id === 'p1' ? channels.p1 : undefined), si: false });
+  assert.deepEqual(units, ['psi', 'V']);
+  assert.deepEqual(traces.map(({ id, kind, axis, hidden }) => [id, kind, axis, hidden]),
+    [['p1', 'measured', 0, false], ['ghost.p1', 'ghost', 0, false], ['p1', 'overlay', 0, false], ['voltage', 'measured', 1, true]]);
+});
+
+test('colours of events and between two colours', () => {
+  assert.equal(colourOf({ kind: 'fault' }), 'bad');
+  assert.equal(colourOf({ kind: 'mark' }), 'accent');
+  assert.equal(between('#000000', '#ff8001'), '#804001');
 });

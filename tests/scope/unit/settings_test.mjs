@@ -3,6 +3,7 @@ import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { BackOff } from '../../../scope/page/link/back_off.js';
 import { takeToken, tokenIn } from '../../../scope/page/link/token.js';
+import { activeFaults } from '../../../scope/page/settings/active_faults.js';
 import * as layouts from '../../../scope/page/settings/layout.js';
 import { duration, exact, frequency, short } from '../../../scope/page/settings/numbers.js';
 import { loadPreferences, savePreferences } from '../../../scope/page/settings/preferences.js';
@@ -107,4 +108,14 @@ test('attempts to connect come soon at first, and never more than 2 s apart', ()
   assert.deepEqual([1, 2, 3, 4, 5].map(() => wait.next()), [250, 500, 1000, 2000, 2000]);
   wait.reset();
   assert.equal(wait.next(), 250);
+});
+
+// Tests that a fault is active until it ends, and that re-arming and a restart end all.
+test('active faults', () => {
+  const fault = { kind: 'fault', source: 'plant', code: 'stale_state', t: 1 };
+  const other = { kind: 'fault', source: 'pressure_ctrl', code: 'stale_state', t: 2 };
+  assert.deepEqual(activeFaults([fault, other, { ...fault, kind: 'fault_end' }]), [other]);
+  assert.deepEqual(activeFaults([fault, { kind: 'stop', t: 3 }]).map(({ kind }) => kind), ['fault', 'stop']);
+  assert.deepEqual(activeFaults([fault, other, { kind: 'rearm', t: 4 }]), []);
+  assert.deepEqual(activeFaults([fault, { kind: 'restart', t: 0 }, other]), [other]);
 });
