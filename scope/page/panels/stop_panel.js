@@ -2,6 +2,7 @@
 // output at zero, or the user says that this is no longer wanted. Re-arming says what it will do before it does it.
 
 import { byId, el } from '../dom.js';
+import { short } from '../settings/numbers.js';
 import { activeFaults } from '../settings/active_faults.js';
 import { showDialog } from './dialog.js';
 
@@ -79,11 +80,28 @@ export class StopPanel {
     return '';
   }
 
-  #askRearm() {
+  // Where the arm stands and where it would go: the way that it will make when the loops act again.
+  async #way() {
+    const { run, scope } = this;
+    const channels = ['arm_angle', 'arm_ref'];
+    if (!channels.every((id) => scope.channel(id, run))) return '';
+    try {
+      const { ok, data } = await scope.link.request({ op: 'values', run: run.run, channels, t: run.last });
+      const [arm, reference] = data?.values ?? [];
+      if (!ok || typeof arm !== 'number' || typeof reference !== 'number') return '';
+      return `The arm is at ${short(arm)} rad and its reference at ${short(reference)} rad now: it would move by ${short(reference - arm)} rad.`;
+    } catch {
+      return '';
+    }
+  }
+
+  async #askRearm() {
+    const way = await this.#way();
     const faults = activeFaults(this.scope.eventsOf(this.run));
     const held = faults.length === 0 ? 'No fault is active that this page knows of.' : 'These hold the voltage at zero now:';
     showDialog('Re-arm?', [
       el('p', { text: 'Re-arming ends every latched fault whose cause is gone (limits.rearm = "explicit"). The control loops then act again: from the next tick the motor gets the voltage that they ask for, and the arm moves towards its reference as it is at that moment.' }),
+      ...(way ? [el('p', { class: 'strong', text: way })] : []),
       el('p', { text: held }),
       ...(faults.length > 0 ? [el('ul', {}, ...faults.map((fault) => el('li', { text: `${fault.source || 'stack'}: ${fault.code || ''} ${fault.text || ''}` })))] : []),
       el('p', { class: 'strong', text: 'Look at the rig: nobody may be within the reach of the arm.' }),
@@ -94,7 +112,7 @@ export class StopPanel {
     try {
       const reply = await this.scope.link.request({ op: 'rearm' });
       if (reply.ok) this.#set('', '');
-      this.notice.say('rearm', reply.ok ? `Re-armed. ${reply.text ?? ''}` : `Not re-armed: ${reply.text}`, reply.ok ? 'info' : 'bad', [{ text: 'Dismiss', act: () => this.notice.clear('rearm') }]);
+      this.notice.say('rearm', reply.ok ? `Re-armed: ${(reply.text ?? '').replace(/^re-armed: */i, '')}` : `Not re-armed: ${reply.text}`, reply.ok ? 'info' : 'bad', [{ text: 'Dismiss', act: () => this.notice.clear('rearm') }]);
     } catch (error) {
       this.notice.say('rearm', `Not re-armed: ${error.message}`, 'bad', [{ text: 'Dismiss', act: () => this.notice.clear('rearm') }]);
     }
