@@ -3,7 +3,7 @@ import assert from 'node:assert/strict';
 import { readFileSync, writeFileSync } from 'node:fs';
 import { after, before, test } from 'node:test';
 import { openBrowser, openPage, pixelsOf, readTable, until } from './browser.mjs';
-import { Bench } from './stack.mjs';
+import { Bench, demoConfig } from './stack.mjs';
 
 const kSpike = { row: 3210, t: 3.21, psi: 900 };
 const kGap = { from: 5000, to: 5200 };
@@ -12,7 +12,7 @@ let bench, scope, browser, page, address, table;
 // A run of the simulation with one sample of p1 changed and 200 ticks taken out.
 before(async () => {
   bench = await Bench.make();
-  bench.run('hydro-sim', new URL('demo.toml', `file://${process.env.HYDRO_CONFIG ?? new URL('../../config', import.meta.url).pathname}/`).pathname, '--time', 'lockstep', '--log', bench.file('sim.lcmlog'));
+  bench.run('hydro-sim', demoConfig(), '--time', 'lockstep', '--log', bench.file('sim.lcmlog'));
   bench.run('hydro-log', 'export', bench.file('sim.lcmlog'), '-o', bench.file('sim.csv'));
   const lines = readFileSync(bench.file('sim.csv'), 'utf8').trim().split('\n');
   const column = lines[0].split(',').indexOf('p1_psi');

@@ -16,6 +16,10 @@ export const kToken = 'f00df00df00df00df00df00df00df00d';
 // How long to wait for what should come soon. Nothing passes because of it, so it may be long: the machine is shared.
 export const kPatience_ms = 40000;
 
+export function demoConfig() {
+  return path.join(kConfig, 'demo.toml');
+}
+
 // A child process whose lines can be waited for.
 class Program {
   constructor(name, args, env = {}) {
@@ -23,7 +27,11 @@ class Program {
     this.lines = [];
     this.waiting = [];
     this.child = spawn(path.join(kBin, name), args, { env: { ...process.env, ...env }, stdio: ['ignore', 'pipe', 'pipe'] });
-    this.ended = new Promise((done) => this.child.on('exit', (code, signal) => { this.over = true; this.#wake(); done({ code, signal }); }));
+    this.ended = new Promise((done) => {
+      const end = (code, signal) => { this.over = true; this.#wake(); done({ code, signal }); };
+      this.child.on('exit', end);
+      this.child.on('error', (error) => { this.lines.push(error.message); end(null, null); });
+    });
     for (const stream of [this.child.stdout, this.child.stderr]) {
       let rest = '';
       stream.on('data', (bytes) => {
