@@ -40,4 +40,12 @@ position_ctrl::PositionLawSettings PositionLawSettingsFor(const settings::StackC
   return settings;
 }
 
+std::optional<position_ctrl::BrakingCurve> BrakingCurveFor(const settings::StackConfig& config) {
+  const settings::PositionSection& position = config.position;
+  if (!position.braking_rad_s2) return std::nullopt;
+  const model::Parameters& p = config.model.description.parameters;
+  const double largest_speed = 0.95 * config.limits.motor_speed_rad_s * p.D / p.c;
+  return position_ctrl::BrakingCurve(position.c1 / position.c2, *position.braking_rad_s2, largest_speed);
+}
+
 }  // namespace hydro::design

@@ -42,6 +42,7 @@ PositionApp::PositionApp(bus::Bus& bus, bus::Clock& clock, const settings::Stack
       pressure_limit_(config.limits.arm_torque_in_lbf / config.model.description.parameters.k_2),
       section_(config.position),
       law_(design::PositionLawSettingsFor(config)),
+      curve_(design::BrakingCurveFor(config)),
       return_(std::llround(config.limits.return_s * config.plant.rate_hz)),
       state_monitor_(bus::FromSeconds(config.limits.stale_input_s)),
       last_state_time_(clock.Now()) {
@@ -126,7 +127,8 @@ void PositionApp::Answer(const state_t& state) {
   switch (signal_) {
     case settings::ReferenceSignal::kArmAngle:
       if (std::isfinite(state.arm_angle)) {
-        pressure_ref = law_.Update(state.arm_angle, reference, intervals);
+        pressure_ref = law_.Update(
+            state.arm_angle, curve_ ? curve_->Reference(state.arm_angle, reference) : reference, intervals);
         if (participant_.any_fault()) participant_.Clear("nonfinite_arm_angle");
       } else {
         pressure_command_.open_loop = true;  // at zero volts: without the arm's angle no pressure is safe

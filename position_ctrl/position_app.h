@@ -12,6 +12,7 @@
 #include <optional>
 
 #include "bus/sequence_monitor.h"
+#include "position_ctrl/law/braking_curve.h"
 #include "position_ctrl/law/position_law.h"
 #include "position_ctrl/law/reference_return.h"
 #include "process/app.h"
@@ -49,6 +50,7 @@ class PositionApp : public process::App {
   const double pressure_limit_;       // psi, from limits.arm_torque_in_lbf
   const settings::PositionSection section_;
   PositionLaw law_;
+  std::optional<BrakingCurve> curve_;
   ReferenceReturn return_;
   // Real time: while one lasts, the pressure loop's commands move nothing.
   process::RemoteFaults pressure_faults_{[](std::string_view role, std::string_view code) {
