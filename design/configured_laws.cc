@@ -2,6 +2,8 @@
 
 #include <spdlog/fmt/fmt.h>
 
+#include <cmath>
+#include <limits>
 #include <stdexcept>
 
 #include "base/input_error.h"
@@ -38,6 +40,18 @@ position_ctrl::PositionLawSettings PositionLawSettingsFor(const settings::StackC
   settings.derivative_on_error = config.position.derivative_on_error;
   settings.pressure_limit = config.limits.arm_torque_in_lbf / config.model.description.parameters.k_2;
   return settings;
+}
+
+std::optional<position_ctrl::BrakingCurve> BrakingCurveFor(const settings::StackConfig& config) {
+  return BrakingCurveFor(PositionLawSettingsFor(config),
+                         config.position.braking_rad_s2.value_or(std::numeric_limits<double>::infinity()),
+                         config.limits.motor_speed_rad_s, config.model.description.parameters);
+}
+
+std::optional<position_ctrl::BrakingCurve> BrakingCurveFor(const position_ctrl::PositionLawSettings& law, double braking,
+                                                           double motor_speed, const model::Parameters& parameters) {
+  if (!std::isfinite(braking)) return std::nullopt;
+  return position_ctrl::BrakingCurve(law.c1 / law.c2, braking, 0.95 * motor_speed * parameters.D / parameters.c);
 }
 
 }  // namespace hydro::design

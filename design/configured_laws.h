@@ -1,6 +1,9 @@
 // The settings of the two control laws as a configuration gives them.
 #pragma once
 
+#include <optional>
+
+#include "position_ctrl/law/braking_curve.h"
 #include "position_ctrl/law/position_law.h"
 #include "pressure_ctrl/law/pressure_law.h"
 #include "settings/stack_config.h"
@@ -13,5 +16,12 @@ pressure_ctrl::PressureLawSettings PressureLawSettingsFor(const settings::StackC
 
 // Eq. (17).
 position_ctrl::PositionLawSettings PositionLawSettingsFor(const settings::StackConfig& config);
+
+// The braking curve before it; empty without position.braking_rad_s2. Its largest speed is 0.95 of limits.motor_speed_rad_s.
+std::optional<position_ctrl::BrakingCurve> BrakingCurveFor(const settings::StackConfig& config);
+
+// The same from numbers: `braking` in rad/s^2, infinity for none; `motor_speed`: its limit, rad/s.
+std::optional<position_ctrl::BrakingCurve> BrakingCurveFor(const position_ctrl::PositionLawSettings& law, double braking,
+                                                           double motor_speed, const model::Parameters& parameters);
 
 }  // namespace hydro::design

@@ -55,12 +55,20 @@ void Add(const LoopMargins& margins, const std::string& name, std::optional<Chec
   all.worst = WorstOf(all.worst, margins);
 }
 
-double BandwidthOf(const LinearStack& stack, const position_ctrl::PositionLawSettings& law) {
-  const auto filter = [&](const std::complex<double>& z) -> std::complex<double> {
-    if (law.derivative_on_error) return 1;
-    return law.c1 / (law.c1 + law.c2 / law.sample_interval * (1.0 - 1.0 / z));
-  };
-  return BandwidthHz([&](double factor) { return stack.Poles(1, factor); }, stack.period(), filter);
+// Where the samples of both loops follow a pattern, no single response describes the loop: only its poles do.
+LoopMargins PositionMargins(const LinearStack& stack, const position_ctrl::PositionLawSettings& law) {
+  if (stack.position_sampled_once()) {
+    const auto filter = [&](const std::complex<double>& z) -> std::complex<double> {
+      if (law.derivative_on_error) return 1;
+      return law.c1 / (law.c1 + law.c2 / law.sample_interval * (1.0 - 1.0 / z));
+    };
+    return MarginsOf([&](double factor) { return stack.Poles(1, factor); }, stack.period(), Drift::kCounts,
+                     filter);
+  }
+  const std::vector<std::complex<double>> poles = stack.Poles(1, 1);
+  LoopMargins margins = MarginsOf([&](double) { return poles; }, stack.period());
+  if (!margins.stable) margins.gain = 0;
+  return margins;
 }
 
 void Check(const settings::StackConfig& config, const pressure_ctrl::PressureLawSettings& pressure,
@@ -80,15 +88,7 @@ void Check(const settings::StackConfig& config, const pressure_ctrl::PressureLaw
     Add(checked.pressure, point.name, &check->pressure);
     if (!closes_position || !moves_arm) continue;
     const LinearStack both(point.model, timing, pressure, &position);
-    checked.position = MarginsOf([&](double factor) { return both.Poles(1, factor); }, both.period());
-    if (!both.position_sampled_once()) {
-      const bool stable = checked.position->stable;
-      checked.position = LoopMargins{.stable = stable, .spectral_radius = checked.position->spectral_radius};
-      if (!stable) checked.position->gain = checked.position->phase_deg = checked.position->delay = 0;
-    }
-    if (checked.position->stable && both.position_sampled_once()) {
-      checked.position->bandwidth_hz = BandwidthOf(both, position);
-    }
+    checked.position = PositionMargins(both, position);
     Add(*checked.position, point.name, &check->position);
     check->position->margins_known = both.position_sampled_once();
   }

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "base/input_error.h"
+#include "design/configured_laws.h"
 #include "process/fault_codes.h"
 
 namespace hydro::position_ctrl {
@@ -41,9 +42,11 @@ PositionApp::PositionApp(bus::Bus& bus, bus::Clock& clock, const settings::Stack
       reference_text_(settings::ReferenceText(config)),
       torque_per_pressure_(config.model.description.parameters.k_2),
       section_(config.position),
+      parameters_(config.model.description.parameters),
       rate_hz_(config.plant.rate_hz),
       values_(tuning::ValuesOf(config)),
       law_(values_.position),
+      curve_(design::BrakingCurveFor(config)),
       tuning_(participant_, [this](const tuned_settings_t& settings) { return WhyNot(settings); }),
       transfer_(std::llround(config.limits.transfer_s * config.plant.rate_hz)),
       return_(std::llround(config.limits.return_s * config.plant.rate_hz)),
@@ -175,9 +178,13 @@ void PositionApp::NotePlanner(int64_t tick) {
 void PositionApp::TakeSettingsAt(int64_t tick) {
   const tuned_settings_t* settings = tuning_.TakeDueAt(tick);
   if (settings == nullptr) return;
-  if (!law_before_) law_before_ = values_.position;
+  if (!law_before_) {
+    law_before_ = values_.position;
+    curve_before_ = curve_;
+  }
   tuning::Read(*settings, torque_per_pressure_, &values_);  // good: it was prepared
   law_.Retune(values_.position);
+  curve_ = design::BrakingCurveFor(values_.position, values_.braking, values_.limits.motor_speed_rad_s, parameters_);
   const std::string& text = settings->reference.empty() ? reference_text_ : settings->reference;
   const double from = static_cast<double>(settings->reference_from) / rate_hz_;
   if (text == reference_in_force_ && from == reference_from_) return;
@@ -189,12 +196,15 @@ void PositionApp::TakeSettingsAt(int64_t tick) {
 
 // psi: eq. (17), without a jump when its gains have changed.
 double PositionApp::AskedByLaw(const state_t& state, double reference, const PlannedPoint& ahead, int64_t intervals) {
+  const auto seen = [&](const std::optional<BrakingCurve>& curve) {
+    return curve ? curve->Reference(state.arm_angle, reference) : reference;
+  };
   const auto before = std::exchange(law_before_, std::nullopt);
   if (before && sequence_ > 0) {
-    const double was = law_.Preview(*before, state.arm_angle, reference, intervals) + transfer_.Offset(state.tick);
-    transfer_.Begin(was, law_.Preview(values_.position, state.arm_angle, reference, intervals), state.tick);
+    const double was = law_.Preview(*before, state.arm_angle, seen(curve_before_), intervals) + transfer_.Offset(state.tick);
+    transfer_.Begin(was, law_.Preview(values_.position, state.arm_angle, seen(curve_), intervals), state.tick);
   }
-  double asked = law_.UpdateUnlimited(state.arm_angle, reference, intervals);
+  double asked = law_.UpdateUnlimited(state.arm_angle, seen(curve_), intervals);
   // What a planner knows ahead: eq. (17) differentiates the measured angle alone, or the error, which has the reference's speed already.
   if (ahead.torque != 0) asked += ahead.torque / torque_per_pressure_;
   if (ahead.speed != 0 && !values_.position.derivative_on_error) asked += values_.position.c2 * ahead.speed;

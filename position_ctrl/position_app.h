@@ -13,6 +13,7 @@
 #include <optional>
 
 #include "bus/sequence_monitor.h"
+#include "position_ctrl/law/braking_curve.h"
 #include "position_ctrl/law/position_law.h"
 #include "position_ctrl/law/reference_return.h"
 #include "position_ctrl/plan_follower.h"
@@ -66,13 +67,17 @@ class PositionApp : public process::App {
   double reference_from_ = 0;         // s, plant time at which it begins
   const double torque_per_pressure_;  // k_2
   const settings::PositionSection section_;
+  const model::Parameters parameters_;
   const double rate_hz_;
   tuning::TunedValues values_;        // in force
   PositionLaw law_;
+  std::optional<BrakingCurve> curve_;
   tuning::TuningFollower tuning_;
   std::optional<bus::Clock::TimePoint> joined_;  // a run that went on without this loop, whose values are not known yet
   tuning::BumplessTransfer transfer_;
-  std::optional<PositionLawSettings> law_before_;  // a change begins with the next sample
+  // A change begins with the next sample.
+  std::optional<PositionLawSettings> law_before_;
+  std::optional<BrakingCurve> curve_before_;
   ReferenceReturn return_;
   // Real time: while one lasts, the pressure loop's commands move nothing.
   process::RemoteFaults pressure_faults_{[](std::string_view role, std::string_view code) {

@@ -123,6 +123,16 @@ void CheckChoices(const TomlNode& root, const StackConfig& config) {
     CheckPair(root, "pressure.damping_ratio", "natural_frequency_rad_s");
   }
 
+  const PositionSection& position = config.position;
+  if (position.braking_rad_s2 && position.derivative_on_error) {
+    throw KeyError(root, "position.braking_rad_s2", "it beside derivative = \"error\"",
+                   "it with derivative = \"measurement\", because the curve changes the error");
+  }
+  if (position.braking_rad_s2 && !(position.c1 > 0 && position.c2 > 0)) {
+    throw KeyError(root, "position.braking_rad_s2", "it without c1 and c2",
+                   "it with c1 and c2 above 0, whose ratio is the curve's slope at the target");
+  }
+
   const ModelSection& model = config.model;
   const bool driven = model.shaft == model::Shaft::kDriven;
   if (driven && !model.motion) {

@@ -115,6 +115,7 @@ void ReadPosition(SectionReader section, PositionSection* position) {
   section.Number("c2", &position->c2, kNotNegative);
   section.Choice<bool>("derivative", {{"error", true}, {"measurement", false}},
                        &position->derivative_on_error);
+  section.Number("braking_rad_s2", &position->braking_rad_s2, kPositive);
   section.Integer("dac_bits", &position->dac_bits, 0, 32);
   section.Number("dac_range_psi", &position->dac_range_psi, kPositive);
   section.Finish();

@@ -1,5 +1,7 @@
 #include "tune/gains.h"
 
+#include <cmath>
+#include <limits>
 #include <stdexcept>
 
 #include "base/number_text.h"
@@ -26,6 +28,7 @@ Gains GainsOf(const settings::StackConfig& config) {
           .damping_ratio = loop.damping_ratio,
           .c1 = config.position.c1,
           .c2 = config.position.c2,
+          .deceleration = config.position.braking_rad_s2.value_or(std::numeric_limits<double>::infinity()),
           .as_configured = true};
 }
 
@@ -51,6 +54,8 @@ settings::StackConfig With(settings::StackConfig config, const Gains& gains) {
   config.position.c1 = Rounded(gains.c1);
   config.position.c2 = Rounded(gains.c2);
   config.position.derivative_on_error = false;
+  config.position.braking_rad_s2.reset();
+  if (std::isfinite(gains.deceleration)) config.position.braking_rad_s2 = Rounded(gains.deceleration);
   return config;
 }
 
@@ -76,6 +81,7 @@ std::vector<std::pair<std::string, std::string>> GainKeys(const settings::StackC
   add("position.c2", config.position.c2);
   keys.emplace_back("position.derivative",
                     config.position.derivative_on_error ? "\"error\"" : "\"measurement\"");
+  if (config.position.braking_rad_s2) add("position.braking_rad_s2", *config.position.braking_rad_s2);
   return keys;
 }
 

@@ -10,7 +10,7 @@ namespace hydro::tune {
 
 // One way to run the stack, and how its steps from mid-stroke go.
 struct Proposal {
-  std::string name;  // "as configured", "proposed", "with a braking curve"
+  std::string name;  // "as configured", "proposed"
   Tried tried;
   std::vector<StepResult> steps;  // in the order of StepJudge::steps()
   design::LoopCheck uncertain;    // the worst margins over the samples of the model

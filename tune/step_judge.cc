@@ -17,8 +17,7 @@ namespace {
 
 constexpr double kAim = 1.08;
 constexpr double kUrge = 5;
-constexpr double kUsedTravel = 0.9;   // of the arm's range, from which steps start towards the middle
-constexpr double kSpeedShare = 0.95;  // of limits.motor_speed_rad_s, that a braking curve asks for
+constexpr double kUsedTravel = 0.9;  // of the arm's range, from which steps start towards the middle
 constexpr int64_t kSampleSeed = 20261123;
 constexpr double kMostDeviations = 2;  // of a parameter in a sample
 
@@ -109,15 +108,12 @@ StepCase StepJudge::Nominal(double step) const {
 StepTrial StepJudge::Trial(const Gains& gains, const StepCase& step) const {
   StepTrial trial = TrialOf(With(config_, gains));  // the gains follow from the model as its file says
   trial.model = models_[step.model];
-  trial.deceleration = gains.deceleration;
-  const model::Parameters& p = config_.model.description.parameters;
-  trial.arm_speed = kSpeedShare * config_.limits.motor_speed_rad_s * p.D / p.c;
   trial.noise = config_.noise;
   trial.seed = config_.seed;
   trial.start = step.start;
   trial.step = step.step;
   trial.duration = kNeverSettled * step.shortest;
-  if (p.mgl > 0) {
+  if (config_.model.description.parameters.mgl > 0) {
     // The arm first comes to rest where it hangs.
     const double sample = trial.tick * trial.interval;
     trial.rest = std::ceil(1.5 / sample) * sample;

@@ -6,7 +6,6 @@
 #include "design/configured_laws.h"
 #include "model/actuator.h"
 #include "plant/sensor_noise.h"
-#include "position_ctrl/law/braking_curve.h"
 
 namespace hydro::tune {
 namespace {
@@ -14,11 +13,7 @@ namespace {
 // The two loops between one reading of the sensors and the next voltage.
 class Loops {
  public:
-  explicit Loops(const StepTrial& trial)
-      : trial_(trial),
-        position_(trial.position),
-        curve_(trial.position.c1 / trial.position.c2, trial.deceleration, trial.arm_speed),
-        brakes_(std::isfinite(trial.deceleration)) {
+  explicit Loops(const StepTrial& trial) : trial_(trial), position_(trial.position) {
     // The law's history before the step: the arm at rest at its start.
     position_.Update(trial.start, trial.start, 1);
   }
@@ -30,7 +25,7 @@ class Loops {
       input_.pressure_ref = next_pressure_ref_;
     }
     if (k % trial_.interval == 0) {
-      if (brakes_) reference = curve_.Reference(m.arm_angle, reference);
+      if (trial_.curve) reference = trial_.curve->Reference(m.arm_angle, reference);
       next_pressure_ref_ = position_ctrl::QuantiseDac(position_.Update(m.arm_angle, reference, 1),
                                                       trial_.dac_bits, trial_.dac_range);
     }
@@ -49,8 +44,6 @@ class Loops {
  private:
   const StepTrial& trial_;
   position_ctrl::PositionLaw position_;
-  position_ctrl::BrakingCurve curve_;
-  bool brakes_;
   pressure_ctrl::PressureLawInput input_;
   double next_pressure_ref_ = 0;  // computed, not yet in force
   double voltage_ = 0;            // acting
@@ -89,6 +82,7 @@ StepTrial TrialOf(const settings::StackConfig& config) {
   trial.model = config.model.description;
   trial.pressure = design::PressureLawSettingsFor(config);
   trial.position = design::PositionLawSettingsFor(config);
+  trial.curve = design::BrakingCurveFor(config);
   trial.tick = 1 / config.plant.rate_hz;
   trial.interval = static_cast<int>(config.position_interval_ticks);
   trial.pressure_interval = static_cast<int>(config.pressure_interval_ticks);

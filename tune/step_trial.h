@@ -3,11 +3,12 @@
 #pragma once
 
 #include <cstdint>
-#include <limits>
+#include <optional>
 #include <vector>
 
 #include "design/sampled_position_loop.h"
 #include "model/terms/description.h"
+#include "position_ctrl/law/braking_curve.h"
 #include "position_ctrl/law/position_law.h"
 #include "pressure_ctrl/law/pressure_law.h"
 #include "settings/stack_config.h"
@@ -18,15 +19,13 @@ struct StepTrial {
   model::ModelDescription model;
   pressure_ctrl::PressureLawSettings pressure;
   position_ctrl::PositionLawSettings position;
-  // rad/s^2: a braking curve (position_ctrl/law/braking_curve.h) before eq. (17); infinity: none.
-  double deceleration = std::numeric_limits<double>::infinity();
-  double arm_speed = std::numeric_limits<double>::infinity();  // rad/s, the curve's largest
-  double tick = 0;                                             // s, of the plant
-  int interval = 1;                                            // ticks between samples of the position loop
-  int pressure_interval = 1;                                   // ticks between samples of the pressure loop
-  int command_delay = 1;                                       // ticks, as plant.command_delay_ticks
-  int dac_bits = 0;                                            // as position.dac_bits
-  double dac_range = 0;                                        // psi
+  std::optional<position_ctrl::BrakingCurve> curve = {};
+  double tick = 0;            // s, of the plant
+  int interval = 1;           // ticks between samples of the position loop
+  int pressure_interval = 1;  // ticks between samples of the pressure loop
+  int command_delay = 1;      // ticks, as plant.command_delay_ticks
+  int dac_bits = 0;           // as position.dac_bits
+  double dac_range = 0;       // psi
   settings::NoiseSection noise;
   int64_t seed = 1;
   double start = 0;  // rad, where the arm is before the step

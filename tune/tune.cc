@@ -138,28 +138,33 @@ int Tune(const TuneRequest& request, std::FILE* out, std::FILE* progress, bool t
 
   ProgressLine line(progress, terminal);
   const Gains pressure = ChoosePressureLoop(config);
+  const double share = request.fixed_gains ? 1 : 0.25;
   const SearchResult fixed = SearchGains(judge, goals, pressure, false, request.jobs,
-                                         [&](double done) { line.Show(0.25 * done, "gains of eq. (17)"); });
-  const SearchResult curve = SearchGains(judge, goals, pressure, true, request.jobs, [&](double done) {
-    line.Show(0.25 + 0.75 * done, "gains with a braking curve");
-  });
-  Refuse(config, RefusalBySearch(judge, goals, fixed));
+                                         [&](double done) { line.Show(share * done, "gains of eq. (17)"); });
+  SearchResult curve;
+  if (!request.fixed_gains) {
+    curve = SearchGains(judge, goals, pressure, true, request.jobs, [&](double done) {
+      line.Show(share + (1 - share) * done, "gains with a braking curve");
+    });
+  }
+  const SearchResult& chosen = curve.found ? curve : fixed;
+  Refuse(config, RefusalBySearch(judge, goals, chosen));
 
   TuningReport report;
   report.config = config.file;
   report.judge = &judge;
   report.noise = request.noise;
   report.proposals.push_back(ProposalOf(judge, "as configured", TryGains(judge, GainsOf(config))));
-  report.proposals.push_back(ProposalOf(judge, "proposed", fixed.best));
+  if (curve.found && fixed.found) report.proposals.push_back(ProposalOf(judge, "eq. (17) alone", fixed.best));
+  report.proposals.push_back(ProposalOf(judge, "proposed", chosen.best));
   RunOnTheStack(judge, &report.proposals.back());
-  if (curve.found) report.proposals.push_back(ProposalOf(judge, "with a braking curve", curve.best));
-  report.trade_offs = TradeOffs(fixed.tried);
-  report.tried = fixed.tried;
+  report.trade_offs = TradeOffs(chosen.tried);
+  report.tried = chosen.tried;
   const std::string text = ReportText(report, request.si);
   std::fwrite(text.data(), 1, text.size(), out);
   if (!request.folder.empty()) WriteReport(report, request.folder, request.si);
   if (!request.output.empty()) {
-    WriteWholeFile(request.output, TunedText(config, With(config, fixed.best.gains), request.output));
+    WriteWholeFile(request.output, TunedText(config, With(config, chosen.best.gains), request.output));
   }
   return 0;
 }

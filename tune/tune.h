@@ -16,6 +16,7 @@ struct TuneRequest {
   std::string folder;                   // of the report; empty: none
   int samples = 8;
   int jobs = 2;
+  bool fixed_gains = false;  // eq. (17) alone, without a braking curve
   bool noise = false;
   bool si = false;
 };

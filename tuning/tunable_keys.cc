@@ -25,6 +25,7 @@ constexpr std::array kKeys{
     TunableKey{"position.c1", "psi/rad", "gain on the arm's angle error, eq. (17)", kPosition},
     TunableKey{"position.c2", "psi s/rad", "gain on its derivative, eq. (17)", kPosition},
     TunableKey{"position.derivative", "", "\"error\" or \"measurement\": what eq. (17) differentiates", kPosition},
+    TunableKey{"position.braking_rad_s2", "rad/s^2", "deceleration of the braking curve before eq. (17)", kPosition},
     TunableKey{"reference.kind", "", "steps, sine, square, chirp, csv (points) or planner", kPosition},
     TunableKey{"reference.initial", "rad, psi, in-lbf or V", "before the first step or plan", kPosition},
     TunableKey{"reference.steps", "s, and as initial", "[[time, value], ...]", kPosition},

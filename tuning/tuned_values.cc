@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cmath>
+#include <limits>
 #include <string_view>
 
 #include "base/number_text.h"
@@ -33,6 +34,8 @@ constexpr std::array kValues{
     Value{"position.derivative_on_error",
           [](const TunedValues& v) { return v.position.derivative_on_error ? 1.0 : 0.0; },
           [](TunedValues& v, double x) { v.position.derivative_on_error = x != 0; }},
+    Value{"position.braking_rad_s2", [](const TunedValues& v) { return v.braking; },
+          [](TunedValues& v, double x) { v.braking = x; }},
     Value{"limits.pressure_psi", [](const TunedValues& v) { return v.limits.pressure_psi; },
           [](TunedValues& v, double x) { v.limits.pressure_psi = x; }},
     Value{"limits.motor_speed_rad_s", [](const TunedValues& v) { return v.limits.motor_speed_rad_s; },
@@ -64,7 +67,7 @@ const Value* Find(std::string_view name) {
 
 // A limit may be infinite; a feed-forward may have either sign; nothing else is below 0.
 std::string WhatIsWrong(const std::string& name, double value) {
-  const bool limit = name.starts_with("limits.");
+  const bool limit = name.starts_with("limits.") || name == "position.braking_rad_s2";
   const bool good = limit ? value > 0
                           : std::isfinite(value) && (value >= 0 || name == "pressure.reference_feedforward_V_psi" ||
                                                      name == "pressure.arm_speed_ratio");
@@ -77,6 +80,7 @@ std::string WhatIsWrong(const std::string& name, double value) {
 TunedValues ValuesOf(const settings::StackConfig& config) {
   return {.pressure = design::PressureLawSettingsFor(config),
           .position = design::PositionLawSettingsFor(config),
+          .braking = config.position.braking_rad_s2.value_or(std::numeric_limits<double>::infinity()),
           .limits = config.limits,
           .noise = config.noise};
 }

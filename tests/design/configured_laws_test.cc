@@ -11,8 +11,7 @@ namespace {
 TEST(ConfiguredLaws, DerivesOrTakesTheGains) {
   const auto derived = settings::Parsed(settings::kConfigText);
   const auto law = PressureLawSettingsFor(derived);
-  const auto gains =
-      pressure_ctrl::DerivePressureGains(derived.model.description.parameters, 0, 150, 0.5, 2);
+  const auto gains = pressure_ctrl::DerivePressureGains(derived.model.description.parameters, 0, 150, 0.5, 2);
   EXPECT_EQ(law.gains.k_p, gains.k_p);
   EXPECT_EQ(law.gains.k_v, gains.k_v);
   EXPECT_EQ(law.voltage_limit, 10);  // T_pmax/k_1
@@ -24,10 +23,11 @@ TEST(ConfiguredLaws, DerivesOrTakesTheGains) {
 }
 
 TEST(ConfiguredLaws, NamesTheKeyWhereNoGainsFollow) {
-  const auto slow = settings::Parsed(
-      settings::Replaced(settings::kConfigText, "natural_frequency_rad_s = 150", "natural_frequency_rad_s = 1"));
-  EXPECT_THAT(settings::InputErrorOf([&] { PressureLawSettingsFor(slow); }),
-              ::testing::HasSubstr("stack.toml: pressure.natural_frequency_rad_s: natural frequency: found 1"));
+  const auto slow = settings::Parsed(settings::Replaced(
+      settings::kConfigText, "natural_frequency_rad_s = 150", "natural_frequency_rad_s = 1"));
+  EXPECT_THAT(
+      settings::InputErrorOf([&] { PressureLawSettingsFor(slow); }),
+      ::testing::HasSubstr("stack.toml: pressure.natural_frequency_rad_s: natural frequency: found 1"));
 }
 
 TEST(ConfiguredLaws, TakesTheArmsTorqueAsALimitOfPressure) {
@@ -37,6 +37,29 @@ TEST(ConfiguredLaws, TakesTheArmsTorqueAsALimitOfPressure) {
   EXPECT_EQ(law.pressure_limit, 100);  // k_2 = 3.68 in-lbf/psi
   EXPECT_EQ(law.c1, 10500);
   EXPECT_EQ(law.sample_interval, config.position.sample_interval_s);
+}
+
+TEST(ConfiguredLaws, MakesABrakingCurveWhereOneIsConfigured) {
+  EXPECT_FALSE(BrakingCurveFor(settings::Parsed(settings::kConfigText)));
+  const auto config =
+      settings::Parsed(settings::Replaced(settings::kConfigText, "c2 = 350", "c2 = 350\nbraking_rad_s2 = 3") +
+                       "[limits]\nmotor_speed_rad_s = 628\n");
+  const auto curve = BrakingCurveFor(config);
+  ASSERT_TRUE(curve);
+  EXPECT_DOUBLE_EQ(curve->straight_within(), 3 / (2 * 30.0 * 30.0));
+  EXPECT_NEAR(curve->Speed(100), 0.95 * 628 / 462.8, 1e-3);
+}
+
+TEST(ConfiguredLaws, RefusesABrakingCurveThatCannotBe) {
+  using ::testing::HasSubstr;
+  const auto error = [](const std::string& to) {
+    return settings::InputErrorOf(
+        [&] { settings::Parsed(settings::Replaced(settings::kConfigText, "c2 = 350", to)); });
+  };
+  EXPECT_THAT(error("c2 = 350\nbraking_rad_s2 = 3\nderivative = \"error\""),
+              HasSubstr("position.braking_rad_s2: found it beside derivative"));
+  EXPECT_THAT(error("braking_rad_s2 = 3"), HasSubstr("c1 and c2 above 0"));
+  EXPECT_THAT(error("c2 = 350\nbraking_rad_s2 = 0"), HasSubstr("position.braking_rad_s2"));
 }
 
 }  // namespace

@@ -29,6 +29,14 @@ TEST(Gains, ChangeTheLawsAndSwitchTheFeedForwardsOn) {
   EXPECT_NE(design::PressureLawSettingsFor(tuned).reference_feedforward, 0.001);
 }
 
+TEST(Gains, HaveABrakingCurveOrNone) {
+  const settings::StackConfig config = Retuned({"position.braking_rad_s2=3"});
+  EXPECT_EQ(GainsOf(config).deceleration, 3);
+  EXPECT_EQ(With(config, GainsOf(config)).position.braking_rad_s2, 3);
+  const Gains fixed = {.natural_frequency = 150, .damping_ratio = 0.5, .c1 = 1, .c2 = 1};
+  EXPECT_FALSE(With(config, fixed).position.braking_rad_s2);
+}
+
 // Tests that k_p and k_v stay the way in which eq. (16) is given.
 TEST(Gains, KeepTheFormOfThePressureLaw) {
   const settings::StackConfig config = Retuned({"pressure.k_p=0.1336", "pressure.k_v=8.39"});

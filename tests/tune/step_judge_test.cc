@@ -76,6 +76,12 @@ TEST(StepJudge, SettlesAllStepsWithABrakingCurve) {
   const StepVerdict verdict = judge.Judge(gains);
   EXPECT_LT(verdict.ratio, 1.1);
   EXPECT_LT(verdict.overshoot_percent, 1);
+  // On the stack itself.
+  for (const double step : judge.steps()) {
+    const StepResult run = SimulateStep(With(judge.config(), gains), judge.Nominal(step));
+    EXPECT_LT(run.ratio, 1.1) << step;
+    EXPECT_NEAR(run.ratio, judge.Try(gains, judge.Nominal(step)).ratio, 2e-3) << step;
+  }
 }
 
 // Tests that noise reaches the loops, and is the configuration's own where it has some.

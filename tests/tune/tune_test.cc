@@ -48,7 +48,7 @@ TEST_F(TuneProgram, WritesAConfigurationThatDoesWhatItsTableSays) {
       HYDRO_TUNE, kRetuned + " --goal step_rad=0.1 --samples 1 --jobs 2 -o " + tuned + " --out " + report);
   ASSERT_EQ(outcome.code, 0) << outcome.err;
   EXPECT_THAT(outcome.out, HasSubstr("as configured: pressure loop 150 rad/s"));
-  EXPECT_THAT(outcome.out, HasSubstr("with a braking curve: "));
+  EXPECT_THAT(outcome.out, HasSubstr("eq. (17) alone: "));
   EXPECT_THAT(outcome.err, HasSubstr("hydro-tune: 100 %"));
   EXPECT_THAT(ReadTextFile(report + "/tune.html"), HasSubstr("<svg"));
   EXPECT_THAT(ReadTextFile(report + "/tune.svg"), HasSubstr("bang-bang bound"));
@@ -59,6 +59,7 @@ TEST_F(TuneProgram, WritesAConfigurationThatDoesWhatItsTableSays) {
       << "what does not change stays";
   const settings::StackConfig config = settings::LoadStackConfig(tuned);
   EXPECT_NE(config.position.c1, 10000);
+  EXPECT_TRUE(config.position.braking_rad_s2.has_value());
   EXPECT_EQ(config.model.description.name, "Table 1");
 
   const StepJudge judge(config, {.goals = {.step_rad = 0.1}, .samples = 0});
@@ -69,8 +70,19 @@ TEST_F(TuneProgram, WritesAConfigurationThatDoesWhatItsTableSays) {
   const size_t at = outcome.out.find("\n       0.1 ");
   ASSERT_NE(at, std::string::npos) << outcome.out;
   const std::string line = outcome.out.substr(at + 1, outcome.out.find('\n', at + 1) - at - 1);
-  EXPECT_THAT(line.substr(line.find('|', line.find('|') + 1)), HasSubstr(row));
+  EXPECT_THAT(line.substr(line.rfind('|')), HasSubstr(row));
+  EXPECT_LT(step.ratio, 1.1);
   EXPECT_EQ(Run(HYDRO_SIM, tuned).code, 0);
+}
+
+// Tests the stack under eq. (17) alone: no key of the curve is written.
+TEST_F(TuneProgram, KeepsToFixedGainsWhenAsked) {
+  const std::string tuned = (folder_ / "tuned.toml").string();
+  const Outcome outcome =
+      Run(HYDRO_TUNE, kRetuned + " --fixed-gains --goal step_rad=0.1 --samples 0 -o " + tuned);
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, Not(HasSubstr("eq. (17) alone")));
+  EXPECT_FALSE(settings::LoadStackConfig(tuned).position.braking_rad_s2);
 }
 
 TEST_F(TuneProgram, RefusesGoalsWithTheLimitAndWritesNothing) {
