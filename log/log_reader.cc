@@ -17,6 +17,15 @@ std::string WrongSyncWord(uint32_t found) {
   return "found sync word " + Hex(found) + "; allowed " + Hex(kLogSyncWord);
 }
 
+// A table or another text, that was named by mistake: no damage made it so.
+bool BeginsAsText(const MappedFile& file) {
+  constexpr size_t kLooked = 64;
+  const size_t size = std::min(file.size(), kLooked);
+  return size >= 4 && std::all_of(file.data(), file.data() + size, [](uint8_t c) {
+           return (c >= 0x20 && c < 0x7f) || c == '\n' || c == '\r' || c == '\t';
+         });
+}
+
 }  // namespace
 
 std::string ParseLogEvent(const MappedFile& file, int64_t offset, LogEvent& event) {
@@ -80,6 +89,9 @@ LogReader::LogReader(const std::string& file, OnDamage on_damage)
     : name_(file), file_(file), on_damage_(on_damage) {
   try {
     verdict_ = ExamineLog(file_);
+    if (BeginsAsText(file_)) {
+      throw InputError("found text, allowed an LCM event log; hydro-log import " + file + " -o RUN.lcmlog makes one of a table");
+    }
   } catch (const InputError& error) {
     throw LogError(file + ": " + error.what());
   }

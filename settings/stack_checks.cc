@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "base/number_text.h"
+#include "base/units.h"
 #include "model/effects/catalogue.h"
 #include "settings/toml/section_reader.h"
 #include "trajectory/trajectory.h"
@@ -33,16 +34,13 @@ void CheckPair(const TomlNode& root, const std::string& present, const std::stri
 void CheckAngle(const TomlNode& root, const std::string& key, double angle, const model::Parameters& p,
                 double allowed) {
   const double limit = p.V_ms / p.c;
-  if (std::abs(angle) < limit && std::abs(angle) > allowed) {
-    throw KeyError(root, key, "arm angle " + ShortestNumber(angle) + " rad",
-                   "|alpha| <= " + ShortestNumber(allowed) + " rad (limits.arm_angle_rad)");
-  }
-  if (std::abs(angle) < limit) return;
-  const char* side = angle > 0 ? "V_1" : "V_2";
-  throw KeyError(root, key,
-                 "arm angle " + ShortestNumber(angle) + " rad, which leaves " + side + " = " +
-                     ShortestNumber(p.V_ms - p.c * std::abs(angle)) + " in^3",
-                 "|alpha| < V_ms/c = " + ShortestNumber(limit) + " rad, where V_1, V_2 > 0");
+  const double most = std::min(allowed, limit);
+  if (std::abs(angle) < limit && std::abs(angle) <= allowed) return;
+  throw KeyError(root, key, "arm angle " + ShortestNumber(angle) + " rad (" + ShortNumber(Degrees(angle)) + " deg)",
+                 allowed < limit ? "|alpha| <= " + ShortestNumber(most) + " rad (" + ShortNumber(Degrees(most)) +
+                                       " deg; limits.arm_angle_rad)"
+                                 : "|alpha| < " + ShortNumber(most) + " rad (" + ShortNumber(Degrees(most)) +
+                                       " deg), the end of the stroke (V_ms/c)");
 }
 
 // The key that gives a trajectory the value `extreme`.

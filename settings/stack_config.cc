@@ -1,5 +1,7 @@
 #include "settings/stack_config.h"
 
+#include <filesystem>
+
 #include "base/read_files.h"
 #include "base/text_file.h"
 #include "settings/agreed_entries.h"
@@ -39,18 +41,30 @@ StackConfig WithModel(TomlNode* root, const std::string& config_name, const std:
   return config;
 }
 
+// What the model file is relative to is what people get wrong.
+std::string ReadModelText(const TomlNode& root, const ModelSection& model) {
+  if (std::filesystem::exists(model.resolved_file)) return ReadTextFile(model.resolved_file);
+  throw KeyError(root, "model.file", Quoted(model.file) + ", and there is no " + Quoted(model.resolved_file),
+                 "a path that counts from the configuration's folder");
+}
+
 }  // namespace
 
 StackConfig LoadStackConfig(const std::string& file, const std::vector<std::string>& overrides) {
   TomlNode root = ParseToml(ReadTextFile(file), file);
   root.place = file;
+  if (root.Find("parameters") != nullptr && root.Find("model") == nullptr) {
+    throw InputError(file + ": found a model ([parameters]), allowed the configuration of a stack, which names its model: [model] file = " +
+                     Quoted(file));
+  }
   ApplyOverrides(overrides, &root);
+  CheckKeysHaveSections(root);
   StackConfig config = ReadDocument(&root, file);
   if (config.model.file.empty()) {
     throw KeyError(root, "model.file", "nothing", "the path of a model file");
   }
   config.model.resolved_file = PathBeside(file, config.model.file);
-  config.model.text = ReadTextFile(config.model.resolved_file);
+  config.model.text = ReadModelText(root, config.model);
   config.model.description = ParseModel(config.model.text, config.model.resolved_file);
   CheckAgainstModel(root, &config);
   config.agreed = AgreedEntries(config);

@@ -230,6 +230,29 @@ void ReadReference(SectionReader section, const std::string& config_file, Refere
   CheckedTrajectory(reference->trajectory, section);
 }
 
+void CheckKeysHaveSections(const TomlNode& root) {
+  for (const auto& [key, node] : root.members) {
+    if (node.is(TomlNode::Kind::kTable) || node.is(TomlNode::Kind::kArray)) continue;
+    std::vector<std::string> meant;
+    for (const char* section : {"model", "bus", "time", "plant", "pressure", "position", "limits", "noise", "logger", "scope"}) {
+      // The readers know their keys: one that is unknown is the first thing they say.
+      TomlNode alone, table;
+      table.members.push_back({key, node});
+      alone.members.push_back({section, std::move(table)});
+      StackConfig ignored;
+      try {
+        ReadSections(alone, "", &ignored);
+        meant.push_back(std::string(section) + "." + key);
+      } catch (const InputError& error) {
+        if (std::string(error.what()).find("unknown key") == std::string::npos) meant.push_back(std::string(section) + "." + key);
+      }
+    }
+    if (meant.empty()) continue;  // the reader of the document says what is wrong
+    throw InputError(node.place + ": " + Quoted(key) + ": found a key outside of any section, allowed section.key, did you mean " +
+                     QuotedList(meant) + "?");
+  }
+}
+
 void ReadSections(const TomlNode& root, const std::string& config_file, StackConfig* config) {
   SectionReader document(root, "");
   SectionReader model = document.Section("model");

@@ -7,6 +7,9 @@
 
 namespace hydro::settings {
 
+// Throws InputError for a key that stands outside of any section, with the sections that have such a key.
+void CheckKeysHaveSections(const TomlNode& root);
+
 // The section [reference]. Throws InputError.
 void ReadReference(SectionReader section, const std::string& config_file, ReferenceSection* reference);
 

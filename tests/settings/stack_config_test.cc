@@ -306,7 +306,7 @@ TEST_F(StackConfigFolderTest, KeepsItsFiles) {
 TEST_F(StackConfigFolderTest, NamesTheFileThatIsWrong) {
   const std::string file = Write("a.toml", kConfigText);
   EXPECT_THAT(InputErrorOf([&] { LoadStackConfig(file); }),
-              HasSubstr("model.toml: cannot be read: No such file"));
+              HasSubstr("a.toml:2: model.file: found \"model.toml\", and there is no \""));
   Write("model.toml", Replaced(kModelText, "k_1 = 4.0", "k_1 = -4.0"));
   EXPECT_THAT(InputErrorOf([&] { LoadStackConfig(file); }),
               HasSubstr("model.toml:3: parameters.k_1: found -4"));
@@ -321,6 +321,19 @@ TEST_F(StackConfigFolderTest, NamesTheFileThatIsWrong) {
   const std::string no_model = Write("b.toml", Replaced(kConfigText, "file = \"model.toml\"\n", ""));
   EXPECT_THAT(InputErrorOf([&] { LoadStackConfig(no_model); }),
               HasSubstr("b.toml:1: model.file: found nothing, allowed the path of a model file"));
+}
+
+// Tests that mistakes of a first day are answered with what is meant: a model as CONFIG, a model that is not there, a key without its section.
+TEST_F(StackConfigFolderTest, MistakesOfAFirstDay) {
+  const std::string model = Write("model.toml", kModelText), config = Write("stack.toml", kConfigText);
+  EXPECT_THAT(InputErrorOf([&] { LoadStackConfig(model); }),
+              ::testing::AllOf(HasSubstr("found a model ([parameters]), allowed the configuration of a stack"), HasSubstr("[model] file = ")));
+  EXPECT_THAT(InputErrorOf([&] { LoadStackConfig(config, {"model.file=mdoel.toml"}); }),
+              ::testing::AllOf(HasSubstr("model.file: found \"mdoel.toml\", and there is no \"" + folder_.string()),
+                               HasSubstr("allowed a path that counts from the configuration's folder")));
+  EXPECT_THAT(InputErrorOf([&] { LoadStackConfig(config, {"rate_hz=2000"}); }),
+              HasSubstr("did you mean \"plant.rate_hz\" or \"pressure.rate_hz\"?"));
+  EXPECT_THAT(InputErrorOf([&] { LoadStackConfig(config, {"c2=5"}); }), HasSubstr("did you mean \"position.c2\"?"));
 }
 
 }  // namespace

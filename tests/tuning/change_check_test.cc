@@ -88,7 +88,7 @@ TEST(PrepareChange, RefusesWithTheReason) {
       {{"limits.pressure_psi=inf"}, "allowed up to 2000"},
       {{"noise.p1_psi=1"}, "noise.p1_psi: the rig is a real one"},
       {{"reference.steps=[[0, 2.5]]"}, "reference.steps: found arm angle 2.5 rad"},
-      {{"limits.arm_angle_rad=0.05"}, "allowed |alpha| <= 0.05 rad (limits.arm_angle_rad)"},
+      {{"limits.arm_angle_rad=0.05"}, "allowed |alpha| <= 0.05 rad (2.865 deg; limits.arm_angle_rad)"},
       {{"limits.motor_speed_rad_s=100", "reference.kind=sine", "reference.amplitude=0.2", "reference.frequency_hz=2"},
        "reference: found a speed of 2.513, allowed 0.2161 (limits.motor_speed_rad_s at the arm, rad/s)"},
       {{"reference.signal=\"pressure\""}, "reference.signal: no such value"},
