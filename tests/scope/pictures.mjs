@@ -8,8 +8,10 @@ import { Bench } from './stack.mjs';
 
 const folder = process.argv[2] ?? 'docs/pictures';
 const bench = await Bench.make();
-await bench.launch(bench.file('run.lcmlog'));
-const scope = await bench.scope();
+// Slower than real time, so that a busy machine makes no gaps.
+const kSlow = ['time.speed=0.25'];
+await bench.launch(bench.file('run.lcmlog'), kSlow);
+const scope = await bench.scope(undefined, { sets: kSlow });
 const browser = await openBrowser();
 
 async function picture(name, options, prepare, shot = {}) {
@@ -18,7 +20,7 @@ async function picture(name, options, prepare, shot = {}) {
   await prepare(page);
   const raw = bench.file(`${name}.png`);
   await page.screenshot({ path: raw, ...shot });
-  execFileSync('pngquant', ['--force', '--nofs', '--output', path.join(folder, `${name}.png`), '96', raw]);
+  execFileSync('pngquant', ['--force', '--nofs', '--output', path.join(folder, `${name}.png`), '200', raw]);
   await page.context().close();
 }
 
@@ -52,8 +54,8 @@ await picture('scope_ghost', kDesk, async (page) => {
   });
   await page.keyboard.press('Escape');
   await page.locator('#toggle').click();
-  await page.evaluate(() => { const { t1 } = hydroScope.display.frame(); hydroScope.display.showWindow(t1 - 1.2, t1 - 0.1); });
-  await until(page, () => hydroScope.display.frame().bins.width < 0.0015);
+  await page.evaluate(() => { const { t1 } = hydroScope.display.frame(); hydroScope.display.showWindow(t1 - 2.6, t1 - 0.1); });
+  await until(page, () => hydroScope.display.frame().bins.width < 0.005);
 });
 
 await picture('scope_phone', { viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true, colorScheme: 'dark' }, async (page) => {

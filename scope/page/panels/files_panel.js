@@ -70,7 +70,7 @@ export class FilesPanel {
       if (answer.state === 'done') {
         this.path = answer.report;
         this.report.hidden = !this.path;
-        setText(this.result, [answer.verdict, answer.sentence].filter(Boolean).join(': ') || 'hydro-diagnose is done');
+        setText(this.result, answer.sentence || answer.verdict || 'hydro-diagnose is done');
         return;
       }
       setText(this.result, answer.text || 'hydro-diagnose is at work');

@@ -144,8 +144,8 @@ export class Chart {
       axes: [
         { ...common, scale: 'x', size: time_axis ? kTimeAxis : 0, gap: 3, incrs: kSteps, space: 90, grid: { stroke: () => colours.fine, width: 1 },
           values: time_axis ? (u, splits, i, space, step) => splits.map((t, k) => (k === splits.length - 1 ? `${timeLabel(t, step)} s` : timeLabel(t, step))) : () => [], ticks: { ...common.ticks, show: time_axis } },
-        { ...common, scale: 'y0', size: left, gap: 4, incrs: kSteps, space: kLabel_px, grid: { stroke: () => colours.fine, width: 1 }, values },
-        { ...common, scale: 'y1', side: 1, show: right, size: left, gap: 4, incrs: kSteps, space: kLabel_px, grid: { show: false }, values: units.length > 1 ? values : () => [], ticks: { ...common.ticks, show: units.length > 1 } },
+        { ...common, scale: 'y0', size: left, gap: 4, incrs: kSteps, space: (u, axis, low, high, pixels) => Math.max(kLabel_px, Math.min(2 * kLabel_px, pixels / 5)), grid: { stroke: () => colours.fine, width: 1 }, values },
+        { ...common, scale: 'y1', side: 1, show: right, size: left, gap: 4, incrs: kSteps, space: (u, axis, low, high, pixels) => Math.max(kLabel_px, Math.min(2 * kLabel_px, pixels / 5)), grid: { show: false }, values: units.length > 1 ? values : () => [], ticks: { ...common.ticks, show: units.length > 1 } },
       ],
       series: [{}, ...traces.map((one) => this.#series(one)), { scale: 'y1', show: false }],
       hooks: {
