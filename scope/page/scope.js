@@ -1,5 +1,6 @@
-// What the page knows: the runs, the one that is looked at, its events, its layout, and the user's preferences.
-// Signals: "runs", "run" (another one is shown), "layout", "preferences", "clock", "events", "restart".
+// What the page knows: the runs, the one that is looked at, its events, its layout, and the user's
+// preferences. Signals: "runs", "run" (another one is shown), "layout", "preferences", "clock", "events",
+// "restart".
 
 import * as layouts from './settings/layout.js';
 import { baseName } from './settings/run_name.js';
@@ -10,9 +11,9 @@ const kMostEvents = 2000;
 export class Scope {
   hello = null;
   runs = [];
-  run = null;                         // the RUN shown
+  run = null; // the RUN shown
   layout = { panes: [] };
-  events = new Map();                 // run -> [event], by number
+  events = new Map(); // run -> [event], by number
   ghost = false;
 
   constructor(link, api, signals, storage) {
@@ -27,9 +28,15 @@ export class Scope {
     signals.on('op:event', (message) => this.#event(message));
   }
 
-  get live() { return this.run?.kind === 'live'; }
-  get control() { return this.hello?.control === true; }
-  get known() { return (this.run?.channels ?? []).map((channel) => channel.id); }
+  get live() {
+    return this.run?.kind === 'live';
+  }
+  get control() {
+    return this.hello?.control === true;
+  }
+  get known() {
+    return (this.run?.channels ?? []).map((channel) => channel.id);
+  }
 
   channel(id, run = this.run) {
     return run?.channels.find((channel) => channel.id === id);
@@ -81,7 +88,7 @@ export class Scope {
 
   #greeted(message) {
     this.hello = message;
-    this.events.clear();              // the server sends all that it keeps again
+    this.events.clear(); // the server sends all that it keeps again
     this.#setRuns(message.runs);
     this.signals.emit('hello', message);
     this.signals.emit('events');
@@ -124,7 +131,7 @@ export class Scope {
     let list = this.events.get(event.run) ?? [];
     const known = list.find((one) => one.n === event.n);
     if (known && known.t === event.t && known.kind === event.kind) return;
-    if (known) list = [];             // the stack was started again: its events are numbered anew
+    if (known) list = []; // the stack was started again: its events are numbered anew
     list.push(event);
     if (list.length > kMostEvents) list.shift();
     this.events.set(event.run, list);

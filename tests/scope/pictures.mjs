@@ -28,7 +28,11 @@ const kDesk = { viewport: { width: 1240, height: 760 } };
 
 await picture('scope_live', kDesk, async (page) => {
   await until(page, () => hydroScope.display.last > 10.5);
-  await page.evaluate(() => { const { t0, t1 } = hydroScope.display.frame(); hydroScope.cursors.place('b', t0 + 0.62 * (t1 - t0)); hydroScope.cursors.place('a', t0 + 0.5 * (t1 - t0)); });
+  await page.evaluate(() => {
+    const { t0, t1 } = hydroScope.display.frame();
+    hydroScope.cursors.place('b', t0 + 0.62 * (t1 - t0));
+    hydroScope.cursors.place('a', t0 + 0.5 * (t1 - t0));
+  });
   await page.locator('#section-trigger > summary').click();
   await page.locator('[data-cell="dp.difference"]').waitFor();
   await until(page, () => !document.querySelector('[data-cell="p1.difference"]')?.textContent.includes('–'));
@@ -54,13 +58,20 @@ await picture('scope_ghost', kDesk, async (page) => {
   });
   await page.keyboard.press('Escape');
   await page.locator('#toggle').click();
-  await page.evaluate(() => { const { t1 } = hydroScope.display.frame(); hydroScope.display.showWindow(t1 - 2.6, t1 - 0.1); });
+  await page.evaluate(() => {
+    const { t1 } = hydroScope.display.frame();
+    hydroScope.display.showWindow(t1 - 2.6, t1 - 0.1);
+  });
   await until(page, () => hydroScope.display.frame().bins.width < 0.005);
 });
 
-await picture('scope_phone', { viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true, colorScheme: 'dark' }, async (page) => {
-  await until(page, () => hydroScope.display.last > 10);
-});
+await picture(
+  'scope_phone',
+  { viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true, colorScheme: 'dark' },
+  async (page) => {
+    await until(page, () => hydroScope.display.last > 10);
+  },
+);
 
 await browser.close();
 await bench.close();

@@ -1,4 +1,5 @@
-// Tests of tuning and references from the page on a running stack: accepted with the tick they act on, or refused in words.
+// Tests of tuning and references from the page on a running stack: accepted with the tick they act on, or
+// refused in words.
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
 import { openBrowser, openPage, streaming, until } from './browser.mjs';
@@ -30,7 +31,9 @@ test('a gain acts from a tick on', async () => {
   assert.equal(await inForce('position.c2').textContent(), '1200');
   await field('position.c2').fill('1400');
   await page.getByRole('button', { name: 'Apply' }).click();
-  await result().getByText(/^Accepted\..*from tick \d+/).waitFor();
+  await result()
+    .getByText(/^Accepted\..*from tick \d+/)
+    .waitFor();
   await inForce('position.c2').getByText('1400').waitFor();
   await page.locator('.events [data-kind=tuning]').first().waitFor();
 });
@@ -48,7 +51,9 @@ test('two values are one set', async () => {
 test('an unstable gain is refused', async () => {
   await field('position.c2').fill('1');
   await page.getByRole('button', { name: 'Apply' }).click();
-  await result().getByText(/^Refused: .*unstable/i).waitFor();
+  await result()
+    .getByText(/^Refused: .*unstable/i)
+    .waitFor();
   assert.equal(await inForce('position.c2').textContent(), '1300');
 });
 
@@ -62,7 +67,10 @@ test('undo takes the last set back', async () => {
 test('a step from the page moves the arm', async () => {
   await page.locator('[data-key="reference.initial"]').fill('0.05');
   await page.getByRole('button', { name: 'Command it' }).click();
-  await page.locator('#section-reference .result').getByText(/^Accepted/).waitFor();
+  await page
+    .locator('#section-reference .result')
+    .getByText(/^Accepted/)
+    .waitFor();
   await until(page, () => {
     const { bins } = hydroScope.display.frame();
     const at = bins.t.length - 3;
@@ -70,7 +78,8 @@ test('a step from the page moves the arm', async () => {
   });
 });
 
-// Tests that without control = true the values are shown and nothing can be set, not even past the page's buttons.
+// Tests that without control = true the values are shown and nothing can be set, not even past the page's
+// buttons.
 test('read only without control', async () => {
   const reader = await bench.scope();
   const other = await openPage(browser, reader.address);

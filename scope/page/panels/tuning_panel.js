@@ -1,4 +1,5 @@
-// Gains and the like, in force and to be set. One "Apply" is one set: all of it acts on one tick of the loop, or none.
+// Gains and the like, in force and to be set. One "Apply" is one set: all of it acts on one tick of the loop,
+// or none.
 
 import { el, setText } from '../dom.js';
 import { section } from './section.js';
@@ -8,7 +9,7 @@ const kReferencePrefix = 'reference.';
 
 export class TuningPanel {
   #version = null;
-  #rows = new Map();                  // key -> TuningRow
+  #rows = new Map(); // key -> TuningRow
   #edited = new Set();
 
   constructor(scope, signals) {
@@ -16,9 +17,17 @@ export class TuningPanel {
     this.rows = el('div', { class: 'form' });
     this.result = el('output', { class: 'result', role: 'status' });
     this.apply = el('button', { type: 'button', class: 'main', text: 'Apply', onclick: () => this.#apply() });
-    this.undo = el('button', { type: 'button', text: 'Undo', title: 'Take the last set back', onclick: () => this.#undo() });
+    this.undo = el('button', {
+      type: 'button',
+      text: 'Undo',
+      title: 'Take the last set back',
+      onclick: () => this.#undo(),
+    });
     this.buttons = el('div', { class: 'row buttons-bar' }, this.apply, this.undo);
-    this.readonly = el('p', { class: 'hint', text: 'Read only: [scope] control = true in the configuration lets the page set values.' });
+    this.readonly = el('p', {
+      class: 'hint',
+      text: 'Read only: [scope] control = true in the configuration lets the page set values.',
+    });
     this.element = section('tuning', 'Tuning', false, this.rows, this.readonly, this.buttons, this.result);
     this.element.hidden = true;
     signals.on('op:tuning', (message) => this.#values(message));
@@ -29,7 +38,10 @@ export class TuningPanel {
     this.control = message.control === true && this.scope.control;
     const entries = (message.entries ?? []).filter(({ key }) => !key.startsWith(kReferencePrefix));
     this.element.hidden = entries.length === 0;
-    const same = entries.length === this.#rows.size && entries.every(({ key }) => this.#rows.has(key)) && this.built_for === this.control;
+    const same =
+      entries.length === this.#rows.size &&
+      entries.every(({ key }) => this.#rows.has(key)) &&
+      this.built_for === this.control;
     if (!same) this.#build(entries);
     for (const entry of entries) this.#rows.get(entry.key).show(entry, this.#edited.has(entry.key));
     if (this.#version !== null && this.#version !== message.version && message.text) setText(this.result, message.text);
@@ -40,15 +52,21 @@ export class TuningPanel {
   #build(entries) {
     this.built_for = this.control;
     this.#edited.clear();
-    const edited = (row) => { if (row.changed) this.#edited.add(row.key); else this.#edited.delete(row.key); this.#enable(); };
+    const edited = (row) => {
+      if (row.changed) this.#edited.add(row.key);
+      else this.#edited.delete(row.key);
+      this.#enable();
+    };
     this.#rows = new Map(entries.map((entry) => [entry.key, new TuningRow(entry, this.control, edited)]));
     let group = '';
-    this.rows.replaceChildren(...entries.flatMap(({ key }) => {
-      const [name] = key.split('.');
-      const head = name === group ? [] : [el('h3', { text: name })];
-      group = name;
-      return [...head, this.#rows.get(key).element];
-    }));
+    this.rows.replaceChildren(
+      ...entries.flatMap(({ key }) => {
+        const [name] = key.split('.');
+        const head = name === group ? [] : [el('h3', { text: name })];
+        group = name;
+        return [...head, this.#rows.get(key).element];
+      }),
+    );
     this.readonly.hidden = this.control;
     this.buttons.hidden = !this.control;
   }

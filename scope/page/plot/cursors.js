@@ -27,7 +27,8 @@ export function interval(cursors) {
   return { dt, rate: 1 / dt };
 }
 
-// Rows {id, a, b, difference} of the channels, from the exact values at the cursors ({t, values} in the channels' order, or null).
+// Rows {id, a, b, difference} of the channels, from the exact values at the cursors ({t, values} in the
+// channels' order, or null).
 export function cursorRows(channels, at_a, at_b) {
   return channels.map((id, i) => {
     const a = at_a?.values?.[i] ?? NaN;

@@ -12,24 +12,42 @@ import { factorOf, unitOf } from '../../../scope/page/settings/units.js';
 
 class Storage {
   #kept = new Map();
-  getItem(key) { return this.#kept.get(key) ?? null; }
-  setItem(key, value) { this.#kept.set(key, String(value)); }
-  removeItem(key) { this.#kept.delete(key); }
+  getItem(key) {
+    return this.#kept.get(key) ?? null;
+  }
+  setItem(key, value) {
+    this.#kept.set(key, String(value));
+  }
+  removeItem(key) {
+    this.#kept.delete(key);
+  }
 }
 
 const kKnown = ['dp', 'dp_ref', 'p1', 'p2', 'residual.p1'];
 
 test('the first layout shows what the run has', () => {
   const { panes } = layouts.defaultLayout(kKnown);
-  assert.deepEqual(panes.map((pane) => pane.channels), [['dp', 'dp_ref'], ['p1', 'p2']]);
+  assert.deepEqual(
+    panes.map((pane) => pane.channels),
+    [
+      ['dp', 'dp_ref'],
+      ['p1', 'p2'],
+    ],
+  );
 });
 
 test('channels and panes move', () => {
   let layout = layouts.defaultLayout(kKnown);
   layout = layouts.withChannelMoved(layout, 0, 1, 'dp_ref');
-  assert.deepEqual(layout.panes.map((pane) => pane.channels), [['dp'], ['p1', 'p2', 'dp_ref']]);
+  assert.deepEqual(
+    layout.panes.map((pane) => pane.channels),
+    [['dp'], ['p1', 'p2', 'dp_ref']],
+  );
   layout = layouts.withChannelMoved(layout, 1, 2, 'p2');
-  assert.deepEqual(layout.panes.map((pane) => pane.channels), [['dp'], ['p1', 'dp_ref'], ['p2']]);
+  assert.deepEqual(
+    layout.panes.map((pane) => pane.channels),
+    [['dp'], ['p1', 'dp_ref'], ['p2']],
+  );
   layout = layouts.withPaneMoved(layout, 2, -2);
   assert.deepEqual(layout.panes[0].channels, ['p2']);
   layout = layouts.withHidden(layout, 0, 'p2', true);
@@ -70,8 +88,20 @@ test('the trigger names what is wrong with it', () => {
   assert.equal(triggerError({ ...defaultTrigger(), hysteresis: -1 }), 'hysteresis is -1: give a number at least 0');
   assert.equal(triggerError({ ...defaultTrigger(), level: NaN }), 'level: give a number');
   assert.deepEqual(triggerMessage({ ...defaultTrigger(), level: 100 }, 4, 0, ['dp'], 900), {
-    op: 'trigger', id: 4, run: 0, channels: ['dp'], channel: 'dp', level: 100, edge: 'rising', hysteresis: 0, holdoff: 0.1,
-    pre: 0.25, mode: 'normal', on: 'level', span: 0.5, pixels: 900,
+    op: 'trigger',
+    id: 4,
+    run: 0,
+    channels: ['dp'],
+    channel: 'dp',
+    level: 100,
+    edge: 'rising',
+    hysteresis: 0,
+    holdoff: 0.1,
+    pre: 0.25,
+    mode: 'normal',
+    on: 'level',
+    span: 0.5,
+    pixels: 900,
   });
 });
 
@@ -105,7 +135,10 @@ test('the token leaves the address bar', () => {
 
 test('attempts to connect come soon at first, and never more than 2 s apart', () => {
   const wait = new BackOff();
-  assert.deepEqual([1, 2, 3, 4, 5].map(() => wait.next()), [250, 500, 1000, 2000, 2000]);
+  assert.deepEqual(
+    [1, 2, 3, 4, 5].map(() => wait.next()),
+    [250, 500, 1000, 2000, 2000],
+  );
   wait.reset();
   assert.equal(wait.next(), 250);
 });
@@ -115,7 +148,10 @@ test('active faults', () => {
   const fault = { kind: 'fault', source: 'plant', code: 'stale_state', t: 1 };
   const other = { kind: 'fault', source: 'pressure_ctrl', code: 'stale_state', t: 2 };
   assert.deepEqual(activeFaults([fault, other, { ...fault, kind: 'fault_end' }]), [other]);
-  assert.deepEqual(activeFaults([fault, { kind: 'stop', t: 3 }]).map(({ kind }) => kind), ['fault', 'stop']);
+  assert.deepEqual(
+    activeFaults([fault, { kind: 'stop', t: 3 }]).map(({ kind }) => kind),
+    ['fault', 'stop'],
+  );
   assert.deepEqual(activeFaults([fault, other, { kind: 'rearm', t: 4 }]), []);
   assert.deepEqual(activeFaults([fault, { kind: 'restart', t: 0 }, other]), [other]);
 });
