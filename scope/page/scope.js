@@ -2,18 +2,17 @@
 // preferences. Signals: "runs", "run" (another one is shown), "layout", "preferences", "clock", "events",
 // "restart".
 
+import { EventBook } from './event_book.js';
 import * as layouts from './settings/layout.js';
 import { baseName } from './settings/run_name.js';
 import { loadPreferences, savePreferences } from './settings/preferences.js';
-
-const kMostEvents = 2000;
 
 export class Scope {
   hello = null;
   runs = [];
   run = null; // the RUN shown
   layout = { panes: [] };
-  events = new Map(); // run -> [event], by number
+  events = new EventBook();
   ghost = false;
 
   constructor(link, api, signals, storage) {
@@ -43,7 +42,7 @@ export class Scope {
   }
 
   eventsOf(run = this.run) {
-    return (run && this.events.get(run.run)) ?? [];
+    return run ? this.events.of(run.run) : [];
   }
 
   // Channels that the panes need, and the ghost's of those that are measured.
@@ -128,13 +127,7 @@ export class Scope {
   }
 
   #event(event) {
-    let list = this.events.get(event.run) ?? [];
-    const known = list.find((one) => one.n === event.n);
-    if (known && known.t === event.t && known.kind === event.kind) return;
-    if (known) list = []; // the stack was started again: its events are numbered anew
-    list.push(event);
-    if (list.length > kMostEvents) list.shift();
-    this.events.set(event.run, list);
+    if (!this.events.add(event)) return;
     this.signals.emit('event', event);
     if (event.run === this.run?.run) this.signals.emit('events');
   }

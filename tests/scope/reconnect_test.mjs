@@ -65,6 +65,8 @@ test('the stack is started again', async () => {
     before,
   );
   const newest = await page.evaluate(() => hydroScope.display.frame().bins.t.at(-1));
+  const latest = await page.evaluate(() => Math.max(0, ...hydroScope.scope.eventsOf().map(({ t }) => t)));
+  assert.ok(latest < before, `an event of the run before, at ${latest} s, is shown in the new one`);
   assert.ok(newest < before, `the newest bin is at ${newest} s of a run that began anew`);
 });
 

@@ -13,8 +13,6 @@ const kWords = {
 const kSilent_s = 1;
 
 export class LinkPanel {
-  #dropped = { bins: 0, frames: 0 };
-
   constructor(scope, link, api, signals, notice) {
     Object.assign(this, { scope, link, api, signals, notice });
     signals.on('link', (news) => this.#link(news));
@@ -78,13 +76,14 @@ export class LinkPanel {
     setText(lamp, words ?? state);
   }
 
-  #drop({ bins, frames }) {
-    this.#dropped.bins += bins;
-    this.#dropped.frames += frames;
+  // The server counts from the start of the connection.
+  #drop(dropped) {
     const output = byId('dropped');
     output.hidden = false;
-    setText(output, `dropped ${this.#dropped.frames} frames`);
-    output.title = `This browser was too slow: ${this.#dropped.frames} frames with ${this.#dropped.bins} bins were not sent. Nothing is missing in the server's history: pause or zoom to see it.`;
+    setText(output, `dropped ${dropped.frames} frames`);
+    output.title =
+      `This browser was too slow: ${dropped.frames} frames with ${dropped.bins} bins were not sent. ` +
+      "Nothing is missing in the server's history: pause or zoom to see it.";
   }
 
   #tokenField() {

@@ -1,6 +1,7 @@
 // Tests of what the page keeps and sends: layouts, preferences, the trigger, units, the token.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
+import { EventBook } from '../../../scope/page/event_book.js';
 import { BackOff } from '../../../scope/page/link/back_off.js';
 import { takeToken, tokenIn } from '../../../scope/page/link/token.js';
 import { activeFaults } from '../../../scope/page/settings/active_faults.js';
@@ -154,4 +155,24 @@ test('active faults', () => {
   );
   assert.deepEqual(activeFaults([fault, other, { kind: 'rearm', t: 4 }]), []);
   assert.deepEqual(activeFaults([fault, { kind: 'restart', t: 0 }, other]), [other]);
+});
+
+// Tests that an event that is sent again is kept once, and that those before a restart go, also where the new ones look the same.
+test('events are kept once, and not beyond a restart', () => {
+  const book = new EventBook();
+  const step = (n, t) => ({ run: 0, n, t, kind: 'step', text: 'reference from 0 to 0.3' });
+  assert.equal(book.add(step(1, 0.2)), true);
+  assert.equal(book.add(step(1, 0.2)), false);
+  book.add(step(2, 2.2));
+  book.add(step(3, 4.4));
+  book.add({ run: 0, n: 1, t: 0, kind: 'restart', text: 'the plant has started again' });
+  book.add(step(2, 0.2));
+  assert.deepEqual(
+    book.of(0).map(({ n, t }) => [n, t]),
+    [
+      [1, 0],
+      [2, 0.2],
+    ],
+  );
+  assert.deepEqual(book.of(7), []);
 });
