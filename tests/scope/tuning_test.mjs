@@ -1,6 +1,7 @@
 // Tests of tuning and references from the page on a running stack: accepted with the tick they act on, or
 // refused in words.
 import assert from 'node:assert/strict';
+import { createRequire } from 'node:module';
 import { after, before, test } from 'node:test';
 import { openBrowser, openPage, streaming, until } from './browser.mjs';
 import { Bench } from './stack.mjs';
@@ -76,6 +77,22 @@ test('a step from the page moves the arm', async () => {
     const at = bins.t.length - 3;
     return Math.abs(bins.max.arm_ref[at] - 0.05) < 1e-6 && Math.abs(bins.max.arm_angle[at] - 0.05) < 0.01;
   });
+});
+
+// Tests that the checks of axe find nothing to mend where values can be set.
+test('accessibility of the fields and sliders', async () => {
+  const { source } = createRequire(new URL('../../scope/page/package.json', import.meta.url))('axe-core');
+  await page.evaluate(() =>
+    document.querySelectorAll('details.group').forEach((one) => {
+      one.open = true;
+    }),
+  );
+  await page.evaluate(source);
+  const { violations } = await page.evaluate(() => globalThis.axe.run('#side'));
+  assert.deepEqual(
+    violations.map(({ id, nodes }) => `${id}: ${nodes[0].html}`),
+    [],
+  );
 });
 
 // Tests that without control = true the values are shown and nothing can be set, not even past the page's

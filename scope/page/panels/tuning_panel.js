@@ -6,14 +6,19 @@ import { section } from './section.js';
 import { TuningRow } from './tuning_row.js';
 
 const kReferencePrefix = 'reference.';
+const kOpenGroups = ['pressure', 'position'];
+
+function groupOf({ key }) {
+  return key.split('.')[0];
+}
 
 export class TuningPanel {
-  #version = null;
   #rows = new Map(); // key -> TuningRow
   #edited = new Set();
 
   constructor(scope, signals) {
     this.scope = scope;
+    this.in_force = el('p', { class: 'hint' });
     this.rows = el('div', { class: 'form' });
     this.result = el('output', { class: 'result', role: 'status' });
     this.apply = el('button', { type: 'button', class: 'main', text: 'Apply', onclick: () => this.#apply() });
@@ -23,12 +28,13 @@ export class TuningPanel {
       title: 'Take the last set back',
       onclick: () => this.#undo(),
     });
-    this.buttons = el('div', { class: 'row buttons-bar' }, this.apply, this.undo);
+    // The answer stands with the buttons, in view wherever one has scrolled to.
+    this.buttons = el('div', { class: 'buttons-bar' }, el('div', { class: 'row' }, this.apply, this.undo), this.result);
     this.readonly = el('p', {
       class: 'hint',
       text: 'Read only: [scope] control = true in the configuration lets the page set values.',
     });
-    this.element = section('tuning', 'Tuning', false, this.rows, this.readonly, this.buttons, this.result);
+    this.element = section('tuning', 'Tuning', false, this.in_force, this.readonly, this.rows, this.buttons);
     this.element.hidden = true;
     signals.on('op:tuning', (message) => this.#values(message));
     signals.on('link', () => this.#enable());
@@ -44,8 +50,10 @@ export class TuningPanel {
       this.built_for === this.control;
     if (!same) this.#build(entries);
     for (const entry of entries) this.#rows.get(entry.key).show(entry, this.#edited.has(entry.key));
-    if (this.#version !== null && this.#version !== message.version && message.text) setText(this.result, message.text);
-    this.#version = message.version;
+    setText(
+      this.in_force,
+      message.text || (message.version === 0 ? 'In force: as configured' : `In force: version ${message.version}`),
+    );
     this.#enable();
   }
 
@@ -58,14 +66,17 @@ export class TuningPanel {
       this.#enable();
     };
     this.#rows = new Map(entries.map((entry) => [entry.key, new TuningRow(entry, this.control, edited)]));
-    let group = '';
+    const groups = new Map();
+    for (const entry of entries) groups.set(groupOf(entry), [...(groups.get(groupOf(entry)) ?? []), entry]);
     this.rows.replaceChildren(
-      ...entries.flatMap(({ key }) => {
-        const [name] = key.split('.');
-        const head = name === group ? [] : [el('h3', { text: name })];
-        group = name;
-        return [...head, this.#rows.get(key).element];
-      }),
+      ...[...groups].map(([name, list]) =>
+        el(
+          'details',
+          { class: 'group', open: kOpenGroups.includes(name) },
+          el('summary', { text: name }),
+          ...list.map(({ key }) => this.#rows.get(key).element),
+        ),
+      ),
     );
     this.readonly.hidden = this.control;
     this.buttons.hidden = !this.control;

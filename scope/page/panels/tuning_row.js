@@ -15,7 +15,7 @@ export class TuningRow {
     this.element = el(
       'div',
       { class: 'tuning', 'data-key': entry.key },
-      el('span', { class: 'name', text: entry.key }),
+      el('span', { class: 'name', title: entry.key, text: entry.key.slice(entry.key.indexOf('.') + 1) }),
       this.in_force,
       el('span', { class: 'unit', text: entry.unit === '1' ? '' : (entry.unit ?? '') }),
       what ? el('span', { class: 'what', text: what }) : null,
@@ -104,10 +104,10 @@ function read(value) {
 
 function text(value) {
   if (value === null) return '';
+  if (typeof value === 'number') return String(Number(value.toPrecision(6)));
   return typeof value === 'string' ? value : JSON.stringify(value);
 }
 
 function shown(value) {
-  if (value === null) return '–';
-  return typeof value === 'number' ? String(Number(value.toPrecision(6))) : text(value);
+  return value === null ? '–' : text(value);
 }
