@@ -11,7 +11,7 @@ const bench = await Bench.make();
 // Slower than real time, so that a busy machine makes no gaps.
 const kSlow = ['time.speed=0.25'];
 await bench.launch(bench.file('run.lcmlog'), kSlow);
-const scope = await bench.scope(undefined, { sets: kSlow });
+const scope = await bench.scope(undefined, { sets: [...kSlow, 'scope.control=true'] });
 const browser = await openBrowser();
 
 async function picture(name, options, prepare, shot = {}) {
@@ -63,6 +63,24 @@ await picture('scope_ghost', kDesk, async (page) => {
     hydroScope.display.showWindow(t1 - 2.6, t1 - 0.1);
   });
   await until(page, () => hydroScope.display.frame().bins.width < 0.005);
+});
+
+await picture('scope_tuning', kDesk, async (page) => {
+  for (const name of ['trigger', 'cursors', 'events']) await page.locator(`#section-${name} > summary`).click();
+  await page.locator('#section-tuning > summary').click();
+  await page
+    .locator('#section-tuning .group')
+    .first()
+    .evaluate((group) => (group.open = false));
+  await page.getByLabel('position.c1, new value').fill('3000');
+  await page.getByLabel('position.c2, new value').fill('900');
+  await page.getByRole('button', { name: 'Apply 2 together' }).click();
+  await page
+    .locator('#section-tuning .result')
+    .getByText(/^Accepted/)
+    .waitFor();
+  const set = await page.evaluate(() => hydroScope.display.last);
+  await until(page, (then) => hydroScope.display.last > then + 5, set);
 });
 
 await picture(

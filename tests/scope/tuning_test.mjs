@@ -14,7 +14,8 @@ before(async () => {
   const scope = await bench.scope(undefined, { sets: ['scope.control=true'] });
   browser = await openBrowser();
   page = await openPage(browser, scope.address);
-  await streaming(page, 1);
+  // In its first two seconds a stack may refuse: a controller has not said its values yet.
+  await streaming(page, 3);
   await page.locator('#section-tuning > summary').click();
   await page.locator('#section-reference > summary').click();
 });

@@ -20,7 +20,8 @@ export class TuningPanel {
     this.scope = scope;
     this.in_force = el('p', { class: 'hint' });
     this.rows = el('div', { class: 'form' });
-    this.result = el('output', { class: 'result', role: 'status' });
+    // Long answers scroll, so they can have the focus.
+    this.result = el('output', { class: 'result', role: 'status', tabindex: '0', 'aria-label': 'Answer of the stack' });
     this.apply = el('button', { type: 'button', class: 'main', text: 'Apply', onclick: () => this.#apply() });
     this.undo = el('button', {
       type: 'button',
