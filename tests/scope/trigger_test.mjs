@@ -55,6 +55,16 @@ test('the trigger stands still on a step of the reference', async () => {
   assert.deepEqual(second.window, first.window);
 });
 
+// Tests that cursors stay where they are on the standing picture when another capture takes its place.
+test('cursors stay beside the trigger', async () => {
+  const place = () => page.evaluate(() => hydroScope.cursors.at.a - hydroScope.display.capture.t);
+  await page.evaluate(() => hydroScope.cursors.place('a', hydroScope.display.capture.t + 0.1));
+  const first = await place();
+  await nextCapture();
+  assert.ok(Math.abs((await place()) - first) < 1e-9);
+  await page.evaluate(() => hydroScope.cursors.clear());
+});
+
 // Tests that a level is crossed at the trigger, in the direction that was asked for.
 test('a falling level of the arm angle', async () => {
   await form('on').selectOption('level');

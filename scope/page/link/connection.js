@@ -135,7 +135,7 @@ export class Connection {
       this.#closed();
       return;
     }
-    if (silent > kStuck_ms) this.#tell('stuck', `hydro-scope has been silent for ${Math.round(silent / 1000)} s`);
+    if (silent > kStuck_ms && this.#state !== 'stuck') this.#tell('stuck', 'hydro-scope is silent');
     if (silent > kPing_ms) this.send({ op: 'ping', id: this.nextId() });
   }
 

@@ -1,6 +1,7 @@
 // How the connection stands: with the server, with the stack behind it, and what was dropped on the way.
 
 import { byId, el, setText } from '../dom.js';
+import { runTime } from '../settings/numbers.js';
 import { keepToken, tokenIn } from '../link/token.js';
 
 const kWords = {
@@ -42,8 +43,11 @@ export class LinkPanel {
   #clock(run) {
     if (this.link.state !== 'open') return;
     if (run.kind === 'live' && run.silent_s > kSilent_s) {
+      // No seconds that count up: a screen reader says each change of this line.
       const what =
-        run.running === false ? 'The run has ended' : `The stack has been silent for ${Math.round(run.silent_s)} s`;
+        run.running === false
+          ? 'The run has ended'
+          : `The stack has been silent since ${runTime(run.last)} s of the run`;
       this.notice.say('silent', `${what}. The page goes on by itself when the stack is started again.`, 'warn');
     } else this.notice.clear('silent');
     this.#lamp();

@@ -13,7 +13,6 @@ const kPatience_ms = 5000; // a stack takes a second or two to end; then STOP is
 export class StopPanel {
   #trying = false;
   #state = ''; // '', asked, confirmed, failed
-  #text = '';
 
   constructor(scope, signals, notice) {
     this.scope = scope;
@@ -40,8 +39,8 @@ export class StopPanel {
     }
     if (this.#trying) return;
     this.#trying = true;
-    for (let tries = 1; this.#trying; tries += 1) {
-      this.#set('asked', tries === 1 ? 'STOP is sent; not confirmed yet' : this.#text);
+    this.#set('asked', 'STOP is sent; not confirmed yet');
+    while (this.#trying) {
       try {
         const reply = await this.scope.link.request({ op: 'stop' }, kPatience_ms);
         if (reply.ok) {
@@ -49,11 +48,11 @@ export class StopPanel {
           this.#set('confirmed', (reply.text || 'the voltage is held at zero').replace(/^stopped: */i, ''));
           break;
         }
-        this.#set('failed', `STOP is not confirmed: ${reply.text}. Trying again (${tries})`);
+        this.#set('failed', `STOP is not confirmed: ${reply.text}. Trying again`);
       } catch (error) {
         this.#set(
           'failed',
-          `STOP is not confirmed: ${error.message}. Trying again (${tries}); use the rig's own switch if it must stop now`,
+          `STOP is not confirmed: ${error.message}. Trying again; use the rig's own switch if it must stop now`,
         );
       }
       await new Promise((done) => setTimeout(done, kAgain_ms));
@@ -67,7 +66,6 @@ export class StopPanel {
 
   #set(state, text) {
     this.#state = state;
-    this.#text = text;
     if (state === '') this.notice.clear('stop');
     else {
       const kind = { asked: 'warn', confirmed: 'stopped', failed: 'bad' }[state];

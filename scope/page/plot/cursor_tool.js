@@ -1,6 +1,6 @@
 // The two cursors on the plots, and the exact values at them, asked of the server when they stand.
 
-import { cursorNear, moved, noCursors, placed } from './cursors.js';
+import { cursorNear, moved, noCursors, placed, shifted } from './cursors.js';
 
 const kSettle_ms = 60;
 
@@ -17,6 +17,11 @@ export class CursorTool {
     signals.on('run', () => this.clear());
     signals.on('restart', () => this.clear());
     signals.on('layout', () => this.#changed());
+    signals.on('captured', (by) => {
+      if (!this.shown) return;
+      this.at = shifted(this.at, by);
+      this.#changed();
+    });
     signals.on('link', ({ state }) => {
       if (state === 'open' && this.shown) this.#changed();
     });

@@ -13,6 +13,12 @@ export function moved(cursors, by) {
   return at === null ? cursors : { ...cursors, [cursors.active]: at + by };
 }
 
+// Both by the same time: where one capture takes the place of another, they stay where they were on the screen.
+export function shifted(cursors, by) {
+  const along = (t) => (t === null ? null : t + by);
+  return { ...cursors, a: along(cursors.a), b: along(cursors.b) };
+}
+
 // The cursor within reach of t, the nearer one; null when neither is.
 export function cursorNear(cursors, t, reach) {
   const near = ['a', 'b'].filter((name) => cursors[name] !== null && Math.abs(cursors[name] - t) <= reach);

@@ -74,6 +74,7 @@ export class Display {
     const before = this.capture;
     this.capture = capture;
     if (this.mode !== 'trigger') return;
+    if (before) this.signals.emit('captured', capture.t - before.t);
     const same = before && Math.abs(before.t1 - before.t0 - (capture.t1 - capture.t0)) < 1e-9;
     if (!same) this.trigger();
     this.#changed();
