@@ -188,6 +188,18 @@ for (const width of [1280, 390]) {
   });
 }
 
+// Tests that for those who asked for less motion the picture moves on a few times a second, not sixty.
+test('less motion on request', async () => {
+  const calm = await openPage(browser, scope.address, { reducedMotion: 'reduce' });
+  await streaming(calm);
+  const start = await calm.evaluate(() => ({ frames: hydroScope.panes.frames, last: hydroScope.display.last }));
+  await until(calm, (from) => hydroScope.display.last > from + 2, start.last);
+  const end = await calm.evaluate(() => ({ frames: hydroScope.panes.frames, last: hydroScope.display.last }));
+  const rate = (end.frames - start.frames) / (end.last - start.last);
+  assert.ok(rate > 0 && rate < 8, `${rate} frames a second`);
+  await calm.context().close();
+});
+
 // Tests that words on the page keep a contrast of 4.5 to 1 in light and in dark (WCAG AA).
 for (const colours of ['light', 'dark']) {
   test(`contrast, ${colours}`, async () => {
