@@ -28,13 +28,21 @@ export function setText(element, text) {
 
 // A labelled field: el('label', ..., 'Level', input, 'psi').
 export function field(label, input, unit = '') {
-  return el('label', { class: 'field' }, el('span', { class: 'name', text: label }), input,
-    unit instanceof Node ? unit : el('span', { class: 'unit', text: unit }));
+  return el(
+    'label',
+    { class: 'field' },
+    el('span', { class: 'name', text: label }),
+    input,
+    unit instanceof Node ? unit : el('span', { class: 'unit', text: unit }),
+  );
 }
 
 export function choice(options, value, onchange, properties = {}) {
-  return el('select', { ...properties, onchange: (event) => onchange(event.target.value) },
-    ...options.map(([name, text]) => el('option', { value: name, text, selected: name === value })));
+  return el(
+    'select',
+    { ...properties, onchange: (event) => onchange(event.target.value) },
+    ...options.map(([name, text]) => el('option', { value: name, text, selected: name === value })),
+  );
 }
 
 // Offers bytes or text to the user as a file.

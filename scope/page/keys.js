@@ -2,13 +2,24 @@
 
 export function keyTable(actions) {
   return [
-    { keys: ['s', 'F9'], name: 'S, or F9 even in a text field', what: 'STOP: zero volts, now', act: actions.stop, anywhere: ['F9'] },
+    {
+      keys: ['s', 'F9'],
+      name: 'S, or F9 even in a text field',
+      what: 'STOP: zero volts, now',
+      act: actions.stop,
+      anywhere: ['F9'],
+    },
     { keys: [' '], name: 'Space', what: 'pause, or follow the newest again; play or pause a log', act: actions.toggle },
     { keys: ['f'], name: 'F', what: 'fit: the whole run or capture', act: actions.fit },
     { keys: ['l'], name: 'L', what: 'follow the newest (live)', act: actions.follow },
     { keys: ['+', '='], name: '+', what: 'zoom in: a shorter time base', act: () => actions.step(-1) },
     { keys: ['-'], name: '−', what: 'zoom out: a longer time base', act: () => actions.step(1) },
-    { keys: ['ArrowLeft', 'ArrowRight'], name: '← →', what: 'pan by a tenth; Shift: move the active cursor; Alt: one sample', act: actions.arrow },
+    {
+      keys: ['ArrowLeft', 'ArrowRight'],
+      name: '← →',
+      what: 'pan by a tenth; Shift: move the active cursor; Alt: one sample',
+      act: actions.arrow,
+    },
     { keys: ['Home', 'End'], name: 'Home, End', what: 'to the start, to the end of the run', act: actions.ends },
     { keys: ['c'], name: 'C', what: 'cursors on or off', act: actions.cursors },
     { keys: ['a', 'b'], name: 'A, B', what: 'put the cursor at the pointer, or choose it', act: actions.cursor },
@@ -26,14 +37,20 @@ export function keyTable(actions) {
 
 // Listens for the table's keys. Keys typed into a field are the field's, but for those that work anywhere.
 export function listen(table, root = document) {
-  root.addEventListener('keydown', (event) => {
-    if (event.ctrlKey || event.metaKey) return;
-    const entry = table.find(({ keys }) => keys.includes(event.key.length === 1 ? event.key.toLowerCase() : event.key));
-    if (!entry) return;
-    if (isTyping(event.target, event.key) && !entry.anywhere?.includes(event.key)) return;
-    event.preventDefault();
-    entry.act(event.key, event);
-  }, true);
+  root.addEventListener(
+    'keydown',
+    (event) => {
+      if (event.ctrlKey || event.metaKey) return;
+      const entry = table.find(({ keys }) =>
+        keys.includes(event.key.length === 1 ? event.key.toLowerCase() : event.key),
+      );
+      if (!entry) return;
+      if (isTyping(event.target, event.key) && !entry.anywhere?.includes(event.key)) return;
+      event.preventDefault();
+      entry.act(event.key, event);
+    },
+    true,
+  );
 }
 
 function isTyping(target, key) {
@@ -41,6 +58,13 @@ function isTyping(target, key) {
   // Letters mean nothing in a field of numbers, but for the exponent's.
   if (target.matches('input[type=number]') && /^[a-df-z?]$/i.test(key)) return false;
   if (target.matches('textarea, select, [contenteditable]')) return true;
-  if (target.matches('input')) return !['checkbox', 'radio', 'button', 'range'].includes(target.type) || key.startsWith('Arrow') || key === ' ' || key === 'Home' || key === 'End';
+  if (target.matches('input'))
+    return (
+      !['checkbox', 'radio', 'button', 'range'].includes(target.type) ||
+      key.startsWith('Arrow') ||
+      key === ' ' ||
+      key === 'Home' ||
+      key === 'End'
+    );
   return key === ' ' && target.matches('button, summary, a');
 }

@@ -53,14 +53,23 @@ new FaultNotice(scope, signals, notice);
 new LinkPanel(scope, link, api, signals, notice);
 new Gestures({ host: byId('panes'), panes, display, cursors, trigger, signals, box: byId('box') });
 new Transport({ host: byId('transport'), scope, display, player, signals });
-byId('side').append(...[
-  new TriggerPanel(scope, trigger, display, signals), new CursorPanel(scope, cursors, signals), new EventsPanel(scope, display, signals),
-  parts.ghost, new TuningPanel(scope, signals), new ReferenceForm(scope, signals), new FilesPanel(parts), new LoopsPanel(signals),
-].map((panel) => panel.element));
+byId('side').append(
+  ...[
+    new TriggerPanel(scope, trigger, display, signals),
+    new CursorPanel(scope, cursors, signals),
+    new EventsPanel(scope, display, signals),
+    parts.ghost,
+    new TuningPanel(scope, signals),
+    new ReferenceForm(scope, signals),
+    new FilesPanel(parts),
+    new LoopsPanel(signals),
+  ].map((panel) => panel.element),
+);
 
 listen(parts.keys);
 signals.on('mark', actions.mark);
-// The address is opened again with a fresh token in it: the server was restarted, and its new line was pressed.
+// The address is opened again with a fresh token in it: the server was restarted, and its new line was
+// pressed.
 addEventListener('hashchange', () => {
   const token = takeToken(location, history, sessionStorage);
   if (token !== api.token) location.reload();

@@ -1,18 +1,18 @@
-// What the page knows: the runs, the one that is looked at, its events, its layout, and the user's preferences.
-// Signals: "runs", "run" (another one is shown), "layout", "preferences", "clock", "events", "restart".
+// What the page knows: the runs, the one that is looked at, its events, its layout, and the user's
+// preferences. Signals: "runs", "run" (another one is shown), "layout", "preferences", "clock", "events",
+// "restart".
 
+import { EventBook } from './event_book.js';
 import * as layouts from './settings/layout.js';
 import { baseName } from './settings/run_name.js';
 import { loadPreferences, savePreferences } from './settings/preferences.js';
 
-const kMostEvents = 2000;
-
 export class Scope {
   hello = null;
   runs = [];
-  run = null;                         // the RUN shown
+  run = null; // the RUN shown
   layout = { panes: [] };
-  events = new Map();                 // run -> [event], by number
+  events = new EventBook();
   ghost = false;
 
   constructor(link, api, signals, storage) {
@@ -27,16 +27,22 @@ export class Scope {
     signals.on('op:event', (message) => this.#event(message));
   }
 
-  get live() { return this.run?.kind === 'live'; }
-  get control() { return this.hello?.control === true; }
-  get known() { return (this.run?.channels ?? []).map((channel) => channel.id); }
+  get live() {
+    return this.run?.kind === 'live';
+  }
+  get control() {
+    return this.hello?.control === true;
+  }
+  get known() {
+    return (this.run?.channels ?? []).map((channel) => channel.id);
+  }
 
   channel(id, run = this.run) {
     return run?.channels.find((channel) => channel.id === id);
   }
 
   eventsOf(run = this.run) {
-    return (run && this.events.get(run.run)) ?? [];
+    return run ? this.events.of(run.run) : [];
   }
 
   // Channels that the panes need, and the ghost's of those that are measured.
@@ -81,7 +87,7 @@ export class Scope {
 
   #greeted(message) {
     this.hello = message;
-    this.events.clear();              // the server sends all that it keeps again
+    this.events.clear(); // the server sends all that it keeps again
     this.#setRuns(message.runs);
     this.signals.emit('hello', message);
     this.signals.emit('events');
@@ -121,13 +127,7 @@ export class Scope {
   }
 
   #event(event) {
-    let list = this.events.get(event.run) ?? [];
-    const known = list.find((one) => one.n === event.n);
-    if (known && known.t === event.t && known.kind === event.kind) return;
-    if (known) list = [];             // the stack was started again: its events are numbered anew
-    list.push(event);
-    if (list.length > kMostEvents) list.shift();
-    this.events.set(event.run, list);
+    if (!this.events.add(event)) return;
     this.signals.emit('event', event);
     if (event.run === this.run?.run) this.signals.emit('events');
   }

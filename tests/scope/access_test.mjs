@@ -12,7 +12,9 @@ before(async () => {
   await bench.launch(bench.file('run.lcmlog'));
   scope = await bench.scope();
   browser = await openBrowser();
-  foreign = createServer((request, response) => response.writeHead(200, { 'Content-Type': 'text/html' }).end('<title>elsewhere</title>'));
+  foreign = createServer((request, response) =>
+    response.writeHead(200, { 'Content-Type': 'text/html' }).end('<title>elsewhere</title>'),
+  );
   await new Promise((done) => foreign.listen(0, '127.0.0.1', done));
 });
 after(async () => {
@@ -21,7 +23,8 @@ after(async () => {
   await bench?.close();
 });
 
-// Tests that a wrong token shows no data but a sentence, and that the right one, given there, opens the picture.
+// Tests that a wrong token shows no data but a sentence, and that the right one, given there, opens the
+// picture.
 test('a wrong token is refused in words, and can be mended on the page', async () => {
   const page = await openPage(browser, `${scope.origin}/#token=${'0'.repeat(32)}`);
   await page.locator('#link[data-state=refused]').waitFor();
@@ -44,13 +47,24 @@ test('without a token the page says where it is', async () => {
 // Tests that a page of another origin gets neither the web socket nor the answers, even with the right token.
 test('a foreign origin is refused', async () => {
   const page = await openPage(browser, `http://127.0.0.1:${foreign.address().port}/`);
-  const outcome = await page.evaluate(([port, token]) => new Promise((done) => {
-    const socket = new WebSocket(`ws://127.0.0.1:${port}/live?token=${token}`, 'hydro.scope.v1');
-    socket.onopen = () => done('open');
-    socket.onerror = () => done('refused');
-  }), [scope.port, kToken]);
+  const outcome = await page.evaluate(
+    ([port, token]) =>
+      new Promise((done) => {
+        const socket = new WebSocket(`ws://127.0.0.1:${port}/live?token=${token}`, 'hydro.scope.v1');
+        socket.onopen = () => done('open');
+        socket.onerror = () => done('refused');
+      }),
+    [scope.port, kToken],
+  );
   assert.equal(outcome, 'refused');
-  const answer = await page.evaluate(([origin, token]) => fetch(`${origin}/api/status?token=${token}`).then(() => 'read', () => 'refused'), [scope.origin, kToken]);
+  const answer = await page.evaluate(
+    ([origin, token]) =>
+      fetch(`${origin}/api/status?token=${token}`).then(
+        () => 'read',
+        () => 'refused',
+      ),
+    [scope.origin, kToken],
+  );
   assert.equal(answer, 'refused');
   await page.context().close();
 });
@@ -60,7 +74,10 @@ test('hostile text stays text', async () => {
   const page = await openPage(browser, scope.address);
   await streaming(page);
   const nasty = '<img src=x onerror="document.title=1"><script>document.title=2</script>';
-  await page.evaluate((text) => hydroScope.link.send({ op: 'mark', run: hydroScope.scope.run.run, t: hydroScope.display.last, text }), nasty);
+  await page.evaluate(
+    (text) => hydroScope.link.send({ op: 'mark', run: hydroScope.scope.run.run, t: hydroScope.display.last, text }),
+    nasty,
+  );
   await until(page, () => document.querySelector('.events [data-kind=mark]'));
   assert.ok((await page.locator('.events [data-kind=mark] .what').first().textContent()).includes('<script>'));
   assert.equal(await page.locator('.events img, .events script').count(), 0);

@@ -1,4 +1,5 @@
-// Tests that a window of a run goes to hydro-diagnose, and its report comes back in a frame that can do no harm.
+// Tests that a window of a run goes to hydro-diagnose, and its report comes back in a frame that can do no
+// harm.
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
 import { openBrowser, openPage, until } from './browser.mjs';
@@ -32,7 +33,16 @@ test('a window is diagnosed and its report shown', { timeout: 300000 }, async ()
   // The report's address needs no token and tells none, and the report cannot reach the page.
   const inside = page.frames().find((one) => one.url().includes('/api/reports/'));
   assert.doesNotMatch(inside.url(), /token/);
-  assert.equal(await inside.evaluate(() => { try { return parent.document.title; } catch { return 'out of reach'; } }), 'out of reach');
+  assert.equal(
+    await inside.evaluate(() => {
+      try {
+        return parent.document.title;
+      } catch {
+        return 'out of reach';
+      }
+    }),
+    'out of reach',
+  );
   await page.keyboard.press('Escape');
 });
 

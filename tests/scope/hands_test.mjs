@@ -1,4 +1,5 @@
-// Tests of the page in the hand: a phone, the keyboard alone, light and dark, panes as the user arranged them.
+// Tests of the page in the hand: a phone, the keyboard alone, light and dark, panes as the user arranged
+// them.
 import assert from 'node:assert/strict';
 import { createRequire } from 'node:module';
 import { after, before, test } from 'node:test';
@@ -20,14 +21,22 @@ after(async () => {
   await bench?.close();
 });
 
-// Tests that a phone scrolls only downwards, and that STOP is on the screen and a finger wide wherever one has scrolled to.
+// Tests that a phone scrolls only downwards, and that STOP is on the screen and a finger wide wherever one
+// has scrolled to.
 test('a phone', async () => {
-  const phone = await openPage(browser, scope.address, { viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true });
+  const phone = await openPage(browser, scope.address, {
+    viewport: { width: 390, height: 844 },
+    hasTouch: true,
+    isMobile: true,
+  });
   await streaming(phone);
   for (const summary of await phone.locator('.section > summary:visible').all()) {
-    if (!await summary.evaluate((one) => one.parentElement.open)) await summary.tap();
+    if (!(await summary.evaluate((one) => one.parentElement.open))) await summary.tap();
   }
-  const { wide, inner } = await phone.evaluate(() => ({ wide: document.documentElement.scrollWidth, inner: innerWidth }));
+  const { wide, inner } = await phone.evaluate(() => ({
+    wide: document.documentElement.scrollWidth,
+    inner: innerWidth,
+  }));
   assert.equal(inner, 390);
   assert.ok(wide <= inner, `the page is ${wide} pixels wide on a screen of ${inner}`);
   for (const y of [0, 700, 100000]) {
@@ -41,13 +50,21 @@ test('a phone', async () => {
 
 // Tests that two fingers zoom: what was between them stays between them.
 test('pinch', async () => {
-  const phone = await openPage(browser, scope.address, { viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true });
+  const phone = await openPage(browser, scope.address, {
+    viewport: { width: 390, height: 844 },
+    hasTouch: true,
+    isMobile: true,
+  });
   await streaming(phone);
   const box = await phone.locator('.chart').first().boundingBox();
   const y = box.y + box.height / 2;
   const touch = await phone.context().newCDPSession(phone);
-  const fingers = (type, ...at) => touch.send('Input.dispatchTouchEvent', { type, touchPoints: at.map((x, id) => ({ x, y, id })) });
-  const before = await phone.evaluate(() => { const { t0, t1 } = hydroScope.display.frame(); return t1 - t0; });
+  const fingers = (type, ...at) =>
+    touch.send('Input.dispatchTouchEvent', { type, touchPoints: at.map((x, id) => ({ x, y, id })) });
+  const before = await phone.evaluate(() => {
+    const { t0, t1 } = hydroScope.display.frame();
+    return t1 - t0;
+  });
   await fingers('touchStart', box.x + 150, box.x + 210);
   await fingers('touchMove', box.x + 120, box.x + 240);
   await fingers('touchMove', box.x + 90, box.x + 270);
@@ -68,7 +85,7 @@ test('the keyboard alone', async () => {
   await page.keyboard.press('c');
   const a = await page.evaluate(() => hydroScope.cursors.at.a);
   await page.keyboard.press('Shift+ArrowRight');
-  assert.ok(await page.evaluate(() => hydroScope.cursors.at.a) > a);
+  assert.ok((await page.evaluate(() => hydroScope.cursors.at.a)) > a);
   await page.keyboard.press('m');
   await page.locator('.events [data-kind=mark]').first().waitFor();
   await page.keyboard.press('?');
@@ -85,18 +102,34 @@ test('the keyboard alone', async () => {
   await until(page, () => hydroScope.display.mode === 'follow');
 });
 
-// Tests that everything that can be pressed has a name, and that the focus goes through it all with Tab and is seen.
+// Tests that everything that can be pressed has a name, and that the focus goes through it all with Tab and
+// is seen.
 test('names and focus', async () => {
-  const nameless = await page.evaluate(() => [...document.querySelectorAll('button, select, input, summary, canvas[role]')]
-    .filter((one) => one.offsetParent && !(one.getAttribute('aria-label') || one.textContent.trim() || one.labels?.length || one.title)).map((one) => one.outerHTML));
+  const nameless = await page.evaluate(() =>
+    [...document.querySelectorAll('button, select, input, summary, canvas[role]')]
+      .filter(
+        (one) =>
+          one.offsetParent &&
+          !(one.getAttribute('aria-label') || one.textContent.trim() || one.labels?.length || one.title),
+      )
+      .map((one) => one.outerHTML),
+  );
   assert.deepEqual(nameless, []);
   await page.locator('#stop').focus();
   const outlines = [];
   for (let i = 0; i < 12; i += 1) {
     await page.keyboard.press('Tab');
-    outlines.push(await page.evaluate(() => ({ id: document.activeElement.id || document.activeElement.className, width: getComputedStyle(document.activeElement).outlineWidth })));
+    outlines.push(
+      await page.evaluate(() => ({
+        id: document.activeElement.id || document.activeElement.className,
+        width: getComputedStyle(document.activeElement).outlineWidth,
+      })),
+    );
   }
-  assert.deepEqual(outlines.filter(({ width }) => parseFloat(width) < 2), []);
+  assert.deepEqual(
+    outlines.filter(({ width }) => parseFloat(width) < 2),
+    [],
+  );
   assert.ok(new Set(outlines.map(({ id }) => id)).size >= 8);
 });
 
@@ -138,15 +171,34 @@ for (const width of [1280, 390]) {
     const { source } = createRequire(new URL('../../scope/page/package.json', import.meta.url))('axe-core');
     const audited = await openPage(browser, scope.address, { viewport: { width, height: 844 } });
     await streaming(audited);
-    await audited.evaluate(() => document.querySelectorAll('details.section').forEach((one) => { one.open = true; }));
+    await audited.evaluate(() =>
+      document.querySelectorAll('details.section').forEach((one) => {
+        one.open = true;
+      }),
+    );
     await audited.keyboard.press('c');
     await audited.locator('[data-cell="dp.difference"]').waitFor();
     await audited.evaluate(source);
     const { violations } = await audited.evaluate(() => globalThis.axe.run());
-    assert.deepEqual(violations.map(({ id, nodes }) => `${id}: ${nodes[0].html}`), []);
+    assert.deepEqual(
+      violations.map(({ id, nodes }) => `${id}: ${nodes[0].html}`),
+      [],
+    );
     await audited.context().close();
   });
 }
+
+// Tests that for those who asked for less motion the picture moves on a few times a second, not sixty.
+test('less motion on request', async () => {
+  const calm = await openPage(browser, scope.address, { reducedMotion: 'reduce' });
+  await streaming(calm);
+  const start = await calm.evaluate(() => ({ frames: hydroScope.panes.frames, last: hydroScope.display.last }));
+  await until(calm, (from) => hydroScope.display.last > from + 2, start.last);
+  const end = await calm.evaluate(() => ({ frames: hydroScope.panes.frames, last: hydroScope.display.last }));
+  const rate = (end.frames - start.frames) / (end.last - start.last);
+  assert.ok(rate > 0 && rate < 8, `${rate} frames a second`);
+  await calm.context().close();
+});
 
 // Tests that words on the page keep a contrast of 4.5 to 1 in light and in dark (WCAG AA).
 for (const colours of ['light', 'dark']) {
@@ -154,7 +206,11 @@ for (const colours of ['light', 'dark']) {
     await page.emulateMedia({ colorScheme: colours });
     const poor = await page.evaluate(() => {
       const channels = (text) => text.match(/[\d.]+/g).map(Number);
-      const light = ([r, g, b]) => [r, g, b].map((v) => v / 255).map((v) => (v <= 0.04045 ? v / 12.92 : ((v + 0.055) / 1.055) ** 2.4)).reduce((sum, v, i) => sum + v * [0.2126, 0.7152, 0.0722][i], 0);
+      const light = ([r, g, b]) =>
+        [r, g, b]
+          .map((v) => v / 255)
+          .map((v) => (v <= 0.04045 ? v / 12.92 : ((v + 0.055) / 1.055) ** 2.4))
+          .reduce((sum, v, i) => sum + v * [0.2126, 0.7152, 0.0722][i], 0);
       const behind = (one) => {
         for (let at = one; at; at = at.parentElement) {
           const colour = channels(getComputedStyle(at).backgroundColor);
@@ -162,11 +218,18 @@ for (const colours of ['light', 'dark']) {
         }
         return [255, 255, 255];
       };
-      return [...document.querySelectorAll('body *')].filter((one) => one.offsetParent && !one.closest(':disabled, [aria-disabled=true]') && [...one.childNodes].some((node) => node.nodeType === 3 && node.textContent.trim()))
+      return [...document.querySelectorAll('body *')]
+        .filter(
+          (one) =>
+            one.offsetParent &&
+            !one.closest(':disabled, [aria-disabled=true]') &&
+            [...one.childNodes].some((node) => node.nodeType === 3 && node.textContent.trim()),
+        )
         .map((one) => {
           const [a, b] = [light(channels(getComputedStyle(one).color)), light(behind(one))].sort((x, y) => y - x);
           return { text: one.textContent.trim().slice(0, 30), ratio: (a + 0.05) / (b + 0.05) };
-        }).filter(({ ratio }) => ratio < 4.5);
+        })
+        .filter(({ ratio }) => ratio < 4.5);
     });
     assert.deepEqual(poor, []);
   });

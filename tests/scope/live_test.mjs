@@ -1,4 +1,5 @@
-// Tests of the live picture of a running stack: it moves, its values are the log's, zoom and cursors work meanwhile.
+// Tests of the live picture of a running stack: it moves, its values are the log's, zoom and cursors work
+// meanwhile.
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import { after, before, test } from 'node:test';
@@ -23,11 +24,25 @@ after(async () => {
 // Tests that the panes of the first visit are those of the rig, and that they move.
 test('the default panes move', async () => {
   const titles = await page.locator('.pane h2').allTextContents();
-  assert.deepEqual(titles, ['Pressure difference', 'Pressures', 'Arm angle', 'Motor speed', 'Motor voltage', 'Loop timing']);
+  assert.deepEqual(titles, [
+    'Pressure difference',
+    'Pressures',
+    'Arm angle',
+    'Motor speed',
+    'Motor voltage',
+    'Loop timing',
+  ]);
   const picture = () => page.evaluate(() => hydroScope.panes.panes[2].host.querySelector('canvas').toDataURL());
   const first = await picture();
-  const { frames, last } = await page.evaluate(() => ({ frames: hydroScope.panes.frames, last: hydroScope.display.last }));
-  await until(page, (before) => hydroScope.panes.frames > before.frames + 10 && hydroScope.display.last > before.last + 0.2, { frames, last });
+  const { frames, last } = await page.evaluate(() => ({
+    frames: hydroScope.panes.frames,
+    last: hydroScope.display.last,
+  }));
+  await until(
+    page,
+    (before) => hydroScope.panes.frames > before.frames + 10 && hydroScope.display.last > before.last + 0.2,
+    { frames, last },
+  );
   assert.notEqual(await picture(), first);
   assert.match(await page.locator('[data-channel=dp] .value').textContent(), /\d/);
 });
@@ -39,7 +54,8 @@ test('the token is out of sight and kept for the tab', async () => {
   await streaming(page);
 });
 
-// Tests that while it streams, the plots can be paused, zoomed and followed again, and that the server's history fills them.
+// Tests that while it streams, the plots can be paused, zoomed and followed again, and that the server's
+// history fills them.
 test('zoom and pause while it streams', async () => {
   await page.keyboard.press('Space');
   await until(page, () => hydroScope.display.mode === 'still');
@@ -50,7 +66,10 @@ test('zoom and pause while it streams', async () => {
   await until(page, (span) => hydroScope.display.window.t1 - hydroScope.display.window.t0 < 0.5 * span, t1 - t0);
   await until(page, () => {
     const { t0: from, t1: to, bins } = hydroScope.display.frame();
-    return bins.width < 1.3 * Math.max((to - from) / hydroScope.display.pixels, 0.001) && bins.t.some((t, i) => t > from && t < to && !Number.isNaN(bins.min.dp[i]));
+    return (
+      bins.width < 1.3 * Math.max((to - from) / hydroScope.display.pixels, 0.001) &&
+      bins.t.some((t, i) => t > from && t < to && !Number.isNaN(bins.min.dp[i]))
+    );
   });
   const before = await page.evaluate(() => ({ window: hydroScope.display.window, last: hydroScope.display.last }));
   await until(page, (last) => hydroScope.display.last > last + 0.3, before.last);
@@ -59,8 +78,8 @@ test('zoom and pause while it streams', async () => {
   await until(page, () => hydroScope.display.mode === 'follow');
 });
 
-// Tests that drawing all panes, rasterised without a graphics processor, takes less than half of a sixtieth of a second.
-// The best of many is taken, as others use this machine.
+// Tests that drawing all panes, rasterised without a graphics processor, takes less than half of a sixtieth
+// of a second. The best of many is taken, as others use this machine.
 test('drawing leaves time for 60 frames a second', async () => {
   const best = await page.evaluate(async () => {
     let least = Infinity;
@@ -68,8 +87,9 @@ test('drawing leaves time for 60 frames a second', async () => {
       const start = performance.now();
       const frame = hydroScope.display.frame();
       for (const pane of hydroScope.panes.panes) pane.draw(frame, null, start);
-      await Promise.resolve();                          // uPlot draws at the end of the turn
-      for (const pane of hydroScope.panes.panes) pane.host.querySelector('canvas').getContext('2d').getImageData(0, 0, 1, 1);
+      await Promise.resolve(); // uPlot draws at the end of the turn
+      for (const pane of hydroScope.panes.panes)
+        pane.host.querySelector('canvas').getContext('2d').getImageData(0, 0, 1, 1);
       least = Math.min(least, performance.now() - start);
     }
     return least;
@@ -88,12 +108,19 @@ test('the time base', async () => {
   await page.keyboard.press('+');
 });
 
-// Tests that what the cursors read are the log's doubles, every digit, and that the differences are those of the log.
+// Tests that what the cursors read are the log's doubles, every digit, and that the differences are those of
+// the log.
 test('values and differences at the cursors equal the log', async () => {
   const last = await page.evaluate(() => hydroScope.display.last);
   const [a, b] = [Math.floor(last * 1000 - 900) / 1000, Math.floor(last * 1000 - 250) / 1000];
   // Half a tick after a sample: the value is that of the sample before.
-  await page.evaluate(([ta, tb]) => { hydroScope.cursors.place('b', tb + 0.0005); hydroScope.cursors.place('a', ta + 0.0005); }, [a, b]);
+  await page.evaluate(
+    ([ta, tb]) => {
+      hydroScope.cursors.place('b', tb + 0.0005);
+      hydroScope.cursors.place('a', ta + 0.0005);
+    },
+    [a, b],
+  );
   await page.locator('[data-cell="dp.difference"]').waitFor();
   await until(page, () => !document.querySelector('[data-cell="p1.difference"]')?.textContent.includes('–'));
   const cells = await cursorCells(page);

@@ -1,4 +1,5 @@
-// Tests of logs in the page: a spike of one sample is seen, gaps are gaps, playing, stepping, seeking, cutting out, opening.
+// Tests of logs in the page: a spike of one sample is seen, gaps are gaps, playing, stepping, seeking,
+// cutting out, opening.
 import assert from 'node:assert/strict';
 import { readFileSync, writeFileSync } from 'node:fs';
 import { after, before, test } from 'node:test';
@@ -34,19 +35,42 @@ after(async () => {
   await bench?.close();
 });
 
-const paneOf = (channel) => page.evaluate((id) => hydroScope.scope.layout.panes.findIndex((pane) => pane.channels.includes(id)), channel);
+const paneOf = (channel) =>
+  page.evaluate((id) => hydroScope.scope.layout.panes.findIndex((pane) => pane.channels.includes(id)), channel);
 
-// Tests that with the whole run on the screen, six samples and more in a pixel, a single sample stands as tall as it was.
+// Tests that with the whole run on the screen, six samples and more in a pixel, a single sample stands as
+// tall as it was.
 test('a spike of one sample is seen', async () => {
-  const { samples, pixels } = await page.evaluate(() => ({ samples: (hydroScope.display.last - hydroScope.display.first) * hydroScope.scope.run.rate_hz, pixels: hydroScope.display.pixels }));
+  const { samples, pixels } = await page.evaluate(() => ({
+    samples: (hydroScope.display.last - hydroScope.display.first) * hydroScope.scope.run.rate_hz,
+    pixels: hydroScope.display.pixels,
+  }));
   assert.ok(samples > 5 * pixels, `${samples} samples on ${pixels} pixels`);
   const pane = await paneOf('p1');
-  await until(page, (p) => hydroScope.panes.panes[p].chart.y(900) > hydroScope.panes.panes[p].chart.plot.bbox.top, pane);
-  const top = await pixelsOf(page, { pane, colour: 'c0', t0: kSpike.t - 0.05, t1: kSpike.t + 0.05, low: 0.9 * kSpike.psi, high: 1.02 * kSpike.psi });
+  await until(
+    page,
+    (p) => hydroScope.panes.panes[p].chart.y(900) > hydroScope.panes.panes[p].chart.plot.bbox.top,
+    pane,
+  );
+  const top = await pixelsOf(page, {
+    pane,
+    colour: 'c0',
+    t0: kSpike.t - 0.05,
+    t1: kSpike.t + 0.05,
+    low: 0.9 * kSpike.psi,
+    high: 1.02 * kSpike.psi,
+  });
   assert.ok(top.length >= 1, 'nothing is drawn at the height of the spike');
   const columns = new Set(top.map(({ x }) => x));
   assert.ok(columns.size <= 3, `one sample is ${columns.size} pixels wide`);
-  const beside = await pixelsOf(page, { pane, colour: 'c0', t0: kSpike.t + 0.3, t1: kSpike.t + 0.9, low: 0.5 * kSpike.psi, high: 1.02 * kSpike.psi });
+  const beside = await pixelsOf(page, {
+    pane,
+    colour: 'c0',
+    t0: kSpike.t + 0.3,
+    t1: kSpike.t + 0.9,
+    low: 0.5 * kSpike.psi,
+    high: 1.02 * kSpike.psi,
+  });
   assert.equal(beside.length, 0);
 });
 
@@ -67,11 +91,14 @@ test('seek and step by step', async () => {
     await page.keyboard.press('.');
     const head = await page.evaluate(() => hydroScope.display.head);
     assert.equal(Math.round(head * 1000), row);
-    const reply = await page.evaluate((t) => hydroScope.link.request({ op: 'values', run: hydroScope.scope.run.run, channels: ['p1'], t }), head + 0.0001);
+    const reply = await page.evaluate(
+      (t) => hydroScope.link.request({ op: 'values', run: hydroScope.scope.run.run, channels: ['p1'], t }),
+      head + 0.0001,
+    );
     assert.equal(reply.data.values[0], Number(table.rows[row].p1_psi));
   }
   await page.keyboard.press(',');
-  assert.equal(Math.round(await page.evaluate(() => hydroScope.display.head) * 1000), kSpike.row);
+  assert.equal(Math.round((await page.evaluate(() => hydroScope.display.head)) * 1000), kSpike.row);
 });
 
 // Tests that a log plays at the speed that was chosen, and stops when paused.
@@ -120,14 +147,22 @@ async function download(name) {
 test('a window is cut out', async () => {
   await page.locator('#section-files summary').click();
   await page.keyboard.press('f');
-  await page.evaluate(() => { hydroScope.cursors.place('a', 3.1995); hydroScope.cursors.place('b', 3.2495); });
+  await page.evaluate(() => {
+    hydroScope.cursors.place('a', 3.1995);
+    hydroScope.cursors.place('b', 3.2495);
+  });
   const { rows } = readTable(readFileSync(await download('CSV'), 'utf8'));
   assert.equal(rows.length, 50);
   assert.equal(Number(rows[10].p1_psi), kSpike.psi);
   const cut = await download('.lcmlog');
   assert.match(bench.run('hydro-log', 'info', cut), /log: complete/);
   assert.match(readFileSync(await download('SVG'), 'utf8'), /^<svg[^]*arm_angle \[rad\][^]*<path [^]*<\/svg>\n$/);
-  assert.equal(readFileSync(await download('PNG')).subarray(1, 4).toString(), 'PNG');
+  assert.equal(
+    readFileSync(await download('PNG'))
+      .subarray(1, 4)
+      .toString(),
+    'PNG',
+  );
 });
 
 // Tests that a log that is dropped on the page is opened, shown, and can be laid over.
@@ -138,14 +173,25 @@ test('a log that is dropped on the page opens', async () => {
     transfer.items.add(new File([Uint8Array.from(atob(text), (one) => one.charCodeAt(0))], 'dropped.lcmlog'));
     document.body.dispatchEvent(new DragEvent('drop', { bubbles: true, cancelable: true, dataTransfer: transfer }));
   }, bytes);
-  await until(page, () => hydroScope.scope.run.name === 'dropped.lcmlog' && hydroScope.display.frame().bins.t.length > 100);
+  await until(
+    page,
+    () => hydroScope.scope.run.name === 'dropped.lcmlog' && hydroScope.display.frame().bins.t.length > 100,
+  );
   await page.locator('#section-ghost summary').click();
   await page.getByLabel('Lay over').selectOption('spike.lcmlog');
   await page.locator('#section-ghost').getByRole('spinbutton').fill('0.5');
   await page.locator('#section-ghost').getByRole('spinbutton').press('Enter');
-  await until(page, () => hydroScope.panes.panes[1].chart.other?.bins.t.length > 100 && hydroScope.panes.panes[1].chart.other.shift === 0.5);
+  await until(
+    page,
+    () =>
+      hydroScope.panes.panes[1].chart.other?.bins.t.length > 100 && hydroScope.panes.panes[1].chart.other.shift === 0.5,
+  );
   const pane = await paneOf('p1');
-  await until(page, (p) => hydroScope.panes.panes[p].chart.y(900) > hydroScope.panes.panes[p].chart.plot.bbox.top, pane);
+  await until(
+    page,
+    (p) => hydroScope.panes.panes[p].chart.y(900) > hydroScope.panes.panes[p].chart.plot.bbox.top,
+    pane,
+  );
   const shifted = await page.evaluate(() => {
     const { bins, shift } = hydroScope.panes.panes[1].chart.other;
     return bins.t[bins.max.p1.findIndex((value) => value === 900)] + shift;

@@ -8,8 +8,10 @@ import { Bench } from './stack.mjs';
 
 const folder = process.argv[2] ?? 'docs/pictures';
 const bench = await Bench.make();
-await bench.launch(bench.file('run.lcmlog'));
-const scope = await bench.scope();
+// Slower than real time, so that a busy machine makes no gaps.
+const kSlow = ['time.speed=0.25'];
+await bench.launch(bench.file('run.lcmlog'), kSlow);
+const scope = await bench.scope(undefined, { sets: [...kSlow, 'scope.control=true'] });
 const browser = await openBrowser();
 
 async function picture(name, options, prepare, shot = {}) {
@@ -18,7 +20,7 @@ async function picture(name, options, prepare, shot = {}) {
   await prepare(page);
   const raw = bench.file(`${name}.png`);
   await page.screenshot({ path: raw, ...shot });
-  execFileSync('pngquant', ['--force', '--nofs', '--output', path.join(folder, `${name}.png`), '96', raw]);
+  execFileSync('pngquant', ['--force', '--nofs', '--output', path.join(folder, `${name}.png`), '200', raw]);
   await page.context().close();
 }
 
@@ -26,7 +28,11 @@ const kDesk = { viewport: { width: 1240, height: 760 } };
 
 await picture('scope_live', kDesk, async (page) => {
   await until(page, () => hydroScope.display.last > 10.5);
-  await page.evaluate(() => { const { t0, t1 } = hydroScope.display.frame(); hydroScope.cursors.place('b', t0 + 0.62 * (t1 - t0)); hydroScope.cursors.place('a', t0 + 0.5 * (t1 - t0)); });
+  await page.evaluate(() => {
+    const { t0, t1 } = hydroScope.display.frame();
+    hydroScope.cursors.place('b', t0 + 0.62 * (t1 - t0));
+    hydroScope.cursors.place('a', t0 + 0.5 * (t1 - t0));
+  });
   await page.locator('#section-trigger > summary').click();
   await page.locator('[data-cell="dp.difference"]').waitFor();
   await until(page, () => !document.querySelector('[data-cell="p1.difference"]')?.textContent.includes('–'));
@@ -52,13 +58,38 @@ await picture('scope_ghost', kDesk, async (page) => {
   });
   await page.keyboard.press('Escape');
   await page.locator('#toggle').click();
-  await page.evaluate(() => { const { t1 } = hydroScope.display.frame(); hydroScope.display.showWindow(t1 - 1.2, t1 - 0.1); });
-  await until(page, () => hydroScope.display.frame().bins.width < 0.0015);
+  await page.evaluate(() => {
+    const { t1 } = hydroScope.display.frame();
+    hydroScope.display.showWindow(t1 - 2.6, t1 - 0.1);
+  });
+  await until(page, () => hydroScope.display.frame().bins.width < 0.005);
 });
 
-await picture('scope_phone', { viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true, colorScheme: 'dark' }, async (page) => {
-  await until(page, () => hydroScope.display.last > 10);
+await picture('scope_tuning', kDesk, async (page) => {
+  for (const name of ['trigger', 'cursors', 'events']) await page.locator(`#section-${name} > summary`).click();
+  await page.locator('#section-tuning > summary').click();
+  await page
+    .locator('#section-tuning .group')
+    .first()
+    .evaluate((group) => (group.open = false));
+  await page.getByLabel('position.c1, new value').fill('3000');
+  await page.getByLabel('position.c2, new value').fill('900');
+  await page.getByRole('button', { name: 'Apply 2 together' }).click();
+  await page
+    .locator('#section-tuning .result')
+    .getByText(/^Accepted/)
+    .waitFor();
+  const set = await page.evaluate(() => hydroScope.display.last);
+  await until(page, (then) => hydroScope.display.last > then + 5, set);
 });
+
+await picture(
+  'scope_phone',
+  { viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true, colorScheme: 'dark' },
+  async (page) => {
+    await until(page, () => hydroScope.display.last > 10);
+  },
+);
 
 await browser.close();
 await bench.close();

@@ -1,4 +1,5 @@
-// Tests that a latched fault is shown as what holds the stack, and that re-arming says what it will do, and then does it.
+// Tests that a latched fault is shown as what holds the stack, and that re-arming says what it will do, and
+// then does it.
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
 import { openBrowser, openPage, streaming } from './browser.mjs';
@@ -10,7 +11,11 @@ let bench, browser, page;
 before(async () => {
   bench = await Bench.make();
   const explicit = 'limits.rearm=explicit';
-  const stack = await bench.launch(bench.file('run.lcmlog'), [explicit, 'limits.motor_speed_rad_s=150', 'reference.frequency_hz=0.02']);
+  const stack = await bench.launch(bench.file('run.lcmlog'), [
+    explicit,
+    'limits.motor_speed_rad_s=150',
+    'reference.frequency_hz=0.02',
+  ]);
   const scope = await bench.scope(undefined, { sets: [explicit, 'scope.control=true'] });
   await stack.line(/fault motor_speed_limit/);
   browser = await openBrowser();
@@ -26,11 +31,15 @@ test('a latched fault stands at the top', async () => {
   await page.getByText(/^(A fault holds|\d faults hold) the voltage at zero: .*motor_speed_limit/).waitFor();
 });
 
-// Tests that the dialog names the faults and the way that the arm would go, and that nothing happens unless it is confirmed.
+// Tests that the dialog names the faults and the way that the arm would go, and that nothing happens unless
+// it is confirmed.
 test('re-arm says what it will do, and does it', async () => {
   await page.getByRole('button', { name: 'Re-arm …' }).click();
   const dialog = page.getByRole('dialog', { name: 'Re-arm?' });
-  await dialog.getByText(/motor_speed_limit/).first().waitFor();
+  await dialog
+    .getByText(/motor_speed_limit/)
+    .first()
+    .waitFor();
   await dialog.getByText(/The arm is at .* rad and its reference at .* rad now: it would move by .* rad\./).waitFor();
   assert.equal(await page.locator('.events [data-kind=rearm]').count(), 0);
   await dialog.getByRole('button', { name: 'Re-arm: the arm may move' }).click();

@@ -19,7 +19,8 @@ after(async () => {
   await bench?.close();
 });
 
-// Tests that a killed server is noticed and named, and that its successor on the same port is found without a hand.
+// Tests that a killed server is noticed and named, and that its successor on the same port is found without a
+// hand.
 test('the server is started again', async () => {
   await scope.program.stop('SIGKILL');
   await page.locator('#link[data-state=lost]').waitFor();
@@ -28,10 +29,15 @@ test('the server is started again', async () => {
   await page.locator('#link[data-state=open]').waitFor();
   await page.locator('.notice [data-subject=link]').waitFor({ state: 'detached' });
   const frames = await page.evaluate(() => hydroScope.panes.frames);
-  await until(page, (before) => hydroScope.panes.frames > before + 10 && hydroScope.display.frame().bins.t.length > 10, frames);
+  await until(
+    page,
+    (before) => hydroScope.panes.frames > before + 10 && hydroScope.display.frame().bins.t.length > 10,
+    frames,
+  );
 });
 
-// Tests that a server that hangs with its connections open is named as silent, and that the page goes on when it does.
+// Tests that a server that hangs with its connections open is named as silent, and that the page goes on when
+// it does.
 test('the server hangs', async () => {
   scope.program.child.kill('SIGSTOP');
   try {
@@ -52,12 +58,20 @@ test('the stack is started again', async () => {
   const before = await page.evaluate(() => hydroScope.display.last);
   stack = await bench.launch(bench.file('two.lcmlog'));
   await page.getByText('The stack was started again: its time begins anew.').waitFor();
-  await until(page, (last) => hydroScope.display.last < last && hydroScope.display.last > 0.3 && hydroScope.display.frame().bins.t.length > 10, before);
+  await until(
+    page,
+    (last) =>
+      hydroScope.display.last < last && hydroScope.display.last > 0.3 && hydroScope.display.frame().bins.t.length > 10,
+    before,
+  );
   const newest = await page.evaluate(() => hydroScope.display.frame().bins.t.at(-1));
+  const latest = await page.evaluate(() => Math.max(0, ...hydroScope.scope.eventsOf().map(({ t }) => t)));
+  assert.ok(latest < before, `an event of the run before, at ${latest} s, is shown in the new one`);
   assert.ok(newest < before, `the newest bin is at ${newest} s of a run that began anew`);
 });
 
-// Tests that a token that is no longer right after a restart of the server leads to a sentence, not to endless attempts.
+// Tests that a token that is no longer right after a restart of the server leads to a sentence, not to
+// endless attempts.
 test('a server with a new token', async () => {
   const again = await bench.scope(undefined, { token: 'abcdefabcdefabcdefabcdefabcdefab' });
   const other = await openPage(browser, again.address);

@@ -1,6 +1,6 @@
-// Starts the programs under test on a UDP port of their own, and always ends them. The programs come from HYDRO_BIN, the
-// configurations from HYDRO_CONFIG; without them, from the source tree and its build folder. HYDRO_SCOPE_PAGE names a
-// folder of the page's files that is served instead of those inside hydro-scope.
+// Starts the programs under test on a UDP port of their own, and always ends them. The programs come from
+// HYDRO_BIN, the configurations from HYDRO_CONFIG; without them, from the source tree and its build folder.
+// HYDRO_SCOPE_PAGE names a folder of the page's files that is served instead of those inside hydro-scope.
 
 import { execFileSync, spawn } from 'node:child_process';
 import { createSocket } from 'node:dgram';
@@ -13,7 +13,8 @@ const kRoot = fileURLToPath(new URL('../../', import.meta.url));
 const kBin = process.env.HYDRO_BIN ?? path.join(kRoot, 'build', 'bin');
 const kConfig = process.env.HYDRO_CONFIG ?? path.join(kRoot, 'config');
 export const kToken = 'f00df00df00df00df00df00df00df00d';
-// How long to wait for what should come soon. Nothing passes because of it, so it may be long: the machine is shared.
+// How long to wait for what should come soon. Nothing passes because of it, so it may be long: the machine is
+// shared.
 export const kPatience_ms = 40000;
 
 export function demoConfig() {
@@ -26,11 +27,21 @@ class Program {
     this.name = name;
     this.lines = [];
     this.waiting = [];
-    this.child = spawn(path.join(kBin, name), args, { env: { ...process.env, ...env }, stdio: ['ignore', 'pipe', 'pipe'] });
+    this.child = spawn(path.join(kBin, name), args, {
+      env: { ...process.env, ...env },
+      stdio: ['ignore', 'pipe', 'pipe'],
+    });
     this.ended = new Promise((done) => {
-      const end = (code, signal) => { this.over = true; this.#wake(); done({ code, signal }); };
+      const end = (code, signal) => {
+        this.over = true;
+        this.#wake();
+        done({ code, signal });
+      };
       this.child.on('exit', end);
-      this.child.on('error', (error) => { this.lines.push(error.message); end(null, null); });
+      this.child.on('error', (error) => {
+        this.lines.push(error.message);
+        end(null, null);
+      });
     });
     for (const stream of [this.child.stdout, this.child.stderr]) {
       let rest = '';
@@ -46,7 +57,8 @@ class Program {
   // The first line that matches; fails when the program ends without it, or after kPatience_ms.
   line(pattern) {
     return new Promise((done, fail) => {
-      const say = (why) => fail(new Error(`${this.name}: ${why} without a line like ${pattern}; it said:\n${this.lines.join('\n')}`));
+      const say = (why) =>
+        fail(new Error(`${this.name}: ${why} without a line like ${pattern}; it said:\n${this.lines.join('\n')}`));
       const timer = setTimeout(() => say(`waited ${kPatience_ms} ms`), kPatience_ms);
       const look = () => {
         const found = this.lines.map((line) => pattern.exec(line)).find(Boolean);
@@ -80,7 +92,11 @@ export class Bench {
   constructor() {
     this.folder = mkdtempSync(path.join(tmpdir(), 'hydro-scope-'));
     // However this process ends, its programs do not outlive it.
-    process.on('exit', () => this.#programs.forEach(({ over, child }) => { if (!over) child.kill('SIGINT'); }));
+    process.on('exit', () =>
+      this.#programs.forEach(({ over, child }) => {
+        if (!over) child.kill('SIGINT');
+      }),
+    );
     for (const signal of ['SIGINT', 'SIGTERM']) process.once(signal, () => process.exit(1));
   }
 
@@ -90,7 +106,9 @@ export class Bench {
     return bench;
   }
 
-  file(name) { return path.join(this.folder, name); }
+  file(name) {
+    return path.join(this.folder, name);
+  }
 
   // Runs a program to its end; its standard output. Fails with its words when its exit code is not 0.
   run(name, ...args) {
@@ -99,8 +117,18 @@ export class Bench {
 
   // The stack of config/demo.toml, moving to and fro until it is stopped. sets: "section.key=value".
   async launch(log, sets = []) {
-    const moving = ['reference.kind=square', 'reference.amplitude=0.2', 'reference.frequency_hz=0.5', 'time.duration_s=0'];
-    const stack = this.#start('hydro-launch', [path.join(kConfig, 'demo.toml'), '--log', log, ...this.#sets([...moving, ...sets])]);
+    const moving = [
+      'reference.kind=square',
+      'reference.amplitude=0.2',
+      'reference.frequency_hz=0.5',
+      'time.duration_s=0',
+    ];
+    const stack = this.#start('hydro-launch', [
+      path.join(kConfig, 'demo.toml'),
+      '--log',
+      log,
+      ...this.#sets([...moving, ...sets]),
+    ]);
     await stack.line(/ready after/);
     return stack;
   }
@@ -109,9 +137,16 @@ export class Bench {
   async scope(what = path.join(kConfig, 'demo.toml'), { port = 0, token = kToken, sets = [] } = {}) {
     const page = process.env.HYDRO_SCOPE_PAGE ? ['--page', process.env.HYDRO_SCOPE_PAGE] : [];
     const own = what.endsWith('.toml') ? this.#sets(sets) : [];
-    const program = this.#start('hydro-scope', [what, '--port', String(port), ...page, ...own], { HYDRO_SCOPE_TOKEN: token });
+    const program = this.#start('hydro-scope', [what, '--port', String(port), ...page, ...own], {
+      HYDRO_SCOPE_TOKEN: token,
+    });
     const [, host, got] = await program.line(/open http:\/\/([\d.]+):(\d+)\//);
-    return { program, port: Number(got), address: `http://${host}:${got}/#token=${token}`, origin: `http://${host}:${got}` };
+    return {
+      program,
+      port: Number(got),
+      address: `http://${host}:${got}/#token=${token}`,
+      origin: `http://${host}:${got}`,
+    };
   }
 
   async close() {

@@ -33,7 +33,8 @@ test('re-arm asks first', async () => {
   await page.getByRole('dialog').waitFor({ state: 'hidden' });
 });
 
-// Tests that one press of STOP ends the stack with its output at zero, that this is confirmed, and that it is an event.
+// Tests that one press of STOP ends the stack with its output at zero, that this is confirmed, and that it is
+// an event.
 test('STOP stops with one press', async () => {
   await page.getByRole('button', { name: /^STOP/ }).click();
   await page.getByText(/^STOPPED: /).waitFor();
@@ -44,7 +45,8 @@ test('STOP stops with one press', async () => {
   assert.equal(await page.locator('#rearm').isDisabled(), true);
 });
 
-// Tests that STOP without a connection says that it is not confirmed and goes on trying, and works by its key in a field.
+// Tests that STOP without a connection says that it is not confirmed and goes on trying, and works by its key
+// in a field.
 test('STOP without a connection is not silent', async () => {
   await scope.program.stop('SIGKILL');
   await page.locator('#link[data-state=lost]').waitFor();

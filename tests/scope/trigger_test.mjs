@@ -23,21 +23,28 @@ const form = (name) => page.locator(`#section-trigger [data-name=${name}]`);
 const captures = () => page.evaluate(() => hydroScope.trigger.captures);
 const nextCapture = async () => until(page, (before) => hydroScope.trigger.captures > before, await captures());
 
-// Tests that the step of the reference stands at the trigger, the picture does not move while the run goes on, and the
-// next step takes its place.
+// Tests that the step of the reference stands at the trigger, the picture does not move while the run goes
+// on, and the next step takes its place.
 test('the trigger stands still on a step of the reference', async () => {
   await form('on').selectOption('step');
   await form('span').fill('0.4');
   await form('span').press('Enter');
   await page.keyboard.press('t');
   await until(page, () => hydroScope.trigger.captures >= 1 && hydroScope.display.mode === 'trigger');
-  const step = () => page.evaluate(() => {
-    const { t, bins } = hydroScope.display.capture;
-    // Bins narrower than a tick are without a sample now and then.
-    const seen = [...bins.min.arm_ref.keys()].filter((i) => !Number.isNaN(bins.min.arm_ref[i]));
-    const at = seen.find((i, k) => k > 0 && Math.abs(bins.min.arm_ref[i] - bins.min.arm_ref[seen[k - 1]]) > 0.3);
-    return { t, offset: bins.t[at] - t, width: bins.width, window: hydroScope.display.window, last: hydroScope.display.last };
-  });
+  const step = () =>
+    page.evaluate(() => {
+      const { t, bins } = hydroScope.display.capture;
+      // Bins narrower than a tick are without a sample now and then.
+      const seen = [...bins.min.arm_ref.keys()].filter((i) => !Number.isNaN(bins.min.arm_ref[i]));
+      const at = seen.find((i, k) => k > 0 && Math.abs(bins.min.arm_ref[i] - bins.min.arm_ref[seen[k - 1]]) > 0.3);
+      return {
+        t,
+        offset: bins.t[at] - t,
+        width: bins.width,
+        window: hydroScope.display.window,
+        last: hydroScope.display.last,
+      };
+    });
   const first = await step();
   assert.ok(Math.abs(first.offset) <= 0.006 + first.width, `the step is ${first.offset} s from the trigger`);
   await until(page, (last) => hydroScope.display.last > last + 0.1, first.last);
@@ -46,6 +53,16 @@ test('the trigger stands still on a step of the reference', async () => {
   assert.ok(second.t > first.t + 0.5, `${second.t} after ${first.t}`);
   assert.ok(Math.abs(second.offset) <= 0.006 + second.width);
   assert.deepEqual(second.window, first.window);
+});
+
+// Tests that cursors stay where they are on the standing picture when another capture takes its place.
+test('cursors stay beside the trigger', async () => {
+  const place = () => page.evaluate(() => hydroScope.cursors.at.a - hydroScope.display.capture.t);
+  await page.evaluate(() => hydroScope.cursors.place('a', hydroScope.display.capture.t + 0.1));
+  const first = await place();
+  await nextCapture();
+  assert.ok(Math.abs((await place()) - first) < 1e-9);
+  await page.evaluate(() => hydroScope.cursors.clear());
 });
 
 // Tests that a level is crossed at the trigger, in the direction that was asked for.
@@ -58,7 +75,8 @@ test('a falling level of the arm angle', async () => {
   await nextCapture();
   const { before: above, after: below } = await page.evaluate(() => {
     const { t, bins } = hydroScope.display.capture;
-    const at = (time) => bins.max.arm_angle[bins.t.findIndex((one, i) => one >= time && !Number.isNaN(bins.max.arm_angle[i]))];
+    const at = (time) =>
+      bins.max.arm_angle[bins.t.findIndex((one, i) => one >= time && !Number.isNaN(bins.max.arm_angle[i]))];
     return { before: at(t - 0.02), after: at(t + 0.02) };
   });
   assert.ok(above > 0.05 && below < 0.05, `${above} before, ${below} after`);
@@ -66,11 +84,17 @@ test('a falling level of the arm angle', async () => {
 
 // Tests that the level's line can be dragged.
 test('the level is dragged', async () => {
-  const pane = await page.evaluate(() => hydroScope.scope.layout.panes.findIndex((one) => one.channels.includes('arm_angle')));
+  const pane = await page.evaluate(() =>
+    hydroScope.scope.layout.panes.findIndex((one) => one.channels.includes('arm_angle')),
+  );
   const place = await page.evaluate((p) => {
     const { chart } = hydroScope.panes.panes[p];
     const box = chart.plot.over.getBoundingClientRect();
-    return { x: box.x + box.width * 0.7, y: box.y + (chart.y(0.05) - chart.plot.bbox.top) / devicePixelRatio, to: box.y + (chart.y(-0.1) - chart.plot.bbox.top) / devicePixelRatio };
+    return {
+      x: box.x + box.width * 0.7,
+      y: box.y + (chart.y(0.05) - chart.plot.bbox.top) / devicePixelRatio,
+      to: box.y + (chart.y(-0.1) - chart.plot.bbox.top) / devicePixelRatio,
+    };
   }, pane);
   await page.mouse.move(place.x, place.y);
   await page.mouse.down();

@@ -1,5 +1,7 @@
-// Tests of tuning and references from the page on a running stack: accepted with the tick they act on, or refused in words.
+// Tests of tuning and references from the page on a running stack: accepted with the tick they act on, or
+// refused in words.
 import assert from 'node:assert/strict';
+import { createRequire } from 'node:module';
 import { after, before, test } from 'node:test';
 import { openBrowser, openPage, streaming, until } from './browser.mjs';
 import { Bench } from './stack.mjs';
@@ -12,7 +14,8 @@ before(async () => {
   const scope = await bench.scope(undefined, { sets: ['scope.control=true'] });
   browser = await openBrowser();
   page = await openPage(browser, scope.address);
-  await streaming(page, 1);
+  // In its first two seconds a stack may refuse: a controller has not said its values yet.
+  await streaming(page, 3);
   await page.locator('#section-tuning > summary').click();
   await page.locator('#section-reference > summary').click();
 });
@@ -30,7 +33,9 @@ test('a gain acts from a tick on', async () => {
   assert.equal(await inForce('position.c2').textContent(), '1200');
   await field('position.c2').fill('1400');
   await page.getByRole('button', { name: 'Apply' }).click();
-  await result().getByText(/^Accepted\..*from tick \d+/).waitFor();
+  await result()
+    .getByText(/^Accepted\..*from tick \d+/)
+    .waitFor();
   await inForce('position.c2').getByText('1400').waitFor();
   await page.locator('.events [data-kind=tuning]').first().waitFor();
 });
@@ -48,7 +53,9 @@ test('two values are one set', async () => {
 test('an unstable gain is refused', async () => {
   await field('position.c2').fill('1');
   await page.getByRole('button', { name: 'Apply' }).click();
-  await result().getByText(/^Refused: .*unstable/i).waitFor();
+  await result()
+    .getByText(/^Refused: .*unstable/i)
+    .waitFor();
   assert.equal(await inForce('position.c2').textContent(), '1300');
 });
 
@@ -62,7 +69,10 @@ test('undo takes the last set back', async () => {
 test('a step from the page moves the arm', async () => {
   await page.locator('[data-key="reference.initial"]').fill('0.05');
   await page.getByRole('button', { name: 'Command it' }).click();
-  await page.locator('#section-reference .result').getByText(/^Accepted/).waitFor();
+  await page
+    .locator('#section-reference .result')
+    .getByText(/^Accepted/)
+    .waitFor();
   await until(page, () => {
     const { bins } = hydroScope.display.frame();
     const at = bins.t.length - 3;
@@ -70,7 +80,24 @@ test('a step from the page moves the arm', async () => {
   });
 });
 
-// Tests that without control = true the values are shown and nothing can be set, not even past the page's buttons.
+// Tests that the checks of axe find nothing to mend where values can be set.
+test('accessibility of the fields and sliders', async () => {
+  const { source } = createRequire(new URL('../../scope/page/package.json', import.meta.url))('axe-core');
+  await page.evaluate(() =>
+    document.querySelectorAll('details.group').forEach((one) => {
+      one.open = true;
+    }),
+  );
+  await page.evaluate(source);
+  const { violations } = await page.evaluate(() => globalThis.axe.run('#side'));
+  assert.deepEqual(
+    violations.map(({ id, nodes }) => `${id}: ${nodes[0].html}`),
+    [],
+  );
+});
+
+// Tests that without control = true the values are shown and nothing can be set, not even past the page's
+// buttons.
 test('read only without control', async () => {
   const reader = await bench.scope();
   const other = await openPage(browser, reader.address);

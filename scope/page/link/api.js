@@ -1,5 +1,5 @@
-// What the page asks over HTTP: files, reports, whether the token is right. The token goes in a header, never in an
-// address that a report or a log could see.
+// What the page asks over HTTP: files, reports, whether the token is right. The token goes in a header, never
+// in an address that a report or a log could see.
 
 export class Api {
   constructor(token) {
@@ -25,7 +25,8 @@ export class Api {
   // The window as a file: {name, blob}. format: "lcmlog" or "csv".
   async cut(run, t0, t1, format, si) {
     const answer = await this.#post('/api/cut', { run, t0, t1, format, si });
-    const name = /filename="?([^";]+)"?/.exec(answer.headers.get('Content-Disposition') ?? '')?.[1] ?? `window.${format}`;
+    const name =
+      /filename="?([^";]+)"?/.exec(answer.headers.get('Content-Disposition') ?? '')?.[1] ?? `window.${format}`;
     return { name, blob: await answer.blob() };
   }
 
@@ -51,13 +52,21 @@ export class Api {
   }
 
   async #post(path, body) {
-    const answer = await this.#fetch(path, { method: 'POST', body: JSON.stringify(body), headers: { 'Content-Type': 'application/json' } });
+    const answer = await this.#fetch(path, {
+      method: 'POST',
+      body: JSON.stringify(body),
+      headers: { 'Content-Type': 'application/json' },
+    });
     if (!answer.ok) throw new Error(await errorOf(answer));
     return answer;
   }
 
   #fetch(path, options = {}) {
-    return fetch(path, { ...options, cache: 'no-store', headers: { ...options.headers, Authorization: `Bearer ${this.token}` } });
+    return fetch(path, {
+      ...options,
+      cache: 'no-store',
+      headers: { ...options.headers, Authorization: `Bearer ${this.token}` },
+    });
   }
 }
 

@@ -1,5 +1,5 @@
-// How long to wait before the next attempt to connect: soon at first, never longer than two seconds, as the server is on
-// this machine and a person waits for the picture.
+// How long to wait before the next attempt to connect: soon at first, never longer than two seconds, as the
+// server is on this machine and a person waits for the picture.
 
 const kFirst_ms = 250;
 const kLongest_ms = 2000;

@@ -1,5 +1,5 @@
-// The web socket to the server: requests with their replies, frames with their owners, and a connection that comes back
-// by itself. Signals: "link" {state, text}, "op:NAME" message, "bins" frame, "capture" frame.
+// The web socket to the server: requests with their replies, frames with their owners, and a connection that
+// comes back by itself. Signals: "link" {state, text}, "op:NAME" message, "bins" frame, "capture" frame.
 // States: connecting, open, stuck (nothing arrives), lost (tries again), refused (the token is wrong).
 
 import { BackOff } from './back_off.js';
@@ -16,7 +16,7 @@ export class Connection {
   #api;
   #socket = null;
   #wait = new BackOff();
-  #pending = new Map();              // id -> {done, fail, timer}
+  #pending = new Map(); // id -> {done, fail, timer}
   #last_id = 0;
   #heard_ms = 0;
   #state = '';
@@ -28,7 +28,9 @@ export class Connection {
     setInterval(() => this.#watch(), 1000);
   }
 
-  get state() { return this.#state; }
+  get state() {
+    return this.#state;
+  }
 
   nextId() {
     this.#last_id += 1;
@@ -38,12 +40,19 @@ export class Connection {
   open() {
     this.#tell('connecting', this.#was_open ? 'connecting again' : 'connecting');
     const scheme = location.protocol === 'https:' ? 'wss' : 'ws';
-    const socket = new WebSocket(`${scheme}://${location.host}/live?token=${encodeURIComponent(this.#api.token)}`, kProtocol);
+    const socket = new WebSocket(
+      `${scheme}://${location.host}/live?token=${encodeURIComponent(this.#api.token)}`,
+      kProtocol,
+    );
     socket.binaryType = 'arraybuffer';
     this.#socket = socket;
     socket.onopen = () => this.#opened();
-    socket.onmessage = (event) => { if (socket === this.#socket) this.#receive(event.data); };
-    socket.onclose = () => { if (socket === this.#socket) this.#closed(); };
+    socket.onmessage = (event) => {
+      if (socket === this.#socket) this.#receive(event.data);
+    };
+    socket.onclose = () => {
+      if (socket === this.#socket) this.#closed();
+    };
   }
 
   // False when there is no connection; then nothing is sent later.
@@ -53,12 +62,15 @@ export class Connection {
     return true;
   }
 
-  // The reply {ok, text, data}, or, for a "get", the frame. Fails with an Error when there is no connection, or no answer
-  // within patience_ms.
+  // The reply {ok, text, data}, or, for a "get", the frame. Fails with an Error when there is no connection,
+  // or no answer within patience_ms.
   request(message, patience_ms = kRequest_ms) {
     const id = this.nextId();
     return new Promise((done, fail) => {
-      const timer = setTimeout(() => this.#fail(id, `the server did not answer within ${patience_ms / 1000} s`), patience_ms);
+      const timer = setTimeout(
+        () => this.#fail(id, `the server did not answer within ${patience_ms / 1000} s`),
+        patience_ms,
+      );
       this.#pending.set(id, { done, fail, timer });
       if (!this.send({ ...message, id })) this.#fail(id, 'no connection to hydro-scope');
     });
@@ -123,7 +135,7 @@ export class Connection {
       this.#closed();
       return;
     }
-    if (silent > kStuck_ms) this.#tell('stuck', `hydro-scope has been silent for ${Math.round(silent / 1000)} s`);
+    if (silent > kStuck_ms && this.#state !== 'stuck') this.#tell('stuck', 'hydro-scope is silent');
     if (silent > kPing_ms) this.send({ op: 'ping', id: this.nextId() });
   }
 

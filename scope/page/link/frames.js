@@ -8,10 +8,11 @@ const kBins = 1;
 const kHeaderBytes = 40;
 const kBytesPerValue = 8;
 
-// {id, run, flags, t0, width, bins, min: [Float64Array...], max: [...]}, one of each a channel in the order asked.
-// Throws when the bytes are not such a frame.
+// {id, run, flags, t0, width, bins, min: [Float64Array...], max: [...]}, one of each a channel in the order
+// asked. Throws when the bytes are not such a frame.
 export function decodeBins(buffer) {
-  if (buffer.byteLength < kHeaderBytes) throw new Error(`a frame of ${buffer.byteLength} bytes: its header has ${kHeaderBytes}`);
+  if (buffer.byteLength < kHeaderBytes)
+    throw new Error(`a frame of ${buffer.byteLength} bytes: its header has ${kHeaderBytes}`);
   const view = new DataView(buffer);
   const kind = view.getUint32(0, true);
   if (kind !== kBins) throw new Error(`a frame of kind ${kind}: known is ${kBins}`);
@@ -22,8 +23,14 @@ export function decodeBins(buffer) {
     throw new Error(`a frame of ${buffer.byteLength} bytes: ${channels} channels of ${bins} bins take ${expected}`);
   }
   const frame = {
-    id: view.getUint32(4, true), run: view.getUint32(8, true), flags: view.getUint32(12, true),
-    t0: view.getFloat64(16, true), width: view.getFloat64(24, true), bins, min: [], max: [],
+    id: view.getUint32(4, true),
+    run: view.getUint32(8, true),
+    flags: view.getUint32(12, true),
+    t0: view.getFloat64(16, true),
+    width: view.getFloat64(24, true),
+    bins,
+    min: [],
+    max: [],
   };
   let at = kHeaderBytes;
   for (let channel = 0; channel < channels; channel += 1) {

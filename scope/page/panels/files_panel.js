@@ -1,4 +1,5 @@
-// What leaves the page and what comes in: a window as log, table or picture; a window to hydro-diagnose; logs dragged in.
+// What leaves the page and what comes in: a window as log, table or picture; a window to hydro-diagnose; logs
+// dragged in.
 
 import { el, offerFile, setText } from '../dom.js';
 import { pngOf, svgOf } from '../plot/picture.js';
@@ -12,18 +13,54 @@ export class FilesPanel {
   constructor({ scope, display, cursors, panes, api, signals }) {
     Object.assign(this, { scope, display, cursors, panes, api });
     const button = (text, act, title) => el('button', { type: 'button', text, title, onclick: () => this.#guard(act) });
-    this.which = el('p', { class: 'hint', text: 'The window is what the panes show; with both cursors, what lies between them.' });
+    this.which = el('p', {
+      class: 'hint',
+      text: 'The window is what the panes show; with both cursors, what lies between them.',
+    });
     this.result = el('output', { class: 'result', role: 'status' });
     this.report = el('button', { type: 'button', text: 'Show the report', onclick: () => this.#showReport() });
     this.report.hidden = true;
-    this.picker = el('input', { type: 'file', accept: '.lcmlog,.csv,.mat', class: 'unseen', tabindex: '-1', 'aria-label': 'Open a log', onchange: () => this.#openAll(this.picker.files) });
+    this.picker = el('input', {
+      type: 'file',
+      accept: '.lcmlog,.csv,.mat',
+      class: 'unseen',
+      tabindex: '-1',
+      'aria-label': 'Open a log',
+      onchange: () => this.#openAll(this.picker.files),
+    });
     this.closer = button('Close this log', () => this.#close());
-    this.element = section('files', 'Window and files', false, this.which,
-      el('div', { class: 'row' }, button('.lcmlog', () => this.#cut('lcmlog')), button('CSV', () => this.#cut('csv')), button('SVG', () => this.#svg()), button('PNG', () => this.#png())),
-      el('div', { class: 'row' }, button('Diagnose', () => this.#diagnose(), 'Give the window to hydro-diagnose: where do rig and model differ?'), this.report),
-      el('div', { class: 'row' }, button('Open a log …', () => this.picker.click()), this.closer, this.picker), this.result);
+    this.element = section(
+      'files',
+      'Window and files',
+      false,
+      this.which,
+      el(
+        'div',
+        { class: 'row' },
+        button('.lcmlog', () => this.#cut('lcmlog')),
+        button('CSV', () => this.#cut('csv')),
+        button('SVG', () => this.#svg()),
+        button('PNG', () => this.#png()),
+      ),
+      el(
+        'div',
+        { class: 'row' },
+        button('Diagnose', () => this.#diagnose(), 'Give the window to hydro-diagnose: where do rig and model differ?'),
+        this.report,
+      ),
+      el(
+        'div',
+        { class: 'row' },
+        button('Open a log …', () => this.picker.click()),
+        this.closer,
+        this.picker,
+      ),
+      this.result,
+    );
     this.#acceptFiles();
-    signals.on('run', () => { this.closer.hidden = scope.live; });
+    signals.on('run', () => {
+      this.closer.hidden = scope.live;
+    });
   }
 
   #window() {
@@ -53,11 +90,20 @@ export class FilesPanel {
 
   #name(ending) {
     const { t0, t1 } = this.display.frame();
-    return `${baseName(this.scope.run.name).replace(/\.[a-z]+$/, '').replace(/[^\w.-]+/g, '_')}_${t0.toFixed(2)}-${t1.toFixed(2)}.${ending}`;
+    return `${baseName(this.scope.run.name)
+      .replace(/\.[a-z]+$/, '')
+      .replace(/[^\w.-]+/g, '_')}_${t0.toFixed(2)}-${t1.toFixed(2)}.${ending}`;
   }
 
-  async #png() { offerFile(this.#name('png'), await pngOf(this.panes.panes, this.panes.colours)); }
-  #svg() { offerFile(this.#name('svg'), svgOf(this.panes.panes, this.panes.colours, baseName(this.scope.run.name), this.scope.eventsOf())); }
+  async #png() {
+    offerFile(this.#name('png'), await pngOf(this.panes.panes, this.panes.colours));
+  }
+  #svg() {
+    offerFile(
+      this.#name('svg'),
+      svgOf(this.panes.panes, this.panes.colours, baseName(this.scope.run.name), this.scope.eventsOf()),
+    );
+  }
 
   async #diagnose() {
     const { t0, t1 } = this.#window();
@@ -70,7 +116,7 @@ export class FilesPanel {
       if (answer.state === 'done') {
         this.path = answer.report;
         this.report.hidden = !this.path;
-        setText(this.result, [answer.verdict, answer.sentence].filter(Boolean).join(': ') || 'hydro-diagnose is done');
+        setText(this.result, answer.sentence || answer.verdict || 'hydro-diagnose is done');
         return;
       }
       setText(this.result, answer.text || 'hydro-diagnose is at work');
@@ -81,7 +127,15 @@ export class FilesPanel {
   // In a sandbox without this page's origin: the report is made from a log, which anyone may have written.
   #showReport() {
     if (!/^\/api\/reports\/[0-9a-f]+$/.test(this.path)) return;
-    showDialog('hydro-diagnose', [el('iframe', { class: 'report', src: this.path, sandbox: 'allow-scripts', title: 'Report of hydro-diagnose', referrerpolicy: 'no-referrer' })]);
+    showDialog('hydro-diagnose', [
+      el('iframe', {
+        class: 'report',
+        src: this.path,
+        sandbox: 'allow-scripts',
+        title: 'Report of hydro-diagnose',
+        referrerpolicy: 'no-referrer',
+      }),
+    ]);
   }
 
   async #openAll(files) {
@@ -101,13 +155,24 @@ export class FilesPanel {
     else if (tries > 0) setTimeout(() => this.#show(number, tries - 1), 50);
   }
 
-  async #close() { await this.api.close(this.scope.run.run); }
+  async #close() {
+    await this.api.close(this.scope.run.run);
+  }
 
   #acceptFiles() {
-    const over = (on) => { document.body.dataset.drop = on ? 'yes' : ''; };
+    const over = (on) => {
+      document.body.dataset.drop = on ? 'yes' : '';
+    };
     const files = (event) => event.dataTransfer?.types.includes('Files');
-    addEventListener('dragover', (event) => { if (files(event)) { event.preventDefault(); over(true); } });
-    addEventListener('dragleave', (event) => { if (!event.relatedTarget) over(false); });
+    addEventListener('dragover', (event) => {
+      if (files(event)) {
+        event.preventDefault();
+        over(true);
+      }
+    });
+    addEventListener('dragleave', (event) => {
+      if (!event.relatedTarget) over(false);
+    });
     addEventListener('drop', (event) => {
       over(false);
       if (!files(event)) return;

@@ -20,8 +20,16 @@ export class Notice {
   #show() {
     const host = byId('notice');
     host.hidden = this.#lines.size === 0;
-    host.replaceChildren(...[...this.#lines].map(([subject, { text, kind, actions, extra }]) =>
-      el('div', { class: `line ${kind}`, 'data-subject': subject }, el('span', { class: 'grow', text }), extra,
-        ...actions.map((one) => el('button', { type: 'button', text: one.text, onclick: one.act })))));
+    host.replaceChildren(
+      ...[...this.#lines].map(([subject, { text, kind, actions, extra }]) =>
+        el(
+          'div',
+          { class: `line ${kind}`, 'data-subject': subject },
+          el('span', { class: 'grow', text }),
+          extra,
+          ...actions.map((one) => el('button', { type: 'button', text: one.text, onclick: one.act })),
+        ),
+      ),
+    );
   }
 }

@@ -13,17 +13,38 @@ addEventListener('pointerdown', (event) => {
 export function paneMenu(scope, index) {
   const pane = scope.layout.panes[index];
   const set = (layout) => scope.setLayout(layout);
-  const menu = el('details', { class: 'menu' },
+  const menu = el(
+    'details',
+    { class: 'menu' },
     el('summary', { 'aria-label': `Arrange pane ${index + 1}`, title: 'Arrange this pane', text: '⋯' }),
-    el('div', { class: 'sheet' },
+    el(
+      'div',
+      { class: 'sheet' },
       ...pane.channels.map((id) => channelRow(scope, index, id, set)),
       addRow(scope, index, set),
-      el('label', { class: 'field' }, el('span', { class: 'name', text: 'Name' }),
-        el('input', { value: pane.title, maxlength: 60, onchange: (event) => set(layouts.withTitle(scope.layout, index, event.target.value)) })),
-      el('div', { class: 'row' },
+      el(
+        'label',
+        { class: 'field' },
+        el('span', { class: 'name', text: 'Name' }),
+        el('input', {
+          value: pane.title,
+          maxlength: 60,
+          onchange: (event) => set(layouts.withTitle(scope.layout, index, event.target.value)),
+        }),
+      ),
+      el(
+        'div',
+        { class: 'row' },
         button('Up', () => set(layouts.withPaneMoved(scope.layout, index, -1)), index === 0),
-        button('Down', () => set(layouts.withPaneMoved(scope.layout, index, 1)), index === scope.layout.panes.length - 1),
-        button('Remove pane', () => set(layouts.withoutPane(scope.layout, index))))));
+        button(
+          'Down',
+          () => set(layouts.withPaneMoved(scope.layout, index, 1)),
+          index === scope.layout.panes.length - 1,
+        ),
+        button('Remove pane', () => set(layouts.withoutPane(scope.layout, index))),
+      ),
+    ),
+  );
   menu.addEventListener('keydown', (event) => {
     if (event.key !== 'Escape') return;
     menu.open = false;
@@ -38,11 +59,23 @@ function button(text, onclick, disabled = false) {
 }
 
 function channelRow(scope, index, id, set) {
-  const others = scope.layout.panes.map((pane, i) => [String(i), i === index ? 'here' : `pane ${i + 1}: ${pane.title || pane.channels.join(', ') || 'empty'}`]);
-  const move = choice([...others, [String(scope.layout.panes.length), 'a new pane']], String(index),
-    (to) => set(layouts.withChannelMoved(scope.layout, index, Number(to), id)), { 'aria-label': `Move ${id} to` });
-  return el('div', { class: 'row' }, el('span', { class: 'grow', text: id, title: scope.channel(id)?.label ?? '' }), move,
-    button('Remove', () => set(layouts.withoutChannel(scope.layout, index, id))));
+  const others = scope.layout.panes.map((pane, i) => [
+    String(i),
+    i === index ? 'here' : `pane ${i + 1}: ${pane.title || pane.channels.join(', ') || 'empty'}`,
+  ]);
+  const move = choice(
+    [...others, [String(scope.layout.panes.length), 'a new pane']],
+    String(index),
+    (to) => set(layouts.withChannelMoved(scope.layout, index, Number(to), id)),
+    { 'aria-label': `Move ${id} to` },
+  );
+  return el(
+    'div',
+    { class: 'row' },
+    el('span', { class: 'grow', text: id, title: scope.channel(id)?.label ?? '' }),
+    move,
+    button('Remove', () => set(layouts.withoutChannel(scope.layout, index, id))),
+  );
 }
 
 function addRow(scope, index, set) {
@@ -54,7 +87,14 @@ function addRow(scope, index, set) {
     if (!groups.has(name)) groups.set(name, el('optgroup', { label: name }));
     groups.get(name).append(el('option', { value: channel.id, text: `${channel.id}: ${channel.label ?? ''}` }));
   }
-  const select = el('select', { 'aria-label': `Add a channel to pane ${index + 1}`, onchange: (event) => set(layouts.withChannel(scope.layout, index, event.target.value)) },
-    el('option', { value: '', text: 'Add a channel …', selected: true, disabled: true }), ...groups.values());
+  const select = el(
+    'select',
+    {
+      'aria-label': `Add a channel to pane ${index + 1}`,
+      onchange: (event) => set(layouts.withChannel(scope.layout, index, event.target.value)),
+    },
+    el('option', { value: '', text: 'Add a channel …', selected: true, disabled: true }),
+    ...groups.values(),
+  );
   return el('div', { class: 'row' }, select);
 }

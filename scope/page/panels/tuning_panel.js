@@ -1,25 +1,41 @@
-// Gains and the like, in force and to be set. One "Apply" is one set: all of it acts on one tick of the loop, or none.
+// Gains and the like, in force and to be set. One "Apply" is one set: all of it acts on one tick of the loop,
+// or none.
 
 import { el, setText } from '../dom.js';
 import { section } from './section.js';
 import { TuningRow } from './tuning_row.js';
 
 const kReferencePrefix = 'reference.';
+const kOpenGroups = ['pressure', 'position'];
+
+function groupOf({ key }) {
+  return key.split('.')[0];
+}
 
 export class TuningPanel {
-  #version = null;
-  #rows = new Map();                  // key -> TuningRow
+  #rows = new Map(); // key -> TuningRow
   #edited = new Set();
 
   constructor(scope, signals) {
     this.scope = scope;
+    this.in_force = el('p', { class: 'hint' });
     this.rows = el('div', { class: 'form' });
-    this.result = el('output', { class: 'result', role: 'status' });
+    // Long answers scroll, so they can have the focus.
+    this.result = el('output', { class: 'result', role: 'status', tabindex: '0', 'aria-label': 'Answer of the stack' });
     this.apply = el('button', { type: 'button', class: 'main', text: 'Apply', onclick: () => this.#apply() });
-    this.undo = el('button', { type: 'button', text: 'Undo', title: 'Take the last set back', onclick: () => this.#undo() });
-    this.buttons = el('div', { class: 'row buttons-bar' }, this.apply, this.undo);
-    this.readonly = el('p', { class: 'hint', text: 'Read only: [scope] control = true in the configuration lets the page set values.' });
-    this.element = section('tuning', 'Tuning', false, this.rows, this.readonly, this.buttons, this.result);
+    this.undo = el('button', {
+      type: 'button',
+      text: 'Undo',
+      title: 'Take the last set back',
+      onclick: () => this.#undo(),
+    });
+    // The answer stands with the buttons, in view wherever one has scrolled to.
+    this.buttons = el('div', { class: 'buttons-bar' }, el('div', { class: 'row' }, this.apply, this.undo), this.result);
+    this.readonly = el('p', {
+      class: 'hint',
+      text: 'Read only: [scope] control = true in the configuration lets the page set values.',
+    });
+    this.element = section('tuning', 'Tuning', false, this.in_force, this.readonly, this.rows, this.buttons);
     this.element.hidden = true;
     signals.on('op:tuning', (message) => this.#values(message));
     signals.on('link', () => this.#enable());
@@ -29,26 +45,40 @@ export class TuningPanel {
     this.control = message.control === true && this.scope.control;
     const entries = (message.entries ?? []).filter(({ key }) => !key.startsWith(kReferencePrefix));
     this.element.hidden = entries.length === 0;
-    const same = entries.length === this.#rows.size && entries.every(({ key }) => this.#rows.has(key)) && this.built_for === this.control;
+    const same =
+      entries.length === this.#rows.size &&
+      entries.every(({ key }) => this.#rows.has(key)) &&
+      this.built_for === this.control;
     if (!same) this.#build(entries);
     for (const entry of entries) this.#rows.get(entry.key).show(entry, this.#edited.has(entry.key));
-    if (this.#version !== null && this.#version !== message.version && message.text) setText(this.result, message.text);
-    this.#version = message.version;
+    setText(
+      this.in_force,
+      message.text || (message.version === 0 ? 'In force: as configured' : `In force: version ${message.version}`),
+    );
     this.#enable();
   }
 
   #build(entries) {
     this.built_for = this.control;
     this.#edited.clear();
-    const edited = (row) => { if (row.changed) this.#edited.add(row.key); else this.#edited.delete(row.key); this.#enable(); };
+    const edited = (row) => {
+      if (row.changed) this.#edited.add(row.key);
+      else this.#edited.delete(row.key);
+      this.#enable();
+    };
     this.#rows = new Map(entries.map((entry) => [entry.key, new TuningRow(entry, this.control, edited)]));
-    let group = '';
-    this.rows.replaceChildren(...entries.flatMap(({ key }) => {
-      const [name] = key.split('.');
-      const head = name === group ? [] : [el('h3', { text: name })];
-      group = name;
-      return [...head, this.#rows.get(key).element];
-    }));
+    const groups = new Map();
+    for (const entry of entries) groups.set(groupOf(entry), [...(groups.get(groupOf(entry)) ?? []), entry]);
+    this.rows.replaceChildren(
+      ...[...groups].map(([name, list]) =>
+        el(
+          'details',
+          { class: 'group', open: kOpenGroups.includes(name) },
+          el('summary', { text: name }),
+          ...list.map(({ key }) => this.#rows.get(key).element),
+        ),
+      ),
+    );
     this.readonly.hidden = this.control;
     this.buttons.hidden = !this.control;
   }

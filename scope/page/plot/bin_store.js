@@ -1,23 +1,27 @@
-// What the server streams for one view: the newest bins of each channel, on a grid of equal widths. Bin k covers
-// [(k + phase) width, (k + 1 + phase) width); the server chooses the grid: whole multiples of the width (phase 0), or, for
-// bins of a sample each, bins centred on the samples (phase 0.5). Holds a fixed number of bins, so that a day of
-// streaming takes no more memory than a minute.
+// What the server streams for one view: the newest bins of each channel, on a grid of equal widths. Bin k
+// covers [(k + phase) width, (k + 1 + phase) width); the server chooses the grid: whole multiples of the
+// width (phase 0), or, for bins of a sample each, bins centred on the samples (phase 0.5). Holds a fixed
+// number of bins, so that a day of streaming takes no more memory than a minute.
 
 export class BinStore {
   // channels: ids in the order of the frames; capacity: bins kept.
   constructor(channels, capacity) {
     this.channels = channels;
-    this.width = 1;                  // s, of the frames
+    this.width = 1; // s, of the frames
     this.phase = 0;
     this.capacity = capacity;
-    this.first = 0;                  // index of the oldest bin kept
-    this.end = 0;                    // one past the newest
+    this.first = 0; // index of the oldest bin kept
+    this.end = 0; // one past the newest
     this.min = channels.map(() => new Float64Array(capacity).fill(NaN));
     this.max = channels.map(() => new Float64Array(capacity).fill(NaN));
   }
 
-  get empty() { return this.end === this.first; }
-  get last() { return (this.end + this.phase) * this.width; }
+  get empty() {
+    return this.end === this.first;
+  }
+  get last() {
+    return (this.end + this.phase) * this.width;
+  }
 
   // A frame replaces the bins that it repeats (the newest was incomplete); bins between are without samples.
   add(frame) {
@@ -54,7 +58,9 @@ export class BinStore {
     return bins;
   }
 
-  #slot(k) { return ((k % this.capacity) + this.capacity) % this.capacity; }
+  #slot(k) {
+    return ((k % this.capacity) + this.capacity) % this.capacity;
+  }
 
   #copy(ring, from, count) {
     const slot = this.#slot(from);
@@ -85,8 +91,9 @@ export class BinStore {
   }
 }
 
-// The bins of one answer of the server (a "get" or a capture) in the form of between(). Where the server widened bins to
-// the sampling interval, each is one sample, and stands at that sample's time rather than in the bin's middle.
+// The bins of one answer of the server (a "get" or a capture) in the form of between(). Where the server
+// widened bins to the sampling interval, each is one sample, and stands at that sample's time rather than in
+// the bin's middle.
 export function binsOf(frame, channels, rate_hz = 0) {
   const bins = { t: new Float64Array(frame.bins), min: {}, max: {}, width: frame.width };
   const offset = Math.abs(frame.width * rate_hz - 1) < 0.01 ? 0 : 0.5;

@@ -1,7 +1,27 @@
 // Colours and widths of the drawing, read from the style sheet so that light and dark stand in one place.
 
-const kNames = ['ink', 'soft', 'line', 'fine', 'edge', 'paper', 'panel', 'accent', 'bad', 'warn', 'cursor', 'trigger',
-  'c0', 'c1', 'c2', 'c3', 'c4', 'c5', 'c6', 'c7'];
+const kNames = [
+  'ink',
+  'soft',
+  'line',
+  'fine',
+  'edge',
+  'paper',
+  'panel',
+  'accent',
+  'bad',
+  'warn',
+  'cursor',
+  'trigger',
+  'c0',
+  'c1',
+  'c2',
+  'c3',
+  'c4',
+  'c5',
+  'c6',
+  'c7',
+];
 
 export const kTraceColours = 8;
 
@@ -22,5 +42,11 @@ export function between(one, other) {
   const parts = (colour) => colour.match(/[0-9a-f]{2}/gi).map((hex) => parseInt(hex, 16));
   const a = parts(one);
   const b = parts(other);
-  return `#${a.map((value, i) => Math.round((value + b[i]) / 2).toString(16).padStart(2, '0')).join('')}`;
+  return `#${a
+    .map((value, i) =>
+      Math.round((value + b[i]) / 2)
+        .toString(16)
+        .padStart(2, '0'),
+    )
+    .join('')}`;
 }

@@ -1,12 +1,12 @@
 // The two cursors on the plots, and the exact values at them, asked of the server when they stand.
 
-import { cursorNear, moved, noCursors, placed } from './cursors.js';
+import { cursorNear, moved, noCursors, placed, shifted } from './cursors.js';
 
 const kSettle_ms = 60;
 
 export class CursorTool {
   at = noCursors();
-  values = { a: null, b: null };      // {t, values} in the order of .channels, or null
+  values = { a: null, b: null }; // {t, values} in the order of .channels, or null
   channels = [];
   #timer = null;
 
@@ -17,10 +17,19 @@ export class CursorTool {
     signals.on('run', () => this.clear());
     signals.on('restart', () => this.clear());
     signals.on('layout', () => this.#changed());
-    signals.on('link', ({ state }) => { if (state === 'open' && this.shown) this.#changed(); });
+    signals.on('captured', (by) => {
+      if (!this.shown) return;
+      this.at = shifted(this.at, by);
+      this.#changed();
+    });
+    signals.on('link', ({ state }) => {
+      if (state === 'open' && this.shown) this.#changed();
+    });
   }
 
-  get shown() { return this.at.a !== null || this.at.b !== null; }
+  get shown() {
+    return this.at.a !== null || this.at.b !== null;
+  }
 
   place(name, t) {
     this.at = placed(this.at, name, t);
@@ -29,9 +38,12 @@ export class CursorTool {
 
   // Both on the screen, at a third and two thirds, or away.
   toggle() {
-    if (this.shown) { this.clear(); return; }
+    if (this.shown) {
+      this.clear();
+      return;
+    }
     const { t0, t1 } = this.display.frame();
-    this.place('b', t0 + (t1 - t0) * 2 / 3);
+    this.place('b', t0 + ((t1 - t0) * 2) / 3);
     this.place('a', t0 + (t1 - t0) / 3);
   }
 
@@ -45,7 +57,9 @@ export class CursorTool {
     this.#changed();
   }
 
-  near(t, reach) { return cursorNear(this.at, t, reach); }
+  near(t, reach) {
+    return cursorNear(this.at, t, reach);
+  }
 
   clear() {
     this.at = noCursors();
@@ -63,7 +77,7 @@ export class CursorTool {
     const channels = this.scope.run ? this.scope.wanted() : [];
     const { a, b } = this.at;
     const [at_a, at_b] = await Promise.all([this.#valuesAt(channels, a), this.#valuesAt(channels, b)]);
-    if (a !== this.at.a || b !== this.at.b) return;     // moved on meanwhile: the next answer counts
+    if (a !== this.at.a || b !== this.at.b) return; // moved on meanwhile: the next answer counts
     this.channels = channels;
     this.values = { a: at_a, b: at_b };
     this.signals.emit('cursors');

@@ -13,6 +13,12 @@ export function moved(cursors, by) {
   return at === null ? cursors : { ...cursors, [cursors.active]: at + by };
 }
 
+// Both by the same time: where one capture takes the place of another, they stay where they were on the screen.
+export function shifted(cursors, by) {
+  const along = (t) => (t === null ? null : t + by);
+  return { ...cursors, a: along(cursors.a), b: along(cursors.b) };
+}
+
 // The cursor within reach of t, the nearer one; null when neither is.
 export function cursorNear(cursors, t, reach) {
   const near = ['a', 'b'].filter((name) => cursors[name] !== null && Math.abs(cursors[name] - t) <= reach);
@@ -27,7 +33,8 @@ export function interval(cursors) {
   return { dt, rate: 1 / dt };
 }
 
-// Rows {id, a, b, difference} of the channels, from the exact values at the cursors ({t, values} in the channels' order, or null).
+// Rows {id, a, b, difference} of the channels, from the exact values at the cursors ({t, values} in the
+// channels' order, or null).
 export function cursorRows(channels, at_a, at_b) {
   return channels.map((id, i) => {
     const a = at_a?.values?.[i] ?? NaN;

@@ -1,5 +1,5 @@
-// What is drawn under and over the curves: gaps in the run, the motor's voltage limits, marks of events, cursors, the
-// trigger's level.
+// What is drawn under and over the curves: gaps in the run, the motor's voltage limits, marks of events,
+// cursors, the trigger's level.
 
 import uPlot from '../uplot/uPlot.esm.js';
 import { runTime } from '../settings/numbers.js';
@@ -106,8 +106,15 @@ function drawEvents(ctx, chart, { colours, events, top: labels }) {
     ctx.globalAlpha = event.kind === 'step' ? 0.35 : 0.8;
     rule(ctx, x, top, x, top + height, colour, event.kind === 'fault' ? [] : [2, 3]);
     ctx.globalAlpha = 1;
-    if (labels && event.kind !== 'step' && x >= free) free = label(ctx, x, top, event.code || event.text || event.kind, colour, colours);
+    if (labels && event.kind !== 'step' && x >= free) free = label(ctx, x, top, labelOf(event), colour, colours);
   }
+}
+
+// A tuning says what was set; its number and tick are in the list.
+function labelOf({ kind, code, text }) {
+  if (kind === 'tuning' && code === 'refused') return 'set refused';
+  if (kind === 'tuning') return text.replace(/^version [^:]*: /, '') || code;
+  return code || text || kind;
 }
 
 // Text at the top of a mark; returns where the next one has room.

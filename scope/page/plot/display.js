@@ -11,9 +11,9 @@ import { WindowCache } from './window_cache.js';
 
 export class Display {
   mode = 'follow';
-  window = { t0: 0, t1: 10 };         // in trigger mode: relative to the trigger
-  capture = null;                     // {t, t0, t1, bins, count}
-  head = null;                        // of the playback of a log, s
+  window = { t0: 0, t1: 10 }; // in trigger mode: relative to the trigger
+  capture = null; // {t, t0, t1, bins, count}
+  head = null; // of the playback of a log, s
 
   constructor(scope, signals) {
     this.scope = scope;
@@ -23,13 +23,21 @@ export class Display {
     this.cache = new WindowCache(scope.link, () => signals.emit('draw'));
     signals.on('run', () => this.#begin());
     signals.on('restart', () => this.#begin());
-    signals.on('runs', () => { if (!scope.live) this.cache.forget(); });   // a log's ghost may be complete by now
+    signals.on('runs', () => {
+      if (!scope.live) this.cache.forget();
+    }); // a log's ghost may be complete by now
     for (const name of ['data', 'clock', 'layout', 'preferences', 'events']) signals.on(name, () => this.#changed());
   }
 
-  get span() { return this.scope.preferences.span; }
-  get last() { return Math.max(this.scope.run?.last ?? 0, this.stream.last ?? 0); }
-  get first() { return this.scope.run?.first ?? 0; }
+  get span() {
+    return this.scope.preferences.span;
+  }
+  get last() {
+    return Math.max(this.scope.run?.last ?? 0, this.stream.last ?? 0);
+  }
+  get first() {
+    return this.scope.run?.first ?? 0;
+  }
 
   // {t0, t1, origin, bins}: the window in run time, the time that the axis calls 0, and the bins.
   frame() {
@@ -44,7 +52,9 @@ export class Display {
     return { ...this.window, origin: 0, bins: this.#binsOf(this.window.t0, this.window.t1) };
   }
 
-  follow() { this.#look('follow'); }
+  follow() {
+    this.#look('follow');
+  }
 
   pause() {
     const { t0, t1, origin } = this.frame();
@@ -53,7 +63,9 @@ export class Display {
   }
 
   trigger() {
-    this.window = this.capture ? { t0: this.capture.t0 - this.capture.t, t1: this.capture.t1 - this.capture.t } : { t0: 0, t1: 1 };
+    this.window = this.capture
+      ? { t0: this.capture.t0 - this.capture.t, t1: this.capture.t1 - this.capture.t }
+      : { t0: 0, t1: 1 };
     this.#look('trigger');
   }
 
@@ -62,7 +74,8 @@ export class Display {
     const before = this.capture;
     this.capture = capture;
     if (this.mode !== 'trigger') return;
-    const same = before && Math.abs((before.t1 - before.t0) - (capture.t1 - capture.t0)) < 1e-9;
+    if (before) this.signals.emit('captured', capture.t - before.t);
+    const same = before && Math.abs(before.t1 - before.t0 - (capture.t1 - capture.t0)) < 1e-9;
     if (!same) this.trigger();
     this.#changed();
   }
@@ -96,7 +109,8 @@ export class Display {
     this.#still(panned({ t0, t1 }, t - (t0 + t1) / 2));
   }
 
-  // The time base, one step of 1-2-5 longer or shorter; what is at the right (following) or in the middle stays.
+  // The time base, one step of 1-2-5 longer or shorter; what is at the right (following) or in the middle
+  // stays.
   step(steps) {
     const { t0, t1 } = this.frame();
     const shown = this.mode === 'follow' ? this.span : t1 - t0;
@@ -133,7 +147,9 @@ export class Display {
     return bins.t.length === 0 && this.scope.live ? this.stream.between(t0, t1) : bins;
   }
 
-  #origin() { return this.capture?.t ?? 0; }
+  #origin() {
+    return this.capture?.t ?? 0;
+  }
 
   #begin() {
     this.cache.forget();

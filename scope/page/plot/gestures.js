@@ -1,13 +1,13 @@
-// Mouse, touch and wheel on the plots: zoom, pan, cursors, the trigger's level. One finger pans in time and scrolls the
-// page, two fingers zoom.
+// Mouse, touch and wheel on the plots: zoom, pan, cursors, the trigger's level. One finger pans in time and
+// scrolls the page, two fingers zoom.
 
 const kGrab_px = 8;
 const kClick_px = 4;
-const kWheelZoom = 1.0016;            // a factor for each unit of the wheel
+const kWheelZoom = 1.0016; // a factor for each unit of the wheel
 
 export class Gestures {
   #pointers = new Map();
-  #drag = null;                       // {kind, start_x, last_x, t_start, ...}
+  #drag = null; // {kind, start_x, last_x, t_start, ...}
   #pinch = null;
 
   // parts: {host, panes, display, cursors, trigger, signals, box: element that shows the zoom}
@@ -20,7 +20,9 @@ export class Gestures {
     host.addEventListener('pointercancel', (event) => this.#up(event));
     host.addEventListener('pointerleave', () => this.#hover(null));
     host.addEventListener('wheel', (event) => this.#wheel(event), { passive: false });
-    host.addEventListener('dblclick', (event) => { if (this.#place(event)) this.display.follow(); });
+    host.addEventListener('dblclick', (event) => {
+      if (this.#place(event)) this.display.follow();
+    });
   }
 
   // Where a pointer is: {pane, t, x, y, width} with x, y in the plotting area, or null outside of all.
@@ -31,7 +33,15 @@ export class Gestures {
     const box = pane.chart.plot.over.getBoundingClientRect();
     const { t0, t1 } = pane.chart.frame;
     const x = event.clientX - box.left;
-    return { pane, x, y: event.clientY - box.top, width: box.width, t: t0 + x / box.width * (t1 - t0), per_px: (t1 - t0) / box.width, left: box.left };
+    return {
+      pane,
+      x,
+      y: event.clientY - box.top,
+      width: box.width,
+      t: t0 + (x / box.width) * (t1 - t0),
+      per_px: (t1 - t0) / box.width,
+      left: box.left,
+    };
   }
 
   #down(event) {
@@ -39,7 +49,10 @@ export class Gestures {
     if (!place || event.button !== 0) return;
     this.#pointers.set(event.pointerId, event.clientX);
     this.host.setPointerCapture(event.pointerId);
-    if (this.#pointers.size === 2) { this.#startPinch(place); return; }
+    if (this.#pointers.size === 2) {
+      this.#startPinch(place);
+      return;
+    }
     const common = { place, start_x: event.clientX, last_x: event.clientX, moved: false };
     const cursor = this.cursors.near(place.t, kGrab_px * place.per_px);
     const axis = this.#levelAt(place);
@@ -79,7 +92,8 @@ export class Gestures {
     const by = (event.clientX - drag.last_x) * place.per_px;
     drag.last_x = event.clientX;
     if (drag.kind === 'pan') this.display.pan(-by);
-    else if (drag.kind === 'cursor') this.cursors.place(drag.cursor, place.t + (event.clientX - drag.start_x) * place.per_px);
+    else if (drag.kind === 'cursor')
+      this.cursors.place(drag.cursor, place.t + (event.clientX - drag.start_x) * place.per_px);
     else if (drag.kind === 'level') this.#dragLevel(event, drag);
     else this.#showBox(event, drag);
   }
@@ -110,9 +124,9 @@ export class Gestures {
     const middle = (one + other) / 2;
     const { t0, t1 } = this.display.frame();
     const { left, width } = this.#pinch.place;
-    this.display.pan(-(middle - this.#pinch.middle) / width * (t1 - t0));
+    this.display.pan((-(middle - this.#pinch.middle) / width) * (t1 - t0));
     const shown = this.display.frame();
-    this.display.zoom(this.#pinch.apart / apart, shown.t0 + (middle - left) / width * (shown.t1 - shown.t0));
+    this.display.zoom(this.#pinch.apart / apart, shown.t0 + ((middle - left) / width) * (shown.t1 - shown.t0));
     this.#pinch.apart = apart;
     this.#pinch.middle = middle;
   }
@@ -140,7 +154,13 @@ export class Gestures {
 
   #hover(place) {
     this.panes.hover = place ? place.t : null;
-    const near = place && (this.#levelAt(place) !== null ? 'ns-resize' : this.cursors.near(place.t, kGrab_px * place.per_px) ? 'ew-resize' : '');
+    const near =
+      place &&
+      (this.#levelAt(place) !== null
+        ? 'ns-resize'
+        : this.cursors.near(place.t, kGrab_px * place.per_px)
+          ? 'ew-resize'
+          : '');
     this.host.style.cursor = near || '';
     this.signals.emit('draw');
   }

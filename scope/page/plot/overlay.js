@@ -3,8 +3,8 @@
 import { WindowCache } from './window_cache.js';
 
 export class OverlayRun {
-  number = null;                      // of the other run
-  shift = 0;                          // s
+  number = null; // of the other run
+  shift = 0; // s
 
   constructor(scope, signals) {
     this.scope = scope;
@@ -14,7 +14,9 @@ export class OverlayRun {
     signals.on('run', () => this.lay(null));
   }
 
-  get run() { return this.number === null ? null : this.scope.runs.find((one) => one.run === this.number) ?? null; }
+  get run() {
+    return this.number === null ? null : (this.scope.runs.find((one) => one.run === this.number) ?? null);
+  }
 
   lay(number) {
     if (number === this.number) return;

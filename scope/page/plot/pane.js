@@ -19,17 +19,37 @@ export class Pane {
     this.index = index;
     this.layout = scope.layout.panes[index];
     this.parts = tracesOf(this.layout, {
-      channel: (id) => scope.channel(id), ghost: scope.ghost, overlay: context.overlay.channelOf(), si: scope.preferences.si,
+      channel: (id) => scope.channel(id),
+      ghost: scope.ghost,
+      overlay: context.overlay.channelOf(),
+      si: scope.preferences.si,
     });
     this.values = new Map();
     this.host = el('div', { class: 'chart', role: 'img', 'aria-label': this.#summary() });
-    this.element = el('section', { class: 'pane', 'aria-label': this.#name(), 'data-pane': index, 'data-last': is_last },
-      el('header', {}, el('h2', { text: this.layout.title }), el('div', { class: 'chips' }, ...this.#chips()), paneMenu(scope, index)), this.host);
+    this.element = el(
+      'section',
+      { class: 'pane', 'aria-label': this.#name(), 'data-pane': index, 'data-last': is_last },
+      el(
+        'header',
+        {},
+        el('h2', { text: this.layout.title }),
+        el('div', { class: 'chips' }, ...this.#chips()),
+        paneMenu(scope, index),
+      ),
+      this.host,
+    );
     this.#acceptChannels();
     const state = () => ({ ...context.state(), traces: this.parts.traces, top: index === 0 });
     this.chartOptions = {
-      ...this.parts, si: scope.preferences.si, colours: context.colours, time_axis: is_last, right, rate_hz: scope.run.rate_hz, limits: scope.run.limits,
-      below: (ctx, chart) => drawBelow(ctx, chart, state()), above: (ctx, chart) => drawAbove(ctx, chart, state()),
+      ...this.parts,
+      si: scope.preferences.si,
+      colours: context.colours,
+      time_axis: is_last,
+      right,
+      rate_hz: scope.run.rate_hz,
+      limits: scope.run.limits,
+      below: (ctx, chart) => drawBelow(ctx, chart, state()),
+      above: (ctx, chart) => drawAbove(ctx, chart, state()),
     };
   }
 
@@ -62,7 +82,9 @@ export class Pane {
   }
 
   #summary() {
-    const names = this.parts.traces.map(({ kind, channel }) => (kind === 'overlay' ? `${channel.label} of the other run` : channel.label));
+    const names = this.parts.traces.map(({ kind, channel }) =>
+      kind === 'overlay' ? `${channel.label} of the other run` : channel.label,
+    );
     return names.length > 0 ? `Curves over time of ${names.join(', ')}` : 'Empty pane: add a channel with its menu';
   }
 
@@ -73,18 +95,30 @@ export class Pane {
       const hidden = this.layout.hidden.includes(id);
       const value = el('span', { class: 'value' });
       this.values.set(id, value);
-      return el('button', {
-        class: 'chip', type: 'button', draggable: 'true', 'aria-pressed': String(!hidden), 'data-channel': id,
-        title: `${channel.label}. Press to ${hidden ? 'show' : 'hide'}; drag it to another pane.`,
-        onclick: () => this.scope.setLayout(layouts.withHidden(this.scope.layout, this.index, id, !hidden)),
-        ondragstart: (event) => event.dataTransfer.setData(kDragged, JSON.stringify({ from: this.index, id })),
-      }, el('span', { class: `swatch c${i % 8}` }), el('span', { class: 'id', text: id }), value,
-      el('span', { class: 'unit', text: unitOf(channel, this.scope.preferences.si) }));
+      return el(
+        'button',
+        {
+          class: 'chip',
+          type: 'button',
+          draggable: 'true',
+          'aria-pressed': String(!hidden),
+          'data-channel': id,
+          title: `${channel.label}. Press to ${hidden ? 'show' : 'hide'}; drag it to another pane.`,
+          onclick: () => this.scope.setLayout(layouts.withHidden(this.scope.layout, this.index, id, !hidden)),
+          ondragstart: (event) => event.dataTransfer.setData(kDragged, JSON.stringify({ from: this.index, id })),
+        },
+        el('span', { class: `swatch c${i % 8}` }),
+        el('span', { class: 'id', text: id }),
+        value,
+        el('span', { class: 'unit', text: unitOf(channel, this.scope.preferences.si) }),
+      );
     });
   }
 
   #acceptChannels() {
-    this.element.addEventListener('dragover', (event) => { if (event.dataTransfer.types.includes(kDragged)) event.preventDefault(); });
+    this.element.addEventListener('dragover', (event) => {
+      if (event.dataTransfer.types.includes(kDragged)) event.preventDefault();
+    });
     this.element.addEventListener('drop', (event) => {
       const text = event.dataTransfer.getData(kDragged);
       if (!text) return;
@@ -95,7 +129,8 @@ export class Pane {
   }
 }
 
-// The value of the newest bin with a sample at or before t: its middle, which for a single sample is the sample.
+// The value of the newest bin with a sample at or before t: its middle, which for a single sample is the
+// sample.
 export function valueAt(bins, id, t) {
   const min = bins.min[id];
   if (!min) return NaN;

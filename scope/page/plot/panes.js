@@ -5,15 +5,15 @@ import { unitOf } from '../settings/units.js';
 import { readColours } from './colours.js';
 import { Pane } from './pane.js';
 
-const kCalm_ms = 250;                 // between frames for those who asked for less motion
+const kCalm_ms = 250; // between frames for those who asked for less motion
 const kMostPixels = 4000;
 const kSettle_ms = 1700;
-const kValues_ms = 120;               // how often the values beside the names change: digits faster than that are not read
+const kValues_ms = 120; // how often the values beside the names change: digits faster than that are not read
 
 export class Panes {
   panes = [];
-  hover = null;                       // run time under the pointer
-  frames = 0;                         // drawn so far
+  hover = null; // run time under the pointer
+  frames = 0; // drawn so far
 
   // parts: {scope, display, overlay, cursors: CursorTool, trigger: Trigger, signals, host}
   constructor(parts) {
@@ -23,7 +23,9 @@ export class Panes {
     this.asked = false;
     this.values_ms = 0;
     for (const name of ['layout', 'run', 'overlay', 'rebuild']) this.signals.on(name, () => this.rebuild());
-    this.signals.on('preferences', (changes) => { if ('theme' in changes || 'si' in changes) this.rebuild(); });
+    this.signals.on('preferences', (changes) => {
+      if ('theme' in changes || 'si' in changes) this.rebuild();
+    });
     this.signals.on('draw', () => this.#ask());
     matchMedia('(prefers-color-scheme: dark)').addEventListener('change', () => this.rebuild());
     new ResizeObserver(() => this.#measure()).observe(this.host);
@@ -34,12 +36,29 @@ export class Panes {
     this.panes = [];
     this.colours = readColours();
     const { scope } = this;
-    if (!scope.run) { this.host.replaceChildren(); return; }
+    if (!scope.run) {
+      this.host.replaceChildren();
+      return;
+    }
     const count = scope.layout.panes.length;
-    const right = scope.layout.panes.some((pane) => new Set(pane.channels.map((id) => scope.channel(id)).filter(Boolean).map((one) => unitOf(one, scope.preferences.si))).size > 1);
+    const right = scope.layout.panes.some(
+      (pane) =>
+        new Set(
+          pane.channels
+            .map((id) => scope.channel(id))
+            .filter(Boolean)
+            .map((one) => unitOf(one, scope.preferences.si)),
+        ).size > 1,
+    );
     const open = this.#openMenu();
     const focused = document.activeElement?.dataset?.channel;
-    this.panes = scope.layout.panes.map((_, i) => new Pane({ scope, overlay: this.overlay, colours: this.colours, state: () => this.#state() }, i, { is_last: i === count - 1, right }));
+    this.panes = scope.layout.panes.map(
+      (_, i) =>
+        new Pane({ scope, overlay: this.overlay, colours: this.colours, state: () => this.#state() }, i, {
+          is_last: i === count - 1,
+          right,
+        }),
+    );
     this.host.replaceChildren(...this.panes.map((pane) => pane.element), ...(count === 0 ? [this.#nothing()] : []));
     this.panes.forEach((pane) => pane.start());
     if (open !== null) this.#openAgain(open);
@@ -56,8 +75,15 @@ export class Panes {
   #state() {
     const { scope, display } = this;
     return {
-      colours: this.colours, si: scope.preferences.si, limits: scope.run.limits, events: scope.eventsOf(), cursors: this.cursors.at,
-      trigger: this.trigger.drawn(), rate_hz: scope.run.rate_hz, first: display.first, last: display.last,
+      colours: this.colours,
+      si: scope.preferences.si,
+      limits: scope.run.limits,
+      events: scope.eventsOf(),
+      cursors: this.cursors.at,
+      trigger: this.trigger.drawn(),
+      rate_hz: scope.run.rate_hz,
+      first: display.first,
+      last: display.last,
       head: display.mode === 'follow' && !scope.live ? display.head : null,
     };
   }
@@ -65,7 +91,11 @@ export class Panes {
   #ask() {
     if (this.asked) return;
     this.asked = true;
-    const draw = () => requestAnimationFrame((now) => { this.asked = false; this.#draw(now); });
+    const draw = () =>
+      requestAnimationFrame((now) => {
+        this.asked = false;
+        this.#draw(now);
+      });
     if (this.calm.matches && this.display.mode === 'follow') setTimeout(draw, kCalm_ms);
     else draw();
   }
@@ -78,17 +108,28 @@ export class Panes {
     this.frames += 1;
     if (now_ms - this.values_ms > kValues_ms || this.hover !== null) {
       this.values_ms = now_ms;
-      const at = this.hover ?? (this.display.mode === 'follow' ? (this.scope.live ? this.display.last : this.display.head ?? frame.t1) : frame.t1);
+      const at =
+        this.hover ??
+        (this.display.mode === 'follow'
+          ? this.scope.live
+            ? this.display.last
+            : (this.display.head ?? frame.t1)
+          : frame.t1);
       for (const pane of this.panes) pane.showValues(frame.bins, at);
     }
     this.#settle();
     this.signals.emit('drawn', frame);
   }
 
-  // Where nothing streams, the picture is drawn once more after a while, so that value axes that were wide can shrink.
+  // Where nothing streams, the picture is drawn once more after a while, so that value axes that were wide
+  // can shrink.
   #settle() {
     clearTimeout(this.settling);
-    if (!this.scope.live && !this.settled) this.settling = setTimeout(() => { this.settled = true; this.#ask(); }, kSettle_ms);
+    if (!this.scope.live && !this.settled)
+      this.settling = setTimeout(() => {
+        this.settled = true;
+        this.#ask();
+      }, kSettle_ms);
     else this.settled = false;
   }
 
@@ -117,6 +158,9 @@ export class Panes {
   }
 
   #nothing() {
-    return el('p', { class: 'empty', text: 'No panes. “Add pane” makes one; “Default panes” brings the first ones back.' });
+    return el('p', {
+      class: 'empty',
+      text: 'No panes. “Add pane” makes one; “Default panes” brings the first ones back.',
+    });
   }
 }

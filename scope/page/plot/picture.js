@@ -34,7 +34,8 @@ export function pngOf(panes, colours) {
   return new Promise((done) => sheet.toBlob(done, 'image/png'));
 }
 
-// A Blob of image/svg+xml: paths, axes with numbers, names, marks of the events (whose words appear on pointing).
+// A Blob of image/svg+xml: paths, axes with numbers, names, marks of the events (whose words appear on
+// pointing).
 export function svgOf(panes, colours, name, events) {
   const width = panes[0].host.clientWidth;
   const parts = [];
@@ -55,8 +56,12 @@ export function escaped(text) {
 }
 
 function titleOf(pane) {
-  return [{ text: pane.layout.title, colour: 'ink' }, ...pane.parts.traces.filter((one) => one.kind === 'measured' && !one.hidden)
-    .map((one) => ({ text: `${one.id} [${unitOf(one.channel, pane.chart.options.si)}]`, colour: one.colour }))];
+  return [
+    { text: pane.layout.title, colour: 'ink' },
+    ...pane.parts.traces
+      .filter((one) => one.kind === 'measured' && !one.hidden)
+      .map((one) => ({ text: `${one.id} [${unitOf(one.channel, pane.chart.options.si)}]`, colour: one.colour })),
+  ];
 }
 
 function paneSvg(pane, colours, offset, events) {
@@ -65,40 +70,55 @@ function paneSvg(pane, colours, offset, events) {
   const { left, top, width, height } = chart.plot.bbox;
   const box = { x: left / ratio, y: offset + kTitle_px + top / ratio, w: width / ratio, h: height / ratio };
   const id = `clip${pane.index}`;
-  const names = titleOf(pane).map(({ text, colour }) => `<tspan fill="${colours[colour] ?? colours.ink}">${escaped(text)}  </tspan>`).join('');
-  const out = [`<text x="${box.x}" y="${offset + 13}" xml:space="preserve">${names}</text>`,
+  const names = titleOf(pane)
+    .map(({ text, colour }) => `<tspan fill="${colours[colour] ?? colours.ink}">${escaped(text)}  </tspan>`)
+    .join('');
+  const out = [
+    `<text x="${box.x}" y="${offset + 13}" xml:space="preserve">${names}</text>`,
     `<clipPath id="${id}"><rect x="${box.x}" y="${box.y}" width="${box.w}" height="${box.h}"/></clipPath>`,
-    `<rect x="${box.x}" y="${box.y}" width="${box.w}" height="${box.h}" fill="none" stroke="${colours.line}"/>`, ...axesSvg(chart, box, colours), ...eventsSvg(chart, box, colours, events)];
+    `<rect x="${box.x}" y="${box.y}" width="${box.w}" height="${box.h}" fill="none" stroke="${colours.line}"/>`,
+    ...axesSvg(chart, box, colours),
+    ...eventsSvg(chart, box, colours, events),
+  ];
   for (const one of chart.options.traces.filter((candidate) => !candidate.hidden)) {
     const bins = one.kind === 'overlay' ? chart.other?.bins : chart.frame.bins;
-    const shift = one.kind === 'overlay' ? chart.other?.shift ?? 0 : 0;
+    const shift = one.kind === 'overlay' ? (chart.other?.shift ?? 0) : 0;
     if (!bins?.min[one.id]) continue;
     const factor = factorOf(one.channel, chart.options.si);
     const steps = [];
     const point = (x, y) => `${(x / ratio).toFixed(2)} ${(offset + kTitle_px + y / ratio).toFixed(2)}`;
     const pen = { moveTo: (x, y) => steps.push(`M${point(x, y)}`), lineTo: (x, y) => steps.push(`L${point(x, y)}`) };
-    trace(pen, bins, bins.min[one.id], bins.max[one.id], { x: (t) => chart.x(t + shift), y: (v) => chart.y(v * factor, one.axis),
-      held: one.channel.step === true, bridge_s: bridge(one.channel, chart.options.rate_hz, bins.width) });
+    trace(pen, bins, bins.min[one.id], bins.max[one.id], {
+      x: (t) => chart.x(t + shift),
+      y: (v) => chart.y(v * factor, one.axis),
+      held: one.channel.step === true,
+      bridge_s: bridge(one.channel, chart.options.rate_hz, bins.width),
+    });
     const dash = { ghost: ' stroke-dasharray="5 4"', overlay: ' stroke-dasharray="2 2"' }[one.kind] ?? '';
-    out.push(`<path clip-path="url(#${id})" d="${steps.join('')}" fill="none" stroke="${strokeOf(one, colours)}" stroke-width="1.2" stroke-linejoin="round"${dash}/>`);
+    out.push(
+      `<path clip-path="url(#${id})" d="${steps.join('')}" fill="none" stroke="${strokeOf(one, colours)}" stroke-width="1.2" stroke-linejoin="round"${dash}/>`,
+    );
   }
   return out;
 }
 
 function eventsSvg(chart, box, colours, events) {
   const { t0, t1 } = chart.frame;
-  return events.filter(({ t }) => t >= t0 && t <= t1).map((event) => {
-    const x = (box.x + (event.t - t0) / (t1 - t0) * box.w).toFixed(2);
-    const words = [runTime(event.t), 's', event.kind, event.source, event.code, event.text].filter(Boolean).join(' ');
-    return `<path d="M${x} ${box.y}v${box.h}" stroke="${colours[colourOf(event)]}" stroke-dasharray="2 3" stroke-opacity="${event.kind === 'step' ? 0.4 : 0.8}"><title>${escaped(words)}</title></path>`;
-  });
+  return events
+    .filter(({ t }) => t >= t0 && t <= t1)
+    .map((event) => {
+      const x = (box.x + ((event.t - t0) / (t1 - t0)) * box.w).toFixed(2);
+      const words = [runTime(event.t), 's', event.kind, event.source, event.code, event.text].filter(Boolean).join(' ');
+      return `<path d="M${x} ${box.y}v${box.h}" stroke="${colours[colourOf(event)]}" stroke-dasharray="2 3" stroke-opacity="${event.kind === 'step' ? 0.4 : 0.8}"><title>${escaped(words)}</title></path>`;
+    });
 }
 
 // The numbers that uPlot put on its axes, at the same places.
 function axesSvg(chart, box, colours) {
   const out = [];
   const [time, ...values] = chart.plot.axes;
-  const text = (x, y, words, anchor) => `<text x="${x.toFixed(1)}" y="${y.toFixed(1)}" fill="${colours.soft}" text-anchor="${anchor}">${escaped(words)}</text>`;
+  const text = (x, y, words, anchor) =>
+    `<text x="${x.toFixed(1)}" y="${y.toFixed(1)}" fill="${colours.soft}" text-anchor="${anchor}">${escaped(words)}</text>`;
   (time._splits ?? []).forEach((t, i) => {
     const x = box.x + chart.plot.valToPos(t, 'x');
     out.push(`<path d="M${x.toFixed(2)} ${box.y}v${box.h}" stroke="${colours.fine}"/>`);
@@ -109,7 +129,11 @@ function axesSvg(chart, box, colours) {
     (axis._splits ?? []).forEach((value, k) => {
       if (!axis._values?.[k]) return;
       const y = box.y + chart.plot.valToPos(value, `y${i}`);
-      out.push(i === 0 ? text(box.x - 6, y + 4, axis._values[k], 'end') : text(box.x + box.w + 6, y + 4, axis._values[k], 'start'));
+      out.push(
+        i === 0
+          ? text(box.x - 6, y + 4, axis._values[k], 'end')
+          : text(box.x + box.w + 6, y + 4, axis._values[k], 'start'),
+      );
     });
   });
   return out;

@@ -10,7 +10,9 @@ export class Player {
   constructor(scope, display, signals) {
     Object.assign(this, { scope, display, signals });
     signals.on('run', () => this.pause());
-    signals.on('view', () => { if (this.playing && display.mode !== 'follow') this.pause(); });
+    signals.on('view', () => {
+      if (this.playing && display.mode !== 'follow') this.pause();
+    });
   }
 
   // From the window's right end; from the start of the run when it stands at the end.
@@ -32,16 +34,25 @@ export class Player {
     this.signals.emit('playing');
   }
 
-  toggle() { if (this.playing) this.pause(); else this.play(); }
+  toggle() {
+    if (this.playing) this.pause();
+    else this.play();
+  }
 
-  setSpeed(speed) { this.speed = speed; }
+  setSpeed(speed) {
+    this.speed = speed;
+  }
 
   // One sample on or back.
   step(samples) {
     this.pause();
     const { display, scope } = this;
-    if (scope.live) { display.pan(samples / scope.run.rate_hz); return; }
-    const at = display.mode === 'follow' && display.head !== null ? display.head : Math.min(display.frame().t1, display.last);
+    if (scope.live) {
+      display.pan(samples / scope.run.rate_hz);
+      return;
+    }
+    const at =
+      display.mode === 'follow' && display.head !== null ? display.head : Math.min(display.frame().t1, display.last);
     display.seek(at + samples / (scope.run.rate_hz || 1000));
   }
 
@@ -49,7 +60,7 @@ export class Player {
     if (!this.playing) return;
     const now = performance.now();
     const { display } = this;
-    display.seek(display.head + this.speed * Math.min(250, now - this.#before_ms) / 1000);
+    display.seek(display.head + (this.speed * Math.min(250, now - this.#before_ms)) / 1000);
     this.#before_ms = now;
     if (display.head >= display.last) this.pause();
     else requestAnimationFrame(() => this.#advance());

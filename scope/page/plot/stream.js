@@ -3,19 +3,21 @@
 import { BinStore, noBins } from './bin_store.js';
 
 const kFps = 60;
-const kSpare = 1.2;                   // bins kept, of those on the screen
+const kSpare = 1.2; // bins kept, of those on the screen
 
 export class Stream {
   #link;
   #id = null;
-  #asked = null;                      // {run, channels, span, pixels}
+  #asked = null; // {run, channels, span, pixels}
   #store = null;
-  #before = null;                     // the store of the view before this, until the first frame of this one
+  #before = null; // the store of the view before this, until the first frame of this one
 
   constructor(link, signals) {
     this.#link = link;
     signals.on('bins', (frame) => this.#add(frame, signals));
-    signals.on('link', ({ state }) => { if (state === 'open') this.#resume(); });
+    signals.on('link', ({ state }) => {
+      if (state === 'open') this.#resume();
+    });
     document.addEventListener('visibilitychange', () => (document.hidden ? this.#silence() : this.#resume()));
   }
 

@@ -1,7 +1,7 @@
 // The window of time that the plots show, and the time base: seconds a division in steps of 1, 2, 5.
 
 export const kDivisions = 10;
-const kShortest_s = 1e-3;             // a division of 0.1 ms
+const kShortest_s = 1e-3; // a division of 0.1 ms
 const kLongest_s = 36000;
 
 const kMantissas = [1, 2, 5];
@@ -42,7 +42,8 @@ export function fitted(first, last) {
   return { t0: first, t1: first + span };
 }
 
-// The window that follows the newest sample; it begins with the run, so that a young run is not squeezed to the right.
+// The window that follows the newest sample; it begins with the run, so that a young run is not squeezed to
+// the right.
 export function following(first, last, span) {
   const t1 = Math.max(last, first + span);
   return { t0: t1 - span, t1 };

@@ -1,5 +1,5 @@
-// How bins become a line: each bin is a vertical stroke from its minimum to its maximum, joined to its neighbours, so
-// that a spike of one sample stands as tall as it was, however many samples share its pixel.
+// How bins become a line: each bin is a vertical stroke from its minimum to its maximum, joined to its
+// neighbours, so that a spike of one sample stands as tall as it was, however many samples share its pixel.
 
 // Longest distance between two bins with samples that is still one curve; a longer one is a gap in the run.
 export function bridge(channel, rate_hz, width) {
@@ -7,8 +7,8 @@ export function bridge(channel, rate_hz, width) {
   return channel.id?.startsWith('loop.') ? 2.5 + width : 3 * sample + 1.5 * width;
 }
 
-// Calls pen.moveTo(x, y) and pen.lineTo(x, y) with pixels. x(t), y(value) are the scales; held: keep the value up to the
-// next bin (commands and references).
+// Calls pen.moveTo(x, y) and pen.lineTo(x, y) with pixels. x(t), y(value) are the scales; held: keep the
+// value up to the next bin (commands and references).
 export function trace(pen, bins, min, max, { x, y, held, bridge_s }) {
   let last_t = -Infinity;
   let last_y = 0;
@@ -22,9 +22,12 @@ export function trace(pen, bins, min, max, { x, y, held, bridge_s }) {
     const joined = bins.t[i] - last_t <= bridge_s;
     if (joined && Math.abs(y_high - last_y) < Math.abs(y_low - last_y)) [y_low, y_high] = [y_high, y_low];
     if (!joined) pen.moveTo(at, y_low);
-    else if (held) { pen.lineTo(at, last_y); pen.lineTo(at, y_low); } else pen.lineTo(at, y_low);
+    else if (held) {
+      pen.lineTo(at, last_y);
+      pen.lineTo(at, y_low);
+    } else pen.lineTo(at, y_low);
     if (y_high !== y_low) pen.lineTo(at, y_high);
-    else if (!joined) pen.lineTo(at + 0.5, y_low);      // a lone sample is a dot, not nothing
+    else if (!joined) pen.lineTo(at + 0.5, y_low); // a lone sample is a dot, not nothing
     last_y = y_high;
     last_t = bins.t[i];
   }

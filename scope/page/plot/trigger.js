@@ -7,12 +7,12 @@ import { binsOf } from './bin_store.js';
 export class Trigger {
   settings = defaultTrigger();
   on = false;
-  state = '';                         // armed, triggered, stopped, auto
+  state = ''; // armed, triggered, stopped, auto
   text = '';
   captures = 0;
   #id = null;
   #channels = [];
-  #catalogue = new Map();             // the triggers' times by id, as the state message tells them
+  #catalogue = new Map(); // the triggers' times by id, as the state message tells them
 
   constructor(scope, display, signals) {
     this.scope = scope;
@@ -21,14 +21,22 @@ export class Trigger {
     signals.on('level', ({ value }) => this.setLevelShown(value));
     signals.on('op:trigger', (message) => this.#told(message));
     signals.on('capture', (frame) => this.#caught(frame));
-    signals.on('link', ({ state }) => { if (state === 'open' && this.on) this.start(); });
-    signals.on('layout', () => { if (this.on) this.start(); });
+    signals.on('link', ({ state }) => {
+      if (state === 'open' && this.on) this.start();
+    });
+    signals.on('layout', () => {
+      if (this.on) this.start();
+    });
     signals.on('run', () => this.stop());
-    signals.on('restart', () => { if (this.on) this.start(); });
+    signals.on('restart', () => {
+      if (this.on) this.start();
+    });
   }
 
   // Why the settings cannot be used, or ''.
-  get error() { return triggerError(this.settings); }
+  get error() {
+    return triggerError(this.settings);
+  }
 
   change(changes) {
     Object.assign(this.settings, changes);
@@ -46,14 +54,19 @@ export class Trigger {
     this.#id = this.scope.link.nextId();
     const { channel, on } = this.settings;
     this.#channels = [...new Set([...this.scope.wanted(), ...(on === 'level' ? [channel] : [])])];
-    this.scope.link.send(triggerMessage(this.settings, this.#id, this.scope.run.run, this.#channels, Math.round(this.display.pixels)));
+    this.scope.link.send(
+      triggerMessage(this.settings, this.#id, this.scope.run.run, this.#channels, Math.round(this.display.pixels)),
+    );
     if (this.display.mode !== 'trigger') this.display.trigger();
     this.signals.emit('trigger');
   }
 
   // A single trigger that has caught something waits for the next.
   arm() {
-    if (this.#id === null) { this.start(); return; }
+    if (this.#id === null) {
+      this.start();
+      return;
+    }
     this.state = 'armed';
     this.scope.link.send({ op: 'arm', id: this.#id });
     this.signals.emit('trigger');
@@ -71,12 +84,20 @@ export class Trigger {
   drawn() {
     if (!this.on) return null;
     const { on, channel, level } = this.settings;
-    return { t: this.display.mode === 'trigger' ? this.display.capture?.t ?? null : null, channel, level: on === 'level' ? level : null };
+    return {
+      t: this.display.mode === 'trigger' ? (this.display.capture?.t ?? null) : null,
+      channel,
+      level: on === 'level' ? level : null,
+    };
   }
 
   // The level in the units shown, and back.
-  levelShown() { return this.settings.level * this.#factor(); }
-  setLevelShown(value) { this.change({ level: Number((value / this.#factor()).toPrecision(4)) }); }
+  levelShown() {
+    return this.settings.level * this.#factor();
+  }
+  setLevelShown(value) {
+    this.change({ level: Number((value / this.#factor()).toPrecision(4)) });
+  }
 
   #factor() {
     const channel = this.scope.channel(this.settings.channel);
@@ -101,11 +122,18 @@ export class Trigger {
     this.captures += 1;
     const { pre, span } = this.settings;
     const t = this.#timeOf(frame, pre * span);
-    this.display.show({ t, t0: t - pre * span, t1: t + (1 - pre) * span, bins: binsOf(frame, this.#channels, this.scope.run.rate_hz), count: this.captures });
+    this.display.show({
+      t,
+      t0: t - pre * span,
+      t1: t + (1 - pre) * span,
+      bins: binsOf(frame, this.#channels, this.scope.run.rate_hz),
+      count: this.captures,
+    });
     this.signals.emit('trigger');
   }
 
-  // The frame begins with a whole bin, so the exact time is the one that the state message tells, where it came first.
+  // The frame begins with a whole bin, so the exact time is the one that the state message tells, where it
+  // came first.
   #timeOf(frame, pre_s) {
     const told = this.#catalogue.get(frame.id);
     const near = frame.t0 + pre_s;

@@ -1,8 +1,8 @@
-// The range of a value axis: wide enough at once, narrower only when the data have been well inside for a while, so that
-// the axis does not breathe while it streams.
+// The range of a value axis: wide enough at once, narrower only when the data have been well inside for a
+// while, so that the axis does not breathe while it streams.
 
 const kMargin = 0.06;
-const kShrinkBelow = 0.6;             // of the range shown
+const kShrinkBelow = 0.6; // of the range shown
 const kShrinkAfter_ms = 1500;
 
 // The smallest and largest value of bins in [t0, t1]; null without any.
@@ -25,9 +25,10 @@ export function extent(bins, ids, t0, t1) {
 // A little more than the data; a constant gets a range around it.
 export function padded({ low, high }) {
   const spread = high - low;
-  const margin = spread > 1e-12 * Math.max(1, Math.abs(low), Math.abs(high))
-    ? spread * kMargin
-    : Math.max(Math.abs(high) * 0.1, 1e-6);
+  const margin =
+    spread > 1e-12 * Math.max(1, Math.abs(low), Math.abs(high))
+      ? spread * kMargin
+      : Math.max(Math.abs(high) * 0.1, 1e-6);
   return { low: low - margin, high: high + margin };
 }
 

@@ -1,5 +1,5 @@
-// Which panes there are and which channels each shows. Kept in localStorage by the configuration's name, so that every
-// rig keeps the arrangement that its user made.
+// Which panes there are and which channels each shows. Kept in localStorage by the configuration's name, so
+// that every rig keeps the arrangement that its user made.
 
 const kVersion = 1;
 const kMostPanes = 24;
@@ -31,7 +31,9 @@ export function withChannel(layout, pane, id) {
 
 export function withoutChannel(layout, pane, id) {
   return edit(layout, pane, (old) => ({
-    ...old, channels: old.channels.filter((other) => other !== id), hidden: old.hidden.filter((other) => other !== id),
+    ...old,
+    channels: old.channels.filter((other) => other !== id),
+    hidden: old.hidden.filter((other) => other !== id),
   }));
 }
 
@@ -43,7 +45,10 @@ export function withChannelMoved(layout, from, to, id) {
 }
 
 export function withHidden(layout, pane, id, hide) {
-  return edit(layout, pane, (old) => ({ ...old, hidden: [...old.hidden.filter((other) => other !== id), ...(hide ? [id] : [])] }));
+  return edit(layout, pane, (old) => ({
+    ...old,
+    hidden: [...old.hidden.filter((other) => other !== id), ...(hide ? [id] : [])],
+  }));
 }
 
 export function withPane(layout, title = '', channels = []) {
@@ -74,7 +79,11 @@ export function withResiduals(layout, known) {
 }
 
 export function withoutResiduals(layout) {
-  return { panes: layout.panes.filter((pane) => pane.channels.length === 0 || !pane.channels.every((id) => id.startsWith('residual.'))) };
+  return {
+    panes: layout.panes.filter(
+      (pane) => pane.channels.length === 0 || !pane.channels.every((id) => id.startsWith('residual.')),
+    ),
+  };
 }
 
 export function channelsOf(layout) {
@@ -110,5 +119,9 @@ export function loadLayout(storage, name) {
 
 function checkedPane(pane) {
   const strings = (list) => (Array.isArray(list) ? list.filter((id) => typeof id === 'string') : []);
-  return { title: typeof pane.title === 'string' ? pane.title : '', channels: strings(pane.channels), hidden: strings(pane.hidden) };
+  return {
+    title: typeof pane.title === 'string' ? pane.title : '',
+    channels: strings(pane.channels),
+    hidden: strings(pane.hidden),
+  };
 }

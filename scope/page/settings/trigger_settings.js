@@ -1,12 +1,22 @@
-// What the trigger waits for. The server evaluates it on every sample; here are the settings, their limits, and the
-// message that carries them. Levels are in the stack's units, whatever units are shown.
+// What the trigger waits for. The server evaluates it on every sample; here are the settings, their limits,
+// and the message that carries them. Levels are in the stack's units, whatever units are shown.
 
 export const kModes = ['auto', 'normal', 'single'];
 export const kEdges = ['rising', 'falling', 'either'];
 export const kCauses = ['level', 'fault', 'step'];
 
 export function defaultTrigger() {
-  return { on: 'level', channel: 'dp', level: 0, edge: 'rising', hysteresis: 0, holdoff: 0.1, pre: 0.25, mode: 'normal', span: 0.5 };
+  return {
+    on: 'level',
+    channel: 'dp',
+    level: 0,
+    edge: 'rising',
+    hysteresis: 0,
+    holdoff: 0.1,
+    pre: 0.25,
+    mode: 'normal',
+    span: 0.5,
+  };
 }
 
 const kLimits = { hysteresis: [0, Infinity], holdoff: [0, 3600], pre: [0, 1], span: [1e-3, 60] };

@@ -4,19 +4,32 @@ import { test } from 'node:test';
 import { decodeBins, encodeBins } from '../../../scope/page/link/frames.js';
 import { BinStore } from '../../../scope/page/plot/bin_store.js';
 
-const frame = (t0, width, values) => decodeBins(encodeBins({ id: 1, run: 0, t0, width, min: [values], max: [values.map((v) => v + 1)] }));
+const frame = (t0, width, values) =>
+  decodeBins(encodeBins({ id: 1, run: 0, t0, width, min: [values], max: [values.map((v) => v + 1)] }));
 
 // Tests that a frame comes out as it went in, bit for bit, with NaN where there was no sample.
 test('frames carry doubles unchanged', () => {
-  const min = [[0.1, -0, NaN], [1e-300, 2, 3]];
-  const max = [[0.2, 1, NaN], [1e300, 2, 4]];
+  const min = [
+    [0.1, -0, NaN],
+    [1e-300, 2, 3],
+  ];
+  const max = [
+    [0.2, 1, NaN],
+    [1e300, 2, 4],
+  ];
   const got = decodeBins(encodeBins({ id: 7, run: 2, flags: 3, t0: 1.25, width: 0.001, min, max }));
   assert.equal(got.id, 7);
   assert.equal(got.run, 2);
   assert.equal(got.flags, 3);
   assert.equal(got.t0, 1.25);
-  assert.deepEqual(got.min.map((a) => [...a]), min);
-  assert.deepEqual(got.max.map((a) => [...a]), max);
+  assert.deepEqual(
+    got.min.map((a) => [...a]),
+    min,
+  );
+  assert.deepEqual(
+    got.max.map((a) => [...a]),
+    max,
+  );
 });
 
 // Tests that a frame that is cut short, or of another kind, is refused and not read beyond its end.
@@ -59,13 +72,17 @@ test('long frames and restarts', () => {
   assert.deepEqual([...store.between(0, 200).min.dp], [8, 9]);
 });
 
-// Tests that bins centred on samples stand at the samples, whatever the last digits of their first bin's time.
+// Tests that bins centred on samples stand at the samples, whatever the last digits of their first bin's
+// time.
 test('bins of one sample stand at the sample', () => {
   const store = new BinStore(['dp'], 8);
   store.add(frame(4999.5 * 0.001, 0.001, [1, 2]));
   store.add(frame(5001.5 * 0.001 + 1e-12, 0.001, [3]));
   store.add(frame(5002.5 * 0.001 - 1e-12, 0.001, [4]));
   const bins = store.between(5, 5.003);
-  assert.deepEqual([...bins.t].map((t) => Number(t.toFixed(9))), [5, 5.001, 5.002, 5.003]);
+  assert.deepEqual(
+    [...bins.t].map((t) => Number(t.toFixed(9))),
+    [5, 5.001, 5.002, 5.003],
+  );
   assert.deepEqual([...bins.min.dp], [1, 2, 3, 4]);
 });

@@ -45,7 +45,12 @@ test('the value axis does not breathe', () => {
   assert.equal(axis.update({ low: 0, high: 10 }, 2000).high, 10.6);
 });
 
-const bins = { t: Float64Array.of(0.5, 1.5, 2.5, 6.5), width: 1, min: { dp: Float64Array.of(1, -3, 2, 5) }, max: { dp: Float64Array.of(1, 9, 2, 5) } };
+const bins = {
+  t: Float64Array.of(0.5, 1.5, 2.5, 6.5),
+  width: 1,
+  min: { dp: Float64Array.of(1, -3, 2, 5) },
+  max: { dp: Float64Array.of(1, 9, 2, 5) },
+};
 
 test('the extent takes minima and maxima', () => {
   assert.deepEqual(extent(bins, ['dp'], 0, 3), { low: -3, high: 9 });
@@ -58,7 +63,13 @@ test('a spike is drawn from minimum to maximum, a gap is not drawn', () => {
   const pen = { moveTo: (x, y) => strokes.push(['move', x, y]), lineTo: (x, y) => strokes.push(['line', x, y]) };
   trace(pen, bins, bins.min.dp, bins.max.dp, { x: (t) => t, y: (v) => v, held: false, bridge_s: 2 });
   assert.deepEqual(strokes, [
-    ['move', 0.5, 1], ['line', 1, 1], ['line', 1.5, -3], ['line', 1.5, 9], ['line', 2.5, 2], ['move', 6.5, 5], ['line', 7, 5],
+    ['move', 0.5, 1],
+    ['line', 1, 1],
+    ['line', 1.5, -3],
+    ['line', 1.5, 9],
+    ['line', 2.5, 2],
+    ['move', 6.5, 5],
+    ['line', 7, 5],
   ]);
   assert.deepEqual(gapsIn(bins, bins.min.dp, 2, 0, 10), [[2.5, 6.5]]);
 });
@@ -69,7 +80,12 @@ test('held values step', () => {
   const pen = { moveTo: (x, y) => strokes.push([x, y]), lineTo: (x, y) => strokes.push([x, y]) };
   const step = { t: Float64Array.of(0, 1), width: 1 };
   trace(pen, step, Float64Array.of(1, 4), Float64Array.of(1, 4), { x: (t) => t, y: (v) => v, held: true, bridge_s: 2 });
-  assert.deepEqual(strokes, [[0, 1], [0.5, 1], [1, 1], [1, 4]]);
+  assert.deepEqual(strokes, [
+    [0, 1],
+    [0.5, 1],
+    [1, 1],
+    [1, 4],
+  ]);
 });
 
 // Tests that bins narrower than the sampling interval are one curve: empty bins between samples are no gaps.
@@ -89,14 +105,28 @@ test('cursors measure intervals and differences', () => {
   assert.deepEqual(cursorRows(['dp'], { values: [3] }, { values: [10] }), [{ id: 'dp', a: 3, b: 10, difference: 7 }]);
 });
 
-// Tests that a pane draws its channels, the ghost's and the other run's of the same name, on an axis for each unit.
+// Tests that a pane draws its channels, the ghost's and the other run's of the same name, on an axis for each
+// unit.
 test('the traces of a pane', () => {
-  const channels = { p1: { id: 'p1', unit: 'psi' }, voltage: { id: 'voltage', unit: 'V' }, 'ghost.p1': { id: 'ghost.p1', unit: 'psi' } };
-  const { traces, units } = tracesOf({ channels: ['p1', 'voltage', 'gone'], hidden: ['voltage'] },
-    { channel: (id) => channels[id], ghost: true, overlay: (id) => (id === 'p1' ? channels.p1 : undefined), si: false });
+  const channels = {
+    p1: { id: 'p1', unit: 'psi' },
+    voltage: { id: 'voltage', unit: 'V' },
+    'ghost.p1': { id: 'ghost.p1', unit: 'psi' },
+  };
+  const { traces, units } = tracesOf(
+    { channels: ['p1', 'voltage', 'gone'], hidden: ['voltage'] },
+    { channel: (id) => channels[id], ghost: true, overlay: (id) => (id === 'p1' ? channels.p1 : undefined), si: false },
+  );
   assert.deepEqual(units, ['psi', 'V']);
-  assert.deepEqual(traces.map(({ id, kind, axis, hidden }) => [id, kind, axis, hidden]),
-    [['p1', 'measured', 0, false], ['ghost.p1', 'ghost', 0, false], ['p1', 'overlay', 0, false], ['voltage', 'measured', 1, true]]);
+  assert.deepEqual(
+    traces.map(({ id, kind, axis, hidden }) => [id, kind, axis, hidden]),
+    [
+      ['p1', 'measured', 0, false],
+      ['ghost.p1', 'ghost', 0, false],
+      ['p1', 'overlay', 0, false],
+      ['voltage', 'measured', 1, true],
+    ],
+  );
 });
 
 test('colours of events and between two colours', () => {

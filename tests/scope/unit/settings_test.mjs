@@ -1,6 +1,7 @@
 // Tests of what the page keeps and sends: layouts, preferences, the trigger, units, the token.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
+import { EventBook } from '../../../scope/page/event_book.js';
 import { BackOff } from '../../../scope/page/link/back_off.js';
 import { takeToken, tokenIn } from '../../../scope/page/link/token.js';
 import { activeFaults } from '../../../scope/page/settings/active_faults.js';
@@ -12,24 +13,42 @@ import { factorOf, unitOf } from '../../../scope/page/settings/units.js';
 
 class Storage {
   #kept = new Map();
-  getItem(key) { return this.#kept.get(key) ?? null; }
-  setItem(key, value) { this.#kept.set(key, String(value)); }
-  removeItem(key) { this.#kept.delete(key); }
+  getItem(key) {
+    return this.#kept.get(key) ?? null;
+  }
+  setItem(key, value) {
+    this.#kept.set(key, String(value));
+  }
+  removeItem(key) {
+    this.#kept.delete(key);
+  }
 }
 
 const kKnown = ['dp', 'dp_ref', 'p1', 'p2', 'residual.p1'];
 
 test('the first layout shows what the run has', () => {
   const { panes } = layouts.defaultLayout(kKnown);
-  assert.deepEqual(panes.map((pane) => pane.channels), [['dp', 'dp_ref'], ['p1', 'p2']]);
+  assert.deepEqual(
+    panes.map((pane) => pane.channels),
+    [
+      ['dp', 'dp_ref'],
+      ['p1', 'p2'],
+    ],
+  );
 });
 
 test('channels and panes move', () => {
   let layout = layouts.defaultLayout(kKnown);
   layout = layouts.withChannelMoved(layout, 0, 1, 'dp_ref');
-  assert.deepEqual(layout.panes.map((pane) => pane.channels), [['dp'], ['p1', 'p2', 'dp_ref']]);
+  assert.deepEqual(
+    layout.panes.map((pane) => pane.channels),
+    [['dp'], ['p1', 'p2', 'dp_ref']],
+  );
   layout = layouts.withChannelMoved(layout, 1, 2, 'p2');
-  assert.deepEqual(layout.panes.map((pane) => pane.channels), [['dp'], ['p1', 'dp_ref'], ['p2']]);
+  assert.deepEqual(
+    layout.panes.map((pane) => pane.channels),
+    [['dp'], ['p1', 'dp_ref'], ['p2']],
+  );
   layout = layouts.withPaneMoved(layout, 2, -2);
   assert.deepEqual(layout.panes[0].channels, ['p2']);
   layout = layouts.withHidden(layout, 0, 'p2', true);
@@ -70,8 +89,20 @@ test('the trigger names what is wrong with it', () => {
   assert.equal(triggerError({ ...defaultTrigger(), hysteresis: -1 }), 'hysteresis is -1: give a number at least 0');
   assert.equal(triggerError({ ...defaultTrigger(), level: NaN }), 'level: give a number');
   assert.deepEqual(triggerMessage({ ...defaultTrigger(), level: 100 }, 4, 0, ['dp'], 900), {
-    op: 'trigger', id: 4, run: 0, channels: ['dp'], channel: 'dp', level: 100, edge: 'rising', hysteresis: 0, holdoff: 0.1,
-    pre: 0.25, mode: 'normal', on: 'level', span: 0.5, pixels: 900,
+    op: 'trigger',
+    id: 4,
+    run: 0,
+    channels: ['dp'],
+    channel: 'dp',
+    level: 100,
+    edge: 'rising',
+    hysteresis: 0,
+    holdoff: 0.1,
+    pre: 0.25,
+    mode: 'normal',
+    on: 'level',
+    span: 0.5,
+    pixels: 900,
   });
 });
 
@@ -105,7 +136,10 @@ test('the token leaves the address bar', () => {
 
 test('attempts to connect come soon at first, and never more than 2 s apart', () => {
   const wait = new BackOff();
-  assert.deepEqual([1, 2, 3, 4, 5].map(() => wait.next()), [250, 500, 1000, 2000, 2000]);
+  assert.deepEqual(
+    [1, 2, 3, 4, 5].map(() => wait.next()),
+    [250, 500, 1000, 2000, 2000],
+  );
   wait.reset();
   assert.equal(wait.next(), 250);
 });
@@ -115,7 +149,30 @@ test('active faults', () => {
   const fault = { kind: 'fault', source: 'plant', code: 'stale_state', t: 1 };
   const other = { kind: 'fault', source: 'pressure_ctrl', code: 'stale_state', t: 2 };
   assert.deepEqual(activeFaults([fault, other, { ...fault, kind: 'fault_end' }]), [other]);
-  assert.deepEqual(activeFaults([fault, { kind: 'stop', t: 3 }]).map(({ kind }) => kind), ['fault', 'stop']);
+  assert.deepEqual(
+    activeFaults([fault, { kind: 'stop', t: 3 }]).map(({ kind }) => kind),
+    ['fault', 'stop'],
+  );
   assert.deepEqual(activeFaults([fault, other, { kind: 'rearm', t: 4 }]), []);
   assert.deepEqual(activeFaults([fault, { kind: 'restart', t: 0 }, other]), [other]);
+});
+
+// Tests that an event that is sent again is kept once, and that those before a restart go, also where the new ones look the same.
+test('events are kept once, and not beyond a restart', () => {
+  const book = new EventBook();
+  const step = (n, t) => ({ run: 0, n, t, kind: 'step', text: 'reference from 0 to 0.3' });
+  assert.equal(book.add(step(1, 0.2)), true);
+  assert.equal(book.add(step(1, 0.2)), false);
+  book.add(step(2, 2.2));
+  book.add(step(3, 4.4));
+  book.add({ run: 0, n: 1, t: 0, kind: 'restart', text: 'the plant has started again' });
+  book.add(step(2, 0.2));
+  assert.deepEqual(
+    book.of(0).map(({ n, t }) => [n, t]),
+    [
+      [1, 0],
+      [2, 0.2],
+    ],
+  );
+  assert.deepEqual(book.of(7), []);
 });
