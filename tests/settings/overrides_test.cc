@@ -112,7 +112,7 @@ TEST_F(OverridesTest, ErrorsNameTheOption) {
        "--set plant.rate_hz=1\\ntime.speed=2: plant.rate_hz: found \"1\\ntime.speed=2\""},
       {"reference.steps=[[0, 0.1]", "reference.steps: found \"[[0, 0.1]\", allowed an array"},
       {"reference.steps=[[0, 2]]", "found arm angle 2 rad"},
-      {"model.file=none.toml", "none.toml: cannot be read"},
+      {"model.file=none.toml", "model.file: found \"none.toml\", and there is no"},
       {"process.cpu=1", "process"},
   };
   for (const auto& option : options) {
