@@ -98,9 +98,13 @@ void LiveConversation::Take(const LiveRequest& request) {
     case Op::kValues:
       waiting_.push_back(request);
       return;
-    case Op::kMark:
-      RunOf(request).events.Add({0, request.t, "mark", "", "", Printable(request.text)});
+    case Op::kMark: {
+      Run& run = RunOf(request);
+      // Marks must not push out what the run itself has to tell.
+      if (run.events.last() >= EventList::kMost / 2) throw InputError("mark: the run has 10000 events already");
+      run.events.Add({0, request.t, "mark", "", "", Printable(request.text)});
       return Reply(request.id, true, "marked");
+    }
     case Op::kGhost:
       return ReplyTo(request.id)(context_.ghost.Switch(request.run, request.on, request.resync_s));
     case Op::kGhostSync:

@@ -160,9 +160,8 @@ void Intake::OnRearm(const rearm_t& rearm, int64_t utime) {
 }
 
 ProcessReport& Intake::Report(const std::string& role, const std::string& host, int64_t utime) {
-  static ProcessReport flood;
   const std::string key = Shown(role) + " on " + Shown(host);
-  if (run_->processes.size() >= kMostProcesses && !run_->processes.contains(key)) return flood;
+  if (run_->processes.size() >= kMostProcesses && !run_->processes.contains(key)) return flood_;
   ProcessReport& report = run_->processes[key];
   report.role = Shown(role);
   report.host = Shown(host);
