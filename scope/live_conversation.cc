@@ -101,7 +101,8 @@ void LiveConversation::Take(const LiveRequest& request) {
     case Op::kMark: {
       Run& run = RunOf(request);
       // Marks must not push out what the run itself has to tell.
-      if (run.events.last() >= EventList::kMost / 2) throw InputError("mark: the run has 10000 events already");
+      if (run.events.last() >= EventList::kMost / 2)
+        throw InputError("mark: the run has 10000 events already");
       run.events.Add({0, request.t, "mark", "", "", Printable(request.text)});
       return Reply(request.id, true, "marked");
     }
