@@ -1,0 +1,226 @@
+// Tests of the page in the hand: a phone, the keyboard alone, light and dark, panes as the user arranged
+// them.
+import assert from 'node:assert/strict';
+import { createRequire } from 'node:module';
+import { after, before, test } from 'node:test';
+import { openBrowser, openPage, streaming, until } from './browser.mjs';
+import { Bench } from './stack.mjs';
+
+let bench, scope, browser, page;
+
+before(async () => {
+  bench = await Bench.make();
+  await bench.launch(bench.file('run.lcmlog'));
+  scope = await bench.scope();
+  browser = await openBrowser();
+  page = await openPage(browser, scope.address);
+  await streaming(page, 1);
+});
+after(async () => {
+  await browser?.close();
+  await bench?.close();
+});
+
+// Tests that a phone scrolls only downwards, and that STOP is on the screen and a finger wide wherever one
+// has scrolled to.
+test('a phone', async () => {
+  const phone = await openPage(browser, scope.address, {
+    viewport: { width: 390, height: 844 },
+    hasTouch: true,
+    isMobile: true,
+  });
+  await streaming(phone);
+  for (const summary of await phone.locator('.section > summary:visible').all()) {
+    if (!(await summary.evaluate((one) => one.parentElement.open))) await summary.tap();
+  }
+  const { wide, inner } = await phone.evaluate(() => ({
+    wide: document.documentElement.scrollWidth,
+    inner: innerWidth,
+  }));
+  assert.equal(inner, 390);
+  assert.ok(wide <= inner, `the page is ${wide} pixels wide on a screen of ${inner}`);
+  for (const y of [0, 700, 100000]) {
+    await phone.evaluate((to) => scrollTo(0, to), y);
+    const box = await phone.getByRole('button', { name: /^STOP/ }).boundingBox();
+    assert.ok(box.y >= 0 && box.y + box.height <= 844 && box.height >= 44, `STOP is at ${box.y}`);
+  }
+  assert.deepEqual(phone.problems, []);
+  await phone.context().close();
+});
+
+// Tests that two fingers zoom: what was between them stays between them.
+test('pinch', async () => {
+  const phone = await openPage(browser, scope.address, {
+    viewport: { width: 390, height: 844 },
+    hasTouch: true,
+    isMobile: true,
+  });
+  await streaming(phone);
+  const box = await phone.locator('.chart').first().boundingBox();
+  const y = box.y + box.height / 2;
+  const touch = await phone.context().newCDPSession(phone);
+  const fingers = (type, ...at) =>
+    touch.send('Input.dispatchTouchEvent', { type, touchPoints: at.map((x, id) => ({ x, y, id })) });
+  const before = await phone.evaluate(() => {
+    const { t0, t1 } = hydroScope.display.frame();
+    return t1 - t0;
+  });
+  await fingers('touchStart', box.x + 150, box.x + 210);
+  await fingers('touchMove', box.x + 120, box.x + 240);
+  await fingers('touchMove', box.x + 90, box.x + 270);
+  await fingers('touchEnd');
+  const span = await phone.evaluate(() => hydroScope.display.window.t1 - hydroScope.display.window.t0);
+  assert.ok(Math.abs(span / before - 1 / 3) < 0.05, `${span} of ${before} s`);
+  await phone.context().close();
+});
+
+// Tests that keys alone pause, zoom, pan, set cursors and move them, mark, hide, and open and close the help.
+test('the keyboard alone', async () => {
+  await page.keyboard.press('Space');
+  await until(page, () => hydroScope.display.mode === 'still');
+  const first = await page.evaluate(() => hydroScope.display.window);
+  await page.keyboard.press('ArrowLeft');
+  const left = await page.evaluate(() => hydroScope.display.window);
+  assert.ok(Math.abs(first.t0 - left.t0 - (first.t1 - first.t0) / 10) < 1e-9);
+  await page.keyboard.press('c');
+  const a = await page.evaluate(() => hydroScope.cursors.at.a);
+  await page.keyboard.press('Shift+ArrowRight');
+  assert.ok((await page.evaluate(() => hydroScope.cursors.at.a)) > a);
+  await page.keyboard.press('m');
+  await page.locator('.events [data-kind=mark]').first().waitFor();
+  await page.keyboard.press('?');
+  await page.getByRole('dialog', { name: 'Keys and gestures' }).waitFor();
+  await page.keyboard.press('Escape');
+  await page.getByRole('dialog').waitFor({ state: 'hidden' });
+  await page.locator('[data-channel=dp_ref]').focus();
+  await page.keyboard.press('Enter');
+  assert.equal(await page.locator('[data-channel=dp_ref]').getAttribute('aria-pressed'), 'false');
+  // The focus stays on it, though the panes were made anew.
+  await page.keyboard.press('Enter');
+  assert.equal(await page.locator('[data-channel=dp_ref]').getAttribute('aria-pressed'), 'true');
+  await page.keyboard.press('l');
+  await until(page, () => hydroScope.display.mode === 'follow');
+});
+
+// Tests that everything that can be pressed has a name, and that the focus goes through it all with Tab and
+// is seen.
+test('names and focus', async () => {
+  const nameless = await page.evaluate(() =>
+    [...document.querySelectorAll('button, select, input, summary, canvas[role]')]
+      .filter(
+        (one) =>
+          one.offsetParent &&
+          !(one.getAttribute('aria-label') || one.textContent.trim() || one.labels?.length || one.title),
+      )
+      .map((one) => one.outerHTML),
+  );
+  assert.deepEqual(nameless, []);
+  await page.locator('#stop').focus();
+  const outlines = [];
+  for (let i = 0; i < 12; i += 1) {
+    await page.keyboard.press('Tab');
+    outlines.push(
+      await page.evaluate(() => ({
+        id: document.activeElement.id || document.activeElement.className,
+        width: getComputedStyle(document.activeElement).outlineWidth,
+      })),
+    );
+  }
+  assert.deepEqual(
+    outlines.filter(({ width }) => parseFloat(width) < 2),
+    [],
+  );
+  assert.ok(new Set(outlines.map(({ id }) => id)).size >= 8);
+});
+
+// Tests that a channel's name can be dragged to another pane.
+test('a channel is dragged to another pane', async () => {
+  await page.dragAndDrop('[data-channel=arm_ref]', '[data-pane="0"] .chart');
+  await until(page, () => hydroScope.scope.layout.panes[0].channels.includes('arm_ref'));
+  assert.deepEqual(await page.evaluate(() => hydroScope.scope.layout.panes[2].channels), ['arm_angle']);
+  await page.getByRole('button', { name: 'Default panes' }).click();
+});
+
+// Tests that panes that were arranged are there again after a reload, under this configuration's name.
+test('an arrangement is kept', async () => {
+  await page.getByRole('button', { name: 'Add pane' }).click();
+  assert.equal(await page.locator('.pane').count(), 7);
+  await page.getByLabel('Arrange pane 7').click();
+  await page.getByLabel('Add a channel to pane 7').selectOption('arm_speed');
+  await page.getByLabel('Arrange pane 2').click();
+  await page.getByLabel('Move p2 to').selectOption('6');
+  await page.reload();
+  await streaming(page);
+  const panes = await page.evaluate(() => hydroScope.scope.layout.panes.map((pane) => pane.channels));
+  assert.deepEqual([panes[1], panes[6]], [['p1'], ['arm_speed', 'p2']]);
+  await page.getByRole('button', { name: 'Default panes' }).click();
+  assert.equal(await page.locator('.pane').count(), 6);
+});
+
+// Tests that SI units change names and numbers together, by the factor that the server gives.
+test('SI units', async () => {
+  await page.keyboard.press('u');
+  await until(page, () => document.querySelector('[data-channel=p1] .unit').textContent === 'MPa');
+  await until(page, () => Math.abs(Number(document.querySelector('[data-channel=p1] .value').textContent)) < 14);
+  await page.keyboard.press('u');
+});
+
+// Tests that the checks of axe find nothing to mend, with every section open, on a desk and on a phone.
+for (const width of [1280, 390]) {
+  test(`accessibility by axe at ${width} pixels`, async () => {
+    const { source } = createRequire(new URL('../../scope/page/package.json', import.meta.url))('axe-core');
+    const audited = await openPage(browser, scope.address, { viewport: { width, height: 844 } });
+    await streaming(audited);
+    await audited.evaluate(() =>
+      document.querySelectorAll('details.section').forEach((one) => {
+        one.open = true;
+      }),
+    );
+    await audited.keyboard.press('c');
+    await audited.locator('[data-cell="dp.difference"]').waitFor();
+    await audited.evaluate(source);
+    const { violations } = await audited.evaluate(() => globalThis.axe.run());
+    assert.deepEqual(
+      violations.map(({ id, nodes }) => `${id}: ${nodes[0].html}`),
+      [],
+    );
+    await audited.context().close();
+  });
+}
+
+// Tests that words on the page keep a contrast of 4.5 to 1 in light and in dark (WCAG AA).
+for (const colours of ['light', 'dark']) {
+  test(`contrast, ${colours}`, async () => {
+    await page.emulateMedia({ colorScheme: colours });
+    const poor = await page.evaluate(() => {
+      const channels = (text) => text.match(/[\d.]+/g).map(Number);
+      const light = ([r, g, b]) =>
+        [r, g, b]
+          .map((v) => v / 255)
+          .map((v) => (v <= 0.04045 ? v / 12.92 : ((v + 0.055) / 1.055) ** 2.4))
+          .reduce((sum, v, i) => sum + v * [0.2126, 0.7152, 0.0722][i], 0);
+      const behind = (one) => {
+        for (let at = one; at; at = at.parentElement) {
+          const colour = channels(getComputedStyle(at).backgroundColor);
+          if (colour.length < 4 || colour[3] > 0.5) return colour;
+        }
+        return [255, 255, 255];
+      };
+      return [...document.querySelectorAll('body *')]
+        .filter(
+          (one) =>
+            one.offsetParent &&
+            !one.closest(':disabled, [aria-disabled=true]') &&
+            [...one.childNodes].some((node) => node.nodeType === 3 && node.textContent.trim()),
+        )
+        .map((one) => {
+          const [a, b] = [light(channels(getComputedStyle(one).color)), light(behind(one))].sort((x, y) => y - x);
+          return { text: one.textContent.trim().slice(0, 30), ratio: (a + 0.05) / (b + 0.05) };
+        })
+        .filter(({ ratio }) => ratio < 4.5);
+    });
+    assert.deepEqual(poor, []);
+  });
+}
+
+test('no errors in the page', () => assert.deepEqual(page.problems, []));

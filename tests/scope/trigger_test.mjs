@@ -1,0 +1,121 @@
+// Tests of the trigger on a running stack: the picture stands still on a step until the next one comes.
+import assert from 'node:assert/strict';
+import { after, before, test } from 'node:test';
+import { openBrowser, openPage, streaming, until } from './browser.mjs';
+import { Bench } from './stack.mjs';
+
+let bench, browser, page;
+
+before(async () => {
+  bench = await Bench.make();
+  await bench.launch(bench.file('run.lcmlog'));
+  const scope = await bench.scope();
+  browser = await openBrowser();
+  page = await openPage(browser, scope.address);
+  await streaming(page, 1);
+});
+after(async () => {
+  await browser?.close();
+  await bench?.close();
+});
+
+const form = (name) => page.locator(`#section-trigger [data-name=${name}]`);
+const captures = () => page.evaluate(() => hydroScope.trigger.captures);
+const nextCapture = async () => until(page, (before) => hydroScope.trigger.captures > before, await captures());
+
+// Tests that the step of the reference stands at the trigger, the picture does not move while the run goes
+// on, and the next step takes its place.
+test('the trigger stands still on a step of the reference', async () => {
+  await form('on').selectOption('step');
+  await form('span').fill('0.4');
+  await form('span').press('Enter');
+  await page.keyboard.press('t');
+  await until(page, () => hydroScope.trigger.captures >= 1 && hydroScope.display.mode === 'trigger');
+  const step = () =>
+    page.evaluate(() => {
+      const { t, bins } = hydroScope.display.capture;
+      // Bins narrower than a tick are without a sample now and then.
+      const seen = [...bins.min.arm_ref.keys()].filter((i) => !Number.isNaN(bins.min.arm_ref[i]));
+      const at = seen.find((i, k) => k > 0 && Math.abs(bins.min.arm_ref[i] - bins.min.arm_ref[seen[k - 1]]) > 0.3);
+      return {
+        t,
+        offset: bins.t[at] - t,
+        width: bins.width,
+        window: hydroScope.display.window,
+        last: hydroScope.display.last,
+      };
+    });
+  const first = await step();
+  assert.ok(Math.abs(first.offset) <= 0.006 + first.width, `the step is ${first.offset} s from the trigger`);
+  await until(page, (last) => hydroScope.display.last > last + 0.1, first.last);
+  await nextCapture();
+  const second = await step();
+  assert.ok(second.t > first.t + 0.5, `${second.t} after ${first.t}`);
+  assert.ok(Math.abs(second.offset) <= 0.006 + second.width);
+  assert.deepEqual(second.window, first.window);
+});
+
+// Tests that a level is crossed at the trigger, in the direction that was asked for.
+test('a falling level of the arm angle', async () => {
+  await form('on').selectOption('level');
+  await form('channel').selectOption('arm_angle');
+  await form('edge').selectOption('falling');
+  await form('level').fill('0.05');
+  await form('level').press('Enter');
+  await nextCapture();
+  const { before: above, after: below } = await page.evaluate(() => {
+    const { t, bins } = hydroScope.display.capture;
+    const at = (time) =>
+      bins.max.arm_angle[bins.t.findIndex((one, i) => one >= time && !Number.isNaN(bins.max.arm_angle[i]))];
+    return { before: at(t - 0.02), after: at(t + 0.02) };
+  });
+  assert.ok(above > 0.05 && below < 0.05, `${above} before, ${below} after`);
+});
+
+// Tests that the level's line can be dragged.
+test('the level is dragged', async () => {
+  const pane = await page.evaluate(() =>
+    hydroScope.scope.layout.panes.findIndex((one) => one.channels.includes('arm_angle')),
+  );
+  const place = await page.evaluate((p) => {
+    const { chart } = hydroScope.panes.panes[p];
+    const box = chart.plot.over.getBoundingClientRect();
+    return {
+      x: box.x + box.width * 0.7,
+      y: box.y + (chart.y(0.05) - chart.plot.bbox.top) / devicePixelRatio,
+      to: box.y + (chart.y(-0.1) - chart.plot.bbox.top) / devicePixelRatio,
+    };
+  }, pane);
+  await page.mouse.move(place.x, place.y);
+  await page.mouse.down();
+  await page.mouse.move(place.x, (place.y + place.to) / 2);
+  await page.mouse.move(place.x, place.to);
+  await page.mouse.up();
+  const level = await page.evaluate(() => hydroScope.trigger.settings.level);
+  assert.ok(Math.abs(level + 0.1) < 0.05, `the level is ${level}`);
+});
+
+// Tests that a single trigger catches once, says that it has stopped, and catches again when it is armed.
+test('single, and armed again', async () => {
+  await form('mode').selectOption('single');
+  await nextCapture();
+  await until(page, () => hydroScope.trigger.state === 'stopped');
+  const caught = await captures();
+  const last = await page.evaluate(() => hydroScope.display.last);
+  await until(page, (before) => hydroScope.display.last > before + 2.2, last);
+  assert.equal(await captures(), caught);
+  await page.getByRole('button', { name: 'Arm again' }).click();
+  await nextCapture();
+});
+
+// Tests that settings that cannot be are named, and not sent.
+test('a wrong setting is named', async () => {
+  await form('pre').fill('150');
+  await form('pre').press('Enter');
+  await page.getByText('pre-trigger is 1.5: give a number from 0 to 1').waitFor();
+  await form('pre').fill('25');
+  await form('pre').press('Enter');
+  await page.keyboard.press('Escape');
+});
+
+test('no errors in the page', () => assert.deepEqual(page.problems, []));
