@@ -47,7 +47,7 @@ TEST(ScopeSectionTest, RefusesNonsense) {
       ADD_FAILURE() << line;
     } catch (const InputError& error) {
       const std::string text = error.what();
-      EXPECT_TRUE(text.starts_with("test.toml:2: scope.")) << text;
+      EXPECT_TRUE(text.starts_with("test.toml:2: scope")) << text;
     }
   }
 }
