@@ -9,7 +9,7 @@ int main(int argc, char** argv) {
   hydro::settings::CommandLine line(
       "hydro-scope",
       "Shows a running stack, or a log, in the browser: prints the address of its page. "
-      "Example: hydro-scope config/demo.toml. See docs/scope_protocol.md.");
+      "Example: hydro-scope config/demo.toml. See docs/scope.md.");
   hydro::scope::ScopeRequest request;
   int port = -1;
   line.AddPositional("CONFIG|LOG", &request.input, "FILE the stack's configuration, or a log (.lcmlog)");

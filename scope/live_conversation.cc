@@ -58,49 +58,64 @@ Run& LiveConversation::RunOf(const LiveRequest& request) const {
   return *run;
 }
 
+void LiveConversation::TakeView(const LiveRequest& request) {
+  View view(request.view, RunOf(request));
+  if (views_.size() >= kMostViews && !views_.contains(request.id)) {
+    throw InputError("view: found a seventeenth, allowed are 16 at a time");
+  }
+  views_.insert_or_assign(request.id, std::move(view));
+}
+
+void LiveConversation::EndView(uint32_t id) {
+  const auto view = views_.find(id);
+  if (view == views_.end()) return;
+  past_bins_ += view->second.skipped_bins();
+  past_frames_ += view->second.skipped_frames();
+  views_.erase(view);
+}
+
+void LiveConversation::TakeTrigger(const LiveRequest& request) {
+  Trigger trigger(request.trigger, RunOf(request));
+  if (triggers_.size() >= kMostTriggers && !triggers_.contains(request.id)) {
+    throw InputError("trigger: found a ninth, allowed are 8 at a time");
+  }
+  triggers_.insert_or_assign(request.id, std::move(trigger));
+}
+
+void LiveConversation::Arm(uint32_t id) {
+  const auto trigger = triggers_.find(id);
+  if (trigger == triggers_.end()) throw InputError("arm: there is no trigger " + std::to_string(id));
+  trigger->second.Arm();
+}
+
+void LiveConversation::Mark(const LiveRequest& request) {
+  Run& run = RunOf(request);
+  // Marks must not push out what the run itself has to tell.
+  if (run.events.last() >= EventList::kMost / 2) throw InputError("mark: the run has 10000 events already");
+  run.events.Add({0, request.t, "mark", "", "", Printable(request.text)});
+  Reply(request.id, true, "marked");
+}
+
 void LiveConversation::Take(const LiveRequest& request) {
   using Op = LiveRequest::Op;
   switch (request.op) {
-    case Op::kView: {
-      View view(request.view, RunOf(request));
-      if (views_.size() >= kMostViews && !views_.contains(request.id)) {
-        throw InputError("view: found a seventeenth, allowed are 16 at a time");
-      }
-      views_.insert_or_assign(request.id, std::move(view));
-      return;
-    }
+    case Op::kView:
+      return TakeView(request);
     case Op::kUnview:
-      if (const auto view = views_.find(request.id); view != views_.end()) {
-        past_bins_ += view->second.skipped_bins();
-        past_frames_ += view->second.skipped_frames();
-        views_.erase(view);
-      }
-      return;
-    case Op::kTrigger: {
-      Trigger trigger(request.trigger, RunOf(request));
-      if (triggers_.size() >= kMostTriggers && !triggers_.contains(request.id)) {
-        throw InputError("trigger: found a ninth, allowed are 8 at a time");
-      }
-      triggers_.insert_or_assign(request.id, std::move(trigger));
-      return;
-    }
+      return EndView(request.id);
+    case Op::kTrigger:
+      return TakeTrigger(request);
     case Op::kUntrigger:
       triggers_.erase(request.id);
       return;
-    case Op::kArm: {
-      const auto trigger = triggers_.find(request.id);
-      if (trigger == triggers_.end())
-        throw InputError("arm: there is no trigger " + std::to_string(request.id));
-      trigger->second.Arm();
-      return;
-    }
+    case Op::kArm:
+      return Arm(request.id);
     case Op::kGet:
     case Op::kValues:
       waiting_.push_back(request);
       return;
     case Op::kMark:
-      RunOf(request).events.Add({0, request.t, "mark", "", "", Printable(request.text)});
-      return Reply(request.id, true, "marked");
+      return Mark(request);
     case Op::kGhost:
       return ReplyTo(request.id)(context_.ghost.Switch(request.run, request.on, request.resync_s));
     case Op::kGhostSync:

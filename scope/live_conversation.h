@@ -64,6 +64,11 @@ class LiveConversation : public Conversation {
   };
 
   void Take(const LiveRequest& request);
+  void TakeView(const LiveRequest& request);
+  void EndView(uint32_t id);
+  void TakeTrigger(const LiveRequest& request);
+  void Arm(uint32_t id);
+  void Mark(const LiveRequest& request);
   Run& RunOf(const LiveRequest& request) const;
   Done ReplyTo(uint32_t id);
   void Reply(uint32_t id, bool ok, const std::string& text, const std::string& data = {});

@@ -45,7 +45,7 @@ bool IsConfig(const std::string& file) { return file.ends_with(".toml"); }
 std::string Token() {
   const char* const given = std::getenv("HYDRO_SCOPE_TOKEN");
   if (given == nullptr) return FreshToken();
-  const std::string token = given;
+  std::string token = given;
   const bool right =
       token.size() >= 16 && token.size() <= 128 &&
       std::all_of(token.begin(), token.end(), [](unsigned char c) { return std::isalnum(c) != 0; });

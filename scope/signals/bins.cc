@@ -21,7 +21,8 @@ void Put(std::string& bytes, size_t& at, T value) {
 }  // namespace
 
 int64_t BinGrid::BinOf(double time) const {
-  auto k = static_cast<int64_t>(std::floor((time - origin) / width));
+  constexpr double kMost = 4e15;  // beyond it doubles do not tell neighbouring bins apart
+  auto k = static_cast<int64_t>(std::clamp(std::floor((time - origin) / width), -kMost, kMost));
   if (origin + static_cast<double>(k) * width > time) --k;
   if (origin + static_cast<double>(k + 1) * width <= time) ++k;
   return k;

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "base/number_text.h"
+#include "base/saturating.h"
 #include "scope/signals/decoded.h"
 
 namespace hydro::scope {
@@ -39,7 +40,7 @@ void Intake::Take(std::string_view channel, const uint8_t* data, int size, int64
 
 double Intake::TimeOf(int64_t tick) const {
   if (tick < 0 || run_ == nullptr || !(run_->rate_hz > 0)) return time_;
-  return time_ + static_cast<double>(tick - tick_) / run_->rate_hz;
+  return time_ + static_cast<double>(SaturatingDifference(tick, tick_)) / run_->rate_hz;
 }
 
 bool Intake::Follow(const state_t& state, int64_t utime) {
@@ -47,7 +48,7 @@ bool Intake::Follow(const state_t& state, int64_t utime) {
   const bool again = state.session == session_ && state.tick < tick_ && state.sequence < sequence_ &&
                      state.time < time_ - 0.5;
   if (state.session == session_ && !again) return true;
-  if (session_ && !again && !left_ && utime - heard_utime_ < kAlive) {
+  if (session_ && !again && !left_ && SaturatingDifference(utime, heard_utime_) < kAlive) {
     ++foreign_;
     return false;
   }
@@ -75,8 +76,8 @@ void Intake::OnState(const state_t& state, int64_t utime) {
   if (!(std::abs(state.time) < kLongestTime) || !Follow(state, utime)) return;
   heard_utime_ = utime;
   if (sequence_ >= 0 && state.sequence <= sequence_) return;  // repeated, or overtaken
-  if (sequence_ >= 0 && state.sequence > sequence_ + 1) {
-    const int64_t missing = state.sequence - sequence_ - 1;
+  if (sequence_ >= 0 && state.sequence > SaturatingSum(sequence_, 1)) {
+    const int64_t missing = state.sequence - sequence_ - 1;  // both are 0 or above
     AddEvent(state.time, "gap", "", "",
              std::to_string(missing) + (missing == 1 ? " state" : " states") + " missing");
   }

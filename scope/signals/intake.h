@@ -90,6 +90,7 @@ class Intake {
       doubted_;                  // active here, and missing from the role's last list
   int64_t tuning_version_ = 0;   // the newest that is an event
   int64_t tuning_request_ = -1;  // refused last
+  ProcessReport flood_;          // of processes beyond those that are kept
   std::string last_stop_;
   std::string last_rearm_;
   int64_t last_stop_utime_ = 0;

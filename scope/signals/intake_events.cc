@@ -5,6 +5,7 @@
 #include <sstream>
 #include <utility>
 
+#include "base/saturating.h"
 #include "base/text_file.h"
 #include "process/participant.h"
 #include "process/status.h"
@@ -126,7 +127,7 @@ void Intake::OnStop(const stop_t& stop, int64_t utime) {
   if (stop.addressee != 0 && stop.addressee != session_) return;  // another run's
   left_ = true;
   const std::string what = stop.source + ": " + stop.reason;
-  const bool repeated = what == last_stop_ && utime - last_stop_utime_ < kRepeated;
+  const bool repeated = what == last_stop_ && SaturatingDifference(utime, last_stop_utime_) < kRepeated;
   last_stop_ = what;
   last_stop_utime_ = utime;
   if (!repeated) AddEvent(TimeOf(stop.tick), "stop", stop.source, "", stop.reason);
@@ -151,7 +152,7 @@ void Intake::OnTuningAnswer(const tuning_answer_t& answer) {
 void Intake::OnRearm(const rearm_t& rearm, int64_t utime) {
   if (rearm.kind == rearm_t::REQUEST || rearm.session != session_) return;
   const std::string what = std::to_string(rearm.kind) + rearm.text;
-  const bool repeated = what == last_rearm_ && utime - last_rearm_utime_ < kRepeated;
+  const bool repeated = what == last_rearm_ && SaturatingDifference(utime, last_rearm_utime_) < kRepeated;
   last_rearm_ = what;
   last_rearm_utime_ = utime;
   if (repeated) return;
@@ -160,9 +161,8 @@ void Intake::OnRearm(const rearm_t& rearm, int64_t utime) {
 }
 
 ProcessReport& Intake::Report(const std::string& role, const std::string& host, int64_t utime) {
-  static ProcessReport flood;
   const std::string key = Shown(role) + " on " + Shown(host);
-  if (run_->processes.size() >= kMostProcesses && !run_->processes.contains(key)) return flood;
+  if (run_->processes.size() >= kMostProcesses && !run_->processes.contains(key)) return flood_;
   ProcessReport& report = run_->processes[key];
   report.role = Shown(role);
   report.host = Shown(host);
@@ -183,8 +183,8 @@ void Intake::OnStatistics(const loop_statistics_t& statistics, int64_t utime) {
   ProcessReport& report = Report(statistics.role, statistics.host, utime);
   if (statistics.interval_s > 0)
     report.rate_hz = static_cast<double>(statistics.cycles) / statistics.interval_s;
-  report.missed += statistics.missed_deadlines;
-  report.lost += statistics.lost_messages;
+  report.missed = SaturatingSum(report.missed, statistics.missed_deadlines);
+  report.lost = SaturatingSum(report.lost, statistics.lost_messages);
   report.latency_p99_us = statistics.latency_p99_us;
   if (run_->loops.size() >= kMostProcesses && !run_->loops.contains(report.role)) return;
   const auto [place, is_new] = run_->loops.try_emplace(report.role, kLoopColumns, 100000);

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "base/saturating.h"
+
 namespace hydro::scope {
 namespace {
 
@@ -37,7 +39,8 @@ void PendingTicks::Add(const state_t& state, int64_t utime) {
   At(row, TickColumn::kMotorAngle) = state.motor_angle;
   At(row, TickColumn::kVoltage) = state.voltage;
   At(row, TickColumn::kSkipped) = static_cast<double>(state.skipped_ticks);
-  if (newest_utime_ != 0) At(row, TickColumn::kPeriod) = static_cast<double>(utime - newest_utime_);
+  if (newest_utime_ != 0)
+    At(row, TickColumn::kPeriod) = static_cast<double>(SaturatingDifference(utime, newest_utime_));
   newest_utime_ = utime;
   for (const Early& early : early_) {
     if (early.command.tick == state.tick) Answer(tick, early.command, early.utime);
@@ -57,7 +60,7 @@ void PendingTicks::Answer(Tick& tick, const motor_command_t& command, int64_t ut
   At(tick.row, TickColumn::kDpRef) = has_reference ? command.pressure_ref : kMissing;
   At(tick.row, TickColumn::kVoltageAsked) = command.voltage;
   At(tick.row, TickColumn::kSaturated) = command.saturated != 0 ? 1 : 0;
-  At(tick.row, TickColumn::kLatency) = static_cast<double>(utime - tick.utime);
+  At(tick.row, TickColumn::kLatency) = static_cast<double>(SaturatingDifference(utime, tick.utime));
 }
 
 void PendingTicks::Add(const motor_command_t& command, int64_t utime) {

@@ -62,7 +62,8 @@ void View::Follow(const Run& run) {
   signals_.clear();
   for (const std::string& id : request_.channels) {
     // A loop that has not reported yet in this run: nothing is shown of it.
-    signals_.push_back(run.Find(id).value_or(Signal{&run.ghost, 0, 0}));
+    static const History kNothing(1);
+    signals_.push_back(run.Find(id).value_or(Signal{&kNothing, 0, 0}));
   }
   const double width = request_.span / request_.pixels;
   const bool narrow = run.spacing() > width;

@@ -18,6 +18,7 @@ const Target* FindTarget(std::string_view name) {
       {"overrides", Overrides},
       {"url", Url},
       {"key", Key},
+      {"scope", Scope},
   };
   for (const Target& target : kTargets) {
     if (name == target.name) return &target;

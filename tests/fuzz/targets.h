@@ -34,5 +34,6 @@ void ModelToml(const uint8_t* data, size_t size);
 void Overrides(const uint8_t* data, size_t size);  // --set
 void Url(const uint8_t* data, size_t size);        // bus.url
 void Key(const uint8_t* data, size_t size);        // bus.key_file
+void Scope(const uint8_t* data, size_t size);      // what a browser sends to hydro-scope
 
 }  // namespace hydro::fuzz

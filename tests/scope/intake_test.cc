@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <hydro/messages.hpp>
+#include <limits>
 #include <memory>
 #include <vector>
 
@@ -186,6 +187,39 @@ TEST_F(IntakeTest, Reports) {
   EXPECT_EQ(runs_[0]->processes.at("role0 on rig").rate_hz, 1000);
   ASSERT_TRUE(runs_[0]->Find("loop.role0.latency_p99_us"));
   EXPECT_EQ(runs_[0]->loops.at("role0").value(0, 0), 42);
+}
+
+// Tests that the largest and smallest numbers of foreign messages do no harm.
+TEST_F(IntakeTest, ExtremeNumbers) {
+  constexpr int64_t kMost = std::numeric_limits<int64_t>::max();
+  constexpr int64_t kLeast = std::numeric_limits<int64_t>::min();
+  for (const int64_t number : {kMost, kLeast, int64_t{0}, kMost}) {
+    utime_ = number;
+    state_t state{};
+    state.tick = state.sequence = number;
+    state.time = number > 0 ? 1e300 : 1;
+    Take("HYDRO_STATE", state);
+    state.time = 2;
+    Take("HYDRO_STATE", state);
+    motor_command_t command{};
+    command.tick = number;
+    Take("HYDRO_MOTOR_COMMAND", command);
+    fault_t fault{};
+    fault.tick = fault.sequence = number;
+    Take("HYDRO_FAULT", fault);
+    stop_t stop{};
+    stop.tick = number;
+    Take("HYDRO_STOP", stop);
+    loop_statistics_t statistics{};
+    statistics.missed_deadlines = statistics.lost_messages = number;
+    Take("HYDRO_LOOP_STATISTICS", statistics);
+    run_description_t description{};
+    description.rate_hz = 1e-300;
+    Take("HYDRO_RUN", description);
+  }
+  intake_.Flush();
+  EXPECT_EQ(intake_.undecodable(), 0);
+  EXPECT_GT(runs_.back()->events.last(), 0u);
 }
 
 // Tests that what is no message is counted and left out.

@@ -148,6 +148,20 @@ TEST_F(LiveConversationTest, Limits) {
   EXPECT_TRUE(conversation->over());
 }
 
+// Tests that a mark is an event, and that marks cannot push out what a run has to tell.
+TEST_F(LiveConversationTest, Marks) {
+  const auto conversation = Converse();
+  runs_.live()->events.Add({0, 0.1, "fault", "", "", "the first"});
+  EXPECT_EQ(Reply(conversation.get(), R"({"op":"mark","id":1,"run":0,"t":0.5,"text":"here"})")["ok"], true);
+  EXPECT_EQ(runs_.live()->events.At(2).kind, "mark");
+  json reply;
+  for (int i = 0; i < 20000 && (reply.is_null() || reply["ok"] == true); ++i) {
+    reply = Reply(conversation.get(), R"({"op":"mark","id":1,"run":0,"t":0.5,"text":"again"})");
+  }
+  EXPECT_EQ(reply["ok"], false);
+  EXPECT_EQ(runs_.live()->events.At(1).text, "the first");
+}
+
 // Tests that the frames of several views come in turn, and what a slow client missed is told.
 TEST_F(LiveConversationTest, TellsWhatWasDropped) {
   const auto conversation = Converse();

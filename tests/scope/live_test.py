@@ -86,6 +86,38 @@ class LiveTest(stack.TestCase):
         scope_case.ask(client, 3, op="stop")
         launch.wait()
 
+    # Tests that with [scope] control a gain that is set acts from a tick on, is shown as in force and told as an event; that one
+    # that would be unstable is refused with the reason; and that the last one can be taken back.
+    def test_tuning(self):
+        scope, launch, _ = self.pair("--set", "scope.control=true")
+        client = scope.live()
+
+        def in_force(key, value):
+            return lambda m: m["op"] == "tuning" and any(e["key"] == key and e["value"] == value for e in m["entries"])
+
+        first = client.until(in_force("position.c2", 1200))
+        self.assertTrue(first["control"])
+        self.until_time(client, 2.5)  # every controller has said once in two seconds what it acts by
+        reply = scope_case.ask(client, 1, op="set", entries=["position.c2=1400", "position.c1=6500"])
+        self.assertTrue(reply["ok"], reply)
+        self.assertGreater(reply["data"]["tick"], 2500)
+        self.assertAlmostEqual(reply["data"]["t"], reply["data"]["tick"] / 1000)
+        other = scope.live()  # hears what the first one missed while it waited for its answers
+        event = other.until(lambda m: m["op"] == "event" and m["kind"] == "tuning")
+        self.assertIn("position.c2 = 1400", event["text"])
+        self.assertAlmostEqual(event["t"], reply["data"]["t"], 6)
+        client.until(in_force("position.c2", 1400))
+        reply = scope_case.ask(client, 2, op="set", entries=["position.c2=1"])
+        self.assertFalse(reply["ok"])
+        self.assertIn("unstable", reply["text"])
+        for entries in ([], ["nonsense"], ["bus.url=x"]):
+            self.assertFalse(scope_case.ask(client, 3, op="set", entries=entries)["ok"], entries)
+        reply = scope_case.ask(client, 4, op="undo")
+        self.assertTrue(reply["ok"], reply)
+        client.until(in_force("position.c2", 1200))
+        scope_case.ask(client, 5, op="stop")
+        launch.wait()
+
 
 if __name__ == "__main__":
     unittest.main()

@@ -18,6 +18,7 @@ class Scope:
 
     def __init__(self, case, *arguments):
         self.case = case
+        os.environ["TMPDIR"] = case.folder  # where it makes a folder for its files: a killed one leaves that behind
         self.process = case.start("hydro-scope", *arguments, "--port", "0")
         self.port = int(self.process.wait_for(r"open http://127\.0\.0\.1:(\d+)/#token=" + TOKEN).group(1))
 

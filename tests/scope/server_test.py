@@ -1,6 +1,8 @@
 """hydro-scope with a log: what it serves, to whom, and what hostile or slow clients can do to it (nothing)."""
 
+import glob
 import json
+import signal
 import socket
 import unittest
 
@@ -197,6 +199,17 @@ class ServerTest(stack.TestCase):
             while True:
                 rude.receive()
         self.assertTrue(scope_case.ask(polite, 5, op="values", run=0, channels=["p1"], t=1)["ok"])
+
+    # Tests that a signal ends it with exit code 0, with clients there, and that its files are gone.
+    def test_ends(self):
+        scope = self.scope()
+        scope.live()
+        with open(self.path("run.lcmlog"), "rb") as file:
+            scope.json("POST", "/api/open?name=x.lcmlog", file.read())
+        self.assertEqual(len(glob.glob(self.path("hydro-scope.*/*.lcmlog"))), 1)
+        scope.process.send(signal.SIGTERM)
+        self.assertEqual(scope.process.wait(), 0, scope.process.report())
+        self.assertEqual(glob.glob(self.path("hydro-scope.*")), [])
 
     # Tests that a bad start is one line and exit code 2.
     def test_bad_start(self):
