@@ -5,6 +5,7 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <numeric>
 #include <optional>
@@ -22,7 +23,7 @@ using Eigen::MatrixXd;
 using Eigen::RowVectorXd;
 
 constexpr int kMostDelayTicks = 60;
-constexpr int64_t kMostSamples = 2000;
+constexpr int64_t kMostSamples = 500;
 
 // Rows of LinearModel's outputs.
 enum Output : uint8_t { kSpeed = 1, kAngle = 2, kArmRate = 3, kFirst = 4, kSecond = 5 };
@@ -287,7 +288,10 @@ std::vector<std::complex<double>> LinearStack::Poles(double voltage, double refe
   } else {
     loop = parts.TickByTick(voltage, reference);
   }
-  if (!loop.allFinite()) throw std::domain_error("the numbers of the linear model overflow");
+  if (!loop.allFinite()) {  // it grows beyond all numbers within one period
+    return std::vector<std::complex<double>>(static_cast<size_t>(parts.size()),
+                                             std::numeric_limits<double>::infinity());
+  }
   const Eigen::VectorXcd values = maths::Eigenvalues(loop);
   return {values.begin(), values.end()};
 }

@@ -41,7 +41,7 @@ class LinearStack {
   bool position_sampled_once() const;
 
   // Poles of the closed loop in the z plane, over one period. `voltage` multiplies what eq. (16) feeds back, `reference`
-  // what eq. (17) does: 1 as it is, 0 opens the loop.
+  // what eq. (17) does: 1 as it is, 0 opens the loop. All at infinity when the loop grows beyond all numbers within a period.
   std::vector<std::complex<double>> Poles(double voltage, double reference) const;
 
  private:

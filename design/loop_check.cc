@@ -63,6 +63,19 @@ double BandwidthOf(const LinearStack& stack, const position_ctrl::PositionLawSet
   return BandwidthHz([&](double factor) { return stack.Poles(1, factor); }, stack.period(), filter);
 }
 
+// Where the samples of both loops follow a pattern, no single response describes the loop: only its poles do.
+LoopMargins PositionMargins(const LinearStack& stack, const position_ctrl::PositionLawSettings& law) {
+  if (stack.position_sampled_once()) {
+    LoopMargins margins = MarginsOf([&](double factor) { return stack.Poles(1, factor); }, stack.period());
+    if (margins.stable) margins.bandwidth_hz = BandwidthOf(stack, law);
+    return margins;
+  }
+  const std::vector<std::complex<double>> poles = stack.Poles(1, 1);
+  LoopMargins margins = MarginsOf([&](double) { return poles; }, stack.period());
+  if (!margins.stable) margins.gain = 0;
+  return margins;
+}
+
 void Check(const settings::StackConfig& config, const pressure_ctrl::PressureLawSettings& pressure,
            LoopCheck* check) {
   const bool closes_position = config.reference.signal == settings::ReferenceSignal::kArmAngle;
@@ -80,15 +93,7 @@ void Check(const settings::StackConfig& config, const pressure_ctrl::PressureLaw
     Add(checked.pressure, point.name, &check->pressure);
     if (!closes_position || !moves_arm) continue;
     const LinearStack both(point.model, timing, pressure, &position);
-    checked.position = MarginsOf([&](double factor) { return both.Poles(1, factor); }, both.period());
-    if (!both.position_sampled_once()) {
-      const bool stable = checked.position->stable;
-      checked.position = LoopMargins{.stable = stable, .spectral_radius = checked.position->spectral_radius};
-      if (!stable) checked.position->gain = checked.position->phase_deg = checked.position->delay = 0;
-    }
-    if (checked.position->stable && both.position_sampled_once()) {
-      checked.position->bandwidth_hz = BandwidthOf(both, position);
-    }
+    checked.position = PositionMargins(both, position);
     Add(*checked.position, point.name, &check->position);
     check->position->margins_known = both.position_sampled_once();
   }

@@ -214,6 +214,11 @@ LoopMargins MarginsOf(const PolesOf& poles, double period, Drift drift) {
   LoopMargins margins;
   margins.spectral_radius = Radius(closed);
   margins.stable = stability.Holds(closed);
+  if (!std::isfinite(margins.spectral_radius) || !std::isfinite(Radius(open))) {
+    margins.stable = false;
+    margins.gain = margins.phase_deg = margins.delay = margins.distance = margins.damping_ratio = 0;
+    return margins;
+  }
   Cancel(&closed, &open);
   margins.damping_ratio = LeastDamping(closed);
   const Sweep sweep(std::move(closed), std::move(open));
