@@ -55,20 +55,15 @@ void Add(const LoopMargins& margins, const std::string& name, std::optional<Chec
   all.worst = WorstOf(all.worst, margins);
 }
 
-double BandwidthOf(const LinearStack& stack, const position_ctrl::PositionLawSettings& law) {
-  const auto filter = [&](const std::complex<double>& z) -> std::complex<double> {
-    if (law.derivative_on_error) return 1;
-    return law.c1 / (law.c1 + law.c2 / law.sample_interval * (1.0 - 1.0 / z));
-  };
-  return BandwidthHz([&](double factor) { return stack.Poles(1, factor); }, stack.period(), filter);
-}
-
 // Where the samples of both loops follow a pattern, no single response describes the loop: only its poles do.
 LoopMargins PositionMargins(const LinearStack& stack, const position_ctrl::PositionLawSettings& law) {
   if (stack.position_sampled_once()) {
-    LoopMargins margins = MarginsOf([&](double factor) { return stack.Poles(1, factor); }, stack.period());
-    if (margins.stable) margins.bandwidth_hz = BandwidthOf(stack, law);
-    return margins;
+    const auto filter = [&](const std::complex<double>& z) -> std::complex<double> {
+      if (law.derivative_on_error) return 1;
+      return law.c1 / (law.c1 + law.c2 / law.sample_interval * (1.0 - 1.0 / z));
+    };
+    return MarginsOf([&](double factor) { return stack.Poles(1, factor); }, stack.period(), Drift::kCounts,
+                     filter);
   }
   const std::vector<std::complex<double>> poles = stack.Poles(1, 1);
   LoopMargins margins = MarginsOf([&](double) { return poles; }, stack.period());

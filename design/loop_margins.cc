@@ -85,12 +85,22 @@ class Sweep {
   }
 
   // rad a period: the highest at which the closed loop behind `filter` still has a gain of 1/sqrt(2).
-  double Bandwidth(const std::function<Complex(const Complex&)>& filter) const {
-    for (size_t i = angles_.size(); i-- > 0;) {
-      const Complex closed = filter(std::polar(1.0, angles_[i])) * loop_[i] / (1.0 + loop_[i]);
-      if (std::norm(closed) >= 0.5) return angles_[i];
+  double Bandwidth(const Filter& filter) const {
+    const auto passes = [&](double angle) {
+      const Complex z = std::polar(1.0, angle);
+      const Complex loop = Loop(z);
+      return std::norm(filter(z) * loop / (1.0 + loop)) >= 0.5;
+    };
+    size_t last = angles_.size();
+    while (last > 0 && !passes(angles_[last - 1])) --last;
+    if (last == 0 || last == angles_.size()) return last == 0 ? 0 : kPi;
+    double low = angles_[last - 1];
+    double high = angles_[last];
+    for (int i = 0; i < 40; ++i) {
+      const double middle = 0.5 * (low + high);
+      (passes(middle) ? low : high) = middle;
     }
-    return 0;
+    return low;
   }
 
   double LeastDistance() const {
@@ -207,7 +217,7 @@ double LeastDamping(const std::vector<Complex>& poles) {
 
 }  // namespace
 
-LoopMargins MarginsOf(const PolesOf& poles, double period, Drift drift) {
+LoopMargins MarginsOf(const PolesOf& poles, double period, Drift drift, const Filter& filter) {
   const Stability stability(poles, drift);
   std::vector<Complex> closed = poles(1);
   std::vector<Complex> open = poles(0);
@@ -227,19 +237,12 @@ LoopMargins MarginsOf(const PolesOf& poles, double period, Drift drift) {
     GainLimits(stability, candidates, period, &margins);
     PhaseLimits(sweep, period, drift, &margins);
     margins.distance = sweep.LeastDistance();
+    if (filter) margins.bandwidth_hz = sweep.Bandwidth(filter) / (2 * kPi * period);
   } else {
     StableGain(stability, candidates, period, &margins);
     margins.phase_deg = margins.delay = margins.distance = 0;
   }
   return margins;
-}
-
-double BandwidthHz(const PolesOf& poles, double period,
-                   const std::function<Complex(const Complex&)>& filter) {
-  std::vector<Complex> closed = poles(1);
-  std::vector<Complex> open = poles(0);
-  Cancel(&closed, &open);
-  return Sweep(std::move(closed), std::move(open)).Bandwidth(filter) / (2 * kPi * period);
 }
 
 LoopMargins WorstOf(const LoopMargins& a, const LoopMargins& b) {

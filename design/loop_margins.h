@@ -24,8 +24,8 @@ struct LoopMargins {
   // Of the oscillating poles that the loop moves. A pole faster than half the loop's samples appears as a slower one that
   // decays as fast.
   double damping_ratio = 1;
-  // Hz, from the loop's reference to its output: where the gain falls below 1/sqrt(2) for good. Only of the position
-  // loop (see BandwidthHz); 0 for an unstable loop.
+  // Hz, from the loop's reference to its output: where the gain falls below 1/sqrt(2) for good. 0 for an
+  // unstable loop and where it was not asked for.
   double bandwidth_hz = 0;
   // The least distance of the loop's response from -1 in the complex plane, the inverse of the largest sensitivity; 0 for
   // an unstable loop.
@@ -37,17 +37,16 @@ struct LoopMargins {
 // motion.
 enum class Drift { kCounts, kIgnored };
 
+// What a reference goes through before it enters where the output is fed back, over z: c1/(c1 + c2 (1 - 1/z)/T) for a derivative
+// on the measured output alone.
+using Filter = std::function<std::complex<double>(const std::complex<double>& z)>;
+
 // `poles` gives the closed loop's poles in the z plane, sampled every `period` s, with the loop's gain multiplied by a
 // factor: as many poles for each factor. The open loop's response follows from those with 1 and with 0,
-// 1 + L(z) = product of (z - closed pole)/(z - open pole), so nothing but eigenvalues is needed.
+// 1 + L(z) = product of (z - closed pole)/(z - open pole), so nothing but eigenvalues is needed. The bandwidth is that of
+// filter(z) L(z)/(1 + L(z)); without a filter it is not computed.
 LoopMargins MarginsOf(const std::function<std::vector<std::complex<double>>(double factor)>& poles,
-                      double period, Drift drift = Drift::kCounts);
-
-// The bandwidth of filter(z) L(z)/(1 + L(z)) of a stable loop: `filter` is what a reference goes through before it enters where
-// the output is fed back, e.g. c1/(c1 + c2 (1 - 1/z)/T) for a derivative on the measured output alone.
-double BandwidthHz(const std::function<std::vector<std::complex<double>>(double factor)>& poles,
-                   double period,
-                   const std::function<std::complex<double>(const std::complex<double>& z)>& filter);
+                      double period, Drift drift = Drift::kCounts, const Filter& filter = {});
 
 // The worst of both, number by number.
 LoopMargins WorstOf(const LoopMargins& a, const LoopMargins& b);

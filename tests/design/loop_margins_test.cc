@@ -86,6 +86,32 @@ TEST(LoopMargins, Damping) {
   EXPECT_NEAR(MarginsOf(poles, kPeriod).damping_ratio, 0.3, 1e-12);
 }
 
+// Tests the bandwidth against |T| of the delayed integrator, T = gain/(z^2 - z + gain), behind a filter.
+TEST(LoopMargins, Bandwidth) {
+  const auto poles = [](double factor) { return DelayedIntegrator(factor * 0.25); };
+  const Filter filter = [](const Complex& z) { return 0.5 / (z - 0.5); };
+  const LoopMargins m = MarginsOf(poles, kPeriod, Drift::kCounts, filter);
+  const Complex z = std::polar(1.0, 2 * kPi * kPeriod * m.bandwidth_hz);
+  EXPECT_NEAR(std::norm(filter(z) * 0.25 / (z * z - z + 0.25)), 0.5, 1e-6);
+  EXPECT_GT(m.bandwidth_hz, 1);
+  EXPECT_EQ(MarginsOf(poles, kPeriod).bandwidth_hz, 0);
+}
+
+// Tests that a drift is ignored where it is somebody else's, and that what oscillates is not.
+TEST(LoopMargins, DriftMayBeIgnored) {
+  const auto poles = [](double factor) {
+    std::vector<Complex> all = DelayedIntegrator(factor * 0.25);
+    all.emplace_back(1 + 0.001 * factor);
+    return all;
+  };
+  EXPECT_FALSE(MarginsOf(poles, kPeriod).stable);
+  const LoopMargins m = MarginsOf(poles, kPeriod, Drift::kIgnored);
+  EXPECT_TRUE(m.stable);
+  EXPECT_NEAR(m.gain, 4, 0.1);
+  const auto oscillating = [](double factor) { return DelayedIntegrator(factor * 2); };
+  EXPECT_FALSE(MarginsOf(oscillating, kPeriod, Drift::kIgnored).stable);
+}
+
 TEST(LoopMargins, WorstIsTakenNumberByNumber) {
   LoopMargins a;
   a.stable = true;

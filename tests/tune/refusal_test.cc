@@ -40,7 +40,7 @@ TEST(Refusal, NamesWhatTheBestGainsReach) {
   result.best = TryGains(judge, GainsOf(judge.config()));
   EXPECT_EQ(RefusalBySearch(judge, {}, result), "");
   EXPECT_THAT(RefusalBySearch(judge, {.bandwidth_hz = 30}, result),
-              HasSubstr("the position loop reaches 2.38 Hz"));
+              HasSubstr("the position loop reaches 2.51 Hz"));
   EXPECT_THAT(RefusalBySearch(judge, {.settling_s = 0.335}, result), HasSubstr("take 0.34"));
   EXPECT_THAT(RefusalBySearch(judge, {.overshoot_percent = 1}, result),
               HasSubstr("overshoot by at least 19"));
