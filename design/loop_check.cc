@@ -65,8 +65,7 @@ LoopMargins PositionMargins(const LinearStack& stack, const position_ctrl::Posit
     return MarginsOf([&](double factor) { return stack.Poles(1, factor); }, stack.period(), Drift::kCounts,
                      filter);
   }
-  const std::vector<std::complex<double>> poles = stack.Poles(1, 1);
-  LoopMargins margins = MarginsOf([&](double) { return poles; }, stack.period());
+  LoopMargins margins = MarginsOf([&](double) { return stack.Poles(1, 1); }, stack.period());
   if (!margins.stable) margins.gain = 0;
   return margins;
 }

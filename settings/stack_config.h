@@ -96,8 +96,8 @@ struct PositionSection {
   bool derivative_on_error = false;  // derivative = "error" (eq. (17) as printed) | "measurement"
   // rad/s^2: a braking curve before eq. (17) (position_ctrl/law/braking_curve.h); none: eq. (17) alone.
   std::optional<double> braking_rad_s2;
-  int dac_bits = 0;                  // 0: no D/A quantisation of the pressure command
-  double dac_range_psi = 2000;       // full scale of the D/A, +/-
+  int dac_bits = 0;             // 0: no D/A quantisation of the pressure command
+  double dac_range_psi = 2000;  // full scale of the D/A, +/-
 };
 
 enum class ReferenceSignal { kArmAngle, kPressure, kTorque, kVoltage };

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <sstream>
 #include <utility>
 
 #include "page/figure_svg.h"
@@ -50,7 +51,7 @@ page::Panel ResponsePanel(const TuningReport& report) {
 page::Panel TradeOffPanel(const TuningReport& report) {
   page::Panel panel;
   panel.title = "What a wider margin costs";
-  panel.x = {.label = "gain margin of the position loop", .logarithmic = true};
+  panel.x = {.label = "gain margin of the position loop"};
   panel.y = {.label = "largest ratio", .min = 0.9, .max = 3};
   std::vector<double> margin;
   std::vector<double> ratio;
@@ -89,6 +90,14 @@ page::Figure Picture(const TuningReport& report) {
   return figure;
 }
 
+// Line by line, because escaping takes line ends for blanks.
+std::string Preformatted(const std::string& text) {
+  std::string escaped;
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) escaped += page::EscapeMarkup(line) + "\n";
+  return escaped;
+}
+
 }  // namespace
 
 std::string ReportPicture(const TuningReport& report) { return page::FigureFile(Picture(report), "tune"); }
@@ -98,7 +107,7 @@ std::string ReportPage(const TuningReport& report, bool si) {
   return page::HtmlPage(title,
                         "<h1>" + page::EscapeMarkup(title) + "</h1>\n" +
                             page::HtmlFigure(Picture(report), "tune") + "<pre>" +
-                            page::EscapeMarkup(ReportText(report, si)) + "</pre>\n",
+                            Preformatted(ReportText(report, si)) + "</pre>\n",
                         true);
 }
 

@@ -51,6 +51,7 @@ TEST_F(TuneProgram, WritesAConfigurationThatDoesWhatItsTableSays) {
   EXPECT_THAT(outcome.out, HasSubstr("eq. (17) alone: "));
   EXPECT_THAT(outcome.err, HasSubstr("hydro-tune: 100 %"));
   EXPECT_THAT(ReadTextFile(report + "/tune.html"), HasSubstr("<svg"));
+  EXPECT_THAT(ReadTextFile(report + "/tune.html"), HasSubstr("\n  position ")) << "a table keeps its lines";
   EXPECT_THAT(ReadTextFile(report + "/tune.svg"), HasSubstr("bang-bang bound"));
 
   const std::string text = ReadTextFile(tuned);
