@@ -48,10 +48,12 @@ std::optional<position_ctrl::BrakingCurve> BrakingCurveFor(const settings::Stack
                          config.limits.motor_speed_rad_s, config.model.description.parameters);
 }
 
-std::optional<position_ctrl::BrakingCurve> BrakingCurveFor(const position_ctrl::PositionLawSettings& law, double braking,
-                                                           double motor_speed, const model::Parameters& parameters) {
+std::optional<position_ctrl::BrakingCurve> BrakingCurveFor(const position_ctrl::PositionLawSettings& law,
+                                                           double braking, double motor_speed,
+                                                           const model::Parameters& parameters) {
   if (!std::isfinite(braking)) return std::nullopt;
-  return position_ctrl::BrakingCurve(law.c1 / law.c2, braking, 0.95 * motor_speed * parameters.D / parameters.c);
+  return position_ctrl::BrakingCurve(law.c1 / law.c2, braking,
+                                     0.95 * motor_speed * parameters.D / parameters.c);
 }
 
 }  // namespace hydro::design

@@ -21,7 +21,8 @@ position_ctrl::PositionLawSettings PositionLawSettingsFor(const settings::StackC
 std::optional<position_ctrl::BrakingCurve> BrakingCurveFor(const settings::StackConfig& config);
 
 // The same from numbers: `braking` in rad/s^2, infinity for none; `motor_speed`: its limit, rad/s.
-std::optional<position_ctrl::BrakingCurve> BrakingCurveFor(const position_ctrl::PositionLawSettings& law, double braking,
-                                                           double motor_speed, const model::Parameters& parameters);
+std::optional<position_ctrl::BrakingCurve> BrakingCurveFor(const position_ctrl::PositionLawSettings& law,
+                                                           double braking, double motor_speed,
+                                                           const model::Parameters& parameters);
 
 }  // namespace hydro::design

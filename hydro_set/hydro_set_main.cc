@@ -22,19 +22,22 @@ void Sort(const std::vector<std::string>& arguments, SetRequest* request) {
     } else if (request->config_file.empty()) {
       request->config_file = argument;
     } else {
-      throw hydro::InputError(hydro::Quoted(argument) + ": found a second CONFIG, allowed is one, and KEY=VALUE...");
+      throw hydro::InputError(hydro::Quoted(argument) +
+                              ": found a second CONFIG, allowed is one, and KEY=VALUE...");
     }
   }
 }
 
-int Run(SetRequest request, const std::vector<std::string>& arguments, const std::vector<std::string>& overrides) {
+int Run(SetRequest request, const std::vector<std::string>& arguments,
+        const std::vector<std::string>& overrides) {
   Sort(arguments, &request);
   hydro::hydro_set::CheckRequest(request);
   hydro::settings::BusSection section;
   if (!request.config_file.empty()) {
     section = hydro::settings::LoadStackConfig(request.config_file, overrides).bus;
   } else if (!overrides.empty()) {
-    throw hydro::InputError("--set: found " + hydro::Quoted(overrides.front()) + " without CONFIG, allowed is both");
+    throw hydro::InputError("--set: found " + hydro::Quoted(overrides.front()) +
+                            " without CONFIG, allowed is both");
   }
   hydro::process::CatchStopSignals();
   const auto bus = hydro::process::OpenStackBus(section);
@@ -46,20 +49,25 @@ int Run(SetRequest request, const std::vector<std::string>& arguments, const std
 }  // namespace
 
 int main(int argc, char** argv) {
-  hydro::settings::CommandLine line(
-      "hydro-set",
-      "Changes gains, limits, references and noise while a stack runs: all values of one request take effect on one tick, or none. "
-      "Example: hydro-set stack.toml pressure.natural_frequency_rad_s=120 position.c2=900. More in docs/tuning.md.");
+  hydro::settings::CommandLine line("hydro-set",
+                                    "Changes gains, limits, references and noise while a stack runs: all "
+                                    "values of one request take effect on one tick, or none. "
+                                    "Example: hydro-set stack.toml pressure.natural_frequency_rad_s=120 "
+                                    "position.c2=900. More in docs/tuning.md.");
   SetRequest request;
   std::vector<std::string> arguments, overrides;
-  line.AddPositional("[CONFIG] KEY=VALUE", &arguments, "the stack's configuration (for its bus and key), and values", false);
+  line.AddPositional("[CONFIG] KEY=VALUE", &arguments,
+                     "the stack's configuration (for its bus and key), and values", false);
   line.AddOption("--set", &overrides,
-                 "SECTION.KEY=VALUE changes a key of CONFIG first, as on the command line that started the stack, e.g. bus.url");
-  line.AddFlag("--list", &request.list, "show what can be changed: value in force, unit, where it acts, what it does");
+                 "SECTION.KEY=VALUE changes a key of CONFIG first, as on the command line that started the "
+                 "stack, e.g. bus.url");
+  line.AddFlag("--list", &request.list,
+               "show what can be changed: value in force, unit, where it acts, what it does");
   line.AddFlag("--undo", &request.undo, "go back to what was in force before the last change");
   line.AddFlag("--watch", &request.watch, "show each change as it takes effect, until Ctrl-C");
   line.AddOption("--save", &request.save,
-                 "FILE write CONFIG with the values in force, comments kept (without CONFIG: the whole configuration of the run)");
+                 "FILE write CONFIG with the values in force, comments kept (without CONFIG: the whole "
+                 "configuration of the run)");
   if (const auto code = line.Parse(argc, argv)) return *code;
   return hydro::settings::RunProgram("hydro-set", [&] { return Run(request, arguments, overrides); });
 }

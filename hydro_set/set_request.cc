@@ -21,7 +21,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr auto kPresence = 2500ms;    // a plant says once a second what is in force
+constexpr auto kPresence = 2500ms;  // a plant says once a second what is in force
 constexpr auto kTakeEffect = 2s;
 constexpr auto kTurn = 20ms;
 
@@ -33,8 +33,8 @@ std::string Changes(const tuned_settings_t& settings) {
 
 class Setter {
  public:
-  Setter(bus::Bus& bus, const bus::Clock& clock, const settings::BusSection& section, const SetRequest& request,
-         const SetOutput& output)
+  Setter(bus::Bus& bus, const bus::Clock& clock, const settings::BusSection& section,
+         const SetRequest& request, const SetOutput& output)
       : bus_(bus),
         clock_(clock),
         url_(section.url),
@@ -64,18 +64,24 @@ class Setter {
   }
 
   bool FindStack() {
-    const bool found = Wait(kPresence, [&] { return client_.in_force() && client_.run() && !client_.plants().empty(); });
+    const bool found =
+        Wait(kPresence, [&] { return client_.in_force() && client_.run() && !client_.plants().empty(); });
     if (client_.plants().size() > 1) {
-      Print(output_.err, fmt::format("hydro-set: heard {} plants on {}, allowed is one", client_.plants().size(), url_));
+      Print(output_.err,
+            fmt::format("hydro-set: heard {} plants on {}, allowed is one", client_.plants().size(), url_));
       return false;
     }
     if (found) return true;
-    Print(output_.err,
-          client_.plants().empty()
-              ? fmt::format("hydro-set: no running stack is heard on {}; start one with hydro-launch, or name its configuration: "
-                            "hydro-set CONFIG ...",
-                            url_)
-              : fmt::format("hydro-set: the plant on {} does not say which values are in force; is it of this version?", url_));
+    Print(
+        output_.err,
+        client_.plants().empty()
+            ? fmt::format("hydro-set: no running stack is heard on {}; start one with hydro-launch, or name "
+                          "its configuration: "
+                          "hydro-set CONFIG ...",
+                          url_)
+            : fmt::format(
+                  "hydro-set: the plant on {} does not say which values are in force; is it of this version?",
+                  url_));
     return false;
   }
 
@@ -108,31 +114,37 @@ class Setter {
   std::map<std::string, std::string> ValuesInForce() const {
     std::map<std::string, std::string> values;
     const tuned_settings_t& in_force = *client_.in_force();
-    for (size_t i = 0; i < in_force.names.size(); ++i) values[in_force.names[i]] = fmt::format("{:g}", in_force.values[i]);
+    for (size_t i = 0; i < in_force.names.size(); ++i)
+      values[in_force.names[i]] = fmt::format("{:g}", in_force.values[i]);
     const settings::StackConfig config = ConfigInForce(*client_.run(), in_force);
-    for (auto& [key, value] : settings::TomlEntries(settings::ParseToml(config.text, config.file))) values[key] = value;
+    for (auto& [key, value] : settings::TomlEntries(settings::ParseToml(config.text, config.file)))
+      values[key] = value;
     return values;
   }
 
   void List() const {
     const auto values = ValuesInForce();
-    Print(output_.out, fmt::format("{:<34} {:<22} {:<12} {:<14} {}", "key", "value in force", "unit", "acts in", "what it does"));
+    Print(output_.out, fmt::format("{:<34} {:<22} {:<12} {:<14} {}", "key", "value in force", "unit",
+                                   "acts in", "what it does"));
     for (const tuning::TunableKey& row : tuning::TunableKeys()) {
       const auto value = values.find(std::string(row.key));
-      Print(output_.out, fmt::format("{:<34} {:<22} {:<12} {:<14} {}", row.key, value == values.end() ? "-" : value->second,
-                                     row.unit, row.acts_in, row.what));
+      Print(output_.out,
+            fmt::format("{:<34} {:<22} {:<12} {:<14} {}", row.key,
+                        value == values.end() ? "-" : value->second, row.unit, row.acts_in, row.what));
     }
     const tuned_settings_t& in_force = *client_.in_force();
-    Print(output_.out, fmt::format("version {} in force since tick {}: {}", in_force.version, in_force.acts_at,
-                                   Changes(in_force)));
+    Print(output_.out, fmt::format("version {} in force since tick {}: {}", in_force.version,
+                                   in_force.acts_at, Changes(in_force)));
   }
 
   void Save() const {
-    const std::string text = SavedText(request_.config_file, request_.save, *client_.run(), *client_.in_force());
+    const std::string text =
+        SavedText(request_.config_file, request_.save, *client_.run(), *client_.in_force());
     NewFile file(request_.save, Opening::kTemporary);
     file.Write(text.data(), text.size());
     file.Finish();
-    Print(output_.out, fmt::format("{}: the configuration with version {}", request_.save, client_.in_force()->version));
+    Print(output_.out,
+          fmt::format("{}: the configuration with version {}", request_.save, client_.in_force()->version));
   }
 
   void Watch() {
@@ -142,13 +154,15 @@ class Setter {
       const tuned_settings_t& in_force = *client_.in_force();
       if (shown != in_force.version) {
         shown = in_force.version;
-        Print(output_.out, fmt::format("version {} from tick {} on: {}{}", in_force.version, in_force.acts_at,
-                                       Changes(in_force), in_force.source.empty() ? "" : " (" + in_force.source + ")"));
+        Print(output_.out,
+              fmt::format("version {} from tick {} on: {}{}", in_force.version, in_force.acts_at,
+                          Changes(in_force), in_force.source.empty() ? "" : " (" + in_force.source + ")"));
       }
       for (const auto& [role, status] : client_.controllers()) {
         const auto known = acting.find(role);
         if (known == acting.end() || known->second != status.in_force) {
-          Print(output_.out, fmt::format("{} acts by version {} since tick {}", role, status.in_force, status.since));
+          Print(output_.out,
+                fmt::format("{} acts by version {} since tick {}", role, status.in_force, status.since));
           acting[role] = status.in_force;
         }
       }
@@ -170,21 +184,24 @@ class Setter {
 void CheckRequest(const SetRequest& request) {
   if (!request.changes.empty()) tuning::ParseChanges(fmt::format("{}", fmt::join(request.changes, "\n")));
   if (request.undo && !request.changes.empty()) {
-    throw InputError("--undo: found " + Quoted(request.changes.front()) + " beside it, allowed is one of the two");
+    throw InputError("--undo: found " + Quoted(request.changes.front()) +
+                     " beside it, allowed is one of the two");
   }
   if (request.changes.empty() && !request.undo && !request.list && !request.watch && request.save.empty()) {
-    throw InputError("found nothing to do, allowed KEY=VALUE..., --undo, --list, --watch or --save FILE; see --help");
+    throw InputError(
+        "found nothing to do, allowed KEY=VALUE..., --undo, --list, --watch or --save FILE; see --help");
   }
   if (request.save.empty()) return;
   std::error_code none;
   if (!request.config_file.empty() && std::filesystem::equivalent(request.save, request.config_file, none)) {
-    throw InputError("--save: found " + Quoted(request.save) + ", which is CONFIG; give another file, so that nothing is lost");
+    throw InputError("--save: found " + Quoted(request.save) +
+                     ", which is CONFIG; give another file, so that nothing is lost");
   }
   CheckCanBeCreated(request.save);
 }
 
-int RunSet(bus::Bus& bus, const bus::Clock& clock, const settings::BusSection& section, const SetRequest& request,
-           const SetOutput& output) {
+int RunSet(bus::Bus& bus, const bus::Clock& clock, const settings::BusSection& section,
+           const SetRequest& request, const SetOutput& output) {
   return Setter(bus, clock, section, request, output).Run();
 }
 

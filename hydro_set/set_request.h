@@ -25,14 +25,14 @@ struct SetRequest {
 void CheckRequest(const SetRequest& request);
 
 struct SetOutput {
-  std::FILE* out;                      // what was asked for
-  std::FILE* err;                      // why not
-  std::function<bool()> interrupted;   // --watch goes on until then
+  std::FILE* out;                     // what was asked for
+  std::FILE* err;                     // why not
+  std::function<bool()> interrupted;  // --watch goes on until then
 };
 
 // Returns the exit code: 0 done; 1 refused, or nobody is there. Throws InputError for a file that cannot be
 // written.
-int RunSet(bus::Bus& bus, const bus::Clock& clock, const settings::BusSection& section, const SetRequest& request,
-           const SetOutput& output);
+int RunSet(bus::Bus& bus, const bus::Clock& clock, const settings::BusSection& section,
+           const SetRequest& request, const SetOutput& output);
 
 }  // namespace hydro::hydro_set

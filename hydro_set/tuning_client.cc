@@ -15,7 +15,8 @@ constexpr auto kLongestWait = 3s;
 
 }  // namespace
 
-TuningClient::TuningClient(bus::Bus& bus, const bus::Clock& clock, const bus::Channels& channels, std::string source)
+TuningClient::TuningClient(bus::Bus& bus, const bus::Clock& clock, const bus::Channels& channels,
+                           std::string source)
     : bus_(bus),
       clock_(clock),
       channels_(channels),
@@ -25,12 +26,14 @@ TuningClient::TuningClient(bus::Bus& bus, const bus::Clock& clock, const bus::Ch
     plants_.insert(state.session);
     tick_ = state.tick;
   });
-  bus.Subscribe<run_description_t>(channels.Of<run_description_t>(), [this](const run_description_t& run) { run_ = run; });
+  bus.Subscribe<run_description_t>(channels.Of<run_description_t>(),
+                                   [this](const run_description_t& run) { run_ = run; });
   bus.Subscribe<tuned_settings_t>(channels.Of<tuned_settings_t>(), [this](const tuned_settings_t& settings) {
     if (settings.stage == tuned_settings_t::IN_FORCE) in_force_ = settings;
   });
-  bus.Subscribe<tuning_status_t>(channels.Of<tuning_status_t>(),
-                                 [this](const tuning_status_t& status) { controllers_[status.role] = status; });
+  bus.Subscribe<tuning_status_t>(channels.Of<tuning_status_t>(), [this](const tuning_status_t& status) {
+    controllers_[status.role] = status;
+  });
   bus.Subscribe<tuning_answer_t>(channels.Of<tuning_answer_t>(), [this](const tuning_answer_t& answer) {
     if (answer.addressee != session_ || !asked_ || answer.request != asked_->request) return;
     answer_ = answer;
@@ -67,7 +70,9 @@ void TuningClient::Poll() {
     answer_->request = asked_->request;
     answer_->accepted = false;
     answer_->acts_at = -1;
-    answer_->text = "the plant or driver does not answer: it may not take part in tuning, or another request keeps it busy";
+    answer_->text =
+        "the plant or driver does not answer: it may not take part in tuning, or another request keeps it "
+        "busy";
     asked_.reset();
   } else if (now >= next_repeat_) {
     Send();

@@ -90,7 +90,8 @@ LogReader::LogReader(const std::string& file, OnDamage on_damage)
   try {
     verdict_ = ExamineLog(file_);
     if (BeginsAsText(file_)) {
-      throw InputError("found text, allowed an LCM event log; hydro-log import " + file + " -o RUN.lcmlog makes one of a table");
+      throw InputError("found text, allowed an LCM event log; hydro-log import " + file +
+                       " -o RUN.lcmlog makes one of a table");
     }
   } catch (const InputError& error) {
     throw LogError(file + ": " + error.what());

@@ -19,7 +19,8 @@ class Voucher {
   void Take(const KeptEvent& place) {
     LogEvent event;
     ParseLogEvent(file_, place.begin, event);
-    if (!IsCheck(event) && !IsDisguisedCheck(event)) {  // a flipped bit of its channel makes a check event none
+    if (!IsCheck(event) &&
+        !IsDisguisedCheck(event)) {  // a flipped bit of its channel makes a check event none
       block_.push_back({place, ChecksumOf(event)});
       result_.found_end = false;
       return;

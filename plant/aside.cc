@@ -67,7 +67,8 @@ void Aside::Begin(Work work) {
 
 std::optional<tuning::PreparedChange> Aside::Take() {
   if (!busy_) return std::nullopt;
-  std::optional<tuning::PreparedChange> result = thread_ ? thread_->Take() : std::exchange(result_, std::nullopt);
+  std::optional<tuning::PreparedChange> result =
+      thread_ ? thread_->Take() : std::exchange(result_, std::nullopt);
   if (result) busy_ = false;
   return result;
 }

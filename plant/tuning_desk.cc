@@ -15,15 +15,15 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr auto kReportPeriod = 1s;
-constexpr auto kAnswerTime = 500ms;     // in which every controller says whether it can act by a proposal
-constexpr auto kAlive = 2500ms;         // a controller reports once a second
-constexpr auto kRepeatPeriod = 20ms;    // of what is proposed and decided, should a message be lost
-constexpr double kLead_s = 0.02;        // from the decision to its effect: several repeats
-constexpr double kOldRequest_s = 5;     // a request that names a tick older than this comes from a recording
+constexpr auto kAnswerTime = 500ms;   // in which every controller says whether it can act by a proposal
+constexpr auto kAlive = 2500ms;       // a controller reports once a second
+constexpr auto kRepeatPeriod = 20ms;  // of what is proposed and decided, should a message be lost
+constexpr double kLead_s = 0.02;      // from the decision to its effect: several repeats
+constexpr double kOldRequest_s = 5;   // a request that names a tick older than this comes from a recording
 constexpr size_t kMostUndo = 100;
-constexpr size_t kMostSessions = 64;    // whose last answer is kept, should they ask again
+constexpr size_t kMostSessions = 64;  // whose last answer is kept, should they ask again
 constexpr size_t kMostControllers = 16;
-constexpr size_t kMostText = 1 << 16;   // bytes of a request
+constexpr size_t kMostText = 1 << 16;  // bytes of a request
 
 }  // namespace
 
@@ -35,8 +35,8 @@ struct TuningDesk::Pending {
   bus::Clock::TimePoint next_repeat;
 };
 
-TuningDesk::TuningDesk(process::Participant& participant, const settings::StackConfig& config, bool simulated_rig,
-                       Hooks hooks)
+TuningDesk::TuningDesk(process::Participant& participant, const settings::StackConfig& config,
+                       bool simulated_rig, Hooks hooks)
     : participant_(participant),
       configured_(std::make_shared<settings::StackConfig>(config)),
       simulated_rig_(simulated_rig),
@@ -69,7 +69,9 @@ void TuningDesk::Follow(std::vector<tuned_settings_t> decided) {
 void TuningDesk::OnRequest(const tuning_request_t& request) {
   if (request.addressee != participant_.session() || participant_.Refuses(request.session)) return;
   if (participant_.state() != process_status_t::RUNNING) return;
-  if (pending_ && pending_->request.session == request.session && pending_->request.request == request.request) return;
+  if (pending_ && pending_->request.session == request.session &&
+      pending_->request.request == request.request)
+    return;
   const auto answered = answers_.find(request.session);
   if (answered != answers_.end() && request.request <= answered->second.request) {
     if (request.request < answered->second.request) return;
@@ -87,9 +89,8 @@ void TuningDesk::Begin(const tuning_request_t& request) {
   if (const std::string why = WhyNot(request); !why.empty()) return Refuse(why);
   const tuning::Situation situation{.held = hooks_.held(), .simulated = simulated_rig_};
   if (request.kind == tuning_request_t::UNDO) {
-    aside_.Begin([configured = configured_, in_force = in_force_.config, next = before_.back().config, situation] {
-      return tuning::PrepareChange(*configured, *in_force, next, situation);
-    });
+    aside_.Begin([configured = configured_, in_force = in_force_.config, next = before_.back().config,
+                  situation] { return tuning::PrepareChange(*configured, *in_force, next, situation); });
     return;
   }
   try {
@@ -122,8 +123,9 @@ void TuningDesk::Propose(tuning::PreparedChange change) {
   change.message.acts_at = -1;
   change.message.source = pending_->request.source;
   // A reference that stays, or comes back, goes on; a new one begins when it takes effect.
-  change.message.reference_from = pending_->request.kind == tuning_request_t::UNDO ? before_.back().message.reference_from
-                                  : change.new_reference                           ? -1
+  change.message.reference_from = pending_->request.kind == tuning_request_t::UNDO
+                                      ? before_.back().message.reference_from
+                                  : change.new_reference ? -1
                                                          : in_force_.message.reference_from;
   pending_->version = Version{std::move(change.config), std::move(change.message)};
   pending_->text = std::move(change.text);
@@ -136,7 +138,9 @@ void TuningDesk::OnStatus(const tuning_status_t& status) {
   if (status.plant != participant_.session() || participant_.Refuses(status.session)) return;
   if (status.role != "pressure_ctrl" && status.role != "position_ctrl") return;
   const auto now = participant_.clock().Now();
-  std::erase_if(controllers_, [&](const auto& known) { return now - known.second.heard > kAlive; });  // those that have left
+  std::erase_if(controllers_, [&](const auto& known) {
+    return now - known.second.heard > kAlive;
+  });  // those that have left
   const std::pair key{status.role, status.session};
   if (controllers_.size() >= kMostControllers && !controllers_.contains(key)) return;
   controllers_[key] = {.ready_for = status.ready_for,
@@ -148,14 +152,18 @@ void TuningDesk::OnStatus(const tuning_status_t& status) {
 
 // A controller of the user's own may know nothing of this: what concerns it cannot be changed.
 std::string TuningDesk::WhoIsMissing(const std::vector<std::string>& changes) const {
-  for (const auto& [section, role] : {std::pair{"pressure.", "pressure_ctrl"}, std::pair{"position.", "position_ctrl"},
-                                      std::pair{"reference.", "position_ctrl"}}) {
+  for (const auto& [section, role] :
+       {std::pair{"pressure.", "pressure_ctrl"}, std::pair{"position.", "position_ctrl"},
+        std::pair{"reference.", "position_ctrl"}}) {
     const bool concerned = std::any_of(changes.begin(), changes.end(),
                                        [&](const std::string& change) { return change.find(section) == 0; });
-    const bool there = std::any_of(controllers_.begin(), controllers_.end(),
-                                   [&, role = std::string(role)](const auto& known) { return known.first.first == role; });
+    const bool there =
+        std::any_of(controllers_.begin(), controllers_.end(),
+                    [&, role = std::string(role)](const auto& known) { return known.first.first == role; });
     if (concerned && !there) {
-      return fmt::format("{} does not take part in tuning: it has said nothing of its values (a program of your own?)", role);
+      return fmt::format(
+          "{} does not take part in tuning: it has said nothing of its values (a program of your own?)",
+          role);
     }
   }
   return "";
@@ -178,7 +186,8 @@ std::string TuningDesk::NotReady(bool* impossible) const {
 // Both loops act on multiples of the position loop's interval, or at their next tick after it.
 int64_t TuningDesk::TickOfEffect() const {
   const int64_t interval = configured_->position_interval_ticks;
-  const auto lead = static_cast<int64_t>(std::ceil(kLead_s * configured_->plant.rate_hz * configured_->time.speed));
+  const auto lead =
+      static_cast<int64_t>(std::ceil(kLead_s * configured_->plant.rate_hz * configured_->time.speed));
   const int64_t soonest = participant_.tick() + std::max<int64_t>({lead, 2 * interval, 4});
   return (soonest + interval - 1) / interval * interval;
 }

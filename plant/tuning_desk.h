@@ -94,10 +94,11 @@ class TuningDesk {
   std::vector<Version> before_;  // what was in force before it, newest last, for UNDO
   int64_t newest_version_ = 0;   // that was ever proposed
   std::unique_ptr<Pending> pending_;
-  std::map<std::pair<std::string, int64_t>, Controller> controllers_;  // by role and session; those that were heard lately
-  std::map<int64_t, tuning_answer_t> answers_;     // the last to each session that asked
-  std::vector<int64_t> asked_;                     // these sessions, oldest first
-  std::vector<tuned_settings_t> followed_;         // reversed: the next one last
+  std::map<std::pair<std::string, int64_t>, Controller>
+      controllers_;                             // by role and session; those that were heard lately
+  std::map<int64_t, tuning_answer_t> answers_;  // the last to each session that asked
+  std::vector<int64_t> asked_;                  // these sessions, oldest first
+  std::vector<tuned_settings_t> followed_;      // reversed: the next one last
   bus::Clock::TimePoint next_report_;
 };
 

@@ -18,14 +18,15 @@ std::string WhatIsWrong(const arm_plan_t& plan, double largest_angle) {
   }
   for (size_t i = 0; i < plan.time.size(); ++i) {
     const std::string where = "point " + std::to_string(i) + ": ";
-    if (!std::isfinite(plan.time[i]) || !std::isfinite(plan.arm_angle[i]) || !std::isfinite(plan.arm_speed[i]) ||
-        !std::isfinite(plan.torque[i])) {
+    if (!std::isfinite(plan.time[i]) || !std::isfinite(plan.arm_angle[i]) ||
+        !std::isfinite(plan.arm_speed[i]) || !std::isfinite(plan.torque[i])) {
       return where + "all numbers must be finite";
     }
-    if (i > 0 && plan.time[i] <= plan.time[i - 1]) return where + "its time must be above that of the point before";
+    if (i > 0 && plan.time[i] <= plan.time[i - 1])
+      return where + "its time must be above that of the point before";
     if (std::fabs(plan.arm_angle[i]) > largest_angle) {
-      return where + "found arm angle " + ShortNumber(plan.arm_angle[i]) + " rad, allowed |alpha| <= " +
-             ShortNumber(largest_angle) + " (limits.arm_angle_rad)";
+      return where + "found arm angle " + ShortNumber(plan.arm_angle[i]) +
+             " rad, allowed |alpha| <= " + ShortNumber(largest_angle) + " (limits.arm_angle_rad)";
     }
   }
   return "";
@@ -84,7 +85,8 @@ PlannedPoint PlanFollower::At(int64_t tick) {
   if (silent(tick)) point = {.angle = reference_, .torque = point.torque};
   point.angle = std::clamp(point.angle, -limits_.largest_angle, limits_.largest_angle);
   const double step = limits_.largest_speed * Seconds(last_tick_ ? tick - *last_tick_ : 0);
-  if (last_tick_ && std::isfinite(step)) point.angle = std::clamp(point.angle, reference_ - step, reference_ + step);
+  if (last_tick_ && std::isfinite(step))
+    point.angle = std::clamp(point.angle, reference_ - step, reference_ + step);
   point.speed = std::clamp(point.speed, -limits_.largest_speed, limits_.largest_speed);
   reference_ = point.angle;
   last_tick_ = tick;

@@ -11,7 +11,8 @@ namespace hydro::position_ctrl {
 
 struct PlanLimits {
   double timeout_s = 0.2;  // of plant time: a plan older than this is followed no further
-  double delay_s = 0.01;   // of plant time: a plan made from tick k acts from k + this on, if it comes in time, and so does its replay
+  double delay_s =
+      0.01;  // of plant time: a plan made from tick k acts from k + this on, if it comes in time, and so does its replay
   double largest_speed = 0;  // rad/s, of the reference; infinity: none
   double largest_angle = 0;  // rad, |alpha|
 };

@@ -123,8 +123,7 @@ void PositionApp::Sample(const state_t& state, bus::Clock::TimePoint arrival) {
 // Why this loop cannot act by the settings; empty: it can.
 std::string PositionApp::WhyNot(const tuned_settings_t& settings) const {
   try {
-    if (!settings.reference.empty() &&
-        settings::ParseReference(settings.reference).signal != signal_) {
+    if (!settings.reference.empty() && settings::ParseReference(settings.reference).signal != signal_) {
       return "reference.signal takes a restart";
     }
   } catch (const InputError& error) {
@@ -169,9 +168,11 @@ void PositionApp::NotePlanner(int64_t tick) {
     if (participant_.any_fault()) participant_.Clear("silent_planner");
   } else if (!participant_.active("silent_planner")) {
     const double limit = planner_->limits().timeout_s;
-    participant_.Raise("silent_planner",
-                       fmt::format("tick {}: no plan for more than {} s (reference.timeout_s): the reference holds", tick, limit),
-                       limit, limit, false);
+    participant_.Raise(
+        "silent_planner",
+        fmt::format("tick {}: no plan for more than {} s (reference.timeout_s): the reference holds", tick,
+                    limit),
+        limit, limit, false);
   }
 }
 
@@ -184,7 +185,8 @@ void PositionApp::TakeSettingsAt(int64_t tick) {
   }
   tuning::Read(*settings, torque_per_pressure_, &values_);  // good: it was prepared
   law_.Retune(values_.position);
-  curve_ = design::BrakingCurveFor(values_.position, values_.braking, values_.limits.motor_speed_rad_s, parameters_);
+  curve_ = design::BrakingCurveFor(values_.position, values_.braking, values_.limits.motor_speed_rad_s,
+                                   parameters_);
   const std::string& text = settings->reference.empty() ? reference_text_ : settings->reference;
   const double from = static_cast<double>(settings->reference_from) / rate_hz_;
   if (text == reference_in_force_ && from == reference_from_) return;
@@ -195,14 +197,17 @@ void PositionApp::TakeSettingsAt(int64_t tick) {
 }
 
 // psi: eq. (17), without a jump when its gains have changed.
-double PositionApp::AskedByLaw(const state_t& state, double reference, const PlannedPoint& ahead, int64_t intervals) {
+double PositionApp::AskedByLaw(const state_t& state, double reference, const PlannedPoint& ahead,
+                               int64_t intervals) {
   const auto seen = [&](const std::optional<BrakingCurve>& curve) {
     return curve ? curve->Reference(state.arm_angle, reference) : reference;
   };
   const auto before = std::exchange(law_before_, std::nullopt);
   if (before && sequence_ > 0) {
-    const double was = law_.Preview(*before, state.arm_angle, seen(curve_before_), intervals) + transfer_.Offset(state.tick);
-    transfer_.Begin(was, law_.Preview(values_.position, state.arm_angle, seen(curve_), intervals), state.tick);
+    const double was =
+        law_.Preview(*before, state.arm_angle, seen(curve_before_), intervals) + transfer_.Offset(state.tick);
+    transfer_.Begin(was, law_.Preview(values_.position, state.arm_angle, seen(curve_), intervals),
+                    state.tick);
   }
   double asked = law_.UpdateUnlimited(state.arm_angle, seen(curve_), intervals);
   // What a planner knows ahead: eq. (17) differentiates the measured angle alone, or the error, which has the reference's speed already.
@@ -234,7 +239,8 @@ void PositionApp::Answer(const state_t& state) {
   switch (signal_) {
     case settings::ReferenceSignal::kArmAngle:
       if (std::isfinite(state.arm_angle)) {
-        pressure_ref = AskedByLaw(state, reference, reference == wanted ? planned : PlannedPoint{}, intervals);
+        pressure_ref =
+            AskedByLaw(state, reference, reference == wanted ? planned : PlannedPoint{}, intervals);
         if (participant_.any_fault()) participant_.Clear("nonfinite_arm_angle");
       } else {
         pressure_command_.open_loop = true;  // at zero volts: without the arm's angle no pressure is safe
@@ -293,7 +299,9 @@ void PositionApp::Poll() {
   if (plans_refused_ > 0) {
     refused_plans_.Update(
         plans_refused_, participant_.clock().Now(),
-        [&](int64_t count) { return fmt::format("{} plans in all are not followed; the newest: {}", count, plan_refused_); },
+        [&](int64_t count) {
+          return fmt::format("{} plans in all are not followed; the newest: {}", count, plan_refused_);
+        },
         participant_);
   }
   if (!lockstep_ || participant_.state() != process_status_t::RUNNING || participant_.stop()) return;

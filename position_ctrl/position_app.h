@@ -69,11 +69,12 @@ class PositionApp : public process::App {
   const settings::PositionSection section_;
   const model::Parameters parameters_;
   const double rate_hz_;
-  tuning::TunedValues values_;        // in force
+  tuning::TunedValues values_;  // in force
   PositionLaw law_;
   std::optional<BrakingCurve> curve_;
   tuning::TuningFollower tuning_;
-  std::optional<bus::Clock::TimePoint> joined_;  // a run that went on without this loop, whose values are not known yet
+  std::optional<bus::Clock::TimePoint>
+      joined_;  // a run that went on without this loop, whose values are not known yet
   tuning::BumplessTransfer transfer_;
   // A change begins with the next sample.
   std::optional<PositionLawSettings> law_before_;

@@ -12,7 +12,8 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr int64_t kJoiningSamples = 10;  // of the position loop: a first state after so many is one of a run that goes on
+constexpr int64_t kJoiningSamples =
+    10;  // of the position loop: a first state after so many is one of a run that goes on
 constexpr size_t kMostBeforeTheRun = 64;  // pressure commands; a few take a faster route than the first state
 
 motor_command_t ZeroVolts(int64_t tick, int8_t status) {
@@ -172,7 +173,8 @@ std::string PressureApp::WhyNot(const tuned_settings_t& settings) const {
 // A loop that joins a run acts by the values in force there, not by those of its configuration: until it has heard them, by none.
 bool PressureApp::AwaitsSettings(const state_t& state) {
   const bool first = participant_.tick() < 0 && !joined_;
-  if (first && !lockstep_ && !participant_.clock().simulated() && state.tick > kJoiningSamples * position_interval_) {
+  if (first && !lockstep_ && !participant_.clock().simulated() &&
+      state.tick > kJoiningSamples * position_interval_) {
     joined_ = participant_.clock().Now();
   }
   return joined_ && tuning_.Awaits(*joined_);
@@ -222,7 +224,8 @@ void PressureApp::Answer(const state_t& state) {
 
 void PressureApp::ApplyOpenLoop(motor_command_t* command) const {
   command->status = motor_command_t::OPEN_LOOP;
-  command->voltage = std::clamp(pressure_command_->voltage, -values_.pressure.voltage_limit, values_.pressure.voltage_limit);
+  command->voltage =
+      std::clamp(pressure_command_->voltage, -values_.pressure.voltage_limit, values_.pressure.voltage_limit);
   command->saturated = command->voltage != pressure_command_->voltage;
 }
 

@@ -69,10 +69,11 @@ class PressureApp : public process::App {
   const double half_dac_step_;       // psi
   const bus::Clock::Duration stale_time_;
   const bus::Clock::Duration stall_time_;
-  tuning::TunedValues values_;       // in force
-  double pressure_limit_;            // psi, largest |pressure reference|
+  tuning::TunedValues values_;  // in force
+  double pressure_limit_;       // psi, largest |pressure reference|
   tuning::TuningFollower tuning_;
-  std::optional<bus::Clock::TimePoint> joined_;  // a run that went on without this loop, whose values are not known yet
+  std::optional<bus::Clock::TimePoint>
+      joined_;  // a run that went on without this loop, whose values are not known yet
   tuning::BumplessTransfer transfer_;
   std::optional<PressureLawSettings> law_before_;  // a change begins with the next use of the law
 

@@ -47,25 +47,28 @@ bool PressureApp::InputsAreSafe(const state_t& state) {
                        state.p1, state.p2, state.motor_speed, state.arm_speed);
   });
   const double pressure = std::fmax(state.p1, state.p2);
-  safe &=
-      CheckLimit(!(pressure > values_.limits.pressure_psi), "pressure_limit", pressure, values_.limits.pressure_psi, [&] {
-        return fmt::format("tick {}: p{} is {:.6g} psi, allowed is {} psi (limits.pressure_psi)", state.tick,
+  safe &= CheckLimit(!(pressure > values_.limits.pressure_psi), "pressure_limit", pressure,
+                     values_.limits.pressure_psi, [&] {
+                       return fmt::format(
+                           "tick {}: p{} is {:.6g} psi, allowed is {} psi (limits.pressure_psi)", state.tick,
                            state.p1 > state.p2 ? 1 : 2, pressure, values_.limits.pressure_psi);
-      });
+                     });
   const double speed = std::fabs(state.motor_speed);
   safe &= CheckLimit(
-      !(speed > values_.limits.motor_speed_rad_s), "motor_speed_limit", speed, values_.limits.motor_speed_rad_s, [&] {
+      !(speed > values_.limits.motor_speed_rad_s), "motor_speed_limit", speed,
+      values_.limits.motor_speed_rad_s, [&] {
         return fmt::format(
             "tick {}: the motor turns at {:.6g} rad/s, allowed is {} rad/s (limits.motor_speed_rad_s)",
             state.tick, speed, values_.limits.motor_speed_rad_s);
       });
   const double angle = std::fabs(state.arm_angle);
-  safe &= CheckLimit(!(angle > values_.limits.arm_angle_rad), "arm_angle_limit", angle, values_.limits.arm_angle_rad, [&] {
-    return fmt::format(
-        "tick {}: the arm is at {:.6g} rad, allowed is |alpha| <= {:.6g} rad "
-        "(limits.arm_angle_rad)",
-        state.tick, state.arm_angle, values_.limits.arm_angle_rad);
-  });
+  safe &= CheckLimit(!(angle > values_.limits.arm_angle_rad), "arm_angle_limit", angle,
+                     values_.limits.arm_angle_rad, [&] {
+                       return fmt::format(
+                           "tick {}: the arm is at {:.6g} rad, allowed is |alpha| <= {:.6g} rad "
+                           "(limits.arm_angle_rad)",
+                           state.tick, state.arm_angle, values_.limits.arm_angle_rad);
+                     });
   safe &= PressureCommandIsSafe(state);
   safe &= Check(!state_monitor_.SecondSenderAlive(participant_.clock().Now()),
                 process::kSecondSender<state_t>, 2, 1, [&] {

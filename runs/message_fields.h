@@ -78,6 +78,8 @@ constexpr auto FieldsOf(const fault_t*) {
 
 // What the loops compute at a tick, and faults: these must be the same whenever a run is repeated.
 template <class Message>
-concept ComparedMessage = requires(const Message* message) { FieldsOf(message); };
+concept ComparedMessage = requires(const Message* message) {
+  FieldsOf(message);
+};
 
 }  // namespace hydro::runs

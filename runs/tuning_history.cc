@@ -9,7 +9,8 @@ namespace hydro::runs {
 std::vector<tuned_settings_t> TuningHistory(const RunMessages& messages) {
   std::map<std::pair<int64_t, int64_t>, tuned_settings_t> versions;  // by session and version
   for (const tuned_settings_t& settings : messages.Of<tuned_settings_t>()) {
-    const bool holds = settings.stage == tuned_settings_t::DECIDED || settings.stage == tuned_settings_t::IN_FORCE;
+    const bool holds =
+        settings.stage == tuned_settings_t::DECIDED || settings.stage == tuned_settings_t::IN_FORCE;
     if (holds && settings.version > 0 && settings.acts_at >= 0) {
       versions.emplace(std::pair{settings.session, settings.version}, settings);
     }
@@ -33,9 +34,10 @@ int64_t EffectTick(const RunMessages& messages, const tuned_settings_t& settings
 std::string DescribeTuning(const tuned_settings_t& settings) {
   std::string changes = settings.changes.empty() ? "as configured" : settings.changes;
   while (changes.ends_with('\n')) changes.pop_back();
-  for (size_t at = changes.find('\n'); at != std::string::npos; at = changes.find('\n', at)) changes.replace(at, 1, ", ");
-  return "version " + std::to_string(settings.version) + " from tick " + std::to_string(settings.acts_at) + " on: " +
-         changes + (settings.source.empty() ? "" : " (" + settings.source + ")");
+  for (size_t at = changes.find('\n'); at != std::string::npos; at = changes.find('\n', at))
+    changes.replace(at, 1, ", ");
+  return "version " + std::to_string(settings.version) + " from tick " + std::to_string(settings.acts_at) +
+         " on: " + changes + (settings.source.empty() ? "" : " (" + settings.source + ")");
 }
 
 }  // namespace hydro::runs

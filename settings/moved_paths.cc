@@ -12,9 +12,10 @@ std::vector<TomlEntry> MovedPaths(const StackConfig& config, const std::string& 
   const std::filesystem::path folder = std::filesystem::absolute(output).parent_path();
   const auto add = [&](const std::string& key, const std::string& given) {
     if (given.empty() || std::filesystem::path(given).is_absolute()) return;
-    const std::string path = std::filesystem::proximate(std::filesystem::weakly_canonical(PathBeside(config.file, given)),
-                                                        std::filesystem::weakly_canonical(folder))
-                                 .string();
+    const std::string path =
+        std::filesystem::proximate(std::filesystem::weakly_canonical(PathBeside(config.file, given)),
+                                   std::filesystem::weakly_canonical(folder))
+            .string();
     if (path != given) moved.emplace_back(key, TomlString(path));
   };
   add("model.file", config.model.file);

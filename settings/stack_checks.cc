@@ -36,9 +36,10 @@ void CheckAngle(const TomlNode& root, const std::string& key, double angle, cons
   const double limit = p.V_ms / p.c;
   const double most = std::min(allowed, limit);
   if (std::abs(angle) < limit && std::abs(angle) <= allowed) return;
-  throw KeyError(root, key, "arm angle " + ShortestNumber(angle) + " rad (" + ShortNumber(Degrees(angle)) + " deg)",
-                 allowed < limit ? "|alpha| <= " + ShortestNumber(most) + " rad (" + ShortNumber(Degrees(most)) +
-                                       " deg; limits.arm_angle_rad)"
+  throw KeyError(root, key,
+                 "arm angle " + ShortestNumber(angle) + " rad (" + ShortNumber(Degrees(angle)) + " deg)",
+                 allowed < limit ? "|alpha| <= " + ShortestNumber(most) + " rad (" +
+                                       ShortNumber(Degrees(most)) + " deg; limits.arm_angle_rad)"
                                  : "|alpha| < " + ShortNumber(most) + " rad (" + ShortNumber(Degrees(most)) +
                                        " deg), the end of the stroke (V_ms/c)");
 }

@@ -54,7 +54,9 @@ StackConfig LoadStackConfig(const std::string& file, const std::vector<std::stri
   TomlNode root = ParseToml(ReadTextFile(file), file);
   root.place = file;
   if (root.Find("parameters") != nullptr && root.Find("model") == nullptr) {
-    throw InputError(file + ": found a model ([parameters]), allowed the configuration of a stack, which names its model: [model] file = " +
+    throw InputError(file +
+                     ": found a model ([parameters]), allowed the configuration of a stack, which names its "
+                     "model: [model] file = " +
                      Quoted(file));
   }
   ApplyOverrides(overrides, &root);

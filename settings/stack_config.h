@@ -31,11 +31,11 @@ struct TrajectorySpec {
   double first_frequency_hz = 0.1;      // kChirp
   double last_frequency_hz = 10;        // kChirp
   double duration_s = 10;               // kChirp
-  double timeout_s = 0.2;               // kPlanner: a plan older than this (plant time) is followed no further
-  double delay_s = 0.01;                // kPlanner: from the tick that a plan was made from to its effect
+  double timeout_s = 0.2;  // kPlanner: a plan older than this (plant time) is followed no further
+  double delay_s = 0.01;   // kPlanner: from the tick that a plan was made from to its effect
   double max_speed_rad_s = std::numeric_limits<double>::infinity();  // kPlanner: of the reference
-  std::string file;                     // kCsv, relative to the configuration's folder
-  std::string column;                   // kCsv: the value's column; time is the column time_s
+  std::string file;    // kCsv, relative to the configuration's folder
+  std::string column;  // kCsv: the value's column; time is the column time_s
   trajectory::Interpolation interpolation = trajectory::Interpolation::kLinear;  // kCsv
   std::vector<trajectory::Step> points;                                          // kCsv: what the file held
 };
@@ -119,10 +119,10 @@ struct LimitsSection {
   // |alpha|. Default when read from a file: kArmAngleShare V_ms/c for a free shaft (stack_checks.h).
   double arm_angle_rad = std::numeric_limits<double>::infinity();
   double arm_torque_in_lbf = std::numeric_limits<double>::infinity();  // |k_2 dp_ref| is limited to this
-  double stale_input_s = 0.1;     // an older input gives zero volts and a fault
-  double pressure_ramp_s = 0.2;   // plant time in which a stale pressure reference goes to zero; 0: at once
-  double stale_logger_s = 1;      // a logger silent for longer is reported as gone
-  double return_s = 0.5;          // plant time in which the reference comes back after zero volts; 0: at once
+  double stale_input_s = 0.1;    // an older input gives zero volts and a fault
+  double pressure_ramp_s = 0.2;  // plant time in which a stale pressure reference goes to zero; 0: at once
+  double stale_logger_s = 1;     // a logger silent for longer is reported as gone
+  double return_s = 0.5;         // plant time in which the reference comes back after zero volts; 0: at once
   double transfer_s = 0.1;  // plant time in which a change of gains while the stack runs passes; 0: at once
   double stale_supervisor_s = 1;  // a launcher silent for longer gives zero volts and a fault
   // rearm = "restart" | "explicit". Default when read from a file: explicit with a driver.

@@ -28,7 +28,9 @@ void ReadModel(SectionReader section, const std::string& config_file, ModelSecti
   if (!section.Has("motion")) return;
   model->motion = ReadTrajectory(motion, config_file);
   if (model->motion->kind == TrajectorySpec::Kind::kPlanner) {
-    throw motion.Error("kind", "\"planner\"", "a motion that is known before: \"steps\", \"sine\", \"square\", \"chirp\" or \"csv\"");
+    throw motion.Error(
+        "kind", "\"planner\"",
+        "a motion that is known before: \"steps\", \"sine\", \"square\", \"chirp\" or \"csv\"");
   }
   motion.Finish();
   CheckedTrajectory(*model->motion, motion);
@@ -223,7 +225,8 @@ void ReadReference(SectionReader section, const std::string& config_file, Refere
                                    {"voltage", ReferenceSignal::kVoltage}},
                                   &reference->signal);
   reference->trajectory = ReadTrajectory(section, config_file);
-  if (reference->trajectory.kind == TrajectorySpec::Kind::kPlanner && reference->signal != ReferenceSignal::kArmAngle) {
+  if (reference->trajectory.kind == TrajectorySpec::Kind::kPlanner &&
+      reference->signal != ReferenceSignal::kArmAngle) {
     throw section.Error("kind", "\"planner\" with another signal", "it with signal = \"arm_angle\"");
   }
   section.Finish();
@@ -234,7 +237,8 @@ void CheckKeysHaveSections(const TomlNode& root) {
   for (const auto& [key, node] : root.members) {
     if (node.is(TomlNode::Kind::kTable) || node.is(TomlNode::Kind::kArray)) continue;
     std::vector<std::string> meant;
-    for (const char* section : {"model", "bus", "time", "plant", "pressure", "position", "limits", "noise", "logger", "scope"}) {
+    for (const char* section :
+         {"model", "bus", "time", "plant", "pressure", "position", "limits", "noise", "logger", "scope"}) {
       // The readers know their keys: one that is unknown is the first thing they say.
       TomlNode alone, table;
       table.members.push_back({key, node});
@@ -244,11 +248,13 @@ void CheckKeysHaveSections(const TomlNode& root) {
         ReadSections(alone, "", &ignored);
         meant.push_back(std::string(section) + "." + key);
       } catch (const InputError& error) {
-        if (std::string(error.what()).find("unknown key") == std::string::npos) meant.push_back(std::string(section) + "." + key);
+        if (std::string(error.what()).find("unknown key") == std::string::npos)
+          meant.push_back(std::string(section) + "." + key);
       }
     }
     if (meant.empty()) continue;  // the reader of the document says what is wrong
-    throw InputError(node.place + ": " + Quoted(key) + ": found a key outside of any section, allowed section.key, did you mean " +
+    throw InputError(node.place + ": " + Quoted(key) +
+                     ": found a key outside of any section, allowed section.key, did you mean " +
                      QuotedList(meant) + "?");
   }
 }

@@ -109,7 +109,8 @@ TrajectorySpec ReadTrajectory(SectionReader& section, const std::string& config_
     section.Number("initial", &spec.initial);
     section.Number("timeout_s", &spec.timeout_s, {.min = 0, .max = 1e6, .min_allowed = false});
     section.Number("delay_s", &spec.delay_s, {.min = 0, .max = 10});
-    section.Number("max_speed_rad_s", &spec.max_speed_rad_s, {.min = 0, .min_allowed = false, .infinity_allowed = true});
+    section.Number("max_speed_rad_s", &spec.max_speed_rad_s,
+                   {.min = 0, .min_allowed = false, .infinity_allowed = true});
     return spec;
   }
   if (spec.kind == Kind::kCsv) {

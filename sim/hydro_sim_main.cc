@@ -14,7 +14,8 @@
 
 namespace {
 
-int Run(const hydro::settings::CommonOptions& options, const std::string& file, const std::string& tunings_of) {
+int Run(const hydro::settings::CommonOptions& options, const std::string& file,
+        const std::string& tunings_of) {
   const hydro::settings::StackConfig config =
       hydro::settings::LoadStackConfig(options.config, options.overrides);
   hydro::CheckKeeps(file);
@@ -53,6 +54,7 @@ int main(int argc, char** argv) {
   command_line.AddOption("--tuning", &tunings_of,
                          "LOG change values as was done in that run (hydro-set), at the same ticks");
   if (const auto exit_code = command_line.Parse(argc, argv)) return *exit_code;
-  return hydro::settings::RunProgram(
-      "hydro-sim", [&] { return Run(options, hydro::settings::FileToRecord(file, options.log), tunings_of); });
+  return hydro::settings::RunProgram("hydro-sim", [&] {
+    return Run(options, hydro::settings::FileToRecord(file, options.log), tunings_of);
+  });
 }

@@ -47,8 +47,10 @@ std::string LoosenedLimit(const settings::LimitsSection& before, const settings:
   for (const Limit& limit : kLimits) {
     const double was = before.*limit.value, is = after.*limit.value;
     if (!(is > was)) continue;
-    return std::string(limit.key) + ": found " + ShortestNumber(is) + ", allowed up to " + ShortestNumber(was) +
-           ", which is in force: a limit is loosened only while a fault holds zero volts (limits.rearm = \"explicit\"), before "
+    return std::string(limit.key) + ": found " + ShortestNumber(is) + ", allowed up to " +
+           ShortestNumber(was) +
+           ", which is in force: a limit is loosened only while a fault holds zero volts (limits.rearm = "
+           "\"explicit\"), before "
            "the re-arm, or by a restart";
   }
   return "";
@@ -64,7 +66,8 @@ double SpectralRadius(const design::LoopCheck& check) {
 }
 
 // Fills in the loops' margins as `text`, or why they forbid the change; returns whether they permit it.
-bool LoopsPermit(const settings::StackConfig& in_force, const settings::StackConfig& next, std::string* text) {
+bool LoopsPermit(const settings::StackConfig& in_force, const settings::StackConfig& next,
+                 std::string* text) {
   const auto gains = [](const settings::StackConfig& config) {
     tuned_settings_t message;
     Write(ValuesOf(config), &message);

@@ -28,7 +28,8 @@ struct Situation {
 // A change that is ready to be proposed to the controllers, or why it is refused.
 struct PreparedChange {
   std::shared_ptr<const settings::StackConfig> config;  // with the change; null: refused
-  std::string text;          // for a person: what changes, and the loops' margins; or why not, and what would be allowed
+  std::string
+      text;  // for a person: what changes, and the loops' margins; or why not, and what would be allowed
   tuned_settings_t message;  // its values, and how they differ from `configured`; not numbered or dated
   bool new_reference = false;
 };

@@ -10,8 +10,8 @@ namespace hydro::tuning {
 namespace {
 
 std::string Beyond(const std::string& what, double found, double allowed, const std::string& why) {
-  return "reference: found " + what + " of " + ShortNumber(found) + ", allowed " + ShortNumber(allowed) + " (" + why +
-         ")";
+  return "reference: found " + what + " of " + ShortNumber(found) + ", allowed " + ShortNumber(allowed) +
+         " (" + why + ")";
 }
 
 // Per s, of the kinds that swing smoothly; 0 for others, whose jumps nothing follows at once anyway.
@@ -35,11 +35,13 @@ std::string WhatTheRigCannotFollow(const settings::StackConfig& config) {
     case settings::ReferenceSignal::kArmAngle: {  // the angle itself is checked with the configuration
       const double speed = config.limits.motor_speed_rad_s * p.D / p.c;
       const double fastest = FastestSwing(config.reference.trajectory);
-      if (fastest > speed) return Beyond("a speed", fastest, speed, "limits.motor_speed_rad_s at the arm, rad/s");
+      if (fastest > speed)
+        return Beyond("a speed", fastest, speed, "limits.motor_speed_rad_s at the arm, rad/s");
       return "";
     }
     case settings::ReferenceSignal::kPressure:
-      if (largest > pressure) return Beyond("a pressure", largest, pressure, "T_pmax/D and limits.pressure_psi, psi");
+      if (largest > pressure)
+        return Beyond("a pressure", largest, pressure, "T_pmax/D and limits.pressure_psi, psi");
       return "";
     case settings::ReferenceSignal::kTorque: {
       const double torque = std::min(pressure * p.k_2, config.limits.arm_torque_in_lbf);

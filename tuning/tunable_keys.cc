@@ -17,15 +17,18 @@ constexpr std::array kKeys{
     TunableKey{"pressure.natural_frequency_rad_s", "rad/s", "of the pressure loop; k_p and k_v follow",
                kPressure},
     TunableKey{"pressure.damping_ratio", "1", "of the pressure loop; k_p and k_v follow", kPressure},
-    TunableKey{"pressure.compressed_sides", "1", "1 or 2: the case for which k_p and k_v are derived", kPressure},
-    TunableKey{"pressure.reference_feedforward", "V/psi", "true, false or a gain: the voltage that holds dp_ref",
+    TunableKey{"pressure.compressed_sides", "1", "1 or 2: the case for which k_p and k_v are derived",
                kPressure},
-    TunableKey{"pressure.arm_speed_feedforward", "", "true or false: takes the arm's motion out of the k_v term",
-               kPressure},
+    TunableKey{"pressure.reference_feedforward", "V/psi",
+               "true, false or a gain: the voltage that holds dp_ref", kPressure},
+    TunableKey{"pressure.arm_speed_feedforward", "",
+               "true or false: takes the arm's motion out of the k_v term", kPressure},
     TunableKey{"position.c1", "psi/rad", "gain on the arm's angle error, eq. (17)", kPosition},
     TunableKey{"position.c2", "psi s/rad", "gain on its derivative, eq. (17)", kPosition},
-    TunableKey{"position.derivative", "", "\"error\" or \"measurement\": what eq. (17) differentiates", kPosition},
-    TunableKey{"position.braking_rad_s2", "rad/s^2", "deceleration of the braking curve before eq. (17)", kPosition},
+    TunableKey{"position.derivative", "", "\"error\" or \"measurement\": what eq. (17) differentiates",
+               kPosition},
+    TunableKey{"position.braking_rad_s2", "rad/s^2", "deceleration of the braking curve before eq. (17)",
+               kPosition},
     TunableKey{"reference.kind", "", "steps, sine, square, chirp, csv (points) or planner", kPosition},
     TunableKey{"reference.initial", "rad, psi, in-lbf or V", "before the first step or plan", kPosition},
     TunableKey{"reference.steps", "s, and as initial", "[[time, value], ...]", kPosition},
@@ -48,9 +51,11 @@ constexpr std::array kKeys{
     TunableKey{"noise.p1_psi", "psi", "standard deviation of the simulated sensor's noise", kPlant},
     TunableKey{"noise.p2_psi", "psi", "standard deviation of the simulated sensor's noise", kPlant},
     TunableKey{"noise.motor_angle_rad", "rad", "standard deviation of the simulated sensor's noise", kPlant},
-    TunableKey{"noise.motor_speed_rad_s", "rad/s", "standard deviation of the simulated sensor's noise", kPlant},
+    TunableKey{"noise.motor_speed_rad_s", "rad/s", "standard deviation of the simulated sensor's noise",
+               kPlant},
     TunableKey{"noise.arm_angle_rad", "rad", "standard deviation of the simulated sensor's noise", kPlant},
-    TunableKey{"noise.arm_speed_rad_s", "rad/s", "standard deviation of the simulated sensor's noise", kPlant},
+    TunableKey{"noise.arm_speed_rad_s", "rad/s", "standard deviation of the simulated sensor's noise",
+               kPlant},
 };
 
 }  // namespace
@@ -58,7 +63,8 @@ constexpr std::array kKeys{
 std::span<const TunableKey> TunableKeys() { return kKeys; }
 
 const TunableKey* FindTunable(std::string_view key) {
-  const auto found = std::find_if(kKeys.begin(), kKeys.end(), [&](const auto& row) { return row.key == key; });
+  const auto found =
+      std::find_if(kKeys.begin(), kKeys.end(), [&](const auto& row) { return row.key == key; });
   return found == kKeys.end() ? nullptr : &*found;
 }
 
@@ -68,7 +74,9 @@ std::string WhyNotTunable(const std::string& key) {
   for (const TunableKey& row : kKeys) names.emplace_back(row.key);
   const std::string meant = DidYouMean(key, names);
   if (!meant.empty()) return key + ": no such value" + meant;
-  return key + ": cannot be changed while the stack runs (hydro-set --list shows what can); change the configuration and restart";
+  return key +
+         ": cannot be changed while the stack runs (hydro-set --list shows what can); change the "
+         "configuration and restart";
 }
 
 }  // namespace hydro::tuning

@@ -68,11 +68,13 @@ const Value* Find(std::string_view name) {
 // A limit may be infinite; a feed-forward may have either sign; nothing else is below 0.
 std::string WhatIsWrong(const std::string& name, double value) {
   const bool limit = name.starts_with("limits.") || name == "position.braking_rad_s2";
-  const bool good = limit ? value > 0
-                          : std::isfinite(value) && (value >= 0 || name == "pressure.reference_feedforward_V_psi" ||
-                                                     name == "pressure.arm_speed_ratio");
-  return good ? "" : name + ": found " + ShortestNumber(value) + ", allowed " +
-                         (limit ? "a number above 0" : "a finite number of at least 0");
+  const bool good =
+      limit ? value > 0
+            : std::isfinite(value) && (value >= 0 || name == "pressure.reference_feedforward_V_psi" ||
+                                       name == "pressure.arm_speed_ratio");
+  return good ? ""
+              : name + ": found " + ShortestNumber(value) + ", allowed " +
+                    (limit ? "a number above 0" : "a finite number of at least 0");
 }
 
 }  // namespace
@@ -100,11 +102,13 @@ void Write(const TunedValues& values, tuned_settings_t* message) {
 std::string Read(const tuned_settings_t& message, double k_2, TunedValues* values) {
   TunedValues changed = *values;
   const auto count = static_cast<size_t>(message.count);
-  if (message.names.size() != count || message.values.size() != count) return "names and values differ in number";
+  if (message.names.size() != count || message.values.size() != count)
+    return "names and values differ in number";
   for (size_t i = 0; i < count; ++i) {
     const Value* value = Find(message.names[i]);
     if (value == nullptr) return message.names[i] + ": not known to this version";
-    if (const std::string wrong = WhatIsWrong(message.names[i], message.values[i]); !wrong.empty()) return wrong;
+    if (const std::string wrong = WhatIsWrong(message.names[i], message.values[i]); !wrong.empty())
+      return wrong;
     value->set(changed, message.values[i]);
   }
   changed.position.pressure_limit = changed.limits.arm_torque_in_lbf / k_2;

@@ -13,9 +13,9 @@ namespace hydro::tuning {
 struct TunedValues {
   pressure_ctrl::PressureLawSettings pressure;  // eq. (16)
   position_ctrl::PositionLawSettings position;  // eq. (17); its pressure limit follows from the torque's
-  double braking;  // rad/s^2, of the braking curve before eq. (17); infinity: none
-  settings::LimitsSection limits;               // only those of tunable_keys.h are sent
-  settings::NoiseSection noise;                 // standard deviations only
+  double braking;                  // rad/s^2, of the braking curve before eq. (17); infinity: none
+  settings::LimitsSection limits;  // only those of tunable_keys.h are sent
+  settings::NoiseSection noise;    // standard deviations only
 };
 
 // Throws InputError when gains cannot be derived.

@@ -231,7 +231,8 @@ std::vector<Comparison> Comparisons(const MidStrokeStudy& study) {
       {"damping ratio, side 1 held at p_3", "", "", study.one_sided_rule.damping_ratio,
        cases.one_sided.fit.model.damping_ratio, "expected: .5 √2"},
       {"bandwidth, side 1 held at p_3", "Hz", "",
-       design::SecondOrderModel{1, study.one_sided_rule.natural_frequency, study.one_sided_rule.damping_ratio, 0}
+       design::SecondOrderModel{1, study.one_sided_rule.natural_frequency, study.one_sided_rule.damping_ratio,
+                                0}
            .BandwidthHz(),
        cases.one_sided.bandwidth_hz, ""},
       {"natural frequency, side 1 held at p_3, gains designed for it", "rad/s", "", kLoopNaturalFrequency,

@@ -5,9 +5,9 @@
 #include <nlohmann/json.hpp>
 
 #include "base/units.h"
+#include "design/arm_loop.h"
 #include "experiments/figures/catalogue.h"
 #include "experiments/figures/fig8_block_diagram.h"
-#include "design/arm_loop.h"
 #include "experiments/runs/shipped_models.h"
 #include "experiments/studies/design_numbers.h"
 #include "experiments/studies/json_text.h"
@@ -49,7 +49,8 @@ struct DesignStudy {
   Bode bode;
 };
 
-Bode SweepFrequencies(const DesignStudy& study, const design::LinearArmLoop& arm, const design::LinearArmLoop& assisted) {
+Bode SweepFrequencies(const DesignStudy& study, const design::LinearArmLoop& arm,
+                      const design::LinearArmLoop& assisted) {
   const model::Parameters& p = study.p;
   const design::DesignModel& design = study.design;
   Bode bode;
@@ -57,7 +58,8 @@ Bode SweepFrequencies(const DesignStudy& study, const design::LinearArmLoop& arm
   for (int i = 0; i <= 400; ++i) {
     const double w = std::pow(10.0, 3.0 * i / 400);  // 1 to 1000 rad/s
     const design::Complex open = design::OpenLoop(design, kPaperGain, w);
-    const design::Complex closed = design::ClosedLoop(design, kPaperGain, design::DerivativeForm::kMeasurement, w);
+    const design::Complex closed =
+        design::ClosedLoop(design, kPaperGain, design::DerivativeForm::kMeasurement, w);
     bode.frequency.push_back(w);
     bode.open_db.push_back(Decibel(open));
     bode.open_deg.push_back(open_phase = Phase(open, open_phase));
@@ -158,8 +160,9 @@ std::vector<Comparison> Comparisons(const DesignStudy& study) {
       {"gain margin at g = 350", "", "2.2 (770/350)", study.limit.gain / kPaperGain, study.margins.gain, ""},
       {"phase margin at g = 350", "degrees", "", page::kAutomatic, study.margins.phase_deg,
        fmt::format("at {:.1f} rad/s", study.margins.gain_crossover)},
-      {"slowest pole at g = 350, arm free", "1/s", "", -SlowestPole(design::Poles(study.design, kPaperGain)).real(),
-       -SlowestPole(study.exact).real(), "expected: of Figure 8's model; here: of the exact one"},
+      {"slowest pole at g = 350, arm free", "1/s", "",
+       -SlowestPole(design::Poles(study.design, kPaperGain)).real(), -SlowestPole(study.exact).real(),
+       "expected: of Figure 8's model; here: of the exact one"},
       {"reflected inertia of the pump", "lbf-in-s^2", "", page::kAutomatic, study.reflected,
        fmt::format("J_a = {:g}; Figure 8 has J_a alone", study.p.J_a)},
   };

@@ -7,8 +7,8 @@
 #include <nlohmann/json.hpp>
 
 #include "base/units.h"
-#include "experiments/figures/catalogue.h"
 #include "design/sampled_position_loop.h"
+#include "experiments/figures/catalogue.h"
 #include "experiments/runs/shipped_models.h"
 #include "experiments/studies/design_numbers.h"
 #include "experiments/studies/json_text.h"
@@ -37,7 +37,8 @@ constexpr std::array<Form, 2> kForms = {
     Form{design::DerivativeForm::kMeasurement, "on_measurement", "Derivative of the measurement"}};
 
 // Branches of the locus: the poles over the gain, each followed from one gain to the next.
-std::vector<std::vector<design::Complex>> FollowBranches(const std::vector<std::vector<design::Complex>>& poles) {
+std::vector<std::vector<design::Complex>> FollowBranches(
+    const std::vector<std::vector<design::Complex>>& poles) {
   std::vector<std::vector<design::Complex>> branches(poles.front().size());
   for (size_t b = 0; b < branches.size(); ++b) branches[b].push_back(poles.front()[b]);
   for (size_t i = 1; i < poles.size(); ++i) {
@@ -73,7 +74,8 @@ runs::StepResponse Measure(const design::Response& response) {
 // Whether a simulated step dies away: compares its deviation late in the run with that earlier.
 bool SimulatedStepDecays(const design::DesignModel& model, double interval, design::DerivativeForm form) {
   constexpr int kSamples = 30000;
-  const design::Response response = design::SampledStep(model, kPaperGain, interval, form, kStep, kSamples * interval, 1);
+  const design::Response response =
+      design::SampledStep(model, kPaperGain, interval, form, kStep, kSamples * interval, 1);
   const auto deviation = [&](size_t from, size_t to) {
     double most = 0;
     for (size_t i = from; i < to; ++i) most = std::max(most, std::fabs(response.angle[i] - kStep));
@@ -87,7 +89,7 @@ struct SampledLoop {
   double interval = 0;         // s
   double spectral_radius = 0;  // below 1: stable
   double critical_gain = 0;
-  std::vector<design::Complex> poles;                          // in the z plane
+  std::vector<design::Complex> poles;                  // in the z plane
   std::array<runs::StepResponse, kForms.size()> step;  // one per form
 
   bool stable() const { return spectral_radius < 1; }
@@ -131,7 +133,8 @@ SampledLoop SampleLoop(const design::DesignModel& design, double interval) {
                    .step = {}};
   const int points = static_cast<int>(std::lround(interval / 1e-4));
   for (size_t f = 0; f < kForms.size(); ++f) {
-    loop.step[f] = Measure(design::SampledStep(design, kPaperGain, interval, kForms[f].form, kStep, 2, points));
+    loop.step[f] =
+        Measure(design::SampledStep(design, kPaperGain, interval, kForms[f].form, kStep, 2, points));
   }
   return loop;
 }
@@ -200,7 +203,8 @@ std::vector<Comparison> Comparisons(const RootLocusStudy& study) {
       {"frequency there", "rad/s", "", study.limit.frequency,
        std::fabs(design::Poles(study.design, study.limit.gain).back().imag()), ""},
       {"critical gain with k_2 from 484.7:1", "psi s/rad", "770", study.printed_limit.gain,
-       design::CriticalGainOfPoles(study.printed_ratio), fmt::format("k_2 = {:.3f}", study.printed_ratio.k_2)},
+       design::CriticalGainOfPoles(study.printed_ratio),
+       fmt::format("k_2 = {:.3f}", study.printed_ratio.k_2)},
       {"largest stable T at g = 350", "ms", "", kNaN, 1e3 * study.largest,
        "in either form of the derivative"},
   };
@@ -334,12 +338,14 @@ page::Panel StepPanel(const design::DesignModel& design, size_t f) {
   panel.x = {.label = "time, s", .logarithmic = false, .min = 0, .max = 0.4};
   panel.y = {
       .label = "α, rad", .logarithmic = false, .min = f == 0 ? -0.05 : 0.0, .max = f == 0 ? 0.25 : 0.2};
-  const design::Response continuous = design::ContinuousStep(design, kPaperGain, kForms[f].form, kStep, kDuration, 5e-4);
+  const design::Response continuous =
+      design::ContinuousStep(design, kPaperGain, kForms[f].form, kStep, kDuration, 5e-4);
   panel.curves.push_back({"continuous", continuous.time, continuous.angle, page::Stroke::kLine, 0, {}, {}});
   for (size_t t = 0; t < kIntervals.size(); ++t) {
     const double interval = kIntervals[t];
-    const design::Response step = design::SampledStep(design, kPaperGain, interval, kForms[f].form, kStep, kDuration,
-                                      static_cast<int>(std::lround(interval / 5e-4)));
+    const design::Response step =
+        design::SampledStep(design, kPaperGain, interval, kForms[f].form, kStep, kDuration,
+                            static_cast<int>(std::lround(interval / 5e-4)));
     panel.curves.push_back({fmt::format("T = {:g} ms", interval * 1e3),
                             step.time,
                             step.angle,

@@ -189,7 +189,8 @@ json Numbers(const WavesStudy& study, const std::vector<tables::Column>& columns
 Picture BodePicture(const WavesStudy& study) {
   const pressure_ctrl::PressureGains& gains = study.gains;
   const design::LinearPressureLoop linear = study.swept_linear();
-  const design::LinearPressureLoop rigid(LinearisedClamped(ShippedModel("table1")), {1 / study.sweep.rate_hz, 0});
+  const design::LinearPressureLoop rigid(LinearisedClamped(ShippedModel("table1")),
+                                         {1 / study.sweep.rate_hz, 0});
   return {
       "",
       {.caption = fmt::format("Closed pressure loop with waves in the lines ({} Hz, damping {}), swept sine "
@@ -228,10 +229,10 @@ Picture GainPicture(const WavesStudy& study) {
   const pressure_ctrl::PressureGains& gains = study.gains;
   const std::vector<page::Curve> growth = {
       GrowthCurve("analog", design::LinearPressureLoop(study.linear, {}), gains),
-      GrowthCurve("5 kHz, one tick of delay", design::LinearPressureLoop(study.linear, study.shipped().timing),
-                  gains),
-      GrowthCurve("analog, transducers at the pump", design::LinearPressureLoop(SensedAtPump(study.linear), {}),
-                  gains)};
+      GrowthCurve("5 kHz, one tick of delay",
+                  design::LinearPressureLoop(study.linear, study.shipped().timing), gains),
+      GrowthCurve("analog, transducers at the pump",
+                  design::LinearPressureLoop(SensedAtPump(study.linear), {}), gains)};
   return {
       "-gain",
       {.caption = "Real part of the wave's pole as k_p grows, k_v as designed: above 0 the wave grows. "

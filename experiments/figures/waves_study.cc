@@ -87,7 +87,8 @@ void AnalyseAnalogLoop(WavesStudy* study) {
   study->mode_hz = std::abs(open_pole) / (2 * std::numbers::pi);
   study->mode_damping = -open_pole.real() / std::abs(open_pole);
   study->limits = FindLimits(analog, study->p, study->gains);
-  study->at_pump = FindLimits(design::LinearPressureLoop(SensedAtPump(study->linear), {}), study->p, study->gains);
+  study->at_pump =
+      FindLimits(design::LinearPressureLoop(SensedAtPump(study->linear), {}), study->p, study->gains);
 }
 
 void AnalyseSampledLoops(WavesStudy* study) {
@@ -133,7 +134,8 @@ void VaryLine(WavesStudy* study) {
                                 FindLimits(loop, study->p, study->gains)});
   }
   for (const double damping : {0.005, 0.01, 0.02, 0.05}) {
-    const design::LinearPressureLoop loop(LinearisedClamped(WithWaves(kWaveHz, kVolumeFraction, damping)), {});
+    const design::LinearPressureLoop loop(LinearisedClamped(WithWaves(kWaveHz, kVolumeFraction, damping)),
+                                          {});
     study->by_damping.push_back({kVolumeFraction, damping, kWaveHz,
                                  std::abs(WavePole(loop, {})) / (2 * std::numbers::pi),
                                  FindLimits(loop, study->p, study->gains)});
@@ -161,7 +163,8 @@ model::LinearModel SensedAtPump(model::LinearModel model) {
   return model;
 }
 
-std::complex<double> WavePole(const design::LinearPressureLoop& loop, const pressure_ctrl::PressureGains& gains) {
+std::complex<double> WavePole(const design::LinearPressureLoop& loop,
+                              const pressure_ctrl::PressureGains& gains) {
   std::complex<double> wave = 0;
   for (const std::complex<double> pole : loop.VisiblePoles(gains)) {
     if (pole.imag() > wave.imag()) wave = pole;

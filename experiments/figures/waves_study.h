@@ -23,7 +23,7 @@ inline constexpr double kMostFrequency = 3000;  // rad/s
 
 // What the wave allows in one loop.
 struct WaveLimits {
-  design::GainLimit gain;                // factor on the design's k_p, k_v unchanged
+  design::GainLimit gain;        // factor on the design's k_p, k_v unchanged
   double natural_frequency = 0;  // rad/s, when both gains follow from it and zeta = .5
 };
 
@@ -97,6 +97,7 @@ model::LinearModel LinearisedClamped(const model::ModelDescription& model);
 model::LinearModel SensedAtPump(model::LinearModel model);
 
 // The pole of the wave that the loop sees in the pressure difference: the fastest visible pole.
-std::complex<double> WavePole(const design::LinearPressureLoop& loop, const pressure_ctrl::PressureGains& gains);
+std::complex<double> WavePole(const design::LinearPressureLoop& loop,
+                              const pressure_ctrl::PressureGains& gains);
 
 }  // namespace hydro::experiments

@@ -60,11 +60,11 @@ SweptPressureLoop RunPressureSweep(const PressureSweep& sweep, const StackRunner
     }
     rows += static_cast<double>(input.size());
     const auto points = design::EstimateFrequencyResponse(input, output,
-                                                  {.sample_rate_hz = sweep.rate_hz,
-                                                   .segment_s = band.segment_s,
-                                                   .first_hz = band.first_hz,
-                                                   .last_hz = band.last_hz,
-                                                   .points_per_decade = band.points_per_decade});
+                                                          {.sample_rate_hz = sweep.rate_hz,
+                                                           .segment_s = band.segment_s,
+                                                           .first_hz = band.first_hz,
+                                                           .last_hz = band.last_hz,
+                                                           .points_per_decade = band.points_per_decade});
     for (const design::ResponsePoint& point : points) {
       const bool new_one =
           result.points.empty() || point.frequency_hz > result.points.back().frequency_hz + 0.01;

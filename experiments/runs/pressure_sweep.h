@@ -41,10 +41,10 @@ struct PressureSweep {
 // What the loop did, over all runs. Fractions are of the sweeps' time.
 struct SweptPressureLoop {
   std::vector<design::ResponsePoint> points;  // dp per dp_ref, samples per samples
-  double saturated_fraction = 0;      // voltage at its limit
-  double stuck_fraction = 0;          // pump at rest
-  double both_compress_fraction = 0;  // both valves closed: p1, p2 > p_3
-  double largest_torque = 0;          // in-lbf, |k_1 v|
+  double saturated_fraction = 0;              // voltage at its limit
+  double stuck_fraction = 0;                  // pump at rest
+  double both_compress_fraction = 0;          // both valves closed: p1, p2 > p_3
+  double largest_torque = 0;                  // in-lbf, |k_1 v|
 };
 
 SweptPressureLoop RunPressureSweep(const PressureSweep& sweep, const StackRunner& run_stack);

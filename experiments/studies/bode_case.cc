@@ -49,7 +49,8 @@ model::Mode Side2Held() {
   return mode;
 }
 
-design::LinearPressureLoop LinearLoop(const PressureSweep& sweep, const model::Mode& mode, const design::LoopTiming& timing) {
+design::LinearPressureLoop LinearLoop(const PressureSweep& sweep, const model::Mode& mode,
+                                      const design::LoopTiming& timing) {
   const model::Equations equations(sweep.model,
                                    {.shaft = model::Shaft::kClamped, .arm_angle = sweep.arm_angle});
   double state[model::kMaxStates];
@@ -223,7 +224,7 @@ std::vector<page::Panel> WithCoherence(std::vector<page::Panel> panels,
 }
 
 std::vector<design::ResponsePoint> Sampled(double first_hz, double last_hz,
-                                   const std::function<std::complex<double>(double)>& gain) {
+                                           const std::function<std::complex<double>(double)>& gain) {
   constexpr int kIntervals = 300;
   std::vector<design::ResponsePoint> points;
   for (int i = 0; i <= kIntervals; ++i) {

@@ -29,10 +29,10 @@ struct BodeCase {
 
   SweptPressureLoop swept;
   design::SecondOrderFit fit;                    // without delay, over the points up to the fit's last_hz
-  double low_gain = 0;                   // dp per dp_ref, mean of the points up to 2.5 Hz
-  double bandwidth_hz = 0;               // 3 dB below low_gain; NaN: beyond the sweep
+  double low_gain = 0;                           // dp per dp_ref, mean of the points up to 2.5 Hz
+  double bandwidth_hz = 0;                       // 3 dB below low_gain; NaN: beyond the sweep
   std::vector<design::ResponsePoint> predicted;  // at the measured frequencies
-  double worst_error_db = 0;             // of measured over predicted, where the coherence exceeds .99
+  double worst_error_db = 0;  // of measured over predicted, where the coherence exceeds .99
   double worst_error_deg = 0;
 };
 
@@ -42,7 +42,8 @@ model::Mode Side1Held();
 model::Mode Side2Held();
 
 // The linearised loop at the sweep's arm angle, at 1000 psi.
-design::LinearPressureLoop LinearLoop(const PressureSweep& sweep, const model::Mode& mode, const design::LoopTiming& timing);
+design::LinearPressureLoop LinearLoop(const PressureSweep& sweep, const model::Mode& mode,
+                                      const design::LoopTiming& timing);
 
 // Runs the sweep and evaluates it: fills all fields but the first five.
 void Evaluate(BodeCase* bode_case, double fit_to_hz, const StackRunner& run_stack);
@@ -75,6 +76,6 @@ std::vector<page::Panel> WithCoherence(std::vector<page::Panel> panels,
 
 // A response sampled densely enough for a smooth curve.
 std::vector<design::ResponsePoint> Sampled(double first_hz, double last_hz,
-                                   const std::function<std::complex<double>(double)>& gain);
+                                           const std::function<std::complex<double>(double)>& gain);
 
 }  // namespace hydro::experiments

@@ -16,7 +16,8 @@ std::vector<std::pair<double, double>> AsPairs(const std::vector<design::Complex
 
 design::Complex SlowestPole(const std::vector<design::Complex>& poles) {
   const design::Complex pole = *std::max_element(
-      poles.begin(), poles.end(), [](const design::Complex& a, const design::Complex& b) { return a.real() < b.real(); });
+      poles.begin(), poles.end(),
+      [](const design::Complex& a, const design::Complex& b) { return a.real() < b.real(); });
   return {pole.real(), std::fabs(pole.imag())};
 }
 

@@ -25,11 +25,11 @@ struct TorqueStep {
 TorqueStep RunTorqueStep(const StackRunner& run_stack, double command, double feedforward);
 
 struct TorqueSweep {
-  double mean = 0;                    // in-lbf, the commanded torque's
-  double amplitude = 0;               // in-lbf
+  double mean = 0;                            // in-lbf, the commanded torque's
+  double amplitude = 0;                       // in-lbf
   std::vector<design::ResponsePoint> points;  // arm torque per commanded torque
-  double bandwidth_hz = 0;            // 3 dB below the gain of the lowest points; NaN: beyond the sweep
-  double saturated_fraction = 0;      // fraction of the time
+  double bandwidth_hz = 0;        // 3 dB below the gain of the lowest points; NaN: beyond the sweep
+  double saturated_fraction = 0;  // fraction of the time
   // Fraction of the time with both pressures above p_3: a valve that opened in an earlier cycle has let fluid
   // in.
   double both_compress_fraction = 0;

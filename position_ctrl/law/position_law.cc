@@ -20,7 +20,8 @@ double PositionLaw::Preview(const PositionLawSettings& settings, double arm_angl
   double pressure_ref = -settings.c1 * error;
   if (has_previous_) {
     const double elapsed = settings.sample_interval * static_cast<double>(intervals);
-    const double difference = settings.derivative_on_error ? error - previous_error_ : arm_angle - previous_angle_;
+    const double difference =
+        settings.derivative_on_error ? error - previous_error_ : arm_angle - previous_angle_;
     pressure_ref -= settings.c2 / elapsed * difference;
   }
   return pressure_ref;

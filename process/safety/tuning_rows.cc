@@ -9,7 +9,8 @@ namespace {
 constexpr std::array kRows{
     SafetyRow{
         .id = "tuning_refused",
-        .fault = "values that would make a loop unstable, loosen a limit while the motor may move, or are none",
+        .fault =
+            "values that would make a loop unstable, loosen a limit while the motor may move, or are none",
         .detected = "plant or driver, before they act",
         .within = {"at once"},
         .output = SafeOutput::kNotObeyed,
@@ -17,8 +18,9 @@ constexpr std::array kRows{
         .restart = Cleared::kByItself,
         .explicit_rearm = Cleared::kByItself,
         .cleared_text = "nothing has changed",
-        .tests = "tuning.TuningTest.test_refused tuning/LiveTuningTest.WhatIsRefusedChangesNothing "
-                 "tuning/PrepareChange.RefusesWithTheReason tuning/PrepareChange.LimitsAreLoosenedOnlyWhileHeld",
+        .tests =
+            "tuning.TuningTest.test_refused tuning/LiveTuningTest.WhatIsRefusedChangesNothing "
+            "tuning/PrepareChange.RefusesWithTheReason tuning/PrepareChange.LimitsAreLoosenedOnlyWhileHeld",
         .not_injected = "no kind of fault asks for other values",
     },
     SafetyRow{
@@ -27,18 +29,21 @@ constexpr std::array kRows{
         .detected = "plant or driver, before it decides; the controller, by what the plant says is in force",
         .within = {"0.5 s"},
         .output = SafeOutput::kNotObeyed,
-        .output_text = "nothing changes anywhere; who starts later acts by the values in force from its first command on",
+        .output_text = "nothing changes anywhere; who starts later acts by the values in force from its "
+                       "first command on",
         .restart = Cleared::kByItself,
         .explicit_rearm = Cleared::kByItself,
         .cleared_text = "nothing has changed",
-        .tests = "tuning.TuningTest.test_controller_restarted tuning/LiveTuningTest.AControllerThatCannotEndsTheRequest "
+        .tests = "tuning.TuningTest.test_controller_restarted "
+                 "tuning/LiveTuningTest.AControllerThatCannotEndsTheRequest "
                  "tuning/LiveTuningTest.AControllerThatIsSilentEndsTheRequest "
                  "position_ctrl/PositionAppTest.ActsByTheValuesInForceWhenItJoins",
         .not_injected = "no kind of fault asks for other values",
     },
     SafetyRow{
         .id = "plan_refused",
-        .fault = "a plan (`reference.kind = \"planner\"`) beyond the limits, not finite, or of a second planner",
+        .fault =
+            "a plan (`reference.kind = \"planner\"`) beyond the limits, not finite, or of a second planner",
         .detected = "position loop",
         .codes = "refused_arm_plan",
         .within = {"at once"},
@@ -47,7 +52,8 @@ constexpr std::array kRows{
         .restart = Cleared::kByItself,
         .explicit_rearm = Cleared::kByItself,
         .cleared_text = "a second after the last",
-        .tests = "position_ctrl/PositionAppTest.APlanThatIsWrongIsNotFollowed position_ctrl/PlanFollower.RefusesWithTheReason",
+        .tests = "position_ctrl/PositionAppTest.APlanThatIsWrongIsNotFollowed "
+                 "position_ctrl/PlanFollower.RefusesWithTheReason",
         .not_injected = "no kind of fault sends plans",
     },
     SafetyRow{
@@ -61,7 +67,8 @@ constexpr std::array kRows{
         .restart = Cleared::kByItself,
         .explicit_rearm = Cleared::kByItself,
         .cleared_text = "with the next plan",
-        .tests = "position_ctrl/PositionAppTest.ASilentPlannersReferenceIsHeld position_ctrl/PlanFollower.HoldsWhenThePlannerIsSilent",
+        .tests = "position_ctrl/PositionAppTest.ASilentPlannersReferenceIsHeld "
+                 "position_ctrl/PlanFollower.HoldsWhenThePlannerIsSilent",
         .not_injected = "no kind of fault sends plans",
     },
 };

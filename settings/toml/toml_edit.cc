@@ -32,8 +32,10 @@ struct ValueScan {
     for (size_t i = from; i < line.size(); ++i) {
       const char c = line[i];
       if (quote != 0) {
-        if (c == '\\' && quote == '"') ++i;
-        else if (c == quote) quote = 0;
+        if (c == '\\' && quote == '"')
+          ++i;
+        else if (c == quote)
+          quote = 0;
       } else if (c == '"' || c == '\'') {
         quote = c;
       } else if (c == '#') {
@@ -49,16 +51,17 @@ struct ValueScan {
 };
 
 struct Place {
-  size_t first = 0;     // line of the key
-  size_t last = 0;      // line where its value ends
-  size_t value = 0;     // column of the value in `first`
-  size_t comment = 0;   // column behind the value in `last`
+  size_t first = 0;    // line of the key
+  size_t last = 0;     // line where its value ends
+  size_t value = 0;    // column of the value in `first`
+  size_t comment = 0;  // column behind the value in `last`
 };
 
 struct Document {
   std::vector<std::string> lines;
-  std::map<std::string, Place> keys;             // by dotted name, of tables that occur once
-  std::map<std::string, size_t> section_ends;    // line behind the last key of each section; "" is the document's head
+  std::map<std::string, Place> keys;  // by dotted name, of tables that occur once
+  std::map<std::string, size_t>
+      section_ends;  // line behind the last key of each section; "" is the document's head
 };
 
 Document Read(const std::string& text) {
@@ -83,7 +86,8 @@ Document Read(const std::string& text) {
     if (place.value == std::string::npos) continue;
     ValueScan scan;
     place.comment = scan.Scan(document.lines[i], place.value);
-    while (scan.depth > 0 && place.last + 1 < document.lines.size()) place.comment = scan.Scan(document.lines[++place.last], 0);
+    while (scan.depth > 0 && place.last + 1 < document.lines.size())
+      place.comment = scan.Scan(document.lines[++place.last], 0);
     if (!in_array) {
       const std::string key = Trimmed(document.lines[i].substr(0, equals));
       document.keys[section.empty() ? key : section + "." + key] = place;
@@ -152,7 +156,8 @@ void CheckResult(const std::string& before, const std::string& after, const std:
                        "; write it as a line of its own under [section]");
     }
   }
-  throw InputError(name + ": cannot be changed in place; write each key as a line of its own under its [section]");
+  throw InputError(name +
+                   ": cannot be changed in place; write each key as a line of its own under its [section]");
 }
 
 }  // namespace

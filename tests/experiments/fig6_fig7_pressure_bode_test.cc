@@ -224,10 +224,11 @@ TEST(Waves, AllowedGainMeetsRouth) {
   const double k_p = n.at("highest_stable_k_p_V_per_psi");
   const double omega = n.at("highest_stable_natural_frequency_rad_s");
   for (const double beside : {1 - 1e-5, 1 + 1e-5}) {
-    EXPECT_EQ(design::RouthStable(design::WavePolynomial(p, 300, n.at("volume_fraction"), n.at("damping_assumed"),
-                                         {beside * k_p, design.k_v})),
+    EXPECT_EQ(design::RouthStable(design::WavePolynomial(
+                  p, 300, n.at("volume_fraction"), n.at("damping_assumed"), {beside * k_p, design.k_v})),
               beside < 1);
-    EXPECT_EQ(design::RouthStable(design::WavePolynomial(p, 300, n.at("volume_fraction"), n.at("damping_assumed"),
+    EXPECT_EQ(design::RouthStable(
+                  design::WavePolynomial(p, 300, n.at("volume_fraction"), n.at("damping_assumed"),
                                          pressure_ctrl::DerivePressureGains(p, 0, beside * omega, 0.5, 2))),
               beside < 1);
   }

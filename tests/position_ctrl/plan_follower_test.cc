@@ -14,8 +14,8 @@ using ::testing::HasSubstr;
 
 constexpr double kNone = std::numeric_limits<double>::infinity();
 
-arm_plan_t Plan(int64_t session, int64_t sequence, const std::vector<double>& time, const std::vector<double>& angle,
-                const std::vector<double>& speed) {
+arm_plan_t Plan(int64_t session, int64_t sequence, const std::vector<double>& time,
+                const std::vector<double>& angle, const std::vector<double>& speed) {
   arm_plan_t plan;
   plan.session = session;
   plan.sequence = sequence;
@@ -59,7 +59,8 @@ TEST(PlanFollower, HoldsWhenThePlannerIsSilent) {
   PlanFollower follower = Follower();
   EXPECT_FALSE(follower.silent(1000)) << "there was none yet";
   ASSERT_EQ(follower.Take(Plan(1, 0, {0, 1}, {0, 1}, {1, 1}), 0), "");
-  for (int64_t tick = 0; tick <= 200; tick += 5) EXPECT_NEAR(follower.At(tick).angle, 1e-3 * static_cast<double>(tick), 1e-12);
+  for (int64_t tick = 0; tick <= 200; tick += 5)
+    EXPECT_NEAR(follower.At(tick).angle, 1e-3 * static_cast<double>(tick), 1e-12);
   EXPECT_FALSE(follower.silent(200));
   for (int64_t tick = 205; tick <= 900; tick += 5) EXPECT_NEAR(follower.At(tick).angle, 0.2, 1e-12) << tick;
   EXPECT_TRUE(follower.silent(205));
@@ -79,7 +80,8 @@ TEST(PlanFollower, FollowsOnePlannersNewest) {
   PlanFollower follower = Follower();
   ASSERT_EQ(follower.Take(Plan(1, 5, {0}, {0.2}, {0}), 0), "");
   EXPECT_EQ(follower.Take(Plan(1, 4, {0}, {0.3}, {0}), 1), "") << "overtaken";
-  EXPECT_THAT(follower.Take(Plan(2, 0, {0}, {0.4}, {0}), 2), HasSubstr("another planner is followed already"));
+  EXPECT_THAT(follower.Take(Plan(2, 0, {0}, {0.4}, {0}), 2),
+              HasSubstr("another planner is followed already"));
   EXPECT_EQ(follower.At(5).angle, 0.2);
   EXPECT_EQ(follower.Take(Plan(2, 0, {0}, {0.4}, {0}), 300), "");
   EXPECT_EQ(follower.At(305).angle, 0.4);
@@ -88,9 +90,12 @@ TEST(PlanFollower, FollowsOnePlannersNewest) {
 TEST(PlanFollower, RefusesWithTheReason) {
   PlanFollower follower = Follower();
   EXPECT_THAT(follower.Take(Plan(1, 0, {}, {}, {}), 0), HasSubstr("found 0 points, allowed 1 to 256"));
-  EXPECT_THAT(follower.Take(Plan(1, 0, {0, 0}, {0, 0}, {0, 0}), 0), HasSubstr("point 1: its time must be above"));
-  EXPECT_THAT(follower.Take(Plan(1, 0, {NAN}, {0}, {0}), 0), HasSubstr("point 0: all numbers must be finite"));
-  EXPECT_THAT(follower.Take(Plan(1, 0, {0}, {-1.5}, {0}), 0), HasSubstr("found arm angle -1.5 rad, allowed |alpha| <= 1"));
+  EXPECT_THAT(follower.Take(Plan(1, 0, {0, 0}, {0, 0}, {0, 0}), 0),
+              HasSubstr("point 1: its time must be above"));
+  EXPECT_THAT(follower.Take(Plan(1, 0, {NAN}, {0}, {0}), 0),
+              HasSubstr("point 0: all numbers must be finite"));
+  EXPECT_THAT(follower.Take(Plan(1, 0, {0}, {-1.5}, {0}), 0),
+              HasSubstr("found arm angle -1.5 rad, allowed |alpha| <= 1"));
   EXPECT_EQ(follower.At(5).angle, 0.1);
 }
 

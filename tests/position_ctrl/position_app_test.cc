@@ -187,7 +187,8 @@ TEST_F(PositionAppTest, ActsByTheValuesInForceWhenItJoins) {
   EXPECT_DOUBLE_EQ(commands_[0].pressure_ref, 2000 * 0.05);
 }
 
-arm_plan_t Plan(int64_t sequence, int64_t tick, const std::vector<double>& time, const std::vector<double>& angle) {
+arm_plan_t Plan(int64_t sequence, int64_t tick, const std::vector<double>& time,
+                const std::vector<double>& angle) {
   arm_plan_t plan;
   plan.session = 8;
   plan.sequence = sequence;
@@ -231,7 +232,8 @@ TEST_F(PlannerTest, APlanIsFollowed) {
   EXPECT_EQ(references_[1].value, 0.02) << "at tick 5 it is not in force yet";
   EXPECT_DOUBLE_EQ(references_[2].value, 0.1);
   EXPECT_DOUBLE_EQ(references_[3].value, 0.15);
-  EXPECT_DOUBLE_EQ(commands_[2].pressure_ref, 1000 * (0.1 - 0.02) + 30 * 10 + 36.8 / SmallStack().model.description.parameters.k_2);
+  EXPECT_DOUBLE_EQ(commands_[2].pressure_ref,
+                   1000 * (0.1 - 0.02) + 30 * 10 + 36.8 / SmallStack().model.description.parameters.k_2);
 }
 
 TEST_F(PlannerTest, APlanThatIsWrongIsNotFollowed) {
@@ -245,7 +247,9 @@ TEST_F(PlannerTest, APlanThatIsWrongIsNotFollowed) {
   EXPECT_EQ(references_.back().value, 0.02);
   ASSERT_EQ(faults_.size(), 1u);
   EXPECT_EQ(faults_[0].code, "refused_arm_plan");
-  EXPECT_THAT(faults_[0].text, ::testing::HasSubstr("2 plans in all are not followed; the newest: point 1: found arm angle 0.6 rad"));
+  EXPECT_THAT(
+      faults_[0].text,
+      ::testing::HasSubstr("2 plans in all are not followed; the newest: point 1: found arm angle 0.6 rad"));
 }
 
 TEST_F(PlannerTest, ASilentPlannersReferenceIsHeld) {

@@ -326,14 +326,18 @@ TEST_F(StackConfigFolderTest, NamesTheFileThatIsWrong) {
 // Tests that mistakes of a first day are answered with what is meant: a model as CONFIG, a model that is not there, a key without its section.
 TEST_F(StackConfigFolderTest, MistakesOfAFirstDay) {
   const std::string model = Write("model.toml", kModelText), config = Write("stack.toml", kConfigText);
-  EXPECT_THAT(InputErrorOf([&] { LoadStackConfig(model); }),
-              ::testing::AllOf(HasSubstr("found a model ([parameters]), allowed the configuration of a stack"), HasSubstr("[model] file = ")));
-  EXPECT_THAT(InputErrorOf([&] { LoadStackConfig(config, {"model.file=mdoel.toml"}); }),
-              ::testing::AllOf(HasSubstr("model.file: found \"mdoel.toml\", and there is no \"" + folder_.string()),
-                               HasSubstr("allowed a path that counts from the configuration's folder")));
+  EXPECT_THAT(
+      InputErrorOf([&] { LoadStackConfig(model); }),
+      ::testing::AllOf(HasSubstr("found a model ([parameters]), allowed the configuration of a stack"),
+                       HasSubstr("[model] file = ")));
+  EXPECT_THAT(
+      InputErrorOf([&] { LoadStackConfig(config, {"model.file=mdoel.toml"}); }),
+      ::testing::AllOf(HasSubstr("model.file: found \"mdoel.toml\", and there is no \"" + folder_.string()),
+                       HasSubstr("allowed a path that counts from the configuration's folder")));
   EXPECT_THAT(InputErrorOf([&] { LoadStackConfig(config, {"rate_hz=2000"}); }),
               HasSubstr("did you mean \"plant.rate_hz\" or \"pressure.rate_hz\"?"));
-  EXPECT_THAT(InputErrorOf([&] { LoadStackConfig(config, {"c2=5"}); }), HasSubstr("did you mean \"position.c2\"?"));
+  EXPECT_THAT(InputErrorOf([&] { LoadStackConfig(config, {"c2=5"}); }),
+              HasSubstr("did you mean \"position.c2\"?"));
 }
 
 }  // namespace

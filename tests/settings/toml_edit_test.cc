@@ -30,12 +30,14 @@ TEST(EditToml, ReplacesValuesAndLeavesAllElse) {
 
 TEST(EditToml, ReplacesAValueOfSeveralLines) {
   EXPECT_EQ(EditToml(kText, "x.toml", {{"reference.steps", "[[0, 0.1]]"}}, {}),
-            Replaced(kText, "steps = [\n  [0.2, 0.3],  # first\n  [2.2, -0.2],\n]  # all", "steps = [[0, 0.1]]  # all"));
+            Replaced(kText, "steps = [\n  [0.2, 0.3],  # first\n  [2.2, -0.2],\n]  # all",
+                     "steps = [[0, 0.1]]  # all"));
 }
 
 TEST(EditToml, AddsAndRemoves) {
-  const std::string edited = EditToml(
-      kText, "x.toml", {{"position.derivative", "'error'"}, {"limits.pressure_psi", "1500"}}, {"position.c2", "reference.steps"});
+  const std::string edited =
+      EditToml(kText, "x.toml", {{"position.derivative", "'error'"}, {"limits.pressure_psi", "1500"}},
+               {"position.c2", "reference.steps"});
   std::string expected = Replaced(kText, "c2 = 350  # damping # \"twice\"\n", "");
   expected = Replaced(expected, "# a comment\n", "# a comment\nderivative = 'error'\n");
   expected = Replaced(expected, "steps = [\n  [0.2, 0.3],  # first\n  [2.2, -0.2],\n]  # all\n", "");

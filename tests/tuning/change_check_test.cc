@@ -37,7 +37,8 @@ PreparedChange Prepared(const std::vector<std::string>& changes, const Situation
 TEST(ParseChanges, ReadsLines) {
   EXPECT_THAT(ParseChanges("position.c2=900\n\n pressure.k_p = 0.1 \n"),
               ElementsAre("position.c2=900", " pressure.k_p = 0.1 "));
-  EXPECT_THAT(InputErrorOf([] { ParseChanges("position.c2"); }), HasSubstr("\"position.c2\": allowed key=value"));
+  EXPECT_THAT(InputErrorOf([] { ParseChanges("position.c2"); }),
+              HasSubstr("\"position.c2\": allowed key=value"));
   EXPECT_THAT(InputErrorOf([] { ParseChanges("a.b=1\na.b=2"); }), HasSubstr("a.b: found twice"));
   EXPECT_THAT(InputErrorOf([] { ParseChanges("\n"); }), HasSubstr("found no value"));
   std::string many;
@@ -49,11 +50,13 @@ TEST(ParseChanges, ReadsLines) {
 TEST(PrepareChange, DerivesGainsAnew) {
   const PreparedChange change = Prepared({"pressure.natural_frequency_rad_s=120", "position.c2=400"});
   ASSERT_NE(change.config, nullptr) << change.text;
-  const auto gains = pressure_ctrl::DerivePressureGains(change.config->model.description.parameters, 0, 120, 0.5, 2);
+  const auto gains =
+      pressure_ctrl::DerivePressureGains(change.config->model.description.parameters, 0, 120, 0.5, 2);
   EXPECT_EQ(ValueOf(change.message, "pressure.k_p"), gains.k_p);
   EXPECT_EQ(ValueOf(change.message, "position.c2"), 400);
   EXPECT_EQ(change.message.changes, "position.c2 = 400\npressure.natural_frequency_rad_s = 120\n");
-  EXPECT_THAT(change.text, StartsWith("position.c2 = 400, pressure.natural_frequency_rad_s = 120; pressure loop: "));
+  EXPECT_THAT(change.text,
+              StartsWith("position.c2 = 400, pressure.natural_frequency_rad_s = 120; pressure loop: "));
   EXPECT_EQ(change.message.reference, "");
   EXPECT_FALSE(change.new_reference);
 }
@@ -61,11 +64,12 @@ TEST(PrepareChange, DerivesGainsAnew) {
 // Tests that gains take the place of what they were derived from, and the other way round.
 TEST(PrepareChange, OneAlternativeTakesTheOthersPlace) {
   const settings::StackConfig configured = Parsed(kFast);
-  const PreparedChange gains = PrepareChange(configured, configured, {"pressure.k_p=0.13", "pressure.k_v=8"}, {});
+  const PreparedChange gains =
+      PrepareChange(configured, configured, {"pressure.k_p=0.13", "pressure.k_v=8"}, {});
   ASSERT_NE(gains.config, nullptr) << gains.text;
   EXPECT_FALSE(gains.config->pressure.natural_frequency_rad_s);
-  const PreparedChange back = PrepareChange(configured, *gains.config,
-                                            {"pressure.natural_frequency_rad_s=140", "pressure.damping_ratio=0.5"}, {});
+  const PreparedChange back = PrepareChange(
+      configured, *gains.config, {"pressure.natural_frequency_rad_s=140", "pressure.damping_ratio=0.5"}, {});
   ASSERT_NE(back.config, nullptr) << back.text;
   EXPECT_FALSE(back.config->pressure.k_p);
   EXPECT_EQ(back.message.changes, "pressure.natural_frequency_rad_s = 140\n");
@@ -84,12 +88,14 @@ TEST(PrepareChange, RefusesWithTheReason) {
       {{"position.c2=-1"}, "found -1, allowed"},
       {{"pressure.natural_frequency_rad_s=1"}, "must be above the open loop's"},
       {{"position.c1=10500", "position.c2=5000"}, "would be unstable: "},
-      {{"limits.pressure_psi=2500"}, "limits.pressure_psi: found 2500, allowed up to 2000, which is in force"},
+      {{"limits.pressure_psi=2500"},
+       "limits.pressure_psi: found 2500, allowed up to 2000, which is in force"},
       {{"limits.pressure_psi=inf"}, "allowed up to 2000"},
       {{"noise.p1_psi=1"}, "noise.p1_psi: the rig is a real one"},
       {{"reference.steps=[[0, 2.5]]"}, "reference.steps: found arm angle 2.5 rad"},
       {{"limits.arm_angle_rad=0.05"}, "allowed |alpha| <= 0.05 rad (2.865 deg; limits.arm_angle_rad)"},
-      {{"limits.motor_speed_rad_s=100", "reference.kind=sine", "reference.amplitude=0.2", "reference.frequency_hz=2"},
+      {{"limits.motor_speed_rad_s=100", "reference.kind=sine", "reference.amplitude=0.2",
+        "reference.frequency_hz=2"},
        "reference: found a speed of 2.513, allowed 0.2161 (limits.motor_speed_rad_s at the arm, rad/s)"},
       {{"reference.signal=\"pressure\""}, "reference.signal: no such value"},
   };
@@ -102,9 +108,7 @@ TEST(PrepareChange, RefusesWithTheReason) {
 }
 
 // Tests that one bad value of several leaves all as they were.
-TEST(PrepareChange, AllOrNone) {
-  EXPECT_EQ(Prepared({"position.c2=400", "position.c1=-1"}).config, nullptr);
-}
+TEST(PrepareChange, AllOrNone) { EXPECT_EQ(Prepared({"position.c2=400", "position.c1=-1"}).config, nullptr); }
 
 TEST(PrepareChange, LimitsAreLoosenedOnlyWhileHeld) {
   EXPECT_NE(Prepared({"limits.pressure_psi=1500"}).config, nullptr);
@@ -113,7 +117,8 @@ TEST(PrepareChange, LimitsAreLoosenedOnlyWhileHeld) {
 }
 
 TEST(PrepareChange, AReferenceTravelsAsText) {
-  const PreparedChange change = Prepared({"reference.kind=sine", "reference.amplitude=0.05", "reference.frequency_hz=0.5"});
+  const PreparedChange change =
+      Prepared({"reference.kind=sine", "reference.amplitude=0.05", "reference.frequency_hz=0.5"});
   ASSERT_NE(change.config, nullptr) << change.text;
   EXPECT_TRUE(change.new_reference);
   const settings::ReferenceSection reference = settings::ParseReference(change.message.reference);
@@ -134,7 +139,8 @@ TEST(TunableKeys, AreKeysOfTheConfiguration) {
         kind = {std::string("reference.kind=") + name};
       }
     }
-    if (last == "points" || last == "interpolation") kind = {"reference.kind=csv", "reference.points=[[0, 0], [1, 0.1]]"};
+    if (last == "points" || last == "interpolation")
+      kind = {"reference.kind=csv", "reference.points=[[0, 0], [1, 0.1]]"};
     const std::string config =
         key.starts_with("reference.") ? settings::Changed(Parsed(kFast), kind).text : kFast;
     const PreparedChange change = Prepared({key + "={}"}, {.held = true, .simulated = true}, config);

@@ -35,15 +35,15 @@ class LiveTuningTest : public ::testing::Test {
       if (due != at_.end()) due->second();
     });
     bus_->Subscribe<motor_command_t>("HYDRO_MOTOR_COMMAND",
-                                    [this](const motor_command_t& c) { commands_.push_back(c); });
+                                     [this](const motor_command_t& c) { commands_.push_back(c); });
     bus_->Subscribe<pressure_command_t>("HYDRO_PRESSURE_COMMAND",
-                                       [this](const pressure_command_t& c) { pressures_.push_back(c); });
+                                        [this](const pressure_command_t& c) { pressures_.push_back(c); });
     bus_->Subscribe<arm_reference_t>("HYDRO_ARM_REFERENCE",
-                                    [this](const arm_reference_t& r) { references_.push_back(r); });
+                                     [this](const arm_reference_t& r) { references_.push_back(r); });
     bus_->Subscribe<tuning_answer_t>("HYDRO_TUNING_ANSWER",
-                                    [this](const tuning_answer_t& a) { answers_.push_back(a); });
+                                     [this](const tuning_answer_t& a) { answers_.push_back(a); });
     bus_->Subscribe<tuned_settings_t>("HYDRO_SETTINGS",
-                                     [this](const tuned_settings_t& s) { settings_.push_back(s); });
+                                      [this](const tuned_settings_t& s) { settings_.push_back(s); });
   }
 
   // From `config_`, for `duration_s`.
@@ -200,20 +200,22 @@ TEST_F(LiveTuningTest, TheCommandsDoNotJump) {
   EXPECT_LE(jump(at + 1), largest) << "the new pressure acts from here on";
   EXPECT_LE(pressure_jump(at), largest_pressure);
   // Without the transfer both would have jumped: the new laws alone give something else here.
-  const settings::StackConfig after = settings::Changed(
-      settings::Parsed(config_), {"position.c1=5000", "position.c2=250", "pressure.natural_frequency_rad_s=120"});
+  const settings::StackConfig after =
+      settings::Changed(settings::Parsed(config_),
+                        {"position.c1=5000", "position.c2=250", "pressure.natural_frequency_rad_s=120"});
   const state_t& state = AtTick(states_, at);
   const auto& command = AtTick(commands_, at);
   const double alone = pressure_ctrl::UnlimitedPressureLaw(
-      ValuesOf(after).pressure, {command.pressure_ref, state.p1, state.p2, state.motor_speed, state.arm_speed});
+      ValuesOf(after).pressure,
+      {command.pressure_ref, state.p1, state.p2, state.motor_speed, state.arm_speed});
   EXPECT_GT(std::fabs(alone - command.voltage), 3 * largest);
   // And it passes: from 0.1 s after the change on the law is the new one alone.
   const state_t& later = AtTick(states_, at + 750);
   const auto& later_command = AtTick(commands_, at + 750);
-  EXPECT_EQ(later_command.voltage,
-            pressure_ctrl::PressureLaw(ValuesOf(after).pressure,
-                                       {later_command.pressure_ref, later.p1, later.p2, later.motor_speed, later.arm_speed})
-                .voltage);
+  EXPECT_EQ(later_command.voltage, pressure_ctrl::PressureLaw(ValuesOf(after).pressure,
+                                                              {later_command.pressure_ref, later.p1, later.p2,
+                                                               later.motor_speed, later.arm_speed})
+                                       .voltage);
 }
 
 // Tests that what is refused changes nothing, to the last bit, and says why.
@@ -279,14 +281,16 @@ TEST_F(LiveTuningTest, AControllerThatCannotEndsTheRequest) {
   // A third controller, played here: it takes part, and refuses whatever is proposed.
   listen_ = [&] {
     bus_->Subscribe<tuned_settings_t>("HYDRO_SETTINGS", [this](const tuned_settings_t& s) {
-      if (s.stage == tuned_settings_t::PROPOSED) SayAsPositionLoop(s.version - 1, s.version, "its file is gone");
+      if (s.stage == tuned_settings_t::PROPOSED)
+        SayAsPositionLoop(s.version - 1, s.version, "its file is gone");
     });
   };
   at_[500] = [&] { Ask(1, "pressure.natural_frequency_rad_s=130"); };
   ASSERT_EQ(Run(0.3), 0);
   ASSERT_NE(AnswerTo(1), nullptr);
   EXPECT_FALSE(AnswerTo(1)->accepted);
-  EXPECT_THAT(AnswerTo(1)->text, HasSubstr("position_ctrl cannot act by it: its file is gone; nothing has changed"));
+  EXPECT_THAT(AnswerTo(1)->text,
+              HasSubstr("position_ctrl cannot act by it: its file is gone; nothing has changed"));
   ExpectNothingDecided();
 }
 
