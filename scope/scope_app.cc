@@ -103,7 +103,7 @@ class ScopeApp {
     SideWork work(post);
     DiagnoseJobs jobs(work.folder(), post);
     OperatorDesk desk(config_, section_.control, post, tuning_.get());
-    GhostDesk ghost(&runs_);
+    GhostDesk ghost(&runs_, config_);
     LiveContext context{.runs = runs_,
                         .desk = desk,
                         .ghost = ghost,
