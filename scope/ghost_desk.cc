@@ -110,8 +110,13 @@ struct GhostDesk::Beside {
   std::string problem;
 };
 
-GhostDesk::GhostDesk(RunTable* runs) : runs_(*runs) {}
+GhostDesk::GhostDesk(RunTable* runs, std::shared_ptr<const settings::StackConfig> config)
+    : runs_(*runs), config_(std::move(config)) {}
 GhostDesk::~GhostDesk() = default;
+
+std::shared_ptr<const settings::StackConfig> GhostDesk::ConfigFor(const Run& run) const {
+  return run.kind == Run::Kind::kLog || config_ == nullptr ? run.config : config_;
+}
 
 Outcome GhostDesk::Switch(uint32_t id, bool on, double resync_s) {
   Run* const run = runs_.Find(id);
@@ -119,7 +124,8 @@ Outcome GhostDesk::Switch(uint32_t id, bool on, double resync_s) {
     return {false, "run: found " + std::to_string(id) + ", allowed is one that is open", {}};
   ghosts_.erase(id);
   if (!on) return {true, "the ghost is off", {}};
-  if (run->config == nullptr) {
+  const auto config = ConfigFor(*run);
+  if (config == nullptr) {
     return {false,
             run->config_problem.empty() ? "the run has not described itself yet: no HYDRO_RUN"
                                         : "no model: " + run->config_problem,
@@ -128,7 +134,7 @@ Outcome GhostDesk::Switch(uint32_t id, bool on, double resync_s) {
   if (ghosts_.size() >= kMostGhosts) return {false, "4 ghosts are there already, switch one off", {}};
   auto beside = std::make_unique<Beside>();
   try {
-    beside->worker = std::make_unique<Worker>(run->config, resync_s);
+    beside->worker = std::make_unique<Worker>(config, resync_s);
   } catch (const InputError& error) {
     return {false, error.what(), {}};
   }
@@ -140,7 +146,7 @@ Outcome GhostDesk::Switch(uint32_t id, bool on, double resync_s) {
                                            : std::numeric_limits<uint64_t>::max());
   ++run->revision;
   ghosts_[id] = std::move(beside);
-  return {true, "the ghost is on: " + run->config->model.description.name, {}};
+  return {true, "the ghost is on: " + config->model.description.name, {}};
 }
 
 Outcome GhostDesk::Sync(uint32_t run) {
@@ -211,7 +217,7 @@ void GhostDesk::Poll() {
       continue;
     }
     if (run != beside.run) {  // the plant has started again, perhaps with another model
-      if (run->config == nullptr) {
+      if (ConfigFor(*run) == nullptr) {
         ++ghost;
         continue;
       }

@@ -12,10 +12,13 @@ namespace hydro::scope {
 
 class GhostDesk : public GhostSwitch {
  public:
-  explicit GhostDesk(RunTable* runs);
+  // `config`: of the stack that is listened to; its model is the ghost's for live runs, whatever the plant says that it runs
+  // with: a simulated one names its own model, beside which there is no gap. Null: a log is shown. A log's ghost has the
+  // model that the log names.
+  GhostDesk(RunTable* runs, std::shared_ptr<const settings::StackConfig> config);
   ~GhostDesk() override;
 
-  // For any run whose configuration is known; at most 4 at a time. A live one begins with the newest 10 s.
+  // For any run whose model is known; at most 4 at a time. A live one begins with the newest 10 s.
   Outcome Switch(uint32_t run, bool on, double resync_s) override;
   Outcome Sync(uint32_t run) override;
 
@@ -28,10 +31,12 @@ class GhostDesk : public GhostSwitch {
  private:
   class Worker;
   struct Beside;
+  std::shared_ptr<const settings::StackConfig> ConfigFor(const Run& run) const;
   void Feed(Run& run, Beside& beside);
   void Collect(Run& run, Beside& beside);
 
   RunTable& runs_;
+  std::shared_ptr<const settings::StackConfig> config_;
   std::map<uint32_t, std::unique_ptr<Beside>> ghosts_;  // by run
   int64_t skipped_ = 0;
 };

@@ -2,6 +2,7 @@
 
 #include <sched.h>
 #include <sys/resource.h>
+#include <sys/syscall.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -65,14 +66,26 @@ double CpuSeconds() {
   return seconds(usage.ru_utime) + seconds(usage.ru_stime);
 }
 
+// What the kernel takes (sched_setattr(2)); Debian 12 has no header for it.
+struct SchedulingAttributes {
+  uint32_t size = 48;
+  uint32_t policy = SCHED_BATCH;
+  uint64_t flags = 0;
+  int32_t nice = kNice;
+  uint32_t priority = 0;
+  uint64_t runtime = 100'000'000;  // ns
+  uint64_t deadline = 0;
+  uint64_t period = 0;
+};
+
 // The loops of the stack must not notice that a scope runs beside them. As a batch process it interrupts nobody when it
-// wakes up. A lower class yet (SCHED_IDLE) would leave the stop button without a processor on a busy machine.
+// wakes up, and with the longest of slices everybody who wakes up interrupts it (from Linux 6.12 on; before, sleepers did
+// anyway). A lower class yet (SCHED_IDLE) would leave the stop button without a processor on a busy machine.
 void GiveWay() {
-  const sched_param parameters{};
-  const bool batch = sched_setscheduler(0, SCHED_BATCH, &parameters) == 0;
-  errno = 0;
-  const bool lower = nice(kNice) != -1 || errno == 0;
-  if (!batch || !lower) std::fprintf(stderr, "hydro-scope: warning: cannot lower its own priority\n");
+  const SchedulingAttributes attributes;
+  if (syscall(SYS_sched_setattr, 0, &attributes, 0) != 0) {
+    std::fprintf(stderr, "hydro-scope: warning: cannot lower its own priority, errno %d\n", errno);
+  }
 }
 
 class ScopeApp {
@@ -103,7 +116,7 @@ class ScopeApp {
     SideWork work(post);
     DiagnoseJobs jobs(work.folder(), post);
     OperatorDesk desk(config_, section_.control, post, tuning_.get());
-    GhostDesk ghost(&runs_);
+    GhostDesk ghost(&runs_, config_);
     LiveContext context{.runs = runs_,
                         .desk = desk,
                         .ghost = ghost,

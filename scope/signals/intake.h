@@ -58,7 +58,7 @@ class Intake {
   void OnStatistics(const loop_statistics_t& statistics, int64_t utime);
   ProcessReport& Report(const std::string& role, const std::string& host, int64_t utime);
   void AddEvent(double t, std::string kind, const std::string& source, const std::string& code,
-                std::string text);
+                const std::string& text);
 
   const bus::Channels channels_;
   std::function<Run*(int64_t)> next_run_;

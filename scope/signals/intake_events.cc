@@ -19,6 +19,7 @@ namespace {
 constexpr int64_t kRepeated = 2000000;  // us, within which the same stop or answer is one
 constexpr size_t kMostProcesses = 64;   // a flood of made-up ones is not kept
 constexpr size_t kMostText = 400;
+constexpr uint64_t kMostReports = 100000;  // of a loop: a day
 
 std::string Shown(const std::string& text) { return Printable(text.substr(0, kMostText)); }
 
@@ -77,7 +78,7 @@ void Intake::OnDescription(const run_description_t& description) {
 }
 
 void Intake::AddEvent(double t, std::string kind, const std::string& source, const std::string& code,
-                      std::string text) {
+                      const std::string& text) {
   run_->events.Add({0, t, std::move(kind), Shown(source), Shown(code), Shown(text)});
 }
 
@@ -187,7 +188,7 @@ void Intake::OnStatistics(const loop_statistics_t& statistics, int64_t utime) {
   report.lost = SaturatingSum(report.lost, statistics.lost_messages);
   report.latency_p99_us = statistics.latency_p99_us;
   if (run_->loops.size() >= kMostProcesses && !run_->loops.contains(report.role)) return;
-  const auto [place, is_new] = run_->loops.try_emplace(report.role, kLoopColumns, 100000);
+  const auto [place, is_new] = run_->loops.try_emplace(report.role, kLoopColumns, kMostReports);
   if (is_new) ++run_->revision;
   const double values[kLoopColumns] = {statistics.latency_p99_us,
                                        static_cast<double>(statistics.missed_deadlines)};

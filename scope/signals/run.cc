@@ -8,8 +8,6 @@
 namespace hydro::scope {
 namespace {
 
-constexpr uint64_t kMostLoopRows = 100000;
-
 std::optional<size_t> IndexOf(const std::vector<ChannelInfo>& channels, const std::string& id) {
   for (size_t i = 0; i < channels.size(); ++i) {
     if (channels[i].id == id) return i;
