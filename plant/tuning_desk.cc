@@ -155,8 +155,9 @@ std::string TuningDesk::WhoIsMissing(const std::vector<std::string>& changes) co
   for (const auto& [section, role] :
        {std::pair{"pressure.", "pressure_ctrl"}, std::pair{"position.", "position_ctrl"},
         std::pair{"reference.", "position_ctrl"}}) {
-    const bool concerned = std::any_of(changes.begin(), changes.end(),
-                                       [&, section = section](const std::string& change) { return change.find(section) == 0; });
+    const bool concerned =
+        std::any_of(changes.begin(), changes.end(),
+                    [&, section = section](const std::string& change) { return change.find(section) == 0; });
     const bool there =
         std::any_of(controllers_.begin(), controllers_.end(),
                     [&, role = std::string(role)](const auto& known) { return known.first.first == role; });
