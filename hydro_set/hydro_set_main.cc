@@ -54,6 +54,9 @@ int main(int argc, char** argv) {
                                     "values of one request take effect on one tick, or none. "
                                     "Example: hydro-set stack.toml pressure.natural_frequency_rad_s=120 "
                                     "position.c2=900. More in docs/tuning.md.");
+  line.AddExamples({"hydro-set config/demo.toml position.c2=900 pressure.natural_frequency_rad_s=120",
+                    "hydro-set config/demo.toml --undo", "hydro-set config/demo.toml --list"},
+                   "docs/tuning.md");
   SetRequest request;
   std::vector<std::string> arguments, overrides;
   line.AddPositional("[CONFIG] KEY=VALUE", &arguments,
