@@ -11,6 +11,9 @@ int main(int argc, char** argv) {
       "hydro-diagnose",
       "Finds where a model and measured runs disagree, names the missing effect, adds it "
       "to the model and shows the gap shrink on data it was not fitted to.");
+  line.AddExamples({"hydro-diagnose run1.lcmlog run2.lcmlog --model config/models/table1.toml --out out/gap",
+                    "hydro-diagnose run.csv --check"},
+                   "docs/gap_finder.md");
   hydro::diagnose::DiagnoseRequest request;
   request.jobs = static_cast<int>(std::clamp(std::thread::hardware_concurrency(), 1u, 256u));
   line.AddPositional("RUN", &request.runs,

@@ -37,6 +37,8 @@ int main(int argc, char** argv) {
       "hydro-experiment",
       "The paper's experiments and figures: NAME.json, NAME.csv and NAME.svg of each; for "
       "all of them, index.html, too.");
+  line.AddExamples({"hydro-experiment fig10 --out out/fig10", "hydro-experiment all --out out/paper"},
+                   "docs/experiments.md");
   hydro::experiments::ExperimentRequest request;
   request.name.clear();
   bool list = false;

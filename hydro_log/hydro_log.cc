@@ -156,6 +156,8 @@ class RepairVerb {
 
 int RunHydroLog(int argc, const char* const* argv) {
   settings::CommandLine line("hydro-log", "Reads, converts, compares, replays and repairs logs.");
+  line.AddExamples({"hydro-log summary run.lcmlog", "hydro-log export run.lcmlog -o run.csv"},
+                   "docs/logs.md");
   const InfoVerb info(line);
   const ExportVerb export_verb(line);
   const ImportVerb import_verb(line);

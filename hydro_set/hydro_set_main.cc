@@ -51,9 +51,10 @@ int Run(SetRequest request, const std::vector<std::string>& arguments,
 int main(int argc, char** argv) {
   hydro::settings::CommandLine line("hydro-set",
                                     "Changes gains, limits, references and noise while a stack runs: all "
-                                    "values of one request take effect on one tick, or none. "
-                                    "Example: hydro-set stack.toml pressure.natural_frequency_rad_s=120 "
-                                    "position.c2=900. More in docs/tuning.md.");
+                                    "values of one request take effect on one tick, or none.");
+  line.AddExamples({"hydro-set config/demo.toml position.c2=900 pressure.natural_frequency_rad_s=120",
+                    "hydro-set config/demo.toml --undo", "hydro-set config/demo.toml --list"},
+                   "docs/tuning.md");
   SetRequest request;
   std::vector<std::string> arguments, overrides;
   line.AddPositional("[CONFIG] KEY=VALUE", &arguments,

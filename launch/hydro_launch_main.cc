@@ -28,18 +28,29 @@ struct Options {
 
 void AddOptions(hydro::settings::CommandLine* line, Options* options) {
   line->AddCommon(&options->common, false);
-  line->AddOption("--host", &options->request.host,
-                  "NAME start only the processes whose [[process]] section has this host");
+  line->AddOption(
+      "--host", &options->request.host,
+      "NAME start only the processes whose [[process]] section has host = NAME (docs/network.md); "
+      "localhost: those that name none");
   line->AddFlag(
       "--doctor", &options->doctor,
       "examine this machine and its network for the stack of CONFIG (without CONFIG: for any real-time "
       "stack), and print what fixes each problem; starts nothing");
   line->AddOption("--timing", &options->request.timing_file,
-                  "REPORT.json where to write how the loops kept time; REPORT.html beside it has plots");
-  line->AddFlag("--stop", &options->stop,
-                "stop the running stack and wait until it has ended; starts nothing");
-  line->AddFlag("--rearm", &options->rearm,
-                "end the faults that hold the voltage at zero (limits.rearm = \"explicit\"); starts nothing");
+                  "REPORT.json write how the loops kept time (periods, latencies, missed deadlines of every "
+                  "process) when the run ends; "
+                  "REPORT.html beside it has the plots (docs/timing.md)");
+  line->AddFlag("--quiet", &options->request.quiet, "print errors only");
+  line->AddFlag("--json", &options->request.json,
+                "print a JSON object a line: each line of the processes, how they are doing twice a second, "
+                "the exit code");
+  line->AddFlag(
+      "--stop", &options->stop,
+      "stop the running stack and wait until it has ended; starts nothing. Also: hydro-launch stop CONFIG");
+  line->AddFlag(
+      "--rearm", &options->rearm,
+      "end the faults that hold the voltage at zero (limits.rearm = \"explicit\"); starts nothing. Also: "
+      "hydro-launch rearm CONFIG");
   line->AddFlag("--make-key", &options->make_key,
                 "write a new key into CONFIG's bus.key_file; starts nothing");
 }
@@ -105,12 +116,32 @@ int Run(const hydro::settings::CommandLine& line, const Options& options) {
   return hydro::launch::LaunchStack(request);
 }
 
+// `hydro-launch stop CONFIG` is `hydro-launch --stop CONFIG`.
+std::vector<const char*> WithFlagForVerb(int argc, char** argv) {
+  static constexpr std::pair<std::string_view, const char*> kVerbs[] = {
+      {"stop", "--stop"}, {"rearm", "--rearm"}, {"doctor", "--doctor"}, {"make-key", "--make-key"}};
+  std::vector<const char*> arguments(argv, argv + argc);
+  if (argc < 2) return arguments;
+  for (const auto& [verb, flag] : kVerbs) {
+    if (verb == arguments[1]) arguments[1] = flag;
+  }
+  return arguments;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
-  hydro::settings::CommandLine line("hydro-launch", "Starts, supervises and stops the processes of a stack.");
+  hydro::settings::CommandLine line("hydro-launch",
+                                    "Starts, supervises and stops the processes of a stack. On a terminal it "
+                                    "shows how each is doing; in a pipe it prints plain lines.");
+  line.AddExamples(
+      {"hydro-launch config/demo.toml --log run.lcmlog      start, record, until the run ends or Ctrl-C",
+       "hydro-launch stop config/demo.toml                  end the stack that runs, from anywhere",
+       "hydro-launch doctor config/demo.toml                is this machine fit for it?"},
+      "docs/launch.md");
   Options options;
   AddOptions(&line, &options);
-  if (const auto code = line.Parse(argc, argv)) return *code;
+  const std::vector<const char*> arguments = WithFlagForVerb(argc, argv);
+  if (const auto code = line.Parse(argc, arguments.data())) return *code;
   return hydro::settings::RunProgram("hydro-launch", [&] { return Run(line, options); });
 }

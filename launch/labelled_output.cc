@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstdlib>
+#include <nlohmann/json.hpp>
+#include <utility>
 
 #include "base/text_file.h"
 
@@ -29,7 +31,17 @@ void LabelledOutput::AnnounceLabel(std::string_view label) {
   label_width_ = std::max(label_width_, label.size());
 }
 
-void LabelledOutput::Line(Stream stream, std::string_view label, std::string_view text) {
+bool LabelledOutput::CanDrawStatus(int out_fd, int err_fd) {
+  const char* terminal = std::getenv("TERM");
+  return isatty(out_fd) && isatty(err_fd) && terminal != nullptr && std::string_view(terminal) != "dumb";
+}
+
+std::string LabelledOutput::Formatted(Stream stream, std::string_view label, std::string_view text) const {
+  if (json_) {
+    const nlohmann::ordered_json line{
+        {"source", label}, {"stream", stream == Stream::kOut ? "out" : "err"}, {"text", Printable(text)}};
+    return line.dump() + "\n";
+  }
   std::string line;
   line.reserve(label_width_ + text.size() + 16);
   if (colour_) line += ColourOf(label);
@@ -37,13 +49,36 @@ void LabelledOutput::Line(Stream stream, std::string_view label, std::string_vie
   if (colour_) line += "\033[0m";
   line.append(label_width_ > label.size() ? label_width_ - label.size() : 0, ' ');
   line.append(" ").append(Printable(text)).append("\n");
-  queued_bytes_ += line.size();
+  return line;
+}
+
+void LabelledOutput::Add(Stream stream, std::string bytes) {
+  queued_bytes_ += bytes.size();
   constexpr std::size_t kChunk = 64 * 1024;
   if (!queue_.empty() && queue_.back().stream == stream && queue_.back().bytes.size() < kChunk) {
-    queue_.back().bytes += line;
+    queue_.back().bytes += bytes;
   } else {
-    queue_.push_back({stream, std::move(line)});
+    queue_.push_back({stream, std::move(bytes)});
   }
+}
+
+void LabelledOutput::Line(Stream stream, std::string_view label, std::string_view text) {
+  if (quiet_ && stream == Stream::kOut) return;
+  std::string drawn;
+  for (const std::string& line : status_) drawn += line + "\n";
+  Add(stream, WithoutStatus() + Formatted(stream, label, text) + drawn);
+}
+
+std::string LabelledOutput::WithoutStatus() const {
+  return status_.empty() ? "" : "\033[" + std::to_string(status_.size()) + "A\033[J";
+}
+
+void LabelledOutput::SetStatus(const std::vector<std::string>& lines) {
+  if (lines == status_ || quiet_ || json_) return;
+  std::string bytes = WithoutStatus();
+  status_ = lines;
+  for (const std::string& line : status_) bytes += Printable(line) + "\n";
+  Add(Stream::kOut, std::move(bytes));
 }
 
 void LabelledOutput::WriteSome() {

@@ -5,6 +5,7 @@
 #include <deque>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace hydro::launch {
 
@@ -28,6 +29,18 @@ class LabelledOutput {
   // Adds the line "[label]   text". `text` has no line end.
   void Line(Stream stream, std::string_view label, std::string_view text);
 
+  // Lines that stay below all others and are drawn anew with each; only for terminals. Empty: none any more.
+  void SetStatus(const std::vector<std::string>& lines);
+
+  // From now on lines of kOut are left out (--quiet), or every line is a JSON object with source, stream and text (--json).
+  void set_quiet() { quiet_ = true; }
+  void set_json() { json_ = true; }
+  // Adds a line of JSON as it is.
+  void Json(const std::string& object) { Add(Stream::kOut, object + "\n"); }
+
+  // Whether a status can be drawn: both are one terminal that understands cursor movements.
+  static bool CanDrawStatus(int out_fd, int err_fd);
+
   // The descriptor that must be writable for the next byte; -1: nothing waits.
   int waiting_fd() const { return queue_.empty() ? -1 : FdOf(queue_.front().stream); }
   bool full() const { return queued_bytes_ > kMostQueued; }
@@ -47,11 +60,18 @@ class LabelledOutput {
     std::size_t written = 0;
   };
 
+  void Add(Stream stream, std::string bytes);
+  std::string Formatted(Stream stream, std::string_view label, std::string_view text) const;
+  std::string WithoutStatus() const;  // what erases it
+
   int FdOf(Stream stream) const { return stream == Stream::kOut ? out_fd_ : err_fd_; }
 
   int out_fd_;
   int err_fd_;
   bool colour_;
+  bool quiet_ = false;
+  bool json_ = false;
+  std::vector<std::string> status_;  // drawn
   std::size_t label_width_ = 0;
   std::deque<Chunk> queue_;
   std::size_t queued_bytes_ = 0;

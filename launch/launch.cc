@@ -33,15 +33,18 @@ void CheckLog(const LaunchPlan& plan, const std::string& file) {
 
 }  // namespace
 
-int Launch(const settings::StackConfig& config, const LaunchPlan& plan, int out_fd, int err_fd,
-           const LaunchTiming& timing) {
+int Launch(const settings::StackConfig& config, const LaunchPlan& plan, const LaunchRequest& request,
+           int out_fd, int err_fd, const LaunchTiming& timing) {
   std::optional<LaunchLock> lock;  // until all is over
   LabelledOutput output(out_fd, err_fd, LabelledOutput::WantsColour(out_fd, err_fd));
   Supervisor supervisor(
       output, GraceFor(timing, plan));  // before the bus, whose threads must not receive its signals
   bus::WallClock clock;
   const auto bus = process::OpenStackBus(config.bus);
-  TerminalReport report(output, config, plan);
+  TerminalReport report(
+      output, config, plan,
+      {.status = LabelledOutput::CanDrawStatus(out_fd, err_fd), .quiet = request.quiet, .json = request.json},
+      request.log_file);
   StackLaunch launch(*bus, clock, supervisor, report, config, plan, timing);
   lock.emplace(config, RolesOf(plan), plan.spread);
   return launch.Run();
@@ -55,7 +58,7 @@ int LaunchStack(const LaunchRequest& request) {
     const TimingFiles timing(plan.timing_file);
     CheckDistinct({request.log_file, timing.json(), timing.page()});
   }
-  return Launch(config, plan, STDOUT_FILENO, STDERR_FILENO);
+  return Launch(config, plan, request, STDOUT_FILENO, STDERR_FILENO);
 }
 
 }  // namespace hydro::launch

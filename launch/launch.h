@@ -11,8 +11,8 @@ namespace hydro::launch {
 // 0 the run ended in order, 1 something failed, 2 a process refused its input. Before anything is started it
 // throws InputError for a bad bus URL and BusError when the bus cannot work. Call it before the process has
 // other threads.
-int Launch(const settings::StackConfig& config, const LaunchPlan& plan, int out_fd, int err_fd,
-           const LaunchTiming& timing = {});
+int Launch(const settings::StackConfig& config, const LaunchPlan& plan, const LaunchRequest& request,
+           int out_fd, int err_fd, const LaunchTiming& timing = {});
 
 // What hydro-launch does with its command line: loads the configuration, plans, launches.
 int LaunchStack(const LaunchRequest& request);

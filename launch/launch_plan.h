@@ -16,6 +16,8 @@ struct LaunchRequest {
   std::string log_file;                // --log; empty: no logger runs
   std::string host;                    // --host; empty: everything on this machine
   std::string timing_file;             // --timing; empty: no report
+  bool quiet = false;                  // --quiet: errors only
+  bool json = false;                   // --json: a JSON object a line
 };
 
 // Programs are looked for in `programs_folder`, then on PATH. Throws InputError when a program is missing or

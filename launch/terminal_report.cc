@@ -1,13 +1,47 @@
 #include "launch/terminal_report.h"
 
+#include <nlohmann/json.hpp>
+
 namespace hydro::launch {
 
 TerminalReport::TerminalReport(LabelledOutput& output, const settings::StackConfig& config,
-                               const LaunchPlan& plan)
-    : output_(output), config_(config) {
+                               const LaunchPlan& plan, const ReportStyle& style, const std::string& log_file)
+    : output_(output), config_(config), style_(style), log_file_(log_file) {
+  if (style_.quiet) output_.set_quiet();
+  if (style_.json) output_.set_json();
   if (!plan.timing_file.empty()) timing_files_.emplace(plan.timing_file);
   output_.AnnounceLabel(kLabel);
   for (const ChildSpec& child : plan.children) output_.AnnounceLabel(child.label);
+}
+
+void TerminalReport::ShowStatus(const std::vector<ProcessStatus>& processes) {
+  if (style_.json) {
+    if (processes.empty()) return;
+    nlohmann::ordered_json rows = nlohmann::ordered_json::array();
+    for (const ProcessStatus& p : processes) {
+      rows.push_back({{"role", p.role},
+                      {"rate_hz", p.rate_hz},
+                      {"latency_p99_us", p.latency_p99_us},
+                      {"missed_deadlines", p.missed_deadlines},
+                      {"lost_messages", p.lost_messages},
+                      {"fault", p.fault}});
+    }
+    output_.Json(nlohmann::ordered_json{{"processes", rows}}.dump());
+    return;
+  }
+  if (!style_.status) return;
+  std::vector<std::string> lines;
+  lines.reserve(processes.size());
+  for (const ProcessStatus& process : processes) lines.push_back(StatusLine(process));
+  output_.SetStatus(lines);
+}
+
+void TerminalReport::End(int exit_code) {
+  if (style_.json) {
+    output_.Json(nlohmann::ordered_json{{"exit_code", exit_code}, {"log", log_file_}}.dump());
+  } else if (!log_file_.empty()) {
+    Print("next: hydro-log summary " + log_file_ + "; hydro-scope " + log_file_);
+  }
 }
 
 std::string TerminalReport::WriteTiming(const timing::TimingRecord& record) {

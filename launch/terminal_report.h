@@ -12,15 +12,25 @@
 
 namespace hydro::launch {
 
+struct ReportStyle {
+  bool status = false;  // draws how the processes are doing below the other lines
+  bool quiet = false;   // errors only
+  bool json = false;    // a JSON object a line
+};
+
 class TerminalReport : public LaunchReport {
  public:
-  // Announces the labels. All must outlive it. Throws InputError for a bad name of a timing file.
-  TerminalReport(LabelledOutput& output, const settings::StackConfig& config, const LaunchPlan& plan);
+  // `status`: draws how the processes are doing below the other lines. `log_file`: what the run is recorded in; empty: nothing. Announces
+  // the labels. All must outlive it. Throws InputError for a bad name of a timing file.
+  TerminalReport(LabelledOutput& output, const settings::StackConfig& config, const LaunchPlan& plan,
+                 const ReportStyle& style, const std::string& log_file);
 
   void Print(const std::string& text) override { output_.Line(LabelledOutput::Stream::kOut, kLabel, text); }
   void PrintError(const std::string& text) override {
     output_.Line(LabelledOutput::Stream::kErr, kLabel, text);
   }
+  void ShowStatus(const std::vector<ProcessStatus>& processes) override;
+  void End(int exit_code) override;
   std::string WriteTiming(const timing::TimingRecord& record) override;
 
  private:
@@ -28,6 +38,8 @@ class TerminalReport : public LaunchReport {
 
   LabelledOutput& output_;
   const settings::StackConfig& config_;
+  const ReportStyle style_;
+  const std::string log_file_;
   std::optional<TimingFiles> timing_files_;
 };
 

@@ -11,6 +11,7 @@
 int main(int argc, char** argv) {
   hydro::settings::CommandLine command_line("hydro-logger",
                                             "Records every message on the bus into an LCM event log.");
+  command_line.AddExamples({"hydro-logger config/demo.toml -o run.lcmlog"}, "docs/logs.md");
   hydro::settings::CommonOptions options;
   hydro::logger::LoggerOptions logger;
   double rotate_mb = 0;

@@ -7,6 +7,9 @@
 int main(int argc, char** argv) {
   hydro::settings::CommandLine command_line(
       "hydro-plant", "The simulated actuator: sets the pace, publishes states, obeys motor commands.");
+  command_line.AddExamples(
+      {"hydro-plant config/demo.toml        with the two controllers beside it; hydro-launch starts all"},
+      "docs/launch.md");
   hydro::settings::CommonOptions options;
   std::vector<std::string> expected;
   command_line.AddCommon(&options);

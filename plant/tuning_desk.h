@@ -59,7 +59,14 @@ class TuningDesk {
     std::shared_ptr<const settings::StackConfig> config;
     tuned_settings_t message;
   };
-  struct Pending;  // the change that is being made
+  // The change that is being made.
+  struct Pending {
+    tuning_request_t request;
+    std::optional<Version> version;  // proposed, or decided when its acts_at is not -1
+    std::string text;
+    bus::Clock::TimePoint deadline;
+    bus::Clock::TimePoint next_repeat;
+  };
   struct Controller {
     int64_t ready_for = -1;
     int64_t in_force = -1;

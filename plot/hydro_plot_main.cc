@@ -10,6 +10,7 @@
 
 int main(int argc, char** argv) {
   hydro::settings::CommandLine line("hydro-plot", "Draws a run as DIR/arm.svg and DIR/pressure.svg.");
+  line.AddExamples({"hydro-plot run.csv out/run"}, "README.md");
   std::string table;
   std::string folder;
   line.AddPositional("RUN", &table, "FILE a table that hydro-log export wrote (.csv, .mat)");

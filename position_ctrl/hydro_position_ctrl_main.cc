@@ -6,6 +6,9 @@ int main(int argc, char** argv) {
   hydro::settings::CommandLine command_line(
       "hydro-position-ctrl",
       "The sampled PD position loop, eq. (17), and the references that it or the pressure loop follows.");
+  command_line.AddExamples(
+      {"hydro-position-ctrl config/demo.toml        beside a plant; hydro-launch starts all"},
+      "docs/launch.md");
   hydro::settings::CommonOptions options;
   command_line.AddCommon(&options);
   if (const auto exit_code = command_line.Parse(argc, argv)) return *exit_code;

@@ -38,6 +38,8 @@ class PositionApp : public process::App {
   int Finish() override;
 
  private:
+  static constexpr int64_t kJoiningSamples = 10;  // a first state after so many is one of a run that goes on
+
   void OnState(const state_t& state);
   void OnPlan(const arm_plan_t& plan);
   void NotePlanner(int64_t tick);

@@ -5,6 +5,9 @@
 int main(int argc, char** argv) {
   hydro::settings::CommandLine command_line(
       "hydro-pressure-ctrl", "The fast pressure loop: a motor command for each plant tick, eq. (16).");
+  command_line.AddExamples(
+      {"hydro-pressure-ctrl config/demo.toml        beside a plant; hydro-launch starts all"},
+      "docs/launch.md");
   hydro::settings::CommonOptions options;
   command_line.AddCommon(&options);
   if (const auto exit_code = command_line.Parse(argc, argv)) return *exit_code;

@@ -10,6 +10,8 @@ int main(int argc, char** argv) {
       "hydro-scope",
       "Shows a running stack, or a log, in the browser: prints the address of its page. "
       "Example: hydro-scope config/demo.toml. See docs/scope.md.");
+  line.AddExamples({"hydro-scope config/demo.toml        beside a running stack", "hydro-scope run.lcmlog"},
+                   "docs/scope.md");
   hydro::scope::ScopeRequest request;
   int port = -1;
   line.AddPositional("CONFIG|LOG", &request.input, "FILE the stack's configuration, or a log (.lcmlog)");

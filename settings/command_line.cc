@@ -170,6 +170,12 @@ CommandLine::~CommandLine() = default;
 CommandLine::CommandLine(CommandLine&&) noexcept = default;
 CommandLine& CommandLine::operator=(CommandLine&&) noexcept = default;
 
+void CommandLine::AddExamples(const std::vector<std::string>& lines, const std::string& page) {
+  std::string text = "Examples:";
+  for (const std::string& line : lines) text += "\n  " + line;
+  impl_->app().footer(text + "\nMore: " + page);
+}
+
 void CommandLine::AddCommon(CommonOptions* options, bool config_required) {
   AddPositional("CONFIG", &options->config, "FILE the stack's configuration, TOML", config_required);
   AddOption("--set", &options->overrides,

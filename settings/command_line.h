@@ -62,6 +62,9 @@ class CommandLine {
   void AddPositional(const std::string& name, std::vector<std::string>* target, const std::string& help,
                      bool required = true);
 
+  // What --help ends with: lines that can be typed, and the page to read.
+  void AddExamples(const std::vector<std::string>& lines, const std::string& page);
+
   // A verb with options of its own, as in `hydro-log info LOG`; the command line must then have exactly one
   // verb. The reference stays valid as long as this object.
   CommandLine& AddVerb(const std::string& name, const std::string& description);

@@ -45,6 +45,7 @@ int Run(const hydro::settings::CommonOptions& options, const std::string& file,
 int main(int argc, char** argv) {
   hydro::settings::CommandLine command_line("hydro-sim",
                                             "The whole stack in one process on a simulated clock.");
+  command_line.AddExamples({"hydro-sim config/demo.toml -o run.lcmlog"}, "README.md");
   hydro::settings::CommonOptions options;
   std::string file, tunings_of;
   command_line.AddCommon(&options);

@@ -15,6 +15,11 @@ int main(int argc, char** argv) {
       "hydro-tune",
       "Proposes gains of both loops for a model and goals: margins by the exact linearisation, steps on the "
       "nonlinear model. Example: hydro-tune config/paper.toml --goal overshoot_percent=1 -o tuned.toml");
+  line.AddExamples(
+      {"hydro-tune config/demo.toml                          print margins and settling of proposed gains",
+       "hydro-tune config/demo.toml -o tuned.toml --out out/tune    and write the configuration, and a "
+       "report"},
+      "docs/tuning_gains.md");
   hydro::tune::TuneRequest request;
   request.jobs = static_cast<int>(std::clamp(std::thread::hardware_concurrency(), 1U, 64U));
   line.AddPositional("CONFIG", &request.config, "FILE the stack's configuration (TOML)");

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
+#include "launch/logic/run_summary.h"
 #include "timing/report/timing_record.h"
 
 namespace hydro::launch {
@@ -13,6 +15,12 @@ class LaunchReport {
 
   virtual void Print(const std::string& text) = 0;
   virtual void PrintError(const std::string& text) = 0;
+
+  // How the processes are doing, about once a second while the run goes on; empty: it is over.
+  virtual void ShowStatus(const std::vector<ProcessStatus>& /*processes*/) {}
+
+  // The launch is over; nothing is printed after it.
+  virtual void End(int /*exit_code*/) {}
 
   // Writes how the loops kept time and returns a line that says where; empty: it is not kept. Throws std::exception.
   virtual std::string WriteTiming(const timing::TimingRecord& record) = 0;

@@ -17,6 +17,7 @@ constexpr size_t kMostLoops = 64;
 constexpr size_t kMostFaults = 256;
 constexpr size_t kMostOutputs = 4;
 constexpr size_t kLongestText = 500;
+constexpr size_t kWidestLine = 79;  // of a terminal of 80 columns
 
 }  // namespace
 
@@ -85,6 +86,33 @@ std::vector<std::string> RunSummary::Lines() const {
   }
   for (const output_left_t& left : outputs_left_) lines.push_back(process::OutputLeftText(left));
   return lines;
+}
+
+std::vector<ProcessStatus> RunSummary::Status() const {
+  std::vector<ProcessStatus> rows;
+  rows.reserve(loops_.size());
+  for (const Loop& loop : loops_) {
+    const loop_statistics_t& s = loop.shown;
+    ProcessStatus row{.role = s.role,
+                      .rate_hz = s.interval_s > 0 ? static_cast<double>(s.cycles) / s.interval_s : 0,
+                      .latency_p99_us = s.latency_p99_us,
+                      .missed_deadlines = loop.missed_deadlines,
+                      .lost_messages = loop.lost_messages};
+    for (const Fault& fault : faults_) {
+      if (fault.active && fault.first.session == s.session && row.fault.empty()) row.fault = fault.first.code;
+    }
+    rows.push_back(std::move(row));
+  }
+  return rows;
+}
+
+std::string StatusLine(const ProcessStatus& status) {
+  std::string line =
+      fmt::format("{:<14.14}{:>7.0f} Hz   late p99 {:>7.0f} us   missed {:>5}   lost {:>4}   {}", status.role,
+                  status.rate_hz, status.latency_p99_us, status.missed_deadlines, status.lost_messages,
+                  status.fault.empty() ? "ok" : status.fault);
+  if (line.size() > kWidestLine) line.resize(kWidestLine);
+  return line;
 }
 
 std::vector<std::string> RunSummary::FaultsLeft() const {

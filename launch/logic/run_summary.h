@@ -10,6 +10,19 @@
 
 namespace hydro::launch {
 
+// How a process is doing, for the line that is drawn while the run goes on.
+struct ProcessStatus {
+  std::string role;
+  double rate_hz = 0;            // of its loop, over its last report
+  double latency_p99_us = 0;     // the same
+  int64_t missed_deadlines = 0;  // since the run began
+  int64_t lost_messages = 0;
+  std::string fault;  // code of one that is active; empty: none
+};
+
+// "plant            1000 Hz   late p99     34 us   missed     0   lost     0   ok", at most 79 characters.
+std::string StatusLine(const ProcessStatus& status);
+
 class RunSummary {
  public:
   void Add(const loop_statistics_t& report);
@@ -23,6 +36,9 @@ class RunSummary {
   std::vector<std::string> Lines() const;
 
   bool says_what_was_left() const { return !outputs_left_.empty(); }
+
+  // A row for each process that has reported, in the order of their first reports.
+  std::vector<ProcessStatus> Status() const;
 
   // "CODE of SOURCE" of every fault that was still active at the end and is more than a warning, each once,
   // whatever the session.

@@ -13,6 +13,7 @@ using namespace std::chrono_literals;
 
 // How often the bus is read; processes that print or end wake the launcher at once.
 constexpr auto kBusPeriod = 20ms;
+constexpr auto kStatusPeriod = 500ms;
 constexpr int kQuestions = 3;
 constexpr auto kAnswerTime = 100ms;  // how long a running process may take to say that it is there
 
@@ -45,12 +46,15 @@ int StackLaunch::Run() {
     CheckPlantIsHeard();
     CheckEarlyEnd();
     stop_announcer_.Repeat();
+    ShowStatus();
   }
+  report_.ShowStatus({});
   HearLastReports();
   OnStopHeard();  // our processes may have heard it, and ended, before this launcher has
   RepeatStopForOtherHosts();
   PrintSummary();
   WriteTiming();
+  report_.End(exit_code_);
   WriteRemainingOutput();
   return exit_code_;
 }
@@ -97,6 +101,13 @@ int StackLaunch::HearBus(TimePoint until) {
     Fail(error.what(), 1);
     return 0;
   }
+}
+
+void StackLaunch::ShowStatus() {
+  if (clock_.Now() < next_status_ || children_.stopping()) return;
+  next_status_ = clock_.Now() + kStatusPeriod;
+  const std::vector<ProcessStatus> processes = watch_.summary().Status();
+  if (!processes.empty()) report_.ShowStatus(processes);
 }
 
 // A process reports on its whole run as it leaves, and the report may arrive after its end was noticed.

@@ -32,6 +32,7 @@ class StackLaunch {
   void RefuseIfOneRuns();
   void StartAll();
   int HearBus(TimePoint until);
+  void ShowStatus();
   void HearLastReports();
   void WriteTiming();
   void OnSignals();
@@ -61,6 +62,7 @@ class StackLaunch {
 
   TimePoint started_;
   TimePoint asked_;  // who is there, while not all are ready
+  TimePoint next_status_;
   bool ready_ = false;
   bool plant_heard_ = false;
   bool bus_failed_ = false;

@@ -23,6 +23,7 @@ int main(int argc, char** argv) {
       "hydro-driver",
       "The real actuator behind a data-acquisition board (Comedi): publishes the sensors' readings and puts "
       "out the pressure loop's commands.");
+  command_line.AddExamples({"hydro-driver config/driver.toml"}, "docs/hardware.md");
   hydro::settings::CommonOptions options;
   std::vector<std::string> expected;
   bool check_sensors = false;

@@ -65,6 +65,43 @@ TEST_F(LabelledOutputTest, EscapesControlCharacters) {
   EXPECT_EQ(Read(), "[a] \\x1b[2Jx\\x0a[b] y\n");
 }
 
+// Tests that the status stays below all other lines, and is drawn anew only where it changed.
+TEST_F(LabelledOutputTest, StatusStaysBelow) {
+  LabelledOutput output(pipe_[1], pipe_[1], false);
+  output.SetStatus({"one", "two"});
+  output.SetStatus({"one", "two"});
+  output.Flush();
+  EXPECT_EQ(Read(), "one\ntwo\n");
+  output.Line(Stream::kErr, "a", "text");
+  output.Flush();
+  EXPECT_EQ(Read(), "\033[2A\033[J[a] text\none\ntwo\n");
+  output.SetStatus({"three"});
+  output.SetStatus({});
+  output.Line(Stream::kOut, "a", "end");
+  output.Flush();
+  EXPECT_EQ(Read(), "\033[2A\033[Jthree\n\033[1A\033[J[a] end\n");
+}
+
+TEST_F(LabelledOutputTest, QuietAndJson) {
+  LabelledOutput quiet(pipe_[1], pipe_[1], false);
+  quiet.set_quiet();
+  quiet.SetStatus({"one"});
+  quiet.Line(Stream::kOut, "a", "all is well");
+  quiet.Line(Stream::kErr, "a", "it is not");
+  quiet.Flush();
+  EXPECT_EQ(Read(), "[a] it is not\n");
+  LabelledOutput json(pipe_[1], pipe_[1], false);
+  json.set_json();
+  json.SetStatus({"one"});
+  json.Line(Stream::kErr, "a", "say \"no\"\033");
+  json.Json(R"({"exit_code":0})");
+  json.Flush();
+  EXPECT_EQ(Read(), R"({"source":"a","stream":"err","text":"say \"no\"\\x1b"})"
+                    "\n"
+                    R"({"exit_code":0})"
+                    "\n");
+}
+
 // Tests that colours surround the label only.
 TEST_F(LabelledOutputTest, ColoursTheLabel) {
   LabelledOutput output(pipe_[1], pipe_[1], true);

@@ -29,6 +29,29 @@ loop_statistics_t Report(double interval_s, int64_t cycles, double p50_us, doubl
 // Tests that hearing nothing prints nothing.
 TEST(RunSummaryTest, EmptyWithoutReports) { EXPECT_THAT(RunSummary().Lines(), IsEmpty()); }
 
+// Tests that a status has what the last report says, with a fault that lasts, and fits a terminal of 80 columns.
+TEST(RunSummaryTest, Status) {
+  RunSummary summary;
+  EXPECT_THAT(summary.Status(), IsEmpty());
+  loop_statistics_t report = Report(2, 1996, 1001, 345);
+  report.latency_p99_us = 87.6;
+  summary.Add(report);
+  ASSERT_EQ(summary.Status().size(), 1u);
+  EXPECT_EQ(StatusLine(summary.Status()[0]),
+            "plant             998 Hz   late p99      88 us   missed     2   lost    1   ok");
+  fault_t fault{};
+  fault.session = 1;
+  fault.code = "second_pressure_command_sender";
+  fault.active = true;
+  summary.Add(fault);
+  const std::string line = StatusLine(summary.Status()[0]);
+  EXPECT_THAT(line, HasSubstr("   second_press"));
+  EXPECT_LE(line.size(), 79u);
+  fault.active = false;
+  summary.Add(fault);
+  EXPECT_THAT(StatusLine(summary.Status()[0]), HasSubstr("   ok"));
+}
+
 // Tests that counts add up over the run, and that percentiles are those of the last report of a whole second.
 TEST(RunSummaryTest, CountsAddUpPercentilesAreTheLast) {
   RunSummary summary;
