@@ -186,7 +186,8 @@ const std::vector<Malformed>& Table() {
       {Changed("signal = \"arm_angle\"", "signal = \"angle\""), "stack.toml:12: ",
        "reference.signal: found \"angle\", allowed \"arm_angle\", \"pressure\", \"torque\" or \"voltage\""},
       {Reference("kind = \"step\"\n"), "stack.toml:13: ",
-       "reference.kind: found \"step\", allowed \"steps\", \"sine\", \"square\", \"chirp\", \"csv\" or \"planner\""},
+       "reference.kind: found \"step\", allowed \"steps\", \"sine\", \"square\", \"chirp\", \"csv\" or "
+       "\"planner\""},
       {Reference("kind = \"steps\"\namplitude = 1\n"), "stack.toml:14: ",
        "reference: \"amplitude\": found an unknown key, allowed \"signal\", \"kind\", \"initial\" or "
        "\"steps\""},
