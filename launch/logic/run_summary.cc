@@ -97,7 +97,8 @@ std::vector<ProcessStatus> RunSummary::Status() const {
                       .rate_hz = s.interval_s > 0 ? static_cast<double>(s.cycles) / s.interval_s : 0,
                       .latency_p99_us = s.latency_p99_us,
                       .missed_deadlines = loop.missed_deadlines,
-                      .lost_messages = loop.lost_messages};
+                      .lost_messages = loop.lost_messages,
+                      .fault = {}};
     for (const Fault& fault : faults_) {
       if (fault.active && fault.first.session == s.session && row.fault.empty()) row.fault = fault.first.code;
     }
