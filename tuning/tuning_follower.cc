@@ -27,6 +27,7 @@ void TuningFollower::OnSettings(const tuned_settings_t& settings) {
   if ((run != 0 && settings.session != run) || participant_.Refuses(settings.session)) return;
   if (settings.session != plant_) {  // another run: it begins as configured, or as its plant says
     plant_ = settings.session;
+    next_status_ = {};  // it asks nobody who has not said so
     waiting_.reset();
     status_.refused = -1;
     if (in_force_ != 0) in_force_ = -1;  // that plant's numbers are not this one's
