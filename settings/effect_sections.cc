@@ -119,7 +119,8 @@ std::vector<model::EffectDescription> ReadEffects(SectionReader section, const T
                        id + "\"]: the id needs quotes");
     }
     throw InputError(member.second.place + ": effects: found the unknown effect " + Quoted(id) +
-                     ", allowed " + QuotedList(known) + DidYouMean(id, known));
+                     ", allowed " + QuotedList(known) + DidYouMean(id, known) +
+                     "; one of your own is built in: cmake -DHYDRO_EFFECTS=FILE.cc (docs/effects.md)");
   }
   return effects;
 }
