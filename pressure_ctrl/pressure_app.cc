@@ -50,6 +50,7 @@ PressureApp::PressureApp(bus::Bus& bus, bus::Clock& clock, const settings::Stack
       stall_time_(bus::FromSeconds(config.time.stall_timeout_s) + 400ms),
       values_(tuning::ValuesOf(config)),
       pressure_limit_(LargestPressureReference(values_, half_dac_step_)),
+      limit_before_(pressure_limit_),
       tuning_(participant_, [this](const tuned_settings_t& settings) { return WhyNot(settings); }),
       transfer_(std::llround(config.limits.transfer_s * config.plant.rate_hz)),
       state_monitor_(stale_time_),
@@ -185,7 +186,14 @@ void PressureApp::TakeSettingsAt(int64_t tick) {
   if (settings == nullptr) return;
   if (!law_before_) law_before_ = values_.pressure;
   tuning::Read(*settings, k_2_, &values_);  // good: it was prepared
+  limit_before_ = std::max(LargestReference(), LargestPressureReference(values_, half_dac_step_));
+  limit_from_ = tick;
   pressure_limit_ = LargestPressureReference(values_, half_dac_step_);
+}
+
+// A command from before a tighter limit was in force is none the worse for it.
+double PressureApp::LargestReference() const {
+  return pressure_command_ && pressure_command_->tick < limit_from_ ? limit_before_ : pressure_limit_;
 }
 
 // V: what keeps the voltage from jumping when the gains have changed.

@@ -47,6 +47,7 @@ class PressureApp : public process::App {
   template <class Describe>
   bool CheckLimit(bool good, const char* code, double value, double limit, Describe&& describe);
   double PressureReference(int64_t tick) const;
+  double LargestReference() const;
   int64_t TicksStale(int64_t tick) const;
   void TakePressureCommandsUpTo(int64_t tick);
   bool AwaitsPressureCommand(int64_t state_tick) const;
@@ -70,7 +71,9 @@ class PressureApp : public process::App {
   const bus::Clock::Duration stale_time_;
   const bus::Clock::Duration stall_time_;
   tuning::TunedValues values_;  // in force
-  double pressure_limit_;       // psi, largest |pressure reference|
+  double pressure_limit_;       // psi, largest |pressure reference| of commands from limit_from_ on
+  double limit_before_;         // of those before
+  int64_t limit_from_ = 0;      // tick
   tuning::TuningFollower tuning_;
   std::optional<bus::Clock::TimePoint>
       joined_;  // a run that went on without this loop, whose values are not known yet

@@ -100,12 +100,13 @@ bool PressureApp::PressureCommandIsSafe(const state_t& state) {
     return fmt::format("tick {}: pressure reference {}, voltage {}; both must be finite",
                        pressure_command_->tick, pressure_command_->pressure_ref, pressure_command_->voltage);
   });
-  safe &= Check(!finite || std::fabs(reference) <= pressure_limit_, "excessive_pressure_command", reference,
-                pressure_limit_, [&] {
+  const double largest = LargestReference();
+  safe &= Check(!finite || std::fabs(reference) <= largest, "excessive_pressure_command", reference, largest,
+                [&] {
                   return fmt::format(
                       "tick {}: pressure reference {:.6g} psi, allowed are +/- {:.6g} psi "
                       "(limits.arm_torque_in_lbf / k_2)",
-                      pressure_command_->tick, reference, pressure_limit_);
+                      pressure_command_->tick, reference, largest);
                 });
   safe &= Check(!future_command_, "future_pressure_command", static_cast<double>(future_command_.value_or(0)),
                 static_cast<double>(state.tick), [&] {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <functional>
 #include <hydro/arm_reference_t.hpp>
+#include <hydro/fault_t.hpp>
 #include <hydro/motor_command_t.hpp>
 #include <hydro/pressure_command_t.hpp>
 #include <hydro/tuned_settings_t.hpp>
@@ -216,6 +217,21 @@ TEST_F(LiveTuningTest, TheCommandsDoNotJump) {
                                                               {later_command.pressure_ref, later.p1, later.p2,
                                                                later.motor_speed, later.arm_speed})
                                        .voltage);
+}
+
+// Tests that a torque limit that is tightened below what is just asked for trips nothing: the command on its way is from before.
+TEST_F(LiveTuningTest, ATighterTorqueLimitTripsNothing) {
+  std::vector<fault_t> faults;
+  listen_ = [&] { bus_->Subscribe<fault_t>("HYDRO_FAULT", [&](const fault_t& f) { faults.push_back(f); }); };
+  at_[510] = [&] { Ask(1, "limits.arm_torque_in_lbf=1000"); };
+  ASSERT_EQ(Run(0.3), 0);
+  const tuning_answer_t* answer = AnswerTo(1);
+  ASSERT_NE(answer, nullptr);
+  ASSERT_TRUE(answer->accepted) << answer->text;
+  EXPECT_GT(AtTick(pressures_, answer->acts_at - 25).pressure_ref, 1.2 * 1000 / 3.68)
+      << "more was asked for before";
+  EXPECT_DOUBLE_EQ(AtTick(pressures_, answer->acts_at).pressure_ref, 1000 / 3.68);
+  EXPECT_TRUE(faults.empty()) << faults.front().text;
 }
 
 // Tests that what is refused changes nothing, to the last bit, and says why.
