@@ -107,8 +107,7 @@ std::string Read(const tuned_settings_t& message, double k_2, TunedValues* value
   for (size_t i = 0; i < count; ++i) {
     const Value* value = Find(message.names[i]);
     if (value == nullptr) return message.names[i] + ": not known to this version";
-    if (std::string wrong = WhatIsWrong(message.names[i], message.values[i]); !wrong.empty())
-      return wrong;
+    if (std::string wrong = WhatIsWrong(message.names[i], message.values[i]); !wrong.empty()) return wrong;
     value->set(changed, message.values[i]);
   }
   changed.position.pressure_limit = changed.limits.arm_torque_in_lbf / k_2;
