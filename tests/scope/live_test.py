@@ -37,7 +37,7 @@ class LiveTest(stack.TestCase):
         recorded.send({"op": "get", "id": 2, "run": 0, "channels": ["p1", "voltage_asked"], "t0": 0.5, "t1": 1, "pixels": 4000})
         kept = recorded.until(lambda m: m["op"] == "bins")
         self.assertEqual(shown["bins"], kept["bins"])
-        self.assertEqual(str(shown["channels"]), str(kept["channels"]))  # NaN where a tick was skipped
+        self.assertEqual(str(shown["channels"]), str(kept["channels"]))  # NaN where a tick is missing
         self.assertNotIn("scope", self.run_program("hydro-log", "info", log).stdout.split("config")[0])
 
     # Tests that faults are told, and that re-arming and setting need [scope] control.
