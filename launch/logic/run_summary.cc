@@ -108,10 +108,9 @@ std::vector<ProcessStatus> RunSummary::Status() const {
 }
 
 std::string StatusLine(const ProcessStatus& status) {
-  std::string line =
-      fmt::format("{:<14.14}{:>7.0f} Hz   late p99 {:>7.0f} us   missed {:>5}   lost {:>4}   {}", status.role,
-                  status.rate_hz, status.latency_p99_us, status.missed_deadlines, status.lost_messages,
-                  status.fault.empty() ? "ok" : status.fault);
+  std::string line = fmt::format("{:<14.14}{:>6.0f} Hz  p99 {:>6.0f} us  missed {:>4}  lost {:>3}  {}",
+                                 status.role, status.rate_hz, status.latency_p99_us, status.missed_deadlines,
+                                 status.lost_messages, status.fault.empty() ? "ok" : status.fault);
   if (line.size() > kWidestLine) line.resize(kWidestLine);
   return line;
 }

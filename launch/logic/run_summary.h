@@ -20,7 +20,8 @@ struct ProcessStatus {
   std::string fault;  // code of one that is active; empty: none
 };
 
-// "plant            1000 Hz   late p99     34 us   missed     0   lost     0   ok", at most 79 characters.
+// "plant           1000 Hz  p99     34 us  missed    0  lost   0  ok": rate, lateness, and a fault; at most 79
+// characters.
 std::string StatusLine(const ProcessStatus& status);
 
 class RunSummary {

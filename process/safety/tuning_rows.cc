@@ -52,7 +52,7 @@ constexpr std::array kRows{
         .restart = Cleared::kByItself,
         .explicit_rearm = Cleared::kByItself,
         .cleared_text = "a second after the last",
-        .tests = "position_ctrl/PositionAppTest.APlanThatIsWrongIsNotFollowed "
+        .tests = "position_ctrl/PlannerTest.APlanThatIsWrongIsNotFollowed "
                  "position_ctrl/PlanFollower.RefusesWithTheReason",
         .not_injected = "no kind of fault sends plans",
     },
@@ -67,7 +67,7 @@ constexpr std::array kRows{
         .restart = Cleared::kByItself,
         .explicit_rearm = Cleared::kByItself,
         .cleared_text = "with the next plan",
-        .tests = "position_ctrl/PositionAppTest.ASilentPlannersReferenceIsHeld "
+        .tests = "position_ctrl/PlannerTest.ASilentPlannersReferenceIsHeld "
                  "position_ctrl/PlanFollower.HoldsWhenThePlannerIsSilent",
         .not_injected = "no kind of fault sends plans",
     },

@@ -211,7 +211,7 @@ TEST_F(HydroLogTest, BadUsageAndInput) {
       {{"export", Path("log"), "-o", Path("out.txt")}, Path("out.txt")},
       {{"export", Path("log"), "-o", Path("none/out.csv")}, Path("none/out.csv") + ": cannot be created"},
       {{"export", Path("empty"), "-o", out}, "found no message on HYDRO_STATE"},
-      {{"export", Path("bad.csv"), "-o", out}, Path("bad.csv") + ": byte 0, event 0"},
+      {{"export", Path("bad.csv"), "-o", out}, Path("bad.csv") + ": found text, allowed an LCM event log"},
       {{"import", Path("bad.csv"), "-o", out}, Path("bad.csv") + ": line 3, column p1_psi: found \"x\""},
       {{"import", Path("log"), "-o", out}, Path("log")},
       {{"compare", Path("log"), Path("none")}, Path("none")},

@@ -38,18 +38,18 @@ TEST(RunSummaryTest, Status) {
   summary.Add(report);
   ASSERT_EQ(summary.Status().size(), 1u);
   EXPECT_EQ(StatusLine(summary.Status()[0]),
-            "plant             998 Hz   late p99      88 us   missed     2   lost    1   ok");
+            "plant            998 Hz  p99     88 us  missed    2  lost   1  ok");
   fault_t fault{};
   fault.session = 1;
   fault.code = "second_pressure_command_sender";
   fault.active = true;
   summary.Add(fault);
   const std::string line = StatusLine(summary.Status()[0]);
-  EXPECT_THAT(line, HasSubstr("   second_press"));
+  EXPECT_THAT(line, HasSubstr("  second_pressur"));
   EXPECT_LE(line.size(), 79u);
   fault.active = false;
   summary.Add(fault);
-  EXPECT_THAT(StatusLine(summary.Status()[0]), HasSubstr("   ok"));
+  EXPECT_THAT(StatusLine(summary.Status()[0]), HasSubstr("  ok"));
 }
 
 // Tests that counts add up over the run, and that percentiles are those of the last report of a whole second.

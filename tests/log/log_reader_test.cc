@@ -98,7 +98,11 @@ TEST_F(LogReaderTest, DoesNotReturnAnEventOfWrongLength) {
 // Tests that a file that is no log, and a missing file, are errors that name the file.
 TEST_F(LogReaderTest, NotALog) {
   WriteBytes(Path("text"), "time_s,tick\n0,1\n");
-  EXPECT_THAT(InputErrorOf([&] { ReadEvents(Path("text")); }), HasSubstr(Path("text") + ": byte 0, event 0"));
+  EXPECT_THAT(InputErrorOf([&] { ReadEvents(Path("text")); }),
+              HasSubstr(Path("text") + ": found text, allowed an LCM event log; hydro-log import"));
+  WriteBytes(Path("bytes"), std::string("\x01\x02\x03\x04\x05\x06", 6));
+  EXPECT_THAT(InputErrorOf([&] { ReadEvents(Path("bytes")); }),
+              HasSubstr(Path("bytes") + ": byte 0, event 0"));
   EXPECT_THAT(InputErrorOf([&] { ReadEvents(Path("none")); }),
               AllOf(HasSubstr(Path("none")), HasSubstr("No such file")));
   EXPECT_THAT(InputErrorOf([&] { ReadEvents(Path("")); }), HasSubstr("folder"));

@@ -212,7 +212,7 @@ const std::vector<Malformed>& Table() {
       {Reference("kind = \"steps\"\nsteps = [[0, 0.9]]\n"),
        "stack.toml:14: ", "reference.steps: found arm angle 0.9 rad (51.57 deg)"},
       {Reference("kind = \"steps\"\nsteps = [[0, 0.85]]\n"),
-       "stack.toml:14: ", "reference.steps: found arm angle 0.85 rad, allowed |alpha| <= 0.840"},
+       "stack.toml:14: ", "reference.steps: found arm angle 0.85 rad (48.7 deg), allowed |alpha| <= 0.840"},
       {Changed("[pressure]", "[limits]\nrearm = \"never\"\n[pressure]"),
        "stack.toml:", "limits.rearm: found \"never\", allowed \"restart\" or \"explicit\""},
       {Changed("[pressure]", "[limits]\npressure_ramp_s = -1\n[pressure]"),

@@ -133,7 +133,7 @@ TEST(TunableKeys, AreKeysOfTheConfiguration) {
     const std::string key(row.key);
     const std::string last = key.substr(key.find('.') + 1);
     std::vector<std::string> kind;
-    for (const char* name : {"steps", "sine", "chirp"}) {
+    for (const char* name : {"steps", "sine", "chirp", "planner"}) {
       const auto keys = settings::KeysOfTrajectory(name);
       if (kind.empty() && std::find(keys.begin(), keys.end(), last) != keys.end()) {
         kind = {std::string("reference.kind=") + name};
