@@ -118,7 +118,7 @@ void TuningDesk::Propose(tuning::PreparedChange change) {
   pending_->text = std::move(change.text);
   pending_->deadline = participant_.clock().Now() + kAnswerTime;
   pending_->next_repeat = participant_.clock().Now() + kRepeatPeriod;
-  Publish(pending_->version->message, tuned_settings_t::PROPOSED);
+  Publish(&pending_->version->message, tuned_settings_t::PROPOSED);
 }
 
 void TuningDesk::Refuse(const std::string& why) {
@@ -157,24 +157,24 @@ void TuningDesk::Poll() {
   if (pending_ && pending_->version) {
     if (now >= pending_->next_repeat) {
       pending_->next_repeat = now + kRepeatPeriod;
-      const tuned_settings_t& message = pending_->version->message;
-      Publish(message, message.acts_at < 0 ? tuned_settings_t::PROPOSED : tuned_settings_t::DECIDED);
+      tuned_settings_t& message = pending_->version->message;
+      Publish(&message, message.acts_at < 0 ? tuned_settings_t::PROPOSED : tuned_settings_t::DECIDED);
     }
     if (pending_->version->message.acts_at < 0) AwaitControllers();
   }
   if (participant_.state() == process_status_t::RUNNING && now >= next_report_) {
     next_report_ = now + kReportPeriod;
-    Publish(in_force_.message, tuned_settings_t::IN_FORCE);
+    Publish(&in_force_.message, tuned_settings_t::IN_FORCE);
   }
 }
 
-void TuningDesk::Publish(const tuned_settings_t& settings, int8_t stage) {
-  tuned_settings_t message = settings;
-  message.utime = participant_.clock().Utime();
-  message.tick = participant_.tick();
-  message.session = participant_.session();
-  message.stage = stage;
-  participant_.bus().Publish(participant_.channels().Of<tuned_settings_t>(), message);
+// No copy: it is published once a second, and the loop takes no memory.
+void TuningDesk::Publish(tuned_settings_t* settings, int8_t stage) {
+  settings->utime = participant_.clock().Utime();
+  settings->tick = participant_.tick();
+  settings->session = participant_.session();
+  settings->stage = stage;
+  participant_.bus().Publish(participant_.channels().Of<tuned_settings_t>(), *settings);
 }
 
 }  // namespace hydro::plant

@@ -88,7 +88,7 @@ class TuningDesk {
   void Answer(bool accepted, int64_t acts_at, const std::string& text);
   void TakeEffect(Version version);
   void FollowAt(int64_t tick);
-  void Publish(const tuned_settings_t& settings, int8_t stage);
+  void Publish(tuned_settings_t* settings, int8_t stage);
   int64_t TickOfEffect() const;
 
   process::Participant& participant_;

@@ -47,7 +47,7 @@ void TuningDesk::AwaitControllers() {
   if (not_ready.empty()) {
     Decide();
   } else if (impossible || participant_.clock().Now() >= pending_->deadline) {
-    Publish(pending_->version->message, tuned_settings_t::WITHDRAWN);
+    Publish(&pending_->version->message, tuned_settings_t::WITHDRAWN);
     Refuse(not_ready + "; nothing has changed");
   }
 }
@@ -56,7 +56,7 @@ void TuningDesk::Decide() {
   tuned_settings_t& message = pending_->version->message;
   message.acts_at = TickOfEffect();
   if (message.reference_from < 0) message.reference_from = message.acts_at;
-  Publish(message, tuned_settings_t::DECIDED);
+  Publish(&message, tuned_settings_t::DECIDED);
   Answer(true, message.acts_at, pending_->text);
 }
 
@@ -90,7 +90,7 @@ void TuningDesk::FollowAt(int64_t tick) {
   while (!followed_.empty() && followed_.back().acts_at - 1 <= tick) {
     tuned_settings_t& next = followed_.back();
     if (next.acts_at > tick) {
-      Publish(next, tuned_settings_t::DECIDED);
+      Publish(&next, tuned_settings_t::DECIDED);
       return;
     }
     newest_version_ = next.version;
