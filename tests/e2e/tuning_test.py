@@ -83,6 +83,20 @@ class TuningTest(fault_case.FaultCase):
         self.assertRegex(done.stdout, r"^(\d+)c\1\n< c2 = 1200\.0 +# psi s/rad.*\n---\n> c2 = 900 +# psi s/rad.*\n$")
         self.run_program("hydro-sim", saved, "--duration", "0.2", "-o", self.path("saved.lcmlog"))
 
+    # Tests that in a stack with a key only who has it changes anything.
+    def test_sealed(self):
+        key = self.path("stack.key")
+        self.config_file = self.moving()
+        self.run_program("hydro-launch", "make-key", self.config_file, "--set", f"bus.key_file={key}")
+        self.start_stack("--set", f"bus.key_file={key}", config=self.config_file)
+        self.wait_for_voltage()
+        stranger = self.set("position.c2=700", expect=1)
+        self.assertIn("does not answer", stranger.stderr)
+        self.wait_for_fault("unauthenticated_command", source="plant")
+        self.assertIn("version 1: position.c2 = 900", self.set("--set", f"bus.key_file={key}", "position.c2=900").stdout)
+        log = self.finish()
+        self.assertEqual({s.version for s in log.of("HYDRO_SETTINGS")}, {0, 1})
+
     # Tests that a controller that is killed and started again acts by the values in force, from its first command on.
     def test_controller_restarted(self):
         self.start_moving()
