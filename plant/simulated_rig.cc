@@ -1,5 +1,9 @@
 #include "plant/simulated_rig.h"
 
+#include <spdlog/fmt/fmt.h>
+
+#include <cmath>
+
 #include "base/input_error.h"
 #include "plant/sensor_noise.h"
 
@@ -9,6 +13,7 @@ SimulatedRig::SimulatedRig(const settings::StackConfig& config)
     : noise_(config.noise),
       seed_(config.seed),
       rate_hz_(config.plant.rate_hz),
+      largest_angle_(config.limits.arm_angle_rad),
       motion_(config.model.motion ? settings::MakeTrajectory(*config.model.motion) : nullptr) {
   model::ActuatorOptions options;
   options.shaft = config.model.shaft;
@@ -30,7 +35,12 @@ model::Measurement SimulatedRig::Read(int64_t tick) {
     if (tick > 0) actuator_->Advance(voltage_, static_cast<double>(tick) / rate_hz_);
     return ReadSensors(actuator_->Measure(), noise_, seed_, tick);
   } catch (const model::ModelError& error) {
-    throw RigError("model_error", error.what());
+    const double angle = actuator_->Measure().arm_angle;
+    if (!(std::fabs(angle) > largest_angle_)) throw RigError("model_error", error.what());
+    throw RigError("arm_angle_limit",
+                   fmt::format("before tick {} the arm was at {:.6g} rad, allowed is |alpha| <= {:.6g} rad "
+                               "(limits.arm_angle_rad); the model cannot go on from there: {}",
+                               tick, angle, largest_angle_, error.what()));
   }
 }
 

@@ -17,7 +17,8 @@ class SimulatedRig : public Rig {
   explicit SimulatedRig(const settings::StackConfig& config);
 
   std::string role() const override { return "plant"; }
-  // Throws RigError "model_error" when the model cannot go on.
+  // Throws RigError when the model cannot go on: "arm_angle_limit" when the arm had passed its limit before, in ticks that a late plant has
+  // skipped; else "model_error".
   model::Measurement Read(int64_t tick) override;
   const std::vector<RigFault>& faults() const override { return no_faults_; }
   double Drive(double voltage) override { return voltage_ = voltage; }
@@ -29,6 +30,7 @@ class SimulatedRig : public Rig {
   settings::NoiseSection noise_;
   int64_t seed_;
   double rate_hz_;
+  double largest_angle_;  // rad
   std::unique_ptr<trajectory::Trajectory>
       motion_;  // of a driven shaft; declared first, actuator_ points to it
   std::unique_ptr<model::Actuator> actuator_;

@@ -46,8 +46,6 @@ TuningDesk::TuningDesk(process::Participant& participant, const settings::StackC
   });
 }
 
-TuningDesk::~TuningDesk() = default;
-
 void TuningDesk::Follow(std::vector<tuned_settings_t> decided) {
   followed_ = std::move(decided);
   std::reverse(followed_.begin(), followed_.end());
@@ -71,7 +69,7 @@ void TuningDesk::OnRequest(const tuning_request_t& request) {
 }
 
 void TuningDesk::Begin(const tuning_request_t& request) {
-  pending_ = std::make_unique<Pending>();
+  pending_ = Pending{};
   pending_->request = request;
   if (const std::string why = WhyNot(request); !why.empty()) return Refuse(why);
   const tuning::Situation situation{.held = hooks_.held(), .simulated = simulated_rig_};

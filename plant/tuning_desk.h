@@ -40,7 +40,6 @@ class TuningDesk {
   // Subscribes; `participant` must outlive it and the bus.
   TuningDesk(process::Participant& participant, const settings::StackConfig& config, bool simulated_rig,
              Hooks hooks);
-  ~TuningDesk();
 
   // Changes that were decided in another run (its log): they take effect at the same ticks. In the order of ticks.
   void Follow(std::vector<tuned_settings_t> decided);
@@ -50,8 +49,6 @@ class TuningDesk {
 
   // Checks, proposes, decides, and reports what is due. Cheap when nothing is.
   void Poll();
-
-  int64_t version() const { return in_force_.message.version; }
 
  private:
   // Values, and the configuration that they come from.
@@ -100,7 +97,7 @@ class TuningDesk {
   Version in_force_;
   std::vector<Version> before_;  // what was in force before it, newest last, for UNDO
   int64_t newest_version_ = 0;   // that was ever proposed
-  std::unique_ptr<Pending> pending_;
+  std::optional<Pending> pending_;
   std::map<std::pair<std::string, int64_t>, Controller>
       controllers_;                             // by role and session; those that were heard lately
   std::map<int64_t, tuning_answer_t> answers_;  // the last to each session that asked

@@ -96,9 +96,10 @@ constexpr std::array kRows{
         .restart = Cleared::kRunEnds,
         .explicit_rearm = Cleared::kByRearm,
         .cleared_text = "the run ends, exit code 1",
-        .tests = "fault_limits.LimitTest.test_pressure fault_limits.LimitTest.test_motor_speed "
-                 "fault_limits.LimitTest.test_arm_angle fault_limits.LimitTest.test_arm_angle_default "
-                 "plant/PlantFaultsTest.LimitsEndTheRun",
+        .tests =
+            "fault_limits.LimitTest.test_pressure fault_limits.LimitTest.test_motor_speed "
+            "fault_limits.LimitTest.test_arm_angle fault_limits.LimitTest.test_arm_angle_default "
+            "plant/PlantFaultsTest.LimitsEndTheRun plant/PlantAppTest.SleepingThroughALimitNamesTheLimit",
         .injected = "sensor_saturate:plant",
     },
     SafetyRow{

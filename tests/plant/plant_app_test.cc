@@ -404,6 +404,26 @@ TEST_F(PlantAppTest, ModelErrorEndsTheRun) {
   EXPECT_LT(states_.back().tick, 20000);
 }
 
+// Tests that where a plant has slept while the held voltage drove the arm through its limit and out of its volume, the limit is named, with
+// the angle, and not the model.
+TEST_F(PlantAppTest, SleepingThroughALimitNamesTheLimit) {
+  settings::StackConfig config = SmallStack();
+  config.time.mode = settings::TimeMode::kRealtime;
+  config.model.arm_angle_rad = 0.7;
+  config.limits.arm_angle_rad = 0.8;
+  config.last_tick = 20000;
+  on_state_ = [this](const state_t& s) {
+    if (s.tick % 5 == 0) SendPressureCommand(s.tick);
+    SendVoltage(s.tick, 10);
+    if (s.tick == 50) clock_.AdvanceTo(clock_.Now() + std::chrono::seconds(5));
+  };
+  EXPECT_EQ(Run(config), 1);
+  ASSERT_FALSE(faults_.empty());
+  EXPECT_EQ(faults_.back().code, "arm_angle_limit");
+  EXPECT_TRUE(faults_.back().latched);
+  EXPECT_THAT(failure_, HasSubstr("allowed is |alpha| <= 0.8 rad (limits.arm_angle_rad)"));
+}
+
 // Tests that a configuration with an arm angle that the model cannot have is bad input, not a failed run.
 TEST_F(PlantAppTest, ImpossibleAngleIsBadInput) {
   settings::StackConfig config = SmallStack();
