@@ -1,7 +1,7 @@
 #include "hydro_set/saved_config.h"
 
-#include <algorithm>
 #include <map>
+#include <utility>
 
 #include "base/input_error.h"
 #include "base/text_file.h"
@@ -33,6 +33,18 @@ settings::StackConfig ConfigInForce(const run_description_t& run, const tuned_se
       settings::ParseStackConfig(run.config_text, run.config_file, run.model_text, run.model_file);
   if (in_force.changes.empty()) return configured;
   return settings::Changed(configured, tuning::ParseChanges(in_force.changes));
+}
+
+std::map<std::string, std::string> ValuesInForce(const run_description_t& run,
+                                                 const tuned_settings_t& in_force,
+                                                 const std::function<std::string(double)>& text) {
+  std::map<std::string, std::string> values;
+  for (size_t i = 0; i < in_force.names.size(); ++i) values[in_force.names[i]] = text(in_force.values[i]);
+  const settings::StackConfig config = ConfigInForce(run, in_force);
+  for (auto& [key, value] : settings::TomlEntries(settings::ParseToml(config.text, config.file))) {
+    values[key] = std::move(value);
+  }
+  return values;
 }
 
 std::string SavedText(const std::string& file, const std::string& output, const run_description_t& run,

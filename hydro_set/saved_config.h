@@ -1,8 +1,10 @@
 // The configuration with the values in force, as a file that hydro-launch loads.
 #pragma once
 
+#include <functional>
 #include <hydro/run_description_t.hpp>
 #include <hydro/tuned_settings_t.hpp>
+#include <map>
 #include <string>
 
 #include "settings/stack_config.h"
@@ -12,6 +14,12 @@ namespace hydro::hydro_set {
 // What the stack runs with: its configuration (from its description) with the values in force. Throws InputError when the
 // description is not one of this version.
 settings::StackConfig ConfigInForce(const run_description_t& run, const tuned_settings_t& in_force);
+
+// The values in force by key of tunable_keys.h: as they stand in that configuration, in TOML; what it leaves to its defaults or derives as
+// the loops have it, through `text`. Throws InputError likewise.
+std::map<std::string, std::string> ValuesInForce(const run_description_t& run,
+                                                 const tuned_settings_t& in_force,
+                                                 const std::function<std::string(double)>& text);
 
 // The text of `file`, the configuration that the stack was started with, with the values in force and all else as it is, for a file `output`, which
 // may lie in another folder; without a file, the run's own text, which has no comments. Throws InputError.

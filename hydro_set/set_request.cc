@@ -12,7 +12,7 @@
 #include "bus/channels.h"
 #include "hydro_set/saved_config.h"
 #include "hydro_set/tuning_client.h"
-#include "settings/toml/toml_entries.h"
+#include "runs/tuning_history.h"
 #include "tuning/change_check.h"
 #include "tuning/tunable_keys.h"
 
@@ -26,10 +26,6 @@ constexpr auto kTakeEffect = 2s;
 constexpr auto kTurn = 20ms;
 
 void Print(std::FILE* to, const std::string& text) { std::fputs((Printable(text) + "\n").c_str(), to); }
-
-std::string Changes(const tuned_settings_t& settings) {
-  return settings.changes.empty() ? "as configured" : tuning::OnOneLine(settings.changes);
-}
 
 class Setter {
  public:
@@ -111,19 +107,9 @@ class Setter {
     return acts;
   }
 
-  std::map<std::string, std::string> ValuesInForce() const {
-    std::map<std::string, std::string> values;
-    const tuned_settings_t& in_force = *client_.in_force();
-    for (size_t i = 0; i < in_force.names.size(); ++i)
-      values[in_force.names[i]] = fmt::format("{:g}", in_force.values[i]);
-    const settings::StackConfig config = ConfigInForce(*client_.run(), in_force);
-    for (auto& [key, value] : settings::TomlEntries(settings::ParseToml(config.text, config.file)))
-      values[key] = value;
-    return values;
-  }
-
   void List() const {
-    const auto values = ValuesInForce();
+    const auto values = ValuesInForce(*client_.run(), *client_.in_force(),
+                                      [](double value) { return fmt::format("{:g}", value); });
     Print(output_.out, fmt::format("{:<34} {:<22} {:<12} {:<14} {}", "key", "value in force", "unit",
                                    "acts in", "what it does"));
     for (const tuning::TunableKey& row : tuning::TunableKeys()) {
@@ -133,8 +119,9 @@ class Setter {
                         value == values.end() ? "-" : value->second, row.unit, row.acts_in, row.what));
     }
     const tuned_settings_t& in_force = *client_.in_force();
-    Print(output_.out, fmt::format("version {} in force since tick {}: {}", in_force.version,
-                                   in_force.acts_at, Changes(in_force)));
+    Print(output_.out,
+          fmt::format("version {} in force since tick {}: {}", in_force.version, in_force.acts_at,
+                      in_force.changes.empty() ? "as configured" : tuning::OnOneLine(in_force.changes)));
   }
 
   void Save() const {
@@ -154,9 +141,7 @@ class Setter {
       const tuned_settings_t& in_force = *client_.in_force();
       if (shown != in_force.version) {
         shown = in_force.version;
-        Print(output_.out,
-              fmt::format("version {} from tick {} on: {}{}", in_force.version, in_force.acts_at,
-                          Changes(in_force), in_force.source.empty() ? "" : " (" + in_force.source + ")"));
+        Print(output_.out, runs::DescribeTuning(in_force));
       }
       for (const auto& [role, status] : client_.controllers()) {
         const auto known = acting.find(role);

@@ -45,7 +45,7 @@ PositionApp::PositionApp(bus::Bus& bus, bus::Clock& clock, const settings::Stack
       values_(tuning::ValuesOf(config)),
       law_(values_.position),
       curve_(design::BrakingCurveFor(config)),
-      tuning_(participant_, [this](const tuned_settings_t& settings) { return WhyNot(settings); }),
+      tuning_(participant_, config, [this](const tuned_settings_t& settings) { return WhyNot(settings); }),
       transfer_(std::llround(config.limits.transfer_s * config.plant.rate_hz)),
       return_(std::llround(config.limits.return_s * config.plant.rate_hz)),
       state_monitor_(bus::FromSeconds(config.limits.stale_input_s)),
@@ -93,7 +93,7 @@ void PositionApp::OnState(const state_t& state) {
   }
   last_state_time_ = now;
   participant_.Follow(state.session);
-  if (AwaitsSettings(state)) return;
+  if (tuning_.Awaits(state.tick)) return;
   if (participant_.state() == process_status_t::READY) participant_.Announce(process_status_t::RUNNING);
   if (state.tick <= last_sample_tick_) {  // a log is played again
     last_sample_tick_ = -1;
@@ -107,7 +107,7 @@ void PositionApp::OnState(const state_t& state) {
 // In lockstep nobody is late, and what the pressure loop says of itself may come at any tick.
 void PositionApp::ObserveHold(const state_t& state) {
   // A record that is replayed from its middle (on simulated time) is no such run: its loop had been there.
-  const bool joins = last_sample_tick_ < 0 && state.tick > kJoiningSamples * interval_;
+  const bool joins = last_sample_tick_ < 0 && state.tick > tuning::kJoiningSamples * interval_;
   if (!lockstep_ && joins && !participant_.clock().simulated()) return_.Join();
   const bool safe = !lockstep_ && pressure_faults_.any(participant_.clock().Now());
   return_.Observe(state.tick, state.command_tick >= 0 && !safe, Present(state));

@@ -38,8 +38,6 @@ class PositionApp : public process::App {
   int Finish() override;
 
  private:
-  static constexpr int64_t kJoiningSamples = 10;  // a first state after so many is one of a run that goes on
-
   void OnState(const state_t& state);
   void OnPlan(const arm_plan_t& plan);
   void NotePlanner(int64_t tick);
@@ -50,7 +48,6 @@ class PositionApp : public process::App {
   double Present(const state_t& state) const;
   std::string WhyNot(const tuned_settings_t& settings) const;
   void TakeSettingsAt(int64_t tick);
-  bool AwaitsSettings(const state_t& state);
   double AskedByLaw(const state_t& state, double reference, const PlannedPoint& ahead, int64_t intervals);
   void Send();
 
@@ -75,8 +72,6 @@ class PositionApp : public process::App {
   PositionLaw law_;
   std::optional<BrakingCurve> curve_;
   tuning::TuningFollower tuning_;
-  std::optional<bus::Clock::TimePoint>
-      joined_;  // a run that went on without this loop, whose values are not known yet
   tuning::BumplessTransfer transfer_;
   // A change begins with the next sample.
   std::optional<PositionLawSettings> law_before_;

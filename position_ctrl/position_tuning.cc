@@ -22,15 +22,6 @@ std::string PositionApp::WhyNot(const tuned_settings_t& settings) const {
   return tuning::Read(settings, torque_per_pressure_, &values);
 }
 
-// As the pressure loop does: who joins a run acts by the values in force there.
-bool PositionApp::AwaitsSettings(const state_t& state) {
-  const bool first = participant_.tick() < 0 && !joined_;
-  if (first && !lockstep_ && !participant_.clock().simulated() && state.tick > kJoiningSamples * interval_) {
-    joined_ = participant_.clock().Now();
-  }
-  return joined_ && tuning_.Awaits(*joined_);
-}
-
 void PositionApp::Follow(const settings::TrajectorySpec& reference) {
   reference_ = settings::MakeTrajectory(reference);
   planner_.reset();

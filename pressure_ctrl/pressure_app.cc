@@ -12,8 +12,6 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr int64_t kJoiningSamples =
-    10;  // of the position loop: a first state after so many is one of a run that goes on
 constexpr size_t kMostBeforeTheRun = 64;  // pressure commands; a few take a faster route than the first state
 
 motor_command_t ZeroVolts(int64_t tick, int8_t status) {
@@ -51,7 +49,7 @@ PressureApp::PressureApp(bus::Bus& bus, bus::Clock& clock, const settings::Stack
       values_(tuning::ValuesOf(config)),
       pressure_limit_(LargestPressureReference(values_, half_dac_step_)),
       limit_before_(pressure_limit_),
-      tuning_(participant_, [this](const tuned_settings_t& settings) { return WhyNot(settings); }),
+      tuning_(participant_, config, [this](const tuned_settings_t& settings) { return WhyNot(settings); }),
       transfer_(std::llround(config.limits.transfer_s * config.plant.rate_hz)),
       state_monitor_(stale_time_),
       command_monitor_(stale_time_),
@@ -99,7 +97,7 @@ void PressureApp::OnState(const state_t& state) {
   }
   last_state_time_ = now;
   participant_.Follow(state.session);
-  if (AwaitsSettings(state)) return;
+  if (tuning_.Awaits(state.tick)) return;
   if (participant_.state() == process_status_t::READY) participant_.Announce(process_status_t::RUNNING);
   if (answered_ && state.tick <= last_command_.tick) Restart();  // a log is played again
   if (participant_.tick() < 0) DropFutureCommands(state.tick);
@@ -171,24 +169,15 @@ std::string PressureApp::WhyNot(const tuned_settings_t& settings) const {
   return tuning::Read(settings, k_2_, &values);
 }
 
-// A loop that joins a run acts by the values in force there, not by those of its configuration: until it has heard them, by none.
-bool PressureApp::AwaitsSettings(const state_t& state) {
-  const bool first = participant_.tick() < 0 && !joined_;
-  if (first && !lockstep_ && !participant_.clock().simulated() &&
-      state.tick > kJoiningSamples * position_interval_) {
-    joined_ = participant_.clock().Now();
-  }
-  return joined_ && tuning_.Awaits(*joined_);
-}
-
 void PressureApp::TakeSettingsAt(int64_t tick) {
   const tuned_settings_t* settings = tuning_.TakeDueAt(tick);
   if (settings == nullptr) return;
   if (!law_before_) law_before_ = values_.pressure;
   tuning::Read(*settings, k_2_, &values_);  // good: it was prepared
-  limit_before_ = std::max(LargestReference(), LargestPressureReference(values_, half_dac_step_));
+  const double limit = LargestPressureReference(values_, half_dac_step_);
+  limit_before_ = std::max(LargestReference(), limit);
   limit_from_ = tick;
-  pressure_limit_ = LargestPressureReference(values_, half_dac_step_);
+  pressure_limit_ = limit;
 }
 
 // A command from before a tighter limit was in force is none the worse for it.

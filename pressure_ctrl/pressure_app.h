@@ -53,7 +53,6 @@ class PressureApp : public process::App {
   bool AwaitsPressureCommand(int64_t state_tick) const;
   std::string WhyNot(const tuned_settings_t& settings) const;
   void TakeSettingsAt(int64_t tick);
-  bool AwaitsSettings(const state_t& state);
   double Transfer(const PressureLawInput& input, int64_t tick);
   void Send(motor_command_t& command);
   void ForgetPressureCommands();
@@ -75,8 +74,6 @@ class PressureApp : public process::App {
   double limit_before_;         // of those before
   int64_t limit_from_ = 0;      // tick
   tuning::TuningFollower tuning_;
-  std::optional<bus::Clock::TimePoint>
-      joined_;  // a run that went on without this loop, whose values are not known yet
   tuning::BumplessTransfer transfer_;
   std::optional<PressureLawSettings> law_before_;  // a change begins with the next use of the law
 

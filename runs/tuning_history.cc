@@ -4,6 +4,9 @@
 #include <map>
 #include <utility>
 
+#include "base/text_lines.h"
+#include "base/word_list.h"
+
 namespace hydro::runs {
 
 std::vector<tuned_settings_t> TuningHistory(const RunMessages& messages) {
@@ -32,10 +35,8 @@ int64_t EffectTick(const RunMessages& messages, const tuned_settings_t& settings
 }
 
 std::string DescribeTuning(const tuned_settings_t& settings) {
-  std::string changes = settings.changes.empty() ? "as configured" : settings.changes;
-  while (changes.ends_with('\n')) changes.pop_back();
-  for (size_t at = changes.find('\n'); at != std::string::npos; at = changes.find('\n', at))
-    changes.replace(at, 1, ", ");
+  const std::string changes =
+      settings.changes.empty() ? "as configured" : Joined(TextLines(settings.changes));
   return "version " + std::to_string(settings.version) + " from tick " + std::to_string(settings.acts_at) +
          " on: " + changes + (settings.source.empty() ? "" : " (" + settings.source + ")");
 }

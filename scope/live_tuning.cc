@@ -1,6 +1,5 @@
 #include "scope/live_tuning.h"
 
-#include <map>
 #include <nlohmann/json.hpp>
 #include <utility>
 
@@ -9,7 +8,6 @@
 #include "base/text_file.h"
 #include "hydro_set/saved_config.h"
 #include "runs/tuning_history.h"
-#include "settings/toml/toml_entries.h"
 #include "tuning/tunable_keys.h"
 
 namespace hydro::scope {
@@ -77,12 +75,7 @@ void LiveTuning::Describe() {
   const tuned_settings_t& in_force = *client_.in_force();
   json entries = json::array();
   try {
-    const settings::StackConfig config = hydro_set::ConfigInForce(*client_.run(), in_force);
-    std::map<std::string, std::string> values;
-    for (size_t i = 0; i < in_force.names.size(); ++i)
-      values[in_force.names[i]] = NumberText(in_force.values[i]);
-    for (auto& [key, value] : settings::TomlEntries(settings::ParseToml(config.text, config.file)))
-      values[key] = value;
+    const auto values = hydro_set::ValuesInForce(*client_.run(), in_force, NumberText);
     for (const tuning::TunableKey& row : tuning::TunableKeys()) {
       const auto value = values.find(std::string(row.key));
       if (value == values.end()) continue;

@@ -3,11 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <map>
-#include <sstream>
 
 #include "base/input_error.h"
 #include "base/number_text.h"
 #include "base/text_file.h"
+#include "base/text_lines.h"
+#include "base/word_list.h"
 #include "design/loop_check.h"
 #include "settings/toml/toml_entries.h"
 #include "tuning/reference_range.h"
@@ -19,12 +20,7 @@ namespace {
 
 constexpr size_t kMostChanges = 64;
 
-std::string KeyOf(const std::string& change) {
-  std::string key = change.substr(0, change.find('='));
-  key.erase(key.find_last_not_of(" \t") + 1);
-  key.erase(0, key.find_first_not_of(" \t"));
-  return key;
-}
+std::string KeyOf(const std::string& change) { return Trimmed(change.substr(0, change.find('='))); }
 
 std::map<std::string, std::string> TunableEntries(const settings::StackConfig& config) {
   std::map<std::string, std::string> entries;
@@ -68,18 +64,7 @@ double SpectralRadius(const design::LoopCheck& check) {
 // Fills in the loops' margins as `text`, or why they forbid the change; returns whether they permit it.
 bool LoopsPermit(const settings::StackConfig& in_force, const settings::StackConfig& next,
                  std::string* text) {
-  const auto gains = [](const settings::StackConfig& config) {
-    tuned_settings_t message;
-    Write(ValuesOf(config), &message);
-    std::vector<double> values;
-    for (size_t i = 0; i < message.names.size(); ++i) {
-      if (!message.names[i].starts_with("limits.") && !message.names[i].starts_with("noise.")) {
-        values.push_back(message.values[i]);
-      }
-    }
-    return values;
-  };
-  if (gains(in_force) == gains(next)) return true;
+  if (SameLaws(ValuesOf(in_force), ValuesOf(next))) return true;
   const design::LoopCheck check = design::CheckLoops(next);
   if (check.unjudged.empty() || check.pressure) *text = design::Describe(check);
   if (check.stable()) return true;
@@ -91,9 +76,8 @@ bool LoopsPermit(const settings::StackConfig& in_force, const settings::StackCon
 
 std::vector<std::string> ParseChanges(const std::string& lines) {
   std::vector<std::string> changes;
-  std::istringstream text(lines);
-  for (std::string line; std::getline(text, line);) {
-    if (line.find_first_not_of(" \t\r") == std::string::npos) continue;
+  for (const std::string& line : TextLines(lines)) {
+    if (Trimmed(line).empty()) continue;
     const std::string key = KeyOf(line);
     if (line.find('=') == std::string::npos || key.empty()) {
       throw InputError(Quoted(line) + ": allowed key=value, e.g. position.c2=900");
@@ -110,12 +94,7 @@ std::vector<std::string> ParseChanges(const std::string& lines) {
   return changes;
 }
 
-std::string OnOneLine(const std::string& changes) {
-  std::string line;
-  std::istringstream text(changes);
-  for (std::string change; std::getline(text, change);) line += (line.empty() ? "" : ", ") + change;
-  return line;
-}
+std::string OnOneLine(const std::string& changes) { return Joined(TextLines(changes)); }
 
 std::string DifferenceOf(const settings::StackConfig& from, const settings::StackConfig& to) {
   const auto before = TunableEntries(from), after = TunableEntries(to);

@@ -1,5 +1,6 @@
 #include "tuning/tuned_values.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -85,6 +86,13 @@ TunedValues ValuesOf(const settings::StackConfig& config) {
           .braking = config.position.braking_rad_s2.value_or(std::numeric_limits<double>::infinity()),
           .limits = config.limits,
           .noise = config.noise};
+}
+
+bool SameLaws(const TunedValues& a, const TunedValues& b) {
+  return std::all_of(kValues.begin(), kValues.end(), [&](const Value& value) {
+    const bool of_a_law = !value.name.starts_with("limits.") && !value.name.starts_with("noise.");
+    return !of_a_law || value.get(a) == value.get(b);
+  });
 }
 
 void Write(const TunedValues& values, tuned_settings_t* message) {

@@ -21,6 +21,9 @@ struct TunedValues {
 // Throws InputError when gains cannot be derived.
 TunedValues ValuesOf(const settings::StackConfig& config);
 
+// Whether both loops' laws are the same, whatever the limits and the noise.
+bool SameLaws(const TunedValues& a, const TunedValues& b);
+
 // Fills names and values.
 void Write(const TunedValues& values, tuned_settings_t* message);
 

@@ -1,5 +1,6 @@
 #include "tuning/tuning_follower.h"
 
+#include <limits>
 #include <utility>
 
 namespace hydro::tuning {
@@ -12,8 +13,13 @@ constexpr auto kLongestWait = 1500ms;  // the plant says once a second what is i
 
 }  // namespace
 
-TuningFollower::TuningFollower(process::Participant& participant, Prepare prepare)
-    : participant_(participant), prepare_(std::move(prepare)) {
+TuningFollower::TuningFollower(process::Participant& participant, const settings::StackConfig& config,
+                               Prepare prepare)
+    : participant_(participant),
+      joining_(config.time.mode == settings::TimeMode::kLockstep
+                   ? std::numeric_limits<int64_t>::max()
+                   : kJoiningSamples * config.position_interval_ticks),
+      prepare_(std::move(prepare)) {
   status_ = {};
   status_.role = participant.role();
   status_.since = status_.refused = -1;
@@ -32,7 +38,6 @@ void TuningFollower::OnSettings(const tuned_settings_t& settings) {
     status_.refused = -1;
     if (in_force_ != 0) in_force_ = -1;  // that plant's numbers are not this one's
   }
-
   const bool known = waiting_ && waiting_->version == settings.version;
   switch (settings.stage) {
     case tuned_settings_t::PROPOSED:
@@ -81,8 +86,10 @@ const tuned_settings_t* TuningFollower::TakeDueAt(int64_t tick) {
   return &taken_;
 }
 
-bool TuningFollower::Awaits(bus::Clock::TimePoint joined) const {
-  return !heard_ && participant_.clock().Now() - joined < kLongestWait;
+bool TuningFollower::Awaits(int64_t tick) {
+  const bool first = participant_.tick() < 0 && !joined_;
+  if (first && !participant_.clock().simulated() && tick > joining_) joined_ = participant_.clock().Now();
+  return joined_ && !heard_ && participant_.clock().Now() - *joined_ < kLongestWait;
 }
 
 void TuningFollower::Poll() {

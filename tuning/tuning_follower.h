@@ -14,8 +14,12 @@
 #include <string>
 
 #include "process/participant.h"
+#include "settings/stack_config.h"
 
 namespace hydro::tuning {
+
+// Of the position loop: a first state after so many is one of a run that goes on.
+inline constexpr int64_t kJoiningSamples = 10;
 
 class TuningFollower {
  public:
@@ -23,14 +27,15 @@ class TuningFollower {
   using Prepare = std::function<std::string(const tuned_settings_t&)>;
 
   // Subscribes; `participant` must outlive it and the bus.
-  TuningFollower(process::Participant& participant, Prepare prepare);
+  TuningFollower(process::Participant& participant, const settings::StackConfig& config, Prepare prepare);
 
   // The settings that take effect at this tick; null: those in force stay. Asked once for each tick on which the loop acts.
   const tuned_settings_t* TakeDueAt(int64_t tick);
 
-  // Whether a loop that joins a run has yet to hear which values are in force. Real time only; false after a second, because a plant of
-  // the user's own may say nothing.
-  bool Awaits(bus::Clock::TimePoint joined) const;
+  // Whether the loop joins a run and has yet to hear which values are in force there: until then it acts by none, not by those of
+  // its configuration. Asked with each state. Never in lockstep or on simulated time (a record that is replayed from its middle is no such run), and
+  // false after a second and a half, because a plant of the user's own may say nothing.
+  bool Awaits(int64_t tick);
 
   // Says where this process is, when due. Cheap.
   void Poll();
@@ -43,6 +48,7 @@ class TuningFollower {
   void Say();
 
   process::Participant& participant_;
+  const int64_t joining_;  // tick: a first state behind it is one of a run that goes on
   Prepare prepare_;
   std::optional<tuned_settings_t> waiting_;  // prepared; acts_at is -1 until it is decided
   tuned_settings_t taken_;                   // what was handed over last
@@ -50,6 +56,7 @@ class TuningFollower {
   int64_t in_force_ = 0;
   int64_t plant_ = 0;  // session
   bool heard_ = false;
+  std::optional<bus::Clock::TimePoint> joined_;
   bus::Clock::TimePoint next_status_;
 };
 

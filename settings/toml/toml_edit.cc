@@ -1,26 +1,11 @@
 #include "settings/toml/toml_edit.h"
 
-#include <algorithm>
 #include <map>
-#include <optional>
-#include <sstream>
 
-#include "base/text_file.h"
+#include "base/text_lines.h"
 
 namespace hydro::settings {
 namespace {
-
-std::string Trimmed(const std::string& text) {
-  const size_t first = text.find_first_not_of(" \t\r");
-  return first == std::string::npos ? "" : text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
-}
-
-std::vector<std::string> LinesOf(const std::string& text) {
-  std::vector<std::string> lines;
-  std::istringstream stream(text);
-  for (std::string line; std::getline(stream, line);) lines.push_back(std::move(line));
-  return lines;
-}
 
 // Walks over TOML value text, outside strings: whether a comment begins, and how deep the brackets are.
 struct ValueScan {
@@ -66,7 +51,7 @@ struct Document {
 
 Document Read(const std::string& text) {
   Document document;
-  document.lines = LinesOf(text);
+  document.lines = TextLines(text);
   std::string section;
   bool in_array = false;  // [[...]]: several have the same name
   document.section_ends[""] = 0;

@@ -1,24 +1,13 @@
 // Tests of the ghost: the model beside the running stack, whose residual is what it should be, noise and no
 // more.
 import assert from 'node:assert/strict';
-import { after, before, test } from 'node:test';
-import { openBrowser, openPage, streaming, until } from './browser.mjs';
-import { Bench } from './stack.mjs';
+import { test } from 'node:test';
+import { until } from './browser.mjs';
+import { onALivePage } from './live_page.mjs';
 
-let bench, browser, page;
+let page;
 
-before(async () => {
-  bench = await Bench.make();
-  await bench.launch(bench.file('run.lcmlog'));
-  const scope = await bench.scope();
-  browser = await openBrowser();
-  page = await openPage(browser, scope.address);
-  await streaming(page, 1);
-});
-after(async () => {
-  await browser?.close();
-  await bench?.close();
-});
+onALivePage((live) => ({ page } = live));
 
 // Tests that the ghost's channels are laid over the measured ones, that a pane of residuals comes, and that
 // the residuals of the very model that the plant simulates are of the size of the sensors' noise.

@@ -2,24 +2,13 @@
 // them.
 import assert from 'node:assert/strict';
 import { createRequire } from 'node:module';
-import { after, before, test } from 'node:test';
-import { openBrowser, openPage, streaming, until } from './browser.mjs';
-import { Bench } from './stack.mjs';
+import { test } from 'node:test';
+import { openPage, streaming, until } from './browser.mjs';
+import { onALivePage } from './live_page.mjs';
 
-let bench, scope, browser, page;
+let scope, browser, page;
 
-before(async () => {
-  bench = await Bench.make();
-  await bench.launch(bench.file('run.lcmlog'));
-  scope = await bench.scope();
-  browser = await openBrowser();
-  page = await openPage(browser, scope.address);
-  await streaming(page, 1);
-});
-after(async () => {
-  await browser?.close();
-  await bench?.close();
-});
+onALivePage((live) => ({ scope, browser, page } = live));
 
 // Tests that a phone scrolls only downwards, and that STOP is on the screen and a finger wide wherever one
 // has scrolled to.

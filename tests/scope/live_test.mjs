@@ -2,24 +2,13 @@
 // meanwhile.
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
-import { after, before, test } from 'node:test';
-import { cursorCells, openBrowser, openPage, readTable, streaming, until } from './browser.mjs';
-import { Bench } from './stack.mjs';
+import { test } from 'node:test';
+import { cursorCells, readTable, streaming, until } from './browser.mjs';
+import { onALivePage } from './live_page.mjs';
 
-let bench, stack, scope, browser, page;
+let bench, stack, scope, page;
 
-before(async () => {
-  bench = await Bench.make();
-  stack = await bench.launch(bench.file('run.lcmlog'));
-  scope = await bench.scope();
-  browser = await openBrowser();
-  page = await openPage(browser, scope.address);
-  await streaming(page, 3);
-});
-after(async () => {
-  await browser?.close();
-  await bench?.close();
-});
+onALivePage((live) => ({ bench, stack, scope, page } = live), { seconds: 3 });
 
 // Tests that the panes of the first visit are those of the rig, and that they move.
 test('the default panes move', async () => {

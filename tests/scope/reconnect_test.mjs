@@ -1,23 +1,12 @@
 // Tests that the page comes back by itself, and says so, when the server or the stack is started again.
 import assert from 'node:assert/strict';
-import { after, before, test } from 'node:test';
-import { openBrowser, openPage, streaming, until } from './browser.mjs';
-import { Bench } from './stack.mjs';
+import { test } from 'node:test';
+import { openPage, streaming, until } from './browser.mjs';
+import { onALivePage } from './live_page.mjs';
 
 let bench, stack, scope, browser, page;
 
-before(async () => {
-  bench = await Bench.make();
-  stack = await bench.launch(bench.file('one.lcmlog'));
-  scope = await bench.scope();
-  browser = await openBrowser();
-  page = await openPage(browser, scope.address);
-  await streaming(page, 1);
-});
-after(async () => {
-  await browser?.close();
-  await bench?.close();
-});
+onALivePage((live) => ({ bench, stack, scope, browser, page } = live), { log: 'one.lcmlog' });
 
 // Tests that a killed server is noticed and named, and that its successor on the same port is found without a
 // hand.

@@ -1,22 +1,14 @@
 // Tests of STOP and re-arm: one press stops the running stack, the page says when it is confirmed.
 import assert from 'node:assert/strict';
-import { after, before, test } from 'node:test';
-import { openBrowser, openPage, streaming } from './browser.mjs';
-import { Bench } from './stack.mjs';
+import { test } from 'node:test';
+import { onALivePage } from './live_page.mjs';
 
-let bench, stack, scope, browser, page;
+let stack, scope, page;
 
-before(async () => {
-  bench = await Bench.make();
-  stack = await bench.launch(bench.file('run.lcmlog'), ['limits.rearm=explicit']);
-  scope = await bench.scope(undefined, { sets: ['limits.rearm=explicit', 'scope.control=true'] });
-  browser = await openBrowser();
-  page = await openPage(browser, scope.address);
-  await streaming(page, 1.5);
-});
-after(async () => {
-  await browser?.close();
-  await bench?.close();
+onALivePage((live) => ({ stack, scope, page } = live), {
+  sets: ['limits.rearm=explicit'],
+  scopeSets: ['limits.rearm=explicit', 'scope.control=true'],
+  seconds: 1.5,
 });
 
 // Tests that re-arming says what it will do, and does nothing when it is not wanted.

@@ -1,23 +1,12 @@
 // Tests of the trigger on a running stack: the picture stands still on a step until the next one comes.
 import assert from 'node:assert/strict';
-import { after, before, test } from 'node:test';
-import { openBrowser, openPage, streaming, until } from './browser.mjs';
-import { Bench } from './stack.mjs';
+import { test } from 'node:test';
+import { until } from './browser.mjs';
+import { onALivePage } from './live_page.mjs';
 
-let bench, browser, page;
+let page;
 
-before(async () => {
-  bench = await Bench.make();
-  await bench.launch(bench.file('run.lcmlog'));
-  const scope = await bench.scope();
-  browser = await openBrowser();
-  page = await openPage(browser, scope.address);
-  await streaming(page, 1);
-});
-after(async () => {
-  await browser?.close();
-  await bench?.close();
-});
+onALivePage((live) => ({ page } = live));
 
 const form = (name) => page.locator(`#section-trigger [data-name=${name}]`);
 const captures = () => page.evaluate(() => hydroScope.trigger.captures);

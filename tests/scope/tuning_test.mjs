@@ -2,26 +2,20 @@
 // refused in words.
 import assert from 'node:assert/strict';
 import { createRequire } from 'node:module';
-import { after, before, test } from 'node:test';
-import { openBrowser, openPage, streaming, until } from './browser.mjs';
-import { Bench } from './stack.mjs';
+import { before, test } from 'node:test';
+import { openPage, streaming, until } from './browser.mjs';
+import { onALivePage } from './live_page.mjs';
 
 let bench, browser, page;
 
+onALivePage((live) => ({ bench, browser, page } = live), {
+  sets: ['reference.frequency_hz=0.05'],
+  scopeSets: ['scope.control=true'],
+  seconds: 3,
+});
 before(async () => {
-  bench = await Bench.make();
-  await bench.launch(bench.file('run.lcmlog'), ['reference.frequency_hz=0.05']);
-  const scope = await bench.scope(undefined, { sets: ['scope.control=true'] });
-  browser = await openBrowser();
-  page = await openPage(browser, scope.address);
-  // In its first two seconds a stack may refuse: a controller has not said its values yet.
-  await streaming(page, 3);
   await page.locator('#section-tuning > summary').click();
   await page.locator('#section-reference > summary').click();
-});
-after(async () => {
-  await browser?.close();
-  await bench?.close();
 });
 
 const field = (key) => page.getByLabel(`${key}, new value`);
@@ -78,6 +72,28 @@ test('a step from the page moves the arm', async () => {
     const at = bins.t.length - 3;
     return Math.abs(bins.max.arm_ref[at] - 0.05) < 1e-6 && Math.abs(bins.max.arm_angle[at] - 0.05) < 0.01;
   });
+});
+
+// Tests that a sine begins when it is commanded, not as much later as the run is old: within two of its periods it has swung both
+// ways.
+test('a sine from the page begins now', async () => {
+  await page.locator('#section-reference [data-name=kind]').selectOption('sine');
+  await page.locator('[data-key="reference.amplitude"]').fill('0.08');
+  await page.locator('[data-key="reference.frequency_hz"]').fill('1');
+  await page.getByRole('button', { name: 'Command it' }).click();
+  const accepted = page.locator('#section-reference .result').getByText(/^Accepted.*sine.* From tick \d+/);
+  await accepted.waitFor();
+  const begins = Number((await accepted.textContent()).match(/From tick (\d+)/)[1]) / 1000;
+  await until(page, (end) => hydroScope.display.last > end, begins + 2);
+  const extremes = await page.evaluate((from) => {
+    const { bins } = hydroScope.display.frame();
+    const inside = [...bins.t.keys()].filter((k) => bins.t[k] > from && bins.t[k] < from + 2);
+    return {
+      least: Math.min(...inside.map((k) => bins.min.arm_ref[k])),
+      most: Math.max(...inside.map((k) => bins.max.arm_ref[k])),
+    };
+  }, begins);
+  assert.ok(extremes.most > 0.07 && extremes.least < -0.07, JSON.stringify(extremes));
 });
 
 // Tests that the checks of axe find nothing to mend where values can be set.

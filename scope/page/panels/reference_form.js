@@ -4,10 +4,13 @@
 import { choice, el, field, setText } from '../dom.js';
 import { section } from './section.js';
 
+// A reference that is set while the stack runs counts its time from the tick at which it takes effect.
+const kFromNow = ['reference.start_s=0'];
+
 // name -> {text, keys: [[key, label, unit or '' for the signal's, first value]], fixed: entries that go with
 // them}
 const kKinds = {
-  steps: { text: 'step to', keys: [['initial', 'Value', '', 0]], fixed: () => ['reference.steps=[]'] },
+  steps: { text: 'step to', keys: [['initial', 'Value', '', 0]], fixed: ['reference.steps=[]'] },
   sine: {
     text: 'sine',
     keys: [
@@ -15,7 +18,7 @@ const kKinds = {
       ['frequency_hz', 'Frequency', 'Hz', 0.5],
       ['offset', 'Offset', '', 0],
     ],
-    fixed: fromNow,
+    fixed: kFromNow,
   },
   square: {
     text: 'square',
@@ -24,7 +27,7 @@ const kKinds = {
       ['frequency_hz', 'Frequency', 'Hz', 0.25],
       ['offset', 'Offset', '', 0],
     ],
-    fixed: fromNow,
+    fixed: kFromNow,
   },
   chirp: {
     text: 'chirp',
@@ -35,17 +38,9 @@ const kKinds = {
       ['duration_s', 'In', 's', 10],
       ['offset', 'Offset', '', 0],
     ],
-    fixed: fromNow,
+    fixed: kFromNow,
   },
 };
-
-// A periodic reference begins at its phase 0 from now, not at the run's start; a little later, as the set
-// takes a while.
-const kAhead_s = 0.2;
-
-function fromNow(last) {
-  return [`reference.start_s=${(last + kAhead_s).toFixed(3)}`];
-}
 
 export class ReferenceForm {
   #kind = 'steps';
@@ -109,7 +104,7 @@ export class ReferenceForm {
 
   async #send() {
     const set = [...this.#inputs].map(([key, input]) => `reference.${key}=${input.value}`);
-    const entries = [`reference.kind=${this.#kind}`, ...set, ...kKinds[this.#kind].fixed(this.scope.run?.last ?? 0)];
+    const entries = [`reference.kind=${this.#kind}`, ...set, ...kKinds[this.#kind].fixed];
     try {
       const reply = await this.scope.link.request({ op: 'set', entries });
       setText(

@@ -1,0 +1,24 @@
+// What most tests of the page begin with: a stack that moves to and fro, hydro-scope beside it, and a page that streams.
+
+import { after, before } from 'node:test';
+import { openBrowser, openPage, streaming } from './browser.mjs';
+import { Bench } from './stack.mjs';
+
+// Opens them before the file's tests and closes them after; `use` is given {bench, stack, scope, browser, page}. sets: of the stack;
+// scopeSets: of hydro-scope; seconds: of the run, before the first test.
+export function onALivePage(use, { log = 'run.lcmlog', sets = [], scopeSets = [], seconds = 1 } = {}) {
+  let bench, browser;
+  before(async () => {
+    bench = await Bench.make();
+    const stack = await bench.launch(bench.file(log), sets);
+    const scope = await bench.scope(undefined, { sets: scopeSets });
+    browser = await openBrowser();
+    const page = await openPage(browser, scope.address);
+    await streaming(page, seconds);
+    use({ bench, stack, scope, browser, page });
+  });
+  after(async () => {
+    await browser?.close();
+    await bench?.close();
+  });
+}
