@@ -4,7 +4,8 @@ import { after, before } from 'node:test';
 import { openBrowser, openPage, streaming } from './browser.mjs';
 import { Bench } from './stack.mjs';
 
-// Opens them before the file's tests and closes them after; `use` is given {bench, stack, scope, browser, page}. sets: of the stack;
+// Opens them before the file's tests and closes them after; `use` is given {bench, stack, scope, browser, page} and awaited. sets: of the
+// stack;
 // scopeSets: of hydro-scope; seconds: of the run, before the first test.
 export function onALivePage(use, { log = 'run.lcmlog', sets = [], scopeSets = [], seconds = 1 } = {}) {
   let bench, browser;
@@ -15,7 +16,7 @@ export function onALivePage(use, { log = 'run.lcmlog', sets = [], scopeSets = []
     browser = await openBrowser();
     const page = await openPage(browser, scope.address);
     await streaming(page, seconds);
-    use({ bench, stack, scope, browser, page });
+    await use({ bench, stack, scope, browser, page });
   });
   after(async () => {
     await browser?.close();

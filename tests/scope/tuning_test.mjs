@@ -2,21 +2,20 @@
 // refused in words.
 import assert from 'node:assert/strict';
 import { createRequire } from 'node:module';
-import { before, test } from 'node:test';
+import { test } from 'node:test';
 import { openPage, streaming, until } from './browser.mjs';
 import { onALivePage } from './live_page.mjs';
 
 let bench, browser, page;
 
-onALivePage((live) => ({ bench, browser, page } = live), {
-  sets: ['reference.frequency_hz=0.05'],
-  scopeSets: ['scope.control=true'],
-  seconds: 3,
-});
-before(async () => {
+const opened = async (live) => {
+  ({ bench, browser, page } = live);
   await page.locator('#section-tuning > summary').click();
   await page.locator('#section-reference > summary').click();
-});
+};
+
+// In its first two seconds a stack may refuse: a controller has not said its values yet.
+onALivePage(opened, { sets: ['reference.frequency_hz=0.05'], scopeSets: ['scope.control=true'], seconds: 3 });
 
 const field = (key) => page.getByLabel(`${key}, new value`);
 const result = () => page.locator('#section-tuning .result');
