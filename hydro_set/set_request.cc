@@ -110,13 +110,13 @@ class Setter {
   void List() const {
     const auto values = ValuesInForce(*client_.run(), *client_.in_force(),
                                       [](double value) { return fmt::format("{:g}", value); });
-    Print(output_.out, fmt::format("{:<34} {:<22} {:<12} {:<14} {}", "key", "value in force", "unit",
-                                   "acts in", "what it does"));
+    constexpr const char* kRow = "{:<34} {:<22} {:<12} {:<24} {:<14} {}";
+    Print(output_.out, fmt::format(fmt::runtime(kRow), "key", "value in force", "unit", "allowed", "acts in",
+                                   "what it does"));
     for (const tuning::TunableKey& row : tuning::TunableKeys()) {
       const auto value = values.find(std::string(row.key));
-      Print(output_.out,
-            fmt::format("{:<34} {:<22} {:<12} {:<14} {}", row.key,
-                        value == values.end() ? "-" : value->second, row.unit, row.acts_in, row.what));
+      Print(output_.out, fmt::format(fmt::runtime(kRow), row.key, value == values.end() ? "-" : value->second,
+                                     row.unit, row.range, row.acts_in, row.what));
     }
     const tuned_settings_t& in_force = *client_.in_force();
     Print(output_.out,

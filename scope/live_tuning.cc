@@ -82,6 +82,7 @@ void LiveTuning::Describe() {
       entries.push_back({{"key", row.key},
                          {"value", ValueOf(value->second)},
                          {"unit", row.unit},
+                         {"range", row.range},
                          {"what", row.what},
                          {"acts_in", row.acts_in}});
     }

@@ -11,6 +11,7 @@ namespace hydro::tuning {
 struct TunableKey {
   std::string_view key;      // of the configuration, e.g. "position.c2"
   std::string_view unit;     // "" where the value is a word or a list
+  std::string_view range;    // for a person, what is allowed; "> 0" and ">= 0": any finite number there
   std::string_view what;     // for a person, what it does
   std::string_view acts_in;  // role of the process that acts by it: pressure_ctrl, position_ctrl, plant
 };

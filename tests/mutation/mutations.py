@@ -462,4 +462,32 @@ MUTATIONS = [
         ("eq17.limit", "std::clamp(pressure_ref, -settings_.pressure_limit, settings_.pressure_limit)",
          "pressure_ref"),
     ),
+    # Values that change while the loops run.
+    *_rows(
+        "tuning/bumpless_transfer.h",
+        ("tuning.offset", "offset_ = before - after;", "offset_ = after - before;"),
+        ("tuning.fade", "(1 - share) * offset_", "share * offset_"),
+        ("tuning.fade_ends", "if (share >= 1) passing_ = false;", ""),
+    ),
+    *_rows(
+        "tuning/tuning_follower.cc",
+        ("tuning.tick", "tick < waiting_->acts_at) return", "tick <= waiting_->acts_at) return"),
+        ("tuning.undecided", "waiting_->acts_at < 0 || tick", "tick"),
+        ("tuning.withdrawn", "if (known) waiting_.reset();", ""),
+        ("tuning.other_plant", "if (in_force_ != 0) in_force_ = -1;", ""),
+        ("tuning.unprepared", "status_.text = prepare_(settings);", "status_.text.clear();"),
+        ("tuning.awaits", "return joined_ && !heard_", "return false && joined_ && !heard_"),
+        ("tuning.awaits_for_ever", "- *joined_ < kLongestWait", "- *joined_ >= bus::Clock::Duration{}"),
+    ),
+    *_rows(
+        "tuning/change_check.cc",
+        ("tuning.looser_limit", "if (!situation.held) change.text = LoosenedLimit", "if (situation.held) change.text = LoosenedLimit"),
+        ("tuning.beyond_the_rig", "change.text = WhatTheRigCannotFollow(*next);", ""),
+        ("tuning.unstable", "if (!LoopsPermit(in_force, *next, &margins)) {", "if (LoopsPermit(in_force, *next, &margins)) {"),
+        ("tuning.real_noise", "&& !situation.simulated", "&& situation.simulated"),
+    ),
+    *_rows(
+        "tuning/tuned_values.cc",
+        ("tuning.same_laws", "return !of_a_law || value.get(a) == value.get(b);", "return of_a_law || value.get(a) == value.get(b);"),
+    ),
 ]

@@ -127,26 +127,50 @@ TEST(PrepareChange, AReferenceTravelsAsText) {
   EXPECT_EQ(reference.signal, settings::ReferenceSignal::kArmAngle);
 }
 
+// A configuration in which the row's key has a meaning.
+std::string ConfigFor(const TunableKey& row) {
+  const std::string last(row.key.substr(row.key.find('.') + 1));
+  if (!row.key.starts_with("reference.")) return kFast;
+  std::vector<std::string> kind;
+  for (const char* name : {"steps", "sine", "chirp", "planner"}) {
+    const auto keys = settings::KeysOfTrajectory(name);
+    if (kind.empty() && std::find(keys.begin(), keys.end(), last) != keys.end()) {
+      kind = {std::string("reference.kind=") + name};
+    }
+  }
+  if (last == "points" || last == "interpolation")
+    kind = {"reference.kind=csv", "reference.points=[[0, 0], [1, 0.1]]"};
+  return settings::Changed(Parsed(kFast), kind).text;
+}
+
 // Tests that every row of the table is a key of the configuration: with a value that no key allows, it is the value that is refused.
 TEST(TunableKeys, AreKeysOfTheConfiguration) {
   for (const TunableKey& row : TunableKeys()) {
     const std::string key(row.key);
-    const std::string last = key.substr(key.find('.') + 1);
-    std::vector<std::string> kind;
-    for (const char* name : {"steps", "sine", "chirp", "planner"}) {
-      const auto keys = settings::KeysOfTrajectory(name);
-      if (kind.empty() && std::find(keys.begin(), keys.end(), last) != keys.end()) {
-        kind = {std::string("reference.kind=") + name};
-      }
-    }
-    if (last == "points" || last == "interpolation")
-      kind = {"reference.kind=csv", "reference.points=[[0, 0], [1, 0.1]]"};
-    const std::string config =
-        key.starts_with("reference.") ? settings::Changed(Parsed(kFast), kind).text : kFast;
+    const std::string config = ConfigFor(row);
     const PreparedChange change = Prepared({key + "={}"}, {.held = true, .simulated = true}, config);
     EXPECT_EQ(change.config, nullptr);
     EXPECT_THAT(change.text, ::testing::AnyOf(HasSubstr(key + ": found"), HasSubstr(key + "[")));
   }
+}
+
+// Tests that the table's ranges are those of the configuration, at both sides of their ends.
+TEST(TunableKeys, RangesAreThoseOfTheConfiguration) {
+  int checked = 0;
+  for (const TunableKey& row : TunableKeys()) {
+    const bool positive = row.range.starts_with("> 0"), from_zero = row.range == ">= 0";
+    if (!positive && !from_zero) continue;
+    ++checked;
+    const std::string key(row.key), config = ConfigFor(row);
+    const auto refused = [&](const char* value) {
+      const PreparedChange change = Prepared({key + "=" + value}, {.held = true, .simulated = true}, config);
+      return change.config == nullptr && change.text.find(key + ": found") != std::string::npos;
+    };
+    EXPECT_TRUE(refused("-1e-9")) << key;
+    EXPECT_EQ(refused("0"), positive) << key;
+    EXPECT_FALSE(refused("1e-9")) << key;
+  }
+  EXPECT_GT(checked, 15);
 }
 
 }  // namespace

@@ -11,7 +11,9 @@ export class TuningRow {
     const entry = { ...given, value: read(given.value) };
     this.edited = edited;
     this.in_force = el('span', { class: 'number', title: 'in force' });
-    const what = [entry.what, entry.acts_in && `(${entry.acts_in})`].filter(Boolean).join(' ');
+    const what = [entry.what, entry.range && `[${entry.range}]`, entry.acts_in && `(${entry.acts_in})`]
+      .filter(Boolean)
+      .join(' ');
     this.element = el(
       'div',
       { class: 'tuning', 'data-key': entry.key },
