@@ -11,11 +11,11 @@ import ssl
 import subprocess
 import tempfile
 
-import scope_case
+import scope_case  # makes tests/e2e known
 import stack
 import web_socket
 
-import outcome  # in tests/e2e, which scope_case makes known
+import outcome
 
 ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 EXAMPLE = os.path.join(ROOT, "examples", "scope_tls", "nginx.conf")
@@ -181,7 +181,8 @@ class TlsTest(stack.TestCase):
         with self.assertRaises(web_socket.Refused) as refused:
             web_socket.WebSocket(self.port, "/live?token=" + scope_case.TOKEN, "hydro.scope.v1", host=self.address)
         self.assertEqual(refused.exception.args[0], 400)
-        self.assertEqual(listening_addresses(self.scope.process.pid), [f"0100007F:{self.scope.port:04X}"])
+        for process, port in ((self.scope.process, self.scope.port), (self.server, self.port)):
+            self.assertEqual(listening_addresses(process.pid), [f"0100007F:{port:04X}"], process.label)
 
     # Tests that the token, which a web socket's address has, is in nothing that the server in front writes, also when it complains, and
     # that without hydro-scope it says so and lives.
