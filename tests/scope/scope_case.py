@@ -14,12 +14,12 @@ os.environ["HYDRO_SCOPE_TOKEN"] = TOKEN
 
 
 class Scope:
-    """A hydro-scope on a port of its own."""
+    """A hydro-scope on a port of its own. `before`: a command that starts it, e.g. as another user."""
 
-    def __init__(self, case, *arguments):
+    def __init__(self, case, *arguments, before=()):
         self.case = case
         os.environ["TMPDIR"] = case.folder  # where it makes a folder for its files: a killed one leaves that behind
-        self.process = case.start("hydro-scope", *arguments, "--port", "0")
+        self.process = case.start(*before, stack.program("hydro-scope"), *arguments, "--port", "0", label="hydro-scope")
         self.port = int(self.process.wait_for(r"open http://127\.0\.0\.1:(\d+)/#token=" + TOKEN).group(1))
 
     def request(self, method, path, body=None, token=TOKEN, **more):

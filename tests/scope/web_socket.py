@@ -8,9 +8,16 @@ import socket
 import struct
 
 
-def request(port, method, path, body=None, token=None, headers=None, timeout=20):
+def connect(port, tls=None, timeout=20):
+    """A socket to a port of this machine; tls: the ssl.SSLContext and the name that the server's certificate is to have."""
+    plain = socket.create_connection(("127.0.0.1", port), timeout=timeout)
+    return tls[0].wrap_socket(plain, server_hostname=tls[1]) if tls else plain
+
+
+def request(port, method, path, body=None, token=None, headers=None, tls=None, timeout=20):
     """Status, headers and body of one request."""
     connection = http.client.HTTPConnection("127.0.0.1", port, timeout=timeout)
+    connection.sock = connect(port, tls, timeout)
     sent = dict(headers or {})
     if token is not None:
         sent["Authorization"] = "Bearer " + token
@@ -28,8 +35,8 @@ class Refused(Exception):
 class WebSocket:
     """A client's end. Messages come as (True, bytes) or (False, text)."""
 
-    def __init__(self, port, path, subprotocol=None, origin=None, host=None, timeout=20):
-        self.socket = socket.create_connection(("127.0.0.1", port), timeout=timeout)
+    def __init__(self, port, path, subprotocol=None, origin=None, host=None, tls=None, timeout=20):
+        self.socket = connect(port, tls, timeout)
         self.buffer = b""
         lines = [
             f"GET {path} HTTP/1.1",
