@@ -3,6 +3,12 @@
 # The standard library's headers are a fifth of all compiling. Builds of everything (presets release and asan) precompile them
 # once for each set of flags; the preset dev compiles every file alone, and so finds includes that are missing.
 option(HYDRO_PRECOMPILE "Precompile the standard library's headers" OFF)
+# They also compile a library's files in batches of eight: half of compiling is reading the same headers. Files whose names in
+# anonymous namespaces are also those of others in their library stay alone.
+option(HYDRO_UNITY "Compile each library's files in batches" OFF)
+set(hydro_alone_file ${CMAKE_CURRENT_LIST_DIR}/compiled_alone.txt)
+set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${hydro_alone_file})
+file(STRINGS ${hydro_alone_file} HYDRO_COMPILED_ALONE REGEX "^[a-z]")
 # GCC 12 does not count what is precompiled as system headers, and warns falsely about strings in its own (its bug 105651).
 if(HYDRO_PRECOMPILE AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   add_compile_options(-Wno-array-bounds -Wno-restrict -Wno-stringop-overflow -Wno-stringop-overread)
@@ -40,6 +46,9 @@ function(hydro_library name)
     set(type OBJECT)
   endif()
   add_library(${name} ${type} ${arg_SOURCES})
+  if(HYDRO_UNITY)
+    hydro_compile_in_batches(${name} ${arg_SOURCES})
+  endif()
   target_include_directories(${name} PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>
                                             $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/hydro>)
   target_compile_features(${name} PUBLIC cxx_std_20)
@@ -63,6 +72,18 @@ function(hydro_library name)
       hydro_install_headers(${arg_SOURCES})
     endif()
   endif()
+endfunction()
+
+function(hydro_compile_in_batches name)
+  set_target_properties(${name} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 8)
+  foreach(source ${ARGN})
+    cmake_path(ABSOLUTE_PATH source BASE_DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR} OUTPUT_VARIABLE path)
+    cmake_path(RELATIVE_PATH path BASE_DIRECTORY ${PROJECT_SOURCE_DIR})
+    cmake_path(GET path PARENT_PATH folder)
+    if(path IN_LIST HYDRO_COMPILED_ALONE OR "${folder}/" IN_LIST HYDRO_COMPILED_ALONE)
+      set_source_files_properties(${source} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
+    endif()
+  endforeach()
 endfunction()
 
 # hydro_install_headers(SOURCES...): installs the headers that lie beside these sources of the current folder.
