@@ -246,7 +246,7 @@ void RunDiagnosis(const DiagnoseRequest& request, const Diagnoser& diagnose, std
   Diagnosis diagnosis;
   {
     const bool terminal = isatty(fileno(err)) != 0;
-    ProgressBar bar(terminal ? err : out, terminal);
+    ProgressBar bar(err, terminal);
     diagnosis =
         ReadAndDiagnose(request, diagnose, [&](const Progress& progress) { bar.Show(progress, elapsed()); });
     bar.Show({"writing the report", 1}, elapsed());

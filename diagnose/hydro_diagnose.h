@@ -30,8 +30,8 @@ using Diagnoser =
                             std::vector<runs::MeasuredRun>, const DiagnoseOptions&, const ProgressCallback&)>;
 
 // Writes report.html, report.json, model.toml and, when there is a next experiment, next.toml into the
-// request's folder, each file whole or not at all, and a summary to `out`. Progress goes to `err` as a bar
-// when that is a terminal, else to `out`, one line a stage: `err` is kept for the one line of an error.
+// request's folder, each file whole or not at all, and a summary to `out`. Progress goes to `err`: as a bar when
+// that is a terminal, else one line a stage, the first not before the input was found good: then `err` has the one line of an error.
 // Throws InputError for anything that cannot be read or used, including a model that cannot follow a run.
 void RunDiagnosis(const DiagnoseRequest& request, const Diagnoser& diagnose, std::FILE* out, std::FILE* err);
 

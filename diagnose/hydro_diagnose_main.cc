@@ -12,7 +12,7 @@ int main(int argc, char** argv) {
       "Finds where a model and measured runs disagree, names the missing effect, adds it "
       "to the model and shows the gap shrink on data it was not fitted to.");
   line.AddExamples({"hydro-diagnose run1.lcmlog run2.lcmlog --model config/models/table1.toml --out out/gap",
-                    "hydro-diagnose run.csv --check"},
+                    "hydro-diagnose run.csv --model config/models/table1.toml --check"},
                    "docs/gap_finder.md");
   hydro::diagnose::DiagnoseRequest request;
   request.jobs = static_cast<int>(std::clamp(std::thread::hardware_concurrency(), 1u, 256u));

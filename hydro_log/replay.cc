@@ -67,6 +67,7 @@ class Replayer {
       settings.stage = tuned_settings_t::DECIDED;
       tunings_.push_back(std::move(settings));
     }
+    ReadPlans(log.messages.Of<arm_plan_t>());
     for (const auto& [tick, state] : states_) {
       if (std::abs(state.time) <= kLatestTime) continue;
       throw InputError(log.file + ": found the state of tick " + std::to_string(tick) + " at " +
@@ -86,6 +87,7 @@ class Replayer {
   template <class Before>
   void Feed(Before before) {
     auto next = tunings_.begin();
+    auto plan = plans_.begin();
     const double first_time = states_.begin()->second.time;
     const auto wall_start = std::chrono::steady_clock::now();
     for (const auto& [tick, state] : states_) {
@@ -93,6 +95,10 @@ class Replayer {
       if (speed_ > 0) std::this_thread::sleep_until(wall_start + elapsed / speed_);
       clock_.AdvanceTo(bus::Clock::TimePoint(std::chrono::duration_cast<bus::Clock::Duration>(elapsed)));
       before(tick);
+      for (; plan != plans_.end() && plan->first < tick; ++plan) {
+        bus_.Publish(channels_.Of<arm_plan_t>(), plan->second);
+        Deliver();
+      }
       for (; next != tunings_.end() && next->acts_at <= tick; ++next) {
         bus_.Publish(channels_.Of<tuned_settings_t>(), *next);
         Deliver();
@@ -108,10 +114,28 @@ class Replayer {
   }
 
  private:
+  // A plan acts by the tick that it names, so it is handed over behind that one's state; without a tick, behind the last state that was sent
+  // before it (by the clocks of both).
+  void ReadPlans(const std::vector<arm_plan_t>& plans) {
+    for (const arm_plan_t& plan : plans) {
+      int64_t behind = plan.tick;
+      if (behind < 0) {
+        for (const auto& [tick, state] : states_) {
+          if (state.utime > plan.utime) break;
+          behind = tick;
+        }
+      }
+      plans_.emplace_back(behind, plan);
+    }
+    std::stable_sort(plans_.begin(), plans_.end(),
+                     [](const auto& a, const auto& b) { return a.first < b.first; });
+  }
+
   double speed_;
   settings::StackConfig config_;
   bus::Channels channels_;
   std::map<int64_t, state_t> states_;
+  std::vector<std::pair<int64_t, arm_plan_t>> plans_;  // behind which tick
   std::vector<tuned_settings_t> tunings_;  // acts_at: from when the replayed process acted by them
   bus::SimulatedClock clock_;
   bus::InProcessBus bus_{&clock_};

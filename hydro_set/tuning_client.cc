@@ -71,8 +71,8 @@ void TuningClient::Poll() {
     answer_->accepted = false;
     answer_->acts_at = -1;
     answer_->text =
-        "the plant or driver does not answer: it may not take part in tuning, or another request keeps it "
-        "busy";
+        "the plant or driver does not answer: it may not take part in tuning, another request keeps it busy, "
+        "or it refuses what comes without its key (bus.key_file)";
     asked_.reset();
   } else if (now >= next_repeat_) {
     Send();

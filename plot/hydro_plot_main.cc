@@ -1,5 +1,7 @@
 // hydro-plot RUN.csv DIR: pictures of a run.
+#include <filesystem>
 #include <string>
+#include <system_error>
 
 #include "base/new_file.h"
 #include "base/read_files.h"
@@ -14,13 +16,15 @@ int main(int argc, char** argv) {
   std::string table;
   std::string folder;
   line.AddPositional("RUN", &table, "FILE a table that hydro-log export wrote (.csv, .mat)");
-  line.AddPositional("DIR", &folder, "FOLDER where to write");
+  line.AddPositional("DIR", &folder, "FOLDER where to write; made if it is not there");
   if (const auto code = line.Parse(argc, argv)) return *code;
   return hydro::settings::RunProgram("hydro-plot", [&] {
     for (const char* picture : {"/arm.svg", "/pressure.svg"}) hydro::CheckKeeps(folder + picture, {table});
     const hydro::tables::Table run = hydro::tables::ReadTableWithoutUnits(table);
     const std::string arm = hydro::page::FigureFile(hydro::plot::ArmFigure(run), "arm");
     const std::string pressure = hydro::page::FigureFile(hydro::plot::PressureFigure(run), "pressure");
+    std::error_code failed;  // WriteWholeFile says why
+    std::filesystem::create_directories(folder, failed);
     hydro::WriteWholeFile(folder + "/arm.svg", arm);
     hydro::WriteWholeFile(folder + "/pressure.svg", pressure);
     return 0;

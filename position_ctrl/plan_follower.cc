@@ -10,6 +10,7 @@ namespace hydro::position_ctrl {
 namespace {
 
 constexpr int32_t kMostPoints = 256;
+constexpr size_t kMostWaiting = 64;  // plans; beyond it the last gives way to its successor
 
 // Why a plan cannot be followed; empty: it can.
 std::string WhatIsWrong(const arm_plan_t& plan, double largest_angle) {
@@ -48,24 +49,30 @@ PlannedPoint Between(const arm_plan_t& plan, size_t i, double time) {
 PlanFollower::PlanFollower(double initial, const PlanLimits& limits, double rate_hz)
     : limits_(limits), rate_hz_(rate_hz), reference_(initial) {}
 
+const PlanFollower::Current* PlanFollower::newest() const {
+  if (!next_.empty()) return &next_.back();
+  return current_ ? &*current_ : nullptr;
+}
+
 std::string PlanFollower::Take(const arm_plan_t& plan, int64_t tick) {
-  const Current* newest = next_ ? &*next_ : current_ ? &*current_ : nullptr;
-  if (newest != nullptr) {
-    if (plan.session == newest->plan.session) {
-      if (plan.sequence <= newest->plan.sequence) return "";  // repeated, or overtaken: the newer one stays
+  if (const Current* last = newest(); last != nullptr) {
+    if (plan.session == last->plan.session) {
+      if (plan.sequence <= last->plan.sequence) return "";  // repeated, or overtaken: the newer one stays
     } else if (!silent(tick)) {
       return "another planner is followed already; allowed is one";
     }
   }
   if (std::string wrong = WhatIsWrong(plan, limits_.largest_angle); !wrong.empty()) return wrong;
   const auto delay = static_cast<int64_t>(std::llround(limits_.delay_s * rate_hz_));
-  next_ = Current{plan, std::max(tick, plan.tick < 0 ? tick : plan.tick + delay)};
+  const int64_t from = std::max(tick, plan.tick < 0 ? tick : plan.tick + delay);
+  while (!next_.empty() && (next_.back().from >= from || next_.size() >= kMostWaiting)) next_.pop_back();
+  next_.push_back({plan, from});
   return "";
 }
 
 bool PlanFollower::silent(int64_t tick) const {
-  const Current* newest = next_ ? &*next_ : current_ ? &*current_ : nullptr;
-  return newest != nullptr && Seconds(tick - newest->from) > limits_.timeout_s;
+  const Current* last = newest();
+  return last != nullptr && Seconds(tick - last->from) > limits_.timeout_s;
 }
 
 // What the plan says, without limits. Before its first point it is on its way from where the reference is.
@@ -80,7 +87,7 @@ PlannedPoint PlanFollower::Wanted(int64_t tick) const {
 }
 
 PlannedPoint PlanFollower::At(int64_t tick) {
-  if (next_ && tick >= next_->from) current_ = std::exchange(next_, std::nullopt);
+  for (; !next_.empty() && tick >= next_.front().from; next_.pop_front()) current_ = std::move(next_.front());
   PlannedPoint point = Wanted(tick);
   if (silent(tick)) point = {.angle = reference_, .torque = point.torque};
   point.angle = std::clamp(point.angle, -limits_.largest_angle, limits_.largest_angle);

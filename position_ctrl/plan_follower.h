@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <deque>
 #include <hydro/arm_plan_t.hpp>
 #include <optional>
 #include <string>
@@ -45,14 +46,15 @@ class PlanFollower {
     arm_plan_t plan;
     int64_t from = 0;  // tick
   };
+  const Current* newest() const;
   PlannedPoint Wanted(int64_t tick) const;
   double Seconds(int64_t ticks) const { return static_cast<double>(ticks) / rate_hz_; }
 
   PlanLimits limits_;
   double rate_hz_;
   std::optional<Current> current_;
-  std::optional<Current> next_;  // taken, not in force yet
-  double reference_;             // rad, at the last sample
+  std::deque<Current> next_;  // taken, not in force yet, in the order in which they will be
+  double reference_;          // rad, at the last sample
   std::optional<int64_t> last_tick_;
 };
 

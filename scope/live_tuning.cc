@@ -27,7 +27,10 @@ LiveTuning::LiveTuning(bus::Bus& bus, const bus::Clock& clock, const bus::Channe
 
 bool LiveTuning::Ready(const Done& done) {
   if (!client_.in_force() || !client_.run()) {
-    done({false, "no running stack has said which values are in force", {}});
+    done({false,
+          "no running stack has said which values are in force (one with a key is heard with that key alone: "
+          "bus.key_file)",
+          {}});
   } else if (client_.asking()) {
     done({false, "another change is under way, try again", {}});
   } else {

@@ -82,7 +82,7 @@ class HydroDiagnoseTest : public ::testing::Test {
       std::fclose(err);
       throw;
     }
-    EXPECT_EQ(std::ftell(err), 0);
+    EXPECT_GT(std::ftell(err), 0);  // progress
     std::string text(static_cast<size_t>(std::ftell(out)), '\0');
     std::rewind(out);
     EXPECT_EQ(std::fread(text.data(), 1, text.size(), out), text.size());

@@ -155,7 +155,8 @@ class DiagnoseTest(stack.TestCase):
         for out, jobs in (("a", 1), ("b", 2)):
             run = self.run_program("hydro-diagnose", log, "--model", TABLE1, "--out", self.path(out), "--jobs",
                                    str(jobs), timeout=LONG)
-            self.assertEqual(run.stderr, "")
+            self.assertRegex(run.stderr, r"^reading the runs\n")
+            self.assertNotIn("reading the runs", run.stdout)
             files = {}
             for name in sorted(os.listdir(self.path(out))):
                 with open(self.path(os.path.join(out, name)), encoding="utf-8") as file:

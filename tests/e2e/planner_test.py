@@ -169,7 +169,6 @@ class PlannerTest(fault_case.FaultCase):
 
     # Tests that a planner that plans at each sample is followed as well: the newest plan replaces the one before, but does not keep it from
     # ever acting.
-    @unittest.expectedFailure  # a plan that waits for reference.delay_s is dropped when the next one comes
     def test_fast_planner(self):
         course = Course(self.start_planned().time + 0.5)
         planner = self.planner(course, every=0.005)
@@ -179,7 +178,6 @@ class PlannerTest(fault_case.FaultCase):
         self.assert_on_course(log, course, end.tick)
 
     # Tests that the replay of the log follows the plans.
-    @unittest.expectedFailure  # hydro-log replay does not give the position loop the plans of the log
     def test_replay(self):
         course = Course(self.start_planned().time + 0.5)
         self.planner(course)

@@ -55,6 +55,42 @@ TEST(PlanFollower, GoesThroughThePoints) {
   EXPECT_EQ(follower.At(150).speed, 0);
 }
 
+// Tests that a plan which comes while another waits for its delay leaves that one its turn, however fast they come; and that one
+// which acts sooner takes the place of those that wait.
+TEST(PlanFollower, EachOfManyPlansHasItsTurn) {
+  PlanFollower follower(0.1, {.timeout_s = 0.2, .delay_s = 0.01, .largest_speed = kNone, .largest_angle = 1},
+                        1000);
+  const auto at = [&](int64_t tick, double angle) {
+    arm_plan_t plan = Plan(1, tick, {0}, {angle}, {0});
+    plan.tick = tick;
+    return plan;
+  };
+  for (int64_t tick = 0; tick <= 500; tick += 2) {
+    ASSERT_EQ(follower.Take(at(tick, 1e-3 * static_cast<double>(tick)), tick), "");
+    EXPECT_DOUBLE_EQ(follower.At(tick).angle, tick < 10 ? 0.1 : 1e-3 * static_cast<double>(tick - 10))
+        << tick;
+    EXPECT_FALSE(follower.silent(tick));
+  }
+  arm_plan_t now = at(501, 0.9);
+  now.tick = -1;
+  ASSERT_EQ(follower.Take(now, 501), "");
+  for (int64_t tick = 501; tick < 520; ++tick) EXPECT_EQ(follower.At(tick).angle, 0.9) << tick;
+}
+
+// Tests that a planner which floods makes nothing grow and is followed still.
+TEST(PlanFollower, AFloodIsFollowedStill) {
+  PlanFollower follower(0.1, {.timeout_s = 0.2, .delay_s = 1, .largest_speed = kNone, .largest_angle = 1},
+                        1000);
+  for (int64_t tick = 0; tick < 3000; ++tick) {
+    arm_plan_t plan = Plan(1, tick, {0}, {1e-4 * static_cast<double>(tick)}, {0});
+    plan.tick = tick;
+    ASSERT_EQ(follower.Take(plan, tick), "");
+    const double angle = follower.At(tick).angle;
+    if (tick >= 2000) EXPECT_NEAR(angle, 1e-4 * static_cast<double>(tick - 1000), 0.1) << tick;
+    if (tick >= 2000) EXPECT_NE(angle, 0.1);
+  }
+}
+
 TEST(PlanFollower, HoldsWhenThePlannerIsSilent) {
   PlanFollower follower = Follower();
   EXPECT_FALSE(follower.silent(1000)) << "there was none yet";
