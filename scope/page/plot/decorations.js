@@ -5,7 +5,10 @@ import uPlot from '../uplot/uPlot.esm.js';
 import { runTime } from '../settings/numbers.js';
 import { factorOf } from '../settings/units.js';
 import { colourOf } from './colours.js';
-import { bridge, gapsIn } from './trace_path.js';
+import { gapsShown } from './trace_path.js';
+
+// How strong the shade of a gap is, here and in a picture that is saved.
+export const kGapAlpha = 0.14;
 
 // state: {colours, traces, si, limits, events, cursors, trigger: {t, channel, level} or null,
 // head: of the playback or null, rate_hz, first, last, top: is the first pane}
@@ -58,13 +61,8 @@ function drawHead(ctx, chart, { colours, head }) {
   rule(ctx, chart.x(head), top, chart.x(head), top + height, colours.accent, [], 1.2);
 }
 
-function drawGaps(ctx, chart, { colours, traces, rate_hz, first, last }) {
-  const one = traces.find((candidate) => candidate.kind === 'measured' && !candidate.hidden);
-  const { bins } = chart.frame;
-  if (!one || !bins?.min[one.id]) return;
-  for (const [from, to] of gapsIn(bins, bins.min[one.id], bridge(one.channel, rate_hz, bins.width), first, last)) {
-    shade(ctx, chart, from, to, colours.warn, 0.14);
-  }
+function drawGaps(ctx, chart, state) {
+  for (const [from, to] of gapsShown(chart.frame, state)) shade(ctx, chart, from, to, state.colours.warn, kGapAlpha);
 }
 
 // The voltages that the motor never sees: what lies beyond its limits is shaded.
