@@ -101,6 +101,33 @@ test('scrub', async () => {
   assert.ok(Math.abs(head - last / 2) < 0.02 * last, `${head} of ${last}`);
 });
 
+// Tests that the values at the end of the window are said with their time, as they stand in the log.
+test('values in words', async () => {
+  await page.evaluate((end) => hydroScope.display.showWindow(end - 0.1, end), kSpike.t + 1e-6);
+  const psi = (row) => Number(table.rows[row].p1_psi).toPrecision(4);
+  await until(page, () => {
+    const { bins, t0, t1 } = hydroScope.display.frame();
+    return hydroScope.display.cache.covers(t0, t1) && bins.width < 0.0011;
+  });
+  await page.keyboard.press('v');
+  const said = await page.locator('#said').textContent();
+  const [, time, value] = /^At ([\d.]+) s: .*, pressure of side 1 ([\d.]+) psi, /.exec(said) ?? [];
+  assert.equal(time, '3.210');
+  // A pixel may end at the sample after the moment.
+  const right = [kSpike.row - 1, kSpike.row, kSpike.row + 1].map(psi);
+  assert.ok(right.includes(value), `${value} psi, not one of ${right}`);
+});
+
+// Tests that the clock does not go on where the window is longer than the log.
+test('the clock ends with the log', async () => {
+  await page.evaluate(() => hydroScope.display.showWindow(hydroScope.display.last - 1, hydroScope.display.last + 1));
+  const last = await page.evaluate(() => hydroScope.display.last);
+  await page
+    .locator('#clock')
+    .getByText(`${last.toFixed(3)} s`, { exact: true })
+    .waitFor();
+});
+
 // Tests that STOP and re-arm say why they do nothing in a log.
 test('a log cannot be stopped', async () => {
   assert.equal(await page.locator('#stop').getAttribute('aria-disabled'), 'true');
