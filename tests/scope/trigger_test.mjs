@@ -118,7 +118,7 @@ test('a wrong setting is named', async () => {
 });
 
 // How each of the next `count` captures with these settings came about ("triggered" or "auto") and when, as the server
-// says it; with `from`, counted from the first of that kind on.
+// says it, with the time from there to the first arm angle below the level; with `from`, counted from the first of that kind on.
 async function causes(settings, count, from = null) {
   const seen = await page.evaluateHandle(
     ([changes, first]) => {
@@ -129,12 +129,20 @@ async function causes(settings, count, from = null) {
         begun ||= state === first;
         if (begun) list.push({ state, t });
       });
+      // The picture comes after its message; the next one, of a stack that a busy machine disturbs, may be another kind.
+      hydroScope.signals.on('capture', () => {
+        const { t, bins } = hydroScope.display.capture;
+        const at = bins.t.findIndex(
+          (one, i) => one > t - 0.3 && bins.min.arm_angle[i] <= hydroScope.trigger.settings.level,
+        );
+        if (list.length > 0) list.at(-1).edge ??= bins.t[at] - t;
+      });
       hydroScope.trigger.change(changes);
       return list;
     },
     [settings, from],
   );
-  await until(page, ([list, n]) => list.length >= n, [seen, count]);
+  await until(page, ([list, n]) => list[n - 1]?.edge !== undefined, [seen, count]);
   return (await seen.jsonValue()).slice(0, count);
 }
 
@@ -161,16 +169,8 @@ test('auto runs free, and stands still on what triggers', async () => {
   );
   for (const [i, one] of caught.slice(1).entries())
     assert.ok(Math.abs(one.t - caught[i].t - 2) < 0.3, `${one.t} after ${caught[i].t}: not the next falling edge`);
-  const { t, offset } = await page.evaluate(() => {
-    const { t, bins } = hydroScope.display.capture;
-    const at = bins.t.findIndex((one, i) => one > t - 0.3 && bins.min.arm_angle[i] <= 0.05);
-    return { t, offset: bins.t[at] - t };
-  });
-  assert.ok(Math.abs(offset) <= 0.01, `the edge is ${offset} s from the trigger at ${t} s`);
-  await page
-    .locator('#section-trigger .state')
-    .getByText(/^triggered/)
-    .waitFor();
+  for (const { t, edge } of caught)
+    assert.ok(Math.abs(edge) <= 0.01, `the edge is ${edge} s from the trigger at ${t} s`);
 });
 
 test('no errors in the page', () => assert.deepEqual(page.problems, []));
