@@ -1,6 +1,6 @@
 // What buttons and keys do: one place for both.
 
-import { el } from './dom.js';
+import { byId, el, setText } from './dom.js';
 import { showDialog } from './panels/dialog.js';
 
 // parts: everything that main makes; returns the actions by name.
@@ -82,6 +82,7 @@ export function makeActions(parts) {
     },
     ghost: () => parts.ghost.toggle(!scope.ghost),
     sample: (key) => player.step(key === '.' ? 1 : -1),
+    say: () => setText(byId('said'), panes.said()),
     units: () => scope.prefer({ si: !scope.preferences.si }),
     theme: () => parts.toolbar.nextTheme(),
     help: () => showHelp(parts.keys, scope.hello?.program),

@@ -122,6 +122,83 @@ test('names and focus', async () => {
   assert.ok(new Set(outlines.map(({ id }) => id)).size >= 8);
 });
 
+// Tests that names say what a button does where its words alone do not, and that nothing is said that nobody asked for:
+// a clock that is read aloud at each change drowns the faults.
+test('names, and quiet', async () => {
+  for (const name of ['Units: in · psi', 'Colours: Auto', 'STOP', 'Arrange pane 1']) {
+    const named = name.startsWith('Arrange')
+      ? page.getByLabel(name, { exact: true })
+      : page.getByRole('button', { name, exact: true });
+    assert.equal(await named.count(), 1, name);
+  }
+  for (const id of ['clock', 'base']) assert.equal(await page.locator(`#${id}`).getAttribute('aria-live'), 'off', id);
+  assert.equal(await page.locator('.chip [aria-live], .chip output, [role=img] [aria-live]').count(), 0);
+});
+
+// Tests that the curves have their newest values in words: in the names of their buttons, and said on request with their
+// time, without those that are hidden.
+test('values in words', async () => {
+  await page.getByRole('button', { name: /^arm_angle \u2212?[\d.]+ rad$/ }).waitFor();
+  await page.getByRole('img', { name: 'Curves over time of arm angle, reference of the arm angle' }).waitFor();
+  await page.keyboard.press('Space');
+  await until(page, () => hydroScope.display.mode === 'still');
+  await page.locator('[data-channel=p2]').press('Enter');
+  await page.keyboard.press('v');
+  const said = await page.locator('#said[role=status]').textContent();
+  const [, time] = /^At ([\d.]+) s: .*, arm angle \u2212?[\d.]+ rad, /.exec(said) ?? [];
+  const last = await page.evaluate(() => hydroScope.display.last);
+  assert.ok(last - Number(time) > -0.01 && last - Number(time) < 4, `${said}; now it is ${last} s`);
+  const labels = await page.evaluate(() => ['p1', 'p2'].map((id) => hydroScope.scope.channel(id).label));
+  assert.ok(said.includes(`${labels[0]} `) && !said.includes(`${labels[1]} `), said);
+  await page.locator('[data-channel=p2]').press('Enter');
+  await page.keyboard.press('l');
+});
+
+// Tests that a pane is arranged with keys alone: its menu opens, takes a channel away, and gives the focus back.
+test('the menu of a pane with keys', async () => {
+  const menu = page.getByLabel('Arrange pane 1', { exact: true });
+  await menu.focus();
+  await page.keyboard.press('Enter');
+  await page.getByLabel('Move dp to').waitFor();
+  await page.keyboard.press('Tab');
+  await page.keyboard.press('Tab');
+  await page.keyboard.press('Enter'); // Remove, beside "Move dp to"
+  await until(page, () => !hydroScope.scope.layout.panes[0].channels.includes('dp'));
+  await page.keyboard.press('Escape');
+  await page.getByLabel('Move dp_ref to').waitFor({ state: 'hidden' });
+  assert.equal(await page.evaluate(() => document.activeElement.getAttribute('aria-label')), 'Arrange pane 1');
+  await page.getByRole('button', { name: 'Default panes' }).click();
+});
+
+// Tests that the table of the cursors, with the widest names, is not cut off at the side.
+test('the cursors have room', async () => {
+  if (!(await page.evaluate(() => hydroScope.cursors.shown))) await page.keyboard.press('c');
+  await page.locator('[data-cell="motor_speed.difference"]').waitFor();
+  await until(page, () => !document.querySelector('[data-cell="p1.difference"]')?.textContent.includes('–'));
+  const { table, room } = await page.evaluate(() => ({
+    table: document.querySelector('#section-cursors table').getBoundingClientRect().right,
+    room: document.querySelector('#section-cursors .hint').parentElement.getBoundingClientRect().right,
+  }));
+  assert.ok(table <= room, `the table ends at ${table}, its place at ${room}`);
+  await page.keyboard.press('c');
+});
+
+// Tests that when the system turns dark, all that is drawn does: the panes and the bar of the whole run.
+test("the system's colours", async () => {
+  const corner = () =>
+    page.evaluate(() => [
+      document.querySelector('.overview').getContext('2d').getImageData(3, 3, 1, 1).data[0],
+      parseInt(hydroScope.panes.colours.paper.slice(1, 3), 16),
+    ]);
+  await page.emulateMedia({ colorScheme: 'light' });
+  await until(page, () => hydroScope.panes.colours.paper === '#ffffff');
+  assert.ok(Math.min(...(await corner())) > 150, `${await corner()}`);
+  await page.emulateMedia({ colorScheme: 'dark' });
+  await until(page, () => hydroScope.panes.colours.paper !== '#ffffff');
+  assert.ok(Math.max(...(await corner())) < 100, `${await corner()}`);
+  await page.emulateMedia({ colorScheme: 'light' });
+});
+
 // Tests that a channel's name can be dragged to another pane.
 test('a channel is dragged to another pane', async () => {
   await page.dragAndDrop('[data-channel=arm_ref]', '[data-pane="0"] .chart');

@@ -1,39 +1,14 @@
 // Tests of logs in the page: a spike of one sample is seen, gaps are gaps, playing, stepping, seeking,
-// cutting out, opening.
+// opening.
 import assert from 'node:assert/strict';
-import { readFileSync, writeFileSync } from 'node:fs';
-import { after, before, test } from 'node:test';
-import { openBrowser, openPage, pixelsOf, readTable, until } from './browser.mjs';
-import { Bench, demoConfig } from './stack.mjs';
+import { readFileSync } from 'node:fs';
+import { test } from 'node:test';
+import { pixelsOf, until } from './browser.mjs';
+import { kGap, kSpike, onALogWithAGap } from './gap_log.mjs';
 
-const kSpike = { row: 3210, t: 3.21, psi: 900 };
-const kGap = { from: 5000, to: 5200 };
-let bench, scope, browser, page, address, table;
+let bench, page, table;
 
-// A run of the simulation with one sample of p1 changed and 200 ticks taken out.
-before(async () => {
-  bench = await Bench.make();
-  bench.run('hydro-sim', demoConfig(), '--time', 'lockstep', '--log', bench.file('sim.lcmlog'));
-  bench.run('hydro-log', 'export', bench.file('sim.lcmlog'), '-o', bench.file('sim.csv'));
-  const lines = readFileSync(bench.file('sim.csv'), 'utf8').trim().split('\n');
-  const column = lines[0].split(',').indexOf('p1_psi');
-  const cells = lines[1 + kSpike.row].split(',');
-  cells[column] = String(kSpike.psi);
-  lines[1 + kSpike.row] = cells.join(',');
-  lines.splice(1 + kGap.from, kGap.to - kGap.from);
-  writeFileSync(bench.file('spike.csv'), `${lines.join('\n')}\n`);
-  table = readTable(lines.join('\n'));
-  bench.run('hydro-log', 'import', bench.file('spike.csv'), '-o', bench.file('spike.lcmlog'));
-  scope = await bench.scope(bench.file('spike.lcmlog'));
-  address = scope.address;
-  browser = await openBrowser();
-  page = await openPage(browser, address);
-  await until(page, () => hydroScope.panes.panes.length > 0 && hydroScope.display.frame().bins.t.length > 100);
-});
-after(async () => {
-  await browser?.close();
-  await bench?.close();
-});
+onALogWithAGap((open) => ({ bench, page, table } = open));
 
 const paneOf = (channel) =>
   page.evaluate((id) => hydroScope.scope.layout.panes.findIndex((pane) => pane.channels.includes(id)), channel);
@@ -126,43 +101,39 @@ test('scrub', async () => {
   assert.ok(Math.abs(head - last / 2) < 0.02 * last, `${head} of ${last}`);
 });
 
+// Tests that the values at the end of the window are said with their time, as they stand in the log.
+test('values in words', async () => {
+  await page.evaluate((end) => hydroScope.display.showWindow(end - 0.1, end), kSpike.t + 1e-6);
+  const psi = (row) => Number(table.rows[row].p1_psi).toPrecision(4);
+  await until(page, () => {
+    const { bins, t0, t1 } = hydroScope.display.frame();
+    return hydroScope.display.cache.covers(t0, t1) && bins.width < 0.0011;
+  });
+  await page.keyboard.press('v');
+  const said = await page.locator('#said').textContent();
+  const [, time, value] = /^At ([\d.]+) s: .*, pressure of side 1 ([\d.]+) psi, /.exec(said) ?? [];
+  assert.equal(time, '3.210');
+  // A pixel may end at the sample after the moment.
+  const right = [kSpike.row - 1, kSpike.row, kSpike.row + 1].map(psi);
+  assert.ok(right.includes(value), `${value} psi, not one of ${right}`);
+});
+
+// Tests that the clock does not go on where the window is longer than the log.
+test('the clock ends with the log', async () => {
+  await page.evaluate(() => hydroScope.display.showWindow(hydroScope.display.last - 1, hydroScope.display.last + 1));
+  const last = await page.evaluate(() => hydroScope.display.last);
+  await page
+    .locator('#clock')
+    .getByText(`${last.toFixed(3)} s`, { exact: true })
+    .waitFor();
+});
+
 // Tests that STOP and re-arm say why they do nothing in a log.
 test('a log cannot be stopped', async () => {
   assert.equal(await page.locator('#stop').getAttribute('aria-disabled'), 'true');
   assert.equal(await page.locator('#rearm').isDisabled(), true);
   await page.keyboard.press('s');
   await page.getByText('There is nothing to stop').waitFor();
-});
-
-async function download(name) {
-  const coming = page.waitForEvent('download');
-  await page.locator('#section-files').getByRole('button', { name, exact: true }).click();
-  const file = await coming;
-  const where = bench.file(file.suggestedFilename());
-  await file.saveAs(where);
-  return where;
-}
-
-// Tests that the window between the cursors comes out as a table, a log, and pictures.
-test('a window is cut out', async () => {
-  await page.locator('#section-files summary').click();
-  await page.keyboard.press('f');
-  await page.evaluate(() => {
-    hydroScope.cursors.place('a', 3.1995);
-    hydroScope.cursors.place('b', 3.2495);
-  });
-  const { rows } = readTable(readFileSync(await download('CSV'), 'utf8'));
-  assert.equal(rows.length, 50);
-  assert.equal(Number(rows[10].p1_psi), kSpike.psi);
-  const cut = await download('.lcmlog');
-  assert.match(bench.run('hydro-log', 'info', cut), /log: complete/);
-  assert.match(readFileSync(await download('SVG'), 'utf8'), /^<svg[^]*arm_angle \[rad\][^]*<path [^]*<\/svg>\n$/);
-  assert.equal(
-    readFileSync(await download('PNG'))
-      .subarray(1, 4)
-      .toString(),
-    'PNG',
-  );
 });
 
 // Tests that a log that is dropped on the page is opened, shown, and can be laid over.

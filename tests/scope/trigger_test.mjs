@@ -1,4 +1,4 @@
-// Tests of the trigger on a running stack: the picture stands still on a step until the next one comes.
+// Tests of the trigger on a running stack: the picture stands still on a step or a level until the next one comes.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { until } from './browser.mjs';
@@ -115,6 +115,62 @@ test('a wrong setting is named', async () => {
   await form('pre').fill('25');
   await form('pre').press('Enter');
   await page.keyboard.press('Escape');
+});
+
+// How each of the next `count` captures with these settings came about ("triggered" or "auto") and when, as the server
+// says it, with the time from there to the first arm angle below the level; with `from`, counted from the first of that kind on.
+async function causes(settings, count, from = null) {
+  const seen = await page.evaluateHandle(
+    ([changes, first]) => {
+      const list = [];
+      let begun = first === null;
+      hydroScope.signals.on('op:trigger', ({ state, t }) => {
+        if (!['triggered', 'auto'].includes(state)) return;
+        begun ||= state === first;
+        if (begun) list.push({ state, t });
+      });
+      // The picture comes after its message; the next one, of a stack that a busy machine disturbs, may be another kind.
+      hydroScope.signals.on('capture', () => {
+        const { t, bins } = hydroScope.display.capture;
+        const at = bins.t.findIndex(
+          (one, i) => one > t - 0.3 && bins.min.arm_angle[i] <= hydroScope.trigger.settings.level,
+        );
+        if (list.length > 0) list.at(-1).edge ??= bins.t[at] - t;
+      });
+      hydroScope.trigger.change(changes);
+      return list;
+    },
+    [settings, from],
+  );
+  await until(page, ([list, n]) => list[n - 1]?.edge !== undefined, [seen, count]);
+  return (await seen.jsonValue()).slice(0, count);
+}
+
+// Tests that auto runs free while nothing triggers, and says so; and that once something does, more often than it
+// would run free, every picture is one of the trigger's.
+test('auto runs free, and stands still on what triggers', async () => {
+  const span = 1.6; // a falling edge comes every 2 s
+  const never = { on: 'level', channel: 'arm_angle', edge: 'falling', level: 10, hysteresis: 0.02, mode: 'auto', span };
+  const free = await causes(never, 3);
+  assert.deepEqual(
+    free.map(({ state }) => state),
+    ['auto', 'auto', 'auto'],
+  );
+  assert.ok(free[2].t - free[0].t >= 2 * span - 0.01, `three pictures in ${free[2].t - free[0].t} s`);
+  await page
+    .locator('#section-trigger .state')
+    .getByText(/^free running/)
+    .waitFor();
+
+  const caught = await causes({ level: 0.05 }, 3, 'triggered');
+  assert.deepEqual(
+    caught.map(({ state }) => state),
+    ['triggered', 'triggered', 'triggered'],
+  );
+  for (const [i, one] of caught.slice(1).entries())
+    assert.ok(Math.abs(one.t - caught[i].t - 2) < 0.3, `${one.t} after ${caught[i].t}: not the next falling edge`);
+  for (const { t, edge } of caught)
+    assert.ok(Math.abs(edge) <= 0.01, `the edge is ${edge} s from the trigger at ${t} s`);
 });
 
 test('no errors in the page', () => assert.deepEqual(page.problems, []));

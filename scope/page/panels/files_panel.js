@@ -99,10 +99,9 @@ export class FilesPanel {
     offerFile(this.#name('png'), await pngOf(this.panes.panes, this.panes.colours));
   }
   #svg() {
-    offerFile(
-      this.#name('svg'),
-      svgOf(this.panes.panes, this.panes.colours, baseName(this.scope.run.name), this.scope.eventsOf()),
-    );
+    const { first, last } = this.display;
+    const run = { name: baseName(this.scope.run.name), first, last, events: this.scope.eventsOf() };
+    offerFile(this.#name('svg'), svgOf(this.panes.panes, this.panes.colours, run));
   }
 
   async #diagnose() {

@@ -56,10 +56,10 @@ export class Toolbar {
     setText(byId('base'), `${duration(Number((span / kDivisions).toPrecision(3)))}/div`);
     setText(
       byId('clock'),
-      `${runTime(display.mode === 'follow' || scope.live ? (scope.live ? display.last : (display.head ?? display.last)) : display.window.t1, 100)} s`,
+      `${runTime(display.mode === 'follow' || scope.live ? (scope.live ? display.last : (display.head ?? display.last)) : Math.min(display.window.t1, display.last), 100)} s`,
     );
-    setText(byId('units'), scope.preferences.si ? 'SI' : 'in · psi');
-    setText(byId('theme'), kThemeNames[scope.preferences.theme]);
+    setChoice(byId('units'), 'Units', scope.preferences.si ? 'SI' : 'in · psi');
+    setChoice(byId('theme'), 'Colours', kThemeNames[scope.preferences.theme]);
   }
 
   #runs() {
@@ -76,6 +76,12 @@ export class Toolbar {
     select.disabled = runs.length < 2;
     document.title = run ? `${baseName(run.name)} · hydro-scope` : 'hydro-scope';
   }
+}
+
+// A button that says which of its choices is in force; what it chooses is in its name only, as the bar is narrow.
+function setChoice(button, name, chosen) {
+  setText(button, chosen);
+  button.setAttribute('aria-label', `${name}: ${chosen}`);
 }
 
 function applyTheme(theme) {

@@ -59,6 +59,10 @@ export class Transport {
         this.#draw(true);
       });
     for (const name of ['drawn', 'playing']) signals.on(name, () => this.#draw());
+    matchMedia('(prefers-color-scheme: dark)').addEventListener('change', () => {
+      this.#colours = null;
+      this.#draw(true);
+    });
     new ResizeObserver(() => this.#draw(true)).observe(this.canvas);
     this.#kind();
   }

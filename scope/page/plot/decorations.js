@@ -5,7 +5,10 @@ import uPlot from '../uplot/uPlot.esm.js';
 import { runTime } from '../settings/numbers.js';
 import { factorOf } from '../settings/units.js';
 import { colourOf } from './colours.js';
-import { bridge, gapsIn } from './trace_path.js';
+import { gapsShown } from './trace_path.js';
+
+// How strong the shade of a gap is, here and in a picture that is saved.
+export const kGapAlpha = 0.14;
 
 // state: {colours, traces, si, limits, events, cursors, trigger: {t, channel, level} or null,
 // head: of the playback or null, rate_hz, first, last, top: is the first pane}
@@ -58,13 +61,8 @@ function drawHead(ctx, chart, { colours, head }) {
   rule(ctx, chart.x(head), top, chart.x(head), top + height, colours.accent, [], 1.2);
 }
 
-function drawGaps(ctx, chart, { colours, traces, rate_hz, first, last }) {
-  const one = traces.find((candidate) => candidate.kind === 'measured' && !candidate.hidden);
-  const { bins } = chart.frame;
-  if (!one || !bins?.min[one.id]) return;
-  for (const [from, to] of gapsIn(bins, bins.min[one.id], bridge(one.channel, rate_hz, bins.width), first, last)) {
-    shade(ctx, chart, from, to, colours.warn, 0.14);
-  }
+function drawGaps(ctx, chart, state) {
+  for (const [from, to] of gapsShown(chart.frame, state)) shade(ctx, chart, from, to, state.colours.warn, kGapAlpha);
 }
 
 // The voltages that the motor never sees: what lies beyond its limits is shaded.
@@ -96,7 +94,7 @@ function rule(ctx, x0, y0, x1, y1, colour, dash = [], width = 1) {
 }
 
 function drawEvents(ctx, chart, { colours, events, top: labels }) {
-  const { top, height, left } = chart.plot.bbox;
+  const { top, height, left, width } = chart.plot.bbox;
   const { t0, t1 } = chart.frame;
   let free = left;
   for (const event of events) {
@@ -106,7 +104,8 @@ function drawEvents(ctx, chart, { colours, events, top: labels }) {
     ctx.globalAlpha = event.kind === 'step' ? 0.35 : 0.8;
     rule(ctx, x, top, x, top + height, colour, event.kind === 'fault' ? [] : [2, 3]);
     ctx.globalAlpha = 1;
-    if (labels && event.kind !== 'step' && x >= free) free = label(ctx, x, top, labelOf(event), colour, colours);
+    if (labels && event.kind !== 'step' && x >= free)
+      free = label(ctx, x, top, labelOf(event), colour, colours, { left: free, right: left + width });
   }
 }
 
@@ -117,14 +116,17 @@ function labelOf({ kind, code, text }) {
   return code || text || kind;
 }
 
-// Text at the top of a mark; returns where the next one has room.
-function label(ctx, x, top, text, colour, colours) {
+// Text at the top of a mark, right of it, or left of it where that is cut off and `room` {left, right} has place for it;
+// returns where the next one has room.
+function label(ctx, mark, top, text, colour, colours, room = null) {
   const ratio = uPlot.pxRatio;
   ctx.font = `${10.5 * ratio}px Helvetica, Arial, "Liberation Sans", sans-serif`;
   ctx.textBaseline = 'top';
   ctx.textAlign = 'left';
   const shown = text.length > 32 ? `${text.slice(0, 31)}…` : text;
   const width = ctx.measureText(shown).width;
+  const over = room !== null && mark + width + 8 * ratio > room.right && mark - width - 8 * ratio >= room.left;
+  const x = over ? mark - width - 8 * ratio : mark;
   ctx.globalAlpha = 0.85;
   ctx.fillStyle = colours.paper;
   ctx.fillRect(x + 2 * ratio, top + ratio, width + 4 * ratio, 13 * ratio);

@@ -77,6 +77,17 @@ export class Pane {
     }
   }
 
+  // The same in words.
+  said(bins, t) {
+    return [...this.values.keys()]
+      .filter((id) => !this.layout.hidden.includes(id))
+      .map((id) => {
+        const channel = this.scope.channel(id);
+        const { si } = this.scope.preferences;
+        return `${channel.label} ${short(valueAt(bins, id, t) * factorOf(channel, si))} ${unitOf(channel, si)}`;
+      });
+  }
+
   #name() {
     return `Pane ${this.index + 1}${this.layout.title ? `: ${this.layout.title}` : ''}`;
   }

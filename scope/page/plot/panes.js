@@ -2,6 +2,7 @@
 
 import { el } from '../dom.js';
 import { unitOf } from '../settings/units.js';
+import { runTime } from '../settings/numbers.js';
 import { readColours } from './colours.js';
 import { Pane } from './pane.js';
 
@@ -72,6 +73,22 @@ export class Panes {
     this.#ask();
   }
 
+  // The values beside the names in words, and the time that they are of.
+  said() {
+    if (!this.scope.run) return 'no run';
+    const frame = this.display.frame();
+    const at = this.#valuesAt(frame);
+    return `At ${runTime(at)} s: ${this.panes.flatMap((pane) => pane.said(frame.bins, at)).join(', ')}`;
+  }
+
+  // Under the pointer, else the newest shown.
+  #valuesAt({ t1 }) {
+    if (this.hover !== null) return this.hover;
+    const { mode, last, head } = this.display;
+    if (mode !== 'follow') return Math.min(t1, last);
+    return this.scope.live ? last : (head ?? Math.min(t1, last));
+  }
+
   #state() {
     const { scope, display } = this;
     return {
@@ -108,13 +125,7 @@ export class Panes {
     this.frames += 1;
     if (now_ms - this.values_ms > kValues_ms || this.hover !== null) {
       this.values_ms = now_ms;
-      const at =
-        this.hover ??
-        (this.display.mode === 'follow'
-          ? this.scope.live
-            ? this.display.last
-            : (this.display.head ?? frame.t1)
-          : frame.t1);
+      const at = this.#valuesAt(frame);
       for (const pane of this.panes) pane.showValues(frame.bins, at);
     }
     this.#settle();

@@ -5,7 +5,8 @@ import { factorOf, unitOf } from '../settings/units.js';
 import { runTime } from '../settings/numbers.js';
 import { strokeOf } from './chart.js';
 import { colourOf } from './colours.js';
-import { bridge, trace } from './trace_path.js';
+import { kGapAlpha } from './decorations.js';
+import { bridge, gapsShown, trace } from './trace_path.js';
 
 const kTitle_px = 18;
 
@@ -34,18 +35,18 @@ export function pngOf(panes, colours) {
   return new Promise((done) => sheet.toBlob(done, 'image/png'));
 }
 
-// A Blob of image/svg+xml: paths, axes with numbers, names, marks of the events (whose words appear on
-// pointing).
-export function svgOf(panes, colours, name, events) {
+// A Blob of image/svg+xml: paths, axes with numbers, names, gaps shaded, marks of the events (whose words appear on
+// pointing). run: {name, first, last: s, events}.
+export function svgOf(panes, colours, run) {
   const width = panes[0].host.clientWidth;
   const parts = [];
   let top = 0;
   for (const pane of panes) {
-    parts.push(...paneSvg(pane, colours, top, events));
+    parts.push(...paneSvg(pane, colours, top, run));
     top += pane.host.clientHeight + kTitle_px;
   }
   const { t0, t1 } = panes[0].chart.frame;
-  const title = `${name}, ${runTime(t0)} to ${runTime(t1)} s`;
+  const title = `${run.name}, ${runTime(t0)} to ${runTime(t1)} s`;
   const svg = `<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 ${width} ${top + 8}" width="${width}" height="${top + 8}" font-family="Helvetica, Arial, sans-serif" font-size="11"><title>${escaped(title)}</title><rect width="100%" height="100%" fill="${colours.paper}"/>${parts.join('\n')}</svg>\n`;
   return new Blob([svg], { type: 'image/svg+xml' });
 }
@@ -64,7 +65,7 @@ function titleOf(pane) {
   ];
 }
 
-function paneSvg(pane, colours, offset, events) {
+function paneSvg(pane, colours, offset, run) {
   const { chart } = pane;
   const ratio = devicePixelRatio;
   const { left, top, width, height } = chart.plot.bbox;
@@ -78,7 +79,8 @@ function paneSvg(pane, colours, offset, events) {
     `<clipPath id="${id}"><rect x="${box.x}" y="${box.y}" width="${box.w}" height="${box.h}"/></clipPath>`,
     `<rect x="${box.x}" y="${box.y}" width="${box.w}" height="${box.h}" fill="none" stroke="${colours.line}"/>`,
     ...axesSvg(chart, box, colours),
-    ...eventsSvg(chart, box, colours, events),
+    ...gapsSvg(chart, box, colours, run),
+    ...eventsSvg(chart, box, colours, run.events),
   ];
   for (const one of chart.options.traces.filter((candidate) => !candidate.hidden)) {
     const bins = one.kind === 'overlay' ? chart.other?.bins : chart.frame.bins;
@@ -100,6 +102,17 @@ function paneSvg(pane, colours, offset, events) {
     );
   }
   return out;
+}
+
+function gapsSvg(chart, box, colours, { first, last }) {
+  const { t0, t1 } = chart.frame;
+  const x = (t) => Math.min(box.w, Math.max(0, ((t - t0) / (t1 - t0)) * box.w));
+  return gapsShown(chart.frame, { ...chart.options, first, last })
+    .filter(([from, to]) => to > t0 && from < t1)
+    .map(
+      ([from, to]) =>
+        `<rect class="gap" x="${(box.x + x(from)).toFixed(2)}" y="${box.y}" width="${(x(to) - x(from)).toFixed(2)}" height="${box.h}" fill="${colours.warn}" fill-opacity="${kGapAlpha}"><title>no samples from ${runTime(from)} to ${runTime(to)} s</title></rect>`,
+    );
 }
 
 function eventsSvg(chart, box, colours, events) {

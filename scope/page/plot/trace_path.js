@@ -45,3 +45,11 @@ export function gapsIn(bins, min, bridge_s, first, last) {
   }
   return gaps;
 }
+
+// The gaps that a pane shows: those of its first visible measured curve. frame: {bins}; state: {traces, rate_hz, first,
+// last: of the run, s}.
+export function gapsShown({ bins }, { traces, rate_hz, first, last }) {
+  const one = traces.find((candidate) => candidate.kind === 'measured' && !candidate.hidden);
+  if (!one || !bins?.min[one.id]) return [];
+  return gapsIn(bins, bins.min[one.id], bridge(one.channel, rate_hz, bins.width), first, last);
+}

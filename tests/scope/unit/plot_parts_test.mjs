@@ -3,7 +3,7 @@ import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { cursorNear, cursorRows, interval, moved, noCursors, placed } from '../../../scope/page/plot/cursors.js';
 import { fitted, following, stepped, zoomed } from '../../../scope/page/plot/time_window.js';
-import { bridge, gapsIn, trace } from '../../../scope/page/plot/trace_path.js';
+import { bridge, gapsIn, gapsShown, trace } from '../../../scope/page/plot/trace_path.js';
 import { between, colourOf } from '../../../scope/page/plot/colours.js';
 import { tracesOf } from '../../../scope/page/plot/traces.js';
 import { extent, StickyRange } from '../../../scope/page/plot/value_range.js';
@@ -72,6 +72,18 @@ test('a spike is drawn from minimum to maximum, a gap is not drawn', () => {
     ['line', 7, 5],
   ]);
   assert.deepEqual(gapsIn(bins, bins.min.dp, 2, 0, 10), [[2.5, 6.5]]);
+});
+
+// Tests that a pane's gaps are those of its first curve that is seen, and none where no curve is.
+test('the gaps that a pane shows', () => {
+  const channel = { id: 'dp' };
+  const frame = { bins: { ...bins, min: { ...bins.min, p1: Float64Array.of(1, NaN, 2, 5) } } };
+  const trace = (id, hidden = false, kind = 'measured') => ({ id, hidden, kind, channel });
+  const gaps = (...traces) => gapsShown(frame, { traces, rate_hz: 2, first: 0, last: 10 });
+  assert.deepEqual(gaps(trace('dp')), [[2.5, 6.5]]);
+  assert.deepEqual(gaps(trace('p1', true), trace('p1', false, 'ghost'), trace('dp')), [[2.5, 6.5]]);
+  assert.deepEqual(gaps(trace('dp', true)), []);
+  assert.deepEqual(gaps(trace('gone')), []);
 });
 
 // Tests that a held value is a staircase.
