@@ -1,6 +1,8 @@
 #include "scope/cut_out.h"
 
+#include <map>
 #include <utility>
+#include <vector>
 
 #include "base/input_error.h"
 #include "base/number_text.h"
@@ -26,6 +28,11 @@ void ToSi(tables::Table* table) {
   }
 }
 
+struct Held {
+  std::vector<uint8_t> data;
+  int64_t utime = 0;
+};
+
 }  // namespace
 
 CutSource CutSourceOf(const Run& run) {
@@ -43,18 +50,25 @@ void CutLog(const CutSource& source, double t0, double t1, const std::string& fi
   log::LogWriter writer(file, Opening::kTemporary,
                         "cut out of " + source.name + " by hydro-scope, " + ShortestNumber(t0) + " s to " +
                             ShortestNumber(t1) + " s");
+  std::map<std::string, Held> held;
+  const auto take = [&](std::string_view channel, const uint8_t* data, size_t size, int64_t utime) {
+    if (window.HoldsAhead(channel)) held[std::string(channel)] = {{data, data + size}, utime};
+    if (!window.Keeps(channel, data, static_cast<int>(size))) return;
+    if (window.states() > 0) {
+      for (const auto& [name, message] : held) {
+        writer.Append(name, message.data.data(), message.data.size(), message.utime);
+      }
+      held.clear();
+    }
+    writer.Append(channel, data, size, utime);
+  };
   if (source.messages) {
-    source.messages->ForEach([&](const MessageStore::Message& message) {
-      if (!window.Keeps(message.channel, message.data, static_cast<int>(message.size))) return;
-      writer.Append(message.channel, message.data, message.size, message.utime);
-    });
+    source.messages->ForEach(
+        [&](const MessageStore::Message& m) { take(m.channel, m.data, m.size, m.utime); });
   } else {
     log::LogReader reader(source.log_file, log::OnDamage::kStop);
     log::LogEvent event;
-    while (reader.Next(event)) {
-      if (!window.Keeps(event.channel, event.data, event.size)) continue;
-      writer.Append(event.channel, event.data, static_cast<size_t>(event.size), event.utime);
-    }
+    while (reader.Next(event)) take(event.channel, event.data, static_cast<size_t>(event.size), event.utime);
   }
   if (window.states() == 0) {
     throw InputError("t0, t1: found no state from " + ShortestNumber(t0) + " s to " + ShortestNumber(t1) +

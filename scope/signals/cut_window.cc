@@ -1,5 +1,7 @@
 #include "scope/signals/cut_window.h"
 
+#include <hydro/arm_reference_t.hpp>
+#include <hydro/pressure_command_t.hpp>
 #include <hydro/run_description_t.hpp>
 #include <hydro/state_t.hpp>
 
@@ -29,6 +31,11 @@ bool CutWindow::KeepsDescription(const uint8_t* data, int size) {
   if (over_) return false;
   described_ = text;
   return true;
+}
+
+bool CutWindow::HoldsAhead(std::string_view channel) const {
+  return !first_tick_ && !over_ &&
+         (channel == channels_.Of<arm_reference_t>() || channel == channels_.Of<pressure_command_t>());
 }
 
 bool CutWindow::Keeps(std::string_view channel, const uint8_t* data, int size) {

@@ -19,6 +19,9 @@ class CutWindow {
   // Whether this message belongs to it. Call for each message of the run, in order.
   bool Keeps(std::string_view channel, const uint8_t* data, int size);
 
+  // Whether this message, from before the window, says what holds in it until the next of its kind: of these the last belongs to the cut.
+  bool HoldsAhead(std::string_view channel) const;
+
   int64_t states() const { return states_; }
 
  private:

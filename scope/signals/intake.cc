@@ -80,6 +80,14 @@ void Intake::OnState(const state_t& state, int64_t utime) {
     const int64_t missing = state.sequence - sequence_ - 1;  // both are 0 or above
     AddEvent(state.time, "gap", "", "",
              std::to_string(missing) + (missing == 1 ? " state" : " states") + " missing");
+  } else if (sequence_ >= 0) {  // a recording without these rows, which was imported
+    const int64_t expected =
+        SaturatingSum(SaturatingSum(tick_, 1), std::max<int64_t>(state.skipped_ticks, 0));
+    if (state.tick > expected) {
+      const std::string first = std::to_string(expected), last = std::to_string(state.tick - 1);
+      AddEvent(state.time, "gap", "", "",
+               (first == last ? "tick " + first : "ticks " + first + " to " + last) + " missing");
+    }
   }
   sequence_ = state.sequence;
   tick_ = state.tick;

@@ -116,6 +116,24 @@ TEST_F(IntakeTest, Gaps) {
   EXPECT_EQ(runs_[0]->events.At(1).t, 0.006);
 }
 
+// Tests that ticks which a numbered record passes over without saying so are a gap (rows that were taken out of an imported table), and those
+// that a late plant says it has skipped are none.
+TEST_F(IntakeTest, MissingTicks) {
+  state_t state{};
+  state.session = 7;
+  for (const auto& [tick, skipped] :
+       {std::pair<int64_t, int64_t>{0, 0}, {1, 0}, {6, 4}, {7, 0}, {10, 0}, {12, 0}}) {
+    state.tick = tick;
+    state.time = 0.001 * static_cast<double>(tick);
+    state.skipped_ticks = skipped;
+    Take("HYDRO_STATE", state);
+    ++state.sequence;
+  }
+  EXPECT_EQ(Kinds(), (std::vector<std::string>{"gap", "gap"}));
+  EXPECT_EQ(runs_[0]->events.At(1).text, "ticks 8 to 9 missing");
+  EXPECT_EQ(runs_[0]->events.At(2).text, "tick 11 missing");
+}
+
 // Tests that a fault is an event once, however often its message comes.
 TEST_F(IntakeTest, FaultsAreEventsOnce) {
   State(0);
