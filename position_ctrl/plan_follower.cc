@@ -10,7 +10,7 @@ namespace hydro::position_ctrl {
 namespace {
 
 constexpr int32_t kMostPoints = 256;
-constexpr size_t kMostWaiting = 64;  // plans; beyond it the last gives way to its successor
+constexpr int64_t kMostWaiting = 64;  // plans, and one or two more
 
 // Why a plan cannot be followed; empty: it can.
 std::string WhatIsWrong(const arm_plan_t& plan, double largest_angle) {
@@ -65,7 +65,10 @@ std::string PlanFollower::Take(const arm_plan_t& plan, int64_t tick) {
   if (std::string wrong = WhatIsWrong(plan, limits_.largest_angle); !wrong.empty()) return wrong;
   const auto delay = static_cast<int64_t>(std::llround(limits_.delay_s * rate_hz_));
   const int64_t from = std::max(tick, plan.tick < 0 ? tick : plan.tick + delay);
-  while (!next_.empty() && (next_.back().from >= from || next_.size() >= kMostWaiting)) next_.pop_back();
+  while (!next_.empty() && next_.back().from >= from) next_.pop_back();
+  // A planner that floods is followed at evenly spaced plans.
+  const auto before = static_cast<ptrdiff_t>(next_.size()) - 2;
+  if (before >= 0 && from - next_[static_cast<size_t>(before)].from < delay / kMostWaiting) next_.pop_back();
   next_.push_back({plan, from});
   return "";
 }

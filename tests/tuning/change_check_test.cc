@@ -163,12 +163,17 @@ TEST(TunableKeys, RangesAreThoseOfTheConfiguration) {
     ++checked;
     const std::string key(row.key), config = ConfigFor(row);
     const auto refused = [&](const char* value) {
-      const PreparedChange change = Prepared({key + "=" + value}, {.held = true, .simulated = true}, config);
+      std::vector<std::string> changes{key + "=" + value};
+      if (key == "pressure.k_p") changes.emplace_back("pressure.k_v=1");  // both or none
+      if (key == "pressure.k_v") changes.emplace_back("pressure.k_p=1");
+      const PreparedChange change = Prepared(changes, {.held = true, .simulated = true}, config);
       return change.config == nullptr && change.text.find(key + ": found") != std::string::npos;
     };
     EXPECT_TRUE(refused("-1e-9")) << key;
     EXPECT_EQ(refused("0"), positive) << key;
-    EXPECT_FALSE(refused("1e-9")) << key;
+    const bool above_the_start =
+        key == "limits.pressure_psi";  // besides, it must allow the pressure at the start
+    EXPECT_FALSE(refused(above_the_start ? "101" : "1e-9")) << key;
   }
   EXPECT_GT(checked, 15);
 }
