@@ -87,7 +87,8 @@ TEST(PlanFollower, AFloodIsFollowedStill) {
     ASSERT_EQ(follower.Take(plan, tick), "");
     const double angle = follower.At(tick).angle;
     if (tick < 2000) continue;
-    EXPECT_NEAR(angle, 1e-4 * static_cast<double>(tick - 1000), 0.002) << tick;  // a 64th of the second that waits
+    EXPECT_NEAR(angle, 1e-4 * static_cast<double>(tick - 1000), 0.002)
+        << tick;  // a 64th of the second that waits
   }
 }
 
