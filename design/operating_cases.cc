@@ -103,16 +103,19 @@ std::vector<Running> WaysToRun(const model::ModelDescription& model) {
 
 }  // namespace
 
-double LargestArmAngle(const settings::StackConfig& config) {
-  const model::Parameters& p = config.model.description.parameters;
+double LargestArmAngle(const model::Parameters& p, double limit, double farthest) {
   const double stop = p.V_ms / p.c;
-  if (config.limits.arm_angle_rad < settings::kArmAngleShare * stop) return config.limits.arm_angle_rad;
-  double angle = std::max(kUsualShare * stop, std::fabs(config.model.arm_angle_rad));
+  if (limit < settings::kArmAngleShare * stop) return limit;
+  return std::min(std::max(kUsualShare * stop, farthest), settings::kArmAngleShare * stop);
+}
+
+double LargestArmAngle(const settings::StackConfig& config) {
+  double farthest = std::fabs(config.model.arm_angle_rad);
   if (config.reference.signal == settings::ReferenceSignal::kArmAngle) {
     const auto reference = settings::MakeTrajectory(config.reference.trajectory);
-    angle = std::max({angle, std::fabs(reference->Min()), std::fabs(reference->Max())});
+    farthest = std::max({farthest, std::fabs(reference->Min()), std::fabs(reference->Max())});
   }
-  return std::min(angle, settings::kArmAngleShare * stop);
+  return LargestArmAngle(config.model.description.parameters, config.limits.arm_angle_rad, farthest);
 }
 
 std::vector<OperatingCase> OperatingCases(const settings::StackConfig& config) {

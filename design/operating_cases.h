@@ -20,6 +20,9 @@ struct OperatingCase {
 // as far as the reference goes if that is more.
 double LargestArmAngle(const settings::StackConfig& config);
 
+// The same of its parts: `limit`, of limits.arm_angle_rad; `farthest`, of where the arm starts and where the reference goes.
+double LargestArmAngle(const model::Parameters& parameters, double limit, double farthest);
+
 // The arm at mid-stroke and at LargestArmAngle on either side (where a clamped arm is; at the middle and the ends of a
 // driven one's motion). In each place with both sides compressing and with each side held at p_3 by its valve. A model with effects is looked
 // at with low and with high pressures, and backwards where the effects tell the directions apart; the pump slips fast

@@ -29,7 +29,7 @@ std::map<std::string, std::string> Entries(const std::string& text, const std::s
 }  // namespace
 
 settings::StackConfig ConfigInForce(const run_description_t& run, const tuned_settings_t& in_force) {
-  const settings::StackConfig configured =
+  settings::StackConfig configured =
       settings::ParseStackConfig(run.config_text, run.config_file, run.model_text, run.model_file);
   if (in_force.changes.empty()) return configured;
   return settings::Changed(configured, tuning::ParseChanges(in_force.changes));

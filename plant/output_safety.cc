@@ -180,6 +180,9 @@ void OutputSafety::OnRearm(const rearm_t& request) {
                        newest_cause_tick_));
     return;
   }
+  if (why_no_rearm_) {
+    if (const std::string why = why_no_rearm_(); !why.empty()) return Answer(request, rearm_t::REFUSED, why);
+  }
   std::vector<Cause> present;
   const std::vector<Cause> ended = guard_.Release(&present);
   if (!present.empty()) {

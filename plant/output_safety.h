@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <hydro/active_faults_t.hpp>
 #include <hydro/fault_t.hpp>
 #include <hydro/rearm_t.hpp>
@@ -53,6 +54,9 @@ class OutputSafety {
   // Checks the sensors' readings against [limits], independently of the pressure loop's own check.
   void CheckMeasured(const state_t& state);
 
+  // `why` says, as one line, why nothing may be re-armed now; empty: it may.
+  void RefuseRearmWhile(std::function<std::string()> why) { why_no_rearm_ = std::move(why); }
+
   // The limits of pressure, motor speed and arm angle that hold from now on.
   void set_limits(const settings::LimitsSection& limits) {
     limits_.pressure_psi = limits.pressure_psi;
@@ -91,6 +95,7 @@ class OutputSafety {
   std::string DescribePresent(const std::vector<Cause>& causes) const;
 
   process::Participant& participant_;
+  std::function<std::string()> why_no_rearm_;
   settings::LimitsSection limits_;
   const double ticks_per_s_;  // of wall time
   VoltageGuard guard_;

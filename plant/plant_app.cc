@@ -49,6 +49,11 @@ PlantApp::PlantApp(bus::Bus& bus, bus::Clock& clock, const settings::StackConfig
       voltage_limit_((1 + 1e-9) * config.model.description.parameters.T_pmax /
                      config.model.description.parameters.k_1),
       command_monitor_(stale_time_) {
+  safety_.RefuseRearmWhile([this] {
+    return tuning_.changing()
+               ? "values are being changed, which may be limits: ask again when they are in force"
+               : std::string();
+  });
   const bus::Channels& channels = participant_.channels();
   bus.Subscribe<motor_command_t>(channels.Of<motor_command_t>(),
                                  [this](const motor_command_t& command) { OnMotorCommand(command); });

@@ -50,6 +50,9 @@ class TuningDesk {
   // Checks, proposes, decides, and reports what is due. Cheap when nothing is.
   void Poll();
 
+  // Whether a change is being made. Until it is in force or refused nothing is re-armed: it may loosen a limit, because all is held.
+  bool changing() const { return pending_.has_value(); }
+
  private:
   // Values, and the configuration that they come from.
   struct Version {

@@ -12,6 +12,43 @@ namespace {
 constexpr int32_t kMostPoints = 256;
 constexpr int64_t kMostWaiting = 64;  // plans, and one or two more
 
+constexpr double kLargestNumber =
+    1e9;  // s, rad/s and in-lbf: beyond any machine, and far from where doubles overflow
+constexpr double kAhead_s = 1;  // so far may a plan's tick be ahead of this loop's
+
+// The cubic from point i to the next, with their speeds (Hermite), over s = 0 to 1.
+struct Cubic {
+  double h, a0, v0, c2, c3;  // s, then rad
+};
+
+Cubic Behind(const arm_plan_t& plan, size_t i) {
+  const double h = plan.time[i + 1] - plan.time[i];
+  const double a0 = plan.arm_angle[i], a1 = plan.arm_angle[i + 1];
+  const double v0 = plan.arm_speed[i] * h, v1 = plan.arm_speed[i + 1] * h;
+  return {.h = h, .a0 = a0, .v0 = v0, .c2 = 3 * (a1 - a0) - 2 * v0 - v1, .c3 = 2 * (a0 - a1) + v0 + v1};
+}
+
+double AngleAt(const Cubic& c, double s) { return c.a0 + s * (c.v0 + s * (c.c2 + s * c.c3)); }
+
+// rad: |alpha| where the cubic goes farthest.
+double Farthest(const Cubic& c) {
+  double farthest = std::fmax(std::fabs(c.a0), std::fabs(AngleAt(c, 1)));
+  const auto look = [&](double s) {
+    if (s > 0 && s < 1) farthest = std::fmax(farthest, std::fabs(AngleAt(c, s)));
+  };
+  // Where its speed v0 + 2 c2 s + 3 c3 s^2 is 0, in the form that loses no digits.
+  const double root = std::sqrt(std::fmax(0, c.c2 * c.c2 - 3 * c.c3 * c.v0));
+  const double q = -(c.c2 + std::copysign(root, c.c2));
+  if (c.c3 != 0) look(q / (3 * c.c3));
+  if (q != 0) look(c.v0 / q);
+  return farthest;
+}
+
+std::string TooFar(const std::string& where, double angle, double largest_angle) {
+  return where + "found arm angle " + ShortNumber(angle) +
+         " rad, allowed |alpha| <= " + ShortNumber(largest_angle) + " (limits.arm_angle_rad)";
+}
+
 // Why a plan cannot be followed; empty: it can.
 std::string WhatIsWrong(const arm_plan_t& plan, double largest_angle) {
   if (plan.count < 1 || plan.count > kMostPoints) {
@@ -19,35 +56,49 @@ std::string WhatIsWrong(const arm_plan_t& plan, double largest_angle) {
   }
   for (size_t i = 0; i < plan.time.size(); ++i) {
     const std::string where = "point " + std::to_string(i) + ": ";
-    if (!std::isfinite(plan.time[i]) || !std::isfinite(plan.arm_angle[i]) ||
-        !std::isfinite(plan.arm_speed[i]) || !std::isfinite(plan.torque[i])) {
-      return where + "all numbers must be finite";
+    for (const double number : {plan.time[i], plan.arm_angle[i], plan.arm_speed[i], plan.torque[i]}) {
+      if (!(std::fabs(number) <= kLargestNumber))
+        return where + "all numbers must be finite, and 1e9 at most";
     }
     if (i > 0 && plan.time[i] <= plan.time[i - 1])
       return where + "its time must be above that of the point before";
-    if (std::fabs(plan.arm_angle[i]) > largest_angle) {
-      return where + "found arm angle " + ShortNumber(plan.arm_angle[i]) +
-             " rad, allowed |alpha| <= " + ShortNumber(largest_angle) + " (limits.arm_angle_rad)";
+    if (std::fabs(plan.arm_angle[i]) > largest_angle) return TooFar(where, plan.arm_angle[i], largest_angle);
+  }
+  for (size_t i = 0; i + 1 < plan.time.size(); ++i) {
+    const double farthest = Farthest(Behind(plan, i));
+    if (!(farthest <= largest_angle)) {
+      return TooFar("behind point " + std::to_string(i) + ", by its speeds: ", farthest, largest_angle);
     }
   }
   return "";
 }
 
-// Cubic through two points with their speeds (Hermite).
 PlannedPoint Between(const arm_plan_t& plan, size_t i, double time) {
-  const double h = plan.time[i + 1] - plan.time[i], s = (time - plan.time[i]) / h;
-  const double a0 = plan.arm_angle[i], a1 = plan.arm_angle[i + 1];
-  const double v0 = plan.arm_speed[i] * h, v1 = plan.arm_speed[i + 1] * h;
-  const double c2 = 3 * (a1 - a0) - 2 * v0 - v1, c3 = 2 * (a0 - a1) + v0 + v1;
-  return {.angle = a0 + s * (v0 + s * (c2 + s * c3)),
-          .speed = (v0 + s * (2 * c2 + 3 * s * c3)) / h,
+  const Cubic c = Behind(plan, i);
+  const double s = (time - plan.time[i]) / c.h;
+  return {.angle = AngleAt(c, s),
+          .speed = (c.v0 + s * (2 * c.c2 + 3 * s * c.c3)) / c.h,
           .torque = plan.torque[i] + s * (plan.torque[i + 1] - plan.torque[i])};
 }
 
 }  // namespace
 
 PlanFollower::PlanFollower(double initial, const PlanLimits& limits, double rate_hz)
-    : limits_(limits), rate_hz_(rate_hz), reference_(initial) {}
+    : limits_(limits), rate_hz_(rate_hz), initial_(initial), reference_(initial) {}
+
+void PlanFollower::Reset() {
+  current_.reset();
+  next_.clear();
+  last_tick_.reset();
+  reference_ = initial_;
+}
+
+void PlanFollower::SetLargestAngle(double largest_angle) {
+  limits_.largest_angle = largest_angle;
+  const auto beyond = [&](const Current& plan) { return !WhatIsWrong(plan.plan, largest_angle).empty(); };
+  next_.erase(std::remove_if(next_.begin(), next_.end(), beyond), next_.end());
+  if (current_ && beyond(*current_)) current_.reset();
+}
 
 const PlanFollower::Current* PlanFollower::newest() const {
   if (!next_.empty()) return &next_.back();
@@ -63,6 +114,10 @@ std::string PlanFollower::Take(const arm_plan_t& plan, int64_t tick) {
     }
   }
   if (std::string wrong = WhatIsWrong(plan, limits_.largest_angle); !wrong.empty()) return wrong;
+  if (plan.tick > tick && Seconds(plan.tick - tick) > kAhead_s) {
+    return "it names tick " + std::to_string(plan.tick) + " at tick " + std::to_string(tick) +
+           ", allowed is up to a second ahead";
+  }
   const auto delay = static_cast<int64_t>(std::llround(limits_.delay_s * rate_hz_));
   const int64_t from = std::max(tick, plan.tick < 0 ? tick : plan.tick + delay);
   while (!next_.empty() && next_.back().from >= from) next_.pop_back();
@@ -97,6 +152,8 @@ PlannedPoint PlanFollower::At(int64_t tick) {
   const double step = limits_.largest_speed * Seconds(last_tick_ ? tick - *last_tick_ : 0);
   if (last_tick_ && std::isfinite(step))
     point.angle = std::clamp(point.angle, reference_ - step, reference_ + step);
+  // Last, whatever the reference was before.
+  point.angle = std::clamp(point.angle, -limits_.largest_angle, limits_.largest_angle);
   point.speed = std::clamp(point.speed, -limits_.largest_speed, limits_.largest_speed);
   reference_ = point.angle;
   last_tick_ = tick;

@@ -15,7 +15,7 @@ struct PlanLimits {
   double delay_s =
       0.01;  // of plant time: a plan made from tick k acts from k + this on, if it comes in time, and so does its replay
   double largest_speed = 0;  // rad/s, of the reference; infinity: none
-  double largest_angle = 0;  // rad, |alpha|
+  double largest_angle = 0;  // rad, |alpha|; the reference never leaves it
 };
 
 // Where the arm should be.
@@ -36,6 +36,12 @@ class PlanFollower {
   // At a sample, in increasing order of ticks.
   PlannedPoint At(int64_t tick);
 
+  // Another largest angle from now on. Plans that go beyond it are followed no further: the reference holds, until the next plan.
+  void SetLargestAngle(double largest_angle);
+
+  // Another run begins: no plan is known.
+  void Reset();
+
   // Whether the planner has been silent for too long, after a first plan.
   bool silent(int64_t tick) const;
 
@@ -52,6 +58,7 @@ class PlanFollower {
 
   PlanLimits limits_;
   double rate_hz_;
+  double initial_;
   std::optional<Current> current_;
   std::deque<Current> next_;  // taken, not in force yet, in the order in which they will be
   double reference_;          // rad, at the last sample

@@ -41,6 +41,7 @@ PositionApp::PositionApp(bus::Bus& bus, bus::Clock& clock, const settings::Stack
       torque_per_pressure_(config.model.description.parameters.k_2),
       section_(config.position),
       parameters_(config.model.description.parameters),
+      start_angle_(config.model.arm_angle_rad),
       rate_hz_(config.plant.rate_hz),
       values_(tuning::ValuesOf(config)),
       law_(values_.position),
@@ -78,8 +79,7 @@ void PositionApp::OnState(const state_t& state) {
     case bus::SequenceMonitor::Verdict::kSecondSender:
       return;  // the pressure loop raises the fault and goes to zero volts
     case bus::SequenceMonitor::Verdict::kRestarted:
-      last_sample_tick_ = -1;
-      return_.Reset();
+      BeginAgain();
       break;
     case bus::SequenceMonitor::Verdict::kDuplicate:
       if (state.tick == last_sample_tick_) Send();  // the plant asks again: the answer may have been lost
@@ -95,13 +95,16 @@ void PositionApp::OnState(const state_t& state) {
   participant_.Follow(state.session);
   if (tuning_.Awaits(state.tick)) return;
   if (participant_.state() == process_status_t::READY) participant_.Announce(process_status_t::RUNNING);
-  if (state.tick <= last_sample_tick_) {  // a log is played again
-    last_sample_tick_ = -1;
-    return_.Reset();
-  }
+  if (state.tick <= last_sample_tick_) BeginAgain();  // a log is played again
   ObserveHold(state);
   participant_.set_tick(state.tick);
   if (state.tick % interval_ == 0) Sample(state, now);
+}
+
+void PositionApp::BeginAgain() {
+  last_sample_tick_ = -1;
+  return_.Reset();
+  if (planner_) planner_->Reset();
 }
 
 // In lockstep nobody is late, and what the pressure loop says of itself may come at any tick.

@@ -39,6 +39,7 @@ class PositionApp : public process::App {
 
  private:
   void OnState(const state_t& state);
+  void BeginAgain();
   void OnPlan(const arm_plan_t& plan);
   void NotePlanner(int64_t tick);
   void Follow(const settings::TrajectorySpec& reference);
@@ -48,6 +49,7 @@ class PositionApp : public process::App {
   double Present(const state_t& state) const;
   std::string WhyNot(const tuned_settings_t& settings) const;
   void TakeSettingsAt(int64_t tick);
+  double PlannersReach() const;
   double AskedByLaw(const state_t& state, double reference, const PlannedPoint& ahead, int64_t intervals);
   void Send();
 
@@ -59,6 +61,7 @@ class PositionApp : public process::App {
   const std::string reference_text_;  // as configured
   std::unique_ptr<trajectory::Trajectory> reference_;
   std::optional<PlanFollower> planner_;  // reference.kind = "planner"
+  double farthest_ = 0;  // rad, of where the arm starts and the reference before the first plan
   process::CountedWarning refused_plans_{"refused_arm_plan"};
   int64_t plans_refused_ = 0;
   std::string plan_refused_;  // why the newest was
@@ -67,6 +70,7 @@ class PositionApp : public process::App {
   const double torque_per_pressure_;  // k_2
   const settings::PositionSection section_;
   const model::Parameters parameters_;
+  const double start_angle_;  // rad
   const double rate_hz_;
   tuning::TunedValues values_;  // in force
   PositionLaw law_;
@@ -76,6 +80,7 @@ class PositionApp : public process::App {
   // A change begins with the next sample.
   std::optional<PositionLawSettings> law_before_;
   std::optional<BrakingCurve> curve_before_;
+  std::optional<double> reference_before_;  // where the reference before would be now
   ReferenceReturn return_;
   // Real time: while one lasts, the pressure loop's commands move nothing.
   process::RemoteFaults pressure_faults_{[](std::string_view role, std::string_view code) {

@@ -1,10 +1,13 @@
 // PositionApp's changes while it runs: values that are tuned, other references, and a planner's plans.
 #include <spdlog/fmt/fmt.h>
 
+#include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "base/input_error.h"
 #include "design/configured_laws.h"
+#include "design/operating_cases.h"
 #include "position_ctrl/position_app.h"
 
 namespace hydro::position_ctrl {
@@ -26,12 +29,18 @@ void PositionApp::Follow(const settings::TrajectorySpec& reference) {
   reference_ = settings::MakeTrajectory(reference);
   planner_.reset();
   if (reference.kind != settings::TrajectorySpec::Kind::kPlanner) return;
+  farthest_ = std::max(std::fabs(start_angle_), std::fabs(reference.initial));
   planner_.emplace(reference.initial,
                    PlanLimits{.timeout_s = reference.timeout_s,
                               .delay_s = reference.delay_s,
                               .largest_speed = reference.max_speed_rad_s,
-                              .largest_angle = values_.limits.arm_angle_rad},
+                              .largest_angle = PlannersReach()},
                    rate_hz_);
+}
+
+// A planner may go where the loops are judged to be stable (tuning/change_check.h).
+double PositionApp::PlannersReach() const {
+  return design::LargestArmAngle(parameters_, values_.limits.arm_angle_rad, farthest_);
 }
 
 void PositionApp::OnPlan(const arm_plan_t& plan) {
@@ -67,29 +76,36 @@ void PositionApp::TakeSettingsAt(int64_t tick) {
   law_.Retune(values_.position);
   curve_ = design::BrakingCurveFor(values_.position, values_.braking, values_.limits.motor_speed_rad_s,
                                    parameters_);
+  if (planner_) planner_->SetLargestAngle(PlannersReach());
   const std::string& text = settings->reference.empty() ? reference_text_ : settings->reference;
   const double from = static_cast<double>(settings->reference_from) / rate_hz_;
   if (text == reference_in_force_ && from == reference_from_) return;
+  // A planner's goes no further.
+  const double wanted = planner_ ? arm_reference_.value
+                                 : reference_->Value(static_cast<double>(tick) / rate_hz_ - reference_from_);
+  reference_before_ = return_.Reference(wanted, tick);
   Follow(settings::ParseReference(text).trajectory);
   reference_in_force_ = text;
   reference_from_ = from;
   return_.Depart(arm_reference_.value, tick);
 }
 
-// psi: eq. (17), without a jump when its gains have changed.
+// psi: eq. (17), without a jump when its gains or the reference's course have changed.
 double PositionApp::AskedByLaw(const state_t& state, double reference, const PlannedPoint& ahead,
                                int64_t intervals) {
-  const auto seen = [&](const std::optional<BrakingCurve>& curve) {
-    return curve ? curve->Reference(state.arm_angle, reference) : reference;
+  const auto seen = [&](const std::optional<BrakingCurve>& curve, double wanted) {
+    return curve ? curve->Reference(state.arm_angle, wanted) : wanted;
   };
+  const double now = seen(curve_, reference);
   const auto before = std::exchange(law_before_, std::nullopt);
+  const double reference_before = std::exchange(reference_before_, std::nullopt).value_or(reference);
   if (before && sequence_ > 0) {
     const double was =
-        law_.Preview(*before, state.arm_angle, seen(curve_before_), intervals) + transfer_.Offset(state.tick);
-    transfer_.Begin(was, law_.Preview(values_.position, state.arm_angle, seen(curve_), intervals),
-                    state.tick);
+        law_.Preview(*before, state.arm_angle, seen(curve_before_, reference_before), intervals) +
+        transfer_.Offset(state.tick);
+    transfer_.Begin(was, law_.Preview(values_.position, state.arm_angle, now, intervals), state.tick);
   }
-  double asked = law_.UpdateUnlimited(state.arm_angle, seen(curve_), intervals);
+  double asked = law_.UpdateUnlimited(state.arm_angle, now, intervals);
   // What a planner knows ahead: eq. (17) differentiates the measured angle alone, or the error, which has the reference's speed already.
   if (ahead.torque != 0) asked += ahead.torque / torque_per_pressure_;
   if (ahead.speed != 0 && !values_.position.derivative_on_error) asked += values_.position.c2 * ahead.speed;

@@ -10,6 +10,7 @@
 #include "base/text_lines.h"
 #include "base/word_list.h"
 #include "design/loop_check.h"
+#include "design/operating_cases.h"
 #include "settings/toml/toml_entries.h"
 #include "tuning/reference_range.h"
 #include "tuning/tunable_keys.h"
@@ -64,7 +65,8 @@ double SpectralRadius(const design::LoopCheck& check) {
 // Fills in the loops' margins as `text`, or why they forbid the change; returns whether they permit it.
 bool LoopsPermit(const settings::StackConfig& in_force, const settings::StackConfig& next,
                  std::string* text) {
-  if (SameLaws(ValuesOf(in_force), ValuesOf(next))) return true;
+  const bool goes_farther = design::LargestArmAngle(next) > design::LargestArmAngle(in_force);
+  if (!goes_farther && SameLaws(ValuesOf(in_force), ValuesOf(next))) return true;
   const design::LoopCheck check = design::CheckLoops(next);
   if (check.unjudged.empty() || check.pressure) *text = design::Describe(check);
   if (check.stable()) return true;
@@ -105,6 +107,20 @@ std::string DifferenceOf(const settings::StackConfig& from, const settings::Stac
   }
   return lines;
 }
+
+namespace {
+
+// For people: an undo may take a key out again.
+std::string KeysTakenOut(const settings::StackConfig& from, const settings::StackConfig& to) {
+  const auto before = TunableEntries(from), after = TunableEntries(to);
+  std::string lines;
+  for (const auto& [key, value] : before) {
+    if (!after.contains(key)) lines += key + " as by default\n";
+  }
+  return lines;
+}
+
+}  // namespace
 
 PreparedChange PrepareChange(const settings::StackConfig& configured, const settings::StackConfig& in_force,
                              const std::vector<std::string>& changes, const Situation& situation) {
@@ -149,7 +165,7 @@ PreparedChange PrepareChange(const settings::StackConfig& configured, const sett
   change.new_reference = reference != settings::ReferenceText(in_force);
   if (reference != settings::ReferenceText(configured)) change.message.reference = reference;
   change.message.changes = DifferenceOf(configured, *next);
-  change.text = DifferenceOf(in_force, *next);
+  change.text = DifferenceOf(in_force, *next) + KeysTakenOut(in_force, *next);
   if (change.text.empty()) change.text = "nothing differs from what is in force";
   change.text = OnOneLine(change.text);
   if (!margins.empty()) change.text += "; " + margins;

@@ -47,7 +47,7 @@ void TuningFollower::OnSettings(const tuned_settings_t& settings) {
     case tuned_settings_t::DECIDED:
       if (settings.version == in_force_ || settings.acts_at < 0) return;
       if (known) {
-        *waiting_ = settings;  // as proposed, and from when on
+        Date(settings);
       } else {
         Keep(settings);
       }
@@ -60,11 +60,18 @@ void TuningFollower::OnSettings(const tuned_settings_t& settings) {
       heard_ = true;
       // Not heard when it was decided. One that is decided, and waits for its tick, stays.
       if (settings.version != in_force_ && !known) Keep(settings);
-      if (waiting_ && waiting_->version == settings.version && waiting_->acts_at < 0) *waiting_ = settings;
+      if (waiting_ && waiting_->version == settings.version && waiting_->acts_at < 0) Date(settings);
       return;
     default:
       return;
   }
+}
+
+// From when on what is prepared holds. Nothing else is taken from the message: its values have not been looked at.
+void TuningFollower::Date(const tuned_settings_t& settings) {
+  waiting_->stage = settings.stage;
+  waiting_->acts_at = settings.acts_at;
+  waiting_->reference_from = settings.reference_from;
 }
 
 void TuningFollower::Keep(const tuned_settings_t& settings) {

@@ -45,6 +45,7 @@ class TuningFollower {
  private:
   void OnSettings(const tuned_settings_t& settings);
   void Keep(const tuned_settings_t& settings);
+  void Date(const tuned_settings_t& settings);
   void Say();
 
   process::Participant& participant_;

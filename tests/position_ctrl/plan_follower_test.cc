@@ -92,6 +92,65 @@ TEST(PlanFollower, AFloodIsFollowedStill) {
   }
 }
 
+// Tests what must not be followed though every number is finite and every point within the limits.
+TEST(PlanFollower, RefusesWhatWouldGoAstray) {
+  const auto why = [](const arm_plan_t& plan, int64_t tick = 100) { return Follower().Take(plan, tick); };
+  EXPECT_THAT(why(Plan(1, 0, {-1e308, 1e308}, {0, 0}, {0, 0})),
+              HasSubstr("point 0: all numbers must be finite, and 1e9 at most"));
+  EXPECT_THAT(why(Plan(1, 0, {0, 1}, {0, 0}, {0, 1e308})), HasSubstr("point 1: all numbers"));
+  arm_plan_t torque = Plan(1, 0, {0, 1}, {0, 0}, {0, 0});
+  torque.torque = {1e308, -1e308};
+  EXPECT_THAT(why(torque), HasSubstr("point 0: all numbers"));
+  // Up with 40 rad/s and back within a second: a cubic with its maximum 4/27 of that above, a third of the way.
+  EXPECT_THAT(why(Plan(1, 0, {0, 1}, {0, 0}, {40, 0})),
+              HasSubstr("behind point 0, by its speeds: found arm angle 5.926 rad"));
+  EXPECT_THAT(why(Plan(1, 0, {0, 1, 2}, {0.9, 0, 0}, {0, 0, -7})),
+              HasSubstr("behind point 1, by its speeds: found arm angle 1.037"));
+  EXPECT_EQ(why(Plan(1, 0, {0, 1}, {0.9, 0.9}, {-3, 3})), "");
+  for (const int64_t tick :
+       {int64_t{1102}, int64_t{1'000'000'000'000}, std::numeric_limits<int64_t>::max()}) {
+    arm_plan_t plan = Plan(1, 0, {0}, {0}, {0});
+    plan.tick = tick;
+    EXPECT_THAT(why(plan), HasSubstr("at tick 100, allowed is up to a second ahead")) << tick;
+    plan.tick = 1100;
+    EXPECT_EQ(why(plan), "");
+  }
+}
+
+// Tests that one which was sent by mistake, for a time far ahead, keeps nobody else out.
+TEST(PlanFollower, AStrayPlanDeafensNobody) {
+  PlanFollower follower = Follower();
+  arm_plan_t stray = Plan(2, 0, {0}, {0}, {0});
+  stray.tick = int64_t{1} << 62;
+  EXPECT_NE(follower.Take(stray, 10), "");
+  EXPECT_EQ(follower.Take(Plan(1, 0, {0}, {0.2}, {0}), 11), "");
+  EXPECT_EQ(follower.At(11).angle, 0.2);
+}
+
+// Tests that the reference never leaves the largest angle, whichever way ticks and speeds go, and that after a restart it begins anew.
+TEST(PlanFollower, NeverLeavesTheLargestAngle) {
+  PlanFollower follower = Follower(2);
+  ASSERT_EQ(follower.Take(Plan(1, 0, {0}, {0.9}, {0}), 6000), "");
+  for (int64_t tick = 6000; tick < 6400; tick += 5) follower.At(tick);
+  for (const int64_t tick : {0, 5, 10, 3000, 20}) EXPECT_LE(std::fabs(follower.At(tick).angle), 1) << tick;
+  follower.Reset();
+  EXPECT_EQ(follower.At(0).angle, 0.1);
+  ASSERT_EQ(follower.Take(Plan(1, 1, {0}, {-0.9}, {0}), 5), "");
+  EXPECT_NEAR(follower.At(5).angle, 0.09, 1e-12) << "at 2 rad/s";
+}
+
+// Tests that a largest angle which becomes smaller holds for plans that are followed or wait, too.
+TEST(PlanFollower, AnotherLargestAngleHoldsAtOnce) {
+  PlanFollower follower = Follower();
+  ASSERT_EQ(follower.Take(Plan(1, 0, {0, 1}, {0, 0.5}, {0, 0}), 0), "");
+  EXPECT_EQ(follower.At(0).angle, 0);
+  const double reached = follower.At(200).angle;
+  follower.SetLargestAngle(0.3);
+  EXPECT_EQ(follower.At(210).angle, reached);
+  EXPECT_EQ(follower.At(900).angle, reached);
+  EXPECT_THAT(follower.Take(Plan(1, 1, {0}, {0.4}, {0}), 900), HasSubstr("allowed |alpha| <= 0.3"));
+}
+
 TEST(PlanFollower, HoldsWhenThePlannerIsSilent) {
   PlanFollower follower = Follower();
   EXPECT_FALSE(follower.silent(1000)) << "there was none yet";

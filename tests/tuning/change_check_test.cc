@@ -116,6 +116,15 @@ TEST(PrepareChange, LimitsAreLoosenedOnlyWhileHeld) {
   EXPECT_NE(Prepared({"limits.pressure_psi=2500"}, {.held = true}).config, nullptr);
 }
 
+// Tests that a reference which takes the arm where the loops are not stable is refused like gains that are not stable there.
+TEST(PrepareChange, LoopsAreJudgedWhereTheReferenceGoes) {
+  const PreparedChange far = Prepared({"reference.steps=[[0.6, 0.8]]"});
+  EXPECT_EQ(far.config, nullptr);
+  EXPECT_THAT(far.text, HasSubstr("would be unstable"));
+  EXPECT_THAT(far.text, HasSubstr("0.8"));
+  EXPECT_NE(Prepared({"reference.steps=[[0.6, 0.3]]"}).config, nullptr);
+}
+
 TEST(PrepareChange, AReferenceTravelsAsText) {
   const PreparedChange change =
       Prepared({"reference.kind=sine", "reference.amplitude=0.05", "reference.frequency_hz=0.5"});

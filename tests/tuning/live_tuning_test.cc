@@ -219,6 +219,49 @@ TEST_F(LiveTuningTest, TheCommandsDoNotJump) {
                                        .voltage);
 }
 
+// Tests that the pressure command does not jump either where another reference comes and the error is differentiated: the reference before
+// was moving.
+TEST_F(LiveTuningTest, AnotherReferenceDoesNotJump) {
+config_ = settings::Replaced(config_, "[position]", "[position]\nderivative = \"error\"");
+  at_[1500] = [&] { Ask(1, "reference.kind=sine\nreference.amplitude=0.05\nreference.frequency_hz=2"); };
+  at_[4000] = [&] { Ask(2, "reference.kind=steps\nreference.initial=0.05\nreference.steps=[]"); };
+  ASSERT_EQ(Run(1.2), 0);
+  const tuning_answer_t* answer = AnswerTo(2);
+  ASSERT_NE(answer, nullptr);
+  ASSERT_TRUE(answer->accepted) << answer->text;
+  const int64_t at = answer->acts_at;
+  const auto jump = [&](int64_t tick) {
+    return std::fabs(AtTick(pressures_, tick).pressure_ref - AtTick(pressures_, tick - 25).pressure_ref);
+  };
+  double largest = 0;
+  for (int64_t tick = at - 1000; tick < at; tick += 25) largest = std::max(largest, jump(tick));
+  EXPECT_LE(jump(at), 1.5 * largest);
+  // The reference itself stops: by the law alone that would be c2 times its speed.
+  const double speed = (AtTick(references_, at - 25).value - AtTick(references_, at - 50).value) / 0.005;
+  EXPECT_GT(ValuesOf(settings::Parsed(config_)).position.c2 * std::fabs(speed), 3 * largest);
+}
+
+// Tests that of a decision nothing but its time is taken: its values and its reference are those that were prepared.
+TEST_F(LiveTuningTest, ADecisionThatDiffersFromItsProposalChangesNothingElse) {
+  tuned_settings_t forged;
+  at_[1000] = [&] {
+    forged = settings_.back();
+    forged.version = 900;
+    forged.stage = tuned_settings_t::PROPOSED;
+    forged.acts_at = -1;
+    bus_->Publish("HYDRO_SETTINGS", forged);
+    forged.stage = tuned_settings_t::DECIDED;
+    forged.acts_at = 1100;
+    forged.reference = "kind = [";
+    for (double& value : forged.values) value = NAN;
+    bus_->Publish("HYDRO_SETTINGS", forged);
+  };
+  ASSERT_EQ(Run(0.4), 0);
+  for (const pressure_command_t& command : pressures_)
+    ASSERT_TRUE(std::isfinite(command.pressure_ref)) << command.tick;
+  EXPECT_EQ(commands_.back().status, motor_command_t::LAW);
+}
+
 // Tests that a torque limit that is tightened below what is just asked for trips nothing: the command on its way is from before.
 TEST_F(LiveTuningTest, ATighterTorqueLimitTripsNothing) {
   std::vector<fault_t> faults;
