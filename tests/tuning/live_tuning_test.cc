@@ -222,7 +222,7 @@ TEST_F(LiveTuningTest, TheCommandsDoNotJump) {
 // Tests that the pressure command does not jump either where another reference comes and the error is differentiated: the reference before
 // was moving.
 TEST_F(LiveTuningTest, AnotherReferenceDoesNotJump) {
-config_ = settings::Replaced(config_, "[position]", "[position]\nderivative = \"error\"");
+  config_ = settings::Replaced(config_, "[position]", "[position]\nderivative = \"error\"");
   at_[1500] = [&] { Ask(1, "reference.kind=sine\nreference.amplitude=0.05\nreference.frequency_hz=2"); };
   at_[4000] = [&] { Ask(2, "reference.kind=steps\nreference.initial=0.05\nreference.steps=[]"); };
   ASSERT_EQ(Run(1.2), 0);
