@@ -110,7 +110,7 @@ class Setter {
   void List() const {
     const auto values = ValuesInForce(*client_.run(), *client_.in_force(),
                                       [](double value) { return fmt::format("{:g}", value); });
-    constexpr const char* kRow = "{:<34} {:<22} {:<12} {:<24} {:<14} {}";
+    constexpr const char* kRow = "{:<34} {:<22} {:<22} {:<41} {:<14} {}";
     Print(output_.out, fmt::format(fmt::runtime(kRow), "key", "value in force", "unit", "allowed", "acts in",
                                    "what it does"));
     for (const tuning::TunableKey& row : tuning::TunableKeys()) {

@@ -33,7 +33,7 @@ class TuningTest(fault_case.FaultCase):
         tick = re.search(r"acts from tick (\d+) on .*: position_ctrl since tick (\d+), pressure_ctrl since tick (\d+)", done.stdout)
         self.assertIsNotNone(tick, done.stdout)
         self.assertEqual({tick[1]}, {tick[2], tick[3]})
-        self.assertRegex(self.set("--list").stdout, r"(?m)^position\.c2 +900 +psi s/rad +position_ctrl ")
+        self.assertRegex(self.set("--list").stdout, r"(?m)^position\.c2 +900 +psi s/rad +>= 0 +position_ctrl ")
         self.set("--undo")
         self.assertRegex(self.set("--list").stdout, r"(?m)^position\.c2 +1200 ")
         log = self.finish()
