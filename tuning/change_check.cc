@@ -62,6 +62,16 @@ double SpectralRadius(const design::LoopCheck& check) {
   return radius;
 }
 
+// Stable in the model, and perhaps not in a rig that differs from it by as little as rigs do.
+bool HardlyStable(const design::LoopCheck& check) {
+  const auto hardly = [](const std::optional<design::CheckedLoop>& loop) {
+    if (!loop || !loop->margins_known) return false;
+    const design::LoopMargins& worst = loop->worst;
+    return worst.gain < 1.25 || worst.least_gain > 0.8 || worst.phase_deg < 10;
+  };
+  return check.stable() && (hardly(check.pressure) || hardly(check.position));
+}
+
 // Fills in the loops' margins as `text`, or why they forbid the change; returns whether they permit it.
 bool LoopsPermit(const settings::StackConfig& in_force, const settings::StackConfig& next,
                  std::string* text) {
@@ -69,6 +79,8 @@ bool LoopsPermit(const settings::StackConfig& in_force, const settings::StackCon
   if (!goes_farther && SameLaws(ValuesOf(in_force), ValuesOf(next))) return true;
   const design::LoopCheck check = design::CheckLoops(next);
   if (check.unjudged.empty() || check.pressure) *text = design::Describe(check);
+  if (HardlyStable(check))
+    *text += "; HARDLY STABLE: a rig that differs a little from its model may oscillate";
   if (check.stable()) return true;
   // From loops that are unstable already, a change may lead towards stable ones.
   return SpectralRadius(check) < SpectralRadius(design::CheckLoops(in_force));

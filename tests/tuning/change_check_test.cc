@@ -125,6 +125,19 @@ TEST(PrepareChange, LoopsAreJudgedWhereTheReferenceGoes) {
   EXPECT_NE(Prepared({"reference.steps=[[0.6, 0.3]]"}).config, nullptr);
 }
 
+// Tests that what is stable by a hair is accepted with a warning, and what is well stable without.
+TEST(PrepareChange, WarnsOfWhatIsHardlyStable) {
+  const PreparedChange good = Prepared({"position.c2=450"});
+  ASSERT_NE(good.config, nullptr) << good.text;
+  EXPECT_THAT(good.text, ::testing::Not(HasSubstr("HARDLY")));
+  // The gain at which the loop becomes unstable, and a little less.
+  double c1 = 1000;
+  while (Prepared({"position.c1=" + std::to_string(c1)}).config != nullptr) c1 *= 1.05;
+  const PreparedChange edge = Prepared({"position.c1=" + std::to_string(c1 / 1.06)});
+  ASSERT_NE(edge.config, nullptr) << edge.text;
+  EXPECT_THAT(edge.text, HasSubstr("HARDLY STABLE"));
+}
+
 TEST(PrepareChange, AReferenceTravelsAsText) {
   const PreparedChange change =
       Prepared({"reference.kind=sine", "reference.amplitude=0.05", "reference.frequency_hz=0.5"});
