@@ -9,6 +9,7 @@
 #include "base/input_error.h"
 #include "base/new_file.h"
 #include "base/text_file.h"
+#include "base/text_lines.h"
 #include "bus/channels.h"
 #include "hydro_set/saved_config.h"
 #include "hydro_set/tuning_client.h"
@@ -39,6 +40,7 @@ class Setter {
         client_(bus, clock, bus::Channels(section.channel_suffix), "hydro-set") {}
 
   int Run() {
+    RequireTunable();
     if (!FindStack()) return 1;
     if ((!request_.changes.empty() || request_.undo) && !Change()) return 1;
     if (request_.list) List();
@@ -59,6 +61,14 @@ class Setter {
     return true;
   }
 
+  // Before it waits for a stack. Throws InputError.
+  void RequireTunable() const {
+    for (const std::string& change : request_.changes) {
+      const std::string key = Trimmed(change.substr(0, change.find('=')));
+      if (tuning::FindTunable(key) == nullptr) throw InputError(tuning::WhyNotTunable(key));
+    }
+  }
+
   bool FindStack() {
     const bool found =
         Wait(kPresence, [&] { return client_.in_force() && client_.run() && !client_.plants().empty(); });
@@ -75,9 +85,10 @@ class Setter {
                           "its configuration: "
                           "hydro-set CONFIG ...",
                           url_)
-            : fmt::format(
-                  "hydro-set: the plant on {} does not say which values are in force; is it of this version?",
-                  url_));
+            : fmt::format("hydro-set: the plant on {} does not say which values are in force; does it stand "
+                          "still, or is it of "
+                          "another version?",
+                          url_));
     return false;
   }
 
@@ -115,8 +126,9 @@ class Setter {
                                    "what it does"));
     for (const tuning::TunableKey& row : tuning::TunableKeys()) {
       const auto value = values.find(std::string(row.key));
-      Print(output_.out, fmt::format(fmt::runtime(kRow), row.key, value == values.end() ? "-" : value->second,
-                                     row.unit, row.range, row.acts_in, row.what));
+      Print(output_.out,
+            fmt::format(fmt::runtime(kRow), row.key, value == values.end() ? "(default)" : value->second,
+                        row.unit, row.range, row.acts_in, row.what));
     }
     const tuned_settings_t& in_force = *client_.in_force();
     Print(output_.out,

@@ -39,8 +39,8 @@ model::Measurement SimulatedRig::Read(int64_t tick) {
     if (!(std::fabs(angle) > largest_angle_)) throw RigError("model_error", error.what());
     throw RigError("arm_angle_limit",
                    fmt::format("before tick {} the arm was at {:.6g} rad, allowed is |alpha| <= {:.6g} rad "
-                               "(limits.arm_angle_rad); the model cannot go on from there: {}",
-                               tick, angle, largest_angle_, error.what()));
+                               "(limits.arm_angle_rad), and left its cylinder while the plant was late",
+                               tick, angle, largest_angle_));
   }
 }
 

@@ -120,11 +120,15 @@ void TuningDesk::Propose(tuning::PreparedChange change) {
 }
 
 void TuningDesk::Refuse(const std::string& why) {
-  Answer(false, -1, why);
+  Answer(false, in_force_.message.version, -1, why);
   pending_.reset();
 }
 
-void TuningDesk::Answer(bool accepted, int64_t acts_at, const std::string& text) {
+void TuningDesk::Accept(const tuned_settings_t& settings, const std::string& text) {
+  Answer(true, settings.version, settings.acts_at, text);
+}
+
+void TuningDesk::Answer(bool accepted, int64_t version, int64_t acts_at, const std::string& text) {
   const tuning_request_t& request = pending_->request;
   tuning_answer_t answer;
   answer.utime = participant_.clock().Utime();
@@ -133,7 +137,7 @@ void TuningDesk::Answer(bool accepted, int64_t acts_at, const std::string& text)
   answer.request = request.request;
   answer.addressee = request.session;
   answer.accepted = accepted;
-  answer.version = accepted ? newest_version_ : in_force_.message.version;
+  answer.version = version;
   answer.acts_at = acts_at;
   answer.text = text;
   participant_.bus().Publish(participant_.channels().Of<tuning_answer_t>(), answer);
@@ -149,7 +153,17 @@ void TuningDesk::Answer(bool accepted, int64_t acts_at, const std::string& text)
 
 void TuningDesk::Poll() {
   if (aside_.busy()) {
-    if (auto change = aside_.Take()) change->config ? Propose(std::move(*change)) : Refuse(change->text);
+    if (auto change = aside_.Take()) {
+      if (change->config == nullptr) {
+        Refuse(change->text);
+      } else if (change->nothing_differs && pending_->request.kind == tuning_request_t::SET) {
+        Accept(in_force_.message,
+               change->text);  // no version of its own, which an undo would have to take back
+        pending_.reset();
+      } else {
+        Propose(std::move(*change));
+      }
+    }
   }
   const auto now = participant_.clock().Now();
   if (pending_ && pending_->version) {

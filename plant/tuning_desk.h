@@ -85,7 +85,8 @@ class TuningDesk {
   std::string NotReady(bool* impossible) const;
   void Decide();
   void Refuse(const std::string& why);
-  void Answer(bool accepted, int64_t acts_at, const std::string& text);
+  void Accept(const tuned_settings_t& settings, const std::string& text);
+  void Answer(bool accepted, int64_t version, int64_t acts_at, const std::string& text);
   void TakeEffect(Version version);
   void FollowAt(int64_t tick);
   void Publish(tuned_settings_t* settings, int8_t stage);

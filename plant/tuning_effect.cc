@@ -57,7 +57,7 @@ void TuningDesk::Decide() {
   message.acts_at = TickOfEffect();
   if (message.reference_from < 0) message.reference_from = message.acts_at;
   Publish(&message, tuned_settings_t::DECIDED);
-  Answer(true, message.acts_at, pending_->text);
+  Accept(message, pending_->text);
 }
 
 void TuningDesk::OnTick(int64_t tick) {

@@ -58,6 +58,12 @@ std::string SummaryText(const Tracking& tracking, const LogInfo& info, bool si) 
                                 : std::string("not within 2 %"),
            step.final_error_rad);
     }
+    if (tracking.steps_left_out > 0) {
+      line(
+          "  {} left out: the reference moved on before it rested (a hold and its way back, a ramp or a "
+          "curve)",
+          tracking.steps_left_out == 1 ? "1 step is" : fmt::format("{} steps are", tracking.steps_left_out));
+    }
   }
   if (!info.loops.empty()) {
     line("{:<14} {:>8} {:>10} {:>10} {:>10} {:>10} {:>10} {:>7} {:>6}", "loop", "cycles", "period p50",

@@ -53,18 +53,28 @@ double MeanErrorAtEnd(const Samples& samples) {
   return sum / count;
 }
 
-std::vector<StepResponse> Steps(const Samples& samples) {
-  std::vector<size_t> changes;
+// Between two changes at least kShortestRest apart it rests; elsewhere it moves: a ramp, a curve, or the way back after a hold.
+std::vector<StepResponse> Steps(const Samples& samples, int* left_out) {
+  std::vector<size_t> changes{0};  // and both ends
   for (size_t i = 1; i < samples.size(); ++i) {
     if (samples.references[i] != samples.references[i - 1]) changes.push_back(i);
   }
-  if (changes.size() > kMostSteps) return {};
+  changes.push_back(samples.size());
+  const auto rests = [&](size_t k) {
+    return samples.times[changes[k + 1] - 1] - samples.times[changes[k]] >= kShortestRest;
+  };
+  const size_t last = changes.size() - 2;
+  const auto is_step = [&](size_t k) { return k > 0 && k <= last && (k == 1 || rests(k - 1)) && rests(k); };
   std::vector<StepResponse> steps;
-  for (size_t k = 0; k < changes.size(); ++k) {
-    const size_t end = k + 1 < changes.size() ? changes[k + 1] : samples.size();
-    if (samples.times[end - 1] - samples.times[changes[k]] < kShortestRest) return {};
-    steps.push_back(MeasureStep(samples.times, samples.angles, changes[k], end,
+  for (size_t k = 1; k <= last; ++k) {
+    if (!is_step(k)) continue;
+    if (k < last && !is_step(k + 1)) {
+      ++*left_out;
+      continue;
+    }
+    steps.push_back(MeasureStep(samples.times, samples.angles, changes[k], changes[k + 1],
                                 samples.references[changes[k] - 1], samples.references[changes[k]]));
+    if (steps.size() > kMostSteps) return {};
   }
   return steps;
 }
@@ -85,7 +95,7 @@ Tracking TrackArm(const RunLog& log) {
   tracking.rms_error_rad = std::sqrt(squares / static_cast<double>(samples.size()));
   tracking.target_rad = samples.references.back();
   tracking.final_error_rad = MeanErrorAtEnd(samples);
-  tracking.steps = Steps(samples);
+  tracking.steps = Steps(samples, &tracking.steps_left_out);
   double scale = *high - *low;
   if (!tracking.steps.empty()) {
     scale = 0;

@@ -19,10 +19,11 @@ struct Tracking {
   // |final error| within 2 % of the largest step, at least 0.001 rad. None: the reference is still moving.
   std::optional<bool> at_target;
   std::vector<StepResponse> steps;  // empty when the reference is not made of steps
+  int steps_left_out = 0;           // whose response a hold, a ramp or a curve of the reference ended
 };
 
-// The arm's tracking in a run. A reference consists of steps when it changes at most 100 times and rests for
-// at least 0.2 s after each change.
+// The arm's tracking in a run. A step is a change of the reference with a rest of at least 0.2 s before and
+// after it; more than 100 are not listed.
 Tracking TrackArm(const RunLog& log);
 
 // Several lines for people to read, with loop timing and losses. With `si`, angles also in degrees.

@@ -174,7 +174,9 @@ void ScopeSite::Open(const Request& request, const Reply& reply) {
       std::remove(file.c_str());
       // The server's own name of the file says nothing to the user.
       std::string text = error.what();
-      if (const size_t at = text.find(file); at != std::string::npos) text.replace(at, file.size(), name);
+      for (size_t at = text.find(file); at != std::string::npos; at = text.find(file, at + name.size())) {
+        text.replace(at, file.size(), name);
+      }
       return [text, reply] { reply(ErrorResponse(400, Printable(text))); };
     }
   });

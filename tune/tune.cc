@@ -119,6 +119,26 @@ void RunOnTheStack(const StepJudge& judge, Proposal* proposal) {
   }
 }
 
+// What was written, and what to do next.
+std::vector<std::string> Epilogue(const TuneRequest& request, const Tried& proposed) {
+  std::vector<std::string> lines;
+  if (proposed.steps.uncertain_ratio >= kNeverSettled) {
+    lines.emplace_back(
+        "WARNING: with some of what may be true instead of the model ([uncertainty]) the arm never settles; "
+        "ask for less");
+  }
+  if (!request.folder.empty())
+    lines.push_back("written: " + request.folder + "/tune.html, " + request.folder + "/tune.svg");
+  if (request.output.empty()) {
+    lines.emplace_back("next: the same with -o TUNED.toml writes the configuration");
+  } else {
+    lines.push_back("written: " + request.output +
+                    " (comments beside the old gains are kept: see whether they still hold)");
+    lines.push_back("next: hydro-sim " + request.output + " -o tuned.lcmlog; hydro-log summary tuned.lcmlog");
+  }
+  return lines;
+}
+
 void Refuse(const settings::StackConfig& config, const std::string& why) {
   if (!why.empty()) throw std::runtime_error(config.file + ": " + why);
 }
@@ -166,6 +186,7 @@ int Tune(const TuneRequest& request, std::FILE* out, std::FILE* progress, bool t
   if (!request.output.empty()) {
     WriteWholeFile(request.output, TunedText(config, With(config, chosen.best.gains), request.output));
   }
+  for (const std::string& told : Epilogue(request, chosen.best)) std::fprintf(out, "%s\n", told.c_str());
   return 0;
 }
 

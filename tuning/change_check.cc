@@ -178,7 +178,8 @@ PreparedChange PrepareChange(const settings::StackConfig& configured, const sett
   if (reference != settings::ReferenceText(configured)) change.message.reference = reference;
   change.message.changes = DifferenceOf(configured, *next);
   change.text = DifferenceOf(in_force, *next) + KeysTakenOut(in_force, *next);
-  if (change.text.empty()) change.text = "nothing differs from what is in force";
+  change.nothing_differs = change.text.empty();
+  if (change.nothing_differs) change.text = "nothing differs from what is in force";
   change.text = OnOneLine(change.text);
   if (!margins.empty()) change.text += "; " + margins;
   change.config = std::move(next);

@@ -32,6 +32,7 @@ struct PreparedChange {
       text;  // for a person: what changes, and the loops' margins; or why not, and what would be allowed
   tuned_settings_t message;  // its values, and how they differ from `configured`; not numbered or dated
   bool new_reference = false;
+  bool nothing_differs = false;  // from what is in force: there is nothing to propose
 };
 
 // `in_force` with `changes`. Takes milliseconds (it parses, and linearises the loops): not for the thread of a loop.

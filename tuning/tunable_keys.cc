@@ -89,6 +89,11 @@ std::string WhyNotTunable(const std::string& key) {
   std::vector<std::string> names;
   names.reserve(kKeys.size());
   for (const TunableKey& row : kKeys) names.emplace_back(row.key);
+  if (key.find('.') == std::string::npos) {  // the section is missing
+    for (const std::string& name : names) {
+      if (name.ends_with("." + key)) return key + ": no such value, did you mean " + name + "?";
+    }
+  }
   const std::string meant = DidYouMean(key, names);
   if (!meant.empty()) return key + ": no such value" + meant;
   return key +

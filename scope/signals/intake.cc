@@ -58,6 +58,7 @@ bool Intake::Follow(const state_t& state, int64_t utime) {
   run_ = next_run_(state.session);
   run_->session = state.session;
   if (early_description_ && early_description_->session == state.session) run_->Describe(*early_description_);
+  for (auto& [name, process] : run_->processes) process.missed = process.lost = 0;  // of the run before
   session_ = state.session;
   left_ = false;
   sequence_ = -1;

@@ -91,6 +91,23 @@ TEST(TrackingTest, SineHasNoSteps) {
   EXPECT_NEAR(tracking.rms_error_rad, 0.01, 0.002);  // the reference is held for 5 ms
 }
 
+// Tests that a hold and the way back from it take the step that they disturb out of the list, and no other.
+TEST(TrackingTest, AHoldLeavesTheOtherSteps) {
+  const auto reference = [](double t) {
+    if (t < 0.5) return 0.0;
+    if (t < 1.5) return 0.1;
+    if (t < 1.8) return 0.2;
+    if (t < 1.9) return 0.15;                           // held where the arm is
+    if (t < 2.4) return 0.15 + 0.05 * (t - 1.9) / 0.5;  // and back
+    return t < 3 ? 0.2 : 0.0;
+  };
+  const Tracking tracking = TrackArm(MakeRun(4000, reference, reference));
+  ASSERT_EQ(tracking.steps.size(), 2u);
+  EXPECT_NEAR(tracking.steps[0].time_s, 0.5, 0.006);
+  EXPECT_NEAR(tracking.steps[1].time_s, 3, 0.006);
+  EXPECT_EQ(tracking.steps_left_out, 1);
+}
+
 // Tests that an arm that holds still at a constant reference is at its target, up to a tolerance and no
 // further.
 TEST(TrackingTest, ConstantReference) {

@@ -318,6 +318,23 @@ TEST_F(LiveTuningTest, UndoAndRepeats) {
 }
 
 // Tests that a new reference is reached from where the old one was, and counts its time from its beginning.
+// Tests that a request for what is in force already is answered, makes no version, and leaves the undo what it was.
+TEST_F(LiveTuningTest, WhatIsInForceMakesNoVersion) {
+  at_[500] = [&] { Ask(1, "position.c2=500"); };
+  at_[1000] = [&] { Ask(2, "position.c2=500"); };
+  at_[1500] = [&] { Ask(3, "", tuning_request_t::UNDO); };
+  ASSERT_EQ(Run(0.5), 0);
+  const tuning_answer_t *first = AnswerTo(1), *same = AnswerTo(2), *undo = AnswerTo(3);
+  ASSERT_TRUE(first != nullptr && same != nullptr && undo != nullptr);
+  EXPECT_TRUE(same->accepted);
+  EXPECT_EQ(same->version, first->version);
+  EXPECT_EQ(same->acts_at, first->acts_at);
+  EXPECT_THAT(same->text, HasSubstr("nothing differs"));
+  EXPECT_TRUE(undo->accepted);
+  EXPECT_THAT(undo->text, HasSubstr("position.c2 = "));
+  EXPECT_EQ(undo->version, first->version + 1);
+}
+
 TEST_F(LiveTuningTest, AReferenceBeginsAtItsTick) {
   config_ += "[limits]\nreturn_s = 0.1\n";
   at_[1500] = [&] { Ask(1, "reference.steps=[[0, 0.2], [0.2, 0.05]]"); };

@@ -26,7 +26,7 @@ export class FilesPanel {
       class: 'unseen',
       tabindex: '-1',
       'aria-label': 'Open a log',
-      onchange: () => this.#openAll(this.picker.files),
+      onchange: () => this.#guard(() => this.#openAll(this.picker.files)),
     });
     this.closer = button('Close this log', () => this.#close());
     this.element = section(
