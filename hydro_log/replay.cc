@@ -68,6 +68,11 @@ class Replayer {
       tunings_.push_back(std::move(settings));
     }
     ReadPlans(log.messages.Of<arm_plan_t>());
+    if (role == "position_ctrl") {
+      faults_ = log.messages.Of<fault_t>();
+      active_faults_ = log.messages.Of<active_faults_t>();
+      statuses_ = log.messages.Of<process_status_t>();
+    }
     for (const auto& [tick, state] : states_) {
       if (std::abs(state.time) <= kLatestTime) continue;
       throw InputError(log.file + ": found the state of tick " + std::to_string(tick) + " at " +
@@ -95,6 +100,9 @@ class Replayer {
       if (speed_ > 0) std::this_thread::sleep_until(wall_start + elapsed / speed_);
       clock_.AdvanceTo(bus::Clock::TimePoint(std::chrono::duration_cast<bus::Clock::Duration>(elapsed)));
       before(tick);
+      Overtake(state.utime, faults_, &next_fault_);
+      Overtake(state.utime, active_faults_, &next_active_);
+      Overtake(state.utime, statuses_, &next_status_);
       for (; plan != plans_.end() && plan->first < tick; ++plan) {
         bus_.Publish(channels_.Of<arm_plan_t>(), plan->second);
         Deliver();
@@ -114,6 +122,15 @@ class Replayer {
   }
 
  private:
+  // What other processes said before the state was sent: the position loop holds its reference while the pressure loop has a fault.
+  template <class Message>
+  void Overtake(int64_t utime, const std::vector<Message>& messages, size_t* next) {
+    for (; *next < messages.size() && messages[*next].utime < utime; ++*next) {
+      bus_.Publish(channels_.Of<Message>(), messages[*next]);
+      Deliver();
+    }
+  }
+
   // A plan acts by the tick that it names, so it is handed over behind that one's state; without a tick, behind the last state that was sent
   // before it (by the clocks of both).
   void ReadPlans(const std::vector<arm_plan_t>& plans) {
@@ -135,6 +152,10 @@ class Replayer {
   settings::StackConfig config_;
   bus::Channels channels_;
   std::map<int64_t, state_t> states_;
+  std::vector<fault_t> faults_;
+  std::vector<active_faults_t> active_faults_;
+  std::vector<process_status_t> statuses_;
+  size_t next_fault_ = 0, next_active_ = 0, next_status_ = 0;
   std::vector<std::pair<int64_t, arm_plan_t>> plans_;  // behind which tick
   std::vector<tuned_settings_t> tunings_;  // acts_at: from when the replayed process acted by them
   bus::SimulatedClock clock_;

@@ -151,6 +151,8 @@ class FaultLoopsTest(fault_case.FaultCase):
         self.assertGreater(awake.skipped_ticks, STALE * RATE)
         after = next(s for s in log.states if s.tick > fault.tick and s.command_tick >= 0)
         self.assertGreaterEqual(after.command_tick, fault.tick)
+        # The position loop held its reference and came back: the replay does the same, by what the log says of the faults.
+        self.assertIn("position: identical", self.run_program("hydro-log", "replay", self.log_file).stdout)
 
     # Tests that the pressure loop commands zero volts once when the plant has died.
     def test_plant_dies(self):
