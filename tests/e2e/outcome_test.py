@@ -101,7 +101,8 @@ class OutcomeTest(unittest.TestCase):
                 together += 1
             elif properties.get("SKIP_RETURN_CODE") == str(outcome.SKIPPED):  # tests of other folders that end like these
                 for script in (word for word in command if word.endswith(".py")):
-                    self.assertIn("outcome.main()", pathlib.Path(script).read_text(), test["name"])
+                    text = pathlib.Path(script).read_text()
+                    self.assertTrue("outcome.main()" in text or "skip" not in text, test["name"])
             else:  # what is run otherwise never skips
                 for script in (word for word in command if word.endswith(".py")):
                     self.assertNotIn("skip", pathlib.Path(script).read_text(), test["name"])
