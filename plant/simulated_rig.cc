@@ -31,12 +31,14 @@ SimulatedRig::SimulatedRig(const settings::StackConfig& config)
 }
 
 model::Measurement SimulatedRig::Read(int64_t tick) {
+  const bool late = tick > read_ + 1;
+  read_ = tick;
   try {
     if (tick > 0) actuator_->Advance(voltage_, static_cast<double>(tick) / rate_hz_);
     return ReadSensors(actuator_->Measure(), noise_, seed_, tick);
   } catch (const model::ModelError& error) {
     const double angle = actuator_->Measure().arm_angle;
-    if (!(std::fabs(angle) > largest_angle_)) throw RigError("model_error", error.what());
+    if (!late || !(std::fabs(angle) > largest_angle_)) throw RigError("model_error", error.what());
     throw RigError("arm_angle_limit",
                    fmt::format("before tick {} the arm was at {:.6g} rad, allowed is |alpha| <= {:.6g} rad "
                                "(limits.arm_angle_rad), and left its cylinder while the plant was late",

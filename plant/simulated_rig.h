@@ -31,6 +31,7 @@ class SimulatedRig : public Rig {
   int64_t seed_;
   double rate_hz_;
   double largest_angle_;  // rad
+  int64_t read_ = -1;     // tick
   std::unique_ptr<trajectory::Trajectory>
       motion_;  // of a driven shaft; declared first, actuator_ points to it
   std::unique_ptr<model::Actuator> actuator_;

@@ -1,0 +1,17 @@
+#!/usr/bin/env python3
+"""A position loop of one's own in the place of hydro-position-ctrl: pid.py [BUS_URL]. docs/own_controller.md explains it."""
+import sys
+
+import hydro_bus
+from hydro import pressure_command_t
+
+TARGET, C1, C2, MOST = 0.3, 6000.0, 1200.0, 135.0  # rad, psi/rad, psi s/rad; psi, below limits.arm_torque_in_lbf / k_2
+
+
+def answer(state, command):
+    asked = -C1 * (state.arm_angle - TARGET) - C2 * state.arm_speed
+    command.pressure_ref = max(-MOST, min(MOST, asked))
+
+
+bus = hydro_bus.Bus(*sys.argv[1:2])
+sys.exit(hydro_bus.Loop(bus, "position_ctrl", "HYDRO_PRESSURE_COMMAND", pressure_command_t, answer, every=5).run())
