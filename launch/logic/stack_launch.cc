@@ -62,7 +62,8 @@ int StackLaunch::Run() {
 // Two stacks on the same channels drive each other to zero volts, and their messages end up in each other's
 // logs. Asked several times, because UDP may lose a message.
 void StackLaunch::RefuseIfOneRuns() {
-  const std::vector<std::string> roles = RolesOf(plan_);
+  std::vector<std::string> roles = RolesOf(plan_);
+  if (plan_.spread) std::erase(roles, "logger");  // another host's, which was started a moment before
   for (int i = 0; i < kQuestions; ++i) {
     watch_.AskWhoIsThere();
     for (const TimePoint until = clock_.Now() + kAnswerTime; clock_.Now() < until;) {
