@@ -11,6 +11,7 @@
 
 #include "base/input_error.h"
 #include "bus/in_process_bus.h"
+#include "process/participant.h"
 #include "tests/stack_fixture.h"
 
 namespace hydro::launch {
@@ -153,6 +154,21 @@ TEST_F(StackLaunchTest, SignalEndsInOrder) {
   ASSERT_FALSE(stops_.empty());
   EXPECT_EQ(stops_[0].addressee, 1101);
   EXPECT_EQ(stops_[0].exit_code, 0);
+}
+
+// Tests that another host's logger keeps nobody from starting a stack that is spread over hosts, as another plant does; and on one
+// machine it does.
+TEST_F(StackLaunchTest, AnotherHostsLoggerIsNoOtherStack) {
+  std::string other = "logger";
+  bus_.Subscribe<process_status_t>("HYDRO_PROCESS_STATUS", [&](const process_status_t& status) {
+    if (status.role == process::kLaunchRole && children_.pids.empty()) Announce(other, 900);
+  });
+  const auto run = [&] { return Run(1s, [&] { children_.signals.push_back(SIGINT); }); };
+  EXPECT_THROW(run(), InputError);
+  plan_.spread = true;
+  EXPECT_EQ(run(), 0);
+  other = "plant";
+  EXPECT_THROW(run(), InputError);
 }
 
 // Tests that a second SIGINT kills those that do not end.
