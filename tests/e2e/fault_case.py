@@ -1,6 +1,7 @@
 """What the tests of docs/safety.md share: a stack that never rests, and what "zero volts after the fault" means."""
 
 import os
+import re
 import signal
 
 import event_log
@@ -27,11 +28,12 @@ class FaultCase(stack.TestCase):
         self.log_file = self.path("run.lcmlog")
 
     def config_with(self, reference, name="moving.toml"):
-        """demo.toml with another [reference]."""
+        """demo.toml with another [reference], and with inputs that are stale only where a test makes them."""
         with open(stack.config("demo.toml"), encoding="utf-8") as file:
             text = file.read()
         begin, end = text.index("[reference]"), text.index("[limits]")
         text = text[:begin] + "[reference]\n" + reference + "\n\n" + text[end:]
+        text = re.sub(r"(?m)^stale_input_s = [0-9.]+", f"stale_input_s = {STALE}", text)
         text = text.replace("models/table1.toml", os.path.join(stack.CONFIG, "models", "table1.toml"))
         with open(self.path(name), "w", encoding="utf-8") as file:
             file.write(text)
