@@ -36,7 +36,7 @@ std::vector<EffectParameter> EffectParameters(const ModelDescription& model) {
                    [&](size_t a, size_t b) { return model.effects[a].id < model.effects[b].id; });
   std::vector<EffectParameter> parameters;
   for (const size_t i : order) {
-    const EffectInfo* info = FindEffect(model.effects[i].id);
+    const EffectInfo* info = FindEffect(model.effects[i]);
     if (info == nullptr) throw ModelError("effect \"" + model.effects[i].id + "\" is not known");
     for (const ParameterInfo& parameter : info->parameters) {
       if (parameter.is_number()) parameters.push_back({i, parameter.name});

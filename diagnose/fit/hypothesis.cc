@@ -15,7 +15,7 @@ constexpr double kReach = 300;
 constexpr double kElsewhere[] = {0.8, 1.25};
 
 const model::ParameterInfo& InfoOf(const model::EffectDescription& effect, const std::string& name) {
-  const model::EffectInfo* info = model::FindEffect(effect.id);
+  const model::EffectInfo* info = model::FindEffect(effect);
   for (const model::ParameterInfo& parameter : info->parameters) {
     if (parameter.name == name) return parameter;
   }

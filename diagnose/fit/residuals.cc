@@ -95,7 +95,7 @@ std::vector<model::Unknown> StartUnknowns(const model::ModelDescription& model, 
         return model::HasRole(effect.id, model::Role::kFrequency);
       });
   const bool returned = std::any_of(model.effects.begin(), model.effects.end(), [](const auto& effect) {
-    const model::EffectInfo* info = model::FindEffect(effect.id);
+    const model::EffectInfo* info = model::FindEffect(effect);
     return info != nullptr && info->remembers_flow;
   });
   std::vector<model::Unknown> unknowns;

@@ -17,7 +17,7 @@ constexpr int kAngles = 12;  // tried, a period
 double PeriodOf(const model::ModelDescription& model) {
   double longest = 0;
   for (const model::EffectDescription& effect : model.effects) {
-    const model::EffectInfo* info = model::FindEffect(effect.id);
+    const model::EffectInfo* info = model::FindEffect(effect);
     if (info == nullptr) continue;
     for (const model::ParameterInfo& parameter : info->parameters) {
       if (parameter.role != model::Role::kPeriods) continue;

@@ -5,6 +5,9 @@
 #include <stdexcept>
 #include <utility>
 
+#include "model/effects/formula_effect.h"
+#include "model/terms/model_error.h"
+
 namespace hydro::model {
 
 namespace {
@@ -95,9 +98,22 @@ bool AddToCatalogue(CatalogueEntry entry) {
 
 const CatalogueEntry* FindCatalogueEntry(const std::string& id) { return TheCatalogue().Find(id); }
 
+std::shared_ptr<const EffectFormulas> FormulasOf(const EffectDescription& effect) {
+  if (effect.formulas != nullptr) return effect.formulas;
+  const CatalogueEntry* entry = FindCatalogueEntry(effect.id);
+  return entry == nullptr ? nullptr : entry->formulas;
+}
+
+std::unique_ptr<Effect> BuildEffect(const EffectDescription& effect) {
+  if (effect.formulas != nullptr) return MakeFormulaEffect(effect);
+  const CatalogueEntry* entry = FindCatalogueEntry(effect.id);
+  if (entry == nullptr) throw ModelError("effect \"" + effect.id + "\" is not known");
+  return entry->make(effect);
+}
+
 bool ReplacesValves(const std::vector<EffectDescription>& effects) {
   return std::any_of(effects.begin(), effects.end(), [](const EffectDescription& effect) {
-    return FindCatalogueEntry(effect.id)->make(effect)->replaces_valves();
+    return BuildEffect(effect)->replaces_valves();
   });
 }
 
@@ -108,6 +124,10 @@ bool HasRole(const std::string& effect, Role role) {
   return info != nullptr &&
          std::any_of(info->parameters.begin(), info->parameters.end(),
                      [&](const ParameterInfo& parameter) { return parameter.role == role; });
+}
+
+const EffectInfo* FindEffect(const EffectDescription& effect) {
+  return effect.formulas != nullptr ? &effect.formulas->info() : FindEffect(effect.id);
 }
 
 const EffectInfo* FindEffect(const std::string& id) {

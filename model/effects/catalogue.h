@@ -28,6 +28,12 @@ class Catalogue {
 // The entry of an effect in this program's catalogue; null for an unknown effect.
 const CatalogueEntry* FindCatalogueEntry(const std::string& id);
 
+// The formulas of an effect that is written as text, in its model or in the catalogue; null for any other.
+std::shared_ptr<const EffectFormulas> FormulasOf(const EffectDescription& effect);
+
+// Builds an effect of a description that has been checked. Throws ModelError for an unknown one.
+std::unique_ptr<Effect> BuildEffect(const EffectDescription& effect);
+
 // True when one of these effects, which have been checked, takes the place of the ideal one-way valves.
 bool ReplacesValves(const std::vector<EffectDescription>& effects);
 

@@ -243,6 +243,7 @@ std::unique_ptr<Effect> MakeEffect(const EffectDescription& /*description*/) {
 struct CatalogueEntry {
   EffectInfo info;
   std::unique_ptr<Effect> (*make)(const EffectDescription& description) = nullptr;
+  std::shared_ptr<const EffectFormulas> formulas = nullptr;  // of one that is written as text
 };
 
 // Adds an effect to the catalogue, so that models can have it and the gap finder looks for it. Call once in

@@ -153,12 +153,12 @@ Equations::Equations(const ModelDescription& description, const ActuatorOptions&
 
 void Equations::AddEffect(const EffectDescription& effect, const UnitSystem& units, double pressure,
                           double flow) {
-  const CatalogueEntry* entry = FindCatalogueEntry(effect.id);
-  if (entry == nullptr) throw ModelError("effect \"" + effect.id + "\" is not known");
-  CheckParameters(effect, entry->info, units);
-  data_.effects.push_back(entry->make(effect));
+  const EffectInfo* known = FindEffect(effect);
+  if (known == nullptr) throw ModelError("effect \"" + effect.id + "\" is not known");
+  CheckParameters(effect, *known, units);
+  data_.effects.push_back(BuildEffect(effect));
   const int first_parameter = static_cast<int>(data_.own.size());
-  for (const ParameterInfo& info : entry->info.parameters) {
+  for (const ParameterInfo& info : known->parameters) {
     if (info.is_number()) data_.own.push_back(effect.parameters.at(info.name));
     if (info.list != List::kValues) continue;
     const std::vector<double>& values = effect.lists.at(info.name);

@@ -2,12 +2,15 @@
 #pragma once
 
 #include <map>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "base/unit_system.h"
 
 namespace hydro::model {
+
+class EffectFormulas;
 
 // Base parameters of eqs. (1) to (15), Table 1. Units need only be coherent; those given are the paper's. T
 // is double, or a scalar with derivatives.
@@ -40,6 +43,8 @@ struct EffectDescription {
   // Parameters whose value is a list, of numbers and of names.
   std::map<std::string, std::vector<double>> lists = {};
   std::map<std::string, std::vector<std::string>> name_lists = {};
+  // Of an effect that is written as text in the model's file; null: the catalogue knows it.
+  std::shared_ptr<const EffectFormulas> formulas = nullptr;
 };
 
 struct ModelDescription {

@@ -140,6 +140,8 @@ const std::vector<EffectInfo>& EffectCatalogue();
 
 // Listed or not. Null for an unknown effect.
 const EffectInfo* FindEffect(const std::string& id);
+// The same of one in a model, which may bring its own.
+const EffectInfo* FindEffect(const EffectDescription& effect);
 
 // Whether one of the effect's parameters has the role; false for an unknown effect.
 bool HasRole(const std::string& effect, Role role);

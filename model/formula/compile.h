@@ -1,0 +1,82 @@
+// From an effect's text to programs: what names mean, what is known where, and which comparisons are switches.
+#pragma once
+
+#include <map>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "model/formula/effect_text.h"
+#include "model/formula/expression.h"
+#include "model/formula/program.h"
+#include "model/terms/parameter_info.h"
+
+namespace hydro::model {
+
+// What a name stands for in a formula.
+struct Meaning {
+  Source source = Source::kConstant;
+  size_t place = 0;
+  double number = 0;                    // kConstant
+  const Expression* formula = nullptr;  // of `where`: the name stands for this
+  bool fixed = false;                   // it changes at events only, if at all
+};
+
+// A comparison of quantities that change, found in an equation: an event is located where it begins or ceases to hold.
+struct FoundComparison {
+  Expression low, high;  // it holds while low < high
+};
+
+class FormulaCompiler {
+ public:
+  // Checks the names that the effect adds. `info` and `text` must outlive the compiler. Throws EffectTextError.
+  FormulaCompiler(const EffectInfo& info, const EffectText& text);
+
+  // Compiles a formula that acts at `hook`, whose key in the file is `key`: a value, left in Access::result ...
+  Program Value(const std::string& key, const std::string& text, Hook hook);
+  // ... or a statement, appended to a program.
+  void Append(const std::string& key, const std::string& statement, Hook hook, Program* program);
+  // A value that is stored to the effect's state or its rate.
+  void AppendValue(const std::string& key, const std::string& text, Hook hook, Source to, size_t place,
+                   Program* program);
+
+  // Where a statement acts that has no hook of its own: where what it changes becomes known.
+  Hook HookOf(const std::string& key, const std::string& statement) const;
+
+  // The comparisons found in what was compiled, in order; the switches after the effect's own.
+  const std::vector<FoundComparison>& comparisons() const { return comparisons_; }
+  // Programs for the margin and the next position of the switch of a comparison.
+  SwitchPrograms ComparisonPrograms(size_t comparison);
+
+ private:
+  struct Context {
+    Hook hook = Hook::kProperties;
+    Program* program = nullptr;
+    std::map<std::string, uint16_t> known;  // what has been computed, by its text; forgotten at each store
+    std::set<std::string> within;           // names of `where` that are being expanded
+  };
+
+  void AddWhere();
+  void CheckNewName(const std::string& key, const std::string& name) const;
+  Meaning MeaningOf(const std::string& name, size_t column, Hook hook) const;
+  Meaning FieldMeaning(const std::string& name, size_t place, size_t column, Hook hook) const;
+  std::vector<std::string> NamesAt(Hook hook) const;
+  bool IsFixed(const Expression& expression, Context& context) const;
+
+  uint16_t Emit(const Expression& expression, Context& context);
+  uint16_t EmitName(const Expression& name, Context& context);
+  uint16_t EmitOperation(const Expression& expression, Context& context);
+  uint16_t EmitComparison(const Expression& low, const Expression& high, Context& context);
+  uint16_t EmitChoice(const Expression& expression, Context& context);
+  uint16_t Push(const Instruction& instruction, size_t column, Context& context);
+  void PushStore(uint16_t value, Source to, size_t place, Context& context);
+  void AppendStatement(const Statement& statement, Context& context);
+
+  const EffectInfo& info_;
+  const EffectText& text_;
+  std::map<std::string, Expression> where_;
+  std::set<std::string> scratch_;  // quantities that effects alone set, and this one does
+  std::vector<FoundComparison> comparisons_;
+};
+
+}  // namespace hydro::model

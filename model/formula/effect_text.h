@@ -1,0 +1,62 @@
+// An effect written as text: its formulas as in its file, and its entry for the catalogue.
+#pragma once
+
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "model/formula/names.h"
+#include "model/terms/parameter_info.h"
+
+namespace hydro::model {
+
+// A state that the effect adds.
+struct StateText {
+  std::string name;
+  std::string unit;
+  std::string rate;   // "(k_1 * voltage - lagged) / tau"
+  std::string start;  // "0" where empty
+  // Below this size absolute rather than relative errors count: "pressure", "flow", "torque" (those of the model), or a
+  // number in the state's unit.
+  std::string scale = "0.001";
+  std::string is;  // "p_3" or "actuator_angle" where it takes that quantity's place
+};
+
+// A switch that the effect adds: positions are whole numbers from -100 to 100, and formulas know its position by its name.
+struct SwitchText {
+  std::string name;
+  std::string margin;             // positive while the position may stay, falls through 0 when it must change
+  std::string next;               // the position after a change
+  std::string start;              // that of a run that begins in motion; "" where the margins find it from 0
+  std::vector<std::string> sets;  // states that jump at a change: "arm_speed = 0"
+};
+
+struct EffectText {
+  // Statements; each acts where what it changes becomes known.
+  std::vector<std::string> equation;
+  // Statements that act at a place of their own.
+  std::vector<std::pair<Hook, std::vector<std::string>>> equations;
+  std::vector<std::pair<std::string, std::string>> where;  // name, what it stands for
+  std::vector<StateText> states;
+  std::vector<SwitchText> switches;
+  std::string fixed_volume;                 // of each side outside the actuator
+  std::string stored, dissipated, viscous;  // power, see Power
+  bool replaces_valves = false;
+};
+
+// "equations.torques_and_flows": the key of a hook that has statements of its own.
+const std::vector<std::pair<std::string, Hook>>& EquationKeys();
+
+// A formula of an effect cannot work: the key in its file, and what() without it.
+class EffectTextError : public std::runtime_error {
+ public:
+  EffectTextError(std::string key, const std::string& what)
+      : std::runtime_error(what), key_(std::move(key)) {}
+  const std::string& key() const { return key_; }
+
+ private:
+  std::string key_;
+};
+
+}  // namespace hydro::model
