@@ -7,7 +7,9 @@
 
 #include "base/did_you_mean.h"
 #include "base/number_text.h"
+#include "model/effects/catalogue.h"
 #include "model/terms/parameter_info.h"
+#include "settings/effect_file.h"
 #include "settings/parameter_range.h"
 
 namespace hydro::settings {
@@ -74,6 +76,7 @@ model::EffectDescription ReadEffect(SectionReader section, const model::EffectIn
                                     const UnitSystem& units) {
   model::EffectDescription effect;
   effect.id = info.id;
+  section.Take("definition");
   for (const model::ParameterInfo& parameter : info.parameters) {
     if (parameter.list == model::List::kNames) {
       ReadNames(&section, parameter, &effect);
@@ -96,6 +99,15 @@ model::EffectDescription ReadEffect(SectionReader section, const model::EffectIn
   return effect;
 }
 
+// The table that describes an effect as text, if its section has one.
+const TomlNode* DefinitionOf(const TomlMember& effect) {
+  if (!effect.second.is(TomlNode::Kind::kTable)) return nullptr;
+  const TomlNode* definition = effect.second.Find("definition");
+  if (definition == nullptr || definition->is(TomlNode::Kind::kTable)) return definition;
+  throw KeyError(definition->place, "effects." + effect.first + ".definition", definition->Shown(),
+                 "the effect's table, or in a model's file the name of its file");
+}
+
 }  // namespace
 
 std::vector<model::EffectDescription> ReadEffects(SectionReader section, const TomlNode* table,
@@ -105,6 +117,13 @@ std::vector<model::EffectDescription> ReadEffects(SectionReader section, const T
   std::vector<std::string> known;
   for (const model::EffectInfo& info : model::EffectCatalogue()) known.push_back(info.id);
   for (const auto& member : table->members) {
+    if (const TomlNode* definition = DefinitionOf(member)) {
+      const std::string path = "effects." + member.first + ".definition";
+      const auto formulas = ReadFormulas(*definition, path, member.first);
+      effects.push_back(ReadEffect(section.Section(member.first), formulas->info(), units));
+      effects.back().formulas = formulas;
+      continue;
+    }
     // [effects.pump.stribeck] without quotes is a table in a table.
     if (const model::EffectInfo* info = model::FindEffect(member.first)) {
       SectionReader reader = section.Section(member.first);
@@ -120,7 +139,7 @@ std::vector<model::EffectDescription> ReadEffects(SectionReader section, const T
     }
     throw InputError(member.second.place + ": effects: found the unknown effect " + Quoted(id) +
                      ", allowed " + QuotedList(known) + DidYouMean(id, known) +
-                     "; one of your own is built in: cmake -DHYDRO_EFFECTS=FILE.cc (docs/effects.md)");
+                     "; one of your own: definition = \"FILE.toml\" in its section (docs/effects.md)");
   }
   return effects;
 }
@@ -143,6 +162,8 @@ TomlNode EffectsNode(const std::vector<model::EffectDescription>& effects) {
       for (const double value : list) items.push_back(NumberNode(value));
       table.members.push_back({name, ArrayNode(std::move(items))});
     }
+    if (const auto formulas = model::FormulasOf(effect))
+      table.members.push_back({"definition", FormulasNode(*formulas)});
     node.members.push_back({effect.id, std::move(table)});
   }
   return node;

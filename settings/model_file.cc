@@ -5,6 +5,7 @@
 #include "base/number_text.h"
 #include "base/units.h"
 #include "model/terms/parameter_info.h"
+#include "settings/effect_file.h"
 #include "settings/effect_sections.h"
 #include "settings/parameter_range.h"
 #include "settings/toml/section_reader.h"
@@ -85,9 +86,9 @@ std::map<std::string, double> ReadUncertainty(SectionReader section) {
 
 }  // namespace
 
-model::ModelDescription ParseModel(const std::string& text, const std::string& name_for_messages) {
-  TomlNode root = ParseToml(text, name_for_messages);
-  root.place = name_for_messages;
+namespace {
+
+model::ModelDescription ReadModel(const TomlNode& root) {
   SectionReader document(root, "");
   model::ModelDescription description;
   document.Text("name", &description.name);
@@ -112,6 +113,14 @@ model::ModelDescription ParseModel(const std::string& text, const std::string& n
   return description;
 }
 
+}  // namespace
+
+model::ModelDescription ParseModel(const std::string& text, const std::string& name_for_messages) {
+  TomlNode root = ParseToml(text, name_for_messages);
+  root.place = name_for_messages;
+  return ReadModel(root);
+}
+
 UnitSystem ParseModelUnits(const std::string& text, const std::string& name_for_messages) {
   TomlNode root = ParseToml(text, name_for_messages);
   root.place = name_for_messages;
@@ -119,9 +128,17 @@ UnitSystem ParseModelUnits(const std::string& text, const std::string& name_for_
   return ReadUnits(document);
 }
 
-model::ModelDescription LoadModelFile(const std::string& file) {
-  return ParseModel(ReadTextFile(file), file);
+ModelWithText LoadModelWithText(const std::string& file) {
+  ModelWithText model;
+  model.text = ReadTextFile(file);
+  TomlNode root = ParseToml(model.text, file);
+  root.place = file;
+  if (IncludeDefinitions(&root, file)) model.text = FormatToml(root);
+  model.description = ReadModel(root);
+  return model;
 }
+
+model::ModelDescription LoadModelFile(const std::string& file) { return LoadModelWithText(file).description; }
 
 std::string FormatModel(const model::ModelDescription& description) {
   TomlNode root;

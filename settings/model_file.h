@@ -12,6 +12,13 @@ namespace hydro::settings {
 model::ModelDescription LoadModelFile(const std::string& file);
 model::ModelDescription ParseModel(const std::string& text, const std::string& name_for_messages);
 
+// A model file and its whole text: with the effects that it has from files of their own, so that the text says everything.
+struct ModelWithText {
+  std::string text;
+  model::ModelDescription description;
+};
+ModelWithText LoadModelWithText(const std::string& file);
+
 // The units that a model states, whatever else its text holds. Throws InputError for text that is not TOML or
 // units that are not known.
 UnitSystem ParseModelUnits(const std::string& text, const std::string& name_for_messages);

@@ -42,8 +42,8 @@ StackConfig WithModel(TomlNode* root, const std::string& config_name, const std:
 }
 
 // What the model file is relative to is what people get wrong.
-std::string ReadModelText(const TomlNode& root, const ModelSection& model) {
-  if (std::filesystem::exists(model.resolved_file)) return ReadTextFile(model.resolved_file);
+ModelWithText ReadModel(const TomlNode& root, const ModelSection& model) {
+  if (std::filesystem::exists(model.resolved_file)) return LoadModelWithText(model.resolved_file);
   throw KeyError(root, "model.file", Quoted(model.file) + ", and there is no " + Quoted(model.resolved_file),
                  "a path that counts from the configuration's folder");
 }
@@ -66,8 +66,9 @@ StackConfig LoadStackConfig(const std::string& file, const std::vector<std::stri
     throw KeyError(root, "model.file", "nothing", "the path of a model file");
   }
   config.model.resolved_file = PathBeside(file, config.model.file);
-  config.model.text = ReadModelText(root, config.model);
-  config.model.description = ParseModel(config.model.text, config.model.resolved_file);
+  ModelWithText model = ReadModel(root, config.model);
+  config.model.text = std::move(model.text);
+  config.model.description = std::move(model.description);
   CheckAgainstModel(root, &config);
   config.agreed = AgreedEntries(config);
   RememberRead(config.bus.resolved_key_file);  // whoever opens the bus does

@@ -29,7 +29,24 @@ std::string Fault(const ParameterInfo& parameter) {
   return "";
 }
 
-std::string Fault(const CatalogueEntry& entry) {
+std::vector<CatalogueEntry>& Added() {
+  static std::vector<CatalogueEntry> added;
+  return added;
+}
+std::atomic<bool> catalogue_is_used = false;
+
+// Built at the first use and never changed afterwards: references into it stay valid.
+const Catalogue& TheCatalogue() {
+  static const Catalogue catalogue = [] {
+    catalogue_is_used = true;
+    return Catalogue(Added());
+  }();
+  return catalogue;
+}
+
+}  // namespace
+
+std::string FaultIn(const CatalogueEntry& entry) {
   const EffectInfo& info = entry.info;
   if (info.id.empty() || info.summary.empty() || info.equation.empty()) {
     return "needs an id, a summary and an equation";
@@ -48,29 +65,12 @@ std::string Fault(const CatalogueEntry& entry) {
   return "";
 }
 
-std::vector<CatalogueEntry>& Added() {
-  static std::vector<CatalogueEntry> added;
-  return added;
-}
-std::atomic<bool> catalogue_is_used = false;
-
-// Built at the first use and never changed afterwards: references into it stay valid.
-const Catalogue& TheCatalogue() {
-  static const Catalogue catalogue = [] {
-    catalogue_is_used = true;
-    return Catalogue(Added());
-  }();
-  return catalogue;
-}
-
-}  // namespace
-
 Catalogue::Catalogue(std::vector<CatalogueEntry> entries) : entries_(std::move(entries)) {
   std::sort(entries_.begin(), entries_.end(),
             [](const auto& a, const auto& b) { return a.info.id < b.info.id; });
   const CatalogueEntry* last = nullptr;
   for (const CatalogueEntry& entry : entries_) {
-    const std::string fault = Fault(entry);
+    const std::string fault = FaultIn(entry);
     if (!fault.empty()) throw std::logic_error("effect \"" + entry.info.id + "\" " + fault);
     if (last != nullptr && last->info.id == entry.info.id) {
       throw std::logic_error("effect \"" + entry.info.id +

@@ -25,6 +25,9 @@ class Catalogue {
   std::vector<EffectInfo> infos_;
 };
 
+// What is wrong with an entry that the catalogue cannot have, or "".
+std::string FaultIn(const CatalogueEntry& entry);
+
 // The entry of an effect in this program's catalogue; null for an unknown effect.
 const CatalogueEntry* FindCatalogueEntry(const std::string& id);
 

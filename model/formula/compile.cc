@@ -413,7 +413,7 @@ void FormulaCompiler::AppendStatement(const Statement& statement, Context& conte
     place = target == "arm_speed" ? kArmSpeed : kMotorSpeed;
   } else {
     std::vector<std::string> names;
-    for (const FieldName& field : FieldNames()) names.emplace_back(field.name);
+    for (const FieldName& one : FieldNames()) names.emplace_back(one.name);
     names.resize(kFirstFixed);
     throw FormulaError(1, "a change of \"" + statement.target + '"',
                        std::string("one of what effects may change ") + HookText(context.hook) +

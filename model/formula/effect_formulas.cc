@@ -26,17 +26,7 @@ EffectFormulas::EffectFormulas(EffectInfo info, EffectText text)
 
 void EffectFormulas::CompileEquations(FormulaCompiler& compiler) {
   const auto program = [&](Hook hook) { return &hooks_[static_cast<size_t>(hook)]; };
-  for (const std::string& statement : text_.equation) {
-    const Hook hook = compiler.HookOf("equation", statement);
-    compiler.Append("equation", statement, hook, program(hook));
-  }
-  for (const auto& [hook, statements] : text_.equations) {
-    for (const auto& [key, known] : EquationKeys()) {
-      if (known != hook) continue;
-      for (const std::string& statement : statements)
-        compiler.Append("equations." + key, statement, hook, program(hook));
-    }
-  }
+  // Rates first: an equation may replace what they see, as the flow from the pump.
   for (size_t i = 0; i < text_.states.size(); ++i) {
     const StateText& state = text_.states[i];
     const std::string key = "states." + state.name;
@@ -47,6 +37,17 @@ void EffectFormulas::CompileEquations(FormulaCompiler& compiler) {
     if (!state.start.empty()) {
       compiler.AppendValue(key + ".start", state.start, Hook::kStart, Source::kOwnState, i,
                            program(Hook::kStart));
+    }
+  }
+  for (const std::string& statement : text_.equation) {
+    const Hook hook = compiler.HookOf("equation", statement);
+    compiler.Append("equation", statement, hook, program(hook));
+  }
+  for (const auto& [hook, statements] : text_.equations) {
+    for (const auto& [key, known] : EquationKeys()) {
+      if (known != hook) continue;
+      for (const std::string& statement : statements)
+        compiler.Append("equations." + key, statement, hook, program(hook));
     }
   }
 }
