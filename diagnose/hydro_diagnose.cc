@@ -21,7 +21,10 @@
 #include "diagnose/report/report_html.h"
 #include "diagnose/report/report_json.h"
 #include "diagnose/report/terminal_summary.h"
+#include "model/effects/catalogue.h"
+#include "model/effects/formula_effect.h"
 #include "model/terms/parameter_info.h"
+#include "settings/effect_file.h"
 #include "settings/model_file.h"
 #include "settings/toml/section_reader.h"
 
@@ -130,6 +133,7 @@ void RequireInputsKept(const DiagnoseRequest& request) {
   inputs.insert(inputs.end(), request.held_out.begin(), request.held_out.end());
   inputs.push_back(request.model);
   if (!request.effects.empty()) inputs.push_back(request.effects);
+  inputs.insert(inputs.end(), request.own_effects.begin(), request.own_effects.end());
   for (const char* name : kReportFiles) CheckKeeps(request.folder + "/" + name, inputs);
 }
 
@@ -156,6 +160,20 @@ Diagnosis ReadAndDiagnose(const DiagnoseRequest& request, const Diagnoser& diagn
 }
 
 }  // namespace
+
+void AddOwnEffects(const std::vector<std::string>& files) {
+  std::map<std::string, std::string> file_of;
+  for (const std::string& file : files) {
+    const auto formulas = settings::LoadEffectFile(file);
+    const std::string& id = formulas->info().id;
+    const auto [first, is_new] = file_of.emplace(id, file);
+    if (!is_new) {
+      throw InputError("--effect: found " + Quoted(id) + " in " + file + " and in " + first->second +
+                       ", allowed each effect once");
+    }
+    model::AddToCatalogue(model::EntryOf(formulas));
+  }
+}
 
 std::vector<std::string> ReadEffectList(const std::string& file) {
   settings::TomlNode root = settings::ParseToml(ReadTextFile(file), file);

@@ -14,9 +14,10 @@ namespace hydro::diagnose {
 struct DiagnoseRequest {
   std::vector<std::string> runs, held_out;  // files
   std::string model, folder;
-  std::string effects;  // file; "": the whole catalogue may be named
-  std::string free;     // comma-separated names; "": all that the runs identify
-  std::string per_run;  // comma-separated names; "": what differs most, if anything does
+  std::string effects;                   // file; "": the whole catalogue may be named
+  std::vector<std::string> own_effects;  // files of effects as text, to be looked for beside the catalogue's
+  std::string free;                      // comma-separated names; "": all that the runs identify
+  std::string per_run;                   // comma-separated names; "": what differs most, if anything does
   int jobs = 1;
   int64_t seed = 1;
   double time_limit = 60;  // s
@@ -38,6 +39,9 @@ void RunDiagnosis(const DiagnoseRequest& request, const Diagnoser& diagnose, std
 // Looks at the recordings only and prints a line for each thing it finds. Returns the exit code: 0 when nothing
 // is wrong with them, else 1. Throws InputError as above.
 int CheckRuns(const DiagnoseRequest& request, std::FILE* out);
+
+// Adds the effects in these files to the catalogue, before its first use. Throws InputError.
+void AddOwnEffects(const std::vector<std::string>& files);
 
 // The ids in a file of effects: TOML, effects = ["pump.stribeck", ...]. Throws InputError for unknown ids or
 // keys and for an empty list.

@@ -24,6 +24,9 @@ int main(int argc, char** argv) {
       "DIR where report.html, report.json, model.toml and next.toml are written; required without --check");
   line.AddOption("--hold-out", &request.held_out,
                  "RUN a run that is not fitted, for the proof; without any, the runs are held out in turn");
+  line.AddOption(
+      "--effect", &request.own_effects,
+      "FILE an effect of your own, written as text, to be looked for beside the others (repeatable)");
   line.AddOption("--effects", &request.effects,
                  "FILE the effects that may be named: TOML, effects = [\"pump.stribeck\", ...] (all)");
   line.AddOption("--free", &request.free,
@@ -40,6 +43,7 @@ int main(int argc, char** argv) {
                "look at the recordings only: 0 nothing is wrong with them, 1 something is");
   if (const auto code = line.Parse(argc, argv)) return *code;
   return hydro::settings::RunProgram("hydro-diagnose", [&] {
+    hydro::diagnose::AddOwnEffects(request.own_effects);
     if (request.check) return hydro::diagnose::CheckRuns(request, stdout);
     hydro::diagnose::RunDiagnosis(request, hydro::diagnose::Diagnose, stdout, stderr);
     return 0;

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -91,16 +93,23 @@ void ReadStarts(SectionReader& section, model::ParameterInfo* info) {
   }
 }
 
+void ReadBound(SectionReader& section, const std::string& key, double* bound) {
+  const TomlNode* node = section.Take(key);
+  if (node == nullptr) return;
+  if (!node->is_number() || std::isnan(node->AsDouble()))
+    throw section.Error(key, node->Shown(), "a number, inf or -inf");
+  *bound = node->AsDouble();
+}
+
 model::ParameterInfo ReadParameter(SectionReader section, const std::string& name) {
   model::ParameterInfo info;
   info.name = name;
   info.unit = "1";
-  const NumberRange any{.infinity_allowed = true};
   section.Text("unit", &info.unit);
   section.Text("meaning", &info.meaning);
   section.Require("meaning", "a line that says what it is");
-  section.Number("min", &info.min, any);
-  section.Number("max", &info.max, any);
+  ReadBound(section, "min", &info.min);
+  ReadBound(section, "max", &info.max);
   if (!(info.min < info.max)) {
     throw section.Error(section.Has("max") ? "max" : "min",
                         ShortestNumber(section.Has("max") ? info.max : info.min),
@@ -269,7 +278,12 @@ TomlNode ParameterNode(const model::ParameterInfo& info) {
   }
   if (info.scale != plain.scale) add("scale", StringNode(NameOf(Scales(), info.scale)));
   if (info.role != plain.role) add("role", StringNode(NameOf(Roles(), info.role)));
-  if (info.arm != plain.arm) add("arm", NumberNode(info.arm));
+  if (info.arm != plain.arm) {
+    TomlNode power;
+    power.kind = TomlNode::Kind::kInteger;
+    power.integer = info.arm;
+    add("arm", std::move(power));
+  }
   for (const model::BaseParameter& base : model::BaseParameters()) {
     if (info.adds_to != nullptr && info.adds_to == base.member) add("adds_to", StringNode(base.info.name));
   }
@@ -321,8 +335,7 @@ std::shared_ptr<const model::EffectFormulas> ReadFormulas(const TomlNode& table,
     throw section.Error("id", Quoted(info.id), Quoted(id) + ", as in the model's section");
   if (!IsId(info.id))
     throw section.Error("id", Quoted(info.id), "two names of a-z, 0-9 and _ with a dot: \"arm.spring\"");
-  const model::CatalogueEntry* taken = model::FindCatalogueEntry(info.id);
-  if (taken != nullptr && taken->formulas == nullptr) {
+  if (model::IsBuiltIn(info.id)) {
     throw section.Error("id", Quoted(info.id) + ", a built-in effect", "another id");
   }
   info.equation = JoinedEquation(text);

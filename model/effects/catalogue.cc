@@ -96,6 +96,12 @@ bool AddToCatalogue(CatalogueEntry entry) {
   return true;
 }
 
+bool IsBuiltIn(const std::string& id) {
+  const std::vector<CatalogueEntry>& added = Added();
+  return std::any_of(added.begin(), added.end(),
+                     [&](const CatalogueEntry& entry) { return entry.formulas == nullptr && entry.info.id == id; });
+}
+
 const CatalogueEntry* FindCatalogueEntry(const std::string& id) { return TheCatalogue().Find(id); }
 
 std::shared_ptr<const EffectFormulas> FormulasOf(const EffectDescription& effect) {

@@ -28,6 +28,9 @@ class Catalogue {
 // What is wrong with an entry that the catalogue cannot have, or "".
 std::string FaultIn(const CatalogueEntry& entry);
 
+// Whether an effect of that id is compiled into this program. Does not count as a use of the catalogue (AddToCatalogue).
+bool IsBuiltIn(const std::string& id);
+
 // The entry of an effect in this program's catalogue; null for an unknown effect.
 const CatalogueEntry* FindCatalogueEntry(const std::string& id);
 

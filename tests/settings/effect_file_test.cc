@@ -1,0 +1,309 @@
+// Effects written as text: the whole catalogue so written moves as the catalogue does, and what is wrong is named.
+#include "settings/effect_file.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+
+#include "base/text_file.h"
+#include "model/actuator.h"
+#include "model/response.h"
+#include "model/terms/parameter_info.h"
+#include "model/terms/state.h"
+#include "settings/model_file.h"
+#include "tests/table1.h"
+
+namespace hydro::settings {
+namespace {
+
+const std::string kEffects = std::string(HYDRO_SOURCE_DIR) + "/examples/effects";
+
+// The file of an effect of the catalogue: "amp.lag" is in amp_lag.toml.
+std::string FileOf(const std::string& id) {
+  std::string name = id;
+  std::replace(name.begin(), name.end(), '.', '_');
+  return kEffects + "/catalogue/" + name + ".toml";
+}
+
+bool Delays(const std::string& id) { return id == "amp.delay" || id == "sensor.skew"; }
+
+std::vector<std::string> WithoutDelay() {
+  std::vector<std::string> ids;
+  for (const model::EffectInfo& info : model::EffectCatalogue()) {
+    if (!Delays(info.id)) ids.push_back(info.id);
+  }
+  return ids;
+}
+
+model::ModelDescription ModelWith(const model::EffectDescription& effect) {
+  model::ModelDescription model;
+  model.parameters = testing::Table1();
+  model.effects = {effect};
+  return model;
+}
+
+// The effect as the catalogue has it, and as its file says it, with the same values.
+struct Pair {
+  explicit Pair(const std::string& id) {
+    const auto formulas = LoadEffectFile(FileOf(id));
+    const std::vector<model::ParameterInfo>& own = formulas->info().parameters;
+    const std::vector<model::ParameterInfo>& known = model::FindEffect(id)->parameters;
+    EXPECT_EQ(own.size(), known.size()) << id;
+    compiled.id = id;
+    written.id = formulas->info().id;
+    written.formulas = formulas;
+    for (size_t i = 0; i < known.size(); ++i) {
+      EXPECT_EQ(own[i].unit, known[i].is_name() ? "1" : known[i].unit) << id;
+      EXPECT_EQ(own[i].role, known[i].role) << id;
+      if (known[i].is_name()) {
+        compiled.names[known[i].name] = written.names[own[i].name] = "p2";
+      } else {
+        const double value =
+            known[i].name == "no_load_speed" ? 20 : known[i].example;  // rad/s, which the commands reach
+        compiled.parameters[known[i].name] = written.parameters[own[i].name] = value;
+      }
+    }
+  }
+  model::EffectDescription compiled, written;
+};
+
+// Commands that drive, brake and rest: forward, backward, and a wave that stops and turns the pump.
+double Voltage(double time) {
+  if (time < 0.05) return 4;
+  if (time < 0.1) return -5;
+  if (time < 0.13) return 0;
+  return 5 * std::sin(60 * time);
+}
+
+std::vector<model::Measurement> Trajectory(const model::EffectDescription& effect,
+                                           const model::ActuatorOptions& options) {
+  model::Actuator actuator(ModelWith(effect), options);
+  std::vector<model::Measurement> all;
+  for (int tick = 0; tick < 250; ++tick) {
+    actuator.Advance(Voltage(1e-3 * tick), 1e-3 * (tick + 1));
+    all.push_back(actuator.Measure());
+  }
+  return all;
+}
+
+// The largest difference in a channel, over the largest number in it.
+double Difference(const std::vector<double>& a, const std::vector<double>& b) {
+  double largest = 0, difference = 0;
+  for (size_t i = 0; i < a.size(); ++i) {
+    largest = std::max(largest, std::abs(a[i]));
+    difference = std::max(difference, std::abs(a[i] - b[i]));
+  }
+  return largest == 0 ? difference : difference / largest;
+}
+
+double Difference(const std::vector<model::Measurement>& a, const std::vector<model::Measurement>& b) {
+  double worst = 0;
+  for (size_t channel = 0; channel < model::kChannels; ++channel) {
+    std::vector<double> left, right;
+    for (size_t i = 0; i < a.size(); ++i) {
+      left.push_back(model::ChannelOf(a[i], channel));
+      right.push_back(model::ChannelOf(b[i], channel));
+    }
+    worst = std::max(worst, Difference(left, right));
+  }
+  return worst;
+}
+
+class WrittenCatalogue : public ::testing::TestWithParam<std::string> {};
+
+// Tests that an effect of the catalogue, written as text, gives the same trajectories to 1e-9: with the shaft free, clamped, and
+// with the bypass open.
+TEST_P(WrittenCatalogue, MovesAsTheCompiledOne) {
+  const Pair pair(GetParam());
+  for (const bool clamped : {false, true}) {
+    for (const bool bypass : {false, true}) {
+      model::ActuatorOptions options;
+      options.shaft = clamped ? model::Shaft::kClamped : model::Shaft::kFree;
+      options.bypass = bypass;
+      const std::vector<model::Measurement> compiled = Trajectory(pair.compiled, options);
+      EXPECT_LT(Difference(compiled, Trajectory(pair.written, options)), 1e-9) << clamped << bypass;
+    }
+  }
+}
+
+// Tests that the effect does something there at all.
+TEST_P(WrittenCatalogue, Acts) {
+  const Pair pair(GetParam());
+  model::EffectDescription none = pair.written;
+  model::ActuatorOptions clamped;
+  clamped.shaft = model::Shaft::kClamped;
+  double most = 0;
+  for (const model::ActuatorOptions& options : {clamped, model::ActuatorOptions{}}) {
+    model::ModelDescription plain;
+    plain.parameters = testing::Table1();
+    model::Actuator actuator(plain, options);
+    std::vector<model::Measurement> without;
+    for (int tick = 0; tick < 250; ++tick) {
+      actuator.Advance(Voltage(1e-3 * tick), 1e-3 * (tick + 1));
+      without.push_back(actuator.Measure());
+    }
+    most = std::max(most, Difference(without, Trajectory(pair.written, options)));
+  }
+  EXPECT_GT(most, 1e-4);
+}
+
+// Tests that its derivatives by its parameters are those of the compiled one.
+TEST_P(WrittenCatalogue, HasTheDerivatives) {
+  const Pair pair(GetParam());
+  model::Stimulus stimulus;
+  for (int tick = 0; tick < 200; ++tick) {
+    stimulus.time.push_back(1e-3 * tick);
+    stimulus.voltage.push_back(Voltage(1e-3 * tick));
+  }
+  model::StartState start{};
+  start[model::kP1] = start[model::kP2] = testing::Table1().p_3;
+  std::vector<model::Unknown> unknowns = {{model::Unknown::Kind::kBase, model::BasePlace("b")}};
+  for (size_t i = 0; i < pair.compiled.parameters.size(); ++i)
+    unknowns.push_back({model::Unknown::Kind::kEffect, i});
+  const model::Response compiled = model::Respond(ModelWith(pair.compiled), stimulus, start, unknowns, {});
+  const model::Response written = model::Respond(ModelWith(pair.written), stimulus, start, unknowns, {});
+  for (size_t channel = 0; channel < model::kChannels; ++channel) {
+    EXPECT_LT(Difference(compiled.values[channel], written.values[channel]), 1e-9);
+    for (size_t i = 0; i < unknowns.size(); ++i) {
+      EXPECT_LT(Difference(compiled.derivatives[i][channel], written.derivatives[i][channel]), 1e-7)
+          << "unknown " << i << " of channel " << channel;
+    }
+  }
+}
+
+// Tests that a model's text has the whole effect, and reads back as it.
+TEST_P(WrittenCatalogue, IsKeptInAModelsText) {
+  const Pair pair(GetParam());
+  const std::string text = FormatModel(ModelWith(pair.written));
+  const model::ModelDescription back = ParseModel(text, "back.toml");
+  EXPECT_EQ(FormatModel(back), text);
+  model::ActuatorOptions options;
+  EXPECT_EQ(Difference(Trajectory(pair.written, options), Trajectory(back.effects[0], options)), 0);
+}
+
+INSTANTIATE_TEST_SUITE_P(Catalogue, WrittenCatalogue, ::testing::ValuesIn(WithoutDelay()),
+                         [](const auto& one) {
+                           std::string name = one.param;
+                           std::replace(name.begin(), name.end(), '.', '_');
+                           return name;
+                         });
+
+class EffectFileTest : public ::testing::Test {
+ protected:
+  // What reading this file throws, without the folder.
+  std::string ErrorOf(const std::string& text) {
+    const std::string file = ::testing::TempDir() + "/effect_file_test.toml";
+    std::ofstream(file) << text;
+    try {
+      LoadEffectFile(file);
+    } catch (const InputError& error) {
+      const std::string what = error.what();
+      return what.substr(what.find("effect_file_test"));
+    }
+    return "no error";
+  }
+  std::string ErrorOfEquation(const std::string& equation, const std::string& more = "") {
+    return ErrorOf("id = \"arm.spring\"\nsummary = \"a spring\"\nequation = '" + equation + "'\n" + more +
+                   "[parameters.stiffness]\nunit = \"in-lbf/rad\"\nmeaning = \"torque per angle\"\n");
+  }
+};
+
+// Tests that errors name line, column and symbol, and what was probably meant.
+TEST_F(EffectFileTest, ErrorsNameLineAndSymbol) {
+  using ::testing::HasSubstr;
+  EXPECT_EQ(ErrorOfEquation("arm_torque -= stiffness * alpha"), "no error");
+  EXPECT_THAT(
+      ErrorOfEquation("arm_torque -= stifness * alpha"),
+      HasSubstr(
+          "effect_file_test.toml:3: equation: found the unknown name \"stifness\" at column 15, allowed"));
+  EXPECT_THAT(ErrorOfEquation("arm_torque -= stifness * alpha"), HasSubstr("did you mean \"stiffness\"?"));
+  EXPECT_THAT(ErrorOfEquation("arm_tork -= stiffness * alpha"), HasSubstr("did you mean \"arm_torque\"?"));
+  EXPECT_THAT(ErrorOfEquation("arm_torque -= stiffness * (alpha"),
+              HasSubstr("found the end at column 33, allowed an operator or"));
+  EXPECT_THAT(ErrorOfEquation("arm_torque -= stiffness * sine(alpha)"),
+              HasSubstr("the unknown function \"sine\" at column 27"));
+  EXPECT_THAT(ErrorOfEquation("arm_torque = = 3"), HasSubstr("found \"=\" at column 14"));
+  EXPECT_THAT(ErrorOfEquation("arm_torque"), HasSubstr("allowed =, +=, -=, *= or /="));
+  EXPECT_THAT(ErrorOfEquation("D *= 1 + load"),
+              HasSubstr("\"load\", which is not known yet among the properties at column 10"));
+  EXPECT_THAT(ErrorOfEquation("arm_angle = 0"), HasSubstr("a change of \"arm_angle\""));
+  EXPECT_THAT(ErrorOfEquation("arm_torque -= if(p1 == p2, 1, 0)"), HasSubstr("== of quantities that change"));
+  EXPECT_THAT(ErrorOfEquation("arm_torque -= if(p1 > p2, 1)"),
+              HasSubstr("found if of 2 at column 15, allowed if of 3"));
+  EXPECT_THAT(ErrorOfEquation("arm_torque -= arm_load"),
+              HasSubstr("\"arm_load\", which this effect does not set"));
+  EXPECT_THAT(ErrorOfEquation("arm_torque -= a", "where = { a = 'b_', b_ = 'a' }\n"),
+              HasSubstr("which stands for itself"));
+  EXPECT_THAT(ErrorOfEquation("arm_torque -= alpha", "where = { load = '3' }\n"),
+              HasSubstr("where.load: found \"load\", which the model has already"));
+  EXPECT_THAT(ErrorOfEquation("arm_torque -= \"p1\""), HasSubstr("found the text \"p1\" at column 15"));
+}
+
+// Tests that what no formula needs is an error and not a crash: depth, size, characters.
+TEST_F(EffectFileTest, HostileFormulas) {
+  using ::testing::HasSubstr;
+  EXPECT_THAT(ErrorOfEquation("load = " + std::string(5000, '(')), HasSubstr("64 of them at most"));
+  EXPECT_THAT(ErrorOfEquation("load = " + std::string(5000, '-') + "1"), HasSubstr("64 of them at most"));
+  std::string sum = "1";
+  for (int i = 0; i < 300; ++i) sum += " + " + std::to_string(i) + " * alpha";
+  EXPECT_THAT(ErrorOfEquation("load = " + sum), HasSubstr("more than 256 operations"));
+  EXPECT_THAT(ErrorOfEquation("load = 1 $ 2"), HasSubstr("found \"$\" at column 10"));
+  EXPECT_THAT(ErrorOfEquation("load = 1e999"), HasSubstr("found \"1e999\""));
+  EXPECT_THAT(ErrorOfEquation("load = 1.2.3"), HasSubstr("found \"1.2.3\""));
+  EXPECT_THAT(ErrorOfEquation("load = "), HasSubstr("found the end"));
+}
+
+// Tests that ids, parameters and states are checked, and unknown keys named.
+TEST_F(EffectFileTest, TheRestOfTheFile) {
+  using ::testing::HasSubstr;
+  const std::string good = "summary = \"s\"\nequation = \"load += k\"\n[parameters.k]\nmeaning = \"m\"\n";
+  EXPECT_EQ(ErrorOf("id = \"a.b\"\n" + good), "no error");
+  EXPECT_THAT(ErrorOf(good), HasSubstr("id: found nothing"));
+  EXPECT_THAT(ErrorOf("id = \"spring\"\n" + good), HasSubstr("id: found \"spring\", allowed two names"));
+  EXPECT_THAT(ErrorOf("id = \"valve.relief\"\n" + good),
+              HasSubstr("\"valve.relief\", a built-in effect, allowed another id"));
+  EXPECT_THAT(ErrorOf("id = \"a.b\"\ncolour = 3\n" + good), HasSubstr("colour"));
+  EXPECT_THAT(ErrorOf("id = \"a.b\"\n" + good + "min = 3\nmax = 2\n"), HasSubstr("allowed a min"));
+  EXPECT_THAT(ErrorOf("id = \"a.b\"\n" + good + "starts = []\n"),
+              HasSubstr("parameters.k.starts: found an empty list"));
+  EXPECT_THAT(ErrorOf("id = \"a.b\"\n" + good + "role = \"periods\"\n"), HasSubstr("Role::kPeriods"));
+  EXPECT_THAT(ErrorOf("id = \"a.b\"\n" + good + "[parameters.alpha]\nmeaning = \"m\"\n"),
+              HasSubstr("found \"alpha\", which the model has already"));
+  EXPECT_THAT(ErrorOf("id = \"a.b\"\n" + good + "[states.z]\nunit = \"1\"\n"),
+              HasSubstr("states.z.rate: found nothing"));
+  EXPECT_THAT(ErrorOf("id = \"a.b\"\n" + good + "[switches.z]\nmargin = \"1\"\n"),
+              HasSubstr("switches.z.next: found nothing"));
+}
+
+// Tests that a model file finds the effect's file beside itself, that its text then says everything, and that the text of a model
+// from anywhere else opens no file.
+TEST_F(EffectFileTest, AModelNamesItsFile) {
+  const std::string folder = ::testing::TempDir() + "/own_effect_model";
+  std::filesystem::create_directories(folder);
+  std::filesystem::copy_file(kEffects + "/arm_spring.toml", folder + "/arm_spring.toml",
+                             std::filesystem::copy_options::overwrite_existing);
+  const std::string model =
+      ReadTextFile(std::string(HYDRO_SOURCE_DIR) + "/config/models/table1.toml") +
+      "\n[effects.\"arm.spring\"]\ndefinition = \"arm_spring.toml\"\nstiffness = 2500\nrest = 0.1\n";
+  std::ofstream(folder + "/model.toml") << model;
+  const ModelWithText loaded = LoadModelWithText(folder + "/model.toml");
+  ASSERT_EQ(loaded.description.effects.size(), 1u);
+  EXPECT_EQ(loaded.description.effects[0].parameters.at("stiffness"), 2500);
+  const model::ModelDescription from_text = ParseModel(loaded.text, "log");
+  EXPECT_EQ(FormatModel(from_text), FormatModel(loaded.description));
+  EXPECT_THROW(ParseModel(model, folder + "/model.toml"), InputError);
+  std::filesystem::remove(folder + "/arm_spring.toml");
+  try {
+    LoadModelWithText(folder + "/model.toml");
+    ADD_FAILURE() << "no error";
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), ::testing::ContainsRegex(
+                                  "model.toml:[0-9]+: effects.arm.spring.definition: .*arm_spring.toml"));
+  }
+}
+
+}  // namespace
+}  // namespace hydro::settings
