@@ -2,3 +2,8 @@
 find_package(benchmark REQUIRED)
 add_executable(bench_model bench_model.cc)
 target_link_libraries(bench_model PRIVATE hydro_model benchmark::benchmark)
+
+# What an effect costs as text.
+add_executable(bench_formulas bench_formulas.cc)
+target_link_libraries(bench_formulas PRIVATE hydro_settings)
+target_compile_definitions(bench_formulas PRIVATE HYDRO_SOURCE_DIR="${PROJECT_SOURCE_DIR}")

@@ -70,7 +70,7 @@ std::vector<std::string> Implausible(const std::vector<ChangedParameter>& parame
                     ShortNumber(changed.model));
   }
   for (const FoundEffect& effect : effects) {
-    const model::EffectInfo& info = *model::FindEffect(effect);
+    const model::EffectInfo& info = *model::FindEffect(effect.id);
     for (const Estimated& found : effect.parameters) {
       for (const model::ParameterInfo& parameter : info.parameters) {
         const double most = MostOf(info, parameter, given);
