@@ -7,6 +7,7 @@
 #include "base/input_error.h"
 #include "base/read_files.h"
 #include "base/text_file.h"
+#include "hydro_log/export_verb.h"
 #include "hydro_log/run_verbs.h"
 #include "log/repair.h"
 #include "runs/compare.h"
@@ -41,30 +42,6 @@ class InfoVerb {
   std::string log_;
   std::optional<std::string> suffix_;
   bool json_ = false, si_ = false;
-};
-
-class ExportVerb {
- public:
-  explicit ExportVerb(settings::CommandLine& line) {
-    settings::CommandLine& verb =
-        line.AddVerb("export", "Write a log's run as a table, one row per plant tick.");
-    verb.AddPositional("LOG", &log_, "FILE the log");
-    verb.AddOption("-o,--output", &out_, "FILE the table: X.csv or X.mat", true);
-    verb.AddOption("--suffix", &suffix_, "TEXT suffix of the channels, where the log has several");
-  }
-  int Run() const {
-    tables::CheckTableName(out_);
-    CheckKeeps(out_, {log_});
-    const runs::RunLog log = ReadWithWarning(log_, suffix_);
-    const tables::Table table = runs::ExportRun(log);
-    WarnOf(log);
-    tables::WriteTable(table, out_);
-    return 0;
-  }
-
- private:
-  std::string log_, out_;
-  std::optional<std::string> suffix_;
 };
 
 class ImportVerb {
