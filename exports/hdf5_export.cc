@@ -1,30 +1,12 @@
 // HDF5: a dataset for each column, with its unit and meaning as attributes; a group for each channel and, of several, each run.
-#include <hdf5.h>
-
-#include <memory>
 #include <type_traits>
 
+#include "exports/hdf5_handle.h"
 #include "exports/output.h"
 #include "exports/write_export.h"
 
 namespace hydro::exports {
 namespace {
-
-// A handle of the library's, closed with it. Throws WriteError where the library could make none.
-class Handle {
- public:
-  Handle(hid_t id, herr_t (*close)(hid_t), const std::string& file) : id_(id), close_(close) {
-    if (id_ < 0) throw WriteError(file + ": cannot be written as HDF5; enough room on the disk is needed");
-  }
-  ~Handle() { close_(id_); }
-  Handle(const Handle&) = delete;
-  Handle& operator=(const Handle&) = delete;
-  operator hid_t() const { return id_; }
-
- private:
-  hid_t id_;
-  herr_t (*close_)(hid_t);
-};
 
 class Hdf5Writer {
  public:
@@ -38,30 +20,27 @@ class Hdf5Writer {
       if (sheet.is_table) {
         WriteSheet(at, sheet);
       } else {
-        const Handle group = Group(at, sheet.name);
+        const Hdf5Handle group = Group(at, sheet.name);
         WriteSheet(group, sheet);
       }
     }
   }
 
-  Handle Group(hid_t at, const std::string& name) const {
-    return {H5Gcreate2(at, name.c_str(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Gclose, file_};
+  Hdf5Handle Group(hid_t at, const std::string& name) const {
+    const Hdf5Handle how = WithoutTimes(H5P_GROUP_CREATE, file_);
+    return {H5Gcreate2(at, name.c_str(), H5P_DEFAULT, how, H5P_DEFAULT), H5Gclose, file_};
   }
 
   void Attribute(hid_t at, const std::string& name, const std::string& value) const {
     if (value.empty()) return;
-    const Handle type = TextType(), space(H5Screate(H5S_SCALAR), H5Sclose, file_);
-    const Handle attribute(H5Acreate2(at, name.c_str(), type, space, H5P_DEFAULT, H5P_DEFAULT), H5Aclose, file_);
+    const Hdf5Handle type = TextType(), space(H5Screate(H5S_SCALAR), H5Sclose, file_);
+    const Hdf5Handle attribute(H5Acreate2(at, name.c_str(), type, space, H5P_DEFAULT, H5P_DEFAULT), H5Aclose, file_);
     const char* const text = value.c_str();
-    Check(H5Awrite(attribute, type, static_cast<const void*>(&text)));
+    CheckHdf5(H5Awrite(attribute, type, static_cast<const void*>(&text)), file_);
   }
 
  private:
-  void Check(herr_t result) const {
-    if (result < 0) throw WriteError(file_ + ": cannot be written as HDF5; enough room on the disk is needed");
-  }
-
-  Handle TextType() const {
+  Hdf5Handle TextType() const {
     const hid_t type = H5Tcopy(H5T_C_S1);
     H5Tset_size(type, H5T_VARIABLE);
     H5Tset_cset(type, H5T_CSET_UTF8);
@@ -79,16 +58,14 @@ class Hdf5Writer {
     }
   }
 
-  // The dataset's times are left out, so that the same run gives the same bytes.
   void WriteDataset(hid_t at, const definitions::Field& field, hid_t type, hid_t memory_type, size_t rows,
                     const void* data) const {
     const hsize_t size = rows;
-    const Handle space(H5Screate_simple(1, &size, nullptr), H5Sclose, file_);
-    const Handle how(H5Pcreate(H5P_DATASET_CREATE), H5Pclose, file_);
-    Check(H5Pset_obj_track_times(how, false));
-    const Handle dataset(H5Dcreate2(at, field.name.c_str(), type, space, H5P_DEFAULT, how, H5P_DEFAULT), H5Dclose,
+    const Hdf5Handle space(H5Screate_simple(1, &size, nullptr), H5Sclose, file_);
+    const Hdf5Handle how = WithoutTimes(H5P_DATASET_CREATE, file_);
+    const Hdf5Handle dataset(H5Dcreate2(at, field.name.c_str(), type, space, H5P_DEFAULT, how, H5P_DEFAULT), H5Dclose,
                          file_);
-    if (rows > 0) Check(H5Dwrite(dataset, memory_type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data));
+    if (rows > 0) CheckHdf5(H5Dwrite(dataset, memory_type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data), file_);
     Attribute(dataset, "unit", field.unit);
     Attribute(dataset, "description", field.description);
   }
@@ -103,7 +80,7 @@ class Hdf5Writer {
     std::vector<const char*> texts;
     texts.reserve(values.size());
     for (const std::string& value : values) texts.push_back(value.c_str());
-    const Handle type = TextType();
+    const Hdf5Handle type = TextType();
     WriteDataset(at, field, type, type, texts.size(), static_cast<const void*>(texts.data()));
   }
   // A list for each row.
@@ -121,13 +98,13 @@ class Hdf5Writer {
         lists.push_back({values[row].size(), const_cast<T*>(values[row].data())});
       }
     }
-    const Handle element = ElementType<T>();
-    const Handle type(H5Tvlen_create(element), H5Tclose, file_);
+    const Hdf5Handle element = ElementType<T>();
+    const Hdf5Handle type(H5Tvlen_create(element), H5Tclose, file_);
     WriteDataset(at, field, type, type, lists.size(), lists.data());
   }
 
   template <class T>
-  Handle ElementType() const {
+  Hdf5Handle ElementType() const {
     if constexpr (std::is_same_v<T, std::string>) {
       return TextType();
     } else {
@@ -154,24 +131,20 @@ class Hdf5Writer {
 }  // namespace
 
 void WriteHdf5Export(const std::vector<ExportedRun>& runs, const std::string& program, const std::string& file) {
-  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // our own errors name the file
   Output out(file, false);
   const Hdf5Writer writer(file);
   {
-    const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, file);
-    // The file is locked already, by NewFile.
-    H5Pset_file_locking(access, false, true);
-    const Handle root(H5Fcreate(out.SeekablePath().c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access), H5Fclose, file);
+    const Hdf5Handle root = CreateHdf5(out.SeekablePath(), file);
     writer.Attribute(root, "written_by", program);
     for (const ExportedRun& run : runs) {
       if (runs.size() == 1) {
         writer.Write(root, run);
       } else {
-        const Handle group = writer.Group(root, run.name);
+        const Hdf5Handle group = writer.Group(root, run.name);
         writer.Write(group, run);
       }
     }
-    if (H5Fflush(root, H5F_SCOPE_GLOBAL) < 0) throw WriteError(file + ": cannot be written: the disk may be full");
+    FlushHdf5(root, file);
   }
   out.Finish();
 }

@@ -77,8 +77,9 @@ void WriteExport(const std::vector<ExportedRun>& runs, Format format, const std:
     case Format::kCsv:
       return WriteCsvExport(runs, file);
     case Format::kMat:
+      return WriteMatExport(runs, file);
     case Format::kMat73:
-      return WriteMatExport(runs, format == Format::kMat73, file);
+      return WriteMat73Export(runs, file);
     case Format::kHdf5:
       return WriteHdf5Export(runs, program, file);
     case Format::kMcap:
