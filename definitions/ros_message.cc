@@ -78,6 +78,12 @@ std::string RosType(std::string_view type) {
   return name;
 }
 
+std::string RosField(std::string_view name) {
+  std::string small;
+  for (const char c : name) small += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return small;
+}
+
 std::string RosSchema(const std::vector<Field>& fields, const std::vector<Constant>& constants) {
   std::string text;
   for (const Constant& constant : constants) {
@@ -85,7 +91,7 @@ std::string RosSchema(const std::vector<Field>& fields, const std::vector<Consta
             Comment("", constant.description);
   }
   for (const Field& field : fields) {
-    text += std::string(RosName(field.type)) + (field.is_list() ? "[] " : " ") + field.name +
+    text += std::string(RosName(field.type)) + (field.is_list() ? "[] " : " ") + RosField(field.name) +
             Comment(field.unit, field.description);
   }
   return text;

@@ -17,6 +17,9 @@ std::string RosTopic(std::string_view channel);
 // "hydro_msgs/msg/MotorCommand" for motor_command_t.
 std::string RosType(std::string_view type);
 
+// The field as ROS 2 names it: in small letters.
+std::string RosField(std::string_view name);
+
 // A line for each field, with its unit and meaning as a comment, and one for each constant.
 std::string RosSchema(const std::vector<Field>& fields, const std::vector<Constant>& constants = {});
 

@@ -50,10 +50,20 @@ matvar_t* WholeNumbers(FieldType type, const std::vector<int64_t>& values) {
   }
 }
 
+// SciPy 1.10 cannot read a file with a character of two UTF-16 units in it: they become U+FFFD here.
+std::u16string SingleUnits(const std::u16string& text) {
+  std::u16string single;
+  for (const char16_t unit : text) {
+    if (unit >= 0xdc00 && unit < 0xe000) continue;  // the second of two
+    single += unit >= 0xd800 && unit < 0xdc00 ? u'\xfffd' : unit;
+  }
+  return single;
+}
+
 // matio's variable for each kind of value; the caller, or the struct that it goes into, frees it.
 struct MatioValue {
   static matvar_t* Of(const std::string& text) {
-    const std::u16string wide = Utf16(text);
+    const std::u16string wide = SingleUnits(Utf16(text));
     size_t dimensions[2] = {wide.empty() ? 0u : 1u, wide.size()};
     return Mat_VarCreate(nullptr, MAT_C_CHAR, MAT_T_UTF16, 2, dimensions, const_cast<char16_t*>(wide.data()), 0);
   }

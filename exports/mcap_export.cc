@@ -47,7 +47,7 @@ std::string Schema(const Sheet& sheet) {
 McapMap Metadata(const Sheet& sheet) {
   McapMap entries{{"source", sheet.source}, {"description", sheet.description}};
   for (const SheetColumn& column : sheet.columns) {
-    if (!column.field.unit.empty()) entries.emplace_back("unit." + column.field.name, column.field.unit);
+    if (!column.field.unit.empty()) entries.emplace_back("unit." + definitions::RosField(column.field.name), column.field.unit);
   }
   return entries;
 }
