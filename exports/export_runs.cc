@@ -22,6 +22,7 @@ using Say = std::function<void(const std::string&)>;
 struct Recording {
   std::vector<std::string> files;
   runs::RunLog log;  // all of them
+  std::vector<std::string> cautions;
 };
 
 bool GoesOn(const runs::RunLog& before, const runs::RunLog& log) {
@@ -55,15 +56,15 @@ std::vector<Recording> ReadRecordings(const std::vector<std::string>& files, con
   std::vector<Recording> recordings;
   for (const std::string& file : files) {
     runs::RunLog log = runs::ReadRunLog(file, suffix, runs::Undecodable::kLeftOut);
-    for (const std::string& line : {runs::DescribeUndecodable(log), runs::DescribeCaution(log)}) {
-      if (!line.empty()) say(line);
-    }
+    const std::string left_out = runs::DescribeUndecodable(log), caution = runs::DescribeCaution(log);
+    if (!left_out.empty()) say(left_out);
     if (!recordings.empty() && GoesOn(recordings.back().log, log)) {
       recordings.back().files.push_back(file);
       Append(std::move(log), &recordings.back().log);
     } else {
-      recordings.push_back({{file}, std::move(log)});
+      recordings.push_back({{file}, std::move(log), {}});
     }
+    if (!caution.empty()) recordings.back().cautions.push_back(caution);
   }
   return recordings;
 }
@@ -171,10 +172,14 @@ std::vector<ExportedRun> ReadRuns(const std::vector<std::string>& files, const s
                                   const Selection& selection, bool times, const Say& say) {
   CheckSelection(selection);
   std::vector<ExportedRun> runs;
-  for (const Recording& recording : ReadRecordings(files, suffix, say)) {
+  const std::vector<Recording> recordings = ReadRecordings(files, suffix, say);
+  runs.reserve(recordings.size());
+  for (const Recording& recording : recordings) {
     runs.push_back(Export(recording, NameFor(recording.files.front(), runs), selection, times, say));
     CheckNotEmpty(recording, selection, runs.back());
   }
+  // Not where an error says what is wrong.
+  for (const Recording& recording : recordings) std::for_each(recording.cautions.begin(), recording.cautions.end(), say);
   return runs;
 }
 

@@ -1,7 +1,9 @@
 #include <matio.h>
 #include <sys/stat.h>
 
+#include <algorithm>
 #include <cstring>
+#include <map>
 #include <memory>
 
 #include "base/input_error.h"
@@ -9,6 +11,7 @@
 #include "base/new_file.h"
 #include "base/read_files.h"
 #include "base/text_file.h"
+#include "tables/mat_vectors.h"
 #include "tables/table.h"
 
 namespace hydro::tables {
@@ -28,69 +31,65 @@ void SilenceMatio() {
   Mat_LogInitFunc("hydro", [](int, char*) {});
 }
 
-template <class Number>
-std::vector<double> ToDoubles(const matvar_t& variable, size_t count) {
-  const Number* numbers = static_cast<const Number*>(variable.data);
-  return std::vector<double>(numbers, numbers + count);
+// What a file has, in its order.
+struct Found {
+  std::vector<MatVector> vectors;
+  bool structs = false;
+};
+
+Found ReadVectors(mat_t* mat) {
+  Found found;
+  while (const Variable variable{Mat_VarReadNextInfo(mat)}) {
+    found.structs = found.structs || variable->class_type == MAT_C_STRUCT;
+    AppendVectors(mat, variable.get(), &found.vectors);
+  }
+  return found;
 }
 
-std::vector<double> Values(const matvar_t& variable, size_t count, const std::string& place) {
-  switch (variable.class_type) {
-    case MAT_C_DOUBLE:
-      return ToDoubles<double>(variable, count);
-    case MAT_C_SINGLE:
-      return ToDoubles<float>(variable, count);
-    case MAT_C_INT8:
-      return ToDoubles<int8_t>(variable, count);
-    case MAT_C_UINT8:
-      return ToDoubles<uint8_t>(variable, count);
-    case MAT_C_INT16:
-      return ToDoubles<int16_t>(variable, count);
-    case MAT_C_UINT16:
-      return ToDoubles<uint16_t>(variable, count);
-    case MAT_C_INT32:
-      return ToDoubles<int32_t>(variable, count);
-    case MAT_C_UINT32:
-      return ToDoubles<uint32_t>(variable, count);
-    case MAT_C_INT64:
-      return ToDoubles<int64_t>(variable, count);
-    case MAT_C_UINT64:
-      return ToDoubles<uint64_t>(variable, count);
-    default:
-      break;
+// As many as the vectors have that together hold most numbers: the signals.
+size_t RowsOfMost(const std::vector<MatVector>& vectors) {
+  std::map<size_t, size_t> numbers;
+  for (const MatVector& vector : vectors) {
+    if (vector.wrong.empty()) numbers[vector.values.size()] += vector.values.size();
   }
-  throw InputError(
-      place + ": found text, a structure, a cell array or a sparse matrix; a vector of numbers is needed");
+  const auto fewer = [](const auto& a, const auto& b) { return a.second < b.second; };
+  const auto most = std::max_element(numbers.begin(), numbers.end(), fewer);
+  return most == numbers.end() ? 0 : most->first;
 }
 
-std::string Dimensions(const matvar_t& variable) {
-  std::string text;
-  for (int k = 0; k < variable.rank; ++k) text += (k > 0 ? "x" : "") + std::to_string(variable.dims[k]);
-  return text;
+std::string RowsWrong(const MatVector& vector, size_t rows, const std::string& like) {
+  return "found " + std::to_string(vector.values.size()) + " rows; " + std::to_string(rows) + " are needed, as many as " +
+         like;
 }
 
-Column ReadColumn(mat_t* mat, matvar_t* variable, const Table& table) {
-  const std::string name = variable->name != nullptr ? variable->name : "";
-  const std::string place = table.file + ": column '" + name + "'";
-  if (name.empty()) throw InputError(place + ": found no name; every column needs one");
-  if (table.Find(name) != nullptr)
-    throw InputError(place + ": found a second time; each name is allowed once");
-  if (variable->isComplex != 0) throw InputError(place + ": found complex numbers; real ones are needed");
-  if (variable->rank != 2 || (variable->dims[0] != 1 && variable->dims[1] != 1)) {
-    throw InputError(place + ": found " + Dimensions(*variable) + " numbers; a vector is needed");
+// A file of vectors is a table, and anything else in it an error.
+void TakeAll(std::vector<MatVector>& vectors, Table* table) {
+  for (MatVector& vector : vectors) {
+    const std::string place = table->file + ": column '" + vector.name + "': ";
+    if (vector.name.empty()) throw InputError(place + "found no name; every column needs one");
+    if (table->Find(vector.name) != nullptr) throw InputError(place + "found a second time; each name is allowed once");
+    if (!vector.wrong.empty()) throw InputError(place + vector.wrong);
+    if (!table->columns.empty() && vector.values.size() != table->rows()) {
+      throw InputError(place + RowsWrong(vector, table->rows(), "column '" + table->columns.front().name + "' has"));
+    }
+    table->columns.push_back({vector.name, std::move(vector.values)});
   }
-  const size_t count = variable->dims[0] * variable->dims[1];
-  if (!table.columns.empty() && count != table.rows()) {
-    throw InputError(place + ": found " + std::to_string(count) + " rows; " + std::to_string(table.rows()) +
-                     " are needed, as many as column '" + table.columns.front().name + "' has");
+}
+
+// A file with structs is what somebody had in mind: settings and texts beside the signals. What is no signal is left out, and why is
+// kept for who asks for it.
+void TakeSignals(std::vector<MatVector>& vectors, Table* table) {
+  const size_t rows = RowsOfMost(vectors);
+  for (MatVector& vector : vectors) {
+    std::string wrong = vector.wrong;
+    if (wrong.empty() && vector.values.size() != rows) wrong = RowsWrong(vector, rows, "its signals have");
+    if (wrong.empty() && table->Find(vector.name) != nullptr) wrong = "found a second time; each name is allowed once";
+    if (wrong.empty()) {
+      table->columns.push_back({vector.name, std::move(vector.values)});
+    } else {
+      table->left_out.push_back({vector.name, wrong});
+    }
   }
-  if (count == 0) return {name, {}};
-  if (Mat_VarReadDataAll(mat, variable) != 0 || variable->data == nullptr ||
-      variable->nbytes != count * static_cast<size_t>(variable->data_size)) {
-    throw InputError(place + ": found damaged or missing data; " + std::to_string(count) +
-                     " numbers are needed");
-  }
-  return {name, Values(*variable, count, place)};
 }
 
 constexpr size_t kMat5HeaderSize = 128;
@@ -130,11 +129,12 @@ Table ReadMat(const std::string& file) {
   if (Mat_GetVersion(mat.get()) == MAT_FT_MAT5) CheckMat5IsWhole(file);
   Table table;
   table.file = file;
-  while (const Variable variable{Mat_VarReadNextInfo(mat.get())}) {
-    table.columns.push_back(ReadColumn(mat.get(), variable.get(), table));
+  Found found = ReadVectors(mat.get());
+  found.structs ? TakeSignals(found.vectors, &table) : TakeAll(found.vectors, &table);
+  if (table.rows() == 0) {
+    const std::string example = table.left_out.empty() ? "" : ": " + table.left_out.front().name + ": " + table.left_out.front().why;
+    throw InputError(file + ": found no rows; vectors of at least one number are needed" + example);
   }
-  if (table.rows() == 0)
-    throw InputError(file + ": found no rows; vectors of at least one number are needed");
   return table;
 }
 

@@ -1,0 +1,127 @@
+#include "tables/mat_vectors.h"
+
+#include <cstdint>
+
+namespace hydro::tables {
+namespace {
+
+constexpr int kDeepest = 16;  // structs within structs
+
+template <class Number>
+std::vector<double> ToDoubles(const matvar_t& variable, size_t count) {
+  const Number* numbers = static_cast<const Number*>(variable.data);
+  return std::vector<double>(numbers, numbers + count);
+}
+
+std::string Dimensions(const matvar_t& variable) {
+  std::string text;
+  for (int k = 0; k < variable.rank; ++k) text += (k > 0 ? "x" : "") + std::to_string(variable.dims[k]);
+  return text;
+}
+
+// Its elements, or why there are none.
+void Read(const matvar_t& variable, size_t count, MatVector* vector) {
+  const auto take = [&]<class Number>(Number) { vector->values = ToDoubles<Number>(variable, count); };
+  switch (variable.class_type) {
+    case MAT_C_DOUBLE:
+      return take(double{});
+    case MAT_C_SINGLE:
+      return take(float{});
+    case MAT_C_INT8:
+      return take(int8_t{});
+    case MAT_C_UINT8:
+      return take(uint8_t{});
+    case MAT_C_INT16:
+      return take(int16_t{});
+    case MAT_C_UINT16:
+      return take(uint16_t{});
+    case MAT_C_INT32:
+      return take(int32_t{});
+    case MAT_C_UINT32:
+      return take(uint32_t{});
+    case MAT_C_INT64:
+      return take(int64_t{});
+    case MAT_C_UINT64:
+      return take(uint64_t{});
+    default:
+      return;
+  }
+}
+
+bool IsNumbers(const matvar_t& variable) {
+  switch (variable.class_type) {
+    case MAT_C_DOUBLE:
+    case MAT_C_SINGLE:
+    case MAT_C_INT8:
+    case MAT_C_UINT8:
+    case MAT_C_INT16:
+    case MAT_C_UINT16:
+    case MAT_C_INT32:
+    case MAT_C_UINT32:
+    case MAT_C_INT64:
+    case MAT_C_UINT64:
+      return true;
+    default:
+      return false;
+  }
+}
+
+// `mat` is null for what has been read already, with the struct that it is in.
+MatVector VectorOf(mat_t* mat, matvar_t* variable, const std::string& name) {
+  MatVector vector{name, {}, {}};
+  if (variable->isComplex != 0) {
+    vector.wrong = "found complex numbers; real ones are needed";
+  } else if (!IsNumbers(*variable)) {
+    vector.wrong =
+        "found text, a structure, a cell array, a sparse matrix or an object of MATLAB's; a vector of numbers is needed";
+  } else if (variable->rank != 2 || (variable->dims[0] != 1 && variable->dims[1] != 1)) {
+    vector.wrong = "found " + Dimensions(*variable) + " numbers; a vector is needed";
+  } else if (const size_t count = variable->dims[0] * variable->dims[1]; count > 0) {
+    if ((mat != nullptr && Mat_VarReadDataAll(mat, variable) != 0) || variable->data == nullptr ||
+        variable->nbytes != count * static_cast<size_t>(variable->data_size)) {
+      vector.wrong = "found damaged or missing data; " + std::to_string(count) + " numbers are needed";
+    } else {
+      Read(*variable, count, &vector);
+    }
+  }
+  return vector;
+}
+
+void AppendFields(matvar_t* variable, const std::string& name, int depth, std::vector<MatVector>* vectors) {
+  const auto one = [](const matvar_t& of) {
+    return of.rank == 2 && of.dims[0] == 1 && of.dims[1] == 1 && of.data != nullptr;
+  };
+  if (!one(*variable) || depth == kDeepest) {
+    const std::string found = depth == kDeepest ? "structs in structs, too deep" : Dimensions(*variable) + " structs";
+    vectors->push_back({name, {}, "found " + found + "; one struct of vectors is needed"});
+    return;
+  }
+  const unsigned count = Mat_VarGetNumberOfFields(variable);
+  char* const* const names = Mat_VarGetStructFieldnames(variable);
+  for (unsigned i = 0; i < count; ++i) {
+    matvar_t* const field = Mat_VarGetStructFieldByIndex(variable, i, 0);
+    const std::string field_name = name + "." + (names != nullptr && names[i] != nullptr ? names[i] : "");
+    if (field == nullptr) {
+      vectors->push_back({field_name, {}, "found nothing; a vector of numbers is needed"});
+    } else if (field->class_type == MAT_C_STRUCT) {
+      AppendFields(field, field_name, depth + 1, vectors);
+    } else {
+      vectors->push_back(VectorOf(nullptr, field, field_name));
+    }
+  }
+}
+
+}  // namespace
+
+void AppendVectors(mat_t* mat, matvar_t* variable, std::vector<MatVector>* vectors) {
+  const std::string name = variable->name != nullptr ? variable->name : "";
+  if (variable->class_type != MAT_C_STRUCT) {
+    vectors->push_back(VectorOf(mat, variable, name));
+  } else if (Mat_VarReadDataAll(mat, variable) != 0) {
+    vectors->push_back({name, {}, "found a damaged struct; one struct of vectors is needed"});
+  } else {
+    AppendFields(variable, name, 1, vectors);
+  }
+}
+
+}  // namespace hydro::tables
