@@ -14,8 +14,8 @@ namespace {
 constexpr std::array<std::pair<std::string_view, std::string_view>, 5> kEndings{
     {{"_rad_s", "rad/s"}, {"_rad", "rad"}, {"_psi", "psi"}, {"_V", "V"}, {"_s", "s"}}};
 
-// The size of pressures decides between kPa and MPa: one unit for all of a rig's.
-constexpr double kUsualPressure = 1000;
+// Their size decides between kPa and MPa: exported pressures are in MPa, whatever they are.
+constexpr double kLargePressure = 1e12;
 
 const std::pair<std::string_view, std::string_view>* EndingOf(std::string_view column) {
   for (const auto& ending : kEndings) {
@@ -64,7 +64,7 @@ void SetUnits(const UnitSystem& units, bool si, Sheet* sheet) {
     definitions::Field& field = column.field;
     if (field.unit.empty()) continue;
     field.unit = units.UnitFor(field.unit, ArmPower(field.name));
-    const std::optional<SiUnit> to = si ? FindSiUnit(field.unit, kUsualPressure) : std::nullopt;
+    const std::optional<SiUnit> to = si ? FindSiUnit(field.unit, kLargePressure) : std::nullopt;
     if (to.has_value()) {
       Scale(to->factor, &column.values);
       field.unit = to->to;
@@ -78,7 +78,7 @@ void ShowInSi(const UnitSystem& units, tables::Table* table) {
     const std::string paper = PaperUnit(column.name);
     if (paper.empty()) continue;
     const std::string unit = units.UnitFor(paper, ArmPower(column.name));
-    const std::optional<SiUnit> to = FindSiUnit(unit, kUsualPressure);
+    const std::optional<SiUnit> to = FindSiUnit(unit, kLargePressure);
     if (to.has_value()) {
       for (double& value : column.values) value *= to->factor;
     }
