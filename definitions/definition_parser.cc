@@ -15,9 +15,10 @@ namespace {
 constexpr struct {
   std::string_view name;
   FieldType type;
-} kTypes[] = {{"boolean", FieldType::kBoolean}, {"byte", FieldType::kByte},      {"int8_t", FieldType::kInt8},
-              {"int16_t", FieldType::kInt16},   {"int32_t", FieldType::kInt32},  {"int64_t", FieldType::kInt64},
-              {"float", FieldType::kFloat},     {"double", FieldType::kDouble}, {"string", FieldType::kString}};
+} kTypes[] = {
+    {"boolean", FieldType::kBoolean}, {"byte", FieldType::kByte},     {"int8_t", FieldType::kInt8},
+    {"int16_t", FieldType::kInt16},   {"int32_t", FieldType::kInt32}, {"int64_t", FieldType::kInt64},
+    {"float", FieldType::kFloat},     {"double", FieldType::kDouble}, {"string", FieldType::kString}};
 
 std::optional<FieldType> TypeNamed(const std::string& name) {
   const auto* const found =
@@ -51,7 +52,8 @@ class Parser {
 
  private:
   InputError Error(const std::string& found, const std::string& allowed) const {
-    return InputError(file_ + ": line " + std::to_string(line_) + ": found " + found + ", allowed " + allowed);
+    return InputError(file_ + ": line " + std::to_string(line_) + ": found " + found + ", allowed " +
+                      allowed);
   }
 
   // A line with nothing but a comment: of the struct where that has not begun, else more of the field's before it.

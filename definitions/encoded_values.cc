@@ -83,7 +83,8 @@ int64_t CountOf(const std::vector<Field>& fields, const std::vector<Value>& valu
 
 }  // namespace
 
-bool ReadValues(const MessageDefinition& definition, const uint8_t* data, int size, std::vector<Value>* values) {
+bool ReadValues(const MessageDefinition& definition, const uint8_t* data, int size,
+                std::vector<Value>* values) {
   constexpr int kHashSize = 8;
   values->clear();
   if (size < kHashSize || static_cast<int64_t>(LoadBigEndian64(data)) != definition.hash) return false;

@@ -16,6 +16,7 @@ using Value = std::variant<int64_t, double, std::string, std::vector<int64_t>, s
 
 // The values of an encoded message, in the order of the definition's fields, with or without a seal after it. False: the
 // bytes are no whole message of that type and version; `values` is then anything.
-bool ReadValues(const MessageDefinition& definition, const uint8_t* data, int size, std::vector<Value>* values);
+bool ReadValues(const MessageDefinition& definition, const uint8_t* data, int size,
+                std::vector<Value>* values);
 
 }  // namespace hydro::definitions

@@ -34,8 +34,9 @@ int PlaceOf(const MessageDefinition& definition, const char* name) {
 
 bool ForEveryTick(const std::string& channel) {
   return bus::AnyMessage([&](const auto& row) {
-    return row.channel == channel && (row.rate == bus::Rate::kTick || row.rate == bus::Rate::kPressureInterval ||
-                                      row.rate == bus::Rate::kPositionInterval);
+    return row.channel == channel &&
+           (row.rate == bus::Rate::kTick || row.rate == bus::Rate::kPressureInterval ||
+            row.rate == bus::Rate::kPositionInterval);
   });
 }
 
@@ -48,7 +49,8 @@ OpenSheet Open(const std::string& name, const std::string& suffix, const std::ve
   Sheet& sheet = open.sheet;
   sheet.name = name;
   sheet.description = open.definition->description;
-  sheet.source = "channel " + open.channel + " of " + std::filesystem::path(files.front()).filename().string() +
+  sheet.source = "channel " + open.channel + " of " +
+                 std::filesystem::path(files.front()).filename().string() +
                  (files.size() > 1 ? " and its continuations" : "");
   sheet.type = definitions::RosType(open.definition->type);
   sheet.topic = definitions::RosTopic(name);

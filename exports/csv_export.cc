@@ -92,7 +92,8 @@ std::string HeadLine(const std::vector<SheetColumn>& columns, bool several) {
   return line + '\n';
 }
 
-void WriteRows(const ExportedRun& run, const std::vector<SheetColumn>& columns, bool several, size_t rows, Output* out) {
+void WriteRows(const ExportedRun& run, const std::vector<SheetColumn>& columns, bool several, size_t rows,
+               Output* out) {
   std::string text;
   for (size_t row = 0; row < rows; ++row) {
     if (several) AppendText(run.name, &text);

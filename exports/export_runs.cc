@@ -51,8 +51,8 @@ void Append(runs::RunLog&& log, runs::RunLog* to) {
   to->events += log.events;
 }
 
-std::vector<Recording> ReadRecordings(const std::vector<std::string>& files, const std::optional<std::string>& suffix,
-                                      const Say& say) {
+std::vector<Recording> ReadRecordings(const std::vector<std::string>& files,
+                                      const std::optional<std::string>& suffix, const Say& say) {
   std::vector<Recording> recordings;
   for (const std::string& file : files) {
     runs::RunLog log = runs::ReadRunLog(file, suffix, runs::Undecodable::kLeftOut);
@@ -73,7 +73,8 @@ std::vector<Recording> ReadRecordings(const std::vector<std::string>& files, con
 std::string NameFor(const std::string& file, const std::vector<ExportedRun>& others) {
   const std::string stem = std::filesystem::path(file).stem().string();
   std::string name = stem;
-  for (int i = 2; std::any_of(others.begin(), others.end(), [&](const ExportedRun& run) { return run.name == name; });
+  for (int i = 2;
+       std::any_of(others.begin(), others.end(), [&](const ExportedRun& run) { return run.name == name; });
        ++i) {
     name = stem + "_" + std::to_string(i);
   }
@@ -91,8 +92,9 @@ void Describe(const Recording& recording, const UnitSystem& units, bool si, Expo
   fact("log", logs);
   fact("log_is", log::NameOf(recording.log.verdict.completeness));
   fact("channel_suffix", recording.log.suffix);
-  fact("units", si ? "SI" : "length " + std::string(units.length) + ", force " + std::string(units.force) +
-                                ", pressure " + units.UnitFor("psi"));
+  fact("units", si ? "SI"
+                   : "length " + std::string(units.length) + ", force " + std::string(units.force) +
+                         ", pressure " + units.UnitFor("psi"));
   const auto& descriptions = recording.log.messages.Of<run_description_t>();
   if (descriptions.empty()) return;
   const run_description_t& description = descriptions.front();
@@ -125,8 +127,8 @@ void AddTable(const Recording& recording, const Selection& selection, const Say&
   }
 }
 
-ExportedRun Export(const Recording& recording, const std::string& name, const Selection& selection, bool times,
-                   const Say& say) {
+ExportedRun Export(const Recording& recording, const std::string& name, const Selection& selection,
+                   bool times, const Say& say) {
   ExportedRun run;
   run.name = name;
   run.files = recording.files;
@@ -140,11 +142,13 @@ ExportedRun Export(const Recording& recording, const std::string& name, const Se
   }
   std::vector<std::string> channels = ChosenChannels(selection, recording.log);
   const std::string states(bus::RowOf<state_t>().channel);
-  const bool only_times = table && times && std::find(channels.begin(), channels.end(), states) == channels.end();
+  const bool only_times =
+      table && times && std::find(channels.begin(), channels.end(), states) == channels.end();
   if (only_times) channels.insert(channels.begin(), states);
   if (!channels.empty()) {
     std::vector<Sheet> sheets = ReadChannels(recording.files, recording.log.suffix, channels);
-    const auto found = std::find_if(sheets.begin(), sheets.end(), [&](const Sheet& one) { return one.name == states; });
+    const auto found =
+        std::find_if(sheets.begin(), sheets.end(), [&](const Sheet& one) { return one.name == states; });
     if (table && found != sheets.end()) SetTimesOf(*found, &run.sheets.front());
     if (only_times) sheets.erase(found);
     std::move(sheets.begin(), sheets.end(), std::back_inserter(run.sheets));
@@ -157,19 +161,23 @@ ExportedRun Export(const Recording& recording, const std::string& name, const Se
 }
 
 void CheckNotEmpty(const Recording& recording, const Selection& selection, const ExportedRun& run) {
-  if (std::any_of(run.sheets.begin(), run.sheets.end(), [](const Sheet& sheet) { return sheet.rows() > 0; })) return;
+  if (std::any_of(run.sheets.begin(), run.sheets.end(), [](const Sheet& sheet) { return sheet.rows() > 0; }))
+    return;
   const auto& states = recording.log.messages.Of<state_t>();
   if (states.empty() || (!selection.from_s && !selection.to_s)) {
-    throw InputError(recording.log.file + ": found no message of this stack, allowed is a log that holds some");
+    throw InputError(recording.log.file +
+                     ": found no message of this stack, allowed is a log that holds some");
   }
-  throw InputError("--from, --to: found nothing of " + recording.log.file + " there, allowed is a window of its run, " +
-                   ShortestNumber(states.front().time) + " s to " + ShortestNumber(states.back().time) + " s");
+  throw InputError("--from, --to: found nothing of " + recording.log.file +
+                   " there, allowed is a window of its run, " + ShortestNumber(states.front().time) +
+                   " s to " + ShortestNumber(states.back().time) + " s");
 }
 
 }  // namespace
 
-std::vector<ExportedRun> ReadRuns(const std::vector<std::string>& files, const std::optional<std::string>& suffix,
-                                  const Selection& selection, bool times, const Say& say) {
+std::vector<ExportedRun> ReadRuns(const std::vector<std::string>& files,
+                                  const std::optional<std::string>& suffix, const Selection& selection,
+                                  bool times, const Say& say) {
   CheckSelection(selection);
   std::vector<ExportedRun> runs;
   const std::vector<Recording> recordings = ReadRecordings(files, suffix, say);
@@ -179,7 +187,8 @@ std::vector<ExportedRun> ReadRuns(const std::vector<std::string>& files, const s
     CheckNotEmpty(recording, selection, runs.back());
   }
   // Not where an error says what is wrong.
-  for (const Recording& recording : recordings) std::for_each(recording.cautions.begin(), recording.cautions.end(), say);
+  for (const Recording& recording : recordings)
+    std::for_each(recording.cautions.begin(), recording.cautions.end(), say);
   return runs;
 }
 

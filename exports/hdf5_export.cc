@@ -34,7 +34,8 @@ class Hdf5Writer {
   void Attribute(hid_t at, const std::string& name, const std::string& value) const {
     if (value.empty()) return;
     const Hdf5Handle type = TextType(), space(H5Screate(H5S_SCALAR), H5Sclose, file_);
-    const Hdf5Handle attribute(H5Acreate2(at, name.c_str(), type, space, H5P_DEFAULT, H5P_DEFAULT), H5Aclose, file_);
+    const Hdf5Handle attribute(H5Acreate2(at, name.c_str(), type, space, H5P_DEFAULT, H5P_DEFAULT), H5Aclose,
+                               file_);
     const char* const text = value.c_str();
     CheckHdf5(H5Awrite(attribute, type, static_cast<const void*>(&text)), file_);
   }
@@ -51,7 +52,8 @@ class Hdf5Writer {
     Attribute(at, "description", sheet.description);
     Attribute(at, "source", sheet.source);
     for (const definitions::Constant& constant : sheet.constants) {
-      Attribute(at, constant.name, constant.value + (constant.description.empty() ? "" : ": " + constant.description));
+      Attribute(at, constant.name,
+                constant.value + (constant.description.empty() ? "" : ": " + constant.description));
     }
     for (const SheetColumn& column : WithTimes(sheet)) {
       std::visit([&](const auto& values) { WriteColumn(at, column.field, values); }, column.values);
@@ -63,8 +65,8 @@ class Hdf5Writer {
     const hsize_t size = rows;
     const Hdf5Handle space(H5Screate_simple(1, &size, nullptr), H5Sclose, file_);
     const Hdf5Handle how = WithoutTimes(H5P_DATASET_CREATE, file_);
-    const Hdf5Handle dataset(H5Dcreate2(at, field.name.c_str(), type, space, H5P_DEFAULT, how, H5P_DEFAULT), H5Dclose,
-                         file_);
+    const Hdf5Handle dataset(H5Dcreate2(at, field.name.c_str(), type, space, H5P_DEFAULT, how, H5P_DEFAULT),
+                             H5Dclose, file_);
     if (rows > 0) CheckHdf5(H5Dwrite(dataset, memory_type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data), file_);
     Attribute(dataset, "unit", field.unit);
     Attribute(dataset, "description", field.description);
@@ -85,7 +87,8 @@ class Hdf5Writer {
   }
   // A list for each row.
   template <class T>
-  void WriteColumn(hid_t at, const definitions::Field& field, const std::vector<std::vector<T>>& values) const {
+  void WriteColumn(hid_t at, const definitions::Field& field,
+                   const std::vector<std::vector<T>>& values) const {
     std::vector<std::vector<const char*>> texts(values.size());
     std::vector<hvl_t> lists;
     lists.reserve(values.size());
@@ -130,7 +133,8 @@ class Hdf5Writer {
 
 }  // namespace
 
-void WriteHdf5Export(const std::vector<ExportedRun>& runs, const std::string& program, const std::string& file) {
+void WriteHdf5Export(const std::vector<ExportedRun>& runs, const std::string& program,
+                     const std::string& file) {
   Output out(file, false);
   const Hdf5Writer writer(file);
   {

@@ -10,7 +10,8 @@ void ThrowHdf5Error(const std::string& file) {
 
 Hdf5Handle CreateHdf5(const std::string& path, const std::string& file, hsize_t bytes_before) {
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // our own errors name the file
-  const Hdf5Handle create(H5Pcreate(H5P_FILE_CREATE), H5Pclose, file), access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, file);
+  const Hdf5Handle create(H5Pcreate(H5P_FILE_CREATE), H5Pclose, file),
+      access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, file);
   if (bytes_before > 0) CheckHdf5(H5Pset_userblock(create, bytes_before), file);
   // The file is locked already, by NewFile.
   CheckHdf5(H5Pset_file_locking(access, false, true), file);

@@ -65,7 +65,8 @@ class Mat73Writer {
   }
   void Write(hid_t at, const std::string& name, const SheetColumn& column) {
     if (const auto* const whole = std::get_if<std::vector<int64_t>>(&column.values)) {
-      return WriteArray(at, name, ClassOf(column.field.type), H5T_NATIVE_INT64, whole->size(), 1, whole->data());
+      return WriteArray(at, name, ClassOf(column.field.type), H5T_NATIVE_INT64, whole->size(), 1,
+                        whole->data());
     }
     std::visit([&](const auto& values) { Write(at, name, values); }, column.values);
   }
@@ -99,17 +100,17 @@ class Mat73Writer {
   }
 
   // An array of rows x columns; HDF5 has MATLAB's dimensions in the opposite order. Of an empty one its dimensions are stored.
-  void WriteArray(hid_t at, const std::string& name, const Class& kind, hid_t memory_type, size_t rows, size_t columns,
-                  const void* data) const {
+  void WriteArray(hid_t at, const std::string& name, const Class& kind, hid_t memory_type, size_t rows,
+                  size_t columns, const void* data) const {
     const bool empty = rows * columns == 0;
     const hsize_t sizes[2] = {columns, rows}, two = 2;
     const uint64_t dimensions[2] = {rows * columns > 0 ? rows : 0, columns > 0 ? columns : 0};
-    const Hdf5Handle space(empty ? H5Screate_simple(1, &two, nullptr) : H5Screate_simple(2, sizes, nullptr), H5Sclose,
-                           file_);
+    const Hdf5Handle space(empty ? H5Screate_simple(1, &two, nullptr) : H5Screate_simple(2, sizes, nullptr),
+                           H5Sclose, file_);
     const Hdf5Handle how = WithoutTimes(H5P_DATASET_CREATE, file_);
-    const Hdf5Handle dataset(
-        H5Dcreate2(at, name.c_str(), empty ? H5T_STD_U64LE : kind.file_type, space, H5P_DEFAULT, how, H5P_DEFAULT),
-        H5Dclose, file_);
+    const Hdf5Handle dataset(H5Dcreate2(at, name.c_str(), empty ? H5T_STD_U64LE : kind.file_type, space,
+                                        H5P_DEFAULT, how, H5P_DEFAULT),
+                             H5Dclose, file_);
     CheckHdf5(H5Dwrite(dataset, empty ? H5T_NATIVE_UINT64 : memory_type, H5S_ALL, H5S_ALL, H5P_DEFAULT,
                        empty ? static_cast<const void*>(dimensions) : data),
               file_);
@@ -120,14 +121,16 @@ class Mat73Writer {
   void SetClass(hid_t object, const Class& kind) const {
     const Hdf5Handle type(H5Tcopy(H5T_C_S1), H5Tclose, file_), space(H5Screate(H5S_SCALAR), H5Sclose, file_);
     CheckHdf5(H5Tset_size(type, std::strlen(kind.name)), file_);
-    const Hdf5Handle attribute(H5Acreate2(object, "MATLAB_class", type, space, H5P_DEFAULT, H5P_DEFAULT), H5Aclose, file_);
+    const Hdf5Handle attribute(H5Acreate2(object, "MATLAB_class", type, space, H5P_DEFAULT, H5P_DEFAULT),
+                               H5Aclose, file_);
     CheckHdf5(H5Awrite(attribute, type, kind.name), file_);
     if (kind.decode != 0) SetNumber(object, "MATLAB_int_decode", H5T_STD_I32LE, kind.decode);
   }
 
   void SetNumber(hid_t object, const char* name, hid_t type, int value) const {
     const Hdf5Handle space(H5Screate(H5S_SCALAR), H5Sclose, file_);
-    const Hdf5Handle attribute(H5Acreate2(object, name, type, space, H5P_DEFAULT, H5P_DEFAULT), H5Aclose, file_);
+    const Hdf5Handle attribute(H5Acreate2(object, name, type, space, H5P_DEFAULT, H5P_DEFAULT), H5Aclose,
+                               file_);
     CheckHdf5(H5Awrite(attribute, H5T_NATIVE_INT, &value), file_);
   }
 
@@ -135,11 +138,14 @@ class Mat73Writer {
   void NameFields(hid_t group, const std::vector<MatField>& fields) const {
     std::vector<hvl_t> names;
     names.reserve(fields.size());
-    for (const MatField& field : fields) names.push_back({field.name.size(), const_cast<char*>(field.name.data())});
+    for (const MatField& field : fields)
+      names.push_back({field.name.size(), const_cast<char*>(field.name.data())});
     const hsize_t size = names.size();
-    const Hdf5Handle letter(H5Tcopy(H5T_C_S1), H5Tclose, file_), type(H5Tvlen_create(letter), H5Tclose, file_);
+    const Hdf5Handle letter(H5Tcopy(H5T_C_S1), H5Tclose, file_),
+        type(H5Tvlen_create(letter), H5Tclose, file_);
     const Hdf5Handle space(H5Screate_simple(1, &size, nullptr), H5Sclose, file_);
-    const Hdf5Handle attribute(H5Acreate2(group, "MATLAB_fields", type, space, H5P_DEFAULT, H5P_DEFAULT), H5Aclose, file_);
+    const Hdf5Handle attribute(H5Acreate2(group, "MATLAB_fields", type, space, H5P_DEFAULT, H5P_DEFAULT),
+                               H5Aclose, file_);
     CheckHdf5(H5Awrite(attribute, type, names.data()), file_);
   }
 

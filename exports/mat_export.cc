@@ -65,7 +65,8 @@ struct MatioValue {
   static matvar_t* Of(const std::string& text) {
     const std::u16string wide = SingleUnits(Utf16(text));
     size_t dimensions[2] = {wide.empty() ? 0u : 1u, wide.size()};
-    return Mat_VarCreate(nullptr, MAT_C_CHAR, MAT_T_UTF16, 2, dimensions, const_cast<char16_t*>(wide.data()), 0);
+    return Mat_VarCreate(nullptr, MAT_C_CHAR, MAT_T_UTF16, 2, dimensions, const_cast<char16_t*>(wide.data()),
+                         0);
   }
   static matvar_t* Of(const std::vector<int64_t>& values) { return WholeNumbers(FieldType::kInt64, values); }
   static matvar_t* Of(const std::vector<double>& values) {
@@ -90,7 +91,8 @@ struct MatioValue {
     names.reserve(fields.size());
     for (const MatField& field : fields) names.push_back(field.name.c_str());
     size_t one[2] = {1, 1};
-    matvar_t* const made = Mat_VarCreateStruct(nullptr, 2, one, names.data(), static_cast<unsigned>(names.size()));
+    matvar_t* const made =
+        Mat_VarCreateStruct(nullptr, 2, one, names.data(), static_cast<unsigned>(names.size()));
     for (size_t i = 0; i < fields.size() && made != nullptr; ++i) {
       Mat_VarSetStructFieldByName(made, names[i], 0, Of(fields[i].value));
     }
@@ -130,8 +132,9 @@ void WriteMatExport(const std::vector<ExportedRun>& runs, const std::string& fil
   for (const MatField& variable : variables) {
     const size_t size = SizeOf(variable.value);
     if (size >= kLimit) {
-      throw InputError(file + ": found more than 2 GiB for the variable " + variable.name +
-                       ", allowed is less in MAT 5; take --format mat73, a window (--from, --to) or a --rate");
+      throw InputError(
+          file + ": found more than 2 GiB for the variable " + variable.name +
+          ", allowed is less in MAT 5; take --format mat73, a window (--from, --to) or a --rate");
     }
     if (std::holds_alternative<SheetColumn>(variable.value.is)) least += size;
   }

@@ -11,7 +11,8 @@ namespace {
 std::string VariableName(const std::string& text, std::set<std::string>* taken) {
   constexpr size_t kMost = 50;  // of 63, which leaves room for a number
   std::string name;
-  for (const char c : text.substr(0, kMost)) name += std::isalnum(static_cast<unsigned char>(c)) != 0 ? c : '_';
+  for (const char c : text.substr(0, kMost))
+    name += std::isalnum(static_cast<unsigned char>(c)) != 0 ? c : '_';
   if (name.empty() || std::isalpha(static_cast<unsigned char>(name.front())) == 0) name.insert(0, "run_");
   std::string free = name;
   for (int i = 2; !taken->insert(free).second; ++i) free = name + "_" + std::to_string(i);
@@ -57,7 +58,8 @@ std::vector<MatField> MatVariables(const std::vector<ExportedRun>& runs) {
   Fields variables;
   if (runs.size() > 1) {
     std::set<std::string> names;
-    for (const ExportedRun& run : runs) variables.push_back({VariableName(run.name, &names), {FieldsOf(run)}});
+    for (const ExportedRun& run : runs)
+      variables.push_back({VariableName(run.name, &names), {FieldsOf(run)}});
     return variables;
   }
   for (const Sheet& sheet : runs.front().sheets) {
@@ -74,7 +76,11 @@ std::u16string Utf16(const std::string& text) {
   std::u16string wide;
   for (size_t i = 0; i < text.size();) {
     const auto byte = static_cast<unsigned char>(text[i]);
-    const size_t length = byte < 0x80 ? 1 : byte >= 0xf0 && byte < 0xf5 ? 4 : byte >= 0xe0 ? 3 : byte >= 0xc2 ? 2 : 0;
+    const size_t length = byte < 0x80                   ? 1
+                          : byte >= 0xf0 && byte < 0xf5 ? 4
+                          : byte >= 0xe0                ? 3
+                          : byte >= 0xc2                ? 2
+                                                        : 0;
     char32_t point = length == 1 ? byte : byte & (0x7fu >> length);
     bool whole = length > 0 && byte < 0xf5 && i + length <= text.size();
     for (size_t k = 1; whole && k < length; ++k) {

@@ -47,7 +47,8 @@ std::string Schema(const Sheet& sheet) {
 McapMap Metadata(const Sheet& sheet) {
   McapMap entries{{"source", sheet.source}, {"description", sheet.description}};
   for (const SheetColumn& column : sheet.columns) {
-    if (!column.field.unit.empty()) entries.emplace_back("unit." + definitions::RosField(column.field.name), column.field.unit);
+    if (!column.field.unit.empty())
+      entries.emplace_back("unit." + definitions::RosField(column.field.name), column.field.unit);
   }
   return entries;
 }
@@ -82,7 +83,8 @@ void WriteRows(std::vector<Row>& rows, McapFile* file) {
 
 }  // namespace
 
-void WriteMcapExport(const std::vector<ExportedRun>& runs, const std::string& program, const std::string& file) {
+void WriteMcapExport(const std::vector<ExportedRun>& runs, const std::string& program,
+                     const std::string& file) {
   Output out(file, false);
   McapFile mcap(&out, program);
   std::vector<std::vector<Row>> rows(runs.size());
@@ -91,13 +93,16 @@ void WriteMcapExport(const std::vector<ExportedRun>& runs, const std::string& pr
     const std::string prefix = runs.size() > 1 ? run.name : "";
     mcap.AddMetadata(prefix.empty() ? "hydro" : "hydro/" + prefix, {run.facts.begin(), run.facts.end()});
     const std::string folder = prefix.empty() ? "" : prefix + "/";
-    if (!run.config_text.empty()) mcap.AddAttachment(folder + "config.toml", "application/toml", run.config_text);
-    if (!run.model_text.empty()) mcap.AddAttachment(folder + "model.toml", "application/toml", run.model_text);
+    if (!run.config_text.empty())
+      mcap.AddAttachment(folder + "config.toml", "application/toml", run.config_text);
+    if (!run.model_text.empty())
+      mcap.AddAttachment(folder + "model.toml", "application/toml", run.model_text);
     for (const Sheet& sheet : run.sheets) {
       const uint16_t schema = mcap.AddSchema(sheet.type, "ros2msg", Schema(sheet));
       const std::string topic = prefix.empty() ? sheet.topic : "/" + prefix + sheet.topic;
       const uint16_t channel = mcap.AddChannel(schema, topic, "cdr", Metadata(sheet));
-      for (size_t row = 0; row < sheet.rows(); ++row) rows[k].push_back({sheet.order[row], channel, row, &sheet});
+      for (size_t row = 0; row < sheet.rows(); ++row)
+        rows[k].push_back({sheet.order[row], channel, row, &sheet});
     }
   }
   for (std::vector<Row>& of_run : rows) WriteRows(of_run, &mcap);

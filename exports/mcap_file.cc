@@ -72,7 +72,9 @@ Fields ListOf(const std::map<uint16_t, uint64_t>& numbers) {
   return list;
 }
 
-uint32_t Checksum(uint32_t before, std::string_view bytes) { return libdeflate_crc32(before, bytes.data(), bytes.size()); }
+uint32_t Checksum(uint32_t before, std::string_view bytes) {
+  return libdeflate_crc32(before, bytes.data(), bytes.size());
+}
 
 }  // namespace
 
@@ -110,7 +112,8 @@ uint16_t McapFile::AddChannel(uint16_t schema, const std::string& topic, const s
                               const McapMap& metadata) {
   const auto number = static_cast<uint16_t>(channels_.size() + 1);
   channels_.push_back(Record(
-      kChannel, Fields().Number(number).Number(schema).Text(topic).Text(encoding).List(ListOf(metadata)).bytes()));
+      kChannel,
+      Fields().Number(number).Number(schema).Text(topic).Text(encoding).List(ListOf(metadata)).bytes()));
   chunk_ += channels_.back();
   messages_[number] = 0;
   return number;
@@ -122,7 +125,8 @@ void McapFile::AddMetadata(const std::string& name, const McapMap& entries) {
   metadata_.push_back(place);
 }
 
-void McapFile::AddAttachment(const std::string& name, const std::string& media_type, const std::string& bytes) {
+void McapFile::AddAttachment(const std::string& name, const std::string& media_type,
+                             const std::string& bytes) {
   Place place{name, media_type, position_};
   Fields content;
   content.Number(uint64_t{0}).Number(uint64_t{0}).Text(name).Text(media_type);
@@ -140,7 +144,10 @@ void McapFile::AddMessage(const McapMessage& message) {
   open_.last_time = std::max(open_.last_time, message.log_time);
   index.emplace_back(message.log_time, chunk_.size());
   Fields content;
-  content.Number(message.channel).Number(message.sequence).Number(message.log_time).Number(message.publish_time);
+  content.Number(message.channel)
+      .Number(message.sequence)
+      .Number(message.log_time)
+      .Number(message.publish_time);
   chunk_ += Record(kMessage, content.Bytes(message.data).bytes());
   ++messages_[message.channel];
   if (chunk_.size() >= kChunkSize) FinishChunk();
@@ -169,7 +176,11 @@ void McapFile::FinishChunk() {
 std::string McapFile::ChunkIndex(const ChunkPlace& chunk) const {
   Fields content;
   content.Number(chunk.first_time).Number(chunk.last_time).Number(chunk.start).Number(chunk.length);
-  content.List(ListOf(chunk.indexes)).Number(chunk.index_length).Text("").Number(chunk.size).Number(chunk.size);
+  content.List(ListOf(chunk.indexes))
+      .Number(chunk.index_length)
+      .Text("")
+      .Number(chunk.size)
+      .Number(chunk.size);
   return Record(kChunkIndex, content.bytes());
 }
 
@@ -209,11 +220,16 @@ void McapFile::Finish() {
   for (const ChunkPlace& chunk : chunks_) chunks += ChunkIndex(chunk);
   for (const Place& place : attachments_) {
     Fields content;
-    content.Number(place.start).Number(place.length).Number(uint64_t{0}).Number(uint64_t{0}).Number(place.data_size);
+    content.Number(place.start)
+        .Number(place.length)
+        .Number(uint64_t{0})
+        .Number(uint64_t{0})
+        .Number(place.data_size);
     attachments += Record(kAttachmentIndex, content.Text(place.name).Text(place.media_type).bytes());
   }
   for (const Place& place : metadata_) {
-    metadata += Record(kMetadataIndex, Fields().Number(place.start).Number(place.length).Text(place.name).bytes());
+    metadata +=
+        Record(kMetadataIndex, Fields().Number(place.start).Number(place.length).Text(place.name).bytes());
   }
   groups.emplace_back(kChunkIndex, chunks);
   groups.emplace_back(kAttachmentIndex, attachments);
@@ -233,7 +249,10 @@ void McapFile::Finish() {
   // The checksum covers the footer up to itself.
   constexpr uint64_t kFooterSize = 8 + 8 + 4;
   Fields footer;
-  footer.Number(static_cast<uint8_t>(kFooter)).Number(kFooterSize).Number(summary_start).Number(offsets_start);
+  footer.Number(static_cast<uint8_t>(kFooter))
+      .Number(kFooterSize)
+      .Number(summary_start)
+      .Number(offsets_start);
   summary += footer.bytes();
   Emit(Fields().Bytes(summary).Number(Checksum(0, summary)).Bytes(kMagic).bytes());
 }

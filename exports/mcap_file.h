@@ -28,7 +28,8 @@ class McapFile {
 
   // Their numbers, from 1; a schema that is there already keeps its own. Before the first message.
   uint16_t AddSchema(const std::string& name, const std::string& encoding, const std::string& text);
-  uint16_t AddChannel(uint16_t schema, const std::string& topic, const std::string& encoding, const McapMap& metadata);
+  uint16_t AddChannel(uint16_t schema, const std::string& topic, const std::string& encoding,
+                      const McapMap& metadata);
   void AddMetadata(const std::string& name, const McapMap& entries);
   void AddAttachment(const std::string& name, const std::string& media_type, const std::string& bytes);
 
@@ -55,14 +56,15 @@ class McapFile {
 
   Output& out_;
   uint64_t position_ = 0;
-  uint32_t checksum_ = 0;  // of what was emitted
+  uint32_t checksum_ = 0;                        // of what was emitted
   std::vector<std::string> schemas_, channels_;  // records
   std::vector<Place> attachments_, metadata_;
   std::vector<ChunkPlace> chunks_;
   std::map<uint16_t, uint64_t> messages_;  // how many on each channel
   std::string chunk_;
   ChunkPlace open_;
-  std::map<uint16_t, std::vector<std::pair<uint64_t, uint64_t>>> in_chunk_;  // time and place of each message, by channel
+  std::map<uint16_t, std::vector<std::pair<uint64_t, uint64_t>>>
+      in_chunk_;  // time and place of each message, by channel
 };
 
 }  // namespace hydro::exports

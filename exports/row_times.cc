@@ -6,7 +6,8 @@
 namespace hydro::exports {
 
 void RowTimes::Add(const state_t& state) {
-  if (plants_.empty() || plants_.back().session != state.session) plants_.push_back({state.session, {}, false});
+  if (plants_.empty() || plants_.back().session != state.session)
+    plants_.push_back({state.session, {}, false});
   plants_.back().ticks.emplace_back(state.tick, state.time);
   plants_.back().sorted = false;
   latest_ = state.time;
@@ -26,7 +27,8 @@ double RowTimes::At(const Mark& mark) {
     std::stable_sort(plant.ticks.begin(), plant.ticks.end(), before);
   }
   plant.sorted = true;
-  const auto found = std::lower_bound(plant.ticks.begin(), plant.ticks.end(), std::pair(*mark.tick, 0.0), before);
+  const auto found =
+      std::lower_bound(plant.ticks.begin(), plant.ticks.end(), std::pair(*mark.tick, 0.0), before);
   return found != plant.ticks.end() && found->first == *mark.tick ? found->second : mark.latest;
 }
 

@@ -28,14 +28,15 @@ std::vector<std::string> ChannelsOf(const runs::RunLog& log) {
 }  // namespace
 
 void CheckSelection(const Selection& selection) {
-  for (const auto& [name, value] : {std::pair("--from", selection.from_s), std::pair("--to", selection.to_s)}) {
+  for (const auto& [name, value] :
+       {std::pair("--from", selection.from_s), std::pair("--to", selection.to_s)}) {
     if (value && !std::isfinite(*value)) {
       throw InputError(std::string(name) + ": found " + NumberText(*value) + ", allowed is a time in s");
     }
   }
   if (selection.from_s && selection.to_s && *selection.to_s < *selection.from_s) {
-    throw InputError("--to: found " + ShortestNumber(*selection.to_s) + " s, allowed is a time from --from, " +
-                     ShortestNumber(*selection.from_s) + " s, on");
+    throw InputError("--to: found " + ShortestNumber(*selection.to_s) +
+                     " s, allowed is a time from --from, " + ShortestNumber(*selection.from_s) + " s, on");
   }
   if (!std::isfinite(selection.rate_hz) || selection.rate_hz < 0) {
     throw InputError("--rate: found " + NumberText(selection.rate_hz) +
@@ -45,7 +46,8 @@ void CheckSelection(const Selection& selection) {
 
 bool WantsTable(const Selection& selection) {
   return selection.all || selection.channels.empty() ||
-         std::find(selection.channels.begin(), selection.channels.end(), kTableName) != selection.channels.end();
+         std::find(selection.channels.begin(), selection.channels.end(), kTableName) !=
+             selection.channels.end();
 }
 
 std::vector<std::string> ChosenChannels(const Selection& selection, const runs::RunLog& log) {
@@ -53,16 +55,21 @@ std::vector<std::string> ChosenChannels(const Selection& selection, const runs::
   if (selection.all) return there;
   std::vector<std::string> chosen;
   for (const std::string& channel : there) {
-    const auto names_it = [&](const std::string& given) { return given == channel || given == channel + log.suffix; };
-    if (std::any_of(selection.channels.begin(), selection.channels.end(), names_it)) chosen.push_back(channel);
+    const auto names_it = [&](const std::string& given) {
+      return given == channel || given == channel + log.suffix;
+    };
+    if (std::any_of(selection.channels.begin(), selection.channels.end(), names_it))
+      chosen.push_back(channel);
   }
   for (const std::string& given : selection.channels) {
-    const auto is_it = [&](const std::string& channel) { return given == channel || given == channel + log.suffix; };
+    const auto is_it = [&](const std::string& channel) {
+      return given == channel || given == channel + log.suffix;
+    };
     if (given == kTableName || std::any_of(chosen.begin(), chosen.end(), is_it)) continue;
     std::vector<std::string> allowed = there;
     allowed.insert(allowed.begin(), kTableName);
-    throw InputError("--channel: found " + Quoted(given) + DidYouMean(given, allowed) + ", allowed of " + log.file +
-                     " are " + QuotedList(allowed));
+    throw InputError("--channel: found " + Quoted(given) + DidYouMean(given, allowed) + ", allowed of " +
+                     log.file + " are " + QuotedList(allowed));
   }
   return chosen;
 }

@@ -14,9 +14,10 @@ namespace hydro::exports {
 inline constexpr const char* kTableName = "table";
 
 struct Selection {
-  std::vector<std::string> channels;  // by name, with or without the suffix, or kTableName; empty: the table alone
-  bool all = false;                   // the table, where the log has one, and all channels of the stack
-  std::optional<double> from_s;       // plant time
+  std::vector<std::string>
+      channels;                  // by name, with or without the suffix, or kTableName; empty: the table alone
+  bool all = false;              // the table, where the log has one, and all channels of the stack
+  std::optional<double> from_s;  // plant time
   std::optional<double> to_s;
   double rate_hz = 0;  // 0: every row
   bool si = false;

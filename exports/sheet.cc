@@ -48,9 +48,10 @@ std::vector<SheetColumn> WithTimes(const Sheet& sheet) {
   std::vector<SheetColumn> columns;
   columns.reserve(sheet.columns.size() + 2);
   if (!sheet.is_table) {
-    columns.push_back({{"time_s", FieldType::kDouble, "", "s",
-                        "plant time of the message's tick, or of the last state before it; NaN: before the first"},
-                       sheet.time_s});
+    columns.push_back(
+        {{"time_s", FieldType::kDouble, "", "s",
+          "plant time of the message's tick, or of the last state before it; NaN: before the first"},
+         sheet.time_s});
     columns.push_back({{"received_us", FieldType::kInt64, "", "us", "when the recorder received the message"},
                        sheet.received});
   }

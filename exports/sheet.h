@@ -44,9 +44,10 @@ struct Sheet {
 struct ExportedRun {
   std::string name;                // the log's stem
   std::vector<std::string> files;  // its log, or logs that continue one another
-  std::vector<std::pair<std::string, std::string>> facts;  // what the log says of itself: program, version, host, ...
-  std::string config_text;                                 // TOML
-  std::string model_text;                                  // TOML
+  std::vector<std::pair<std::string, std::string>>
+      facts;                // what the log says of itself: program, version, host, ...
+  std::string config_text;  // TOML
+  std::string model_text;   // TOML
   std::vector<Sheet> sheets;
 };
 

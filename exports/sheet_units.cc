@@ -69,7 +69,8 @@ void SetUnits(const UnitSystem& units, bool si, Sheet* sheet) {
       Scale(to->factor, &column.values);
       field.unit = to->to;
     }
-    if (si && sheet->is_table && field.unit != PaperUnit(field.name)) field.name = Renamed(field.name, field.unit);
+    if (si && sheet->is_table && field.unit != PaperUnit(field.name))
+      field.name = Renamed(field.name, field.unit);
   }
 }
 

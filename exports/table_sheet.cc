@@ -43,7 +43,8 @@ Sheet TableSheet(const runs::RunLog& log) {
   sheet.columns.reserve(table.columns.size());
   for (size_t i = 0; i < table.columns.size(); ++i) {
     tables::Column& column = table.columns[i];
-    const definitions::Field field{column.name, definitions::FieldType::kDouble, "", PaperUnit(column.name), kMeanings[i]};
+    const definitions::Field field{column.name, definitions::FieldType::kDouble, "", PaperUnit(column.name),
+                                   kMeanings[i]};
     sheet.columns.push_back({field, std::move(column.values)});
   }
   sheet.received.resize(sheet.rows());

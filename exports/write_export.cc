@@ -46,13 +46,15 @@ Format FormatNamed(const std::string& name) {
     if (name == format.name) return format.format;
     names.emplace_back(format.name);
   }
-  throw InputError("--format: found " + Quoted(name) + DidYouMean(name, names) + ", allowed are " + QuotedList(names));
+  throw InputError("--format: found " + Quoted(name) + DidYouMean(name, names) + ", allowed are " +
+                   QuotedList(names));
 }
 
 }  // namespace
 
 const char* NameOf(Format format) {
-  return std::find_if(std::begin(kFormats), std::end(kFormats), [&](const auto& one) { return one.format == format; })
+  return std::find_if(std::begin(kFormats), std::end(kFormats),
+                      [&](const auto& one) { return one.format == format; })
       ->name;
 }
 
@@ -67,7 +69,8 @@ Format FormatFor(const std::string& file, const std::optional<std::string>& name
   }
   if (file == kStandardOutput) return Format::kCsv;
   if (by_ending) return *by_ending;
-  throw InputError(file + ": found a name that tells no format, allowed are names that end in .csv, .mat, .h5, " +
+  throw InputError(file +
+                   ": found a name that tells no format, allowed are names that end in .csv, .mat, .h5, " +
                    ".hdf5 or .mcap, or any with --format");
 }
 

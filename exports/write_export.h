@@ -20,14 +20,17 @@ Format FormatFor(const std::string& file, const std::optional<std::string>& name
 
 // Writes the runs, whole or not at all. Throws InputError when the file cannot be created or the format cannot hold the runs,
 // WriteError when the disk is full.
-void WriteExport(const std::vector<ExportedRun>& runs, Format format, const std::string& program, const std::string& file);
+void WriteExport(const std::vector<ExportedRun>& runs, Format format, const std::string& program,
+                 const std::string& file);
 
 // What WriteExport() calls. Of one run the table's columns stand by themselves; what else there is stands in groups (HDF5), structs (MAT) or under
 // topics (MCAP): of a run by its name where there are several, of a channel by the channel's name.
 void WriteCsvExport(const std::vector<ExportedRun>& runs, const std::string& file);
 void WriteMatExport(const std::vector<ExportedRun>& runs, const std::string& file);
 void WriteMat73Export(const std::vector<ExportedRun>& runs, const std::string& file);
-void WriteHdf5Export(const std::vector<ExportedRun>& runs, const std::string& program, const std::string& file);
-void WriteMcapExport(const std::vector<ExportedRun>& runs, const std::string& program, const std::string& file);
+void WriteHdf5Export(const std::vector<ExportedRun>& runs, const std::string& program,
+                     const std::string& file);
+void WriteMcapExport(const std::vector<ExportedRun>& runs, const std::string& program,
+                     const std::string& file);
 
 }  // namespace hydro::exports

@@ -17,16 +17,20 @@ ExportVerb::ExportVerb(settings::CommandLine& line) {
       "export", "Write runs for other tools: a table, one row per plant tick, or the messages of channels.");
   verb.AddPositional("LOG", &logs_, "FILE the log; several: runs, or one that a recorder split");
   verb.AddOption("-o,--output", &out_,
-                 "FILE where to write: X.csv, X.mat, X.h5, X.hdf5, X.mcap, or - for the standard output", true);
+                 "FILE where to write: X.csv, X.mat, X.h5, X.hdf5, X.mcap, or - for the standard output",
+                 true);
   verb.AddOption("--format", &format_,
                  "NAME csv, mat (version 5), mat73, hdf5 or mcap, where the file's name does not tell");
   verb.AddFlag("--si", &selection_.si, "convert to SI units");
   verb.AddOption("--from", &from_s_, "S leave out what is before this plant time");
   verb.AddOption("--to", &to_s_, "S leave out what is after this plant time");
-  verb.AddOption("--rate", &selection_.rate_hz, "HZ thin out to at most this many rows a second; faults stay");
-  verb.AddOption("--channel", &selection_.channels,
-                 "NAME export the messages of this channel (HYDRO_STATE), or table; may be given several times");
-  verb.AddFlag("--all-channels", &selection_.all, "export the table and the messages of every channel (MCAP: always)");
+  verb.AddOption("--rate", &selection_.rate_hz,
+                 "HZ thin out to at most this many rows a second; faults stay");
+  verb.AddOption(
+      "--channel", &selection_.channels,
+      "NAME export the messages of this channel (HYDRO_STATE), or table; may be given several times");
+  verb.AddFlag("--all-channels", &selection_.all,
+               "export the table and the messages of every channel (MCAP: always)");
   verb.AddOption("--suffix", &suffix_, "TEXT suffix of the channels, where a log has several");
 }
 

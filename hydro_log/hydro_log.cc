@@ -48,9 +48,10 @@ class ImportVerb {
  public:
   explicit ImportVerb(settings::CommandLine& line) {
     settings::CommandLine& verb = line.AddVerb("import", "Write a table as a log, the inverse of export.");
-    verb.AddPositional("TABLE", &table_,
-                       "FILE the table: X.csv or X.mat, with any of export's columns that include time_s; in a "
-                       "MAT file they may stand in one struct");
+    verb.AddPositional(
+        "TABLE", &table_,
+        "FILE the table: X.csv or X.mat, with any of export's columns that include time_s; in a "
+        "MAT file they may stand in one struct");
     verb.AddOption("-o,--output", &out_, "FILE the log", true);
   }
   int Run() const {
@@ -64,8 +65,10 @@ class ImportVerb {
     runs::ImportRun(table, settings::ProgramVersion(), out_);
     if (!table.left_out.empty()) {
       const tables::LeftOut& first = table.left_out.front();
-      std::fprintf(stderr, "hydro-log: warning: %s: left out what is no signal of the run, %zu in all; the first: %s: %s\n",
-                   table_.c_str(), table.left_out.size(), Printable(first.name).c_str(), Printable(first.why).c_str());
+      std::fprintf(
+          stderr,
+          "hydro-log: warning: %s: left out what is no signal of the run, %zu in all; the first: %s: %s\n",
+          table_.c_str(), table.left_out.size(), Printable(first.name).c_str(), Printable(first.why).c_str());
     }
     return 0;
   }

@@ -73,7 +73,8 @@ void CutTable(const CutSource& source, double t0, double t1, bool si, const std:
   tables::Table table = runs::ExportRun(log);
   const auto& descriptions = log.messages.Of<run_description_t>();
   if (si) {
-    const UnitSystem units = descriptions.empty() ? UnitSystem{} : runs::ModelUnits(descriptions.front(), log_file);
+    const UnitSystem units =
+        descriptions.empty() ? UnitSystem{} : runs::ModelUnits(descriptions.front(), log_file);
     exports::ShowInSi(units, &table);
   }
   tables::WriteCsv(table, table_file);

@@ -12,7 +12,8 @@ namespace {
 
 template <bus::StackMessage Message>
 FoxgloveTopic Topic() {
-  const definitions::MessageDefinition& definition = *definitions::DefinitionOf(bus::RowOf<Message>().channel);
+  const definitions::MessageDefinition& definition =
+      *definitions::DefinitionOf(bus::RowOf<Message>().channel);
   FoxgloveTopic topic;
   topic.topic = definitions::RosTopic(definition.channel);
   topic.channel = definition.channel;

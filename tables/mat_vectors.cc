@@ -73,7 +73,8 @@ MatVector VectorOf(mat_t* mat, matvar_t* variable, const std::string& name) {
     vector.wrong = "found complex numbers; real ones are needed";
   } else if (!IsNumbers(*variable)) {
     vector.wrong =
-        "found text, a structure, a cell array, a sparse matrix or an object of MATLAB's; a vector of numbers is needed";
+        "found text, a structure, a cell array, a sparse matrix or an object of MATLAB's; a vector of "
+        "numbers is needed";
   } else if (variable->rank != 2 || (variable->dims[0] != 1 && variable->dims[1] != 1)) {
     vector.wrong = "found " + Dimensions(*variable) + " numbers; a vector is needed";
   } else if (const size_t count = variable->dims[0] * variable->dims[1]; count > 0) {
@@ -92,7 +93,8 @@ void AppendFields(matvar_t* variable, const std::string& name, int depth, std::v
     return of.rank == 2 && of.dims[0] == 1 && of.dims[1] == 1 && of.data != nullptr;
   };
   if (!one(*variable) || depth == kDeepest) {
-    const std::string found = depth == kDeepest ? "structs in structs, too deep" : Dimensions(*variable) + " structs";
+    const std::string found =
+        depth == kDeepest ? "structs in structs, too deep" : Dimensions(*variable) + " structs";
     vectors->push_back({name, {}, "found " + found + "; one struct of vectors is needed"});
     return;
   }

@@ -64,7 +64,8 @@ Table ReadTableWithoutUnits(const std::string& file) {
 void TakeStructOf(std::string_view name, Table* table) {
   const std::string ending = "." + std::string(name);
   const auto holds = [&](const Column& column) { return column.name.ends_with(ending); };
-  if (table->Find(name) != nullptr || std::count_if(table->columns.begin(), table->columns.end(), holds) != 1) return;
+  if (table->Find(name) != nullptr || std::count_if(table->columns.begin(), table->columns.end(), holds) != 1)
+    return;
   const std::string& found = std::find_if(table->columns.begin(), table->columns.end(), holds)->name;
   const std::string prefix = found.substr(0, found.size() - name.size());
   std::vector<Column> columns;

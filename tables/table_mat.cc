@@ -58,8 +58,8 @@ size_t RowsOfMost(const std::vector<MatVector>& vectors) {
 }
 
 std::string RowsWrong(const MatVector& vector, size_t rows, const std::string& like) {
-  return "found " + std::to_string(vector.values.size()) + " rows; " + std::to_string(rows) + " are needed, as many as " +
-         like;
+  return "found " + std::to_string(vector.values.size()) + " rows; " + std::to_string(rows) +
+         " are needed, as many as " + like;
 }
 
 // A file of vectors is a table, and anything else in it an error.
@@ -67,10 +67,12 @@ void TakeAll(std::vector<MatVector>& vectors, Table* table) {
   for (MatVector& vector : vectors) {
     const std::string place = table->file + ": column '" + vector.name + "': ";
     if (vector.name.empty()) throw InputError(place + "found no name; every column needs one");
-    if (table->Find(vector.name) != nullptr) throw InputError(place + "found a second time; each name is allowed once");
+    if (table->Find(vector.name) != nullptr)
+      throw InputError(place + "found a second time; each name is allowed once");
     if (!vector.wrong.empty()) throw InputError(place + vector.wrong);
     if (!table->columns.empty() && vector.values.size() != table->rows()) {
-      throw InputError(place + RowsWrong(vector, table->rows(), "column '" + table->columns.front().name + "' has"));
+      throw InputError(place +
+                       RowsWrong(vector, table->rows(), "column '" + table->columns.front().name + "' has"));
     }
     table->columns.push_back({vector.name, std::move(vector.values)});
   }
@@ -83,7 +85,8 @@ void TakeSignals(std::vector<MatVector>& vectors, Table* table) {
   for (MatVector& vector : vectors) {
     std::string wrong = vector.wrong;
     if (wrong.empty() && vector.values.size() != rows) wrong = RowsWrong(vector, rows, "its signals have");
-    if (wrong.empty() && table->Find(vector.name) != nullptr) wrong = "found a second time; each name is allowed once";
+    if (wrong.empty() && table->Find(vector.name) != nullptr)
+      wrong = "found a second time; each name is allowed once";
     if (wrong.empty()) {
       table->columns.push_back({vector.name, std::move(vector.values)});
     } else {
@@ -132,7 +135,8 @@ Table ReadMat(const std::string& file) {
   Found found = ReadVectors(mat.get());
   found.structs ? TakeSignals(found.vectors, &table) : TakeAll(found.vectors, &table);
   if (table.rows() == 0) {
-    const std::string example = table.left_out.empty() ? "" : ": " + table.left_out.front().name + ": " + table.left_out.front().why;
+    const std::string example =
+        table.left_out.empty() ? "" : ": " + table.left_out.front().name + ": " + table.left_out.front().why;
     throw InputError(file + ": found no rows; vectors of at least one number are needed" + example);
   }
   return table;

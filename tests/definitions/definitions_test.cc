@@ -98,7 +98,8 @@ TEST(DefinitionsTest, WrongBytes) {
   sealed.push_back(0);
   EXPECT_FALSE(Read("HYDRO_SETTINGS", sealed, &values));
   for (size_t size = 0; size < bytes.size(); ++size) {
-    EXPECT_FALSE(Read("HYDRO_SETTINGS", {bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(size)}, &values));
+    EXPECT_FALSE(
+        Read("HYDRO_SETTINGS", {bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(size)}, &values));
   }
   EXPECT_FALSE(Read("HYDRO_STATE", bytes, &values));
   // A list of as many elements as 32 bits can count takes no memory.

@@ -22,23 +22,25 @@ TEST(RosMessageTest, Schema) {
                                      {"names", FieldType::kString, "n"},
                                      {"on", FieldType::kBoolean, "", "", "or off"}};
   EXPECT_EQ(RosSchema(fields, {{"SAFE", FieldType::kInt8, "2", "zero volts"}}),
-            "int8 SAFE=2  # zero volts\nfloat64 p1  # [psi] pressure\nint32 n\nstring[] names\nbool on  # or off\n");
+            "int8 SAFE=2  # zero volts\nfloat64 p1  # [psi] pressure\nint32 n\nstring[] names\nbool on  # or "
+            "off\n");
 }
 
 // Tests CDR byte by byte: a header, each value at a multiple of its size from there, texts and lists with their lengths.
 TEST(RosMessageTest, Cdr) {
-  const std::vector<Field> fields = {{"on", FieldType::kBoolean}, {"n", FieldType::kInt16},
+  const std::vector<Field> fields = {{"on", FieldType::kBoolean},  {"n", FieldType::kInt16},
                                      {"text", FieldType::kString}, {"x", FieldType::kDouble},
                                      {"f", FieldType::kFloat},     {"list", FieldType::kInt8, "n"}};
   std::string bytes = "what was there before";
-  WriteCdr(fields, {int64_t{7}, int64_t{-2}, std::string("ab"), 1.0, 1.0, std::vector<int64_t>{-1, 3}}, &bytes);
+  WriteCdr(fields, {int64_t{7}, int64_t{-2}, std::string("ab"), 1.0, 1.0, std::vector<int64_t>{-1, 3}},
+           &bytes);
   const char expected[] =
-      "\0\1\0\0"                      // CDR, little endian
-      "\1\0\xfe\xff"                  // true; a gap; -2
-      "\3\0\0\0ab\0"                  // three bytes with the zero
-      "\0\0\0\0\0"                    // a gap to a multiple of 8
-      "\0\0\0\0\0\0\xf0\x3f"          // 1.0
-      "\0\0\x80\x3f"                  // 1.0f
+      "\0\1\0\0"              // CDR, little endian
+      "\1\0\xfe\xff"          // true; a gap; -2
+      "\3\0\0\0ab\0"          // three bytes with the zero
+      "\0\0\0\0\0"            // a gap to a multiple of 8
+      "\0\0\0\0\0\0\xf0\x3f"  // 1.0
+      "\0\0\x80\x3f"          // 1.0f
       "\2\0\0\0\xff\3";
   EXPECT_EQ(bytes, std::string(expected, sizeof expected - 1));
 }

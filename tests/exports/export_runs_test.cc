@@ -20,7 +20,8 @@ class ExportRunsTest : public log::LogTest {
  protected:
   std::vector<ExportedRun> Read(const std::vector<std::string>& files, const Selection& selection) {
     said_.clear();
-    return ReadRuns(files, std::nullopt, selection, false, [&](const std::string& line) { said_.push_back(line); });
+    return ReadRuns(files, std::nullopt, selection, false,
+                    [&](const std::string& line) { said_.push_back(line); });
   }
   std::string Write(const std::string& name, const runs::RunMessages& run) {
     log::WriteRun(Path(name), run, "");
@@ -36,7 +37,8 @@ Selection Channels(std::vector<std::string> names) {
 }
 
 const Sheet& SheetOf(const ExportedRun& run, const std::string& name) {
-  return *std::find_if(run.sheets.begin(), run.sheets.end(), [&](const Sheet& sheet) { return sheet.name == name; });
+  return *std::find_if(run.sheets.begin(), run.sheets.end(),
+                       [&](const Sheet& sheet) { return sheet.name == name; });
 }
 
 std::vector<int64_t> Ticks(const Sheet& sheet) {
@@ -87,7 +89,8 @@ TEST_F(ExportRunsTest, WindowAndRate) {
   selection.from_s = 5;
   selection.to_s = 6;
   EXPECT_THAT(log::InputErrorOf([&] { Read({file}, selection); }),
-              HasSubstr("--from, --to: found nothing of " + file + " there, allowed is a window of its run, 0 s to 0.099 s"));
+              HasSubstr("--from, --to: found nothing of " + file +
+                        " there, allowed is a window of its run, 0 s to 0.099 s"));
 }
 
 // Tests that faults are never thinned out.
@@ -110,7 +113,8 @@ TEST_F(ExportRunsTest, FaultsStay) {
 
 // Tests that logs whose ticks go on are one run, and others runs of their own, with names of their own.
 TEST_F(ExportRunsTest, SeveralLogs) {
-  const std::string first = Write("run.lcmlog", Part(0, 4, 7)), second = Write("run-001.lcmlog", Part(5, 9, 7));
+  const std::string first = Write("run.lcmlog", Part(0, 4, 7)),
+                    second = Write("run-001.lcmlog", Part(5, 9, 7));
   const std::string other = Write("other.lcmlog", Part(5, 9, 8));
   std::filesystem::create_directory(Path("sub"));
   const std::string again = Write("sub/run.lcmlog", Part(0, 2, 7));
@@ -143,9 +147,12 @@ TEST_F(ExportRunsTest, SeveralSessions) {
 // Tests that a log without this stack's messages, a damaged one and wrong choices are errors that say what is allowed.
 TEST_F(ExportRunsTest, WrongInput) {
   const std::string file = Write("run.lcmlog", log::SampleRun(7));
-  const auto error = [&](const Selection& selection) { return log::InputErrorOf([&] { Read({file}, selection); }); };
+  const auto error = [&](const Selection& selection) {
+    return log::InputErrorOf([&] { Read({file}, selection); });
+  };
   EXPECT_THAT(error(Channels({"HYDRO_STAT"})),
-              HasSubstr("--channel: found \"HYDRO_STAT\", did you mean \"HYDRO_STATE\"?, allowed of " + file + " are \"table\""));
+              HasSubstr("--channel: found \"HYDRO_STAT\", did you mean \"HYDRO_STATE\"?, allowed of " + file +
+                        " are \"table\""));
   EXPECT_THAT(error(Channels({"HYDRO_REARM"})), HasSubstr("found \"HYDRO_REARM\""));
   Selection backwards;
   backwards.from_s = 2;
@@ -156,10 +163,12 @@ TEST_F(ExportRunsTest, WrongInput) {
   EXPECT_THAT(error(rate), HasSubstr("--rate: found -1"));
 
   log::WriteEvents(Path("foreign"), {{"CAMERA", "abc", 5}});
-  EXPECT_THAT(log::InputErrorOf([&] { Read({Path("foreign")}, {}); }), HasSubstr("found no message on HYDRO_STATE"));
+  EXPECT_THAT(log::InputErrorOf([&] { Read({Path("foreign")}, {}); }),
+              HasSubstr("found no message on HYDRO_STATE"));
   Selection all;
   all.all = true;
-  EXPECT_THAT(log::InputErrorOf([&] { Read({Path("foreign")}, all); }), HasSubstr("found no message of this stack"));
+  EXPECT_THAT(log::InputErrorOf([&] { Read({Path("foreign")}, all); }),
+              HasSubstr("found no message of this stack"));
 
   std::string bytes = log::ReadBytes(file);
   bytes[bytes.size() / 2] ^= 1;
@@ -208,9 +217,12 @@ TEST(FormatTest, FromName) {
   EXPECT_EQ(FormatFor("-", std::nullopt), Format::kCsv);
   EXPECT_EQ(FormatFor("-", "mcap"), Format::kMcap);
   EXPECT_EQ(FormatFor("/dev/null", "hdf5"), Format::kHdf5);
-  EXPECT_THAT(log::InputErrorOf([] { FormatFor("a.txt", std::nullopt); }), HasSubstr("a.txt: found a name that tells no format"));
-  EXPECT_THAT(log::InputErrorOf([] { FormatFor("a.csv", "mat"); }), HasSubstr("a.csv: found an ending of csv with --format mat"));
-  EXPECT_THAT(log::InputErrorOf([] { FormatFor("a", "mcaps"); }), HasSubstr("--format: found \"mcaps\", did you mean \"mcap\"?"));
+  EXPECT_THAT(log::InputErrorOf([] { FormatFor("a.txt", std::nullopt); }),
+              HasSubstr("a.txt: found a name that tells no format"));
+  EXPECT_THAT(log::InputErrorOf([] { FormatFor("a.csv", "mat"); }),
+              HasSubstr("a.csv: found an ending of csv with --format mat"));
+  EXPECT_THAT(log::InputErrorOf([] { FormatFor("a", "mcaps"); }),
+              HasSubstr("--format: found \"mcaps\", did you mean \"mcap\"?"));
 }
 
 }  // namespace

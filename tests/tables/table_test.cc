@@ -176,7 +176,8 @@ matvar_t* Struct(const char* name, const std::vector<std::pair<const char*, matv
 
 matvar_t* Vector(const std::vector<double>& values, const char* name = nullptr) {
   size_t dimensions[2] = {values.size(), 1};
-  return Mat_VarCreate(name, MAT_C_DOUBLE, MAT_T_DOUBLE, 2, dimensions, const_cast<double*>(values.data()), 0);
+  return Mat_VarCreate(name, MAT_C_DOUBLE, MAT_T_DOUBLE, 2, dimensions, const_cast<double*>(values.data()),
+                       0);
 }
 
 void WriteVariables(const std::string& file, mat_ft version, const std::vector<matvar_t*>& variables) {
@@ -208,7 +209,8 @@ TEST_F(TableTest, MatStructs) {
     ForgetRead(Path("x.mat"));
     ExpectSame(table, expected);
     ASSERT_EQ(table.left_out.size(), 3u);
-    EXPECT_THAT(table.WhyNot("data.fs"), HasSubstr("found 1 rows; 3 are needed, as many as its signals have"));
+    EXPECT_THAT(table.WhyNot("data.fs"),
+                HasSubstr("found 1 rows; 3 are needed, as many as its signals have"));
     EXPECT_THAT(table.WhyNot("data.note"), HasSubstr("found text"));
     EXPECT_THAT(table.WhyNot("gain"), HasSubstr("found 1 rows"));
     EXPECT_EQ(table.WhyNot("data.t"), "");
@@ -229,7 +231,8 @@ TEST_F(TableTest, MatStructsWithoutSignals) {
   Mat_VarSetStructFieldByName(pair, "t", 0, Vector({1, 2}));
   Mat_VarSetStructFieldByName(pair, "t", 1, Vector({3, 4}));
   WriteVariables(Path("y.mat"), MAT_FT_MAT5, {pair});
-  EXPECT_THAT(log::InputErrorOf([&] { ReadTable(Path("y.mat")); }), HasSubstr("data: found 1x2 structs; one struct"));
+  EXPECT_THAT(log::InputErrorOf([&] { ReadTable(Path("y.mat")); }),
+              HasSubstr("data: found 1x2 structs; one struct"));
 }
 
 // Tests that columns of unequal length, no column at all and something else than a MAT file are errors.
