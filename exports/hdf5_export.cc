@@ -137,19 +137,17 @@ void WriteHdf5Export(const std::vector<ExportedRun>& runs, const std::string& pr
                      const std::string& file) {
   Output out(file, false);
   const Hdf5Writer writer(file);
-  {
-    const Hdf5Handle root = CreateHdf5(out.SeekablePath(), file);
-    writer.Attribute(root, "written_by", program);
-    for (const ExportedRun& run : runs) {
-      if (runs.size() == 1) {
-        writer.Write(root, run);
-      } else {
-        const Hdf5Handle group = writer.Group(root, run.name);
-        writer.Write(group, run);
-      }
+  const Hdf5Handle root = CreateHdf5(file);
+  writer.Attribute(root, "written_by", program);
+  for (const ExportedRun& run : runs) {
+    if (runs.size() == 1) {
+      writer.Write(root, run);
+    } else {
+      const Hdf5Handle group = writer.Group(root, run.name);
+      writer.Write(group, run);
     }
-    FlushHdf5(root, file);
   }
+  out.Write(Hdf5Bytes(root, file));
   out.Finish();
 }
 

@@ -29,13 +29,14 @@ class Hdf5Handle {
   herr_t (*close_)(hid_t);
 };
 
-// Creates a file, with that many bytes before what is HDF5. `path` is where, `file` its name for messages.
-Hdf5Handle CreateHdf5(const std::string& path, const std::string& file, hsize_t bytes_before = 0);
+// Creates a file in memory, with that many bytes before what is HDF5: the library must never write to a disk that may be full, as it then
+// crashes when the program ends (1.10). `file` is its name for messages.
+Hdf5Handle CreateHdf5(const std::string& file, hsize_t bytes_before = 0);
 
 // How datasets and groups are made: without the time, so that the same run gives the same bytes.
 Hdf5Handle WithoutTimes(hid_t kind, const std::string& file);
 
-// All that was written is in the file.
-void FlushHdf5(hid_t root, const std::string& file);
+// All that was written, as the bytes of a file.
+std::string Hdf5Bytes(hid_t root, const std::string& file);
 
 }  // namespace hydro::exports

@@ -1,5 +1,5 @@
 // MAT files of version 7.3: HDF5 with MATLAB's attributes. Written without matio, which puts the time of writing into every dataset, so that the
-// same run would not give the same bytes, and cannot write a file that is locked.
+// same run would not give the same bytes, and crashes at the end of the program when the disk is full.
 #include <cstring>
 #include <type_traits>
 
@@ -155,24 +155,18 @@ class Mat73Writer {
   int64_t cells_ = 0;
 };
 
-void WriteHeader(const std::string& path, const std::string& file) {
-  FILE* const out = std::fopen(path.c_str(), "r+b");
-  const std::string header = Header();
-  const bool written = out != nullptr && std::fwrite(header.data(), 1, header.size(), out) == header.size();
-  if ((out != nullptr && std::fclose(out) != 0) || !written) ThrowHdf5Error(file);
-}
-
 }  // namespace
 
 void WriteMat73Export(const std::vector<ExportedRun>& runs, const std::string& file) {
   Output out(file, false);
-  {
-    const Hdf5Handle root = CreateHdf5(out.SeekablePath(), file, kHeaderSize);
-    Mat73Writer writer(root, file);
-    for (const MatField& variable : MatVariables(runs)) writer.Write(root, variable.name, variable.value);
-    FlushHdf5(root, file);
-  }
-  WriteHeader(out.SeekablePath(), file);
+  const Hdf5Handle root = CreateHdf5(file, kHeaderSize);
+  Mat73Writer writer(root, file);
+  for (const MatField& variable : MatVariables(runs)) writer.Write(root, variable.name, variable.value);
+  // Versions of the library differ in whether the image has the bytes before what is HDF5.
+  const std::string bytes = Hdf5Bytes(root, file);
+  const size_t begin = bytes.starts_with("\x89HDF") ? 0 : kHeaderSize;
+  out.Write(Header());
+  out.Write(bytes.data() + begin, bytes.size() - begin);
   out.Finish();
 }
 

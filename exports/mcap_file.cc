@@ -100,8 +100,9 @@ uint16_t McapFile::AddSchema(const std::string& name, const std::string& encodin
   const auto record = [&](uint16_t number) {
     return Record(kSchema, Fields().Number(number).Text(name).Text(encoding).Text(text).bytes());
   };
-  for (uint16_t number = 1; number <= schemas_.size(); ++number) {
-    if (schemas_[number - 1u] == record(number)) return number;
+  for (size_t i = 0; i < schemas_.size(); ++i) {
+    const auto number = static_cast<uint16_t>(i + 1);
+    if (schemas_[i] == record(number)) return number;
   }
   schemas_.push_back(record(static_cast<uint16_t>(schemas_.size() + 1)));
   chunk_ += schemas_.back();

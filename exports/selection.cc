@@ -51,7 +51,7 @@ bool WantsTable(const Selection& selection) {
 }
 
 std::vector<std::string> ChosenChannels(const Selection& selection, const runs::RunLog& log) {
-  const std::vector<std::string> there = ChannelsOf(log);
+  std::vector<std::string> there = ChannelsOf(log);
   if (selection.all) return there;
   std::vector<std::string> chosen;
   for (const std::string& channel : there) {

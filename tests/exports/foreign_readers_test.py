@@ -6,7 +6,9 @@ import importlib.util
 import json
 import math
 import os
+import resource
 import shutil
+import signal
 import subprocess
 import sys
 import tempfile
@@ -359,6 +361,34 @@ class ForeignReadersTest(unittest.TestCase):
                 self.export(self.log, "-o", whole, "--format", form)
                 with open(whole, "rb") as file:
                     self.assertEqual(self.export(self.log, "-o", "-", "--format", form).stdout, file.read())
+
+    # Tests that a disk that fills up ends each format with one line and exit 1, and leaves no file.
+    def test_full_disk(self):
+        def little_room():
+            resource.setrlimit(resource.RLIMIT_FSIZE, (8192, 8192))
+            signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+
+        for form in ("csv", "mcap", "hdf5", "mat", "mat73"):
+            with self.subTest(form):
+                done = self.export(self.log, "-o", self.path("full"), "--format", form, expect=1, preexec_fn=little_room)
+                self.assertEqual(done.stderr.count(b"\n"), 1, done.stderr)
+                self.assertIn(b"full: cannot be written", done.stderr)
+                self.assertEqual([name for name in os.listdir(self.folder) if name.startswith("full")], [])
+
+    # Tests that an export never replaces its log, and that CSV takes one table.
+    def test_refused(self):
+        with open(self.log, "rb") as file:
+            before = file.read()
+        for arguments in ((self.log, "-o", self.log, "--format", "csv"), (self.sim, self.log, "-o", self.log, "--format", "mcap"),
+                          (self.log, "--all-channels", "-o", self.path("all.csv")), (self.log, "-o", self.path("x.parquet")),
+                          (self.log, "--channel", "HYDRO_STATE", "--all-channels", "-o", self.path("x.h5"))):
+            with self.subTest(arguments[-3:]):
+                done = self.export(*arguments, expect=2)
+                self.assertEqual(done.stderr.count(b"\n"), 1, done.stderr)
+                self.assertIn(b"allowed", done.stderr)
+        with open(self.log, "rb") as file:
+            self.assertEqual(file.read(), before)
+        self.assertFalse(os.path.exists(self.path("all.csv")))
 
 
 if __name__ == "__main__":
