@@ -1,9 +1,25 @@
 #include "tables/mat_vectors.h"
 
+#include <matio.h>
+
 #include <cstdint>
+#include <cstring>
+#include <memory>
+
+#include "base/input_error.h"
+#include "base/mapped_file.h"
+#include "base/read_files.h"
+#include "base/text_file.h"
 
 namespace hydro::tables {
 namespace {
+
+struct CloseMat {
+  void operator()(mat_t* mat) const { Mat_Close(mat); }
+};
+struct FreeVariable {
+  void operator()(matvar_t* variable) const { Mat_VarFree(variable); }
+};
 
 constexpr int kDeepest = 16;  // structs within structs
 
@@ -113,8 +129,7 @@ void AppendFields(matvar_t* variable, const std::string& name, int depth, std::v
   }
 }
 
-}  // namespace
-
+// Of a variable of which matio has told what it is: itself, or in a struct its fields, in their order.
 void AppendVectors(mat_t* mat, matvar_t* variable, std::vector<MatVector>* vectors) {
   const std::string name = variable->name != nullptr ? variable->name : "";
   if (variable->class_type != MAT_C_STRUCT) {
@@ -124,6 +139,49 @@ void AppendVectors(mat_t* mat, matvar_t* variable, std::vector<MatVector>* vecto
   } else {
     AppendFields(variable, name, 1, vectors);
   }
+}
+
+constexpr size_t kMat5HeaderSize = 128;
+constexpr size_t kMat5TagSize = 8;  // of each element after the header: its type and byte count
+
+// When a MAT 5 file is cut off, matio returns unfilled memory for the missing values, so all elements must be
+// there.
+void CheckMat5IsWhole(const std::string& file) {
+  const MappedFile contents(file);
+  const bool swapped = contents.size() >= kMat5HeaderSize && contents.data()[kMat5HeaderSize - 2] == 'M';
+  size_t offset = kMat5HeaderSize;
+  while (offset < contents.size()) {
+    const size_t left = contents.size() - offset;
+    uint32_t size = 0;
+    if (left >= kMat5TagSize) std::memcpy(&size, contents.data() + offset + 4, sizeof size);
+    if (swapped) size = __builtin_bswap32(size);
+    if (left < kMat5TagSize || size > left - kMat5TagSize) {
+      throw InputError(file + ": byte " + std::to_string(offset) +
+                       ": found a variable cut off by the end of the file, " + std::to_string(left) +
+                       " bytes; " + std::to_string(kMat5TagSize + size) + " are needed");
+    }
+    offset += kMat5TagSize + size;
+  }
+}
+
+}  // namespace
+
+MatContents ReadMatContents(const std::string& file) {
+  Mat_LogInitFunc("hydro", [](int, char*) {});  // our own errors name the place; matio's, on stderr, do not
+  { const MappedFile readable(file); }          // throws the system's reason if it is not readable
+  CheckIsFile(file);
+  RememberRead(file);
+  const std::unique_ptr<mat_t, CloseMat> mat(Mat_Open(file.c_str(), MAT_ACC_RDONLY));
+  if (mat == nullptr || Mat_GetVersion(mat.get()) == MAT_FT_MAT4) {
+    throw InputError(file + ": found no MAT file of version 5 or 7.3; these are allowed");
+  }
+  if (Mat_GetVersion(mat.get()) == MAT_FT_MAT5) CheckMat5IsWhole(file);
+  MatContents found;
+  while (const std::unique_ptr<matvar_t, FreeVariable> variable{Mat_VarReadNextInfo(mat.get())}) {
+    found.structs = found.structs || variable->class_type == MAT_C_STRUCT;
+    AppendVectors(mat.get(), variable.get(), &found.vectors);
+  }
+  return found;
 }
 
 }  // namespace hydro::tables

@@ -1,7 +1,5 @@
-// The vectors of numbers in a variable of a MAT file.
+// The vectors of numbers in a MAT file.
 #pragma once
-
-#include <matio.h>
 
 #include <string>
 #include <vector>
@@ -14,7 +12,12 @@ struct MatVector {
   std::string wrong;  // why it is no vector of numbers: "found ...; ... is needed"
 };
 
-// Reads a variable of which matio has told what it is, and appends what is in it: itself, or in a struct its fields, in their order.
-void AppendVectors(mat_t* mat, matvar_t* variable, std::vector<MatVector>* vectors);
+struct MatContents {
+  std::vector<MatVector> vectors;  // all that the file has, in its order
+  bool structs = false;            // some of it in structs
+};
+
+// Reads a MAT file of version 5 or 7.3. Throws InputError where it cannot be read, is none, or is cut off.
+MatContents ReadMatContents(const std::string& file);
 
 }  // namespace hydro::tables

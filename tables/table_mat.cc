@@ -2,15 +2,11 @@
 #include <sys/stat.h>
 
 #include <algorithm>
-#include <cstring>
 #include <map>
 #include <memory>
 
 #include "base/input_error.h"
-#include "base/mapped_file.h"
 #include "base/new_file.h"
-#include "base/read_files.h"
-#include "base/text_file.h"
 #include "tables/mat_vectors.h"
 #include "tables/table.h"
 
@@ -25,26 +21,6 @@ struct FreeVariable {
 };
 using MatFile = std::unique_ptr<mat_t, CloseMat>;
 using Variable = std::unique_ptr<matvar_t, FreeVariable>;
-
-// Our own errors name the place; matio's, on stderr, do not.
-void SilenceMatio() {
-  Mat_LogInitFunc("hydro", [](int, char*) {});
-}
-
-// What a file has, in its order.
-struct Found {
-  std::vector<MatVector> vectors;
-  bool structs = false;
-};
-
-Found ReadVectors(mat_t* mat) {
-  Found found;
-  while (const Variable variable{Mat_VarReadNextInfo(mat)}) {
-    found.structs = found.structs || variable->class_type == MAT_C_STRUCT;
-    AppendVectors(mat, variable.get(), &found.vectors);
-  }
-  return found;
-}
 
 // As many as the vectors have that together hold most numbers: the signals.
 size_t RowsOfMost(const std::vector<MatVector>& vectors) {
@@ -95,44 +71,12 @@ void TakeSignals(std::vector<MatVector>& vectors, Table* table) {
   }
 }
 
-constexpr size_t kMat5HeaderSize = 128;
-constexpr size_t kMat5TagSize = 8;  // of each element after the header: its type and byte count
-
-// When a MAT 5 file is cut off, matio returns unfilled memory for the missing values, so all elements must be
-// there.
-void CheckMat5IsWhole(const std::string& file) {
-  const MappedFile contents(file);
-  const bool swapped = contents.size() >= kMat5HeaderSize && contents.data()[kMat5HeaderSize - 2] == 'M';
-  size_t offset = kMat5HeaderSize;
-  while (offset < contents.size()) {
-    const size_t left = contents.size() - offset;
-    uint32_t size = 0;
-    if (left >= kMat5TagSize) std::memcpy(&size, contents.data() + offset + 4, sizeof size);
-    if (swapped) size = __builtin_bswap32(size);
-    if (left < kMat5TagSize || size > left - kMat5TagSize) {
-      throw InputError(file + ": byte " + std::to_string(offset) +
-                       ": found a variable cut off by the end of the file, " + std::to_string(left) +
-                       " bytes; " + std::to_string(kMat5TagSize + size) + " are needed");
-    }
-    offset += kMat5TagSize + size;
-  }
-}
-
 }  // namespace
 
 Table ReadMat(const std::string& file) {
-  SilenceMatio();
-  { const MappedFile readable(file); }  // throws the system's reason if it is not readable
-  CheckIsFile(file);
-  RememberRead(file);
-  const MatFile mat(Mat_Open(file.c_str(), MAT_ACC_RDONLY));
-  if (mat == nullptr || Mat_GetVersion(mat.get()) == MAT_FT_MAT4) {
-    throw InputError(file + ": found no MAT file of version 5 or 7.3; these are allowed");
-  }
-  if (Mat_GetVersion(mat.get()) == MAT_FT_MAT5) CheckMat5IsWhole(file);
   Table table;
   table.file = file;
-  Found found = ReadVectors(mat.get());
+  MatContents found = ReadMatContents(file);
   found.structs ? TakeSignals(found.vectors, &table) : TakeAll(found.vectors, &table);
   if (table.rows() == 0) {
     const std::string example =
@@ -143,7 +87,7 @@ Table ReadMat(const std::string& file) {
 }
 
 void WriteMat(const Table& table, const std::string& file) {
-  SilenceMatio();
+  Mat_LogInitFunc("hydro", [](int, char*) {});  // our own errors name the file
   NewFile out(file, Opening::kTemporary);
   // Our own header: matio's holds the date, and the same table must give the same bytes.
   MatFile mat(Mat_CreateVer(out.path().c_str(), "MATLAB 5.0 MAT-file, written by hydro-log", MAT_FT_MAT5));

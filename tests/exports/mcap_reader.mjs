@@ -57,7 +57,7 @@ for await (const record of reader.readAttachments())
 const stream = new McapStreamReader({ validateCrcs: true });
 for await (const bytes of createReadStream(process.argv[2])) {
   stream.append(bytes);
-  for (let record; (record = stream.nextRecord()); ) if (record.type === 'Message') ++found.streamed;
+  for (let record; (record = stream.nextRecord());) if (record.type === 'Message') ++found.streamed;
 }
 found.streamDone = stream.done();
 
