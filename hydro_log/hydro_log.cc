@@ -7,6 +7,7 @@
 #include "base/input_error.h"
 #include "base/read_files.h"
 #include "base/text_file.h"
+#include "hydro_log/export_verb.h"
 #include "hydro_log/run_verbs.h"
 #include "log/repair.h"
 #include "runs/compare.h"
@@ -43,46 +44,32 @@ class InfoVerb {
   bool json_ = false, si_ = false;
 };
 
-class ExportVerb {
- public:
-  explicit ExportVerb(settings::CommandLine& line) {
-    settings::CommandLine& verb =
-        line.AddVerb("export", "Write a log's run as a table, one row per plant tick.");
-    verb.AddPositional("LOG", &log_, "FILE the log");
-    verb.AddOption("-o,--output", &out_, "FILE the table: X.csv or X.mat", true);
-    verb.AddOption("--suffix", &suffix_, "TEXT suffix of the channels, where the log has several");
-  }
-  int Run() const {
-    tables::CheckTableName(out_);
-    CheckKeeps(out_, {log_});
-    const runs::RunLog log = ReadWithWarning(log_, suffix_);
-    const tables::Table table = runs::ExportRun(log);
-    WarnOf(log);
-    tables::WriteTable(table, out_);
-    return 0;
-  }
-
- private:
-  std::string log_, out_;
-  std::optional<std::string> suffix_;
-};
-
 class ImportVerb {
  public:
   explicit ImportVerb(settings::CommandLine& line) {
     settings::CommandLine& verb = line.AddVerb("import", "Write a table as a log, the inverse of export.");
-    verb.AddPositional("TABLE", &table_,
-                       "FILE the table: X.csv or X.mat, with any of export's columns that include time_s");
+    verb.AddPositional(
+        "TABLE", &table_,
+        "FILE the table: X.csv or X.mat, with any of export's columns that include time_s; in a "
+        "MAT file they may stand in one struct");
     verb.AddOption("-o,--output", &out_, "FILE the log", true);
   }
   int Run() const {
     tables::CheckTableName(table_);
     CheckKeeps(out_, {table_});
-    const tables::Table table = tables::ReadTableWithoutUnits(table_);
+    tables::Table table = tables::ReadTableWithoutUnits(table_);
+    tables::TakeStructOf("time_s", &table);
     if (!table.layout.empty()) {
       std::fprintf(stderr, "hydro-log: %s: read with %s\n", table_.c_str(), table.layout.c_str());
     }
     runs::ImportRun(table, settings::ProgramVersion(), out_);
+    if (!table.left_out.empty()) {
+      const tables::LeftOut& first = table.left_out.front();
+      std::fprintf(
+          stderr,
+          "hydro-log: warning: %s: left out what is no signal of the run, %zu in all; the first: %s: %s\n",
+          table_.c_str(), table.left_out.size(), Printable(first.name).c_str(), Printable(first.why).c_str());
+    }
     return 0;
   }
 

@@ -92,7 +92,7 @@ std::optional<SignalColumn> ReadEntry(settings::SectionReader& columns, const st
   if (source.column == nullptr) {
     std::vector<std::string> names;
     for (const tables::Column& column : table.columns) names.push_back(column.name);
-    throw columns.Error(key, Quoted(name), ColumnsOf(table) + DidYouMean(name, names));
+    throw columns.Error(key, Quoted(name) + table.WhyNot(name), ColumnsOf(table) + DidYouMean(name, names));
   }
   if (!converts) {
     source.unit = UnitOfRow(columns, key, ours, *source.column);

@@ -6,27 +6,16 @@
 
 #include "base/input_error.h"
 #include "base/number_text.h"
-#include "base/units.h"
+#include "exports/sheet_units.h"
 #include "log/log_reader.h"
 #include "log/log_writer.h"
+#include "runs/run_config.h"
 #include "runs/run_log.h"
 #include "runs/run_table.h"
 #include "scope/signals/cut_window.h"
 
 namespace hydro::scope {
 namespace {
-
-// The columns of pressures, which alone have another unit in SI.
-void ToSi(tables::Table* table) {
-  constexpr std::string_view kPaper = "_psi";
-  const auto si = FindSiUnit("psi", 1000);
-  if (!si) return;
-  for (tables::Column& column : table->columns) {
-    if (!column.name.ends_with(kPaper)) continue;
-    column.name.replace(column.name.size() - kPaper.size() + 1, std::string::npos, si->to);
-    for (double& value : column.values) value *= si->factor;
-  }
-}
 
 struct Held {
   std::vector<uint8_t> data;
@@ -80,9 +69,14 @@ void CutLog(const CutSource& source, double t0, double t1, const std::string& fi
 void CutTable(const CutSource& source, double t0, double t1, bool si, const std::string& log_file,
               const std::string& table_file) {
   CutLog(source, t0, t1, log_file);
-  tables::Table table =
-      runs::ExportRun(runs::ReadRunLog(log_file, source.suffix, runs::Undecodable::kLeftOut));
-  if (si) ToSi(&table);
+  const runs::RunLog log = runs::ReadRunLog(log_file, source.suffix, runs::Undecodable::kLeftOut);
+  tables::Table table = runs::ExportRun(log);
+  const auto& descriptions = log.messages.Of<run_description_t>();
+  if (si) {
+    const UnitSystem units =
+        descriptions.empty() ? UnitSystem{} : runs::ModelUnits(descriptions.front(), log_file);
+    exports::ShowInSi(units, &table);
+  }
   tables::WriteCsv(table, table_file);
 }
 

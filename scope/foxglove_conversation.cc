@@ -113,7 +113,7 @@ bool FoxgloveConversation::Next(Message* message) {
       const auto ids = subscriptions_.find(found.channel);
       if (ids == subscriptions_.end() || ids->second.empty()) continue;
       const FoxgloveTopic& topic = FoxgloveTopics()[ids->second.begin()->second];
-      if (!topic.encode(found.data, static_cast<int>(found.size), &cdr_)) continue;
+      if (!topic.Encode(found.data, static_cast<int>(found.size), &cdr_)) continue;
       for (const auto& [id, topic_index] : ids->second) {
         std::string bytes(1, kMessageData);
         Put(bytes, id);

@@ -1,5 +1,5 @@
 // The messages of a stack as Foxglove's protocol carries them: encoded as CDR, described by ROS 2 message definitions, which
-// Foxglove, Lichtblick and PlotJuggler read.
+// Foxglove, Lichtblick and PlotJuggler read. hydro-log export writes the same to MCAP files.
 #pragma once
 
 #include <cstdint>
@@ -14,10 +14,12 @@ struct FoxgloveTopic {
   std::string channel;  // of LCM, without the stack's suffix
   std::string schema_name;
   std::string schema;  // a ROS 2 message definition
+
   // Writes the message as CDR, little endian. False: the bytes are no such message.
-  bool (*encode)(const uint8_t* data, int size, std::string* cdr);
+  bool Encode(const uint8_t* data, int size, std::string* cdr) const;
 };
 
+// Those that change while a stack runs.
 const std::vector<FoxgloveTopic>& FoxgloveTopics();
 
 }  // namespace hydro::scope

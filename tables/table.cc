@@ -28,6 +28,13 @@ const Column* Table::Find(std::string_view name) const {
   return nullptr;
 }
 
+std::string Table::WhyNot(std::string_view name) const {
+  for (const LeftOut& one : left_out) {
+    if (one.name == name) return ": " + one.why;
+  }
+  return {};
+}
+
 std::string Table::Place(size_t row, std::string_view column) const {
   return file + ": " +
          (lines.empty() ? "row " + std::to_string(row + 1) : "line " + std::to_string(lines[row])) +
@@ -52,6 +59,25 @@ Table ReadTableWithoutUnits(const std::string& file) {
                      " in a row of units, allowed columns whose names say their units, and no such row");
   }
   return table;
+}
+
+void TakeStructOf(std::string_view name, Table* table) {
+  const std::string ending = "." + std::string(name);
+  const auto holds = [&](const Column& column) { return column.name.ends_with(ending); };
+  if (table->Find(name) != nullptr || std::count_if(table->columns.begin(), table->columns.end(), holds) != 1)
+    return;
+  const std::string& found = std::find_if(table->columns.begin(), table->columns.end(), holds)->name;
+  const std::string prefix = found.substr(0, found.size() - name.size());
+  std::vector<Column> columns;
+  for (Column& column : table->columns) {
+    if (column.name.starts_with(prefix) && column.name.find('.', prefix.size()) == std::string::npos) {
+      column.name.erase(0, prefix.size());
+      columns.push_back(std::move(column));
+    } else {
+      table->left_out.push_back({column.name, "found outside the struct of " + std::string(name)});
+    }
+  }
+  table->columns = std::move(columns);
 }
 
 void CheckTableName(const std::string& file) {

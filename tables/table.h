@@ -16,15 +16,25 @@ struct Column {
   std::string unit = {};       // from a row of units, in the words of base/units where there are some
 };
 
+// Something of a file that is no column of its table.
+struct LeftOut {
+  std::string name;
+  std::string why;  // "found ...; ... is needed"
+};
+
 struct Table {
   std::string file;             // the file it was read from, for messages
   std::vector<size_t> lines;    // of a CSV: the line of each row; empty: messages count rows, from 1
   std::vector<Column> columns;  // all of the same length
   std::string layout;  // how a CSV was read, where that was not the plain way: "semicolons between cells"
 
+  std::vector<LeftOut> left_out;  // of a MAT file with structs: what is no signal
+
   size_t rows() const { return columns.empty() ? 0 : columns.front().values.size(); }
   // Null when there is none of that name.
   const Column* Find(std::string_view name) const;
+  // Why there is none of that name, where the file has something of that name: ": found text; ..."; else empty.
+  std::string WhyNot(std::string_view name) const;
   // Where a value stands, for messages: "run.csv: line 17, column p1_psi".
   std::string Place(size_t row, std::string_view column) const;
 };
@@ -37,6 +47,10 @@ Table ReadTable(const std::string& file, const CsvSettings& settings = {});
 
 // The same for a table whose names say its units, such as an export of hydro-log: a row of units is an error.
 Table ReadTableWithoutUnits(const std::string& file);
+
+// Where no column has that name but one in a struct of a MAT file has, "data.t": leaves that struct's columns, under their names in it, and the others
+// out.
+void TakeStructOf(std::string_view name, Table* table);
 
 // Writes a table, whole or not at all. Throws InputError when the file cannot be created or its name ends in
 // neither .csv nor .mat, WriteError when the disk is full.
@@ -53,8 +67,9 @@ void CheckTableName(const std::string& file);
 Table ReadCsv(const std::string& file, const CsvSettings& settings = {});
 void WriteCsv(const Table& table, const std::string& file);
 
-// MAT, version 5 or 7.3: one real vector of numbers per column, under the column's name. Written in the MAT 5
-// format, as column vectors.
+// MAT, version 5 or 7.3: one real vector of numbers per column, under the column's name; a vector t in a struct data is the column
+// data.t, and so on through structs in structs. Anything else is an error in a file of vectors, and left out of one with structs, as are
+// vectors of another length than its signals. Written in the MAT 5 format, as column vectors.
 Table ReadMat(const std::string& file);
 void WriteMat(const Table& table, const std::string& file);
 

@@ -164,6 +164,77 @@ TEST_F(TableTest, MatOfOthers) {
   EXPECT_THAT(log::InputErrorOf([&] { ReadTable(Path("x.mat")); }), HasSubstr("column 'text': found text"));
 }
 
+// A struct, which takes the fields over.
+matvar_t* Struct(const char* name, const std::vector<std::pair<const char*, matvar_t*>>& fields) {
+  std::vector<const char*> names;
+  for (const auto& field : fields) names.push_back(field.first);
+  size_t one[2] = {1, 1};
+  matvar_t* made = Mat_VarCreateStruct(name, 2, one, names.data(), static_cast<unsigned>(names.size()));
+  for (const auto& [field, value] : fields) Mat_VarSetStructFieldByName(made, field, 0, value);
+  return made;
+}
+
+matvar_t* Vector(const std::vector<double>& values, const char* name = nullptr) {
+  size_t dimensions[2] = {values.size(), 1};
+  return Mat_VarCreate(name, MAT_C_DOUBLE, MAT_T_DOUBLE, 2, dimensions, const_cast<double*>(values.data()),
+                       0);
+}
+
+void WriteVariables(const std::string& file, mat_ft version, const std::vector<matvar_t*>& variables) {
+  mat_t* mat = Mat_CreateVer(file.c_str(), nullptr, version);
+  ASSERT_NE(mat, nullptr);
+  for (matvar_t* variable : variables) {
+    EXPECT_EQ(Mat_VarWrite(mat, variable, MAT_COMPRESSION_NONE), 0);
+    Mat_VarFree(variable);
+  }
+  Mat_Close(mat);
+}
+
+matvar_t* MeasuredStruct() {
+  char note[] = "rig 2";
+  size_t length[2] = {1, 5};
+  return Struct("data", {{"t", Vector({0, 1, 2})},
+                         {"motor", Struct(nullptr, {{"w", Vector({5, 6, 7})}})},
+                         {"fs", Vector({1000})},
+                         {"note", Mat_VarCreate(nullptr, MAT_C_CHAR, MAT_T_UINT8, 2, length, note, 0)}});
+}
+
+// Tests that vectors in structs are columns, in both versions of the format, and that what is no signal is left out with the reason.
+TEST_F(TableTest, MatStructs) {
+  Table expected;
+  expected.columns = {{"data.t", {0, 1, 2}}, {"data.motor.w", {5, 6, 7}}};
+  for (const mat_ft version : {MAT_FT_MAT5, MAT_FT_MAT73}) {
+    WriteVariables(Path("x.mat"), version, {MeasuredStruct(), Vector({4}, "gain")});
+    Table table = ReadTable(Path("x.mat"));
+    ForgetRead(Path("x.mat"));
+    ExpectSame(table, expected);
+    ASSERT_EQ(table.left_out.size(), 3u);
+    EXPECT_THAT(table.WhyNot("data.fs"),
+                HasSubstr("found 1 rows; 3 are needed, as many as its signals have"));
+    EXPECT_THAT(table.WhyNot("data.note"), HasSubstr("found text"));
+    EXPECT_THAT(table.WhyNot("gain"), HasSubstr("found 1 rows"));
+    EXPECT_EQ(table.WhyNot("data.t"), "");
+    TakeStructOf("t", &table);
+    ASSERT_EQ(table.columns.size(), 1u);
+    EXPECT_EQ(table.columns[0].name, "t");
+    EXPECT_THAT(table.WhyNot("data.motor.w"), HasSubstr("outside the struct"));
+  }
+}
+
+// Tests that a struct without a signal, and an array of structs, are errors that say what was found.
+TEST_F(TableTest, MatStructsWithoutSignals) {
+  WriteVariables(Path("x.mat"), MAT_FT_MAT5, {Struct("data", {{"t", Vector({})}})});
+  EXPECT_THAT(log::InputErrorOf([&] { ReadTable(Path("x.mat")); }), HasSubstr("x.mat: found no rows"));
+  const char* names[] = {"t"};
+  size_t two[2] = {1, 2};
+  matvar_t* pair = Mat_VarCreateStruct("data", 2, two, names, 1);
+  Mat_VarSetStructFieldByName(pair, "t", 0, Vector({1, 2}));
+  Mat_VarSetStructFieldByName(pair, "t", 1, Vector({3, 4}));
+  WriteVariables(Path("y.mat"), MAT_FT_MAT5, {pair});
+  EXPECT_THAT(log::InputErrorOf([&] { ReadTable(Path("y.mat")); }),
+              HasSubstr("data: found 1x2 structs; one struct"));
+}
+
 // Tests that columns of unequal length, no column at all and something else than a MAT file are errors.
 TEST_F(TableTest, MalformedMat) {
   Table table;

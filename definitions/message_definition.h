@@ -1,0 +1,51 @@
+// What the .lcm files say of the messages, at run time: their fields with type, unit and meaning.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace hydro::definitions {
+
+enum class FieldType { kBoolean, kByte, kInt8, kInt16, kInt32, kInt64, kFloat, kDouble, kString };
+
+struct Field {
+  std::string name;
+  FieldType type = FieldType::kDouble;
+  std::string count = {};        // the field that says how many elements there are; empty: a single value
+  std::string unit = {};         // "psi", of a comment that begins with "[psi]"; empty: none
+  std::string description = {};  // the rest of the comment
+
+  bool is_list() const { return !count.empty(); }
+};
+
+struct Constant {
+  std::string name;
+  FieldType type = FieldType::kInt8;
+  std::string value;
+  std::string description = {};
+};
+
+struct MessageDefinition {
+  std::string type;         // "state_t"
+  std::string channel;      // "HYDRO_STATE", without a stack's suffix
+  std::string description;  // the comment before the struct
+  std::vector<Field> fields;
+  std::vector<Constant> constants;
+  int64_t hash = 0;  // what an encoded message begins with
+};
+
+// Whether values of the type are whole numbers; truth values are.
+bool IsWhole(FieldType type);
+
+// Bytes of a value as LCM encodes it; 0 for strings.
+int SizeOf(FieldType type);
+
+// All messages of a stack, in the order of bus/messages.h.
+const std::vector<MessageDefinition>& Definitions();
+
+// The definition whose channel `channel` begins with; the rest is the stack's suffix. Null: none.
+const MessageDefinition* DefinitionOf(std::string_view channel);
+
+}  // namespace hydro::definitions

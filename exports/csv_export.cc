@@ -1,0 +1,144 @@
+// CSV holds one table: the run's, or the messages of one channel; of several runs with a first column that names the run.
+#include <algorithm>
+#include <cmath>
+
+#include "base/input_error.h"
+#include "base/number_text.h"
+#include "exports/output.h"
+#include "exports/sheet_units.h"
+#include "exports/write_export.h"
+
+namespace hydro::exports {
+namespace {
+
+constexpr size_t kWriteChunk = 1u << 20;
+
+// In quotes where a reader would take it for something else.
+void AppendText(const std::string& value, std::string* text) {
+  if (value.find_first_of(",\"\r\n") == std::string::npos) {
+    *text += value;
+    return;
+  }
+  *text += '"';
+  for (const char c : value) {
+    if (c == '"') *text += '"';
+    *text += c;
+  }
+  *text += '"';
+}
+
+class CellWriter {
+ public:
+  CellWriter(size_t row, bool alone, std::string* text) : row_(row), alone_(alone), text_(*text) {}
+
+  template <class T>
+  void operator()(const std::vector<T>& values) {
+    Cell(values[row_]);
+  }
+
+ private:
+  void Cell(int64_t value) { text_ += std::to_string(value); }
+  void Cell(double value) {
+    // A missing value is an empty cell; a line with nothing else would be an empty line.
+    if (!std::isnan(value) || alone_) AppendNumber(value, text_);
+  }
+  void Cell(const std::string& value) { AppendText(value, &text_); }
+  // A list is one cell, with blanks between its elements.
+  template <class T>
+  void Cell(const std::vector<T>& list) {
+    std::string cell;
+    for (const T& element : list) {
+      if (!cell.empty()) cell += ' ';
+      if constexpr (std::is_same_v<T, std::string>) {
+        cell += element;
+      } else if constexpr (std::is_same_v<T, double>) {
+        AppendNumber(element, cell);
+      } else {
+        cell += std::to_string(element);
+      }
+    }
+    AppendText(cell, &text_);
+  }
+
+  size_t row_;
+  bool alone_;
+  std::string& text_;
+};
+
+// A channel's column with its unit, as there is no other place for it; the table's columns have theirs.
+std::string Heading(const Sheet& sheet, const definitions::Field& field) {
+  if (sheet.is_table || field.unit.empty()) return field.name;
+  const std::string unit = "_" + UnitInName(field.unit);
+  return field.name.ends_with(unit) ? field.name : field.name + unit;
+}
+
+// The sheet's columns, each name once: a state has time_s of its own.
+std::vector<SheetColumn> ColumnsOf(const Sheet& sheet) {
+  std::vector<SheetColumn> columns;
+  for (SheetColumn& column : WithTimes(sheet)) {
+    column.field.name = Heading(sheet, column.field);
+    const auto same = [&](const SheetColumn& one) { return one.field.name == column.field.name; };
+    if (std::none_of(columns.begin(), columns.end(), same)) columns.push_back(std::move(column));
+  }
+  return columns;
+}
+
+std::string HeadLine(const std::vector<SheetColumn>& columns, bool several) {
+  std::string line = several ? "run" : "";
+  for (const SheetColumn& column : columns) {
+    if (!line.empty()) line += ',';
+    line += column.field.name;
+  }
+  return line + '\n';
+}
+
+void WriteRows(const ExportedRun& run, const std::vector<SheetColumn>& columns, bool several, size_t rows,
+               Output* out) {
+  std::string text;
+  for (size_t row = 0; row < rows; ++row) {
+    if (several) AppendText(run.name, &text);
+    for (size_t i = 0; i < columns.size(); ++i) {
+      if (i > 0 || several) text += ',';
+      std::visit(CellWriter(row, columns.size() == 1, &text), columns[i].values);
+    }
+    text += '\n';
+    if (text.size() < kWriteChunk) continue;
+    out->Write(text);
+    text.clear();
+  }
+  out->Write(text);
+}
+
+void CheckOneSheet(const std::vector<ExportedRun>& runs) {
+  for (const ExportedRun& run : runs) {
+    if (run.sheets.size() == 1) continue;
+    std::string names;
+    for (const Sheet& sheet : run.sheets) names += (names.empty() ? "" : ", ") + sheet.name;
+    throw InputError("found " + std::to_string(run.sheets.size()) + " tables to export (" + names +
+                     "), allowed is one in CSV; take mat, hdf5 or mcap, or --channel for one after another");
+  }
+}
+
+}  // namespace
+
+void WriteCsvExport(const std::vector<ExportedRun>& runs, const std::string& file) {
+  CheckOneSheet(runs);
+  const bool several = runs.size() > 1;
+  Output out(file, true);
+  std::string head;
+  for (const ExportedRun& run : runs) {
+    const std::vector<SheetColumn> columns = ColumnsOf(run.sheets.front());
+    const std::string line = HeadLine(columns, several);
+    if (head.empty()) {
+      head = line;
+      out.Write(head);
+    } else if (line != head) {
+      throw InputError(run.files.front() + ": found other units than in " + runs.front().files.front() +
+                       ", allowed in one CSV are runs of the same");
+    }
+    WriteRows(run, columns, several, run.sheets.front().rows(), &out);
+  }
+  out.Finish();
+}
+
+}  // namespace hydro::exports

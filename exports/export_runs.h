@@ -1,0 +1,23 @@
+// Logs as runs for export.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "exports/selection.h"
+#include "exports/sheet.h"
+
+namespace hydro::exports {
+
+// Reads the logs in the order given. A log whose states go on where those of the log before end, from the same sender, is more of that
+// run (the recorder's rotation); any other is a run of its own, named by its file's stem. `times`: the table's rows too say when they were
+// received, which takes another reading. `say` is called with each line for people about what is missing or odd.
+// Throws InputError, log::LogError: what a log lacks of the selection, a log that is damaged, a table that cannot be made, a window in
+// which nothing lies.
+std::vector<ExportedRun> ReadRuns(const std::vector<std::string>& files,
+                                  const std::optional<std::string>& suffix, const Selection& selection,
+                                  bool times, const std::function<void(const std::string&)>& say);
+
+}  // namespace hydro::exports

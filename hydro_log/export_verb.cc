@@ -1,0 +1,61 @@
+#include "hydro_log/export_verb.h"
+
+#include <cstdio>
+
+#include "base/input_error.h"
+#include "base/new_file.h"
+#include "base/read_files.h"
+#include "base/text_file.h"
+#include "exports/export_runs.h"
+#include "exports/output.h"
+#include "exports/write_export.h"
+
+namespace hydro::hydro_log {
+
+ExportVerb::ExportVerb(settings::CommandLine& line) {
+  settings::CommandLine& verb = line.AddVerb(
+      "export", "Write runs for other tools: a table, one row per plant tick, or the messages of channels.");
+  verb.AddPositional("LOG", &logs_, "FILE the log; several: runs, or one that a recorder split");
+  verb.AddOption("-o,--output", &out_,
+                 "FILE where to write: X.csv, X.mat, X.h5, X.hdf5, X.mcap, or - for the standard output",
+                 true);
+  verb.AddOption("--format", &format_,
+                 "NAME csv, mat (version 5), mat73, hdf5 or mcap, where the file's name does not tell");
+  verb.AddFlag("--si", &selection_.si, "convert to SI units");
+  verb.AddOption("--from", &from_s_, "S leave out what is before this plant time");
+  verb.AddOption("--to", &to_s_, "S leave out what is after this plant time");
+  verb.AddOption("--rate", &selection_.rate_hz,
+                 "HZ thin out to at most this many rows a second; faults stay");
+  verb.AddOption(
+      "--channel", &selection_.channels,
+      "NAME export the messages of this channel (HYDRO_STATE), or table; may be given several times");
+  verb.AddFlag("--all-channels", &selection_.all,
+               "export the table and the messages of every channel (MCAP: always)");
+  verb.AddOption("--suffix", &suffix_, "TEXT suffix of the channels, where a log has several");
+}
+
+int ExportVerb::Run() const {
+  const exports::Format format =
+      exports::FormatFor(out_, format_.empty() ? std::nullopt : std::optional(format_));
+  exports::Selection selection = selection_;
+  if (from_s_ != kNotGiven) selection.from_s = from_s_;
+  if (to_s_ != kNotGiven) selection.to_s = to_s_;
+  if (selection.all && !selection.channels.empty()) {
+    throw InputError("--channel: found together with --all-channels, allowed is one of the two");
+  }
+  // A file of messages holds all of them unless some are chosen.
+  const bool messages = format == exports::Format::kMcap;
+  if (messages && selection.channels.empty()) selection.all = true;
+  if (out_ != exports::kStandardOutput) {
+    CheckKeeps(out_, logs_);
+    CheckCanBeCreated(out_);
+  }
+  const auto say = [](const std::string& line) {
+    std::fprintf(stderr, "hydro-log: warning: %s\n", Printable(line).c_str());
+  };
+  const auto runs = exports::ReadRuns(logs_, suffix_, selection, messages, say);
+  exports::WriteExport(runs, format, "hydro-log " + settings::ProgramVersion(), out_);
+  return 0;
+}
+
+}  // namespace hydro::hydro_log

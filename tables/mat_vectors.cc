@@ -1,0 +1,187 @@
+#include "tables/mat_vectors.h"
+
+#include <matio.h>
+
+#include <cstdint>
+#include <cstring>
+#include <memory>
+
+#include "base/input_error.h"
+#include "base/mapped_file.h"
+#include "base/read_files.h"
+#include "base/text_file.h"
+
+namespace hydro::tables {
+namespace {
+
+struct CloseMat {
+  void operator()(mat_t* mat) const { Mat_Close(mat); }
+};
+struct FreeVariable {
+  void operator()(matvar_t* variable) const { Mat_VarFree(variable); }
+};
+
+constexpr int kDeepest = 16;  // structs within structs
+
+template <class Number>
+std::vector<double> ToDoubles(const matvar_t& variable, size_t count) {
+  const Number* numbers = static_cast<const Number*>(variable.data);
+  return std::vector<double>(numbers, numbers + count);
+}
+
+std::string Dimensions(const matvar_t& variable) {
+  std::string text;
+  for (int k = 0; k < variable.rank; ++k) text += (k > 0 ? "x" : "") + std::to_string(variable.dims[k]);
+  return text;
+}
+
+// Its elements, or why there are none.
+void Read(const matvar_t& variable, size_t count, MatVector* vector) {
+  const auto take = [&]<class Number>(Number) { vector->values = ToDoubles<Number>(variable, count); };
+  switch (variable.class_type) {
+    case MAT_C_DOUBLE:
+      return take(double{});
+    case MAT_C_SINGLE:
+      return take(float{});
+    case MAT_C_INT8:
+      return take(int8_t{});
+    case MAT_C_UINT8:
+      return take(uint8_t{});
+    case MAT_C_INT16:
+      return take(int16_t{});
+    case MAT_C_UINT16:
+      return take(uint16_t{});
+    case MAT_C_INT32:
+      return take(int32_t{});
+    case MAT_C_UINT32:
+      return take(uint32_t{});
+    case MAT_C_INT64:
+      return take(int64_t{});
+    case MAT_C_UINT64:
+      return take(uint64_t{});
+    default:
+      return;
+  }
+}
+
+bool IsNumbers(const matvar_t& variable) {
+  switch (variable.class_type) {
+    case MAT_C_DOUBLE:
+    case MAT_C_SINGLE:
+    case MAT_C_INT8:
+    case MAT_C_UINT8:
+    case MAT_C_INT16:
+    case MAT_C_UINT16:
+    case MAT_C_INT32:
+    case MAT_C_UINT32:
+    case MAT_C_INT64:
+    case MAT_C_UINT64:
+      return true;
+    default:
+      return false;
+  }
+}
+
+// `mat` is null for what has been read already, with the struct that it is in.
+MatVector VectorOf(mat_t* mat, matvar_t* variable, const std::string& name) {
+  MatVector vector{name, {}, {}};
+  if (variable->isComplex != 0) {
+    vector.wrong = "found complex numbers; real ones are needed";
+  } else if (!IsNumbers(*variable)) {
+    vector.wrong =
+        "found text, a structure, a cell array, a sparse matrix or an object of MATLAB's; a vector of "
+        "numbers is needed";
+  } else if (variable->rank != 2 || (variable->dims[0] != 1 && variable->dims[1] != 1)) {
+    vector.wrong = "found " + Dimensions(*variable) + " numbers; a vector is needed";
+  } else if (const size_t count = variable->dims[0] * variable->dims[1]; count > 0) {
+    if ((mat != nullptr && Mat_VarReadDataAll(mat, variable) != 0) || variable->data == nullptr ||
+        variable->nbytes != count * static_cast<size_t>(variable->data_size)) {
+      vector.wrong = "found damaged or missing data; " + std::to_string(count) + " numbers are needed";
+    } else {
+      Read(*variable, count, &vector);
+    }
+  }
+  return vector;
+}
+
+void AppendFields(matvar_t* variable, const std::string& name, int depth, std::vector<MatVector>* vectors) {
+  const auto one = [](const matvar_t& of) {
+    return of.rank == 2 && of.dims[0] == 1 && of.dims[1] == 1 && of.data != nullptr;
+  };
+  if (!one(*variable) || depth == kDeepest) {
+    const std::string found =
+        depth == kDeepest ? "structs in structs, too deep" : Dimensions(*variable) + " structs";
+    vectors->push_back({name, {}, "found " + found + "; one struct of vectors is needed"});
+    return;
+  }
+  const unsigned count = Mat_VarGetNumberOfFields(variable);
+  char* const* const names = Mat_VarGetStructFieldnames(variable);
+  for (unsigned i = 0; i < count; ++i) {
+    matvar_t* const field = Mat_VarGetStructFieldByIndex(variable, i, 0);
+    const std::string field_name = name + "." + (names != nullptr && names[i] != nullptr ? names[i] : "");
+    if (field == nullptr) {
+      vectors->push_back({field_name, {}, "found nothing; a vector of numbers is needed"});
+    } else if (field->class_type == MAT_C_STRUCT) {
+      AppendFields(field, field_name, depth + 1, vectors);
+    } else {
+      vectors->push_back(VectorOf(nullptr, field, field_name));
+    }
+  }
+}
+
+// Of a variable of which matio has told what it is: itself, or in a struct its fields, in their order.
+void AppendVectors(mat_t* mat, matvar_t* variable, std::vector<MatVector>* vectors) {
+  const std::string name = variable->name != nullptr ? variable->name : "";
+  if (variable->class_type != MAT_C_STRUCT) {
+    vectors->push_back(VectorOf(mat, variable, name));
+  } else if (Mat_VarReadDataAll(mat, variable) != 0) {
+    vectors->push_back({name, {}, "found a damaged struct; one struct of vectors is needed"});
+  } else {
+    AppendFields(variable, name, 1, vectors);
+  }
+}
+
+constexpr size_t kMat5HeaderSize = 128;
+constexpr size_t kMat5TagSize = 8;  // of each element after the header: its type and byte count
+
+// When a MAT 5 file is cut off, matio returns unfilled memory for the missing values, so all elements must be
+// there.
+void CheckMat5IsWhole(const std::string& file) {
+  const MappedFile contents(file);
+  const bool swapped = contents.size() >= kMat5HeaderSize && contents.data()[kMat5HeaderSize - 2] == 'M';
+  size_t offset = kMat5HeaderSize;
+  while (offset < contents.size()) {
+    const size_t left = contents.size() - offset;
+    uint32_t size = 0;
+    if (left >= kMat5TagSize) std::memcpy(&size, contents.data() + offset + 4, sizeof size);
+    if (swapped) size = __builtin_bswap32(size);
+    if (left < kMat5TagSize || size > left - kMat5TagSize) {
+      throw InputError(file + ": byte " + std::to_string(offset) +
+                       ": found a variable cut off by the end of the file, " + std::to_string(left) +
+                       " bytes; " + std::to_string(kMat5TagSize + size) + " are needed");
+    }
+    offset += kMat5TagSize + size;
+  }
+}
+
+}  // namespace
+
+MatContents ReadMatContents(const std::string& file) {
+  Mat_LogInitFunc("hydro", [](int, char*) {});  // our own errors name the place; matio's, on stderr, do not
+  { const MappedFile readable(file); }          // throws the system's reason if it is not readable
+  CheckIsFile(file);
+  RememberRead(file);
+  const std::unique_ptr<mat_t, CloseMat> mat(Mat_Open(file.c_str(), MAT_ACC_RDONLY));
+  if (mat == nullptr || Mat_GetVersion(mat.get()) == MAT_FT_MAT4) {
+    throw InputError(file + ": found no MAT file of version 5 or 7.3; these are allowed");
+  }
+  if (Mat_GetVersion(mat.get()) == MAT_FT_MAT5) CheckMat5IsWhole(file);
+  MatContents found;
+  while (const std::unique_ptr<matvar_t, FreeVariable> variable{Mat_VarReadNextInfo(mat.get())}) {
+    found.structs = found.structs || variable->class_type == MAT_C_STRUCT;
+    AppendVectors(mat.get(), variable.get(), &found.vectors);
+  }
+  return found;
+}
+
+}  // namespace hydro::tables
