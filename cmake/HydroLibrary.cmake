@@ -111,9 +111,10 @@ function(hydro_install_library name)
   set_target_properties(${name} PROPERTIES EXPORT_NAME ${short_name})
   add_library(hydro::${short_name} ALIAS ${name})
   install(TARGETS ${name} EXPORT hydroTargets COMPONENT development)
+  set_property(GLOBAL APPEND PROPERTY HYDRO_INSTALLED_LIBRARIES ${name})
 endfunction()
 
-# hydro_program(NAME SOURCES FILES... LIBS LIBS...): a program, installed.
+# hydro_program(NAME SOURCES FILES... LIBS LIBS...): a program, installed, with a man page and completions (packaging/help).
 function(hydro_program name)
   cmake_parse_arguments(arg "" "" "SOURCES;LIBS" ${ARGN})
   if(arg_UNPARSED_ARGUMENTS)
@@ -122,4 +123,11 @@ function(hydro_program name)
   add_executable(${name} ${arg_SOURCES})
   target_link_libraries(${name} PRIVATE ${arg_LIBS})
   install(TARGETS ${name})
+  set_property(GLOBAL APPEND PROPERTY HYDRO_PROGRAMS ${name})
+endfunction()
+
+# hydro_script(FILE): the same for a script; its --help is of the same form.
+function(hydro_script file)
+  install(PROGRAMS ${file} TYPE BIN)
+  set_property(GLOBAL APPEND PROPERTY HYDRO_SCRIPTS ${file})
 endfunction()
