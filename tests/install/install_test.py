@@ -44,7 +44,7 @@ class InstallTest(unittest.TestCase):
     def test_a_project_builds_and_runs(self):
         """Tests that find_package(hydro) is enough to build on the model, the laws, the bus and the log."""
         project = pathlib.Path(self.folder.name) / "project"
-        run("cmake", "-S", SOURCE / "tests/install/project", "-B", project, "-G", "Ninja", f"-DCMAKE_PREFIX_PATH={self.prefix}")
+        run("cmake", "-S", SOURCE / "examples/own_project", "-B", project, "-G", "Ninja", f"-DCMAKE_PREFIX_PATH={self.prefix}")
         run("cmake", "--build", project)
         said = run(project / "moves_an_arm", SOURCE / "config/models/table1.toml", project / "run.lcmlog")
         match = re.fullmatch(r"(\d+) states, arm at ([\d.]+) rad, (\d+) effects in the catalogue\n", said)
