@@ -17,8 +17,7 @@ import unittest
 BUILD = pathlib.Path(os.environ["HYDRO_BUILD"])
 SOURCE = pathlib.Path(os.environ["HYDRO_SOURCE"])
 PACKAGES = ("hydro", "libhydro-dev", "hydro-doc")
-# What is only made where its tools are: the reference by `ninja doc`, hydro.jar with a JDK.
-OPTIONAL = ("usr/share/doc/hydro-doc/html", "usr/share/java/hydro.jar")
+OPTIONAL = ("usr/share/doc/hydro-doc/html",)  # the reference, made by `ninja doc`
 # Tools of ./check that a package's build does not run.
 ONLY_TESTS = {"git", "iproute2", "librsvg2-bin", "libgtest-dev", "libgmock-dev", "libbenchmark-dev", "chromium", "nginx-light",
               "clang-format", "clang-tidy", "clang", "lld", "build-essential"}
