@@ -16,7 +16,8 @@ def action(value):
     if value.kind == "folders":
         return "_files -/"
     if value.kind == "files" and value.pattern:
-        return f'_files -g "*.({value.pattern})"'
+        # Brackets around one word would be a glob's qualifiers.
+        return f'_files -g "*.({value.pattern})"' if "|" in value.pattern else f'_files -g "*.{value.pattern}"'
     return "_files" if value.kind == "files" else " "
 
 
@@ -41,7 +42,7 @@ def specs(help_):
     words = help_.verbs_as_words()
     if words:
         first = help_.positionals[0]
-        return [*found, f"'1:verb or {quoted(first.names[0])}:_alternative \"verbs:verb:({' '.join(words)})\" \"files:file:_files\"'",
+        return [*found, f"'1:verb or {quoted(first.names[0])}: _alternative \"verbs:verb:({' '.join(words)})\" \"files:file:_files\"'",
                 f"'2:{quoted(first.names[0])}:{action(values(first))}'"]
     return found + [positional_spec(each, place) for place, each in enumerate(help_.positionals, 1)]
 

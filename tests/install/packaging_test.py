@@ -14,6 +14,8 @@ import sys
 import tempfile
 import unittest
 
+import typed_zsh
+
 BUILD = pathlib.Path(os.environ["HYDRO_BUILD"])
 SOURCE = pathlib.Path(os.environ["HYDRO_SOURCE"])
 PACKAGES = ("hydro", "libhydro-dev", "hydro-doc")
@@ -131,6 +133,28 @@ class PackagingTest(unittest.TestCase):
                     self.assertRegex(text, rf"{option}[\[}}']", f"{program} {verb}")
             if shutil.which("zsh"):
                 subprocess.run(["zsh", "-n", script], check=True)
+
+    @unittest.skipUnless(shutil.which("zsh"), "needs zsh")
+    def test_zsh_proposes(self):
+        """Tests in an interactive zsh what TAB proposes: options, verbs, their options, words, files of a kind."""
+        folder = pathlib.Path(self.folder.name) / "typed"
+        folder.mkdir()
+        for name in ("one.toml", "two.toml", "three.txt", "four.lcmlog"):
+            (folder / name).touch()
+        for line, proposed, others in (
+                ("hydro-sim --", ("--duration", "--tuning"), ()), ("hydro-sim --time ", ("realtime", "lockstep"), ()),
+                ("hydro-sim ", ("one.toml", "two.toml"), ("three.txt", "four.lcmlog")), ("hydro-log ", ("compare", "replay"), ()),
+                ("hydro-log export --", ("--output", "--suffix"), ()), ("hydro-log info f", ("four.lcmlog",), ()),
+                ("hydro-launch s", ("stop",), ()), ("hydro-launch stop ", ("one.toml", "two.toml"), ("three.txt",))):
+            shell = typed_zsh.TypedZsh(self.prefix / "share/zsh/site-functions", self.prefix / "bin", folder)
+            try:
+                shell.type(line + "\t\t")
+                for text in proposed:
+                    shell.wait_for(text)
+                for text in others:
+                    self.assertNotIn(text, shell.said, line)
+            finally:
+                shell.close()
 
     def test_installed_pages_link_to_what_is_installed(self):
         """Tests that each relative link of an installed page leads to an installed file."""
