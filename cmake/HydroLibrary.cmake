@@ -67,7 +67,7 @@ function(hydro_library name)
     endif()
     if(arg_HEADERS)
       cmake_path(RELATIVE_PATH CMAKE_CURRENT_SOURCE_DIR BASE_DIRECTORY ${PROJECT_SOURCE_DIR} OUTPUT_VARIABLE room)
-      install(FILES ${arg_HEADERS} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/hydro/${room} COMPONENT development)
+      hydro_install_public(${room} ${arg_HEADERS})
     else()
       hydro_install_headers(${arg_SOURCES})
     endif()
@@ -101,8 +101,14 @@ function(hydro_install_headers)
   foreach(folder ${folders})
     file(GLOB headers CONFIGURE_DEPENDS ${folder}/*.h)
     cmake_path(RELATIVE_PATH folder BASE_DIRECTORY ${PROJECT_SOURCE_DIR} OUTPUT_VARIABLE room)
-    install(FILES ${headers} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/hydro/${room} COMPONENT development)
+    hydro_install_public(${room} ${headers})
   endforeach()
+endfunction()
+
+# hydro_install_public(ROOM HEADERS...): what others build on, and what the reference shows (packaging/reference).
+function(hydro_install_public room)
+  install(FILES ${ARGN} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/hydro/${room} COMPONENT development)
+  install(FILES ${ARGN} DESTINATION include/hydro/${room} COMPONENT reference EXCLUDE_FROM_ALL)
 endfunction()
 
 # hydro_install_library(hydro_NAME): exports a library as hydro::NAME.
@@ -111,9 +117,10 @@ function(hydro_install_library name)
   set_target_properties(${name} PROPERTIES EXPORT_NAME ${short_name})
   add_library(hydro::${short_name} ALIAS ${name})
   install(TARGETS ${name} EXPORT hydroTargets COMPONENT development)
+  set_property(GLOBAL APPEND PROPERTY HYDRO_INSTALLED_LIBRARIES ${name})
 endfunction()
 
-# hydro_program(NAME SOURCES FILES... LIBS LIBS...): a program, installed.
+# hydro_program(NAME SOURCES FILES... LIBS LIBS...): a program, installed, with a man page and completions (packaging/help).
 function(hydro_program name)
   cmake_parse_arguments(arg "" "" "SOURCES;LIBS" ${ARGN})
   if(arg_UNPARSED_ARGUMENTS)
@@ -122,4 +129,11 @@ function(hydro_program name)
   add_executable(${name} ${arg_SOURCES})
   target_link_libraries(${name} PRIVATE ${arg_LIBS})
   install(TARGETS ${name})
+  set_property(GLOBAL APPEND PROPERTY HYDRO_PROGRAMS ${name})
+endfunction()
+
+# hydro_script(FILE): the same for a script; its --help is of the same form.
+function(hydro_script file)
+  install(PROGRAMS ${file} TYPE BIN)
+  set_property(GLOBAL APPEND PROPERTY HYDRO_SCRIPTS ${file})
 endfunction()

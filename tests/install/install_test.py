@@ -44,9 +44,21 @@ class InstallTest(unittest.TestCase):
     def test_a_project_builds_and_runs(self):
         """Tests that find_package(hydro) is enough to build on the model, the laws, the bus and the log."""
         project = pathlib.Path(self.folder.name) / "project"
-        run("cmake", "-S", SOURCE / "tests/install/project", "-B", project, "-G", "Ninja", f"-DCMAKE_PREFIX_PATH={self.prefix}")
+        run("cmake", "-S", SOURCE / "examples/own_project", "-B", project, "-G", "Ninja", f"-DCMAKE_PREFIX_PATH={self.prefix}")
         run("cmake", "--build", project)
-        said = run(project / "moves_an_arm", SOURCE / "config/models/table1.toml", project / "run.lcmlog")
+        self.moves_an_arm(project / "moves_an_arm", project)
+        # What pkg-config says links, too.
+        env = {**os.environ, "PKG_CONFIG_PATH": str(self.prefix / "lib/pkgconfig")}
+        flags = {which: subprocess.run(["pkg-config", which, "hydro"], env=env, check=True, capture_output=True, text=True).stdout.split()
+                 for which in ("--cflags", "--libs")}
+        folders = [pathlib.Path(flag.removeprefix("-I")) for flag in flags["--cflags"] if flag.startswith("-I")]
+        self.assertTrue(any((folder / "bus/bus.h").is_file() for folder in folders), folders)
+        objects = list(project.rglob("moves_an_arm.cc.o"))
+        run("c++", *objects, "-o", project / "by_pkg_config", *flags["--libs"])
+        self.moves_an_arm(project / "by_pkg_config", project)
+
+    def moves_an_arm(self, program, project):
+        said = run(program, SOURCE / "config/models/table1.toml", project / "run.lcmlog")
         match = re.fullmatch(r"(\d+) states, arm at ([\d.]+) rad, (\d+) effects in the catalogue\n", said)
         self.assertTrue(match, said)
         self.assertEqual(int(match[1]), 10_000)
