@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""A position loop of one's own in the place of hydro-position-ctrl: pid.py [BUS_URL]. docs/own_controller.md explains it."""
+"""A position loop of one's own in the place of hydro-position-ctrl: docs/own_controller.md explains it. Started by hand: pid.py BUS_URL"""
 import sys
 
 import hydro_bus
