@@ -84,11 +84,7 @@ bool ChildProcess::TryReap() {
   }
   int status = 0;
   if (waitpid(pid_, &status, WNOHANG) != pid_) return false;
-  if (WIFSIGNALED(status)) {
-    end_ = ProcessEnd{0, WTERMSIG(status)};
-  } else {
-    end_ = ProcessEnd{WEXITSTATUS(status), 0};
-  }
+  end_ = process::EndOf(status);
   return true;
 }
 

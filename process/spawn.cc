@@ -11,7 +11,7 @@
 #include <array>
 #include <cerrno>
 
-#include "process/start_error.h"
+#include "process/process_end.h"
 
 namespace hydro::process {
 namespace {

@@ -1,7 +1,5 @@
 #include "launch/logic/child.h"
 
-#include <string.h>
-
 #include "process/role.h"
 
 namespace hydro::launch {
@@ -13,12 +11,5 @@ std::string ChildSpec::program() const {
 }
 
 std::string ChildSpec::role() const { return own ? own->role : process::RoleOf(program()); }
-
-std::string DescribeEnd(const std::string& program, const ProcessEnd& end) {
-  if (end.signal == 0) return program + " ended with exit code " + std::to_string(end.exit_code);
-  std::string text = program + " was killed by signal " + std::to_string(end.signal);
-  if (const char* name = sigabbrev_np(end.signal)) text += std::string(" (SIG") + name + ")";
-  return text;
-}
 
 }  // namespace hydro::launch

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "process/start_error.h"
+#include "process/process_end.h"
 
 namespace hydro::launch {
 
@@ -30,11 +30,9 @@ struct ChildSpec {
   std::string role() const;     // e.g. pressure_ctrl
 };
 
-// How a process ended: with exit_code, or by a signal (then signal != 0).
-struct ProcessEnd {
-  int exit_code = 0;
-  int signal = 0;
-};
+using process::DescribeEnd;
+using process::ProcessEnd;
+using process::StartError;
 
 // A child that has ended, as a launch learns of it.
 struct Ended {
@@ -45,11 +43,5 @@ struct Ended {
   bool terminated = false;  // the stop had sent it SIGTERM
   bool hung = false;        // it did not end on SIGTERM and was sent SIGKILL
 };
-
-// "hydro-plant was killed by signal 9 (SIGKILL)", "hydro-plant ended with exit code 1"
-std::string DescribeEnd(const std::string& program, const ProcessEnd& end);
-
-// The program could not be started; what() is one line.
-using StartError = process::StartError;
 
 }  // namespace hydro::launch
