@@ -164,7 +164,7 @@ std::optional<std::string> OwnController::Await(const std::function<bool()>& don
     if (now >= look) {  // not for each message: most answers come at once
       look = now + kLook;
       if (process::StopSignal() != 0) return "stopped by a signal";
-      if (Ended()) return DescribeEnd(name_, *end_) + " before it did " + what;
+      if (Ended()) return DescribeEnd(name_, *end_) + " before it could " + what;
       if (now >= begin + limit) {
         return name_ + " did not " + what + " within " + ShortNumber(bus::ToSeconds(limit)) + " s";
       }

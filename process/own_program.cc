@@ -49,7 +49,7 @@ std::string FindOwnProgram(const std::string& command, const std::string& folder
   }
   if (!IsFile(beside)) {
     throw InputError(found + ", and there is no program " + beside.string() +
-                     ", allowed a path that counts from the configuration's folder");
+                     ", allowed a path that counts from " + fs::absolute(folder).lexically_normal().string());
   }
   if (!IsProgram(beside)) {
     throw InputError(found + ", which may not be executed, allowed a program that may; do `chmod +x " +
