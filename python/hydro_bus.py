@@ -169,9 +169,29 @@ class Loop:
             if not self._running and time.monotonic() >= next_status:
                 next_status = time.monotonic() + 0.1
                 self._say(self._status_t.READY, "waits for the first state")
-            self.bus.handle(0.1)
+            try:
+                self.bus.handle(0.1)
+            except BaseException as error:  # of answer(): zero volts first, explanation second
+                self._ask_for_nothing()
+                self._say(self._status_t.FAILED, f"{type(error).__name__}: {error}"[:200])
+                raise
+        if self._over is None or self.role == "pressure_ctrl":
+            self._ask_for_nothing()
         self._say(self._status_t.DONE, "")
         return self._over or 0
+
+    def _ask_for_nothing(self):
+        """A last command of zero volts: what was asked for last must not stay in force."""
+        if self._command is None:
+            return
+        command = self.type_()
+        command.tick, command.session, command.sequence = self._command.tick, self.session, self._sequence
+        command.utime = time.time_ns() // 1000
+        if self.role == "pressure_ctrl":
+            command.status = self.type_.STOPPED
+        else:
+            command.open_loop = True
+        self.bus.publish(self.channel, command)
 
     def _on_signal(self, _number, _frame):
         self._signal = True
