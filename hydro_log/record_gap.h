@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <iterator>
 #include <map>
 #include <optional>
 
@@ -18,5 +19,15 @@ std::optional<int64_t> FirstMissingState(const std::map<int64_t, state_t>& state
 std::optional<int64_t> FirstWithoutPressureCommand(
     const std::map<int64_t, motor_command_t>& commands,
     const std::map<int64_t, pressure_command_t>& pressure_commands);
+
+// Takes the commands from tick `gap` on out of the comparison and returns how many those were.
+template <class Commands>
+int64_t CutAt(const std::optional<int64_t>& gap, Commands& commands) {
+  if (!gap) return 0;
+  const auto from = commands.lower_bound(*gap);
+  const auto count = std::distance(from, commands.end());
+  commands.erase(from, commands.end());
+  return count;
+}
 
 }  // namespace hydro::hydro_log

@@ -1,13 +1,18 @@
 #include "hydro_log/run_verbs.h"
 
+#include <chrono>
 #include <cmath>
 #include <cstdio>
 
 #include "base/input_error.h"
 #include "base/new_file.h"
+#include "base/number_text.h"
 #include "base/read_files.h"
 #include "base/text_file.h"
+#include "hydro_log/own_controller.h"
+#include "hydro_log/own_replay.h"
 #include "hydro_log/replay.h"
+#include "process/stop_signal.h"
 #include "runs/tracking.h"
 #include "timing/report/timing_report.h"
 
@@ -19,6 +24,26 @@ namespace {
 void CheckOutput(const std::string& file, const std::string& log) {
   CheckKeeps(file, {log});
   CheckCanBeCreated(file);
+}
+
+constexpr double kLongest_s = 3600;
+
+// What a replay found, in a line or two; the exit code.
+int Print(const std::string& name, const char* commands, const ReplayResult& result) {
+  const std::string shown = Printable(name);
+  if (result.difference) {
+    std::printf("%s: %s\n", shown.c_str(), result.difference->c_str());
+  } else {
+    std::printf("%s: identical, %lld %s from %lld states\n", shown.c_str(),
+                static_cast<long long>(result.answers), commands, static_cast<long long>(result.states));
+  }
+  if (result.gap_tick) {
+    std::printf(
+        "%s: compared up to tick %lld, where the log lacks a message; %lld %s after it are not compared\n",
+        shown.c_str(), static_cast<long long>(*result.gap_tick), static_cast<long long>(result.not_compared),
+        commands);
+  }
+  return result.difference ? 1 : 0;
 }
 
 }  // namespace
@@ -91,37 +116,71 @@ ReplayVerb::ReplayVerb(settings::CommandLine& line) {
       "Feed the recorded states through the controllers and compare their answers with the record.");
   verb.AddPositional("LOG", &log_, "FILE the log");
   verb.AddOption("--suffix", &suffix_, "TEXT suffix of the channels, where the log has several");
-  verb.AddOption("--controller", &controller_, "NAME pressure, position or both (default)");
+  verb.AddOption("--controller", &controller_,
+                 "NAME|COMMAND pressure, position or both (default) of ours; or a program of your own, e.g. "
+                 "\"./pid.py\" (docs/own_controller.md)");
+  verb.AddOption("--role", &role_,
+                 "ROLE whose place COMMAND takes: position_ctrl or pressure_ctrl; default: that of the run's "
+                 "own [[process]] command");
+  verb.AddOption("--timeout", &timeout_s_,
+                 "S wall seconds that COMMAND may take for one answer; 5 by default");
   verb.AddOption("--speed", &speed_, "X recorded seconds per wall second; 0 (default): as fast as possible");
 }
 
 int ReplayVerb::Run() const {
-  if (controller_ != "pressure" && controller_ != "position" && controller_ != "both") {
-    throw InputError("--controller: found " + controller_ + ", allowed are pressure, position and both");
+  const bool ours = controller_ == "pressure" || controller_ == "position" || controller_ == "both";
+  if (ours && !role_.empty()) {
+    throw InputError("--role: found it beside --controller " + controller_ +
+                     ", allowed with a command of your own");
   }
   if (!(speed_ >= 0) || std::isinf(speed_)) throw InputError("--speed: must be a number of 0 or more");
+  if (!(timeout_s_ > 0 && timeout_s_ <= kLongest_s)) {
+    throw InputError("--timeout: must be a number above 0 and at most " + ShortNumber(kLongest_s));
+  }
+  const std::vector<std::string> command = ours ? std::vector<std::string>() : CommandWords(controller_);
   const runs::RunLog log = ReadWithWarning(log_, suffix_);
-  int exit_code = 0;
-  const auto replay = [&](ReplayedController controller, const char* name, const char* commands) {
-    const ReplayResult result = Replay(log, controller, speed_);
-    if (result.difference) {
-      std::printf("%s: %s\n", name, result.difference->c_str());
-      exit_code = 1;
-    } else {
-      std::printf("%s: identical, %lld %s from %lld states\n", name, static_cast<long long>(result.answers),
-                  commands, static_cast<long long>(result.states));
-    }
-    if (result.gap_tick) {
-      std::printf(
-          "%s: compared up to tick %lld, where the log lacks a message; %lld %s after it are not compared\n",
-          name, static_cast<long long>(*result.gap_tick), static_cast<long long>(result.not_compared),
-          commands);
-    }
-  };
-  if (controller_ != "position") replay(ReplayedController::kPressure, "pressure", "motor commands");
-  if (controller_ != "pressure") replay(ReplayedController::kPosition, "position", "pressure commands");
+  const int exit_code = ours ? RunOurs(log) : RunOwn(log, command);
   WarnOf(log);
   return exit_code;
+}
+
+int ReplayVerb::RunOurs(const runs::RunLog& log) const {
+  int exit_code = 0;
+  for (const bool pressure : {true, false}) {
+    if (controller_ == (pressure ? "position" : "pressure")) continue;
+    const std::string name = pressure ? "pressure" : "position";
+    if (const std::string own = OwnProgramOf(log, name + "_ctrl"); controller_ == "both" && !own.empty()) {
+      std::printf("%s: not replayed: the run had %s; --controller COMMAND replays that\n", name.c_str(),
+                  Printable(own).c_str());
+      continue;
+    }
+    const ReplayResult result =
+        Replay(log, pressure ? ReplayedController::kPressure : ReplayedController::kPosition, speed_);
+    exit_code |= Print(name, pressure ? "motor commands" : "pressure commands", result);
+  }
+  return exit_code;
+}
+
+int ReplayVerb::RunOwn(const runs::RunLog& log, const std::vector<std::string>& command) const {
+  OwnReplayRequest request;
+  request.command = command;
+  request.role = role_.empty() ? OwnRoleOf(log) : role_;
+  request.speed = speed_;
+  request.limit = std::chrono::duration_cast<std::chrono::steady_clock::duration>(
+      std::chrono::duration<double>(timeout_s_));
+  if (request.role != "pressure_ctrl" && request.role != "position_ctrl") {
+    throw InputError("--role: found " + (role_.empty() ? "nothing" : Quoted(role_)) +
+                     ", allowed position_ctrl or pressure_ctrl" +
+                     (role_.empty() ? "; the log's configuration does not have one command of its own" : ""));
+  }
+  process::CatchStopSignals();
+  const OwnReplayResult result = ReplayOwn(log, request);
+  if (!result.failure) {
+    return Print(command.front(), request.role == "pressure_ctrl" ? "motor commands" : "pressure commands",
+                 result.replay);
+  }
+  std::fprintf(stderr, "hydro-log: %s\n", Printable(*result.failure).c_str());
+  return 1;
 }
 
 }  // namespace hydro::hydro_log

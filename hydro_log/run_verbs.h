@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "runs/run_log.h"
 #include "settings/command_line.h"
@@ -43,9 +44,12 @@ class ReplayVerb {
   int Run() const;
 
  private:
-  std::string log_, controller_ = "both";
+  int RunOurs(const runs::RunLog& log) const;
+  int RunOwn(const runs::RunLog& log, const std::vector<std::string>& command) const;
+
+  std::string log_, controller_ = "both", role_;
   std::optional<std::string> suffix_;
-  double speed_ = 0;
+  double speed_ = 0, timeout_s_ = 5;
 };
 
 }  // namespace hydro::hydro_log

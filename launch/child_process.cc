@@ -3,15 +3,14 @@
 #include <fcntl.h>
 #include <signal.h>
 #include <string.h>
-#include <sys/prctl.h>
 #include <sys/socket.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <cerrno>
 #include <utility>
-#include <vector>
 
+#include "process/spawn.h"
 #include "process/supervision.h"
 
 namespace hydro::launch {
@@ -37,37 +36,9 @@ struct Pipe {
   Pipe(const Pipe&) = delete;
   Pipe& operator=(const Pipe&) = delete;
 
-  void CloseWrite() {
-    close(write);
-    write = -1;
-  }
   int TakeRead() { return std::exchange(read, -1); }
   int TakeWrite() { return std::exchange(write, -1); }
 };
-
-// Runs in the child between fork and exec: only async-signal-safe calls, no allocation.
-[[noreturn]] void BecomeProgram(char* const* argv, pid_t launcher, int in, int out, int err, int report) {
-  setpgid(0, 0);
-  // When the launcher died before that request, the signal would never come.
-  prctl(PR_SET_PDEATHSIG, SIGTERM);
-  if (getppid() != launcher) _exit(1);
-
-  struct sigaction action = {};
-  action.sa_handler = SIG_DFL;
-  for (const int s : {SIGINT, SIGTERM, SIGHUP, SIGCHLD, SIGQUIT}) sigaction(s, &action, nullptr);
-  action.sa_handler = SIG_IGN;
-  sigaction(SIGPIPE, &action, nullptr);
-  sigset_t none;
-  sigemptyset(&none);
-  sigprocmask(SIG_SETMASK, &none, nullptr);
-
-  if (dup2(in, STDIN_FILENO) >= 0 && dup2(out, STDOUT_FILENO) >= 0 && dup2(err, STDERR_FILENO) >= 0) {
-    execv(argv[0], argv);
-  }
-  const int error = errno;
-  [[maybe_unused]] const ssize_t n = write(report, &error, sizeof error);
-  _exit(127);
-}
 
 }  // namespace
 
@@ -75,27 +46,21 @@ ChildProcess::ChildProcess(ChildSpec spec) : spec_(std::move(spec)) {
   Pipe beats(Pipe::Kind::kSocket);
   Pipe out;
   Pipe err;
-  Pipe report;  // closed by a successful exec, else carries errno
-  std::vector<char*> argv;
-  for (std::string& argument : spec_.argv) argv.push_back(argument.data());
-  argv.push_back(nullptr);
-
-  const pid_t launcher = getpid();
-  pid_ = fork();
-  if (pid_ < 0) throw StartError(spec_.argv[0] + ": cannot be started: " + strerror(errno));
-  if (pid_ == 0) BecomeProgram(argv.data(), launcher, beats.read, out.write, err.write, report.write);
-
-  setpgid(pid_, pid_);  // also here, so that it is done whichever process runs first
-  report.CloseWrite();
-  int error = 0;
-  ssize_t n;
-  do {
-    n = read(report.read, &error, sizeof error);
-  } while (n < 0 && errno == EINTR);
-  if (n > 0) {
-    waitpid(pid_, nullptr, 0);
-    throw StartError(spec_.argv[0] + ": cannot be started: " + strerror(error));
+  process::SpawnRequest request;
+  request.argv = spec_.argv;
+  request.in = beats.read;
+  request.out = out.write;
+  request.err = err.write;
+  if (spec_.own) {
+    request.in = -1;  // it would take the beats for what it is to read
+    request.environment = spec_.own->environment;
+    request.folder = spec_.own->folder;
+    request.cpu = spec_.own->cpu;
+    request.priority = spec_.own->priority;
   }
+  const process::Spawned spawned = process::Spawn(request);
+  pid_ = spawned.pid;
+  warnings_ = spawned.warnings;
   fcntl(out.read, F_SETFL, O_NONBLOCK);
   fcntl(err.read, F_SETFL, O_NONBLOCK);
   beat_fd_ = beats.TakeWrite();
@@ -110,13 +75,16 @@ ChildProcess::~ChildProcess() {
 }
 
 bool ChildProcess::TryReap() {
-  int status = 0;
-  if (end_ || waitpid(pid_, &status, WNOHANG) != pid_) return false;
-  if (WIFSIGNALED(status)) {
-    end_ = ProcessEnd{0, WTERMSIG(status)};
-  } else {
-    end_ = ProcessEnd{WEXITSTATUS(status), 0};
+  if (end_) return false;
+  if (spec_.own) {
+    siginfo_t info = {};
+    if (waitid(P_PID, static_cast<id_t>(pid_), &info, WEXITED | WNOHANG | WNOWAIT) != 0 || info.si_pid != pid_)
+      return false;
+    kill(-pid_, SIGKILL);  // what it started and left; until it is reaped the group is its own
   }
+  int status = 0;
+  if (waitpid(pid_, &status, WNOHANG) != pid_) return false;
+  end_ = process::EndOf(status);
   return true;
 }
 
@@ -125,7 +93,7 @@ void ChildProcess::Beat() {
 }
 
 void ChildProcess::Signal(int signal_number) {
-  if (running()) kill(pid_, signal_number);
+  if (running()) kill(spec_.own ? -pid_ : pid_, signal_number);
 }
 
 void ChildProcess::CloseOut() {

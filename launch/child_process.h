@@ -4,6 +4,8 @@
 #include <sys/types.h>
 
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "launch/logic/child.h"
 #include "launch/logic/stop_sequence.h"
@@ -14,10 +16,7 @@ namespace hydro::launch {
 // TryReap() has succeeded, and Signal() can reach no other process.
 class ChildProcess : public Stoppable {
  public:
-  // Starts the program in its own process group (a terminal's Ctrl-C does not reach it), with a socket for Beat()
-  // as stdin and all signals unblocked. The kernel sends it SIGTERM when the launcher dies, however that
-  // happens. It ignores SIGPIPE, so that after the launcher's death a line that it prints on its way out does
-  // not kill it before it has flushed. Throws StartError.
+  // Starts the program (process/spawn.h), one of ours with a socket for Beat() as stdin. Throws StartError.
   explicit ChildProcess(ChildSpec spec);
   ~ChildProcess() override;
   ChildProcess(const ChildProcess&) = delete;
@@ -28,14 +27,17 @@ class ChildProcess : public Stoppable {
   bool running() const override { return !end_; }
   bool last() const override { return spec_.last; }
   const std::optional<ProcessEnd>& end() const { return end_; }
+  // What the system refused it, a line each.
+  const std::vector<std::string>& warnings() const { return warnings_; }
 
-  // Checks whether it has ended. True when this call is the first to find so.
+  // Checks whether it has ended. True when this call is the first to find so. What a program of the user's own has
+  // started is killed then: a loop must not go on unwatched.
   bool TryReap();
 
   // Sends a heartbeat (process/supervision.h). Never waits; what the program does not read is lost.
   void Beat();
 
-  // Sends a signal unless it has been reaped.
+  // Sends a signal unless it has been reaped; to a program of the user's own and all that it started.
   void Signal(int signal_number) override;
 
   // The launcher's ends of its stdout and stderr, non-blocking; -1 once closed.
@@ -47,6 +49,7 @@ class ChildProcess : public Stoppable {
  private:
   ChildSpec spec_;
   pid_t pid_ = -1;
+  std::vector<std::string> warnings_;
   int beat_fd_ = -1;
   int out_fd_ = -1;
   int err_fd_ = -1;

@@ -10,6 +10,7 @@
 #include "launch/launch.h"
 #include "launch/logic/operator_request.h"
 #include "launch/make_key.h"
+#include "launch/new_controller.h"
 #include "launch/stop_stack.h"
 #include "process/stack_bus.h"
 #include "settings/command_line.h"
@@ -24,6 +25,7 @@ struct Options {
   bool rearm = false;
   bool make_key = false;
   bool doctor = false;
+  std::string new_controller;
 };
 
 void AddOptions(hydro::settings::CommandLine* line, Options* options) {
@@ -53,6 +55,9 @@ void AddOptions(hydro::settings::CommandLine* line, Options* options) {
       "hydro-launch rearm CONFIG");
   line->AddFlag("--make-key", &options->make_key,
                 "write a new key into CONFIG's bus.key_file; starts nothing");
+  line->AddOption("--new-controller", &options->new_controller,
+                  "NAME write a controller of your own to begin with, NAME.py, and a stack with it, NAME.toml, "
+                  "into this folder; starts nothing. Also: hydro-launch new-controller NAME");
 }
 
 // The one flag given of those that start nothing; empty when none is. Throws InputError when two are.
@@ -60,7 +65,8 @@ std::string FlagInstead(const Options& options) {
   const std::vector<std::pair<std::string, bool>> flags = {{"--stop", options.stop},
                                                            {"--rearm", options.rearm},
                                                            {"--make-key", options.make_key},
-                                                           {"--doctor", options.doctor}};
+                                                           {"--doctor", options.doctor},
+                                                           {"--new-controller", !options.new_controller.empty()}};
   std::string first;
   for (const auto& [flag, given] : flags) {
     if (!given) continue;
@@ -77,10 +83,12 @@ std::string FlagInstead(const Options& options) {
 void CheckNoneIgnored(const hydro::settings::CommandLine& line, const std::string& flag) {
   std::vector<std::string> allowed = {"--set", "--time", "--duration", "--seed"};
   if (flag == "--doctor") allowed.emplace_back("--host");
+  if (flag == "--new-controller") allowed.clear();
   for (const std::string& given : line.Given()) {
     if (given == flag || std::find(allowed.begin(), allowed.end(), given) != allowed.end()) continue;
-    throw hydro::InputError(flag + ": found " + given + " beside it, allowed are CONFIG and " +
-                            hydro::QuotedList(allowed));
+    throw hydro::InputError(
+        flag + ": found " + given + " beside it, allowed " +
+        (allowed.empty() ? "is NAME alone" : "are CONFIG and " + hydro::QuotedList(allowed)));
   }
 }
 
@@ -102,6 +110,10 @@ int RunOperatorRequest(const hydro::settings::CommonOptions& options, bool stop)
 int Run(const hydro::settings::CommandLine& line, const Options& options) {
   const std::string& config = options.common.config;
   if (const std::string flag = FlagInstead(options); !flag.empty()) CheckNoneIgnored(line, flag);
+  if (!options.new_controller.empty()) {
+    if (!config.empty()) throw hydro::InputError("--new-controller: found " + config + ", allowed is NAME alone");
+    return hydro::launch::NewController(options.new_controller);
+  }
   if (options.doctor) {
     return hydro::launch::RunDoctor(config, options.common.overrides, options.request.host);
   }
@@ -119,7 +131,7 @@ int Run(const hydro::settings::CommandLine& line, const Options& options) {
 // `hydro-launch stop CONFIG` is `hydro-launch --stop CONFIG`.
 std::vector<const char*> WithFlagForVerb(int argc, char** argv) {
   static constexpr std::pair<std::string_view, const char*> kVerbs[] = {
-      {"stop", "--stop"}, {"rearm", "--rearm"}, {"doctor", "--doctor"}, {"make-key", "--make-key"}};
+      {"stop", "--stop"}, {"rearm", "--rearm"}, {"doctor", "--doctor"}, {"make-key", "--make-key"}, {"new-controller", "--new-controller"}};
   std::vector<const char*> arguments(argv, argv + argc);
   if (argc < 2) return arguments;
   for (const auto& [verb, flag] : kVerbs) {
@@ -137,7 +149,8 @@ int main(int argc, char** argv) {
   line.AddExamples(
       {"hydro-launch config/demo.toml --log run.lcmlog      start, record, until the run ends or Ctrl-C",
        "hydro-launch stop config/demo.toml                  end the stack that runs, from anywhere",
-       "hydro-launch doctor config/demo.toml                is this machine fit for it?"},
+       "hydro-launch doctor config/demo.toml                is this machine fit for it?",
+       "hydro-launch new-controller NAME                    a controller of your own to begin with"},
       "docs/launch.md");
   Options options;
   AddOptions(&line, &options);

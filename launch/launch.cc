@@ -13,6 +13,7 @@
 #include "launch/logic/stack_launch.h"
 #include "launch/supervisor.h"
 #include "launch/terminal_report.h"
+#include "process/own_program.h"
 #include "process/stack_bus.h"
 
 namespace hydro::launch {
@@ -52,7 +53,7 @@ int Launch(const settings::StackConfig& config, const LaunchPlan& plan, const La
 
 int LaunchStack(const LaunchRequest& request) {
   const settings::StackConfig config = settings::LoadStackConfig(request.config_file, request.overrides);
-  const LaunchPlan plan = PlanLaunch(config, request, OwnFolder());
+  const LaunchPlan plan = PlanLaunch(config, request, process::OwnFolder());
   CheckLog(plan, request.log_file);
   if (!plan.timing_file.empty()) {
     const TimingFiles timing(plan.timing_file);

@@ -3,12 +3,12 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cstdlib>
 #include <filesystem>
 #include <set>
-#include <sstream>
 
+#include "process/own_program.h"
 #include "process/role.h"
+#include "settings/process_sections.h"
 
 namespace hydro::launch {
 namespace {
@@ -17,20 +17,12 @@ namespace fs = std::filesystem;
 
 constexpr char kLogger[] = "hydro-logger";
 
-bool IsProgram(const fs::path& path) {
-  std::error_code error;
-  return fs::is_regular_file(path, error) && access(path.c_str(), X_OK) == 0;
-}
-
 std::string FindProgram(const std::string& program, const std::string& programs_folder) {
   const fs::path beside = fs::path(programs_folder) / program;
-  if (IsProgram(beside)) return beside.string();
-  const char* path = std::getenv("PATH");
-  std::istringstream folders(path ? path : "");
-  for (std::string folder; std::getline(folders, folder, ':');) {
-    const fs::path found = fs::path(folder.empty() ? "." : folder) / program;
-    if (IsProgram(found)) return found.string();
+  if (std::error_code error; fs::is_regular_file(beside, error) && access(beside.c_str(), X_OK) == 0) {
+    return beside.string();
   }
+  if (std::string found = process::ProgramOnPath(program); !found.empty()) return found;
   throw InputError(program + ": program not found, neither in " + programs_folder +
                    " (beside hydro-launch) nor on PATH; build or install it");
 }
@@ -76,11 +68,12 @@ void CheckHost(const settings::StackConfig& config, const LaunchRequest& request
   }
 }
 
-// The programs of this host, in the configuration's order; adds remarks on those that run elsewhere.
-std::vector<std::string> ProgramsHere(const settings::StackConfig& config, const LaunchRequest& request,
-                                      std::vector<std::string>* remarks) {
+// The processes of this host, in the configuration's order; adds remarks on those that run elsewhere.
+std::vector<settings::ProcessSection> ProcessesHere(const settings::StackConfig& config,
+                                                    const LaunchRequest& request,
+                                                    std::vector<std::string>* remarks) {
   const bool with_log = !request.log_file.empty();
-  std::vector<std::string> programs;
+  std::vector<settings::ProcessSection> here;
   bool names_logger = false;
   for (const settings::ProcessSection& process : config.processes) {
     if (process.program == "hydro-driver") settings::CheckDriver(config);
@@ -88,16 +81,16 @@ std::vector<std::string> ProgramsHere(const settings::StackConfig& config, const
     names_logger |= logger;
     if (logger && !with_log) continue;  // such a section only says where and how a logger would run
     if (Matches(process.host, request.host)) {
-      programs.push_back(process.program);
+      here.push_back(process);
     } else if (IsHere(process.host)) {
-      remarks->push_back(process.program + " names no host in " + request.config_file +
+      remarks->push_back(settings::NameOf(process) + " names no host in " + request.config_file +
                          " and is not started by --host " + request.host);
     } else if (logger) {
       remarks->push_back("the log is written on host " + process.host + " (its [[process]] section says so)");
     }
   }
-  if (with_log && !names_logger) programs.push_back(kLogger);
-  return programs;
+  if (with_log && !names_logger) here.emplace_back().program = kLogger;
+  return here;
 }
 
 ChildSpec ChildFor(const std::string& program, const LaunchRequest& request,
@@ -119,17 +112,36 @@ ChildSpec ChildFor(const std::string& program, const LaunchRequest& request,
   return child;
 }
 
-}  // namespace
+// It runs in the configuration's folder: every relative path in its command counts from there.
+ChildSpec OwnChildFor(const settings::ProcessSection& section, const settings::StackConfig& config,
+                      const LaunchRequest& request, const std::string& programs_folder) {
+  const fs::path file = fs::absolute(request.config_file).lexically_normal();
+  OwnChild own;
+  own.role = section.role;
+  own.name = settings::NameOf(section);
+  own.folder = file.parent_path().string();
+  own.environment =
+      process::OwnEnvironment(config, {section.role, file.string(), request.overrides}, programs_folder);
+  own.cpu = section.cpu;
+  own.priority = section.priority;
+  ChildSpec child;
+  child.label = section.role;
+  child.argv = section.command;
+  child.argv.front() = process::FindOwnProgram(section.command.front(), own.folder,
+                                               section.place + ": process.command");
+  child.own = std::move(own);
+  return child;
+}
 
-std::string OwnFolder() { return fs::read_symlink("/proc/self/exe").parent_path().string(); }
+}  // namespace
 
 LaunchPlan PlanLaunch(const settings::StackConfig& config, const LaunchRequest& request,
                       const std::string& programs_folder) {
   LaunchPlan plan;
   plan.timing_file = request.timing_file;
-  const std::vector<std::string> programs = ProgramsHere(config, request, &plan.remarks);
+  const std::vector<settings::ProcessSection> here = ProcessesHere(config, request, &plan.remarks);
   CheckHost(config, request);
-  if (programs.empty()) {
+  if (here.empty()) {
     throw InputError(request.config_file + ": nothing to start" +
                      (request.host.empty() ? "" : " on host " + request.host) +
                      "; hydro-logger runs only with --log FILE");
@@ -137,8 +149,10 @@ LaunchPlan PlanLaunch(const settings::StackConfig& config, const LaunchRequest& 
   plan.spread = std::any_of(
       config.processes.begin(), config.processes.end(),
       [&](const settings::ProcessSection& process) { return !Matches(process.host, request.host); });
-  for (const std::string& program : programs) {
-    plan.children.push_back(ChildFor(program, request, programs_folder));
+  for (const settings::ProcessSection& process : here) {
+    plan.children.push_back(process.command.empty()
+                                ? ChildFor(process.program, request, programs_folder)
+                                : OwnChildFor(process, config, request, programs_folder));
   }
   return plan;
 }

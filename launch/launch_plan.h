@@ -25,7 +25,4 @@ struct LaunchRequest {
 LaunchPlan PlanLaunch(const settings::StackConfig& config, const LaunchRequest& request,
                       const std::string& programs_folder);
 
-// The folder that the running program is in.
-std::string OwnFolder();
-
 }  // namespace hydro::launch

@@ -51,6 +51,9 @@ Supervisor::~Supervisor() {
 int32_t Supervisor::Start(const ChildSpec& spec) {
   children_.push_back(std::make_unique<Child>(spec));
   stop_.Add(&children_.back()->process);
+  for (const std::string& warning : children_.back()->process.warnings()) {
+    output_.Line(Stream::kErr, spec.label, warning);
+  }
   return children_.back()->process.pid();
 }
 

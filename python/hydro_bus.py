@@ -3,7 +3,7 @@
     import hydro_bus
     from hydro import state_t, pressure_command_t          # what lcm-gen -p makes; installed beside this file
 
-    bus = hydro_bus.Bus("udpm://239.255.76.67:7667?ttl=0")  # bus.url of the stack's configuration
+    bus = hydro_bus.Bus()                                  # that of the stack whose hydro-launch started this program
     bus.subscribe("HYDRO_STATE", state_t, print)
     while True:
         bus.handle(1.0)
@@ -30,16 +30,20 @@ _MOST_UNFINISHED = 16  # messages in fragments that wait for the rest
 
 
 class Bus:
-    """One participant of the network of `url`, "udpm://GROUP:PORT?ttl=N". Raises ValueError for another url."""
+    """One participant of the network of `url`, "udpm://GROUP:PORT?ttl=N", on channels that end in `suffix` (bus.url and
+    bus.channel_suffix of the configuration). Without them, those of who started this program, else the usual network. Raises
+    ValueError for another url."""
 
-    def __init__(self, url="udpm://239.255.76.67:7667?ttl=0"):
+    def __init__(self, url=None, suffix=None):
+        url = url or os.environ.get("HYDRO_BUS_URL") or "udpm://239.255.76.67:7667?ttl=0"
+        self._suffix = os.environ.get("HYDRO_CHANNEL_SUFFIX", "") if suffix is None else suffix
         found = re.fullmatch(r"udpm://(\d+\.\d+\.\d+\.\d+):(\d+)(?:\?(?:.*&)?ttl=(\d+).*)?", url)
         if not found:
             raise ValueError(f'found url "{url}", allowed is e.g. "udpm://239.255.76.67:7667?ttl=0"')
         self._to = (found[1], int(found[2]))
         self._sent = 0
         self._handlers = {}
-        self._unfinished = {}  # (sender, sequence number): [size, channel, pieces by number, how many]
+        self._unfinished = {}  # (sender, sequence number): {size, name of the channel, pieces by number}
         self._socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
         self._socket.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
         self._socket.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 1 << 20)
@@ -54,12 +58,12 @@ class Bus:
 
     def subscribe(self, channel, type_, handler):
         """Calls handler(message) for each message on `channel` that is one of `type_`, from within handle(). Others are ignored."""
-        self._handlers[channel] = (type_, handler)
+        self._handlers[channel + self._suffix] = (type_, handler)
 
     def publish(self, channel, message):
         """Sends a message of a type that lcm-gen made."""
         data = message.encode()
-        name = channel.encode() + b"\0"
+        name = (channel + self._suffix).encode() + b"\0"
         if len(name) + len(data) <= _LARGEST_SHORT:
             self._socket.sendto(_SHORT_HEADER.pack(SHORT, self._sent) + name + data, self._to)
         else:
@@ -137,24 +141,24 @@ class Loop:
 
     role: whose place it takes, "position_ctrl" or "pressure_ctrl". channel, type_: what it answers with. answer(state, command):
     fills in the command; tick, session, sequence and utime are filled in already. every: plant ticks from one answer to the next
-    (position_ctrl: sample_interval_s times rate_hz).
+    (position_ctrl: sample_interval_s times rate_hz), where the loop is started by hand; hydro-launch says it in HYDRO_EVERY.
     """
 
-    def __init__(self, bus, role, channel, type_, answer, every=1, types=None):
+    def __init__(self, bus, role, channel, type_, answer, every=1):
         import hydro  # the types of lcm-gen
 
-        types = types or hydro
-        self.bus, self.role, self.channel, self.type_, self.answer, self.every = bus, role, channel, type_, answer, every
+        self.bus, self.role, self.channel, self.type_, self.answer = bus, role, channel, type_, answer
+        self.every = int(os.environ.get("HYDRO_EVERY", every))
         self.session = new_session()
-        self._status_t = types.process_status_t
+        self._status_t = hydro.process_status_t
         self._command = None  # the last, which is sent again when its state is
         self._sequence = 0
         self._plant = 0  # session of the plant that is followed
         self._running = False
         self._over = None  # why
         self._signal = False
-        bus.subscribe("HYDRO_STATE", types.state_t, self._on_state)
-        bus.subscribe("HYDRO_STOP", types.stop_t, self._on_stop)
+        bus.subscribe("HYDRO_STATE", hydro.state_t, self._on_state)
+        bus.subscribe("HYDRO_STOP", hydro.stop_t, self._on_stop)
 
     def run(self):
         """Runs until the run is over. Returns the exit code that the launcher expects: 0, or that of the stop."""
@@ -165,9 +169,29 @@ class Loop:
             if not self._running and time.monotonic() >= next_status:
                 next_status = time.monotonic() + 0.1
                 self._say(self._status_t.READY, "waits for the first state")
-            self.bus.handle(0.1)
+            try:
+                self.bus.handle(0.1)
+            except BaseException as error:  # of answer(): zero volts first, explanation second
+                self._ask_for_nothing()
+                self._say(self._status_t.FAILED, f"{type(error).__name__}: {error}"[:200])
+                raise
+        if self._over is None or self.role == "pressure_ctrl":
+            self._ask_for_nothing()
         self._say(self._status_t.DONE, "")
         return self._over or 0
+
+    def _ask_for_nothing(self):
+        """A last command of zero volts: what was asked for last must not stay in force."""
+        if self._command is None:
+            return
+        command = self.type_()
+        command.tick, command.session, command.sequence = self._command.tick, self.session, self._sequence
+        command.utime = time.time_ns() // 1000
+        if self.role == "pressure_ctrl":
+            command.status = self.type_.STOPPED
+        else:
+            command.open_loop = True
+        self.bus.publish(self.channel, command)
 
     def _on_signal(self, _number, _frame):
         self._signal = True

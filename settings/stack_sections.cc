@@ -4,6 +4,7 @@
 #include <cctype>
 
 #include "settings/bus_url.h"
+#include "settings/process_sections.h"
 #include "settings/scope_section.h"
 #include "settings/trajectory_spec.h"
 
@@ -162,57 +163,6 @@ void ReadLogger(SectionReader section, LoggerSection* logger) {
   section.Boolean("required", &logger->required);
   section.Number("memory_mb", &logger->memory_mb, {.min = 1, .max = 1e5});
   section.Finish();
-}
-
-void ReadProcess(SectionReader section, ProcessSection* process) {
-  std::vector<std::pair<std::string, std::string>> programs;
-  for (const char* name :
-       {"hydro-plant", "hydro-driver", "hydro-pressure-ctrl", "hydro-position-ctrl", "hydro-logger"}) {
-    programs.emplace_back(name, name);
-  }
-  section.Choice("program", programs, &process->program);
-  section.Require("program", "the program's name, e.g. \"hydro-plant\"");
-  section.Text("host", &process->host);
-  section.Integer("cpu", &process->cpu, -1, 1023);
-  section.Integer("priority", &process->priority, 0, 99);
-  process->lock_memory = process->priority > 0;
-  section.Boolean("lock_memory", &process->lock_memory);
-  section.Finish();
-}
-
-void ReadProcesses(SectionReader& document, std::vector<ProcessSection>* processes) {
-  const TomlNode* node = document.Take("process");
-  if (node == nullptr) {
-    for (const char* program : {"hydro-plant", "hydro-pressure-ctrl", "hydro-position-ctrl"}) {
-      processes->emplace_back().program = program;
-    }
-    return;
-  }
-  if (!node->is(TomlNode::Kind::kArray)) {
-    throw document.Error("process", node->Shown(), "sections [[process]]");
-  }
-  for (const TomlNode& item : node->items) {
-    if (!item.is(TomlNode::Kind::kTable)) {
-      throw KeyError(item.place, "process", item.Shown(), "sections [[process]]");
-    }
-    ProcessSection process;
-    ReadProcess(SectionReader(item, "process"), &process);
-    const bool twice = std::any_of(processes->begin(), processes->end(),
-                                   [&](const auto& other) { return other.program == process.program; });
-    const std::string twin = process.program == "hydro-driver"  ? "hydro-plant"
-                             : process.program == "hydro-plant" ? "hydro-driver"
-                                                                : "";
-    if (std::any_of(processes->begin(), processes->end(),
-                    [&](const auto& other) { return other.program == twin; })) {
-      throw KeyError(item.place, "process.program", process.program + " beside " + twin,
-                     "one of the two: both send states");
-    }
-    // Several loggers do no harm; two of any other program would contradict each other on the bus.
-    if (twice && process.program != "hydro-logger") {
-      throw KeyError(item.place, "process.program", "a second " + process.program, "one of it in a stack");
-    }
-    processes->push_back(std::move(process));
-  }
 }
 
 }  // namespace

@@ -5,19 +5,36 @@
 #include <memory>
 
 #include "base/read_files.h"
+#include "base/text_file.h"
 #include "log/log_writer.h"
 #include "process/stop_signal.h"
 #include "runs/run_log.h"
 #include "runs/tuning_history.h"
 #include "settings/command_line.h"
+#include "settings/process_sections.h"
 #include "sim/simulation.h"
 
 namespace {
 
+// A simulation on a simulated clock cannot wait for another process. What it runs instead is said, and stands in the log's
+// configuration.
+hydro::settings::StackConfig WithOurPrograms(const hydro::settings::StackConfig& config) {
+  for (const hydro::settings::ProcessSection& process : config.processes) {
+    if (process.command.empty()) continue;
+    std::fprintf(stderr,
+                 "hydro-sim: warning: %s: %s is a program of your own; the simulation runs our %s in its "
+                 "place, `hydro-launch %s --time lockstep` runs yours\n",
+                 hydro::Printable(process.place).c_str(),
+                 hydro::Printable(hydro::settings::NameOf(process)).c_str(), process.role.c_str(),
+                 hydro::Printable(config.file).c_str());
+  }
+  return hydro::settings::WithoutOwnPrograms(config);
+}
+
 int Run(const hydro::settings::CommonOptions& options, const std::string& file,
         const std::string& tunings_of) {
   const hydro::settings::StackConfig config =
-      hydro::settings::LoadStackConfig(options.config, options.overrides);
+      WithOurPrograms(hydro::settings::LoadStackConfig(options.config, options.overrides));
   hydro::CheckKeeps(file);
   std::vector<hydro::tuned_settings_t> tunings;
   if (!tunings_of.empty()) tunings = hydro::runs::TuningHistory(hydro::runs::ReadRunLog(tunings_of).messages);

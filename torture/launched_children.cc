@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <csignal>
 
-#include "process/role.h"
 #include "torture/active_fault.h"
 #include "torture/world.h"
 
@@ -14,7 +13,7 @@ void LaunchedChildren::Child::Signal(int signal_number) {
 }
 
 int32_t LaunchedChildren::Start(const launch::ChildSpec& spec) {
-  const auto role = static_cast<Role>(*TargetNamed(process::RoleOf(spec.program())));
+  const auto role = static_cast<Role>(*TargetNamed(spec.role()));
   children_.push_back(std::make_unique<Child>(world_, world_.StartChild(role), spec));
   stop_.Add(children_.back().get());
   return children_.back()->process.identity().id;

@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "settings/overrides.h"
+#include "settings/process_sections.h"
 #include "settings/toml/toml_document.h"
 #include "torture/torture_texts.h"
 
@@ -28,7 +29,8 @@ settings::StackConfig ConfigFor(const Schedule& schedule, const std::string& fil
       fmt::format("limits.stale_input_s={}", schedule.stale_input_s),
   };
   if (!schedule.logger_required) overrides.emplace_back("logger.required=false");
-  return file.empty() ? Parsed(overrides) : settings::LoadStackConfig(file, overrides);
+  if (file.empty()) return Parsed(overrides);
+  return settings::WithoutOwnPrograms(settings::LoadStackConfig(file, overrides));  // simulated machines run ours
 }
 
 settings::StackConfig OtherConfig(const settings::StackConfig& config) {

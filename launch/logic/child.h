@@ -2,25 +2,37 @@
 #pragma once
 
 #include <cstdint>
-#include <stdexcept>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "process/process_end.h"
+
 namespace hydro::launch {
+
+// What a program of the user's own needs besides (process/own_program.h).
+struct OwnChild {
+  std::string role;                      // whose place it takes, e.g. position_ctrl
+  std::string name;                      // in messages, e.g. "./pid.py (position_ctrl)"
+  std::string folder;                    // that it runs in
+  std::vector<std::string> environment;  // "NAME=value", all of it
+  int cpu = -1;                          // as in [[process]]; our programs set theirs themselves
+  int priority = 0;
+};
 
 struct ChildSpec {
   std::string label;              // precedes each of its lines, e.g. plant
   std::vector<std::string> argv;  // argv[0] is the path of the program
   bool last = false;              // is stopped only when all processes without this mark have ended
+  std::optional<OwnChild> own = std::nullopt;  // absent: one of our programs
 
-  std::string program() const;  // the last part of the path, e.g. hydro-plant
+  std::string program() const;  // the last part of the path, e.g. hydro-plant; of a user's own the name
+  std::string role() const;     // e.g. pressure_ctrl
 };
 
-// How a process ended: with exit_code, or by a signal (then signal != 0).
-struct ProcessEnd {
-  int exit_code = 0;
-  int signal = 0;
-};
+using process::DescribeEnd;
+using process::ProcessEnd;
+using process::StartError;
 
 // A child that has ended, as a launch learns of it.
 struct Ended {
@@ -30,15 +42,6 @@ struct Ended {
   ProcessEnd end;
   bool terminated = false;  // the stop had sent it SIGTERM
   bool hung = false;        // it did not end on SIGTERM and was sent SIGKILL
-};
-
-// "hydro-plant was killed by signal 9 (SIGKILL)", "hydro-plant ended with exit code 1"
-std::string DescribeEnd(const std::string& program, const ProcessEnd& end);
-
-// The program could not be started; what() is one line.
-class StartError : public std::runtime_error {
- public:
-  using std::runtime_error::runtime_error;
 };
 
 }  // namespace hydro::launch

@@ -1,7 +1,5 @@
 #include "launch/logic/plan.h"
 
-#include "process/role.h"
-
 namespace hydro::launch {
 
 using namespace std::chrono_literals;
@@ -15,7 +13,7 @@ Grace GraceFor(const LaunchTiming& timing, const LaunchPlan& plan) {
 
 std::vector<std::string> RolesOf(const LaunchPlan& plan) {
   std::vector<std::string> roles;
-  for (const ChildSpec& child : plan.children) roles.push_back(process::RoleOf(child.program()));
+  for (const ChildSpec& child : plan.children) roles.push_back(child.role());
   return roles;
 }
 

@@ -85,7 +85,7 @@ void StackLaunch::StartAll() {
   started_ = asked_ = clock_.Now();
   for (const ChildSpec& child : plan_.children) {
     try {
-      watch_.Expect(child.program(), children_.Start(child));
+      watch_.Expect(child, children_.Start(child));
     } catch (const StartError& error) {
       Fail(error.what(), 2);
       return;

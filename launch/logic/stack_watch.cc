@@ -47,13 +47,27 @@ bool StackWatch::IsOfAPlant(int64_t session) const {
   });
 }
 
-void StackWatch::Expect(const std::string& program, int32_t pid) { expected_.push_back({program, pid}); }
+void StackWatch::Expect(const ChildSpec& child, int32_t pid) {
+  expected_.push_back({child.program(), child.role(), pid, child.own.has_value()});
+}
+
+bool StackWatch::Is(const Expected& expected, const process_status_t& status) {
+  return status.role == expected.role && (expected.own || status.pid == expected.pid);
+}
+
+const process_status_t* StackWatch::StatusOf(const Expected& expected) const {
+  const process_status_t* newest = nullptr;
+  for (const auto& [key, status] : statuses_) {
+    if (Is(expected, status) && (newest == nullptr || status.utime > newest->utime)) newest = &status;
+  }
+  return newest;
+}
 
 std::vector<std::string> StackWatch::NotReady() const {
   std::vector<std::string> missing;
   for (const Expected& expected : expected_) {
-    const auto status = statuses_.find({process::RoleOf(expected.program), expected.pid});
-    if (status == statuses_.end() || status->second.state == process_status_t::FAILED) {
+    const process_status_t* status = StatusOf(expected);
+    if (status == nullptr || status->state == process_status_t::FAILED) {
       missing.push_back(expected.program);
     }
   }
@@ -61,9 +75,12 @@ std::vector<std::string> StackWatch::NotReady() const {
 }
 
 std::string StackWatch::FailureText(const std::string& program, int32_t pid) const {
-  const auto status = statuses_.find({process::RoleOf(program), pid});
-  const bool failed = status != statuses_.end() && status->second.state == process_status_t::FAILED;
-  return failed ? status->second.text : "";
+  for (const Expected& expected : expected_) {
+    if (expected.program != program || expected.pid != pid) continue;
+    const process_status_t* status = StatusOf(expected);
+    if (status != nullptr && status->state == process_status_t::FAILED) return status->text;
+  }
+  return "";
 }
 
 void StackWatch::AskWhoIsThere() {
@@ -91,9 +108,8 @@ std::vector<std::string> StackWatch::Present(const std::vector<std::string>& rol
 
 bool StackWatch::BelongsHere(const process_status_t& status) const {
   if (spread_) return true;
-  return std::any_of(expected_.begin(), expected_.end(), [&](const Expected& expected) {
-    return expected.pid == status.pid && process::RoleOf(expected.program) == status.role;
-  });
+  return std::any_of(expected_.begin(), expected_.end(),
+                     [&](const Expected& expected) { return Is(expected, status); });
 }
 
 bool StackWatch::IsForThisStack(const stop_t& stop) const {

@@ -15,6 +15,7 @@
 #include "bus/channels.h"
 #include "bus/clock.h"
 #include "bus/hosted_process.h"
+#include "launch/logic/child.h"
 #include "launch/logic/run_summary.h"
 #include "timing/report/timing_record.h"
 
@@ -34,8 +35,9 @@ class StackWatch {
   // The processes with one of these roles that have been heard and have not left, by name.
   std::vector<std::string> Present(const std::vector<std::string>& roles) const;
 
-  // Adds a process of this launch to wait for.
-  void Expect(const std::string& program, int32_t pid);
+  // Adds a process of this launch to wait for. One of the user's own may be a script that starts another: whoever
+  // announces itself under its role is it.
+  void Expect(const ChildSpec& child, int32_t pid);
 
   // The expected programs that have not announced that they are ready, in the order given.
   std::vector<std::string> NotReady() const;
@@ -61,8 +63,13 @@ class StackWatch {
  private:
   struct Expected {
     std::string program;
+    std::string role;
     int32_t pid;
+    bool own;
   };
+
+  static bool Is(const Expected& expected, const process_status_t& status);
+  const process_status_t* StatusOf(const Expected& expected) const;  // null: it has said nothing
 
   bool IsOfAPlant(int64_t session) const;
   bool BelongsHere(const process_status_t& status) const;

@@ -1,0 +1,58 @@
+// A position loop of the user's own, in a few lines (docs/own_controller.md):
+//
+//   int main() {
+//     return hydro::process::RunOwnPositionLoop([](const hydro::state_t& state, hydro::pressure_command_t* command) {
+//       command->pressure_ref = -6000 * (state.arm_angle - 0.3) - 1200 * state.arm_speed;
+//     });
+//   }
+#pragma once
+
+#include <functional>
+#include <hydro/pressure_command_t.hpp>
+#include <hydro/state_t.hpp>
+
+#include "bus/sequence_monitor.h"
+#include "process/app.h"
+#include "process/participant.h"
+#include "settings/stack_config.h"
+
+namespace hydro::process {
+
+// Fills in what is asked of the pressure loop at that state, in psi or volts; tick, session, sequence and utime are filled in
+// already. Called once for each state that is a multiple of the position loop's interval.
+using PositionAnswer = std::function<void(const state_t& state, pressure_command_t* command)>;
+
+// The loop's life on the bus: the handshake, the answers, each again when its state comes again, the end; statistics and faults
+// as all processes have them.
+class OwnPositionLoop : public App {
+ public:
+  OwnPositionLoop(bus::Bus& bus, bus::Clock& clock, const settings::StackConfig& config,
+                  PositionAnswer answer);
+
+  void Poll() override;
+  void OnHandled(int messages) override { participant_.statistics().RecordQueueDepth(messages); }
+  bool finished() const override { return participant_.stop().has_value(); }
+  // Unless the run is over, it first asks for zero volts: what it asked for last must not stay in force.
+  int Finish() override;
+
+  Participant& participant() { return participant_; }
+
+ private:
+  void OnState(const state_t& state);
+  void Answer(const state_t& state);
+  void Send();
+
+  Participant participant_;
+  const PositionAnswer answer_;
+  const int64_t interval_;  // ticks
+  bus::SequenceMonitor monitor_;
+  pressure_command_t command_{};  // the last
+  int64_t answered_ = -1;         // its tick
+  int64_t sequence_ = 0;
+};
+
+// A whole program: takes the configuration and its overrides from HYDRO_CONFIG and HYDRO_SET, as hydro-launch and hydro-log replay
+// set them, and runs until the run is over. Returns the exit code; what is wrong is one line on stderr.
+int RunOwnPositionLoop(const PositionAnswer& answer);
+
+}  // namespace hydro::process
