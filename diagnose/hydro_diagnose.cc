@@ -16,6 +16,7 @@
 #include "base/number_text.h"
 #include "base/read_files.h"
 #include "base/text_file.h"
+#include "diagnose/data/checklist.h"
 #include "diagnose/recording_first.h"
 #include "diagnose/report/progress_bar.h"
 #include "diagnose/report/report_html.h"
@@ -226,6 +227,11 @@ int CheckRuns(const DiagnoseRequest& request, std::FILE* out) {
                                  held_out = ReadRuns(request.held_out, model.units);
   TellApart(request, &runs, &held_out);
   runs.insert(runs.end(), held_out.begin(), held_out.end());
+  for (const runs::MeasuredRun& run : runs) {
+    std::fputs(("checklist of run " + Printable(run.name) + "\n").c_str(), out);
+    for (const ChecklistLine& line : Checklist(model, run)) std::fputs((Written(line) + "\n").c_str(), out);
+    std::fputs("\n", out);
+  }
   const RecordingReport report = ReportOnRecordings(model, std::move(runs), request.jobs);
   for (const std::vector<std::string>* lines : {&report.wrong, &report.limits}) {
     for (const std::string& line : *lines) std::fputs((line + "\n").c_str(), out);
