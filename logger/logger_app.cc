@@ -133,6 +133,7 @@ void LoggerApp::CheckOverflow() {
 }
 
 void LoggerApp::OnStatus(const process_status_t& status) {
+  if (status.role == process::kLaunchRole) return;  // it asks who is there, and never says that it has ended
   if (status.role != "logger") {
     others_[status.session] = process::HasLeft(status);
   } else if (status.session == participant_.session()) {

@@ -2,6 +2,7 @@
 
 import importlib
 import os
+import re
 import shutil
 import signal
 import sys
@@ -18,6 +19,7 @@ ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__)
 PYTHON = os.environ.get("HYDRO_PYTHON", os.pathsep.join([os.path.join(ROOT, "python"), os.path.join(os.path.dirname(stack.BIN), "generated", "python")]))
 EXAMPLE = os.path.join(os.environ.get("HYDRO_EXAMPLES", os.path.join(ROOT, "examples")), "own_controller")
 PID, CONFIG = os.path.join(EXAMPLE, "pid.py"), os.path.join(EXAMPLE, "own.toml")
+TOOLS = os.environ.get("HYDRO_TEST_TOOLS", os.path.join(os.path.dirname(stack.BIN), "tests"))  # where the example in C++ is built
 TARGET = 0.3  # rad, of pid.py
 
 
@@ -52,30 +54,221 @@ class OwnControllerTest(fault_case.FaultCase):
         self.log.wait_for("HYDRO_MOTOR_COMMAND", lambda c: c.status == event_log.SAFE and c.voltage == 0, "zero volts")
         self.finish()
 
-    def lockstep(self, name, disturb=None):
-        launch = self.launch(CONFIG, "--time", "lockstep", "--duration", "1.2", "--log", self.path(name))
-        own = self.start_own()
-        if disturb:
-            disturb(own)
-        self.assertEqual(launch.wait(60), 0, launch.report())
-        self.assertEqual(own.wait(), 0, own.report())
+    def config_of(self, command, name="own.toml", more=""):
+        """own.toml with another command, a TOML value, here."""
+        with open(CONFIG, encoding="utf-8") as file:
+            text = file.read()
+        text = text.replace("../../config", stack.CONFIG)
+        changed, count = re.subn(r'(?m)^command = .*$', lambda _: f"command = {command}\n{more}", text)
+        self.assertEqual(count, 1)
+        with open(self.path(name), "w", encoding="utf-8") as file:
+            file.write(changed)
         return self.path(name)
 
-    # Tests that in lockstep its runs are identical, also when it stands still meanwhile and the plant asks again.
-    def test_lockstep(self):
-        def hang(own):
-            self.log = stack.LiveLog(self, self.path("b.lcmlog"))
-            self.log.wait_for_tick(50)
-            own.send(signal.SIGSTOP)
-            self.log.update()
-            before = self.log.count("HYDRO_STATE")
-            self.wait_until(lambda: (self.log.update(), self.log.count("HYDRO_STATE") >= before + 3)[1], "the plant asks again")
-            own.send(signal.SIGCONT)
+    def script(self, name, text, mode=0o755):
+        with open(self.path(name), "w", encoding="utf-8") as file:
+            file.write(text)
+        os.chmod(self.path(name), mode)
+        return self.path(name)
 
-        a = self.lockstep("a.lcmlog")
-        b = self.lockstep("b.lcmlog", hang)
+    def variant(self, name, old, new):
+        """pid.py with a change, here."""
+        with open(PID, encoding="utf-8") as file:
+            text = file.read()
+        self.assertIn(old, text)
+        return self.script(name, text.replace(old, new))
+
+    def lockstep(self, config, name, disturb=None):
+        launch = self.launch(config, "--time", "lockstep", "--duration", "1.2", "--log", self.path(name))
+        if disturb:
+            self.log = stack.LiveLog(self, self.path(name))
+            disturb()
+        self.assertEqual(launch.wait(60), 0, launch.report())
+        return self.path(name)
+
+    def pid_of_own(self):
+        return self.log.wait_for("HYDRO_PROCESS_STATUS", lambda s: s.role == "position_ctrl", "the loop").pid
+
+    # Tests that hydro-launch starts it, that in lockstep its runs are identical, also when it stands still meanwhile and the plant asks
+    # again, and that a replay through it gives what was recorded.
+    def test_launched_in_lockstep(self):
+        def hang():
+            self.log.wait_for_tick(50)
+            pid = self.pid_of_own()
+            os.kill(pid, signal.SIGSTOP)
+            before = self.log.count("HYDRO_STATE")
+            self.wait_until(lambda: self.log.count("HYDRO_STATE") >= before + 3, "the plant asks again")
+            os.kill(pid, signal.SIGCONT)
+
+        a = self.lockstep(CONFIG, "a.lcmlog")
+        b = self.lockstep(CONFIG, "b.lcmlog", hang)
         self.assert_identical(a, b)
         self.assertLess(abs(event_log.Log(a).states[-1].arm_angle - TARGET), 0.02)
+        self.assertIn('command = ["./pid.py"]', event_log.Log(a).of("HYDRO_RUN")[0].config_text)
+
+        replay = self.run_program("hydro-log", "replay", "--controller", PID, a)
+        self.assertEqual(replay.stdout, f"{PID}: identical, 241 pressure commands from 1201 states\n")
+        ours = self.run_program("hydro-log", "replay", a)
+        self.assertRegex(ours.stdout, r"pressure: identical, .*\nposition: not replayed: the run had \./pid\.py \(position_ctrl\)")
+        other = self.variant("other.py", "6000.0", "6001.0")
+        self.assertRegex(self.run_program("hydro-log", "replay", "--controller", other, a, expect=1).stdout,
+                         r"other\.py: differ at tick \d+: HYDRO_PRESSURE_COMMAND\.pressure_ref: ")
+        dies = self.variant("dies.py", "    asked =", "    if state.tick == 100: sys.exit(3)\n    asked =")
+        self.assertRegex(self.run_program("hydro-log", "replay", "--controller", "./dies.py", a, expect=1).stderr,
+                         r"hydro-log: \./dies\.py ended with exit code 3 before it could answer tick 100\n")
+        self.assertEqual(dies, self.path("dies.py"))
+        self.variant("hangs.py", "    asked =", "    while state.tick == 100: pass\n    asked =")
+        self.assertEqual(self.run_program("hydro-log", "replay", "--controller", "./hangs.py", "--timeout", "0.5", a, expect=1).stderr,
+                         "hydro-log: ./hangs.py did not answer tick 100 within 0.5 s\n")
+        wrong = self.run_program("hydro-log", "replay", "--controller", PID, "--role", "pressure_ctrl", a, expect=1)
+        self.assertIn("takes part as position_ctrl, and pressure_ctrl is replayed", wrong.stderr)
+        self.assertIn('--controller: found "./no.py", and there is no program',
+                      self.run_program("hydro-log", "replay", "--controller", "./no.py", a, expect=2).stderr)
+
+    # Tests that in real time it moves the arm, that its lines carry its role, and that the run replays.
+    def test_launched_in_real_time(self):
+        says = self.variant("says.py", "bus = ", 'print("hello", flush=True)\nbus = ')
+        launch = self.launch(self.config_of('["./says.py"]'), "--duration", "1.5", "--log", self.path("run.lcmlog"))
+        self.assertEqual(launch.wait(60), 0, launch.report())
+        self.assertRegex(launch.stdout, r"(?m)^\[position_ctrl\] hello$")
+        self.assertRegex(launch.stdout, "all 4 processes ready")
+        self.assertLess(abs(event_log.Log(self.path("run.lcmlog")).states[-1].arm_angle - TARGET), 0.02)
+        replay = self.run_program("hydro-log", "replay", "--controller", says, self.path("run.lcmlog"))
+        self.assertRegex(replay.stdout, r": identical, [23]\d\d pressure commands from ")
+
+    # Tests that the run ends at zero volts, with 1 and a reason, when it is killed, fails, or leaves; and that what it has started
+    # ends with it.
+    def test_launched_dies(self):
+        fails = self.variant("fails.py", "    asked =", "    if state.tick == 200: 1 / 0\n    asked =")
+        leaves = self.variant("leaves.py", "    asked =", "    if state.tick == 200: os._exit(0)\n    asked =")
+        with open(leaves, encoding="utf-8") as file:
+            text = file.read()
+        self.script("leaves.py", text.replace("import sys", "import os\nimport sys"))
+        self.script("child.py", "#!/bin/sh\n" + f"{sys.executable} -B {PID} &\nwait\nexit 0\n")
+        cases = (("./killed.py", r"killed\.py \(position_ctrl\) was killed by signal 9 \(SIGKILL\)"),
+                 ("./fails.py", r"fails\.py \(position_ctrl\) ended with exit code 1: ZeroDivisionError: division by zero"),
+                 ("./leaves.py", r"leaves\.py \(position_ctrl\) ended though nobody"))
+        self.variant("killed.py", "    asked =", "    if state.tick == 200: os.kill(os.getpid(), 9)\n    asked =")
+        with open(self.path("killed.py"), encoding="utf-8") as file:
+            text = file.read()
+        self.script("killed.py", text.replace("import sys", "import os\nimport sys"))
+        self.assertTrue(fails)
+        for number, (command, said) in enumerate(cases):
+            log = self.path(f"{number}.lcmlog")
+            launch = self.launch(self.config_of(f'["{command}"]'), "--log", log)
+            self.assertEqual(launch.wait(60), 1, launch.report())
+            self.assertRegex(launch.stderr, said)
+            self.assertRegex(launch.stdout, "the output reads back 0 V")
+            self.assertEqual(event_log.Log(log).of("HYDRO_MOTOR_COMMAND")[-1].voltage, 0)
+
+    # Tests that a script that starts the loop is watched as the loop is, and that nothing is left of it when it is killed.
+    def test_launched_by_a_script(self):
+        self.script("start.sh", f'#!/bin/sh\n{sys.executable} -B "{PID}"\nexit $?\n')
+        config = self.config_of('["./start.sh"]')
+        launch = self.launch(config, "--duration", "0", "--log", self.path("run.lcmlog"))
+        launch.wait_for("all 4 processes ready")
+        self.log = stack.LiveLog(self, self.path("run.lcmlog"))
+        loop = self.pid_of_own()
+        with open(f"/proc/{loop}/stat", encoding="utf-8") as file:
+            script = int(file.read().rsplit(") ", 1)[1].split()[1])
+        self.log.wait_for_tick(100)
+        os.kill(script, signal.SIGKILL)
+        self.assertEqual(launch.wait(60), 1, launch.report())
+        self.assertIn("./start.sh (position_ctrl) was killed by signal 9", launch.stderr)
+        self.wait_until(lambda: not os.path.exists(f"/proc/{loop}"), "the loop has ended")
+
+    # Tests that one that is never ready is named, and one that does not end is killed.
+    def test_launched_hangs(self):
+        launch = self.launch(self.config_of('["sleep", "60"]'), "--set", "time.start_timeout_s=0.5")
+        self.assertEqual(launch.wait(60), 1, launch.report())
+        self.assertRegex(launch.stderr, r"not ready (within|after) 0\.\d+ s \(time\.start_timeout_s\): (sleep 60 \()?position_ctrl")
+        text = "sys.exit(hydro_bus.Loop("
+        self.variant("deaf.py", text, "import signal, threading\nhydro_bus.Loop._on_signal = lambda *_: None\n"
+                                     "hydro_bus.Loop._on_stop = lambda *_: None\n" + text)
+        launch = self.launch(self.config_of('["./deaf.py"]'), "--duration", "0.2", "--log", self.path("run.lcmlog"))
+        self.assertEqual(launch.wait(60), 1, launch.report())
+        self.assertIn("./deaf.py (position_ctrl) did not end on SIGTERM and was killed", launch.stderr)
+
+    # Tests that what cannot be started is refused before anything is.
+    def test_launched_wrongly(self):
+        self.script("plain.py", "", 0o644)
+        for command, more, said in (
+                ('["./none.py"]', "", r'own\.toml:\d+: process\.command: found "\./none\.py", and there is no program .*/none\.py, allowed'),
+                ('["none"]', "", r'found "none", which is not on PATH, allowed'),
+                ('["plain.py"]', "", r'found "plain\.py", which is not on PATH, allowed "\./plain\.py"'),
+                ('["./plain.py"]', "", r'found "\./plain\.py", which may not be executed, allowed .* `chmod \+x '),
+                ('"./plain.py"', "", r'process\.command: found "\./plain\.py", allowed the program and its arguments as a list'),
+                ('[]', "", r"process\.command: found no program"),
+                ('["./plain.py"]', 'program = "hydro-plant"', r"process\.command: found it beside program"),
+                ('["./plain.py"]', "lock_memory = true", r"process\.lock_memory: found it beside command")):
+            launch = self.launch(self.config_of(command, more=more), "--log", self.path("none.lcmlog"))
+            self.assertEqual(launch.wait(), 2, launch.report())
+            self.assertRegex(launch.stderr, said)
+            self.assertEqual(launch.stderr.count("\n"), 1)
+            self.assertFalse(os.path.exists(self.path("none.lcmlog")))
+        self.script("noline.py", "print()\n")
+        launch = self.launch(self.config_of('["./noline.py"]'))
+        self.assertEqual(launch.wait(), 2, launch.report())
+        self.assertRegex(launch.stderr, "noline.py: cannot be started: Exec format error; a script needs a first line such as #!")
+
+    # Tests that a simulation without processes says that it runs our loop, and its log says so too.
+    def test_simulated(self):
+        sim = self.run_program("hydro-sim", CONFIG, "--duration", "0.1", "-o", self.path("sim.lcmlog"))
+        self.assertRegex(sim.stderr, r"warning: .*own\.toml:\d+: \./pid\.py \(position_ctrl\) is a program of your own; the simulation runs our")
+        self.assertNotIn("pid.py", event_log.Log(self.path("sim.lcmlog")).of("HYDRO_RUN")[0].config_text)
+        replay = self.run_program("hydro-log", "replay", self.path("sim.lcmlog"))
+        self.assertRegex(replay.stdout, r"position: identical, 21 ")
+
+    # Tests that the skeleton runs at once, and never takes the place of somebody's work.
+    def test_new_controller(self):
+        made = self.run_program("hydro-launch", "new-controller", "mine")
+        self.assertIn("hydro-launch mine.toml --duration 3 --log mine.lcmlog", made.stdout)
+        log = self.lockstep(self.path("mine.toml"), "mine.lcmlog")
+        self.assertLess(abs(event_log.Log(log).states[-1].arm_angle - TARGET), 0.02)
+        replay = self.run_program("hydro-log", "replay", "--controller", "./mine.py", log)
+        self.assertIn("./mine.py: identical, 241 ", replay.stdout)
+        os.remove(self.path("mine.py"))
+        again = self.run_program("hydro-launch", "--new-controller", "mine", expect=2)
+        self.assertEqual(again.stderr, "hydro-launch: mine.toml: is there already and is not overwritten; give another name, or move it away\n")
+        self.assertFalse(os.path.exists(self.path("mine.py")))
+        self.assertIn('found "a/b", allowed a name of letters', self.run_program("hydro-launch", "new-controller", "a/b", expect=2).stderr)
+
+    def check_example(self, command):
+        """In lockstep twice identical and with pid.py's answers, and in real time."""
+        config = self.config_of(command)
+        a, b = self.lockstep(config, "a.lcmlog"), self.lockstep(config, "b.lcmlog")
+        self.assert_identical(a, b)
+        self.run_program("hydro-log", "replay", "--controller", PID, a)
+        launch = self.launch(config, "--duration", "1.5", "--log", self.path("run.lcmlog"))
+        self.assertEqual(launch.wait(60), 0, launch.report())
+        log = event_log.Log(self.path("run.lcmlog"))
+        self.assertLess(abs(log.states[-1].arm_angle - TARGET), 0.02)
+        self.assertEqual([f for f in log.faults if f.code.startswith(("second_", "undecodable", "excessive", "nonfinite", "future"))], [])
+        return a
+
+    # Tests the example in C++; a replay through it, too, gives what was recorded.
+    def test_cpp(self):
+        built = os.path.join(TOOLS, "own_pd")
+        if not os.path.exists(built):
+            self.skipTest(f"needs {built}: cmake --build build --target own_pd")
+        log = self.check_example(f'["{built}"]')
+        self.assertIn("identical, 241 ", self.run_program("hydro-log", "replay", "--controller", built, log).stdout)
+
+    # Tests the examples in Octave: in the loop, and over a recorded run by exchange of files.
+    def test_octave(self):
+        if not shutil.which("octave-cli"):
+            self.skipTest("needs octave-cli: apt-get install octave")
+        octave = os.path.join(EXAMPLE, "octave")
+        log = self.check_example(f'["{octave}/octave_loop.py", "pd_law"]')
+        for name in (log, self.path("run.lcmlog")):
+            table = name.replace(".lcmlog", ".csv")
+            self.run_program("hydro-log", "export", name, "-o", table)
+            check = self.start(shutil.which("octave-cli"), "--quiet", "--no-init-file", os.path.join(octave, "check_law.m"), table)
+            code = check.wait(60)
+            if name == log:
+                self.assertEqual((code, check.stdout), (0, "identical: 240 commands\n"), check.report())
+            else:  # in real time a command may come after the next one is due
+                self.assertRegex(check.stdout, r"^(identical: \d+|\d+ of \d+) commands")
 
     # Tests wrong usage of the module.
     def test_wrong_url(self):

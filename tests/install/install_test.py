@@ -66,6 +66,15 @@ class InstallTest(unittest.TestCase):
         effects = len(list((SOURCE / "model/effects").glob("*_*.cc")))  # a file is GROUP_NAME.cc
         self.assertEqual(int(match[3]), effects)
 
+    def test_a_controller_builds(self):
+        """Tests that the example of a controller in C++ builds on what is installed; tests/e2e/own_controller_test.py runs it."""
+        built = pathlib.Path(self.folder.name) / "controller"
+        run("cmake", "-S", SOURCE / "examples/own_controller/cpp", "-B", built, "-G", "Ninja", f"-DCMAKE_PREFIX_PATH={self.prefix}")
+        run("cmake", "--build", built)
+        done = subprocess.run([built / "pd"], capture_output=True, text=True, timeout=60, env={**os.environ, "HYDRO_CONFIG": ""})
+        self.assertEqual(done.returncode, 2, done.stderr)
+        self.assertRegex(done.stderr, "^position_ctrl: HYDRO_CONFIG: found nothing, allowed the path")
+
     def test_headers_name_installed_headers(self):
         """Tests that no installed header includes one of the project's that is not installed, and none of the upper floors is."""
         include = self.prefix / "include/hydro"
