@@ -142,6 +142,8 @@ class Loop:
     role: whose place it takes, "position_ctrl" or "pressure_ctrl". channel, type_: what it answers with. answer(state, command):
     fills in the command; tick, session, sequence and utime are filled in already. every: plant ticks from one answer to the next
     (position_ctrl: sample_interval_s times rate_hz), where the loop is started by hand; hydro-launch says it in HYDRO_EVERY.
+
+    A pressure loop finds in self.asked the pressure command in force, the newest of an earlier tick; None before the first.
     """
 
     def __init__(self, bus, role, channel, type_, answer, every=1):
@@ -151,6 +153,8 @@ class Loop:
         self.every = int(os.environ.get("HYDRO_EVERY", every))
         self.session = new_session()
         self._status_t = hydro.process_status_t
+        self.asked = None
+        self._heard = []  # the pressure commands that are, or will be, in force
         self._command = None  # the last, which is sent again when its state is
         self._sequence = 0
         self._plant = 0  # session of the plant that is followed
@@ -159,6 +163,8 @@ class Loop:
         self._signal = False
         bus.subscribe("HYDRO_STATE", hydro.state_t, self._on_state)
         bus.subscribe("HYDRO_STOP", hydro.stop_t, self._on_stop)
+        if role == "pressure_ctrl":
+            bus.subscribe("HYDRO_PRESSURE_COMMAND", hydro.pressure_command_t, self._on_pressure_command)
 
     def run(self):
         """Runs until the run is over. Returns the exit code that the launcher expects: 0, or that of the stop."""
@@ -206,6 +212,16 @@ class Loop:
         if stop.addressee in (0, self.session, self._plant):
             self._over = stop.exit_code
 
+    def _on_pressure_command(self, command):
+        if not self._heard or command.tick > self._heard[-1].tick:
+            self._heard.append(command)
+
+    def _take_pressure_command(self, state, command):
+        while self._heard and self._heard[0].tick < state.tick:
+            self.asked = self._heard.pop(0)
+        command.pressure_command_tick = self.asked.tick if self.asked else -1
+        command.pressure_ref = self.asked.pressure_ref if self.asked else 0.0
+
     def _on_state(self, state):
         if not self._running:
             self._running, self._plant = True, state.session
@@ -216,6 +232,8 @@ class Loop:
             command = self.type_()
             command.tick, command.session, command.sequence = state.tick, self.session, self._sequence
             command.utime = time.time_ns() // 1000
+            if self.role == "pressure_ctrl":
+                self._take_pressure_command(state, command)
             self.answer(state, command)
             self._sequence += 1
             self._command = command

@@ -233,6 +233,35 @@ class OwnControllerTest(fault_case.FaultCase):
         self.assertFalse(os.path.exists(self.path("mine.py")))
         self.assertIn('found "a/b", allowed a name of letters', self.run_program("hydro-launch", "new-controller", "a/b", expect=2).stderr)
 
+    # Tests a pressure loop of one's own: in lockstep twice identical, replayed by what it had heard.
+    def test_pressure_loop(self):
+        self.script("pressure.py", """#!/usr/bin/env python3
+import sys
+import hydro_bus
+from hydro import motor_command_t
+
+def answer(state, command):
+    asked = command.pressure_ref - (state.p2 - state.p1)
+    command.voltage = max(-5.0, min(5.0, 0.05 * asked - 0.02 * state.motor_speed))
+    if loop.asked and loop.asked.tick >= state.tick:
+        raise ValueError(f"a command of tick {loop.asked.tick} at tick {state.tick}")
+
+loop = hydro_bus.Loop(hydro_bus.Bus(), "pressure_ctrl", "HYDRO_MOTOR_COMMAND", motor_command_t, answer)
+sys.exit(loop.run())
+""")
+        config = self.config_of('["./pressure.py"]')
+        with open(config, encoding="utf-8") as file:
+            text = file.read()
+        with open(config, "w", encoding="utf-8") as file:
+            file.write(text.replace("position_ctrl", "pressure_ctrl").replace("hydro-pressure-ctrl", "hydro-position-ctrl"))
+        a, b = self.lockstep(config, "a.lcmlog"), self.lockstep(config, "b.lcmlog")
+        self.assert_identical(a, b)
+        commands = event_log.Log(a).of("HYDRO_MOTOR_COMMAND")
+        self.assertEqual([c.pressure_command_tick for c in commands[:8]], [-1, 0, 0, 0, 0, 0, 5, 5])
+        self.assertEqual((commands[-1].voltage, commands[-1].status), (0, 3))
+        replay = self.run_program("hydro-log", "replay", "--controller", "./pressure.py", a)
+        self.assertEqual(replay.stdout, "./pressure.py: identical, 1201 motor commands from 1201 states\n")
+
     def check_example(self, command):
         """In lockstep twice identical and with pid.py's answers, and in real time."""
         config = self.config_of(command)
