@@ -1,0 +1,108 @@
+#include "diagnose/data/checklist.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "model/actuator.h"
+#include "tests/table1.h"
+
+namespace hydro::diagnose {
+namespace {
+
+using State = ChecklistLine::State;
+
+model::ModelDescription Table1Model() {
+  model::ModelDescription model;
+  model.parameters = testing::Table1();
+  return model;
+}
+
+// A second of a rig at 1 kHz that is driven to and fro.
+runs::MeasuredRun Swing(model::Shaft shaft, bool bypass = false) {
+  model::ActuatorOptions options;
+  options.shaft = shaft;
+  options.bypass = bypass;
+  model::Actuator rig(Table1Model(), options);
+  runs::MeasuredRun run;
+  run.name = "swing";
+  run.shaft = shaft;
+  run.bypass = bypass;
+  for (int k = 0; k < 1000; ++k) {
+    if (k > 0) rig.Advance(run.voltage.values.back(), 1e-3 * k);
+    const model::Measurement m = rig.Measure();
+    run.time.push_back(1e-3 * k);
+    run.voltage.values.push_back(4 * std::sin(0.02 * k));
+    run.motor_speed.values.push_back(m.motor_speed);
+    run.p1.values.push_back(m.p1);
+    run.p2.values.push_back(m.p2);
+    if (shaft == model::Shaft::kFree) run.arm_angle.values.push_back(m.arm_angle);
+  }
+  return run;
+}
+
+std::string LineOf(const runs::MeasuredRun& run, const std::string& item) {
+  for (const ChecklistLine& line : Checklist(Table1Model(), run)) {
+    if (line.item == item) return Written(line);
+  }
+  return "no line";
+}
+
+void Negate(runs::MeasuredSignal* signal) {
+  for (double& value : signal->values) value = -value;
+}
+
+// Tests that all signs of a good run are found good: free, clamped, with the bypass open.
+TEST(ChecklistTest, GoodRuns) {
+  for (const model::Shaft shaft : {model::Shaft::kFree, model::Shaft::kClamped}) {
+    for (const bool bypass : {false, true}) {
+      for (const ChecklistLine& line : Checklist(Table1Model(), Swing(shaft, bypass))) {
+        if (!bypass || line.item.starts_with("sign")) EXPECT_NE(line.state, State::kLook) << Written(line);
+      }
+    }
+  }
+}
+
+// Tests that each turned sign is seen where it shows.
+TEST(ChecklistTest, TurnedSigns) {
+  runs::MeasuredRun run = Swing(model::Shaft::kFree);
+  Negate(&run.voltage);
+  EXPECT_THAT(LineOf(run, "sign of the command"), ::testing::StartsWith("look"));
+  run = Swing(model::Shaft::kFree);
+  Negate(&run.arm_angle);
+  EXPECT_THAT(LineOf(run, "sign of the arm"), ::testing::ContainsRegex("^look .*the arm moves down while"));
+  EXPECT_THAT(LineOf(run, "sign of the command"), ::testing::StartsWith("ok"));
+  run = Swing(model::Shaft::kClamped);
+  std::swap(run.p1, run.p2);
+  EXPECT_THAT(LineOf(run, "sign of the pressures"), ::testing::ContainsRegex("^look .*exchange p1 and p2"));
+}
+
+// Tests that other units, a shaft that is not as stated and gaps in time are seen.
+TEST(ChecklistTest, UnitsShaftAndTime) {
+  runs::MeasuredRun run = Swing(model::Shaft::kFree);
+  for (runs::MeasuredSignal* signal : {&run.p1, &run.p2}) {
+    for (double& value : signal->values) value /= 14.5038;
+  }
+  EXPECT_THAT(LineOf(run, "charge pressure"), ::testing::ContainsRegex("^look .*another unit"));
+  run = Swing(model::Shaft::kFree);
+  run.shaft = model::Shaft::kClamped;
+  EXPECT_THAT(LineOf(run, "shaft"), ::testing::ContainsRegex("^look .*clamped, as is said"));
+  run = Swing(model::Shaft::kFree);
+  for (size_t i = 500; i < run.time.size(); ++i) run.time[i] += 0.05;
+  EXPECT_THAT(LineOf(run, "samples"), ::testing::ContainsRegex("^look .*once none for 51 ms"));
+}
+
+// Tests that what is not recorded is absent, and that a run that rests says nothing of signs.
+TEST(ChecklistTest, AbsentAndStill) {
+  runs::MeasuredRun run = Swing(model::Shaft::kFree);
+  EXPECT_THAT(LineOf(run, "motor_angle"), ::testing::StartsWith("absent"));
+  for (runs::MeasuredSignal* signal : {&run.voltage, &run.motor_speed, &run.p1, &run.p2, &run.arm_angle}) {
+    std::fill(signal->values.begin(), signal->values.end(), signal->values.front());
+  }
+  EXPECT_THAT(LineOf(run, "sign of the command"), ::testing::HasSubstr("moves too little to tell"));
+  EXPECT_THAT(LineOf(run, "motor_speed"), ::testing::HasSubstr("it never changes"));
+}
+
+}  // namespace
+}  // namespace hydro::diagnose
