@@ -179,9 +179,8 @@ std::optional<std::string> OwnController::Await(const std::function<bool()>& don
 }
 
 std::optional<std::string> OwnController::AwaitReady(Duration limit) {
-  const std::optional<std::string> wrong =
-      Await([this] { return status_ && process::IsThere(*status_); }, [] {}, limit,
-            "say that it is ready (HYDRO_PROCESS_STATUS)");
+  std::optional<std::string> wrong = Await([this] { return status_ && process::IsThere(*status_); },
+                                                 [] {}, limit, "say that it is ready (HYDRO_PROCESS_STATUS)");
   if (wrong && !other_role_.empty()) {
     return name_ + " takes part as " + other_role_ + ", and " + role_ + " is replayed; --role " +
            other_role_ + " replays that";
@@ -200,7 +199,7 @@ std::optional<std::string> OwnController::End(int64_t plant_session, Duration li
   stop.exit_code = 0;
   const auto say = [&] { bus_->Publish(bus::Channels().Of<stop_t>(), stop); };
   say();
-  if (const auto wrong = Await([this] { return Ended(); }, say, limit, "end at HYDRO_STOP")) return wrong;
+  if (auto wrong = Await([this] { return Ended(); }, say, limit, "end at HYDRO_STOP")) return wrong;
   if (end_->signal != 0 || end_->exit_code != 0) return DescribeEnd(name_, *end_) + " at the end of the run";
   return std::nullopt;
 }

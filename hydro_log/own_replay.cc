@@ -18,10 +18,10 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr auto kStart = 20s;           // an interpreter may take that long to load what it needs
-constexpr int kUnanswered = 64;        // states that are sent without waiting for anything: a receiver's buffer
-constexpr auto kPause = 2ms;           // after that many
-const bus::Channels kPlain;            // its network is its own
+constexpr auto kStart = 20s;     // an interpreter may take that long to load what it needs
+constexpr int kUnanswered = 64;  // states that are sent without waiting for anything: a receiver's buffer
+constexpr auto kPause = 2ms;     // after that many
+const bus::Channels kPlain;      // its network is its own
 
 // One replay through a process. Command: what it answers with.
 template <class Command>
@@ -38,9 +38,8 @@ class OwnReplay {
     OwnReplayResult result;
     const int64_t not_compared = CutAt(gap, recorded_);
     OwnController controller(run_.config(), run_.description(), request_.command, request_.role);
-    controller.bus().Subscribe<Command>(kPlain.Of<Command>(), [this](const Command& command) {
-      answers_.emplace(command.tick, command);
-    });
+    controller.bus().Subscribe<Command>(
+        kPlain.Of<Command>(), [this](const Command& command) { answers_.emplace(command.tick, command); });
     result.failure = controller.AwaitReady(kStart);
     if (!result.failure) {
       controller.bus().Publish(kPlain.Of<run_description_t>(), run_.description());

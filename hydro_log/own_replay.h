@@ -21,7 +21,8 @@ struct OwnReplayRequest {
 
 struct OwnReplayResult {
   ReplayResult replay;
-  std::optional<std::string> failure;  // it died, hung, or did not begin, and when; then `replay` holds nothing
+  std::optional<std::string>
+      failure;  // it died, hung, or did not begin, and when; then `replay` holds nothing
 };
 
 // In lockstep: the next state is sent when the state's answer is there, where the log has one. Both as Replay() does otherwise,

@@ -39,8 +39,8 @@ RecordedRun::RecordedRun(const runs::RunLog& log, const std::string& role) {
   }
   description_ = log.messages.Of<run_description_t>().front();
   if (description_.config_text.empty()) {
-    throw InputError(
-        log.file + ": its description has no configuration (an imported table); a replay needs the run's");
+    throw InputError(log.file +
+                     ": its description has no configuration (an imported table); a replay needs the run's");
   }
   config_ = settings::ParseStackConfig(description_.config_text, log.file + " (its configuration)",
                                        description_.model_text, log.file + " (its model)");

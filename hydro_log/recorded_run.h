@@ -62,7 +62,8 @@ class RecordedRun {
 
   // What a feed does around its messages.
   struct Steps {
-    std::function<void(double elapsed_s)> advance;     // plant time since the first state, before anything of it is sent
+    std::function<void(double elapsed_s)>
+        advance;  // plant time since the first state, before anything of it is sent
     std::function<void(int64_t tick)> before;          // may send what came before that state
     std::function<void()> deliver;                     // after each message
     std::function<bool(const state_t& state)> answer;  // after each state; false ends the feed

@@ -78,7 +78,8 @@ bool ChildProcess::TryReap() {
   if (end_) return false;
   if (spec_.own) {
     siginfo_t info = {};
-    if (waitid(P_PID, static_cast<id_t>(pid_), &info, WEXITED | WNOHANG | WNOWAIT) != 0 || info.si_pid != pid_)
+    if (waitid(P_PID, static_cast<id_t>(pid_), &info, WEXITED | WNOHANG | WNOWAIT) != 0 ||
+        info.si_pid != pid_)
       return false;
     kill(-pid_, SIGKILL);  // what it started and left; until it is reaped the group is its own
   }

@@ -55,18 +55,20 @@ void AddOptions(hydro::settings::CommandLine* line, Options* options) {
       "hydro-launch rearm CONFIG");
   line->AddFlag("--make-key", &options->make_key,
                 "write a new key into CONFIG's bus.key_file; starts nothing");
-  line->AddOption("--new-controller", &options->new_controller,
-                  "NAME write a controller of your own to begin with, NAME.py, and a stack with it, NAME.toml, "
-                  "into this folder; starts nothing. Also: hydro-launch new-controller NAME");
+  line->AddOption(
+      "--new-controller", &options->new_controller,
+      "NAME write a controller of your own to begin with, NAME.py, and a stack with it, NAME.toml, "
+      "into this folder; starts nothing. Also: hydro-launch new-controller NAME");
 }
 
 // The one flag given of those that start nothing; empty when none is. Throws InputError when two are.
 std::string FlagInstead(const Options& options) {
-  const std::vector<std::pair<std::string, bool>> flags = {{"--stop", options.stop},
-                                                           {"--rearm", options.rearm},
-                                                           {"--make-key", options.make_key},
-                                                           {"--doctor", options.doctor},
-                                                           {"--new-controller", !options.new_controller.empty()}};
+  const std::vector<std::pair<std::string, bool>> flags = {
+      {"--stop", options.stop},
+      {"--rearm", options.rearm},
+      {"--make-key", options.make_key},
+      {"--doctor", options.doctor},
+      {"--new-controller", !options.new_controller.empty()}};
   std::string first;
   for (const auto& [flag, given] : flags) {
     if (!given) continue;
@@ -111,7 +113,8 @@ int Run(const hydro::settings::CommandLine& line, const Options& options) {
   const std::string& config = options.common.config;
   if (const std::string flag = FlagInstead(options); !flag.empty()) CheckNoneIgnored(line, flag);
   if (!options.new_controller.empty()) {
-    if (!config.empty()) throw hydro::InputError("--new-controller: found " + config + ", allowed is NAME alone");
+    if (!config.empty())
+      throw hydro::InputError("--new-controller: found " + config + ", allowed is NAME alone");
     return hydro::launch::NewController(options.new_controller);
   }
   if (options.doctor) {
@@ -131,7 +134,11 @@ int Run(const hydro::settings::CommandLine& line, const Options& options) {
 // `hydro-launch stop CONFIG` is `hydro-launch --stop CONFIG`.
 std::vector<const char*> WithFlagForVerb(int argc, char** argv) {
   static constexpr std::pair<std::string_view, const char*> kVerbs[] = {
-      {"stop", "--stop"}, {"rearm", "--rearm"}, {"doctor", "--doctor"}, {"make-key", "--make-key"}, {"new-controller", "--new-controller"}};
+      {"stop", "--stop"},
+      {"rearm", "--rearm"},
+      {"doctor", "--doctor"},
+      {"make-key", "--make-key"},
+      {"new-controller", "--new-controller"}};
   std::vector<const char*> arguments(argv, argv + argc);
   if (argc < 2) return arguments;
   for (const auto& [verb, flag] : kVerbs) {

@@ -127,8 +127,8 @@ ChildSpec OwnChildFor(const settings::ProcessSection& section, const settings::S
   ChildSpec child;
   child.label = section.role;
   child.argv = section.command;
-  child.argv.front() = process::FindOwnProgram(section.command.front(), own.folder,
-                                               section.place + ": process.command");
+  child.argv.front() =
+      process::FindOwnProgram(section.command.front(), own.folder, section.place + ": process.command");
   child.own = std::move(own);
   return child;
 }
@@ -150,9 +150,8 @@ LaunchPlan PlanLaunch(const settings::StackConfig& config, const LaunchRequest& 
       config.processes.begin(), config.processes.end(),
       [&](const settings::ProcessSection& process) { return !Matches(process.host, request.host); });
   for (const settings::ProcessSection& process : here) {
-    plan.children.push_back(process.command.empty()
-                                ? ChildFor(process.program, request, programs_folder)
-                                : OwnChildFor(process, config, request, programs_folder));
+    plan.children.push_back(process.command.empty() ? ChildFor(process.program, request, programs_folder)
+                                                    : OwnChildFor(process, config, request, programs_folder));
   }
   return plan;
 }

@@ -27,8 +27,9 @@ void CheckName(const std::string& name) {
                                  [](unsigned char c) { return (c < 0x80 && std::isalnum(c)) || c == '_'; });
   if (plain && !name.empty() && name.size() <= 64 && !std::isdigit(static_cast<unsigned char>(name[0])))
     return;
-  throw InputError("--new-controller: found " + Quoted(name) +
-                   ", allowed a name of letters, digits and underscores that begins with a letter, without .py");
+  throw InputError(
+      "--new-controller: found " + Quoted(name) +
+      ", allowed a name of letters, digits and underscores that begins with a letter, without .py");
 }
 
 std::string Replaced(std::string text, const std::string& old, const std::string& by) {
@@ -64,8 +65,8 @@ int NewController(const std::string& name) {
     throw InputError(model.string() + ": found no such model; install hydro with its configurations");
   }
   const std::string python = Replaced(kControllerPython, "pid.py", program);
-  std::string toml = Replaced(kControllerStack, "hydro-launch examples/own_controller/own.toml",
-                              "hydro-launch " + stack);
+  std::string toml =
+      Replaced(kControllerStack, "hydro-launch examples/own_controller/own.toml", "hydro-launch " + stack);
   toml = Replaced(toml, "pid.py", program);
   toml = Replaced(toml, "\"../../config/models/table1.toml\"", settings::TomlString(model.string()));
   if (fs::exists(stack)) WriteNew(stack, "", 0666);  // throws before anything is written

@@ -16,7 +16,8 @@ settings::CommonOptions OptionsOfEnvironment() {
   if (const char* config = std::getenv("HYDRO_CONFIG")) options.config = config;
   if (options.config.empty()) {
     throw InputError(
-        "HYDRO_CONFIG: found nothing, allowed the path of the stack's configuration; hydro-launch sets it for a "
+        "HYDRO_CONFIG: found nothing, allowed the path of the stack's configuration; hydro-launch sets it "
+        "for a "
         "[[process]] with a command");
   }
   const char* set = std::getenv("HYDRO_SET");
@@ -101,12 +102,11 @@ int OwnPositionLoop::Finish() {
 
 int RunOwnPositionLoop(const PositionAnswer& answer) {
   return settings::RunProgram(kRole, [&] {
-    return RunProcess(
-        kRole, OptionsOfEnvironment(),
-        [&](bus::Bus& bus, bus::Clock& clock, const settings::StackConfig& config) {
-          OwnPositionLoop loop(bus, clock, config, answer);
-          return RunApp(bus, clock, loop);
-        });
+    return RunProcess(kRole, OptionsOfEnvironment(),
+                      [&](bus::Bus& bus, bus::Clock& clock, const settings::StackConfig& config) {
+                        OwnPositionLoop loop(bus, clock, config, answer);
+                        return RunApp(bus, clock, loop);
+                      });
   });
 }
 

@@ -103,7 +103,7 @@ std::string Describe(const Trouble& trouble, const SpawnRequest& request) {
     case Trouble::kProgram:
       break;
   }
-  const std::string text = request.argv[0] + ": cannot be started: " + why;
+  std::string text = request.argv[0] + ": cannot be started: " + why;
   // A script's first line is what the kernel runs.
   if (trouble.error != ENOEXEC && trouble.error != ENOENT) return text;
   return text + "; a script needs a first line such as #!/usr/bin/env python3 that names a program here";

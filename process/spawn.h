@@ -10,9 +10,9 @@
 namespace hydro::process {
 
 struct SpawnRequest {
-  std::vector<std::string> argv;                        // argv[0] is the path of the program
-  std::optional<std::vector<std::string>> environment;  // "NAME=value"; absent: this process's
-  std::string folder;                                   // that it runs in; empty: this process's
+  std::vector<std::string> argv;                                       // argv[0] is the path of the program
+  std::optional<std::vector<std::string>> environment = std::nullopt;  // "NAME=value"; absent: this process's
+  std::string folder = {};          // that it runs in; empty: this process's
   int in = -1, out = -1, err = -1;  // its descriptors 0, 1, 2; -1: nothing to read, and this process's output
   int cpu = -1;                     // processor to run on; -1: any
   int priority = 0;                 // SCHED_FIFO priority 1..99; 0: ordinary scheduling

@@ -155,9 +155,9 @@ struct LoggerSection {
 struct ProcessSection {
   // hydro-plant, hydro-driver, hydro-pressure-ctrl, hydro-position-ctrl or hydro-logger; empty: `command`
   std::string program;
-  std::string host;     // empty: any (started by a launch without --host, or on "localhost")
-  int cpu = -1;         // processor to run on; -1: any
-  int priority = 0;     // SCHED_FIFO priority 1..99; 0: ordinary scheduling
+  std::string host;          // empty: any (started by a launch without --host, or on "localhost")
+  int cpu = -1;              // processor to run on; -1: any
+  int priority = 0;          // SCHED_FIFO priority 1..99; 0: ordinary scheduling
   bool lock_memory = false;  // keep all memory resident; by default where there is a priority
   // A program of the user's own and its arguments, as configured; run in the configuration's folder.
   std::vector<std::string> command = {};

@@ -30,7 +30,8 @@ settings::StackConfig ConfigFor(const Schedule& schedule, const std::string& fil
   };
   if (!schedule.logger_required) overrides.emplace_back("logger.required=false");
   if (file.empty()) return Parsed(overrides);
-  return settings::WithoutOwnPrograms(settings::LoadStackConfig(file, overrides));  // simulated machines run ours
+  return settings::WithoutOwnPrograms(
+      settings::LoadStackConfig(file, overrides));  // simulated machines run ours
 }
 
 settings::StackConfig OtherConfig(const settings::StackConfig& config) {

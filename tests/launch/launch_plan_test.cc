@@ -161,6 +161,47 @@ TEST_F(LaunchPlanTest, ChecksTheDriver) {
   EXPECT_THAT(Error(), HasSubstr("time.mode: found \"lockstep\""));
 }
 
+// Tests that a controller of the user's own is found from the configuration's folder, told where it takes part, runs on the host
+// that its section names, and keeps its arguments.
+TEST_F(LaunchPlanTest, StartsAProgramOfTheUsersOwn) {
+  Processes({{"hydro-plant", ""}});
+  settings::ProcessSection& own = config_.processes.emplace_back();
+  own.command = {"./pid.py", "--gain", "2"};
+  own.role = "position_ctrl";
+  own.place = "stack.toml:7";
+  own.cpu = 1;
+  request_.config_file = (folder_ / "stack.toml").string();
+  request_.overrides = {"position.c1=2", "time.mode=lockstep"};
+  config_.position_interval_ticks = 25;
+  EXPECT_THAT(Error(),
+              HasSubstr("stack.toml:7: process.command: found \"./pid.py\", and there is no program"));
+  MakeProgram(folder_ / "pid.py");
+
+  const LaunchPlan plan = Plan();
+  ASSERT_EQ(plan.children.size(), 2u);
+  const ChildSpec& child = plan.children[1];
+  EXPECT_EQ(child.label, "position_ctrl");
+  EXPECT_EQ(child.role(), "position_ctrl");
+  EXPECT_EQ(child.program(), "./pid.py --gain 2 (position_ctrl)");
+  EXPECT_THAT(child.argv, ElementsAre((folder_ / "pid.py").string(), "--gain", "2"));
+  ASSERT_TRUE(child.own);
+  EXPECT_EQ(child.own->folder, folder_.string());
+  EXPECT_EQ(child.own->cpu, 1);
+  EXPECT_THAT(child.own->environment,
+              ::testing::IsSupersetOf({std::string("HYDRO_ROLE=position_ctrl"), std::string("HYDRO_EVERY=25"),
+                                       "HYDRO_CONFIG=" + request_.config_file,
+                                       std::string("HYDRO_SET=position.c1=2\ntime.mode=lockstep"),
+                                       "HYDRO_BUS_URL=" + config_.bus.url}));
+  EXPECT_THAT(RolesOf(plan), ElementsAre("plant", "position_ctrl"));
+
+  config_.processes[1].host = "desk";
+  config_.processes[0].host = "rig";
+  request_.host = "rig";
+  EXPECT_THAT(Programs(), ElementsAre("hydro-plant"));
+  request_.host = "desk";
+  EXPECT_THAT(Programs(), ElementsAre("./pid.py --gain 2 (position_ctrl)"));
+}
+
 // Tests that a program is searched for in the folder first, then on PATH, and that a missing one is named.
 TEST_F(LaunchPlanTest, FindsPrograms) {
   const std::string path_before = getenv("PATH");

@@ -280,6 +280,26 @@ const std::vector<Malformed>& Table() {
       {With("[logger]\nmemory_mb = 0.5\n"), "stack.toml:16: ", "logger.memory_mb: found 0.5, allowed "},
       {With("[[process]]\nprogram = \"hydro-plant\"\nnice = 1\n"),
        "stack.toml:17: ", "process: \"nice\": found an unknown key"},
+      {With("[[process]]\ncommand = [\"./pid.py\"]\n"),
+       "stack.toml:15: ", "process.role: found nothing, allowed \"position_ctrl\" or \"pressure_ctrl\""},
+      {With("[[process]]\ncommand = [\"./pid.py\"]\nrole = \"pilot\"\n"),
+       "stack.toml:17: ", "process.role: found \"pilot\", allowed \"position_ctrl\", \"pressure_ctrl\""},
+      {With("[[process]]\ncommand = [\"./pid.py\"]\nrole = \"plant\"\n"),
+       "stack.toml:17: ", "; the plant is always hydro-plant, which keeps the output safe"},
+      {With("[[process]]\ncommand = [\"./pid.py\"]\nrole = \"logger\"\n"),
+       "stack.toml:17: ", "; the logger is always hydro-logger"},
+      {With("[[process]]\ncommand = \"./pid.py\"\nrole = \"position_ctrl\"\n"), "stack.toml:16: ",
+       "process.command: found \"./pid.py\", allowed the program and its arguments as a list"},
+      {With("[[process]]\ncommand = [1]\nrole = \"position_ctrl\"\n"),
+       "stack.toml:16: ", "process.command: found 1 in it, allowed the program"},
+      {With("[[process]]\nprogram = \"hydro-plant\"\nrole = \"plant\"\n"),
+       "stack.toml:17: ", "process.role: found it without command"},
+      {With("[[process]]\nprogram = \"hydro-position-ctrl\"\n[[process]]\ncommand = [\"./pid.py\", "
+            "\"x\"]\nrole = \"position_ctrl\"\n"),
+       "stack.toml:17: ",
+       "process.command: found ./pid.py x (position_ctrl) beside hydro-position-ctrl, allowed one program "
+       "for "
+       "the role position_ctrl"},
       {With("[[process]]\nprogram = \"hydro-plant\"\n[[process]]\nprogram = \"hydro-plant\"\n"),
        "stack.toml:17: ", "process.program: found a second hydro-plant"},
   };

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "base/read_files.h"
+#include "settings/process_sections.h"
 #include "tests/settings/texts.h"
 
 namespace hydro::settings {
@@ -214,6 +215,29 @@ TEST(StackConfigTest, ReadsEveryKey) {
   EXPECT_EQ(config.position_interval_ticks, 10);
   EXPECT_EQ(config.pressure_interval_ticks, 5);
   EXPECT_EQ(config.last_tick, 62500);
+}
+
+// Tests a controller of the user's own: what is read, that the text keeps it, and what takes its place without processes.
+TEST(StackConfigTest, ProgramOfTheUsersOwn) {
+  const StackConfig config = Parsed(std::string(kConfigText) +
+                                    "\n[[process]]\nprogram = \"hydro-plant\"\n[[process]]\ncommand = "
+                                    "[\"./pid.py\", \"a b\"]\nrole = \"position_ctrl\"\nhost = \"desk\"\n");
+  ASSERT_EQ(config.processes.size(), 2u);
+  EXPECT_EQ(config.processes[0].role, "plant");
+  EXPECT_EQ(config.processes[1].command, (std::vector<std::string>{"./pid.py", "a b"}));
+  EXPECT_EQ(config.processes[1].program, "");
+  EXPECT_EQ(NameOf(config.processes[1]), "./pid.py a b (position_ctrl)");
+  EXPECT_EQ(OwnProgramFor(config, "position_ctrl"), &config.processes[1]);
+  EXPECT_EQ(OwnProgramFor(config, "pressure_ctrl"), nullptr);
+  EXPECT_EQ(Parsed(config.text).processes[1].command, config.processes[1].command);
+
+  const StackConfig ours = WithoutOwnPrograms(config);
+  ASSERT_EQ(ours.processes.size(), 2u);
+  EXPECT_EQ(ours.processes[1].program, "hydro-position-ctrl");
+  EXPECT_EQ(ours.processes[1].host, "desk");
+  EXPECT_EQ(ours.text.find("pid.py"), std::string::npos);
+  EXPECT_EQ(ours.agreed, config.agreed);
+  EXPECT_EQ(WithoutOwnPrograms(ours).text, ours.text);
 }
 
 // Tests that the effective text gives the same configuration, and itself, again.
