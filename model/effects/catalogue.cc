@@ -98,8 +98,9 @@ bool AddToCatalogue(CatalogueEntry entry) {
 
 bool IsBuiltIn(const std::string& id) {
   const std::vector<CatalogueEntry>& added = Added();
-  return std::any_of(added.begin(), added.end(),
-                     [&](const CatalogueEntry& entry) { return entry.formulas == nullptr && entry.info.id == id; });
+  return std::any_of(added.begin(), added.end(), [&](const CatalogueEntry& entry) {
+    return entry.formulas == nullptr && entry.info.id == id;
+  });
 }
 
 const CatalogueEntry* FindCatalogueEntry(const std::string& id) { return TheCatalogue().Find(id); }
@@ -118,9 +119,8 @@ std::unique_ptr<Effect> BuildEffect(const EffectDescription& effect) {
 }
 
 bool ReplacesValves(const std::vector<EffectDescription>& effects) {
-  return std::any_of(effects.begin(), effects.end(), [](const EffectDescription& effect) {
-    return BuildEffect(effect)->replaces_valves();
-  });
+  return std::any_of(effects.begin(), effects.end(),
+                     [](const EffectDescription& effect) { return BuildEffect(effect)->replaces_valves(); });
 }
 
 const std::vector<EffectInfo>& EffectCatalogue() { return TheCatalogue().infos(); }

@@ -16,8 +16,9 @@ class OwnPositionLoopTest : public ::testing::Test {
  protected:
   OwnPositionLoopTest() {
     config_.position_interval_ticks = 5;
-    bus_.Subscribe<pressure_command_t>(
-        "HYDRO_PRESSURE_COMMAND", [this](const pressure_command_t& command) { commands_.push_back(command); });
+    bus_.Subscribe<pressure_command_t>("HYDRO_PRESSURE_COMMAND", [this](const pressure_command_t& command) {
+      commands_.push_back(command);
+    });
     bus_.Subscribe<process_status_t>("HYDRO_PROCESS_STATUS", [this](const process_status_t& status) {
       if (states_.empty() || states_.back() != status.state) states_.push_back(status.state);
     });
@@ -71,7 +72,8 @@ TEST_F(OwnPositionLoopTest, AnswersEachSampleOnce) {
   EXPECT_TRUE(commands_[3].open_loop);
   EXPECT_EQ(commands_[3].voltage, 0);
   EXPECT_EQ(commands_[3].tick, 6);
-  EXPECT_THAT(states_, ElementsAre(process_status_t::READY, process_status_t::RUNNING, process_status_t::DONE));
+  EXPECT_THAT(states_,
+              ElementsAre(process_status_t::READY, process_status_t::RUNNING, process_status_t::DONE));
 }
 
 // Tests that a plant that begins anew is followed from its first sample on.

@@ -51,9 +51,10 @@ std::string ErrorOf(const SpawnRequest& request) {
 
 // Tests that a program runs where and with what it is told, reads nothing, and leads a process group.
 TEST(SpawnTest, RunsWithWhatItIsTold) {
-  const Finished finished = RunToEnd({.argv = {"/bin/sh", "-c", "read x || echo $A $PWD $(ps -o pgid= -p $$) $$; exit 3"},
-                                      .environment = std::vector<std::string>{"A=b", "PATH=/bin:/usr/bin"},
-                                      .folder = "/"});
+  const Finished finished =
+      RunToEnd({.argv = {"/bin/sh", "-c", "read x || echo $A $PWD $(ps -o pgid= -p $$) $$; exit 3"},
+                .environment = std::vector<std::string>{"A=b", "PATH=/bin:/usr/bin"},
+                .folder = "/"});
   EXPECT_EQ(finished.end.exit_code, 3);
   EXPECT_EQ(finished.end.signal, 0);
   EXPECT_EQ(finished.said.substr(0, 4), "b / ");
@@ -66,7 +67,8 @@ TEST(SpawnTest, SaysHowItEnded) {
   EXPECT_EQ(DescribeEnd("a", RunToEnd({.argv = {"/bin/sh", "-c", "kill -9 $$"}}).end),
             "a was killed by signal 9 (SIGKILL)");
   EXPECT_THAT(ErrorOf({.argv = {"/no/such"}}), HasSubstr("/no/such: cannot be started: No such file"));
-  EXPECT_THAT(ErrorOf({.argv = {"/bin/sh"}, .folder = "/no/such"}), HasSubstr("cannot be started in /no/such: "));
+  EXPECT_THAT(ErrorOf({.argv = {"/bin/sh"}, .folder = "/no/such"}),
+              HasSubstr("cannot be started in /no/such: "));
   EXPECT_THAT(ErrorOf({.argv = {"/etc/passwd"}}), HasSubstr("Permission denied"));
 }
 
