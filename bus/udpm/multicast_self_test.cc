@@ -19,8 +19,8 @@ namespace hydro::bus {
 namespace {
 
 constexpr const char* kCure =
-    "on one machine `ip route add 224.0.0.0/4 dev lo` (as root) mends it; see Troubleshooting in README.md";
-constexpr const char* kFirewallCure = "let the firewall pass 224.0.0.0/4; see Troubleshooting in README.md";
+    "on one machine `ip route add 224.0.0.0/4 dev lo` (as root) mends it; see docs/troubleshooting.md";
+constexpr const char* kFirewallCure = "let the firewall pass 224.0.0.0/4; see docs/troubleshooting.md";
 
 class Socket {
  public:

@@ -74,7 +74,7 @@ UdpmSocket::UdpmSocket(const UdpmUrl& url) : packet_(kLcmLargestPacket + 1) {
     if (sender_ >= 0) close(sender_);
     if (receiver_ >= 0) close(receiver_);
     throw BusError("multicast does not work for " + url.ToString() + ": " + why +
-                   "; see Troubleshooting in README.md");
+                   "; see docs/troubleshooting.md");
   }
 }
 

@@ -1,4 +1,5 @@
-"""Tests that README.md and the pages of docs/ show the house as it is: its rooms, and paths that exist."""
+"""Tests that README.md and the pages of docs/ show the house as it is: its rooms, paths and headings that exist; and that docs/README.md
+lists every page."""
 
 import importlib.machinery
 import importlib.util
@@ -52,6 +53,23 @@ def missing_paths(text, root):
     return found
 
 
+def anchors(text):
+    """What a link's #... may be: each heading as GitHub writes it (small letters, no punctuation, blanks as hyphens)."""
+    headings = re.findall(r"^#+ (.*)", re.sub(r"^```.*?^```", "", text, flags=re.DOTALL | re.MULTILINE), re.MULTILINE)
+    return {re.sub(r"[^\w\- ]", "", heading.lower()).replace(" ", "-") for heading in headings}
+
+
+def missing_anchors(page, text):
+    """(line number, link) of each link of `page` (a path) to a heading that the page it leads to does not have."""
+    found = []
+    for number, line in enumerate(text.splitlines(), 1):
+        for target, anchor in re.findall(r"\]\(([^)#\s]*)#([^)\s]+)\)", line):
+            there = page.parent / target if target else page
+            if "://" not in target and there.suffix == ".md" and there.exists() and anchor not in anchors(there.read_text()):
+                found.append((number, f"{target}#{anchor}"))
+    return found
+
+
 class DocumentsTest(unittest.TestCase):
     def test_rooms_are_current(self):
         """Tests that README.md and docs/architecture.md show the rooms of cmake/rooms.txt."""
@@ -74,6 +92,20 @@ class DocumentsTest(unittest.TestCase):
                         found.append(f"{page}:{number}: {target} does not exist")
         self.assertEqual(found, [], "\n".join(found))
 
+    def test_links_lead_to_headings(self):
+        """Tests that what a link names behind # is a heading of the page that it leads to."""
+        found = [f"{page}:{number}: {link} does not exist"
+                 for page in PAGES for number, link in missing_anchors(ROOT / page, (ROOT / page).read_text())]
+        self.assertEqual(found, [], "\n".join(found))
+
+    def test_index(self):
+        """Tests that docs/README.md lists each page of docs/ once, with a line that says what it is for, and README.md leads there."""
+        listed = re.findall(r"^\| \[(\w+\.md)\]\((\w+\.md)\) \| (.{10,}) \|$", (ROOT / "docs/README.md").read_text(), re.MULTILINE)
+        self.assertEqual([(name, target) for name, target, _ in listed if name != target], [])
+        pages = {path.name for path in (ROOT / "docs").glob("*.md")} - {"README.md"}
+        self.assertEqual(sorted(name for name, _, _ in listed), sorted(pages))
+        self.assertIn("](docs/README.md)", (ROOT / "README.md").read_text())
+
     def test_what_is_wrong_is_found(self):
         """Tests the checks themselves: a room that was added, a list without markers, paths that do not exist."""
         rooms = load_rooms_script()
@@ -95,6 +127,9 @@ class DocumentsTest(unittest.TestCase):
             (root / "README.md").write_text("no markers\n")
             self.assertRaisesRegex(ValueError, "README.md: found no <!-- rooms -->", rooms.outdated, root)
             text = "`base/text.h`\n`base/old.h` and `other/x.h`\n`base/{text,gone}.h` `./base/*.h`"
+            page = root / "docs/a.md"
+            page.write_text("# A `b` (c): d\n```\n# no heading\n```\n[x](#a-b-c-d) [x](#no-heading)\n[x](a.md#gone) [x](https://y#z)\n")
+            self.assertEqual(missing_anchors(page, page.read_text()), [(5, "#no-heading"), (6, "a.md#gone")])
             self.assertEqual(missing_paths(text, root), [(2, "base/old.h"), (3, "base/{text,gone}.h")])
 
 
