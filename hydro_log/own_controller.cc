@@ -179,8 +179,8 @@ std::optional<std::string> OwnController::Await(const std::function<bool()>& don
 }
 
 std::optional<std::string> OwnController::AwaitReady(Duration limit) {
-  std::optional<std::string> wrong = Await([this] { return status_ && process::IsThere(*status_); },
-                                                 [] {}, limit, "say that it is ready (HYDRO_PROCESS_STATUS)");
+  std::optional<std::string> wrong = Await([this] { return status_ && process::IsThere(*status_); }, [] {},
+                                           limit, "say that it is ready (HYDRO_PROCESS_STATUS)");
   if (wrong && !other_role_.empty()) {
     return name_ + " takes part as " + other_role_ + ", and " + role_ + " is replayed; --role " +
            other_role_ + " replays that";
