@@ -15,6 +15,8 @@ PAGES = ["README.md", "CONTRIBUTING.md", *sorted(p.relative_to(ROOT).as_posix() 
 MADE = re.compile(r"(build|out)/.*|config/mine\.toml")
 # A path in a code span: folders of the repository's root, then names; braces and stars as in a shell.
 PATH = re.compile(r"`((?:\./)?[\w@.+-]+(?:/[\w@.,*{}+-]+)+/?)`")
+# Files that send a reader to a page.
+SOURCES = {".cc", ".h", ".in", ".js", ".lcm", ".md", ".py", ".toml", ".txt", ""}
 LINK = re.compile(r"\]\(([^)#\s]+)(?:#[^)]*)?\)|<img src=\"([^\"]+)\"")
 
 
@@ -105,6 +107,23 @@ class DocumentsTest(unittest.TestCase):
         pages = {path.name for path in (ROOT / "docs").glob("*.md")} - {"README.md"}
         self.assertEqual(sorted(name for name, _, _ in listed), sorted(pages))
         self.assertIn("](docs/README.md)", (ROOT / "README.md").read_text())
+
+    def test_pages_that_sources_name_exist(self):
+        """Tests that each page that a message, a --help, a message type, a configuration or an example names exists."""
+        found, count = [], 0
+        for folder in sorted(ROOT.iterdir()):
+            if folder.name.startswith(".") or folder.name in ("build", "docs", "out", "tests"):
+                continue
+            for path in [folder] if folder.is_file() else folder.rglob("*"):
+                if "node_modules" in path.parts or path.suffix not in SOURCES or not path.is_file():
+                    continue
+                for number, line in enumerate(path.read_text(errors="replace").splitlines(), 1):
+                    for page in re.findall(r"\bdocs/\w+\.md\b", line):
+                        count += 1
+                        if not (ROOT / page).exists():
+                            found.append(f"{path.relative_to(ROOT)}:{number}: {page} does not exist")
+        self.assertGreater(count, 40)
+        self.assertEqual(found, [], "\n".join(found))
 
     def test_what_is_wrong_is_found(self):
         """Tests the checks themselves: a room that was added, a list without markers, paths that do not exist."""
