@@ -10,6 +10,7 @@
 
 #include <array>
 #include <cerrno>
+#include <filesystem>
 
 #include "process/process_end.h"
 
@@ -105,7 +106,8 @@ std::string Describe(const Trouble& trouble, const SpawnRequest& request) {
   }
   std::string text = request.argv[0] + ": cannot be started: " + why;
   // A script's first line is what the kernel runs.
-  if (trouble.error != ENOEXEC && trouble.error != ENOENT) return text;
+  const bool no_such_interpreter = trouble.error == ENOENT && std::filesystem::exists(request.argv[0]);
+  if (trouble.error != ENOEXEC && !no_such_interpreter) return text;
   return text + "; a script needs a first line such as #!/usr/bin/env python3 that names a program here";
 }
 

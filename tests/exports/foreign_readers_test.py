@@ -17,6 +17,7 @@ import unittest
 HERE = os.path.dirname(os.path.abspath(__file__))
 sys.path.insert(0, os.path.join(HERE, "..", "e2e"))
 import event_log  # noqa: E402
+import outcome  # noqa: E402
 
 BIN = os.environ["HYDRO_BIN"]
 CONFIG = os.path.join(os.environ["HYDRO_CONFIG"], "demo.toml")
@@ -392,4 +393,4 @@ class ForeignReadersTest(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    unittest.main()
+    outcome.main()

@@ -12,6 +12,9 @@ import sys
 import tempfile
 import unittest
 
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "e2e"))
+import outcome  # noqa: E402
+
 PAGE = pathlib.Path(__file__).resolve().parents[2] / "docs/your_tools.md"
 BIN = os.environ["HYDRO_BIN"]
 RUNNERS = {"sh": ["bash", "-euc"], "python": [sys.executable, "-c"], "matlab": ["octave-cli", "--norc", "--no-history", "--eval"]}
@@ -61,4 +64,4 @@ class YourToolsTest(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    unittest.main()
+    outcome.main()

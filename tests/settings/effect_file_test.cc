@@ -195,7 +195,9 @@ class EffectFileTest : public ::testing::Test {
  protected:
   // What reading this file throws, without the folder.
   std::string ErrorOf(const std::string& text) {
-    const std::string file = ::testing::TempDir() + "/effect_file_test.toml";
+    // ctest runs each test in a process of its own, several at once.
+    const std::string name = ::testing::UnitTest::GetInstance()->current_test_info()->name();
+    const std::string file = ::testing::TempDir() + "/" + name + "_effect_file_test.toml";
     std::ofstream(file) << text;
     try {
       LoadEffectFile(file);
