@@ -16,6 +16,9 @@ import unittest
 
 import typed_zsh
 
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "e2e"))
+import outcome  # noqa: E402
+
 BUILD = pathlib.Path(os.environ["HYDRO_BUILD"])
 SOURCE = pathlib.Path(os.environ["HYDRO_SOURCE"])
 PACKAGES = ("hydro", "libhydro-dev", "hydro-doc")
@@ -184,4 +187,4 @@ def project_version():
 
 
 if __name__ == "__main__":
-    unittest.main(argv=sys.argv[:1] + ["-v"])
+    outcome.main()
