@@ -21,9 +21,9 @@ Jet HyperbolicTangent(const Jet& x) {
 double ArcTangent(double x) { return std::atan(x); }
 Jet ArcTangent(const Jet& x) { return {std::atan(x.a), x.v * (1 / (1 + x.a * x.a))}; }
 
-double Power(double x, double y) { return std::pow(x, y); }
+double RaisedTo(double x, double y) { return std::pow(x, y); }
 // A base of 0 has no logarithm: its derivative by the exponent is 0 there, as far as the power is.
-Jet Power(const Jet& x, const Jet& y) {
+Jet RaisedTo(const Jet& x, const Jet& y) {
   const double value = std::pow(x.a, y.a);
   const double by_exponent = x.a > 0 ? value * std::log(x.a) : 0;
   return {value, (y.a * std::pow(x.a, y.a - 1)) * x.v + by_exponent * y.v};
@@ -139,7 +139,7 @@ T Operated(const Instruction& instruction, const Place<T>* places) {
     case Operation::kDivide:
       return a / b;
     case Operation::kPower:
-      return Power(a, b);
+      return RaisedTo(a, b);
     case Operation::kLess:
       return truth(Value(a) < Value(b));
     case Operation::kAtMost:
