@@ -17,7 +17,7 @@ using runs::MeasuredSignal;
 
 // Long enough to average noise, short enough to follow the motion.
 constexpr size_t kIntervals = 150;
-constexpr size_t kLeastSamples = 4;  // of an interval
+constexpr size_t kSamplesOfOne = 4;  // of an interval
 // A balance that holds correlates by 0.8 and more; one with a wrong sign by the same, negative.
 constexpr double kClear = 0.5;
 
@@ -50,7 +50,7 @@ std::string Text(const Range& range, const std::string& unit) {
 class Intervals {
  public:
   explicit Intervals(const MeasuredRun& run)
-      : length_(std::max(kLeastSamples, run.samples() / kIntervals)),
+      : length_(std::max(kSamplesOfOne, run.samples() / kIntervals)),
         count_(run.samples() / length_),
         time_(Means(run.time)) {}
 

@@ -138,7 +138,8 @@ void FormulaCompiler::CheckNewName(const std::string& key, const std::string& na
                         "found the name \"" + name + "\", allowed letters, digits and _, a letter first");
 }
 
-Meaning FormulaCompiler::FieldMeaning(const std::string& name, size_t place, size_t column, Hook hook) const {
+NameMeaning FormulaCompiler::FieldMeaning(const std::string& name, size_t place, size_t column,
+                                          Hook hook) const {
   const FieldName& field = FieldNames()[place];
   if (place >= kFirstScratch && place < kFirstFixed && !scratch_.contains(name)) {
     throw FormulaError(column, '"' + name + "\", which this effect does not set",
@@ -152,13 +153,13 @@ Meaning FormulaCompiler::FieldMeaning(const std::string& name, size_t place, siz
   return {.source = Source::kField, .place = place, .number = 0, .formula = nullptr, .fixed = false};
 }
 
-Meaning FormulaCompiler::MeaningOf(const std::string& given, size_t column, Hook hook) const {
+NameMeaning FormulaCompiler::MeaningOf(const std::string& given, size_t column, Hook hook) const {
   const std::string name = FullName(given);
   const auto found = where_.find(name);
   if (found != where_.end())
     return {.source = Source::kConstant, .place = 0, .number = 0, .formula = &found->second};
   const auto meaning = [](Source source, size_t place, bool fixed) {
-    return Meaning{.source = source, .place = place, .number = 0, .formula = nullptr, .fixed = fixed};
+    return NameMeaning{.source = source, .place = place, .number = 0, .formula = nullptr, .fixed = fixed};
   };
   if (name == "pi")
     return {.source = Source::kConstant,
@@ -220,7 +221,7 @@ std::vector<std::string> FormulaCompiler::NamesAt(Hook hook) const {
 bool FormulaCompiler::IsFixed(const Expression& expression, Context& context) const {
   if (expression.operation == Operation::kName) {
     if (OwnPlace(info_, expression.name, false)) return true;
-    const Meaning meaning = MeaningOf(expression.name, expression.column, context.hook);
+    const NameMeaning meaning = MeaningOf(expression.name, expression.column, context.hook);
     if (meaning.formula == nullptr) return meaning.fixed;
     if (!context.within.insert(expression.name).second) return false;  // reported where it is emitted
     const bool fixed = IsFixed(*meaning.formula, context);
@@ -271,7 +272,7 @@ uint16_t FormulaCompiler::EmitName(const Expression& name, Context& context) {
     throw FormulaError(name.column, "the name \"" + name.name + "\" as a number",
                        "a comparison with one of its names");
   }
-  const Meaning meaning = MeaningOf(name.name, name.column, context.hook);
+  const NameMeaning meaning = MeaningOf(name.name, name.column, context.hook);
   if (meaning.formula != nullptr) {
     if (!context.within.insert(name.name).second) {
       throw FormulaError(name.column, '"' + name.name + "\", which stands for itself",

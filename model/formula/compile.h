@@ -14,7 +14,7 @@
 namespace hydro::model {
 
 // What a name stands for in a formula.
-struct Meaning {
+struct NameMeaning {
   Source source = Source::kConstant;
   size_t place = 0;
   double number = 0;                    // kConstant
@@ -58,8 +58,8 @@ class FormulaCompiler {
 
   void AddWhere();
   void CheckNewName(const std::string& key, const std::string& name) const;
-  Meaning MeaningOf(const std::string& name, size_t column, Hook hook) const;
-  Meaning FieldMeaning(const std::string& name, size_t place, size_t column, Hook hook) const;
+  NameMeaning MeaningOf(const std::string& name, size_t column, Hook hook) const;
+  NameMeaning FieldMeaning(const std::string& name, size_t place, size_t column, Hook hook) const;
   std::vector<std::string> NamesAt(Hook hook) const;
   bool IsFixed(const Expression& expression, Context& context) const;
 
