@@ -23,7 +23,7 @@
 #include "diagnose/report/report_json.h"
 #include "diagnose/report/terminal_summary.h"
 #include "model/effects/catalogue.h"
-#include "model/effects/formula_effect.h"
+#include "model/effects/formulas.h"
 #include "model/terms/parameter_info.h"
 #include "settings/effect_file.h"
 #include "settings/model_file.h"

@@ -10,7 +10,7 @@
 #include "base/number_text.h"
 #include "base/text_file.h"
 #include "model/effects/catalogue.h"
-#include "model/effects/formula_effect.h"
+#include "model/effects/formulas.h"
 #include "settings/toml/section_reader.h"
 
 namespace hydro::settings {

@@ -5,7 +5,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "model/effects/formula_effect.h"
+#include "model/effects/formulas.h"
 #include "model/terms/model_error.h"
 
 namespace hydro::model {

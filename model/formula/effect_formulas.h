@@ -1,4 +1,4 @@
-// The formulas of an effect, compiled: what model/effects/formula_effect.cc runs.
+// The formulas of an effect, compiled: what model/effects/formulas.cc runs.
 #pragma once
 
 #include <memory>

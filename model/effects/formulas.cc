@@ -1,4 +1,4 @@
-#include "model/effects/formula_effect.h"
+#include "model/effects/formulas.h"
 
 #include <algorithm>
 #include <cmath>
