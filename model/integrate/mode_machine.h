@@ -171,6 +171,18 @@ class ModeMachine {
     double sum = 0;
     for (int i = 0; i < FormSize<kForm>::states(data()); ++i) sum += ValueOf(at.state[i]);
     if (!std::isfinite(sum)) throw ModelError("a state is not finite" + Where(equations_, at));
+    CheckMargins(at);
+  }
+
+  // A load that is not a number would hold the pump for ever: nothing exceeds its friction, and nothing moves that would show it.
+  // Only an effect's formula can give one.
+  void CheckMargins(const PointOf<T>& at) const {
+    if constexpr (kForm == Form::kGeneral) {
+      for (int i = 0; i < switches(); ++i) {
+        if (!std::isnan(ValueOf(at.margin[i]))) continue;
+        throw ModelError("an effect gives what is not a number" + Where(equations_, at));
+      }
+    }
   }
 
   void CheckArm(double arm_angle) const {
@@ -202,6 +214,7 @@ class ModeMachine {
   // Changes the switches that contradict the present state. True when any did.
   bool Settle() {
     bool changed = false;
+    CheckMargins(*now_);
     for (int round = 0; round < 4 * kMaxSwitches; ++round) {
       int wrong = -1;
       for (int i = 0; i < switches() && wrong < 0; ++i) {

@@ -11,6 +11,7 @@
 #include "base/text_file.h"
 #include "model/actuator.h"
 #include "model/response.h"
+#include "model/terms/model_error.h"
 #include "model/terms/parameter_info.h"
 #include "model/terms/state.h"
 #include "settings/model_file.h"
@@ -278,6 +279,25 @@ TEST_F(EffectFileTest, TheRestOfTheFile) {
               HasSubstr("states.z.rate: found nothing"));
   EXPECT_THAT(ErrorOf("id = \"a.b\"\n" + good + "[switches.z]\nmargin = \"1\"\n"),
               HasSubstr("switches.z.next: found nothing"));
+}
+
+// Tests that a formula that gives what is no number ends the simulation: the pump would stick for ever.
+TEST_F(EffectFileTest, NotANumber) {
+  for (const char* equation :
+       {"load += k * sqrt(-1 - motor_speed^2)", "arm_torque += log(-k)", "coulomb = sqrt(0.5 - t) * k"}) {
+    const std::string name = ::testing::TempDir() + "/not_a_number.toml";
+    std::ofstream(name) << "id = \"my.nan\"\nsummary = \"s\"\nequation = \"" << equation
+                        << "\"\n[parameters.k]\nmeaning = \"m\"\n";
+    model::EffectDescription effect{"my.nan", {{"k", 1}}, {}};
+    effect.formulas = LoadEffectFile(name);
+    model::Actuator actuator(ModelWith(effect), {});
+    EXPECT_THROW(
+        {
+          for (int tick = 0; tick < 1000; ++tick) actuator.Advance(3, 1e-3 * (tick + 1));
+        },
+        model::ModelError)
+        << equation;
+  }
 }
 
 // Tests that a model file finds the effect's file beside itself, that its text then says everything, and that the text of a model
