@@ -7,18 +7,12 @@
 #include "exports/mat_layout.h"
 #include "exports/output.h"
 #include "exports/write_export.h"
+#include "tables/mat_handles.h"
 
 namespace hydro::exports {
 namespace {
 
 using definitions::FieldType;
-
-struct CloseMat {
-  void operator()(mat_t* mat) const { Mat_Close(mat); }
-};
-struct FreeVariable {
-  void operator()(matvar_t* variable) const { Mat_VarFree(variable); }
-};
 
 // A variable must stay below this.
 constexpr size_t kLimit = (1u << 31) - (1u << 16);
@@ -114,7 +108,7 @@ size_t SizeOf(const MatValue& value) {
 }
 
 bool Write(mat_t* mat, const MatField& variable) {
-  const std::unique_ptr<matvar_t, FreeVariable> made(MatioValue::Of(variable.value));
+  const tables::Variable made(MatioValue::Of(variable.value));
   if (made == nullptr) return false;
   // matio frees the name with the variable, and takes none where it makes one.
   made->name = static_cast<char*>(malloc(variable.name.size() + 1));
@@ -141,7 +135,7 @@ void WriteMatExport(const std::vector<ExportedRun>& runs, const std::string& fil
   Mat_LogInitFunc("hydro", [](int, char*) {});  // our own errors name the file
   Output out(file, false);
   // Our own header: matio's holds the date, and the same run must give the same bytes.
-  std::unique_ptr<mat_t, CloseMat> mat(
+  tables::MatFile mat(
       Mat_CreateVer(out.SeekablePath().c_str(), "MATLAB 5.0 MAT-file, written by hydro-log", MAT_FT_MAT5));
   bool written = mat != nullptr;
   for (const MatField& variable : variables) written = written && Write(mat.get(), variable);

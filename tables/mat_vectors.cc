@@ -4,22 +4,15 @@
 
 #include <cstdint>
 #include <cstring>
-#include <memory>
 
 #include "base/input_error.h"
 #include "base/mapped_file.h"
 #include "base/read_files.h"
 #include "base/text_file.h"
+#include "tables/mat_handles.h"
 
 namespace hydro::tables {
 namespace {
-
-struct CloseMat {
-  void operator()(mat_t* mat) const { Mat_Close(mat); }
-};
-struct FreeVariable {
-  void operator()(matvar_t* variable) const { Mat_VarFree(variable); }
-};
 
 constexpr int kDeepest = 16;  // structs within structs
 
@@ -171,13 +164,13 @@ MatContents ReadMatContents(const std::string& file) {
   { const MappedFile readable(file); }          // throws the system's reason if it is not readable
   CheckIsFile(file);
   RememberRead(file);
-  const std::unique_ptr<mat_t, CloseMat> mat(Mat_Open(file.c_str(), MAT_ACC_RDONLY));
+  const MatFile mat(Mat_Open(file.c_str(), MAT_ACC_RDONLY));
   if (mat == nullptr || Mat_GetVersion(mat.get()) == MAT_FT_MAT4) {
     throw InputError(file + ": found no MAT file of version 5 or 7.3; these are allowed");
   }
   if (Mat_GetVersion(mat.get()) == MAT_FT_MAT5) CheckMat5IsWhole(file);
   MatContents found;
-  while (const std::unique_ptr<matvar_t, FreeVariable> variable{Mat_VarReadNextInfo(mat.get())}) {
+  while (const Variable variable{Mat_VarReadNextInfo(mat.get())}) {
     found.structs = found.structs || variable->class_type == MAT_C_STRUCT;
     AppendVectors(mat.get(), variable.get(), &found.vectors);
   }

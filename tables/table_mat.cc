@@ -7,20 +7,12 @@
 
 #include "base/input_error.h"
 #include "base/new_file.h"
+#include "tables/mat_handles.h"
 #include "tables/mat_vectors.h"
 #include "tables/table.h"
 
 namespace hydro::tables {
 namespace {
-
-struct CloseMat {
-  void operator()(mat_t* mat) const { Mat_Close(mat); }
-};
-struct FreeVariable {
-  void operator()(matvar_t* variable) const { Mat_VarFree(variable); }
-};
-using MatFile = std::unique_ptr<mat_t, CloseMat>;
-using Variable = std::unique_ptr<matvar_t, FreeVariable>;
 
 // As many as the vectors have that together hold most numbers: the signals.
 size_t RowsOfMost(const std::vector<MatVector>& vectors) {

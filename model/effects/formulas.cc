@@ -67,7 +67,7 @@ class FormulaEffect : public EffectOf<FormulaEffect> {
   void OwnStartMode(const Terms<T>& x, Mode* mode) const {
     for (size_t i = 0; i < formulas_->switches().size(); ++i) {
       const Program& start = formulas_->switches()[i].start;
-      if (!start.empty()) mode->effects[first_switch() + i] = Position(Evaluated(start, x, x.mode, i));
+      if (!start.empty()) mode->effects[first_switch() + i] = Position(Evaluated(start, x, x.mode));
     }
   }
   template <class T>
@@ -89,15 +89,14 @@ class FormulaEffect : public EffectOf<FormulaEffect> {
   template <class T>
   void OwnMargins(const Terms<T>& x, T* margin) const {
     for (size_t i = 0; i < formulas_->switches().size(); ++i) {
-      margin[kFirstEffectSwitch + first_switch() + i] =
-          Evaluated(formulas_->switches()[i].margin, x, x.mode, i);
+      margin[kFirstEffectSwitch + first_switch() + i] = Evaluated(formulas_->switches()[i].margin, x, x.mode);
     }
   }
   template <class T>
   void OwnCross(int which, const Terms<T>& x, T* state, Mode* mode) const {
     const SwitchPrograms& programs = formulas_->switches()[which];
     const Mode before = *mode;
-    mode->effects[first_switch() + which] = Position(Evaluated(programs.next, x, &before, which));
+    mode->effects[first_switch() + which] = Position(Evaluated(programs.next, x, &before));
     if (programs.sets.empty()) return;
     Access<T> access = In(const_cast<Terms<T>&>(x));  // NOLINT: it is only read
     access.mode = &before;
@@ -158,7 +157,7 @@ class FormulaEffect : public EffectOf<FormulaEffect> {
   }
 
   template <class T>
-  T Evaluated(const Program& program, const Terms<T>& x, const Mode* mode, size_t /*which*/) const {
+  T Evaluated(const Program& program, const Terms<T>& x, const Mode* mode) const {
     T value(0.0);
     Access<T> access = In(const_cast<Terms<T>&>(x));  // NOLINT: it is only read
     access.mode = mode;

@@ -133,7 +133,6 @@ TEST_P(WrittenCatalogue, MovesAsTheCompiledOne) {
 // Tests that the effect does something there at all.
 TEST_P(WrittenCatalogue, Acts) {
   const Pair pair(GetParam());
-  model::EffectDescription none = pair.written;
   model::ActuatorOptions clamped;
   clamped.shaft = model::Shaft::kClamped;
   double most = 0;
