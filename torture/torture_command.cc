@@ -42,12 +42,8 @@ int Replay(const TortureOptions& options) {
   return outcome.violations.empty() ? 0 : 1;
 }
 
+// The findings come last, where the end of a long output shows them.
 int Report(const CampaignOptions& options, const CampaignResult& result) {
-  for (const Finding& finding : result.findings) {
-    fmt::print("seed {} (after {:.1f} s): {}: {}\n{}  hydro-torture --replay {}\n", finding.seed,
-               finding.after_s, finding.violation.invariant, finding.violation.text,
-               ScheduleText(finding.schedule), finding.file);
-  }
   const Coverage& coverage = result.coverage;
   // In lockstep the plant ticks as fast as its network lets it: ticks are what runs have in common.
   fmt::print("seeds from {}: {} runs, {:.0f} s and {} ticks simulated in {:.1f} s, {} faults injected\n",
@@ -57,6 +53,11 @@ int Report(const CampaignOptions& options, const CampaignResult& result) {
              static_cast<double>(coverage.ticks) / result.cpu_s,
              static_cast<double>(coverage.ticks) / result.cpu_s / 1e3, coverage.Report());
   fmt::print("{} runs failed, in {} ways\n", result.failed_runs, result.findings.size());
+  for (const Finding& finding : result.findings) {
+    fmt::print("seed {} (after {:.1f} s): {}: {}\n{}  hydro-torture --replay {}\n", finding.seed,
+               finding.after_s, finding.violation.invariant, finding.violation.text,
+               ScheduleText(finding.schedule), finding.file);
+  }
   return result.findings.empty() ? 0 : 1;
 }
 
