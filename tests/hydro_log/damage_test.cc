@@ -185,11 +185,9 @@ TEST_F(DamageTest, FlippedBitOfACheckEvent) {
   const std::vector<size_t> begins = Begins(bytes_);
   const auto flip_all = [&](size_t from, size_t to) {
     for (size_t at = from; at < to; ++at) {
-      for (int bit = 0; bit < 8; bit += 3) {
-        std::string bytes = bytes_;
-        bytes[at] ^= static_cast<char>(1 << bit);
-        ExpectHonest(bytes, true);
-      }
+      std::string bytes = bytes_;
+      bytes[at] ^= static_cast<char>(1 << (at % 8));
+      ExpectHonest(bytes, true);
     }
   };
   flip_all(0, begins[1] + 40);
