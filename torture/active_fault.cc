@@ -73,8 +73,7 @@ bool ActiveFault::BeginOnMachine() {
       world_.NoteLogFault(&LogRecord::was_full);
       return true;
     case FaultKind::kDiskLie:
-      if (world_.Find(Role::kLogger) != nullptr && world_.disk().Lie(random_))
-        world_.NoteLogFault(&LogRecord::lied);
+      if (world_.Find(Role::kLogger) != nullptr && world_.disk().Lie(random_)) world_.NoteLie();
       return true;
     case FaultKind::kSensorNan:
     case FaultKind::kSensorStick:

@@ -93,6 +93,8 @@ class World : public NetworkPort {
   std::string NewLog(int number);
   // Something befalls the log that is being written.
   void NoteLogFault(bool LogRecord::*what);
+  // A bit of the newest log was changed.
+  void NoteLie();
   Coverage& coverage() { return outcome_.coverage; }
 
   // NetworkPort:

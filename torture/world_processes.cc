@@ -126,6 +126,13 @@ void World::NoteLogFault(bool LogRecord::*what) {
   if (log != logs_.end()) log->second.*what = true;
 }
 
+// Two loggers may live at once: one that hangs, and that of the next launch.
+void World::NoteLie() {
+  for (auto& [number, log] : logs_) {
+    if (log.file == disk_.newest()) log.lied = true;
+  }
+}
+
 void World::CheckLog(const SimulatedProcess& logger) {
   const auto log = logs_.find(logger.number());
   if (log == logs_.end()) return;  // it was killed before it had one

@@ -105,7 +105,10 @@ void Observer::OnHandled(const Packet& packet, const SimulatedProcess& receiver)
   if (packet.channel == state_ && receiver.role() == Role::kPosition)
     losses_[receiver.number()].Handle(packet);
   if (packet.channel == state_ || packet.channel == run_) in_a_run_.insert(receiver.number());
-  if (packet.channel == state_) return;
+  if (packet.channel == state_) {
+    if (packet.origin == Origin::kChanged && receiver.role() == Role::kPressure) OnChangedState(packet);
+    return;
+  }
   if (packet.channel == stop_ && !OnStop(packet, receiver)) return;
   // Its plant seems to be misconfigured: it leaves.
   if (packet.channel == configuration_ && packet.origin == Origin::kChanged)
@@ -129,6 +132,17 @@ void Observer::OnHandled(const Packet& packet, const SimulatedProcess& receiver)
       if (!plant.other_plant_tick) plant.other_plant_tick = plant.tick;
     }
   }
+}
+
+// Without a key nothing tells that bad readings were made good on the way.
+void Observer::OnChangedState(const Packet& packet) {
+  constexpr size_t kTick = 8 + offsetof(state_t, tick);
+  const auto sender = static_cast<size_t>(packet.sender);
+  if (packet.bytes.size() < kTick + 8 || sender >= plants_.size() || !plants_[sender]) return;
+  PlantRecord& plant = *plants_[sender];
+  const int64_t tick = NumberAt(packet, kTick);
+  if (tick >= 0 && tick <= plant.read_tick && tick > plant.read_tick - PlantRecord::kRemembered)
+    plant.At(tick).changed = true;
 }
 
 void Observer::OnCommand(const Packet& packet, PlantRecord& plant) {

@@ -67,6 +67,7 @@ class Observer {
   void OnFault(const Packet& packet);
   void OnStatistics(const Packet& packet, const SimulatedProcess& sender);
   bool OnStop(const Packet& packet, const SimulatedProcess& process);
+  void OnChangedState(const Packet& packet);
   void OnCommand(const Packet& packet, PlantRecord& plant);
 
   const settings::StackConfig& config_;

@@ -33,13 +33,14 @@ class PlantRecord {
   struct Tick {
     int64_t tick = -1;
     bool sound = true;                       // nothing that was measured is missing or over a limit
+    bool changed = false;                    // a pressure loop was given other readings for it
     std::array<ReceivedCommand, 2> answers;  // unchanged commands for it, of up to two senders
   };
 
   // The tick's entry, empty if it has none yet.
   Tick& At(int64_t number) {
     Tick& entry = ticks_[static_cast<uint64_t>(number) % kRemembered];
-    if (entry.tick != number) entry = Tick{number, true, {}};
+    if (entry.tick != number) entry = Tick{number, true, false, {}};
     return entry;
   }
 

@@ -35,6 +35,7 @@ class Disk {
   // loss of power.
   void Tear(int64_t least, int64_t most, Random& random) const;
   int64_t size() const;  // bytes, of the newest log
+  const std::string& newest() const { return newest_; }
 
  private:
   void MakeFolder();
