@@ -142,7 +142,8 @@ RecordingReport ReportOnRecordings(const model::ModelDescription& model, std::ve
   RecordingReport report;
   report.wrong = checked.mistakes;
   report.wrong.insert(report.wrong.end(), checked.damage.begin(), checked.damage.end());
-  if (!checked.unjudged.empty()) report.limits.push_back(checked.unjudged);
+  report.judged = checked.unjudged.empty();
+  if (!report.judged) report.limits.push_back(checked.unjudged);
   if (checked.mend_first) return report;  // the rest is said of recordings that can be read
   std::vector<ClockDelay> clocks;
   std::vector<RunData> prepared;

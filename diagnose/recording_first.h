@@ -42,6 +42,7 @@ struct RecordingReport {
   std::vector<std::string> wrong;  // a line each
   // How tables were read, and what these runs cannot show, though nothing is wrong with them.
   std::vector<std::string> limits;
+  bool judged = true;  // false: a limit names runs that the model as given does not predict at all
 };
 // Throws InputError for data that cannot be used, unless a mistake explains it.
 RecordingReport ReportOnRecordings(const model::ModelDescription& model, std::vector<runs::MeasuredRun> runs,

@@ -163,7 +163,8 @@ class RunChecklist {
     if (!run_.p1.measured() || !run_.p2.measured()) return;
     const double low = std::min(RangeIn(run_.p1.values).low, RangeIn(run_.p2.values).low);
     const std::string unit = units_.UnitFor("psi");
-    const bool near = low > 0.3 * p_.p_3 && low < 3 * p_.p_3;
+    // The one-way valves keep both sides above it, but for their noise; gauges of a charge of 5 bar read a fifth less than it.
+    const bool near = low > 0.85 * p_.p_3 && low < 3 * p_.p_3;
     Add(near ? State::kGood : State::kLook, "charge pressure",
         "the lowest pressure is " + ShortNumber(low) + " " + unit + ", the model's p_3 is " +
             ShortNumber(p_.p_3) + " " + unit +

@@ -51,6 +51,11 @@ class Parser {
                                                                                {"/=", Assignment::kDivide}};
     for (const auto& [sign, assignment] : kAssignments) {
       if (token_ != sign) continue;
+      // "x =- y" sets x; who writes it means "x -= y".
+      if (sign == "=" && next_ < text_.size() && (text_[next_] == '-' || text_[next_] == '+')) {
+        token_ += text_[next_];
+        throw Unexpected("-= or +=, or a blank between = and the sign");
+      }
       statement.assignment = assignment;
       Advance();
       statement.value = Whole();

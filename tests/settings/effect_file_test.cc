@@ -228,6 +228,9 @@ TEST_F(EffectFileTest, ErrorsNameLineAndSymbol) {
   EXPECT_THAT(ErrorOfEquation("arm_torque -= stiffness * sine(alpha)"),
               HasSubstr("the unknown function \"sine\" at column 27"));
   EXPECT_THAT(ErrorOfEquation("arm_torque = = 3"), HasSubstr("found \"=\" at column 14"));
+  EXPECT_THAT(ErrorOfEquation("arm_torque =- stiffness * alpha"),
+              HasSubstr("found \"=-\" at column 12, allowed -= or +="));
+  EXPECT_EQ(ErrorOfEquation("arm_torque = -stiffness * alpha"), "no error");
   EXPECT_THAT(ErrorOfEquation("arm_torque"), HasSubstr("allowed =, +=, -=, *= or /="));
   EXPECT_THAT(ErrorOfEquation("D *= 1 + load"),
               HasSubstr("\"load\", which is not known yet among the properties at column 10"));

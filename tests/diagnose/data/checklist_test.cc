@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "model/actuator.h"
@@ -86,6 +87,12 @@ TEST(ChecklistTest, UnitsShaftAndTime) {
     for (double& value : signal->values) value /= 14.5038;
   }
   EXPECT_THAT(LineOf(run, "charge pressure"), ::testing::ContainsRegex("^look .*another unit"));
+  run = Swing(model::Shaft::kFree);
+  const double fifth = 0.2 * *std::min_element(run.p1.values.begin(), run.p1.values.end());
+  for (runs::MeasuredSignal* signal : {&run.p1, &run.p2}) {
+    for (double& value : signal->values) value -= fifth;
+  }
+  EXPECT_THAT(LineOf(run, "charge pressure"), ::testing::ContainsRegex("^look .*gauge against absolute"));
   run = Swing(model::Shaft::kFree);
   run.shaft = model::Shaft::kClamped;
   for (double& angle : run.arm_angle.values) angle *= 20;
