@@ -133,7 +133,7 @@ void ReadProcesses(SectionReader& document, std::vector<ProcessSection>* process
     if (!item.is(TomlNode::Kind::kTable)) {
       throw KeyError(item.place, "process", item.Shown(), "sections [[process]]");
     }
-    ProcessSection process = ReadProcess(SectionReader(item, "process"));
+    ProcessSection process = ReadProcess(document.Item(item, "process"));
     CheckBeside(process, *processes);
     processes->push_back(std::move(process));
   }

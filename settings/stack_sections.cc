@@ -209,8 +209,9 @@ void CheckKeysHaveSections(const TomlNode& root) {
   }
 }
 
-void ReadSections(const TomlNode& root, const std::string& config_file, StackConfig* config) {
-  SectionReader document(root, "");
+void ReadSections(const TomlNode& root, const std::string& config_file, StackConfig* config,
+                  std::vector<AskedKey>* asked) {
+  SectionReader document(root, "", asked);
   SectionReader model = document.Section("model");
   SectionReader bus = document.Section("bus");
   SectionReader time = document.Section("time");

@@ -2,6 +2,9 @@
 // stack_checks.h.
 #pragma once
 
+#include <string>
+#include <vector>
+
 #include "settings/stack_config.h"
 #include "settings/toml/section_reader.h"
 
@@ -13,7 +16,9 @@ void CheckKeysHaveSections(const TomlNode& root);
 // The section [reference]. Throws InputError.
 void ReadReference(SectionReader section, const std::string& config_file, ReferenceSection* reference);
 
-// Fills every section of `config` from the document, except the model's description. Throws InputError.
-void ReadSections(const TomlNode& root, const std::string& config_file, StackConfig* config);
+// Fills every section of `config` from the document, except the model's description, and notes in `asked`
+// (unless it is null) the keys that the document may have. Throws InputError.
+void ReadSections(const TomlNode& root, const std::string& config_file, StackConfig* config,
+                  std::vector<AskedKey>* asked = nullptr);
 
 }  // namespace hydro::settings

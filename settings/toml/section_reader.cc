@@ -47,10 +47,11 @@ std::string NumberRange::Allowed() const {
   return infinity_allowed ? allowed + ", or inf" : allowed;
 }
 
-SectionReader::SectionReader(const TomlNode& table, std::string path)
-    : table_(&table), path_(std::move(path)) {}
+SectionReader::SectionReader(const TomlNode& table, std::string path, std::vector<AskedKey>* asked)
+    : table_(&table), path_(std::move(path)), asked_(asked) {}
 
 bool SectionReader::Number(const std::string& key, double* out, const NumberRange& range) {
+  NoteStandard(key, ShortestNumber(*out));
   const TomlNode* node = Take(key);
   if (node == nullptr) return false;
   if (!node->is_number() || !range.Holds(node->AsDouble())) throw Error(key, node->Shown(), range.Allowed());
@@ -59,6 +60,7 @@ bool SectionReader::Number(const std::string& key, double* out, const NumberRang
 }
 
 bool SectionReader::Number(const std::string& key, std::optional<double>* out, const NumberRange& range) {
+  NoteStandard(key, *out ? ShortestNumber(**out) : "none");
   double value = 0;
   if (!Number(key, &value, range)) return false;
   *out = value;
@@ -66,6 +68,7 @@ bool SectionReader::Number(const std::string& key, std::optional<double>* out, c
 }
 
 bool SectionReader::Integer(const std::string& key, int64_t* out, int64_t min, int64_t max) {
+  NoteStandard(key, std::to_string(*out));
   const TomlNode* node = Take(key);
   if (node == nullptr) return false;
   if (!node->is(Kind::kInteger) || node->integer < min || node->integer > max) {
@@ -78,13 +81,14 @@ bool SectionReader::Integer(const std::string& key, int64_t* out, int64_t min, i
 }
 
 bool SectionReader::Integer(const std::string& key, int* out, int min, int max) {
-  int64_t value = 0;
+  int64_t value = *out;
   if (!Integer(key, &value, int64_t{min}, int64_t{max})) return false;
   *out = static_cast<int>(value);
   return true;
 }
 
 bool SectionReader::Boolean(const std::string& key, bool* out) {
+  NoteStandard(key, *out ? "true" : "false");
   const TomlNode* node = Take(key);
   if (node == nullptr) return false;
   if (!node->is(Kind::kBoolean)) throw Error(key, node->Shown(), "true or false");
@@ -93,6 +97,7 @@ bool SectionReader::Boolean(const std::string& key, bool* out) {
 }
 
 bool SectionReader::Text(const std::string& key, std::string* out) {
+  NoteStandard(key, TomlString(*out));
   const TomlNode* node = Take(key);
   if (node == nullptr) return false;
   if (!node->is(Kind::kString)) throw Error(key, node->Shown(), "a string");
@@ -107,22 +112,37 @@ SectionReader SectionReader::Section(const std::string& key) {
   const TomlNode* node = Take(key);
   if (node != nullptr) {
     if (!node->is(Kind::kTable)) throw Error(key, node->Shown(), "a section [" + Dotted(key) + "]");
-    return SectionReader(*node, Dotted(key));
+    return SectionReader(*node, Dotted(key), asked_);
   }
   auto absent = std::make_shared<TomlNode>();
   absent->place = table_->place;
-  SectionReader reader(*absent, Dotted(key));
+  SectionReader reader(*absent, Dotted(key), asked_);
   reader.absent_ = std::move(absent);
   return reader;
 }
 
+AskedKey* SectionReader::Asked(const std::string& key) const {
+  if (asked_ == nullptr) return nullptr;
+  for (AskedKey& asked : *asked_) {
+    if (asked.section == path_ && asked.key == key) return &asked;
+  }
+  return &asked_->emplace_back(AskedKey{path_, key, "", false});
+}
+
+void SectionReader::NoteStandard(const std::string& key, const std::string& standard) const {
+  AskedKey* asked = Asked(key);
+  if (asked != nullptr && asked->standard.empty()) asked->standard = standard;
+}
+
 const TomlNode* SectionReader::Take(const std::string& key) {
+  Asked(key);
   if (std::find(known_.begin(), known_.end(), key) == known_.end()) known_.push_back(key);
   return table_->Find(key);
 }
 
 void SectionReader::Require(const std::string& key, const std::string& allowed) {
   required_.emplace_back(key, allowed);
+  if (AskedKey* asked = Asked(key)) asked->required = true;
 }
 
 void SectionReader::Finish() const {

@@ -38,10 +38,19 @@ inline constexpr NumberRange kAnyNumber{};
 inline constexpr NumberRange kPositive{.min = 0, .min_allowed = false};
 inline constexpr NumberRange kNotNegative{.min = 0};
 
+// A key that a reader asked for, for the page that lists them all (tests/settings/configuration_page.h).
+struct AskedKey {
+  std::string section;  // dotted; empty: the whole document
+  std::string key;
+  std::string standard;  // what holds without the key, as TOML; "none"; empty: only the reader's caller knows
+  bool required = false;
+};
+
 class SectionReader {
  public:
   // `path` is the dotted name of the section, empty for the whole document. The node must outlive the reader.
-  SectionReader(const TomlNode& table, std::string path);
+  // `asked`, which must too: where to note the keys that this reader and those of its sections ask for.
+  SectionReader(const TomlNode& table, std::string path, std::vector<AskedKey>* asked = nullptr);
 
   bool Has(const std::string& key) const { return table_->Find(key) != nullptr; }
 
@@ -57,6 +66,11 @@ class SectionReader {
 
   // The section of that name; an empty one if there is none.
   SectionReader Section(const std::string& key);
+
+  // One of an array of sections: `item` is in this section's, `path` its dotted name.
+  SectionReader Item(const TomlNode& item, const std::string& path) const {
+    return SectionReader(item, path, asked_);
+  }
 
   // The key's node, for what the functions above do not cover; null if there is none.
   const TomlNode* Take(const std::string& key);
@@ -74,17 +88,23 @@ class SectionReader {
 
  private:
   std::string Dotted(const std::string& key) const { return path_.empty() ? key : path_ + "." + key; }
+  AskedKey* Asked(const std::string& key) const;
+  void NoteStandard(const std::string& key, const std::string& standard) const;
 
   const TomlNode* table_;
   std::shared_ptr<const TomlNode> absent_;  // stands in for a missing section
   std::string path_;
   std::vector<std::string> known_;
   std::vector<std::pair<std::string, std::string>> required_;  // key, allowed
+  std::vector<AskedKey>* asked_;                               // may be null
 };
 
 template <class Value>
 bool SectionReader::Choice(const std::string& key, const std::vector<std::pair<std::string, Value>>& choices,
                            Value* out) {
+  for (const auto& [name, value] : choices) {
+    if (value == *out) NoteStandard(key, TomlString(name));
+  }
   const TomlNode* node = Take(key);
   if (node == nullptr) return false;
   std::vector<std::string> names;
