@@ -134,7 +134,8 @@ void OwnController::WriteConfiguration(const settings::StackConfig& recorded,
                                        const run_description_t& description) {
   settings::TomlNode stack = settings::ParseToml(recorded.text, recorded.file);
   settings::ApplyOverrides({"bus.url=" + settings::TomlString(port_->Url()), "bus.channel_suffix=''",
-                            "time.mode='lockstep'", "model.file='model.toml'"},
+                            // It is fed what was heard, in the order of then, and may not wait for more.
+                            "time.mode='realtime'", "model.file='model.toml'"},
                            &stack);
   stack.Find("bus")->Erase("key_file");
   WriteWholeFile(folder_->File("model.toml"), description.model_text);

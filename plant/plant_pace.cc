@@ -92,13 +92,13 @@ std::string PlantApp::Unanswered() const {
 
 void PlantApp::RunRealtime() {
   const std::chrono::duration<double> period(1 / (config_.plant.rate_hz * config_.time.speed));
-  timing::FixedRateLoop loop(participant_.bus(), participant_.clock(), period, participant_.statistics());
+  timing::FixedRateLoop loop(participant_.bus(), participant_.clock(), period, participant_.statistics(),
+                             config_.last_tick);
   measured_ = rig_.Read(0);
   PublishState(0);
   while (!Ended() && tick_ != config_.last_tick) {
-    int64_t elapsed = loop.Wait();
+    const int64_t elapsed = loop.Wait();
     if (elapsed == 0) continue;  // interrupted by a signal
-    if (config_.last_tick >= 0) elapsed = std::min(elapsed, config_.last_tick - tick_);
     participant_.statistics().set_missed_deadlines(loop.skipped());
     const auto slept = bus::FromSeconds(static_cast<double>(elapsed - 1) * period.count());
     Advance(tick_ + elapsed);  // under the voltage that was held all that time

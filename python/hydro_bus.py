@@ -143,7 +143,9 @@ class Loop:
     fills in the command; tick, session, sequence and utime are filled in already. every: plant ticks from one answer to the next
     (position_ctrl: sample_interval_s times rate_hz), where the loop is started by hand; hydro-launch says it in HYDRO_EVERY.
 
-    A pressure loop finds in self.asked the pressure command in force, the newest of an earlier tick; None before the first.
+    A pressure loop finds in self.asked the pressure command in force, the newest of an earlier tick; None before the first. In
+    lockstep (HYDRO_TIME) it answers a state only when the command that is due then (HYDRO_POSITION_EVERY, HYDRO_COMMAND_DELAY) is
+    here: in the network it may come after the state.
     """
 
     def __init__(self, bus, role, channel, type_, answer, every=1):
@@ -151,6 +153,10 @@ class Loop:
 
         self.bus, self.role, self.channel, self.type_, self.answer = bus, role, channel, type_, answer
         self.every = int(os.environ.get("HYDRO_EVERY", every))
+        self._position_every = int(os.environ.get("HYDRO_POSITION_EVERY", 1))
+        self._delay = int(os.environ.get("HYDRO_COMMAND_DELAY", 1))
+        self._waits = role == "pressure_ctrl" and os.environ.get("HYDRO_TIME") == "lockstep"
+        self._pending = None  # lockstep: a state that waits for the pressure command that it needs
         self.session = new_session()
         self._status_t = hydro.process_status_t
         self.asked = None
@@ -215,9 +221,19 @@ class Loop:
     def _on_pressure_command(self, command):
         if not self._heard or command.tick > self._heard[-1].tick:
             self._heard.append(command)
+        if self._pending and not self._lacks_command(self._pending.tick):
+            state, self._pending = self._pending, None
+            self._answer(state)
+
+    def _lacks_command(self, tick):
+        if not self._waits or tick < self._delay:
+            return False
+        due = (tick - self._delay) // self._position_every * self._position_every
+        newest = self._heard[-1].tick if self._heard else self.asked.tick if self.asked else -1
+        return newest < due
 
     def _take_pressure_command(self, state, command):
-        while self._heard and self._heard[0].tick < state.tick:
+        while self._heard and self._heard[0].tick <= state.tick - self._delay:
             self.asked = self._heard.pop(0)
         command.pressure_command_tick = self.asked.tick if self.asked else -1
         command.pressure_ref = self.asked.pressure_ref if self.asked else 0.0
@@ -228,15 +244,21 @@ class Loop:
             self._say(self._status_t.RUNNING, "")
         if state.session != self._plant or state.tick % self.every:
             return
-        if self._command is None or state.tick > self._command.tick:
-            command = self.type_()
-            command.tick, command.session, command.sequence = state.tick, self.session, self._sequence
-            command.utime = time.time_ns() // 1000
-            if self.role == "pressure_ctrl":
-                self._take_pressure_command(state, command)
-            self.answer(state, command)
-            self._sequence += 1
-            self._command = command
-        elif state.tick < self._command.tick:
-            return  # overtaken
-        self.bus.publish(self.channel, self._command)  # a state that comes again asks for the answer again
+        if self._command is not None and state.tick <= self._command.tick:
+            if state.tick == self._command.tick:  # comes again, and asks for the answer again; an older one was overtaken
+                self.bus.publish(self.channel, self._command)
+        elif self._lacks_command(state.tick):
+            self._pending = state
+        else:
+            self._answer(state)
+
+    def _answer(self, state):
+        command = self.type_()
+        command.tick, command.session, command.sequence = state.tick, self.session, self._sequence
+        command.utime = time.time_ns() // 1000
+        if self.role == "pressure_ctrl":
+            self._take_pressure_command(state, command)
+        self.answer(state, command)
+        self._sequence += 1
+        self._command = command
+        self.bus.publish(self.channel, command)

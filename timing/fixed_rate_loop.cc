@@ -2,14 +2,21 @@
 
 #include <sys/prctl.h>
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
 namespace hydro::timing {
 
 FixedRateLoop::FixedRateLoop(bus::Bus& bus, const bus::Clock& clock,
-                             std::chrono::duration<double, std::nano> period, LoopStatistics& statistics)
-    : bus_(bus), clock_(clock), period_ns_(period.count()), statistics_(statistics), start_(clock.Now()) {
+                             std::chrono::duration<double, std::nano> period, LoopStatistics& statistics,
+                             int64_t last_tick)
+    : bus_(bus),
+      clock_(clock),
+      period_ns_(period.count()),
+      statistics_(statistics),
+      last_tick_(last_tick),
+      start_(clock.Now()) {
   if (!(period_ns_ >= 1)) throw std::invalid_argument("the period of a loop must be at least 1 ns");
   if (!clock_.simulated()) prctl(PR_SET_TIMERSLACK, 1);
 }
@@ -34,6 +41,7 @@ int64_t FixedRateLoop::Wait() {
   while (DueTime(tick_ + elapsed) > now) --elapsed;
   while (DueTime(tick_ + elapsed + 1) <= now) ++elapsed;
 
+  if (last_tick_ > tick_) elapsed = std::min(elapsed, last_tick_ - tick_);
   tick_ += elapsed;
   skipped_ += elapsed - 1;
   statistics_.AddMissedDeadlines(elapsed - 1);

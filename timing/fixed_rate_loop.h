@@ -17,9 +17,9 @@ class FixedRateLoop {
   // `period` need not be a whole number of ns. Wake-ups are recorded in `statistics`: the latency of a cycle
   // is the time from its deadline to the wake-up. On a wall clock it lowers the thread's timer slack, which
   // would otherwise make every wake-up 50 us late. Throws std::invalid_argument when the period is not
-  // positive.
+  // positive. After `last_tick`, where it is not negative, nothing is due: late wake-ups skip no tick beyond it.
   FixedRateLoop(bus::Bus& bus, const bus::Clock& clock, std::chrono::duration<double, std::nano> period,
-                LoopStatistics& statistics);
+                LoopStatistics& statistics, int64_t last_tick = -1);
 
   // Handles messages until the next tick is due (what is waiting is handled even when it is due already).
   // Returns how many ticks have become due since the last return: 1, or more when some were skipped because
@@ -37,6 +37,7 @@ class FixedRateLoop {
   const bus::Clock& clock_;
   double period_ns_;
   LoopStatistics& statistics_;
+  int64_t last_tick_;
   bus::Clock::TimePoint start_;
   int64_t tick_ = 0;
   int64_t skipped_ = 0;

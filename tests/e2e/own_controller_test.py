@@ -134,13 +134,15 @@ class OwnControllerTest(fault_case.FaultCase):
         self.assertRegex(launch.stdout, "all 4 processes ready")
         self.assertLess(abs(event_log.Log(self.path("run.lcmlog")).states[-1].arm_angle - TARGET), 0.02)
         replay = self.run_program("hydro-log", "replay", "--controller", says, self.path("run.lcmlog"))
-        self.assertRegex(replay.stdout, r": identical, [23]\d\d pressure commands from ")
+        answers = sum(not c.open_loop for c in event_log.Log(self.path("run.lcmlog")).pressure_commands)  # fewer where ticks were skipped
+        self.assertGreater(answers, 100)
+        self.assertIn(f": identical, {answers} pressure commands from ", replay.stdout)
 
     # Tests that the run ends at zero volts, with 1 and a reason, when it is killed, fails, or leaves; and that what it has started
     # ends with it.
     def test_launched_dies(self):
-        fails = self.variant("fails.py", "    asked =", "    if state.tick == 200: 1 / 0\n    asked =")
-        leaves = self.variant("leaves.py", "    asked =", "    if state.tick == 200: os._exit(0)\n    asked =")
+        fails = self.variant("fails.py", "    asked =", "    if state.tick >= 200: 1 / 0\n    asked =")
+        leaves = self.variant("leaves.py", "    asked =", "    if state.tick >= 200: os._exit(0)\n    asked =")
         with open(leaves, encoding="utf-8") as file:
             text = file.read()
         self.script("leaves.py", text.replace("import sys", "import os\nimport sys"))
@@ -148,7 +150,7 @@ class OwnControllerTest(fault_case.FaultCase):
         cases = (("./killed.py", r"killed\.py \(position_ctrl\) was killed by signal 9 \(SIGKILL\)"),
                  ("./fails.py", r"fails\.py \(position_ctrl\) ended with exit code 1: ZeroDivisionError: division by zero"),
                  ("./leaves.py", r"leaves\.py \(position_ctrl\) ended though nobody"))
-        self.variant("killed.py", "    asked =", "    if state.tick == 200: os.kill(os.getpid(), 9)\n    asked =")
+        self.variant("killed.py", "    asked =", "    if state.tick >= 200: os.kill(os.getpid(), 9)\n    asked =")
         with open(self.path("killed.py"), encoding="utf-8") as file:
             text = file.read()
         self.script("killed.py", text.replace("import sys", "import os\nimport sys"))

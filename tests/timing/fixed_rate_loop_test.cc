@@ -67,6 +67,17 @@ TEST_F(FixedRateLoopTest, CountsSkippedTicks) {
   EXPECT_DOUBLE_EQ(total.latency_max_us, 2500);
 }
 
+// Tests that a late caller skips no tick beyond the last: nobody would count it but this loop.
+TEST_F(FixedRateLoopTest, EndsAtTheLastTick) {
+  FixedRateLoop loop(bus_, clock_, 1ms, statistics_, 5);
+  EXPECT_EQ(loop.Wait(), 1);
+  clock_.AdvanceTo(bus::Clock::TimePoint(9500us));
+  EXPECT_EQ(loop.Wait(), 4);  // ticks 2 to 5
+  EXPECT_EQ(loop.tick(), 5);
+  EXPECT_EQ(loop.skipped(), 3);
+  EXPECT_EQ(statistics_.Total(clock_.Now()).missed_deadlines, 3);
+}
+
 // Tests that messages are handled before the tick, even by a loop that is always late.
 TEST_F(FixedRateLoopTest, HandlesMessagesWhileWaiting) {
   int states = 0;
