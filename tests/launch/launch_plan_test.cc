@@ -187,14 +187,14 @@ TEST_F(LaunchPlanTest, StartsAProgramOfTheUsersOwn) {
   ASSERT_TRUE(child.own);
   EXPECT_EQ(child.own->folder, folder_.string());
   EXPECT_EQ(child.own->cpu, 1);
-  EXPECT_THAT(child.own->environment,
-              ::testing::IsSupersetOf({std::string("HYDRO_ROLE=position_ctrl"), std::string("HYDRO_EVERY=25"),
-                                       std::string("HYDRO_POSITION_EVERY=25"),
-                                       "HYDRO_COMMAND_DELAY=" + std::to_string(config_.plant.command_delay_ticks),
-                                       std::string("HYDRO_TIME=realtime"),
-                                       "HYDRO_CONFIG=" + request_.config_file,
-                                       std::string("HYDRO_SET=position.c1=2\ntime.mode=lockstep"),
-                                       "HYDRO_BUS_URL=" + config_.bus.url}));
+  EXPECT_THAT(
+      child.own->environment,
+      ::testing::IsSupersetOf({std::string("HYDRO_ROLE=position_ctrl"), std::string("HYDRO_EVERY=25"),
+                               std::string("HYDRO_POSITION_EVERY=25"),
+                               "HYDRO_COMMAND_DELAY=" + std::to_string(config_.plant.command_delay_ticks),
+                               std::string("HYDRO_TIME=realtime"), "HYDRO_CONFIG=" + request_.config_file,
+                               std::string("HYDRO_SET=position.c1=2\ntime.mode=lockstep"),
+                               "HYDRO_BUS_URL=" + config_.bus.url}));
   EXPECT_THAT(RolesOf(plan), ElementsAre("plant", "position_ctrl"));
 
   config_.processes[1].host = "desk";
