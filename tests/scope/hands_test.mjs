@@ -170,15 +170,18 @@ test('the menu of a pane with keys', async () => {
   await page.getByRole('button', { name: 'Default panes' }).click();
 });
 
-// Tests that the table of the cursors, with the widest names, is not cut off at the side.
+// Tests that the table of the cursors, with the widest names and numbers, is not cut off at the side.
 test('the cursors have room', async () => {
   if (!(await page.evaluate(() => hydroScope.cursors.shown))) await page.keyboard.press('c');
   await page.locator('[data-cell="motor_speed.difference"]').waitFor();
   await until(page, () => !document.querySelector('[data-cell="p1.difference"]')?.textContent.includes('–'));
-  const { table, room } = await page.evaluate(() => ({
-    table: document.querySelector('#section-cursors table').getBoundingClientRect().right,
-    room: document.querySelector('#section-cursors .hint').parentElement.getBoundingClientRect().right,
-  }));
+  const { table, room } = await page.evaluate(() => {
+    for (const cell of document.querySelectorAll('#section-cursors td.number')) cell.textContent = '\u22122.842e\u221214';
+    return {
+      table: document.querySelector('#section-cursors table').getBoundingClientRect().right,
+      room: document.querySelector('#section-cursors .hint').parentElement.getBoundingClientRect().right,
+    };
+  });
   assert.ok(table <= room, `the table ends at ${table}, its place at ${room}`);
   await page.keyboard.press('c');
 });
