@@ -1,8 +1,6 @@
 #include "hydro_log/own_controller.h"
 
-#include <netinet/in.h>
 #include <signal.h>
-#include <sys/socket.h>
 #include <sys/wait.h>
 #include <unistd.h>
 #include <wordexp.h>
@@ -36,33 +34,6 @@ constexpr auto kLook = 20ms;    // how often the child's end is looked for
 constexpr auto kAgain = 100ms;  // until what may be lost is sent again
 
 }  // namespace
-
-// A UDP port that no socket of this machine uses, as long as this object lives: others who ask for one get others, and a bus,
-// which shares its port, can use it.
-class OwnController::Port {
- public:
-  Port() : socket_(socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0)) {
-    sockaddr_in address{};
-    address.sin_family = AF_INET;
-    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-    socklen_t size = sizeof address;
-    auto* const generic = reinterpret_cast<sockaddr*>(&address);
-    const int yes = 1;
-    if (socket_ < 0 || bind(socket_, generic, size) != 0 || getsockname(socket_, generic, &size) != 0 ||
-        setsockopt(socket_, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes) != 0) {
-      throw bus::BusError("no free UDP port on this machine for the replay");
-    }
-    number_ = ntohs(address.sin_port);
-  }
-  ~Port() { close(socket_); }
-  Port(const Port&) = delete;
-  Port& operator=(const Port&) = delete;
-  std::string Url() const { return "udpm://239.255.76.67:" + std::to_string(number_) + "?ttl=0"; }
-
- private:
-  int socket_;
-  int number_ = 0;
-};
 
 // A folder for what the controller reads, as long as this object lives.
 class OwnController::Folder {
@@ -102,7 +73,7 @@ OwnController::OwnController(const settings::StackConfig& recorded, const run_de
     : name_(command.front()),
       role_(role),
       folder_(std::make_unique<Folder>()),
-      port_(std::make_unique<Port>()) {
+      port_(std::make_unique<bus::ReservedPort>()) {
   process::SpawnRequest request;
   request.argv = command;
   request.argv.front() =

@@ -14,6 +14,7 @@
 
 #include "bus/bus.h"
 #include "bus/clock.h"
+#include "bus/udpm/reserved_port.h"
 #include "process/process_end.h"
 #include "settings/stack_config.h"
 
@@ -27,7 +28,7 @@ class OwnController {
   using Duration = std::chrono::steady_clock::duration;
 
   // Starts `command` (a path in it counts from here) in the place of `role`. It is told of a free port on this machine and of
-  // the recorded configuration in files (process/own_program.h); there it is in lockstep and has no key and no suffix of
+  // the recorded configuration in files (process/own_program.h); there it is in real time, as it is fed what was heard then, and has no key and no suffix of
   // channels. What it prints goes to stderr. Throws InputError, process::StartError, bus::BusError.
   OwnController(const settings::StackConfig& recorded, const run_description_t& description,
                 const std::vector<std::string>& command, const std::string& role);
@@ -52,13 +53,12 @@ class OwnController {
 
  private:
   class Folder;
-  class Port;
   bool Ended();
   void WriteConfiguration(const settings::StackConfig& recorded, const run_description_t& description);
 
   std::string name_, role_;
   std::unique_ptr<Folder> folder_;
-  std::unique_ptr<Port> port_;
+  std::unique_ptr<bus::ReservedPort> port_;
   settings::StackConfig config_;
   std::unique_ptr<bus::Bus> bus_;
   bus::WallClock clock_;

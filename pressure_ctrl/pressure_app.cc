@@ -29,14 +29,15 @@ double LargestPressureReference(const tuning::TunedValues& values, double half_d
 
 }  // namespace
 
-PressureApp::PressureApp(bus::Bus& bus, bus::Clock& clock, const settings::StackConfig& config)
+PressureApp::PressureApp(bus::Bus& bus, bus::Clock& clock, const settings::StackConfig& config,
+                         OwnPressureLaw own)
     : participant_(bus, clock, bus::Channels(config.bus.channel_suffix), "pressure_ctrl", config.agreed),
+      own_(std::move(own)),
       lockstep_(config.time.mode == settings::TimeMode::kLockstep),
       interval_(config.pressure_interval_ticks),
       position_interval_(config.position_interval_ticks),
       delay_(config.plant.command_delay_ticks),
-      stale_ticks_(delay_ + position_interval_ +
-                   static_cast<int64_t>(std::ceil(config.limits.stale_input_s * config.plant.rate_hz))),
+      stale_ticks_(settings::OldestPressureCommandTicks(config)),
       ramp_ticks_(static_cast<int64_t>(std::ceil(config.limits.pressure_ramp_s * config.plant.rate_hz))),
       k_2_(config.model.description.parameters.k_2),
       half_dac_step_(config.position.dac_bits > 0
@@ -165,6 +166,7 @@ void PressureApp::TakePressureCommandsUpTo(int64_t tick) {
 }
 
 std::string PressureApp::WhyNot(const tuned_settings_t& settings) const {
+  if (own_) return "the pressure loop is a program of its user's own, which has its gains in itself";
   tuning::TunedValues values = values_;
   return tuning::Read(settings, k_2_, &values);
 }
@@ -226,16 +228,26 @@ void PressureApp::ApplyOpenLoop(motor_command_t* command) const {
   command->saturated = command->voltage != pressure_command_->voltage;
 }
 
-void PressureApp::ApplyLaw(const state_t& state, motor_command_t* command) {
-  PressureLawInput input{command->pressure_ref, state.p1, state.p2, state.motor_speed, state.arm_speed};
+PressureLawOutput PressureApp::Law(const state_t& state, double pressure_ref) {
+  if (own_) {
+    const double asked = own_(state, pressure_ref), limit = values_.pressure.voltage_limit;
+    const double voltage = std::isfinite(asked) ? std::clamp(asked, -limit, limit) : asked;
+    return {.voltage = voltage, .saturated = voltage != asked};
+  }
+  PressureLawInput input{pressure_ref, state.p1, state.p2, state.motor_speed, state.arm_speed};
   input.transfer = Transfer(input, state.tick);
-  const PressureLawOutput output = PressureLaw(values_.pressure, input);
+  return PressureLaw(values_.pressure, input);
+}
+
+void PressureApp::ApplyLaw(const state_t& state, motor_command_t* command) {
+  const PressureLawOutput output = Law(state, command->pressure_ref);
   if (!std::isfinite(
           output.voltage)) {  // the inputs are finite, but a product of gains and reference overflows
-    participant_.Raise("nonfinite_motor_command",
-                       fmt::format("tick {}: eq. (16) gives {} V for a reference of {} psi, must be finite",
-                                   state.tick, output.voltage, command->pressure_ref),
-                       output.voltage, NAN, false);
+    participant_.Raise(
+        "nonfinite_motor_command",
+        fmt::format("tick {}: {} gives {} V for a reference of {} psi, must be finite", state.tick,
+                    own_ ? "the loop's own law" : "eq. (16)", output.voltage, command->pressure_ref),
+        output.voltage, NAN, false);
     return;  // the command stays SAFE
   }
   command->status = motor_command_t::LAW;

@@ -7,6 +7,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <hydro/motor_command_t.hpp>
 #include <hydro/pressure_command_t.hpp>
 #include <hydro/state_t.hpp>
@@ -24,9 +25,14 @@
 
 namespace hydro::pressure_ctrl {
 
+// The voltage that a law of the user's own asks for at a state, V; `pressure_ref`: the reference in force for p2 - p1, psi.
+using OwnPressureLaw = std::function<double(const state_t& state, double pressure_ref)>;
+
 class PressureApp : public process::App {
  public:
-  PressureApp(bus::Bus& bus, bus::Clock& clock, const settings::StackConfig& config);
+  // With `own` that law is in the place of eq. (16): all else, the limit on its voltage too, is the same, and hydro-set, which knows
+  // no gains of it, is told so.
+  PressureApp(bus::Bus& bus, bus::Clock& clock, const settings::StackConfig& config, OwnPressureLaw own = {});
 
   void Poll() override;
   void OnHandled(int messages) override { participant_.statistics().RecordQueueDepth(messages); }
@@ -53,12 +59,14 @@ class PressureApp : public process::App {
   bool AwaitsPressureCommand(int64_t state_tick) const;
   std::string WhyNot(const tuned_settings_t& settings) const;
   void TakeSettingsAt(int64_t tick);
+  PressureLawOutput Law(const state_t& state, double pressure_ref);
   double Transfer(const PressureLawInput& input, int64_t tick);
   void Send(motor_command_t& command);
   void ForgetPressureCommands();
   void Restart();
 
   process::Participant participant_;
+  const OwnPressureLaw own_;  // may be empty
   const bool lockstep_;
   const int64_t interval_;           // ticks between two commands of this loop
   const int64_t position_interval_;  // ticks between two pressure commands

@@ -1,6 +1,7 @@
 #include "process/own_loop.h"
 
 #include <cstdlib>
+#include <hydro/arm_reference_t.hpp>
 #include <sstream>
 #include <utility>
 
@@ -29,9 +30,10 @@ settings::CommonOptions OptionsOfEnvironment() {
 }  // namespace
 
 OwnPositionLoop::OwnPositionLoop(bus::Bus& bus, bus::Clock& clock, const settings::StackConfig& config,
-                                 PositionAnswer answer)
+                                 PositionAnswer answer, ArmReference reference)
     : participant_(bus, clock, bus::Channels(config.bus.channel_suffix), kRole, config.agreed),
       answer_(std::move(answer)),
+      reference_(std::move(reference)),
       interval_(config.position_interval_ticks),
       monitor_(bus::FromSeconds(config.limits.stale_input_s)) {
   bus.Subscribe<state_t>(participant_.channels().Of<state_t>(),
@@ -74,8 +76,20 @@ void OwnPositionLoop::Answer(const state_t& state) {
   command_.sequence = sequence_++;
   command_.utime = participant_.clock().Utime();
   answer_(state, &command_);
+  if (reference_) SendReference(state);
   Send();
   participant_.statistics().RecordCycle(arrival, participant_.clock().Now() - arrival);
+}
+
+void OwnPositionLoop::SendReference(const state_t& state) {
+  arm_reference_t reference{};
+  reference.utime = command_.utime;
+  reference.tick = state.tick;
+  reference.session = participant_.session();
+  reference.sequence = command_.sequence;
+  reference.signal = arm_reference_t::ARM_ANGLE;
+  reference.value = reference_(state);
+  participant_.bus().Publish(participant_.channels().Of<arm_reference_t>(), reference);
 }
 
 void OwnPositionLoop::Send() {
@@ -100,13 +114,14 @@ int OwnPositionLoop::Finish() {
   return participant_.Leave();
 }
 
-int RunOwnPositionLoop(const PositionAnswer& answer) {
-  return settings::RunProgram(kRole, [&] {
-    return RunProcess(kRole, OptionsOfEnvironment(),
-                      [&](bus::Bus& bus, bus::Clock& clock, const settings::StackConfig& config) {
-                        OwnPositionLoop loop(bus, clock, config, answer);
-                        return RunApp(bus, clock, loop);
-                      });
+int RunOwnLoop(const std::string& role, const ProcessBody& body) {
+  return settings::RunProgram(role, [&] { return RunProcess(role, OptionsOfEnvironment(), body); });
+}
+
+int RunOwnPositionLoop(const PositionAnswer& answer, const ArmReference& reference) {
+  return RunOwnLoop(kRole, [&](bus::Bus& bus, bus::Clock& clock, const settings::StackConfig& config) {
+    OwnPositionLoop loop(bus, clock, config, answer, reference);
+    return RunApp(bus, clock, loop);
   });
 }
 

@@ -10,10 +10,12 @@
 #include <functional>
 #include <hydro/pressure_command_t.hpp>
 #include <hydro/state_t.hpp>
+#include <string>
 
 #include "bus/sequence_monitor.h"
 #include "process/app.h"
 #include "process/participant.h"
+#include "process/process_main.h"
 #include "settings/stack_config.h"
 
 namespace hydro::process {
@@ -22,12 +24,15 @@ namespace hydro::process {
 // already. Called once for each state that is a multiple of the position loop's interval.
 using PositionAnswer = std::function<void(const state_t& state, pressure_command_t* command)>;
 
+// The angle that the loop wants of the arm at that state, rad.
+using ArmReference = std::function<double(const state_t& state)>;
+
 // The loop's life on the bus: the handshake, the answers, each again when its state comes again, the end; statistics and faults
 // as all processes have them.
 class OwnPositionLoop : public App {
  public:
   OwnPositionLoop(bus::Bus& bus, bus::Clock& clock, const settings::StackConfig& config,
-                  PositionAnswer answer);
+                  PositionAnswer answer, ArmReference reference = {});
 
   void Poll() override;
   void OnHandled(int messages) override { participant_.statistics().RecordQueueDepth(messages); }
@@ -40,19 +45,25 @@ class OwnPositionLoop : public App {
  private:
   void OnState(const state_t& state);
   void Answer(const state_t& state);
+  void SendReference(const state_t& state);
   void Send();
 
   Participant participant_;
   const PositionAnswer answer_;
-  const int64_t interval_;  // ticks
+  const ArmReference reference_;  // may be empty
+  const int64_t interval_;        // ticks
   bus::SequenceMonitor monitor_;
   pressure_command_t command_{};  // the last
   int64_t answered_ = -1;         // its tick
   int64_t sequence_ = 0;
 };
 
-// A whole program: takes the configuration and its overrides from HYDRO_CONFIG and HYDRO_SET, as hydro-launch and hydro-log replay
-// set them, and runs until the run is over. Returns the exit code; what is wrong is one line on stderr.
-int RunOwnPositionLoop(const PositionAnswer& answer);
+// A whole program in the place of `role`: takes the configuration and its overrides from HYDRO_CONFIG and HYDRO_SET, as hydro-launch and hydro-log replay
+// set them, and runs `body`. Returns the exit code; what is wrong is one line on stderr.
+int RunOwnLoop(const std::string& role, const ProcessBody& body);
+
+// The same for a position loop, until the run is over. With `reference` it publishes the arm's reference beside each answer, for tables,
+// pictures and hydro-log summary.
+int RunOwnPositionLoop(const PositionAnswer& answer, const ArmReference& reference = {});
 
 }  // namespace hydro::process

@@ -79,6 +79,7 @@ std::vector<std::string> OwnEnvironment(const settings::StackConfig& config, con
   variables["HYDRO_TIME"] = config.time.mode == settings::TimeMode::kLockstep ? "lockstep" : "realtime";
   variables["HYDRO_POSITION_EVERY"] = std::to_string(config.position_interval_ticks);
   variables["HYDRO_COMMAND_DELAY"] = std::to_string(config.plant.command_delay_ticks);
+  variables["HYDRO_STALE_TICKS"] = std::to_string(settings::OldestPressureCommandTicks(config));
   variables["HYDRO_EVERY"] =
       std::to_string(position ? config.position_interval_ticks : config.pressure_interval_ticks);
   const fs::path python = fs::path(programs_folder).parent_path() / "share/hydro/python";

@@ -22,7 +22,7 @@ struct OwnTask {
 // This process's environment, and in it: HYDRO_ROLE, HYDRO_CONFIG, HYDRO_SET (a line for each override), HYDRO_BUS_URL,
 // HYDRO_CHANNEL_SUFFIX, HYDRO_RATE_HZ, HYDRO_TIME (lockstep or realtime), HYDRO_EVERY (ticks from one answer of that role to the
 // next), HYDRO_POSITION_EVERY (from one pressure command to the next), HYDRO_COMMAND_DELAY (from a command's tick to that from
-// which it acts), and PYTHONPATH with the folder of our Python modules before the user's, where it is found from `programs_folder`.
+// which it acts), HYDRO_STALE_TICKS (an older pressure command is stale), and PYTHONPATH with the folder of our Python modules before the user's, where it is found from `programs_folder`.
 std::vector<std::string> OwnEnvironment(const settings::StackConfig& config, const OwnTask& task,
                                         const std::string& programs_folder);
 

@@ -143,22 +143,30 @@ class Loop:
     fills in the command; tick, session, sequence and utime are filled in already. every: plant ticks from one answer to the next
     (position_ctrl: sample_interval_s times rate_hz), where the loop is started by hand; hydro-launch says it in HYDRO_EVERY.
 
+    reference(state), where it is given: the angle that a position loop wants of the arm, rad. It is published for tables, pictures and
+    hydro-log summary.
+
     A pressure loop finds in self.asked the pressure command in force, the newest of an earlier tick; None before the first. In
     lockstep (HYDRO_TIME) it answers a state only when the command that is due then (HYDRO_POSITION_EVERY, HYDRO_COMMAND_DELAY) is
-    here: in the network it may come after the state.
+    here: in the network it may come after the state. While the command in force is an open-loop one, its voltage is passed on, and
+    answer() is not asked. Nor is it while that command is older than HYDRO_STALE_TICKS: zero volts, and a fault that says so.
     """
 
-    def __init__(self, bus, role, channel, type_, answer, every=1):
+    def __init__(self, bus, role, channel, type_, answer, every=1, reference=None):
         import hydro  # the types of lcm-gen
 
         self.bus, self.role, self.channel, self.type_, self.answer = bus, role, channel, type_, answer
         self.every = int(os.environ.get("HYDRO_EVERY", every))
+        self.reference, self._reference_t = reference, hydro.arm_reference_t
         self._position_every = int(os.environ.get("HYDRO_POSITION_EVERY", 1))
         self._delay = int(os.environ.get("HYDRO_COMMAND_DELAY", 1))
         self._waits = role == "pressure_ctrl" and os.environ.get("HYDRO_TIME") == "lockstep"
+        self._oldest = int(os.environ.get("HYDRO_STALE_TICKS", 0)) if role == "pressure_ctrl" else 0  # ticks; 0: not watched
+        self._stale = False
+        self._faults = 0  # sent
         self._pending = None  # lockstep: a state that waits for the pressure command that it needs
         self.session = new_session()
-        self._status_t = hydro.process_status_t
+        self._status_t, self._fault_t = hydro.process_status_t, hydro.fault_t
         self.asked = None
         self._heard = []  # the pressure commands that are, or will be, in force
         self._command = None  # the last, which is sent again when its state is
@@ -232,6 +240,12 @@ class Loop:
         newest = self._heard[-1].tick if self._heard else self.asked.tick if self.asked else -1
         return newest < due
 
+    def _publish_reference(self, state):
+        sent = self._reference_t()
+        sent.tick, sent.session, sent.sequence, sent.utime = state.tick, self.session, self._sequence, time.time_ns() // 1000
+        sent.signal, sent.value = sent.ARM_ANGLE, self.reference(state)
+        self.bus.publish("HYDRO_ARM_REFERENCE", sent)
+
     def _take_pressure_command(self, state, command):
         while self._heard and self._heard[0].tick <= state.tick - self._delay:
             self.asked = self._heard.pop(0)
@@ -258,7 +272,28 @@ class Loop:
         command.utime = time.time_ns() // 1000
         if self.role == "pressure_ctrl":
             self._take_pressure_command(state, command)
-        self.answer(state, command)
+        age = state.tick - (self.asked.tick if self.asked else 0)
+        stale = 0 < self._oldest < age
+        if stale:
+            command.status = self.type_.SAFE
+        elif self.asked is not None and self.asked.open_loop:
+            command.voltage, command.status = self.asked.voltage, self.type_.OPEN_LOOP
+        elif self.answer(state, command) is not None:
+            raise TypeError("answer() returned a value, which nobody reads; it fills in the command, e.g. command.pressure_ref = 10.0")
+        if self.reference is not None:
+            self._publish_reference(state)
         self._sequence += 1
         self._command = command
         self.bus.publish(self.channel, command)
+        if stale != self._stale:  # zero volts first, explanation second
+            self._stale = stale
+            self._say_stale(state.tick, age)
+
+    def _say_stale(self, tick, age):
+        fault = self._fault_t()
+        fault.utime, fault.tick, fault.session, fault.sequence = time.time_ns() // 1000, tick, self.session, self._faults
+        fault.source, fault.code, fault.active, fault.latched = self.role, "stale_pressure_command", self._stale, False
+        fault.value, fault.limit = float(age), float(self._oldest)
+        fault.text = f"tick {tick}: the newest pressure command is {age} ticks old, allowed are {self._oldest} (limits.stale_input_s)"
+        self._faults += 1
+        self.bus.publish("HYDRO_FAULT", fault)

@@ -9,6 +9,7 @@ namespace {
 constexpr double kShortestRest = 0.2;         // s
 constexpr double kFinalTime = 0.1;            // s
 constexpr double kSmallestTolerance = 0.001;  // rad
+constexpr double kLeastStep = 0.01;           // rad, of one that begins with the run
 constexpr size_t kMostSteps = 100;
 
 struct Samples {
@@ -66,6 +67,11 @@ std::vector<StepResponse> Steps(const Samples& samples, int* left_out) {
   const size_t last = changes.size() - 2;
   const auto is_step = [&](size_t k) { return k > 0 && k <= last && (k == 1 || rests(k - 1)) && rests(k); };
   std::vector<StepResponse> steps;
+  // A reference that never changes, away from where the arm was: a step with which the run began.
+  if (changes.size() == 2 && std::fabs(samples.angles[0] - samples.references[0]) >= kLeastStep && rests(0)) {
+    steps.push_back(MeasureStep(samples.times, samples.angles, 0, samples.size(), samples.angles[0],
+                                samples.references[0]));
+  }
   for (size_t k = 1; k <= last; ++k) {
     if (!is_step(k)) continue;
     if (k < last && !is_step(k + 1)) {

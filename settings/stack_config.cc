@@ -1,5 +1,6 @@
 #include "settings/stack_config.h"
 
+#include <cmath>
 #include <filesystem>
 
 #include "base/read_files.h"
@@ -85,6 +86,11 @@ StackConfig Changed(const StackConfig& config, const std::vector<std::string>& c
   TomlNode root = ParseToml(config.text, config.file);
   ApplyOverrides(changes, &root);
   return WithModel(&root, config.file, config.model.text, config.model.resolved_file);
+}
+
+int64_t OldestPressureCommandTicks(const StackConfig& config) {
+  return config.plant.command_delay_ticks + config.position_interval_ticks +
+         static_cast<int64_t>(std::ceil(config.limits.stale_input_s * config.plant.rate_hz));
 }
 
 ReferenceSection ParseReference(const std::string& text) {

@@ -210,6 +210,9 @@ ReferenceSection ParseReference(const std::string& text);
 // The section [reference] of `config`, which ParseReference() reads.
 std::string ReferenceText(const StackConfig& config);
 
+// The most ticks that a pressure command may be old at a state and still count (limits.stale_input_s beyond what is usual).
+int64_t OldestPressureCommandTicks(const StackConfig& config);
+
 // Builds the function that a specification describes.
 std::unique_ptr<trajectory::Trajectory> MakeTrajectory(const TrajectorySpec& spec);
 

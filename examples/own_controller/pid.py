@@ -14,4 +14,5 @@ def answer(state, command):  # state: arm_angle, arm_speed, motor_speed, p1, p2,
 
 
 bus = hydro_bus.Bus(*sys.argv[1:2])
-sys.exit(hydro_bus.Loop(bus, "position_ctrl", "HYDRO_PRESSURE_COMMAND", pressure_command_t, answer, every=5).run())
+sys.exit(hydro_bus.Loop(bus, "position_ctrl", "HYDRO_PRESSURE_COMMAND", pressure_command_t, answer, every=5,
+                        reference=lambda state: TARGET).run())

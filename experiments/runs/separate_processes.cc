@@ -1,10 +1,7 @@
 // The stack as separate processes in real time.
-#include <arpa/inet.h>
 #include <fcntl.h>
-#include <netinet/in.h>
 #include <signal.h>
 #include <sys/prctl.h>
-#include <sys/socket.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -19,41 +16,13 @@
 #include <vector>
 
 #include "base/new_file.h"
+#include "bus/udpm/reserved_port.h"
 #include "experiments/runs/stack_run.h"
 #include "runs/run_table.h"
 #include "settings/stack_config.h"
 
 namespace hydro::experiments {
 namespace {
-
-// A UDP port that no socket on this machine uses, reserved for the lifetime of this object, so that the stack
-// meets no other one. LCM shares its ports, so it can use it.
-class ReservedPort {
- public:
-  ReservedPort() : socket_(socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0)) {
-    sockaddr_in address{};
-    address.sin_family = AF_INET;
-    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-    socklen_t length = sizeof address;
-    if (socket_ < 0 || bind(socket_, reinterpret_cast<sockaddr*>(&address), length) != 0 ||
-        getsockname(socket_, reinterpret_cast<sockaddr*>(&address), &length) != 0) {
-      const int error = errno;
-      if (socket_ >= 0) close(socket_);
-      throw std::system_error(error, std::generic_category(), "no free UDP port");
-    }
-    const int reuse = 1;
-    setsockopt(socket_, SOL_SOCKET, SO_REUSEADDR, &reuse, sizeof reuse);
-    port_ = ntohs(address.sin_port);
-  }
-  ~ReservedPort() { close(socket_); }
-  ReservedPort(const ReservedPort&) = delete;
-  ReservedPort& operator=(const ReservedPort&) = delete;
-  std::string url() const { return "udpm://239.255.76.67:" + std::to_string(port_) + "?ttl=0"; }
-
- private:
-  int socket_ = -1;
-  int port_ = 0;
-};
 
 // Runs a program to its end with its output in `output_file`. Returns its exit code, or 128 + N when signal N
 // ended it. The program gets SIGTERM when this process dies.
@@ -114,7 +83,7 @@ StackRunner SeparateProcesses(const std::string& program_folder, const std::stri
     const std::string log = stem + ".lcmlog";
     WriteWholeFile(config, setup.config);
     WriteWholeFile(folder + "/" + model, setup.model);
-    const ReservedPort port;
+    const bus::ReservedPort port;
     std::vector<std::string> command = {program_folder + "/hydro-launch",
                                         config,
                                         "--time",
@@ -124,7 +93,7 @@ StackRunner SeparateProcesses(const std::string& program_folder, const std::stri
                                         "--set",
                                         "model.file=" + model,
                                         "--set",
-                                        "bus.url=" + port.url()};
+                                        "bus.url=" + port.Url()};
     if (parsed.plant.command_delay_ticks == 0) {  // a command cannot act before it is computed
       command.insert(command.end(), {"--set", "plant.command_delay_ticks=1"});
     }

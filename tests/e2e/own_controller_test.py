@@ -104,6 +104,8 @@ class OwnControllerTest(fault_case.FaultCase):
         b = self.lockstep(CONFIG, "b.lcmlog", hang)
         self.assert_identical(a, b)
         self.assertLess(abs(event_log.Log(a).states[-1].arm_angle - TARGET), 0.02)
+        summary = self.run_program("hydro-log", "summary", a).stdout
+        self.assertRegex(summary, r"(?i)step.*0\.3")
         self.assertIn('command = ["./pid.py"]', event_log.Log(a).of("HYDRO_RUN")[0].config_text)
 
         replay = self.run_program("hydro-log", "replay", "--controller", PID, a)
@@ -263,6 +265,113 @@ sys.exit(loop.run())
         self.assertEqual((commands[-1].voltage, commands[-1].status), (0, 3))
         replay = self.run_program("hydro-log", "replay", "--controller", "./pressure.py", a)
         self.assertEqual(replay.stdout, "./pressure.py: identical, 1201 motor commands from 1201 states\n")
+        self.check_pressure_loop_in_cpp(config, a)
+
+    def check_pressure_loop_in_cpp(self, config, log):
+        """The example in C++, of the same law, commands what the one in Python did, replays it, and runs in real time."""
+        built = os.path.join(TOOLS, "own_pressure")
+        self.assertTrue(os.path.exists(built), f"{built}: cmake --build build --target own_pressure")
+        with open(config, encoding="utf-8") as file:
+            text = file.read()
+        self.assertIn('["./pressure.py"]', text)
+        with open(config, "w", encoding="utf-8") as file:
+            file.write(text.replace('["./pressure.py"]', f'["{built}"]'))
+        commands, theirs = ([(c.tick, c.voltage, c.status, c.pressure_ref, c.pressure_command_tick) for c in event_log.Log(name).of("HYDRO_MOTOR_COMMAND")]
+                            for name in (self.lockstep(config, "cpp.lcmlog"), log))
+        self.assertEqual(commands[:-1], theirs[:-1])  # the last one, of zero volts, names no reference
+        self.assertEqual(commands[-1][1:3], (0, 3))
+        replay = self.run_program("hydro-log", "replay", "--controller", built, log)
+        self.assertIn("identical, 1201 motor commands from ", replay.stdout)
+        launch = self.launch(config, "--duration", "1.5", "--log", self.path("run.lcmlog"))
+        self.assertEqual(launch.wait(60), 0, launch.report())
+        angle = event_log.Log(self.path("run.lcmlog")).states[-1].arm_angle
+        self.assertLess(abs(angle - event_log.Log(log).states[-1].arm_angle), 0.05)
+
+    def loop_on(self, role, channel, type_name, answer, **more):
+        """A Loop of hydro_bus on a bus that is a list of what was published, and what hands it a message."""
+        sys.path[:0] = PYTHON.split(os.pathsep)
+        self.addCleanup(lambda: [sys.path.remove(folder) for folder in PYTHON.split(os.pathsep)])
+        hydro_bus, hydro = importlib.import_module("hydro_bus"), importlib.import_module("hydro")
+        published, handlers = [], {}
+
+        class ListedBus:
+            def subscribe(self, channel, _type, handler):
+                handlers[channel] = handler
+
+            def publish(self, channel, message):
+                published.append((channel, message))
+
+        loop = hydro_bus.Loop(ListedBus(), role, channel, getattr(hydro, type_name), answer, **more)
+
+        def hear(channel, type_name, **fields):
+            message = getattr(hydro, type_name)()
+            for name, value in fields.items():
+                setattr(message, name, value)
+            handlers[channel](message)
+            return [m for c, m in published if c != "HYDRO_PROCESS_STATUS"]
+
+        return loop, hear
+
+    # Tests that while an open-loop command is in force a pressure loop passes its voltage on, and asks answer() again after it.
+    def test_open_loop(self):
+        asked = []
+
+        def answer(state, command):
+            asked.append(state.tick)
+            command.voltage = 1.0
+
+        _, hear = self.loop_on("pressure_ctrl", "HYDRO_MOTOR_COMMAND", "motor_command_t", answer)
+        hear("HYDRO_STATE", "state_t", session=7, tick=0)
+        hear("HYDRO_PRESSURE_COMMAND", "pressure_command_t", tick=0, open_loop=True, voltage=-2.5)
+        hear("HYDRO_STATE", "state_t", session=7, tick=1)
+        hear("HYDRO_PRESSURE_COMMAND", "pressure_command_t", tick=1, pressure_ref=3.0)
+        sent = hear("HYDRO_STATE", "state_t", session=7, tick=2)
+        self.assertEqual([(c.voltage, c.status, c.pressure_command_tick) for c in sent], [(1.0, 0, -1), (-2.5, 1, 0), (1.0, 0, 1)])
+        self.assertEqual(asked, [0, 2])
+
+    # Tests that a stale pressure command gives zero volts, then a fault that ends with the next good one.
+    def test_stale_command(self):
+        os.environ["HYDRO_STALE_TICKS"] = "3"
+        self.addCleanup(lambda: os.environ.pop("HYDRO_STALE_TICKS"))
+
+        def answer(state, command):
+            command.voltage = 1.0
+
+        _, hear = self.loop_on("pressure_ctrl", "HYDRO_MOTOR_COMMAND", "motor_command_t", answer)
+        hear("HYDRO_PRESSURE_COMMAND", "pressure_command_t", tick=0, open_loop=True, voltage=2.0)
+        for tick in range(6):
+            hear("HYDRO_STATE", "state_t", session=7, tick=tick)
+        hear("HYDRO_PRESSURE_COMMAND", "pressure_command_t", tick=5)
+        sent = hear("HYDRO_STATE", "state_t", session=7, tick=6)
+        commands = [(c.voltage, c.status) for c in sent if hasattr(c, "voltage")]
+        self.assertEqual(commands, [(1.0, 0), (2.0, 1), (2.0, 1), (2.0, 1), (0.0, 2), (0.0, 2), (1.0, 0)])
+        faults = [(number, m.tick, m.code, m.active, m.value, m.limit) for number, m in enumerate(sent) if hasattr(m, "latched")]
+        self.assertEqual(faults, [(5, 4, "stale_pressure_command", True, 4.0, 3.0), (8, 6, "stale_pressure_command", False, 1.0, 3.0)])
+
+    # Tests that in lockstep a state that overtook the command it needs is answered when that comes, as it would have been.
+    def test_overtaken_command(self):
+        os.environ.update(HYDRO_TIME="lockstep", HYDRO_POSITION_EVERY="2", HYDRO_COMMAND_DELAY="1")
+        self.addCleanup(lambda: [os.environ.pop(name) for name in ("HYDRO_TIME", "HYDRO_POSITION_EVERY", "HYDRO_COMMAND_DELAY")])
+        _, hear = self.loop_on("pressure_ctrl", "HYDRO_MOTOR_COMMAND", "motor_command_t", lambda state, command: None)
+        self.assertEqual(len(hear("HYDRO_STATE", "state_t", session=7, tick=0)), 1)
+        self.assertEqual(len(hear("HYDRO_STATE", "state_t", session=7, tick=1)), 1)
+        self.assertEqual(len(hear("HYDRO_STATE", "state_t", session=7, tick=1)), 1)  # asked again
+        sent = hear("HYDRO_PRESSURE_COMMAND", "pressure_command_t", tick=0, pressure_ref=4.0)
+        self.assertEqual([(c.tick, c.pressure_ref) for c in sent], [(0, 0.0), (1, 4.0)])
+        self.assertEqual(len(hear("HYDRO_STATE", "state_t", session=7, tick=2)), 3)  # the command of tick 0 is in force still
+        self.assertEqual(len(hear("HYDRO_STATE", "state_t", session=7, tick=3)), 3)
+
+    # Tests that a reference is published before its answer, and that an answer() that returns its command is told what to do.
+    def test_reference_and_returned_value(self):
+        _, hear = self.loop_on("position_ctrl", "HYDRO_PRESSURE_COMMAND", "pressure_command_t", lambda state, command: None, every=2,
+                               reference=lambda state: state.tick / 10)
+        for tick in range(3):
+            sent = hear("HYDRO_STATE", "state_t", session=7, tick=tick)
+        self.assertEqual([type(m).__name__ for m in sent], ["arm_reference_t", "pressure_command_t"] * 2)
+        self.assertEqual((sent[2].tick, sent[2].sequence, sent[2].value), (2, 1, 0.2))
+        _, hear = self.loop_on("position_ctrl", "HYDRO_PRESSURE_COMMAND", "pressure_command_t", lambda state, command: 4.0)
+        with self.assertRaisesRegex(TypeError, r"returned a value.*fills in the command"):
+            hear("HYDRO_STATE", "state_t", session=7, tick=0)
 
     def check_example(self, command):
         """In lockstep twice identical and with pid.py's answers, and in real time."""

@@ -10,6 +10,7 @@
 
 #include "bus/in_process_bus.h"
 #include "tests/stack_fixture.h"
+#include "tuning/tuned_values.h"
 
 namespace hydro::pressure_ctrl {
 namespace {
@@ -21,8 +22,8 @@ using namespace std::chrono_literals;
 // The pressure loop on an in-process bus; the test plays plant and position loop.
 class PressureAppTest : public ::testing::Test {
  protected:
-  void Start(const settings::StackConfig& config) {
-    app_ = std::make_unique<PressureApp>(bus_, clock_, config);
+  void Start(const settings::StackConfig& config, OwnPressureLaw own = {}) {
+    app_ = std::make_unique<PressureApp>(bus_, clock_, config, std::move(own));
     bus_.Subscribe<motor_command_t>("HYDRO_MOTOR_COMMAND",
                                     [this](const motor_command_t& c) { commands_.push_back(c); });
     bus_.Subscribe<fault_t>("HYDRO_FAULT", [this](const fault_t& f) { faults_.push_back(f); });
@@ -195,6 +196,33 @@ TEST_F(PressureAppTest, OverflowOfTheLawGivesZeroVolts) {
   ASSERT_EQ(faults_.size(), 1u);
   EXPECT_EQ(faults_[0].code, "nonfinite_motor_command");
   EXPECT_TRUE(faults_[0].active);
+}
+
+// Tests that a law of the user's own gets the state and the reference in force, that its voltage is cut to the limit, and that one
+// that is not a number gives zero volts and a fault.
+TEST_F(PressureAppTest, RunsALawOfTheUsersOwn) {
+  const settings::StackConfig config = SmallStack();
+  const double limit = tuning::ValuesOf(config).pressure.voltage_limit;
+  double scale = 0.01;
+  Start(config, [&](const state_t& state, double pressure_ref) {
+    return scale * (pressure_ref - (state.p2 - state.p1));
+  });
+  SendState(State(0));
+  SendPressure(0, 120);
+  SendState(State(1));
+  EXPECT_DOUBLE_EQ(commands_.back().voltage, 0.01 * (120 - 100));
+  EXPECT_EQ(commands_.back().status, motor_command_t::LAW);
+  EXPECT_FALSE(commands_.back().saturated);
+  scale = 1e6;
+  SendState(State(2));
+  EXPECT_EQ(commands_.back().voltage, limit);
+  EXPECT_TRUE(commands_.back().saturated);
+  scale = NAN;
+  SendState(State(3));
+  EXPECT_EQ(commands_.back().voltage, 0);
+  EXPECT_EQ(commands_.back().status, motor_command_t::SAFE);
+  ASSERT_EQ(faults_.size(), 1u);
+  EXPECT_EQ(faults_[0].code, "nonfinite_motor_command");
 }
 
 // Tests that a running loop announces itself again to a restarted plant that is looking for it.

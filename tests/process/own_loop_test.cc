@@ -76,6 +76,28 @@ TEST_F(OwnPositionLoopTest, AnswersEachSampleOnce) {
               ElementsAre(process_status_t::READY, process_status_t::RUNNING, process_status_t::DONE));
 }
 
+// Tests that the arm's reference is published before each answer, and not again with a repeated one.
+TEST_F(OwnPositionLoopTest, PublishesItsReference) {
+  std::vector<arm_reference_t> references;
+  std::vector<size_t> commands_before;
+  bus_.Subscribe<arm_reference_t>("HYDRO_ARM_REFERENCE", [&](const arm_reference_t& reference) {
+    references.push_back(reference);
+    commands_before.push_back(commands_.size());
+  });
+  OwnPositionLoop loop(
+      bus_, clock_, config_, [](const state_t&, pressure_command_t*) {},
+      [](const state_t& state) { return 2 * state.arm_angle; });
+  for (int64_t tick = 0; tick <= 5; ++tick) State(tick, tick);
+  State(5, 5);
+  ASSERT_EQ(references.size(), 2u);
+  EXPECT_THAT(commands_before, ElementsAre(0u, 1u));
+  EXPECT_EQ(references[1].tick, 5);
+  EXPECT_EQ(references[1].sequence, 1);
+  EXPECT_EQ(references[1].session, loop.participant().session());
+  EXPECT_EQ(references[1].signal, arm_reference_t::ARM_ANGLE);
+  EXPECT_EQ(references[1].value, 0.1);
+}
+
 // Tests that a plant that begins anew is followed from its first sample on.
 TEST_F(OwnPositionLoopTest, FollowsAPlantThatBeginsAnew) {
   OwnPositionLoop loop(bus_, clock_, config_, [this](const state_t&, pressure_command_t*) { ++asked_; });

@@ -108,6 +108,19 @@ TEST(TrackingTest, AHoldLeavesTheOtherSteps) {
   EXPECT_EQ(tracking.steps_left_out, 1);
 }
 
+// Tests that a reference that is constant from the start is a step from where the arm was.
+TEST(TrackingTest, ConstantReferenceElsewhereIsAStep) {
+  const Tracking tracking = TrackArm(MakeRun(
+      2000, [](double t) { return 0.3 - 0.2 * std::exp(-20 * t); }, [](double) { return 0.3; }));
+  ASSERT_EQ(tracking.steps.size(), 1u);
+  EXPECT_EQ(tracking.steps[0].time_s, 0);
+  EXPECT_DOUBLE_EQ(tracking.steps[0].from_rad, 0.1);
+  EXPECT_EQ(tracking.steps[0].to_rad, 0.3);
+  ASSERT_TRUE(tracking.steps[0].settling_time_s.has_value());
+  EXPECT_NEAR(*tracking.steps[0].settling_time_s, std::log(50) / 20, 0.002);
+  EXPECT_EQ(tracking.steps_left_out, 0);
+}
+
 // Tests that an arm that holds still at a constant reference is at its target, up to a tolerance and no
 // further.
 TEST(TrackingTest, ConstantReference) {

@@ -15,4 +15,6 @@ void Answer(const hydro::state_t& state, hydro::pressure_command_t* command) {
 
 }  // namespace
 
-int main() { return hydro::process::RunOwnPositionLoop(Answer); }
+int main() {
+  return hydro::process::RunOwnPositionLoop(Answer, [](const hydro::state_t&) { return kTarget; });
+}
