@@ -51,7 +51,8 @@ class SteadyTest(unittest.TestCase):
         self.assertEqual(self.steady(ALWAYS, "exit 77").returncode, 77)
         self.assertEqual(self.count(), 2)
 
-    # Tests that a machine that stands still is seen: this process stops steady.py for 0.3 s.
+    # Tests that a machine that stands still is seen: this process stops steady.py for 0.3 s, on a busy machine before it
+    # has heard that its child runs.
     def test_standing_still_is_seen(self):
         script = 'if [ "$run" = 1 ]; then kill -STOP $PPID; sleep 0.3; kill -CONT $PPID; exit 1; fi'
         self.assertEqual(self.steady("0.2", script).returncode, 0)
